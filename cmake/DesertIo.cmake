@@ -1,0 +1,13 @@
+# Rasters by GDAL and pictures by OpenCV: the IO part.
+set(io_missing "")
+if(DESERT_WITH_IO)
+  find_package(GDAL QUIET)
+  find_package(OpenCV QUIET COMPONENTS core imgproc imgcodecs)
+  foreach(package IN ITEMS GDAL OpenCV)
+    if(NOT ${package}_FOUND)
+      string(APPEND io_missing " ${package}")
+    endif()
+  endforeach()
+  string(STRIP "${io_missing}" io_missing)
+endif()
+desert_decide(IO "${io_missing}" "GDAL ${GDAL_VERSION}, OpenCV ${OpenCV_VERSION}")

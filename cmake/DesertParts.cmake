@@ -1,0 +1,22 @@
+# Parts that a build may lack: CUDA, IO (GDAL, OpenCV), ROS. Each has DESERT_WITH_<part> = AUTO (there if its needs
+# are, looked for anew by each configuration), ON (an error without them) or OFF.
+foreach(part IN ITEMS CUDA IO ROS)
+  set(DESERT_WITH_${part} AUTO CACHE STRING "AUTO, ON or OFF")
+  set_property(CACHE DESERT_WITH_${part} PROPERTY STRINGS AUTO ON OFF)
+endforeach()
+
+# desert_decide(<part> <missing> <about>): makes DESERT_WITH_<part> ON or OFF, and DESERT_<part>_ABOUT say why.
+macro(desert_decide part missing about)
+  if(NOT DESERT_WITH_${part})
+    set(DESERT_${part}_ABOUT "switched off")
+    set(DESERT_WITH_${part} OFF)
+  elseif("${missing}" STREQUAL "")
+    set(DESERT_${part}_ABOUT "${about}")
+    set(DESERT_WITH_${part} ON)
+  elseif(DESERT_WITH_${part} STREQUAL "AUTO")
+    set(DESERT_${part}_ABOUT "not found: ${missing}")
+    set(DESERT_WITH_${part} OFF)
+  else()
+    message(FATAL_ERROR "desert_sim: DESERT_WITH_${part} is ON, but not found: ${missing}")
+  endif()
+endmacro()

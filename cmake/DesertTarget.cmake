@@ -1,0 +1,128 @@
+# How targets are made: one set of flags for all of them, one header path for all rooms.
+include(GNUInstallDirs)
+
+option(DESERT_WERROR "Warnings are errors" ON)
+option(DESERT_NATIVE "Use the instructions of the CPU that builds (-march=native); results stay the same bits" OFF)
+
+# ---- Rooms: `#include "desert_sim/<room>/<file>.hpp"` everywhere, in the build tree through links ----
+set(DESERT_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${DESERT_INCLUDE_DIR}/desert_sim)
+set_property(GLOBAL PROPERTY DESERT_ROOMS "")
+foreach(room IN ITEMS kernels core terrain scenario simulation io tools ros)
+  set(folder ${PROJECT_SOURCE_DIR}/src/${room})
+  if(room STREQUAL "kernels")
+    set(folder ${PROJECT_SOURCE_DIR}/kernels)
+  endif()
+  file(GLOB headers CONFIGURE_DEPENDS ${folder}/*.hpp) # a new room configures anew
+  if(IS_DIRECTORY "${folder}")
+    file(CREATE_LINK ${folder} ${DESERT_INCLUDE_DIR}/desert_sim/${room} SYMBOLIC)
+    set_property(GLOBAL APPEND PROPERTY DESERT_ROOMS ${room})
+    set_property(GLOBAL PROPERTY DESERT_ROOM_${room} ${folder})
+  endif()
+endforeach()
+
+# Faster loops in the physics without changing a result: no errno from sqrt(), no floating-point traps.
+set(DESERT_PHYSICS_OPTIONS
+  $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<CONFIG:Debug>>>:-O3>
+  $<$<COMPILE_LANGUAGE:CXX>:-fno-math-errno>
+  $<$<COMPILE_LANGUAGE:CXX>:-fno-trapping-math>)
+
+# desert_target(<target>): language, warnings and floating-point rules. No contraction, no fast-math:
+# the CPU and the GPU round alike.
+function(desert_target target)
+  set_target_properties(${target} PROPERTIES
+    CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF
+    POSITION_INDEPENDENT_CODE ON
+    INSTALL_RPATH_USE_LINK_PATH ON
+    INSTALL_RPATH "$ORIGIN;$ORIGIN/..;$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${DESERT_INCLUDE_DIR}>)
+
+  set(host -Wall -Wextra -Wshadow -ffp-contract=off)
+  if(DESERT_WERROR)
+    list(APPEND host -Werror)
+  endif()
+  if(DESERT_NATIVE)
+    list(APPEND host -march=native)
+  endif()
+  target_compile_options(${target} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:${host}>")
+
+  if(DESERT_WITH_CUDA)
+    list(APPEND host -Wno-parentheses) # the host code that nvcc writes puts them round member pointers
+    string(REPLACE ";" "," host "${host}")
+    set(device -Xcompiler=${host} -fmad=false -prec-div=true -prec-sqrt=true --expt-relaxed-constexpr -lineinfo
+      -Wno-deprecated-gpu-targets ${DESERT_CUDA_OPTIONS})
+    if(DESERT_WERROR)
+      list(APPEND device --Werror=all-warnings)
+    endif()
+    target_compile_options(${target} PRIVATE "$<$<COMPILE_LANGUAGE:CUDA>:${device}>")
+  endif()
+endfunction()
+
+# Links what exists: without GDAL and OpenCV there is no desert_io, and so on.
+function(desert_link target)
+  set(scope PUBLIC)
+  foreach(item IN LISTS ARGN)
+    if(item MATCHES "^(PUBLIC|PRIVATE)$")
+      set(scope ${item})
+    elseif(TARGET ${item} OR NOT item MATCHES "^desert_")
+      target_link_libraries(${target} ${scope} ${item})
+    endif()
+  endforeach()
+endfunction()
+
+# desert_library(<target> [STATIC] FOLDERS <folder>... [EXCLUDE <regex>] [LINK [PUBLIC|PRIVATE] <library>...])
+# A library of all sources in the folders (.cu ones with CUDA only); none while the folders are empty.
+function(desert_library target)
+  cmake_parse_arguments(arg "STATIC" "EXCLUDE" "FOLDERS;LINK" ${ARGN})
+  set(sources "")
+  foreach(folder IN LISTS arg_FOLDERS)
+    file(GLOB found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+    list(APPEND sources ${found})
+    if(DESERT_WITH_CUDA)
+      file(GLOB found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cu)
+      list(APPEND sources ${found})
+    endif()
+  endforeach()
+  if(arg_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX ${arg_EXCLUDE})
+  endif()
+  if(NOT sources)
+    message(STATUS "desert_sim: ${target} left out: no sources in ${arg_FOLDERS}")
+    return()
+  endif()
+  if(arg_STATIC)
+    add_library(${target} STATIC ${sources})
+  else()
+    add_library(${target} SHARED ${sources})
+    set_property(GLOBAL APPEND PROPERTY DESERT_LIBRARIES ${target})
+  endif()
+  desert_target(${target})
+  desert_link(${target} ${arg_LINK})
+endfunction()
+
+# desert_program(<target> SOURCE <file> LINK <library>...)
+function(desert_program target)
+  cmake_parse_arguments(arg "" "SOURCE" "LINK" ${ARGN})
+  file(GLOB source CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${arg_SOURCE})
+  if(NOT source)
+    message(STATUS "desert_sim: ${target} left out: no ${arg_SOURCE}")
+    return()
+  endif()
+  add_executable(${target} ${source})
+  set_property(GLOBAL APPEND PROPERTY DESERT_PROGRAMS ${target})
+  desert_target(${target})
+  desert_link(${target} PRIVATE ${arg_LINK})
+endfunction()
+
+# One line: what this build has, and why it lacks the rest.
+function(desert_summary)
+  foreach(part IN ITEMS CUDA IO ROS)
+    if(DESERT_WITH_${part})
+      list(APPEND parts "${part} on (${DESERT_${part}_ABOUT})")
+    else()
+      list(APPEND parts "${part} OFF (${DESERT_${part}_ABOUT})")
+    endif()
+  endforeach()
+  string(REPLACE ";" ", " parts "${parts}")
+  message(STATUS "desert_sim ${PROJECT_VERSION}, ${CMAKE_BUILD_TYPE}: CPU on, ${parts}")
+endfunction()

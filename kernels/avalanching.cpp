@@ -1,0 +1,44 @@
+#include "desert_sim/kernels/avalanching.hpp"
+
+#include "desert_sim/kernels/avalanching_ground.hpp"
+
+namespace desert_sim::avalanching {
+
+namespace {
+/// Coarsening further would leave less than a tile.
+constexpr int fewest_cells = 16;
+
+/// Cells twice as wide. An axis with an odd cell left over has a wall there on this level; finer levels see to it.
+Grid coarser(const Grid& g) {
+  return Grid{g.width / 2, g.height / 2, 2 * g.cell_size, g.periodic_x && g.width % 2 == 0,
+              g.periodic_y && g.height % 2 == 0};
+}
+}  // namespace
+
+Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParameters& p) {
+  Workspace work;
+  const std::size_t cells = static_cast<std::size_t>(grid.cells());
+  work.ground = Buffer<Quanta>(exec, cells);
+  if (p.scheme != AvalancheScheme::multilevel) {
+    work.share = Buffer<float>(exec, cells);
+    work.given = Buffer<Quanta>(exec, cells);
+    work.received = Buffer<Quanta>(exec, cells);
+    return work;
+  }
+  Grid g = grid;
+  while (g.cell_size < p.coarsest_cell * 0.999f && g.width / 2 >= fewest_cells && g.height / 2 >= fewest_cells) {
+    g = coarser(g);
+    const std::size_t n = static_cast<std::size_t>(g.cells());
+    work.coarse.push_back({g, Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n),
+                           Buffer<float>(exec, n)});
+  }
+  return work;
+}
+
+GroundWorkspace make_ground_workspace(Exec& exec, const Grid& grid) {
+  const std::size_t n = static_cast<std::size_t>(grid.cells());
+  return {Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n),
+          Buffer<Quanta>(exec, n), Buffer<float>(exec, n),  Buffer<float>(exec, n)};
+}
+
+}  // namespace desert_sim::avalanching

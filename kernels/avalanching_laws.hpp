@@ -1,0 +1,294 @@
+#pragma once
+/// The per-cell and per-tile laws of avalanching; equations and schemes in avalanching.hpp.
+
+#include "desert_sim/kernels/for_each.hpp"
+#include "desert_sim/kernels/layers.hpp"
+#include "desert_sim/kernels/math.hpp"
+
+namespace desert_sim {
+namespace avalanching {
+
+/// Rounding could make eight parts of a release exceed it by a few 2⁻²⁴; this keeps them below.
+constexpr float rounding_guard = 1.0f - 1.0f / 1048576.0f;
+
+/// How far a donor stands above its neighbour beyond repose [quanta].
+DESERT_HD float excess(Quanta donor, Quanta receiver, float repose_drop) {
+  return maximum(static_cast<float>(donor - receiver) - repose_drop, 0.0f);
+}
+
+/// Share of each excess that is released: A/B_sum with A = min(k_c B_max/(1 + B_max/B_sum), available).
+DESERT_HD float release_share(const float (&b)[8], float transfer, float available) {
+  const float sum = Neighbours::sum(b);
+  const float largest = maximum(maximum(maximum(b[0], b[1]), maximum(b[2], b[3])),
+                                maximum(maximum(b[4], b[5]), maximum(b[6], b[7])));
+  constexpr float tiny = 1e-20f;
+  return minimum(transfer * largest / (sum + largest + tiny), available / (sum + tiny)) * rounding_guard;
+}
+
+/// One level of the hierarchy, and the fine grid: sand that can move over ground that can't.
+/// Ground at wall_height or above is a wall.
+struct LevelView {
+  Grid grid;
+  const Quanta* ground;
+  Quanta* sand;
+  const float* repose;     ///< tangents
+  float quanta_per_cell;   ///< cell size / quantum: a tangent times this is the drop over one cell
+
+  DESERT_HD bool wall(int i) const { return ground[i] >= wall_height; }
+  DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : ground[i] + sand[i]; }
+};
+
+/// Sweeps inside one closed tile: nothing crosses its edge, so tiles do not see each other.
+struct RelaxTile {
+  static constexpr int stride = Tiles::side + 2, cells = stride * stride;
+  static constexpr int scratch_bytes = 6 * cells * 4;
+
+  Tiles tiles;
+  LevelView level;
+  float transfer;
+  int sweeps;
+
+  /// Cell of the grid under (x, y) of the tile, or −1. On a periodic axis each cell belongs to exactly one tile.
+  DESERT_HD int cell(int column, int row, int x, int y) const {
+    const Grid& g = level.grid;
+    int px = column * Tiles::side - tiles.offset + x, py = row * Tiles::side - tiles.offset + y;
+    if (g.periodic_x) px = px < g.width - tiles.offset ? wrap(px, g.width) : -1;
+    if (g.periodic_y) py = py < g.height - tiles.offset ? wrap(py, g.height) : -1;
+    return g.inside(px, py) ? g.index(px, py) : -1;
+  }
+  DESERT_HD static int local(int x, int y) { return (y + 1) * stride + x + 1; }
+  DESERT_HD static int offset_to(int k) { return Neighbours::dy(k) * stride + Neighbours::dx(k); }
+
+  template <class Team>
+  DESERT_HD void operator()(const Team& team, int column, int row) const {
+    Quanta* h = reinterpret_cast<Quanta*>(team.scratch);
+    Quanta* h_next = h + cells;
+    Quanta* sand = h_next + cells;
+    Quanta* given = sand + cells;
+    float* drop = reinterpret_cast<float*>(given + cells);
+    float* share = drop + cells;
+
+    team.for_each(cells, [=](int n) {
+      h[n] = h_next[n] = wall_height;
+      sand[n] = given[n] = 0;
+      drop[n] = share[n] = 0.0f;
+    });
+    team.for_each_in_tile([=](int x, int y) {
+      const int i = cell(column, row, x, y), n = local(x, y);
+      if (i < 0 || level.wall(i)) return;
+      h[n] = level.ground[i] + level.sand[i];
+      sand[n] = level.sand[i];
+      drop[n] = level.repose[i] * level.quanta_per_cell;
+    });
+    bool moved = false;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      team.for_each_in_tile([=](int x, int y) { release(h, sand, drop, share, given, local(x, y)); });
+      if (!team.any_in_tile([=](int x, int y) { return given[local(x, y)] != 0; })) break;
+      moved = true;
+      team.for_each_in_tile([=](int x, int y) { gather(h, h_next, sand, drop, share, given, local(x, y)); });
+      Quanta* swap = h;
+      h = h_next;
+      h_next = swap;
+    }
+    if (!moved) return;
+    team.for_each_in_tile([=](int x, int y) {
+      const int i = cell(column, row, x, y);
+      if (i >= 0 && !level.wall(i)) level.sand[i] = sand[local(x, y)];
+    });
+  }
+
+ private:
+  DESERT_HD void release(const Quanta* h, const Quanta* sand, const float* drop, float* share, Quanta* given,
+                         int n) const {
+    float b[8];
+    for (int k = 0; k < 8; ++k) b[k] = excess(h[n], h[n + offset_to(k)], drop[n] * Neighbours::distance(k));
+    const float part = release_share(b, transfer, static_cast<float>(sand[n]));
+    Quanta total = 0;
+    for (int k = 0; k < 8; ++k) total += static_cast<Quanta>(part * b[k]);
+    share[n] = part;
+    given[n] = total;
+  }
+
+  DESERT_HD static void gather(const Quanta* h, Quanta* h_next, Quanta* sand, const float* drop, const float* share,
+                               const Quanta* given, int n) {
+    Quanta change = -given[n];
+    for (int k = 0; k < 8; ++k) {
+      const int j = n + offset_to(k);
+      change += static_cast<Quanta>(share[j] * excess(h[j], h[n], drop[j] * Neighbours::distance(k)));
+    }
+    h_next[n] = h[n] + change;
+    sand[n] += change;
+  }
+};
+
+/// Averages four children into a coarse cell. A child that is a wall makes a wall.
+struct Restrict {
+  LevelView fine;
+  Grid coarse;
+  Quanta *ground, *sand, *sand_before;
+  float* repose;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = coarse.index(x, y), c = fine.grid.index(2 * x, 2 * y);
+    const int child[4] = {c, c + 1, c + fine.grid.width, c + fine.grid.width + 1};
+    long long ground_sum = 0, sand_sum = 0;
+    bool wall = false;
+    for (int n = 0; n < 4; ++n) {
+      wall = wall || fine.wall(child[n]);
+      ground_sum += fine.ground[child[n]];
+      sand_sum += fine.sand[child[n]];
+    }
+    ground[i] = wall ? wall_height : static_cast<Quanta>(ground_sum >> 2);
+    sand[i] = sand_before[i] = static_cast<Quanta>(sand_sum >> 2);
+    repose[i] = 0.25f * ((fine.repose[child[0]] + fine.repose[child[3]]) + (fine.repose[child[1]] + fine.repose[child[2]]));
+  }
+};
+
+/// Hands a coarse cell's change to its four children: alike, but where one has too little to give, in proportion to
+/// their sand. What the four change by is exactly four times the coarse change.
+struct Prolong {
+  Grid coarse;
+  const Quanta *sand_after, *sand_before;
+  Grid fine;
+  Quanta* sand;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = coarse.index(x, y);
+    const Quanta change = sand_after[i] - sand_before[i];
+    if (change == 0) return;
+    const int c = fine.index(2 * x, 2 * y);
+    const int child[4] = {c, c + 1, c + fine.width, c + fine.width + 1};
+    Quanta thinnest = sand[c];
+    long long all = 0;
+    for (int n = 0; n < 4; ++n) {
+      thinnest = sand[child[n]] < thinnest ? sand[child[n]] : thinnest;
+      all += sand[child[n]];
+    }
+    if (thinnest + change >= 0) {
+      for (int n = 0; n < 4; ++n) sand[child[n]] += change;
+      return;
+    }
+    const long long wanted = -4LL * change;
+    long long missing = wanted;
+    for (int n = 0; n < 4; ++n) {
+      const Quanta part = static_cast<Quanta>(wanted * sand[child[n]] / all);
+      sand[child[n]] -= part;
+      missing -= part;
+    }
+    for (int n = 0; n < 4; ++n) {
+      const Quanta part = sand[child[n]] < missing ? sand[child[n]] : static_cast<Quanta>(missing);
+      sand[child[n]] -= part;
+      missing -= part;
+    }
+  }
+};
+
+/// Ground under the sand of the finest level; obstacles stand as walls.
+struct Ground {
+  Grid grid;
+  const Quanta *bedrock, *soil;
+  const float* obstacle;
+  Quanta* ground;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    ground[i] = value_or_zero(obstacle, i) > 0.0f ? wall_height : bedrock[i] + value_or_zero(soil, i);
+  }
+};
+
+/// One synchronous sweep over the whole grid, first half: each cell's share, and what it gives in all.
+/// `by_tangent` is Taylor & Keyser's distribution: k_c of the largest drop, in proportion to the tangents.
+struct Release {
+  LevelView level;
+  float transfer;
+  bool by_tangent;
+  float* share;
+  Quanta* given;
+
+  DESERT_HD static float weight(bool by_tangent, Quanta donor, Quanta receiver, float drop, int k) {
+    const float over = excess(donor, receiver, drop * Neighbours::distance(k));
+    if (!by_tangent || over <= 0.0f) return over;
+    return static_cast<float>(donor - receiver) / Neighbours::distance(k);
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const Grid& g = level.grid;
+    const int i = g.index(x, y);
+    share[i] = 0.0f;
+    given[i] = 0;
+    if (level.wall(i)) return;
+    const Quanta h = level.height(i);
+    const float drop = level.repose[i] * level.quanta_per_cell;
+    float w[8], deepest = 0.0f;
+    for (int k = 0; k < 8; ++k) {
+      const int j = neighbour_index(g, x + Neighbours::dx(k), y + Neighbours::dy(k));
+      w[k] = j >= 0 ? weight(by_tangent, h, level.height(j), drop, k) : 0.0f;
+      if (w[k] > 0.0f) deepest = maximum(deepest, static_cast<float>(h - level.height(j)));
+    }
+    const float available = static_cast<float>(level.sand[i]);
+    const float part = by_tangent
+                           ? minimum(transfer * deepest, available) / (Neighbours::sum(w) + 1e-20f) * rounding_guard
+                           : release_share(w, transfer, available);
+    Quanta total = 0;
+    for (int k = 0; k < 8; ++k) total += static_cast<Quanta>(part * w[k]);
+    share[i] = part;
+    given[i] = total;
+  }
+};
+
+/// Second half: what the neighbours give to each cell, less what it gives.
+struct Gather {
+  LevelView level;
+  bool by_tangent;
+  const float* share;
+  const Quanta* given;
+  Quanta* received;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const Grid& g = level.grid;
+    const int i = g.index(x, y);
+    const Quanta h = level.height(i);
+    Quanta sum = 0;
+    for (int k = 0; k < 8; ++k) {
+      const int j = neighbour_index(g, x + Neighbours::dx(k), y + Neighbours::dy(k));
+      if (j < 0 || share[j] <= 0.0f) continue;
+      sum += static_cast<Quanta>(
+          share[j] * Release::weight(by_tangent, level.height(j), h, level.repose[j] * level.quanta_per_cell, k));
+    }
+    received[i] = sum;
+  }
+};
+
+struct ApplySweep {
+  Grid grid;
+  const Quanta *given, *received;
+  Quanta* sand;
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    sand[i] += received[i] - given[i];
+  }
+};
+
+/// Largest excess of a cell over its own repose, as a tangent, that its sand could still slide off.
+struct Excess {
+  LevelView level;
+
+  DESERT_HD float operator()(int x, int y) const {
+    const Grid& g = level.grid;
+    const int i = g.index(x, y);
+    if (level.wall(i) || level.sand[i] <= 0) return 0.0f;
+    const Quanta h = level.height(i);
+    const float drop = level.repose[i] * level.quanta_per_cell, sand = static_cast<float>(level.sand[i]);
+    float largest = 0.0f;
+    for (int k = 0; k < 8; ++k) {
+      const int j = neighbour_index(g, x + Neighbours::dx(k), y + Neighbours::dy(k));
+      if (j < 0) continue;
+      const float over = minimum(excess(h, level.height(j), drop * Neighbours::distance(k)), sand);
+      largest = maximum(largest, over / (Neighbours::distance(k) * level.quanta_per_cell));
+    }
+    return largest;
+  }
+};
+
+}  // namespace avalanching
+}  // namespace desert_sim

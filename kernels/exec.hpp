@@ -1,0 +1,122 @@
+#pragma once
+/// Where a simulation runs: memory, order of work, and (in for_each.hpp) loops over cells. CpuExec runs laws as OpenMP
+/// loops; CudaExec as kernels on one non-blocking stream of its own. A second stream carries snapshots to the host.
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+namespace desert_sim {
+
+class Fft;
+
+class Exec {
+ public:
+  virtual ~Exec() = default;
+  Exec() = default;
+  Exec(const Exec&) = delete;
+  Exec& operator=(const Exec&) = delete;
+
+  virtual const char* backend() const = 0;     ///< "cpu" or "cuda"
+  virtual std::string device() const = 0;      ///< what a person would call it
+  virtual std::size_t memory_available() const = 0;  ///< bytes that an allocation may hope for
+
+  /// Uninitialised memory on the device; throws ConfigError if there is not enough. Not for use inside a step.
+  virtual void* allocate(std::size_t bytes) = 0;
+  virtual void release(void* memory) noexcept = 0;
+  /// Host memory that copies to and from the device fast (pinned on a GPU).
+  virtual void* allocate_host(std::size_t bytes) = 0;
+  virtual void release_host(void* memory) noexcept = 0;
+
+  /// In order with the laws that were started before.
+  virtual void set_zero(void* memory, std::size_t bytes) = 0;
+  virtual void copy(void* to, const void* from, std::size_t bytes) = 0;   ///< device to device
+  virtual void upload(void* to, const void* from, std::size_t bytes) = 0; ///< returns when `from` may be reused
+  virtual void download(void* to, const void* from, std::size_t bytes) = 0;  ///< returns when `to` is filled
+
+  /// Waits for all that was started; throws CudaError if any of it failed.
+  virtual void synchronise() = 0;
+
+  /// A complex 2-D transform of width × height (x fastest), in place, unnormalised.
+  virtual std::unique_ptr<Fft> make_fft(int width, int height) = 0;
+};
+
+class CpuExec final : public Exec {
+ public:
+  /// `threads` ≥ 1, or 0 for as many as there are processors.
+  explicit CpuExec(int threads = 0);
+  int threads() const { return threads_; }
+
+  const char* backend() const override { return "cpu"; }
+  std::string device() const override;
+  std::size_t memory_available() const override;
+  void* allocate(std::size_t bytes) override;
+  void release(void* memory) noexcept override;
+  void* allocate_host(std::size_t bytes) override { return allocate(bytes); }
+  void release_host(void* memory) noexcept override { release(memory); }
+  void set_zero(void* memory, std::size_t bytes) override;
+  void copy(void* to, const void* from, std::size_t bytes) override;
+  void upload(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
+  void download(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
+  void synchronise() override {}
+  std::unique_ptr<Fft> make_fft(int width, int height) override;
+
+ private:
+  int threads_;
+};
+
+#if DESERT_WITH_CUDA
+class CudaExec final : public Exec {
+ public:
+  /// Takes the current device; throws CudaError if there is none.
+  CudaExec();
+  ~CudaExec() override;
+  /// The stream that all work goes to (a cudaStream_t).
+  void* stream() const { return stream_; }
+
+  const char* backend() const override { return "cuda"; }
+  std::string device() const override;
+  std::size_t memory_available() const override;
+  void* allocate(std::size_t bytes) override;
+  void release(void* memory) noexcept override;
+  void* allocate_host(std::size_t bytes) override;
+  void release_host(void* memory) noexcept override;
+  void set_zero(void* memory, std::size_t bytes) override;
+  void copy(void* to, const void* from, std::size_t bytes) override;
+  void upload(void* to, const void* from, std::size_t bytes) override;
+  void download(void* to, const void* from, std::size_t bytes) override;
+  void synchronise() override;
+  std::unique_ptr<Fft> make_fft(int width, int height) override;
+
+  /// One 64-bit word on the device and its pinned mirror, for reductions.
+  long long* reduction_word() const { return reduction_word_; }
+  long long read_reduction_word();
+
+ private:
+  void* stream_ = nullptr;
+  long long* reduction_word_ = nullptr;
+  long long* reduction_host_ = nullptr;
+};
+#endif
+
+/// Calls body(exec) with the backend's own type, for which the processes are compiled.
+template <class Body>
+auto with_backend(Exec& exec, Body&& body) {
+#if DESERT_WITH_CUDA
+  if (auto* cuda = dynamic_cast<CudaExec*>(&exec)) return body(*cuda);
+#endif
+  return body(static_cast<CpuExec&>(exec));
+}
+
+/// Whether a CUDA device can be used, and if not, why.
+struct CudaStatus {
+  bool usable = false;
+  std::string reason;
+};
+CudaStatus cuda_status();
+
+/// "auto", "cpu" or "cuda". `auto` takes CUDA where it is usable; `cuda` without a device throws ConfigError.
+/// `why`, if given, gets a sentence on what was taken.
+std::unique_ptr<Exec> make_exec(const std::string& backend, int threads = 0, std::string* why = nullptr);
+
+}  // namespace desert_sim

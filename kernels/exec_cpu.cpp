@@ -1,0 +1,127 @@
+#include <fftw3.h>
+#include <omp.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <fstream>
+#include <mutex>
+#include <new>
+
+#include "desert_sim/core/error.hpp"
+#include "desert_sim/kernels/exec.hpp"
+#include "desert_sim/kernels/fft.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+/// FFTW's planner is not thread-safe.
+std::mutex& planner() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// One thread, whatever the Exec has: plans for other numbers of threads may add in another order, and the hash of a
+/// run must not depend on them. The grid of the wind is coarse, so this costs little.
+class FftwTransform final : public Fft {
+ public:
+  FftwTransform(int width, int height) {
+    const std::lock_guard<std::mutex> lock(planner());
+    auto* memory = static_cast<fftwf_complex*>(fftwf_malloc(sizeof(fftwf_complex) * width * height));
+    if (!memory) throw ConfigError("no memory for a transform of " + std::to_string(width) + " x " + std::to_string(height));
+    forward_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_FORWARD, FFTW_ESTIMATE);
+    inverse_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_BACKWARD, FFTW_ESTIMATE);
+    fftwf_free(memory);
+    if (!forward_ || !inverse_) throw Error("FFTW made no plan for " + std::to_string(width) + " x " + std::to_string(height));
+  }
+  ~FftwTransform() override {
+    const std::lock_guard<std::mutex> lock(planner());
+    fftwf_destroy_plan(forward_);
+    fftwf_destroy_plan(inverse_);
+  }
+  void forward(Complex* values) override { execute(forward_, values); }
+  void inverse(Complex* values) override { execute(inverse_, values); }
+
+ private:
+  static void execute(fftwf_plan plan, Complex* values) {
+    auto* v = reinterpret_cast<fftwf_complex*>(values);
+    fftwf_execute_dft(plan, v, v);
+  }
+  fftwf_plan forward_ = nullptr, inverse_ = nullptr;
+};
+
+constexpr std::size_t alignment = 64;  // a cache line, and what FFTW's fastest code wants
+
+}  // namespace
+
+CpuExec::CpuExec(int threads) : threads_(threads > 0 ? threads : omp_get_num_procs()) {}
+
+std::string CpuExec::device() const {
+  std::ifstream info("/proc/cpuinfo");
+  std::string line, name = "CPU";
+  while (std::getline(info, line))
+    if (line.rfind("model name", 0) == 0) {
+      name = line.substr(line.find(':') + 2);
+      break;
+    }
+  return name + ", " + std::to_string(threads_) + (threads_ == 1 ? " thread" : " threads");
+}
+
+std::size_t CpuExec::memory_available() const {
+  std::ifstream info("/proc/meminfo");
+  std::string key, unit;
+  std::size_t kilobytes;
+  while (info >> key >> kilobytes >> unit)
+    if (key == "MemAvailable:") return kilobytes * 1024;
+  return static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+void* CpuExec::allocate(std::size_t bytes) {
+  void* memory = ::operator new(bytes, std::align_val_t(alignment), std::nothrow);
+  if (!memory) throw ConfigError("no memory for " + std::to_string(bytes) + " bytes");
+  return memory;
+}
+
+void CpuExec::release(void* memory) noexcept { ::operator delete(memory, std::align_val_t(alignment)); }
+
+void CpuExec::set_zero(void* memory, std::size_t bytes) {
+  char* bytes_of = static_cast<char*>(memory);
+  const std::ptrdiff_t chunk = 1 << 16, chunks = (static_cast<std::ptrdiff_t>(bytes) + chunk - 1) / chunk;
+#pragma omp parallel for schedule(static) num_threads(threads_)
+  for (std::ptrdiff_t n = 0; n < chunks; ++n) {
+    const std::size_t begin = static_cast<std::size_t>(n * chunk);
+    std::memset(bytes_of + begin, 0, begin + chunk < bytes ? chunk : bytes - begin);
+  }
+}
+
+void CpuExec::copy(void* to, const void* from, std::size_t bytes) { std::memcpy(to, from, bytes); }
+
+std::unique_ptr<Fft> CpuExec::make_fft(int width, int height) { return std::make_unique<FftwTransform>(width, height); }
+
+std::unique_ptr<Exec> make_exec(const std::string& backend, int threads, std::string* why) {
+  const auto say = [&](const std::string& reason) {
+    if (why) *why = reason;
+  };
+  if (backend != "auto" && backend != "cpu" && backend != "cuda")
+    throw ConfigError("backend '" + backend + "' is not one of auto, cpu, cuda");
+  if (backend == "cpu") {
+    say("cpu, as asked");
+    return std::make_unique<CpuExec>(threads);
+  }
+  const CudaStatus cuda = cuda_status();
+#if DESERT_WITH_CUDA
+  if (cuda.usable) {
+    say(backend == "auto" ? "cuda, because there is a device" : "cuda, as asked");
+    return std::make_unique<CudaExec>();
+  }
+#endif
+  if (backend == "cuda") throw ConfigError("backend cuda: " + cuda.reason);
+  say("cpu, because " + cuda.reason);
+  return std::make_unique<CpuExec>(threads);
+}
+
+#if !DESERT_WITH_CUDA
+CudaStatus cuda_status() { return {false, "this build has no CUDA"}; }
+#endif
+
+}  // namespace desert_sim

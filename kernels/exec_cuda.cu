@@ -1,0 +1,135 @@
+#include <cuda_runtime.h>
+#include <cufft.h>
+
+#include <cstdio>
+#include <cstring>
+
+#include "desert_sim/core/error.hpp"
+#include "desert_sim/kernels/fft.hpp"
+#include "desert_sim/kernels/for_each_cuda.cuh"
+
+namespace desert_sim {
+
+namespace {
+
+void check_cufft(cufftResult status, const char* what) {
+  if (status != CUFFT_SUCCESS) throw CudaError(std::string("cuFFT: ") + what + ": error " + std::to_string(status));
+}
+
+class CufftTransform final : public Fft {
+ public:
+  CufftTransform(cudaStream_t stream, int width, int height) {
+    check_cufft(cufftPlan2d(&plan_, height, width, CUFFT_C2C), "plan");
+    check_cufft(cufftSetStream(plan_, stream), "stream");
+  }
+  ~CufftTransform() override { cufftDestroy(plan_); }
+  void forward(Complex* values) override { execute(values, CUFFT_FORWARD); }
+  void inverse(Complex* values) override { execute(values, CUFFT_INVERSE); }
+
+ private:
+  void execute(Complex* values, int direction) {
+    auto* v = reinterpret_cast<cufftComplex*>(values);
+    check_cufft(cufftExecC2C(plan_, v, v, direction), "transform");
+  }
+  cufftHandle plan_ = 0;
+};
+
+cudaStream_t as_stream(void* stream) { return static_cast<cudaStream_t>(stream); }
+
+/// Destructors and releases cannot throw: they log.
+void log_failure(cudaError_t status, const char* what) noexcept {
+  if (status != cudaSuccess) std::fprintf(stderr, "desert_sim: CUDA: %s: %s\n", what, cudaGetErrorString(status));
+}
+
+}  // namespace
+
+CudaStatus cuda_status() {
+  int count = 0;
+  const cudaError_t status = cudaGetDeviceCount(&count);
+  if (status != cudaSuccess) {
+    cudaGetLastError();
+    return {false, std::string("CUDA is not usable: ") + cudaGetErrorString(status)};
+  }
+  if (count == 0) return {false, "there is no CUDA device"};
+  return {true, ""};
+}
+
+CudaExec::CudaExec() {
+  cudaStream_t stream = nullptr;
+  check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream");
+  stream_ = stream;
+  reduction_word_ = static_cast<long long*>(allocate(sizeof(long long)));
+  reduction_host_ = static_cast<long long*>(allocate_host(sizeof(long long)));
+}
+
+CudaExec::~CudaExec() {
+  release(reduction_word_);
+  release_host(reduction_host_);
+  log_failure(cudaStreamDestroy(as_stream(stream_)), "ending a stream");
+}
+
+std::string CudaExec::device() const {
+  int device = 0;
+  cudaDeviceProp properties;
+  check_cuda(cudaGetDevice(&device), "asking for the device");
+  check_cuda(cudaGetDeviceProperties(&properties, device), "asking for the device's properties");
+  return properties.name;
+}
+
+std::size_t CudaExec::memory_available() const {
+  std::size_t available = 0, total = 0;
+  check_cuda(cudaMemGetInfo(&available, &total), "asking for memory");
+  return available;
+}
+
+void* CudaExec::allocate(std::size_t bytes) {
+  void* memory = nullptr;
+  const cudaError_t status = cudaMalloc(&memory, bytes ? bytes : 1);
+  if (status == cudaErrorMemoryAllocation) {
+    cudaGetLastError();
+    throw ConfigError("no memory on the GPU for " + std::to_string(bytes) + " bytes");
+  }
+  check_cuda(status, "allocation");
+  return memory;
+}
+
+void CudaExec::release(void* memory) noexcept { log_failure(cudaFree(memory), "releasing memory"); }
+
+void* CudaExec::allocate_host(std::size_t bytes) {
+  void* memory = nullptr;
+  check_cuda(cudaMallocHost(&memory, bytes ? bytes : 1), "allocation of pinned memory");
+  return memory;
+}
+
+void CudaExec::release_host(void* memory) noexcept { log_failure(cudaFreeHost(memory), "releasing pinned memory"); }
+
+void CudaExec::set_zero(void* memory, std::size_t bytes) {
+  check_cuda(cudaMemsetAsync(memory, 0, bytes, as_stream(stream_)), "clearing memory");
+}
+
+void CudaExec::copy(void* to, const void* from, std::size_t bytes) {
+  check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, as_stream(stream_)), "copy");
+}
+
+void CudaExec::upload(void* to, const void* from, std::size_t bytes) {
+  check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, as_stream(stream_)), "upload");
+  synchronise();
+}
+
+void CudaExec::download(void* to, const void* from, std::size_t bytes) {
+  check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, as_stream(stream_)), "download");
+  synchronise();
+}
+
+void CudaExec::synchronise() { check_cuda(cudaStreamSynchronize(as_stream(stream_)), "waiting for the device"); }
+
+std::unique_ptr<Fft> CudaExec::make_fft(int width, int height) {
+  return std::make_unique<CufftTransform>(as_stream(stream_), width, height);
+}
+
+long long CudaExec::read_reduction_word() {
+  download(reduction_host_, reduction_word_, sizeof(long long));
+  return *reduction_host_;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,20 @@
+#pragma once
+/// The one small interface to FFTW3 (CPU) and cuFFT (GPU).
+
+namespace desert_sim {
+
+/// Layout-compatible with fftwf_complex and cufftComplex.
+struct Complex {
+  float re, im;
+};
+
+class Fft {
+ public:
+  virtual ~Fft() = default;
+  /// X̂(k) = Σ x e^(−2πi k·n/N), in place on device memory of width × height values.
+  virtual void forward(Complex* values) = 0;
+  /// x = Σ X̂ e^(+2πi k·n/N), without the factor 1/N.
+  virtual void inverse(Complex* values) = 0;
+};
+
+}  // namespace desert_sim

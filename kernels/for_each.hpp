@@ -1,0 +1,42 @@
+#pragma once
+/// Loops over cells and tiles, the same call on both backends:
+///
+///     for_each_cell(exec, grid, law);          // law(x, y)
+///     for_each_tile(exec, tiles, law);         // law(team, tile): a team works through one tile with shared memory
+///     sum_cells(exec, grid, law) -> long long  // Σ law(x, y), exact
+///     max_cells(exec, grid, law) -> float      // max of 0 and law(x, y)
+///
+/// The CPU's are in for_each_cpu.hpp, the GPU's in for_each_cuda.cuh; only the backends include them.
+
+#include "desert_sim/kernels/exec.hpp"
+#include "desert_sim/kernels/grid.hpp"
+
+namespace desert_sim {
+
+/// Adds to memory that other cells add to as well. Integers commute, so the order can't matter.
+template <class Integer>
+DESERT_HD void atomic_add(Integer* to, Integer amount) {
+#if defined(__CUDA_ARCH__)
+  if constexpr (sizeof(Integer) == 8) {
+    atomicAdd(reinterpret_cast<unsigned long long*>(to), static_cast<unsigned long long>(amount));
+  } else {
+    atomicAdd(to, amount);
+  }
+#else
+  __atomic_fetch_add(to, amount, __ATOMIC_RELAXED);
+#endif
+}
+
+/// Square tiles over a grid, shifted by an offset so that the seams of one pass lie inside the tiles of the next.
+struct Tiles {
+  static constexpr int side = 32;
+  Grid grid;
+  int offset = 0;  ///< 0 … side−1: the first tile begins at −offset
+
+  DESERT_HD int across(int cells, bool) const { return (cells + offset + side - 1) / side; }
+  DESERT_HD int columns() const { return across(grid.width, grid.periodic_x); }
+  DESERT_HD int rows() const { return across(grid.height, grid.periodic_y); }
+  DESERT_HD int count() const { return columns() * rows(); }
+};
+
+}  // namespace desert_sim

@@ -1,0 +1,76 @@
+#pragma once
+/// Loops over cells and tiles on the CPU, with OpenMP; see for_each.hpp.
+
+#include "desert_sim/kernels/for_each.hpp"
+
+namespace desert_sim {
+
+/// One thread as the whole team that works on a tile.
+struct CpuTeam {
+  char* scratch;
+
+  /// Calls body(i) for i in 0…n−1; all of it is done when it returns.
+  template <class Body>
+  DESERT_HD void for_each(int n, const Body& body) const {
+    for (int i = 0; i < n; ++i) body(i);
+  }
+  /// Calls body(x, y) over a tile's cells; iterations do not depend on each other.
+  template <class Body>
+  DESERT_HD void for_each_in_tile(const Body& body) const {
+    for (int y = 0; y < Tiles::side; ++y) {
+#pragma omp simd
+      for (int x = 0; x < Tiles::side; ++x) body(x, y);
+    }
+  }
+  /// Whether predicate(x, y) holds anywhere in the tile.
+  template <class Predicate>
+  DESERT_HD bool any_in_tile(const Predicate& predicate) const {
+    int any = 0;
+    for (int y = 0; y < Tiles::side; ++y)
+      for (int x = 0; x < Tiles::side; ++x) any |= predicate(x, y) ? 1 : 0;
+    return any != 0;
+  }
+};
+
+template <class Law>
+void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
+#pragma omp parallel for schedule(static) num_threads(exec.threads())
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) law(x, y);
+}
+
+/// `Law::scratch_bytes` of memory are shared by the team; law(team, column, row).
+template <class Law>
+void for_each_tile(CpuExec& exec, const Tiles& tiles, const Law& law) {
+  const int columns = tiles.columns(), count = tiles.count();
+#pragma omp parallel num_threads(exec.threads())
+  {
+    alignas(64) char scratch[Law::scratch_bytes];
+    const CpuTeam team{scratch};
+#pragma omp for schedule(static)
+    for (int t = 0; t < count; ++t) law(team, t % columns, t / columns);
+  }
+}
+
+template <class Law>
+long long sum_cells(CpuExec& exec, const Grid& grid, const Law& law) {
+  long long total = 0;
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) reduction(+ : total)
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) total += law(x, y);
+  return total;
+}
+
+template <class Law>
+float max_cells(CpuExec& exec, const Grid& grid, const Law& law) {
+  float largest = 0;
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) reduction(max : largest)
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) {
+      const float value = law(x, y);
+      largest = value > largest ? value : largest;
+    }
+  return largest;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,132 @@
+#pragma once
+/// Loops over cells and tiles on the GPU; see for_each.hpp.
+
+#include <cuda_runtime.h>
+
+#include "desert_sim/core/error.hpp"
+#include "desert_sim/kernels/for_each.hpp"
+
+namespace desert_sim {
+
+inline void check_cuda(cudaError_t status, const char* what) {
+  if (status != cudaSuccess) throw CudaError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(status));
+}
+
+namespace cuda {
+
+constexpr int block_x = 32, block_y = 8;
+
+inline cudaStream_t stream(const CudaExec& exec) { return static_cast<cudaStream_t>(exec.stream()); }
+inline dim3 block() { return dim3(block_x, block_y); }
+inline dim3 blocks(const Grid& g) {
+  return dim3((g.width + block_x - 1) / block_x, (g.height + block_y - 1) / block_y);
+}
+
+template <class Law>
+__global__ void cells_kernel(Grid grid, Law law) {
+  const int x = blockIdx.x * block_x + threadIdx.x, y = blockIdx.y * block_y + threadIdx.y;
+  if (x < grid.width && y < grid.height) law(x, y);
+}
+
+/// The 256 threads of a block as the team that works on a tile. (Marked host too, because laws are; empty there.)
+struct Team {
+  char* scratch;
+
+  template <class Body>
+  DESERT_HD void for_each(int n, const Body& body) const {
+#if defined(__CUDA_ARCH__)
+    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y) body(i);
+    __syncthreads();
+#endif
+  }
+  template <class Body>
+  DESERT_HD void for_each_in_tile(const Body& body) const {
+#if defined(__CUDA_ARCH__)
+#pragma unroll
+    for (int y = 0; y < Tiles::side; y += block_y) body(static_cast<int>(threadIdx.x), y + static_cast<int>(threadIdx.y));
+    __syncthreads();
+#endif
+  }
+  template <class Predicate>
+  DESERT_HD bool any_in_tile(const Predicate& predicate) const {
+    int any = 0;
+#if defined(__CUDA_ARCH__)
+    for (int y = 0; y < Tiles::side; y += block_y)
+      any |= predicate(static_cast<int>(threadIdx.x), y + static_cast<int>(threadIdx.y)) ? 1 : 0;
+    any = __syncthreads_or(any);
+#endif
+    return any != 0;
+  }
+};
+static_assert(Tiles::side == block_x, "a warp works along a row of a tile");
+
+template <class Law>
+__global__ void tiles_kernel(Law law) {
+  __shared__ alignas(16) char scratch[Law::scratch_bytes];
+  law(Team{scratch}, blockIdx.x, blockIdx.y);
+}
+
+template <class Law>
+__global__ void sum_kernel(Grid grid, Law law, long long* total) {
+  long long mine = 0;
+  for (int y = blockIdx.y * block_y + threadIdx.y; y < grid.height; y += gridDim.y * block_y)
+    for (int x = blockIdx.x * block_x + threadIdx.x; x < grid.width; x += gridDim.x * block_x) mine += law(x, y);
+  for (int o = 16; o > 0; o /= 2) mine += __shfl_down_sync(0xffffffffu, mine, o);
+  if (threadIdx.x == 0 && mine != 0) atomic_add(total, mine);
+}
+
+/// Non-negative floats order like their bits.
+template <class Law>
+__global__ void max_kernel(Grid grid, Law law, long long* largest) {
+  float mine = 0;
+  for (int y = blockIdx.y * block_y + threadIdx.y; y < grid.height; y += gridDim.y * block_y)
+    for (int x = blockIdx.x * block_x + threadIdx.x; x < grid.width; x += gridDim.x * block_x) {
+      const float value = law(x, y);
+      mine = value > mine ? value : mine;
+    }
+  int bits = __float_as_int(mine);
+  for (int o = 16; o > 0; o /= 2) bits = max(bits, __shfl_down_sync(0xffffffffu, bits, o));
+  if (threadIdx.x == 0) atomicMax(reinterpret_cast<int*>(largest), bits);
+}
+
+inline dim3 reduction_blocks(const Grid& g) {
+  const dim3 all = blocks(g);
+  return dim3(all.x < 32 ? all.x : 32, all.y < 32 ? all.y : 32);
+}
+
+}  // namespace cuda
+
+template <class Law>
+void for_each_cell(CudaExec& exec, const Grid& grid, const Law& law) {
+  cuda::cells_kernel<<<cuda::blocks(grid), cuda::block(), 0, cuda::stream(exec)>>>(grid, law);
+  check_cuda(cudaGetLastError(), "launch over cells");
+}
+
+template <class Law>
+void for_each_tile(CudaExec& exec, const Tiles& tiles, const Law& law) {
+  cuda::tiles_kernel<<<dim3(tiles.columns(), tiles.rows()), cuda::block(), 0, cuda::stream(exec)>>>(law);
+  check_cuda(cudaGetLastError(), "launch over tiles");
+}
+
+template <class Law>
+long long sum_cells(CudaExec& exec, const Grid& grid, const Law& law) {
+  exec.set_zero(exec.reduction_word(), sizeof(long long));
+  cuda::sum_kernel<<<cuda::reduction_blocks(grid), cuda::block(), 0, cuda::stream(exec)>>>(grid, law,
+                                                                                         exec.reduction_word());
+  check_cuda(cudaGetLastError(), "launch of a sum");
+  return exec.read_reduction_word();
+}
+
+template <class Law>
+float max_cells(CudaExec& exec, const Grid& grid, const Law& law) {
+  exec.set_zero(exec.reduction_word(), sizeof(long long));
+  cuda::max_kernel<<<cuda::reduction_blocks(grid), cuda::block(), 0, cuda::stream(exec)>>>(grid, law,
+                                                                                         exec.reduction_word());
+  check_cuda(cudaGetLastError(), "launch of a maximum");
+  const int bits = static_cast<int>(exec.read_reduction_word());
+  float value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+}  // namespace desert_sim

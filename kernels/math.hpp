@@ -1,0 +1,39 @@
+#pragma once
+/// Small arithmetic whose bits are the same on host and device: only +, −, ×, ÷ and square roots, which IEEE rounds
+/// alike everywhere (library transcendental functions differ by units in the last place).
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "desert_sim/kernels/macros.hpp"
+
+namespace desert_sim {
+
+DESERT_HD float lerp(float a, float b, float t) { return a + t * (b - a); }
+DESERT_HD float minimum(float a, float b) { return a < b ? a : b; }
+DESERT_HD float maximum(float a, float b) { return a > b ? a : b; }
+DESERT_HD float clamp(float v, float low, float high) { return minimum(maximum(v, low), high); }
+DESERT_HD float hypotenuse(float x, float y) { return sqrtf(x * x + y * y); }
+
+/// e^(−x) for x ≥ 0, relative error below 3e-7; 0 from x = 87 on. Range reduction by ln 2 in two parts, then a Taylor
+/// polynomial of degree 7 on |r| ≤ ½ ln 2.
+DESERT_HD float exp_negative(float x) {
+  if (x >= 87.0f) return 0.0f;
+  const float n = rintf(x * 1.44269504f);
+  const float r = (n * 0.693359375f - x) + n * -2.12194440e-4f;  // r = n ln2 − x
+  float p = 1.0f / 5040.0f;
+  p = p * r + 1.0f / 720.0f;
+  p = p * r + 1.0f / 120.0f;
+  p = p * r + 1.0f / 24.0f;
+  p = p * r + 1.0f / 6.0f;
+  p = p * r + 0.5f;
+  p = p * r + 1.0f;
+  p = p * r + 1.0f;
+  const std::uint32_t bits = static_cast<std::uint32_t>(127 - static_cast<int>(n)) << 23;
+  float scale;
+  memcpy(&scale, &bits, sizeof scale);
+  return p * scale;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,202 @@
+#pragma once
+/// Saltation: the wind lifts sand, carries it a hop, and part of it stays. Expected values, no dice.
+/// Nilles 2024 §3.6; physics.md B1–B3.
+///
+///   lift     L = min(s, ε_s (1 − r_s)(1 − v)(r_e > 0 ? ½ : 1) M + (r_e < 0 ? k_e : 0)),  a += L
+///            M = clamp(1 − 10 m, 0, 1), 0 under water; nothing lifts below the threshold speed
+///   advect   a moves by w Δt / l cells and is shared bilinearly among four (scattered integers: exact, any order)
+///   deposit  p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1), f = 0.4 on sand, 0.5 on soil, 0.6 on rock; 0 on obstacles
+///            and in the lane before a cliff; · clamp(1 − 10 m, 0.01, 1), under water · 0.01;  s += p a
+///   bounce   a ← (1 − p) a stays in the air; strength of reptation r = (deposited + bounced)(1 − v)
+///
+/// On open edges sand that is carried over an edge is booked as out; `influx` enters where the wind blows in, spread
+/// over the first hop. Reads sand, wind, wind_shadow, echo, vegetation, obstacle, moisture, water; writes sand,
+/// airborne_sand, and through abrasion bedrock and soil.
+
+#include "desert_sim/core/parameters.hpp"
+#include "desert_sim/kernels/abrasion.hpp"
+#include "desert_sim/kernels/for_each.hpp"
+#include "desert_sim/kernels/ledger.hpp"
+#include "desert_sim/kernels/repose.hpp"
+
+namespace desert_sim {
+
+struct SaltationParameters {
+  bool enabled = true;
+  float lift = 1.0f;
+  float threshold_speed = 0.0f;
+  float bounce_on_sand = 0.4f;
+  float bounce_on_soil = 0.5f;
+  float bounce_on_rock = 0.6f;
+  float bare_depth = 0.001f;
+  float influx = 0.0f;
+};
+
+constexpr auto parameter_table(const SaltationParameters*) {
+  using P = SaltationParameters;
+  return std::make_tuple(
+      parameter("enabled", &P::enabled, "Whether the wind carries sand."),
+      parameter("lift", &P::lift, 0, 10, "m", "Sand lifted from an open cell a step of 1 s (epsilon_s)."),
+      parameter("threshold_speed", &P::threshold_speed, 0, 100, "m/s", "Wind below which nothing is lifted."),
+      parameter("bounce_on_sand", &P::bounce_on_sand, 0, 1, "1", "Share of landing sand that bounces on sand (f)."),
+      parameter("bounce_on_soil", &P::bounce_on_soil, 0, 1, "1", "Share of landing sand that bounces on soil."),
+      parameter("bounce_on_rock", &P::bounce_on_rock, 0, 1, "1", "Share of landing sand that bounces on rock."),
+      parameter("bare_depth", &P::bare_depth, 0, 1, "m", "Depth of sand below which the ground counts as bare."),
+      parameter("influx", &P::influx, 0, 100, "m^2/s", "Sand that enters an open windward edge, per metre of edge."));
+}
+static_assert(table_is_complete<SaltationParameters>());
+
+namespace saltation {
+
+DESERT_HD float dryness(float relative_moisture) { return clamp(1.0f - 10.0f * relative_moisture, 0.0f, 1.0f); }
+
+/// Water deeper than this stops the wind's work [m].
+constexpr float wet_depth = 1e-5f;
+
+struct Inputs {
+  Grid grid;
+  float quantum, quanta_per_metre, time_step;
+  const float *wind_x, *wind_y, *wind_shadow, *echo, *vegetation, *obstacle;
+  const Quanta* water;
+  repose::RelativeMoisture moisture;
+
+  Inputs(const TerrainView& t, const ReposeParameters& repose, float dt)
+      : grid(t.grid), quantum(t.quantum), quanta_per_metre(t.quanta_per_metre), time_step(dt),
+        wind_x(t.real(Layer::wind_x)), wind_y(t.real(Layer::wind_y)), wind_shadow(t.real(Layer::wind_shadow)),
+        echo(t.real(Layer::echo)), vegetation(t.real(Layer::vegetation)), obstacle(t.real(Layer::obstacle)),
+        water(t.quanta(Layer::water)), moisture(t, repose) {}
+
+  DESERT_HD bool flooded(int i) const { return water && water[i] * quantum > wet_depth; }
+};
+
+/// Lifts, and scatters what is in the air over a cell to the four cells around where it lands.
+struct LiftAndAdvect {
+  Inputs in;
+  SaltationParameters p;
+  Quanta *sand, *airborne, *landed;
+  LedgerView ledger;
+
+  DESERT_HD Quanta lifted(int i, float speed) const {
+    if (sand[i] <= 0 || speed < p.threshold_speed) return 0;
+    const float r_e = value_or_zero(in.echo, i);
+    const float wet = in.flooded(i) ? 0.0f : dryness(in.moisture(i));
+    const float metres = in.time_step * (p.lift * (1.0f - value_or_zero(in.wind_shadow, i)) *
+                                             (1.0f - value_or_zero(in.vegetation, i)) * (r_e > 0.0f ? 0.5f : 1.0f) * wet +
+                                         (r_e < 0.0f ? -r_e : 0.0f));
+    return take(metres, in.quanta_per_metre, sand[i]);
+  }
+
+  DESERT_HD void land(int from, int x, int y, Quanta amount) const {
+    const int to = neighbour_index(in.grid, x, y);
+    if (to >= 0) {
+      if (amount) atomic_add(&landed[to], amount);
+    } else {
+      ledger.book_out(Material::sand, from, amount);
+    }
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = in.grid.index(x, y);
+    const float u = in.wind_x[i], v = in.wind_y[i];
+    const Quanta lift = lifted(i, hypotenuse(u, v));
+    sand[i] -= lift;
+    const Quanta amount = airborne[i] + lift;
+    if (amount == 0) return;
+    const float cells = in.time_step / in.grid.cell_size;
+    const int dx = subcells(u * cells), dy = subcells(v * cells);
+    const int fx = dx & 65535, fy = dy & 65535, gx = subcell_one - fx, gy = subcell_one - fy;
+    const int x0 = x + (dx >> 16), y0 = y + (dy >> 16);
+    const Quanta a = bilinear_share(amount, gx, gy), b = bilinear_share(amount, fx, gy);
+    const Quanta c = bilinear_share(amount, gx, fy), d = bilinear_share(amount, fx, fy);
+    land(i, x0, y0, a);
+    land(i, x0 + 1, y0, b);
+    land(i, x0, y0 + 1, c);
+    land(i, x0 + 1, y0 + 1, d);
+    // What rounding leaves, at most three quanta, stays in the air here: that favours no direction.
+    const Quanta left = amount - a - b - c - d;
+    if (left) atomic_add(&landed[i], left);
+  }
+};
+
+/// Sand that the wind brings in over an open edge; see `influx`.
+struct Influx {
+  Inputs in;
+  float influx;
+  Quanta* landed;
+  LedgerView ledger;
+
+  /// Depth brought over one edge to the cell that lies `cell` cells from it, with wind `speed` into the grid.
+  DESERT_HD float over_edge(int cell, float speed) const {
+    const float l = in.grid.cell_size, hop = speed * in.time_step;
+    if (!(hop > 0.0f)) return 0.0f;
+    return influx * in.time_step / hop * clamp((hop - cell * l) / l, 0.0f, 1.0f);
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const Grid& g = in.grid;
+    const int i = g.index(x, y);
+    const float u = in.wind_x[i], v = in.wind_y[i];
+    const float speed = hypotenuse(u, v);
+    if (!(speed > 1e-6f)) return;
+    float depth = 0.0f;
+    if (!g.periodic_x) depth += over_edge(u > 0.0f ? x : g.width - 1 - x, fabsf(u)) * fabsf(u) / speed;
+    if (!g.periodic_y) depth += over_edge(v > 0.0f ? y : g.height - 1 - y, fabsf(v)) * fabsf(v) / speed;
+    const Quanta amount = take(depth, in.quanta_per_metre, wall_height);
+    landed[i] += amount;
+    ledger.book_in(Material::sand, i, amount);
+  }
+};
+
+/// Deposits a share of what landed; the rest bounces on. Wears the ground, and notes the strength of reptation.
+struct Deposit {
+  Inputs in;
+  SaltationParameters p;
+  abrasion::Wear wear;
+  const Quanta *landed, *soil;
+  Quanta *sand, *airborne;
+  float* reptation_strength;  ///< [m]
+
+  DESERT_HD float share(int i, float m) const {
+    const float r_e = value_or_zero(in.echo, i);
+    if (r_e < 0.0f || value_or_zero(in.obstacle, i) > 0.0f) return 0.0f;
+    const bool sandy = sand[i] > 0 && sand[i] * in.quantum >= p.bare_depth;
+    const float bounce = sandy ? p.bounce_on_sand : (value_or_zero(soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
+    const float held = maximum((1.0f - bounce) + value_or_zero(in.vegetation, i) * bounce,
+                               maximum(value_or_zero(in.wind_shadow, i), r_e));
+    const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
+    return clamp(held, 0.0f, 1.0f) * wet;
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = in.grid.index(x, y);
+    const Quanta arriving = landed[i];
+    const float v = value_or_zero(in.vegetation, i), m = in.moisture(i);
+    const float held = share(i, m);
+    const Quanta deposited = take(held * (arriving * in.quantum), in.quanta_per_metre, arriving);
+    const Quanta bouncing = arriving - deposited;
+    sand[i] += deposited;
+    airborne[i] = bouncing;
+    reptation_strength[i] = arriving * in.quantum * (1.0f - v);
+    wear(i, bouncing, hypotenuse(in.wind_x[i], in.wind_y[i]), v, m, held);
+  }
+};
+
+/// `landed` (quanta) and `reptation_strength` (float) are scratch memory of one value a cell.
+template <class E>
+void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
+          const ReposeParameters& repose, float time_step, LedgerView ledger, Quanta* landed,
+          float* reptation_strength) {
+  const Inputs in(t, repose, time_step);
+  Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand), *soil = t.quanta(Layer::soil);
+  exec.set_zero(landed, sizeof(Quanta) * t.grid.cells());
+  for_each_cell(exec, t.grid, LiftAndAdvect{in, p, sand, airborne, landed, ledger});
+  if (!t.grid.periodic() && p.influx > 0.0f)
+    for_each_cell(exec, t.grid, Influx{in, p.influx, landed, ledger});
+  const abrasion::Wear wear{a.rate * time_step, take(a.cover, t.quanta_per_metre, wall_height), t.quantum,
+                            t.quanta_per_metre, t.quanta(Layer::bedrock), soil, sand,
+                            t.real(Layer::erosion_resistance), ledger};
+  for_each_cell(exec, t.grid, Deposit{in, p, wear, landed, soil, sand, airborne, reptation_strength});
+}
+
+}  // namespace saltation
+}  // namespace desert_sim

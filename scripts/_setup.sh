@@ -1,0 +1,110 @@
+# shellcheck shell=bash
+# Sourced by the other scripts. Gives them a clean environment, the repository's folders (DESERT_ROOT, BUILD),
+# and the steps desert_install, desert_configure, desert_build and desert_ros_environment.
+
+DESERT_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+BUILD=${DESERT_BUILD_DIR:-$DESERT_ROOT/build}
+[[ $BUILD == /* ]] || BUILD=$PWD/$BUILD
+ROS_SETUP=/opt/ros/noetic/setup.bash
+
+say() { printf '== %s\n' "$*"; }
+fail() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
+
+# The system's python3 and tools come first (pyenv and conda hide them), nvcc is found where it usually lives.
+PATH=/usr/sbin:/usr/bin:/sbin:/bin:$PATH
+[[ -x /usr/local/cuda/bin/nvcc ]] && PATH=/usr/local/cuda/bin:$PATH
+unset PYTHONHOME PYTHONPATH
+export PATH ROS_VERSION=1 ROS_PYTHON_VERSION=3
+
+# 1: Debian 12's column of dependencies.txt, 2: that of Ubuntu 20.04, 0: a system we have no names for.
+system_column() {
+  local id
+  # shellcheck disable=SC1091
+  id=$(. /etc/os-release 2>/dev/null && echo "${ID:-} ${VERSION_ID:-}")
+  case $id in
+    "debian 12") echo 1 ;;
+    "ubuntu 20.04") echo 2 ;;
+    *) echo 0 ;;
+  esac
+}
+DESERT_SYSTEM=$(system_column)
+
+source_noetic() {
+  [[ -r $ROS_SETUP ]] || return 1
+  set +u # ROS's setup files read unset variables
+  # shellcheck disable=SC1090
+  . "$ROS_SETUP"
+  set -u
+}
+# Debian's ROS lives under /usr and takes no distribution name.
+source_noetic || unset ROS_DISTRO
+
+packages() { # column [core: without the parts headed `# ROS`]
+  sed ${2:+-e '/^# ROS/,$d'} -e 's/#.*//' "$DESERT_ROOT/scripts/dependencies.txt" |
+    awk -F'|' -v column="$1" '{ gsub(/[ \t]/, "", $column); if ($column != "" && $column != "-") print $column }'
+}
+
+missing_packages() { # column [core]
+  local package
+  for package in $(packages "$@"); do
+    dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
+  done
+}
+
+# Installs what is missing from dependencies.txt; with nothing missing it calls nothing.
+# shellcheck disable=SC2120 # arguments are optional
+desert_install() { # [core]
+  local missing as_root=()
+  if [[ $DESERT_SYSTEM == 0 ]]; then
+    say "this is neither Debian 12 nor Ubuntu 20.04: nothing is installed. Needed, by their Debian names:"
+    packages 1 "$@" | paste -sd' '
+    return
+  fi
+  mapfile -t missing < <(missing_packages "$DESERT_SYSTEM" "$@")
+  ((${#missing[@]})) || return 0
+  if ((EUID != 0)); then
+    command -v sudo >/dev/null || fail "missing packages, and no sudo to install them. As root: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  say "installing ${missing[*]}"
+  as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -q -o Acquire::Retries=3)
+  "${as_root[@]}" update || say "apt-get update failed; trying with the package lists at hand"
+  if ! "${as_root[@]}" install -y --no-install-recommends "${missing[@]}"; then
+    [[ $DESERT_SYSTEM == 2 && ! -r $ROS_SETUP ]] &&
+      say "ROS Noetic's packages need its apt source: see http://wiki.ros.org/noetic/Installation/Ubuntu"
+    fail "could not install: ${missing[*]}"
+  fi
+  source_noetic || true
+}
+
+# shellcheck disable=SC2120 # arguments are optional
+desert_configure() { # [-DNAME=VALUE]...
+  say "configuring $BUILD"
+  cmake -S "$DESERT_ROOT" -B "$BUILD" "$@"
+}
+
+# shellcheck disable=SC2120 # arguments are optional
+desert_build() { # [--target NAME]...
+  say "building ${*:-all}"
+  cmake --build "$BUILD" -j "${DESERT_JOBS:-$(nproc)}" "$@"
+}
+
+free_port() {
+  python3 -c 'import socket; s = socket.socket(); s.bind(("localhost", 0)); print(s.getsockname()[1])'
+}
+
+# A ROS master of our own, on this machine only.
+desert_own_master() {
+  ROS_MASTER_URI=http://localhost:$(free_port)
+  export ROS_MASTER_URI ROS_HOSTNAME=localhost
+  unset ROS_IP
+}
+
+# rosrun and roslaunch know desert_sim from here on.
+desert_ros_environment() {
+  [[ -r $BUILD/devel/setup.bash ]] || fail "built without ROS (see the line 'desert_sim ...' of the configuration above)"
+  set +u
+  # shellcheck disable=SC1091
+  . "$BUILD/devel/setup.bash"
+  set -u
+}

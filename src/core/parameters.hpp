@@ -1,0 +1,90 @@
+#pragma once
+/// Parameter tables. A process keeps its parameters in a plain struct whose initialisers are the defaults, and beside
+/// it a table: one row a member, in the order of the members, with name, range, unit and a line of documentation.
+/// The YAML loader, ROS parameters, `--describe`, the generated documentation, commands, journal and checkpoint all
+/// visit that one table.
+///
+///     struct Example { float height = 1; bool flat = false; };
+///     constexpr auto parameter_table(const Example*) {
+///       return std::make_tuple(parameter("height", &Example::height, 0, 10, "m", "How high."),
+///                              parameter("flat", &Example::flat, "Whether it is flat."));
+///     }
+///     static_assert(table_is_complete<Example>());
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace desert_sim {
+
+/// Up to four numbers, for a parameter that is a short list.
+struct ShortList {
+  static constexpr int capacity = 4;
+  float values[capacity] = {0, 0, 0, 0};
+  int count = 0;
+};
+
+template <class Owner, class T>
+struct Parameter {
+  const char* name;
+  T Owner::*member;
+  double lowest, highest;       ///< allowed range of a number (of each number of a list)
+  const char* unit;             ///< SI; "1" if dimensionless
+  const char* doc;              ///< one line
+  const char* const* choices;   ///< names of an enumeration's values, in order; null for other types
+  int choice_count;
+};
+
+template <class Owner, class T>
+constexpr Parameter<Owner, T> parameter(const char* name, T Owner::*member, double lowest, double highest,
+                                        const char* unit, const char* doc) {
+  return {name, member, lowest, highest, unit, doc, nullptr, 0};
+}
+
+/// A switch or a text.
+template <class Owner, class T>
+constexpr Parameter<Owner, T> parameter(const char* name, T Owner::*member, const char* doc) {
+  static_assert(std::is_same_v<T, bool> || std::is_same_v<T, std::string>, "numbers need a range and a unit");
+  return {name, member, 0, 1, "", doc, nullptr, 0};
+}
+
+/// One of a few named values; `choices[i]` names the enumerator with value i.
+template <class Owner, class T, int N>
+constexpr Parameter<Owner, T> parameter(const char* name, T Owner::*member, const char* const (&choices)[N],
+                                        const char* doc) {
+  static_assert(std::is_enum_v<T>, "choices belong to an enumeration");
+  return {name, member, 0, N - 1, "", doc, choices, N};
+}
+
+template <class P>
+constexpr auto table_of() {
+  return parameter_table(static_cast<const P*>(nullptr));
+}
+
+/// Calls visit(row, value) for each parameter, in the table's order. `P` may be const.
+template <class P, class Visit>
+void for_each_parameter(P& parameters, Visit&& visit) {
+  std::apply([&](const auto&... row) { (visit(row, parameters.*(row.member)), ...); },
+             table_of<std::remove_const_t<P>>());
+}
+
+namespace detail {
+template <class Owner, class T>
+constexpr std::size_t laid_out(std::size_t offset, const Parameter<Owner, T>&) {
+  return (offset + alignof(T) - 1) / alignof(T) * alignof(T) + sizeof(T);
+}
+}  // namespace detail
+
+/// True if the rows, in order, account for every byte of the struct but padding: a member without a row is caught at
+/// compile time.
+template <class P>
+constexpr bool table_is_complete() {
+  std::size_t size = 0;
+  std::apply([&](const auto&... row) { ((size = detail::laid_out(size, row)), ...); }, table_of<P>());
+  return (size + alignof(P) - 1) / alignof(P) * alignof(P) == sizeof(P);
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,337 @@
+#include "desert_sim/io/picture.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <limits>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+#include <vector>
+
+#include "desert_sim/core/error.hpp"
+
+namespace desert_sim {
+namespace {
+
+constexpr int kSmallest = 512, kLargest = 2048;  // long side of a hillshade [pixels]
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+using Colour = cv::Vec3f;  // B, G, R in 0..255, as OpenCV wants it
+
+const Colour kRock{100, 112, 124}, kSoil{58, 82, 108}, kSand{118, 180, 218}, kVegetation{52, 122, 70},
+    kObstacle{88, 30, 64}, kShallow{205, 165, 95}, kDeep{120, 55, 20}, kUnknownGround{215, 215, 215};
+
+void check_input(int width, int height, double cell_size, const char* missing) {
+  std::ostringstream text;
+  if (width < 1 || height < 1)
+    text << "the grid is " << width << " x " << height << ", must be at least 1 x 1";
+  else if (!(cell_size > 0) || !std::isfinite(cell_size))
+    text << "cell_size is " << cell_size << ", must be > 0";
+  else if (missing)
+    text << "the layer " << missing << " is needed";
+  if (!text.str().empty()) throw ConfigError("picture: " + text.str());
+}
+
+/// The size that a picture is worked out at: the grid's own, at most kLargest on its long side.
+cv::Size working_size(int width, int height) {
+  const int longest = std::max(width, height);
+  if (longest <= kLargest) return {width, height};
+  const auto reduced = [&](int n) {
+    return std::max(1, cvRound(static_cast<double>(n) * kLargest / longest));
+  };
+  return {reduced(width), reduced(height)};
+}
+
+/// The finished picture enlarged by a whole number to at least `smallest` on its long side.
+cv::Mat enlarged(const cv::Mat& picture, int smallest) {
+  const int longest = std::max(picture.cols, picture.rows), factor = (smallest + longest - 1) / longest;
+  if (factor <= 1) return picture;
+  cv::Mat result;
+  const int method =
+      factor > 8 ? cv::INTER_NEAREST : cv::INTER_CUBIC;  // of so few cells one wants to see each
+  cv::resize(picture, result, picture.size() * factor, 0, 0, method);
+  return result;
+}
+
+cv::Mat reduced(const cv::Mat& layer) {
+  const cv::Size size = working_size(layer.cols, layer.rows);
+  if (size == layer.size()) return layer;
+  cv::Mat result;
+  cv::resize(layer, result, size, 0, 0, cv::INTER_AREA);
+  return result;
+}
+
+/// A layer at the working size, north up, 0 where NaN; empty where the layer is not in use.
+cv::Mat layer_of(const float* values, int width, int height) {
+  if (!values) return {};
+  const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // only read
+  cv::Mat flipped;
+  cv::flip(view, flipped, 0);
+  flipped.setTo(0, flipped != flipped);
+  return reduced(flipped);
+}
+
+/// Elevation at the working size, north up; the mean of the known cells, NaN where less than half is known.
+cv::Mat surface_of(const float* values, int width, int height) {
+  cv::Mat elevation = layer_of(values, width, height);
+  const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // only read
+  cv::Mat known;
+  cv::flip(view == view, known, 0);
+  if (cv::countNonZero(known) == width * height) return elevation;
+  known.convertTo(known, CV_32F, 1.0 / 255);
+  known = reduced(known);
+  elevation /= known;
+  elevation.setTo(kUnknown, known < 0.5);
+  return elevation;
+}
+
+/// Slope (dz/dx, dz/dy) with y north; one-sided beside unknown ground and the border.
+cv::Vec2f gradient(const cv::Mat& elevation, int row, int column, float pixel_size) {
+  const float here = elevation.at<float>(row, column);
+  const auto along = [&](int row_step, int column_step) {
+    float rise = 0;
+    int reach = 0;
+    for (int side : {-1, 1}) {
+      const int r = row + side * row_step, c = column + side * column_step;
+      if (r < 0 || c < 0 || r >= elevation.rows || c >= elevation.cols ||
+          std::isnan(elevation.at<float>(r, c)))
+        continue;
+      rise += side * (elevation.at<float>(r, c) - here);
+      ++reach;
+    }
+    return reach ? rise / (reach * pixel_size) : 0.0F;
+  };
+  return {along(0, 1), -along(1, 0)};
+}
+
+double exaggeration_of(const cv::Mat& elevation, float pixel_size) {
+  constexpr float kFlat = 1e-4F;
+  constexpr double kWanted = 0.3, kLeast = 0.5, kMost = 60;
+  std::vector<float> slopes;
+  const int stride = std::max(1, std::max(elevation.rows, elevation.cols) / kSmallest);
+  for (int row = 0; row < elevation.rows; row += stride)
+    for (int column = 0; column < elevation.cols; column += stride) {
+      if (std::isnan(elevation.at<float>(row, column))) continue;
+      const float slope = static_cast<float>(cv::norm(gradient(elevation, row, column, pixel_size)));
+      if (slope > kFlat) slopes.push_back(slope);
+    }
+  if (slopes.empty()) return 1;
+  std::nth_element(slopes.begin(), slopes.begin() + slopes.size() / 2, slopes.end());
+  return std::clamp(kWanted / slopes[slopes.size() / 2], kLeast, kMost);
+}
+
+/// Brightness by Lambert's law, 1 on flat ground; 0 where unknown.
+cv::Mat shading(const cv::Mat& elevation, float pixel_size, double exaggeration) {
+  const double altitude = 40 * CV_PI / 180, ambient = 0.3;
+  const cv::Vec3f light(static_cast<float>(-std::cos(altitude) * std::sqrt(0.5)),
+                        static_cast<float>(std::cos(altitude) * std::sqrt(0.5)),
+                        static_cast<float>(std::sin(altitude)));
+  cv::Mat shade(elevation.size(), CV_32F, cv::Scalar(0));
+  const auto steepness = static_cast<float>(exaggeration);
+  cv::parallel_for_({0, elevation.rows}, [&](const cv::Range& rows) {
+    for (int row = rows.start; row < rows.end; ++row)
+      for (int column = 0; column < elevation.cols; ++column) {
+        if (std::isnan(elevation.at<float>(row, column))) continue;
+        const cv::Vec2f slope = gradient(elevation, row, column, pixel_size) * steepness;
+        const cv::Vec3f normal = cv::normalize(cv::Vec3f(-slope[0], -slope[1], 1));
+        const float glow = std::max(0.0F, normal.dot(light)) / light[2];
+        shade.at<float>(row, column) = static_cast<float>(ambient + (1 - ambient) * glow);
+      }
+  });
+  return shade;
+}
+
+float at(const cv::Mat& layer, int row, int column) {
+  return layer.empty() ? 0.0F : layer.at<float>(row, column);
+}
+
+float smooth_step(float from, float to, float value) {
+  const float t = std::clamp((value - from) / (to - from), 0.0F, 1.0F);
+  return t * t * (3 - 2 * t);
+}
+
+Colour mix(const Colour& a, const Colour& b, float share) { return a * (1 - share) + b * share; }
+
+/// The colour times `shade`; what would be over the brightest is mixed in as white, so that slopes keep their
+/// form.
+Colour lit(const Colour& colour, float shade) {
+  const Colour white{225, 245, 255};
+  const float most = 240 / std::max({colour[0], colour[1], colour[2], 1.0F});
+  return shade <= most ? colour * shade : mix(colour * most, white, std::min(1.0F, shade - most));
+}
+
+struct Materials {
+  cv::Mat sand, vegetation, obstacle, water, soil, wind_shadow;  // empty where not in use
+
+  /// Colour of the ground lit with `shade`, and of the water on it.
+  Colour colour(int row, int column, float shade) const {
+    Colour ground = mix(kRock, kSoil, smooth_step(0.02F, 0.12F, at(soil, row, column)));
+    ground = mix(ground, kSand, smooth_step(0.02F, 0.12F, at(sand, row, column)));
+    ground = mix(ground, kVegetation, 0.9F * smooth_step(0, 0.8F, at(vegetation, row, column)));
+    ground = mix(ground, kObstacle, smooth_step(0.25F, 0.75F, at(obstacle, row, column)));
+    ground = lit(ground, shade * (1 - 0.12F * std::clamp(at(wind_shadow, row, column), 0.0F, 1.0F)));
+    const float depth = std::max(at(water, row, column), 0.0F);
+    const Colour water_colour = mix(kShallow, kDeep, 1 - std::exp(-depth / 2)) * (0.75F + 0.25F * shade);
+    return mix(ground, water_colour, 0.92F * smooth_step(0.001F, 0.2F, depth));
+  }
+};
+
+/// Text at the lower left, readable on any ground; left out where the picture is too small for it.
+void write_caption(cv::Mat& picture, const std::string& text) {
+  const double scale = std::max(0.45, picture.cols / 2200.0);
+  const int face = cv::FONT_HERSHEY_SIMPLEX;
+  int below = 0;
+  const cv::Size size = cv::getTextSize(text, face, scale, 1, &below);
+  if (size.width + 16 > picture.cols || 4 * size.height > picture.rows) return;
+  const cv::Point at_left(8, picture.rows - 8 - below / 2);
+  cv::putText(picture, text, at_left, face, scale, {30, 30, 30}, 3, cv::LINE_AA);
+  cv::putText(picture, text, at_left, face, scale, {250, 250, 250}, 1, cv::LINE_AA);
+}
+
+/// Three digits, more where the whole part has more.
+std::string number(double value) {
+  std::ostringstream text;
+  text << std::fixed
+       << std::setprecision(std::abs(value) >= 100  ? 0
+                            : std::abs(value) >= 10 ? 1
+                                                    : 2)
+       << value;
+  return text.str();
+}
+
+void draw_arrow(cv::Mat& picture, cv::Point2f centre, cv::Point2f half, const cv::Scalar& colour,
+                int thickness) {
+  const auto point = [](cv::Point2f p) { return cv::Point(cvRound(p.x * 16), cvRound(p.y * 16)); };
+  const cv::Point2f tip = centre + half, across(-half.y, half.x);
+  cv::line(picture, point(centre - half), point(tip), colour, thickness, cv::LINE_AA, 4);
+  for (float side : {-0.35F, 0.35F})
+    cv::line(picture, point(tip), point(tip - half * 0.6F + across * side), colour, thickness, cv::LINE_AA,
+             4);
+}
+
+/// Arrows to where the air moves, about 32 along the long side; their length is in proportion to the speed.
+void draw_arrows(cv::Mat& picture, const cv::Mat& u, const cv::Mat& v, float fastest) {
+  constexpr int kAcross = 32;
+  const float spacing = static_cast<float>(std::max(picture.cols, picture.rows)) / kAcross;
+  const float enlargement = static_cast<float>(picture.cols) / static_cast<float>(u.cols);
+  const int thickness = std::max(1, picture.cols / 1024);
+  for (float y = spacing / 2; y < static_cast<float>(picture.rows); y += spacing)
+    for (float x = spacing / 2; x < static_cast<float>(picture.cols); x += spacing) {
+      const cv::Point cell(static_cast<int>(x / enlargement), static_cast<int>(y / enlargement));
+      const cv::Point2f wind(u.at<float>(cell), -v.at<float>(cell));  // pictures count y down
+      if (cv::norm(wind) <= 0.02 * fastest) continue;
+      const cv::Point2f half = wind * (0.42F * spacing / fastest);
+      draw_arrow(picture, {x, y}, half, {40, 40, 40}, thickness + 2);
+      draw_arrow(picture, {x, y}, half, {255, 255, 255}, thickness);
+    }
+}
+
+void shade_lightly(cv::Mat& picture, const cv::Mat& elevation, double pixel_size) {
+  const auto size = static_cast<float>(pixel_size);
+  const cv::Mat shade = shading(elevation, size, exaggeration_of(elevation, size));
+  for (int row = 0; row < picture.rows; ++row)
+    for (int column = 0; column < picture.cols; ++column) {
+      auto& pixel = picture.at<cv::Vec3b>(row, column);
+      const bool known = !std::isnan(elevation.at<float>(row, column));
+      pixel = known ? Colour(pixel) * (0.55F + 0.45F * shade.at<float>(row, column)) : kUnknownGround;
+    }
+}
+
+}  // namespace
+
+double picture_exaggeration(const PictureInput& input) {
+  check_input(input.width, input.height, input.cell_size, input.elevation ? nullptr : "elevation");
+  const cv::Mat elevation = surface_of(input.elevation, input.width, input.height);
+  return exaggeration_of(elevation, static_cast<float>(input.cell_size * input.width / elevation.cols));
+}
+
+cv::Mat hillshade_picture(const PictureInput& input) {
+  check_input(input.width, input.height, input.cell_size, input.elevation ? nullptr : "elevation");
+  const int width = input.width, height = input.height;
+  const cv::Mat elevation = surface_of(input.elevation, width, height);
+  const auto pixel_size = static_cast<float>(input.cell_size * width / elevation.cols);
+  const double exaggeration = exaggeration_of(elevation, pixel_size);
+  const cv::Mat shade = shading(elevation, pixel_size, exaggeration);
+  const Materials materials{
+      layer_of(input.sand, width, height),     layer_of(input.vegetation, width, height),
+      layer_of(input.obstacle, width, height), layer_of(input.water, width, height),
+      layer_of(input.soil, width, height),     layer_of(input.wind_shadow, width, height)};
+  double lowest = 0, highest = 0;
+  cv::minMaxLoc(elevation, &lowest, &highest, nullptr, nullptr, elevation == elevation);
+  cv::Mat picture(elevation.size(), CV_8UC3);
+  for (int row = 0; row < picture.rows; ++row)
+    for (int column = 0; column < picture.cols; ++column) {
+      const float z = elevation.at<float>(row, column);
+      Colour colour = kUnknownGround;
+      if (!std::isnan(z)) {
+        const float tint =
+            highest > lowest ? static_cast<float>(0.16 * ((z - lowest) / (highest - lowest) - 0.5)) : 0;
+        colour = materials.colour(row, column, shade.at<float>(row, column) * (1 + tint));
+      }
+      picture.at<cv::Vec3b>(row, column) = colour;
+    }
+  picture = enlarged(picture, kSmallest);
+  write_caption(picture, number(width * input.cell_size) + " x " + number(height * input.cell_size) +
+                             " m, relief " + number(highest - lowest) + " m, shaded z x" +
+                             number(exaggeration));
+  return picture;
+}
+
+cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_x, const float* wind_y,
+                     const float* elevation) {
+  check_input(width, height, cell_size, !wind_x ? "wind_x" : !wind_y ? "wind_y" : nullptr);
+  const cv::Mat u = layer_of(wind_x, width, height), v = layer_of(wind_y, width, height);
+  cv::Mat speed, level, picture;
+  cv::magnitude(u, v, speed);
+  double slowest = 0, fastest = 0;
+  cv::minMaxLoc(speed, &slowest, &fastest);
+  const double darkest = std::min(slowest, 0.9 * fastest);  // an even wind shows no pattern of its rounding
+  const double contrast = fastest > 0 ? 255 / (fastest - darkest) : 0;
+  speed.convertTo(level, CV_8U, contrast, -contrast * darkest);
+  cv::applyColorMap(level, picture, cv::COLORMAP_VIRIDIS);
+  if (elevation)
+    shade_lightly(picture, surface_of(elevation, width, height), cell_size * width / picture.cols);
+  picture = enlarged(picture, 2 * kSmallest);
+  draw_arrows(picture, u, v, static_cast<float>(fastest));
+  write_caption(picture, "wind " + number(slowest) + " to " + number(fastest) + " m/s, dark to bright");
+  return picture;
+}
+
+void write_png(const std::string& path, const cv::Mat& picture) {
+  static std::atomic<int> counter{0};
+  const auto refuse = [&](const std::string& reason) {
+    throw ConfigError("picture '" + path + "' cannot be written: " + reason);
+  };
+  std::vector<unsigned char> bytes;
+  try {
+    if (picture.empty()) refuse("it has no pixels");
+    if (!cv::imencode(".png", picture, bytes)) refuse("OpenCV cannot encode it");
+  } catch (const cv::Exception& error) {
+    refuse(error.err);
+  }
+  const std::string unfinished =
+      path + "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".part";
+  std::ofstream file(unfinished, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  std::error_code error;
+  if (!file) {
+    const std::string reason = std::strerror(errno);
+    std::filesystem::remove(unfinished, error);
+    refuse(reason);
+  }
+  std::filesystem::rename(unfinished, path, error);
+  if (!error) return;
+  std::error_code ignored;
+  std::filesystem::remove(unfinished, ignored);
+  refuse(error.message());
+}
+
+}  // namespace desert_sim

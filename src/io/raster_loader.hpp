@@ -1,0 +1,13 @@
+#pragma once
+/// Rasters for a scenario's terrain.
+
+#include "desert_sim/scenario/scenario.hpp"
+
+namespace desert_sim {
+
+/// Reads any raster and brings it to the grid that is asked for: taken as it is where cells coincide, averaged where
+/// the grid is coarser, interpolated where it is finer. Cells beyond the raster continue its edge. A raster without
+/// georeference is stretched over the grid. Throws ConfigError with the file and the reason.
+RasterLoader gdal_raster_loader();
+
+}  // namespace desert_sim

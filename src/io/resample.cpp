@@ -1,0 +1,184 @@
+#include "desert_sim/io/resample.hpp"
+
+#include <gdal_alg.h>
+#include <gdal_priv.h>
+#include <gdalwarper.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <sstream>
+
+#include "desert_sim/core/error.hpp"
+
+namespace desert_sim {
+namespace {
+
+constexpr float kNoData = std::numeric_limits<float>::quiet_NaN();
+
+GDALResampleAlg gdal_method(Resampling method) {
+  switch (method) {
+    case Resampling::nearest:
+      return GRA_NearestNeighbour;
+    case Resampling::bilinear:
+      return GRA_Bilinear;
+    case Resampling::cubic:
+      return GRA_Cubic;
+    case Resampling::average:
+      return GRA_Average;
+  }
+  return GRA_NearestNeighbour;
+}
+
+std::string size_text(int width, int height, double cell_size) {
+  std::ostringstream text;
+  text.precision(12);
+  text << width << " x " << height << " cells of " << cell_size;
+  return text.str();
+}
+
+void check_grid(const char* what, int width, int height, double cell_size) {
+  if (width < 1 || height < 1 || !(cell_size > 0) || !std::isfinite(cell_size) ||
+      std::int64_t{width} * height > (std::int64_t{1} << 31))
+    throw ConfigError(std::string("resampling: the ") + what + " grid has " +
+                      size_text(width, height, cell_size) + ", must be 1 to 2^31 cells of a size > 0");
+}
+
+void check_raster(const Raster& raster) {
+  check_grid("source", raster.width, raster.height, raster.cell_size);
+  if (raster.values.size() != static_cast<std::size_t>(raster.width) * raster.height)
+    throw ConfigError("resampling: the source has " + std::to_string(raster.values.size()) + " values for " +
+                      size_text(raster.width, raster.height, raster.cell_size));
+}
+
+/// A GDAL dataset over a raster's own values. Its first line is our southern row: instead of copying, it
+/// lives in a frame whose y points south, with the given corner as origin so that large coordinates cost no
+/// digits.
+GDALDatasetUniquePtr view_of(Raster& raster, double corner_x, double corner_y) {
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
+  GDALDatasetUniquePtr dataset(
+      driver ? driver->Create("", raster.width, raster.height, 0, GDT_Float32, nullptr) : nullptr);
+  if (!dataset) return nullptr;
+  char address[64] = "DATAPOINTER=";
+  const int used = 12;
+  address[used + CPLPrintPointer(address + used, raster.values.data(), sizeof(address) - used - 1)] = '\0';
+  char* settings[] = {address, nullptr};
+  if (dataset->AddBand(GDT_Float32, settings) != CE_None) return nullptr;
+  double geotransform[6] = {raster.origin_x - corner_x, raster.cell_size, 0, -(raster.origin_y - corner_y), 0,
+                            -raster.cell_size};
+  dataset->SetGeoTransform(geotransform);
+  dataset->GetRasterBand(1)->SetNoDataValue(kNoData);
+  return dataset;
+}
+
+struct FreeWarpOptions {
+  void operator()(GDALWarpOptions* options) const {
+    if (options->pTransformerArg) GDALDestroyGenImgProjTransformer(options->pTransformerArg);
+    GDALDestroyWarpOptions(options);
+  }
+};
+
+double* one_double(double value) {
+  auto* list = static_cast<double*>(CPLMalloc(sizeof(double)));
+  *list = value;
+  return list;
+}
+
+int* first_band() {
+  auto* list = static_cast<int*>(CPLMalloc(sizeof(int)));
+  *list = 1;
+  return list;
+}
+
+bool warp(GDALDataset& source, GDALDataset& target, GDALResampleAlg method) {
+  std::unique_ptr<GDALWarpOptions, FreeWarpOptions> options(GDALCreateWarpOptions());
+  options->hSrcDS = GDALDataset::ToHandle(&source);
+  options->hDstDS = GDALDataset::ToHandle(&target);
+  options->nBandCount = 1;
+  options->panSrcBands = first_band();
+  options->panDstBands = first_band();
+  options->padfSrcNoDataReal = one_double(kNoData);
+  options->padfDstNoDataReal = one_double(kNoData);
+  options->eResampleAlg = method;
+  options->eWorkingDataType = GDT_Float32;
+  options->papszWarpOptions = CSLSetNameValue(options->papszWarpOptions, "INIT_DEST", "NO_DATA");
+  options->pTransformerArg = GDALCreateGenImgProjTransformer2(options->hSrcDS, options->hDstDS, nullptr);
+  options->pfnTransformer = GDALGenImgProjTransform;
+  if (!options->pTransformerArg) return false;
+  GDALWarpOperation operation;
+  return operation.Initialize(options.get()) == CE_None &&
+         operation.ChunkAndWarpImage(0, 0, target.GetRasterXSize(), target.GetRasterYSize()) == CE_None;
+}
+
+}  // namespace
+
+Raster resample(const Raster& source, int width, int height, double cell_size, double origin_x,
+                double origin_y, Resampling method) {
+  check_raster(source);
+  check_grid("target", width, height, cell_size);
+  if (!std::isfinite(origin_x) || !std::isfinite(origin_y))
+    throw ConfigError("resampling: the target's origin is not finite");
+  Raster result;
+  result.width = width;
+  result.height = height;
+  result.cell_size = cell_size;
+  result.origin_x = origin_x;
+  result.origin_y = origin_y;
+  result.projection = source.projection;
+  result.values.assign(static_cast<std::size_t>(width) * height, kNoData);
+
+  GdalMessages messages;
+  auto from = view_of(const_cast<Raster&>(source), source.origin_x, source.origin_y);  // only read
+  auto to = view_of(result, source.origin_x, source.origin_y);
+  if (!from || !to || !warp(*from, *to, gdal_method(method)))
+    throw StateError("resampling to " + size_text(width, height, cell_size) + " failed: " + messages.text());
+  to.reset();  // flushes into result.values
+  return result;
+}
+
+Raster resample_to_cell_size(const Raster& source, double cell_size) {
+  check_raster(source);
+  check_grid("target", 1, 1, cell_size);
+  // Half a cell is rounded down, so that the last centre lies within the source.
+  const auto cells = [&](int count) {
+    return std::ceil(count * (source.cell_size / cell_size) - 0.5 - 1e-9);
+  };
+  const double width = cells(source.width), height = cells(source.height);
+  if (width < 1 || height < 1 || width * height > 2147483648.0)
+    throw ConfigError("resampling " + size_text(source.width, source.height, source.cell_size) +
+                      " to cells of " + std::to_string(cell_size) + " gives " +
+                      (width < 1 || height < 1 ? "no cell" : "over 2^31 cells"));
+  const Resampling method = cell_size > source.cell_size ? Resampling::average : Resampling::cubic;
+  return resample(source, static_cast<int>(width), static_cast<int>(height), cell_size, source.origin_x,
+                  source.origin_y, method);
+}
+
+void fill_nodata(Raster& raster) {
+  check_raster(raster);
+  const long holes = raster.nodata_count();
+  if (holes == 0) return;
+  if (holes == static_cast<long>(raster.values.size()))
+    throw ConfigError("filling nodata: none of the " + std::to_string(holes) +
+                      " cells has a value to fill from");
+  Raster filled = raster;
+  GdalMessages messages;
+  const char* settings[] = {"TEMP_FILE_DRIVER=MEM", nullptr};
+  long left = holes;
+  bool done = true;
+  // GDAL's time grows with its reach, so it goes far only for what lies far from every value.
+  for (double reach = 100; done && left > 0 && reach < 4.0 * (raster.width + raster.height) + 200;
+       reach *= 2) {
+    auto view = view_of(filled, filled.origin_x, filled.origin_y);
+    done = view && GDALFillNodata(GDALRasterBand::ToHandle(view->GetRasterBand(1)), nullptr, reach, 0, 0,
+                                  const_cast<char**>(settings), nullptr, nullptr) == CE_None;
+    view.reset();
+    left = filled.nodata_count();
+  }
+  if (!done || left > 0)
+    throw StateError("filling nodata: " + std::to_string(left) + " of " + std::to_string(holes) +
+                     " cells could not be filled: " + messages.text());
+  raster.values = std::move(filled.values);
+}
+
+}  // namespace desert_sim

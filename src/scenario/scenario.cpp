@@ -1,0 +1,266 @@
+#include "desert_sim/scenario/scenario.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "desert_sim/scenario/sections.hpp"
+#include "desert_sim/scenario/yaml_parameters.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr std::size_t most_features = 64, most_segments = 4096;
+
+/// "layer" of a terrain step must name a persistent layer.
+template <class Step>
+void check_layer(const Step& step, const std::string& key, Faults& faults) {
+  if constexpr (!std::is_same_v<Step, ObstacleStep>) {
+    for (const LayerInfo& layer : layer_table)
+      if (step.layer == layer.name && layer.lifetime == Lifetime::persistent) return;
+    std::string known;
+    for (const LayerInfo& layer : layer_table)
+      if (layer.lifetime == Lifetime::persistent) known += (known.empty() ? "" : ", ") + std::string(layer.name);
+    faults.add(key + ".layer", "'" + step.layer + "' is not one of: " + known);
+  }
+}
+
+template <std::size_t N = 0>
+bool read_step(const std::string& name, const YAML::Node& node, const std::string& key, Faults& faults,
+               std::vector<TerrainStep>& steps) {
+  if constexpr (N < std::variant_size_v<TerrainStep>) {
+    if (name != terrain_step_names[N]) return read_step<N + 1>(name, node, key, faults, steps);
+    std::variant_alternative_t<N, TerrainStep> step;
+    yaml::read_section(node, key, faults, step);
+    check_layer(step, key, faults);
+    steps.push_back(step);
+    return true;
+  }
+  return false;
+}
+
+void read_terrain(const YAML::Node& list, Faults& faults, std::vector<TerrainStep>& steps) {
+  if (!list.IsDefined() || list.IsNull()) return;
+  if (!list.IsSequence()) return faults.add("terrain", yaml::shown(list) + " where a list of steps is expected");
+  for (std::size_t n = 0; n < list.size(); ++n) {
+    const std::string key = "terrain." + std::to_string(n);
+    if (!list[n].IsMap() || list[n].size() != 1) {
+      faults.add(key, "must be one step with its parameters, such as  - uniform: {layer: sand, value: 1}");
+      continue;
+    }
+    const auto entry = *list[n].begin();
+    const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "?";
+    std::string known;
+    for (const char* step : terrain_step_names) known += (known.empty() ? "" : ", ") + std::string(step);
+    if (!read_step(name, entry.second, key + "." + name, faults, steps))
+      faults.add(key, "unknown step '" + name + "' (known: " + known + ")");
+  }
+}
+
+template <class Item>
+void read_items(const YAML::Node& list, const std::string& key, std::size_t most, Faults& faults, std::vector<Item>& items) {
+  if (!list.IsDefined() || list.IsNull()) return;
+  if (!list.IsSequence()) return faults.add(key, yaml::shown(list) + " where a list is expected");
+  if (list.size() > most) return faults.add(key, std::to_string(list.size()) + " entries are more than " + std::to_string(most));
+  for (std::size_t n = 0; n < list.size(); ++n) {
+    items.emplace_back();
+    yaml::read_section(list[n], key + "." + std::to_string(n), faults, items.back());
+  }
+}
+
+void read_wind(const YAML::Node& node, Faults& faults, Scenario& s) {
+  std::set<std::string> known{"segments", "features"};
+  yaml::read_parameters(node, "wind.", faults, s.wind_regime, known);
+  yaml::read_parameters(node, "wind.", faults, s.wind, known);
+  yaml::refuse_unknown(node, "wind.", known, faults);
+  if (!node.IsDefined() || !node.IsMap()) return;
+  read_items(node["segments"], "wind.segments", most_segments, faults, s.wind_segments);
+  read_items(node["features"], "wind.features", most_features, faults, s.wind_features);
+}
+
+/// What no single row can say.
+void check_together(const Scenario& s, Faults& faults) {
+  if (s.wind.radii.count != s.wind.weights.count || s.wind.radii.count != s.wind.deflections.count)
+    faults.add("wind.radii", "radii, weights and deflections must be lists of the same length");
+  float weight = 0;
+  for (int n = 0; n < s.wind.weights.count; ++n) weight += s.wind.weights.values[n];
+  if (!(weight > 0)) faults.add("wind.weights", "must not all be 0");
+  if (s.wind_regime.regime != WindRegimeKind::constant && s.wind_segments.empty())
+    faults.add("wind.segments", std::string("a ") + wind_regime_kinds[static_cast<int>(s.wind_regime.regime)] + " needs at least one segment");
+  for (std::size_t n = 0; n < s.wind_segments.size(); ++n)
+    if (s.wind_segments[n].ramp > s.wind_segments[n].duration)
+      faults.add("wind.segments." + std::to_string(n) + ".ramp", "is longer than the segment's duration");
+  float probability = 0;
+  for (const WindSegment& segment : s.wind_segments) probability += segment.probability;
+  if (s.wind_regime.regime == WindRegimeKind::rose && !s.wind_segments.empty() && !(probability > 0))
+    faults.add("wind.segments", "the probabilities of a rose must not all be 0");
+  if (s.wind_shadow.full_deg < s.wind_shadow.start_deg)
+    faults.add("wind_shadow.full_deg", "must not be below start_deg");
+  if (s.echo_dunes.sticky_reach < s.echo_dunes.erosion_reach)
+    faults.add("echo_dunes.sticky_reach", "must not be below erosion_reach");
+  for (std::size_t n = 0; n < s.terrain.size(); ++n)
+    if (const auto* discs = std::get_if<DiscsStep>(&s.terrain[n]); discs && discs->radius_high < discs->radius_low)
+      faults.add("terrain." + std::to_string(n) + ".discs.radius_high", "must not be below radius_low");
+}
+
+void apply_setting(YAML::Node root, const std::string& setting) {
+  const std::size_t equals = setting.find('=');
+  if (equals == std::string::npos || equals == 0) throw ConfigError("--set '" + setting + "': must be path=value");
+  const std::string path = setting.substr(0, equals);
+  YAML::Node value;
+  try {
+    value = YAML::Load(setting.substr(equals + 1));
+  } catch (const YAML::Exception& e) {
+    throw ConfigError("--set '" + setting + "': " + e.msg);
+  }
+  YAML::Node node = root;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t dot = path.find('.', begin);
+    const std::string key = path.substr(begin, dot == std::string::npos ? dot : dot - begin);
+    const bool numeric = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
+    if (node.IsSequence() && (!numeric || key.size() > 6 || std::stoul(key) > node.size()))
+      throw ConfigError("--set '" + setting + "': '" + key + "' is not an index into a list of " + std::to_string(node.size()));
+    if (node.IsScalar()) throw ConfigError("--set '" + setting + "': there is nothing below '" + path.substr(0, begin ? begin - 1 : 0) + "'");
+    YAML::Node next = node.IsSequence() ? node[std::stoul(key)] : node[key];
+    if (dot == std::string::npos) {
+      next = value;
+      return;
+    }
+    node.reset(next);
+    begin = dot + 1;
+  }
+}
+
+std::string folder_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "." : path.substr(0, slash + 1);
+}
+
+std::string name_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
+  return file.substr(0, file.rfind('.'));
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::string& path, const Settings& settings) {
+  std::ifstream file(path);
+  if (!file) throw ConfigError(path + ": cannot be opened");
+  YAML::Node root;
+  try {
+    root = YAML::Load(file);
+  } catch (const YAML::Exception& e) {
+    throw ConfigError(path + ": line " + std::to_string(e.mark.line + 1) + ": " + e.msg);
+  }
+  if (root.IsNull()) root = YAML::Node(YAML::NodeType::Map);
+  if (root.IsMap())
+    for (const std::string& setting : settings) apply_setting(root, setting);
+  Scenario s = parse_scenario(root, path, folder_of(path));
+  s.name = name_of(path);
+  return s;
+}
+
+Scenario parse_scenario(const YAML::Node& root, const std::string& name, const std::string& folder) {
+  Faults faults(name);
+  Scenario s;
+  s.name = name;
+  s.folder = folder;
+  if (!root.IsMap()) {
+    faults.add("top level", yaml::shown(root) + " where the sections of a scenario are expected");
+    faults.throw_if_any();
+  }
+  std::set<std::string> known{"terrain", "wind"};
+  for_each_section(s, [&](const char* section, auto& parameters) {
+    known.insert(section);
+    yaml::read_section(root[section], section, faults, parameters);
+  });
+  SeedParameter seed{s.seed};
+  yaml::read_parameters(root, "", faults, seed, known);
+  s.seed = seed.seed;
+  yaml::refuse_unknown(root, "", known, faults);
+  read_terrain(root["terrain"], faults, s.terrain);
+  read_wind(root["wind"], faults, s);
+  check_together(s, faults);
+  faults.throw_if_any();
+  return s;
+}
+
+std::string dump_scenario(const Scenario& s) {
+  YAML::Emitter out;
+  yaml::keep_all_bits(out);
+  out << YAML::BeginMap;
+  yaml::emit_parameters(out, SeedParameter{s.seed});
+  for_each_section(s, [&](const char* section, const auto& parameters) {
+    out << YAML::Key << section << YAML::Value << YAML::BeginMap;
+    yaml::emit_parameters(out, parameters);
+    out << YAML::EndMap;
+  });
+  out << YAML::Key << "terrain" << YAML::Value << YAML::BeginSeq;
+  for (const TerrainStep& step : s.terrain) {
+    out << YAML::Flow << YAML::BeginMap << YAML::Key << terrain_step_names[step.index()] << YAML::Value << YAML::BeginMap;
+    std::visit([&](const auto& parameters) { yaml::emit_parameters(out, parameters); }, step);
+    out << YAML::EndMap << YAML::EndMap;
+  }
+  out << YAML::EndSeq << YAML::Key << "wind" << YAML::Value << YAML::BeginMap;
+  yaml::emit_parameters(out, s.wind_regime);
+  yaml::emit_parameters(out, s.wind);
+  const auto items = [&](const char* key, const auto& list) {
+    out << YAML::Key << key << YAML::Value << YAML::BeginSeq;
+    for (const auto& item : list) {
+      out << YAML::Flow << YAML::BeginMap;
+      yaml::emit_parameters(out, item);
+      out << YAML::EndMap;
+    }
+    out << YAML::EndSeq;
+  };
+  items("segments", s.wind_segments);
+  items("features", s.wind_features);
+  out << YAML::EndMap << YAML::EndMap;
+  return out.c_str();
+}
+
+Grid Scenario::make_grid() const {
+  const bool periodic = grid.boundary == Boundary::periodic;
+  return Grid{grid.width, grid.height, static_cast<float>(grid.cell_size), periodic, periodic};
+}
+
+RasterField refuse_rasters(const RasterRequest& request) {
+  throw ConfigError(request.path + ": this build reads no rasters (it was made without GDAL)");
+}
+
+void resolve_grid(Scenario& s, const RasterLoader& load_raster) {
+  GridParameters& g = s.grid;
+  if (!g.from_raster.empty()) {
+    RasterRequest request;
+    request.path = raster_path(s, g.from_raster);
+    const bool resampled = g.cell_size > 0;
+    const RasterField raster = load_raster(request);
+    const double cell = resampled ? g.cell_size : raster.cell_size;
+    const double extent_x = raster.width * raster.cell_size, extent_y = raster.height * raster.cell_size;
+    const bool sized = g.width > 0 || g.height > 0;
+    if (g.width == 0) g.width = std::max(1, static_cast<int>(std::lround(extent_x / cell)));
+    if (g.height == 0) g.height = std::max(1, static_cast<int>(std::lround(extent_y / cell)));
+    if (g.origin_x == 0 && g.origin_y == 0) {
+      // A size of its own: the middle of the raster.
+      g.origin_x = raster.origin_x + (sized ? 0.5 * (extent_x - g.width * cell) : 0.0);
+      g.origin_y = raster.origin_y + (sized ? 0.5 * (extent_y - g.height * cell) : 0.0);
+    }
+    g.cell_size = cell;
+    s.projection = raster.projection;
+  }
+  if (g.width == 0) g.width = 256;
+  if (g.height == 0) g.height = 256;
+  if (g.cell_size == 0) g.cell_size = 1;
+}
+
+std::string raster_path(const Scenario& s, const std::string& file) {
+  if (file.empty() || file[0] == '/') return file;
+  const std::string beside = s.folder.empty() || s.folder.back() == '/' ? s.folder + file : s.folder + "/" + file;
+  return std::ifstream(beside) ? beside : file;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,129 @@
+#pragma once
+/// A scenario: all that defines a run. Read from YAML (file, text, or ROS parameters turned into YAML); see
+/// config/parameters.md for every key. All faults of a file are found at once.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "desert_sim/core/error.hpp"
+#include "desert_sim/kernels/avalanching.hpp"
+#include "desert_sim/kernels/echo_dunes.hpp"
+#include "desert_sim/kernels/reptation.hpp"
+#include "desert_sim/kernels/saltation.hpp"
+#include "desert_sim/kernels/wind.hpp"
+#include "desert_sim/kernels/wind_features.hpp"
+#include "desert_sim/kernels/wind_shadow.hpp"
+#include "desert_sim/scenario/terrain_steps.hpp"
+#include "desert_sim/simulation/wind_regime.hpp"
+
+namespace YAML {
+class Node;
+}
+
+namespace desert_sim {
+
+enum class Boundary : int { periodic, open };
+constexpr const char* boundaries[] = {"periodic", "open"};
+
+/// Zero stands for "not given" and is filled in by resolve_grid().
+struct GridParameters {
+  int width = 0;
+  int height = 0;
+  double cell_size = 0;
+  Boundary boundary = Boundary::periodic;
+  double origin_x = 0;
+  double origin_y = 0;
+  std::string from_raster;
+};
+
+constexpr auto parameter_table(const GridParameters*) {
+  using P = GridParameters;
+  return std::make_tuple(
+      parameter("width", &P::width, 1, 65536, "cells", "Cells from west to east; 256, or the raster's."),
+      parameter("height", &P::height, 1, 65536, "cells", "Cells from south to north; 256, or the raster's."),
+      parameter("cell_size", &P::cell_size, 1e-3, 1e4, "m", "Width of a cell; 1, or the raster's (which is resampled to another)."),
+      parameter("boundary", &P::boundary, boundaries, "periodic: a torus; open: sand leaves and enters over the edges."),
+      parameter("origin_x", &P::origin_x, -1e8, 1e8, "m", "West edge of the grid in the terrain's frame."),
+      parameter("origin_y", &P::origin_y, -1e8, 1e8, "m", "South edge of the grid in the terrain's frame."),
+      parameter("from_raster", &P::from_raster, "A raster that gives size, cell size and origin where they are not given; a larger width or height continues its edge."));
+}
+static_assert(table_is_complete<GridParameters>());
+
+struct RunParameters {
+  int steps = 1000;
+  float time_step = 1.0f;
+  int check_every = 100;
+};
+
+constexpr auto parameter_table(const RunParameters*) {
+  using P = RunParameters;
+  return std::make_tuple(
+      parameter("steps", &P::steps, 0, 2147483647, "1", "Steps of a headless run."),
+      parameter("time_step", &P::time_step, 1e-4, 1e3, "s", "Simulated time of one step."),
+      parameter("check_every", &P::check_every, 0, 1000000, "steps", "How often the state is searched for NaN and negative depths; 0 never."));
+}
+static_assert(table_is_complete<RunParameters>());
+
+struct Scenario {
+  std::string name;       ///< file name without ending, or what the caller says
+  std::string folder;     ///< relative raster paths are looked up here
+  std::uint64_t seed = 1;
+  GridParameters grid;
+  std::vector<TerrainStep> terrain;
+  WindRegimeParameters wind_regime;
+  std::vector<WindSegment> wind_segments;
+  std::vector<WindFeature> wind_features;
+  WindParameters wind;
+  WindShadowParameters wind_shadow;
+  EchoDuneParameters echo_dunes;
+  SaltationParameters saltation;
+  AbrasionParameters abrasion;
+  ReptationParameters reptation;
+  ReposeParameters repose;
+  AvalanchingParameters avalanching;
+  RunParameters run;
+  std::string projection;  ///< WKT of the raster that gave the grid; kept for what is written
+
+  Grid make_grid() const;
+};
+
+/// `path=value` settings that override keys, as given to --set: "grid.width=128", "terrain.0.raster.file=dem.tif".
+using Settings = std::vector<std::string>;
+
+/// Throw ConfigError that lists all faults: file, key, value, what is allowed.
+Scenario load_scenario(const std::string& path, const Settings& settings = {});
+Scenario parse_scenario(const YAML::Node& root, const std::string& name, const std::string& folder);
+/// The scenario as YAML with every parameter spelled out; parse_scenario() reads it back the same.
+std::string dump_scenario(const Scenario& scenario);
+
+/// Loads rasters for the terrain; desert_io has the one that uses GDAL. Without it, any raster is refused.
+struct RasterField {
+  int width = 0, height = 0;
+  double cell_size = 1, origin_x = 0, origin_y = 0;
+  bool georeferenced = false;
+  std::string projection;
+  std::vector<float> values;  ///< row-major from the south-west, NaN = nodata
+};
+struct RasterRequest {
+  std::string path;
+  int band = 1;
+  double scale = 1, offset = 0;
+  bool fill_nodata = false;   ///< else nodata is refused
+  // The grid to resample to; width 0: as it is.
+  int width = 0, height = 0;
+  double cell_size = 0, origin_x = 0, origin_y = 0;
+  bool stretch = false;       ///< the raster's extent is stretched over the grid's
+};
+using RasterLoader = std::function<RasterField(const RasterRequest&)>;
+RasterField refuse_rasters(const RasterRequest& request);
+
+/// Fills in what the grid section left open, from the raster if it names one.
+void resolve_grid(Scenario& scenario, const RasterLoader& load_raster);
+
+/// Every parameter as a markdown page: what `desert_run --describe` prints and config/parameters.md holds.
+std::string describe_parameters();
+
+}  // namespace desert_sim

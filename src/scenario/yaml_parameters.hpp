@@ -1,0 +1,173 @@
+#pragma once
+/// Parameter tables to and from YAML.
+
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "desert_sim/core/error.hpp"
+#include "desert_sim/core/parameters.hpp"
+
+namespace desert_sim {
+
+/// Collects all faults of an input, to be thrown at once.
+class Faults {
+ public:
+  explicit Faults(std::string source) : source_(std::move(source)) {}
+  void add(const std::string& key, const std::string& what) { text_ += (text_.empty() ? "" : "\n") + source_ + ": " + key + ": " + what; }
+  void throw_if_any() const {
+    if (!text_.empty()) throw ConfigError(text_);
+  }
+
+ private:
+  std::string source_, text_;
+};
+
+namespace yaml {
+
+inline std::string shown(const YAML::Node& node) {
+  if (node.IsScalar()) {
+    const std::string text = node.Scalar();
+    return text.size() <= 60 ? text : text.substr(0, 57) + "...";
+  }
+  return node.IsNull() ? "nothing" : (node.IsMap() ? "a map" : "a list");
+}
+
+template <class Row>
+std::string allowed_range(const Row& row) {
+  std::ostringstream text;
+  text << "[" << row.lowest << ", " << row.highest << "]";
+  if (std::string(row.unit) != "1" && row.unit[0]) text << " " << row.unit;
+  return text.str();
+}
+
+/// A number in the row's range, or a fault. YAML's NaN and infinities are read, so that they are named when refused.
+template <class Row>
+bool read_number(const YAML::Node& node, const Row& row, const std::string& key, Faults& faults, double& number) {
+  if (!node.IsScalar() || node.Tag() == "!" || !YAML::convert<double>::decode(node, number)) {
+    faults.add(key, shown(node) + " is not a number (allowed: " + allowed_range(row) + ")");
+    return false;
+  }
+  if (!(number >= row.lowest && number <= row.highest)) {
+    faults.add(key, "= " + shown(node) + " is not in " + allowed_range(row));
+    return false;
+  }
+  return true;
+}
+
+template <class Row, class T>
+void read_value(const YAML::Node& node, const Row& row, const std::string& key, Faults& faults, T& value) {
+  double number = 0;
+  if constexpr (std::is_same_v<T, bool>) {
+    if (!node.IsScalar() || node.Tag() == "!" || !YAML::convert<bool>::decode(node, value))
+      faults.add(key, shown(node) + " is not true or false");
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    if (node.IsScalar()) {
+      value = node.Scalar();
+    } else {
+      faults.add(key, shown(node) + " is not a text");
+    }
+  } else if constexpr (std::is_enum_v<T>) {
+    std::string known;
+    for (int n = 0; n < row.choice_count; ++n) {
+      if (node.IsScalar() && node.Scalar() == row.choices[n]) {
+        value = static_cast<T>(n);
+        return;
+      }
+      known += (n ? ", " : "") + std::string(row.choices[n]);
+    }
+    faults.add(key, "'" + shown(node) + "' is not one of: " + known);
+  } else if constexpr (std::is_same_v<T, ShortList>) {
+    if (!node.IsSequence() || node.size() < 1 || node.size() > ShortList::capacity) {
+      faults.add(key, "must be a list of 1 to " + std::to_string(ShortList::capacity) + " numbers");
+      return;
+    }
+    ShortList list;
+    for (std::size_t n = 0; n < node.size(); ++n)
+      if (read_number(node[n], row, key + "[" + std::to_string(n) + "]", faults, number))
+        list.values[list.count++] = static_cast<float>(number);
+    if (list.count == static_cast<int>(node.size())) value = list;
+  } else if constexpr (std::is_floating_point_v<T>) {
+    if (read_number(node, row, key, faults, number)) value = static_cast<T>(number);
+  } else {
+    if (!read_number(node, row, key, faults, number)) return;
+    if (!YAML::convert<T>::decode(node, value)) {
+      if (number == std::floor(number)) {
+        value = static_cast<T>(number);
+      } else {
+        faults.add(key, "= " + shown(node) + " is not a whole number (allowed: " + allowed_range(row) + ")");
+      }
+    }
+  }
+}
+
+/// Reads the keys of `section` that belong to P and adds their names to `known`.
+template <class P>
+void read_parameters(const YAML::Node& section, const std::string& path, Faults& faults, P& parameters,
+                     std::set<std::string>& known) {
+  for_each_parameter(parameters, [&](const auto& row, auto& value) {
+    known.insert(row.name);
+    if (!section.IsDefined() || !section.IsMap()) return;
+    const YAML::Node node = section[row.name];
+    if (node.IsDefined()) read_value(node, row, path + row.name, faults, value);
+  });
+}
+
+/// Faults for keys that nobody knows, with what is known.
+inline void refuse_unknown(const YAML::Node& section, const std::string& path, const std::set<std::string>& known,
+                           Faults& faults) {
+  if (!section.IsDefined() || section.IsNull()) return;
+  if (!section.IsMap()) {
+    faults.add(path.empty() ? "top level" : path.substr(0, path.size() - 1), shown(section) + " where keys and values are expected");
+    return;
+  }
+  std::string all;
+  for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
+  std::set<std::string> seen;
+  for (const auto& entry : section) {
+    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
+    if (!known.count(key)) faults.add(path + key, "unknown key (known here: " + all + ")");
+    if (!seen.insert(key).second) faults.add(path + key, "is given twice");
+  }
+}
+
+/// A section that is one table.
+template <class P>
+void read_section(const YAML::Node& section, const std::string& path, Faults& faults, P& parameters) {
+  std::set<std::string> known;
+  read_parameters(section, path + ".", faults, parameters, known);
+  refuse_unknown(section, path + ".", known, faults);
+}
+
+/// Writes all parameters as map entries into an open map. Floats keep every bit.
+template <class P>
+void emit_parameters(YAML::Emitter& out, const P& parameters) {
+  for_each_parameter(parameters, [&](const auto& row, const auto& value) {
+    using T = std::decay_t<decltype(value)>;
+    out << YAML::Key << row.name << YAML::Value;
+    if constexpr (std::is_enum_v<T>) {
+      out << row.choices[static_cast<int>(value)];
+    } else if constexpr (std::is_same_v<T, ShortList>) {
+      out << YAML::Flow << YAML::BeginSeq;
+      for (int n = 0; n < value.count; ++n) out << value.values[n];
+      out << YAML::EndSeq;
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      out << YAML::DoubleQuoted << value;
+    } else {
+      out << value;
+    }
+  });
+}
+
+inline void keep_all_bits(YAML::Emitter& out) {
+  out.SetFloatPrecision(std::numeric_limits<float>::max_digits10);
+  out.SetDoublePrecision(std::numeric_limits<double>::max_digits10);
+}
+
+}  // namespace yaml
+}  // namespace desert_sim

@@ -1,0 +1,20 @@
+#pragma once
+/// Checkpoints: a whole simulation in a file.
+///
+/// Format: the line "desert_sim checkpoint", version (u32), length of the header (u64), header (YAML: scenario, clock,
+/// wind regime, height scale, books, layers), the layers' words as stored, XXH3-64 of all before. Little-endian.
+/// Written to a temporary name, fsynced and renamed, so that a file of that name is always whole.
+
+#include <memory>
+#include <string>
+
+#include "desert_sim/simulation/simulation.hpp"
+
+namespace desert_sim {
+
+/// Throws ConfigError if the file cannot be written.
+void save_checkpoint(const std::string& path, const Simulation& simulation);
+/// Throws ConfigError if the file is missing, of another version, cut off or corrupt.
+std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec);
+
+}  // namespace desert_sim

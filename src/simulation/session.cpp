@@ -1,0 +1,91 @@
+#include "desert_sim/simulation/session.hpp"
+
+#include <xxhash.h>
+
+#include <cstdio>
+
+#include "desert_sim/core/error.hpp"
+#include "desert_sim/simulation/checkpoint.hpp"
+
+namespace desert_sim {
+
+std::uint64_t scenario_hash(const Scenario& scenario) {
+  const std::string text = dump_scenario(scenario);
+  return XXH3_64bits(text.data(), text.size());
+}
+
+Session::Session(const Scenario& scenario, const RasterLoader& load_raster, const std::string& backend, int threads,
+                 const std::string& journal_path)
+    : scenario_(scenario), load_raster_(load_raster) {
+  resolve_grid(scenario_, load_raster_);
+  exec_ = make_exec(backend, threads, &backend_choice_);
+  simulation_ = std::make_unique<Simulation>(*exec_, scenario_, load_raster_);
+  if (!journal_path.empty())
+    journal_ = std::make_unique<JournalWriter>(journal_path, scenario_hash(scenario_), exec_->backend());
+}
+
+Session::Session(const RasterLoader& load_raster, const std::string& backend, int threads)
+    : load_raster_(load_raster), exec_(make_exec(backend, threads, &backend_choice_)) {}
+
+std::unique_ptr<Session> Session::resumed(const std::string& checkpoint, const RasterLoader& load_raster,
+                                          const std::string& backend, int threads) {
+  std::unique_ptr<Session> session(new Session(load_raster, backend, threads));
+  session->simulation_ = load_checkpoint(checkpoint, *session->exec_);
+  session->scenario_ = session->simulation_->scenario();
+  return session;
+}
+
+void Session::require_journal_of_this_scenario(const Journal& journal, const std::string& path) const {
+  if (journal.scenario_hash != scenario_hash(scenario_))
+    throw ConfigError(path + ": is the journal of another scenario than " + scenario_.name + " (or of other settings)");
+}
+
+Session::~Session() {
+  if (!journal_) return;
+  try {
+    journal_->end(ticks_);
+  } catch (const Error& e) {
+    std::fprintf(stderr, "desert_sim: %s\n", e.what());
+  }
+}
+
+void Session::step() {
+  simulation_->step();
+  ++ticks_;
+}
+
+CommandResult Session::dispatch(const Command& command, Command& journalled) {
+  if (std::holds_alternative<Reset>(command)) {
+    simulation_ = std::make_unique<Simulation>(*exec_, scenario_, load_raster_);
+    return {};
+  }
+  if (const auto* load = std::get_if<LoadCheckpoint>(&command)) {
+    std::unique_ptr<Simulation> loaded = load_checkpoint(load->path, *exec_);
+    const std::uint64_t hash = loaded->state_hash();
+    if (load->hash != 0 && load->hash != hash)
+      throw ConfigError(load->path + ": is not the checkpoint that the journal means (its state hash differs)");
+    simulation_ = std::move(loaded);
+    journalled = LoadCheckpoint{load->path, hash};
+    return {};
+  }
+  return std::visit(
+      [this](const auto& c) -> CommandResult {
+        using C = std::decay_t<decltype(c)>;
+        if constexpr (std::is_same_v<C, Reset> || std::is_same_v<C, LoadCheckpoint>)
+          throw Error("handled above");
+        else
+          return simulation_->apply(c);
+      },
+      command);
+}
+
+CommandResult Session::apply(const Command& command) {
+  Command journalled = command;
+  const CommandResult result = dispatch(command, journalled);
+  if (journal_) journal_->write(ticks_, journalled);
+  return result;
+}
+
+void Session::save_checkpoint(const std::string& path) { desert_sim::save_checkpoint(path, *simulation_); }
+
+}  // namespace desert_sim

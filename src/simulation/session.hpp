@@ -1,0 +1,53 @@
+#pragma once
+/// A session: a simulation with its backend, its journal, its start and its checkpoints. What the node and desert_run
+/// both drive. One thread at a time.
+
+#include <memory>
+#include <string>
+
+#include "desert_sim/simulation/journal.hpp"
+#include "desert_sim/simulation/simulation.hpp"
+
+namespace desert_sim {
+
+/// Of the scenario as dumped; a journal names the scenario it belongs to by it.
+std::uint64_t scenario_hash(const Scenario& scenario);
+
+class Session {
+ public:
+  /// `journal_path` may be empty. `backend`: auto, cpu, cuda. Throws ConfigError.
+  Session(const Scenario& scenario, const RasterLoader& load_raster, const std::string& backend, int threads,
+          const std::string& journal_path = "");
+  ~Session();
+  /// Begins with a checkpoint, and with the scenario in it.
+  static std::unique_ptr<Session> resumed(const std::string& checkpoint, const RasterLoader& load_raster,
+                                          const std::string& backend, int threads);
+  /// Throws ConfigError if the journal was written for another scenario; `path` names it in the message.
+  void require_journal_of_this_scenario(const Journal& journal, const std::string& path) const;
+
+  Simulation& simulation() { return *simulation_; }
+  const std::string& backend_choice() const { return backend_choice_; }  ///< which backend, and why
+
+  void step();
+  /// Applies a command and journals it. A refused command throws ConfigError and changes nothing.
+  CommandResult apply(const Command& command);
+  /// Steps done in this session, through resets and loads; what the journal counts in.
+  std::uint64_t ticks() const { return ticks_; }
+
+  /// Written to a temporary name, fsynced, renamed.
+  void save_checkpoint(const std::string& path);
+
+ private:
+  Session(const RasterLoader& load_raster, const std::string& backend, int threads);
+  CommandResult dispatch(const Command& command, Command& journalled);
+
+  Scenario scenario_;
+  RasterLoader load_raster_;
+  std::string backend_choice_;
+  std::unique_ptr<Exec> exec_;
+  std::unique_ptr<Simulation> simulation_;
+  std::unique_ptr<JournalWriter> journal_;
+  std::uint64_t ticks_ = 0;
+};
+
+}  // namespace desert_sim

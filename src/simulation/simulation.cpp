@@ -1,0 +1,312 @@
+#include "desert_sim/simulation/simulation.hpp"
+
+#include <xxhash.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "desert_sim/core/error.hpp"
+
+namespace desert_sim {
+
+// ---- one step ------------------------------------------------------------------------------------------------------
+
+template <class E>
+void Simulation::run_step(E& exec) {
+  const Scenario& s = scenario_;
+  const TerrainView view = terrain_.view();
+  const float dt = s.run.time_step;
+
+  // Wind at the surface: speed-up, deflection by the terrain, divergence-free, local features (A1–A5).
+  run(exec, "wind", {Layer::wind_x, Layer::wind_y}, [&] { update_wind(exec, view); });
+
+  // Shelter in the lee of what is higher upwind (A6).
+  if (s.wind_shadow.enabled)
+    run(exec, "wind_shadow", {Layer::wind_shadow}, [&] { wind_shadow::step(exec, view, s.wind_shadow); });
+
+  // The eddy before cliffs, which holds sand off and piles it up ahead (A7).
+  if (s.echo_dunes.enabled)
+    run(exec, "echo_dunes", {Layer::echo}, [&] { echo_dunes::step(exec, view, s.echo_dunes, cliff_.data()); });
+
+  // Sand is lifted, carried a hop, deposited or bounced on; bouncing sand wears rock (B1–B4).
+  if (s.saltation.enabled)
+    run(exec, "saltation", {Layer::sand, Layer::airborne_sand, Layer::bedrock}, [&] {
+      saltation::step(exec, view, s.saltation, s.abrasion, s.repose, dt, ledger(), landed_.data(),
+                      reptation_strength_.data());
+    });
+
+  // Impacts creep sand down the slope, or loosen it (B5); the angles of repose (B7).
+  run(exec, "reptation", {Layer::sand}, [&] {
+    reptation::step(exec, view, s.reptation, s.repose, dt, s.seed, steps_, reptation_strength_.data(),
+                    landed_.data(), repose_.data());
+  });
+
+  // What is too steep slides: rock and soil where they changed, then sand (B6).
+  if (s.avalanching.enabled)
+    run(exec, "avalanching", {Layer::sand, Layer::bedrock}, [&] {
+      const bool wearing = s.abrasion.rate > 0;
+      if (s.avalanching.soil && wearing && terrain_.has(Layer::soil))
+        avalanching::step_soil(exec, view, s.avalanching, s.repose, ground_work_);
+      if (s.avalanching.bedrock && (wearing || bedrock_loose_)) {
+        avalanching::step_bedrock(exec, view, s.avalanching, s.repose, ledger(), ground_work_);
+        if (bedrock_loose_) bedrock_loose_ = statistics::sum(exec, view.grid, ground_work_.given.data()) != 0;
+      }
+      avalanching::step(exec, view, s.avalanching, steps_, repose_.data(), avalanche_work_);
+      avalanche_iterations_ += static_cast<std::uint64_t>(avalanche_work_.iterations);
+    });
+
+  ++steps_;
+}
+
+template <class E>
+void Simulation::update_wind(E& exec, const TerrainView& view) {
+  surface::step(exec, view);
+  if (features_)
+    wind_features::step(exec, view.grid, features_, static_cast<float>(time()), stream_.data(), perturbation_x_.data(),
+                        perturbation_y_.data());
+  wind::step(exec, view, scenario_.wind, wind_above(), wind_reference_, perturbation_x_.data(), perturbation_y_.data(),
+             wind_work_);
+}
+
+template <class E, class Process>
+void Simulation::run(E& exec, const char* name, std::initializer_list<Layer> writes, Process&& process) {
+  const auto start = std::chrono::steady_clock::now();
+  process();
+  const int every = scenario_.run.check_every;
+  if (every > 0 && (steps_ + 1) % static_cast<std::uint64_t>(every) == 0)
+    for (Layer layer : writes) check(exec, name, layer);
+  if (!timing_) return;
+  exec.synchronise();
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  for (ProcessTime& t : process_times_)
+    if (t.process == name) {
+      t.milliseconds += elapsed.count();
+      return;
+    }
+  process_times_.push_back({name, elapsed.count()});
+}
+
+template <class E>
+void Simulation::check(E& exec, const char* process, Layer layer) {
+  const LayerInfo& row = info(layer);
+  const TerrainView view = terrain_.view();
+  const bool quanta = row.storage == Storage::quanta;
+  const long long broken = statistics::broken_cells(exec, view.grid, quanta ? view.quanta(layer) : nullptr,
+                                                    quanta ? nullptr : view.real(layer), row.lowest == 0);
+  if (broken == 0) return;
+  const std::vector<float> values = terrain_.values(layer);
+  std::size_t cell = 0;
+  while (cell + 1 < values.size() && std::isfinite(values[cell]) && !(row.lowest == 0 && values[cell] < 0)) ++cell;
+  throw StateError("step " + std::to_string(steps_) + ": " + process + ": layer " + row.name + " is broken in " +
+                   std::to_string(broken) + " cells, first (" + std::to_string(cell % view.grid.width) + ", " +
+                   std::to_string(cell / view.grid.width) + ") = " + std::to_string(values[cell]));
+}
+
+void Simulation::step() {
+  with_backend(exec(), [this](auto& exec) { run_step(exec); });
+}
+
+// ---- making --------------------------------------------------------------------------------------------------------
+
+namespace {
+
+HeightScale scale_for(const HostLayers& layers) {
+  const std::vector<double>&bedrock = layers.at(Layer::bedrock), &sand = layers.at(Layer::sand);
+  const auto soil = layers.find(Layer::soil);
+  double lowest = bedrock[0], highest = bedrock[0];
+  for (std::size_t i = 0; i < bedrock.size(); ++i) {
+    lowest = std::min(lowest, bedrock[i]);
+    highest = std::max(highest, bedrock[i] + sand[i] + (soil == layers.end() ? 0.0 : soil->second[i]));
+  }
+  for (const auto& [layer, values] : layers)
+    if (info(layer).storage == Storage::quanta && layer != Layer::bedrock)
+      highest = std::max(highest, lowest + *std::max_element(values.begin(), values.end()));
+  return HeightScale::covering(lowest, highest);
+}
+
+HostLayers build_if_it_fits(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster) {
+  Terrain::require_memory(exec, scenario.make_grid());
+  return build_terrain(scenario, load_raster);
+}
+
+}  // namespace
+
+Simulation::Simulation(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster)
+    : Simulation(exec, scenario, build_if_it_fits(exec, scenario, load_raster)) {}
+
+Simulation::Simulation(Exec& exec, const Scenario& scenario, const HostLayers& layers)
+    : Simulation(scenario, Terrain(exec, scenario.make_grid(), scale_for(layers))) {
+  for (const auto& [layer, values] : layers) terrain_.set_values(layer, values);
+  WindRegime regime;
+  const WindRegimeParameters& p = scenario.wind_regime;
+  regime.kind = p.regime;
+  regime.direction_deg = p.direction_deg;
+  regime.speed = p.speed;
+  regime.ramp = p.ramp;
+  regime.repeat = p.repeat;
+  regime.hold_time = p.hold_time;
+  regime.seed = p.rose_seed;
+  regime.segments = scenario.wind_segments;
+  regime_ = regime;
+  start_books();
+}
+
+Simulation::Simulation(const Scenario& scenario, Terrain terrain) : scenario_(scenario), terrain_(std::move(terrain)) {
+  allocate_work();
+}
+
+void Simulation::allocate_work() {
+  Exec& e = exec();
+  const Grid& grid = terrain_.grid();
+  const Scenario& s = scenario_;
+  const std::size_t cells = static_cast<std::size_t>(grid.cells());
+  if (s.wind_shadow.enabled) terrain_.require(Layer::wind_shadow);
+  if (s.echo_dunes.enabled) {
+    terrain_.require(Layer::echo);
+    cliff_ = Buffer<float>(e, cells);
+  }
+  ledger_ = Buffer<long long>(e, LedgerView::words);
+  ledger_.set_zero();
+  landed_ = Buffer<Quanta>(e, cells);
+  repose_ = Buffer<float>(e, cells);
+  reptation_strength_ = Buffer<float>(e, cells);
+  reptation_strength_.set_zero();
+  repose_.set_zero();
+  wind_work_ = wind::make_workspace(e, grid, s.wind);
+  avalanche_work_ = avalanching::make_workspace(e, grid, s.avalanching);
+  if (s.avalanching.enabled && (s.avalanching.soil || s.avalanching.bedrock))
+    ground_work_ = avalanching::make_ground_workspace(e, grid);
+  if (s.wind_features.empty()) return;
+  std::vector<wind_features::Prepared> prepared;
+  for (const WindFeature& feature : s.wind_features) {
+    const wind::Vector direction = unit_vector(feature.direction_deg);
+    prepared.push_back({feature, direction.x, direction.y});
+    prepared.back().feature.x -= static_cast<float>(s.grid.origin_x);
+    prepared.back().feature.y -= static_cast<float>(s.grid.origin_y);
+  }
+  features_ = Buffer<wind_features::Prepared>(e, prepared.size());
+  features_.upload(prepared);
+  for (Buffer<float>* buffer : {&stream_, &perturbation_x_, &perturbation_y_}) *buffer = Buffer<float>(e, cells);
+}
+
+void Simulation::start_books() {
+  with_backend(exec(), [this](auto& e) { surface::step(e, terrain_.view()); });
+  const std::vector<std::uint32_t> surface = terrain_.words(Layer::elevation);
+  Quanta lowest = wall_height;
+  for (std::uint32_t word : surface) lowest = std::min(lowest, static_cast<Quanta>(word));
+  wind_reference_ = lowest;
+  for (int m = 0; m < material_count; ++m) initial_[static_cast<std::size_t>(m)] = material_now(static_cast<Material>(m));
+}
+
+// ---- looking at it -------------------------------------------------------------------------------------------------
+
+const std::vector<float>* Snapshot::find(Layer layer) const {
+  const auto found = layers.find(layer);
+  return found == layers.end() ? nullptr : &found->second;
+}
+
+std::shared_ptr<const Snapshot> Simulation::snapshot(const std::vector<Layer>& layers) {
+  auto s = std::make_shared<Snapshot>();
+  const GridParameters& g = scenario_.grid;
+  s->width = g.width;
+  s->height = g.height;
+  s->cell_size = g.cell_size;
+  s->origin_x = g.origin_x;
+  s->origin_y = g.origin_y;
+  s->step = steps_;
+  s->time = time();
+  s->wind_above = wind_above();
+  const auto asked = [&](Layer layer) { return std::find(layers.begin(), layers.end(), layer) != layers.end(); };
+  with_backend(exec(), [&](auto& e) {
+    if (steps_ == 0 && (asked(Layer::wind_x) || asked(Layer::wind_y)))
+      update_wind(e, terrain_.view());
+    else if (asked(Layer::elevation))
+      surface::step(e, terrain_.view());
+  });
+  for (Layer layer : layers) s->layers[layer] = terrain_.values(layer);
+  return s;
+}
+
+std::vector<Layer> Simulation::layers_in_use() const {
+  std::vector<Layer> layers;
+  for (const LayerInfo& row : layer_table)
+    if (terrain_.has(row.layer)) layers.push_back(row.layer);
+  return layers;
+}
+
+std::uint64_t Simulation::state_hash() const {
+  XXH3_state_t* state = XXH3_createState();
+  if (!state) throw Error("no memory for a hash");
+  XXH3_64bits_reset(state);
+  for (const LayerInfo& row : layer_table) {
+    if (row.lifetime != Lifetime::persistent || !terrain_.has(row.layer)) continue;
+    const std::vector<std::uint32_t> words = terrain_.words(row.layer);
+    XXH3_64bits_update(state, row.name, std::char_traits<char>::length(row.name));
+    XXH3_64bits_update(state, words.data(), words.size() * sizeof(std::uint32_t));
+  }
+  const std::vector<long long> books = read_ledger();
+  XXH3_64bits_update(state, books.data(), books.size() * sizeof(long long));
+  XXH3_64bits_update(state, &steps_, sizeof steps_);
+  const std::uint64_t hash = XXH3_64bits_digest(state);
+  XXH3_freeState(state);
+  return hash;
+}
+
+std::vector<long long> Simulation::read_ledger() const {
+  const std::vector<long long> words = ledger_.download();
+  std::vector<long long> accounts(material_count * 2, 0);
+  for (std::size_t n = 0; n < words.size(); ++n) accounts[n / LedgerView::stripes] += words[n];
+  return accounts;
+}
+
+long long Simulation::material_now(Material material) {
+  const auto total = [this](Layer layer) {
+    return with_backend(exec(), [&](auto& e) {
+      return statistics::sum(e, terrain_.grid(), terrain_.has(layer) ? terrain_.view().quanta(layer) : nullptr);
+    });
+  };
+  switch (material) {
+    case Material::bedrock: return total(Layer::bedrock);
+    case Material::soil: return total(Layer::soil);
+    case Material::sand: return total(Layer::sand) + total(Layer::airborne_sand);
+    case Material::water: return total(Layer::water);
+    case Material::sediment: return total(Layer::suspended_sediment);
+    case Material::moisture: return total(Layer::moisture);
+  }
+  throw Error("unknown material");
+}
+
+double MaterialBalance::relative_residual() const {
+  if (residual() == 0) return 0;
+  const double size = std::max({std::abs(static_cast<double>(initial)), std::abs(static_cast<double>(final)), 1.0});
+  return static_cast<double>(residual()) / size;
+}
+
+std::array<MaterialBalance, material_count> Simulation::balance() {
+  const std::vector<long long> books = read_ledger();
+  const double volume = terrain_.scale().quantum() * scenario_.grid.cell_size * scenario_.grid.cell_size;
+  std::array<MaterialBalance, material_count> all;
+  for (std::size_t m = 0; m < all.size(); ++m)
+    all[m] = {initial_[m], material_now(static_cast<Material>(m)), books[2 * m], books[2 * m + 1], volume};
+  return all;
+}
+
+Residual Simulation::residual() {
+  return with_backend(exec(), [this](auto& e) {
+    return statistics::residual(e, terrain_.view(), repose_.data(), avalanche_work_);
+  });
+}
+
+double Simulation::max_sand_slope_deg() {
+  const float tangent = with_backend(exec(), [this](auto& e) { return statistics::sand_slope(e, terrain_.view()); });
+  return std::atan(tangent) * 180 / 3.14159265358979;
+}
+
+double Simulation::mean_avalanche_iterations() const {
+  return steps_ ? static_cast<double>(avalanche_iterations_) / static_cast<double>(steps_) : 0.0;
+}
+
+void Simulation::clear_process_times() { process_times_.clear(); }
+
+}  // namespace desert_sim

@@ -1,0 +1,129 @@
+#pragma once
+/// The simulation: terrain, processes in their order, clock, books. Owned by one thread.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "desert_sim/kernels/processes.hpp"
+#include "desert_sim/scenario/terrain_builder.hpp"
+#include "desert_sim/simulation/command.hpp"
+#include "desert_sim/terrain/terrain.hpp"
+
+namespace desert_sim {
+
+/// What one material did since the start, in quanta and in cubic metres.
+struct MaterialBalance {
+  long long initial = 0, final = 0, in = 0, out = 0;  ///< [quanta]
+  double quantum_volume = 0;                          ///< [m³] of one quantum
+  /// final − initial − in + out, which must be 0 [quanta]
+  long long residual() const { return final - initial - in + out; }
+  double cubic_metres(long long quanta) const { return static_cast<double>(quanta) * quantum_volume; }
+  double relative_residual() const;
+};
+
+/// Layers at one moment, converted to floats in the layer's unit. Immutable once made; outlives the simulation.
+struct Snapshot {
+  int width = 0, height = 0;
+  double cell_size = 1, origin_x = 0, origin_y = 0;
+  std::uint64_t step = 0;
+  double time = 0;                                    ///< simulated [s]
+  wind::Vector wind_above;
+  std::map<Layer, std::vector<float>> layers;
+  const std::vector<float>* find(Layer layer) const;  ///< null if it was not asked for
+};
+
+/// Milliseconds per process, in the order of the step; filled while timing is on.
+struct ProcessTime {
+  const char* process;
+  double milliseconds = 0;
+};
+
+class Simulation {
+ public:
+  /// Builds the terrain. `scenario` must be resolved (see resolve_grid()). Throws ConfigError.
+  Simulation(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster);
+
+  /// One step of `run.time_step` seconds.
+  void step();
+
+  /// Applies between steps; throws ConfigError and changes nothing if it is refused. Reset and LoadCheckpoint are the
+  /// Session's business.
+  CommandResult apply(const SetWind& command);
+  CommandResult apply(const SetWindSchedule& command);
+  CommandResult apply(const EditTerrain& command);
+
+  std::uint64_t steps() const { return steps_; }
+  double time() const { return static_cast<double>(steps_) * scenario_.run.time_step; }
+  const Scenario& scenario() const { return scenario_; }
+  const Terrain& terrain() const { return terrain_; }
+  Exec& exec() const { return terrain_.exec(); }
+  wind::Vector wind_above() const { return regime_.at(time()); }
+
+  /// Copies layers to the host; elevation and wind are brought up to date first if they are asked for.
+  std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers);
+  /// Layers that are in use, derived ones included.
+  std::vector<Layer> layers_in_use() const;
+
+  /// XXH3-64 over the persistent layers, the clock and the books.
+  std::uint64_t state_hash() const;
+  std::array<MaterialBalance, material_count> balance();
+  Residual residual();
+  double max_sand_slope_deg();
+  double mean_avalanche_iterations() const;
+
+  /// Per-process timing costs a synchronisation per process; off by default.
+  void set_timing(bool on) { timing_ = on; }
+  const std::vector<ProcessTime>& process_times() const { return process_times_; }
+  void clear_process_times();
+
+ private:
+  friend class CheckpointAccess;
+  /// With the terrain already made (from steps or from a checkpoint).
+  Simulation(Exec& exec, const Scenario& scenario, const HostLayers& layers);
+  Simulation(const Scenario& scenario, Terrain terrain);
+
+  template <class E>
+  void run_step(E& exec);
+  template <class E>
+  void update_wind(E& exec, const TerrainView& view);
+  /// Runs a process; on checking steps looks through the layers it writes; times it while timing is on.
+  template <class E, class Process>
+  void run(E& exec, const char* name, std::initializer_list<Layer> writes, Process&& process);
+  template <class E>
+  void check(E& exec, const char* process, Layer layer);
+  brush::Brush prepare(const EditTerrain& command, CellRectangle& touched) const;
+  void allocate_work();
+  void start_books();
+  void set_regime(WindRegime regime);
+  std::vector<long long> read_ledger() const;
+  long long material_now(Material material);
+  LedgerView ledger() const { return {ledger_.data()}; }
+
+  Scenario scenario_;
+  Terrain terrain_;
+  WindRegime regime_;
+  std::uint64_t steps_ = 0;
+  Quanta wind_reference_ = 0;   ///< lowest solid surface at load
+  bool bedrock_loose_ = false;  ///< bedrock was edited and has not come to rest since
+  std::uint64_t avalanche_iterations_ = 0;
+  std::array<long long, material_count> initial_{};
+
+  // What the processes work with; made once, so that a step allocates nothing.
+  Buffer<long long> ledger_;
+  wind::Workspace wind_work_;
+  avalanching::Workspace avalanche_work_;
+  avalanching::GroundWorkspace ground_work_;
+  Buffer<wind_features::Prepared> features_;
+  Buffer<float> stream_, perturbation_x_, perturbation_y_;
+  Buffer<float> reptation_strength_, repose_, cliff_;
+  Buffer<Quanta> landed_;
+
+  bool timing_ = false;
+  std::vector<ProcessTime> process_times_;
+};
+
+}  // namespace desert_sim

@@ -1,0 +1,110 @@
+#include "desert_sim/terrain/terrain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "desert_sim/core/error.hpp"
+
+namespace desert_sim {
+
+namespace {
+std::string megabytes(std::size_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; }
+}  // namespace
+
+Layer layer_by_name(const std::string& name) {
+  std::string known;
+  for (const LayerInfo& layer : layer_table) {
+    if (name == layer.name) return layer.layer;
+    known += known.empty() ? layer.name : std::string(", ") + layer.name;
+  }
+  throw ConfigError("layer '" + name + "' is not one of: " + known);
+}
+
+HeightScale HeightScale::covering(double lowest, double highest) {
+  HeightScale scale;
+  scale.datum = std::round(0.5 * (lowest + highest));
+  const double reach = std::max(highest - scale.datum, scale.datum - lowest);
+  while (reach >= std::ldexp(static_cast<double>(load_limit), scale.exponent)) ++scale.exponent;
+  return scale;
+}
+
+void Terrain::require_memory(const Exec& exec, const Grid& grid) {
+  constexpr std::size_t bytes_a_cell = 64;  // about what a step works with
+  const std::size_t cells = static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
+  const std::size_t needed = cells * bytes_a_cell, available = exec.memory_available();
+  if (cells >= (std::size_t{1} << 31) || needed > available)
+    throw ConfigError("grid of " + std::to_string(grid.width) + " x " + std::to_string(grid.height) +
+                      " cells needs about " + megabytes(needed) + " on the " + exec.backend() + " backend; " +
+                      megabytes(available) + " are available (and fewer than 2^31 cells are allowed)");
+}
+
+Terrain::Terrain(Exec& exec, const Grid& grid, const HeightScale& scale) : exec_(&exec), grid_(grid), scale_(scale) {
+  require_memory(exec, grid);
+  for (Layer layer : {Layer::bedrock, Layer::sand, Layer::airborne_sand, Layer::elevation, Layer::wind_x, Layer::wind_y})
+    require(layer);
+}
+
+void Terrain::require(Layer layer) {
+  auto& buffer = layers_[static_cast<std::size_t>(layer)];
+  if (buffer) return;
+  buffer = Buffer<std::uint32_t>(*exec_, static_cast<std::size_t>(grid_.cells()));
+  buffer.set_zero();
+}
+
+TerrainView Terrain::view() const {
+  TerrainView v;
+  v.grid = grid_;
+  v.quantum = static_cast<float>(scale_.quantum());
+  v.quanta_per_metre = 1.0f / v.quantum;
+  for (std::size_t n = 0; n < layers_.size(); ++n) v.layers[n] = layers_[n].data();
+  return v;
+}
+
+std::vector<std::uint32_t> Terrain::words(Layer layer) const {
+  return layers_[static_cast<std::size_t>(layer)].download();
+}
+
+void Terrain::set_words(Layer layer, const std::vector<std::uint32_t>& words) {
+  require(layer);
+  layers_[static_cast<std::size_t>(layer)].upload(words);
+}
+
+std::vector<float> Terrain::values(Layer layer) const {
+  const std::size_t cells = static_cast<std::size_t>(grid_.cells());
+  std::vector<float> values(cells, 0.0f);
+  if (!has(layer)) return values;
+  const std::vector<std::uint32_t> stored = words(layer);
+  if (info(layer).storage == Storage::real) {
+    std::memcpy(values.data(), stored.data(), cells * sizeof(float));
+    return values;
+  }
+  const double quantum = scale_.quantum(), datum = scale_.absolute(layer) ? scale_.datum : 0.0;
+  for (std::size_t i = 0; i < cells; ++i)
+    values[i] = static_cast<float>(datum + static_cast<Quanta>(stored[i]) * quantum);
+  return values;
+}
+
+void Terrain::set_values(Layer layer, const std::vector<double>& values) {
+  std::vector<std::uint32_t> words(values.size());
+  if (info(layer).storage == Storage::real) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const float value = static_cast<float>(values[i]);
+      std::memcpy(&words[i], &value, sizeof value);
+    }
+  } else {
+    const double per_metre = 1.0 / scale_.quantum(), datum = scale_.absolute(layer) ? scale_.datum : 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      words[i] = static_cast<std::uint32_t>(static_cast<Quanta>(std::llround((values[i] - datum) * per_metre)));
+  }
+  set_words(layer, words);
+}
+
+std::size_t Terrain::bytes() const {
+  std::size_t total = 0;
+  for (const auto& buffer : layers_) total += buffer.size() * sizeof(std::uint32_t);
+  return total;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,153 @@
+/// desert_run: runs a scenario without ROS and without a window.
+#include <omp.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+#include "desert_sim/core/error.hpp"
+#include "desert_sim/simulation/checkpoint.hpp"
+#include "desert_sim/simulation/session.hpp"
+#include "desert_sim/tools/options.hpp"
+#include "desert_sim/tools/outputs.hpp"
+#include "desert_sim/tools/progress.hpp"
+#include "desert_sim/tools/rasters.hpp"
+
+using namespace desert_sim;
+
+namespace {
+
+const char usage[] =
+    "usage: desert_run SCENARIO.yaml [options]\n"
+    "  --steps N             steps to run (default: the scenario's run.steps; with --resume: until step N)\n"
+    "  --backend B           auto (default), cpu or cuda\n"
+    "  --threads N           threads of the CPU backend\n"
+    "  --set PATH=VALUE      override a key of the scenario; may be repeated\n"
+    "  --seed S              same as --set seed=S\n"
+    "  --out DIR             write rasters, pictures and summary.json there\n"
+    "  --every N             also every N steps, into DIR/step_NNNNNNNN\n"
+    "  --checkpoint FILE     save the state there at the end\n"
+    "  --checkpoint-every N  and every N steps\n"
+    "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be left out)\n"
+    "  --replay JOURNAL      apply the commands of a journal; runs as many steps as it has unless --steps says else\n"
+    "  --timing              measure each process (costs a little)\n"
+    "  --describe            print every parameter as markdown\n"
+    "  --quiet               no progress\n"
+    "Exit status: 0; 2 for input it refuses; 3 for a failure at run time; 130 after Ctrl-C (outputs are written).\n";
+
+volatile std::sig_atomic_t interrupted = 0;
+void interrupt(int) { interrupted = 1; }
+
+struct Plan {
+  Options options;
+  std::string out, checkpoint;
+  std::uint64_t every = 0, checkpoint_every = 0;
+};
+
+Scenario scenario_of(const Options& o) {
+  if (o.positional().size() > 1) throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
+  if (o.positional().empty()) throw ConfigError("no scenario given (--help shows how)");
+  Settings settings = o.all("set");
+  if (o.has("seed")) settings.push_back("seed=" + o.text("seed", ""));
+  return load_scenario(o.positional()[0], settings);
+}
+
+/// Runs from where the session stands to `last` ticks, with the journal's commands in between.
+void run(Session& session, const Plan& plan, const Journal& journal, std::uint64_t last, RunReport& report) {
+  using Clock = std::chrono::steady_clock;
+  std::size_t next = 0;
+  const auto replay = [&] {
+    for (; next < journal.entries.size() && journal.entries[next].tick == session.ticks(); ++next)
+      session.apply(journal.entries[next].command);
+  };
+  Progress progress(session.ticks(), last, plan.options.has("quiet"));
+  Clock::duration stepping{};
+  replay();
+  while (session.ticks() < last && !interrupted) {
+    const auto start = Clock::now();
+    session.step();
+    if (session.ticks() == last || session.ticks() % 64 == 0) session.simulation().exec().synchronise();
+    stepping += Clock::now() - start;
+    ++report.steps_run;
+    report.milliseconds = std::chrono::duration<double, std::milli>(stepping).count();
+    replay();
+    const std::uint64_t step = session.simulation().steps();
+    if (plan.every && step % plan.every == 0) {
+      char name[32];
+      std::snprintf(name, sizeof name, "/step_%08llu", static_cast<unsigned long long>(step));
+      prepare_folder(plan.out + name);
+      write_outputs(plan.out + name, session.simulation(), report);
+    }
+    if (plan.checkpoint_every && step % plan.checkpoint_every == 0) session.save_checkpoint(plan.checkpoint);
+    progress.at(session.ticks());
+  }
+  session.simulation().exec().synchronise();
+}
+
+int main_(int argc, char** argv) {
+  Plan plan{Options(argc, argv,
+                    {"steps", "backend", "threads", "set", "seed", "out", "every", "checkpoint", "checkpoint-every", "resume", "replay"},
+                    {"describe", "quiet", "timing", "help"}),
+            "", "", 0, 0};
+  const Options& o = plan.options;
+  if (o.has("help")) return std::fputs(usage, stdout), 0;
+  if (o.has("describe")) return std::cout << describe_parameters(), 0;
+  plan.out = o.text("out", "");
+  plan.checkpoint = o.text("checkpoint", "");
+  plan.every = static_cast<std::uint64_t>(o.number("every", 0, 1, 1LL << 40));
+  plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
+  if (plan.every && plan.out.empty()) throw ConfigError("--every: needs --out");
+  if (plan.checkpoint_every && plan.checkpoint.empty()) throw ConfigError("--checkpoint-every: needs --checkpoint");
+  const int threads = static_cast<int>(o.number("threads", 0, 1, 4096));
+  if (threads > 0) omp_set_num_threads(threads);
+
+  Journal journal;
+  if (o.has("replay")) journal = read_journal(o.text("replay", ""));
+  const std::string backend = o.text("backend", "auto");
+  std::unique_ptr<Session> session;
+  if (o.has("resume") && o.positional().empty()) {
+    session = Session::resumed(o.text("resume", ""), raster_loader(), backend, threads);
+  } else {
+    session = std::make_unique<Session>(scenario_of(o), raster_loader(), backend, threads);
+    if (o.has("replay")) session->require_journal_of_this_scenario(journal, o.text("replay", ""));
+    if (o.has("resume")) session->apply(LoadCheckpoint{o.text("resume", ""), 0});
+  }
+  Simulation& simulation = session->simulation();
+  if (!plan.out.empty()) prepare_folder(plan.out);
+  simulation.set_timing(o.has("timing"));
+  const std::uint64_t asked = static_cast<std::uint64_t>(
+      o.number("steps", o.has("replay") ? static_cast<long long>(journal.ticks) : simulation.scenario().run.steps, 0, 1LL << 40));
+  // A resumed run goes on until the step that is asked for.
+  const std::uint64_t last = o.has("resume") ? (asked > simulation.steps() ? asked - simulation.steps() : 0) : asked;
+  if (!o.has("quiet")) std::fprintf(stderr, "backend: %s; %s\n", session->backend_choice().c_str(), simulation.exec().device().c_str());
+
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  RunReport report;
+  report.backend = simulation.exec().backend();
+  report.device = simulation.exec().device();
+  if (const auto* cpu = dynamic_cast<CpuExec*>(&simulation.exec())) report.threads = cpu->threads();
+  run(*session, plan, journal, last, report);
+  if (!plan.out.empty()) write_outputs(plan.out, session->simulation(), report);
+  if (!plan.checkpoint.empty()) session->save_checkpoint(plan.checkpoint);
+  if (plan.out.empty() && !o.has("quiet")) std::cout << summary(session->simulation(), report);
+  return interrupted ? 130 : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return main_(argc, argv);
+  } catch (const ConfigError& e) {
+    std::fprintf(stderr, "desert_run: %s\n", e.what());
+    return 2;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "desert_run: not enough memory\n");
+    return 3;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "desert_run: %s\n", e.what());
+    return 3;
+  }
+}

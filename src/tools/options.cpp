@@ -1,0 +1,56 @@
+#include "desert_sim/tools/options.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+
+#include "desert_sim/core/error.hpp"
+
+namespace desert_sim {
+
+Options::Options(int argc, char** argv, const std::vector<std::string>& with_value, const std::vector<std::string>& flags) {
+  const auto known = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (int n = 1; n < argc; ++n) {
+    const std::string argument = argv[n];
+    if (argument.rfind("--", 0) != 0) {
+      positional_.push_back(argument);
+      continue;
+    }
+    const std::size_t equals = argument.find('=');
+    const std::string name = argument.substr(2, equals == std::string::npos ? equals : equals - 2);
+    if (known(flags, name) && equals == std::string::npos) {
+      values_[name];
+    } else if (known(with_value, name)) {
+      if (equals == std::string::npos && n + 1 >= argc) throw ConfigError("--" + name + ": needs a value");
+      values_[name].push_back(equals == std::string::npos ? argv[++n] : argument.substr(equals + 1));
+    } else {
+      throw ConfigError(argument + ": unknown option (--help lists them)");
+    }
+  }
+}
+
+std::string Options::text(const std::string& name, const std::string& otherwise) const {
+  const auto found = values_.find(name);
+  return found == values_.end() || found->second.empty() ? otherwise : found->second.back();
+}
+
+const std::vector<std::string>& Options::all(const std::string& name) const {
+  static const std::vector<std::string> none;
+  const auto found = values_.find(name);
+  return found == values_.end() ? none : found->second;
+}
+
+long long Options::number(const std::string& name, long long otherwise, long long lowest, long long highest) const {
+  const std::string value = text(name, "");
+  if (value.empty() && !has(name)) return otherwise;
+  char* end = nullptr;
+  errno = 0;
+  const long long number = std::strtoll(value.c_str(), &end, 10);
+  if (value.empty() || *end || errno || number < lowest || number > highest)
+    throw ConfigError("--" + name + " " + value + ": must be a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest));
+  return number;
+}
+
+}  // namespace desert_sim

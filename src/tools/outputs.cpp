@@ -1,0 +1,136 @@
+#include "desert_sim/tools/outputs.hpp"
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cinttypes>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "desert_sim/core/error.hpp"
+#if DESERT_WITH_IO
+#include "desert_sim/io/picture.hpp"
+#include "desert_sim/io/raster.hpp"
+#endif
+
+namespace desert_sim {
+
+namespace {
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  const std::string temporary = path + ".part";
+  std::ofstream file(temporary);
+  file << text;
+  file.close();
+  if (!file || std::rename(temporary.c_str(), path.c_str()) != 0) throw Error(path + ": cannot be written: " + std::strerror(errno));
+}
+
+#if DESERT_WITH_IO
+void write_rasters(const std::string& folder, const Snapshot& s, const std::string& projection) {
+  Raster raster;
+  raster.width = s.width;
+  raster.height = s.height;
+  raster.cell_size = s.cell_size;
+  raster.origin_x = s.origin_x;
+  raster.origin_y = s.origin_y;
+  raster.projection = projection;
+  for (const auto& [layer, values] : s.layers) {
+    raster.values = values;
+    write_geotiff(folder + "/" + info(layer).name + ".tif", raster);
+  }
+}
+
+void write_pictures(const std::string& folder, const Snapshot& s) {
+  const auto data = [&](Layer layer) -> const float* { return s.find(layer) ? s.find(layer)->data() : nullptr; };
+  PictureInput picture;
+  picture.width = s.width;
+  picture.height = s.height;
+  picture.cell_size = s.cell_size;
+  picture.elevation = data(Layer::elevation);
+  picture.sand = data(Layer::sand);
+  picture.vegetation = data(Layer::vegetation);
+  picture.obstacle = data(Layer::obstacle);
+  picture.water = data(Layer::water);
+  picture.soil = data(Layer::soil);
+  picture.wind_shadow = nullptr;
+  write_png(folder + "/elevation.png", hillshade_picture(picture));
+  write_png(folder + "/wind.png", wind_picture(s.width, s.height, s.cell_size, data(Layer::wind_x), data(Layer::wind_y), data(Layer::elevation)));
+}
+#endif
+
+}  // namespace
+
+void prepare_folder(const std::string& folder) {
+  if (mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST)
+    throw ConfigError("--out " + folder + ": cannot be made: " + std::strerror(errno));
+  struct stat status;
+  if (stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) throw ConfigError("--out " + folder + ": is not a folder");
+  if (access(folder.c_str(), W_OK) != 0) throw ConfigError("--out " + folder + ": cannot be written to");
+}
+
+std::string summary(Simulation& s, const RunReport& report) {
+  std::ostringstream out;
+  const GridParameters& g = s.scenario().grid;
+  out << "{\n  \"scenario\": " << quoted(s.scenario().name) << ",\n  \"steps\": " << s.steps()
+      << ",\n  \"sim_time_s\": " << number(s.time()) << ",\n  \"width\": " << g.width << ",\n  \"height\": " << g.height
+      << ",\n  \"cell_size_m\": " << number(g.cell_size) << ",\n  \"backend\": " << quoted(report.backend)
+      << ",\n  \"device\": " << quoted(report.device) << ",\n  \"threads\": " << report.threads
+      << ",\n  \"seed\": " << s.scenario().seed << ",\n  \"ms_per_step\": {\"total\": "
+      << number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
+  for (const ProcessTime& t : s.process_times())
+    out << ", " << quoted(t.process) << ": " << number(report.steps_run ? t.milliseconds / static_cast<double>(report.steps_run) : 0.0);
+  out << "},\n  \"volume_m3\": {";
+  const auto balance = s.balance();
+  for (std::size_t m = 0; m < balance.size(); ++m) {
+    const MaterialBalance& b = balance[m];
+    out << (m ? ",\n    " : "\n    ") << quoted(material_names[m]) << ": {\"initial\": " << number(b.cubic_metres(b.initial))
+        << ", \"final\": " << number(b.cubic_metres(b.final)) << ", \"in\": " << number(b.cubic_metres(b.in))
+        << ", \"out\": " << number(b.cubic_metres(b.out)) << "}";
+  }
+  out << "\n  },\n  \"mass_residual\": {";
+  for (std::size_t m = 0; m < balance.size(); ++m)
+    out << (m ? ", " : "") << quoted(material_names[m]) << ": " << number(balance[m].relative_residual());
+  const Residual r = s.residual();
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  char hash[20];
+  std::snprintf(hash, sizeof hash, "%016" PRIx64, s.state_hash());
+  out << "},\n  \"max_sand_slope_deg\": " << number(s.max_sand_slope_deg())
+      << ",\n  \"avalanche_iterations_mean\": " << number(s.mean_avalanche_iterations())
+      << ",\n  \"avalanche_residual\": {\"share_over_1e-3\": " << number(r.share_over_1e3)
+      << ", \"share_over_1e-2\": " << number(r.share_over_1e2) << ", \"mean_excess\": " << number(r.mean_excess)
+      << ", \"largest_excess\": " << number(r.largest_excess) << "},\n  \"state_hash\": \"" << hash
+      << "\",\n  \"peak_memory_bytes\": " << usage.ru_maxrss * 1024LL << ",\n  \"rasters\": "
+      << (DESERT_WITH_IO ? "true" : "false") << "\n}\n";
+  return out.str();
+}
+
+void write_outputs(const std::string& folder, Simulation& simulation, const RunReport& report) {
+#if DESERT_WITH_IO
+  const auto snapshot = simulation.snapshot(simulation.layers_in_use());
+  write_rasters(folder, *snapshot, simulation.scenario().projection);
+  write_pictures(folder, *snapshot);
+#endif
+  write_text(folder + "/summary.json", summary(simulation, report));
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,24 @@
+#pragma once
+/// Progress of a long run: a bar with rate and time left on a terminal, a plain line now and then otherwise.
+
+#include <chrono>
+#include <cstdint>
+
+namespace desert_sim {
+
+class Progress {
+ public:
+  Progress(std::uint64_t first, std::uint64_t last, bool quiet);
+  ~Progress();
+  /// Call after every step; prints at most ten times a second on a terminal, every five seconds otherwise.
+  void at(std::uint64_t step);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void print(std::uint64_t step);
+  std::uint64_t first_, last_;
+  bool quiet_, terminal_, printed_ = false;
+  Clock::time_point start_, next_;
+};
+
+}  // namespace desert_sim

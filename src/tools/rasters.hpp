@@ -1,0 +1,20 @@
+#pragma once
+/// The raster loader of this build.
+
+#if DESERT_WITH_IO
+#include "desert_sim/io/raster_loader.hpp"
+#else
+#include "desert_sim/scenario/scenario.hpp"
+#endif
+
+namespace desert_sim {
+
+inline RasterLoader raster_loader() {
+#if DESERT_WITH_IO
+  return gdal_raster_loader();
+#else
+  return refuse_rasters;
+#endif
+}
+
+}  // namespace desert_sim
