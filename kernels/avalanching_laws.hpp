@@ -57,7 +57,7 @@ struct RelaxTile {
     return g.inside(px, py) ? g.index(px, py) : -1;
   }
   DESERT_HD static int local(int x, int y) { return (y + 1) * stride + x + 1; }
-  DESERT_HD static int offset_to(int k) { return Neighbours::dy(k) * stride + Neighbours::dx(k); }
+  DESERT_HD static constexpr int offset_to(int k) { return Neighbours::dy(k) * stride + Neighbours::dx(k); }
 
   template <class Team>
   DESERT_HD void operator()(const Team& team, int column, int row) const {
@@ -68,12 +68,12 @@ struct RelaxTile {
     float* drop = reinterpret_cast<float*>(given + cells);
     float* share = drop + cells;
 
-    team.for_each(cells, [=](int n) {
+    team.for_each(cells, [=](int n) DESERT_INLINE {
       h[n] = h_next[n] = wall_height;
       sand[n] = given[n] = 0;
       drop[n] = share[n] = 0.0f;
     });
-    team.for_each_in_tile([=](int x, int y) {
+    team.for_each_in_tile([=](int x, int y) DESERT_INLINE {
       const int i = cell(column, row, x, y), n = local(x, y);
       if (i < 0 || level.wall(i)) return;
       h[n] = level.ground[i] + level.sand[i];
@@ -82,16 +82,16 @@ struct RelaxTile {
     });
     bool moved = false;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-      team.for_each_in_tile([=](int x, int y) { release(h, sand, drop, share, given, local(x, y)); });
-      if (!team.any_in_tile([=](int x, int y) { return given[local(x, y)] != 0; })) break;
+      team.for_each_in_tile([=](int x, int y) DESERT_INLINE { release(h, sand, drop, share, given, local(x, y)); });
+      if (!team.any_in_tile([=](int x, int y) DESERT_INLINE { return given[local(x, y)] != 0; })) break;
       moved = true;
-      team.for_each_in_tile([=](int x, int y) { gather(h, h_next, sand, drop, share, given, local(x, y)); });
+      team.for_each_in_tile([=](int x, int y) DESERT_INLINE { gather(h, h_next, sand, drop, share, given, local(x, y)); });
       Quanta* swap = h;
       h = h_next;
       h_next = swap;
     }
     if (!moved) return;
-    team.for_each_in_tile([=](int x, int y) {
+    team.for_each_in_tile([=](int x, int y) DESERT_INLINE {
       const int i = cell(column, row, x, y);
       if (i >= 0 && !level.wall(i)) level.sand[i] = sand[local(x, y)];
     });
@@ -101,10 +101,10 @@ struct RelaxTile {
   DESERT_HD void release(const Quanta* h, const Quanta* sand, const float* drop, float* share, Quanta* given,
                          int n) const {
     float b[8];
-    for (int k = 0; k < 8; ++k) b[k] = excess(h[n], h[n + offset_to(k)], drop[n] * Neighbours::distance(k));
+    Neighbours::unrolled([&](auto k) DESERT_INLINE { b[k] = excess(h[n], h[n + offset_to(k)], drop[n] * Neighbours::distance(k)); });
     const float part = release_share(b, transfer, static_cast<float>(sand[n]));
     Quanta total = 0;
-    for (int k = 0; k < 8; ++k) total += static_cast<Quanta>(part * b[k]);
+    Neighbours::unrolled([&](auto k) DESERT_INLINE { total += static_cast<Quanta>(part * b[k]); });
     share[n] = part;
     given[n] = total;
   }
@@ -112,10 +112,10 @@ struct RelaxTile {
   DESERT_HD static void gather(const Quanta* h, Quanta* h_next, Quanta* sand, const float* drop, const float* share,
                                const Quanta* given, int n) {
     Quanta change = -given[n];
-    for (int k = 0; k < 8; ++k) {
+    Neighbours::unrolled([&](auto k) DESERT_INLINE {
       const int j = n + offset_to(k);
       change += static_cast<Quanta>(share[j] * excess(h[j], h[n], drop[j] * Neighbours::distance(k)));
-    }
+    });
     h_next[n] = h[n] + change;
     sand[n] += change;
   }

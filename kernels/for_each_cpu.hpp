@@ -3,6 +3,13 @@
 
 #include "desert_sim/kernels/for_each.hpp"
 
+/// A function compiled for several instruction sets, of which the loader takes the widest that the processor has.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define DESERT_CLONES __attribute__((noinline, target_clones("default", "avx2", "arch=skylake-avx512")))
+#else
+#define DESERT_CLONES
+#endif
+
 namespace desert_sim {
 
 /// One thread as the whole team that works on a tile.
@@ -32,11 +39,22 @@ struct CpuTeam {
   }
 };
 
+/// One tile. No instruction set fuses multiplications with additions (-ffp-contract=off): all give the same bits.
+template <class Law>
+DESERT_CLONES void run_tile(const Law& law, const CpuTeam& team, int column, int row) {
+  law(team, column, row);
+}
+
+/// One row of cells, likewise.
+template <class Law>
+DESERT_CLONES void run_row(const Law& law, int y, int width) {
+  for (int x = 0; x < width; ++x) law(x, y);
+}
+
 template <class Law>
 void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
 #pragma omp parallel for schedule(static) num_threads(exec.threads())
-  for (int y = 0; y < grid.height; ++y)
-    for (int x = 0; x < grid.width; ++x) law(x, y);
+  for (int y = 0; y < grid.height; ++y) run_row(law, y, grid.width);
 }
 
 /// `Law::scratch_bytes` of memory are shared by the team; law(team, column, row).
@@ -48,7 +66,7 @@ void for_each_tile(CpuExec& exec, const Tiles& tiles, const Law& law) {
     alignas(64) char scratch[Law::scratch_bytes];
     const CpuTeam team{scratch};
 #pragma omp for schedule(static)
-    for (int t = 0; t < count; ++t) law(team, t % columns, t / columns);
+    for (int t = 0; t < count; ++t) run_tile(law, team, t % columns, t / columns);
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 /// The grid of cells: shape, boundaries, and the arithmetic of indices.
 
+#include <type_traits>
+
 #include "desert_sim/kernels/macros.hpp"
 
 namespace desert_sim {
@@ -48,10 +50,18 @@ DESERT_HD int neighbour_index(const Grid& g, int x, int y) {
 /// ((0+1)+(2+3)) + ((4+5)+(6+7)), which a mirrored or quarter-turned terrain leaves the same to the bit.
 struct Neighbours {
   static constexpr int count = 8;
-  DESERT_HD static int dx(int k) { return k == 0 || k == 4 || k == 7 ? 1 : (k == 1 || k == 5 || k == 6 ? -1 : 0); }
-  DESERT_HD static int dy(int k) { return k == 2 || k == 4 || k == 6 ? 1 : (k == 3 || k == 5 || k == 7 ? -1 : 0); }
+  DESERT_HD static constexpr int dx(int k) { return k == 0 || k == 4 || k == 7 ? 1 : (k == 1 || k == 5 || k == 6 ? -1 : 0); }
+  DESERT_HD static constexpr int dy(int k) { return k == 2 || k == 4 || k == 6 ? 1 : (k == 3 || k == 5 || k == 7 ? -1 : 0); }
   /// Distance in cells.
-  DESERT_HD static float distance(int k) { return k < 4 ? 1.0f : 1.41421356f; }
+  DESERT_HD static constexpr float distance(int k) { return k < 4 ? 1.0f : 1.41421356f; }
+  /// body(k) for k = 0…7 with k as a compile-time constant: loops over cells vectorise only around straight code.
+  template <class Body>
+  DESERT_HD static void unrolled(const Body& body) {
+    body(std::integral_constant<int, 0>()), body(std::integral_constant<int, 1>());
+    body(std::integral_constant<int, 2>()), body(std::integral_constant<int, 3>());
+    body(std::integral_constant<int, 4>()), body(std::integral_constant<int, 5>());
+    body(std::integral_constant<int, 6>()), body(std::integral_constant<int, 7>());
+  }
   DESERT_HD static float sum(const float (&v)[8]) {
     return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
   }

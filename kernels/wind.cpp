@@ -8,6 +8,16 @@ namespace desert_sim::wind {
 namespace {
 /// Coarse axes shorter than this gain nothing and would show in the result.
 constexpr int fewest_coarse_cells = 64;
+
+/// The next number whose only prime factors are 2, 3 and 5: transforms of such lengths are fast.
+int smooth_length(int n) {
+  for (;; ++n) {
+    int rest = n;
+    for (int factor : {2, 3, 5})
+      while (rest % factor == 0) rest /= factor;
+    if (rest == 1) return n;
+  }
+}
 }  // namespace
 
 CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p) {
@@ -18,16 +28,20 @@ CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p) {
     ratio = std::max(1.0f, std::floor(0.5f * smallest / 4.0f / fine.cell_size));
   }
   const auto cells = [&](int n) {
-    return std::max(std::min(n, fewest_coarse_cells), static_cast<int>(std::lround(n / ratio)));
+    const int coarse = std::max(1, static_cast<int>(std::lround(n / ratio)));
+    if (p.coarsening != 0) return coarse;
+    return std::min(n, smooth_length(std::max(coarse, fewest_coarse_cells)));
   };
   CoarseGrid c;
   c.fine = fine;
-  c.columns = p.coarsening == 0 ? cells(fine.width) : std::max(1, static_cast<int>(std::lround(fine.width / ratio)));
-  c.rows = p.coarsening == 0 ? cells(fine.height) : std::max(1, static_cast<int>(std::lround(fine.height / ratio)));
+  c.columns = cells(fine.width);
+  c.rows = cells(fine.height);
   c.width = fine.periodic_x ? c.columns : 2 * c.columns;
   c.height = fine.periodic_y ? c.rows : 2 * c.rows;
   c.ratio_x = static_cast<float>(fine.width) / c.columns;
   c.ratio_y = static_cast<float>(fine.height) / c.rows;
+  c.share_x = 1.0f / c.ratio_x;
+  c.share_y = 1.0f / c.ratio_y;
   return c;
 }
 

@@ -67,6 +67,7 @@ struct CoarseGrid {
   int columns = 0, rows = 0;
   int width = 0, height = 0;
   float ratio_x = 1, ratio_y = 1;  ///< fine cells a coarse cell
+  float share_x = 1, share_y = 1;  ///< 1 / ratio
 
   DESERT_HD int mirrored_column(int x) const { return x < columns ? x : 2 * columns - 1 - x; }
   DESERT_HD int mirrored_row(int y) const { return y < rows ? y : 2 * rows - 1 - y; }
@@ -98,10 +99,13 @@ struct CoarseSample {
   float fx, fy;
 
   DESERT_HD CoarseSample(const CoarseGrid& c, int x, int y) {
-    const float px = (x + 0.5f) / c.ratio_x - 0.5f, py = (y + 0.5f) / c.ratio_y - 0.5f;
+    const float px = (x + 0.5f) * c.share_x - 0.5f, py = (y + 0.5f) * c.share_y - 0.5f;
     const int x0 = static_cast<int>(floorf(px)), y0 = static_cast<int>(floorf(py));
     fx = px - x0;
     fy = py - y0;
+    // At full resolution the sample is the value itself.
+    if (c.columns == c.fine.width) fx = 0.0f;
+    if (c.rows == c.fine.height) fy = 0.0f;
     const int xa = wrap(x0, c.width), xb = wrap(x0 + 1, c.width);
     const int ya = wrap(y0, c.height) * c.width, yb = wrap(y0 + 1, c.height) * c.width;
     i00 = ya + xa;
