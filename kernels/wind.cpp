@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace desert_sim::wind {
 
@@ -17,6 +18,34 @@ int smooth_length(int n) {
       while (rest % factor == 0) rest /= factor;
     if (rest == 1) return n;
   }
+}
+
+/// Transfer of a Gaussian of `sigma` fine cells along an axis of n coarse modes, each coarse cell `ratio` fine ones.
+/// The derivative's 1/l and the transform's 1/n go into it too.
+std::vector<Transfer> transfer(int n, double ratio, double sigma, double cell_size) {
+  std::vector<Transfer> table(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) {
+    if (2 * i == n) {
+      table[static_cast<std::size_t>(i)] = {0, 0};
+      continue;
+    }
+    const double k = 2 * 3.14159265358979323846 * (2 * i > n ? i - n : i) / (n * ratio), half = 0.5 * k;
+    double lost = 1;
+    if (ratio > 1 && i != 0) {
+      const double box = std::sin(half * ratio) / (ratio * std::sin(half));
+      const double linear = std::sin(half * ratio) / (half * ratio);
+      lost = box * linear * linear;
+    }
+    const double smooth = std::exp(-0.5 * sigma * sigma * k * k) / (lost * n);
+    table[static_cast<std::size_t>(i)] = {static_cast<float>(smooth), static_cast<float>(smooth * std::sin(k) / cell_size)};
+  }
+  return table;
+}
+
+Buffer<Transfer> on_device(Exec& exec, const std::vector<Transfer>& table) {
+  Buffer<Transfer> buffer(exec, table.size());
+  buffer.upload(table);
+  return buffer;
 }
 }  // namespace
 
@@ -54,6 +83,13 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   work.spectrum = Buffer<Complex>(exec, values);
   const int buffers = p.warping ? std::max(1, p.radii.count) : 1;
   for (int r = 0; r < buffers; ++r) work.gradients[r] = Buffer<Complex>(exec, values);
+  if (!p.warping) return work;
+  const CoarseGrid& c = work.coarse;
+  for (int r = 0; r < p.radii.count; ++r) {
+    const double sigma = 0.5 * p.radii.values[r] / fine.cell_size;
+    work.along_x[r] = on_device(exec, transfer(c.width, c.ratio_x, sigma, fine.cell_size));
+    work.along_y[r] = on_device(exec, transfer(c.height, c.ratio_y, sigma, fine.cell_size));
+  }
   return work;
 }
 

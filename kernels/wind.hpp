@@ -120,7 +120,7 @@ struct CoarseSample {
   }
 };
 
-/// Physical wavenumbers of a mode [rad per fine cell], zero at the Nyquist rows.
+/// Wavenumbers of a mode [rad per fine cell], zero at the Nyquist rows.
 struct Mode {
   float kx, ky;
   bool nyquist;
@@ -131,6 +131,13 @@ struct Mode {
     kx = 6.28318531f * mx / (c.width * c.ratio_x);
     ky = 6.28318531f * my / (c.height * c.ratio_y);
   }
+};
+
+/// The transfer of one radius along one axis, one pair a mode: the Gaussian, divided by what averaging over cells and
+/// interpolating between the averages take away; and that times the derivative's sin(k)/l. It is separable, so two
+/// short tables, made once on the host, hold all of it.
+struct Transfer {
+  float smooth, derive;
 };
 
 struct CoarsenElevation {
@@ -152,29 +159,13 @@ struct CoarsenElevation {
 struct SmoothedGradient {
   CoarseGrid coarse;
   const Complex* elevation;
-  float sigma;  ///< [fine cells]
-  float scale;  ///< 1 / (number of values · l)
+  const Transfer *along_x, *along_y;
   Complex* out;
-
-  /// What averaging over `ratio` cells and interpolating between the averages takes away.
-  DESERT_HD static float lost(float k, float ratio) {
-    const float half = 0.5f * k;
-    if (ratio <= 1.0f || fabsf(half) < 1e-6f) return 1.0f;
-    const float box = sinf(half * ratio) / (ratio * sinf(half));
-    const float linear = sinf(half * ratio) / (half * ratio);
-    return box * linear * linear;
-  }
 
   DESERT_HD void operator()(int i, int j) const {
     const int n = j * coarse.width + i;
-    const Mode k(coarse, i, j);
-    if (k.nyquist) {
-      out[n] = {0, 0};
-      return;
-    }
-    const float gauss = expf(-0.5f * sigma * sigma * (k.kx * k.kx + k.ky * k.ky)) * scale /
-                        (lost(k.kx, coarse.ratio_x) * lost(k.ky, coarse.ratio_y));
-    const float dx = sinf(k.kx) * gauss, dy = sinf(k.ky) * gauss;
+    const Transfer x = along_x[i], y = along_y[j];
+    const float dx = x.derive * y.smooth, dy = x.smooth * y.derive;
     const Complex h = elevation[n];
     out[n] = {-dx * h.im - dy * h.re, dx * h.re - dy * h.im};  // (i dx − dy) h
   }
@@ -294,6 +285,7 @@ struct Workspace {
   CoarseGrid coarse;
   std::unique_ptr<Fft> fft;
   Buffer<Complex> spectrum, gradients[ShortList::capacity];
+  Buffer<Transfer> along_x[ShortList::capacity], along_y[ShortList::capacity];  ///< of each radius
 };
 
 CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p);
@@ -318,8 +310,8 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above, 
     for (int r = 0; r < p.radii.count; ++r) {
       Complex* gradient = work.gradients[r].data();
       for_each_cell(exec, coarse.transformed(),
-                    SmoothedGradient{coarse, work.spectrum.data(), 0.5f * p.radii.values[r] / t.grid.cell_size,
-                                     scale / t.grid.cell_size, gradient});
+                    SmoothedGradient{coarse, work.spectrum.data(), work.along_x[r].data(), work.along_y[r].data(),
+                                     gradient});
       work.fft->inverse(gradient);
       warp.gradients[r] = gradient;
       warp.weights[r] = p.weights.values[r];

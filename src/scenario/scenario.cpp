@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 
 #include "desert_sim/scenario/sections.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
@@ -147,21 +148,34 @@ std::string name_of(const std::string& path) {
 
 }  // namespace
 
-Scenario load_scenario(const std::string& path, const Settings& settings) {
-  std::ifstream file(path);
-  if (!file) throw ConfigError(path + ": cannot be opened");
+namespace {
+
+Scenario parse_with_settings(const std::string& text, const std::string& source, const std::string& folder, const Settings& settings) {
   YAML::Node root;
   try {
-    root = YAML::Load(file);
+    root = YAML::Load(text);
   } catch (const YAML::Exception& e) {
-    throw ConfigError(path + ": line " + std::to_string(e.mark.line + 1) + ": " + e.msg);
+    throw ConfigError(source + ": line " + std::to_string(e.mark.line + 1) + ": " + e.msg);
   }
   if (root.IsNull()) root = YAML::Node(YAML::NodeType::Map);
   if (root.IsMap())
     for (const std::string& setting : settings) apply_setting(root, setting);
-  Scenario s = parse_scenario(root, path, folder_of(path));
+  return parse_scenario(root, source, folder);
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::string& path, const Settings& settings) {
+  std::ifstream file(path);
+  std::stringstream text;
+  if (!file || !(text << file.rdbuf())) throw ConfigError(path + ": cannot be read");
+  Scenario s = parse_with_settings(text.str(), path, folder_of(path), settings);
   s.name = name_of(path);
   return s;
+}
+
+Scenario parse_scenario_text(const std::string& yaml, const std::string& name, const Settings& settings) {
+  return parse_with_settings(yaml, name, "", settings);
 }
 
 Scenario parse_scenario(const YAML::Node& root, const std::string& name, const std::string& folder) {

@@ -95,6 +95,7 @@ using Settings = std::vector<std::string>;
 
 /// Throw ConfigError that lists all faults: file, key, value, what is allowed.
 Scenario load_scenario(const std::string& path, const Settings& settings = {});
+Scenario parse_scenario_text(const std::string& yaml, const std::string& name, const Settings& settings = {});
 Scenario parse_scenario(const YAML::Node& root, const std::string& name, const std::string& folder);
 /// The scenario as YAML with every parameter spelled out; parse_scenario() reads it back the same.
 std::string dump_scenario(const Scenario& scenario);

@@ -133,6 +133,7 @@ CommandResult Simulation::apply(const EditTerrain& command) {
                       " cells out of this terrain's heights (allowed: [" + std::to_string(datum - reach) + ", " +
                       std::to_string(datum + reach) + "] m)");
   }
+  if (b.material == Material::bedrock) prepare_ground_avalanches();
   const std::vector<long long> before = read_ledger();
   with_backend(exec(), [&](auto& e) { brush::apply(e, b); });
   const std::vector<long long> after = read_ledger();

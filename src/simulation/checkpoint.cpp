@@ -126,6 +126,7 @@ class CheckpointAccess {
     s->steps_ = header["steps"].as<std::uint64_t>();
     s->wind_reference_ = header["wind_reference"].as<Quanta>();
     s->bedrock_loose_ = header["bedrock_loose"].as<bool>();
+    if (s->bedrock_loose_) s->prepare_ground_avalanches();
     s->avalanche_iterations_ = header["avalanche_iterations"].as<std::uint64_t>();
     for (std::size_t m = 0; m < s->initial_.size(); ++m) s->initial_[m] = header["initial"][m].as<long long>();
     std::vector<long long> words(LedgerView::words, 0);

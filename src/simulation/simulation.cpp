@@ -175,8 +175,7 @@ void Simulation::allocate_work() {
   repose_.set_zero();
   wind_work_ = wind::make_workspace(e, grid, s.wind);
   avalanche_work_ = avalanching::make_workspace(e, grid, s.avalanching);
-  if (s.avalanching.enabled && (s.avalanching.soil || s.avalanching.bedrock))
-    ground_work_ = avalanching::make_ground_workspace(e, grid);
+  if (s.abrasion.rate > 0) prepare_ground_avalanches();
   if (s.wind_features.empty()) return;
   std::vector<wind_features::Prepared> prepared;
   for (const WindFeature& feature : s.wind_features) {
@@ -188,6 +187,12 @@ void Simulation::allocate_work() {
   features_ = Buffer<wind_features::Prepared>(e, prepared.size());
   features_.upload(prepared);
   for (Buffer<float>* buffer : {&stream_, &perturbation_x_, &perturbation_y_}) *buffer = Buffer<float>(e, cells);
+}
+
+void Simulation::prepare_ground_avalanches() {
+  const AvalanchingParameters& p = scenario_.avalanching;
+  if (!ground_work_.ground && p.enabled && (p.soil || p.bedrock))
+    ground_work_ = avalanching::make_ground_workspace(exec(), terrain_.grid());
 }
 
 void Simulation::start_books() {
@@ -285,10 +290,12 @@ double MaterialBalance::relative_residual() const {
 
 std::array<MaterialBalance, material_count> Simulation::balance() {
   const std::vector<long long> books = read_ledger();
-  const double volume = terrain_.scale().quantum() * scenario_.grid.cell_size * scenario_.grid.cell_size;
+  const double cell = scenario_.grid.cell_size * scenario_.grid.cell_size;
   std::array<MaterialBalance, material_count> all;
   for (std::size_t m = 0; m < all.size(); ++m)
-    all[m] = {initial_[m], material_now(static_cast<Material>(m)), books[2 * m], books[2 * m + 1], volume};
+    all[m] = {initial_[m], material_now(static_cast<Material>(m)), books[2 * m], books[2 * m + 1],
+              terrain_.scale().quantum() * cell, 0.0};
+  all[static_cast<std::size_t>(Material::bedrock)].base_volume = terrain_.scale().datum * cell * terrain_.grid().cells();
   return all;
 }
 

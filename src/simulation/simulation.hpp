@@ -19,9 +19,12 @@ namespace desert_sim {
 struct MaterialBalance {
   long long initial = 0, final = 0, in = 0, out = 0;  ///< [quanta]
   double quantum_volume = 0;                          ///< [m³] of one quantum
+  double base_volume = 0;                             ///< [m³] between elevation 0 and the datum; of bedrock
   /// final − initial − in + out, which must be 0 [quanta]
   long long residual() const { return final - initial - in + out; }
   double cubic_metres(long long quanta) const { return static_cast<double>(quanta) * quantum_volume; }
+  double initial_m3() const { return base_volume + cubic_metres(initial); }
+  double final_m3() const { return base_volume + cubic_metres(final); }
   double relative_residual() const;
 };
 
@@ -97,6 +100,8 @@ class Simulation {
   void check(E& exec, const char* process, Layer layer);
   brush::Brush prepare(const EditTerrain& command, CellRectangle& touched) const;
   void allocate_work();
+  /// Only terrains whose rock or soil changes need this memory: called when abrasion is on or bedrock is edited.
+  void prepare_ground_avalanches();
   void start_books();
   void set_regime(WindRegime regime);
   std::vector<long long> read_ledger() const;

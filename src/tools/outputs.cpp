@@ -102,8 +102,8 @@ std::string summary(Simulation& s, const RunReport& report) {
   const auto balance = s.balance();
   for (std::size_t m = 0; m < balance.size(); ++m) {
     const MaterialBalance& b = balance[m];
-    out << (m ? ",\n    " : "\n    ") << quoted(material_names[m]) << ": {\"initial\": " << number(b.cubic_metres(b.initial))
-        << ", \"final\": " << number(b.cubic_metres(b.final)) << ", \"in\": " << number(b.cubic_metres(b.in))
+    out << (m ? ",\n    " : "\n    ") << quoted(material_names[m]) << ": {\"initial\": " << number(b.initial_m3())
+        << ", \"final\": " << number(b.final_m3()) << ", \"in\": " << number(b.cubic_metres(b.in))
         << ", \"out\": " << number(b.cubic_metres(b.out)) << "}";
   }
   out << "\n  },\n  \"mass_residual\": {";

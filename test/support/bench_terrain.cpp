@@ -1,0 +1,131 @@
+#include "support/bench_terrain.hpp"
+
+#include <cstring>
+
+namespace desert_sim::test {
+
+BenchTerrain::BenchTerrain(Exec& exec, int width, int height, double cell_size, bool periodic)
+    : terrain(exec, Grid{width, height, static_cast<float>(cell_size), periodic, periodic}, HeightScale{}),
+      ledger_words(exec, LedgerView::words), landed(exec, cells()), strength(exec, cells()), repose(exec, cells()),
+      cliff(exec, cells()) {
+  ledger_words.set_zero();
+  for (Buffer<float>* buffer : {&strength, &repose, &cliff}) buffer->set_zero();
+  for (Layer layer : {Layer::wind_shadow, Layer::echo}) terrain.require(layer);
+}
+
+BenchTerrain& BenchTerrain::set(Layer layer, const std::function<double(int, int)>& f) {
+  std::vector<double> values;
+  for (int y = 0; y < grid().height; ++y)
+    for (int x = 0; x < grid().width; ++x) values.push_back(f(x, y));
+  terrain.set_values(layer, values);
+  return *this;
+}
+
+BenchTerrain& BenchTerrain::set(Layer layer, double value) {
+  return set(layer, [value](int, int) { return value; });
+}
+
+BenchTerrain& BenchTerrain::set_quanta(Layer layer, const std::function<Quanta(int, int)>& f) {
+  std::vector<std::uint32_t> words;
+  for (int y = 0; y < grid().height; ++y)
+    for (int x = 0; x < grid().width; ++x) words.push_back(static_cast<std::uint32_t>(f(x, y)));
+  terrain.set_words(layer, words);
+  return *this;
+}
+
+namespace {
+void fill(Buffer<float>& buffer, const Grid& grid, const std::function<double(int, int)>& f) {
+  std::vector<float> values;
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) values.push_back(static_cast<float>(f(x, y)));
+  buffer.upload(values);
+}
+}  // namespace
+
+void BenchTerrain::set_strength(const std::function<double(int, int)>& f) { fill(strength, grid(), f); }
+void BenchTerrain::set_repose(const std::function<double(int, int)>& f) { fill(repose, grid(), f); }
+
+double BenchTerrain::at(Layer layer, int x, int y) const {
+  return terrain.values(layer)[static_cast<std::size_t>(grid().index(x, y))];
+}
+
+std::vector<Quanta> BenchTerrain::quanta(Layer layer) const {
+  std::vector<Quanta> values(cells(), 0);
+  if (terrain.has(layer)) std::memcpy(values.data(), terrain.words(layer).data(), cells() * sizeof(Quanta));
+  return values;
+}
+
+Quanta BenchTerrain::quanta_at(Layer layer, int x, int y) const {
+  return quanta(layer)[static_cast<std::size_t>(grid().index(x, y))];
+}
+
+long long BenchTerrain::total(Layer layer) const {
+  long long sum = 0;
+  for (Quanta v : quanta(layer)) sum += v;
+  return sum;
+}
+
+long long BenchTerrain::booked(Material material, int side) const {
+  const std::vector<long long> words = ledger_words.download();
+  const int account = static_cast<int>(material) * 2 + side;
+  long long sum = 0;
+  for (int n = 0; n < LedgerView::stripes; ++n) sum += words[static_cast<std::size_t>(account * LedgerView::stripes + n)];
+  return sum;
+}
+
+void BenchTerrain::surface() {
+  with_backend(exec(), [&](auto& e) { surface::step(e, terrain.view()); });
+}
+
+void BenchTerrain::shadow(const WindShadowParameters& p) {
+  surface();
+  with_backend(exec(), [&](auto& e) { wind_shadow::step(e, terrain.view(), p); });
+}
+
+void BenchTerrain::echo(const EchoDuneParameters& p) {
+  surface();
+  with_backend(exec(), [&](auto& e) { echo_dunes::step(e, terrain.view(), p, cliff.data()); });
+}
+
+void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParameters& a, const ReposeParameters& r,
+                             float time_step) {
+  with_backend(exec(), [&](auto& e) {
+    saltation::step(e, terrain.view(), p, a, r, time_step, ledger(), landed.data(), strength.data());
+  });
+}
+
+void BenchTerrain::reptation(const ReptationParameters& p, const ReposeParameters& r, float time_step, std::uint64_t tick) {
+  with_backend(exec(), [&](auto& e) {
+    reptation::step(e, terrain.view(), p, r, time_step, 1, tick, strength.data(), landed.data(), repose.data());
+  });
+}
+
+int BenchTerrain::avalanche(const AvalanchingParameters& p, std::uint64_t tick) {
+  avalanching::Workspace work = avalanching::make_workspace(exec(), grid(), p);
+  with_backend(exec(), [&](auto& e) { avalanching::step(e, terrain.view(), p, tick, repose.data(), work); });
+  exec().synchronise();
+  return work.iterations;
+}
+
+void BenchTerrain::avalanche_soil(const AvalanchingParameters& p, const ReposeParameters& r) {
+  avalanching::GroundWorkspace work = avalanching::make_ground_workspace(exec(), grid());
+  with_backend(exec(), [&](auto& e) { avalanching::step_soil(e, terrain.view(), p, r, work); });
+  exec().synchronise();
+}
+
+void BenchTerrain::avalanche_bedrock(const AvalanchingParameters& p, const ReposeParameters& r) {
+  avalanching::GroundWorkspace work = avalanching::make_ground_workspace(exec(), grid());
+  with_backend(exec(), [&](auto& e) { avalanching::step_bedrock(e, terrain.view(), p, r, ledger(), work); });
+  exec().synchronise();
+}
+
+void BenchTerrain::blow(const WindParameters& p, wind::Vector above, Quanta reference) {
+  surface();
+  wind::Workspace work = wind::make_workspace(exec(), grid(), p);
+  with_backend(exec(), [&](auto& e) {
+    wind::step(e, terrain.view(), p, above, reference, nullptr, nullptr, work);
+  });
+  exec().synchronise();
+}
+
+}  // namespace desert_sim::test

@@ -1,0 +1,54 @@
+#pragma once
+/// A small terrain with what single processes work with, for tests that run one process at a time.
+
+#include <functional>
+#include <vector>
+
+#include "desert_sim/kernels/processes.hpp"
+#include "desert_sim/terrain/terrain.hpp"
+
+namespace desert_sim::test {
+
+class BenchTerrain {
+ public:
+  BenchTerrain(Exec& exec, int width, int height, double cell_size = 1, bool periodic = true);
+
+  Terrain terrain;
+  Buffer<long long> ledger_words;
+  Buffer<Quanta> landed;
+  Buffer<float> strength, repose, cliff;
+
+  Exec& exec() const { return terrain.exec(); }
+  const Grid& grid() const { return terrain.grid(); }
+  std::size_t cells() const { return static_cast<std::size_t>(grid().cells()); }
+  LedgerView ledger() const { return {ledger_words.data()}; }
+
+  /// Sets a layer from f(x, y), in its unit.
+  BenchTerrain& set(Layer layer, const std::function<double(int, int)>& f);
+  BenchTerrain& set(Layer layer, double value);
+  BenchTerrain& set_quanta(Layer layer, const std::function<Quanta(int, int)>& f);
+  void set_strength(const std::function<double(int, int)>& f);
+  void set_repose(const std::function<double(int, int)>& f);
+
+  double at(Layer layer, int x, int y) const;        ///< in the layer's unit
+  Quanta quanta_at(Layer layer, int x, int y) const;
+  std::vector<Quanta> quanta(Layer layer) const;
+  long long total(Layer layer) const;                ///< [quanta]
+  /// Booked in (side 0) or out (side 1) of a material [quanta].
+  long long booked(Material material, int side) const;
+
+  void surface();
+  void shadow(const WindShadowParameters& p = {});
+  void echo(const EchoDuneParameters& p);
+  void saltation(const SaltationParameters& p = {}, const AbrasionParameters& a = {}, const ReposeParameters& r = {},
+                 float time_step = 1);
+  void reptation(const ReptationParameters& p = {}, const ReposeParameters& r = {}, float time_step = 1,
+                 std::uint64_t tick = 0);
+  /// With the tangents in `repose`; returns the sweeps it took.
+  int avalanche(const AvalanchingParameters& p, std::uint64_t tick = 0);
+  void avalanche_soil(const AvalanchingParameters& p = {}, const ReposeParameters& r = {});
+  void avalanche_bedrock(const AvalanchingParameters& p = {}, const ReposeParameters& r = {});
+  void blow(const WindParameters& p, wind::Vector above, Quanta reference = 0);
+};
+
+}  // namespace desert_sim::test
