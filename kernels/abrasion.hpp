@@ -4,7 +4,8 @@
 ///   where s < `cover` and sand bounces:  wear = k_a Δt |w| (1 − v)(1 − ρ)(1 − p) min(bouncing, 1 m)
 ///
 /// Soil, where there is some, wears in the rock's place, less so with moisture: · max(1 − m/0.5, 0).
-/// Part of the deposit pass of saltation. Reads what deposit reads, and erosion_resistance; writes bedrock, soil, sand.
+/// Part of the deposit pass of saltation. Reads what deposit reads, and erosion_resistance; writes bedrock,
+/// soil, sand.
 
 #include "desert_sim/kernels/ledger.hpp"
 #include "desert_sim/kernels/repose.hpp"
@@ -19,7 +20,8 @@ struct AbrasionParameters {
 constexpr auto parameter_table(const AbrasionParameters*) {
   using P = AbrasionParameters;
   return std::make_tuple(
-      parameter("rate", &P::rate, 0, 1, "1/m", "Wear a step per metre of bouncing sand and m/s of wind (k_a); 0 is off."),
+      parameter("rate", &P::rate, 0, 1, "1/m",
+                "Wear a step per metre of bouncing sand and m/s of wind (k_a); 0 is off."),
       parameter("cover", &P::cover, 0, 10, "m", "Depth of sand that protects the ground."));
 }
 static_assert(table_is_complete<AbrasionParameters>());
@@ -27,15 +29,15 @@ static_assert(table_is_complete<AbrasionParameters>());
 namespace abrasion {
 
 struct Wear {
-  float rate;   ///< k_a Δt
+  float rate;  ///< k_a Δt
   Quanta cover;
   float quantum, quanta_per_metre;
   Quanta *bedrock, *soil, *sand;
   const float* resistance;
   LedgerView ledger;
 
-  /// `bouncing`: sand that stays in the air over cell i; `speed` of the wind; v vegetation; m relative moisture;
-  /// p the share of sand that was deposited.
+  /// `bouncing`: sand that stays in the air over cell i; `speed` of the wind; v vegetation; m relative
+  /// moisture; p the share of sand that was deposited.
   DESERT_HD void operator()(int i, Quanta bouncing, float speed, float v, float m, float p) const {
     if (rate <= 0.0f || bouncing <= 0 || sand[i] >= cover) return;
     const float strength = rate * speed * (1.0f - v) * (1.0f - p) * minimum(bouncing * quantum, 1.0f);

@@ -8,7 +8,8 @@ namespace {
 /// Coarsening further would leave less than a tile.
 constexpr int fewest_cells = 16;
 
-/// Cells twice as wide. An axis with an odd cell left over has a wall there on this level; finer levels see to it.
+/// Cells twice as wide. An axis with an odd cell left over has a wall there on this level; finer levels see
+/// to it.
 Grid coarser(const Grid& g) {
   return Grid{g.width / 2, g.height / 2, 2 * g.cell_size, g.periodic_x && g.width % 2 == 0,
               g.periodic_y && g.height % 2 == 0};
@@ -26,7 +27,8 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParamete
     return work;
   }
   Grid g = grid;
-  while (g.cell_size < p.coarsest_cell * 0.999f && g.width / 2 >= fewest_cells && g.height / 2 >= fewest_cells) {
+  while (g.cell_size < p.coarsest_cell * 0.999f && g.width / 2 >= fewest_cells &&
+         g.height / 2 >= fewest_cells) {
     g = coarser(g);
     const std::size_t n = static_cast<std::size_t>(g.cells());
     work.coarse.push_back({g, Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n),

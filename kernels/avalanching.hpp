@@ -1,23 +1,26 @@
 #pragma once
 /// Avalanching: what is steeper than its angle of repose slides. Nilles 2024 eq. 9–11; physics.md B6.
 ///
-///   B_ij = max(h_i − h_j − tan θ_i d l, 0),  A_i = min(k_c B_max/(1 + B_max/B_sum), s_i),  j gets A_i B_ij / B_sum
+///   B_ij = max(h_i − h_j − tan θ_i d l, 0),  A_i = min(k_c B_max/(1 + B_max/B_sum), s_i),  j gets A_i B_ij /
+///   B_sum
 ///
-/// Releases are computed from one state, then gathered: donor and receiver compute the same integer, so that nothing is
-/// made or lost and no order matters. Obstacles neither give nor take (they stand as walls).
+/// Releases are computed from one state, then gathered: donor and receiver compute the same integer, so that
+/// nothing is made or lost and no order matters. Obstacles neither give nor take (they stand as walls).
 ///
-/// Schemes: `multilevel` (the default): sand, ground and tan θ are averaged down by two a level until cells are
-/// `coarsest_cell` wide; the coarsest is relaxed first, the change handed to the four children, and the fine grid
-/// relaxed last, each in sweeps inside closed tiles whose seams move between passes. `sweeps`: synchronous sweeps of
-/// the whole grid, the reference. `taylor_keyser`: k_c = 0.25 of the largest drop, by tangents, for comparison.
+/// Schemes: `multilevel` (the default): sand, ground and tan θ are averaged down by two a level until cells
+/// are `coarsest_cell` wide; the coarsest is relaxed first, the change handed to the four children, and the
+/// fine grid relaxed last, each in sweeps inside closed tiles whose seams move between passes. `sweeps`:
+/// synchronous sweeps of the whole grid, the reference. `taylor_keyser`: k_c = 0.25 of the largest drop, by
+/// tangents, for comparison.
 ///
-/// Reads bedrock, soil, obstacle and the repose tangents; writes sand. Soil and bedrock: avalanching_ground.hpp.
+/// Reads bedrock, soil, obstacle and the repose tangents; writes sand. Soil and bedrock:
+/// avalanching_ground.hpp.
 
 #include <vector>
 
 #include "desert_sim/core/parameters.hpp"
-#include "desert_sim/kernels/buffer.hpp"
 #include "desert_sim/kernels/avalanching_laws.hpp"
+#include "desert_sim/kernels/buffer.hpp"
 
 namespace desert_sim {
 
@@ -45,12 +48,18 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
   return std::make_tuple(
       parameter("enabled", &P::enabled, "Whether steep sand slides."),
       parameter("scheme", &P::scheme, avalanche_schemes, "How slides are computed."),
-      parameter("quality", &P::quality, avalanche_qualities, "fast: 2 x 4 fine sweeps; good: 4 x 8; converged: until tolerance (also for sweeps)."),
-      parameter("transfer", &P::transfer, 0.05, 1, "1", "Share of what would stabilise a cell that one sweep moves (k_c)."),
-      parameter("coarsest_cell", &P::coarsest_cell, 0.001, 1000, "m", "Width of cells at which coarsening stops."),
-      parameter("sweeps", &P::sweeps, 1, 100000, "1", "Sweeps a step of the schemes sweeps and taylor_keyser, unless converged."),
-      parameter("tolerance", &P::tolerance, 1e-6, 1, "1", "Largest excess that counts as converged, in cell sizes."),
-      parameter("max_iterations", &P::max_iterations, 1, 1000000, "1", "Most fine sweeps a step when converging."),
+      parameter("quality", &P::quality, avalanche_qualities,
+                "fast: 2 x 4 fine sweeps; good: 4 x 8; converged: until tolerance (also for sweeps)."),
+      parameter("transfer", &P::transfer, 0.05, 1, "1",
+                "Share of what would stabilise a cell that one sweep moves (k_c)."),
+      parameter("coarsest_cell", &P::coarsest_cell, 0.001, 1000, "m",
+                "Width of cells at which coarsening stops."),
+      parameter("sweeps", &P::sweeps, 1, 100000, "1",
+                "Sweeps a step of the schemes sweeps and taylor_keyser, unless converged."),
+      parameter("tolerance", &P::tolerance, 1e-6, 1, "1",
+                "Largest excess that counts as converged, in cell sizes."),
+      parameter("max_iterations", &P::max_iterations, 1, 1000000, "1",
+                "Most fine sweeps a step when converging."),
       parameter("soil", &P::soil, "Whether steep soil slides, where it changed."),
       parameter("bedrock", &P::bedrock, "Whether steep bedrock breaks, where it changed."),
       parameter("bedrock_to_sand", &P::bedrock_to_sand, "Whether broken bedrock turns to sand."));
@@ -79,11 +88,11 @@ struct Level {
 };
 
 struct Workspace {
-  std::vector<Level> coarse;   ///< coarse[0] has cells twice as wide as the terrain's
-  Buffer<Quanta> ground;       ///< of the finest level
-  Buffer<float> share;         ///< of the synchronous schemes; made when one is used
+  std::vector<Level> coarse;  ///< coarse[0] has cells twice as wide as the terrain's
+  Buffer<Quanta> ground;      ///< of the finest level
+  Buffer<float> share;        ///< of the synchronous schemes; made when one is used
   Buffer<Quanta> given, received;
-  int iterations = 0;          ///< fine sweeps of the last step
+  int iterations = 0;  ///< fine sweeps of the last step
 };
 
 Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParameters& p);
@@ -94,8 +103,9 @@ inline LevelView finest(const TerrainView& t, const float* repose, const Workspa
 
 template <class E>
 void update_ground(E& exec, const TerrainView& t, Workspace& work) {
-  for_each_cell(exec, t.grid, Ground{t.grid, t.quanta(Layer::bedrock), t.quanta(Layer::soil),
-                                     t.real(Layer::obstacle), work.ground.data()});
+  for_each_cell(exec, t.grid,
+                Ground{t.grid, t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.real(Layer::obstacle),
+                       work.ground.data()});
 }
 
 template <class E>
@@ -111,23 +121,25 @@ void relax(E& exec, const LevelView& level, float transfer, LevelSchedule schedu
 
 /// Coarse to fine, once.
 template <class E>
-void cycle(E& exec, const LevelView& fine, float transfer, Schedule schedule, std::uint64_t tick, Workspace& work) {
+void cycle(E& exec, const LevelView& fine, float transfer, Schedule schedule, std::uint64_t tick,
+           Workspace& work) {
   std::vector<Level>& coarse = work.coarse;
   std::array<LevelView, 32> views;
   const int levels = static_cast<int>(coarse.size());
   views[0] = fine;
   for (int n = 0; n < levels; ++n) {
     Level& level = coarse[n];
-    for_each_cell(exec, level.grid, Restrict{views[n], level.grid, level.ground.data(), level.sand.data(),
-                                             level.sand_before.data(), level.repose.data()});
+    for_each_cell(exec, level.grid,
+                  Restrict{views[n], level.grid, level.ground.data(), level.sand.data(),
+                           level.sand_before.data(), level.repose.data()});
     views[n + 1] = {level.grid, level.ground.data(), level.sand.data(), level.repose.data(),
                     2.0f * views[n].quanta_per_cell};
   }
   for (int n = levels; n > 0; --n) {
     relax(exec, views[n], transfer, schedule.coarse, tick);
-    for_each_cell(exec, views[n].grid, Prolong{views[n].grid, coarse[n - 1].sand.data(),
-                                               coarse[n - 1].sand_before.data(), views[n - 1].grid,
-                                               views[n - 1].sand});
+    for_each_cell(exec, views[n].grid,
+                  Prolong{views[n].grid, coarse[n - 1].sand.data(), coarse[n - 1].sand_before.data(),
+                          views[n - 1].grid, views[n - 1].sand});
   }
   relax(exec, fine, transfer, schedule.fine, tick);
 }
@@ -135,14 +147,16 @@ void cycle(E& exec, const LevelView& fine, float transfer, Schedule schedule, st
 template <class E>
 void sweep(E& exec, const LevelView& level, float transfer, bool by_tangent, Workspace& work) {
   for_each_cell(exec, level.grid, Release{level, transfer, by_tangent, work.share.data(), work.given.data()});
-  for_each_cell(exec, level.grid, Gather{level, by_tangent, work.share.data(), work.given.data(), work.received.data()});
-  for_each_cell(exec, level.grid, ApplySweep{level.grid, work.given.data(), work.received.data(), level.sand});
+  for_each_cell(exec, level.grid,
+                Gather{level, by_tangent, work.share.data(), work.given.data(), work.received.data()});
+  for_each_cell(exec, level.grid,
+                ApplySweep{level.grid, work.given.data(), work.received.data(), level.sand});
 }
 
 /// `repose`: tangents of each cell's angle of repose; `tick`: steps done.
 template <class E>
-void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::uint64_t tick, const float* repose,
-          Workspace& work) {
+void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::uint64_t tick,
+          const float* repose, Workspace& work) {
   update_ground(exec, t, work);
   const LevelView fine = finest(t, repose, work);
   const bool converge = p.quality == AvalancheQuality::converged;

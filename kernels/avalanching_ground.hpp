@@ -1,9 +1,10 @@
 #pragma once
-/// Avalanching of soil and of bedrock: one synchronous iteration a step, where they changed. Physics.md B6–B7.
+/// Avalanching of soil and of bedrock: one synchronous iteration a step, where they changed. Physics.md
+/// B6–B7.
 ///
-/// Soil slides over rock at its own angle (45° bare … 68° under vegetation), by the laws of avalanching_laws.hpp.
-/// Bedrock breaks where it is steeper than `bedrock_deg`, by its own height alone, and falls as sand or as rock.
-/// Reads and writes bedrock, soil, sand.
+/// Soil slides over rock at its own angle (45° bare … 68° under vegetation), by the laws of
+/// avalanching_laws.hpp. Bedrock breaks where it is steeper than `bedrock_deg`, by its own height alone, and
+/// falls as sand or as rock. Reads and writes bedrock, soil, sand.
 
 #include "desert_sim/kernels/avalanching.hpp"
 #include "desert_sim/kernels/ledger.hpp"
@@ -22,7 +23,8 @@ struct SoilRepose {
   }
 };
 
-/// Bedrock seen as material that can all move: `sand` of the level is the rock's height above the lowest possible.
+/// Bedrock seen as material that can all move: `sand` of the level is the rock's height above the lowest
+/// possible.
 constexpr Quanta lowest_ground = 1 - wall_height;
 
 struct RockColumn {
@@ -69,25 +71,32 @@ GroundWorkspace make_ground_workspace(Exec& exec, const Grid& grid);
 template <class E>
 void step_soil(E& exec, const TerrainView& t, const AvalanchingParameters& p, const ReposeParameters& repose,
                GroundWorkspace& work) {
-  for_each_cell(exec, t.grid, SoilRepose{t.grid, repose::Tangents(repose), t.real(Layer::vegetation), work.repose.data()});
-  for_each_cell(exec, t.grid, Ground{t.grid, t.quanta(Layer::bedrock), nullptr, t.real(Layer::obstacle), work.ground.data()});
+  for_each_cell(exec, t.grid,
+                SoilRepose{t.grid, repose::Tangents(repose), t.real(Layer::vegetation), work.repose.data()});
+  for_each_cell(
+      exec, t.grid,
+      Ground{t.grid, t.quanta(Layer::bedrock), nullptr, t.real(Layer::obstacle), work.ground.data()});
   const LevelView level{t.grid, work.ground.data(), t.quanta(Layer::soil), work.repose.data(),
                         t.grid.cell_size * t.quanta_per_metre};
   for_each_cell(exec, t.grid, Release{level, p.transfer, false, work.share.data(), work.given.data()});
-  for_each_cell(exec, t.grid, Gather{level, false, work.share.data(), work.given.data(), work.received.data()});
-  for_each_cell(exec, t.grid, ApplySweep{t.grid, work.given.data(), work.received.data(), t.quanta(Layer::soil)});
+  for_each_cell(exec, t.grid,
+                Gather{level, false, work.share.data(), work.given.data(), work.received.data()});
+  for_each_cell(exec, t.grid,
+                ApplySweep{t.grid, work.given.data(), work.received.data(), t.quanta(Layer::soil)});
 }
 
 template <class E>
-void step_bedrock(E& exec, const TerrainView& t, const AvalanchingParameters& p, const ReposeParameters& repose,
-                  LedgerView ledger, GroundWorkspace& work) {
-  for_each_cell(exec, t.grid,
-                RockColumn{t.grid, t.quanta(Layer::bedrock), t.real(Layer::obstacle), repose::Tangents(repose).bedrock,
-                           work.ground.data(), work.column.data(), work.repose.data()});
+void step_bedrock(E& exec, const TerrainView& t, const AvalanchingParameters& p,
+                  const ReposeParameters& repose, LedgerView ledger, GroundWorkspace& work) {
+  for_each_cell(
+      exec, t.grid,
+      RockColumn{t.grid, t.quanta(Layer::bedrock), t.real(Layer::obstacle), repose::Tangents(repose).bedrock,
+                 work.ground.data(), work.column.data(), work.repose.data()});
   const LevelView level{t.grid, work.ground.data(), work.column.data(), work.repose.data(),
                         t.grid.cell_size * t.quanta_per_metre};
   for_each_cell(exec, t.grid, Release{level, p.transfer, false, work.share.data(), work.given.data()});
-  for_each_cell(exec, t.grid, Gather{level, false, work.share.data(), work.given.data(), work.received.data()});
+  for_each_cell(exec, t.grid,
+                Gather{level, false, work.share.data(), work.given.data(), work.received.data()});
   for_each_cell(exec, t.grid,
                 ApplyRockfall{t.grid, work.given.data(), work.received.data(), p.bedrock_to_sand,
                               t.quanta(Layer::bedrock), t.quanta(Layer::sand), ledger});

@@ -31,8 +31,8 @@ struct LevelView {
   Grid grid;
   const Quanta* ground;
   Quanta* sand;
-  const float* repose;     ///< tangents
-  float quanta_per_cell;   ///< cell size / quantum: a tangent times this is the drop over one cell
+  const float* repose;    ///< tangents
+  float quanta_per_cell;  ///< cell size / quantum: a tangent times this is the drop over one cell
 
   DESERT_HD bool wall(int i) const { return ground[i] >= wall_height; }
   DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : ground[i] + sand[i]; }
@@ -48,7 +48,8 @@ struct RelaxTile {
   float transfer;
   int sweeps;
 
-  /// Cell of the grid under (x, y) of the tile, or −1. On a periodic axis each cell belongs to exactly one tile.
+  /// Cell of the grid under (x, y) of the tile, or −1. On a periodic axis each cell belongs to exactly one
+  /// tile.
   DESERT_HD int cell(int column, int row, int x, int y) const {
     const Grid& g = level.grid;
     int px = column * Tiles::side - tiles.offset + x, py = row * Tiles::side - tiles.offset + y;
@@ -82,10 +83,12 @@ struct RelaxTile {
     });
     bool moved = false;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-      team.for_each_in_tile([=](int x, int y) DESERT_INLINE { release(h, sand, drop, share, given, local(x, y)); });
+      team.for_each_in_tile([=](int x, int y)
+                                DESERT_INLINE { release(h, sand, drop, share, given, local(x, y)); });
       if (!team.any_in_tile([=](int x, int y) DESERT_INLINE { return given[local(x, y)] != 0; })) break;
       moved = true;
-      team.for_each_in_tile([=](int x, int y) DESERT_INLINE { gather(h, h_next, sand, drop, share, given, local(x, y)); });
+      team.for_each_in_tile([=](int x, int y)
+                                DESERT_INLINE { gather(h, h_next, sand, drop, share, given, local(x, y)); });
       Quanta* swap = h;
       h = h_next;
       h_next = swap;
@@ -101,7 +104,9 @@ struct RelaxTile {
   DESERT_HD void release(const Quanta* h, const Quanta* sand, const float* drop, float* share, Quanta* given,
                          int n) const {
     float b[8];
-    Neighbours::unrolled([&](auto k) DESERT_INLINE { b[k] = excess(h[n], h[n + offset_to(k)], drop[n] * Neighbours::distance(k)); });
+    Neighbours::unrolled([&](auto k) DESERT_INLINE {
+      b[k] = excess(h[n], h[n + offset_to(k)], drop[n] * Neighbours::distance(k));
+    });
     const float part = release_share(b, transfer, static_cast<float>(sand[n]));
     Quanta total = 0;
     Neighbours::unrolled([&](auto k) DESERT_INLINE { total += static_cast<Quanta>(part * b[k]); });
@@ -109,8 +114,8 @@ struct RelaxTile {
     given[n] = total;
   }
 
-  DESERT_HD static void gather(const Quanta* h, Quanta* h_next, Quanta* sand, const float* drop, const float* share,
-                               const Quanta* given, int n) {
+  DESERT_HD static void gather(const Quanta* h, Quanta* h_next, Quanta* sand, const float* drop,
+                               const float* share, const Quanta* given, int n) {
     Quanta change = -given[n];
     Neighbours::unrolled([&](auto k) DESERT_INLINE {
       const int j = n + offset_to(k);
@@ -140,12 +145,13 @@ struct Restrict {
     }
     ground[i] = wall ? wall_height : static_cast<Quanta>(ground_sum >> 2);
     sand[i] = sand_before[i] = static_cast<Quanta>(sand_sum >> 2);
-    repose[i] = 0.25f * ((fine.repose[child[0]] + fine.repose[child[3]]) + (fine.repose[child[1]] + fine.repose[child[2]]));
+    repose[i] = 0.25f * ((fine.repose[child[0]] + fine.repose[child[3]]) +
+                         (fine.repose[child[1]] + fine.repose[child[2]]));
   }
 };
 
-/// Hands a coarse cell's change to its four children: alike, but where one has too little to give, in proportion to
-/// their sand. What the four change by is exactly four times the coarse change.
+/// Hands a coarse cell's change to its four children: alike, but where one has too little to give, in
+/// proportion to their sand. What the four change by is exactly four times the coarse change.
 struct Prolong {
   Grid coarse;
   const Quanta *sand_after, *sand_before;
@@ -226,9 +232,9 @@ struct Release {
       if (w[k] > 0.0f) deepest = maximum(deepest, static_cast<float>(h - level.height(j)));
     }
     const float available = static_cast<float>(level.sand[i]);
-    const float part = by_tangent
-                           ? minimum(transfer * deepest, available) / (Neighbours::sum(w) + 1e-20f) * rounding_guard
-                           : release_share(w, transfer, available);
+    const float part =
+        by_tangent ? minimum(transfer * deepest, available) / (Neighbours::sum(w) + 1e-20f) * rounding_guard
+                   : release_share(w, transfer, available);
     Quanta total = 0;
     for (int k = 0; k < 8; ++k) total += static_cast<Quanta>(part * w[k]);
     share[i] = part;
@@ -252,8 +258,8 @@ struct Gather {
     for (int k = 0; k < 8; ++k) {
       const int j = neighbour_index(g, x + Neighbours::dx(k), y + Neighbours::dy(k));
       if (j < 0 || share[j] <= 0.0f) continue;
-      sum += static_cast<Quanta>(
-          share[j] * Release::weight(by_tangent, level.height(j), h, level.repose[j] * level.quanta_per_cell, k));
+      sum += static_cast<Quanta>(share[j] * Release::weight(by_tangent, level.height(j), h,
+                                                            level.repose[j] * level.quanta_per_cell, k));
     }
     received[i] = sum;
   }

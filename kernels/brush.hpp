@@ -1,5 +1,6 @@
 #pragma once
-/// A brush that edits a layer of material: weight 1 within `inner` of its radius, falling linearly to 0 at its edge.
+/// A brush that edits a layer of material: weight 1 within `inner` of its radius, falling linearly to 0 at
+/// its edge.
 ///
 ///   add, sub          v ± weight · value
 ///   replace           lerp(v, value, weight)
@@ -21,16 +22,16 @@ namespace brush {
 
 struct Brush {
   Grid grid;
-  int x0, y0, columns, rows;       ///< cells it may touch, before wrapping
-  float centre_x, centre_y;        ///< [cells]
-  float radius_x, radius_y;        ///< semi-axes [cells]
+  int x0, y0, columns, rows;  ///< cells it may touch, before wrapping
+  float centre_x, centre_y;   ///< [cells]
+  float radius_x, radius_y;   ///< semi-axes [cells]
   float cos, sin, inner;
   BrushMerge merge;
-  double value;                    ///< quanta (above the datum for bedrock)
-  bool depth;                      ///< cannot fall below 0
+  double value;  ///< quanta (above the datum for bedrock)
+  bool depth;    ///< cannot fall below 0
   Material material;
   Quanta* layer;
-  const Quanta* rest[2];           ///< other layers that make up the surface, or null
+  const Quanta* rest[2];  ///< other layers that make up the surface, or null
   LedgerView ledger;
 
   DESERT_HD Grid area() const { return Grid{columns, rows, 1.0f, false, false}; }

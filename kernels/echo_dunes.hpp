@@ -1,13 +1,13 @@
 #pragma once
-/// Echo dunes: the eddy in front of a cliff keeps a lane free of sand, and sand piles up ahead of it. Tsoar 1983,
-/// Taylor & Keyser 2023; physics.md A7.
+/// Echo dunes: the eddy in front of a cliff keeps a lane free of sand, and sand piles up ahead of it. Tsoar
+/// 1983, Taylor & Keyser 2023; physics.md A7.
 ///
-///   cliff    (h(here) − h(one cell upwind))/l ≥ tan `cliff_deg`; its height H = min(rise over the cliff, `highest`)
-///   erosion  a cliff of height H within `erosion_reach`·H downwind: r_e = −k_e
-///   sticky   within `sticky_reach`·H: r_e = clamp(1.1 − (d − erosion_reach H)/((sticky_reach − erosion_reach) H), 0, 1)
+///   cliff    (h(here) − h(one cell upwind))/l ≥ tan `cliff_deg`; its height H = min(rise over the cliff,
+///   `highest`) erosion  a cliff of height H within `erosion_reach`·H downwind: r_e = −k_e sticky   within
+///   `sticky_reach`·H: r_e = clamp(1.1 − (d − erosion_reach H)/((sticky_reach − erosion_reach) H), 0, 1)
 ///
-/// The rise is taken over the whole cliff: from this cell upwind to where the ground stops being a cliff. Erosion wins;
-/// else the stickiest cliff counts. Reads elevation, wind_x, wind_y; writes echo.
+/// The rise is taken over the whole cliff: from this cell upwind to where the ground stops being a cliff.
+/// Erosion wins; else the stickiest cliff counts. Reads elevation, wind_x, wind_y; writes echo.
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/wind_shadow.hpp"
@@ -29,8 +29,10 @@ constexpr auto parameter_table(const EchoDuneParameters*) {
       parameter("enabled", &P::enabled, "Whether cliffs hold sand off and pile it up ahead of them."),
       parameter("cliff_deg", &P::cliff_deg, 30, 89, "deg", "Windward slope from which ground is a cliff."),
       parameter("highest", &P::highest, 0.1, 500, "m", "Height at which a cliff's effect stops growing."),
-      parameter("erosion_reach", &P::erosion_reach, 0, 10, "1", "Length of the sand-free lane, in heights of the cliff."),
-      parameter("sticky_reach", &P::sticky_reach, 0, 20, "1", "How far ahead sand is held, in heights of the cliff."),
+      parameter("erosion_reach", &P::erosion_reach, 0, 10, "1",
+                "Length of the sand-free lane, in heights of the cliff."),
+      parameter("sticky_reach", &P::sticky_reach, 0, 20, "1",
+                "How far ahead sand is held, in heights of the cliff."),
       parameter("erosion_rate", &P::erosion_rate, 0, 10, "m", "Extra sand lifted in the lane a step (k_e)."));
 }
 static_assert(table_is_complete<EchoDuneParameters>());
@@ -53,7 +55,7 @@ struct CliffHeight {
     if (!(speed > 1e-6f)) return;
     const int dx = subcells(-wind_x[i] / speed), dy = subcells(-wind_y[i] / speed);
     const float drop = steepness * grid.cell_size / quantum;  // quanta a step
-    float last = 0.0f, rise = 0.0f;                           // heights here and below it, relative to this cell
+    float last = 0.0f, rise = 0.0f;  // heights here and below it, relative to this cell
     for (int j = 1; rise * quantum < highest; ++j) {
       const float next = wind_shadow::height_above(grid, elevation, elevation[i], x, y, j * dx, j * dy);
       if (last - next < drop) break;
@@ -81,8 +83,10 @@ struct Classify {
     const int steps = static_cast<int>(p.sticky_reach * p.highest / grid.cell_size);
     float sticky = 0.0f;
     for (int j = 1; j <= steps; ++j) {
-      const float height = cliff[sample_index(grid, x + ((j * dx + 32768) >> 16), y + ((j * dy + 32768) >> 16))];
-      const float distance = j * grid.cell_size, lane = p.erosion_reach * height, end = p.sticky_reach * height;
+      const float height =
+          cliff[sample_index(grid, x + ((j * dx + 32768) >> 16), y + ((j * dy + 32768) >> 16))];
+      const float distance = j * grid.cell_size, lane = p.erosion_reach * height,
+                  end = p.sticky_reach * height;
       if (height <= 0.0f || distance > end) continue;
       if (distance <= lane) {
         echo[i] = -p.erosion_rate;
@@ -101,8 +105,9 @@ void step(E& exec, const TerrainView& t, const EchoDuneParameters& p, float* cli
   for_each_cell(exec, t.grid,
                 CliffHeight{t.grid, t.quantum, t.quanta(Layer::elevation), t.real(Layer::wind_x),
                             t.real(Layer::wind_y), steepness, p.highest, cliff});
-  for_each_cell(exec, t.grid,
-                Classify{t.grid, cliff, t.real(Layer::wind_x), t.real(Layer::wind_y), p, t.real(Layer::echo)});
+  for_each_cell(
+      exec, t.grid,
+      Classify{t.grid, cliff, t.real(Layer::wind_x), t.real(Layer::wind_y), p, t.real(Layer::echo)});
 }
 
 }  // namespace echo_dunes

@@ -1,6 +1,7 @@
 #pragma once
-/// Where a simulation runs: memory, order of work, and (in for_each.hpp) loops over cells. CpuExec runs laws as OpenMP
-/// loops; CudaExec as kernels on one non-blocking stream of its own. A second stream carries snapshots to the host.
+/// Where a simulation runs: memory, order of work, and (in for_each.hpp) loops over cells. CpuExec runs laws
+/// as OpenMP loops; CudaExec as kernels on one non-blocking stream of its own. A second stream carries
+/// snapshots to the host.
 
 #include <cstddef>
 #include <memory>
@@ -17,11 +18,12 @@ class Exec {
   Exec(const Exec&) = delete;
   Exec& operator=(const Exec&) = delete;
 
-  virtual const char* backend() const = 0;     ///< "cpu" or "cuda"
-  virtual std::string device() const = 0;      ///< what a person would call it
+  virtual const char* backend() const = 0;           ///< "cpu" or "cuda"
+  virtual std::string device() const = 0;            ///< what a person would call it
   virtual std::size_t memory_available() const = 0;  ///< bytes that an allocation may hope for
 
-  /// Uninitialised memory on the device; throws ConfigError if there is not enough. Not for use inside a step.
+  /// Uninitialised memory on the device; throws ConfigError if there is not enough. Not for use inside a
+  /// step.
   virtual void* allocate(std::size_t bytes) = 0;
   virtual void release(void* memory) noexcept = 0;
   /// Host memory that copies to and from the device fast (pinned on a GPU).
@@ -30,8 +32,9 @@ class Exec {
 
   /// In order with the laws that were started before.
   virtual void set_zero(void* memory, std::size_t bytes) = 0;
-  virtual void copy(void* to, const void* from, std::size_t bytes) = 0;   ///< device to device
-  virtual void upload(void* to, const void* from, std::size_t bytes) = 0; ///< returns when `from` may be reused
+  virtual void copy(void* to, const void* from, std::size_t bytes) = 0;  ///< device to device
+  virtual void upload(void* to, const void* from,
+                      std::size_t bytes) = 0;  ///< returns when `from` may be reused
   virtual void download(void* to, const void* from, std::size_t bytes) = 0;  ///< returns when `to` is filled
 
   /// Waits for all that was started; throws CudaError if any of it failed.

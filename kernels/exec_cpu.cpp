@@ -21,18 +21,21 @@ std::mutex& planner() {
   return mutex;
 }
 
-/// One thread, whatever the Exec has: plans for other numbers of threads may add in another order, and the hash of a
-/// run must not depend on them. The grid of the wind is coarse, so this costs little.
+/// One thread, whatever the Exec has: plans for other numbers of threads may add in another order, and the
+/// hash of a run must not depend on them. The grid of the wind is coarse, so this costs little.
 class FftwTransform final : public Fft {
  public:
   FftwTransform(int width, int height) {
     const std::lock_guard<std::mutex> lock(planner());
     auto* memory = static_cast<fftwf_complex*>(fftwf_malloc(sizeof(fftwf_complex) * width * height));
-    if (!memory) throw ConfigError("no memory for a transform of " + std::to_string(width) + " x " + std::to_string(height));
+    if (!memory)
+      throw ConfigError("no memory for a transform of " + std::to_string(width) + " x " +
+                        std::to_string(height));
     forward_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_FORWARD, FFTW_ESTIMATE);
     inverse_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_BACKWARD, FFTW_ESTIMATE);
     fftwf_free(memory);
-    if (!forward_ || !inverse_) throw Error("FFTW made no plan for " + std::to_string(width) + " x " + std::to_string(height));
+    if (!forward_ || !inverse_)
+      throw Error("FFTW made no plan for " + std::to_string(width) + " x " + std::to_string(height));
   }
   ~FftwTransform() override {
     const std::lock_guard<std::mutex> lock(planner());
@@ -73,7 +76,8 @@ std::size_t CpuExec::memory_available() const {
   std::size_t kilobytes;
   while (info >> key >> kilobytes >> unit)
     if (key == "MemAvailable:") return kilobytes * 1024;
-  return static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) *
+         static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
 void* CpuExec::allocate(std::size_t bytes) {
@@ -96,7 +100,9 @@ void CpuExec::set_zero(void* memory, std::size_t bytes) {
 
 void CpuExec::copy(void* to, const void* from, std::size_t bytes) { std::memcpy(to, from, bytes); }
 
-std::unique_ptr<Fft> CpuExec::make_fft(int width, int height) { return std::make_unique<FftwTransform>(width, height); }
+std::unique_ptr<Fft> CpuExec::make_fft(int width, int height) {
+  return std::make_unique<FftwTransform>(width, height);
+}
 
 std::unique_ptr<Exec> make_exec(const std::string& backend, int threads, std::string* why) {
   const auto say = [&](const std::string& reason) {

@@ -13,7 +13,8 @@ namespace desert_sim {
 namespace {
 
 void check_cufft(cufftResult status, const char* what) {
-  if (status != CUFFT_SUCCESS) throw CudaError(std::string("cuFFT: ") + what + ": error " + std::to_string(status));
+  if (status != CUFFT_SUCCESS)
+    throw CudaError(std::string("cuFFT: ") + what + ": error " + std::to_string(status));
 }
 
 class CufftTransform final : public Fft {
@@ -38,7 +39,8 @@ cudaStream_t as_stream(void* stream) { return static_cast<cudaStream_t>(stream);
 
 /// Destructors and releases cannot throw: they log.
 void log_failure(cudaError_t status, const char* what) noexcept {
-  if (status != cudaSuccess) std::fprintf(stderr, "desert_sim: CUDA: %s: %s\n", what, cudaGetErrorString(status));
+  if (status != cudaSuccess)
+    std::fprintf(stderr, "desert_sim: CUDA: %s: %s\n", what, cudaGetErrorString(status));
 }
 
 }  // namespace
@@ -101,7 +103,9 @@ void* CudaExec::allocate_host(std::size_t bytes) {
   return memory;
 }
 
-void CudaExec::release_host(void* memory) noexcept { log_failure(cudaFreeHost(memory), "releasing pinned memory"); }
+void CudaExec::release_host(void* memory) noexcept {
+  log_failure(cudaFreeHost(memory), "releasing pinned memory");
+}
 
 void CudaExec::set_zero(void* memory, std::size_t bytes) {
   check_cuda(cudaMemsetAsync(memory, 0, bytes, as_stream(stream_)), "clearing memory");
@@ -121,7 +125,9 @@ void CudaExec::download(void* to, const void* from, std::size_t bytes) {
   synchronise();
 }
 
-void CudaExec::synchronise() { check_cuda(cudaStreamSynchronize(as_stream(stream_)), "waiting for the device"); }
+void CudaExec::synchronise() {
+  check_cuda(cudaStreamSynchronize(as_stream(stream_)), "waiting for the device");
+}
 
 std::unique_ptr<Fft> CudaExec::make_fft(int width, int height) {
   return std::make_unique<CufftTransform>(as_stream(stream_), width, height);

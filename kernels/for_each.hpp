@@ -2,9 +2,9 @@
 /// Loops over cells and tiles, the same call on both backends:
 ///
 ///     for_each_cell(exec, grid, law);          // law(x, y)
-///     for_each_tile(exec, tiles, law);         // law(team, tile): a team works through one tile with shared memory
-///     sum_cells(exec, grid, law) -> long long  // Σ law(x, y), exact
-///     max_cells(exec, grid, law) -> float      // max of 0 and law(x, y)
+///     for_each_tile(exec, tiles, law);         // law(team, tile): a team works through one tile with shared
+///     memory sum_cells(exec, grid, law) -> long long  // Σ law(x, y), exact max_cells(exec, grid, law) ->
+///     float      // max of 0 and law(x, y)
 ///
 /// The CPU's are in for_each_cpu.hpp, the GPU's in for_each_cuda.cuh; only the backends include them.
 
@@ -27,7 +27,8 @@ DESERT_HD void atomic_add(Integer* to, Integer amount) {
 #endif
 }
 
-/// Square tiles over a grid, shifted by an offset so that the seams of one pass lie inside the tiles of the next.
+/// Square tiles over a grid, shifted by an offset so that the seams of one pass lie inside the tiles of the
+/// next.
 struct Tiles {
   static constexpr int side = 32;
   Grid grid;

@@ -3,7 +3,8 @@
 
 #include "desert_sim/kernels/for_each.hpp"
 
-/// A function compiled for several instruction sets, of which the loader takes the widest that the processor has.
+/// A function compiled for several instruction sets, of which the loader takes the widest that the processor
+/// has.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define DESERT_CLONES __attribute__((noinline, target_clones("default", "avx2", "arch=skylake-avx512")))
 #else
@@ -39,7 +40,8 @@ struct CpuTeam {
   }
 };
 
-/// One tile. No instruction set fuses multiplications with additions (-ffp-contract=off): all give the same bits.
+/// One tile. No instruction set fuses multiplications with additions (-ffp-contract=off): all give the same
+/// bits.
 template <class Law>
 DESERT_CLONES void run_tile(const Law& law, const CpuTeam& team, int column, int row) {
   law(team, column, row);

@@ -9,7 +9,8 @@
 namespace desert_sim {
 
 inline void check_cuda(cudaError_t status, const char* what) {
-  if (status != cudaSuccess) throw CudaError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(status));
+  if (status != cudaSuccess)
+    throw CudaError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(status));
 }
 
 namespace cuda {
@@ -28,7 +29,8 @@ __global__ void cells_kernel(Grid grid, Law law) {
   if (x < grid.width && y < grid.height) law(x, y);
 }
 
-/// The 256 threads of a block as the team that works on a tile. (Marked host too, because laws are; empty there.)
+/// The 256 threads of a block as the team that works on a tile. (Marked host too, because laws are; empty
+/// there.)
 struct Team {
   char* scratch;
 
@@ -43,7 +45,8 @@ struct Team {
   DESERT_HD void for_each_in_tile(const Body& body) const {
 #if defined(__CUDA_ARCH__)
 #pragma unroll
-    for (int y = 0; y < Tiles::side; y += block_y) body(static_cast<int>(threadIdx.x), y + static_cast<int>(threadIdx.y));
+    for (int y = 0; y < Tiles::side; y += block_y)
+      body(static_cast<int>(threadIdx.x), y + static_cast<int>(threadIdx.y));
     __syncthreads();
 #endif
   }
@@ -70,7 +73,8 @@ template <class Law>
 __global__ void sum_kernel(Grid grid, Law law, long long* total) {
   long long mine = 0;
   for (int y = blockIdx.y * block_y + threadIdx.y; y < grid.height; y += gridDim.y * block_y)
-    for (int x = blockIdx.x * block_x + threadIdx.x; x < grid.width; x += gridDim.x * block_x) mine += law(x, y);
+    for (int x = blockIdx.x * block_x + threadIdx.x; x < grid.width; x += gridDim.x * block_x)
+      mine += law(x, y);
   for (int o = 16; o > 0; o /= 2) mine += __shfl_down_sync(0xffffffffu, mine, o);
   if (threadIdx.x == 0 && mine != 0) atomic_add(total, mine);
 }
@@ -111,8 +115,8 @@ void for_each_tile(CudaExec& exec, const Tiles& tiles, const Law& law) {
 template <class Law>
 long long sum_cells(CudaExec& exec, const Grid& grid, const Law& law) {
   exec.set_zero(exec.reduction_word(), sizeof(long long));
-  cuda::sum_kernel<<<cuda::reduction_blocks(grid), cuda::block(), 0, cuda::stream(exec)>>>(grid, law,
-                                                                                         exec.reduction_word());
+  cuda::sum_kernel<<<cuda::reduction_blocks(grid), cuda::block(), 0, cuda::stream(exec)>>>(
+      grid, law, exec.reduction_word());
   check_cuda(cudaGetLastError(), "launch of a sum");
   return exec.read_reduction_word();
 }
@@ -120,8 +124,8 @@ long long sum_cells(CudaExec& exec, const Grid& grid, const Law& law) {
 template <class Law>
 float max_cells(CudaExec& exec, const Grid& grid, const Law& law) {
   exec.set_zero(exec.reduction_word(), sizeof(long long));
-  cuda::max_kernel<<<cuda::reduction_blocks(grid), cuda::block(), 0, cuda::stream(exec)>>>(grid, law,
-                                                                                         exec.reduction_word());
+  cuda::max_kernel<<<cuda::reduction_blocks(grid), cuda::block(), 0, cuda::stream(exec)>>>(
+      grid, law, exec.reduction_word());
   check_cuda(cudaGetLastError(), "launch of a maximum");
   const int bits = static_cast<int>(exec.read_reduction_word());
   float value;

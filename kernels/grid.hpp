@@ -7,8 +7,9 @@
 
 namespace desert_sim {
 
-/// `width` × `height` square cells of `cell_size` metres, row-major, x (east) fastest, row 0 in the south. An axis is
-/// periodic (the far neighbour of the last cell is the first) or open (there is nothing beyond the edge).
+/// `width` × `height` square cells of `cell_size` metres, row-major, x (east) fastest, row 0 in the south. An
+/// axis is periodic (the far neighbour of the last cell is the first) or open (there is nothing beyond the
+/// edge).
 struct Grid {
   int width = 0, height = 0;
   float cell_size = 1;
@@ -32,7 +33,8 @@ DESERT_HD int wrap(int i, int n) {
 
 DESERT_HD int clamp_index(int i, int n) { return i < 0 ? 0 : (i >= n ? n - 1 : i); }
 
-/// The cell whose value stands for (x, y): wrapped on a periodic axis, the edge's (zero gradient) on an open one.
+/// The cell whose value stands for (x, y): wrapped on a periodic axis, the edge's (zero gradient) on an open
+/// one.
 DESERT_HD int sample_index(const Grid& g, int x, int y) {
   x = g.periodic_x ? wrap(x, g.width) : clamp_index(x, g.width);
   y = g.periodic_y ? wrap(y, g.height) : clamp_index(y, g.height);
@@ -46,15 +48,21 @@ DESERT_HD int neighbour_index(const Grid& g, int x, int y) {
   return g.inside(x, y) ? g.index(x, y) : -1;
 }
 
-/// The eight neighbours: opposite pairs stand together, the four straight ones first. Sums over them are formed as
+/// The eight neighbours: opposite pairs stand together, the four straight ones first. Sums over them are
+/// formed as
 /// ((0+1)+(2+3)) + ((4+5)+(6+7)), which a mirrored or quarter-turned terrain leaves the same to the bit.
 struct Neighbours {
   static constexpr int count = 8;
-  DESERT_HD static constexpr int dx(int k) { return k == 0 || k == 4 || k == 7 ? 1 : (k == 1 || k == 5 || k == 6 ? -1 : 0); }
-  DESERT_HD static constexpr int dy(int k) { return k == 2 || k == 4 || k == 6 ? 1 : (k == 3 || k == 5 || k == 7 ? -1 : 0); }
+  DESERT_HD static constexpr int dx(int k) {
+    return k == 0 || k == 4 || k == 7 ? 1 : (k == 1 || k == 5 || k == 6 ? -1 : 0);
+  }
+  DESERT_HD static constexpr int dy(int k) {
+    return k == 2 || k == 4 || k == 6 ? 1 : (k == 3 || k == 5 || k == 7 ? -1 : 0);
+  }
   /// Distance in cells.
   DESERT_HD static constexpr float distance(int k) { return k < 4 ? 1.0f : 1.41421356f; }
-  /// body(k) for k = 0…7 with k as a compile-time constant: loops over cells vectorise only around straight code.
+  /// body(k) for k = 0…7 with k as a compile-time constant: loops over cells vectorise only around straight
+  /// code.
   template <class Body>
   DESERT_HD static void unrolled(const Body& body) {
     body(std::integral_constant<int, 0>()), body(std::integral_constant<int, 1>());

@@ -11,13 +11,31 @@
 namespace desert_sim {
 
 enum class Layer : int {
-  bedrock, soil, sand, water, airborne_sand, suspended_sediment, moisture, humus,
-  vegetation, erosion_resistance, obstacle,
-  elevation, water_surface, wind_x, wind_y, wind_shadow, echo, illumination,
+  bedrock,
+  soil,
+  sand,
+  water,
+  airborne_sand,
+  suspended_sediment,
+  moisture,
+  humus,
+  vegetation,
+  erosion_resistance,
+  obstacle,
+  elevation,
+  water_surface,
+  wind_x,
+  wind_y,
+  wind_shadow,
+  echo,
+  illumination,
 };
 
-enum class Storage { quanta, real };            ///< fixed-point metres, or float32; both four bytes
-enum class Lifetime { persistent, derived };    ///< persistent layers are the state; derived ones follow from it
+enum class Storage { quanta, real };  ///< fixed-point metres, or float32; both four bytes
+enum class Lifetime {
+  persistent,
+  derived
+};  ///< persistent layers are the state; derived ones follow from it
 
 struct LayerInfo {
   Layer layer;
@@ -32,38 +50,57 @@ struct LayerInfo {
 constexpr double any_height = 1e6;
 
 constexpr std::array<LayerInfo, 18> layer_table{{
-    {Layer::bedrock, "bedrock", "m", Storage::quanta, Lifetime::persistent, -any_height, any_height, "Top of the rock, absolute."},
-    {Layer::soil, "soil", "m", Storage::quanta, Lifetime::persistent, 0, any_height, "Depth of soil on the rock."},
-    {Layer::sand, "sand", "m", Storage::quanta, Lifetime::persistent, 0, any_height, "Depth of sand on soil and rock."},
-    {Layer::water, "water", "m", Storage::quanta, Lifetime::persistent, 0, any_height, "Depth of standing water."},
-    {Layer::airborne_sand, "airborne_sand", "m", Storage::quanta, Lifetime::persistent, 0, any_height, "Sand that the wind carries over a cell, as a depth."},
-    {Layer::suspended_sediment, "suspended_sediment", "m", Storage::quanta, Lifetime::persistent, 0, any_height, "Sediment in the water, as a depth."},
-    {Layer::moisture, "moisture", "m", Storage::quanta, Lifetime::persistent, 0, any_height, "Water in the ground, as a depth."},
-    {Layer::humus, "humus", "m", Storage::quanta, Lifetime::persistent, 0, any_height, "Humus in the soil, as a depth."},
+    {Layer::bedrock, "bedrock", "m", Storage::quanta, Lifetime::persistent, -any_height, any_height,
+     "Top of the rock, absolute."},
+    {Layer::soil, "soil", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Depth of soil on the rock."},
+    {Layer::sand, "sand", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Depth of sand on soil and rock."},
+    {Layer::water, "water", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Depth of standing water."},
+    {Layer::airborne_sand, "airborne_sand", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Sand that the wind carries over a cell, as a depth."},
+    {Layer::suspended_sediment, "suspended_sediment", "m", Storage::quanta, Lifetime::persistent, 0,
+     any_height, "Sediment in the water, as a depth."},
+    {Layer::moisture, "moisture", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Water in the ground, as a depth."},
+    {Layer::humus, "humus", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Humus in the soil, as a depth."},
     {Layer::vegetation, "vegetation", "1", Storage::real, Lifetime::persistent, 0, 1, "Density of plants."},
-    {Layer::erosion_resistance, "erosion_resistance", "1", Storage::real, Lifetime::persistent, 0, 1, "Resistance of the rock to abrasion; 1 never wears."},
-    {Layer::obstacle, "obstacle", "1", Storage::real, Lifetime::persistent, 0, 1, "1 where a solid object stands, that neither gives nor takes sand."},
-    {Layer::elevation, "elevation", "m", Storage::quanta, Lifetime::derived, -any_height, any_height, "Solid surface: bedrock + soil + sand."},
-    {Layer::water_surface, "water_surface", "m", Storage::quanta, Lifetime::derived, -any_height, any_height, "Elevation + water."},
-    {Layer::wind_x, "wind_x", "m/s", Storage::real, Lifetime::derived, 0, 0, "Wind at the surface, eastward part."},
-    {Layer::wind_y, "wind_y", "m/s", Storage::real, Lifetime::derived, 0, 0, "Wind at the surface, northward part."},
-    {Layer::wind_shadow, "wind_shadow", "1", Storage::real, Lifetime::derived, 0, 1, "0 in the open … 1 fully in the lee."},
-    {Layer::echo, "echo", "1", Storage::real, Lifetime::derived, -1, 1, "In front of cliffs: < 0 erosion, > 0 sticky."},
-    {Layer::illumination, "illumination", "1", Storage::real, Lifetime::derived, 0, 1, "Light on the ground."},
+    {Layer::erosion_resistance, "erosion_resistance", "1", Storage::real, Lifetime::persistent, 0, 1,
+     "Resistance of the rock to abrasion; 1 never wears."},
+    {Layer::obstacle, "obstacle", "1", Storage::real, Lifetime::persistent, 0, 1,
+     "1 where a solid object stands, that neither gives nor takes sand."},
+    {Layer::elevation, "elevation", "m", Storage::quanta, Lifetime::derived, -any_height, any_height,
+     "Solid surface: bedrock + soil + sand."},
+    {Layer::water_surface, "water_surface", "m", Storage::quanta, Lifetime::derived, -any_height, any_height,
+     "Elevation + water."},
+    {Layer::wind_x, "wind_x", "m/s", Storage::real, Lifetime::derived, 0, 0,
+     "Wind at the surface, eastward part."},
+    {Layer::wind_y, "wind_y", "m/s", Storage::real, Lifetime::derived, 0, 0,
+     "Wind at the surface, northward part."},
+    {Layer::wind_shadow, "wind_shadow", "1", Storage::real, Lifetime::derived, 0, 1,
+     "0 in the open … 1 fully in the lee."},
+    {Layer::echo, "echo", "1", Storage::real, Lifetime::derived, -1, 1,
+     "In front of cliffs: < 0 erosion, > 0 sticky."},
+    {Layer::illumination, "illumination", "1", Storage::real, Lifetime::derived, 0, 1,
+     "Light on the ground."},
 }};
 constexpr int layer_count = static_cast<int>(layer_table.size());
 
 constexpr const LayerInfo& info(Layer layer) { return layer_table[static_cast<std::size_t>(layer)]; }
 
-/// Plain pointers to the layers on the backend's device, passed by value to laws. A layer that is not in use is null
-/// and stands for 0 everywhere. Heights are quanta above the datum.
+/// Plain pointers to the layers on the backend's device, passed by value to laws. A layer that is not in use
+/// is null and stands for 0 everywhere. Heights are quanta above the datum.
 struct TerrainView {
   Grid grid;
-  float quantum = 0;            ///< [m]
-  float quanta_per_metre = 0;   ///< 1 / quantum, exact
+  float quantum = 0;           ///< [m]
+  float quanta_per_metre = 0;  ///< 1 / quantum, exact
   void* layers[layer_count] = {};
 
-  DESERT_HD Quanta* quanta(Layer layer) const { return static_cast<Quanta*>(layers[static_cast<int>(layer)]); }
+  DESERT_HD Quanta* quanta(Layer layer) const {
+    return static_cast<Quanta*>(layers[static_cast<int>(layer)]);
+  }
   DESERT_HD float* real(Layer layer) const { return static_cast<float*>(layers[static_cast<int>(layer)]); }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 /// The books of the mass balance: what entered and left each material, in quanta. For every material
-/// final − initial − in + out = 0, exactly. Conversions (abrasion: bedrock to sand) are out of one and into another.
+/// final − initial − in + out = 0, exactly. Conversions (abrasion: bedrock to sand) are out of one and into
+/// another.
 
 #include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/quanta.hpp"
@@ -9,7 +10,8 @@ namespace desert_sim {
 
 enum class Material : int { bedrock, soil, sand, water, sediment, moisture };
 constexpr int material_count = 6;
-constexpr const char* material_names[material_count] = {"bedrock", "soil", "sand", "water", "sediment", "moisture"};
+constexpr const char* material_names[material_count] = {"bedrock", "soil",     "sand",
+                                                        "water",   "sediment", "moisture"};
 
 /// Accounts are striped, so that cells which book at the same time rarely meet.
 struct LedgerView {

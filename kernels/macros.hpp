@@ -1,7 +1,7 @@
 #pragma once
-/// DESERT_HD marks what runs on host and device; it is only `inline` where nvcc is not compiling. DESERT_INLINE goes
-/// behind a lambda's parameters: the compiler vectorises a loop only if its body is inlined, and large bodies are not
-/// unless asked.
+/// DESERT_HD marks what runs on host and device; it is only `inline` where nvcc is not compiling.
+/// DESERT_INLINE goes behind a lambda's parameters: the compiler vectorises a loop only if its body is
+/// inlined, and large bodies are not unless asked.
 
 #if defined(__CUDACC__)
 #define DESERT_HD __host__ __device__ __forceinline__

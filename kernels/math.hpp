@@ -1,6 +1,6 @@
 #pragma once
-/// Small arithmetic whose bits are the same on host and device: only +, −, ×, ÷ and square roots, which IEEE rounds
-/// alike everywhere (library transcendental functions differ by units in the last place).
+/// Small arithmetic whose bits are the same on host and device: only +, −, ×, ÷ and square roots, which IEEE
+/// rounds alike everywhere (library transcendental functions differ by units in the last place).
 
 #include <cmath>
 #include <cstdint>
@@ -16,8 +16,8 @@ DESERT_HD float maximum(float a, float b) { return a > b ? a : b; }
 DESERT_HD float clamp(float v, float low, float high) { return minimum(maximum(v, low), high); }
 DESERT_HD float hypotenuse(float x, float y) { return sqrtf(x * x + y * y); }
 
-/// e^(−x) for x ≥ 0, relative error below 3e-7; 0 from x = 87 on. Range reduction by ln 2 in two parts, then a Taylor
-/// polynomial of degree 7 on |r| ≤ ½ ln 2.
+/// e^(−x) for x ≥ 0, relative error below 3e-7; 0 from x = 87 on. Range reduction by ln 2 in two parts, then
+/// a Taylor polynomial of degree 7 on |r| ≤ ½ ln 2.
 DESERT_HD float exp_negative(float x) {
   if (x >= 87.0f) return 0.0f;
   const float n = rintf(x * 1.44269504f);

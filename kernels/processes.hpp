@@ -1,5 +1,6 @@
 #pragma once
-/// All processes. What includes this calls their steps without compiling them: the two backends do (processes.inc).
+/// All processes. What includes this calls their steps without compiling them: the two backends do
+/// (processes.inc).
 
 #include "desert_sim/kernels/avalanching_ground.hpp"
 #include "desert_sim/kernels/brush.hpp"

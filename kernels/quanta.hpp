@@ -1,7 +1,7 @@
 #pragma once
-/// Material is counted. Layers of moving material hold 32-bit integers, `quantum` metres each (a power of two, 2⁻²⁰ m
-/// unless the relief needs a coarser one). A law computes an amount in float, rounds it once, and takes exactly that
-/// from one place and gives it to another.
+/// Material is counted. Layers of moving material hold 32-bit integers, `quantum` metres each (a power of
+/// two, 2⁻²⁰ m unless the relief needs a coarser one). A law computes an amount in float, rounds it once, and
+/// takes exactly that from one place and gives it to another.
 
 #include <cmath>
 #include <cstdint>
@@ -12,7 +12,8 @@ namespace desert_sim {
 
 using Quanta = std::int32_t;
 
-/// Heights stay below 2³⁰ quanta, so that the difference of any two fits; this stands for an infinitely high wall.
+/// Heights stay below 2³⁰ quanta, so that the difference of any two fits; this stands for an infinitely high
+/// wall.
 constexpr Quanta wall_height = Quanta{1} << 30;
 /// Terrain is loaded and edited within ±2²⁹ quanta of the datum: moving sand then has room to pile up.
 constexpr Quanta load_limit = Quanta{1} << 29;
@@ -25,13 +26,16 @@ DESERT_HD Quanta take(float metres, float quanta_per_metre, Quanta available) {
   return static_cast<Quanta>(wanted);
 }
 
-/// A displacement in cells as a 16.16 fixed-point number. Rounding is symmetric, so that mirrored winds mirror.
+/// A displacement in cells as a 16.16 fixed-point number. Rounding is symmetric, so that mirrored winds
+/// mirror.
 DESERT_HD int subcells(float cells) { return static_cast<int>(rintf(cells * 65536.0f)); }
 constexpr int subcell_one = 65536;
 
-/// The share wx·wy (each 0…2¹⁶) of an amount, rounded down: the four shares of a bilinear split never exceed it.
+/// The share wx·wy (each 0…2¹⁶) of an amount, rounded down: the four shares of a bilinear split never exceed
+/// it.
 DESERT_HD Quanta bilinear_share(Quanta amount, int wx, int wy) {
-  return static_cast<Quanta>((static_cast<std::int64_t>(amount) * (static_cast<std::int64_t>(wx) * wy)) >> 32);
+  return static_cast<Quanta>((static_cast<std::int64_t>(amount) * (static_cast<std::int64_t>(wx) * wy)) >>
+                             32);
 }
 
 }  // namespace desert_sim

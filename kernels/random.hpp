@@ -1,5 +1,6 @@
 #pragma once
-/// Counter-based random numbers: a number depends on (seed, purpose, counters) alone, never on order or threads.
+/// Counter-based random numbers: a number depends on (seed, purpose, counters) alone, never on order or
+/// threads.
 
 #include <Random123/philox.h>
 
@@ -15,7 +16,8 @@ enum class Purpose : std::uint32_t { reptation = 1, terrain_noise, terrain_discs
 DESERT_HD float random_unit(std::uint64_t seed, Purpose purpose, std::uint32_t a, std::uint32_t b = 0,
                             std::uint32_t c = 0) {
   const r123::Philox4x32::ctr_type counter{{a, b, c, static_cast<std::uint32_t>(purpose)}};
-  const r123::Philox4x32::key_type key{{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
+  const r123::Philox4x32::key_type key{
+      {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
   return static_cast<float>(r123::Philox4x32()(counter, key)[0] >> 8) * (1.0f / 16777216.0f);
 }
 
@@ -23,7 +25,8 @@ DESERT_HD float random_unit(std::uint64_t seed, Purpose purpose, std::uint32_t a
 /// derivatives. `period` > 0 repeats x and y after so many lattice cells.
 DESERT_HD float value_noise(std::uint64_t seed, Purpose purpose, float x, float y, float z, int period_x = 0,
                             int period_y = 0) {
-  const int x0 = static_cast<int>(floorf(x)), y0 = static_cast<int>(floorf(y)), z0 = static_cast<int>(floorf(z));
+  const int x0 = static_cast<int>(floorf(x)), y0 = static_cast<int>(floorf(y)),
+            z0 = static_cast<int>(floorf(z));
   const auto fade = [](float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); };
   const float fx = fade(x - x0), fy = fade(y - y0), fz = fade(z - z0);
   const auto cycled = [](int i, int period) { return period > 0 ? ((i % period) + period) % period : i; };

@@ -25,24 +25,31 @@ constexpr auto parameter_table(const ReposeParameters*) {
   using P = ReposeParameters;
   return std::make_tuple(
       parameter("sand_deg", &P::sand_deg, 1, 80, "deg", "Angle of repose of dry bare sand."),
-      parameter("vegetated_deg", &P::vegetated_deg, 1, 80, "deg", "Angle of repose of sand under full vegetation."),
+      parameter("vegetated_deg", &P::vegetated_deg, 1, 80, "deg",
+                "Angle of repose of sand under full vegetation."),
       parameter("soil_deg", &P::soil_deg, 1, 85, "deg", "Angle of repose of bare soil."),
-      parameter("soil_vegetated_deg", &P::soil_vegetated_deg, 1, 85, "deg", "Angle of repose of soil under full vegetation."),
+      parameter("soil_vegetated_deg", &P::soil_vegetated_deg, 1, 85, "deg",
+                "Angle of repose of soil under full vegetation."),
       parameter("bedrock_deg", &P::bedrock_deg, 1, 89, "deg", "Angle at which bedrock breaks."),
-      parameter("moisture_capacity", &P::moisture_capacity, 0.001, 1, "1", "Water that a metre of ground can hold, as a depth in metres."));
+      parameter("moisture_capacity", &P::moisture_capacity, 0.001, 1, "1",
+                "Water that a metre of ground can hold, as a depth in metres."));
 }
 static_assert(table_is_complete<ReposeParameters>());
 
 namespace repose {
 
-/// Moisture of the ground relative to its capacity, 0…1; 0 where there is no ground or the layer is not in use.
+/// Moisture of the ground relative to its capacity, 0…1; 0 where there is no ground or the layer is not in
+/// use.
 struct RelativeMoisture {
   const Quanta *moisture, *soil, *sand;
   float capacity, quantum;
 
   RelativeMoisture(const TerrainView& t, const ReposeParameters& p)
-      : moisture(t.quanta(Layer::moisture)), soil(t.quanta(Layer::soil)), sand(t.quanta(Layer::sand)),
-        capacity(p.moisture_capacity), quantum(t.quantum) {}
+      : moisture(t.quanta(Layer::moisture)),
+        soil(t.quanta(Layer::soil)),
+        sand(t.quanta(Layer::sand)),
+        capacity(p.moisture_capacity),
+        quantum(t.quantum) {}
 
   DESERT_HD float operator()(int i) const {
     if (!moisture || moisture[i] <= 0) return 0.0f;
@@ -61,9 +68,14 @@ struct Tangents {
   float sand, vegetated, soil, soil_vegetated, bedrock;
 
   explicit Tangents(const ReposeParameters& p)
-      : sand(tangent(p.sand_deg)), vegetated(tangent(p.vegetated_deg)), soil(tangent(p.soil_deg)),
-        soil_vegetated(tangent(p.soil_vegetated_deg)), bedrock(tangent(p.bedrock_deg)) {}
-  static float tangent(float degrees) { return static_cast<float>(std::tan(degrees * 3.14159265358979 / 180.0)); }
+      : sand(tangent(p.sand_deg)),
+        vegetated(tangent(p.vegetated_deg)),
+        soil(tangent(p.soil_deg)),
+        soil_vegetated(tangent(p.soil_vegetated_deg)),
+        bedrock(tangent(p.bedrock_deg)) {}
+  static float tangent(float degrees) {
+    return static_cast<float>(std::tan(degrees * 3.14159265358979 / 180.0));
+  }
 };
 
 }  // namespace repose

@@ -1,15 +1,18 @@
 #pragma once
-/// Reptation: grains that saltation hits creep down the slope. Nilles 2024 §3.7 and its later version, Paris 2019 §5.1;
-/// physics.md B5. r is the strength that saltation left: (deposited + bounced)(1 − v) [m].
+/// Reptation: grains that saltation hits creep down the slope. Nilles 2024 §3.7 and its later version, Paris
+/// 2019 §5.1; physics.md B5. r is the strength that saltation left: (deposited + bounced)(1 − v) [m].
 ///
-///   adaptive_repose  tan θ = lerp(tan θ_sand exp(−k_r r |w| (1 − r_s use_shadow)), tan θ_vegetated, v) · moisture,
+///   adaptive_repose  tan θ = lerp(tan θ_sand exp(−k_r r |w| (1 − r_s use_shadow)), tan θ_vegetated, v) ·
+///   moisture,
 ///                    the donor's angle in the avalanche that follows
-///   smoothing        flux between neighbours k_r |Δh|/(l d) ½(r_i + r_j) ½(|w_i| + |w_j|) Δt, down the slope, at most
+///   smoothing        flux between neighbours k_r |Δh|/(l d) ½(r_i + r_j) ½(|w_i| + |w_j|) Δt, down the
+///   slope, at most
 ///                    the donor's sand, mean over 8; in as many sub-steps as its diffusion number needs
-///   steepest         with probability (1 − v)(1 − e^(−r)), `slab`·Δt to the two steepest neighbours, by their slopes
+///   steepest         with probability (1 − v)(1 − e^(−r)), `slab`·Δt to the two steepest neighbours, by
+///   their slopes
 ///
-/// Every choice writes the repose tangents (without r but for adaptive_repose). Reads sand, bedrock, soil, wind,
-/// wind_shadow, vegetation, moisture; writes sand and the scratch layer of repose tangents.
+/// Every choice writes the repose tangents (without r but for adaptive_repose). Reads sand, bedrock, soil,
+/// wind, wind_shadow, vegetation, moisture; writes sand and the scratch layer of repose tangents.
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/for_each.hpp"
@@ -33,7 +36,8 @@ constexpr auto parameter_table(const ReptationParameters*) {
   return std::make_tuple(
       parameter("method", &P::method, reptation_methods, "How saltation's impacts move sand down the slope."),
       parameter("strength", &P::strength, 0, 10, "s/m^2", "Strength of adaptive_repose and smoothing (k_r)."),
-      parameter("use_shadow", &P::use_shadow, "Whether adaptive_repose spares what lies in the wind's shadow."),
+      parameter("use_shadow", &P::use_shadow,
+                "Whether adaptive_repose spares what lies in the wind's shadow."),
       parameter("slab", &P::slab, 0, 10, "m", "Sand that one event of `steepest` moves in 1 s."));
 }
 static_assert(table_is_complete<ReptationParameters>());
@@ -56,7 +60,8 @@ struct ReposeTangent {
       const float open = use_shadow ? 1.0f - value_or_zero(wind_shadow, i) : 1.0f;
       sand *= exp_negative(strength * reptation_strength[i] * hypotenuse(wind_x[i], wind_y[i]) * open);
     }
-    repose[i] = lerp(sand, tangents.vegetated, value_or_zero(vegetation, i)) * repose::moisture_factor(moisture(i));
+    repose[i] =
+        lerp(sand, tangents.vegetated, value_or_zero(vegetation, i)) * repose::moisture_factor(moisture(i));
   }
 };
 
@@ -79,8 +84,9 @@ struct SmoothingFlux {
   /// What i gives to its neighbour j (negative: gets), the same number whichever of the two computes it.
   DESERT_HD Quanta flux(int i, int j, int k) const {
     const Quanta drop = s.height(i) - s.height(j);
-    const float steep = strength * static_cast<float>(drop < 0 ? -drop : drop) / Neighbours::distance(k) * 0.5f *
-                        (s.reptation_strength[i] + s.reptation_strength[j]) * 0.5f * (s.speed(i) + s.speed(j));
+    const float steep = strength * static_cast<float>(drop < 0 ? -drop : drop) / Neighbours::distance(k) *
+                        0.5f * (s.reptation_strength[i] + s.reptation_strength[j]) * 0.5f *
+                        (s.speed(i) + s.speed(j));
     const Quanta available = s.sand[drop > 0 ? i : j];
     const Quanta moved = (steep < static_cast<float>(available) ? static_cast<Quanta>(steep) : available) / 8;
     return drop > 0 ? moved : -moved;
@@ -115,13 +121,14 @@ struct SteepestEvent {
   Quanta* change;
 
   DESERT_HD float chance(int cell) const {
-    return random_unit(seed, Purpose::reptation, static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(tick),
-                       static_cast<std::uint32_t>(tick >> 32));
+    return random_unit(seed, Purpose::reptation, static_cast<std::uint32_t>(cell),
+                       static_cast<std::uint32_t>(tick), static_cast<std::uint32_t>(tick >> 32));
   }
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = s.grid.index(x, y);
-    const float probability = (1.0f - value_or_zero(vegetation, i)) * (1.0f - exp_negative(s.reptation_strength[i]));
+    const float probability =
+        (1.0f - value_or_zero(vegetation, i)) * (1.0f - exp_negative(s.reptation_strength[i]));
     if (s.sand[i] <= 0 || s.solid(i) || chance(i) >= probability) return;
     int first = -1, second = -1;
     float first_slope = 0.0f, second_slope = 0.0f;
@@ -161,14 +168,20 @@ struct ApplyChange {
   }
 };
 
-/// Scratch: `change` (quanta) one a cell. `repose` gets the tangents of repose. `seed` and `tick` (steps done) draw
-/// the events of `steepest`.
+/// Scratch: `change` (quanta) one a cell. `repose` gets the tangents of repose. `seed` and `tick` (steps
+/// done) draw the events of `steepest`.
 template <class E>
-void step(E& exec, const TerrainView& t, const ReptationParameters& p, const ReposeParameters& repose_parameters,
-          float time_step, std::uint64_t seed, std::uint64_t tick, const float* reptation_strength, Quanta* change,
-          float* repose) {
-  const Surface surface{t.grid, t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
-                        reptation_strength, t.real(Layer::wind_x), t.real(Layer::wind_y), t.real(Layer::obstacle)};
+void step(E& exec, const TerrainView& t, const ReptationParameters& p,
+          const ReposeParameters& repose_parameters, float time_step, std::uint64_t seed, std::uint64_t tick,
+          const float* reptation_strength, Quanta* change, float* repose) {
+  const Surface surface{t.grid,
+                        t.quanta(Layer::bedrock),
+                        t.quanta(Layer::soil),
+                        t.quanta(Layer::sand),
+                        reptation_strength,
+                        t.real(Layer::wind_x),
+                        t.real(Layer::wind_y),
+                        t.real(Layer::obstacle)};
   const bool adaptive = p.method == ReptationMethod::adaptive_repose;
   for_each_cell(exec, t.grid,
                 ReposeTangent{t.grid, repose::Tangents(repose_parameters),
@@ -187,8 +200,9 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, const Rep
     }
   } else if (p.method == ReptationMethod::steepest) {
     exec.set_zero(change, sizeof(Quanta) * t.grid.cells());
-    for_each_cell(exec, t.grid, SteepestEvent{surface, t.real(Layer::vegetation), seed, tick, p.slab * time_step,
-                                              t.quanta_per_metre, change});
+    for_each_cell(exec, t.grid,
+                  SteepestEvent{surface, t.real(Layer::vegetation), seed, tick, p.slab * time_step,
+                                t.quanta_per_metre, change});
     for_each_cell(exec, t.grid, apply);
   }
 }

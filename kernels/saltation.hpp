@@ -4,14 +4,15 @@
 ///
 ///   lift     L = min(s, ε_s (1 − r_s)(1 − v)(r_e > 0 ? ½ : 1) M + (r_e < 0 ? k_e : 0)),  a += L
 ///            M = clamp(1 − 10 m, 0, 1), 0 under water; nothing lifts below the threshold speed
-///   advect   a moves by w Δt / l cells and is shared bilinearly among four (scattered integers: exact, any order)
-///   deposit  p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1), f = 0.4 on sand, 0.5 on soil, 0.6 on rock; 0 on obstacles
+///   advect   a moves by w Δt / l cells and is shared bilinearly among four (scattered integers: exact, any
+///   order) deposit  p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1), f = 0.4 on sand, 0.5 on soil, 0.6 on
+///   rock; 0 on obstacles
 ///            and in the lane before a cliff; · clamp(1 − 10 m, 0.01, 1), under water · 0.01;  s += p a
 ///   bounce   a ← (1 − p) a stays in the air; strength of reptation r = (deposited + bounced)(1 − v)
 ///
-/// On open edges sand that is carried over an edge is booked as out; `influx` enters where the wind blows in, spread
-/// over the first hop. Reads sand, wind, wind_shadow, echo, vegetation, obstacle, moisture, water; writes sand,
-/// airborne_sand, and through abrasion bedrock and soil.
+/// On open edges sand that is carried over an edge is booked as out; `influx` enters where the wind blows in,
+/// spread over the first hop. Reads sand, wind, wind_shadow, echo, vegetation, obstacle, moisture, water;
+/// writes sand, airborne_sand, and through abrasion bedrock and soil.
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/abrasion.hpp"
@@ -38,17 +39,24 @@ constexpr auto parameter_table(const SaltationParameters*) {
       parameter("enabled", &P::enabled, "Whether the wind carries sand."),
       parameter("lift", &P::lift, 0, 10, "m", "Sand lifted from an open cell a step of 1 s (epsilon_s)."),
       parameter("threshold_speed", &P::threshold_speed, 0, 100, "m/s", "Wind below which nothing is lifted."),
-      parameter("bounce_on_sand", &P::bounce_on_sand, 0, 1, "1", "Share of landing sand that bounces on sand (f)."),
-      parameter("bounce_on_soil", &P::bounce_on_soil, 0, 1, "1", "Share of landing sand that bounces on soil."),
-      parameter("bounce_on_rock", &P::bounce_on_rock, 0, 1, "1", "Share of landing sand that bounces on rock."),
-      parameter("bare_depth", &P::bare_depth, 0, 1, "m", "Depth of sand below which the ground counts as bare."),
-      parameter("influx", &P::influx, 0, 100, "m^2/s", "Sand that enters an open windward edge, per metre of edge."));
+      parameter("bounce_on_sand", &P::bounce_on_sand, 0, 1, "1",
+                "Share of landing sand that bounces on sand (f)."),
+      parameter("bounce_on_soil", &P::bounce_on_soil, 0, 1, "1",
+                "Share of landing sand that bounces on soil."),
+      parameter("bounce_on_rock", &P::bounce_on_rock, 0, 1, "1",
+                "Share of landing sand that bounces on rock."),
+      parameter("bare_depth", &P::bare_depth, 0, 1, "m",
+                "Depth of sand below which the ground counts as bare."),
+      parameter("influx", &P::influx, 0, 100, "m^2/s",
+                "Sand that enters an open windward edge, per metre of edge."));
 }
 static_assert(table_is_complete<SaltationParameters>());
 
 namespace saltation {
 
-DESERT_HD float dryness(float relative_moisture) { return clamp(1.0f - 10.0f * relative_moisture, 0.0f, 1.0f); }
+DESERT_HD float dryness(float relative_moisture) {
+  return clamp(1.0f - 10.0f * relative_moisture, 0.0f, 1.0f);
+}
 
 /// Water deeper than this stops the wind's work [m].
 constexpr float wet_depth = 1e-5f;
@@ -61,10 +69,18 @@ struct Inputs {
   repose::RelativeMoisture moisture;
 
   Inputs(const TerrainView& t, const ReposeParameters& repose, float dt)
-      : grid(t.grid), quantum(t.quantum), quanta_per_metre(t.quanta_per_metre), time_step(dt),
-        wind_x(t.real(Layer::wind_x)), wind_y(t.real(Layer::wind_y)), wind_shadow(t.real(Layer::wind_shadow)),
-        echo(t.real(Layer::echo)), vegetation(t.real(Layer::vegetation)), obstacle(t.real(Layer::obstacle)),
-        water(t.quanta(Layer::water)), moisture(t, repose) {}
+      : grid(t.grid),
+        quantum(t.quantum),
+        quanta_per_metre(t.quanta_per_metre),
+        time_step(dt),
+        wind_x(t.real(Layer::wind_x)),
+        wind_y(t.real(Layer::wind_y)),
+        wind_shadow(t.real(Layer::wind_shadow)),
+        echo(t.real(Layer::echo)),
+        vegetation(t.real(Layer::vegetation)),
+        obstacle(t.real(Layer::obstacle)),
+        water(t.quanta(Layer::water)),
+        moisture(t, repose) {}
 
   DESERT_HD bool flooded(int i) const { return water && water[i] * quantum > wet_depth; }
 };
@@ -80,9 +96,10 @@ struct LiftAndAdvect {
     if (sand[i] <= 0 || speed < p.threshold_speed) return 0;
     const float r_e = value_or_zero(in.echo, i);
     const float wet = in.flooded(i) ? 0.0f : dryness(in.moisture(i));
-    const float metres = in.time_step * (p.lift * (1.0f - value_or_zero(in.wind_shadow, i)) *
-                                             (1.0f - value_or_zero(in.vegetation, i)) * (r_e > 0.0f ? 0.5f : 1.0f) * wet +
-                                         (r_e < 0.0f ? -r_e : 0.0f));
+    const float metres =
+        in.time_step * (p.lift * (1.0f - value_or_zero(in.wind_shadow, i)) *
+                            (1.0f - value_or_zero(in.vegetation, i)) * (r_e > 0.0f ? 0.5f : 1.0f) * wet +
+                        (r_e < 0.0f ? -r_e : 0.0f));
     return take(metres, in.quanta_per_metre, sand[i]);
   }
 
@@ -147,7 +164,8 @@ struct Influx {
   }
 };
 
-/// Deposits a share of what landed; the rest bounces on. Wears the ground, and notes the strength of reptation.
+/// Deposits a share of what landed; the rest bounces on. Wears the ground, and notes the strength of
+/// reptation.
 struct Deposit {
   Inputs in;
   SaltationParameters p;
@@ -160,7 +178,8 @@ struct Deposit {
     const float r_e = value_or_zero(in.echo, i);
     if (r_e < 0.0f || value_or_zero(in.obstacle, i) > 0.0f) return 0.0f;
     const bool sandy = sand[i] > 0 && sand[i] * in.quantum >= p.bare_depth;
-    const float bounce = sandy ? p.bounce_on_sand : (value_or_zero(soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
+    const float bounce =
+        sandy ? p.bounce_on_sand : (value_or_zero(soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
     const float held = maximum((1.0f - bounce) + value_or_zero(in.vegetation, i) * bounce,
                                maximum(value_or_zero(in.wind_shadow, i), r_e));
     const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
@@ -187,14 +206,21 @@ void step(E& exec, const TerrainView& t, const SaltationParameters& p, const Abr
           const ReposeParameters& repose, float time_step, LedgerView ledger, Quanta* landed,
           float* reptation_strength) {
   const Inputs in(t, repose, time_step);
-  Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand), *soil = t.quanta(Layer::soil);
+  Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand),
+         *soil = t.quanta(Layer::soil);
   exec.set_zero(landed, sizeof(Quanta) * t.grid.cells());
   for_each_cell(exec, t.grid, LiftAndAdvect{in, p, sand, airborne, landed, ledger});
   if (!t.grid.periodic() && p.influx > 0.0f)
     for_each_cell(exec, t.grid, Influx{in, p.influx, landed, ledger});
-  const abrasion::Wear wear{a.rate * time_step, take(a.cover, t.quanta_per_metre, wall_height), t.quantum,
-                            t.quanta_per_metre, t.quanta(Layer::bedrock), soil, sand,
-                            t.real(Layer::erosion_resistance), ledger};
+  const abrasion::Wear wear{a.rate * time_step,
+                            take(a.cover, t.quanta_per_metre, wall_height),
+                            t.quantum,
+                            t.quanta_per_metre,
+                            t.quanta(Layer::bedrock),
+                            soil,
+                            sand,
+                            t.real(Layer::erosion_resistance),
+                            ledger};
   for_each_cell(exec, t.grid, Deposit{in, p, wear, landed, soil, sand, airborne, reptation_strength});
 }
 

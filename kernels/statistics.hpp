@@ -1,12 +1,13 @@
 #pragma once
-/// Sums and figures over the whole terrain. Each reads a result back and so waits for the device; not part of a step.
+/// Sums and figures over the whole terrain. Each reads a result back and so waits for the device; not part of
+/// a step.
 
 #include "desert_sim/kernels/avalanching.hpp"
 
 namespace desert_sim {
 
-/// What avalanching left undone: share of cells steeper than their own repose by more than 1e-3 and 1e-2 (tangent),
-/// mean excess over those beyond 1e-3, and the largest. Only sand that could slide counts.
+/// What avalanching left undone: share of cells steeper than their own repose by more than 1e-3 and 1e-2
+/// (tangent), mean excess over those beyond 1e-3, and the largest. Only sand that could slide counts.
 struct Residual {
   double share_over_1e3 = 0, share_over_1e2 = 0, mean_excess = 0, largest_excess = 0;
 };
@@ -34,7 +35,8 @@ struct SumExcess {
   }
 };
 
-/// Steepest slope that is made of sand: the drop to a neighbour, as far as the cell's sand reaches, as a tangent.
+/// Steepest slope that is made of sand: the drop to a neighbour, as far as the cell's sand reaches, as a
+/// tangent.
 struct SandSlope {
   Grid grid;
   const Quanta *bedrock, *soil, *sand;
@@ -64,7 +66,8 @@ struct Broken {
   bool depth;  ///< must not be negative
   DESERT_HD long long operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    if (quanta) return quanta[i] >= wall_height || quanta[i] <= -wall_height || (depth && quanta[i] < 0) ? 1 : 0;
+    if (quanta)
+      return quanta[i] >= wall_height || quanta[i] <= -wall_height || (depth && quanta[i] < 0) ? 1 : 0;
     return real[i] - real[i] == 0.0f ? 0 : 1;  // neither NaN nor infinite
   }
 };
@@ -81,9 +84,9 @@ long long broken_cells(E& exec, const Grid& grid, const Quanta* quanta, const fl
 
 template <class E>
 float sand_slope(E& exec, const TerrainView& t) {
-  return max_cells(exec, t.grid, SandSlope{t.grid, t.quanta(Layer::bedrock), t.quanta(Layer::soil),
-                                           t.quanta(Layer::sand), t.real(Layer::obstacle),
-                                           t.grid.cell_size * t.quanta_per_metre});
+  return max_cells(exec, t.grid,
+                   SandSlope{t.grid, t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
+                             t.real(Layer::obstacle), t.grid.cell_size * t.quanta_per_metre});
 }
 
 /// Against the repose tangents of the last step.

@@ -13,7 +13,10 @@ struct SolidSurface {
   Quanta* elevation;
 
   explicit SolidSurface(const TerrainView& t)
-      : grid(t.grid), bedrock(t.quanta(Layer::bedrock)), soil(t.quanta(Layer::soil)), sand(t.quanta(Layer::sand)),
+      : grid(t.grid),
+        bedrock(t.quanta(Layer::bedrock)),
+        soil(t.quanta(Layer::soil)),
+        sand(t.quanta(Layer::sand)),
         elevation(t.quanta(Layer::elevation)) {}
 
   DESERT_HD void operator()(int x, int y) const {

@@ -20,8 +20,8 @@ int smooth_length(int n) {
   }
 }
 
-/// Transfer of a Gaussian of `sigma` fine cells along an axis of n coarse modes, each coarse cell `ratio` fine ones.
-/// The derivative's 1/l and the transform's 1/n go into it too.
+/// Transfer of a Gaussian of `sigma` fine cells along an axis of n coarse modes, each coarse cell `ratio`
+/// fine ones. The derivative's 1/l and the transform's 1/n go into it too.
 std::vector<Transfer> transfer(int n, double ratio, double sigma, double cell_size) {
   std::vector<Transfer> table(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
@@ -37,7 +37,8 @@ std::vector<Transfer> transfer(int n, double ratio, double sigma, double cell_si
       lost = box * linear * linear;
     }
     const double smooth = std::exp(-0.5 * sigma * sigma * k * k) / (lost * n);
-    table[static_cast<std::size_t>(i)] = {static_cast<float>(smooth), static_cast<float>(smooth * std::sin(k) / cell_size)};
+    table[static_cast<std::size_t>(i)] = {static_cast<float>(smooth),
+                                          static_cast<float>(smooth * std::sin(k) / cell_size)};
   }
   return table;
 }

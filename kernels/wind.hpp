@@ -7,9 +7,10 @@
 ///   projection  û ← û − k (k·û)/|k|²   (divergence-free, mean kept)
 ///   features    + the divergence-free perturbation of wind_features.hpp
 ///
-/// The Gaussians are tens of metres wide, so the smoothed terrain and the projection live on a grid coarsened to about
-/// a quarter of the smallest σ; the box average that coarsens and the linear interpolation that samples back are undone
-/// in the transfer function. Open grids are extended evenly (mirrored) before the transform.
+/// The Gaussians are tens of metres wide, so the smoothed terrain and the projection live on a grid coarsened
+/// to about a quarter of the smallest σ; the box average that coarsens and the linear interpolation that
+/// samples back are undone in the transfer function. Open grids are extended evenly (mirrored) before the
+/// transform.
 ///
 /// Reads elevation; writes wind_x, wind_y.
 
@@ -21,6 +22,7 @@
 #include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/layers.hpp"
 #include "desert_sim/kernels/math.hpp"
+#include "desert_sim/kernels/wind_coarse.hpp"
 
 namespace desert_sim {
 
@@ -40,16 +42,20 @@ struct WindParameters {
 constexpr auto parameter_table(const WindParameters*) {
   using P = WindParameters;
   return std::make_tuple(
-      parameter("speedup", &P::speedup, 0, 1, "1/m", "Speed-up of the wind per metre above the lowest ground (Venturi)."),
+      parameter("speedup", &P::speedup, 0, 1, "1/m",
+                "Speed-up of the wind per metre above the lowest ground (Venturi)."),
       parameter("speedup_lowest", &P::speedup_lowest, 0, 1, "1", "Least factor of the speed-up."),
       parameter("speedup_highest", &P::speedup_highest, 1, 10, "1", "Greatest factor of the speed-up."),
       parameter("warping", &P::warping, "Whether the terrain deflects the wind."),
-      parameter("radii", &P::radii, 1, 5000, "m", "Radii of the smoothed terrains that deflect the wind; sigma is half of each."),
+      parameter("radii", &P::radii, 1, 5000, "m",
+                "Radii of the smoothed terrains that deflect the wind; sigma is half of each."),
       parameter("weights", &P::weights, 0, 100, "1", "Weight of each radius."),
       parameter("deflections", &P::deflections, 0, 1000, "1", "Strength of deflection of each radius."),
-      parameter("gradient_scale", &P::gradient_scale, 0, 10, "1", "Scale of the smoothed terrains' gradients; small values let wind reach obstacles."),
+      parameter("gradient_scale", &P::gradient_scale, 0, 10, "1",
+                "Scale of the smoothed terrains' gradients; small values let wind reach obstacles."),
       parameter("projection", &P::projection, "Whether the wind is made free of divergence."),
-      parameter("coarsening", &P::coarsening, 0, 64, "cells", "Cells of the terrain per cell of the FFT grid; 0 chooses a quarter of the smallest sigma."));
+      parameter("coarsening", &P::coarsening, 0, 64, "cells",
+                "Cells of the terrain per cell of the FFT grid; 0 chooses a quarter of the smallest sigma."));
 }
 static_assert(table_is_complete<WindParameters>());
 
@@ -58,86 +64,6 @@ namespace wind {
 /// The wind high above the ground, now [m/s].
 struct Vector {
   float x = 0, y = 0;
-};
-
-/// The coarse grid of the transforms: `grid` cells cover the terrain, `width` × `height` values are transformed (twice
-/// as many along an open axis, where the terrain is mirrored).
-struct CoarseGrid {
-  Grid fine;
-  int columns = 0, rows = 0;
-  int width = 0, height = 0;
-  float ratio_x = 1, ratio_y = 1;  ///< fine cells a coarse cell
-  float share_x = 1, share_y = 1;  ///< 1 / ratio
-
-  DESERT_HD int mirrored_column(int x) const { return x < columns ? x : 2 * columns - 1 - x; }
-  DESERT_HD int mirrored_row(int y) const { return y < rows ? y : 2 * rows - 1 - y; }
-  DESERT_HD Grid transformed() const { return Grid{width, height, fine.cell_size * ratio_x, true, true}; }
-};
-
-/// Area-weighted mean of fine(i) over the fine cells under coarse cell (cx, cy).
-template <class Fine>
-DESERT_HD float coarse_mean(const CoarseGrid& c, int cx, int cy, const Fine& fine) {
-  const float left = cx * c.ratio_x, right = (cx + 1) * c.ratio_x;
-  const float bottom = cy * c.ratio_y, top = (cy + 1) * c.ratio_y;
-  const int x_end = clamp_index(static_cast<int>(ceilf(right - 1e-4f)) - 1, c.fine.width);
-  const int y_end = clamp_index(static_cast<int>(ceilf(top - 1e-4f)) - 1, c.fine.height);
-  float sum = 0, area = 0;
-  for (int y = static_cast<int>(bottom + 1e-4f); y <= y_end; ++y) {
-    const float row_weight = minimum(top, y + 1.0f) - maximum(bottom, static_cast<float>(y));
-    for (int x = static_cast<int>(left + 1e-4f); x <= x_end; ++x) {
-      const float weight = row_weight * (minimum(right, x + 1.0f) - maximum(left, static_cast<float>(x)));
-      sum += weight * fine(c.fine.index(x, y));
-      area += weight;
-    }
-  }
-  return sum / area;
-}
-
-/// Where a fine cell's centre lies between the centres of four coarse cells.
-struct CoarseSample {
-  int i00, i10, i01, i11;
-  float fx, fy;
-
-  DESERT_HD CoarseSample(const CoarseGrid& c, int x, int y) {
-    const float px = (x + 0.5f) * c.share_x - 0.5f, py = (y + 0.5f) * c.share_y - 0.5f;
-    const int x0 = static_cast<int>(floorf(px)), y0 = static_cast<int>(floorf(py));
-    fx = px - x0;
-    fy = py - y0;
-    // At full resolution the sample is the value itself.
-    if (c.columns == c.fine.width) fx = 0.0f;
-    if (c.rows == c.fine.height) fy = 0.0f;
-    const int xa = wrap(x0, c.width), xb = wrap(x0 + 1, c.width);
-    const int ya = wrap(y0, c.height) * c.width, yb = wrap(y0 + 1, c.height) * c.width;
-    i00 = ya + xa;
-    i10 = ya + xb;
-    i01 = yb + xa;
-    i11 = yb + xb;
-  }
-  DESERT_HD Complex operator()(const Complex* v) const {
-    const Complex a = v[i00], b = v[i10], c = v[i01], d = v[i11];
-    return {lerp(lerp(a.re, b.re, fx), lerp(c.re, d.re, fx), fy),
-            lerp(lerp(a.im, b.im, fx), lerp(c.im, d.im, fx), fy)};
-  }
-};
-
-/// Wavenumbers of a mode [rad per fine cell], zero at the Nyquist rows.
-struct Mode {
-  float kx, ky;
-  bool nyquist;
-
-  DESERT_HD Mode(const CoarseGrid& c, int i, int j) {
-    const int mx = 2 * i > c.width ? i - c.width : i, my = 2 * j > c.height ? j - c.height : j;
-    nyquist = 2 * i == c.width || 2 * j == c.height;
-    kx = 6.28318531f * mx / (c.width * c.ratio_x);
-    ky = 6.28318531f * my / (c.height * c.ratio_y);
-  }
-};
-
-/// The transfer of one radius along one axis, one pair a mode: the Gaussian, divided by what averaging over cells and
-/// interpolating between the averages take away; and that times the derivative's sin(k)/l. It is separable, so two
-/// short tables, made once on the host, hold all of it.
-struct Transfer {
-  float smooth, derive;
 };
 
 struct CoarsenElevation {
@@ -231,8 +157,9 @@ struct CoarsenWind {
   }
 };
 
-/// Spectrum of what to add to the wind: −k (k·û)/|k|². The field u + iv is one complex transform; û and v̂ are its
-/// parts of even and odd conjugate symmetry, so a mode needs its mirror mode too and writes to another buffer.
+/// Spectrum of what to add to the wind: −k (k·û)/|k|². The field u + iv is one complex transform; û and v̂ are
+/// its parts of even and odd conjugate symmetry, so a mode needs its mirror mode too and writes to another
+/// buffer.
 struct ProjectionCorrection {
   CoarseGrid coarse;
   const Complex* field;
@@ -252,7 +179,8 @@ struct ProjectionCorrection {
       cu = {-u.re * scale, -u.im * scale};
       cv = {-v.re * scale, -v.im * scale};
     } else if (k2 > 0.0f) {
-      const float re = (k.kx * u.re + k.ky * v.re) * scale / k2, im = (k.kx * u.im + k.ky * v.im) * scale / k2;
+      const float re = (k.kx * u.re + k.ky * v.re) * scale / k2,
+                  im = (k.kx * u.im + k.ky * v.im) * scale / k2;
       cu = {-k.kx * re, -k.kx * im};
       cv = {-k.ky * re, -k.ky * im};
     }
@@ -300,8 +228,21 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above, 
   float *wind_x = t.real(Layer::wind_x), *wind_y = t.real(Layer::wind_y);
   const float scale = 1.0f / (static_cast<float>(coarse.width) * coarse.height);
 
-  WarpedWind warp{coarse, elevation, reference, t.quantum, above, p.speedup, p.speedup_lowest, p.speedup_highest,
-                  0, {}, {}, p.gradient_scale, {}, wind_x, wind_y};
+  WarpedWind warp{coarse,
+                  elevation,
+                  reference,
+                  t.quantum,
+                  above,
+                  p.speedup,
+                  p.speedup_lowest,
+                  p.speedup_highest,
+                  0,
+                  {},
+                  {},
+                  p.gradient_scale,
+                  {},
+                  wind_x,
+                  wind_y};
   if (p.warping) {
     for_each_cell(exec, coarse.transformed(),
                   CoarsenElevation{coarse, elevation, reference, t.quantum, work.spectrum.data()});
@@ -310,8 +251,8 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above, 
     for (int r = 0; r < p.radii.count; ++r) {
       Complex* gradient = work.gradients[r].data();
       for_each_cell(exec, coarse.transformed(),
-                    SmoothedGradient{coarse, work.spectrum.data(), work.along_x[r].data(), work.along_y[r].data(),
-                                     gradient});
+                    SmoothedGradient{coarse, work.spectrum.data(), work.along_x[r].data(),
+                                     work.along_y[r].data(), gradient});
       work.fft->inverse(gradient);
       warp.gradients[r] = gradient;
       warp.weights[r] = p.weights.values[r];
@@ -322,14 +263,17 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above, 
 
   Complex* correction = nullptr;
   if (p.projection) {
-    for_each_cell(exec, coarse.transformed(), CoarsenWind{coarse, wind_x, wind_y, above, work.spectrum.data()});
+    for_each_cell(exec, coarse.transformed(),
+                  CoarsenWind{coarse, wind_x, wind_y, above, work.spectrum.data()});
     work.fft->forward(work.spectrum.data());
     correction = work.gradients[0].data();
-    for_each_cell(exec, coarse.transformed(), ProjectionCorrection{coarse, work.spectrum.data(), scale, correction});
+    for_each_cell(exec, coarse.transformed(),
+                  ProjectionCorrection{coarse, work.spectrum.data(), scale, correction});
     work.fft->inverse(correction);
   }
   if (correction || perturbation_x)
-    for_each_cell(exec, t.grid, AddToWind{coarse, correction, perturbation_x, perturbation_y, wind_x, wind_y});
+    for_each_cell(exec, t.grid,
+                  AddToWind{coarse, correction, perturbation_x, perturbation_y, wind_x, wind_y});
 }
 
 }  // namespace wind

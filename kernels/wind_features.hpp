@@ -1,12 +1,14 @@
 #pragma once
-/// Local features of the wind: a divergence-free perturbation from a stream function ψ (curl noise: Bridson 2007);
-/// physics.md A5. With distances ξ along and η across the feature's direction, r² = ξ² + η²:
+/// Local features of the wind: a divergence-free perturbation from a stream function ψ (curl noise: Bridson
+/// 2007); physics.md A5. With distances ξ along and η across the feature's direction, r² = ξ² + η²:
 ///
-///   vortex      ψ = speed R exp(½(1 − r²/R²)): fastest, `speed`, at r = R; counter-clockwise, or clockwise if < 0
-///   jet         ψ = speed η exp(−½(ξ²/length² + η²/R²)): `speed` along `direction_deg` in the middle, return flow beside
-///   turbulence  ψ = ¾ speed · scale · noise(ξ/scale, η/scale, t/life_time) (1 − r²/R²)² inside R
+///   vortex      ψ = speed R exp(½(1 − r²/R²)): fastest, `speed`, at r = R; counter-clockwise, or clockwise
+///   if < 0 jet         ψ = speed η exp(−½(ξ²/length² + η²/R²)): `speed` along `direction_deg` in the middle,
+///   return flow beside turbulence  ψ = ¾ speed · scale · noise(ξ/scale, η/scale, t/life_time) (1 − r²/R²)²
+///   inside R
 ///
-///   u = ∂ψ/∂y, v = −∂ψ/∂x by central differences, whose discrete divergence is 0. Writes the perturbation only.
+///   u = ∂ψ/∂y, v = −∂ψ/∂x by central differences, whose discrete divergence is 0. Writes the perturbation
+///   only.
 
 #include <vector>
 
@@ -40,8 +42,10 @@ constexpr auto parameter_table(const WindFeature*) {
       parameter("x", &P::x, -1e6, 1e6, "m", "Centre, in the terrain's frame."),
       parameter("y", &P::y, -1e6, 1e6, "m", "Centre, in the terrain's frame."),
       parameter("radius", &P::radius, 0.1, 1e5, "m", "Radius of a vortex or patch; half width of a jet."),
-      parameter("speed", &P::speed, -100, 100, "m/s", "Greatest speed it adds; of turbulence about the root mean square."),
-      parameter("direction_deg", &P::direction_deg, -360, 360, "deg", "Where a jet blows to, counter-clockwise from +x."),
+      parameter("speed", &P::speed, -100, 100, "m/s",
+                "Greatest speed it adds; of turbulence about the root mean square."),
+      parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
+                "Where a jet blows to, counter-clockwise from +x."),
       parameter("length", &P::length, 0.1, 1e5, "m", "Half length of a jet."),
       parameter("scale", &P::scale, 0.1, 1e5, "m", "Size of a turbulence patch's eddies."),
       parameter("life_time", &P::life_time, 0.01, 1e6, "s", "Time in which turbulence renews itself."),
@@ -51,7 +55,8 @@ static_assert(table_is_complete<WindFeature>());
 
 namespace wind_features {
 
-/// A feature made ready on the host: positions relative to the grid's lower-left corner, direction as a unit vector.
+/// A feature made ready on the host: positions relative to the grid's lower-left corner, direction as a unit
+/// vector.
 struct Prepared {
   WindFeature feature;
   float cos = 1, sin = 0;
@@ -83,8 +88,8 @@ struct StreamFunction {
     if (r2 >= 1.0f) return 0.0f;
     const float window = (1.0f - r2) * (1.0f - r2);
     return 0.75f * f.speed * f.scale * window *
-           value_noise(static_cast<std::uint64_t>(f.seed), Purpose::turbulence, along / f.scale, across / f.scale,
-                       time / f.life_time);
+           value_noise(static_cast<std::uint64_t>(f.seed), Purpose::turbulence, along / f.scale,
+                       across / f.scale, time / f.life_time);
   }
 
   DESERT_HD void operator()(int x, int y) const {
@@ -112,7 +117,8 @@ struct Curl {
 template <class E>
 void step(E& exec, const Grid& grid, const Buffer<Prepared>& features, float time, float* stream,
           float* perturbation_x, float* perturbation_y) {
-  for_each_cell(exec, grid, StreamFunction{grid, features.data(), static_cast<int>(features.size()), time, stream});
+  for_each_cell(exec, grid,
+                StreamFunction{grid, features.data(), static_cast<int>(features.size()), time, stream});
   for_each_cell(exec, grid, Curl{grid, stream, perturbation_x, perturbation_y});
 }
 

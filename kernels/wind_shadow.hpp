@@ -4,8 +4,8 @@
 ///   t = max over steps of Δh / distance, marching upwind one cell a step up to `distance`
 ///   r_s = clamp((t − tan start) / (tan full − tan start), 0, 1)
 ///
-/// Heights are sampled bilinearly, through periodic borders; beyond an open edge the edge goes on. `curved` re-reads
-/// the wind at every step. Reads elevation, wind_x, wind_y; writes wind_shadow.
+/// Heights are sampled bilinearly, through periodic borders; beyond an open edge the edge goes on. `curved`
+/// re-reads the wind at every step. Reads elevation, wind_x, wind_y; writes wind_shadow.
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/for_each.hpp"
@@ -26,7 +26,8 @@ constexpr auto parameter_table(const WindShadowParameters*) {
   using P = WindShadowParameters;
   return std::make_tuple(
       parameter("enabled", &P::enabled, "Whether terrain shelters the ground behind it."),
-      parameter("distance", &P::distance, 0, 1000, "m", "How far upwind shelter is looked for; at least one cell."),
+      parameter("distance", &P::distance, 0, 1000, "m",
+                "How far upwind shelter is looked for; at least one cell."),
       parameter("start_deg", &P::start_deg, 0, 89, "deg", "Angle to the shelter at which shadow begins."),
       parameter("full_deg", &P::full_deg, 0, 89, "deg", "Angle to the shelter from which shadow is full."),
       parameter("curved", &P::curved, "Whether the march follows the wind as it turns."));
@@ -35,8 +36,8 @@ static_assert(table_is_complete<WindShadowParameters>());
 
 namespace wind_shadow {
 
-/// Bilinear height above `base` [quanta] at cell (x, y) + (dx, dy)/65536 cells. The four terms are formed so that
-/// mirrored or turned terrain gives the same bits.
+/// Bilinear height above `base` [quanta] at cell (x, y) + (dx, dy)/65536 cells. The four terms are formed so
+/// that mirrored or turned terrain gives the same bits.
 DESERT_HD float height_above(const Grid& g, const Quanta* h, Quanta base, int x, int y, int dx, int dy) {
   const int x0 = x + (dx >> 16), y0 = y + (dy >> 16);
   const float fx = (dx & 65535) * (1.0f / 65536.0f), fy = (dy & 65535) * (1.0f / 65536.0f);
@@ -102,8 +103,8 @@ void step(E& exec, const TerrainView& t, const WindShadowParameters& p) {
   const float full = maximum(tanf(p.full_deg * degree), start + 1e-6f);
   const int steps = static_cast<int>(maximum(1.0f, floorf(p.distance / t.grid.cell_size)));
   for_each_cell(exec, t.grid,
-                Shadow{t.grid, t.quantum, t.quanta(Layer::elevation), t.real(Layer::wind_x), t.real(Layer::wind_y),
-                       steps, start, full, p.curved, t.real(Layer::wind_shadow)});
+                Shadow{t.grid, t.quantum, t.quanta(Layer::elevation), t.real(Layer::wind_x),
+                       t.real(Layer::wind_y), steps, start, full, p.curved, t.real(Layer::wind_shadow)});
 }
 
 }  // namespace wind_shadow

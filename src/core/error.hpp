@@ -1,5 +1,6 @@
 #pragma once
-/// Errors. Library code throws these and never exits or prints; the message says where, what and which values.
+/// Errors. Library code throws these and never exits or prints; the message says where, what and which
+/// values.
 
 #include <stdexcept>
 #include <string>

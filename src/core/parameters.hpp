@@ -1,8 +1,8 @@
 #pragma once
-/// Parameter tables. A process keeps its parameters in a plain struct whose initialisers are the defaults, and beside
-/// it a table: one row a member, in the order of the members, with name, range, unit and a line of documentation.
-/// The YAML loader, ROS parameters, `--describe`, the generated documentation, commands, journal and checkpoint all
-/// visit that one table.
+/// Parameter tables. A process keeps its parameters in a plain struct whose initialisers are the defaults,
+/// and beside it a table: one row a member, in the order of the members, with name, range, unit and a line of
+/// documentation. The YAML loader, ROS parameters, `--describe`, the generated documentation, commands,
+/// journal and checkpoint all visit that one table.
 ///
 ///     struct Example { float height = 1; bool flat = false; };
 ///     constexpr auto parameter_table(const Example*) {
@@ -31,10 +31,10 @@ template <class Owner, class T>
 struct Parameter {
   const char* name;
   T Owner::*member;
-  double lowest, highest;       ///< allowed range of a number (of each number of a list)
-  const char* unit;             ///< SI; "1" if dimensionless
-  const char* doc;              ///< one line
-  const char* const* choices;   ///< names of an enumeration's values, in order; null for other types
+  double lowest, highest;      ///< allowed range of a number (of each number of a list)
+  const char* unit;            ///< SI; "1" if dimensionless
+  const char* doc;             ///< one line
+  const char* const* choices;  ///< names of an enumeration's values, in order; null for other types
   int choice_count;
 };
 
@@ -78,8 +78,8 @@ constexpr std::size_t laid_out(std::size_t offset, const Parameter<Owner, T>&) {
 }
 }  // namespace detail
 
-/// True if the rows, in order, account for every byte of the struct but padding: a member without a row is caught at
-/// compile time.
+/// True if the rows, in order, account for every byte of the struct but padding: a member without a row is
+/// caught at compile time.
 template <class P>
 constexpr bool table_is_complete() {
   std::size_t size = 0;

@@ -52,7 +52,8 @@ void terrain_steps(std::ostringstream& out) {
 std::string describe_parameters() {
   std::ostringstream out;
   out << "# Parameters of a scenario\n\n"
-         "Written by `desert_run --describe`; a test fails when it is stale. The same keys are read from scenario "
+         "Written by `desert_run --describe`; a test fails when it is stale. The same keys are read from "
+         "scenario "
          "files, from `--set path=value`, and from ROS parameters. 0 in `grid` stands for \"not given\".\n\n"
          "## top level\n\n";
   rows(out, SeedParameter());
@@ -74,7 +75,8 @@ std::string describe_parameters() {
   out << "\n## Layers\n\n| layer | unit | kind | what |\n|---|---|---|---|\n";
   for (const LayerInfo& layer : layer_table)
     out << "| `" << layer.name << "` | " << layer.unit << " | "
-        << (layer.lifetime == Lifetime::persistent ? "persistent" : "derived") << " | " << layer.doc << " |\n";
+        << (layer.lifetime == Lifetime::persistent ? "persistent" : "derived") << " | " << layer.doc
+        << " |\n";
   return out.str();
 }
 

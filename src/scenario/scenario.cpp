@@ -23,7 +23,8 @@ void check_layer(const Step& step, const std::string& key, Faults& faults) {
       if (step.layer == layer.name && layer.lifetime == Lifetime::persistent) return;
     std::string known;
     for (const LayerInfo& layer : layer_table)
-      if (layer.lifetime == Lifetime::persistent) known += (known.empty() ? "" : ", ") + std::string(layer.name);
+      if (layer.lifetime == Lifetime::persistent)
+        known += (known.empty() ? "" : ", ") + std::string(layer.name);
     faults.add(key + ".layer", "'" + step.layer + "' is not one of: " + known);
   }
 }
@@ -44,7 +45,8 @@ bool read_step(const std::string& name, const YAML::Node& node, const std::strin
 
 void read_terrain(const YAML::Node& list, Faults& faults, std::vector<TerrainStep>& steps) {
   if (!list.IsDefined() || list.IsNull()) return;
-  if (!list.IsSequence()) return faults.add("terrain", yaml::shown(list) + " where a list of steps is expected");
+  if (!list.IsSequence())
+    return faults.add("terrain", yaml::shown(list) + " where a list of steps is expected");
   for (std::size_t n = 0; n < list.size(); ++n) {
     const std::string key = "terrain." + std::to_string(n);
     if (!list[n].IsMap() || list[n].size() != 1) {
@@ -61,10 +63,12 @@ void read_terrain(const YAML::Node& list, Faults& faults, std::vector<TerrainSte
 }
 
 template <class Item>
-void read_items(const YAML::Node& list, const std::string& key, std::size_t most, Faults& faults, std::vector<Item>& items) {
+void read_items(const YAML::Node& list, const std::string& key, std::size_t most, Faults& faults,
+                std::vector<Item>& items) {
   if (!list.IsDefined() || list.IsNull()) return;
   if (!list.IsSequence()) return faults.add(key, yaml::shown(list) + " where a list is expected");
-  if (list.size() > most) return faults.add(key, std::to_string(list.size()) + " entries are more than " + std::to_string(most));
+  if (list.size() > most)
+    return faults.add(key, std::to_string(list.size()) + " entries are more than " + std::to_string(most));
   for (std::size_t n = 0; n < list.size(); ++n) {
     items.emplace_back();
     yaml::read_section(list[n], key + "." + std::to_string(n), faults, items.back());
@@ -89,7 +93,9 @@ void check_together(const Scenario& s, Faults& faults) {
   for (int n = 0; n < s.wind.weights.count; ++n) weight += s.wind.weights.values[n];
   if (!(weight > 0)) faults.add("wind.weights", "must not all be 0");
   if (s.wind_regime.regime != WindRegimeKind::constant && s.wind_segments.empty())
-    faults.add("wind.segments", std::string("a ") + wind_regime_kinds[static_cast<int>(s.wind_regime.regime)] + " needs at least one segment");
+    faults.add("wind.segments", std::string("a ") +
+                                    wind_regime_kinds[static_cast<int>(s.wind_regime.regime)] +
+                                    " needs at least one segment");
   for (std::size_t n = 0; n < s.wind_segments.size(); ++n)
     if (s.wind_segments[n].ramp > s.wind_segments[n].duration)
       faults.add("wind.segments." + std::to_string(n) + ".ramp", "is longer than the segment's duration");
@@ -102,13 +108,15 @@ void check_together(const Scenario& s, Faults& faults) {
   if (s.echo_dunes.sticky_reach < s.echo_dunes.erosion_reach)
     faults.add("echo_dunes.sticky_reach", "must not be below erosion_reach");
   for (std::size_t n = 0; n < s.terrain.size(); ++n)
-    if (const auto* discs = std::get_if<DiscsStep>(&s.terrain[n]); discs && discs->radius_high < discs->radius_low)
+    if (const auto* discs = std::get_if<DiscsStep>(&s.terrain[n]);
+        discs && discs->radius_high < discs->radius_low)
       faults.add("terrain." + std::to_string(n) + ".discs.radius_high", "must not be below radius_low");
 }
 
 void apply_setting(YAML::Node root, const std::string& setting) {
   const std::size_t equals = setting.find('=');
-  if (equals == std::string::npos || equals == 0) throw ConfigError("--set '" + setting + "': must be path=value");
+  if (equals == std::string::npos || equals == 0)
+    throw ConfigError("--set '" + setting + "': must be path=value");
   const std::string path = setting.substr(0, equals);
   YAML::Node value;
   try {
@@ -123,8 +131,11 @@ void apply_setting(YAML::Node root, const std::string& setting) {
     const std::string key = path.substr(begin, dot == std::string::npos ? dot : dot - begin);
     const bool numeric = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
     if (node.IsSequence() && (!numeric || key.size() > 6 || std::stoul(key) > node.size()))
-      throw ConfigError("--set '" + setting + "': '" + key + "' is not an index into a list of " + std::to_string(node.size()));
-    if (node.IsScalar()) throw ConfigError("--set '" + setting + "': there is nothing below '" + path.substr(0, begin ? begin - 1 : 0) + "'");
+      throw ConfigError("--set '" + setting + "': '" + key + "' is not an index into a list of " +
+                        std::to_string(node.size()));
+    if (node.IsScalar())
+      throw ConfigError("--set '" + setting + "': there is nothing below '" +
+                        path.substr(0, begin ? begin - 1 : 0) + "'");
     YAML::Node next = node.IsSequence() ? node[std::stoul(key)] : node[key];
     if (dot == std::string::npos) {
       next = value;
@@ -150,7 +161,8 @@ std::string name_of(const std::string& path) {
 
 namespace {
 
-Scenario parse_with_settings(const std::string& text, const std::string& source, const std::string& folder, const Settings& settings) {
+Scenario parse_with_settings(const std::string& text, const std::string& source, const std::string& folder,
+                             const Settings& settings) {
   YAML::Node root;
   try {
     root = YAML::Load(text);
@@ -215,7 +227,8 @@ std::string dump_scenario(const Scenario& s) {
   });
   out << YAML::Key << "terrain" << YAML::Value << YAML::BeginSeq;
   for (const TerrainStep& step : s.terrain) {
-    out << YAML::Flow << YAML::BeginMap << YAML::Key << terrain_step_names[step.index()] << YAML::Value << YAML::BeginMap;
+    out << YAML::Flow << YAML::BeginMap << YAML::Key << terrain_step_names[step.index()] << YAML::Value
+        << YAML::BeginMap;
     std::visit([&](const auto& parameters) { yaml::emit_parameters(out, parameters); }, step);
     out << YAML::EndMap << YAML::EndMap;
   }
@@ -273,7 +286,8 @@ void resolve_grid(Scenario& s, const RasterLoader& load_raster) {
 
 std::string raster_path(const Scenario& s, const std::string& file) {
   if (file.empty() || file[0] == '/') return file;
-  const std::string beside = s.folder.empty() || s.folder.back() == '/' ? s.folder + file : s.folder + "/" + file;
+  const std::string beside =
+      s.folder.empty() || s.folder.back() == '/' ? s.folder + file : s.folder + "/" + file;
   return std::ifstream(beside) ? beside : file;
 }
 

@@ -44,11 +44,15 @@ constexpr auto parameter_table(const GridParameters*) {
   return std::make_tuple(
       parameter("width", &P::width, 1, 65536, "cells", "Cells from west to east; 256, or the raster's."),
       parameter("height", &P::height, 1, 65536, "cells", "Cells from south to north; 256, or the raster's."),
-      parameter("cell_size", &P::cell_size, 1e-3, 1e4, "m", "Width of a cell; 1, or the raster's (which is resampled to another)."),
-      parameter("boundary", &P::boundary, boundaries, "periodic: a torus; open: sand leaves and enters over the edges."),
+      parameter("cell_size", &P::cell_size, 1e-3, 1e4, "m",
+                "Width of a cell; 1, or the raster's (which is resampled to another)."),
+      parameter("boundary", &P::boundary, boundaries,
+                "periodic: a torus; open: sand leaves and enters over the edges."),
       parameter("origin_x", &P::origin_x, -1e8, 1e8, "m", "West edge of the grid in the terrain's frame."),
       parameter("origin_y", &P::origin_y, -1e8, 1e8, "m", "South edge of the grid in the terrain's frame."),
-      parameter("from_raster", &P::from_raster, "A raster that gives size, cell size and origin where they are not given; a larger width or height continues its edge."));
+      parameter("from_raster", &P::from_raster,
+                "A raster that gives size, cell size and origin where they are not given; a larger width or "
+                "height continues its edge."));
 }
 static_assert(table_is_complete<GridParameters>());
 
@@ -60,16 +64,16 @@ struct RunParameters {
 
 constexpr auto parameter_table(const RunParameters*) {
   using P = RunParameters;
-  return std::make_tuple(
-      parameter("steps", &P::steps, 0, 2147483647, "1", "Steps of a headless run."),
-      parameter("time_step", &P::time_step, 1e-4, 1e3, "s", "Simulated time of one step."),
-      parameter("check_every", &P::check_every, 0, 1000000, "steps", "How often the state is searched for NaN and negative depths; 0 never."));
+  return std::make_tuple(parameter("steps", &P::steps, 0, 2147483647, "1", "Steps of a headless run."),
+                         parameter("time_step", &P::time_step, 1e-4, 1e3, "s", "Simulated time of one step."),
+                         parameter("check_every", &P::check_every, 0, 1000000, "steps",
+                                   "How often the state is searched for NaN and negative depths; 0 never."));
 }
 static_assert(table_is_complete<RunParameters>());
 
 struct Scenario {
-  std::string name;       ///< file name without ending, or what the caller says
-  std::string folder;     ///< relative raster paths are looked up here
+  std::string name;    ///< file name without ending, or what the caller says
+  std::string folder;  ///< relative raster paths are looked up here
   std::uint64_t seed = 1;
   GridParameters grid;
   std::vector<TerrainStep> terrain;
@@ -90,7 +94,8 @@ struct Scenario {
   Grid make_grid() const;
 };
 
-/// `path=value` settings that override keys, as given to --set: "grid.width=128", "terrain.0.raster.file=dem.tif".
+/// `path=value` settings that override keys, as given to --set: "grid.width=128",
+/// "terrain.0.raster.file=dem.tif".
 using Settings = std::vector<std::string>;
 
 /// Throw ConfigError that lists all faults: file, key, value, what is allowed.
@@ -112,11 +117,11 @@ struct RasterRequest {
   std::string path;
   int band = 1;
   double scale = 1, offset = 0;
-  bool fill_nodata = false;   ///< else nodata is refused
+  bool fill_nodata = false;  ///< else nodata is refused
   // The grid to resample to; width 0: as it is.
   int width = 0, height = 0;
   double cell_size = 0, origin_x = 0, origin_y = 0;
-  bool stretch = false;       ///< the raster's extent is stretched over the grid's
+  bool stretch = false;  ///< the raster's extent is stretched over the grid's
 };
 using RasterLoader = std::function<RasterField(const RasterRequest&)>;
 RasterField refuse_rasters(const RasterRequest& request);

@@ -9,7 +9,8 @@ struct SeedParameter {
   std::uint64_t seed = 1;
 };
 constexpr auto parameter_table(const SeedParameter*) {
-  return std::make_tuple(parameter("seed", &SeedParameter::seed, 0, 1.8e19, "1", "Seed of everything random."));
+  return std::make_tuple(
+      parameter("seed", &SeedParameter::seed, 0, 1.8e19, "1", "Seed of everything random."));
 }
 static_assert(table_is_complete<SeedParameter>());
 

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-/// Centre of a step's shape relative to the grid's lower-left corner [m], and the shortest way to a cell from it.
+/// Centre of a step's shape relative to the grid's lower-left corner [m], and the shortest way to a cell from
+/// it.
 struct Placement {
   Grid grid;
   double x, y, cos = 1, sin = 0;
@@ -40,7 +41,8 @@ struct Placement {
 
 class Builder {
  public:
-  Builder(const Scenario& scenario, const RasterLoader& load_raster) : s_(scenario), load_raster_(load_raster) {
+  Builder(const Scenario& scenario, const RasterLoader& load_raster)
+      : s_(scenario), load_raster_(load_raster) {
     layer(Layer::bedrock);
     layer(Layer::sand);
   }
@@ -76,7 +78,8 @@ class Builder {
 
   /// As fill(), where inside(along, across) holds.
   template <class Inside>
-  void fill_inside(const std::string& name, Merge merge, double value, const Placement& place, const Inside& inside) {
+  void fill_inside(const std::string& name, Merge merge, double value, const Placement& place,
+                   const Inside& inside) {
     touched_ = layer_by_name(name);
     std::vector<double>& values = layer(touched_);
     for (int y = 0; y < s_.grid.height; ++y)
@@ -102,7 +105,8 @@ class Builder {
   void run(const RampStep& p) {
     const double l = s_.grid.cell_size;
     fill(p.layer, p.merge, [&](int x, int y) {
-      return p.value + p.slope_x * (x + 0.5 - 0.5 * s_.grid.width) * l + p.slope_y * (y + 0.5 - 0.5 * s_.grid.height) * l;
+      return p.value + p.slope_x * (x + 0.5 - 0.5 * s_.grid.width) * l +
+             p.slope_y * (y + 0.5 - 0.5 * s_.grid.height) * l;
     });
   }
 
@@ -110,7 +114,8 @@ class Builder {
     const std::uint64_t seed = s_.seed + p.seed;
     fill(p.layer, p.merge, [&](int x, int y) {
       double share = p.scale > 0 ? smooth_noise(p, seed, x, y)
-                                 : random_unit(seed, Purpose::terrain_noise, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+                                 : random_unit(seed, Purpose::terrain_noise, static_cast<std::uint32_t>(x),
+                                               static_cast<std::uint32_t>(y));
       share = std::max(0.0, share - p.threshold) / std::max(1e-9, 1.0 - p.threshold);
       return p.low + (p.high - p.low) * share;
     });
@@ -125,7 +130,8 @@ class Builder {
       // The nearest lattice that fits the grid a whole number of times.
       const int nx = std::max(1, static_cast<int>(std::lround(extent_x / (size * p.stretch))));
       const int ny = std::max(1, static_cast<int>(std::lround(extent_y / size)));
-      sum += amplitude * value_noise(seed, Purpose::terrain_noise, static_cast<float>((x + 0.5) * l / extent_x * nx),
+      sum += amplitude * value_noise(seed, Purpose::terrain_noise,
+                                     static_cast<float>((x + 0.5) * l / extent_x * nx),
                                      static_cast<float>((y + 0.5) * l / extent_y * ny), octave + 0.5f,
                                      g.periodic_x ? nx : 0, g.periodic_y ? ny : 0);
       total += amplitude;
@@ -168,7 +174,9 @@ class Builder {
     const auto wanted = static_cast<std::size_t>(p.coverage * static_cast<double>(values.size()));
     std::size_t count = 0;
     for (std::uint32_t n = 0; count < wanted && n < 10000000; ++n) {
-      const auto draw = [&](std::uint32_t k) { return random_unit(s_.seed + p.seed, Purpose::terrain_discs, n, k); };
+      const auto draw = [&](std::uint32_t k) {
+        return random_unit(s_.seed + p.seed, Purpose::terrain_discs, n, k);
+      };
       const int cx = static_cast<int>(draw(0) * g.width), cy = static_cast<int>(draw(1) * g.height);
       const double r = (p.radius_low + (p.radius_high - p.radius_low) * draw(2)) / l;
       const int reach = static_cast<int>(std::ceil(r));
@@ -177,7 +185,8 @@ class Builder {
           const int i = dx * dx + dy * dy <= r * r ? neighbour_index(g, cx + dx, cy + dy) : -1;
           if (i < 0) continue;
           double& v = values[static_cast<std::size_t>(i)];
-          v = p.merge == Merge::replace ? p.height : (p.merge == Merge::add ? v + p.height : std::max(v, p.height));
+          v = p.merge == Merge::replace ? p.height
+                                        : (p.merge == Merge::add ? v + p.height : std::max(v, p.height));
           count += covered[static_cast<std::size_t>(i)] ? 0 : 1;
           covered[static_cast<std::size_t>(i)] = 1;
         }
@@ -186,7 +195,8 @@ class Builder {
 
   void run(const RasterStep& p) {
     const std::string file = p.file.empty() ? s_.grid.from_raster : p.file;
-    if (file.empty()) throw ConfigError(s_.name + ": terrain: raster: names no file, and grid.from_raster is empty");
+    if (file.empty())
+      throw ConfigError(s_.name + ": terrain: raster: names no file, and grid.from_raster is empty");
     RasterRequest request;
     request.path = raster_path(s_, file);
     request.band = p.band;
@@ -212,9 +222,10 @@ class Builder {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (row.lowest == 0 && values[i] < 0) values[i] = 0;
       if (!(values[i] >= row.lowest && values[i] <= row.highest))
-        throw ConfigError(s_.name + ": " + step + ": layer " + row.name + " would be " + std::to_string(values[i]) +
-                          " at cell (" + std::to_string(i % s_.grid.width) + ", " + std::to_string(i / s_.grid.width) +
-                          "); allowed: [" + std::to_string(row.lowest) + ", " + std::to_string(row.highest) + "] " + row.unit);
+        throw ConfigError(s_.name + ": " + step + ": layer " + row.name + " would be " +
+                          std::to_string(values[i]) + " at cell (" + std::to_string(i % s_.grid.width) +
+                          ", " + std::to_string(i / s_.grid.width) + "); allowed: [" +
+                          std::to_string(row.lowest) + ", " + std::to_string(row.highest) + "] " + row.unit);
     }
   }
 

@@ -4,16 +4,17 @@
 #include <map>
 #include <vector>
 
-#include "desert_sim/scenario/scenario.hpp"
 #include "desert_sim/kernels/layers.hpp"
+#include "desert_sim/scenario/scenario.hpp"
 
 namespace desert_sim {
 
-/// Values in the layers' units, row-major from the south-west. Only layers that a step filled are there; bedrock and
-/// sand always are.
+/// Values in the layers' units, row-major from the south-west. Only layers that a step filled are there;
+/// bedrock and sand always are.
 using HostLayers = std::map<Layer, std::vector<double>>;
 
-/// `scenario` must be resolved. Throws ConfigError that names step, layer and cell of a value that is not allowed.
+/// `scenario` must be resolved. Throws ConfigError that names step, layer and cell of a value that is not
+/// allowed.
 HostLayers build_terrain(const Scenario& scenario, const RasterLoader& load_raster);
 
 }  // namespace desert_sim

@@ -1,6 +1,6 @@
 #pragma once
-/// The steps of a scenario's `terrain` list: each fills or changes a layer, in order. Positions are metres in the
-/// terrain's frame unless `relative` says shares of the grid's extent.
+/// The steps of a scenario's `terrain` list: each fills or changes a layer, in order. Positions are metres in
+/// the terrain's frame unless `relative` says shares of the grid's extent.
 
 #include <cstdint>
 #include <string>
@@ -27,8 +27,8 @@ constexpr auto parameter_table(const UniformStep*) {
 }
 static_assert(table_is_complete<UniformStep>());
 
-/// Noise between `low` and `high`: white (scale 0: each cell uniform, as in the papers' scenes), or octaves of smooth
-/// noise whose largest features are `scale` metres. Tiles on periodic axes.
+/// Noise between `low` and `high`: white (scale 0: each cell uniform, as in the papers' scenes), or octaves
+/// of smooth noise whose largest features are `scale` metres. Tiles on periodic axes.
 struct NoiseStep {
   std::string layer = "sand";
   Merge merge = Merge::replace;
@@ -43,12 +43,14 @@ struct NoiseStep {
 constexpr auto parameter_table(const NoiseStep*) {
   using P = NoiseStep;
   return std::make_tuple(
-      parameter("layer", &P::layer, "Layer to fill."), parameter("merge", &P::merge, merges, "How it meets what is there."),
+      parameter("layer", &P::layer, "Layer to fill."),
+      parameter("merge", &P::merge, merges, "How it meets what is there."),
       parameter("low", &P::low, -1e6, 1e6, "layer's", "Value of the noise's least."),
       parameter("high", &P::high, -1e6, 1e6, "layer's", "Value of the noise's greatest."),
       parameter("scale", &P::scale, 0, 1e6, "m", "Size of the largest features; 0 is white noise."),
       parameter("octaves", &P::octaves, 1, 12, "1", "Octaves, each half as large and as strong."),
-      parameter("stretch", &P::stretch, 0.01, 100, "1", "Length of features along x over their length along y."),
+      parameter("stretch", &P::stretch, 0.01, 100, "1",
+                "Length of features along x over their length along y."),
       parameter("threshold", &P::threshold, 0, 1, "1", "Share of the noise's range that is cut to low."),
       parameter("seed", &P::seed, 0, 1.8e19, "1", "Added to the scenario's seed."));
 }
@@ -88,13 +90,14 @@ struct ConeStep {
 };
 constexpr auto parameter_table(const ConeStep*) {
   using P = ConeStep;
-  return std::make_tuple(parameter("layer", &P::layer, "Layer to change."),
-                         parameter("merge", &P::merge, merges, "How it meets what is there."),
-                         parameter("shape", &P::shape, hill_shapes, "cone; gaussian (radius is sigma); dome (paraboloid)."),
-                         parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
-                         parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
-                         parameter("radius", &P::radius, 1e-3, 1e6, "m", "Radius of the foot, or sigma."),
-                         parameter("height", &P::height, -1e5, 1e5, "layer's", "Height of the top."));
+  return std::make_tuple(
+      parameter("layer", &P::layer, "Layer to change."),
+      parameter("merge", &P::merge, merges, "How it meets what is there."),
+      parameter("shape", &P::shape, hill_shapes, "cone; gaussian (radius is sigma); dome (paraboloid)."),
+      parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
+      parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
+      parameter("radius", &P::radius, 1e-3, 1e6, "m", "Radius of the foot, or sigma."),
+      parameter("height", &P::height, -1e5, 1e5, "layer's", "Height of the top."));
 }
 static_assert(table_is_complete<ConeStep>());
 
@@ -116,15 +119,16 @@ struct ColumnStep {
 };
 constexpr auto parameter_table(const ColumnStep*) {
   using P = ColumnStep;
-  return std::make_tuple(parameter("layer", &P::layer, "Layer to change."),
-                         parameter("merge", &P::merge, merges, "How it meets what is there."),
-                         parameter("shape", &P::shape, footprints, "Its outline."),
-                         parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
-                         parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
-                         parameter("size_x", &P::size_x, 0, 1e7, "m", "Width; of a cylinder the diameter."),
-                         parameter("size_y", &P::size_y, 0, 1e7, "m", "Depth; of a cylinder the other diameter."),
-                         parameter("angle_deg", &P::angle_deg, -360, 360, "deg", "Turn, counter-clockwise."),
-                         parameter("height", &P::height, -1e5, 1e5, "layer's", "Height, or value."));
+  return std::make_tuple(
+      parameter("layer", &P::layer, "Layer to change."),
+      parameter("merge", &P::merge, merges, "How it meets what is there."),
+      parameter("shape", &P::shape, footprints, "Its outline."),
+      parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
+      parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
+      parameter("size_x", &P::size_x, 0, 1e7, "m", "Width; of a cylinder the diameter."),
+      parameter("size_y", &P::size_y, 0, 1e7, "m", "Depth; of a cylinder the other diameter."),
+      parameter("angle_deg", &P::angle_deg, -360, 360, "deg", "Turn, counter-clockwise."),
+      parameter("height", &P::height, -1e5, 1e5, "layer's", "Height, or value."));
 }
 static_assert(table_is_complete<ColumnStep>());
 
@@ -140,13 +144,14 @@ struct DiscsStep {
 };
 constexpr auto parameter_table(const DiscsStep*) {
   using P = DiscsStep;
-  return std::make_tuple(parameter("layer", &P::layer, "Layer to change."),
-                         parameter("merge", &P::merge, merges, "How a disc meets what is there."),
-                         parameter("coverage", &P::coverage, 0, 0.95, "1", "Share of the cells that discs cover."),
-                         parameter("radius_low", &P::radius_low, 1e-3, 1e6, "m", "Least radius."),
-                         parameter("radius_high", &P::radius_high, 1e-3, 1e6, "m", "Greatest radius."),
-                         parameter("height", &P::height, 0, 1e5, "layer's", "Height, or value."),
-                         parameter("seed", &P::seed, 0, 1.8e19, "1", "Added to the scenario's seed."));
+  return std::make_tuple(
+      parameter("layer", &P::layer, "Layer to change."),
+      parameter("merge", &P::merge, merges, "How a disc meets what is there."),
+      parameter("coverage", &P::coverage, 0, 0.95, "1", "Share of the cells that discs cover."),
+      parameter("radius_low", &P::radius_low, 1e-3, 1e6, "m", "Least radius."),
+      parameter("radius_high", &P::radius_high, 1e-3, 1e6, "m", "Greatest radius."),
+      parameter("height", &P::height, 0, 1e5, "layer's", "Height, or value."),
+      parameter("seed", &P::seed, 0, 1.8e19, "1", "Added to the scenario's seed."));
 }
 static_assert(table_is_complete<DiscsStep>());
 
@@ -163,13 +168,14 @@ struct ObstacleStep {
 };
 constexpr auto parameter_table(const ObstacleStep*) {
   using P = ObstacleStep;
-  return std::make_tuple(parameter("shape", &P::shape, footprints, "Its outline."),
-                         parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
-                         parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
-                         parameter("size_x", &P::size_x, 1e-3, 1e7, "m", "Width; of a cylinder the diameter."),
-                         parameter("size_y", &P::size_y, 1e-3, 1e7, "m", "Depth; of a cylinder the other diameter."),
-                         parameter("angle_deg", &P::angle_deg, -360, 360, "deg", "Turn, counter-clockwise."),
-                         parameter("height", &P::height, 0, 1e5, "m", "Height above the ground."));
+  return std::make_tuple(
+      parameter("shape", &P::shape, footprints, "Its outline."),
+      parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
+      parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
+      parameter("size_x", &P::size_x, 1e-3, 1e7, "m", "Width; of a cylinder the diameter."),
+      parameter("size_y", &P::size_y, 1e-3, 1e7, "m", "Depth; of a cylinder the other diameter."),
+      parameter("angle_deg", &P::angle_deg, -360, 360, "deg", "Turn, counter-clockwise."),
+      parameter("height", &P::height, 0, 1e5, "m", "Height above the ground."));
 }
 static_assert(table_is_complete<ObstacleStep>());
 
@@ -186,19 +192,24 @@ struct RasterStep {
 };
 constexpr auto parameter_table(const RasterStep*) {
   using P = RasterStep;
-  return std::make_tuple(parameter("layer", &P::layer, "Layer to fill."),
-                         parameter("merge", &P::merge, merges, "How it meets what is there."),
-                         parameter("file", &P::file, "Path, also relative to the scenario's folder; empty: grid.from_raster."),
-                         parameter("band", &P::band, 1, 10000, "1", "Band of the raster."),
-                         parameter("scale", &P::scale, -1e9, 1e9, "layer's", "Factor."),
-                         parameter("offset", &P::offset, -1e9, 1e9, "layer's", "Added after the factor."),
-                         parameter("fill_nodata", &P::fill_nodata, "Whether gaps are filled from around; else they are refused."),
-                         parameter("stretch", &P::stretch, "Whether the raster is stretched over the grid, wherever it lies; always so if it is not georeferenced."));
+  return std::make_tuple(
+      parameter("layer", &P::layer, "Layer to fill."),
+      parameter("merge", &P::merge, merges, "How it meets what is there."),
+      parameter("file", &P::file, "Path, also relative to the scenario's folder; empty: grid.from_raster."),
+      parameter("band", &P::band, 1, 10000, "1", "Band of the raster."),
+      parameter("scale", &P::scale, -1e9, 1e9, "layer's", "Factor."),
+      parameter("offset", &P::offset, -1e9, 1e9, "layer's", "Added after the factor."),
+      parameter("fill_nodata", &P::fill_nodata,
+                "Whether gaps are filled from around; else they are refused."),
+      parameter("stretch", &P::stretch,
+                "Whether the raster is stretched over the grid, wherever it lies; always so if it is not "
+                "georeferenced."));
 }
 static_assert(table_is_complete<RasterStep>());
 
 using TerrainStep =
     std::variant<UniformStep, NoiseStep, RampStep, ConeStep, ColumnStep, DiscsStep, ObstacleStep, RasterStep>;
-constexpr const char* terrain_step_names[] = {"uniform", "noise", "ramp", "cone", "column", "discs", "obstacle", "raster"};
+constexpr const char* terrain_step_names[] = {"uniform", "noise", "ramp",     "cone",
+                                              "column",  "discs", "obstacle", "raster"};
 
 }  // namespace desert_sim

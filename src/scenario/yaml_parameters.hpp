@@ -19,7 +19,9 @@ namespace desert_sim {
 class Faults {
  public:
   explicit Faults(std::string source) : source_(std::move(source)) {}
-  void add(const std::string& key, const std::string& what) { text_ += (text_.empty() ? "" : "\n") + source_ + ": " + key + ": " + what; }
+  void add(const std::string& key, const std::string& what) {
+    text_ += (text_.empty() ? "" : "\n") + source_ + ": " + key + ": " + what;
+  }
   void throw_if_any() const {
     if (!text_.empty()) throw ConfigError(text_);
   }
@@ -46,9 +48,11 @@ std::string allowed_range(const Row& row) {
   return text.str();
 }
 
-/// A number in the row's range, or a fault. YAML's NaN and infinities are read, so that they are named when refused.
+/// A number in the row's range, or a fault. YAML's NaN and infinities are read, so that they are named when
+/// refused.
 template <class Row>
-bool read_number(const YAML::Node& node, const Row& row, const std::string& key, Faults& faults, double& number) {
+bool read_number(const YAML::Node& node, const Row& row, const std::string& key, Faults& faults,
+                 double& number) {
   if (!node.IsScalar() || node.Tag() == "!" || !YAML::convert<double>::decode(node, number)) {
     faults.add(key, shown(node) + " is not a number (allowed: " + allowed_range(row) + ")");
     return false;
@@ -119,11 +123,12 @@ void read_parameters(const YAML::Node& section, const std::string& path, Faults&
 }
 
 /// Faults for keys that nobody knows, with what is known.
-inline void refuse_unknown(const YAML::Node& section, const std::string& path, const std::set<std::string>& known,
-                           Faults& faults) {
+inline void refuse_unknown(const YAML::Node& section, const std::string& path,
+                           const std::set<std::string>& known, Faults& faults) {
   if (!section.IsDefined() || section.IsNull()) return;
   if (!section.IsMap()) {
-    faults.add(path.empty() ? "top level" : path.substr(0, path.size() - 1), shown(section) + " where keys and values are expected");
+    faults.add(path.empty() ? "top level" : path.substr(0, path.size() - 1),
+               shown(section) + " where keys and values are expected");
     return;
   }
   std::string all;

@@ -53,7 +53,8 @@ CommandResult Simulation::apply(const SetWindSchedule& command) {
   Faults faults("set_wind_schedule");
   if (r.kind == WindRegimeKind::constant) faults.add("kind", "must be timeline or rose");
   if (r.segments.empty()) faults.add("segments", "there must be at least one");
-  if (!(r.hold_time >= 1e-3f && r.hold_time <= 1e12f)) faults.add("hold_time", "= " + std::to_string(r.hold_time) + " is not in [0.001, 1e+12] s");
+  if (!(r.hold_time >= 1e-3f && r.hold_time <= 1e12f))
+    faults.add("hold_time", "= " + std::to_string(r.hold_time) + " is not in [0.001, 1e+12] s");
   double probability = 0;
   for (std::size_t n = 0; n < r.segments.size(); ++n) {
     check_ranges(r.segments[n], "set_wind_schedule: segment " + std::to_string(n));
@@ -61,7 +62,8 @@ CommandResult Simulation::apply(const SetWindSchedule& command) {
       faults.add("segment " + std::to_string(n) + ": ramp", "is longer than the segment's duration");
     probability += r.segments[n].probability;
   }
-  if (r.kind == WindRegimeKind::rose && !(probability > 0)) faults.add("segments", "the probabilities must not all be 0");
+  if (r.kind == WindRegimeKind::rose && !(probability > 0))
+    faults.add("segments", "the probabilities must not all be 0");
   faults.throw_if_any();
   set_regime(r);
   return {};
@@ -121,25 +123,31 @@ CommandResult Simulation::apply(const EditTerrain& command) {
   if (command.layer != "sand" && command.layer != "bedrock")
     throw ConfigError("edit_terrain: layer: '" + command.layer + "' is not one of: sand, bedrock");
   if (command.layer == "sand" && command.value < 0)
-    throw ConfigError("edit_terrain: value: = " + std::to_string(command.value) + " is not a depth of sand (allowed: [0, 100000] m)");
+    throw ConfigError("edit_terrain: value: = " + std::to_string(command.value) +
+                      " is not a depth of sand (allowed: [0, 100000] m)");
   CommandResult result;
   const brush::Brush b = prepare(command, result.touched);
   if (b.columns == 0 || b.rows == 0)
-    throw ConfigError("edit_terrain: the brush at (" + std::to_string(command.x) + ", " + std::to_string(command.y) + ") touches no cell of the terrain");
+    throw ConfigError("edit_terrain: the brush at (" + std::to_string(command.x) + ", " +
+                      std::to_string(command.y) + ") touches no cell of the terrain");
   const long long beyond = with_backend(exec(), [&](auto& e) { return brush::cells_beyond_limit(e, b); });
   if (beyond > 0) {
-    const double reach = static_cast<double>(load_limit) * terrain_.scale().quantum(), datum = terrain_.scale().datum;
-    throw ConfigError("edit_terrain: value: = " + std::to_string(command.value) + " would bring " + std::to_string(beyond) +
-                      " cells out of this terrain's heights (allowed: [" + std::to_string(datum - reach) + ", " +
-                      std::to_string(datum + reach) + "] m)");
+    const double reach = static_cast<double>(load_limit) * terrain_.scale().quantum(),
+                 datum = terrain_.scale().datum;
+    throw ConfigError("edit_terrain: value: = " + std::to_string(command.value) + " would bring " +
+                      std::to_string(beyond) + " cells out of this terrain's heights (allowed: [" +
+                      std::to_string(datum - reach) + ", " + std::to_string(datum + reach) + "] m)");
   }
   if (b.material == Material::bedrock) prepare_ground_avalanches();
   const std::vector<long long> before = read_ledger();
   with_backend(exec(), [&](auto& e) { brush::apply(e, b); });
   const std::vector<long long> after = read_ledger();
   const std::size_t account = 2 * static_cast<std::size_t>(b.material);
-  const double quantum_volume = terrain_.scale().quantum() * scenario_.grid.cell_size * scenario_.grid.cell_size;
-  result.volume_m3 = static_cast<double>((after[account] - before[account]) - (after[account + 1] - before[account + 1])) * quantum_volume;
+  const double quantum_volume =
+      terrain_.scale().quantum() * scenario_.grid.cell_size * scenario_.grid.cell_size;
+  result.volume_m3 =
+      static_cast<double>((after[account] - before[account]) - (after[account + 1] - before[account + 1])) *
+      quantum_volume;
   if (b.material == Material::bedrock) bedrock_loose_ = true;
   return result;
 }

@@ -58,7 +58,8 @@ void write_durably(const std::string& path, const std::string& bytes) {
   if (fsync(file) != 0 || close(file) != 0) fail("making it durable");
   if (rename(temporary.c_str(), path.c_str()) != 0) fail("renaming");
   const std::size_t slash = path.rfind('/');
-  const int folder = open(slash == std::string::npos ? "." : path.substr(0, slash + 1).c_str(), O_RDONLY | O_CLOEXEC);
+  const int folder =
+      open(slash == std::string::npos ? "." : path.substr(0, slash + 1).c_str(), O_RDONLY | O_CLOEXEC);
   if (folder >= 0) {
     fsync(folder);  // the name itself; a file system that cannot do this still has the data
     close(folder);
@@ -73,7 +74,8 @@ std::string read_whole(const std::string& path) {
   std::size_t at = magic.size();
   const auto found = take_from<std::uint32_t>(bytes, at, path);
   if (found != version)
-    throw ConfigError(path + ": is a checkpoint of version " + std::to_string(found) + "; this program reads version " + std::to_string(version));
+    throw ConfigError(path + ": is a checkpoint of version " + std::to_string(found) +
+                      "; this program reads version " + std::to_string(version));
   if (bytes.size() < at + sizeof(std::uint64_t) * 2) throw ConfigError(path + ": is cut off");
   std::size_t end = bytes.size() - sizeof(std::uint64_t);
   const std::size_t body = end;
@@ -90,7 +92,9 @@ class CheckpointAccess {
   static std::string header(const Simulation& s) {
     YAML::Emitter out;
     yaml::keep_all_bits(out);
-    const auto entry = [&](const char* key, const auto& value) { out << YAML::Key << key << YAML::Value << value; };
+    const auto entry = [&](const char* key, const auto& value) {
+      out << YAML::Key << key << YAML::Value << value;
+    };
     out << YAML::BeginMap;
     entry("name", s.scenario_.name);
     entry("folder", s.scenario_.folder);
@@ -116,7 +120,8 @@ class CheckpointAccess {
   }
 
   static std::unique_ptr<Simulation> make(const YAML::Node& header, Exec& exec, const std::string& path) {
-    Scenario scenario = parse_scenario(YAML::Load(header["scenario"].as<std::string>()), path, header["folder"].as<std::string>());
+    Scenario scenario = parse_scenario(YAML::Load(header["scenario"].as<std::string>()), path,
+                                       header["folder"].as<std::string>());
     scenario.name = header["name"].as<std::string>();
     scenario.projection = header["projection"].as<std::string>();
     HeightScale scale;
@@ -128,7 +133,8 @@ class CheckpointAccess {
     s->bedrock_loose_ = header["bedrock_loose"].as<bool>();
     if (s->bedrock_loose_) s->prepare_ground_avalanches();
     s->avalanche_iterations_ = header["avalanche_iterations"].as<std::uint64_t>();
-    for (std::size_t m = 0; m < s->initial_.size(); ++m) s->initial_[m] = header["initial"][m].as<long long>();
+    for (std::size_t m = 0; m < s->initial_.size(); ++m)
+      s->initial_[m] = header["initial"][m].as<long long>();
     std::vector<long long> words(LedgerView::words, 0);
     for (std::size_t account = 0; account < material_count * 2; ++account)
       words[account * LedgerView::stripes] = header["ledger"][account].as<long long>();

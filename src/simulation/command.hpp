@@ -1,6 +1,6 @@
 #pragma once
-/// Commands: what changes a running simulation from outside. They are applied between steps, refused whole or applied
-/// whole, and journalled. Positions are in the terrain's frame [m].
+/// Commands: what changes a running simulation from outside. They are applied between steps, refused whole or
+/// applied whole, and journalled. Positions are in the terrain's frame [m].
 
 #include <string>
 #include <variant>
@@ -20,14 +20,15 @@ struct SetWind {
 };
 constexpr auto parameter_table(const SetWind*) {
   using P = SetWind;
-  return std::make_tuple(
-      parameter("direction_deg", &P::direction_deg, -360, 360, "deg", "Where the wind blows to, counter-clockwise from +x."),
-      parameter("speed", &P::speed, 0, 100, "m/s", "Speed high above the ground."),
-      parameter("ramp", &P::ramp, 0, 1e12, "s", "Time in which the wind changes."));
+  return std::make_tuple(parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
+                                   "Where the wind blows to, counter-clockwise from +x."),
+                         parameter("speed", &P::speed, 0, 100, "m/s", "Speed high above the ground."),
+                         parameter("ramp", &P::ramp, 0, 1e12, "s", "Time in which the wind changes."));
 }
 static_assert(table_is_complete<SetWind>());
 
-/// A timeline or rose from now on (`regime.kind` says which; `start_time` and `from` are filled in when applied).
+/// A timeline or rose from now on (`regime.kind` says which; `start_time` and `from` are filled in when
+/// applied).
 struct SetWindSchedule {
   WindRegime regime;
 };
@@ -35,9 +36,10 @@ struct SetWindSchedule {
 enum class BrushShape : int { circle, ellipse };
 constexpr const char* brush_shapes[] = {"circle", "ellipse"};
 
-/// Brush on `layer` (sand or bedrock). Weight is 1 within `inner` of the shape and falls linearly to 0 at its edge;
-/// add and sub move the layer by weight·value, the others blend towards value (or its min, max, mean with what is
-/// there) by the weight. For sand, `value` is a depth [m]; for bedrock an elevation [m], or with add/sub a change.
+/// Brush on `layer` (sand or bedrock). Weight is 1 within `inner` of the shape and falls linearly to 0 at its
+/// edge; add and sub move the layer by weight·value, the others blend towards value (or its min, max, mean
+/// with what is there) by the weight. For sand, `value` is a depth [m]; for bedrock an elevation [m], or with
+/// add/sub a change.
 struct EditTerrain {
   std::string layer = "sand";
   BrushShape shape = BrushShape::circle;
@@ -59,7 +61,8 @@ constexpr auto parameter_table(const EditTerrain*) {
       parameter("y", &P::y, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
       parameter("radius", &P::radius, 1e-3, 1e6, "m", "Radius; of an ellipse the semi-axis along its angle."),
       parameter("radius_y", &P::radius_y, 1e-3, 1e6, "m", "Of an ellipse the semi-axis across."),
-      parameter("angle_deg", &P::angle_deg, -360, 360, "deg", "Direction of an ellipse's first axis, counter-clockwise from +x."),
+      parameter("angle_deg", &P::angle_deg, -360, 360, "deg",
+                "Direction of an ellipse's first axis, counter-clockwise from +x."),
       parameter("inner", &P::inner, 0, 1, "1", "Share of the radius within which the brush has full weight."),
       parameter("value", &P::value, -1e5, 1e5, "m", "Height or depth of the brush; see merge."));
 }
@@ -82,7 +85,7 @@ struct CellRectangle {
 };
 
 struct CommandResult {
-  double volume_m3 = 0;    ///< material added (+) or removed (−) by an edit
+  double volume_m3 = 0;  ///< material added (+) or removed (−) by an edit
   CellRectangle touched;
 };
 

@@ -40,7 +40,8 @@ P read_all(const YAML::Node& node, const std::string& source) {
 void emit_regime(YAML::Emitter& out, const WindRegime& r) {
   yaml::emit_parameters(out, parameters_of(r));
   out << YAML::Key << "start_time" << YAML::Value << r.start_time;
-  out << YAML::Key << "from" << YAML::Value << YAML::Flow << YAML::BeginSeq << r.from.x << r.from.y << YAML::EndSeq;
+  out << YAML::Key << "from" << YAML::Value << YAML::Flow << YAML::BeginSeq << r.from.x << r.from.y
+      << YAML::EndSeq;
   out << YAML::Key << "segments" << YAML::Value << YAML::BeginSeq;
   for (const WindSegment& segment : r.segments) {
     out << YAML::Flow << YAML::BeginMap;
@@ -65,8 +66,10 @@ WindRegime read_regime(const YAML::Node& node, const std::string& source) {
   if (!from.IsSequence() || from.size() != 2 || !YAML::convert<float>::decode(from[0], r.from.x) ||
       !YAML::convert<float>::decode(from[1], r.from.y))
     throw ConfigError(source + ": from: must be two numbers");
-  for (const YAML::Node& segment : required(node, "segments", source)) r.segments.push_back(read_all<WindSegment>(segment, source));
-  if (r.kind != WindRegimeKind::constant && r.segments.empty()) throw ConfigError(source + ": segments: there is none");
+  for (const YAML::Node& segment : required(node, "segments", source))
+    r.segments.push_back(read_all<WindSegment>(segment, source));
+  if (r.kind != WindRegimeKind::constant && r.segments.empty())
+    throw ConfigError(source + ": segments: there is none");
   return r;
 }
 
@@ -96,7 +99,9 @@ Command read_command(const YAML::Node& node, const std::string& source) {
   if (name == "set_wind_schedule") return SetWindSchedule{read_regime(node, source)};
   if (name == "edit_terrain") return read_all<EditTerrain>(node, source);
   if (name == "reset") return Reset{};
-  if (name == "load_checkpoint") return LoadCheckpoint{scalar<std::string>(node, "path", source), scalar<std::uint64_t>(node, "hash", source)};
+  if (name == "load_checkpoint")
+    return LoadCheckpoint{scalar<std::string>(node, "path", source),
+                          scalar<std::uint64_t>(node, "hash", source)};
   throw ConfigError(source + ": unknown command '" + name + "'");
 }
 

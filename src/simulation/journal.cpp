@@ -51,11 +51,16 @@ class Line {
 JournalWriter::JournalWriter(const std::string& path, std::uint64_t scenario_hash, const std::string& backend)
     : path_(path), file_(std::fopen(path.c_str(), "w")) {
   if (!file_) throw ConfigError(path + ": the journal cannot be written: " + std::strerror(errno));
-  line(Line().entry("journal", journal_version).entry("scenario_hash", scenario_hash).entry("backend", backend).text());
+  line(Line()
+           .entry("journal", journal_version)
+           .entry("scenario_hash", scenario_hash)
+           .entry("backend", backend)
+           .text());
 }
 
 JournalWriter::~JournalWriter() {
-  if (std::fclose(file_) != 0) std::fprintf(stderr, "desert_sim: %s: closing the journal: %s\n", path_.c_str(), std::strerror(errno));
+  if (std::fclose(file_) != 0)
+    std::fprintf(stderr, "desert_sim: %s: closing the journal: %s\n", path_.c_str(), std::strerror(errno));
 }
 
 void JournalWriter::line(const std::string& text) {
@@ -67,7 +72,9 @@ void JournalWriter::write(std::uint64_t tick, const Command& command) {
   line(Line().entry("tick", tick).command(command).text());
 }
 
-void JournalWriter::end(std::uint64_t tick) { line(Line().entry("tick", tick).entry("command", "end").text()); }
+void JournalWriter::end(std::uint64_t tick) {
+  line(Line().entry("tick", tick).entry("command", "end").text());
+}
 
 Journal read_journal(const std::string& path) {
   std::ifstream file(path);
@@ -90,13 +97,16 @@ Journal read_journal(const std::string& path) {
       return value;
     };
     if (n == 1) {
-      if (number("journal") != journal_version) throw ConfigError(source + ": a journal of version " + std::to_string(number("journal")) + "; this program reads version 1");
+      if (number("journal") != journal_version)
+        throw ConfigError(source + ": a journal of version " + std::to_string(number("journal")) +
+                          "; this program reads version 1");
       journal.scenario_hash = number("scenario_hash");
       journal.backend = node["backend"] ? node["backend"].Scalar() : "";
       continue;
     }
     const std::uint64_t tick = number("tick");
-    if (journal.ended || tick < journal.ticks) throw ConfigError(source + ": tick " + std::to_string(tick) + " is out of order");
+    if (journal.ended || tick < journal.ticks)
+      throw ConfigError(source + ": tick " + std::to_string(tick) + " is out of order");
     journal.ticks = tick;
     if (node["command"] && node["command"].IsScalar() && node["command"].Scalar() == "end")
       journal.ended = true;

@@ -1,6 +1,6 @@
 #pragma once
-/// The journal: every command with the tick (steps done in the session) before which it was applied, one YAML document
-/// a line, so that a run that is killed leaves a journal that is whole up to its last line.
+/// The journal: every command with the tick (steps done in the session) before which it was applied, one YAML
+/// document a line, so that a run that is killed leaves a journal that is whole up to its last line.
 
 #include <cstdint>
 #include <cstdio>

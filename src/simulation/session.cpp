@@ -14,8 +14,8 @@ std::uint64_t scenario_hash(const Scenario& scenario) {
   return XXH3_64bits(text.data(), text.size());
 }
 
-Session::Session(const Scenario& scenario, const RasterLoader& load_raster, const std::string& backend, int threads,
-                 const std::string& journal_path)
+Session::Session(const Scenario& scenario, const RasterLoader& load_raster, const std::string& backend,
+                 int threads, const std::string& journal_path)
     : scenario_(scenario), load_raster_(load_raster) {
   resolve_grid(scenario_, load_raster_);
   exec_ = make_exec(backend, threads, &backend_choice_);
@@ -37,7 +37,8 @@ std::unique_ptr<Session> Session::resumed(const std::string& checkpoint, const R
 
 void Session::require_journal_of_this_scenario(const Journal& journal, const std::string& path) const {
   if (journal.scenario_hash != scenario_hash(scenario_))
-    throw ConfigError(path + ": is the journal of another scenario than " + scenario_.name + " (or of other settings)");
+    throw ConfigError(path + ": is the journal of another scenario than " + scenario_.name +
+                      " (or of other settings)");
 }
 
 Session::~Session() {
@@ -63,7 +64,8 @@ CommandResult Session::dispatch(const Command& command, Command& journalled) {
     std::unique_ptr<Simulation> loaded = load_checkpoint(load->path, *exec_);
     const std::uint64_t hash = loaded->state_hash();
     if (load->hash != 0 && load->hash != hash)
-      throw ConfigError(load->path + ": is not the checkpoint that the journal means (its state hash differs)");
+      throw ConfigError(load->path +
+                        ": is not the checkpoint that the journal means (its state hash differs)");
     simulation_ = std::move(loaded);
     journalled = LoadCheckpoint{load->path, hash};
     return {};

@@ -1,6 +1,6 @@
 #pragma once
-/// A session: a simulation with its backend, its journal, its start and its checkpoints. What the node and desert_run
-/// both drive. One thread at a time.
+/// A session: a simulation with its backend, its journal, its start and its checkpoints. What the node and
+/// desert_run both drive. One thread at a time.
 
 #include <memory>
 #include <string>

@@ -1,7 +1,5 @@
 #include "desert_sim/simulation/simulation.hpp"
 
-#include <xxhash.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,7 +8,8 @@
 
 namespace desert_sim {
 
-// ---- one step ------------------------------------------------------------------------------------------------------
+// ---- one step
+// ------------------------------------------------------------------------------------------------------
 
 template <class E>
 void Simulation::run_step(E& exec) {
@@ -27,7 +26,8 @@ void Simulation::run_step(E& exec) {
 
   // The eddy before cliffs, which holds sand off and piles it up ahead (A7).
   if (s.echo_dunes.enabled)
-    run(exec, "echo_dunes", {Layer::echo}, [&] { echo_dunes::step(exec, view, s.echo_dunes, cliff_.data()); });
+    run(exec, "echo_dunes", {Layer::echo},
+        [&] { echo_dunes::step(exec, view, s.echo_dunes, cliff_.data()); });
 
   // Sand is lifted, carried a hop, deposited or bounced on; bouncing sand wears rock (B1–B4).
   if (s.saltation.enabled)
@@ -63,10 +63,10 @@ template <class E>
 void Simulation::update_wind(E& exec, const TerrainView& view) {
   surface::step(exec, view);
   if (features_)
-    wind_features::step(exec, view.grid, features_, static_cast<float>(time()), stream_.data(), perturbation_x_.data(),
-                        perturbation_y_.data());
-  wind::step(exec, view, scenario_.wind, wind_above(), wind_reference_, perturbation_x_.data(), perturbation_y_.data(),
-             wind_work_);
+    wind_features::step(exec, view.grid, features_, static_cast<float>(time()), stream_.data(),
+                        perturbation_x_.data(), perturbation_y_.data());
+  wind::step(exec, view, scenario_.wind, wind_above(), wind_reference_, perturbation_x_.data(),
+             perturbation_y_.data(), wind_work_);
 }
 
 template <class E, class Process>
@@ -97,17 +97,20 @@ void Simulation::check(E& exec, const char* process, Layer layer) {
   if (broken == 0) return;
   const std::vector<float> values = terrain_.values(layer);
   std::size_t cell = 0;
-  while (cell + 1 < values.size() && std::isfinite(values[cell]) && !(row.lowest == 0 && values[cell] < 0)) ++cell;
-  throw StateError("step " + std::to_string(steps_) + ": " + process + ": layer " + row.name + " is broken in " +
-                   std::to_string(broken) + " cells, first (" + std::to_string(cell % view.grid.width) + ", " +
-                   std::to_string(cell / view.grid.width) + ") = " + std::to_string(values[cell]));
+  while (cell + 1 < values.size() && std::isfinite(values[cell]) && !(row.lowest == 0 && values[cell] < 0))
+    ++cell;
+  throw StateError("step " + std::to_string(steps_) + ": " + process + ": layer " + row.name +
+                   " is broken in " + std::to_string(broken) + " cells, first (" +
+                   std::to_string(cell % view.grid.width) + ", " + std::to_string(cell / view.grid.width) +
+                   ") = " + std::to_string(values[cell]));
 }
 
 void Simulation::step() {
   with_backend(exec(), [this](auto& exec) { run_step(exec); });
 }
 
-// ---- making --------------------------------------------------------------------------------------------------------
+// ---- making
+// --------------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -152,7 +155,8 @@ Simulation::Simulation(Exec& exec, const Scenario& scenario, const HostLayers& l
   start_books();
 }
 
-Simulation::Simulation(const Scenario& scenario, Terrain terrain) : scenario_(scenario), terrain_(std::move(terrain)) {
+Simulation::Simulation(const Scenario& scenario, Terrain terrain)
+    : scenario_(scenario), terrain_(std::move(terrain)) {
   allocate_work();
 }
 
@@ -186,7 +190,8 @@ void Simulation::allocate_work() {
   }
   features_ = Buffer<wind_features::Prepared>(e, prepared.size());
   features_.upload(prepared);
-  for (Buffer<float>* buffer : {&stream_, &perturbation_x_, &perturbation_y_}) *buffer = Buffer<float>(e, cells);
+  for (Buffer<float>* buffer : {&stream_, &perturbation_x_, &perturbation_y_})
+    *buffer = Buffer<float>(e, cells);
 }
 
 void Simulation::prepare_ground_avalanches() {
@@ -201,119 +206,8 @@ void Simulation::start_books() {
   Quanta lowest = wall_height;
   for (std::uint32_t word : surface) lowest = std::min(lowest, static_cast<Quanta>(word));
   wind_reference_ = lowest;
-  for (int m = 0; m < material_count; ++m) initial_[static_cast<std::size_t>(m)] = material_now(static_cast<Material>(m));
+  for (int m = 0; m < material_count; ++m)
+    initial_[static_cast<std::size_t>(m)] = material_now(static_cast<Material>(m));
 }
-
-// ---- looking at it -------------------------------------------------------------------------------------------------
-
-const std::vector<float>* Snapshot::find(Layer layer) const {
-  const auto found = layers.find(layer);
-  return found == layers.end() ? nullptr : &found->second;
-}
-
-std::shared_ptr<const Snapshot> Simulation::snapshot(const std::vector<Layer>& layers) {
-  auto s = std::make_shared<Snapshot>();
-  const GridParameters& g = scenario_.grid;
-  s->width = g.width;
-  s->height = g.height;
-  s->cell_size = g.cell_size;
-  s->origin_x = g.origin_x;
-  s->origin_y = g.origin_y;
-  s->step = steps_;
-  s->time = time();
-  s->wind_above = wind_above();
-  const auto asked = [&](Layer layer) { return std::find(layers.begin(), layers.end(), layer) != layers.end(); };
-  with_backend(exec(), [&](auto& e) {
-    if (steps_ == 0 && (asked(Layer::wind_x) || asked(Layer::wind_y)))
-      update_wind(e, terrain_.view());
-    else if (asked(Layer::elevation))
-      surface::step(e, terrain_.view());
-  });
-  for (Layer layer : layers) s->layers[layer] = terrain_.values(layer);
-  return s;
-}
-
-std::vector<Layer> Simulation::layers_in_use() const {
-  std::vector<Layer> layers;
-  for (const LayerInfo& row : layer_table)
-    if (terrain_.has(row.layer)) layers.push_back(row.layer);
-  return layers;
-}
-
-std::uint64_t Simulation::state_hash() const {
-  XXH3_state_t* state = XXH3_createState();
-  if (!state) throw Error("no memory for a hash");
-  XXH3_64bits_reset(state);
-  for (const LayerInfo& row : layer_table) {
-    if (row.lifetime != Lifetime::persistent || !terrain_.has(row.layer)) continue;
-    const std::vector<std::uint32_t> words = terrain_.words(row.layer);
-    XXH3_64bits_update(state, row.name, std::char_traits<char>::length(row.name));
-    XXH3_64bits_update(state, words.data(), words.size() * sizeof(std::uint32_t));
-  }
-  const std::vector<long long> books = read_ledger();
-  XXH3_64bits_update(state, books.data(), books.size() * sizeof(long long));
-  XXH3_64bits_update(state, &steps_, sizeof steps_);
-  const std::uint64_t hash = XXH3_64bits_digest(state);
-  XXH3_freeState(state);
-  return hash;
-}
-
-std::vector<long long> Simulation::read_ledger() const {
-  const std::vector<long long> words = ledger_.download();
-  std::vector<long long> accounts(material_count * 2, 0);
-  for (std::size_t n = 0; n < words.size(); ++n) accounts[n / LedgerView::stripes] += words[n];
-  return accounts;
-}
-
-long long Simulation::material_now(Material material) {
-  const auto total = [this](Layer layer) {
-    return with_backend(exec(), [&](auto& e) {
-      return statistics::sum(e, terrain_.grid(), terrain_.has(layer) ? terrain_.view().quanta(layer) : nullptr);
-    });
-  };
-  switch (material) {
-    case Material::bedrock: return total(Layer::bedrock);
-    case Material::soil: return total(Layer::soil);
-    case Material::sand: return total(Layer::sand) + total(Layer::airborne_sand);
-    case Material::water: return total(Layer::water);
-    case Material::sediment: return total(Layer::suspended_sediment);
-    case Material::moisture: return total(Layer::moisture);
-  }
-  throw Error("unknown material");
-}
-
-double MaterialBalance::relative_residual() const {
-  if (residual() == 0) return 0;
-  const double size = std::max({std::abs(static_cast<double>(initial)), std::abs(static_cast<double>(final)), 1.0});
-  return static_cast<double>(residual()) / size;
-}
-
-std::array<MaterialBalance, material_count> Simulation::balance() {
-  const std::vector<long long> books = read_ledger();
-  const double cell = scenario_.grid.cell_size * scenario_.grid.cell_size;
-  std::array<MaterialBalance, material_count> all;
-  for (std::size_t m = 0; m < all.size(); ++m)
-    all[m] = {initial_[m], material_now(static_cast<Material>(m)), books[2 * m], books[2 * m + 1],
-              terrain_.scale().quantum() * cell, 0.0};
-  all[static_cast<std::size_t>(Material::bedrock)].base_volume = terrain_.scale().datum * cell * terrain_.grid().cells();
-  return all;
-}
-
-Residual Simulation::residual() {
-  return with_backend(exec(), [this](auto& e) {
-    return statistics::residual(e, terrain_.view(), repose_.data(), avalanche_work_);
-  });
-}
-
-double Simulation::max_sand_slope_deg() {
-  const float tangent = with_backend(exec(), [this](auto& e) { return statistics::sand_slope(e, terrain_.view()); });
-  return std::atan(tangent) * 180 / 3.14159265358979;
-}
-
-double Simulation::mean_avalanche_iterations() const {
-  return steps_ ? static_cast<double>(avalanche_iterations_) / static_cast<double>(steps_) : 0.0;
-}
-
-void Simulation::clear_process_times() { process_times_.clear(); }
 
 }  // namespace desert_sim

@@ -28,12 +28,13 @@ struct MaterialBalance {
   double relative_residual() const;
 };
 
-/// Layers at one moment, converted to floats in the layer's unit. Immutable once made; outlives the simulation.
+/// Layers at one moment, converted to floats in the layer's unit. Immutable once made; outlives the
+/// simulation.
 struct Snapshot {
   int width = 0, height = 0;
   double cell_size = 1, origin_x = 0, origin_y = 0;
   std::uint64_t step = 0;
-  double time = 0;                                    ///< simulated [s]
+  double time = 0;  ///< simulated [s]
   wind::Vector wind_above;
   std::map<Layer, std::vector<float>> layers;
   const std::vector<float>* find(Layer layer) const;  ///< null if it was not asked for
@@ -53,8 +54,8 @@ class Simulation {
   /// One step of `run.time_step` seconds.
   void step();
 
-  /// Applies between steps; throws ConfigError and changes nothing if it is refused. Reset and LoadCheckpoint are the
-  /// Session's business.
+  /// Applies between steps; throws ConfigError and changes nothing if it is refused. Reset and LoadCheckpoint
+  /// are the Session's business.
   CommandResult apply(const SetWind& command);
   CommandResult apply(const SetWindSchedule& command);
   CommandResult apply(const EditTerrain& command);
@@ -100,7 +101,8 @@ class Simulation {
   void check(E& exec, const char* process, Layer layer);
   brush::Brush prepare(const EditTerrain& command, CellRectangle& touched) const;
   void allocate_work();
-  /// Only terrains whose rock or soil changes need this memory: called when abrasion is on or bedrock is edited.
+  /// Only terrains whose rock or soil changes need this memory: called when abrasion is on or bedrock is
+  /// edited.
   void prepare_ground_avalanches();
   void start_books();
   void set_regime(WindRegime regime);

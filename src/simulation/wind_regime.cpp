@@ -50,7 +50,8 @@ wind::Vector WindRegime::at(double time) const {
     const auto hold = static_cast<std::uint64_t>(elapsed / hold_time);
     double total = 0;
     for (const WindSegment& s : segments) total += s.probability;
-    double draw = total * random_unit(seed, Purpose::wind_rose, static_cast<std::uint32_t>(hold), static_cast<std::uint32_t>(hold >> 32));
+    double draw = total * random_unit(seed, Purpose::wind_rose, static_cast<std::uint32_t>(hold),
+                                      static_cast<std::uint32_t>(hold >> 32));
     for (const WindSegment& s : segments) {
       draw -= s.probability;
       if (draw < 0) return of(s);

@@ -1,6 +1,6 @@
 #pragma once
-/// The wind high above the ground as a function of time: constant (with a ramp), timeline of segments, or wind rose.
-/// Directions are where the air moves to, counter-clockwise from +x (east).
+/// The wind high above the ground as a function of time: constant (with a ramp), timeline of segments, or
+/// wind rose. Directions are where the air moves to, counter-clockwise from +x (east).
 
 #include <cstdint>
 #include <vector>
@@ -25,10 +25,13 @@ struct WindSegment {
 constexpr auto parameter_table(const WindSegment*) {
   using P = WindSegment;
   return std::make_tuple(
-      parameter("direction_deg", &P::direction_deg, -360, 360, "deg", "Where the wind blows to, counter-clockwise from +x."),
+      parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
+                "Where the wind blows to, counter-clockwise from +x."),
       parameter("speed", &P::speed, 0, 100, "m/s", "Speed high above the ground."),
-      parameter("duration", &P::duration, 1e-3, 1e12, "s", "How long a segment of a timeline lasts, its ramp included."),
-      parameter("ramp", &P::ramp, 0, 1e12, "s", "Time in which the wind turns to this segment from the one before."),
+      parameter("duration", &P::duration, 1e-3, 1e12, "s",
+                "How long a segment of a timeline lasts, its ramp included."),
+      parameter("ramp", &P::ramp, 0, 1e12, "s",
+                "Time in which the wind turns to this segment from the one before."),
       parameter("probability", &P::probability, 0, 1e6, "1", "Weight of this direction in a rose."));
 }
 static_assert(table_is_complete<WindSegment>());
@@ -65,11 +68,15 @@ struct WindRegimeParameters {
 constexpr auto parameter_table(const WindRegimeParameters*) {
   using P = WindRegimeParameters;
   return std::make_tuple(
-      parameter("regime", &P::regime, wind_regime_kinds, "constant; timeline: `segments` in turn; rose: one of `segments` drawn every hold_time."),
-      parameter("direction_deg", &P::direction_deg, -360, 360, "deg", "Where the constant wind blows to, counter-clockwise from +x."),
+      parameter("regime", &P::regime, wind_regime_kinds,
+                "constant; timeline: `segments` in turn; rose: one of `segments` drawn every hold_time."),
+      parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
+                "Where the constant wind blows to, counter-clockwise from +x."),
       parameter("speed", &P::speed, 0, 100, "m/s", "Speed of the constant wind high above the ground."),
-      parameter("ramp", &P::ramp, 0, 1e12, "s", "Time in which the constant wind rises, or turns from the one before."),
-      parameter("repeat", &P::repeat, "Whether a timeline starts anew at its end; else its last segment holds."),
+      parameter("ramp", &P::ramp, 0, 1e12, "s",
+                "Time in which the constant wind rises, or turns from the one before."),
+      parameter("repeat", &P::repeat,
+                "Whether a timeline starts anew at its end; else its last segment holds."),
       parameter("hold_time", &P::hold_time, 1e-3, 1e12, "s", "How long a rose keeps a direction."),
       parameter("rose_seed", &P::rose_seed, 0, 1.8e19, "1", "Seed of the rose."));
 }

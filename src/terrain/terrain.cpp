@@ -40,9 +40,11 @@ void Terrain::require_memory(const Exec& exec, const Grid& grid) {
                       megabytes(available) + " are available (and fewer than 2^31 cells are allowed)");
 }
 
-Terrain::Terrain(Exec& exec, const Grid& grid, const HeightScale& scale) : exec_(&exec), grid_(grid), scale_(scale) {
+Terrain::Terrain(Exec& exec, const Grid& grid, const HeightScale& scale)
+    : exec_(&exec), grid_(grid), scale_(scale) {
   require_memory(exec, grid);
-  for (Layer layer : {Layer::bedrock, Layer::sand, Layer::airborne_sand, Layer::elevation, Layer::wind_x, Layer::wind_y})
+  for (Layer layer :
+       {Layer::bedrock, Layer::sand, Layer::airborne_sand, Layer::elevation, Layer::wind_x, Layer::wind_y})
     require(layer);
 }
 
@@ -96,7 +98,8 @@ void Terrain::set_values(Layer layer, const std::vector<double>& values) {
   } else {
     const double per_metre = 1.0 / scale_.quantum(), datum = scale_.absolute(layer) ? scale_.datum : 0.0;
     for (std::size_t i = 0; i < values.size(); ++i)
-      words[i] = static_cast<std::uint32_t>(static_cast<Quanta>(std::llround((values[i] - datum) * per_metre)));
+      words[i] =
+          static_cast<std::uint32_t>(static_cast<Quanta>(std::llround((values[i] - datum) * per_metre)));
   }
   set_words(layer, words);
 }

@@ -15,13 +15,15 @@ namespace desert_sim {
 /// Layer by name; throws ConfigError that lists the known ones.
 Layer layer_by_name(const std::string& name);
 
-/// How heights are counted: value [m] = datum + quanta · 2^exponent for elevations, quanta · 2^exponent for depths.
+/// How heights are counted: value [m] = datum + quanta · 2^exponent for elevations, quanta · 2^exponent for
+/// depths.
 struct HeightScale {
-  double datum = 0;     ///< [m]
-  int exponent = -20;   ///< quantum = 2^exponent m
+  double datum = 0;    ///< [m]
+  int exponent = -20;  ///< quantum = 2^exponent m
 
   double quantum() const { return std::ldexp(1.0, exponent); }
-  /// The finest scale (not below 2⁻²⁰ m) that holds heights from `lowest` to `highest` with room for moving sand.
+  /// The finest scale (not below 2⁻²⁰ m) that holds heights from `lowest` to `highest` with room for moving
+  /// sand.
   static HeightScale covering(double lowest, double highest);
   bool absolute(Layer layer) const {
     return layer == Layer::bedrock || layer == Layer::elevation || layer == Layer::water_surface;
@@ -44,7 +46,8 @@ class Terrain {
   void require(Layer layer);
   TerrainView view() const;
 
-  /// Values in the layer's unit (bedrock and elevation absolute), row-major from the south-west; 0 if not in use.
+  /// Values in the layer's unit (bedrock and elevation absolute), row-major from the south-west; 0 if not in
+  /// use.
   std::vector<float> values(Layer layer) const;
   /// Rounds to quanta. `values` must have one per cell, within the layer's range (checked by the caller).
   void set_values(Layer layer, const std::vector<double>& values);

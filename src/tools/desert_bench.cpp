@@ -1,4 +1,5 @@
-/// desert_bench: times the benchmark scenes by size and backend. See test/bench/README.md for what was measured.
+/// desert_bench: times the benchmark scenes by size and backend. See test/bench/README.md for what was
+/// measured.
 #include <omp.h>
 
 #include <algorithm>
@@ -19,7 +20,8 @@ namespace {
 const char usage[] =
     "usage: desert_bench [--size N] [--scene A|B|SCENARIO.yaml] [options]\n"
     "  --size N        cells a side (default 512); scenes A and B are always 1024 m square\n"
-    "  --scene S       A: sand 0.5 + 1.5 U, wind 5 m/s (barchans); B: 3 + 2 U, wind 3 m/s (transverse); or a file\n"
+    "  --scene S       A: sand 0.5 + 1.5 U, wind 5 m/s (barchans); B: 3 + 2 U, wind 3 m/s (transverse); or a "
+    "file\n"
     "  --steps N       steps to time (default by size); the first tenth is warm-up and not timed\n"
     "  --backend B     auto (default), cpu or cuda\n"
     "  --threads N     threads of the CPU backend\n"
@@ -36,18 +38,19 @@ double median(std::vector<double> values) {
   return values.empty() ? 0 : values[values.size() / 2];
 }
 
-/// Fewest bytes a cell that a process must move through memory: each layer it reads once and each it writes once.
+/// Fewest bytes a cell that a process must move through memory: each layer it reads once and each it writes
+/// once.
 struct ProcessBytes {
   const char* process;
   double bytes;
 };
 constexpr ProcessBytes fewest_bytes[] = {
-    {"wind", 4 * 2 + 4 + 8},         // bedrock, sand; elevation, wind
-    {"wind_shadow", 4 + 8 + 4},      // elevation, wind; wind_shadow
-    {"echo_dunes", 4 + 8 + 4},       // elevation, wind; echo
+    {"wind", 4 * 2 + 4 + 8},            // bedrock, sand; elevation, wind
+    {"wind_shadow", 4 + 8 + 4},         // elevation, wind; wind_shadow
+    {"echo_dunes", 4 + 8 + 4},          // elevation, wind; echo
     {"saltation", 8 + 8 + 12 + 4 + 4},  // sand and airborne sand both ways; wind, shadow; landed; strength
-    {"reptation", 4 + 8 + 4 + 4},    // strength, wind, shadow; repose
-    {"avalanching", 4 + 8 + 4},      // bedrock, sand both ways, repose
+    {"reptation", 4 + 8 + 4 + 4},       // strength, wind, shadow; repose
+    {"avalanching", 4 + 8 + 4},         // bedrock, sand both ways, repose
 };
 
 struct Result {
@@ -70,7 +73,8 @@ Scenario bench_scenario(const std::string& scene, int size, const Settings& sett
   std::ostringstream text;
   text.precision(17);
   text << "grid: {width: " << size << ", height: " << size << ", cell_size: " << 1024.0 / size << "}\n"
-       << "terrain:\n  - noise: {layer: sand, low: " << (a ? 0.5 : 3.0) << ", high: " << (a ? 2.0 : 5.0) << "}\n"
+       << "terrain:\n  - noise: {layer: sand, low: " << (a ? 0.5 : 3.0) << ", high: " << (a ? 2.0 : 5.0)
+       << "}\n"
        << "wind: {speed: " << (a ? 5 : 3) << ", direction_deg: 0}\n";
   return parse_scenario_text(text.str(), scene, settings);
 }
@@ -151,39 +155,52 @@ double share_of_bandwidth(const Result& r, const ProcessTime& t) {
 
 void print_text(const Result& r) {
   const double cells = static_cast<double>(r.size) * r.size;
-  std::printf("scene %s, %d x %d cells of %g m, %s (%s), quality %s, %d steps\n", r.scene.c_str(), r.size, r.size, r.cell_size,
-              r.backend.c_str(), r.device.c_str(), r.quality.c_str(), r.steps);
-  std::printf("  whole step    %9.4f ms (median of 9 blocks; %.4f ... %.4f)   %.4f us a cell, %.2f M cell-steps/s\n", r.ms,
-              r.fastest_ms, r.slowest_ms, r.ms * 1e3 / cells, cells / r.ms * 1e-3);
-  std::printf("  memory        %.1f GB/s copied; a step takes %.1f x the time of 100 bytes a cell\n", r.bandwidth * 1e-9,
-              r.ms * 1e-3 / (100 * cells / r.bandwidth));
+  std::printf("scene %s, %d x %d cells of %g m, %s (%s), quality %s, %d steps\n", r.scene.c_str(), r.size,
+              r.size, r.cell_size, r.backend.c_str(), r.device.c_str(), r.quality.c_str(), r.steps);
+  std::printf(
+      "  whole step    %9.4f ms (median of 9 blocks; %.4f ... %.4f)   %.4f us a cell, %.2f M cell-steps/s\n",
+      r.ms, r.fastest_ms, r.slowest_ms, r.ms * 1e3 / cells, cells / r.ms * 1e-3);
+  std::printf("  memory        %.1f GB/s copied; a step takes %.1f x the time of 100 bytes a cell\n",
+              r.bandwidth * 1e-9, r.ms * 1e-3 / (100 * cells / r.bandwidth));
   for (const ProcessTime& t : r.processes)
-    std::printf("  %-12s  %9.4f ms   %5.1f %% of bandwidth for its fewest bytes\n", t.process, t.milliseconds, 100 * share_of_bandwidth(r, t));
-  std::printf("  residual      %.4f %% of cells over 1e-3, %.4f %% over 1e-2, mean excess %.5f, largest %.5f; %.1f fine sweeps a step\n",
-              100 * r.residual.share_over_1e3, 100 * r.residual.share_over_1e2, r.residual.mean_excess, r.residual.largest_excess, r.iterations);
+    std::printf("  %-12s  %9.4f ms   %5.1f %% of bandwidth for its fewest bytes\n", t.process, t.milliseconds,
+                100 * share_of_bandwidth(r, t));
+  std::printf(
+      "  residual      %.4f %% of cells over 1e-3, %.4f %% over 1e-2, mean excess %.5f, largest %.5f; %.1f "
+      "fine sweeps a step\n",
+      100 * r.residual.share_over_1e3, 100 * r.residual.share_over_1e2, r.residual.mean_excess,
+      r.residual.largest_excess, r.iterations);
   std::printf("  sand lost     %g\n", r.sand_lost);
 }
 
 void print_json(const Result& r) {
-  std::printf("{\"scene\": \"%s\", \"size\": %d, \"cell_size_m\": %.17g, \"backend\": \"%s\", \"device\": \"%s\", \"threads\": %d, \"quality\": \"%s\", "
-              "\"steps\": %d, \"ms_per_step\": %.6f, \"fastest_ms\": %.6f, \"slowest_ms\": %.6f, \"copy_bytes_per_s\": %.6g, \"processes\": {",
-              r.scene.c_str(), r.size, r.cell_size, r.backend.c_str(), r.device.c_str(), r.threads, r.quality.c_str(), r.steps, r.ms,
-              r.fastest_ms, r.slowest_ms, r.bandwidth);
+  std::printf(
+      "{\"scene\": \"%s\", \"size\": %d, \"cell_size_m\": %.17g, \"backend\": \"%s\", \"device\": \"%s\", "
+      "\"threads\": %d, \"quality\": \"%s\", "
+      "\"steps\": %d, \"ms_per_step\": %.6f, \"fastest_ms\": %.6f, \"slowest_ms\": %.6f, "
+      "\"copy_bytes_per_s\": %.6g, \"processes\": {",
+      r.scene.c_str(), r.size, r.cell_size, r.backend.c_str(), r.device.c_str(), r.threads, r.quality.c_str(),
+      r.steps, r.ms, r.fastest_ms, r.slowest_ms, r.bandwidth);
   for (std::size_t n = 0; n < r.processes.size(); ++n)
-    std::printf("%s\"%s\": {\"ms\": %.6f, \"share_of_bandwidth\": %.4f}", n ? ", " : "", r.processes[n].process, r.processes[n].milliseconds,
-                share_of_bandwidth(r, r.processes[n]));
-  std::printf("}, \"residual\": {\"share_over_1e-3\": %.6g, \"share_over_1e-2\": %.6g, \"mean_excess\": %.6g, \"largest_excess\": %.6g}, "
-              "\"fine_sweeps\": %.1f, \"sand_lost\": %g}\n",
-              r.residual.share_over_1e3, r.residual.share_over_1e2, r.residual.mean_excess, r.residual.largest_excess, r.iterations, r.sand_lost);
+    std::printf("%s\"%s\": {\"ms\": %.6f, \"share_of_bandwidth\": %.4f}", n ? ", " : "",
+                r.processes[n].process, r.processes[n].milliseconds, share_of_bandwidth(r, r.processes[n]));
+  std::printf(
+      "}, \"residual\": {\"share_over_1e-3\": %.6g, \"share_over_1e-2\": %.6g, \"mean_excess\": %.6g, "
+      "\"largest_excess\": %.6g}, "
+      "\"fine_sweeps\": %.1f, \"sand_lost\": %g}\n",
+      r.residual.share_over_1e3, r.residual.share_over_1e2, r.residual.mean_excess, r.residual.largest_excess,
+      r.iterations, r.sand_lost);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    const Options o(argc, argv, {"size", "scene", "steps", "backend", "threads", "quality", "set"}, {"json", "help"});
+    const Options o(argc, argv, {"size", "scene", "steps", "backend", "threads", "quality", "set"},
+                    {"json", "help"});
     if (o.has("help")) return std::fputs(usage, stdout), 0;
-    if (!o.positional().empty()) throw ConfigError("'" + o.positional()[0] + "': unexpected (--help shows how)");
+    if (!o.positional().empty())
+      throw ConfigError("'" + o.positional()[0] + "': unexpected (--help shows how)");
     const Result result = bench(o);
     o.has("json") ? print_json(result) : print_text(result);
     return 0;

@@ -30,11 +30,13 @@ const char usage[] =
     "  --checkpoint FILE     save the state there at the end\n"
     "  --checkpoint-every N  and every N steps\n"
     "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be left out)\n"
-    "  --replay JOURNAL      apply the commands of a journal; runs as many steps as it has unless --steps says else\n"
+    "  --replay JOURNAL      apply the commands of a journal; runs as many steps as it has unless --steps "
+    "says else\n"
     "  --timing              measure each process (costs a little)\n"
     "  --describe            print every parameter as markdown\n"
     "  --quiet               no progress\n"
-    "Exit status: 0; 2 for input it refuses; 3 for a failure at run time; 130 after Ctrl-C (outputs are written).\n";
+    "Exit status: 0; 2 for input it refuses; 3 for a failure at run time; 130 after Ctrl-C (outputs are "
+    "written).\n";
 
 volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
@@ -46,7 +48,8 @@ struct Plan {
 };
 
 Scenario scenario_of(const Options& o) {
-  if (o.positional().size() > 1) throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
+  if (o.positional().size() > 1)
+    throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
   if (o.positional().empty()) throw ConfigError("no scenario given (--help shows how)");
   Settings settings = o.all("set");
   if (o.has("seed")) settings.push_back("seed=" + o.text("seed", ""));
@@ -87,7 +90,8 @@ void run(Session& session, const Plan& plan, const Journal& journal, std::uint64
 
 int main_(int argc, char** argv) {
   Plan plan{Options(argc, argv,
-                    {"steps", "backend", "threads", "set", "seed", "out", "every", "checkpoint", "checkpoint-every", "resume", "replay"},
+                    {"steps", "backend", "threads", "set", "seed", "out", "every", "checkpoint",
+                     "checkpoint-every", "resume", "replay"},
                     {"describe", "quiet", "timing", "help"}),
             "", "", 0, 0};
   const Options& o = plan.options;
@@ -98,7 +102,8 @@ int main_(int argc, char** argv) {
   plan.every = static_cast<std::uint64_t>(o.number("every", 0, 1, 1LL << 40));
   plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
   if (plan.every && plan.out.empty()) throw ConfigError("--every: needs --out");
-  if (plan.checkpoint_every && plan.checkpoint.empty()) throw ConfigError("--checkpoint-every: needs --checkpoint");
+  if (plan.checkpoint_every && plan.checkpoint.empty())
+    throw ConfigError("--checkpoint-every: needs --checkpoint");
   const int threads = static_cast<int>(o.number("threads", 0, 1, 4096));
   if (threads > 0) omp_set_num_threads(threads);
 
@@ -116,11 +121,15 @@ int main_(int argc, char** argv) {
   Simulation& simulation = session->simulation();
   if (!plan.out.empty()) prepare_folder(plan.out);
   simulation.set_timing(o.has("timing"));
-  const std::uint64_t asked = static_cast<std::uint64_t>(
-      o.number("steps", o.has("replay") ? static_cast<long long>(journal.ticks) : simulation.scenario().run.steps, 0, 1LL << 40));
+  const std::uint64_t asked = static_cast<std::uint64_t>(o.number(
+      "steps", o.has("replay") ? static_cast<long long>(journal.ticks) : simulation.scenario().run.steps, 0,
+      1LL << 40));
   // A resumed run goes on until the step that is asked for.
-  const std::uint64_t last = o.has("resume") ? (asked > simulation.steps() ? asked - simulation.steps() : 0) : asked;
-  if (!o.has("quiet")) std::fprintf(stderr, "backend: %s; %s\n", session->backend_choice().c_str(), simulation.exec().device().c_str());
+  const std::uint64_t last =
+      o.has("resume") ? (asked > simulation.steps() ? asked - simulation.steps() : 0) : asked;
+  if (!o.has("quiet"))
+    std::fprintf(stderr, "backend: %s; %s\n", session->backend_choice().c_str(),
+                 simulation.exec().device().c_str());
 
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);

@@ -8,7 +8,8 @@
 
 namespace desert_sim {
 
-Options::Options(int argc, char** argv, const std::vector<std::string>& with_value, const std::vector<std::string>& flags) {
+Options::Options(int argc, char** argv, const std::vector<std::string>& with_value,
+                 const std::vector<std::string>& flags) {
   const auto known = [](const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
@@ -42,14 +43,16 @@ const std::vector<std::string>& Options::all(const std::string& name) const {
   return found == values_.end() ? none : found->second;
 }
 
-long long Options::number(const std::string& name, long long otherwise, long long lowest, long long highest) const {
+long long Options::number(const std::string& name, long long otherwise, long long lowest,
+                          long long highest) const {
   const std::string value = text(name, "");
   if (value.empty() && !has(name)) return otherwise;
   char* end = nullptr;
   errno = 0;
   const long long number = std::strtoll(value.c_str(), &end, 10);
   if (value.empty() || *end || errno || number < lowest || number > highest)
-    throw ConfigError("--" + name + " " + value + ": must be a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest));
+    throw ConfigError("--" + name + " " + value + ": must be a whole number from " + std::to_string(lowest) +
+                      " to " + std::to_string(highest));
   return number;
 }
 

@@ -10,7 +10,8 @@ namespace desert_sim {
 class Options {
  public:
   /// `with_value` and `flags` name what is known, without the dashes. Throws ConfigError.
-  Options(int argc, char** argv, const std::vector<std::string>& with_value, const std::vector<std::string>& flags);
+  Options(int argc, char** argv, const std::vector<std::string>& with_value,
+          const std::vector<std::string>& flags);
 
   const std::vector<std::string>& positional() const { return positional_; }
   bool has(const std::string& name) const { return values_.count(name) > 0; }

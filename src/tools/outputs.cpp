@@ -41,7 +41,8 @@ void write_text(const std::string& path, const std::string& text) {
   std::ofstream file(temporary);
   file << text;
   file.close();
-  if (!file || std::rename(temporary.c_str(), path.c_str()) != 0) throw Error(path + ": cannot be written: " + std::strerror(errno));
+  if (!file || std::rename(temporary.c_str(), path.c_str()) != 0)
+    throw Error(path + ": cannot be written: " + std::strerror(errno));
 }
 
 #if DESERT_WITH_IO
@@ -60,7 +61,9 @@ void write_rasters(const std::string& folder, const Snapshot& s, const std::stri
 }
 
 void write_pictures(const std::string& folder, const Snapshot& s) {
-  const auto data = [&](Layer layer) -> const float* { return s.find(layer) ? s.find(layer)->data() : nullptr; };
+  const auto data = [&](Layer layer) -> const float* {
+    return s.find(layer) ? s.find(layer)->data() : nullptr;
+  };
   PictureInput picture;
   picture.width = s.width;
   picture.height = s.height;
@@ -73,7 +76,8 @@ void write_pictures(const std::string& folder, const Snapshot& s) {
   picture.soil = data(Layer::soil);
   picture.wind_shadow = nullptr;
   write_png(folder + "/elevation.png", hillshade_picture(picture));
-  write_png(folder + "/wind.png", wind_picture(s.width, s.height, s.cell_size, data(Layer::wind_x), data(Layer::wind_y), data(Layer::elevation)));
+  write_png(folder + "/wind.png", wind_picture(s.width, s.height, s.cell_size, data(Layer::wind_x),
+                                               data(Layer::wind_y), data(Layer::elevation)));
 }
 #endif
 
@@ -83,7 +87,8 @@ void prepare_folder(const std::string& folder) {
   if (mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST)
     throw ConfigError("--out " + folder + ": cannot be made: " + std::strerror(errno));
   struct stat status;
-  if (stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) throw ConfigError("--out " + folder + ": is not a folder");
+  if (stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode))
+    throw ConfigError("--out " + folder + ": is not a folder");
   if (access(folder.c_str(), W_OK) != 0) throw ConfigError("--out " + folder + ": cannot be written to");
 }
 
@@ -91,20 +96,23 @@ std::string summary(Simulation& s, const RunReport& report) {
   std::ostringstream out;
   const GridParameters& g = s.scenario().grid;
   out << "{\n  \"scenario\": " << quoted(s.scenario().name) << ",\n  \"steps\": " << s.steps()
-      << ",\n  \"sim_time_s\": " << number(s.time()) << ",\n  \"width\": " << g.width << ",\n  \"height\": " << g.height
-      << ",\n  \"cell_size_m\": " << number(g.cell_size) << ",\n  \"backend\": " << quoted(report.backend)
-      << ",\n  \"device\": " << quoted(report.device) << ",\n  \"threads\": " << report.threads
-      << ",\n  \"seed\": " << s.scenario().seed << ",\n  \"ms_per_step\": {\"total\": "
+      << ",\n  \"sim_time_s\": " << number(s.time()) << ",\n  \"width\": " << g.width
+      << ",\n  \"height\": " << g.height << ",\n  \"cell_size_m\": " << number(g.cell_size)
+      << ",\n  \"backend\": " << quoted(report.backend) << ",\n  \"device\": " << quoted(report.device)
+      << ",\n  \"threads\": " << report.threads << ",\n  \"seed\": " << s.scenario().seed
+      << ",\n  \"ms_per_step\": {\"total\": "
       << number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
   for (const ProcessTime& t : s.process_times())
-    out << ", " << quoted(t.process) << ": " << number(report.steps_run ? t.milliseconds / static_cast<double>(report.steps_run) : 0.0);
+    out << ", " << quoted(t.process) << ": "
+        << number(report.steps_run ? t.milliseconds / static_cast<double>(report.steps_run) : 0.0);
   out << "},\n  \"volume_m3\": {";
   const auto balance = s.balance();
   for (std::size_t m = 0; m < balance.size(); ++m) {
     const MaterialBalance& b = balance[m];
-    out << (m ? ",\n    " : "\n    ") << quoted(material_names[m]) << ": {\"initial\": " << number(b.initial_m3())
-        << ", \"final\": " << number(b.final_m3()) << ", \"in\": " << number(b.cubic_metres(b.in))
-        << ", \"out\": " << number(b.cubic_metres(b.out)) << "}";
+    out << (m ? ",\n    " : "\n    ") << quoted(material_names[m])
+        << ": {\"initial\": " << number(b.initial_m3()) << ", \"final\": " << number(b.final_m3())
+        << ", \"in\": " << number(b.cubic_metres(b.in)) << ", \"out\": " << number(b.cubic_metres(b.out))
+        << "}";
   }
   out << "\n  },\n  \"mass_residual\": {";
   for (std::size_t m = 0; m < balance.size(); ++m)
@@ -117,10 +125,11 @@ std::string summary(Simulation& s, const RunReport& report) {
   out << "},\n  \"max_sand_slope_deg\": " << number(s.max_sand_slope_deg())
       << ",\n  \"avalanche_iterations_mean\": " << number(s.mean_avalanche_iterations())
       << ",\n  \"avalanche_residual\": {\"share_over_1e-3\": " << number(r.share_over_1e3)
-      << ", \"share_over_1e-2\": " << number(r.share_over_1e2) << ", \"mean_excess\": " << number(r.mean_excess)
+      << ", \"share_over_1e-2\": " << number(r.share_over_1e2)
+      << ", \"mean_excess\": " << number(r.mean_excess)
       << ", \"largest_excess\": " << number(r.largest_excess) << "},\n  \"state_hash\": \"" << hash
-      << "\",\n  \"peak_memory_bytes\": " << usage.ru_maxrss * 1024LL << ",\n  \"rasters\": "
-      << (DESERT_WITH_IO ? "true" : "false") << "\n}\n";
+      << "\",\n  \"peak_memory_bytes\": " << usage.ru_maxrss * 1024LL
+      << ",\n  \"rasters\": " << (DESERT_WITH_IO ? "true" : "false") << "\n}\n";
   return out.str();
 }
 

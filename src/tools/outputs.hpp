@@ -17,8 +17,8 @@ struct RunReport {
 /// Makes the folder (its parent must exist) and checks that it can be written to. Throws ConfigError.
 void prepare_folder(const std::string& folder);
 
-/// `<layer>.tif` for each layer in use, elevation.png, wind.png and summary.json. Without GDAL and OpenCV only
-/// summary.json, which says so.
+/// `<layer>.tif` for each layer in use, elevation.png, wind.png and summary.json. Without GDAL and OpenCV
+/// only summary.json, which says so.
 void write_outputs(const std::string& folder, Simulation& simulation, const RunReport& report);
 
 /// summary.json as text.

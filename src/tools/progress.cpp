@@ -12,14 +12,19 @@ namespace {
 std::string duration(double seconds) {
   char text[40];
   const long s = static_cast<long>(seconds + 0.5);
-  std::snprintf(text, sizeof text, s >= 3600 ? "%ld:%02ld:%02ld" : "%.0ld%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
+  std::snprintf(text, sizeof text, s >= 3600 ? "%ld:%02ld:%02ld" : "%.0ld%02ld:%02ld", s / 3600, s / 60 % 60,
+                s % 60);
   return text;
 }
 
 }  // namespace
 
 Progress::Progress(std::uint64_t first, std::uint64_t last, bool quiet)
-    : first_(first), last_(last), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()),
+    : first_(first),
+      last_(last),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) != 0),
+      start_(Clock::now()),
       next_(start_ + std::chrono::milliseconds(terminal_ ? 100 : 5000)) {}
 
 Progress::~Progress() {
@@ -41,12 +46,14 @@ void Progress::print(std::uint64_t step) {
   if (terminal_) {
     constexpr int width = 32;
     const std::string bar(static_cast<std::size_t>(share * width), '#');
-    std::fprintf(stderr, "\r[%-*s] %3.0f %%  step %llu of %llu  %.1f steps/s  %s left ", width, bar.c_str(), 100 * share,
-                 static_cast<unsigned long long>(step), static_cast<unsigned long long>(last_), rate, duration(left).c_str());
+    std::fprintf(stderr, "\r[%-*s] %3.0f %%  step %llu of %llu  %.1f steps/s  %s left ", width, bar.c_str(),
+                 100 * share, static_cast<unsigned long long>(step), static_cast<unsigned long long>(last_),
+                 rate, duration(left).c_str());
     printed_ = true;
   } else {
-    std::fprintf(stderr, "step %llu of %llu (%.0f %%), %.1f steps/s, %s left\n", static_cast<unsigned long long>(step),
-                 static_cast<unsigned long long>(last_), 100 * share, rate, duration(left).c_str());
+    std::fprintf(stderr, "step %llu of %llu (%.0f %%), %.1f steps/s, %s left\n",
+                 static_cast<unsigned long long>(step), static_cast<unsigned long long>(last_), 100 * share,
+                 rate, duration(left).c_str());
   }
 }
 

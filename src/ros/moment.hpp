@@ -1,0 +1,54 @@
+#pragma once
+/// Which state of the simulation something shows.
+
+#include <ros/time.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "desert_sim/simulation/simulation.hpp"
+
+namespace desert_sim {
+
+struct Moment {
+  std::uint64_t step = 0;     ///< since the scenario's start
+  double time = 0;            ///< simulated [s]
+  ros::Time stamp;            ///< ROS time at which this state was reached
+  std::uint64_t change = 0;   ///< grows with each step and each command
+  std::uint64_t command = 0;  ///< grows with each command and each request for steps
+  std::uint64_t terrain = 0;  ///< grows when the terrain is replaced: by a reset or a checkpoint
+};
+
+/// Layers of the terrain at one moment; never changes once it is made.
+struct TerrainState {
+  Moment moment;
+  std::shared_ptr<const Snapshot> snapshot;  ///< layers that are not in use are absent, and 0
+};
+
+/// Where a command or a request for steps ended.
+struct Reached {
+  Moment moment;
+  std::uint64_t hash = 0;  ///< of the state; 0 if it was not asked for
+  CommandResult result;    ///< of an edit
+};
+
+enum class RunState { running, paused, waiting };
+
+/// What ~status says.
+struct StatusReport {
+  Moment moment;
+  RunState state = RunState::paused;
+  std::string scenario, backend, backend_choice, device;
+  double step_rate = 0, steps_per_second = 0, lag = 0;
+  std::vector<ProcessTime> process_times;  ///< means
+  std::array<MaterialBalance, material_count> balance;
+  wind::Vector wind_above;
+  bool hashed = false;  ///< only while paused
+  std::uint64_t hash = 0;
+  std::uint64_t snapshots = 0;
+};
+
+}  // namespace desert_sim

@@ -1,0 +1,109 @@
+#pragma once
+/// The one thread that owns the simulation. Other threads ask it for something and wait for the answer; it serves them
+/// between steps. A step, a copy of the terrain or an answer never happens under a lock.
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "desert_sim/ros/job_queue.hpp"
+#include "desert_sim/ros/moment.hpp"
+#include "desert_sim/ros/pacer.hpp"
+#include "desert_sim/simulation/session.hpp"
+
+namespace desert_sim {
+
+class SimulationThread {
+ public:
+  struct Options {
+    std::string backend = "auto";
+    int threads = 0;
+    double step_rate = 10;  ///< [steps/s]; 0: as fast as it can
+    bool paused = false;
+    std::string journal;    ///< file, or empty
+  };
+
+  /// Builds the terrain, and then runs. `on_change` is called on the simulation thread after each step and command, and
+  /// when the simulation has failed; it must be quick. Throws ConfigError.
+  SimulationThread(const Scenario& scenario, const RasterLoader& load_raster, const Options& options,
+                   std::function<void()> on_change);
+  ~SimulationThread();
+
+  // All of these return at once. The future holds ConfigError if the request was refused and has changed nothing, Error if
+  // the simulation ends or has failed before it is served.
+
+  std::future<Reached> apply(const Command& command, bool with_hash = false);
+  /// Exactly `steps` steps, as fast as it can. Ended early (ConfigError) by a pause, a reset or a load.
+  std::future<Reached> step(std::uint32_t steps);
+  std::future<void> pause();
+  std::future<void> resume();
+  std::future<TerrainState> terrain(const std::vector<Layer>& layers);
+  std::future<StatusReport> report();
+  std::future<Reached> save_checkpoint(const std::string& path);
+
+  /// Counters of Moment, of what has been done; for deciding whether a copy is still good.
+  std::uint64_t changes() const { return changes_; }
+  std::uint64_t commands() const { return commands_; }
+  std::uint64_t terrains() const { return terrains_; }
+  const std::string& backend_choice() const { return backend_choice_; }
+
+  /// What ended the simulation; empty while it lives.
+  std::string failure() const;
+  /// Ends the thread, after the step that it is in; requests that wait hold Error then.
+  void stop();
+
+ private:
+  struct StepRequest {
+    std::uint32_t asked = 0, done = 0;
+    std::promise<Reached> answer;
+  };
+
+  template <class R>
+  std::future<R> ask(std::function<R()> body);
+  void thread(const Scenario& scenario, const RasterLoader& load_raster, std::promise<void>& started);
+  void loop();
+  bool serve_jobs();
+  void serve_step_request();
+  void end_step_requests(const std::string& by);
+  bool step_is_due();
+  void step();
+  void settle();
+  void changed();
+  Moment moment();
+  Reached reached(bool with_hash);
+  std::uint64_t state_hash();
+  double idle_time() const;
+  void fail(const std::string& what);
+  double clock_now() const;
+
+  const Options options_;
+  const std::function<void()> on_change_;
+  JobQueue jobs_;
+  std::atomic<std::uint64_t> changes_{1}, commands_{0}, terrains_{0};
+  std::string backend_choice_;
+  mutable std::mutex failure_mutex_;
+  std::string failure_;
+
+  // Below: of the simulation thread alone.
+  std::unique_ptr<Session> session_;
+  std::deque<StepRequest> step_requests_;
+  Pacer pacer_;
+  RateMeter meter_;
+  ros::Time stamp_;
+  bool paused_, waiting_for_clock_ = false;
+  int unsettled_steps_ = 0;
+  std::uint64_t snapshots_ = 0;
+  // Measuring: now and then a step is timed, process by process, while somebody looks at reports.
+  double measure_until_ = 0;
+  int steps_until_timed_ = 0, timed_steps_ = 0;
+  std::vector<ProcessTime> process_times_;
+  std::uint64_t hashed_change_ = 0, hash_ = 0;
+
+  std::thread thread_;
+};
+
+}  // namespace desert_sim
