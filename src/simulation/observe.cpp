@@ -30,12 +30,12 @@ std::shared_ptr<const Snapshot> Simulation::snapshot(const std::vector<Layer>& l
   const auto asked = [&](Layer layer) {
     return std::find(layers.begin(), layers.end(), layer) != layers.end();
   };
-  with_backend(exec(), [&](auto& e) {
-    if (steps_ == 0 && (asked(Layer::wind_x) || asked(Layer::wind_y)))
-      update_wind(e, terrain_.view());
-    else if (asked(Layer::elevation))
-      surface::step(e, terrain_.view());
-  });
+  // The step leaves the wind that it used, and heights as they were before it; before the first there is neither.
+  if (steps_ == 0 && (asked(Layer::wind_x) || asked(Layer::wind_y))) {
+    refresh_wind();
+  } else if (asked(Layer::elevation)) {
+    with_backend(exec(), [&](auto& e) { surface::step(e, terrain_.view()); });
+  }
   for (Layer layer : layers) s->layers[layer] = terrain_.values(layer);
   return s;
 }

@@ -100,6 +100,7 @@ class Simulation {
   template <class E>
   void check(E& exec, const char* process, Layer layer);
   brush::Brush prepare(const EditTerrain& command, CellRectangle& touched) const;
+  void refresh_wind();
   void allocate_work();
   /// Only terrains whose rock or soil changes need this memory: called when abrasion is on or bedrock is
   /// edited.

@@ -1,0 +1,161 @@
+// Checkpoints: what is cut, flipped or of another version is refused with a reason and changes nothing.
+
+#include <cstring>
+#include <filesystem>
+
+#include "desert_sim/simulation/checkpoint.hpp"
+#include "desert_sim/simulation/session.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+const char* const world =
+    "grid: {width: 21, height: 17, boundary: open, origin_x: 1000.5, origin_y: -20}\n"
+    "terrain: [noise: {layer: bedrock, low: 100.25, high: 107, scale: 10}, noise: {layer: sand, low: 0, high: 3}]\n"
+    "wind: {regime: rose, hold_time: 3, segments: [{direction_deg: 10, speed: 6}, {direction_deg: 100, speed: 4}]}\n"
+    "run: {time_step: 0.7}\n";
+
+class Checkpoint : public test::OnBackend {
+ protected:
+  std::string saved(const std::string& name = "a.ck", int steps = 5) {
+    auto s = simulation(world);
+    test::run(*s, steps);
+    save_checkpoint(folder_.path(name), *s);
+    return folder_.path(name);
+  }
+  /// The reason why the file is refused; empty (and a failure) if it is not.
+  std::string refusal(const std::string& path) {
+    try {
+      load_checkpoint(path, exec());
+    } catch (const ConfigError& e) {
+      return e.what();
+    } catch (const std::exception& e) {
+      ADD_FAILURE() << "not a ConfigError: " << e.what();
+      return e.what();
+    }
+    ADD_FAILURE() << "was loaded";
+    return "";
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_P(Checkpoint, CutAnywhereIsRefused) {
+  const std::string bytes = test::file_bytes(saved());
+  for (std::size_t n = 0; n < 16; ++n) {
+    const std::string path = folder_.write("cut.ck", bytes.substr(0, bytes.size() * n / 16));
+    EXPECT_NE(refusal(path).find("cut.ck"), std::string::npos) << "the reason names no file";
+  }
+  for (std::size_t last : {1u, 4u, 8u, 9u}) refusal(folder_.write("cut.ck", bytes.substr(0, bytes.size() - last)));
+}
+
+TEST_P(Checkpoint, WithOneFlippedByteIsRefused) {
+  const std::string bytes = test::file_bytes(saved());
+  for (std::size_t n = 0; n < 64; ++n) {
+    std::string broken = bytes;
+    const std::size_t at = (bytes.size() - 1) * n / 63;
+    broken[at] = static_cast<char>(broken[at] ^ 0x40);
+    EXPECT_FALSE(refusal(folder_.write("flipped.ck", broken)).empty()) << "byte " << at;
+  }
+}
+
+TEST_P(Checkpoint, WithSomethingBehindItIsRefused) { refusal(folder_.write("long.ck", test::file_bytes(saved()) + "x")); }
+
+TEST_P(Checkpoint, OfAnotherVersionIsRefusedByItsNumber) {
+  std::string bytes = test::file_bytes(saved());
+  const std::size_t at = bytes.find('\n') + 1;
+  const std::uint32_t version = 7;
+  std::memcpy(&bytes[at], &version, sizeof version);
+  const std::string reason = refusal(folder_.write("new.ck", bytes));
+  EXPECT_NE(reason.find("version 7"), std::string::npos) << reason;
+}
+
+TEST_P(Checkpoint, ThatIsNoneIsRefused) {
+  refusal(folder_.path("missing.ck"));
+  refusal(folder_.write("empty.ck", ""));
+  refusal(folder_.write("text.ck", "grid: {width: 3}\n"));
+  refusal(folder_.path("."));
+}
+
+TEST_P(Checkpoint, ThatCannotBeWrittenLeavesNothing) {
+  auto s = simulation(world);
+  EXPECT_THROW(save_checkpoint(folder_.path("no/such/folder.ck"), *s), ConfigError);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path("")));
+}
+
+TEST_P(Checkpoint, LeavesNoTemporaryFile) {
+  saved("a.ck");
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path(""))) {
+    ++files;
+    EXPECT_EQ(entry.path().filename(), "a.ck");
+  }
+  EXPECT_EQ(files, 1);
+}
+
+TEST_P(Checkpoint, RefusedLeavesTheSessionAsItWas) {
+  const std::string bytes = test::file_bytes(saved());
+  const std::string cut = folder_.write("cut.ck", bytes.substr(0, bytes.size() / 2));
+  Session session(test::scenario_of(world), refuse_rasters, GetParam(), 1);
+  for (int n = 0; n < 3; ++n) session.step();
+  const std::uint64_t before = session.simulation().state_hash();
+  EXPECT_THROW(session.apply(LoadCheckpoint{cut, 0}), ConfigError);
+  EXPECT_THROW(session.apply(LoadCheckpoint{saved(), 12345}), ConfigError);
+  EXPECT_EQ(session.simulation().state_hash(), before);
+  EXPECT_EQ(session.simulation().steps(), 3u);
+}
+
+TEST_P(Checkpoint, KeepsClockWindOriginAndBooks) {
+  auto s = simulation(world);
+  SetWind wind;
+  wind.speed = 7.3f;
+  wind.direction_deg = 33.3f;
+  wind.ramp = 20;
+  test::run(*s, 4);
+  s->apply(wind);
+  test::run(*s, 4);
+  save_checkpoint(folder_.path("b.ck"), *s);
+  auto t = load_checkpoint(folder_.path("b.ck"), exec());
+  EXPECT_EQ(t->time(), s->time());
+  EXPECT_EQ(t->wind_above().x, s->wind_above().x);
+  EXPECT_EQ(t->wind_above().y, s->wind_above().y);
+  EXPECT_EQ(t->scenario().grid.origin_x, 1000.5);
+  EXPECT_EQ(t->terrain().scale().datum, s->terrain().scale().datum);
+  EXPECT_EQ(dump_scenario(t->scenario()), dump_scenario(s->scenario()));
+  const auto a = s->balance(), b = t->balance();
+  for (std::size_t m = 0; m < a.size(); ++m) {
+    EXPECT_EQ(a[m].in, b[m].in);
+    EXPECT_EQ(a[m].out, b[m].out);
+    EXPECT_EQ(a[m].initial, b[m].initial);
+    EXPECT_EQ(b[m].residual(), 0);
+  }
+  for (Layer layer : test::persistent_layers(*s)) EXPECT_EQ(s->terrain().words(layer), t->terrain().words(layer));
+}
+
+TEST_P(Checkpoint, SavedTwiceIsTheSameFile) { EXPECT_EQ(test::file_bytes(saved("a.ck")), test::file_bytes(saved("b.ck"))); }
+
+/// A picture or message made right after loading must show the wind, not calm air.
+TEST_P(Checkpoint, SnapshotsAfterLoadingShowWindAndElevation) {
+  auto s = simulation("grid: {width: 24, height: 20}\nterrain: [uniform: {layer: sand, value: 2}]\nwind: {speed: 5}\n");
+  test::run(*s, 3);
+  save_checkpoint(folder_.path("c.ck"), *s);
+  auto t = load_checkpoint(folder_.path("c.ck"), exec());
+  const auto before = s->snapshot({Layer::elevation, Layer::wind_x}), after = t->snapshot({Layer::elevation, Layer::wind_x});
+  EXPECT_EQ(*before->find(Layer::elevation), *after->find(Layer::elevation));
+  EXPECT_EQ(*before->find(Layer::wind_x), *after->find(Layer::wind_x));
+}
+
+TEST_P(Checkpoint, KeepsTheResidualThatIsReported) {
+  auto s = simulation("grid: {width: 32, height: 32}\nterrain: [noise: {layer: sand, low: 0, high: 5, scale: 12}]\n");
+  test::run(*s, 3);
+  save_checkpoint(folder_.path("d.ck"), *s);
+  auto t = load_checkpoint(folder_.path("d.ck"), exec());
+  EXPECT_EQ(t->residual().share_over_1e3, s->residual().share_over_1e3);
+  EXPECT_EQ(t->residual().largest_excess, s->residual().largest_excess);
+}
+
+DESERT_ON_EACH_BACKEND(Checkpoint);
+
+}  // namespace
+}  // namespace desert_sim

@@ -1,0 +1,148 @@
+// The journal: what was written and replayed gives the same hash; what was cut in its last line still reads.
+
+#include "desert_sim/simulation/session.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+const char* const world =
+    "grid: {width: 40, height: 30}\n"
+    "terrain: [noise: {layer: bedrock, low: 0, high: 5, scale: 15}, noise: {layer: sand, low: 0, high: 3}]\n"
+    "wind: {speed: 6, direction_deg: 20}\nreptation: {method: steepest}\nrun: {time_step: 0.3}\n";
+
+class JournalOf : public test::OnBackend {
+ protected:
+  std::unique_ptr<Session> session(const std::string& journal) {
+    return std::make_unique<Session>(test::scenario_of(world), refuse_rasters, GetParam(), 2, journal);
+  }
+
+  /// Steps and commands of every kind.
+  std::uint64_t live(const std::string& path) {
+    auto s = session(path);
+    const auto steps = [&](int n) { for (; n > 0; --n) s->step(); };
+    steps(3);
+    s->apply(SetWind{33.3f, 7.7f, 1.1f});
+    steps(2);
+    EditTerrain edit;
+    edit.shape = BrushShape::ellipse;
+    edit.x = 1.0 / 3;
+    edit.y = 29.9;
+    edit.radius = 7.123456789012345;
+    edit.radius_y = 2.1;
+    edit.angle_deg = 12.3;
+    edit.inner = 0.1;
+    edit.value = 4.000000001;
+    s->apply(edit);
+    edit.layer = "bedrock";
+    edit.merge = BrushMerge::replace;
+    edit.value = 30;
+    s->apply(edit);
+    steps(4);
+    s->save_checkpoint(folder_.path("here.ck"));
+    s->apply(Reset{});
+    steps(2);
+    SetWindSchedule schedule;
+    schedule.regime.kind = WindRegimeKind::timeline;
+    for (int n = 0; n < 12; ++n) schedule.regime.segments.push_back({30.1f * n, 5.5f + n, 0.7f, 0.3f, 1.0f});
+    s->apply(schedule);
+    steps(5);
+    s->apply(LoadCheckpoint{folder_.path("here.ck"), 0});
+    schedule.regime.kind = WindRegimeKind::rose;
+    schedule.regime.hold_time = 0.31f;
+    schedule.regime.seed = 17;
+    s->apply(schedule);
+    steps(4);
+    return s->simulation().state_hash();
+  }
+
+  std::uint64_t replayed(const Journal& journal) {
+    auto s = session("");
+    s->require_journal_of_this_scenario(journal, "journal");
+    std::size_t next = 0;
+    for (std::uint64_t tick = 0;; ++tick) {
+      for (; next < journal.entries.size() && journal.entries[next].tick == tick; ++next) s->apply(journal.entries[next].command);
+      if (tick == journal.ticks) break;
+      s->step();
+    }
+    EXPECT_EQ(next, journal.entries.size());
+    return s->simulation().state_hash();
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_P(JournalOf, EveryKindOfCommandReplaysToTheSameHash) {
+  const std::uint64_t hash = live(folder_.path("j"));
+  const Journal journal = read_journal(folder_.path("j"));
+  EXPECT_TRUE(journal.ended);
+  EXPECT_EQ(journal.ticks, 20u);
+  EXPECT_EQ(journal.entries.size(), 7u);
+  EXPECT_EQ(replayed(journal), hash);
+}
+
+TEST_P(JournalOf, IsOneDocumentALine) {
+  live(folder_.path("j"));
+  const std::string text = test::file_bytes(folder_.path("j"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 9);  // header, 7 commands, end
+}
+
+TEST_P(JournalOf, CutAnywhereInItsLastLineStillReads) {
+  live(folder_.path("j"));
+  const std::string text = test::file_bytes(folder_.path("j"));
+  const std::size_t last = text.rfind('\n', text.size() - 2) + 1, before = text.rfind('\n', last - 2) + 1;
+  for (std::size_t length = before; length <= text.size(); ++length) {
+    const Journal journal = read_journal(folder_.write("cut", text.substr(0, length)));
+    EXPECT_EQ(journal.entries.size(), length < last ? 6u : 7u) << length;
+    EXPECT_EQ(journal.ended, length == text.size());
+  }
+}
+
+TEST_P(JournalOf, CutInItsHeaderIsRefused) {
+  const std::string text = (live(folder_.path("j")), test::file_bytes(folder_.path("j")));
+  for (std::size_t length = 0; length <= text.find('\n'); ++length)
+    EXPECT_THROW(read_journal(folder_.write("cut", text.substr(0, length))), ConfigError) << length;
+  EXPECT_THROW(read_journal(folder_.path("missing")), ConfigError);
+}
+
+TEST_P(JournalOf, WithABrokenLineNamesTheLine) {
+  live(folder_.path("j"));
+  const std::string text = test::file_bytes(folder_.path("j"));
+  const std::string header = text.substr(0, text.find('\n') + 1);
+  for (const char* line : {"{tick: 3, command: dance}\n", "{tick: 3}\n", "{command: reset}\n", "[1\n", "\n", "3\n",
+                           "{tick: 5, command: reset}\n{tick: 4, command: reset}\n",
+                           "{tick: 1, command: set_wind, direction_deg: 1, speed: .nan, ramp: 0}\n",
+                           "{tick: 1, command: load_checkpoint}\n", "{tick: 1, command: set_wind_schedule}\n"}) {
+    SCOPED_TRACE(line);
+    try {
+      read_journal(folder_.write("bad", header + line));
+      ADD_FAILURE() << "was read";
+    } catch (const ConfigError& e) {
+      EXPECT_NE(std::string(e.what()).find("line "), std::string::npos) << e.what();
+    }
+  }
+}
+
+TEST_P(JournalOf, AnotherScenarioIsRefused) {
+  live(folder_.path("j"));
+  Session other(test::scenario_of(std::string(world) + "seed: 2\n"), refuse_rasters, GetParam(), 1);
+  EXPECT_THROW(other.require_journal_of_this_scenario(read_journal(folder_.path("j")), "j"), ConfigError);
+}
+
+TEST_P(JournalOf, RefusedCommandsAreNotWritten) {
+  {
+    auto s = session(folder_.path("j"));
+    EXPECT_THROW(s->apply(SetWind{0, -1, 0}), ConfigError);
+    EXPECT_THROW(s->apply(LoadCheckpoint{"/no/such/file", 0}), ConfigError);
+    EditTerrain edit;
+    edit.value = 90000;
+    EXPECT_THROW(s->apply(edit), ConfigError);
+  }
+  EXPECT_TRUE(read_journal(folder_.path("j")).entries.empty());
+}
+
+DESERT_ON_EACH_BACKEND(JournalOf);
+
+}  // namespace
+}  // namespace desert_sim
