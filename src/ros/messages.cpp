@@ -113,8 +113,8 @@ SimulationStatusPtr status_message(const StatusReport& report, const std::string
   message->step_rate = report.step_rate;
   message->steps_per_second = report.steps_per_second;
   message->lag = report.lag;
-  for (const desert_sim::ProcessTime& time : report.process_times) {
-    desert_sim::ProcessTime_<std::allocator<void>> row;
+  for (const ProcessTime& time : report.process_times) {
+    ProcessTiming row;
     row.process = time.process;
     row.milliseconds = time.milliseconds;
     message->process_times.push_back(row);

@@ -109,6 +109,10 @@ void Simulation::step() {
   with_backend(exec(), [this](auto& exec) { run_step(exec); });
 }
 
+void Simulation::refresh_wind() {
+  with_backend(exec(), [this](auto& e) { update_wind(e, terrain_.view()); });
+}
+
 // ---- making
 // --------------------------------------------------------------------------------------------------------
 
