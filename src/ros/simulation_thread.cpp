@@ -19,7 +19,7 @@ double steady_now() {
 
 }  // namespace
 
-// ---- from other threads --------------------------------------------------------------------------------------------
+// ---- from other threads
 
 SimulationThread::SimulationThread(const Scenario& scenario, const RasterLoader& load_raster, const Options& options,
                                    std::function<void()> on_change)
@@ -154,7 +154,7 @@ std::string SimulationThread::failure() const {
   return failure_;
 }
 
-// ---- on the simulation thread --------------------------------------------------------------------------------------
+// ---- on the simulation thread
 
 void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load_raster, std::promise<void>& started) {
   try {
