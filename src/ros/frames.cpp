@@ -1,0 +1,39 @@
+#include "desert_sim/ros/frames.hpp"
+
+#include <tf2/LinearMath/Quaternion.h>
+
+#include <chrono>
+#include <thread>
+
+#include "desert_sim/core/error.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr auto patience = std::chrono::milliseconds(200);  // of wall time: ROS time may stand still
+
+}  // namespace
+
+Frames::Frames(std::string terrain_frame) : terrain_frame_(std::move(terrain_frame)), listener_(buffer_) {}
+
+tf2::Transform Frames::to_terrain(const std_msgs::Header& header) const {
+  const std::string& given = header.frame_id;
+  const std::string frame = !given.empty() && given[0] == '/' ? given.substr(1) : given;
+  if (frame.empty() || frame == terrain_frame_) return tf2::Transform::getIdentity();
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (true) {
+    try {
+      const geometry_msgs::TransformStamped found = buffer_.lookupTransform(terrain_frame_, frame, header.stamp);
+      const auto& r = found.transform.rotation;
+      const auto& t = found.transform.translation;
+      return tf2::Transform(tf2::Quaternion(r.x, r.y, r.z, r.w), tf2::Vector3(t.x, t.y, t.z));
+    } catch (const tf2::TransformException& e) {
+      if (std::chrono::steady_clock::now() >= end)
+        throw ConfigError("frame '" + given + "' cannot be brought into the terrain's, '" + terrain_frame_ + "': " + e.what());
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+}  // namespace desert_sim

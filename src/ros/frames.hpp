@@ -1,0 +1,29 @@
+#pragma once
+/// Points of other frames, brought into the terrain's.
+
+#include <std_msgs/Header.h>
+#include <tf2/LinearMath/Transform.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <string>
+
+namespace desert_sim {
+
+class Frames {
+ public:
+  /// Listens to /tf on threads of its own.
+  explicit Frames(std::string terrain_frame);
+  const std::string& terrain_frame() const { return terrain_frame_; }
+
+  /// From the header's frame (empty: the terrain's) at its stamp (0: the latest there is) to the terrain's. Waits a moment for
+  /// a transform that is on its way; throws ConfigError with the reason if there is none.
+  tf2::Transform to_terrain(const std_msgs::Header& header) const;
+
+ private:
+  std::string terrain_frame_;
+  tf2_ros::Buffer buffer_;
+  tf2_ros::TransformListener listener_;
+};
+
+}  // namespace desert_sim

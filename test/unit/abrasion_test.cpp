@@ -1,0 +1,101 @@
+// Abrasion, by hand: bouncing sand wears rock or soil where sand does not cover it.
+
+#include "support/bench_terrain.hpp"
+#include "support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+constexpr double quantum = 1.0 / 1048576;
+
+class AbrasionLaw : public test::OnBackend {
+ protected:
+  std::unique_ptr<test::BenchTerrain> worn(const std::function<void(test::BenchTerrain&)>& change, float rate = 0.01f, float dt = 1) {
+    auto t = std::make_unique<test::BenchTerrain>(exec(), 1, 1);
+    t->set(Layer::airborne_sand, 0.5).set(Layer::wind_x, 2 / dt).set(Layer::bedrock, 100);
+    change(*t);
+    SaltationParameters p;
+    p.lift = 0;
+    AbrasionParameters a;
+    a.rate = rate;
+    t->saltation(p, a, {}, dt);
+    return t;
+  }
+};
+
+// On bare rock p = 0.4: 0.3 m of 0.5 m bounces; wear = rate · |w| · (1 − p) · 0.3.
+TEST_P(AbrasionLaw, WearsBareRockByTheBouncingSand) {
+  const auto t = worn([](test::BenchTerrain&) {});
+  const double expected = 0.01 * 2 * 0.6 * 0.3;
+  EXPECT_NEAR(t->booked(Material::bedrock, 1) * quantum, expected, 2 * quantum);
+  EXPECT_EQ(t->booked(Material::bedrock, 1), t->booked(Material::sand, 0));
+  EXPECT_NEAR(t->at(Layer::sand, 0, 0), 0.2 + 0, 0.2);  // 0.2 deposited
+}
+
+TEST_P(AbrasionLaw, IsNothingWithoutWindRateOrBouncingSand) {
+  EXPECT_EQ(worn([](test::BenchTerrain& t) { t.set(Layer::wind_x, 0); })->booked(Material::bedrock, 1), 0);
+  EXPECT_EQ(worn([](test::BenchTerrain&) {}, 0.0f)->booked(Material::bedrock, 1), 0);
+  EXPECT_EQ(worn([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 1); })->booked(Material::bedrock, 1), 0);
+  EXPECT_EQ(worn([](test::BenchTerrain& t) { t.set(Layer::vegetation, 1); })->booked(Material::bedrock, 1), 0);
+  EXPECT_EQ(worn([](test::BenchTerrain& t) { t.set(Layer::erosion_resistance, 1); })->booked(Material::bedrock, 1), 0);
+}
+
+TEST_P(AbrasionLaw, ScalesWithResistance) {
+  const auto half = worn([](test::BenchTerrain& t) { t.set(Layer::erosion_resistance, 0.5); });
+  const auto none = worn([](test::BenchTerrain&) {});
+  EXPECT_NEAR(half->booked(Material::bedrock, 1), 0.5 * none->booked(Material::bedrock, 1), 2);
+}
+
+TEST_P(AbrasionLaw, CoverProtects) {
+  // What was deposited (0.2 m) would cover; so take away the deposit by a bounce of 1.
+  SaltationParameters p;
+  p.lift = 0;
+  p.bounce_on_rock = p.bounce_on_sand = 1;
+  AbrasionParameters a;
+  a.rate = 0.01f;
+  for (double sand : {0.0, 0.0249, 0.0251}) {
+    test::BenchTerrain t(exec(), 1, 1);
+    t.set(Layer::airborne_sand, 1).set(Layer::wind_x, 1).set(Layer::sand, sand);
+    t.saltation(p, a);
+    EXPECT_EQ(t.booked(Material::bedrock, 1) > 0, sand < 0.025) << sand;
+  }
+}
+
+TEST_P(AbrasionLaw, BouncingSandCountsUpToOneMetre) {
+  SaltationParameters p;
+  p.lift = 0;
+  p.bounce_on_rock = 1;
+  AbrasionParameters a;
+  a.rate = 0.01f;
+  for (double air : {1.0, 5.0}) {
+    test::BenchTerrain t(exec(), 1, 1);
+    t.set(Layer::airborne_sand, air).set(Layer::wind_x, 1);
+    t.saltation(p, a);
+    EXPECT_NEAR(t.booked(Material::bedrock, 1) * quantum, 0.01, 2 * quantum) << air;
+  }
+}
+
+TEST_P(AbrasionLaw, WearsSoilFirstAndNeverMoreThanThereIs) {
+  const auto deep = worn([](test::BenchTerrain& t) { t.set(Layer::soil, 1); }, 0.1f);
+  EXPECT_GT(deep->booked(Material::soil, 1), 0);
+  EXPECT_EQ(deep->booked(Material::bedrock, 1), 0);
+  EXPECT_EQ(deep->booked(Material::soil, 1), deep->booked(Material::sand, 0));
+  const auto thin = worn([](test::BenchTerrain& t) { t.set_quanta(Layer::soil, [](int, int) { return 3; }); }, 0.1f);
+  EXPECT_EQ(thin->booked(Material::soil, 1), 3);
+  EXPECT_EQ(thin->quanta_at(Layer::soil, 0, 0), 0);
+}
+
+TEST_P(AbrasionLaw, OfSoilFadesToNothingAtHalfMoisture) {
+  // Ground of 1 m, capacity 0.3: 0.15 m of moisture is m = 0.5.
+  const auto wear = [&](double moisture) {
+    return worn([&](test::BenchTerrain& t) { t.set(Layer::soil, 2).set(Layer::moisture, moisture); }, 0.1f)->booked(Material::soil, 1);
+  };
+  EXPECT_EQ(wear(0.15), 0);
+  EXPECT_EQ(wear(0.3), 0);
+  EXPECT_GT(wear(0.14), 0);
+}
+
+DESERT_ON_EACH_BACKEND(AbrasionLaw);
+
+}  // namespace
+}  // namespace desert_sim
