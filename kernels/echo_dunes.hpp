@@ -84,7 +84,7 @@ struct Classify {
     float sticky = 0.0f;
     for (int j = 1; j <= steps; ++j) {
       const float height =
-          cliff[sample_index(grid, x + ((j * dx + 32768) >> 16), y + ((j * dy + 32768) >> 16))];
+          cliff[sample_index(grid, x + nearest_cell(j * dx), y + nearest_cell(j * dy))];
       const float distance = j * grid.cell_size, lane = p.erosion_reach * height,
                   end = p.sticky_reach * height;
       if (height <= 0.0f || distance > end) continue;

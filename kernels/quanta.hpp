@@ -30,6 +30,8 @@ DESERT_HD Quanta take(float metres, float quanta_per_metre, Quanta available) {
 /// mirror.
 DESERT_HD int subcells(float cells) { return static_cast<int>(rintf(cells * 65536.0f)); }
 constexpr int subcell_one = 65536;
+/// The nearest whole cell to a displacement; halves go away from zero, so that mirrored marches mirror.
+DESERT_HD int nearest_cell(int subcell) { return (subcell + 32768 - (subcell < 0 ? 1 : 0)) >> 16; }
 
 /// The share wx·wy (each 0…2¹⁶) of an amount, rounded down: the four shares of a bilinear split never exceed
 /// it.

@@ -87,7 +87,7 @@ struct Shadow {
       dy -= subcells(v);
       steepest = maximum(steepest, height_above(grid, elevation, base, x, y, dx, dy) / static_cast<float>(j));
       if (curved) {
-        const int there = sample_index(grid, x + ((dx + 32768) >> 16), y + ((dy + 32768) >> 16));
+        const int there = sample_index(grid, x + nearest_cell(dx), y + nearest_cell(dy));
         u = wind_x[there];
         v = wind_y[there];
       }

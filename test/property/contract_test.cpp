@@ -56,10 +56,11 @@ class Contract : public test::OnBackend {
 };
 
 TEST_P(Contract, OfSurface) {
-  expect_only("surface", {Layer::elevation}, true, [](test::BenchTerrain& t) {
-    t.set(Layer::elevation, 0);
+  expect_only("surface", {Layer::elevation, Layer::sand}, true, [](test::BenchTerrain& t) {
+    t.set(Layer::sand, 0);
     t.surface();
   });
+  expect_only("surface, again", {}, false, [](test::BenchTerrain& t) { t.surface(); });
 }
 TEST_P(Contract, OfWind) {
   expect_only("wind", {Layer::wind_x, Layer::wind_y}, true, [](test::BenchTerrain& t) { t.blow({}, {5, 2}); });

@@ -1,0 +1,30 @@
+#pragma once
+/// How the surface looks: the colour of its material, and its light.
+
+#include <vector>
+
+#include "desert_sim/simulation/simulation.hpp"
+
+namespace desert_sim {
+
+struct Colour {
+  float r = 0, g = 0, b = 0;  ///< 0…1
+};
+
+class SurfaceColour {
+ public:
+  /// Keeps a reference to the snapshot. `reach` [cells]: slopes are taken over twice as many.
+  SurfaceColour(const Snapshot& snapshot, int reach);
+  /// Sand warm, rock grey-brown where sand is thin, plants green, obstacles violet; times the light.
+  Colour at(int x, int y) const;
+
+ private:
+  Colour material(std::size_t i) const;
+  float light(int x, int y) const;
+
+  const Snapshot& s_;
+  const int reach_;
+  const std::vector<float>*elevation_, *sand_, *vegetation_, *obstacle_;
+};
+
+}  // namespace desert_sim
