@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "desert_sim/core/parameters.hpp"
-#include "desert_sim/kernels/avalanching_laws.hpp"
+#include "desert_sim/kernels/avalanching_tile.hpp"
 #include "desert_sim/kernels/buffer.hpp"
 
 namespace desert_sim {

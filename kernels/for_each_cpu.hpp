@@ -22,22 +22,34 @@ struct CpuTeam {
   DESERT_HD void for_each(int n, const Body& body) const {
     for (int i = 0; i < n; ++i) body(i);
   }
-  /// Calls body(x, y) over a tile's cells; iterations do not depend on each other.
-  template <class Body>
-  DESERT_HD void for_each_in_tile(const Body& body) const {
-    for (int y = 0; y < Tiles::side; ++y) {
-#pragma omp simd
-      for (int x = 0; x < Tiles::side; ++x) body(x, y);
-    }
-  }
-  /// Whether predicate(x, y) holds anywhere in the tile.
+  /// Whether predicate(i) holds for any i in 0…n−1.
   template <class Predicate>
-  DESERT_HD bool any_in_tile(const Predicate& predicate) const {
+  DESERT_HD bool any(int n, const Predicate& predicate) const {
+    for (int i = 0; i < n; ++i)
+      if (predicate(i)) return true;
+    return false;
+  }
+  /// Calls body(y) for the rows of a tile; all are done when it returns.
+  template <class Body>
+  DESERT_HD void for_each_row(const Body& body) const {
+    for (int y = 0; y < Tiles::side; ++y) body(y);
+  }
+  /// Inside a row: body(x) for its cells, which do not depend on each other.
+  template <class Body>
+  DESERT_HD void for_each_in_row(const Body& body) const {
+#pragma omp simd
+    for (int x = 0; x < Tiles::side; ++x) body(x);
+  }
+  /// Inside a row: runs body(x) for all its cells; whether it returned true for any.
+  template <class Body>
+  DESERT_HD bool any_in_row(const Body& body) const {
     int any = 0;
-    for (int y = 0; y < Tiles::side; ++y)
-      for (int x = 0; x < Tiles::side; ++x) any |= predicate(x, y) ? 1 : 0;
+#pragma omp simd reduction(| : any)
+    for (int x = 0; x < Tiles::side; ++x) any |= body(x) ? 1 : 0;
     return any != 0;
   }
+  /// Inside a row: whether this is the one thread that writes what the row shares.
+  DESERT_HD bool leads_row() const { return true; }
 };
 
 /// One tile. No instruction set fuses multiplications with additions (-ffp-contract=off): all give the same

@@ -41,24 +41,43 @@ struct Team {
     __syncthreads();
 #endif
   }
-  template <class Body>
-  DESERT_HD void for_each_in_tile(const Body& body) const {
+  template <class Predicate>
+  DESERT_HD bool any(int n, const Predicate& predicate) const {
+    int found = 0;
 #if defined(__CUDA_ARCH__)
-#pragma unroll
-    for (int y = 0; y < Tiles::side; y += block_y)
-      body(static_cast<int>(threadIdx.x), y + static_cast<int>(threadIdx.y));
+    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y) found |= predicate(i) ? 1 : 0;
+    found = __syncthreads_or(found);
+#endif
+    return found != 0;
+  }
+  /// A warp a row.
+  template <class Body>
+  DESERT_HD void for_each_row(const Body& body) const {
+#if defined(__CUDA_ARCH__)
+    for (int y = threadIdx.y; y < Tiles::side; y += block_y) body(y);
     __syncthreads();
 #endif
   }
-  template <class Predicate>
-  DESERT_HD bool any_in_tile(const Predicate& predicate) const {
-    int any = 0;
+  template <class Body>
+  DESERT_HD void for_each_in_row(const Body& body) const {
 #if defined(__CUDA_ARCH__)
-    for (int y = 0; y < Tiles::side; y += block_y)
-      any |= predicate(static_cast<int>(threadIdx.x), y + static_cast<int>(threadIdx.y)) ? 1 : 0;
-    any = __syncthreads_or(any);
+    body(static_cast<int>(threadIdx.x));
 #endif
-    return any != 0;
+  }
+  template <class Body>
+  DESERT_HD bool any_in_row(const Body& body) const {
+    bool found = false;
+#if defined(__CUDA_ARCH__)
+    found = __any_sync(0xffffffffu, body(static_cast<int>(threadIdx.x))) != 0;
+#endif
+    return found;
+  }
+  DESERT_HD bool leads_row() const {
+#if defined(__CUDA_ARCH__)
+    return threadIdx.x == 0;
+#else
+    return true;
+#endif
   }
 };
 static_assert(Tiles::side == block_x, "a warp works along a row of a tile");

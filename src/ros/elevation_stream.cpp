@@ -76,11 +76,11 @@ void ElevationStream::publish_keyframe(const TerrainState& state) {
   keyframes_.publish(elevation_message(state, frame_, keyframe_));
 }
 
-void ElevationStream::publish_update(const TerrainState& state) {
+bool ElevationStream::publish_update(const TerrainState& state) {
   if (!held_.holds(*state.snapshot) || terrain_ != state.moment.terrain) {
-    if (keyframes_.getNumSubscribers() > 0) return;
+    if (keyframes_.getNumSubscribers() > 0) return false;
     start_keyframe(state);
-    if (!held_.holds(*state.snapshot)) return;  // the last subscriber has just gone
+    if (!held_.holds(*state.snapshot)) return false;  // the last subscriber has just gone
   }
   ElevationUpdatePtr message = boost::make_shared<ElevationUpdate>();
   message->header = header_of(state.moment, frame_);
@@ -90,6 +90,7 @@ void ElevationStream::publish_update(const TerrainState& state) {
   message->sequence = ++sequence_;
   message->tiles = held_.take_changes(*state.snapshot);
   updates_.publish(message);
+  return true;
 }
 
 }  // namespace desert_sim

@@ -37,8 +37,8 @@ class ElevationStream {
   ElevationStream(ros::Publisher keyframes, ros::Publisher updates, std::string frame, double threshold, int tile);
   void publish_keyframe(const TerrainState& state);
   /// Starts a keyframe that nobody gets if there is no subscriber to keyframes and none has been started for this terrain;
-  /// does nothing if there is one, who is owed a keyframe first.
-  void publish_update(const TerrainState& state);
+  /// if there is one, a keyframe is due first: false, and nothing is published.
+  bool publish_update(const TerrainState& state);
 
  private:
   void start_keyframe(const TerrainState& state);

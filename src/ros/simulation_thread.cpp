@@ -302,6 +302,7 @@ void SimulationThread::fail(const std::string& what) {
     const std::lock_guard<std::mutex> lock(failure_mutex_);
     failure_ = what.empty() ? "the simulation failed" : what;
   }
+  failed_ = true;
   jobs_.close("the simulation has failed: " + what);
   on_change_();
 }

@@ -53,6 +53,9 @@ class SimulationThread {
 
   /// What ended the simulation; empty while it lives.
   std::string failure() const;
+  bool failed() const { return failed_; }
+  /// Failed or stopped.
+  bool ended() const { return jobs_.closed(); }
   /// Ends the thread, after the step that it is in; requests that wait hold Error then.
   void stop();
 
@@ -85,6 +88,7 @@ class SimulationThread {
   JobQueue jobs_;
   std::atomic<std::uint64_t> changes_{1}, commands_{0}, terrains_{0};
   std::string backend_choice_;
+  std::atomic<bool> failed_{false};
   mutable std::mutex failure_mutex_;
   std::string failure_;
 

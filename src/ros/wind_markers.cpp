@@ -15,12 +15,12 @@ namespace {
 
 using visualization_msgs::Marker;
 
-std_msgs::ColorRGBA speed_colour(double share) {
-  // Still blue, the wind's own speed near white, faster red.
+/// `relative`: speed over that of the wind above.
+std_msgs::ColorRGBA speed_colour(double relative) {
+  // 0 blue, 1 near white, 1.5 and more red.
   constexpr float stops[3][3] = {{0.10f, 0.25f, 0.85f}, {0.92f, 0.97f, 1.0f}, {0.95f, 0.15f, 0.10f}};
-  const double place = 2 * std::clamp(share, 0.0, 1.0);
-  const int n = place < 1 ? 0 : 1;
-  const float f = static_cast<float>(place - n);
+  const int n = relative < 1 ? 0 : 1;
+  const float f = static_cast<float>(n == 0 ? relative : std::min(1.0, 2 * (relative - 1)));
   const auto channel = [&](int c) { return stops[n][c] + f * (stops[n + 1][c] - stops[n][c]); };
   std_msgs::ColorRGBA colour;
   colour.r = channel(0);
@@ -106,7 +106,7 @@ visualization_msgs::MarkerArrayPtr WindMarkers::markers(const TerrainState& stat
       const double yaw = std::atan2(wind_y, wind_x);
       m.pose.orientation.z = std::sin(0.5 * yaw);
       m.pose.orientation.w = std::cos(0.5 * yaw);
-      m.color = speed_colour(speed / (1.5 * reference) * 0.75);
+      m.color = speed_colour(speed / reference);
       array->markers.push_back(m);
     }
   array->markers.push_back(clock(state, frame_));
