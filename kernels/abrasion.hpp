@@ -1,7 +1,7 @@
 #pragma once
 /// Abrasion: bouncing sand wears rock and soil to sand. Paris 2019 §5.2, Nilles 2024 §3.6; physics.md B4.
 ///
-///   where s < `cover` and sand bounces:  wear = k_a Δt |w| (1 − v)(1 − ρ)(1 − p) min(bouncing, 1 m)
+///   where s (before the deposit) < `cover` and sand bounces:  wear = k_a Δt |w| (1 − v)(1 − ρ)(1 − p) min(bouncing, 1 m)
 ///
 /// Soil, where there is some, wears in the rock's place, less so with moisture: · max(1 − m/0.5, 0).
 /// Part of the deposit pass of saltation. Reads what deposit reads, and erosion_resistance; writes bedrock,
@@ -36,10 +36,10 @@ struct Wear {
   const float* resistance;
   LedgerView ledger;
 
-  /// `bouncing`: sand that stays in the air over cell i; `speed` of the wind; v vegetation; m relative
+  /// `sand_hit`: the cell's sand before any was deposited; `bouncing`: sand that stays in the air over cell i; `speed` of the wind; v vegetation; m relative
   /// moisture; p the share of sand that was deposited.
-  DESERT_HD void operator()(int i, Quanta bouncing, float speed, float v, float m, float p) const {
-    if (rate <= 0.0f || bouncing <= 0 || sand[i] >= cover) return;
+  DESERT_HD void operator()(int i, Quanta sand_hit, Quanta bouncing, float speed, float v, float m, float p) const {
+    if (rate <= 0.0f || bouncing <= 0 || sand_hit >= cover) return;
     const float strength = rate * speed * (1.0f - v) * (1.0f - p) * minimum(bouncing * quantum, 1.0f);
     if (soil && soil[i] > 0) {
       const Quanta worn = take(strength * maximum(1.0f - 2.0f * m, 0.0f), quanta_per_metre, soil[i]);

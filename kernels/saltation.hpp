@@ -3,7 +3,7 @@
 /// Nilles 2024 §3.6; physics.md B1–B3.
 ///
 ///   lift     L = min(s, ε_s (1 − r_s)(1 − v)(r_e > 0 ? ½ : 1) M + (r_e < 0 ? k_e : 0)),  a += L
-///            M = clamp(1 − 10 m, 0, 1), 0 under water; nothing lifts in still air or up to the threshold speed
+///            M = clamp(1 − 10 m, 0, 1), 0 under water; nothing lifts in still air or below the threshold speed
 ///   advect   a moves by w Δt / l cells and is shared bilinearly among four (scattered integers: exact, any
 ///   order) deposit  p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1), f = 0.4 on sand, 0.5 on soil, 0.6 on
 ///   rock; 0 on obstacles
@@ -38,7 +38,7 @@ constexpr auto parameter_table(const SaltationParameters*) {
   return std::make_tuple(
       parameter("enabled", &P::enabled, "Whether the wind carries sand."),
       parameter("lift", &P::lift, 0, 10, "m", "Sand lifted from an open cell a step of 1 s (epsilon_s)."),
-      parameter("threshold_speed", &P::threshold_speed, 0, 100, "m/s", "Wind up to which nothing is lifted."),
+      parameter("threshold_speed", &P::threshold_speed, 0, 100, "m/s", "Wind below which nothing is lifted."),
       parameter("bounce_on_sand", &P::bounce_on_sand, 0, 1, "1",
                 "Share of landing sand that bounces on sand (f)."),
       parameter("bounce_on_soil", &P::bounce_on_soil, 0, 1, "1",
@@ -93,7 +93,7 @@ struct LiftAndAdvect {
   LedgerView ledger;
 
   DESERT_HD Quanta lifted(int i, float speed) const {
-    if (sand[i] <= 0 || !(speed > p.threshold_speed)) return 0;
+    if (sand[i] <= 0 || !(speed > 0.0f) || speed < p.threshold_speed) return 0;
     const float r_e = value_or_zero(in.echo, i);
     const float wet = in.flooded(i) ? 0.0f : dryness(in.moisture(i));
     const float metres =
@@ -193,10 +193,11 @@ struct Deposit {
     const float held = share(i, m);
     const Quanta deposited = take(held * (arriving * in.quantum), in.quanta_per_metre, arriving);
     const Quanta bouncing = arriving - deposited;
+    const Quanta cover = sand[i];  // what the grains hit
     sand[i] += deposited;
     airborne[i] = bouncing;
     reptation_strength[i] = arriving * in.quantum * (1.0f - v);
-    wear(i, bouncing, hypotenuse(in.wind_x[i], in.wind_y[i]), v, m, held);
+    wear(i, cover, bouncing, hypotenuse(in.wind_x[i], in.wind_y[i]), v, m, held);
   }
 };
 

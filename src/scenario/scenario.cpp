@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <fstream>
-#include <sstream>
 
+#include "desert_sim/core/files.hpp"
 #include "desert_sim/scenario/sections.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
 
@@ -178,10 +178,7 @@ Scenario parse_with_settings(const std::string& text, const std::string& source,
 }  // namespace
 
 Scenario load_scenario(const std::string& path, const Settings& settings) {
-  std::ifstream file(path);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf())) throw ConfigError(path + ": cannot be read");
-  Scenario s = parse_with_settings(text.str(), path, folder_of(path), settings);
+  Scenario s = parse_with_settings(read_file(path), path, folder_of(path), settings);
   s.name = name_of(path);
   return s;
 }

@@ -7,9 +7,9 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/core/files.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
 #include "desert_sim/simulation/command_yaml.hpp"
 
@@ -67,9 +67,7 @@ void write_durably(const std::string& path, const std::string& bytes) {
 }
 
 std::string read_whole(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw ConfigError(path + ": cannot be opened");
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  std::string bytes = read_file(path);
   if (bytes.compare(0, magic.size(), magic) != 0) throw ConfigError(path + ": is not a checkpoint");
   std::size_t at = magic.size();
   const auto found = take_from<std::uint32_t>(bytes, at, path);

@@ -4,8 +4,9 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
+#include <sstream>
 
+#include "desert_sim/core/files.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
 #include "desert_sim/simulation/command_yaml.hpp"
 
@@ -77,8 +78,7 @@ void JournalWriter::end(std::uint64_t tick) {
 }
 
 Journal read_journal(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw ConfigError(path + ": cannot be opened");
+  std::istringstream file(read_file(path));
   Journal journal;
   std::string text;
   for (int n = 1; std::getline(file, text); ++n) {

@@ -30,12 +30,9 @@ std::shared_ptr<const Snapshot> Simulation::snapshot(const std::vector<Layer>& l
   const auto asked = [&](Layer layer) {
     return std::find(layers.begin(), layers.end(), layer) != layers.end();
   };
-  // The step leaves the wind that it used, and heights as they were before it; before the first there is neither.
-  if (steps_ == 0 && (asked(Layer::wind_x) || asked(Layer::wind_y))) {
-    refresh_wind();
-  } else if (asked(Layer::elevation)) {
-    with_backend(exec(), [&](auto& e) { surface::step(e, terrain_.view()); });
-  }
+  refresh_derived();
+  // A step leaves heights as they were at its beginning.
+  if (asked(Layer::elevation)) with_backend(exec(), [&](auto& e) { surface::step(e, terrain_.view()); });
   for (Layer layer : layers) s->layers[layer] = terrain_.values(layer);
   return s;
 }
@@ -116,6 +113,7 @@ std::array<MaterialBalance, material_count> Simulation::balance() {
 }
 
 Residual Simulation::residual() {
+  refresh_derived();
   return with_backend(exec(), [this](auto& e) {
     return statistics::residual(e, terrain_.view(), repose_.data(), avalanche_work_);
   });

@@ -56,6 +56,7 @@ void Simulation::run_step(E& exec) {
     });
 
   ++steps_;
+  derived_ready_ = true;
 }
 
 template <class E>
@@ -108,8 +109,20 @@ void Simulation::step() {
   with_backend(exec(), [this](auto& exec) { run_step(exec); });
 }
 
-void Simulation::refresh_wind() {
-  with_backend(exec(), [this](auto& e) { update_wind(e, terrain_.view()); });
+void Simulation::refresh_derived() {
+  if (derived_ready_) return;
+  const Scenario& s = scenario_;
+  ReptationParameters only_angles = s.reptation;
+  only_angles.method = ReptationMethod::off;
+  with_backend(exec(), [&](auto& e) {
+    const TerrainView view = terrain_.view();
+    update_wind(e, view);
+    if (s.wind_shadow.enabled) wind_shadow::step(e, view, s.wind_shadow);
+    if (s.echo_dunes.enabled) echo_dunes::step(e, view, s.echo_dunes, cliff_.data());
+    reptation::step(e, view, only_angles, s.repose, s.run.time_step, s.seed, steps_, reptation_strength_.data(),
+                    landed_.data(), repose_.data());
+  });
+  derived_ready_ = true;
 }
 
 // ---- making

@@ -1,0 +1,41 @@
+/// desert_sim_node: the simulation as a ROS node.
+/// Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time.
+#include <ros/console.h>
+#include <ros/init.h>
+
+#include "desert_sim/core/error.hpp"
+#include "desert_sim/ros/desert_sim_server.hpp"
+
+namespace {
+
+constexpr int refused = 2, failed = 3;
+
+int run() {
+  const desert_sim::DesertSimServer server(ros::NodeHandle("~"));
+  std::string failure;
+  while (ros::ok() && failure.empty()) {
+    ros::WallDuration(0.05).sleep();
+    failure = server.failure();
+  }
+  if (failure.empty()) return 0;
+  ROS_FATAL("%s", failure.c_str());
+  ros::WallDuration(0.5).sleep();  // the last status is on its way
+  return failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "desert_sim");
+  int status = failed;
+  try {
+    status = run();
+  } catch (const desert_sim::ConfigError& e) {
+    ROS_FATAL("%s", e.what());
+    status = refused;
+  } catch (const std::exception& e) {
+    ROS_FATAL("%s", e.what());
+  }
+  ros::shutdown();
+  return status;
+}

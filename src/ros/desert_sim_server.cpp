@@ -1,0 +1,78 @@
+#include "desert_sim/ros/desert_sim_server.hpp"
+
+#include <ros/console.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "desert_sim/io/raster_loader.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr std::uint32_t threads = 4, step_threads = 2;
+
+/// A journal is what explains a run that failed; the run that is started in its place must not overwrite it.
+void keep_previous_journal(const std::string& path) {
+  if (path.empty()) return;
+  if (std::rename(path.c_str(), (path + ".previous").c_str()) != 0 && errno != ENOENT)
+    throw ConfigError(path + ": cannot be renamed to make room for a new journal: " + std::strerror(errno));
+}
+
+SimulationThread::Options options_of(const NodeParameters& p) {
+  SimulationThread::Options options;
+  options.backend = backend_choices[static_cast<int>(p.backend)];
+  options.threads = p.threads;
+  options.step_rate = p.step_rate;
+  options.paused = p.paused;
+  options.journal = p.journal;
+  return options;
+}
+
+/// Points and markers in rviz are single precision: 1e5 m leave a centimetre.
+void warn_of_far_origin(const GridParameters& grid) {
+  const double farthest = std::max(std::abs(grid.origin_x), std::abs(grid.origin_y));
+  if (farthest > 1e5)
+    ROS_WARN("the terrain lies up to %.0f m from its frame's origin: float32 coordinates (~points, rviz) are only good to %.2f m there",
+             farthest, farthest * 6e-8);
+}
+
+}  // namespace
+
+DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
+    : node_(private_node), spinner_(threads, &queue_), step_spinner_(step_threads, &step_queue_) {
+  node_.setCallbackQueue(&queue_);
+  NodeSetup setup = read_node_setup(node_);
+  resolve_grid(setup.scenario, gdal_raster_loader());
+  const NodeParameters& p = setup.node;
+  const GridParameters& grid = setup.scenario.grid;
+  keep_previous_journal(p.journal);
+  files_ = std::make_unique<DataFolder>(p.data_dir);
+  frames_ = std::make_unique<Frames>(p.frame_id);
+  simulation_ = std::make_unique<SimulationThread>(setup.scenario, gdal_raster_loader(), options_of(p), [this] {
+    if (Topics* topics = to_notify_) topics->notify();
+  });
+  ROS_INFO("scenario %s: %d x %d cells of %g m; backend: %s", setup.scenario.name.c_str(), grid.width, grid.height, grid.cell_size,
+           simulation_->backend_choice().c_str());
+  warn_of_far_origin(grid);
+  topics_ = std::make_unique<Topics>(node_, setup.publishers, p.frame_id, *simulation_);
+  to_notify_ = topics_.get();
+  services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *topics_, *frames_, *files_);
+  spinner_.start();
+  step_spinner_.start();
+}
+
+DesertSimServer::~DesertSimServer() {
+  // First what others wait for, so that they get their answers; then those who wait.
+  simulation_->stop();
+  topics_->stop();
+  spinner_.stop();
+  step_spinner_.stop();
+  services_.reset();
+  topics_.reset();
+}
+
+}  // namespace desert_sim

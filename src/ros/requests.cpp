@@ -1,0 +1,116 @@
+#include "desert_sim/ros/requests.hpp"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "desert_sim/core/error.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr double degrees = 180 / 3.14159265358979323846;
+
+void require_finite(double value, const std::string& name) {
+  if (std::isfinite(value)) return;
+  std::ostringstream text;
+  text << name << ": = " << value << " is not a finite number";
+  throw ConfigError(text.str());
+}
+
+/// Beyond what a float holds it is infinite, which the simulation refuses by name.
+float narrow(double value) {
+  if (std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()) || std::isnan(value)) return static_cast<float>(value);
+  return std::copysign(std::numeric_limits<float>::infinity(), static_cast<float>(std::copysign(1.0, value)));
+}
+
+template <class Choice, int N>
+Choice choose(const char* const (&choices)[N], const std::string& text, const std::string& name) {
+  std::string all;
+  for (int n = 0; n < N; ++n) {
+    if (text == choices[n]) return static_cast<Choice>(n);
+    all += (n ? ", " : "") + std::string(choices[n]);
+  }
+  throw ConfigError(name + ": '" + text + "' is not one of: " + all);
+}
+
+/// A direction of the header's frame in the terrain's, seen from above [deg].
+double turned(double angle_deg, const tf2::Transform& transform) {
+  const tf2::Vector3 axis = transform.getBasis() * tf2::Vector3(std::cos(angle_deg / degrees), std::sin(angle_deg / degrees), 0);
+  return std::atan2(axis.y(), axis.x()) * degrees;
+}
+
+}  // namespace
+
+void require_finite(const geometry_msgs::Point& point, const std::string& name) {
+  require_finite(point.x, name + ".x");
+  require_finite(point.y, name + ".y");
+  require_finite(point.z, name + ".z");
+}
+
+command::SetWind wind_command(const SetWindRequest& request) {
+  command::SetWind command;
+  command.ramp = narrow(request.ramp);
+  if (!request.use_vector) {
+    command.speed = narrow(request.speed);
+    command.direction_deg = narrow(request.direction_deg);
+    return command;
+  }
+  require_finite(request.vector.x, "vector.x");
+  require_finite(request.vector.y, "vector.y");
+  if (!(request.vector.z == 0)) throw ConfigError("vector.z: = " + std::to_string(request.vector.z) + " must be 0: the wind is horizontal");
+  command.speed = narrow(std::hypot(request.vector.x, request.vector.y));
+  command.direction_deg = narrow(std::atan2(request.vector.y, request.vector.x) * degrees);
+  return command;
+}
+
+command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request) {
+  constexpr const char* kinds[] = {"timeline", "rose"};
+  command::SetWindSchedule command;
+  WindRegime& regime = command.regime;
+  regime.kind = choose<int>(kinds, request.kind, "kind") == 0 ? WindRegimeKind::timeline : WindRegimeKind::rose;
+  const bool rose = regime.kind == WindRegimeKind::rose;
+  if (request.segments.size() > 4096)
+    throw ConfigError("segments: " + std::to_string(request.segments.size()) + " entries are more than 4096");
+  regime.repeat = request.repeat;
+  if (rose) regime.hold_time = narrow(request.hold_time);
+  regime.seed = request.seed;
+  // What the kind does not look at keeps its default, whatever the request says.
+  for (const WindScheduleSegment& s : request.segments) {
+    WindSegment segment;
+    segment.direction_deg = narrow(s.direction_deg);
+    segment.speed = narrow(s.speed);
+    if (rose) {
+      segment.probability = narrow(s.probability);
+    } else {
+      segment.duration = narrow(s.duration);
+      segment.ramp = narrow(s.ramp);
+    }
+    regime.segments.push_back(segment);
+  }
+  return command;
+}
+
+command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames) {
+  command::EditTerrain command;
+  command.layer = request.layer;
+  command.shape = choose<BrushShape>(brush_shapes, request.shape, "shape");
+  command.merge = choose<BrushMerge>(brush_merges, request.merge, "merge");
+  require_finite(request.center, "center");
+  require_finite(request.angle_deg, "angle_deg");
+  const tf2::Transform transform = frames.to_terrain(request.header);
+  const tf2::Vector3 center = transform * tf2::Vector3(request.center.x, request.center.y, request.center.z);
+  command.x = center.x();
+  command.y = center.y();
+  command.radius = request.radius;
+  if (command.shape == BrushShape::ellipse) {
+    command.radius_y = request.radius_y;
+    command.angle_deg = transform == tf2::Transform::getIdentity() ? request.angle_deg : turned(request.angle_deg, transform);
+  }
+  command.inner = request.inner;
+  command.value = request.value;
+  return command;
+}
+
+}  // namespace desert_sim

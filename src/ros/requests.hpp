@@ -1,0 +1,22 @@
+#pragma once
+/// From service requests to the simulation's commands. All throw ConfigError that names the field, its value and what is
+/// allowed; ranges are checked by the simulation itself when it applies the command.
+
+#include "desert_sim/simulation/command.hpp"
+// The services' types come after: those of the same names belong to desert_sim itself.
+#include <desert_sim/EditTerrain.h>
+#include <desert_sim/SetWind.h>
+#include <desert_sim/SetWindSchedule.h>
+
+#include "desert_sim/ros/frames.hpp"
+
+namespace desert_sim {
+
+command::SetWind wind_command(const SetWindRequest& request);
+command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request);
+command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames);
+
+/// Throws ConfigError unless all are finite; `name` is what the point is called.
+void require_finite(const geometry_msgs::Point& point, const std::string& name);
+
+}  // namespace desert_sim

@@ -1,0 +1,152 @@
+#include "desert_sim/ros/services.hpp"
+
+#include <ros/console.h>
+
+#include "desert_sim/ros/messages.hpp"
+#include "desert_sim/ros/requests.hpp"
+#include "desert_sim/ros/terrain_sampler.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr std::size_t most_points = 1000000;
+constexpr auto recent_enough = std::chrono::milliseconds(100);
+
+}  // namespace
+
+template <class Service>
+void Services::advertise(const std::string& name,
+                         void (Services::*serve)(const typename Service::Request&, typename Service::Response&),
+                         ros::CallbackQueue* queue) {
+  using Request = typename Service::Request;
+  using Response = typename Service::Response;
+  const boost::function<bool(Request&, Response&)> callback = [this, name, serve](Request& request, Response& response) {
+    try {
+      (this->*serve)(request, response);
+      response.success = true;
+    } catch (const ConfigError& e) {
+      response.success = false;
+      response.message = e.what();
+    } catch (const std::exception& e) {
+      ROS_ERROR("%s: %s", name.c_str(), e.what());
+      response.success = false;
+      response.message = e.what();
+    }
+    return true;  // the answer, with its reason, is to reach who asked
+  };
+  servers_.push_back(node_.advertiseService(ros::AdvertiseServiceOptions::create<Service>(name, callback, ros::VoidConstPtr(), queue)));
+}
+
+Services::Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation, Topics& topics,
+                   const Frames& frames, const DataFolder& files)
+    : node_(std::move(node)), simulation_(simulation), topics_(topics), frames_(frames), files_(files) {
+  advertise<SetWind>("set_wind", &Services::set_wind);
+  advertise<SetWindSchedule>("set_wind_schedule", &Services::set_wind_schedule);
+  advertise<EditTerrain>("edit_terrain", &Services::edit_terrain);
+  advertise<QueryTerrain>("query_terrain", &Services::query_terrain);
+  advertise<Step>("step", &Services::step, &step_queue);
+  advertise<std_srvs::Trigger>("pause", &Services::pause);
+  advertise<std_srvs::Trigger>("resume", &Services::resume);
+  advertise<std_srvs::Trigger>("reset", &Services::reset);
+  advertise<SaveCheckpoint>("save_checkpoint", &Services::save_checkpoint);
+  advertise<LoadCheckpoint>("load_checkpoint", &Services::load_checkpoint);
+}
+
+void Services::set_wind(const SetWindRequest& request, SetWindResponse&) {
+  simulation_.apply(wind_command(request)).get();
+  topics_.status_changed();
+}
+
+void Services::set_wind_schedule(const SetWindScheduleRequest& request, SetWindScheduleResponse&) {
+  simulation_.apply(schedule_command(request)).get();
+  topics_.status_changed();
+}
+
+void Services::edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response) {
+  const Reached reached = simulation_.apply(edit_command(request, frames_)).get();
+  const CellRectangle& touched = reached.result.touched;
+  response.volume = reached.result.volume_m3;
+  response.x = static_cast<std::uint32_t>(touched.x0);
+  response.y = static_cast<std::uint32_t>(touched.y0);
+  response.width = static_cast<std::uint32_t>(touched.x1 - touched.x0);
+  response.height = static_cast<std::uint32_t>(touched.y1 - touched.y0);
+  response.step = reached.moment.step;
+  topics_.status_changed();
+}
+
+TerrainState Services::recent_terrain() {
+  {
+    const std::lock_guard<std::mutex> lock(recent_mutex_);
+    const bool unchanged = recent_.moment.change == simulation_.changes();
+    const bool uncommanded = recent_.moment.command == simulation_.commands();
+    const bool recent = std::chrono::steady_clock::now() - recent_time_ < recent_enough;
+    if (recent_.snapshot && (unchanged || (uncommanded && recent))) return recent_;
+  }
+  const TerrainState state = simulation_.terrain(sampled_layers()).get();
+  const std::lock_guard<std::mutex> lock(recent_mutex_);
+  recent_ = state;
+  recent_time_ = std::chrono::steady_clock::now();
+  return state;
+}
+
+void Services::query_terrain(const QueryTerrainRequest& request, QueryTerrainResponse& response) {
+  if (request.points.size() > most_points)
+    throw ConfigError("points: " + std::to_string(request.points.size()) + " are more than " + std::to_string(most_points));
+  for (std::size_t n = 0; n < request.points.size(); ++n) require_finite(request.points[n], "points[" + std::to_string(n) + "]");
+  const tf2::Transform transform = frames_.to_terrain(request.header);
+  const TerrainState state = recent_terrain();
+  const TerrainSampler sampler(*state.snapshot);
+  response.samples.reserve(request.points.size());
+  for (const geometry_msgs::Point& point : request.points) {
+    const tf2::Vector3 p = transform * tf2::Vector3(point.x, point.y, point.z);
+    response.samples.push_back(sampler.at(p.x(), p.y()));
+  }
+  response.header = header_of(state.moment, frames_.terrain_frame());
+  response.step = state.moment.step;
+  response.sim_time = state.moment.time;
+}
+
+void Services::step(const StepRequest& request, StepResponse& response) {
+  const Reached reached = simulation_.step(request.steps).get();
+  topics_.publish_now();
+  response.step = reached.moment.step;
+  response.sim_time = reached.moment.time;
+  response.state_hash = hash_text(reached.hash);
+}
+
+void Services::pause(const std_srvs::TriggerRequest&, std_srvs::TriggerResponse&) {
+  simulation_.pause().get();
+  topics_.publish_now();
+}
+
+void Services::resume(const std_srvs::TriggerRequest&, std_srvs::TriggerResponse&) {
+  simulation_.resume().get();
+  topics_.status_changed();
+}
+
+void Services::reset(const std_srvs::TriggerRequest&, std_srvs::TriggerResponse&) {
+  simulation_.apply(command::Reset{}).get();
+  ROS_INFO("reset to the scenario's start");
+  topics_.publish_now();
+}
+
+void Services::save_checkpoint(const SaveCheckpointRequest& request, SaveCheckpointResponse& response) {
+  response.path = files_.for_writing(request.name);
+  const Reached reached = simulation_.save_checkpoint(response.path).get();
+  response.step = reached.moment.step;
+  response.state_hash = hash_text(reached.hash);
+  ROS_INFO("saved step %lu to %s", static_cast<unsigned long>(response.step), response.path.c_str());
+}
+
+void Services::load_checkpoint(const LoadCheckpointRequest& request, LoadCheckpointResponse& response) {
+  const std::string path = files_.for_reading(request.name);
+  const Reached reached = simulation_.apply(command::LoadCheckpoint{path, 0}, true).get();
+  response.step = reached.moment.step;
+  response.sim_time = reached.moment.time;
+  response.state_hash = hash_text(reached.hash);
+  ROS_INFO("loaded step %lu from %s", static_cast<unsigned long>(response.step), path.c_str());
+  topics_.publish_now();
+}
+
+}  // namespace desert_sim

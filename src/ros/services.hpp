@@ -1,0 +1,65 @@
+#pragma once
+/// The services. Each turns a request into a command, waits until the simulation thread has answered, and says so.
+
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+
+#include <chrono>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "desert_sim/ros/simulation_thread.hpp"
+// The services' types come after the simulation's commands: those of the same names belong to desert_sim itself.
+#include <desert_sim/EditTerrain.h>
+#include <desert_sim/LoadCheckpoint.h>
+#include <desert_sim/QueryTerrain.h>
+#include <desert_sim/SaveCheckpoint.h>
+#include <desert_sim/SetWind.h>
+#include <desert_sim/SetWindSchedule.h>
+#include <desert_sim/Step.h>
+#include <std_srvs/Trigger.h>
+
+#include "desert_sim/ros/data_folder.hpp"
+#include "desert_sim/ros/frames.hpp"
+#include "desert_sim/ros/topics.hpp"
+
+namespace desert_sim {
+
+class Services {
+ public:
+  /// `step_queue` serves ~step, which can take long, apart from the rest, so that a pause always comes through.
+  Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation, Topics& topics, const Frames& frames,
+           const DataFolder& files);
+
+ private:
+  template <class Service>
+  void advertise(const std::string& name, void (Services::*serve)(const typename Service::Request&, typename Service::Response&),
+                 ros::CallbackQueue* queue = nullptr);
+
+  void set_wind(const SetWindRequest& request, SetWindResponse& response);
+  void set_wind_schedule(const SetWindScheduleRequest& request, SetWindScheduleResponse& response);
+  void edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response);
+  void query_terrain(const QueryTerrainRequest& request, QueryTerrainResponse& response);
+  void step(const StepRequest& request, StepResponse& response);
+  void pause(const std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response);
+  void resume(const std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response);
+  void reset(const std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response);
+  void save_checkpoint(const SaveCheckpointRequest& request, SaveCheckpointResponse& response);
+  void load_checkpoint(const LoadCheckpointRequest& request, LoadCheckpointResponse& response);
+
+  /// A copy that is new enough for a query; made anew only if the last one is not.
+  TerrainState recent_terrain();
+
+  ros::NodeHandle node_;
+  SimulationThread& simulation_;
+  Topics& topics_;
+  const Frames& frames_;
+  const DataFolder& files_;
+  std::mutex recent_mutex_;
+  TerrainState recent_;
+  std::chrono::steady_clock::time_point recent_time_;
+  std::vector<ros::ServiceServer> servers_;
+};
+
+}  // namespace desert_sim
