@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/io/gdal_messages.hpp"
 
 namespace desert_sim {
 namespace {

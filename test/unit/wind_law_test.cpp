@@ -1,0 +1,240 @@
+// The wind at the surface: speed-up, deflection, shadow of a step, lanes before cliffs.
+
+#include "support/bench_terrain.hpp"
+#include "support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+double tangent(double degrees) { return std::tan(degrees * 3.14159265358979 / 180); }
+
+class WindLaw : public test::OnBackend {
+ protected:
+  static WindParameters plain() {
+    WindParameters p;
+    p.warping = p.projection = false;
+    return p;
+  }
+};
+
+TEST_P(WindLaw, SpeedsUpByHeightAboveTheReferenceWithinItsLimits) {
+  test::BenchTerrain t(exec(), 8, 1);
+  const double heights[] = {-300, -100, -10, 0, 1, 33.5, 400, 480};
+  t.set(Layer::bedrock, [&](int x, int) { return heights[x]; });
+  t.blow(plain(), {3, -4});
+  for (int x = 0; x < 8; ++x) {
+    const double factor = std::clamp(1 + 0.005 * heights[x], 0.5, 3.0);
+    EXPECT_NEAR(t.at(Layer::wind_x, x, 0) / (3 * factor), 1, 1e-6) << heights[x];
+    EXPECT_NEAR(t.at(Layer::wind_y, x, 0) / (-4 * factor), 1, 1e-6) << heights[x];
+  }
+  t.blow(plain(), {3, -4}, -100 * (1 << 20));
+  EXPECT_NEAR(t.at(Layer::wind_x, 3, 0), 3 * 1.5, 1e-5);
+}
+
+/// Uniform gradient: a ramp, read in the middle of an open grid far from its edges.
+struct Ramp {
+  std::unique_ptr<test::BenchTerrain> t;
+  Ramp(Exec& exec, double slope_x, double slope_y, WindParameters p, wind::Vector above) {
+    t = std::make_unique<test::BenchTerrain>(exec, 96, 96, 1, false);
+    t->set(Layer::bedrock, [&](int x, int y) { return slope_x * (x - 48) + slope_y * (y - 48); });
+    p.speedup = 0;
+    p.projection = false;
+    p.warping = true;
+    p.coarsening = 1;
+    p.radii = ShortList{{8, 0, 0, 0}, 1};
+    p.weights = ShortList{{1, 0, 0, 0}, 1};
+    p.deflections = ShortList{{5, 0, 0, 0}, 1};
+    t->blow(p, above);
+  }
+  double x() const { return t->at(Layer::wind_x, 48, 48); }
+  double y() const { return t->at(Layer::wind_y, 48, 48); }
+};
+
+TEST_P(WindLaw, DeflectsTowardsTheContourOnItsOwnSideAndKeepsItsSpeed) {
+  // g = (0.3, 0): g⊥ = (0, 0.3), with the sign that u·g⊥ ≥ 0; f = lerp(u, 5 g⊥, 0.3).
+  for (double v : {1.0, -1.0}) {
+    const Ramp ramp(exec(), 0.3, 0, {}, {4, static_cast<float>(v)});
+    const double fx = 0.7 * 4, fy = 0.7 * v + 0.3 * 5 * 0.3 * (v > 0 ? 1 : -1);
+    const double speed = std::hypot(4, v), length = std::hypot(fx, fy);
+    EXPECT_NEAR(ramp.x(), fx / length * speed, 2e-3) << v;
+    EXPECT_NEAR(ramp.y(), fy / length * speed, 2e-3) << v;
+    EXPECT_NEAR(std::hypot(ramp.x(), ramp.y()), speed, 1e-5);
+  }
+}
+
+TEST_P(WindLaw, FollowsTheContourWhereTheSlopeIsOneOrMore) {
+  const Ramp ramp(exec(), 1.0, 1.0, {}, {3, 1});
+  EXPECT_NEAR(ramp.x(), std::sqrt(5.0), 2e-3);
+  EXPECT_NEAR(ramp.y(), -std::sqrt(5.0), 2e-3);
+}
+
+TEST_P(WindLaw, DeflectionNeverTurnsTheWindBack) {
+  test::BenchTerrain t(exec(), 64, 64);
+  t.set(Layer::bedrock, [](int x, int y) { return 10 * std::sin(0.2 * x) * std::cos(0.15 * y); });
+  WindParameters p;
+  p.projection = false;
+  p.radii = ShortList{{20, 10, 0, 0}, 2};
+  t.blow(p, {4, 2});
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      EXPECT_GE(t.at(Layer::wind_x, x, y) * 4 + t.at(Layer::wind_y, x, y) * 2, -1e-3);
+}
+
+TEST_P(WindLaw, GradientScaleZeroDeflectsNothing) {
+  WindParameters p;
+  p.gradient_scale = 0;
+  const Ramp ramp(exec(), 0.5, 0.2, p, {4, 1});
+  EXPECT_EQ(ramp.x(), 4);
+  EXPECT_EQ(ramp.y(), 1);
+}
+
+TEST_P(WindLaw, UniformWindOnFlatGroundIsExact) {
+  for (bool periodic : {true, false}) {
+    test::BenchTerrain t(exec(), 37, 53, 2, periodic);
+    t.set(Layer::bedrock, 5);
+    WindParameters p;
+    t.blow(p, {3.3f, -1.7f}, 5 * (1 << 20));
+    for (float v : t.terrain.values(Layer::wind_x)) EXPECT_EQ(v, 3.3f);
+    for (float v : t.terrain.values(Layer::wind_y)) EXPECT_EQ(v, -1.7f);
+  }
+}
+
+// ---- Shadow --------------------------------------------------------------------------------------------------------
+
+TEST_P(WindLaw, ShadowOfAStepIsItsAngle) {
+  // A plateau of 1.2 m west of x = 10, wind to the east: the cell d cells behind its edge sees 1.2/d.
+  test::BenchTerrain t(exec(), 40, 3, 1, false);
+  t.set(Layer::bedrock, [](int x, int) { return x < 10 ? 1.2 : 0; }).set(Layer::wind_x, 5);
+  t.shadow();
+  for (int x = 0; x < 40; ++x) {
+    const int d = x - 9;
+    const double slope = d >= 1 && d <= 10 ? 1.2 / d : 0;
+    const double expected = std::clamp((slope - tangent(10)) / (tangent(15) - tangent(10)), 0.0, 1.0);
+    EXPECT_NEAR(t.at(Layer::wind_shadow, x, 1), expected, 2e-5) << x;
+  }
+}
+
+TEST_P(WindLaw, ShadowIsCountedInMetresNotCells) {
+  test::BenchTerrain t(exec(), 40, 3, 0.5, false);
+  t.set(Layer::bedrock, [](int x, int) { return x < 10 ? 1.2 : 0; }).set(Layer::wind_x, 5);
+  t.shadow();
+  for (int x = 10; x < 40; ++x) {
+    const double distance = 0.5 * (x - 9), slope = distance <= 10 ? 1.2 / distance : 0;
+    EXPECT_NEAR(t.at(Layer::wind_shadow, x, 1), std::clamp((slope - tangent(10)) / (tangent(15) - tangent(10)), 0.0, 1.0), 2e-5) << x;
+  }
+}
+
+TEST_P(WindLaw, ShadowLooksAtLeastOneCellFar) {
+  test::BenchTerrain t(exec(), 8, 1, 25, false);
+  t.set(Layer::bedrock, [](int x, int) { return x < 4 ? 20 : 0; }).set(Layer::wind_x, 5);
+  t.shadow();
+  EXPECT_EQ(t.at(Layer::wind_shadow, 4, 0), 1);
+  EXPECT_EQ(t.at(Layer::wind_shadow, 5, 0), 0);
+}
+
+TEST_P(WindLaw, ShadowReachesAcrossAPeriodicBorderBilinearly) {
+  // Wind at 45 degrees; one high cell in the north-east corner shelters the south-west corner across both borders.
+  test::BenchTerrain t(exec(), 12, 12), open(exec(), 12, 12, 1, false);
+  for (test::BenchTerrain* b : {&t, &open}) {
+    b->set(Layer::bedrock, [](int x, int y) { return x == 11 && y == 11 ? 6 : 0; }).set(Layer::wind_x, 3).set(Layer::wind_y, 3);
+    b->shadow();
+  }
+  // One step back is (−0.7071, −0.7071): weight 0.7071² of the corner's height.
+  const double first = 6 * 0.70710678 * 0.70710678;
+  EXPECT_EQ(t.at(Layer::wind_shadow, 0, 0), 1);
+  EXPECT_EQ(open.at(Layer::wind_shadow, 0, 0), 0);
+  EXPECT_GT(first, tangent(15));
+  WindShadowParameters flat;
+  flat.distance = 1;
+  flat.start_deg = 0;
+  flat.full_deg = 80;
+  t.shadow(flat);
+  EXPECT_NEAR(t.at(Layer::wind_shadow, 0, 0), first / tangent(80), 1e-4);
+}
+
+TEST_P(WindLaw, ShadowIsNothingInCalmAirAndOnTheWindwardSide) {
+  test::BenchTerrain t(exec(), 20, 3);
+  t.set(Layer::bedrock, [](int x, int) { return x > 10 ? 9 : 0; });
+  t.shadow();
+  for (float v : t.terrain.values(Layer::wind_shadow)) EXPECT_EQ(v, 0);
+  t.set(Layer::wind_x, 4);
+  t.shadow();
+  EXPECT_EQ(t.at(Layer::wind_shadow, 10, 1), 0) << "in front of the step";
+  EXPECT_EQ(t.at(Layer::wind_shadow, 0, 1), 1) << "behind it, across the border";
+}
+
+TEST_P(WindLaw, CurvedShadowOfATurningWindIsMirrorSymmetric) {
+  test::BenchTerrain plain(exec(), 24, 24), mirrored(exec(), 24, 24);
+  const auto direction = [](int x, int y) { return (x / 4 + y / 3) % 2 ? 60.0 : 30.0; };
+  const auto height = [](int x, int y) { return 4 + 3 * std::sin(0.9 * x) + 2 * std::cos(0.7 * y + 0.1 * x); };
+  const auto unit = [&](int x, int y) { return unit_vector(direction(x, y)); };
+  plain.set(Layer::bedrock, height);
+  plain.set(Layer::wind_x, [&](int x, int y) { return 4.0 * unit(x, y).x; }).set(Layer::wind_y, [&](int x, int y) { return 4.0 * unit(x, y).y; });
+  mirrored.set(Layer::bedrock, [&](int x, int y) { return height(23 - x, y); });
+  mirrored.set(Layer::wind_x, [&](int x, int y) { return -4.0 * unit(23 - x, y).x; }).set(Layer::wind_y, [&](int x, int y) { return 4.0 * unit(23 - x, y).y; });
+  WindShadowParameters p;
+  p.curved = true;
+  plain.shadow(p);
+  mirrored.shadow(p);
+  int different = 0;
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 24; ++x) different += plain.at(Layer::wind_shadow, x, y) != mirrored.at(Layer::wind_shadow, 23 - x, y);
+  EXPECT_EQ(different, 0);
+}
+
+// ---- Echo dunes ----------------------------------------------------------------------------------------------------
+
+TEST_P(WindLaw, EchoLaneAndStickyGroundLieAtTheirDistancesBeforeACliff) {
+  // A wall of 10 m at x = 40, wind to the east: lane up to 4 m before its face, sticky up to 20 m.
+  test::BenchTerrain t(exec(), 64, 3, 1, false);
+  t.set(Layer::bedrock, [](int x, int) { return x >= 40 && x < 44 ? 10 : 0; }).set(Layer::wind_x, 5);
+  EchoDuneParameters p;
+  t.echo(p);
+  for (int x = 0; x < 64; ++x) {
+    const int d = 40 - x;
+    double expected = 0;
+    if (d >= 1 && d <= 4) expected = -1;
+    if (d > 4 && d <= 20) expected = std::clamp(1.1 - (d - 4) / 16.0, 0.0, 1.0);
+    EXPECT_NEAR(t.at(Layer::echo, x, 1), expected, 1e-5) << "at " << d << " m before the cliff";
+  }
+}
+
+TEST_P(WindLaw, EchoScalesWithTheHeightUpToItsLimitAndInMetres) {
+  for (double cell : {0.5, 2.0}) {
+    test::BenchTerrain t(exec(), 128, 3, cell, false);
+    t.set(Layer::bedrock, [](int x, int) { return x >= 100 ? 50 : 0; }).set(Layer::wind_x, 5);
+    EchoDuneParameters p;
+    p.highest = 20;
+    p.erosion_rate = 0.25f;
+    t.echo(p);
+    for (int x = 60; x < 100; ++x) {
+      const double d = (100 - x) * cell;
+      EXPECT_EQ(t.at(Layer::echo, x, 1) == -0.25, d <= 8) << "cell " << cell << ", at " << d;
+      EXPECT_EQ(t.at(Layer::echo, x, 1) > 0, d > 8 && d < 40) << "cell " << cell << ", at " << d;
+    }
+  }
+}
+
+TEST_P(WindLaw, EchoNeedsACliffThatFacesTheWind) {
+  test::BenchTerrain t(exec(), 64, 3);
+  t.set(Layer::wind_x, 5);
+  const auto any = [&] {
+    for (float v : t.terrain.values(Layer::echo))
+      if (v != 0) return true;
+    return false;
+  };
+  t.set(Layer::bedrock, [](int x, int) { return x >= 20 && x < 40 ? std::min(x - 20, 15) * 1.4 : 0; });  // 54.5°, sheer to the lee
+  t.echo({});
+  EXPECT_FALSE(any());
+  t.set(Layer::bedrock, [](int x, int) { return x >= 20 && x < 40 ? std::min(x - 20, 15) * 1.45 : 0; });  // 55.4°
+  t.echo({});
+  EXPECT_TRUE(any());
+  t.set(Layer::wind_x, 0);
+  t.echo({});
+  EXPECT_FALSE(any()) << "in calm air";
+}
+
+DESERT_ON_EACH_BACKEND(WindLaw);
+
+}  // namespace
+}  // namespace desert_sim
