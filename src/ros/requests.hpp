@@ -2,13 +2,12 @@
 /// From service requests to the simulation's commands. All throw ConfigError that names the field, its value and what is
 /// allowed; ranges are checked by the simulation itself when it applies the command.
 
-#include "desert_sim/simulation/command.hpp"
-// The services' types come after: those of the same names belong to desert_sim itself.
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
 
 #include "desert_sim/ros/frames.hpp"
+#include "desert_sim/simulation/command.hpp"
 
 namespace desert_sim {
 

@@ -41,16 +41,17 @@ void Services::advertise(const std::string& name,
 Services::Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation, Topics& topics,
                    const Frames& frames, const DataFolder& files)
     : node_(std::move(node)), simulation_(simulation), topics_(topics), frames_(frames), files_(files) {
-  advertise<SetWind>("set_wind", &Services::set_wind);
-  advertise<SetWindSchedule>("set_wind_schedule", &Services::set_wind_schedule);
-  advertise<EditTerrain>("edit_terrain", &Services::edit_terrain);
-  advertise<QueryTerrain>("query_terrain", &Services::query_terrain);
-  advertise<Step>("step", &Services::step, &step_queue);
+  // Commands of the same names are in the namespace `command`.
+  advertise<desert_sim::SetWind>("set_wind", &Services::set_wind);
+  advertise<desert_sim::SetWindSchedule>("set_wind_schedule", &Services::set_wind_schedule);
+  advertise<desert_sim::EditTerrain>("edit_terrain", &Services::edit_terrain);
+  advertise<desert_sim::QueryTerrain>("query_terrain", &Services::query_terrain);
+  advertise<desert_sim::Step>("step", &Services::step, &step_queue);
   advertise<std_srvs::Trigger>("pause", &Services::pause);
   advertise<std_srvs::Trigger>("resume", &Services::resume);
   advertise<std_srvs::Trigger>("reset", &Services::reset);
-  advertise<SaveCheckpoint>("save_checkpoint", &Services::save_checkpoint);
-  advertise<LoadCheckpoint>("load_checkpoint", &Services::load_checkpoint);
+  advertise<desert_sim::SaveCheckpoint>("save_checkpoint", &Services::save_checkpoint);
+  advertise<desert_sim::LoadCheckpoint>("load_checkpoint", &Services::load_checkpoint);
 }
 
 void Services::set_wind(const SetWindRequest& request, SetWindResponse&) {

@@ -1,16 +1,6 @@
 #pragma once
 /// The services. Each turns a request into a command, waits until the simulation thread has answered, and says so.
 
-#include <ros/callback_queue.h>
-#include <ros/node_handle.h>
-
-#include <chrono>
-#include <mutex>
-#include <string>
-#include <vector>
-
-#include "desert_sim/ros/simulation_thread.hpp"
-// The services' types come after the simulation's commands: those of the same names belong to desert_sim itself.
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/LoadCheckpoint.h>
 #include <desert_sim/QueryTerrain.h>
@@ -18,10 +8,18 @@
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
 #include <desert_sim/Step.h>
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
 #include <std_srvs/Trigger.h>
+
+#include <chrono>
+#include <mutex>
+#include <string>
+#include <vector>
 
 #include "desert_sim/ros/data_folder.hpp"
 #include "desert_sim/ros/frames.hpp"
+#include "desert_sim/ros/simulation_thread.hpp"
 #include "desert_sim/ros/topics.hpp"
 
 namespace desert_sim {

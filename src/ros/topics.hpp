@@ -3,7 +3,7 @@
 /// which are due need, and makes the messages of it, so that publishing never holds up a step. A topic without
 /// subscribers asks for nothing. Topics are "latched" in effect: a new subscriber is sent the present state, not an old one.
 
-#include <ros/callback_queue_interface.h>
+#include <desert_sim/SimulationStatus.h>
 #include <ros/node_handle.h>
 
 #include <atomic>

@@ -32,7 +32,6 @@ const char usage[] =
     "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be left out)\n"
     "  --replay JOURNAL      apply the commands of a journal; runs as many steps as it has unless --steps "
     "says else\n"
-    "  --timing              measure each process (costs a little)\n"
     "  --describe            print every parameter as markdown\n"
     "  --quiet               no progress\n"
     "Exit status: 0; 2 for input it refuses; 3 for a failure at run time; 130 after Ctrl-C (outputs are "
@@ -56,6 +55,18 @@ Scenario scenario_of(const Options& o) {
   return load_scenario(o.positional()[0], settings);
 }
 
+/// Each process is timed in one step of so many; on a GPU that step has to wait after each process.
+constexpr std::uint64_t timed_every = 16;
+
+void time_processes(Simulation& simulation, bool timed, RunReport& report) {
+  if (report.timed != &simulation) report.timed_steps = 0;  // a reset or a load began with a new one
+  report.timed = &simulation;
+  simulation.set_timing(timed);
+  if (!timed) return;
+  simulation.exec().synchronise();
+  ++report.timed_steps;
+}
+
 /// Runs from where the session stands to `last` ticks, with the journal's commands in between.
 void run(Session& session, const Plan& plan, const Journal& journal, std::uint64_t last, RunReport& report) {
   using Clock = std::chrono::steady_clock;
@@ -69,6 +80,8 @@ void run(Session& session, const Plan& plan, const Journal& journal, std::uint64
   replay();
   while (session.ticks() < last && !interrupted) {
     const auto start = Clock::now();
+    const bool timed = report.steps_run % timed_every == 0;
+    time_processes(session.simulation(), timed, report);
     session.step();
     if (session.ticks() == last || session.ticks() % 64 == 0) session.simulation().exec().synchronise();
     stepping += Clock::now() - start;
@@ -92,7 +105,7 @@ int main_(int argc, char** argv) {
   Plan plan{Options(argc, argv,
                     {"steps", "backend", "threads", "set", "seed", "out", "every", "checkpoint",
                      "checkpoint-every", "resume", "replay"},
-                    {"describe", "quiet", "timing", "help"}),
+                    {"describe", "quiet", "help"}),
             "", "", 0, 0};
   const Options& o = plan.options;
   if (o.has("help")) return std::fputs(usage, stdout), 0;
@@ -120,7 +133,6 @@ int main_(int argc, char** argv) {
   }
   Simulation& simulation = session->simulation();
   if (!plan.out.empty()) prepare_folder(plan.out);
-  simulation.set_timing(o.has("timing"));
   const std::uint64_t asked = static_cast<std::uint64_t>(o.number(
       "steps", o.has("replay") ? static_cast<long long>(journal.ticks) : simulation.scenario().run.steps, 0,
       1LL << 40));

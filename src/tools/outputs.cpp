@@ -104,7 +104,7 @@ std::string summary(Simulation& s, const RunReport& report) {
       << number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
   for (const ProcessTime& t : s.process_times())
     out << ", " << quoted(t.process) << ": "
-        << number(report.steps_run ? t.milliseconds / static_cast<double>(report.steps_run) : 0.0);
+        << number(report.timed_steps ? t.milliseconds / static_cast<double>(report.timed_steps) : 0.0);
   out << "},\n  \"volume_m3\": {";
   const auto balance = s.balance();
   for (std::size_t m = 0; m < balance.size(); ++m) {

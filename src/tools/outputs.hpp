@@ -12,6 +12,8 @@ struct RunReport {
   int threads = 0;              ///< of the CPU backend; 0 on a GPU
   double milliseconds = 0;      ///< of all steps together
   std::uint64_t steps_run = 0;  ///< in this run; a resumed one began later
+  const Simulation* timed = nullptr;  ///< whose processes were timed, in so many steps
+  std::uint64_t timed_steps = 0;
 };
 
 /// Makes the folder (its parent must exist) and checks that it can be written to. Throws ConfigError.
