@@ -2,10 +2,8 @@
 
 #include <ros/console.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
+#include <filesystem>
 
 #include "desert_sim/io/raster_loader.hpp"
 
@@ -17,9 +15,10 @@ constexpr std::uint32_t threads = 4, step_threads = 2;
 
 /// A journal is what explains a run that failed; the run that is started in its place must not overwrite it.
 void keep_previous_journal(const std::string& path) {
-  if (path.empty()) return;
-  if (std::rename(path.c_str(), (path + ".previous").c_str()) != 0 && errno != ENOENT)
-    throw ConfigError(path + ": cannot be renamed to make room for a new journal: " + std::strerror(errno));
+  std::error_code error;
+  if (path.empty() || !std::filesystem::is_regular_file(path, error)) return;
+  std::filesystem::rename(path, path + ".previous", error);
+  if (error) throw ConfigError(path + ": cannot be renamed to make room for a new journal: " + error.message());
 }
 
 SimulationThread::Options options_of(const NodeParameters& p) {

@@ -48,7 +48,7 @@ struct PublisherParameters {
   double wind_rate = 2;
   int wind_decimation = 1;
   double wind_markers_rate = 2;
-  int wind_markers_count = 300;
+  int wind_markers_count = 180;
   double points_rate = 4;
   int points_count = 70000;
   double status_rate = 1;

@@ -35,7 +35,8 @@ void Services::advertise(const std::string& name,
     }
     return true;  // the answer, with its reason, is to reach who asked
   };
-  servers_.push_back(node_.advertiseService(ros::AdvertiseServiceOptions::create<Service>(name, callback, ros::VoidConstPtr(), queue)));
+  auto options = ros::AdvertiseServiceOptions::create<Service>(name, callback, ros::VoidConstPtr(), queue);
+  servers_.push_back(node_.advertiseService(options));
 }
 
 Services::Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation, Topics& topics,

@@ -17,10 +17,11 @@ using visualization_msgs::Marker;
 
 /// `relative`: speed over that of the wind above.
 std_msgs::ColorRGBA speed_colour(double relative) {
-  // 0 blue, 1 near white, 1.5 and more red.
+  // Half as fast or less: blue. As fast: near white. Half as fast again or more: red.
   constexpr float stops[3][3] = {{0.10f, 0.25f, 0.85f}, {0.92f, 0.97f, 1.0f}, {0.95f, 0.15f, 0.10f}};
-  const int n = relative < 1 ? 0 : 1;
-  const float f = static_cast<float>(n == 0 ? relative : std::min(1.0, 2 * (relative - 1)));
+  const double place = std::clamp(2 * (relative - 0.5), 0.0, 2.0);
+  const int n = place < 1 ? 0 : 1;
+  const float f = static_cast<float>(place - n);
   const auto channel = [&](int c) { return stops[n][c] + f * (stops[n + 1][c] - stops[n][c]); };
   std_msgs::ColorRGBA colour;
   colour.r = channel(0);
@@ -98,11 +99,11 @@ visualization_msgs::MarkerArrayPtr WindMarkers::markers(const TerrainState& stat
       const std::size_t i = static_cast<std::size_t>(y) * s.width + x;
       const double wind_x = u ? (*u)[i] : 0.0, wind_y = v ? (*v)[i] : 0.0, speed = std::hypot(wind_x, wind_y);
       Marker m = base(state, frame_, "wind", row * columns + column, Marker::ARROW);
-      m.scale.x = reach * std::clamp(0.8 * speed / reference, 0.02, 1.5);
-      m.scale.y = m.scale.z = 0.12 * reach;
+      m.scale.x = reach * std::clamp(0.75 * speed / reference, 0.02, 1.5);
+      m.scale.y = m.scale.z = 0.09 * reach;
       m.pose.position.x = s.origin_x + (x + 0.5) * s.cell_size;
       m.pose.position.y = s.origin_y + (y + 0.5) * s.cell_size;
-      m.pose.position.z = elevation[i] + 0.12 * reach;
+      m.pose.position.z = elevation[i] + 0.1 * reach;
       const double yaw = std::atan2(wind_y, wind_x);
       m.pose.orientation.z = std::sin(0.5 * yaw);
       m.pose.orientation.w = std::cos(0.5 * yaw);

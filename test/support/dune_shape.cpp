@@ -78,13 +78,16 @@ std::vector<double> slip_face_directions(const Field& f, double least_share) {
   std::vector<double> directions;
   if (total == 0) return directions;
   for (int b = 0; b < bins; ++b)
-    for (int d = -reach; d <= reach; ++d) around[static_cast<std::size_t>(b)] += count[static_cast<std::size_t>(wrapped(b + d, bins))] / total;
+    for (int d = -reach; d <= reach; ++d)
+      around[static_cast<std::size_t>(b)] += count[static_cast<std::size_t>(wrapped(b + d, bins))] / total;
   std::vector<int> order(bins);
   for (int b = 0; b < bins; ++b) order[static_cast<std::size_t>(b)] = b;
   const auto share = [&](int b) { return around[static_cast<std::size_t>(wrapped(b, bins))]; };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share(a) > share(b); });
   for (int b : order) {
-    const double direction = 5.0 * b + 2.5;
+    double turn = 0;  // from the bin's middle to the mean direction within reach
+    for (int d = -reach; d <= reach; ++d) turn += 5.0 * d * count[static_cast<std::size_t>(wrapped(b + d, bins))] / total;
+    const double direction = std::fmod(5.0 * b + 2.5 + (share(b) > 0 ? turn / share(b) : 0.0) + 360.0, 360.0);
     const bool peak = share(b) >= share(b - 1) && share(b) >= share(b + 1);
     const bool apart = std::all_of(directions.begin(), directions.end(),
                                    [&](double other) { return angle_between_deg(direction, other) >= 45.0; });
@@ -334,17 +337,22 @@ double line_power(const Field& f, bool along_x, int k) {
 
 }  // namespace
 
-double imprint(const Field& f, int period) {
+double imprint(const std::vector<Field>& fields, int period) {
   double strongest = 0;
   for (bool along_x : {true, false}) {
-    const int n = along_x ? f.width : f.height;
+    const int n = along_x ? fields[0].width : fields[0].height;
+    const auto power = [&](int k) {
+      double sum = 1e-30;
+      for (const Field& f : fields) sum += line_power(f, along_x, k);
+      return sum;
+    };
     for (int harmonic = 1; harmonic <= 3; ++harmonic) {
       const int k = harmonic * n / period;
       if (harmonic * n % period != 0 || k < 3 || k + 2 >= n / 2) continue;
       // The geometric mean follows a spectrum that falls steeply.
       double beside = 0;
-      for (int d : {-2, -1, 1, 2}) beside += 0.25 * std::log(line_power(f, along_x, k + d) + 1e-30);
-      strongest = std::max(strongest, line_power(f, along_x, k) / std::exp(beside));
+      for (int d : {-2, -1, 1, 2}) beside += 0.25 * std::log(power(k + d));
+      strongest = std::max(strongest, power(k) / std::exp(beside));
     }
   }
   return strongest;

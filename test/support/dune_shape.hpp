@@ -93,8 +93,9 @@ std::vector<double> slip_face_directions(const Field& elevation, double least_sh
 // ---- spectra -------------------------------------------------------------------------------------------------------
 
 /// Power of the mode of `period` cells (and its first harmonics that the grid holds, the strongest) over the mean of
-/// the modes beside it, along x and along y, whichever is greater. About 1 where the period leaves no imprint.
-double imprint(const Field& field, int period);
+/// the modes beside it, along x and along y, whichever is greater; powers are summed over fields of one size. About 1
+/// where the period leaves no imprint.
+double imprint(const std::vector<Field>& fields, int period);
 
 // ---- in front of walls ---------------------------------------------------------------------------------------------
 

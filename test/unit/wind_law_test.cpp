@@ -210,7 +210,7 @@ TEST_P(WindLaw, EchoScalesWithTheHeightUpToItsLimitAndInMetres) {
     for (int x = 60; x < 100; ++x) {
       const double d = (100 - x) * cell;
       EXPECT_EQ(t.at(Layer::echo, x, 1) == -0.25, d <= 8) << "cell " << cell << ", at " << d;
-      EXPECT_EQ(t.at(Layer::echo, x, 1) > 0, d > 8 && d < 40) << "cell " << cell << ", at " << d;
+      EXPECT_EQ(t.at(Layer::echo, x, 1) > 0, d > 8 && d <= 40) << "cell " << cell << ", at " << d;
     }
   }
 }
