@@ -85,26 +85,33 @@ TEST_P(Column, SlidesToTheSameHeapWithSweepsAndMultilevel) {
   EXPECT_LT(std::sqrt(square), 0.01 * most);
 }
 
-TEST_P(Column, OfManyStepsLeavesNoImprintOfTiles) {
-  // Two columns, one in the middle of a tile and one on its corner, become the same heap.
+/// Power along x at a wavenumber (in waves over the grid), summed over all rows.
+double power(const std::vector<float>& h, int n, int waves) {
+  double total = 0;
+  for (int y = 0; y < n; ++y) {
+    double re = 0, im = 0;
+    for (int x = 0; x < n; ++x) {
+      const double phase = 2 * 3.14159265358979 * waves * x / n;
+      re += h[static_cast<std::size_t>(y * n + x)] * std::cos(phase);
+      im += h[static_cast<std::size_t>(y * n + x)] * std::sin(phase);
+    }
+    total += re * re + im * im;
+  }
+  return total;
+}
+
+/// Closed tiles must not show: no peak in the spectrum at their width (32 cells) or its parts.
+TEST_P(Column, TilesLeaveNoPeakInTheSpectrumOfADuneField) {
   constexpr int n = 256;
-  test::BenchTerrain t(exec(), n, n, 1, true);
-  t.set(Layer::sand, [](int x, int y) {
-    const bool first = x >= 60 && x < 76 && y >= 60 && y < 76, second = x >= 180 && x < 196 && y >= 170 && y < 186;
-    return first || second ? 40 : 0;
-  });
-  t.set_repose([](int, int) { return 0.65; });
-  AvalanchingParameters p;
-  p.quality = AvalancheQuality::converged;
-  std::printf("sweeps %d\n", t.avalanche(p));
-  double worst = 0;
-  const std::vector<float> sand = t.terrain.values(Layer::sand);
-  for (int dy = -45; dy < 45; ++dy)
-    for (int dx = -45; dx < 45; ++dx)
-      worst = std::max(worst, static_cast<double>(std::abs(sand[static_cast<std::size_t>((68 + dy) * n + 68 + dx)] -
-                                                           sand[static_cast<std::size_t>((178 + dy) * n + 188 + dx)])));
-  for (int d=-45; d<45; d+=3) std::printf("%d: %.2f %.2f\n", d, sand[68*n+68+d], sand[178*n+188+d]);
-  EXPECT_LT(worst, 0.35) << "metres, of heaps about 16 m high";
+  auto s = simulation("grid: {width: 256, height: 256}\nterrain: [noise: {layer: sand, low: 3, high: 5}]\n"
+                      "wind: {speed: 3, direction_deg: 25}\navalanching: {quality: fast}\n");
+  test::run(*s, 40);
+  const std::vector<float> h = s->terrain().values(Layer::sand);
+  for (int period : {32, 16, 8}) {
+    const int waves = n / period;
+    const double beside = 0.25 * (power(h, n, waves - 2) + power(h, n, waves - 1) + power(h, n, waves + 1) + power(h, n, waves + 2));
+    EXPECT_LT(power(h, n, waves), 1.6 * beside) << "period of " << period << " cells";
+  }
 }
 
 DESERT_ON_EACH_BACKEND(Column);

@@ -163,47 +163,43 @@ TEST(Topics, WindMarkersAreFewDistinctAndOverTheGround) {
   EXPECT_EQ(texts, 1);
 }
 
+/// The keyframe of step `step` against the keyframe before it with all its updates.
+void expect_updates_lead_to(std::uint64_t step, const Listener<ElevationGrid>& keyframes, const Listener<ElevationUpdate>& updates) {
+  ASSERT_TRUE(keyframes.wait_for([&](const ElevationGrid& k) { return k.step == step; }));
+  ASSERT_TRUE(updates.wait_for([&](const ElevationUpdate& u) { return u.step == step; }));
+  ElevationGrid held, now;
+  std::uint32_t keyframe = 0, sequence = 0;
+  for (const ElevationUpdate& update : updates.all())
+    if (update.step == step) keyframe = update.keyframe;
+  for (const ElevationGrid& grid : keyframes.all()) {
+    if (grid.keyframe == keyframe) held = grid;
+    if (grid.step == step) now = grid;
+  }
+  ASSERT_LT(held.step, now.step);
+  for (const ElevationUpdate& update : updates.all()) {
+    if (update.keyframe != keyframe) continue;
+    ASSERT_TRUE(assemble(update, sequence, held)) << "update " << update.sequence << " after " << sequence;
+  }
+  EXPECT_EQ(held.step, step);
+  EXPECT_LE(largest_difference(held, now), threshold + 1e-6);
+}
+
 TEST(Topics, StepPublishesWhatChangedBeforeItAnswers) {
   Listener<ElevationGrid> keyframes("elevation");
   Listener<ElevationUpdate> updates("elevation_updates");
-  const Step::Response first = step(1);
-  ASSERT_TRUE(keyframes.wait_for([&](const ElevationGrid& k) { return k.step == first.step; }));
-  for (int round = 0; round < 5; ++round) {
-    ElevationGrid held = keyframes.last();
-    const std::size_t had = keyframes.count(), updates_had = updates.count();
-    const Step::Response response = step(3);
-    ASSERT_TRUE(keyframes.wait_for_count(had + 1) && updates.wait_for_count(updates_had + 1));
-    const ElevationGrid now = keyframes.last();
-    EXPECT_EQ(now.step, response.step);
-    std::uint32_t sequence = 0;
-    ASSERT_TRUE(assemble(updates.last(), sequence, held)) << "the update builds on the keyframe before it";
-    EXPECT_EQ(held.step, now.step);
-    EXPECT_LE(largest_difference(held, now), threshold + 1e-6);
-  }
+  step(1);
+  for (int round = 0; round < 5; ++round) expect_updates_lead_to(step(3).step, keyframes, updates);
 }
 
 TEST(Topics, UpdatesOfARunAddUpToTheNextKeyframe) {
   Listener<ElevationGrid> keyframes("elevation");
   Listener<ElevationUpdate> updates("elevation_updates");
-  const Step::Response start = step(1);
-  ASSERT_TRUE(keyframes.wait_for([&](const ElevationGrid& k) { return k.step == start.step; }));
-  const std::size_t keyframes_had = keyframes.count();
-  ElevationGrid held = keyframes.last();
+  step(1);
   const std::size_t first = updates.count();
   EXPECT_TRUE(call<std_srvs::Trigger>("resume").success);
   ASSERT_TRUE(updates.wait_for_count(first + 15));
   EXPECT_TRUE(call<std_srvs::Trigger>("pause").success);
-  ASSERT_TRUE(keyframes.wait_for_count(keyframes_had + 1));
-  const ElevationGrid now = keyframes.last();
-  ASSERT_TRUE(updates.wait_for([&](const ElevationUpdate& u) { return u.step == now.step; }));
-  std::uint32_t sequence = 0;
-  for (const ElevationUpdate& update : updates.all()) {
-    if (update.keyframe != held.keyframe) continue;
-    ASSERT_TRUE(assemble(update, sequence, held)) << "update " << update.sequence;
-  }
-  EXPECT_GE(sequence, 15u);
-  EXPECT_EQ(held.step, now.step);
-  EXPECT_LE(largest_difference(held, now), threshold + 1e-6);
+  expect_updates_lead_to(step(0).step, keyframes, updates);
 }
 
 TEST(Topics, NobodyListensNothingIsCopied) {

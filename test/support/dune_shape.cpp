@@ -216,7 +216,11 @@ Dune measure(const Field& elevation, const Field& sand, const Slopes& slope, con
   dune.slip_direction_deg = direction_of(slip_x, slip_y);
   const double c = std::cos(wind_deg * degree), s = std::sin(wind_deg * degree);
   dune.stoss_deg = flank_deg(elevation, dune, base, -c, -s, 0.9, 0.1);
-  dune.slip_face_deg = flank_deg(elevation, dune, base, c, s, 0.75, 0.25);
+  for (double turn = -45; turn <= 45; turn += 5) {
+    const double to = (wind_deg + turn) * degree;
+    const double angle = flank_deg(elevation, dune, base, std::cos(to), std::sin(to), 0.75, 0.25);
+    dune.slip_face_deg = std::max(dune.slip_face_deg, angle);
+  }
   measure_horns(patch, wind_deg, left, right, dune);
   return dune;
 }

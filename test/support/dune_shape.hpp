@@ -41,7 +41,8 @@ struct Dune {
   double x = 0, y = 0;            ///< centre of volume [m]
   double crest_x = 0, crest_y = 0;  ///< highest point [m]
   double stoss_deg = 0;           ///< windward side through the crest: line from 10 % to 90 % of the height
-  double slip_face_deg = 0;       ///< lee side through the crest: line from 75 % to 25 % of the height
+  double slip_face_deg = 0;       ///< lee side below the crest: line from 75 % to 25 % of the height, the steepest
+                                  ///< of those within 45 degrees of the wind
   double slip_direction_deg = 0;  ///< mean downslope direction of cells steeper than 28 degrees
   double slip_share = 0;          ///< share of the patch's cells that are steeper than 28 degrees
   /// How far the foremost (most downwind) cells of the outer thirds of the width, the lesser of the two sides, lie

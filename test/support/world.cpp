@@ -69,7 +69,7 @@ bool gpu_required() {
 
 void OnBackend::SetUp() {
   if (std::string(GetParam()) == "cuda") DESERT_NEED_GPU();
-  exec_ = make_exec(GetParam(), 2);
+  exec_ = make_exec(GetParam(), 1);  // other numbers of threads: property/determinism_test.cpp
 }
 
 }  // namespace desert_sim::test

@@ -1,0 +1,209 @@
+// CPU against CUDA. Without the wind's transforms: bit for bit. With them: within a stated bound after one step, and
+// by statistics after many.
+
+#include <algorithm>
+#include <cmath>
+
+#include "desert_sim/simulation/checkpoint.hpp"
+#include "support/bench_terrain.hpp"
+#include "support/cases.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+class Parity : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    DESERT_NEED_GPU();
+    cpu_ = make_exec("cpu", 2);
+    cuda_ = make_exec("cuda");
+  }
+  Exec& cpu() { return *cpu_; }
+  Exec& cuda() { return *cuda_; }
+
+  /// Number of words that differ, by layer; fails with its name and the first cell.
+  static void expect_same_layers(const Simulation& a, const Simulation& b, bool derived) {
+    for (const LayerInfo& row : layer_table) {
+      if ((row.lifetime == Lifetime::derived && !derived) || !a.terrain().has(row.layer)) continue;
+      const auto x = a.terrain().words(row.layer), y = b.terrain().words(row.layer);
+      long different = 0;
+      std::size_t first = 0;
+      for (std::size_t i = x.size(); i-- > 0;)
+        if (x[i] != y[i]) ++different, first = i;
+      EXPECT_EQ(different, 0) << "cells of " << row.name << ", first (" << first % a.terrain().grid().width << ", "
+                              << first / a.terrain().grid().width << ")";
+    }
+  }
+
+  void expect_bit_for_bit(const std::string& yaml, int steps) {
+    auto a = test::simulate(cpu(), yaml), b = test::simulate(cuda(), yaml);
+    EXPECT_EQ(a->state_hash(), b->state_hash()) << "before the first step";
+    for (int n = 1; n <= steps; ++n) {
+      a->step();
+      b->step();
+      if (n > 2 && n % 10 != 0 && n != steps) continue;
+      expect_same_layers(*a, *b, true);
+      EXPECT_EQ(a->state_hash(), b->state_hash()) << "after step " << n;
+      if (HasFailure()) return;
+    }
+    test::expect_sound(*b, "on the GPU");
+    EXPECT_EQ(a->mean_avalanche_iterations(), b->mean_avalanche_iterations());
+  }
+
+  std::unique_ptr<Exec> cpu_, cuda_;
+};
+
+/// One test for each group of cases, so that a sanitizer can take them one at a time.
+class ParityOf : public Parity, public ::testing::WithParamInterface<int> {};
+
+TEST_P(ParityOf, CaseIsBitForBitOverFiftySteps) {
+  const test::Case c = test::process_cases(false)[static_cast<std::size_t>(GetParam())];
+  SCOPED_TRACE(c.name);
+  expect_bit_for_bit(test::grid_yaml(64, 48, "periodic") + c.yaml, 50);
+  expect_bit_for_bit(test::grid_yaml(37, 41, "open") + c.yaml, 20);
+}
+
+std::string case_name(const ::testing::TestParamInfo<int>& info) {
+  std::string name = test::process_cases(false)[static_cast<std::size_t>(info.param)].name;
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ParityOf, ::testing::Range(0, static_cast<int>(test::process_cases(false).size())), case_name);
+
+TEST_F(Parity, OfTinyGrids) {
+  const std::string yaml = test::process_cases(false).back().yaml;
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 40}, {40, 1}, {2, 3}, {33, 5}})
+    for (const char* boundary : {"periodic", "open"}) expect_bit_for_bit(test::grid_yaml(width, height, boundary) + yaml, 10);
+}
+
+TEST_F(Parity, OfSeveralLevels) {
+  expect_bit_for_bit(test::grid_yaml(150, 133, "periodic") +
+                         "terrain: [noise: {layer: bedrock, low: 0, high: 20, scale: 40}, noise: {layer: sand, low: 0, high: 12, scale: 30, seed: 2}]\n"
+                         "wind: {speed: 6, direction_deg: 77, warping: false, projection: false}\navalanching: {coarsest_cell: 8}\n",
+                     20);
+}
+
+TEST_F(Parity, OfEdits) {
+  const std::string yaml = test::grid_yaml(40, 30, "periodic") + "terrain: [noise: {layer: bedrock, low: 0, high: 5, scale: 9}, uniform: {layer: sand, value: 3}]\n"
+                                                                 "wind: {warping: false, projection: false}\n";
+  auto a = test::simulate(cpu(), yaml), b = test::simulate(cuda(), yaml);
+  for (int n = 0; n < 12; ++n) {
+    EditTerrain edit;
+    edit.layer = n % 4 == 3 ? "bedrock" : "sand";
+    edit.merge = static_cast<BrushMerge>(n % 6);
+    edit.shape = n % 2 ? BrushShape::ellipse : BrushShape::circle;
+    edit.x = 4.7 * n;
+    edit.y = 31 - 2.3 * n;
+    edit.radius = 2 + 0.9 * n;
+    edit.radius_y = 3.3;
+    edit.angle_deg = 31 * n;
+    edit.inner = 0.25;
+    edit.value = 7.7;
+    const CommandResult x = a->apply(edit), y = b->apply(edit);
+    EXPECT_EQ(x.volume_m3, y.volume_m3);
+    a->step();
+    b->step();
+    expect_same_layers(*a, *b, true);
+  }
+}
+
+TEST_F(Parity, StatisticsAgree) {
+  const std::string yaml = test::grid_yaml(70, 50, "open") + test::process_cases(false).back().yaml;
+  auto a = test::simulate(cpu(), yaml), b = test::simulate(cuda(), yaml);
+  test::run(*a, 5);
+  test::run(*b, 5);
+  const auto x = a->balance(), y = b->balance();
+  for (std::size_t m = 0; m < x.size(); ++m) {
+    EXPECT_EQ(x[m].final, y[m].final);
+    EXPECT_EQ(x[m].in, y[m].in);
+    EXPECT_EQ(x[m].out, y[m].out);
+  }
+  const Residual r = a->residual(), q = b->residual();
+  EXPECT_EQ(r.share_over_1e3, q.share_over_1e3);
+  EXPECT_EQ(r.share_over_1e2, q.share_over_1e2);
+  EXPECT_EQ(r.mean_excess, q.mean_excess);
+  EXPECT_EQ(r.largest_excess, q.largest_excess);
+  EXPECT_EQ(a->max_sand_slope_deg(), b->max_sand_slope_deg());
+}
+
+TEST_F(Parity, CheckpointsGoFromOneToTheOther) {
+  const test::TemporaryFolder folder;
+  const std::string yaml = test::grid_yaml(45, 33, "open") + test::process_cases(false).back().yaml;
+  auto a = test::simulate(cpu(), yaml);
+  test::run(*a, 5);
+  save_checkpoint(folder.path("a.ck"), *a);
+  auto b = load_checkpoint(folder.path("a.ck"), cuda());
+  EXPECT_EQ(a->state_hash(), b->state_hash());
+  test::run(*a, 5);
+  test::run(*b, 5);
+  EXPECT_EQ(a->state_hash(), b->state_hash());
+}
+
+// ---- With transforms -----------------------------------------------------------------------------------------------
+
+const char* const dunes =
+    "terrain: [noise: {layer: bedrock, low: 0, high: 10, scale: 30}, noise: {layer: sand, low: 0.5, high: 4, scale: 12}]\n"
+    "wind: {speed: 5, direction_deg: 20, radii: [60, 20]}\nreptation: {method: smoothing}\n";
+
+/// FFTW and cuFFT round differently: the wind by at most 2e-5 of its speed after one step. That can tip a march or a
+/// release over an edge, so of the sand: 2 mm at most anywhere, 10 µm rms (a step moves metres).
+TEST_F(Parity, WithTransformsOneStepDiffersByLittle) {
+  for (const char* boundary : {"periodic", "open"}) {
+    auto a = test::simulate(cpu(), test::grid_yaml(128, 96, boundary) + dunes);
+    auto b = test::simulate(cuda(), test::grid_yaml(128, 96, boundary) + dunes);
+    a->step();
+    b->step();
+    double wind = 0, square = 0, worst = 0;
+    const auto u = test::real(*a, Layer::wind_x), v = test::real(*b, Layer::wind_x);
+    const auto x = test::quanta(*a, Layer::sand), y = test::quanta(*b, Layer::sand);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      wind = std::max(wind, std::abs(static_cast<double>(u[i]) - v[i]) / 5);
+      const double d = std::abs(static_cast<double>(x[i]) - y[i]) / 1048576;
+      worst = std::max(worst, d);
+      square += d * d / static_cast<double>(u.size());
+    }
+    EXPECT_LT(wind, 2e-5) << boundary;
+    EXPECT_LT(worst, 2e-3) << boundary;
+    EXPECT_LT(std::sqrt(square), 1e-5) << boundary;
+  }
+}
+
+TEST_F(Parity, WithTransformsStatisticsAgreeAfterTwoHundredSteps) {
+  auto a = test::simulate(cpu(), test::grid_yaml(96, 96, "periodic") + dunes);
+  auto b = test::simulate(cuda(), test::grid_yaml(96, 96, "periodic") + dunes);
+  test::run(*a, 200);
+  test::run(*b, 200);
+  test::expect_sound(*a, "cpu");
+  test::expect_sound(*b, "cuda");
+  const auto moments = [](const Simulation& s) {
+    double mean = 0, square = 0, air = 0;
+    for (float v : s.terrain().values(Layer::sand)) mean += v / 9216.0;
+    for (float v : s.terrain().values(Layer::sand)) square += (v - mean) * (v - mean) / 9216.0;
+    for (float v : s.terrain().values(Layer::airborne_sand)) air += v / 9216.0;
+    return std::array<double, 3>{mean, std::sqrt(square), air};
+  };
+  const auto m = moments(*a), q = moments(*b);
+  EXPECT_NEAR(m[0], q[0], 0.02 * m[0]);
+  EXPECT_NEAR(m[1], q[1], 0.05 * m[1]) << "relief of the sand";
+  EXPECT_NEAR(m[2], q[2], 0.05 * m[2]) << "sand in the air";
+}
+
+TEST_F(Parity, CudaGivesTheSameHashTwice) {
+  for (const test::Case& c : test::process_cases(true)) {
+    SCOPED_TRACE(c.name);
+    std::uint64_t hashes[2];
+    for (std::uint64_t& hash : hashes) {
+      auto s = test::simulate(cuda(), test::grid_yaml(70, 50, "open") + c.yaml);
+      test::run(*s, 5);
+      hash = s->state_hash();
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+  }
+}
+
+}  // namespace
+}  // namespace desert_sim

@@ -1,0 +1,274 @@
+#!/usr/bin/env python3
+"""Starts and ends nodes: parameters, refused input, shutdown, failure, journal and replay."""
+import json
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+
+import rospkg
+import rospy
+import rostest
+from desert_sim.msg import ElevationGrid, SimulationStatus, WindScheduleSegment
+from desert_sim.srv import EditTerrain, EditTerrainRequest, LoadCheckpoint, SaveCheckpoint
+from desert_sim.srv import SetWind, SetWindResponse, SetWindSchedule, SetWindScheduleRequest, Step
+from roslib.packages import find_node
+from std_msgs.msg import Empty
+
+PACKAGE = rospkg.RosPack().get_path("desert_sim")
+CORNER = os.path.join(PACKAGE, "test", "rostest", "scenarios", "corner.yaml")
+
+
+class Trigger:
+    """std_srvs/Trigger, which Debian has for Python in a package of its own that nothing else here needs."""
+    _type = "std_srvs/Trigger"
+    _md5sum = "937c9679a518e3a18d831e57125ea522"
+    _request_class = Empty
+    _response_class = SetWindResponse  # the same fields
+
+
+def program(name):
+    found = find_node("desert_sim", name)
+    assert found, "no program %s" % name
+    return found[0]
+
+
+class Node:
+    """A desert_sim_node of its own; `private` are its private parameters."""
+
+    def __init__(self, name, private, preexec=None):
+        self.name = name
+        arguments = ["_%s:=%s" % (key, json.dumps(value)) for key, value in private.items()]
+        self.process = subprocess.Popen(
+            [program("desert_sim_node"), "__name:=" + name] + arguments,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, preexec_fn=preexec)
+        self.output = ""
+        self.reader = threading.Thread(target=self.read)
+        self.reader.start()
+
+    def read(self):
+        for line in self.process.stdout:
+            self.output += line
+
+    def call(self, service, kind, *arguments, **fields):
+        rospy.wait_for_service("/%s/%s" % (self.name, service), 20)
+        return rospy.ServiceProxy("/%s/%s" % (self.name, service), kind)(*arguments, **fields)
+
+    def latest(self, topic, kind, timeout=10):
+        return rospy.wait_for_message("/%s/%s" % (self.name, topic), kind, timeout)
+
+    def wait(self, timeout=20):
+        """Exit status and all output."""
+        status = self.process.wait(timeout)
+        self.reader.join()
+        self.process.stdout.close()
+        return status, self.output
+
+    def end(self, with_signal=signal.SIGINT):
+        """Ends it; exit status and the seconds it took."""
+        start = time.monotonic()
+        self.process.send_signal(with_signal)
+        status, _ = self.wait()
+        return status, time.monotonic() - start
+
+
+class Lifecycle(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="desert_sim_")
+        self.nodes = []
+
+    def tearDown(self):
+        for node in self.nodes:
+            if node.process.poll() is None:
+                node.process.kill()
+                node.wait()
+        shutil.rmtree(self.folder)
+
+    def start(self, name, private, **options):
+        for key in rospy.get_param_names():
+            if key.startswith("/%s/" % name) and "scenario_of_parameters" not in name:
+                rospy.delete_param(key)
+        node = Node(name, dict({"backend": "cpu", "threads": 1, "paused": True}, **private), **options)
+        self.nodes.append(node)
+        return node
+
+    def path(self, name, text=None):
+        path = os.path.join(self.folder, name)
+        if text is not None:
+            with open(path, "w") as file:
+                file.write(text)
+        return path
+
+    # ---- refused input -------------------------------------------------------------------------
+
+    def expect_refused(self, private, *texts):
+        status, output = self.start("refused", private).wait()
+        self.assertEqual(status, 2, output)
+        for text in texts:
+            self.assertIn(text, output)
+
+    def test_bad_scenario_lists_all_faults(self):
+        bad = self.path("bad.yaml", "grid: {width: -3, cel_size: 1}\nwind: {speed: .nan}\n")
+        self.expect_refused({"scenario": bad}, "bad.yaml", "grid.width", "-3", "[1, 65536]", "cel_size", "wind.speed", "nan")
+
+    def test_unknown_scenario_names_the_known_ones(self):
+        self.expect_refused({"scenario": "no_such_desert"}, "no_such_desert", "barchan")
+
+    def test_no_scenario(self):
+        self.expect_refused({}, "no scenario")
+
+    def test_bad_parameters_are_all_named(self):
+        self.expect_refused({"scenario": CORNER, "step_rate": -1, "bakend": "cpu", "update_tile": 0.5, "backend": "tpu"},
+                            "step_rate", "-1", "bakend: unknown parameter", "update_tile", "'tpu'", "auto, cpu, cuda")
+
+    def test_cuda_without_a_device_is_refused_or_taken(self):
+        node = self.start("wants_cuda", {"scenario": CORNER, "backend": "cuda"})
+        try:
+            status, output = node.wait(8)
+        except subprocess.TimeoutExpired:
+            self.assertEqual(node.latest("status", SimulationStatus).backend, "cuda")
+            return
+        self.assertEqual(status, 2, output)
+        self.assertIn("cuda", output.lower())
+
+    # ---- scenarios -----------------------------------------------------------------------------
+
+    def test_bare_name_is_a_scenario_of_the_package(self):
+        node = self.start("named", {"scenario": "barchan", "settings": ["grid.width=48", "grid.height=32"]})
+        grid = node.latest("elevation", ElevationGrid)
+        self.assertEqual((grid.width, grid.height), (48, 32))
+        self.assertEqual(node.latest("status", SimulationStatus).scenario, "barchan")
+
+    def test_scenario_of_parameters(self):
+        name = "scenario_of_parameters"
+        rospy.set_param("/%s/grid" % name, {"width": 40, "height": 24, "cell_size": 0.5})
+        rospy.set_param("/%s/terrain" % name, [{"uniform": {"layer": "sand", "value": 3}}])
+        rospy.set_param("/%s/wind/speed" % name, 7.5)
+        node = self.start(name, {})
+        grid = node.latest("elevation", ElevationGrid)
+        self.assertEqual((grid.width, grid.height, grid.cell_size), (40, 24, 0.5))
+        self.assertAlmostEqual(grid.elevation[0], 3, places=5)
+        self.assertAlmostEqual(node.latest("status", SimulationStatus).wind_above.x, 7.5, places=5)
+
+    def test_parameters_override_keys_of_a_file(self):
+        name = "scenario_of_parameters_and_file"
+        rospy.set_param("/%s/grid/width" % name, 32)
+        rospy.set_param("/%s/wind/speed" % name, 3)
+        node = self.start(name, {"scenario": CORNER})
+        grid = node.latest("elevation", ElevationGrid)
+        self.assertEqual((grid.width, grid.height), (32, 48))
+        self.assertAlmostEqual(node.latest("status", SimulationStatus).wind_above.x, 3)
+
+    # ---- shutdown and failure ------------------------------------------------------------------
+
+    def test_ends_within_a_second_while_it_runs_and_serves(self):
+        node = self.start("ending", {"scenario": CORNER, "paused": False, "step_rate": 0})
+        node.latest("elevation", ElevationGrid)
+        answers = []
+
+        def wait_for_steps():
+            try:
+                answers.append(node.call("step", Step, 4000000000))
+            except rospy.ServiceException as e:  # the connection was closed before the answer came
+                answers.append(e)
+
+        client = threading.Thread(target=wait_for_steps)
+        client.start()
+        time.sleep(0.5)
+        status, seconds = node.end()
+        self.assertEqual(status, 0, node.output)
+        self.assertLess(seconds, 1.0)
+        client.join(5)
+        self.assertEqual(len(answers), 1, "the client that waits is let go")
+
+    def test_failure_is_told_and_ends_the_node(self):
+        # A journal that cannot be written to its end: the process may not write files larger than this.
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (400, 400))
+
+        node = self.start("failing", {"scenario": CORNER, "journal": self.path("journal.yaml")}, preexec=limit)
+        told = []
+        rospy.Subscriber("/failing/status", SimulationStatus, told.append)
+        node.latest("status", SimulationStatus)
+        for speed in range(20):
+            try:
+                if not node.call("set_wind", SetWind, speed=speed).success:
+                    break
+            except rospy.ServiceException:
+                break
+        status, output = node.wait()
+        self.assertEqual(status, 3, output)
+        self.assertIn("journal", output)
+        self.assertEqual(told[-1].state, "error")
+        self.assertIn("journal", told[-1].message)
+
+    # ---- journal -------------------------------------------------------------------------------
+
+    def drive(self, node):
+        """Some of everything that is journalled; the state hash at the end."""
+        brush = EditTerrainRequest(layer="sand", shape="circle", merge="add", radius=9, inner=0.3, value=1.7)
+        brush.center.x, brush.center.y = 61.3, 12.9
+        gusts = SetWindScheduleRequest(kind="timeline", repeat=True, segments=[
+            WindScheduleSegment(direction_deg=40, speed=6, duration=4, ramp=2), WindScheduleSegment(speed=3, duration=3)])
+        node.call("step", Step, 5)
+        self.assertTrue(node.call("set_wind", SetWind, speed=7.3, direction_deg=-33.3, ramp=4).success)
+        node.call("step", Step, 4)
+        self.assertTrue(node.call("edit_terrain", EditTerrain, brush).success)
+        self.assertFalse(node.call("edit_terrain", EditTerrain, layer="lava").success)
+        node.call("step", Step, 3)
+        self.assertTrue(node.call("save_checkpoint", SaveCheckpoint, "middle.ckpt").success)
+        self.assertTrue(node.call("set_wind_schedule", SetWindSchedule, gusts).success)
+        node.call("step", Step, 6)
+        self.assertTrue(node.call("reset", Trigger).success)
+        node.call("step", Step, 2)
+        self.assertTrue(node.call("load_checkpoint", LoadCheckpoint, "middle.ckpt").success)
+        return node.call("step", Step, 7).state_hash
+
+    def replay(self, journal):
+        out = self.path("out")
+        subprocess.run([program("desert_run"), CORNER, "--backend", "cpu", "--threads", "1", "--replay", journal, "--quiet",
+                        "--out", out], check=True, timeout=30)
+        with open(os.path.join(out, "summary.json")) as file:
+            return json.load(file)["state_hash"]
+
+    def test_journal_replays_to_the_same_hash(self):
+        journal = self.path("journal.yaml")
+        node = self.start("journalled", {"scenario": CORNER, "journal": journal, "data_dir": self.folder})
+        live = self.drive(node)
+        self.assertEqual(node.end()[0], 0)
+        self.assertEqual(self.replay(journal), live)
+
+    def test_journal_of_a_running_node_replays_too(self):
+        journal = self.path("journal.yaml")
+        node = self.start("journalled", {"scenario": CORNER, "journal": journal, "paused": False, "step_rate": 200})
+        for speed in range(1, 9):
+            self.assertTrue(node.call("set_wind", SetWind, speed=speed, direction_deg=20 * speed).success)
+            time.sleep(0.05)
+        self.assertTrue(node.call("pause", Trigger).success)
+        live = node.call("step", Step, 0).state_hash
+        self.assertEqual(node.end()[0], 0)
+        self.assertEqual(self.replay(journal), live)
+
+    def test_a_killed_node_leaves_its_journal_and_starts_anew(self):
+        journal = self.path("journal.yaml")
+        setup = {"scenario": CORNER, "journal": journal, "data_dir": self.folder}
+        node = self.start("killed", setup)
+        self.drive(node)
+        at_load = node.call("load_checkpoint", LoadCheckpoint, "middle.ckpt").state_hash
+        node.end(signal.SIGKILL)
+        again = self.start("killed", setup)
+        self.assertEqual(again.latest("status", SimulationStatus).step, 0)
+        self.assertEqual(again.end()[0], 0)
+        # The journal of the first ends with its last command.
+        self.assertEqual(self.replay(journal + ".previous"), at_load)
+
+
+if __name__ == "__main__":
+    rospy.init_node("lifecycle", disable_signals=True)
+    rostest.rosrun("desert_sim", "lifecycle", Lifecycle)

@@ -1,0 +1,50 @@
+#include "support/program.hpp"
+
+#include <csignal>
+#include <cstdlib>
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "support/temporary_folder.hpp"
+
+namespace desert_sim::test {
+
+std::string program_path(const char* variable, const std::string& built) {
+  const char* path = std::getenv(variable);
+  return path && path[0] ? path : built;
+}
+
+ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments, double signal_after) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path("out"), err = folder.path("err");
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+
+  const auto start = std::chrono::steady_clock::now();
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
+    dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    execv(program.c_str(), argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  bool ended = false;
+  for (double waited = 0; !ended && waited < signal_after; waited += 0.02) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ended = waitpid(child, &status, WNOHANG) == child;
+  }
+  if (!ended && signal_after > 0) kill(child, SIGINT);
+  if (!ended) waitpid(child, &status, 0);
+  ProgramRun run;
+  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  run.out = file_bytes(out);
+  run.err = file_bytes(err);
+  return run;
+}
+
+}  // namespace desert_sim::test

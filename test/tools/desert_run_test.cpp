@@ -1,0 +1,165 @@
+// desert_run: outputs, resuming, replaying, interrupting.
+
+#include "desert_sim/scenario/scenario.hpp"
+#include "desert_sim/simulation/session.hpp"
+#include "support/run_fixture.hpp"
+
+namespace desert_sim {
+namespace {
+
+class Run : public test::DesertRun {};
+
+TEST_F(Run, WritesASummaryWithAllKeys) {
+  run_cpu({scenario_, "--out", path("out"), "--threads", "2"});
+  const std::string text = summary("out");
+  for (const char* key : {"steps", "sim_time_s", "width", "height", "cell_size_m", "backend", "device", "threads", "seed", "ms_per_step",
+                          "total", "volume_m3", "mass_residual", "max_sand_slope_deg", "avalanche_iterations_mean", "state_hash",
+                          "peak_memory_bytes", "bedrock", "soil", "sand", "initial", "final", "in", "out"})
+    EXPECT_NE(text.find("\"" + std::string(key) + "\": "), std::string::npos) << key << " is not in\n" << text;
+  EXPECT_EQ(json(text, "steps"), "12");
+  EXPECT_EQ(json(text, "sim_time_s"), "12");
+  EXPECT_EQ(json(text, "width"), "40");
+  EXPECT_EQ(json(text, "height"), "24");
+  EXPECT_EQ(json(text, "cell_size_m"), "2");
+  EXPECT_EQ(json(text, "backend"), "\"cpu\"");
+  EXPECT_EQ(json(text, "threads"), "2");
+  EXPECT_EQ(json(text, "seed"), "1");
+  EXPECT_EQ(std::count(text.begin(), text.end(), '{'), std::count(text.begin(), text.end(), '}'));
+  for (const char* bad : {"nan", "inf", "-nan"}) EXPECT_EQ(text.find(": " + std::string(bad)), std::string::npos) << text;
+}
+
+TEST_F(Run, TimesEachProcess) {
+  run_cpu({scenario_, "--out", path("out"), "--steps", "40"});
+  for (const char* process : {"wind", "wind_shadow", "saltation", "reptation", "avalanching"})
+    EXPECT_NE(json(summary("out"), process), "") << process;
+}
+
+TEST_F(Run, TwiceGivesTheSameHashAndAnotherSeedAnother) {
+  run_cpu({scenario_, "--out", path("a")});
+  run_cpu({scenario_, "--out", path("b")});
+  run_cpu({scenario_, "--out", path("c"), "--seed", "2"});
+  run_cpu({scenario_, "--out", path("d"), "--set", "seed=2"});
+  EXPECT_EQ(hash("a").size(), 18u);
+  EXPECT_EQ(hash("a"), hash("b"));
+  EXPECT_NE(hash("a"), hash("c"));
+  EXPECT_EQ(hash("c"), hash("d"));
+}
+
+TEST_F(Run, ThreadsDoNotChangeTheHash) {
+  run_cpu({scenario_, "--out", path("one"), "--threads", "1"});
+  run_cpu({scenario_, "--out", path("two"), "--threads", "2"});
+  EXPECT_EQ(hash("one"), hash("two"));
+}
+
+TEST_F(Run, ResumedGivesTheSameHashWithAndWithoutItsScenario) {
+  run_cpu({scenario_, "--out", path("whole"), "--steps", "20"});
+  run_cpu({scenario_, "--steps", "10", "--checkpoint", path("half.ck")});
+  run_cpu({scenario_, "--out", path("a"), "--steps", "20", "--resume", path("half.ck")});
+  run_cpu({"--out", path("b"), "--steps", "20", "--resume", path("half.ck")});
+  EXPECT_EQ(json(summary("a"), "steps"), "20");
+  EXPECT_EQ(hash("whole"), hash("a"));
+  EXPECT_EQ(hash("whole"), hash("b"));
+}
+
+TEST_F(Run, ResumedAtItsEndWritesOutputsAndMakesNoStep) {
+  run_cpu({scenario_, "--steps", "10", "--checkpoint", path("half.ck"), "--out", path("a")});
+  run_cpu({"--out", path("b"), "--steps", "10", "--resume", path("half.ck")});
+  EXPECT_EQ(json(summary("b"), "steps"), "10");
+  EXPECT_EQ(hash("a"), hash("b"));
+}
+
+TEST_F(Run, EveryWritesAFolderEachTime) {
+  run_cpu({scenario_, "--out", path("out"), "--steps", "10", "--every", "4"});
+  for (const char* step : {"step_00000004", "step_00000008"}) {
+    EXPECT_TRUE(std::filesystem::exists(path("out") + "/" + step + "/summary.json")) << step;
+    EXPECT_EQ(json(test::file_bytes(path("out") + "/" + step + "/summary.json"), "steps"), std::to_string(std::stoi(step + 5)));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("out") + "/step_00000010"));
+  EXPECT_EQ(json(summary("out"), "steps"), "10");
+  run_cpu({scenario_, "--out", path("plain"), "--steps", "10"});
+  EXPECT_EQ(hash("out"), hash("plain")) << "looking changes nothing";
+}
+
+TEST_F(Run, CheckpointEveryLeavesTheLast) {
+  run_cpu({scenario_, "--steps", "7", "--checkpoint", path("a.ck"), "--checkpoint-every", "3"});
+  run_cpu({"--resume", path("a.ck"), "--steps", "7", "--out", path("out")});
+  EXPECT_EQ(json(summary("out"), "steps"), "7");
+}
+
+TEST_F(Run, ReplaysAJournalToTheSameHash) {
+  std::string live;
+  {
+    Scenario scenario = load_scenario(scenario_);
+    Session session(scenario, refuse_rasters, "cpu", 1, path("j"));
+    for (int n = 0; n < 9; ++n) {
+      if (n == 3) session.apply(SetWind{90, 9, 2});
+      if (n == 6) {
+        EditTerrain edit;
+        edit.x = 1030;
+        edit.y = -280;
+        edit.radius = 9;
+        edit.value = 4;
+        session.apply(edit);
+      }
+      session.step();
+    }
+    char text[32];
+    std::snprintf(text, sizeof text, "\"%016llx\"", static_cast<unsigned long long>(session.simulation().state_hash()));
+    live = text;
+  }
+  run_cpu({scenario_, "--replay", path("j"), "--out", path("out")});
+  EXPECT_EQ(hash("out"), live);
+  const test::ProgramRun other = run({scenario_, "--seed", "5", "--replay", path("j"), "--backend", "cpu"});
+  EXPECT_EQ(other.status, 2) << "a journal of another scenario";
+}
+
+TEST_F(Run, PrintsTheSummaryWhereThereIsNoFolder) {
+  const test::ProgramRun r = run({scenario_, "--backend", "cpu", "--steps", "2"});
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(json(r.out, "steps"), "2");
+  EXPECT_NE(r.err.find("backend: cpu"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("step 2 of 2"), std::string::npos) << r.err;
+}
+
+TEST_F(Run, QuietSaysNothing) {
+  const test::ProgramRun r = run_cpu({scenario_, "--steps", "2"});
+  EXPECT_EQ(r.out, "");
+  EXPECT_EQ(r.err, "");
+}
+
+TEST_F(Run, AutoSaysWhichBackendAndWhy) {
+  const test::ProgramRun r = run({scenario_, "--steps", "1"});
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_NE(r.err.find("because"), std::string::npos) << r.err;
+}
+
+TEST_F(Run, DescribesAndHelps) {
+  const test::ProgramRun described = run({"--describe"}), helped = run({"--help"});
+  EXPECT_EQ(described.status, 0);
+  EXPECT_EQ(described.out, describe_parameters());
+  EXPECT_EQ(helped.status, 0);
+  for (const char* option : {"--steps", "--backend", "--threads", "--set", "--seed", "--out", "--every", "--checkpoint", "--checkpoint-every",
+                             "--resume", "--replay", "--describe", "--quiet"})
+    EXPECT_NE(helped.out.find(option), std::string::npos) << option;
+}
+
+TEST_F(Run, InterruptedFinishesItsStepWritesOutputsAndExits130) {
+  const test::ProgramRun r =
+      run({scenario_, "--backend", "cpu", "--steps", "100000000", "--out", path("out"), "--checkpoint", path("a.ck")}, 1.5);
+  EXPECT_EQ(r.status, 130) << r.err;
+  const std::string text = summary("out");
+  EXPECT_NE(text, "");
+  EXPECT_GT(std::stoll(json(text, "steps")), 0);
+  EXPECT_LT(std::stoll(json(text, "steps")), 100000000);
+  run_cpu({"--resume", path("a.ck"), "--steps", json(text, "steps"), "--out", path("again")});
+  EXPECT_EQ(hash("again"), hash("out"));
+}
+
+TEST_F(Run, OfZeroStepsWritesTheStart) {
+  run_cpu({scenario_, "--steps", "0", "--out", path("out")});
+  EXPECT_EQ(json(summary("out"), "steps"), "0");
+  EXPECT_EQ(json(summary("out"), "sim_time_s"), "0");
+}
+
+}  // namespace
+}  // namespace desert_sim

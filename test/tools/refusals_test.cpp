@@ -1,0 +1,133 @@
+// desert_run refuses wrong input: status 2, soon, one clear line that names the culprit, nothing left in --out.
+
+#include <cstring>
+
+#include "desert_sim/kernels/exec.hpp"
+#include "support/run_fixture.hpp"
+
+namespace desert_sim {
+namespace {
+
+class Refusals : public test::DesertRun {
+ protected:
+  /// Generous for a machine under load; alone it takes milliseconds.
+  static constexpr double soon = 10;
+
+  test::ProgramRun expect_refused(std::vector<std::string> arguments, const std::vector<std::string>& naming, bool one_line = true) {
+    std::filesystem::remove_all(path("out"));
+    arguments.insert(arguments.end(), {"--out", path("out")});
+    const test::ProgramRun r = run(arguments);
+    EXPECT_EQ(r.status, 2) << r.err;
+    EXPECT_LT(r.seconds, soon);
+    for (const std::string& text : naming) EXPECT_NE(r.err.find(text), std::string::npos) << "the message lacks '" << text << "':\n" << r.err;
+    EXPECT_EQ(r.err.rfind("desert_run: ", 0), 0u) << r.err;
+    if (one_line) {
+      EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    }
+    EXPECT_EQ(r.out, "");
+    EXPECT_FALSE(std::filesystem::exists(path("out"))) << "left something in --out";
+    return r;
+  }
+  test::ProgramRun expect_text_refused(const std::string& yaml, const std::vector<std::string>& naming) {
+    return expect_refused({folder_.write("wrong.yaml", yaml)}, naming);
+  }
+};
+
+TEST_F(Refusals, UnknownKey) { expect_text_refused("grid: {widht: 40}\n", {"wrong.yaml", "grid.widht", "unknown", "width"}); }
+TEST_F(Refusals, TextForANumber) { expect_text_refused("grid: {width: wide}\n", {"wrong.yaml", "grid.width", "wide", "65536"}); }
+TEST_F(Refusals, NotANumber) { expect_text_refused("wind: {speed: .nan}\n", {"wrong.yaml", "wind.speed", ".nan", "100"}); }
+TEST_F(Refusals, NegativeSize) { expect_text_refused("grid: {width: -40}\n", {"wrong.yaml", "grid.width", "-40"}); }
+TEST_F(Refusals, ZeroSize) {
+  const auto r = expect_refused({folder_.write("wrong.yaml", "grid: {width: 0, height: 0}\n")}, {"grid.width", "grid.height"}, false);
+  EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 2) << "one line a fault";
+}
+TEST_F(Refusals, CellSizeZero) { expect_text_refused("grid: {cell_size: 0}\n", {"wrong.yaml", "grid.cell_size", "0"}); }
+TEST_F(Refusals, RasterThatIsMissing) {
+  expect_text_refused("grid: {width: 8, height: 8}\nterrain: [raster: {file: no_such.tif}]\n", {"no_such.tif"});
+  expect_text_refused("grid: {from_raster: no_such.tif}\n", {"no_such.tif"});
+}
+TEST_F(Refusals, RasterThatIsText) {
+  folder_.write("text.tif", "this is no raster\n");
+  expect_text_refused("grid: {width: 8, height: 8}\nterrain: [raster: {file: text.tif}]\n", {"text.tif"});
+}
+TEST_F(Refusals, ScenarioThatIsMissing) { expect_refused({path("no_such.yaml")}, {"no_such.yaml"}); }
+TEST_F(Refusals, ScenarioThatIsAFolder) { expect_refused({path(".")}, {path(".")}); }
+TEST_F(Refusals, ScenarioThatIsNoYaml) { expect_text_refused("grid: {width: [\n", {"wrong.yaml", "line"}); }
+TEST_F(Refusals, GridTooBigForMemory) {
+  expect_text_refused("grid: {width: 60000, height: 60000}\n", {"60000 x 60000", "MiB"});
+}
+
+TEST_F(Refusals, CheckpointThatIsCut) {
+  run_cpu({scenario_, "--steps", "2", "--checkpoint", path("a.ck")});
+  const std::string bytes = test::file_bytes(path("a.ck"));
+  folder_.write("cut.ck", bytes.substr(0, bytes.size() / 2));
+  expect_refused({scenario_, "--resume", path("cut.ck")}, {"cut.ck", "cut"});
+  expect_refused({"--resume", path("cut.ck")}, {"cut.ck", "cut"});
+}
+TEST_F(Refusals, CheckpointOfAnotherVersion) {
+  run_cpu({scenario_, "--steps", "2", "--checkpoint", path("a.ck")});
+  std::string bytes = test::file_bytes(path("a.ck"));
+  bytes[bytes.find('\n') + 1] = 99;
+  folder_.write("new.ck", bytes);
+  expect_refused({scenario_, "--resume", path("new.ck")}, {"new.ck", "version 99"});
+}
+TEST_F(Refusals, CheckpointThatIsMissing) { expect_refused({scenario_, "--resume", path("no.ck")}, {"no.ck"}); }
+TEST_F(Refusals, CheckpointThatIsAFolder) { expect_refused({scenario_, "--resume", path(".")}, {path(".")}); }
+TEST_F(Refusals, JournalThatIsMissingOrNone) {
+  expect_refused({scenario_, "--replay", path("no.journal")}, {"no.journal"});
+  expect_refused({scenario_, "--replay", folder_.write("empty.journal", "")}, {"empty.journal"});
+  expect_refused({scenario_, "--replay", scenario_}, {"small.yaml"});
+}
+
+TEST_F(Refusals, UnknownOption) {
+  expect_refused({scenario_, "--setps", "3"}, {"--setps", "unknown"});
+  expect_refused({scenario_, "-x"}, {"-x"});
+}
+TEST_F(Refusals, OptionWithoutItsValue) {
+  const test::ProgramRun r = run({scenario_, "--steps"});
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(r.err.find("--steps"), std::string::npos) << r.err;
+}
+TEST_F(Refusals, OptionsThatAreNoNumbers) {
+  for (const char* option : {"--steps", "--threads", "--every", "--checkpoint-every"})
+    for (const char* value : {"many", "-1", "1.5", "", "99999999999999999999"}) {
+      SCOPED_TRACE(std::string(option) + " '" + value + "'");
+      expect_refused({scenario_, option, value}, {option});
+    }
+  expect_refused({scenario_, "--seed", "x"}, {"seed", "x"});
+}
+TEST_F(Refusals, WrongSettings) {
+  expect_refused({scenario_, "--set", "grid.width"}, {"grid.width"});
+  expect_refused({scenario_, "--set", "grid.width=-3"}, {"grid.width", "-3"});
+  expect_refused({scenario_, "--set", "grid.wdith=3"}, {"grid.wdith"});
+  expect_refused({scenario_, "--set", "terrain.9.uniform.value=3"}, {"terrain.9"});
+}
+TEST_F(Refusals, TwoScenariosOrNone) {
+  expect_refused({scenario_, scenario_}, {"small.yaml"});
+  expect_refused({}, {"scenario"});
+}
+TEST_F(Refusals, UnknownBackend) { expect_refused({scenario_, "--backend", "gpu"}, {"gpu", "cuda"}); }
+TEST_F(Refusals, CudaWithoutADevice) {
+  const CudaStatus cuda = cuda_status();
+  if (cuda.usable) GTEST_SKIP() << "there is a device";
+  expect_refused({scenario_, "--backend", "cuda"}, {"cuda", cuda.reason});
+}
+
+TEST_F(Refusals, OutputsThatCannotBeWritten) {
+  const test::ProgramRun below = run({scenario_, "--backend", "cpu", "--steps", "1", "--out", path("no/such/folder")});
+  EXPECT_EQ(below.status, 2);
+  EXPECT_NE(below.err.find("no/such/folder"), std::string::npos) << below.err;
+  const test::ProgramRun file = run({scenario_, "--backend", "cpu", "--steps", "1", "--out", scenario_});
+  EXPECT_EQ(file.status, 2);
+  EXPECT_NE(file.err.find("small.yaml"), std::string::npos) << file.err;
+}
+
+/// Before the steps, not after hours of them.
+TEST_F(Refusals, CheckpointThatCannotBeWrittenIsRefusedBeforeTheRun) {
+  const test::ProgramRun r = run({scenario_, "--backend", "cpu", "--steps", "200000", "--checkpoint", path("no/such/a.ck")}, 3);
+  EXPECT_EQ(r.status, 2) << r.err;
+  EXPECT_NE(r.err.find("no/such/a.ck"), std::string::npos) << r.err;
+}
+
+}  // namespace
+}  // namespace desert_sim
