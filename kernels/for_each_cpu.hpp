@@ -65,9 +65,12 @@ DESERT_CLONES void run_row(const Law& law, int y, int width) {
   for (int x = 0; x < width; ++x) law(x, y);
 }
 
+/// Below so many cells, waking other threads costs more than they bring.
+constexpr int worth_threads = 16384;
+
 template <class Law>
 void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
-#pragma omp parallel for schedule(static) num_threads(exec.threads())
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads)
   for (int y = 0; y < grid.height; ++y) run_row(law, y, grid.width);
 }
 
@@ -75,7 +78,7 @@ void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
 template <class Law>
 void for_each_tile(CpuExec& exec, const Tiles& tiles, const Law& law) {
   const int columns = tiles.columns(), count = tiles.count();
-#pragma omp parallel num_threads(exec.threads())
+#pragma omp parallel num_threads(exec.threads()) if (tiles.grid.cells() >= worth_threads)
   {
     alignas(64) char scratch[Law::scratch_bytes];
     const CpuTeam team{scratch};
@@ -87,7 +90,7 @@ void for_each_tile(CpuExec& exec, const Tiles& tiles, const Law& law) {
 template <class Law>
 long long sum_cells(CpuExec& exec, const Grid& grid, const Law& law) {
   long long total = 0;
-#pragma omp parallel for schedule(static) num_threads(exec.threads()) reduction(+ : total)
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads) reduction(+ : total)
   for (int y = 0; y < grid.height; ++y)
     for (int x = 0; x < grid.width; ++x) total += law(x, y);
   return total;
@@ -96,7 +99,7 @@ long long sum_cells(CpuExec& exec, const Grid& grid, const Law& law) {
 template <class Law>
 float max_cells(CpuExec& exec, const Grid& grid, const Law& law) {
   float largest = 0;
-#pragma omp parallel for schedule(static) num_threads(exec.threads()) reduction(max : largest)
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads) reduction(max : largest)
   for (int y = 0; y < grid.height; ++y)
     for (int x = 0; x < grid.width; ++x) {
       const float value = law(x, y);

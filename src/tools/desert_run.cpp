@@ -114,6 +114,7 @@ int main_(int argc, char** argv) {
   plan.checkpoint = o.text("checkpoint", "");
   plan.every = static_cast<std::uint64_t>(o.number("every", 0, 1, 1LL << 40));
   plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
+  const auto steps = static_cast<std::uint64_t>(o.number("steps", 0, 0, 1LL << 40));
   if (plan.every && plan.out.empty()) throw ConfigError("--every: needs --out");
   if (plan.checkpoint_every && plan.checkpoint.empty())
     throw ConfigError("--checkpoint-every: needs --checkpoint");
@@ -133,9 +134,8 @@ int main_(int argc, char** argv) {
   }
   Simulation& simulation = session->simulation();
   if (!plan.out.empty()) prepare_folder(plan.out);
-  const std::uint64_t asked = static_cast<std::uint64_t>(o.number(
-      "steps", o.has("replay") ? static_cast<long long>(journal.ticks) : simulation.scenario().run.steps, 0,
-      1LL << 40));
+  const std::uint64_t scenario_steps = o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps);
+  const std::uint64_t asked = o.has("steps") ? steps : scenario_steps;
   // A resumed run goes on until the step that is asked for.
   const std::uint64_t last =
       o.has("resume") ? (asked > simulation.steps() ? asked - simulation.steps() : 0) : asked;
