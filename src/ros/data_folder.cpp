@@ -20,7 +20,9 @@ std::string ros_folder() {
 
 /// What the name alone says.
 fs::path checked(const std::string& name) {
-  const auto refuse = [&](const char* why) { throw ConfigError("'" + name + "': " + why + " (allowed: a path below ~data_dir)"); };
+  const auto refuse = [&](const char* why) {
+    throw ConfigError("'" + name + "': " + why + " (allowed: a path below ~data_dir)");
+  };
   if (name.empty()) refuse("is empty");
   if (name.find('\0') != std::string::npos) refuse("has a zero byte in it");
   const fs::path path(name);
@@ -35,9 +37,12 @@ bool is_below(const fs::path& folder, const fs::path& path) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// `path` with its links followed, if it is still below `root`. The last part need not exist, unless it is a link.
+/// `path` with its links followed, if it is still below `root`. The last part need not exist, unless it is a
+/// link.
 fs::path followed(const fs::path& root, const fs::path& path, const std::string& name) {
-  const fs::path real = fs::is_symlink(fs::symlink_status(path)) ? fs::canonical(path) : fs::canonical(path.parent_path()) / path.filename();
+  const fs::path real = fs::is_symlink(fs::symlink_status(path))
+                            ? fs::canonical(path)
+                            : fs::canonical(path.parent_path()) / path.filename();
   if (!is_below(root, real)) throw ConfigError("'" + name + "': a link leads out of " + root.string());
   return real;
 }

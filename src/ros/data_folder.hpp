@@ -11,7 +11,8 @@ class DataFolder {
   explicit DataFolder(const std::string& path);
   const std::string& path() const { return path_; }
 
-  /// The file that `name` (a path below the folder) stands for. Both throw ConfigError for a name that is empty, absolute, has
+  /// The file that `name` (a path below the folder) stands for. Both throw ConfigError for a name that is
+  /// empty, absolute, has
   /// "..", or leads out of the folder through links.
   std::string for_reading(const std::string& name) const;
   /// Makes the folders that are missing.

@@ -18,7 +18,8 @@ void keep_previous_journal(const std::string& path) {
   std::error_code error;
   if (path.empty() || !std::filesystem::is_regular_file(path, error)) return;
   std::filesystem::rename(path, path + ".previous", error);
-  if (error) throw ConfigError(path + ": cannot be renamed to make room for a new journal: " + error.message());
+  if (error)
+    throw ConfigError(path + ": cannot be renamed to make room for a new journal: " + error.message());
 }
 
 SimulationThread::Options options_of(const NodeParameters& p) {
@@ -35,8 +36,10 @@ SimulationThread::Options options_of(const NodeParameters& p) {
 void warn_of_far_origin(const GridParameters& grid) {
   const double farthest = std::max(std::abs(grid.origin_x), std::abs(grid.origin_y));
   if (farthest > 1e5)
-    ROS_WARN("the terrain lies up to %.0f m from its frame's origin: float32 coordinates (~points, rviz) are only good to %.2f m there",
-             farthest, farthest * 6e-8);
+    ROS_WARN(
+        "the terrain lies up to %.0f m from its frame's origin: float32 coordinates (~points, rviz) are only "
+        "good to %.2f m there",
+        farthest, farthest * 6e-8);
 }
 
 }  // namespace
@@ -51,11 +54,12 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   keep_previous_journal(p.journal);
   files_ = std::make_unique<DataFolder>(p.data_dir);
   frames_ = std::make_unique<Frames>(p.frame_id);
-  simulation_ = std::make_unique<SimulationThread>(setup.scenario, gdal_raster_loader(), options_of(p), [this] {
-    if (Topics* topics = to_notify_) topics->notify();
-  });
-  ROS_INFO("scenario %s: %d x %d cells of %g m; backend: %s", setup.scenario.name.c_str(), grid.width, grid.height, grid.cell_size,
-           simulation_->backend_choice().c_str());
+  simulation_ =
+      std::make_unique<SimulationThread>(setup.scenario, gdal_raster_loader(), options_of(p), [this] {
+        if (Topics* topics = to_notify_) topics->notify();
+      });
+  ROS_INFO("scenario %s: %d x %d cells of %g m; backend: %s", setup.scenario.name.c_str(), grid.width,
+           grid.height, grid.cell_size, simulation_->backend_choice().c_str());
   warn_of_far_origin(grid);
   topics_ = std::make_unique<Topics>(node_, setup.publishers, p.frame_id, *simulation_);
   to_notify_ = topics_.get();

@@ -1,5 +1,6 @@
 #pragma once
-/// The node: parameters, simulation, topics and services, on threads of its own. A program or a nodelet makes one.
+/// The node: parameters, simulation, topics and services, on threads of its own. A program or a nodelet makes
+/// one.
 
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
@@ -19,7 +20,8 @@ namespace desert_sim {
 
 class DesertSimServer {
  public:
-  /// Reads the parameters below `private_node`, builds the terrain and starts. Throws ConfigError for input that is refused.
+  /// Reads the parameters below `private_node`, builds the terrain and starts. Throws ConfigError for input
+  /// that is refused.
   explicit DesertSimServer(const ros::NodeHandle& private_node);
   /// Ends after the step that it is in; callers of services that wait get success = false.
   ~DesertSimServer();
@@ -28,8 +30,8 @@ class DesertSimServer {
   std::string failure() const { return topics_->failure(); }
 
  private:
-  // Callbacks have queues and threads of their own, because services wait for the simulation. ~step, which can take
-  // long, is apart from the rest.
+  // Callbacks have queues and threads of their own, because services wait for the simulation. ~step, which
+  // can take long, is apart from the rest.
   ros::CallbackQueue queue_, step_queue_;
   ros::NodeHandle node_;
   std::unique_ptr<DataFolder> files_;

@@ -1,8 +1,7 @@
 #include "desert_sim/ros/elevation_stream.hpp"
 
-#include <boost/make_shared.hpp>
-
 #include <algorithm>
+#include <boost/make_shared.hpp>
 #include <cmath>
 
 #include "desert_sim/ros/messages.hpp"
@@ -29,7 +28,8 @@ bool HeldElevation::differs(const std::vector<float>& now, const ElevationTile& 
     const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
     for (std::size_t i = row + tile.x; i < row + tile.x + tile.width; ++i) {
       const bool known = !std::isnan(now[i]), was_known = !std::isnan(held_[i]);
-      if (known != was_known || (known && std::abs(static_cast<double>(now[i]) - held_[i]) > threshold_)) return true;
+      if (known != was_known || (known && std::abs(static_cast<double>(now[i]) - held_[i]) > threshold_))
+        return true;
     }
   }
   return false;
@@ -48,7 +48,8 @@ std::vector<ElevationTile> HeldElevation::take_changes(const Snapshot& snapshot)
       if (!differs(now, tile)) continue;
       changes.push_back(tile);
       for (std::uint32_t row = 0; row < tile.height; ++row) {
-        const std::size_t first = static_cast<std::size_t>(tile.y + row) * static_cast<std::size_t>(width_) + tile.x;
+        const std::size_t first =
+            static_cast<std::size_t>(tile.y + row) * static_cast<std::size_t>(width_) + tile.x;
         const auto begin = now.begin() + static_cast<std::ptrdiff_t>(first);
         changes.back().data.insert(changes.back().data.end(), begin, begin + tile.width);
         std::copy(begin, begin + tile.width, held_.begin() + static_cast<std::ptrdiff_t>(first));
@@ -57,8 +58,12 @@ std::vector<ElevationTile> HeldElevation::take_changes(const Snapshot& snapshot)
   return changes;
 }
 
-ElevationStream::ElevationStream(ros::Publisher keyframes, ros::Publisher updates, std::string frame, double threshold, int tile)
-    : keyframes_(std::move(keyframes)), updates_(std::move(updates)), frame_(std::move(frame)), held_(threshold, tile) {}
+ElevationStream::ElevationStream(ros::Publisher keyframes, ros::Publisher updates, std::string frame,
+                                 double threshold, int tile)
+    : keyframes_(std::move(keyframes)),
+      updates_(std::move(updates)),
+      frame_(std::move(frame)),
+      held_(threshold, tile) {}
 
 void ElevationStream::start_keyframe(const TerrainState& state) {
   ++keyframe_;

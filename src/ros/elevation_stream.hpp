@@ -34,10 +34,11 @@ class HeldElevation {
 /// Numbers keyframes and updates and publishes them. One thread at a time.
 class ElevationStream {
  public:
-  ElevationStream(ros::Publisher keyframes, ros::Publisher updates, std::string frame, double threshold, int tile);
+  ElevationStream(ros::Publisher keyframes, ros::Publisher updates, std::string frame, double threshold,
+                  int tile);
   void publish_keyframe(const TerrainState& state);
-  /// Starts a keyframe that nobody gets if there is no subscriber to keyframes and none has been started for this terrain;
-  /// if there is one, a keyframe is due first: false, and nothing is published.
+  /// Starts a keyframe that nobody gets if there is no subscriber to keyframes and none has been started for
+  /// this terrain; if there is one, a keyframe is due first: false, and nothing is published.
   bool publish_update(const TerrainState& state);
 
  private:

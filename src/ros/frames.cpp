@@ -24,13 +24,15 @@ tf2::Transform Frames::to_terrain(const std_msgs::Header& header) const {
   const auto end = std::chrono::steady_clock::now() + patience;
   while (true) {
     try {
-      const geometry_msgs::TransformStamped found = buffer_.lookupTransform(terrain_frame_, frame, header.stamp);
+      const geometry_msgs::TransformStamped found =
+          buffer_.lookupTransform(terrain_frame_, frame, header.stamp);
       const auto& r = found.transform.rotation;
       const auto& t = found.transform.translation;
       return tf2::Transform(tf2::Quaternion(r.x, r.y, r.z, r.w), tf2::Vector3(t.x, t.y, t.z));
     } catch (const tf2::TransformException& e) {
       if (std::chrono::steady_clock::now() >= end)
-        throw ConfigError("frame '" + given + "' cannot be brought into the terrain's, '" + terrain_frame_ + "': " + e.what());
+        throw ConfigError("frame '" + given + "' cannot be brought into the terrain's, '" + terrain_frame_ +
+                          "': " + e.what());
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

@@ -16,8 +16,8 @@ class Frames {
   explicit Frames(std::string terrain_frame);
   const std::string& terrain_frame() const { return terrain_frame_; }
 
-  /// From the header's frame (empty: the terrain's) at its stamp (0: the latest there is) to the terrain's. Waits a moment for
-  /// a transform that is on its way; throws ConfigError with the reason if there is none.
+  /// From the header's frame (empty: the terrain's) at its stamp (0: the latest there is) to the terrain's.
+  /// Waits a moment for a transform that is on its way; throws ConfigError with the reason if there is none.
   tf2::Transform to_terrain(const std_msgs::Header& header) const;
 
  private:

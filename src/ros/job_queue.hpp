@@ -16,12 +16,12 @@ namespace desert_sim {
 
 /// A job and the promise that it owes an answer to.
 struct Job {
-  std::function<void()> run;                             ///< may throw after it has answered with the same exception
+  std::function<void()> run;  ///< may throw after it has answered with the same exception
   std::function<void(std::exception_ptr)> refuse;
 };
 
-/// Makes a job of `body`, which returns R. An input that is refused (ConfigError) only goes to who asked; any other
-/// exception goes to both sides.
+/// Makes a job of `body`, which returns R. An input that is refused (ConfigError) only goes to who asked; any
+/// other exception goes to both sides.
 template <class R>
 Job make_job(std::function<R()> body, std::future<R>& answer) {
   auto promise = std::make_shared<std::promise<R>>();

@@ -1,8 +1,7 @@
 #include "desert_sim/ros/messages.hpp"
 
-#include <boost/make_shared.hpp>
-
 #include <algorithm>
+#include <boost/make_shared.hpp>
 #include <cinttypes>
 #include <cstdio>
 
@@ -12,9 +11,12 @@ namespace {
 
 const char* state_text(RunState state) {
   switch (state) {
-    case RunState::running: return SimulationStatus::RUNNING.c_str();
-    case RunState::paused: return SimulationStatus::PAUSED.c_str();
-    case RunState::waiting: return SimulationStatus::WAITING.c_str();
+    case RunState::running:
+      return SimulationStatus::RUNNING.c_str();
+    case RunState::paused:
+      return SimulationStatus::PAUSED.c_str();
+    case RunState::waiting:
+      return SimulationStatus::WAITING.c_str();
   }
   throw Error("unknown state");
 }
@@ -67,7 +69,8 @@ std::string hash_text(std::uint64_t hash) {
   return text;
 }
 
-ElevationGridPtr elevation_message(const TerrainState& state, const std::string& frame, std::uint32_t keyframe) {
+ElevationGridPtr elevation_message(const TerrainState& state, const std::string& frame,
+                                   std::uint32_t keyframe) {
   const Snapshot& s = *state.snapshot;
   ElevationGridPtr message = boost::make_shared<ElevationGrid>();
   message->header = header_of(state.moment, frame);

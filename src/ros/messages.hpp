@@ -18,7 +18,8 @@ geometry_msgs::Vector3 vector_of(wind::Vector v);
 /// 16 hexadecimal digits, as in summary.json.
 std::string hash_text(std::uint64_t hash);
 
-ElevationGridPtr elevation_message(const TerrainState& state, const std::string& frame, std::uint32_t keyframe);
+ElevationGridPtr elevation_message(const TerrainState& state, const std::string& frame,
+                                   std::uint32_t keyframe);
 /// Averages blocks of `decimation`² cells; a block over the edge averages what it has.
 WindFieldPtr wind_message(const TerrainState& state, const std::string& frame, int decimation);
 SimulationStatusPtr status_message(const StatusReport& report, const std::string& frame);

@@ -38,7 +38,8 @@ YAML::Node take_sections(const YAML::Node& root, const std::set<std::string>& kn
     if (sections.count(key)) {
       scenario[key] = entry.second;
     } else if (!known.count(key)) {
-      faults.add(key, "unknown parameter (known: " + names + "; sections of a scenario: " + section_names + ")");
+      faults.add(key,
+                 "unknown parameter (known: " + names + "; sections of a scenario: " + section_names + ")");
     }
   }
   return scenario;
@@ -48,12 +49,14 @@ Settings read_settings(const YAML::Node& node, Faults& faults) {
   Settings settings;
   if (!node.IsDefined() || node.IsNull() || (node.IsScalar() && node.Scalar().empty())) return settings;
   if (node.IsScalar()) return {node.Scalar()};
-  if (!node.IsSequence()) faults.add("settings", yaml::shown(node) + " where a list of path=value is expected");
+  if (!node.IsSequence())
+    faults.add("settings", yaml::shown(node) + " where a list of path=value is expected");
   for (std::size_t n = 0; node.IsSequence() && n < node.size(); ++n) {
     if (node[n].IsScalar()) {
       settings.push_back(node[n].Scalar());
     } else {
-      faults.add("settings." + std::to_string(n), yaml::shown(node[n]) + " where a text path=value is expected");
+      faults.add("settings." + std::to_string(n),
+                 yaml::shown(node[n]) + " where a text path=value is expected");
     }
   }
   return settings;
@@ -73,12 +76,16 @@ void flatten(const YAML::Node& node, const std::string& path, Settings& settings
   settings.push_back(path + "=" + out.c_str());
 }
 
-Scenario read_scenario(const std::string& source, const NodeParameters& node, const YAML::Node& sections, const Settings& settings) {
+Scenario read_scenario(const std::string& source, const NodeParameters& node, const YAML::Node& sections,
+                       const Settings& settings) {
   if (node.scenario.empty()) {
     if (sections.size() == 0)
-      throw ConfigError(source + ": no scenario: set ~scenario, or the sections of one (grid, terrain, wind, ...)");
+      throw ConfigError(source +
+                        ": no scenario: set ~scenario, or the sections of one (grid, terrain, wind, ...)");
     if (!settings.empty())
-      throw ConfigError(source + ": settings: change the keys of a scenario file, and ~scenario is empty; set the sections themselves");
+      throw ConfigError(source +
+                        ": settings: change the keys of a scenario file, and ~scenario is empty; set the "
+                        "sections themselves");
     Scenario scenario = parse_scenario(sections, source, "");
     scenario.name = "parameters";
     return scenario;
@@ -105,7 +112,8 @@ NodeSetup read_node_setup(const ros::NodeHandle& private_node) {
   if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);  // tf2 knows frames without it
   std::string reason;
   if (frame.empty() || !ros::names::validate(frame, reason))
-    faults.add("frame_id", "'" + frame + "' is not the name of a frame" + (reason.empty() ? "" : ": " + reason));
+    faults.add("frame_id",
+               "'" + frame + "' is not the name of a frame" + (reason.empty() ? "" : ": " + reason));
   faults.throw_if_any();
   setup.scenario = read_scenario(source, setup.node, sections, settings);
   return setup;

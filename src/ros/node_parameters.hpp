@@ -27,19 +27,26 @@ struct NodeParameters {
 constexpr auto parameter_table(const NodeParameters*) {
   using P = NodeParameters;
   return std::make_tuple(
-      parameter("scenario", &P::scenario, "A file, or the bare name of one in the package's config/scenarios; empty: the scenario's sections are parameters."),
+      parameter("scenario", &P::scenario,
+                "A file, or the bare name of one in the package's config/scenarios; empty: the scenario's "
+                "sections are parameters."),
       parameter("frame_id", &P::frame_id, "Frame of the terrain."),
       parameter("backend", &P::backend, backend_choices, "auto takes CUDA where it is usable."),
       parameter("threads", &P::threads, 0, 4096, "1", "Threads of the CPU backend; 0: one a processor."),
-      parameter("step_rate", &P::step_rate, 0, 1e6, "steps/s", "In wall time, or ROS time under use_sim_time; 0: as fast as it can."),
+      parameter("step_rate", &P::step_rate, 0, 1e6, "steps/s",
+                "In wall time, or ROS time under use_sim_time; 0: as fast as it can."),
       parameter("paused", &P::paused, "Whether it starts paused."),
-      parameter("data_dir", &P::data_dir, "Checkpoints lie below this folder; empty: desert_sim in ROS's own folder ($ROS_HOME, or ~/.ros)."),
-      parameter("journal", &P::journal, "File for the journal of commands; a file of that name gets the ending .previous. Empty: none."));
+      parameter(
+          "data_dir", &P::data_dir,
+          "Checkpoints lie below this folder; empty: desert_sim in ROS's own folder ($ROS_HOME, or ~/.ros)."),
+      parameter(
+          "journal", &P::journal,
+          "File for the journal of commands; a file of that name gets the ending .previous. Empty: none."));
 }
 static_assert(table_is_complete<NodeParameters>());
 
-/// How often topics are published, and how finely. A rate of 0 leaves only what is sent to new subscribers, after the
-/// service step, and after a reset or load.
+/// How often topics are published, and how finely. A rate of 0 leaves only what is sent to new subscribers,
+/// after the service step, and after a reset or load.
 struct PublisherParameters {
   double keyframe_rate = 1;
   double update_rate = 10;
@@ -58,14 +65,17 @@ constexpr auto parameter_table(const PublisherParameters*) {
   return std::make_tuple(
       parameter("keyframe_rate", &P::keyframe_rate, 0, 1000, "Hz", "~elevation."),
       parameter("update_rate", &P::update_rate, 0, 1000, "Hz", "~elevation_updates."),
-      parameter("update_threshold", &P::update_threshold, 0, 1000, "m", "Change of a cell, since what subscribers hold, that sends its tile."),
+      parameter("update_threshold", &P::update_threshold, 0, 1000, "m",
+                "Change of a cell, since what subscribers hold, that sends its tile."),
       parameter("update_tile", &P::update_tile, 1, 65536, "cells", "Width of a tile of ~elevation_updates."),
       parameter("wind_rate", &P::wind_rate, 0, 1000, "Hz", "~wind."),
-      parameter("wind_decimation", &P::wind_decimation, 1, 65536, "cells", "Cells of the terrain in a row that are averaged into one of ~wind."),
+      parameter("wind_decimation", &P::wind_decimation, 1, 65536, "cells",
+                "Cells of the terrain in a row that are averaged into one of ~wind."),
       parameter("wind_markers_rate", &P::wind_markers_rate, 0, 1000, "Hz", "~wind_markers."),
       parameter("wind_markers_count", &P::wind_markers_count, 1, 100000, "1", "At most so many arrows."),
       parameter("points_rate", &P::points_rate, 0, 1000, "Hz", "~points."),
-      parameter("points_count", &P::points_count, 1, 100000000, "1", "At most so many points; rviz stays fluid with 40000 to 100000."),
+      parameter("points_count", &P::points_count, 1, 100000000, "1",
+                "At most so many points; rviz stays fluid with 40000 to 100000."),
       parameter("status_rate", &P::status_rate, 0, 1000, "Hz", "~status; it is also sent on change."));
 }
 static_assert(table_is_complete<PublisherParameters>());
@@ -76,9 +86,9 @@ struct NodeSetup {
   Scenario scenario;  ///< not yet resolved
 };
 
-/// Reads all private parameters of `private_node`: those above, `settings` (a list of "path=value" for a scenario that
-/// is a file), and the sections of a scenario. Sections given beside a file override the file's keys. Throws ConfigError
-/// that lists all faults; a parameter that nobody knows is one.
+/// Reads all private parameters of `private_node`: those above, `settings` (a list of "path=value" for a
+/// scenario that is a file), and the sections of a scenario. Sections given beside a file override the file's
+/// keys. Throws ConfigError that lists all faults; a parameter that nobody knows is one.
 NodeSetup read_node_setup(const ros::NodeHandle& private_node);
 
 }  // namespace desert_sim

@@ -1,8 +1,13 @@
 #include "desert_sim/ros/pacer.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 namespace desert_sim {
+
+double steady_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 double Pacer::due_time() const { return start_ + static_cast<double>(done_) / rate_; }
 
@@ -25,6 +30,10 @@ bool Pacer::due(double now) {
     given_up_ += behind;
   }
   return now >= due_time();
+}
+
+void Pacer::forgive(double now) {
+  if (rate_ > 0 && running_) start_ += std::max(0.0, now - due_time());
 }
 
 void Pacer::stepped() {

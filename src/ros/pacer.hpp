@@ -6,8 +6,12 @@
 
 namespace desert_sim {
 
+/// Seconds of a clock that never jumps.
+double steady_now();
+
 /// Keeps a rate of steps on a clock that may be slow, stand still, or jump. Times are that clock's seconds.
-/// A backlog of up to `backlog` seconds is caught up; what goes beyond it is given up and only shows in lag().
+/// A backlog of up to `backlog` seconds is caught up; what goes beyond it is given up and only shows in
+/// lag().
 class Pacer {
  public:
   static constexpr double backlog = 1.0;
@@ -18,6 +22,8 @@ class Pacer {
 
   /// The schedule begins anew at the next due(), with no lag: after a pause, a reset, a jump.
   void restart() { running_ = false; }
+  /// What is behind the schedule at time `now` need not be done, and is no lag.
+  void forgive(double now);
   /// Whether a step is due at time `now`. A clock that went back restarts the schedule (see jumped_back()).
   bool due(double now);
   /// A step that was due has been done.

@@ -26,14 +26,17 @@ bool is_this_package(const fs::path& folder) {
 
 std::string find_below(const fs::path& folder, int depth) {
   std::error_code error;
-  if (fs::exists(folder / "CATKIN_IGNORE", error) || fs::exists(folder / "rospack_nosubdirs", error)) return "";
+  if (fs::exists(folder / "CATKIN_IGNORE", error) || fs::exists(folder / "rospack_nosubdirs", error))
+    return "";
   if (fs::exists(folder / "package.xml", error)) return is_this_package(folder) ? folder.string() : "";
   if (depth == deepest) return "";
   std::vector<fs::path> below;
   for (fs::directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error), end;
        !error && entry != end; entry.increment(error))
-    if (entry->is_directory(error) && entry->path().filename().string()[0] != '.') below.push_back(entry->path());
-  // The folder that has the package's name is the likeliest; the order of the rest must not depend on the file system.
+    if (entry->is_directory(error) && entry->path().filename().string()[0] != '.')
+      below.push_back(entry->path());
+  // The folder that has the package's name is the likeliest; the order of the rest must not depend on the
+  // file system.
   std::sort(below.begin(), below.end(), [](const fs::path& a, const fs::path& b) {
     const bool likely_a = a.filename() == "desert_sim", likely_b = b.filename() == "desert_sim";
     return likely_a != likely_b ? likely_a : a < b;
@@ -44,7 +47,8 @@ std::string find_below(const fs::path& folder, int depth) {
 }
 
 bool ends_with(const std::string& text, const std::string& ending) {
-  return text.size() >= ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+  return text.size() >= ending.size() &&
+         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
 }  // namespace
@@ -62,7 +66,8 @@ std::string scenario_file(const std::string& name) {
   if (name.find('/') != std::string::npos || ends_with(name, ".yaml") || ends_with(name, ".yml")) return name;
   const std::string package = package_folder();
   if (package.empty())
-    throw ConfigError("~scenario: '" + name + "' is not a path, and the package desert_sim is not in ROS_PACKAGE_PATH");
+    throw ConfigError("~scenario: '" + name +
+                      "' is not a path, and the package desert_sim is not in ROS_PACKAGE_PATH");
   const fs::path folder = fs::path(package) / "config" / "scenarios";
   std::error_code error;
   if (fs::exists(folder / (name + ".yaml"), error)) return (folder / (name + ".yaml")).string();
@@ -72,7 +77,8 @@ std::string scenario_file(const std::string& name) {
   std::sort(known.begin(), known.end());
   std::string all;
   for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
-  throw ConfigError("~scenario: there is no '" + name + "' in " + folder.string() + " (there are: " + all + ")");
+  throw ConfigError("~scenario: there is no '" + name + "' in " + folder.string() + " (there are: " + all +
+                    ")");
 }
 
 }  // namespace desert_sim

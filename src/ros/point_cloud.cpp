@@ -1,8 +1,7 @@
 #include "desert_sim/ros/point_cloud.hpp"
 
-#include <boost/make_shared.hpp>
-
 #include <algorithm>
+#include <boost/make_shared.hpp>
 #include <cmath>
 #include <cstring>
 
@@ -46,7 +45,8 @@ std::uint32_t packed(const Colour& c) {
 int stride_for(const Snapshot& s, int count) {
   int stride = 1;
   const auto points = [&](int k) {
-    return static_cast<std::int64_t>((s.width + k - 1) / k) * static_cast<std::int64_t>((s.height + k - 1) / k);
+    return static_cast<std::int64_t>((s.width + k - 1) / k) *
+           static_cast<std::int64_t>((s.height + k - 1) / k);
   };
   while (points(stride) > count) ++stride;
   return stride;
@@ -55,7 +55,8 @@ int stride_for(const Snapshot& s, int count) {
 }  // namespace
 
 const std::vector<Layer>& point_layers() {
-  static const std::vector<Layer> layers{Layer::elevation, Layer::sand, Layer::wind_shadow, Layer::vegetation, Layer::obstacle};
+  static const std::vector<Layer> layers{Layer::elevation, Layer::sand, Layer::wind_shadow, Layer::vegetation,
+                                         Layer::obstacle};
   return layers;
 }
 
@@ -77,10 +78,15 @@ sensor_msgs::PointCloud2Ptr point_cloud(const TerrainState& state, const std::st
   std::uint8_t* to = cloud->data.data();
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column, to += sizeof(Point)) {
-      const int x = std::min(column * stride + stride / 2, s.width - 1), y = std::min(row * stride + stride / 2, s.height - 1);
+      const int x = std::min(column * stride + stride / 2, s.width - 1),
+                y = std::min(row * stride + stride / 2, s.height - 1);
       const std::size_t i = static_cast<std::size_t>(y) * s.width + x;
-      const Point point{static_cast<float>(s.origin_x + (x + 0.5) * s.cell_size), static_cast<float>(s.origin_y + (y + 0.5) * s.cell_size),
-                        elevation[i], packed(colour.at(x, y)), sand ? (*sand)[i] : 0.0f, shadow ? (*shadow)[i] : 0.0f};
+      const Point point{static_cast<float>(s.origin_x + (x + 0.5) * s.cell_size),
+                        static_cast<float>(s.origin_y + (y + 0.5) * s.cell_size),
+                        elevation[i],
+                        packed(colour.at(x, y)),
+                        sand ? (*sand)[i] : 0.0f,
+                        shadow ? (*shadow)[i] : 0.0f};
       std::memcpy(to, &point, sizeof point);
     }
   return cloud;

@@ -21,7 +21,8 @@ void require_finite(double value, const std::string& name) {
 
 /// Beyond what a float holds it is infinite, which the simulation refuses by name.
 float narrow(double value) {
-  if (std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()) || std::isnan(value)) return static_cast<float>(value);
+  if (std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()) || std::isnan(value))
+    return static_cast<float>(value);
   return std::copysign(std::numeric_limits<float>::infinity(), static_cast<float>(std::copysign(1.0, value)));
 }
 
@@ -37,7 +38,8 @@ Choice choose(const char* const (&choices)[N], const std::string& text, const st
 
 /// A direction of the header's frame in the terrain's, seen from above [deg].
 double turned(double angle_deg, const tf2::Transform& transform) {
-  const tf2::Vector3 axis = transform.getBasis() * tf2::Vector3(std::cos(angle_deg / degrees), std::sin(angle_deg / degrees), 0);
+  const tf2::Vector3 axis =
+      transform.getBasis() * tf2::Vector3(std::cos(angle_deg / degrees), std::sin(angle_deg / degrees), 0);
   return std::atan2(axis.y(), axis.x()) * degrees;
 }
 
@@ -59,7 +61,9 @@ command::SetWind wind_command(const SetWindRequest& request) {
   }
   require_finite(request.vector.x, "vector.x");
   require_finite(request.vector.y, "vector.y");
-  if (!(request.vector.z == 0)) throw ConfigError("vector.z: = " + std::to_string(request.vector.z) + " must be 0: the wind is horizontal");
+  if (!(request.vector.z == 0))
+    throw ConfigError("vector.z: = " + std::to_string(request.vector.z) +
+                      " must be 0: the wind is horizontal");
   command.speed = narrow(std::hypot(request.vector.x, request.vector.y));
   command.direction_deg = narrow(std::atan2(request.vector.y, request.vector.x) * degrees);
   return command;
@@ -69,7 +73,8 @@ command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request)
   constexpr const char* kinds[] = {"timeline", "rose"};
   command::SetWindSchedule command;
   WindRegime& regime = command.regime;
-  regime.kind = choose<int>(kinds, request.kind, "kind") == 0 ? WindRegimeKind::timeline : WindRegimeKind::rose;
+  regime.kind =
+      choose<int>(kinds, request.kind, "kind") == 0 ? WindRegimeKind::timeline : WindRegimeKind::rose;
   const bool rose = regime.kind == WindRegimeKind::rose;
   if (request.segments.size() > 4096)
     throw ConfigError("segments: " + std::to_string(request.segments.size()) + " entries are more than 4096");
@@ -106,7 +111,8 @@ command::EditTerrain edit_command(const EditTerrainRequest& request, const Frame
   command.radius = request.radius;
   if (command.shape == BrushShape::ellipse) {
     command.radius_y = request.radius_y;
-    command.angle_deg = transform == tf2::Transform::getIdentity() ? request.angle_deg : turned(request.angle_deg, transform);
+    command.angle_deg =
+        transform == tf2::Transform::getIdentity() ? request.angle_deg : turned(request.angle_deg, transform);
   }
   command.inner = request.inner;
   command.value = request.value;

@@ -1,6 +1,6 @@
 #pragma once
-/// From service requests to the simulation's commands. All throw ConfigError that names the field, its value and what is
-/// allowed; ranges are checked by the simulation itself when it applies the command.
+/// From service requests to the simulation's commands. All throw ConfigError that names the field, its value
+/// and what is allowed; ranges are checked by the simulation itself when it applies the command.
 
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/SetWind.h>

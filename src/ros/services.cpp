@@ -17,11 +17,13 @@ constexpr auto recent_enough = std::chrono::milliseconds(100);
 
 template <class Service>
 void Services::advertise(const std::string& name,
-                         void (Services::*serve)(const typename Service::Request&, typename Service::Response&),
+                         void (Services::*serve)(const typename Service::Request&,
+                                                 typename Service::Response&),
                          ros::CallbackQueue* queue) {
   using Request = typename Service::Request;
   using Response = typename Service::Response;
-  const boost::function<bool(Request&, Response&)> callback = [this, name, serve](Request& request, Response& response) {
+  const boost::function<bool(Request&, Response&)> callback = [this, name, serve](Request& request,
+                                                                                  Response& response) {
     try {
       (this->*serve)(request, response);
       response.success = true;
@@ -39,8 +41,8 @@ void Services::advertise(const std::string& name,
   servers_.push_back(node_.advertiseService(options));
 }
 
-Services::Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation, Topics& topics,
-                   const Frames& frames, const DataFolder& files)
+Services::Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation,
+                   Topics& topics, const Frames& frames, const DataFolder& files)
     : node_(std::move(node)), simulation_(simulation), topics_(topics), frames_(frames), files_(files) {
   // Commands of the same names are in the namespace `command`.
   advertise<desert_sim::SetWind>("set_wind", &Services::set_wind);
@@ -94,8 +96,10 @@ TerrainState Services::recent_terrain() {
 
 void Services::query_terrain(const QueryTerrainRequest& request, QueryTerrainResponse& response) {
   if (request.points.size() > most_points)
-    throw ConfigError("points: " + std::to_string(request.points.size()) + " are more than " + std::to_string(most_points));
-  for (std::size_t n = 0; n < request.points.size(); ++n) require_finite(request.points[n], "points[" + std::to_string(n) + "]");
+    throw ConfigError("points: " + std::to_string(request.points.size()) + " are more than " +
+                      std::to_string(most_points));
+  for (std::size_t n = 0; n < request.points.size(); ++n)
+    require_finite(request.points[n], "points[" + std::to_string(n) + "]");
   const tf2::Transform transform = frames_.to_terrain(request.header);
   const TerrainState state = recent_terrain();
   const TerrainSampler sampler(*state.snapshot);

@@ -1,5 +1,6 @@
 #pragma once
-/// The services. Each turns a request into a command, waits until the simulation thread has answered, and says so.
+/// The services. Each turns a request into a command, waits until the simulation thread has answered, and
+/// says so.
 
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/LoadCheckpoint.h>
@@ -26,13 +27,15 @@ namespace desert_sim {
 
 class Services {
  public:
-  /// `step_queue` serves ~step, which can take long, apart from the rest, so that a pause always comes through.
-  Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation, Topics& topics, const Frames& frames,
-           const DataFolder& files);
+  /// `step_queue` serves ~step, which can take long, apart from the rest, so that a pause always comes
+  /// through.
+  Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation, Topics& topics,
+           const Frames& frames, const DataFolder& files);
 
  private:
   template <class Service>
-  void advertise(const std::string& name, void (Services::*serve)(const typename Service::Request&, typename Service::Response&),
+  void advertise(const std::string& name,
+                 void (Services::*serve)(const typename Service::Request&, typename Service::Response&),
                  ros::CallbackQueue* queue = nullptr);
 
   void set_wind(const SetWindRequest& request, SetWindResponse& response);

@@ -9,21 +9,17 @@ namespace desert_sim {
 
 namespace {
 
-constexpr int steps_in_flight = 8;      // a GPU may be that far behind before the thread waits for it
-constexpr int timed_every = 16;         // steps from one that is timed to the next
-constexpr double measure_for = 5;       // [s] after a report
-
-double steady_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+constexpr int steps_in_flight = 8;  // a GPU may be that far behind before the thread waits for it
+constexpr int timed_every = 16;     // steps from one that is timed to the next
 
 }  // namespace
 
-// ---- from other threads
-
-SimulationThread::SimulationThread(const Scenario& scenario, const RasterLoader& load_raster, const Options& options,
-                                   std::function<void()> on_change)
-    : options_(options), on_change_(std::move(on_change)), pacer_(options.step_rate), paused_(options.paused) {
+SimulationThread::SimulationThread(const Scenario& scenario, const RasterLoader& load_raster,
+                                   const Options& options, std::function<void()> on_change)
+    : options_(options),
+      on_change_(std::move(on_change)),
+      pacer_(options.step_rate),
+      paused_(options.paused) {
   std::promise<void> started;
   std::future<void> ready = started.get_future();
   thread_ = std::thread([&] { thread(scenario, load_raster, started); });
@@ -42,123 +38,18 @@ void SimulationThread::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-template <class R>
-std::future<R> SimulationThread::ask(std::function<R()> body) {
-  std::future<R> answer;
-  jobs_.put(make_job<R>(std::move(body), answer));
-  return answer;
-}
-
-std::future<Reached> SimulationThread::apply(const Command& command, bool with_hash) {
-  return ask<Reached>([=] {
-    const CommandResult result = session_->apply(command);
-    ++commands_;
-    stamp_ = ros::Time::now();
-    if (std::holds_alternative<Reset>(command) || std::holds_alternative<LoadCheckpoint>(command)) {
-      end_step_requests(std::holds_alternative<Reset>(command) ? "a reset" : "load_checkpoint");
-      ++terrains_;
-      timed_steps_ = 0;
-      pacer_.restart();
-    }
-    changed();
-    Reached r = reached(with_hash);
-    r.result = result;
-    return r;
-  });
-}
-
-std::future<Reached> SimulationThread::step(std::uint32_t steps) {
-  // Two promises: the job's, which only says that the request has been taken, and the request's own.
-  auto request = std::make_shared<StepRequest>();
-  request->asked = steps;
-  std::future<Reached> answer = request->answer.get_future();
-  Job job;
-  job.run = [this, request] { step_requests_.push_back(std::move(*request)); };
-  job.refuse = [request](std::exception_ptr why) { request->answer.set_exception(why); };
-  jobs_.put(std::move(job));
-  return answer;
-}
-
-std::future<void> SimulationThread::pause() {
-  return ask<void>([this] {
-    end_step_requests("a pause");
-    paused_ = true;
-    pacer_.restart();
-    settle();
-  });
-}
-
-std::future<void> SimulationThread::resume() {
-  return ask<void>([this] {
-    if (!paused_) return;
-    paused_ = false;
-    pacer_.restart();
-    meter_.clear();
-  });
-}
-
-std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers) {
-  return ask<TerrainState>([=] {
-    settle();
-    std::vector<Layer> in_use;
-    for (Layer layer : layers)
-      if (session_->simulation().terrain().has(layer)) in_use.push_back(layer);
-    ++snapshots_;
-    return TerrainState{moment(), session_->simulation().snapshot(in_use)};
-  });
-}
-
-std::future<Reached> SimulationThread::save_checkpoint(const std::string& path) {
-  return ask<Reached>([=] {
-    settle();
-    session_->save_checkpoint(path);
-    return reached(true);
-  });
-}
-
-std::future<StatusReport> SimulationThread::report() {
-  return ask<StatusReport>([this] {
-    settle();
-    Simulation& s = session_->simulation();
-    StatusReport r;
-    r.moment = moment();
-    r.state = paused_ ? RunState::paused : (waiting_for_clock_ ? RunState::waiting : RunState::running);
-    r.scenario = s.scenario().name;
-    r.backend = s.exec().backend();
-    r.backend_choice = backend_choice_;
-    r.device = s.exec().device();
-    r.step_rate = options_.step_rate;
-    r.steps_per_second = meter_.rate(steady_now());
-    r.lag = pacer_.lag(clock_now());
-    if (timed_steps_ > 0) {
-      process_times_ = s.process_times();
-      for (ProcessTime& t : process_times_) t.milliseconds /= timed_steps_;
-      s.clear_process_times();
-      timed_steps_ = 0;
-    }
-    r.process_times = process_times_;
-    r.balance = s.balance();
-    r.wind_above = s.wind_above();
-    r.snapshots = snapshots_;
-    if (paused_ && step_requests_.empty()) {
-      r.hashed = true;
-      r.hash = state_hash();
-    }
-    measure_until_ = steady_now() + measure_for;
-    return r;
-  });
-}
-
 std::string SimulationThread::failure() const {
   const std::lock_guard<std::mutex> lock(failure_mutex_);
   return failure_;
 }
 
-// ---- on the simulation thread
+// ---- from here on: on the simulation thread ----
 
-void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load_raster, std::promise<void>& started) {
+void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load_raster,
+                              std::promise<void>& started) {
   try {
-    session_ = std::make_unique<Session>(scenario, load_raster, options_.backend, options_.threads, options_.journal);
+    session_ = std::make_unique<Session>(scenario, load_raster, options_.backend, options_.threads,
+                                         options_.journal);
     backend_choice_ = session_->backend_choice();
     stamp_ = ros::Time::now();
   } catch (...) {
@@ -174,8 +65,10 @@ void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load
   } catch (...) {
     fail("an exception of an unknown type");
   }
-  const std::string why = failure().empty() ? "the simulation is ending" : "the simulation has failed: " + failure();
-  for (StepRequest& request : step_requests_) request.answer.set_exception(std::make_exception_ptr(Error(why)));
+  const std::string why =
+      failure().empty() ? "the simulation is ending" : "the simulation has failed: " + failure();
+  for (StepRequest& request : step_requests_)
+    request.answer.set_exception(std::make_exception_ptr(Error(why)));
   step_requests_.clear();
   session_.reset();
 }
@@ -198,7 +91,8 @@ void SimulationThread::loop() {
 double SimulationThread::idle_time() const {
   if (paused_) return 1.0;
   if (waiting_for_clock_) return 0.02;
-  if (ros::Time::isSimTime()) return 0.001;  // nobody knows when that clock will have come so far: look again and again
+  if (ros::Time::isSimTime())
+    return 0.001;  // nobody knows when that clock will have come so far: look again and again
   return std::min(0.1, std::max(1e-4, pacer_.until_due(clock_now())));
 }
 
@@ -216,15 +110,16 @@ void SimulationThread::serve_step_request() {
   }
   if (request.done < request.asked) return;
   ++commands_;
-  pacer_.restart();  // what these steps took is not to be caught up
+  pacer_.forgive(clock_now());  // what these steps took is not to be caught up
   request.answer.set_value(reached(true));
   step_requests_.pop_front();
 }
 
 void SimulationThread::end_step_requests(const std::string& by) {
   for (StepRequest& request : step_requests_)
-    request.answer.set_exception(std::make_exception_ptr(
-        ConfigError("ended by " + by + " after " + std::to_string(request.done) + " of " + std::to_string(request.asked) + " steps")));
+    request.answer.set_exception(
+        std::make_exception_ptr(ConfigError("ended by " + by + " after " + std::to_string(request.done) +
+                                            " of " + std::to_string(request.asked) + " steps")));
   step_requests_.clear();
 }
 

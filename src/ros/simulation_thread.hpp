@@ -1,6 +1,6 @@
 #pragma once
-/// The one thread that owns the simulation. Other threads ask it for something and wait for the answer; it serves them
-/// between steps. A step, a copy of the terrain or an answer never happens under a lock.
+/// The one thread that owns the simulation. Other threads ask it for something and wait for the answer; it
+/// serves them between steps. A step, a copy of the terrain or an answer never happens under a lock.
 
 #include <atomic>
 #include <deque>
@@ -24,17 +24,17 @@ class SimulationThread {
     int threads = 0;
     double step_rate = 10;  ///< [steps/s]; 0: as fast as it can
     bool paused = false;
-    std::string journal;    ///< file, or empty
+    std::string journal;  ///< file, or empty
   };
 
-  /// Builds the terrain, and then runs. `on_change` is called on the simulation thread after each step and command, and
-  /// when the simulation has failed; it must be quick. Throws ConfigError.
+  /// Builds the terrain, and then runs. `on_change` is called on the simulation thread after each step and
+  /// command, and when the simulation has failed; it must be quick. Throws ConfigError.
   SimulationThread(const Scenario& scenario, const RasterLoader& load_raster, const Options& options,
                    std::function<void()> on_change);
   ~SimulationThread();
 
-  // All of these return at once. The future holds ConfigError if the request was refused and has changed nothing, Error if
-  // the simulation ends or has failed before it is served.
+  // All of these return at once. The future holds ConfigError if the request was refused and has changed
+  // nothing, Error if the simulation ends or has failed before it is served.
 
   std::future<Reached> apply(const Command& command, bool with_hash = false);
   /// Exactly `steps` steps, as fast as it can. Ended early (ConfigError) by a pause, a reset or a load.

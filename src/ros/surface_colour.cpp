@@ -7,8 +7,8 @@ namespace desert_sim {
 
 namespace {
 
-constexpr Colour sand_colour{0.93f, 0.76f, 0.50f}, rock_colour{0.45f, 0.40f, 0.36f}, plant_colour{0.27f, 0.46f, 0.16f},
-    obstacle_colour{0.56f, 0.36f, 0.78f};
+constexpr Colour sand_colour{0.93f, 0.76f, 0.50f}, rock_colour{0.45f, 0.40f, 0.36f},
+    plant_colour{0.27f, 0.46f, 0.16f}, obstacle_colour{0.56f, 0.36f, 0.78f};
 constexpr float sand_that_hides_rock = 0.1f;  // [m]
 
 // The sun: low in the west-north-west, so that slip faces under a west wind lie in shade.
@@ -41,11 +41,14 @@ Colour SurfaceColour::material(std::size_t i) const {
 float SurfaceColour::light(int x, int y) const {
   const int x0 = std::max(0, x - reach_), x1 = std::min(s_.width - 1, x + reach_);
   const int y0 = std::max(0, y - reach_), y1 = std::min(s_.height - 1, y + reach_);
-  const auto z = [this](int ix, int iy) { return (*elevation_)[static_cast<std::size_t>(iy) * s_.width + ix]; };
+  const auto z = [this](int ix, int iy) {
+    return (*elevation_)[static_cast<std::size_t>(iy) * s_.width + ix];
+  };
   const float l = static_cast<float>(s_.cell_size);
   const float dz_dx = x1 > x0 ? (z(x1, y) - z(x0, y)) / (static_cast<float>(x1 - x0) * l) : 0.0f;
   const float dz_dy = y1 > y0 ? (z(x, y1) - z(x, y0)) / (static_cast<float>(y1 - y0) * l) : 0.0f;
-  const float towards_sun = (sun_z - dz_dx * sun_x - dz_dy * sun_y) / std::sqrt(1 + dz_dx * dz_dx + dz_dy * dz_dy);
+  const float towards_sun =
+      (sun_z - dz_dx * sun_x - dz_dy * sun_y) / std::sqrt(1 + dz_dx * dz_dx + dz_dy * dz_dy);
   return std::min(brightest, ambient + (1 - ambient) * std::max(0.0f, towards_sun) / sun_z);
 }
 

@@ -7,7 +7,8 @@
 namespace desert_sim {
 
 const std::vector<Layer>& sampled_layers() {
-  static const std::vector<Layer> layers{Layer::elevation, Layer::bedrock, Layer::sand, Layer::wind_x, Layer::wind_y};
+  static const std::vector<Layer> layers{Layer::elevation, Layer::bedrock, Layer::sand, Layer::wind_x,
+                                         Layer::wind_y};
   return layers;
 }
 
@@ -41,7 +42,8 @@ TerrainSampler::Patch TerrainSampler::patch(double x, double y) const {
 double TerrainSampler::value(const std::vector<float>* layer, const Patch& p) {
   if (!layer) return 0.0;
   const std::vector<float>& v = *layer;
-  return (v[p.i00] * (1 - p.fx) + v[p.i10] * p.fx) * (1 - p.fy) + (v[p.i01] * (1 - p.fx) + v[p.i11] * p.fx) * p.fy;
+  return (v[p.i00] * (1 - p.fx) + v[p.i10] * p.fx) * (1 - p.fy) +
+         (v[p.i01] * (1 - p.fx) + v[p.i11] * p.fx) * p.fy;
 }
 
 TerrainSample TerrainSampler::at(double x, double y) const {
@@ -51,8 +53,9 @@ TerrainSample TerrainSampler::at(double x, double y) const {
   sample.position.x = x;
   sample.position.y = y;
   if (!sample.in_bounds) {
-    for (double* number : {&sample.position.z, &sample.elevation, &sample.normal.x, &sample.normal.y, &sample.normal.z,
-                           &sample.slope, &sample.sand, &sample.bedrock, &sample.wind.x, &sample.wind.y, &sample.wind.z})
+    for (double* number :
+         {&sample.position.z, &sample.elevation, &sample.normal.x, &sample.normal.y, &sample.normal.z,
+          &sample.slope, &sample.sand, &sample.bedrock, &sample.wind.x, &sample.wind.y, &sample.wind.z})
       *number = std::numeric_limits<double>::quiet_NaN();
     return sample;
   }

@@ -13,7 +13,8 @@ namespace {
 
 template <class Duration>
 Duration period_of(double rate) {
-  return rate > 0 ? std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1 / rate)) : Duration::zero();
+  return rate > 0 ? std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1 / rate))
+                  : Duration::zero();
 }
 
 template <class Time, class Duration>
@@ -25,10 +26,14 @@ void next_time(Time& due, Duration period) {
 
 }  // namespace
 
-// ---- the table of topics -------------------------------------------------------------------------------------------
+// ---- the table of topics ----
 
-Topics::Topics(ros::NodeHandle node, const PublisherParameters& parameters, const std::string& frame, SimulationThread& simulation)
-    : node_(std::move(node)), frame_(frame), simulation_(simulation), status_period_(period_of<Clock::duration>(parameters.status_rate)) {
+Topics::Topics(ros::NodeHandle node, const PublisherParameters& parameters, const std::string& frame,
+               SimulationThread& simulation)
+    : node_(std::move(node)),
+      frame_(frame),
+      simulation_(simulation),
+      status_period_(period_of<Clock::duration>(parameters.status_rate)) {
   add_elevation(parameters);
   add_others(parameters);
   status_ = advertise<SimulationStatus>("status", 10, [this] { status_changed(); });
@@ -38,8 +43,10 @@ Topics::Topics(ros::NodeHandle node, const PublisherParameters& parameters, cons
 Topics::~Topics() { stop(); }
 
 template <class Message>
-ros::Publisher Topics::advertise(const std::string& name, std::uint32_t queue, std::function<void()> on_subscriber) {
-  return node_.advertise<Message>(name, queue, [on_subscriber](const ros::SingleSubscriberPublisher&) { on_subscriber(); });
+ros::Publisher Topics::advertise(const std::string& name, std::uint32_t queue,
+                                 std::function<void()> on_subscriber) {
+  return node_.advertise<Message>(
+      name, queue, [on_subscriber](const ros::SingleSubscriberPublisher&) { on_subscriber(); });
 }
 
 /// A new subscriber makes `wanted` due.
@@ -66,7 +73,8 @@ void Topics::add_elevation(const PublisherParameters& p) {
   keyframes.publisher = advertise_terrain<ElevationGrid>("elevation", 1, keyframes);
   // Whoever begins to listen to updates needs a keyframe to write them over.
   updates.publisher = advertise_terrain<ElevationUpdate>("elevation_updates", 100, keyframes);
-  elevation_ = std::make_unique<ElevationStream>(keyframes.publisher, updates.publisher, frame_, p.update_threshold, p.update_tile);
+  elevation_ = std::make_unique<ElevationStream>(keyframes.publisher, updates.publisher, frame_,
+                                                 p.update_threshold, p.update_tile);
   updates.publish = [this](const TerrainState& state) { return elevation_->publish_update(state); };
   keyframes.publish = [this](const TerrainState& state) {
     elevation_->publish_keyframe(state);
@@ -96,7 +104,7 @@ void Topics::add_others(const PublisherParameters& p) {
   };
 }
 
-// ---- from other threads --------------------------------------------------------------------------------------------
+// ---- from other threads ----
 
 void Topics::notify() {
   if (!listens_to_changes_ && !simulation_.failed()) return;
@@ -132,7 +140,7 @@ std::string Topics::failure() const {
   return failure_;
 }
 
-// ---- on the publishing thread --------------------------------------------------------------------------------------
+// ---- on the publishing thread ----
 
 void Topics::thread() {
   std::string failure;
@@ -156,7 +164,8 @@ void Topics::loop() {
   while (wait(all, status, asked)) {
     const std::vector<Topic*> due = topics_that_are_due(all);
     if (!due.empty()) publish_terrain(due);
-    if (status_.getNumSubscribers() > 0 && (status || all || (status_period_.count() > 0 && Clock::now() >= status_due_)))
+    if (status_.getNumSubscribers() > 0 &&
+        (status || all || (status_period_.count() > 0 && Clock::now() >= status_due_)))
       publish_status();
     const std::lock_guard<std::mutex> lock(mutex_);
     served_ = asked;
@@ -216,7 +225,8 @@ std::vector<Topics::Topic*> Topics::topics_that_are_due(bool all) {
     if (topic->publisher.getNumSubscribers() == 0) continue;
     const bool changed = topic->change != simulation_.changes();
     const bool by_rate = topic->period.count() > 0 && now >= topic->due && changed;
-    if (topic->wanted || topic->terrain != simulation_.terrains() || (all && changed) || by_rate) due.push_back(topic.get());
+    if (topic->wanted || topic->terrain != simulation_.terrains() || (all && changed) || by_rate)
+      due.push_back(topic.get());
     topic->wanted = false;
   }
   return due;

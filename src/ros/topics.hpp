@@ -1,7 +1,8 @@
 #pragma once
-/// The topics, and the thread that publishes them. It asks the simulation thread for a copy of the layers that the topics
-/// which are due need, and makes the messages of it, so that publishing never holds up a step. A topic without
-/// subscribers asks for nothing. Topics are "latched" in effect: a new subscriber is sent the present state, not an old one.
+/// The topics, and the thread that publishes them. It asks the simulation thread for a copy of the layers
+/// that the topics which are due need, and makes the messages of it, so that publishing never holds up a
+/// step. A topic without subscribers asks for nothing. Topics are "latched" in effect: a new subscriber is
+/// sent the present state, not an old one.
 
 #include <desert_sim/SimulationStatus.h>
 #include <ros/node_handle.h>
@@ -26,7 +27,8 @@ namespace desert_sim {
 class Topics {
  public:
   /// `node` is private to the node; its callback queue must be served by another thread.
-  Topics(ros::NodeHandle node, const PublisherParameters& parameters, const std::string& frame, SimulationThread& simulation);
+  Topics(ros::NodeHandle node, const PublisherParameters& parameters, const std::string& frame,
+         SimulationThread& simulation);
   ~Topics();
 
   /// The state has changed, or the simulation has failed. Quick, and from any thread.
@@ -37,7 +39,8 @@ class Topics {
   void publish_now();
   /// Ends the thread; publish_now() no longer waits.
   void stop();
-  /// What made publishing end, of which ~status has told then: a failure of the simulation or of publishing. Empty while all is well.
+  /// What made publishing end, of which ~status has told then: a failure of the simulation or of publishing.
+  /// Empty while all is well.
   std::string failure() const;
 
  private:
@@ -45,12 +48,12 @@ class Topics {
 
   struct Topic {
     ros::Publisher publisher;
-    Clock::duration period{0};                          ///< 0: no rate
+    Clock::duration period{0};  ///< 0: no rate
     std::vector<Layer> layers;
-    std::function<bool(const TerrainState&)> publish;   ///< whether a message went out
+    std::function<bool(const TerrainState&)> publish;  ///< whether a message went out
     Clock::time_point due;
-    std::uint64_t change = 0, terrain = 0;              ///< of the state that was published last
-    bool wanted = false;                                ///< by a new subscriber; under mutex_
+    std::uint64_t change = 0, terrain = 0;  ///< of the state that was published last
+    bool wanted = false;                    ///< by a new subscriber; under mutex_
   };
 
   template <class Message>

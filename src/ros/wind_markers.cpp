@@ -1,8 +1,7 @@
 #include "desert_sim/ros/wind_markers.hpp"
 
-#include <boost/make_shared.hpp>
-
 #include <algorithm>
+#include <boost/make_shared.hpp>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -46,7 +45,8 @@ Marker base(const TerrainState& state, const std::string& frame, const char* spa
 Marker clock(const TerrainState& state, const std::string& frame) {
   const Snapshot& s = *state.snapshot;
   const std::vector<float>& z = s.layers.at(Layer::elevation);
-  const double width = s.width * s.cell_size, height = s.height * s.cell_size, size = 0.04 * std::max(width, height);
+  const double width = s.width * s.cell_size, height = s.height * s.cell_size,
+               size = 0.04 * std::max(width, height);
   Marker m = base(state, frame, "clock", 0, Marker::TEXT_VIEW_FACING);
   m.text = clock_text(s);
   m.pose.position.x = s.origin_x + 0.5 * width;
@@ -71,15 +71,16 @@ std::string clock_text(const Snapshot& s) {
   char days[32] = "", text[160];
   if (seconds >= 86400) std::snprintf(days, sizeof days, "%" PRIu64 " d ", seconds / 86400);
   std::snprintf(text, sizeof text, "%s%02d:%02d:%02d   step %" PRIu64 "   wind %.1f m/s to %.0f deg", days,
-                static_cast<int>(seconds / 3600 % 24), static_cast<int>(seconds / 60 % 60), static_cast<int>(seconds % 60),
-                s.step, speed, direction);
+                static_cast<int>(seconds / 3600 % 24), static_cast<int>(seconds / 60 % 60),
+                static_cast<int>(seconds % 60), s.step, speed, direction);
   return text;
 }
 
 visualization_msgs::MarkerArrayPtr WindMarkers::markers(const TerrainState& state) {
   const Snapshot& s = *state.snapshot;
   int spacing = 1;  // cells
-  while (static_cast<std::int64_t>(std::max(1, s.width / spacing)) * std::max(1, s.height / spacing) > count_) ++spacing;
+  while (static_cast<std::int64_t>(std::max(1, s.width / spacing)) * std::max(1, s.height / spacing) > count_)
+    ++spacing;
   const int columns = std::max(1, s.width / spacing), rows = std::max(1, s.height / spacing);
   auto array = boost::make_shared<visualization_msgs::MarkerArray>();
   if (columns != columns_ || rows != rows_) {
@@ -92,7 +93,8 @@ visualization_msgs::MarkerArrayPtr WindMarkers::markers(const TerrainState& stat
 
   const double above = std::hypot(s.wind_above.x, s.wind_above.y), reference = above > 0.1 ? above : 1.0;
   const double reach = spacing * s.cell_size;
-  const std::vector<float>&elevation = s.layers.at(Layer::elevation), *u = s.find(Layer::wind_x), *v = s.find(Layer::wind_y);
+  const std::vector<float>&elevation = s.layers.at(Layer::elevation), *u = s.find(Layer::wind_x),
+        *v = s.find(Layer::wind_y);
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
       const int x = (2 * column + 1) * s.width / (2 * columns), y = (2 * row + 1) * s.height / (2 * rows);

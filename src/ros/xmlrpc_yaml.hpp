@@ -11,8 +11,8 @@ class Node;
 
 namespace desert_sim {
 
-/// Structs become maps, arrays lists, all else scalars. Throws ConfigError, naming `key`, for a type that YAML has not
-/// (dates, binaries).
+/// Structs become maps, arrays lists, all else scalars. Throws ConfigError, naming `key`, for a type that
+/// YAML has not (dates, binaries).
 YAML::Node yaml_from_xmlrpc(XmlRpc::XmlRpcValue value, const std::string& key);
 
 }  // namespace desert_sim

@@ -48,16 +48,26 @@ std::string allowed_range(const Row& row) {
   return text.str();
 }
 
+/// Whether a number is in the row's range as a T, so that a limit that T rounds still is. NaN is in no range.
+template <class T, class Row>
+bool in_range(double number, const Row& row) {
+  if constexpr (std::is_same_v<T, float> || std::is_same_v<T, ShortList>)
+    return static_cast<float>(number) >= static_cast<float>(row.lowest) &&
+           static_cast<float>(number) <= static_cast<float>(row.highest);
+  else
+    return number >= row.lowest && number <= row.highest;
+}
+
 /// A number in the row's range, or a fault. YAML's NaN and infinities are read, so that they are named when
 /// refused.
-template <class Row>
+template <class T, class Row>
 bool read_number(const YAML::Node& node, const Row& row, const std::string& key, Faults& faults,
                  double& number) {
   if (!node.IsScalar() || node.Tag() == "!" || !YAML::convert<double>::decode(node, number)) {
     faults.add(key, shown(node) + " is not a number (allowed: " + allowed_range(row) + ")");
     return false;
   }
-  if (!(number >= row.lowest && number <= row.highest)) {
+  if (!in_range<T>(number, row)) {
     faults.add(key, "= " + shown(node) + " is not in " + allowed_range(row));
     return false;
   }
@@ -93,13 +103,13 @@ void read_value(const YAML::Node& node, const Row& row, const std::string& key, 
     }
     ShortList list;
     for (std::size_t n = 0; n < node.size(); ++n)
-      if (read_number(node[n], row, key + "[" + std::to_string(n) + "]", faults, number))
+      if (read_number<T>(node[n], row, key + "[" + std::to_string(n) + "]", faults, number))
         list.values[list.count++] = static_cast<float>(number);
     if (list.count == static_cast<int>(node.size())) value = list;
   } else if constexpr (std::is_floating_point_v<T>) {
-    if (read_number(node, row, key, faults, number)) value = static_cast<T>(number);
+    if (read_number<T>(node, row, key, faults, number)) value = static_cast<T>(number);
   } else {
-    if (!read_number(node, row, key, faults, number)) return;
+    if (!read_number<T>(node, row, key, faults, number)) return;
     if (!YAML::convert<T>::decode(node, value)) {
       if (number == std::floor(number)) {
         value = static_cast<T>(number);

@@ -20,7 +20,7 @@ void check_ranges(const P& parameters, const std::string& what) {
         faults.add(row.name, std::to_string(static_cast<int>(value)) + " is none of its choices");
     } else if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
       const double number = static_cast<double>(value);
-      if (!(number >= row.lowest && number <= row.highest)) {
+      if (!yaml::in_range<T>(number, row)) {
         std::ostringstream shown;
         shown << "= " << number << " is not in " << yaml::allowed_range(row);
         faults.add(row.name, shown.str());

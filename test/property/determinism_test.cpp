@@ -20,10 +20,11 @@ TEST(Determinism, TheHashDoesNotDependOnTheNumberOfThreads) {
   CpuExec one(1), two(2), three(3);
   for (const test::Case& c : test::process_cases(true)) {
     SCOPED_TRACE(c.name);
+    // Few steps: threads that wait for each other are slow on a machine that is busy.
     const std::string yaml = test::grid_yaml(45, 71, "open") + c.yaml;
-    const std::uint64_t hash = hash_after(one, yaml, 8);
-    EXPECT_EQ(hash, hash_after(two, yaml, 8));
-    EXPECT_EQ(hash, hash_after(three, yaml, 8));
+    const std::uint64_t hash = hash_after(one, yaml, 3);
+    EXPECT_EQ(hash, hash_after(two, yaml, 3));
+    EXPECT_EQ(hash, hash_after(three, yaml, 3));
   }
 }
 

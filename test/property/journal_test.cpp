@@ -15,7 +15,7 @@ const char* const world =
 class JournalOf : public test::OnBackend {
  protected:
   std::unique_ptr<Session> session(const std::string& journal) {
-    return std::make_unique<Session>(test::scenario_of(world), refuse_rasters, GetParam(), 2, journal);
+    return std::make_unique<Session>(test::scenario_of(world), refuse_rasters, GetParam(), 1, journal);
   }
 
   /// Steps and commands of every kind.

@@ -1,6 +1,6 @@
 #pragma once
-/// What the node tests share: calls, and subscribers that can be waited for. The node is /desert_sim; messages are taken
-/// in by a spinner that main() starts.
+/// What the node tests share: calls, and subscribers that can be waited for. The node is /desert_sim;
+/// messages are taken in by a spinner that main() starts.
 
 #include <gtest/gtest.h>
 #include <ros/ros.h>
@@ -40,11 +40,14 @@ class Listener {
  public:
   explicit Listener(const std::string& name)
       : subscriber_(ros::NodeHandle().subscribe<Message>(
-            "/desert_sim/" + name, 100, boost::function<void(const boost::shared_ptr<const Message>&)>([this](const boost::shared_ptr<const Message>& m) {
-              const std::lock_guard<std::mutex> lock(mutex_);
-              messages_.push_back(*m);
-            }))) {
-    EXPECT_TRUE(wait_until([this] { return subscriber_.getNumPublishers() > 0; })) << "nobody publishes " << subscriber_.getTopic();
+            "/desert_sim/" + name, 100,
+            boost::function<void(const boost::shared_ptr<const Message>&)>(
+                [this](const boost::shared_ptr<const Message>& m) {
+                  const std::lock_guard<std::mutex> lock(mutex_);
+                  messages_.push_back(*m);
+                }))) {
+    EXPECT_TRUE(wait_until([this] { return subscriber_.getNumPublishers() > 0; }))
+        << "nobody publishes " << subscriber_.getTopic();
   }
   std::size_t count() const {
     const std::lock_guard<std::mutex> lock(mutex_);

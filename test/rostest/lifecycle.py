@@ -43,10 +43,10 @@ class Node:
 
     def __init__(self, name, private, preexec=None):
         self.name = name
-        arguments = ["_%s:=%s" % (key, json.dumps(value)) for key, value in private.items()]
+        rospy.set_param("/" + name, private)  # all there was before is gone
         self.process = subprocess.Popen(
-            [program("desert_sim_node"), "__name:=" + name] + arguments,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, preexec_fn=preexec)
+            [program("desert_sim_node"), "__name:=" + name], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            text=True, preexec_fn=preexec)
         self.output = ""
         self.reader = threading.Thread(target=self.read)
         self.reader.start()
@@ -90,9 +90,6 @@ class Lifecycle(unittest.TestCase):
         shutil.rmtree(self.folder)
 
     def start(self, name, private, **options):
-        for key in rospy.get_param_names():
-            if key.startswith("/%s/" % name) and "scenario_of_parameters" not in name:
-                rospy.delete_param(key)
         node = Node(name, dict({"backend": "cpu", "threads": 1, "paused": True}, **private), **options)
         self.nodes.append(node)
         return node
@@ -145,21 +142,17 @@ class Lifecycle(unittest.TestCase):
         self.assertEqual(node.latest("status", SimulationStatus).scenario, "barchan")
 
     def test_scenario_of_parameters(self):
-        name = "scenario_of_parameters"
-        rospy.set_param("/%s/grid" % name, {"width": 40, "height": 24, "cell_size": 0.5})
-        rospy.set_param("/%s/terrain" % name, [{"uniform": {"layer": "sand", "value": 3}}])
-        rospy.set_param("/%s/wind/speed" % name, 7.5)
-        node = self.start(name, {})
+        node = self.start("in_parameters", {
+            "grid": {"width": 40, "height": 24, "cell_size": 0.5},
+            "terrain": [{"uniform": {"layer": "sand", "value": 3}}],
+            "wind": {"speed": 7.5}})
         grid = node.latest("elevation", ElevationGrid)
         self.assertEqual((grid.width, grid.height, grid.cell_size), (40, 24, 0.5))
         self.assertAlmostEqual(grid.elevation[0], 3, places=5)
         self.assertAlmostEqual(node.latest("status", SimulationStatus).wind_above.x, 7.5, places=5)
 
     def test_parameters_override_keys_of_a_file(self):
-        name = "scenario_of_parameters_and_file"
-        rospy.set_param("/%s/grid/width" % name, 32)
-        rospy.set_param("/%s/wind/speed" % name, 3)
-        node = self.start(name, {"scenario": CORNER})
+        node = self.start("overridden", {"scenario": CORNER, "grid": {"width": 32}, "wind": {"speed": 3}})
         grid = node.latest("elevation", ElevationGrid)
         self.assertEqual((grid.width, grid.height), (32, 48))
         self.assertAlmostEqual(node.latest("status", SimulationStatus).wind_above.x, 3)

@@ -1,4 +1,5 @@
-/// Steps by service and by schedule: exact numbers, equal hashes, several clients at once; and the schedule itself.
+/// Steps by service and by schedule: exact numbers, equal hashes, several clients at once; and the schedule
+/// itself.
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
@@ -46,7 +47,7 @@ class Stepping : public testing::Test {
   }
 };
 
-// ---- by service ----------------------------------------------------------------------------------------------------
+// ---- by service ----
 
 TEST_F(Stepping, StepsAreExactAndGiveTheHashOfAnyOtherRun) {
   const auto response = step(25);
@@ -125,7 +126,8 @@ TEST_F(Stepping, ACheckpointOfAnotherSizeGivesAKeyframeOfThatSize) {
   std::string folder;
   ASSERT_TRUE(ros::param::get("/desert_sim/data_dir", folder));
   fs::create_directories(folder);
-  desert_sim::Session small(corner({"grid.width=20", "grid.height=33", "terrain=[]"}), desert_sim::refuse_rasters, "cpu", 1);
+  desert_sim::Session small(corner({"grid.width=20", "grid.height=33", "terrain=[]"}),
+                            desert_sim::refuse_rasters, "cpu", 1);
   for (int n = 0; n < 3; ++n) small.step();
   small.save_checkpoint(folder + "/small.ckpt");
 
@@ -136,7 +138,8 @@ TEST_F(Stepping, ACheckpointOfAnotherSizeGivesAKeyframeOfThatSize) {
   const auto response = call<desert_sim::LoadCheckpoint>("load_checkpoint", request);
   ASSERT_TRUE(response.success) << response.message;
   EXPECT_EQ(response.state_hash, desert_sim::hash_text(small.simulation().state_hash()));
-  ASSERT_TRUE(keyframes.wait_for([](const ElevationGrid& k) { return k.width == 20 && k.height == 33 && k.step == 3; }));
+  ASSERT_TRUE(keyframes.wait_for(
+      [](const ElevationGrid& k) { return k.width == 20 && k.height == 33 && k.step == 3; }));
   ASSERT_TRUE(step(2).success);
   ASSERT_TRUE(updates.wait_for([](const ElevationUpdate& u) { return u.step == 5; }));
   for (const auto& tile : updates.last().tiles) EXPECT_LE(tile.x + tile.width, 20u);
@@ -144,12 +147,13 @@ TEST_F(Stepping, ACheckpointOfAnotherSizeGivesAKeyframeOfThatSize) {
   EXPECT_TRUE(wait_until([&] { return keyframes.last().width == 64 && keyframes.last().step == 0; }));
 }
 
-// ---- by schedule ---------------------------------------------------------------------------------------------------
+// ---- by schedule ----
 
 TEST_F(Stepping, RunsAtItsRateAndPauses) {
   Listener<SimulationStatus> statuses("status");
   ASSERT_TRUE(trigger("resume"));
-  ASSERT_TRUE(statuses.wait_for([](const SimulationStatus& s) { return s.state == "running" && s.step > 100; }));
+  ASSERT_TRUE(
+      statuses.wait_for([](const SimulationStatus& s) { return s.state == "running" && s.step > 100; }));
   const SimulationStatus status = statuses.last();
   EXPECT_NEAR(status.steps_per_second, 50, 10);
   EXPECT_LT(status.lag, 1);
@@ -159,7 +163,8 @@ TEST_F(Stepping, RunsAtItsRateAndPauses) {
   const std::uint64_t stopped = step(0).step;
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   EXPECT_EQ(step(0).step, stopped);
-  ASSERT_TRUE(statuses.wait_for([&](const SimulationStatus& s) { return s.state == "paused" && s.step == stopped; }));
+  ASSERT_TRUE(
+      statuses.wait_for([&](const SimulationStatus& s) { return s.state == "paused" && s.step == stopped; }));
 }
 
 TEST_F(Stepping, StepsWhileRunningAreAddedToTheSchedule) {
@@ -168,10 +173,11 @@ TEST_F(Stepping, StepsWhileRunningAreAddedToTheSchedule) {
   EXPECT_TRUE(response.success);
   EXPECT_GE(response.step, 40u);
   Listener<SimulationStatus> statuses("status");
-  EXPECT_TRUE(statuses.wait_for([&](const SimulationStatus& s) { return s.step > response.step + 5 && s.lag < 0.5; }));
+  EXPECT_TRUE(statuses.wait_for(
+      [&](const SimulationStatus& s) { return s.step > response.step + 5 && s.lag < 0.5; }));
 }
 
-// ---- the schedule itself -------------------------------------------------------------------------------------------
+// ---- the schedule itself ----
 
 TEST(Pacer, KeepsItsRate) {
   desert_sim::Pacer pacer(10);
@@ -196,6 +202,20 @@ TEST(Pacer, CatchesUpWhatIsShortAndGivesUpWhatIsLong) {
   pacer.restart();
   EXPECT_TRUE(pacer.due(61));
   EXPECT_EQ(pacer.lag(61), 0);
+}
+
+TEST(Pacer, ForgivesWhatIsBehindAndKeepsWhatIsAhead) {
+  desert_sim::Pacer pacer(10);
+  ASSERT_TRUE(pacer.due(0));
+  pacer.stepped();
+  pacer.forgive(0.05);
+  EXPECT_FALSE(pacer.due(0.09));
+  EXPECT_TRUE(pacer.due(0.1));
+  pacer.forgive(50);
+  EXPECT_TRUE(pacer.due(50));
+  pacer.stepped();
+  EXPECT_FALSE(pacer.due(50.05));
+  EXPECT_EQ(pacer.lag(50.05), 0);
 }
 
 TEST(Pacer, SurvivesAClockThatJumpsBack) {

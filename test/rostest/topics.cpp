@@ -1,4 +1,5 @@
-/// The topics of a paused node on the scenario corner.yaml: what a late joiner gets, where cells lie, what a topic costs.
+/// The topics of a paused node on the scenario corner.yaml: what a late joiner gets, where cells lie, what a
+/// topic costs.
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
 #include <desert_sim/SimulationStatus.h>
@@ -128,7 +129,8 @@ TEST(Topics, PointsLieOnTheSurface) {
   sensor_msgs::PointCloud2ConstIterator<std::uint8_t> rgb(cloud, "rgb");  // b, g, r
   int on_marker = 0;
   for (; x != x.end(); ++x, ++z, ++sand, ++rgb) {
-    const auto cell_x = static_cast<std::uint32_t>((x[0] - 10) / 2), cell_y = static_cast<std::uint32_t>((x[1] + 20) / 2);
+    const auto cell_x = static_cast<std::uint32_t>((x[0] - 10) / 2),
+               cell_y = static_cast<std::uint32_t>((x[1] + 20) / 2);
     EXPECT_NEAR(x[0], 10 + (cell_x + 0.5) * 2, 1e-5);
     EXPECT_NEAR(z[0], in_marker(cell_x, cell_y) ? 7.5 : 1.5, 1e-5);
     EXPECT_NEAR(sand[0], in_marker(cell_x, cell_y) ? 6.5 : 0.5, 1e-5);
@@ -140,7 +142,8 @@ TEST(Topics, PointsLieOnTheSurface) {
 
 TEST(Topics, WindMarkersAreFewDistinctAndOverTheGround) {
   using visualization_msgs::Marker;
-  const visualization_msgs::MarkerArray array = Listener<visualization_msgs::MarkerArray>("wind_markers").last();
+  const visualization_msgs::MarkerArray array =
+      Listener<visualization_msgs::MarkerArray>("wind_markers").last();
   std::set<std::pair<std::string, int>> ids;
   int arrows = 0, texts = 0;
   for (const Marker& marker : array.markers) {
@@ -156,7 +159,8 @@ TEST(Topics, WindMarkersAreFewDistinctAndOverTheGround) {
     EXPECT_LT(marker.pose.position.y, 76);
     EXPECT_GT(marker.pose.position.z, 1.5);
     EXPECT_GT(marker.scale.x, 0);
-    EXPECT_NEAR(2 * std::atan2(marker.pose.orientation.z, marker.pose.orientation.w), 0, 1.0) << "it blows east";
+    EXPECT_NEAR(2 * std::atan2(marker.pose.orientation.z, marker.pose.orientation.w), 0, 1.0)
+        << "it blows east";
   }
   EXPECT_GT(arrows, 30);
   EXPECT_LE(arrows, 100);
@@ -164,7 +168,8 @@ TEST(Topics, WindMarkersAreFewDistinctAndOverTheGround) {
 }
 
 /// The keyframe of step `step` against the keyframe before it with all its updates.
-void expect_updates_lead_to(std::uint64_t step, const Listener<ElevationGrid>& keyframes, const Listener<ElevationUpdate>& updates) {
+void expect_updates_lead_to(std::uint64_t step, const Listener<ElevationGrid>& keyframes,
+                            const Listener<ElevationUpdate>& updates) {
   ASSERT_TRUE(keyframes.wait_for([&](const ElevationGrid& k) { return k.step == step; }));
   ASSERT_TRUE(updates.wait_for([&](const ElevationUpdate& u) { return u.step == step; }));
   ElevationGrid held, now;

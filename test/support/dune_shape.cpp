@@ -341,25 +341,39 @@ double line_power(const Field& f, bool along_x, int k) {
 
 }  // namespace
 
-double imprint(const std::vector<Field>& fields, int period) {
-  double strongest = 0;
+double mode_excess(const std::vector<Field>& fields, bool along_x, int mode) {
+  const auto power = [&](int k) {
+    double sum = 1e-30;
+    for (const Field& f : fields) sum += line_power(f, along_x, k);
+    return sum;
+  };
+  // The geometric mean follows a spectrum that falls steeply.
+  double beside = 0;
+  for (int d : {-2, -1, 1, 2}) beside += 0.25 * std::log(power(mode + d));
+  return power(mode) / std::exp(beside);
+}
+
+namespace {
+
+constexpr int harmonics = 3;
+
+/// The greatest excess of the modes up to the third harmonic of `period` that are multiples of it, or that are not.
+double greatest_excess(const std::vector<Field>& fields, int period, bool multiples) {
+  double greatest = 0;
   for (bool along_x : {true, false}) {
     const int n = along_x ? fields[0].width : fields[0].height;
-    const auto power = [&](int k) {
-      double sum = 1e-30;
-      for (const Field& f : fields) sum += line_power(f, along_x, k);
-      return sum;
-    };
-    for (int harmonic = 1; harmonic <= 3; ++harmonic) {
-      const int k = harmonic * n / period;
-      if (harmonic * n % period != 0 || k < 3 || k + 2 >= n / 2) continue;
-      // The geometric mean follows a spectrum that falls steeply.
-      double beside = 0;
-      for (int d : {-2, -1, 1, 2}) beside += 0.25 * std::log(power(k + d));
-      strongest = std::max(strongest, power(k) / std::exp(beside));
-    }
+    for (int k = 3; k * period <= harmonics * n && k + 2 < n / 2; ++k)
+      if ((k * period % n == 0) == multiples) greatest = std::max(greatest, mode_excess(fields, along_x, k));
   }
-  return strongest;
+  return greatest;
+}
+
+}  // namespace
+
+double imprint(const std::vector<Field>& fields, int period) { return greatest_excess(fields, period, true); }
+
+double imprint_by_chance(const std::vector<Field>& fields, int period) {
+  return greatest_excess(fields, period, false);
 }
 
 // ---- in front of walls ---------------------------------------------------------------------------------------------

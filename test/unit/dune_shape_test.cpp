@@ -184,6 +184,9 @@ TEST(DuneShape, ImprintOfTiles) {
   EXPECT_GT(imprint({seams}, 32), 3);
   const Field rows = made(192, 192, 1, [&](int, int y) { return noise() + (y % 32 == 0 ? 1.0 : 0.0); });
   EXPECT_GT(imprint({rows}, 32), 3);
+  EXPECT_LT(imprint_by_chance({rows}, 32), 2);
+  EXPECT_GT(mode_excess({rows}, false, 6), 3);
+  EXPECT_LT(mode_excess({rows}, true, 6), 2);
 }
 
 TEST(DuneShape, LaneBeforeAWall) {

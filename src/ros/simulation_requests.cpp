@@ -1,0 +1,119 @@
+/// What other threads ask of the simulation thread.
+#include "desert_sim/ros/simulation_thread.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr double measure_for = 5;  // [s] after a report
+
+}  // namespace
+
+template <class R>
+std::future<R> SimulationThread::ask(std::function<R()> body) {
+  std::future<R> answer;
+  jobs_.put(make_job<R>(std::move(body), answer));
+  return answer;
+}
+
+std::future<Reached> SimulationThread::apply(const Command& command, bool with_hash) {
+  return ask<Reached>([=] {
+    const CommandResult result = session_->apply(command);
+    ++commands_;
+    stamp_ = ros::Time::now();
+    if (std::holds_alternative<Reset>(command) || std::holds_alternative<LoadCheckpoint>(command)) {
+      end_step_requests(std::holds_alternative<Reset>(command) ? "a reset" : "load_checkpoint");
+      ++terrains_;
+      timed_steps_ = 0;
+      pacer_.restart();
+    }
+    changed();
+    Reached r = reached(with_hash);
+    r.result = result;
+    return r;
+  });
+}
+
+std::future<Reached> SimulationThread::step(std::uint32_t steps) {
+  // Two promises: the job's, which only says that the request has been taken, and the request's own.
+  auto request = std::make_shared<StepRequest>();
+  request->asked = steps;
+  std::future<Reached> answer = request->answer.get_future();
+  Job job;
+  job.run = [this, request] { step_requests_.push_back(std::move(*request)); };
+  job.refuse = [request](std::exception_ptr why) { request->answer.set_exception(why); };
+  jobs_.put(std::move(job));
+  return answer;
+}
+
+std::future<void> SimulationThread::pause() {
+  return ask<void>([this] {
+    end_step_requests("a pause");
+    paused_ = true;
+    pacer_.restart();
+    settle();
+  });
+}
+
+std::future<void> SimulationThread::resume() {
+  return ask<void>([this] {
+    if (!paused_) return;
+    paused_ = false;
+    pacer_.restart();
+    meter_.clear();
+  });
+}
+
+std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers) {
+  return ask<TerrainState>([=] {
+    settle();
+    std::vector<Layer> in_use;
+    for (Layer layer : layers)
+      if (session_->simulation().terrain().has(layer)) in_use.push_back(layer);
+    ++snapshots_;
+    return TerrainState{moment(), session_->simulation().snapshot(in_use)};
+  });
+}
+
+std::future<Reached> SimulationThread::save_checkpoint(const std::string& path) {
+  return ask<Reached>([=] {
+    settle();
+    session_->save_checkpoint(path);
+    return reached(true);
+  });
+}
+
+std::future<StatusReport> SimulationThread::report() {
+  return ask<StatusReport>([this] {
+    settle();
+    Simulation& s = session_->simulation();
+    StatusReport r;
+    r.moment = moment();
+    r.state = paused_ ? RunState::paused : (waiting_for_clock_ ? RunState::waiting : RunState::running);
+    r.scenario = s.scenario().name;
+    r.backend = s.exec().backend();
+    r.backend_choice = backend_choice_;
+    r.device = s.exec().device();
+    r.step_rate = options_.step_rate;
+    r.steps_per_second = meter_.rate(steady_now());
+    r.lag = pacer_.lag(clock_now());
+    if (timed_steps_ > 0) {
+      process_times_ = s.process_times();
+      for (ProcessTime& t : process_times_) t.milliseconds /= timed_steps_;
+      s.clear_process_times();
+      timed_steps_ = 0;
+    }
+    r.process_times = process_times_;
+    r.balance = s.balance();
+    r.wind_above = s.wind_above();
+    r.snapshots = snapshots_;
+    if (paused_ && step_requests_.empty()) {
+      r.hashed = true;
+      r.hash = state_hash();
+    }
+    measure_until_ = steady_now() + measure_for;
+    return r;
+  });
+}
+
+}  // namespace desert_sim
