@@ -61,6 +61,8 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   ROS_INFO("scenario %s: %d x %d cells of %g m; backend: %s", setup.scenario.name.c_str(), grid.width,
            grid.height, grid.cell_size, simulation_->backend_choice().c_str());
   warn_of_far_origin(grid);
+  if (!p.center_frame.empty())
+    frames_->announce_center(p.center_frame, *simulation_->terrain({Layer::elevation}).get().snapshot);
   topics_ = std::make_unique<Topics>(node_, setup.publishers, p.frame_id, *simulation_);
   to_notify_ = topics_.get();
   services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *topics_, *frames_, *files_);

@@ -3,6 +3,7 @@
 #include <tf2/LinearMath/Quaternion.h>
 
 #include <chrono>
+#include <numeric>
 #include <thread>
 
 #include "desert_sim/core/error.hpp"
@@ -36,6 +37,20 @@ tf2::Transform Frames::to_terrain(const std_msgs::Header& header) const {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
+}
+
+void Frames::announce_center(const std::string& name, const Snapshot& s) {
+  const std::vector<float>& z = s.layers.at(Layer::elevation);
+  geometry_msgs::TransformStamped center;
+  center.header.stamp = ros::Time::now();
+  center.header.frame_id = terrain_frame_;
+  center.child_frame_id = name;
+  center.transform.translation.x = s.origin_x + 0.5 * s.width * s.cell_size;
+  center.transform.translation.y = s.origin_y + 0.5 * s.height * s.cell_size;
+  center.transform.translation.z = std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
+  center.transform.rotation.w = 1;
+  broadcaster_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
+  broadcaster_->sendTransform(center);
 }
 
 }  // namespace desert_sim

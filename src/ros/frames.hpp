@@ -1,12 +1,16 @@
 #pragma once
-/// Points of other frames, brought into the terrain's.
+/// Points of other frames, brought into the terrain's; and a frame in the middle of the terrain.
 
 #include <std_msgs/Header.h>
 #include <tf2/LinearMath/Transform.h>
 #include <tf2_ros/buffer.h>
+#include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_listener.h>
 
+#include <memory>
 #include <string>
+
+#include "desert_sim/simulation/simulation.hpp"
 
 namespace desert_sim {
 
@@ -20,10 +24,15 @@ class Frames {
   /// Waits a moment for a transform that is on its way; throws ConfigError with the reason if there is none.
   tf2::Transform to_terrain(const std_msgs::Header& header) const;
 
+  /// Publishes the static frame `name` in the middle of the terrain, at its mean height, for views to turn
+  /// about.
+  void announce_center(const std::string& name, const Snapshot& snapshot);
+
  private:
   std::string terrain_frame_;
   tf2_ros::Buffer buffer_;
   tf2_ros::TransformListener listener_;
+  std::unique_ptr<tf2_ros::StaticTransformBroadcaster> broadcaster_;
 };
 
 }  // namespace desert_sim

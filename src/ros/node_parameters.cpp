@@ -96,6 +96,13 @@ Scenario read_scenario(const std::string& source, const NodeParameters& node, co
   return load_scenario(scenario_file(node.scenario), all);
 }
 
+void check_frame(std::string& frame, const std::string& key, Faults& faults) {
+  if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);  // tf2 knows frames without it
+  std::string reason;
+  if (frame.empty() || !ros::names::validate(frame, reason))
+    faults.add(key, "'" + frame + "' is not the name of a frame" + (reason.empty() ? "" : ": " + reason));
+}
+
 }  // namespace
 
 NodeSetup read_node_setup(const ros::NodeHandle& private_node) {
@@ -108,12 +115,8 @@ NodeSetup read_node_setup(const ros::NodeHandle& private_node) {
   yaml::read_parameters(root, "", faults, setup.publishers, known);
   const Settings settings = read_settings(root["settings"], faults);
   const YAML::Node sections = take_sections(root, known, faults);
-  std::string& frame = setup.node.frame_id;
-  if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);  // tf2 knows frames without it
-  std::string reason;
-  if (frame.empty() || !ros::names::validate(frame, reason))
-    faults.add("frame_id",
-               "'" + frame + "' is not the name of a frame" + (reason.empty() ? "" : ": " + reason));
+  check_frame(setup.node.frame_id, "frame_id", faults);
+  if (!setup.node.center_frame.empty()) check_frame(setup.node.center_frame, "center_frame", faults);
   faults.throw_if_any();
   setup.scenario = read_scenario(source, setup.node, sections, settings);
   return setup;

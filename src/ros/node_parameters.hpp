@@ -17,6 +17,7 @@ constexpr const char* backend_choices[] = {"auto", "cpu", "cuda"};
 struct NodeParameters {
   std::string scenario;
   std::string frame_id = "map";
+  std::string center_frame = "terrain_center";
   BackendChoice backend = BackendChoice::automatic;
   int threads = 0;
   double step_rate = 10;
@@ -31,6 +32,8 @@ constexpr auto parameter_table(const NodeParameters*) {
                 "A file, or the bare name of one in the package's config/scenarios; empty: the scenario's "
                 "sections are parameters."),
       parameter("frame_id", &P::frame_id, "Frame of the terrain."),
+      parameter("center_frame", &P::center_frame,
+                "Static frame that is published in the middle of the terrain, for views; empty: none."),
       parameter("backend", &P::backend, backend_choices, "auto takes CUDA where it is usable."),
       parameter("threads", &P::threads, 0, 4096, "1", "Threads of the CPU backend; 0: one a processor."),
       parameter("step_rate", &P::step_rate, 0, 1e6, "steps/s",

@@ -19,10 +19,10 @@ inline Scenario shipped(const std::string& name, const Settings& settings = {}) 
   return load_scenario(std::string(DESERT_SOURCE_DIR) + "/config/scenarios/" + name + ".yaml", settings);
 }
 
-/// A running scenario on the CPU.
+/// A running scenario on the CPU. One thread: tests share the machine.
 class Running {
  public:
-  explicit Running(const Scenario& scenario) : session_(std::make_unique<Session>(scenario, rasters(), "cpu", 0)) {}
+  explicit Running(const Scenario& scenario) : session_(std::make_unique<Session>(scenario, rasters(), "cpu", 1)) {}
 
   Running& run(int steps) {
     for (int n = 0; n < steps; ++n) session_->step();

@@ -140,7 +140,7 @@ TEST(Dunes, Yardang) {
       settings.push_back("wind.segments." + std::to_string(n) + ".direction_deg=" + std::to_string(turn + directions[n]));
     Running scene(shipped("yardang", settings));
     const Orientation before = crest_orientation(scene.field(Layer::bedrock), 2);
-    const Orientation o = crest_orientation(scene.run(600).field(Layer::bedrock), 2);
+    const Orientation o = crest_orientation(scene.run(400).field(Layer::bedrock), 2);
     DESERT_REPORT("wind to %.0f: ridges at %.1f degrees (coherence %.2f, before %.2f)", turn, o.crest_deg, o.coherence,
                   before.coherence);
     EXPECT_LT(line_angle_between_deg(o.crest_deg, turn), 10);

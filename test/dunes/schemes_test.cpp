@@ -67,12 +67,6 @@ Runs runs_of(AvalancheScheme scheme, AvalancheQuality quality) {
   return runs;
 }
 
-/// Made once: this one is slow.
-const Runs& reference_runs() {
-  static const Runs runs = runs_of(AvalancheScheme::sweeps, AvalancheQuality::converged);
-  return runs;
-}
-
 template <class Value>
 std::vector<double> each(const Runs& runs, const Value& value) {
   std::vector<double> values;
@@ -80,52 +74,52 @@ std::vector<double> each(const Runs& runs, const Value& value) {
   return values;
 }
 
-class Schemes : public ::testing::TestWithParam<AvalancheQuality> {};
-
-TEST_P(Schemes, SameDunesAsTheReference) {
-  const Runs quick = runs_of(AvalancheScheme::multilevel, GetParam());
-  const auto same = [&](const char* what, auto&& value) {
-    expect_same(what, each(quick, value), each(reference_runs(), value));
-  };
-  same("roughness [m]", [](const Statistics& s) { return s.height; });
-  same("wavelength [m]", [](const Statistics& s) { return s.wavelength; });
-  same("crest orientation [deg]", [](const Statistics& s) { return s.crest; });
-}
-
+constexpr AvalancheQuality qualities[] = {AvalancheQuality::fast, AvalancheQuality::good};
 constexpr std::size_t slope_bins = 6;  // of 6 degrees: what sand can lie at
 
-/// The gate that the statistics above meet. Slopes do not: the coarse levels take down slip faces a little more than
-/// the reference does (share of slopes from 30 degrees 0.21 against 0.31), at every quality. Until they do, the test
-/// below bounds the difference.
-TEST_P(Schemes, DISABLED_SameSlopesAsTheReference) {
-  const Runs quick = runs_of(AvalancheScheme::multilevel, GetParam());
-  for (std::size_t bin = 0; bin < slope_bins; ++bin) {
-    const auto share = [bin](const Statistics& s) { return s.histogram[bin]; };
-    expect_same(("share of slopes from " + std::to_string(6 * bin) + " degrees").c_str(), each(quick, share),
-                each(reference_runs(), share));
+std::vector<double> slope_shares(const Runs& runs, std::size_t bin) {
+  return each(runs, [bin](const Statistics& s) { return s.histogram[bin]; });
+}
+
+/// Roughness, wavelength and orientation are the same within the scatter between seeds; at most a fifth of the cells
+/// lie at other slopes (total variation distance of the mean histograms).
+TEST(Schemes, SameDunesAsTheReference) {
+  const Runs reference = runs_of(AvalancheScheme::sweeps, AvalancheQuality::converged);
+  for (AvalancheQuality quality : qualities) {
+    const Runs quick = runs_of(AvalancheScheme::multilevel, quality);
+    const auto same = [&](const char* what, auto&& value) {
+      expect_same(what, each(quick, value), each(reference, value));
+    };
+    std::printf("  %s:\n", avalanche_qualities[static_cast<int>(quality)]);
+    same("roughness [m]", [](const Statistics& s) { return s.height; });
+    same("wavelength [m]", [](const Statistics& s) { return s.wavelength; });
+    same("crest orientation [deg]", [](const Statistics& s) { return s.crest; });
+    double distance = 0;
+    for (std::size_t bin = 0; bin < quick[0].histogram.size(); ++bin) {
+      const double a = mean(slope_shares(quick, bin)), b = mean(slope_shares(reference, bin));
+      if (bin < slope_bins) DESERT_REPORT("slopes from %zu degrees: %.3f, reference %.3f", 6 * bin, a, b);
+      distance += 0.5 * std::abs(a - b);
+    }
+    DESERT_REPORT("total variation distance of slopes %.3f", distance);
+    EXPECT_LT(distance, 0.2);
   }
 }
 
-/// At most a fifth of the cells lie at other slopes (total variation distance of the mean histograms).
-TEST_P(Schemes, SimilarSlopesToTheReference) {
-  const Runs quick = runs_of(AvalancheScheme::multilevel, GetParam());
-  double distance = 0;
-  for (std::size_t bin = 0; bin < quick[0].histogram.size(); ++bin) {
-    const auto share = [bin](const Statistics& s) { return s.histogram[bin]; };
-    const double a = mean(each(quick, share)), b = mean(each(reference_runs(), share));
-    if (bin < slope_bins) DESERT_REPORT("slopes from %zu degrees: %.3f, reference %.3f", 6 * bin, a, b);
-    distance += 0.5 * std::abs(a - b);
+/// The full gate on slopes, which is not met: coarse levels take down slip faces more than the reference does (share of
+/// slopes from 30 degrees 0.21 against 0.31), at every quality.
+TEST(Schemes, DISABLED_SameSlopesAsTheReference) {
+  const Runs reference = runs_of(AvalancheScheme::sweeps, AvalancheQuality::converged);
+  for (AvalancheQuality quality : qualities) {
+    const Runs quick = runs_of(AvalancheScheme::multilevel, quality);
+    for (std::size_t bin = 0; bin < slope_bins; ++bin)
+      expect_same(("share of slopes from " + std::to_string(6 * bin) + " degrees").c_str(), slope_shares(quick, bin),
+                  slope_shares(reference, bin));
   }
-  DESERT_REPORT("total variation distance %.3f", distance);
-  EXPECT_LT(distance, 0.2);
 }
-
-INSTANTIATE_TEST_SUITE_P(Quality, Schemes, ::testing::Values(AvalancheQuality::fast, AvalancheQuality::good),
-                         [](const auto& test) { return avalanche_qualities[static_cast<int>(test.param)]; });
 
 /// Modes of the tiles' period do not stand out beyond what chance makes of other modes (by half, as it is chance).
 TEST(Tiles, LeaveNoImprint) {
-  for (AvalancheQuality quality : {AvalancheQuality::fast, AvalancheQuality::good}) {
+  for (AvalancheQuality quality : qualities) {
     std::vector<Field> fields;
     for (std::uint64_t seed = 1; seed <= 3; ++seed)
       fields.push_back(Running(transverse(192, seed, AvalancheScheme::multilevel, quality)).run(120).field(Layer::elevation));

@@ -7,6 +7,7 @@
 #include <desert_sim/WindField.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
 #include <std_srvs/Trigger.h>
+#include <tf2_ros/transform_listener.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <cmath>
@@ -187,6 +188,16 @@ void expect_updates_lead_to(std::uint64_t step, const Listener<ElevationGrid>& k
   }
   EXPECT_EQ(held.step, step);
   EXPECT_LE(largest_difference(held, now), threshold + 1e-6);
+}
+
+TEST(Topics, AFrameStandsInTheMiddleOfTheTerrain) {
+  tf2_ros::Buffer buffer;
+  const tf2_ros::TransformListener listener(buffer);
+  ASSERT_TRUE(wait_until([&] { return buffer.canTransform("terrain", "terrain_center", ros::Time(0)); }));
+  const auto center = buffer.lookupTransform("terrain", "terrain_center", ros::Time(0)).transform.translation;
+  EXPECT_EQ(center.x, 10 + 64);
+  EXPECT_EQ(center.y, -20 + 48);
+  EXPECT_NEAR(center.z, 1.5 + 6.0 * 12 / (64 * 48), 1e-5);
 }
 
 TEST(Topics, StepPublishesWhatChangedBeforeItAnswers) {
