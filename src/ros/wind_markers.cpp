@@ -5,6 +5,7 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "desert_sim/ros/messages.hpp"
 
@@ -57,6 +58,54 @@ Marker clock(const TerrainState& state, const std::string& frame) {
   return m;
 }
 
+/// Arrows of the wind at cells, `reach` metres apart.
+class Arrows {
+ public:
+  Arrows(const Snapshot& s, double reach)
+      : s_(s),
+        reach_(reach),
+        z_(s.layers.at(Layer::elevation)),
+        u_(s.find(Layer::wind_x)),
+        v_(s.find(Layer::wind_y)) {
+    const double above = std::hypot(s.wind_above.x, s.wind_above.y);
+    reference_ = above > 0.1 ? above : 1.0;
+  }
+
+  void place(Marker& m, int x, int y) const {
+    const std::size_t i = static_cast<std::size_t>(y) * s_.width + x;
+    const double wind_x = u_ ? (*u_)[i] : 0.0, wind_y = v_ ? (*v_)[i] : 0.0,
+                 speed = std::hypot(wind_x, wind_y);
+    const double yaw = std::atan2(wind_y, wind_x);
+    m.scale.x = reach_ * std::clamp(0.75 * speed / reference_, 0.02, 1.5);
+    m.scale.y = m.scale.z = 0.09 * reach_;
+    m.pose.position.x = s_.origin_x + (x + 0.5) * s_.cell_size;
+    m.pose.position.y = s_.origin_y + (y + 0.5) * s_.cell_size;
+    m.pose.position.z = highest_below(x, y, yaw, m.scale.x) + 0.2 * reach_;
+    m.pose.orientation.z = std::sin(0.5 * yaw);
+    m.pose.orientation.w = std::cos(0.5 * yaw);
+    m.color = speed_colour(speed / reference_);
+  }
+
+ private:
+  /// So that no slope hides the arrow.
+  double highest_below(int x, int y, double yaw, double length) const {
+    constexpr int samples = 4;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (int n = 0; n <= samples; ++n) {
+      const double cells = n * length / (samples * s_.cell_size);
+      const int ix = std::clamp(x + static_cast<int>(std::lround(cells * std::cos(yaw))), 0, s_.width - 1);
+      const int iy = std::clamp(y + static_cast<int>(std::lround(cells * std::sin(yaw))), 0, s_.height - 1);
+      highest = std::max(highest, static_cast<double>(z_[static_cast<std::size_t>(iy) * s_.width + ix]));
+    }
+    return highest;
+  }
+
+  const Snapshot& s_;
+  const double reach_;
+  double reference_;  ///< speed above [m/s]
+  const std::vector<float>&z_, *u_, *v_;
+};
+
 }  // namespace
 
 const std::vector<Layer>& wind_marker_layers() {
@@ -91,25 +140,11 @@ visualization_msgs::MarkerArrayPtr WindMarkers::markers(const TerrainState& stat
   columns_ = columns;
   rows_ = rows;
 
-  const double above = std::hypot(s.wind_above.x, s.wind_above.y), reference = above > 0.1 ? above : 1.0;
-  const double reach = spacing * s.cell_size;
-  const std::vector<float>&elevation = s.layers.at(Layer::elevation), *u = s.find(Layer::wind_x),
-        *v = s.find(Layer::wind_y);
+  const Arrows arrows(s, spacing * s.cell_size);
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
-      const int x = (2 * column + 1) * s.width / (2 * columns), y = (2 * row + 1) * s.height / (2 * rows);
-      const std::size_t i = static_cast<std::size_t>(y) * s.width + x;
-      const double wind_x = u ? (*u)[i] : 0.0, wind_y = v ? (*v)[i] : 0.0, speed = std::hypot(wind_x, wind_y);
       Marker m = base(state, frame_, "wind", row * columns + column, Marker::ARROW);
-      m.scale.x = reach * std::clamp(0.75 * speed / reference, 0.02, 1.5);
-      m.scale.y = m.scale.z = 0.09 * reach;
-      m.pose.position.x = s.origin_x + (x + 0.5) * s.cell_size;
-      m.pose.position.y = s.origin_y + (y + 0.5) * s.cell_size;
-      m.pose.position.z = elevation[i] + 0.1 * reach;
-      const double yaw = std::atan2(wind_y, wind_x);
-      m.pose.orientation.z = std::sin(0.5 * yaw);
-      m.pose.orientation.w = std::cos(0.5 * yaw);
-      m.color = speed_colour(speed / reference);
+      arrows.place(m, (2 * column + 1) * s.width / (2 * columns), (2 * row + 1) * s.height / (2 * rows));
       array->markers.push_back(m);
     }
   array->markers.push_back(clock(state, frame_));

@@ -38,7 +38,7 @@ void Simulation::set_regime(WindRegime regime) {
   regime_ = std::move(regime);
 }
 
-CommandResult Simulation::apply(const SetWind& command) {
+CommandResult Simulation::apply(const command::SetWind& command) {
   check_ranges(command, "set_wind");
   WindRegime regime;
   regime.direction_deg = command.direction_deg;
@@ -48,7 +48,7 @@ CommandResult Simulation::apply(const SetWind& command) {
   return {};
 }
 
-CommandResult Simulation::apply(const SetWindSchedule& command) {
+CommandResult Simulation::apply(const command::SetWindSchedule& command) {
   const WindRegime& r = command.regime;
   Faults faults("set_wind_schedule");
   if (r.kind == WindRegimeKind::constant) faults.add("kind", "must be timeline or rose");
@@ -69,7 +69,7 @@ CommandResult Simulation::apply(const SetWindSchedule& command) {
   return {};
 }
 
-brush::Brush Simulation::prepare(const EditTerrain& c, CellRectangle& touched) const {
+brush::Brush Simulation::prepare(const command::EditTerrain& c, CellRectangle& touched) const {
   const GridParameters& g = scenario_.grid;
   const bool sand = c.layer == "sand";
   const double l = g.cell_size, per_metre = 1.0 / terrain_.scale().quantum();
@@ -118,7 +118,7 @@ brush::Brush Simulation::prepare(const EditTerrain& c, CellRectangle& touched) c
   return b;
 }
 
-CommandResult Simulation::apply(const EditTerrain& command) {
+CommandResult Simulation::apply(const command::EditTerrain& command) {
   check_ranges(command, "edit_terrain");
   if (command.layer != "sand" && command.layer != "bedrock")
     throw ConfigError("edit_terrain: layer: '" + command.layer + "' is not one of: sand, bedrock");

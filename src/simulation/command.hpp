@@ -12,6 +12,12 @@
 
 namespace desert_sim {
 
+enum class BrushShape : int { circle, ellipse };
+constexpr const char* brush_shapes[] = {"circle", "ellipse"};
+
+/// The commands themselves; a namespace of their own because the ROS services have the same names.
+namespace command {
+
 /// The high-altitude wind from now on: constant, reached over `ramp` seconds.
 struct SetWind {
   float direction_deg = 0;
@@ -33,8 +39,6 @@ struct SetWindSchedule {
   WindRegime regime;
 };
 
-enum class BrushShape : int { circle, ellipse };
-constexpr const char* brush_shapes[] = {"circle", "ellipse"};
 
 /// Brush on `layer` (sand or bedrock). Weight is 1 within `inner` of the shape and falls linearly to 0 at its
 /// edge; add and sub move the layer by weight·value, the others blend towards value (or its min, max, mean
@@ -77,7 +81,10 @@ struct LoadCheckpoint {
   std::uint64_t hash = 0;  ///< state hash after loading; 0 if not known yet. A replay refuses another one.
 };
 
-using Command = std::variant<SetWind, SetWindSchedule, EditTerrain, Reset, LoadCheckpoint>;
+}  // namespace command
+
+using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditTerrain,
+                             command::Reset, command::LoadCheckpoint>;
 
 /// Cells that a command changed: x0 ≤ x < x1, y0 ≤ y < y1 (empty if x1 ≤ x0).
 struct CellRectangle {

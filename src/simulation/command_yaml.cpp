@@ -75,18 +75,18 @@ WindRegime read_regime(const YAML::Node& node, const std::string& source) {
 
 void emit_command(YAML::Emitter& out, const Command& command) {
   const auto name = [&](const char* text) { out << YAML::Key << "command" << YAML::Value << text; };
-  if (const auto* set_wind = std::get_if<SetWind>(&command)) {
+  if (const auto* set_wind = std::get_if<command::SetWind>(&command)) {
     name("set_wind");
     yaml::emit_parameters(out, *set_wind);
-  } else if (const auto* schedule = std::get_if<SetWindSchedule>(&command)) {
+  } else if (const auto* schedule = std::get_if<command::SetWindSchedule>(&command)) {
     name("set_wind_schedule");
     emit_regime(out, schedule->regime);
-  } else if (const auto* edit = std::get_if<EditTerrain>(&command)) {
+  } else if (const auto* edit = std::get_if<command::EditTerrain>(&command)) {
     name("edit_terrain");
     yaml::emit_parameters(out, *edit);
-  } else if (std::holds_alternative<Reset>(command)) {
+  } else if (std::holds_alternative<command::Reset>(command)) {
     name("reset");
-  } else if (const auto* load = std::get_if<LoadCheckpoint>(&command)) {
+  } else if (const auto* load = std::get_if<command::LoadCheckpoint>(&command)) {
     name("load_checkpoint");
     out << YAML::Key << "path" << YAML::Value << YAML::DoubleQuoted << load->path;
     out << YAML::Key << "hash" << YAML::Value << load->hash;
@@ -95,12 +95,12 @@ void emit_command(YAML::Emitter& out, const Command& command) {
 
 Command read_command(const YAML::Node& node, const std::string& source) {
   const auto name = scalar<std::string>(node, "command", source);
-  if (name == "set_wind") return read_all<SetWind>(node, source);
-  if (name == "set_wind_schedule") return SetWindSchedule{read_regime(node, source)};
-  if (name == "edit_terrain") return read_all<EditTerrain>(node, source);
-  if (name == "reset") return Reset{};
+  if (name == "set_wind") return read_all<command::SetWind>(node, source);
+  if (name == "set_wind_schedule") return command::SetWindSchedule{read_regime(node, source)};
+  if (name == "edit_terrain") return read_all<command::EditTerrain>(node, source);
+  if (name == "reset") return command::Reset{};
   if (name == "load_checkpoint")
-    return LoadCheckpoint{scalar<std::string>(node, "path", source),
+    return command::LoadCheckpoint{scalar<std::string>(node, "path", source),
                           scalar<std::uint64_t>(node, "hash", source)};
   throw ConfigError(source + ": unknown command '" + name + "'");
 }

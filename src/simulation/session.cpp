@@ -56,24 +56,24 @@ void Session::step() {
 }
 
 CommandResult Session::dispatch(const Command& command, Command& journalled) {
-  if (std::holds_alternative<Reset>(command)) {
+  if (std::holds_alternative<command::Reset>(command)) {
     simulation_ = std::make_unique<Simulation>(*exec_, scenario_, load_raster_);
     return {};
   }
-  if (const auto* load = std::get_if<LoadCheckpoint>(&command)) {
+  if (const auto* load = std::get_if<command::LoadCheckpoint>(&command)) {
     std::unique_ptr<Simulation> loaded = load_checkpoint(load->path, *exec_);
     const std::uint64_t hash = loaded->state_hash();
     if (load->hash != 0 && load->hash != hash)
       throw ConfigError(load->path +
                         ": is not the checkpoint that the journal means (its state hash differs)");
     simulation_ = std::move(loaded);
-    journalled = LoadCheckpoint{load->path, hash};
+    journalled = command::LoadCheckpoint{load->path, hash};
     return {};
   }
   return std::visit(
       [this](const auto& c) -> CommandResult {
         using C = std::decay_t<decltype(c)>;
-        if constexpr (std::is_same_v<C, Reset> || std::is_same_v<C, LoadCheckpoint>)
+        if constexpr (std::is_same_v<C, command::Reset> || std::is_same_v<C, command::LoadCheckpoint>)
           throw Error("handled above");
         else
           return simulation_->apply(c);

@@ -56,9 +56,9 @@ class Simulation {
 
   /// Applies between steps; throws ConfigError and changes nothing if it is refused. Reset and LoadCheckpoint
   /// are the Session's business.
-  CommandResult apply(const SetWind& command);
-  CommandResult apply(const SetWindSchedule& command);
-  CommandResult apply(const EditTerrain& command);
+  CommandResult apply(const command::SetWind& command);
+  CommandResult apply(const command::SetWindSchedule& command);
+  CommandResult apply(const command::EditTerrain& command);
 
   std::uint64_t steps() const { return steps_; }
   double time() const { return static_cast<double>(steps_) * scenario_.run.time_step; }
@@ -99,7 +99,7 @@ class Simulation {
   void run(E& exec, const char* name, std::initializer_list<Layer> writes, Process&& process);
   template <class E>
   void check(E& exec, const char* process, Layer layer);
-  brush::Brush prepare(const EditTerrain& command, CellRectangle& touched) const;
+  brush::Brush prepare(const command::EditTerrain& command, CellRectangle& touched) const;
   /// Before the first step (also of a loaded checkpoint) derived layers and repose tangents are not there yet.
   void refresh_derived();
   void allocate_work();

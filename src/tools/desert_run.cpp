@@ -130,7 +130,7 @@ int main_(int argc, char** argv) {
   } else {
     session = std::make_unique<Session>(scenario_of(o), raster_loader(), backend, threads);
     if (o.has("replay")) session->require_journal_of_this_scenario(journal, o.text("replay", ""));
-    if (o.has("resume")) session->apply(LoadCheckpoint{o.text("resume", ""), 0});
+    if (o.has("resume")) session->apply(command::LoadCheckpoint{o.text("resume", ""), 0});
   }
   Simulation& simulation = session->simulation();
   if (!plan.out.empty()) prepare_folder(plan.out);

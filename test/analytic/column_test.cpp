@@ -1,4 +1,5 @@
-// A column of sand, 100 × 100 cells and 400 m high, slides to a cone (117.2 m) or an octagonal pyramid (121.4 m).
+// A column of sand, 100 × 100 cells and 400 m high, slides to a cone (117.2 m) or an octagonal pyramid (121.4
+// m).
 
 #include <algorithm>
 #include <numeric>
@@ -16,7 +17,8 @@ double radius(const std::vector<float>& sand, int n, double dx, double dy, doubl
   const double length = std::hypot(dx, dy);
   double r = 0;
   for (double d = 1; d < 0.5 * n; d += 0.25) {
-    const int x = static_cast<int>(0.5 * n + d * dx / length), y = static_cast<int>(0.5 * n + d * dy / length);
+    const int x = static_cast<int>(0.5 * n + d * dx / length),
+              y = static_cast<int>(0.5 * n + d * dy / length);
     if (sand[static_cast<std::size_t>(y * n + x)] > depth) r = d;
   }
   return r;
@@ -46,13 +48,17 @@ TEST_P(Column, SlidesToAHeapAtReposeWithMultilevel) {
   for (int y = 1; y + 1 < n; ++y)
     for (int x = 1; x + 1 < n; ++x)
       for (int k = 0; k < 8; ++k)
-        steepest = std::max(steepest, static_cast<double>(sand[static_cast<std::size_t>(y * n + x)] -
-                                                          sand[static_cast<std::size_t>((y + Neighbours::dy(k)) * n + x + Neighbours::dx(k))]) /
-                                          Neighbours::distance(k));
+        steepest = std::max(
+            steepest,
+            static_cast<double>(
+                sand[static_cast<std::size_t>(y * n + x)] -
+                sand[static_cast<std::size_t>((y + Neighbours::dy(k)) * n + x + Neighbours::dx(k))]) /
+                Neighbours::distance(k));
   EXPECT_LE(std::atan(steepest) * 180 / 3.14159265358979, 34.0);
 
   std::vector<double> radii;
-  for (int a = 0; a < 16; ++a) radii.push_back(radius(sand, n, std::cos(a * 0.392699), std::sin(a * 0.392699), 2.0));
+  for (int a = 0; a < 16; ++a)
+    radii.push_back(radius(sand, n, std::cos(a * 0.392699), std::sin(a * 0.392699), 2.0));
   const auto [least, greatest] = std::minmax_element(radii.begin(), radii.end());
   // About their mean; of an octagonal pyramid, which eight neighbours allow, they do by 4 %.
   const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
@@ -103,13 +109,15 @@ double power(const std::vector<float>& h, int n, int waves) {
 /// Closed tiles must not show: no peak in the spectrum at their width (32 cells) or its parts.
 TEST_P(Column, TilesLeaveNoPeakInTheSpectrumOfADuneField) {
   constexpr int n = 256;
-  auto s = simulation("grid: {width: 256, height: 256}\nterrain: [noise: {layer: sand, low: 3, high: 5}]\n"
-                      "wind: {speed: 3, direction_deg: 25}\navalanching: {quality: fast}\n");
+  auto s = simulation(
+      "grid: {width: 256, height: 256}\nterrain: [noise: {layer: sand, low: 3, high: 5}]\n"
+      "wind: {speed: 3, direction_deg: 25}\navalanching: {quality: fast}\n");
   test::run(*s, 40);
   const std::vector<float> h = s->terrain().values(Layer::sand);
   for (int period : {32, 16, 8}) {
     const int waves = n / period;
-    const double beside = 0.25 * (power(h, n, waves - 2) + power(h, n, waves - 1) + power(h, n, waves + 1) + power(h, n, waves + 2));
+    const double beside = 0.25 * (power(h, n, waves - 2) + power(h, n, waves - 1) + power(h, n, waves + 1) +
+                                  power(h, n, waves + 2));
     EXPECT_LT(power(h, n, waves), 1.6 * beside) << "period of " << period << " cells";
   }
 }

@@ -1,5 +1,5 @@
-// A flat deep bed under a uniform wind: after n steps h = h0 − ε(1 − p)/p·[1 − (1 − p)^n], airborne → ε(1 − p)/p,
-// flux → ε|w|Δt/p.
+// A flat deep bed under a uniform wind: after n steps h = h0 − ε(1 − p)/p·[1 − (1 − p)^n], airborne → ε(1 −
+// p)/p, flux → ε|w|Δt/p.
 
 #include "support/world.hpp"
 
@@ -10,9 +10,10 @@ class FlatBed : public test::OnBackend {};
 
 TEST_P(FlatBed, FallsByTheGeometricSeriesAndFillsTheAir) {
   for (const auto& [lift, bounce] : {std::pair{1.0, 0.4}, {0.7, 0.25}, {2.0, 0.6}}) {
-    auto s = simulation("grid: {width: 64, height: 48}\nterrain: [uniform: {layer: sand, value: 50}]\n"
-                        "wind: {speed: 5.3, direction_deg: 17, speedup: 0}\nsaltation: {lift: " + std::to_string(lift) +
-                        ", bounce_on_sand: " + std::to_string(bounce) + "}\n");
+    auto s = simulation(
+        "grid: {width: 64, height: 48}\nterrain: [uniform: {layer: sand, value: 50}]\n"
+        "wind: {speed: 5.3, direction_deg: 17, speedup: 0}\nsaltation: {lift: " +
+        std::to_string(lift) + ", bounce_on_sand: " + std::to_string(bounce) + "}\n");
     const double p = 1 - bounce;
     const auto mean_of = [&](Layer layer) {
       double sum = 0;
@@ -34,9 +35,12 @@ TEST_P(FlatBed, FallsByTheGeometricSeriesAndFillsTheAir) {
 /// Flux over the lee edge of an open bed, per metre of edge and second.
 TEST_P(FlatBed, FluxIsLiftTimesWindOverTheShareThatStays) {
   for (const double dt : {1.0, 0.5}) {
-    auto s = simulation("grid: {width: 160, height: 16, boundary: open}\nterrain: [uniform: {layer: sand, value: 200}]\n"
-                        "wind: {speed: 4, direction_deg: 0, speedup: 0, warping: false, projection: false}\nwind_shadow: {enabled: false}\n"
-                        "avalanching: {enabled: false}\nrun: {time_step: " + std::to_string(dt) + "}\n");
+    auto s = simulation(
+        "grid: {width: 160, height: 16, boundary: open}\nterrain: [uniform: {layer: sand, value: 200}]\n"
+        "wind: {speed: 4, direction_deg: 0, speedup: 0, warping: false, projection: false}\nwind_shadow: "
+        "{enabled: false}\n"
+        "avalanching: {enabled: false}\nrun: {time_step: " +
+        std::to_string(dt) + "}\n");
     test::run(*s, 30);
     const auto before = s->balance()[static_cast<std::size_t>(Material::sand)];
     s->step();
@@ -48,7 +52,9 @@ TEST_P(FlatBed, FluxIsLiftTimesWindOverTheShareThatStays) {
 }
 
 TEST_P(FlatBed, SettlesToItsDepthLessWhatIsInTheAirAndKeepsMassExactly) {
-  auto s = simulation("grid: {width: 33, height: 65}\nterrain: [uniform: {layer: sand, value: 10}]\nwind: {speed: 7, direction_deg: -100}\n");
+  auto s = simulation(
+      "grid: {width: 33, height: 65}\nterrain: [uniform: {layer: sand, value: 10}]\nwind: {speed: 7, "
+      "direction_deg: -100}\n");
   test::run(*s, 60);
   test::expect_sound(*s, "after 60 steps");
   for (float v : s->terrain().values(Layer::sand)) ASSERT_NEAR(v, 10 - 2.0 / 3, 1e-5);
@@ -56,8 +62,10 @@ TEST_P(FlatBed, SettlesToItsDepthLessWhatIsInTheAirAndKeepsMassExactly) {
 
 /// On rock with no sand on the ground the air empties by (1 − p) a step where nothing is lifted.
 TEST_P(FlatBed, AirEmptiesGeometricallyOverSandThatIsNotLifted) {
-  auto s = simulation("grid: {width: 20, height: 20}\nterrain: [uniform: {layer: sand, value: 5}, uniform: {layer: airborne_sand, value: 1}]\n"
-                      "wind: {speed: 5}\nsaltation: {lift: 0}\n");
+  auto s = simulation(
+      "grid: {width: 20, height: 20}\nterrain: [uniform: {layer: sand, value: 5}, uniform: {layer: "
+      "airborne_sand, value: 1}]\n"
+      "wind: {speed: 5}\nsaltation: {lift: 0}\n");
   for (int n = 1; n <= 12; ++n) {
     s->step();
     for (float v : s->terrain().values(Layer::airborne_sand)) ASSERT_NEAR(v, std::pow(0.4, n), 5e-6);

@@ -1,4 +1,5 @@
-// The wind's transforms against closed forms: Gaussian hills, divergence, the mean, mirrored edges, coarse grids.
+// The wind's transforms against closed forms: Gaussian hills, divergence, the mean, mirrored edges, coarse
+// grids.
 
 #include <complex>
 #include <numeric>
@@ -20,7 +21,8 @@ void transform_rows(Field& f, int width, int height) {
     std::complex<double>* v = &f[static_cast<std::size_t>(y) * width];
     for (int k = 0; k < width; ++k) {
       std::complex<double> sum = 0;
-      for (int x = 0; x < width; ++x) sum += v[x] * root[static_cast<std::size_t>(static_cast<long>(k) * x % width)];
+      for (int x = 0; x < width; ++x)
+        sum += v[x] * root[static_cast<std::size_t>(static_cast<long>(k) * x % width)];
       row[static_cast<std::size_t>(k)] = sum;
     }
     std::copy(row.begin(), row.end(), v);
@@ -30,7 +32,8 @@ void transform_rows(Field& f, int width, int height) {
 Field transposed(const Field& f, int width, int height) {
   Field t(f.size());
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) t[static_cast<std::size_t>(x) * height + y] = f[static_cast<std::size_t>(y) * width + x];
+    for (int x = 0; x < width; ++x)
+      t[static_cast<std::size_t>(x) * height + y] = f[static_cast<std::size_t>(y) * width + x];
   return t;
 }
 
@@ -42,14 +45,16 @@ Field spectrum(const std::vector<float>& values, int width, int height) {
   return transposed(f, height, width);
 }
 
-/// rms of the divergence over rms of all gradients, |k·û| over |k||û|, by all modes but the mean and the Nyquist rows.
+/// rms of the divergence over rms of all gradients, |k·û| over |k||û|, by all modes but the mean and the
+/// Nyquist rows.
 double relative_divergence(const std::vector<float>& u, const std::vector<float>& v, int width, int height) {
   const Field fu = spectrum(u, width, height), fv = spectrum(v, width, height);
   double divergence = 0, size = 0;
   for (int j = 0; j < height; ++j)
     for (int i = 0; i < width; ++i) {
       if (2 * i == width || 2 * j == height) continue;
-      const double kx = 2 * pi * (2 * i > width ? i - width : i) / width, ky = 2 * pi * (2 * j > height ? j - height : j) / height;
+      const double kx = 2 * pi * (2 * i > width ? i - width : i) / width,
+                   ky = 2 * pi * (2 * j > height ? j - height : j) / height;
       const std::size_t n = static_cast<std::size_t>(j) * width + i;
       divergence += std::norm(kx * fu[n] + ky * fv[n]);
       size += (kx * kx + ky * ky) * (std::norm(fu[n]) + std::norm(fv[n]));
@@ -57,7 +62,9 @@ double relative_divergence(const std::vector<float>& u, const std::vector<float>
   return std::sqrt(divergence / size);
 }
 
-double mean(const std::vector<float>& v) { return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size()); }
+double mean(const std::vector<float>& v) {
+  return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+}
 
 class WindField : public test::OnBackend {
  protected:
@@ -69,7 +76,8 @@ class WindField : public test::OnBackend {
     return p;
   }
   static double hills(int x, int y, int width, int height) {
-    return 20 + 8 * std::sin(2 * pi * 3 * x / width) * std::cos(2 * pi * 2 * y / height) + 5 * std::sin(2 * pi * (5.0 * x / width + 4.0 * y / height)) +
+    return 20 + 8 * std::sin(2 * pi * 3 * x / width) * std::cos(2 * pi * 2 * y / height) +
+           5 * std::sin(2 * pi * (5.0 * x / width + 4.0 * y / height)) +
            2 * std::cos(2 * pi * 17 * x / width);
   }
 };
@@ -80,13 +88,16 @@ TEST_P(WindField, ProjectionRemovesDivergenceAndKeepsTheMean) {
     test::BenchTerrain t(exec(), width, height, cell);
     // Rough ground and a strong speed-up: divergence at all wavenumbers, well above what float32 can hold.
     t.set(Layer::bedrock, [w = width, h = height](int x, int y) {
-      return hills(x, y, w, h) + 20 * random_unit(1, Purpose::terrain_noise, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+      return hills(x, y, w, h) + 20 * random_unit(1, Purpose::terrain_noise, static_cast<std::uint32_t>(x),
+                                                  static_cast<std::uint32_t>(y));
     });
     WindParameters plain = with(true, false, 1), projected = with(true, true, 1);
     plain.speedup = projected.speedup = 0.05f;
     t.blow(plain, {5, 2});
-    const double before = relative_divergence(t.terrain.values(Layer::wind_x), t.terrain.values(Layer::wind_y), width, height);
-    const double mean_x = mean(t.terrain.values(Layer::wind_x)), mean_y = mean(t.terrain.values(Layer::wind_y));
+    const double before =
+        relative_divergence(t.terrain.values(Layer::wind_x), t.terrain.values(Layer::wind_y), width, height);
+    const double mean_x = mean(t.terrain.values(Layer::wind_x)),
+                 mean_y = mean(t.terrain.values(Layer::wind_y));
     t.blow(projected, {5, 2});
     const std::vector<float> u = t.terrain.values(Layer::wind_x), v = t.terrain.values(Layer::wind_y);
     EXPECT_GT(before, 0.1) << "there is nothing to remove";
@@ -116,8 +127,8 @@ TEST_P(WindField, ProjectionTakesAPureGradientAway) {
   for (float u : t.terrain.values(Layer::wind_x)) ASSERT_NEAR(u, 6 * (1 + 0.005 * 10), 1e-5);
 }
 
-/// The smoothed slope g along the wind, from the angle by which it turns the wind: u' ∝ (1 − g) u + g k_R g⊥ with g⊥
-/// across the wind, so that u'_y / u'_x = k_R g² / ((1 − g) u).
+/// The smoothed slope g along the wind, from the angle by which it turns the wind: u' ∝ (1 − g) u + g k_R g⊥
+/// with g⊥ across the wind, so that u'_y / u'_x = k_R g² / ((1 − g) u).
 double smoothed_slope(double wind_x, double wind_y, double speed, double deflection) {
   const double turn = wind_y / wind_x;
   const double a = deflection, b = turn * speed, c = -turn * speed;
@@ -125,8 +136,8 @@ double smoothed_slope(double wind_x, double wind_y, double speed, double deflect
 }
 
 TEST_P(WindField, GaussianHillIsSmoothedToItsClosedForm) {
-  // A exp(−r²/2s²) ⊗ Gauss(σ): peak A s²/(s² + σ²), width √(s² + σ²). The slope along x on the hill's axis is seen in the
-  // angle by which a wind along +x (with a grain of +y, for the sign) is turned.
+  // A exp(−r²/2s²) ⊗ Gauss(σ): peak A s²/(s² + σ²), width √(s² + σ²). The slope along x on the hill's axis is
+  // seen in the angle by which a wind along +x (with a grain of +y, for the sign) is turned.
   constexpr int n = 512;
   const double s = 15, radius = 40, sigma = 0.5 * radius, height = 20, speed = 5;
   test::BenchTerrain t(exec(), n, n);
@@ -145,21 +156,25 @@ TEST_P(WindField, GaussianHillIsSmoothedToItsClosedForm) {
     for (int d : {6, 12, 25, 40, 60, 80}) {
       for (int side : {-1, 1}) {
         const int x = n / 2 + side * d, y = n / 2;
-        const double found = smoothed_slope(t.at(Layer::wind_x, x, y), std::abs(t.at(Layer::wind_y, x, y)), speed, 5);
+        const double found =
+            smoothed_slope(t.at(Layer::wind_x, x, y), std::abs(t.at(Layer::wind_y, x, y)), speed, 5);
         const double expected = peak * d / (wide * wide) * std::exp(-0.5 * d * d / (wide * wide));
-        EXPECT_NEAR(found, expected, 0.01 * peak / wide) << "coarsening " << coarsening << ", at " << side * d;
+        EXPECT_NEAR(found, expected, 0.01 * peak / wide)
+            << "coarsening " << coarsening << ", at " << side * d;
       }
     }
   }
 }
 
-/// The grid of the transforms is coarsened to about a quarter of the smallest σ. Against full resolution the wind
-/// differs by at most 2 % of its speed anywhere, 0.5 % rms, on terrain with features down to the hop length.
+/// The grid of the transforms is coarsened to about a quarter of the smallest σ. Against full resolution the
+/// wind differs by at most 2 % of its speed anywhere, 0.5 % rms, on terrain with features down to the hop
+/// length.
 TEST_P(WindField, CoarseTransformsAreCloseToFullResolution) {
   for (bool periodic : {true, false}) {
     constexpr int width = 384, height = 256;
     test::BenchTerrain t(exec(), width, height, 1, periodic);
-    t.set(Layer::bedrock, [&](int x, int y) { return hills(x, y, width, height) + ((x / 8 + y / 8) % 2 ? 1.0 : 0.0); });
+    t.set(Layer::bedrock,
+          [&](int x, int y) { return hills(x, y, width, height) + ((x / 8 + y / 8) % 2 ? 1.0 : 0.0); });
     t.blow(with(true, false, 1), {5, 2});
     const std::vector<float> u = t.terrain.values(Layer::wind_x), v = t.terrain.values(Layer::wind_y);
     t.blow(with(true, false, 0), {5, 2});
@@ -203,10 +218,14 @@ TEST_P(WindField, OppositeEdgesOfAnOpenGridDoNotFeelEachOther) {
 TEST_P(WindField, OpenEdgesAreMirrored) {
   // Mirrored about its edge, a terrain and the even periodic one of twice its size have the same wind.
   constexpr int n = 64;
-  const auto h = [](int x, int y) { return 6 * std::cos(pi * (x + 0.5) / n) * std::cos(pi * 2 * (y + 0.5) / n) + 4 * std::cos(pi * 3 * (x + 0.5) / n); };
+  const auto h = [](int x, int y) {
+    return 6 * std::cos(pi * (x + 0.5) / n) * std::cos(pi * 2 * (y + 0.5) / n) +
+           4 * std::cos(pi * 3 * (x + 0.5) / n);
+  };
   test::BenchTerrain open(exec(), n, n, 1, false), twice(exec(), 2 * n, 2 * n, 1, true);
   open.set(Layer::bedrock, h);
-  twice.set(Layer::bedrock, [&](int x, int y) { return h(x < n ? x : 2 * n - 1 - x, y < n ? y : 2 * n - 1 - y); });
+  twice.set(Layer::bedrock,
+            [&](int x, int y) { return h(x < n ? x : 2 * n - 1 - x, y < n ? y : 2 * n - 1 - y); });
   WindParameters p = with(true, false, 1);
   p.radii = ShortList{{16, 8, 0, 0}, 2};
   const Quanta reference = -20 * (1 << 20);
@@ -216,7 +235,8 @@ TEST_P(WindField, OpenEdgesAreMirrored) {
   double worst = 0;
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x)
-      worst = std::max(worst, std::abs(static_cast<double>(u[static_cast<std::size_t>(y * n + x)]) - uu[static_cast<std::size_t>(y * 2 * n + x)]));
+      worst = std::max(worst, std::abs(static_cast<double>(u[static_cast<std::size_t>(y * n + x)]) -
+                                       uu[static_cast<std::size_t>(y * 2 * n + x)]));
   EXPECT_LT(worst, 2e-4);
 }
 
@@ -232,16 +252,21 @@ TEST_P(WindField, FeaturesHaveNoDiscreteDivergence) {
     Buffer<wind_features::Prepared> buffer(exec(), features.size());
     buffer.upload(features);
     Buffer<float> stream(exec(), 6300), px(exec(), 6300), py(exec(), 6300);
-    with_backend(exec(), [&](auto& e) { wind_features::step(e, grid, buffer, 3.5f, stream.data(), px.data(), py.data()); });
+    with_backend(exec(), [&](auto& e) {
+      wind_features::step(e, grid, buffer, 3.5f, stream.data(), px.data(), py.data());
+    });
     const std::vector<float> u = px.download(), v = py.download();
     double worst = 0, fastest = 0;
     for (int y = 1; y + 1 < 70; ++y)
       for (int x = 1; x + 1 < 90; ++x) {
         // Central differences of central differences: inside an open grid stay two cells from the edge.
         if (!periodic && (x < 2 || y < 2 || x > 87 || y > 67)) continue;
-        worst = std::max(worst, std::abs(static_cast<double>(u[static_cast<std::size_t>(y * 90 + x + 1)]) - u[static_cast<std::size_t>(y * 90 + x - 1)] +
-                                         v[static_cast<std::size_t>((y + 1) * 90 + x)] - v[static_cast<std::size_t>((y - 1) * 90 + x)]));
-        fastest = std::max(fastest, static_cast<double>(std::hypot(u[static_cast<std::size_t>(y * 90 + x)], v[static_cast<std::size_t>(y * 90 + x)])));
+        worst = std::max(worst, std::abs(static_cast<double>(u[static_cast<std::size_t>(y * 90 + x + 1)]) -
+                                         u[static_cast<std::size_t>(y * 90 + x - 1)] +
+                                         v[static_cast<std::size_t>((y + 1) * 90 + x)] -
+                                         v[static_cast<std::size_t>((y - 1) * 90 + x)]));
+        fastest = std::max(fastest, static_cast<double>(std::hypot(u[static_cast<std::size_t>(y * 90 + x)],
+                                                                   v[static_cast<std::size_t>(y * 90 + x)])));
       }
     EXPECT_GT(fastest, 3);
     EXPECT_LT(worst, 1e-4 * fastest);
@@ -254,7 +279,9 @@ TEST_P(WindField, VortexAndJetHaveTheirSpeedAndSense) {
     Buffer<wind_features::Prepared> buffer(exec(), 1);
     buffer.upload({one});
     Buffer<float> stream(exec(), 40000), px(exec(), 40000), py(exec(), 40000);
-    with_backend(exec(), [&](auto& e) { wind_features::step(e, grid, buffer, 0, stream.data(), px.data(), py.data()); });
+    with_backend(exec(), [&](auto& e) {
+      wind_features::step(e, grid, buffer, 0, stream.data(), px.data(), py.data());
+    });
     const std::size_t i = static_cast<std::size_t>(y * 200 + x);
     return wind::Vector{px.download()[i], py.download()[i]};
   };

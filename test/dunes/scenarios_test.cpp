@@ -135,6 +135,7 @@ TEST(Dunes, Echo) {
 TEST(Dunes, Yardang) {
   for (double turn : {0.0, 35.0}) {
     Settings settings = small;
+    settings.insert(settings.end(), {"terrain.1.noise.stretch=1", "terrain.1.noise.scale=20"});
     const double directions[] = {-4, 0, 4, -4, 4};
     for (int n = 0; n < 5; ++n)
       settings.push_back("wind.segments." + std::to_string(n) + ".direction_deg=" + std::to_string(turn + directions[n]));

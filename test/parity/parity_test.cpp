@@ -1,5 +1,5 @@
-// CPU against CUDA. Without the wind's transforms: bit for bit. With them: within a stated bound after one step, and
-// by statistics after many.
+// CPU against CUDA. Without the wind's transforms: bit for bit. With them: within a stated bound after one
+// step, and by statistics after many.
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +32,8 @@ class Parity : public ::testing::Test {
       std::size_t first = 0;
       for (std::size_t i = x.size(); i-- > 0;)
         if (x[i] != y[i]) ++different, first = i;
-      EXPECT_EQ(different, 0) << "cells of " << row.name << ", first (" << first % a.terrain().grid().width << ", "
-                              << first / a.terrain().grid().width << ")";
+      EXPECT_EQ(different, 0) << "cells of " << row.name << ", first (" << first % a.terrain().grid().width
+                              << ", " << first / a.terrain().grid().width << ")";
     }
   }
 
@@ -72,27 +72,43 @@ std::string case_name(const ::testing::TestParamInfo<int>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ParityOf, ::testing::Range(0, static_cast<int>(test::process_cases(false).size())), case_name);
+INSTANTIATE_TEST_SUITE_P(All, ParityOf,
+                         ::testing::Range(0, static_cast<int>(test::process_cases(false).size())), case_name);
+
+/// Little enough work for a race checker.
+TEST_F(Parity, OfASingleStep) {
+  for (const test::Case& c : test::process_cases(true)) {
+    SCOPED_TRACE(c.name);
+    auto s = test::simulate(cuda(), test::grid_yaml(40, 36, "open") + c.yaml);
+    s->step();
+    test::expect_sound(*s, "on the GPU");
+  }
+}
 
 TEST_F(Parity, OfTinyGrids) {
   const std::string yaml = test::process_cases(false).back().yaml;
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 40}, {40, 1}, {2, 3}, {33, 5}})
-    for (const char* boundary : {"periodic", "open"}) expect_bit_for_bit(test::grid_yaml(width, height, boundary) + yaml, 10);
+    for (const char* boundary : {"periodic", "open"})
+      expect_bit_for_bit(test::grid_yaml(width, height, boundary) + yaml, 10);
 }
 
 TEST_F(Parity, OfSeveralLevels) {
   expect_bit_for_bit(test::grid_yaml(150, 133, "periodic") +
-                         "terrain: [noise: {layer: bedrock, low: 0, high: 20, scale: 40}, noise: {layer: sand, low: 0, high: 12, scale: 30, seed: 2}]\n"
-                         "wind: {speed: 6, direction_deg: 77, warping: false, projection: false}\navalanching: {coarsest_cell: 8}\n",
+                         "terrain: [noise: {layer: bedrock, low: 0, high: 20, scale: 40}, noise: {layer: "
+                         "sand, low: 0, high: 12, scale: 30, seed: 2}]\n"
+                         "wind: {speed: 6, direction_deg: 77, warping: false, projection: "
+                         "false}\navalanching: {coarsest_cell: 8}\n",
                      20);
 }
 
 TEST_F(Parity, OfEdits) {
-  const std::string yaml = test::grid_yaml(40, 30, "periodic") + "terrain: [noise: {layer: bedrock, low: 0, high: 5, scale: 9}, uniform: {layer: sand, value: 3}]\n"
-                                                                 "wind: {warping: false, projection: false}\n";
+  const std::string yaml =
+      test::grid_yaml(40, 30, "periodic") +
+      "terrain: [noise: {layer: bedrock, low: 0, high: 5, scale: 9}, uniform: {layer: sand, value: 3}]\n"
+      "wind: {warping: false, projection: false}\n";
   auto a = test::simulate(cpu(), yaml), b = test::simulate(cuda(), yaml);
   for (int n = 0; n < 12; ++n) {
-    EditTerrain edit;
+    command::EditTerrain edit;
     edit.layer = n % 4 == 3 ? "bedrock" : "sand";
     edit.merge = static_cast<BrushMerge>(n % 6);
     edit.shape = n % 2 ? BrushShape::ellipse : BrushShape::circle;
@@ -143,14 +159,16 @@ TEST_F(Parity, CheckpointsGoFromOneToTheOther) {
   EXPECT_EQ(a->state_hash(), b->state_hash());
 }
 
-// ---- With transforms -----------------------------------------------------------------------------------------------
+// ---- With transforms
+// -----------------------------------------------------------------------------------------------
 
 const char* const dunes =
-    "terrain: [noise: {layer: bedrock, low: 0, high: 10, scale: 30}, noise: {layer: sand, low: 0.5, high: 4, scale: 12}]\n"
+    "terrain: [noise: {layer: bedrock, low: 0, high: 10, scale: 30}, noise: {layer: sand, low: 0.5, high: 4, "
+    "scale: 12}]\n"
     "wind: {speed: 5, direction_deg: 20, radii: [60, 20]}\nreptation: {method: smoothing}\n";
 
-/// FFTW and cuFFT round differently: the wind by at most 2e-5 of its speed after one step. That can tip a march or a
-/// release over an edge, so of the sand: 2 mm at most anywhere, 10 µm rms (a step moves metres).
+/// FFTW and cuFFT round differently: the wind by at most 2e-5 of its speed after one step. That can tip a
+/// march or a release over an edge, so of the sand: 2 mm at most anywhere, 10 µm rms (a step moves metres).
 TEST_F(Parity, WithTransformsOneStepDiffersByLittle) {
   for (const char* boundary : {"periodic", "open"}) {
     auto a = test::simulate(cpu(), test::grid_yaml(128, 96, boundary) + dunes);

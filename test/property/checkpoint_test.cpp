@@ -1,9 +1,10 @@
 // Checkpoints: what is cut, flipped or of another version is refused with a reason and changes nothing.
 
+#include "desert_sim/simulation/checkpoint.hpp"
+
 #include <cstring>
 #include <filesystem>
 
-#include "desert_sim/simulation/checkpoint.hpp"
 #include "desert_sim/simulation/session.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
@@ -13,8 +14,10 @@ namespace {
 
 const char* const world =
     "grid: {width: 21, height: 17, boundary: open, origin_x: 1000.5, origin_y: -20}\n"
-    "terrain: [noise: {layer: bedrock, low: 100.25, high: 107, scale: 10}, noise: {layer: sand, low: 0, high: 3}]\n"
-    "wind: {regime: rose, hold_time: 3, segments: [{direction_deg: 10, speed: 6}, {direction_deg: 100, speed: 4}]}\n"
+    "terrain: [noise: {layer: bedrock, low: 100.25, high: 107, scale: 10}, noise: {layer: sand, low: 0, "
+    "high: 3}]\n"
+    "wind: {regime: rose, hold_time: 3, segments: [{direction_deg: 10, speed: 6}, {direction_deg: 100, "
+    "speed: 4}]}\n"
     "run: {time_step: 0.7}\n";
 
 class Checkpoint : public test::OnBackend {
@@ -47,7 +50,8 @@ TEST_P(Checkpoint, CutAnywhereIsRefused) {
     const std::string path = folder_.write("cut.ck", bytes.substr(0, bytes.size() * n / 16));
     EXPECT_NE(refusal(path).find("cut.ck"), std::string::npos) << "the reason names no file";
   }
-  for (std::size_t last : {1u, 4u, 8u, 9u}) refusal(folder_.write("cut.ck", bytes.substr(0, bytes.size() - last)));
+  for (std::size_t last : {1u, 4u, 8u, 9u})
+    refusal(folder_.write("cut.ck", bytes.substr(0, bytes.size() - last)));
 }
 
 TEST_P(Checkpoint, WithOneFlippedByteIsRefused) {
@@ -60,7 +64,9 @@ TEST_P(Checkpoint, WithOneFlippedByteIsRefused) {
   }
 }
 
-TEST_P(Checkpoint, WithSomethingBehindItIsRefused) { refusal(folder_.write("long.ck", test::file_bytes(saved()) + "x")); }
+TEST_P(Checkpoint, WithSomethingBehindItIsRefused) {
+  refusal(folder_.write("long.ck", test::file_bytes(saved()) + "x"));
+}
 
 TEST_P(Checkpoint, OfAnotherVersionIsRefusedByItsNumber) {
   std::string bytes = test::file_bytes(saved());
@@ -100,15 +106,15 @@ TEST_P(Checkpoint, RefusedLeavesTheSessionAsItWas) {
   Session session(test::scenario_of(world), refuse_rasters, GetParam(), 1);
   for (int n = 0; n < 3; ++n) session.step();
   const std::uint64_t before = session.simulation().state_hash();
-  EXPECT_THROW(session.apply(LoadCheckpoint{cut, 0}), ConfigError);
-  EXPECT_THROW(session.apply(LoadCheckpoint{saved(), 12345}), ConfigError);
+  EXPECT_THROW(session.apply(command::LoadCheckpoint{cut, 0}), ConfigError);
+  EXPECT_THROW(session.apply(command::LoadCheckpoint{saved(), 12345}), ConfigError);
   EXPECT_EQ(session.simulation().state_hash(), before);
   EXPECT_EQ(session.simulation().steps(), 3u);
 }
 
 TEST_P(Checkpoint, KeepsClockWindOriginAndBooks) {
   auto s = simulation(world);
-  SetWind wind;
+  command::SetWind wind;
   wind.speed = 7.3f;
   wind.direction_deg = 33.3f;
   wind.ramp = 20;
@@ -130,18 +136,23 @@ TEST_P(Checkpoint, KeepsClockWindOriginAndBooks) {
     EXPECT_EQ(a[m].initial, b[m].initial);
     EXPECT_EQ(b[m].residual(), 0);
   }
-  for (Layer layer : test::persistent_layers(*s)) EXPECT_TRUE(s->terrain().words(layer) == t->terrain().words(layer));
+  for (Layer layer : test::persistent_layers(*s))
+    EXPECT_TRUE(s->terrain().words(layer) == t->terrain().words(layer));
 }
 
-TEST_P(Checkpoint, SavedTwiceIsTheSameFile) { EXPECT_TRUE(test::file_bytes(saved("a.ck")) == test::file_bytes(saved("b.ck"))); }
+TEST_P(Checkpoint, SavedTwiceIsTheSameFile) {
+  EXPECT_TRUE(test::file_bytes(saved("a.ck")) == test::file_bytes(saved("b.ck")));
+}
 
 /// A picture or message made right after loading must show the wind, not calm air.
 TEST_P(Checkpoint, SnapshotsAfterLoadingShowWindAndElevation) {
-  auto s = simulation("grid: {width: 24, height: 20}\nterrain: [uniform: {layer: sand, value: 2}]\nwind: {speed: 5}\n");
+  auto s = simulation(
+      "grid: {width: 24, height: 20}\nterrain: [uniform: {layer: sand, value: 2}]\nwind: {speed: 5}\n");
   test::run(*s, 3);
   save_checkpoint(folder_.path("c.ck"), *s);
   auto t = load_checkpoint(folder_.path("c.ck"), exec());
-  const auto before = s->snapshot({Layer::elevation, Layer::wind_x}), after = t->snapshot({Layer::elevation, Layer::wind_x});
+  const auto before = s->snapshot({Layer::elevation, Layer::wind_x}),
+             after = t->snapshot({Layer::elevation, Layer::wind_x});
   EXPECT_TRUE(*before->find(Layer::elevation) == *after->find(Layer::elevation));
   EXPECT_NEAR((*before->find(Layer::wind_x))[7], 5, 0.1);
   EXPECT_NEAR((*after->find(Layer::wind_x))[7], 5, 0.1);
@@ -149,7 +160,8 @@ TEST_P(Checkpoint, SnapshotsAfterLoadingShowWindAndElevation) {
 
 /// The angles of repose follow from the layers: a loaded world is not all avalanches.
 TEST_P(Checkpoint, ReportsAResidualLikeTheOneBefore) {
-  auto s = simulation("grid: {width: 32, height: 32}\nterrain: [noise: {layer: sand, low: 0, high: 5, scale: 12}]\n");
+  auto s = simulation(
+      "grid: {width: 32, height: 32}\nterrain: [noise: {layer: sand, low: 0, high: 5, scale: 12}]\n");
   test::run(*s, 3);
   save_checkpoint(folder_.path("d.ck"), *s);
   auto t = load_checkpoint(folder_.path("d.ck"), exec());

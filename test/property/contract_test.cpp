@@ -35,7 +35,8 @@ class Contract : public test::OnBackend {
   }
 
   template <class Process>
-  void expect_only(const char* name, const std::set<Layer>& writes, bool must_change, const Process& process) {
+  void expect_only(const char* name, const std::set<Layer>& writes, bool must_change,
+                   const Process& process) {
     for (bool periodic : {true, false}) {
       SCOPED_TRACE(std::string(name) + (periodic ? ", periodic" : ", open"));
       auto t = terrain(periodic);
@@ -63,7 +64,9 @@ TEST_P(Contract, OfSurface) {
   expect_only("surface, again", {}, false, [](test::BenchTerrain& t) { t.surface(); });
 }
 TEST_P(Contract, OfWind) {
-  expect_only("wind", {Layer::wind_x, Layer::wind_y}, true, [](test::BenchTerrain& t) { t.blow({}, {5, 2}); });
+  expect_only("wind", {Layer::wind_x, Layer::wind_y}, true, [](test::BenchTerrain& t) {
+    t.blow({}, {5, 2});
+  });
 }
 TEST_P(Contract, OfWindShadow) {
   expect_only("wind_shadow", {Layer::wind_shadow}, true, [](test::BenchTerrain& t) { t.shadow(); });
@@ -72,17 +75,19 @@ TEST_P(Contract, OfEchoDunes) {
   expect_only("echo_dunes", {Layer::echo}, true, [](test::BenchTerrain& t) { t.echo({}); });
 }
 TEST_P(Contract, OfSaltationAndAbrasion) {
-  expect_only("saltation", {Layer::sand, Layer::airborne_sand, Layer::bedrock, Layer::soil}, true, [](test::BenchTerrain& t) {
-    AbrasionParameters a;
-    a.rate = 0.05f;
-    a.cover = 1;
-    SaltationParameters p;
-    p.influx = 1;
-    t.saltation(p, a);
-  });
+  expect_only("saltation", {Layer::sand, Layer::airborne_sand, Layer::bedrock, Layer::soil}, true,
+              [](test::BenchTerrain& t) {
+                AbrasionParameters a;
+                a.rate = 0.05f;
+                a.cover = 1;
+                SaltationParameters p;
+                p.influx = 1;
+                t.saltation(p, a);
+              });
 }
 TEST_P(Contract, OfSaltationWithoutAbrasion) {
-  expect_only("saltation", {Layer::sand, Layer::airborne_sand}, true, [](test::BenchTerrain& t) { t.saltation(); });
+  expect_only("saltation", {Layer::sand, Layer::airborne_sand}, true,
+              [](test::BenchTerrain& t) { t.saltation(); });
 }
 TEST_P(Contract, OfReptation) {
   for (ReptationMethod method : {ReptationMethod::smoothing, ReptationMethod::steepest})
@@ -99,7 +104,8 @@ TEST_P(Contract, OfReptation) {
     });
 }
 TEST_P(Contract, OfAvalanching) {
-  for (AvalancheScheme scheme : {AvalancheScheme::multilevel, AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser})
+  for (AvalancheScheme scheme :
+       {AvalancheScheme::multilevel, AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser})
     expect_only("avalanching", {Layer::sand}, true, [scheme](test::BenchTerrain& t) {
       AvalanchingParameters p;
       p.scheme = scheme;
@@ -110,7 +116,8 @@ TEST_P(Contract, OfSoilAvalanching) {
   expect_only("soil", {Layer::soil}, true, [](test::BenchTerrain& t) { t.avalanche_soil(); });
 }
 TEST_P(Contract, OfBedrockAvalanching) {
-  expect_only("bedrock to sand", {Layer::bedrock, Layer::sand}, true, [](test::BenchTerrain& t) { t.avalanche_bedrock(); });
+  expect_only("bedrock to sand", {Layer::bedrock, Layer::sand}, true,
+              [](test::BenchTerrain& t) { t.avalanche_bedrock(); });
   expect_only("bedrock to bedrock", {Layer::bedrock}, true, [](test::BenchTerrain& t) {
     AvalanchingParameters p;
     p.bedrock_to_sand = false;

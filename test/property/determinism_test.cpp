@@ -39,7 +39,8 @@ TEST_P(Repeated, RunsGiveTheSameHash) {
 }
 
 TEST_P(Repeated, RunsWithOtherSeedsDiffer) {
-  const std::string yaml = test::grid_yaml(32, 32, "periodic") + "terrain: [noise: {layer: sand, low: 0, high: 4}]\n";
+  const std::string yaml =
+      test::grid_yaml(32, 32, "periodic") + "terrain: [noise: {layer: sand, low: 0, high: 4}]\n";
   EXPECT_NE(hash_after(exec(), yaml, 2), hash_after(exec(), yaml + "seed: 2\n", 2));
 }
 

@@ -13,26 +13,59 @@
 namespace desert_sim {
 namespace {
 
-const char* const tokens[] = {"{", "}", "[", "]", ":", ",", "-", "\n", " ", "\"", "'", "#", "&a", "*a", "!", "|", ">", "~", "null",
-                              ".nan", ".inf", "-1", "0", "1e308", "1e-308", "99999999999999999999", "0x1f", "017", "true", "{}", "[]",
-                              "\t", "\0", "\xff", "\xc3\xa4", "%", "@", "`", "? ", "<<: *a", "---\n", "...\n", "uniform", "sand",
-                              "terrain", "wind: ", "segments", "periodic", "\r\n", "0.1"};
+const char* const tokens[] = {"{",        "}",
+                              "[",        "]",
+                              ":",        ",",
+                              "-",        "\n",
+                              " ",        "\"",
+                              "'",        "#",
+                              "&a",       "*a",
+                              "!",        "|",
+                              ">",        "~",
+                              "null",     ".nan",
+                              ".inf",     "-1",
+                              "0",        "1e308",
+                              "1e-308",   "99999999999999999999",
+                              "0x1f",     "017",
+                              "true",     "{}",
+                              "[]",       "\t",
+                              "\0",       "\xff",
+                              "\xc3\xa4", "%",
+                              "@",        "`",
+                              "? ",       "<<: *a",
+                              "---\n",    "...\n",
+                              "uniform",  "sand",
+                              "terrain",  "wind: ",
+                              "segments", "periodic",
+                              "\r\n",     "0.1"};
 
 std::string mutated(std::string text, std::mt19937& random) {
   const auto below = [&](std::size_t n) { return n ? random() % n : 0; };
   for (std::size_t edits = 1 + (below(2) ? 0 : below(4)); edits > 0 && !text.empty(); --edits) {
     const std::size_t at = below(text.size());
     switch (below(8)) {
-      case 0: text.erase(at, 1 + below(12)); break;
-      case 1: text.insert(at, tokens[below(std::size(tokens))]); break;
-      case 2: text[at] = static_cast<char>(random()); break;
-      case 3: text.insert(at, text.substr(below(text.size()), below(40))); break;
-      case 4: case 5: case 6: {  // another digit somewhere
+      case 0:
+        text.erase(at, 1 + below(12));
+        break;
+      case 1:
+        text.insert(at, tokens[below(std::size(tokens))]);
+        break;
+      case 2:
+        text[at] = static_cast<char>(random());
+        break;
+      case 3:
+        text.insert(at, text.substr(below(text.size()), below(40)));
+        break;
+      case 4:
+      case 5:
+      case 6: {  // another digit somewhere
         const std::size_t digit = text.find_first_of("0123456789", at);
         if (digit != std::string::npos) text[digit] = static_cast<char>('0' + below(10));
         break;
       }
-      default: text.replace(at, 1 + below(3), tokens[below(std::size(tokens))]); break;
+      default:
+        text.replace(at, 1 + below(3), tokens[below(std::size(tokens))]);
+        break;
     }
   }
   return text;
@@ -40,7 +73,8 @@ std::string mutated(std::string text, std::mt19937& random) {
 
 std::vector<std::string> seeds() {
   std::vector<std::string> texts;
-  for (const test::Case& c : test::process_cases(true)) texts.push_back(test::grid_yaml(8, 8, "open") + c.yaml);
+  for (const test::Case& c : test::process_cases(true))
+    texts.push_back(test::grid_yaml(8, 8, "open") + c.yaml);
   texts.push_back(dump_scenario(test::scenario_of(texts.back())));
   return texts;
 }
@@ -101,7 +135,8 @@ TEST(Fuzz, MutatedSettingsAreRefusedOrApplied) {
   const test::TemporaryFolder folder;
   const std::string path = folder.write("a.yaml", seeds()[4]);
   std::mt19937 random(13);
-  const std::vector<std::string> settings{"grid.width=12", "terrain.0.noise.value=3", "wind.radii=[200, 50]", "seed=5", "wind.speed=3"};
+  const std::vector<std::string> settings{"grid.width=12", "terrain.0.noise.value=3", "wind.radii=[200, 50]",
+                                          "seed=5", "wind.speed=3"};
   for (int n = 0; n < 2000; ++n) {
     const std::string setting = mutated(settings[random() % settings.size()], random);
     try {
@@ -117,15 +152,15 @@ TEST(Fuzz, MutatedJournalsAreRefusedOrRead) {
   const test::TemporaryFolder folder;
   {
     JournalWriter writer(folder.path("j"), 5, "cpu");
-    writer.write(1, SetWind{3, 4, 5});
-    EditTerrain edit;
+    writer.write(1, command::SetWind{3, 4, 5});
+    command::EditTerrain edit;
     writer.write(2, edit);
-    SetWindSchedule schedule;
+    command::SetWindSchedule schedule;
     schedule.regime.kind = WindRegimeKind::rose;
     schedule.regime.segments.resize(3);
     writer.write(2, schedule);
-    writer.write(4, Reset{});
-    writer.write(5, LoadCheckpoint{"a.ck", 1});
+    writer.write(4, command::Reset{});
+    writer.write(5, command::LoadCheckpoint{"a.ck", 1});
     writer.end(6);
   }
   const std::string journal = test::file_bytes(folder.path("j"));

@@ -21,11 +21,13 @@ class JournalOf : public test::OnBackend {
   /// Steps and commands of every kind.
   std::uint64_t live(const std::string& path) {
     auto s = session(path);
-    const auto steps = [&](int n) { for (; n > 0; --n) s->step(); };
+    const auto steps = [&](int n) {
+      for (; n > 0; --n) s->step();
+    };
     steps(3);
-    s->apply(SetWind{33.3f, 7.7f, 1.1f});
+    s->apply(command::SetWind{33.3f, 7.7f, 1.1f});
     steps(2);
-    EditTerrain edit;
+    command::EditTerrain edit;
     edit.shape = BrushShape::ellipse;
     edit.x = 1.0 / 3;
     edit.y = 29.9;
@@ -41,14 +43,14 @@ class JournalOf : public test::OnBackend {
     s->apply(edit);
     steps(4);
     s->save_checkpoint(folder_.path("here.ck"));
-    s->apply(Reset{});
+    s->apply(command::Reset{});
     steps(2);
-    SetWindSchedule schedule;
+    command::SetWindSchedule schedule;
     schedule.regime.kind = WindRegimeKind::timeline;
     for (int n = 0; n < 12; ++n) schedule.regime.segments.push_back({30.1f * n, 5.5f + n, 0.7f, 0.3f, 1.0f});
     s->apply(schedule);
     steps(5);
-    s->apply(LoadCheckpoint{folder_.path("here.ck"), 0});
+    s->apply(command::LoadCheckpoint{folder_.path("here.ck"), 0});
     schedule.regime.kind = WindRegimeKind::rose;
     schedule.regime.hold_time = 0.31f;
     schedule.regime.seed = 17;
@@ -62,7 +64,8 @@ class JournalOf : public test::OnBackend {
     s->require_journal_of_this_scenario(journal, "journal");
     std::size_t next = 0;
     for (std::uint64_t tick = 0;; ++tick) {
-      for (; next < journal.entries.size() && journal.entries[next].tick == tick; ++next) s->apply(journal.entries[next].command);
+      for (; next < journal.entries.size() && journal.entries[next].tick == tick; ++next)
+        s->apply(journal.entries[next].command);
       if (tick == journal.ticks) break;
       s->step();
     }
@@ -110,10 +113,11 @@ TEST_P(JournalOf, WithABrokenLineNamesTheLine) {
   live(folder_.path("j"));
   const std::string text = test::file_bytes(folder_.path("j"));
   const std::string header = text.substr(0, text.find('\n') + 1);
-  for (const char* line : {"{tick: 3, command: dance}\n", "{tick: 3}\n", "{command: reset}\n", "[1\n", "\n", "3\n",
-                           "{tick: 5, command: reset}\n{tick: 4, command: reset}\n",
-                           "{tick: 1, command: set_wind, direction_deg: 1, speed: .nan, ramp: 0}\n",
-                           "{tick: 1, command: load_checkpoint}\n", "{tick: 1, command: set_wind_schedule}\n"}) {
+  for (const char* line :
+       {"{tick: 3, command: dance}\n", "{tick: 3}\n", "{command: reset}\n", "[1\n", "\n", "3\n",
+        "{tick: 5, command: reset}\n{tick: 4, command: reset}\n",
+        "{tick: 1, command: set_wind, direction_deg: 1, speed: .nan, ramp: 0}\n",
+        "{tick: 1, command: load_checkpoint}\n", "{tick: 1, command: set_wind_schedule}\n"}) {
     SCOPED_TRACE(line);
     try {
       read_journal(folder_.write("bad", header + line));
@@ -133,9 +137,9 @@ TEST_P(JournalOf, AnotherScenarioIsRefused) {
 TEST_P(JournalOf, RefusedCommandsAreNotWritten) {
   {
     auto s = session(folder_.path("j"));
-    EXPECT_THROW(s->apply(SetWind{0, -1, 0}), ConfigError);
-    EXPECT_THROW(s->apply(LoadCheckpoint{"/no/such/file", 0}), ConfigError);
-    EditTerrain edit;
+    EXPECT_THROW(s->apply(command::SetWind{0, -1, 0}), ConfigError);
+    EXPECT_THROW(s->apply(command::LoadCheckpoint{"/no/such/file", 0}), ConfigError);
+    command::EditTerrain edit;
     edit.value = 90000;
     EXPECT_THROW(s->apply(edit), ConfigError);
   }

@@ -15,7 +15,8 @@ class Mass : public test::OnBackend {
   /// Runs all cases on a grid and looks at the books after 1 and after `steps` steps.
   void all_cases(Size size, const char* boundary, int steps, bool transforms = true) {
     for (const test::Case& c : test::process_cases(transforms)) {
-      const std::string where = c.name + ", " + std::to_string(size.width) + " x " + std::to_string(size.height) + ", " + boundary;
+      const std::string where =
+          c.name + ", " + std::to_string(size.width) + " x " + std::to_string(size.height) + ", " + boundary;
       SCOPED_TRACE(where);
       auto s = simulation(test::grid_yaml(size.width, size.height, boundary) + c.yaml);
       test::run(*s, 1);
@@ -40,7 +41,8 @@ TEST_P(Mass, IsKeptOnTinyGrids) {
 TEST_P(Mass, IsKeptWhenTheHeightScaleIsCoarse) {
   auto s = simulation(
       "grid: {width: 40, height: 40, boundary: open}\n"
-      "terrain: [ramp: {layer: bedrock, value: 2500, slope_x: 50, slope_y: 30}, uniform: {layer: sand, value: 2}]\n"
+      "terrain: [ramp: {layer: bedrock, value: 2500, slope_x: 50, slope_y: 30}, uniform: {layer: sand, "
+      "value: 2}]\n"
       "wind: {speed: 7, direction_deg: 100}\nabrasion: {rate: 0.1}\n");
   EXPECT_GT(s->terrain().scale().exponent, -20);
   test::run(*s, 10);
@@ -48,9 +50,10 @@ TEST_P(Mass, IsKeptWhenTheHeightScaleIsCoarse) {
 }
 
 TEST_P(Mass, IsKeptThroughEdits) {
-  auto s = simulation("grid: {width: 50, height: 40}\nterrain: [uniform: {layer: sand, value: 2}]\nabrasion: {rate: 0.01}\n");
+  auto s = simulation(
+      "grid: {width: 50, height: 40}\nterrain: [uniform: {layer: sand, value: 2}]\nabrasion: {rate: 0.01}\n");
   for (int n = 0; n < 12; ++n) {
-    EditTerrain edit;
+    command::EditTerrain edit;
     edit.layer = n % 3 == 2 ? "bedrock" : "sand";
     edit.merge = static_cast<BrushMerge>(n % 6);
     edit.x = 5 * n;
@@ -67,10 +70,12 @@ TEST_P(Mass, IsKeptThroughEdits) {
   }
 }
 
-/// A hop of more cells than 16 bits count must neither lose sand nor move it somewhere else than the wind says.
+/// A hop of more cells than 16 bits count must neither lose sand nor move it somewhere else than the wind
+/// says.
 TEST_P(Mass, IsKeptByHopsLongerThanTheGrid) {
-  auto s = simulation("grid: {width: 16, height: 16, cell_size: 1}\nterrain: [uniform: {layer: sand, value: 2}]\n"
-                      "wind: {speed: 50, direction_deg: 30}\nrun: {time_step: 100}\n");
+  auto s = simulation(
+      "grid: {width: 16, height: 16, cell_size: 1}\nterrain: [uniform: {layer: sand, value: 2}]\n"
+      "wind: {speed: 50, direction_deg: 30}\nrun: {time_step: 100}\n");
   test::run(*s, 3);
   test::expect_sound(*s, "hops of 5000 cells");
 }

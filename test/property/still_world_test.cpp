@@ -25,28 +25,38 @@ TEST_P(StillWorld, IsUnmovedToTheBitWithoutWind) {
       SCOPED_TRACE(std::string(boundary) + ", reptation " + reptation);
       expect_unmoved("grid: {width: 37, height: 23, boundary: " + std::string(boundary) +
                      "}\nterrain: [uniform: {layer: bedrock, value: 100}, uniform: {layer: sand, value: 3}]\n"
-                     "wind: {speed: 0}\nsaltation: {influx: 1}\nreptation: {method: '" + std::string(reptation) + "'}\n"
+                     "wind: {speed: 0}\nsaltation: {influx: 1}\nreptation: {method: '" +
+                     std::string(reptation) +
+                     "'}\n"
                      "abrasion: {rate: 0.1}\necho_dunes: {enabled: true}\n");
     }
 }
 
 TEST_P(StillWorld, GentleSlopesStayWithoutWind) {
-  expect_unmoved("grid: {width: 64, height: 64}\nterrain: [noise: {layer: bedrock, low: 0, high: 4, scale: 40}, "
-                 "uniform: {layer: sand, value: 3}]\nwind: {speed: 0}\navalanching: {quality: converged}\n");
+  expect_unmoved(
+      "grid: {width: 64, height: 64}\nterrain: [noise: {layer: bedrock, low: 0, high: 4, scale: 40}, "
+      "uniform: {layer: sand, value: 3}]\nwind: {speed: 0}\navalanching: {quality: converged}\n");
 }
 
 TEST_P(StillWorld, GentleSlopesStayWithEveryScheme) {
   for (const char* scheme : {"multilevel", "sweeps", "taylor_keyser"})
-    expect_unmoved("grid: {width: 70, height: 50, boundary: open}\nterrain: [noise: {layer: sand, low: 0, high: 6, scale: 40}]\n"
-                   "saltation: {enabled: false}\nreptation: {method: smoothing}\navalanching: {scheme: " + std::string(scheme) + "}\n");
+    expect_unmoved(
+        "grid: {width: 70, height: 50, boundary: open}\nterrain: [noise: {layer: sand, low: 0, high: 6, "
+        "scale: 40}]\n"
+        "saltation: {enabled: false}\nreptation: {method: smoothing}\navalanching: {scheme: " +
+        std::string(scheme) + "}\n");
 }
 
 TEST_P(StillWorld, BareRockStaysUnderWind) {
-  expect_unmoved("grid: {width: 40, height: 40}\nterrain: [noise: {layer: bedrock, low: 0, high: 30, scale: 10}]\nwind: {speed: 9}\n");
+  expect_unmoved(
+      "grid: {width: 40, height: 40}\nterrain: [noise: {layer: bedrock, low: 0, high: 30, scale: 10}]\nwind: "
+      "{speed: 9}\n");
 }
 
 TEST_P(StillWorld, UniformSandUnderUniformWindStaysUniform) {
-  auto s = simulation("grid: {width: 37, height: 41}\nterrain: [uniform: {layer: sand, value: 20}]\nwind: {speed: 5.3, direction_deg: 34}\n");
+  auto s = simulation(
+      "grid: {width: 37, height: 41}\nterrain: [uniform: {layer: sand, value: 20}]\nwind: {speed: 5.3, "
+      "direction_deg: 34}\n");
   test::run(*s, 10);
   const auto sand = test::quanta(*s, Layer::sand), air = test::quanta(*s, Layer::airborne_sand);
   for (std::size_t i = 0; i < sand.size(); ++i) {
@@ -56,18 +66,23 @@ TEST_P(StillWorld, UniformSandUnderUniformWindStaysUniform) {
 }
 
 TEST_P(StillWorld, NothingIsLiftedBelowTheThreshold) {
-  expect_unmoved("grid: {width: 20, height: 20}\nterrain: [uniform: {layer: sand, value: 2}]\nwind: {speed: 4.9}\n"
-                 "saltation: {threshold_speed: 5}\n");
+  expect_unmoved(
+      "grid: {width: 20, height: 20}\nterrain: [uniform: {layer: sand, value: 2}]\nwind: {speed: 4.9}\n"
+      "saltation: {threshold_speed: 5}\n");
 }
 
 TEST_P(StillWorld, SaturatedSandIsNotLifted) {
-  expect_unmoved("grid: {width: 20, height: 20}\nterrain: [uniform: {layer: sand, value: 2}, uniform: {layer: moisture, value: 0.3}]\n"
-                 "wind: {speed: 9}\n");
+  expect_unmoved(
+      "grid: {width: 20, height: 20}\nterrain: [uniform: {layer: sand, value: 2}, uniform: {layer: moisture, "
+      "value: 0.3}]\n"
+      "wind: {speed: 9}\n");
 }
 
 TEST_P(StillWorld, SandUnderWaterIsNotLifted) {
-  expect_unmoved("grid: {width: 20, height: 20}\nterrain: [uniform: {layer: sand, value: 2}, uniform: {layer: water, value: 0.001}]\n"
-                 "wind: {speed: 9}\n");
+  expect_unmoved(
+      "grid: {width: 20, height: 20}\nterrain: [uniform: {layer: sand, value: 2}, uniform: {layer: water, "
+      "value: 0.001}]\n"
+      "wind: {speed: 9}\n");
 }
 
 TEST_P(StillWorld, ZeroStepsGiveTheStart) {

@@ -6,7 +6,10 @@ namespace desert_sim::test {
 
 BenchTerrain::BenchTerrain(Exec& exec, int width, int height, double cell_size, bool periodic)
     : terrain(exec, Grid{width, height, static_cast<float>(cell_size), periodic, periodic}, HeightScale{}),
-      ledger_words(exec, LedgerView::words), landed(exec, cells()), strength(exec, cells()), repose(exec, cells()),
+      ledger_words(exec, LedgerView::words),
+      landed(exec, cells()),
+      strength(exec, cells()),
+      repose(exec, cells()),
       cliff(exec, cells()) {
   ledger_words.set_zero();
   for (Buffer<float>* buffer : {&strength, &repose, &cliff}) buffer->set_zero();
@@ -69,7 +72,8 @@ long long BenchTerrain::booked(Material material, int side) const {
   const std::vector<long long> words = ledger_words.download();
   const int account = static_cast<int>(material) * 2 + side;
   long long sum = 0;
-  for (int n = 0; n < LedgerView::stripes; ++n) sum += words[static_cast<std::size_t>(account * LedgerView::stripes + n)];
+  for (int n = 0; n < LedgerView::stripes; ++n)
+    sum += words[static_cast<std::size_t>(account * LedgerView::stripes + n)];
   return sum;
 }
 
@@ -87,16 +91,18 @@ void BenchTerrain::echo(const EchoDuneParameters& p) {
   with_backend(exec(), [&](auto& e) { echo_dunes::step(e, terrain.view(), p, cliff.data()); });
 }
 
-void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParameters& a, const ReposeParameters& r,
-                             float time_step) {
+void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParameters& a,
+                             const ReposeParameters& r, float time_step) {
   with_backend(exec(), [&](auto& e) {
     saltation::step(e, terrain.view(), p, a, r, time_step, ledger(), landed.data(), strength.data());
   });
 }
 
-void BenchTerrain::reptation(const ReptationParameters& p, const ReposeParameters& r, float time_step, std::uint64_t tick) {
+void BenchTerrain::reptation(const ReptationParameters& p, const ReposeParameters& r, float time_step,
+                             std::uint64_t tick) {
   with_backend(exec(), [&](auto& e) {
-    reptation::step(e, terrain.view(), p, r, time_step, 1, tick, strength.data(), landed.data(), repose.data());
+    reptation::step(e, terrain.view(), p, r, time_step, 1, tick, strength.data(), landed.data(),
+                    repose.data());
   });
 }
 
@@ -122,9 +128,8 @@ void BenchTerrain::avalanche_bedrock(const AvalanchingParameters& p, const Repos
 void BenchTerrain::blow(const WindParameters& p, wind::Vector above, Quanta reference) {
   surface();
   wind::Workspace work = wind::make_workspace(exec(), grid(), p);
-  with_backend(exec(), [&](auto& e) {
-    wind::step(e, terrain.view(), p, above, reference, nullptr, nullptr, work);
-  });
+  with_backend(exec(),
+               [&](auto& e) { wind::step(e, terrain.view(), p, above, reference, nullptr, nullptr, work); });
   exec().synchronise();
 }
 

@@ -30,18 +30,18 @@ class BenchTerrain {
   void set_strength(const std::function<double(int, int)>& f);
   void set_repose(const std::function<double(int, int)>& f);
 
-  double at(Layer layer, int x, int y) const;        ///< in the layer's unit
+  double at(Layer layer, int x, int y) const;  ///< in the layer's unit
   Quanta quanta_at(Layer layer, int x, int y) const;
   std::vector<Quanta> quanta(Layer layer) const;
-  long long total(Layer layer) const;                ///< [quanta]
+  long long total(Layer layer) const;  ///< [quanta]
   /// Booked in (side 0) or out (side 1) of a material [quanta].
   long long booked(Material material, int side) const;
 
   void surface();
   void shadow(const WindShadowParameters& p = {});
   void echo(const EchoDuneParameters& p);
-  void saltation(const SaltationParameters& p = {}, const AbrasionParameters& a = {}, const ReposeParameters& r = {},
-                 float time_step = 1);
+  void saltation(const SaltationParameters& p = {}, const AbrasionParameters& a = {},
+                 const ReposeParameters& r = {}, float time_step = 1);
   void reptation(const ReptationParameters& p = {}, const ReposeParameters& r = {}, float time_step = 1,
                  std::uint64_t tick = 0);
   /// With the tangents in `repose`; returns the sweeps it took.

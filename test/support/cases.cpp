@@ -3,11 +3,13 @@
 namespace desert_sim::test {
 
 std::string grid_yaml(int width, int height, const std::string& boundary) {
-  return "grid: {width: " + std::to_string(width) + ", height: " + std::to_string(height) + ", cell_size: 1, boundary: " + boundary + "}\n";
+  return "grid: {width: " + std::to_string(width) + ", height: " + std::to_string(height) +
+         ", cell_size: 1, boundary: " + boundary + "}\n";
 }
 
 std::vector<Case> process_cases(bool transforms) {
-  const std::string fft = transforms ? "warping: true, projection: true" : "warping: false, projection: false";
+  const std::string fft =
+      transforms ? "warping: true, projection: true" : "warping: false, projection: false";
   const std::string wind = "wind: {speed: 6, direction_deg: 27, " + fft + "}\n";
   const std::string dunes =
       "  - noise: {layer: bedrock, low: 0, high: 6, scale: 16}\n"
@@ -18,49 +20,64 @@ std::vector<Case> process_cases(bool transforms) {
   const auto add = [&](const std::string& name, const std::string& yaml) { cases.push_back({name, yaml}); };
 
   for (const char* method : {"off", "adaptive_repose", "smoothing", "steepest"})
-    add(std::string("reptation ") + method,
-        terrain + wind + "reptation: {method: " + method + ", strength: 0.4}\navalanching: {quality: fast}\n");
+    add(std::string("reptation ") + method, terrain + wind + "reptation: {method: " + method +
+                                                ", strength: 0.4}\navalanching: {quality: fast}\n");
   for (const char* scheme : {"multilevel", "sweeps", "taylor_keyser"})
     for (const char* quality : {"fast", "good", "converged"})
       add(std::string("avalanching ") + scheme + " " + quality,
           terrain + wind + "avalanching: {scheme: " + scheme + ", quality: " + quality +
               ", sweeps: 12, max_iterations: 100, transfer: 1}\n");
   add("avalanching off", terrain + wind + "avalanching: {enabled: false}\n");
-  add("soil, abrasion",
-      terrain + "  - noise: {layer: soil, low: 0, high: 3, scale: 8, threshold: 0.5, seed: 3}\n"
-                "  - noise: {layer: erosion_resistance, low: 0, high: 1, scale: 8, seed: 4}\n" + wind + worn);
+  add("soil, abrasion", terrain +
+                            "  - noise: {layer: soil, low: 0, high: 3, scale: 8, threshold: 0.5, seed: 3}\n"
+                            "  - noise: {layer: erosion_resistance, low: 0, high: 1, scale: 8, seed: 4}\n" +
+                            wind + worn);
   add("abrasion to rock",
-      terrain + "  - column: {layer: bedrock, relative: true, x: 0.5, y: 0.5, size_x: 6, size_y: 6, height: 15}\n" + wind +
-          worn + "avalanching: {bedrock_to_sand: false}\n");
+      terrain +
+          "  - column: {layer: bedrock, relative: true, x: 0.5, y: 0.5, size_x: 6, size_y: 6, height: 15}\n" +
+          wind + worn + "avalanching: {bedrock_to_sand: false}\n");
   add("bedrock breaks",
-      terrain + "  - column: {layer: bedrock, relative: true, x: 0.3, y: 0.5, size_x: 6, size_y: 9, height: 25}\n" + wind + worn);
-  add("vegetation", terrain + "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.4, seed: 5}\n" + wind);
+      terrain +
+          "  - column: {layer: bedrock, relative: true, x: 0.3, y: 0.5, size_x: 6, size_y: 9, height: 25}\n" +
+          wind + worn);
+  add("vegetation",
+      terrain + "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.4, seed: 5}\n" +
+          wind);
   add("wet ground",
-      terrain + "  - noise: {layer: moisture, low: 0, high: 0.35, scale: 10, threshold: 0.5, seed: 6}\n"
-                "  - noise: {layer: water, low: 0, high: 1, scale: 10, threshold: 0.7, seed: 7}\n" + wind);
+      terrain +
+          "  - noise: {layer: moisture, low: 0, high: 0.35, scale: 10, threshold: 0.5, seed: 6}\n"
+          "  - noise: {layer: water, low: 0, high: 1, scale: 10, threshold: 0.7, seed: 7}\n" +
+          wind);
   const std::string obstacles =
       "  - obstacle: {shape: cylinder, relative: true, x: 0.5, y: 0.5, size_x: 9, size_y: 9, height: 8}\n"
-      "  - obstacle: {shape: box, relative: true, x: 0.1, y: 0.9, size_x: 7, size_y: 5, angle_deg: 30, height: 3}\n";
+      "  - obstacle: {shape: box, relative: true, x: 0.1, y: 0.9, size_x: 7, size_y: 5, angle_deg: 30, "
+      "height: 3}\n";
   add("obstacles", terrain + obstacles + wind);
   add("obstacles, smoothing, sweeps",
-      terrain + obstacles + wind + "reptation: {method: smoothing, strength: 1}\navalanching: {scheme: sweeps, sweeps: 8}\n");
-  add("echo dunes",
-      terrain + "  - column: {layer: bedrock, relative: true, x: 0.7, y: 0.5, size_x: 5, size_y: 100, height: 12}\n" + wind +
-          "echo_dunes: {enabled: true}\nwind_shadow: {curved: true}\n");
+      terrain + obstacles + wind +
+          "reptation: {method: smoothing, strength: 1}\navalanching: {scheme: sweeps, sweeps: 8}\n");
+  add("echo dunes", terrain +
+                        "  - column: {layer: bedrock, relative: true, x: 0.7, y: 0.5, size_x: 5, size_y: "
+                        "100, height: 12}\n" +
+                        wind + "echo_dunes: {enabled: true}\nwind_shadow: {curved: true}\n");
   add("influx", terrain + wind + "saltation: {influx: 0.5, lift: 0.4}\n");
   add("long hops", terrain + "wind: {speed: 40, direction_deg: 200, " + fft + "}\nrun: {time_step: 2}\n");
-  add("features",
-      terrain + "wind: {speed: 4, direction_deg: -60, " + fft +
-          ", features: [{kind: vortex, x: 10, y: 12, radius: 6, speed: 5}, {kind: jet, x: 20, y: 5, radius: 4, length: 15, "
-          "direction_deg: 40, speed: 6}, {kind: turbulence, x: 15, y: 15, radius: 14, scale: 5, life_time: 4, speed: 4}]}\n");
-  add("wind turns",
-      terrain + "wind: {regime: timeline, segments: [{direction_deg: 0, speed: 6, duration: 4, ramp: 2}, {direction_deg: "
-                "130, speed: 8, duration: 3, ramp: 1}], " + fft + "}\n");
+  add("features", terrain + "wind: {speed: 4, direction_deg: -60, " + fft +
+                      ", features: [{kind: vortex, x: 10, y: 12, radius: 6, speed: 5}, {kind: jet, x: 20, y: "
+                      "5, radius: 4, length: 15, "
+                      "direction_deg: 40, speed: 6}, {kind: turbulence, x: 15, y: 15, radius: 14, scale: 5, "
+                      "life_time: 4, speed: 4}]}\n");
+  add("wind turns", terrain +
+                        "wind: {regime: timeline, segments: [{direction_deg: 0, speed: 6, duration: 4, ramp: "
+                        "2}, {direction_deg: "
+                        "130, speed: 8, duration: 3, ramp: 1}], " +
+                        fft + "}\n");
   add("everything",
-      terrain + "  - noise: {layer: soil, low: 0, high: 2, scale: 8, threshold: 0.5, seed: 3}\n"
-                "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.6, seed: 5}\n"
-                "  - noise: {layer: moisture, low: 0, high: 0.3, scale: 10, threshold: 0.6, seed: 6}\n" + obstacles +
-          wind + worn +
+      terrain +
+          "  - noise: {layer: soil, low: 0, high: 2, scale: 8, threshold: 0.5, seed: 3}\n"
+          "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.6, seed: 5}\n"
+          "  - noise: {layer: moisture, low: 0, high: 0.3, scale: 10, threshold: 0.6, seed: 6}\n" +
+          obstacles + wind + worn +
           "echo_dunes: {enabled: true}\nwind_shadow: {curved: true}\nreptation: {method: steepest}\n"
           "saltation: {influx: 0.2}\nrun: {check_every: 1}\n");
   return cases;

@@ -1,11 +1,12 @@
 #include "support/program.hpp"
 
-#include <csignal>
-#include <cstdlib>
 #include <fcntl.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <thread>
 
 #include "support/temporary_folder.hpp"
 
@@ -16,7 +17,8 @@ std::string program_path(const char* variable, const std::string& built) {
   return path && path[0] ? path : built;
 }
 
-ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments, double signal_after) {
+ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments,
+                       double signal_after) {
   const TemporaryFolder folder;
   const std::string out = folder.path("out"), err = folder.path("err");
   std::vector<char*> argv{const_cast<char*>(program.c_str())};

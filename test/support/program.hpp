@@ -17,6 +17,7 @@ struct ProgramRun {
 std::string program_path(const char* variable, const std::string& built);
 
 /// `signal_after` > 0: sends SIGINT after so many seconds.
-ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments, double signal_after = 0);
+ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments,
+                       double signal_after = 0);
 
 }  // namespace desert_sim::test

@@ -35,13 +35,18 @@ std::vector<T> words_as(const Simulation& simulation, Layer layer) {
 }
 }  // namespace
 
-std::vector<Quanta> quanta(const Simulation& simulation, Layer layer) { return words_as<Quanta>(simulation, layer); }
-std::vector<float> real(const Simulation& simulation, Layer layer) { return words_as<float>(simulation, layer); }
+std::vector<Quanta> quanta(const Simulation& simulation, Layer layer) {
+  return words_as<Quanta>(simulation, layer);
+}
+std::vector<float> real(const Simulation& simulation, Layer layer) {
+  return words_as<float>(simulation, layer);
+}
 
 std::vector<Layer> persistent_layers(const Simulation& simulation) {
   std::vector<Layer> layers;
   for (const LayerInfo& row : layer_table)
-    if (row.lifetime == Lifetime::persistent && simulation.terrain().has(row.layer)) layers.push_back(row.layer);
+    if (row.lifetime == Lifetime::persistent && simulation.terrain().has(row.layer))
+      layers.push_back(row.layer);
   return layers;
 }
 
@@ -54,7 +59,8 @@ void expect_sound(Simulation& simulation, const std::string& when) {
     const bool depth = row.lifetime == Lifetime::persistent && row.lowest == 0;
     long bad = 0;
     if (row.storage == Storage::quanta) {
-      for (Quanta v : quanta(simulation, row.layer)) bad += (depth && v < 0) || v >= wall_height || v <= -wall_height;
+      for (Quanta v : quanta(simulation, row.layer))
+        bad += (depth && v < 0) || v >= wall_height || v <= -wall_height;
     } else {
       for (float v : real(simulation, row.layer)) bad += !std::isfinite(v) || (depth && v < 0);
     }

@@ -1,6 +1,6 @@
 #pragma once
-/// Worlds for tests: a scenario from YAML text, a simulation on a backend, its layers; and a fixture that runs each
-/// test body on every backend.
+/// Worlds for tests: a scenario from YAML text, a simulation on a backend, its layers; and a fixture that
+/// runs each test body on every backend.
 
 #include <gtest/gtest.h>
 
@@ -44,11 +44,11 @@ class OnBackend : public ::testing::TestWithParam<const char*> {
 };
 
 /// For tests that need the GPU beside the CPU: false if there is none, after skipping (or failing) the test.
-#define DESERT_NEED_GPU()                                                          \
-  do {                                                                             \
-    const CudaStatus status_ = cuda_status();                                      \
-    if (!status_.usable && test::gpu_required()) FAIL() << status_.reason;         \
-    if (!status_.usable) GTEST_SKIP() << status_.reason;                           \
+#define DESERT_NEED_GPU()                                                  \
+  do {                                                                     \
+    const CudaStatus status_ = cuda_status();                              \
+    if (!status_.usable && test::gpu_required()) FAIL() << status_.reason; \
+    if (!status_.usable) GTEST_SKIP() << status_.reason;                   \
   } while (false)
 
 inline std::string backend_name(const ::testing::TestParamInfo<const char*>& info) { return info.param; }

@@ -12,10 +12,32 @@ class Run : public test::DesertRun {};
 TEST_F(Run, WritesASummaryWithAllKeys) {
   run_cpu({scenario_, "--out", path("out"), "--threads", "2"});
   const std::string text = summary("out");
-  for (const char* key : {"steps", "sim_time_s", "width", "height", "cell_size_m", "backend", "device", "threads", "seed", "ms_per_step",
-                          "total", "volume_m3", "mass_residual", "max_sand_slope_deg", "avalanche_iterations_mean", "state_hash",
-                          "peak_memory_bytes", "bedrock", "soil", "sand", "initial", "final", "in", "out"})
-    EXPECT_NE(text.find("\"" + std::string(key) + "\": "), std::string::npos) << key << " is not in\n" << text;
+  for (const char* key : {"steps",
+                          "sim_time_s",
+                          "width",
+                          "height",
+                          "cell_size_m",
+                          "backend",
+                          "device",
+                          "threads",
+                          "seed",
+                          "ms_per_step",
+                          "total",
+                          "volume_m3",
+                          "mass_residual",
+                          "max_sand_slope_deg",
+                          "avalanche_iterations_mean",
+                          "state_hash",
+                          "peak_memory_bytes",
+                          "bedrock",
+                          "soil",
+                          "sand",
+                          "initial",
+                          "final",
+                          "in",
+                          "out"})
+    EXPECT_NE(text.find("\"" + std::string(key) + "\": "), std::string::npos) << key << " is not in\n"
+                                                                              << text;
   EXPECT_EQ(json(text, "steps"), "12");
   EXPECT_EQ(json(text, "sim_time_s"), "12");
   EXPECT_EQ(json(text, "width"), "40");
@@ -25,7 +47,8 @@ TEST_F(Run, WritesASummaryWithAllKeys) {
   EXPECT_EQ(json(text, "threads"), "2");
   EXPECT_EQ(json(text, "seed"), "1");
   EXPECT_EQ(std::count(text.begin(), text.end(), '{'), std::count(text.begin(), text.end(), '}'));
-  for (const char* bad : {"nan", "inf", "-nan"}) EXPECT_EQ(text.find(": " + std::string(bad)), std::string::npos) << text;
+  for (const char* bad : {"nan", "inf", "-nan"})
+    EXPECT_EQ(text.find(": " + std::string(bad)), std::string::npos) << text;
 }
 
 TEST_F(Run, TimesEachProcess) {
@@ -72,7 +95,8 @@ TEST_F(Run, EveryWritesAFolderEachTime) {
   run_cpu({scenario_, "--out", path("out"), "--steps", "10", "--every", "4"});
   for (const char* step : {"step_00000004", "step_00000008"}) {
     EXPECT_TRUE(std::filesystem::exists(path("out") + "/" + step + "/summary.json")) << step;
-    EXPECT_EQ(json(test::file_bytes(path("out") + "/" + step + "/summary.json"), "steps"), std::to_string(std::stoi(step + 5)));
+    EXPECT_EQ(json(test::file_bytes(path("out") + "/" + step + "/summary.json"), "steps"),
+              std::to_string(std::stoi(step + 5)));
   }
   EXPECT_FALSE(std::filesystem::exists(path("out") + "/step_00000010"));
   EXPECT_EQ(json(summary("out"), "steps"), "10");
@@ -92,9 +116,9 @@ TEST_F(Run, ReplaysAJournalToTheSameHash) {
     Scenario scenario = load_scenario(scenario_);
     Session session(scenario, refuse_rasters, "cpu", 1, path("j"));
     for (int n = 0; n < 9; ++n) {
-      if (n == 3) session.apply(SetWind{90, 9, 2});
+      if (n == 3) session.apply(command::SetWind{90, 9, 2});
       if (n == 6) {
-        EditTerrain edit;
+        command::EditTerrain edit;
         edit.x = 1030;
         edit.y = -280;
         edit.radius = 9;
@@ -104,7 +128,8 @@ TEST_F(Run, ReplaysAJournalToTheSameHash) {
       session.step();
     }
     char text[32];
-    std::snprintf(text, sizeof text, "\"%016llx\"", static_cast<unsigned long long>(session.simulation().state_hash()));
+    std::snprintf(text, sizeof text, "\"%016llx\"",
+                  static_cast<unsigned long long>(session.simulation().state_hash()));
     live = text;
   }
   run_cpu({scenario_, "--replay", path("j"), "--out", path("out")});
@@ -138,14 +163,16 @@ TEST_F(Run, DescribesAndHelps) {
   EXPECT_EQ(described.status, 0);
   EXPECT_EQ(described.out, describe_parameters());
   EXPECT_EQ(helped.status, 0);
-  for (const char* option : {"--steps", "--backend", "--threads", "--set", "--seed", "--out", "--every", "--checkpoint", "--checkpoint-every",
-                             "--resume", "--replay", "--describe", "--quiet"})
+  for (const char* option :
+       {"--steps", "--backend", "--threads", "--set", "--seed", "--out", "--every", "--checkpoint",
+        "--checkpoint-every", "--resume", "--replay", "--describe", "--quiet"})
     EXPECT_NE(helped.out.find(option), std::string::npos) << option;
 }
 
 TEST_F(Run, InterruptedFinishesItsStepWritesOutputsAndExits130) {
-  const test::ProgramRun r =
-      run({scenario_, "--backend", "cpu", "--steps", "100000000", "--out", path("out"), "--checkpoint", path("a.ck")}, 1.5);
+  const test::ProgramRun r = run({scenario_, "--backend", "cpu", "--steps", "100000000", "--out", path("out"),
+                                  "--checkpoint", path("a.ck")},
+                                 1.5);
   EXPECT_EQ(r.status, 130) << r.err;
   const std::string text = summary("out");
   EXPECT_NE(text, "");

@@ -12,13 +12,16 @@ class Rasters : public test::DesertRun {
  protected:
   /// An ESRI ASCII grid, north row first, as on paper.
   std::string dem() {
-    return folder_.write("dem.asc",
-                         "ncols 6\nnrows 4\nxllcorner 500100.5\nyllcorner 4100200\ncellsize 10\nNODATA_value -9999\n"
-                         "10 11 12 13 14 90\n20 21 22 23 24 25\n30 31 32 33 34 35\n70 41 42 43 44 45\n");
+    return folder_.write(
+        "dem.asc",
+        "ncols 6\nnrows 4\nxllcorner 500100.5\nyllcorner 4100200\ncellsize 10\nNODATA_value -9999\n"
+        "10 11 12 13 14 90\n20 21 22 23 24 25\n30 31 32 33 34 35\n70 41 42 43 44 45\n");
   }
   std::string dem_scenario(const std::string& more = "") {
     dem();
-    return folder_.write("dem.yaml", "grid: {from_raster: dem.asc, boundary: open}\nterrain: [raster: {layer: bedrock}]\n" + more);
+    return folder_.write(
+        "dem.yaml",
+        "grid: {from_raster: dem.asc, boundary: open}\nterrain: [raster: {layer: bedrock}]\n" + more);
   }
 };
 
@@ -37,8 +40,10 @@ TEST_F(Rasters, ElevationHasTheGeoreferenceAndOrientationOfTheInput) {
 }
 
 TEST_F(Rasters, EveryLayerInUseHasAFileAndThereArePictures) {
-  run_cpu({scenario_, "--steps", "2", "--out", path("out"), "--set", "terrain.2={uniform: {layer: soil, value: 1}}", "--set", "echo_dunes.enabled=true"});
-  for (const char* layer : {"bedrock", "soil", "sand", "airborne_sand", "elevation", "wind_x", "wind_y", "wind_shadow", "echo"}) {
+  run_cpu({scenario_, "--steps", "2", "--out", path("out"), "--set",
+           "terrain.2={uniform: {layer: soil, value: 1}}", "--set", "echo_dunes.enabled=true"});
+  for (const char* layer :
+       {"bedrock", "soil", "sand", "airborne_sand", "elevation", "wind_x", "wind_y", "wind_shadow", "echo"}) {
     const std::string file = path("out") + "/" + layer + ".tif";
     ASSERT_TRUE(std::filesystem::exists(file)) << layer;
     const Raster r = read_raster(file);
@@ -48,14 +53,18 @@ TEST_F(Rasters, EveryLayerInUseHasAFileAndThereArePictures) {
     EXPECT_EQ(r.nodata_count(), 0) << layer;
   }
   EXPECT_FALSE(std::filesystem::exists(path("out") + "/water.tif"));
-  for (const char* picture : {"elevation.png", "wind.png"}) EXPECT_GT(std::filesystem::file_size(path("out") + "/" + picture), 1000u);
+  for (const char* picture : {"elevation.png", "wind.png"})
+    EXPECT_GT(std::filesystem::file_size(path("out") + "/" + picture), 1000u);
   for (const auto& entry : std::filesystem::recursive_directory_iterator(path("out")))
-    EXPECT_TRUE(entry.path().extension() == ".tif" || entry.path().extension() == ".png" || entry.path().extension() == ".json") << entry.path();
+    EXPECT_TRUE(entry.path().extension() == ".tif" || entry.path().extension() == ".png" ||
+                entry.path().extension() == ".json")
+        << entry.path();
 }
 
 TEST_F(Rasters, ElevationIsTheSumOfItsLayers) {
   run_cpu({scenario_, "--steps", "3", "--out", path("out")});
-  const Raster elevation = read_raster(path("out") + "/elevation.tif"), bedrock = read_raster(path("out") + "/bedrock.tif"),
+  const Raster elevation = read_raster(path("out") + "/elevation.tif"),
+               bedrock = read_raster(path("out") + "/bedrock.tif"),
                sand = read_raster(path("out") + "/sand.tif");
   for (std::size_t i = 0; i < elevation.values.size(); ++i)
     ASSERT_NEAR(elevation.values[i], bedrock.values[i] + sand.values[i], 1e-5);
@@ -63,22 +72,25 @@ TEST_F(Rasters, ElevationIsTheSumOfItsLayers) {
 
 TEST_F(Rasters, WindBlowsSandTheWayItSays) {
   // A heap in the middle of bare rock, wind to the north: sand arrives north of it and none south.
-  const std::string file = folder_.write("north.yaml",
-                                         "grid: {width: 21, height: 41, boundary: open}\n"
-                                         "terrain: [column: {layer: sand, x: 10.5, y: 20.5, size_x: 1, size_y: 1, height: 1}]\n"
-                                         "wind: {speed: 3, direction_deg: 90}\navalanching: {enabled: false}\n");
+  const std::string file =
+      folder_.write("north.yaml",
+                    "grid: {width: 21, height: 41, boundary: open}\n"
+                    "terrain: [column: {layer: sand, x: 10.5, y: 20.5, size_x: 1, size_y: 1, height: 1}]\n"
+                    "wind: {speed: 3, direction_deg: 90}\navalanching: {enabled: false}\n");
   run_cpu({file, "--steps", "3", "--out", path("out")});
   const Raster sand = read_raster(path("out") + "/sand.tif");
   double north = 0, south = 0;
   for (int y = 0; y < 41; ++y)
-    for (int x = 0; x < 21; ++x) (y > 20 ? north : south) += y == 20 ? 0 : sand.values[static_cast<std::size_t>(y * 21 + x)];
+    for (int x = 0; x < 21; ++x)
+      (y > 20 ? north : south) += y == 20 ? 0 : sand.values[static_cast<std::size_t>(y * 21 + x)];
   EXPECT_GT(north, 0.5);
   EXPECT_EQ(south, 0);
 }
 
 TEST_F(Rasters, WrittenElevationIsReadBackAsATerrain) {
   run_cpu({scenario_, "--steps", "2", "--out", path("a")});
-  const std::string file = folder_.write("again.yaml", "grid: {from_raster: a/elevation.tif}\nterrain: [raster: {layer: bedrock}]\n");
+  const std::string file = folder_.write(
+      "again.yaml", "grid: {from_raster: a/elevation.tif}\nterrain: [raster: {layer: bedrock}]\n");
   run_cpu({file, "--steps", "0", "--out", path("b")});
   const Raster a = read_raster(path("a") + "/elevation.tif"), b = read_raster(path("b") + "/elevation.tif");
   EXPECT_EQ(a.origin_x, b.origin_x);
@@ -88,9 +100,12 @@ TEST_F(Rasters, WrittenElevationIsReadBackAsATerrain) {
 }
 
 TEST_F(Rasters, NoDataIsRefusedUnlessItIsToBeFilled) {
-  folder_.write("holes.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n1 2 3\n4 -9999 6\n");
+  folder_.write(
+      "holes.asc",
+      "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n1 2 3\n4 -9999 6\n");
   const std::string text = "grid: {from_raster: holes.asc}\nterrain: [raster: {layer: bedrock, fill_nodata: ";
-  const test::ProgramRun refused = run({folder_.write("a.yaml", text + "false}]\n"), "--backend", "cpu", "--out", path("out")});
+  const test::ProgramRun refused =
+      run({folder_.write("a.yaml", text + "false}]\n"), "--backend", "cpu", "--out", path("out")});
   EXPECT_EQ(refused.status, 2);
   EXPECT_NE(refused.err.find("holes.asc"), std::string::npos) << refused.err;
   EXPECT_FALSE(std::filesystem::exists(path("out")));

@@ -1,4 +1,5 @@
-// desert_run refuses wrong input: status 2, soon, one clear line that names the culprit, nothing left in --out.
+// desert_run refuses wrong input: status 2, soon, one clear line that names the culprit, nothing left in
+// --out.
 
 #include <cstdlib>
 #include <cstring>
@@ -13,13 +14,15 @@ class Refusals : public test::DesertRun {
   /// Generous for a machine under load; alone it takes milliseconds.
   static constexpr double soon = 10;
 
-  test::ProgramRun expect_refused(std::vector<std::string> arguments, const std::vector<std::string>& naming, bool one_line = true) {
+  test::ProgramRun expect_refused(std::vector<std::string> arguments, const std::vector<std::string>& naming,
+                                  bool one_line = true) {
     std::filesystem::remove_all(path("out"));
     arguments.insert(arguments.end(), {"--out", path("out")});
     const test::ProgramRun r = run(arguments);
     EXPECT_EQ(r.status, 2) << r.err;
     EXPECT_LT(r.seconds, soon);
-    for (const std::string& text : naming) EXPECT_NE(r.err.find(text), std::string::npos) << "the message lacks '" << text << "':\n" << r.err;
+    for (const std::string& text : naming)
+      EXPECT_NE(r.err.find(text), std::string::npos) << "the message lacks '" << text << "':\n" << r.err;
     EXPECT_EQ(r.err.rfind("desert_run: ", 0), 0u) << r.err;
     if (one_line) {
       EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
@@ -33,17 +36,29 @@ class Refusals : public test::DesertRun {
   }
 };
 
-TEST_F(Refusals, UnknownKey) { expect_text_refused("grid: {widht: 40}\n", {"wrong.yaml", "grid.widht", "unknown", "width"}); }
-TEST_F(Refusals, TextForANumber) { expect_text_refused("grid: {width: wide}\n", {"wrong.yaml", "grid.width", "wide", "65536"}); }
-TEST_F(Refusals, NotANumber) { expect_text_refused("wind: {speed: .nan}\n", {"wrong.yaml", "wind.speed", ".nan", "100"}); }
-TEST_F(Refusals, NegativeSize) { expect_text_refused("grid: {width: -40}\n", {"wrong.yaml", "grid.width", "-40"}); }
+TEST_F(Refusals, UnknownKey) {
+  expect_text_refused("grid: {widht: 40}\n", {"wrong.yaml", "grid.widht", "unknown", "width"});
+}
+TEST_F(Refusals, TextForANumber) {
+  expect_text_refused("grid: {width: wide}\n", {"wrong.yaml", "grid.width", "wide", "65536"});
+}
+TEST_F(Refusals, NotANumber) {
+  expect_text_refused("wind: {speed: .nan}\n", {"wrong.yaml", "wind.speed", ".nan", "100"});
+}
+TEST_F(Refusals, NegativeSize) {
+  expect_text_refused("grid: {width: -40}\n", {"wrong.yaml", "grid.width", "-40"});
+}
 TEST_F(Refusals, ZeroSize) {
-  const auto r = expect_refused({folder_.write("wrong.yaml", "grid: {width: 0, height: 0}\n")}, {"grid.width", "grid.height"}, false);
+  const auto r = expect_refused({folder_.write("wrong.yaml", "grid: {width: 0, height: 0}\n")},
+                                {"grid.width", "grid.height"}, false);
   EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 2) << "one line a fault";
 }
-TEST_F(Refusals, CellSizeZero) { expect_text_refused("grid: {cell_size: 0}\n", {"wrong.yaml", "grid.cell_size", "0"}); }
+TEST_F(Refusals, CellSizeZero) {
+  expect_text_refused("grid: {cell_size: 0}\n", {"wrong.yaml", "grid.cell_size", "0"});
+}
 TEST_F(Refusals, RasterThatIsMissing) {
-  expect_text_refused("grid: {width: 8, height: 8}\nterrain: [raster: {file: no_such.tif}]\n", {"no_such.tif"});
+  expect_text_refused("grid: {width: 8, height: 8}\nterrain: [raster: {file: no_such.tif}]\n",
+                      {"no_such.tif"});
   expect_text_refused("grid: {from_raster: no_such.tif}\n", {"no_such.tif"});
 }
 TEST_F(Refusals, RasterThatIsText) {
@@ -71,7 +86,9 @@ TEST_F(Refusals, CheckpointOfAnotherVersion) {
   folder_.write("new.ck", bytes);
   expect_refused({scenario_, "--resume", path("new.ck")}, {"new.ck", "version 99"});
 }
-TEST_F(Refusals, CheckpointThatIsMissing) { expect_refused({scenario_, "--resume", path("no.ck")}, {"no.ck"}); }
+TEST_F(Refusals, CheckpointThatIsMissing) {
+  expect_refused({scenario_, "--resume", path("no.ck")}, {"no.ck"});
+}
 TEST_F(Refusals, CheckpointThatIsAFolder) { expect_refused({scenario_, "--resume", path(".")}, {path(".")}); }
 TEST_F(Refusals, JournalThatIsMissingOrNone) {
   expect_refused({scenario_, "--replay", path("no.journal")}, {"no.journal"});
@@ -114,7 +131,8 @@ TEST_F(Refusals, CudaWithoutADevice) {
 }
 
 TEST_F(Refusals, OutputsThatCannotBeWritten) {
-  const test::ProgramRun below = run({scenario_, "--backend", "cpu", "--steps", "1", "--out", path("no/such/folder")});
+  const test::ProgramRun below =
+      run({scenario_, "--backend", "cpu", "--steps", "1", "--out", path("no/such/folder")});
   EXPECT_EQ(below.status, 2);
   EXPECT_NE(below.err.find("no/such/folder"), std::string::npos) << below.err;
   const test::ProgramRun file = run({scenario_, "--backend", "cpu", "--steps", "1", "--out", scenario_});
@@ -124,7 +142,8 @@ TEST_F(Refusals, OutputsThatCannotBeWritten) {
 
 /// Before the steps, not after hours of them.
 TEST_F(Refusals, CheckpointThatCannotBeWrittenIsRefusedBeforeTheRun) {
-  const test::ProgramRun r = run({scenario_, "--backend", "cpu", "--steps", "200000", "--checkpoint", path("no/such/a.ck")}, 3);
+  const test::ProgramRun r =
+      run({scenario_, "--backend", "cpu", "--steps", "200000", "--checkpoint", path("no/such/a.ck")}, 3);
   EXPECT_EQ(r.status, 2) << r.err;
   EXPECT_NE(r.err.find("no/such/a.ck"), std::string::npos) << r.err;
 }

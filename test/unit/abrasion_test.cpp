@@ -10,7 +10,8 @@ constexpr double quantum = 1.0 / 1048576;
 
 class AbrasionLaw : public test::OnBackend {
  protected:
-  std::unique_ptr<test::BenchTerrain> worn(const std::function<void(test::BenchTerrain&)>& change, float rate = 0.01f, float dt = 1) {
+  std::unique_ptr<test::BenchTerrain> worn(const std::function<void(test::BenchTerrain&)>& change,
+                                           float rate = 0.01f, float dt = 1) {
     auto t = std::make_unique<test::BenchTerrain>(exec(), 1, 1);
     t->set(Layer::airborne_sand, 0.5).set(Layer::wind_x, 2 / dt).set(Layer::bedrock, 100);
     change(*t);
@@ -24,7 +25,8 @@ class AbrasionLaw : public test::OnBackend {
   }
 };
 
-// Little is deposited, so that it does not cover: p = 0.02, 0.49 m of 0.5 m bounces; wear = rate·|w|·(1 − p)·0.49.
+// Little is deposited, so that it does not cover: p = 0.02, 0.49 m of 0.5 m bounces; wear = rate·|w|·(1 −
+// p)·0.49.
 TEST_P(AbrasionLaw, WearsBareRockByTheBouncingSand) {
   const auto t = worn([](test::BenchTerrain&) {});
   const double expected = 0.01 * 2 * 0.98 * 0.49;
@@ -37,9 +39,13 @@ TEST_P(AbrasionLaw, WearsBareRockByTheBouncingSand) {
 TEST_P(AbrasionLaw, IsNothingWithoutWindRateOrBouncingSand) {
   EXPECT_EQ(worn([](test::BenchTerrain& t) { t.set(Layer::wind_x, 0); })->booked(Material::bedrock, 1), 0);
   EXPECT_EQ(worn([](test::BenchTerrain&) {}, 0.0f)->booked(Material::bedrock, 1), 0);
-  EXPECT_EQ(worn([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 1); })->booked(Material::bedrock, 1), 0);
-  EXPECT_EQ(worn([](test::BenchTerrain& t) { t.set(Layer::vegetation, 1); })->booked(Material::bedrock, 1), 0);
-  EXPECT_EQ(worn([](test::BenchTerrain& t) { t.set(Layer::erosion_resistance, 1); })->booked(Material::bedrock, 1), 0);
+  EXPECT_EQ(worn([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 1); })->booked(Material::bedrock, 1),
+            0);
+  EXPECT_EQ(worn([](test::BenchTerrain& t) { t.set(Layer::vegetation, 1); })->booked(Material::bedrock, 1),
+            0);
+  EXPECT_EQ(
+      worn([](test::BenchTerrain& t) { t.set(Layer::erosion_resistance, 1); })->booked(Material::bedrock, 1),
+      0);
 }
 
 TEST_P(AbrasionLaw, ScalesWithResistance) {
@@ -82,7 +88,8 @@ TEST_P(AbrasionLaw, WearsSoilFirstAndNeverMoreThanThereIs) {
   EXPECT_GT(deep->booked(Material::soil, 1), 0);
   EXPECT_EQ(deep->booked(Material::bedrock, 1), 0);
   EXPECT_EQ(deep->booked(Material::soil, 1), deep->booked(Material::sand, 0));
-  const auto thin = worn([](test::BenchTerrain& t) { t.set_quanta(Layer::soil, [](int, int) { return 3; }); }, 0.1f);
+  const auto thin =
+      worn([](test::BenchTerrain& t) { t.set_quanta(Layer::soil, [](int, int) { return 3; }); }, 0.1f);
   EXPECT_EQ(thin->booked(Material::soil, 1), 3);
   EXPECT_EQ(thin->quanta_at(Layer::soil, 0, 0), 0);
 }
@@ -90,7 +97,8 @@ TEST_P(AbrasionLaw, WearsSoilFirstAndNeverMoreThanThereIs) {
 TEST_P(AbrasionLaw, OfSoilFadesToNothingAtHalfMoisture) {
   // Ground of 1 m, capacity 0.3: 0.15 m of moisture is m = 0.5.
   const auto wear = [&](double moisture) {
-    return worn([&](test::BenchTerrain& t) { t.set(Layer::soil, 2).set(Layer::moisture, moisture); }, 0.1f)->booked(Material::soil, 1);
+    return worn([&](test::BenchTerrain& t) { t.set(Layer::soil, 2).set(Layer::moisture, moisture); }, 0.1f)
+        ->booked(Material::soil, 1);
   };
   EXPECT_EQ(wear(0.15), 0);
   EXPECT_EQ(wear(0.3), 0);

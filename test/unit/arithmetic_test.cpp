@@ -1,4 +1,5 @@
-// Rounding and counting: quanta, bilinear shares, subcells, exponentials, height scales, indices, random numbers.
+// Rounding and counting: quanta, bilinear shares, subcells, exponentials, height scales, indices, random
+// numbers.
 
 #include <gtest/gtest.h>
 
@@ -6,12 +7,12 @@
 #include <limits>
 #include <set>
 
+#include "desert_sim/core/error.hpp"
 #include "desert_sim/kernels/grid.hpp"
 #include "desert_sim/kernels/math.hpp"
 #include "desert_sim/kernels/quanta.hpp"
 #include "desert_sim/kernels/random.hpp"
 #include "desert_sim/terrain/terrain.hpp"
-#include "desert_sim/core/error.hpp"
 
 namespace desert_sim {
 namespace {
@@ -89,14 +90,21 @@ TEST(BilinearShare, IsTheAmountTimesItsWeights) {
 }
 
 TEST(HeightScale, CoversWhatItIsAskedFor) {
-  for (const auto& [low, high] : {std::pair{0.0, 1.0}, {-500.0, 500.0}, {-513.0, 513.0}, {1700.0, 2900.0}, {-1e6, 1e6}, {8848.0, 8848.0}}) {
+  for (const auto& [low, high] : {std::pair{0.0, 1.0},
+                                  {-500.0, 500.0},
+                                  {-513.0, 513.0},
+                                  {1700.0, 2900.0},
+                                  {-1e6, 1e6},
+                                  {8848.0, 8848.0}}) {
     const HeightScale scale = HeightScale::covering(low, high);
     EXPECT_GE(scale.exponent, -20);
     EXPECT_LT((high - scale.datum) / scale.quantum(), load_limit) << low << " to " << high;
-    EXPECT_GT((low - scale.datum) / scale.quantum(), -static_cast<double>(load_limit)) << low << " to " << high;
+    EXPECT_GT((low - scale.datum) / scale.quantum(), -static_cast<double>(load_limit))
+        << low << " to " << high;
     if (scale.exponent > -20) {
       const double finer = 0.5 * scale.quantum();
-      EXPECT_GE(std::max(high - scale.datum, scale.datum - low), finer * load_limit) << "a finer quantum would do";
+      EXPECT_GE(std::max(high - scale.datum, scale.datum - low), finer * load_limit)
+          << "a finer quantum would do";
     }
   }
   EXPECT_EQ(HeightScale::covering(0, 100).exponent, -20);
@@ -115,7 +123,8 @@ TEST(Terrain, GivesBackWhatItWasGivenToHalfAQuantum) {
   const std::vector<double> values{1700.1234567, 1750.0000004, 1799.9999, 1700};
   terrain.set_values(Layer::bedrock, values);
   for (std::size_t i = 0; i < 4; ++i) {
-    const double stored = terrain.scale().datum + static_cast<Quanta>(terrain.words(Layer::bedrock)[i]) * terrain.scale().quantum();
+    const double stored = terrain.scale().datum +
+                          static_cast<Quanta>(terrain.words(Layer::bedrock)[i]) * terrain.scale().quantum();
     EXPECT_NEAR(stored, values[i], 0.5001 * terrain.scale().quantum());
   }
   EXPECT_EQ(terrain.values(Layer::soil), std::vector<float>(4, 0.0f)) << "a layer that is not in use is 0";
@@ -161,7 +170,8 @@ TEST(GridIndices, NeighboursAreEightAndOpposite) {
     seen.insert({Neighbours::dx(k), Neighbours::dy(k)});
     EXPECT_EQ(Neighbours::dx(k), -Neighbours::dx(k ^ 1));
     EXPECT_EQ(Neighbours::dy(k), -Neighbours::dy(k ^ 1));
-    EXPECT_FLOAT_EQ(Neighbours::distance(k), std::hypot(static_cast<float>(Neighbours::dx(k)), static_cast<float>(Neighbours::dy(k))));
+    EXPECT_FLOAT_EQ(Neighbours::distance(k),
+                    std::hypot(static_cast<float>(Neighbours::dx(k)), static_cast<float>(Neighbours::dy(k))));
   }
   EXPECT_EQ(seen.size(), 8u);
   EXPECT_FALSE(seen.count({0, 0}));

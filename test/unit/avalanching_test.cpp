@@ -17,8 +17,8 @@ AvalanchingParameters one_sweep(AvalancheScheme scheme = AvalancheScheme::sweeps
 
 class Avalanching : public test::OnBackend {};
 
-// A 1-cell tower of 4 m on an open 3 × 3 grid, tan θ = 0.5: B = 3.5 to the four straight neighbours, 4 − 0.7071 to the
-// diagonal ones; A = B_max / (1 + B_max / B_sum).
+// A 1-cell tower of 4 m on an open 3 × 3 grid, tan θ = 0.5: B = 3.5 to the four straight neighbours, 4 −
+// 0.7071 to the diagonal ones; A = B_max / (1 + B_max / B_sum).
 TEST_P(Avalanching, OfOneTowerIsNillesEquationsNineToEleven) {
   test::BenchTerrain t(exec(), 3, 3, 1, false);
   t.set(Layer::sand, [](int x, int y) { return x == 1 && y == 1 ? 4 : 0; });
@@ -73,7 +73,8 @@ TEST_P(Avalanching, TaylorKeyserMovesAQuarterOfTheLargestDropByTangents) {
 }
 
 TEST_P(Avalanching, WorksAcrossAPeriodicBorderAndNotAcrossAnOpenOne) {
-  for (AvalancheScheme scheme : {AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser, AvalancheScheme::multilevel})
+  for (AvalancheScheme scheme :
+       {AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser, AvalancheScheme::multilevel})
     for (bool periodic : {true, false}) {
       test::BenchTerrain t(exec(), 6, 1, 1, periodic);
       t.set(Layer::sand, [](int x, int) { return x == 0 ? 10 : 0; });
@@ -86,7 +87,8 @@ TEST_P(Avalanching, WorksAcrossAPeriodicBorderAndNotAcrossAnOpenOne) {
 }
 
 TEST_P(Avalanching, ObstaclesNeitherGiveNorTake) {
-  for (AvalancheScheme scheme : {AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser, AvalancheScheme::multilevel}) {
+  for (AvalancheScheme scheme :
+       {AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser, AvalancheScheme::multilevel}) {
     test::BenchTerrain t(exec(), 48, 48, 1);
     const auto solid = [](int x, int y) { return x > 20 && x < 26 && y > 18 && y < 30; };
     t.set(Layer::obstacle, [&](int x, int y) { return solid(x, y) ? 1 : 0; });
@@ -116,14 +118,17 @@ TEST_P(Avalanching, ConvergedIsWithinToleranceOfRepose) {
     for (int y = 0; y < 40; ++y)
       for (int x = 0; x < 40; ++x)
         for (int k = 0; k < 8; ++k)
-          steepest = std::max(steepest, (t.at(Layer::sand, x, y) - t.at(Layer::sand, wrap(x + Neighbours::dx(k), 40), wrap(y + Neighbours::dy(k), 40))) /
-                                            Neighbours::distance(k));
+          steepest =
+              std::max(steepest, (t.at(Layer::sand, x, y) - t.at(Layer::sand, wrap(x + Neighbours::dx(k), 40),
+                                                                 wrap(y + Neighbours::dy(k), 40))) /
+                                     Neighbours::distance(k));
     EXPECT_LE(steepest, 0.65 + 1.01e-3);
   }
 }
 
 TEST_P(Avalanching, LeavesWhatIsAtReposeToTheBit) {
-  for (AvalancheScheme scheme : {AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser, AvalancheScheme::multilevel}) {
+  for (AvalancheScheme scheme :
+       {AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser, AvalancheScheme::multilevel}) {
     test::BenchTerrain t(exec(), 64, 64, 1, false);
     t.set(Layer::sand, [](int x, int) { return 0.6 * x; });
     t.set_repose([](int, int) { return 0.601; });
@@ -176,7 +181,8 @@ TEST_P(Avalanching, OfBedrockStaysBelowItsAngleAndBesideObstacles) {
 
 TEST_P(Avalanching, OfBedrockFromGreatDepthKeepsMass) {
   test::BenchTerrain t(exec(), 5, 5, 1);
-  t.set_quanta(Layer::bedrock, [](int x, int y) { return x == 2 && y == 2 ? load_limit - 1 : 1 - load_limit; });
+  t.set_quanta(Layer::bedrock,
+               [](int x, int y) { return x == 2 && y == 2 ? load_limit - 1 : 1 - load_limit; });
   const long long before = t.total(Layer::bedrock);
   for (int n = 0; n < 5; ++n) t.avalanche_bedrock();
   EXPECT_EQ(t.total(Layer::bedrock) + t.total(Layer::sand), before);
@@ -185,17 +191,20 @@ TEST_P(Avalanching, OfBedrockFromGreatDepthKeepsMass) {
 
 DESERT_ON_EACH_BACKEND(Avalanching);
 
-// ---- From grid to grid ---------------------------------------------------------------------------------------------
+// ---- From grid to grid
+// ---------------------------------------------------------------------------------------------
 
 struct Hierarchy {
   Grid fine{4, 4, 1, true, true}, coarse{2, 2, 2, true, true};
   std::vector<Quanta> ground = std::vector<Quanta>(16, 100), sand = std::vector<Quanta>(16, 50);
-  std::vector<Quanta> coarse_ground = std::vector<Quanta>(4), coarse_sand = coarse_ground, before = coarse_ground;
+  std::vector<Quanta> coarse_ground = std::vector<Quanta>(4), coarse_sand = coarse_ground,
+                      before = coarse_ground;
   std::vector<float> repose = std::vector<float>(16, 0.5f), coarse_repose = std::vector<float>(4);
 
   void restrict_all() {
     const avalanching::LevelView view{fine, ground.data(), sand.data(), repose.data(), 1e6f};
-    const avalanching::Restrict law{view, coarse, coarse_ground.data(), coarse_sand.data(), before.data(), coarse_repose.data()};
+    const avalanching::Restrict law{
+        view, coarse, coarse_ground.data(), coarse_sand.data(), before.data(), coarse_repose.data()};
     for (int y = 0; y < 2; ++y)
       for (int x = 0; x < 2; ++x) law(x, y);
   }
@@ -217,7 +226,7 @@ TEST(Restrict, AveragesFourChildrenRoundedDown) {
   h.ground[0] = -103;
   h.repose[0] = 0.9f;
   h.restrict_all();
-  EXPECT_EQ(h.coarse_sand[0], 2);   // 11 / 4
+  EXPECT_EQ(h.coarse_sand[0], 2);  // 11 / 4
   EXPECT_EQ(h.before[0], 2);
   EXPECT_EQ(h.coarse_ground[0], 49);  // floor(197 / 4)
   EXPECT_FLOAT_EQ(h.coarse_repose[0], 0.6f);

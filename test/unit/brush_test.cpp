@@ -15,12 +15,13 @@ class BrushEdit : public test::OnBackend {
     s = world("periodic");
   }
   std::unique_ptr<Simulation> world(const std::string& boundary) {
-    return simulation("grid: {width: 20, height: 16, cell_size: 0.5, origin_x: 100, origin_y: -50, boundary: " + boundary +
-                      "}\nterrain: [uniform: {layer: bedrock, value: 30}, uniform: {layer: sand, value: 2}]\n");
+    return simulation(
+        "grid: {width: 20, height: 16, cell_size: 0.5, origin_x: 100, origin_y: -50, boundary: " + boundary +
+        "}\nterrain: [uniform: {layer: bedrock, value: 30}, uniform: {layer: sand, value: 2}]\n");
   }
   /// A brush at the centre of cell (x, y), radius in cells.
-  static EditTerrain brush_at(int x, int y, double cells, double value, BrushMerge merge = BrushMerge::add) {
-    EditTerrain e;
+  static command::EditTerrain brush_at(int x, int y, double cells, double value, BrushMerge merge = BrushMerge::add) {
+    command::EditTerrain e;
     e.x = 100 + 0.5 * (x + 0.5);
     e.y = -50 + 0.5 * (y + 0.5);
     e.radius = 0.5 * cells;
@@ -29,8 +30,10 @@ class BrushEdit : public test::OnBackend {
     return e;
   }
   double sand(int x, int y) { return s->terrain().values(Layer::sand)[static_cast<std::size_t>(y * 20 + x)]; }
-  double bedrock(int x, int y) { return s->terrain().values(Layer::bedrock)[static_cast<std::size_t>(y * 20 + x)]; }
-  std::string refusal(const EditTerrain& e) {
+  double bedrock(int x, int y) {
+    return s->terrain().values(Layer::bedrock)[static_cast<std::size_t>(y * 20 + x)];
+  }
+  std::string refusal(const command::EditTerrain& e) {
     const std::uint64_t before = s->state_hash();
     std::string reason;
     try {
@@ -47,7 +50,7 @@ class BrushEdit : public test::OnBackend {
 };
 
 TEST_P(BrushEdit, FallsOffLinearlyFromItsInnerPartToItsEdge) {
-  EditTerrain e = brush_at(10, 8, 5, 1);
+  command::EditTerrain e = brush_at(10, 8, 5, 1);
   e.inner = 0.4;
   s->apply(e);
   for (int d = 0; d < 8; ++d) {
@@ -60,7 +63,7 @@ TEST_P(BrushEdit, FallsOffLinearlyFromItsInnerPartToItsEdge) {
 }
 
 TEST_P(BrushEdit, OfInnerOneHasAHardEdge) {
-  EditTerrain e = brush_at(10, 8, 2.5, 1);
+  command::EditTerrain e = brush_at(10, 8, 2.5, 1);
   e.inner = 1;
   s->apply(e);
   int raised = 0;
@@ -78,9 +81,15 @@ TEST_P(BrushEdit, MergesByWeight) {
     BrushMerge merge;
     double value, full, half;  // at weight 1 and ½, from 2
   };
-  for (const Expected& e : {Expected{BrushMerge::add, 3, 5, 3.5}, {BrushMerge::sub, 1, 1, 1.5}, {BrushMerge::sub, 9, 0, 0},
-                            {BrushMerge::replace, 6, 6, 4}, {BrushMerge::replace, 0, 0, 1}, {BrushMerge::min, 1, 1, 1.5},
-                            {BrushMerge::min, 5, 2, 2}, {BrushMerge::max, 5, 5, 3.5}, {BrushMerge::max, 1, 2, 2},
+  for (const Expected& e : {Expected{BrushMerge::add, 3, 5, 3.5},
+                            {BrushMerge::sub, 1, 1, 1.5},
+                            {BrushMerge::sub, 9, 0, 0},
+                            {BrushMerge::replace, 6, 6, 4},
+                            {BrushMerge::replace, 0, 0, 1},
+                            {BrushMerge::min, 1, 1, 1.5},
+                            {BrushMerge::min, 5, 2, 2},
+                            {BrushMerge::max, 5, 5, 3.5},
+                            {BrushMerge::max, 1, 2, 2},
                             {BrushMerge::avg, 4, 3, 2.5}}) {
     s = world("periodic");
     s->apply(brush_at(6, 6, 4, e.value, e.merge));
@@ -91,7 +100,7 @@ TEST_P(BrushEdit, MergesByWeight) {
 }
 
 TEST_P(BrushEdit, OfBedrockIsAnElevationOrAChange) {
-  EditTerrain e = brush_at(6, 6, 4, 31.5, BrushMerge::replace);
+  command::EditTerrain e = brush_at(6, 6, 4, 31.5, BrushMerge::replace);
   e.layer = "bedrock";
   s->apply(e);
   EXPECT_NEAR(bedrock(6, 6), 31.5, 1e-5);
@@ -104,7 +113,7 @@ TEST_P(BrushEdit, OfBedrockIsAnElevationOrAChange) {
 }
 
 TEST_P(BrushEdit, OfAnEllipseIsTurned) {
-  EditTerrain e = brush_at(10, 8, 6, 1);
+  command::EditTerrain e = brush_at(10, 8, 6, 1);
   e.shape = BrushShape::ellipse;
   e.radius_y = 1;  // two cells
   e.angle_deg = 90;
@@ -146,7 +155,8 @@ TEST_P(BrushEdit, TouchesNothingOutsideTheRectangleItReports) {
       const CellRectangle t = s->apply(brush_at(x, y, r, 1)).touched;
       for (int j = 0; j < 16; ++j)
         for (int i = 0; i < 20; ++i)
-          EXPECT_TRUE((i >= t.x0 && i < t.x1 && j >= t.y0 && j < t.y1) || sand(i, j) == 2) << boundary << ": " << i << ", " << j;
+          EXPECT_TRUE((i >= t.x0 && i < t.x1 && j >= t.y0 && j < t.y1) || sand(i, j) == 2)
+              << boundary << ": " << i << ", " << j;
     }
 }
 
@@ -159,14 +169,14 @@ TEST_P(BrushEdit, OnATorusDoesNotDependOnWhichCopyOfTheCentreIsGiven) {
 }
 
 TEST_P(BrushEdit, LargerThanTheTorusTouchesEachCellOnce) {
-  EditTerrain e = brush_at(10, 8, 1000, 1);
+  command::EditTerrain e = brush_at(10, 8, 1000, 1);
   e.inner = 1;
   s->apply(e);
   for (float v : s->terrain().values(Layer::sand)) EXPECT_EQ(v, 3.0f);
 }
 
 TEST_P(BrushEdit, ReportsTheVolumeThatItChanged) {
-  EditTerrain e = brush_at(10, 8, 2.5, 1);
+  command::EditTerrain e = brush_at(10, 8, 2.5, 1);
   e.inner = 1;
   EXPECT_NEAR(s->apply(e).volume_m3, 21 * 0.25, 1e-6);
   e.merge = BrushMerge::sub;
@@ -183,7 +193,7 @@ TEST_P(BrushEdit, BeyondTheTerrainsHeightsIsRefusedWithTheValue) {
   const std::string reason = refusal(brush_at(6, 6, 3, 5000));
   EXPECT_NE(reason.find("5000"), std::string::npos) << reason;
   EXPECT_NE(reason.find("value"), std::string::npos) << reason;
-  EditTerrain e = brush_at(6, 6, 3, -5000, BrushMerge::replace);
+  command::EditTerrain e = brush_at(6, 6, 3, -5000, BrushMerge::replace);
   e.layer = "bedrock";
   refusal(e);
   // Many edits in a row must not creep beyond the limit either.
@@ -198,33 +208,34 @@ TEST_P(BrushEdit, BeyondTheTerrainsHeightsIsRefusedWithTheValue) {
 }
 
 TEST_P(BrushEdit, IsRefusedWithWhatIsWrong) {
-  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  const auto with = [](const std::function<void(EditTerrain&)>& change) {
-    EditTerrain e = brush_at(6, 6, 3, 1);
+  const double nan = std::numeric_limits<double>::quiet_NaN(),
+               infinity = std::numeric_limits<double>::infinity();
+  const auto with = [](const std::function<void(command::EditTerrain&)>& change) {
+    command::EditTerrain e = brush_at(6, 6, 3, 1);
     change(e);
     return e;
   };
-  const auto names = [&](const EditTerrain& e, const std::string& key) {
+  const auto names = [&](const command::EditTerrain& e, const std::string& key) {
     const std::string reason = refusal(e);
     EXPECT_NE(reason.find(key), std::string::npos) << reason;
   };
-  names(with([](EditTerrain& e) { e.layer = "water"; }), "layer");
-  names(with([](EditTerrain& e) { e.layer = ""; }), "layer");
-  names(with([](EditTerrain& e) { e.radius = 0; }), "radius");
-  names(with([](EditTerrain& e) { e.radius = -1; }), "radius");
-  names(with([](EditTerrain& e) { e.radius_y = 0; }), "radius_y");
-  names(with([&](EditTerrain& e) { e.radius = nan; }), "radius");
-  names(with([&](EditTerrain& e) { e.value = nan; }), "value");
-  names(with([&](EditTerrain& e) { e.x = infinity; }), "x");
-  names(with([](EditTerrain& e) { e.inner = 1.1; }), "inner");
-  names(with([](EditTerrain& e) { e.value = -1; }), "value");
-  names(with([](EditTerrain& e) { e.merge = static_cast<BrushMerge>(17); }), "merge");
-  names(with([](EditTerrain& e) { e.shape = static_cast<BrushShape>(-1); }), "shape");
+  names(with([](command::EditTerrain& e) { e.layer = "water"; }), "layer");
+  names(with([](command::EditTerrain& e) { e.layer = ""; }), "layer");
+  names(with([](command::EditTerrain& e) { e.radius = 0; }), "radius");
+  names(with([](command::EditTerrain& e) { e.radius = -1; }), "radius");
+  names(with([](command::EditTerrain& e) { e.radius_y = 0; }), "radius_y");
+  names(with([&](command::EditTerrain& e) { e.radius = nan; }), "radius");
+  names(with([&](command::EditTerrain& e) { e.value = nan; }), "value");
+  names(with([&](command::EditTerrain& e) { e.x = infinity; }), "x");
+  names(with([](command::EditTerrain& e) { e.inner = 1.1; }), "inner");
+  names(with([](command::EditTerrain& e) { e.value = -1; }), "value");
+  names(with([](command::EditTerrain& e) { e.merge = static_cast<BrushMerge>(17); }), "merge");
+  names(with([](command::EditTerrain& e) { e.shape = static_cast<BrushShape>(-1); }), "shape");
 }
 
 TEST_P(BrushEdit, ThatTouchesNoCellIsRefused) {
   s = world("open");
-  EditTerrain e = brush_at(60, 6, 3, 1);
+  command::EditTerrain e = brush_at(60, 6, 3, 1);
   refusal(e);
 }
 

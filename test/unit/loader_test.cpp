@@ -21,7 +21,8 @@ std::string refusal(const std::string& yaml) {
 
 void expect_refused(const std::string& yaml, const std::vector<std::string>& naming) {
   const std::string reason = refusal(yaml);
-  for (const std::string& text : naming) EXPECT_NE(reason.find(text), std::string::npos) << yaml << "\n-> " << reason << "\nlacks " << text;
+  for (const std::string& text : naming)
+    EXPECT_NE(reason.find(text), std::string::npos) << yaml << "\n-> " << reason << "\nlacks " << text;
 }
 
 TEST(Loader, AcceptsTheEmptyScenarioWithDefaults) {
@@ -126,11 +127,14 @@ TEST(Loader, NamesWhatDoesNotFitTogether) {
 
 TEST(Loader, ListsAllFaultsAtOnceOneALine) {
   const std::string reason = refusal(
-      "gird: {}\ngrid: {width: -3, cell_size: x, boundary: shut}\nterrain: [uniform: {layer: mud}, what: {}]\n"
+      "gird: {}\ngrid: {width: -3, cell_size: x, boundary: shut}\nterrain: [uniform: {layer: mud}, what: "
+      "{}]\n"
       "wind: {speed: .nan, radii: [0]}\nsaltation: {lift: 99, blow: true}\n");
-  const std::vector<std::string> keys{"gird", "grid.width", "grid.cell_size", "grid.boundary", "terrain.0.uniform.layer",
-                                      "terrain.1", "wind.speed", "wind.radii[0]", "saltation.lift", "saltation.blow"};
-  for (const std::string& key : keys) EXPECT_NE(reason.find("test: " + key + ": "), std::string::npos) << key << " in\n" << reason;
+  const std::vector<std::string> keys{
+      "gird",      "grid.width", "grid.cell_size", "grid.boundary",  "terrain.0.uniform.layer",
+      "terrain.1", "wind.speed", "wind.radii[0]",  "saltation.lift", "saltation.blow"};
+  for (const std::string& key : keys)
+    EXPECT_NE(reason.find("test: " + key + ": "), std::string::npos) << key << " in\n" << reason;
   EXPECT_GE(std::count(reason.begin(), reason.end(), '\n') + 1, static_cast<long>(keys.size()));
 }
 
@@ -159,8 +163,11 @@ TEST(Loader, AStepThatLeavesALayersRangeIsNamedWithItsCell) {
     return std::string();
   };
   const std::string reason = built("[uniform: {layer: vegetation, value: 2}]");
-  for (const char* text : {"terrain.0.uniform", "vegetation", "2.0", "(0, 0)"}) EXPECT_NE(reason.find(text), std::string::npos) << reason;
-  EXPECT_NE(built("[uniform: {layer: bedrock, value: 900000, merge: add}, uniform: {layer: bedrock, value: 900000, merge: add}]"), "");
+  for (const char* text : {"terrain.0.uniform", "vegetation", "2.0", "(0, 0)"})
+    EXPECT_NE(reason.find(text), std::string::npos) << reason;
+  EXPECT_NE(built("[uniform: {layer: bedrock, value: 900000, merge: add}, uniform: {layer: bedrock, value: "
+                  "900000, merge: add}]"),
+            "");
   EXPECT_EQ(built("[uniform: {layer: sand, value: -5}]"), "") << "a negative depth is cut to 0";
 }
 
@@ -180,7 +187,8 @@ TEST(LoadScenario, NamesFileAndLineOfBrokenYaml) {
 
 TEST(LoadScenario, AppliesSettingsToKeysThatExistAndThatDoNot) {
   const test::TemporaryFolder folder;
-  const std::string path = folder.write("a.yaml", "grid: {width: 8}\nterrain:\n  - uniform: {layer: sand, value: 1}\n  - cone: {height: 3}\n");
+  const std::string path = folder.write(
+      "a.yaml", "grid: {width: 8}\nterrain:\n  - uniform: {layer: sand, value: 1}\n  - cone: {height: 3}\n");
   const auto with = [&](const Settings& settings) { return load_scenario(path, settings); };
   EXPECT_EQ(with({"grid.width=12"}).grid.width, 12);
   EXPECT_EQ(with({"grid.width=12", "grid.width=13"}).grid.width, 13);
@@ -197,10 +205,13 @@ TEST(LoadScenario, AppliesSettingsToKeysThatExistAndThatDoNot) {
 
 TEST(LoadScenario, RefusesSettingsByTheirText) {
   const test::TemporaryFolder folder;
-  const std::string path = folder.write("a.yaml", "grid: {width: 8}\nterrain:\n  - uniform: {layer: sand, value: 1}\n");
-  for (const char* setting : {"grid.width", "=3", "", "grid.width=wide", "grid.widht=3", "grid.width.x=3", "terrain.7.uniform.value=1",
-                              "terrain.first.uniform.value=1", "grid.width=", "grid.width={", "grid..width=3", ".=1", "grid.=1",
-                              "terrain.0.uniform.value=.nan", "terrain.99999999999999999999=1", "terrain.-1=3", "wind.radii.1=21"}) {
+  const std::string path =
+      folder.write("a.yaml", "grid: {width: 8}\nterrain:\n  - uniform: {layer: sand, value: 1}\n");
+  for (const char* setting :
+       {"grid.width", "=3", "", "grid.width=wide", "grid.widht=3", "grid.width.x=3",
+        "terrain.7.uniform.value=1", "terrain.first.uniform.value=1", "grid.width=", "grid.width={",
+        "grid..width=3", ".=1", "grid.=1", "terrain.0.uniform.value=.nan", "terrain.99999999999999999999=1",
+        "terrain.-1=3", "wind.radii.1=21"}) {
     try {
       load_scenario(path, {setting});
       ADD_FAILURE() << "was accepted: " << setting;

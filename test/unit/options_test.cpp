@@ -28,7 +28,8 @@ TEST(Options, AreReadInAnyOrderWithSpaceOrEquals) {
 }
 
 TEST(Options, AreRefusedByName) {
-  for (const auto& arguments : std::vector<std::vector<std::string>>{{"--stpes", "3"}, {"--steps"}, {"--quiet=yes"}, {"--"}, {"--=3"}})
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"--stpes", "3"}, {"--steps"}, {"--quiet=yes"}, {"--"}, {"--=3"}})
     EXPECT_THROW(parse(arguments), ConfigError) << arguments[0];
 }
 

@@ -18,8 +18,8 @@ TEST(MoistureFactor, IsOneWhenDryOneAndAHalfWhenHalfWetAndSmallWhenSaturated) {
 
 class Reptation : public test::OnBackend {
  protected:
-  float tangent_at_one_cell(const ReptationParameters& p, const std::function<void(test::BenchTerrain&)>& change,
-                            double strength = 0) {
+  float tangent_at_one_cell(const ReptationParameters& p,
+                            const std::function<void(test::BenchTerrain&)>& change, double strength = 0) {
     test::BenchTerrain t(exec(), 1, 1);
     t.set(Layer::sand, 2);
     t.set_strength([&](int, int) { return strength; });
@@ -38,12 +38,17 @@ class Reptation : public test::OnBackend {
 TEST_P(Reptation, TangentIsTheTables) {
   const auto off = method(ReptationMethod::off);
   EXPECT_FLOAT_EQ(tangent_at_one_cell(off, [](test::BenchTerrain&) {}), static_cast<float>(tangent(33)));
-  EXPECT_FLOAT_EQ(tangent_at_one_cell(off, [](test::BenchTerrain& t) { t.set(Layer::vegetation, 1); }), static_cast<float>(tangent(45)));
-  EXPECT_NEAR(tangent_at_one_cell(off, [](test::BenchTerrain& t) { t.set(Layer::vegetation, 0.5); }), 0.5 * (tangent(33) + 1), 1e-6);
+  EXPECT_FLOAT_EQ(tangent_at_one_cell(off, [](test::BenchTerrain& t) { t.set(Layer::vegetation, 1); }),
+                  static_cast<float>(tangent(45)));
+  EXPECT_NEAR(tangent_at_one_cell(off, [](test::BenchTerrain& t) { t.set(Layer::vegetation, 0.5); }),
+              0.5 * (tangent(33) + 1), 1e-6);
   // Ground of two metres holds 0.3 m: half wet at 0.15 m, saturated at 0.3 m and above.
-  EXPECT_NEAR(tangent_at_one_cell(off, [](test::BenchTerrain& t) { t.set(Layer::moisture, 0.15); }), 1.5 * tangent(33), 1e-5);
-  EXPECT_NEAR(tangent_at_one_cell(off, [](test::BenchTerrain& t) { t.set(Layer::moisture, 0.3); }), 0.15 * tangent(33), 1e-5);
-  EXPECT_NEAR(tangent_at_one_cell(off, [](test::BenchTerrain& t) { t.set(Layer::moisture, 3); }), 0.15 * tangent(33), 1e-5);
+  EXPECT_NEAR(tangent_at_one_cell(off, [](test::BenchTerrain& t) { t.set(Layer::moisture, 0.15); }),
+              1.5 * tangent(33), 1e-5);
+  EXPECT_NEAR(tangent_at_one_cell(off, [](test::BenchTerrain& t) { t.set(Layer::moisture, 0.3); }),
+              0.15 * tangent(33), 1e-5);
+  EXPECT_NEAR(tangent_at_one_cell(off, [](test::BenchTerrain& t) { t.set(Layer::moisture, 3); }),
+              0.15 * tangent(33), 1e-5);
 }
 
 TEST_P(Reptation, AdaptiveReposeFallsExponentiallyWithImpactsAndWind) {
@@ -51,7 +56,8 @@ TEST_P(Reptation, AdaptiveReposeFallsExponentiallyWithImpactsAndWind) {
   const auto wind = [](test::BenchTerrain& t) { t.set(Layer::wind_x, 3).set(Layer::wind_y, 4); };
   EXPECT_NEAR(tangent_at_one_cell(adaptive, wind, 2), tangent(33) * std::exp(-0.1 * 2 * 5), 1e-6);
   EXPECT_FLOAT_EQ(tangent_at_one_cell(adaptive, wind, 0), static_cast<float>(tangent(33)));
-  EXPECT_FLOAT_EQ(tangent_at_one_cell(method(ReptationMethod::smoothing), wind, 2), static_cast<float>(tangent(33)));
+  EXPECT_FLOAT_EQ(tangent_at_one_cell(method(ReptationMethod::smoothing), wind, 2),
+                  static_cast<float>(tangent(33)));
 }
 
 TEST_P(Reptation, AdaptiveReposeSparesShadowIfAsked) {
@@ -111,10 +117,13 @@ TEST_P(Reptation, SmoothingLeavesObstaclesAndDoesNotDigBelowTheSand) {
   for (Quanta v : t.quanta(Layer::sand)) EXPECT_GE(v, 0);
 }
 
-// A certain event (r so large that e^−r = 0) on a slope: `slab` goes to the two steepest neighbours by their slopes.
+// A certain event (r so large that e^−r = 0) on a slope: `slab` goes to the two steepest neighbours by their
+// slopes.
 TEST_P(Reptation, SteepestSharesASlabByTheTwoSteepestSlopes) {
   test::BenchTerrain t(exec(), 3, 3, 1, false);
-  t.set(Layer::bedrock, [](int x, int y) { return x == 1 && y == 1 ? 10 : (x == 0 && y == 1 ? 4 : (x == 2 && y == 1 ? 7 : 20)); });
+  t.set(Layer::bedrock, [](int x, int y) {
+    return x == 1 && y == 1 ? 10 : (x == 0 && y == 1 ? 4 : (x == 2 && y == 1 ? 7 : 20));
+  });
   t.set(Layer::sand, [](int x, int y) { return x == 1 && y == 1 ? 1 : 0; });
   t.set_strength([](int x, int y) { return x == 1 && y == 1 ? 100 : 0; });
   ReptationParameters p = method(ReptationMethod::steepest);
@@ -147,7 +156,8 @@ TEST_P(Reptation, SteepestHappensAsOftenAsItShould) {
   long moved = 0;
   const auto sand = t.quanta(Layer::sand);
   for (int y = 0; y < 200; ++y)
-    for (int x = 0; x < 200; ++x) moved += (x + y) % 2 == 0 && sand[static_cast<std::size_t>(y * 200 + x)] < (1 << 20);
+    for (int x = 0; x < 200; ++x)
+      moved += (x + y) % 2 == 0 && sand[static_cast<std::size_t>(y * 200 + x)] < (1 << 20);
   const double expected = 0.75 * (1 - std::exp(-0.5)) * 20000;
   EXPECT_NEAR(static_cast<double>(moved), expected, 4 * std::sqrt(expected));
 }

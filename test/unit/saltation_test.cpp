@@ -10,11 +10,13 @@ constexpr double quantum = 1.0 / 1048576;
 
 class SaltationLaw : public test::OnBackend {
  protected:
-  /// One cell of sand in calm air that lifts and lands where it was: what is left on the ground and in the air.
+  /// One cell of sand in calm air that lifts and lands where it was: what is left on the ground and in the
+  /// air.
   struct OneCell {
     double sand, air;
   };
-  OneCell one_cell(const std::function<void(test::BenchTerrain&)>& change, const SaltationParameters& p = {}, float dt = 1) {
+  OneCell one_cell(const std::function<void(test::BenchTerrain&)>& change, const SaltationParameters& p = {},
+                   float dt = 1) {
     test::BenchTerrain t(exec(), 1, 1);
     // A hop of exactly one cell over a grid of one cell comes back to it.
     t.set(Layer::sand, 10).set(Layer::wind_x, 1 / dt);
@@ -44,15 +46,19 @@ TEST_P(SaltationLaw, LiftsOneMetreAndDepositsSixTenthsOnSand) {
 
 TEST_P(SaltationLaw, LiftScalesWithTimeStepShadowAndVegetation) {
   EXPECT_NEAR(one_cell([](test::BenchTerrain&) {}, {}, 0.25f).air, 0.25 * 0.4, 2 * quantum);
-  EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 0.25); }).air, 0.75 * 0.4, 2 * quantum);
+  EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 0.25); }).air, 0.75 * 0.4,
+              2 * quantum);
   // Vegetation holds more as well: p = 0.6 + 0.5·0.4.
-  EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::vegetation, 0.5); }).air, 0.5 * 0.2, 2 * quantum);
+  EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::vegetation, 0.5); }).air, 0.5 * 0.2,
+              2 * quantum);
 }
 
 TEST_P(SaltationLaw, LiftIsHalvedOnStickyGroundAndRaisedInTheLane) {
   EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::echo, 0.5); }).air, 0.5 * 0.4, 2 * quantum);
-  EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::echo, -1); }).air, 2, 2 * quantum);  // lifts 1 + 1, holds none
-  EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::echo, -1).set(Layer::wind_shadow, 1); }).air, 1, 2 * quantum);
+  EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::echo, -1); }).air, 2,
+              2 * quantum);  // lifts 1 + 1, holds none
+  EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::echo, -1).set(Layer::wind_shadow, 1); }).air,
+              1, 2 * quantum);
 }
 
 TEST_P(SaltationLaw, LiftStopsAtTheSandThatIsThere) {
@@ -66,7 +72,8 @@ TEST_P(SaltationLaw, LiftFadesWithMoistureAndStopsUnderWater) {
   const OneCell damp = one_cell([](test::BenchTerrain& t) { t.set(Layer::moisture, 0.015); });
   EXPECT_NEAR(damp.sand + damp.air, 10, quantum);
   EXPECT_NEAR(damp.air, 0.5 * (1 - 0.6 * 0.5), 1e-5);
-  EXPECT_LT(one_cell([](test::BenchTerrain& t) { t.set(Layer::moisture, 0.03); }).air, 1e-5);  // m = 0.1 but for rounding
+  EXPECT_LT(one_cell([](test::BenchTerrain& t) { t.set(Layer::moisture, 0.03); }).air,
+            1e-5);  // m = 0.1 but for rounding
   EXPECT_EQ(one_cell([](test::BenchTerrain& t) { t.set(Layer::moisture, 0.0301); }).air, 0);
   EXPECT_EQ(one_cell([](test::BenchTerrain& t) { t.set(Layer::water, 2e-5); }).air, 0);
   EXPECT_GT(one_cell([](test::BenchTerrain& t) { t.set(Layer::water, 0.5e-5); }).air, 0);
@@ -84,22 +91,29 @@ TEST_P(SaltationLaw, DepositsBySurface) {
   EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 1); }), 0.6, 2 * quantum);
   EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::soil, 1); }), 0.5, 2 * quantum);
   EXPECT_NEAR(deposit_share([](test::BenchTerrain&) {}), 0.4, 2 * quantum);
-  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 0.0005); }), 0.4, 2 * quantum);  // counts as bare
+  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 0.0005); }), 0.4,
+              2 * quantum);  // counts as bare
 }
 
 TEST_P(SaltationLaw, DepositsAllInShadowNothingOnObstaclesAndInTheLane) {
   EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 1); }), 1, quantum);
   EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 0.3); }), 0.4, 2 * quantum);
   EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::echo, 0.9); }), 0.9, 2 * quantum);
-  EXPECT_EQ(deposit_share([](test::BenchTerrain& t) { t.set(Layer::echo, -1).set(Layer::wind_shadow, 1); }), 0);
-  EXPECT_EQ(deposit_share([](test::BenchTerrain& t) { t.set(Layer::obstacle, 1).set(Layer::wind_shadow, 1); }), 0);
+  EXPECT_EQ(deposit_share([](test::BenchTerrain& t) { t.set(Layer::echo, -1).set(Layer::wind_shadow, 1); }),
+            0);
+  EXPECT_EQ(
+      deposit_share([](test::BenchTerrain& t) { t.set(Layer::obstacle, 1).set(Layer::wind_shadow, 1); }), 0);
 }
 
 TEST_P(SaltationLaw, DepositGrowsWithVegetationAndShrinksWithWetness) {
-  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::vegetation, 0.5); }), 0.4 + 0.5 * 0.6, 2 * quantum);
-  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 2).set(Layer::moisture, 0.015); }), 0.3, 1e-5);
-  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 2).set(Layer::moisture, 0.3); }), 0.006, 1e-5);
-  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 2).set(Layer::water, 1); }), 0.006, 1e-5);
+  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::vegetation, 0.5); }), 0.4 + 0.5 * 0.6,
+              2 * quantum);
+  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 2).set(Layer::moisture, 0.015); }),
+              0.3, 1e-5);
+  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 2).set(Layer::moisture, 0.3); }),
+              0.006, 1e-5);
+  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 2).set(Layer::water, 1); }), 0.006,
+              1e-5);
 }
 
 TEST_P(SaltationLaw, SharesAHopBilinearlyAmongFourCells) {
@@ -159,8 +173,10 @@ TEST_P(SaltationLaw, InfluxIsPerMetreOfEdgeAndSecondWhateverHopCellAndTimeStep) 
         t.saltation(p, {}, {}, dt);
         const double volume = t.booked(Material::sand, 0) * quantum * cell * cell;
         const double rounding = 0.5 * quantum * 16 * 9 * cell * cell;  // half a quantum a cell
-        EXPECT_NEAR(volume, 0.125 * dt * 9 * cell, rounding + 1e-6) << "cell " << cell << ", dt " << dt << ", u " << u;
-        EXPECT_EQ(t.total(Layer::sand) + t.total(Layer::airborne_sand), t.booked(Material::sand, 0) - t.booked(Material::sand, 1));
+        EXPECT_NEAR(volume, 0.125 * dt * 9 * cell, rounding + 1e-6)
+            << "cell " << cell << ", dt " << dt << ", u " << u;
+        EXPECT_EQ(t.total(Layer::sand) + t.total(Layer::airborne_sand),
+                  t.booked(Material::sand, 0) - t.booked(Material::sand, 1));
       }
 }
 

@@ -1,4 +1,5 @@
-// Dumping and parsing give every parameter back to the bit, at its limits too; the page of parameters is up to date.
+// Dumping and parsing give every parameter back to the bit, at its limits too; the page of parameters is up
+// to date.
 
 #include <yaml-cpp/yaml.h>
 
@@ -25,7 +26,8 @@ void set_all(P& parameters, const std::function<double()>& share) {
       value = static_cast<T>(static_cast<int>(number));
     } else if constexpr (std::is_same_v<T, ShortList>) {
       value.count = 3;
-      for (int n = 0; n < 3; ++n) value.values[n] = static_cast<float>(row.lowest + share() * (row.highest - row.lowest));
+      for (int n = 0; n < 3; ++n)
+        value.values[n] = static_cast<float>(row.lowest + share() * (row.highest - row.lowest));
     } else {
       value = static_cast<T>(number);
     }
@@ -45,7 +47,8 @@ Scenario scenario_at(const std::function<double()>& share) {
     set_all(one, share);
     s.terrain.push_back(one);
   };
-  step(UniformStep{}), step(NoiseStep{}), step(RampStep{}), step(ConeStep{}), step(ColumnStep{}), step(DiscsStep{});
+  step(UniformStep{}), step(NoiseStep{}), step(RampStep{}), step(ConeStep{}), step(ColumnStep{}),
+      step(DiscsStep{});
   step(ObstacleStep{}), step(RasterStep{});
   // What the loader asks of several keys together:
   s.wind_shadow.start_deg = std::min(s.wind_shadow.start_deg, s.wind_shadow.full_deg);
@@ -71,8 +74,12 @@ void expect_round_trip(const Scenario& s) {
 }
 
 TEST(ScenarioRoundTrip, OfDefaults) { expect_round_trip(Scenario{test::scenario_of("{}")}); }
-TEST(ScenarioRoundTrip, AtTheLowestOfEveryRange) { expect_round_trip(scenario_at([] { return 0.0; })); }
-TEST(ScenarioRoundTrip, AtTheHighestOfEveryRange) { expect_round_trip(scenario_at([] { return 1.0; })); }
+TEST(ScenarioRoundTrip, AtTheLowestOfEveryRange) {
+  expect_round_trip(scenario_at([] { return 0.0; }));
+}
+TEST(ScenarioRoundTrip, AtTheHighestOfEveryRange) {
+  expect_round_trip(scenario_at([] { return 1.0; }));
+}
 
 TEST(ScenarioRoundTrip, AnywhereInEveryRange) {
   std::mt19937 random(1);
@@ -82,7 +89,8 @@ TEST(ScenarioRoundTrip, AnywhereInEveryRange) {
 
 TEST(ScenarioRoundTrip, OfTextsThatYamlCouldMistake) {
   Scenario s = test::scenario_of("{}");
-  for (const char* text : {"", "true", "12", "~", "a: b", "#x", "- y", "\"q\"", "back\\slash", "tab\there", "new\nline", "äöü", "{x}", "null"}) {
+  for (const char* text : {"", "true", "12", "~", "a: b", "#x", "- y", "\"q\"", "back\\slash", "tab\there",
+                           "new\nline", "äöü", "{x}", "null"}) {
     RasterStep raster;
     raster.file = text;
     s.terrain = {raster};
@@ -102,9 +110,11 @@ TEST(ScenarioRoundTrip, OfEverySeedThatFits) {
 }
 
 TEST(ScenarioRoundTrip, ExtremeValuesThatTheLoaderTakesSurviveToo) {
-  for (const char* yaml : {"avalanching: {tolerance: 1e-6}", "run: {time_step: 1e-4}", "wind: {features: [{life_time: 0.01}]}",
-                           "repose: {moisture_capacity: 0.001}", "wind: {hold_time: 1e-3}", "grid: {cell_size: 1e-3}",
-                           "avalanching: {coarsest_cell: 0.001}", "avalanching: {transfer: 0.05}", "wind: {features: [{radius: 0.1}]}"})
+  for (const char* yaml :
+       {"avalanching: {tolerance: 1e-6}", "run: {time_step: 1e-4}", "wind: {features: [{life_time: 0.01}]}",
+        "repose: {moisture_capacity: 0.001}", "wind: {hold_time: 1e-3}", "grid: {cell_size: 1e-3}",
+        "avalanching: {coarsest_cell: 0.001}", "avalanching: {transfer: 0.05}",
+        "wind: {features: [{radius: 0.1}]}"})
     expect_round_trip(test::scenario_of(yaml));
 }
 
@@ -133,7 +143,8 @@ TEST(ParameterTables, HaveRangesThatHoldTheirDefaultsAndDocumentation) {
 TEST(ParametersPage, ConfigParametersMdIsNotStale) {
   if (!std::filesystem::exists(DESERT_SOURCE_DIR)) return;  // built elsewhere and carried here
   const std::string page = test::file_bytes(std::string(DESERT_SOURCE_DIR) + "/config/parameters.md");
-  EXPECT_TRUE(page == describe_parameters()) << "config/parameters.md is stale: desert_run --describe > config/parameters.md";
+  EXPECT_TRUE(page == describe_parameters())
+      << "config/parameters.md is stale: desert_run --describe > config/parameters.md";
 }
 
 TEST(ParametersPage, NamesEverySectionKeyStepAndLayer) {
@@ -145,8 +156,10 @@ TEST(ParametersPage, NamesEverySectionKeyStepAndLayer) {
       EXPECT_NE(page.find("`" + std::string(row.name) + "`"), std::string::npos) << row.name;
     });
   });
-  for (const char* step : terrain_step_names) EXPECT_NE(page.find("### `" + std::string(step) + "`"), std::string::npos);
-  for (const LayerInfo& row : layer_table) EXPECT_NE(page.find("`" + std::string(row.name) + "`"), std::string::npos);
+  for (const char* step : terrain_step_names)
+    EXPECT_NE(page.find("### `" + std::string(step) + "`"), std::string::npos);
+  for (const LayerInfo& row : layer_table)
+    EXPECT_NE(page.find("`" + std::string(row.name) + "`"), std::string::npos);
 }
 
 }  // namespace

@@ -9,7 +9,8 @@ namespace {
 
 const char* const world =
     "grid: {width: 24, height: 16, cell_size: 2, origin_x: 5, origin_y: 6}\n"
-    "terrain: [uniform: {layer: bedrock, value: 200}, uniform: {layer: sand, value: 3}]\nrun: {time_step: 0.5}\n";
+    "terrain: [uniform: {layer: bedrock, value: 200}, uniform: {layer: sand, value: 3}]\nrun: {time_step: "
+    "0.5}\n";
 
 class ASimulation : public test::OnBackend {};
 
@@ -47,7 +48,7 @@ TEST_P(ASimulation, ShowsElevationAfterAnEditAndWindBeforeTheFirstStep) {
   for (float v : *start->find(Layer::elevation)) EXPECT_EQ(v, 203);
   for (float v : *start->find(Layer::wind_x)) EXPECT_EQ(v, 5);
   for (float v : *start->find(Layer::wind_y)) EXPECT_EQ(v, 0);
-  EditTerrain edit;
+  command::EditTerrain edit;
   edit.x = 5 + 2 * 3.5;
   edit.y = 6 + 2 * 4.5;
   edit.radius = 3;
@@ -66,14 +67,14 @@ TEST_P(ASimulation, ListsTheLayersInUse) {
 
 TEST_P(ASimulation, TakesWindFromCommands) {
   auto s = simulation(world);
-  s->apply(SetWind{90, 8, 0});
+  s->apply(command::SetWind{90, 8, 0});
   EXPECT_EQ(s->wind_above().x, 0);
   EXPECT_EQ(s->wind_above().y, 8);
-  s->apply(SetWind{0, 4, 2});  // from (0, 8) in two seconds: four steps
+  s->apply(command::SetWind{0, 4, 2});  // from (0, 8) in two seconds: four steps
   test::run(*s, 2);
   EXPECT_NEAR(s->wind_above().x, 2, 1e-6);
   EXPECT_NEAR(s->wind_above().y, 4, 1e-6);
-  SetWindSchedule schedule;
+  command::SetWindSchedule schedule;
   schedule.regime.kind = WindRegimeKind::timeline;
   schedule.regime.segments = {{180, 6, 1, 0, 1}, {270, 7, 1, 0, 1}};
   s->apply(schedule);
@@ -85,7 +86,8 @@ TEST_P(ASimulation, TakesWindFromCommands) {
 TEST_P(ASimulation, RefusesWrongWindsAndChangesNothing) {
   auto s = simulation(world);
   test::run(*s, 1);
-  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
   const std::uint64_t before = s->state_hash();
   const auto refused = [&](const auto& command, const std::string& naming) {
     try {
@@ -97,12 +99,12 @@ TEST_P(ASimulation, RefusesWrongWindsAndChangesNothing) {
     EXPECT_EQ(s->wind_above().x, 5);
     EXPECT_EQ(s->state_hash(), before);
   };
-  refused(SetWind{nan, 5, 0}, "direction_deg");
-  refused(SetWind{400, 5, 0}, "direction_deg");
-  refused(SetWind{0, -1, 0}, "speed");
-  refused(SetWind{0, infinity, 0}, "speed");
-  refused(SetWind{0, 5, -1}, "ramp");
-  SetWindSchedule schedule;
+  refused(command::SetWind{nan, 5, 0}, "direction_deg");
+  refused(command::SetWind{400, 5, 0}, "direction_deg");
+  refused(command::SetWind{0, -1, 0}, "speed");
+  refused(command::SetWind{0, infinity, 0}, "speed");
+  refused(command::SetWind{0, 5, -1}, "ramp");
+  command::SetWindSchedule schedule;
   refused(schedule, "kind");
   schedule.regime.kind = WindRegimeKind::rose;
   refused(schedule, "segments");
@@ -120,8 +122,9 @@ TEST_P(ASimulation, RefusesWrongWindsAndChangesNothing) {
 }
 
 TEST_P(ASimulation, NamesTheProcessLayerAndCellOfABrokenState) {
-  auto s = simulation(std::string(world) + "avalanching: {enabled: false}\nsaltation: {enabled: false}\n"
-                                           "wind: {speed: 0, warping: false, projection: false}\n");
+  auto s = simulation(std::string(world) +
+                      "avalanching: {enabled: false}\nsaltation: {enabled: false}\n"
+                      "wind: {speed: 0, warping: false, projection: false}\n");
   Terrain& terrain = const_cast<Terrain&>(s->terrain());
   std::vector<std::uint32_t> sand = terrain.words(Layer::sand);
   sand[5 * 24 + 7] = static_cast<std::uint32_t>(-3);
@@ -130,13 +133,15 @@ TEST_P(ASimulation, NamesTheProcessLayerAndCellOfABrokenState) {
     test::run(*s, 100);
     FAIL() << "a negative depth went unnoticed";
   } catch (const StateError& e) {
-    for (const char* text : {"reptation", "sand", "(7, 5)"}) EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
+    for (const char* text : {"reptation", "sand", "(7, 5)"})
+      EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
   }
 }
 
 TEST_P(ASimulation, TakesWindToTheWestForWhole) {
-  auto s = simulation("grid: {width: 8, height: 8}\nterrain: [uniform: {layer: sand, value: 1}]\n"
-                      "wind: {speed: 5, direction_deg: 180}\nrun: {check_every: 1}\n");
+  auto s = simulation(
+      "grid: {width: 8, height: 8}\nterrain: [uniform: {layer: sand, value: 1}]\n"
+      "wind: {speed: 5, direction_deg: 180}\nrun: {check_every: 1}\n");
   EXPECT_NO_THROW(test::run(*s, 3)) << "negative, and not broken";
 }
 

@@ -1,8 +1,9 @@
 // The steps of a scenario's terrain: shapes, merges, places, random ones.
 
+#include "desert_sim/scenario/terrain_builder.hpp"
+
 #include <cmath>
 
-#include "desert_sim/scenario/terrain_builder.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {
@@ -17,7 +18,8 @@ struct Built {
   }
 };
 
-Built build(const std::string& steps, const std::string& grid = "width: 32, height: 20, cell_size: 0.5, origin_x: 10, origin_y: -4",
+Built build(const std::string& steps,
+            const std::string& grid = "width: 32, height: 20, cell_size: 0.5, origin_x: 10, origin_y: -4",
             const RasterLoader& loader = refuse_rasters) {
   Built b;
   b.scenario = test::scenario_of("grid: {" + grid + "}\nterrain: [" + steps + "]\n");
@@ -26,8 +28,9 @@ Built build(const std::string& steps, const std::string& grid = "width: 32, heig
 }
 
 TEST(TerrainSteps, UniformMerges) {
-  const Built b = build("uniform: {layer: sand, value: 2}, uniform: {layer: sand, value: 3, merge: add}, "
-                        "uniform: {layer: bedrock, value: -7}, uniform: {layer: bedrock, value: -9, merge: max}");
+  const Built b = build(
+      "uniform: {layer: sand, value: 2}, uniform: {layer: sand, value: 3, merge: add}, "
+      "uniform: {layer: bedrock, value: -7}, uniform: {layer: bedrock, value: -9, merge: max}");
   EXPECT_EQ(b.at(Layer::sand, 5, 5), 5);
   EXPECT_EQ(b.at(Layer::bedrock, 31, 19), -7);
   EXPECT_EQ(b.layers.count(Layer::soil), 0u);
@@ -37,7 +40,9 @@ TEST(TerrainSteps, RampRisesPerMetreAboutTheGridsCentre) {
   const Built b = build("ramp: {value: 100, slope_x: 0.2, slope_y: -0.1}");
   EXPECT_NEAR(b.at(Layer::bedrock, 31, 10) - b.at(Layer::bedrock, 0, 10), 0.2 * 31 * 0.5, 1e-9);
   EXPECT_NEAR(b.at(Layer::bedrock, 3, 19) - b.at(Layer::bedrock, 3, 0), -0.1 * 19 * 0.5, 1e-9);
-  EXPECT_NEAR(0.25 * (b.at(Layer::bedrock, 15, 9) + b.at(Layer::bedrock, 16, 9) + b.at(Layer::bedrock, 15, 10) + b.at(Layer::bedrock, 16, 10)), 100, 1e-9);
+  EXPECT_NEAR(0.25 * (b.at(Layer::bedrock, 15, 9) + b.at(Layer::bedrock, 16, 9) +
+                      b.at(Layer::bedrock, 15, 10) + b.at(Layer::bedrock, 16, 10)),
+              100, 1e-9);
 }
 
 TEST(TerrainSteps, ConesStandWhereTheyAreSaidTo) {
@@ -62,7 +67,9 @@ TEST(TerrainSteps, RelativePlacesAreSharesOfTheGrid) {
 
 TEST(TerrainSteps, ShapesWrapOnATorusAndNotOnASheet) {
   const std::string step = "column: {x: 10, y: -4, size_x: 4, size_y: 4, height: 3}";
-  const Built torus = build(step), sheet = build(step, "width: 32, height: 20, cell_size: 0.5, origin_x: 10, origin_y: -4, boundary: open");
+  const Built torus = build(step),
+              sheet = build(
+                  step, "width: 32, height: 20, cell_size: 0.5, origin_x: 10, origin_y: -4, boundary: open");
   EXPECT_EQ(torus.at(Layer::sand, 31, 19), 3);
   EXPECT_EQ(sheet.at(Layer::sand, 31, 19), 0);
   EXPECT_EQ(sheet.at(Layer::sand, 0, 0), 3);
@@ -73,17 +80,21 @@ TEST(TerrainSteps, ColumnsHaveTheirSizeAndTurnCounterClockwise) {
   double area = 0;
   for (double v : box.layers.at(Layer::sand)) area += v * 0.25;
   EXPECT_NEAR(area, 12, 1e-9);
-  const Built cylinder = build("column: {shape: cylinder, relative: true, x: 0.5, y: 0.5, size_x: 8, size_y: 8, height: 1}");
+  const Built cylinder =
+      build("column: {shape: cylinder, relative: true, x: 0.5, y: 0.5, size_x: 8, size_y: 8, height: 1}");
   area = 0;
   for (double v : cylinder.layers.at(Layer::sand)) area += v * 0.25;
   EXPECT_NEAR(area, 3.14159265 * 16, 3);
-  const Built turned = build("column: {relative: true, x: 0.5, y: 0.5, size_x: 8, size_y: 1, angle_deg: 45, height: 1}");
+  const Built turned =
+      build("column: {relative: true, x: 0.5, y: 0.5, size_x: 8, size_y: 1, angle_deg: 45, height: 1}");
   EXPECT_EQ(turned.at(Layer::sand, 19, 13), 1) << "north-east";
   EXPECT_EQ(turned.at(Layer::sand, 19, 6), 0) << "south-east";
 }
 
 TEST(TerrainSteps, ObstaclesRaiseTheRockAndAreMarked) {
-  const Built b = build("uniform: {layer: bedrock, value: 5}, obstacle: {shape: box, relative: true, x: 0.5, y: 0.5, size_x: 4, size_y: 4, height: 7}");
+  const Built b = build(
+      "uniform: {layer: bedrock, value: 5}, obstacle: {shape: box, relative: true, x: 0.5, y: 0.5, size_x: "
+      "4, size_y: 4, height: 7}");
   EXPECT_EQ(b.at(Layer::bedrock, 16, 10), 12);
   EXPECT_EQ(b.at(Layer::obstacle, 16, 10), 1);
   EXPECT_EQ(b.at(Layer::bedrock, 2, 10), 5);
@@ -92,7 +103,9 @@ TEST(TerrainSteps, ObstaclesRaiseTheRockAndAreMarked) {
 
 TEST(TerrainSteps, DiscsCoverTheShareThatIsAskedFor) {
   for (double coverage : {0.1, 0.5, 0.9}) {
-    const Built b = build("discs: {coverage: " + std::to_string(coverage) + ", radius_low: 2, radius_high: 4, height: 2}", "width: 200, height: 150");
+    const Built b =
+        build("discs: {coverage: " + std::to_string(coverage) + ", radius_low: 2, radius_high: 4, height: 2}",
+              "width: 200, height: 150");
     double covered = 0;
     for (double v : b.layers.at(Layer::sand)) {
       EXPECT_TRUE(v == 0 || v == 2);
@@ -108,7 +121,8 @@ TEST(TerrainSteps, NoiseFillsItsRangeAndDependsOnItsSeeds) {
   const std::string grid = "width: 128, height: 96";
   for (const char* scale : {"0", "20"}) {
     const std::string step = "noise: {layer: sand, low: 1, high: 3, scale: " + std::string(scale);
-    const Built a = build(step + "}", grid), b = build(step + "}", grid), c = build(step + ", seed: 1}", grid);
+    const Built a = build(step + "}", grid), b = build(step + "}", grid),
+                c = build(step + ", seed: 1}", grid);
     double least = 9, greatest = 0, mean = 0;
     for (double v : a.layers.at(Layer::sand)) {
       least = std::min(least, v);
@@ -126,11 +140,13 @@ TEST(TerrainSteps, NoiseFillsItsRangeAndDependsOnItsSeeds) {
 }
 
 TEST(TerrainSteps, SmoothNoiseTilesOnATorus) {
-  const Built b = build("noise: {layer: sand, low: 0, high: 10, scale: 25, octaves: 3}", "width: 90, height: 70");
+  const Built b =
+      build("noise: {layer: sand, low: 0, high: 10, scale: 25, octaves: 3}", "width: 90, height: 70");
   double inside = 0, across = 0;
   for (int y = 0; y < 70; ++y) {
     across = std::max(across, std::abs(b.at(Layer::sand, 89, y) - b.at(Layer::sand, 0, y)));
-    for (int x = 0; x < 89; ++x) inside = std::max(inside, std::abs(b.at(Layer::sand, x + 1, y) - b.at(Layer::sand, x, y)));
+    for (int x = 0; x < 89; ++x)
+      inside = std::max(inside, std::abs(b.at(Layer::sand, x + 1, y) - b.at(Layer::sand, x, y)));
   }
   EXPECT_LE(across, 1.5 * inside);
 }
@@ -152,8 +168,9 @@ TEST(TerrainSteps, RastersAreAskedForOnTheGridAndFillTheirLayer) {
     for (int i = 0; i < request.width * request.height; ++i) field.values.push_back(static_cast<float>(i));
     return field;
   };
-  const Built b = build("raster: {layer: sand, file: dem.tif, band: 2, scale: 0.1, offset: 3, fill_nodata: true, merge: add}",
-                        "width: 4, height: 3, cell_size: 5, origin_x: 7", loader);
+  const Built b = build(
+      "raster: {layer: sand, file: dem.tif, band: 2, scale: 0.1, offset: 3, fill_nodata: true, merge: add}",
+      "width: 4, height: 3, cell_size: 5, origin_x: 7", loader);
   EXPECT_EQ(asked.width, 4);
   EXPECT_EQ(asked.height, 3);
   EXPECT_EQ(asked.cell_size, 5);

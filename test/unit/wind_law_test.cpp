@@ -99,7 +99,8 @@ TEST_P(WindLaw, UniformWindOnFlatGroundIsExact) {
   }
 }
 
-// ---- Shadow --------------------------------------------------------------------------------------------------------
+// ---- Shadow
+// --------------------------------------------------------------------------------------------------------
 
 TEST_P(WindLaw, ShadowOfAStepIsItsAngle) {
   // A plateau of 1.2 m west of x = 10, wind to the east: the cell d cells behind its edge sees 1.2/d.
@@ -120,7 +121,9 @@ TEST_P(WindLaw, ShadowIsCountedInMetresNotCells) {
   t.shadow();
   for (int x = 10; x < 40; ++x) {
     const double distance = 0.5 * (x - 9), slope = distance <= 10 ? 1.2 / distance : 0;
-    EXPECT_NEAR(t.at(Layer::wind_shadow, x, 1), std::clamp((slope - tangent(10)) / (tangent(15) - tangent(10)), 0.0, 1.0), 2e-5) << x;
+    EXPECT_NEAR(t.at(Layer::wind_shadow, x, 1),
+                std::clamp((slope - tangent(10)) / (tangent(15) - tangent(10)), 0.0, 1.0), 2e-5)
+        << x;
   }
 }
 
@@ -133,10 +136,13 @@ TEST_P(WindLaw, ShadowLooksAtLeastOneCellFar) {
 }
 
 TEST_P(WindLaw, ShadowReachesAcrossAPeriodicBorderBilinearly) {
-  // Wind at 45 degrees; one high cell in the north-east corner shelters the south-west corner across both borders.
+  // Wind at 45 degrees; one high cell in the north-east corner shelters the south-west corner across both
+  // borders.
   test::BenchTerrain t(exec(), 12, 12), open(exec(), 12, 12, 1, false);
   for (test::BenchTerrain* b : {&t, &open}) {
-    b->set(Layer::bedrock, [](int x, int y) { return x == 11 && y == 11 ? 6 : 0; }).set(Layer::wind_x, 3).set(Layer::wind_y, 3);
+    b->set(Layer::bedrock, [](int x, int y) { return x == 11 && y == 11 ? 6 : 0; })
+        .set(Layer::wind_x, 3)
+        .set(Layer::wind_y, 3);
     b->shadow();
   }
   // One step back is (−0.7071, −0.7071): weight 0.7071² of the corner's height.
@@ -166,23 +172,29 @@ TEST_P(WindLaw, ShadowIsNothingInCalmAirAndOnTheWindwardSide) {
 TEST_P(WindLaw, CurvedShadowOfATurningWindIsMirrorSymmetric) {
   test::BenchTerrain plain(exec(), 24, 24), mirrored(exec(), 24, 24);
   const auto direction = [](int x, int y) { return (x / 4 + y / 3) % 2 ? 60.0 : 30.0; };
-  const auto height = [](int x, int y) { return 4 + 3 * std::sin(0.9 * x) + 2 * std::cos(0.7 * y + 0.1 * x); };
+  const auto height = [](int x, int y) {
+    return 4 + 3 * std::sin(0.9 * x) + 2 * std::cos(0.7 * y + 0.1 * x);
+  };
   const auto unit = [&](int x, int y) { return unit_vector(direction(x, y)); };
   plain.set(Layer::bedrock, height);
-  plain.set(Layer::wind_x, [&](int x, int y) { return 4.0 * unit(x, y).x; }).set(Layer::wind_y, [&](int x, int y) { return 4.0 * unit(x, y).y; });
+  plain.set(Layer::wind_x, [&](int x, int y) { return 4.0 * unit(x, y).x; })
+      .set(Layer::wind_y, [&](int x, int y) { return 4.0 * unit(x, y).y; });
   mirrored.set(Layer::bedrock, [&](int x, int y) { return height(23 - x, y); });
-  mirrored.set(Layer::wind_x, [&](int x, int y) { return -4.0 * unit(23 - x, y).x; }).set(Layer::wind_y, [&](int x, int y) { return 4.0 * unit(23 - x, y).y; });
+  mirrored.set(Layer::wind_x, [&](int x, int y) { return -4.0 * unit(23 - x, y).x; })
+      .set(Layer::wind_y, [&](int x, int y) { return 4.0 * unit(23 - x, y).y; });
   WindShadowParameters p;
   p.curved = true;
   plain.shadow(p);
   mirrored.shadow(p);
   int different = 0;
   for (int y = 0; y < 24; ++y)
-    for (int x = 0; x < 24; ++x) different += plain.at(Layer::wind_shadow, x, y) != mirrored.at(Layer::wind_shadow, 23 - x, y);
+    for (int x = 0; x < 24; ++x)
+      different += plain.at(Layer::wind_shadow, x, y) != mirrored.at(Layer::wind_shadow, 23 - x, y);
   EXPECT_EQ(different, 0);
 }
 
-// ---- Echo dunes ----------------------------------------------------------------------------------------------------
+// ---- Echo dunes
+// ----------------------------------------------------------------------------------------------------
 
 TEST_P(WindLaw, EchoLaneAndStickyGroundLieAtTheirDistancesBeforeACliff) {
   // A wall of 10 m at x = 40, wind to the east: lane up to 4 m before its face, sticky up to 20 m.
@@ -223,10 +235,13 @@ TEST_P(WindLaw, EchoNeedsACliffThatFacesTheWind) {
       if (v != 0) return true;
     return false;
   };
-  t.set(Layer::bedrock, [](int x, int) { return x >= 20 && x < 40 ? std::min(x - 20, 15) * 1.4 : 0; });  // 54.5°, sheer to the lee
+  t.set(Layer::bedrock, [](int x, int) {
+    return x >= 20 && x < 40 ? std::min(x - 20, 15) * 1.4 : 0;
+  });  // 54.5°, sheer to the lee
   t.echo({});
   EXPECT_FALSE(any());
-  t.set(Layer::bedrock, [](int x, int) { return x >= 20 && x < 40 ? std::min(x - 20, 15) * 1.45 : 0; });  // 55.4°
+  t.set(Layer::bedrock,
+        [](int x, int) { return x >= 20 && x < 40 ? std::min(x - 20, 15) * 1.45 : 0; });  // 55.4°
   t.echo({});
   EXPECT_TRUE(any());
   t.set(Layer::wind_x, 0);

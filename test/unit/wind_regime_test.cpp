@@ -1,11 +1,11 @@
 // The wind high above the ground: constant, ramp, timeline, rose.
 
+#include "desert_sim/simulation/wind_regime.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
-
-#include "desert_sim/simulation/wind_regime.hpp"
 
 namespace desert_sim {
 namespace {
