@@ -27,8 +27,7 @@ int run() {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "desert_sim");
-  ros::start();  // else the last NodeHandle's end would be that of the log too, before it has told what went
-                 // wrong
+  ros::start();  // the log ends with ROS, and must outlive the server
   int status = failed;
   try {
     status = run();

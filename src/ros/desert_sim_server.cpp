@@ -65,9 +65,14 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
     frames_->announce_center(p.center_frame, *simulation_->terrain({Layer::elevation}).get().snapshot);
   topics_ = std::make_unique<Topics>(node_, setup.publishers, p.frame_id, *simulation_);
   to_notify_ = topics_.get();
-  services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *topics_, *frames_, *files_);
-  spinner_.start();
-  step_spinner_.start();
+  try {
+    services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *topics_, *frames_, *files_);
+    spinner_.start();
+    step_spinner_.start();
+  } catch (...) {
+    simulation_->stop();  // it must not notify topics that are gone
+    throw;
+  }
 }
 
 DesertSimServer::~DesertSimServer() {

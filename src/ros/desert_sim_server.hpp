@@ -1,6 +1,5 @@
 #pragma once
-/// The node: parameters, simulation, topics and services, on threads of its own. A program or a nodelet makes
-/// one.
+/// The node: parameters, simulation, topics and services, on threads of its own. For a program or a nodelet.
 
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>

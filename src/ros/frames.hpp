@@ -24,8 +24,7 @@ class Frames {
   /// Waits a moment for a transform that is on its way; throws ConfigError with the reason if there is none.
   tf2::Transform to_terrain(const std_msgs::Header& header) const;
 
-  /// Publishes the static frame `name` in the middle of the terrain, at its mean height, for views to turn
-  /// about.
+  /// Publishes the static frame `name` in the middle of the terrain, at its mean height.
   void announce_center(const std::string& name, const Snapshot& snapshot);
 
  private:

@@ -35,8 +35,7 @@ std::string find_below(const fs::path& folder, int depth) {
        !error && entry != end; entry.increment(error))
     if (entry->is_directory(error) && entry->path().filename().string()[0] != '.')
       below.push_back(entry->path());
-  // The folder that has the package's name is the likeliest; the order of the rest must not depend on the
-  // file system.
+  // The folder that has the package's name is the likeliest; the rest go by name.
   std::sort(below.begin(), below.end(), [](const fs::path& a, const fs::path& b) {
     const bool likely_a = a.filename() == "desert_sim", likely_b = b.filename() == "desert_sim";
     return likely_a != likely_b ? likely_a : a < b;

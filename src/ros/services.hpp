@@ -1,6 +1,5 @@
 #pragma once
-/// The services. Each turns a request into a command, waits until the simulation thread has answered, and
-/// says so.
+/// The services. Each turns a request into a command and waits for the simulation thread's answer.
 
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/LoadCheckpoint.h>
@@ -27,8 +26,7 @@ namespace desert_sim {
 
 class Services {
  public:
-  /// `step_queue` serves ~step, which can take long, apart from the rest, so that a pause always comes
-  /// through.
+  /// `step_queue` serves ~step apart from the rest: it can take long, and a pause must come through.
   Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation, Topics& topics,
            const Frames& frames, const DataFolder& files);
 

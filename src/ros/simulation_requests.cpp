@@ -21,7 +21,8 @@ std::future<Reached> SimulationThread::apply(const Command& command, bool with_h
     const CommandResult result = session_->apply(command);
     ++commands_;
     stamp_ = ros::Time::now();
-    if (std::holds_alternative<command::Reset>(command) || std::holds_alternative<command::LoadCheckpoint>(command)) {
+    if (std::holds_alternative<command::Reset>(command) ||
+        std::holds_alternative<command::LoadCheckpoint>(command)) {
       end_step_requests(std::holds_alternative<command::Reset>(command) ? "a reset" : "load_checkpoint");
       ++terrains_;
       timed_steps_ = 0;

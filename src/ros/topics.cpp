@@ -176,7 +176,7 @@ void Topics::loop() {
 bool Topics::wait(bool& all, bool& status, std::uint64_t& asked) {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_ && !simulation_.failed()) {
-    Clock::time_point next = Clock::now() + std::chrono::hours(1);
+    Clock::time_point next = Clock::now() + std::chrono::seconds(1);
     bool listen = false;
     listens_to_changes_ = true;  // before looking at what has changed, so that no change is missed
     if (asked_ != served_ || status_wanted_ || something_is_due(next, listen)) {

@@ -1,7 +1,7 @@
 #pragma once
 /// ROS parameters as YAML, so that one loader reads both.
 
-#include <XmlRpcValue.h>
+#include <xmlrpcpp/XmlRpcValue.h>
 
 #include <string>
 

@@ -21,8 +21,8 @@ Scenario bare(int width, int height, float speed, float strength) {
   return s;
 }
 
-/// Plenty of sand; the first wind to the east blows twice as long as the second, to `theta`, and both in turn much
-/// shorter than a dune takes to move its length.
+/// Plenty of sand; the first wind to the east blows twice as long as the second, to `theta`, and both in turn
+/// much shorter than a dune takes to move its length.
 Scenario two_winds(double theta, std::uint64_t seed) {
   Scenario s = bare(192, 192, 3, 0.1f);
   s.seed = seed;
@@ -40,8 +40,8 @@ Scenario two_winds(double theta, std::uint64_t seed) {
   return s;
 }
 
-/// Crests (counter-clockwise from the first wind) against the bedform instability with speed-up factor 1.6: Rubin &
-/// Hunter 1987, Courrech du Pont 2014, Gao 2015.
+/// Crests (counter-clockwise from the first wind) against the bedform instability with speed-up factor 1.6:
+/// Rubin & Hunter 1987, Courrech du Pont 2014, Gao 2015.
 class TwoWinds : public ::testing::TestWithParam<std::pair<double, double>> {};
 
 TEST_P(TwoWinds, CrestOrientation) {
@@ -49,18 +49,20 @@ TEST_P(TwoWinds, CrestOrientation) {
   for (std::uint64_t seed : {1u, 2u}) {
     Running scene(two_winds(theta, seed));
     const Orientation o = crest_orientation(scene.run(500).field(Layer::elevation), 4);
-    DESERT_REPORT("second wind at %.0f: crests at %.1f degrees (coherence %.2f), expected %.1f", theta, o.crest_deg,
-                  o.coherence, expected);
+    DESERT_REPORT("second wind at %.0f: crests at %.1f degrees (coherence %.2f), expected %.1f", theta,
+                  o.crest_deg, o.coherence, expected);
     EXPECT_LT(line_angle_between_deg(o.crest_deg, expected), 10) << "seed " << seed;
     EXPECT_GT(o.coherence, 0.7) << "seed " << seed;
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, TwoWinds,
-                         ::testing::Values(std::pair{60.0, 106.3}, std::pair{120.0, 73.7}, std::pair{135.0, 76.3}),
+                         ::testing::Values(std::pair{60.0, 106.3}, std::pair{120.0, 73.7},
+                                           std::pair{135.0, 76.3}),
                          [](const auto& test) { return std::to_string(static_cast<int>(test.param.first)); });
 
-/// Where the largest dune's slip face stands along x, at half its height in the row of its crest; and how high it is.
+/// Where the largest dune's slip face stands along x, at half its height in the row of its crest; and how
+/// high it is.
 struct Barchan {
   double x = 0, height = 0;
 };

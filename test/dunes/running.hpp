@@ -22,7 +22,8 @@ inline Scenario shipped(const std::string& name, const Settings& settings = {}) 
 /// A running scenario on the CPU. One thread: tests share the machine.
 class Running {
  public:
-  explicit Running(const Scenario& scenario) : session_(std::make_unique<Session>(scenario, rasters(), "cpu", 1)) {}
+  explicit Running(const Scenario& scenario)
+      : session_(std::make_unique<Session>(scenario, rasters(), "cpu", 1)) {}
 
   Running& run(int steps) {
     for (int n = 0; n < steps; ++n) session_->step();
@@ -59,11 +60,11 @@ class Running {
 };
 
 /// What a test measured, for the log.
-#define DESERT_REPORT(...)      \
-  do {                          \
+#define DESERT_REPORT(...)       \
+  do {                           \
     std::printf("  measured: "); \
-    std::printf(__VA_ARGS__);   \
-    std::printf("\n");          \
+    std::printf(__VA_ARGS__);    \
+    std::printf("\n");           \
   } while (0)
 
 }  // namespace desert_sim

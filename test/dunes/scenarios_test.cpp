@@ -21,8 +21,9 @@ double mean_where(const Field& values, const std::vector<char>& mask) {
   return count ? sum / static_cast<double>(count) : 0;
 }
 
-/// Height to width 0.06…0.15, stoss 8…15 degrees, slip face 31…35 degrees to within 20 degrees of downwind, horns
-/// downwind. Dunes are cut apart at 1.5 m, so that the thin sand between their horns does not join them.
+/// Height to width 0.06…0.15, stoss 8…15 degrees, slip face 31…35 degrees to within 20 degrees of downwind,
+/// horns downwind. Dunes are cut apart at 1.5 m, so that the thin sand between their horns does not join
+/// them.
 TEST(Dunes, Barchan) {
   Running scene(shipped("barchan", {"grid.width=256", "grid.height=256"}));
   std::vector<double> ratio, stoss, slip, direction, horns;
@@ -41,9 +42,11 @@ TEST(Dunes, Barchan) {
     }
   }
   ASSERT_GE(ratio.size(), 5u);
-  DESERT_REPORT("%zu barchans: h/w %.3f, stoss %.1f, slip face %.1f, to within %.0f of downwind, horns %.0f; %d reach out",
-                ratio.size(), quantile(ratio, 0.5), quantile(stoss, 0.5), quantile(slip, 0.5), quantile(direction, 0.5),
-                quantile(horns, 0.5), downwind);
+  DESERT_REPORT(
+      "%zu barchans: h/w %.3f, stoss %.1f, slip face %.1f, to within %.0f of downwind, horns %.0f; %d reach "
+      "out",
+      ratio.size(), quantile(ratio, 0.5), quantile(stoss, 0.5), quantile(slip, 0.5), quantile(direction, 0.5),
+      quantile(horns, 0.5), downwind);
   EXPECT_GE(quantile(ratio, 0.5), 0.06);
   EXPECT_LE(quantile(ratio, 0.5), 0.15);
   EXPECT_GE(quantile(stoss, 0.5), 8);
@@ -63,7 +66,8 @@ TEST(Dunes, Transverse) {
   const Field elevation = scene.run(560).field(Layer::elevation);
   const double late = wavelength(elevation, 0);
   const Orientation o = crest_orientation(elevation, 2);
-  DESERT_REPORT("crests at %.1f degrees (coherence %.2f), wavelength %.1f then %.1f m", o.crest_deg, o.coherence, early, late);
+  DESERT_REPORT("crests at %.1f degrees (coherence %.2f), wavelength %.1f then %.1f m", o.crest_deg,
+                o.coherence, early, late);
   EXPECT_LT(line_angle_between_deg(o.crest_deg, 90), 20);
   EXPECT_GT(o.coherence, 0.5);
   EXPECT_GT(early, 0);
@@ -104,14 +108,16 @@ TEST(Dunes, Nebkha) {
   const auto shifted = [&](int cells) {
     std::vector<char> mask(plants.values.size());
     for (int y = 0; y < plants.height; ++y)
-      for (int x = 0; x < plants.width; ++x) mask[plants.index(x, y)] = plants.at(x - cells, y) > 0 && plants.at(x, y) == 0;
+      for (int x = 0; x < plants.width; ++x)
+        mask[plants.index(x, y)] = plants.at(x - cells, y) > 0 && plants.at(x, y) == 0;
     return mask;
   };
   std::vector<char> planted(plants.values.size());
   for (std::size_t i = 0; i < planted.size(); ++i) planted[i] = plants.values[i] > 0;
   const double all = mean_where(sand, std::vector<char>(planted.size(), 1)), on = mean_where(sand, planted);
   const double lee = mean_where(sand, shifted(8)), upwind = mean_where(sand, shifted(-8));
-  DESERT_REPORT("sand: mean %.2f m, among plants %.2f m, 8 m downwind of them %.2f m, upwind %.2f m", all, on, lee, upwind);
+  DESERT_REPORT("sand: mean %.2f m, among plants %.2f m, 8 m downwind of them %.2f m, upwind %.2f m", all, on,
+                lee, upwind);
   EXPECT_GT(on, 3 * all);
   EXPECT_GT(lee, 1.3 * upwind);
 }
@@ -123,27 +129,29 @@ TEST(Dunes, Echo) {
   const Field wall = scene.field(Layer::obstacle);
   scene.run(400);
   const WallFront front = wall_front(scene.field(Layer::sand), wall, 45, 52, 0.3, 3 * tower);
-  DESERT_REPORT("lane %.1f m (%.2f of the tower), dune %.1f m high, %.1f m before it", front.lane, front.lane / tower,
-                front.dune_height, front.dune_distance);
+  DESERT_REPORT("lane %.1f m (%.2f of the tower), dune %.1f m high, %.1f m before it", front.lane,
+                front.lane / tower, front.dune_height, front.dune_distance);
   EXPECT_GE(front.lane, 0.3 * tower);
   EXPECT_LE(front.lane, 1.0 * tower);
   EXPECT_GT(front.dune_height, 1.5);
   EXPECT_LT(front.dune_distance, 2.0 * tower);
 }
 
-/// Ridges of rock within 10 degrees of the wind, whichever way it blows over rock that varies alike in all directions.
+/// Ridges of rock within 10 degrees of the wind, whichever way it blows over rock that varies alike in all
+/// directions.
 TEST(Dunes, Yardang) {
   for (double turn : {0.0, 35.0}) {
     Settings settings = small;
     settings.insert(settings.end(), {"terrain.1.noise.stretch=1", "terrain.1.noise.scale=20"});
     const double directions[] = {-4, 0, 4, -4, 4};
     for (int n = 0; n < 5; ++n)
-      settings.push_back("wind.segments." + std::to_string(n) + ".direction_deg=" + std::to_string(turn + directions[n]));
+      settings.push_back("wind.segments." + std::to_string(n) +
+                         ".direction_deg=" + std::to_string(turn + directions[n]));
     Running scene(shipped("yardang", settings));
     const Orientation before = crest_orientation(scene.field(Layer::bedrock), 2);
     const Orientation o = crest_orientation(scene.run(400).field(Layer::bedrock), 2);
-    DESERT_REPORT("wind to %.0f: ridges at %.1f degrees (coherence %.2f, before %.2f)", turn, o.crest_deg, o.coherence,
-                  before.coherence);
+    DESERT_REPORT("wind to %.0f: ridges at %.1f degrees (coherence %.2f, before %.2f)", turn, o.crest_deg,
+                  o.coherence, before.coherence);
     EXPECT_LT(line_angle_between_deg(o.crest_deg, turn), 10);
     EXPECT_GT(o.coherence, 0.25);
     EXPECT_LT(before.coherence, 0.15);

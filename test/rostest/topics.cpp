@@ -1,5 +1,5 @@
-/// The topics of a paused node on the scenario corner.yaml: what a late joiner gets, where cells lie, what a
-/// topic costs.
+/// The topics of a paused node on the scenario corner.yaml: what late joiners get, where cells lie, what it
+/// costs.
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
 #include <desert_sim/SimulationStatus.h>

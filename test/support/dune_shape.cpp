@@ -21,7 +21,9 @@ double direction_of(double x, double y) { return std::atan2(y, x) / degree; }
 
 }  // namespace
 
-float Field::at(int x, int y) const { return values[index(bounded(*this, x, width), bounded(*this, y, height))]; }
+float Field::at(int x, int y) const {
+  return values[index(bounded(*this, x, width), bounded(*this, y, height))];
+}
 
 double Field::sample(double x, double y) const {
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
@@ -41,7 +43,8 @@ double quantile(std::vector<double> values, double share) {
   return values[n];
 }
 
-// ---- slopes --------------------------------------------------------------------------------------------------------
+// ---- slopes
+// --------------------------------------------------------------------------------------------------------
 
 Slopes slopes(const Field& f) {
   Slopes s;
@@ -86,7 +89,8 @@ std::vector<double> slip_face_directions(const Field& f, double least_share) {
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share(a) > share(b); });
   for (int b : order) {
     double turn = 0;  // from the bin's middle to the mean direction within reach
-    for (int d = -reach; d <= reach; ++d) turn += 5.0 * d * count[static_cast<std::size_t>(wrapped(b + d, bins))] / total;
+    for (int d = -reach; d <= reach; ++d)
+      turn += 5.0 * d * count[static_cast<std::size_t>(wrapped(b + d, bins))] / total;
     const double direction = std::fmod(5.0 * b + 2.5 + (share(b) > 0 ? turn / share(b) : 0.0) + 360.0, 360.0);
     const bool peak = share(b) >= share(b - 1) && share(b) >= share(b + 1);
     const bool apart = std::all_of(directions.begin(), directions.end(),
@@ -96,7 +100,8 @@ std::vector<double> slip_face_directions(const Field& f, double least_share) {
   return directions;
 }
 
-// ---- separate dunes ------------------------------------------------------------------------------------------------
+// ---- separate dunes
+// ------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -108,7 +113,8 @@ struct Cell {
 
 using Patch = std::vector<Cell>;
 
-std::vector<Patch> find_patches(const Field& sand, double wind_deg, double threshold, std::size_t least_cells) {
+std::vector<Patch> find_patches(const Field& sand, double wind_deg, double threshold,
+                                std::size_t least_cells) {
   const double c = std::cos(wind_deg * degree), s = std::sin(wind_deg * degree);
   std::vector<char> seen(sand.values.size(), 0);
   std::vector<Patch> patches;
@@ -134,9 +140,10 @@ std::vector<Patch> find_patches(const Field& sand, double wind_deg, double thres
   return patches;
 }
 
-/// Distance from the crest, going by `step` cells, at which the surface has fallen to `level` [m]; −1 if it does not
-/// within `most` metres.
-double fall_distance(const Field& elevation, double x, double y, double step_x, double step_y, double level, double most) {
+/// Distance from the crest, going by `step` cells, at which the surface has fallen to `level` [m]; −1 if it
+/// does not within `most` metres.
+double fall_distance(const Field& elevation, double x, double y, double step_x, double step_y, double level,
+                     double most) {
   constexpr double stride = 0.25;
   double last = elevation.sample(x, y);
   for (double d = stride; d * elevation.cell_size <= most; d += stride) {
@@ -150,9 +157,10 @@ double fall_distance(const Field& elevation, double x, double y, double step_x, 
   return -1;
 }
 
-/// Angle of the line between the places where a profile from the crest has fallen to the shares `high` and `low` of
-/// the height [deg]; 0 if it never does.
-double flank_deg(const Field& elevation, const Dune& dune, double base, double dx, double dy, double high, double low) {
+/// Angle of the line between the places where a profile from the crest has fallen to the shares `high` and
+/// `low` of the height [deg]; 0 if it never does.
+double flank_deg(const Field& elevation, const Dune& dune, double base, double dx, double dy, double high,
+                 double low) {
   const double l = elevation.cell_size, x = dune.crest_x / l - 0.5, y = dune.crest_y / l - 0.5;
   const double most = 2 * dune.length + 10 * l;
   const double upper = fall_distance(elevation, x, y, dx, dy, base + high * dune.height, most);
@@ -178,7 +186,8 @@ void measure_horns(const Patch& patch, double wind_deg, double left, double righ
   dune.horn_direction_deg = std::remainder(wind_deg + direction_of(along, across), 360.0);
 }
 
-Dune measure(const Field& elevation, const Field& sand, const Slopes& slope, const Patch& patch, double wind_deg) {
+Dune measure(const Field& elevation, const Field& sand, const Slopes& slope, const Patch& patch,
+             double wind_deg) {
   Dune dune;
   const double l = sand.cell_size;
   double left = patch[0].across, right = left, back = patch[0].along, front = back;
@@ -233,11 +242,13 @@ std::vector<Dune> find_dunes(const Field& elevation, const Field& sand, double w
   std::vector<Dune> dunes;
   for (const Patch& patch : find_patches(sand, wind_deg, threshold, least_cells))
     dunes.push_back(measure(elevation, sand, slope, patch, wind_deg));
-  std::stable_sort(dunes.begin(), dunes.end(), [](const Dune& a, const Dune& b) { return a.volume > b.volume; });
+  std::stable_sort(dunes.begin(), dunes.end(),
+                   [](const Dune& a, const Dune& b) { return a.volume > b.volume; });
   return dunes;
 }
 
-// ---- patterns of crests --------------------------------------------------------------------------------------------
+// ---- patterns of crests
+// --------------------------------------------------------------------------------------------
 
 Field smoothed(const Field& f, double sigma) {
   const double cells = sigma / f.cell_size;
@@ -257,7 +268,8 @@ Field smoothed(const Field& f, double sigma) {
       for (int x = 0; x < f.width; ++x) {
         double mean = 0;
         for (int d = -reach; d <= reach; ++d)
-          mean += kernel[static_cast<std::size_t>(d + reach)] * (pass == 0 ? from.at(x + d, y) : from.at(x, y + d));
+          mean += kernel[static_cast<std::size_t>(d + reach)] *
+                  (pass == 0 ? from.at(x + d, y) : from.at(x, y + d));
         to.values[f.index(x, y)] = static_cast<float>(mean / sum);
       }
   }
@@ -314,7 +326,8 @@ double roughness(const Field& f) {
   return std::sqrt(square);
 }
 
-// ---- spectra -------------------------------------------------------------------------------------------------------
+// ---- spectra
+// -------------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -357,7 +370,8 @@ namespace {
 
 constexpr int harmonics = 3;
 
-/// The greatest excess of the modes up to the third harmonic of `period` that are multiples of it, or that are not.
+/// The greatest excess of the modes up to the third harmonic of `period` that are multiples of it, or that
+/// are not.
 double greatest_excess(const std::vector<Field>& fields, int period, bool multiples) {
   double greatest = 0;
   for (bool along_x : {true, false}) {
@@ -376,7 +390,8 @@ double imprint_by_chance(const std::vector<Field>& fields, int period) {
   return greatest_excess(fields, period, false);
 }
 
-// ---- in front of walls ---------------------------------------------------------------------------------------------
+// ---- in front of walls
+// ---------------------------------------------------------------------------------------------
 
 WallFront wall_front(const Field& sand, const Field& wall, int y0, int y1, double threshold, double reach) {
   WallFront mean;

@@ -26,7 +26,8 @@ Field made(int width, int height, double cell_size, const Value& value) {
 /// Parallel ridges `wavelength` cells apart whose crests run along `crest_deg`. The grid need not repeat.
 Field waves(int n, double cell_size, double wavelength, double crest_deg) {
   const double nx = -std::sin(crest_deg * pi / 180), ny = std::cos(crest_deg * pi / 180);
-  Field f = made(n, n, cell_size, [&](int x, int y) { return std::sin(2 * pi * (x * nx + y * ny) / wavelength); });
+  Field f =
+      made(n, n, cell_size, [&](int x, int y) { return std::sin(2 * pi * (x * nx + y * ny) / wavelength); });
   f.periodic = false;
   return f;
 }
@@ -52,7 +53,8 @@ TEST(DuneShape, CrestOrientationOfWaves) {
 }
 
 TEST(DuneShape, CrestsOfACheckerboardHaveNoDirection) {
-  const Field f = made(96, 96, 1, [](int x, int y) { return std::sin(2 * pi * x / 16) * std::sin(2 * pi * y / 16); });
+  const Field f =
+      made(96, 96, 1, [](int x, int y) { return std::sin(2 * pi * x / 16) * std::sin(2 * pi * y / 16); });
   EXPECT_LT(crest_orientation(f, 1).coherence, 0.01);
 }
 
@@ -90,9 +92,9 @@ TEST(DuneShape, NoSlipFacesOnGentleGround) {
   EXPECT_TRUE(slip_face_directions(f).empty());
 }
 
-/// A wedge with a stoss side of 10 and a lee side of 32 degrees, 24 m wide, and two horns of `horn` metres that are
-/// 1 m high and run downwind along its flanks. Wind to the east; the crest 5 m high at x = 40 (and 60 % of it elsewhere
-/// across, so that there is one highest row).
+/// A wedge with a stoss side of 10 and a lee side of 32 degrees, 24 m wide, and two horns of `horn` metres
+/// that are 1 m high and run downwind along its flanks. Wind to the east; the crest 5 m high at x = 40 (and
+/// 60 % of it elsewhere across, so that there is one highest row).
 Field barchan(double horn, int shift_x, int shift_y) {
   const double stoss = std::tan(10 * pi / 180), lee = std::tan(32 * pi / 180);
   return made(128, 64, 1, [&](int px, int py) {
@@ -161,7 +163,9 @@ TEST(DuneShape, WindDirectionTurnsTheMeasures) {
 
 TEST(DuneShape, SeparateDunesAreCountedLargestFirst) {
   const Field f = made(64, 64, 1, [](int x, int y) {
-    const auto cone = [&](double cx, double cy, double r) { return std::max(0.0, r - std::hypot(x - cx, y - cy)) * 0.5; };
+    const auto cone = [&](double cx, double cy, double r) {
+      return std::max(0.0, r - std::hypot(x - cx, y - cy)) * 0.5;
+    };
     return cone(16, 16, 8) + cone(48, 16, 11) + cone(32, 48, 5);
   });
   const std::vector<Dune> dunes = find_dunes(f, f, 0, 0.2, 10);
