@@ -38,10 +38,10 @@ struct LevelView {
   DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : ground[i] + sand[i]; }
 };
 
-/// Averages four children into a coarse cell. A child that is a wall makes a wall. The coarse angle of repose is the
-/// steepest child's, and somewhat more: where angles differ from cell to cell, as across the brink of a slip face, a mean
-/// would let coarse cells slide that are at rest on the fine grid, and flatten slip faces. What is left is the fine
-/// sweeps'.
+/// Averages four children into a coarse cell. A child that is a wall makes a wall. The coarse angle of repose
+/// is the steepest child's, and somewhat more: where angles differ from cell to cell, as across the brink of
+/// a slip face, a mean would let coarse cells slide that are at rest on the fine grid, and flatten slip
+/// faces. What is left is the fine sweeps'.
 struct Restrict {
   static constexpr float coarse_margin = 1.15f;
 

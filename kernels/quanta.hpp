@@ -26,9 +26,16 @@ DESERT_HD Quanta take(float metres, float quanta_per_metre, Quanta available) {
   return static_cast<Quanta>(wanted);
 }
 
+/// What a displacement may be [cells]; Simulation refuses scenarios whose hops or marches are longer.
+constexpr int longest_reach = 16384;
 /// A displacement in cells as a 16.16 fixed-point number. Rounding is symmetric, so that mirrored winds
 /// mirror.
-DESERT_HD int subcells(float cells) { return static_cast<int>(rintf(cells * 65536.0f)); }
+/// Winds that features make faster than `longest_reach` allows carry that far.
+DESERT_HD int subcells(float cells) {
+  const float longest = longest_reach;
+  const float held = cells > longest ? longest : (cells < -longest ? -longest : cells);
+  return static_cast<int>(rintf(held * 65536.0f));
+}
 constexpr int subcell_one = 65536;
 /// The nearest whole cell to a displacement; halves go away from zero, so that mirrored marches mirror.
 DESERT_HD int nearest_cell(int subcell) { return (subcell + 32768 - (subcell < 0 ? 1 : 0)) >> 16; }

@@ -179,7 +179,7 @@ class Builder {
       };
       const int cx = static_cast<int>(draw(0) * g.width), cy = static_cast<int>(draw(1) * g.height);
       const double r = (p.radius_low + (p.radius_high - p.radius_low) * draw(2)) / l;
-      const int reach = static_cast<int>(std::ceil(r));
+      const int reach = static_cast<int>(std::min(std::ceil(r), 1.0 * std::max(g.width, g.height)));
       for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach; dx <= reach; ++dx) {
           const int i = dx * dx + dy * dy <= r * r ? neighbour_index(g, cx + dx, cy + dy) : -1;

@@ -39,7 +39,6 @@ struct SetWindSchedule {
   WindRegime regime;
 };
 
-
 /// Brush on `layer` (sand or bedrock). Weight is 1 within `inner` of the shape and falls linearly to 0 at its
 /// edge; add and sub move the layer by weight·value, the others blend towards value (or its min, max, mean
 /// with what is there) by the weight. For sand, `value` is a depth [m]; for bedrock an elevation [m], or with
@@ -83,8 +82,8 @@ struct LoadCheckpoint {
 
 }  // namespace command
 
-using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditTerrain,
-                             command::Reset, command::LoadCheckpoint>;
+using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditTerrain, command::Reset,
+                             command::LoadCheckpoint>;
 
 /// Cells that a command changed: x0 ≤ x < x1, y0 ≤ y < y1 (empty if x1 ≤ x0).
 struct CellRectangle {

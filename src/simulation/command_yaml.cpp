@@ -101,7 +101,7 @@ Command read_command(const YAML::Node& node, const std::string& source) {
   if (name == "reset") return command::Reset{};
   if (name == "load_checkpoint")
     return command::LoadCheckpoint{scalar<std::string>(node, "path", source),
-                          scalar<std::uint64_t>(node, "hash", source)};
+                                   scalar<std::uint64_t>(node, "hash", source)};
   throw ConfigError(source + ": unknown command '" + name + "'");
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 
@@ -119,8 +120,8 @@ void Simulation::refresh_derived() {
     update_wind(e, view);
     if (s.wind_shadow.enabled) wind_shadow::step(e, view, s.wind_shadow);
     if (s.echo_dunes.enabled) echo_dunes::step(e, view, s.echo_dunes, cliff_.data());
-    reptation::step(e, view, only_angles, s.repose, s.run.time_step, s.seed, steps_, reptation_strength_.data(),
-                    landed_.data(), repose_.data());
+    reptation::step(e, view, only_angles, s.repose, s.run.time_step, s.seed, steps_,
+                    reptation_strength_.data(), landed_.data(), repose_.data());
   });
   derived_ready_ = true;
 }
@@ -143,7 +144,27 @@ HeightScale scale_for(const HostLayers& layers) {
   return HeightScale::covering(lowest, highest);
 }
 
+/// Hops and marches are counted in 16.16 fixed-point cells.
+void require_reach(const Scenario& s) {
+  Faults faults(s.name);
+  const auto check = [&](const char* key, double metres) {
+    const double cells = metres / s.grid.cell_size;
+    if (cells > longest_reach)
+      faults.add(key, "reaches over " + std::to_string(static_cast<long long>(cells)) + " cells of " +
+                          std::to_string(s.grid.cell_size) + " m (allowed: " + std::to_string(longest_reach) +
+                          ")");
+  };
+  check("wind_shadow.distance", s.wind_shadow.distance);
+  check("echo_dunes.sticky_reach", static_cast<double>(s.echo_dunes.sticky_reach) * s.echo_dunes.highest);
+  double fastest = s.wind_regime.speed;
+  for (const WindSegment& segment : s.wind_segments)
+    fastest = std::max(fastest, static_cast<double>(segment.speed));
+  check("run.time_step", fastest * s.wind.speedup_highest * s.run.time_step);
+  faults.throw_if_any();
+}
+
 HostLayers build_if_it_fits(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster) {
+  require_reach(scenario);
   Terrain::require_memory(exec, scenario.make_grid());
   return build_terrain(scenario, load_raster);
 }

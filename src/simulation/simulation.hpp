@@ -100,7 +100,8 @@ class Simulation {
   template <class E>
   void check(E& exec, const char* process, Layer layer);
   brush::Brush prepare(const command::EditTerrain& command, CellRectangle& touched) const;
-  /// Before the first step (also of a loaded checkpoint) derived layers and repose tangents are not there yet.
+  /// Before the first step (also of a loaded checkpoint) derived layers and repose tangents are not there
+  /// yet.
   void refresh_derived();
   void allocate_work();
   /// Only terrains whose rock or soil changes need this memory: called when abrasion is on or bedrock is
@@ -116,7 +117,7 @@ class Simulation {
   Terrain terrain_;
   WindRegime regime_;
   std::uint64_t steps_ = 0;
-  Quanta wind_reference_ = 0;   ///< lowest solid surface at load
+  Quanta wind_reference_ = 0;  ///< lowest solid surface at load
   bool derived_ready_ = false;
   bool bedrock_loose_ = false;  ///< bedrock was edited and has not come to rest since
   std::uint64_t avalanche_iterations_ = 0;
