@@ -38,13 +38,8 @@ struct LevelView {
   DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : ground[i] + sand[i]; }
 };
 
-/// Averages four children into a coarse cell. A child that is a wall makes a wall. The coarse angle of repose
-/// is the steepest child's, and somewhat more: where angles differ from cell to cell, as across the brink of
-/// a slip face, a mean would let coarse cells slide that are at rest on the fine grid, and flatten slip
-/// faces. What is left is the fine sweeps'.
+/// Averages four children into a coarse cell. A child that is a wall makes a wall.
 struct Restrict {
-  static constexpr float coarse_margin = 1.15f;
-
   LevelView fine;
   Grid coarse;
   Quanta *ground, *sand, *sand_before;
@@ -62,8 +57,8 @@ struct Restrict {
     }
     ground[i] = wall ? wall_height : static_cast<Quanta>(ground_sum >> 2);
     sand[i] = sand_before[i] = static_cast<Quanta>(sand_sum >> 2);
-    repose[i] = coarse_margin * maximum(maximum(fine.repose[child[0]], fine.repose[child[3]]),
-                                        maximum(fine.repose[child[1]], fine.repose[child[2]]));
+    repose[i] = 0.25f * ((fine.repose[child[0]] + fine.repose[child[3]]) +
+                         (fine.repose[child[1]] + fine.repose[child[2]]));
   }
 };
 

@@ -81,7 +81,7 @@ Barchan largest(Running& scene) {
 TEST(Laws, Migration) {
   constexpr int width = 320;
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  const double radii[] = {20, 24, 28, 33};  // smaller ones are little against a hop, larger ones shed limbs
+  const double radii[] = {20, 26, 33, 42};
   for (double radius : radii) {
     Scenario s = bare(width, 128, 3, 0.4f);
     ConeStep heap;
