@@ -7,11 +7,12 @@
 /// Releases are computed from one state, then gathered: donor and receiver compute the same integer, so that
 /// nothing is made or lost and no order matters. Obstacles neither give nor take (they stand as walls).
 ///
-/// Schemes: `multilevel` (the default): sand, ground and tan θ are averaged down by two a level until cells
-/// are `coarsest_cell` wide; the coarsest is relaxed first, the change handed to the four children, and the
-/// fine grid relaxed last, each in sweeps inside closed tiles whose seams move between passes. `sweeps`:
-/// synchronous sweeps of the whole grid, the reference. `taylor_keyser`: k_c = 0.25 of the largest drop, by
-/// tangents, for comparison.
+/// Schemes: `multilevel` (the default), half a V-cycle a step: the fine grid is relaxed a little, so that
+/// small slides end where they are; sand and ground are averaged down by two a level until cells are
+/// `coarsest_cell` wide; the coarsest is relaxed first, the change handed to the four children, and the fine
+/// grid relaxed again last. Each relaxation is sweeps inside closed tiles whose seams move between passes.
+/// `sweeps`: synchronous sweeps of the whole grid, the reference. `taylor_keyser`: k_c = 0.25 of the largest
+/// drop, by tangents, for comparison.
 ///
 /// Reads bedrock, soil, obstacle and the repose tangents; writes sand. Soil and bedrock:
 /// avalanching_ground.hpp.
@@ -68,16 +69,14 @@ static_assert(table_is_complete<AvalanchingParameters>());
 
 namespace avalanching {
 
-/// Sweeps of one level: `passes` over shifted tiles, `sweeps` in each.
-struct LevelSchedule {
-  int passes, sweeps;
-};
+/// Passes over shifted tiles, and sweeps in each: of the fine grid before the coarse levels, of each coarse
+/// level, and of the fine grid after them.
 struct Schedule {
-  LevelSchedule coarse, fine;
+  int before, coarse, after, sweeps;
 };
 inline Schedule schedule(AvalancheQuality quality) {
-  if (quality == AvalancheQuality::fast) return {{2, 4}, {2, 4}};
-  return {{4, 8}, {4, 8}};
+  if (quality == AvalancheQuality::fast) return {1, 2, 1, 4};
+  return {1, 4, 3, 8};
 }
 
 /// A level's own memory (the finest uses the terrain's sand).
@@ -108,21 +107,24 @@ void update_ground(E& exec, const TerrainView& t, Workspace& work) {
                        work.ground.data()});
 }
 
+/// Passes `first` to `last` of turn `turn` over one level.
 template <class E>
-void relax(E& exec, const LevelView& level, float transfer, LevelSchedule schedule, std::uint64_t tick) {
-  // Seams move between passes and between steps, so that they leave no imprint.
+void relax(E& exec, const LevelView& level, float transfer, int first, int last, int sweeps,
+           std::uint64_t turn) {
+  // Seams move between passes, and each pass meets them at all places in eight turns, so that they leave no
+  // imprint.
   constexpr int offsets[] = {0, 16, 8, 24, 4, 20, 12, 28};
-  for (int pass = 0; pass < schedule.passes; ++pass) {
-    const int offset = offsets[(tick * schedule.passes + pass) % 8];
-    const Tiles tiles{level.grid, offset};
-    for_each_tile(exec, tiles, RelaxTile{tiles, level, transfer, schedule.sweeps});
+  for (int pass = first; pass < last; ++pass) {
+    const Tiles tiles{level.grid, offsets[(5 * turn + static_cast<std::uint64_t>(pass)) % 8]};
+    for_each_tile(exec, tiles, RelaxTile{tiles, level, transfer, sweeps});
   }
 }
 
-/// Coarse to fine, once.
+/// Relaxes the fine grid, then the coarse levels from the coarsest, then the fine grid again.
 template <class E>
-void cycle(E& exec, const LevelView& fine, float transfer, Schedule schedule, std::uint64_t tick,
+void cycle(E& exec, const LevelView& fine, float transfer, const Schedule& plan, std::uint64_t turn,
            Workspace& work) {
+  relax(exec, fine, transfer, 0, plan.before, plan.sweeps, turn);
   std::vector<Level>& coarse = work.coarse;
   std::array<LevelView, 32> views;
   const int levels = static_cast<int>(coarse.size());
@@ -136,12 +138,12 @@ void cycle(E& exec, const LevelView& fine, float transfer, Schedule schedule, st
                     2.0f * views[n].quanta_per_cell};
   }
   for (int n = levels; n > 0; --n) {
-    relax(exec, views[n], transfer, schedule.coarse, tick);
+    relax(exec, views[n], transfer, 0, plan.coarse, plan.sweeps, turn);
     for_each_cell(exec, views[n].grid,
                   Prolong{views[n].grid, coarse[n - 1].sand.data(), coarse[n - 1].sand_before.data(),
                           views[n - 1].grid, views[n - 1].sand});
   }
-  relax(exec, fine, transfer, schedule.fine, tick);
+  relax(exec, fine, transfer, plan.before, plan.before + plan.after, plan.sweeps, turn);
 }
 
 template <class E>
@@ -164,7 +166,7 @@ void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::ui
   work.iterations = 0;
   if (p.scheme == AvalancheScheme::multilevel) {
     const Schedule plan = schedule(p.quality);
-    const int fine_sweeps = plan.fine.passes * plan.fine.sweeps;
+    const int fine_sweeps = (plan.before + plan.after) * plan.sweeps;
     std::uint64_t turn = tick;
     do {
       cycle(exec, fine, p.transfer, plan, turn++, work);

@@ -38,7 +38,9 @@ struct LevelView {
   DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : ground[i] + sand[i]; }
 };
 
-/// Averages four children into a coarse cell. A child that is a wall makes a wall.
+/// Averages the ground and sand of four children into a coarse cell, which keeps the steepest angle of
+/// theirs: the brink of a slip face is no reason for the face below it to slide. A child that is a wall makes
+/// a wall.
 struct Restrict {
   LevelView fine;
   Grid coarse;
@@ -50,15 +52,16 @@ struct Restrict {
     const int child[4] = {c, c + 1, c + fine.grid.width, c + fine.grid.width + 1};
     long long ground_sum = 0, sand_sum = 0;
     bool wall = false;
+    float steepest = 0.0f;
     for (int n = 0; n < 4; ++n) {
       wall = wall || fine.wall(child[n]);
       ground_sum += fine.ground[child[n]];
       sand_sum += fine.sand[child[n]];
+      steepest = maximum(steepest, fine.repose[child[n]]);
     }
     ground[i] = wall ? wall_height : static_cast<Quanta>(ground_sum >> 2);
     sand[i] = sand_before[i] = static_cast<Quanta>(sand_sum >> 2);
-    repose[i] = 0.25f * ((fine.repose[child[0]] + fine.repose[child[3]]) +
-                         (fine.repose[child[1]] + fine.repose[child[2]]));
+    repose[i] = steepest;
   }
 };
 

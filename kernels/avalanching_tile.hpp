@@ -1,10 +1,11 @@
 #pragma once
-/// Sweeps inside one closed tile: nothing crosses its edge, so tiles do not see each other. What is around the tile,
-/// obstacles, and what lies beyond the grid, stand in it as walls: infinitely high, so that nothing slides there, and
-/// without sand, so that nothing slides from there.
+/// Sweeps inside one closed tile: nothing crosses its edge, so tiles do not see each other. What is around
+/// the tile, obstacles, and what lies beyond the grid, stand in it as walls: infinitely high, so that nothing
+/// slides there, and without sand, so that nothing slides from there.
 ///
-/// Most of a desert is at rest: a row of the tile is released again only if a row within two of it moved in the sweep
-/// before, and gathered only if a row next to it gives. That leaves out only what would change nothing.
+/// Most of a desert is at rest: a row of the tile is released again only if a row within two of it moved in
+/// the sweep before, and gathered only if a row next to it gives. That leaves out only what would change
+/// nothing.
 
 #include "desert_sim/kernels/avalanching_laws.hpp"
 
@@ -47,7 +48,8 @@ struct RelaxTile {
       team.for_each_row([=](int y) DESERT_INLINE {
         const bool changes = (giving_next[y + 1] | giving_next[y + 2] | giving_next[y + 3]) != 0;
         if (changes)
-          team.for_each_in_row([=](int x) DESERT_INLINE { gather(h, h_next, sand, drop, share, given, local(x, y)); });
+          team.for_each_in_row(
+              [=](int x) DESERT_INLINE { gather(h, h_next, sand, drop, share, given, local(x, y)); });
         else
           team.for_each_in_row([=](int x) DESERT_INLINE { h_next[local(x, y)] = h[local(x, y)]; });
       });
@@ -67,7 +69,8 @@ struct RelaxTile {
   DESERT_HD static int local(int x, int y) { return (y + 1) * stride + x + 1; }
   DESERT_HD static constexpr int offset_to(int k) { return Neighbours::dy(k) * stride + Neighbours::dx(k); }
 
-  /// Cell of the grid under (x, y) of the tile, or −1. On a periodic axis each cell belongs to exactly one tile.
+  /// Cell of the grid under (x, y) of the tile, or −1. On a periodic axis each cell belongs to exactly one
+  /// tile.
   DESERT_HD int cell(int column, int row, int x, int y) const {
     const Grid& g = level.grid;
     int px = column * side - tiles.offset + x, py = row * side - tiles.offset + y;

@@ -113,7 +113,7 @@ cv::Vec2f gradient(const cv::Mat& elevation, int row, int column, float pixel_si
 
 double exaggeration_of(const cv::Mat& elevation, float pixel_size) {
   constexpr float kFlat = 1e-4F;
-  constexpr double kWanted = 0.3, kLeast = 0.5, kMost = 60;
+  constexpr double kSteep = 0.9, kWanted = 0.6, kLeast = 0.5, kMost = 60;
   std::vector<float> slopes;
   const int stride = std::max(1, std::max(elevation.rows, elevation.cols) / kSmallest);
   for (int row = 0; row < elevation.rows; row += stride)
@@ -123,8 +123,9 @@ double exaggeration_of(const cv::Mat& elevation, float pixel_size) {
       if (slope > kFlat) slopes.push_back(slope);
     }
   if (slopes.empty()) return 1;
-  std::nth_element(slopes.begin(), slopes.begin() + slopes.size() / 2, slopes.end());
-  return std::clamp(kWanted / slopes[slopes.size() / 2], kLeast, kMost);
+  const auto steep = slopes.begin() + static_cast<std::ptrdiff_t>(kSteep * static_cast<double>(slopes.size() - 1));
+  std::nth_element(slopes.begin(), steep, slopes.end());
+  return std::clamp(kWanted / *steep, kLeast, kMost);
 }
 
 /// Brightness by Lambert's law, 1 on flat ground; 0 where unknown.

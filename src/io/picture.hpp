@@ -20,8 +20,8 @@ struct PictureInput {
   const float* wind_shadow = nullptr;  ///< [0..1], drawn as a slight darkening
 };
 
-/// Vertical exaggeration that hillshade_picture() shades with: it brings the median slope of what is not flat
-/// to a tangent of 0.3; 0.5 to 60, and 1 on flat ground. The picture's caption says it.
+/// Vertical exaggeration that hillshade_picture() shades with: it brings the steepest tenth of what is not flat
+/// to a tangent of 0.6; 0.5 to 60, and 1 on flat ground. The picture's caption says it.
 double picture_exaggeration(const PictureInput& input);
 
 /// Hillshade (light from the north-west, 40 degrees high), 8UC3 in BGR, north up. Colours: rock grey-brown,

@@ -73,14 +73,14 @@ command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request)
   constexpr const char* kinds[] = {"timeline", "rose"};
   command::SetWindSchedule command;
   WindRegime& regime = command.regime;
-  regime.kind =
+  regime.regime =
       choose<int>(kinds, request.kind, "kind") == 0 ? WindRegimeKind::timeline : WindRegimeKind::rose;
-  const bool rose = regime.kind == WindRegimeKind::rose;
+  const bool rose = regime.regime == WindRegimeKind::rose;
   if (request.segments.size() > 4096)
     throw ConfigError("segments: " + std::to_string(request.segments.size()) + " entries are more than 4096");
   regime.repeat = request.repeat;
   if (rose) regime.hold_time = narrow(request.hold_time);
-  regime.seed = request.seed;
+  regime.rose_seed = request.seed;
   // What the kind does not look at keeps its default, whatever the request says.
   for (const WindScheduleSegment& s : request.segments) {
     WindSegment segment;

@@ -51,7 +51,7 @@ CommandResult Simulation::apply(const command::SetWind& command) {
 CommandResult Simulation::apply(const command::SetWindSchedule& command) {
   const WindRegime& r = command.regime;
   Faults faults("set_wind_schedule");
-  if (r.kind == WindRegimeKind::constant) faults.add("kind", "must be timeline or rose");
+  if (r.regime == WindRegimeKind::constant) faults.add("kind", "must be timeline or rose");
   if (r.segments.empty()) faults.add("segments", "there must be at least one");
   if (!(r.hold_time >= 1e-3f && r.hold_time <= 1e12f))
     faults.add("hold_time", "= " + std::to_string(r.hold_time) + " is not in [0.001, 1e+12] s");
@@ -62,7 +62,7 @@ CommandResult Simulation::apply(const command::SetWindSchedule& command) {
       faults.add("segment " + std::to_string(n) + ": ramp", "is longer than the segment's duration");
     probability += r.segments[n].probability;
   }
-  if (r.kind == WindRegimeKind::rose && !(probability > 0))
+  if (r.regime == WindRegimeKind::rose && !(probability > 0))
     faults.add("segments", "the probabilities must not all be 0");
   faults.throw_if_any();
   set_regime(r);

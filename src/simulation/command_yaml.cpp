@@ -21,10 +21,6 @@ T scalar(const YAML::Node& node, const char* key, const std::string& source) {
   return value;
 }
 
-WindRegimeParameters parameters_of(const WindRegime& r) {
-  return {r.kind, r.direction_deg, r.speed, r.ramp, r.repeat, r.hold_time, r.seed};
-}
-
 template <class P>
 P read_all(const YAML::Node& node, const std::string& source) {
   Faults faults(source);
@@ -38,7 +34,7 @@ P read_all(const YAML::Node& node, const std::string& source) {
 }  // namespace
 
 void emit_regime(YAML::Emitter& out, const WindRegime& r) {
-  yaml::emit_parameters(out, parameters_of(r));
+  yaml::emit_parameters(out, static_cast<const WindRegimeParameters&>(r));
   out << YAML::Key << "start_time" << YAML::Value << r.start_time;
   out << YAML::Key << "from" << YAML::Value << YAML::Flow << YAML::BeginSeq << r.from.x << r.from.y
       << YAML::EndSeq;
@@ -52,15 +48,7 @@ void emit_regime(YAML::Emitter& out, const WindRegime& r) {
 }
 
 WindRegime read_regime(const YAML::Node& node, const std::string& source) {
-  const auto p = read_all<WindRegimeParameters>(node, source);
-  WindRegime r;
-  r.kind = p.regime;
-  r.direction_deg = p.direction_deg;
-  r.speed = p.speed;
-  r.ramp = p.ramp;
-  r.repeat = p.repeat;
-  r.hold_time = p.hold_time;
-  r.seed = p.rose_seed;
+  WindRegime r{read_all<WindRegimeParameters>(node, source)};
   r.start_time = scalar<double>(node, "start_time", source);
   const YAML::Node from = required(node, "from", source);
   if (!from.IsSequence() || from.size() != 2 || !YAML::convert<float>::decode(from[0], r.from.x) ||
@@ -68,7 +56,7 @@ WindRegime read_regime(const YAML::Node& node, const std::string& source) {
     throw ConfigError(source + ": from: must be two numbers");
   for (const YAML::Node& segment : required(node, "segments", source))
     r.segments.push_back(read_all<WindSegment>(segment, source));
-  if (r.kind != WindRegimeKind::constant && r.segments.empty())
+  if (r.regime != WindRegimeKind::constant && r.segments.empty())
     throw ConfigError(source + ": segments: there is none");
   return r;
 }

@@ -177,17 +177,7 @@ Simulation::Simulation(Exec& exec, const Scenario& scenario, const RasterLoader&
 Simulation::Simulation(Exec& exec, const Scenario& scenario, const HostLayers& layers)
     : Simulation(scenario, Terrain(exec, scenario.make_grid(), scale_for(layers))) {
   for (const auto& [layer, values] : layers) terrain_.set_values(layer, values);
-  WindRegime regime;
-  const WindRegimeParameters& p = scenario.wind_regime;
-  regime.kind = p.regime;
-  regime.direction_deg = p.direction_deg;
-  regime.speed = p.speed;
-  regime.ramp = p.ramp;
-  regime.repeat = p.repeat;
-  regime.hold_time = p.hold_time;
-  regime.seed = p.rose_seed;
-  regime.segments = scenario.wind_segments;
-  regime_ = regime;
+  regime_ = WindRegime{scenario.wind_regime, scenario.wind_segments};
   start_books();
 }
 

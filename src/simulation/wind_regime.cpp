@@ -45,12 +45,12 @@ void speed_and_direction(wind::Vector w, double& speed, double& direction_deg) {
 
 wind::Vector WindRegime::at(double time) const {
   const double elapsed = std::max(0.0, time - start_time);
-  if (kind == WindRegimeKind::constant) return ramped(from, wind_vector(direction_deg, speed), elapsed, ramp);
-  if (kind == WindRegimeKind::rose) {
+  if (regime == WindRegimeKind::constant) return ramped(from, wind_vector(direction_deg, speed), elapsed, ramp);
+  if (regime == WindRegimeKind::rose) {
     const auto hold = static_cast<std::uint64_t>(elapsed / hold_time);
     double total = 0;
     for (const WindSegment& s : segments) total += s.probability;
-    double draw = total * random_unit(seed, Purpose::wind_rose, static_cast<std::uint32_t>(hold),
+    double draw = total * random_unit(rose_seed, Purpose::wind_rose, static_cast<std::uint32_t>(hold),
                                       static_cast<std::uint32_t>(hold >> 32));
     for (const WindSegment& s : segments) {
       draw -= s.probability;

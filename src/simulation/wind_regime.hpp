@@ -36,24 +36,6 @@ constexpr auto parameter_table(const WindSegment*) {
 }
 static_assert(table_is_complete<WindSegment>());
 
-struct WindRegime {
-  WindRegimeKind kind = WindRegimeKind::constant;
-  float direction_deg = 0;
-  float speed = 5;
-  float ramp = 0;
-  bool repeat = true;
-  float hold_time = 50;
-  std::uint64_t seed = 1;
-
-  std::vector<WindSegment> segments;  ///< of a timeline or rose
-  // State: when the regime began, and the wind then, which the first ramp starts from.
-  double start_time = 0;
-  wind::Vector from;
-
-  /// The wind at simulated time `time` [s]. A timeline that does not repeat holds its last segment.
-  wind::Vector at(double time) const;
-};
-
 /// The parts of a regime that are plain parameters (section `wind` of a scenario, next to WindParameters).
 struct WindRegimeParameters {
   WindRegimeKind regime = WindRegimeKind::constant;
@@ -81,6 +63,16 @@ constexpr auto parameter_table(const WindRegimeParameters*) {
       parameter("rose_seed", &P::rose_seed, 0, 1.8e19, "1", "Seed of the rose."));
 }
 static_assert(table_is_complete<WindRegimeParameters>());
+
+/// A wind regime and where it stands.
+struct WindRegime : WindRegimeParameters {
+  std::vector<WindSegment> segments{};  ///< of a timeline or rose
+  double start_time = 0;                ///< when it began [s]
+  wind::Vector from{};                  ///< the wind then, which the first ramp starts from
+
+  /// The wind at simulated time `time` [s]. A timeline that does not repeat holds its last segment.
+  wind::Vector at(double time) const;
+};
 
 /// A unit vector that is exact for multiples of 90 degrees.
 wind::Vector unit_vector(double direction_deg);

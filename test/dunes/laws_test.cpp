@@ -79,11 +79,11 @@ Barchan largest(Running& scene) {
 
 /// Speed goes with 1/height: exponent −1 ± 0.25 over four heaps of different size.
 TEST(Laws, Migration) {
-  constexpr int width = 320;
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  const double radii[] = {20, 26, 33, 42};
+  const double radii[] = {14, 20, 28, 40};
   for (double radius : radii) {
-    Scenario s = bare(width, 128, 3, 0.4f);
+    const int width = static_cast<int>(8 * radius);
+    Scenario s = bare(width, width / 2, 3, 0.2f);
     ConeStep heap;
     heap.relative = true;
     heap.x = 0.2;
@@ -95,12 +95,12 @@ TEST(Laws, Migration) {
     s.saltation.lift = 0.5f;  // little against the smallest dune's height
     Running scene(s);
     // Until it is a barchan, then for a while: times go with its turnover, height² over flux.
-    const int turnover = static_cast<int>(0.15 * radius * radius);
-    scene.run(turnover);
+    const double turnover = radius * radius;
+    scene.run(static_cast<int>(0.1 * turnover));
     Barchan last = largest(scene);
     double way = 0, height = 0;
-    constexpr int looks = 10;
-    const int between = turnover / looks;
+    constexpr int looks = 6;
+    const int between = static_cast<int>(0.07 * turnover / looks);
     for (int look = 0; look < looks; ++look) {
       scene.run(between);
       const Barchan here = largest(scene);

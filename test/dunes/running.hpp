@@ -7,6 +7,7 @@
 #include <string>
 
 #include "desert_sim/simulation/session.hpp"
+#include "support/crest_pattern.hpp"
 #include "support/dune_shape.hpp"
 #if DESERT_WITH_IO
 #include "desert_sim/io/raster_loader.hpp"

@@ -25,12 +25,12 @@ double mean_where(const Field& values, const std::vector<char>& mask) {
 /// horns downwind. Dunes are cut apart at 1.5 m, so that the thin sand between their horns does not join
 /// them.
 TEST(Dunes, Barchan) {
-  Running scene(shipped("barchan", {"grid.width=256", "grid.height=256"}));
+  Running scene(shipped("barchan"));
   std::vector<double> ratio, stoss, slip, direction, horns;
   int downwind = 0;
-  scene.run(150);
+  scene.run(400);
   for (int look = 0; look < 5; ++look) {
-    scene.run(50);
+    scene.run(80);
     for (const Dune& d : find_dunes(scene.field(Layer::elevation), scene.field(Layer::sand), 0, 1.5, 100)) {
       if (d.height < 3.5) continue;
       ratio.push_back(d.height / d.width);

@@ -156,7 +156,7 @@ TEST(Fuzz, MutatedJournalsAreRefusedOrRead) {
     command::EditTerrain edit;
     writer.write(2, edit);
     command::SetWindSchedule schedule;
-    schedule.regime.kind = WindRegimeKind::rose;
+    schedule.regime.regime = WindRegimeKind::rose;
     schedule.regime.segments.resize(3);
     writer.write(2, schedule);
     writer.write(4, command::Reset{});

@@ -46,14 +46,14 @@ class JournalOf : public test::OnBackend {
     s->apply(command::Reset{});
     steps(2);
     command::SetWindSchedule schedule;
-    schedule.regime.kind = WindRegimeKind::timeline;
+    schedule.regime.regime = WindRegimeKind::timeline;
     for (int n = 0; n < 12; ++n) schedule.regime.segments.push_back({30.1f * n, 5.5f + n, 0.7f, 0.3f, 1.0f});
     s->apply(schedule);
     steps(5);
     s->apply(command::LoadCheckpoint{folder_.path("here.ck"), 0});
-    schedule.regime.kind = WindRegimeKind::rose;
+    schedule.regime.regime = WindRegimeKind::rose;
     schedule.regime.hold_time = 0.31f;
-    schedule.regime.seed = 17;
+    schedule.regime.rose_seed = 17;
     s->apply(schedule);
     steps(4);
     return s->simulation().state_hash();

@@ -220,7 +220,7 @@ struct Hierarchy {
   }
 };
 
-TEST(Restrict, AveragesFourChildrenRoundedDown) {
+TEST(Restrict, AveragesFourChildrenRoundedDownAndKeepsTheSteepestAngle) {
   Hierarchy h;
   h.sand = {1, 2, 0, 0, 3, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   h.ground[0] = -103;
@@ -229,7 +229,7 @@ TEST(Restrict, AveragesFourChildrenRoundedDown) {
   EXPECT_EQ(h.coarse_sand[0], 2);  // 11 / 4
   EXPECT_EQ(h.before[0], 2);
   EXPECT_EQ(h.coarse_ground[0], 49);  // floor(197 / 4)
-  EXPECT_FLOAT_EQ(h.coarse_repose[0], 0.6f);
+  EXPECT_FLOAT_EQ(h.coarse_repose[0], 0.9f);
   EXPECT_EQ(h.coarse_sand[3], 0);
 }
 

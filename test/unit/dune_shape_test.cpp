@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/crest_pattern.hpp"
+
 namespace desert_sim {
 namespace {
 

@@ -75,7 +75,7 @@ TEST_P(ASimulation, TakesWindFromCommands) {
   EXPECT_NEAR(s->wind_above().x, 2, 1e-6);
   EXPECT_NEAR(s->wind_above().y, 4, 1e-6);
   command::SetWindSchedule schedule;
-  schedule.regime.kind = WindRegimeKind::timeline;
+  schedule.regime.regime = WindRegimeKind::timeline;
   schedule.regime.segments = {{180, 6, 1, 0, 1}, {270, 7, 1, 0, 1}};
   s->apply(schedule);
   EXPECT_EQ(s->wind_above().x, -6);
@@ -106,7 +106,7 @@ TEST_P(ASimulation, RefusesWrongWindsAndChangesNothing) {
   refused(command::SetWind{0, 5, -1}, "ramp");
   command::SetWindSchedule schedule;
   refused(schedule, "kind");
-  schedule.regime.kind = WindRegimeKind::rose;
+  schedule.regime.regime = WindRegimeKind::rose;
   refused(schedule, "segments");
   schedule.regime.segments = {{0, 5, 10, 0, 0}};
   refused(schedule, "probabilit");

@@ -59,7 +59,7 @@ TEST(WindRegime, IsConstantAfterItsRamp) {
 
 WindRegime timeline(bool repeat) {
   WindRegime r;
-  r.kind = WindRegimeKind::timeline;
+  r.regime = WindRegimeKind::timeline;
   r.repeat = repeat;
   r.from = {-2, 0};
   r.segments = {{0, 4, 10, 4, 1}, {90, 6, 20, 0, 1}, {180, 8, 5, 5, 1}};
@@ -88,9 +88,9 @@ TEST(WindRegime, TimelineRepeatsFromItsLastSegmentOrHoldsIt) {
 
 WindRegime rose(std::uint64_t seed) {
   WindRegime r;
-  r.kind = WindRegimeKind::rose;
+  r.regime = WindRegimeKind::rose;
   r.hold_time = 5;
-  r.seed = seed;
+  r.rose_seed = seed;
   r.segments = {{0, 3, 1, 0, 1}, {90, 4, 1, 0, 2}, {180, 5, 1, 0, 0}, {270, 6, 1, 0, 5}};
   return r;
 }
