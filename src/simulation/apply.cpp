@@ -69,6 +69,37 @@ CommandResult Simulation::apply(const command::SetWindSchedule& command) {
   return {};
 }
 
+CommandResult Simulation::apply(const command::EditWind& command) {
+  const int id = command.feature.id;
+  std::vector<WindFeature>& features = scenario_.wind_features;
+  if (command.operation == WindEdit::clear) {
+    features.clear();
+    upload_wind_features();
+    return {};
+  }
+  if (id < 1) throw ConfigError("edit_wind: id: = " + std::to_string(id) + " must be 1 or more");
+  const auto found =
+      std::find_if(features.begin(), features.end(), [id](const WindFeature& f) { return f.id == id; });
+  const bool known = found != features.end();
+  if (known == (command.operation == WindEdit::add))
+    throw ConfigError("edit_wind: id: = " + std::to_string(id) +
+                      (known ? " is another feature's already" : " is no feature's"));
+  if (command.operation == WindEdit::remove) {
+    features.erase(found);
+  } else {
+    check_ranges(command.feature, "edit_wind");
+    if (known)
+      *found = command.feature;
+    else if (features.size() < most_wind_features)
+      features.push_back(command.feature);
+    else
+      throw ConfigError("edit_wind: there are " + std::to_string(most_wind_features) +
+                        " features already, and no more are allowed");
+  }
+  upload_wind_features();
+  return {};
+}
+
 brush::Brush Simulation::prepare(const command::EditTerrain& c, CellRectangle& touched) const {
   const GridParameters& g = scenario_.grid;
   const bool sand = c.layer == "sand";
