@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -21,6 +22,15 @@ std::string read_file(const std::string& path) {
   if (!file || !file.read(&bytes[0], status.st_size))
     throw ConfigError(path + ": cannot be read: " + std::strerror(errno));
   return bytes;
+}
+
+void write_file(const std::string& path, const std::string& bytes) {
+  const std::string temporary = path + ".part";
+  std::ofstream file(temporary, std::ios::binary);
+  file << bytes;
+  file.close();
+  if (!file || std::rename(temporary.c_str(), path.c_str()) != 0)
+    throw Error(path + ": cannot be written: " + std::strerror(errno));
 }
 
 }  // namespace desert_sim

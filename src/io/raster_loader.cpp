@@ -17,7 +17,8 @@ bool georeferenced(const Raster& r) {
 
 bool on_grid(const Raster& r, const RasterRequest& q) {
   const double tolerance = 1e-6 * q.cell_size;
-  return r.width == q.width && r.height == q.height && std::abs(r.cell_size - q.cell_size) < 1e-9 * q.cell_size &&
+  return r.width == q.width && r.height == q.height &&
+         std::abs(r.cell_size - q.cell_size) < 1e-9 * q.cell_size &&
          std::abs(r.origin_x - q.origin_x) < tolerance && std::abs(r.origin_y - q.origin_y) < tolerance;
 }
 
@@ -39,8 +40,10 @@ void continue_edges(Raster& r, const Raster& source) {
     last = std::clamp(static_cast<int>(std::floor((to - origin) / cell - 0.5 - 1e-6)), first, n - 1);
   };
   int x0, x1, y0, y1;
-  reached(r.origin_x, r.cell_size, source.origin_x, source.origin_x + source.width * source.cell_size, r.width, x0, x1);
-  reached(r.origin_y, r.cell_size, source.origin_y, source.origin_y + source.height * source.cell_size, r.height, y0, y1);
+  reached(r.origin_x, r.cell_size, source.origin_x, source.origin_x + source.width * source.cell_size,
+          r.width, x0, x1);
+  reached(r.origin_y, r.cell_size, source.origin_y, source.origin_y + source.height * source.cell_size,
+          r.height, y0, y1);
   for (int y = 0; y < r.height; ++y)
     for (int x = 0; x < r.width; ++x) {
       const int nearest = std::clamp(y, y0, y1) * r.width + std::clamp(x, x0, x1);
@@ -52,11 +55,14 @@ void continue_edges(Raster& r, const Raster& source) {
 void to_grid(Raster& r, const RasterRequest& q) {
   if (on_grid(r, q)) return;
   const double extent = q.cell_size * 1e-6;
-  if (q.origin_x > r.origin_x + r.width * r.cell_size - extent || q.origin_y > r.origin_y + r.height * r.cell_size - extent ||
-      q.origin_x + q.width * q.cell_size < r.origin_x + extent || q.origin_y + q.height * q.cell_size < r.origin_y + extent)
+  if (q.origin_x > r.origin_x + r.width * r.cell_size - extent ||
+      q.origin_y > r.origin_y + r.height * r.cell_size - extent ||
+      q.origin_x + q.width * q.cell_size < r.origin_x + extent ||
+      q.origin_y + q.height * q.cell_size < r.origin_y + extent)
     throw ConfigError(q.path + ": lies wholly outside the grid");
   const double ratio = q.cell_size / r.cell_size;
-  const Resampling method = ratio > 1.5 ? Resampling::average : (ratio < 0.99 ? Resampling::cubic : Resampling::bilinear);
+  const Resampling method =
+      ratio > 1.5 ? Resampling::average : (ratio < 0.99 ? Resampling::cubic : Resampling::bilinear);
   Raster target = resample(r, q.width, q.height, q.cell_size, q.origin_x, q.origin_y, method);
   continue_edges(target, r);
   r = std::move(target);
@@ -73,7 +79,8 @@ RasterField load(const RasterRequest& q) {
   const bool placed = georeferenced(r);
   if (q.width > 0) {
     if (r.nodata_count() > 0 && !q.fill_nodata)
-      throw ConfigError(q.path + ": has " + std::to_string(r.nodata_count()) + " cells without data; say fill_nodata: true to fill them from around");
+      throw ConfigError(q.path + ": has " + std::to_string(r.nodata_count()) +
+                        " cells without data; say fill_nodata: true to fill them from around");
     if (r.nodata_count() > 0) fill_nodata(r);
     if (q.stretch || !placed) {
       stretch(r, q);

@@ -64,6 +64,13 @@ std::string DataFolder::for_reading(const std::string& name) const {
   }
 }
 
+void DataFolder::require_below(const std::string& path) const {
+  std::error_code error;
+  const fs::path real = fs::canonical(path, error), root = error ? fs::path() : fs::canonical(path_, error);
+  if (error) throw ConfigError("'" + path + "': " + error.message());
+  if (!is_below(root, real)) throw ConfigError("'" + path + "': is not below " + root.string());
+}
+
 std::string DataFolder::for_writing(const std::string& name) const {
   const fs::path relative = checked(name);
   try {

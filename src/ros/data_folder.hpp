@@ -17,6 +17,9 @@ class DataFolder {
   std::string for_reading(const std::string& name) const;
   /// Makes the folders that are missing.
   std::string for_writing(const std::string& name) const;
+  /// Throws ConfigError unless `path`, its links followed, lies below the folder; a file that is not there
+  /// does not.
+  void require_below(const std::string& path) const;
 
  private:
   std::string path_;

@@ -39,17 +39,23 @@ tf2::Transform Frames::to_terrain(const std_msgs::Header& header) const {
   }
 }
 
-void Frames::announce_center(const std::string& name, const Snapshot& s) {
+void Frames::announce_center(const std::string& name, const Snapshot& snapshot) {
+  center_name_ = name;
+  broadcaster_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
+  move_center(snapshot);
+}
+
+void Frames::move_center(const Snapshot& s) {
+  if (!broadcaster_) return;
   const std::vector<float>& z = s.layers.at(Layer::elevation);
   geometry_msgs::TransformStamped center;
   center.header.stamp = ros::Time::now();
   center.header.frame_id = terrain_frame_;
-  center.child_frame_id = name;
+  center.child_frame_id = center_name_;
   center.transform.translation.x = s.origin_x + 0.5 * s.width * s.cell_size;
   center.transform.translation.y = s.origin_y + 0.5 * s.height * s.cell_size;
   center.transform.translation.z = std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
   center.transform.rotation.w = 1;
-  broadcaster_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
   broadcaster_->sendTransform(center);
 }
 

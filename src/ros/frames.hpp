@@ -26,11 +26,14 @@ class Frames {
 
   /// Publishes the static frame `name` in the middle of the terrain, at its mean height.
   void announce_center(const std::string& name, const Snapshot& snapshot);
+  /// Moves it to the middle of another terrain, if it was announced.
+  void move_center(const Snapshot& snapshot);
 
  private:
   std::string terrain_frame_;
   tf2_ros::Buffer buffer_;
   tf2_ros::TransformListener listener_;
+  std::string center_name_;
   std::unique_ptr<tf2_ros::StaticTransformBroadcaster> broadcaster_;
 };
 

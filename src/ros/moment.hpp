@@ -28,6 +28,13 @@ struct TerrainState {
   std::shared_ptr<const Snapshot> snapshot;  ///< layers that are not in use are absent, and 0
 };
 
+/// What save_terrain() takes.
+struct TerrainToSave {
+  TerrainState state;
+  Scenario scenario;
+  std::uint64_t hash = 0;
+};
+
 /// Where a command or a request for steps ended.
 struct Reached {
   Moment moment;

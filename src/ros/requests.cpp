@@ -51,6 +51,10 @@ void require_finite(const geometry_msgs::Point& point, const std::string& name) 
   require_finite(point.z, name + ".z");
 }
 
+TerrainFormat terrain_format(const std::string& name) {
+  return choose<TerrainFormat>(terrain_formats, name, "format");
+}
+
 command::SetWind wind_command(const SetWindRequest& request) {
   command::SetWind command;
   command.ramp = narrow(request.ramp);

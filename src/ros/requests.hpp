@@ -7,6 +7,7 @@
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
 
+#include "desert_sim/io/terrain_files.hpp"
 #include "desert_sim/ros/frames.hpp"
 #include "desert_sim/simulation/command.hpp"
 
@@ -16,6 +17,8 @@ command::SetWind wind_command(const SetWindRequest& request);
 command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request);
 command::EditWind wind_edit_command(const EditWindRequest& request, const Frames& frames);
 command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames);
+
+TerrainFormat terrain_format(const std::string& name);
 
 /// Throws ConfigError unless all are finite; `name` is what the point is called.
 void require_finite(const geometry_msgs::Point& point, const std::string& name);

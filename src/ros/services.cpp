@@ -11,6 +11,7 @@ namespace desert_sim {
 namespace {
 
 constexpr std::size_t most_points = 1000000;
+constexpr const char* terrain_file = "terrain.yaml";  // in a saved terrain's folder
 constexpr auto recent_enough = std::chrono::milliseconds(100);
 
 }  // namespace
@@ -42,7 +43,7 @@ void Services::advertise(const std::string& name,
 }
 
 Services::Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation,
-                   Topics& topics, const Frames& frames, const DataFolder& files)
+                   Topics& topics, Frames& frames, const DataFolder& files)
     : node_(std::move(node)), simulation_(simulation), topics_(topics), frames_(frames), files_(files) {
   // Commands of the same names are in the namespace `command`.
   advertise<desert_sim::SetWind>("set_wind", &Services::set_wind);
@@ -56,6 +57,9 @@ Services::Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, Simulat
   advertise<std_srvs::Trigger>("reset", &Services::reset);
   advertise<desert_sim::SaveCheckpoint>("save_checkpoint", &Services::save_checkpoint);
   advertise<desert_sim::LoadCheckpoint>("load_checkpoint", &Services::load_checkpoint);
+  advertise<desert_sim::SaveTerrain>("save_terrain", &Services::save_terrain);
+  advertise<desert_sim::LoadTerrain>("load_terrain", &Services::load_terrain);
+  advertise<desert_sim::LoadScenario>("load_scenario", &Services::load_scenario);
 }
 
 void Services::set_wind(const SetWindRequest& request, SetWindResponse&) {
@@ -158,7 +162,40 @@ void Services::load_checkpoint(const LoadCheckpointRequest& request, LoadCheckpo
   response.sim_time = reached.moment.time;
   response.state_hash = hash_text(reached.hash);
   ROS_INFO("loaded step %lu from %s", static_cast<unsigned long>(response.step), path.c_str());
+  terrain_replaced();
+}
+
+void Services::terrain_replaced() {
+  frames_.move_center(*simulation_.terrain({Layer::elevation}).get().snapshot);
   topics_.publish_now();
+}
+
+void Services::save_terrain(const SaveTerrainRequest& request, SaveTerrainResponse& response) {
+  const TerrainFormat format = terrain_format(request.format);
+  response.path = files_.for_writing(request.name + "/" + terrain_file);
+  const TerrainToSave terrain = simulation_.terrain_to_save().get();
+  desert_sim::save_terrain(response.path, terrain.scenario, *terrain.state.snapshot, format,
+                           hash_text(terrain.hash));
+  response.step = terrain.state.moment.step;
+  ROS_INFO("saved the terrain of step %lu to %s", static_cast<unsigned long>(response.step),
+           response.path.c_str());
+}
+
+void Services::load_terrain(const LoadTerrainRequest& request, LoadTerrainResponse& response) {
+  response.state_hash =
+      hash_text(load_scenario(files_.for_reading(request.name + "/" + terrain_file), true).hash);
+}
+
+void Services::load_scenario(const LoadScenarioRequest& request, LoadScenarioResponse& response) {
+  response.state_hash = hash_text(load_scenario(files_.for_reading(request.name), false).hash);
+}
+
+Reached Services::load_scenario(const std::string& path, bool terrain_only) {
+  for (const std::string& raster : rasters_of(desert_sim::load_scenario(path))) files_.require_below(raster);
+  const Reached reached = simulation_.apply(command::LoadScenario{path, terrain_only, 0}, true).get();
+  ROS_INFO("loaded %s", path.c_str());
+  terrain_replaced();
+  return reached;
 }
 
 }  // namespace desert_sim

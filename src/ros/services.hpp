@@ -4,8 +4,11 @@
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/EditWind.h>
 #include <desert_sim/LoadCheckpoint.h>
+#include <desert_sim/LoadScenario.h>
+#include <desert_sim/LoadTerrain.h>
 #include <desert_sim/QueryTerrain.h>
 #include <desert_sim/SaveCheckpoint.h>
+#include <desert_sim/SaveTerrain.h>
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
 #include <desert_sim/Step.h>
@@ -29,7 +32,7 @@ class Services {
  public:
   /// `step_queue` serves ~step apart from the rest: it can take long, and a pause must come through.
   Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation, Topics& topics,
-           const Frames& frames, const DataFolder& files);
+           Frames& frames, const DataFolder& files);
 
  private:
   template <class Service>
@@ -48,6 +51,12 @@ class Services {
   void reset(const std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response);
   void save_checkpoint(const SaveCheckpointRequest& request, SaveCheckpointResponse& response);
   void load_checkpoint(const LoadCheckpointRequest& request, LoadCheckpointResponse& response);
+  void save_terrain(const SaveTerrainRequest& request, SaveTerrainResponse& response);
+  void load_terrain(const LoadTerrainRequest& request, LoadTerrainResponse& response);
+  void load_scenario(const LoadScenarioRequest& request, LoadScenarioResponse& response);
+  Reached load_scenario(const std::string& path, bool terrain_only);
+  /// Tells the world of another terrain.
+  void terrain_replaced();
 
   /// A copy that is new enough for a query; made anew only if the last one is not.
   TerrainState recent_terrain();
@@ -55,7 +64,7 @@ class Services {
   ros::NodeHandle node_;
   SimulationThread& simulation_;
   Topics& topics_;
-  const Frames& frames_;
+  Frames& frames_;
   const DataFolder& files_;
   std::mutex recent_mutex_;
   TerrainState recent_;

@@ -1,4 +1,5 @@
 /// What other threads ask of the simulation thread.
+#include "desert_sim/io/terrain_files.hpp"
 #include "desert_sim/ros/simulation_thread.hpp"
 
 namespace desert_sim {
@@ -21,9 +22,8 @@ std::future<Reached> SimulationThread::apply(const Command& command, bool with_h
     const CommandResult result = session_->apply(command);
     ++commands_;
     stamp_ = ros::Time::now();
-    if (std::holds_alternative<command::Reset>(command) ||
-        std::holds_alternative<command::LoadCheckpoint>(command)) {
-      end_step_requests(std::holds_alternative<command::Reset>(command) ? "a reset" : "load_checkpoint");
+    if (command::replaces_terrain(command)) {
+      end_step_requests(std::holds_alternative<command::Reset>(command) ? "a reset" : "a load");
       ++terrains_;
       timed_steps_ = 0;
       pacer_.restart();
@@ -73,6 +73,15 @@ std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& la
       if (session_->simulation().terrain().has(layer)) in_use.push_back(layer);
     ++snapshots_;
     return TerrainState{moment(), session_->simulation().snapshot(in_use)};
+  });
+}
+
+std::future<TerrainToSave> SimulationThread::terrain_to_save() {
+  return ask<TerrainToSave>([this] {
+    settle();
+    Simulation& s = session_->simulation();
+    ++snapshots_;
+    return TerrainToSave{{moment(), s.snapshot(terrain_layers(s))}, s.scenario(), state_hash()};
   });
 }
 

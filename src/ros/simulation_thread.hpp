@@ -43,6 +43,7 @@ class SimulationThread {
   std::future<void> resume();
   std::future<TerrainState> terrain(const std::vector<Layer>& layers);
   std::future<StatusReport> report();
+  std::future<TerrainToSave> terrain_to_save();
   std::future<Reached> save_checkpoint(const std::string& path);
 
   /// Counters of Moment, of what has been done; for deciding whether a copy is still good.

@@ -293,4 +293,13 @@ std::string raster_path(const Scenario& s, const std::string& file) {
   return std::ifstream(beside) ? beside : file;
 }
 
+std::vector<std::string> rasters_of(const Scenario& s) {
+  std::vector<std::string> paths;
+  if (!s.grid.from_raster.empty()) paths.push_back(raster_path(s, s.grid.from_raster));
+  for (const TerrainStep& step : s.terrain)
+    if (const auto* raster = std::get_if<RasterStep>(&step); raster && !raster->file.empty())
+      paths.push_back(raster_path(s, raster->file));
+  return paths;
+}
+
 }  // namespace desert_sim

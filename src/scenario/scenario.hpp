@@ -128,6 +128,9 @@ struct RasterRequest {
 using RasterLoader = std::function<RasterField(const RasterRequest&)>;
 RasterField refuse_rasters(const RasterRequest& request);
 
+/// Paths of all rasters that the scenario reads, as the process can open them.
+std::vector<std::string> rasters_of(const Scenario& scenario);
+
 /// Fills in what the grid section left open, from the raster if it names one.
 void resolve_grid(Scenario& scenario, const RasterLoader& load_raster);
 

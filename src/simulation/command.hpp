@@ -95,10 +95,27 @@ struct LoadCheckpoint {
   std::uint64_t hash = 0;  ///< state hash after loading; 0 if not known yet. A replay refuses another one.
 };
 
+/// Another scenario from its start; with `terrain_only`, only its grid and terrain under the physics and wind
+/// of the present one. A reset goes back to it from then on. `path` as the process can open it; `hash` as in
+/// LoadCheckpoint.
+struct LoadScenario {
+  std::string path;
+  bool terrain_only = false;
+  std::uint64_t hash = 0;
+};
+
+/// Whether the terrain is another one after the command, perhaps of another shape.
+template <class Command>
+bool replaces_terrain(const Command& command) {
+  return std::holds_alternative<Reset>(command) || std::holds_alternative<LoadCheckpoint>(command) ||
+         std::holds_alternative<LoadScenario>(command);
+}
+
 }  // namespace command
 
-using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditWind,
-                             command::EditTerrain, command::Reset, command::LoadCheckpoint>;
+using Command =
+    std::variant<command::SetWind, command::SetWindSchedule, command::EditWind, command::EditTerrain,
+                 command::Reset, command::LoadCheckpoint, command::LoadScenario>;
 
 /// Cells that a command changed: x0 ≤ x < x1, y0 ≤ y < y1 (empty if x1 ≤ x0).
 struct CellRectangle {

@@ -82,6 +82,11 @@ void emit_command(YAML::Emitter& out, const Command& command) {
     name("load_checkpoint");
     out << YAML::Key << "path" << YAML::Value << YAML::DoubleQuoted << load->path;
     out << YAML::Key << "hash" << YAML::Value << load->hash;
+  } else if (const auto* other = std::get_if<command::LoadScenario>(&command)) {
+    name("load_scenario");
+    out << YAML::Key << "path" << YAML::Value << YAML::DoubleQuoted << other->path;
+    out << YAML::Key << "terrain_only" << YAML::Value << other->terrain_only;
+    out << YAML::Key << "hash" << YAML::Value << other->hash;
   }
 }
 
@@ -99,6 +104,10 @@ Command read_command(const YAML::Node& node, const std::string& source) {
   if (name == "load_checkpoint")
     return command::LoadCheckpoint{scalar<std::string>(node, "path", source),
                                    scalar<std::uint64_t>(node, "hash", source)};
+  if (name == "load_scenario")
+    return command::LoadScenario{scalar<std::string>(node, "path", source),
+                                 scalar<bool>(node, "terrain_only", source),
+                                 scalar<std::uint64_t>(node, "hash", source)};
   throw ConfigError(source + ": unknown command '" + name + "'");
 }
 

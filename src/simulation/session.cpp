@@ -55,6 +55,26 @@ void Session::step() {
   ++ticks_;
 }
 
+std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
+  Scenario next = desert_sim::load_scenario(command.path);
+  if (command.terrain_only) {
+    Scenario kept = scenario_;
+    kept.grid = next.grid;
+    kept.terrain = next.terrain;
+    kept.folder = next.folder;
+    kept.projection.clear();
+    next = std::move(kept);
+  }
+  resolve_grid(next, load_raster_);
+  auto simulation = std::make_unique<Simulation>(*exec_, next, load_raster_);
+  const std::uint64_t hash = simulation->state_hash();
+  if (command.hash != 0 && command.hash != hash)
+    throw ConfigError(command.path + ": is not the scenario that the journal means (its state hash differs)");
+  scenario_ = std::move(next);
+  simulation_ = std::move(simulation);
+  return hash;
+}
+
 CommandResult Session::dispatch(const Command& command, Command& journalled) {
   if (std::holds_alternative<command::Reset>(command)) {
     simulation_ = std::make_unique<Simulation>(*exec_, scenario_, load_raster_);
@@ -70,10 +90,15 @@ CommandResult Session::dispatch(const Command& command, Command& journalled) {
     journalled = command::LoadCheckpoint{load->path, hash};
     return {};
   }
+  if (const auto* load = std::get_if<command::LoadScenario>(&command)) {
+    journalled = command::LoadScenario{load->path, load->terrain_only, load_scenario(*load)};
+    return {};
+  }
   return std::visit(
       [this](const auto& c) -> CommandResult {
         using C = std::decay_t<decltype(c)>;
-        if constexpr (std::is_same_v<C, command::Reset> || std::is_same_v<C, command::LoadCheckpoint>)
+        if constexpr (std::is_same_v<C, command::Reset> || std::is_same_v<C, command::LoadCheckpoint> ||
+                      std::is_same_v<C, command::LoadScenario>)
           throw Error("handled above");
         else
           return simulation_->apply(c);

@@ -40,6 +40,8 @@ class Session {
  private:
   Session(const RasterLoader& load_raster, const std::string& backend, int threads);
   CommandResult dispatch(const Command& command, Command& journalled);
+  /// Returns the state hash at the new scenario's start.
+  std::uint64_t load_scenario(const command::LoadScenario& command);
 
   Scenario scenario_;
   RasterLoader load_raster_;

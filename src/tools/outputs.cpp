@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/core/files.hpp"
 #if DESERT_WITH_IO
 #include "desert_sim/io/picture.hpp"
 #include "desert_sim/io/raster.hpp"
@@ -34,15 +35,6 @@ std::string quoted(const std::string& text) {
     out += c;
   }
   return out + "\"";
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".part";
-  std::ofstream file(temporary);
-  file << text;
-  file.close();
-  if (!file || std::rename(temporary.c_str(), path.c_str()) != 0)
-    throw Error(path + ": cannot be written: " + std::strerror(errno));
 }
 
 #if DESERT_WITH_IO
@@ -139,7 +131,7 @@ void write_outputs(const std::string& folder, Simulation& simulation, const RunR
   write_rasters(folder, *snapshot, simulation.scenario().projection);
   write_pictures(folder, *snapshot);
 #endif
-  write_text(folder + "/summary.json", summary(simulation, report));
+  write_file(folder + "/summary.json", summary(simulation, report));
 }
 
 }  // namespace desert_sim

@@ -1,0 +1,137 @@
+// A terrain saved as rasters and loaded again, by Session and by what a journal replays.
+
+#include "desert_sim/io/terrain_files.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+#include "desert_sim/core/files.hpp"
+#include "desert_sim/io/raster_loader.hpp"
+#include "desert_sim/simulation/session.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+const char* const world =
+    "grid: {width: 30, height: 20, cell_size: 2, origin_x: 500, origin_y: -70, boundary: open}\n"
+    "terrain: [ramp: {layer: bedrock, value: 18, slope_x: 0.7}, noise: {layer: sand, low: 0, high: 3}]\n"
+    "wind: {speed: 6}\n";
+
+class TerrainFiles : public ::testing::TestWithParam<TerrainFormat> {
+ protected:
+  std::unique_ptr<Session> session(const std::string& yaml, const std::string& journal = "") {
+    return std::make_unique<Session>(test::parsed(yaml), gdal_raster_loader(), "cpu", 1, journal);
+  }
+  std::string save(Session& s, const std::string& tag) {
+    Simulation& simulation = s.simulation();
+    save_terrain(file_, simulation.scenario(), *simulation.snapshot(terrain_layers(simulation)), GetParam(),
+                 tag);
+    return file_;
+  }
+  double tolerance() const { return GetParam() == TerrainFormat::geotiff ? 4e-6 : 43 / 65535.0; }
+
+  const test::TemporaryFolder folder_;
+  const std::string file_ = folder_.path("terrain.yaml");
+};
+
+TEST_P(TerrainFiles, ComeBackWithinTheFormatsRounding) {
+  auto s = session(world);
+  for (int n = 0; n < 5; ++n) s->step();
+  save(*s, "a");
+  auto other = session("grid: {width: 8, height: 9}\nterrain: []\nwind: {speed: 3, direction_deg: 90}\n");
+  other->apply(command::LoadScenario{file_, true, 0});
+  const Simulation& loaded = other->simulation();
+  EXPECT_EQ(loaded.steps(), 0u);
+  EXPECT_EQ(loaded.wind_above().y, 3) << "only the terrain is loaded";
+  const GridParameters& grid = loaded.scenario().grid;
+  EXPECT_EQ(grid.width, 30);
+  EXPECT_EQ(grid.height, 20);
+  EXPECT_EQ(grid.cell_size, 2);
+  EXPECT_EQ(grid.origin_x, 500);
+  EXPECT_EQ(grid.origin_y, -70);
+  EXPECT_EQ(grid.boundary, Boundary::open);
+  for (Layer layer : {Layer::bedrock, Layer::sand, Layer::airborne_sand}) {
+    const std::vector<float> a = s->simulation().terrain().values(layer), b = loaded.terrain().values(layer);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+      EXPECT_NEAR(a[i], b[i], tolerance()) << info(layer).name << " " << i;
+  }
+  const std::uint64_t start = loaded.state_hash();
+  other->step();
+  other->apply(command::Reset{});
+  EXPECT_EQ(other->simulation().state_hash(), start) << "a reset goes back to it";
+}
+
+TEST_P(TerrainFiles, AreAScenarioThatRunsAsBefore) {
+  auto s = session(world);
+  auto same = session("grid: {width: 8, height: 9}\n");
+  save(*s, "a");
+  same->apply(command::LoadScenario{file_, false, 0});
+  EXPECT_EQ(same->simulation().wind_above().x, 6);
+}
+
+TEST_P(TerrainFiles, ReplaceAnEarlierTerrainWhole) {
+  auto s = session(world);
+  save(*s, "a");
+  s->step();
+  save(*s, "b");
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path(".")))
+    EXPECT_EQ(entry.path().filename().string().find("-a."), std::string::npos) << entry.path();
+  session(world)->apply(command::LoadScenario{file_, true, 0});
+}
+
+TEST_P(TerrainFiles, ReplayFromAJournalAndAreRefusedWhenTheyHaveChanged) {
+  auto s = session(world);
+  s->step();
+  save(*s, "a");
+  std::uint64_t hash = 0;
+  {
+    auto live = session(world, folder_.path("journal"));
+    live->step();
+    live->apply(command::LoadScenario{file_, true, 0});
+    live->step();
+    live->step();
+    hash = live->simulation().state_hash();
+  }
+  const Journal journal = read_journal(folder_.path("journal"));
+  ASSERT_EQ(journal.entries.size(), 1u);
+  auto replay = session(world);
+  replay->step();
+  replay->apply(journal.entries[0].command);
+  replay->step();
+  replay->step();
+  EXPECT_EQ(replay->simulation().state_hash(), hash);
+
+  s->step();
+  save(*s, "b");
+  const std::uint64_t before = replay->simulation().state_hash();
+  EXPECT_THROW(replay->apply(journal.entries[0].command), ConfigError);
+  EXPECT_EQ(replay->simulation().state_hash(), before);
+}
+
+TEST_P(TerrainFiles, ThatAreBrokenAreRefusedAndTheSessionStays) {
+  auto s = session(world);
+  save(*s, "a");
+  const std::uint64_t before = s->simulation().state_hash();
+  const std::string good = read_file(file_);
+  for (const std::string& bad : {std::string("grid: {width: -1}\n"), std::string("no: scenario\n"),
+                                 std::string("[1"), good + "\nsand: 1\n"}) {
+    folder_.write("terrain.yaml", bad);
+    EXPECT_THROW(s->apply(command::LoadScenario{file_, true, 0}), ConfigError) << bad;
+    EXPECT_EQ(s->simulation().state_hash(), before);
+  }
+  folder_.write("terrain.yaml", good);
+  for (const std::string& raster : rasters_of(load_scenario(file_))) std::filesystem::remove(raster);
+  EXPECT_THROW(s->apply(command::LoadScenario{file_, true, 0}), ConfigError);
+  EXPECT_EQ(s->simulation().state_hash(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, TerrainFiles,
+                         ::testing::Values(TerrainFormat::geotiff, TerrainFormat::png16), [](const auto& p) {
+                           return std::string(terrain_formats[static_cast<int>(p.param)]);
+                         });
+
+}  // namespace
+}  // namespace desert_sim
