@@ -4,6 +4,8 @@ include(GNUInstallDirs)
 option(DESERT_WERROR "Warnings are errors" ON)
 option(DESERT_NATIVE "Use the instructions of the CPU that builds (-march=native); results stay the same bits" OFF)
 
+set(DESERT_SANITIZE "" CACHE STRING "Sanitizers for all of the project's own code: address,undefined or thread")
+
 # ---- Rooms: `#include "desert_sim/<room>/<file>.hpp"` everywhere, in the build tree through links ----
 set(DESERT_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${DESERT_INCLUDE_DIR}/desert_sim)
@@ -43,6 +45,10 @@ function(desert_target target)
   endif()
   if(DESERT_NATIVE)
     list(APPEND host -march=native)
+  endif()
+  if(DESERT_SANITIZE)
+    list(APPEND host -fsanitize=${DESERT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+    target_link_options(${target} PRIVATE -fsanitize=${DESERT_SANITIZE})
   endif()
   target_compile_options(${target} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:${host}>")
 

@@ -4,8 +4,9 @@
 #include "desert_sim/kernels/for_each.hpp"
 
 /// A function compiled for several instruction sets, of which the loader takes the widest that the processor
-/// has.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+/// has. Sanitizers are not up yet when the loader chooses.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define DESERT_CLONES __attribute__((noinline, target_clones("default", "avx2", "arch=skylake-avx512")))
 #else
 #define DESERT_CLONES
