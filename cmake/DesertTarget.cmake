@@ -8,7 +8,7 @@ option(DESERT_NATIVE "Use the instructions of the CPU that builds (-march=native
 set(DESERT_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${DESERT_INCLUDE_DIR}/desert_sim)
 set_property(GLOBAL PROPERTY DESERT_ROOMS "")
-foreach(room IN ITEMS kernels core terrain scenario simulation io tools ros)
+foreach(room IN ITEMS kernels core terrain scenario simulation io tools client ros)
   set(folder ${PROJECT_SOURCE_DIR}/src/${room})
   if(room STREQUAL "kernels")
     set(folder ${PROJECT_SOURCE_DIR}/kernels)
