@@ -24,10 +24,15 @@ if(DESERT_WITH_ROS AND NOT IS_DIRECTORY "${CATKIN_DEVEL_PREFIX}/${PYTHON_INSTALL
   safe_execute_process(COMMAND ${GENERATE_ENVIRONMENT_CACHE_COMMAND})
 endif()
 
-# desert_use_ros(<target>): ROS headers (as system ones), this package's messages, catkin's libraries.
+# desert_use_ros(<target> [<library>...]): ROS headers (as system ones), this package's messages, and the libraries;
+# without any those of all components.
 function(desert_use_ros target)
+  set(libraries ${ARGN})
+  if(NOT libraries)
+    set(libraries ${catkin_LIBRARIES})
+  endif()
   target_include_directories(${target} SYSTEM PUBLIC ${CATKIN_DEVEL_PREFIX}/include ${catkin_INCLUDE_DIRS})
-  target_link_libraries(${target} PUBLIC ${catkin_LIBRARIES})
+  target_link_libraries(${target} PUBLIC ${libraries})
   foreach(dependency IN LISTS ${PROJECT_NAME}_EXPORTED_TARGETS catkin_EXPORTED_TARGETS)
     add_dependencies(${target} ${dependency})
   endforeach()

@@ -10,9 +10,11 @@
 #include <tf2_ros/transform_listener.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <boost/make_shared.hpp>
 #include <cmath>
 #include <set>
 
+#include "desert_sim/client/elevation_assembler.hpp"
 #include "rostest/client.hpp"
 
 namespace {
@@ -34,22 +36,10 @@ Step::Response step(std::uint32_t steps) {
   return response;
 }
 
-/// Writes an update over a grid. False if it does not follow on what the grid holds.
-bool assemble(const ElevationUpdate& update, std::uint32_t& sequence, ElevationGrid& grid) {
-  if (update.keyframe != grid.keyframe || update.sequence != sequence + 1) return false;
-  sequence = update.sequence;
-  grid.step = update.step;
-  for (const ElevationTile& tile : update.tiles)
-    for (std::uint32_t y = 0; y < tile.height; ++y)
-      for (std::uint32_t x = 0; x < tile.width; ++x)
-        grid.elevation.at((tile.y + y) * grid.width + tile.x + x) = tile.data.at(y * tile.width + x);
-  return true;
-}
-
-double largest_difference(const ElevationGrid& a, const ElevationGrid& b) {
-  double largest = a.elevation.size() == b.elevation.size() ? 0.0 : INFINITY;
-  for (std::size_t i = 0; i < a.elevation.size() && largest < INFINITY; ++i)
-    largest = std::max(largest, std::abs(static_cast<double>(a.elevation[i]) - b.elevation[i]));
+double largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double largest = a.size() == b.size() ? 0.0 : INFINITY;
+  for (std::size_t i = 0; i < a.size() && largest < INFINITY; ++i)
+    largest = std::max(largest, std::abs(static_cast<double>(a[i]) - b[i]));
   return largest;
 }
 
@@ -173,21 +163,22 @@ void expect_updates_lead_to(std::uint64_t step, const Listener<ElevationGrid>& k
                             const Listener<ElevationUpdate>& updates) {
   ASSERT_TRUE(keyframes.wait_for([&](const ElevationGrid& k) { return k.step == step; }));
   ASSERT_TRUE(updates.wait_for([&](const ElevationUpdate& u) { return u.step == step; }));
-  ElevationGrid held, now;
-  std::uint32_t keyframe = 0, sequence = 0;
+  std::uint32_t keyframe = 0;
   for (const ElevationUpdate& update : updates.all())
     if (update.step == step) keyframe = update.keyframe;
+  ElevationAssembler held;
+  ElevationGrid now;
   for (const ElevationGrid& grid : keyframes.all()) {
-    if (grid.keyframe == keyframe) held = grid;
+    if (grid.keyframe == keyframe) held.take(grid);
     if (grid.step == step) now = grid;
   }
-  ASSERT_LT(held.step, now.step);
-  for (const ElevationUpdate& update : updates.all()) {
-    if (update.keyframe != keyframe) continue;
-    ASSERT_TRUE(assemble(update, sequence, held)) << "update " << update.sequence << " after " << sequence;
-  }
-  EXPECT_EQ(held.step, step);
-  EXPECT_LE(largest_difference(held, now), threshold + 1e-6);
+  ASSERT_TRUE(held.map()) << "keyframe " << keyframe;
+  ASSERT_LT(held.map()->info().step, now.step);
+  for (const ElevationUpdate& update : updates.all())
+    if (update.keyframe == keyframe) held.take(boost::make_shared<ElevationUpdate>(update));
+  ASSERT_EQ(held.need(), KeyframeNeed::none) << held.counts().last_gap;
+  EXPECT_EQ(held.map()->info().step, step);
+  EXPECT_LE(largest_difference(held.map()->elevations(), now.elevation), threshold + 1e-6);
 }
 
 TEST(Topics, AFrameStandsInTheMiddleOfTheTerrain) {

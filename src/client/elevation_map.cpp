@@ -1,0 +1,264 @@
+#include "desert_sim/client/elevation_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+namespace desert_sim {
+
+namespace {
+
+constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+
+/// Cells in a row of a block that lie on a grid of n cells, `first` being the first of them.
+std::uint32_t on_grid(std::uint32_t first, std::uint32_t side, std::uint32_t n) {
+  return std::min(side, n - first);
+}
+
+/// The smallest rectangle that has the cells in which two blocks at (x, y) differ; to the bit, so that NaN is
+/// NaN.
+template <class Block>
+ElevationMap::Rectangle difference(const Block& a, const Block& b, std::uint32_t x, std::uint32_t y,
+                                   std::uint32_t side) {
+  ElevationMap::Rectangle changed;
+  if (std::memcmp(a.data(), b.data(), sizeof(Block)) == 0) return changed;
+  for (std::uint32_t i = 0; i < a.size(); ++i)
+    if (std::memcmp(&a[i], &b[i], sizeof a[i]) != 0) changed.include({x + i % side, y + i / side, 1, 1});
+  return changed;
+}
+
+}  // namespace
+
+void ElevationMap::Rectangle::include(const Rectangle& other) {
+  if (other.empty()) return;
+  if (empty()) {
+    *this = other;
+    return;
+  }
+  const std::uint32_t right = std::max(x + width, other.x + other.width),
+                      top = std::max(y + height, other.y + other.height);
+  x = std::min(x, other.x);
+  y = std::min(y, other.y);
+  width = right - x;
+  height = top - y;
+}
+
+// ---- making ----
+
+ElevationMap::ElevationMap(const ElevationGrid& keyframe, const ElevationMap* before, Rectangle& changed) {
+  info_.frame = keyframe.header.frame_id;
+  info_.stamp = keyframe.header.stamp;
+  info_.step = keyframe.step;
+  info_.sim_time = keyframe.sim_time;
+  info_.keyframe = keyframe.keyframe;
+  info_.width = keyframe.width;
+  info_.height = keyframe.height;
+  info_.cell_size = keyframe.cell_size;
+  info_.origin_x = keyframe.origin.position.x;
+  info_.origin_y = keyframe.origin.position.y;
+
+  const bool comparable = before && same_geometry(*before);
+  changed = comparable ? Rectangle{} : Rectangle{0, 0, info_.width, info_.height};
+  for (std::uint32_t y = 0; y < info_.height; y += side)
+    for (std::uint32_t x = 0; x < info_.width; x += side) {
+      auto block = std::make_shared<Block>();
+      block->fill(unknown);
+      for (std::uint32_t row = 0; row < on_grid(y, side, info_.height); ++row)
+        std::copy_n(keyframe.elevation.data() + static_cast<std::size_t>(y + row) * info_.width + x,
+                    on_grid(x, side, info_.width), block->data() + row * side);
+      const std::shared_ptr<const Block> held = comparable ? before->blocks_[blocks_.size()] : nullptr;
+      const Rectangle differs = held ? difference(*block, *held, x, y, side) : Rectangle{};
+      changed.include(differs);
+      blocks_.push_back(held && differs.empty() ? held : std::move(block));
+    }
+}
+
+std::shared_ptr<const ElevationMap> ElevationMap::after(const ElevationUpdate& update) const {
+  std::shared_ptr<ElevationMap> map(new ElevationMap(*this));
+  map->info_.stamp = update.header.stamp;
+  map->info_.step = update.step;
+  map->info_.sim_time = update.sim_time;
+  map->info_.sequence = update.sequence;
+  for (const ElevationTile& tile : update.tiles) map->write(tile, *this);
+  return map;
+}
+
+/// A block that is still shared with the map before is copied first.
+void ElevationMap::write(const ElevationTile& tile, const ElevationMap& before) {
+  const std::uint32_t right = tile.x + tile.width, top = tile.y + tile.height;
+  for (std::uint32_t by = tile.y / side; by * side < top; ++by)
+    for (std::uint32_t bx = tile.x / side; bx * side < right; ++bx) {
+      std::shared_ptr<const Block>& block = blocks_[by * blocks_across() + bx];
+      if (block == before.blocks_[by * blocks_across() + bx]) block = std::make_shared<Block>(*block);
+      Block& cells = const_cast<Block&>(*block);  // ours alone until this map is handed out
+      const std::uint32_t x0 = std::max(tile.x, bx * side), x1 = std::min(right, (bx + 1) * side);
+      for (std::uint32_t y = std::max(tile.y, by * side); y < std::min(top, (by + 1) * side); ++y)
+        std::copy_n(tile.data.data() + static_cast<std::size_t>(y - tile.y) * tile.width + (x0 - tile.x),
+                    x1 - x0, cells.data() + y % side * side + x0 % side);
+    }
+}
+
+// ---- reading ----
+
+bool ElevationMap::same_geometry(const ElevationMap& other) const {
+  const Info &a = info_, &b = other.info_;
+  return a.frame == b.frame && a.width == b.width && a.height == b.height && a.cell_size == b.cell_size &&
+         a.origin_x == b.origin_x && a.origin_y == b.origin_y;
+}
+
+float ElevationMap::at(std::uint32_t x, std::uint32_t y) const {
+  if (x >= info_.width || y >= info_.height)
+    throw std::out_of_range("ElevationMap: cell (" + std::to_string(x) + ", " + std::to_string(y) + ") of " +
+                            std::to_string(info_.width) + " x " + std::to_string(info_.height));
+  return cell(x, y);
+}
+
+/// The four cells around a point and the point's place between their centres, 0…1.
+struct ElevationMap::Patch {
+  double z00, z10, z01, z11, fx, fy;
+};
+
+std::optional<ElevationMap::Patch> ElevationMap::patch(double x, double y) const {
+  const double east = (x - info_.origin_x) / info_.cell_size, north = (y - info_.origin_y) / info_.cell_size;
+  if (!(east >= 0 && east <= info_.width && north >= 0 && north <= info_.height)) return std::nullopt;
+  const auto between = [](double cells, std::uint32_t n, std::uint32_t& first, std::uint32_t& second) {
+    const double centre = std::clamp(cells - 0.5, 0.0, n - 1.0);
+    first = std::min(static_cast<std::uint32_t>(centre), n > 1 ? n - 2 : 0);
+    second = std::min(first + 1, n - 1);
+    return centre - first;
+  };
+  std::uint32_t x0, x1, y0, y1;
+  const double fx = between(east, info_.width, x0, x1), fy = between(north, info_.height, y0, y1);
+  return Patch{cell(x0, y0), cell(x1, y0), cell(x0, y1), cell(x1, y1), fx, fy};
+}
+
+std::optional<double> ElevationMap::elevation(double x, double y) const {
+  const std::optional<Patch> p = patch(x, y);
+  if (!p) return std::nullopt;
+  // A cell without weight may be unknown.
+  const auto part = [](double weight, double z) { return weight > 0 ? weight * z : 0.0; };
+  const double z = part((1 - p->fx) * (1 - p->fy), p->z00) + part(p->fx * (1 - p->fy), p->z10) +
+                   part((1 - p->fx) * p->fy, p->z01) + part(p->fx * p->fy, p->z11);
+  if (std::isnan(z)) return std::nullopt;
+  return z;
+}
+
+std::optional<ElevationMap::Gradient> ElevationMap::gradient(double x, double y) const {
+  const std::optional<Patch> p = patch(x, y);
+  if (!p) return std::nullopt;
+  const Gradient g{((p->z10 - p->z00) * (1 - p->fy) + (p->z11 - p->z01) * p->fy) / info_.cell_size,
+                   ((p->z01 - p->z00) * (1 - p->fx) + (p->z11 - p->z10) * p->fx) / info_.cell_size};
+  if (std::isnan(g.x) || std::isnan(g.y)) return std::nullopt;
+  return g;
+}
+
+std::optional<geometry_msgs::Vector3> ElevationMap::normal(double x, double y) const {
+  const std::optional<Gradient> g = gradient(x, y);
+  if (!g) return std::nullopt;
+  const double length = std::sqrt(1 + g->x * g->x + g->y * g->y);
+  geometry_msgs::Vector3 normal;
+  normal.x = -g->x / length;
+  normal.y = -g->y / length;
+  normal.z = 1 / length;
+  return normal;
+}
+
+std::optional<double> ElevationMap::slope(double x, double y) const {
+  const std::optional<Gradient> g = gradient(x, y);
+  if (!g) return std::nullopt;
+  return std::atan(std::hypot(g->x, g->y));
+}
+
+std::vector<float> ElevationMap::elevations() const { return elevations({0, 0, info_.width, info_.height}); }
+
+std::vector<float> ElevationMap::elevations(const Rectangle& r) const {
+  const std::uint64_t right = std::uint64_t{r.x} + r.width, top = std::uint64_t{r.y} + r.height;
+  if (right > info_.width || top > info_.height)
+    throw std::out_of_range("ElevationMap: cells up to (" + std::to_string(right) + ", " +
+                            std::to_string(top) + ") of " + std::to_string(info_.width) + " x " +
+                            std::to_string(info_.height));
+  std::vector<float> copy;
+  copy.reserve(static_cast<std::size_t>(r.width) * r.height);
+  for (std::uint32_t y = r.y; y < top; ++y)
+    for (std::uint32_t x = r.x; x < right;) {
+      const std::uint32_t n = std::min(static_cast<std::uint32_t>(right), (x / side + 1) * side) - x;
+      const float* const from =
+          blocks_[y / side * blocks_across() + x / side]->data() + y % side * side + x % side;
+      copy.insert(copy.end(), from, from + n);
+      x += n;
+    }
+  return copy;
+}
+
+// ---- checking ----
+
+namespace {
+
+std::string wrong_size(std::size_t numbers, std::uint32_t width, std::uint32_t height) {
+  if (width > 0 && height > 0 && numbers == static_cast<std::uint64_t>(width) * height) return "";
+  return std::to_string(numbers) + " elevations for " + std::to_string(width) + " x " +
+         std::to_string(height) + " cells";
+}
+
+std::string infinite(const std::vector<float>& elevations) {
+  const auto bad = std::find_if(elevations.begin(), elevations.end(), [](float z) { return std::isinf(z); });
+  if (bad == elevations.end()) return "";
+  return "elevation " + std::to_string(bad - elevations.begin()) + " is " + std::to_string(*bad) +
+         ": must be finite, or NaN if unknown";
+}
+
+}  // namespace
+
+std::string fault_of(const ElevationGrid& keyframe) {
+  const std::string where = "keyframe " + std::to_string(keyframe.keyframe) + ": ";
+  if (const std::string fault = wrong_size(keyframe.elevation.size(), keyframe.width, keyframe.height);
+      !fault.empty())
+    return where + fault;
+  if (!(std::isfinite(keyframe.cell_size) && keyframe.cell_size > 0))
+    return where + "cell_size is " + std::to_string(keyframe.cell_size) + ": must be finite and above 0";
+  const geometry_msgs::Point& p = keyframe.origin.position;
+  if (!std::isfinite(p.x) || !std::isfinite(p.y) || p.z != 0)
+    return where + "origin is (" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " +
+           std::to_string(p.z) + "): must be finite with z = 0";
+  const geometry_msgs::Quaternion& q = keyframe.origin.orientation;
+  if (q.x != 0 || q.y != 0 || q.z != 0 || q.w != 1)
+    return where + "origin's orientation is (" + std::to_string(q.x) + ", " + std::to_string(q.y) + ", " +
+           std::to_string(q.z) + ", " + std::to_string(q.w) + "): must be identity (0, 0, 0, 1)";
+  if (!std::isfinite(keyframe.sim_time)) return where + "sim_time is not finite";
+  if (const std::string fault = infinite(keyframe.elevation); !fault.empty()) return where + fault;
+  return "";
+}
+
+std::string fault_of(const ElevationUpdate& update) {
+  const std::string where =
+      "update " + std::to_string(update.sequence) + " of keyframe " + std::to_string(update.keyframe) + ": ";
+  if (update.sequence == 0) return where + "sequence counts from 1";
+  if (!std::isfinite(update.sim_time)) return where + "sim_time is not finite";
+  for (std::size_t i = 0; i < update.tiles.size(); ++i) {
+    const ElevationTile& tile = update.tiles[i];
+    std::string fault = wrong_size(tile.data.size(), tile.width, tile.height);
+    if (fault.empty()) fault = infinite(tile.data);
+    if (!fault.empty()) return where + "tile " + std::to_string(i) + ": " + fault;
+  }
+  return "";
+}
+
+std::string fault_of(const ElevationUpdate& update, const ElevationMap::Info& map) {
+  const std::string where =
+      "update " + std::to_string(update.sequence) + " of keyframe " + std::to_string(update.keyframe) + ": ";
+  if (update.header.frame_id != map.frame)
+    return where + "its frame is '" + update.header.frame_id + "', that of the keyframe '" + map.frame + "'";
+  for (std::size_t i = 0; i < update.tiles.size(); ++i) {
+    const ElevationTile& tile = update.tiles[i];
+    const std::uint64_t right = std::uint64_t{tile.x} + tile.width, top = std::uint64_t{tile.y} + tile.height;
+    if (right > map.width || top > map.height)
+      return where + "tile " + std::to_string(i) + " reaches to cell (" + std::to_string(right) + ", " +
+             std::to_string(top) + ") of a grid of " + std::to_string(map.width) + " x " +
+             std::to_string(map.height);
+  }
+  return "";
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,69 @@
+/// Prints the height under a point whenever the terrain there changes: a program to copy.
+///
+///     rosrun desert_sim terrain_client_example _x:=40 _y:=25
+///
+/// Parameters: ~x, ~y [m, in the terrain's frame; default: the middle], ~node (desert_sim).
+/// With a geometry_msgs/PointStamped on ~point, in the terrain's frame, it follows that, as a robot's
+/// position. Exit status: 0, or 1 if there is no terrain within ten seconds.
+#include <geometry_msgs/PointStamped.h>
+#include <ros/ros.h>
+
+#include <cmath>
+
+#include "desert_sim/client/terrain_client.hpp"
+
+namespace {
+
+constexpr double degrees = 180 / M_PI;
+
+void print(const desert_sim::ElevationMap& map, double x, double y) {
+  const std::optional<double> z = map.elevation(x, y), slope = map.slope(x, y);
+  if (z && slope) {
+    ROS_INFO("step %lu: (%.2f, %.2f) lies at %.3f m, slope %.1f deg",
+             static_cast<unsigned long>(map.info().step), x, y, *z, *slope * degrees);
+  } else {
+    ROS_WARN("(%.2f, %.2f) is off the terrain, or unknown", x, y);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "terrain_client_example");
+  ros::NodeHandle node, parameters("~");
+
+  desert_sim::TerrainClient::Options options;
+  parameters.param("node", options.node, options.node);
+  desert_sim::TerrainClient terrain(node, options);
+  if (!terrain.wait_for_terrain(10)) {
+    if (!ros::ok()) return 0;
+    ROS_ERROR("no terrain from %s within 10 s", options.node.c_str());
+    return 1;
+  }
+
+  const desert_sim::ElevationMap::Info first = terrain.map()->info();
+  double x = 0, y = 0;
+  parameters.param("x", x, first.origin_x + first.width * first.cell_size / 2);
+  parameters.param("y", y, first.origin_y + first.height * first.cell_size / 2);
+  const ros::Subscriber follow = parameters.subscribe<geometry_msgs::PointStamped>(
+      "point", 1, [&](const geometry_msgs::PointStamped::ConstPtr& robot) {
+        if (robot->header.frame_id != terrain.map()->info().frame) {
+          ROS_WARN("~point is in the frame '%s', the terrain in '%s': transform it first",
+                   robot->header.frame_id.c_str(), terrain.map()->info().frame.c_str());
+          return;
+        }
+        x = robot->point.x;
+        y = robot->point.y;
+      });
+
+  std::optional<double> printed;
+  for (ros::Rate rate(10); ros::ok(); rate.sleep()) {
+    ros::spinOnce();
+    const auto map = terrain.map();  // one moment for all questions
+    const std::optional<double> z = map->elevation(x, y);
+    if (z && printed && std::abs(*z - *printed) < 1e-3) continue;
+    if (z || printed) print(*map, x, y);
+    printed = z;
+  }
+  return 0;
+}

@@ -1,0 +1,271 @@
+/// What a client makes of a stream of keyframes and updates that is whole, reordered, torn or broken.
+#include "desert_sim/client/elevation_assembler.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "client/messages.hpp"
+
+namespace {
+
+using namespace client_test;
+using desert_sim::KeyframeNeed;
+using desert_sim::MapChange;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+class Assembler : public testing::Test {
+ protected:
+  float corner() const { return assembler_.map()->at(0, 0); }
+  const desert_sim::StreamCounts& counts() const { return assembler_.counts(); }
+  bool whole() const { return assembler_.need() == KeyframeNeed::none; }
+  void expect_gap(const std::string& why) const {
+    EXPECT_EQ(assembler_.need(), KeyframeNeed::lost);
+    EXPECT_EQ(counts().gaps, 1u);
+    EXPECT_NE(counts().last_gap.find(why), std::string::npos)
+        << "'" << why << "' not in: " << counts().last_gap;
+  }
+  desert_sim::ElevationAssembler assembler_;
+};
+
+// ---- a whole stream ----
+
+TEST_F(Assembler, BeginsWithNothingAndExpectsAKeyframe) {
+  EXPECT_EQ(assembler_.map(), nullptr);
+  EXPECT_EQ(assembler_.need(), KeyframeNeed::expected);
+}
+
+TEST_F(Assembler, WritesUpdatesOverTheKeyframe) {
+  const MapChange first = assembler_.take(keyframe(4, 10));
+  EXPECT_TRUE(first.replaced);
+  EXPECT_EQ(first.cells.width * first.cells.height, 130u * 70u);
+  const MapChange second = assembler_.take(update(4, 1, 11, 5));
+  EXPECT_FALSE(second.replaced);
+  EXPECT_EQ(second.map, assembler_.map());
+  EXPECT_EQ(second.cells.width, 2u);
+  EXPECT_EQ(second.cells.height, 3u);
+  assembler_.take(update(4, 2, 12, 6));
+  EXPECT_EQ(corner(), 6);
+  EXPECT_EQ(assembler_.map()->info().step, 12u);
+  EXPECT_TRUE(whole());
+  EXPECT_EQ(counts().keyframes, 1u);
+  EXPECT_EQ(counts().updates, 2u);
+  EXPECT_EQ(counts().gaps + counts().late + counts().unusable + counts().refused, 0u);
+}
+
+TEST_F(Assembler, AnUpdateWithoutTilesMovesTimeOnly) {
+  assembler_.take(keyframe(1, 1, 130, 70, 3));
+  const auto nothing = update(1, 1, 9);
+  nothing->tiles.clear();
+  const MapChange change = assembler_.take(nothing);
+  EXPECT_TRUE(change.cells.empty());
+  EXPECT_EQ(assembler_.map()->info().step, 9u);
+  EXPECT_EQ(corner(), 3);
+}
+
+TEST_F(Assembler, AKeyframeThatConfirmsChangesNoCell) {
+  assembler_.take(keyframe(1, 1));
+  const MapChange change = assembler_.take(keyframe(2, 5));
+  EXPECT_TRUE(change.cells.empty());
+  EXPECT_FALSE(change.replaced);
+  EXPECT_EQ(assembler_.map()->info().step, 5u);
+  const MapChange another_size = assembler_.take(keyframe(3, 6, 20, 33));
+  EXPECT_TRUE(another_size.replaced);
+}
+
+// ---- reordered between the two connections ----
+
+TEST_F(Assembler, UpdatesWaitForTheirKeyframe) {
+  assembler_.take(update(1, 1, 2, 8));
+  assembler_.take(update(1, 2, 3, 9));
+  EXPECT_EQ(assembler_.map(), nullptr);
+  const MapChange change = assembler_.take(keyframe(1, 1));
+  EXPECT_EQ(change.map->info().sequence, 2u);
+  EXPECT_EQ(corner(), 9);
+  EXPECT_TRUE(whole());
+}
+
+TEST_F(Assembler, UpdatesThatOvertakeALaterKeyframeAreNoGap) {
+  assembler_.take(keyframe(1, 1));
+  assembler_.take(update(2, 1, 3, 7));
+  EXPECT_EQ(assembler_.need(), KeyframeNeed::expected);
+  EXPECT_EQ(corner(), 0);
+  const MapChange change = assembler_.take(keyframe(2, 2));
+  EXPECT_EQ(corner(), 7);
+  EXPECT_EQ(change.cells.width, 2u) << "the keyframe differs in no cell, the update in some";
+  EXPECT_TRUE(whole());
+  EXPECT_EQ(counts().gaps, 0u);
+}
+
+TEST_F(Assembler, TheLastUpdateOfTheOldKeyframeMayComeLate) {
+  assembler_.take(keyframe(1, 1));
+  assembler_.take(keyframe(2, 3, 130, 70, 4));
+  assembler_.take(update(1, 1, 3, 8));
+  EXPECT_EQ(corner(), 4);
+  EXPECT_TRUE(whole());
+  EXPECT_EQ(counts().late, 1u);
+}
+
+TEST_F(Assembler, ALatchedKeyframeThatIsSentAgainDoesNotTurnTimeBack) {
+  assembler_.take(keyframe(1, 1));
+  assembler_.take(update(1, 1, 2, 8));
+  assembler_.take(keyframe(1, 1));
+  EXPECT_EQ(corner(), 8);
+  EXPECT_EQ(counts().restarts, 0u);
+  assembler_.take(update(1, 2, 3, 9));
+  EXPECT_EQ(corner(), 9);
+}
+
+// ---- torn ----
+
+TEST_F(Assembler, AMissingUpdateIsAGapUntilTheNextKeyframe) {
+  assembler_.take(keyframe(1, 1));
+  assembler_.take(update(1, 1, 2, 5));
+  assembler_.take(update(1, 3, 4, 7));
+  expect_gap("update 2 of keyframe 1 is missing: 3 came next");
+  assembler_.take(update(1, 4, 5, 8));
+  EXPECT_EQ(corner(), 5) << "the last good map";
+  EXPECT_EQ(counts().unusable, 2u);
+  assembler_.take(update(2, 1, 7, 9));
+  assembler_.take(keyframe(2, 6, 130, 70, 8));
+  EXPECT_EQ(corner(), 9);
+  EXPECT_TRUE(whole());
+  EXPECT_EQ(counts().gaps, 1u);
+}
+
+TEST_F(Assembler, AFirstUpdateThatIsMissingIsAGapToo) {
+  assembler_.take(update(1, 2, 3));
+  assembler_.take(keyframe(1, 1));
+  expect_gap("update 1 of keyframe 1 is missing");
+}
+
+TEST_F(Assembler, AKeyframeThatDoesNotComeIsAGapOnceItIsOverdue) {
+  assembler_.take(keyframe(1, 1));
+  assembler_.keyframe_overdue();
+  EXPECT_TRUE(whole()) << "none was expected";
+  assembler_.take(update(2, 1, 3));
+  assembler_.keyframe_overdue();
+  expect_gap("keyframe 2");
+  assembler_.take(keyframe(3, 4));
+  EXPECT_TRUE(whole());
+}
+
+TEST_F(Assembler, ARestartIsNoticedByUpdatesAndHealedByTheKeyframe) {
+  assembler_.take(keyframe(7, 100));
+  assembler_.take(update(7, 1, 101, 5));
+  assembler_.take(update(1, 1, 201, 2));  // the node has been started anew
+  expect_gap("started anew");
+  EXPECT_EQ(corner(), 5);
+  assembler_.take(keyframe(1, 200));
+  EXPECT_EQ(corner(), 2);
+  EXPECT_TRUE(whole());
+  EXPECT_EQ(counts().restarts, 1u);
+}
+
+TEST_F(Assembler, ARestartWithTheSameNumbersIsNoticed) {
+  assembler_.take(keyframe(1, 100));
+  for (std::uint32_t n = 1; n < 9; ++n) assembler_.take(update(1, n, 100 + n, 5));
+  assembler_.take(update(1, 3, 203, 6));
+  expect_gap("update 3 of keyframe 1 came after update 8");
+  assembler_.take(keyframe(1, 202, 130, 70, 4));
+  EXPECT_EQ(assembler_.need(), KeyframeNeed::lost) << "updates 1 and 2 were never here";
+  EXPECT_EQ(counts().gaps, 2u);
+  EXPECT_EQ(corner(), 4);
+}
+
+TEST_F(Assembler, AStepBackOfTheScenarioIsNotARestart) {
+  assembler_.take(keyframe(1, 100));
+  ElevationGrid reset = keyframe(2, 101);
+  reset.step = 0;
+  assembler_.take(reset);
+  EXPECT_EQ(assembler_.map()->info().step, 0u);
+  EXPECT_EQ(counts().restarts, 0u);
+  EXPECT_TRUE(whole());
+}
+
+TEST_F(Assembler, KeepsNoMoreWaitingUpdatesThanItShould) {
+  for (std::uint32_t n = 1; n <= 1000; ++n) assembler_.take(update(1, n, n + 1));
+  EXPECT_EQ(counts().unusable, 1000u - 256u);
+  auto large = [](std::uint32_t n) {
+    const auto u = update(2, n, 2000 + n);
+    u->tiles = {tile(0, 0, 2048, 2048, 1)};
+    return u;
+  };
+  for (std::uint32_t n = 1; n <= 6; ++n) assembler_.take(large(n));
+  EXPECT_EQ(counts().unusable, 1002u) << "four of 2048 x 2048 cells are kept";
+}
+
+// ---- broken ----
+
+struct BadKeyframe {
+  const char* names;
+  void (*spoil)(ElevationGrid&);
+};
+
+TEST_F(Assembler, RefusesBadKeyframesAndSaysWhy) {
+  const BadKeyframe bad[] = {
+      {"9099 elevations for 130 x 70", [](ElevationGrid& k) { k.elevation.pop_back(); }},
+      {"0 elevations for 0 x 70", [](ElevationGrid& k) { k.width = 0, k.elevation.clear(); }},
+      {"4294967295", [](ElevationGrid& k) { k.width = k.height = 4294967295u; }},
+      {"cell_size is 0", [](ElevationGrid& k) { k.cell_size = 0; }},
+      {"cell_size is nan", [](ElevationGrid& k) { k.cell_size = std::numeric_limits<double>::quiet_NaN(); }},
+      {"origin is (inf", [](ElevationGrid& k) { k.origin.position.x = infinity; }},
+      {"z = 0", [](ElevationGrid& k) { k.origin.position.z = 1; }},
+      {"orientation", [](ElevationGrid& k) { k.origin.orientation.w = 0, k.origin.orientation.z = 1; }},
+      {"sim_time", [](ElevationGrid& k) { k.sim_time = infinity; }},
+      {"elevation 17 is -inf", [](ElevationGrid& k) { k.elevation[17] = -infinity; }},
+  };
+  std::uint64_t refused = 0;
+  for (const BadKeyframe& b : bad) {
+    ElevationGrid k = keyframe(1, 1);
+    b.spoil(k);
+    EXPECT_EQ(assembler_.take(k).map, nullptr);
+    EXPECT_EQ(counts().refused, ++refused) << b.names;
+    EXPECT_NE(counts().last_refusal.find(b.names), std::string::npos) << counts().last_refusal;
+    EXPECT_NE(counts().last_refusal.find("keyframe 1"), std::string::npos) << counts().last_refusal;
+  }
+  EXPECT_EQ(assembler_.map(), nullptr);
+}
+
+struct BadUpdate {
+  const char* names;
+  void (*spoil)(ElevationUpdate&);
+};
+
+TEST_F(Assembler, RefusesBadUpdatesWhollyAndNeedsAKeyframeThen) {
+  const BadUpdate bad[] = {
+      {"sequence", [](ElevationUpdate& u) { u.sequence = 0; }},
+      {"sim_time", [](ElevationUpdate& u) { u.sim_time = infinity; }},
+      {"tile 1: 5 elevations for 2 x 3", [](ElevationUpdate& u) { u.tiles[1].data.pop_back(); }},
+      {"tile 1: 0 elevations for 2 x 0",
+       [](ElevationUpdate& u) { u.tiles[1].height = 0, u.tiles[1].data.clear(); }},
+      {"tile 1: elevation 2 is inf", [](ElevationUpdate& u) { u.tiles[1].data[2] = infinity; }},
+      {"tile 1 reaches to cell (131, 3)", [](ElevationUpdate& u) { u.tiles[1].x = 129; }},
+      {"tile 1 reaches to cell (2, 4294967298)", [](ElevationUpdate& u) { u.tiles[1].y = 4294967295u; }},
+      {"frame is 'odom'", [](ElevationUpdate& u) { u.header.frame_id = "odom"; }},
+  };
+  std::uint32_t number = 0;
+  for (const BadUpdate& b : bad) {
+    ++number;
+    assembler_.take(keyframe(number, 10 * number));
+    const auto u = update(number, 1, 10 * number + 1);
+    u->tiles.push_back(u->tiles[0]);
+    b.spoil(*u);
+    EXPECT_EQ(assembler_.take(u).map, nullptr);
+    EXPECT_EQ(counts().refused, number) << b.names;
+    EXPECT_NE(counts().last_refusal.find(b.names), std::string::npos) << counts().last_refusal;
+    EXPECT_EQ(corner(), 0) << "its first tile is sound, and must not be written";
+    EXPECT_EQ(assembler_.need(), KeyframeNeed::lost);
+  }
+  EXPECT_EQ(counts().gaps, number);
+}
+
+TEST_F(Assembler, AnUpdateThatWaitedIsCheckedAgainstItsKeyframe) {
+  assembler_.take(update(1, 1, 2));
+  assembler_.take(keyframe(1, 1, 1, 70));
+  EXPECT_EQ(counts().refused, 1u);
+  expect_gap("tile 0 reaches to cell (2, 3) of a grid of 1 x 70");
+}
+
+}  // namespace

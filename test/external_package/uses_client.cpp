@@ -1,0 +1,18 @@
+/// Exit status 0 if updates are put together. With a master it also waits for a node's terrain: any argument.
+#include <ros/ros.h>
+
+#include <desert_sim/client/terrain_client.hpp>
+
+int main(int argc, char** argv) {
+  desert_sim::ElevationGrid keyframe;
+  keyframe.width = keyframe.height = 1;
+  keyframe.cell_size = keyframe.origin.orientation.w = 1;
+  keyframe.elevation = {7};
+  desert_sim::ElevationAssembler assembler;
+  assembler.take(keyframe);
+  if (assembler.map()->elevation(0.5, 0.5) != 7) return 1;
+  if (argc == 1) return 0;
+  ros::init(argc, argv, "uses_client");
+  const desert_sim::TerrainClient terrain;
+  return terrain.wait_for_terrain(10) ? 0 : 1;
+}
