@@ -126,11 +126,19 @@ struct CellRectangle {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
+/// What an edit changed in a layer, cell by cell.
+struct LayerChange {
+  std::string layer;
+  double x = 0, y = 0, cell_size = 0;  ///< lower left corner and cells of the rectangle [m]
+  std::vector<float> values;           ///< new − old [m], row-major; empty if nobody asked
+};
+
 struct CommandResult {
   double volume_m3 = 0;  ///< material added (+) or removed (−) by an edit
-  double moved_m3 = 0;   ///< of it, from the ring into the shape (+) or back (−) by an edit that conserves
+  double moved_m3 =
+      0;  ///< instead of it, of an edit that conserves: from the ring into the shape (+), or back
   CellRectangle touched;
-  std::vector<float> change;  ///< of the layer in the cells of `touched` [m], row-major; only if asked for
+  LayerChange change;  ///< in `touched`
 };
 
 }  // namespace desert_sim

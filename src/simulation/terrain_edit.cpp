@@ -12,8 +12,17 @@ namespace desert_sim {
 namespace {
 
 constexpr int widest_smoothing = 64;  // [cells]
+// What an edit may cost, so that no request holds up the simulation for long: visits of a cell by an edge or
+// by a mean.
+constexpr double most_edge_visits = 1e9, most_mean_visits = 4e9;
 
 [[noreturn]] void refuse(const std::string& what) { throw ConfigError("edit_terrain: " + what); }
+
+void require_work(double visits, double most, double cells, const std::string& what) {
+  if (visits <= most) return;
+  refuse("the shape's rectangle has " + std::to_string(static_cast<long long>(cells)) + " cells, too many " +
+         what + " (allowed: " + std::to_string(static_cast<long long>(cells * most / visits)) + ")");
+}
 
 /// The cells from `centre` − reach to `centre` + reach; not more than there are of a periodic axis, and those
 /// that there are of an open one.
@@ -36,6 +45,10 @@ TerrainEdit::TerrainEdit(const command::EditTerrain& command, const Terrain& ter
   choose_layer();
   place_shape();
   change_ = Buffer<Quanta>(terrain.exec(), static_cast<std::size_t>(brush_.area().cells()));
+  const double cells = brush_.area().cells();
+  if (command.shape == BrushShape::polygon)
+    require_work(cells * brush_.shape.count, most_edge_visits, cells,
+                 "for a polygon of " + std::to_string(brush_.shape.count) + " points");
   if (command.merge == BrushMerge::smooth)
     smooth();
   else
@@ -159,6 +172,9 @@ void TerrainEdit::smooth() {
            std::to_string(widest_smoothing * static_cast<double>(grid_.cell_size)) + "] m (" +
            std::to_string(widest_smoothing) + " cells)");
   const int radius = static_cast<int>(cells);
+  const double area = brush_.area().cells();
+  require_work(area * command_.smooth_passes * 2 * (2 * radius + 1), most_mean_visits, area,
+               "to smooth over smooth_radius in smooth_passes");
   Exec& exec = terrain_.exec();
   const std::size_t rows = static_cast<std::size_t>(brush_.rows + 2 * radius);
   brush::SmoothWorkspace work{Buffer<Quanta>(exec, static_cast<std::size_t>(brush_.grid.cells())),
@@ -211,7 +227,9 @@ CommandResult TerrainEdit::book(bool with_change) {
       static_cast<double>(total_) * terrain_.scale().quantum() * grid_.cell_size * grid_.cell_size;
   (command_.conserve ? result.moved_m3 : result.volume_m3) = volume;
   result.touched = touched_;
-  if (with_change) result.change = change_of_touched();
+  if (with_change)
+    result.change = {command_.layer, grid_.origin_x + touched_.x0 * grid_.cell_size,
+                     grid_.origin_y + touched_.y0 * grid_.cell_size, grid_.cell_size, change_of_touched()};
   return result;
 }
 
