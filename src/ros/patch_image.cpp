@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/core/quoted.hpp"
 
 namespace desert_sim {
 
@@ -16,7 +17,7 @@ std::size_t bytes_a_pixel(const std::string& encoding) {
   if (encoding == known::MONO8) return 1;
   if (encoding == known::MONO16) return 2;
   if (encoding == known::TYPE_32FC1) return 4;
-  throw ConfigError("image.encoding: '" + encoding + "' is not one of: mono8, mono16, 32FC1");
+  throw ConfigError("image.encoding: " + quoted(encoding) + " is not one of: mono8, mono16, 32FC1");
 }
 
 void require_size(const sensor_msgs::Image& image, std::size_t bytes) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/core/quoted.hpp"
 #include "desert_sim/ros/patch_image.hpp"
 
 namespace desert_sim {
@@ -35,7 +36,7 @@ Choice choose(const char* const (&choices)[N], const std::string& text, const st
     if (text == choices[n]) return static_cast<Choice>(n);
     all += (n ? ", " : "") + std::string(choices[n]);
   }
-  throw ConfigError(name + ": '" + text + "' is not one of: " + all);
+  throw ConfigError(name + ": " + quoted(text) + " is not one of: " + all);
 }
 
 /// A direction of the header's frame in the terrain's, seen from above [deg].
@@ -105,7 +106,7 @@ namespace {
 void require_upright(const tf2::Transform& transform, const std::string& frame) {
   const double up = (transform.getBasis() * tf2::Vector3(0, 0, 1)).z();
   if (up >= std::cos(45 / degrees)) return;
-  throw ConfigError("frame '" + frame + "' is tilted by " +
+  throw ConfigError("frame " + quoted(frame) + " is tilted by " +
                     std::to_string(std::acos(std::max(-1.0, up)) * degrees) +
                     " deg against the terrain's, which leaves angle_deg without a meaning (allowed: 45)");
 }

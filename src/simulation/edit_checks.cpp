@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "desert_sim/core/quoted.hpp"
 #include "desert_sim/simulation/command_checks.hpp"
 
 namespace desert_sim {
@@ -19,7 +20,7 @@ constexpr double highest_pixel = 1e5;  // [m], as of a value
 
 void check_layer(const EditTerrain& edit, const Terrain& terrain, Faults& faults) {
   if (edit.layer != "sand" && edit.layer != "soil" && edit.layer != "bedrock")
-    faults.add("layer", "'" + edit.layer + "' is not one of: sand, bedrock, soil");
+    faults.add("layer", quoted(edit.layer) + " is not one of: sand, bedrock, soil");
   if (edit.layer == "soil" && !terrain.has(Layer::soil))
     faults.add("layer", "soil: this terrain has none (a scenario that fills the layer soil has)");
 }

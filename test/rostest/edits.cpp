@@ -291,6 +291,18 @@ TEST_F(Edits, RefusesShapesThatAreNone) {
       "smooth_passes: = 17", "[1, 16]");
 }
 
+TEST_F(Edits, RefusesMegabytesOfTextInFewWords) {
+  for (const auto field :
+       {&EditTerrain::Request::layer, &EditTerrain::Request::shape, &EditTerrain::Request::merge}) {
+    EditTerrain::Request request = a_shape("circle");
+    request.*field = std::string(10000000, 'x');
+    const auto response = call<EditTerrain>("edit_terrain", request);
+    EXPECT_FALSE(response.success);
+    EXPECT_LT(response.message.size(), 300u);
+    EXPECT_NE(response.message.find("xxx...' is not one of"), std::string::npos) << response.message;
+  }
+}
+
 TEST_F(Edits, RefusesImagesThatDoNotFit) {
   const auto refused = [](const std::function<void(EditTerrain::Request&)>& spoil, const std::string& what,
                           const std::string& allowed) {

@@ -108,6 +108,22 @@ TEST_P(EditRefusals, OfSmoothingAndRings) {
       BrushShape::circle, [](auto& e) { e.conserve = true, e.value = 50; }, "m^3 of sand");
 }
 
+TEST_P(EditRefusals, OfWhatWouldHoldUpTheSimulation) {
+  s = simulation("grid: {width: 1500, height: 1500, cell_size: 1, boundary: open}\n");
+  EditTerrain e;
+  e.merge = BrushMerge::smooth;
+  e.smooth_radius = 64;
+  e.smooth_passes = 16;
+  e.radius = 700;
+  e.x = e.y = 750;
+  EXPECT_NE(test::refusal(*s, e).find("1960000 cells, too many to smooth"), std::string::npos);
+  e.merge = BrushMerge::add;
+  e.shape = BrushShape::polygon;
+  for (int n = 0; n < 512; ++n) e.points.push_back({n % 2 ? 100.0 : 1500.0, n * 1500.0 / 511});
+  EXPECT_NE(test::refusal(*s, e).find("2100000 cells, too many for a polygon of 512 points"),
+            std::string::npos);
+}
+
 DESERT_ON_EACH_BACKEND(EditRefusals);
 
 }  // namespace
