@@ -33,6 +33,7 @@ struct WindFeature {
   float scale = 20;
   float life_time = 30;
   int seed = 1;
+  int id = 0;
 };
 
 constexpr auto parameter_table(const WindFeature*) {
@@ -49,7 +50,8 @@ constexpr auto parameter_table(const WindFeature*) {
       parameter("length", &P::length, 0.1, 1e5, "m", "Half length of a jet."),
       parameter("scale", &P::scale, 0.1, 1e5, "m", "Size of a turbulence patch's eddies."),
       parameter("life_time", &P::life_time, 0.01, 1e6, "s", "Time in which turbulence renews itself."),
-      parameter("seed", &P::seed, 0, 2147483647, "1", "Seed of turbulence."));
+      parameter("seed", &P::seed, 0, 2147483647, "1", "Seed of turbulence."),
+      parameter("id", &P::id, 0, 2147483647, "1", "What edit_wind knows it by, if not 0; not two alike."));
 }
 static_assert(table_is_complete<WindFeature>());
 

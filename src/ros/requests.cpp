@@ -100,6 +100,36 @@ command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request)
   return command;
 }
 
+command::EditWind wind_edit_command(const EditWindRequest& request, const Frames& frames) {
+  command::EditWind command;
+  WindFeature& feature = command.feature;
+  command.operation = choose<WindEdit>(wind_edits, request.operation, "operation");
+  feature.id = request.id;
+  if (command.operation == WindEdit::remove || command.operation == WindEdit::clear) return command;
+  feature.kind = choose<WindFeatureKind>(wind_feature_kinds, request.kind, "kind");
+  require_finite(request.center, "center");
+  const tf2::Transform transform = frames.to_terrain(request.header);
+  const tf2::Vector3 center = transform * tf2::Vector3(request.center.x, request.center.y, request.center.z);
+  feature.x = narrow(center.x());
+  feature.y = narrow(center.y());
+  feature.radius = narrow(request.radius);
+  feature.speed = narrow(request.speed);
+  // What the kind does not look at keeps its default, whatever the request says.
+  if (feature.kind == WindFeatureKind::jet) {
+    require_finite(request.direction_deg, "direction_deg");
+    feature.direction_deg =
+        narrow(transform == tf2::Transform::getIdentity() ? request.direction_deg
+                                                          : turned(request.direction_deg, transform));
+    feature.length = narrow(request.length);
+  }
+  if (feature.kind == WindFeatureKind::turbulence) {
+    feature.scale = narrow(request.scale);
+    feature.life_time = narrow(request.life_time);
+    feature.seed = request.seed;
+  }
+  return command;
+}
+
 namespace {
 
 /// Points on a tilted frame are projected; a direction there can lose its meaning.

@@ -3,6 +3,7 @@
 /// and what is allowed; ranges are checked by the simulation itself when it applies the command.
 
 #include <desert_sim/EditTerrain.h>
+#include <desert_sim/EditWind.h>
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
 
@@ -13,6 +14,7 @@ namespace desert_sim {
 
 command::SetWind wind_command(const SetWindRequest& request);
 command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request);
+command::EditWind wind_edit_command(const EditWindRequest& request, const Frames& frames);
 command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames);
 
 /// Throws ConfigError unless all are finite; `name` is what the point is called.

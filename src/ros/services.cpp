@@ -47,6 +47,7 @@ Services::Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, Simulat
   // Commands of the same names are in the namespace `command`.
   advertise<desert_sim::SetWind>("set_wind", &Services::set_wind);
   advertise<desert_sim::SetWindSchedule>("set_wind_schedule", &Services::set_wind_schedule);
+  advertise<desert_sim::EditWind>("edit_wind", &Services::edit_wind);
   advertise<desert_sim::EditTerrain>("edit_terrain", &Services::edit_terrain);
   advertise<desert_sim::QueryTerrain>("query_terrain", &Services::query_terrain);
   advertise<desert_sim::Step>("step", &Services::step, &step_queue);
@@ -64,6 +65,11 @@ void Services::set_wind(const SetWindRequest& request, SetWindResponse&) {
 
 void Services::set_wind_schedule(const SetWindScheduleRequest& request, SetWindScheduleResponse&) {
   simulation_.apply(schedule_command(request)).get();
+  topics_.status_changed();
+}
+
+void Services::edit_wind(const EditWindRequest& request, EditWindResponse&) {
+  simulation_.apply(wind_edit_command(request, frames_)).get();
   topics_.status_changed();
 }
 

@@ -2,6 +2,7 @@
 /// The services. Each turns a request into a command and waits for the simulation thread's answer.
 
 #include <desert_sim/EditTerrain.h>
+#include <desert_sim/EditWind.h>
 #include <desert_sim/LoadCheckpoint.h>
 #include <desert_sim/QueryTerrain.h>
 #include <desert_sim/SaveCheckpoint.h>
@@ -38,6 +39,7 @@ class Services {
 
   void set_wind(const SetWindRequest& request, SetWindResponse& response);
   void set_wind_schedule(const SetWindScheduleRequest& request, SetWindScheduleResponse& response);
+  void edit_wind(const EditWindRequest& request, EditWindResponse& response);
   void edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response);
   void query_terrain(const QueryTerrainRequest& request, QueryTerrainResponse& response);
   void step(const StepRequest& request, StepResponse& response);

@@ -13,7 +13,7 @@ namespace desert_sim {
 
 namespace {
 
-constexpr std::size_t most_features = 64, most_segments = 4096;
+constexpr std::size_t most_segments = 4096;
 
 /// "layer" of a terrain step must name a persistent layer.
 template <class Step>
@@ -82,7 +82,7 @@ void read_wind(const YAML::Node& node, Faults& faults, Scenario& s) {
   yaml::refuse_unknown(node, "wind.", known, faults);
   if (!node.IsDefined() || !node.IsMap()) return;
   read_items(node["segments"], "wind.segments", most_segments, faults, s.wind_segments);
-  read_items(node["features"], "wind.features", most_features, faults, s.wind_features);
+  read_items(node["features"], "wind.features", most_wind_features, faults, s.wind_features);
 }
 
 /// What no single row can say.
@@ -99,6 +99,11 @@ void check_together(const Scenario& s, Faults& faults) {
   for (std::size_t n = 0; n < s.wind_segments.size(); ++n)
     if (s.wind_segments[n].ramp > s.wind_segments[n].duration)
       faults.add("wind.segments." + std::to_string(n) + ".ramp", "is longer than the segment's duration");
+  std::set<int> ids;
+  for (std::size_t n = 0; n < s.wind_features.size(); ++n)
+    if (const int id = s.wind_features[n].id; id != 0 && !ids.insert(id).second)
+      faults.add("wind.features." + std::to_string(n) + ".id",
+                 "= " + std::to_string(id) + " is another's already");
   float probability = 0;
   for (const WindSegment& segment : s.wind_segments) probability += segment.probability;
   if (s.wind_regime.regime == WindRegimeKind::rose && !s.wind_segments.empty() && !(probability > 0))

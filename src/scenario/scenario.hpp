@@ -71,6 +71,8 @@ constexpr auto parameter_table(const RunParameters*) {
 }
 static_assert(table_is_complete<RunParameters>());
 
+constexpr std::size_t most_wind_features = 64;
+
 struct Scenario {
   std::string name;    ///< file name without ending, or what the caller says
   std::string folder;  ///< relative raster paths are looked up here
@@ -79,7 +81,7 @@ struct Scenario {
   std::vector<TerrainStep> terrain;
   WindRegimeParameters wind_regime;
   std::vector<WindSegment> wind_segments;
-  std::vector<WindFeature> wind_features;
+  std::vector<WindFeature> wind_features;  ///< at most most_wind_features
   WindParameters wind;
   WindShadowParameters wind_shadow;
   EchoDuneParameters echo_dunes;

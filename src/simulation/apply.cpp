@@ -1,4 +1,6 @@
 /// Commands that a simulation carries out between steps.
+#include <algorithm>
+
 #include "desert_sim/core/error.hpp"
 #include "desert_sim/simulation/command_checks.hpp"
 #include "desert_sim/simulation/simulation.hpp"
@@ -40,6 +42,37 @@ CommandResult Simulation::apply(const command::SetWindSchedule& command) {
     faults.add("segments", "the probabilities must not all be 0");
   faults.throw_if_any();
   set_regime(r);
+  return {};
+}
+
+CommandResult Simulation::apply(const command::EditWind& command) {
+  const int id = command.feature.id;
+  std::vector<WindFeature>& features = scenario_.wind_features;
+  if (command.operation == WindEdit::clear) {
+    features.clear();
+    upload_wind_features();
+    return {};
+  }
+  if (id < 1) throw ConfigError("edit_wind: id: = " + std::to_string(id) + " must be 1 or more");
+  const auto found =
+      std::find_if(features.begin(), features.end(), [id](const WindFeature& f) { return f.id == id; });
+  const bool known = found != features.end();
+  if (known == (command.operation == WindEdit::add))
+    throw ConfigError("edit_wind: id: = " + std::to_string(id) +
+                      (known ? " is another feature's already" : " is no feature's"));
+  if (command.operation == WindEdit::remove) {
+    features.erase(found);
+  } else {
+    check_ranges(command.feature, "edit_wind");
+    if (known)
+      *found = command.feature;
+    else if (features.size() < most_wind_features)
+      features.push_back(command.feature);
+    else
+      throw ConfigError("edit_wind: there are " + std::to_string(most_wind_features) +
+                        " features already, and no more are allowed");
+  }
+  upload_wind_features();
   return {};
 }
 

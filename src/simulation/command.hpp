@@ -8,9 +8,13 @@
 
 #include "desert_sim/kernels/brush.hpp"
 #include "desert_sim/kernels/layers.hpp"
+#include "desert_sim/kernels/wind_features.hpp"
 #include "desert_sim/simulation/wind_regime.hpp"
 
 namespace desert_sim {
+
+enum class WindEdit : int { add, change, remove, clear };
+constexpr const char* wind_edits[] = {"add", "change", "remove", "clear"};
 
 /// The commands themselves; a namespace of their own because the ROS services have the same names.
 namespace command {
@@ -35,6 +39,18 @@ static_assert(table_is_complete<SetWind>());
 struct SetWindSchedule {
   WindRegime regime;
 };
+
+/// Adds, changes, removes one local feature of the wind, which `feature.id` names, or removes all (`clear`).
+/// A scenario holds at most most_wind_features.
+struct EditWind {
+  WindEdit operation = WindEdit::add;
+  WindFeature feature;  ///< of remove only `id`, of clear nothing
+};
+constexpr auto parameter_table(const EditWind*) {
+  using P = EditWind;
+  return std::make_tuple(
+      parameter("operation", &P::operation, wind_edits, "What is done with the feature of this id."));
+}
 
 struct EditParameters {
   std::string layer = "sand";
@@ -118,8 +134,8 @@ struct LoadCheckpoint {
 
 }  // namespace command
 
-using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditTerrain, command::Reset,
-                             command::LoadCheckpoint>;
+using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditWind,
+                             command::EditTerrain, command::Reset, command::LoadCheckpoint>;
 
 /// Cells that a command changed: x0 ≤ x < x1, y0 ≤ y < y1 (empty if x1 ≤ x0).
 struct CellRectangle {

@@ -128,6 +128,10 @@ void emit_command(YAML::Emitter& out, const Command& command) {
   } else if (const auto* schedule = std::get_if<command::SetWindSchedule>(&command)) {
     name("set_wind_schedule");
     emit_regime(out, schedule->regime);
+  } else if (const auto* edit_wind = std::get_if<command::EditWind>(&command)) {
+    name("edit_wind");
+    yaml::emit_parameters(out, *edit_wind);
+    yaml::emit_parameters(out, edit_wind->feature);
   } else if (const auto* edit = std::get_if<command::EditTerrain>(&command)) {
     name("edit_terrain");
     emit_edit(out, *edit);
@@ -144,6 +148,11 @@ Command read_command(const YAML::Node& node, const std::string& source) {
   const auto name = scalar<std::string>(node, "command", source);
   if (name == "set_wind") return read_all<command::SetWind>(node, source);
   if (name == "set_wind_schedule") return command::SetWindSchedule{read_regime(node, source)};
+  if (name == "edit_wind") {
+    auto edit = read_all<command::EditWind>(node, source);
+    edit.feature = read_all<WindFeature>(node, source);
+    return edit;
+  }
   if (name == "edit_terrain") return read_edit(node, source);
   if (name == "reset") return command::Reset{};
   if (name == "load_checkpoint")

@@ -206,7 +206,22 @@ void Simulation::allocate_work() {
   wind_work_ = wind::make_workspace(e, grid, s.wind);
   avalanche_work_ = avalanching::make_workspace(e, grid, s.avalanching);
   if (s.abrasion.rate > 0) prepare_ground_avalanches();
-  if (s.wind_features.empty()) return;
+  upload_wind_features();
+}
+
+void Simulation::prepare_ground_avalanches() {
+  const AvalanchingParameters& p = scenario_.avalanching;
+  if (!ground_work_.ground && p.enabled && (p.soil || p.bedrock))
+    ground_work_ = avalanching::make_ground_workspace(exec(), terrain_.grid());
+}
+
+void Simulation::upload_wind_features() {
+  const Scenario& s = scenario_;
+  if (s.wind_features.empty()) {
+    features_ = {};
+    for (Buffer<float>* buffer : {&stream_, &perturbation_x_, &perturbation_y_}) *buffer = {};
+    return;
+  }
   std::vector<wind_features::Prepared> prepared;
   for (const WindFeature& feature : s.wind_features) {
     const wind::Vector direction = unit_vector(feature.direction_deg);
@@ -214,16 +229,11 @@ void Simulation::allocate_work() {
     prepared.back().feature.x -= static_cast<float>(s.grid.origin_x);
     prepared.back().feature.y -= static_cast<float>(s.grid.origin_y);
   }
-  features_ = Buffer<wind_features::Prepared>(e, prepared.size());
+  features_ = Buffer<wind_features::Prepared>(exec(), prepared.size());
   features_.upload(prepared);
+  if (stream_) return;
   for (Buffer<float>* buffer : {&stream_, &perturbation_x_, &perturbation_y_})
-    *buffer = Buffer<float>(e, cells);
-}
-
-void Simulation::prepare_ground_avalanches() {
-  const AvalanchingParameters& p = scenario_.avalanching;
-  if (!ground_work_.ground && p.enabled && (p.soil || p.bedrock))
-    ground_work_ = avalanching::make_ground_workspace(exec(), terrain_.grid());
+    *buffer = Buffer<float>(exec(), static_cast<std::size_t>(terrain_.grid().cells()));
 }
 
 void Simulation::start_books() {

@@ -58,6 +58,7 @@ class Simulation {
   /// are the Session's business.
   CommandResult apply(const command::SetWind& command);
   CommandResult apply(const command::SetWindSchedule& command);
+  CommandResult apply(const command::EditWind& command);
   /// `with_change`: the result tells what changed, cell by cell.
   CommandResult apply(const command::EditTerrain& command, bool with_change = false);
 
@@ -107,6 +108,8 @@ class Simulation {
   /// Only terrains whose rock or soil changes need this memory: called when abrasion is on or bedrock is
   /// edited.
   void prepare_ground_avalanches();
+  /// Brings the scenario's features of the wind to the backend.
+  void upload_wind_features();
   void start_books();
   void set_regime(WindRegime regime);
   std::vector<long long> read_ledger() const;

@@ -41,7 +41,15 @@ class JournalOf : public test::OnBackend {
     edit.merge = BrushMerge::replace;
     edit.value = 30;
     s->apply(edit);
-    steps(4);
+    steps(2);
+    command::EditWind whirl;
+    whirl.feature.id = 3;
+    whirl.feature.x = 10.1f;
+    whirl.feature.y = 1.0f / 3;
+    whirl.feature.radius = 7.7f;
+    whirl.feature.kind = WindFeatureKind::turbulence;
+    s->apply(whirl);
+    steps(2);
     s->save_checkpoint(folder_.path("here.ck"));
     s->apply(command::Reset{});
     steps(2);
@@ -81,14 +89,14 @@ TEST_P(JournalOf, EveryKindOfCommandReplaysToTheSameHash) {
   const Journal journal = read_journal(folder_.path("j"));
   EXPECT_TRUE(journal.ended);
   EXPECT_EQ(journal.ticks, 20u);
-  EXPECT_EQ(journal.entries.size(), 7u);
+  EXPECT_EQ(journal.entries.size(), 8u);
   EXPECT_EQ(replayed(journal), hash);
 }
 
 TEST_P(JournalOf, IsOneDocumentALine) {
   live(folder_.path("j"));
   const std::string text = test::file_bytes(folder_.path("j"));
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 9);  // header, 7 commands, end
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10);  // header, 8 commands, end
 }
 
 TEST_P(JournalOf, CutAnywhereInItsLastLineStillReads) {
@@ -97,7 +105,7 @@ TEST_P(JournalOf, CutAnywhereInItsLastLineStillReads) {
   const std::size_t last = text.rfind('\n', text.size() - 2) + 1, before = text.rfind('\n', last - 2) + 1;
   for (std::size_t length = before; length <= text.size(); ++length) {
     const Journal journal = read_journal(folder_.write("cut", text.substr(0, length)));
-    EXPECT_EQ(journal.entries.size(), length < last ? 6u : 7u) << length;
+    EXPECT_EQ(journal.entries.size(), length < last ? 7u : 8u) << length;
     EXPECT_EQ(journal.ended, length == text.size());
   }
 }

@@ -1,4 +1,5 @@
-/// ~set_wind and ~set_wind_schedule, on a paused node with the scenario corner.yaml.
+/// ~set_wind, ~set_wind_schedule and ~edit_wind, on a paused node with the scenario corner.yaml.
+#include <desert_sim/EditWind.h>
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
 #include <desert_sim/SimulationStatus.h>
@@ -128,6 +129,54 @@ TEST_F(Services, SetWindScheduleRefuses) {
   expect_refused<SetWindSchedule>("set_wind_schedule", request, "ramp", "duration");
   request.segments.resize(5000);
   expect_refused<SetWindSchedule>("set_wind_schedule", request, "5000", "4096");
+}
+
+EditWind::Request jet(const std::string& operation) {
+  EditWind::Request request;
+  request.operation = operation;
+  request.id = 5;
+  request.kind = EditWind::Request::JET;
+  request.radius = 6;
+  request.length = 30;
+  request.speed = 4;
+  request.direction_deg = 90;
+  const WindField wind = Listener<WindField>("wind").last();
+  request.center.x = wind.origin.position.x + 0.5 * wind.width * wind.cell_size;
+  request.center.y = wind.origin.position.y + 0.5 * wind.height * wind.cell_size;
+  return request;
+}
+
+double northward_in_the_middle() {
+  const WindField wind = Listener<WindField>("wind").last();
+  return wind.v.at(wind.height / 2 * wind.width + wind.width / 2);
+}
+
+TEST_F(Services, EditWindAddsAJetAndTakesItAway) {
+  step(1);
+  const double before = northward_in_the_middle();
+  EXPECT_TRUE(call<EditWind>("edit_wind", jet("add")).success);
+  step(1);
+  EXPECT_NEAR(northward_in_the_middle() - before, 4, 0.5);
+  EXPECT_TRUE(call<EditWind>("edit_wind", jet("remove")).success);
+  step(1);
+  EXPECT_NEAR(northward_in_the_middle(), before, 0.5);
+}
+
+TEST_F(Services, EditWindRefuses) {
+  expect_refused<EditWind>("edit_wind", jet("blow"), "operation: 'blow'", "add, change, remove, clear");
+  expect_refused<EditWind>("edit_wind", jet("change"), "id: = 5", "no feature");
+  EditWind::Request request = jet("add");
+  request.kind = "tornado";
+  expect_refused<EditWind>("edit_wind", request, "kind: 'tornado'", "vortex, jet, turbulence");
+  request = jet("add");
+  request.speed = infinity;
+  expect_refused<EditWind>("edit_wind", request, "speed: = inf", "[-100, 100] m/s");
+  request = jet("add");
+  request.center.x = not_a_number;
+  expect_refused<EditWind>("edit_wind", request, "center.x: = nan", "finite");
+  request = jet("add");
+  request.header.frame_id = "nowhere";
+  expect_refused<EditWind>("edit_wind", request, "nowhere", "");
 }
 
 }  // namespace

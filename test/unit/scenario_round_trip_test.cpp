@@ -58,6 +58,7 @@ Scenario scenario_at(const std::function<double()>& share) {
     segment.probability = std::max(segment.probability, 1e-30f);
   }
   s.wind.weights.values[0] = std::max(s.wind.weights.values[0], 1e-30f);
+  s.wind_features[1].id = std::max(s.wind_features[0].id - 1, 0);
   auto& discs = std::get<DiscsStep>(s.terrain[5]);
   discs.radius_low = std::min(discs.radius_low, discs.radius_high);
   return s;
