@@ -3,7 +3,7 @@
 /// (processes.inc).
 
 #include "desert_sim/kernels/avalanching_ground.hpp"
-#include "desert_sim/kernels/brush.hpp"
+#include "desert_sim/kernels/brush_smooth.hpp"
 #include "desert_sim/kernels/echo_dunes.hpp"
 #include "desert_sim/kernels/reptation.hpp"
 #include "desert_sim/kernels/saltation.hpp"

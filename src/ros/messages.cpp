@@ -103,6 +103,25 @@ WindFieldPtr wind_message(const TerrainState& state, const std::string& frame, i
   return message;
 }
 
+TerrainDiffPtr diff_message(const Reached& edit, const std::string& frame) {
+  const CellRectangle& touched = edit.result.touched;
+  const LayerChange& change = edit.result.change;
+  TerrainDiffPtr message = boost::make_shared<TerrainDiff>();
+  message->header = header_of(edit.moment, frame);
+  message->step = edit.moment.step;
+  message->layer = change.layer;
+  message->cell_size = change.cell_size;
+  message->origin.position.x = change.x;
+  message->origin.position.y = change.y;
+  message->origin.orientation.w = 1;
+  message->x = static_cast<std::uint32_t>(touched.x0);
+  message->y = static_cast<std::uint32_t>(touched.y0);
+  message->width = static_cast<std::uint32_t>(touched.x1 - touched.x0);
+  message->height = static_cast<std::uint32_t>(touched.y1 - touched.y0);
+  message->change = change.values;
+  return message;
+}
+
 SimulationStatusPtr status_message(const StatusReport& report, const std::string& frame) {
   SimulationStatusPtr message = boost::make_shared<SimulationStatus>();
   message->header = header_of(report.moment, frame);

@@ -3,6 +3,7 @@
 
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/SimulationStatus.h>
+#include <desert_sim/TerrainDiff.h>
 #include <desert_sim/WindField.h>
 
 #include <string>
@@ -22,6 +23,8 @@ ElevationGridPtr elevation_message(const TerrainState& state, const std::string&
                                    std::uint32_t keyframe);
 /// Averages blocks of `decimation`² cells; a block over the edge averages what it has.
 WindFieldPtr wind_message(const TerrainState& state, const std::string& frame, int decimation);
+/// Of an edit whose result tells its change.
+TerrainDiffPtr diff_message(const Reached& edit, const std::string& frame);
 SimulationStatusPtr status_message(const StatusReport& report, const std::string& frame);
 
 }  // namespace desert_sim

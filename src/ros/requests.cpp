@@ -1,10 +1,13 @@
 #include "desert_sim/ros/requests.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/core/quoted.hpp"
+#include "desert_sim/ros/patch_image.hpp"
 
 namespace desert_sim {
 
@@ -33,7 +36,7 @@ Choice choose(const char* const (&choices)[N], const std::string& text, const st
     if (text == choices[n]) return static_cast<Choice>(n);
     all += (n ? ", " : "") + std::string(choices[n]);
   }
-  throw ConfigError(name + ": '" + text + "' is not one of: " + all);
+  throw ConfigError(name + ": " + quoted(text) + " is not one of: " + all);
 }
 
 /// A direction of the header's frame in the terrain's, seen from above [deg].
@@ -131,25 +134,80 @@ command::EditWind wind_edit_command(const EditWindRequest& request, const Frames
   return command;
 }
 
+namespace {
+
+/// Points on a tilted frame are projected; a direction there can lose its meaning.
+void require_upright(const tf2::Transform& transform, const std::string& frame) {
+  const double up = (transform.getBasis() * tf2::Vector3(0, 0, 1)).z();
+  if (up >= std::cos(45 / degrees)) return;
+  throw ConfigError("frame " + quoted(frame) + " is tilted by " +
+                    std::to_string(std::acos(std::max(-1.0, up)) * degrees) +
+                    " deg against the terrain's, which leaves angle_deg without a meaning (allowed: 45)");
+}
+
+/// Centre, sizes and angle, as far as the shape has them.
+void set_rectangle(const EditTerrainRequest& request, const tf2::Transform& transform,
+                   command::EditTerrain& command) {
+  desert_sim::require_finite(request.center, "center");
+  require_finite(request.angle_deg, "angle_deg");
+  const tf2::Vector3 center = transform * tf2::Vector3(request.center.x, request.center.y, request.center.z);
+  command.x = center.x();
+  command.y = center.y();
+  command.radius = request.radius;
+  if (command.shape == BrushShape::circle) return;
+  const bool same = transform == tf2::Transform::getIdentity();
+  if (!same) require_upright(transform, request.header.frame_id);
+  command.radius_y = request.radius_y;
+  command.angle_deg = same ? request.angle_deg : turned(request.angle_deg, transform);
+}
+
+void set_points(const EditTerrainRequest& request, const tf2::Transform& transform,
+                command::EditTerrain& command) {
+  if (request.points.size() > command.most_points)
+    throw ConfigError("points: " + std::to_string(request.points.size()) +
+                      " are given (allowed: " + std::to_string(command.most_points) + ")");
+  for (std::size_t n = 0; n < request.points.size(); ++n) {
+    const geometry_msgs::Point& given = request.points[n];
+    desert_sim::require_finite(given, "points[" + std::to_string(n) + "]");
+    const tf2::Vector3 p = transform * tf2::Vector3(given.x, given.y, given.z);
+    command.points.push_back({p.x(), p.y()});
+  }
+}
+
+void set_patch(const EditTerrainRequest& request, command::EditTerrain& command) {
+  command.patch_use = request.image_use.empty()
+                          ? PatchUse::heights
+                          : choose<PatchUse>(patch_uses, request.image_use, "image_use");
+  const bool heights = command.patch_use == PatchUse::heights;
+  if (heights) require_finite(request.image_scale, "image_scale");
+  command.patch = patch_of(request.image, heights ? request.image_scale : 1.0);
+}
+
+}  // namespace
+
 command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames) {
   command::EditTerrain command;
   command.layer = request.layer;
   command.shape = choose<BrushShape>(brush_shapes, request.shape, "shape");
   command.merge = choose<BrushMerge>(brush_merges, request.merge, "merge");
-  require_finite(request.center, "center");
-  require_finite(request.angle_deg, "angle_deg");
+  const bool capsule = command.shape == BrushShape::capsule, polygon = command.shape == BrushShape::polygon;
+  const bool patch = command.shape == BrushShape::patch;
   const tf2::Transform transform = frames.to_terrain(request.header);
-  const tf2::Vector3 center = transform * tf2::Vector3(request.center.x, request.center.y, request.center.z);
-  command.x = center.x();
-  command.y = center.y();
-  command.radius = request.radius;
-  if (command.shape == BrushShape::ellipse) {
-    command.radius_y = request.radius_y;
-    command.angle_deg =
-        transform == tf2::Transform::getIdentity() ? request.angle_deg : turned(request.angle_deg, transform);
+  if (capsule || polygon)
+    set_points(request, transform, command);
+  else
+    set_rectangle(request, transform, command);
+  if (capsule) command.radius = request.radius;
+  if (patch) set_patch(request, command);
+  (polygon || patch ? command.falloff : command.inner) = polygon || patch ? request.falloff : request.inner;
+  if (command.merge == BrushMerge::smooth) {
+    command.smooth_radius = request.smooth_radius;
+    command.smooth_passes = request.smooth_passes;
+  } else {
+    command.value = request.value;
   }
-  command.inner = request.inner;
-  command.value = request.value;
+  command.conserve = request.conserve;
+  if (command.conserve) command.ring_width = request.ring_width;
   return command;
 }
 

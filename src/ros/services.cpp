@@ -78,9 +78,12 @@ void Services::edit_wind(const EditWindRequest& request, EditWindResponse&) {
 }
 
 void Services::edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response) {
-  const Reached reached = simulation_.apply(edit_command(request, frames_)).get();
+  const bool diff = topics_.diff_wanted();
+  const Reached reached = simulation_.apply(edit_command(request, frames_), false, diff).get();
+  if (diff) topics_.publish_diff(reached);
   const CellRectangle& touched = reached.result.touched;
   response.volume = reached.result.volume_m3;
+  response.moved = reached.result.moved_m3;
   response.x = static_cast<std::uint32_t>(touched.x0);
   response.y = static_cast<std::uint32_t>(touched.y0);
   response.width = static_cast<std::uint32_t>(touched.x1 - touched.x0);

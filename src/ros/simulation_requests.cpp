@@ -17,9 +17,9 @@ std::future<R> SimulationThread::ask(std::function<R()> body) {
   return answer;
 }
 
-std::future<Reached> SimulationThread::apply(const Command& command, bool with_hash) {
+std::future<Reached> SimulationThread::apply(const Command& command, bool with_hash, bool with_change) {
   return ask<Reached>([=] {
-    const CommandResult result = session_->apply(command);
+    const CommandResult result = session_->apply(command, with_change);
     ++commands_;
     stamp_ = ros::Time::now();
     if (command::replaces_terrain(command)) {

@@ -36,7 +36,8 @@ class SimulationThread {
   // All of these return at once. The future holds ConfigError if the request was refused and has changed
   // nothing, Error if the simulation ends or has failed before it is served.
 
-  std::future<Reached> apply(const Command& command, bool with_hash = false);
+  /// `with_change`: the result of an edit tells it cell by cell.
+  std::future<Reached> apply(const Command& command, bool with_hash = false, bool with_change = false);
   /// Exactly `steps` steps, as fast as it can. Ended early (ConfigError) by a pause, a reset or a load.
   std::future<Reached> step(std::uint32_t steps);
   std::future<void> pause();

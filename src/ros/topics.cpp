@@ -37,6 +37,7 @@ Topics::Topics(ros::NodeHandle node, const PublisherParameters& parameters, cons
   add_elevation(parameters);
   add_others(parameters);
   status_ = advertise<SimulationStatus>("status", 10, [this] { status_changed(); });
+  diff_ = node_.advertise<TerrainDiff>("terrain_diff", 100);
   thread_ = std::thread([this] { thread(); });
 }
 

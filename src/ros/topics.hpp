@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "desert_sim/ros/elevation_stream.hpp"
+#include "desert_sim/ros/messages.hpp"
 #include "desert_sim/ros/node_parameters.hpp"
 #include "desert_sim/ros/simulation_thread.hpp"
 #include "desert_sim/ros/wind_markers.hpp"
@@ -37,6 +38,10 @@ class Topics {
   void status_changed();
   /// Returns once all that has changed until now has been published.
   void publish_now();
+  /// Whether somebody wants to know what edits change.
+  bool diff_wanted() const { return diff_.getNumSubscribers() > 0; }
+  /// Publishes what an edit, asked for with its change, has changed. From any thread.
+  void publish_diff(const Reached& edit) { diff_.publish(diff_message(edit, frame_)); }
   /// Ends the thread; publish_now() no longer waits.
   void stop();
   /// What made publishing end, of which ~status has told then: a failure of the simulation or of publishing.
@@ -80,7 +85,7 @@ class Topics {
   std::vector<std::unique_ptr<Topic>> topics_;
   std::unique_ptr<ElevationStream> elevation_;
   std::unique_ptr<WindMarkers> markers_;
-  ros::Publisher status_;
+  ros::Publisher status_, diff_;
   Clock::duration status_period_{0};
   Clock::time_point status_due_;
   SimulationStatus last_status_;

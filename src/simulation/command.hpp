@@ -13,8 +13,6 @@
 
 namespace desert_sim {
 
-enum class BrushShape : int { circle, ellipse };
-constexpr const char* brush_shapes[] = {"circle", "ellipse"};
 enum class WindEdit : int { add, change, remove, clear };
 constexpr const char* wind_edits[] = {"add", "change", "remove", "clear"};
 
@@ -54,11 +52,7 @@ constexpr auto parameter_table(const EditWind*) {
       parameter("operation", &P::operation, wind_edits, "What is done with the feature of this id."));
 }
 
-/// Brush on `layer` (sand or bedrock). Weight is 1 within `inner` of the shape and falls linearly to 0 at its
-/// edge; add and sub move the layer by weight·value, the others blend towards value (or its min, max, mean
-/// with what is there) by the weight. For sand, `value` is a depth [m]; for bedrock an elevation [m], or with
-/// add/sub a change.
-struct EditTerrain {
+struct EditParameters {
   std::string layer = "sand";
   BrushShape shape = BrushShape::circle;
   BrushMerge merge = BrushMerge::add;
@@ -67,24 +61,67 @@ struct EditTerrain {
   double radius_y = 1;
   double angle_deg = 0;
   double inner = 0;
+  double falloff = 0;
   double value = 0;
+  PatchUse patch_use = PatchUse::heights;
+  double smooth_radius = 1;
+  int smooth_passes = 1;
+  bool conserve = false;
+  double ring_width = 1;
 };
-constexpr auto parameter_table(const EditTerrain*) {
-  using P = EditTerrain;
+constexpr auto parameter_table(const EditParameters*) {
+  using P = EditParameters;
   return std::make_tuple(
-      parameter("layer", &P::layer, "sand or bedrock."),
+      parameter("layer", &P::layer, "sand, soil or bedrock."),
       parameter("shape", &P::shape, brush_shapes, "Shape of the brush."),
       parameter("merge", &P::merge, brush_merges, "How the brush meets what is there."),
       parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
       parameter("y", &P::y, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
-      parameter("radius", &P::radius, 1e-3, 1e6, "m", "Radius; of an ellipse the semi-axis along its angle."),
-      parameter("radius_y", &P::radius_y, 1e-3, 1e6, "m", "Of an ellipse the semi-axis across."),
+      parameter(
+          "radius", &P::radius, 1e-3, 1e6, "m",
+          "Radius; of an ellipse the semi-axis and of a rectangle or patch half the side along its angle."),
+      parameter("radius_y", &P::radius_y, 1e-3, 1e6, "m", "The semi-axis or half the side across."),
       parameter("angle_deg", &P::angle_deg, -360, 360, "deg",
-                "Direction of an ellipse's first axis, counter-clockwise from +x."),
-      parameter("inner", &P::inner, 0, 1, "1", "Share of the radius within which the brush has full weight."),
-      parameter("value", &P::value, -1e5, 1e5, "m", "Height or depth of the brush; see merge."));
+                "Direction of the first axis, counter-clockwise from +x."),
+      parameter(
+          "inner", &P::inner, 0, 1, "1",
+          "Share of the radius (of a rectangle, of half its sides) within which the brush has full weight."),
+      parameter("falloff", &P::falloff, 0, 1e6, "m",
+                "Of a polygon or patch: how far inside its edge the brush has full weight."),
+      parameter("value", &P::value, -1e5, 1e5, "m", "Height or depth of the brush; see merge."),
+      parameter("patch_use", &P::patch_use, patch_uses,
+                "Whether a patch holds heights that are added to value, or weights."),
+      parameter("smooth_radius", &P::smooth_radius, 1e-3, 1e6, "m",
+                "Half the width of the square over which smooth takes means, at most 64 cells."),
+      parameter("smooth_passes", &P::smooth_passes, 1, 16, "1", "How often smooth takes means."),
+      parameter("conserve", &P::conserve,
+                "Take from, or give to, a ring around the shape what the edit adds or removes."),
+      parameter("ring_width", &P::ring_width, 1e-3, 1e6, "m", "Width of that ring."));
 }
-static_assert(table_is_complete<EditTerrain>());
+static_assert(table_is_complete<EditParameters>());
+
+/// A place in the terrain's frame [m].
+struct Place {
+  double x = 0, y = 0;
+};
+
+/// A picture of heights [m] or weights (0 … 1), row-major; its top row first, as in an image.
+struct Patch {
+  static constexpr int most_pixels = 1 << 20;
+  int columns = 0, rows = 0;
+  std::vector<float> values;
+};
+
+/// Brush on `layer`: sand, bedrock, or soil where the terrain has some. The weight of the shape and what a
+/// merge does with it are in kernels/brush_shape.hpp and brush.hpp. For sand and soil `value` is a depth [m];
+/// for bedrock an elevation [m], or with add and sub a change. With `conserve`, the material comes from, or
+/// goes to, the cells within `ring_width` of the shape: what is taken in proportion to what they have, of
+/// bedrock and what is given in equal parts. The sum of all changes is then 0, to the quantum.
+struct EditTerrain : EditParameters {
+  static constexpr std::size_t most_points = 512;
+  std::vector<Place> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
+  Patch patch;
+};
 
 /// Back to the scenario's start: terrain, wind, clock.
 struct Reset {};
@@ -122,9 +159,19 @@ struct CellRectangle {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
+/// What an edit changed in a layer, cell by cell.
+struct LayerChange {
+  std::string layer;
+  double x = 0, y = 0, cell_size = 0;  ///< lower left corner and cells of the rectangle [m]
+  std::vector<float> values;           ///< new − old [m], row-major; empty if nobody asked
+};
+
 struct CommandResult {
   double volume_m3 = 0;  ///< material added (+) or removed (−) by an edit
+  double moved_m3 =
+      0;  ///< instead of it, of an edit that conserves: from the ring into the shape (+), or back
   CellRectangle touched;
+  LayerChange change;  ///< in `touched`
 };
 
 }  // namespace desert_sim

@@ -1,5 +1,9 @@
 #include "desert_sim/simulation/command_yaml.hpp"
 
+#include <yaml-cpp/binary.h>
+
+#include <cstring>
+
 #include "desert_sim/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -61,6 +65,61 @@ WindRegime read_regime(const YAML::Node& node, const std::string& source) {
   return r;
 }
 
+namespace {
+
+/// The corners as x, y, x, y …, and a patch's values as base64 of 32-bit floats: every bit is kept.
+void emit_edit(YAML::Emitter& out, const command::EditTerrain& edit) {
+  yaml::emit_parameters(out, static_cast<const command::EditParameters&>(edit));
+  if (!edit.points.empty()) {
+    out << YAML::Key << "points" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+    for (const command::Place& p : edit.points) out << p.x << p.y;
+    out << YAML::EndSeq;
+  }
+  const command::Patch& patch = edit.patch;
+  if (patch.values.empty()) return;
+  out << YAML::Key << "patch_columns" << YAML::Value << patch.columns;
+  out << YAML::Key << "patch_rows" << YAML::Value << patch.rows;
+  out << YAML::Key << "patch" << YAML::Value << YAML::DoubleQuoted
+      << YAML::EncodeBase64(reinterpret_cast<const unsigned char*>(patch.values.data()),
+                            patch.values.size() * sizeof(float));
+}
+
+command::Patch read_patch(const YAML::Node& node, const std::string& source) {
+  command::Patch patch;
+  patch.columns = scalar<int>(node, "patch_columns", source);
+  patch.rows = scalar<int>(node, "patch_rows", source);
+  const std::vector<unsigned char> bytes = YAML::DecodeBase64(scalar<std::string>(node, "patch", source));
+  if (patch.columns < 1 || patch.rows < 1 || patch.columns > command::Patch::most_pixels / patch.rows)
+    throw ConfigError(source + ": patch: cannot be of " + std::to_string(patch.columns) + " x " +
+                      std::to_string(patch.rows) + " values");
+  patch.values.resize(static_cast<std::size_t>(patch.columns) * static_cast<std::size_t>(patch.rows));
+  if (bytes.size() != patch.values.size() * sizeof(float))
+    throw ConfigError(source + ": patch: is not " + std::to_string(patch.values.size()) +
+                      " values of 4 bytes in base64");
+  std::memcpy(patch.values.data(), bytes.data(), bytes.size());
+  return patch;
+}
+
+command::EditTerrain read_edit(const YAML::Node& node, const std::string& source) {
+  command::EditTerrain edit{read_all<command::EditParameters>(node, source), {}, {}};
+  if (const YAML::Node points = node["points"]) {
+    if (!points.IsSequence() || points.size() % 2 != 0 || points.size() > 2 * edit.most_points)
+      throw ConfigError(source + ": points: must be x, y of at most " + std::to_string(edit.most_points) +
+                        " points");
+    edit.points.resize(points.size() / 2);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      command::Place& p = edit.points[n / 2];
+      if (!YAML::convert<double>::decode(points[n], n % 2 ? p.y : p.x))
+        throw ConfigError(source + ": points[" + std::to_string(n) + "]: " + yaml::shown(points[n]) +
+                          " is not a number");
+    }
+  }
+  if (node["patch"]) edit.patch = read_patch(node, source);
+  return edit;
+}
+
+}  // namespace
+
 void emit_command(YAML::Emitter& out, const Command& command) {
   const auto name = [&](const char* text) { out << YAML::Key << "command" << YAML::Value << text; };
   if (const auto* set_wind = std::get_if<command::SetWind>(&command)) {
@@ -75,7 +134,7 @@ void emit_command(YAML::Emitter& out, const Command& command) {
     yaml::emit_parameters(out, edit_wind->feature);
   } else if (const auto* edit = std::get_if<command::EditTerrain>(&command)) {
     name("edit_terrain");
-    yaml::emit_parameters(out, *edit);
+    emit_edit(out, *edit);
   } else if (std::holds_alternative<command::Reset>(command)) {
     name("reset");
   } else if (const auto* load = std::get_if<command::LoadCheckpoint>(&command)) {
@@ -99,7 +158,7 @@ Command read_command(const YAML::Node& node, const std::string& source) {
     edit.feature = read_all<WindFeature>(node, source);
     return edit;
   }
-  if (name == "edit_terrain") return read_all<command::EditTerrain>(node, source);
+  if (name == "edit_terrain") return read_edit(node, source);
   if (name == "reset") return command::Reset{};
   if (name == "load_checkpoint")
     return command::LoadCheckpoint{scalar<std::string>(node, "path", source),

@@ -75,7 +75,7 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
   return hash;
 }
 
-CommandResult Session::dispatch(const Command& command, Command& journalled) {
+CommandResult Session::dispatch(const Command& command, bool with_change, Command& journalled) {
   if (std::holds_alternative<command::Reset>(command)) {
     simulation_ = std::make_unique<Simulation>(*exec_, scenario_, load_raster_);
     return {};
@@ -95,20 +95,22 @@ CommandResult Session::dispatch(const Command& command, Command& journalled) {
     return {};
   }
   return std::visit(
-      [this](const auto& c) -> CommandResult {
+      [&](const auto& c) -> CommandResult {
         using C = std::decay_t<decltype(c)>;
         if constexpr (std::is_same_v<C, command::Reset> || std::is_same_v<C, command::LoadCheckpoint> ||
                       std::is_same_v<C, command::LoadScenario>)
           throw Error("handled above");
+        else if constexpr (std::is_same_v<C, command::EditTerrain>)
+          return simulation_->apply(c, with_change);
         else
           return simulation_->apply(c);
       },
       command);
 }
 
-CommandResult Session::apply(const Command& command) {
+CommandResult Session::apply(const Command& command, bool with_change) {
   Command journalled = command;
-  const CommandResult result = dispatch(command, journalled);
+  const CommandResult result = dispatch(command, with_change, journalled);
   if (journal_) journal_->write(ticks_, journalled);
   return result;
 }

@@ -30,7 +30,8 @@ class Session {
 
   void step();
   /// Applies a command and journals it. A refused command throws ConfigError and changes nothing.
-  CommandResult apply(const Command& command);
+  /// `with_change`: the result of an edit tells it cell by cell.
+  CommandResult apply(const Command& command, bool with_change = false);
   /// Steps done in this session, through resets and loads; what the journal counts in.
   std::uint64_t ticks() const { return ticks_; }
 
@@ -39,7 +40,7 @@ class Session {
 
  private:
   Session(const RasterLoader& load_raster, const std::string& backend, int threads);
-  CommandResult dispatch(const Command& command, Command& journalled);
+  CommandResult dispatch(const Command& command, bool with_change, Command& journalled);
   /// Returns the state hash at the new scenario's start.
   std::uint64_t load_scenario(const command::LoadScenario& command);
 

@@ -59,7 +59,8 @@ class Simulation {
   CommandResult apply(const command::SetWind& command);
   CommandResult apply(const command::SetWindSchedule& command);
   CommandResult apply(const command::EditWind& command);
-  CommandResult apply(const command::EditTerrain& command);
+  /// `with_change`: the result tells what changed, cell by cell.
+  CommandResult apply(const command::EditTerrain& command, bool with_change = false);
 
   std::uint64_t steps() const { return steps_; }
   double time() const { return static_cast<double>(steps_) * scenario_.run.time_step; }
@@ -100,7 +101,6 @@ class Simulation {
   void run(E& exec, const char* name, std::initializer_list<Layer> writes, Process&& process);
   template <class E>
   void check(E& exec, const char* process, Layer layer);
-  brush::Brush prepare(const command::EditTerrain& command, CellRectangle& touched) const;
   /// Before the first step (also of a loaded checkpoint) derived layers and repose tangents are not there
   /// yet.
   void refresh_derived();

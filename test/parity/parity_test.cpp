@@ -7,6 +7,7 @@
 #include "desert_sim/simulation/checkpoint.hpp"
 #include "support/bench_terrain.hpp"
 #include "support/cases.hpp"
+#include "support/edits.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 
@@ -125,6 +126,27 @@ TEST_F(Parity, OfEdits) {
     b->step();
     expect_same_layers(*a, *b, true);
   }
+}
+
+TEST_F(Parity, OfEveryShapeMergeAndRing) {
+  const std::string yaml = test::edit_world(
+      "periodic", ", noise: {layer: sand, low: 1, high: 4, scale: 2}, uniform: {layer: soil, value: 1}");
+  auto a = test::simulate(cpu(), yaml), b = test::simulate(cuda(), yaml);
+  int n = 0;
+  for (command::EditTerrain edit : test::one_of_each_shape())
+    for (int merge = 0; merge < static_cast<int>(std::size(brush_merges)); ++merge) {
+      edit.merge = static_cast<BrushMerge>(merge);
+      edit.layer = n % 3 == 0 ? "soil" : "sand";
+      edit.value = 0.41;
+      edit.conserve = ++n % 2 == 0;
+      edit.smooth_passes = 3;
+      edit = test::shifted(edit, 0.7, -0.3);  // over the borders, in time
+      const CommandResult x = a->apply(edit, true), y = b->apply(edit, true);
+      EXPECT_EQ(x.volume_m3, y.volume_m3);
+      EXPECT_EQ(x.moved_m3, y.moved_m3);
+      EXPECT_EQ(x.change.values, y.change.values);
+      expect_same_layers(*a, *b, false);
+    }
 }
 
 TEST_F(Parity, StatisticsAgree) {

@@ -7,6 +7,7 @@
 #include "desert_sim/simulation/checkpoint.hpp"
 #include "desert_sim/simulation/journal.hpp"
 #include "support/cases.hpp"
+#include "support/edits.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 
@@ -155,6 +156,7 @@ TEST(Fuzz, MutatedJournalsAreRefusedOrRead) {
     writer.write(1, command::SetWind{3, 4, 5});
     command::EditTerrain edit;
     writer.write(2, edit);
+    for (const command::EditTerrain& shape : test::one_of_each_shape()) writer.write(2, shape);
     command::SetWindSchedule schedule;
     schedule.regime.regime = WindRegimeKind::rose;
     schedule.regime.segments.resize(3);

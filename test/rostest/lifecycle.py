@@ -17,7 +17,9 @@ import rostest
 from desert_sim.msg import ElevationGrid, SimulationStatus, WindScheduleSegment
 from desert_sim.srv import EditTerrain, EditTerrainRequest, LoadCheckpoint, SaveCheckpoint
 from desert_sim.srv import SetWind, SetWindResponse, SetWindSchedule, SetWindScheduleRequest, Step
+from geometry_msgs.msg import Point
 from roslib.packages import find_node
+from sensor_msgs.msg import Image
 from std_msgs.msg import Empty
 
 PACKAGE = rospkg.RosPack().get_path("desert_sim")
@@ -214,6 +216,15 @@ class Lifecycle(unittest.TestCase):
         node.call("step", Step, 4)
         self.assertTrue(node.call("edit_terrain", EditTerrain, brush).success)
         self.assertFalse(node.call("edit_terrain", EditTerrain, layer="lava").success)
+        levelled = EditTerrainRequest(layer="sand", shape="polygon", merge="smooth", smooth_radius=5, smooth_passes=2,
+                                      falloff=3, conserve=True, ring_width=8,
+                                      points=[Point(100.1, -15.3, 0), Point(131.7, -12.9, 0), Point(117.3, 11.1, 0)])
+        self.assertTrue(node.call("edit_terrain", EditTerrain, levelled).success)
+        stamp = EditTerrainRequest(layer="bedrock", shape="patch", merge="add", radius=11.3, radius_y=7, angle_deg=23,
+                                   image=Image(width=3, height=2, step=3, encoding="mono8", data=bytes(range(0, 240, 40))),
+                                   image_scale=1.9)
+        stamp.center.x, stamp.center.y = 40.7, 30.1
+        self.assertTrue(node.call("edit_terrain", EditTerrain, stamp).success)
         node.call("step", Step, 3)
         self.assertTrue(node.call("save_checkpoint", SaveCheckpoint, "middle.ckpt").success)
         self.assertTrue(node.call("set_wind_schedule", SetWindSchedule, gusts).success)

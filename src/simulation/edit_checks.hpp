@@ -1,0 +1,13 @@
+#pragma once
+/// What an edit must be before it is looked at any further.
+
+#include "desert_sim/simulation/command.hpp"
+#include "desert_sim/terrain/terrain.hpp"
+
+namespace desert_sim {
+
+/// Throws ConfigError that names every parameter which is out of range, a layer that this terrain does not
+/// have or that cannot be edited, points and patches that do not make a shape.
+void check_edit(const command::EditTerrain& edit, const Terrain& terrain);
+
+}  // namespace desert_sim
