@@ -281,6 +281,16 @@ class Maps(unittest.TestCase):
             self.publish_robot(100, 0)
             listener.wait_for(lambda m: m.info.pose.position.x == 100, "and it goes on")
 
+    def test_local_map_goes_on_over_a_periodic_edge(self):
+        self.publish_robot(12, -18)
+        with Listener("/desert_region/local_map") as listener:
+            local = listener.wait_for(lambda m: m.info.pose.position.x == 12, "the robot is there")
+            found = cells(local, "elevation")
+            self.assertEqual(len(found), 400)
+            for (x, y), height in found.items():
+                self.assertAlmostEqual(height, elevation((x - 10) // 2 % 64, (y + 20) // 2 % 48), 4, (x, y))
+            self.assertEqual(sum(h > 7 for h in found.values()), 12, "the marker, west of the west edge")
+
     # ---- submaps
 
     def submap(self, x, y, length_x, length_y, layers=("elevation",), frame=""):
