@@ -1,154 +1,18 @@
 #!/usr/bin/env python3
-"""Maps of a paused node on corner.yaml, read as somebody would who only knows the published layouts: the marker, a block
-of 6 m on cells (56..59, 4..6) of 64 x 48 cells of 2 m with their corner at (10, -20), has to be where it is."""
+"""~grid_map, ~local_map, ~get_submap and ~get_grid_map, cell by cell."""
 import math
-import threading
 import time
-import unittest
 
 import genpy.dynamic
 import rospy
 import rostest
-from desert_sim.msg import SimulationStatus
-from desert_sim.srv import EditTerrain, EditTerrainRequest, GetSubmap, GetSubmapRequest, Step
+from desert_sim.srv import GetSubmap, GetSubmapRequest
 from geometry_msgs.msg import TransformStamped
-from map_msgs.msg import OccupancyGridUpdate
-from nav_msgs.msg import OccupancyGrid
-from sensor_msgs.msg import Image
-from std_msgs.msg import Float32MultiArray, Header
-from geometry_msgs.msg import Pose
-from desert_sim.srv import SetWindResponse
-from std_msgs.msg import Empty
-
-GRID_MAP_MD5 = "95681e052b1f73bf87b7eb984382b401"
-GET_GRID_MAP_MD5 = "802c2cbc7b10fada2d44db75ddb8c738"
-SEPARATOR = "=" * 80 + "\n"
+from map_client import (GRID_MAP_MD5, GetGridMap, Listener, MapTest, Trigger, call, cells, center, elevation,
+                        nested, section)
 
 
-def section(kind):
-    return SEPARATOR + "MSG: %s\n%s\n" % (kind._type, kind._full_text.split(SEPARATOR)[0])
-
-
-# As grid_map_msgs has them.
-INFO = "Header header\nfloat64 resolution\nfloat64 length_x\nfloat64 length_y\ngeometry_msgs/Pose pose\n"
-GRID_MAP = ("GridMapInfo info\nstring[] layers\nstring[] basic_layers\nstd_msgs/Float32MultiArray[] data\n"
-            "uint16 outer_start_index\nuint16 inner_start_index\n")
-
-
-def parts():
-    nested = section(Header) + SEPARATOR.join([""] + [s for s in Pose._full_text.split(SEPARATOR)[1:]])
-    arrays = SEPARATOR.join([""] + Float32MultiArray._full_text.split(SEPARATOR)[1:])
-    return (SEPARATOR + "MSG: grid_map_msgs/GridMapInfo\n" + INFO + nested + "\n" + section(Pose) +
-            section(Float32MultiArray) + arrays)
-
-
-class GetGridMap:
-    """grid_map_msgs/GetGridMap, made from its definition."""
-    _type = "grid_map_msgs/GetGridMap"
-    _md5sum = GET_GRID_MAP_MD5
-    _request_class = genpy.dynamic.generate_dynamic(
-        "grid_map_msgs/GetGridMapRequest",
-        "string frame_id\nfloat64 position_x\nfloat64 position_y\nfloat64 length_x\nfloat64 length_y\n"
-        "string[] layers\n")["grid_map_msgs/GetGridMapRequest"]
-    _response_class = genpy.dynamic.generate_dynamic(
-        "grid_map_msgs/GetGridMapResponse",
-        "grid_map_msgs/GridMap map\n" + SEPARATOR + "MSG: grid_map_msgs/GridMap\n" + GRID_MAP +
-        parts())["grid_map_msgs/GetGridMapResponse"]
-
-
-class Trigger:
-    """std_srvs/Trigger, which Debian has for Python in a package of its own that nothing else here needs."""
-    _type = "std_srvs/Trigger"
-    _md5sum = "937c9679a518e3a18d831e57125ea522"
-    _request_class = Empty
-    _response_class = SetWindResponse  # the same fields
-
-
-class Listener:
-    """All messages of a topic since it was made. Of kind AnyMsg: decoded by the definition that the publisher sends."""
-
-    def __init__(self, topic, kind=rospy.AnyMsg):
-        self.messages, self.times, self.header, self.decoded = [], [], None, None
-        self.changed = threading.Condition()
-        self.subscriber = rospy.Subscriber(topic, kind, self.take, queue_size=100)
-
-    def take(self, message):
-        with self.changed:
-            if isinstance(message, rospy.AnyMsg):
-                self.header = message._connection_header
-                if self.decoded is None:
-                    self.decoded = genpy.dynamic.generate_dynamic(
-                        self.header["type"], self.header["message_definition"])[self.header["type"]]
-                message = self.decoded().deserialize(message._buff)
-            self.messages.append(message)
-            self.times.append(time.monotonic())
-            self.changed.notify_all()
-
-    def wait_for(self, fits, what, seconds=10):
-        """The last message, once it fits."""
-        with self.changed:
-            ok = self.changed.wait_for(lambda: self.messages and fits(self.messages[-1]), seconds)
-            assert ok, "%s (%d messages)" % (what, len(self.messages))
-            return self.messages[-1]
-
-    def first(self, what="a message"):
-        return self.wait_for(lambda m: True, what)
-
-    def close(self):
-        self.subscriber.unregister()
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.close()
-
-
-def cells(grid_map, layer):
-    """{(x, y) of a cell's centre: value}, by grid_map's documentation."""
-    array = grid_map.data[grid_map.layers.index(layer)]
-    columns, rows = array.layout.dim
-    assert (columns.label, rows.label) == ("column_index", "row_index")
-    assert columns.stride == rows.size * columns.size == len(array.data) and rows.stride == rows.size
-    info = grid_map.info
-    assert (grid_map.outer_start_index, grid_map.inner_start_index) == (0, 0)
-    assert abs(rows.size * info.resolution - info.length_x) < 1e-9
-    assert abs(columns.size * info.resolution - info.length_y) < 1e-9
-    pose = info.pose
-    assert (pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w) == (0, 0, 0, 1)
-    assert pose.position.z == 0
-    found = {}
-    for column in range(columns.size):
-        for row in range(rows.size):
-            x = pose.position.x + info.length_x / 2 - (row + 0.5) * info.resolution
-            y = pose.position.y + info.length_y / 2 - (column + 0.5) * info.resolution
-            found[round(x, 6), round(y, 6)] = array.data[column * rows.size + row]
-    return found
-
-
-def center(x, y):
-    return 10 + (x + 0.5) * 2, -20 + (y + 0.5) * 2
-
-
-def elevation(x, y):
-    return 7.5 if 56 <= x < 60 and 4 <= y < 7 else 1.5
-
-
-def call(service, kind, request=None, **fields):
-    rospy.wait_for_service("/desert_sim/" + service, 20)
-    proxy = rospy.ServiceProxy("/desert_sim/" + service, kind)
-    return proxy(request) if request else proxy(**fields)
-
-
-class Maps(unittest.TestCase):
-    def setUp(self):
-        self.assertTrue(call("pause", Trigger).success)
-        self.assertTrue(call("reset", Trigger).success)
-
-    def expect_header(self, header):
-        self.assertEqual(header.frame_id, "terrain")
-        self.assertTrue(0 <= (rospy.Time.now() - header.stamp).to_sec() < 60, "when the state was reached")
-
+class Maps(MapTest):
     # ---- grid_map
 
     def test_grid_map_is_the_real_type_and_lies_right(self):
@@ -227,26 +91,22 @@ class Maps(unittest.TestCase):
 
     # ---- local_map
 
+    tf = None  # /tf of tf2_msgs/TFMessage, which Debian has for Python in a package that nothing else here needs
+
     def publish_robot(self, x, y):
-        if not hasattr(Maps, "tf"):
-            kind = genpy.dynamic.generate_dynamic(
-                "tf2_msgs/TFMessage",
-                "geometry_msgs/TransformStamped[] transforms\n" + section(TransformStamped) +
-                SEPARATOR.join([""] + TransformStamped._full_text.split(SEPARATOR)[1:]))["tf2_msgs/TFMessage"]
-            Maps.tf_kind = kind
-            Maps.tf = rospy.Publisher("/tf", kind, queue_size=10)
+        if Maps.tf is None:
+            Maps.tf_kind = genpy.dynamic.generate_dynamic(
+                "tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n" + section(TransformStamped) +
+                nested(TransformStamped))["tf2_msgs/TFMessage"]
+            Maps.tf = rospy.Publisher("/tf", Maps.tf_kind, queue_size=10)
             deadline = time.monotonic() + 10
             while Maps.tf.get_num_connections() < 2 and time.monotonic() < deadline:
                 time.sleep(0.02)
-        message = Maps.tf_kind()
-        transform = [t for t in type(message)._slot_types]
-        self.assertEqual(transform, ["geometry_msgs/TransformStamped[]"])
-        t = TransformStamped()
-        t.header.stamp = rospy.Time.now()
-        t.header.frame_id, t.child_frame_id = "terrain", "robot"
-        t.transform.translation.x, t.transform.translation.y, t.transform.rotation.w = x, y, 1
-        message.transforms = [t]
-        Maps.tf.publish(message)
+        robot = TransformStamped()
+        robot.header.stamp = rospy.Time.now()
+        robot.header.frame_id, robot.child_frame_id = "terrain", "robot"
+        robot.transform.translation.x, robot.transform.translation.y, robot.transform.rotation.w = x, y, 1
+        Maps.tf.publish(Maps.tf_kind([robot]))
 
     def test_local_map_follows_the_robot(self):
         with Listener("/desert_sim/local_map") as listener:
@@ -272,6 +132,10 @@ class Maps(unittest.TestCase):
                 inside = x > 10 and y < 76
                 self.assertEqual(math.isnan(height), not inside, (x, y))
             self.assertEqual(sum(math.isnan(h) for h in found.values()), 60 - 6 * 3)
+
+            count = len(listener.messages)
+            time.sleep(2)
+            self.assertTrue(14 <= len(listener.messages) - count <= 24, "10 Hz, though nothing moves")
 
             self.publish_robot(float("1e300"), 0)
             time.sleep(0.5)
@@ -354,117 +218,6 @@ class Maps(unittest.TestCase):
             call("get_grid_map", GetGridMap, frame_id="", position_x=50, position_y=0, length_x=4, length_y=4,
                  layers=["lava"])
         self.assertIn("'lava' is not one of", str(refused.exception))
-
-    # ---- costmap
-
-    def edit(self, x, y, value=3.0):
-        request = EditTerrainRequest(layer="sand", shape="circle", merge="add", radius=5, inner=1, value=value)
-        request.center.x, request.center.y = x, y
-        answer = call("edit_terrain", EditTerrain, request)
-        self.assertTrue(answer.success, answer.message)
-
-    def keyframe(self):
-        with Listener("/desert_sim/costmap", OccupancyGrid) as listener:
-            return listener.first("a late joiner gets the whole map")
-
-    @staticmethod
-    def assemble(grid, updates):
-        data = list(grid.data)
-        for u in updates:
-            assert u.x >= 0 and u.y >= 0 and u.width > 0 and u.height > 0
-            assert u.x + u.width <= grid.info.width and u.y + u.height <= grid.info.height, "out of bounds"
-            assert len(u.data) == u.width * u.height
-            for y in range(u.height):
-                at = (u.y + y) * grid.info.width + u.x
-                data[at:at + u.width] = u.data[y * u.width:(y + 1) * u.width]
-        return data
-
-    def test_costmap_lies_right(self):
-        grid = self.keyframe()
-        self.expect_header(grid.header)
-        self.assertEqual((grid.info.width, grid.info.height, grid.info.resolution), (64, 48, 2))
-        self.assertEqual((grid.info.origin.position.x, grid.info.origin.position.y), (10, -20))
-        self.assertEqual(grid.info.origin.orientation.w, 1)
-        for x in range(64):
-            for y in range(48):
-                near = 55 <= x < 61 and 3 <= y < 8
-                top = x in (57, 58) and y == 5  # flat, and all round it
-                self.assertEqual(grid.data[y * 64 + x], 20 if top or not near else 100, (x, y))
-
-    def test_costmap_updates_lead_from_one_keyframe_to_the_next(self):
-        with Listener("/desert_sim/costmap", OccupancyGrid) as keyframes, \
-                Listener("/desert_sim/costmap_updates", OccupancyGridUpdate) as updates:
-            keyframes.first()
-            time.sleep(0.7)
-            base, skipped = keyframes.messages[-1], len(updates.messages)
-            self.edit(40, 10)
-            self.edit(120, 60)
-            updates.wait_for(lambda u: u.x <= 14 and u.x + u.width >= 56, "one rectangle with both edits")
-            self.expect_header(updates.messages[-1].header)
-            call("resume", Trigger)
-            time.sleep(3)
-            call("pause", Trigger)
-            time.sleep(0.5)
-            got = updates.messages[skipped:]
-            self.assertTrue(8 <= len(got) <= 22, "5 Hz: %d" % len(got))
-            self.assertEqual(len(keyframes.messages), keyframes.messages.index(base) + 1, "no keyframe in between")
-        self.assertEqual(self.assemble(base, got), list(self.keyframe().data))
-        with Listener("/desert_sim/costmap", OccupancyGrid) as keyframes:
-            keyframes.first()
-            call("reset", Trigger)
-            keyframes.wait_for(lambda k: k.header.stamp > got[-1].header.stamp and min(k.data) == 20,
-                               "a replaced terrain begins with a keyframe")
-
-    def test_an_update_repeats_what_a_client_may_not_have_looked_at(self):
-        with Listener("/desert_sim/costmap", OccupancyGrid) as keyframes, \
-                Listener("/desert_sim/costmap_updates", OccupancyGridUpdate) as updates:
-            keyframes.first()
-            time.sleep(1)
-            self.edit(30, 0)
-            rospy.ServiceProxy("/desert_sim/step", Step)(0)
-            self.edit(110, 50)
-            rospy.ServiceProxy("/desert_sim/step", Step)(0)
-            last = updates.wait_for(lambda u: u.x + u.width > 50 and u.y + u.height > 34, "of the second edit")
-            self.assertLessEqual(last.x, 12)
-            self.assertLessEqual(last.y, 12)
-
-    # ---- image
-
-    def test_image_has_the_marker_in_the_south_east(self):
-        with Listener("/desert_sim/image", Image) as listener:
-            image = listener.first()
-        self.expect_header(image.header)
-        self.assertEqual(image.encoding, "bgr8")
-        self.assertEqual(image.step, 3 * image.width)
-        self.assertEqual(len(image.data), image.step * image.height)
-        self.assertAlmostEqual(image.width / image.height, 64 / 48, 6)
-        scale = image.width // 64
-        pixels = bytes(image.data)
-
-        def contrast(x0, x1, y0, y1):
-            """Of green over columns x0..x1 and rows y0..y1 of cells, row 0 in the south."""
-            greens = [pixels[row * image.step + 3 * column + 1] for row in range((48 - y1) * scale, (48 - y0) * scale)
-                      for column in range(x0 * scale, x1 * scale)]
-            return max(greens) - min(greens)
-
-        self.assertGreater(contrast(54, 62, 2, 9), 40)
-        self.assertLess(contrast(40, 62, 30, 46), 10, "north-east")
-        self.assertLess(contrast(2, 30, 30, 46), 10, "north-west")
-
-    # ---- costs
-
-    def test_nobody_listens_nothing_is_copied(self):
-        call("resume", Trigger)
-        with Listener("/desert_sim/status", SimulationStatus) as statuses:
-            deadline = time.monotonic() + 15
-            copied = None
-            while copied != 0 and time.monotonic() < deadline:  # the subscribers of other tests go
-                first = statuses.first()
-                before, step = first.snapshots, first.step
-                time.sleep(1)
-                copied = statuses.messages[-1].snapshots - before
-            self.assertEqual(copied, 0)
-            self.assertGreater(statuses.messages[-1].step, step, "it runs meanwhile")
 
 
 if __name__ == "__main__":
