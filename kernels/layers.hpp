@@ -29,13 +29,21 @@ enum class Layer : int {
   wind_shadow,
   echo,
   illumination,
+  slope,
+  normal_x,
+  normal_y,
+  normal_z,
+  roughness,
+  step_height,
+  traversability,
 };
 
 enum class Storage { quanta, real };  ///< fixed-point metres, or float32; both four bytes
 enum class Lifetime {
-  persistent,
-  derived
-};  ///< persistent layers are the state; derived ones follow from it
+  persistent,  ///< the state
+  derived,     ///< follows from it, for the processes of a step
+  on_request   ///< follows from it, for who looks: computed only when a snapshot asks for it
+};
 
 struct LayerInfo {
   Layer layer;
@@ -49,7 +57,7 @@ struct LayerInfo {
 
 constexpr double any_height = 1e6;
 
-constexpr std::array<LayerInfo, 18> layer_table{{
+constexpr std::array<LayerInfo, 25> layer_table{{
     {Layer::bedrock, "bedrock", "m", Storage::quanta, Lifetime::persistent, -any_height, any_height,
      "Top of the rock, absolute."},
     {Layer::soil, "soil", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
@@ -85,6 +93,20 @@ constexpr std::array<LayerInfo, 18> layer_table{{
      "In front of cliffs: < 0 erosion, > 0 sticky."},
     {Layer::illumination, "illumination", "1", Storage::real, Lifetime::derived, 0, 1,
      "Light on the ground."},
+    {Layer::slope, "slope", "rad", Storage::real, Lifetime::on_request, 0, 1.5707964,
+     "Angle of the surface to the horizontal."},
+    {Layer::normal_x, "normal_x", "1", Storage::real, Lifetime::on_request, -1, 1,
+     "Unit normal of the surface, eastward part."},
+    {Layer::normal_y, "normal_y", "1", Storage::real, Lifetime::on_request, -1, 1,
+     "Unit normal of the surface, northward part."},
+    {Layer::normal_z, "normal_z", "1", Storage::real, Lifetime::on_request, 0, 1,
+     "Unit normal of the surface, upward part."},
+    {Layer::roughness, "roughness", "m", Storage::real, Lifetime::on_request, 0, any_height,
+     "Rms deviation from the plane that fits the surroundings best."},
+    {Layer::step_height, "step_height", "m", Storage::real, Lifetime::on_request, 0, any_height,
+     "Largest rise or drop nearby that is no slope a rover could drive."},
+    {Layer::traversability, "traversability", "1", Storage::real, Lifetime::on_request, 0, 1,
+     "1 free ground … 0 no way for the rover of the section traversability."},
 }};
 constexpr int layer_count = static_cast<int>(layer_table.size());
 

@@ -9,6 +9,7 @@
 #include "desert_sim/kernels/saltation.hpp"
 #include "desert_sim/kernels/statistics.hpp"
 #include "desert_sim/kernels/surface.hpp"
+#include "desert_sim/kernels/traversability.hpp"
 #include "desert_sim/kernels/wind.hpp"
 #include "desert_sim/kernels/wind_features.hpp"
 #include "desert_sim/kernels/wind_shadow.hpp"

@@ -51,6 +51,7 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   resolve_grid(setup.scenario, gdal_raster_loader());
   const NodeParameters& p = setup.node;
   const GridParameters& grid = setup.scenario.grid;
+  check_map_sizes(setup.maps, grid);
   keep_previous_journal(p.journal);
   files_ = std::make_unique<DataFolder>(p.data_dir);
   frames_ = std::make_unique<Frames>(p.frame_id);
@@ -63,7 +64,7 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   warn_of_far_origin(grid);
   if (!p.center_frame.empty())
     frames_->announce_center(p.center_frame, *simulation_->terrain({Layer::elevation}).get().snapshot);
-  topics_ = std::make_unique<Topics>(node_, setup.publishers, p.frame_id, *simulation_);
+  topics_ = std::make_unique<Topics>(node_, setup.publishers, setup.maps, *frames_, *simulation_);
   to_notify_ = topics_.get();
   try {
     services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *topics_, *frames_, *files_);

@@ -14,6 +14,12 @@ namespace {
 
 constexpr auto patience = std::chrono::milliseconds(200);  // of wall time: ROS time may stand still
 
+tf2::Transform transform_of(const geometry_msgs::TransformStamped& found) {
+  const auto& r = found.transform.rotation;
+  const auto& t = found.transform.translation;
+  return tf2::Transform(tf2::Quaternion(r.x, r.y, r.z, r.w), tf2::Vector3(t.x, t.y, t.z));
+}
+
 }  // namespace
 
 Frames::Frames(std::string terrain_frame) : terrain_frame_(std::move(terrain_frame)), listener_(buffer_) {}
@@ -25,17 +31,23 @@ tf2::Transform Frames::to_terrain(const std_msgs::Header& header) const {
   const auto end = std::chrono::steady_clock::now() + patience;
   while (true) {
     try {
-      const geometry_msgs::TransformStamped found =
-          buffer_.lookupTransform(terrain_frame_, frame, header.stamp);
-      const auto& r = found.transform.rotation;
-      const auto& t = found.transform.translation;
-      return tf2::Transform(tf2::Quaternion(r.x, r.y, r.z, r.w), tf2::Vector3(t.x, t.y, t.z));
+      return transform_of(buffer_.lookupTransform(terrain_frame_, frame, header.stamp));
     } catch (const tf2::TransformException& e) {
       if (std::chrono::steady_clock::now() >= end)
         throw ConfigError("frame '" + given + "' cannot be brought into the terrain's, '" + terrain_frame_ +
                           "': " + e.what());
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+bool Frames::latest_to_terrain(const std::string& frame, tf2::Transform& transform, std::string& why) const {
+  try {
+    transform = transform_of(buffer_.lookupTransform(terrain_frame_, frame, ros::Time(0)));
+    return true;
+  } catch (const tf2::TransformException& e) {
+    why = "frame '" + frame + "' cannot be brought into the terrain's, '" + terrain_frame_ + "': " + e.what();
+    return false;
   }
 }
 

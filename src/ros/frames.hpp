@@ -24,6 +24,10 @@ class Frames {
   /// Waits a moment for a transform that is on its way; throws ConfigError with the reason if there is none.
   tf2::Transform to_terrain(const std_msgs::Header& header) const;
 
+  /// Of the latest there is, from `frame` to the terrain's, without waiting; if there is none false, and
+  /// `why`.
+  bool latest_to_terrain(const std::string& frame, tf2::Transform& transform, std::string& why) const;
+
   /// Publishes the static frame `name` in the middle of the terrain, at its mean height.
   void announce_center(const std::string& name, const Snapshot& snapshot);
   /// Moves it to the middle of another terrain, if it was announced.

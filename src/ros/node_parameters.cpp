@@ -113,9 +113,11 @@ NodeSetup read_node_setup(const ros::NodeHandle& private_node) {
   std::set<std::string> known{"settings"};
   yaml::read_parameters(root, "", faults, setup.node, known);
   yaml::read_parameters(root, "", faults, setup.publishers, known);
+  read_map_setup(root, faults, setup.maps, known);
   const Settings settings = read_settings(root["settings"], faults);
   const YAML::Node sections = take_sections(root, known, faults);
   check_frame(setup.node.frame_id, "frame_id", faults);
+  check_frame(setup.maps.parameters.robot_frame, "robot_frame", faults);
   if (!setup.node.center_frame.empty()) check_frame(setup.node.center_frame, "center_frame", faults);
   faults.throw_if_any();
   setup.scenario = read_scenario(source, setup.node, sections, settings);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "desert_sim/core/parameters.hpp"
+#include "desert_sim/ros/map_parameters.hpp"
 #include "desert_sim/scenario/scenario.hpp"
 
 namespace desert_sim {
@@ -86,10 +87,12 @@ static_assert(table_is_complete<PublisherParameters>());
 struct NodeSetup {
   NodeParameters node;
   PublisherParameters publishers;
+  MapSetup maps;
   Scenario scenario;  ///< not yet resolved
 };
 
-/// Reads all private parameters of `private_node`: those above, `settings` (a list of "path=value" for a
+/// Reads all private parameters of `private_node`: those above, the lists
+/// `grid_map_layers` and `local_map_layers`, `settings` (a list of "path=value" for a
 /// scenario that is a file), and the sections of a scenario. Sections given beside a file override the file's
 /// keys. Throws ConfigError that lists all faults; a parameter that nobody knows is one.
 NodeSetup read_node_setup(const ros::NodeHandle& private_node);

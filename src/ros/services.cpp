@@ -1,6 +1,9 @@
 #include "desert_sim/ros/services.hpp"
 
 #include <ros/console.h>
+#include <ros/service_callback_helper.h>
+
+#include <boost/make_shared.hpp>
 
 #include "desert_sim/ros/messages.hpp"
 #include "desert_sim/ros/requests.hpp"
@@ -13,6 +16,33 @@ namespace {
 constexpr std::size_t most_points = 1000000;
 constexpr const char* terrain_file = "terrain.yaml";  // in a saved terrain's folder
 constexpr auto recent_enough = std::chrono::milliseconds(100);
+
+/// ~get_grid_map: a refusal is a call that fails, with its reason. call() must return true all the same: roscpp
+/// sends what is in `response`, whose first byte tells the client, and puts no reason into failures of its own.
+class GridMapCallback : public ros::ServiceCallbackHelper {
+ public:
+  explicit GridMapCallback(const Submaps& submaps) : submaps_(submaps) {}
+
+  bool call(ros::ServiceCallbackHelperCallParams& params) override {
+    try {
+      GetGridMapRequest request;
+      ros::serialization::deserializeMessage(params.request, request);
+      GetGridMapResponse response;
+      response.map = submaps_.get(request);
+      params.response = ros::serialization::serializeServiceResponse(true, response);
+      return true;
+    } catch (const ConfigError& e) {
+      params.response = ros::serialization::serializeServiceResponse(false, std::string(e.what()));
+    } catch (const std::exception& e) {
+      ROS_ERROR("get_grid_map: %s", e.what());
+      params.response = ros::serialization::serializeServiceResponse(false, std::string(e.what()));
+    }
+    return true;
+  }
+
+ private:
+  const Submaps& submaps_;
+};
 
 }  // namespace
 
@@ -44,13 +74,20 @@ void Services::advertise(const std::string& name,
 
 Services::Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation,
                    Topics& topics, Frames& frames, const DataFolder& files)
-    : node_(std::move(node)), simulation_(simulation), topics_(topics), frames_(frames), files_(files) {
+    : node_(std::move(node)),
+      simulation_(simulation),
+      topics_(topics),
+      frames_(frames),
+      files_(files),
+      submaps_(simulation, frames) {
   // Commands of the same names are in the namespace `command`.
   advertise<desert_sim::SetWind>("set_wind", &Services::set_wind);
   advertise<desert_sim::SetWindSchedule>("set_wind_schedule", &Services::set_wind_schedule);
   advertise<desert_sim::EditWind>("edit_wind", &Services::edit_wind);
   advertise<desert_sim::EditTerrain>("edit_terrain", &Services::edit_terrain);
   advertise<desert_sim::QueryTerrain>("query_terrain", &Services::query_terrain);
+  advertise<desert_sim::GetSubmap>("get_submap", &Services::get_submap);
+  advertise_grid_map();
   advertise<desert_sim::Step>("step", &Services::step, &step_queue);
   advertise<std_srvs::Trigger>("pause", &Services::pause);
   advertise<std_srvs::Trigger>("resume", &Services::resume);
@@ -124,6 +161,18 @@ void Services::query_terrain(const QueryTerrainRequest& request, QueryTerrainRes
   response.header = header_of(state.moment, frames_.terrain_frame());
   response.step = state.moment.step;
   response.sim_time = state.moment.time;
+}
+
+void Services::get_submap(const GetSubmapRequest& request, GetSubmapResponse& response) {
+  response.map = submaps_.get(request);
+}
+
+/// The answer of GetGridMap has no room for a reason; a call that fails has, and clients show it.
+void Services::advertise_grid_map() {
+  ros::AdvertiseServiceOptions options;
+  options.init<GetGridMap>("get_grid_map", [](GetGridMapRequest&, GetGridMapResponse&) { return false; });
+  options.helper = boost::make_shared<GridMapCallback>(submaps_);
+  servers_.push_back(node_.advertiseService(options));
 }
 
 void Services::step(const StepRequest& request, StepResponse& response) {

@@ -24,6 +24,7 @@
 #include "desert_sim/ros/data_folder.hpp"
 #include "desert_sim/ros/frames.hpp"
 #include "desert_sim/ros/simulation_thread.hpp"
+#include "desert_sim/ros/submaps.hpp"
 #include "desert_sim/ros/topics.hpp"
 
 namespace desert_sim {
@@ -45,6 +46,8 @@ class Services {
   void edit_wind(const EditWindRequest& request, EditWindResponse& response);
   void edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response);
   void query_terrain(const QueryTerrainRequest& request, QueryTerrainResponse& response);
+  void get_submap(const GetSubmapRequest& request, GetSubmapResponse& response);
+  void advertise_grid_map();
   void step(const StepRequest& request, StepResponse& response);
   void pause(const std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response);
   void resume(const std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response);
@@ -66,6 +69,7 @@ class Services {
   Topics& topics_;
   Frames& frames_;
   const DataFolder& files_;
+  Submaps submaps_;
   std::mutex recent_mutex_;
   TerrainState recent_;
   std::chrono::steady_clock::time_point recent_time_;

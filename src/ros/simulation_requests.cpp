@@ -70,7 +70,8 @@ std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& la
     settle();
     std::vector<Layer> in_use;
     for (Layer layer : layers)
-      if (session_->simulation().terrain().has(layer)) in_use.push_back(layer);
+      if (session_->simulation().terrain().has(layer) || info(layer).lifetime == Lifetime::on_request)
+        in_use.push_back(layer);
     ++snapshots_;
     return TerrainState{moment(), session_->simulation().snapshot(in_use)};
   });

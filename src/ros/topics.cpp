@@ -28,37 +28,25 @@ void next_time(Time& due, Duration period) {
 
 // ---- the table of topics ----
 
-Topics::Topics(ros::NodeHandle node, const PublisherParameters& parameters, const std::string& frame,
-               SimulationThread& simulation)
+Topics::Topics(ros::NodeHandle node, const PublisherParameters& parameters, const MapSetup& maps,
+               const Frames& frames, SimulationThread& simulation)
     : node_(std::move(node)),
-      frame_(frame),
+      frames_(frames),
+      frame_(frames.terrain_frame()),
       simulation_(simulation),
       status_period_(period_of<Clock::duration>(parameters.status_rate)) {
   add_elevation(parameters);
   add_others(parameters);
+  add_grid_map(maps);
+  add_local_map(maps);
+  add_costmap(maps.parameters);
+  add_image(maps.parameters);
   status_ = advertise<SimulationStatus>("status", 10, [this] { status_changed(); });
   diff_ = node_.advertise<TerrainDiff>("terrain_diff", 100);
   thread_ = std::thread([this] { thread(); });
 }
 
 Topics::~Topics() { stop(); }
-
-template <class Message>
-ros::Publisher Topics::advertise(const std::string& name, std::uint32_t queue,
-                                 std::function<void()> on_subscriber) {
-  return node_.advertise<Message>(
-      name, queue, [on_subscriber](const ros::SingleSubscriberPublisher&) { on_subscriber(); });
-}
-
-/// A new subscriber makes `wanted` due.
-template <class Message>
-ros::Publisher Topics::advertise_terrain(const std::string& name, std::uint32_t queue, Topic& wanted) {
-  return advertise<Message>(name, queue, [this, &wanted] {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    wanted.wanted = true;
-    woken_.notify_all();
-  });
-}
 
 Topics::Topic& Topics::add(double rate, std::vector<Layer> layers) {
   topics_.push_back(std::make_unique<Topic>());
@@ -107,6 +95,12 @@ void Topics::add_others(const PublisherParameters& p) {
 
 // ---- from other threads ----
 
+void Topics::want(Topic& topic) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  topic.wanted = true;
+  woken_.notify_all();
+}
+
 void Topics::notify() {
   if (!listens_to_changes_ && !simulation_.failed()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -141,7 +135,22 @@ std::string Topics::failure() const {
   return failure_;
 }
 
+std::map<std::string, std::string> Topics::problems() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return problems_;
+}
+
 // ---- on the publishing thread ----
+
+void Topics::set_problem(const std::string& topic, const std::string& problem) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (problem.empty()) {
+    problems_.erase(topic);
+  } else {
+    ROS_WARN_THROTTLE(30, "%s: %s", topic.c_str(), problem.c_str());
+    problems_[topic] = problem;
+  }
+}
 
 void Topics::thread() {
   std::string failure;
@@ -163,7 +172,7 @@ void Topics::loop() {
   bool all, status;
   std::uint64_t asked;
   while (wait(all, status, asked)) {
-    const std::vector<Topic*> due = topics_that_are_due(all);
+    const std::vector<Topic*> due = ready_ones(topics_that_are_due(all));
     if (!due.empty()) publish_terrain(due);
     if (status_.getNumSubscribers() > 0 &&
         (status || all || (status_period_.count() > 0 && Clock::now() >= status_due_)))
@@ -198,7 +207,7 @@ bool Topics::wait(bool& all, bool& status, std::uint64_t& asked) {
 bool Topics::something_is_due(Clock::time_point& next, bool& listen) {
   const Clock::time_point now = Clock::now();
   for (const auto& topic : topics_) {
-    if (topic->publisher.getNumSubscribers() == 0) {
+    if (!topic->has_subscribers()) {
       topic->wanted = false;
       continue;
     }
@@ -207,7 +216,7 @@ bool Topics::something_is_due(Clock::time_point& next, bool& listen) {
     if (topic->due > now) {
       next = std::min(next, topic->due);
     } else {
-      if (topic->change != simulation_.changes()) return true;
+      if (topic->follows || topic->change != simulation_.changes()) return true;
       listen = true;
     }
   }
@@ -223,14 +232,43 @@ std::vector<Topics::Topic*> Topics::topics_that_are_due(bool all) {
   const Clock::time_point now = Clock::now();
   std::vector<Topic*> due;
   for (const auto& topic : topics_) {
-    if (topic->publisher.getNumSubscribers() == 0) continue;
+    if (!topic->has_subscribers()) continue;
     const bool changed = topic->change != simulation_.changes();
-    const bool by_rate = topic->period.count() > 0 && now >= topic->due && changed;
-    if (topic->wanted || topic->terrain != simulation_.terrains() || (all && changed) || by_rate)
+    const bool by_rate = topic->period.count() > 0 && now >= topic->due && (changed || topic->follows);
+    const bool at_once = all && changed && !(topic->covered && topic->covered());
+    if (topic->wanted || topic->terrain != simulation_.terrains() || at_once || by_rate)
       due.push_back(topic.get());
     topic->wanted = false;
   }
   return due;
+}
+
+/// The others wait for their next time.
+std::vector<Topics::Topic*> Topics::ready_ones(const std::vector<Topic*>& due) {
+  std::vector<Topic*> ready;
+  for (Topic* topic : due) {
+    if (!topic->ready || topic->ready()) {
+      ready.push_back(topic);
+    } else {
+      topic->change = simulation_.changes();
+      topic->terrain = simulation_.terrains();
+      next_time(topic->due, topic->period);
+    }
+  }
+  return ready;
+}
+
+/// The state that is held serves again while it is the present one.
+TerrainState Topics::terrain(const std::vector<Layer>& layers, bool hold) {
+  const bool holds =
+      held_.snapshot && held_.moment.change == simulation_.changes() &&
+      std::all_of(layers.begin(), layers.end(), [this](Layer layer) {
+        return std::find(held_layers_.begin(), held_layers_.end(), layer) != held_layers_.end();
+      });
+  const TerrainState state = holds ? held_ : simulation_.terrain(layers).get();
+  if (!holds) held_layers_ = layers;
+  held_ = hold ? state : TerrainState();
+  return state;
 }
 
 void Topics::publish_terrain(const std::vector<Topic*>& due) {
@@ -238,7 +276,8 @@ void Topics::publish_terrain(const std::vector<Topic*>& due) {
   for (const Topic* topic : due)
     for (Layer layer : topic->layers)
       if (std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
-  const TerrainState state = simulation_.terrain(layers).get();
+  const TerrainState state =
+      terrain(layers, std::any_of(due.begin(), due.end(), [](const Topic* topic) { return topic->follows; }));
   for (Topic* topic : due) {
     if (topic->publish(state)) ++publications_;
     topic->change = state.moment.change;

@@ -5,20 +5,24 @@
 /// sent the present state, not an old one.
 
 #include <desert_sim/SimulationStatus.h>
+#include <image_transport/publisher.h>
 #include <ros/node_handle.h>
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "desert_sim/ros/costmap_stream.hpp"
 #include "desert_sim/ros/elevation_stream.hpp"
 #include "desert_sim/ros/messages.hpp"
+#include "desert_sim/ros/frames.hpp"
 #include "desert_sim/ros/node_parameters.hpp"
 #include "desert_sim/ros/simulation_thread.hpp"
 #include "desert_sim/ros/wind_markers.hpp"
@@ -28,8 +32,8 @@ namespace desert_sim {
 class Topics {
  public:
   /// `node` is private to the node; its callback queue must be served by another thread.
-  Topics(ros::NodeHandle node, const PublisherParameters& parameters, const std::string& frame,
-         SimulationThread& simulation);
+  Topics(ros::NodeHandle node, const PublisherParameters& parameters, const MapSetup& maps,
+         const Frames& frames, SimulationThread& simulation);
   ~Topics();
 
   /// The state has changed, or the simulation has failed. Quick, and from any thread.
@@ -47,18 +51,29 @@ class Topics {
   /// What made publishing end, of which ~status has told then: a failure of the simulation or of publishing.
   /// Empty while all is well.
   std::string failure() const;
+  /// By the name of a topic that somebody listens to, why nothing is published on it: for ~local_map that
+  /// there is no transform.
+  std::map<std::string, std::string> problems() const;
 
  private:
   using Clock = std::chrono::steady_clock;
 
   struct Topic {
     ros::Publisher publisher;
-    Clock::duration period{0};  ///< 0: no rate
+    image_transport::Publisher image;  ///< in the publisher's place, where it is set
+    Clock::duration period{0};         ///< 0: no rate
     std::vector<Layer> layers;
     std::function<bool(const TerrainState&)> publish;  ///< whether a message went out
+    bool follows = false;           ///< is published at its rate even while the terrain stays as it is
+    std::function<bool()> ready;    ///< if set: whether there is something to publish
+    std::function<bool()> covered;  ///< if set: whether another topic tells of changes
     Clock::time_point due;
     std::uint64_t change = 0, terrain = 0;  ///< of the state that was published last
     bool wanted = false;                    ///< by a new subscriber; under mutex_
+
+    bool has_subscribers() const {
+      return (image ? image.getNumSubscribers() : publisher.getNumSubscribers()) > 0;
+    }
   };
 
   template <class Message>
@@ -68,6 +83,13 @@ class Topics {
   Topic& add(double rate, std::vector<Layer> layers);
   void add_elevation(const PublisherParameters& p);
   void add_others(const PublisherParameters& p);
+  void add_grid_map(const MapSetup& maps);
+  void add_local_map(const MapSetup& maps);
+  void add_costmap(const MapParameters& p);
+  void add_image(const MapParameters& p);
+  void want(Topic& topic);
+  /// Keeps `problem` for problems(); none if it is empty.
+  void set_problem(const std::string& topic, const std::string& problem);
 
   void thread();
   void loop();
@@ -75,16 +97,22 @@ class Topics {
   bool wait(bool& all, bool& status, std::uint64_t& asked);
   bool something_is_due(Clock::time_point& next, bool& listen);
   std::vector<Topic*> topics_that_are_due(bool all);
+  std::vector<Topic*> ready_ones(const std::vector<Topic*>& due);
+  TerrainState terrain(const std::vector<Layer>& layers, bool hold);
   void publish_terrain(const std::vector<Topic*>& due);
   void publish_status();
   void publish_failure(const std::string& what);
 
   ros::NodeHandle node_;
+  const Frames& frames_;
   const std::string frame_;
   SimulationThread& simulation_;
   std::vector<std::unique_ptr<Topic>> topics_;
   std::unique_ptr<ElevationStream> elevation_;
   std::unique_ptr<WindMarkers> markers_;
+  std::unique_ptr<CostmapStream> costmap_;
+  TerrainState held_;  ///< what was published last, while a topic follows something else than the terrain
+  std::vector<Layer> held_layers_;
   ros::Publisher status_, diff_;
   Clock::duration status_period_{0};
   Clock::time_point status_due_;
@@ -97,7 +125,21 @@ class Topics {
   bool status_wanted_ = false, stopping_ = false;
   std::uint64_t asked_ = 0, served_ = 0;  ///< calls of publish_now()
   std::string failure_;
+  std::map<std::string, std::string> problems_;
   std::thread thread_;
 };
+
+template <class Message>
+ros::Publisher Topics::advertise(const std::string& name, std::uint32_t queue,
+                                 std::function<void()> on_subscriber) {
+  return node_.advertise<Message>(
+      name, queue, [on_subscriber](const ros::SingleSubscriberPublisher&) { on_subscriber(); });
+}
+
+/// A new subscriber makes `wanted` due.
+template <class Message>
+ros::Publisher Topics::advertise_terrain(const std::string& name, std::uint32_t queue, Topic& wanted) {
+  return advertise<Message>(name, queue, [this, &wanted] { want(wanted); });
+}
 
 }  // namespace desert_sim

@@ -72,11 +72,11 @@ std::string describe_parameters() {
   rows(out, WindFeature());
   out << "\n## `terrain`: a list of steps, in order\n";
   terrain_steps(out);
+  constexpr const char* kinds[] = {"persistent", "derived", "on request"};
   out << "\n## Layers\n\n| layer | unit | kind | what |\n|---|---|---|---|\n";
   for (const LayerInfo& layer : layer_table)
-    out << "| `" << layer.name << "` | " << layer.unit << " | "
-        << (layer.lifetime == Lifetime::persistent ? "persistent" : "derived") << " | " << layer.doc
-        << " |\n";
+    out << "| `" << layer.name << "` | " << layer.unit << " | " << kinds[static_cast<int>(layer.lifetime)]
+        << " | " << layer.doc << " |\n";
   return out.str();
 }
 

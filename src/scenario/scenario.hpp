@@ -13,6 +13,7 @@
 #include "desert_sim/kernels/echo_dunes.hpp"
 #include "desert_sim/kernels/reptation.hpp"
 #include "desert_sim/kernels/saltation.hpp"
+#include "desert_sim/kernels/traversability.hpp"
 #include "desert_sim/kernels/wind.hpp"
 #include "desert_sim/kernels/wind_features.hpp"
 #include "desert_sim/kernels/wind_shadow.hpp"
@@ -90,6 +91,7 @@ struct Scenario {
   ReptationParameters reptation;
   ReposeParameters repose;
   AvalanchingParameters avalanching;
+  TraversabilityParameters traversability;
   RunParameters run;
   std::string projection;  ///< WKT of the raster that gave the grid; kept for what is written
 

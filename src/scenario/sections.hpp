@@ -25,6 +25,7 @@ void for_each_section(S& scenario, Visit&& visit) {
   visit("reptation", scenario.reptation);
   visit("repose", scenario.repose);
   visit("avalanching", scenario.avalanching);
+  visit("traversability", scenario.traversability);
   visit("run", scenario.run);
 }
 

@@ -24,15 +24,29 @@ std::shared_ptr<const Snapshot> Simulation::snapshot(const std::vector<Layer>& l
   s->cell_size = g.cell_size;
   s->origin_x = g.origin_x;
   s->origin_y = g.origin_y;
+  s->periodic = g.boundary == Boundary::periodic;
   s->step = steps_;
   s->time = time();
   s->wind_above = wind_above();
   const auto asked = [&](Layer layer) {
     return std::find(layers.begin(), layers.end(), layer) != layers.end();
   };
+  const bool judged = std::any_of(layers.begin(), layers.end(), [](Layer layer) {
+    return info(layer).lifetime == Lifetime::on_request;
+  });
+  for (Layer layer : layers)
+    if (info(layer).lifetime == Lifetime::on_request) terrain_.require(layer);
   refresh_derived();
   // A step leaves heights as they were at its beginning.
-  if (asked(Layer::elevation)) with_backend(exec(), [&](auto& e) { surface::step(e, terrain_.view()); });
+  if (asked(Layer::elevation) || judged)
+    with_backend(exec(), [&](auto& e) { surface::step(e, terrain_.view()); });
+  if (judged) {
+    TerrainView view = terrain_.view();
+    for (const LayerInfo& row : layer_table)
+      if (row.lifetime == Lifetime::on_request && !asked(row.layer))
+        view.layers[static_cast<int>(row.layer)] = nullptr;
+    with_backend(exec(), [&](auto& e) { traversability::step(e, view, scenario_.traversability); });
+  }
   for (Layer layer : layers) s->layers[layer] = terrain_.values(layer);
   return s;
 }

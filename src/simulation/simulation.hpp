@@ -33,6 +33,7 @@ struct MaterialBalance {
 struct Snapshot {
   int width = 0, height = 0;
   double cell_size = 1, origin_x = 0, origin_y = 0;
+  bool periodic = true;  ///< in both directions; else open
   std::uint64_t step = 0;
   double time = 0;  ///< simulated [s]
   wind::Vector wind_above;
@@ -69,7 +70,8 @@ class Simulation {
   Exec& exec() const { return terrain_.exec(); }
   wind::Vector wind_above() const { return regime_.at(time()); }
 
-  /// Copies layers to the host; elevation and wind are brought up to date first if they are asked for.
+  /// Copies layers to the host. Elevation and wind are brought up to date first, and layers that exist on
+  /// request computed, if they are asked for; what was never asked for takes no memory.
   std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers);
   /// Layers that are in use, derived ones included.
   std::vector<Layer> layers_in_use() const;

@@ -102,6 +102,25 @@ TEST_F(Parity, OfSeveralLevels) {
                      20);
 }
 
+/// Slope, normal, roughness, steps and traversability, over wide windows too.
+TEST_F(Parity, OfTraversability) {
+  std::vector<Layer> layers;
+  for (const LayerInfo& row : layer_table)
+    if (row.lifetime == Lifetime::on_request) layers.push_back(row.layer);
+  for (const test::Case& c : test::process_cases(false))
+    for (const char* window : {"0", "3.5", "100"}) {
+      SCOPED_TRACE(c.name + ", window " + window);
+      const std::string yaml = c.yaml + "traversability: {window: " + window + "}\n";
+      for (const char* boundary : {"periodic", "open"}) {
+        auto a = test::simulate(cpu(), test::grid_yaml(37, 41, boundary) + yaml);
+        auto b = test::simulate(cuda(), test::grid_yaml(37, 41, boundary) + yaml);
+        const auto x = a->snapshot(layers), y = b->snapshot(layers);
+        for (Layer layer : layers)
+          EXPECT_TRUE(x->layers.at(layer) == y->layers.at(layer)) << info(layer).name << ", " << boundary;
+      }
+    }
+}
+
 TEST_F(Parity, OfEdits) {
   const std::string yaml =
       test::grid_yaml(40, 30, "periodic") +

@@ -74,6 +74,12 @@ TEST_P(Contract, OfWindShadow) {
 TEST_P(Contract, OfEchoDunes) {
   expect_only("echo_dunes", {Layer::echo}, true, [](test::BenchTerrain& t) { t.echo({}); });
 }
+TEST_P(Contract, OfTraversability) {
+  expect_only("traversability",
+              {Layer::slope, Layer::normal_x, Layer::normal_y, Layer::normal_z, Layer::roughness,
+               Layer::step_height, Layer::traversability},
+              true, [](test::BenchTerrain& t) { t.judge(); });
+}
 TEST_P(Contract, OfSaltationAndAbrasion) {
   expect_only("saltation", {Layer::sand, Layer::airborne_sand, Layer::bedrock, Layer::soil}, true,
               [](test::BenchTerrain& t) {

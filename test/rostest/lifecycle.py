@@ -125,6 +125,14 @@ class Lifecycle(unittest.TestCase):
         self.expect_refused({"scenario": CORNER, "step_rate": -1, "bakend": "cpu", "update_tile": 0.5, "backend": "tpu"},
                             "step_rate", "-1", "bakend: unknown parameter", "update_tile", "'tpu'", "auto, cpu, cuda")
 
+    def test_bad_maps_are_refused_at_the_start(self):
+        self.expect_refused({"scenario": CORNER, "grid_map_layers": ["elevation", "lava"], "local_map_layers": [],
+                             "grid_map_length_x": 10.0, "robot_frame": ""},
+                            "grid_map_layers: 'lava' is not one of: elevation, bedrock", "normal_z",
+                            "local_map_layers: an empty list where a list of layers", "grid_map_length_y", "robot_frame")
+        self.expect_refused({"scenario": CORNER, "local_map_length_x": 1e6, "local_map_length_y": 1e6},
+                            "local_map_length_x and local_map_length_y: 500000 x 500000 cells", "67108864")
+
     def test_cuda_without_a_device_is_refused_or_taken(self):
         node = self.start("wants_cuda", {"scenario": CORNER, "backend": "cuda"})
         try:

@@ -86,6 +86,11 @@ void BenchTerrain::shadow(const WindShadowParameters& p) {
   with_backend(exec(), [&](auto& e) { wind_shadow::step(e, terrain.view(), p); });
 }
 
+void BenchTerrain::judge(const TraversabilityParameters& p) {
+  for (const LayerInfo& row : layer_table)
+    if (row.lifetime == Lifetime::on_request) terrain.require(row.layer);
+  with_backend(exec(), [&](auto& e) { traversability::step(e, terrain.view(), p); });
+}
 void BenchTerrain::echo(const EchoDuneParameters& p) {
   surface();
   with_backend(exec(), [&](auto& e) { echo_dunes::step(e, terrain.view(), p, cliff.data()); });

@@ -39,6 +39,8 @@ class BenchTerrain {
 
   void surface();
   void shadow(const WindShadowParameters& p = {});
+  /// Every layer that exists on request.
+  void judge(const TraversabilityParameters& p = {});
   void echo(const EchoDuneParameters& p);
   void saltation(const SaltationParameters& p = {}, const AbrasionParameters& a = {},
                  const ReposeParameters& r = {}, float time_step = 1);

@@ -1,0 +1,129 @@
+/// The topics that show the terrain as maps: ~grid_map, ~local_map, ~costmap, ~image.
+#include <image_transport/image_transport.h>
+
+#include <boost/make_shared.hpp>
+
+#include "desert_sim/io/picture.hpp"
+#include "desert_sim/ros/grid_map_message.hpp"
+#include "desert_sim/ros/messages.hpp"
+#include "desert_sim/ros/topics.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+const std::vector<Layer> picture_layers{Layer::elevation, Layer::sand, Layer::vegetation, Layer::obstacle,
+                                        Layer::water,     Layer::soil, Layer::wind_shadow};
+
+sensor_msgs::ImagePtr picture_message(const TerrainState& state, const std::string& frame) {
+  const Snapshot& s = *state.snapshot;
+  const auto values = [&s](Layer layer) {
+    const std::vector<float>* found = s.find(layer);
+    return found ? found->data() : nullptr;
+  };
+  PictureInput input;
+  input.width = s.width;
+  input.height = s.height;
+  input.cell_size = s.cell_size;
+  input.elevation = values(Layer::elevation);
+  input.sand = values(Layer::sand);
+  input.vegetation = values(Layer::vegetation);
+  input.obstacle = values(Layer::obstacle);
+  input.water = values(Layer::water);
+  input.soil = values(Layer::soil);
+  input.wind_shadow = values(Layer::wind_shadow);
+  const cv::Mat picture = hillshade_picture(input);
+  sensor_msgs::ImagePtr message = boost::make_shared<sensor_msgs::Image>();
+  message->header = header_of(state.moment, frame);
+  message->width = static_cast<std::uint32_t>(picture.cols);
+  message->height = static_cast<std::uint32_t>(picture.rows);
+  message->encoding = "bgr8";
+  message->step = 3 * message->width;
+  message->data.reserve(static_cast<std::size_t>(message->step) * message->height);
+  for (int row = 0; row < picture.rows; ++row) {
+    const std::uint8_t* first = picture.ptr<std::uint8_t>(row);
+    message->data.insert(message->data.end(), first, first + message->step);
+  }
+  return message;
+}
+
+}  // namespace
+
+void Topics::add_grid_map(const MapSetup& maps) {
+  Topic& topic = add(maps.parameters.grid_map_rate, terrain_layers(maps.grid_map_layers));
+  topic.publisher = advertise_terrain<GridMap>("grid_map", 1, topic);
+  topic.publish = [this, &topic, p = maps.parameters,
+                   layers = maps.grid_map_layers](const TerrainState& state) {
+    try {
+      const MapWindow window = grid_map_window(p, *state.snapshot);
+      if (p.grid_map_length_x > 0) require_moderate(window, layers.size(), "grid_map");
+      topic.publisher.publish(
+          boost::make_shared<GridMap>(grid_map(state, frame_, layers, window, p.grid_map_decimation)));
+    } catch (const ConfigError& e) {  // a checkpoint with another grid was loaded
+      set_problem("grid_map", e.what());
+      return false;
+    }
+    set_problem("grid_map", "");
+    return true;
+  };
+}
+
+void Topics::add_local_map(const MapSetup& maps) {
+  Topic& topic = add(maps.parameters.local_map_rate, terrain_layers(maps.local_map_layers));
+  topic.publisher = advertise_terrain<GridMap>("local_map", 1, topic);
+  topic.follows = true;
+  topic.ready = [this, frame = maps.parameters.robot_frame] {
+    tf2::Transform robot;
+    std::string why;
+    const bool found = frames_.latest_to_terrain(frame, robot, why);
+    set_problem("local_map", why);
+    return found;
+  };
+  topic.publish = [this, &topic, p = maps.parameters,
+                   layers = maps.local_map_layers](const TerrainState& state) {
+    tf2::Transform robot;
+    std::string why;
+    if (frames_.latest_to_terrain(p.robot_frame, robot, why)) {
+      try {
+        const MapWindow window = window_of(
+            {robot.getOrigin().x(), robot.getOrigin().y(), p.local_map_length_x, p.local_map_length_y},
+            *state.snapshot);
+        require_moderate(window, layers.size(), "local_map");
+        topic.publisher.publish(boost::make_shared<GridMap>(grid_map(state, frame_, layers, window)));
+      } catch (const ConfigError& e) {
+        why = e.what();
+      }
+    }
+    set_problem("local_map", why);
+    return why.empty();
+  };
+}
+
+void Topics::add_costmap(const MapParameters& p) {
+  // In the order of ~elevation's, and for its reason.
+  Topic& updates = add(p.costmap_update_rate, {Layer::traversability});
+  Topic& keyframes = add(p.costmap_keyframe_rate, {Layer::traversability});
+  keyframes.publisher = advertise_terrain<nav_msgs::OccupancyGrid>("costmap", 1, keyframes);
+  updates.publisher = advertise_terrain<map_msgs::OccupancyGridUpdate>("costmap_updates", 10, keyframes);
+  const double period = p.costmap_update_rate > 0 ? 1 / p.costmap_update_rate : 1;
+  costmap_ = std::make_unique<CostmapStream>(keyframes.publisher, updates.publisher, frame_,
+                                             std::chrono::duration<double>(1.5 * period));
+  keyframes.covered = [&updates] { return updates.has_subscribers(); };
+  updates.publish = [this](const TerrainState& state) { return costmap_->publish_update(state); };
+  keyframes.publish = [this](const TerrainState& state) {
+    costmap_->publish_keyframe(state);
+    return true;
+  };
+}
+
+void Topics::add_image(const MapParameters& p) {
+  Topic& topic = add(p.image_rate, picture_layers);
+  topic.image = image_transport::ImageTransport(node_).advertise(
+      "image", 1, [this, &topic](const image_transport::SingleSubscriberPublisher&) { want(topic); });
+  topic.publish = [this, &topic](const TerrainState& state) {
+    topic.image.publish(picture_message(state, frame_));
+    return true;
+  };
+}
+
+}  // namespace desert_sim

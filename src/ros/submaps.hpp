@@ -1,0 +1,34 @@
+#pragma once
+/// ~get_submap and ~get_grid_map: rectangles of the terrain's cells on request.
+
+#include <desert_sim/GetSubmap.h>
+
+#include "desert_sim/ros/frames.hpp"
+#include "desert_sim/ros/grid_map_message.hpp"
+#include "desert_sim/ros/simulation_thread.hpp"
+
+namespace desert_sim {
+
+class Submaps {
+ public:
+  /// Keeps references to both.
+  Submaps(SimulationThread& simulation, const Frames& frames) : simulation_(simulation), frames_(frames) {}
+
+  // Throw ConfigError that names the field, its value and what is allowed.
+  TerrainSubmap get(const GetSubmapRequest& request) const;
+  GridMap get(const GetGridMapRequest& request) const;
+
+ private:
+  struct Cut {
+    std::vector<MapLayer> layers;
+    MapWindow window;
+    TerrainState state;
+  };
+  Cut cut(const std_msgs::Header& header, const geometry_msgs::Point& center, double length_x,
+          double length_y, const std::vector<std::string>& layers) const;
+
+  SimulationThread& simulation_;
+  const Frames& frames_;
+};
+
+}  // namespace desert_sim

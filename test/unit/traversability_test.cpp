@@ -1,0 +1,276 @@
+// Slope, normal, roughness, steps and traversability, by hand.
+
+#include <cmath>
+#include <cstring>
+
+#include "support/bench_terrain.hpp"
+#include "support/cases.hpp"
+#include "support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+using test::BenchTerrain;
+
+constexpr double degree = 3.14159265358979 / 180;
+const std::vector<Layer> judged{Layer::slope,     Layer::normal_x,    Layer::normal_y,      Layer::normal_z,
+                                Layer::roughness, Layer::step_height, Layer::traversability};
+
+class TraversabilityLaw : public test::OnBackend {
+ protected:
+  using Height = std::function<double(int, int)>;
+
+  /// Bare rock of these heights on a firm open grid.
+  std::unique_ptr<BenchTerrain> rock(int width, int height, double cell, const Height& h,
+                                     const TraversabilityParameters& p = {}, bool periodic = false,
+                                     const std::function<void(BenchTerrain&)>& more = {}) {
+    auto t = std::make_unique<BenchTerrain>(exec(), width, height, cell, periodic);
+    t->set(Layer::bedrock, h);
+    if (more) more(*t);
+    t->surface();
+    t->judge(p);
+    return t;
+  }
+  static double worth(const BenchTerrain& t, int x, int y) { return t.at(Layer::traversability, x, y); }
+  /// Of flat ground with something on it, in its middle.
+  double worth_with(const std::function<void(BenchTerrain&)>& more, const TraversabilityParameters& p = {}) {
+    return worth(*rock(
+                     5, 5, 1, [](int, int) { return 7; }, p, false, more),
+                 2, 2);
+  }
+};
+
+TEST_P(TraversabilityLaw, APlaneHasItsSlopeUpToOpenEdgesAndIsSmooth) {
+  const auto t = rock(9, 7, 2, [](int x, int y) { return 0.3 * x - 0.2 * y; });
+  const double gx = 0.15, gy = -0.1, length = std::sqrt(1 + gx * gx + gy * gy);
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 9; ++x) {
+      EXPECT_NEAR(t->at(Layer::slope, x, y), std::atan(std::hypot(gx, gy)), 2e-6);
+      EXPECT_NEAR(t->at(Layer::normal_x, x, y), -gx / length, 2e-6);
+      EXPECT_NEAR(t->at(Layer::normal_y, x, y), -gy / length, 2e-6);
+      EXPECT_NEAR(t->at(Layer::normal_z, x, y), 1 / length, 2e-6);
+      EXPECT_NEAR(t->at(Layer::roughness, x, y), 0, 3e-6);
+      EXPECT_NEAR(t->at(Layer::step_height, x, y), 0, 3e-6);
+      EXPECT_NEAR(worth(*t, x, y), 1 - std::atan(std::hypot(gx, gy)) / (25 * degree), 2e-5);
+    }
+}
+
+TEST_P(TraversabilityLaw, DifferencesReachOverAPeriodicEdge) {
+  const auto t = rock(
+      8, 3, 1, [](int x, int) { return x; }, {}, true);
+  EXPECT_NEAR(t->at(Layer::slope, 0, 1), std::atan(3.0), 1e-5);  // (1 − 7)/2
+  EXPECT_NEAR(t->at(Layer::normal_x, 0, 1), 3 / std::sqrt(10.0), 1e-6);
+  EXPECT_NEAR(t->at(Layer::slope, 3, 1), std::atan(1.0), 1e-6);
+  EXPECT_NEAR(t->at(Layer::step_height, 7, 1), 7, 1e-5);
+}
+
+TEST_P(TraversabilityLaw, AGridOfOneCellIsFlat) {
+  for (bool periodic : {false, true}) {
+    const auto t = rock(
+        1, 1, 1, [](int, int) { return 9; }, {}, periodic);
+    EXPECT_EQ(t->at(Layer::slope, 0, 0), 0);
+    EXPECT_EQ(t->at(Layer::normal_z, 0, 0), 1);
+    EXPECT_EQ(t->at(Layer::roughness, 0, 0), 0);
+    EXPECT_EQ(worth(*t, 0, 0), 1);
+  }
+}
+
+TEST_P(TraversabilityLaw, AStepCountsInFullOnBothSides) {
+  const auto t = rock(8, 5, 1, [](int x, int) { return x >= 4 ? 0.6 : 0; });
+  EXPECT_NEAR(t->at(Layer::slope, 3, 2), std::atan(0.3), 1e-6);
+  for (int x : {3, 4}) {
+    EXPECT_NEAR(t->at(Layer::step_height, x, 2), 0.6, 1e-5) << x;
+    EXPECT_EQ(worth(*t, x, 2), 0) << x;
+  }
+  for (int x : {1, 2, 5, 6}) {
+    EXPECT_EQ(t->at(Layer::step_height, x, 2), 0) << x;
+    EXPECT_EQ(worth(*t, x, 2), 1) << x;
+  }
+  TraversabilityParameters wide;
+  wide.window = 2.9f;  // two cells, but from two cells away it is a slope of 17 degrees
+  EXPECT_EQ(rock(
+                8, 5, 1, [](int x, int) { return x >= 4 ? 0.6 : 0; }, wide)
+                ->at(Layer::step_height, 2, 2),
+            0);
+  EXPECT_NEAR(rock(
+                  8, 5, 1, [](int x, int) { return x >= 4 ? 2 : 0; }, wide)
+                  ->at(Layer::step_height, 2, 2),
+              2, 1e-5);
+}
+
+TEST_P(TraversabilityLaw, ABreakOfASlopeThatARoverDrivesIsNoStep) {
+  const double tangent = std::tan(20 * degree);
+  const auto t = rock(9, 3, 10, [&](int x, int) { return 10 * tangent * (x < 4 ? x : 8 - x); });
+  EXPECT_EQ(t->at(Layer::step_height, 4, 1), 0);
+  EXPECT_NEAR(t->at(Layer::slope, 2, 1), 20 * degree, 1e-5);
+}
+
+// One cell of nine is 1 m high. On it: variance 1/9 − 1/81; beside it the plane takes 1/6 of the squares.
+TEST_P(TraversabilityLaw, ASingleRock) {
+  const auto t = rock(7, 7, 1, [](int x, int y) { return x == 3 && y == 3 ? 1 : 0; });
+  EXPECT_NEAR(t->at(Layer::roughness, 3, 3), std::sqrt(8.0) / 9, 2e-6);
+  EXPECT_NEAR(t->at(Layer::roughness, 2, 3), std::sqrt((1 - 1.0 / 9 - 1.0 / 6) / 9), 2e-6);
+  EXPECT_NEAR(t->at(Layer::roughness, 3, 4), std::sqrt((1 - 1.0 / 9 - 1.0 / 6) / 9), 2e-6);
+  EXPECT_NEAR(t->at(Layer::roughness, 4, 4), std::sqrt((1 - 1.0 / 9 - 1.0 / 3) / 9), 2e-6);
+  EXPECT_EQ(t->at(Layer::roughness, 1, 3), 0);
+  EXPECT_EQ(t->at(Layer::slope, 3, 3), 0);
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 7; ++x)
+      EXPECT_NEAR(t->at(Layer::step_height, x, y), std::abs(x - 3) <= 1 && std::abs(y - 3) <= 1 ? 1 : 0, 1e-5)
+          << x << ", " << y;
+}
+
+// Three cells on a line, the middle one 1 m high: squares 1 less the mean's 1/3.
+TEST_P(TraversabilityLaw, RoughnessAtAnOpenEdgeTakesWhatThereIs) {
+  const auto t = rock(4, 1, 1, [](int x, int) { return x == 1 ? 1 : 0; });
+  EXPECT_NEAR(t->at(Layer::roughness, 0, 0), 0, 1e-6);  // two cells lie on a line
+  EXPECT_NEAR(t->at(Layer::roughness, 1, 0), std::sqrt((1 - 1.0 / 3) / 3), 2e-6);
+}
+
+TEST_P(TraversabilityLaw, ACliffBeyondTheSumsIsStillRough) {
+  const auto t = rock(4, 4, 1, [](int x, int) { return x > 1 ? 400 : 0; });
+  EXPECT_GT(t->at(Layer::roughness, 1, 1), 10);
+  EXPECT_NEAR(t->at(Layer::step_height, 1, 1), 400, 1e-3);
+}
+
+TEST_P(TraversabilityLaw, EachCriterionAlone) {
+  const auto put = [](Layer layer, double value) { return [=](BenchTerrain& t) { t.set(layer, value); }; };
+  EXPECT_EQ(worth_with({}), 1);
+  EXPECT_NEAR(worth_with(put(Layer::sand, 5)), 0.8, 1e-6);
+  EXPECT_NEAR(worth_with(put(Layer::sand, 0.15)), 0.9, 1e-5);
+  EXPECT_NEAR(worth_with(put(Layer::water, 0.15)), 0.5, 1e-5);
+  EXPECT_EQ(worth_with(put(Layer::water, 0.31)), 0);
+  EXPECT_NEAR(worth_with(put(Layer::vegetation, 0.4)), 0.5, 1e-6);
+  EXPECT_EQ(worth_with(put(Layer::vegetation, 0.9)), 0);
+  EXPECT_EQ(worth_with([](BenchTerrain& t) {
+              t.set(Layer::obstacle, [](int x, int y) { return x == 2 && y == 2 ? 1 : 0; });
+            }),
+            0);
+}
+
+TEST_P(TraversabilityLaw, LooseSandStopsARoverOnSlopesThatFirmGroundDoesNot) {
+  const auto incline = [&](double deg, double sand) {
+    return worth(*rock(
+                     5, 5, 1, [=](int x, int) { return x * std::tan(deg * degree); }, {}, false,
+                     [=](BenchTerrain& t) { t.set(Layer::sand, sand); }),
+                 2, 2);
+  };
+  EXPECT_NEAR(incline(12.5, 0), 0.5, 1e-4);
+  EXPECT_NEAR(incline(8, 3), 0.5, 1e-4);
+  EXPECT_NEAR(incline(20, 0), 0.2, 1e-4);
+  EXPECT_EQ(incline(20, 3), 0);
+  EXPECT_EQ(incline(26, 0), 0);
+}
+
+TEST_P(TraversabilityLaw, ArctangentIsGoodToAMillionth) {
+  for (double degrees : {0.001, 0.1, 5.0, 30.0, 45.0, 60.0, 80.0, 89.0, 89.99}) {
+    const double found = arctangent(static_cast<float>(std::tan(degrees * degree)));
+    EXPECT_NEAR(found / (degrees * degree), 1, 1e-6) << degrees;
+  }
+  EXPECT_EQ(arctangent(0), 0);
+}
+
+/// Where (x, y) goes on an n × n grid, and what becomes of a normal's parts.
+struct Motion {
+  const char* name;
+  std::function<std::pair<int, int>(int, int)> move;
+  std::function<std::pair<float, float>(float, float)> turn;
+};
+
+TEST_P(TraversabilityLaw, MovesWithTheTerrainToTheBit) {
+  constexpr int n = 24;
+  const Motion motions[] = {
+      {"mirrored in x",
+       [](int x, int y) {
+         return std::pair{n - 1 - x, y};
+       },
+       [](float a, float b) {
+         return std::pair{-a, b};
+       }},
+      {"transposed",
+       [](int x, int y) {
+         return std::pair{y, x};
+       },
+       [](float a, float b) {
+         return std::pair{b, a};
+       }},
+      {"turned by 90 degrees",
+       [](int x, int y) {
+         return std::pair{n - 1 - y, x};
+       },
+       [](float a, float b) {
+         return std::pair{-b, a};
+       }},
+      {"shifted",
+       [](int x, int y) {
+         return std::pair{(x + 5) % n, (y + 11) % n};
+       },
+       [](float a, float b) {
+         return std::pair{a, b};
+       }},
+  };
+  const auto height = [](int x, int y) {
+    return static_cast<Quanta>(900000 * std::sin(0.7 * x + 1.3 * std::cos(0.5 * y)) +
+                               (x * 7919 + y * 104729) % 99991);
+  };
+  const auto sand = [](int x, int y) { return static_cast<Quanta>((x * 31 + y * 17) % 13 * 40000); };
+  TraversabilityParameters p;
+  p.window = 3;
+  for (const Motion& m : motions)
+    for (bool periodic : {true, false}) {
+      if (!periodic && std::string(m.name) == "shifted") continue;
+      SCOPED_TRACE(std::string(m.name) + (periodic ? ", periodic" : ", open"));
+      BenchTerrain plain(exec(), n, n, 1, periodic), moved(exec(), n, n, 1, periodic);
+      for (const auto& [layer, f] :
+           {std::pair<Layer, std::function<Quanta(int, int)>>{Layer::bedrock, height}, {Layer::sand, sand}}) {
+        std::vector<Quanta> there(n * n);
+        for (int y = 0; y < n; ++y)
+          for (int x = 0; x < n; ++x) {
+            const auto [u, v] = m.move(x, y);
+            there[static_cast<std::size_t>(v * n + u)] = f(x, y);
+          }
+        plain.set_quanta(layer, f);
+        moved.set_quanta(layer, [&](int x, int y) { return there[static_cast<std::size_t>(y * n + x)]; });
+      }
+      for (BenchTerrain* t : {&plain, &moved}) {
+        t->surface();
+        t->judge(p);
+      }
+      for (Layer layer : judged) {
+        const auto a = plain.terrain.values(layer), b = moved.terrain.values(layer);
+        const auto nx = plain.terrain.values(Layer::normal_x), ny = plain.terrain.values(Layer::normal_y);
+        int different = 0;
+        for (int y = 0; y < n; ++y)
+          for (int x = 0; x < n; ++x) {
+            const auto i = static_cast<std::size_t>(y * n + x);
+            const auto [u, v] = m.move(x, y);
+            const auto turned = m.turn(nx[i], ny[i]);
+            const float expected =
+                layer == Layer::normal_x ? turned.first : (layer == Layer::normal_y ? turned.second : a[i]);
+            different += expected != b[static_cast<std::size_t>(v * n + u)];
+          }
+        EXPECT_EQ(different, 0) << info(layer).name;
+      }
+    }
+}
+
+TEST_P(TraversabilityLaw, IsComputedOnlyForWhoAsksAndIsNoPartOfTheState) {
+  auto s = simulation(test::grid_yaml(20, 12, "open") +
+                      "terrain: [noise: {layer: sand, low: 0, high: 4, scale: 6}]\nwind: {speed: 5}\n");
+  s->step();
+  const std::uint64_t hash = s->state_hash();
+  s->snapshot({Layer::elevation});
+  for (Layer layer : judged) EXPECT_FALSE(s->terrain().has(layer)) << info(layer).name;
+  const auto one = s->snapshot({Layer::traversability});
+  EXPECT_FALSE(s->terrain().has(Layer::slope));
+  const auto all = s->snapshot(judged);
+  EXPECT_EQ(one->layers.at(Layer::traversability), all->layers.at(Layer::traversability));
+  EXPECT_EQ(s->state_hash(), hash);
+  s->step();
+  EXPECT_NE(s->snapshot(judged)->layers.at(Layer::slope), all->layers.at(Layer::slope)) << "of the new state";
+}
+
+DESERT_ON_EACH_BACKEND(TraversabilityLaw);
+
+}  // namespace
+}  // namespace desert_sim
