@@ -122,7 +122,7 @@ void Topics::publish_now() {
   std::unique_lock<std::mutex> lock(mutex_);
   const std::uint64_t mine = ++asked_;
   woken_.notify_all();
-  served_some_.wait(lock, [&] { return served_ >= mine || stopping_; });
+  served_some_.wait(lock, [&] { return served_ >= mine || stopping_ || !failure_.empty(); });
 }
 
 void Topics::stop() {
@@ -151,11 +151,24 @@ void Topics::thread() {
     if (!simulation_.ended()) failure = std::string("publishing failed: ") + e.what();
   }
   if (simulation_.failed()) failure = simulation_.failure();
-  if (!failure.empty()) publish_failure(failure);
-  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!failure.empty()) keep_telling(failure);
+}
+
+/// Until the end, to everybody who comes.
+void Topics::keep_telling(const std::string& failure) {
+  publish_failure(failure);
+  std::unique_lock<std::mutex> lock(mutex_);
   failure_ = failure;
-  stopping_ = true;
   served_some_.notify_all();
+  status_wanted_ = false;
+  while (!stopping_) {
+    woken_.wait(lock, [this] { return stopping_ || status_wanted_; });
+    if (!status_wanted_) continue;
+    status_wanted_ = false;
+    lock.unlock();
+    publish_failure(failure);
+    lock.lock();
+  }
 }
 
 void Topics::loop() {
@@ -261,7 +274,7 @@ void Topics::publish_failure(const std::string& what) {
   last_status_.message = what;
   last_status_.steps_per_second = 0;
   last_status_.state_hash.clear();
-  status_.publish(last_status_);
+  status_.publish(boost::make_shared<SimulationStatus>(last_status_));  // which later ones do not change
 }
 
 }  // namespace desert_sim

@@ -73,6 +73,7 @@ class Topics {
   void publish_terrain(const std::vector<Topic*>& due);
   void publish_status();
   void publish_failure(const std::string& what);
+  void keep_telling(const std::string& failure);
 
   ros::NodeHandle node_;
   const std::string frame_;
