@@ -71,7 +71,12 @@ constexpr auto parameter_table(const EditTerrain*) {
 }
 static_assert(table_is_complete<EditTerrain>());
 
-/// Back to the scenario's start: terrain, wind, clock.
+/// Parameters that can change while a simulation runs (live_parameters.hpp), each "path=value"; all or none.
+struct SetParameters {
+  std::vector<std::string> settings;
+};
+
+/// Back to the scenario's start: terrain, parameters, wind, clock.
 struct Reset {};
 
 /// Continue from a checkpoint of a terrain of any shape. `path` as the process can open it.
@@ -82,8 +87,8 @@ struct LoadCheckpoint {
 
 }  // namespace command
 
-using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditTerrain, command::Reset,
-                             command::LoadCheckpoint>;
+using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditTerrain,
+                             command::SetParameters, command::Reset, command::LoadCheckpoint>;
 
 /// Cells that a command changed: x0 ≤ x < x1, y0 ≤ y < y1 (empty if x1 ≤ x0).
 struct CellRectangle {

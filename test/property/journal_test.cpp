@@ -41,7 +41,10 @@ class JournalOf : public test::OnBackend {
     edit.merge = BrushMerge::replace;
     edit.value = 30;
     s->apply(edit);
-    steps(4);
+    steps(1);
+    s->apply(
+        command::SetParameters{{"saltation.lift=0.3", "wind.radii=[50.5, 120]", "echo_dunes.enabled=true"}});
+    steps(3);
     s->save_checkpoint(folder_.path("here.ck"));
     s->apply(command::Reset{});
     steps(2);
