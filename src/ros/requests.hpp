@@ -5,6 +5,7 @@
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
+#include <geometry_msgs/Vector3Stamped.h>
 
 #include "desert_sim/ros/frames.hpp"
 #include "desert_sim/simulation/command.hpp"
@@ -13,6 +14,8 @@ namespace desert_sim {
 
 command::SetWind wind_command(const SetWindRequest& request);
 command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request);
+/// Of ~cmd_wind.
+command::SetWind streamed_wind(const geometry_msgs::Vector3Stamped& message, const Frames& frames);
 command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames);
 
 /// Throws ConfigError unless all are finite; `name` is what the point is called.

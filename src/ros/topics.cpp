@@ -140,6 +140,19 @@ std::string Topics::failure() const {
   return failure_;
 }
 
+std::vector<TopicRate> Topics::rates() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<TopicRate> rates;
+  for (const auto& topic : topics_) {
+    const ros::Publisher& publisher = topic->publisher;
+    const double wanted =
+        topic->period.count() > 0 ? 1 / std::chrono::duration<double>(topic->period).count() : 0.0;
+    rates.push_back(
+        {publisher.getTopic(), wanted, topic->meter.rate(steady_now()), publisher.getNumSubscribers()});
+  }
+  return rates;
+}
+
 // ---- on the publishing thread ----
 
 void Topics::thread() {
@@ -252,7 +265,11 @@ void Topics::publish_terrain(const std::vector<Topic*>& due) {
       if (std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
   const TerrainState state = simulation_.terrain(layers).get();
   for (Topic* topic : due) {
-    if (topic->publish(state)) ++publications_;
+    if (topic->publish(state)) {
+      ++publications_;
+      const std::lock_guard<std::mutex> lock(mutex_);
+      topic->meter.count(steady_now());
+    }
     topic->change = state.moment.change;
     topic->terrain = state.moment.terrain;
     next_time(topic->due, topic->period);

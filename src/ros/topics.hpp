@@ -24,6 +24,13 @@
 
 namespace desert_sim {
 
+/// How often a topic is published while there is something new [Hz].
+struct TopicRate {
+  std::string name;
+  double wanted = 0, achieved = 0;
+  unsigned subscribers = 0;
+};
+
 class Topics {
  public:
   /// `node` is private to the node; its callback queue must be served by another thread.
@@ -39,6 +46,7 @@ class Topics {
   void publish_now();
   /// Ends the thread; publish_now() no longer waits.
   void stop();
+  std::vector<TopicRate> rates() const;
   /// What made publishing end, of which ~status has told then: a failure of the simulation or of publishing.
   /// Empty while all is well.
   std::string failure() const;
@@ -54,6 +62,7 @@ class Topics {
     Clock::time_point due;
     std::uint64_t change = 0, terrain = 0;  ///< of the state that was published last
     bool wanted = false;                    ///< by a new subscriber; under mutex_
+    RateMeter meter;                        ///< under mutex_
   };
 
   template <class Message>

@@ -18,6 +18,7 @@ from desert_sim.msg import ElevationGrid, SimulationStatus, WindScheduleSegment
 from desert_sim.srv import EditTerrain, EditTerrainRequest, LoadCheckpoint, SaveCheckpoint
 from desert_sim.srv import SetWind, SetWindResponse, SetWindSchedule, SetWindScheduleRequest, Step
 from roslib.packages import find_node
+from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Empty
 
 PACKAGE = rospkg.RosPack().get_path("desert_sim")
@@ -77,7 +78,9 @@ class Node:
         return status, time.monotonic() - start
 
 
-class Lifecycle(unittest.TestCase):
+class Scenarios(unittest.TestCase):
+    """Nodes and files that go when a test ends."""
+
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="desert_sim_")
         self.nodes = []
@@ -101,6 +104,16 @@ class Lifecycle(unittest.TestCase):
                 file.write(text)
         return path
 
+    def run_without_ros(self, *arguments):
+        """The state hash that desert_run ends with."""
+        out = self.path("out")
+        subprocess.run([program("desert_run"), *arguments, "--backend", "cpu", "--threads", "1", "--quiet", "--out", out],
+                       check=True, timeout=60)
+        with open(os.path.join(out, "summary.json")) as file:
+            return json.load(file)["state_hash"]
+
+
+class Lifecycle(Scenarios):
     # ---- refused input -------------------------------------------------------------------------
 
     def expect_refused(self, private, *texts):
@@ -132,6 +145,13 @@ class Lifecycle(unittest.TestCase):
             return
         self.assertEqual(status, 2, output)
         self.assertIn("cuda", output.lower())
+
+    def test_a_second_clock_is_refused(self):
+        clock = rospy.Publisher("/clock", Clock, queue_size=1)
+        try:
+            self.expect_refused({"scenario": CORNER, "publish_clock": True}, "publish_clock", "/lifecycle", "/clock already")
+        finally:
+            clock.unregister()
 
     # ---- scenarios -----------------------------------------------------------------------------
 
@@ -224,11 +244,7 @@ class Lifecycle(unittest.TestCase):
         return node.call("step", Step, 7).state_hash
 
     def replay(self, journal):
-        out = self.path("out")
-        subprocess.run([program("desert_run"), CORNER, "--backend", "cpu", "--threads", "1", "--replay", journal, "--quiet",
-                        "--out", out], check=True, timeout=30)
-        with open(os.path.join(out, "summary.json")) as file:
-            return json.load(file)["state_hash"]
+        return self.run_without_ros(CORNER, "--replay", journal)
 
     def test_journal_replays_to_the_same_hash(self):
         journal = self.path("journal.yaml")

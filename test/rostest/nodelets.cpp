@@ -2,6 +2,7 @@
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SimulationStatus.h>
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <fcntl.h>
 #include <nodelet/loader.h>
 #include <sys/stat.h>
@@ -101,6 +102,7 @@ class Nodelets : public testing::Test {
     return loader_.load(name, "desert_sim/DesertSimNodelet", {}, {});
   }
   nodelet::Loader loader_{false};
+  std::mutex mutex_;
 };
 
 TEST_F(Nodelets, SubscribersBesideItSeeThePublishersBuffer) {
@@ -164,6 +166,15 @@ TEST_F(Nodelets, AFailureStopsItAloneAndIsTold) {
   with_journal["journal"] = pipe;
   ASSERT_TRUE(load(with_journal));
   EXPECT_TRUE(call<SetWind>("set_wind").success);
+  std::string diagnosed;
+  const auto diagnostics = ros::NodeHandle().subscribe<diagnostic_msgs::DiagnosticArray>(
+      "/diagnostics", 10,
+      boost::function<void(const diagnostic_msgs::DiagnosticArrayConstPtr&)>([&](const auto& message) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        for (const auto& status : message->status)
+          if (status.level == diagnostic_msgs::DiagnosticStatus::ERROR)
+            diagnosed = status.name + " " + status.message;
+      }));
   close(reader);  // from here on, the journal cannot be written
   EXPECT_FALSE(call<SetWind>("set_wind").success);
   Listener<SimulationStatus> late("status");
@@ -172,6 +183,11 @@ TEST_F(Nodelets, AFailureStopsItAloneAndIsTold) {
   const SetWind::Response refused = call<SetWind>("set_wind");
   EXPECT_FALSE(refused.success);
   EXPECT_NE(refused.message.find("writing the journal"), std::string::npos) << refused.message;
+  EXPECT_TRUE(wait_until([&] {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return diagnosed.find("writing the journal") != std::string::npos;
+  })) << "/diagnostics says: "
+      << diagnosed;
   ASSERT_TRUE(loader_.unload("/desert_sim"));
   ASSERT_TRUE(load()) << "the manager lives, and takes it again";
   EXPECT_EQ(step(1).step, 1u);
