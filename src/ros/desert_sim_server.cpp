@@ -57,6 +57,8 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   SimulationThread::Options options = options_of(p);
   if (p.publish_clock) {
     clock_ = std::make_unique<ClockPublisher>();
+    if (!ros::Time::isSimTime())
+      ROS_WARN("publish_clock: nobody follows /clock while use_sim_time is not set");
     options.publish_clock = [this](double simulated) { clock_->publish(simulated); };
   }
   const AutosaveFiles autosaves(*files_, node_.getNamespace(), setup.scenario);

@@ -110,6 +110,24 @@ class Resume(Scenarios):
             wait_until(lambda: autosaves(self.folder)[-1:] != newest, "no autosave")
         wait_until(lambda: len(autosaves(self.folder)) == 2, "old ones stay")
 
+    def test_ends_within_a_second_while_it_saves(self):
+        node = self.start("saving", dict(AUTOSAVED, data_dir=self.folder, autosave_period=0.01, paused=False, step_rate=0))
+        wait_until(lambda: autosaves(self.folder), "no autosave")
+        status, seconds = node.end()
+        self.assertEqual(status, 0, node.output)
+        self.assertLess(seconds, 1.0)
+        self.assertGreater(self.again("saving")[1], 0, "the last one is whole")
+
+    def test_a_place_that_cannot_be_written_does_not_stop_it(self):
+        with open(self.path("autosave"), "w") as file:
+            file.write("not a folder")
+        node = self.start("placeless", dict(AUTOSAVED, data_dir=self.folder))
+        wait_until(lambda: "autosave: " in node.output, "no error")
+        self.assertEqual(node.call("step", Step, 2).step, 2)
+        os.remove(self.path("autosave"))
+        node.call("step", Step, 1)
+        wait_until(lambda: autosaves(self.folder), "it does not try again")
+
     def test_nothing_whole_is_a_start(self):
         self.saved("nothing", 3)
         for path in autosaves(self.folder):
