@@ -55,10 +55,19 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   keep_previous_journal(p.journal);
   files_ = std::make_unique<DataFolder>(p.data_dir);
   frames_ = std::make_unique<Frames>(p.frame_id);
-  simulation_ =
-      std::make_unique<SimulationThread>(setup.scenario, gdal_raster_loader(), options_of(p), [this] {
-        if (Topics* topics = to_notify_) topics->notify();
-      });
+  SimulationThread::Options options = options_of(p);
+  if (p.publish_clock) {
+    clock_ = std::make_unique<ClockPublisher>();
+    if (!ros::Time::isSimTime())
+      ROS_WARN("publish_clock: nobody follows /clock while use_sim_time is not set");
+    options.publish_clock = [this](double simulated) { clock_->publish(simulated); };
+  }
+  const AutosaveFiles autosaves(*files_, node_.getNamespace(), setup.scenario);
+  if (p.resume) options.resume_from = autosaves.found();
+  if (p.resume && options.resume_from.empty()) ROS_INFO("there is no autosave to resume from");
+  simulation_ = std::make_unique<SimulationThread>(setup.scenario, gdal_raster_loader(), options, [this] {
+    if (Topics* topics = to_notify_) topics->notify();
+  });
   ROS_INFO("scenario %s: %d x %d cells of %g m; backend: %s", setup.scenario.name.c_str(), grid.width,
            grid.height, grid.cell_size, simulation_->backend_choice().c_str());
   warn_of_far_origin(grid);
@@ -68,6 +77,16 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   to_notify_ = topics_.get();
   try {
     services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *topics_, *frames_, *files_);
+    if (p.autosave_period > 0)
+      autosave_ = std::make_unique<Autosave>(autosaves, p.autosave_period, *simulation_);
+    diagnostics_ =
+        std::make_unique<Diagnostics>(node_, p.diagnostic_period, *simulation_, *topics_, autosave_.get());
+    wind_stream_ = std::make_unique<WindStream>(node_, *simulation_, *frames_);
+    reconfigure_ = std::make_unique<Reconfigure>(node_, *simulation_, *topics_);
+    reload_ =
+        std::make_unique<Reload>(node_, setup, *simulation_, *topics_, [this](const Scenario& scenario) {
+          if (autosave_) autosave_->save_as(AutosaveFiles(*files_, node_.getNamespace(), scenario));
+        });
     spinner_.start();
     step_spinner_.start();
   } catch (...) {
@@ -82,6 +101,11 @@ DesertSimServer::~DesertSimServer() {
   topics_->stop();
   spinner_.stop();
   step_spinner_.stop();
+  reload_.reset();
+  reconfigure_.reset();
+  wind_stream_.reset();
+  diagnostics_.reset();
+  autosave_.reset();
   services_.reset();
   topics_.reset();
 }

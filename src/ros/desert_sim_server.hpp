@@ -9,11 +9,17 @@
 #include <memory>
 #include <string>
 
+#include "desert_sim/ros/autosave.hpp"
+#include "desert_sim/ros/clock.hpp"
 #include "desert_sim/ros/data_folder.hpp"
+#include "desert_sim/ros/diagnostics.hpp"
 #include "desert_sim/ros/frames.hpp"
+#include "desert_sim/ros/reconfigure.hpp"
+#include "desert_sim/ros/reload.hpp"
 #include "desert_sim/ros/services.hpp"
 #include "desert_sim/ros/simulation_thread.hpp"
 #include "desert_sim/ros/topics.hpp"
+#include "desert_sim/ros/wind_stream.hpp"
 
 namespace desert_sim {
 
@@ -35,10 +41,16 @@ class DesertSimServer {
   ros::NodeHandle node_;
   std::unique_ptr<DataFolder> files_;
   std::unique_ptr<Frames> frames_;
+  std::unique_ptr<ClockPublisher> clock_;
   std::atomic<Topics*> to_notify_{nullptr};
   std::unique_ptr<SimulationThread> simulation_;
   std::unique_ptr<Topics> topics_;
   std::unique_ptr<Services> services_;
+  std::unique_ptr<Autosave> autosave_;
+  std::unique_ptr<Diagnostics> diagnostics_;
+  std::unique_ptr<WindStream> wind_stream_;
+  std::unique_ptr<Reconfigure> reconfigure_;
+  std::unique_ptr<Reload> reload_;
   ros::AsyncSpinner spinner_, step_spinner_;
 };
 

@@ -42,6 +42,12 @@ struct Reached {
   CommandResult result;    ///< of an edit
 };
 
+/// A checkpoint in memory.
+struct CheckpointCopy {
+  Moment moment;
+  std::string bytes;
+};
+
 enum class RunState { running, paused, waiting };
 
 /// What ~status says.
@@ -56,6 +62,9 @@ struct StatusReport {
   bool hashed = false;  ///< only while paused
   std::uint64_t hash = 0;
   std::uint64_t snapshots = 0;
+  std::size_t layer_bytes = 0;       ///< of the terrain, on the backend's device
+  std::size_t memory_available = 0;  ///< there [bytes]
+  double memory_needed = 0;          ///< there, for a second terrain like this one [bytes]
 };
 
 }  // namespace desert_sim

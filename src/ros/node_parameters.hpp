@@ -25,6 +25,10 @@ struct NodeParameters {
   bool paused = false;
   std::string data_dir;
   std::string journal;
+  double autosave_period = 0;
+  bool resume = false;
+  bool publish_clock = false;
+  double diagnostic_period = 1;
 };
 constexpr auto parameter_table(const NodeParameters*) {
   using P = NodeParameters;
@@ -45,7 +49,14 @@ constexpr auto parameter_table(const NodeParameters*) {
           "Checkpoints lie below this folder; empty: desert_sim in ROS's own folder ($ROS_HOME, or ~/.ros)."),
       parameter(
           "journal", &P::journal,
-          "File for the journal of commands; a file of that name gets the ending .previous. Empty: none."));
+          "File for the journal of commands; a file of that name gets the ending .previous. Empty: none."),
+      parameter("autosave_period", &P::autosave_period, 0, 1e9, "s",
+                "Of wall time, from one checkpoint in ~data_dir/autosave to the next; 0: none."),
+      parameter("resume", &P::resume, "Whether it starts with its newest autosave that is whole."),
+      parameter("publish_clock", &P::publish_clock,
+                "Whether it publishes simulated time on /clock; it then follows wall time itself."),
+      parameter("diagnostic_period", &P::diagnostic_period, 0.01, 1e6, "s",
+                "Of wall time, from one message on /diagnostics to the next."));
 }
 static_assert(table_is_complete<NodeParameters>());
 

@@ -76,6 +76,22 @@ command::SetWind wind_command(const SetWindRequest& request) {
   return command;
 }
 
+command::SetWind streamed_wind(const geometry_msgs::Vector3Stamped& message, const Frames& frames) {
+  constexpr double level = 1e-6;  // what a rotation's rounding leaves
+  require_finite(message.vector.x, "vector.x");
+  require_finite(message.vector.y, "vector.y");
+  require_finite(message.vector.z, "vector.z");
+  const tf2::Vector3 wind = frames.to_terrain(message.header).getBasis() *
+                            tf2::Vector3(message.vector.x, message.vector.y, message.vector.z);
+  if (std::abs(wind.z()) > level * wind.length())
+    throw ConfigError("vector: its vertical part in frame '" + frames.terrain_frame() + "' is " +
+                      std::to_string(wind.z()) + " m/s and must be 0: the wind is horizontal");
+  command::SetWind command;
+  command.speed = narrow(std::hypot(wind.x(), wind.y()));
+  command.direction_deg = narrow(std::atan2(wind.y(), wind.x()) * degrees);
+  return command;
+}
+
 command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request) {
   constexpr const char* kinds[] = {"timeline", "rose"};
   command::SetWindSchedule command;

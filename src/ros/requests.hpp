@@ -6,6 +6,7 @@
 #include <desert_sim/EditWind.h>
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
+#include <geometry_msgs/Vector3Stamped.h>
 
 #include "desert_sim/io/terrain_files.hpp"
 #include "desert_sim/ros/frames.hpp"
@@ -16,6 +17,8 @@ namespace desert_sim {
 command::SetWind wind_command(const SetWindRequest& request);
 command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request);
 command::EditWind wind_edit_command(const EditWindRequest& request, const Frames& frames);
+/// Of ~cmd_wind.
+command::SetWind streamed_wind(const geometry_msgs::Vector3Stamped& message, const Frames& frames);
 command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames);
 
 TerrainFormat terrain_format(const std::string& name);

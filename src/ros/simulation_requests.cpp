@@ -1,6 +1,7 @@
 /// What other threads ask of the simulation thread.
 #include "desert_sim/io/terrain_files.hpp"
 #include "desert_sim/ros/simulation_thread.hpp"
+#include "desert_sim/simulation/checkpoint.hpp"
 
 namespace desert_sim {
 
@@ -21,7 +22,7 @@ std::future<Reached> SimulationThread::apply(const Command& command, bool with_h
   return ask<Reached>([=] {
     const CommandResult result = session_->apply(command, with_change);
     ++commands_;
-    stamp_ = ros::Time::now();
+    stamp_ = stamp_now();
     if (command::replaces_terrain(command)) {
       end_step_requests(std::holds_alternative<command::Reset>(command) ? "a reset" : "a load");
       ++terrains_;
@@ -94,8 +95,19 @@ std::future<Reached> SimulationThread::save_checkpoint(const std::string& path) 
   });
 }
 
-std::future<StatusReport> SimulationThread::report() {
-  return ask<StatusReport>([this] {
+std::future<CheckpointCopy> SimulationThread::checkpoint() {
+  return ask<CheckpointCopy>([this] {
+    settle();
+    return CheckpointCopy{moment(), checkpoint_bytes(session_->simulation())};
+  });
+}
+
+std::future<Scenario> SimulationThread::scenario() {
+  return ask<Scenario>([this] { return session_->simulation().present_scenario(); });
+}
+
+std::future<StatusReport> SimulationThread::report(bool measure) {
+  return ask<StatusReport>([this, measure] {
     settle();
     Simulation& s = session_->simulation();
     StatusReport r;
@@ -122,7 +134,10 @@ std::future<StatusReport> SimulationThread::report() {
       r.hashed = true;
       r.hash = state_hash();
     }
-    measure_until_ = steady_now() + measure_for;
+    r.layer_bytes = s.terrain().bytes();
+    r.memory_available = s.exec().memory_available();
+    r.memory_needed = Terrain::memory_needed(s.terrain().grid());
+    if (measure) measure_until_ = steady_now() + measure_for;
     return r;
   });
 }

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "desert_sim/ros/autosave.hpp"
+#include "desert_sim/ros/clock.hpp"
+
 namespace desert_sim {
 
 namespace {
@@ -51,7 +54,9 @@ void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load
     session_ = std::make_unique<Session>(scenario, load_raster, options_.backend, options_.threads,
                                          options_.journal);
     backend_choice_ = session_->backend_choice();
-    stamp_ = ros::Time::now();
+    if (!options_.resume_from.empty()) load_newest(*session_, options_.resume_from, options_.journal);
+    stamp_ = stamp_now();
+    if (options_.publish_clock) options_.publish_clock(session_->simulation().time());
   } catch (...) {
     session_.reset();
     started.set_exception(std::current_exception());
@@ -91,7 +96,7 @@ void SimulationThread::loop() {
 double SimulationThread::idle_time() const {
   if (paused_) return 1.0;
   if (waiting_for_clock_) return 0.02;
-  if (ros::Time::isSimTime())
+  if (follows_ros_time())
     return 0.001;  // nobody knows when that clock will have come so far: look again and again
   return std::min(0.1, std::max(1e-4, pacer_.until_due(clock_now())));
 }
@@ -123,12 +128,21 @@ void SimulationThread::end_step_requests(const std::string& by) {
   step_requests_.clear();
 }
 
+/// A simulation that is the clock cannot wait for it.
+bool SimulationThread::follows_ros_time() const { return ros::Time::isSimTime() && !options_.publish_clock; }
+
+/// Under use_sim_time, its own clock's time comes back to it only later.
+ros::Time SimulationThread::stamp_now() const {
+  return options_.publish_clock && ros::Time::isSimTime() ? clock_time(session_->simulation().time())
+                                                          : ros::Time::now();
+}
+
 double SimulationThread::clock_now() const {
-  return ros::Time::isSimTime() ? ros::Time::now().toSec() : steady_now();
+  return follows_ros_time() ? ros::Time::now().toSec() : steady_now();
 }
 
 bool SimulationThread::step_is_due() {
-  if (pacer_.rate() > 0 && ros::Time::isSimTime()) {
+  if (pacer_.rate() > 0 && follows_ros_time()) {
     const bool waiting = !ros::Time::isValid();
     if (waiting != waiting_for_clock_) ROS_INFO("%s", waiting ? "waiting for /clock" : "/clock is there");
     waiting_for_clock_ = waiting;
@@ -154,7 +168,7 @@ void SimulationThread::step() {
   session_->simulation().set_timing(timed);
   session_->step();
   if (++unsettled_steps_ >= steps_in_flight || pacer_.rate() > 0) settle();
-  stamp_ = ros::Time::now();
+  stamp_ = stamp_now();
   meter_.count(steady_now());
   changed();
 }
@@ -164,11 +178,12 @@ void SimulationThread::settle() {
   if (unsettled_steps_ == 0) return;
   session_->simulation().exec().synchronise();
   unsettled_steps_ = 0;
-  stamp_ = ros::Time::now();
+  stamp_ = stamp_now();
 }
 
 void SimulationThread::changed() {
   ++changes_;
+  if (options_.publish_clock) options_.publish_clock(session_->simulation().time());
   on_change_();
 }
 

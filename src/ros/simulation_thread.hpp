@@ -9,6 +9,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "desert_sim/ros/job_queue.hpp"
 #include "desert_sim/ros/moment.hpp"
@@ -25,6 +26,11 @@ class SimulationThread {
     double step_rate = 10;  ///< [steps/s]; 0: as fast as it can
     bool paused = false;
     std::string journal;  ///< file, or empty
+    /// Begin with the first of these checkpoints that is whole, if there is one.
+    std::vector<std::string> resume_from;
+    /// Called on the simulation thread with the simulated time [s], at the start and after each step. With
+    /// it, the simulation is the clock: it follows wall time, whatever use_sim_time says.
+    std::function<void(double)> publish_clock;
   };
 
   /// Builds the terrain, and then runs. `on_change` is called on the simulation thread after each step and
@@ -43,9 +49,13 @@ class SimulationThread {
   std::future<void> pause();
   std::future<void> resume();
   std::future<TerrainState> terrain(const std::vector<Layer>& layers);
-  std::future<StatusReport> report();
   std::future<TerrainToSave> terrain_to_save();
+  /// With the parameters and the wind regime of now.
+  std::future<Scenario> scenario();
+  /// With `measure`, processes are timed for a while, which costs some speed.
+  std::future<StatusReport> report(bool measure = true);
   std::future<Reached> save_checkpoint(const std::string& path);
+  std::future<CheckpointCopy> checkpoint();
 
   /// Counters of Moment, of what has been done; for deciding whether a copy is still good.
   std::uint64_t changes() const { return changes_; }
@@ -83,7 +93,9 @@ class SimulationThread {
   std::uint64_t state_hash();
   double idle_time() const;
   void fail(const std::string& what);
+  bool follows_ros_time() const;
   double clock_now() const;
+  ros::Time stamp_now() const;
 
   const Options options_;
   const std::function<void()> on_change_;

@@ -117,7 +117,7 @@ void Topics::publish_now() {
   std::unique_lock<std::mutex> lock(mutex_);
   const std::uint64_t mine = ++asked_;
   woken_.notify_all();
-  served_some_.wait(lock, [&] { return served_ >= mine || stopping_; });
+  served_some_.wait(lock, [&] { return served_ >= mine || stopping_ || !failure_.empty(); });
 }
 
 void Topics::stop() {
@@ -138,6 +138,17 @@ std::string Topics::failure() const {
 std::map<std::string, std::string> Topics::problems() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return problems_;
+}
+
+std::vector<TopicRate> Topics::rates() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<TopicRate> rates;
+  for (const auto& topic : topics_) {
+    const double wanted =
+        topic->period.count() > 0 ? 1 / std::chrono::duration<double>(topic->period).count() : 0.0;
+    rates.push_back({topic->name(), wanted, topic->meter.rate(steady_now()), topic->subscribers()});
+  }
+  return rates;
 }
 
 // ---- on the publishing thread ----
@@ -161,11 +172,24 @@ void Topics::thread() {
     if (!simulation_.ended()) failure = std::string("publishing failed: ") + e.what();
   }
   if (simulation_.failed()) failure = simulation_.failure();
-  if (!failure.empty()) publish_failure(failure);
-  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!failure.empty()) keep_telling(failure);
+}
+
+/// Until the end, to everybody who comes.
+void Topics::keep_telling(const std::string& failure) {
+  publish_failure(failure);
+  std::unique_lock<std::mutex> lock(mutex_);
   failure_ = failure;
-  stopping_ = true;
   served_some_.notify_all();
+  status_wanted_ = false;
+  while (!stopping_) {
+    woken_.wait(lock, [this] { return stopping_ || status_wanted_; });
+    if (!status_wanted_) continue;
+    status_wanted_ = false;
+    lock.unlock();
+    publish_failure(failure);
+    lock.lock();
+  }
 }
 
 void Topics::loop() {
@@ -279,7 +303,11 @@ void Topics::publish_terrain(const std::vector<Topic*>& due) {
   const TerrainState state =
       terrain(layers, std::any_of(due.begin(), due.end(), [](const Topic* topic) { return topic->follows; }));
   for (Topic* topic : due) {
-    if (topic->publish(state)) ++publications_;
+    if (topic->publish(state)) {
+      ++publications_;
+      const std::lock_guard<std::mutex> lock(mutex_);
+      topic->meter.count(steady_now());
+    }
     topic->change = state.moment.change;
     topic->terrain = state.moment.terrain;
     next_time(topic->due, topic->period);
@@ -301,7 +329,7 @@ void Topics::publish_failure(const std::string& what) {
   last_status_.message = what;
   last_status_.steps_per_second = 0;
   last_status_.state_hash.clear();
-  status_.publish(last_status_);
+  status_.publish(boost::make_shared<SimulationStatus>(last_status_));  // which later ones do not change
 }
 
 }  // namespace desert_sim

@@ -29,6 +29,13 @@
 
 namespace desert_sim {
 
+/// How often a topic is published while there is something new [Hz].
+struct TopicRate {
+  std::string name;
+  double wanted = 0, achieved = 0;
+  unsigned subscribers = 0;
+};
+
 class Topics {
  public:
   /// `node` is private to the node; its callback queue must be served by another thread.
@@ -48,6 +55,7 @@ class Topics {
   void publish_diff(const Reached& edit) { diff_.publish(diff_message(edit, frame_)); }
   /// Ends the thread; publish_now() no longer waits.
   void stop();
+  std::vector<TopicRate> rates() const;
   /// What made publishing end, of which ~status has told then: a failure of the simulation or of publishing.
   /// Empty while all is well.
   std::string failure() const;
@@ -70,10 +78,13 @@ class Topics {
     Clock::time_point due;
     std::uint64_t change = 0, terrain = 0;  ///< of the state that was published last
     bool wanted = false;                    ///< by a new subscriber; under mutex_
+    RateMeter meter;                        ///< under mutex_
 
-    bool has_subscribers() const {
-      return (image ? image.getNumSubscribers() : publisher.getNumSubscribers()) > 0;
+    std::uint32_t subscribers() const {
+      return image ? image.getNumSubscribers() : publisher.getNumSubscribers();
     }
+    std::string name() const { return image ? image.getTopic() : publisher.getTopic(); }
+    bool has_subscribers() const { return subscribers() > 0; }
   };
 
   template <class Message>
@@ -102,6 +113,7 @@ class Topics {
   void publish_terrain(const std::vector<Topic*>& due);
   void publish_status();
   void publish_failure(const std::string& what);
+  void keep_telling(const std::string& failure);
 
   ros::NodeHandle node_;
   const Frames& frames_;

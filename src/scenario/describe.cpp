@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "desert_sim/kernels/layers.hpp"
-#include "desert_sim/scenario/sections.hpp"
+#include "desert_sim/scenario/live_parameters.hpp"
 #include "desert_sim/simulation/wind_regime.hpp"
 
 namespace desert_sim {
@@ -72,6 +72,10 @@ std::string describe_parameters() {
   rows(out, WindFeature());
   out << "\n## `terrain`: a list of steps, in order\n";
   terrain_steps(out);
+  out << "\n## What cannot change while a simulation runs\n\n";
+  for (const FixedParameter& fixed : fixed_parameters)
+    out << "- `" << fixed.path << "`: " << fixed.why << ".\n";
+  out << "\nAll else can: `dynamic_reconfigure`, `~reload_parameters`.\n";
   constexpr const char* kinds[] = {"persistent", "derived", "on request"};
   out << "\n## Layers\n\n| layer | unit | kind | what |\n|---|---|---|---|\n";
   for (const LayerInfo& layer : layer_table)

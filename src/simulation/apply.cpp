@@ -2,6 +2,8 @@
 #include <algorithm>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/scenario/live_parameters.hpp"
+#include "desert_sim/scenario/yaml_parameters.hpp"
 #include "desert_sim/simulation/command_checks.hpp"
 #include "desert_sim/simulation/simulation.hpp"
 #include "desert_sim/simulation/terrain_edit.hpp"
@@ -12,6 +14,38 @@ void Simulation::set_regime(WindRegime regime) {
   regime.from = wind_above();
   regime.start_time = time();
   regime_ = std::move(regime);
+}
+
+Scenario Simulation::present_scenario() const {
+  Scenario scenario = scenario_;
+  scenario.wind_regime = regime_;
+  scenario.wind_segments = regime_.segments;
+  return scenario;
+}
+
+CommandResult Simulation::apply(const command::SetParameters& command) {
+  const Scenario before = scenario_, present = present_scenario(),
+                 changed = with_live_settings(present, command.settings);
+  require_reach(changed);
+  exec().synchronise();  // memory that steps in flight work with is given back
+  scenario_ = changed;
+  try {
+    prepare_processes();
+  } catch (...) {
+    scenario_ = before;
+    prepare_processes();
+    throw;
+  }
+  derived_ready_ = false;
+  const auto regime = [](const Scenario& s) {
+    YAML::Emitter out;
+    yaml::keep_all_bits(out);
+    out << YAML::BeginMap;
+    yaml::emit_parameters(out, s.wind_regime);
+    return std::string(out.c_str());
+  };
+  if (regime(changed) != regime(present)) set_regime({changed.wind_regime, changed.wind_segments});
+  return {};
 }
 
 CommandResult Simulation::apply(const command::SetWind& command) {

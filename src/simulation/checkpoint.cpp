@@ -34,38 +34,6 @@ T take_from(const std::string& from, std::size_t& at, const std::string& path) {
   return value;
 }
 
-/// Writes all of it to a temporary file, makes it durable, and gives it its name.
-void write_durably(const std::string& path, const std::string& bytes) {
-  const std::string temporary = path + ".part";
-  const auto fail = [&](const char* what) {
-    const std::string reason = std::strerror(errno);
-    unlink(temporary.c_str());
-    throw ConfigError(path + ": " + what + ": " + reason);
-  };
-  const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) fail("cannot be written");
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t n = write(file, bytes.data() + done, bytes.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const int error = errno;
-      close(file);
-      errno = error;
-      fail("writing");
-    }
-    done += static_cast<std::size_t>(n);
-  }
-  if (fsync(file) != 0 || close(file) != 0) fail("making it durable");
-  if (rename(temporary.c_str(), path.c_str()) != 0) fail("renaming");
-  const std::size_t slash = path.rfind('/');
-  const int folder =
-      open(slash == std::string::npos ? "." : path.substr(0, slash + 1).c_str(), O_RDONLY | O_CLOEXEC);
-  if (folder >= 0) {
-    fsync(folder);  // the name itself; a file system that cannot do this still has the data
-    close(folder);
-  }
-}
-
 std::string read_whole(const std::string& path) {
   std::string bytes = read_file(path);
   if (bytes.compare(0, magic.size(), magic) != 0) throw ConfigError(path + ": is not a checkpoint");
@@ -144,7 +112,39 @@ class CheckpointAccess {
   static Terrain& terrain(Simulation& s) { return s.terrain_; }
 };
 
-void save_checkpoint(const std::string& path, const Simulation& simulation) {
+/// To a temporary file first, which gets its name when it is durable.
+void write_checkpoint(const std::string& path, const std::string& bytes) {
+  const std::string temporary = path + ".part";
+  const auto fail = [&](const char* what) {
+    const std::string reason = std::strerror(errno);
+    unlink(temporary.c_str());
+    throw ConfigError(path + ": " + what + ": " + reason);
+  };
+  const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) fail("cannot be written");
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t n = write(file, bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      const int error = errno;
+      close(file);
+      errno = error;
+      fail("writing");
+    }
+    done += static_cast<std::size_t>(n);
+  }
+  if (fsync(file) != 0 || close(file) != 0) fail("making it durable");
+  if (rename(temporary.c_str(), path.c_str()) != 0) fail("renaming");
+  const std::size_t slash = path.rfind('/');
+  const int folder =
+      open(slash == std::string::npos ? "." : path.substr(0, slash + 1).c_str(), O_RDONLY | O_CLOEXEC);
+  if (folder >= 0) {
+    fsync(folder);  // the name itself; a file system that cannot do this still has the data
+    close(folder);
+  }
+}
+
+std::string checkpoint_bytes(const Simulation& simulation) {
   const std::string header = CheckpointAccess::header(simulation);
   std::string bytes = magic;
   append(bytes, version);
@@ -156,7 +156,11 @@ void save_checkpoint(const std::string& path, const Simulation& simulation) {
     bytes.append(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t));
   }
   append(bytes, static_cast<std::uint64_t>(XXH3_64bits(bytes.data(), bytes.size())));
-  write_durably(path, bytes);
+  return bytes;
+}
+
+void save_checkpoint(const std::string& path, const Simulation& simulation) {
+  write_checkpoint(path, checkpoint_bytes(simulation));
 }
 
 std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec) {

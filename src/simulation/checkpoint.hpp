@@ -13,7 +13,11 @@
 
 namespace desert_sim {
 
-/// Throws ConfigError if the file cannot be written.
+/// A checkpoint's bytes, and writing them durably. The latter needs no simulation, and throws ConfigError if
+/// the file cannot be written.
+std::string checkpoint_bytes(const Simulation& simulation);
+void write_checkpoint(const std::string& path, const std::string& bytes);
+/// Both of them.
 void save_checkpoint(const std::string& path, const Simulation& simulation);
 /// Throws ConfigError if the file is missing, of another version, cut off or corrupt.
 std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec);

@@ -123,7 +123,12 @@ struct EditTerrain : EditParameters {
   Patch patch;
 };
 
-/// Back to the scenario's start: terrain, wind, clock.
+/// Parameters that can change while a simulation runs (live_parameters.hpp), each "path=value"; all or none.
+struct SetParameters {
+  std::vector<std::string> settings;
+};
+
+/// Back to the scenario's start: terrain, parameters, wind, clock.
 struct Reset {};
 
 /// Continue from a checkpoint of a terrain of any shape. `path` as the process can open it.
@@ -150,9 +155,9 @@ bool replaces_terrain(const Command& command) {
 
 }  // namespace command
 
-using Command =
-    std::variant<command::SetWind, command::SetWindSchedule, command::EditWind, command::EditTerrain,
-                 command::Reset, command::LoadCheckpoint, command::LoadScenario>;
+using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditWind,
+                             command::EditTerrain, command::SetParameters, command::Reset,
+                             command::LoadCheckpoint, command::LoadScenario>;
 
 /// Cells that a command changed: x0 ≤ x < x1, y0 ≤ y < y1 (empty if x1 ≤ x0).
 struct CellRectangle {

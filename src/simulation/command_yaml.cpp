@@ -35,6 +35,17 @@ P read_all(const YAML::Node& node, const std::string& source) {
   return parameters;
 }
 
+command::SetParameters read_settings(const YAML::Node& node, const std::string& source) {
+  command::SetParameters command;
+  const YAML::Node settings = required(node, "settings", source);
+  if (!settings.IsSequence()) throw ConfigError(source + ": settings: must be a list of path=value");
+  for (const YAML::Node& setting : settings) {
+    if (!setting.IsScalar()) throw ConfigError(source + ": settings: must be a list of path=value");
+    command.settings.push_back(setting.Scalar());
+  }
+  return command;
+}
+
 }  // namespace
 
 void emit_regime(YAML::Emitter& out, const WindRegime& r) {
@@ -135,6 +146,11 @@ void emit_command(YAML::Emitter& out, const Command& command) {
   } else if (const auto* edit = std::get_if<command::EditTerrain>(&command)) {
     name("edit_terrain");
     emit_edit(out, *edit);
+  } else if (const auto* parameters = std::get_if<command::SetParameters>(&command)) {
+    name("set_parameters");
+    out << YAML::Key << "settings" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+    for (const std::string& setting : parameters->settings) out << YAML::DoubleQuoted << setting;
+    out << YAML::EndSeq;
   } else if (std::holds_alternative<command::Reset>(command)) {
     name("reset");
   } else if (const auto* load = std::get_if<command::LoadCheckpoint>(&command)) {
@@ -159,6 +175,7 @@ Command read_command(const YAML::Node& node, const std::string& source) {
     return edit;
   }
   if (name == "edit_terrain") return read_edit(node, source);
+  if (name == "set_parameters") return read_settings(node, source);
   if (name == "reset") return command::Reset{};
   if (name == "load_checkpoint")
     return command::LoadCheckpoint{scalar<std::string>(node, "path", source),

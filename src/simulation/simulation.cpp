@@ -144,7 +144,8 @@ HeightScale scale_for(const HostLayers& layers) {
   return HeightScale::covering(lowest, highest);
 }
 
-/// Hops and marches are counted in 16.16 fixed-point cells.
+}  // namespace
+
 void require_reach(const Scenario& s) {
   Faults faults(s.name);
   const auto check = [&](const char* key, double metres) {
@@ -162,6 +163,8 @@ void require_reach(const Scenario& s) {
   check("run.time_step", fastest * s.wind.speedup_highest * s.run.time_step);
   faults.throw_if_any();
 }
+
+namespace {
 
 HostLayers build_if_it_fits(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster) {
   require_reach(scenario);
@@ -189,13 +192,7 @@ Simulation::Simulation(const Scenario& scenario, Terrain terrain)
 void Simulation::allocate_work() {
   Exec& e = exec();
   const Grid& grid = terrain_.grid();
-  const Scenario& s = scenario_;
   const std::size_t cells = static_cast<std::size_t>(grid.cells());
-  if (s.wind_shadow.enabled) terrain_.require(Layer::wind_shadow);
-  if (s.echo_dunes.enabled) {
-    terrain_.require(Layer::echo);
-    cliff_ = Buffer<float>(e, cells);
-  }
   ledger_ = Buffer<long long>(e, LedgerView::words);
   ledger_.set_zero();
   landed_ = Buffer<Quanta>(e, cells);
@@ -203,10 +200,21 @@ void Simulation::allocate_work() {
   reptation_strength_ = Buffer<float>(e, cells);
   reptation_strength_.set_zero();
   repose_.set_zero();
+  prepare_processes();
+  upload_wind_features();
+}
+
+void Simulation::prepare_processes() {
+  Exec& e = exec();
+  const Grid& grid = terrain_.grid();
+  const Scenario& s = scenario_;
+  // A layer is there only while its process is on: others take its absence for "no shadow", "no echo".
+  terrain_.use(Layer::wind_shadow, s.wind_shadow.enabled);
+  terrain_.use(Layer::echo, s.echo_dunes.enabled);
+  cliff_ = s.echo_dunes.enabled ? Buffer<float>(e, static_cast<std::size_t>(grid.cells())) : Buffer<float>();
   wind_work_ = wind::make_workspace(e, grid, s.wind);
   avalanche_work_ = avalanching::make_workspace(e, grid, s.avalanching);
-  if (s.abrasion.rate > 0) prepare_ground_avalanches();
-  upload_wind_features();
+  if (s.abrasion.rate > 0 || bedrock_loose_) prepare_ground_avalanches();
 }
 
 void Simulation::prepare_ground_avalanches() {

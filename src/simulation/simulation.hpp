@@ -47,6 +47,9 @@ struct ProcessTime {
   double milliseconds = 0;
 };
 
+/// Throws ConfigError if a hop or a march could reach too far: they are counted in 16.16 fixed-point cells.
+void require_reach(const Scenario& scenario);
+
 class Simulation {
  public:
   /// Builds the terrain. `scenario` must be resolved (see resolve_grid()). Throws ConfigError.
@@ -62,10 +65,13 @@ class Simulation {
   CommandResult apply(const command::EditWind& command);
   /// `with_change`: the result tells what changed, cell by cell.
   CommandResult apply(const command::EditTerrain& command, bool with_change = false);
+  CommandResult apply(const command::SetParameters& command);
 
   std::uint64_t steps() const { return steps_; }
   double time() const { return static_cast<double>(steps_) * scenario_.run.time_step; }
   const Scenario& scenario() const { return scenario_; }
+  /// The scenario with the wind regime that blows now, which commands may have replaced.
+  Scenario present_scenario() const;
   const Terrain& terrain() const { return terrain_; }
   Exec& exec() const { return terrain_.exec(); }
   wind::Vector wind_above() const { return regime_.at(time()); }
@@ -107,6 +113,8 @@ class Simulation {
   /// yet.
   void refresh_derived();
   void allocate_work();
+  /// What depends on parameters that can change live: layers and memory of processes that are on.
+  void prepare_processes();
   /// Only terrains whose rock or soil changes need this memory: called when abrasion is on or bedrock is
   /// edited.
   void prepare_ground_avalanches();

@@ -30,10 +30,15 @@ HeightScale HeightScale::covering(double lowest, double highest) {
   return scale;
 }
 
+double Terrain::memory_needed(const Grid& grid) {
+  constexpr double bytes_a_cell = 64;
+  return bytes_a_cell * grid.width * grid.height;
+}
+
 void Terrain::require_memory(const Exec& exec, const Grid& grid) {
-  constexpr std::size_t bytes_a_cell = 64;  // about what a step works with
   const std::size_t cells = static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
-  const std::size_t needed = cells * bytes_a_cell, available = exec.memory_available();
+  const std::size_t needed = static_cast<std::size_t>(memory_needed(grid)),
+                    available = exec.memory_available();
   if (cells >= (std::size_t{1} << 31) || needed > available)
     throw ConfigError("grid of " + std::to_string(grid.width) + " x " + std::to_string(grid.height) +
                       " cells needs about " + megabytes(needed) + " on the " + exec.backend() + " backend; " +
@@ -53,6 +58,11 @@ void Terrain::require(Layer layer) {
   if (buffer) return;
   buffer = Buffer<std::uint32_t>(*exec_, static_cast<std::size_t>(grid_.cells()));
   buffer.set_zero();
+}
+
+void Terrain::use(Layer layer, bool wanted) {
+  if (wanted) return require(layer);
+  layers_[static_cast<std::size_t>(layer)] = {};
 }
 
 TerrainView Terrain::view() const {

@@ -35,6 +35,8 @@ class Terrain {
   /// All cells of all layers are 0 (bedrock: the datum). Throws ConfigError if memory does not suffice.
   Terrain(Exec& exec, const Grid& grid, const HeightScale& scale);
 
+  /// About what a step works with on a terrain of this grid [bytes].
+  static double memory_needed(const Grid& grid);
   /// Throws ConfigError, before anything is allocated, if a terrain of this grid can't be held.
   static void require_memory(const Exec& exec, const Grid& grid);
 
@@ -44,6 +46,8 @@ class Terrain {
   bool has(Layer layer) const { return static_cast<bool>(layers_[static_cast<std::size_t>(layer)]); }
   /// Takes the layer into use, all 0, if it is not yet.
   void require(Layer layer);
+  /// Takes a derived layer into use, or out of it.
+  void use(Layer layer, bool wanted);
   TerrainView view() const;
 
   /// Values in the layer's unit (bedrock and elevation absolute), row-major from the south-west; 0 if not in

@@ -18,6 +18,7 @@ class JournalOf : public test::OnBackend {
     return std::make_unique<Session>(test::scenario_of(world), refuse_rasters, GetParam(), 1, journal);
   }
 
+  static constexpr int commands = 9;
   /// Steps and commands of every kind.
   std::uint64_t live(const std::string& path) {
     auto s = session(path);
@@ -41,7 +42,7 @@ class JournalOf : public test::OnBackend {
     edit.merge = BrushMerge::replace;
     edit.value = 30;
     s->apply(edit);
-    steps(2);
+    steps(1);
     command::EditWind whirl;
     whirl.feature.id = 3;
     whirl.feature.x = 10.1f;
@@ -49,6 +50,9 @@ class JournalOf : public test::OnBackend {
     whirl.feature.radius = 7.7f;
     whirl.feature.kind = WindFeatureKind::turbulence;
     s->apply(whirl);
+    steps(1);
+    s->apply(
+        command::SetParameters{{"saltation.lift=0.3", "wind.radii=[50.5, 120]", "echo_dunes.enabled=true"}});
     steps(2);
     s->save_checkpoint(folder_.path("here.ck"));
     s->apply(command::Reset{});
@@ -89,14 +93,14 @@ TEST_P(JournalOf, EveryKindOfCommandReplaysToTheSameHash) {
   const Journal journal = read_journal(folder_.path("j"));
   EXPECT_TRUE(journal.ended);
   EXPECT_EQ(journal.ticks, 20u);
-  EXPECT_EQ(journal.entries.size(), 8u);
+  EXPECT_EQ(static_cast<int>(journal.entries.size()), commands);
   EXPECT_EQ(replayed(journal), hash);
 }
 
 TEST_P(JournalOf, IsOneDocumentALine) {
   live(folder_.path("j"));
   const std::string text = test::file_bytes(folder_.path("j"));
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10);  // header, 8 commands, end
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), commands + 2) << "a header, the commands, the end";
 }
 
 TEST_P(JournalOf, CutAnywhereInItsLastLineStillReads) {
@@ -105,7 +109,7 @@ TEST_P(JournalOf, CutAnywhereInItsLastLineStillReads) {
   const std::size_t last = text.rfind('\n', text.size() - 2) + 1, before = text.rfind('\n', last - 2) + 1;
   for (std::size_t length = before; length <= text.size(); ++length) {
     const Journal journal = read_journal(folder_.write("cut", text.substr(0, length)));
-    EXPECT_EQ(journal.entries.size(), length < last ? 7u : 8u) << length;
+    EXPECT_EQ(static_cast<int>(journal.entries.size()), length < last ? commands - 1 : commands) << length;
     EXPECT_EQ(journal.ended, length == text.size());
   }
 }

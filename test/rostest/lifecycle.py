@@ -19,6 +19,7 @@ from desert_sim.srv import EditTerrain, EditTerrainRequest, LoadCheckpoint, Save
 from desert_sim.srv import SetWind, SetWindResponse, SetWindSchedule, SetWindScheduleRequest, Step
 from geometry_msgs.msg import Point
 from roslib.packages import find_node
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image
 from std_msgs.msg import Empty
 
@@ -79,7 +80,9 @@ class Node:
         return status, time.monotonic() - start
 
 
-class Lifecycle(unittest.TestCase):
+class Scenarios(unittest.TestCase):
+    """Nodes and files that go when a test ends."""
+
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="desert_sim_")
         self.nodes = []
@@ -103,6 +106,16 @@ class Lifecycle(unittest.TestCase):
                 file.write(text)
         return path
 
+    def run_without_ros(self, *arguments):
+        """The state hash that desert_run ends with."""
+        out = self.path("out")
+        subprocess.run([program("desert_run"), *arguments, "--backend", "cpu", "--threads", "1", "--quiet", "--out", out],
+                       check=True, timeout=60)
+        with open(os.path.join(out, "summary.json")) as file:
+            return json.load(file)["state_hash"]
+
+
+class Lifecycle(Scenarios):
     # ---- refused input -------------------------------------------------------------------------
 
     def expect_refused(self, private, *texts):
@@ -142,6 +155,13 @@ class Lifecycle(unittest.TestCase):
             return
         self.assertEqual(status, 2, output)
         self.assertIn("cuda", output.lower())
+
+    def test_a_second_clock_is_refused(self):
+        clock = rospy.Publisher("/clock", Clock, queue_size=1)
+        try:
+            self.expect_refused({"scenario": CORNER, "publish_clock": True}, "publish_clock", "/lifecycle", "/clock already")
+        finally:
+            clock.unregister()
 
     # ---- scenarios -----------------------------------------------------------------------------
 
@@ -243,11 +263,7 @@ class Lifecycle(unittest.TestCase):
         return node.call("step", Step, 7).state_hash
 
     def replay(self, journal):
-        out = self.path("out")
-        subprocess.run([program("desert_run"), CORNER, "--backend", "cpu", "--threads", "1", "--replay", journal, "--quiet",
-                        "--out", out], check=True, timeout=30)
-        with open(os.path.join(out, "summary.json")) as file:
-            return json.load(file)["state_hash"]
+        return self.run_without_ros(CORNER, "--replay", journal)
 
     def test_journal_replays_to_the_same_hash(self):
         journal = self.path("journal.yaml")

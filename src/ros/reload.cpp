@@ -1,0 +1,87 @@
+#include "desert_sim/ros/reload.hpp"
+
+#include <ros/console.h>
+
+#include "desert_sim/io/raster_loader.hpp"
+#include "desert_sim/scenario/live_parameters.hpp"
+#include "desert_sim/scenario/yaml_parameters.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+template <class P>
+std::vector<std::string> texts(const P& parameters) {
+  std::vector<std::string> all;
+  for_each_parameter(parameters, [&](const auto& row, const auto& value) {
+    std::ostringstream text;
+    text.precision(17);
+    if constexpr (std::is_enum_v<std::decay_t<decltype(value)>>)
+      text << row.choices[static_cast<int>(value)];
+    else
+      text << std::boolalpha << value;
+    all.push_back(std::string(row.name) + "=" + text.str());
+  });
+  return all;
+}
+
+void add(std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; }
+
+/// The node's own parameters are read at its start only.
+template <class P>
+void add_differences(const P& before, const P& now, std::string& list) {
+  const std::vector<std::string> old = texts(before), fresh = texts(now);
+  for (std::size_t n = 0; n < fresh.size(); ++n)
+    if (old[n] != fresh[n]) add(list, fresh[n]);
+}
+
+}  // namespace
+
+Reload::Reload(ros::NodeHandle node, NodeSetup setup, SimulationThread& simulation, Topics& topics,
+               std::function<void(const Scenario&)> on_scenario)
+    : node_(std::move(node)),
+      last_(std::move(setup)),
+      simulation_(simulation),
+      topics_(topics),
+      on_scenario_(std::move(on_scenario)) {
+  service_ = node_.advertiseService("reload_parameters", &Reload::serve, this);
+}
+
+std::string Reload::reload() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  NodeSetup setup = read_node_setup(node_);
+  resolve_grid(setup.scenario, gdal_raster_loader());
+  Settings settings;
+  std::string applied, fixed;
+  for (const auto& [path, value] : changed_parameters(last_.scenario, setup.scenario)) {
+    const std::string setting = path + "=" + value;
+    if (why_fixed(path)) {
+      add(fixed, setting);
+    } else {
+      settings.push_back(setting);
+      add(applied, setting);
+    }
+  }
+  add_differences(last_.node, setup.node, fixed);
+  add_differences(last_.publishers, setup.publishers, fixed);
+  if (!settings.empty()) simulation_.apply(command::SetParameters{settings}).get();
+  on_scenario_(setup.scenario);
+  last_.scenario = with_live_settings(last_.scenario, settings);  // what is fixed is told again next time
+  return (applied.empty() ? "nothing to apply" : "applied: " + applied) +
+         (fixed.empty() ? "" : "; needs a restart of the node: " + fixed);
+}
+
+bool Reload::serve(std_srvs::TriggerRequest&, std_srvs::TriggerResponse& response) {
+  try {
+    response.message = reload();
+    response.success = true;
+    ROS_INFO("reload_parameters: %s", response.message.c_str());
+    topics_.status_changed();
+  } catch (const std::exception& e) {
+    response.message = e.what();
+    response.success = false;
+  }
+  return true;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,80 @@
+#include "desert_sim/scenario/live_parameters.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <map>
+#include <set>
+
+#include "desert_sim/scenario/yaml_parameters.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+std::set<std::string> live_paths() {
+  std::set<std::string> paths;
+  Scenario scenario;
+  for_each_live_parameter(scenario, [&](const char* section, const auto& row, const auto&) {
+    paths.insert(std::string(section) + "." + row.name);
+  });
+  return paths;
+}
+
+void leaves(const YAML::Node& node, const std::string& path, std::map<std::string, std::string>& found) {
+  if (node.IsMap()) {
+    for (const auto& entry : node)
+      leaves(entry.second, (path.empty() ? "" : path + ".") + entry.first.Scalar(), found);
+    return;
+  }
+  YAML::Emitter out;
+  out.SetMapFormat(YAML::Flow);
+  out.SetSeqFormat(YAML::Flow);
+  out << node;
+  found[path] = out.c_str();
+}
+
+std::map<std::string, std::string> leaves(const Scenario& scenario) {
+  std::map<std::string, std::string> found;
+  leaves(YAML::Load(dump_scenario(scenario)), "", found);
+  return found;
+}
+
+}  // namespace
+
+const char* why_fixed(const std::string& path) {
+  for (const FixedParameter& fixed : fixed_parameters)
+    if (path == fixed.path || path.compare(0, path.find('.'), fixed.path) == 0) return fixed.why;
+  return nullptr;
+}
+
+Scenario with_live_settings(const Scenario& scenario, const Settings& settings) {
+  const std::set<std::string> live = live_paths();
+  Faults faults("set_parameters");
+  for (const std::string& setting : settings) {
+    const std::string path = setting.substr(0, setting.find('='));
+    if (const char* why = why_fixed(path)) {
+      faults.add(path, std::string("cannot change while the simulation runs: ") + why);
+    } else if (!live.count(path)) {
+      faults.add(path, "unknown parameter (config/parameters.md has them all)");
+    }
+  }
+  faults.throw_if_any();
+  Scenario changed = parse_scenario_text(dump_scenario(scenario), "set_parameters", settings);
+  changed.name = scenario.name;
+  changed.folder = scenario.folder;
+  changed.projection = scenario.projection;
+  return changed;
+}
+
+std::vector<std::pair<std::string, std::string>> changed_parameters(const Scenario& before,
+                                                                    const Scenario& now) {
+  const std::map<std::string, std::string> old = leaves(before);
+  std::vector<std::pair<std::string, std::string>> changed;
+  for (const auto& [path, value] : leaves(now)) {
+    const auto found = old.find(path);
+    if (found == old.end() || found->second != value) changed.emplace_back(path, value);
+  }
+  return changed;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,51 @@
+#pragma once
+/// Which parameters of a scenario can change while its simulation runs, and changing them.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "desert_sim/scenario/sections.hpp"
+
+namespace desert_sim {
+
+/// What cannot: a parameter, a list, or (without a dot) a whole section.
+struct FixedParameter {
+  const char *path, *why;
+};
+constexpr FixedParameter fixed_parameters[] = {
+    {"seed", "the terrain was made with it"},
+    {"grid", "it shapes the terrain's memory"},
+    {"terrain", "it is what the terrain was made of"},
+    {"run.steps", "it is of a headless run"},
+    {"run.time_step", "simulated time is counted in it"},
+    {"wind.segments", "set_wind_schedule changes them together"},
+    {"wind.features", "they are prepared at the start"},
+};
+
+/// Why the parameter or list `path` ("grid.width", "wind.segments") cannot change while a simulation runs;
+/// null if it can, or is unknown.
+const char* why_fixed(const std::string& path);
+
+/// Calls visit(section, row, value) for each parameter that can change.
+template <class S, class Visit>
+void for_each_live_parameter(S& scenario, Visit&& visit) {
+  const auto rows = [&](const char* section, auto& parameters) {
+    for_each_parameter(parameters, [&](const auto& row, auto& value) {
+      if (!why_fixed(std::string(section) + "." + row.name)) visit(section, row, value);
+    });
+  };
+  for_each_section(scenario, rows);
+  rows("wind", scenario.wind_regime);
+  rows("wind", scenario.wind);
+}
+
+/// `scenario` with settings ("wind.speed=7") of parameters that can change. Throws ConfigError that lists all
+/// that cannot, are unknown, or have a value that is refused.
+Scenario with_live_settings(const Scenario& scenario, const Settings& settings);
+
+/// What `now` has other than `before`, as path and value; a list is one value.
+std::vector<std::pair<std::string, std::string>> changed_parameters(const Scenario& before,
+                                                                    const Scenario& now);
+
+}  // namespace desert_sim

@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""Autosaves, and going on from them: kill -9 at random moments under respawn, torn files, journals."""
+import glob
+import os
+import random
+import shutil
+import signal
+import time
+import xmlrpc.client
+
+import rospy
+import rostest
+from desert_sim.msg import SimulationStatus
+from desert_sim.srv import SetWind, Step
+from lifecycle import CORNER, Scenarios, Trigger
+
+KILLS = int(os.environ.get("DESERT_KILLS", "4"))
+AUTOSAVED = {"scenario": CORNER, "autosave_period": 0.1, "resume": True}
+
+
+def wait_until(happened, what, seconds=20):
+    end = time.monotonic() + seconds
+    while not happened():
+        assert time.monotonic() < end, what
+        time.sleep(0.01)
+
+
+def autosaves(folder):
+    """Oldest first."""
+    return sorted(glob.glob(os.path.join(folder, "autosave", "*.ckpt")))
+
+
+def number(path):
+    return int(path[:-len(".ckpt")].rpartition("-")[2])
+
+
+class Respawned:
+    """The node of resume.test."""
+    folder = rospy.get_param("/desert_sim/data_dir")
+
+    def pid(self):
+        try:
+            uri = rospy.get_master().lookupNode("/desert_sim")[2]
+            return xmlrpc.client.ServerProxy(uri).getPid("/resume")[2]
+        except (OSError, xmlrpc.client.Error):
+            return 0
+
+    def step(self):
+        return rospy.wait_for_message("/desert_sim/status", SimulationStatus, 20).step
+
+    def wait_for_saved(self):
+        """A step that is in an autosave from here on."""
+        step, newest = self.step(), max([number(path) for path in autosaves(self.folder)], default=0)
+        # The copy of the next one may have been made already; that of the one after it has not.
+        wait_until(lambda: max([number(path) for path in autosaves(self.folder)], default=0) >= newest + 2, "no autosaves")
+        return step
+
+
+class Resume(Scenarios):
+    def saved(self, name, steps, **more):
+        """A node that was killed after it had saved that many steps."""
+        node = self.start(name, dict(AUTOSAVED, data_dir=self.folder, **more))
+        node.call("step", Step, steps)
+        before = autosaves(self.folder)
+        if steps:
+            wait_until(lambda: autosaves(self.folder) != before or node.process.poll() is not None, "no autosave")
+            time.sleep(0.5)  # a later one, in case the copy was older; with no change there is none
+        node.end(signal.SIGKILL)
+        return node
+
+    def again(self, name, **more):
+        node = self.start(name, dict(AUTOSAVED, data_dir=self.folder, **more))
+        return node, node.latest("status", SimulationStatus).step
+
+    def test_killed_again_and_again(self):
+        node = Respawned()
+        self.addCleanup(shutil.rmtree, node.folder, ignore_errors=True)
+        for _ in range(KILLS):
+            saved, killed = node.wait_for_saved(), node.pid()
+            time.sleep(random.uniform(0, 0.2))
+            os.kill(killed, signal.SIGKILL)
+            wait_until(lambda: node.pid() not in (0, killed), "it was not started anew")
+            self.assertGreaterEqual(node.step(), saved, "it went on where it was")
+            self.assertLessEqual(len(autosaves(node.folder)), 3, "the last two, and one that was not tidied up yet")
+        rospy.ServiceProxy("/desert_sim/pause", Trigger)()
+        reached = rospy.ServiceProxy("/desert_sim/step", Step)(0)
+        self.assertEqual(reached.state_hash, self.run_without_ros(CORNER, "--steps", str(reached.step)),
+                         "nothing was lost or done twice")
+
+    def test_a_torn_file_is_skipped(self):
+        self.saved("torn", 5)
+        whole = autosaves(self.folder)[-1]
+        for n, share in ((7, 0.5), (8, 0.99), (9, 0)):
+            torn = "%s-%010d.ckpt" % (whole[:-len("-0000000001.ckpt")], n)
+            shutil.copy(whole, torn)
+            os.truncate(torn, int(share * os.path.getsize(whole)))
+        with open(whole + ".part", "w") as part:
+            part.write("killed while it wrote")
+        node, step = self.again("torn")
+        self.assertEqual(step, 5)
+        self.assertEqual(node.end()[0], 0)
+        self.assertEqual(node.output.count("not resumed from this one"), 3, node.output)
+        self.assertIn("0000000009.ckpt", node.output)
+
+    def test_the_last_two_are_kept(self):
+        node = self.start("tidy", dict(AUTOSAVED, data_dir=self.folder))
+        for _ in range(5):
+            newest = autosaves(self.folder)[-1:]
+            node.call("step", Step, 1)
+            wait_until(lambda: autosaves(self.folder)[-1:] != newest, "no autosave")
+        wait_until(lambda: len(autosaves(self.folder)) == 2, "old ones stay")
+
+    def test_ends_within_a_second_while_it_saves(self):
+        node = self.start("saving", dict(AUTOSAVED, data_dir=self.folder, autosave_period=0.01, paused=False, step_rate=0))
+        wait_until(lambda: autosaves(self.folder), "no autosave")
+        status, seconds = node.end()
+        self.assertEqual(status, 0, node.output)
+        self.assertLess(seconds, 1.0)
+        self.assertGreater(self.again("saving")[1], 0, "the last one is whole")
+
+    def test_a_place_that_cannot_be_written_does_not_stop_it(self):
+        with open(self.path("autosave"), "w") as file:
+            file.write("not a folder")
+        node = self.start("placeless", dict(AUTOSAVED, data_dir=self.folder))
+        wait_until(lambda: "autosave: " in node.output, "no error")
+        self.assertEqual(node.call("step", Step, 2).step, 2)
+        os.remove(self.path("autosave"))
+        node.call("step", Step, 1)
+        wait_until(lambda: autosaves(self.folder), "it does not try again")
+
+    def test_nothing_whole_is_a_start(self):
+        self.saved("nothing", 3)
+        for path in autosaves(self.folder):
+            os.truncate(path, 100)
+        node, step = self.again("nothing")
+        self.assertEqual(step, 0)
+        node.end()
+        self.assertIn("no whole autosave", node.output)
+
+    def test_only_its_own_scenario_is_resumed(self):
+        self.saved("own", 3)
+        node, step = self.again("own", seed=8)
+        self.assertEqual(step, 0, "of other settings")
+        node.end()
+        _, step = self.again("own")
+        self.assertEqual(step, 3)
+
+    def test_without_resume_it_starts_anew(self):
+        self.saved("fresh", 3)
+        self.assertEqual(self.again("fresh", resume=False)[1], 0)
+
+    def test_the_journal_of_a_resumed_node_replays(self):
+        journal = self.path("journal.yaml")
+        self.saved("replayed", 4, journal=journal)
+        node, step = self.again("replayed", journal=journal)
+        self.assertEqual(step, 4)
+        self.assertTrue(node.call("set_wind", SetWind, speed=8, direction_deg=70).success)
+        live = node.call("step", Step, 6).state_hash
+        for path in autosaves(self.folder):
+            os.remove(path)
+        self.assertEqual(node.end()[0], 0)
+        self.assertEqual(self.run_without_ros(CORNER, "--replay", journal), live)
+
+
+if __name__ == "__main__":
+    rospy.init_node("resume", disable_signals=True)
+    rostest.rosrun("desert_sim", "resume", Resume)
