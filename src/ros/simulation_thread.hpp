@@ -41,7 +41,7 @@ class SimulationThread {
   std::future<Reached> step(std::uint32_t steps);
   std::future<void> pause();
   std::future<void> resume();
-  std::future<TerrainState> terrain(const std::vector<Layer>& layers);
+  std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {});
   std::future<StatusReport> report();
   std::future<Reached> save_checkpoint(const std::string& path);
 
