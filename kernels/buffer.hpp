@@ -32,8 +32,12 @@ class Buffer {
   void upload(const std::vector<T>& from) { exec_->upload(data_, from.data(), from.size() * sizeof(T)); }
   std::vector<T> download() const {
     std::vector<T> to(size_);
-    if (size_) exec_->download(to.data(), data_, size_ * sizeof(T));
+    if (size_) download(0, size_, to.data());
     return to;
+  }
+  /// Elements first … first + count − 1.
+  void download(std::size_t first, std::size_t count, T* to) const {
+    exec_->download(to, data_ + first, count * sizeof(T));
   }
   void swap(Buffer& other) noexcept {
     std::swap(exec_, other.exec_);

@@ -196,9 +196,17 @@ struct Traversability {
   }
 };
 
-/// `elevation` must be up to date.
+/// A law on a band of rows: it is called for rows that begin with `first`, and go on over the edge.
+template <class Law>
+struct OnRows {
+  Law law;
+  int first, height;
+  DESERT_HD void operator()(int x, int y) const { law(x, wrap(first + y, height)); }
+};
+
+/// For `rows` rows from `first` on. `elevation` must be up to date everywhere.
 template <class E>
-void step(E& exec, const TerrainView& t, const TraversabilityParameters& p) {
+void step(E& exec, const TerrainView& t, const TraversabilityParameters& p, int first, int rows) {
   const float degree = 3.14159265358979f / 180.0f;
   const int reach = window_cells(p, t.grid.cell_size);
   const Surface surface{t.grid, t.quanta(Layer::elevation), t.quantum};
@@ -206,15 +214,25 @@ void step(E& exec, const TerrainView& t, const TraversabilityParameters& p) {
                                 t.real(Layer::normal_y), t.real(Layer::normal_z)};
   const Roughness roughness{surface, reach, t.real(Layer::roughness)};
   const StepHeight step_height{surface, reach, tanf(p.slope_deg * degree), t.real(Layer::step_height)};
-  if (orientation.slope || orientation.normal_x || orientation.normal_y || orientation.normal_z)
-    for_each_cell(exec, t.grid, orientation);
-  if (roughness.roughness) for_each_cell(exec, t.grid, roughness);
-  if (step_height.step_height) for_each_cell(exec, t.grid, step_height);
-  if (t.real(Layer::traversability))
-    for_each_cell(exec, t.grid,
-                  Traversability{roughness, step_height, p.slope_deg * degree, p.sand_slope_deg * degree, p,
-                                 t.quanta(Layer::sand), t.quanta(Layer::water), t.real(Layer::vegetation),
-                                 t.real(Layer::obstacle), t.real(Layer::traversability)});
+  const Traversability traversability{roughness,
+                                      step_height,
+                                      p.slope_deg * degree,
+                                      p.sand_slope_deg * degree,
+                                      p,
+                                      t.quanta(Layer::sand),
+                                      t.quanta(Layer::water),
+                                      t.real(Layer::vegetation),
+                                      t.real(Layer::obstacle),
+                                      t.real(Layer::traversability)};
+  const auto run = [&](const auto& law, bool wanted) {
+    Grid band = t.grid;
+    band.height = rows;
+    if (wanted) for_each_cell(exec, band, OnRows<std::decay_t<decltype(law)>>{law, first, t.grid.height});
+  };
+  run(orientation, orientation.slope || orientation.normal_x || orientation.normal_y || orientation.normal_z);
+  run(roughness, roughness.roughness != nullptr);
+  run(step_height, step_height.step_height != nullptr);
+  run(traversability, traversability.traversability != nullptr);
 }
 
 }  // namespace traversability

@@ -41,11 +41,6 @@ void require_moderate(const MapWindow& window, std::size_t layers, const std::st
                       std::to_string(static_cast<long long>(most_values)) + " values");
 }
 
-MapWindow grid_map_window(const MapParameters& p, const Snapshot& snapshot) {
-  if (p.grid_map_length_x == 0) return whole_window(snapshot);
-  return window_of({p.grid_map_x, p.grid_map_y, p.grid_map_length_x, p.grid_map_length_y}, snapshot);
-}
-
 void check_map_sizes(const MapSetup& maps, const GridParameters& grid) {
   Snapshot s;
   s.width = grid.width;
@@ -56,8 +51,8 @@ void check_map_sizes(const MapSetup& maps, const GridParameters& grid) {
   const MapParameters& p = maps.parameters;
   // The whole terrain is as large as it is: nobody has to subscribe.
   if (p.grid_map_length_x > 0)
-    require_moderate(grid_map_window(p, s), maps.grid_map_layers.size(),
-                     "grid_map_length_x and grid_map_length_y");
+    require_moderate(window_of({p.grid_map_x, p.grid_map_y, p.grid_map_length_x, p.grid_map_length_y}, s),
+                     maps.grid_map_layers.size(), "grid_map_length_x and grid_map_length_y");
   require_moderate(window_of({grid.origin_x, grid.origin_y, p.local_map_length_x, p.local_map_length_y}, s),
                    maps.local_map_layers.size(), "local_map_length_x and local_map_length_y");
 }

@@ -66,9 +66,6 @@ void read_map_setup(const YAML::Node& root, Faults& faults, MapSetup& maps, std:
 /// Throws ConfigError, naming the parameter, if a map would have more than 67108864 values on this grid.
 void check_map_sizes(const MapSetup& maps, const GridParameters& grid);
 
-/// The cells of ~grid_map; throws ConfigError as window_of() does.
-MapWindow grid_map_window(const MapParameters& p, const Snapshot& snapshot);
-
 /// Throws ConfigError, naming `what`, if `layers` of this window have more than 67108864 values (256 MiB).
 void require_moderate(const MapWindow& window, std::size_t layers, const std::string& what);
 

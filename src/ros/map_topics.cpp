@@ -5,6 +5,7 @@
 
 #include "desert_sim/io/picture.hpp"
 #include "desert_sim/ros/grid_map_message.hpp"
+#include "desert_sim/ros/map_cut.hpp"
 #include "desert_sim/ros/messages.hpp"
 #include "desert_sim/ros/topics.hpp"
 
@@ -49,53 +50,61 @@ sensor_msgs::ImagePtr picture_message(const TerrainState& state, const std::stri
 
 }  // namespace
 
+bool Topics::publish_cut(const Topic& topic, const std::string& name, const std::vector<MapLayer>& layers,
+                         int decimation, const std::function<MapWindow(const Snapshot&)>& choose) {
+  std::string problem;
+  try {
+    const MapCut cut = cut_terrain(simulation_, layers, [&](const Snapshot& terrain) {
+      const MapWindow window = choose(terrain);
+      require_moderate(window, layers.size(), name);
+      return window;
+    });
+    topic.publisher.publish(
+        boost::make_shared<GridMap>(grid_map(cut.state, frame_, layers, cut.window, decimation)));
+  } catch (const ConfigError& e) {
+    problem = e.what();
+  }
+  set_problem(name, problem);
+  return problem.empty();
+}
+
 void Topics::add_grid_map(const MapSetup& maps) {
-  Topic& topic = add(maps.parameters.grid_map_rate, terrain_layers(maps.grid_map_layers));
+  const bool whole = maps.parameters.grid_map_length_x == 0;
+  Topic& topic =
+      add(maps.parameters.grid_map_rate, whole ? terrain_layers(maps.grid_map_layers) : std::vector<Layer>());
   topic.publisher = advertise_terrain<GridMap>("grid_map", 1, topic);
-  topic.publish = [this, &topic, p = maps.parameters,
+  topic.publish = [this, &topic, whole, p = maps.parameters,
                    layers = maps.grid_map_layers](const TerrainState& state) {
-    try {
-      const MapWindow window = grid_map_window(p, *state.snapshot);
-      if (p.grid_map_length_x > 0) require_moderate(window, layers.size(), "grid_map");
-      topic.publisher.publish(
-          boost::make_shared<GridMap>(grid_map(state, frame_, layers, window, p.grid_map_decimation)));
-    } catch (const ConfigError& e) {  // a checkpoint with another grid was loaded
-      set_problem("grid_map", e.what());
-      return false;
-    }
-    set_problem("grid_map", "");
+    if (!whole)
+      return publish_cut(topic, "grid_map", layers, p.grid_map_decimation, [&p](const Snapshot& terrain) {
+        return window_of({p.grid_map_x, p.grid_map_y, p.grid_map_length_x, p.grid_map_length_y}, terrain);
+      });
+    topic.publisher.publish(boost::make_shared<GridMap>(
+        grid_map(state, frame_, layers, whole_window(*state.snapshot), p.grid_map_decimation)));
     return true;
   };
 }
 
 void Topics::add_local_map(const MapSetup& maps) {
-  Topic& topic = add(maps.parameters.local_map_rate, terrain_layers(maps.local_map_layers));
+  Topic& topic = add(maps.parameters.local_map_rate, {});
   topic.publisher = advertise_terrain<GridMap>("local_map", 1, topic);
   topic.follows = true;
   topic.ready = [this, frame = maps.parameters.robot_frame] {
     tf2::Transform robot;
     std::string why;
     const bool found = frames_.latest_to_terrain(frame, robot, why);
-    set_problem("local_map", why);
+    if (!found) set_problem("local_map", why);
     return found;
   };
-  topic.publish = [this, &topic, p = maps.parameters,
-                   layers = maps.local_map_layers](const TerrainState& state) {
-    tf2::Transform robot;
-    std::string why;
-    if (frames_.latest_to_terrain(p.robot_frame, robot, why)) {
-      try {
-        const MapWindow window = window_of(
-            {robot.getOrigin().x(), robot.getOrigin().y(), p.local_map_length_x, p.local_map_length_y},
-            *state.snapshot);
-        require_moderate(window, layers.size(), "local_map");
-        topic.publisher.publish(boost::make_shared<GridMap>(grid_map(state, frame_, layers, window)));
-      } catch (const ConfigError& e) {
-        why = e.what();
-      }
-    }
-    set_problem("local_map", why);
-    return why.empty();
+  topic.publish = [this, &topic, p = maps.parameters, layers = maps.local_map_layers](const TerrainState&) {
+    return publish_cut(topic, "local_map", layers, 1, [this, &p](const Snapshot& terrain) {
+      tf2::Transform robot;
+      std::string why;
+      if (!frames_.latest_to_terrain(p.robot_frame, robot, why)) throw ConfigError(why);
+      return window_of(
+          {robot.getOrigin().x(), robot.getOrigin().y(), p.local_map_length_x, p.local_map_length_y},
+          terrain);
+    });
   };
 }
 

@@ -11,7 +11,7 @@ namespace desert_sim {
 
 namespace {
 
-constexpr double most_cells = 1 << 30;  // of an axis, so that sums of two stay integers
+constexpr double most_cells = 1 << 29;  // of an axis, so that sums of them stay integers
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
 [[noreturn]] void refuse(const std::string& field, double value, const std::string& allowed) {
@@ -27,8 +27,8 @@ void axis_window(const std::string& axis, double center, double length, double o
   if (!std::isfinite(length) || length <= 0) refuse("length_" + axis, length, "a finite number above 0");
   const double cells = std::max(1.0, std::floor(length / cell + 0.5));
   const double start = std::floor((center - origin) / cell - 0.5 * cells + 0.5);
-  if (cells > most_cells) refuse("length_" + axis, length, "below 2^30 cells");
-  if (std::abs(start) > most_cells) refuse("center." + axis, center, "within 2^30 cells of the terrain");
+  if (cells > most_cells) refuse("length_" + axis, length, "at most 2^29 cells");
+  if (std::abs(start) > most_cells) refuse("center." + axis, center, "within 2^29 cells of the terrain");
   first = static_cast<int>(start);
   count = static_cast<int>(cells);
 }
@@ -98,8 +98,8 @@ std::vector<float> window_values(const Snapshot& s, const MapLayer& layer, const
                                  int decimation) {
   const std::vector<float>* values = s.find(layer.layer);
   const Blocks blocks{values ? values->data() : nullptr, static_cast<std::size_t>(s.width),
-                      axis_cells(w.x0, w.width, s.width, s.periodic),
-                      axis_cells(w.y0, w.height, s.height, s.periodic)};
+                      axis_cells(w.x0, w.width, s.width, s.periodic_x),
+                      axis_cells(w.y0, w.height, s.height, s.periodic_y)};
   const auto step = static_cast<std::size_t>(decimation);
   const std::size_t columns = blocks.columns.size(), rows = blocks.rows.size();
   std::vector<float> result;

@@ -24,7 +24,7 @@ MapWindow whole_window(const Snapshot& snapshot);
 /// The cells of a region: its lengths rounded to whole cells (half cells up, one at least), and of all
 /// windows of that size the one whose centre is nearest to the region's. A region along the cells' edges is
 /// met exactly. Throws ConfigError, naming the field, for numbers that are not finite, lengths not above 0 or
-/// beyond 2³⁰ cells.
+/// beyond 2²⁹ cells.
 MapWindow window_of(const MapRegion& region, const Snapshot& snapshot);
 
 /// Throws ConfigError, saying how far the terrain reaches, if some of the window lies off it.

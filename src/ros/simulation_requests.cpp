@@ -66,7 +66,7 @@ std::future<void> SimulationThread::resume() {
   });
 }
 
-std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers) {
+std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band) {
   return ask<TerrainState>([=] {
     settle();
     std::vector<Layer> in_use;
@@ -74,7 +74,7 @@ std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& la
       if (session_->simulation().terrain().has(layer) || info(layer).lifetime == Lifetime::on_request)
         in_use.push_back(layer);
     ++snapshots_;
-    return TerrainState{moment(), session_->simulation().snapshot(in_use)};
+    return TerrainState{moment(), session_->simulation().snapshot(in_use, band)};
   });
 }
 

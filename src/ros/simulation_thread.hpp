@@ -48,7 +48,7 @@ class SimulationThread {
   std::future<Reached> step(std::uint32_t steps);
   std::future<void> pause();
   std::future<void> resume();
-  std::future<TerrainState> terrain(const std::vector<Layer>& layers);
+  std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {});
   std::future<TerrainToSave> terrain_to_save();
   /// With the parameters and the wind regime of now.
   std::future<Scenario> scenario();

@@ -5,7 +5,7 @@
 
 #include "desert_sim/ros/frames.hpp"
 #include "desert_sim/ros/grid_map_message.hpp"
-#include "desert_sim/ros/simulation_thread.hpp"
+#include "desert_sim/ros/map_cut.hpp"
 
 namespace desert_sim {
 
@@ -19,13 +19,8 @@ class Submaps {
   GridMap get(const GetGridMapRequest& request) const;
 
  private:
-  struct Cut {
-    std::vector<MapLayer> layers;
-    MapWindow window;
-    TerrainState state;
-  };
-  Cut cut(const std_msgs::Header& header, const geometry_msgs::Point& center, double length_x,
-          double length_y, const std::vector<std::string>& layers) const;
+  MapCut cut(const std::vector<MapLayer>& layers, const std_msgs::Header& header,
+             const geometry_msgs::Point& center, double length_x, double length_y) const;
 
   SimulationThread& simulation_;
   const Frames& frames_;

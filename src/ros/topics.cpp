@@ -154,11 +154,11 @@ std::vector<TopicRate> Topics::rates() const {
 // ---- on the publishing thread ----
 
 void Topics::set_problem(const std::string& topic, const std::string& problem) {
+  if (!problem.empty()) ROS_WARN_THROTTLE(30, "%s: %s", topic.c_str(), problem.c_str());
   const std::lock_guard<std::mutex> lock(mutex_);
   if (problem.empty()) {
     problems_.erase(topic);
   } else {
-    ROS_WARN_THROTTLE(30, "%s: %s", topic.c_str(), problem.c_str());
     problems_[topic] = problem;
   }
 }
@@ -282,26 +282,12 @@ std::vector<Topics::Topic*> Topics::ready_ones(const std::vector<Topic*>& due) {
   return ready;
 }
 
-/// The state that is held serves again while it is the present one.
-TerrainState Topics::terrain(const std::vector<Layer>& layers, bool hold) {
-  const bool holds =
-      held_.snapshot && held_.moment.change == simulation_.changes() &&
-      std::all_of(layers.begin(), layers.end(), [this](Layer layer) {
-        return std::find(held_layers_.begin(), held_layers_.end(), layer) != held_layers_.end();
-      });
-  const TerrainState state = holds ? held_ : simulation_.terrain(layers).get();
-  if (!holds) held_layers_ = layers;
-  held_ = hold ? state : TerrainState();
-  return state;
-}
-
 void Topics::publish_terrain(const std::vector<Topic*>& due) {
   std::vector<Layer> layers;
   for (const Topic* topic : due)
     for (Layer layer : topic->layers)
       if (std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
-  const TerrainState state =
-      terrain(layers, std::any_of(due.begin(), due.end(), [](const Topic* topic) { return topic->follows; }));
+  const TerrainState state = simulation_.terrain(layers).get();
   for (Topic* topic : due) {
     if (topic->publish(state)) {
       ++publications_;

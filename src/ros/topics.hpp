@@ -59,8 +59,8 @@ class Topics {
   /// What made publishing end, of which ~status has told then: a failure of the simulation or of publishing.
   /// Empty while all is well.
   std::string failure() const;
-  /// By the name of a topic that somebody listens to, why nothing is published on it: for ~local_map that
-  /// there is no transform.
+  /// By the name of a topic, why nothing could be published on it when it was last due for somebody: for
+  /// local_map that there is no transform.
   std::map<std::string, std::string> problems() const;
 
  private:
@@ -96,6 +96,9 @@ class Topics {
   void add_others(const PublisherParameters& p);
   void add_grid_map(const MapSetup& maps);
   void add_local_map(const MapSetup& maps);
+  /// As a GridMap, the cells that `choose` says; if it refuses (ConfigError) nothing, and the reason is kept.
+  bool publish_cut(const Topic& topic, const std::string& name, const std::vector<MapLayer>& layers,
+                   int decimation, const std::function<MapWindow(const Snapshot&)>& choose);
   void add_costmap(const MapParameters& p);
   void add_image(const MapParameters& p);
   void want(Topic& topic);
@@ -109,7 +112,6 @@ class Topics {
   bool something_is_due(Clock::time_point& next, bool& listen);
   std::vector<Topic*> topics_that_are_due(bool all);
   std::vector<Topic*> ready_ones(const std::vector<Topic*>& due);
-  TerrainState terrain(const std::vector<Layer>& layers, bool hold);
   void publish_terrain(const std::vector<Topic*>& due);
   void publish_status();
   void publish_failure(const std::string& what);
@@ -123,8 +125,6 @@ class Topics {
   std::unique_ptr<ElevationStream> elevation_;
   std::unique_ptr<WindMarkers> markers_;
   std::unique_ptr<CostmapStream> costmap_;
-  TerrainState held_;  ///< what was published last, while a topic follows something else than the terrain
-  std::vector<Layer> held_layers_;
   ros::Publisher status_, diff_;
   Clock::duration status_period_{0};
   Clock::time_point status_due_;

@@ -28,12 +28,18 @@ struct MaterialBalance {
   double relative_residual() const;
 };
 
+/// Rows first … first + count − 1 of a terrain; all if count is 0. On a periodic one they go on over its
+/// edges.
+struct RowBand {
+  int first = 0, count = 0;
+};
+
 /// Layers at one moment, converted to floats in the layer's unit. Immutable once made; outlives the
 /// simulation.
 struct Snapshot {
   int width = 0, height = 0;
   double cell_size = 1, origin_x = 0, origin_y = 0;
-  bool periodic = true;  ///< in both directions; else open
+  bool periodic_x = true, periodic_y = true;  ///< else open; a band of rows is open to north and south
   std::uint64_t step = 0;
   double time = 0;  ///< simulated [s]
   wind::Vector wind_above;
@@ -78,7 +84,9 @@ class Simulation {
 
   /// Copies layers to the host. Elevation and wind are brought up to date first, and layers that exist on
   /// request computed, if they are asked for; what was never asked for takes no memory.
-  std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers);
+  /// Of a band of rows only those are copied and computed: the snapshot's height and origin are the band's,
+  /// less what lies off an open terrain (at least one row is left).
+  std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers, const RowBand& band = {});
   /// Layers that are in use, derived ones included.
   std::vector<Layer> layers_in_use() const;
 
@@ -112,6 +120,8 @@ class Simulation {
   /// Before the first step (also of a loaded checkpoint) derived layers and repose tangents are not there
   /// yet.
   void refresh_derived();
+  /// Computes those of `layers` that exist on request, in a band that lies on the terrain.
+  void judge(const std::vector<Layer>& layers, const RowBand& rows);
   void allocate_work();
   /// What depends on parameters that can change live: layers and memory of processes that are on.
   void prepare_processes();

@@ -83,11 +83,17 @@ void Terrain::set_words(Layer layer, const std::vector<std::uint32_t>& words) {
   layers_[static_cast<std::size_t>(layer)].upload(words);
 }
 
-std::vector<float> Terrain::values(Layer layer) const {
-  const std::size_t cells = static_cast<std::size_t>(grid_.cells());
+std::vector<float> Terrain::values(Layer layer, int first, int rows) const {
+  const std::size_t width = static_cast<std::size_t>(grid_.width),
+                    cells = width * static_cast<std::size_t>(rows);
   std::vector<float> values(cells, 0.0f);
   if (!has(layer)) return values;
-  const std::vector<std::uint32_t> stored = words(layer);
+  const std::size_t south = static_cast<std::size_t>(wrap(first, grid_.height)) * width,
+                    to_edge = std::min(cells, static_cast<std::size_t>(grid_.cells()) - south);
+  const Buffer<std::uint32_t>& buffer = layers_[static_cast<std::size_t>(layer)];
+  std::vector<std::uint32_t> stored(cells);
+  buffer.download(south, to_edge, stored.data());
+  if (to_edge < cells) buffer.download(0, cells - to_edge, stored.data() + to_edge);
   if (info(layer).storage == Storage::real) {
     std::memcpy(values.data(), stored.data(), cells * sizeof(float));
     return values;

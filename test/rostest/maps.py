@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """~grid_map, ~local_map, ~get_submap and ~get_grid_map, cell by cell."""
 import math
+import threading
 import time
 
 import genpy.dynamic
@@ -204,6 +205,28 @@ class Maps(MapTest):
             self.assertFalse(answer.success, arguments)
             self.assertIn(named, answer.message)
             self.assertEqual((answer.map.width, len(answer.map.layers)), (0, 0))
+
+    def test_get_submap_for_many_at_once_while_it_runs_and_is_reset(self):
+        call("resume", Trigger)
+        wrong = []
+
+        def ask(worker):
+            for n in range(15):
+                bad = (worker + n) % 3 == 0
+                answer = self.submap(74, 28, 1e6 if bad else 20, 10, ["elevation", "slope"])
+                if answer.success == bad or (not bad and [len(layer.data) for layer in answer.map.layers] != [50, 50]):
+                    wrong.append(answer.message)
+
+        workers = [threading.Thread(target=ask, args=(n,)) for n in range(8)]
+        for worker in workers:
+            worker.start()
+        for _ in range(5):
+            self.assertTrue(call("reset", Trigger).success)
+            time.sleep(0.05)
+        for worker in workers:
+            worker.join(20)
+            self.assertFalse(worker.is_alive())
+        self.assertEqual(wrong, [])
 
     def test_get_grid_map_of_the_real_type(self):
         answer = call("get_grid_map", GetGridMap, frame_id="terrain", position_x=118, position_y=-10, length_x=16,

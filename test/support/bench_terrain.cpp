@@ -89,7 +89,7 @@ void BenchTerrain::shadow(const WindShadowParameters& p) {
 void BenchTerrain::judge(const TraversabilityParameters& p) {
   for (const LayerInfo& row : layer_table)
     if (row.lifetime == Lifetime::on_request) terrain.require(row.layer);
-  with_backend(exec(), [&](auto& e) { traversability::step(e, terrain.view(), p); });
+  with_backend(exec(), [&](auto& e) { traversability::step(e, terrain.view(), p, 0, grid().height); });
 }
 void BenchTerrain::echo(const EchoDuneParameters& p) {
   surface();

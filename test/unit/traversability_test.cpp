@@ -270,6 +270,57 @@ TEST_P(TraversabilityLaw, IsComputedOnlyForWhoAsksAndIsNoPartOfTheState) {
   EXPECT_NE(s->snapshot(judged)->layers.at(Layer::slope), all->layers.at(Layer::slope)) << "of the new state";
 }
 
+/// A band of rows has what these rows of the whole have, over periodic edges too, and less what is off open
+/// ones.
+TEST_P(TraversabilityLaw, ABandOfRowsIsThatOfTheWhole) {
+  for (const char* boundary : {"periodic", "open"}) {
+    const std::string yaml = test::grid_yaml(20, 12, boundary) +
+                             "terrain: [noise: {layer: sand, low: 0, high: 4, scale: 6}]\nwind: {speed: 5}\n";
+    auto s = simulation(yaml);
+    std::vector<Layer> layers = judged;
+    layers.insert(layers.end(), {Layer::elevation, Layer::sand, Layer::wind_x});
+    const auto all = s->snapshot(layers);
+    const bool periodic = all->periodic_y;
+    for (const RowBand band :
+         {RowBand{0, 12}, {3, 4}, {11, 1}, {-3, 7}, {9, 6}, {-40, 5}, {50, 3}, {-5, 90}}) {
+      SCOPED_TRACE(std::string(boundary) + ", " + std::to_string(band.count) + " rows from " +
+                   std::to_string(band.first));
+      const auto part = s->snapshot(layers, band);
+      const int first = static_cast<int>(std::lround(part->origin_y - all->origin_y));
+      const int wanted = std::min(band.first + band.count, 12) - std::max(band.first, 0);
+      if (periodic) {
+        ASSERT_EQ(part->height, std::min(band.count, 12));
+      } else {
+        ASSERT_EQ(part->height, std::max(1, wanted));
+        ASSERT_TRUE(first >= 0 && first + part->height <= 12);
+      }
+      if (band.count < 12 && (periodic || wanted == band.count)) {
+        EXPECT_EQ(first, band.first);
+      }
+      for (Layer layer : layers) {
+        const auto &a = all->layers.at(layer), &b = part->layers.at(layer);
+        ASSERT_EQ(b.size(), 20u * static_cast<std::size_t>(part->height));
+        for (int y = 0; y < part->height; ++y)
+          for (int x = 0; x < 20; ++x)
+            ASSERT_EQ(b[static_cast<std::size_t>(y * 20 + x)],
+                      a[static_cast<std::size_t>(wrap(first + y, 12) * 20 + x)])
+                << info(layer).name << " " << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST_P(TraversabilityLaw, OfABandOnlyTheRowsAreComputed) {
+  auto s = simulation(test::grid_yaml(20, 12, "open") +
+                      "terrain: [noise: {layer: sand, low: 0, high: 4, scale: 6}]\nwind: {speed: 5}\n");
+  s->snapshot({Layer::slope}, {3, 2});
+  const std::vector<float> slope = s->terrain().values(Layer::slope);
+  for (int i = 0; i < 20 * 12; ++i) {
+    const bool computed = i >= 3 * 20 && i < 5 * 20;
+    EXPECT_EQ(slope[static_cast<std::size_t>(i)] > 0, computed) << i % 20 << ", " << i / 20;
+  }
+}
+
 DESERT_ON_EACH_BACKEND(TraversabilityLaw);
 
 }  // namespace
