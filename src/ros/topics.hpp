@@ -63,6 +63,7 @@ class Topics {
   Topic& add(double rate, std::vector<Layer> layers);
   void add_elevation(const PublisherParameters& p);
   void add_others(const PublisherParameters& p);
+  void want(Topic& topic);
 
   void thread();
   void loop();
@@ -93,6 +94,7 @@ class Topics {
   std::uint64_t asked_ = 0, served_ = 0;  ///< calls of publish_now()
   std::string failure_;
   std::thread thread_;
+  ros::Subscriber keyframe_requests_;  ///< the first to go: its callback uses all of this
 };
 
 }  // namespace desert_sim
