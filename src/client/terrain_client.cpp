@@ -4,6 +4,7 @@
 #include <ros/init.h>
 #include <ros/master.h>
 #include <ros/names.h>
+#include <std_msgs/Empty.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,8 @@ Clock::duration duration_of(double seconds) {
 TerrainClient::Options checked(TerrainClient::Options options) {
   if (options.elevation_topic.empty()) options.elevation_topic = options.node + "/elevation";
   if (options.updates_topic.empty()) options.updates_topic = options.node + "/elevation_updates";
-  for (const std::string* name : {&options.elevation_topic, &options.updates_topic}) {
+  if (options.request_topic.empty()) options.request_topic = options.node + "/request_keyframe";
+  for (const std::string* name : {&options.elevation_topic, &options.updates_topic, &options.request_topic}) {
     std::string why;
     if (!ros::names::validate(*name, why))
       throw ConfigError("TerrainClient: '" + *name + "' is not the name of a topic: " + why);
@@ -49,6 +51,7 @@ TerrainClient::TerrainClient(const ros::NodeHandle& node, Options options)
       node_(node),
       requests_(duration_of(options_.shortest_pause), duration_of(options_.longest_pause)) {
   if (options_.own_thread) node_.setCallbackQueue(&queue_);
+  asks_ = node_.advertise<std_msgs::Empty>(options_.request_topic, 1);
   subscribe_to_keyframes();
   updates_ = node_.subscribe<ElevationUpdate>(
       options_.updates_topic, options_.update_queue,
@@ -174,7 +177,7 @@ void TerrainClient::thread() {
       if (!options_.own_thread) changed_.wait_for(lock, tick, [this] { return stopping_; });
       if (stopping_) return;
     }
-    if (keyframe_is_due()) subscribe_to_keyframes();
+    if (keyframe_is_due()) ask_for_keyframe();
   }
 }
 
@@ -184,11 +187,23 @@ bool TerrainClient::keyframe_is_due() {
   const std::unique_lock<std::mutex> one_at_a_time(taking_, std::try_to_lock);
   if (!one_at_a_time) return false;  // in the middle of a message, which may be the one
   if (!requests_.due(assembler_.need(), Clock::now())) return false;
-  // To subscribe without a master waits for one: so long the last map is all there is.
-  if (!ros::master::check()) return false;
   assembler_.keyframe_overdue();
   tell({}, nullptr);
   return true;
+}
+
+void TerrainClient::ask_for_keyframe() {
+  bool by_message = asks_.getNumSubscribers() > 0;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    by_message = by_message && statistics_.requests % 2 == 0;
+    ++statistics_.requests;
+  }
+  if (by_message) {
+    asks_.publish(std_msgs::Empty());
+  } else if (ros::master::check()) {  // to subscribe without a master would wait for one
+    subscribe_to_keyframes();
+  }
 }
 
 void TerrainClient::subscribe_to_keyframes() {
@@ -196,7 +211,6 @@ void TerrainClient::subscribe_to_keyframes() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     before = keyframes_;
-    if (before) ++statistics_.requests;
   }
   // roscpp waits for callbacks that are under way: no lock may be held.
   before.shutdown();

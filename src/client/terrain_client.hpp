@@ -9,11 +9,11 @@
 ///     terrain.map()->info().frame std::shared_ptr<const desert_sim::ElevationMap> map = terrain.map();  //
 ///     one moment, which never changes
 ///
-/// What is lost between the node and the client is noticed, and a new keyframe is asked for by subscribing to
-/// keyframes anew: the node sends the present state to each new connection. Until it comes the last good map
-/// is held. roscpp has one connection a topic and process: while something else in the process is subscribed
-/// to the same keyframes, the node does not see a new connection, and the client waits for the next keyframe
-/// of its own accord (keyframe_rate).
+/// What is lost between the node and the client is noticed, and a new keyframe is asked for; until it comes
+/// the last good map is held. There are two ways to ask, taken in turn: a message on ~request_keyframe of the
+/// node, and a new connection for keyframes, which any sender answers that sends its present state to new
+/// subscribers (roscpp makes no new connection while something else in the process is subscribed to the same
+/// topic).
 
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
@@ -38,6 +38,7 @@ class TerrainClient {
     std::string node = "desert_sim";  ///< name of the simulator's node; topics are in its namespace
     std::string elevation_topic;      ///< of keyframes; empty: <node>/elevation
     std::string updates_topic;        ///< empty: <node>/elevation_updates
+    std::string request_topic;        ///< empty: <node>/request_keyframe
     /// Whether messages are taken in by a thread of the client's own. Otherwise by the callback queue of the
     /// node handle that was given (ros::spin(), a spinner, a nodelet's threads).
     bool own_thread = true;
@@ -86,6 +87,7 @@ class TerrainClient {
 
  private:
   void subscribe_to_keyframes();
+  void ask_for_keyframe();
   void take(const ElevationGrid::ConstPtr& keyframe);
   void take(const ElevationUpdate::ConstPtr& update);
   void tell(const MapChange& change, const ros::Time* update_stamp);
@@ -96,6 +98,7 @@ class TerrainClient {
   Options options_;
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
+  ros::Publisher asks_;
   ros::Subscriber updates_;
 
   std::mutex taking_;  ///< held while a message is taken in and told of; readers never wait for it

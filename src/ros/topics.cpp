@@ -1,6 +1,7 @@
 #include "desert_sim/ros/topics.hpp"
 
 #include <ros/console.h>
+#include <std_msgs/Empty.h>
 
 #include <algorithm>
 
@@ -64,6 +65,9 @@ void Topics::add_elevation(const PublisherParameters& p) {
   updates.publisher = advertise_terrain<ElevationUpdate>("elevation_updates", 100, keyframes);
   elevation_ = std::make_unique<ElevationStream>(keyframes.publisher, updates.publisher, frame_,
                                                  p.update_threshold, p.update_tile);
+  // roscpp has one connection a topic and process: those who share one are no new subscribers, and ask.
+  keyframe_requests_ = node_.subscribe<std_msgs::Empty>(
+      "request_keyframe", 1, [this, &keyframes](const std_msgs::Empty::ConstPtr&) { want(keyframes); });
   updates.publish = [this](const TerrainState& state) { return elevation_->publish_update(state); };
   keyframes.publish = [this](const TerrainState& state) {
     elevation_->publish_keyframe(state);
@@ -104,6 +108,12 @@ void Topics::want(Topic& topic) {
 void Topics::notify() {
   if (!listens_to_changes_ && !simulation_.failed()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
+  woken_.notify_all();
+}
+
+void Topics::want(Topic& topic) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  topic.wanted = true;
   woken_.notify_all();
 }
 

@@ -139,6 +139,7 @@ class Topics {
   std::string failure_;
   std::map<std::string, std::string> problems_;
   std::thread thread_;
+  ros::Subscriber keyframe_requests_;  ///< the first to go: its callback uses all of this
 };
 
 template <class Message>

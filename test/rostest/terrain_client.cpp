@@ -264,6 +264,20 @@ TEST_F(Client, AQueueOfTheCallersTakesMessagesInWhenItIsServed) {
   EXPECT_TRUE(client.wait_for_terrain(0));
 }
 
+// roscpp gives both one connection, so that the node does not see that the second has come.
+TEST_F(Client, TwoInOneProcessBothGetThePausedTerrain) {
+  const TerrainClient first(node_);
+  ASSERT_TRUE(first.wait_for_terrain(timeout));
+  ASSERT_TRUE(first.wait_for_step(step(6).step, timeout));
+  const TerrainClient second(node_);
+  ASSERT_TRUE(second.wait_for_terrain(timeout));
+  EXPECT_EQ(second.map()->info().step, 6u);
+  EXPECT_LE(second.statistics().requests, 2u);
+  ASSERT_TRUE(first.wait_for_step(step(5).step, timeout) && second.wait_for_step(11, timeout));
+  EXPECT_LE(largest_difference(*first.map()), threshold + 1e-6);
+  EXPECT_LE(largest_difference(*second.map()), threshold + 1e-6);
+}
+
 TEST_F(Client, EndsWhileMessagesCome) {
   ASSERT_TRUE(trigger("resume"));
   const auto start = std::chrono::steady_clock::now();
