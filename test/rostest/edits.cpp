@@ -247,6 +247,35 @@ TEST_F(Edits, AreToldOnceToWhoeverListens) {
   EXPECT_EQ(late.count(), 0u);
 }
 
+/// Good and bad ones at once from several callers: each good one counts, no bad one does, all are told.
+TEST_F(Edits, ComeFromSeveralCallersAtOnce) {
+  Listener<TerrainDiff> diffs("terrain_diff");
+  ASSERT_TRUE(wait_until([&] {
+    EditTerrain::Request nothing = a_shape("circle");
+    nothing.value = 0;
+    edit(nothing);
+    return diffs.count() > 0;
+  }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const std::size_t before = diffs.count();
+  constexpr int callers = 4, calls = 15;
+  std::vector<std::thread> threads;
+  for (int caller = 0; caller < callers; ++caller)
+    threads.emplace_back([caller] {
+      for (int n = 0; n < calls; ++n) {
+        EditTerrain::Request request = a_shape((caller + n) % 2 ? "circle" : "rectangle");
+        request.value = 0.125;
+        EXPECT_TRUE(call<EditTerrain>("edit_terrain", request).success);
+        request.radius = -1;
+        EXPECT_FALSE(call<EditTerrain>("edit_terrain", request).success);
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_NEAR(sand(51, 31), 0.5 + callers * calls * 0.125, 1e-5);
+  EXPECT_TRUE(diffs.wait_for_count(before + callers * calls));
+  EXPECT_EQ(diffs.count(), before + callers * calls);
+}
+
 TEST_F(Edits, RefusesShapesThatAreNone) {
   const auto refused = [](EditTerrain::Request request,
                           const std::function<void(EditTerrain::Request&)>& spoil, const std::string& what,
