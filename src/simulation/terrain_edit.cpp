@@ -46,8 +46,9 @@ TerrainEdit::TerrainEdit(const command::EditTerrain& command, const Terrain& ter
   place_shape();
   change_ = Buffer<Quanta>(terrain.exec(), static_cast<std::size_t>(brush_.area().cells()));
   const double cells = brush_.area().cells();
+  const int passes = command.merge == BrushMerge::smooth ? command.smooth_passes : 1;
   if (command.shape == BrushShape::polygon)
-    require_work(cells * brush_.shape.count, most_edge_visits, cells,
+    require_work(cells * brush_.shape.count * passes, most_edge_visits, cells,
                  "for a polygon of " + std::to_string(brush_.shape.count) + " points");
   if (command.merge == BrushMerge::smooth)
     smooth();

@@ -205,12 +205,23 @@ TEST_F(Edits, ShapesTurnAndMoveWithTheirFrame) {
   expect_refused<EditTerrain>("edit_terrain", request, "'camera' is tilted by 90", "45");
 }
 
-TEST_F(Edits, AreToldOnceToWhoeverListens) {
-  Listener<TerrainDiff> diffs("terrain_diff");
-  ASSERT_TRUE(wait_until([&] {  // until the node knows of the listener too
-    edit(a_shape("circle"));
+/// Edits that change nothing, until the node knows of the listener; and one of rock, so that all those before
+/// it have come in.
+void connect(const Listener<TerrainDiff>& diffs) {
+  EditTerrain::Request nothing = a_shape("circle");
+  nothing.value = 0;
+  ASSERT_TRUE(wait_until([&] {
+    edit(nothing);
     return diffs.count() > 0;
   }));
+  nothing.layer = "bedrock";
+  edit(nothing);
+  ASSERT_TRUE(diffs.wait_for([](const TerrainDiff& diff) { return diff.layer == "bedrock"; }));
+}
+
+TEST_F(Edits, AreToldOnceToWhoeverListens) {
+  Listener<TerrainDiff> diffs("terrain_diff");
+  connect(diffs);
   const std::size_t before = diffs.count();
   EditTerrain::Request request = a_shape("rectangle");
   request.conserve = true;
@@ -245,6 +256,32 @@ TEST_F(Edits, AreToldOnceToWhoeverListens) {
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_EQ(diffs.count(), before + 1);
   EXPECT_EQ(late.count(), 0u);
+}
+
+/// Good and bad ones at once from several callers: each good one counts, no bad one does, all are told.
+TEST_F(Edits, ComeFromSeveralCallersAtOnce) {
+  Listener<TerrainDiff> diffs("terrain_diff");
+  connect(diffs);
+  const std::size_t before = diffs.count();
+  constexpr int callers = 4, calls = 15;
+  std::vector<std::thread> threads;
+  for (int caller = 0; caller < callers; ++caller)
+    threads.emplace_back([caller] {
+      ros::ServiceClient client =
+          ros::NodeHandle().serviceClient<EditTerrain>("/desert_sim/edit_terrain", true);
+      EditTerrain exchange;
+      for (int n = 0; n < calls; ++n) {
+        exchange.request = a_shape((caller + n) % 2 ? "circle" : "rectangle");
+        exchange.request.value = 0.125;
+        EXPECT_TRUE(client.call(exchange) && exchange.response.success) << exchange.response.message;
+        exchange.request.radius = -1;
+        EXPECT_TRUE(client.call(exchange) && !exchange.response.success);
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_NEAR(sand(51, 31), 0.5 + callers * calls * 0.125, 1e-5);
+  EXPECT_TRUE(diffs.wait_for_count(before + callers * calls));
+  EXPECT_EQ(diffs.count(), before + callers * calls);
 }
 
 TEST_F(Edits, RefusesShapesThatAreNone) {
