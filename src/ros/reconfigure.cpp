@@ -25,8 +25,8 @@ Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Top
   const Scenario scenario = simulation_.scenario().get();
   descriptions_ = node.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true);
   updates_ = node.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true);
-  descriptions_.publish(
-      boost::make_shared<dynamic_reconfigure::ConfigDescription>(reconfigure_description(scenario)));
+  descriptions_.publish(boost::make_shared<dynamic_reconfigure::ConfigDescription>(
+      reconfigure_description(scenario, simulation_.step_rate())));
   publish(scenario);
   service_ = node.advertiseService("set_parameters", &Reconfigure::set, this);
   timer_ =
@@ -34,7 +34,8 @@ Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Top
 }
 
 void Reconfigure::publish(const Scenario& scenario) {
-  const auto values = boost::make_shared<dynamic_reconfigure::Config>(reconfigure_values(scenario));
+  const auto values =
+      boost::make_shared<dynamic_reconfigure::Config>(reconfigure_values(scenario, simulation_.step_rate()));
   const std::lock_guard<std::mutex> lock(mutex_);
   if (same(*values, published_)) return;
   published_ = *values;
@@ -43,13 +44,15 @@ void Reconfigure::publish(const Scenario& scenario) {
 
 bool Reconfigure::set(Request& request, Response& response) {
   try {
+    const double rate = reconfigure_step_rate(request.config, simulation_.step_rate());
     const Settings settings = reconfigure_settings(request.config, simulation_.scenario().get());
     if (!settings.empty()) {
       simulation_.apply(command::SetParameters{settings}).get();
       topics_.status_changed();
     }
+    if (rate != simulation_.step_rate()) simulation_.set_step_rate(rate).get();
     const Scenario present = simulation_.scenario().get();
-    response.config = reconfigure_values(present);
+    response.config = reconfigure_values(present, simulation_.step_rate());
     publish(present);
     return true;
   } catch (const Error& e) {
@@ -61,10 +64,12 @@ bool Reconfigure::set(Request& request, Response& response) {
 /// Other commands change the wind, and a reset or a checkpoint everything.
 void Reconfigure::look() {
   const std::uint64_t commands = simulation_.commands();
-  if (commands == seen_) return;
+  const double rate = simulation_.step_rate();
+  if (commands == seen_ && rate == seen_rate_) return;
   try {
     publish(simulation_.scenario().get());
     seen_ = commands;
+    seen_rate_ = rate;
   } catch (const Error&) {
     // The simulation is ending, or has failed, which ~status tells.
   }

@@ -31,6 +31,7 @@ class Reconfigure {
   std::mutex mutex_;
   dynamic_reconfigure::Config published_;  ///< under mutex_
   std::uint64_t seen_ = 0;                 ///< commands of the simulation, when it was last looked at
+  double seen_rate_ = -1;                  ///< step rate then [steps/s]
   ros::Publisher descriptions_, updates_;
   ros::ServiceServer service_;
   ros::WallTimer timer_;

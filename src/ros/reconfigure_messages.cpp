@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 
+#include "desert_sim/ros/node_parameters.hpp"
 #include "desert_sim/scenario/live_parameters.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
 
@@ -14,7 +15,7 @@ using dynamic_reconfigure::Config;
 
 namespace {
 
-constexpr const char* separator = "__";
+constexpr const char *separator = "__", *step_rate_name = "step_rate";
 
 /// How a parameter travels.
 template <class T>
@@ -102,6 +103,29 @@ std::string description_of(const Row& row) {
   return unit.empty() || unit == "1" ? doc : doc + " [" + unit + "]";
 }
 
+template <class Row, class T>
+void describe(dynamic_reconfigure::ConfigDescription& description, dynamic_reconfigure::Group& group,
+              const std::string& name, const Row& row, const T&) {
+  dynamic_reconfigure::ParamDescription parameter;
+  parameter.name = name;
+  parameter.type = type_name<T>();
+  parameter.description = description_of(row);
+  parameter.edit_method = edit_method(row);
+  group.parameters.push_back(parameter);
+  add_limit<T>(description.min, name, row, row.lowest);
+  add_limit<T>(description.max, name, row, row.highest);
+}
+
+/// Calls visit(row, default) for the node's step_rate.
+template <class Visit>
+void with_step_rate_row(Visit&& visit) {
+  const NodeParameters node;
+  for_each_parameter(node, [&](const auto& row, const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
+      if (row.name == std::string(step_rate_name)) visit(row, value);
+  });
+}
+
 /// Sections in their order; the group's id is 1 + the index.
 std::vector<std::string> section_names() {
   std::vector<std::string> names;
@@ -143,8 +167,9 @@ std::map<std::string, std::string> texts(const Config& config) {
 
 }  // namespace
 
-Config reconfigure_values(const Scenario& scenario) {
+Config reconfigure_values(const Scenario& scenario, double step_rate) {
   Config config;
+  put(config.doubles, step_rate_name, step_rate);
   for_each_live_parameter(scenario, [&](const std::string& section, const auto& row, const auto& value) {
     add_value(config, section + separator + row.name, row, value);
   });
@@ -152,9 +177,9 @@ Config reconfigure_values(const Scenario& scenario) {
   return config;
 }
 
-dynamic_reconfigure::ConfigDescription reconfigure_description(const Scenario& defaults) {
+dynamic_reconfigure::ConfigDescription reconfigure_description(const Scenario& defaults, double step_rate) {
   dynamic_reconfigure::ConfigDescription description;
-  description.dflt = reconfigure_values(defaults);
+  description.dflt = reconfigure_values(defaults, step_rate);
   for (const auto& state : group_states()) {
     dynamic_reconfigure::Group group;
     group.name = state.name;
@@ -162,26 +187,35 @@ dynamic_reconfigure::ConfigDescription reconfigure_description(const Scenario& d
     description.groups.push_back(group);
   }
   for_each_live_parameter(defaults, [&](const std::string& section, const auto& row, const auto& value) {
-    using T = std::decay_t<decltype(value)>;
-    dynamic_reconfigure::ParamDescription parameter;
-    parameter.name = section + separator + row.name;
-    parameter.type = type_name<T>();
-    parameter.description = description_of(row);
-    parameter.edit_method = edit_method(row);
     for (auto& group : description.groups)
-      if (group.name == section) group.parameters.push_back(parameter);
-    add_limit<T>(description.min, parameter.name, row, row.lowest);
-    add_limit<T>(description.max, parameter.name, row, row.highest);
+      if (group.name == section) describe(description, group, section + separator + row.name, row, value);
+  });
+  with_step_rate_row([&](const auto& row, const auto& value) {
+    describe(description, description.groups.front(), row.name, row, value);
   });
   description.min.groups = description.max.groups = description.dflt.groups;
   return description;
 }
 
+double reconfigure_step_rate(const Config& request, double present) {
+  Faults faults("set_parameters");
+  double rate = present;
+  for (const auto& entry : request.doubles)
+    if (entry.name == step_rate_name) rate = entry.value;
+  with_step_rate_row([&](const auto& row, const auto&) {
+    if (!yaml::in_range<double>(rate, row))
+      faults.add(step_rate_name, "= " + std::to_string(rate) + " is not in " + yaml::allowed_range(row));
+  });
+  faults.throw_if_any();
+  return rate;
+}
+
 Settings reconfigure_settings(const Config& request, const Scenario& present) {
-  const std::map<std::string, std::string> now = texts(reconfigure_values(present));
+  const std::map<std::string, std::string> now = texts(reconfigure_values(present, 0));
   Faults faults("set_parameters");
   Settings settings;
   for (const auto& [name, value] : texts(request)) {
+    if (name == step_rate_name) continue;
     const std::size_t split = name.find(separator);
     const std::string path =
         split == std::string::npos ? name : name.substr(0, split) + "." + name.substr(split + 2);

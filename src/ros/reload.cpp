@@ -25,6 +25,12 @@ std::vector<std::string> texts(const P& parameters) {
   return all;
 }
 
+std::string shown(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
 void add(std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; }
 
 /// The node's own parameters are read at its start only.
@@ -62,9 +68,15 @@ std::string Reload::reload() {
       add(applied, setting);
     }
   }
-  add_differences(last_.node, setup.node, fixed);
+  const double rate = setup.node.step_rate;
+  if (rate != last_.node.step_rate) add(applied, "step_rate=" + shown(rate));
+  NodeParameters others = setup.node;  // those that are read at the start only
+  others.step_rate = last_.node.step_rate;
+  add_differences(last_.node, others, fixed);
   add_differences(last_.publishers, setup.publishers, fixed);
   if (!settings.empty()) simulation_.apply(command::SetParameters{settings}).get();
+  if (rate != last_.node.step_rate) simulation_.set_step_rate(rate).get();
+  last_.node.step_rate = rate;
   on_scenario_(setup.scenario);
   last_.scenario = with_live_settings(last_.scenario, settings);  // what is fixed is told again next time
   return (applied.empty() ? "nothing to apply" : "applied: " + applied) +

@@ -66,6 +66,15 @@ std::future<void> SimulationThread::resume() {
   });
 }
 
+std::future<void> SimulationThread::set_step_rate(double rate) {
+  return ask<void>([this, rate] {
+    pacer_ = Pacer(rate);
+    step_rate_ = rate;
+    meter_.clear();
+    waiting_for_clock_ = false;
+  });
+}
+
 std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band) {
   return ask<TerrainState>([=] {
     settle();
@@ -117,7 +126,7 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     r.backend = s.exec().backend();
     r.backend_choice = backend_choice_;
     r.device = s.exec().device();
-    r.step_rate = options_.step_rate;
+    r.step_rate = step_rate_;
     r.steps_per_second = meter_.rate(steady_now());
     r.lag = pacer_.lag(clock_now());
     if (timed_steps_ > 0) {

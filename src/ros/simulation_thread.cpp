@@ -21,6 +21,7 @@ SimulationThread::SimulationThread(const Scenario& scenario, const RasterLoader&
                                    const Options& options, std::function<void()> on_change)
     : options_(options),
       on_change_(std::move(on_change)),
+      step_rate_(options.step_rate),
       pacer_(options.step_rate),
       paused_(options.paused) {
   std::promise<void> started;

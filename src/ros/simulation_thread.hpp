@@ -48,6 +48,8 @@ class SimulationThread {
   std::future<Reached> step(std::uint32_t steps);
   std::future<void> pause();
   std::future<void> resume();
+  /// [steps/s]; 0: as fast as it can. The schedule begins anew. Not journalled: the terrain does not feel it.
+  std::future<void> set_step_rate(double rate);
   std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {});
   std::future<TerrainToSave> terrain_to_save();
   /// With the parameters and the wind regime of now.
@@ -61,6 +63,7 @@ class SimulationThread {
   std::uint64_t changes() const { return changes_; }
   std::uint64_t commands() const { return commands_; }
   std::uint64_t terrains() const { return terrains_; }
+  double step_rate() const { return step_rate_; }  ///< wanted [steps/s]
   const std::string& backend_choice() const { return backend_choice_; }
 
   /// What ended the simulation; empty while it lives.
@@ -102,6 +105,7 @@ class SimulationThread {
   JobQueue jobs_;
   std::atomic<std::uint64_t> changes_{1}, commands_{0}, terrains_{0};
   std::string backend_choice_;
+  std::atomic<double> step_rate_;
   std::atomic<bool> failed_{false};
   mutable std::mutex failure_mutex_;
   std::string failure_;

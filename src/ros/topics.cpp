@@ -99,12 +99,6 @@ void Topics::add_others(const PublisherParameters& p) {
 
 // ---- from other threads ----
 
-void Topics::want(Topic& topic) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  topic.wanted = true;
-  woken_.notify_all();
-}
-
 void Topics::notify() {
   if (!listens_to_changes_ && !simulation_.failed()) return;
   const std::lock_guard<std::mutex> lock(mutex_);

@@ -94,6 +94,22 @@ class Reconfigure(Scenarios):
         self.refused(node, client, {"wind_shadow__start_deg": 80.0}, "wind_shadow.full_deg: must not be below start_deg")
         self.refused(node, client, {"wind_shadow__distance": 1000.0, "wind__regime": "rose"}, "needs at least one segment")
 
+    def test_step_rate(self):
+        node, client = self.client("paced", paused=False, step_rate=5)
+        self.assertEqual(self.values(client)["step_rate"], 5)
+        self.assertEqual(client.update_configuration({"step_rate": 40.0})["step_rate"], 40)
+        end = time.monotonic() + 10
+        while abs(node.latest("status", SimulationStatus).steps_per_second - 40) > 4 and time.monotonic() < end:
+            pass
+        status = node.latest("status", SimulationStatus)
+        self.assertAlmostEqual(status.steps_per_second, 40, delta=4)
+        self.assertEqual(status.step_rate, 40)
+        rospy.set_param("/paced/step_rate", 15)
+        self.assertIn("applied: step_rate=15", node.call("reload_parameters", Trigger).message)
+        self.assertEqual(node.latest("status", SimulationStatus).step_rate, 15)
+        self.assertTrue(node.call("pause", Trigger).success)
+        self.refused(node, client, {"step_rate": -1.0, "wind__speed": 6.0}, "step_rate: = -1.000000 is not in [0, 1e+06] steps/s")
+
     def test_what_cannot_change_is_refused_by_name(self):
         node, client = self.client("fixed")
         client.get_parameter_descriptions(timeout=10)
