@@ -5,10 +5,12 @@
 
 namespace desert_sim {
 
-/// In single quotes, and not longer than what a person reads: requests can hold megabytes.
-inline std::string quoted(const std::string& text) {
-  constexpr std::size_t longest = 60;
-  return "'" + (text.size() <= longest ? text : text.substr(0, longest) + "...") + "'";
+/// Not longer than what a person reads: requests can hold megabytes.
+inline std::string shortened(const std::string& text, std::size_t longest = 200) {
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
 }
+
+/// In single quotes, shortened.
+inline std::string quoted(const std::string& text) { return "'" + shortened(text) + "'"; }
 
 }  // namespace desert_sim

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/core/quoted.hpp"
 
 namespace desert_sim {
 
@@ -21,7 +22,7 @@ std::string ros_folder() {
 /// What the name alone says.
 fs::path checked(const std::string& name) {
   const auto refuse = [&](const char* why) {
-    throw ConfigError("'" + name + "': " + why + " (allowed: a path below ~data_dir)");
+    throw ConfigError(quoted(name) + ": " + why + " (allowed: a path below ~data_dir)");
   };
   if (name.empty()) refuse("is empty");
   if (name.find('\0') != std::string::npos) refuse("has a zero byte in it");
@@ -43,7 +44,7 @@ fs::path followed(const fs::path& root, const fs::path& path, const std::string&
   const fs::path real = fs::is_symlink(fs::symlink_status(path))
                             ? fs::canonical(path)
                             : fs::canonical(path.parent_path()) / path.filename();
-  if (!is_below(root, real)) throw ConfigError("'" + name + "': a link leads out of " + root.string());
+  if (!is_below(root, real)) throw ConfigError(quoted(name) + ": a link leads out of " + root.string());
   return real;
 }
 
@@ -56,19 +57,19 @@ std::string DataFolder::for_reading(const std::string& name) const {
   try {
     const fs::path root = fs::canonical(path_);
     const fs::path file = followed(root, root / relative, name);
-    if (!fs::exists(file)) throw ConfigError("'" + name + "': there is no such file in " + root.string());
-    if (!fs::is_regular_file(file)) throw ConfigError("'" + name + "': is not a file");
+    if (!fs::exists(file)) throw ConfigError(quoted(name) + ": there is no such file in " + root.string());
+    if (!fs::is_regular_file(file)) throw ConfigError(quoted(name) + ": is not a file");
     return file.string();
   } catch (const fs::filesystem_error& e) {
-    throw ConfigError("'" + name + "': " + e.code().message() + " (in " + path_ + ")");
+    throw ConfigError(quoted(name) + ": " + e.code().message() + " (in " + path_ + ")");
   }
 }
 
 void DataFolder::require_below(const std::string& path) const {
   std::error_code error;
   const fs::path real = fs::canonical(path, error), root = error ? fs::path() : fs::canonical(path_, error);
-  if (error) throw ConfigError("'" + path + "': " + error.message());
-  if (!is_below(root, real)) throw ConfigError("'" + path + "': is not below " + root.string());
+  if (error) throw ConfigError(quoted(path) + ": " + error.message());
+  if (!is_below(root, real)) throw ConfigError(quoted(path) + ": is not below " + root.string());
 }
 
 std::string DataFolder::for_writing(const std::string& name) const {
@@ -82,12 +83,12 @@ std::string DataFolder::for_writing(const std::string& name) const {
       fs::create_directory(folder);
     }
     const fs::path file = followed(root, folder / relative.filename(), name);
-    if (fs::exists(file) && !fs::is_regular_file(file)) throw ConfigError("'" + name + "': is not a file");
+    if (fs::exists(file) && !fs::is_regular_file(file)) throw ConfigError(quoted(name) + ": is not a file");
     // Checkpoints are written under this name first.
     followed(root, file.string() + ".part", name);
     return file.string();
   } catch (const fs::filesystem_error& e) {
-    throw ConfigError("'" + name + "': " + e.code().message() + " (in " + path_ + ")");
+    throw ConfigError(quoted(name) + ": " + e.code().message() + " (in " + path_ + ")");
   }
 }
 

@@ -127,12 +127,11 @@ void Diagnostics::rates(Status& status) {
     periods = topic.achieved < 0.5 * expected ? periods + 1 : 0;
     if (periods >= slow_periods) slow += (slow.empty() ? "" : ", ") + topic.name;
   }
-  if (!failure.empty())
-    status.summary(DiagnosticStatus::ERROR, failure);
-  else if (!slow.empty())
-    status.summary(DiagnosticStatus::WARN, "under half the wanted rate: " + slow);
-  else
-    status.summary(DiagnosticStatus::OK, "as wanted");
+  if (!failure.empty()) return status.summary(DiagnosticStatus::ERROR, failure);
+  status.summary(DiagnosticStatus::OK, "as wanted");
+  if (!slow.empty()) status.mergeSummary(DiagnosticStatus::WARN, "under half the wanted rate: " + slow);
+  for (const auto& [topic, problem] : topics_.problems())
+    status.mergeSummary(DiagnosticStatus::WARN, topic + ": " + problem);
 }
 
 void Diagnostics::saving(Status& status) const {

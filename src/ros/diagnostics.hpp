@@ -1,13 +1,13 @@
 #pragma once
-/// What the node says on /diagnostics.
+/// What the node says on /diagnostics. Each part is OK unless:
 ///
-/// | status | OK | WARN | ERROR |
-/// |---|---|---|---|
-/// | simulation | keeps its rate, or is paused | over 1 s behind; waits for /clock; no answer for 2 s | has
-/// failed | | mass balance | every quantum is accounted for | | some are not | | memory | | too little left
-/// for a reset or a load | | | topics | | one had under half its rate for 3 periods | publishing has failed |
-/// | autosave | off, or the last one was written | two periods without one | the last one could not be
-/// written |
+///   simulation    WARN: over 1 s behind; waits for /clock; no answer for 2 s. ERROR: has failed
+///   mass balance  ERROR: some quanta are not accounted for
+///   memory        WARN: too little left for a reset or a load
+///   topics        WARN: one had under half its rate for 3 periods, or cannot be published (no transform,
+///   say).
+///                 ERROR: publishing has failed
+///   autosave      WARN: two periods without one. ERROR: the last one could not be written
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>

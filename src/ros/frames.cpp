@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/core/quoted.hpp"
 
 namespace desert_sim {
 
@@ -34,8 +35,8 @@ tf2::Transform Frames::to_terrain(const std_msgs::Header& header) const {
       return transform_of(buffer_.lookupTransform(terrain_frame_, frame, header.stamp));
     } catch (const tf2::TransformException& e) {
       if (std::chrono::steady_clock::now() >= end)
-        throw ConfigError("frame '" + given + "' cannot be brought into the terrain's, '" + terrain_frame_ +
-                          "': " + e.what());
+        throw ConfigError("frame " + quoted(given) + " cannot be brought into the terrain's, '" +
+                          terrain_frame_ + "': " + shortened(e.what()));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
@@ -46,7 +47,8 @@ bool Frames::latest_to_terrain(const std::string& frame, tf2::Transform& transfo
     transform = transform_of(buffer_.lookupTransform(terrain_frame_, frame, ros::Time(0)));
     return true;
   } catch (const tf2::TransformException& e) {
-    why = "frame '" + frame + "' cannot be brought into the terrain's, '" + terrain_frame_ + "': " + e.what();
+    why = "frame " + quoted(frame) + " cannot be brought into the terrain's, '" + terrain_frame_ +
+          "': " + shortened(e.what());
     return false;
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/core/quoted.hpp"
 
 namespace desert_sim {
 
@@ -21,9 +22,9 @@ std::vector<MapLayer> choose_map_layers(const std::vector<std::string>& names, c
     const auto same = [&](const MapLayer& layer) { return name == layer.name; };
     const auto found = std::find_if(map_layers.begin(), map_layers.end(), same);
     if (found == map_layers.end())
-      throw ConfigError(key + ": '" + name.substr(0, 60) + "' is not one of: " + map_layer_names());
+      throw ConfigError(key + ": " + quoted(name) + " is not one of: " + map_layer_names());
     if (std::any_of(chosen.begin(), chosen.end(), same))
-      throw ConfigError(key + ": '" + name + "' stands there twice");
+      throw ConfigError(key + ": " + quoted(name) + " stands there twice");
     chosen.push_back(*found);
   }
   return chosen;

@@ -20,7 +20,7 @@ constexpr FixedParameter fixed_parameters[] = {
     {"run.steps", "it is of a headless run"},
     {"run.time_step", "simulated time is counted in it"},
     {"wind.segments", "set_wind_schedule changes them together"},
-    {"wind.features", "they are prepared at the start"},
+    {"wind.features", "edit_wind adds, changes and removes them"},
 };
 
 /// Why the parameter or list `path` ("grid.width", "wind.segments") cannot change while a simulation runs;

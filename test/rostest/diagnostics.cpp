@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 
+#include "desert_sim/ros/grid_map_msg.hpp"
 #include "rostest/service_tests.hpp"
 
 namespace {
@@ -83,6 +84,13 @@ TEST_F(Diagnostics, ANodeThatIsNot) {
   EXPECT_TRUE(says("overworked: simulation", DiagnosticStatus::WARN, "s behind: "));
   EXPECT_TRUE(says("overworked: autosave", DiagnosticStatus::ERROR, "/proc/no_folder"));
   EXPECT_TRUE(says("overworked: mass balance", DiagnosticStatus::OK, "every quantum"));
+}
+
+TEST_F(Diagnostics, AMissingTransformOfTheLocalMapIsNamed) {
+  ros::Subscriber maps = ros::NodeHandle().subscribe<GridMap>(
+      "/desert_sim/local_map", 1,
+      boost::function<void(const boost::shared_ptr<const GridMap>&)>([](const auto&) {}));
+  EXPECT_TRUE(says("desert_sim: topics", DiagnosticStatus::WARN, "frame 'lost_rover' cannot be brought"));
 }
 
 TEST_F(Diagnostics, APauseIsNoFault) {

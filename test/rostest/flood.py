@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""A flood of service calls from several clients, a fifth of them malformed: none breaks the node, each malformed one is
+refused with a reason, and the journal replays to the same hash. DESERT_FLOOD_SECONDS (default 8) says how long."""
+import math
+import os
+import random
+import resource
+import threading
+import time
+import unittest
+
+import rospy
+import rostest
+from desert_sim.msg import ElevationGrid, WindScheduleSegment
+from desert_sim.srv import EditTerrain, EditTerrainRequest, EditWind, EditWindRequest, LoadCheckpoint, LoadCheckpointRequest
+from desert_sim.srv import LoadTerrain, LoadTerrainRequest, QueryTerrain, QueryTerrainRequest, SaveCheckpoint
+from desert_sim.srv import SaveCheckpointRequest, SetWind, SetWindRequest, SetWindSchedule, SetWindScheduleRequest, Step
+from geometry_msgs.msg import Point
+from lifecycle import CORNER, Scenarios, Trigger
+
+SECONDS = float(os.environ.get("DESERT_FLOOD_SECONDS", "8"))
+CLIENTS = 4
+BAD_NUMBERS = [math.nan, math.inf, -math.inf, 1e300, -1e300]
+BAD_NAMES = ["", "../../etc/passwd", "/etc/passwd", "a/../../b", "\n", "x" * 10_000_000]
+
+
+def place(draw, grid):
+    """Somewhere on the terrain."""
+    extent_x, extent_y = grid.width * grid.cell_size, grid.height * grid.cell_size
+    return Point(grid.origin.position.x + draw.uniform(0.1, 0.9) * extent_x,
+                 grid.origin.position.y + draw.uniform(0.1, 0.9) * extent_y, 0)
+
+
+def good(draw, grid):
+    """(service, type, request) that the node takes."""
+    kind = draw.randrange(5)
+    if kind == 0:
+        return "set_wind", SetWind, SetWindRequest(speed=draw.uniform(0, 9), direction_deg=draw.uniform(-180, 180))
+    if kind == 1:
+        return "edit_terrain", EditTerrain, EditTerrainRequest(
+            layer="sand", shape="circle", merge=draw.choice(["add", "sub", "max", "avg"]),
+            center=place(draw, grid), radius=draw.uniform(1, 6), value=draw.uniform(0, 0.5))
+    if kind == 2:
+        return "set_wind_schedule", SetWindSchedule, SetWindScheduleRequest(
+            kind="timeline", repeat=True,
+            segments=[WindScheduleSegment(speed=draw.uniform(1, 8), duration=draw.uniform(1, 50)) for _ in range(3)])
+    if kind == 3:
+        return "edit_wind", EditWind, EditWindRequest(operation="clear")
+    return "query_terrain", QueryTerrain, QueryTerrainRequest(
+        points=[place(draw, grid) for _ in range(20)])
+
+
+def bad(draw):
+    """(service, type, request) that it must refuse."""
+    kind = draw.randrange(8)
+    number = draw.choice(BAD_NUMBERS)
+    if kind == 0:
+        return "set_wind", SetWind, SetWindRequest(speed=number)
+    if kind == 1:
+        return "edit_terrain", EditTerrain, EditTerrainRequest(
+            layer="sand", shape="circle", merge="add", center=Point(20, 20, 0), radius=number, value=1)
+    if kind == 2:
+        request = EditTerrainRequest(layer=draw.choice(BAD_NAMES), shape="circle", merge="add", radius=2, value=1)
+        request.header.frame_id = draw.choice(["", "nowhere"])
+        return "edit_terrain", EditTerrain, request
+    if kind == 3:
+        return "set_wind_schedule", SetWindSchedule, SetWindScheduleRequest(kind=draw.choice(BAD_NAMES[:5] + ["rose"]))
+    if kind == 4:
+        return "edit_wind", EditWind, EditWindRequest(operation="change", id=draw.choice([-1, 0, 99]), kind="jet", radius=5)
+    if kind == 5:
+        return "query_terrain", QueryTerrain, QueryTerrainRequest(points=[Point(draw.choice(BAD_NUMBERS[:3]), 0, 0)])
+    if kind == 6:
+        return "load_checkpoint", LoadCheckpoint, LoadCheckpointRequest(name=draw.choice(BAD_NAMES))
+    return draw.choice([("load_terrain", LoadTerrain, LoadTerrainRequest(name=draw.choice(BAD_NAMES[1:5]))),
+                        ("save_checkpoint", SaveCheckpoint, SaveCheckpointRequest(name=draw.choice(BAD_NAMES[:4])))])
+
+
+class Client(threading.Thread):
+    """Calls over connections that stay; keeps what went wrong."""
+
+    def __init__(self, node, grid, seed, until):
+        super().__init__()
+        self.node, self.grid, self.draw, self.until = node, grid, random.Random(seed), until
+        self.proxies, self.faults, self.taken, self.refused = {}, [], 0, 0
+
+    def run(self):
+        while time.monotonic() < self.until and len(self.faults) < 5:
+            wrong = self.draw.random() < 0.2
+            service, kind, request = bad(self.draw) if wrong else good(self.draw, self.grid)
+            if service not in self.proxies:
+                self.proxies[service] = rospy.ServiceProxy("/%s/%s" % (self.node, service), kind, persistent=True)
+            try:
+                answer = self.proxies[service](request)
+            except Exception as e:  # noqa: B902 any failure of the transport is a fault of the node
+                self.faults.append("%s: %r" % (service, e))
+                continue
+            if wrong == answer.success or (wrong and not answer.message):
+                self.faults.append("%s: wrong %s, success %s, %s" % (service, wrong, answer.success, answer.message[:200]))
+            if len(answer.message) > 2000:
+                self.faults.append("%s: a reason of %d characters" % (service, len(answer.message)))
+            self.taken += not wrong
+            self.refused += wrong
+        for proxy in self.proxies.values():
+            proxy.close()
+
+
+class Flood(Scenarios):
+    def memory(self, node):
+        with open("/proc/%d/statm" % node.process.pid) as file:
+            return int(file.read().split()[1]) * resource.getpagesize()
+
+    def test_a_flood_of_calls(self):
+        journal = self.path("journal")
+        node = self.start("flooded", {"scenario": CORNER, "paused": False, "step_rate": 50, "journal": journal,
+                                      "data_dir": self.path("data")})
+        node.call("step", Step, 1)
+        grid = node.latest("elevation", ElevationGrid)
+        clients = [Client("flooded", grid, seed, time.monotonic() + SECONDS) for seed in range(CLIENTS)]
+        before = self.memory(node)
+        for client in clients:
+            client.start()
+        for client in clients:
+            client.join(SECONDS + 60)
+            self.assertFalse(client.is_alive(), "a call hangs")
+        taken, refused = sum(c.taken for c in clients), sum(c.refused for c in clients)
+        print("%.0f calls a second: %d taken, %d refused; memory grew by %.1f MB" % (
+            (taken + refused) / SECONDS, taken, refused, (self.memory(node) - before) / 1e6))
+        self.assertEqual([fault for client in clients for fault in client.faults], [])
+        self.assertGreater(refused, 0.1 * (taken + refused))
+        self.assertLess(self.memory(node) - before, 200e6)
+        self.assertTrue(node.call("pause", Trigger).success)
+        live = node.call("step", Step, 0).state_hash
+        self.assertEqual(node.end()[0], 0)
+        self.assertEqual(self.run_without_ros(CORNER, "--replay", journal), live)
+
+
+if __name__ == "__main__":
+    rospy.init_node("flood", anonymous=True)
+    rostest.rosrun("desert_sim", "flood", Flood)
