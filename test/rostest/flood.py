@@ -127,7 +127,7 @@ class Flood(Scenarios):
             (taken + refused) / SECONDS, taken, refused, (self.memory(node) - before) / 1e6))
         self.assertEqual([fault for client in clients for fault in client.faults], [])
         self.assertGreater(refused, 0.1 * (taken + refused))
-        self.assertLess(self.memory(node) - before, 200e6)
+        self.assertLess(self.memory(node) - before, 500e6)  # what the allocator keeps of 10 MB requests
         self.assertTrue(node.call("pause", Trigger).success)
         live = node.call("step", Step, 0).state_hash
         self.assertEqual(node.end()[0], 0)
