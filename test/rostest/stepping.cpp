@@ -86,20 +86,26 @@ TEST_F(Stepping, ResetBeginsAnewWithAKeyframe) {
 }
 
 TEST_F(Stepping, TwoClientsAtOnceGetAllTheirSteps) {
+  // Over connections that stay: roscpp loses a call now and then when threads of one process open new ones at
+  // once.
   const auto steps_of_a_client = [] {
+    ros::ServiceClient client = ros::NodeHandle().serviceClient<desert_sim::Step>("/desert_sim/step", true);
     std::uint64_t last = 0;
     for (int n = 0; n < 20; ++n) {
-      const auto response = step(3);
-      EXPECT_TRUE(response.success) << response.message;
-      EXPECT_GT(response.step, last);
-      last = response.step;
+      desert_sim::Step exchange;
+      exchange.request.steps = 3;
+      EXPECT_TRUE(client.call(exchange) && exchange.response.success) << exchange.response.message;
+      EXPECT_GT(exchange.response.step, last);
+      last = exchange.response.step;
     }
   };
   const auto winds = [] {
+    ros::ServiceClient client =
+        ros::NodeHandle().serviceClient<desert_sim::SetWind>("/desert_sim/set_wind", true);
     for (int n = 0; n < 40; ++n) {
-      desert_sim::SetWind::Request request;
-      request.speed = 3 + n % 5;
-      EXPECT_TRUE(call<desert_sim::SetWind>("set_wind", request).success);
+      desert_sim::SetWind exchange;
+      exchange.request.speed = 3 + n % 5;
+      EXPECT_TRUE(client.call(exchange) && exchange.response.success) << exchange.response.message;
     }
   };
   std::vector<std::future<void>> clients;
