@@ -60,11 +60,11 @@ class Resume(Scenarios):
     def saved(self, name, steps, **more):
         """A node that was killed after it had saved that many steps."""
         node = self.start(name, dict(AUTOSAVED, data_dir=self.folder, **more))
-        node.call("step", Step, steps)
         before = autosaves(self.folder)
+        node.call("step", Step, steps)
         if steps:
             wait_until(lambda: autosaves(self.folder) != before or node.process.poll() is not None, "no autosave")
-            time.sleep(0.5)  # a later one, in case the copy was older; with no change there is none
+            time.sleep(1)  # a later one, in case that was of before the steps; with no change there is none
         node.end(signal.SIGKILL)
         return node
 
