@@ -11,6 +11,7 @@ import time
 
 import cv2
 import numpy as np
+import rosgraph
 import rospy
 from desert_sim.msg import ElevationGrid, SimulationStatus
 
@@ -73,6 +74,11 @@ def main():
     parser.add_argument("--picture", default="desert_demo.png")
     options = parser.parse_args(rospy.myargv()[1:])
 
+    master = time.monotonic() + 30.0  # rospy would wait for ever
+    while not rosgraph.is_master_online():
+        if time.monotonic() > master:
+            sys.exit("demo: there is no ROS master: roslaunch did not start")
+        time.sleep(0.1)
     rospy.init_node("demo_headless", anonymous=True, disable_signals=True)
     watcher = Watcher(options.node)
     end = time.monotonic() + options.seconds

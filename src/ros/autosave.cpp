@@ -88,11 +88,6 @@ Autosave::State Autosave::state() const {
   return state;
 }
 
-AutosaveFiles Autosave::present_files() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return files_;
-}
-
 void Autosave::save_as(AutosaveFiles files) {
   const std::lock_guard<std::mutex> lock(mutex_);
   files_ = std::move(files);
@@ -114,19 +109,25 @@ void Autosave::thread() {
     }
     lock.lock();
     state_.fault = fault;
-    if (fault.empty()) saved_at_ = Clock::now();
+    if (fault.empty())
+      saved_at_ = Clock::now();
+    else
+      saved_change_ = 0;
   }
 }
 
 void Autosave::save() {
-  if (saved_change_ == simulation_.changes()) return;
-  const AutosaveFiles files = present_files();
+  std::unique_lock<std::mutex> lock(mutex_);
+  const std::uint64_t change = simulation_.changes();
+  if (saved_change_ == change) return;
+  saved_change_ = change;  // the copy can only be newer; save_as() and a fault take this back
+  const AutosaveFiles files = files_;
+  lock.unlock();
   const CheckpointCopy copy = simulation_.checkpoint().get();
   const std::string path = files.next();
   write_checkpoint(path, copy.bytes);
   files.keep(kept);
-  saved_change_ = copy.moment.change;
-  const std::lock_guard<std::mutex> lock(mutex_);
+  lock.lock();
   state_.path = path;
   state_.step = copy.moment.step;
 }

@@ -54,14 +54,13 @@ class Autosave {
 
  private:
   using Clock = std::chrono::steady_clock;
-  AutosaveFiles present_files() const;
   void thread();
   void save();
 
   AutosaveFiles files_;  ///< under mutex_
   const double period_;
   SimulationThread& simulation_;
-  std::atomic<std::uint64_t> saved_change_{0};
+  std::uint64_t saved_change_ = 0;
   mutable std::mutex mutex_;
   std::condition_variable stopped_;
   bool stopping_ = false;
