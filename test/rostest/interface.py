@@ -78,9 +78,6 @@ class Interface(unittest.TestCase):
         for names, unit in re.findall(r"(.*?) \[(.*?)\];? ?", re.sub(r"\s*#\s*|\([^)]*\)", " ", comment).replace("\n", " ")):
             documented.update({name.strip(): unit for name in names.split(",")})
         self.assertEqual(documented, {layer.name: layer.unit for layer in answer.map.layers})
-        listed = re.search(r"The layers of maps are (.*?)\.", text_of("README.md"), re.S).group(1)
-        names = re.split(r"(?:,| and)\s+", re.sub(r" \(.*?\)", "", listed))
-        self.assertEqual(sorted(names), sorted(documented))
 
     def test_page_of_parameters(self):
         page = subprocess.run([find_node("desert_sim", "desert_sim_node")[0], "--describe"], stdout=subprocess.PIPE,
