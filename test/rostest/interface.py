@@ -75,7 +75,8 @@ class Interface(unittest.TestCase):
         self.assertTrue(answer.success, answer.message)
         comment = re.search(r"# Layers: (.*?)\.\n\n", text_of("srv", "GetSubmap.srv"), re.S).group(1)
         documented = {}
-        for names, unit in re.findall(r"(.*?) \[(.*?)\];? ?", re.sub(r"\s*#\s*|\([^)]*\)", " ", comment).replace("\n", " ")):
+        for group in re.sub(r"#|\n|\(.*?\)", "", comment).split(";"):
+            names, unit = re.fullmatch(r"(.*) \[(.*)\]", group).groups()
             documented.update({name.strip(): unit for name in names.split(",")})
         self.assertEqual(documented, {layer.name: layer.unit for layer in answer.map.layers})
 
