@@ -1,10 +1,14 @@
-/// desert_sim_node: the simulation as a ROS node.
-/// Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time.
+/// desert_sim_node: the simulation as a ROS node. With --describe it prints the page of its parameters and
+/// ends. Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time.
 #include <ros/console.h>
 #include <ros/init.h>
 
+#include <iostream>
+#include <string>
+
 #include "desert_sim/core/error.hpp"
 #include "desert_sim/ros/desert_sim_server.hpp"
+#include "desert_sim/ros/node_parameter_page.hpp"
 
 namespace {
 
@@ -26,6 +30,10 @@ int run() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 2 && argv[1] == std::string("--describe")) {
+    std::cout << desert_sim::describe_node_parameters();
+    return 0;
+  }
   ros::init(argc, argv, "desert_sim");
   ros::start();  // the log ends with ROS, and must outlive the server
   int status = failed;

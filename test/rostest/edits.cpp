@@ -163,15 +163,9 @@ TEST_F(Edits, SmoothLevelsThePlateausEdge) {
 }
 
 TEST_F(Edits, ShapesTurnAndMoveWithTheirFrame) {
-  // "rover" stands at (50, 30) of the terrain and looks north; "camera" looks along the ground.
+  // "camera" is at the rover's place and looks along the ground.
   static tf2_ros::StaticTransformBroadcaster broadcaster;
-  geometry_msgs::TransformStamped rover;
-  rover.header.stamp = ros::Time::now();
-  rover.header.frame_id = "terrain";
-  rover.child_frame_id = "rover";
-  rover.transform.translation.x = 50;
-  rover.transform.translation.y = 30;
-  rover.transform.rotation.z = rover.transform.rotation.w = std::sqrt(0.5);
+  const geometry_msgs::TransformStamped rover = rover_frame();
   geometry_msgs::TransformStamped camera = rover;
   camera.child_frame_id = "camera";
   camera.transform.rotation.z = 0;

@@ -16,23 +16,15 @@ import rospy
 import rostest
 from desert_sim.msg import ElevationGrid, SimulationStatus, WindScheduleSegment
 from desert_sim.srv import EditTerrain, EditTerrainRequest, LoadCheckpoint, SaveCheckpoint
-from desert_sim.srv import SetWind, SetWindResponse, SetWindSchedule, SetWindScheduleRequest, Step
+from desert_sim.srv import SetWind, SetWindSchedule, SetWindScheduleRequest, Step
 from geometry_msgs.msg import Point
 from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image
-from std_msgs.msg import Empty
+from std_srvs.srv import Trigger
 
 PACKAGE = rospkg.RosPack().get_path("desert_sim")
 CORNER = os.path.join(PACKAGE, "test", "rostest", "scenarios", "corner.yaml")
-
-
-class Trigger:
-    """std_srvs/Trigger, which Debian has for Python in a package of its own that nothing else here needs."""
-    _type = "std_srvs/Trigger"
-    _md5sum = "937c9679a518e3a18d831e57125ea522"
-    _request_class = Empty
-    _response_class = SetWindResponse  # the same fields
 
 
 def program(name):

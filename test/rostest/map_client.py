@@ -7,9 +7,9 @@ import unittest
 
 import genpy.dynamic
 import rospy
-from desert_sim.srv import SetWindResponse
 from geometry_msgs.msg import Pose
-from std_msgs.msg import Empty, Float32MultiArray, Header
+from std_msgs.msg import Float32MultiArray, Header
+from std_srvs.srv import Trigger
 
 GRID_MAP_MD5 = "95681e052b1f73bf87b7eb984382b401"
 GET_GRID_MAP_MD5 = "802c2cbc7b10fada2d44db75ddb8c738"
@@ -48,14 +48,6 @@ class GetGridMap:
         "grid_map_msgs/GetGridMapResponse",
         "grid_map_msgs/GridMap map\n" + SEPARATOR + "MSG: grid_map_msgs/GridMap\n" + GRID_MAP +
         parts())["grid_map_msgs/GetGridMapResponse"]
-
-
-class Trigger:
-    """std_srvs/Trigger, which Debian has for Python in a package of its own that nothing else here needs."""
-    _type = "std_srvs/Trigger"
-    _md5sum = "937c9679a518e3a18d831e57125ea522"
-    _request_class = Empty
-    _response_class = SetWindResponse  # the same fields
 
 
 class Listener:

@@ -2,8 +2,10 @@
 /// What the tests of services share.
 
 #include <desert_sim/Step.h>
+#include <geometry_msgs/TransformStamped.h>
 #include <std_srvs/Trigger.h>
 
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -34,6 +36,18 @@ void expect_refused(const std::string& name, const typename Service::Request& re
   EXPECT_NE(response.message.find(allowed), std::string::npos)
       << "'" << allowed << "' is not named by: " << response.message;
   EXPECT_EQ(hash(), before) << name << ": " << response.message;
+}
+
+/// "rover" stands at (50, 30) of the terrain and looks north.
+inline geometry_msgs::TransformStamped rover_frame() {
+  geometry_msgs::TransformStamped rover;
+  rover.header.stamp = ros::Time::now();
+  rover.header.frame_id = "terrain";
+  rover.child_frame_id = "rover";
+  rover.transform.translation.x = 50;
+  rover.transform.translation.y = 30;
+  rover.transform.rotation.z = rover.transform.rotation.w = std::sqrt(0.5);
+  return rover;
 }
 
 /// Each test begins with the scenario's start.

@@ -153,16 +153,8 @@ TEST_F(Services, SlopesAndNormalsPointTheRightWay) {
 }
 
 TEST_F(Services, QueriesAndEditsComeFromOtherFrames) {
-  // "rover" stands at (50, 30) of the terrain and looks north.
   static tf2_ros::StaticTransformBroadcaster broadcaster;
-  geometry_msgs::TransformStamped rover;
-  rover.header.stamp = ros::Time::now();
-  rover.header.frame_id = "terrain";
-  rover.child_frame_id = "rover";
-  rover.transform.translation.x = 50;
-  rover.transform.translation.y = 30;
-  rover.transform.rotation.z = rover.transform.rotation.w = std::sqrt(0.5);
-  broadcaster.sendTransform(rover);
+  broadcaster.sendTransform(rover_frame());
   ASSERT_TRUE(wait_until([] { return query(0, 0, "rover").success != 0; }));
 
   EditTerrain::Request request = a_brush();

@@ -1,0 +1,44 @@
+#pragma once
+/// Parameter tables as markdown.
+
+#include <ostream>
+#include <sstream>
+#include <string>
+#include <type_traits>
+
+#include "desert_sim/core/parameters.hpp"
+
+namespace desert_sim {
+
+/// Writes a markdown table with a row a parameter: key, default (the value in `defaults`), unit, allowed,
+/// what.
+template <class P>
+void write_parameter_table(std::ostream& out, const P& defaults) {
+  out << "| key | default | unit | allowed | what |\n|---|---|---|---|---|\n";
+  for_each_parameter(defaults, [&](const auto& row, const auto& value) {
+    using T = std::decay_t<decltype(value)>;
+    out << "| `" << row.name << "` | ";
+    std::ostringstream allowed;
+    if constexpr (std::is_enum_v<T>) {
+      out << row.choices[static_cast<int>(value)];
+      for (int n = 0; n < row.choice_count; ++n) allowed << (n ? ", " : "") << row.choices[n];
+    } else if constexpr (std::is_same_v<T, ShortList>) {
+      out << "[";
+      for (int n = 0; n < value.count; ++n) out << (n ? ", " : "") << value.values[n];
+      out << "]";
+      allowed << "up to " << ShortList::capacity << " of " << row.lowest << " … " << row.highest;
+    } else if constexpr (std::is_same_v<T, bool>) {
+      out << (value ? "true" : "false");
+      allowed << "true, false";
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      out << (value.empty() ? "" : "`" + value + "`");
+      allowed << "text";
+    } else {
+      out << value;
+      allowed << row.lowest << " … " << row.highest;
+    }
+    out << " | " << row.unit << " | " << allowed.str() << " | " << row.doc << " |\n";
+  });
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""Whether the documentation tells what the node really has: its topics, services, their types, layers, parameters."""
+import os
+import re
+import subprocess
+import unittest
+
+import rosgraph
+import rospkg
+import rospy
+import rosservice
+import rostest
+import yaml
+from desert_sim.srv import GetSubmap
+from geometry_msgs.msg import Point
+from roslib.packages import find_node
+
+PACKAGE = rospkg.RosPack().get_path("desert_sim")
+NODE = "/desert_sim"
+OF_EVERY_NODE = {"/rosout", NODE + "/get_loggers", NODE + "/set_logger_level"}
+
+
+def text_of(*path):
+    with open(os.path.join(PACKAGE, *path)) as file:
+        return file.read()
+
+
+def table(first_column):
+    """{name: type} of README's table with this head, full names; a row may have several names of one type."""
+    rows = re.search(r"^\| %s \| type \|.*\n\|[-|]+\n((?:\|.*\n)+)" % first_column, text_of("README.md"), re.M)
+    assert rows, "README.md has no table '%s | type'" % first_column
+    found = {}
+    for row in rows.group(1).splitlines():
+        names, kind = row.split("|")[1:3]
+        for name in re.findall("`(.+?)`", names):
+            name = name.replace("~", NODE + "/")
+            assert name not in found, "%s stands twice" % name
+            found[name] = kind.strip().strip("`")
+    return found
+
+
+def is_plugins(name):
+    """image_transport's: as many as are installed."""
+    return name.startswith(NODE + "/image/")
+
+
+class Interface(unittest.TestCase):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        rospy.wait_for_service(NODE + "/reload_parameters", 30)  # the last to be advertised
+        master = rosgraph.Master("/interface")
+        cls.published, cls.subscribed, cls.services = (
+            {name for name, nodes in kind if NODE in nodes and name not in OF_EVERY_NODE and not is_plugins(name)}
+            for kind in master.getSystemState())
+        cls.types = dict(master.getTopicTypes())
+
+    def test_topics_that_are_published(self):
+        self.assertEqual(table("topic"), {name: self.types[name] for name in self.published})
+
+    def test_topics_that_are_listened_to(self):
+        documented = table("topic it listens to")
+        self.assertEqual(set(documented), self.subscribed)
+        known = {name: self.types[name] for name in documented if self.types.get(name, "*") != "*"}
+        self.assertLessEqual({NODE + "/cmd_wind", NODE + "/request_keyframe", "/clock", "/tf_static"}, set(known))
+        self.assertEqual({name: documented[name] for name in known}, known)
+
+    def test_services(self):
+        self.assertEqual(table("service"), {name: rosservice.get_service_type(name) for name in self.services})
+
+    def test_layers_of_get_submap(self):
+        ask = rospy.ServiceProxy(NODE + "/get_submap", GetSubmap)
+        answer = ask(center=Point(60, 20, 0), length_x=1, length_y=1)
+        self.assertTrue(answer.success, answer.message)
+        comment = re.search(r"# Layers: (.*?)\.\n\n", text_of("srv", "GetSubmap.srv"), re.S).group(1)
+        documented = {}
+        for group in re.sub(r"#|\n|\(.*?\)", "", comment).split(";"):
+            names, unit = re.fullmatch(r"(.*) \[(.*)\]", group).groups()
+            documented.update({name.strip(): unit for name in names.split(",")})
+        self.assertEqual(documented, {layer.name: layer.unit for layer in answer.map.layers})
+
+    def test_page_of_parameters(self):
+        page = subprocess.run([find_node("desert_sim", "desert_sim_node")[0], "--describe"], stdout=subprocess.PIPE,
+                              check=True, text=True).stdout
+        self.assertEqual(page, text_of("config", "node_parameters.md"),
+                         "stale: desert_sim_node --describe > config/node_parameters.md")
+
+    def test_publishers_yaml_has_the_defaults(self):
+        """It shows what the topics' parameters are: all of them, as they are without it."""
+        page = text_of("config", "node_parameters.md")
+        topics = page[page.index("## Topics"):page.index("## Layers of maps")]
+        documented = {name: yaml.safe_load(default.strip("`"))
+                      for name, default in re.findall(r"^\| `(\w+)` \| (.*?) \|", topics, re.M)}
+        for name, default in re.findall(r"`(\w+_layers)` \(default `(.*?)`\)", page):
+            documented[name] = yaml.safe_load(default)
+        self.assertEqual(documented, yaml.safe_load(text_of("config", "publishers.yaml")))
+
+
+if __name__ == "__main__":
+    rospy.init_node("interface")
+    rostest.rosrun("desert_sim", "interface", Interface)
