@@ -39,8 +39,7 @@ TEST(GridMapFilters, ItsNormalsAreOurs) {
     EXPECT_NEAR((ours - theirs).norm(), 0, 1e-5) << at.getUnwrappedIndex().transpose();
   }
   EXPECT_EQ(compared, 62u * 46u);
-  EXPECT_EQ(leaning, 2u * (4 + 3) + 2u * (4 + 3) - 4u)
-      << "a ring of cells without its corners, and one within";
+  EXPECT_EQ(leaning, 14u + 10u) << "the cells at the marker's feet and its own rim";
 }
 
 TEST(GridMapFilters, AThresholdChangesJustWhatIsBelow) {
