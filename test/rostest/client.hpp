@@ -34,13 +34,14 @@ typename Service::Response call(const std::string& name, const typename Service:
   return exchange.response;
 }
 
-/// Keeps all messages of a topic since it was made; is connected when it is.
+/// Keeps all messages of a topic (of the node, unless it begins with /) since it was made; is connected when
+/// it is.
 template <class Message>
 class Listener {
  public:
   explicit Listener(const std::string& name)
       : subscriber_(ros::NodeHandle().subscribe<Message>(
-            "/desert_sim/" + name, 100,
+            name.front() == '/' ? name : "/desert_sim/" + name, 100,
             boost::function<void(const boost::shared_ptr<const Message>&)>(
                 [this](const boost::shared_ptr<const Message>& m) {
                   const std::lock_guard<std::mutex> lock(mutex_);
