@@ -14,7 +14,7 @@ import rostest
 from desert_sim.msg import ElevationGrid, SimulationStatus
 from desert_sim.srv import QueryTerrain, Step
 from geometry_msgs.msg import Point
-from lifecycle import CORNER, Scenarios, Trigger
+from lifecycle import CORNER, Scenarios, Trigger, wait_until
 
 LARGE = {"scenario": CORNER, "settings": ["grid.width=512", "grid.height=512"], "step_rate": 0}
 MANY = 100000
@@ -33,11 +33,8 @@ class Counter:
         self.bytes += len(message._buff) if isinstance(message, rospy.AnyMsg) else 0
         self.last = message
 
-    def wait(self, count=1, seconds=20):
-        end = time.monotonic() + seconds
-        while self.count < count:
-            assert time.monotonic() < end, "%d of %d messages" % (self.count, count)
-            time.sleep(0.01)
+    def wait(self):
+        wait_until(lambda: self.count, "no message on " + self.subscriber.name)
         return self.last
 
 
@@ -79,10 +76,7 @@ class Overload(Scenarios):
         before = status.wait().step
         thread = threading.Thread(target=call)
         thread.start()
-        end = time.monotonic() + 20
-        while status.last.step < before + 2 and time.monotonic() < end:
-            time.sleep(0.01)
-        self.assertGreater(status.last.step, before, "it steps")
+        wait_until(lambda: status.last.step >= before + 2, "it does not step")
         return thread, answers, status
 
     # ---- subscribers ---------------------------------------------------------------------------
