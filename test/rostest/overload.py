@@ -139,8 +139,8 @@ class Overload(Scenarios):
     # ---- ends ----------------------------------------------------------------------------------
 
     def expect_end(self, node, what, end):
-        start = time.monotonic()
         end(node)
+        start = time.monotonic()
         status, output = node.wait()
         seconds = time.monotonic() - start
         print("%s: ended after %.2f s" % (what, seconds))
