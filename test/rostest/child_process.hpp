@@ -56,7 +56,7 @@ class ChildProcess {
   bool ended_ = false;
 };
 
-/// A paused desert_sim_node of its own on corner.yaml. `name` begins with a slash.
+/// A paused desert_sim_node of its own, on corner.yaml unless told otherwise. `name` begins with a slash.
 class NodeProcess {
  public:
   explicit NodeProcess(const std::string& name, const std::map<std::string, XmlRpc::XmlRpcValue>& more = {})
