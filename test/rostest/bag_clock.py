@@ -17,9 +17,10 @@ from desert_sim.msg import ElevationUpdate, SimulationStatus
 from desert_sim.srv import EditTerrain, EditTerrainRequest, QueryTerrain, SaveCheckpoint, SetWind, Step
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point
-from lifecycle import Trigger, wait_until
+from lifecycle import wait_until
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Empty
+from std_srvs.srv import Trigger
 
 STEP_RATE = 10  # as in bag_clock.test
 BEGIN, SECONDS = 1500000000, 2  # of the bag

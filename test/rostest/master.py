@@ -13,8 +13,9 @@ import rostest
 from desert_sim.msg import ElevationUpdate, SimulationStatus
 from desert_sim.srv import QueryTerrain, Step
 from geometry_msgs.msg import Point
-from lifecycle import CORNER, Scenarios, Trigger, wait_until
+from lifecycle import CORNER, Scenarios, wait_until
 from resume import autosaves
+from std_srvs.srv import Trigger
 
 SHUTDOWN = 5  # [s]; what it took is printed: under one on a machine that does nothing else
 
