@@ -13,8 +13,8 @@ std::size_t cells_of(const ElevationUpdate& update) {
   return cells;
 }
 
-std::string name_of(std::uint32_t sequence, std::uint32_t keyframe) {
-  return "update " + std::to_string(sequence) + " of keyframe " + std::to_string(keyframe);
+std::string name_of(const std::pair<std::uint32_t, std::uint32_t>& number) {
+  return "update " + std::to_string(number.second) + " of keyframe " + std::to_string(number.first);
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ void ElevationAssembler::keyframe_overdue() {
 
 /// A sender that latches its last message sends it again to whoever connects anew.
 bool ElevationAssembler::is_held(const ElevationGrid& keyframe) const {
-  if (!map_) return false;
+  if (!map_ || went_back_) return false;
   const ElevationMap::Info& held = map_->info();
   return keyframe.keyframe == held.keyframe && keyframe.step <= held.step &&
          !keyframe.header.stamp.isZero() && keyframe.header.stamp == keyframe_stamp_;
@@ -41,17 +41,24 @@ bool ElevationAssembler::is_held(const ElevationGrid& keyframe) const {
 
 MapChange ElevationAssembler::take(const ElevationGrid& keyframe) {
   if (const std::string fault = fault_of(keyframe); !fault.empty()) return refuse(fault);
+  MapChange change;
+  change.map = std::make_shared<const ElevationMap>(keyframe, map_.get(), change.cells);
   if (is_held(keyframe)) {
+    sent_again_ = change.map;
     ++counts_.late;
     return {};
   }
-  if (map_ && keyframe.keyframe <= map_->info().keyframe) ++counts_.restarts;
-  MapChange change;
-  change.map = std::make_shared<const ElevationMap>(keyframe, map_.get(), change.cells);
+  keyframe_stamp_ = keyframe.header.stamp;
+  return hold(change);
+}
+
+MapChange ElevationAssembler::hold(MapChange change) {
+  if (map_ && change.map->info().keyframe <= map_->info().keyframe) ++counts_.restarts;
   change.replaced = !map_ || !change.map->same_geometry(*map_);
   map_ = change.map;
-  keyframe_stamp_ = keyframe.header.stamp;
+  sent_again_.reset();
   complete_ = true;
+  went_back_ = false;
   ++counts_.keyframes;
   write_waiting(change);
   return change;
@@ -68,7 +75,7 @@ void ElevationAssembler::write_waiting(MapChange& change) {
       ++counts_.unusable;
       continue;
     }
-    const MapChange more = take(update);
+    const MapChange more = place(update);
     if (!more.map) continue;
     change.map = more.map;
     change.cells.include(more.cells);
@@ -85,9 +92,30 @@ bool ElevationAssembler::is_late(const ElevationUpdate& update) const {
   return before && update.header.stamp <= held.stamp;
 }
 
+/// Whether it is the one that what is held waits for.
+bool ElevationAssembler::follows(const ElevationUpdate& update) const {
+  const ElevationMap::Info& held = map_->info();
+  return complete_ && update.keyframe == held.keyframe && update.sequence == held.sequence + 1 &&
+         update.step >= held.step;
+}
+
 MapChange ElevationAssembler::take(const ElevationUpdate::ConstPtr& update) {
   if (const std::string fault = fault_of(*update); !fault.empty()) return refuse(fault);
+  const Number before = newest_;
+  newest_ = {update->keyframe, update->sequence};
   if (!map_) {
+    keep(update);
+    return {};
+  }
+  const ElevationMap::Info& held = map_->info();
+  const bool of_another_run = !went_back_ && update->keyframe == held.keyframe && update->step < held.step;
+  if (newest_ > before && !of_another_run) return place(update);
+  while (!waiting_.empty()) drop_first_waiting();
+  return follows(*update) ? write(*update) : go_back(update, before);
+}
+
+MapChange ElevationAssembler::place(const ElevationUpdate::ConstPtr& update) {
+  if (went_back_) {
     keep(update);
     return {};
   }
@@ -100,14 +128,10 @@ MapChange ElevationAssembler::take(const ElevationUpdate::ConstPtr& update) {
     keep(update);
     return {};
   }
-  if (update->keyframe < held.keyframe || update->sequence <= held.sequence) {
-    lose(name_of(update->sequence, update->keyframe) + " came after " +
-         name_of(held.sequence, held.keyframe) + ": the sender has started anew");
-    keep(update);
-    return {};
-  }
+  if (update->keyframe < held.keyframe || update->sequence <= held.sequence)
+    return go_back(update, {held.keyframe, held.sequence});
   if (update->sequence != held.sequence + 1)
-    lose(name_of(held.sequence + 1, held.keyframe) + " is missing: " + std::to_string(update->sequence) +
+    lose(name_of({held.keyframe, held.sequence + 1}) + " is missing: " + std::to_string(update->sequence) +
          " came next");
   if (!complete_) {
     ++counts_.unusable;
@@ -116,10 +140,25 @@ MapChange ElevationAssembler::take(const ElevationUpdate::ConstPtr& update) {
   return write(*update);
 }
 
+/// Updates keep their order on their way: the sender has started anew, or plays its recording again. If its
+/// keyframe was here first, and was taken for what was held already, that is where to begin.
+MapChange ElevationAssembler::go_back(const ElevationUpdate::ConstPtr& update, const Number& from) {
+  keep(update);
+  if (sent_again_ && sent_again_->info().keyframe == update->keyframe) {
+    const ElevationMap::Info& info = sent_again_->info();
+    return hold({sent_again_, {0, 0, info.width, info.height}, false});
+  }
+  lose(name_of({update->keyframe, update->sequence}) + " came after " + name_of(from) +
+       ": the sender has started anew");
+  went_back_ = true;
+  return {};
+}
+
 MapChange ElevationAssembler::write(const ElevationUpdate& update) {
   if (const std::string fault = fault_of(update, map_->info()); !fault.empty()) return refuse(fault);
   MapChange change;
   change.map = map_ = map_->after(update);
+  sent_again_.reset();  // that was all it was
   for (const ElevationTile& tile : update.tiles)
     change.cells.include({tile.x, tile.y, tile.width, tile.height});
   ++counts_.updates;

@@ -7,6 +7,7 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "desert_sim/client/elevation_map.hpp"
 
@@ -53,8 +54,14 @@ class ElevationAssembler {
   const StreamCounts& counts() const { return counts_; }
 
  private:
-  bool is_late(const ElevationUpdate& update) const;
+  using Number = std::pair<std::uint32_t, std::uint32_t>;  ///< of an update: its keyframe's, and its own
+
   bool is_held(const ElevationGrid& keyframe) const;
+  MapChange hold(MapChange change);
+  bool is_late(const ElevationUpdate& update) const;
+  bool follows(const ElevationUpdate& update) const;
+  MapChange place(const ElevationUpdate::ConstPtr& update);
+  MapChange go_back(const ElevationUpdate::ConstPtr& update, const Number& from);
   MapChange refuse(const std::string& why);
   void lose(const std::string& why);
   void keep(const ElevationUpdate::ConstPtr& update);
@@ -63,9 +70,12 @@ class ElevationAssembler {
   void write_waiting(MapChange& change);
 
   std::shared_ptr<const ElevationMap> map_;
-  ros::Time keyframe_stamp_;                       ///< of the keyframe that map_ is built on
-  bool complete_ = true;                           ///< nothing is missing after what is held
-  std::deque<ElevationUpdate::ConstPtr> waiting_;  ///< for their keyframe, in the order of their coming
+  ros::Time keyframe_stamp_;                        ///< of the keyframe that map_ is built on
+  bool complete_ = true;                            ///< nothing is missing after what is held
+  bool went_back_ = false;                          ///< the sender has begun anew; its keyframe is to come
+  Number newest_{0, 0};                             ///< of the last update that came, whatever became of it
+  std::shared_ptr<const ElevationMap> sent_again_;  ///< of the keyframe that map_ is built on, come anew
+  std::deque<ElevationUpdate::ConstPtr> waiting_;   ///< for their keyframe, in the order of their coming
   std::size_t waiting_cells_ = 0;
   StreamCounts counts_;
 };

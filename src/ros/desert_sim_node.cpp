@@ -3,6 +3,7 @@
 #include <ros/console.h>
 #include <ros/init.h>
 
+#include <csignal>
 #include <iostream>
 #include <string>
 
@@ -35,6 +36,8 @@ int main(int argc, char** argv) {
     return 0;
   }
   ros::init(argc, argv, "desert_sim");
+  // systemd, docker and roslaunch's second attempt; roscpp itself only knows Ctrl-C.
+  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   ros::start();  // the log ends with ROS, and must outlive the server
   int status = failed;
   try {

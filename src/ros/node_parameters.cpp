@@ -1,5 +1,6 @@
 #include "desert_sim/ros/node_parameters.hpp"
 
+#include <ros/master.h>
 #include <ros/names.h>
 #include <ros/param.h>
 #include <yaml-cpp/yaml.h>
@@ -16,7 +17,11 @@ namespace {
 
 YAML::Node read_namespace(const std::string& name) {
   XmlRpc::XmlRpcValue value;
-  if (!ros::param::get(name, value)) return YAML::Node(YAML::NodeType::Map);
+  if (!ros::param::get(name, value)) {
+    if (!ros::master::check())
+      throw Error("the master, which keeps the parameters of " + name + ", does not answer");
+    return YAML::Node(YAML::NodeType::Map);
+  }
   return yaml_from_xmlrpc(value, name);
 }
 

@@ -4,6 +4,8 @@
 #include <ros/console.h>
 #include <ros/serialization.h>
 
+#include <utility>
+
 #include "desert_sim/ros/reconfigure_messages.hpp"
 
 namespace desert_sim {
@@ -33,13 +35,23 @@ Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Top
       node.createWallTimer(ros::WallDuration(look_every), [this](const ros::WallTimerEvent&) { look(); });
 }
 
+/// In their order, and without the lock across a publish.
 void Reconfigure::publish(const Scenario& scenario) {
   const auto values =
       boost::make_shared<dynamic_reconfigure::Config>(reconfigure_values(scenario, simulation_.step_rate()));
-  const std::lock_guard<std::mutex> lock(mutex_);
+  std::unique_lock<std::mutex> lock(mutex_);
   if (same(*values, published_)) return;
   published_ = *values;
-  updates_.publish(values);
+  to_publish_ = values;
+  if (publishing_) return;  // whoever does so now takes this one too
+  publishing_ = true;
+  while (to_publish_) {
+    const dynamic_reconfigure::ConfigConstPtr next = std::exchange(to_publish_, nullptr);
+    lock.unlock();
+    updates_.publish(next);
+    lock.lock();
+  }
+  publishing_ = false;
 }
 
 bool Reconfigure::set(Request& request, Response& response) {

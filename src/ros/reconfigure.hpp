@@ -29,9 +29,11 @@ class Reconfigure {
   SimulationThread& simulation_;
   Topics& topics_;
   std::mutex mutex_;
-  dynamic_reconfigure::Config published_;  ///< under mutex_
-  std::uint64_t seen_ = 0;                 ///< commands of the simulation, when it was last looked at
-  double seen_rate_ = -1;                  ///< step rate then [steps/s]
+  dynamic_reconfigure::Config published_;  ///< under mutex_, as the next two
+  dynamic_reconfigure::ConfigConstPtr to_publish_;
+  bool publishing_ = false;
+  std::uint64_t seen_ = 0;  ///< commands of the simulation, when it was last looked at
+  double seen_rate_ = -1;   ///< step rate then [steps/s]
   ros::Publisher descriptions_, updates_;
   ros::ServiceServer service_;
   ros::WallTimer timer_;

@@ -25,6 +25,15 @@ void next_time(Time& due, Duration period) {
   if (due <= now) due = now + period;
 }
 
+/// Updates that may wait for a subscriber that is slow; whoever misses one asks for a keyframe. An update is
+/// at most as large as the whole surface.
+std::uint32_t update_queue(const Snapshot& terrain) {
+  constexpr std::size_t longest = 100, shortest = 2, most_bytes = std::size_t{256} << 20;
+  const std::size_t bytes =
+      sizeof(float) * static_cast<std::size_t>(terrain.width) * static_cast<std::size_t>(terrain.height);
+  return static_cast<std::uint32_t>(std::clamp(most_bytes / bytes, shortest, longest));
+}
+
 }  // namespace
 
 // ---- the table of topics ----
@@ -62,7 +71,8 @@ void Topics::add_elevation(const PublisherParameters& p) {
   Topic& keyframes = add(p.keyframe_rate, {Layer::elevation});
   keyframes.publisher = advertise_terrain<ElevationGrid>("elevation", 1, keyframes);
   // Whoever begins to listen to updates needs a keyframe to write them over.
-  updates.publisher = advertise_terrain<ElevationUpdate>("elevation_updates", 100, keyframes);
+  updates.publisher = advertise_terrain<ElevationUpdate>(
+      "elevation_updates", update_queue(*simulation_.terrain({}).get().snapshot), keyframes);
   elevation_ = std::make_unique<ElevationStream>(keyframes.publisher, updates.publisher, frame_,
                                                  p.update_threshold, p.update_tile);
   // roscpp has one connection a topic and process: those who share one are no new subscribers, and ask.

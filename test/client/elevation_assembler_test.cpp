@@ -174,6 +174,84 @@ TEST_F(Assembler, ARestartWithTheSameNumbersIsNoticed) {
   EXPECT_EQ(corner(), 4);
 }
 
+TEST_F(Assembler, AnotherRunWhoseNumbersHappenToFollowIsNoticed) {
+  assembler_.take(keyframe(1, 100));
+  assembler_.take(update(1, 1, 101, 5));
+  auto fresh = update(1, 2, 3, 6);
+  fresh->header.stamp = ros::Time(200, 0);
+  assembler_.take(fresh);
+  expect_gap("started anew");
+  EXPECT_EQ(corner(), 5);
+}
+
+// ---- a recording that is played again: the same numbers and stamps from their beginning ----
+
+class Played : public Assembler {
+ protected:
+  void play_keyframe(std::uint32_t number, std::uint32_t step) {
+    assembler_.take(keyframe(number, step, 130, 70, static_cast<float>(step)));
+  }
+  void play_updates(std::uint32_t number, std::uint32_t step, std::uint32_t count) {
+    for (std::uint32_t n = 1; n <= count; ++n)
+      assembler_.take(update(number, n, step + n, static_cast<float>(step + n)));
+  }
+  void expect_at(std::uint32_t step) const {
+    EXPECT_EQ(assembler_.map()->info().step, step);
+    EXPECT_EQ(corner(), step);
+    EXPECT_TRUE(whole());
+  }
+};
+
+TEST_F(Played, OfOneKeyframe) {
+  for (int turn = 0; turn < 3; ++turn) {
+    play_keyframe(1, 10);
+    play_updates(1, 10, 4);
+    expect_at(14);
+    EXPECT_EQ(assembler_.map()->at(5, 5), 10);
+  }
+  EXPECT_EQ(counts().updates, 12u);
+  EXPECT_EQ(counts().restarts, 2u);
+  EXPECT_EQ(counts().gaps, 0u);
+}
+
+TEST_F(Played, OfOneKeyframeWhoseFirstUpdateOvertakesIt) {
+  play_keyframe(1, 10);
+  play_updates(1, 10, 4);
+  play_updates(1, 10, 2);
+  expect_gap("started anew");
+  EXPECT_EQ(corner(), 14) << "the last good map stays";
+  play_keyframe(1, 10);
+  expect_at(12);
+}
+
+TEST_F(Played, OfSeveralKeyframes) {
+  for (int turn = 0; turn < 3; ++turn)
+    for (std::uint32_t number = 3; number < 6; ++number) {
+      play_keyframe(number, 10 * number);
+      play_updates(number, 10 * number, 4);
+      expect_at(10 * number + 4);
+    }
+  EXPECT_EQ(counts().gaps, 0u);
+  EXPECT_EQ(counts().restarts, 2u);
+}
+
+TEST_F(Played, OfSeveralKeyframesInAnyOrderOfTheTwoConnections) {
+  play_keyframe(1, 10);
+  play_updates(1, 10, 2);
+  play_keyframe(2, 20);
+  play_updates(2, 20, 2);
+  play_updates(1, 10, 1);  // before its keyframe
+  EXPECT_EQ(assembler_.need(), KeyframeNeed::lost);
+  play_keyframe(1, 10);
+  expect_at(11);
+  play_keyframe(2, 20);
+  play_keyframe(1, 10);  // before the last update of the turn before
+  play_updates(2, 20, 1);
+  play_updates(1, 10, 2);
+  expect_at(12);
+  EXPECT_EQ(counts().gaps, 1u);
+}
+
 TEST_F(Assembler, AStepBackOfTheScenarioIsNotARestart) {
   assembler_.take(keyframe(1, 100));
   ElevationGrid reset = keyframe(2, 101);

@@ -33,6 +33,13 @@ def program(name):
     return found[0]
 
 
+def wait_until(happened, what, seconds=20):
+    end = time.monotonic() + seconds
+    while not happened():
+        assert time.monotonic() < end, what
+        time.sleep(0.01)
+
+
 class Node:
     """A desert_sim_node of its own; `private` are its private parameters."""
 

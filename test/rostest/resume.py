@@ -12,17 +12,10 @@ import rospy
 import rostest
 from desert_sim.msg import SimulationStatus
 from desert_sim.srv import SetWind, Step
-from lifecycle import CORNER, Scenarios, Trigger
+from lifecycle import CORNER, Scenarios, Trigger, wait_until
 
 KILLS = int(os.environ.get("DESERT_KILLS", "4"))
 AUTOSAVED = {"scenario": CORNER, "autosave_period": 0.1, "resume": True}
-
-
-def wait_until(happened, what, seconds=20):
-    end = time.monotonic() + seconds
-    while not happened():
-        assert time.monotonic() < end, what
-        time.sleep(0.01)
 
 
 def autosaves(folder):
@@ -36,7 +29,9 @@ def number(path):
 
 class Respawned:
     """The node of resume.test."""
-    folder = rospy.get_param("/desert_sim/data_dir")
+
+    def __init__(self):
+        self.folder = rospy.get_param("/desert_sim/data_dir")
 
     def pid(self):
         try:

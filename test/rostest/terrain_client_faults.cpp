@@ -2,20 +2,17 @@
 /// kills.
 #include <desert_sim/QueryTerrain.h>
 #include <desert_sim/Step.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <csignal>
-#include <limits>
 
 #include "client/messages.hpp"
 #include "desert_sim/client/terrain_client.hpp"
-#include "rostest/client.hpp"
+#include "rostest/child_process.hpp"
 
 namespace {
 
 using namespace desert_sim;
+using node_test::NodeProcess;
 using node_test::wait_until;
 
 constexpr double timeout = 10;
@@ -163,49 +160,22 @@ TEST(Faults, SlowListenersMissNothingThatTheyAreNotToldOf) {
 
 // ---- nodes that come late, and die ----
 
-/// A desert_sim_node of its own on corner.yaml, killed in the end.
-class NodeProcess {
- public:
-  NodeProcess(const std::string& name, int width) : name_(name) {
-    ros::param::del(name);
-    ros::param::set(name + "/scenario", std::string(DESERT_SOURCE_DIR "/test/rostest/scenarios/corner.yaml"));
-    ros::param::set(name + "/grid/width", width);
-    ros::param::set(name + "/backend", std::string("cpu"));
-    ros::param::set(name + "/threads", 1);
-    ros::param::set(name + "/paused", true);
-    ros::param::set(name + "/keyframe_rate", 0.0);
-    const std::string name_argument = "__name:=" + name.substr(1);
-    pid_ = fork();
-    if (pid_ == 0) {
-      execl(DESERT_NODE_BINARY, DESERT_NODE_BINARY, name_argument.c_str(), nullptr);
-      _exit(127);
-    }
-  }
-  ~NodeProcess() {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-  }
-  std::uint64_t step(std::uint32_t steps) const {
-    Step exchange;
-    exchange.request.steps = steps;
-    EXPECT_TRUE(ros::service::waitForService(name_ + "/step", ros::Duration(timeout)));
-    EXPECT_TRUE(ros::service::call(name_ + "/step", exchange));
-    EXPECT_TRUE(exchange.response.success) << exchange.response.message;
-    return exchange.response.step;
-  }
-  double elevation(double x, double y) const {
-    QueryTerrain exchange;
-    exchange.request.points.resize(1);
-    exchange.request.points[0].x = x;
-    exchange.request.points[0].y = y;
-    EXPECT_TRUE(ros::service::call(name_ + "/query_terrain", exchange));
-    return exchange.response.samples.empty() ? std::nan("") : exchange.response.samples[0].elevation;
-  }
+std::map<std::string, XmlRpc::XmlRpcValue> of_width(int width) { return {{"grid/width", width}}; }
 
- private:
-  std::string name_;
-  pid_t pid_ = -1;
-};
+std::uint64_t step(const NodeProcess& node, std::uint32_t steps) {
+  Step::Request request;
+  request.steps = steps;
+  return node.call<Step>("step", request).step;
+}
+
+double elevation(const NodeProcess& node, double x, double y) {
+  QueryTerrain::Request request;
+  request.points.resize(1);
+  request.points[0].x = x;
+  request.points[0].y = y;
+  const QueryTerrain::Response response = node.call<QueryTerrain>("query_terrain", request);
+  return response.samples.empty() ? std::nan("") : response.samples[0].elevation;
+}
 
 TEST(Lifecycle, AClientMayBeThereBeforeTheNode) {
   const TerrainClient client(ros::NodeHandle(), options("/late"));
@@ -214,26 +184,26 @@ TEST(Lifecycle, AClientMayBeThereBeforeTheNode) {
   EXPECT_FALSE(client.connected());
   EXPECT_EQ(client.elevation(20, 0), std::nullopt);
   EXPECT_EQ(client.map(), nullptr);
-  const NodeProcess node("/late", 64);
+  const NodeProcess node("/late", of_width(64));
   ASSERT_TRUE(client.wait_for_terrain(timeout));
   EXPECT_EQ(client.map()->info().width, 64u);
-  ASSERT_TRUE(client.wait_for_step(node.step(4), timeout));
+  ASSERT_TRUE(client.wait_for_step(step(node, 4), timeout));
 }
 
 TEST(Lifecycle, AKilledNodeThatStartsAnewIsFollowed) {
-  auto node = std::make_unique<NodeProcess>("/killed", 64);
+  auto node = std::make_unique<NodeProcess>("/killed", of_width(64));
   const TerrainClient client(ros::NodeHandle(), options("/killed"));
   ASSERT_TRUE(client.wait_for_terrain(timeout));
-  for (int n = 0; n < 10; ++n) ASSERT_TRUE(client.wait_for_step(node->step(2), timeout));
+  for (int n = 0; n < 10; ++n) ASSERT_TRUE(client.wait_for_step(step(*node, 2), timeout));
   node.reset();
   EXPECT_TRUE(client.elevation(30, 10)) << "what it has, it has";
 
-  node = std::make_unique<NodeProcess>("/killed", 40);
+  node = std::make_unique<NodeProcess>("/killed", of_width(40));
   ASSERT_TRUE(wait_until([&] { return client.map()->info().width == 40; }));
-  const std::uint64_t reached = node->step(7);
+  const std::uint64_t reached = step(*node, 7);
   ASSERT_TRUE(client.wait_for_step(reached, timeout));
   EXPECT_TRUE(wait_until([&] { return client.up_to_date() && client.map()->info().step == reached; }));
-  EXPECT_NEAR(client.elevation(33.3, 12.1).value(), node->elevation(33.3, 12.1), 0.005 + 1e-6);
+  EXPECT_NEAR(client.elevation(33.3, 12.1).value(), elevation(*node, 33.3, 12.1), 0.005 + 1e-6);
   EXPECT_EQ(client.map()->elevation(100, 0), std::nullopt) << "east of 40 cells";
   EXPECT_EQ(client.statistics().restarts, 1u);
 }

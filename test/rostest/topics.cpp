@@ -5,13 +5,16 @@
 #include <desert_sim/SimulationStatus.h>
 #include <desert_sim/Step.h>
 #include <desert_sim/WindField.h>
+#include <image_transport/image_transport.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/transform_listener.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <algorithm>
 #include <boost/make_shared.hpp>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "desert_sim/client/elevation_assembler.hpp"
@@ -189,6 +192,41 @@ TEST(Topics, AFrameStandsInTheMiddleOfTheTerrain) {
   EXPECT_EQ(center.x, 10 + 64);
   EXPECT_EQ(center.y, -20 + 48);
   EXPECT_NEAR(center.z, 1.5 + 6.0 * 12 / (64 * 48), 1e-5);
+}
+
+TEST(Topics, TheImageComesThroughImageTransport) {
+  image_transport::ImageTransport transport{ros::NodeHandle()};
+  const std::vector<std::string> transports = transport.getLoadableTransports();
+  std::mutex mutex;
+  std::map<std::string, sensor_msgs::Image> images;
+  std::vector<image_transport::Subscriber> subscribers;
+  for (const std::string name : {"raw", "compressed"}) {
+    const boost::function<void(const sensor_msgs::ImageConstPtr&)> take =
+        [&images, &mutex, name](const sensor_msgs::ImageConstPtr& image) {
+          const std::lock_guard<std::mutex> lock(mutex);
+          images[name] = *image;
+        };
+    const auto subscribe = [&] {
+      return transport.subscribe("/desert_sim/image", 1, take, {}, image_transport::TransportHints(name));
+    };
+    if (std::find(transports.begin(), transports.end(), "image_transport/" + name) != transports.end()) {
+      subscribers.push_back(subscribe());
+    } else {
+      EXPECT_NE(name, "raw");
+      EXPECT_THROW(subscribe(), image_transport::TransportLoadException) << "who lacks a transport is told";
+    }
+  }
+  ASSERT_TRUE(wait_until([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return images.size() == subscribers.size();
+  }));
+  subscribers.clear();
+  for (const auto& [name, image] : images) {
+    EXPECT_EQ(image.encoding, "bgr8") << name;
+    EXPECT_EQ(image.width * 48, image.height * 64) << name;
+    EXPECT_EQ(image.data.size(), 3u * image.width * image.height) << name;
+    EXPECT_EQ(image.header.frame_id, "terrain") << name;
+  }
 }
 
 TEST(Topics, StepPublishesWhatChangedBeforeItAnswers) {
