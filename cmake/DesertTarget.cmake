@@ -120,7 +120,12 @@ function(desert_program target)
   desert_link(${target} PRIVATE ${arg_LINK})
 endfunction()
 
-# One line: what this build has, and why it lacks the rest.
+# desert_leave_out(<test> <why>): for the summary.
+function(desert_leave_out test why)
+  set_property(GLOBAL APPEND PROPERTY DESERT_LEFT_OUT "${test} (${why})")
+endfunction()
+
+# One line: what this build has, and why it lacks the rest; another one for tests that need more than is here.
 function(desert_summary)
   foreach(part IN ITEMS CUDA IO ROS)
     if(DESERT_WITH_${part})
@@ -131,4 +136,9 @@ function(desert_summary)
   endforeach()
   string(REPLACE ";" ", " parts "${parts}")
   message(STATUS "desert_sim ${PROJECT_VERSION}, ${CMAKE_BUILD_TYPE}: CPU on, ${parts}")
+  get_property(left_out GLOBAL PROPERTY DESERT_LEFT_OUT)
+  if(left_out)
+    string(REPLACE ";" ", " left_out "${left_out}")
+    message(STATUS "desert_sim: tests left out: ${left_out}")
+  endif()
 endfunction()
