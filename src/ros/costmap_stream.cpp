@@ -73,6 +73,7 @@ CostRectangle CostmapStream::with_recent(const CostRectangle& cells) {
 
 void CostmapStream::publish_keyframe(const TerrainState& state) {
   const Snapshot& s = *state.snapshot;
+  if (!held_.empty() && !holds(state)) replaced_ = Clock::now();
   hold(state);
   with_recent({0, 0, s.width, s.height});
   nav_msgs::OccupancyGridPtr message = boost::make_shared<nav_msgs::OccupancyGrid>();
@@ -94,6 +95,10 @@ bool CostmapStream::publish_update(const TerrainState& state) {
   std::vector<std::int8_t> now = costs(*state.snapshot);
   const CostRectangle changed = changes(now);
   if (changed.empty()) return false;
+  if (Clock::now() - replaced_ < repeat_ && keyframes_.getNumSubscribers() > 0) {
+    publish_keyframe(state);
+    return true;
+  }
   const CostRectangle cells = with_recent(changed);
   held_ = std::move(now);
   map_msgs::OccupancyGridUpdatePtr message = boost::make_shared<map_msgs::OccupancyGridUpdate>();

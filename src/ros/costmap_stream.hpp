@@ -35,7 +35,9 @@ class CostmapStream {
                 std::chrono::duration<double> repeat);
   void publish_keyframe(const TerrainState& state);
   /// The rectangle of all cells that changed since. Nothing, and false, if none has, or if a whole map is due
-  /// first: subscribers hold one of another terrain or none.
+  /// first: subscribers hold one of another terrain or none. Soon after the terrain was replaced, a whole map
+  /// in its place: a message on one topic may overtake one on another, and costmap_2d writes an update that
+  /// does not fit the map it holds past that map's end.
   bool publish_update(const TerrainState& state);
 
  private:
@@ -58,6 +60,7 @@ class CostmapStream {
   int width_ = 0, height_ = 0;
   std::uint64_t terrain_ = 0;
   std::deque<Sent> sent_;
+  Clock::time_point replaced_;  ///< when the first whole map of another terrain was sent
 };
 
 }  // namespace desert_sim

@@ -112,6 +112,10 @@ void Topics::add_costmap(const MapParameters& p) {
   // In the order of ~elevation's, and for its reason.
   Topic& updates = add(p.costmap_update_rate, {Layer::traversability});
   Topic& keyframes = add(p.costmap_keyframe_rate, {Layer::traversability});
+  // move_base has two costmaps in one process, of which the second waits for a map and is no new subscriber
+  // to us. roscpp hands it the last message there was, but only of a topic that somebody advertises as
+  // latched.
+  costmap_is_latched_ = node_.advertise<nav_msgs::OccupancyGrid>("costmap", 1, true);
   keyframes.publisher = advertise_terrain<nav_msgs::OccupancyGrid>("costmap", 1, keyframes);
   updates.publisher = advertise_terrain<map_msgs::OccupancyGridUpdate>("costmap_updates", 10, keyframes);
   const double period = p.costmap_update_rate > 0 ? 1 / p.costmap_update_rate : 1;

@@ -126,6 +126,7 @@ class Topics {
   std::unique_ptr<WindMarkers> markers_;
   std::unique_ptr<CostmapStream> costmap_;
   ros::Publisher status_, diff_;
+  ros::Publisher costmap_is_latched_;  ///< publishes nothing
   Clock::duration status_period_{0};
   Clock::time_point status_due_;
   SimulationStatus last_status_;

@@ -86,6 +86,25 @@ class Costmap(MapTest):
             self.assertLessEqual(last.x, 12)
             self.assertLessEqual(last.y, 12)
 
+    def test_a_second_subscriber_of_a_process_gets_the_map_too(self):
+        with Listener("/desert_sim/costmap", OccupancyGrid) as first:
+            first.first()
+            with Listener("/desert_sim/costmap", OccupancyGrid) as second:  # by the same connection
+                self.assertEqual(second.first("a map for the second").data, first.messages[-1].data)
+
+    def test_soon_after_the_terrain_was_replaced_changes_come_as_whole_maps(self):
+        with Listener("/desert_sim/costmap", OccupancyGrid) as keyframes, \
+                Listener("/desert_sim/costmap_updates", OccupancyGridUpdate) as updates:
+            keyframes.first()
+            call("reset", Trigger)
+            self.edit(40, 10)
+            rospy.ServiceProxy("/desert_sim/step", Step)(0)
+            keyframes.wait_for(lambda k: max(k.data[15 * 64:16 * 64]) == 100, "the edit, in row 15")
+            self.assertEqual(updates.messages, [])
+            time.sleep(0.7)
+            self.edit(90, 10)
+            updates.wait_for(lambda u: u.x <= 40 < u.x + u.width, "later as an update")
+
     # ---- image
 
     def test_image_has_the_marker_in_the_south_east(self):
