@@ -10,6 +10,7 @@
 #include "desert_sim/grid_map/message_bytes.hpp"
 #include "desert_sim/ros/map_layers.hpp"
 #include "desert_sim/simulation/session.hpp"
+#include "desert_sim/tools/rasters.hpp"
 #include "grid_map/maps.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
@@ -295,6 +296,7 @@ TEST_F(ForeignBags, LengthsThatLieTakeNoMemory) {
   EXPECT_LT(floats.capacity() + texts.capacity() + layers.capacity(), 100u);
 }
 
+/// For desert_run too.
 TEST_F(ForeignBags, AreRastersOfScenariosWithLayersAsBands) {
   GridMap map = a_map("variance");
   add_layer(map, "elevation", [](int x, int y) { return x + y; });
@@ -302,14 +304,14 @@ TEST_F(ForeignBags, AreRastersOfScenariosWithLayersAsBands) {
   Session session(test::parsed("grid: {from_raster: " + path_ +
                                ", cell_size: 0.25, boundary: open}\n"
                                "terrain: [raster: {layer: bedrock, band: 2, scale: 2, offset: 1}]\n"),
-                  raster_loader_with_bags(), "cpu", 1);
+                  raster_loader(), "cpu", 1);
   const Terrain& terrain = session.simulation().terrain();
   EXPECT_EQ(terrain.grid().width, 10);
   EXPECT_EQ(terrain.grid().height, 8);
   const std::vector<float> heights = terrain.values(Layer::bedrock);
   EXPECT_NEAR(heights[4 * 10 + 5], 1 + 2 * (2.25 + 1.75), 0.1) << "between the cells of the map";
   EXPECT_THROW(Session(test::parsed("grid: {from_raster: " + path_ + "}\nterrain: [raster: {band: 3}]\n"),
-                       raster_loader_with_bags(), "cpu", 1),
+                       raster_loader(), "cpu", 1),
                ConfigError);
 }
 
