@@ -10,6 +10,7 @@
 #include <set>
 
 #include "desert_sim/core/quoted.hpp"
+#include "desert_sim/grid_map/bag_records.hpp"
 #include "desert_sim/grid_map/message_bytes.hpp"
 #include "desert_sim/io/raster_loader.hpp"
 
@@ -91,6 +92,7 @@ void write_grid_map(const std::string& path, const std::string& topic, const Gri
 GridMap read_grid_map(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) throw ConfigError(path + ": there is no such file");
   try {
+    require_whole_records(path);
     rosbag::Bag bag(path, rosbag::bagmode::Read);
     return last_map(bag);
   } catch (const rosbag::BagUnindexedException&) {
