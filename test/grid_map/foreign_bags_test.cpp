@@ -162,16 +162,22 @@ TEST_F(ForeignBags, GapsAreRefusedOrFilled) {
 }
 
 TEST_F(ForeignBags, TheLastMapCounts) {
-  rosbag::Bag bag(path_, rosbag::bagmode::Write);
-  bag.write("/map", ros::Time(10), a_map("elevation"));
-  bag.write("/map", ros::Time(30), a_map("bedrock"));
-  GridMap between = a_map();
-  between.data[0].data[0] = -7;
-  bag.write("/map", ros::Time(20), between);
-  bag.write("/words", ros::Time(40), std_msgs::Header());
-  bag.close();
-  EXPECT_EQ(read_grid_map(path_).layers.at(0), "bedrock");
-  load();
+  for (const auto compression :
+       {rosbag::compression::Uncompressed, rosbag::compression::BZ2, rosbag::compression::LZ4})
+    for (const std::uint32_t chunk : {100u, 1000000u}) {
+      rosbag::Bag bag(path_, rosbag::bagmode::Write);
+      bag.setCompression(compression);
+      bag.setChunkThreshold(chunk);
+      bag.write("/map", ros::Time(10), a_map("elevation"));
+      bag.write("/map", ros::Time(30), a_map("bedrock"));
+      GridMap between = a_map();
+      between.data[0].data[0] = -7;
+      bag.write("/map", ros::Time(20), between);
+      bag.write("/words", ros::Time(40), std_msgs::Header());
+      bag.close();
+      EXPECT_EQ(read_grid_map(path_).layers.at(0), "bedrock") << compression << " " << chunk;
+      load();
+    }
 }
 
 TEST_F(ForeignBags, WithTwoTopicsOrNoMapAreRefused) {
