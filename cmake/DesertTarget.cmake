@@ -10,7 +10,7 @@ set(DESERT_SANITIZE "" CACHE STRING "Sanitizers for all of the project's own cod
 set(DESERT_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${DESERT_INCLUDE_DIR}/desert_sim)
 set_property(GLOBAL PROPERTY DESERT_ROOMS "")
-foreach(room IN ITEMS kernels core terrain scenario simulation io tools client ros)
+foreach(room IN ITEMS kernels core terrain scenario simulation io grid_map tools client ros)
   set(folder ${PROJECT_SOURCE_DIR}/src/${room})
   if(room STREQUAL "kernels")
     set(folder ${PROJECT_SOURCE_DIR}/kernels)

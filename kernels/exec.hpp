@@ -7,6 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "desert_sim/config.hpp"
+
 namespace desert_sim {
 
 class Fft;

@@ -2,6 +2,7 @@
 /// All processes. What includes this calls their steps without compiling them: the two backends do
 /// (processes.inc).
 
+#include "desert_sim/config.hpp"
 #include "desert_sim/kernels/avalanching_ground.hpp"
 #include "desert_sim/kernels/brush_smooth.hpp"
 #include "desert_sim/kernels/echo_dunes.hpp"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "desert_sim/io/raster.hpp"
 #include "desert_sim/io/resample.hpp"
 
 namespace desert_sim {
@@ -73,7 +72,12 @@ RasterField load(const RasterRequest& q) {
   options.band = q.band;
   options.scale = q.scale;
   options.offset = q.offset;
-  Raster r = read_raster(q.path, options);
+  return fitted(read_raster(q.path, options), q);
+}
+
+}  // namespace
+
+RasterField fitted(Raster r, const RasterRequest& q) {
   if (r.length_unit() == "degree")
     throw ConfigError(q.path + ": is in degrees; project it to metres first (gdalwarp -t_srs EPSG:326xx …)");
   const bool placed = georeferenced(r);
@@ -99,8 +103,6 @@ RasterField load(const RasterRequest& q) {
   field.values = std::move(r.values);
   return field;
 }
-
-}  // namespace
 
 RasterLoader gdal_raster_loader() { return load; }
 

@@ -7,8 +7,7 @@
 #include <set>
 
 #include "desert_sim/core/files.hpp"
-#include "desert_sim/io/picture.hpp"
-#include "desert_sim/io/raster.hpp"
+#include "desert_sim/io/snapshots.hpp"
 
 namespace desert_sim {
 
@@ -16,20 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* marker = "terrain-";  // what the rasters of a saved terrain begin with
-
-void write_layer(const std::string& path, const std::vector<float>& values, const Snapshot& s,
-                 const std::string& projection) {
-  Raster raster;
-  raster.width = s.width;
-  raster.height = s.height;
-  raster.cell_size = s.cell_size;
-  raster.origin_x = s.origin_x;
-  raster.origin_y = s.origin_y;
-  raster.projection = projection;
-  raster.values = values;
-  write_geotiff(path, raster);
-}
+constexpr const char* marker = "terrain-";  // what the files of a saved terrain begin with
+const std::set<std::string> endings{".tif", ".png", ".bag"};
 
 /// Values are raw · scale + offset, the first row of the picture in the north.
 void write_layer_png16(const std::string& path, const std::vector<float>& values, const Snapshot& s,
@@ -48,12 +35,11 @@ void write_layer_png16(const std::string& path, const std::vector<float>& values
   write_png(path, picture);
 }
 
-void remove_rasters_but(const fs::path& folder, const std::set<std::string>& kept) {
+void remove_files_but(const fs::path& folder, const std::set<std::string>& kept) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    const std::string ending = entry.path().extension().string();
-    const bool raster = name.rfind(marker, 0) == 0 && (ending == ".tif" || ending == ".png");
-    if (raster && kept.count(name) == 0) fs::remove(entry.path());
+    const bool saved = name.rfind(marker, 0) == 0 && endings.count(entry.path().extension().string()) > 0;
+    if (saved && kept.count(name) == 0) fs::remove(entry.path());
   }
 }
 
@@ -66,35 +52,63 @@ std::vector<Layer> terrain_layers(const Simulation& simulation) {
   return layers;
 }
 
-void save_terrain(const std::string& scenario_file, const Scenario& scenario, const Snapshot& snapshot,
-                  TerrainFormat format, const std::string& tag) {
-  const fs::path folder = fs::path(scenario_file).parent_path();
-  Scenario saved = scenario;
-  saved.terrain.clear();
-  saved.grid.from_raster.clear();
-  std::set<std::string> names;
-  for (const auto& [layer, values] : snapshot.layers) {
-    RasterStep step;
-    step.layer = info(layer).name;
-    step.file = marker + step.layer + "-" + tag + (format == TerrainFormat::geotiff ? ".tif" : ".png");
-    const std::string path = (folder / step.file).string();
-    if (format == TerrainFormat::geotiff) {
-      write_layer(path, values, snapshot, scenario.projection);
-      if (layer == Layer::bedrock) saved.grid.from_raster = step.file;  // for its projection
-    } else {
-      write_layer_png16(path, values, snapshot, step.scale, step.offset);
-      step.stretch = true;  // a PNG has no place
+std::vector<Layer> terrain_layers(const Snapshot& snapshot) {
+  std::vector<Layer> layers;
+  for (const auto& entry : snapshot.layers)
+    if (info(entry.first).lifetime == Lifetime::persistent) layers.push_back(entry.first);
+  return layers;
+}
+
+std::string layer_file(const std::string& what, const std::string& tag, const std::string& ending) {
+  return marker + what + "-" + tag + ending;
+}
+
+LayerWriter geotiff_writer(const std::string& projection) {
+  return [projection](const Snapshot& s, const std::string& folder, const std::string& tag) {
+    SavedLayers saved;
+    for (Layer layer : terrain_layers(s)) {
+      RasterStep step;
+      step.layer = info(layer).name;
+      step.file = layer_file(step.layer, tag, ".tif");
+      write_geotiff(folder + "/" + step.file, raster_of(s, *s.find(layer), projection));
+      saved.georeferenced = step.file;
+      saved.steps.push_back(step);
     }
-    names.insert(step.file);
-    saved.terrain.push_back(step);
-  }
+    return saved;
+  };
+}
+
+LayerWriter png16_writer() {
+  return [](const Snapshot& s, const std::string& folder, const std::string& tag) {
+    SavedLayers saved;
+    for (Layer layer : terrain_layers(s)) {
+      RasterStep step;
+      step.layer = info(layer).name;
+      step.file = layer_file(step.layer, tag, ".png");
+      write_layer_png16(folder + "/" + step.file, *s.find(layer), s, step.scale, step.offset);
+      step.stretch = true;  // a PNG has no place
+      saved.steps.push_back(step);
+    }
+    return saved;
+  };
+}
+
+void save_terrain(const std::string& scenario_file, const Scenario& scenario, const Snapshot& snapshot,
+                  const LayerWriter& write_layers, const std::string& tag) {
+  const fs::path folder = fs::path(scenario_file).parent_path();
+  const SavedLayers layers = write_layers(snapshot, folder.string(), tag);
+  Scenario saved = scenario;
+  saved.terrain.assign(layers.steps.begin(), layers.steps.end());
+  saved.grid.from_raster = layers.georeferenced;
   write_file(scenario_file, "# A terrain saved at step " + std::to_string(snapshot.step) + " of " +
                                 scenario.name + ".\n" + dump_scenario(saved));
+  std::set<std::string> names;
+  for (const RasterStep& step : layers.steps) names.insert(step.file);
   try {
-    remove_rasters_but(folder, names);
+    remove_files_but(folder, names);
   } catch (const fs::filesystem_error& e) {
     throw ConfigError(folder.string() +
-                      ": an earlier terrain's rasters cannot be removed: " + e.code().message());
+                      ": an earlier terrain's files cannot be removed: " + e.code().message());
   }
 }
 

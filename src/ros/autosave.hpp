@@ -1,7 +1,6 @@
 #pragma once
 /// Checkpoints that the node writes by itself, and goes on from when it is started anew.
 
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -15,7 +14,8 @@
 namespace desert_sim {
 
 /// Files autosave/NAME-NUMBER.ckpt below the data folder; the highest number is the newest. NAME is the
-/// node's and the hash of the scenario that it was started with, so that a node only resumes its own.
+/// node's and the hash of the scenario in its parameters, so that a node only resumes its own. A scenario
+/// that a service has put in its place is in the file: a node that is started anew knows only its parameters.
 class AutosaveFiles {
  public:
   AutosaveFiles(const DataFolder& folder, const std::string& node, const Scenario& scenario);
@@ -49,7 +49,7 @@ class Autosave {
   /// Waits for the file that is being written.
   ~Autosave();
   State state() const;
-  /// From now on, under these names: the node's scenario is another.
+  /// From now on, under these names: the scenario in the node's parameters is another.
   void save_as(AutosaveFiles files);
 
  private:

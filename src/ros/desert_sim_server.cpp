@@ -2,10 +2,11 @@
 
 #include <ros/console.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
-#include "desert_sim/io/raster_loader.hpp"
+#include "desert_sim/grid_map/grid_map_bag.hpp"
 
 namespace desert_sim {
 
@@ -32,8 +33,11 @@ SimulationThread::Options options_of(const NodeParameters& p) {
   return options;
 }
 
-/// Points and markers in rviz are single precision: 1e5 m leave a centimetre.
-void warn_of_far_origin(const GridParameters& grid) {
+/// Says what runs. Points and markers in rviz are single precision: 1e5 m leave a centimetre.
+void announce(const Scenario& scenario, const std::string& backend) {
+  const GridParameters& grid = scenario.grid;
+  ROS_INFO("scenario %s: %d x %d cells of %g m; backend: %s", scenario.name.c_str(), grid.width, grid.height,
+           grid.cell_size, backend.c_str());
   const double farthest = std::max(std::abs(grid.origin_x), std::abs(grid.origin_y));
   if (farthest > 1e5)
     ROS_WARN(
@@ -48,10 +52,9 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
     : node_(private_node), spinner_(threads, &queue_), step_spinner_(step_threads, &step_queue_) {
   node_.setCallbackQueue(&queue_);
   NodeSetup setup = read_node_setup(node_);
-  resolve_grid(setup.scenario, gdal_raster_loader());
+  resolve_grid(setup.scenario, raster_loader_with_bags());
   const NodeParameters& p = setup.node;
-  const GridParameters& grid = setup.scenario.grid;
-  check_map_sizes(setup.maps, grid);
+  check_map_sizes(setup.maps, setup.scenario.grid);
   keep_previous_journal(p.journal);
   files_ = std::make_unique<DataFolder>(p.data_dir);
   frames_ = std::make_unique<Frames>(p.frame_id);
@@ -65,12 +68,15 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   const AutosaveFiles autosaves(*files_, node_.getNamespace(), setup.scenario);
   if (p.resume) options.resume_from = autosaves.found();
   if (p.resume && options.resume_from.empty()) ROS_INFO("there is no autosave to resume from");
-  simulation_ = std::make_unique<SimulationThread>(setup.scenario, gdal_raster_loader(), options, [this] {
-    if (Topics* topics = to_notify_) topics->notify();
-  });
-  ROS_INFO("scenario %s: %d x %d cells of %g m; backend: %s", setup.scenario.name.c_str(), grid.width,
-           grid.height, grid.cell_size, simulation_->backend_choice().c_str());
-  warn_of_far_origin(grid);
+  options.check_scenario = [this, own = rasters_of(setup.scenario)](const Scenario& scenario) {
+    for (const std::string& raster : rasters_of(scenario))
+      if (std::count(own.begin(), own.end(), raster) == 0) files_->require_below(raster);
+  };
+  simulation_ =
+      std::make_unique<SimulationThread>(setup.scenario, raster_loader_with_bags(), options, [this] {
+        if (Topics* topics = to_notify_) topics->notify();
+      });
+  announce(simulation_->scenario().get(), simulation_->backend_choice());
   if (!p.center_frame.empty())
     frames_->announce_center(p.center_frame, *simulation_->terrain({Layer::elevation}).get().snapshot);
   topics_ = std::make_unique<Topics>(node_, setup.publishers, setup.maps, *frames_, *simulation_);

@@ -60,7 +60,6 @@ void Frames::announce_center(const std::string& name, const Snapshot& snapshot) 
 }
 
 void Frames::move_center(const Snapshot& s) {
-  if (!broadcaster_) return;
   const std::vector<float>& z = s.layers.at(Layer::elevation);
   geometry_msgs::TransformStamped center;
   center.header.stamp = ros::Time::now();

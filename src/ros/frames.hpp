@@ -30,7 +30,8 @@ class Frames {
 
   /// Publishes the static frame `name` in the middle of the terrain, at its mean height.
   void announce_center(const std::string& name, const Snapshot& snapshot);
-  /// Moves it to the middle of another terrain, if it was announced.
+  bool has_center() const { return broadcaster_ != nullptr; }
+  /// Moves it to the middle of another terrain.
   void move_center(const Snapshot& snapshot);
 
  private:

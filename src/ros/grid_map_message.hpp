@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/ros/grid_map_msg.hpp"
+#include "desert_sim/grid_map/grid_map_msg.hpp"
 #include "desert_sim/ros/map_window.hpp"
 #include "desert_sim/ros/moment.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <boost/make_shared.hpp>
 
-#include "desert_sim/io/picture.hpp"
+#include "desert_sim/io/snapshots.hpp"
 #include "desert_sim/ros/grid_map_message.hpp"
 #include "desert_sim/ros/map_cut.hpp"
 #include "desert_sim/ros/messages.hpp"
@@ -17,23 +17,7 @@ const std::vector<Layer> picture_layers{Layer::elevation, Layer::sand, Layer::ve
                                         Layer::water,     Layer::soil, Layer::wind_shadow};
 
 sensor_msgs::ImagePtr picture_message(const TerrainState& state, const std::string& frame) {
-  const Snapshot& s = *state.snapshot;
-  const auto values = [&s](Layer layer) {
-    const std::vector<float>* found = s.find(layer);
-    return found ? found->data() : nullptr;
-  };
-  PictureInput input;
-  input.width = s.width;
-  input.height = s.height;
-  input.cell_size = s.cell_size;
-  input.elevation = values(Layer::elevation);
-  input.sand = values(Layer::sand);
-  input.vegetation = values(Layer::vegetation);
-  input.obstacle = values(Layer::obstacle);
-  input.water = values(Layer::water);
-  input.soil = values(Layer::soil);
-  input.wind_shadow = values(Layer::wind_shadow);
-  const cv::Mat picture = hillshade_picture(input);
+  const cv::Mat picture = hillshade_picture(picture_of(*state.snapshot));
   sensor_msgs::ImagePtr message = boost::make_shared<sensor_msgs::Image>();
   message->header = header_of(state.moment, frame);
   message->width = static_cast<std::uint32_t>(picture.cols);

@@ -28,7 +28,7 @@ struct TerrainState {
   std::shared_ptr<const Snapshot> snapshot;  ///< layers that are not in use are absent, and 0
 };
 
-/// What save_terrain() takes.
+/// What save_terrain() takes; the snapshot has the elevation too.
 struct TerrainToSave {
   TerrainState state;
   Scenario scenario;

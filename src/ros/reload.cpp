@@ -2,7 +2,7 @@
 
 #include <ros/console.h>
 
-#include "desert_sim/io/raster_loader.hpp"
+#include "desert_sim/grid_map/grid_map_bag.hpp"
 #include "desert_sim/scenario/live_parameters.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
 
@@ -56,7 +56,7 @@ Reload::Reload(ros::NodeHandle node, NodeSetup setup, SimulationThread& simulati
 std::string Reload::reload() {
   const std::lock_guard<std::mutex> lock(mutex_);
   NodeSetup setup = read_node_setup(node_);
-  resolve_grid(setup.scenario, gdal_raster_loader());
+  resolve_grid(setup.scenario, raster_loader_with_bags());
   Settings settings;
   std::string applied, fixed;
   for (const auto& [path, value] : changed_parameters(last_.scenario, setup.scenario)) {

@@ -8,8 +8,8 @@
 #include <desert_sim/SetWindSchedule.h>
 #include <geometry_msgs/Vector3Stamped.h>
 
-#include "desert_sim/io/terrain_files.hpp"
 #include "desert_sim/ros/frames.hpp"
+#include "desert_sim/ros/terrain_formats.hpp"
 #include "desert_sim/simulation/command.hpp"
 
 namespace desert_sim {

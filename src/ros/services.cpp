@@ -5,9 +5,12 @@
 
 #include <boost/make_shared.hpp>
 
+#include "desert_sim/core/quoted.hpp"
 #include "desert_sim/ros/messages.hpp"
 #include "desert_sim/ros/requests.hpp"
+#include "desert_sim/ros/terrain_formats.hpp"
 #include "desert_sim/ros/terrain_sampler.hpp"
+#include "desert_sim/scenario/band_terrain.hpp"
 
 namespace desert_sim {
 
@@ -17,8 +20,9 @@ constexpr std::size_t most_points = 1000000;
 constexpr const char* terrain_file = "terrain.yaml";  // in a saved terrain's folder
 constexpr auto recent_enough = std::chrono::milliseconds(100);
 
-/// ~get_grid_map: a refusal is a call that fails, with its reason. call() must return true all the same: roscpp
-/// sends what is in `response`, whose first byte tells the client, and puts no reason into failures of its own.
+/// ~get_grid_map: a refusal is a call that fails, with its reason. call() must return true all the same:
+/// roscpp sends what is in `response`, whose first byte tells the client, and puts no reason into failures of
+/// its own.
 class GridMapCallback : public ros::ServiceCallbackHelper {
  public:
   explicit GridMapCallback(const Submaps& submaps) : submaps_(submaps) {}
@@ -218,15 +222,19 @@ void Services::load_checkpoint(const LoadCheckpointRequest& request, LoadCheckpo
 }
 
 void Services::terrain_replaced() {
-  frames_.move_center(*simulation_.terrain({Layer::elevation}).get().snapshot);
+  if (frames_.has_center()) frames_.move_center(*simulation_.terrain({Layer::elevation}).get().snapshot);
   topics_.publish_now();
 }
 
 void Services::save_terrain(const SaveTerrainRequest& request, SaveTerrainResponse& response) {
   const TerrainFormat format = terrain_format(request.format);
+  if (is_bag(request.name))
+    throw ConfigError("name: " + quoted(request.name) + " ends in .bag, which load_terrain takes for a file");
   response.path = files_.for_writing(request.name + "/" + terrain_file);
   const TerrainToSave terrain = simulation_.terrain_to_save().get();
-  desert_sim::save_terrain(response.path, terrain.scenario, *terrain.state.snapshot, format,
+  const LayerWriter writer =
+      layer_writer(format, terrain, frames_.terrain_frame(), node_.resolveName("grid_map"));
+  desert_sim::save_terrain(response.path, terrain.scenario, *terrain.state.snapshot, writer,
                            hash_text(terrain.hash));
   response.step = terrain.state.moment.step;
   ROS_INFO("saved the terrain of step %lu to %s", static_cast<unsigned long>(response.step),
@@ -234,20 +242,19 @@ void Services::save_terrain(const SaveTerrainRequest& request, SaveTerrainRespon
 }
 
 void Services::load_terrain(const LoadTerrainRequest& request, LoadTerrainResponse& response) {
-  response.state_hash =
-      hash_text(load_scenario(files_.for_reading(request.name + "/" + terrain_file), true).hash);
+  const std::string name = is_bag(request.name) ? request.name : request.name + "/" + terrain_file;
+  response.state_hash = begin({files_.for_reading(name), true, 0, request.fill_nodata != 0});
 }
 
 void Services::load_scenario(const LoadScenarioRequest& request, LoadScenarioResponse& response) {
-  response.state_hash = hash_text(load_scenario(files_.for_reading(request.name), false).hash);
+  response.state_hash = begin({files_.for_reading(request.name), false, 0, false});
 }
 
-Reached Services::load_scenario(const std::string& path, bool terrain_only) {
-  for (const std::string& raster : rasters_of(desert_sim::load_scenario(path))) files_.require_below(raster);
-  const Reached reached = simulation_.apply(command::LoadScenario{path, terrain_only, 0}, true).get();
-  ROS_INFO("loaded %s", path.c_str());
+std::string Services::begin(const command::LoadScenario& command) {
+  const Reached reached = simulation_.apply(command, true).get();
+  ROS_INFO("loaded %s", command.path.c_str());
   terrain_replaced();
-  return reached;
+  return hash_text(reached.hash);
 }
 
 }  // namespace desert_sim

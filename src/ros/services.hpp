@@ -57,7 +57,8 @@ class Services {
   void save_terrain(const SaveTerrainRequest& request, SaveTerrainResponse& response);
   void load_terrain(const LoadTerrainRequest& request, LoadTerrainResponse& response);
   void load_scenario(const LoadScenarioRequest& request, LoadScenarioResponse& response);
-  Reached load_scenario(const std::string& path, bool terrain_only);
+  /// Returns the hash at the new start.
+  std::string begin(const command::LoadScenario& command);
   /// Tells the world of another terrain.
   void terrain_replaced();
 

@@ -92,7 +92,9 @@ std::future<TerrainToSave> SimulationThread::terrain_to_save() {
     settle();
     Simulation& s = session_->simulation();
     ++snapshots_;
-    return TerrainToSave{{moment(), s.snapshot(terrain_layers(s))}, s.scenario(), state_hash()};
+    std::vector<Layer> layers = terrain_layers(s);
+    layers.push_back(Layer::elevation);
+    return TerrainToSave{{moment(), s.snapshot(layers)}, s.scenario(), state_hash()};
   });
 }
 

@@ -54,6 +54,7 @@ void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load
   try {
     session_ = std::make_unique<Session>(scenario, load_raster, options_.backend, options_.threads,
                                          options_.journal);
+    if (options_.check_scenario) session_->check_with(options_.check_scenario);
     backend_choice_ = session_->backend_choice();
     if (!options_.resume_from.empty()) load_newest(*session_, options_.resume_from, options_.journal);
     stamp_ = stamp_now();

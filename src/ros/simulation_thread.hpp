@@ -28,6 +28,8 @@ class SimulationThread {
     std::string journal;  ///< file, or empty
     /// Begin with the first of these checkpoints that is whole, if there is one.
     std::vector<std::string> resume_from;
+    /// See Session::check_with().
+    std::function<void(const Scenario&)> check_scenario;
     /// Called on the simulation thread with the simulated time [s], at the start and after each step. With
     /// it, the simulation is the clock: it follows wall time, whatever use_sim_time says.
     std::function<void(double)> publish_clock;

@@ -115,7 +115,8 @@ struct RasterField {
   double cell_size = 1, origin_x = 0, origin_y = 0;
   bool georeferenced = false;
   std::string projection;
-  std::vector<float> values;  ///< row-major from the south-west, NaN = nodata
+  std::vector<std::string> bands;  ///< names of all bands, in their order; none where they have no names
+  std::vector<float> values;       ///< row-major from the south-west, NaN = nodata
 };
 struct RasterRequest {
   std::string path;

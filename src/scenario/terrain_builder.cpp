@@ -50,12 +50,23 @@ class Builder {
   HostLayers build() {
     for (std::size_t n = 0; n < s_.terrain.size(); ++n) {
       std::visit([&](const auto& step) { run(step); }, s_.terrain[n]);
-      check("terrain." + std::to_string(n) + "." + terrain_step_names[s_.terrain[n].index()]);
+      check(name_of_step(n));
     }
     return std::move(layers_);
   }
 
  private:
+  std::string name_of_step(std::size_t n) const {
+    const auto* raster = std::get_if<RasterStep>(&s_.terrain[n]);
+    return "terrain." + std::to_string(n) + "." + terrain_step_names[s_.terrain[n].index()] +
+           (raster ? " (" + file_of(*raster) + ")" : "");
+  }
+
+  /// As the process can open it; empty if the step names none.
+  std::string file_of(const RasterStep& p) const {
+    return raster_path(s_, p.file.empty() ? s_.grid.from_raster : p.file);
+  }
+
   std::vector<double>& layer(Layer which) {
     std::vector<double>& values = layers_[which];
     if (values.empty()) values.assign(static_cast<std::size_t>(s_.grid.width) * s_.grid.height, 0.0);
@@ -194,11 +205,10 @@ class Builder {
   }
 
   void run(const RasterStep& p) {
-    const std::string file = p.file.empty() ? s_.grid.from_raster : p.file;
-    if (file.empty())
-      throw ConfigError(s_.name + ": terrain: raster: names no file, and grid.from_raster is empty");
     RasterRequest request;
-    request.path = raster_path(s_, file);
+    request.path = file_of(p);
+    if (request.path.empty())
+      throw ConfigError(s_.name + ": terrain: raster: names no file, and grid.from_raster is empty");
     request.band = p.band;
     request.scale = p.scale;
     request.offset = p.offset;

@@ -112,10 +112,11 @@ CommandResult Simulation::apply(const command::EditWind& command) {
 
 CommandResult Simulation::apply(const command::EditTerrain& command, bool with_change) {
   TerrainEdit edit(command, terrain_, scenario_.grid, ledger());
-  const bool bedrock = edit.material() == Material::bedrock;
-  if (bedrock) prepare_ground_avalanches();
+  const bool bedrock = edit.material() == Material::bedrock, soil = edit.material() == Material::soil;
+  if (bedrock || soil) prepare_ground_avalanches();
   const CommandResult result = edit.book(with_change);
-  if (bedrock) bedrock_loose_ = true;
+  bedrock_loose_ = bedrock_loose_ || bedrock;
+  soil_loose_ = soil_loose_ || soil || (bedrock && terrain_.has(Layer::soil));
   return result;
 }
 

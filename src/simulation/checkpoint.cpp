@@ -18,7 +18,7 @@ namespace desert_sim {
 namespace {
 
 const std::string magic = "desert_sim checkpoint\n";
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = 2;
 
 template <class T>
 void append(std::string& to, const T& value) {
@@ -65,12 +65,14 @@ class CheckpointAccess {
     entry("name", s.scenario_.name);
     entry("folder", s.scenario_.folder);
     entry("projection", s.scenario_.projection);
+    entry("start", dump_scenario(s.start_));
     entry("scenario", dump_scenario(s.scenario_));
     entry("steps", s.steps_);
     entry("datum", s.terrain_.scale().datum);
     entry("exponent", s.terrain_.scale().exponent);
     entry("wind_reference", s.wind_reference_);
     entry("bedrock_loose", s.bedrock_loose_);
+    entry("soil_loose", s.soil_loose_);
     entry("avalanche_iterations", s.avalanche_iterations_);
     out << YAML::Key << "initial" << YAML::Value << YAML::Flow << YAML::BeginSeq;
     for (long long quanta : s.initial_) out << quanta;
@@ -86,18 +88,17 @@ class CheckpointAccess {
   }
 
   static std::unique_ptr<Simulation> make(const YAML::Node& header, Exec& exec, const std::string& path) {
-    Scenario scenario = parse_scenario(YAML::Load(header["scenario"].as<std::string>()), path,
-                                       header["folder"].as<std::string>());
-    scenario.name = header["name"].as<std::string>();
-    scenario.projection = header["projection"].as<std::string>();
+    const Scenario scenario = read_scenario(header, "scenario", path);
     HeightScale scale;
     scale.datum = header["datum"].as<double>();
     scale.exponent = header["exponent"].as<int>();
     std::unique_ptr<Simulation> s(new Simulation(scenario, Terrain(exec, scenario.make_grid(), scale)));
+    s->start_ = read_scenario(header, "start", path);
     s->steps_ = header["steps"].as<std::uint64_t>();
     s->wind_reference_ = header["wind_reference"].as<Quanta>();
     s->bedrock_loose_ = header["bedrock_loose"].as<bool>();
-    if (s->bedrock_loose_) s->prepare_ground_avalanches();
+    s->soil_loose_ = header["soil_loose"].as<bool>();
+    if (s->bedrock_loose_ || s->soil_loose_) s->prepare_ground_avalanches();
     s->avalanche_iterations_ = header["avalanche_iterations"].as<std::uint64_t>();
     for (std::size_t m = 0; m < s->initial_.size(); ++m)
       s->initial_[m] = header["initial"][m].as<long long>();
@@ -110,6 +111,15 @@ class CheckpointAccess {
   }
 
   static Terrain& terrain(Simulation& s) { return s.terrain_; }
+
+ private:
+  static Scenario read_scenario(const YAML::Node& header, const char* key, const std::string& path) {
+    Scenario scenario =
+        parse_scenario(YAML::Load(header[key].as<std::string>()), path, header["folder"].as<std::string>());
+    scenario.name = header["name"].as<std::string>();
+    scenario.projection = header["projection"].as<std::string>();
+    return scenario;
+  }
 };
 
 /// To a temporary file first, which gets its name when it is durable.

@@ -131,19 +131,22 @@ struct SetParameters {
 /// Back to the scenario's start: terrain, parameters, wind, clock.
 struct Reset {};
 
-/// Continue from a checkpoint of a terrain of any shape. `path` as the process can open it.
+/// Continue from a checkpoint of a terrain of any shape; a reset goes back to the start of its scenario from
+/// then on. `path` as the process can open it.
 struct LoadCheckpoint {
   std::string path;
   std::uint64_t hash = 0;  ///< state hash after loading; 0 if not known yet. A replay refuses another one.
 };
 
 /// Another scenario from its start; with `terrain_only`, only its grid and terrain under the physics and wind
-/// of the present one. A reset goes back to it from then on. `path` as the process can open it; `hash` as in
+/// of the present one. A reset goes back to it from then on. `path` as the process can open it; with
+/// `terrain_only` it may be a bag (see scenario_of_bands()), whose gaps `fill_nodata` fills. `hash` as in
 /// LoadCheckpoint.
 struct LoadScenario {
   std::string path;
   bool terrain_only = false;
   std::uint64_t hash = 0;
+  bool fill_nodata = false;
 };
 
 /// Whether the terrain is another one after the command, perhaps of another shape.
@@ -155,9 +158,9 @@ bool replaces_terrain(const Command& command) {
 
 }  // namespace command
 
-using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditWind,
-                             command::EditTerrain, command::SetParameters, command::Reset,
-                             command::LoadCheckpoint, command::LoadScenario>;
+using Command =
+    std::variant<command::SetWind, command::SetWindSchedule, command::EditWind, command::EditTerrain,
+                 command::SetParameters, command::Reset, command::LoadCheckpoint, command::LoadScenario>;
 
 /// Cells that a command changed: x0 ≤ x < x1, y0 ≤ y < y1 (empty if x1 ≤ x0).
 struct CellRectangle {

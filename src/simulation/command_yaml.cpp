@@ -162,6 +162,7 @@ void emit_command(YAML::Emitter& out, const Command& command) {
     out << YAML::Key << "path" << YAML::Value << YAML::DoubleQuoted << other->path;
     out << YAML::Key << "terrain_only" << YAML::Value << other->terrain_only;
     out << YAML::Key << "hash" << YAML::Value << other->hash;
+    out << YAML::Key << "fill_nodata" << YAML::Value << other->fill_nodata;
   }
 }
 
@@ -181,9 +182,9 @@ Command read_command(const YAML::Node& node, const std::string& source) {
     return command::LoadCheckpoint{scalar<std::string>(node, "path", source),
                                    scalar<std::uint64_t>(node, "hash", source)};
   if (name == "load_scenario")
-    return command::LoadScenario{scalar<std::string>(node, "path", source),
-                                 scalar<bool>(node, "terrain_only", source),
-                                 scalar<std::uint64_t>(node, "hash", source)};
+    return command::LoadScenario{
+        scalar<std::string>(node, "path", source), scalar<bool>(node, "terrain_only", source),
+        scalar<std::uint64_t>(node, "hash", source), scalar<bool>(node, "fill_nodata", source)};
   throw ConfigError(source + ": unknown command '" + name + "'");
 }
 

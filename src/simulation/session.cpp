@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/scenario/band_terrain.hpp"
 #include "desert_sim/simulation/checkpoint.hpp"
 
 namespace desert_sim {
@@ -16,12 +17,13 @@ std::uint64_t scenario_hash(const Scenario& scenario) {
 
 Session::Session(const Scenario& scenario, const RasterLoader& load_raster, const std::string& backend,
                  int threads, const std::string& journal_path)
-    : scenario_(scenario), load_raster_(load_raster) {
-  resolve_grid(scenario_, load_raster_);
+    : load_raster_(load_raster) {
+  Scenario resolved = scenario;
+  resolve_grid(resolved, load_raster_);
   exec_ = make_exec(backend, threads, &backend_choice_);
-  simulation_ = std::make_unique<Simulation>(*exec_, scenario_, load_raster_);
+  simulation_ = std::make_unique<Simulation>(*exec_, resolved, load_raster_);
   if (!journal_path.empty())
-    journal_ = std::make_unique<JournalWriter>(journal_path, scenario_hash(scenario_), exec_->backend());
+    journal_ = std::make_unique<JournalWriter>(journal_path, scenario_hash(resolved), exec_->backend());
 }
 
 Session::Session(const RasterLoader& load_raster, const std::string& backend, int threads)
@@ -31,13 +33,13 @@ std::unique_ptr<Session> Session::resumed(const std::string& checkpoint, const R
                                           const std::string& backend, int threads) {
   std::unique_ptr<Session> session(new Session(load_raster, backend, threads));
   session->simulation_ = load_checkpoint(checkpoint, *session->exec_);
-  session->scenario_ = session->simulation_->scenario();
   return session;
 }
 
 void Session::require_journal_of_this_scenario(const Journal& journal, const std::string& path) const {
-  if (journal.scenario_hash != scenario_hash(scenario_))
-    throw ConfigError(path + ": is the journal of another scenario than " + scenario_.name +
+  const Scenario& start = simulation_->start();
+  if (journal.scenario_hash != scenario_hash(start))
+    throw ConfigError(path + ": is the journal of another scenario than " + start.name +
                       " (or of other settings)");
 }
 
@@ -55,10 +57,17 @@ void Session::step() {
   ++ticks_;
 }
 
+Scenario Session::read_scenario(const command::LoadScenario& command) const {
+  return command.terrain_only && is_bag(command.path)
+             ? scenario_of_bands(command.path, load_raster_, command.fill_nodata)
+             : desert_sim::load_scenario(command.path);
+}
+
 std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
-  Scenario next = desert_sim::load_scenario(command.path);
+  Scenario next = read_scenario(command);
+  check_scenario_(next);
   if (command.terrain_only) {
-    Scenario kept = scenario_;
+    Scenario kept = simulation_->start();
     kept.grid = next.grid;
     kept.terrain = next.terrain;
     kept.folder = next.folder;
@@ -70,14 +79,14 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
   const std::uint64_t hash = simulation->state_hash();
   if (command.hash != 0 && command.hash != hash)
     throw ConfigError(command.path + ": is not the scenario that the journal means (its state hash differs)");
-  scenario_ = std::move(next);
   simulation_ = std::move(simulation);
   return hash;
 }
 
 CommandResult Session::dispatch(const Command& command, bool with_change, Command& journalled) {
   if (std::holds_alternative<command::Reset>(command)) {
-    simulation_ = std::make_unique<Simulation>(*exec_, scenario_, load_raster_);
+    check_scenario_(simulation_->start());
+    simulation_ = std::make_unique<Simulation>(*exec_, simulation_->start(), load_raster_);
     return {};
   }
   if (const auto* load = std::get_if<command::LoadCheckpoint>(&command)) {
@@ -91,7 +100,8 @@ CommandResult Session::dispatch(const Command& command, bool with_change, Comman
     return {};
   }
   if (const auto* load = std::get_if<command::LoadScenario>(&command)) {
-    journalled = command::LoadScenario{load->path, load->terrain_only, load_scenario(*load)};
+    journalled =
+        command::LoadScenario{load->path, load->terrain_only, load_scenario(*load), load->fill_nodata};
     return {};
   }
   return std::visit(

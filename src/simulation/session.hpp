@@ -2,6 +2,7 @@
 /// A session: a simulation with its backend, its journal, its start and its checkpoints. What the node and
 /// desert_run both drive. One thread at a time.
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -28,6 +29,10 @@ class Session {
   Simulation& simulation() { return *simulation_; }
   const std::string& backend_choice() const { return backend_choice_; }  ///< which backend, and why
 
+  /// Called before a command, a reset too, has rasters of a scenario read; throws ConfigError if they may not
+  /// be.
+  void check_with(std::function<void(const Scenario&)> check) { check_scenario_ = std::move(check); }
+
   void step();
   /// Applies a command and journals it. A refused command throws ConfigError and changes nothing.
   /// `with_change`: the result of an edit tells it cell by cell.
@@ -41,11 +46,12 @@ class Session {
  private:
   Session(const RasterLoader& load_raster, const std::string& backend, int threads);
   CommandResult dispatch(const Command& command, bool with_change, Command& journalled);
+  Scenario read_scenario(const command::LoadScenario& command) const;
   /// Returns the state hash at the new scenario's start.
   std::uint64_t load_scenario(const command::LoadScenario& command);
 
-  Scenario scenario_;
   RasterLoader load_raster_;
+  std::function<void(const Scenario&)> check_scenario_ = [](const Scenario&) {};
   std::string backend_choice_;
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<Simulation> simulation_;

@@ -45,19 +45,31 @@ void Simulation::run_step(E& exec) {
   // What is too steep slides: rock and soil where they changed, then sand (B6).
   if (s.avalanching.enabled)
     run(exec, "avalanching", {Layer::sand, Layer::bedrock}, [&] {
-      const bool wearing = s.abrasion.rate > 0;
-      if (s.avalanching.soil && wearing && terrain_.has(Layer::soil))
-        avalanching::step_soil(exec, view, s.avalanching, s.repose, ground_work_);
-      if (s.avalanching.bedrock && (wearing || bedrock_loose_)) {
-        avalanching::step_bedrock(exec, view, s.avalanching, s.repose, ledger(), ground_work_);
-        if (bedrock_loose_) bedrock_loose_ = statistics::sum(exec, view.grid, ground_work_.given.data()) != 0;
-      }
+      slide_ground(exec, view);
       avalanching::step(exec, view, s.avalanching, steps_, repose_.data(), avalanche_work_);
       avalanche_iterations_ += static_cast<std::uint64_t>(avalanche_work_.iterations);
     });
 
   ++steps_;
   derived_ready_ = true;
+}
+
+/// Soil and bedrock slide only where something changes them: abrasion, or an edit, until all has come to
+/// rest.
+template <class E>
+void Simulation::slide_ground(E& exec, const TerrainView& view) {
+  const AvalanchingParameters& p = scenario_.avalanching;
+  const bool wearing = scenario_.abrasion.rate > 0;
+  const auto moved = [&] { return statistics::sum(exec, view.grid, ground_work_.given.data()) != 0; };
+  if (p.soil && (wearing || soil_loose_) && terrain_.has(Layer::soil)) {
+    avalanching::step_soil(exec, view, p, scenario_.repose, ground_work_);
+    if (soil_loose_) soil_loose_ = moved();
+  }
+  if (p.bedrock && (wearing || bedrock_loose_)) {
+    avalanching::step_bedrock(exec, view, p, scenario_.repose, ledger(), ground_work_);
+    if (bedrock_loose_) bedrock_loose_ = moved();
+  }
+  soil_loose_ = soil_loose_ || (bedrock_loose_ && terrain_.has(Layer::soil));
 }
 
 template <class E>
@@ -185,7 +197,7 @@ Simulation::Simulation(Exec& exec, const Scenario& scenario, const HostLayers& l
 }
 
 Simulation::Simulation(const Scenario& scenario, Terrain terrain)
-    : scenario_(scenario), terrain_(std::move(terrain)) {
+    : start_(scenario), scenario_(scenario), terrain_(std::move(terrain)) {
   allocate_work();
 }
 
@@ -214,7 +226,7 @@ void Simulation::prepare_processes() {
   cliff_ = s.echo_dunes.enabled ? Buffer<float>(e, static_cast<std::size_t>(grid.cells())) : Buffer<float>();
   wind_work_ = wind::make_workspace(e, grid, s.wind);
   avalanche_work_ = avalanching::make_workspace(e, grid, s.avalanching);
-  if (s.abrasion.rate > 0 || bedrock_loose_) prepare_ground_avalanches();
+  if (s.abrasion.rate > 0 || bedrock_loose_ || soil_loose_) prepare_ground_avalanches();
 }
 
 void Simulation::prepare_ground_avalanches() {

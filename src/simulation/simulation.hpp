@@ -76,6 +76,8 @@ class Simulation {
   std::uint64_t steps() const { return steps_; }
   double time() const { return static_cast<double>(steps_) * scenario_.run.time_step; }
   const Scenario& scenario() const { return scenario_; }
+  /// The scenario that it began with: what a reset goes back to.
+  const Scenario& start() const { return start_; }
   /// The scenario with the wind regime that blows now, which commands may have replaced.
   Scenario present_scenario() const;
   const Terrain& terrain() const { return terrain_; }
@@ -125,9 +127,11 @@ class Simulation {
   void allocate_work();
   /// What depends on parameters that can change live: layers and memory of processes that are on.
   void prepare_processes();
-  /// Only terrains whose rock or soil changes need this memory: called when abrasion is on or bedrock is
+  /// Only terrains whose rock or soil changes need this memory: called when abrasion is on or one of them is
   /// edited.
   void prepare_ground_avalanches();
+  template <class E>
+  void slide_ground(E& exec, const TerrainView& view);
   /// Brings the scenario's features of the wind to the backend.
   void upload_wind_features();
   void start_books();
@@ -136,13 +140,15 @@ class Simulation {
   long long material_now(Material material);
   LedgerView ledger() const { return {ledger_.data()}; }
 
-  Scenario scenario_;
+  Scenario start_;
+  Scenario scenario_;  ///< start_, as commands have changed it
   Terrain terrain_;
   WindRegime regime_;
   std::uint64_t steps_ = 0;
   Quanta wind_reference_ = 0;  ///< lowest solid surface at load
   bool derived_ready_ = false;
   bool bedrock_loose_ = false;  ///< bedrock was edited and has not come to rest since
+  bool soil_loose_ = false;     ///< soil, or bedrock below it, was edited and soil has not come to rest since
   std::uint64_t avalanche_iterations_ = 0;
   std::array<long long, material_count> initial_{};
 

@@ -14,8 +14,7 @@
 #include "desert_sim/core/error.hpp"
 #include "desert_sim/core/files.hpp"
 #if DESERT_WITH_IO
-#include "desert_sim/io/picture.hpp"
-#include "desert_sim/io/raster.hpp"
+#include "desert_sim/io/snapshots.hpp"
 #endif
 
 namespace desert_sim {
@@ -28,9 +27,16 @@ std::string number(double value) {
   return text;
 }
 
-std::string quoted(const std::string& text) {
+/// A text as JSON writes it.
+std::string json_text(const std::string& text) {
   std::string out = "\"";
   for (char c : text) {
+    char code[8];
+    std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    if (static_cast<unsigned char>(c) < 0x20) {
+      out += code;
+      continue;
+    }
     if (c == '"' || c == '\\') out += '\\';
     out += c;
   }
@@ -39,37 +45,17 @@ std::string quoted(const std::string& text) {
 
 #if DESERT_WITH_IO
 void write_rasters(const std::string& folder, const Snapshot& s, const std::string& projection) {
-  Raster raster;
-  raster.width = s.width;
-  raster.height = s.height;
-  raster.cell_size = s.cell_size;
-  raster.origin_x = s.origin_x;
-  raster.origin_y = s.origin_y;
-  raster.projection = projection;
-  for (const auto& [layer, values] : s.layers) {
-    raster.values = values;
-    write_geotiff(folder + "/" + info(layer).name + ".tif", raster);
-  }
+  for (const auto& [layer, values] : s.layers)
+    write_geotiff(folder + "/" + info(layer).name + ".tif", raster_of(s, values, projection));
 }
 
 void write_pictures(const std::string& folder, const Snapshot& s) {
-  const auto data = [&](Layer layer) -> const float* {
-    return s.find(layer) ? s.find(layer)->data() : nullptr;
-  };
-  PictureInput picture;
-  picture.width = s.width;
-  picture.height = s.height;
-  picture.cell_size = s.cell_size;
-  picture.elevation = data(Layer::elevation);
-  picture.sand = data(Layer::sand);
-  picture.vegetation = data(Layer::vegetation);
-  picture.obstacle = data(Layer::obstacle);
-  picture.water = data(Layer::water);
-  picture.soil = data(Layer::soil);
+  PictureInput picture = picture_of(s);
   picture.wind_shadow = nullptr;
+  const auto values = [&s](Layer layer) { return s.layers.at(layer).data(); };
   write_png(folder + "/elevation.png", hillshade_picture(picture));
-  write_png(folder + "/wind.png", wind_picture(s.width, s.height, s.cell_size, data(Layer::wind_x),
-                                               data(Layer::wind_y), data(Layer::elevation)));
+  write_png(folder + "/wind.png", wind_picture(s.width, s.height, s.cell_size, values(Layer::wind_x),
+                                               values(Layer::wind_y), picture.elevation));
 }
 #endif
 
@@ -87,28 +73,28 @@ void prepare_folder(const std::string& folder) {
 std::string summary(Simulation& s, const RunReport& report) {
   std::ostringstream out;
   const GridParameters& g = s.scenario().grid;
-  out << "{\n  \"scenario\": " << quoted(s.scenario().name) << ",\n  \"steps\": " << s.steps()
+  out << "{\n  \"scenario\": " << json_text(s.scenario().name) << ",\n  \"steps\": " << s.steps()
       << ",\n  \"sim_time_s\": " << number(s.time()) << ",\n  \"width\": " << g.width
       << ",\n  \"height\": " << g.height << ",\n  \"cell_size_m\": " << number(g.cell_size)
-      << ",\n  \"backend\": " << quoted(report.backend) << ",\n  \"device\": " << quoted(report.device)
+      << ",\n  \"backend\": " << json_text(report.backend) << ",\n  \"device\": " << json_text(report.device)
       << ",\n  \"threads\": " << report.threads << ",\n  \"seed\": " << s.scenario().seed
       << ",\n  \"ms_per_step\": {\"total\": "
       << number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
   for (const ProcessTime& t : s.process_times())
-    out << ", " << quoted(t.process) << ": "
+    out << ", " << json_text(t.process) << ": "
         << number(report.timed_steps ? t.milliseconds / static_cast<double>(report.timed_steps) : 0.0);
   out << "},\n  \"volume_m3\": {";
   const auto balance = s.balance();
   for (std::size_t m = 0; m < balance.size(); ++m) {
     const MaterialBalance& b = balance[m];
-    out << (m ? ",\n    " : "\n    ") << quoted(material_names[m])
+    out << (m ? ",\n    " : "\n    ") << json_text(material_names[m])
         << ": {\"initial\": " << number(b.initial_m3()) << ", \"final\": " << number(b.final_m3())
         << ", \"in\": " << number(b.cubic_metres(b.in)) << ", \"out\": " << number(b.cubic_metres(b.out))
         << "}";
   }
   out << "\n  },\n  \"mass_residual\": {";
   for (std::size_t m = 0; m < balance.size(); ++m)
-    out << (m ? ", " : "") << quoted(material_names[m]) << ": " << number(balance[m].relative_residual());
+    out << (m ? ", " : "") << json_text(material_names[m]) << ": " << number(balance[m].relative_residual());
   const Residual r = s.residual();
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);

@@ -1,7 +1,9 @@
 #pragma once
 /// The raster loader of this build.
 
-#if DESERT_WITH_IO
+#if DESERT_WITH_BAGS
+#include "desert_sim/grid_map/grid_map_bag.hpp"
+#elif DESERT_WITH_IO
 #include "desert_sim/io/raster_loader.hpp"
 #else
 #include "desert_sim/scenario/scenario.hpp"
@@ -10,7 +12,9 @@
 namespace desert_sim {
 
 inline RasterLoader raster_loader() {
-#if DESERT_WITH_IO
+#if DESERT_WITH_BAGS
+  return raster_loader_with_bags();
+#elif DESERT_WITH_IO
   return gdal_raster_loader();
 #else
   return refuse_rasters;

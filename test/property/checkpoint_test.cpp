@@ -112,6 +112,42 @@ TEST_P(Checkpoint, RefusedLeavesTheSessionAsItWas) {
   EXPECT_EQ(session.simulation().steps(), 3u);
 }
 
+/// Terrain, parameters and wind of the scenario that the checkpoint is of, not as commands had changed them.
+TEST_P(Checkpoint, TakesAResetToTheStartOfItsOwnScenario) {
+  Session session(test::scenario_of(world), refuse_rasters, GetParam(), 1);
+  const std::uint64_t start = session.simulation().state_hash();
+  const std::string scenario = dump_scenario(session.simulation().scenario());
+  session.apply(command::SetParameters{{"saltation.lift=0.3"}});
+  session.apply(command::SetWind{33, 7, 0});
+  for (int n = 0; n < 3; ++n) session.step();
+  session.save_checkpoint(folder_.path("own.ck"));
+
+  Session other(test::scenario_of("grid: {width: 8, height: 9}\n"), refuse_rasters, GetParam(), 1);
+  other.apply(command::LoadCheckpoint{folder_.path("own.ck"), 0});
+  EXPECT_EQ(other.simulation().scenario().saltation.lift, 0.3f);
+  other.apply(command::Reset{});
+  EXPECT_EQ(other.simulation().state_hash(), start);
+  EXPECT_EQ(dump_scenario(other.simulation().scenario()), scenario);
+  other.step();
+  session.apply(command::Reset{});
+  session.step();
+  EXPECT_EQ(other.simulation().state_hash(), session.simulation().state_hash());
+}
+
+TEST_P(Checkpoint, OfAScenarioThatMayNotBeReadIsNotResetTo) {
+  Session session(test::scenario_of("grid: {width: 8, height: 9}\n"), refuse_rasters, GetParam(), 1);
+  std::string checked;
+  session.check_with([&](const Scenario& scenario) {
+    checked = dump_scenario(scenario);
+    throw ConfigError("not this one");
+  });
+  session.apply(command::LoadCheckpoint{saved(), 0});
+  const std::uint64_t before = session.simulation().state_hash();
+  EXPECT_THROW(session.apply(command::Reset{}), ConfigError);
+  EXPECT_EQ(checked, dump_scenario(test::scenario_of(world)));
+  EXPECT_EQ(session.simulation().state_hash(), before);
+}
+
 TEST_P(Checkpoint, KeepsClockWindOriginAndBooks) {
   auto s = simulation(world);
   command::SetWind wind;

@@ -197,6 +197,91 @@ TEST_P(Edits, AtRandomAreMadeOrRefused) {
   EXPECT_GT(refused, 50);
 }
 
+/// Half a metre of soil on flat rock, without wind or wear.
+const char* const soil_world =
+    "grid: {width: 24, height: 20, cell_size: 0.5, origin_x: 100, origin_y: -50}\n"
+    "terrain: [uniform: {layer: bedrock, value: 30}, uniform: {layer: soil, value: 0.5}]\nwind: {speed: 0}\n";
+
+EditTerrain soil_column() {
+  EditTerrain e = test::edit_at(12, 10, BrushShape::circle);
+  e.layer = "soil";
+  e.radius = 1.6;
+  e.inner = 1;
+  e.value = 3;
+  return e;
+}
+
+/// The largest drop of the soil's surface between neighbours, as a tangent.
+double steepest_soil(const Simulation& s) {
+  const auto soil = test::quanta(s, Layer::soil), rock = test::quanta(s, Layer::bedrock);
+  const Grid& grid = s.terrain().grid();
+  double steepest = 0;
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x)
+      for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}}) {
+        const auto i = static_cast<std::size_t>(grid.index(x, y)),
+                   j = static_cast<std::size_t>(neighbour_index(grid, x + dx, y + dy));
+        const double drop = std::abs(static_cast<double>(soil[i] + rock[i]) - (soil[j] + rock[j]));
+        steepest = std::max(steepest, drop * s.terrain().scale().quantum() / 0.5);
+      }
+  return steepest;
+}
+
+TEST_P(Edits, OfSoilTooSteepSlideAndComeToRest) {
+  auto s = simulation(soil_world);
+  s->apply(soil_column());
+  const auto before = test::quanta(*s, Layer::soil);
+  ASSERT_GT(steepest_soil(*s), 5);
+  test::run(*s, 600);
+  const auto after = test::quanta(*s, Layer::soil);
+  EXPECT_LT(steepest_soil(*s), 1.02) << "soil rests at 45 degrees";
+  EXPECT_EQ(sum(after), sum(before));
+  test::run(*s, 1);
+  EXPECT_TRUE(test::quanta(*s, Layer::soil) == after) << "it rests";
+  test::expect_sound(*s, "soil");
+}
+
+TEST_P(Edits, OfTheRockBelowLetSoilSlide) {
+  auto s = simulation(soil_world);
+  EditTerrain pit = soil_column();
+  pit.layer = "bedrock";
+  pit.merge = BrushMerge::sub;
+  pit.value = 1;  // of 63 degrees: too steep for soil, not for rock
+  s->apply(pit);
+  const auto rock = test::quanta(*s, Layer::bedrock);
+  ASSERT_GT(steepest_soil(*s), 1.5);
+  test::run(*s, 300);
+  EXPECT_TRUE(test::quanta(*s, Layer::bedrock) == rock);
+  EXPECT_LT(test::quanta(*s, Layer::soil)[12 + 10 * 24 - 4], 1 << 19) << "soil beside the pit slid into it";
+}
+
+TEST_P(Edits, OfSoilStayWhereSoilDoesNotSlide) {
+  for (const char* off : {"avalanching: {soil: false}\n", "avalanching: {enabled: false}\n"}) {
+    auto s = simulation(soil_world + std::string(off));
+    s->apply(soil_column());
+    const auto before = test::quanta(*s, Layer::soil);
+    test::run(*s, 5);
+    EXPECT_TRUE(test::quanta(*s, Layer::soil) == before) << off;
+  }
+  auto s = simulation(soil_world);
+  s->apply(test::edit_at(12, 10, BrushShape::circle));  // of sand
+  const auto before = test::quanta(*s, Layer::soil);
+  test::run(*s, 5);
+  EXPECT_TRUE(test::quanta(*s, Layer::soil) == before);
+}
+
+TEST_P(Edits, OfSoilSlideOnAfterACheckpoint) {
+  const test::TemporaryFolder folder;
+  Session live(test::scenario_of(soil_world), refuse_rasters, GetParam(), 1),
+      resumed(test::scenario_of(soil_world), refuse_rasters, GetParam(), 1);
+  live.apply(soil_column());
+  for (int n = 0; n < 5; ++n) live.step();
+  live.save_checkpoint(folder.path("c"));
+  resumed.apply(command::LoadCheckpoint{folder.path("c"), 0});
+  for (int n = 0; n < 20; ++n) live.step(), resumed.step();
+  EXPECT_EQ(resumed.simulation().state_hash(), live.simulation().state_hash());
+}
+
 TEST_P(Edits, ReplayFromTheirJournalToTheSameHash) {
   const test::TemporaryFolder folder;
   const Scenario scenario = test::scenario_of(test::edit_world("periodic", rough));

@@ -14,7 +14,7 @@
 #include <filesystem>
 
 #include "desert_sim/client/terrain_client.hpp"
-#include "desert_sim/ros/grid_map_msg.hpp"
+#include "desert_sim/grid_map/grid_map_msg.hpp"
 #include "rostest/child_process.hpp"
 
 namespace {

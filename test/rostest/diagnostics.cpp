@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <map>
 
-#include "desert_sim/ros/grid_map_msg.hpp"
+#include "desert_sim/grid_map/grid_map_msg.hpp"
 #include "rostest/service_tests.hpp"
 
 namespace {

@@ -11,7 +11,7 @@ import xmlrpc.client
 import rospy
 import rostest
 from desert_sim.msg import SimulationStatus
-from desert_sim.srv import SetWind, Step
+from desert_sim.srv import LoadScenario, SetWind, Step
 from lifecycle import CORNER, Scenarios, Trigger, wait_until
 
 KILLS = int(os.environ.get("DESERT_KILLS", "4"))
@@ -139,6 +139,24 @@ class Resume(Scenarios):
         node.end()
         _, step = self.again("own")
         self.assertEqual(step, 3)
+
+    def test_a_loaded_scenario_is_resumed_with_its_start(self):
+        node = self.start("loaded", dict(AUTOSAVED, data_dir=self.folder))
+        self.path("other.yaml", "grid: {width: 9, height: 7}\nterrain: [noise: {layer: sand, high: 2}]\n")
+        start = node.call("load_scenario", LoadScenario, name="other.yaml").state_hash
+        live = node.call("step", Step, 3).state_hash
+        before = autosaves(self.folder)
+        wait_until(lambda: autosaves(self.folder) != before, "no autosave")
+        time.sleep(1)
+        node.end(signal.SIGKILL)
+        node, step = self.again("loaded")
+        self.assertEqual(step, 3)
+        self.assertEqual(node.latest("status", SimulationStatus).scenario, "other")
+        self.assertEqual(node.call("step", Step, 0).state_hash, live)
+        self.assertTrue(node.call("reset", Trigger).success)
+        self.assertEqual(node.call("step", Step, 0).state_hash, start, "the start of the scenario that was loaded")
+        node.end()
+        self.assertIn("scenario other: 9 x 7 cells", node.output)
 
     def test_without_resume_it_starts_anew(self):
         self.saved("fresh", 3)

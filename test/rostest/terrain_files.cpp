@@ -82,7 +82,8 @@ TEST_F(TerrainFiles, GoOutAndComeBackInBothFormats) {
 }
 
 TEST_F(TerrainFiles, AreRefusedWithTheReason) {
-  expect_refused<SaveTerrain>("save_terrain", saving("a", "stl"), "format: 'stl'", "geotiff, png16");
+  expect_refused<SaveTerrain>("save_terrain", saving("a", "stl"), "format: 'stl'", "geotiff, png16, rosbag");
+  expect_refused<SaveTerrain>("save_terrain", saving("a.bag", "rosbag"), "'a.bag'", ".bag");
   expect_refused<LoadTerrain>("load_terrain", loading("nowhere"), "nowhere", "");
   for (const std::string& name :
        {std::string(""), std::string("/tmp/a"), std::string("../a"), std::string("a/../../b")}) {

@@ -1,0 +1,111 @@
+#include "desert_sim/grid_map/bag_records.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "desert_sim/core/error.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+const std::string first_line = "#ROSBAG V2.0\n";
+constexpr char chunk_op = 5, index_op = 4;
+constexpr std::uint32_t index_entry = 12;  // bytes: a time and an offset into the chunk
+
+std::uint32_t number(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  if (bytes.size() >= at + sizeof value) std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+class Bag {
+ public:
+  explicit Bag(const std::string& path)
+      : file_(path, std::ios::binary), end_(std::filesystem::file_size(path)) {}
+
+  void check() {
+    if (read(end_, first_line.size()) != first_line) throw ConfigError("is no bag of version 2.0");
+    while (at_ < end_) {
+      const Record record = next(end_);
+      if (record.op == chunk_op) check_chunk(record);
+      if (record.op == index_op) check_index(record);
+      go_to(record.data + record.size);
+    }
+  }
+
+ private:
+  struct Record {
+    char op = 0;
+    std::map<std::string, std::string> fields;
+    std::uint64_t data = 0, size = 0;
+  };
+
+  [[noreturn]] void fail() const {
+    throw ConfigError("is cut off or corrupt (at byte " + std::to_string(at_) + ")");
+  }
+  void go_to(std::uint64_t place) { file_.seekg(static_cast<std::streamoff>(at_ = place)); }
+
+  std::string read(std::uint64_t end, std::uint64_t size) {
+    if (size > end - at_) fail();
+    std::string bytes(size, '\0');
+    if (!file_.read(bytes.data(), static_cast<std::streamsize>(size))) fail();
+    at_ += size;
+    return bytes;
+  }
+
+  /// Stops where its data begins.
+  Record next(std::uint64_t end) {
+    Record record;
+    const std::string header = read(end, number(read(end, 4), 0));
+    for (std::size_t at = 0; at < header.size();) {
+      const std::uint32_t size = number(header, at);
+      if (at + 4 > header.size() || size > header.size() - at - 4) fail();
+      const std::string field = header.substr(at + 4, size);
+      record.fields[field.substr(0, field.find('='))] =
+          field.substr(std::min(field.size(), field.find('=') + 1));
+      at += 4 + size;
+    }
+    record.op = record.fields["op"].empty() ? 0 : record.fields["op"][0];
+    record.size = number(read(end, 4), 0);
+    record.data = at_;
+    if (record.size > end - at_) fail();
+    return record;
+  }
+
+  void check_chunk(const Record& chunk) {
+    const auto compression = chunk.fields.find("compression");
+    plain_ = compression != chunk.fields.end() && compression->second == "none";
+    records_.clear();
+    while (plain_ && at_ < chunk.data + chunk.size) {
+      records_.insert(at_ - chunk.data);
+      const Record record = next(chunk.data + chunk.size);
+      go_to(record.data + record.size);
+    }
+  }
+
+  /// Of the chunk before it.
+  void check_index(Record index) {
+    if (std::uint64_t{number(index.fields["count"], 0)} * index_entry != index.size) fail();
+    const std::string entries = read(end_, index.size);
+    for (std::size_t at = 0; plain_ && at < entries.size(); at += index_entry)
+      if (records_.count(number(entries, at + 8)) == 0) fail();
+  }
+
+  std::ifstream file_;
+  const std::uint64_t end_;
+  std::uint64_t at_ = 0;
+  bool plain_ = false;               ///< the last chunk is not compressed
+  std::set<std::uint64_t> records_;  ///< where in it they begin
+};
+
+}  // namespace
+
+void require_whole_records(const std::string& path) { Bag(path).check(); }
+
+}  // namespace desert_sim

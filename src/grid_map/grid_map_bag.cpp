@@ -1,0 +1,121 @@
+#include "desert_sim/grid_map/grid_map_bag.hpp"
+
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "desert_sim/core/quoted.hpp"
+#include "desert_sim/grid_map/bag_records.hpp"
+#include "desert_sim/grid_map/message_bytes.hpp"
+#include "desert_sim/io/raster_loader.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+using Type = GridMapType<GridMap>;
+
+constexpr double most_bytes = 2e9;  // rosbag counts in 32 bits, and doubles what it has
+
+boost::shared_ptr<ros::M_string> connection_header() {
+  auto header = boost::make_shared<ros::M_string>();
+  (*header)["type"] = Type::name;
+  (*header)["md5sum"] = Type::md5;
+  (*header)["message_definition"] = Type::definition();
+  (*header)["latching"] = "1";
+  return header;
+}
+
+std::string list_of(const std::set<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return shortened(list);
+}
+
+void require_one_topic(rosbag::Bag& bag, rosbag::View& maps) {
+  std::set<std::string> topics, types;
+  for (const rosbag::ConnectionInfo* connection : maps.getConnections()) {
+    topics.insert(connection->topic);
+    if (connection->md5sum != Type::md5)
+      throw ConfigError("its " + std::string(Type::name) + " is of another definition (md5sum " +
+                        shortened(connection->md5sum) + " instead of " + Type::md5 + ")");
+  }
+  if (topics.size() > 1)
+    throw ConfigError("has GridMaps on several topics: " + list_of(topics) + " (rosbag filter leaves one)");
+  if (maps.size() > 0) return;
+  rosbag::View all(bag);
+  for (const rosbag::ConnectionInfo* connection : all.getConnections()) types.insert(connection->datatype);
+  throw ConfigError("has no " + std::string(Type::name) + " in it" +
+                    (types.empty() ? "" : " (it has: " + list_of(types) + ")"));
+}
+
+GridMap last_map(rosbag::Bag& bag) {
+  rosbag::View maps(bag, rosbag::TypeQuery(Type::name));
+  require_one_topic(bag, maps);
+  rosbag::View::iterator last = maps.begin();
+  for (rosbag::View::iterator next = last; next != maps.end(); ++next) last = next;
+  const std::uint32_t size = last->size();
+  const std::unique_ptr<std::uint8_t[]> bytes(new std::uint8_t[size]);
+  ros::serialization::OStream copy(bytes.get(), size);
+  last->write(copy);
+  MessageBytes message(bytes.get(), size);
+  GridMap map;
+  message.next(map);
+  return map;
+}
+
+}  // namespace
+
+void write_grid_map(const std::string& path, const std::string& topic, const GridMap& map) {
+  double bytes = 0;
+  for (const std_msgs::Float32MultiArray& layer : map.data)
+    bytes += 4.0 * static_cast<double>(layer.data.size());
+  if (bytes > most_bytes)
+    throw ConfigError(path + ": a bag cannot hold the " + std::to_string(bytes * 1e-9) + " GB of this map");
+  const std::string temporary = path + ".part";
+  try {
+    rosbag::Bag bag(temporary, rosbag::bagmode::Write);
+    bag.write(topic, std::max(map.info.header.stamp, ros::TIME_MIN), map, connection_header());
+    bag.close();
+    std::filesystem::rename(temporary, path);
+  } catch (const std::exception& e) {
+    std::remove(temporary.c_str());
+    throw ConfigError(path + ": cannot be written: " + e.what());
+  }
+}
+
+GridMap read_grid_map(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) throw ConfigError(path + ": there is no such file");
+  try {
+    require_whole_records(path);
+    rosbag::Bag bag(path, rosbag::bagmode::Read);
+    return last_map(bag);
+  } catch (const rosbag::BagUnindexedException&) {
+    throw ConfigError(path + ": is cut off, or still being recorded (rosbag reindex repairs what is there)");
+  } catch (const ConfigError& e) {
+    throw ConfigError(path + ": " + e.what());
+  } catch (const std::exception& e) {
+    throw ConfigError(path + ": is no bag, cut off or corrupt: " + shortened(e.what()));
+  }
+}
+
+RasterLoader raster_loader_with_bags() {
+  return [gdal = gdal_raster_loader()](const RasterRequest& request) {
+    if (!is_bag(request.path)) return gdal(request);
+    const GridMap map = read_grid_map(request.path);
+    RasterOptions options;
+    options.band = request.band;
+    options.scale = request.scale;
+    options.offset = request.offset;
+    RasterField field = fitted(raster_of(map, options, request.path), request);
+    field.bands = map.layers;
+    return field;
+  };
+}
+
+}  // namespace desert_sim

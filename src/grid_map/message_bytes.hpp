@@ -1,0 +1,42 @@
+#pragma once
+/// Messages out of files that may be damaged.
+
+#include <ros/serialization.h>
+
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+namespace desert_sim {
+
+/// Bytes to deserialize a message from. Unlike roscpp's own stream, it takes no memory for more elements than
+/// there are bytes. Throws ros::serialization::StreamOverrunException.
+class MessageBytes : public ros::serialization::Stream {
+ public:
+  static const ros::serialization::StreamType stream_type = ros::serialization::stream_types::Input;
+  MessageBytes(std::uint8_t* data, std::uint32_t size) : Stream(data, size) {}
+
+  template <class T>
+  void next(T& value) {
+    ros::serialization::deserialize(*this, value);
+  }
+  template <class T>
+  void next(std::vector<T>& values) {
+    std::uint32_t count = 0;
+    next(count);
+    values.clear();
+    if constexpr (std::is_arithmetic_v<T>) {
+      if (count > getLength() / sizeof(T)) ros::serialization::throwStreamOverrun();
+      const std::uint32_t bytes = count * static_cast<std::uint32_t>(sizeof(T));
+      values.resize(count);
+      if (bytes > 0) std::memcpy(values.data(), advance(bytes), bytes);
+    } else {
+      for (std::uint32_t n = 0; n < count; ++n) {
+        values.emplace_back();
+        next(values.back());
+      }
+    }
+  }
+};
+
+}  // namespace desert_sim

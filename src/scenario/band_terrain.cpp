@@ -1,0 +1,65 @@
+#include "desert_sim/scenario/band_terrain.hpp"
+
+#include <algorithm>
+
+#include "desert_sim/core/quoted.hpp"
+#include "desert_sim/kernels/layers.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+const std::string ending = ".bag";
+
+/// Counted from 1; 0 if there is none.
+int band_of(const std::string& layer, const std::vector<std::string>& bands) {
+  for (const std::string& name : {layer, layer + "_depth"}) {
+    const auto found = std::find(bands.begin(), bands.end(), name);
+    if (found != bands.end()) return static_cast<int>(found - bands.begin()) + 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool is_bag(const std::string& path) {
+  return path.size() >= ending.size() &&
+         path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+Scenario scenario_of_bands(const std::string& path, const RasterLoader& load_raster, bool fill_nodata) {
+  RasterRequest request;
+  request.path = path;
+  const std::vector<std::string> bands = load_raster(request).bands;
+  Scenario s;
+  s.name = path;
+  s.grid.from_raster = path;
+  s.grid.boundary = Boundary::open;
+  const auto add = [&](Layer layer, int band, Merge merge, double scale) {
+    RasterStep step;
+    step.layer = info(layer).name;
+    step.merge = merge;
+    step.band = band;
+    step.scale = scale;
+    step.fill_nodata = fill_nodata;
+    if (band > 0) s.terrain.push_back(step);
+  };
+  const int bedrock = band_of("bedrock", bands), elevation = band_of("elevation", bands);
+  if (bedrock == 0 && elevation == 0) {
+    std::string names;
+    for (const std::string& band : bands) names += (names.empty() ? "" : ", ") + band;
+    throw ConfigError(path + ": has neither a layer bedrock nor elevation (it has: " + shortened(names) +
+                      ")");
+  }
+  add(Layer::bedrock, bedrock > 0 ? bedrock : elevation, Merge::replace, 1);
+  for (const LayerInfo& layer : layer_table) {
+    if (layer.lifetime != Lifetime::persistent || layer.layer == Layer::bedrock) continue;
+    const int band = band_of(layer.name, bands);
+    add(layer.layer, band, Merge::replace, 1);
+    if (bedrock == 0 && (layer.layer == Layer::sand || layer.layer == Layer::soil))
+      add(Layer::bedrock, band, Merge::add, -1);
+  }
+  return s;
+}
+
+}  // namespace desert_sim
