@@ -15,11 +15,12 @@ desert_sanitize() { # address,undefined or thread: sets BUILD, DESERT_SANITIZE_C
   rm -rf "$reports"
   mkdir -p "$reports"
   # clang, because its OpenMP tells ThreadSanitizer which thread waits for which (Archer); that of GCC does not.
-  # -O1 with the inlining of -O2 builds soon and runs well enough; asserts are on.
+  # -O1 with the inlining of -O2 builds soon and runs well enough; asserts are on. clang warns of loops that it does
+  # not vectorise when they are watched.
   DESERT_SANITIZE_CONFIGURE=("-DDESERT_SANITIZE=$1" -DDESERT_WITH_CUDA=OFF -DCMAKE_CXX_COMPILER=clang++
-    -DCMAKE_BUILD_TYPE=RelWithDebInfo "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -finline-functions -g1")
-  export ASAN_OPTIONS="log_path=$reports/address:detect_stack_use_after_return=1:strict_string_checks=1"
+    -DDESERT_WERROR=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -finline-functions -g1")
+  export ASAN_OPTIONS="log_path=$reports/report:detect_stack_use_after_return=1:strict_string_checks=1"
   export LSAN_OPTIONS="suppressions=$known/leak.supp:print_suppressions=0"
-  export UBSAN_OPTIONS="log_path=$reports/undefined:print_stacktrace=1"
-  export TSAN_OPTIONS="log_path=$reports/thread:suppressions=$known/thread.supp:second_deadlock_stack=1"
+  export UBSAN_OPTIONS="log_path=$reports/report:print_stacktrace=1"
+  export TSAN_OPTIONS="log_path=$reports/report:suppressions=$known/thread.supp:second_deadlock_stack=1"
 }
