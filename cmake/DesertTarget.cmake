@@ -5,6 +5,8 @@ option(DESERT_WERROR "Warnings are errors" ON)
 option(DESERT_NATIVE "Use the instructions of the CPU that builds (-march=native); results stay the same bits" OFF)
 
 set(DESERT_SANITIZE "" CACHE STRING "Sanitizers for all of the project's own code: address,undefined or thread")
+# `undefined` leaves out the overflow that heights and depths could meet on their way to quanta.
+string(REPLACE "undefined" "undefined,float-cast-overflow" DESERT_SANITIZERS "${DESERT_SANITIZE}")
 
 # ---- Rooms: `#include "desert_sim/<room>/<file>.hpp"` everywhere, in the build tree through links ----
 set(DESERT_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
@@ -25,9 +27,11 @@ endforeach()
 
 # Faster loops in the physics without changing a result: no errno from sqrt(), no floating-point traps.
 set(DESERT_PHYSICS_OPTIONS
-  $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<CONFIG:Debug>>>:-O3>
   $<$<COMPILE_LANGUAGE:CXX>:-fno-math-errno>
   $<$<COMPILE_LANGUAGE:CXX>:-fno-trapping-math>)
+if(NOT DESERT_SANITIZE)
+  list(APPEND DESERT_PHYSICS_OPTIONS $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<CONFIG:Debug>>>:-O3>)
+endif()
 
 # desert_target(<target>): language, warnings and floating-point rules. No contraction, no fast-math:
 # the CPU and the GPU round alike.
@@ -47,8 +51,9 @@ function(desert_target target)
     list(APPEND host -march=native)
   endif()
   if(DESERT_SANITIZE)
-    list(APPEND host -fsanitize=${DESERT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
-    target_link_options(${target} PRIVATE -fsanitize=${DESERT_SANITIZE})
+    list(APPEND host -fsanitize=${DESERT_SANITIZERS} -fno-sanitize-recover=all -fno-omit-frame-pointer
+      -D_GLIBCXX_ASSERTIONS)
+    target_link_options(${target} PRIVATE -fsanitize=${DESERT_SANITIZERS})
   endif()
   target_compile_options(${target} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:${host}>")
 

@@ -39,12 +39,14 @@ source_noetic() {
 # Debian's ROS lives under /usr and takes no distribution name.
 source_noetic || unset ROS_DISTRO
 
-packages() { # column [core: without the parts headed `# ROS`]
-  sed ${2:+-e '/^# ROS/,$d'} -e 's/#.*//' "$DESERT_ROOT/scripts/dependencies.txt" |
+packages() { # column [core: without the parts from `# ROS` on; all: with the part `# Sanitizers`]
+  local end='# Sanitizers'
+  case ${2:-} in core) end='# ROS' ;; all) end='none' ;; esac
+  sed -e "/^$end/,\$d" -e 's/#.*//' "$DESERT_ROOT/scripts/dependencies.txt" |
     awk -F'|' -v column="$1" '{ gsub(/[ \t]/, "", $column); if ($column != "" && $column != "-") print $column }'
 }
 
-missing_packages() { # column [core]
+missing_packages() { # column [core | all]
   local package
   for package in $(packages "$@"); do
     dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
@@ -53,7 +55,7 @@ missing_packages() { # column [core]
 
 # Installs what is missing from dependencies.txt; with nothing missing it calls nothing.
 # shellcheck disable=SC2120 # arguments are optional
-desert_install() { # [core]
+desert_install() { # [core | all]
   local missing as_root=()
   if [[ $DESERT_SYSTEM == 0 ]]; then
     say "this is neither Debian 12 nor Ubuntu 20.04: nothing is installed. Needed, by their Debian names:"

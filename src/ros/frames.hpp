@@ -31,7 +31,7 @@ class Frames {
   /// Publishes the static frame `name` in the middle of the terrain, at its mean height.
   void announce_center(const std::string& name, const Snapshot& snapshot);
   bool has_center() const { return broadcaster_ != nullptr; }
-  /// Moves it to the middle of another terrain.
+  /// Moves it to the middle of another terrain. By one thread at a time.
   void move_center(const Snapshot& snapshot);
 
  private:

@@ -222,7 +222,11 @@ void Services::load_checkpoint(const LoadCheckpointRequest& request, LoadCheckpo
 }
 
 void Services::terrain_replaced() {
-  if (frames_.has_center()) frames_.move_center(*simulation_.terrain({Layer::elevation}).get().snapshot);
+  if (frames_.has_center()) {
+    // One after another, each with a copy of its own: the last one to move it has seen the newest terrain.
+    const std::lock_guard<std::mutex> lock(center_mutex_);
+    frames_.move_center(*simulation_.terrain({Layer::elevation}).get().snapshot);
+  }
   topics_.publish_now();
 }
 

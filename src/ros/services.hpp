@@ -71,6 +71,7 @@ class Services {
   Frames& frames_;
   const DataFolder& files_;
   Submaps submaps_;
+  std::mutex center_mutex_;  ///< of what terrain_replaced() does
   std::mutex recent_mutex_;
   TerrainState recent_;
   std::chrono::steady_clock::time_point recent_time_;

@@ -13,13 +13,14 @@ import rospy
 import rostest
 from desert_sim.msg import ElevationGrid, WindScheduleSegment
 from desert_sim.srv import EditTerrain, EditTerrainRequest, EditWind, EditWindRequest, LoadCheckpoint, LoadCheckpointRequest
-from desert_sim.srv import LoadTerrain, LoadTerrainRequest, QueryTerrain, QueryTerrainRequest, SaveCheckpoint
-from desert_sim.srv import SaveCheckpointRequest, SetWind, SetWindRequest, SetWindSchedule, SetWindScheduleRequest, Step
+from desert_sim.srv import GetSubmap, GetSubmapRequest, LoadTerrain, LoadTerrainRequest, QueryTerrain, QueryTerrainRequest
+from desert_sim.srv import SaveCheckpoint, SaveCheckpointRequest, SetWind, SetWindRequest, SetWindSchedule, SetWindScheduleRequest, Step
 from geometry_msgs.msg import Point
 from lifecycle import CORNER, Scenarios, Trigger
 
 SECONDS = float(os.environ.get("DESERT_FLOOD_SECONDS", "8"))
 CLIENTS = 4
+CHECKPOINT = "start.ckpt"
 BAD_NUMBERS = [math.nan, math.inf, -math.inf, 1e300, -1e300]
 BAD_NAMES = ["", "../../etc/passwd", "/etc/passwd", "a/../../b", "\n", "x" * 10_000_000]
 
@@ -33,7 +34,7 @@ def place(draw, grid):
 
 def good(draw, grid):
     """(service, type, request) that the node takes."""
-    kind = draw.randrange(5)
+    kind = draw.randrange(7)
     if kind == 0:
         return "set_wind", SetWind, SetWindRequest(speed=draw.uniform(0, 9), direction_deg=draw.uniform(-180, 180))
     if kind == 1:
@@ -46,6 +47,11 @@ def good(draw, grid):
             segments=[WindScheduleSegment(speed=draw.uniform(1, 8), duration=draw.uniform(1, 50)) for _ in range(3)])
     if kind == 3:
         return "edit_wind", EditWind, EditWindRequest(operation="clear")
+    if kind == 4:
+        return "load_checkpoint", LoadCheckpoint, LoadCheckpointRequest(name=CHECKPOINT)
+    if kind == 5:
+        return "get_submap", GetSubmap, GetSubmapRequest(
+            layers=["elevation", "slope", "wind_x"], center=place(draw, grid), length_x=3, length_y=3)
     return "query_terrain", QueryTerrain, QueryTerrainRequest(
         points=[place(draw, grid) for _ in range(20)])
 
@@ -114,6 +120,7 @@ class Flood(Scenarios):
         node = self.start("flooded", {"scenario": CORNER, "paused": False, "step_rate": 50, "journal": journal,
                                       "data_dir": self.path("data")})
         node.call("step", Step, 1)
+        self.assertTrue(node.call("save_checkpoint", SaveCheckpoint, CHECKPOINT).success)
         grid = node.latest("elevation", ElevationGrid)
         clients = [Client("flooded", grid, seed, time.monotonic() + SECONDS) for seed in range(CLIENTS)]
         before = self.memory(node)

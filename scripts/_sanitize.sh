@@ -1,0 +1,29 @@
+# shellcheck shell=bash
+# Sourced by scripts/test for --sanitize: a build of its own with sanitizers, how they work and where they report.
+# Every process reports into files, for nobody sees the exit status of a node; the test sanitizers.no_report, the
+# last one, shows them and fails if there is any.
+
+# Too slow with sanitizers, or nothing for them to see:
+#   tests labelled slow    thousands of steps for statistics of dunes: the code is that of the other tests
+#   installed_package.*    an outsider's program, built without sanitizers, cannot link what is built with them
+# shellcheck disable=SC2034 # for scripts/test
+DESERT_SANITIZE_WITHOUT=(-LE slow -E '^installed_package\.')
+
+desert_sanitize() { # address,undefined or thread: sets BUILD, DESERT_SANITIZE_CONFIGURE and the environment
+  local reports known=$DESERT_ROOT/test/sanitizers
+  BUILD=$BUILD-${1//,/-}
+  reports=$BUILD/sanitizer_reports
+  rm -rf "$reports"
+  mkdir -p "$reports"
+  # clang, because its OpenMP tells ThreadSanitizer which thread waits for which (Archer); that of GCC does not.
+  # -O1 with the inlining of -O2 builds soon and runs well enough; asserts are on. clang warns of loops that it does
+  # not vectorise when they are watched.
+  DESERT_SANITIZE_CONFIGURE=("-DDESERT_SANITIZE=$1" -DDESERT_WITH_CUDA=OFF -DCMAKE_CXX_COMPILER=clang++
+    -DDESERT_WERROR=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -finline-functions -g1")
+  export ASAN_OPTIONS="log_path=$reports/report:detect_stack_use_after_return=1:strict_string_checks=1"
+  export LSAN_OPTIONS="suppressions=$known/leak.supp:print_suppressions=0"
+  export UBSAN_OPTIONS="log_path=$reports/report:print_stacktrace=1"
+  # Libraries built without ThreadSanitizer: their locks count, but not what they read and write themselves, which they
+  # order by atomic counters out of its sight. Our own code stays watched, also when they call it.
+  export TSAN_OPTIONS="ignore_noninstrumented_modules=1:log_path=$reports/report:suppressions=$known/thread.supp:second_deadlock_stack=1"
+}
