@@ -9,7 +9,7 @@ constexpr std::size_t most_waiting = 256, most_waiting_cells = std::size_t{1} <<
 
 std::size_t cells_of(const ElevationUpdate& update) {
   std::size_t cells = 0;
-  for (const ElevationTile& tile : update.tiles) cells += tile.data.size();
+  for (const ElevationTile& tile : update.tiles) cells += tile.data.size() + tile.changes.size();
   return cells;
 }
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "desert_sim/client/elevation_tile.hpp"
+
 namespace desert_sim {
 
 namespace {
@@ -23,9 +25,17 @@ template <class Block>
 ElevationMap::Rectangle difference(const Block& a, const Block& b, std::uint32_t x, std::uint32_t y,
                                    std::uint32_t side) {
   ElevationMap::Rectangle changed;
-  if (std::memcmp(a.data(), b.data(), sizeof(Block)) == 0) return changed;
-  for (std::uint32_t i = 0; i < a.size(); ++i)
-    if (std::memcmp(&a[i], &b[i], sizeof a[i]) != 0) changed.include({x + i % side, y + i / side, 1, 1});
+  const auto same = [](const float* one, const float* other, std::uint32_t cells) {
+    return std::memcmp(one, other, cells * sizeof(float)) == 0;
+  };
+  for (std::uint32_t row = 0; row < side; ++row) {
+    const float *one = a.data() + row * side, *other = b.data() + row * side;
+    if (same(one, other, side)) continue;
+    std::uint32_t first = 0, last = side - 1;
+    while (same(one + first, other + first, 1)) ++first;
+    while (same(one + last, other + last, 1)) --last;
+    changed.include({x + first, y + row, last - first + 1, 1});
+  }
   return changed;
 }
 
@@ -63,11 +73,12 @@ ElevationMap::ElevationMap(const ElevationGrid& keyframe, const ElevationMap* be
   changed = comparable ? Rectangle{} : Rectangle{0, 0, info_.width, info_.height};
   for (std::uint32_t y = 0; y < info_.height; y += side)
     for (std::uint32_t x = 0; x < info_.width; x += side) {
-      auto block = std::make_shared<Block>();
-      block->fill(unknown);
-      for (std::uint32_t row = 0; row < on_grid(y, side, info_.height); ++row)
-        std::copy_n(keyframe.elevation.data() + static_cast<std::size_t>(y + row) * info_.width + x,
-                    on_grid(x, side, info_.width), block->data() + row * side);
+      std::shared_ptr<Block> block(new Block);  // not filled with zeros first, as make_shared would
+      const std::uint32_t rows = on_grid(y, side, info_.height), columns = on_grid(x, side, info_.width);
+      if (rows < side || columns < side) block->fill(unknown);
+      for (std::uint32_t row = 0; row < rows; ++row)
+        std::copy_n(keyframe.elevation.data() + static_cast<std::size_t>(y + row) * info_.width + x, columns,
+                    block->data() + row * side);
       const std::shared_ptr<const Block> held = comparable ? before->blocks_[blocks_.size()] : nullptr;
       const Rectangle differs = held ? difference(*block, *held, x, y, side) : Rectangle{};
       changed.include(differs);
@@ -85,19 +96,22 @@ std::shared_ptr<const ElevationMap> ElevationMap::after(const ElevationUpdate& u
   return map;
 }
 
-/// A block that is still shared with the map before is copied first.
 void ElevationMap::write(const ElevationTile& tile, const ElevationMap& before) {
   const std::uint32_t right = tile.x + tile.width, top = tile.y + tile.height;
-  for (std::uint32_t by = tile.y / side; by * side < top; ++by)
-    for (std::uint32_t bx = tile.x / side; bx * side < right; ++bx) {
-      std::shared_ptr<const Block>& block = blocks_[by * blocks_across() + bx];
-      if (block == before.blocks_[by * blocks_across() + bx]) block = std::make_shared<Block>(*block);
-      Block& cells = const_cast<Block&>(*block);  // ours alone until this map is handed out
-      const std::uint32_t x0 = std::max(tile.x, bx * side), x1 = std::min(right, (bx + 1) * side);
-      for (std::uint32_t y = std::max(tile.y, by * side); y < std::min(top, (by + 1) * side); ++y)
-        std::copy_n(tile.data.data() + static_cast<std::size_t>(y - tile.y) * tile.width + (x0 - tile.x),
-                    x1 - x0, cells.data() + y % side * side + x0 % side);
+  TileReader reader(tile);
+  for (std::uint32_t y = tile.y; y < top; ++y)
+    for (std::uint32_t x = tile.x; x < right;) {
+      float* row = own_block(x, y, before).data() + y % side * side;
+      const std::uint32_t end = std::min(right, (x / side + 1) * side);
+      for (; x < end; ++x) reader.write_next(row[x % side]);
     }
+}
+
+/// A block that is still shared with the map before is copied first.
+ElevationMap::Block& ElevationMap::own_block(std::uint32_t x, std::uint32_t y, const ElevationMap& before) {
+  const std::size_t n = y / side * blocks_across() + x / side;
+  if (blocks_[n] == before.blocks_[n]) blocks_[n] = std::make_shared<Block>(*blocks_[n]);
+  return const_cast<Block&>(*blocks_[n]);  // ours alone until this map is handed out
 }
 
 // ---- reading ----
@@ -196,10 +210,13 @@ std::vector<float> ElevationMap::elevations(const Rectangle& r) const {
 
 namespace {
 
+std::string cells_text(std::uint32_t width, std::uint32_t height) {
+  return std::to_string(width) + " x " + std::to_string(height) + " cells";
+}
+
 std::string wrong_size(std::size_t numbers, std::uint32_t width, std::uint32_t height) {
   if (width > 0 && height > 0 && numbers == static_cast<std::uint64_t>(width) * height) return "";
-  return std::to_string(numbers) + " elevations for " + std::to_string(width) + " x " +
-         std::to_string(height) + " cells";
+  return std::to_string(numbers) + " elevations for " + cells_text(width, height);
 }
 
 std::string infinite(const std::vector<float>& elevations) {
@@ -207,6 +224,39 @@ std::string infinite(const std::vector<float>& elevations) {
   if (bad == elevations.end()) return "";
   return "elevation " + std::to_string(bad - elevations.begin()) + " is " + std::to_string(*bad) +
          ": must be finite, or NaN if unknown";
+}
+
+/// Of a tile with a mask: the cells that it has; `fault` if it does not fit.
+std::size_t count_changed(const ElevationTile& tile, std::string& fault) {
+  const std::uint64_t cells = std::uint64_t{tile.width} * tile.height;
+  if (tile.changed.size() != mask_bytes(cells)) {
+    fault = std::to_string(tile.changed.size()) + " bytes of mask for " + cells_text(tile.width, tile.height);
+    return 0;
+  }
+  std::size_t count = 0;
+  for (std::size_t bit = 0; bit < 8 * tile.changed.size(); ++bit)
+    if (mask_has(tile.changed, bit)) {
+      ++count;
+      if (bit >= cells)
+        fault = "bit " + std::to_string(bit) + " of its mask is set, and it has " +
+                cells_text(tile.width, tile.height);
+    }
+  return count;
+}
+
+std::string fault_of(const ElevationTile& tile) {
+  std::string fault;
+  if (!tile.changes.empty() && !tile.data.empty()) return "has changes and elevations";
+  const std::size_t values = tile.changes.size() + tile.data.size();
+  if (tile.changed.empty()) {
+    fault = wrong_size(values, tile.width, tile.height);
+  } else if (const std::size_t cells = count_changed(tile, fault);
+             fault.empty() && (cells != values || values == 0)) {
+    fault = std::to_string(values) + " values for " + std::to_string(cells) + " cells that changed";
+  }
+  if (fault.empty() && !tile.changes.empty() && !(std::isfinite(tile.resolution) && tile.resolution > 0))
+    fault = "resolution is " + std::to_string(tile.resolution) + ": must be finite and above 0";
+  return fault.empty() ? infinite(tile.data) : fault;
 }
 
 }  // namespace
@@ -237,9 +287,7 @@ std::string fault_of(const ElevationUpdate& update) {
   if (update.sequence == 0) return where + "sequence counts from 1";
   if (!std::isfinite(update.sim_time)) return where + "sim_time is not finite";
   for (std::size_t i = 0; i < update.tiles.size(); ++i) {
-    const ElevationTile& tile = update.tiles[i];
-    std::string fault = wrong_size(tile.data.size(), tile.width, tile.height);
-    if (fault.empty()) fault = infinite(tile.data);
+    const std::string fault = fault_of(update.tiles[i]);
     if (!fault.empty()) return where + "tile " + std::to_string(i) + ": " + fault;
   }
   return "";

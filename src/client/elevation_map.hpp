@@ -81,6 +81,7 @@ class ElevationMap {
     return (*blocks_[y / side * blocks_across() + x / side])[y % side * side + x % side];
   }
   void write(const ElevationTile& tile, const ElevationMap& before);
+  Block& own_block(std::uint32_t x, std::uint32_t y, const ElevationMap& before);
   std::optional<Patch> patch(double x, double y) const;
   std::optional<Gradient> gradient(double x, double y) const;
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
-#include <cmath>
 
 #include "desert_sim/ros/messages.hpp"
 
@@ -19,53 +18,29 @@ std::vector<std::int8_t> costs(const Snapshot& s) {
 
 }  // namespace
 
-CostRectangle CostRectangle::with(const CostRectangle& other) const {
-  if (empty()) return other;
-  if (other.empty()) return *this;
-  return {std::min(x0, other.x0), std::min(y0, other.y0), std::max(x1, other.x1), std::max(y1, other.y1)};
+CostmapStream::CostmapStream(ros::Publisher keyframes, ros::Publisher updates, std::string frame)
+    : keyframes_(std::move(keyframes)), updates_(std::move(updates)), frame_(std::move(frame)) {}
+
+void CostmapStream::configure(double update_rate, int threshold) {
+  repeat_ = std::chrono::duration<double>(1.5 / (update_rate > 0 ? update_rate : 1));
+  held_.configure(threshold);
 }
 
-std::int8_t cost_of(float traversability) {
-  if (std::isnan(traversability)) return -1;
-  if (traversability <= 0) return 100;
-  return static_cast<std::int8_t>(std::lround(99 * (1 - std::min(traversability, 1.0f))));
-}
-
-CostmapStream::CostmapStream(ros::Publisher keyframes, ros::Publisher updates, std::string frame,
-                             std::chrono::duration<double> repeat)
-    : keyframes_(std::move(keyframes)),
-      updates_(std::move(updates)),
-      frame_(std::move(frame)),
-      repeat_(repeat) {}
-
-void CostmapStream::hold(const TerrainState& state) {
-  width_ = state.snapshot->width;
-  height_ = state.snapshot->height;
+void CostmapStream::hold(const TerrainState& state, std::vector<std::int8_t> now) {
+  held_.hold(state.snapshot->width, std::move(now));
   terrain_ = state.moment.terrain;
-  held_ = costs(*state.snapshot);
   sent_.clear();
 }
 
 bool CostmapStream::holds(const TerrainState& state) const {
-  return !held_.empty() && terrain_ == state.moment.terrain && width_ == state.snapshot->width &&
-         height_ == state.snapshot->height;
+  return !held_.empty() && terrain_ == state.moment.terrain && held_.width() == state.snapshot->width &&
+         held_.size() == state.snapshot->layers.at(Layer::traversability).size();
 }
 
-CostRectangle CostmapStream::changes(const std::vector<std::int8_t>& now) const {
-  CostRectangle all{width_, height_, 0, 0};
-  for (int y = 0; y < height_; ++y)
-    for (int x = 0; x < width_; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + x;
-      if (now[i] == held_[i]) continue;
-      all = {std::min(all.x0, x), std::min(all.y0, y), std::max(all.x1, x + 1), y + 1};
-    }
-  return all;
-}
-
-CostRectangle CostmapStream::with_recent(const CostRectangle& cells) {
+CellBox CostmapStream::with_recent(const CellBox& cells) {
   const Clock::time_point now = Clock::now();
   while (!sent_.empty() && now - sent_.front().time > repeat_) sent_.pop_front();
-  CostRectangle all = cells;
+  CellBox all = cells;
   for (const Sent& sent : sent_) all = all.with(sent.cells);
   sent_.push_back({now, cells});
   return all;
@@ -74,7 +49,8 @@ CostRectangle CostmapStream::with_recent(const CostRectangle& cells) {
 void CostmapStream::publish_keyframe(const TerrainState& state) {
   const Snapshot& s = *state.snapshot;
   if (!held_.empty() && !holds(state)) replaced_ = Clock::now();
-  hold(state);
+  const std::vector<std::int8_t> now = costs(s);
+  hold(state, now);
   with_recent({0, 0, s.width, s.height});
   nav_msgs::OccupancyGridPtr message = boost::make_shared<nav_msgs::OccupancyGrid>();
   message->header = header_of(state.moment, frame_);
@@ -83,35 +59,31 @@ void CostmapStream::publish_keyframe(const TerrainState& state) {
   message->info.width = static_cast<std::uint32_t>(s.width);
   message->info.height = static_cast<std::uint32_t>(s.height);
   message->info.origin = origin_of(s);
-  message->data = held_;
+  message->data = now;
   keyframes_.publish(message);
 }
 
 bool CostmapStream::publish_update(const TerrainState& state) {
   if (!holds(state)) {
-    if (keyframes_.getNumSubscribers() == 0) hold(state);  // updates count from here on
+    // Without keyframes, updates count from here on.
+    if (keyframes_.getNumSubscribers() == 0) hold(state, costs(*state.snapshot));
     return false;
   }
-  std::vector<std::int8_t> now = costs(*state.snapshot);
-  const CostRectangle changed = changes(now);
+  const std::vector<std::int8_t> now = costs(*state.snapshot);
+  const CellBox changed = held_.changes(now);
   if (changed.empty()) return false;
   if (Clock::now() - replaced_ < repeat_ && keyframes_.getNumSubscribers() > 0) {
     publish_keyframe(state);
     return true;
   }
-  const CostRectangle cells = with_recent(changed);
-  held_ = std::move(now);
+  const CellBox cells = with_recent(changed);
   map_msgs::OccupancyGridUpdatePtr message = boost::make_shared<map_msgs::OccupancyGridUpdate>();
   message->header = header_of(state.moment, frame_);
   message->x = cells.x0;
   message->y = cells.y0;
-  message->width = static_cast<std::uint32_t>(cells.x1 - cells.x0);
-  message->height = static_cast<std::uint32_t>(cells.y1 - cells.y0);
-  message->data.reserve(static_cast<std::size_t>(message->width) * message->height);
-  for (int y = cells.y0; y < cells.y1; ++y) {
-    const auto row = held_.begin() + static_cast<std::ptrdiff_t>(y) * width_;
-    message->data.insert(message->data.end(), row + cells.x0, row + cells.x1);
-  }
+  message->width = static_cast<std::uint32_t>(cells.width());
+  message->height = static_cast<std::uint32_t>(cells.height());
+  message->data = held_.take(now, cells);
   updates_.publish(message);
   return true;
 }

@@ -54,7 +54,7 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   NodeSetup setup = read_node_setup(node_);
   resolve_grid(setup.scenario, raster_loader_with_bags());
   const NodeParameters& p = setup.node;
-  check_map_sizes(setup.maps, setup.scenario.grid);
+  check_map_sizes(setup.publishers.maps, setup.scenario.grid);
   keep_previous_journal(p.journal);
   files_ = std::make_unique<DataFolder>(p.data_dir);
   frames_ = std::make_unique<Frames>(p.frame_id);
@@ -79,7 +79,7 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   announce(simulation_->scenario().get(), simulation_->backend_choice());
   if (!p.center_frame.empty())
     frames_->announce_center(p.center_frame, *simulation_->terrain({Layer::elevation}).get().snapshot);
-  topics_ = std::make_unique<Topics>(node_, setup.publishers, setup.maps, *frames_, *simulation_);
+  topics_ = std::make_unique<Topics>(node_, setup.publishers, *frames_, *simulation_);
   to_notify_ = topics_.get();
   try {
     services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *topics_, *frames_, *files_);

@@ -30,6 +30,12 @@ std::vector<MapLayer> choose_map_layers(const std::vector<std::string>& names, c
   return chosen;
 }
 
+std::string listed(const std::vector<MapLayer>& layers) {
+  std::string names;
+  for (const MapLayer& layer : layers) names += (names.empty() ? "" : ", ") + std::string(layer.name);
+  return "[" + names + "]";
+}
+
 std::vector<Layer> terrain_layers(const std::vector<MapLayer>& layers) {
   std::vector<Layer> all;
   for (const MapLayer& layer : layers) all.push_back(layer.layer);

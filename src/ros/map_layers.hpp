@@ -43,6 +43,9 @@ std::string map_layer_names();
 /// or stands there twice.
 std::vector<MapLayer> choose_map_layers(const std::vector<std::string>& names, const std::string& key);
 
+/// As a list in YAML: [elevation, slope].
+std::string listed(const std::vector<MapLayer>& layers);
+
 std::vector<Layer> terrain_layers(const std::vector<MapLayer>& layers);
 
 }  // namespace desert_sim

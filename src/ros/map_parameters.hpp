@@ -28,6 +28,7 @@ struct MapParameters {
   std::string robot_frame = "base_link";
   double costmap_update_rate = 1;
   double costmap_keyframe_rate = 0.1;
+  int costmap_update_threshold = 3;
   double image_rate = 1;
 };
 constexpr auto parameter_table(const MapParameters*) {
@@ -49,6 +50,9 @@ constexpr auto parameter_table(const MapParameters*) {
       parameter("costmap_update_rate", &P::costmap_update_rate, 0, 1000, "Hz",
                 "~costmap_updates; not above the update_frequency of a costmap_2d that listens."),
       parameter("costmap_keyframe_rate", &P::costmap_keyframe_rate, 0, 1000, "Hz", "~costmap, whole."),
+      parameter(
+          "costmap_update_threshold", &P::costmap_update_threshold, 0, 98, "1",
+          "Change of a cost, since what subscribers hold, that sends it; lethal and unknown always do."),
       parameter("image_rate", &P::image_rate, 0, 1000, "Hz", "~image."));
 }
 static_assert(table_is_complete<MapParameters>());

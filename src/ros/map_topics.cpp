@@ -52,36 +52,41 @@ bool Topics::publish_cut(const Topic& topic, const std::string& name, const std:
   return problem.empty();
 }
 
-void Topics::add_grid_map(const MapSetup& maps) {
-  const bool whole = maps.parameters.grid_map_length_x == 0;
-  Topic& topic =
-      add(maps.parameters.grid_map_rate, whole ? terrain_layers(maps.grid_map_layers) : std::vector<Layer>());
+void Topics::add_grid_map() {
+  const MapSetup& maps = parameters_.maps;
+  const MapParameters& p = maps.parameters;
+  const auto whole = [&p] { return p.grid_map_length_x == 0; };
+  Topic& topic = add(p.grid_map_rate, [&maps, whole] {
+    return whole() ? terrain_layers(maps.grid_map_layers) : std::vector<Layer>();
+  });
   topic.publisher = advertise_terrain<GridMap>("grid_map", 1, topic);
-  topic.publish = [this, &topic, whole, p = maps.parameters,
-                   layers = maps.grid_map_layers](const TerrainState& state) {
-    if (!whole)
-      return publish_cut(topic, "grid_map", layers, p.grid_map_decimation, [&p](const Snapshot& terrain) {
-        return window_of({p.grid_map_x, p.grid_map_y, p.grid_map_length_x, p.grid_map_length_y}, terrain);
-      });
+  topic.publish = [this, &topic, &maps, &p, whole](const TerrainState& state) {
+    if (!whole())
+      return publish_cut(
+          topic, "grid_map", maps.grid_map_layers, p.grid_map_decimation, [&p](const Snapshot& terrain) {
+            return window_of({p.grid_map_x, p.grid_map_y, p.grid_map_length_x, p.grid_map_length_y}, terrain);
+          });
     topic.publisher.publish(boost::make_shared<GridMap>(
-        grid_map(state, frame_, layers, whole_window(*state.snapshot), p.grid_map_decimation)));
+        grid_map(state, frame_, maps.grid_map_layers, whole_window(*state.snapshot), p.grid_map_decimation)));
     return true;
   };
 }
 
-void Topics::add_local_map(const MapSetup& maps) {
-  Topic& topic = add(maps.parameters.local_map_rate, {});
+void Topics::add_local_map() {
+  const MapSetup& maps = parameters_.maps;
+  const MapParameters& p = maps.parameters;
+  Topic& topic = add(p.local_map_rate, std::vector<Layer>());
   topic.publisher = advertise_terrain<GridMap>("local_map", 1, topic);
   topic.follows = true;
-  topic.ready = [this, frame = maps.parameters.robot_frame] {
+  topic.ready = [this, &p] {
     tf2::Transform robot;
     std::string why;
-    const bool found = frames_.latest_to_terrain(frame, robot, why);
+    const bool found = frames_.latest_to_terrain(p.robot_frame, robot, why);
     if (!found) set_problem("local_map", why);
     return found;
   };
-  topic.publish = [this, &topic, p = maps.parameters, layers = maps.local_map_layers](const TerrainState&) {
-    return publish_cut(topic, "local_map", layers, 1, [this, &p](const Snapshot& terrain) {
+  topic.publish = [this, &topic, &maps, &p](const TerrainState&) {
+    return publish_cut(topic, "local_map", maps.local_map_layers, 1, [this, &p](const Snapshot& terrain) {
       tf2::Transform robot;
       std::string why;
       if (!frames_.latest_to_terrain(p.robot_frame, robot, why)) throw ConfigError(why);
@@ -92,7 +97,8 @@ void Topics::add_local_map(const MapSetup& maps) {
   };
 }
 
-void Topics::add_costmap(const MapParameters& p) {
+void Topics::add_costmap() {
+  const MapParameters& p = parameters_.maps.parameters;
   // In the order of ~elevation's, and for its reason.
   Topic& updates = add(p.costmap_update_rate, {Layer::traversability});
   Topic& keyframes = add(p.costmap_keyframe_rate, {Layer::traversability});
@@ -100,12 +106,11 @@ void Topics::add_costmap(const MapParameters& p) {
   // to us. roscpp hands it the last message there was, but only of a topic that somebody advertises as
   // latched.
   costmap_is_latched_ = node_.advertise<nav_msgs::OccupancyGrid>("costmap", 1, true);
-  keyframes.publisher = advertise_terrain<nav_msgs::OccupancyGrid>("costmap", 1, keyframes);
-  updates.publisher = advertise_terrain<map_msgs::OccupancyGridUpdate>("costmap_updates", 10, keyframes);
-  const double period = p.costmap_update_rate > 0 ? 1 / p.costmap_update_rate : 1;
-  costmap_ = std::make_unique<CostmapStream>(keyframes.publisher, updates.publisher, frame_,
-                                             std::chrono::duration<double>(1.5 * period));
-  keyframes.covered = [&updates] { return updates.has_subscribers(); };
+  keyframes.publisher = advertise_named<nav_msgs::OccupancyGrid>("costmap", 1, keyframes, keyframes);
+  updates.publisher =
+      advertise_named<map_msgs::OccupancyGridUpdate>("costmap_updates", 10, updates, keyframes);
+  costmap_ = std::make_unique<CostmapStream>(keyframes.publisher, updates.publisher, frame_);
+  keyframes.covered = [&updates, &keyframes] { return keyframes.names.are_among(updates.names); };
   updates.publish = [this](const TerrainState& state) { return costmap_->publish_update(state); };
   keyframes.publish = [this](const TerrainState& state) {
     costmap_->publish_keyframe(state);
@@ -113,8 +118,8 @@ void Topics::add_costmap(const MapParameters& p) {
   };
 }
 
-void Topics::add_image(const MapParameters& p) {
-  Topic& topic = add(p.image_rate, picture_layers);
+void Topics::add_image() {
+  Topic& topic = add(parameters_.maps.parameters.image_rate, picture_layers);
   topic.image = image_transport::ImageTransport(node_).advertise(
       "image", 1, [this, &topic](const image_transport::SingleSubscriberPublisher&) { want(topic); });
   topic.publish = [this, &topic](const TerrainState& state) {

@@ -10,19 +10,13 @@ namespace desert_sim {
 
 namespace {
 
-std::string listed(const std::vector<MapLayer>& layers) {
-  std::string names;
-  for (const MapLayer& layer : layers) names += (names.empty() ? "" : ", ") + std::string(layer.name);
-  return "`[" + names + "]`";
-}
-
 void write_map_layers(std::ostream& out) {
   const MapSetup defaults;
   out << "\n## Layers of maps\n\n"
-         "`grid_map_layers` (default "
-      << listed(defaults.grid_map_layers) << ") and `local_map_layers` (default "
+         "`grid_map_layers` (default `"
+      << listed(defaults.grid_map_layers) << "`) and `local_map_layers` (default `"
       << listed(defaults.local_map_layers)
-      << ") are lists of these; `~get_submap` and `~get_grid_map` know the same. A layer that nobody asks "
+      << "`) are lists of these; `~get_submap` and `~get_grid_map` know the same. A layer that nobody asks "
          "for is "
          "not computed; one that the terrain does not have is 0.\n\n| layer | unit | what |\n|---|---|---|\n";
   for (const MapLayer& layer : map_layers) {

@@ -1,12 +1,12 @@
 #include "desert_sim/ros/node_parameters.hpp"
 
 #include <ros/master.h>
-#include <ros/names.h>
 #include <ros/param.h>
 #include <yaml-cpp/yaml.h>
 
 #include <set>
 
+#include "desert_sim/ros/frame_name.hpp"
 #include "desert_sim/ros/package_folder.hpp"
 #include "desert_sim/ros/xmlrpc_yaml.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
@@ -101,13 +101,6 @@ Scenario read_scenario(const std::string& source, const NodeParameters& node, co
   return load_scenario(scenario_file(node.scenario), all);
 }
 
-void check_frame(std::string& frame, const std::string& key, Faults& faults) {
-  if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);  // tf2 knows frames without it
-  std::string reason;
-  if (frame.empty() || !ros::names::validate(frame, reason))
-    faults.add(key, "'" + frame + "' is not the name of a frame" + (reason.empty() ? "" : ": " + reason));
-}
-
 }  // namespace
 
 NodeSetup read_node_setup(const ros::NodeHandle& private_node) {
@@ -117,12 +110,10 @@ NodeSetup read_node_setup(const ros::NodeHandle& private_node) {
   NodeSetup setup;
   std::set<std::string> known{"settings"};
   yaml::read_parameters(root, "", faults, setup.node, known);
-  yaml::read_parameters(root, "", faults, setup.publishers, known);
-  read_map_setup(root, faults, setup.maps, known);
+  read_publisher_setup(root, faults, setup.publishers, known);
   const Settings settings = read_settings(root["settings"], faults);
   const YAML::Node sections = take_sections(root, known, faults);
   check_frame(setup.node.frame_id, "frame_id", faults);
-  check_frame(setup.maps.parameters.robot_frame, "robot_frame", faults);
   if (!setup.node.center_frame.empty()) check_frame(setup.node.center_frame, "center_frame", faults);
   faults.throw_if_any();
   setup.scenario = read_scenario(source, setup.node, sections, settings);

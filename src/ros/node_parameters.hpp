@@ -6,7 +6,7 @@
 #include <string>
 
 #include "desert_sim/core/parameters.hpp"
-#include "desert_sim/ros/map_parameters.hpp"
+#include "desert_sim/ros/publisher_parameters.hpp"
 #include "desert_sim/scenario/scenario.hpp"
 
 namespace desert_sim {
@@ -60,45 +60,9 @@ constexpr auto parameter_table(const NodeParameters*) {
 }
 static_assert(table_is_complete<NodeParameters>());
 
-/// How often topics are published, and how finely. A rate of 0 leaves only what is sent to new subscribers,
-/// after the service step, and after a reset or load.
-struct PublisherParameters {
-  double keyframe_rate = 1;
-  double update_rate = 10;
-  double update_threshold = 0.005;
-  int update_tile = 32;
-  double wind_rate = 2;
-  int wind_decimation = 1;
-  double wind_markers_rate = 2;
-  int wind_markers_count = 180;
-  double points_rate = 4;
-  int points_count = 70000;
-  double status_rate = 1;
-};
-constexpr auto parameter_table(const PublisherParameters*) {
-  using P = PublisherParameters;
-  return std::make_tuple(
-      parameter("keyframe_rate", &P::keyframe_rate, 0, 1000, "Hz", "~elevation."),
-      parameter("update_rate", &P::update_rate, 0, 1000, "Hz", "~elevation_updates."),
-      parameter("update_threshold", &P::update_threshold, 0, 1000, "m",
-                "Change of a cell, since what subscribers hold, that sends its tile."),
-      parameter("update_tile", &P::update_tile, 1, 65536, "cells", "Width of a tile of ~elevation_updates."),
-      parameter("wind_rate", &P::wind_rate, 0, 1000, "Hz", "~wind."),
-      parameter("wind_decimation", &P::wind_decimation, 1, 65536, "cells",
-                "Cells of the terrain in a row that are averaged into one of ~wind."),
-      parameter("wind_markers_rate", &P::wind_markers_rate, 0, 1000, "Hz", "~wind_markers."),
-      parameter("wind_markers_count", &P::wind_markers_count, 1, 100000, "1", "At most so many arrows."),
-      parameter("points_rate", &P::points_rate, 0, 1000, "Hz", "~points."),
-      parameter("points_count", &P::points_count, 1, 100000000, "1",
-                "At most so many points; rviz stays fluid with 40000 to 100000."),
-      parameter("status_rate", &P::status_rate, 0, 1000, "Hz", "~status; it is also sent on change."));
-}
-static_assert(table_is_complete<PublisherParameters>());
-
 struct NodeSetup {
   NodeParameters node;
-  PublisherParameters publishers;
-  MapSetup maps;
+  PublisherSetup publishers;
   Scenario scenario;  ///< not yet resolved
 };
 

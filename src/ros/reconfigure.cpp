@@ -6,8 +6,6 @@
 
 #include <utility>
 
-#include "desert_sim/ros/reconfigure_messages.hpp"
-
 namespace desert_sim {
 
 namespace {
@@ -24,25 +22,27 @@ bool same(const dynamic_reconfigure::Config& a, const dynamic_reconfigure::Confi
 
 Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Topics& topics)
     : simulation_(simulation), topics_(topics) {
-  const Scenario scenario = simulation_.scenario().get();
+  const LiveParameters defaults = present();
   descriptions_ = node.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true);
   updates_ = node.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true);
-  descriptions_.publish(boost::make_shared<dynamic_reconfigure::ConfigDescription>(
-      reconfigure_description(scenario, simulation_.step_rate())));
-  publish(scenario);
+  descriptions_.publish(
+      boost::make_shared<dynamic_reconfigure::ConfigDescription>(reconfigure_description(defaults)));
+  publish(reconfigure_values(defaults));
   service_ = node.advertiseService("set_parameters", &Reconfigure::set, this);
   timer_ =
       node.createWallTimer(ros::WallDuration(look_every), [this](const ros::WallTimerEvent&) { look(); });
 }
 
+LiveParameters Reconfigure::present() const {
+  return {simulation_.scenario().get(), topics_.parameters(), simulation_.step_rate()};
+}
+
 /// In their order, and without the lock across a publish.
-void Reconfigure::publish(const Scenario& scenario) {
-  const auto values =
-      boost::make_shared<dynamic_reconfigure::Config>(reconfigure_values(scenario, simulation_.step_rate()));
+void Reconfigure::publish(const dynamic_reconfigure::Config& values) {
   std::unique_lock<std::mutex> lock(mutex_);
-  if (same(*values, published_)) return;
-  published_ = *values;
-  to_publish_ = values;
+  if (same(values, published_)) return;
+  published_ = values;
+  to_publish_ = boost::make_shared<dynamic_reconfigure::Config>(values);
   if (publishing_) return;  // whoever does so now takes this one too
   publishing_ = true;
   while (to_publish_) {
@@ -56,16 +56,16 @@ void Reconfigure::publish(const Scenario& scenario) {
 
 bool Reconfigure::set(Request& request, Response& response) {
   try {
-    const double rate = reconfigure_step_rate(request.config, simulation_.step_rate());
-    const Settings settings = reconfigure_settings(request.config, simulation_.scenario().get());
-    if (!settings.empty()) {
-      simulation_.apply(command::SetParameters{settings}).get();
+    const LiveChange change = reconfigure_change(request.config, present());
+    // First what may yet be refused.
+    if (!change.settings.empty()) {
+      simulation_.apply(command::SetParameters{change.settings}).get();
       topics_.status_changed();
     }
-    if (rate != simulation_.step_rate()) simulation_.set_step_rate(rate).get();
-    const Scenario present = simulation_.scenario().get();
-    response.config = reconfigure_values(present, simulation_.step_rate());
-    publish(present);
+    if (change.step_rate != simulation_.step_rate()) simulation_.set_step_rate(change.step_rate).get();
+    topics_.set_parameters(change.publishers);
+    response.config = reconfigure_values(present());
+    publish(response.config);
     return true;
   } catch (const Error& e) {
     ROS_WARN("%s", e.what());  // its answer has no place for a reason
@@ -73,14 +73,15 @@ bool Reconfigure::set(Request& request, Response& response) {
   }
 }
 
-/// Other commands change the wind, and a reset or a checkpoint everything.
+/// Other commands change the wind, a reset or a checkpoint everything, and ~reload_parameters anything.
 void Reconfigure::look() {
-  const std::uint64_t commands = simulation_.commands();
+  const std::uint64_t commands = simulation_.commands(), publishers = topics_.parameter_changes();
   const double rate = simulation_.step_rate();
-  if (commands == seen_ && rate == seen_rate_) return;
+  if (commands == seen_ && publishers == seen_publishers_ && rate == seen_rate_) return;
   try {
-    publish(simulation_.scenario().get());
+    publish(reconfigure_values(present()));
     seen_ = commands;
+    seen_publishers_ = publishers;
     seen_rate_ = rate;
   } catch (const Error&) {
     // The simulation is ending, or has failed, which ~status tells.

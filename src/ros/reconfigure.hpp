@@ -8,13 +8,15 @@
 
 #include <mutex>
 
+#include "desert_sim/ros/reconfigure_messages.hpp"
 #include "desert_sim/ros/simulation_thread.hpp"
 #include "desert_sim/ros/topics.hpp"
 
 namespace desert_sim {
 
-/// A change is a command: applied between steps, all of it or nothing, and journalled. A call that is refused
-/// fails, and the log says why. What commands, a reset or a checkpoint change shows in ~parameter_updates.
+/// A change of the scenario is a command: applied between steps, all of it or nothing, and journalled. A call
+/// that is refused fails, and the log says why. What commands, a reset, a checkpoint or ~reload_parameters
+/// change shows in ~parameter_updates.
 class Reconfigure {
  public:
   Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Topics& topics);
@@ -24,7 +26,8 @@ class Reconfigure {
   using Response = dynamic_reconfigure::Reconfigure::Response;
   bool set(Request& request, Response& response);
   void look();
-  void publish(const Scenario& scenario);
+  LiveParameters present() const;
+  void publish(const dynamic_reconfigure::Config& values);
 
   SimulationThread& simulation_;
   Topics& topics_;
@@ -32,8 +35,9 @@ class Reconfigure {
   dynamic_reconfigure::Config published_;  ///< under mutex_, as the next two
   dynamic_reconfigure::ConfigConstPtr to_publish_;
   bool publishing_ = false;
-  std::uint64_t seen_ = 0;  ///< commands of the simulation, when it was last looked at
-  double seen_rate_ = -1;   ///< step rate then [steps/s]
+  std::uint64_t seen_ = 0;             ///< commands of the simulation, when it was last looked at
+  std::uint64_t seen_publishers_ = 0;  ///< changes of the topics' parameters then
+  double seen_rate_ = -1;              ///< step rate then [steps/s]
   ros::Publisher descriptions_, updates_;
   ros::ServiceServer service_;
   ros::WallTimer timer_;

@@ -116,37 +116,34 @@ void describe(dynamic_reconfigure::ConfigDescription& description, dynamic_recon
   add_limit<T>(description.max, name, row, row.highest);
 }
 
-/// Calls visit(row, default) for the node's step_rate.
-template <class Visit>
-void with_step_rate_row(Visit&& visit) {
-  const NodeParameters node;
-  for_each_parameter(node, [&](const auto& row, const auto& value) {
+/// Calls visit(group, name, row, value) for all that can change, group by group; the group "" is the first.
+template <class Live, class Visit>
+void for_each_live(Live& live, Visit&& visit) {
+  const auto step_rate = [&](const auto& row, const auto& value) {
     if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
-      if (row.name == std::string(step_rate_name)) visit(row, value);
+      if (row.name == std::string(step_rate_name)) visit("", step_rate_name, row, live.step_rate);
+  };
+  const NodeParameters node;
+  for_each_parameter(node, step_rate);
+  for_each_publisher_parameter(
+      live.publishers, [&](const auto& row, auto& value) { visit("publishers", row.name, row, value); });
+  for_each_live_parameter(live.scenario, [&](const std::string& section, const auto& row, auto& value) {
+    visit(section, section + separator + row.name, row, value);
   });
 }
 
-/// Sections in their order; the group's id is 1 + the index.
-std::vector<std::string> section_names() {
-  std::vector<std::string> names;
-  const Scenario scenario;
-  for_each_live_parameter(scenario, [&](const std::string& section, const auto&, const auto&) {
-    if (names.empty() || names.back() != section) names.push_back(section);
-  });
-  return names;
-}
-
+/// In their order; a group's id is its index. dynamic_reconfigure calls the first one Default.
 std::vector<dynamic_reconfigure::GroupState> group_states() {
-  std::vector<dynamic_reconfigure::GroupState> groups(1);
-  groups[0].name = "Default";
-  groups[0].state = true;
-  for (const std::string& section : section_names()) {
-    dynamic_reconfigure::GroupState group;
-    group.name = section;
-    group.state = true;
-    group.id = static_cast<int>(groups.size());
-    groups.push_back(group);
-  }
+  std::vector<dynamic_reconfigure::GroupState> groups;
+  const LiveParameters live;
+  for_each_live(live, [&](const std::string& name, const std::string&, const auto&, const auto&) {
+    const std::string shown = name.empty() ? "Default" : name;
+    if (!groups.empty() && groups.back().name == shown) return;
+    groups.emplace_back();
+    groups.back().name = shown;
+    groups.back().state = true;
+    groups.back().id = static_cast<int>(groups.size()) - 1;
+  });
   return groups;
 }
 
@@ -167,55 +164,39 @@ std::map<std::string, std::string> texts(const Config& config) {
 
 }  // namespace
 
-Config reconfigure_values(const Scenario& scenario, double step_rate) {
+Config reconfigure_values(const LiveParameters& present) {
   Config config;
-  put(config.doubles, step_rate_name, step_rate);
-  for_each_live_parameter(scenario, [&](const std::string& section, const auto& row, const auto& value) {
-    add_value(config, section + separator + row.name, row, value);
-  });
+  for_each_live(present, [&](const std::string&, const std::string& name, const auto& row,
+                             const auto& value) { add_value(config, name, row, value); });
   config.groups = group_states();
   return config;
 }
 
-dynamic_reconfigure::ConfigDescription reconfigure_description(const Scenario& defaults, double step_rate) {
+dynamic_reconfigure::ConfigDescription reconfigure_description(const LiveParameters& defaults) {
   dynamic_reconfigure::ConfigDescription description;
-  description.dflt = reconfigure_values(defaults, step_rate);
-  for (const auto& state : group_states()) {
+  description.dflt = reconfigure_values(defaults);
+  for (const auto& state : description.dflt.groups) {
     dynamic_reconfigure::Group group;
     group.name = state.name;
     group.id = state.id;
     description.groups.push_back(group);
   }
-  for_each_live_parameter(defaults, [&](const std::string& section, const auto& row, const auto& value) {
+  for_each_live(defaults, [&](const std::string& group_name, const std::string& name, const auto& row,
+                              const auto& value) {
     for (auto& group : description.groups)
-      if (group.name == section) describe(description, group, section + separator + row.name, row, value);
-  });
-  with_step_rate_row([&](const auto& row, const auto& value) {
-    describe(description, description.groups.front(), row.name, row, value);
+      if (group.name == (group_name.empty() ? "Default" : group_name))
+        describe(description, group, name, row, value);
   });
   description.min.groups = description.max.groups = description.dflt.groups;
   return description;
 }
 
-double reconfigure_step_rate(const Config& request, double present) {
+LiveChange reconfigure_change(const Config& request, const LiveParameters& present) {
+  const std::map<std::string, std::string> now = texts(reconfigure_values(present));
   Faults faults("set_parameters");
-  double rate = present;
-  for (const auto& entry : request.doubles)
-    if (entry.name == step_rate_name) rate = entry.value;
-  with_step_rate_row([&](const auto& row, const auto&) {
-    if (!yaml::in_range<double>(rate, row))
-      faults.add(step_rate_name, "= " + std::to_string(rate) + " is not in " + yaml::allowed_range(row));
-  });
-  faults.throw_if_any();
-  return rate;
-}
-
-Settings reconfigure_settings(const Config& request, const Scenario& present) {
-  const std::map<std::string, std::string> now = texts(reconfigure_values(present, 0));
-  Faults faults("set_parameters");
-  Settings settings;
+  LiveChange change;
+  YAML::Node others(YAML::NodeType::Map);  // of the node and its publishers
   for (const auto& [name, value] : texts(request)) {
-    if (name == step_rate_name) continue;
     const std::size_t split = name.find(separator);
     const std::string path =
         split == std::string::npos ? name : name.substr(0, split) + "." + name.substr(split + 2);
@@ -225,11 +206,22 @@ Settings reconfigure_settings(const Config& request, const Scenario& present) {
       faults.add(path, why ? std::string("cannot change while the simulation runs: ") + why
                            : std::string("unknown parameter"));
     } else if (found->second != value) {
-      settings.push_back(path + "=" + value);
+      if (split == std::string::npos)
+        others[name] = value;
+      else
+        change.settings.push_back(path + "=" + value);
     }
   }
+  std::set<std::string> known;
+  NodeParameters node;
+  node.step_rate = present.step_rate;
+  yaml::read_parameters(others, "", faults, node, known);
+  change.step_rate = node.step_rate;
+  change.publishers = present.publishers;
+  read_publisher_setup(others, faults, change.publishers, known);
   faults.throw_if_any();
-  return settings;
+  check_map_sizes(change.publishers.maps, present.scenario.grid);
+  return change;
 }
 
 }  // namespace desert_sim

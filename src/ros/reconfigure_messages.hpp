@@ -1,22 +1,35 @@
 #pragma once
-/// The parameters of a scenario that can change live, as dynamic_reconfigure's messages: a group a section,
-/// and names SECTION__KEY; and step_rate, which is the node's. Numbers and switches are what they are;
-/// choices, lists ("[1, 2]") and whole numbers beyond 32 bits are texts.
+/// What of a node can change live, as dynamic_reconfigure's messages: a group a section of the scenario, with
+/// names SECTION__KEY; the group `publishers`, whose names are those of the private parameters; and
+/// step_rate. Numbers and switches are what they are; choices, lists ("[1, 2]") and whole numbers beyond 32
+/// bits are texts.
 
 #include <dynamic_reconfigure/Config.h>
 #include <dynamic_reconfigure/ConfigDescription.h>
 
+#include "desert_sim/ros/publisher_parameters.hpp"
 #include "desert_sim/scenario/scenario.hpp"
 
 namespace desert_sim {
 
+struct LiveParameters {
+  Scenario scenario;
+  PublisherSetup publishers;
+  double step_rate = 0;  ///< [steps/s]
+};
+
+/// What a request changes: `settings` of the scenario, and the rest as it is to be.
+struct LiveChange {
+  Settings settings;
+  PublisherSetup publishers;
+  double step_rate = 0;
+};
+
 /// Units, ranges, choices and docs from the parameter tables; `defaults` gives the default values.
-dynamic_reconfigure::ConfigDescription reconfigure_description(const Scenario& defaults, double step_rate);
-dynamic_reconfigure::Config reconfigure_values(const Scenario& scenario, double step_rate);
-/// The step rate that `request` has, or `present`. Throws ConfigError if it is not in its range.
-double reconfigure_step_rate(const dynamic_reconfigure::Config& request, double present);
-/// What else `request` would change, as settings for command::SetParameters. Throws ConfigError for a name
-/// that is none of theirs; values are checked when the command is applied.
-Settings reconfigure_settings(const dynamic_reconfigure::Config& request, const Scenario& present);
+dynamic_reconfigure::ConfigDescription reconfigure_description(const LiveParameters& defaults);
+dynamic_reconfigure::Config reconfigure_values(const LiveParameters& present);
+/// Throws ConfigError for a name that is none of theirs, and for a value that is refused, of all but the
+/// scenario's, which are checked when the command SetParameters is applied.
+LiveChange reconfigure_change(const dynamic_reconfigure::Config& request, const LiveParameters& present);
 
 }  // namespace desert_sim

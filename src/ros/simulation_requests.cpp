@@ -79,9 +79,11 @@ std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& la
   return ask<TerrainState>([=] {
     settle();
     std::vector<Layer> in_use;
-    for (Layer layer : layers)
-      if (session_->simulation().terrain().has(layer) || info(layer).lifetime == Lifetime::on_request)
-        in_use.push_back(layer);
+    for (Layer layer : layers) {
+      const bool on_request = info(layer).lifetime == Lifetime::on_request;
+      if (on_request) layers_requested_ = steady_now();
+      if (on_request || session_->simulation().terrain().has(layer)) in_use.push_back(layer);
+    }
     ++snapshots_;
     return TerrainState{moment(), session_->simulation().snapshot(in_use, band)};
   });

@@ -1,5 +1,6 @@
 #include "desert_sim/ros/simulation_thread.hpp"
 
+#include <pthread.h>
 #include <ros/console.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace {
 
 constexpr int steps_in_flight = 8;  // a GPU may be that far behind before the thread waits for it
 constexpr int timed_every = 16;     // steps from one that is timed to the next
+constexpr double keep_layers = 60;  // [s] that layers on request stay in memory while nobody asks
 
 }  // namespace
 
@@ -51,6 +53,7 @@ std::string SimulationThread::failure() const {
 
 void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load_raster,
                               std::promise<void>& started) {
+  pthread_setname_np(pthread_self(), "simulation");  // for top -H; the backend's threads inherit it
   try {
     session_ = std::make_unique<Session>(scenario, load_raster, options_.backend, options_.threads,
                                          options_.journal);
@@ -82,6 +85,7 @@ void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load
 
 void SimulationThread::loop() {
   while (serve_jobs()) {
+    release_unused_layers();
     if (!step_requests_.empty()) {
       serve_step_request();
     } else if (!paused_ && step_is_due()) {
@@ -181,6 +185,12 @@ void SimulationThread::settle() {
   session_->simulation().exec().synchronise();
   unsettled_steps_ = 0;
   stamp_ = stamp_now();
+}
+
+void SimulationThread::release_unused_layers() {
+  if (layers_requested_ == 0 || steady_now() - layers_requested_ < keep_layers) return;
+  session_->simulation().release_requested_layers();
+  layers_requested_ = 0;
 }
 
 void SimulationThread::changed() {

@@ -92,6 +92,7 @@ class SimulationThread {
   bool step_is_due();
   void step();
   void settle();
+  void release_unused_layers();
   void changed();
   Moment moment();
   Reached reached(bool with_hash);
@@ -121,6 +122,8 @@ class SimulationThread {
   bool paused_, waiting_for_clock_ = false;
   int unsettled_steps_ = 0;
   std::uint64_t snapshots_ = 0;
+  /// When layers that exist on request were last asked for [s]; 0: they have no memory.
+  double layers_requested_ = 0;
   // Measuring: now and then a step is timed, process by process, while somebody looks at reports.
   double measure_until_ = 0;
   int steps_until_timed_ = 0, timed_steps_ = 0;

@@ -125,10 +125,10 @@ std::string clock_text(const Snapshot& s) {
   return text;
 }
 
-visualization_msgs::MarkerArrayPtr WindMarkers::markers(const TerrainState& state) {
+visualization_msgs::MarkerArrayPtr WindMarkers::markers(const TerrainState& state, int count) {
   const Snapshot& s = *state.snapshot;
   int spacing = 1;  // cells
-  while (static_cast<std::int64_t>(std::max(1, s.width / spacing)) * std::max(1, s.height / spacing) > count_)
+  while (static_cast<std::int64_t>(std::max(1, s.width / spacing)) * std::max(1, s.height / spacing) > count)
     ++spacing;
   const int columns = std::max(1, s.width / spacing), rows = std::max(1, s.height / spacing);
   auto array = boost::make_shared<visualization_msgs::MarkerArray>();

@@ -14,17 +14,15 @@ const std::vector<Layer>& wind_marker_layers();
 
 class WindMarkers {
  public:
-  /// At most `count` arrows.
-  WindMarkers(std::string frame, int count) : frame_(std::move(frame)), count_(count) {}
-  /// Arrows in the namespace "wind", ids 0… by rows from the south-west; the text "clock", id 0, above the
-  /// north edge. An arrow of the high-altitude wind's speed nearly reaches the next one; colour goes from
-  /// blue (half that speed) over white to red (half as fast again). When the number of arrows has changed,
-  /// the old ones are deleted first.
-  visualization_msgs::MarkerArrayPtr markers(const TerrainState& state);
+  explicit WindMarkers(std::string frame) : frame_(std::move(frame)) {}
+  /// At most `count` arrows, in the namespace "wind", ids 0… by rows from the south-west; the text "clock",
+  /// id 0, above the north edge. An arrow of the high-altitude wind's speed nearly reaches the next one;
+  /// colour goes from blue (half that speed) over white to red (half as fast again). When the number of
+  /// arrows has changed, the old ones are deleted first.
+  visualization_msgs::MarkerArrayPtr markers(const TerrainState& state, int count);
 
  private:
   std::string frame_;
-  int count_;
   int columns_ = 0, rows_ = 0;
 };
 

@@ -67,6 +67,12 @@ void Simulation::judge(const std::vector<Layer>& layers, const RowBand& rows) {
   });
 }
 
+void Simulation::release_requested_layers() {
+  exec().synchronise();
+  for (const LayerInfo& row : layer_table)
+    if (on_request(row.layer)) terrain_.use(row.layer, false);
+}
+
 std::vector<Layer> Simulation::layers_in_use() const {
   std::vector<Layer> layers;
   for (const LayerInfo& row : layer_table)

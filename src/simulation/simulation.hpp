@@ -89,6 +89,8 @@ class Simulation {
   /// Of a band of rows only those are copied and computed: the snapshot's height and origin are the band's,
   /// less what lies off an open terrain (at least one row is left).
   std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers, const RowBand& band = {});
+  /// Gives back the memory of layers that exist on request, until one is asked for again.
+  void release_requested_layers();
   /// Layers that are in use, derived ones included.
   std::vector<Layer> layers_in_use() const;
 

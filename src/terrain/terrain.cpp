@@ -91,16 +91,16 @@ std::vector<float> Terrain::values(Layer layer, int first, int rows) const {
   const std::size_t south = static_cast<std::size_t>(wrap(first, grid_.height)) * width,
                     to_edge = std::min(cells, static_cast<std::size_t>(grid_.cells()) - south);
   const Buffer<std::uint32_t>& buffer = layers_[static_cast<std::size_t>(layer)];
-  std::vector<std::uint32_t> stored(cells);
-  buffer.download(south, to_edge, stored.data());
-  if (to_edge < cells) buffer.download(0, cells - to_edge, stored.data() + to_edge);
-  if (info(layer).storage == Storage::real) {
-    std::memcpy(values.data(), stored.data(), cells * sizeof(float));
-    return values;
-  }
+  auto* const stored = reinterpret_cast<std::uint32_t*>(values.data());  // only bytes are copied there
+  buffer.download(south, to_edge, stored);
+  if (to_edge < cells) buffer.download(0, cells - to_edge, stored + to_edge);
+  if (info(layer).storage == Storage::real) return values;
   const double quantum = scale_.quantum(), datum = scale_.absolute(layer) ? scale_.datum : 0.0;
-  for (std::size_t i = 0; i < cells; ++i)
-    values[i] = static_cast<float>(datum + static_cast<Quanta>(stored[i]) * quantum);
+  for (float& value : values) {
+    Quanta quanta;
+    std::memcpy(&quanta, &value, sizeof quanta);
+    value = static_cast<float>(datum + quanta * quantum);
+  }
   return values;
 }
 

@@ -319,6 +319,18 @@ TEST_F(Assembler, RefusesBadUpdatesWhollyAndNeedsAKeyframeThen) {
       {"tile 1: 0 elevations for 2 x 0",
        [](ElevationUpdate& u) { u.tiles[1].height = 0, u.tiles[1].data.clear(); }},
       {"tile 1: elevation 2 is inf", [](ElevationUpdate& u) { u.tiles[1].data[2] = infinity; }},
+      {"tile 1: 1 values for 2 cells that changed",
+       [](ElevationUpdate& u) { u.tiles[1].changed = {0b10000100}, u.tiles[1].data.resize(1); }},
+      {"tile 1: 0 values for 0 cells that changed",
+       [](ElevationUpdate& u) { u.tiles[1].changed = {0}, u.tiles[1].data.clear(); }},
+      {"tile 1: 2 bytes of mask for 2 x 3",
+       [](ElevationUpdate& u) {
+         u.tiles[1].changed = {0xfc, 0};
+       }},
+      {"tile 1: bit 6 of its mask is set", [](ElevationUpdate& u) { u.tiles[1].changed = {0xfe}; }},
+      {"tile 1: has changes and elevations", [](ElevationUpdate& u) { u.tiles[1].changes.resize(6); }},
+      {"tile 1: resolution is 0.0",
+       [](ElevationUpdate& u) { u.tiles[1].data.clear(), u.tiles[1].changes.resize(6); }},
       {"tile 1 reaches to cell (131, 3)", [](ElevationUpdate& u) { u.tiles[1].x = 129; }},
       {"tile 1 reaches to cell (2, 4294967298)", [](ElevationUpdate& u) { u.tiles[1].y = 4294967295u; }},
       {"frame is 'odom'", [](ElevationUpdate& u) { u.header.frame_id = "odom"; }},

@@ -66,6 +66,28 @@ TEST(ElevationMap, AnUpdateMakesANewMapAndLeavesTheOldOne) {
   EXPECT_EQ(after->info().stamp, ros::Time(2, 0));
 }
 
+TEST(ElevationMap, AMaskSaysWhichCellsOfATileChangeAndStepsByHowMuch) {
+  ElevationGrid grid = keyframe_of([](double x, double y) { return 1000 * y + x; });
+  const auto u = update(1, 1, 2);
+  ElevationTile steps, elevations;
+  steps.x = 63, steps.y = 60, steps.width = 3, steps.height = 5;  // over the corner of four blocks
+  steps.changed = {0b10000001, 0b00000010};                       // numbers 0, 7 and 14
+  steps.changes = {-128, 3, 127};
+  steps.resolution = 0.25f;
+  elevations.x = 0, elevations.y = 0, elevations.width = 4, elevations.height = 1;
+  elevations.changed = {0b01010000};
+  elevations.data = {-7, -8};
+  u->tiles = {steps, elevations};
+  ASSERT_EQ(fault_of(*u), "");
+  grid.elevation[60 * 130 + 63] -= 32;
+  grid.elevation[62 * 130 + 64] += 0.75f;
+  grid.elevation[64 * 130 + 65] += 31.75f;
+  const auto before = map_of(keyframe_of([](double x, double y) { return 1000 * y + x; }));
+  grid.elevation[1] = -7;
+  grid.elevation[3] = -8;
+  EXPECT_EQ(before->after(*u)->elevations(), grid.elevation);
+}
+
 TEST(ElevationMap, AKeyframeTellsWhichCellsDiffer) {
   const ElevationGrid grid = keyframe_of([](double x, double y) { return x == 3 ? unknown : y; });
   const auto before = map_of(grid);

@@ -6,6 +6,7 @@ import rospy
 import rostest
 from desert_sim.msg import SimulationStatus
 from desert_sim.srv import EditTerrain, EditTerrainRequest, Step
+from dynamic_reconfigure.client import Client
 from map_client import Listener, MapTest, Trigger, call
 from map_msgs.msg import OccupancyGridUpdate
 from nav_msgs.msg import OccupancyGrid
@@ -104,6 +105,26 @@ class Costmap(MapTest):
             time.sleep(0.7)
             self.edit(90, 10)
             updates.wait_for(lambda u: u.x <= 40 < u.x + u.width, "later as an update")
+
+    def test_a_threshold_keeps_small_changes_back(self):
+        node = Client("/desert_sim", timeout=20)
+        node.update_configuration({"costmap_update_threshold": 5})
+        self.addCleanup(node.update_configuration, {"costmap_update_threshold": 0})
+        with Listener("/desert_sim/costmap", OccupancyGrid) as keyframes, \
+                Listener("/desert_sim/costmap_updates", OccupancyGridUpdate) as updates:
+            keyframes.first()
+            time.sleep(0.7)
+            base, skipped = keyframes.messages[-1], len(updates.messages)
+            self.edit(40, 10)
+            call("resume", Trigger)
+            time.sleep(2)
+            call("pause", Trigger)
+            time.sleep(0.5)
+            held = self.assemble(base, updates.messages[skipped:])
+        now = list(self.keyframe().data)
+        self.assertGreater(len(updates.messages), skipped)
+        for a, b in zip(held, now):
+            self.assertTrue(abs(a - b) <= 5 and (a == 100) == (b == 100), (a, b))
 
     # ---- image
 

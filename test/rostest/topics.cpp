@@ -7,6 +7,7 @@
 #include <desert_sim/WindField.h>
 #include <image_transport/image_transport.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
+#include <std_msgs/Empty.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/transform_listener.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -161,20 +162,32 @@ TEST(Topics, WindMarkersAreFewDistinctAndOverTheGround) {
   EXPECT_EQ(texts, 1);
 }
 
-/// The keyframe of step `step` against the keyframe before it with all its updates.
+/// A keyframe of now, for somebody who was sent updates.
+void ask_for_keyframe() {
+  static const ros::Publisher asks =
+      ros::NodeHandle().advertise<std_msgs::Empty>("/desert_sim/request_keyframe", 1);
+  ASSERT_TRUE(wait_until([] { return asks.getNumSubscribers() > 0; }));
+  asks.publish(std_msgs::Empty());
+}
+
+/// The terrain of step `step` against the last keyframe before it with all its updates.
 void expect_updates_lead_to(std::uint64_t step, const Listener<ElevationGrid>& keyframes,
                             const Listener<ElevationUpdate>& updates) {
-  ASSERT_TRUE(keyframes.wait_for([&](const ElevationGrid& k) { return k.step == step; }));
   ASSERT_TRUE(updates.wait_for([&](const ElevationUpdate& u) { return u.step == step; }));
   std::uint32_t keyframe = 0;
   for (const ElevationUpdate& update : updates.all())
     if (update.step == step) keyframe = update.keyframe;
+  for (const ElevationGrid& grid : keyframes.all())
+    EXPECT_LT(grid.step, step) << "no keyframe for those who are sent updates";
+  ask_for_keyframe();
+  ASSERT_TRUE(keyframes.wait_for([&](const ElevationGrid& k) { return k.keyframe > keyframe; }));
   ElevationAssembler held;
   ElevationGrid now;
   for (const ElevationGrid& grid : keyframes.all()) {
     if (grid.keyframe == keyframe) held.take(grid);
-    if (grid.step == step) now = grid;
+    if (grid.keyframe > keyframe) now = grid;
   }
+  ASSERT_EQ(now.step, step);
   ASSERT_TRUE(held.map()) << "keyframe " << keyframe;
   ASSERT_LT(held.map()->info().step, now.step);
   for (const ElevationUpdate& update : updates.all())
@@ -234,6 +247,13 @@ TEST(Topics, StepPublishesWhatChangedBeforeItAnswers) {
   Listener<ElevationUpdate> updates("elevation_updates");
   step(1);
   for (int round = 0; round < 5; ++round) expect_updates_lead_to(step(3).step, keyframes, updates);
+}
+
+TEST(Topics, StepPublishesAKeyframeForThoseWhoListenToKeyframesOnly) {
+  Listener<ElevationGrid> keyframes("elevation");
+  keyframes.last();
+  const std::uint64_t reached = step(3).step;
+  EXPECT_TRUE(keyframes.wait_for([&](const ElevationGrid& k) { return k.step == reached; }));
 }
 
 TEST(Topics, UpdatesOfARunAddUpToTheNextKeyframe) {

@@ -42,6 +42,17 @@ TEST_P(ASimulation, SnapshotsHoldWhatWasAskedForAndOutliveTheNextSteps) {
   EXPECT_EQ((*snapshot->find(Layer::elevation))[0], before);
 }
 
+TEST_P(ASimulation, GivesTheMemoryOfRequestedLayersBack) {
+  auto s = simulation(world);
+  test::run(*s, 1);
+  const std::size_t before = s->terrain().bytes();
+  const std::vector<float> slope = *s->snapshot({Layer::slope, Layer::roughness})->find(Layer::slope);
+  EXPECT_EQ(s->terrain().bytes(), before + 2 * 4 * 24 * 16);
+  s->release_requested_layers();
+  EXPECT_EQ(s->terrain().bytes(), before);
+  EXPECT_EQ(*s->snapshot({Layer::slope})->find(Layer::slope), slope) << "made anew";
+}
+
 TEST_P(ASimulation, ShowsElevationAfterAnEditAndWindBeforeTheFirstStep) {
   auto s = simulation(world);
   const auto start = s->snapshot({Layer::elevation, Layer::wind_x, Layer::wind_y});

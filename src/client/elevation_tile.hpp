@@ -1,0 +1,45 @@
+#pragma once
+/// How a tile of an update is read; see ElevationTile.msg. The node writes tiles with the same arithmetic, so
+/// that it knows to the bit what its subscribers hold.
+
+#include <desert_sim/ElevationTile.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace desert_sim {
+
+/// What a cell that held `held` holds after `change` steps of `resolution` [m].
+inline float changed_elevation(float held, std::int8_t change, float resolution) {
+  return static_cast<float>(static_cast<double>(held) +
+                            static_cast<double>(change) * static_cast<double>(resolution));
+}
+
+inline std::size_t mask_bytes(std::size_t cells) { return (cells + 7) / 8; }
+inline bool mask_has(const std::vector<std::uint8_t>& mask, std::size_t cell) {
+  return (mask[cell / 8] >> (7 - cell % 8)) & 1;
+}
+inline void mask_add(std::vector<std::uint8_t>& mask, std::size_t cell) {
+  mask[cell / 8] = static_cast<std::uint8_t>(mask[cell / 8] | 1u << (7 - cell % 8));
+}
+
+/// Reads a tile cell by cell, in its order. The tile must be sound: see fault_of() in elevation_map.hpp.
+class TileReader {
+ public:
+  explicit TileReader(const ElevationTile& tile) : tile_(tile) {}
+  /// Writes the next cell over what is held, if it changed.
+  void write_next(float& held) {
+    const std::size_t cell = cell_++;
+    if (!tile_.changed.empty() && !mask_has(tile_.changed, cell)) return;
+    held = tile_.changes.empty() ? tile_.data[value_]
+                                 : changed_elevation(held, tile_.changes[value_], tile_.resolution);
+    ++value_;
+  }
+
+ private:
+  const ElevationTile& tile_;
+  std::size_t cell_ = 0, value_ = 0;
+};
+
+}  // namespace desert_sim
