@@ -9,7 +9,8 @@ constexpr std::size_t most_waiting = 256, most_waiting_cells = std::size_t{1} <<
 
 std::size_t cells_of(const ElevationUpdate& update) {
   std::size_t cells = 0;
-  for (const ElevationTile& tile : update.tiles) cells += tile.data.size() + tile.changes.size();
+  for (const ElevationTile& tile : update.tiles)
+    cells += tile.data.size() + tile.changes.size() * (tile.bits == 4 ? 2 : 1);
   return cells;
 }
 

@@ -247,11 +247,14 @@ std::size_t count_changed(const ElevationTile& tile, std::string& fault) {
 std::string fault_of(const ElevationTile& tile) {
   std::string fault;
   if (!tile.changes.empty() && !tile.data.empty()) return "has changes and elevations";
-  const std::size_t values = tile.changes.size() + tile.data.size();
+  if (!tile.changes.empty() && tile.bits != 8 && tile.bits != 4)
+    return "has changes of " + std::to_string(tile.bits) + " bits: must be 8 or 4";
+  std::size_t cells = std::size_t{tile.width} * tile.height, values = tile.changes.size() + tile.data.size();
+  if (!tile.changed.empty()) cells = count_changed(tile, fault);
+  if (tile.bits == 4 && !tile.changes.empty()) values = values == change_bytes(cells, 4) ? cells : 2 * values;
   if (tile.changed.empty()) {
     fault = wrong_size(values, tile.width, tile.height);
-  } else if (const std::size_t cells = count_changed(tile, fault);
-             fault.empty() && (cells != values || values == 0)) {
+  } else if (fault.empty() && (cells != values || values == 0)) {
     fault = std::to_string(values) + " values for " + std::to_string(cells) + " cells that changed";
   }
   if (fault.empty() && !tile.changes.empty() && !(std::isfinite(tile.resolution) && tile.resolution > 0))

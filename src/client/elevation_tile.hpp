@@ -16,6 +16,22 @@ inline float changed_elevation(float held, std::int8_t change, float resolution)
                             static_cast<double>(change) * static_cast<double>(resolution));
 }
 
+/// Bytes that so many changes take, and change number n of them; `bits` is 8 or 4.
+inline std::size_t change_bytes(std::size_t changes, int bits) {
+  return bits == 4 ? (changes + 1) / 2 : changes;
+}
+inline std::int8_t change_at(const std::vector<std::int8_t>& changes, int bits, std::size_t n) {
+  if (bits == 8) return changes[n];
+  const std::int8_t both = changes[n / 2];
+  return static_cast<std::int8_t>(n % 2 == 0 ? both >> 4 : static_cast<std::int8_t>(both << 4) >> 4);
+}
+inline void change_add(std::vector<std::int8_t>& changes, int bits, std::size_t n, int change) {
+  if (bits == 8 || n % 2 == 0)
+    changes.push_back(static_cast<std::int8_t>(bits == 8 ? change : change * 16));
+  else
+    changes.back() = static_cast<std::int8_t>(changes.back() | (change & 15));
+}
+
 inline std::size_t mask_bytes(std::size_t cells) { return (cells + 7) / 8; }
 inline bool mask_has(const std::vector<std::uint8_t>& mask, std::size_t cell) {
   return (mask[cell / 8] >> (7 - cell % 8)) & 1;
@@ -32,8 +48,9 @@ class TileReader {
   void write_next(float& held) {
     const std::size_t cell = cell_++;
     if (!tile_.changed.empty() && !mask_has(tile_.changed, cell)) return;
-    held = tile_.changes.empty() ? tile_.data[value_]
-                                 : changed_elevation(held, tile_.changes[value_], tile_.resolution);
+    held = tile_.changes.empty()
+               ? tile_.data[value_]
+               : changed_elevation(held, change_at(tile_.changes, tile_.bits, value_), tile_.resolution);
     ++value_;
   }
 

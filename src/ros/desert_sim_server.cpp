@@ -27,6 +27,7 @@ SimulationThread::Options options_of(const NodeParameters& p) {
   SimulationThread::Options options;
   options.backend = backend_choices[static_cast<int>(p.backend)];
   options.threads = p.threads;
+  options.niceness = p.niceness;
   options.step_rate = p.step_rate;
   options.paused = p.paused;
   options.journal = p.journal;

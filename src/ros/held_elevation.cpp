@@ -9,7 +9,8 @@ namespace desert_sim {
 
 namespace {
 
-constexpr int most_steps = 127;  // of a change in eight bits
+/// The largest change that so many bits tell, in steps.
+constexpr int most_steps(int bits) { return (1 << (bits - 1)) - 1; }
 
 /// Whether some cells of a row may differ: a loop that compilers make vectors of. Unknown cells may.
 bool some_differ(const float* now, const float* held, int cells, float threshold) {
@@ -80,19 +81,20 @@ ElevationTile HeldElevation::take(const std::vector<float>& now, const CellBox& 
     }
   if (changed.size() == count) tile.changed.clear();
   // Half a step is the largest error; a little less than the threshold, so that rounding does not exceed it.
-  const float resolution = largest / most_steps;
-  const bool in_steps = known && resolution <= 1.99f * threshold_;
-  if (in_steps) tile.resolution = resolution;
-  for (const std::size_t i : changed)
-    if (in_steps) {
-      const long steps = std::lround((now[i] - held_[i]) / resolution);
-      tile.changes.push_back(static_cast<std::int8_t>(
-          std::clamp(steps, static_cast<long>(-most_steps), static_cast<long>(most_steps))));
-      held_[i] = changed_elevation(held_[i], tile.changes.back(), resolution);
-    } else {
-      tile.data.push_back(now[i]);
-      held_[i] = now[i];
-    }
+  const auto tells = [&](int bits) { return known && largest / most_steps(bits) <= 1.99f * threshold_; };
+  const int bits = tells(4) ? 4 : (tells(8) ? 8 : 0);
+  if (bits == 0) {
+    for (const std::size_t i : changed) tile.data.push_back(held_[i] = now[i]);
+    return tile;
+  }
+  tile.bits = static_cast<std::uint8_t>(bits);
+  tile.resolution = largest / most_steps(bits);
+  for (std::size_t k = 0; k < changed.size(); ++k) {
+    float& held = held_[changed[k]];
+    const long steps = std::lround((now[changed[k]] - held) / tile.resolution), most = most_steps(bits);
+    change_add(tile.changes, bits, k, static_cast<int>(std::clamp(steps, -most, most)));
+    held = changed_elevation(held, change_at(tile.changes, bits, k), tile.resolution);
+  }
   return tile;
 }
 

@@ -21,6 +21,7 @@ struct NodeParameters {
   std::string center_frame = "terrain_center";
   BackendChoice backend = BackendChoice::automatic;
   int threads = 0;
+  int niceness = 10;
   double step_rate = 10;
   bool paused = false;
   std::string data_dir;
@@ -41,6 +42,9 @@ constexpr auto parameter_table(const NodeParameters*) {
                 "Static frame that is published in the middle of the terrain, for views; empty: none."),
       parameter("backend", &P::backend, backend_choices, "auto takes CUDA where it is usable."),
       parameter("threads", &P::threads, 0, 4096, "1", "Threads of the CPU backend; 0: one a processor."),
+      parameter("niceness", &P::niceness, 0, 19, "1",
+                "Of the simulation's threads, as in nice(1): on a busy machine publishing and subscribers "
+                "come first."),
       parameter("step_rate", &P::step_rate, 0, 1e6, "steps/s",
                 "In wall time, or ROS time under use_sim_time; 0: as fast as it can."),
       parameter("paused", &P::paused, "Whether it starts paused."),

@@ -2,9 +2,14 @@
 
 #include <pthread.h>
 #include <ros/console.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 
 #include "desert_sim/ros/autosave.hpp"
 #include "desert_sim/ros/clock.hpp"
@@ -16,6 +21,18 @@ namespace {
 constexpr int steps_in_flight = 8;  // a GPU may be that far behind before the thread waits for it
 constexpr int timed_every = 16;     // steps from one that is timed to the next
 constexpr double keep_layers = 60;  // [s] that layers on request stay in memory while nobody asks
+
+/// Of the calling thread, for top -H and for the scheduler. The backend's threads are its children and
+/// inherit both.
+void name_and_nice(const char* name, int niceness) {
+  pthread_setname_np(pthread_self(), name);
+  const auto thread = static_cast<id_t>(syscall(SYS_gettid));  // Linux has a niceness for each thread
+  errno = 0;
+  const int now = getpriority(PRIO_PROCESS, thread);
+  if (errno == 0 && now >= niceness) return;
+  if (setpriority(PRIO_PROCESS, thread, niceness) != 0)
+    ROS_WARN("niceness %d of the simulation's threads: %s", niceness, std::strerror(errno));
+}
 
 }  // namespace
 
@@ -53,7 +70,7 @@ std::string SimulationThread::failure() const {
 
 void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load_raster,
                               std::promise<void>& started) {
-  pthread_setname_np(pthread_self(), "simulation");  // for top -H; the backend's threads inherit it
+  name_and_nice("simulation", options_.niceness);
   try {
     session_ = std::make_unique<Session>(scenario, load_raster, options_.backend, options_.threads,
                                          options_.journal);

@@ -23,6 +23,7 @@ class SimulationThread {
   struct Options {
     std::string backend = "auto";
     int threads = 0;
+    int niceness = 0;       ///< of the simulation's threads
     double step_rate = 10;  ///< [steps/s]; 0: as fast as it can
     bool paused = false;
     std::string journal;  ///< file, or empty

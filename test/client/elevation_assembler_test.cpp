@@ -330,6 +330,10 @@ TEST_F(Assembler, RefusesBadUpdatesWhollyAndNeedsAKeyframeThen) {
       {"tile 1: bit 6 of its mask is set", [](ElevationUpdate& u) { u.tiles[1].changed = {0xfe}; }},
       {"tile 1: has changes and elevations", [](ElevationUpdate& u) { u.tiles[1].changes.resize(6); }},
       {"tile 1: resolution is 0.0",
+       [](ElevationUpdate& u) {
+         u.tiles[1].data.clear(), u.tiles[1].changes.resize(6), u.tiles[1].bits = 8;
+       }},
+      {"tile 1: has changes of 0 bits",
        [](ElevationUpdate& u) { u.tiles[1].data.clear(), u.tiles[1].changes.resize(6); }},
       {"tile 1 reaches to cell (131, 3)", [](ElevationUpdate& u) { u.tiles[1].x = 129; }},
       {"tile 1 reaches to cell (2, 4294967298)", [](ElevationUpdate& u) { u.tiles[1].y = 4294967295u; }},

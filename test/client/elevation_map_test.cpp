@@ -74,6 +74,7 @@ TEST(ElevationMap, AMaskSaysWhichCellsOfATileChangeAndStepsByHowMuch) {
   steps.changed = {0b10000001, 0b00000010};                       // numbers 0, 7 and 14
   steps.changes = {-128, 3, 127};
   steps.resolution = 0.25f;
+  steps.bits = 8;
   elevations.x = 0, elevations.y = 0, elevations.width = 4, elevations.height = 1;
   elevations.changed = {0b01010000};
   elevations.data = {-7, -8};
@@ -86,6 +87,31 @@ TEST(ElevationMap, AMaskSaysWhichCellsOfATileChangeAndStepsByHowMuch) {
   grid.elevation[1] = -7;
   grid.elevation[3] = -8;
   EXPECT_EQ(before->after(*u)->elevations(), grid.elevation);
+}
+
+TEST(ElevationMap, ChangesOfFourBitsLieTwoInAByte) {
+  ElevationGrid grid = keyframe_of([](double x, double y) { return 1000 * y + x; });
+  const auto before = map_of(grid);
+  const auto message = update(1, 1, 2);
+  ElevationTile tile;
+  tile.x = 10, tile.y = 20, tile.width = 5, tile.height = 1;
+  tile.changed = {0b11101000};                            // four of them, then one without
+  tile.changes = {0x7f, static_cast<std::int8_t>(0x83)};  // 7, -1; -8, 3
+  tile.resolution = 0.5f;
+  tile.bits = 4;
+  message->tiles = {tile};
+  ASSERT_EQ(fault_of(*message), "");
+  const float change[] = {3.5f, -0.5f, -4, 0, 1.5f};
+  for (std::size_t n = 0; n < 5; ++n) grid.elevation[20 * 130 + 10 + n] += change[n];
+  EXPECT_EQ(before->after(*message)->elevations(), grid.elevation);
+  message->tiles[0].changed = {0b11100000};  // an odd number: half of the last byte is left
+  EXPECT_EQ(fault_of(*message), "");
+  message->tiles[0].changed = {0b11000000};
+  EXPECT_NE(fault_of(*message).find("4 values for 2 cells that changed"), std::string::npos)
+      << fault_of(*message);
+  message->tiles[0].bits = 5;
+  EXPECT_NE(fault_of(*message).find("changes of 5 bits: must be 8 or 4"), std::string::npos)
+      << fault_of(*message);
 }
 
 TEST(ElevationMap, AKeyframeTellsWhichCellsDiffer) {

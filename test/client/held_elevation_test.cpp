@@ -139,9 +139,12 @@ TEST(HeldElevation, ADuneStepTakesAFractionOfAKeyframe) {
     for (int x = 10; x < 40; ++x)
       terrain.layers[Layer::elevation][static_cast<std::size_t>(y * width + x)] += 0.02f + 0.01f * (x % 7);
   std::size_t bytes = 0;
-  for (const ElevationTile& tile : stream.update(terrain))
+  for (const ElevationTile& tile : stream.update(terrain)) {
+    EXPECT_EQ(tile.bits, 4) << "nothing moved by more than seven steps of two thresholds";
     bytes += ros::serialization::serializationLength(tile);
-  EXPECT_LT(bytes, 0.09 * 4 * width * height);
+  }
+  EXPECT_LT(bytes, 0.07 * 4 * width * height);
+  EXPECT_LE(largest_error(stream, terrain), 0.01 + 1e-6);
 }
 
 TEST(SubscriberNames, AreAmongOthers) {

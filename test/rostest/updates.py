@@ -26,7 +26,10 @@ def write(update, held):
             mask = numpy.unpackbits(numpy.frombuffer(tile.changed, numpy.uint8), count=cells.size)
             mask = mask.astype(bool).reshape(cells.shape)
         if tile.changes:
-            cells[mask] = cells[mask].astype(float) + numpy.array(tile.changes) * tile.resolution
+            changes = numpy.array(tile.changes, numpy.int8)
+            if tile.bits == 4:
+                changes = numpy.stack((changes >> 4, (changes << 4) >> 4), 1).reshape(-1)[:mask.sum()]
+            cells[mask] = cells[mask].astype(float) + changes * float(tile.resolution)
         else:
             cells[mask] = tile.data
 
