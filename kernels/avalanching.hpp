@@ -107,15 +107,17 @@ void update_ground(E& exec, const TerrainView& t, Workspace& work) {
                        work.ground.data()});
 }
 
+/// Seams move between passes, and each pass meets them at all places in so many turns, so that they leave no
+/// imprint.
+constexpr int seam_offsets[] = {0, 16, 8, 24, 4, 20, 12, 28};
+constexpr std::uint64_t turns = 8;
+
 /// Passes `first` to `last` of turn `turn` over one level.
 template <class E>
 void relax(E& exec, const LevelView& level, float transfer, int first, int last, int sweeps,
            std::uint64_t turn) {
-  // Seams move between passes, and each pass meets them at all places in eight turns, so that they leave no
-  // imprint.
-  constexpr int offsets[] = {0, 16, 8, 24, 4, 20, 12, 28};
   for (int pass = first; pass < last; ++pass) {
-    const Tiles tiles{level.grid, offsets[(5 * turn + static_cast<std::uint64_t>(pass)) % 8]};
+    const Tiles tiles{level.grid, seam_offsets[(5 * turn + static_cast<std::uint64_t>(pass)) % turns]};
     for_each_tile(exec, tiles, RelaxTile{tiles, level, transfer, sweeps});
   }
 }

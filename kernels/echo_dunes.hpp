@@ -57,7 +57,8 @@ struct CliffHeight {
     const float drop = steepness * grid.cell_size / quantum;  // quanta a step
     float last = 0.0f, rise = 0.0f;  // heights here and below it, relative to this cell
     for (int j = 1; rise * quantum < highest; ++j) {
-      const float next = wind_shadow::height_above(grid, elevation, elevation[i], x, y, j * dx, j * dy);
+      const float next = wind_shadow::height_anywhere(grid, elevation, elevation[i],
+                                                      wind_shadow::Place(x, y, j * dx, j * dy));
       if (last - next < drop) break;
       last = next;
       rise = -next;
@@ -83,8 +84,7 @@ struct Classify {
     const int steps = static_cast<int>(p.sticky_reach * p.highest / grid.cell_size);
     float sticky = 0.0f;
     for (int j = 1; j <= steps; ++j) {
-      const float height =
-          cliff[sample_index(grid, x + nearest_cell(j * dx), y + nearest_cell(j * dy))];
+      const float height = cliff[sample_index(grid, x + nearest_cell(j * dx), y + nearest_cell(j * dy))];
       const float distance = j * grid.cell_size, lane = p.erosion_reach * height,
                   end = p.sticky_reach * height;
       if (height <= 0.0f || distance > end) continue;

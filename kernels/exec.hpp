@@ -4,6 +4,7 @@
 /// snapshots to the host.
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -12,6 +13,13 @@
 namespace desert_sim {
 
 class Fft;
+
+/// Work that was recorded and can be done again, with the same arguments.
+class Recording {
+ public:
+  virtual ~Recording() = default;
+  virtual void replay() = 0;
+};
 
 class Exec {
  public:
@@ -38,6 +46,12 @@ class Exec {
   virtual void upload(void* to, const void* from,
                       std::size_t bytes) = 0;  ///< returns when `from` may be reused
   virtual void download(void* to, const void* from, std::size_t bytes) = 0;  ///< returns when `to` is filled
+
+  /// Whether recording work is worth it here.
+  virtual bool records() const { return false; }
+  /// Calls `work` and notes the laws, copies on the device and transforms that it starts, instead of doing
+  /// them. It must not read anything back. Only where records().
+  virtual std::unique_ptr<Recording> record(const std::function<void()>& work);
 
   /// Waits for all that was started; throws CudaError if any of it failed.
   virtual void synchronise() = 0;
@@ -91,6 +105,8 @@ class CudaExec final : public Exec {
   void upload(void* to, const void* from, std::size_t bytes) override;
   void download(void* to, const void* from, std::size_t bytes) override;
   void synchronise() override;
+  bool records() const override { return true; }
+  std::unique_ptr<Recording> record(const std::function<void()>& work) override;
   std::unique_ptr<Fft> make_fft(int width, int height) override;
 
   /// One 64-bit word on the device and its pinned mirror, for reductions.

@@ -104,6 +104,10 @@ std::unique_ptr<Fft> CpuExec::make_fft(int width, int height) {
   return std::make_unique<FftwTransform>(width, height);
 }
 
+std::unique_ptr<Recording> Exec::record(const std::function<void()>&) {
+  throw Error(std::string("backend ") + backend() + " records nothing");
+}
+
 std::unique_ptr<Exec> make_exec(const std::string& backend, int threads, std::string* why) {
   const auto say = [&](const std::string& reason) {
     if (why) *why = reason;

@@ -43,6 +43,35 @@ void log_failure(cudaError_t status, const char* what) noexcept {
     std::fprintf(stderr, "desert_sim: CUDA: %s: %s\n", what, cudaGetErrorString(status));
 }
 
+/// A CUDA graph of what a stream was given.
+class GraphRecording final : public Recording {
+ public:
+  GraphRecording(cudaStream_t stream, const std::function<void()>& work) : stream_(stream) {
+    check_cuda(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal), "beginning a recording");
+    cudaGraph_t graph = nullptr;
+    try {
+      work();
+    } catch (...) {
+      cudaStreamEndCapture(stream, &graph);  // its failure is the one that is under way
+      if (graph) cudaGraphDestroy(graph);
+      throw;
+    }
+    check_cuda(cudaStreamEndCapture(stream, &graph), "ending a recording");
+    const cudaError_t made = cudaGraphInstantiateWithFlags(&executable_, graph, 0);
+    cudaGraphDestroy(graph);
+    check_cuda(made, "making a graph");
+  }
+  ~GraphRecording() override {
+    log_failure(cudaStreamSynchronize(stream_), "waiting for a graph");
+    log_failure(cudaGraphExecDestroy(executable_), "ending a graph");
+  }
+  void replay() override { check_cuda(cudaGraphLaunch(executable_, stream_), "launch of a graph"); }
+
+ private:
+  cudaStream_t stream_;
+  cudaGraphExec_t executable_ = nullptr;
+};
+
 }  // namespace
 
 CudaStatus cuda_status() {
@@ -127,6 +156,10 @@ void CudaExec::download(void* to, const void* from, std::size_t bytes) {
 
 void CudaExec::synchronise() {
   check_cuda(cudaStreamSynchronize(as_stream(stream_)), "waiting for the device");
+}
+
+std::unique_ptr<Recording> CudaExec::record(const std::function<void()>& work) {
+  return std::make_unique<GraphRecording>(as_stream(stream_), work);
 }
 
 std::unique_ptr<Fft> CudaExec::make_fft(int width, int height) {

@@ -12,7 +12,7 @@ namespace desert_sim {
 // ---- one step
 
 template <class E>
-void Simulation::run_step(E& exec) {
+void Simulation::run_processes(E& exec) {
   const Scenario& s = scenario_;
   const TerrainView view = terrain_.view();
   const float dt = s.run.time_step;
@@ -22,7 +22,8 @@ void Simulation::run_step(E& exec) {
 
   // Shelter in the lee of what is higher upwind (A6).
   if (s.wind_shadow.enabled)
-    run(exec, "wind_shadow", {Layer::wind_shadow}, [&] { wind_shadow::step(exec, view, s.wind_shadow); });
+    run(exec, "wind_shadow", {Layer::wind_shadow},
+        [&] { wind_shadow::step(exec, view, s.wind_shadow, shadow_work_); });
 
   // The eddy before cliffs, which holds sand off and piles it up ahead (A7).
   if (s.echo_dunes.enabled)
@@ -47,11 +48,7 @@ void Simulation::run_step(E& exec) {
     run(exec, "avalanching", {Layer::sand, Layer::bedrock}, [&] {
       slide_ground(exec, view);
       avalanching::step(exec, view, s.avalanching, steps_, repose_.data(), avalanche_work_);
-      avalanche_iterations_ += static_cast<std::uint64_t>(avalanche_work_.iterations);
     });
-
-  ++steps_;
-  derived_ready_ = true;
 }
 
 /// Soil and bedrock slide only where something changes them: abrasion, or an edit, until all has come to
@@ -86,8 +83,7 @@ template <class E, class Process>
 void Simulation::run(E& exec, const char* name, std::initializer_list<Layer> writes, Process&& process) {
   const auto start = std::chrono::steady_clock::now();
   process();
-  const int every = scenario_.run.check_every;
-  if (every > 0 && (steps_ + 1) % static_cast<std::uint64_t>(every) == 0)
+  if (checks_layers())
     for (Layer layer : writes) check(exec, name, layer);
   if (!timing_) return;
   exec.synchronise();
@@ -118,8 +114,30 @@ void Simulation::check(E& exec, const char* process, Layer layer) {
                    ") = " + std::to_string(values[cell]));
 }
 
+bool Simulation::checks_layers() const {
+  const int every = scenario_.run.check_every;
+  return every > 0 && (steps_ + 1) % static_cast<std::uint64_t>(every) == 0;
+}
+
+bool Simulation::recordable() const {
+  const Scenario& s = scenario_;
+  const bool steady_reptation =
+      s.reptation.method == ReptationMethod::off || s.reptation.method == ReptationMethod::adaptive_repose;
+  const bool fixed_sweeps = !s.avalanching.enabled || s.avalanching.quality != AvalancheQuality::converged;
+  return exec().records() && !timing_ && !checks_layers() && s.wind_features.empty() && steady_reptation &&
+         fixed_sweeps && !bedrock_loose_ && !soil_loose_;
+}
+
 void Simulation::step() {
-  with_backend(exec(), [this](auto& exec) { run_step(exec); });
+  const auto work = [this] { with_backend(exec(), [this](auto& e) { run_processes(e); }); };
+  if (recordable())
+    recordings_.run(exec(), {wind_above(), steps_ % avalanching::turns, terrain_.view()}, work);
+  else
+    work();
+  if (scenario_.avalanching.enabled)
+    avalanche_iterations_ += static_cast<std::uint64_t>(avalanche_work_.iterations);
+  ++steps_;
+  derived_ready_ = true;
 }
 
 void Simulation::refresh_derived() {
@@ -130,7 +148,7 @@ void Simulation::refresh_derived() {
   with_backend(exec(), [&](auto& e) {
     const TerrainView view = terrain_.view();
     update_wind(e, view);
-    if (s.wind_shadow.enabled) wind_shadow::step(e, view, s.wind_shadow);
+    if (s.wind_shadow.enabled) wind_shadow::step(e, view, s.wind_shadow, shadow_work_);
     if (s.echo_dunes.enabled) echo_dunes::step(e, view, s.echo_dunes, cliff_.data());
     reptation::step(e, view, only_angles, s.repose, s.run.time_step, s.seed, steps_,
                     reptation_strength_.data(), landed_.data(), repose_.data());
@@ -217,6 +235,7 @@ void Simulation::allocate_work() {
 }
 
 void Simulation::prepare_processes() {
+  recordings_.forget();
   Exec& e = exec();
   const Grid& grid = terrain_.grid();
   const Scenario& s = scenario_;
@@ -225,6 +244,7 @@ void Simulation::prepare_processes() {
   terrain_.use(Layer::echo, s.echo_dunes.enabled);
   cliff_ = s.echo_dunes.enabled ? Buffer<float>(e, static_cast<std::size_t>(grid.cells())) : Buffer<float>();
   wind_work_ = wind::make_workspace(e, grid, s.wind);
+  shadow_work_ = wind_shadow::make_workspace(e, grid, s.wind_shadow);
   avalanche_work_ = avalanching::make_workspace(e, grid, s.avalanching);
   if (s.abrasion.rate > 0 || bedrock_loose_ || soil_loose_) prepare_ground_avalanches();
 }

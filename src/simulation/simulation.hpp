@@ -11,6 +11,7 @@
 #include "desert_sim/kernels/processes.hpp"
 #include "desert_sim/scenario/terrain_builder.hpp"
 #include "desert_sim/simulation/command.hpp"
+#include "desert_sim/simulation/step_recordings.hpp"
 #include "desert_sim/terrain/terrain.hpp"
 
 namespace desert_sim {
@@ -112,8 +113,13 @@ class Simulation {
   Simulation(Exec& exec, const Scenario& scenario, const HostLayers& layers);
   Simulation(const Scenario& scenario, Terrain terrain);
 
+  /// Starts a step's processes; reads nothing back where recordable() holds.
   template <class E>
-  void run_step(E& exec);
+  void run_processes(E& exec);
+  /// Whether the next step is the same work as others before and after it.
+  bool recordable() const;
+  /// Whether the next step looks through the layers that it writes.
+  bool checks_layers() const;
   template <class E>
   void update_wind(E& exec, const TerrainView& view);
   /// Runs a process; on checking steps looks through the layers it writes; times it while timing is on.
@@ -157,6 +163,7 @@ class Simulation {
   // What the processes work with; made once, so that a step allocates nothing.
   Buffer<long long> ledger_;
   wind::Workspace wind_work_;
+  wind_shadow::Workspace shadow_work_;
   avalanching::Workspace avalanche_work_;
   avalanching::GroundWorkspace ground_work_;
   Buffer<wind_features::Prepared> features_;
@@ -164,6 +171,7 @@ class Simulation {
   Buffer<float> reptation_strength_, repose_, cliff_;
   Buffer<Quanta> landed_;
 
+  StepRecordings recordings_;
   bool timing_ = false;
   std::vector<ProcessTime> process_times_;
 };

@@ -81,9 +81,11 @@ void BenchTerrain::surface() {
   with_backend(exec(), [&](auto& e) { surface::step(e, terrain.view()); });
 }
 
-void BenchTerrain::shadow(const WindShadowParameters& p) {
+void BenchTerrain::shadow(const WindShadowParameters& p, bool whole_marches) {
   surface();
-  with_backend(exec(), [&](auto& e) { wind_shadow::step(e, terrain.view(), p); });
+  const wind_shadow::Workspace work =
+      whole_marches ? wind_shadow::Workspace() : wind_shadow::make_workspace(exec(), grid(), p);
+  with_backend(exec(), [&](auto& e) { wind_shadow::step(e, terrain.view(), p, work); });
 }
 
 void BenchTerrain::judge(const TraversabilityParameters& p) {

@@ -38,7 +38,8 @@ class BenchTerrain {
   long long booked(Material material, int side) const;
 
   void surface();
-  void shadow(const WindShadowParameters& p = {});
+  /// `whole_marches`: no piece of a march is left out.
+  void shadow(const WindShadowParameters& p = {}, bool whole_marches = false);
   /// Every layer that exists on request.
   void judge(const TraversabilityParameters& p = {});
   void echo(const EchoDuneParameters& p);

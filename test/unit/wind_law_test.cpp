@@ -1,5 +1,7 @@
 // The wind at the surface: speed-up, deflection, shadow of a step, lanes before cliffs.
 
+#include <algorithm>
+
 #include "support/bench_terrain.hpp"
 #include "support/world.hpp"
 
@@ -167,6 +169,36 @@ TEST_P(WindLaw, ShadowIsNothingInCalmAirAndOnTheWindwardSide) {
   t.shadow();
   EXPECT_EQ(t.at(Layer::wind_shadow, 10, 1), 0) << "in front of the step";
   EXPECT_EQ(t.at(Layer::wind_shadow, 0, 1), 1) << "behind it, across the border";
+}
+
+TEST_P(WindLaw, ShadowIsTheSameBitForBitWhenPiecesOfMarchesAreLeftOut) {
+  for (const bool periodic : {true, false})
+    for (const double relief : {0.05, 1.0, 300.0})
+      for (const double distance : {2.5, 6.0, 25.0}) {
+        const int width = periodic ? 64 : 61, height = periodic ? 48 : 50;
+        test::BenchTerrain cut(exec(), width, height, 0.25, periodic),
+            whole(exec(), width, height, 0.25, periodic);
+        const auto noise = [](int x, int y) { return (x * 7919 + y * 104729 + x * y * 31) % 997 / 997.0; };
+        for (test::BenchTerrain* t : {&cut, &whole})
+          t->set(Layer::bedrock,
+                 [&](int x, int y) {
+                   const double dune = std::sin(0.21 * x + 0.05 * y) * std::cos(0.13 * y);
+                   return relief * (dune * dune * dune + 0.1 * noise(x, y) + (x / 16 == 2 && y / 16 == 1));
+                 })
+              .set(Layer::wind_x, [&](int x, int y) { return 4 * std::cos(0.1 * x + 0.02 * y * y); })
+              .set(Layer::wind_y, [&](int x, int y) { return 4 * std::sin(0.1 * x + 0.02 * y * y); });
+        WindShadowParameters p;
+        p.distance = static_cast<float>(distance);
+        ASSERT_TRUE(wind_shadow::make_workspace(exec(), cut.grid(), p).around);
+        cut.shadow(p);
+        whole.shadow(p, true);
+        EXPECT_EQ(cut.terrain.words(Layer::wind_shadow), whole.terrain.words(Layer::wind_shadow))
+            << (periodic ? "periodic, " : "open, ") << relief << " m, looked " << distance << " m far";
+        if (relief > 0.5) {
+          const std::vector<float> shadow = whole.terrain.values(Layer::wind_shadow);
+          EXPECT_GT(*std::max_element(shadow.begin(), shadow.end()), 0.5f) << "nothing to leave out wrongly";
+        }
+      }
 }
 
 TEST_P(WindLaw, CurvedShadowOfATurningWindIsMirrorSymmetric) {
