@@ -1,15 +1,19 @@
 /// RelaxTile for GPUs: the same laws and the same bits, with the tile in registers.
 ///
-/// A tile is a block; a warp has a strip of `strip` rows, a thread one column of them:
+/// A tile is a block; a warp has a strip of rows, a lane one column of them:
 ///
-///        lane 0 … 31                  strip + 2 lines of the warp's strip, from south to north
-///      ┌────────────────┐             ┌──────────────┐
-///      │ warp 3         │             │ line strip+1 │  ← the neighbour's; what goes there: shared memory
-///      ├────────────────┤             ├──────────────┤
-///      │ warp 2         │             │ line 1 …     │    heights, ground, drop: registers
-///      ├────────────────┤             │ line strip   │    parts to columns beside: shuffled, three rows' in
-///      one │ warp 1         │             ├──────────────┤ ├────────────────┤             │ line 0       │
-///      ← likewise │ warp 0         │             └──────────────┘ └────────────────┘
+// clang-format off
+///      lane 0 … 31          a warp's lines, south to north
+///     +------------+       +--------------+
+///     | warp 3     |       | line strip+1 |  its neighbour's; what goes there: shared memory
+///     +------------+       +--------------+
+///     | warp 2     |       | line strip   |
+///     +------------+       |  …           |  heights, ground, drop: registers;
+///     | warp 1     |       | line 1       |  parts to columns beside: shuffled, three rows' in one
+///     +------------+       +--------------+
+///     | warp 0     |       | line 0       |  as line strip+1
+///     +------------+       +--------------+
+// clang-format on
 ///
 /// A sweep: the heights go to shared memory, where walls lie around them; | every warp slides its rows from
 /// south to north, and completes a row when the next one is done; | what crossed the strips' borders is
