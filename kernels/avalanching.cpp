@@ -19,7 +19,6 @@ Grid coarser(const Grid& g) {
 Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParameters& p) {
   Workspace work;
   const std::size_t cells = static_cast<std::size_t>(grid.cells());
-  work.ground = Buffer<Quanta>(exec, cells);
   if (p.scheme != AvalancheScheme::multilevel) {
     work.share = Buffer<float>(exec, cells);
     work.given = Buffer<Quanta>(exec, cells);

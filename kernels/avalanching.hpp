@@ -4,13 +4,15 @@
 ///   B_ij = max(h_i − h_j − tan θ_i d l, 0),  A_i = min(k_c B_max/(1 + B_max/B_sum), s_i),  j gets A_i B_ij /
 ///   B_sum
 ///
-/// Releases are computed from one state, then gathered: donor and receiver compute the same integer, so that
-/// nothing is made or lost and no order matters. Obstacles neither give nor take (they stand as walls).
+/// Releases are computed from one state, then handed over: what a donor loses is to the bit what its
+/// receivers get, so that nothing is made or lost and no order matters. Obstacles neither give nor take (they
+/// stand as walls).
 ///
 /// Schemes: `multilevel` (the default), half a V-cycle a step: the fine grid is relaxed a little, so that
 /// small slides end where they are; sand and ground are averaged down by two a level until cells are
 /// `coarsest_cell` wide; the coarsest is relaxed first, the change handed to the four children, and the fine
-/// grid relaxed again last. Each relaxation is sweeps inside closed tiles whose seams move between passes.
+/// grid relaxed again last. Each relaxation is sweeps inside closed tiles whose seams move between passes
+/// (avalanching_tile.hpp), which leave what is below 2e-4 cell sizes.
 /// `sweeps`: synchronous sweeps of the whole grid, the reference. `taylor_keyser`: k_c = 0.25 of the largest
 /// drop, by tangents, for comparison.
 ///
@@ -58,7 +60,7 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
       parameter("sweeps", &P::sweeps, 1, 100000, "1",
                 "Sweeps a step of the schemes sweeps and taylor_keyser, unless converged."),
       parameter("tolerance", &P::tolerance, 1e-6, 1, "1",
-                "Largest excess that counts as converged, in cell sizes."),
+                "Largest excess that counts as converged, in cell sizes; multilevel gets to 2e-4."),
       parameter("max_iterations", &P::max_iterations, 1, 1000000, "1",
                 "Most fine sweeps a step when converging."),
       parameter("soil", &P::soil, "Whether steep soil slides, where it changed."),
@@ -74,10 +76,11 @@ namespace avalanching {
 struct Schedule {
   int before, coarse, after, sweeps;
 };
-inline Schedule schedule(AvalancheQuality quality) {
+constexpr Schedule schedule(AvalancheQuality quality) {
   if (quality == AvalancheQuality::fast) return {1, 2, 1, 4};
   return {1, 4, 3, 8};
 }
+static_assert(schedule(AvalancheQuality::good).sweeps <= most_sweeps);
 
 /// A level's own memory (the finest uses the terrain's sand).
 struct Level {
@@ -88,7 +91,6 @@ struct Level {
 
 struct Workspace {
   std::vector<Level> coarse;  ///< coarse[0] has cells twice as wide as the terrain's
-  Buffer<Quanta> ground;      ///< of the finest level
   Buffer<float> share;        ///< of the synchronous schemes; made when one is used
   Buffer<Quanta> given, received;
   int iterations = 0;  ///< fine sweeps of the last step
@@ -96,15 +98,14 @@ struct Workspace {
 
 Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParameters& p);
 
-inline LevelView finest(const TerrainView& t, const float* repose, const Workspace& work) {
-  return {t.grid, work.ground.data(), t.quanta(Layer::sand), repose, t.grid.cell_size * t.quanta_per_metre};
-}
-
-template <class E>
-void update_ground(E& exec, const TerrainView& t, Workspace& work) {
-  for_each_cell(exec, t.grid,
-                Ground{t.grid, t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.real(Layer::obstacle),
-                       work.ground.data()});
+inline LevelView finest(const TerrainView& t, const float* repose) {
+  return {t.grid,
+          t.quanta(Layer::bedrock),
+          t.quanta(Layer::soil),
+          t.real(Layer::obstacle),
+          t.quanta(Layer::sand),
+          repose,
+          t.grid.cell_size * t.quanta_per_metre};
 }
 
 /// Seams move between passes, and each pass meets them at all places in so many turns, so that they leave no
@@ -118,7 +119,7 @@ void relax(E& exec, const LevelView& level, float transfer, int first, int last,
            std::uint64_t turn) {
   for (int pass = first; pass < last; ++pass) {
     const Tiles tiles{level.grid, seam_offsets[(5 * turn + static_cast<std::uint64_t>(pass)) % turns]};
-    for_each_tile(exec, tiles, RelaxTile{tiles, level, transfer, sweeps});
+    relax_tiles(exec, RelaxTile{tiles, level, transfer, sweeps});
   }
 }
 
@@ -136,7 +137,12 @@ void cycle(E& exec, const LevelView& fine, float transfer, const Schedule& plan,
     for_each_cell(exec, level.grid,
                   Restrict{views[n], level.grid, level.ground.data(), level.sand.data(),
                            level.sand_before.data(), level.repose.data()});
-    views[n + 1] = {level.grid, level.ground.data(), level.sand.data(), level.repose.data(),
+    views[n + 1] = {level.grid,
+                    level.ground.data(),
+                    nullptr,
+                    nullptr,
+                    level.sand.data(),
+                    level.repose.data(),
                     2.0f * views[n].quanta_per_cell};
   }
   for (int n = levels; n > 0; --n) {
@@ -161,8 +167,7 @@ void sweep(E& exec, const LevelView& level, float transfer, bool by_tangent, Wor
 template <class E>
 void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::uint64_t tick,
           const float* repose, Workspace& work) {
-  update_ground(exec, t, work);
-  const LevelView fine = finest(t, repose, work);
+  const LevelView fine = finest(t, repose);
   const bool converge = p.quality == AvalancheQuality::converged;
   const auto unsettled = [&] { return max_cells(exec, t.grid, Excess{fine}) > p.tolerance; };
   work.iterations = 0;

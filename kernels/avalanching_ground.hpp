@@ -30,14 +30,12 @@ constexpr Quanta lowest_ground = 1 - wall_height;
 struct RockColumn {
   Grid grid;
   const Quanta* bedrock;
-  const float* obstacle;
   float tangent;
   Quanta *ground, *column;
   float* repose;
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    const bool solid = value_or_zero(obstacle, i) > 0.0f;
-    ground[i] = solid ? wall_height : lowest_ground;
+    ground[i] = lowest_ground;
     column[i] = bedrock[i] - lowest_ground;
     repose[i] = tangent;
   }
@@ -73,10 +71,12 @@ void step_soil(E& exec, const TerrainView& t, const AvalanchingParameters& p, co
                GroundWorkspace& work) {
   for_each_cell(exec, t.grid,
                 SoilRepose{t.grid, repose::Tangents(repose), t.real(Layer::vegetation), work.repose.data()});
-  for_each_cell(
-      exec, t.grid,
-      Ground{t.grid, t.quanta(Layer::bedrock), nullptr, t.real(Layer::obstacle), work.ground.data()});
-  const LevelView level{t.grid, work.ground.data(), t.quanta(Layer::soil), work.repose.data(),
+  const LevelView level{t.grid,
+                        t.quanta(Layer::bedrock),
+                        nullptr,
+                        t.real(Layer::obstacle),
+                        t.quanta(Layer::soil),
+                        work.repose.data(),
                         t.grid.cell_size * t.quanta_per_metre};
   for_each_cell(exec, t.grid, Release{level, p.transfer, false, work.share.data(), work.given.data()});
   for_each_cell(exec, t.grid,
@@ -88,11 +88,15 @@ void step_soil(E& exec, const TerrainView& t, const AvalanchingParameters& p, co
 template <class E>
 void step_bedrock(E& exec, const TerrainView& t, const AvalanchingParameters& p,
                   const ReposeParameters& repose, LedgerView ledger, GroundWorkspace& work) {
-  for_each_cell(
-      exec, t.grid,
-      RockColumn{t.grid, t.quanta(Layer::bedrock), t.real(Layer::obstacle), repose::Tangents(repose).bedrock,
-                 work.ground.data(), work.column.data(), work.repose.data()});
-  const LevelView level{t.grid, work.ground.data(), work.column.data(), work.repose.data(),
+  for_each_cell(exec, t.grid,
+                RockColumn{t.grid, t.quanta(Layer::bedrock), repose::Tangents(repose).bedrock,
+                           work.ground.data(), work.column.data(), work.repose.data()});
+  const LevelView level{t.grid,
+                        work.ground.data(),
+                        nullptr,
+                        t.real(Layer::obstacle),
+                        work.column.data(),
+                        work.repose.data(),
                         t.grid.cell_size * t.quanta_per_metre};
   for_each_cell(exec, t.grid, Release{level, p.transfer, false, work.share.data(), work.given.data()});
   for_each_cell(exec, t.grid,

@@ -26,16 +26,18 @@ DESERT_HD float release_share(const float (&b)[8], float transfer, float availab
 }
 
 /// One level of the hierarchy, and the fine grid: sand that can move over ground that can't.
-/// Ground at wall_height or above is a wall.
+/// Ground at wall_height or above is a wall, and so is an obstacle.
 struct LevelView {
   Grid grid;
-  const Quanta* ground;
+  const Quanta *ground, *soil;  ///< the ground's top is their sum; without soil null
+  const float* obstacle;        ///< or null
   Quanta* sand;
   const float* repose;    ///< tangents
   float quanta_per_cell;  ///< cell size / quantum: a tangent times this is the drop over one cell
 
-  DESERT_HD bool wall(int i) const { return ground[i] >= wall_height; }
-  DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : ground[i] + sand[i]; }
+  DESERT_HD bool wall(int i) const { return ground[i] >= wall_height || value_or_zero(obstacle, i) > 0.0f; }
+  DESERT_HD Quanta ground_top(int i) const { return ground[i] + value_or_zero(soil, i); }
+  DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : ground_top(i) + sand[i]; }
 };
 
 /// Averages the ground and sand of four children into a coarse cell, which keeps the steepest angle of
@@ -55,7 +57,7 @@ struct Restrict {
     float steepest = 0.0f;
     for (int n = 0; n < 4; ++n) {
       wall = wall || fine.wall(child[n]);
-      ground_sum += fine.ground[child[n]];
+      ground_sum += fine.ground_top(child[n]);
       sand_sum += fine.sand[child[n]];
       steepest = maximum(steepest, fine.repose[child[n]]);
     }
@@ -101,19 +103,6 @@ struct Prolong {
       sand[child[n]] -= part;
       missing -= part;
     }
-  }
-};
-
-/// Ground under the sand of the finest level; obstacles stand as walls.
-struct Ground {
-  Grid grid;
-  const Quanta *bedrock, *soil;
-  const float* obstacle;
-  Quanta* ground;
-
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    ground[i] = value_or_zero(obstacle, i) > 0.0f ? wall_height : bedrock[i] + value_or_zero(soil, i);
   }
 };
 

@@ -3,19 +3,65 @@
 
 #include "desert_sim/kernels/for_each.hpp"
 
-/// A function compiled for several instruction sets, of which the loader takes the widest that the processor
-/// has. Sanitizers are not up yet when the loader chooses.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define DESERT_CLONES __attribute__((noinline, target_clones("default", "avx2", "arch=skylake-avx512")))
+namespace desert_sim {
+
+// ---- Instruction sets: inner loops are compiled for several, and the widest that the processor has is
+// taken. The compiler fuses no multiplication with an addition on any of them (-ffp-contract=off): all give
+// the same bits. A law's own fused() is one instruction on all but the oldest.
+
+enum class InstructionSet { oldest, avx2, avx512 };
+
+inline InstructionSet widest_instructions() {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return InstructionSet::oldest;
+  for (bool has : {__builtin_cpu_supports("avx512f") != 0, __builtin_cpu_supports("avx512dq") != 0,
+                   __builtin_cpu_supports("avx512bw") != 0, __builtin_cpu_supports("avx512vl") != 0})
+    if (!has) return InstructionSet::avx2;
+  return InstructionSet::avx512;
 #else
-#define DESERT_CLONES
+  return InstructionSet::oldest;
+#endif
+}
+inline const InstructionSet instruction_set = widest_instructions();
+
+#if defined(__x86_64__)
+#define DESERT_FOR_AVX2 __attribute__((noinline, target("avx2,fma")))
+#define DESERT_FOR_AVX512 __attribute__((noinline, target("avx512f,avx512dq,avx512bw,avx512vl,avx2,fma")))
+#else
+#define DESERT_FOR_AVX2
+#define DESERT_FOR_AVX512
 #endif
 
-namespace desert_sim {
+template <class Work>
+void with_oldest(const Work& work) {
+  work();
+}
+template <class Work>
+DESERT_FOR_AVX2 void with_avx2(const Work& work) {
+  work();
+}
+template <class Work>
+DESERT_FOR_AVX512 void with_avx512(const Work& work) {
+  work();
+}
+/// Calls work(), a lambda marked DESERT_INLINE, with vectors of at most 256 bits: wider ones made most laws
+/// no quicker, and the wind's slower.
+template <class Work>
+void with_wide_instructions(const Work& work) {
+  if (instruction_set == InstructionSet::oldest) return with_oldest(work);
+  with_avx2(work);
+}
+/// Likewise, with the widest. Sweeps of tiles, which are nothing but arithmetic, are a third quicker so.
+template <class Work>
+void with_widest_instructions(const Work& work) {
+  if (instruction_set == InstructionSet::avx512) return with_avx512(work);
+  with_wide_instructions(work);
+}
 
 /// One thread as the whole team that works on a tile.
 struct CpuTeam {
+  static constexpr int rows_at_once = 4;  ///< of what for_each_row_then_behind() leaves behind
   char* scratch;
 
   /// Calls body(i) for i in 0…n−1; all of it is done when it returns.
@@ -29,6 +75,23 @@ struct CpuTeam {
     for (int i = 0; i < n; ++i)
       if (predicate(i)) return true;
     return false;
+  }
+  /// The least of value(i) for i in 0…n−1.
+  template <class Value>
+  DESERT_HD int lowest(int n, const Value& value) const {
+    int least = value(0);
+    for (int i = 1; i < n; ++i) least = value(i) < least ? value(i) : least;
+    return least;
+  }
+  /// Calls first(y) and second(y) for the rows of a tile: second(y) when first() is done for y − 1, y and y +
+  /// 1, and before first(y + rows_at_once − 1). It may change what first(y − 1 … y + 1) reads, no more. (One
+  /// row sooner it would wait for what first() has just written.)
+  template <class First, class Second>
+  DESERT_HD void for_each_row_then_behind(const First& first, const Second& second) const {
+    for (int y = 0; y < Tiles::side + 2; ++y) {
+      if (y < Tiles::side) first(y);
+      if (y > 1) second(y - 2);
+    }
   }
   /// Calls body(y) for the rows of a tile; all are done when it returns.
   template <class Body>
@@ -53,38 +116,29 @@ struct CpuTeam {
   DESERT_HD bool leads_row() const { return true; }
 };
 
-/// One tile. No instruction set fuses multiplications with additions (-ffp-contract=off): all give the same
-/// bits.
-template <class Law>
-DESERT_CLONES void run_tile(const Law& law, const CpuTeam& team, int column, int row) {
-  law(team, column, row);
-}
-
-/// One row of cells, likewise.
-template <class Law>
-DESERT_CLONES void run_row(const Law& law, int y, int width) {
-  for (int x = 0; x < width; ++x) law(x, y);
-}
-
 /// Below so many cells, waking other threads costs more than they bring.
 constexpr int worth_threads = 16384;
 
 template <class Law>
 void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
 #pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads)
-  for (int y = 0; y < grid.height; ++y) run_row(law, y, grid.width);
+  for (int y = 0; y < grid.height; ++y)
+    with_wide_instructions([&]() DESERT_INLINE {
+      for (int x = 0; x < grid.width; ++x) law(x, y);
+    });
 }
 
-/// `Law::scratch_bytes` of memory are shared by the team; law(team, column, row).
+/// `Law::scratch_bytes<Team>` of memory are shared by the team; law(team, column, row).
 template <class Law>
 void for_each_tile(CpuExec& exec, const Tiles& tiles, const Law& law) {
   const int columns = tiles.columns(), count = tiles.count();
 #pragma omp parallel num_threads(exec.threads()) if (tiles.grid.cells() >= worth_threads)
   {
-    alignas(64) char scratch[Law::scratch_bytes];
+    alignas(64) char scratch[Law::template scratch_bytes<CpuTeam>];
     const CpuTeam team{scratch};
 #pragma omp for schedule(static)
-    for (int t = 0; t < count; ++t) run_tile(law, team, t % columns, t / columns);
+    for (int t = 0; t < count; ++t)
+      with_widest_instructions([&]() DESERT_INLINE { law(team, t % columns, t / columns); });
   }
 }
 
@@ -100,7 +154,9 @@ long long sum_cells(CpuExec& exec, const Grid& grid, const Law& law) {
 template <class Law>
 float max_cells(CpuExec& exec, const Grid& grid, const Law& law) {
   float largest = 0;
-#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads) reduction(max : largest)
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads) \
+    reduction(max                                                                                        \
+              : largest)
   for (int y = 0; y < grid.height; ++y)
     for (int x = 0; x < grid.width; ++x) {
       const float value = law(x, y);

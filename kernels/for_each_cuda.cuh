@@ -32,6 +32,7 @@ __global__ void cells_kernel(Grid grid, Law law) {
 /// The 256 threads of a block as the team that works on a tile. (Marked host too, because laws are; empty
 /// there.)
 struct Team {
+  static constexpr int rows_at_once = Tiles::side;
   char* scratch;
 
   template <class Body>
@@ -49,6 +50,29 @@ struct Team {
     found = __syncthreads_or(found);
 #endif
     return found != 0;
+  }
+  template <class Value>
+  DESERT_HD int lowest(int n, const Value& value) const {
+#if defined(__CUDA_ARCH__)
+    __shared__ int least;
+    int mine = value(0);
+    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y) mine = min(mine, value(i));
+    if (threadIdx.x == 0 && threadIdx.y == 0) least = mine;
+    __syncthreads();
+    atomicMin(&least, mine);
+    __syncthreads();
+    mine = least;
+    __syncthreads();
+    return mine;
+#else
+    return 0;
+#endif
+  }
+  /// All rows by the first, then all by the second.
+  template <class First, class Second>
+  DESERT_HD void for_each_row_then_behind(const First& first, const Second& second) const {
+    for_each_row(first);
+    for_each_row(second);
   }
   /// A warp a row.
   template <class Body>
@@ -84,7 +108,7 @@ static_assert(Tiles::side == block_x, "a warp works along a row of a tile");
 
 template <class Law>
 __global__ void tiles_kernel(Law law) {
-  __shared__ alignas(16) char scratch[Law::scratch_bytes];
+  extern __shared__ __align__(16) char scratch[];
   law(Team{scratch}, blockIdx.x, blockIdx.y);
 }
 
@@ -127,7 +151,10 @@ void for_each_cell(CudaExec& exec, const Grid& grid, const Law& law) {
 
 template <class Law>
 void for_each_tile(CudaExec& exec, const Tiles& tiles, const Law& law) {
-  cuda::tiles_kernel<<<dim3(tiles.columns(), tiles.rows()), cuda::block(), 0, cuda::stream(exec)>>>(law);
+  constexpr int bytes = Law::template scratch_bytes<cuda::Team>;
+  check_cuda(cudaFuncSetAttribute(cuda::tiles_kernel<Law>, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes),
+             "asking for shared memory");
+  cuda::tiles_kernel<<<dim3(tiles.columns(), tiles.rows()), cuda::block(), bytes, cuda::stream(exec)>>>(law);
   check_cuda(cudaGetLastError(), "launch over tiles");
 }
 

@@ -14,6 +14,28 @@ DESERT_HD float lerp(float a, float b, float t) { return a + t * (b - a); }
 DESERT_HD float minimum(float a, float b) { return a < b ? a : b; }
 DESERT_HD float maximum(float a, float b) { return a > b ? a : b; }
 DESERT_HD float clamp(float v, float low, float high) { return minimum(maximum(v, low), high); }
+/// a·b + c, rounded once. Where the processor has no such instruction the library computes it, slowly.
+DESERT_HD float fused(float a, float b, float c) { return fmaf(a, b, c); }
+DESERT_HD std::uint32_t bits_of(float v) {
+  std::uint32_t bits;
+  memcpy(&bits, &v, sizeof bits);
+  return bits;
+}
+DESERT_HD float float_of(std::uint32_t bits) {
+  float v;
+  memcpy(&v, &bits, sizeof v);
+  return v;
+}
+/// max(v, 0) for v ≤ 1. A negative float's bits are a negative integer: of integers compilers see that this
+/// is a maximum, of floats they make comparisons and masks.
+DESERT_HD float positive_part(float v) {
+#if defined(__CUDA_ARCH__)
+  return __saturatef(v);  // comes with the subtraction before it
+#else
+  const std::int32_t bits = static_cast<std::int32_t>(bits_of(v));
+  return float_of(static_cast<std::uint32_t>(bits > 0 ? bits : 0));
+#endif
+}
 DESERT_HD float hypotenuse(float x, float y) { return sqrtf(x * x + y * y); }
 
 /// e^(−x) for x ≥ 0, relative error below 3e-7; 0 from x = 87 on. Range reduction by ln 2 in two parts, then
@@ -30,10 +52,7 @@ DESERT_HD float exp_negative(float x) {
   p = p * r + 0.5f;
   p = p * r + 1.0f;
   p = p * r + 1.0f;
-  const std::uint32_t bits = static_cast<std::uint32_t>(127 - static_cast<int>(n)) << 23;
-  float scale;
-  memcpy(&scale, &bits, sizeof scale);
-  return p * scale;
+  return p * float_of(static_cast<std::uint32_t>(127 - static_cast<int>(n)) << 23);
 }
 
 /// arctan(x) for 0 ≤ x < 1e18, relative error below 1e-6. The angle is halved three times,

@@ -91,9 +91,8 @@ float sand_slope(E& exec, const TerrainView& t) {
 
 /// Against the repose tangents of the last step.
 template <class E>
-Residual residual(E& exec, const TerrainView& t, const float* repose, avalanching::Workspace& work) {
-  avalanching::update_ground(exec, t, work);
-  const avalanching::Excess excess{avalanching::finest(t, repose, work)};
+Residual residual(E& exec, const TerrainView& t, const float* repose) {
+  const avalanching::Excess excess{avalanching::finest(t, repose)};
   const long long over = sum_cells(exec, t.grid, CountOver{excess, 1e-3f});
   Residual r;
   r.share_over_1e3 = static_cast<double>(over) / t.grid.cells();

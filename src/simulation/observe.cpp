@@ -151,7 +151,7 @@ std::array<MaterialBalance, material_count> Simulation::balance() {
 Residual Simulation::residual() {
   refresh_derived();
   return with_backend(exec(), [this](auto& e) {
-    return statistics::residual(e, terrain_.view(), repose_.data(), avalanche_work_);
+    return statistics::residual(e, terrain_.view(), repose_.data());
   });
 }
 

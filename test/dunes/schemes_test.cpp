@@ -51,13 +51,13 @@ double deviation(const std::vector<double>& v) {
   return std::sqrt(sum / static_cast<double>(v.size() - 1));
 }
 
-/// The means differ by no more than twice the scatter between seeds.
+/// The means differ by no more than so many times the scatter between seeds.
 void expect_same(const std::string& what, const std::vector<double>& quick,
-                 const std::vector<double>& reference) {
+                 const std::vector<double>& reference, double times = 2) {
   const double scatter = std::hypot(deviation(quick), deviation(reference));
   DESERT_REPORT("%s: %.3f, reference %.3f, scatter %.3f", what.c_str(), mean(quick), mean(reference),
                 scatter);
-  EXPECT_LE(std::abs(mean(quick) - mean(reference)), 2 * scatter) << what;
+  EXPECT_LE(std::abs(mean(quick) - mean(reference)), times * scatter) << what;
 }
 
 /// Statistics of a few seeds each.
@@ -82,22 +82,27 @@ std::vector<double> each(const Runs& runs, const Value& value) {
 constexpr AvalancheQuality qualities[] = {AvalancheQuality::fast, AvalancheQuality::good,
                                           AvalancheQuality::converged};
 constexpr std::size_t slope_bins = 6;  // of 6 degrees: what sand can lie at
+/// With six shares for each of three qualities some lie beyond twice a scatter that three seeds know to
+/// within a half. (Over 32 seeds the greatest difference is 0.02, of the steepest share, 1.6 times the
+/// scatter.)
+constexpr double shares_may_scatter = 3;
 
 /// Roughness, wavelength, orientation, and the share of cells at each slope that sand can lie at.
 TEST(Schemes, SameDunesAsTheReference) {
   const Runs reference = runs_of(AvalancheScheme::sweeps, AvalancheQuality::converged);
   for (AvalancheQuality quality : qualities) {
     const Runs quick = runs_of(AvalancheScheme::multilevel, quality);
-    const auto same = [&](const std::string& what, auto&& value) {
-      expect_same(what, each(quick, value), each(reference, value));
+    const auto same = [&](const std::string& what, auto&& value, double times = 2) {
+      expect_same(what, each(quick, value), each(reference, value), times);
     };
     std::printf("  %s:\n", avalanche_qualities[static_cast<int>(quality)]);
     same("roughness [m]", [](const Statistics& s) { return s.height; });
     same("wavelength [m]", [](const Statistics& s) { return s.wavelength; });
     same("crest orientation [deg]", [](const Statistics& s) { return s.crest; });
     for (std::size_t bin = 0; bin < slope_bins; ++bin)
-      same("share of slopes from " + std::to_string(6 * bin) + " degrees",
-           [bin](const Statistics& s) { return s.histogram[bin]; });
+      same(
+          "share of slopes from " + std::to_string(6 * bin) + " degrees",
+          [bin](const Statistics& s) { return s.histogram[bin]; }, shares_may_scatter);
   }
 }
 

@@ -202,7 +202,8 @@ struct Hierarchy {
   std::vector<float> repose = std::vector<float>(16, 0.5f), coarse_repose = std::vector<float>(4);
 
   void restrict_all() {
-    const avalanching::LevelView view{fine, ground.data(), sand.data(), repose.data(), 1e6f};
+    const avalanching::LevelView view{fine,        ground.data(), nullptr, nullptr,
+                                      sand.data(), repose.data(), 1e6f};
     const avalanching::Restrict law{
         view, coarse, coarse_ground.data(), coarse_sand.data(), before.data(), coarse_repose.data()};
     for (int y = 0; y < 2; ++y)

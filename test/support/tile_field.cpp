@@ -1,0 +1,117 @@
+#include "support/tile_field.hpp"
+
+#include <cmath>
+#include <functional>
+
+#include "desert_sim/kernels/random.hpp"
+
+namespace desert_sim::test {
+
+namespace {
+
+template <class T>
+Buffer<T> on(Exec& exec, const std::vector<T>& values) {
+  Buffer<T> buffer(exec, values.size());
+  if (!values.empty()) buffer.upload(values);
+  return buffer;
+}
+
+template <class T>
+T* or_null(Buffer<T>& buffer, const std::vector<T>& values) {
+  return values.empty() ? nullptr : buffer.data();
+}
+
+/// Uniform in [0, 1), of its own for each purpose.
+double chance(int purpose, int cell) {
+  return random_unit(7, Purpose::terrain_noise, static_cast<std::uint32_t>(cell),
+                     static_cast<std::uint32_t>(purpose));
+}
+
+using Height = std::function<double(int x, int y)>;  ///< [m]
+
+/// A field in metres at a quantum of 2⁻²⁰ m.
+TileField field(const std::string& name, const Grid& grid, const Height& ground, const Height& sand,
+                double repose = 0.65) {
+  TileField f;
+  f.name = name;
+  f.grid = grid;
+  f.quanta_per_cell = grid.cell_size * 1048576.0f;
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) {
+      f.ground.push_back(static_cast<Quanta>(std::llround(ground(x, y) * 1048576)));
+      f.sand.push_back(static_cast<Quanta>(std::llround(sand(x, y) * 1048576)));
+      f.repose.push_back(static_cast<float>(repose * (0.5 + chance(1, y * grid.width + x))));
+    }
+  return f;
+}
+
+}  // namespace
+
+std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool by_law,
+                                       float transfer) const {
+  Buffer<Quanta> ground_there = on(exec, ground), sand_there = on(exec, sand), soil_there = on(exec, soil);
+  Buffer<float> obstacle_there = on(exec, obstacle), repose_there = on(exec, repose);
+  const avalanching::LevelView level{grid,
+                                     ground_there.data(),
+                                     or_null(soil_there, soil),
+                                     or_null(obstacle_there, obstacle),
+                                     sand_there.data(),
+                                     repose_there.data(),
+                                     quanta_per_cell};
+  const avalanching::RelaxTile law{{grid, offset}, level, transfer, sweeps};
+  with_backend(
+      exec, [&](auto& e) { by_law ? avalanching::relax_by_law(e, law) : avalanching::relax_tiles(e, law); });
+  return sand_there.download();
+}
+
+std::vector<TileField> tile_fields() {
+  const auto flat = [](int, int) { return 0.0; };
+  const auto dunes = [](int x, int y) { return 4 + 4 * std::sin(0.3 * x + 0.2 * std::sin(0.5 * y)); };
+  const auto noise = [](int x, int y) { return 3 * chance(2, 1000 * y + x); };
+  const auto pits = [](int x, int y) { return x % 3 == 1 && y % 3 == 1 ? 0.0 : 1.0; };
+  const Grid torus{96, 64, 1, true, true};
+  std::vector<TileField> fields;
+  fields.push_back(field("dunes", torus, noise, dunes));
+  fields.push_back(field("open and of an odd size", {77, 45, 1, false, false}, noise, dunes));
+  fields.push_back(field("a torus of an odd size", {77, 45, 1, true, true}, noise, dunes));
+  fields.push_back(field("periodic along one axis", {33, 70, 1, true, false}, noise, dunes));
+  fields.push_back(field("less than a tile", {5, 3, 1, true, true}, noise, dunes));
+  fields.push_back(field("one cell", {1, 1, 1, true, true}, noise, dunes));
+  fields.push_back(field("small cells", {64, 64, 0.01f, true, true}, flat, noise));
+  fields.push_back(
+      field("large cells", {64, 64, 4, true, true}, dunes, [&](int x, int y) { return 9 * noise(x, y); }));
+  fields.push_back(field("no sand", torus, noise, flat));
+  fields.push_back(field("at rest", torus, flat, [](int, int) { return 2.0; }));
+  fields.push_back(field(
+      "cliffs", torus, [&](int x, int y) { return (x / 9 + y / 7) % 2 ? 300 : noise(x, y); }, noise));
+  fields.push_back(field(
+      "pits of eight donors, at no angle", torus, flat, [&](int x, int y) { return 200 * pits(x, y); }, 0));
+  fields.push_back(field(
+      "pits in small cells", {64, 64, 0.01f, true, true}, flat,
+      [&](int x, int y) { return 500 * pits(x, y); }, 0));
+  fields.push_back(field("columns", torus, flat,
+                         [](int x, int y) { return chance(3, 100 * y + x) < 0.05 ? 400.0 : 0.0; }));
+  fields.push_back(field(
+      "as high and deep as can be", torus, [](int x, int y) { return (x + y) % 5 ? -511.9 : 0.0; },
+      [](int x, int y) { return (x + y) % 5 ? 0.0 : 511.9; }, 0.1));
+  fields.push_back(field(
+      "films on steep rock", torus, [](int x, int y) { return 2.0 * (x % 32) + y % 32; },
+      [](int x, int y) { return 1e-6 * (chance(4, 100 * y + x) < 0.5 ? x * y % 400 : 0); }, 0.1));
+  fields.push_back(field("steeper than can matter", torus, noise, noise, 1e6));
+  TileField walls = field("walls", torus, noise, dunes);
+  TileField solid = field("obstacles on soil", {50, 40, 1, false, false}, noise, dunes);
+  for (int i = 0; i < walls.grid.cells(); ++i)
+    if (chance(5, i) < 0.2) walls.ground[static_cast<std::size_t>(i)] = wall_height;
+  for (int i = 0; i < solid.grid.cells(); ++i) {
+    solid.soil.push_back(static_cast<Quanta>(1e6 * chance(6, i)));
+    solid.obstacle.push_back(chance(7, i) < 0.3 ? 1.0f : 0.0f);
+  }
+  fields.push_back(walls);
+  fields.push_back(solid);
+  for (Quanta& ground : walls.ground) ground = wall_height;
+  walls.name = "nothing but walls";
+  fields.push_back(walls);
+  return fields;
+}
+
+}  // namespace desert_sim::test

@@ -1,0 +1,30 @@
+#pragma once
+/// Levels for tests of the sweeps inside tiles: ordinary ones, and those that go to the ends of what floats
+/// can count.
+
+#include <string>
+#include <vector>
+
+#include "desert_sim/kernels/processes.hpp"
+
+namespace desert_sim::test {
+
+struct TileField {
+  std::string name;
+  Grid grid;
+  float quanta_per_cell = 1048576;
+  std::vector<Quanta> ground, sand;
+  std::vector<Quanta> soil;     ///< may be empty
+  std::vector<float> obstacle;  ///< may be empty
+  std::vector<float> repose;
+
+  /// The sand after one pass of `sweeps` sweeps in tiles that begin at −offset; by the reference, or as the
+  /// backend does it best.
+  std::vector<Quanta> relaxed(Exec& exec, int offset, int sweeps, bool by_law, float transfer = 1) const;
+};
+
+/// Dunes, cliffs of hundreds of metres, pits, films, columns as high as can be, walls, on whole and broken
+/// tiles.
+std::vector<TileField> tile_fields();
+
+}  // namespace desert_sim::test
