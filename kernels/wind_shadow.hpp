@@ -113,16 +113,25 @@ DESERT_HD float height_anywhere(const Grid& g, const Quanta* h, Quanta base, con
                       h[sample_index(g, p.x, p.y + 1)], h[sample_index(g, p.x + 1, p.y + 1)], p.fx, p.fy);
 }
 
-struct Shadow {
+/// What both marches look at, and what they make of the steepest rise that they find.
+struct March {
   Grid grid;
   float quantum;
   const Quanta* elevation;
   const float *wind_x, *wind_y;
   int steps;
   float start, full;  ///< tangents
+  float* wind_shadow;
+
+  /// `steepest` [quanta a step].
+  DESERT_HD void shade(int i, float steepest) const {
+    wind_shadow[i] = clamp((steepest * quantum / grid.cell_size - start) / (full - start), 0.0f, 1.0f);
+  }
+};
+
+struct Shadow : March {
   Grid blocks;
   const Quanta* around;  ///< null: no piece is left out
-  float* wind_shadow;
 
   DESERT_HD float quanta_a_step() const { return grid.cell_size / quantum; }  ///< of a slope of 1
 
@@ -167,20 +176,12 @@ struct Shadow {
           return height_anywhere(g, h, base, p);
         });
     }
-    wind_shadow[i] = clamp((steepest * quantum / grid.cell_size - start) / (full - start), 0.0f, 1.0f);
+    shade(i, steepest);
   }
 };
 
 /// The march that follows the wind as it turns.
-struct CurvedShadow {
-  Grid grid;
-  float quantum;
-  const Quanta* elevation;
-  const float *wind_x, *wind_y;
-  int steps;
-  float start, full;  ///< tangents
-  float* wind_shadow;
-
+struct CurvedShadow : March {
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     const Quanta base = elevation[i];
@@ -198,7 +199,7 @@ struct CurvedShadow {
       u = wind_x[there];
       v = wind_y[there];
     }
-    wind_shadow[i] = clamp((steepest * quantum / grid.cell_size - start) / (full - start), 0.0f, 1.0f);
+    shade(i, steepest);
   }
 };
 
@@ -218,23 +219,25 @@ void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const Wo
   const float degree = 3.14159265358979f / 180.0f;
   const float start = tanf(p.start_deg * degree);
   const float full = maximum(tanf(p.full_deg * degree), start + 1e-6f);
-  const int steps = march_steps(t.grid, p);
   const Quanta* elevation = t.quanta(Layer::elevation);
-  const float *wind_x = t.real(Layer::wind_x), *wind_y = t.real(Layer::wind_y);
-  float* wind_shadow = t.real(Layer::wind_shadow);
+  const March march{t.grid,
+                    t.quantum,
+                    elevation,
+                    t.real(Layer::wind_x),
+                    t.real(Layer::wind_y),
+                    march_steps(t.grid, p),
+                    start,
+                    full,
+                    t.real(Layer::wind_shadow)};
   if (p.curved) {
-    for_each_cell(
-        exec, t.grid,
-        CurvedShadow{t.grid, t.quantum, elevation, wind_x, wind_y, steps, start, full, wind_shadow});
+    for_each_cell(exec, t.grid, CurvedShadow{march});
     return;
   }
   if (work.around) {
     for_each_cell(exec, work.blocks, HighestOfBlock{t.grid, elevation, work.blocks, work.highest.data()});
     for_each_cell(exec, work.blocks, HighestAround{work.blocks, work.highest.data(), work.around.data()});
   }
-  const Shadow law{t.grid, t.quantum,   elevation,          wind_x,     wind_y, steps, start,
-                   full,   work.blocks, work.around.data(), wind_shadow};
-  for_each_cell(exec, t.grid, law);
+  for_each_cell(exec, t.grid, Shadow{march, work.blocks, work.around.data()});
 }
 
 }  // namespace wind_shadow
