@@ -11,6 +11,7 @@ DESERT_SANITIZE_WITHOUT=(-LE slow -E '^installed_package\.')
 
 desert_sanitize() { # address,undefined or thread: sets BUILD, DESERT_SANITIZE_CONFIGURE and the environment
   local reports known=$DESERT_ROOT/test/sanitizers
+  export DESERT_PATIENCE=5 # everything takes its time
   BUILD=$BUILD-${1//,/-}
   reports=$BUILD/sanitizer_reports
   rm -rf "$reports"
@@ -19,7 +20,7 @@ desert_sanitize() { # address,undefined or thread: sets BUILD, DESERT_SANITIZE_C
   # -O1 with the inlining of -O2 builds soon and runs well enough; asserts are on. clang warns of loops that it does
   # not vectorise when they are watched.
   DESERT_SANITIZE_CONFIGURE=("-DDESERT_SANITIZE=$1" -DDESERT_WITH_CUDA=OFF -DCMAKE_CXX_COMPILER=clang++
-    -DDESERT_WERROR=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -finline-functions -g1")
+    "-DDESERT_PATIENCE=$DESERT_PATIENCE" -DDESERT_WERROR=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -finline-functions -g1")
   export ASAN_OPTIONS="log_path=$reports/report:detect_stack_use_after_return=1:strict_string_checks=1"
   export LSAN_OPTIONS="suppressions=$known/leak.supp:print_suppressions=0"
   export UBSAN_OPTIONS="log_path=$reports/report:print_stacktrace=1"

@@ -58,7 +58,7 @@ ClockPublisher::ClockPublisher() {
 void ClockPublisher::publish(double simulated) const {
   const auto message = boost::make_shared<rosgraph_msgs::Clock>();
   message->clock = clock_time(simulated);
-  publisher_.publish(message);
+  if (publisher_) publisher_.publish(message);  // a node told to end while it starts has none
 }
 
 }  // namespace desert_sim

@@ -25,6 +25,7 @@ Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Top
   const LiveParameters defaults = present();
   descriptions_ = node.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true);
   updates_ = node.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true);
+  if (!descriptions_ || !updates_) return;  // ROS is shutting down and advertises nothing any more
   descriptions_.publish(
       boost::make_shared<dynamic_reconfigure::ConfigDescription>(reconfigure_description(defaults)));
   publish(reconfigure_values(defaults));

@@ -268,6 +268,7 @@ void Topics::publish_failure(const std::string& what) {
   last_status_.message = what;
   last_status_.steps_per_second = 0;
   last_status_.state_hash.clear();
+  if (!status_) return;  // ended while it started
   status_.publish(boost::make_shared<SimulationStatus>(last_status_));  // which later ones do not change
 }
 

@@ -12,7 +12,7 @@ import rospy
 import rostest
 from desert_sim.msg import SimulationStatus
 from desert_sim.srv import LoadScenario, SetWind, Step
-from lifecycle import CORNER, Scenarios, Trigger, wait_until
+from lifecycle import CORNER, PATIENCE, Scenarios, Trigger, wait_until
 
 KILLS = int(os.environ.get("DESERT_KILLS", "4"))
 AUTOSAVED = {"scenario": CORNER, "autosave_period": 0.1, "resume": True}
@@ -110,7 +110,7 @@ class Resume(Scenarios):
         wait_until(lambda: autosaves(self.folder), "no autosave")
         status, seconds = node.end()
         self.assertEqual(status, 0, node.output)
-        self.assertLess(seconds, 1.0)
+        self.assertLess(seconds, 1.0 * PATIENCE)
         self.assertGreater(self.again("saving")[1], 0, "the last one is whole")
 
     def test_a_place_that_cannot_be_written_does_not_stop_it(self):
