@@ -1,5 +1,6 @@
 #include "desert_sim/ros/frames.hpp"
 
+#include <ros/init.h>
 #include <tf2/LinearMath/Quaternion.h>
 
 #include <chrono>
@@ -69,7 +70,8 @@ void Frames::move_center(const Snapshot& s) {
   center.transform.translation.y = s.origin_y + 0.5 * s.height * s.cell_size;
   center.transform.translation.z = std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
   center.transform.rotation.w = 1;
-  broadcaster_->sendTransform(center);
+  // A node told to end while it starts: the broadcaster got no publisher, and tf2 asserts that it has one.
+  if (!ros::isShuttingDown()) broadcaster_->sendTransform(center);
 }
 
 }  // namespace desert_sim
