@@ -22,8 +22,8 @@ inline std::size_t change_bytes(std::size_t changes, int bits) {
 }
 inline std::int8_t change_at(const std::vector<std::int8_t>& changes, int bits, std::size_t n) {
   if (bits == 8) return changes[n];
-  const std::int8_t both = changes[n / 2];
-  return static_cast<std::int8_t>(n % 2 == 0 ? both >> 4 : static_cast<std::int8_t>(both << 4) >> 4);
+  const int both = changes[n / 2];
+  return static_cast<std::int8_t>(n % 2 == 0 ? both >> 4 : ((both & 15) ^ 8) - 8);
 }
 inline void change_add(std::vector<std::int8_t>& changes, int bits, std::size_t n, int change) {
   if (bits == 8 || n % 2 == 0)
