@@ -22,6 +22,7 @@ desert_sanitize() { # address,undefined or thread: sets BUILD, DESERT_SANITIZE_C
   DESERT_SANITIZE_CONFIGURE=("-DDESERT_SANITIZE=$1" -DDESERT_WITH_CUDA=OFF -DCMAKE_CXX_COMPILER=clang++
     "-DDESERT_PATIENCE=$DESERT_PATIENCE" -DDESERT_WERROR=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -finline-functions -g1")
   export ASAN_OPTIONS="log_path=$reports/report:detect_stack_use_after_return=1:strict_string_checks=1"
+  ASAN_OPTIONS+=:quarantine_size_mb=64 # of freed memory: a flood of 10 MB requests is to fit beside it
   export LSAN_OPTIONS="suppressions=$known/leak.supp:print_suppressions=0"
   export UBSAN_OPTIONS="log_path=$reports/report:print_stacktrace=1"
   # Libraries built without ThreadSanitizer: their locks count, but not what they read and write themselves, which they

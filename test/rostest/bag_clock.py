@@ -17,7 +17,7 @@ from desert_sim.msg import ElevationUpdate, SimulationStatus
 from desert_sim.srv import EditTerrain, EditTerrainRequest, QueryTerrain, SaveCheckpoint, SetWind, Step
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point
-from lifecycle import wait_until
+from lifecycle import PATIENCE, wait_until
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Empty
 from std_srvs.srv import Trigger
@@ -44,7 +44,7 @@ class BagClock:
 
 
 def call(service, kind, *arguments, **fields):
-    rospy.wait_for_service("/desert_sim/" + service, 20)
+    rospy.wait_for_service("/desert_sim/" + service, 20 * PATIENCE)
     return rospy.ServiceProxy("/desert_sim/" + service, kind)(*arguments, **fields)
 
 

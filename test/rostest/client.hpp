@@ -6,6 +6,7 @@
 #include <ros/ros.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -14,8 +15,14 @@
 
 namespace node_test {
 
+/// As in patience.py.
+inline double patience() {
+  const char* factor = std::getenv("DESERT_PATIENCE");
+  return factor ? std::strtod(factor, nullptr) : 1;
+}
+
 inline bool wait_until(const std::function<bool()>& happened, double seconds = 10) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds * patience());
   while (!happened()) {
     if (std::chrono::steady_clock::now() > end || !ros::ok()) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

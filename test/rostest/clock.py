@@ -8,6 +8,7 @@ import rospy
 import rostest
 from desert_sim.msg import ElevationGrid, SimulationStatus
 from desert_sim.srv import Step
+from patience import PATIENCE
 from rosgraph_msgs.msg import Clock
 
 
@@ -25,7 +26,7 @@ class FollowsTheClock(unittest.TestCase):
 
     def wait_for(self, fits, what, seconds=10):
         with self.changed:
-            self.assertTrue(self.changed.wait_for(lambda: self.status and fits(self.status), seconds), what)
+            self.assertTrue(self.changed.wait_for(lambda: self.status and fits(self.status), seconds * PATIENCE), what)
             return self.status
 
     def tick(self, start, seconds, speed=2.0):
@@ -47,7 +48,7 @@ class FollowsTheClock(unittest.TestCase):
     def test_clock(self):
         status = self.wait_for(lambda s: s.state == "waiting", "no clock yet")
         self.assertEqual(status.step, 0)
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + 10 * PATIENCE
         while self.status.state != "running" and time.monotonic() < deadline:  # until the node listens
             self.tick(1000, 0)
         self.wait_for(lambda s: s.state == "running", "the clock is there")

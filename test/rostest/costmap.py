@@ -10,6 +10,7 @@ from dynamic_reconfigure.client import Client
 from map_client import Listener, MapTest, Trigger, call
 from map_msgs.msg import OccupancyGridUpdate
 from nav_msgs.msg import OccupancyGrid
+from patience import PATIENCE
 from sensor_msgs.msg import Image
 
 
@@ -107,7 +108,7 @@ class Costmap(MapTest):
             updates.wait_for(lambda u: u.x <= 40 < u.x + u.width, "later as an update")
 
     def test_a_threshold_keeps_small_changes_back(self):
-        node = Client("/desert_sim", timeout=20)
+        node = Client("/desert_sim", timeout=20 * PATIENCE)
         node.update_configuration({"costmap_update_threshold": 5})
         self.addCleanup(node.update_configuration, {"costmap_update_threshold": 0})
         with Listener("/desert_sim/costmap", OccupancyGrid) as keyframes, \
@@ -154,7 +155,7 @@ class Costmap(MapTest):
     def test_nobody_listens_nothing_is_copied(self):
         call("resume", Trigger)
         with Listener("/desert_sim/status", SimulationStatus) as statuses:
-            deadline = time.monotonic() + 15
+            deadline = time.monotonic() + 15 * PATIENCE
             copied = None
             while copied != 0 and time.monotonic() < deadline:  # the subscribers of other tests go
                 first = statuses.first()

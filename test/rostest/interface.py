@@ -13,6 +13,7 @@ import rostest
 import yaml
 from desert_sim.srv import GetSubmap
 from geometry_msgs.msg import Point
+from patience import PATIENCE
 from roslib.packages import find_node
 
 PACKAGE = rospkg.RosPack().get_path("desert_sim")
@@ -49,7 +50,7 @@ class Interface(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        rospy.wait_for_service(NODE + "/reload_parameters", 30)  # the last to be advertised
+        rospy.wait_for_service(NODE + "/reload_parameters", 30 * PATIENCE)  # the last to be advertised
         master = rosgraph.Master("/interface")
         cls.published, cls.subscribed, cls.services = (
             {name for name, nodes in kind if NODE in nodes and name not in OF_EVERY_NODE and not is_plugins(name)}

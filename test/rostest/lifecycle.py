@@ -18,13 +18,13 @@ from desert_sim.msg import ElevationGrid, SimulationStatus, WindScheduleSegment
 from desert_sim.srv import EditTerrain, EditTerrainRequest, LoadCheckpoint, SaveCheckpoint
 from desert_sim.srv import SetWind, SetWindSchedule, SetWindScheduleRequest, Step
 from geometry_msgs.msg import Point
+from patience import PATIENCE
 from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image
 from std_srvs.srv import Trigger
 
 PACKAGE = rospkg.RosPack().get_path("desert_sim")
-PATIENCE = float(os.environ.get("DESERT_PATIENCE", 1))  # limits are that much longer
 CORNER = os.path.join(PACKAGE, "test", "rostest", "scenarios", "corner.yaml")
 
 

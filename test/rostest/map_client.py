@@ -8,6 +8,7 @@ import unittest
 import genpy.dynamic
 import rospy
 from geometry_msgs.msg import Pose
+from patience import PATIENCE
 from std_msgs.msg import Float32MultiArray, Header
 from std_srvs.srv import Trigger
 
@@ -73,7 +74,7 @@ class Listener:
     def wait_for(self, fits, what, seconds=10):
         """The last message, once it fits."""
         with self.changed:
-            ok = self.changed.wait_for(lambda: self.messages and fits(self.messages[-1]), seconds)
+            ok = self.changed.wait_for(lambda: self.messages and fits(self.messages[-1]), seconds * PATIENCE)
             assert ok, "%s (%d messages)" % (what, len(self.messages))
             return self.messages[-1]
 
@@ -121,7 +122,7 @@ def elevation(x, y):
 
 
 def call(service, kind, request=None, **fields):
-    rospy.wait_for_service("/desert_sim/" + service, 20)
+    rospy.wait_for_service("/desert_sim/" + service, 20 * PATIENCE)
     proxy = rospy.ServiceProxy("/desert_sim/" + service, kind)
     return proxy(request) if request else proxy(**fields)
 

@@ -11,6 +11,7 @@ from desert_sim.srv import GetSubmap, GetSubmapRequest
 from geometry_msgs.msg import TransformStamped
 from map_client import (GRID_MAP_MD5, GetGridMap, Listener, MapTest, Trigger, call, cells, center, elevation,
                         nested, section)
+from patience import PATIENCE
 
 
 class Maps(MapTest):
@@ -100,7 +101,7 @@ class Maps(MapTest):
                 "tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n" + section(TransformStamped) +
                 nested(TransformStamped))["tf2_msgs/TFMessage"]
             Maps.tf = rospy.Publisher("/tf", Maps.tf_kind, queue_size=10)
-            deadline = time.monotonic() + 10
+            deadline = time.monotonic() + 10 * PATIENCE
             while Maps.tf.get_num_connections() < 2 and time.monotonic() < deadline:
                 time.sleep(0.02)
         robot = TransformStamped()

@@ -158,7 +158,7 @@ class Overload(Scenarios):
 
     @staticmethod
     def rosnode_kill(node):
-        subprocess.run(["rosnode", "kill", "/" + node.name], check=True, stdout=subprocess.DEVNULL, timeout=20)
+        subprocess.run(["rosnode", "kill", "/" + node.name], check=True, stdout=subprocess.DEVNULL, timeout=20 * PATIENCE)
 
     def test_ends_while_it_runs(self):
         for name, end in (("interrupted", self.interrupt), ("terminated", self.terminate), ("dismissed", self.rosnode_kill)):

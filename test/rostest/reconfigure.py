@@ -12,7 +12,7 @@ from desert_sim.srv import SetWind, Step
 from dynamic_reconfigure.client import Client
 from dynamic_reconfigure.msg import DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure as ReconfigureService
-from lifecycle import CORNER, Scenarios, Trigger
+from lifecycle import CORNER, PATIENCE, Scenarios, Trigger
 from map_client import Listener
 from roslib.packages import find_node
 from sensor_msgs.msg import PointCloud2
@@ -34,17 +34,17 @@ def as_settings(changes):
 class Reconfigure(Scenarios):
     def client(self, name, **private):
         node = self.start(name, dict({"scenario": CORNER, "status_rate": 20}, **private))
-        return node, Client("/" + name, timeout=20)
+        return node, Client("/" + name, timeout=20 * PATIENCE)
 
     def values(self, client):
-        return {name: value for name, value in client.get_configuration(timeout=10).items() if name != "groups"}
+        return {name: value for name, value in client.get_configuration(timeout=10 * PATIENCE).items() if name != "groups"}
 
     def refused(self, node, client, changes, text):
         before = node.call("step", Step, 0).state_hash, self.values(client)
         with self.assertRaises(Exception):
             client.update_configuration(changes)
         self.assertEqual((node.call("step", Step, 0).state_hash, self.values(client)), before)
-        end = time.monotonic() + 5
+        end = time.monotonic() + 5 * PATIENCE
         while text not in node.output and time.monotonic() < end:
             time.sleep(0.05)
         self.assertIn(text, node.output)
@@ -54,7 +54,7 @@ class Reconfigure(Scenarios):
 
     def test_description_is_the_parameter_table(self):
         _, client = self.client("described")
-        found = {p["name"]: p for p in client.get_parameter_descriptions(timeout=10)}
+        found = {p["name"]: p for p in client.get_parameter_descriptions(timeout=10 * PATIENCE)}
         speed = found["wind__speed"]
         self.assertEqual((speed["type"], speed["min"], speed["max"], speed["default"]), ("double", 0, 100, 5))
         self.assertIn("[m/s]", speed["description"])
@@ -82,9 +82,9 @@ class Reconfigure(Scenarios):
     def test_dynparam(self):
         node, _ = self.client("typed")
         dynparam = find_node("dynamic_reconfigure", "dynparam")[0]
-        subprocess.run([dynparam, "set", "/typed", "wind__speed", "6.25"], check=True, timeout=20)
+        subprocess.run([dynparam, "set", "/typed", "wind__speed", "6.25"], check=True, timeout=20 * PATIENCE)
         self.assertEqual(self.wind(node), 6.25)
-        shown = subprocess.run([dynparam, "get", "/typed"], check=True, timeout=20, stdout=subprocess.PIPE, text=True).stdout
+        shown = subprocess.run([dynparam, "get", "/typed"], check=True, timeout=20 * PATIENCE, stdout=subprocess.PIPE, text=True).stdout
         self.assertIn("'wind__speed': 6.25", shown)
 
     def test_refused_changes_nothing(self):
@@ -100,7 +100,7 @@ class Reconfigure(Scenarios):
         node, client = self.client("paced", paused=False, step_rate=2)
         self.assertEqual(self.values(client)["step_rate"], 2)
         self.assertEqual(client.update_configuration({"step_rate": 12.0})["step_rate"], 12)
-        end = time.monotonic() + 10  # a busy machine may not make all of the 12
+        end = time.monotonic() + 10 * PATIENCE  # a busy machine may not make all of the 12
         while not 6 < node.latest("status", SimulationStatus).steps_per_second < 18 and time.monotonic() < end:
             pass
         status = node.latest("status", SimulationStatus)
@@ -114,7 +114,7 @@ class Reconfigure(Scenarios):
 
     def test_publishers(self):
         node, client = self.client("published", paused=False, step_rate=50, keyframe_rate=0.02, local_map_length_x=8.0)
-        description = {p["name"]: p for p in client.get_parameter_descriptions(timeout=10)}
+        description = {p["name"]: p for p in client.get_parameter_descriptions(timeout=10 * PATIENCE)}
         self.assertEqual([description["update_threshold"][key] for key in ("type", "min", "max", "default")],
                          ["double", 0, 1000, 0.005])
         publishers = client.get_group_descriptions()["groups"]["publishers"]["parameters"]
@@ -140,14 +140,14 @@ class Reconfigure(Scenarios):
             self.wait_for(lambda: text in node.output, text)  # noqa: B023 it is called at once
 
     def wait_for(self, happened, what):
-        end = time.monotonic() + 10
+        end = time.monotonic() + 10 * PATIENCE
         while not happened():
             self.assertLess(time.monotonic(), end, what)
             time.sleep(0.02)
 
     def test_what_cannot_change_is_refused_by_name(self):
         node, client = self.client("fixed")
-        client.get_parameter_descriptions(timeout=10)
+        client.get_parameter_descriptions(timeout=10 * PATIENCE)
         for name, text in (("grid__width", "grid.width: cannot change while the simulation runs: it shapes"),
                            ("nothing__such", "nothing.such: unknown parameter")):
             client._param_types[name] = int  # the client itself would not send it
@@ -162,7 +162,7 @@ class Reconfigure(Scenarios):
         client.update_configuration(dict(CHANGES))
         node.call("step", Step, 3)
         self.assertTrue(node.call("reset", Trigger).success)
-        end = time.monotonic() + 5
+        end = time.monotonic() + 5 * PATIENCE
         while self.values(client) != start and time.monotonic() < end:
             time.sleep(0.05)
         self.assertEqual(self.values(client), start)
@@ -174,7 +174,7 @@ class Reconfigure(Scenarios):
     def test_other_commands_show(self):
         node, client = self.client("shown")
         self.assertTrue(node.call("set_wind", SetWind, speed=9.5, direction_deg=-45).success)
-        end = time.monotonic() + 5
+        end = time.monotonic() + 5 * PATIENCE
         while self.values(client)["wind__speed"] != 9.5 and time.monotonic() < end:
             time.sleep(0.05)
         values = self.values(client)
@@ -194,7 +194,7 @@ class Reconfigure(Scenarios):
 
     def test_many_at_once_while_it_runs(self):
         node, client = self.client("busy", paused=False, step_rate=0)
-        client.get_configuration(timeout=10)
+        client.get_configuration(timeout=10 * PATIENCE)
         failures = []
 
         def change(names):

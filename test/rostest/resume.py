@@ -41,7 +41,7 @@ class Respawned:
             return 0
 
     def step(self):
-        return rospy.wait_for_message("/desert_sim/status", SimulationStatus, 20).step
+        return rospy.wait_for_message("/desert_sim/status", SimulationStatus, 20 * PATIENCE).step
 
     def wait_for_saved(self):
         """A step that is in an autosave from here on."""

@@ -12,8 +12,9 @@ import unittest
 import rospy
 import rostest
 import yaml
+from patience import PATIENCE
 
-TIMEOUT = 30  # [s] a command; most take one
+TIMEOUT = 30 * PATIENCE  # [s] a command; most take one
 ENVIRONMENT = dict(os.environ, PYTHONUNBUFFERED="1")
 
 
