@@ -210,18 +210,19 @@ class Lifecycle(Scenarios):
         self.assertEqual(len(answers), 1, "the client that waits is let go")
 
     def test_failure_is_told_and_ends_the_node(self):
-        # A journal that cannot be written to its end: the process may not write files larger than this.
+        # A journal that cannot be written to its end: the process may not write files larger than this. (LLVM's OpenMP
+        # needs a shared page of 1 kB, and dies without it.)
         def limit():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (400, 400))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
 
         node = self.start("failing", {"scenario": CORNER, "journal": self.path("journal.yaml")}, preexec=limit)
         told = []
         rospy.Subscriber("/failing/status", SimulationStatus, told.append)
         wait_until(lambda: told, "no status")
-        for speed in range(20):
+        for n in range(200):
             try:
-                if not node.call("set_wind", SetWind, speed=speed).success:
+                if not node.call("set_wind", SetWind, speed=1 + n % 20).success:
                     break
             except rospy.ServiceException:
                 break
