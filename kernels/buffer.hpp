@@ -21,11 +21,12 @@ class Buffer {
     return *this;
   }
   ~Buffer() {
-    if (data_) exec_->release(data_);
+    if (data_) exec_->release(data_, bytes());
   }
 
   T* data() const { return data_; }
   std::size_t size() const { return size_; }
+  std::size_t bytes() const { return size_ * sizeof(T); }
   explicit operator bool() const { return data_ != nullptr; }
 
   void set_zero() { exec_->set_zero(data_, size_ * sizeof(T)); }

@@ -3,6 +3,7 @@
 /// as OpenMP loops; CudaExec as kernels on one non-blocking stream of its own. A second stream carries
 /// snapshots to the host.
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -33,9 +34,18 @@ class Exec {
   virtual std::size_t memory_available() const = 0;  ///< bytes that an allocation may hope for
 
   /// Uninitialised memory on the device; throws ConfigError if there is not enough. Not for use inside a
-  /// step.
-  virtual void* allocate(std::size_t bytes) = 0;
-  virtual void release(void* memory) noexcept = 0;
+  /// step. `release` is told as many bytes as were allocated.
+  void* allocate(std::size_t bytes) {
+    void* memory = take(bytes);
+    bytes_held_ += bytes;
+    return memory;
+  }
+  void release(void* memory, std::size_t bytes) noexcept {
+    give_back(memory);
+    bytes_held_ -= bytes;
+  }
+  /// What was allocated on the device and not released, less what transforms take for themselves.
+  std::size_t bytes_held() const { return bytes_held_; }
   /// Host memory that copies to and from the device fast (pinned on a GPU).
   virtual void* allocate_host(std::size_t bytes) = 0;
   virtual void release_host(void* memory) noexcept = 0;
@@ -58,7 +68,17 @@ class Exec {
 
   /// A complex 2-D transform of width × height (x fastest), in place, unnormalised.
   virtual std::unique_ptr<Fft> make_fft(int width, int height) = 0;
+
+ protected:
+  virtual void* take(std::size_t bytes) = 0;
+  virtual void give_back(void* memory) noexcept = 0;
+
+ private:
+  std::atomic<std::size_t> bytes_held_{0};
 };
+
+/// What the host's memory can still take [bytes], within the limit of its control group.
+std::size_t host_memory_available();
 
 class CpuExec final : public Exec {
  public:
@@ -68,17 +88,19 @@ class CpuExec final : public Exec {
 
   const char* backend() const override { return "cpu"; }
   std::string device() const override;
-  std::size_t memory_available() const override;
-  void* allocate(std::size_t bytes) override;
-  void release(void* memory) noexcept override;
-  void* allocate_host(std::size_t bytes) override { return allocate(bytes); }
-  void release_host(void* memory) noexcept override { release(memory); }
+  std::size_t memory_available() const override { return host_memory_available(); }
+  void* allocate_host(std::size_t bytes) override { return take(bytes); }
+  void release_host(void* memory) noexcept override { give_back(memory); }
   void set_zero(void* memory, std::size_t bytes) override;
   void copy(void* to, const void* from, std::size_t bytes) override;
   void upload(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
   void download(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
   void synchronise() override {}
   std::unique_ptr<Fft> make_fft(int width, int height) override;
+
+ protected:
+  void* take(std::size_t bytes) override;
+  void give_back(void* memory) noexcept override;
 
  private:
   int threads_;
@@ -96,8 +118,6 @@ class CudaExec final : public Exec {
   const char* backend() const override { return "cuda"; }
   std::string device() const override;
   std::size_t memory_available() const override;
-  void* allocate(std::size_t bytes) override;
-  void release(void* memory) noexcept override;
   void* allocate_host(std::size_t bytes) override;
   void release_host(void* memory) noexcept override;
   void set_zero(void* memory, std::size_t bytes) override;
@@ -112,6 +132,10 @@ class CudaExec final : public Exec {
   /// One 64-bit word on the device and its pinned mirror, for reductions.
   long long* reduction_word() const { return reduction_word_; }
   long long read_reduction_word();
+
+ protected:
+  void* take(std::size_t bytes) override;
+  void give_back(void* memory) noexcept override;
 
  private:
   void* stream_ = nullptr;

@@ -2,8 +2,10 @@
 #include <omp.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <mutex>
 #include <new>
 
@@ -55,6 +57,43 @@ class FftwTransform final : public Fft {
 
 constexpr std::size_t alignment = 64;  // a cache line, and what FFTW's fastest code wants
 
+/// Calls work(begin, size) for parts of so many bytes, by all threads where there is more than one part.
+template <class Work>
+void in_parts(std::size_t bytes, int threads, const Work& work) {
+  const std::ptrdiff_t part = 1 << 16, parts = (static_cast<std::ptrdiff_t>(bytes) + part - 1) / part;
+#pragma omp parallel for schedule(static) num_threads(threads) if (parts > 1)
+  for (std::ptrdiff_t n = 0; n < parts; ++n) {
+    const std::size_t begin = static_cast<std::size_t>(n * part);
+    work(begin, std::min(static_cast<std::size_t>(part), bytes - begin));
+  }
+}
+
+std::size_t machine_memory_available() {
+  std::ifstream info("/proc/meminfo");
+  std::string key, unit;
+  std::size_t kilobytes;
+  while (info >> key >> kilobytes >> unit)
+    if (key == "MemAvailable:") return kilobytes * 1024;
+  return static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) *
+         static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// Within the limit of a container (control groups, version 2); its cache of files can be given up.
+std::size_t group_memory_available() {
+  constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+  const std::string folder = "/sys/fs/cgroup/memory.";
+  std::size_t most = 0, used = 0, cached = 0;
+  if (!(std::ifstream(folder + "max") >> most) || !(std::ifstream(folder + "current") >> used))
+    return unlimited;  // "max", or no such limit here
+  std::ifstream parts(folder + "stat");
+  std::string key;
+  std::size_t bytes;
+  while (parts >> key >> bytes)
+    if (key == "inactive_file") cached = bytes;
+  const std::size_t held = used - std::min(used, cached);
+  return most - std::min(most, held);
+}
+
 }  // namespace
 
 CpuExec::CpuExec(int threads) : threads_(threads > 0 ? threads : omp_get_num_procs()) {}
@@ -70,35 +109,27 @@ std::string CpuExec::device() const {
   return name + ", " + std::to_string(threads_) + (threads_ == 1 ? " thread" : " threads");
 }
 
-std::size_t CpuExec::memory_available() const {
-  std::ifstream info("/proc/meminfo");
-  std::string key, unit;
-  std::size_t kilobytes;
-  while (info >> key >> kilobytes >> unit)
-    if (key == "MemAvailable:") return kilobytes * 1024;
-  return static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) *
-         static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-}
+std::size_t host_memory_available() { return std::min(machine_memory_available(), group_memory_available()); }
 
-void* CpuExec::allocate(std::size_t bytes) {
+void* CpuExec::take(std::size_t bytes) {
   void* memory = ::operator new(bytes, std::align_val_t(alignment), std::nothrow);
   if (!memory) throw ConfigError("no memory for " + std::to_string(bytes) + " bytes");
   return memory;
 }
 
-void CpuExec::release(void* memory) noexcept { ::operator delete(memory, std::align_val_t(alignment)); }
+void CpuExec::give_back(void* memory) noexcept { ::operator delete(memory, std::align_val_t(alignment)); }
 
 void CpuExec::set_zero(void* memory, std::size_t bytes) {
-  char* bytes_of = static_cast<char*>(memory);
-  const std::ptrdiff_t chunk = 1 << 16, chunks = (static_cast<std::ptrdiff_t>(bytes) + chunk - 1) / chunk;
-#pragma omp parallel for schedule(static) num_threads(threads_)
-  for (std::ptrdiff_t n = 0; n < chunks; ++n) {
-    const std::size_t begin = static_cast<std::size_t>(n * chunk);
-    std::memset(bytes_of + begin, 0, begin + chunk < bytes ? chunk : bytes - begin);
-  }
+  in_parts(bytes, threads_, [=](std::size_t begin, std::size_t size) {
+    std::memset(static_cast<char*>(memory) + begin, 0, size);
+  });
 }
 
-void CpuExec::copy(void* to, const void* from, std::size_t bytes) { std::memcpy(to, from, bytes); }
+void CpuExec::copy(void* to, const void* from, std::size_t bytes) {
+  in_parts(bytes, threads_, [=](std::size_t begin, std::size_t size) {
+    std::memcpy(static_cast<char*>(to) + begin, static_cast<const char*>(from) + begin, size);
+  });
+}
 
 std::unique_ptr<Fft> CpuExec::make_fft(int width, int height) {
   return std::make_unique<FftwTransform>(width, height);

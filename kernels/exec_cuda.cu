@@ -26,6 +26,11 @@ class CufftTransform final : public Fft {
   ~CufftTransform() override { cufftDestroy(plan_); }
   void forward(Complex* values) override { execute(values, CUFFT_FORWARD); }
   void inverse(Complex* values) override { execute(values, CUFFT_INVERSE); }
+  std::size_t bytes() const override {
+    std::size_t bytes = 0;
+    check_cufft(cufftGetSize(plan_, &bytes), "size");
+    return bytes;
+  }
 
  private:
   void execute(Complex* values, int direction) {
@@ -94,7 +99,7 @@ CudaExec::CudaExec() {
 }
 
 CudaExec::~CudaExec() {
-  release(reduction_word_);
+  release(reduction_word_, sizeof(long long));
   release_host(reduction_host_);
   log_failure(cudaStreamDestroy(as_stream(stream_)), "ending a stream");
 }
@@ -113,7 +118,7 @@ std::size_t CudaExec::memory_available() const {
   return available;
 }
 
-void* CudaExec::allocate(std::size_t bytes) {
+void* CudaExec::take(std::size_t bytes) {
   void* memory = nullptr;
   const cudaError_t status = cudaMalloc(&memory, bytes ? bytes : 1);
   if (status == cudaErrorMemoryAllocation) {
@@ -124,7 +129,7 @@ void* CudaExec::allocate(std::size_t bytes) {
   return memory;
 }
 
-void CudaExec::release(void* memory) noexcept { log_failure(cudaFree(memory), "releasing memory"); }
+void CudaExec::give_back(void* memory) noexcept { log_failure(cudaFree(memory), "releasing memory"); }
 
 void* CudaExec::allocate_host(std::size_t bytes) {
   void* memory = nullptr;

@@ -1,6 +1,8 @@
 #pragma once
 /// The one small interface to FFTW3 (CPU) and cuFFT (GPU).
 
+#include <cstddef>
+
 namespace desert_sim {
 
 /// Layout-compatible with fftwf_complex and cufftComplex.
@@ -15,6 +17,8 @@ class Fft {
   virtual void forward(Complex* values) = 0;
   /// x = Σ X̂ e^(+2πi k·n/N), without the factor 1/N.
   virtual void inverse(Complex* values) = 0;
+  /// Device memory that it works in besides the values.
+  virtual std::size_t bytes() const { return 0; }
 };
 
 }  // namespace desert_sim

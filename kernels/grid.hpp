@@ -7,6 +7,10 @@
 
 namespace desert_sim {
 
+/// The most cells of a grid. Indices are ints, also of the rows by which a tile or a shape reaches beyond the
+/// grid: 64 rows of the widest, 65536 cells, are left for that.
+constexpr long long most_cells = (1LL << 31) - (1LL << 22);
+
 /// `width` × `height` square cells of `cell_size` metres, row-major, x (east) fastest, row 0 in the south. An
 /// axis is periodic (the far neighbour of the last cell is the first) or open (there is nothing beyond the
 /// edge).

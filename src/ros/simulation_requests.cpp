@@ -2,6 +2,7 @@
 #include "desert_sim/io/terrain_files.hpp"
 #include "desert_sim/ros/simulation_thread.hpp"
 #include "desert_sim/simulation/checkpoint.hpp"
+#include "desert_sim/simulation/memory.hpp"
 
 namespace desert_sim {
 
@@ -149,7 +150,7 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     }
     r.layer_bytes = s.terrain().bytes();
     r.memory_available = s.exec().memory_available();
-    r.memory_needed = Terrain::memory_needed(s.terrain().grid());
+    r.memory_needed = static_cast<double>(total_bytes(s.memory()));
     if (measure) measure_until_ = steady_now() + measure_for;
     return r;
   });

@@ -193,7 +193,8 @@ class Builder {
       const int reach = static_cast<int>(std::min(std::ceil(r), 1.0 * std::max(g.width, g.height)));
       for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach; dx <= reach; ++dx) {
-          const int i = dx * dx + dy * dy <= r * r ? neighbour_index(g, cx + dx, cy + dy) : -1;
+          const double distance2 = 1.0 * dx * dx + 1.0 * dy * dy;
+          const int i = distance2 <= r * r ? neighbour_index(g, cx + dx, cy + dy) : -1;
           if (i < 0) continue;
           double& v = values[static_cast<std::size_t>(i)];
           v = p.merge == Merge::replace ? p.height

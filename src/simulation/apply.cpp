@@ -5,6 +5,7 @@
 #include "desert_sim/scenario/live_parameters.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
 #include "desert_sim/simulation/command_checks.hpp"
+#include "desert_sim/simulation/memory.hpp"
 #include "desert_sim/simulation/simulation.hpp"
 #include "desert_sim/simulation/terrain_edit.hpp"
 
@@ -27,6 +28,7 @@ CommandResult Simulation::apply(const command::SetParameters& command) {
   const Scenario before = scenario_, present = present_scenario(),
                  changed = with_live_settings(present, command.settings);
   require_reach(changed);
+  require_more_memory(*this, changed);
   exec().synchronise();  // memory that steps in flight work with is given back
   scenario_ = changed;
   try {

@@ -12,6 +12,7 @@
 #include "desert_sim/core/files.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
 #include "desert_sim/simulation/command_yaml.hpp"
+#include "desert_sim/simulation/memory.hpp"
 
 namespace desert_sim {
 
@@ -92,6 +93,7 @@ class CheckpointAccess {
     HeightScale scale;
     scale.datum = header["datum"].as<double>();
     scale.exponent = header["exponent"].as<int>();
+    require_memory(exec, scenario, sizeof(std::uint32_t));
     std::unique_ptr<Simulation> s(new Simulation(scenario, Terrain(exec, scenario.make_grid(), scale)));
     s->start_ = read_scenario(header, "start", path);
     s->steps_ = header["steps"].as<std::uint64_t>();
@@ -156,7 +158,13 @@ void write_checkpoint(const std::string& path, const std::string& bytes) {
 
 std::string checkpoint_bytes(const Simulation& simulation) {
   const std::string header = CheckpointAccess::header(simulation);
-  std::string bytes = magic;
+  std::string bytes;
+  std::size_t length = header.size() + 256;
+  for (const LayerInfo& row : layer_table)
+    if (row.lifetime == Lifetime::persistent && simulation.terrain().has(row.layer))
+      length += static_cast<std::size_t>(simulation.terrain().grid().cells()) * sizeof(std::uint32_t);
+  bytes.reserve(length);  // growing could take three times as much
+  bytes = magic;
   append(bytes, version);
   append(bytes, static_cast<std::uint64_t>(header.size()));
   bytes += header;

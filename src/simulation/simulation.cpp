@@ -6,6 +6,7 @@
 
 #include "desert_sim/core/error.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
+#include "desert_sim/simulation/memory.hpp"
 
 namespace desert_sim {
 
@@ -28,7 +29,7 @@ void Simulation::run_processes(E& exec) {
   // The eddy before cliffs, which holds sand off and piles it up ahead (A7).
   if (s.echo_dunes.enabled)
     run(exec, "echo_dunes", {Layer::echo},
-        [&] { echo_dunes::step(exec, view, s.echo_dunes, cliff_.data()); });
+        [&] { echo_dunes::step(exec, view, s.echo_dunes, repose_.data()); });
 
   // Sand is lifted, carried a hop, deposited or bounced on; bouncing sand wears rock (B1–B4).
   if (s.saltation.enabled)
@@ -73,7 +74,7 @@ template <class E>
 void Simulation::update_wind(E& exec, const TerrainView& view) {
   surface::step(exec, view);
   if (features_)
-    wind_features::step(exec, view.grid, features_, static_cast<float>(time()), stream_.data(),
+    wind_features::step(exec, view.grid, features_, static_cast<float>(time()), repose_.data(),
                         perturbation_x_.data(), perturbation_y_.data());
   wind::step(exec, view, scenario_.wind, wind_above(), wind_reference_, perturbation_x_.data(),
              perturbation_y_.data(), wind_work_);
@@ -149,7 +150,7 @@ void Simulation::refresh_derived() {
     const TerrainView view = terrain_.view();
     update_wind(e, view);
     if (s.wind_shadow.enabled) wind_shadow::step(e, view, s.wind_shadow, shadow_work_);
-    if (s.echo_dunes.enabled) echo_dunes::step(e, view, s.echo_dunes, cliff_.data());
+    if (s.echo_dunes.enabled) echo_dunes::step(e, view, s.echo_dunes, repose_.data());
     reptation::step(e, view, only_angles, s.repose, s.run.time_step, s.seed, steps_,
                     reptation_strength_.data(), landed_.data(), repose_.data());
   });
@@ -187,6 +188,9 @@ void require_reach(const Scenario& s) {
   };
   check("wind_shadow.distance", s.wind_shadow.distance);
   check("echo_dunes.sticky_reach", static_cast<double>(s.echo_dunes.sticky_reach) * s.echo_dunes.highest);
+  const double steepness = std::tan(s.echo_dunes.cliff_deg * 3.14159265358979 / 180.0);
+  if (s.echo_dunes.enabled)  // from the top of a cliff to its foot
+    check("echo_dunes.highest", s.echo_dunes.highest / steepness);
   double fastest = s.wind_regime.speed;
   for (const WindSegment& segment : s.wind_segments)
     fastest = std::max(fastest, static_cast<double>(segment.speed));
@@ -198,7 +202,7 @@ namespace {
 
 HostLayers build_if_it_fits(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster) {
   require_reach(scenario);
-  Terrain::require_memory(exec, scenario.make_grid());
+  require_memory(exec, scenario, bytes_to_build(scenario));
   return build_terrain(scenario, load_raster);
 }
 
@@ -242,7 +246,6 @@ void Simulation::prepare_processes() {
   // A layer is there only while its process is on: others take its absence for "no shadow", "no echo".
   terrain_.use(Layer::wind_shadow, s.wind_shadow.enabled);
   terrain_.use(Layer::echo, s.echo_dunes.enabled);
-  cliff_ = s.echo_dunes.enabled ? Buffer<float>(e, static_cast<std::size_t>(grid.cells())) : Buffer<float>();
   wind_work_ = wind::make_workspace(e, grid, s.wind);
   shadow_work_ = wind_shadow::make_workspace(e, grid, s.wind_shadow);
   avalanche_work_ = avalanching::make_workspace(e, grid, s.avalanching);
@@ -259,7 +262,7 @@ void Simulation::upload_wind_features() {
   const Scenario& s = scenario_;
   if (s.wind_features.empty()) {
     features_ = {};
-    for (Buffer<float>* buffer : {&stream_, &perturbation_x_, &perturbation_y_}) *buffer = {};
+    for (Buffer<float>* buffer : {&perturbation_x_, &perturbation_y_}) *buffer = {};
     return;
   }
   std::vector<wind_features::Prepared> prepared;
@@ -271,8 +274,8 @@ void Simulation::upload_wind_features() {
   }
   features_ = Buffer<wind_features::Prepared>(exec(), prepared.size());
   features_.upload(prepared);
-  if (stream_) return;
-  for (Buffer<float>* buffer : {&stream_, &perturbation_x_, &perturbation_y_})
+  if (perturbation_x_) return;
+  for (Buffer<float>* buffer : {&perturbation_x_, &perturbation_y_})
     *buffer = Buffer<float>(exec(), static_cast<std::size_t>(terrain_.grid().cells()));
 }
 

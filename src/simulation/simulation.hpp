@@ -54,6 +54,12 @@ struct ProcessTime {
   double milliseconds = 0;
 };
 
+/// A part of the memory that a simulation holds on its backend's device.
+struct MemoryPart {
+  std::string name;  ///< a layer's, or of what processes work with
+  std::size_t bytes = 0;
+};
+
 /// Throws ConfigError if a hop or a march could reach too far: they are counted in 16.16 fixed-point cells.
 void require_reach(const Scenario& scenario);
 
@@ -83,6 +89,8 @@ class Simulation {
   Scenario present_scenario() const;
   const Terrain& terrain() const { return terrain_; }
   Exec& exec() const { return terrain_.exec(); }
+  /// All that is held on the device, part by part.
+  std::vector<MemoryPart> memory() const;
   wind::Vector wind_above() const { return regime_.at(time()); }
 
   /// Copies layers to the host. Elevation and wind are brought up to date first, and layers that exist on
@@ -109,6 +117,7 @@ class Simulation {
 
  private:
   friend class CheckpointAccess;
+  friend std::vector<MemoryPart> planned_memory(const Scenario&);
   /// With the terrain already made (from steps or from a checkpoint).
   Simulation(Exec& exec, const Scenario& scenario, const HostLayers& layers);
   Simulation(const Scenario& scenario, Terrain terrain);
@@ -167,8 +176,10 @@ class Simulation {
   avalanching::Workspace avalanche_work_;
   avalanching::GroundWorkspace ground_work_;
   Buffer<wind_features::Prepared> features_;
-  Buffer<float> stream_, perturbation_x_, perturbation_y_;
-  Buffer<float> reptation_strength_, repose_, cliff_;
+  Buffer<float> perturbation_x_, perturbation_y_;
+  /// The tangents of repose, from reptation on; what comes before it in a step may scribble there.
+  Buffer<float> repose_;
+  Buffer<float> reptation_strength_;
   Buffer<Quanta> landed_;
 
   StepRecordings recordings_;

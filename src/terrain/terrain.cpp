@@ -9,10 +9,6 @@
 
 namespace desert_sim {
 
-namespace {
-std::string megabytes(std::size_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; }
-}  // namespace
-
 Layer layer_by_name(const std::string& name) {
   std::string known;
   for (const LayerInfo& layer : layer_table) {
@@ -30,24 +26,13 @@ HeightScale HeightScale::covering(double lowest, double highest) {
   return scale;
 }
 
-double Terrain::memory_needed(const Grid& grid) {
-  constexpr double bytes_a_cell = 64;
-  return bytes_a_cell * grid.width * grid.height;
-}
-
-void Terrain::require_memory(const Exec& exec, const Grid& grid) {
-  const std::size_t cells = static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
-  const std::size_t needed = static_cast<std::size_t>(memory_needed(grid)),
-                    available = exec.memory_available();
-  if (cells >= (std::size_t{1} << 31) || needed > available)
-    throw ConfigError("grid of " + std::to_string(grid.width) + " x " + std::to_string(grid.height) +
-                      " cells needs about " + megabytes(needed) + " on the " + exec.backend() + " backend; " +
-                      megabytes(available) + " are available (and fewer than 2^31 cells are allowed)");
-}
-
 Terrain::Terrain(Exec& exec, const Grid& grid, const HeightScale& scale)
     : exec_(&exec), grid_(grid), scale_(scale) {
-  require_memory(exec, grid);
+  const long long cells = static_cast<long long>(grid.width) * grid.height;
+  if (cells > most_cells)
+    throw ConfigError("grid of " + std::to_string(grid.width) + " x " + std::to_string(grid.height) +
+                      " has " + std::to_string(cells) + " cells; more than " + std::to_string(most_cells) +
+                      " cannot be indexed");
   for (Layer layer :
        {Layer::bedrock, Layer::sand, Layer::airborne_sand, Layer::elevation, Layer::wind_x, Layer::wind_y})
     require(layer);

@@ -32,13 +32,10 @@ struct HeightScale {
 
 class Terrain {
  public:
-  /// All cells of all layers are 0 (bedrock: the datum). Throws ConfigError if memory does not suffice.
+  /// All cells of all layers are 0 (bedrock: the datum). Throws ConfigError if there are more than
+  /// most_cells, or if memory runs out; whether it will, require_memory() of simulation/memory.hpp tells
+  /// before.
   Terrain(Exec& exec, const Grid& grid, const HeightScale& scale);
-
-  /// About what a step works with on a terrain of this grid [bytes].
-  static double memory_needed(const Grid& grid);
-  /// Throws ConfigError, before anything is allocated, if a terrain of this grid can't be held.
-  static void require_memory(const Exec& exec, const Grid& grid);
 
   Exec& exec() const { return *exec_; }
   const Grid& grid() const { return grid_; }

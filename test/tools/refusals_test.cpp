@@ -68,8 +68,15 @@ TEST_F(Refusals, RasterThatIsText) {
 TEST_F(Refusals, ScenarioThatIsMissing) { expect_refused({path("no_such.yaml")}, {"no_such.yaml"}); }
 TEST_F(Refusals, ScenarioThatIsAFolder) { expect_refused({path(".")}, {path(".")}); }
 TEST_F(Refusals, ScenarioThatIsNoYaml) { expect_text_refused("grid: {width: [\n", {"wrong.yaml", "line"}); }
+TEST_F(Refusals, GridWithMoreCellsThanIndices) {
+  expect_text_refused("grid: {width: 65536, height: 32768}\n", {"65536 x 32768", "2147483648", "2143289344"});
+}
 TEST_F(Refusals, GridTooBigForMemory) {
-  expect_text_refused("grid: {width: 60000, height: 60000}\n", {"60000 x 60000", "MiB"});
+  std::string layers;  // a few hundred GiB, whatever the machine
+  for (const char* layer : {"soil", "water", "moisture", "humus", "vegetation", "suspended_sediment"})
+    layers += std::string("  - uniform: {layer: ") + layer + ", value: 0}\n";
+  expect_text_refused("grid: {width: 46000, height: 46000}\nterrain:\n" + layers,
+                      {"46000 x 46000", "bytes", "GiB", " a cell", "there are"});
 }
 
 TEST_F(Refusals, CheckpointThatIsCut) {

@@ -130,13 +130,6 @@ TEST(Terrain, GivesBackWhatItWasGivenToHalfAQuantum) {
   EXPECT_EQ(terrain.values(Layer::soil), std::vector<float>(4, 0.0f)) << "a layer that is not in use is 0";
 }
 
-TEST(Terrain, IsRefusedWhereMemoryOrIndicesDoNotSuffice) {
-  CpuExec exec(1);
-  EXPECT_THROW(Terrain::require_memory(exec, Grid{60000, 60000, 1, true, true}), ConfigError);
-  EXPECT_THROW(Terrain::require_memory(exec, Grid{65536, 32768, 1, true, true}), ConfigError);
-  EXPECT_NO_THROW(Terrain::require_memory(exec, Grid{64, 64, 1, true, true}));
-}
-
 TEST(Layers, HaveNamesThatAreFoundAndNoOthers) {
   for (const LayerInfo& row : layer_table) {
     EXPECT_EQ(layer_by_name(row.name), row.layer);

@@ -1,0 +1,179 @@
+// Memory: what a simulation holds is what its parts say and what was planned, is little a cell, and is
+// refused before anything is allocated where it does not fit.
+
+#include "desert_sim/simulation/memory.hpp"
+
+#include <cstdio>
+
+#include "desert_sim/simulation/checkpoint.hpp"
+#include "desert_sim/tools/bench_scenes.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+/// Every process that moves sand.
+const Settings all_aeolian = {"wind_shadow.enabled=true", "echo_dunes.enabled=true", "saltation.enabled=true",
+                              "avalanching.enabled=true"};
+/// Scene A with cells of a metre: in larger ones the wind's transforms would be as fine as the grid.
+Scenario scene(int size, Settings settings) {
+  settings.push_back("grid.cell_size=1");
+  return bench_scenario("A", size, settings);
+}
+double bytes_a_cell(const std::vector<MemoryPart>& parts, int size) {
+  return static_cast<double>(total_bytes(parts)) / (static_cast<double>(size) * size);
+}
+
+/// A device with as much memory as a test says, where nothing may be allocated.
+class TightExec final : public Exec {
+ public:
+  TightExec(const char* backend, std::size_t available) : backend_(backend), available_(available) {}
+  const char* backend() const override { return backend_; }
+  std::string device() const override { return "a test's"; }
+  std::size_t memory_available() const override { return available_; }
+  void* allocate_host(std::size_t) override { throw Error("allocated on the host"); }
+  void release_host(void*) noexcept override {}
+  void set_zero(void*, std::size_t) override {}
+  void copy(void*, const void*, std::size_t) override {}
+  void upload(void*, const void*, std::size_t) override {}
+  void download(void*, const void*, std::size_t) override {}
+  void synchronise() override {}
+  std::unique_ptr<Fft> make_fft(int, int) override { throw Error("made a transform"); }
+
+ protected:
+  void* take(std::size_t) override { throw Error("allocated before it was refused"); }
+  void give_back(void*) noexcept override {}
+
+ private:
+  const char* backend_;
+  std::size_t available_;
+};
+
+std::string refusal(Exec& exec, const Scenario& scenario) {
+  try {
+    Simulation(exec, scenario, refuse_rasters);
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  ADD_FAILURE() << "was not refused";
+  return "";
+}
+
+std::size_t part(const std::vector<MemoryPart>& parts, const std::string& name) {
+  for (const MemoryPart& p : parts)
+    if (p.name == name) return p.bytes;
+  return 0;
+}
+
+const char* const all_kinds[] = {
+    "grid: {width: 96, height: 64}\n",
+    "grid: {width: 96, height: 64, boundary: open}\nterrain: [obstacle: {height: 3}, uniform: {layer: soil, "
+    "value: "
+    "1}]\necho_dunes: {enabled: true}\nabrasion: {rate: 0.001}\n",
+    "grid: {width: 64, height: 96}\nwind_shadow: {enabled: false}\navalanching: {scheme: sweeps}\nwind: "
+    "{features: [{kind: vortex, x: 5, y: 5}]}\n",
+};
+
+class Memory : public test::OnBackend {};
+
+TEST_P(Memory, PartsAreAllThatIsHeldAndWhatWasPlanned) {
+  for (const char* text : all_kinds) {
+    const std::size_t before = exec().bytes_held();
+    const Scenario scenario = test::scenario_of(text);
+    Simulation s(exec(), scenario, refuse_rasters);
+    std::vector<MemoryPart> held = s.memory(), planned = planned_memory(s.scenario());
+    ASSERT_EQ(held.size(), planned.size()) << text;
+    for (std::size_t n = 0; n < held.size(); ++n) {
+      EXPECT_EQ(held[n].name, planned[n].name) << text;
+      if (held[n].name == "wind's transforms")  // of which an estimate is theirs alone
+        EXPECT_LE(held[n].bytes, planned[n].bytes * 2) << text;
+      else
+        EXPECT_EQ(held[n].bytes, planned[n].bytes) << held[n].name << " of\n" << text;
+    }
+    const std::size_t counted = exec().bytes_held() - before;
+    EXPECT_LE(counted, total_bytes(held)) << text;
+    if (std::string(exec().backend()) == "cpu") {
+      EXPECT_EQ(counted, total_bytes(held)) << text;
+    }
+  }
+}
+
+TEST_P(Memory, IsGivenBack) {
+  const std::size_t before = exec().bytes_held();
+  simulation(all_kinds[1])->step();
+  EXPECT_EQ(exec().bytes_held(), before);
+}
+
+TEST_P(Memory, OfAllAeolianProcessesIsAtMostSixtyBytesACell) {
+  Simulation s(exec(), scene(256, all_aeolian), refuse_rasters);
+  s.step();
+  for (const MemoryPart& p : s.memory())
+    std::printf("  %-28s %6.2f bytes a cell\n", p.name.c_str(), static_cast<double>(p.bytes) / (256 * 256));
+  EXPECT_LE(bytes_a_cell(s.memory(), 256), 60);
+}
+
+TEST(MemoryPlan, OfTheLargestBenchmarkIsAtMostSixtyBytesACell) {
+  const auto plan = planned_memory(bench_scenario("A", 16384, all_aeolian));
+  EXPECT_LE(bytes_a_cell(plan, 16384), 60);
+  EXPECT_EQ(part(plan, "sand"), std::size_t{4} * 16384 * 16384);
+}
+
+TEST(MemoryPlan, OfAbrasionAddsSixWordsACell) {
+  Settings settings = all_aeolian;
+  const double without = bytes_a_cell(planned_memory(scene(1024, settings)), 1024);
+  settings.push_back("abrasion.rate=0.001");
+  EXPECT_LE(bytes_a_cell(planned_memory(scene(1024, settings)), 1024), without + 24);
+}
+
+TEST(MemoryRefusal, TellsWhatIsNeededAndWhatThereIs) {
+  const Scenario scenario = bench_scenario("A", 1024, {});
+  const std::size_t needed = total_bytes(planned_memory(scenario));
+  for (const char* backend : {"cpu", "cuda"}) {
+    TightExec exec(backend, needed - 1);
+    const std::string why = refusal(exec, scenario);
+    for (const std::string& text : {std::string("1024 x 1024"), std::to_string(needed),
+                                    std::to_string(needed - 1), std::string(" a cell"), std::string(backend)})
+      EXPECT_NE(why.find(text), std::string::npos) << "no '" << text << "' in: " << why;
+  }
+}
+
+TEST(MemoryRefusal, CountsTheHostsMemoryWhileTheTerrainIsMade) {
+  TightExec exec("cuda", std::size_t{1} << 62);
+  const Scenario scenario = bench_scenario("A", 1024, {});
+  EXPECT_NO_THROW(require_memory(exec, scenario, bytes_to_build(scenario)));
+  try {
+    require_memory(exec, scenario, 1e9);
+    ADD_FAILURE() << "a million gigabytes were there";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("on the host"), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(bytes_to_build(scenario), 2 * 8 + 4) << "bedrock and sand as doubles, and one of them as quanta";
+}
+
+TEST(MemoryRefusal, OfGridsThatIndicesDoNotReach) {
+  TightExec exec("cuda", std::size_t{1} << 62);
+  const auto scenario = [](int width, int height, const std::string& more) {
+    return test::scenario_of("grid: {width: " + std::to_string(width) +
+                             ", height: " + std::to_string(height) + more + "}\n");
+  };
+  EXPECT_NE(refusal(exec, scenario(65536, 32768, "")).find("2147483648"), std::string::npos);
+  // An open grid's transform has twice the cells along either axis.
+  const std::string why = refusal(exec, scenario(32768, 32768, ", cell_size: 10, boundary: open"));
+  EXPECT_NE(why.find("wind.coarsening"), std::string::npos) << why;
+  EXPECT_NE(why.find("4294967296"), std::string::npos) << why;
+  EXPECT_THROW(Terrain(exec, Grid{65536, 65536, 1, true, true}, HeightScale{}), ConfigError);
+}
+
+TEST(MemoryRefusal, OfACheckpointThatDoesNotFit) {
+  const test::TemporaryFolder folder;
+  CpuExec enough(1);
+  save_checkpoint(folder.path("small"), Simulation(enough, bench_scenario("A", 32, {}), refuse_rasters));
+  TightExec tight("cuda", 1000);
+  EXPECT_THROW(load_checkpoint(folder.path("small"), tight), ConfigError);
+}
+
+DESERT_ON_EACH_BACKEND(Memory);
+
+}  // namespace
+}  // namespace desert_sim
