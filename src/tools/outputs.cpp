@@ -13,6 +13,7 @@
 
 #include "desert_sim/core/error.hpp"
 #include "desert_sim/core/files.hpp"
+#include "desert_sim/tools/json_text.hpp"
 #if DESERT_WITH_IO
 #include "desert_sim/io/snapshots.hpp"
 #endif
@@ -20,28 +21,6 @@
 namespace desert_sim {
 
 namespace {
-
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
-
-/// A text as JSON writes it.
-std::string json_text(const std::string& text) {
-  std::string out = "\"";
-  for (char c : text) {
-    char code[8];
-    std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    if (static_cast<unsigned char>(c) < 0x20) {
-      out += code;
-      continue;
-    }
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
-}
 
 #if DESERT_WITH_IO
 void write_rasters(const std::string& folder, const Snapshot& s, const std::string& projection) {
@@ -74,38 +53,39 @@ std::string summary(Simulation& s, const RunReport& report) {
   std::ostringstream out;
   const GridParameters& g = s.scenario().grid;
   out << "{\n  \"scenario\": " << json_text(s.scenario().name) << ",\n  \"steps\": " << s.steps()
-      << ",\n  \"sim_time_s\": " << number(s.time()) << ",\n  \"width\": " << g.width
-      << ",\n  \"height\": " << g.height << ",\n  \"cell_size_m\": " << number(g.cell_size)
+      << ",\n  \"sim_time_s\": " << json_number(s.time()) << ",\n  \"width\": " << g.width
+      << ",\n  \"height\": " << g.height << ",\n  \"cell_size_m\": " << json_number(g.cell_size)
       << ",\n  \"backend\": " << json_text(report.backend) << ",\n  \"device\": " << json_text(report.device)
       << ",\n  \"threads\": " << report.threads << ",\n  \"seed\": " << s.scenario().seed
       << ",\n  \"ms_per_step\": {\"total\": "
-      << number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
+      << json_number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
   for (const ProcessTime& t : s.process_times())
     out << ", " << json_text(t.process) << ": "
-        << number(report.timed_steps ? t.milliseconds / static_cast<double>(report.timed_steps) : 0.0);
+        << json_number(report.timed_steps ? t.milliseconds / static_cast<double>(report.timed_steps) : 0.0);
   out << "},\n  \"volume_m3\": {";
   const auto balance = s.balance();
   for (std::size_t m = 0; m < balance.size(); ++m) {
     const MaterialBalance& b = balance[m];
     out << (m ? ",\n    " : "\n    ") << json_text(material_names[m])
-        << ": {\"initial\": " << number(b.initial_m3()) << ", \"final\": " << number(b.final_m3())
-        << ", \"in\": " << number(b.cubic_metres(b.in)) << ", \"out\": " << number(b.cubic_metres(b.out))
-        << "}";
+        << ": {\"initial\": " << json_number(b.initial_m3()) << ", \"final\": " << json_number(b.final_m3())
+        << ", \"in\": " << json_number(b.cubic_metres(b.in))
+        << ", \"out\": " << json_number(b.cubic_metres(b.out)) << "}";
   }
   out << "\n  },\n  \"mass_residual\": {";
   for (std::size_t m = 0; m < balance.size(); ++m)
-    out << (m ? ", " : "") << json_text(material_names[m]) << ": " << number(balance[m].relative_residual());
+    out << (m ? ", " : "") << json_text(material_names[m]) << ": "
+        << json_number(balance[m].relative_residual());
   const Residual r = s.residual();
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   char hash[20];
   std::snprintf(hash, sizeof hash, "%016" PRIx64, s.state_hash());
-  out << "},\n  \"max_sand_slope_deg\": " << number(s.max_sand_slope_deg())
-      << ",\n  \"avalanche_iterations_mean\": " << number(s.mean_avalanche_iterations())
-      << ",\n  \"avalanche_residual\": {\"share_over_1e-3\": " << number(r.share_over_1e3)
-      << ", \"share_over_1e-2\": " << number(r.share_over_1e2)
-      << ", \"mean_excess\": " << number(r.mean_excess)
-      << ", \"largest_excess\": " << number(r.largest_excess) << "},\n  \"state_hash\": \"" << hash
+  out << "},\n  \"max_sand_slope_deg\": " << json_number(s.max_sand_slope_deg())
+      << ",\n  \"avalanche_iterations_mean\": " << json_number(s.mean_avalanche_iterations())
+      << ",\n  \"avalanche_residual\": {\"share_over_1e-3\": " << json_number(r.share_over_1e3)
+      << ", \"share_over_1e-2\": " << json_number(r.share_over_1e2)
+      << ", \"mean_excess\": " << json_number(r.mean_excess)
+      << ", \"largest_excess\": " << json_number(r.largest_excess) << "},\n  \"state_hash\": \"" << hash
       << "\",\n  \"peak_memory_bytes\": " << usage.ru_maxrss * 1024LL
       << ",\n  \"rasters\": " << (DESERT_WITH_IO ? "true" : "false") << "\n}\n";
   return out.str();

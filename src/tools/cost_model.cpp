@@ -1,0 +1,56 @@
+#include "desert_sim/tools/cost_model.hpp"
+
+#include <cstdio>
+
+namespace desert_sim {
+
+namespace {
+
+constexpr double layer = 4;  // bytes a cell
+
+/// Passes of avalanching read ground, sand and tangents, and write sand. All coarse levels together have a
+/// third of the grid's cells; each is filled (ground, sand twice, tangents), passed over, and read again
+/// (sand, before and after). That the fine grid is read to fill the first is not counted: a pass could do it.
+ProcessCost avalanches(AvalancheQuality quality) {
+  const avalanching::Schedule plan = avalanching::schedule(quality);
+  const int fine = plan.before + plan.after;
+  const double coarse = (4 + 4 * plan.coarse + 2) / 3.0;
+  const std::string times = fine == 1 ? "" : " x " + std::to_string(fine);
+  return {"avalanching", layer * (4 * fine + coarse), "(bedrock, sand, tangents)" + times + "; levels",
+          "sand" + times + "; levels"};
+}
+
+}  // namespace
+
+std::vector<ProcessCost> cost_model(AvalancheQuality quality) {
+  return {
+      {"wind", 6 * layer, "bedrock, sand; elevation", "elevation; wind (2)"},
+      {"wind_shadow", 4 * layer, "elevation, wind (2)", "shadow"},
+      {"echo_dunes", 6 * layer, "elevation, wind (2); cliffs", "cliffs; echo"},
+      {"saltation", 13 * layer, "sand, airborne, wind (2), shadow; landed, sand, shadow",
+       "sand, landed; sand, airborne, strength"},
+      {"reptation", 5 * layer, "strength, wind (2), shadow", "tangents"},
+      avalanches(quality),
+  };
+}
+
+double fewest_bytes(const std::vector<ProcessCost>& model, const std::string& process) {
+  for (const ProcessCost& cost : model)
+    if (process == cost.process) return cost.bytes;
+  return 0;
+}
+
+std::string cost_table() {
+  std::string text;
+  const auto add = [&text](const ProcessCost& cost, const std::string& name) {
+    char bytes[16];
+    std::snprintf(bytes, sizeof bytes, "%.0f", cost.bytes);
+    text += "| " + name + " | " + cost.reads + " | " + cost.writes + " | " + bytes + " |\n";
+  };
+  for (const ProcessCost& cost : cost_model(AvalancheQuality::fast))
+    add(cost, std::string(cost.process) == "avalanching" ? "avalanching, fast" : cost.process);
+  add(cost_model(AvalancheQuality::good).back(), "avalanching, good");
+  return text;
+}
+
+}  // namespace desert_sim
