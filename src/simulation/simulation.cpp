@@ -249,6 +249,7 @@ void Simulation::prepare_processes() {
   wind_work_ = wind::make_workspace(e, grid, s.wind);
   shadow_work_ = wind_shadow::make_workspace(e, grid, s.wind_shadow);
   avalanche_work_ = avalanching::make_workspace(e, grid, s.avalanching);
+  if (!s.saltation.enabled) reptation_strength_.set_zero();  // without grains there are no impacts
   if (s.abrasion.rate > 0 || bedrock_loose_ || soil_loose_) prepare_ground_avalanches();
 }
 

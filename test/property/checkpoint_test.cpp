@@ -44,6 +44,17 @@ class Checkpoint : public test::OnBackend {
   test::TemporaryFolder folder_;
 };
 
+TEST_P(Checkpoint, ContinuesToTheBitAfterSaltationWasSwitchedOff) {
+  auto s = simulation(world);
+  test::run(*s, 5);
+  s->apply(command::SetParameters{{"saltation.enabled=false"}});
+  save_checkpoint(folder_.path("a.ck"), *s);
+  const auto loaded = load_checkpoint(folder_.path("a.ck"), exec());
+  test::run(*s, 5);
+  test::run(*loaded, 5);
+  EXPECT_EQ(s->state_hash(), loaded->state_hash()) << "impacts went on without grains";
+}
+
 TEST_P(Checkpoint, CutAnywhereIsRefused) {
   const std::string bytes = test::file_bytes(saved());
   for (std::size_t n = 0; n < 16; ++n) {
