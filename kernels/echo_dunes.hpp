@@ -42,8 +42,7 @@ namespace echo_dunes {
 struct CliffHeight {
   Grid grid;
   float quantum;
-  const Quanta* elevation;
-  const float *wind_x, *wind_y;
+  const float *heights, *wind_x, *wind_y;
   float steepness;  ///< tangent
   float highest;
   float* cliff;  ///< [m], 0 where there is none
@@ -57,8 +56,8 @@ struct CliffHeight {
     const float drop = steepness * grid.cell_size / quantum;  // quanta a step
     float last = 0.0f, rise = 0.0f;  // heights here and below it, relative to this cell
     for (int j = 1; rise * quantum < highest; ++j) {
-      const float next = wind_shadow::height_anywhere(grid, elevation, elevation[i],
-                                                      wind_shadow::Place(x, y, j * dx, j * dy));
+      const wind_shadow::Place place(x, y, j * dx, j * dy);
+      const float next = wind_shadow::height_anywhere(grid, heights, place) - heights[i];
       if (last - next < drop) break;
       last = next;
       rise = -next;
@@ -100,10 +99,11 @@ struct Classify {
 
 /// `cliff` is scratch memory of one float a cell.
 template <class E>
-void step(E& exec, const TerrainView& t, const EchoDuneParameters& p, float* cliff) {
+void step(E& exec, const TerrainView& t, const EchoDuneParameters& p, const surface::Heights& heights,
+          float* cliff) {
   const float steepness = tanf(p.cliff_deg * 3.14159265358979f / 180.0f);
   for_each_cell(exec, t.grid,
-                CliffHeight{t.grid, t.quantum, t.quanta(Layer::elevation), t.real(Layer::wind_x),
+                CliffHeight{t.grid, t.quantum, heights.of_cells.data(), t.real(Layer::wind_x),
                             t.real(Layer::wind_y), steepness, p.highest, cliff});
   for_each_cell(
       exec, t.grid,

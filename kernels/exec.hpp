@@ -66,8 +66,8 @@ class Exec {
   /// Waits for all that was started; throws CudaError if any of it failed.
   virtual void synchronise() = 0;
 
-  /// A complex 2-D transform of width × height (x fastest), in place, unnormalised.
-  virtual std::unique_ptr<Fft> make_fft(int width, int height) = 0;
+  /// A complex 2-D transform of width × height (x fastest), in place, unnormalised; of `fields` of them at once.
+  virtual std::unique_ptr<Fft> make_fft(int width, int height, int fields = 1) = 0;
 
  protected:
   virtual void* take(std::size_t bytes) = 0;
@@ -96,7 +96,7 @@ class CpuExec final : public Exec {
   void upload(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
   void download(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
   void synchronise() override {}
-  std::unique_ptr<Fft> make_fft(int width, int height) override;
+  std::unique_ptr<Fft> make_fft(int width, int height, int fields) override;
 
  protected:
   void* take(std::size_t bytes) override;
@@ -127,7 +127,7 @@ class CudaExec final : public Exec {
   void synchronise() override;
   bool records() const override { return true; }
   std::unique_ptr<Recording> record(const std::function<void()>& work) override;
-  std::unique_ptr<Fft> make_fft(int width, int height) override;
+  std::unique_ptr<Fft> make_fft(int width, int height, int fields) override;
 
   /// One 64-bit word on the device and its pinned mirror, for reductions.
   long long* reduction_word() const { return reduction_word_; }

@@ -27,14 +27,19 @@ std::mutex& planner() {
 /// hash of a run must not depend on them. The grid of the wind is coarse, so this costs little.
 class FftwTransform final : public Fft {
  public:
-  FftwTransform(int width, int height) {
+  FftwTransform(int width, int height, int fields) {
     const std::lock_guard<std::mutex> lock(planner());
-    auto* memory = static_cast<fftwf_complex*>(fftwf_malloc(sizeof(fftwf_complex) * width * height));
+    const int size[] = {height, width}, values = width * height;
+    auto* memory = static_cast<fftwf_complex*>(fftwf_malloc(sizeof(fftwf_complex) * values * fields));
     if (!memory)
       throw ConfigError("no memory for a transform of " + std::to_string(width) + " x " +
                         std::to_string(height));
-    forward_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_FORWARD, FFTW_ESTIMATE);
-    inverse_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_BACKWARD, FFTW_ESTIMATE);
+    const auto plan = [&](int direction) {
+      return fftwf_plan_many_dft(2, size, fields, memory, nullptr, 1, values, memory, nullptr, 1, values, direction,
+                                 FFTW_ESTIMATE);
+    };
+    forward_ = plan(FFTW_FORWARD);
+    inverse_ = plan(FFTW_BACKWARD);
     fftwf_free(memory);
     if (!forward_ || !inverse_)
       throw Error("FFTW made no plan for " + std::to_string(width) + " x " + std::to_string(height));
@@ -131,8 +136,8 @@ void CpuExec::copy(void* to, const void* from, std::size_t bytes) {
   });
 }
 
-std::unique_ptr<Fft> CpuExec::make_fft(int width, int height) {
-  return std::make_unique<FftwTransform>(width, height);
+std::unique_ptr<Fft> CpuExec::make_fft(int width, int height, int fields) {
+  return std::make_unique<FftwTransform>(width, height, fields);
 }
 
 std::unique_ptr<Recording> Exec::record(const std::function<void()>&) {

@@ -19,8 +19,10 @@ void check_cufft(cufftResult status, const char* what) {
 
 class CufftTransform final : public Fft {
  public:
-  CufftTransform(cudaStream_t stream, int width, int height) {
-    check_cufft(cufftPlan2d(&plan_, height, width, CUFFT_C2C), "plan");
+  CufftTransform(cudaStream_t stream, int width, int height, int fields) {
+    int size[] = {height, width};
+    const int values = width * height;
+    check_cufft(cufftPlanMany(&plan_, 2, size, nullptr, 1, values, nullptr, 1, values, CUFFT_C2C, fields), "plan");
     check_cufft(cufftSetStream(plan_, stream), "stream");
   }
   ~CufftTransform() override { cufftDestroy(plan_); }
@@ -167,8 +169,8 @@ std::unique_ptr<Recording> CudaExec::record(const std::function<void()>& work) {
   return std::make_unique<GraphRecording>(as_stream(stream_), work);
 }
 
-std::unique_ptr<Fft> CudaExec::make_fft(int width, int height) {
-  return std::make_unique<CufftTransform>(as_stream(stream_), width, height);
+std::unique_ptr<Fft> CudaExec::make_fft(int width, int height, int fields) {
+  return std::make_unique<CufftTransform>(as_stream(stream_), width, height, fields);
 }
 
 long long CudaExec::read_reduction_word() {

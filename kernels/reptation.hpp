@@ -11,8 +11,9 @@
 ///   steepest         with probability (1 − v)(1 − e^(−r)), `slab`·Δt to the two steepest neighbours, by
 ///   their slopes
 ///
-/// Every choice writes the repose tangents (without r but for adaptive_repose). Reads sand, bedrock, soil,
-/// wind, wind_shadow, vegetation, moisture; writes sand and the scratch layer of repose tangents.
+/// Saltation's deposit sets the angles, of every choice (without r but for adaptive_repose), in the same pass: see
+/// Impacts. Reads sand, bedrock, soil, wind, wind_shadow, vegetation, moisture; writes sand and the scratch layer of
+/// repose tangents.
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/for_each.hpp"
@@ -44,26 +45,69 @@ static_assert(table_is_complete<ReptationParameters>());
 
 namespace reptation {
 
-struct ReposeTangent {
-  Grid grid;
+/// The angle of repose of a cell's sand where impacts of strength r [m] loosen it, in the wind's speed [m/s].
+struct Angle {
   repose::Tangents tangents;
   repose::RelativeMoisture moisture;
-  float strength;  ///< k_r, or 0
+  float loosening;  ///< k_r of adaptive_repose, else 0
   bool use_shadow;
-  const float *reptation_strength, *wind_x, *wind_y, *wind_shadow, *vegetation;
+  const float *wind_shadow, *vegetation;
   float* repose;
 
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
+  Angle(const TerrainView& t, const ReptationParameters& p, const ReposeParameters& repose_parameters,
+        float* tangents_of_repose)
+      : tangents(repose_parameters),
+        moisture(t, repose_parameters),
+        loosening(p.method == ReptationMethod::adaptive_repose ? p.strength : 0.0f),
+        use_shadow(p.use_shadow),
+        wind_shadow(t.real(Layer::wind_shadow)),
+        vegetation(t.real(Layer::vegetation)),
+        repose(tangents_of_repose) {}
+
+  DESERT_HD void set(int i, float r, float speed) const {
     float sand = tangents.sand;
-    if (strength > 0.0f) {
+    if (loosening > 0.0f) {
       const float open = use_shadow ? 1.0f - value_or_zero(wind_shadow, i) : 1.0f;
-      sand *= exp_negative(strength * reptation_strength[i] * hypotenuse(wind_x[i], wind_y[i]) * open);
+      sand *= exp_negative(loosening * r * speed * open);
     }
     repose[i] =
         lerp(sand, tangents.vegetated, value_or_zero(vegetation, i)) * repose::moisture_factor(moisture(i));
   }
 };
+
+/// What saltation leaves behind in a cell: its angle, and the strength itself where somebody needs it.
+struct Impacts {
+  Angle angle;
+  float* strength;  ///< [m], or null
+
+  DESERT_HD void set(int i, float r, float speed) const {
+    angle.set(i, r, speed);
+    if (strength) strength[i] = r;
+  }
+};
+
+/// Angles of repose where there is no saltation that sets them.
+struct SetAngles {
+  Grid grid;
+  Angle angle;
+  const float *strength, *wind_x, *wind_y;  ///< strength: null where nothing hits
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    angle.set(i, value_or_zero(strength, i), hypotenuse(wind_x[i], wind_y[i]));
+  }
+};
+template <class E>
+void set_angles(E& exec, const TerrainView& t, const Angle& angle, const float* strength) {
+  for_each_cell(exec, t.grid,
+                SetAngles{t.grid, angle, strength, t.real(Layer::wind_x), t.real(Layer::wind_y)});
+}
+
+/// Whether step() does anything: adaptive_repose has done with the angles.
+inline bool moves_sand(const ReptationParameters& p) {
+  return p.method == ReptationMethod::steepest ||
+         (p.method == ReptationMethod::smoothing && p.strength > 0.0f);
+}
 
 /// What the laws below share: heights, and the change of sand that they write.
 struct Surface {
@@ -168,12 +212,11 @@ struct ApplyChange {
   }
 };
 
-/// Scratch: `change` (quanta) one a cell. `repose` gets the tangents of repose. `seed` and `tick` (steps
-/// done) draw the events of `steepest`.
+/// Moves sand. Scratch: `change` (quanta) one a cell. `seed` and `tick` (steps done) draw the events of `steepest`.
 template <class E>
-void step(E& exec, const TerrainView& t, const ReptationParameters& p,
-          const ReposeParameters& repose_parameters, float time_step, std::uint64_t seed, std::uint64_t tick,
-          const float* reptation_strength, Quanta* change, float* repose) {
+void step(E& exec, const TerrainView& t, const ReptationParameters& p, float time_step, std::uint64_t seed,
+          std::uint64_t tick, const float* reptation_strength, Quanta* change) {
+  if (!moves_sand(p)) return;
   const Surface surface{t.grid,
                         t.quanta(Layer::bedrock),
                         t.quanta(Layer::soil),
@@ -182,14 +225,8 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p,
                         t.real(Layer::wind_x),
                         t.real(Layer::wind_y),
                         t.real(Layer::obstacle)};
-  const bool adaptive = p.method == ReptationMethod::adaptive_repose;
-  for_each_cell(exec, t.grid,
-                ReposeTangent{t.grid, repose::Tangents(repose_parameters),
-                              repose::RelativeMoisture(t, repose_parameters), adaptive ? p.strength : 0.0f,
-                              p.use_shadow, reptation_strength, t.real(Layer::wind_x), t.real(Layer::wind_y),
-                              t.real(Layer::wind_shadow), t.real(Layer::vegetation), repose});
   const ApplyChange apply{t.grid, change, t.quanta(Layer::sand)};
-  if (p.method == ReptationMethod::smoothing && p.strength > 0.0f) {
+  if (p.method == ReptationMethod::smoothing) {
     // Stable while a cell gives less than half of what would level it with all eight: strength · r |w| ≤ ½.
     const float strength = p.strength * time_step / t.grid.cell_size;
     const float diffusivity = max_cells(exec, t.grid, Diffusivity{surface});
@@ -198,7 +235,7 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p,
       for_each_cell(exec, t.grid, SmoothingFlux{surface, strength / substeps, change});
       for_each_cell(exec, t.grid, apply);
     }
-  } else if (p.method == ReptationMethod::steepest) {
+  } else {
     exec.set_zero(change, sizeof(Quanta) * t.grid.cells());
     for_each_cell(exec, t.grid,
                   SteepestEvent{surface, t.real(Layer::vegetation), seed, tick, p.slab * time_step,

@@ -18,7 +18,7 @@
 #include "desert_sim/kernels/abrasion.hpp"
 #include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/ledger.hpp"
-#include "desert_sim/kernels/repose.hpp"
+#include "desert_sim/kernels/reptation.hpp"
 
 namespace desert_sim {
 
@@ -164,15 +164,14 @@ struct Influx {
   }
 };
 
-/// Deposits a share of what landed; the rest bounces on. Wears the ground, and notes the strength of
-/// reptation.
+/// Deposits a share of what landed; the rest bounces on. Wears the ground, and leaves the impacts' marks.
 struct Deposit {
   Inputs in;
   SaltationParameters p;
   abrasion::Wear wear;
   const Quanta *landed, *soil;
   Quanta *sand, *airborne;
-  float* reptation_strength;  ///< [m]
+  reptation::Impacts impacts;
 
   DESERT_HD float share(int i, float m) const {
     const float r_e = value_or_zero(in.echo, i);
@@ -196,16 +195,17 @@ struct Deposit {
     const Quanta cover = sand[i];  // what the grains hit
     sand[i] += deposited;
     airborne[i] = bouncing;
-    reptation_strength[i] = arriving * in.quantum * (1.0f - v);
-    wear(i, cover, bouncing, hypotenuse(in.wind_x[i], in.wind_y[i]), v, m, held);
+    const float speed = hypotenuse(in.wind_x[i], in.wind_y[i]);
+    wear(i, cover, bouncing, speed, v, m, held);
+    impacts.set(i, arriving * in.quantum * (1.0f - v), speed);
   }
 };
 
-/// `landed` (quanta) and `reptation_strength` (float) are scratch memory of one value a cell.
+/// `landed` (quanta): scratch memory of one value a cell.
 template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
           const ReposeParameters& repose, float time_step, LedgerView ledger, Quanta* landed,
-          float* reptation_strength) {
+          const reptation::Impacts& impacts) {
   const Inputs in(t, repose, time_step);
   Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand),
          *soil = t.quanta(Layer::soil);
@@ -222,7 +222,7 @@ void step(E& exec, const TerrainView& t, const SaltationParameters& p, const Abr
                             sand,
                             t.real(Layer::erosion_resistance),
                             ledger};
-  for_each_cell(exec, t.grid, Deposit{in, p, wear, landed, soil, sand, airborne, reptation_strength});
+  for_each_cell(exec, t.grid, Deposit{in, p, wear, landed, soil, sand, airborne, impacts});
 }
 
 }  // namespace saltation

@@ -1,12 +1,18 @@
 #pragma once
 /// The solid surface, h = b + e + s, that wind, shadow and echo dunes look at.
-/// Reads bedrock, soil, sand; writes elevation.
+///
+/// A step works with its heights as floats [quanta above the datum], because a conversion costs a GPU as much as four
+/// additions, and with the highest of each block of 4 × 4 cells. The layer `elevation` has the same heights as whole
+/// quanta; nothing in a step reads it.
 
+#include "desert_sim/kernels/buffer.hpp"
 #include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/layers.hpp"
+#include "desert_sim/kernels/math.hpp"
 
 namespace desert_sim::surface {
 
+/// Reads bedrock, soil, sand; writes elevation.
 struct SolidSurface {
   Grid grid;
   const Quanta *bedrock, *soil, *sand;
@@ -28,6 +34,82 @@ struct SolidSurface {
 template <class E>
 void step(E& exec, const TerrainView& terrain) {
   for_each_cell(exec, terrain.grid, SolidSurface(terrain));
+}
+
+/// Width of a block [cells].
+constexpr int block_side = 4;
+
+/// Heights and their blocks' highest.
+struct Heights {
+  Grid blocks;  ///< at the far edges with fewer cells
+  Buffer<float> of_cells, highest;
+};
+Heights make_heights(Exec& exec, const Grid& grid);
+
+/// Four values beside each other, which a GPU moves at once.
+template <class T>
+struct alignas(16) Four {
+  T values[4];
+};
+/// `from`: aligned to 16 bytes.
+template <class T>
+DESERT_HD Four<T> four_at(const T* from) {
+#if defined(__CUDA_ARCH__)
+  return *reinterpret_cast<const Four<T>*>(from);
+#else
+  Four<T> four;
+  memcpy(&four, from, sizeof four);
+  return four;
+#endif
+}
+template <class T>
+DESERT_HD void put_four(T* to, const Four<T>& four) {
+#if defined(__CUDA_ARCH__)
+  *reinterpret_cast<Four<T>*>(to) = four;
+#else
+  memcpy(to, &four, sizeof four);
+#endif
+}
+
+/// The heights of one block's cells, and the highest of them.
+struct MeasureBlock {
+  Grid grid;
+  const Quanta *bedrock, *soil, *sand;
+  Grid blocks;
+  float *heights, *highest;
+
+  DESERT_HD float measure_row(int first) const {
+    const Four<Quanta> b = four_at(bedrock + first), s = four_at(sand + first);
+    Four<Quanta> e{};
+    if (soil) e = four_at(soil + first);
+    Four<float> h;
+    for (int n = 0; n < 4; ++n) h.values[n] = static_cast<float>(b.values[n] + e.values[n] + s.values[n]);
+    put_four(heights + first, h);
+    return maximum(maximum(h.values[0], h.values[1]), maximum(h.values[2], h.values[3]));
+  }
+  DESERT_HD float measure(int i) const {
+    return heights[i] = static_cast<float>(bedrock[i] + value_or_zero(soil, i) + sand[i]);
+  }
+
+  DESERT_HD void operator()(int column, int row) const {
+    const int x0 = block_side * column, y0 = block_side * row;
+    float top = -static_cast<float>(wall_height);
+    for (int y = y0; y < y0 + block_side && y < grid.height; ++y) {
+      if (grid.width % block_side == 0) {
+        top = maximum(top, measure_row(grid.index(x0, y)));
+        continue;
+      }
+      for (int x = x0; x < x0 + block_side && x < grid.width; ++x) top = maximum(top, measure(grid.index(x, y)));
+    }
+    highest[blocks.index(column, row)] = top;
+  }
+};
+
+template <class E>
+void measure(E& exec, const TerrainView& t, Heights& heights) {
+  for_each_cell(exec, heights.blocks,
+                MeasureBlock{t.grid, t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
+                             heights.blocks, heights.of_cells.data(), heights.highest.data()});
 }
 
 }  // namespace desert_sim::surface

@@ -79,13 +79,16 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   Workspace work;
   work.coarse = coarse_grid(fine, p);
   if (!p.warping && !p.projection) return work;
-  const std::size_t values = static_cast<std::size_t>(work.coarse.width) * work.coarse.height;
-  work.fft = exec.make_fft(work.coarse.width, work.coarse.height);
-  work.spectrum = Buffer<Complex>(exec, values);
-  const int buffers = p.warping ? std::max(1, p.radii.count) : 1;
-  for (int r = 0; r < buffers; ++r) work.gradients[r] = Buffer<Complex>(exec, values);
-  if (!p.warping) return work;
   const CoarseGrid& c = work.coarse;
+  const auto values = static_cast<std::size_t>(c.values());
+  work.one = exec.make_fft(c.width, c.height);
+  work.row_means = Buffer<float>(exec, static_cast<std::size_t>(c.columns) * fine.height);
+  work.rise = Buffer<float>(exec, values);
+  for (Buffer<Complex>* buffer : {&work.spectrum, &work.turned, &work.correction})
+    *buffer = Buffer<Complex>(exec, values);
+  if (!p.warping || p.radii.count == 0) return work;
+  work.all_radii = exec.make_fft(c.width, c.height, p.radii.count);
+  work.gradients = Buffer<Complex>(exec, values * static_cast<std::size_t>(p.radii.count));
   for (int r = 0; r < p.radii.count; ++r) {
     const double sigma = 0.5 * p.radii.values[r] / fine.cell_size;
     work.along_x[r] = on_device(exec, transfer(c.width, c.ratio_x, sigma, fine.cell_size));

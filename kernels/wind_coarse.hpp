@@ -5,8 +5,11 @@
 #include "desert_sim/kernels/fft.hpp"
 #include "desert_sim/kernels/grid.hpp"
 #include "desert_sim/kernels/math.hpp"
+#include "desert_sim/kernels/quanta.hpp"
 
 namespace desert_sim::wind {
+
+struct AxisPlace;
 
 /// The coarse grid of the transforms: `grid` cells cover the terrain, `width` × `height` values are
 /// transformed (twice as many along an open axis, where the terrain is mirrored).
@@ -19,48 +22,91 @@ struct CoarseGrid {
 
   DESERT_HD int mirrored_column(int x) const { return x < columns ? x : 2 * columns - 1 - x; }
   DESERT_HD int mirrored_row(int y) const { return y < rows ? y : 2 * rows - 1 - y; }
+  DESERT_HD AxisPlace across(int x) const;
+  DESERT_HD AxisPlace along(int y) const;
+  DESERT_HD int values() const { return width * height; }
   DESERT_HD Grid transformed() const { return Grid{width, height, fine.cell_size * ratio_x, true, true}; }
 };
 
-/// Area-weighted mean of fine(i) over the fine cells under coarse cell (cx, cy).
-template <class Fine>
-DESERT_HD float coarse_mean(const CoarseGrid& c, int cx, int cy, const Fine& fine) {
-  const float left = cx * c.ratio_x, right = (cx + 1) * c.ratio_x;
-  const float bottom = cy * c.ratio_y, top = (cy + 1) * c.ratio_y;
-  const int x_end = clamp_index(static_cast<int>(ceilf(right - 1e-4f)) - 1, c.fine.width);
-  const int y_end = clamp_index(static_cast<int>(ceilf(top - 1e-4f)) - 1, c.fine.height);
-  float sum = 0, area = 0;
-  for (int y = static_cast<int>(bottom + 1e-4f); y <= y_end; ++y) {
-    const float row_weight = minimum(top, y + 1.0f) - maximum(bottom, static_cast<float>(y));
-    for (int x = static_cast<int>(left + 1e-4f); x <= x_end; ++x) {
-      const float weight = row_weight * (minimum(right, x + 1.0f) - maximum(left, static_cast<float>(x)));
-      sum += weight * fine(c.fine.index(x, y));
-      area += weight;
-    }
+/// Mean of value(i) over left … right [cells of an axis of n cells], by length. Of values that are all the same it is
+/// exactly that value: uniform ground stays uniform.
+template <class Value>
+DESERT_HD float mean_over(float left, float right, int n, const Value& value) {
+  const int first = static_cast<int>(left + 1e-4f);
+  const int last = clamp_index(static_cast<int>(ceilf(right - 1e-4f)) - 1, n);
+  const float base = value(first);
+  float sum = 0, length = 0;
+  for (int i = first; i <= last; ++i) {
+    const float share = minimum(right, i + 1.0f) - maximum(left, static_cast<float>(i));
+    sum += share * (value(i) - base);
+    length += share;
   }
-  return sum / area;
+  return base + sum / length;
 }
+
+/// Means of the surface along the rows of the terrain, `columns` a row. [quanta above `reference`]
+struct CoarsenRows {
+  CoarseGrid coarse;
+  const float* heights;
+  float reference;
+  float* means;
+
+  DESERT_HD Grid grid() const { return Grid{coarse.columns, coarse.fine.height, 1, true, true}; }
+  DESERT_HD void operator()(int column, int y) const {
+    const float *row = heights + coarse.fine.index(0, y), ref = reference;
+    means[y * coarse.columns + column] =
+        mean_over(column * coarse.ratio_x, (column + 1) * coarse.ratio_x, coarse.fine.width,
+                  [row, ref](int x) { return row[x] - ref; });
+  }
+};
+
+/// Those means' means along the columns, on the grid of the transform.
+struct CoarsenColumns {
+  CoarseGrid coarse;
+  const float* means;
+  float quantum;
+  float* rise;        ///< [m]
+  Complex* spectrum;  ///< the same, for a transform
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int row = coarse.mirrored_row(y), columns = coarse.columns;
+    const float* column = means + coarse.mirrored_column(x);
+    const float mean = quantum * mean_over(row * coarse.ratio_y, (row + 1) * coarse.ratio_y, coarse.fine.height,
+                                           [column, columns](int i) { return column[i * columns]; });
+    rise[y * coarse.width + x] = mean;
+    spectrum[y * coarse.width + x] = {mean, 0.0f};
+  }
+};
+
+/// Where a fine cell lies along an axis between two coarse ones.
+struct AxisPlace {
+  int first, second;
+  float share;  ///< of the second
+
+  DESERT_HD AxisPlace(int cell, int cells, int coarse_cells, int wrapped_cells, float coarse_a_cell) {
+    const float place = (cell + 0.5f) * coarse_a_cell - 0.5f;
+    const int before = static_cast<int>(floorf(place));
+    share = coarse_cells == cells ? 0.0f : place - before;  // at full resolution the value itself
+    first = wrap(before, wrapped_cells);
+    second = wrap(before + 1, wrapped_cells);
+  }
+};
+
+DESERT_HD AxisPlace CoarseGrid::across(int x) const { return {x, fine.width, columns, width, share_x}; }
+DESERT_HD AxisPlace CoarseGrid::along(int y) const { return {y, fine.height, rows, height, share_y}; }
 
 /// Where a fine cell's centre lies between the centres of four coarse cells.
 struct CoarseSample {
   int i00, i10, i01, i11;
   float fx, fy;
 
-  DESERT_HD CoarseSample(const CoarseGrid& c, int x, int y) {
-    const float px = (x + 0.5f) * c.share_x - 0.5f, py = (y + 0.5f) * c.share_y - 0.5f;
-    const int x0 = static_cast<int>(floorf(px)), y0 = static_cast<int>(floorf(py));
-    fx = px - x0;
-    fy = py - y0;
-    // At full resolution the sample is the value itself.
-    if (c.columns == c.fine.width) fx = 0.0f;
-    if (c.rows == c.fine.height) fy = 0.0f;
-    const int xa = wrap(x0, c.width), xb = wrap(x0 + 1, c.width);
-    const int ya = wrap(y0, c.height) * c.width, yb = wrap(y0 + 1, c.height) * c.width;
-    i00 = ya + xa;
-    i10 = ya + xb;
-    i01 = yb + xa;
-    i11 = yb + xb;
-  }
+  DESERT_HD CoarseSample(const AxisPlace& x, const AxisPlace& y, int width)
+      : i00(y.first * width + x.first),
+        i10(y.first * width + x.second),
+        i01(y.second * width + x.first),
+        i11(y.second * width + x.second),
+        fx(x.share),
+        fy(y.share) {}
   DESERT_HD Complex operator()(const Complex* v) const {
     const Complex a = v[i00], b = v[i10], c = v[i01], d = v[i11];
     return {lerp(lerp(a.re, b.re, fx), lerp(c.re, d.re, fx), fy),

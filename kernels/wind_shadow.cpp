@@ -1,18 +1,23 @@
 #include "desert_sim/kernels/wind_shadow.hpp"
 
+#include <vector>
+
 namespace desert_sim::wind_shadow {
 
 Workspace make_workspace(Exec& exec, const Grid& grid, const WindShadowParameters& p) {
   Workspace work;
+  if (!p.enabled) return work;
+  const int steps = march_steps(grid, p);
+  std::vector<float> reciprocals(static_cast<std::size_t>(steps) + 1);
+  for (int j = 1; j <= steps; ++j) reciprocals[static_cast<std::size_t>(j)] = 1.0f / static_cast<float>(j);
+  work.reciprocals = Buffer<float>(exec, reciprocals.size());
+  work.reciprocals.upload(reciprocals);
   constexpr int side = Blocks::side;
   const bool fits =
       (!grid.periodic_x || grid.width % side == 0) && (!grid.periodic_y || grid.height % side == 0);
-  if (!p.enabled || p.curved || !fits || march_steps(grid, p) <= Blocks::piece) return work;
-  work.blocks = Grid{(grid.width + side - 1) / side, (grid.height + side - 1) / side, grid.cell_size * side,
-                     grid.periodic_x, grid.periodic_y};
-  const std::size_t count = static_cast<std::size_t>(work.blocks.cells());
-  work.highest = Buffer<Quanta>(exec, count);
-  work.around = Buffer<Quanta>(exec, count);
+  if (fits && !p.curved && steps > Blocks::piece)
+    work.around = Buffer<float>(exec, static_cast<std::size_t>((grid.width + side - 1) / side) *
+                                          static_cast<std::size_t>((grid.height + side - 1) / side));
   return work;
 }
 

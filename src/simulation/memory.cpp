@@ -21,9 +21,11 @@ std::size_t bytes_of_all(const Buffers&... buffers) {
 }
 
 std::size_t bytes_of_wind(const wind::Workspace& work) {
-  std::size_t bytes = bytes_of(work.spectrum) + (work.fft ? work.fft->bytes() : 0);
-  for (int r = 0; r < ShortList::capacity; ++r)
-    bytes += bytes_of_all(work.gradients[r], work.along_x[r], work.along_y[r]);
+  std::size_t bytes =
+      bytes_of_all(work.row_means, work.rise, work.spectrum, work.turned, work.correction, work.gradients);
+  for (const std::unique_ptr<Fft>* transform : {&work.one, &work.all_radii})
+    bytes += *transform ? (*transform)->bytes() : 0;
+  for (int r = 0; r < ShortList::capacity; ++r) bytes += bytes_of_all(work.along_x[r], work.along_y[r]);
   return bytes;
 }
 
@@ -39,7 +41,7 @@ std::size_t bytes_of_avalanches(const avalanching::Workspace& work) {
 /// cuFFT's transforms take about as much as their values.
 class PlannedFft final : public Fft {
  public:
-  PlannedFft(int width, int height) : values_(static_cast<std::size_t>(width) * height) {}
+  PlannedFft(int width, int height, int fields) : values_(static_cast<std::size_t>(width) * height * fields) {}
   void forward(Complex*) override { refuse(); }
   void inverse(Complex*) override { refuse(); }
   std::size_t bytes() const override { return values_ * sizeof(Complex); }
@@ -62,8 +64,8 @@ class PlanningExec final : public Exec {
   void upload(void*, const void*, std::size_t) override {}
   void download(void*, const void*, std::size_t) override { refuse(); }
   void synchronise() override {}
-  std::unique_ptr<Fft> make_fft(int width, int height) override {
-    return std::make_unique<PlannedFft>(width, height);
+  std::unique_ptr<Fft> make_fft(int width, int height, int fields) override {
+    return std::make_unique<PlannedFft>(width, height, fields);
   }
 
  protected:
@@ -145,7 +147,8 @@ std::vector<MemoryPart> Simulation::memory() const {
   add("tangents of repose", repose_.bytes());
   add("wind's transforms", bytes_of_wind(wind_work_));
   add("wind's features", bytes_of_all(features_, perturbation_x_, perturbation_y_));
-  add("wind shadow's blocks", bytes_of_all(shadow_work_.highest, shadow_work_.around));
+  add("heights", bytes_of_all(heights_.of_cells, heights_.highest));
+  add("wind shadow's blocks", bytes_of_all(shadow_work_.reciprocals, shadow_work_.around));
   add("avalanches' levels", bytes_of_avalanches(avalanche_work_));
   add("avalanches of rock and soil",
       bytes_of_all(ground.ground, ground.column, ground.given, ground.received, ground.repose, ground.share));

@@ -24,25 +24,29 @@ void Simulation::run_processes(E& exec) {
   // Shelter in the lee of what is higher upwind (A6).
   if (s.wind_shadow.enabled)
     run(exec, "wind_shadow", {Layer::wind_shadow},
-        [&] { wind_shadow::step(exec, view, s.wind_shadow, shadow_work_); });
+        [&] { wind_shadow::step(exec, view, s.wind_shadow, heights_, shadow_work_); });
 
   // The eddy before cliffs, which holds sand off and piles it up ahead (A7).
   if (s.echo_dunes.enabled)
     run(exec, "echo_dunes", {Layer::echo},
-        [&] { echo_dunes::step(exec, view, s.echo_dunes, repose_.data()); });
+        [&] { echo_dunes::step(exec, view, s.echo_dunes, heights_, repose_.data()); });
 
   // Sand is lifted, carried a hop, deposited or bounced on; bouncing sand wears rock (B1–B4).
+  // Impacts loosen what they hit, which sets its angle of repose (B5, B7).
+  const reptation::Angle angle(view, s.reptation, s.repose, repose_.data());
   if (s.saltation.enabled)
     run(exec, "saltation", {Layer::sand, Layer::airborne_sand, Layer::bedrock}, [&] {
       saltation::step(exec, view, s.saltation, s.abrasion, s.repose, dt, ledger(), landed_.data(),
-                      reptation_strength_.data());
+                      {angle, reptation_strength_.data()});
     });
+  else
+    reptation::set_angles(exec, view, angle, nullptr);
 
-  // Impacts creep sand down the slope, or loosen it (B5); the angles of repose (B7).
-  run(exec, "reptation", {Layer::sand}, [&] {
-    reptation::step(exec, view, s.reptation, s.repose, dt, s.seed, steps_, reptation_strength_.data(),
-                    landed_.data(), repose_.data());
-  });
+  // Or they creep sand down the slope (B5).
+  if (reptation::moves_sand(s.reptation))
+    run(exec, "reptation", {Layer::sand}, [&] {
+      reptation::step(exec, view, s.reptation, dt, s.seed, steps_, reptation_strength_.data(), landed_.data());
+    });
 
   // What is too steep slides: rock and soil where they changed, then sand (B6).
   if (s.avalanching.enabled)
@@ -72,11 +76,11 @@ void Simulation::slide_ground(E& exec, const TerrainView& view) {
 
 template <class E>
 void Simulation::update_wind(E& exec, const TerrainView& view) {
-  surface::step(exec, view);
+  surface::measure(exec, view, heights_);
   if (features_)
     wind_features::step(exec, view.grid, features_, static_cast<float>(time()), repose_.data(),
                         perturbation_x_.data(), perturbation_y_.data());
-  wind::step(exec, view, scenario_.wind, wind_above(), wind_reference_, perturbation_x_.data(),
+  wind::step(exec, view, scenario_.wind, wind_above(), heights_, wind_reference_, perturbation_x_.data(),
              perturbation_y_.data(), wind_work_);
 }
 
@@ -144,15 +148,12 @@ void Simulation::step() {
 void Simulation::refresh_derived() {
   if (derived_ready_) return;
   const Scenario& s = scenario_;
-  ReptationParameters only_angles = s.reptation;
-  only_angles.method = ReptationMethod::off;
   with_backend(exec(), [&](auto& e) {
     const TerrainView view = terrain_.view();
     update_wind(e, view);
-    if (s.wind_shadow.enabled) wind_shadow::step(e, view, s.wind_shadow, shadow_work_);
-    if (s.echo_dunes.enabled) echo_dunes::step(e, view, s.echo_dunes, repose_.data());
-    reptation::step(e, view, only_angles, s.repose, s.run.time_step, s.seed, steps_,
-                    reptation_strength_.data(), landed_.data(), repose_.data());
+    if (s.wind_shadow.enabled) wind_shadow::step(e, view, s.wind_shadow, heights_, shadow_work_);
+    if (s.echo_dunes.enabled) echo_dunes::step(e, view, s.echo_dunes, heights_, repose_.data());
+    reptation::set_angles(e, view, reptation::Angle(view, s.reptation, s.repose, repose_.data()), nullptr);
   });
   derived_ready_ = true;
 }
@@ -231,8 +232,7 @@ void Simulation::allocate_work() {
   ledger_.set_zero();
   landed_ = Buffer<Quanta>(e, cells);
   repose_ = Buffer<float>(e, cells);
-  reptation_strength_ = Buffer<float>(e, cells);
-  reptation_strength_.set_zero();
+  heights_ = surface::make_heights(e, grid);
   repose_.set_zero();
   prepare_processes();
   upload_wind_features();
@@ -246,10 +246,14 @@ void Simulation::prepare_processes() {
   // A layer is there only while its process is on: others take its absence for "no shadow", "no echo".
   terrain_.use(Layer::wind_shadow, s.wind_shadow.enabled);
   terrain_.use(Layer::echo, s.echo_dunes.enabled);
+  reptation_strength_ = {};
+  if (reptation::moves_sand(s.reptation)) {
+    reptation_strength_ = Buffer<float>(e, static_cast<std::size_t>(grid.cells()));
+    reptation_strength_.set_zero();  // without grains there are no impacts
+  }
   wind_work_ = wind::make_workspace(e, grid, s.wind);
   shadow_work_ = wind_shadow::make_workspace(e, grid, s.wind_shadow);
   avalanche_work_ = avalanching::make_workspace(e, grid, s.avalanching);
-  if (!s.saltation.enabled) reptation_strength_.set_zero();  // without grains there are no impacts
   if (s.abrasion.rate > 0 || bedrock_loose_ || soil_loose_) prepare_ground_avalanches();
 }
 

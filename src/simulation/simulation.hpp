@@ -171,6 +171,7 @@ class Simulation {
 
   // What the processes work with; made once, so that a step allocates nothing.
   Buffer<long long> ledger_;
+  surface::Heights heights_;
   wind::Workspace wind_work_;
   wind_shadow::Workspace shadow_work_;
   avalanching::Workspace avalanche_work_;

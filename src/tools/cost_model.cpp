@@ -28,8 +28,7 @@ std::vector<ProcessCost> cost_model(AvalancheQuality quality) {
       {"wind_shadow", 4 * layer, "elevation, wind (2)", "shadow"},
       {"echo_dunes", 6 * layer, "elevation, wind (2); cliffs", "cliffs; echo"},
       {"saltation", 13 * layer, "sand, airborne, wind (2), shadow; landed, sand, shadow",
-       "sand, landed; sand, airborne, strength"},
-      {"reptation", 5 * layer, "strength, wind (2), shadow", "tangents"},
+       "sand, landed; sand, airborne, tangents"},
       avalanches(quality),
   };
 }

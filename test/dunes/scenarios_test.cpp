@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <future>
 
 #include "dunes/running.hpp"
 
@@ -21,18 +22,29 @@ double mean_where(const Field& values, const std::vector<char>& mask) {
   return count ? sum / static_cast<double>(count) : 0;
 }
 
-/// Height to width 0.06…0.15, stoss 8…15 degrees, slip face 31…35 degrees to within 20 degrees of downwind,
-/// horns downwind. Dunes are cut apart at 1.5 m, so that the thin sand between their horns does not join
-/// them.
-TEST(Dunes, Barchan) {
-  Running scene(shipped("barchan"));
-  std::vector<double> ratio, stoss, slip, direction, horns;
-  int downwind = 0;
+/// Dunes are cut apart at 1.5 m, so that the thin sand between their horns does not join them.
+std::vector<Dune> barchans(std::uint64_t seed) {
+  Running scene(shipped("barchan", {"seed=" + std::to_string(seed)}));
+  std::vector<Dune> found;
   scene.run(400);
   for (int look = 0; look < 5; ++look) {
     scene.run(80);
-    for (const Dune& d : find_dunes(scene.field(Layer::elevation), scene.field(Layer::sand), 0, 1.5, 100)) {
-      if (d.height < 3.5) continue;
+    for (const Dune& d : find_dunes(scene.field(Layer::elevation), scene.field(Layer::sand), 0, 1.5, 100))
+      if (d.height >= 3.5) found.push_back(d);
+  }
+  scene.expect_balanced();
+  return found;
+}
+
+/// Height to width 0.06…0.15, stoss 8…15 degrees, slip face 31…35 degrees to within 20 degrees of downwind,
+/// horns downwind. Of four seeds together: among single ones the median stoss slope is anything from 8 to 20 degrees.
+TEST(Dunes, Barchan) {
+  std::vector<std::future<std::vector<Dune>>> runs;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) runs.push_back(std::async(std::launch::async, barchans, seed));
+  std::vector<double> ratio, stoss, slip, direction, horns;
+  int downwind = 0;
+  for (auto& run : runs)
+    for (const Dune& d : run.get()) {
       ratio.push_back(d.height / d.width);
       stoss.push_back(d.stoss_deg);
       slip.push_back(d.slip_face_deg);
@@ -40,8 +52,7 @@ TEST(Dunes, Barchan) {
       horns.push_back(angle_between_deg(d.horn_direction_deg, 0));
       downwind += d.horn_reach > 0 ? 1 : 0;
     }
-  }
-  ASSERT_GE(ratio.size(), 5u);
+  ASSERT_GE(ratio.size(), 20u);
   DESERT_REPORT(
       "%zu barchans: h/w %.3f, stoss %.1f, slip face %.1f, to within %.0f of downwind, horns %.0f; %d reach "
       "out",
@@ -55,9 +66,7 @@ TEST(Dunes, Barchan) {
   EXPECT_LE(quantile(slip, 0.5), 35);
   EXPECT_LE(quantile(direction, 0.5), 20);
   EXPECT_LE(quantile(horns, 0.5), 20);
-  // On average over 16 seeds half do; of one seed's fewer or more.
-  EXPECT_GE(3 * downwind, static_cast<int>(ratio.size()));
-  scene.expect_balanced();
+  EXPECT_GE(2.5 * downwind, static_cast<double>(ratio.size())) << "about half of them do";
 }
 
 /// Crests within 20 degrees of perpendicular to the wind; the distance between them grows.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <future>
 #include <numeric>
 
 #include "dunes/running.hpp"
@@ -60,15 +61,18 @@ void expect_same(const std::string& what, const std::vector<double>& quick,
   EXPECT_LE(std::abs(mean(quick) - mean(reference)), times * scatter) << what;
 }
 
-/// Statistics of a few seeds each.
+/// Statistics of eight seeds each: fewer do not know their scatter.
 using Runs = std::vector<Statistics>;
 
 Runs runs_of(AvalancheScheme scheme, AvalancheQuality quality) {
   constexpr int size = 96, steps = 60;
+  std::vector<std::future<Statistics>> running;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed)
+    running.push_back(std::async(std::launch::async, [=] {
+      return measure(Running(transverse(size, seed, scheme, quality)).run(steps).field(Layer::elevation));
+    }));
   Runs runs;
-  for (std::uint64_t seed = 1; seed <= 3; ++seed)
-    runs.push_back(
-        measure(Running(transverse(size, seed, scheme, quality)).run(steps).field(Layer::elevation)));
+  for (auto& run : running) runs.push_back(run.get());
   return runs;
 }
 
@@ -82,10 +86,9 @@ std::vector<double> each(const Runs& runs, const Value& value) {
 constexpr AvalancheQuality qualities[] = {AvalancheQuality::fast, AvalancheQuality::good,
                                           AvalancheQuality::converged};
 constexpr std::size_t slope_bins = 6;  // of 6 degrees: what sand can lie at
-/// With six shares for each of three qualities some lie beyond twice a scatter that three seeds know to
-/// within a half. (Over 32 seeds the greatest difference is 0.02, of the steepest share, 1.6 times the
-/// scatter.)
-constexpr double shares_may_scatter = 3;
+/// Of six shares for each of three qualities one may lie beyond twice the scatter by chance. (Over 32 seeds the greatest
+/// difference was 0.02, of the steepest share, 1.6 times the scatter.)
+constexpr double shares_may_scatter = 2.5;
 
 /// Roughness, wavelength, orientation, and the share of cells at each slope that sand can lie at.
 TEST(Schemes, SameDunesAsTheReference) {

@@ -10,7 +10,8 @@ BenchTerrain::BenchTerrain(Exec& exec, int width, int height, double cell_size, 
       landed(exec, cells()),
       strength(exec, cells()),
       repose(exec, cells()),
-      cliff(exec, cells()) {
+      cliff(exec, cells()),
+      heights(surface::make_heights(exec, grid())) {
   ledger_words.set_zero();
   for (Buffer<float>* buffer : {&strength, &repose, &cliff}) buffer->set_zero();
   for (Layer layer : {Layer::wind_shadow, Layer::echo}) terrain.require(layer);
@@ -78,14 +79,17 @@ long long BenchTerrain::booked(Material material, int side) const {
 }
 
 void BenchTerrain::surface() {
-  with_backend(exec(), [&](auto& e) { surface::step(e, terrain.view()); });
+  with_backend(exec(), [&](auto& e) {
+    surface::step(e, terrain.view());
+    surface::measure(e, terrain.view(), heights);
+  });
 }
 
 void BenchTerrain::shadow(const WindShadowParameters& p, bool whole_marches) {
   surface();
-  const wind_shadow::Workspace work =
-      whole_marches ? wind_shadow::Workspace() : wind_shadow::make_workspace(exec(), grid(), p);
-  with_backend(exec(), [&](auto& e) { wind_shadow::step(e, terrain.view(), p, work); });
+  wind_shadow::Workspace work = wind_shadow::make_workspace(exec(), grid(), p);
+  if (whole_marches) work.around = {};
+  with_backend(exec(), [&](auto& e) { wind_shadow::step(e, terrain.view(), p, heights, work); });
 }
 
 void BenchTerrain::judge(const TraversabilityParameters& p) {
@@ -95,21 +99,23 @@ void BenchTerrain::judge(const TraversabilityParameters& p) {
 }
 void BenchTerrain::echo(const EchoDuneParameters& p) {
   surface();
-  with_backend(exec(), [&](auto& e) { echo_dunes::step(e, terrain.view(), p, cliff.data()); });
+  with_backend(exec(), [&](auto& e) { echo_dunes::step(e, terrain.view(), p, heights, cliff.data()); });
 }
 
 void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParameters& a,
                              const ReposeParameters& r, float time_step) {
   with_backend(exec(), [&](auto& e) {
-    saltation::step(e, terrain.view(), p, a, r, time_step, ledger(), landed.data(), strength.data());
+    const reptation::Angle angle(terrain.view(), {}, r, repose.data());
+    saltation::step(e, terrain.view(), p, a, r, time_step, ledger(), landed.data(), {angle, strength.data()});
   });
 }
 
 void BenchTerrain::reptation(const ReptationParameters& p, const ReposeParameters& r, float time_step,
                              std::uint64_t tick) {
   with_backend(exec(), [&](auto& e) {
-    reptation::step(e, terrain.view(), p, r, time_step, 1, tick, strength.data(), landed.data(),
-                    repose.data());
+    reptation::set_angles(e, terrain.view(), reptation::Angle(terrain.view(), p, r, repose.data()),
+                          strength.data());
+    reptation::step(e, terrain.view(), p, time_step, 1, tick, strength.data(), landed.data());
   });
 }
 
@@ -136,7 +142,7 @@ void BenchTerrain::blow(const WindParameters& p, wind::Vector above, Quanta refe
   surface();
   wind::Workspace work = wind::make_workspace(exec(), grid(), p);
   with_backend(exec(),
-               [&](auto& e) { wind::step(e, terrain.view(), p, above, reference, nullptr, nullptr, work); });
+               [&](auto& e) { wind::step(e, terrain.view(), p, above, heights, reference, nullptr, nullptr, work); });
   exec().synchronise();
 }
 

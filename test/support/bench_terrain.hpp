@@ -17,6 +17,7 @@ class BenchTerrain {
   Buffer<long long> ledger_words;
   Buffer<Quanta> landed;
   Buffer<float> strength, repose, cliff;
+  surface::Heights heights;
 
   Exec& exec() const { return terrain.exec(); }
   const Grid& grid() const { return terrain.grid(); }

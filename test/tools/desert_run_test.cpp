@@ -53,7 +53,7 @@ TEST_F(Run, WritesASummaryWithAllKeys) {
 
 TEST_F(Run, TimesEachProcess) {
   run_cpu({scenario_, "--out", path("out"), "--steps", "40"});
-  for (const char* process : {"wind", "wind_shadow", "saltation", "reptation", "avalanching"})
+  for (const char* process : {"wind", "wind_shadow", "saltation", "avalanching"})
     EXPECT_NE(json(summary("out"), process), "") << process;
 }
 

@@ -134,7 +134,7 @@ TEST_P(ASimulation, RefusesWrongWindsAndChangesNothing) {
 
 TEST_P(ASimulation, NamesTheProcessLayerAndCellOfABrokenState) {
   auto s = simulation(std::string(world) +
-                      "avalanching: {enabled: false}\nsaltation: {enabled: false}\n"
+                      "avalanching: {enabled: false}\nsaltation: {enabled: false}\nreptation: {method: smoothing}\n"
                       "wind: {speed: 0, warping: false, projection: false}\n");
   Terrain& terrain = const_cast<Terrain&>(s->terrain());
   std::vector<std::uint32_t> sand = terrain.words(Layer::sand);
@@ -167,7 +167,7 @@ TEST_P(ASimulation, TimesProcessesInTheirOrder) {
     names += std::string(t.process) + " ";
     EXPECT_GE(t.milliseconds, 0);
   }
-  EXPECT_EQ(names, "wind wind_shadow saltation reptation avalanching ");
+  EXPECT_EQ(names, "wind wind_shadow saltation avalanching ");
 }
 
 TEST_P(ASimulation, ReportsNoResidualOnGentleGround) {
