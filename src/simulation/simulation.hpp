@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "desert_sim/kernels/processes.hpp"
 #include "desert_sim/scenario/terrain_builder.hpp"
 #include "desert_sim/simulation/command.hpp"
+#include "desert_sim/simulation/snapshot.hpp"
 #include "desert_sim/simulation/step_recordings.hpp"
 #include "desert_sim/terrain/terrain.hpp"
 
@@ -27,25 +27,6 @@ struct MaterialBalance {
   double initial_m3() const { return base_volume + cubic_metres(initial); }
   double final_m3() const { return base_volume + cubic_metres(final); }
   double relative_residual() const;
-};
-
-/// Rows first … first + count − 1 of a terrain; all if count is 0. On a periodic one they go on over its
-/// edges.
-struct RowBand {
-  int first = 0, count = 0;
-};
-
-/// Layers at one moment, converted to floats in the layer's unit. Immutable once made; outlives the
-/// simulation.
-struct Snapshot {
-  int width = 0, height = 0;
-  double cell_size = 1, origin_x = 0, origin_y = 0;
-  bool periodic_x = true, periodic_y = true;  ///< else open; a band of rows is open to north and south
-  std::uint64_t step = 0;
-  double time = 0;  ///< simulated [s]
-  wind::Vector wind_above;
-  std::map<Layer, std::vector<float>> layers;
-  const std::vector<float>* find(Layer layer) const;  ///< null if it was not asked for
 };
 
 /// Milliseconds per process, in the order of the step; filled while timing is on.
@@ -93,13 +74,20 @@ class Simulation {
   std::vector<MemoryPart> memory() const;
   wind::Vector wind_above() const { return regime_.at(time()); }
 
-  /// Copies layers to the host. Elevation and wind are brought up to date first, and layers that exist on
-  /// request computed, if they are asked for; what was never asked for takes no memory.
+  /// Starts a copy of layers to the host; the next step may be started at once, and does not show in it.
+  /// Elevation and wind are brought up to date first, and layers that exist on request computed, if they are
+  /// asked for; what was never asked for takes no memory.
   /// Of a band of rows only those are copied and computed: the snapshot's height and origin are the band's,
   /// less what lies off an open terrain (at least one row is left).
-  std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers, const RowBand& band = {});
+  PendingSnapshot begin_snapshot(const std::vector<Layer>& layers, const RowBand& band = {});
+  /// Waits for it.
+  std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers, const RowBand& band = {}) {
+    return begin_snapshot(layers, band).get();
+  }
   /// Gives back the memory of layers that exist on request, until one is asked for again.
   void release_requested_layers();
+  /// Memory through which copies go to the host.
+  Staging& staging() { return staging_; }
   /// Layers that are in use, derived ones included.
   std::vector<Layer> layers_in_use() const;
 
@@ -141,6 +129,11 @@ class Simulation {
   void refresh_derived();
   /// Computes those of `layers` that exist on request, in a band that lies on the terrain.
   void judge(const std::vector<Layer>& layers, const RowBand& rows);
+  /// A snapshot's frame; its layers are there and empty.
+  std::shared_ptr<Snapshot> frame_of(const std::vector<Layer>& layers, const RowBand& rows) const;
+  /// Sends rows of the snapshot's layers on their way to the end of what it has.
+  void send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowBand& rows,
+                 const std::shared_ptr<Readback>& readback);
   void allocate_work();
   /// What depends on parameters that can change live: layers and memory of processes that are on.
   void prepare_processes();
@@ -160,6 +153,7 @@ class Simulation {
   Scenario start_;
   Scenario scenario_;  ///< start_, as commands have changed it
   Terrain terrain_;
+  Staging staging_{terrain_.exec()};
   WindRegime regime_;
   std::uint64_t steps_ = 0;
   Quanta wind_reference_ = 0;  ///< lowest solid surface at load
