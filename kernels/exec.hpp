@@ -70,8 +70,9 @@ class Exec {
                       std::size_t bytes) = 0;  ///< returns when `from` may be reused
   virtual void download(void* to, const void* from, std::size_t bytes) = 0;  ///< returns when `to` is filled
 
-  /// Starts a copy to memory of allocate_host() (or, where memory is shared, none from a place to itself), which waits for all that was started before, and which all
-  /// that is started later does not wait for. Not for use inside a step.
+  /// Starts a copy to memory of allocate_host() (or, where memory is shared, none from a place to itself),
+  /// which waits for all that was started before, and which all that is started later does not wait for. Not
+  /// for use inside a step.
   virtual std::unique_ptr<HostCopy> start_download(void* to, const void* from, std::size_t bytes) = 0;
   /// What is started from here on waits for `copy`, which is one of this Exec's.
   virtual void follow(const HostCopy& copy) = 0;

@@ -14,8 +14,8 @@ constexpr double measure_for = 5;  // [s] after a report
 template <class Answer, class UnderWay, class Finish>
 std::future<Answer> wait_there(std::future<UnderWay> begun, Finish finish) {
   return std::async(
-      std::launch::deferred,
-      [finish](std::future<UnderWay> under_way) { return finish(under_way.get()); }, std::move(begun));
+      std::launch::deferred, [finish](std::future<UnderWay> under_way) { return finish(under_way.get()); },
+      std::move(begun));
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ std::future<void> SimulationThread::set_step_rate(double rate) {
 }
 
 SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<Layer>& layers,
-                                                              const RowBand& band) {
+                                                              const RowBand& band, const HeldQuery& held) {
   settle();  // the stamp is of the state that is reached, not of a step that is under way
   std::vector<Layer> in_use;
   for (Layer layer : layers) {
@@ -95,12 +95,23 @@ SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<
   }
   snapshot_requested_ = steady_now();
   ++snapshots_;
-  return {moment(), session_->simulation().begin_snapshot(in_use, band)};
+  Simulation& s = session_->simulation();
+  StateUnderWay state{moment(), s.begin_snapshot(in_use, band), {}};
+  if (held.changes && s.holds_elevation())
+    state.changes = s.take_elevation_changes(held.threshold, held.tile);
+  const bool none = !s.holds_elevation();
+  if (held.then == HeldQuery::Then::present || (held.then == HeldQuery::Then::present_if_none && none))
+    s.hold_elevation();
+  if (held.then == HeldQuery::Then::none) s.forget_elevation();
+  return state;
 }
 
-std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band) {
-  return wait_there<TerrainState>(ask<StateUnderWay>([=] { return begin_state(layers, band); }),
-                                  [](const StateUnderWay& s) { return TerrainState{s.moment, s.snapshot.get()}; });
+std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band,
+                                                    const HeldQuery& held) {
+  return wait_there<TerrainState>(ask<StateUnderWay>([=] { return begin_state(layers, band, held); }),
+                                  [](const StateUnderWay& s) {
+                                    return TerrainState{s.moment, s.snapshot.get(), s.changes.get()};
+                                  });
 }
 
 std::future<TerrainToSave> SimulationThread::terrain_to_save() {
@@ -114,10 +125,10 @@ std::future<TerrainToSave> SimulationThread::terrain_to_save() {
         const Simulation& s = session_->simulation();
         std::vector<Layer> layers = terrain_layers(s);
         layers.push_back(Layer::elevation);
-        return UnderWay{begin_state(layers, {}), s.scenario(), state_hash()};
+        return UnderWay{begin_state(layers, {}, {}), s.scenario(), state_hash()};
       }),
       [](const UnderWay& u) {
-        return TerrainToSave{{u.state.moment, u.state.snapshot.get()}, u.scenario, u.hash};
+        return TerrainToSave{{u.state.moment, u.state.snapshot.get(), nullptr}, u.scenario, u.hash};
       });
 }
 

@@ -54,7 +54,8 @@ class SimulationThread {
   /// [steps/s]; 0: as fast as it can. The schedule begins anew. Not journalled: the terrain does not feel it.
   std::future<void> set_step_rate(double rate);
   /// The simulation goes on while the copy is under way: who calls get() waits for the copy there.
-  std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {});
+  std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {},
+                                    const HeldQuery& held = {});
   std::future<TerrainToSave> terrain_to_save();
   /// With the parameters and the wind regime of now.
   std::future<Scenario> scenario();
@@ -100,8 +101,9 @@ class SimulationThread {
   struct StateUnderWay {
     Moment moment;
     PendingSnapshot snapshot;
+    Pending<ElevationChanges> changes;
   };
-  StateUnderWay begin_state(const std::vector<Layer>& layers, const RowBand& band);
+  StateUnderWay begin_state(const std::vector<Layer>& layers, const RowBand& band, const HeldQuery& held);
   Moment moment();
   Reached reached(bool with_hash);
   std::uint64_t state_hash();

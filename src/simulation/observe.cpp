@@ -86,9 +86,8 @@ std::array<MaterialBalance, material_count> Simulation::balance() {
 
 Residual Simulation::residual() {
   refresh_derived();
-  return with_backend(exec(), [this](auto& e) {
-    return statistics::residual(e, terrain_.view(), repose_.data());
-  });
+  return with_backend(exec(),
+                      [this](auto& e) { return statistics::residual(e, terrain_.view(), repose_.data()); });
 }
 
 double Simulation::max_sand_slope_deg() {

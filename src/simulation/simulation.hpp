@@ -10,6 +10,7 @@
 #include "desert_sim/kernels/processes.hpp"
 #include "desert_sim/scenario/terrain_builder.hpp"
 #include "desert_sim/simulation/command.hpp"
+#include "desert_sim/simulation/elevation_changes.hpp"
 #include "desert_sim/simulation/snapshot.hpp"
 #include "desert_sim/simulation/step_recordings.hpp"
 #include "desert_sim/terrain/terrain.hpp"
@@ -86,6 +87,16 @@ class Simulation {
   }
   /// Gives back the memory of layers that exist on request, until one is asked for again.
   void release_requested_layers();
+
+  /// Notes the present elevation as what others hold, or that they hold none.
+  void hold_elevation();
+  void forget_elevation() { held_ = {}; }
+  bool holds_elevation() const { return static_cast<bool>(held_); }
+  /// Starts a copy of the cells whose elevation differs by more than `threshold` [m] from what is held, which
+  /// then is held: whoever drops the answer lacks them from then on. `tile`: cells on a side of a tile.
+  /// Throws StateError if nothing is held.
+  Pending<ElevationChanges> take_elevation_changes(double threshold, int tile);
+
   /// Memory through which copies go to the host.
   Staging& staging() { return staging_; }
   /// Layers that are in use, derived ones included.
@@ -129,6 +140,9 @@ class Simulation {
   void refresh_derived();
   /// Computes those of `layers` that exist on request, in a band that lies on the terrain.
   void judge(const std::vector<Layer>& layers, const RowBand& rows);
+  /// Packs what changed in rows of tiles, and sends it on its way to the end of `changes`.
+  void send_changes(const std::shared_ptr<ElevationChanges>& changes, const held_elevation::Tiling& tiles,
+                    float threshold, const std::shared_ptr<Readback>& readback);
   /// A snapshot's frame; its layers are there and empty.
   std::shared_ptr<Snapshot> frame_of(const std::vector<Layer>& layers, const RowBand& rows) const;
   /// Sends rows of the snapshot's layers on their way to the end of what it has.
@@ -175,6 +189,7 @@ class Simulation {
   Buffer<float> repose_;
   Buffer<float> reptation_strength_;
   Buffer<Quanta> landed_;
+  Buffer<float> held_;  ///< the elevation that others hold [m]; none if they hold none
 
   StepRecordings recordings_;
   bool timing_ = false;

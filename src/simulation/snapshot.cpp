@@ -81,7 +81,8 @@ void Simulation::send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowB
   staging_.send(slot, bytes, readback, [waited = std::weak_ptr<Snapshot>(snapshot), cells](auto& arrived) {
     const std::shared_ptr<Snapshot> s = waited.lock();
     if (!s) return;
-    const float* from = reinterpret_cast<const float*>(arrived.host(s->layers.size() * cells * sizeof(float)));
+    const float* from =
+        reinterpret_cast<const float*>(arrived.host(s->layers.size() * cells * sizeof(float)));
     for (auto& [layer, values] : s->layers) {
       values.reserve(static_cast<std::size_t>(s->width) * static_cast<std::size_t>(s->height));
       values.insert(values.end(), from, from + cells);
