@@ -83,7 +83,7 @@ class Exec {
   /// them. It must not read anything back. Only where records().
   virtual std::unique_ptr<Recording> record(const std::function<void()>& work);
 
-  /// Waits for all that was started; throws CudaError if any of it failed.
+  /// Waits for all that was started but copies of start_download(); throws CudaError if any of it failed.
   virtual void synchronise() = 0;
 
   /// A complex 2-D transform of width × height (x fastest), in place, unnormalised.

@@ -14,6 +14,8 @@ namespace {
 
 /// Copied before anybody knows how much there is; takes a few microseconds.
 constexpr std::size_t at_first = std::size_t{256} << 10;
+/// Of tiles at a time: a GPU takes no more.
+constexpr std::size_t most_rows = 65535;
 
 template <class T>
 T read(const char* from) {
@@ -81,8 +83,7 @@ Pending<ElevationChanges> Simulation::take_elevation_changes(double threshold, i
   const std::size_t row_bytes =
       most_packed(static_cast<std::size_t>(all.columns()),
                   static_cast<std::size_t>(all.grid.width) * static_cast<std::size_t>(all.height(0)));
-  const int most = static_cast<int>(
-      std::clamp<std::size_t>(staging_.slot_bytes() / row_bytes, 1, static_cast<std::size_t>(all.row_count)));
+  const int most = static_cast<int>(std::clamp<std::size_t>(staging_.slot_bytes() / row_bytes, 1, most_rows));
   with_backend(exec(), [this](auto& e) { surface::step(e, terrain_.view()); });
   for (int row = 0; row < all.row_count; row += most)
     send_changes(changes, {all.grid, tile, row, std::min(most, all.row_count - row)},
