@@ -47,9 +47,7 @@ class Staging {
   /// Called once with the slot, by whoever brings the piece home.
   using Unpack = std::function<void(Slot&)>;
 
-  static constexpr std::size_t usual_slot_bytes = std::size_t{256} << 20;
-
-  explicit Staging(Exec& exec) : exec_(&exec) {}
+  explicit Staging(Exec& exec);
   ~Staging();
 
   /// How large a piece should at most be [bytes].
@@ -69,7 +67,7 @@ class Staging {
 
  private:
   Exec* exec_;
-  std::size_t slot_bytes_ = usual_slot_bytes;
+  std::size_t slot_bytes_;
   Slot slots_[2];
   int turn_ = 0;
 };

@@ -52,9 +52,10 @@ TEST_P(HeldElevation, OfASimulationTellsWhatStepsChanged) {
   ASSERT_TRUE(s->holds_elevation());
   std::vector<float> held = s->snapshot({Layer::elevation})->layers.at(Layer::elevation);
   std::size_t changed = 0;
+  const std::size_t usual = s->staging().slot_bytes();
   for (int round = 0; round < 6; ++round) {
     s->staging().release();
-    s->staging().set_slot_bytes(round % 2 ? 1 : Staging::usual_slot_bytes);  // a row of tiles at a time
+    s->staging().set_slot_bytes(round % 2 ? 1 : usual);  // a row of tiles at a time
     test::run(*s, 3);
     const float threshold = 0.02f * static_cast<float>(round);
     const auto pending = s->take_elevation_changes(threshold, 16);
