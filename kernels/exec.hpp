@@ -72,10 +72,10 @@ class Exec {
 
   /// Starts a copy to memory of allocate_host() (or, where memory is shared, none from a place to itself),
   /// which waits for all that was started before, and which all that is started later does not wait for. Not
-  /// for use inside a step.
-  virtual std::unique_ptr<HostCopy> start_download(void* to, const void* from, std::size_t bytes) = 0;
+  /// for use inside a step. Unless a backend has another way, it is done when this returns.
+  virtual std::unique_ptr<HostCopy> start_download(void* to, const void* from, std::size_t bytes);
   /// What is started from here on waits for `copy`, which is one of this Exec's.
-  virtual void follow(const HostCopy& copy) = 0;
+  virtual void follow(const HostCopy&) {}
 
   /// Whether recording work is worth it here.
   virtual bool records() const { return false; }
@@ -116,8 +116,6 @@ class CpuExec final : public Exec {
   void upload(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
   void download(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
   bool shares_memory() const override { return true; }
-  std::unique_ptr<HostCopy> start_download(void* to, const void* from, std::size_t bytes) override;
-  void follow(const HostCopy&) override {}
   void synchronise() override {}
   std::unique_ptr<Fft> make_fft(int width, int height) override;
 

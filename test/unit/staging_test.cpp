@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/simulation/memory.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {
@@ -116,6 +117,20 @@ TEST_P(Staged, ReadersOnOtherThreadsGetWhatTheyAskedFor) {
     for (std::thread& reader : readers) reader.join();
     ASSERT_EQ(found, expected) << round;
   }
+}
+
+TEST_P(Staged, MemoryIsCountedAndGivenBack) {
+  auto s = simulation(world);
+  test::run(*s, 1);
+  const std::size_t before = exec().bytes_held(), parts = total_bytes(s->memory());
+  s->snapshot({Layer::sand});
+  s->hold_elevation();
+  EXPECT_EQ(exec().bytes_held(), before + 2 * 4 * 40 * 30) << "a slot and what is held";
+  EXPECT_EQ(total_bytes(s->memory()), parts + 2 * 4 * 40 * 30);
+  s->staging().release();
+  s->forget_elevation();
+  EXPECT_EQ(exec().bytes_held(), before);
+  EXPECT_EQ(total_bytes(s->memory()), parts);
 }
 
 TEST_P(Staged, WhatGoesWrongOnTheWayIsToldToTheReaderEachTime) {
