@@ -1,7 +1,7 @@
 #pragma once
 /// Where a simulation runs: memory, order of work, and (in for_each.hpp) loops over cells. CpuExec runs laws
-/// as OpenMP loops; CudaExec as kernels on one non-blocking stream of its own. A second stream carries
-/// snapshots to the host.
+/// as OpenMP loops; CudaExec as kernels on one non-blocking stream of its own. A second stream carries what
+/// others want to see to the host, while the work goes on.
 
 #include <atomic>
 #include <cstddef>
@@ -20,6 +20,17 @@ class Recording {
  public:
   virtual ~Recording() = default;
   virtual void replay() = 0;
+};
+
+/// A copy to the host that runs beside other work.
+class HostCopy {
+ public:
+  virtual ~HostCopy() = default;
+  /// Returns when the copy is there; throws CudaError if it, or work before it, failed. From any thread.
+  virtual void wait() = 0;
+  /// Copies more of what was there when this copy began, likewise, and waits for it. From any thread, but one
+  /// at a time.
+  virtual void fetch(void* to, const void* from, std::size_t bytes) = 0;
 };
 
 class Exec {
@@ -49,6 +60,8 @@ class Exec {
   /// Host memory that copies to and from the device fast (pinned on a GPU).
   virtual void* allocate_host(std::size_t bytes) = 0;
   virtual void release_host(void* memory) noexcept = 0;
+  /// Whether the memory of allocate() is the host's own: what laws write there can be read without a copy.
+  virtual bool shares_memory() const { return false; }
 
   /// In order with the laws that were started before.
   virtual void set_zero(void* memory, std::size_t bytes) = 0;
@@ -57,13 +70,20 @@ class Exec {
                       std::size_t bytes) = 0;  ///< returns when `from` may be reused
   virtual void download(void* to, const void* from, std::size_t bytes) = 0;  ///< returns when `to` is filled
 
+  /// Starts a copy to memory of allocate_host() (or, where memory is shared, none from a place to itself),
+  /// which waits for all that was started before, and which all that is started later does not wait for. Not
+  /// for use inside a step. Unless a backend has another way, it is done when this returns.
+  virtual std::unique_ptr<HostCopy> start_download(void* to, const void* from, std::size_t bytes);
+  /// What is started from here on waits for `copy`, which is one of this Exec's.
+  virtual void follow(const HostCopy&) {}
+
   /// Whether recording work is worth it here.
   virtual bool records() const { return false; }
   /// Calls `work` and notes the laws, copies on the device and transforms that it starts, instead of doing
   /// them. It must not read anything back. Only where records().
   virtual std::unique_ptr<Recording> record(const std::function<void()>& work);
 
-  /// Waits for all that was started; throws CudaError if any of it failed.
+  /// Waits for all that was started but copies of start_download(); throws CudaError if any of it failed.
   virtual void synchronise() = 0;
 
   /// A complex 2-D transform of width × height (x fastest), in place, unnormalised; of `fields` of them at once.
@@ -95,6 +115,7 @@ class CpuExec final : public Exec {
   void copy(void* to, const void* from, std::size_t bytes) override;
   void upload(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
   void download(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
+  bool shares_memory() const override { return true; }
   void synchronise() override {}
   std::unique_ptr<Fft> make_fft(int width, int height, int fields) override;
 
@@ -112,7 +133,7 @@ class CudaExec final : public Exec {
   /// Takes the current device; throws CudaError if there is none.
   CudaExec();
   ~CudaExec() override;
-  /// The stream that all work goes to (a cudaStream_t).
+  /// The stream that all work but copies of start_download() goes to (a cudaStream_t).
   void* stream() const { return stream_; }
 
   const char* backend() const override { return "cuda"; }
@@ -124,6 +145,8 @@ class CudaExec final : public Exec {
   void copy(void* to, const void* from, std::size_t bytes) override;
   void upload(void* to, const void* from, std::size_t bytes) override;
   void download(void* to, const void* from, std::size_t bytes) override;
+  std::unique_ptr<HostCopy> start_download(void* to, const void* from, std::size_t bytes) override;
+  void follow(const HostCopy& copy) override;
   void synchronise() override;
   bool records() const override { return true; }
   std::unique_ptr<Recording> record(const std::function<void()>& work) override;
@@ -139,6 +162,8 @@ class CudaExec final : public Exec {
 
  private:
   void* stream_ = nullptr;
+  void* copy_stream_ = nullptr;
+  void* before_copy_ = nullptr;  ///< a cudaEvent_t: the work that a copy waits for
   long long* reduction_word_ = nullptr;
   long long* reduction_host_ = nullptr;
 };

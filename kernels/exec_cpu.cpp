@@ -60,6 +60,19 @@ class FftwTransform final : public Fft {
   fftwf_plan forward_ = nullptr, inverse_ = nullptr;
 };
 
+/// A copy that was done when it was started.
+class DoneCopy final : public HostCopy {
+ public:
+  explicit DoneCopy(Exec& exec) : exec_(exec) {}
+  void wait() override {}
+  void fetch(void* to, const void* from, std::size_t bytes) override {
+    if (to != from) exec_.download(to, from, bytes);
+  }
+
+ private:
+  Exec& exec_;
+};
+
 constexpr std::size_t alignment = 64;  // a cache line, and what FFTW's fastest code wants
 
 /// Calls work(begin, size) for parts of so many bytes, by all threads where there is more than one part.
@@ -138,6 +151,12 @@ void CpuExec::copy(void* to, const void* from, std::size_t bytes) {
 
 std::unique_ptr<Fft> CpuExec::make_fft(int width, int height, int fields) {
   return std::make_unique<FftwTransform>(width, height, fields);
+}
+
+std::unique_ptr<HostCopy> Exec::start_download(void* to, const void* from, std::size_t bytes) {
+  auto done = std::make_unique<DoneCopy>(*this);
+  done->fetch(to, from, bytes);
+  return done;
 }
 
 std::unique_ptr<Recording> Exec::record(const std::function<void()>&) {

@@ -43,12 +43,36 @@ class CufftTransform final : public Fft {
 };
 
 cudaStream_t as_stream(void* stream) { return static_cast<cudaStream_t>(stream); }
+cudaEvent_t as_event(void* event) { return static_cast<cudaEvent_t>(event); }
 
 /// Destructors and releases cannot throw: they log.
 void log_failure(cudaError_t status, const char* what) noexcept {
   if (status != cudaSuccess)
     std::fprintf(stderr, "desert_sim: CUDA: %s: %s\n", what, cudaGetErrorString(status));
 }
+
+/// On a stream of its own; its event sleeps instead of spinning, because who waits is not in a hurry.
+class CudaCopy final : public HostCopy {
+ public:
+  explicit CudaCopy(cudaStream_t stream) : stream_(stream) {
+    check_cuda(cudaEventCreateWithFlags(&done_, cudaEventDisableTiming | cudaEventBlockingSync), "making an event");
+  }
+  ~CudaCopy() override { log_failure(cudaEventDestroy(done_), "ending an event"); }
+  void start(void* to, const void* from, std::size_t bytes) {
+    check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, stream_), "copy to the host");
+    check_cuda(cudaEventRecord(done_, stream_), "marking a copy's end");
+  }
+  void wait() override { check_cuda(cudaEventSynchronize(done_), "waiting for a copy"); }
+  void fetch(void* to, const void* from, std::size_t bytes) override {
+    start(to, from, bytes);
+    wait();
+  }
+  cudaEvent_t done() const { return done_; }
+
+ private:
+  cudaStream_t stream_;
+  cudaEvent_t done_ = nullptr;
+};
 
 /// A CUDA graph of what a stream was given.
 class GraphRecording final : public Recording {
@@ -96,6 +120,11 @@ CudaExec::CudaExec() {
   cudaStream_t stream = nullptr;
   check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream");
   stream_ = stream;
+  check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream for copies");
+  copy_stream_ = stream;
+  cudaEvent_t event = nullptr;
+  check_cuda(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "making an event");
+  before_copy_ = event;
   reduction_word_ = static_cast<long long*>(allocate(sizeof(long long)));
   reduction_host_ = static_cast<long long*>(allocate_host(sizeof(long long)));
 }
@@ -103,6 +132,8 @@ CudaExec::CudaExec() {
 CudaExec::~CudaExec() {
   release(reduction_word_, sizeof(long long));
   release_host(reduction_host_);
+  log_failure(cudaEventDestroy(as_event(before_copy_)), "ending an event");
+  log_failure(cudaStreamDestroy(as_stream(copy_stream_)), "ending the stream for copies");
   log_failure(cudaStreamDestroy(as_stream(stream_)), "ending a stream");
 }
 
@@ -135,7 +166,12 @@ void CudaExec::give_back(void* memory) noexcept { log_failure(cudaFree(memory), 
 
 void* CudaExec::allocate_host(std::size_t bytes) {
   void* memory = nullptr;
-  check_cuda(cudaMallocHost(&memory, bytes ? bytes : 1), "allocation of pinned memory");
+  const cudaError_t status = cudaMallocHost(&memory, bytes ? bytes : 1);
+  if (status == cudaErrorMemoryAllocation) {
+    cudaGetLastError();
+    throw ConfigError("no pinned memory for " + std::to_string(bytes) + " bytes");
+  }
+  check_cuda(status, "allocation of pinned memory");
   return memory;
 }
 
@@ -159,6 +195,19 @@ void CudaExec::upload(void* to, const void* from, std::size_t bytes) {
 void CudaExec::download(void* to, const void* from, std::size_t bytes) {
   check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, as_stream(stream_)), "download");
   synchronise();
+}
+
+std::unique_ptr<HostCopy> CudaExec::start_download(void* to, const void* from, std::size_t bytes) {
+  auto copy = std::make_unique<CudaCopy>(as_stream(copy_stream_));
+  check_cuda(cudaEventRecord(as_event(before_copy_), as_stream(stream_)), "marking what a copy waits for");
+  check_cuda(cudaStreamWaitEvent(as_stream(copy_stream_), as_event(before_copy_), 0), "a copy's wait for work");
+  copy->start(to, from, bytes);
+  return copy;
+}
+
+void CudaExec::follow(const HostCopy& copy) {
+  check_cuda(cudaStreamWaitEvent(as_stream(stream_), static_cast<const CudaCopy&>(copy).done(), 0),
+             "waiting for a copy on the device");
 }
 
 void CudaExec::synchronise() {

@@ -13,17 +13,19 @@
 
 namespace desert_sim {
 
-/// Adds to memory that other cells add to as well. Integers commute, so the order can't matter.
+/// Adds to memory that other cells add to as well, and returns what was there before. Integers commute, so
+/// the order can't matter to the sum.
 template <class Integer>
-DESERT_HD void atomic_add(Integer* to, Integer amount) {
+DESERT_HD Integer atomic_add(Integer* to, Integer amount) {
 #if defined(__CUDA_ARCH__)
   if constexpr (sizeof(Integer) == 8) {
-    atomicAdd(reinterpret_cast<unsigned long long*>(to), static_cast<unsigned long long>(amount));
+    return static_cast<Integer>(
+        atomicAdd(reinterpret_cast<unsigned long long*>(to), static_cast<unsigned long long>(amount)));
   } else {
-    atomicAdd(to, amount);
+    return atomicAdd(to, amount);
   }
 #else
-  __atomic_fetch_add(to, amount, __ATOMIC_RELAXED);
+  return __atomic_fetch_add(to, amount, __ATOMIC_RELAXED);
 #endif
 }
 

@@ -83,6 +83,26 @@ struct CpuTeam {
     for (int i = 1; i < n; ++i) least = value(i) < least ? value(i) : least;
     return least;
   }
+  /// Both for x in 0…width−1 and y in 0…height−1, which do not depend on each other.
+  template <class Body>
+  DESERT_HD void for_each(int width, int height, const Body& body) const {
+    for (int y = 0; y < height; ++y) {
+#pragma omp simd
+      for (int x = 0; x < width; ++x) body(x, y);
+    }
+  }
+  template <class Value>
+  DESERT_HD int lowest(int width, int height, const Value& value) const {
+    int least = value(0, 0);
+    for (int y = 0; y < height; ++y) {
+#pragma omp simd reduction(min : least)
+      for (int x = 0; x < width; ++x) {
+        const int v = value(x, y);
+        least = v < least ? v : least;
+      }
+    }
+    return least;
+  }
   /// Calls first(y) and second(y) for the rows of a tile: second(y) when first() is done for y − 1, y and y +
   /// 1, and before first(y + rows_at_once − 1). It may change what first(y − 1 … y + 1) reads, no more. (One
   /// row sooner it would wait for what first() has just written.)
@@ -129,8 +149,8 @@ void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
 }
 
 /// `Law::scratch_bytes<Team>` of memory are shared by the team; law(team, column, row).
-template <class Law>
-void for_each_tile(CpuExec& exec, const Tiles& tiles, const Law& law) {
+template <class Tiling, class Law>
+void for_each_tile(CpuExec& exec, const Tiling& tiles, const Law& law) {
   const int columns = tiles.columns(), count = tiles.count();
 #pragma omp parallel num_threads(exec.threads()) if (tiles.grid.cells() >= worth_threads)
   {

@@ -68,6 +68,14 @@ struct Team {
     return 0;
 #endif
   }
+  template <class Body>
+  DESERT_HD void for_each(int width, int height, const Body& body) const {
+    for_each(width * height, [&](int i) { body(i % width, i / width); });
+  }
+  template <class Value>
+  DESERT_HD int lowest(int width, int height, const Value& value) const {
+    return lowest(width * height, [&](int i) { return value(i % width, i / width); });
+  }
   /// All rows by the first, then all by the second.
   template <class First, class Second>
   DESERT_HD void for_each_row_then_behind(const First& first, const Second& second) const {
@@ -149,8 +157,8 @@ void for_each_cell(CudaExec& exec, const Grid& grid, const Law& law) {
   check_cuda(cudaGetLastError(), "launch over cells");
 }
 
-template <class Law>
-void for_each_tile(CudaExec& exec, const Tiles& tiles, const Law& law) {
+template <class Tiling, class Law>
+void for_each_tile(CudaExec& exec, const Tiling& tiles, const Law& law) {
   constexpr int bytes = Law::template scratch_bytes<cuda::Team>;
   check_cuda(cudaFuncSetAttribute(cuda::tiles_kernel<Law>, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes),
              "asking for shared memory");

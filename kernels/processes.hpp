@@ -6,6 +6,8 @@
 #include "desert_sim/kernels/avalanching_ground.hpp"
 #include "desert_sim/kernels/brush_smooth.hpp"
 #include "desert_sim/kernels/echo_dunes.hpp"
+#include "desert_sim/kernels/held_elevation.hpp"
+#include "desert_sim/kernels/layer_values.hpp"
 #include "desert_sim/kernels/reptation.hpp"
 #include "desert_sim/kernels/saltation.hpp"
 #include "desert_sim/kernels/statistics.hpp"

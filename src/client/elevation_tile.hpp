@@ -8,13 +8,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace desert_sim {
+#include "desert_sim/kernels/elevation_step.hpp"
 
-/// What a cell that held `held` holds after `change` steps of `resolution` [m].
-inline float changed_elevation(float held, std::int8_t change, float resolution) {
-  return static_cast<float>(static_cast<double>(held) +
-                            static_cast<double>(change) * static_cast<double>(resolution));
-}
+namespace desert_sim {
 
 /// Bytes that so many changes take, and change number n of them; `bits` is 8 or 4.
 inline std::size_t change_bytes(std::size_t changes, int bits) {

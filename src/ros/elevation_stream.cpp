@@ -2,6 +2,7 @@
 
 #include <boost/make_shared.hpp>
 
+#include "desert_sim/ros/elevation_tiles.hpp"
 #include "desert_sim/ros/messages.hpp"
 
 namespace desert_sim {
@@ -9,27 +10,38 @@ namespace desert_sim {
 ElevationStream::ElevationStream(ros::Publisher keyframes, ros::Publisher updates, std::string frame)
     : keyframes_(std::move(keyframes)), updates_(std::move(updates)), frame_(std::move(frame)) {}
 
-void ElevationStream::start_keyframe(const TerrainState& state) {
+void ElevationStream::configure(double threshold, int tile) {
+  threshold_ = threshold;
+  tile_ = tile;
+}
+
+void ElevationStream::ask_for_update(HeldQuery& held) {
+  held.changes = true;
+  held.threshold = threshold_;
+  held.tile = tile_;
+  starts_without_ = keyframes_.getNumSubscribers() == 0;
+  held.then = starts_without_ ? HeldQuery::Then::present_if_none : HeldQuery::Then::as_before;
+}
+
+void ElevationStream::ask_for_keyframe(HeldQuery& held) {
+  starts_without_ = false;
+  held.then = updates_.getNumSubscribers() > 0 ? HeldQuery::Then::present : HeldQuery::Then::none;
+}
+
+void ElevationStream::start_keyframe() {
   ++keyframe_;
   sequence_ = 0;
-  terrain_ = state.moment.terrain;
-  if (updates_.getNumSubscribers() > 0) {
-    held_.hold(*state.snapshot);
-  } else {
-    held_.forget();
-  }
 }
 
 void ElevationStream::publish_keyframe(const TerrainState& state) {
-  start_keyframe(state);
+  start_keyframe();
   keyframes_.publish(elevation_message(state, frame_, keyframe_));
 }
 
 bool ElevationStream::publish_update(const TerrainState& state) {
-  if (!held_.holds(*state.snapshot) || terrain_ != state.moment.terrain) {
-    if (keyframes_.getNumSubscribers() > 0) return false;
-    start_keyframe(state);
-    if (!held_.holds(*state.snapshot)) return false;  // the last subscriber has just gone
+  if (!state.changes) {
+    if (!starts_without_) return false;
+    start_keyframe();
   }
   ElevationUpdatePtr message = boost::make_shared<ElevationUpdate>();
   message->header = header_of(state.moment, frame_);
@@ -37,7 +49,8 @@ bool ElevationStream::publish_update(const TerrainState& state) {
   message->sim_time = state.snapshot->time;
   message->keyframe = keyframe_;
   message->sequence = ++sequence_;
-  message->tiles = held_.take_changes(*state.snapshot);
+  if (state.changes)
+    for (const TileChange& change : state.changes->tiles) message->tiles.push_back(tile_message(change));
   updates_.publish(message);
   return true;
 }

@@ -10,6 +10,14 @@ namespace {
 
 constexpr double measure_for = 5;  // [s] after a report
 
+/// `finish` waits for a copy that is under way: on the thread that asks for the answer.
+template <class Answer, class UnderWay, class Finish>
+std::future<Answer> wait_there(std::future<UnderWay> begun, Finish finish) {
+  return std::async(
+      std::launch::deferred, [finish](std::future<UnderWay> under_way) { return finish(under_way.get()); },
+      std::move(begun));
+}
+
 }  // namespace
 
 template <class R>
@@ -76,29 +84,52 @@ std::future<void> SimulationThread::set_step_rate(double rate) {
   });
 }
 
-std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band) {
-  return ask<TerrainState>([=] {
-    settle();
-    std::vector<Layer> in_use;
-    for (Layer layer : layers) {
-      const bool on_request = info(layer).lifetime == Lifetime::on_request;
-      if (on_request) layers_requested_ = steady_now();
-      if (on_request || session_->simulation().terrain().has(layer)) in_use.push_back(layer);
-    }
-    ++snapshots_;
-    return TerrainState{moment(), session_->simulation().snapshot(in_use, band)};
-  });
+SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<Layer>& layers,
+                                                              const RowBand& band, const HeldQuery& held) {
+  settle();  // the stamp is of the state that is reached, not of a step that is under way
+  std::vector<Layer> in_use;
+  for (Layer layer : layers) {
+    const bool on_request = info(layer).lifetime == Lifetime::on_request;
+    if (on_request) layers_requested_ = steady_now();
+    if (on_request || session_->simulation().terrain().has(layer)) in_use.push_back(layer);
+  }
+  snapshot_requested_ = steady_now();
+  ++snapshots_;
+  Simulation& s = session_->simulation();
+  StateUnderWay state{moment(), s.begin_snapshot(in_use, band), {}};
+  if (held.changes && s.holds_elevation())
+    state.changes = s.take_elevation_changes(held.threshold, held.tile);
+  const bool none = !s.holds_elevation();
+  if (held.then == HeldQuery::Then::present || (held.then == HeldQuery::Then::present_if_none && none))
+    s.hold_elevation();
+  if (held.then == HeldQuery::Then::none) s.forget_elevation();
+  return state;
+}
+
+std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band,
+                                                    const HeldQuery& held) {
+  return wait_there<TerrainState>(ask<StateUnderWay>([=] { return begin_state(layers, band, held); }),
+                                  [](const StateUnderWay& s) {
+                                    return TerrainState{s.moment, s.snapshot.get(), s.changes.get()};
+                                  });
 }
 
 std::future<TerrainToSave> SimulationThread::terrain_to_save() {
-  return ask<TerrainToSave>([this] {
-    settle();
-    Simulation& s = session_->simulation();
-    ++snapshots_;
-    std::vector<Layer> layers = terrain_layers(s);
-    layers.push_back(Layer::elevation);
-    return TerrainToSave{{moment(), s.snapshot(layers)}, s.scenario(), state_hash()};
-  });
+  struct UnderWay {
+    StateUnderWay state;
+    Scenario scenario;
+    std::uint64_t hash;
+  };
+  return wait_there<TerrainToSave>(
+      ask<UnderWay>([this] {
+        const Simulation& s = session_->simulation();
+        std::vector<Layer> layers = terrain_layers(s);
+        layers.push_back(Layer::elevation);
+        return UnderWay{begin_state(layers, {}, {}), s.scenario(), state_hash()};
+      }),
+      [](const UnderWay& u) {
+        return TerrainToSave{{u.state.moment, u.state.snapshot.get(), nullptr}, u.scenario, u.hash};
+      });
 }
 
 std::future<Reached> SimulationThread::save_checkpoint(const std::string& path) {

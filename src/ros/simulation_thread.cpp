@@ -20,7 +20,7 @@ namespace {
 
 constexpr int steps_in_flight = 8;  // a GPU may be that far behind before the thread waits for it
 constexpr int timed_every = 16;     // steps from one that is timed to the next
-constexpr double keep_layers = 60;  // [s] that layers on request stay in memory while nobody asks
+constexpr double keep_memory = 60;  // [s] that layers on request, and staging memory, stay while nobody asks
 
 /// Of the calling thread, for top -H and for the scheduler. The backend's threads are its children and
 /// inherit both.
@@ -102,7 +102,7 @@ void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load
 
 void SimulationThread::loop() {
   while (serve_jobs()) {
-    release_unused_layers();
+    release_unused_memory();
     if (!step_requests_.empty()) {
       serve_step_request();
     } else if (!paused_ && step_is_due()) {
@@ -204,10 +204,14 @@ void SimulationThread::settle() {
   stamp_ = stamp_now();
 }
 
-void SimulationThread::release_unused_layers() {
-  if (layers_requested_ == 0 || steady_now() - layers_requested_ < keep_layers) return;
-  session_->simulation().release_requested_layers();
-  layers_requested_ = 0;
+void SimulationThread::release_unused_memory() {
+  const auto unused = [now = steady_now()](double& asked) {
+    if (asked == 0 || now - asked < keep_memory) return false;
+    asked = 0;
+    return true;
+  };
+  if (unused(layers_requested_)) session_->simulation().release_requested_layers();
+  if (unused(snapshot_requested_)) session_->simulation().staging().release();
 }
 
 void SimulationThread::changed() {

@@ -53,7 +53,9 @@ class SimulationThread {
   std::future<void> resume();
   /// [steps/s]; 0: as fast as it can. The schedule begins anew. Not journalled: the terrain does not feel it.
   std::future<void> set_step_rate(double rate);
-  std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {});
+  /// The simulation goes on while the copy is under way: who calls get() waits for the copy there.
+  std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {},
+                                    const HeldQuery& held = {});
   std::future<TerrainToSave> terrain_to_save();
   /// With the parameters and the wind regime of now.
   std::future<Scenario> scenario();
@@ -93,8 +95,15 @@ class SimulationThread {
   bool step_is_due();
   void step();
   void settle();
-  void release_unused_layers();
+  /// Of what has not been asked for in a while.
+  void release_unused_memory();
   void changed();
+  struct StateUnderWay {
+    Moment moment;
+    PendingSnapshot snapshot;
+    Pending<ElevationChanges> changes;
+  };
+  StateUnderWay begin_state(const std::vector<Layer>& layers, const RowBand& band, const HeldQuery& held);
   Moment moment();
   Reached reached(bool with_hash);
   std::uint64_t state_hash();
@@ -123,8 +132,8 @@ class SimulationThread {
   bool paused_, waiting_for_clock_ = false;
   int unsettled_steps_ = 0;
   std::uint64_t snapshots_ = 0;
-  /// When layers that exist on request were last asked for [s]; 0: they have no memory.
-  double layers_requested_ = 0;
+  /// When layers that exist on request, and snapshots, were last asked for [s]; 0: they have no memory.
+  double layers_requested_ = 0, snapshot_requested_ = 0;
   // Measuring: now and then a step is timed, process by process, while somebody looks at reports.
   double measure_until_ = 0;
   int steps_until_timed_ = 0, timed_steps_ = 0;

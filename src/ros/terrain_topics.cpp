@@ -35,7 +35,7 @@ Topic& Topics::add(const double& rate, const std::vector<Layer>& layers) {
 
 void Topics::add_elevation() {
   // Updates stand first: where both are due, the last update of the old keyframe goes out before the new one.
-  Topic& updates = add(parameters_.topics.update_rate, {Layer::elevation});
+  Topic& updates = add(parameters_.topics.update_rate, std::vector<Layer>());
   Topic& keyframes = add(parameters_.topics.keyframe_rate, {Layer::elevation});
   keyframes.publisher = advertise_named<ElevationGrid>("elevation", 1, keyframes, keyframes);
   // Whoever begins to listen to updates needs a keyframe to write them over.
@@ -46,6 +46,8 @@ void Topics::add_elevation() {
   // roscpp has one connection a topic and process: those who share one are no new subscribers, and ask.
   keyframe_requests_ = node_.subscribe<std_msgs::Empty>(
       "request_keyframe", 1, [this, &keyframes](const std_msgs::Empty::ConstPtr&) { want(keyframes); });
+  updates.held = [this](HeldQuery& held) { elevation_->ask_for_update(held); };
+  keyframes.held = [this](HeldQuery& held) { elevation_->ask_for_keyframe(held); };
   updates.publish = [this](const TerrainState& state) { return elevation_->publish_update(state); };
   keyframes.publish = [this](const TerrainState& state) {
     elevation_->publish_keyframe(state);

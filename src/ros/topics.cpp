@@ -239,10 +239,13 @@ std::vector<Topic*> Topics::ready_ones(const std::vector<Topic*>& due) {
 
 void Topics::publish_terrain(const std::vector<Topic*>& due) {
   std::vector<Layer> layers;
-  for (const Topic* topic : due)
+  HeldQuery held;
+  for (const Topic* topic : due) {
+    if (topic->held) topic->held(held);
     for (Layer layer : topic->layers())
       if (std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
-  const TerrainState state = simulation_.terrain(layers).get();
+  }
+  const TerrainState state = simulation_.terrain(layers, {}, held).get();
   for (Topic* topic : due) {
     if (topic->publish(state)) {
       ++publications_;
@@ -268,7 +271,7 @@ void Topics::publish_failure(const std::string& what) {
   last_status_.message = what;
   last_status_.steps_per_second = 0;
   last_status_.state_hash.clear();
-  if (!status_) return;  // ended while it started
+  if (!status_) return;                                                 // ended while it started
   status_.publish(boost::make_shared<SimulationStatus>(last_status_));  // which later ones do not change
 }
 

@@ -153,6 +153,8 @@ std::vector<MemoryPart> Simulation::memory() const {
   add("avalanches of rock and soil",
       bytes_of_all(ground.ground, ground.column, ground.given, ground.received, ground.repose, ground.share));
   add("ledger", ledger_.bytes());
+  add("elevation that others hold", held_.bytes());
+  add("staging memory", staging_.bytes());
   return parts;
 }
 
@@ -187,7 +189,7 @@ void require_memory(const Exec& exec, const Scenario& scenario, double host_byte
 void require_more_memory(const Simulation& simulation, const Scenario& scenario) {
   require_cells(scenario);
   const double more = static_cast<double>(total_bytes(planned_memory(scenario))) -
-                      static_cast<double>(total_bytes(simulation.memory()));
+                      static_cast<double>(total_bytes(planned_memory(simulation.scenario())));
   require(scenario, more, simulation.exec().memory_available(),
           std::string("more on the ") + simulation.exec().backend() + " backend");
 }

@@ -19,7 +19,7 @@ double bytes_to_build(const Scenario& scenario);
 /// `exec`, or on the host, which holds `host_bytes` a cell besides while the terrain is made. The message has
 /// what is needed, what there is, bytes a cell, and the grid.
 void require_memory(const Exec& exec, const Scenario& scenario, double host_bytes);
-/// Likewise, if what `scenario` needs more than `simulation` holds now is not there.
+/// Likewise, if what `scenario` needs more than that of `simulation` is not there.
 void require_more_memory(const Simulation& simulation, const Scenario& scenario);
 
 }  // namespace desert_sim

@@ -1,4 +1,4 @@
-/// Looking at a simulation: snapshots, hash, balance, figures.
+/// Looking at a simulation: hash, balance, figures. (Snapshots: snapshot.cpp.)
 #include <xxhash.h>
 
 #include <algorithm>
@@ -8,70 +8,6 @@
 #include "desert_sim/simulation/simulation.hpp"
 
 namespace desert_sim {
-
-// -------------------------------------------------------------------------------------------------
-
-const std::vector<float>* Snapshot::find(Layer layer) const {
-  const auto found = layers.find(layer);
-  return found == layers.end() ? nullptr : &found->second;
-}
-
-namespace {
-
-/// What a band comes to on this grid.
-RowBand held_to(const RowBand& band, const Grid& grid) {
-  if (band.count <= 0 || (grid.periodic_y && band.count >= grid.height)) return {0, grid.height};
-  if (grid.periodic_y) return band;
-  const int first = clamp_index(band.first, grid.height);
-  return {first, std::max(1, std::min(band.first + band.count, grid.height) - first)};
-}
-
-bool on_request(Layer layer) { return info(layer).lifetime == Lifetime::on_request; }
-
-}  // namespace
-
-std::shared_ptr<const Snapshot> Simulation::snapshot(const std::vector<Layer>& layers, const RowBand& band) {
-  auto s = std::make_shared<Snapshot>();
-  const GridParameters& g = scenario_.grid;
-  const Grid& grid = terrain_.grid();
-  const RowBand rows = held_to(band, grid);
-  s->width = g.width;
-  s->height = rows.count;
-  s->cell_size = g.cell_size;
-  s->origin_x = g.origin_x;
-  s->origin_y = g.origin_y + rows.first * g.cell_size;
-  s->periodic_x = grid.periodic_x;
-  s->periodic_y = grid.periodic_y && rows.count == grid.height;
-  s->step = steps_;
-  s->time = time();
-  s->wind_above = wind_above();
-  refresh_derived();
-  const bool judged = std::any_of(layers.begin(), layers.end(), on_request);
-  // A step leaves heights as they were at its beginning.
-  if (judged || std::count(layers.begin(), layers.end(), Layer::elevation) > 0)
-    with_backend(exec(), [&](auto& e) { surface::step(e, terrain_.view()); });
-  if (judged) judge(layers, rows);
-  for (Layer layer : layers) s->layers[layer] = terrain_.values(layer, rows.first, rows.count);
-  return s;
-}
-
-void Simulation::judge(const std::vector<Layer>& layers, const RowBand& rows) {
-  for (Layer layer : layers)
-    if (on_request(layer)) terrain_.require(layer);
-  TerrainView view = terrain_.view();
-  for (const LayerInfo& row : layer_table)
-    if (on_request(row.layer) && std::count(layers.begin(), layers.end(), row.layer) == 0)
-      view.layers[static_cast<int>(row.layer)] = nullptr;
-  with_backend(exec(), [&](auto& e) {
-    traversability::step(e, view, scenario_.traversability, rows.first, rows.count);
-  });
-}
-
-void Simulation::release_requested_layers() {
-  exec().synchronise();
-  for (const LayerInfo& row : layer_table)
-    if (on_request(row.layer)) terrain_.use(row.layer, false);
-}
 
 std::vector<Layer> Simulation::layers_in_use() const {
   std::vector<Layer> layers;
@@ -150,9 +86,8 @@ std::array<MaterialBalance, material_count> Simulation::balance() {
 
 Residual Simulation::residual() {
   refresh_derived();
-  return with_backend(exec(), [this](auto& e) {
-    return statistics::residual(e, terrain_.view(), repose_.data());
-  });
+  return with_backend(exec(),
+                      [this](auto& e) { return statistics::residual(e, terrain_.view(), repose_.data()); });
 }
 
 double Simulation::max_sand_slope_deg() {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +10,8 @@
 #include "desert_sim/kernels/processes.hpp"
 #include "desert_sim/scenario/terrain_builder.hpp"
 #include "desert_sim/simulation/command.hpp"
+#include "desert_sim/simulation/elevation_changes.hpp"
+#include "desert_sim/simulation/snapshot.hpp"
 #include "desert_sim/simulation/step_recordings.hpp"
 #include "desert_sim/terrain/terrain.hpp"
 
@@ -27,25 +28,6 @@ struct MaterialBalance {
   double initial_m3() const { return base_volume + cubic_metres(initial); }
   double final_m3() const { return base_volume + cubic_metres(final); }
   double relative_residual() const;
-};
-
-/// Rows first … first + count − 1 of a terrain; all if count is 0. On a periodic one they go on over its
-/// edges.
-struct RowBand {
-  int first = 0, count = 0;
-};
-
-/// Layers at one moment, converted to floats in the layer's unit. Immutable once made; outlives the
-/// simulation.
-struct Snapshot {
-  int width = 0, height = 0;
-  double cell_size = 1, origin_x = 0, origin_y = 0;
-  bool periodic_x = true, periodic_y = true;  ///< else open; a band of rows is open to north and south
-  std::uint64_t step = 0;
-  double time = 0;  ///< simulated [s]
-  wind::Vector wind_above;
-  std::map<Layer, std::vector<float>> layers;
-  const std::vector<float>* find(Layer layer) const;  ///< null if it was not asked for
 };
 
 /// Milliseconds per process, in the order of the step; filled while timing is on.
@@ -93,13 +75,30 @@ class Simulation {
   std::vector<MemoryPart> memory() const;
   wind::Vector wind_above() const { return regime_.at(time()); }
 
-  /// Copies layers to the host. Elevation and wind are brought up to date first, and layers that exist on
-  /// request computed, if they are asked for; what was never asked for takes no memory.
+  /// Starts a copy of layers to the host; the next step may be started at once, and does not show in it.
+  /// Elevation and wind are brought up to date first, and layers that exist on request computed, if they are
+  /// asked for; what was never asked for takes no memory.
   /// Of a band of rows only those are copied and computed: the snapshot's height and origin are the band's,
   /// less what lies off an open terrain (at least one row is left).
-  std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers, const RowBand& band = {});
+  PendingSnapshot begin_snapshot(const std::vector<Layer>& layers, const RowBand& band = {});
+  /// Waits for it.
+  std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers, const RowBand& band = {}) {
+    return begin_snapshot(layers, band).get();
+  }
   /// Gives back the memory of layers that exist on request, until one is asked for again.
   void release_requested_layers();
+
+  /// Notes the present elevation as what others hold, or that they hold none.
+  void hold_elevation();
+  void forget_elevation() { held_ = {}; }
+  bool holds_elevation() const { return static_cast<bool>(held_); }
+  /// Starts a copy of the cells whose elevation differs by more than `threshold` [m] from what is held, which
+  /// then is held: whoever drops the answer lacks them from then on. `tile`: cells on a side of a tile.
+  /// Throws StateError if nothing is held.
+  Pending<ElevationChanges> take_elevation_changes(double threshold, int tile);
+
+  /// Memory through which copies go to the host.
+  Staging& staging() { return staging_; }
   /// Layers that are in use, derived ones included.
   std::vector<Layer> layers_in_use() const;
 
@@ -141,6 +140,14 @@ class Simulation {
   void refresh_derived();
   /// Computes those of `layers` that exist on request, in a band that lies on the terrain.
   void judge(const std::vector<Layer>& layers, const RowBand& rows);
+  /// Packs what changed in rows of tiles, and sends it on its way to the end of `changes`.
+  void send_changes(const std::shared_ptr<ElevationChanges>& changes, const held_elevation::Tiling& tiles,
+                    float threshold, const std::shared_ptr<Readback>& readback);
+  /// A snapshot's frame; its layers are there and empty.
+  std::shared_ptr<Snapshot> frame_of(const std::vector<Layer>& layers, const RowBand& rows) const;
+  /// Sends rows of the snapshot's layers on their way to the end of what it has.
+  void send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowBand& rows,
+                 const std::shared_ptr<Readback>& readback);
   void allocate_work();
   /// What depends on parameters that can change live: layers and memory of processes that are on.
   void prepare_processes();
@@ -160,6 +167,7 @@ class Simulation {
   Scenario start_;
   Scenario scenario_;  ///< start_, as commands have changed it
   Terrain terrain_;
+  Staging staging_{terrain_.exec()};
   WindRegime regime_;
   std::uint64_t steps_ = 0;
   Quanta wind_reference_ = 0;  ///< lowest solid surface at load
@@ -182,6 +190,7 @@ class Simulation {
   Buffer<float> repose_;
   Buffer<float> reptation_strength_;
   Buffer<Quanta> landed_;
+  Buffer<float> held_;  ///< the elevation that others hold [m]; none if they hold none
 
   StepRecordings recordings_;
   bool timing_ = false;

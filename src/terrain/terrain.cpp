@@ -68,24 +68,20 @@ void Terrain::set_words(Layer layer, const std::vector<std::uint32_t>& words) {
   layers_[static_cast<std::size_t>(layer)].upload(words);
 }
 
-std::vector<float> Terrain::values(Layer layer, int first, int rows) const {
-  const std::size_t width = static_cast<std::size_t>(grid_.width),
-                    cells = width * static_cast<std::size_t>(rows);
-  std::vector<float> values(cells, 0.0f);
+Metres Terrain::metres(Layer layer) const {
+  return {scale_.quantum(), scale_.absolute(layer) ? scale_.datum : 0.0};
+}
+
+std::vector<float> Terrain::values(Layer layer) const {
+  std::vector<float> values(static_cast<std::size_t>(grid_.cells()), 0.0f);
   if (!has(layer)) return values;
-  const std::size_t south = static_cast<std::size_t>(wrap(first, grid_.height)) * width,
-                    to_edge = std::min(cells, static_cast<std::size_t>(grid_.cells()) - south);
-  const Buffer<std::uint32_t>& buffer = layers_[static_cast<std::size_t>(layer)];
-  auto* const stored = reinterpret_cast<std::uint32_t*>(values.data());  // only bytes are copied there
-  buffer.download(south, to_edge, stored);
-  if (to_edge < cells) buffer.download(0, cells - to_edge, stored + to_edge);
-  if (info(layer).storage == Storage::real) return values;
-  const double quantum = scale_.quantum(), datum = scale_.absolute(layer) ? scale_.datum : 0.0;
-  for (float& value : values) {
-    Quanta quanta;
-    std::memcpy(&quanta, &value, sizeof quanta);
-    value = static_cast<float>(datum + quanta * quantum);
+  const std::vector<std::uint32_t> stored = words(layer);
+  if (info(layer).storage == Storage::real) {
+    std::memcpy(values.data(), stored.data(), stored.size() * sizeof(float));
+    return values;
   }
+  std::transform(stored.begin(), stored.end(), values.begin(),
+                 [metres = metres(layer)](std::uint32_t word) { return metres(static_cast<Quanta>(word)); });
   return values;
 }
 

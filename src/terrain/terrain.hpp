@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "desert_sim/kernels/buffer.hpp"
-#include "desert_sim/kernels/layers.hpp"
+#include "desert_sim/kernels/layer_values.hpp"
 
 namespace desert_sim {
 
@@ -49,10 +49,9 @@ class Terrain {
 
   /// Values in the layer's unit (bedrock and elevation absolute), row-major from the south-west; 0 if not in
   /// use.
-  std::vector<float> values(Layer layer) const { return values(layer, 0, grid_.height); }
-  /// Of rows first … first + rows − 1 (at most all), which go on in the south where they reach over the north
-  /// edge.
-  std::vector<float> values(Layer layer, int first, int rows) const;
+  std::vector<float> values(Layer layer) const;
+  /// What a number of quanta in a layer stands for.
+  Metres metres(Layer layer) const;
   /// Rounds to quanta. `values` must have one per cell, within the layer's range (checked by the caller).
   void set_values(Layer layer, const std::vector<double>& values);
 

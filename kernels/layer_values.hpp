@@ -1,0 +1,45 @@
+#pragma once
+/// Layers as others see them: floats in the layer's unit.
+
+#include "desert_sim/kernels/for_each.hpp"
+#include "desert_sim/kernels/layers.hpp"
+
+namespace desert_sim {
+
+/// What a number of quanta stands for [m]. Rounded once: the same bits on every backend.
+struct Metres {
+  double quantum = 1, datum = 0;
+  DESERT_HD float operator()(Quanta quanta) const { return static_cast<float>(datum + quanta * quantum); }
+};
+
+namespace layer_values {
+
+/// A layer that is not in use is null, and 0.
+struct Convert {
+  Grid grid;
+  const Quanta* quanta;
+  const float* real;
+  Metres metres;
+  int first;
+  float* to;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, wrap(first + y, grid.height));
+    to[grid.index(x, y)] = quanta ? metres(quanta[i]) : value_or_zero(real, i);
+  }
+};
+
+/// Writes the values of rows first … first + rows − 1 of a layer, row-major, to `to` on the device. Rows
+/// beyond the north edge are those in the south.
+template <class E>
+void step(E& exec, const TerrainView& t, Layer layer, const Metres& metres, int first, int rows, float* to) {
+  const bool counted = info(layer).storage == Storage::quanta;
+  Grid band = t.grid;
+  band.height = rows;
+  for_each_cell(exec, band,
+                Convert{t.grid, counted ? t.quanta(layer) : nullptr, counted ? nullptr : t.real(layer),
+                        metres, first, to});
+}
+
+}  // namespace layer_values
+}  // namespace desert_sim

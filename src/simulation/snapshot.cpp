@@ -1,0 +1,112 @@
+/// Snapshots of a simulation.
+#include "desert_sim/simulation/snapshot.hpp"
+
+#include <algorithm>
+
+#include "desert_sim/simulation/simulation.hpp"
+
+namespace desert_sim {
+
+const std::vector<float>* Snapshot::find(Layer layer) const {
+  const auto found = layers.find(layer);
+  return found == layers.end() ? nullptr : &found->second;
+}
+
+namespace {
+
+/// What a band comes to on this grid.
+RowBand held_to(const RowBand& band, const Grid& grid) {
+  if (band.count <= 0 || (grid.periodic_y && band.count >= grid.height)) return {0, grid.height};
+  if (grid.periodic_y) return band;
+  const int first = clamp_index(band.first, grid.height);
+  return {first, std::max(1, std::min(band.first + band.count, grid.height) - first)};
+}
+
+bool on_request(Layer layer) { return info(layer).lifetime == Lifetime::on_request; }
+
+}  // namespace
+
+std::shared_ptr<Snapshot> Simulation::frame_of(const std::vector<Layer>& layers, const RowBand& rows) const {
+  auto s = std::make_shared<Snapshot>();
+  const GridParameters& g = scenario_.grid;
+  const Grid& grid = terrain_.grid();
+  s->width = g.width;
+  s->height = rows.count;
+  s->cell_size = g.cell_size;
+  s->origin_x = g.origin_x;
+  s->origin_y = g.origin_y + rows.first * g.cell_size;
+  s->periodic_x = grid.periodic_x;
+  s->periodic_y = grid.periodic_y && rows.count == grid.height;
+  s->step = steps_;
+  s->time = time();
+  s->wind_above = wind_above();
+  for (Layer layer : layers) s->layers[layer];
+  return s;
+}
+
+PendingSnapshot Simulation::begin_snapshot(const std::vector<Layer>& layers, const RowBand& band) {
+  const RowBand rows = held_to(band, terrain_.grid());
+  const std::shared_ptr<Snapshot> snapshot = frame_of(layers, rows);
+  refresh_derived();
+  const bool judged = std::any_of(layers.begin(), layers.end(), on_request);
+  // A step leaves heights as they were at its beginning.
+  if (judged || std::count(layers.begin(), layers.end(), Layer::elevation) > 0)
+    with_backend(exec(), [&](auto& e) { surface::step(e, terrain_.view()); });
+  if (judged) judge(layers, rows);
+  auto readback = std::make_shared<Readback>();
+  if (layers.empty()) return {snapshot, readback};
+  const std::size_t row_bytes =
+      snapshot->layers.size() * static_cast<std::size_t>(snapshot->width) * sizeof(float);
+  const int most = static_cast<int>(
+      std::clamp<std::size_t>(staging_.slot_bytes() / row_bytes, 1, static_cast<std::size_t>(rows.count)));
+  for (int row = 0; row < rows.count; row += most)
+    send_rows(snapshot, {rows.first + row, std::min(most, rows.count - row)}, readback);
+  return {snapshot, readback};
+}
+
+void Simulation::send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowBand& rows,
+                           const std::shared_ptr<Readback>& readback) {
+  const std::size_t cells = static_cast<std::size_t>(snapshot->width) * static_cast<std::size_t>(rows.count),
+                    bytes = snapshot->layers.size() * cells * sizeof(float);
+  Staging::Slot& slot = staging_.next(bytes);
+  float* to = reinterpret_cast<float*>(slot.device());
+  for (const auto& entry : snapshot->layers) {
+    const Layer layer = entry.first;
+    with_backend(exec(), [&](auto& e) {
+      layer_values::step(e, terrain_.view(), layer, terrain_.metres(layer), rows.first, rows.count, to);
+    });
+    to += cells;
+  }
+  // If nobody waits for the snapshot any more, it is gone.
+  staging_.send(slot, bytes, readback, [waited = std::weak_ptr<Snapshot>(snapshot), cells](auto& arrived) {
+    const std::shared_ptr<Snapshot> s = waited.lock();
+    if (!s) return;
+    const float* from =
+        reinterpret_cast<const float*>(arrived.host(s->layers.size() * cells * sizeof(float)));
+    for (auto& [layer, values] : s->layers) {
+      values.reserve(static_cast<std::size_t>(s->width) * static_cast<std::size_t>(s->height));
+      values.insert(values.end(), from, from + cells);
+      from += cells;
+    }
+  });
+}
+
+void Simulation::judge(const std::vector<Layer>& layers, const RowBand& rows) {
+  for (Layer layer : layers)
+    if (on_request(layer)) terrain_.require(layer);
+  TerrainView view = terrain_.view();
+  for (const LayerInfo& row : layer_table)
+    if (on_request(row.layer) && std::count(layers.begin(), layers.end(), row.layer) == 0)
+      view.layers[static_cast<int>(row.layer)] = nullptr;
+  with_backend(exec(), [&](auto& e) {
+    traversability::step(e, view, scenario_.traversability, rows.first, rows.count);
+  });
+}
+
+void Simulation::release_requested_layers() {
+  exec().synchronise();
+  for (const LayerInfo& row : layer_table)
+    if (on_request(row.layer)) terrain_.use(row.layer, false);
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,35 @@
+#pragma once
+/// Layers at one moment, on the host.
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "desert_sim/kernels/layers.hpp"
+#include "desert_sim/kernels/wind.hpp"
+#include "desert_sim/simulation/staging.hpp"
+
+namespace desert_sim {
+
+/// Rows first … first + count − 1 of a terrain; all if count is 0. On a periodic one they go on over its
+/// edges.
+struct RowBand {
+  int first = 0, count = 0;
+};
+
+/// Layers at one moment, converted to floats in the layer's unit. Immutable once made; outlives the
+/// simulation.
+struct Snapshot {
+  int width = 0, height = 0;
+  double cell_size = 1, origin_x = 0, origin_y = 0;
+  bool periodic_x = true, periodic_y = true;  ///< else open; a band of rows is open to north and south
+  std::uint64_t step = 0;
+  double time = 0;  ///< simulated [s]
+  wind::Vector wind_above;
+  std::map<Layer, std::vector<float>> layers;
+  const std::vector<float>* find(Layer layer) const;  ///< null if it was not asked for
+};
+
+using PendingSnapshot = Pending<Snapshot>;
+
+}  // namespace desert_sim
