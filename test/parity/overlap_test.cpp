@@ -14,19 +14,7 @@
 namespace desert_sim {
 namespace {
 
-class Overlap : public ::testing::Test {
- protected:
-  void SetUp() override {
-    DESERT_NEED_GPU();
-    cpu_ = make_exec("cpu", 2);
-    cuda_ = make_exec("cuda");
-  }
-  Exec& cpu() { return *cpu_; }
-  Exec& cuda() { return *cuda_; }
-
- private:
-  std::unique_ptr<Exec> cpu_, cuda_;
-};
+class Overlap : public test::OnBoth {};
 
 const char* const dunes =
     "terrain: [noise: {layer: bedrock, low: 0, high: 10, scale: 30}, noise: {layer: sand, low: 0.5, high: 4, "

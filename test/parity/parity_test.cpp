@@ -14,16 +14,8 @@
 namespace desert_sim {
 namespace {
 
-class Parity : public ::testing::Test {
+class Parity : public test::OnBoth {
  protected:
-  void SetUp() override {
-    DESERT_NEED_GPU();
-    cpu_ = make_exec("cpu", 2);
-    cuda_ = make_exec("cuda");
-  }
-  Exec& cpu() { return *cpu_; }
-  Exec& cuda() { return *cuda_; }
-
   /// Number of words that differ, by layer; fails with its name and the first cell.
   static void expect_same_layers(const Simulation& a, const Simulation& b, bool derived) {
     for (const LayerInfo& row : layer_table) {
@@ -52,8 +44,6 @@ class Parity : public ::testing::Test {
     test::expect_sound(*b, "on the GPU");
     EXPECT_EQ(a->mean_avalanche_iterations(), b->mean_avalanche_iterations());
   }
-
-  std::unique_ptr<Exec> cpu_, cuda_;
 };
 
 /// One test for each group of cases, so that a sanitizer can take them one at a time.

@@ -51,6 +51,21 @@ class OnBackend : public ::testing::TestWithParam<const char*> {
     if (!status_.usable) GTEST_SKIP() << status_.reason;                   \
   } while (false)
 
+/// Has both backends.
+class OnBoth : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    DESERT_NEED_GPU();
+    cpu_ = make_exec("cpu", 2);
+    cuda_ = make_exec("cuda");
+  }
+  Exec& cpu() { return *cpu_; }
+  Exec& cuda() { return *cuda_; }
+
+ private:
+  std::unique_ptr<Exec> cpu_, cuda_;
+};
+
 inline std::string backend_name(const ::testing::TestParamInfo<const char*>& info) { return info.param; }
 
 #define DESERT_ON_EACH_BACKEND(Suite) \
