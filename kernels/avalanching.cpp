@@ -38,8 +38,7 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParamete
 
 GroundWorkspace make_ground_workspace(Exec& exec, const Grid& grid) {
   const std::size_t n = static_cast<std::size_t>(grid.cells());
-  return {Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n),
-          Buffer<Quanta>(exec, n), Buffer<float>(exec, n),  Buffer<float>(exec, n)};
+  return {Buffer<Quanta>(exec, n), Buffer<float>(exec, n)};
 }
 
 }  // namespace desert_sim::avalanching

@@ -156,9 +156,11 @@ void cycle(E& exec, const LevelView& fine, float transfer, const Schedule& plan,
 
 template <class E>
 void sweep(E& exec, const LevelView& level, float transfer, bool by_tangent, Workspace& work) {
-  for_each_cell(exec, level.grid, Release{level, transfer, by_tangent, work.share.data(), work.given.data()});
   for_each_cell(exec, level.grid,
-                Gather{level, by_tangent, work.share.data(), work.given.data(), work.received.data()});
+                Release<LevelView>{level, transfer, by_tangent, work.share.data(), work.given.data()});
+  for_each_cell(
+      exec, level.grid,
+      Gather<LevelView>{level, by_tangent, work.share.data(), work.given.data(), work.received.data()});
   for_each_cell(exec, level.grid,
                 ApplySweep{level.grid, work.given.data(), work.received.data(), level.sand});
 }

@@ -12,33 +12,45 @@
 
 namespace desert_sim::avalanching {
 
-struct SoilRepose {
+/// Soil as a level on rock, at its own angle.
+struct SoilLevel {
+  struct Angle {
+    float bare, vegetated;  ///< tangents
+    const float* vegetation;
+    DESERT_HD float operator[](int i) const { return lerp(bare, vegetated, value_or_zero(vegetation, i)); }
+  };
+
   Grid grid;
-  repose::Tangents tangents;
-  const float* vegetation;
-  float* repose;
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    repose[i] = lerp(tangents.soil, tangents.soil_vegetated, value_or_zero(vegetation, i));
-  }
+  const Quanta *bedrock, *sand;  ///< what slides is called sand on every level: here it is soil
+  const float* obstacle;         ///< or null
+  Angle repose;
+  float quanta_per_cell;
+
+  DESERT_HD bool wall(int i) const { return bedrock[i] >= wall_height || value_or_zero(obstacle, i) > 0.0f; }
+  DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : bedrock[i] + sand[i]; }
 };
 
-/// Bedrock seen as material that can all move: `sand` of the level is the rock's height above the lowest
-/// possible.
-constexpr Quanta lowest_ground = 1 - wall_height;
+/// Bedrock as a level whose material is all of it, down to the lowest possible ground, at one angle
+/// everywhere.
+struct RockLevel {
+  static constexpr Quanta lowest_ground = 1 - wall_height;
+  struct Column {
+    const Quanta* bedrock;
+    DESERT_HD Quanta operator[](int i) const { return bedrock[i] - lowest_ground; }
+  };
+  struct Everywhere {
+    float tangent;
+    DESERT_HD float operator[](int) const { return tangent; }
+  };
 
-struct RockColumn {
   Grid grid;
-  const Quanta* bedrock;
-  float tangent;
-  Quanta *ground, *column;
-  float* repose;
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    ground[i] = lowest_ground;
-    column[i] = bedrock[i] - lowest_ground;
-    repose[i] = tangent;
-  }
+  Column sand;
+  const float* obstacle;  ///< or null
+  Everywhere repose;
+  float quanta_per_cell;
+
+  DESERT_HD bool wall(int i) const { return value_or_zero(obstacle, i) > 0.0f; }
+  DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : sand.bedrock[i]; }
 };
 
 struct ApplyRockfall {
@@ -61,48 +73,41 @@ struct ApplyRockfall {
 
 /// Scratch for the ground's avalanches: one value a cell each.
 struct GroundWorkspace {
-  Buffer<Quanta> ground, column, given, received;
-  Buffer<float> repose, share;
+  Buffer<Quanta> received;
+  Buffer<float> share;
 };
 GroundWorkspace make_ground_workspace(Exec& exec, const Grid& grid);
 
+/// `given`: scratch, and afterwards what each cell gave.
 template <class E>
 void step_soil(E& exec, const TerrainView& t, const AvalanchingParameters& p, const ReposeParameters& repose,
-               GroundWorkspace& work) {
-  for_each_cell(exec, t.grid,
-                SoilRepose{t.grid, repose::Tangents(repose), t.real(Layer::vegetation), work.repose.data()});
-  const LevelView level{t.grid,
+               Quanta* given, GroundWorkspace& work) {
+  const repose::Tangents tangents(repose);
+  const SoilLevel level{t.grid,
                         t.quanta(Layer::bedrock),
-                        nullptr,
-                        t.real(Layer::obstacle),
                         t.quanta(Layer::soil),
-                        work.repose.data(),
+                        t.real(Layer::obstacle),
+                        {tangents.soil, tangents.soil_vegetated, t.real(Layer::vegetation)},
                         t.grid.cell_size * t.quanta_per_metre};
-  for_each_cell(exec, t.grid, Release{level, p.transfer, false, work.share.data(), work.given.data()});
+  for_each_cell(exec, t.grid, Release<SoilLevel>{level, p.transfer, false, work.share.data(), given});
   for_each_cell(exec, t.grid,
-                Gather{level, false, work.share.data(), work.given.data(), work.received.data()});
-  for_each_cell(exec, t.grid,
-                ApplySweep{t.grid, work.given.data(), work.received.data(), t.quanta(Layer::soil)});
+                Gather<SoilLevel>{level, false, work.share.data(), given, work.received.data()});
+  for_each_cell(exec, t.grid, ApplySweep{t.grid, given, work.received.data(), t.quanta(Layer::soil)});
 }
 
 template <class E>
 void step_bedrock(E& exec, const TerrainView& t, const AvalanchingParameters& p,
-                  const ReposeParameters& repose, LedgerView ledger, GroundWorkspace& work) {
-  for_each_cell(exec, t.grid,
-                RockColumn{t.grid, t.quanta(Layer::bedrock), repose::Tangents(repose).bedrock,
-                           work.ground.data(), work.column.data(), work.repose.data()});
-  const LevelView level{t.grid,
-                        work.ground.data(),
-                        nullptr,
+                  const ReposeParameters& repose, LedgerView ledger, Quanta* given, GroundWorkspace& work) {
+  const RockLevel level{t.grid,
+                        {t.quanta(Layer::bedrock)},
                         t.real(Layer::obstacle),
-                        work.column.data(),
-                        work.repose.data(),
+                        {repose::Tangents(repose).bedrock},
                         t.grid.cell_size * t.quanta_per_metre};
-  for_each_cell(exec, t.grid, Release{level, p.transfer, false, work.share.data(), work.given.data()});
+  for_each_cell(exec, t.grid, Release<RockLevel>{level, p.transfer, false, work.share.data(), given});
   for_each_cell(exec, t.grid,
-                Gather{level, false, work.share.data(), work.given.data(), work.received.data()});
+                Gather<RockLevel>{level, false, work.share.data(), given, work.received.data()});
   for_each_cell(exec, t.grid,
-                ApplyRockfall{t.grid, work.given.data(), work.received.data(), p.bedrock_to_sand,
+                ApplyRockfall{t.grid, given, work.received.data(), p.bedrock_to_sand,
                               t.quanta(Layer::bedrock), t.quanta(Layer::sand), ledger});
 }
 

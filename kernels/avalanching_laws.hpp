@@ -108,8 +108,10 @@ struct Prolong {
 
 /// One synchronous sweep over the whole grid, first half: each cell's share, and what it gives in all.
 /// `by_tangent` is Taylor & Keyser's distribution: k_c of the largest drop, in proportion to the tangents.
+/// `Level` is LevelView, or what looks like it.
+template <class Level>
 struct Release {
-  LevelView level;
+  Level level;
   float transfer;
   bool by_tangent;
   float* share;
@@ -147,8 +149,9 @@ struct Release {
 };
 
 /// Second half: what the neighbours give to each cell, less what it gives.
+template <class Level>
 struct Gather {
-  LevelView level;
+  Level level;
   bool by_tangent;
   const float* share;
   const Quanta* given;
@@ -162,8 +165,9 @@ struct Gather {
     for (int k = 0; k < 8; ++k) {
       const int j = neighbour_index(g, x + Neighbours::dx(k), y + Neighbours::dy(k));
       if (j < 0 || share[j] <= 0.0f) continue;
-      sum += static_cast<Quanta>(share[j] * Release::weight(by_tangent, level.height(j), h,
-                                                            level.repose[j] * level.quanta_per_cell, k));
+      sum +=
+          static_cast<Quanta>(share[j] * Release<Level>::weight(by_tangent, level.height(j), h,
+                                                                level.repose[j] * level.quanta_per_cell, k));
     }
     received[i] = sum;
   }

@@ -141,7 +141,6 @@ std::vector<MemoryPart> Simulation::memory() const {
   const auto add = [&parts](const char* name, std::size_t bytes) {
     if (bytes > 0) parts.push_back({name, bytes});
   };
-  const avalanching::GroundWorkspace& ground = ground_work_;
   add("landed sand", landed_.bytes());
   add("strength of reptation", reptation_strength_.bytes());
   add("tangents of repose", repose_.bytes());
@@ -150,8 +149,7 @@ std::vector<MemoryPart> Simulation::memory() const {
   add("heights", bytes_of_all(heights_.of_cells, heights_.highest));
   add("wind shadow's blocks", bytes_of_all(shadow_work_.reciprocals, shadow_work_.around));
   add("avalanches' levels", bytes_of_avalanches(avalanche_work_));
-  add("avalanches of rock and soil",
-      bytes_of_all(ground.ground, ground.column, ground.given, ground.received, ground.repose, ground.share));
+  add("avalanches of rock and soil", bytes_of_all(ground_work_.received, ground_work_.share));
   add("ledger", ledger_.bytes());
   add("elevation that others hold", held_.bytes());
   add("staging memory", staging_.bytes());

@@ -62,13 +62,13 @@ template <class E>
 void Simulation::slide_ground(E& exec, const TerrainView& view) {
   const AvalanchingParameters& p = scenario_.avalanching;
   const bool wearing = scenario_.abrasion.rate > 0;
-  const auto moved = [&] { return statistics::sum(exec, view.grid, ground_work_.given.data()) != 0; };
+  const auto moved = [&] { return statistics::sum(exec, view.grid, landed_.data()) != 0; };
   if (p.soil && (wearing || soil_loose_) && terrain_.has(Layer::soil)) {
-    avalanching::step_soil(exec, view, p, scenario_.repose, ground_work_);
+    avalanching::step_soil(exec, view, p, scenario_.repose, landed_.data(), ground_work_);
     if (soil_loose_) soil_loose_ = moved();
   }
   if (p.bedrock && (wearing || bedrock_loose_)) {
-    avalanching::step_bedrock(exec, view, p, scenario_.repose, ledger(), ground_work_);
+    avalanching::step_bedrock(exec, view, p, scenario_.repose, ledger(), landed_.data(), ground_work_);
     if (bedrock_loose_) bedrock_loose_ = moved();
   }
   soil_loose_ = soil_loose_ || (bedrock_loose_ && terrain_.has(Layer::soil));
@@ -259,7 +259,7 @@ void Simulation::prepare_processes() {
 
 void Simulation::prepare_ground_avalanches() {
   const AvalanchingParameters& p = scenario_.avalanching;
-  if (!ground_work_.ground && p.enabled && (p.soil || p.bedrock))
+  if (!ground_work_.received && p.enabled && (p.soil || p.bedrock))
     ground_work_ = avalanching::make_ground_workspace(exec(), terrain_.grid());
 }
 

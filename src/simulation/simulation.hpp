@@ -189,8 +189,8 @@ class Simulation {
   /// The tangents of repose, from reptation on; what comes before it in a step may scribble there.
   Buffer<float> repose_;
   Buffer<float> reptation_strength_;
-  Buffer<Quanta> landed_;
-  Buffer<float> held_;  ///< the elevation that others hold [m]; none if they hold none
+  Buffer<Quanta> landed_;  ///< of saltation; what comes after it in a step may scribble there
+  Buffer<float> held_;     ///< the elevation that others hold [m]; none if they hold none
 
   StepRecordings recordings_;
   bool timing_ = false;

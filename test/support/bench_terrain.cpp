@@ -128,13 +128,17 @@ int BenchTerrain::avalanche(const AvalanchingParameters& p, std::uint64_t tick) 
 
 void BenchTerrain::avalanche_soil(const AvalanchingParameters& p, const ReposeParameters& r) {
   avalanching::GroundWorkspace work = avalanching::make_ground_workspace(exec(), grid());
-  with_backend(exec(), [&](auto& e) { avalanching::step_soil(e, terrain.view(), p, r, work); });
+  Buffer<Quanta> given(exec(), static_cast<std::size_t>(grid().cells()));
+  with_backend(exec(), [&](auto& e) { avalanching::step_soil(e, terrain.view(), p, r, given.data(), work); });
   exec().synchronise();
 }
 
 void BenchTerrain::avalanche_bedrock(const AvalanchingParameters& p, const ReposeParameters& r) {
   avalanching::GroundWorkspace work = avalanching::make_ground_workspace(exec(), grid());
-  with_backend(exec(), [&](auto& e) { avalanching::step_bedrock(e, terrain.view(), p, r, ledger(), work); });
+  Buffer<Quanta> given(exec(), static_cast<std::size_t>(grid().cells()));
+  with_backend(exec(), [&](auto& e) {
+    avalanching::step_bedrock(e, terrain.view(), p, r, ledger(), given.data(), work);
+  });
   exec().synchronise();
 }
 
