@@ -106,11 +106,12 @@ TEST_P(Memory, IsGivenBack) {
 }
 
 TEST_P(Memory, OfAllAeolianProcessesIsAtMostSixtyBytesACell) {
-  Simulation s(exec(), scene(256, all_aeolian), refuse_rasters);
+  constexpr int size = 1024;  // smaller ones are mostly the wind's transforms and the ledger
+  Simulation s(exec(), scene(size, all_aeolian), refuse_rasters);
   s.step();
   for (const MemoryPart& p : s.memory())
-    std::printf("  %-28s %6.2f bytes a cell\n", p.name.c_str(), static_cast<double>(p.bytes) / (256 * 256));
-  EXPECT_LE(bytes_a_cell(s.memory(), 256), 60);
+    std::printf("  %-28s %6.2f bytes a cell\n", p.name.c_str(), bytes_a_cell({p}, size));
+  EXPECT_LE(bytes_a_cell(s.memory(), size), 60);
 }
 
 TEST(MemoryPlan, OfTheLargestBenchmarkIsAtMostSixtyBytesACell) {
