@@ -210,19 +210,16 @@ class Lifecycle(Scenarios):
         self.assertEqual(len(answers), 1, "the client that waits is let go")
 
     def test_failure_is_told_and_ends_the_node(self):
-        # A journal that cannot be written to its end: the process may not write files larger than this. (LLVM's OpenMP
-        # needs a shared page of 1 kB, and dies without it.)
-        def limit():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
-
-        node = self.start("failing", {"scenario": CORNER, "journal": self.path("journal.yaml")}, preexec=limit)
+        # A journal that cannot be written to its end: once it runs, the process may not write files larger than this.
+        node = self.start("failing", {"scenario": CORNER, "journal": self.path("journal.yaml")},
+                          preexec=lambda: signal.signal(signal.SIGXFSZ, signal.SIG_IGN))
         told = []
         rospy.Subscriber("/failing/status", SimulationStatus, told.append)
         wait_until(lambda: told, "no status")
-        for n in range(200):
+        resource.prlimit(node.process.pid, resource.RLIMIT_FSIZE, (400, 400))
+        for speed in range(20):
             try:
-                if not node.call("set_wind", SetWind, speed=1 + n % 20).success:
+                if not node.call("set_wind", SetWind, speed=speed).success:
                     break
             except rospy.ServiceException:
                 break

@@ -29,17 +29,34 @@ struct Allocation {
 Allocation allocations[4096];
 std::atomic<std::size_t> allocation_count{0};
 
+void note(void* memory, std::size_t bytes) {
+  if (bytes < grid_bytes) return;
+  const std::size_t n = allocation_count++;
+  if (n < std::size(allocations)) allocations[n] = {memory, pthread_self()};
+}
+
 }  // namespace
 
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define DESERT_THREAD_SANITIZER
+#endif
+#endif
+#ifdef DESERT_THREAD_SANITIZER
+// It has operators of its own, which cannot be replaced, and tells of all allocations.
+#include <sanitizer/allocator_interface.h>
+namespace {
+const int told = __sanitizer_install_malloc_and_free_hooks(
+    [](const volatile void* memory, std::size_t bytes) { note(const_cast<void*>(memory), bytes); },
+    [](const volatile void*) {});
+}  // namespace
+#else
 // Out of line: the compiler takes free() in place of delete for a mistake.
 #define DESERT_APART __attribute__((noinline))
 DESERT_APART void* operator new(std::size_t bytes) {
   void* memory = std::malloc(bytes ? bytes : 1);
   if (!memory) throw std::bad_alloc();
-  if (bytes >= grid_bytes) {
-    const std::size_t n = allocation_count++;
-    if (n < std::size(allocations)) allocations[n] = {memory, pthread_self()};
-  }
+  note(memory, bytes);
   return memory;
 }
 DESERT_APART void* operator new[](std::size_t bytes) { return operator new(bytes); }
@@ -47,6 +64,7 @@ DESERT_APART void operator delete(void* memory) noexcept { std::free(memory); }
 DESERT_APART void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 DESERT_APART void operator delete[](void* memory) noexcept { std::free(memory); }
 DESERT_APART void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+#endif
 
 namespace {
 
