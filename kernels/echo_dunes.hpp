@@ -7,7 +7,7 @@
 ///   `sticky_reach`·H: r_e = clamp(1.1 − (d − erosion_reach H)/((sticky_reach − erosion_reach) H), 0, 1)
 ///
 /// The rise is taken over the whole cliff: from this cell upwind to where the ground stops being a cliff.
-/// Erosion wins; else the stickiest cliff counts. Reads elevation, wind_x, wind_y; writes echo.
+/// Erosion wins; else the stickiest cliff counts. Reads the heights, wind_x, wind_y; writes echo.
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/wind_shadow.hpp"

@@ -32,7 +32,7 @@ struct SolidSurface {
 };
 
 template <class E>
-void step(E& exec, const TerrainView& terrain) {
+void fill_elevation(E& exec, const TerrainView& terrain) {
   for_each_cell(exec, terrain.grid, SolidSurface(terrain));
 }
 

@@ -69,7 +69,7 @@ std::vector<TileChange> unpacked_changes(Staging::Slot& slot, const Tiling& tile
 void Simulation::hold_elevation() {
   if (!held_) held_ = Buffer<float>(exec(), static_cast<std::size_t>(terrain_.grid().cells()));
   with_backend(exec(), [this](auto& e) {
-    surface::step(e, terrain_.view());
+    surface::fill_elevation(e, terrain_.view());
     held_elevation::hold(e, terrain_.view(), terrain_.metres(Layer::elevation), held_.data());
   });
 }
@@ -84,7 +84,7 @@ Pending<ElevationChanges> Simulation::take_elevation_changes(double threshold, i
       most_packed(static_cast<std::size_t>(all.columns()),
                   static_cast<std::size_t>(all.grid.width) * static_cast<std::size_t>(all.height(0)));
   const int most = static_cast<int>(std::clamp<std::size_t>(staging_.slot_bytes() / row_bytes, 1, most_rows));
-  with_backend(exec(), [this](auto& e) { surface::step(e, terrain_.view()); });
+  with_backend(exec(), [this](auto& e) { surface::fill_elevation(e, terrain_.view()); });
   for (int row = 0; row < all.row_count; row += most)
     send_changes(changes, {all.grid, tile, row, std::min(most, all.row_count - row)},
                  static_cast<float>(threshold), readback);

@@ -285,7 +285,7 @@ void Simulation::upload_wind_features() {
 }
 
 void Simulation::start_books() {
-  with_backend(exec(), [this](auto& e) { surface::step(e, terrain_.view()); });
+  with_backend(exec(), [this](auto& e) { surface::fill_elevation(e, terrain_.view()); });
   const std::vector<std::uint32_t> surface = terrain_.words(Layer::elevation);
   Quanta lowest = wall_height;
   for (std::uint32_t word : surface) lowest = std::min(lowest, static_cast<Quanta>(word));

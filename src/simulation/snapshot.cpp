@@ -49,9 +49,9 @@ PendingSnapshot Simulation::begin_snapshot(const std::vector<Layer>& layers, con
   const std::shared_ptr<Snapshot> snapshot = frame_of(layers, rows);
   refresh_derived();
   const bool judged = std::any_of(layers.begin(), layers.end(), on_request);
-  // A step leaves heights as they were at its beginning.
+  // No step fills that layer.
   if (judged || std::count(layers.begin(), layers.end(), Layer::elevation) > 0)
-    with_backend(exec(), [&](auto& e) { surface::step(e, terrain_.view()); });
+    with_backend(exec(), [&](auto& e) { surface::fill_elevation(e, terrain_.view()); });
   if (judged) judge(layers, rows);
   auto readback = std::make_shared<Readback>();
   if (layers.empty()) return {snapshot, readback};

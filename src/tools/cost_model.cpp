@@ -24,9 +24,9 @@ ProcessCost avalanches(AvalancheQuality quality) {
 
 std::vector<ProcessCost> cost_model(AvalancheQuality quality) {
   return {
-      {"wind", 6 * layer, "bedrock, sand; elevation", "elevation; wind (2)"},
-      {"wind_shadow", 4 * layer, "elevation, wind (2)", "shadow"},
-      {"echo_dunes", 6 * layer, "elevation, wind (2); cliffs", "cliffs; echo"},
+      {"wind", 6 * layer, "bedrock, sand; heights", "heights; wind (2)"},
+      {"wind_shadow", 4 * layer, "heights, wind (2)", "shadow"},
+      {"echo_dunes", 6 * layer, "heights, wind (2); cliffs", "cliffs; echo"},
       {"saltation", 13 * layer, "sand, airborne, wind (2), shadow; landed, sand, shadow",
        "sand, landed; sand, airborne, tangents"},
       avalanches(quality),

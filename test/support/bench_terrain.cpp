@@ -80,7 +80,7 @@ long long BenchTerrain::booked(Material material, int side) const {
 
 void BenchTerrain::surface() {
   with_backend(exec(), [&](auto& e) {
-    surface::step(e, terrain.view());
+    surface::fill_elevation(e, terrain.view());
     surface::measure(e, terrain.view(), heights);
   });
 }
