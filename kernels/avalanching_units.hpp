@@ -18,22 +18,6 @@ namespace desert_sim::avalanching {
 /// Sweeps that a tile may take before it is stored: what follows bounds how far heights can rise.
 constexpr int most_sweeps = 8;
 
-/// Of two positive numbers; on a GPU one instruction, which a comparison is not.
-DESERT_HD float lower(float a, float b) {
-#if defined(__CUDA_ARCH__)
-  return fminf(a, b);
-#else
-  return minimum(a, b);
-#endif
-}
-DESERT_HD float higher(float a, float b) {
-#if defined(__CUDA_ARCH__)
-  return fmaxf(a, b);
-#else
-  return maximum(a, b);
-#endif
-}
-
 struct Units {
   static constexpr float floor = 1.0f, unit = 1.0f / 8388608.0f;
   static constexpr int per_one = 8388608;

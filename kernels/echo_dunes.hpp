@@ -57,7 +57,7 @@ struct CliffHeight {
     float last = 0.0f, rise = 0.0f;  // heights here and below it, relative to this cell
     for (int j = 1; rise * quantum < highest; ++j) {
       const wind_shadow::Place place(x, y, j * dx, j * dy);
-      const float next = wind_shadow::height_anywhere(grid, heights, place) - heights[i];
+      const float next = wind_shadow::height_at(grid, heights, place) - heights[i];
       if (last - next < drop) break;
       last = next;
       rise = -next;

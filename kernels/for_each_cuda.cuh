@@ -3,6 +3,8 @@
 
 #include <cuda_runtime.h>
 
+#include <type_traits>
+
 #include "desert_sim/core/error.hpp"
 #include "desert_sim/kernels/for_each.hpp"
 
@@ -23,9 +25,20 @@ inline dim3 blocks(const Grid& g) {
   return dim3((g.width + block_x - 1) / block_x, (g.height + block_y - 1) / block_y);
 }
 
+template <class Law, class = void>
+struct CompactWarps : std::false_type {};
+template <class Law>
+struct CompactWarps<Law, std::enable_if_t<Law::compact_warps>> : std::true_type {};
+
+/// A warp works on 32 × 1 cells, or on 8 × 4 for a law that says `compact_warps`.
 template <class Law>
 __global__ void cells_kernel(Grid grid, Law law) {
-  const int x = blockIdx.x * block_x + threadIdx.x, y = blockIdx.y * block_y + threadIdx.y;
+  int dx = threadIdx.x, dy = threadIdx.y;
+  if constexpr (CompactWarps<Law>::value) {
+    dx = 8 * (threadIdx.y % 4) + threadIdx.x % 8;
+    dy = 4 * (threadIdx.y / 4) + threadIdx.x / 8;
+  }
+  const int x = blockIdx.x * block_x + dx, y = blockIdx.y * block_y + dy;
   if (x < grid.width && y < grid.height) law(x, y);
 }
 
@@ -46,7 +59,8 @@ struct Team {
   DESERT_HD bool any(int n, const Predicate& predicate) const {
     int found = 0;
 #if defined(__CUDA_ARCH__)
-    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y) found |= predicate(i) ? 1 : 0;
+    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y)
+      found |= predicate(i) ? 1 : 0;
     found = __syncthreads_or(found);
 #endif
     return found != 0;
@@ -56,7 +70,8 @@ struct Team {
 #if defined(__CUDA_ARCH__)
     __shared__ int least;
     int mine = value(0);
-    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y) mine = min(mine, value(i));
+    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y)
+      mine = min(mine, value(i));
     if (threadIdx.x == 0 && threadIdx.y == 0) least = mine;
     __syncthreads();
     atomicMin(&least, mine);
@@ -160,8 +175,9 @@ void for_each_cell(CudaExec& exec, const Grid& grid, const Law& law) {
 template <class Tiling, class Law>
 void for_each_tile(CudaExec& exec, const Tiling& tiles, const Law& law) {
   constexpr int bytes = Law::template scratch_bytes<cuda::Team>;
-  check_cuda(cudaFuncSetAttribute(cuda::tiles_kernel<Law>, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes),
-             "asking for shared memory");
+  check_cuda(
+      cudaFuncSetAttribute(cuda::tiles_kernel<Law>, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes),
+      "asking for shared memory");
   cuda::tiles_kernel<<<dim3(tiles.columns(), tiles.rows()), cuda::block(), bytes, cuda::stream(exec)>>>(law);
   check_cuda(cudaGetLastError(), "launch over tiles");
 }

@@ -13,6 +13,22 @@ namespace desert_sim {
 DESERT_HD float lerp(float a, float b, float t) { return a + t * (b - a); }
 DESERT_HD float minimum(float a, float b) { return a < b ? a : b; }
 DESERT_HD float maximum(float a, float b) { return a > b ? a : b; }
+/// Of two numbers that are not NaN, nor zeros of different sign; on a GPU one instruction, which a comparison
+/// is not.
+DESERT_HD float lower(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return fminf(a, b);
+#else
+  return minimum(a, b);
+#endif
+}
+DESERT_HD float higher(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return fmaxf(a, b);
+#else
+  return maximum(a, b);
+#endif
+}
 DESERT_HD float clamp(float v, float low, float high) { return minimum(maximum(v, low), high); }
 /// a·b + c, rounded once. Where the processor has no such instruction the library computes it, slowly.
 DESERT_HD float fused(float a, float b, float c) { return fmaf(a, b, c); }

@@ -48,11 +48,22 @@ DESERT_HD float fraction(int subcell) {
 /// The nearest whole cell to a displacement; halves go away from zero, so that mirrored marches mirror.
 DESERT_HD int nearest_cell(int subcell) { return (subcell + 32768 - (subcell < 0 ? 1 : 0)) >> 16; }
 
-/// The share wx·wy (each 0…2¹⁶) of an amount, rounded down: the four shares of a bilinear split never exceed
-/// it.
+/// a·b / 2³², rounded down.
+DESERT_HD std::uint32_t high_product(std::uint32_t a, std::uint32_t b) {
+#if defined(__CUDA_ARCH__)
+  return __umulhi(a, b);
+#else
+  return static_cast<std::uint32_t>((static_cast<std::uint64_t>(a) * b) >> 32);
+#endif
+}
+
+/// The share wx·wy (each 0…2¹⁶) of an amount that is not negative, rounded down: the four shares of a
+/// bilinear split never exceed it.
 DESERT_HD Quanta bilinear_share(Quanta amount, int wx, int wy) {
-  return static_cast<Quanta>((static_cast<std::int64_t>(amount) * (static_cast<std::int64_t>(wx) * wy)) >>
-                             32);
+  const std::uint32_t share =
+      static_cast<std::uint32_t>(wx) * static_cast<std::uint32_t>(wy);  // of 2³²: that is 0 here
+  if (wx == subcell_one && wy == subcell_one) return amount;
+  return static_cast<Quanta>(high_product(static_cast<std::uint32_t>(amount), share));
 }
 
 }  // namespace desert_sim

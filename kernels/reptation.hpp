@@ -11,9 +11,9 @@
 ///   steepest         with probability (1 − v)(1 − e^(−r)), `slab`·Δt to the two steepest neighbours, by
 ///   their slopes
 ///
-/// Saltation's deposit sets the angles, of every choice (without r but for adaptive_repose), in the same pass: see
-/// Impacts. Reads sand, bedrock, soil, wind, wind_shadow, vegetation, moisture; writes sand and the scratch layer of
-/// repose tangents.
+/// Saltation's deposit sets the angles, of every choice (without r but for adaptive_repose), in the same
+/// pass: see Impacts. Reads sand, bedrock, soil, wind, wind_shadow, vegetation, moisture; writes sand and the
+/// scratch layer of repose tangents.
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/for_each.hpp"
@@ -48,30 +48,27 @@ namespace reptation {
 /// The angle of repose of a cell's sand where impacts of strength r [m] loosen it, in the wind's speed [m/s].
 struct Angle {
   repose::Tangents tangents;
-  repose::RelativeMoisture moisture;
   float loosening;  ///< k_r of adaptive_repose, else 0
   bool use_shadow;
-  const float *wind_shadow, *vegetation;
+  const float* wind_shadow;
   float* repose;
 
   Angle(const TerrainView& t, const ReptationParameters& p, const ReposeParameters& repose_parameters,
         float* tangents_of_repose)
       : tangents(repose_parameters),
-        moisture(t, repose_parameters),
         loosening(p.method == ReptationMethod::adaptive_repose ? p.strength : 0.0f),
         use_shadow(p.use_shadow),
         wind_shadow(t.real(Layer::wind_shadow)),
-        vegetation(t.real(Layer::vegetation)),
         repose(tangents_of_repose) {}
 
-  DESERT_HD void set(int i, float r, float speed) const {
+  /// v vegetation, m relative moisture.
+  DESERT_HD void set(int i, float r, float speed, float v, float m) const {
     float sand = tangents.sand;
     if (loosening > 0.0f) {
       const float open = use_shadow ? 1.0f - value_or_zero(wind_shadow, i) : 1.0f;
       sand *= exp_negative(loosening * r * speed * open);
     }
-    repose[i] =
-        lerp(sand, tangents.vegetated, value_or_zero(vegetation, i)) * repose::moisture_factor(moisture(i));
+    repose[i] = lerp(sand, tangents.vegetated, v) * repose::moisture_factor(m);
   }
 };
 
@@ -80,8 +77,8 @@ struct Impacts {
   Angle angle;
   float* strength;  ///< [m], or null
 
-  DESERT_HD void set(int i, float r, float speed) const {
-    angle.set(i, r, speed);
+  DESERT_HD void set(int i, float r, float speed, float v, float m) const {
+    angle.set(i, r, speed, v, m);
     if (strength) strength[i] = r;
   }
 };
@@ -90,17 +87,21 @@ struct Impacts {
 struct SetAngles {
   Grid grid;
   Angle angle;
-  const float *strength, *wind_x, *wind_y;  ///< strength: null where nothing hits
+  const float *strength, *wind_x, *wind_y, *vegetation;  ///< strength: null where nothing hits
+  repose::RelativeMoisture moisture;
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    angle.set(i, value_or_zero(strength, i), hypotenuse(wind_x[i], wind_y[i]));
+    angle.set(i, value_or_zero(strength, i), hypotenuse(wind_x[i], wind_y[i]), value_or_zero(vegetation, i),
+              moisture(i));
   }
 };
 template <class E>
-void set_angles(E& exec, const TerrainView& t, const Angle& angle, const float* strength) {
+void set_angles(E& exec, const TerrainView& t, const Angle& angle, const ReposeParameters& p,
+                const float* strength) {
   for_each_cell(exec, t.grid,
-                SetAngles{t.grid, angle, strength, t.real(Layer::wind_x), t.real(Layer::wind_y)});
+                SetAngles{t.grid, angle, strength, t.real(Layer::wind_x), t.real(Layer::wind_y),
+                          t.real(Layer::vegetation), repose::RelativeMoisture(t, p)});
 }
 
 /// Whether step() does anything: adaptive_repose has done with the angles.
@@ -212,7 +213,8 @@ struct ApplyChange {
   }
 };
 
-/// Moves sand. Scratch: `change` (quanta) one a cell. `seed` and `tick` (steps done) draw the events of `steepest`.
+/// Moves sand. Scratch: `change` (quanta) one a cell. `seed` and `tick` (steps done) draw the events of
+/// `steepest`.
 template <class E>
 void step(E& exec, const TerrainView& t, const ReptationParameters& p, float time_step, std::uint64_t seed,
           std::uint64_t tick, const float* reptation_strength, Quanta* change) {

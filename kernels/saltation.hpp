@@ -3,7 +3,8 @@
 /// Nilles 2024 §3.6; physics.md B1–B3.
 ///
 ///   lift     L = min(s, ε_s (1 − r_s)(1 − v)(r_e > 0 ? ½ : 1) M + (r_e < 0 ? k_e : 0)),  a += L
-///            M = clamp(1 − 10 m, 0, 1), 0 under water; nothing lifts in still air or below the threshold speed
+///            M = clamp(1 − 10 m, 0, 1), 0 under water; nothing lifts in still air or below the threshold
+///            speed
 ///   advect   a moves by w Δt / l cells and is shared bilinearly among four (scattered integers: exact, any
 ///   order) deposit  p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1), f = 0.4 on sand, 0.5 on soil, 0.6 on
 ///   rock; 0 on obstacles
@@ -61,12 +62,15 @@ DESERT_HD float dryness(float relative_moisture) {
 /// Water deeper than this stops the wind's work [m].
 constexpr float wet_depth = 1e-5f;
 
+/// What the laws read. `bare`: of a desert of rock and sand alone, where there are none of the layers that a
+/// desert need not have; laws for that leave out the questions after them.
+template <bool bare>
 struct Inputs {
   Grid grid;
   float quantum, quanta_per_metre, time_step;
   const float *wind_x, *wind_y, *wind_shadow, *echo, *vegetation, *obstacle;
-  const Quanta* water;
-  repose::RelativeMoisture moisture;
+  const Quanta *water, *soil;
+  repose::RelativeMoisture relative_moisture;
 
   Inputs(const TerrainView& t, const ReposeParameters& repose, float dt)
       : grid(t.grid),
@@ -80,55 +84,94 @@ struct Inputs {
         vegetation(t.real(Layer::vegetation)),
         obstacle(t.real(Layer::obstacle)),
         water(t.quanta(Layer::water)),
-        moisture(t, repose) {}
+        soil(t.quanta(Layer::soil)),
+        relative_moisture(t, repose) {}
 
-  DESERT_HD bool flooded(int i) const { return water && water[i] * quantum > wet_depth; }
+  template <class Value>
+  DESERT_HD Value there_may_be(const Value* layer, int i) const {
+    return bare ? Value{} : value_or_zero(layer, i);
+  }
+  DESERT_HD float plants(int i) const { return there_may_be(vegetation, i); }
+  DESERT_HD float eddy(int i) const { return there_may_be(echo, i); }
+  DESERT_HD bool solid(int i) const { return there_may_be(obstacle, i) > 0.0f; }
+  DESERT_HD float moisture(int i) const { return bare ? 0.0f : relative_moisture(i); }
+  DESERT_HD bool flooded(int i) const { return there_may_be(water, i) * quantum > wet_depth; }
+};
+
+inline bool is_bare(const TerrainView& t) {
+  for (Layer layer : {Layer::echo, Layer::vegetation, Layer::obstacle})
+    if (t.real(layer)) return false;
+  for (Layer layer : {Layer::water, Layer::soil, Layer::moisture})
+    if (t.quanta(layer)) return false;
+  return true;
+}
+
+/// Where sand that flies (dx, dy) subcells from cell (x, y) comes down, between four cells, and each one's
+/// share of it.
+struct Landing {
+  int x, y, fx, fy;
+
+  DESERT_HD Landing(int cell_x, int cell_y, int dx, int dy)
+      : x(cell_x + (dx >> 16)), y(cell_y + (dy >> 16)), fx(dx & 65535), fy(dy & 65535) {}
+  DESERT_HD Quanta south_west(Quanta amount) const {
+    return bilinear_share(amount, subcell_one - fx, subcell_one - fy);
+  }
+  DESERT_HD Quanta south_east(Quanta amount) const { return bilinear_share(amount, fx, subcell_one - fy); }
+  DESERT_HD Quanta north_west(Quanta amount) const { return bilinear_share(amount, subcell_one - fx, fy); }
+  DESERT_HD Quanta north_east(Quanta amount) const { return bilinear_share(amount, fx, fy); }
 };
 
 /// Lifts, and scatters what is in the air over a cell to the four cells around where it lands.
+template <bool bare>
 struct LiftAndAdvect {
-  Inputs in;
+  Inputs<bare> in;
   SaltationParameters p;
+  float cells_a_speed;  ///< of a hop
   Quanta *sand, *airborne, *landed;
   LedgerView ledger;
 
-  DESERT_HD Quanta lifted(int i, float speed) const {
-    if (sand[i] <= 0 || !(speed > 0.0f) || speed < p.threshold_speed) return 0;
-    const float r_e = value_or_zero(in.echo, i);
+  DESERT_HD Quanta lifted(int i, Quanta available, float speed) const {
+    if (available <= 0 || !(speed > 0.0f) || speed < p.threshold_speed) return 0;
+    const float r_e = in.eddy(i);
     const float wet = in.flooded(i) ? 0.0f : dryness(in.moisture(i));
-    const float metres =
-        in.time_step * (p.lift * (1.0f - value_or_zero(in.wind_shadow, i)) *
-                            (1.0f - value_or_zero(in.vegetation, i)) * (r_e > 0.0f ? 0.5f : 1.0f) * wet +
-                        (r_e < 0.0f ? -r_e : 0.0f));
-    return take(metres, in.quanta_per_metre, sand[i]);
+    const float metres = in.time_step * (p.lift * (1.0f - value_or_zero(in.wind_shadow, i)) *
+                                             (1.0f - in.plants(i)) * (r_e > 0.0f ? 0.5f : 1.0f) * wet +
+                                         (r_e < 0.0f ? -r_e : 0.0f));
+    return take(metres, in.quanta_per_metre, available);
   }
 
   DESERT_HD void land(int from, int x, int y, Quanta amount) const {
     const int to = neighbour_index(in.grid, x, y);
     if (to >= 0) {
-      if (amount) atomic_add(&landed[to], amount);
+      atomic_add(&landed[to], amount);
     } else {
       ledger.book_out(Material::sand, from, amount);
     }
   }
 
   DESERT_HD void operator()(int x, int y) const {
-    const int i = in.grid.index(x, y);
+    const Grid& g = in.grid;
+    const int i = g.index(x, y);
     const float u = in.wind_x[i], v = in.wind_y[i];
-    const Quanta lift = lifted(i, hypotenuse(u, v));
-    sand[i] -= lift;
+    const Quanta lying = sand[i], lift = lifted(i, lying, hypotenuse(u, v));
+    sand[i] = lying - lift;
     const Quanta amount = airborne[i] + lift;
     if (amount == 0) return;
-    const float cells = in.time_step / in.grid.cell_size;
-    const int dx = subcells(u * cells), dy = subcells(v * cells);
-    const int fx = dx & 65535, fy = dy & 65535, gx = subcell_one - fx, gy = subcell_one - fy;
-    const int x0 = x + (dx >> 16), y0 = y + (dy >> 16);
-    const Quanta a = bilinear_share(amount, gx, gy), b = bilinear_share(amount, fx, gy);
-    const Quanta c = bilinear_share(amount, gx, fy), d = bilinear_share(amount, fx, fy);
-    land(i, x0, y0, a);
-    land(i, x0 + 1, y0, b);
-    land(i, x0, y0 + 1, c);
-    land(i, x0 + 1, y0 + 1, d);
+    const Landing at(x, y, subcells(u * cells_a_speed), subcells(v * cells_a_speed));
+    const Quanta a = at.south_west(amount), b = at.south_east(amount), c = at.north_west(amount),
+                 d = at.north_east(amount);
+    if (g.inside(at.x, at.y) && g.inside(at.x + 1, at.y + 1)) {
+      Quanta *south = landed + g.index(at.x, at.y), *north = south + g.width;
+      if (a) atomic_add(south, a);
+      if (b) atomic_add(south + 1, b);
+      if (c) atomic_add(north, c);
+      if (d) atomic_add(north + 1, d);
+    } else {
+      if (a) land(i, at.x, at.y, a);
+      if (b) land(i, at.x + 1, at.y, b);
+      if (c) land(i, at.x, at.y + 1, c);
+      if (d) land(i, at.x + 1, at.y + 1, d);
+    }
     // What rounding leaves, at most three quanta, stays in the air here: that favours no direction.
     const Quanta left = amount - a - b - c - d;
     if (left) atomic_add(&landed[i], left);
@@ -136,8 +179,9 @@ struct LiftAndAdvect {
 };
 
 /// Sand that the wind brings in over an open edge; see `influx`.
+template <bool bare>
 struct Influx {
-  Inputs in;
+  Inputs<bare> in;
   float influx;
   Quanta* landed;
   LedgerView ledger;
@@ -165,64 +209,74 @@ struct Influx {
 };
 
 /// Deposits a share of what landed; the rest bounces on. Wears the ground, and leaves the impacts' marks.
+template <bool bare>
 struct Deposit {
-  Inputs in;
+  Inputs<bare> in;
   SaltationParameters p;
   abrasion::Wear wear;
-  const Quanta *landed, *soil;
+  const Quanta* landed;
   Quanta *sand, *airborne;
   reptation::Impacts impacts;
 
-  DESERT_HD float share(int i, float m) const {
-    const float r_e = value_or_zero(in.echo, i);
-    if (r_e < 0.0f || value_or_zero(in.obstacle, i) > 0.0f) return 0.0f;
-    const bool sandy = sand[i] > 0 && sand[i] * in.quantum >= p.bare_depth;
+  /// `cover`: the sand that lies there; v vegetation, m relative moisture.
+  DESERT_HD float share(int i, Quanta cover, float v, float m) const {
+    const float r_e = in.eddy(i);
+    if (r_e < 0.0f || in.solid(i)) return 0.0f;
+    const bool sandy = cover > 0 && cover * in.quantum >= p.bare_depth;
     const float bounce =
-        sandy ? p.bounce_on_sand : (value_or_zero(soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
-    const float held = maximum((1.0f - bounce) + value_or_zero(in.vegetation, i) * bounce,
-                               maximum(value_or_zero(in.wind_shadow, i), r_e));
+        sandy ? p.bounce_on_sand : (in.there_may_be(in.soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
+    const float held = maximum((1.0f - bounce) + v * bounce, maximum(value_or_zero(in.wind_shadow, i), r_e));
     const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
     return clamp(held, 0.0f, 1.0f) * wet;
   }
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = in.grid.index(x, y);
-    const Quanta arriving = landed[i];
-    const float v = value_or_zero(in.vegetation, i), m = in.moisture(i);
-    const float held = share(i, m);
+    const Quanta arriving = landed[i], cover = sand[i];
+    const float v = in.plants(i), m = in.moisture(i);
+    const float held = share(i, cover, v, m);
     const Quanta deposited = take(held * (arriving * in.quantum), in.quanta_per_metre, arriving);
     const Quanta bouncing = arriving - deposited;
-    const Quanta cover = sand[i];  // what the grains hit
-    sand[i] += deposited;
+    sand[i] = cover + deposited;
     airborne[i] = bouncing;
     const float speed = hypotenuse(in.wind_x[i], in.wind_y[i]);
     wear(i, cover, bouncing, speed, v, m, held);
-    impacts.set(i, arriving * in.quantum * (1.0f - v), speed);
+    impacts.set(i, arriving * in.quantum * (1.0f - v), speed, v, in.moisture(i));
   }
 };
+
+template <bool bare, class E>
+void step_where(E& exec, const TerrainView& t, const SaltationParameters& p, const ReposeParameters& repose,
+                float time_step, LedgerView ledger, Quanta* landed, const abrasion::Wear& wear,
+                const reptation::Impacts& impacts) {
+  const Inputs<bare> in(t, repose, time_step);
+  Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand);
+  exec.set_zero(landed, sizeof(Quanta) * t.grid.cells());
+  for_each_cell(exec, t.grid,
+                LiftAndAdvect<bare>{in, p, time_step / t.grid.cell_size, sand, airborne, landed, ledger});
+  if (!t.grid.periodic() && p.influx > 0.0f)
+    for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, landed, ledger});
+  for_each_cell(exec, t.grid, Deposit<bare>{in, p, wear, landed, sand, airborne, impacts});
+}
 
 /// `landed` (quanta): scratch memory of one value a cell.
 template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
           const ReposeParameters& repose, float time_step, LedgerView ledger, Quanta* landed,
           const reptation::Impacts& impacts) {
-  const Inputs in(t, repose, time_step);
-  Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand),
-         *soil = t.quanta(Layer::soil);
-  exec.set_zero(landed, sizeof(Quanta) * t.grid.cells());
-  for_each_cell(exec, t.grid, LiftAndAdvect{in, p, sand, airborne, landed, ledger});
-  if (!t.grid.periodic() && p.influx > 0.0f)
-    for_each_cell(exec, t.grid, Influx{in, p.influx, landed, ledger});
   const abrasion::Wear wear{a.rate * time_step,
                             take(a.cover, t.quanta_per_metre, wall_height),
                             t.quantum,
                             t.quanta_per_metre,
                             t.quanta(Layer::bedrock),
-                            soil,
-                            sand,
+                            t.quanta(Layer::soil),
+                            t.quanta(Layer::sand),
                             t.real(Layer::erosion_resistance),
                             ledger};
-  for_each_cell(exec, t.grid, Deposit{in, p, wear, landed, soil, sand, airborne, impacts});
+  if (is_bare(t))
+    step_where<true>(exec, t, p, repose, time_step, ledger, landed, wear, impacts);
+  else
+    step_where<false>(exec, t, p, repose, time_step, ledger, landed, wear, impacts);
 }
 
 }  // namespace saltation

@@ -7,11 +7,11 @@
 ///   projection  û ← û − k (k·û)/|k|²   (divergence-free, mean kept)
 ///   features    + the divergence-free perturbation of wind_features.hpp
 ///
-/// The Gaussians are tens of metres wide, so the smoothed terrain, the wind's turning by it and the projection live on
-/// a grid coarsened to about a quarter of the smallest σ; the box average that coarsens and the linear interpolation
-/// that samples back are undone in the transfer function. Each cell of the terrain then has its own speed-up, the
-/// direction sampled from the coarse wind, and the sampled correction of the projection. Open grids are extended evenly
-/// (mirrored) before the transform.
+/// The Gaussians are tens of metres wide, so the smoothed terrain, the wind's turning by it and the
+/// projection live on a grid coarsened to about a quarter of the smallest σ; the box average that coarsens
+/// and the linear interpolation that samples back are undone in the transfer function. Each cell of the
+/// terrain then has its own speed-up, the direction sampled from the coarse wind, and the sampled correction
+/// of the projection. Open grids are extended evenly (mirrored) before the transform.
 ///
 /// Reads the heights of the surface; writes wind_x, wind_y.
 
@@ -68,8 +68,8 @@ struct Vector {
   float x = 0, y = 0;
 };
 
-/// Of several radii: spectra of ∂x H_R + i ∂y H_R, one behind the other. The derivative is the central difference over
-/// two fine cells, i sin(k)/l.
+/// Of several radii: spectra of ∂x H_R + i ∂y H_R, one behind the other. The derivative is the central
+/// difference over two fine cells, i sin(k)/l.
 struct SmoothedGradients {
   CoarseGrid coarse;
   int radius_count;
@@ -94,8 +94,8 @@ struct SpeedUp {
   DESERT_HD float operator()(float rise) const { return clamp(1.0f + per_metre * rise, lowest, highest); }
 };
 
-/// The wind above, turned by the smoothed terrain, and what wind there is near the ground of each coarse cell less the
-/// wind above: a transform takes that exactly to 0 where there is none.
+/// The wind above, turned by the smoothed terrain, and what wind there is near the ground of each coarse cell
+/// less the wind above: a transform takes that exactly to 0 where there is none.
 struct TurnWind {
   CoarseGrid coarse;
   const float* rise;
@@ -126,7 +126,8 @@ struct TurnWind {
     }
     Complex wind{above.x, above.y};
     const float sx = ux * weight_sum + dx, sy = uy * weight_sum + dy, length = hypotenuse(sx, sy);
-    if ((dx != 0.0f || dy != 0.0f) && length > 1e-12f) wind = {sx * speed_above / length, sy * speed_above / length};
+    if ((dx != 0.0f || dy != 0.0f) && length > 1e-12f)
+      wind = {sx * speed_above / length, sy * speed_above / length};
     turned[n] = wind;
     deviation[n] = {wind.re * factor - above.x, wind.im * factor - above.y};
   }
@@ -163,8 +164,9 @@ struct ProjectionCorrection {
   }
 };
 
-/// The wind of each cell: direction from the coarse grid, speed by its own height, what the projection corrects, and the
-/// perturbation of local features (null where there is none). Four cells, one above the other, share a place.
+/// The wind of each cell: direction from the coarse grid, speed by its own height, what the projection
+/// corrects, and the perturbation of local features (null where there is none). Four cells, one above the
+/// other, share a place.
 struct SurfaceWind {
   static constexpr int strip = 4;
   CoarseGrid coarse;
@@ -177,25 +179,35 @@ struct SurfaceWind {
   const float *perturbation_x, *perturbation_y;
   float *wind_x, *wind_y;
 
-  DESERT_HD Grid strips() const { return Grid{coarse.fine.width, (coarse.fine.height + strip - 1) / strip, 1}; }
+  DESERT_HD Grid strips() const {
+    return Grid{coarse.fine.width, (coarse.fine.height + strip - 1) / strip, 1};
+  }
 
-  /// Between differing directions a linear interpolation is too short; the series makes up for it within 0.1 % where
-  /// they differ by up to 60 degrees.
+  /// Between differing directions a linear interpolation is too short; the series makes up for it within 0.1
+  /// % where they differ by up to 60 degrees.
   DESERT_HD Vector at_full_speed(const Complex& w) const {
     const float missing = 1.0f - (w.re * w.re + w.im * w.im) * per_speed_squared;
-    const float scale =
-        w.re == above.x && w.im == above.y ? 1.0f : 1.0f + missing * (0.5f + missing * (0.375f + missing * 0.3125f));
+    const float scale = w.re == above.x && w.im == above.y
+                            ? 1.0f
+                            : 1.0f + missing * (0.5f + missing * (0.375f + missing * 0.3125f));
     return {w.re * scale, w.im * scale};
   }
 
   DESERT_HD void operator()(int x, int n) const {
     const AxisPlace across = coarse.across(x);
+    CoarseColumn direction(turned, across, coarse.width), corrections(correction, across, coarse.width);
+    int row = -1;
     for (int y = strip * n; y < strip * n + strip && y < coarse.fine.height; ++y) {
       const int i = coarse.fine.index(x, y);
+      const AxisPlace along = coarse.along(y);
+      if (along.first != row) {
+        direction.move_to(along);
+        corrections.move_to(along);
+        row = along.first;
+      }
       const float factor = speed_up((heights[i] - reference) * quantum);
-      const CoarseSample sample(across, coarse.along(y), coarse.width);
-      const Vector wind = turned ? at_full_speed(sample(turned)) : above;
-      const Complex corrected = correction ? sample(correction) : Complex{0, 0};
+      const Vector wind = turned ? at_full_speed(direction.at(along.share)) : above;
+      const Complex corrected = corrections.at(along.share);
       wind_x[i] = wind.x * factor + corrected.re + value_or_zero(perturbation_x, i);
       wind_y[i] = wind.y * factor + corrected.im + value_or_zero(perturbation_y, i);
     }
@@ -259,12 +271,12 @@ void coarse_wind(E& exec, const TerrainView& t, const WindParameters& p, Vector 
 
 /// `reference`: the lowest solid surface of the terrain at load [quanta].
 template <class E>
-void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above, const surface::Heights& heights,
-          Quanta reference, const float* perturbation_x, const float* perturbation_y, Workspace& work) {
+void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
+          const surface::Heights& heights, Quanta reference, const float* perturbation_x,
+          const float* perturbation_y, Workspace& work) {
   const float speed_above = hypotenuse(above.x, above.y), lowest = static_cast<float>(reference);
   const SpeedUp speed_up{p.speedup, p.speedup_lowest, p.speedup_highest};
-  if (p.warping || p.projection)
-    coarse_wind(exec, t, p, above, speed_above, speed_up, heights, lowest, work);
+  if (p.warping || p.projection) coarse_wind(exec, t, p, above, speed_above, speed_up, heights, lowest, work);
   const SurfaceWind law{work.coarse,
                         heights.of_cells.data(),
                         lowest,

@@ -1,6 +1,6 @@
 #pragma once
-/// The coarse grid on which the wind's transforms live: how it lies over the terrain, how values get there and back,
-/// and the wavenumbers of its modes. See wind.hpp.
+/// The coarse grid on which the wind's transforms live: how it lies over the terrain, how values get there
+/// and back, and the wavenumbers of its modes. See wind.hpp.
 
 #include "desert_sim/kernels/fft.hpp"
 #include "desert_sim/kernels/grid.hpp"
@@ -28,8 +28,8 @@ struct CoarseGrid {
   DESERT_HD Grid transformed() const { return Grid{width, height, fine.cell_size * ratio_x, true, true}; }
 };
 
-/// Mean of value(i) over left … right [cells of an axis of n cells], by length. Of values that are all the same it is
-/// exactly that value: uniform ground stays uniform.
+/// Mean of value(i) over left … right [cells of an axis of n cells], by length. Of values that are all the
+/// same it is exactly that value: uniform ground stays uniform.
 template <class Value>
 DESERT_HD float mean_over(float left, float right, int n, const Value& value) {
   const int first = static_cast<int>(left + 1e-4f);
@@ -71,8 +71,9 @@ struct CoarsenColumns {
   DESERT_HD void operator()(int x, int y) const {
     const int row = coarse.mirrored_row(y), columns = coarse.columns;
     const float* column = means + coarse.mirrored_column(x);
-    const float mean = quantum * mean_over(row * coarse.ratio_y, (row + 1) * coarse.ratio_y, coarse.fine.height,
-                                           [column, columns](int i) { return column[i * columns]; });
+    const float mean =
+        quantum * mean_over(row * coarse.ratio_y, (row + 1) * coarse.ratio_y, coarse.fine.height,
+                            [column, columns](int i) { return column[i * columns]; });
     rise[y * coarse.width + x] = mean;
     spectrum[y * coarse.width + x] = {mean, 0.0f};
   }
@@ -95,22 +96,29 @@ struct AxisPlace {
 DESERT_HD AxisPlace CoarseGrid::across(int x) const { return {x, fine.width, columns, width, share_x}; }
 DESERT_HD AxisPlace CoarseGrid::along(int y) const { return {y, fine.height, rows, height, share_y}; }
 
-/// Where a fine cell's centre lies between the centres of four coarse cells.
-struct CoarseSample {
-  int i00, i10, i01, i11;
-  float fx, fy;
+/// A field of the coarse grid along a column of fine cells, between two coarse columns. Several cells in a
+/// row lie between the same two coarse rows: what these have at the column is read once.
+struct CoarseColumn {
+  const Complex* field;  ///< null: none, which is 0
+  AxisPlace across;
+  int width;
+  Complex south{0, 0}, north{0, 0};
 
-  DESERT_HD CoarseSample(const AxisPlace& x, const AxisPlace& y, int width)
-      : i00(y.first * width + x.first),
-        i10(y.first * width + x.second),
-        i01(y.second * width + x.first),
-        i11(y.second * width + x.second),
-        fx(x.share),
-        fy(y.share) {}
-  DESERT_HD Complex operator()(const Complex* v) const {
-    const Complex a = v[i00], b = v[i10], c = v[i01], d = v[i11];
-    return {lerp(lerp(a.re, b.re, fx), lerp(c.re, d.re, fx), fy),
-            lerp(lerp(a.im, b.im, fx), lerp(c.im, d.im, fx), fy)};
+  DESERT_HD CoarseColumn(const Complex* values, const AxisPlace& place_across, int row_width)
+      : field(values), across(place_across), width(row_width) {}
+  DESERT_HD void move_to(const AxisPlace& along) {
+    if (!field) return;
+    south = in_row(along.first);
+    north = in_row(along.second);
+  }
+  DESERT_HD Complex at(float share) const {
+    return {lerp(south.re, north.re, share), lerp(south.im, north.im, share)};
+  }
+
+ private:
+  DESERT_HD Complex in_row(int row) const {
+    const Complex a = field[row * width + across.first], b = field[row * width + across.second];
+    return {lerp(a.re, b.re, across.share), lerp(a.im, b.im, across.share)};
   }
 };
 

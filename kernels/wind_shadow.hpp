@@ -1,11 +1,13 @@
 #pragma once
 /// Wind shadow: how far a cell lies in the lee. Nilles 2024 eq. 4; physics.md A6.
 ///
-///   t = max over steps of Δh / distance, marching upwind one cell a step up to `distance`
+///   t = max over steps of Δh / distance, marching upwind up to `distance`
 ///   r_s = clamp((t − tan start) / (tan full − tan start), 0, 1)
 ///
-/// Heights are sampled bilinearly, through periodic borders; beyond an open edge the edge goes on. `curved`
-/// re-reads the wind at every step. Reads the heights, wind_x, wind_y; writes wind_shadow.
+/// A step goes to the next column of cells, or the next row if the wind crosses rows faster, and looks
+/// between two cells there. `curved` goes one cell width a step, between four cells, and re-reads the wind at
+/// every step. Marches go through periodic borders; beyond an open edge the edge goes on. Reads the heights,
+/// wind_x, wind_y; writes wind_shadow.
 ///
 /// A long straight march is cut into pieces. A piece is left out if the highest ground around it is too low
 /// to matter: neither steeper to look up to than what was found nearer, nor than where shadow begins. That
@@ -42,8 +44,9 @@ static_assert(table_is_complete<WindShadowParameters>());
 
 namespace wind_shadow {
 
-/// `around` holds, for each block of the surface, the highest of it and of the eight next to it: all ground within
-/// `side` cells of any cell of the block.
+/// `around` holds, for each block of the surface, the highest of it and of the eight next to it, all ground
+/// within `side` cells of any cell of the block; and a little more, so that no rounding of a sample gets
+/// above it.
 struct Blocks {
   static constexpr int side = surface::block_side;
   /// Steps of a march that stay within `side` cells of the cell under its middle, bilinear neighbours
@@ -59,11 +62,42 @@ struct HighestAround {
   DESERT_HD void operator()(int column, int row) const {
     float top = -static_cast<float>(wall_height);
     for (int y = row - 1; y <= row + 1; ++y)
-      for (int x = column - 1; x <= column + 1; ++x)
-        top = maximum(top, highest[sample_index(blocks, x, y)]);
-    around[blocks.index(column, row)] = top;
+      for (int x = column - 1; x <= column + 1; ++x) top = maximum(top, highest[sample_index(blocks, x, y)]);
+    around[blocks.index(column, row)] = top + rounding(top);
   }
+  /// More than what rounding adds to heights of this size, and to their differences [quanta].
+  DESERT_HD static float rounding(float height) { return 1.0f + 2e-6f * fabsf(height); }
 };
+
+/// A march along a straight line, one column (or row) of cells a step, whichever the line crosses faster:
+/// there a sample lies between two cells.
+struct Line {
+  bool along_x;
+  int step;                          ///< ±1: column (row) by column (row)
+  int drift;                         ///< a step's way across, 16.16 fixed point
+  float steps_a_cell, cells_a_step;  ///< √½ … 1 … √2
+
+  /// Against the wind (u, v) of speed `speed`.
+  DESERT_HD Line(float u, float v, float speed) {
+    along_x = fabsf(u) >= fabsf(v);
+    const float along = along_x ? u : v, across = along_x ? v : u;
+    step = along > 0.0f ? -1 : 1;
+    const float per_along = 1.0f / fabsf(along);
+    drift = -subcells(across * per_along);
+    steps_a_cell = fabsf(along) / speed;
+    cells_a_step = speed * per_along;
+  }
+  /// The cell at or before the sample of step j, relative to the march's first.
+  DESERT_HD int dx(int j) const { return along_x ? j * step : (j * drift) >> 16; }
+  DESERT_HD int dy(int j) const { return along_x ? (j * drift) >> 16 : j * step; }
+};
+
+/// The height between two cells, `place` (16.16 fixed point) from the first: formed so that mirrored or
+/// turned terrain gives the same bits.
+DESERT_HD float height_between(float first, float second, int place) {
+  const float share = fraction(place);
+  return first * (1.0f - share) + second * share;
+}
 
 /// Cells around a sample and its place between them, 16.16 fixed point: (x, y) + (dx, dy)/65536 cells.
 struct Place {
@@ -73,87 +107,121 @@ struct Place {
       : x(cell_x + (dx >> 16)), y(cell_y + (dy >> 16)), fx(fraction(dx)), fy(fraction(dy)) {}
 };
 
-/// Bilinear height between four cells. The four terms are formed so that mirrored or turned terrain gives the same bits.
-DESERT_HD float height_between(float h00, float h10, float h01, float h11, float fx, float fy) {
-  const float a = h00 * ((1.0f - fx) * (1.0f - fy)), b = h10 * (fx * (1.0f - fy));
-  const float c = h01 * ((1.0f - fx) * fy), d = h11 * (fx * fy);
+/// Bilinear height between four cells. The four terms are formed so that mirrored or turned terrain gives the
+/// same bits.
+DESERT_HD float height_at(const Grid& g, const float* h, const Place& p) {
+  const float h00 = h[sample_index(g, p.x, p.y)], h10 = h[sample_index(g, p.x + 1, p.y)];
+  const float h01 = h[sample_index(g, p.x, p.y + 1)], h11 = h[sample_index(g, p.x + 1, p.y + 1)];
+  const float a = h00 * ((1.0f - p.fx) * (1.0f - p.fy)), b = h10 * (p.fx * (1.0f - p.fy));
+  const float c = h01 * ((1.0f - p.fx) * p.fy), d = h11 * (p.fx * p.fy);
   return (a + d) + (b + c);
 }
-/// Where all four cells are on the grid.
-DESERT_HD float height_inside(const Grid& g, const float* h, const Place& p) {
-  const float *q = h + g.index(p.x, p.y), *north = q + g.width;
-  return height_between(q[0], q[1], north[0], north[1], p.fx, p.fy);
-}
-DESERT_HD float height_anywhere(const Grid& g, const float* h, const Place& p) {
-  return height_between(h[sample_index(g, p.x, p.y)], h[sample_index(g, p.x + 1, p.y)],
-                        h[sample_index(g, p.x, p.y + 1)], h[sample_index(g, p.x + 1, p.y + 1)], p.fx, p.fy);
-}
 
-/// What both marches look at, and what they make of the steepest rise that they find.
-struct March {
-  Grid grid;
-  float quantum;
-  const float *heights, *wind_x, *wind_y;
-  const float* reciprocals;  ///< 1/j for j = 0 … steps (but for 0)
-  int steps;
-  float start, full;  ///< tangents
-  float* wind_shadow;
+/// Shadow by the steepest rise that a march finds, 0 … 1.
+struct Shade {
+  float start, full;  ///< rises [quanta a cell]
+  float per_rise;     ///< 1 / (full − start)
 
-  /// `steepest` [quanta a step].
-  DESERT_HD void shade(int i, float steepest) const {
-    wind_shadow[i] = clamp((steepest * quantum / grid.cell_size - start) / (full - start), 0.0f, 1.0f);
+  Shade(const WindShadowParameters& p, float quanta_per_cell) {
+    const float degree = 3.14159265358979f / 180.0f;
+    const float tangent = tanf(p.start_deg * degree);
+    start = tangent * quanta_per_cell;
+    full = maximum(tanf(p.full_deg * degree), tangent + 1e-6f) * quanta_per_cell;
+    per_rise = 1.0f / (full - start);
+  }
+  DESERT_HD float operator()(float steepest) const {
+    return clamp((steepest - start) * per_rise, 0.0f, 1.0f);
   }
 };
 
+/// What both marches look at.
+struct March {
+  Grid grid;
+  Shade shade;
+  const float *heights, *wind_x, *wind_y;
+  const float* reciprocals;  ///< 1/j for j = 0 … steps (but for 0)
+  int steps;                 ///< at most
+  float reach;               ///< [cells]
+  float* wind_shadow;
+};
+
 struct Shadow : March {
+  static constexpr bool compact_warps = true;  ///< cells near each other leave out the same pieces
   Grid blocks;
   const float* around;  ///< null: no piece is left out
 
-  DESERT_HD float quanta_a_step() const { return grid.cell_size / quantum; }  ///< of a slope of 1
+  /// Where a cell's march goes, and from where.
+  struct Start {
+    int x, y;
+    float base;
+    Line line;
+    int steps;
+  };
 
-  /// Whether steps first … first + piece − 1 may matter beside `steepest`. The slack is for rounding, in units of the
-  /// heights' own too.
-  DESERT_HD bool matters(int x, int y, int step_x, int step_y, int first, float base, float steepest) const {
-    const int middle = first + Blocks::side - 1;
-    const int mx = x + ((middle * step_x) >> 16), my = y + ((middle * step_y) >> 16);
-    const int cx = grid.periodic_x ? wrap(mx, grid.width) : clamp_index(mx, grid.width);
-    const int cy = grid.periodic_y ? wrap(my, grid.height) : clamp_index(my, grid.height);
-    const float highest = around[blocks.index(cx / Blocks::side, cy / Blocks::side)];
-    const float slack = 1.0f + 1e-6f * (fabsf(highest) + fabsf(base));
-    const float needed = maximum(steepest, start * quanta_a_step() * 0.99999f) * static_cast<float>(first);
-    return (highest - base) * 1.000001f + slack > needed;
+  template <bool inside>
+  DESERT_HD float highest_around(int x, int y) const {
+    if (!inside) {
+      x = grid.periodic_x ? wrap(x, grid.width) : clamp_index(x, grid.width);
+      y = grid.periodic_y ? wrap(y, grid.height) : clamp_index(y, grid.height);
+    }
+    constexpr unsigned side = Blocks::side;
+    return around[static_cast<unsigned>(y) / side * static_cast<unsigned>(blocks.width) +
+                  static_cast<unsigned>(x) / side];
   }
 
-  template <class HeightAt>
-  DESERT_HD float march(int x, int y, int step_x, int step_y, float base, const HeightAt& height) const {
-    const float enough = full * quanta_a_step() * 1.00001f;
+  template <bool inside>
+  DESERT_HD float rise(const Start& s, int j) const {
+    const int place = j * s.line.drift;
+    float first, second;
+    if (inside) {
+      const int along = s.line.along_x ? s.line.step : s.line.step * grid.width,
+                across = s.line.along_x ? grid.width : 1;
+      const int n = grid.index(s.x, s.y) + j * along + (place >> 16) * across;
+      first = heights[n];
+      second = (heights + across)[n];
+    } else {
+      const int x = s.x + s.line.dx(j), y = s.y + s.line.dy(j);
+      first = heights[sample_index(grid, x, y)];
+      second = heights[s.line.along_x ? sample_index(grid, x, y + 1) : sample_index(grid, x + 1, y)];
+    }
+    return (height_between(first, second, place) - s.base) * reciprocals[j];
+  }
+
+  /// The steepest rise [quanta a step]; `inside`: the whole march is on the grid.
+  template <bool inside>
+  DESERT_HD float march(const Start& s) const {
+    const float enough = shade.full * s.line.cells_a_step * 1.00001f;
+    const float begins = shade.start * s.line.cells_a_step * 0.99999f,
+                low = s.base - HighestAround::rounding(s.base);
     float steepest = 0.0f;
-    for (int first = 1; first <= steps && steepest < enough; first += Blocks::piece) {
-      if (around && !matters(x, y, step_x, step_y, first, base, steepest)) continue;
-      const int end = first + Blocks::piece <= steps ? first + Blocks::piece : steps + 1;
-      for (int j = first; j < end; ++j)
-        steepest = maximum(steepest, (height(Place(x, y, j * step_x, j * step_y)) - base) * reciprocals[j]);
+    for (int first = 1; first <= s.steps && steepest < enough; first += Blocks::piece) {
+      const int half_way = first + Blocks::side - 1, middle = half_way < s.steps ? half_way : s.steps;
+      if (around && highest_around<inside>(s.x + s.line.dx(middle), s.y + s.line.dy(middle)) - low <=
+                        higher(steepest, begins) * static_cast<float>(first))
+        continue;
+      if (first + Blocks::piece <= s.steps + 1) {
+        for (int n = 0; n < Blocks::piece; ++n) steepest = higher(steepest, rise<inside>(s, first + n));
+      } else {
+        for (int j = first; j <= s.steps; ++j) steepest = higher(steepest, rise<inside>(s, j));
+      }
     }
     return steepest;
   }
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    const float base = heights[i], *h = heights;
-    const Grid g = grid;
     const float u = wind_x[i], v = wind_y[i], speed = hypotenuse(u, v);
-    float steepest = 0.0f;
-    if (speed > 1e-6f) {
-      const int step_x = -subcells(u / speed), step_y = -subcells(v / speed);
-      const Place last(x, y, steps * step_x, steps * step_y);
-      if (x + 1 < g.width && y + 1 < g.height && g.inside(last.x, last.y) && g.inside(last.x + 1, last.y + 1))
-        steepest = march(x, y, step_x, step_y, base,
-                         [g, h](const Place& p) DESERT_INLINE { return height_inside(g, h, p); });
-      else
-        steepest = march(x, y, step_x, step_y, base,
-                         [g, h](const Place& p) DESERT_INLINE { return height_anywhere(g, h, p); });
+    if (!(speed > 1e-6f)) {
+      wind_shadow[i] = 0.0f;
+      return;
     }
-    shade(i, steepest);
+    Start s{x, y, heights[i], Line(u, v, speed), 0};
+    s.steps = static_cast<int>(reach * s.line.steps_a_cell + 1e-3f);
+    s.steps = s.steps < 1 ? 1 : (s.steps < steps ? s.steps : steps);
+    const int end_x = x + s.line.dx(s.steps), end_y = y + s.line.dy(s.steps);
+    const bool inside = x + 1 < grid.width && y + 1 < grid.height && grid.inside(end_x, end_y) &&
+                        grid.inside(end_x + 1, end_y + 1);
+    wind_shadow[i] = shade((inside ? march<true>(s) : march<false>(s)) * s.line.steps_a_cell);
   }
 };
 
@@ -162,24 +230,25 @@ struct CurvedShadow : March {
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     float u = wind_x[i], v = wind_y[i];
-    float steepest = 0.0f;  // quanta a step
+    float steepest = 0.0f;  // quanta a cell
     int dx = 0, dy = 0;
     for (int j = 1; j <= steps; ++j) {
       const float speed = hypotenuse(u, v);
       if (!(speed > 1e-6f)) break;
       dx -= subcells(u / speed);
       dy -= subcells(v / speed);
-      const float rise = height_anywhere(grid, heights, Place(x, y, dx, dy)) - heights[i];
+      const float rise = height_at(grid, heights, Place(x, y, dx, dy)) - heights[i];
       steepest = maximum(steepest, rise * reciprocals[j]);
       const int there = sample_index(grid, x + nearest_cell(dx), y + nearest_cell(dy));
       u = wind_x[there];
       v = wind_y[there];
     }
-    shade(i, steepest);
+    wind_shadow[i] = shade(steepest);
   }
 };
 
-/// `around` is empty where marches are too short to be cut, follow the wind, or blocks do not fit a periodic axis.
+/// `around` is empty where marches are too short to be cut, follow the wind, or blocks do not fit a periodic
+/// axis.
 struct Workspace {
   Buffer<float> reciprocals, around;
 };
@@ -192,18 +261,14 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const WindShadowParameter
 template <class E>
 void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const surface::Heights& heights,
           const Workspace& work) {
-  const float degree = 3.14159265358979f / 180.0f;
-  const float start = tanf(p.start_deg * degree);
-  const float full = maximum(tanf(p.full_deg * degree), start + 1e-6f);
   const March march{t.grid,
-                    t.quantum,
+                    Shade(p, t.grid.cell_size * t.quanta_per_metre),
                     heights.of_cells.data(),
                     t.real(Layer::wind_x),
                     t.real(Layer::wind_y),
                     work.reciprocals.data(),
                     march_steps(t.grid, p),
-                    start,
-                    full,
+                    p.distance / t.grid.cell_size,
                     t.real(Layer::wind_shadow)};
   if (p.curved) {
     for_each_cell(exec, t.grid, CurvedShadow{march});

@@ -40,12 +40,13 @@ void Simulation::run_processes(E& exec) {
                       {angle, reptation_strength_.data()});
     });
   else
-    reptation::set_angles(exec, view, angle, nullptr);
+    reptation::set_angles(exec, view, angle, s.repose, nullptr);
 
   // Or they creep sand down the slope (B5).
   if (reptation::moves_sand(s.reptation))
     run(exec, "reptation", {Layer::sand}, [&] {
-      reptation::step(exec, view, s.reptation, dt, s.seed, steps_, reptation_strength_.data(), landed_.data());
+      reptation::step(exec, view, s.reptation, dt, s.seed, steps_, reptation_strength_.data(),
+                      landed_.data());
     });
 
   // What is too steep slides: rock and soil where they changed, then sand (B6).
@@ -153,7 +154,8 @@ void Simulation::refresh_derived() {
     update_wind(e, view);
     if (s.wind_shadow.enabled) wind_shadow::step(e, view, s.wind_shadow, heights_, shadow_work_);
     if (s.echo_dunes.enabled) echo_dunes::step(e, view, s.echo_dunes, heights_, repose_.data());
-    reptation::set_angles(e, view, reptation::Angle(view, s.reptation, s.repose, repose_.data()), nullptr);
+    reptation::set_angles(e, view, reptation::Angle(view, s.reptation, s.repose, repose_.data()), s.repose,
+                          nullptr);
   });
   derived_ready_ = true;
 }

@@ -113,7 +113,7 @@ void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParamet
 void BenchTerrain::reptation(const ReptationParameters& p, const ReposeParameters& r, float time_step,
                              std::uint64_t tick) {
   with_backend(exec(), [&](auto& e) {
-    reptation::set_angles(e, terrain.view(), reptation::Angle(terrain.view(), p, r, repose.data()),
+    reptation::set_angles(e, terrain.view(), reptation::Angle(terrain.view(), p, r, repose.data()), r,
                           strength.data());
     reptation::step(e, terrain.view(), p, time_step, 1, tick, strength.data(), landed.data());
   });
@@ -145,8 +145,9 @@ void BenchTerrain::avalanche_bedrock(const AvalanchingParameters& p, const Repos
 void BenchTerrain::blow(const WindParameters& p, wind::Vector above, Quanta reference) {
   surface();
   wind::Workspace work = wind::make_workspace(exec(), grid(), p);
-  with_backend(exec(),
-               [&](auto& e) { wind::step(e, terrain.view(), p, above, heights, reference, nullptr, nullptr, work); });
+  with_backend(exec(), [&](auto& e) {
+    wind::step(e, terrain.view(), p, above, heights, reference, nullptr, nullptr, work);
+  });
   exec().synchronise();
 }
 

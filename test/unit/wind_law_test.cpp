@@ -137,27 +137,46 @@ TEST_P(WindLaw, ShadowLooksAtLeastOneCellFar) {
   EXPECT_EQ(t.at(Layer::wind_shadow, 5, 0), 0);
 }
 
-TEST_P(WindLaw, ShadowReachesAcrossAPeriodicBorderBilinearly) {
-  // Wind at 45 degrees; one high cell in the north-east corner shelters the south-west corner across both
-  // borders.
-  test::BenchTerrain t(exec(), 12, 12), open(exec(), 12, 12, 1, false);
-  for (test::BenchTerrain* b : {&t, &open}) {
-    b->set(Layer::bedrock, [](int x, int y) { return x == 11 && y == 11 ? 6 : 0; })
-        .set(Layer::wind_x, 3)
-        .set(Layer::wind_y, 3);
-    b->shadow();
+/// A march goes column by column (or row by row) where the wind crosses these faster, and looks between two
+/// cells there.
+TEST_P(WindLaw, ShadowReachesAcrossAPeriodicBorderBetweenCells) {
+  // One high cell in the north-east corner shelters the south-west corner across both borders. One step back
+  // against a wind of (4, 3) is (−1, −0.75), and along the other axis (−0.75, −1): three quarters of the
+  // corner's height, 1.25 cells away.
+  for (const bool eastward : {true, false}) {
+    SCOPED_TRACE(eastward ? "by columns" : "by rows");
+    test::BenchTerrain t(exec(), 12, 12), open(exec(), 12, 12, 1, false);
+    for (test::BenchTerrain* b : {&t, &open}) {
+      b->set(Layer::bedrock, [](int x, int y) { return x == 11 && y == 11 ? 6 : 0; })
+          .set(Layer::wind_x, eastward ? 4 : 3)
+          .set(Layer::wind_y, eastward ? 3 : 4);
+      b->shadow();
+    }
+    EXPECT_EQ(t.at(Layer::wind_shadow, 0, 0), 1);
+    EXPECT_EQ(open.at(Layer::wind_shadow, 0, 0), 0);
+    WindShadowParameters flat;
+    flat.distance = 2;
+    flat.start_deg = 0;
+    flat.full_deg = 80;
+    t.shadow(flat);
+    EXPECT_NEAR(t.at(Layer::wind_shadow, 0, 0), 6 * 0.75 / 1.25 / tangent(80), 1e-4);
   }
-  // One step back is (−0.7071, −0.7071): weight 0.7071² of the corner's height.
-  const double first = 6 * 0.70710678 * 0.70710678;
-  EXPECT_EQ(t.at(Layer::wind_shadow, 0, 0), 1);
-  EXPECT_EQ(open.at(Layer::wind_shadow, 0, 0), 0);
-  EXPECT_GT(first, tangent(15));
-  WindShadowParameters flat;
-  flat.distance = 1;
-  flat.start_deg = 0;
-  flat.full_deg = 80;
-  t.shadow(flat);
-  EXPECT_NEAR(t.at(Layer::wind_shadow, 0, 0), first / tangent(80), 1e-4);
+}
+
+/// A diagonal wind meets the centres of cells, √2 apart, up to `distance`.
+TEST_P(WindLaw, ShadowAlongADiagonalIsMeasuredInMetres) {
+  test::BenchTerrain t(exec(), 24, 24, 2);
+  t.set(Layer::bedrock, [](int x, int y) { return x == 4 && y == 4 ? 20 : 0; })
+      .set(Layer::wind_x, 3)
+      .set(Layer::wind_y, 3);
+  WindShadowParameters p;
+  p.start_deg = 0;
+  p.full_deg = 89;
+  p.distance = 12;  // four steps of 2.83 m
+  t.shadow(p);
+  for (int n = 1; n <= 4; ++n)
+    EXPECT_NEAR(t.at(Layer::wind_shadow, 4 + n, 4 + n), 20 / (n * 2.82842712) / tangent(89), 1e-4) << n;
+  EXPECT_EQ(t.at(Layer::wind_shadow, 9, 9), 0);
 }
 
 TEST_P(WindLaw, ShadowIsNothingInCalmAirAndOnTheWindwardSide) {
