@@ -12,9 +12,10 @@
 /// small slides end where they are; sand and ground are averaged down by two a level until cells are
 /// `coarsest_cell` wide; the coarsest is relaxed first, the change handed to the four children, and the fine
 /// grid relaxed again last. Each relaxation is sweeps inside closed tiles whose seams move between passes
-/// (avalanching_tile.hpp), which leave what is below 2e-4 cell sizes.
-/// `sweeps`: synchronous sweeps of the whole grid, the reference. `taylor_keyser`: k_c = 0.25 of the largest
-/// drop, by tangents, for comparison.
+/// (avalanching_tile.hpp), which leave what is below 2e-4 cell sizes. A slide that has begun aims at a slope
+/// a little below the angle of repose (`rest`), as that of sand does; or hardly anything would be at rest
+/// after so few sweeps. `sweeps`: synchronous sweeps of the whole grid, the reference. `taylor_keyser`: k_c =
+/// 0.25 of the largest drop, by tangents, for comparison.
 ///
 /// Reads bedrock, soil, obstacle and the repose tangents; writes sand. Soil and bedrock:
 /// avalanching_ground.hpp.
@@ -37,6 +38,7 @@ struct AvalanchingParameters {
   AvalancheScheme scheme = AvalancheScheme::multilevel;
   AvalancheQuality quality = AvalancheQuality::good;
   float transfer = 1.0f;
+  float rest = 0.98f;
   float coarsest_cell = 4.0f;
   int sweeps = 50;
   float tolerance = 0.001f;
@@ -51,10 +53,14 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
   return std::make_tuple(
       parameter("enabled", &P::enabled, "Whether steep sand slides."),
       parameter("scheme", &P::scheme, avalanche_schemes, "How slides are computed."),
-      parameter("quality", &P::quality, avalanche_qualities,
-                "fast: 2 x 4 fine sweeps; good: 4 x 8; converged: until tolerance (also for sweeps)."),
+      parameter(
+          "quality", &P::quality, avalanche_qualities,
+          "fast: 2 x 3 fine sweeps, good: 3 x 6, both up to 8 a pass where much slides; converged: until "
+          "tolerance (also for sweeps)."),
       parameter("transfer", &P::transfer, 0.05, 1, "1",
                 "Share of what would stabilise a cell that one sweep moves (k_c)."),
+      parameter("rest", &P::rest, 0.8, 1, "1",
+                "Slope that slides aim at, as a share of that at which sand starts to slide (multilevel)."),
       parameter("coarsest_cell", &P::coarsest_cell, 0.001, 1000, "m",
                 "Width of cells at which coarsening stops."),
       parameter("sweeps", &P::sweeps, 1, 100000, "1",
@@ -71,14 +77,16 @@ static_assert(table_is_complete<AvalanchingParameters>());
 
 namespace avalanching {
 
-/// Passes over shifted tiles, and sweeps in each: of the fine grid before the coarse levels, of each coarse
-/// level, and of the fine grid after them.
+/// Passes over shifted tiles: of the fine grid before the coarse levels, of each coarse level, and of the
+/// fine grid after them; sweeps in each at least, and how much a cell gives [cell sizes] for its tile to go
+/// on.
 struct Schedule {
   int before, coarse, after, sweeps;
+  float plenty;
 };
 constexpr Schedule schedule(AvalancheQuality quality) {
-  if (quality == AvalancheQuality::fast) return {1, 2, 1, 4};
-  return {1, 4, 3, 8};
+  if (quality == AvalancheQuality::fast) return {1, 2, 1, 3, 0.3f};
+  return {1, 3, 2, 6, 0.2f};
 }
 static_assert(schedule(AvalancheQuality::good).sweeps <= most_sweeps);
 
@@ -113,30 +121,36 @@ inline LevelView finest(const TerrainView& t, const float* repose) {
 constexpr int seam_offsets[] = {0, 16, 8, 24, 4, 20, 12, 28};
 constexpr std::uint64_t turns = 8;
 
-/// Passes `first` to `last` of turn `turn` over one level.
+/// Whether every coarse cell's children lie in one tile, whatever its offset: then they can get their share
+/// there.
+inline bool families_share_tiles(const Grid& g) {
+  return (!g.periodic_x || g.width % 2 == 0) && (!g.periodic_y || g.height % 2 == 0);
+}
+
+/// Passes over one level, which first gets what the coarser one has done.
 template <class E>
-void relax(E& exec, const LevelView& level, float transfer, int first, int last, int sweeps,
-           std::uint64_t turn) {
+void relax(E& exec, const LevelView& level, Prolong from_coarse, const AvalanchingParameters& p, int first,
+           int last, const Schedule& plan, std::uint64_t turn) {
+  if (from_coarse.sand_after && !families_share_tiles(level.grid)) {
+    for_each_cell(exec, from_coarse.coarse, from_coarse);
+    from_coarse = {};
+  }
   for (int pass = first; pass < last; ++pass) {
     const Tiles tiles{level.grid, seam_offsets[(5 * turn + static_cast<std::uint64_t>(pass)) % turns]};
-    relax_tiles(exec, RelaxTile{tiles, level, transfer, sweeps});
+    relax_tiles(exec, RelaxTile{tiles, level, from_coarse, p.transfer, p.rest, plan.sweeps, plan.plenty});
+    from_coarse = {};
   }
 }
 
-/// Relaxes the fine grid, then the coarse levels from the coarsest, then the fine grid again.
+/// Fills the coarse levels, two a pass; views[n + 1] is what the avalanches see of coarse[n].
 template <class E>
-void cycle(E& exec, const LevelView& fine, float transfer, const Schedule& plan, std::uint64_t turn,
-           Workspace& work) {
-  relax(exec, fine, transfer, 0, plan.before, plan.sweeps, turn);
-  std::vector<Level>& coarse = work.coarse;
-  std::array<LevelView, 32> views;
-  const int levels = static_cast<int>(coarse.size());
-  views[0] = fine;
-  for (int n = 0; n < levels; ++n) {
+void restrict_levels(E& exec, std::vector<Level>& coarse, LevelView* views) {
+  const auto out = [](Level& level) {
+    return LevelOut{level.grid, level.ground.data(), level.sand.data(), level.sand_before.data(),
+                    level.repose.data()};
+  };
+  for (std::size_t n = 0; n < coarse.size(); ++n) {
     Level& level = coarse[n];
-    for_each_cell(exec, level.grid,
-                  Restrict{views[n], level.grid, level.ground.data(), level.sand.data(),
-                           level.sand_before.data(), level.repose.data()});
     views[n + 1] = {level.grid,
                     level.ground.data(),
                     nullptr,
@@ -144,14 +158,28 @@ void cycle(E& exec, const LevelView& fine, float transfer, const Schedule& plan,
                     level.sand.data(),
                     level.repose.data(),
                     2.0f * views[n].quanta_per_cell};
+    if (n % 2 == 1) continue;
+    const Restrict law{views[n], out(level), n + 1 < coarse.size() ? out(coarse[n + 1]) : LevelOut{}};
+    for_each_cell(exec, law.blocks(), law);
   }
-  for (int n = levels; n > 0; --n) {
-    relax(exec, views[n], transfer, 0, plan.coarse, plan.sweeps, turn);
-    for_each_cell(exec, views[n].grid,
-                  Prolong{views[n].grid, coarse[n - 1].sand.data(), coarse[n - 1].sand_before.data(),
-                          views[n - 1].grid, views[n - 1].sand});
+}
+
+/// Relaxes the coarse levels from the coarsest, then the fine grid.
+template <class E>
+void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const Schedule& plan,
+           std::uint64_t turn, Workspace& work) {
+  std::vector<Level>& coarse = work.coarse;
+  std::array<LevelView, 32> views;
+  views[0] = fine;
+  relax(exec, fine, Prolong{}, p, 0, plan.before, plan, turn);
+  restrict_levels(exec, coarse, views.data());
+  Prolong change{};
+  for (std::size_t n = coarse.size(); n > 0; --n) {
+    relax(exec, views[n], change, p, 0, plan.coarse, plan, turn);
+    const Level& done = coarse[n - 1];
+    change = {done.grid, done.sand.data(), done.sand_before.data(), views[n - 1].grid, views[n - 1].sand};
   }
-  relax(exec, fine, transfer, plan.before, plan.before + plan.after, plan.sweeps, turn);
+  relax(exec, fine, change, p, plan.before, plan.before + plan.after, plan, turn);
 }
 
 template <class E>
@@ -178,7 +206,7 @@ void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::ui
     const int fine_sweeps = (plan.before + plan.after) * plan.sweeps;
     std::uint64_t turn = tick;
     do {
-      cycle(exec, fine, p.transfer, plan, turn++, work);
+      cycle(exec, fine, p, plan, turn++, work);
       work.iterations += fine_sweeps;
     } while (converge && work.iterations < p.max_iterations && unsettled());
     return;

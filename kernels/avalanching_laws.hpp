@@ -2,6 +2,7 @@
 /// The per-cell and per-tile laws of avalanching; equations and schemes in avalanching.hpp.
 
 #include "desert_sim/kernels/for_each.hpp"
+#include "desert_sim/kernels/four.hpp"
 #include "desert_sim/kernels/layers.hpp"
 #include "desert_sim/kernels/math.hpp"
 
@@ -40,30 +41,87 @@ struct LevelView {
   DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : ground_top(i) + sand[i]; }
 };
 
-/// Averages the ground and sand of four children into a coarse cell, which keeps the steepest angle of
-/// theirs: the brink of a slip face is no reason for the face below it to slide. A child that is a wall makes
-/// a wall.
-struct Restrict {
-  LevelView fine;
-  Grid coarse;
+/// What a level knows of a cell; ground at wall_height is a wall.
+struct LevelCell {
+  Quanta ground, sand;
+  float repose;
+};
+
+/// The means of four children's ground and sand, and the steepest angle of theirs: the brink of a slip face
+/// is no reason for the face below it to slide. A child that is a wall makes a wall.
+DESERT_HD LevelCell coarse_cell(const LevelCell (&child)[4]) {
+  long long ground = 0, sand = 0;
+  bool wall = false;
+  float steepest = 0.0f;
+  for (int n = 0; n < 4; ++n) {
+    wall = wall || child[n].ground >= wall_height;
+    ground += child[n].ground;
+    sand += child[n].sand;
+    steepest = maximum(steepest, child[n].repose);
+  }
+  return {wall ? wall_height : static_cast<Quanta>(ground >> 2), static_cast<Quanta>(sand >> 2), steepest};
+}
+
+/// A coarse level to be filled.
+struct LevelOut {
+  Grid grid;
   Quanta *ground, *sand, *sand_before;
   float* repose;
 
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = coarse.index(x, y), c = fine.grid.index(2 * x, 2 * y);
-    const int child[4] = {c, c + 1, c + fine.grid.width, c + fine.grid.width + 1};
-    long long ground_sum = 0, sand_sum = 0;
-    bool wall = false;
-    float steepest = 0.0f;
+  DESERT_HD void put(int x, int y, const LevelCell& cell) const {
+    const int i = grid.index(x, y);
+    ground[i] = cell.ground;
+    sand[i] = sand_before[i] = cell.sand;
+    repose[i] = cell.repose;
+  }
+};
+
+/// Fills one coarse level from the next finer one, and the one after that, if there is one, in the same pass.
+struct Restrict {
+  LevelView fine;
+  LevelOut first, second;  ///< second: with an empty grid if there is none
+
+  /// What a thread fills: two by two cells of the first level, the last ones perhaps not whole.
+  DESERT_HD Grid blocks() const { return {(first.grid.width + 1) / 2, (first.grid.height + 1) / 2, 1}; }
+
+  DESERT_HD LevelCell fine_cell(int i) const {
+    return {fine.wall(i) ? wall_height : fine.ground_top(i), fine.sand[i], fine.repose[i]};
+  }
+  /// Four cells in a row, of which the first has an index that is a multiple of four.
+  DESERT_HD void fine_row(int i, LevelCell* cells) const {
+    const auto ground = four_at(fine.ground + i), sand = four_at(fine.sand + i);
+    const auto repose = four_at(fine.repose + i);
     for (int n = 0; n < 4; ++n) {
-      wall = wall || fine.wall(child[n]);
-      ground_sum += fine.ground_top(child[n]);
-      sand_sum += fine.sand[child[n]];
-      steepest = maximum(steepest, fine.repose[child[n]]);
+      cells[n] = {ground.values[n], sand.values[n], repose.values[n]};
+      if (fine.soil || fine.obstacle) cells[n] = fine_cell(i + n);
     }
-    ground[i] = wall ? wall_height : static_cast<Quanta>(ground_sum >> 2);
-    sand[i] = sand_before[i] = static_cast<Quanta>(sand_sum >> 2);
-    repose[i] = steepest;
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    LevelCell filled[4] = {};
+    if (fine.grid.width % 4 == 0 && first.grid.inside(2 * x + 1, 2 * y + 1)) {
+      for (int half = 0; half < 2; ++half) {
+        LevelCell south[4], north[4];
+        fine_row(fine.grid.index(4 * x, 4 * y + 2 * half), south);
+        fine_row(fine.grid.index(4 * x, 4 * y + 2 * half + 1), north);
+        for (int n = 0; n < 2; ++n) {
+          const LevelCell children[4] = {south[2 * n], south[2 * n + 1], north[2 * n], north[2 * n + 1]};
+          filled[2 * half + n] = coarse_cell(children);
+        }
+      }
+      for (int n = 0; n < 4; ++n) first.put(2 * x + n % 2, 2 * y + n / 2, filled[n]);
+    } else {
+      for (int n = 0; n < 4; ++n) {
+        const int fx = 2 * x + n % 2, fy = 2 * y + n / 2;
+        if (!first.grid.inside(fx, fy)) continue;
+        const int i = fine.grid.index(2 * fx, 2 * fy), north = i + fine.grid.width;
+        const LevelCell children[4] = {fine_cell(i), fine_cell(i + 1), fine_cell(north),
+                                       fine_cell(north + 1)};
+        filled[n] = coarse_cell(children);
+        first.put(fx, fy, filled[n]);
+      }
+    }
+    if (second.grid.inside(x, y)) second.put(x, y, coarse_cell(filled));
   }
 };
 
@@ -71,7 +129,7 @@ struct Restrict {
 /// proportion to their sand. What the four change by is exactly four times the coarse change.
 struct Prolong {
   Grid coarse;
-  const Quanta *sand_after, *sand_before;
+  const Quanta *sand_after, *sand_before;  ///< null: nothing to hand down
   Grid fine;
   Quanta* sand;
 

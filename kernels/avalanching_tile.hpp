@@ -3,6 +3,9 @@
 /// the tile, obstacles, and what lies beyond the grid, stand in it as walls: infinitely high, so that nothing
 /// slides there, and without sand, so that nothing slides from there.
 ///
+/// A tile takes at least `sweeps` sweeps, unless it comes to rest, and goes on while one of its cells gives
+/// `plenty`.
+///
 /// A sweep is synchronous: each cell lays out what it gives to its eight neighbours, then each takes what is
 /// laid out for it. Most of a desert is at rest: a row gives again only if a row within two of it gave in the
 /// sweep before, and takes only from rows that give. That leaves out only what would change nothing.
@@ -25,8 +28,10 @@ struct RelaxTile {
 
   Tiles tiles;
   LevelView level;
-  float transfer;
-  int sweeps;  ///< at most most_sweeps
+  Prolong from_coarse;  ///< what the tile's cells get first; their families lie in one tile
+  float transfer, rest;
+  int sweeps;    ///< at most most_sweeps
+  float plenty;  ///< [cell sizes]
 
   template <class Team>
   static constexpr int scratch_bytes = (3 * cells + Team::rows_at_once * layouts * stride + 2 * flags) * 4;
@@ -37,24 +42,28 @@ struct RelaxTile {
     float *ground = h + cells, *drop = ground + cells, *laid_out = drop + cells;
     int* giving = reinterpret_cast<int*>(laid_out + Team::rows_at_once * layouts * stride);
     int* giving_next = giving + flags;
-    const float k_c = transfer;
+    const float k_c = transfer, ends = rest;
 
     clear(team, h, ground, drop, laid_out, giving);
+    if (from_coarse.sand_after)
+      team.for_each(families, [=](int n) DESERT_INLINE { prolong_family(column, row, n); });
     Quanta lowest, highest;
     load_heights(team, column, row, h, lowest, highest);
     if (lowest >= wall_height) return;
     const Units units(lowest, highest, level.quanta_per_cell);
     load(team, column, row, units, h, ground, drop);
     bool moved = false;
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
+    const float much = units.drop(plenty, level.quanta_per_cell);
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
       const auto give = [=](int y) DESERT_INLINE {
         const int* near = giving + y;  // rows y − 2 … y + 2
         const bool stale = (near[0] | near[1] | near[2] | near[3] | near[4]) != 0;
         float* to = laid_out + slot<Team>(y);
-        const bool gives = stale && team.any_in_row([=](int x) DESERT_INLINE {
-          return lay_out(h, ground, drop, k_c, local(x, y), to + x);
-        });
-        if (team.leads_row()) giving_next[y + 2] = gives ? 1 : 0;
+        const float most = stale ? team.most_in_row([=](int x) DESERT_INLINE {
+          return lay_out(h, ground, drop, ends, k_c, local(x, y), to + x);
+        })
+                                 : 0.0f;
+        if (team.leads_row()) giving_next[y + 2] = most > much ? 2 : (most > 0.0f ? 1 : 0);
       };
       const auto take = [=](int y) DESERT_INLINE {
         if (giving_next[y + 2]) take_what_is_left(team, h, laid_out + slot<Team>(y), y);
@@ -64,11 +73,19 @@ struct RelaxTile {
       team.for_each_row_then_behind(give, take);
       if (!team.any(side, [=](int y) { return giving_next[y + 2] != 0; })) break;
       moved = true;
+      if (sweep + 1 >= sweeps && !team.any(side, [=](int y) { return giving_next[y + 2] == 2; })) break;
       int* last = giving;
       giving = giving_next;
       giving_next = last;
     }
     if (moved) store(team, column, row, units, h, ground);
+  }
+
+  static constexpr int families = side / 2 * (side / 2);
+  /// Hands the nth coarse cell of the tile, if it is there, its change down to its children.
+  DESERT_HD void prolong_family(int column, int row, int n) const {
+    const int x = grid_x(column, 2 * (n % (side / 2))), y = grid_y(row, 2 * (n / (side / 2)));
+    if (x >= 0 && y >= 0 && from_coarse.coarse.inside(x / 2, y / 2)) from_coarse(x / 2, y / 2);
   }
 
   /// The grid's column under column x of the tile, or −1; likewise its row. On a periodic axis each belongs
@@ -169,17 +186,17 @@ struct RelaxTile {
     });
   }
 
-  /// Whether cell n gives anything.
-  DESERT_HD static bool lay_out(const float* h, const float* ground, const float* drop, float transfer, int n,
-                                float* to) {
+  /// What cell n gives in all.
+  DESERT_HD static float lay_out(const float* h, const float* ground, const float* drop, float rest,
+                                 float transfer, int n, float* to) {
     float around[Neighbours::count];
     Neighbours::unrolled([&](auto k) DESERT_INLINE { around[k] = h[n + offset_to(k)]; });
     const Slide slide(h[n], around, lower(lower(around[0], around[1]), lower(around[2], around[3])),
                       lower(lower(around[4], around[5]), lower(around[6], around[7])), ground[n], drop[n],
-                      transfer);
+                      rest, transfer);
     Neighbours::unrolled([&](auto k) DESERT_INLINE { to[k * stride] = slide.part[k]; });
     to[8 * stride] = slide.left;
-    return slide.left < h[n];
+    return h[n] - slide.left;
   }
 
   /// What is left of row y, and what its cells give along it.

@@ -75,16 +75,21 @@ DESERT_HD float reciprocal_below(float x) {
 ///
 ///   A/B_sum = min(k_c B_max B_sum, s (B_sum + B_max)) / (B_sum (B_sum + B_max))
 ///
-/// with s the sand over the film, at most most_given. The cell stays above the lowest neighbour but for
-/// rounding (A ≤ 8/9 B_max). Rounding to nearest takes at most ½ unit too much eight times: hence the film.
+/// with s the sand over the film, at most most_given; nothing, if no neighbour is lower by more than the drop
+/// over which sand starts to slide. The cell stays above the lowest neighbour but for rounding (A ≤ 8/9
+/// B_max). Rounding to nearest takes at most ½ unit too much eight times: hence the film.
 struct Slide {
   float part[Neighbours::count];
   float left;  ///< the cell's height less all parts; exactly
 
   /// `around`: heights of the neighbours; `straight`, `diagonal`: the lowest of each four; `ground`: the
-  /// film's top; `drop` over one cell.
+  /// film's top; `start`: the drop over one cell at which sand starts to slide, `rest` the share of it that a
+  /// slide aims at.
   DESERT_HD Slide(float height, const float (&around)[Neighbours::count], float straight, float diagonal,
-                  float ground, float drop, float transfer) {
+                  float ground, float start, float rest, float transfer) {
+    const bool slides =
+        higher(height - straight, (height - diagonal) * (1.0f / Neighbours::distance(4))) > start;
+    const float drop = rest * start;
     const float top = height - drop, diagonal_top = fused(-Neighbours::distance(4), drop, height);
     float b[Neighbours::count];
     Neighbours::unrolled(
@@ -94,12 +99,13 @@ struct Slide {
     const float sand = lower(positive_part(height - ground), Units::most_given);
     constexpr float tiny = 1e-30f;
     const float share =
-        lower(transfer * largest * sum, sand * both) * reciprocal_below(fused(sum, both, tiny));
+        slides ? lower(transfer * largest * sum, sand * both) * reciprocal_below(fused(sum, both, tiny))
+               : 0.0f;
     left = height;
     Neighbours::unrolled([&](auto k) DESERT_INLINE {
-      const float rest = fused(-share, b[k], left);
-      part[k] = left - rest;
-      left = rest;
+      const float after = fused(-share, b[k], left);
+      part[k] = left - after;
+      left = after;
     });
   }
 };

@@ -124,13 +124,16 @@ struct CpuTeam {
 #pragma omp simd
     for (int x = 0; x < Tiles::side; ++x) body(x);
   }
-  /// Inside a row: runs body(x) for all its cells; whether it returned true for any.
+  /// Inside a row: runs body(x) for all its cells; the greatest of what it returns, at least 0.
   template <class Body>
-  DESERT_HD bool any_in_row(const Body& body) const {
-    int any = 0;
-#pragma omp simd reduction(| : any)
-    for (int x = 0; x < Tiles::side; ++x) any |= body(x) ? 1 : 0;
-    return any != 0;
+  DESERT_HD float most_in_row(const Body& body) const {
+    float most = 0;
+#pragma omp simd reduction(max : most)
+    for (int x = 0; x < Tiles::side; ++x) {
+      const float value = body(x);
+      most = value > most ? value : most;
+    }
+    return most;
   }
   /// Inside a row: whether this is the one thread that writes what the row shares.
   DESERT_HD bool leads_row() const { return true; }

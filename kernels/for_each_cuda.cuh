@@ -112,12 +112,13 @@ struct Team {
 #endif
   }
   template <class Body>
-  DESERT_HD bool any_in_row(const Body& body) const {
-    bool found = false;
+  DESERT_HD float most_in_row(const Body& body) const {
+    float most = 0;
 #if defined(__CUDA_ARCH__)
-    found = __any_sync(0xffffffffu, body(static_cast<int>(threadIdx.x))) != 0;
+    most = fmaxf(most, body(static_cast<int>(threadIdx.x)));
+    for (int step = 16; step > 0; step /= 2) most = fmaxf(most, __shfl_xor_sync(0xffffffffu, most, step));
 #endif
-    return found;
+    return most;
   }
   DESERT_HD bool leads_row() const {
 #if defined(__CUDA_ARCH__)

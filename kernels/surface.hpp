@@ -1,12 +1,13 @@
 #pragma once
 /// The solid surface, h = b + e + s, that wind, shadow and echo dunes look at.
 ///
-/// A step works with its heights as floats [quanta above the datum], because a conversion costs a GPU as much as four
-/// additions, and with the highest of each block of 4 × 4 cells. The layer `elevation` has the same heights as whole
-/// quanta; nothing in a step reads it.
+/// A step works with its heights as floats [quanta above the datum], because a conversion costs a GPU as much
+/// as four additions, and with the highest of each block of 4 × 4 cells. The layer `elevation` has the same
+/// heights as whole quanta; nothing in a step reads it.
 
 #include "desert_sim/kernels/buffer.hpp"
 #include "desert_sim/kernels/for_each.hpp"
+#include "desert_sim/kernels/four.hpp"
 #include "desert_sim/kernels/layers.hpp"
 #include "desert_sim/kernels/math.hpp"
 
@@ -46,31 +47,6 @@ struct Heights {
 };
 Heights make_heights(Exec& exec, const Grid& grid);
 
-/// Four values beside each other, which a GPU moves at once.
-template <class T>
-struct alignas(16) Four {
-  T values[4];
-};
-/// `from`: aligned to 16 bytes.
-template <class T>
-DESERT_HD Four<T> four_at(const T* from) {
-#if defined(__CUDA_ARCH__)
-  return *reinterpret_cast<const Four<T>*>(from);
-#else
-  Four<T> four;
-  memcpy(&four, from, sizeof four);
-  return four;
-#endif
-}
-template <class T>
-DESERT_HD void put_four(T* to, const Four<T>& four) {
-#if defined(__CUDA_ARCH__)
-  *reinterpret_cast<Four<T>*>(to) = four;
-#else
-  memcpy(to, &four, sizeof four);
-#endif
-}
-
 /// The heights of one block's cells, and the highest of them.
 struct MeasureBlock {
   Grid grid;
@@ -99,7 +75,8 @@ struct MeasureBlock {
         top = maximum(top, measure_row(grid.index(x0, y)));
         continue;
       }
-      for (int x = x0; x < x0 + block_side && x < grid.width; ++x) top = maximum(top, measure(grid.index(x, y)));
+      for (int x = x0; x < x0 + block_side && x < grid.width; ++x)
+        top = maximum(top, measure(grid.index(x, y)));
     }
     highest[blocks.index(column, row)] = top;
   }

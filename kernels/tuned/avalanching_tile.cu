@@ -29,25 +29,33 @@ namespace {
 
 constexpr int side = Tiles::side;
 constexpr unsigned whole_warp = 0xffffffffu;
-constexpr int strip = 8, strips = side / strip;
-constexpr int blocks_at_once = 8;  // on a multiprocessor; leaves each thread 64 registers
+/// Rows of a strip: many, where there are tiles enough to fill the GPU, because what strips hand each other
+/// takes time; few, where a tile's own time is what counts.
+constexpr int long_strip = 8, short_strip = 4, shortest_strip = 2;
+constexpr int tiles_for_long = 1200, tiles_for_short = 400;
+/// Threads of a multiprocessor: leaves each 64 registers.
+constexpr int threads_at_once = 1024;
 
 /// What the warps of a tile share. Line and column 0 and side + 1 are walls.
+template <int strip>
 struct Shared {
+  static constexpr int strips = side / strip;
   float h[side + 2][side + 2];
   float northward[strips + 1][side], southward[strips + 1][side];  ///< over the border below strip n
-  int gave[strips + 2];                                            ///< strip n at n + 1
+  int gave[strips + 2];  ///< in the last sweep: nothing, something, much; strip n at n + 1
   int lowest[strips], highest[strips];
   int first_of_row[side];  ///< the grid's cell at x = 0, or −1
 };
 
 /// A thread's column of its warp's strip.
+template <int strip>
 struct Column {
   float h[strip], ground[strip], drop[strip];
 };
 
 /// The least of all values in the block.
-__device__ int lowest_in_block(int value, int* of_warps) {
+template <int strips>
+__device__ int lowest_in_block(int value, int (&of_warps)[strips]) {
   for (int step = 16; step > 0; step /= 2) value = min(value, __shfl_xor_sync(whole_warp, value, step));
   if (threadIdx.x == 0) of_warps[threadIdx.y] = value;
   __syncthreads();
@@ -55,7 +63,9 @@ __device__ int lowest_in_block(int value, int* of_warps) {
   return value;
 }
 
-__device__ void build_walls(Shared& shared) {
+template <int strip>
+__device__ void build_walls(Shared<strip>& shared) {
+  constexpr int strips = side / strip;
   const int first = static_cast<int>(threadIdx.y * side + threadIdx.x);
   for (int n = first; n < 4 * (side + 2); n += side * strips) {
     const int along = n >> 2, end = n & 1 ? side + 1 : 0;
@@ -65,8 +75,9 @@ __device__ void build_walls(Shared& shared) {
 }
 
 /// One sweep of a warp's strip: its heights but for what comes over the borders, and what goes over them.
-/// Whether anything slides.
-__device__ bool sweep_strip(Shared& shared, Column& c, float transfer) {
+/// The most that one of the thread's cells gives.
+template <int strip>
+__device__ float sweep_strip(Shared<strip>& shared, Column<strip>& c, float rest, float transfer) {
   const int x = static_cast<int>(threadIdx.x), warp = static_cast<int>(threadIdx.y);
   const float not_first = x > 0 ? 1.0f : 0.0f, not_last = x < side - 1 ? 1.0f : 0.0f;
   const float(*lines)[side + 2] = shared.h + warp * strip;  // line n of the strip
@@ -85,7 +96,7 @@ __device__ bool sweep_strip(Shared& shared, Column& c, float transfer) {
                  fused(not_last, __shfl_down_sync(whole_warp, west[n], 1), straight[n]));
   };
 
-  bool gives = false;
+  float most = 0.0f;
   Line south = line(0), here = line(1);
 #pragma unroll
   for (int n = 1; n <= strip; ++n) {
@@ -93,8 +104,8 @@ __device__ bool sweep_strip(Shared& shared, Column& c, float transfer) {
     const float around[] = {here.east,  here.west,  north.middle, south.middle,
                             north.east, south.west, north.west,   south.east};
     const Slide slide(here.middle, around, lower(here.lower, lower(north.middle, south.middle)),
-                      lower(north.lower, south.lower), c.ground[n - 1], c.drop[n - 1], transfer);
-    gives = gives || slide.left < here.middle;
+                      lower(north.lower, south.lower), c.ground[n - 1], c.drop[n - 1], rest, transfer);
+    most = higher(most, here.middle - slide.left);
     left[n - 1] = slide.left;
     // A line's sums begin with what its southern neighbour gives, but for the two southernmost.
     east[n - 1] = n == 1 ? slide.part[7] : east[n - 1] + slide.part[7];
@@ -114,11 +125,13 @@ __device__ bool sweep_strip(Shared& shared, Column& c, float transfer) {
   }
   c.h[strip - 1] = left[strip - 1] + incoming(strip);
   shared.northward[warp + 1][x] = incoming(strip + 1);
-  return __any_sync(whole_warp, gives);
+  return most;
 }
 
 /// Registers from the grid; the tile's units. Fetches all before it uses any.
-__device__ Units load(const RelaxTile& law, Shared& shared, const int (&cell)[strip], Column& c) {
+template <int strip>
+__device__ Units load(const RelaxTile& law, Shared<strip>& shared, const int (&cell)[strip],
+                      Column<strip>& c) {
   const LevelView& level = law.level;
   Quanta height[strip], sand[strip];
 #pragma unroll
@@ -153,7 +166,8 @@ __device__ Units load(const RelaxTile& law, Shared& shared, const int (&cell)[st
   return units;
 }
 
-__device__ void cells_of(const RelaxTile& law, const Shared& shared, int (&cell)[strip]) {
+template <int strip>
+__device__ void cells_of(const RelaxTile& law, const Shared<strip>& shared, int (&cell)[strip]) {
   const int x = law.grid_x(static_cast<int>(blockIdx.x), static_cast<int>(threadIdx.x));
 #pragma unroll
   for (int n = 0; n < strip; ++n) {
@@ -162,39 +176,47 @@ __device__ void cells_of(const RelaxTile& law, const Shared& shared, int (&cell)
   }
 }
 
-__global__ __launch_bounds__(side* strips, blocks_at_once) void relax_tiles_kernel(RelaxTile law) {
-  __shared__ Shared shared;
+template <int strip>
+__global__ __launch_bounds__(side* side / strip,
+                             threads_at_once* strip / (side * side)) void relax_tiles_kernel(RelaxTile law) {
+  constexpr int strips = side / strip;
+  __shared__ Shared<strip> shared;
   const int x = static_cast<int>(threadIdx.x), warp = static_cast<int>(threadIdx.y), y = warp * strip;
   if (warp == 0) {
     const int there = law.grid_y(static_cast<int>(blockIdx.y), x);
     shared.first_of_row[x] = there < 0 ? -1 : there * law.level.grid.width;
   }
   build_walls(shared);
+  if (law.from_coarse.sand_after)
+    for (int n = y * side / strip + x; n < RelaxTile::families; n += side * strips)
+      law.prolong_family(static_cast<int>(blockIdx.x), static_cast<int>(blockIdx.y), n);
   __syncthreads();
-  Column c;
+  Column<strip> c;
   int cell[strip];
   cells_of(law, shared, cell);
   const Units units = load(law, shared, cell, c);
   if (units.lowest >= wall_height) return;
 
   bool stale = true, moved = false;
-  for (int sweep = 0; sweep < law.sweeps; ++sweep) {
+  const float much = units.drop(law.plenty, law.level.quanta_per_cell);
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     if (stale)
 #pragma unroll
       for (int n = 0; n < strip; ++n) shared.h[y + n + 1][x + 1] = c.h[n];
     __syncthreads();
-    const bool gives = stale && sweep_strip(shared, c, law.transfer);
-    if (x == 0) shared.gave[warp + 1] = gives;
+    const float most = stale ? sweep_strip(shared, c, law.rest, law.transfer) : 0.0f;
+    const bool gives = __any_sync(whole_warp, most > 0.0f), gives_much = __any_sync(whole_warp, most > much);
+    if (x == 0) shared.gave[warp + 1] = gives_much ? 2 : (gives ? 1 : 0);
     __syncthreads();
     const bool from_south = shared.gave[warp], from_north = shared.gave[warp + 2];
     if (from_south) c.h[0] += shared.northward[warp][x];
     if (from_north) c.h[strip - 1] += shared.southward[warp + 1][x];
     stale = gives || from_south || from_north;
     moved = moved || stale;
-    bool any = false;
+    int any = 0;
 #pragma unroll
-    for (int n = 1; n <= strips; ++n) any = any || shared.gave[n];
-    if (!any) break;
+    for (int n = 1; n <= strips; ++n) any = max(any, shared.gave[n]);
+    if (any < (sweep + 1 < law.sweeps ? 1 : 2)) break;
   }
   if (!moved) return;
   cells_of(law, shared, cell);
@@ -205,12 +227,20 @@ __global__ __launch_bounds__(side* strips, blocks_at_once) void relax_tiles_kern
       sand[cell[n]] += units.gain(c.ground[n] + units.depth_over_film(sand[cell[n]]), c.h[n]);
 }
 
+template <int strip>
+void launch(CudaExec& exec, const RelaxTile& law) {
+  relax_tiles_kernel<strip>
+      <<<dim3(law.tiles.columns(), law.tiles.rows()), dim3(side, side / strip), 0, cuda::stream(exec)>>>(law);
+  check_cuda(cudaGetLastError(), "launch over tiles, tuned");
+}
+
 }  // namespace
 
 void relax_tiles(CudaExec& exec, const RelaxTile& law) {
-  relax_tiles_kernel<<<dim3(law.tiles.columns(), law.tiles.rows()), dim3(side, strips), 0,
-                       cuda::stream(exec)>>>(law);
-  check_cuda(cudaGetLastError(), "launch over tiles, tuned");
+  const int tiles = law.tiles.count();
+  if (tiles >= tiles_for_long) return launch<long_strip>(exec, law);
+  if (tiles >= tiles_for_short) return launch<short_strip>(exec, law);
+  launch<shortest_strip>(exec, law);
 }
 
 }  // namespace desert_sim::avalanching

@@ -7,22 +7,34 @@
 namespace desert_sim {
 namespace {
 
+void expect_same_bits(const test::TileField& field, float transfer, float rest) {
+  const auto cpu = make_exec("cpu", 2), cuda = make_exec("cuda");
+  for (int offset : {0, 4, 20})
+    for (int sweeps : {1, 4, 8}) {
+      SCOPED_TRACE(field.name + ", offset " + std::to_string(offset) + ", " + std::to_string(sweeps) +
+                   " sweeps, k_c " + std::to_string(transfer) + ", rest " + std::to_string(rest));
+      for (float plenty : {100.0f, 0.1f}) {
+        const auto reference = field.relaxed(*cpu, offset, sweeps, true, transfer, rest, plenty);
+        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, true, transfer, rest, plenty))
+            << "the reference, plenty " << plenty;
+        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, false, transfer, rest, plenty))
+            << "the tuned kernel, plenty " << plenty;
+      }
+    }
+}
+
 class TileParity : public ::testing::TestWithParam<int> {};
 
 TEST_P(TileParity, IsBitForBit) {
   DESERT_NEED_GPU();
-  const auto cpu = make_exec("cpu", 2), cuda = make_exec("cuda");
   const test::TileField field = test::tile_fields()[static_cast<std::size_t>(GetParam())];
-  SCOPED_TRACE(field.name);
-  for (int offset : {0, 4, 20})
-    for (int sweeps : {1, 4, 8})
-      for (float transfer : {1.0f, 0.3f}) {
-        SCOPED_TRACE("offset " + std::to_string(offset) + ", " + std::to_string(sweeps) + " sweeps, k_c " +
-                     std::to_string(transfer));
-        const auto reference = field.relaxed(*cpu, offset, sweeps, true, transfer);
-        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, true, transfer)) << "the reference";
-        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, false, transfer)) << "the tuned kernel";
-      }
+  for (float transfer : {1.0f, 0.3f})
+    for (float rest : {1.0f, 0.95f}) expect_same_bits(field, transfer, rest);
+}
+
+TEST(TilesOfFamilies, AreTheSameBitForBit) {
+  DESERT_NEED_GPU();
+  for (const test::TileField& field : test::tile_fields_of_families()) expect_same_bits(field, 1, 0.98f);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, TileParity, ::testing::Range(0, static_cast<int>(test::tile_fields().size())));

@@ -47,8 +47,8 @@ TileField field(const std::string& name, const Grid& grid, const Height& ground,
 
 }  // namespace
 
-std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool by_law,
-                                       float transfer) const {
+std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool by_law, float transfer,
+                                       float rest, float plenty) const {
   Buffer<Quanta> ground_there = on(exec, ground), sand_there = on(exec, sand), soil_there = on(exec, soil);
   Buffer<float> obstacle_there = on(exec, obstacle), repose_there = on(exec, repose);
   const avalanching::LevelView level{grid,
@@ -58,7 +58,10 @@ std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool 
                                      sand_there.data(),
                                      repose_there.data(),
                                      quanta_per_cell};
-  const avalanching::RelaxTile law{{grid, offset}, level, transfer, sweeps};
+  Buffer<Quanta> before = on(exec, coarse_before), after = on(exec, coarse_after);
+  const avalanching::Prolong from_coarse{coarse(), or_null(after, coarse_after),
+                                         or_null(before, coarse_before), grid, sand_there.data()};
+  const avalanching::RelaxTile law{{grid, offset}, level, from_coarse, transfer, rest, sweeps, plenty};
   with_backend(
       exec, [&](auto& e) { by_law ? avalanching::relax_by_law(e, law) : avalanching::relax_tiles(e, law); });
   return sand_there.download();
@@ -111,6 +114,29 @@ std::vector<TileField> tile_fields() {
   for (Quanta& ground : walls.ground) ground = wall_height;
   walls.name = "nothing but walls";
   fields.push_back(walls);
+  return fields;
+}
+
+std::vector<TileField> tile_fields_of_families() {
+  std::vector<TileField> fields;
+  for (const TileField& field : tile_fields()) {
+    if (field.name != "dunes" && field.name != "open and of an odd size" && field.name != "obstacles on soil")
+      continue;
+    TileField f = field;
+    const Grid coarse = f.coarse();
+    for (int y = 0; y < coarse.height; ++y)
+      for (int x = 0; x < coarse.width; ++x) {
+        const int c = f.grid.index(2 * x, 2 * y);
+        Quanta mean = 0;
+        for (int child : {c, c + 1, c + f.grid.width, c + f.grid.width + 1})
+          mean += f.sand[static_cast<std::size_t>(child)] / 4;
+        f.coarse_before.push_back(mean);
+        const double kind = chance(8, coarse.index(x, y));
+        f.coarse_after.push_back(
+            static_cast<Quanta>(kind < 0.3 ? mean : (kind < 0.4 ? 0 : mean * (1.4 * kind))));
+      }
+    fields.push_back(f);
+  }
   return fields;
 }
 

@@ -17,14 +17,22 @@ struct TileField {
   std::vector<Quanta> soil;     ///< may be empty
   std::vector<float> obstacle;  ///< may be empty
   std::vector<float> repose;
+  std::vector<Quanta> coarse_before, coarse_after;  ///< may be empty; of the next coarser grid
 
+  Grid coarse() const {
+    return {grid.width / 2, grid.height / 2, 2 * grid.cell_size, grid.periodic_x, grid.periodic_y};
+  }
   /// The sand after one pass of `sweeps` sweeps in tiles that begin at −offset; by the reference, or as the
   /// backend does it best.
-  std::vector<Quanta> relaxed(Exec& exec, int offset, int sweeps, bool by_law, float transfer = 1) const;
+  std::vector<Quanta> relaxed(Exec& exec, int offset, int sweeps, bool by_law, float transfer = 1,
+                              float rest = 1, float plenty = 100) const;
 };
 
 /// Dunes, cliffs of hundreds of metres, pits, films, columns as high as can be, walls, on whole and broken
 /// tiles.
 std::vector<TileField> tile_fields();
+
+/// Fields to which a coarser grid has something to hand down: more sand, less, and as good as all.
+std::vector<TileField> tile_fields_of_families();
 
 }  // namespace desert_sim::test

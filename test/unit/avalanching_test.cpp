@@ -204,10 +204,13 @@ struct Hierarchy {
   void restrict_all() {
     const avalanching::LevelView view{fine,        ground.data(), nullptr, nullptr,
                                       sand.data(), repose.data(), 1e6f};
-    const avalanching::Restrict law{
-        view, coarse, coarse_ground.data(), coarse_sand.data(), before.data(), coarse_repose.data()};
-    for (int y = 0; y < 2; ++y)
-      for (int x = 0; x < 2; ++x) law(x, y);
+    fill(view, {coarse, coarse_ground.data(), coarse_sand.data(), before.data(), coarse_repose.data()}, {});
+  }
+  static void fill(const avalanching::LevelView& from, const avalanching::LevelOut& first,
+                   const avalanching::LevelOut& second) {
+    const avalanching::Restrict law{from, first, second};
+    for (int y = 0; y < law.blocks().height; ++y)
+      for (int x = 0; x < law.blocks().width; ++x) law(x, y);
   }
   void prolong_all() {
     const avalanching::Prolong law{coarse, coarse_sand.data(), before.data(), fine, sand.data()};
@@ -232,6 +235,45 @@ TEST(Restrict, AveragesFourChildrenRoundedDownAndKeepsTheSteepestAngle) {
   EXPECT_EQ(h.coarse_ground[0], 49);  // floor(197 / 4)
   EXPECT_FLOAT_EQ(h.coarse_repose[0], 0.9f);
   EXPECT_EQ(h.coarse_sand[3], 0);
+}
+
+/// A level of its own memory, with what it is filled by.
+struct FilledLevel {
+  Grid grid;
+  std::vector<Quanta> ground, sand, before;
+  std::vector<float> repose;
+
+  explicit FilledLevel(const Grid& g)
+      : grid(g),
+        ground(static_cast<std::size_t>(g.cells()), -7),
+        sand(ground),
+        before(ground),
+        repose(ground.size()) {}
+  avalanching::LevelOut out() { return {grid, ground.data(), sand.data(), before.data(), repose.data()}; }
+  avalanching::LevelView view() {
+    return {grid, ground.data(), nullptr, nullptr, sand.data(), repose.data(), 1e6f};
+  }
+  bool operator==(const FilledLevel& o) const {
+    return ground == o.ground && sand == o.sand && before == o.before && repose == o.repose;
+  }
+};
+
+TEST(Restrict, FillsTwoLevelsAtOnceAsOneAfterTheOther) {
+  for (const auto& [width, height] : {std::pair{16, 8}, {22, 9}, {7, 30}, {4, 4}}) {
+    FilledLevel fine(Grid{width, height, 1, false, false});
+    for (std::size_t i = 0; i < fine.sand.size(); ++i) {
+      fine.sand[i] = static_cast<Quanta>(i * i % 1013);
+      fine.ground[i] = i % 37 == 5 ? wall_height : static_cast<Quanta>(i * 31 % 501) - 250;
+      fine.repose[i] = 0.1f * static_cast<float>(i % 7);
+    }
+    const Grid half{width / 2, height / 2, 2, false, false}, quarter{width / 4, height / 4, 4, false, false};
+    FilledLevel first(half), second(quarter), first_at_once(half), second_at_once(quarter);
+    Hierarchy::fill(fine.view(), first.out(), {});
+    Hierarchy::fill(first.view(), second.out(), {});
+    Hierarchy::fill(fine.view(), first_at_once.out(), second_at_once.out());
+    EXPECT_TRUE(first == first_at_once) << width << " x " << height;
+    EXPECT_TRUE(second == second_at_once) << width << " x " << height;
+  }
 }
 
 TEST(Restrict, AWallAmongTheChildrenIsAWall) {

@@ -81,6 +81,58 @@ TEST_P(AvalanchingTile, OfOnePairMovesHalfTheExcessTimesTransfer) {
   }
 }
 
+/// A tile goes on while one of its cells gives plenty, and only that tile.
+TEST_P(AvalanchingTile, GoesOnWhileACellGivesPlenty) {
+  TileField f = row(std::vector<double>(64, 0.0), std::vector<double>(64, 0.0));
+  f.sand[10] = 4 * 1048576;  // in the first tile
+  f.sand[40] = 600000;       // in the second: gives less than 0.1
+  const auto one = f.relaxed(exec(), 0, 1, false, 1, 1), most = f.relaxed(exec(), 0, 8, false, 1, 1);
+  const auto until = f.relaxed(exec(), 0, 1, false, 1, 1, 0.1f);
+  const auto tile = [](const std::vector<Quanta>& sand, int n) {
+    return std::vector<Quanta>(sand.begin() + 32 * n, sand.begin() + 32 * n + 32);
+  };
+  EXPECT_NE(tile(until, 0), tile(one, 0));
+  EXPECT_NE(tile(until, 0), tile(most, 0)) << "slides get small before the last sweep";
+  EXPECT_EQ(tile(until, 1), tile(one, 1));
+  EXPECT_EQ(f.relaxed(exec(), 0, 1, false, 1, 1, 0), most) << "nothing is too little";
+}
+
+/// What a coarser grid hands down comes first, as if by itself.
+TEST_P(AvalanchingTile, GetsTheCoarserGridsChangeFirst) {
+  for (const TileField& f : test::tile_fields_of_families())
+    for (int offset : {0, 12}) {
+      TileField g = f;
+      const avalanching::Prolong prolong{g.coarse(), g.coarse_after.data(), g.coarse_before.data(), g.grid,
+                                         g.sand.data()};
+      for (int y = 0; y < g.coarse().height; ++y)
+        for (int x = 0; x < g.coarse().width; ++x) prolong(x, y);
+      EXPECT_NE(g.sand, f.sand);
+      g.coarse_before.clear();
+      g.coarse_after.clear();
+      EXPECT_EQ(f.relaxed(exec(), offset, 4, false), g.relaxed(exec(), offset, 4, false)) << f.name;
+    }
+}
+
+/// Sand starts to slide where it is steeper than its angle; a slide aims at `rest` of that.
+TEST_P(AvalanchingTile, SlidesFromItsAngleToWhereItRests) {
+  const auto drop_after = [&](double drop, float rest) {
+    const TileField f = row({0, 0}, {1 + drop, 1});
+    std::vector<Quanta> sand = f.sand;
+    for (int pass = 0; pass < 4; ++pass) {
+      TileField g = f;
+      g.sand = sand;
+      sand = g.relaxed(exec(), 0, 8, false, 1, rest);
+    }
+    return (sand[0] - sand[1]) / 1048576.0;
+  };
+  EXPECT_EQ(drop_after(0.49, 0.9f), drop_after(0.49, 1.0f))
+      << "less than the angle of repose, 0.5: nothing slides";
+  EXPECT_NEAR(drop_after(0.49, 0.9f), 0.49, 1e-5);
+  EXPECT_NEAR(drop_after(0.52, 1.0f), 0.5, 4e-4);
+  EXPECT_NEAR(drop_after(0.52, 0.9f), 0.45, 0.003 * 0.07)
+      << "half of what is over 0.45 goes from one to the other";
+}
+
 /// What eight neighbours get is as equations 9–11 have it.
 TEST_P(AvalanchingTile, OfOneTowerIsNillesEquationsNineToEleven) {
   TileField f = row(std::vector<double>(9, 0.0), {0, 0, 0, 0, 2, 0, 0, 0, 0});
