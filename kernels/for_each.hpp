@@ -8,6 +8,8 @@
 ///
 /// The CPU's are in for_each_cpu.hpp, the GPU's in for_each_cuda.cuh; only the backends include them.
 
+#include <type_traits>
+
 #include "desert_sim/kernels/exec.hpp"
 #include "desert_sim/kernels/grid.hpp"
 
@@ -28,6 +30,11 @@ DESERT_HD Integer atomic_add(Integer* to, Integer amount) {
   return __atomic_fetch_add(to, amount, __ATOMIC_RELAXED);
 #endif
 }
+
+/// Whether a backend works on cells beside each other at once, as vectors: there, what a cell shares with the
+/// one above it is not worth a loop.
+template <class E>
+constexpr bool works_on_rows = std::is_same_v<E, CpuExec>;
 
 /// Square tiles over a grid, shifted by an offset so that the seams of one pass lie inside the tiles of the
 /// next.

@@ -147,7 +147,10 @@ void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
 #pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads)
   for (int y = 0; y < grid.height; ++y)
     with_wide_instructions([&]() DESERT_INLINE {
-      for (int x = 0; x < grid.width; ++x) law(x, y);
+      const Law own = law;
+      const int row = y, width = grid.width;
+#pragma omp simd
+      for (int x = 0; x < width; ++x) own(x, row);
     });
 }
 

@@ -35,6 +35,11 @@ DESERT_HD int wrap(int i, int n) {
   return i < 0 ? i + n : i;
 }
 
+/// Likewise for −n ≤ i < 2n, without division or branch.
+DESERT_HD int wrap_once(int i, int n) {
+  return i + (n & -static_cast<int>(i < 0)) - (n & -static_cast<int>(i >= n));
+}
+
 DESERT_HD int clamp_index(int i, int n) { return i < 0 ? 0 : (i >= n ? n - 1 : i); }
 
 /// The cell whose value stands for (x, y): wrapped on a periodic axis, the edge's (zero gradient) on an open

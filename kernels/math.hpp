@@ -57,9 +57,9 @@ DESERT_HD float hypotenuse(float x, float y) { return sqrtf(x * x + y * y); }
 /// e^(−x) for x ≥ 0, relative error below 3e-7; 0 from x = 87 on. Range reduction by ln 2 in two parts, then
 /// a Taylor polynomial of degree 7 on |r| ≤ ½ ln 2.
 DESERT_HD float exp_negative(float x) {
-  if (x >= 87.0f) return 0.0f;
-  const float n = rintf(x * 1.44269504f);
-  const float r = (n * 0.693359375f - x) + n * -2.12194440e-4f;  // r = n ln2 − x
+  constexpr float end = 87.0f;
+  const float y = minimum(x, end), n = rintf(y * 1.44269504f);
+  const float r = (n * 0.693359375f - y) + n * -2.12194440e-4f;  // r = n ln2 − y
   float p = 1.0f / 5040.0f;
   p = p * r + 1.0f / 720.0f;
   p = p * r + 1.0f / 120.0f;
@@ -68,7 +68,8 @@ DESERT_HD float exp_negative(float x) {
   p = p * r + 0.5f;
   p = p * r + 1.0f;
   p = p * r + 1.0f;
-  return p * float_of(static_cast<std::uint32_t>(127 - static_cast<int>(n)) << 23);
+  p = p * float_of(static_cast<std::uint32_t>(127 - static_cast<int>(n)) << 23);
+  return x >= end ? 0.0f : p;
 }
 
 /// arctan(x) for 0 ≤ x < 1e18, relative error below 1e-6. The angle is halved three times,

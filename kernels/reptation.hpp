@@ -48,24 +48,22 @@ namespace reptation {
 /// The angle of repose of a cell's sand where impacts of strength r [m] loosen it, in the wind's speed [m/s].
 struct Angle {
   repose::Tangents tangents;
-  float loosening;  ///< k_r of adaptive_repose, else 0
-  bool use_shadow;
-  const float* wind_shadow;
+  float loosening;             ///< k_r of adaptive_repose, else 0
+  const float* spared_shadow;  ///< null: nothing is spared
   float* repose;
 
   Angle(const TerrainView& t, const ReptationParameters& p, const ReposeParameters& repose_parameters,
         float* tangents_of_repose)
       : tangents(repose_parameters),
         loosening(p.method == ReptationMethod::adaptive_repose ? p.strength : 0.0f),
-        use_shadow(p.use_shadow),
-        wind_shadow(t.real(Layer::wind_shadow)),
+        spared_shadow(p.use_shadow ? t.real(Layer::wind_shadow) : nullptr),
         repose(tangents_of_repose) {}
 
   /// v vegetation, m relative moisture.
   DESERT_HD void set(int i, float r, float speed, float v, float m) const {
     float sand = tangents.sand;
     if (loosening > 0.0f) {
-      const float open = use_shadow ? 1.0f - value_or_zero(wind_shadow, i) : 1.0f;
+      const float open = 1.0f - value_or_zero(spared_shadow, i);
       sand *= exp_negative(loosening * r * speed * open);
     }
     repose[i] = lerp(sand, tangents.vegetated, v) * repose::moisture_factor(m);

@@ -63,7 +63,7 @@ DESERT_HD float dryness(float relative_moisture) {
 constexpr float wet_depth = 1e-5f;
 
 /// What the laws read. `bare`: of a desert of rock and sand alone, where there are none of the layers that a
-/// desert need not have; laws for that leave out the questions after them.
+/// desert need not have and nothing wears; laws for that leave out the questions after them.
 template <bool bare>
 struct Inputs {
   Grid grid;
@@ -98,7 +98,8 @@ struct Inputs {
   DESERT_HD bool flooded(int i) const { return there_may_be(water, i) * quantum > wet_depth; }
 };
 
-inline bool is_bare(const TerrainView& t) {
+inline bool is_bare(const TerrainView& t, const AbrasionParameters& a) {
+  if (a.rate > 0.0f) return false;
   for (Layer layer : {Layer::echo, Layer::vegetation, Layer::obstacle})
     if (t.real(layer)) return false;
   for (Layer layer : {Layer::water, Layer::soil, Layer::moisture})
@@ -240,7 +241,7 @@ struct Deposit {
     sand[i] = cover + deposited;
     airborne[i] = bouncing;
     const float speed = hypotenuse(in.wind_x[i], in.wind_y[i]);
-    wear(i, cover, bouncing, speed, v, m, held);
+    if (!bare) wear(i, cover, bouncing, speed, v, m, held);
     impacts.set(i, arriving * in.quantum * (1.0f - v), speed, v, in.moisture(i));
   }
 };
@@ -273,7 +274,7 @@ void step(E& exec, const TerrainView& t, const SaltationParameters& p, const Abr
                             t.quanta(Layer::sand),
                             t.real(Layer::erosion_resistance),
                             ledger};
-  if (is_bare(t))
+  if (is_bare(t, a))
     step_where<true>(exec, t, p, repose, time_step, ledger, landed, wear, impacts);
   else
     step_where<false>(exec, t, p, repose, time_step, ledger, landed, wear, impacts);

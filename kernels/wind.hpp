@@ -165,18 +165,18 @@ struct ProjectionCorrection {
 };
 
 /// The wind of each cell: direction from the coarse grid, speed by its own height, what the projection
-/// corrects, and the perturbation of local features (null where there is none). Four cells, one above the
-/// other, share a place.
+/// corrects, and the perturbation of local features (null where there is none). `strip` cells, one above the
+/// other, share what they read of the coarse grid.
+template <int strip>
 struct SurfaceWind {
-  static constexpr int strip = 4;
   CoarseGrid coarse;
   const float* heights;
   float reference, quantum;
   Vector above;
   float per_speed_squared;  ///< 1/|above|², or 0
   SpeedUp speed_up;
-  const Complex *turned, *correction;  ///< null: none
-  const float *perturbation_x, *perturbation_y;
+  const Complex *turned, *correction;            ///< both null: the wind above, and none
+  const float *perturbation_x, *perturbation_y;  ///< both null: none
   float *wind_x, *wind_y;
 
   DESERT_HD Grid strips() const {
@@ -197,10 +197,12 @@ struct SurfaceWind {
     const AxisPlace across = coarse.across(x);
     CoarseColumn direction(turned, across, coarse.width), corrections(correction, across, coarse.width);
     int row = -1;
-    for (int y = strip * n; y < strip * n + strip && y < coarse.fine.height; ++y) {
+    for (int k = 0; k < strip; ++k) {
+      const int y = strip * n + k;
+      if (strip > 1 && y >= coarse.fine.height) return;
       const int i = coarse.fine.index(x, y);
       const AxisPlace along = coarse.along(y);
-      if (along.first != row) {
+      if (turned && (strip == 1 || along.first != row)) {
         direction.move_to(along);
         corrections.move_to(along);
         row = along.first;
@@ -208,8 +210,9 @@ struct SurfaceWind {
       const float factor = speed_up((heights[i] - reference) * quantum);
       const Vector wind = turned ? at_full_speed(direction.at(along.share)) : above;
       const Complex corrected = corrections.at(along.share);
-      wind_x[i] = wind.x * factor + corrected.re + value_or_zero(perturbation_x, i);
-      wind_y[i] = wind.y * factor + corrected.im + value_or_zero(perturbation_y, i);
+      const Vector local = perturbation_x ? Vector{perturbation_x[i], perturbation_y[i]} : Vector{};
+      wind_x[i] = wind.x * factor + corrected.re + local.x;
+      wind_y[i] = wind.y * factor + corrected.im + local.y;
     }
   }
 };
@@ -261,7 +264,10 @@ void coarse_wind(E& exec, const TerrainView& t, const WindParameters& p, Vector 
     work.all_radii->inverse(work.gradients.data());
   }
   for_each_cell(exec, coarse.transformed(), turn);
-  if (!p.projection) return;
+  if (!p.projection) {
+    work.correction.set_zero();
+    return;
+  }
   work.one->forward(spectrum);
   for_each_cell(exec, coarse.transformed(),
                 ProjectionCorrection{coarse, spectrum, 1.0f / static_cast<float>(coarse.values()),
@@ -276,20 +282,22 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
           const float* perturbation_y, Workspace& work) {
   const float speed_above = hypotenuse(above.x, above.y), lowest = static_cast<float>(reference);
   const SpeedUp speed_up{p.speedup, p.speedup_lowest, p.speedup_highest};
-  if (p.warping || p.projection) coarse_wind(exec, t, p, above, speed_above, speed_up, heights, lowest, work);
-  const SurfaceWind law{work.coarse,
-                        heights.of_cells.data(),
-                        lowest,
-                        t.quantum,
-                        above,
-                        speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f,
-                        speed_up,
-                        p.warping ? work.turned.data() : nullptr,
-                        p.projection ? work.correction.data() : nullptr,
-                        perturbation_x,
-                        perturbation_y,
-                        t.real(Layer::wind_x),
-                        t.real(Layer::wind_y)};
+  const bool coarse_fields = p.warping || p.projection;
+  if (coarse_fields) coarse_wind(exec, t, p, above, speed_above, speed_up, heights, lowest, work);
+  constexpr int strip = works_on_rows<E> ? 1 : 4;
+  const SurfaceWind<strip> law{work.coarse,
+                               heights.of_cells.data(),
+                               lowest,
+                               t.quantum,
+                               above,
+                               speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f,
+                               speed_up,
+                               coarse_fields ? work.turned.data() : nullptr,
+                               coarse_fields ? work.correction.data() : nullptr,
+                               perturbation_x,
+                               perturbation_y,
+                               t.real(Layer::wind_x),
+                               t.real(Layer::wind_y)};
   for_each_cell(exec, law.strips(), law);
 }
 

@@ -84,22 +84,21 @@ struct AxisPlace {
   int first, second;
   float share;  ///< of the second
 
-  DESERT_HD AxisPlace(int cell, int cells, int coarse_cells, int wrapped_cells, float coarse_a_cell) {
-    const float place = (cell + 0.5f) * coarse_a_cell - 0.5f;
-    const int before = static_cast<int>(floorf(place));
-    share = coarse_cells == cells ? 0.0f : place - before;  // at full resolution the value itself
-    first = wrap(before, wrapped_cells);
-    second = wrap(before + 1, wrapped_cells);
+  DESERT_HD AxisPlace(int cell, int coarse_cells, float coarse_a_cell) {
+    const float place = (cell + 0.5f) * coarse_a_cell - 0.5f, before = floorf(place);
+    share = place - before;  // at full resolution 0: the value itself
+    first = wrap_once(static_cast<int>(before), coarse_cells);
+    second = wrap_once(static_cast<int>(before) + 1, coarse_cells);
   }
 };
 
-DESERT_HD AxisPlace CoarseGrid::across(int x) const { return {x, fine.width, columns, width, share_x}; }
-DESERT_HD AxisPlace CoarseGrid::along(int y) const { return {y, fine.height, rows, height, share_y}; }
+DESERT_HD AxisPlace CoarseGrid::across(int x) const { return {x, width, share_x}; }
+DESERT_HD AxisPlace CoarseGrid::along(int y) const { return {y, height, share_y}; }
 
 /// A field of the coarse grid along a column of fine cells, between two coarse columns. Several cells in a
 /// row lie between the same two coarse rows: what these have at the column is read once.
 struct CoarseColumn {
-  const Complex* field;  ///< null: none, which is 0
+  const Complex* field;
   AxisPlace across;
   int width;
   Complex south{0, 0}, north{0, 0};
@@ -107,7 +106,6 @@ struct CoarseColumn {
   DESERT_HD CoarseColumn(const Complex* values, const AxisPlace& place_across, int row_width)
       : field(values), across(place_across), width(row_width) {}
   DESERT_HD void move_to(const AxisPlace& along) {
-    if (!field) return;
     south = in_row(along.first);
     north = in_row(along.second);
   }
