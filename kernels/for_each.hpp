@@ -1,10 +1,18 @@
 #pragma once
 /// Loops over cells and tiles, the same call on both backends:
 ///
-///     for_each_cell(exec, grid, law);          // law(x, y)
-///     for_each_tile(exec, tiles, law);         // law(team, tile): a team works through one tile with shared
-///     memory sum_cells(exec, grid, law) -> long long  // Σ law(x, y), exact max_cells(exec, grid, law) ->
-///     float      // max of 0 and law(x, y)
+///     for_each_cell(exec, grid, law);              // law(x, y)
+///     for_each_cell_adding(exec, grid, sums, law); // sums[n] = Σ of what the cells send to cell n; see below
+///     for_each_tile(exec, tiles, law);             // law(team, tile): a team works through one tile with
+///                                                  // shared memory
+///     sum_cells(exec, grid, law) -> long long      // Σ law(x, y), exact
+///     max_cells(exec, grid, law) -> float          // max of 0 and law(x, y)
+///
+/// Cells of for_each_cell() must not depend on each other: a CPU works on several of a row at once.
+///
+/// A law that sends amounts to other cells has two parts, so that a CPU can work on several cells at once in
+/// the first: law.parcel(x, y) -> Law::Parcel makes ready what law.deliver(x, y, parcel, add) then sends, with
+/// add(cell, amount). Neither reads `sums`.
 ///
 /// The CPU's are in for_each_cpu.hpp, the GPU's in for_each_cuda.cuh; only the backends include them.
 

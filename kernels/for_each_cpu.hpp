@@ -1,7 +1,14 @@
 #pragma once
 /// Loops over cells and tiles on the CPU, with OpenMP; see for_each.hpp.
 
+#include <omp.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
 #include "desert_sim/kernels/for_each.hpp"
+#include "desert_sim/kernels/quanta.hpp"
 
 namespace desert_sim {
 
@@ -152,6 +159,68 @@ void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
 #pragma omp simd
       for (int x = 0; x < width; ++x) own(x, row);
     });
+}
+
+/// Sums of the rows that one thread works on. What goes to other threads' rows waits until these are done with
+/// them. (Locked additions to any row took longer than all the rest of saltation.)
+class BandSums {
+ public:
+  BandSums(const Grid& grid, Quanta* sums, int part, int parts)
+      : sums_(sums), first_row(row_of(grid, part, parts)), end_row(row_of(grid, part + 1, parts)) {
+    first_ = static_cast<std::size_t>(first_row) * static_cast<std::size_t>(grid.width);
+    count_ = static_cast<std::size_t>(end_row) * static_cast<std::size_t>(grid.width) - first_;
+    std::fill_n(sums + first_, count_, 0);
+  }
+  void operator()(int cell, Quanta amount) {
+    if (static_cast<std::size_t>(cell) - first_ < count_)
+      sums_[cell] += amount;
+    else
+      keep(cell, amount);
+  }
+  /// For when all threads are done with their own rows.
+  void add_kept() const {
+    for (const Kept& k : kept_) atomic_add(sums_ + k.cell, k.amount);
+  }
+
+ private:
+  struct Kept {
+    int cell;
+    Quanta amount;
+  };
+  static int row_of(const Grid& grid, int part, int parts) {
+    return static_cast<int>(static_cast<long long>(grid.height) * part / parts);
+  }
+  __attribute__((noinline)) void keep(int cell, Quanta amount) { kept_.push_back({cell, amount}); }
+
+  Quanta* sums_;
+  std::size_t first_, count_;  ///< cells of the rows
+  std::vector<Kept> kept_;
+
+ public:
+  const int first_row, end_row;
+};
+
+template <class Law>
+void for_each_cell_adding(CpuExec& exec, const Grid& grid, Quanta* sums, const Law& law) {
+#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
+  {
+    BandSums add(grid, sums, omp_get_thread_num(), omp_get_num_threads());
+    for (int y = add.first_row; y < add.end_row; ++y)
+      with_wide_instructions([&]() DESERT_INLINE {
+        constexpr int most = 64;
+        typename Law::Parcel parcels[most];
+        const Law own = law;
+        const int row = y, width = grid.width;
+        for (int first = 0; first < width; first += most) {
+          const int count = std::min(most, width - first);
+#pragma omp simd
+          for (int n = 0; n < count; ++n) parcels[n] = own.parcel(first + n, row);
+          for (int n = 0; n < count; ++n) own.deliver(first + n, row, parcels[n], add);
+        }
+      });
+#pragma omp barrier
+    add.add_kept();
+  }
 }
 
 /// `Law::scratch_bytes<Team>` of memory are shared by the team; law(team, column, row).

@@ -7,6 +7,7 @@
 
 #include "desert_sim/core/error.hpp"
 #include "desert_sim/kernels/for_each.hpp"
+#include "desert_sim/kernels/quanta.hpp"
 
 namespace desert_sim {
 
@@ -41,6 +42,20 @@ __global__ void cells_kernel(Grid grid, Law law) {
   const int x = blockIdx.x * block_x + dx, y = blockIdx.y * block_y + dy;
   if (x < grid.width && y < grid.height) law(x, y);
 }
+
+struct AtomicSums {
+  Quanta* sums;
+  DESERT_HD void operator()(int cell, Quanta amount) const {
+    if (amount != 0) atomic_add(&sums[cell], amount);
+  }
+};
+
+template <class Law>
+struct AddingLaw {
+  Law law;
+  AtomicSums add;
+  DESERT_HD void operator()(int x, int y) const { law.deliver(x, y, law.parcel(x, y), add); }
+};
 
 /// The 256 threads of a block as the team that works on a tile. (Marked host too, because laws are; empty
 /// there.)
@@ -171,6 +186,12 @@ template <class Law>
 void for_each_cell(CudaExec& exec, const Grid& grid, const Law& law) {
   cuda::cells_kernel<<<cuda::blocks(grid), cuda::block(), 0, cuda::stream(exec)>>>(grid, law);
   check_cuda(cudaGetLastError(), "launch over cells");
+}
+
+template <class Law>
+void for_each_cell_adding(CudaExec& exec, const Grid& grid, Quanta* sums, const Law& law) {
+  exec.set_zero(sums, sizeof(Quanta) * static_cast<std::size_t>(grid.cells()));
+  for_each_cell(exec, grid, cuda::AddingLaw<Law>{law, {sums}});
 }
 
 template <class Tiling, class Law>

@@ -107,28 +107,36 @@ inline bool is_bare(const TerrainView& t, const AbrasionParameters& a) {
   return true;
 }
 
-/// Where sand that flies (dx, dy) subcells from cell (x, y) comes down, between four cells, and each one's
-/// share of it.
-struct Landing {
-  int x, y, fx, fy;
+/// Sand that flies from a cell and comes down between four: (x, y), the next ones to the east and north, and
+/// each one's share.
+struct Parcel {
+  int x, y;
+  Quanta amount;
+  Quanta south_west, south_east, north_west, north_east;
+  Quanta left;  ///< by rounding, at most three quanta
 
-  DESERT_HD Landing(int cell_x, int cell_y, int dx, int dy)
-      : x(cell_x + (dx >> 16)), y(cell_y + (dy >> 16)), fx(dx & 65535), fy(dy & 65535) {}
-  DESERT_HD Quanta south_west(Quanta amount) const {
-    return bilinear_share(amount, subcell_one - fx, subcell_one - fy);
+  Parcel() = default;
+  /// From cell (cell_x, cell_y), by (dx, dy) subcells.
+  DESERT_HD Parcel(int cell_x, int cell_y, int dx, int dy, Quanta flying)
+      : x(cell_x + (dx >> 16)), y(cell_y + (dy >> 16)), amount(flying) {
+    const int east = dx & 65535, north = dy & 65535, west = subcell_one - east, south = subcell_one - north;
+    south_west = bilinear_share(amount, west, south);
+    south_east = bilinear_share(amount, east, south);
+    north_west = bilinear_share(amount, west, north);
+    north_east = bilinear_share(amount, east, north);
+    left = amount - south_west - south_east - north_west - north_east;
   }
-  DESERT_HD Quanta south_east(Quanta amount) const { return bilinear_share(amount, fx, subcell_one - fy); }
-  DESERT_HD Quanta north_west(Quanta amount) const { return bilinear_share(amount, subcell_one - fx, fy); }
-  DESERT_HD Quanta north_east(Quanta amount) const { return bilinear_share(amount, fx, fy); }
 };
 
 /// Lifts, and scatters what is in the air over a cell to the four cells around where it lands.
 template <bool bare>
 struct LiftAndAdvect {
+  using Parcel = saltation::Parcel;
   Inputs<bare> in;
   SaltationParameters p;
   float cells_a_speed;  ///< of a hop
-  Quanta *sand, *airborne, *landed;
+  Quanta* sand;
+  const Quanta* airborne;
   LedgerView ledger;
 
   DESERT_HD Quanta lifted(int i, Quanta available, float speed) const {
@@ -141,41 +149,41 @@ struct LiftAndAdvect {
     return take(metres, in.quanta_per_metre, available);
   }
 
-  DESERT_HD void land(int from, int x, int y, Quanta amount) const {
-    const int to = neighbour_index(in.grid, x, y);
-    if (to >= 0) {
-      atomic_add(&landed[to], amount);
-    } else {
-      ledger.book_out(Material::sand, from, amount);
-    }
-  }
-
-  DESERT_HD void operator()(int x, int y) const {
-    const Grid& g = in.grid;
-    const int i = g.index(x, y);
+  DESERT_HD Parcel parcel(int x, int y) const {
+    const int i = in.grid.index(x, y);
     const float u = in.wind_x[i], v = in.wind_y[i];
     const Quanta lying = sand[i], lift = lifted(i, lying, hypotenuse(u, v));
     sand[i] = lying - lift;
-    const Quanta amount = airborne[i] + lift;
-    if (amount == 0) return;
-    const Landing at(x, y, subcells(u * cells_a_speed), subcells(v * cells_a_speed));
-    const Quanta a = at.south_west(amount), b = at.south_east(amount), c = at.north_west(amount),
-                 d = at.north_east(amount);
-    if (g.inside(at.x, at.y) && g.inside(at.x + 1, at.y + 1)) {
-      Quanta *south = landed + g.index(at.x, at.y), *north = south + g.width;
-      if (a) atomic_add(south, a);
-      if (b) atomic_add(south + 1, b);
-      if (c) atomic_add(north, c);
-      if (d) atomic_add(north + 1, d);
+    return {x, y, subcells(u * cells_a_speed), subcells(v * cells_a_speed), airborne[i] + lift};
+  }
+
+  template <class Add>
+  DESERT_HD void land(int from, int x, int y, Quanta amount, Add& add) const {
+    const int to = neighbour_index(in.grid, x, y);
+    if (to >= 0)
+      add(to, amount);
+    else
+      ledger.book_out(Material::sand, from, amount);
+  }
+
+  template <class Add>
+  DESERT_HD void deliver(int x, int y, const Parcel& sent, Add& add) const {
+    if (sent.amount == 0) return;
+    const Grid& g = in.grid;
+    const int i = g.index(x, y);
+    if (g.inside(sent.x, sent.y) && g.inside(sent.x + 1, sent.y + 1)) {
+      const int south = g.index(sent.x, sent.y), north = south + g.width;
+      add(south, sent.south_west);
+      add(south + 1, sent.south_east);
+      add(north, sent.north_west);
+      add(north + 1, sent.north_east);
     } else {
-      if (a) land(i, at.x, at.y, a);
-      if (b) land(i, at.x + 1, at.y, b);
-      if (c) land(i, at.x, at.y + 1, c);
-      if (d) land(i, at.x + 1, at.y + 1, d);
+      land(i, sent.x, sent.y, sent.south_west, add);
+      land(i, sent.x + 1, sent.y, sent.south_east, add);
+      land(i, sent.x, sent.y + 1, sent.north_west, add);
+      land(i, sent.x + 1, sent.y + 1, sent.north_east, add);
     }
-    // What rounding leaves, at most three quanta, stays in the air here: that favours no direction.
-    const Quanta left = amount - a - b - c - d;
-    if (left) atomic_add(&landed[i], left);
+    add(i, sent.left);  // stays in the air here: that favours no direction
   }
 };
 
@@ -252,9 +260,8 @@ void step_where(E& exec, const TerrainView& t, const SaltationParameters& p, con
                 const reptation::Impacts& impacts) {
   const Inputs<bare> in(t, repose, time_step);
   Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand);
-  exec.set_zero(landed, sizeof(Quanta) * t.grid.cells());
-  for_each_cell(exec, t.grid,
-                LiftAndAdvect<bare>{in, p, time_step / t.grid.cell_size, sand, airborne, landed, ledger});
+  for_each_cell_adding(exec, t.grid, landed,
+                       LiftAndAdvect<bare>{in, p, time_step / t.grid.cell_size, sand, airborne, ledger});
   if (!t.grid.periodic() && p.influx > 0.0f)
     for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, landed, ledger});
   for_each_cell(exec, t.grid, Deposit<bare>{in, p, wear, landed, sand, airborne, impacts});

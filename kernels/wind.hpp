@@ -68,8 +68,8 @@ struct Vector {
   float x = 0, y = 0;
 };
 
-/// Of several radii: spectra of ∂x H_R + i ∂y H_R, one behind the other. The derivative is the central
-/// difference over two fine cells, i sin(k)/l.
+/// Of several radii: spectra of ∂x H_R + i ∂y H_R, one behind the other, as rows of one tall grid. The
+/// derivative is the central difference over two fine cells, i sin(k)/l.
 struct SmoothedGradients {
   CoarseGrid coarse;
   int radius_count;
@@ -77,14 +77,13 @@ struct SmoothedGradients {
   const Transfer *along_x[ShortList::capacity], *along_y[ShortList::capacity];
   Complex* out;
 
-  DESERT_HD void operator()(int i, int j) const {
-    const int n = j * coarse.width + i;
-    const Complex h = elevation[n];
-    for (int r = 0; r < radius_count; ++r) {
-      const Transfer x = along_x[r][i], y = along_y[r][j];
-      const float dx = x.derive * y.smooth, dy = x.smooth * y.derive;
-      out[r * coarse.values() + n] = {-dx * h.im - dy * h.re, dx * h.re - dy * h.im};  // (i dx − dy) h
-    }
+  DESERT_HD Grid grid() const { return Grid{coarse.width, coarse.height * radius_count, 1, true, true}; }
+  DESERT_HD void operator()(int i, int row) const {
+    const int r = row / coarse.height, j = row - r * coarse.height;
+    const Complex h = elevation[j * coarse.width + i];
+    const Transfer x = along_x[r][i], y = along_y[r][j];
+    const float dx = x.derive * y.smooth, dy = x.smooth * y.derive;
+    out[row * coarse.width + i] = {-dx * h.im - dy * h.re, dx * h.re - dy * h.im};  // (i dx − dy) h
   }
 };
 
@@ -260,7 +259,7 @@ void coarse_wind(E& exec, const TerrainView& t, const WindParameters& p, Vector 
       turn.deflections[r] = p.deflections.values[r];
     }
     work.one->forward(spectrum);
-    for_each_cell(exec, coarse.transformed(), gradients);
+    for_each_cell(exec, gradients.grid(), gradients);
     work.all_radii->inverse(work.gradients.data());
   }
   for_each_cell(exec, coarse.transformed(), turn);
