@@ -39,6 +39,32 @@ DESERT_HD Integer atomic_add(Integer* to, Integer amount) {
 #endif
 }
 
+/// A law for cells at least `margin` cells away from every edge of the grid, and one for the others.
+template <class Inside, class Border>
+struct Bordered {
+  Grid grid;
+  int margin;
+  Inside inside;
+  Border border;
+
+  DESERT_HD bool is_inside(int n, int cells) const { return n >= margin && n < cells - margin; }
+  DESERT_HD void operator()(int x, int y) const {
+    if (is_inside(x, grid.width) && is_inside(y, grid.height))
+      inside(x, y);
+    else
+      border(x, y);
+  }
+};
+
+/// body(n) for n = 0 … count − 1 as compile-time constants: loops over cells vectorise only around straight code.
+template <int count, class Body>
+DESERT_HD void unrolled(const Body& body) {
+  if constexpr (count > 0) {
+    unrolled<count - 1>(body);
+    body(std::integral_constant<int, count - 1>());
+  }
+}
+
 /// Whether a backend works on cells beside each other at once, as vectors: there, what a cell shares with the
 /// one above it is not worth a loop.
 template <class E>

@@ -149,16 +149,34 @@ struct CpuTeam {
 /// Below so many cells, waking other threads costs more than they bring.
 constexpr int worth_threads = 16384;
 
+/// Calls law(x, y) for x in first … end−1. The law is copied, so that the compiler sees that no cell changes it.
+template <class Law>
+void for_each_in_row(const Law& law, int first, int end, int y) {
+  with_wide_instructions([&]() DESERT_INLINE {
+    const Law own = law;
+    const int from = first, to = end, row = y;
+#pragma omp simd
+    for (int x = from; x < to; ++x) own(x, row);
+  });
+}
+
 template <class Law>
 void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
 #pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads)
-  for (int y = 0; y < grid.height; ++y)
-    with_wide_instructions([&]() DESERT_INLINE {
-      const Law own = law;
-      const int row = y, width = grid.width;
-#pragma omp simd
-      for (int x = 0; x < width; ++x) own(x, row);
-    });
+  for (int y = 0; y < grid.height; ++y) for_each_in_row(law, 0, grid.width, y);
+}
+
+template <class Inside, class Border>
+void for_each_cell(CpuExec& exec, const Grid& grid, const Bordered<Inside, Border>& law) {
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads)
+  for (int y = 0; y < grid.height; ++y) {
+    const bool inside = law.is_inside(y, grid.height);
+    const int begin = inside ? std::min(law.margin, grid.width) : grid.width;
+    const int end = std::max(begin, grid.width - law.margin);
+    for_each_in_row(law.border, 0, begin, y);
+    for_each_in_row(law.inside, begin, end, y);
+    for_each_in_row(law.border, end, grid.width, y);
+  }
 }
 
 /// Sums of the rows that one thread works on. What goes to other threads' rows waits until these are done with

@@ -134,6 +134,9 @@ struct Shade {
   }
 };
 
+/// Where the wind is no faster, nothing is sheltered from it [m/s].
+constexpr float calm = 1e-6f;
+
 /// What both marches look at.
 struct March {
   Grid grid;
@@ -169,6 +172,15 @@ struct Shadow : March {
                   static_cast<unsigned>(x) / side];
   }
 
+  /// heights[n + across], as a processor is quickest at it: a GPU adds the same `across` to the pointer once a march.
+  DESERT_HD float height_beside(int n, int across) const {
+#if defined(__CUDA_ARCH__)
+    return (heights + across)[n];
+#else
+    return heights[n + across];
+#endif
+  }
+
   template <bool inside>
   DESERT_HD float rise(const Start& s, int j) const {
     const int place = j * s.line.drift;
@@ -178,7 +190,7 @@ struct Shadow : March {
                 across = s.line.along_x ? grid.width : 1;
       const int n = grid.index(s.x, s.y) + j * along + (place >> 16) * across;
       first = heights[n];
-      second = (heights + across)[n];
+      second = height_beside(n, across);
     } else {
       const int x = s.x + s.line.dx(j), y = s.y + s.line.dy(j);
       first = heights[sample_index(grid, x, y)];
@@ -208,20 +220,47 @@ struct Shadow : March {
     return steepest;
   }
 
+  /// Of the cell (x, y) and its number i, against the wind (u, v) of a speed > 0.
+  DESERT_HD Start start(int x, int y, int i, float u, float v, float speed) const {
+    Start s{x, y, heights[i], Line(u, v, speed), 0};
+    const int wanted = static_cast<int>(reach * s.line.steps_a_cell + 1e-3f);
+    s.steps = wanted < 1 ? 1 : (wanted < steps ? wanted : steps);
+    return s;
+  }
+
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     const float u = wind_x[i], v = wind_y[i], speed = hypotenuse(u, v);
-    if (!(speed > 1e-6f)) {
+    if (!(speed > calm)) {
       wind_shadow[i] = 0.0f;
       return;
     }
-    Start s{x, y, heights[i], Line(u, v, speed), 0};
-    s.steps = static_cast<int>(reach * s.line.steps_a_cell + 1e-3f);
-    s.steps = s.steps < 1 ? 1 : (s.steps < steps ? s.steps : steps);
+    const Start s = start(x, y, i, u, v, speed);
     const int end_x = x + s.line.dx(s.steps), end_y = y + s.line.dy(s.steps);
     const bool inside = x + 1 < grid.width && y + 1 < grid.height && grid.inside(end_x, end_y) &&
                         grid.inside(end_x + 1, end_y + 1);
     wind_shadow[i] = shade((inside ? march<true>(s) : march<false>(s)) * s.line.steps_a_cell);
+  }
+};
+
+/// Marches of at most `longest` steps, from cells more than that away from every edge: without a branch, so that a
+/// CPU can do several at once.
+template <int longest>
+struct ShortShadow : Shadow {
+  static constexpr int margin = longest + 1;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    const float u = wind_x[i], v = wind_y[i], speed = hypotenuse(u, v);
+    const bool blows = speed > calm;
+    const Start s = start(x, y, i, blows ? u : 1.0f, blows ? v : 0.0f, blows ? speed : 1.0f);
+    float steepest = 0.0f;
+    unrolled<longest>([&](auto n) DESERT_INLINE {
+      const int j = n + 1;
+      const float found = higher(steepest, rise<true>(s, j));
+      steepest = j <= s.steps ? found : steepest;
+    });
+    wind_shadow[i] = blows ? shade(steepest * s.line.steps_a_cell) : 0.0f;
   }
 };
 
@@ -234,7 +273,7 @@ struct CurvedShadow : March {
     int dx = 0, dy = 0;
     for (int j = 1; j <= steps; ++j) {
       const float speed = hypotenuse(u, v);
-      if (!(speed > 1e-6f)) break;
+      if (!(speed > calm)) break;
       dx -= subcells(u / speed);
       dy -= subcells(v / speed);
       const float rise = height_at(grid, heights, Place(x, y, dx, dy)) - heights[i];
@@ -258,6 +297,15 @@ inline int march_steps(const Grid& grid, const WindShadowParameters& p) {
 }
 Workspace make_workspace(Exec& exec, const Grid& grid, const WindShadowParameters& p);
 
+/// Of marches of at most `longest` steps.
+template <int longest, class E>
+void short_shadow(E& exec, const Shadow& shadow) {
+  if constexpr (longest > 1)
+    if (shadow.steps < longest) return short_shadow<longest - 1>(exec, shadow);
+  using Inside = ShortShadow<longest>;
+  for_each_cell(exec, shadow.grid, Bordered<Inside, Shadow>{shadow.grid, Inside::margin, {shadow}, shadow});
+}
+
 template <class E>
 void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const surface::Heights& heights,
           const Workspace& work) {
@@ -277,7 +325,10 @@ void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const su
   if (work.around)
     for_each_cell(exec, heights.blocks,
                   HighestAround{heights.blocks, heights.highest.data(), work.around.data()});
-  for_each_cell(exec, t.grid, Shadow{march, heights.blocks, work.around.data()});
+  const Shadow shadow{march, heights.blocks, work.around.data()};
+  if constexpr (works_on_rows<E>)
+    if (march.steps <= Blocks::piece) return short_shadow<Blocks::piece>(exec, shadow);
+  for_each_cell(exec, t.grid, shadow);
 }
 
 }  // namespace wind_shadow
