@@ -10,9 +10,9 @@
 ///
 /// Cells of for_each_cell() must not depend on each other: a CPU works on several of a row at once.
 ///
-/// A law that sends amounts to other cells has two parts, so that a CPU can work on several cells at once in
-/// the first: law.parcel(x, y) -> Law::Parcel makes ready what law.deliver(x, y, parcel, add) then sends, with
-/// add(cell, amount). Neither reads `sums`.
+/// A law that sends amounts to other cells has two parts: law.prepare(x, y, parcels, n) fills the n-th of
+/// Law::Parcels<count>, which is made of arrays, and law.deliver(x, y, parcels, n, add) sends that, with
+/// add(cell, amount). A CPU prepares several cells at once. Neither part reads `sums`.
 ///
 /// The CPU's are in for_each_cpu.hpp, the GPU's in for_each_cuda.cuh; only the backends include them.
 

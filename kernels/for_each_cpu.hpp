@@ -179,65 +179,60 @@ void for_each_cell(CpuExec& exec, const Grid& grid, const Bordered<Inside, Borde
   }
 }
 
-/// Sums of the rows that one thread works on. What goes to other threads' rows waits until these are done with
-/// them. (Locked additions to any row took longer than all the rest of saltation.)
-class BandSums {
- public:
-  BandSums(const Grid& grid, Quanta* sums, int part, int parts)
-      : sums_(sums), first_row(row_of(grid, part, parts)), end_row(row_of(grid, part + 1, parts)) {
-    first_ = static_cast<std::size_t>(first_row) * static_cast<std::size_t>(grid.width);
-    count_ = static_cast<std::size_t>(end_row) * static_cast<std::size_t>(grid.width) - first_;
-    std::fill_n(sums + first_, count_, 0);
-  }
-  void operator()(int cell, Quanta amount) {
-    if (static_cast<std::size_t>(cell) - first_ < count_)
-      sums_[cell] += amount;
-    else
-      keep(cell, amount);
-  }
-  /// For when all threads are done with their own rows.
-  void add_kept() const {
-    for (const Kept& k : kept_) atomic_add(sums_ + k.cell, k.amount);
-  }
+/// The cells of a row send what they have to `add`.
+template <class Law, class Add>
+void add_row(const Law& law, int width, int y, const Add& add) {
+  with_wide_instructions([&]() DESERT_INLINE {
+    constexpr int most = 64;
+    typename Law::template Parcels<most> parcels;
+    const Law own = law;
+    const Add own_add = add;
+    const int row = y, end = width;
+    for (int first = 0; first < end; first += most) {
+      const int count = std::min(most, end - first);
+#pragma omp simd
+      for (int n = 0; n < count; ++n) own.prepare(first + n, row, parcels, n);
+      for (int n = 0; n < count; ++n) own.deliver(first + n, row, parcels, n, own_add);
+    }
+  });
+}
 
- private:
+/// Adds to the cells of the rows that a thread works on. What goes to others' rows is kept for when these are
+/// done with them. (With locked additions everywhere, saltation took three times as long.)
+struct AddToBand {
   struct Kept {
     int cell;
     Quanta amount;
   };
-  static int row_of(const Grid& grid, int part, int parts) {
-    return static_cast<int>(static_cast<long long>(grid.height) * part / parts);
+  Quanta* sums;
+  std::size_t first, count;  ///< cells of the band
+  std::vector<Kept>* kept;
+
+  void operator()(int cell, Quanta amount) const {
+    if (static_cast<std::size_t>(cell) - first < count)
+      sums[cell] += amount;
+    else
+      keep(cell, amount);
   }
-  __attribute__((noinline)) void keep(int cell, Quanta amount) { kept_.push_back({cell, amount}); }
 
-  Quanta* sums_;
-  std::size_t first_, count_;  ///< cells of the rows
-  std::vector<Kept> kept_;
-
- public:
-  const int first_row, end_row;
+ private:
+  __attribute__((noinline)) void keep(int cell, Quanta amount) const { kept->push_back({cell, amount}); }
 };
 
 template <class Law>
 void for_each_cell_adding(CpuExec& exec, const Grid& grid, Quanta* sums, const Law& law) {
 #pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
   {
-    BandSums add(grid, sums, omp_get_thread_num(), omp_get_num_threads());
-    for (int y = add.first_row; y < add.end_row; ++y)
-      with_wide_instructions([&]() DESERT_INLINE {
-        constexpr int most = 64;
-        typename Law::Parcel parcels[most];
-        const Law own = law;
-        const int row = y, width = grid.width;
-        for (int first = 0; first < width; first += most) {
-          const int count = std::min(most, width - first);
-#pragma omp simd
-          for (int n = 0; n < count; ++n) parcels[n] = own.parcel(first + n, row);
-          for (int n = 0; n < count; ++n) own.deliver(first + n, row, parcels[n], add);
-        }
-      });
+    const int thread = omp_get_thread_num(), threads = omp_get_num_threads();
+    const auto row_of = [&](int t) { return static_cast<int>(static_cast<long long>(grid.height) * t / threads); };
+    const int begin = row_of(thread), end = row_of(thread + 1);
+    std::vector<AddToBand::Kept> kept;
+    const auto width = static_cast<std::size_t>(grid.width);
+    const AddToBand band{sums, width * begin, width * (end - begin), &kept};
+    std::fill_n(sums + band.first, band.count, 0);
+    for (int y = begin; y < end; ++y) add_row(law, grid.width, y, band);
 #pragma omp barrier
-    add.add_kept();
+    for (const AddToBand::Kept& k : kept) atomic_add(sums + k.cell, k.amount);
   }
 }
 

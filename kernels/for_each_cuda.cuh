@@ -54,7 +54,11 @@ template <class Law>
 struct AddingLaw {
   Law law;
   AtomicSums add;
-  DESERT_HD void operator()(int x, int y) const { law.deliver(x, y, law.parcel(x, y), add); }
+  DESERT_HD void operator()(int x, int y) const {
+    typename Law::template Parcels<1> parcel;
+    law.prepare(x, y, parcel, 0);
+    law.deliver(x, y, parcel, 0, add);
+  }
 };
 
 /// The 256 threads of a block as the team that works on a tile. (Marked host too, because laws are; empty

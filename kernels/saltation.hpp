@@ -107,31 +107,36 @@ inline bool is_bare(const TerrainView& t, const AbrasionParameters& a) {
   return true;
 }
 
-/// Sand that flies from a cell and comes down between four: (x, y), the next ones to the east and north, and
+/// Sand that flies from cells and comes down between four: (x, y), the next ones to the east and north, and
 /// each one's share.
-struct Parcel {
-  int x, y;
-  Quanta amount;
-  Quanta south_west, south_east, north_west, north_east;
-  Quanta left;  ///< by rounding, at most three quanta
+template <int count>
+struct FlyingSand {
+  int x[count], y[count];
+  Quanta amount[count];
+  Quanta south_west[count], south_east[count], north_west[count], north_east[count];
 
-  Parcel() = default;
   /// From cell (cell_x, cell_y), by (dx, dy) subcells.
-  DESERT_HD Parcel(int cell_x, int cell_y, int dx, int dy, Quanta flying)
-      : x(cell_x + (dx >> 16)), y(cell_y + (dy >> 16)), amount(flying) {
+  DESERT_HD void set(int n, int cell_x, int cell_y, int dx, int dy, Quanta flying) {
     const int east = dx & 65535, north = dy & 65535, west = subcell_one - east, south = subcell_one - north;
-    south_west = bilinear_share(amount, west, south);
-    south_east = bilinear_share(amount, east, south);
-    north_west = bilinear_share(amount, west, north);
-    north_east = bilinear_share(amount, east, north);
-    left = amount - south_west - south_east - north_west - north_east;
+    x[n] = cell_x + (dx >> 16);
+    y[n] = cell_y + (dy >> 16);
+    amount[n] = flying;
+    south_west[n] = bilinear_share(flying, west, south);
+    south_east[n] = bilinear_share(flying, east, south);
+    north_west[n] = bilinear_share(flying, west, north);
+    north_east[n] = bilinear_share(flying, east, north);
+  }
+  /// What rounding leaves, at most three quanta.
+  DESERT_HD Quanta left(int n) const {
+    return amount[n] - south_west[n] - south_east[n] - north_west[n] - north_east[n];
   }
 };
 
 /// Lifts, and scatters what is in the air over a cell to the four cells around where it lands.
 template <bool bare>
 struct LiftAndAdvect {
-  using Parcel = saltation::Parcel;
+  template <int count>
+  using Parcels = FlyingSand<count>;
   Inputs<bare> in;
   SaltationParameters p;
   float cells_a_speed;  ///< of a hop
@@ -149,16 +154,17 @@ struct LiftAndAdvect {
     return take(metres, in.quanta_per_metre, available);
   }
 
-  DESERT_HD Parcel parcel(int x, int y) const {
+  template <int count>
+  DESERT_HD void prepare(int x, int y, FlyingSand<count>& parcels, int n) const {
     const int i = in.grid.index(x, y);
     const float u = in.wind_x[i], v = in.wind_y[i];
     const Quanta lying = sand[i], lift = lifted(i, lying, hypotenuse(u, v));
     sand[i] = lying - lift;
-    return {x, y, subcells(u * cells_a_speed), subcells(v * cells_a_speed), airborne[i] + lift};
+    parcels.set(n, x, y, subcells(u * cells_a_speed), subcells(v * cells_a_speed), airborne[i] + lift);
   }
 
   template <class Add>
-  DESERT_HD void land(int from, int x, int y, Quanta amount, Add& add) const {
+  DESERT_HD void land(int from, int x, int y, Quanta amount, const Add& add) const {
     const int to = neighbour_index(in.grid, x, y);
     if (to >= 0)
       add(to, amount);
@@ -166,24 +172,24 @@ struct LiftAndAdvect {
       ledger.book_out(Material::sand, from, amount);
   }
 
-  template <class Add>
-  DESERT_HD void deliver(int x, int y, const Parcel& sent, Add& add) const {
-    if (sent.amount == 0) return;
+  template <int count, class Add>
+  DESERT_HD void deliver(int x, int y, const FlyingSand<count>& parcels, int n, const Add& add) const {
+    if (parcels.amount[n] == 0) return;
     const Grid& g = in.grid;
-    const int i = g.index(x, y);
-    if (g.inside(sent.x, sent.y) && g.inside(sent.x + 1, sent.y + 1)) {
-      const int south = g.index(sent.x, sent.y), north = south + g.width;
-      add(south, sent.south_west);
-      add(south + 1, sent.south_east);
-      add(north, sent.north_west);
-      add(north + 1, sent.north_east);
+    const int i = g.index(x, y), at_x = parcels.x[n], at_y = parcels.y[n];
+    if (g.inside(at_x, at_y) && g.inside(at_x + 1, at_y + 1)) {
+      const int south = g.index(at_x, at_y), north = south + g.width;
+      add(south, parcels.south_west[n]);
+      add(south + 1, parcels.south_east[n]);
+      add(north, parcels.north_west[n]);
+      add(north + 1, parcels.north_east[n]);
     } else {
-      land(i, sent.x, sent.y, sent.south_west, add);
-      land(i, sent.x + 1, sent.y, sent.south_east, add);
-      land(i, sent.x, sent.y + 1, sent.north_west, add);
-      land(i, sent.x + 1, sent.y + 1, sent.north_east, add);
+      land(i, at_x, at_y, parcels.south_west[n], add);
+      land(i, at_x + 1, at_y, parcels.south_east[n], add);
+      land(i, at_x, at_y + 1, parcels.north_west[n], add);
+      land(i, at_x + 1, at_y + 1, parcels.north_east[n], add);
     }
-    add(i, sent.left);  // stays in the air here: that favours no direction
+    add(i, parcels.left(n));  // stays in the air here: that favours no direction
   }
 };
 
