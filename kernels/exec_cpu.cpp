@@ -23,23 +23,21 @@ std::mutex& planner() {
   return mutex;
 }
 
-/// One thread, whatever the Exec has: plans for other numbers of threads may add in another order, and the
-/// hash of a run must not depend on them. The grid of the wind is coarse, so this costs little.
+/// One thread a field, whatever the Exec has: plans for other numbers of threads may add in another order, and
+/// the hash of a run must not depend on them. The grid of the wind is coarse, so this costs little.
 class FftwTransform final : public Fft {
  public:
-  FftwTransform(int width, int height, int fields) {
+  FftwTransform(int width, int height, int fields, int threads)
+      : values_(width * height), fields_(fields), threads_(threads) {
     const std::lock_guard<std::mutex> lock(planner());
-    const int size[] = {height, width}, values = width * height;
-    auto* memory = static_cast<fftwf_complex*>(fftwf_malloc(sizeof(fftwf_complex) * values * fields));
+    auto* memory = static_cast<fftwf_complex*>(fftwf_malloc(sizeof(fftwf_complex) * values_ * fields));
     if (!memory)
       throw ConfigError("no memory for a transform of " + std::to_string(width) + " x " +
                         std::to_string(height));
-    const auto plan = [&](int direction) {
-      return fftwf_plan_many_dft(2, size, fields, memory, nullptr, 1, values, memory, nullptr, 1, values, direction,
-                                 FFTW_ESTIMATE);
-    };
-    forward_ = plan(FFTW_FORWARD);
-    inverse_ = plan(FFTW_BACKWARD);
+    const bool alike = fields == 1 || fftwf_alignment_of(memory[0]) == fftwf_alignment_of(memory[values_]);
+    const unsigned flags = FFTW_ESTIMATE | (alike ? 0u : FFTW_UNALIGNED);
+    forward_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_FORWARD, flags);
+    inverse_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_BACKWARD, flags);
     fftwf_free(memory);
     if (!forward_ || !inverse_)
       throw Error("FFTW made no plan for " + std::to_string(width) + " x " + std::to_string(height));
@@ -53,10 +51,14 @@ class FftwTransform final : public Fft {
   void inverse(Complex* values) override { execute(inverse_, values); }
 
  private:
-  static void execute(fftwf_plan plan, Complex* values) {
-    auto* v = reinterpret_cast<fftwf_complex*>(values);
-    fftwf_execute_dft(plan, v, v);
+  void execute(fftwf_plan plan, Complex* values) const {
+#pragma omp parallel for schedule(static) num_threads(threads_) if (fields_ > 1)
+    for (int n = 0; n < fields_; ++n) {
+      auto* v = reinterpret_cast<fftwf_complex*>(values + static_cast<std::ptrdiff_t>(n) * values_);
+      fftwf_execute_dft(plan, v, v);
+    }
   }
+  int values_, fields_, threads_;
   fftwf_plan forward_ = nullptr, inverse_ = nullptr;
 };
 
@@ -150,7 +152,7 @@ void CpuExec::copy(void* to, const void* from, std::size_t bytes) {
 }
 
 std::unique_ptr<Fft> CpuExec::make_fft(int width, int height, int fields) {
-  return std::make_unique<FftwTransform>(width, height, fields);
+  return std::make_unique<FftwTransform>(width, height, fields, threads_);
 }
 
 std::unique_ptr<HostCopy> Exec::start_download(void* to, const void* from, std::size_t bytes) {
