@@ -30,7 +30,8 @@ endforeach()
 set(DESERT_PHYSICS_OPTIONS
   $<$<COMPILE_LANGUAGE:CXX>:-fno-math-errno>
   $<$<COMPILE_LANGUAGE:CXX>:-fno-trapping-math>
-  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=max-unswitch-insns=500>)
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=max-unswitch-insns=500>
+  $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-pass-failed>) # not every law's loop can be one of vectors
 if(NOT DESERT_SANITIZE)
   list(APPEND DESERT_PHYSICS_OPTIONS $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<CONFIG:Debug>>>:-O3>)
 endif()

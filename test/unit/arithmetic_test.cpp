@@ -40,6 +40,11 @@ TEST(ExpNegative, NeverGrows) {
   for (float x = 0; x < 20; x += 0.001f) EXPECT_LE(exp_negative(x + 0.001f), exp_negative(x) * (1 + 2e-7f));
 }
 
+TEST(WrapOnce, IsWrapWhereItIsAllowed) {
+  for (int n : {1, 2, 7, 512})
+    for (int i = -n; i < 2 * n; ++i) EXPECT_EQ(wrap_once(i, n), wrap(i, n)) << i << " of " << n;
+}
+
 TEST(Take, RoundsToNearestAndStopsAtWhatIsThere) {
   EXPECT_EQ(take(1.0f, per_metre, 2000000), 1048576);
   EXPECT_EQ(take(1.4f / per_metre, per_metre, 100), 1);
