@@ -23,8 +23,8 @@ std::mutex& planner() {
   return mutex;
 }
 
-/// One thread a field, whatever the Exec has: plans for other numbers of threads may add in another order, and
-/// the hash of a run must not depend on them. The grid of the wind is coarse, so this costs little.
+/// One thread a field, whatever the Exec has: plans for other numbers of threads may add in another order,
+/// and the hash of a run must not depend on them. The grid of the wind is coarse, so this costs little.
 class FftwTransform final : public Fft {
  public:
   FftwTransform(int width, int height, int fields, int threads)

@@ -2,9 +2,8 @@
 /// Loops over cells and tiles, the same call on both backends:
 ///
 ///     for_each_cell(exec, grid, law);              // law(x, y)
-///     for_each_cell_adding(exec, grid, sums, law); // sums[n] = Σ of what the cells send to cell n; see below
-///     for_each_tile(exec, tiles, law);             // law(team, tile): a team works through one tile with
-///                                                  // shared memory
+///     for_each_cell_adding(exec, grid, sums, law); // sums[n] = Σ of what cells send to cell n
+///     for_each_tile(exec, tiles, law);             // law(team, column, row): a team works on a tile
 ///     sum_cells(exec, grid, law) -> long long      // Σ law(x, y), exact
 ///     max_cells(exec, grid, law) -> float          // max of 0 and law(x, y)
 ///
@@ -56,7 +55,8 @@ struct Bordered {
   }
 };
 
-/// body(n) for n = 0 … count − 1 as compile-time constants: loops over cells vectorise only around straight code.
+/// body(n) for n = 0 … count − 1 as compile-time constants: loops over cells vectorise only around straight
+/// code.
 template <int count, class Body>
 DESERT_HD void unrolled(const Body& body) {
   if constexpr (count > 0) {

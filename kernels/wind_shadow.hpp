@@ -172,7 +172,8 @@ struct Shadow : March {
                   static_cast<unsigned>(x) / side];
   }
 
-  /// heights[n + across], as a processor is quickest at it: a GPU adds the same `across` to the pointer once a march.
+  /// heights[n + across], as a processor is quickest at it: a GPU adds the same `across` to the pointer once
+  /// a march.
   DESERT_HD float height_beside(int n, int across) const {
 #if defined(__CUDA_ARCH__)
     return (heights + across)[n];
@@ -243,8 +244,8 @@ struct Shadow : March {
   }
 };
 
-/// Marches of at most `longest` steps, from cells more than that away from every edge: without a branch, so that a
-/// CPU can do several at once.
+/// Marches of at most `longest` steps, from cells more than that away from every edge: without a branch, so
+/// that a CPU can do several at once.
 template <int longest>
 struct ShortShadow : Shadow {
   static constexpr int margin = longest + 1;

@@ -30,7 +30,8 @@ struct Spread {
   template <int count>
   void prepare(int x, int y, Parcels<count>& parcels, int n) const {
     const auto i = static_cast<std::uint32_t>(grid.index(x, y));
-    parcels.anywhere[n] = static_cast<int>(high_product(i * 2654435761u, static_cast<std::uint32_t>(grid.cells())));
+    parcels.anywhere[n] =
+        static_cast<int>(high_product(i * 2654435761u, static_cast<std::uint32_t>(grid.cells())));
     parcels.amount[n] = static_cast<Quanta>(i % 1000u) - 300;
   }
   template <int count, class Add>

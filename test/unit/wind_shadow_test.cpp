@@ -52,7 +52,8 @@ std::vector<float> one_by_one(const test::BenchTerrain& t, const WindShadowParam
 
 TEST(ShortShadow, IsThatOfMarchesOneByOne) {
   CpuExec exec(3);
-  for (const auto& [width, height] : {std::pair{203, 150}, std::pair{64, 17}, std::pair{9, 40}, std::pair{3, 3}})
+  for (const auto& [width, height] :
+       {std::pair{203, 150}, std::pair{64, 17}, std::pair{9, 40}, std::pair{3, 3}})
     for (bool periodic : {true, false}) {
       test::BenchTerrain t(exec, width, height, 2.0, periodic);
       make_weather(t);
@@ -64,8 +65,8 @@ TEST(ShortShadow, IsThatOfMarchesOneByOne) {
         const float* shadow = t.terrain.view().real(Layer::wind_shadow);
         int shaded = 0;
         for (std::size_t i = 0; i < t.cells(); ++i) {
-          ASSERT_EQ(bits_of(shadow[i]), bits_of(expected[i])) << width << " x " << height << ", " << cells << " cells, "
-                                                              << i;
+          ASSERT_EQ(bits_of(shadow[i]), bits_of(expected[i]))
+              << width << " x " << height << ", " << cells << " cells, " << i;
           shaded += shadow[i] > 0.0f ? 1 : 0;
         }
         EXPECT_GT(shaded, static_cast<int>(t.cells()) / 5);
