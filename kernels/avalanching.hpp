@@ -79,7 +79,7 @@ namespace avalanching {
 
 /// Passes over shifted tiles: of the fine grid before the coarse levels, of each coarse level, and of the
 /// fine grid after them; sweeps in each at least, and how much a cell gives [cell sizes] for its tile to go
-/// on.
+/// on (but before the coarse levels).
 struct Schedule {
   int before, coarse, after, sweeps;
   float plenty;
@@ -130,14 +130,14 @@ inline bool families_share_tiles(const Grid& g) {
 /// Passes over one level, which first gets what the coarser one has done.
 template <class E>
 void relax(E& exec, const LevelView& level, Prolong from_coarse, const AvalanchingParameters& p, int first,
-           int last, const Schedule& plan, std::uint64_t turn) {
+           int last, int sweeps, float plenty, std::uint64_t turn) {
   if (from_coarse.sand_after && !families_share_tiles(level.grid)) {
     for_each_cell(exec, from_coarse.coarse, from_coarse);
     from_coarse = {};
   }
   for (int pass = first; pass < last; ++pass) {
     const Tiles tiles{level.grid, seam_offsets[(5 * turn + static_cast<std::uint64_t>(pass)) % turns]};
-    relax_tiles(exec, RelaxTile{tiles, level, from_coarse, p.transfer, p.rest, plan.sweeps, plan.plenty});
+    relax_tiles(exec, RelaxTile{tiles, level, from_coarse, p.transfer, p.rest, sweeps, plenty});
     from_coarse = {};
   }
 }
@@ -164,22 +164,23 @@ void restrict_levels(E& exec, std::vector<Level>& coarse, LevelView* views) {
   }
 }
 
-/// Relaxes the coarse levels from the coarsest, then the fine grid.
+/// Relaxes the fine grid, then the coarse levels from the coarsest, then the fine grid again.
 template <class E>
 void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const Schedule& plan,
            std::uint64_t turn, Workspace& work) {
   std::vector<Level>& coarse = work.coarse;
   std::array<LevelView, 32> views;
   views[0] = fine;
-  relax(exec, fine, Prolong{}, p, 0, plan.before, plan, turn);
+  constexpr float never = 1e6f;
+  relax(exec, fine, Prolong{}, p, 0, plan.before, plan.sweeps, never, turn);
   restrict_levels(exec, coarse, views.data());
   Prolong change{};
   for (std::size_t n = coarse.size(); n > 0; --n) {
-    relax(exec, views[n], change, p, 0, plan.coarse, plan, turn);
+    relax(exec, views[n], change, p, 0, plan.coarse, plan.sweeps, plan.plenty, turn);
     const Level& done = coarse[n - 1];
     change = {done.grid, done.sand.data(), done.sand_before.data(), views[n - 1].grid, views[n - 1].sand};
   }
-  relax(exec, fine, change, p, plan.before, plan.before + plan.after, plan, turn);
+  relax(exec, fine, change, p, plan.before, plan.before + plan.after, plan.sweeps, plan.plenty, turn);
 }
 
 template <class E>

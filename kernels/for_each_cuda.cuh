@@ -52,6 +52,7 @@ struct AtomicSums {
 
 template <class Law>
 struct AddingLaw {
+  static constexpr bool compact_warps = CompactWarps<Law>::value;
   Law law;
   AtomicSums add;
   DESERT_HD void operator()(int x, int y) const {

@@ -20,6 +20,7 @@
 #include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/ledger.hpp"
 #include "desert_sim/kernels/reptation.hpp"
+#include "desert_sim/kernels/wind_shadow.hpp"
 
 namespace desert_sim {
 
@@ -193,6 +194,26 @@ struct LiftAndAdvect {
   }
 };
 
+/// LiftAndAdvect of a cell whose shadow is found in the same pass.
+template <bool bare>
+struct ShadeAndLift {
+  static constexpr bool compact_warps = true;
+  template <int count>
+  using Parcels = FlyingSand<count>;
+  wind_shadow::Shadow shade;
+  LiftAndAdvect<bare> lift;
+
+  template <int count>
+  DESERT_HD void prepare(int x, int y, FlyingSand<count>& parcels, int n) const {
+    shade(x, y);
+    lift.prepare(x, y, parcels, n);
+  }
+  template <int count, class Add>
+  DESERT_HD void deliver(int x, int y, const FlyingSand<count>& parcels, int n, const Add& add) const {
+    lift.deliver(x, y, parcels, n, add);
+  }
+};
+
 /// Sand that the wind brings in over an open edge; see `influx`.
 template <bool bare>
 struct Influx {
@@ -263,21 +284,25 @@ struct Deposit {
 template <bool bare, class E>
 void step_where(E& exec, const TerrainView& t, const SaltationParameters& p, const ReposeParameters& repose,
                 float time_step, LedgerView ledger, Quanta* landed, const abrasion::Wear& wear,
-                const reptation::Impacts& impacts) {
+                const reptation::Impacts& impacts, const wind_shadow::Shadow* shade) {
   const Inputs<bare> in(t, repose, time_step);
   Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand);
-  for_each_cell_adding(exec, t.grid, landed,
-                       LiftAndAdvect<bare>{in, p, time_step / t.grid.cell_size, sand, airborne, ledger});
+  const LiftAndAdvect<bare> lift{in, p, time_step / t.grid.cell_size, sand, airborne, ledger};
+  if (shade)
+    for_each_cell_adding(exec, t.grid, landed, ShadeAndLift<bare>{*shade, lift});
+  else
+    for_each_cell_adding(exec, t.grid, landed, lift);
   if (!t.grid.periodic() && p.influx > 0.0f)
     for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, landed, ledger});
   for_each_cell(exec, t.grid, Deposit<bare>{in, p, wear, landed, sand, airborne, impacts});
 }
 
-/// `landed` (quanta): scratch memory of one value a cell.
+/// `landed` (quanta): scratch memory of one value a cell. `shade`: what finds the wind's shadow first, or
+/// null where it is there.
 template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
           const ReposeParameters& repose, float time_step, LedgerView ledger, Quanta* landed,
-          const reptation::Impacts& impacts) {
+          const reptation::Impacts& impacts, const wind_shadow::Shadow* shade) {
   const abrasion::Wear wear{a.rate * time_step,
                             take(a.cover, t.quanta_per_metre, wall_height),
                             t.quantum,
@@ -288,9 +313,9 @@ void step(E& exec, const TerrainView& t, const SaltationParameters& p, const Abr
                             t.real(Layer::erosion_resistance),
                             ledger};
   if (is_bare(t, a))
-    step_where<true>(exec, t, p, repose, time_step, ledger, landed, wear, impacts);
+    step_where<true>(exec, t, p, repose, time_step, ledger, landed, wear, impacts, shade);
   else
-    step_where<false>(exec, t, p, repose, time_step, ledger, landed, wear, impacts);
+    step_where<false>(exec, t, p, repose, time_step, ledger, landed, wear, impacts, shade);
 }
 
 }  // namespace saltation

@@ -307,28 +307,39 @@ void short_shadow(E& exec, const Shadow& shadow) {
   for_each_cell(exec, shadow.grid, Bordered<Inside, Shadow>{shadow.grid, Inside::margin, {shadow}, shadow});
 }
 
+inline March march(const TerrainView& t, const WindShadowParameters& p, const surface::Heights& heights,
+                   const Workspace& work) {
+  return {t.grid,
+          Shade(p, t.grid.cell_size * t.quanta_per_metre),
+          heights.of_cells.data(),
+          t.real(Layer::wind_x),
+          t.real(Layer::wind_y),
+          work.reciprocals.data(),
+          march_steps(t.grid, p),
+          p.distance / t.grid.cell_size,
+          t.real(Layer::wind_shadow)};
+}
+
+/// The law of straight marches, ready for the terrain as it is.
 template <class E>
-void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const surface::Heights& heights,
-          const Workspace& work) {
-  const March march{t.grid,
-                    Shade(p, t.grid.cell_size * t.quanta_per_metre),
-                    heights.of_cells.data(),
-                    t.real(Layer::wind_x),
-                    t.real(Layer::wind_y),
-                    work.reciprocals.data(),
-                    march_steps(t.grid, p),
-                    p.distance / t.grid.cell_size,
-                    t.real(Layer::wind_shadow)};
-  if (p.curved) {
-    for_each_cell(exec, t.grid, CurvedShadow{march});
-    return;
-  }
+Shadow straight_shadow(E& exec, const TerrainView& t, const WindShadowParameters& p,
+                       const surface::Heights& heights, const Workspace& work) {
   if (work.around)
     for_each_cell(exec, heights.blocks,
                   HighestAround{heights.blocks, heights.highest.data(), work.around.data()});
-  const Shadow shadow{march, heights.blocks, work.around.data()};
+  return {march(t, p, heights, work), heights.blocks, work.around.data()};
+}
+
+template <class E>
+void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const surface::Heights& heights,
+          const Workspace& work) {
+  if (p.curved) {
+    for_each_cell(exec, t.grid, CurvedShadow{march(t, p, heights, work)});
+    return;
+  }
+  const Shadow shadow = straight_shadow(exec, t, p, heights, work);
   if constexpr (works_on_rows<E>)
-    if (march.steps <= Blocks::piece) return short_shadow<Blocks::piece>(exec, shadow);
+    if (shadow.steps <= Blocks::piece) return short_shadow<Blocks::piece>(exec, shadow);
   for_each_cell(exec, t.grid, shadow);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "desert_sim/core/error.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
@@ -21,8 +22,11 @@ void Simulation::run_processes(E& exec) {
   // Wind at the surface: speed-up, deflection by the terrain, divergence-free, local features (A1–A5).
   run(exec, "wind", {Layer::wind_x, Layer::wind_y}, [&] { update_wind(exec, view); });
 
-  // Shelter in the lee of what is higher upwind (A6).
-  if (s.wind_shadow.enabled)
+  // Shelter in the lee of what is higher upwind (A6). Where starting passes is what takes time, and nothing
+  // else asks for it before sand is lifted, that pass finds it.
+  constexpr int few_cells = 1 << 19;
+  const bool shade_in_passing = !works_on_rows<E> && view.grid.cells() <= few_cells && shadow_can_wait();
+  if (s.wind_shadow.enabled && !shade_in_passing)
     run(exec, "wind_shadow", {Layer::wind_shadow},
         [&] { wind_shadow::step(exec, view, s.wind_shadow, heights_, shadow_work_); });
 
@@ -36,8 +40,11 @@ void Simulation::run_processes(E& exec) {
   const reptation::Angle angle(view, s.reptation, s.repose, repose_.data());
   if (s.saltation.enabled)
     run(exec, "saltation", {Layer::sand, Layer::airborne_sand, Layer::bedrock}, [&] {
+      std::optional<wind_shadow::Shadow> shade;
+      if (shade_in_passing)
+        shade = wind_shadow::straight_shadow(exec, view, s.wind_shadow, heights_, shadow_work_);
       saltation::step(exec, view, s.saltation, s.abrasion, s.repose, dt, ledger(), landed_.data(),
-                      {angle, reptation_strength_.data()});
+                      {angle, reptation_strength_.data()}, shade ? &*shade : nullptr);
     });
   else
     reptation::set_angles(exec, view, angle, s.repose, nullptr);
@@ -118,6 +125,13 @@ void Simulation::check(E& exec, const char* process, Layer layer) {
                    " is broken in " + std::to_string(broken) + " cells, first (" +
                    std::to_string(cell % view.grid.width) + ", " + std::to_string(cell / view.grid.width) +
                    ") = " + std::to_string(values[cell]));
+}
+
+/// Whether nothing but saltation needs the wind's shadow, neither a process nor who checks or times them.
+bool Simulation::shadow_can_wait() const {
+  const Scenario& s = scenario_;
+  return s.wind_shadow.enabled && !s.wind_shadow.curved && s.saltation.enabled && !s.echo_dunes.enabled &&
+         !timing_ && !checks_layers();
 }
 
 bool Simulation::checks_layers() const {

@@ -127,6 +127,7 @@ class Simulation {
   /// Whether the next step is the same work as others before and after it.
   bool recordable() const;
   /// Whether the next step looks through the layers that it writes.
+  bool shadow_can_wait() const;
   bool checks_layers() const;
   template <class E>
   void update_wind(E& exec, const TerrainView& view);

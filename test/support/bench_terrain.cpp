@@ -106,7 +106,8 @@ void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParamet
                              const ReposeParameters& r, float time_step) {
   with_backend(exec(), [&](auto& e) {
     const reptation::Angle angle(terrain.view(), {}, r, repose.data());
-    saltation::step(e, terrain.view(), p, a, r, time_step, ledger(), landed.data(), {angle, strength.data()});
+    saltation::step(e, terrain.view(), p, a, r, time_step, ledger(), landed.data(), {angle, strength.data()},
+                    nullptr);
   });
 }
 
