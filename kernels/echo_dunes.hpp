@@ -10,7 +10,8 @@
 /// Erosion wins; else the stickiest cliff counts. Reads the heights, wind_x, wind_y; writes echo.
 
 #include "desert_sim/core/parameters.hpp"
-#include "desert_sim/kernels/wind_shadow.hpp"
+#include "desert_sim/kernels/marching.hpp"
+#include "desert_sim/kernels/surface.hpp"
 
 namespace desert_sim {
 
@@ -56,8 +57,8 @@ struct CliffHeight {
     const float drop = steepness * grid.cell_size / quantum;  // quanta a step
     float last = 0.0f, rise = 0.0f;  // heights here and below it, relative to this cell
     for (int j = 1; rise * quantum < highest; ++j) {
-      const wind_shadow::Place place(x, y, j * dx, j * dy);
-      const float next = wind_shadow::height_at(grid, heights, place) - heights[i];
+      const marching::Place place(x, y, j * dx, j * dy);
+      const float next = marching::height_at(grid, heights, place) - heights[i];
       if (last - next < drop) break;
       last = next;
       rise = -next;

@@ -4,6 +4,7 @@
 
 #include <Random123/philox.h>
 
+#include <cmath>
 #include <cstdint>
 
 #include "desert_sim/kernels/macros.hpp"

@@ -17,6 +17,7 @@
 #include "desert_sim/kernels/buffer.hpp"
 #include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/layers.hpp"
+#include "desert_sim/kernels/marching.hpp"
 #include "desert_sim/kernels/math.hpp"
 #include "desert_sim/kernels/surface.hpp"
 
@@ -69,54 +70,6 @@ struct HighestAround {
   DESERT_HD static float rounding(float height) { return 1.0f + 2e-6f * fabsf(height); }
 };
 
-/// A march along a straight line, one column (or row) of cells a step, whichever the line crosses faster:
-/// there a sample lies between two cells.
-struct Line {
-  bool along_x;
-  int step;                          ///< ±1: column (row) by column (row)
-  int drift;                         ///< a step's way across, 16.16 fixed point
-  float steps_a_cell, cells_a_step;  ///< √½ … 1 … √2
-
-  /// Against the wind (u, v) of speed `speed`.
-  DESERT_HD Line(float u, float v, float speed) {
-    along_x = fabsf(u) >= fabsf(v);
-    const float along = along_x ? u : v, across = along_x ? v : u;
-    step = along > 0.0f ? -1 : 1;
-    const float per_along = 1.0f / fabsf(along);
-    drift = -subcells(across * per_along);
-    steps_a_cell = fabsf(along) / speed;
-    cells_a_step = speed * per_along;
-  }
-  /// The cell at or before the sample of step j, relative to the march's first.
-  DESERT_HD int dx(int j) const { return along_x ? j * step : (j * drift) >> 16; }
-  DESERT_HD int dy(int j) const { return along_x ? (j * drift) >> 16 : j * step; }
-};
-
-/// The height between two cells, `place` (16.16 fixed point) from the first: formed so that mirrored or
-/// turned terrain gives the same bits.
-DESERT_HD float height_between(float first, float second, int place) {
-  const float share = fraction(place);
-  return first * (1.0f - share) + second * share;
-}
-
-/// Cells around a sample and its place between them, 16.16 fixed point: (x, y) + (dx, dy)/65536 cells.
-struct Place {
-  int x, y;
-  float fx, fy;
-  DESERT_HD Place(int cell_x, int cell_y, int dx, int dy)
-      : x(cell_x + (dx >> 16)), y(cell_y + (dy >> 16)), fx(fraction(dx)), fy(fraction(dy)) {}
-};
-
-/// Bilinear height between four cells. The four terms are formed so that mirrored or turned terrain gives the
-/// same bits.
-DESERT_HD float height_at(const Grid& g, const float* h, const Place& p) {
-  const float h00 = h[sample_index(g, p.x, p.y)], h10 = h[sample_index(g, p.x + 1, p.y)];
-  const float h01 = h[sample_index(g, p.x, p.y + 1)], h11 = h[sample_index(g, p.x + 1, p.y + 1)];
-  const float a = h00 * ((1.0f - p.fx) * (1.0f - p.fy)), b = h10 * (p.fx * (1.0f - p.fy));
-  const float c = h01 * ((1.0f - p.fx) * p.fy), d = h11 * (p.fx * p.fy);
-  return (a + d) + (b + c);
-}
-
 /// Shadow by the steepest rise that a march finds, 0 … 1.
 struct Shade {
   float start, full;  ///< rises [quanta a cell]
@@ -157,7 +110,7 @@ struct Shadow : March {
   struct Start {
     int x, y;
     float base;
-    Line line;
+    marching::Line line;
     int steps;
   };
 
@@ -197,7 +150,7 @@ struct Shadow : March {
       first = heights[sample_index(grid, x, y)];
       second = heights[s.line.along_x ? sample_index(grid, x, y + 1) : sample_index(grid, x + 1, y)];
     }
-    return (height_between(first, second, place) - s.base) * reciprocals[j];
+    return (marching::height_between(first, second, place) - s.base) * reciprocals[j];
   }
 
   /// The steepest rise [quanta a step]; `inside`: the whole march is on the grid.
@@ -223,7 +176,7 @@ struct Shadow : March {
 
   /// Of the cell (x, y) and its number i, against the wind (u, v) of a speed > 0.
   DESERT_HD Start start(int x, int y, int i, float u, float v, float speed) const {
-    Start s{x, y, heights[i], Line(u, v, speed), 0};
+    Start s{x, y, heights[i], marching::Line(u, v, speed), 0};
     const int wanted = static_cast<int>(reach * s.line.steps_a_cell + 1e-3f);
     s.steps = wanted < 1 ? 1 : (wanted < steps ? wanted : steps);
     return s;
@@ -277,7 +230,7 @@ struct CurvedShadow : March {
       if (!(speed > calm)) break;
       dx -= subcells(u / speed);
       dy -= subcells(v / speed);
-      const float rise = height_at(grid, heights, Place(x, y, dx, dy)) - heights[i];
+      const float rise = marching::height_at(grid, heights, marching::Place(x, y, dx, dy)) - heights[i];
       steepest = maximum(steepest, rise * reciprocals[j]);
       const int there = sample_index(grid, x + nearest_cell(dx), y + nearest_cell(dy));
       u = wind_x[there];

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -15,9 +16,15 @@
 
 namespace desert_sim {
 
+/// The repository; who carries the programs elsewhere says where it is there (scripts/test_gpu).
+inline std::string source_folder() {
+  const char* elsewhere = std::getenv("DESERT_SOURCE_DIR");
+  return elsewhere ? elsewhere : DESERT_SOURCE_DIR;
+}
+
 /// A scenario of config/scenarios, changed by settings ("path=value").
 inline Scenario shipped(const std::string& name, const Settings& settings = {}) {
-  return load_scenario(std::string(DESERT_SOURCE_DIR) + "/config/scenarios/" + name + ".yaml", settings);
+  return load_scenario(source_folder() + "/config/scenarios/" + name + ".yaml", settings);
 }
 
 /// A running scenario on the CPU. One thread: tests share the machine.

@@ -1,0 +1,58 @@
+#pragma once
+/// Marches over the surface: where their samples lie between cells, and how high the ground is there. Places
+/// are 16.16 fixed point, so that mirrored or turned terrain gives the same bits; heights between cells are
+/// formed for that too.
+
+#include "desert_sim/kernels/grid.hpp"
+#include "desert_sim/kernels/math.hpp"
+#include "desert_sim/kernels/quanta.hpp"
+
+namespace desert_sim::marching {
+
+/// A march along a straight line, one column (or row) of cells a step, whichever the line crosses faster:
+/// there a sample lies between two cells.
+struct Line {
+  bool along_x;
+  int step;                          ///< ±1: column (row) by column (row)
+  int drift;                         ///< a step's way across, 16.16 fixed point
+  float steps_a_cell, cells_a_step;  ///< √½ … 1 … √2
+
+  /// Against the wind (u, v) of speed `speed`.
+  DESERT_HD Line(float u, float v, float speed) {
+    along_x = fabsf(u) >= fabsf(v);
+    const float along = along_x ? u : v, across = along_x ? v : u;
+    step = along > 0.0f ? -1 : 1;
+    const float per_along = 1.0f / fabsf(along);
+    drift = -subcells(across * per_along);
+    steps_a_cell = fabsf(along) / speed;
+    cells_a_step = speed * per_along;
+  }
+  /// The cell at or before the sample of step j, relative to the march's first.
+  DESERT_HD int dx(int j) const { return along_x ? j * step : (j * drift) >> 16; }
+  DESERT_HD int dy(int j) const { return along_x ? (j * drift) >> 16 : j * step; }
+};
+
+/// The height between two cells, `place` from the first.
+DESERT_HD float height_between(float first, float second, int place) {
+  const float share = fraction(place);
+  return first * (1.0f - share) + second * share;
+}
+
+/// Cells around a sample and its place between them: (x, y) + (dx, dy)/65536 cells.
+struct Place {
+  int x, y;
+  float fx, fy;
+  DESERT_HD Place(int cell_x, int cell_y, int dx, int dy)
+      : x(cell_x + (dx >> 16)), y(cell_y + (dy >> 16)), fx(fraction(dx)), fy(fraction(dy)) {}
+};
+
+/// Bilinear height between four cells.
+DESERT_HD float height_at(const Grid& g, const float* h, const Place& p) {
+  const float h00 = h[sample_index(g, p.x, p.y)], h10 = h[sample_index(g, p.x + 1, p.y)];
+  const float h01 = h[sample_index(g, p.x, p.y + 1)], h11 = h[sample_index(g, p.x + 1, p.y + 1)];
+  const float a = h00 * ((1.0f - p.fx) * (1.0f - p.fy)), b = h10 * (p.fx * (1.0f - p.fy));
+  const float c = h01 * ((1.0f - p.fx) * p.fy), d = h11 * (p.fx * p.fy);
+  return (a + d) + (b + c);
+}
+
+}  // namespace desert_sim::marching
