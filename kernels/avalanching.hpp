@@ -101,7 +101,7 @@ struct Workspace {
   std::vector<Level> coarse;  ///< coarse[0] has cells twice as wide as the terrain's
   Buffer<float> share;        ///< of the synchronous schemes; made when one is used
   Buffer<Quanta> given, received;
-  int iterations = 0;  ///< fine sweeps of the last step
+  int iterations = 0;  ///< fine sweeps of the last step; at least, where tiles may go on
 };
 
 Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParameters& p);

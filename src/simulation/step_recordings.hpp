@@ -1,7 +1,7 @@
 #pragma once
-/// Steps that were recorded once and are replayed. On a GPU a step is some forty short kernels, and starting
-/// each by itself takes longer than running it on a small grid; a recording (a CUDA graph) starts all at
-/// once. What kernels are given by value is part of the recording, so there is one for each value that
+/// Steps that were recorded once and are replayed. On a GPU a step is two dozen short kernels or more, and
+/// starting each by itself takes longer than running it on a small grid; a recording (a CUDA graph) starts
+/// all at once. What kernels are given by value is part of the recording, so there is one for each value that
 /// changes from step to step.
 
 #include <cstdint>
