@@ -2,9 +2,9 @@
 /// Avalanching of soil and of bedrock: one synchronous iteration a step, where they changed. Physics.md
 /// B6–B7.
 ///
-/// Soil slides over rock at its own angle (45° bare … 68° under vegetation), by the laws of
-/// avalanching_laws.hpp. Bedrock breaks where it is steeper than `bedrock_deg`, by its own height alone, and
-/// falls as sand or as rock. Reads and writes bedrock, soil, sand.
+/// Soil slides over rock at its own angle (45° bare … 68° under vegetation, times the moisture factor), by
+/// the laws of avalanching_laws.hpp. Bedrock breaks where it is steeper than `bedrock_deg`, by its own height
+/// alone, and falls as sand or as rock. Reads and writes bedrock, soil, sand.
 
 #include "desert_sim/kernels/avalanching.hpp"
 #include "desert_sim/kernels/ledger.hpp"
@@ -17,7 +17,11 @@ struct SoilLevel {
   struct Angle {
     float bare, vegetated;  ///< tangents
     const float* vegetation;
-    DESERT_HD float operator[](int i) const { return lerp(bare, vegetated, value_or_zero(vegetation, i)); }
+    repose::RelativeMoisture moisture;
+    DESERT_HD float operator[](int i) const {
+      const float dry = lerp(bare, vegetated, value_or_zero(vegetation, i));
+      return dry * repose::moisture_factor(moisture(i));
+    }
   };
 
   Grid grid;
@@ -87,7 +91,8 @@ void step_soil(E& exec, const TerrainView& t, const AvalanchingParameters& p, co
                         t.quanta(Layer::bedrock),
                         t.quanta(Layer::soil),
                         t.real(Layer::obstacle),
-                        {tangents.soil, tangents.soil_vegetated, t.real(Layer::vegetation)},
+                        {tangents.soil, tangents.soil_vegetated, t.real(Layer::vegetation),
+                         repose::RelativeMoisture(t, repose)},
                         t.grid.cell_size * t.quanta_per_metre};
   for_each_cell(exec, t.grid, Release<SoilLevel>{level, p.transfer, false, work.share.data(), given});
   for_each_cell(exec, t.grid,

@@ -22,8 +22,12 @@ enum class Layer : int {
   vegetation,
   erosion_resistance,
   obstacle,
+  water_flux_x,
+  water_flux_y,
   elevation,
   water_surface,
+  water_velocity_x,
+  water_velocity_y,
   wind_x,
   wind_y,
   wind_shadow,
@@ -57,7 +61,7 @@ struct LayerInfo {
 
 constexpr double any_height = 1e6;
 
-constexpr std::array<LayerInfo, 25> layer_table{{
+constexpr std::array<LayerInfo, 29> layer_table{{
     {Layer::bedrock, "bedrock", "m", Storage::quanta, Lifetime::persistent, -any_height, any_height,
      "Top of the rock, absolute."},
     {Layer::soil, "soil", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
@@ -79,10 +83,18 @@ constexpr std::array<LayerInfo, 25> layer_table{{
      "Resistance of the rock to abrasion; 1 never wears."},
     {Layer::obstacle, "obstacle", "1", Storage::real, Lifetime::persistent, 0, 1,
      "1 where a solid object stands, that neither gives nor takes sand."},
+    {Layer::water_flux_x, "water_flux_x", "m^3/s", Storage::real, Lifetime::persistent, -any_height,
+     any_height, "Water that flows through a cell's east face."},
+    {Layer::water_flux_y, "water_flux_y", "m^3/s", Storage::real, Lifetime::persistent, -any_height,
+     any_height, "Water that flows through a cell's north face."},
     {Layer::elevation, "elevation", "m", Storage::quanta, Lifetime::derived, -any_height, any_height,
      "Solid surface: bedrock + soil + sand."},
     {Layer::water_surface, "water_surface", "m", Storage::quanta, Lifetime::derived, -any_height, any_height,
      "Elevation + water."},
+    {Layer::water_velocity_x, "water_velocity_x", "m/s", Storage::real, Lifetime::derived, 0, 0,
+     "Mean velocity of the water, eastward part."},
+    {Layer::water_velocity_y, "water_velocity_y", "m/s", Storage::real, Lifetime::derived, 0, 0,
+     "Mean velocity of the water, northward part."},
     {Layer::wind_x, "wind_x", "m/s", Storage::real, Lifetime::derived, 0, 0,
      "Wind at the surface, eastward part."},
     {Layer::wind_y, "wind_y", "m/s", Storage::real, Lifetime::derived, 0, 0,
@@ -125,6 +137,9 @@ struct TerrainView {
   }
   DESERT_HD float* real(Layer layer) const { return static_cast<float*>(layers[static_cast<int>(layer)]); }
 };
+
+/// Water deeper than this covers the ground: it stops the wind's work, and the ground below does not dry [m].
+constexpr float wet_depth = 1e-5f;
 
 /// The value of a layer that may not be in use.
 DESERT_HD Quanta value_or_zero(const Quanta* layer, int i) { return layer ? layer[i] : 0; }

@@ -11,7 +11,14 @@
 
 namespace desert_sim {
 
-enum class Purpose : std::uint32_t { reptation = 1, terrain_noise, terrain_discs, wind_rose, turbulence };
+enum class Purpose : std::uint32_t {
+  reptation = 1,
+  terrain_noise,
+  terrain_discs,
+  wind_rose,
+  turbulence,
+  rain
+};
 
 /// Uniform in [0, 1), 24 bits, from up to three counters.
 DESERT_HD float random_unit(std::uint64_t seed, Purpose purpose, std::uint32_t a, std::uint32_t b = 0,

@@ -17,6 +17,7 @@
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/abrasion.hpp"
+#include "desert_sim/kernels/carried.hpp"
 #include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/ledger.hpp"
 #include "desert_sim/kernels/reptation.hpp"
@@ -57,36 +58,11 @@ static_assert(table_is_complete<SaltationParameters>());
 
 namespace saltation {
 
-/// Sand that flies from cells and comes down between four: (x, y), the next ones to the east and north, and
-/// each one's share.
-template <int count>
-struct FlyingSand {
-  int x[count], y[count];
-  Quanta amount[count];
-  Quanta south_west[count], south_east[count], north_west[count], north_east[count];
-
-  /// From cell (cell_x, cell_y), by (dx, dy) subcells.
-  DESERT_HD void set(int n, int cell_x, int cell_y, int dx, int dy, Quanta flying) {
-    const int east = dx & 65535, north = dy & 65535, west = subcell_one - east, south = subcell_one - north;
-    x[n] = cell_x + (dx >> 16);
-    y[n] = cell_y + (dy >> 16);
-    amount[n] = flying;
-    south_west[n] = bilinear_share(flying, west, south);
-    south_east[n] = bilinear_share(flying, east, south);
-    north_west[n] = bilinear_share(flying, west, north);
-    north_east[n] = bilinear_share(flying, east, north);
-  }
-  /// What rounding leaves, at most three quanta.
-  DESERT_HD Quanta left(int n) const {
-    return amount[n] - south_west[n] - south_east[n] - north_west[n] - north_east[n];
-  }
-};
-
 /// Lifts, and scatters what is in the air over a cell to the four cells around where it lands.
 template <bool bare>
 struct LiftAndAdvect {
   template <int count>
-  using Parcels = FlyingSand<count>;
+  using Parcels = Carried<count>;
   Inputs<bare> in;
   SaltationParameters p;
   float cells_a_speed;  ///< of a hop
@@ -105,7 +81,7 @@ struct LiftAndAdvect {
   }
 
   template <int count>
-  DESERT_HD void prepare(int x, int y, FlyingSand<count>& parcels, int n) const {
+  DESERT_HD void prepare(int x, int y, Carried<count>& parcels, int n) const {
     const int i = in.grid.index(x, y);
     const float u = in.wind_x[i], v = in.wind_y[i];
     const Quanta lying = sand[i], lift = lifted(i, lying, hypotenuse(u, v));
@@ -113,33 +89,9 @@ struct LiftAndAdvect {
     parcels.set(n, x, y, subcells(u * cells_a_speed), subcells(v * cells_a_speed), airborne[i] + lift);
   }
 
-  template <class Add>
-  DESERT_HD void land(int from, int x, int y, Quanta amount, const Add& add) const {
-    const int to = neighbour_index(in.grid, x, y);
-    if (to >= 0)
-      add(to, amount);
-    else
-      ledger.book_out(Material::sand, from, amount);
-  }
-
   template <int count, class Add>
-  DESERT_HD void deliver(int x, int y, const FlyingSand<count>& parcels, int n, const Add& add) const {
-    if (parcels.amount[n] == 0) return;
-    const Grid& g = in.grid;
-    const int i = g.index(x, y), at_x = parcels.x[n], at_y = parcels.y[n];
-    if (g.inside(at_x, at_y) && g.inside(at_x + 1, at_y + 1)) {
-      const int south = g.index(at_x, at_y), north = south + g.width;
-      add(south, parcels.south_west[n]);
-      add(south + 1, parcels.south_east[n]);
-      add(north, parcels.north_west[n]);
-      add(north + 1, parcels.north_east[n]);
-    } else {
-      land(i, at_x, at_y, parcels.south_west[n], add);
-      land(i, at_x + 1, at_y, parcels.south_east[n], add);
-      land(i, at_x, at_y + 1, parcels.north_west[n], add);
-      land(i, at_x + 1, at_y + 1, parcels.north_east[n], add);
-    }
-    add(i, parcels.left(n));  // stays in the air here: that favours no direction
+  DESERT_HD void deliver(int x, int y, const Carried<count>& parcels, int n, const Add& add) const {
+    Landing{in.grid, Material::sand, ledger}.deliver(x, y, parcels, n, add);
   }
 };
 
@@ -148,17 +100,17 @@ template <bool bare>
 struct ShadeAndLift {
   static constexpr bool compact_warps = true;
   template <int count>
-  using Parcels = FlyingSand<count>;
+  using Parcels = Carried<count>;
   wind_shadow::Shadow shade;
   LiftAndAdvect<bare> lift;
 
   template <int count>
-  DESERT_HD void prepare(int x, int y, FlyingSand<count>& parcels, int n) const {
+  DESERT_HD void prepare(int x, int y, Carried<count>& parcels, int n) const {
     shade(x, y);
     lift.prepare(x, y, parcels, n);
   }
   template <int count, class Add>
-  DESERT_HD void deliver(int x, int y, const FlyingSand<count>& parcels, int n, const Add& add) const {
+  DESERT_HD void deliver(int x, int y, const Carried<count>& parcels, int n, const Add& add) const {
     lift.deliver(x, y, parcels, n, add);
   }
 };

@@ -12,9 +12,6 @@ DESERT_HD float dryness(float relative_moisture) {
   return clamp(1.0f - 10.0f * relative_moisture, 0.0f, 1.0f);
 }
 
-/// Water deeper than this stops the wind's work [m].
-constexpr float wet_depth = 1e-5f;
-
 /// What the laws read. `bare`: of a desert of rock and sand alone, where there are none of the layers that a
 /// desert need not have and nothing wears; laws for that leave out the questions after them.
 template <bool bare>

@@ -9,17 +9,19 @@
 ///                    lower by more than |d_j| tan `slope_deg`; g by axis the flatter of the two one-sided
 ///                    differences (0 if they disagree), so that an edge beside flat ground counts in full
 ///   traversability   the least of 1 − slope/limit, 1 − step/limit, 1 − roughness/limit, 1 − water/limit,
-///                    1 − plants/limit, 1 − `sand_cost`·σ, and not below 0; 0 on obstacles
+///                    1 − plants/limit, 1 − mud, 1 − `sand_cost`·σ, and not below 0; 0 on obstacles
 ///
 /// The slope's limit goes from `slope_deg` to `sand_slope_deg` with σ = min(sand / `sand_depth`, 1), because
-/// wheels slip on loose sand. The window is the square of cells up to `window` away along x and y, one to 16
-/// cells; at open edges what there is of it. Reads elevation, sand, water, vegetation, obstacle; writes those
-/// of slope, normal_x, normal_y, normal_z, roughness, step_height, traversability that the view has.
+/// wheels slip on loose sand. Mud is (m − ½)/(`mud` − ½) of relative moisture m, where there is enough
+/// ground. The window is the square of cells up to `window` away along x and y, one to 16 cells; at open
+/// edges what there is of it. Reads elevation, sand, soil, moisture, water, vegetation, obstacle; writes
+/// those of slope, normal_x, normal_y, normal_z, roughness, step_height, traversability that the view has.
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/layers.hpp"
 #include "desert_sim/kernels/math.hpp"
+#include "desert_sim/kernels/repose.hpp"
 
 namespace desert_sim {
 
@@ -32,6 +34,7 @@ struct TraversabilityParameters {
   float step_height = 0.3f;
   float roughness = 0.15f;
   float water_depth = 0.3f;
+  float mud = 0.9f;
   float vegetation = 0.8f;
   float window = 0.5f;
 };
@@ -47,6 +50,9 @@ constexpr auto parameter_table(const TraversabilityParameters*) {
       parameter("step_height", &P::step_height, 1e-3, 1000, "m", "Step that stops the rover."),
       parameter("roughness", &P::roughness, 1e-3, 1000, "m", "Roughness that stops the rover."),
       parameter("water_depth", &P::water_depth, 1e-3, 1000, "m", "Water that stops the rover."),
+      parameter("mud", &P::mud, 0.501, 1000, "1",
+                "Relative moisture of deep sand or soil that stops the rover; half-wet ground is firm, above "
+                "1 none does."),
       parameter("vegetation", &P::vegetation, 1e-3, 1000, "1",
                 "Density of plants that stops the rover; above 1 none does."),
       parameter("window", &P::window, 0, 1000, "m",
@@ -176,9 +182,18 @@ struct Traversability {
   StepHeight step_height;
   float slope, sand_slope;  ///< limits [rad]
   TraversabilityParameters limits;
-  const Quanta *sand, *water;
+  const Quanta *sand, *soil, *water;
+  repose::RelativeMoisture moisture;
   const float *vegetation, *obstacle;
   float* traversability;
+
+  /// Half-wet ground holds best; from there on it turns to mud, where there is enough of it.
+  DESERT_HD float mud(int i) const {
+    const float depth =
+        static_cast<float>(value_or_zero(sand, i) + value_or_zero(soil, i)) * roughness.surface.quantum;
+    const float excess = maximum(moisture(i) - 0.5f, 0.0f) / (limits.mud - 0.5f);
+    return excess * minimum(depth / limits.sand_depth, 1.0f);
+  }
 
   DESERT_HD void operator()(int x, int y) const {
     const Surface& surface = roughness.surface;
@@ -189,6 +204,7 @@ struct Traversability {
     float worst = arctangent(surface.steepness(x, y)) / lerp(slope, sand_slope, loose);
     worst = maximum(worst, limits.sand_cost * loose);
     worst = maximum(worst, value_or_zero(water, i) * surface.quantum / limits.water_depth);
+    worst = maximum(worst, mud(i));
     worst = maximum(worst, value_or_zero(vegetation, i) / limits.vegetation);
     if (worst < 1.0f) worst = maximum(worst, step_height.at(x, y) / limits.step_height);
     if (worst < 1.0f) worst = maximum(worst, roughness.at(x, y) / limits.roughness);
@@ -206,7 +222,8 @@ struct OnRows {
 
 /// For `rows` rows from `first` on. `elevation` must be up to date everywhere.
 template <class E>
-void step(E& exec, const TerrainView& t, const TraversabilityParameters& p, int first, int rows) {
+void step(E& exec, const TerrainView& t, const TraversabilityParameters& p, const ReposeParameters& repose,
+          int first, int rows) {
   const float degree = 3.14159265358979f / 180.0f;
   const int reach = window_cells(p, t.grid.cell_size);
   const Surface surface{t.grid, t.quanta(Layer::elevation), t.quantum};
@@ -220,7 +237,9 @@ void step(E& exec, const TerrainView& t, const TraversabilityParameters& p, int 
                                       p.sand_slope_deg * degree,
                                       p,
                                       t.quanta(Layer::sand),
+                                      t.quanta(Layer::soil),
                                       t.quanta(Layer::water),
+                                      repose::RelativeMoisture(t, repose),
                                       t.real(Layer::vegetation),
                                       t.real(Layer::obstacle),
                                       t.real(Layer::traversability)};

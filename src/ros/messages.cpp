@@ -153,6 +153,7 @@ SimulationStatusPtr status_message(const StatusReport& report, const std::string
     row.residual = b.relative_residual();
     message->volumes.push_back(row);
   }
+  message->changes = report.changes;
   message->wind_above = vector_of(report.wind_above);
   if (report.hashed) message->state_hash = hash_text(report.hash);
   message->snapshots = report.snapshots;

@@ -68,6 +68,7 @@ struct StatusReport {
   double step_rate = 0, steps_per_second = 0, lag = 0;
   std::vector<ProcessTime> process_times;  ///< means
   std::array<MaterialBalance, material_count> balance;
+  std::string changes;  ///< of parameters, by timeline and ramps
   wind::Vector wind_above;
   bool hashed = false;  ///< only while paused
   std::uint64_t hash = 0;

@@ -55,8 +55,8 @@ int stride_for(const Snapshot& s, int count) {
 }  // namespace
 
 const std::vector<Layer>& point_layers() {
-  static const std::vector<Layer> layers{Layer::elevation, Layer::sand, Layer::wind_shadow, Layer::vegetation,
-                                         Layer::obstacle};
+  static const std::vector<Layer> layers{Layer::elevation, Layer::sand,       Layer::wind_shadow, Layer::soil,
+                                         Layer::water,     Layer::vegetation, Layer::obstacle};
   return layers;
 }
 

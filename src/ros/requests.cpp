@@ -92,6 +92,71 @@ command::SetWind streamed_wind(const geometry_msgs::Vector3Stamped& message, con
   return command;
 }
 
+namespace {
+
+std::string setting(const std::string& path, double value, const std::string& name) {
+  require_finite(value, name);
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  text << path << "=" << value;
+  return text.str();
+}
+
+std::string springs_setting(const SetWeatherRequest& request) {
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  text << "water.springs=[";
+  for (std::size_t n = 0; n < request.springs.size(); ++n) {
+    const auto& s = request.springs[n];
+    const std::string name = "springs[" + std::to_string(n) + "].";
+    require_finite(s.x, name + "x");
+    require_finite(s.y, name + "y");
+    require_finite(s.radius, name + "radius");
+    require_finite(s.discharge, name + "discharge");
+    text << (n ? ", " : "") << "{x: " << s.x << ", y: " << s.y << ", radius: " << s.radius
+         << ", discharge: " << s.discharge << "}";
+  }
+  return text.str() + "]";
+}
+
+}  // namespace
+
+command::SetParameters weather_command(const SetWeatherRequest& r) {
+  struct Number {
+    const char* name;
+    double value;
+    std::vector<const char*> paths;
+  };
+  const std::vector<Number> numbers{{"rain_rate", r.rain_rate, {"rain.rate"}},
+                                    {"rain_share", r.rain_share, {"rain.share_low", "rain.share_high"}},
+                                    {"evaporation", r.evaporation, {"water.evaporation"}},
+                                    {"ground_evaporation", r.ground_evaporation, {"moisture.evaporation"}},
+                                    {"sea_level", r.sea_level, {"water.sea_level"}},
+                                    {"wave_strength", r.wave_strength, {"water.wave_strength"}},
+                                    {"wave_period", r.wave_period, {"water.wave_period"}}};
+  require_finite(r.ramp, "ramp");
+  if (r.change.empty()) throw ConfigError("change: names nothing that is to change");
+  command::SetParameters command{{}, r.ramp};
+  for (const std::string& field : r.change) {
+    const auto number =
+        std::find_if(numbers.begin(), numbers.end(), [&](const Number& n) { return n.name == field; });
+    if (number != numbers.end()) {
+      for (const char* path : number->paths) command.settings.push_back(setting(path, number->value, field));
+    } else if (field == "sea") {
+      choose<Sea>(seas, r.sea, "sea");
+      command.settings.push_back("water.sea=" + r.sea);
+      if (r.sea != "none") command.settings.push_back("water.enabled=true");
+    } else if (field == "springs") {
+      command.settings.push_back(springs_setting(r));
+    } else {
+      std::string all = "sea, springs";
+      for (const Number& known : numbers) all += std::string(", ") + known.name;
+      throw ConfigError("change: " + quoted(field) + " is not one of: " + all);
+    }
+  }
+  return command;
+}
+
 command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request) {
   constexpr const char* kinds[] = {"timeline", "rose"};
   command::SetWindSchedule command;

@@ -4,6 +4,7 @@
 
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/EditWind.h>
+#include <desert_sim/SetWeather.h>
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
 #include <geometry_msgs/Vector3Stamped.h>
@@ -17,6 +18,7 @@ namespace desert_sim {
 command::SetWind wind_command(const SetWindRequest& request);
 command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request);
 command::EditWind wind_edit_command(const EditWindRequest& request, const Frames& frames);
+command::SetParameters weather_command(const SetWeatherRequest& request);
 /// Of ~cmd_wind.
 command::SetWind streamed_wind(const geometry_msgs::Vector3Stamped& message, const Frames& frames);
 command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames);

@@ -87,6 +87,7 @@ Services::Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, Simulat
   // Commands of the same names are in the namespace `command`.
   advertise<desert_sim::SetWind>("set_wind", &Services::set_wind);
   advertise<desert_sim::SetWindSchedule>("set_wind_schedule", &Services::set_wind_schedule);
+  advertise<desert_sim::SetWeather>("set_weather", &Services::set_weather);
   advertise<desert_sim::EditWind>("edit_wind", &Services::edit_wind);
   advertise<desert_sim::EditTerrain>("edit_terrain", &Services::edit_terrain);
   advertise<desert_sim::QueryTerrain>("query_terrain", &Services::query_terrain);
@@ -110,6 +111,11 @@ void Services::set_wind(const SetWindRequest& request, SetWindResponse&) {
 
 void Services::set_wind_schedule(const SetWindScheduleRequest& request, SetWindScheduleResponse&) {
   simulation_.apply(schedule_command(request)).get();
+  topics_.status_changed();
+}
+
+void Services::set_weather(const SetWeatherRequest& request, SetWeatherResponse&) {
+  simulation_.apply(weather_command(request)).get();
   topics_.status_changed();
 }
 

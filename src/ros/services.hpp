@@ -9,6 +9,7 @@
 #include <desert_sim/QueryTerrain.h>
 #include <desert_sim/SaveCheckpoint.h>
 #include <desert_sim/SaveTerrain.h>
+#include <desert_sim/SetWeather.h>
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
 #include <desert_sim/Step.h>
@@ -43,6 +44,7 @@ class Services {
 
   void set_wind(const SetWindRequest& request, SetWindResponse& response);
   void set_wind_schedule(const SetWindScheduleRequest& request, SetWindScheduleResponse& response);
+  void set_weather(const SetWeatherRequest& request, SetWeatherResponse& response);
   void edit_wind(const EditWindRequest& request, EditWindResponse& response);
   void edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response);
   void query_terrain(const QueryTerrainRequest& request, QueryTerrainResponse& response);

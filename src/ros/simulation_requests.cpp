@@ -173,6 +173,7 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     }
     r.process_times = process_times_;
     r.balance = s.balance();
+    r.changes = s.describe_changes();
     r.wind_above = s.wind_above();
     r.snapshots = snapshots_;
     if (paused_ && step_requests_.empty()) {

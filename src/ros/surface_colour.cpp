@@ -8,8 +8,10 @@ namespace desert_sim {
 namespace {
 
 constexpr Colour sand_colour{0.93f, 0.76f, 0.50f}, rock_colour{0.45f, 0.40f, 0.36f},
-    plant_colour{0.27f, 0.46f, 0.16f}, obstacle_colour{0.56f, 0.36f, 0.78f};
-constexpr float sand_that_hides_rock = 0.1f;  // [m]
+    soil_colour{0.42f, 0.32f, 0.23f}, plant_colour{0.27f, 0.46f, 0.16f}, shallow_colour{0.37f, 0.65f, 0.80f},
+    deep_colour{0.08f, 0.22f, 0.47f}, obstacle_colour{0.56f, 0.36f, 0.78f};
+constexpr float that_hides_ground = 0.1f;           // of sand or soil [m]
+constexpr float puddle = 0.02f, deep_water = 3.0f;  // [m]
 
 // The sun: low in the west-north-west, so that slip faces under a west wind lie in shade.
 constexpr float sun_x = -0.760f, sun_y = 0.276f, sun_z = 0.588f;
@@ -28,13 +30,21 @@ SurfaceColour::SurfaceColour(const Snapshot& snapshot, int reach)
       reach_(std::max(1, reach)),
       elevation_(s_.find(Layer::elevation)),
       sand_(s_.find(Layer::sand)),
+      soil_(s_.find(Layer::soil)),
+      water_(s_.find(Layer::water)),
       vegetation_(s_.find(Layer::vegetation)),
       obstacle_(s_.find(Layer::obstacle)) {}
 
 Colour SurfaceColour::material(std::size_t i) const {
   if (value(obstacle_, i) > 0) return obstacle_colour;
-  const Colour ground = mix(rock_colour, sand_colour, std::min(1.0f, value(sand_, i) / sand_that_hides_rock));
-  return mix(ground, plant_colour, std::min(1.0f, value(vegetation_, i)));
+  const auto share = [i](const std::vector<float>* layer, float all) {
+    return std::min(1.0f, value(layer, i) / all);
+  };
+  Colour colour = mix(rock_colour, soil_colour, share(soil_, that_hides_ground));
+  colour = mix(colour, sand_colour, share(sand_, that_hides_ground));
+  colour = mix(colour, plant_colour, share(vegetation_, 1.0f));
+  const Colour water = mix(shallow_colour, deep_colour, share(water_, deep_water));
+  return mix(colour, water, 0.85f * share(water_, puddle));
 }
 
 /// 1 on level ground.

@@ -15,7 +15,8 @@ class SurfaceColour {
  public:
   /// Keeps a reference to the snapshot. `reach` [cells]: slopes are taken over twice as many.
   SurfaceColour(const Snapshot& snapshot, int reach);
-  /// Sand warm, rock grey-brown where sand is thin, plants green, obstacles violet; times the light.
+  /// Sand warm, soil brown and rock grey-brown where sand is thin, plants green, water blue by depth,
+  /// obstacles violet; times the light.
   Colour at(int x, int y) const;
 
  private:
@@ -24,7 +25,7 @@ class SurfaceColour {
 
   const Snapshot& s_;
   const int reach_;
-  const std::vector<float>*elevation_, *sand_, *vegetation_, *obstacle_;
+  const std::vector<float>*elevation_, *sand_, *soil_, *water_, *vegetation_, *obstacle_;
 };
 
 }  // namespace desert_sim

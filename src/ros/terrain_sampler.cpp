@@ -7,8 +7,9 @@
 namespace desert_sim {
 
 const std::vector<Layer>& sampled_layers() {
-  static const std::vector<Layer> layers{Layer::elevation, Layer::bedrock, Layer::sand, Layer::wind_x,
-                                         Layer::wind_y};
+  static const std::vector<Layer> layers{Layer::elevation,  Layer::bedrock, Layer::sand,
+                                         Layer::soil,       Layer::water,   Layer::moisture,
+                                         Layer::vegetation, Layer::wind_x,  Layer::wind_y};
   return layers;
 }
 
@@ -17,6 +18,10 @@ TerrainSampler::TerrainSampler(const Snapshot& snapshot)
       elevation_(s_.find(Layer::elevation)),
       bedrock_(s_.find(Layer::bedrock)),
       sand_(s_.find(Layer::sand)),
+      soil_(s_.find(Layer::soil)),
+      water_(s_.find(Layer::water)),
+      moisture_(s_.find(Layer::moisture)),
+      vegetation_(s_.find(Layer::vegetation)),
       wind_x_(s_.find(Layer::wind_x)),
       wind_y_(s_.find(Layer::wind_y)) {}
 
@@ -55,13 +60,18 @@ TerrainSample TerrainSampler::at(double x, double y) const {
   if (!sample.in_bounds) {
     for (double* number :
          {&sample.position.z, &sample.elevation, &sample.normal.x, &sample.normal.y, &sample.normal.z,
-          &sample.slope, &sample.sand, &sample.bedrock, &sample.wind.x, &sample.wind.y, &sample.wind.z})
+          &sample.slope, &sample.sand, &sample.soil, &sample.water, &sample.moisture, &sample.vegetation,
+          &sample.bedrock, &sample.wind.x, &sample.wind.y, &sample.wind.z})
       *number = std::numeric_limits<double>::quiet_NaN();
     return sample;
   }
   const Patch p = patch(x, y);
   sample.elevation = sample.position.z = value(elevation_, p);
   sample.sand = value(sand_, p);
+  sample.soil = value(soil_, p);
+  sample.water = value(water_, p);
+  sample.moisture = value(moisture_, p);
+  sample.vegetation = value(vegetation_, p);
   sample.bedrock = value(bedrock_, p);
   sample.wind.x = value(wind_x_, p);
   sample.wind.y = value(wind_y_, p);

@@ -29,7 +29,8 @@ class TerrainSampler {
   static double value(const std::vector<float>* layer, const Patch& p);
 
   const Snapshot& s_;
-  const std::vector<float>*elevation_, *bedrock_, *sand_, *wind_x_, *wind_y_;
+  const std::vector<float>*elevation_, *bedrock_, *sand_, *soil_, *water_, *moisture_, *vegetation_, *wind_x_,
+      *wind_y_;
 };
 
 }  // namespace desert_sim

@@ -42,6 +42,18 @@ std::string describe_parameters() {
   write_parameter_table(out, WindParameters());
   out << "\n### each of `wind.features`\n\n";
   write_parameter_table(out, WindFeature());
+  out << "\n## `water`\n\n";
+  write_parameter_table(out, WaterParameters());
+  out << "\n### each of `water.springs`\n\n";
+  write_parameter_table(out, Spring());
+  out << "\n## `run`\n\n";
+  write_parameter_table(out, RunParameters());
+  out << "\n### each of `run.timeline`\n\n"
+         "`{time: [s], ramp: [s], set: {path: value, ...}}`: at `time`, the parameters at the paths (any "
+         "that can "
+         "change while a simulation runs, such as `rain.rate`) change to the values; numbers over `ramp` "
+         "seconds "
+         "(0 if not given), all else at once.\n";
   out << "\n## `terrain`: a list of steps, in order\n";
   terrain_steps(out);
   out << "\n## What cannot change while a simulation runs\n\n";

@@ -12,7 +12,7 @@ namespace desert_sim {
 namespace {
 
 std::set<std::string> live_paths() {
-  std::set<std::string> paths;
+  std::set<std::string> paths{"water.springs"};
   Scenario scenario;
   for_each_live_parameter(scenario, [&](const char* section, const auto& row, const auto&) {
     paths.insert(std::string(section) + "." + row.name);

@@ -19,6 +19,7 @@ constexpr FixedParameter fixed_parameters[] = {
     {"terrain", "it is what the terrain was made of"},
     {"run.steps", "it is of a headless run"},
     {"run.time_step", "simulated time is counted in it"},
+    {"run.timeline", "it is followed from the start on"},
     {"wind.segments", "set_wind_schedule changes them together"},
     {"wind.features", "edit_wind adds, changes and removes them"},
 };
@@ -38,6 +39,8 @@ void for_each_live_parameter(S& scenario, Visit&& visit) {
   for_each_section(scenario, rows);
   rows("wind", scenario.wind_regime);
   rows("wind", scenario.wind);
+  rows("water", scenario.water);
+  rows("run", scenario.run);
 }
 
 /// `scenario` with settings ("wind.speed=7") of parameters that can change. Throws ConfigError that lists all

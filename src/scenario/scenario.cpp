@@ -85,6 +85,21 @@ void read_wind(const YAML::Node& node, Faults& faults, Scenario& s) {
   read_items(node["features"], "wind.features", most_wind_features, faults, s.wind_features);
 }
 
+void read_water(const YAML::Node& node, Faults& faults, Scenario& s) {
+  std::set<std::string> known{"springs"};
+  yaml::read_parameters(node, "water.", faults, s.water, known);
+  yaml::refuse_unknown(node, "water.", known, faults);
+  if (node.IsDefined() && node.IsMap())
+    read_items(node["springs"], "water.springs", most_springs, faults, s.springs);
+}
+
+void read_run(const YAML::Node& node, Faults& faults, Scenario& s) {
+  std::set<std::string> known{"timeline"};
+  yaml::read_parameters(node, "run.", faults, s.run, known);
+  yaml::refuse_unknown(node, "run.", known, faults);
+  if (node.IsDefined() && node.IsMap()) s.timeline = read_timeline(node["timeline"], faults);
+}
+
 /// What no single row can say.
 void check_together(const Scenario& s, Faults& faults) {
   if (s.wind.radii.count != s.wind.weights.count || s.wind.radii.count != s.wind.deflections.count)
@@ -201,7 +216,7 @@ Scenario parse_scenario(const YAML::Node& root, const std::string& name, const s
     faults.add("top level", yaml::shown(root) + " where the sections of a scenario are expected");
     faults.throw_if_any();
   }
-  std::set<std::string> known{"terrain", "wind"};
+  std::set<std::string> known{"terrain", "wind", "water", "run"};
   for_each_section(s, [&](const char* section, auto& parameters) {
     known.insert(section);
     yaml::read_section(root[section], section, faults, parameters);
@@ -212,7 +227,11 @@ Scenario parse_scenario(const YAML::Node& root, const std::string& name, const s
   yaml::refuse_unknown(root, "", known, faults);
   read_terrain(root["terrain"], faults, s.terrain);
   read_wind(root["wind"], faults, s);
+  read_water(root["water"], faults, s);
+  read_run(root["run"], faults, s);
   check_together(s, faults);
+  faults.throw_if_any();
+  check_timeline(s, faults);  // needs a scenario without faults
   faults.throw_if_any();
   return s;
 }
@@ -248,8 +267,18 @@ std::string dump_scenario(const Scenario& s) {
   };
   items("segments", s.wind_segments);
   items("features", s.wind_features);
+  out << YAML::EndMap << YAML::Key << "water" << YAML::Value << YAML::BeginMap;
+  yaml::emit_parameters(out, s.water);
+  items("springs", s.springs);
+  out << YAML::EndMap << YAML::Key << "run" << YAML::Value << YAML::BeginMap;
+  yaml::emit_parameters(out, s.run);
+  emit_timeline(out, s.timeline);
   out << YAML::EndMap << YAML::EndMap;
   return out.c_str();
+}
+
+bool Scenario::has_water() const {
+  return water.enabled || rain.rate > 0 || hydraulic_erosion.enabled || moisture.enabled || !springs.empty();
 }
 
 Grid Scenario::make_grid() const {

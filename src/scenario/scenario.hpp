@@ -11,13 +11,19 @@
 #include "desert_sim/core/error.hpp"
 #include "desert_sim/kernels/avalanching.hpp"
 #include "desert_sim/kernels/echo_dunes.hpp"
+#include "desert_sim/kernels/hydraulic_erosion.hpp"
+#include "desert_sim/kernels/moisture.hpp"
+#include "desert_sim/kernels/rain.hpp"
 #include "desert_sim/kernels/reptation.hpp"
 #include "desert_sim/kernels/saltation.hpp"
+#include "desert_sim/kernels/soil.hpp"
 #include "desert_sim/kernels/traversability.hpp"
+#include "desert_sim/kernels/water_sources.hpp"
 #include "desert_sim/kernels/wind.hpp"
 #include "desert_sim/kernels/wind_features.hpp"
 #include "desert_sim/kernels/wind_shadow.hpp"
 #include "desert_sim/scenario/terrain_steps.hpp"
+#include "desert_sim/scenario/timeline.hpp"
 #include "desert_sim/simulation/wind_regime.hpp"
 
 namespace YAML {
@@ -91,11 +97,20 @@ struct Scenario {
   ReptationParameters reptation;
   ReposeParameters repose;
   AvalanchingParameters avalanching;
+  RainParameters rain;
+  WaterParameters water;
+  std::vector<Spring> springs;  ///< at most most_springs
+  HydraulicErosionParameters hydraulic_erosion;
+  MoistureParameters moisture;
+  SoilParameters soil;
   TraversabilityParameters traversability;
   RunParameters run;
-  std::string projection;  ///< WKT of the raster that gave the grid; kept for what is written
+  std::vector<TimelineEntry> timeline;  ///< in order of time
+  std::string projection;               ///< WKT of the raster that gave the grid; kept for what is written
 
   Grid make_grid() const;
+  /// Whether there is water: asked for, or needed by rain, springs, erosion or moisture.
+  bool has_water() const;
 };
 
 /// `path=value` settings that override keys, as given to --set: "grid.width=128",

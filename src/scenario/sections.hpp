@@ -14,7 +14,8 @@ constexpr auto parameter_table(const SeedParameter*) {
 }
 static_assert(table_is_complete<SeedParameter>());
 
-/// Calls visit(name, parameters) for each section that is one table; `wind` and `terrain` have lists besides.
+/// Calls visit(name, parameters) for each section that is one table; `wind`, `water` and `terrain` have lists
+/// besides.
 template <class S, class Visit>
 void for_each_section(S& scenario, Visit&& visit) {
   visit("grid", scenario.grid);
@@ -25,8 +26,11 @@ void for_each_section(S& scenario, Visit&& visit) {
   visit("reptation", scenario.reptation);
   visit("repose", scenario.repose);
   visit("avalanching", scenario.avalanching);
+  visit("rain", scenario.rain);
+  visit("hydraulic_erosion", scenario.hydraulic_erosion);
+  visit("moisture", scenario.moisture);
+  visit("soil", scenario.soil);
   visit("traversability", scenario.traversability);
-  visit("run", scenario.run);
 }
 
 /// `file` beside the scenario, if it is there; else as it is.

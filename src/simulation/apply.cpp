@@ -25,8 +25,26 @@ Scenario Simulation::present_scenario() const {
 }
 
 CommandResult Simulation::apply(const command::SetParameters& command) {
+  if (!(command.ramp >= 0 && command.ramp <= command.longest_ramp))
+    throw ConfigError("set_parameters: ramp: = " + std::to_string(command.ramp) + " is not in [0, 1e+12] s");
+  const Scenario present = present_scenario(), wanted = with_live_settings(present, command.settings);
+  require_more_memory(*this, wanted);  // also of what comes at the end of a ramp
+  std::vector<std::string> settings = command.settings;
+  const std::vector<Ramp> before = ramps_;
+  begin_ramps(settings, command.ramp);
+  try {
+    set_parameters(settings);
+  } catch (...) {
+    ramps_ = before;
+    throw;
+  }
+  return {};
+}
+
+void Simulation::set_parameters(const std::vector<std::string>& settings) {
+  if (settings.empty()) return;
   const Scenario before = scenario_, present = present_scenario(),
-                 changed = with_live_settings(present, command.settings);
+                 changed = with_live_settings(present, settings);
   require_reach(changed);
   require_more_memory(*this, changed);
   exec().synchronise();  // memory that steps in flight work with is given back
@@ -47,7 +65,6 @@ CommandResult Simulation::apply(const command::SetParameters& command) {
     return std::string(out.c_str());
   };
   if (regime(changed) != regime(present)) set_regime({changed.wind_regime, changed.wind_segments});
-  return {};
 }
 
 CommandResult Simulation::apply(const command::SetWind& command) {

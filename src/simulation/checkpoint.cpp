@@ -19,7 +19,7 @@ namespace desert_sim {
 namespace {
 
 const std::string magic = "desert_sim checkpoint\n";
-constexpr std::uint32_t version = 2;
+constexpr std::uint32_t version = 3;
 
 template <class T>
 void append(std::string& to, const T& value) {
@@ -75,7 +75,19 @@ class CheckpointAccess {
     entry("bedrock_loose", s.bedrock_loose_);
     entry("soil_loose", s.soil_loose_);
     entry("avalanche_iterations", s.avalanche_iterations_);
-    out << YAML::Key << "initial" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+    entry("next_timeline_entry", s.next_entry_);
+    out << YAML::Key << "ramps" << YAML::Value << YAML::BeginSeq;
+    for (const Ramp& r : s.ramps_) {
+      out << YAML::Flow << YAML::BeginMap;
+      entry("path", r.path);
+      entry("from", r.from);
+      entry("to", r.to);
+      entry("start", r.start);
+      entry("duration", r.duration);
+      entry("stair", r.stair);
+      out << YAML::EndMap;
+    }
+    out << YAML::EndSeq << YAML::Key << "initial" << YAML::Value << YAML::Flow << YAML::BeginSeq;
     for (long long quanta : s.initial_) out << quanta;
     out << YAML::EndSeq << YAML::Key << "ledger" << YAML::Value << YAML::Flow << YAML::BeginSeq;
     for (long long quanta : s.read_ledger()) out << quanta;
@@ -102,6 +114,10 @@ class CheckpointAccess {
     s->soil_loose_ = header["soil_loose"].as<bool>();
     if (s->bedrock_loose_ || s->soil_loose_) s->prepare_ground_avalanches();
     s->avalanche_iterations_ = header["avalanche_iterations"].as<std::uint64_t>();
+    s->next_entry_ = header["next_timeline_entry"].as<std::size_t>();
+    for (const YAML::Node& r : header["ramps"])
+      s->ramps_.push_back({r["path"].as<std::string>(), r["from"].as<double>(), r["to"].as<double>(),
+                           r["start"].as<double>(), r["duration"].as<double>(), r["stair"].as<int>()});
     for (std::size_t m = 0; m < s->initial_.size(); ++m)
       s->initial_[m] = header["initial"][m].as<long long>();
     std::vector<long long> words(LedgerView::words, 0);

@@ -124,8 +124,11 @@ struct EditTerrain : EditParameters {
 };
 
 /// Parameters that can change while a simulation runs (live_parameters.hpp), each "path=value"; all or none.
+/// Over `ramp` seconds numbers go to their values (see Ramp); all else changes at once.
 struct SetParameters {
+  static constexpr double longest_ramp = 1e12;
   std::vector<std::string> settings;
+  double ramp = 0;
 };
 
 /// Back to the scenario's start: terrain, parameters, wind, clock.

@@ -36,7 +36,7 @@ P read_all(const YAML::Node& node, const std::string& source) {
 }
 
 command::SetParameters read_settings(const YAML::Node& node, const std::string& source) {
-  command::SetParameters command;
+  command::SetParameters command{{}, scalar<double>(node, "ramp", source)};
   const YAML::Node settings = required(node, "settings", source);
   if (!settings.IsSequence()) throw ConfigError(source + ": settings: must be a list of path=value");
   for (const YAML::Node& setting : settings) {
@@ -151,6 +151,7 @@ void emit_command(YAML::Emitter& out, const Command& command) {
     out << YAML::Key << "settings" << YAML::Value << YAML::Flow << YAML::BeginSeq;
     for (const std::string& setting : parameters->settings) out << YAML::DoubleQuoted << setting;
     out << YAML::EndSeq;
+    out << YAML::Key << "ramp" << YAML::Value << parameters->ramp;
   } else if (std::holds_alternative<command::Reset>(command)) {
     name("reset");
   } else if (const auto* load = std::get_if<command::LoadCheckpoint>(&command)) {

@@ -41,7 +41,8 @@ std::size_t bytes_of_avalanches(const avalanching::Workspace& work) {
 /// cuFFT's transforms take about as much as their values.
 class PlannedFft final : public Fft {
  public:
-  PlannedFft(int width, int height, int fields) : values_(static_cast<std::size_t>(width) * height * fields) {}
+  PlannedFft(int width, int height, int fields)
+      : values_(static_cast<std::size_t>(width) * height * fields) {}
   void forward(Complex*) override { refuse(); }
   void inverse(Complex*) override { refuse(); }
   std::size_t bytes() const override { return values_ * sizeof(Complex); }
@@ -150,6 +151,8 @@ std::vector<MemoryPart> Simulation::memory() const {
   add("wind shadow's blocks", bytes_of_all(shadow_work_.reciprocals, shadow_work_.around));
   add("avalanches' levels", bytes_of_avalanches(avalanche_work_));
   add("avalanches of rock and soil", bytes_of_all(ground_work_.received, ground_work_.share));
+  add("water's pipes", pipes_work_.held.bytes());
+  add("capacity for sediment", erosion_work_.capacity.bytes());
   add("ledger", ledger_.bytes());
   add("elevation that others hold", held_.bytes());
   add("staging memory", staging_.bytes());

@@ -11,8 +11,6 @@
 
 namespace desert_sim {
 
-// ---- one step
-
 template <class E>
 void Simulation::run_processes(E& exec) {
   const Scenario& s = scenario_;
@@ -64,12 +62,47 @@ void Simulation::run_processes(E& exec) {
     });
 }
 
-/// Soil and bedrock slide only where something changes them: abrasion, or an edit, until all has come to
-/// rest.
+template <class E>
+void Simulation::run_water(E& exec) {
+  const Scenario& s = scenario_;
+  const TerrainView view = terrain_.view();
+  const float dt = s.run.time_step;
+
+  // It rains, springs run, the sea keeps its level (C1).
+  run(exec, "rain", {Layer::water}, [&] {
+    rain::step(exec, view, s.rain, dt, s.seed, steps_, terrain_.scale().datum, ledger());
+    for (const Spring& spring : s.springs)
+      water_sources::pour(exec, view, spring, spring.x - s.grid.origin_x, spring.y - s.grid.origin_y, dt,
+                          steps_, ledger());
+    water_sources::fill_sea(exec, view, s.water.sea, sea_level(), ledger());
+  });
+
+  // Water runs from high to low, and waves over it (C2).
+  run(exec, "virtual_pipes", {Layer::water, Layer::water_flux_x, Layer::water_flux_y},
+      [&] { virtual_pipes::step(exec, view, s.water, dt, time(), sea_level(), ledger(), pipes_work_); });
+
+  // It takes ground with it, and lets it fall where it slows down (C3).
+  if (s.hydraulic_erosion.enabled)
+    run(exec, "hydraulic_erosion", {Layer::bedrock, Layer::soil, Layer::sand, Layer::suspended_sediment},
+        [&] {
+          hydraulic_erosion::step(exec, view, s.hydraulic_erosion, dt, ledger(), landed_.data(),
+                                  erosion_work_);
+        });
+
+  // It seeps into the ground, spreads there, and dries, as what stands on the ground does (C4).
+  run(exec, "moisture", {Layer::water, Layer::moisture}, [&] {
+    if (s.moisture.enabled)
+      moisture::step(exec, view, s.moisture, s.repose.moisture_capacity, dt, ledger(), landed_.data());
+    water_sources::evaporate(exec, view, s.water.evaporation, dt, ledger());
+  });
+}
+
+/// Soil and bedrock slide only where something changes them: abrasion, water, or an edit, until all has come
+/// to rest.
 template <class E>
 void Simulation::slide_ground(E& exec, const TerrainView& view) {
   const AvalanchingParameters& p = scenario_.avalanching;
-  const bool wearing = scenario_.abrasion.rate > 0;
+  const bool wearing = wears_ground(scenario_);
   const auto moved = [&] { return statistics::sum(exec, view.grid, landed_.data()) != 0; };
   if (p.soil && (wearing || soil_loose_) && terrain_.has(Layer::soil)) {
     avalanching::step_soil(exec, view, p, scenario_.repose, landed_.data(), ground_work_);
@@ -111,6 +144,7 @@ void Simulation::run(E& exec, const char* name, std::initializer_list<Layer> wri
 
 template <class E>
 void Simulation::check(E& exec, const char* process, Layer layer) {
+  if (!terrain_.has(layer)) return;
   const LayerInfo& row = info(layer);
   const TerrainView view = terrain_.view();
   const bool quanta = row.storage == Storage::quanta;
@@ -148,12 +182,28 @@ bool Simulation::recordable() const {
          fixed_sweeps && !bedrock_loose_ && !soil_loose_;
 }
 
+Quanta Simulation::sea_level() const {
+  const HeightScale& scale = terrain_.scale();
+  const double quanta = (scenario_.water.sea_level - scale.datum) / scale.quantum();
+  constexpr double limit = load_limit;
+  return static_cast<Quanta>(std::lrint(std::clamp(quanta, -limit, limit)));
+}
+
 void Simulation::step() {
+  follow_timeline();
   const auto work = [this] { with_backend(exec(), [this](auto& e) { run_processes(e); }); };
   if (recordable())
     recordings_.run(exec(), {wind_above(), steps_ % avalanching::turns, terrain_.view()}, work);
   else
     work();
+  if (scenario_.has_water()) with_backend(exec(), [this](auto& e) { run_water(e); });
+  // Soil dries to sand, and becomes soil again (C5).
+  if (scenario_.soil.enabled)
+    with_backend(exec(), [this](auto& e) {
+      run(e, "soil", {Layer::soil, Layer::sand}, [&] {
+        soil::step(e, terrain_.view(), scenario_.soil, scenario_.repose, scenario_.run.time_step, ledger());
+      });
+    });
   if (scenario_.avalanching.enabled)
     avalanche_iterations_ += static_cast<std::uint64_t>(avalanche_work_.iterations);
   ++steps_;
@@ -172,142 +222,6 @@ void Simulation::refresh_derived() {
                           nullptr);
   });
   derived_ready_ = true;
-}
-
-// ---- making
-
-namespace {
-
-HeightScale scale_for(const HostLayers& layers) {
-  const std::vector<double>&bedrock = layers.at(Layer::bedrock), &sand = layers.at(Layer::sand);
-  const auto soil = layers.find(Layer::soil);
-  double lowest = bedrock[0], highest = bedrock[0];
-  for (std::size_t i = 0; i < bedrock.size(); ++i) {
-    lowest = std::min(lowest, bedrock[i]);
-    highest = std::max(highest, bedrock[i] + sand[i] + (soil == layers.end() ? 0.0 : soil->second[i]));
-  }
-  for (const auto& [layer, values] : layers)
-    if (info(layer).storage == Storage::quanta && layer != Layer::bedrock)
-      highest = std::max(highest, lowest + *std::max_element(values.begin(), values.end()));
-  return HeightScale::covering(lowest, highest);
-}
-
-}  // namespace
-
-void require_reach(const Scenario& s) {
-  Faults faults(s.name);
-  const auto check = [&](const char* key, double metres) {
-    const double cells = metres / s.grid.cell_size;
-    if (cells > longest_reach)
-      faults.add(key, "reaches over " + std::to_string(static_cast<long long>(cells)) + " cells of " +
-                          std::to_string(s.grid.cell_size) + " m (allowed: " + std::to_string(longest_reach) +
-                          ")");
-  };
-  check("wind_shadow.distance", s.wind_shadow.distance);
-  check("echo_dunes.sticky_reach", static_cast<double>(s.echo_dunes.sticky_reach) * s.echo_dunes.highest);
-  const double steepness = std::tan(s.echo_dunes.cliff_deg * 3.14159265358979 / 180.0);
-  if (s.echo_dunes.enabled)  // from the top of a cliff to its foot
-    check("echo_dunes.highest", s.echo_dunes.highest / steepness);
-  double fastest = s.wind_regime.speed;
-  for (const WindSegment& segment : s.wind_segments)
-    fastest = std::max(fastest, static_cast<double>(segment.speed));
-  check("run.time_step", fastest * s.wind.speedup_highest * s.run.time_step);
-  faults.throw_if_any();
-}
-
-namespace {
-
-HostLayers build_if_it_fits(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster) {
-  require_reach(scenario);
-  require_memory(exec, scenario, bytes_to_build(scenario));
-  return build_terrain(scenario, load_raster);
-}
-
-}  // namespace
-
-Simulation::Simulation(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster)
-    : Simulation(exec, scenario, build_if_it_fits(exec, scenario, load_raster)) {}
-
-Simulation::Simulation(Exec& exec, const Scenario& scenario, const HostLayers& layers)
-    : Simulation(scenario, Terrain(exec, scenario.make_grid(), scale_for(layers))) {
-  for (const auto& [layer, values] : layers) terrain_.set_values(layer, values);
-  regime_ = WindRegime{scenario.wind_regime, scenario.wind_segments};
-  start_books();
-}
-
-Simulation::Simulation(const Scenario& scenario, Terrain terrain)
-    : start_(scenario), scenario_(scenario), terrain_(std::move(terrain)) {
-  allocate_work();
-}
-
-void Simulation::allocate_work() {
-  Exec& e = exec();
-  const Grid& grid = terrain_.grid();
-  const std::size_t cells = static_cast<std::size_t>(grid.cells());
-  ledger_ = Buffer<long long>(e, LedgerView::words);
-  ledger_.set_zero();
-  landed_ = Buffer<Quanta>(e, cells);
-  repose_ = Buffer<float>(e, cells);
-  heights_ = surface::make_heights(e, grid);
-  repose_.set_zero();
-  prepare_processes();
-  upload_wind_features();
-}
-
-void Simulation::prepare_processes() {
-  recordings_.forget();
-  Exec& e = exec();
-  const Grid& grid = terrain_.grid();
-  const Scenario& s = scenario_;
-  // A layer is there only while its process is on: others take its absence for "no shadow", "no echo".
-  terrain_.use(Layer::wind_shadow, s.wind_shadow.enabled);
-  terrain_.use(Layer::echo, s.echo_dunes.enabled);
-  reptation_strength_ = {};
-  if (reptation::moves_sand(s.reptation)) {
-    reptation_strength_ = Buffer<float>(e, static_cast<std::size_t>(grid.cells()));
-    reptation_strength_.set_zero();  // without grains there are no impacts
-  }
-  wind_work_ = wind::make_workspace(e, grid, s.wind);
-  shadow_work_ = wind_shadow::make_workspace(e, grid, s.wind_shadow);
-  avalanche_work_ = avalanching::make_workspace(e, grid, s.avalanching);
-  if (s.abrasion.rate > 0 || bedrock_loose_ || soil_loose_) prepare_ground_avalanches();
-}
-
-void Simulation::prepare_ground_avalanches() {
-  const AvalanchingParameters& p = scenario_.avalanching;
-  if (!ground_work_.received && p.enabled && (p.soil || p.bedrock))
-    ground_work_ = avalanching::make_ground_workspace(exec(), terrain_.grid());
-}
-
-void Simulation::upload_wind_features() {
-  const Scenario& s = scenario_;
-  if (s.wind_features.empty()) {
-    features_ = {};
-    for (Buffer<float>* buffer : {&perturbation_x_, &perturbation_y_}) *buffer = {};
-    return;
-  }
-  std::vector<wind_features::Prepared> prepared;
-  for (const WindFeature& feature : s.wind_features) {
-    const wind::Vector direction = unit_vector(feature.direction_deg);
-    prepared.push_back({feature, direction.x, direction.y});
-    prepared.back().feature.x -= static_cast<float>(s.grid.origin_x);
-    prepared.back().feature.y -= static_cast<float>(s.grid.origin_y);
-  }
-  features_ = Buffer<wind_features::Prepared>(exec(), prepared.size());
-  features_.upload(prepared);
-  if (perturbation_x_) return;
-  for (Buffer<float>* buffer : {&perturbation_x_, &perturbation_y_})
-    *buffer = Buffer<float>(exec(), static_cast<std::size_t>(terrain_.grid().cells()));
-}
-
-void Simulation::start_books() {
-  with_backend(exec(), [this](auto& e) { surface::fill_elevation(e, terrain_.view()); });
-  const std::vector<std::uint32_t> surface = terrain_.words(Layer::elevation);
-  Quanta lowest = wall_height;
-  for (std::uint32_t word : surface) lowest = std::min(lowest, static_cast<Quanta>(word));
-  wind_reference_ = lowest;
-  for (int m = 0; m < material_count; ++m)
-    initial_[static_cast<std::size_t>(m)] = material_now(static_cast<Material>(m));
 }
 
 }  // namespace desert_sim

@@ -45,6 +45,9 @@ struct MemoryPart {
 /// Throws ConfigError if a hop or a march could reach too far: they are counted in 16.16 fixed-point cells.
 void require_reach(const Scenario& scenario);
 
+/// Whether something but edits changes rock or soil.
+bool wears_ground(const Scenario& scenario);
+
 class Simulation {
  public:
   /// Builds the terrain. `scenario` must be resolved (see resolve_grid()). Throws ConfigError.
@@ -67,6 +70,8 @@ class Simulation {
   const Scenario& scenario() const { return scenario_; }
   /// The scenario that it began with: what a reset goes back to.
   const Scenario& start() const { return start_; }
+  /// What the timeline and ramps are changing, and what comes next; empty if nothing.
+  std::string describe_changes() const;
   /// The scenario with the wind regime that blows now, which commands may have replaced.
   Scenario present_scenario() const;
   const Terrain& terrain() const { return terrain_; }
@@ -124,6 +129,10 @@ class Simulation {
   /// Starts a step's processes; reads nothing back where recordable() holds.
   template <class E>
   void run_processes(E& exec);
+  /// Rain, rivers, erosion, moisture: a step of theirs is not recorded, it looks how deep the water is.
+  template <class E>
+  void run_water(E& exec);
+  Quanta sea_level() const;
   /// Whether the next step is the same work as others before and after it.
   bool recordable() const;
   /// Whether the next step looks through the layers that it writes.
@@ -152,6 +161,12 @@ class Simulation {
   void allocate_work();
   /// What depends on parameters that can change live: layers and memory of processes that are on.
   void prepare_processes();
+  void prepare_water();
+  /// Changes what is due now.
+  void follow_timeline();
+  /// Of `settings`, numbers become ramps where there is a duration [s]; what ramped before stops.
+  void begin_ramps(std::vector<std::string>& settings, double duration);
+  void set_parameters(const std::vector<std::string>& settings);
   /// Only terrains whose rock or soil changes need this memory: called when abrasion is on or one of them is
   /// edited.
   void prepare_ground_avalanches();
@@ -175,6 +190,8 @@ class Simulation {
   bool derived_ready_ = false;
   bool bedrock_loose_ = false;  ///< bedrock was edited and has not come to rest since
   bool soil_loose_ = false;     ///< soil, or bedrock below it, was edited and soil has not come to rest since
+  std::size_t next_entry_ = 0;  ///< of the timeline
+  std::vector<Ramp> ramps_;
   std::uint64_t avalanche_iterations_ = 0;
   std::array<long long, material_count> initial_{};
 
@@ -185,6 +202,8 @@ class Simulation {
   wind_shadow::Workspace shadow_work_;
   avalanching::Workspace avalanche_work_;
   avalanching::GroundWorkspace ground_work_;
+  virtual_pipes::Workspace pipes_work_;
+  hydraulic_erosion::Workspace erosion_work_;
   Buffer<wind_features::Prepared> features_;
   Buffer<float> perturbation_x_, perturbation_y_;
   /// The tangents of repose, from reptation on; what comes before it in a step may scribble there.

@@ -99,7 +99,7 @@ void Simulation::judge(const std::vector<Layer>& layers, const RowBand& rows) {
     if (on_request(row.layer) && std::count(layers.begin(), layers.end(), row.layer) == 0)
       view.layers[static_cast<int>(row.layer)] = nullptr;
   with_backend(exec(), [&](auto& e) {
-    traversability::step(e, view, scenario_.traversability, rows.first, rows.count);
+    traversability::step(e, view, scenario_.traversability, scenario_.repose, rows.first, rows.count);
   });
 }
 

@@ -45,7 +45,8 @@ void speed_and_direction(wind::Vector w, double& speed, double& direction_deg) {
 
 wind::Vector WindRegime::at(double time) const {
   const double elapsed = std::max(0.0, time - start_time);
-  if (regime == WindRegimeKind::constant) return ramped(from, wind_vector(direction_deg, speed), elapsed, ramp);
+  if (regime == WindRegimeKind::constant)
+    return ramped(from, wind_vector(direction_deg, speed), elapsed, ramp);
   if (regime == WindRegimeKind::rose) {
     const auto hold = static_cast<std::uint64_t>(elapsed / hold_time);
     double total = 0;

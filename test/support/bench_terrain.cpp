@@ -95,7 +95,7 @@ void BenchTerrain::shadow(const WindShadowParameters& p, bool whole_marches) {
 void BenchTerrain::judge(const TraversabilityParameters& p) {
   for (const LayerInfo& row : layer_table)
     if (row.lifetime == Lifetime::on_request) terrain.require(row.layer);
-  with_backend(exec(), [&](auto& e) { traversability::step(e, terrain.view(), p, 0, grid().height); });
+  with_backend(exec(), [&](auto& e) { traversability::step(e, terrain.view(), p, {}, 0, grid().height); });
 }
 void BenchTerrain::echo(const EchoDuneParameters& p) {
   surface();
@@ -141,6 +141,40 @@ void BenchTerrain::avalanche_bedrock(const AvalanchingParameters& p, const Repos
     avalanching::step_bedrock(e, terrain.view(), p, r, ledger(), given.data(), work);
   });
   exec().synchronise();
+}
+
+void BenchTerrain::flow(const WaterParameters& p, float time_step, double time, Quanta sea_level) {
+  for (Layer layer : {Layer::water, Layer::water_flux_x, Layer::water_flux_y, Layer::water_velocity_x,
+                      Layer::water_velocity_y, Layer::wind_x, Layer::wind_y})
+    terrain.require(layer);
+  virtual_pipes::Workspace work{Buffer<float>(exec(), cells())};
+  with_backend(exec(), [&](auto& e) {
+    virtual_pipes::step(e, terrain.view(), p, time_step, time, sea_level, ledger(), work);
+  });
+  exec().synchronise();
+}
+
+void BenchTerrain::erode(const HydraulicErosionParameters& p, float time_step) {
+  for (Layer layer :
+       {Layer::water, Layer::suspended_sediment, Layer::water_velocity_x, Layer::water_velocity_y})
+    terrain.require(layer);
+  hydraulic_erosion::Workspace work{Buffer<float>(exec(), cells())};
+  with_backend(exec(), [&](auto& e) {
+    hydraulic_erosion::step(e, terrain.view(), p, time_step, ledger(), landed.data(), work);
+  });
+  exec().synchronise();
+}
+
+void BenchTerrain::soak(const MoistureParameters& p, float capacity, float time_step) {
+  for (Layer layer : {Layer::water, Layer::moisture}) terrain.require(layer);
+  with_backend(exec(), [&](auto& e) {
+    moisture::step(e, terrain.view(), p, capacity, time_step, ledger(), landed.data());
+  });
+}
+
+void BenchTerrain::ripen(const SoilParameters& p, const ReposeParameters& r, float time_step) {
+  terrain.require(Layer::soil);
+  with_backend(exec(), [&](auto& e) { soil::step(e, terrain.view(), p, r, time_step, ledger()); });
 }
 
 void BenchTerrain::blow(const WindParameters& p, wind::Vector above, Quanta reference) {

@@ -72,12 +72,34 @@ std::vector<Case> process_cases(bool transforms) {
                         "2}, {direction_deg: "
                         "130, speed: 8, duration: 3, ramp: 1}], " +
                         fft + "}\n");
+  const std::string wet =
+      "rain: {rate: 2.0e-4, share_low: 0.3, share_high: 0.7, height: 8, scale: 12, frequency: 0.1}\n"
+      "hydraulic_erosion: {enabled: true, capacity: 1}\nmoisture: {enabled: true}\n";
+  const std::string springs =
+      "springs: [{x: 9.5, y: 20.5, radius: 3, discharge: 3}, {x: 30, y: 5, radius: 0, "
+      "discharge: 0.5}]";
+  const std::string soil = "  - noise: {layer: soil, low: 0, high: 3, scale: 8, threshold: 0.3, seed: 3}\n";
+  add("springs on bare rock", terrain + wind + "hydraulic_erosion: {enabled: true}\nwater: {" + springs +
+                                  "}\nrun: {check_every: 1}\n");
+  add("rivers", terrain + soil + wind + wet + "water: {" + springs + "}\n");
+  add("sea, waves",
+      terrain + soil + obstacles + wind + wet +
+          "water: {enabled: true, sea: border, sea_level: 2.5, wave_strength: 0.05, wave_period: "
+          "4, most_substeps: 6}\n");
+  add("a flood dries",
+      terrain + soil +
+          "  - uniform: {layer: water, value: 2}\n"
+          "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.4, seed: 5}\n"
+          "  - uniform: {layer: humus, value: 0.05}\n" +
+          wind +
+          "water: {enabled: true, evaporation: 0.3}\nmoisture: {enabled: true, diffusion: "
+          "0.4, evaporation: 20}\nsoil: {enabled: true, drying: 0.1}\n");
   add("everything",
       terrain +
           "  - noise: {layer: soil, low: 0, high: 2, scale: 8, threshold: 0.5, seed: 3}\n"
           "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.6, seed: 5}\n"
           "  - noise: {layer: moisture, low: 0, high: 0.3, scale: 10, threshold: 0.6, seed: 6}\n" +
-          obstacles + wind + worn +
+          obstacles + wind + worn + wet + "soil: {enabled: true}\nwater: {" + springs + "}\n" +
           "echo_dunes: {enabled: true}\nwind_shadow: {curved: true}\nreptation: {method: steepest}\n"
           "saltation: {influx: 0.2}\nrun: {check_every: 1}\n");
   return cases;

@@ -1,0 +1,135 @@
+#include "desert_sim/scenario/timeline.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "desert_sim/scenario/live_parameters.hpp"
+#include "desert_sim/scenario/yaml_parameters.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+std::string flow_text(const YAML::Node& node) {
+  YAML::Emitter out;
+  out.SetMapFormat(YAML::Flow);
+  out.SetSeqFormat(YAML::Flow);
+  out << node;
+  std::string text = out.c_str();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+double read_time(const YAML::Node& node, const std::string& key, Faults& faults) {
+  double value = 0;
+  if (node.IsDefined() &&
+      (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !(value >= 0) || !(value <= 1e12)))
+    faults.add(key, yaml::shown(node) + " is not a time (allowed: [0, 1e+12] s)");
+  return value;
+}
+
+TimelineEntry read_entry(const YAML::Node& node, const std::string& key, Faults& faults) {
+  TimelineEntry entry;
+  yaml::refuse_unknown(node, key + ".", {"time", "ramp", "set"}, faults);
+  if (!node.IsMap()) return entry;
+  if (!node["time"]) faults.add(key + ".time", "is missing");
+  entry.time = read_time(node["time"], key + ".time", faults);
+  entry.ramp = read_time(node["ramp"], key + ".ramp", faults);
+  const YAML::Node set = node["set"];
+  if (!set || !set.IsMap() || set.size() == 0) {
+    faults.add(key + ".set", "must name parameters and their values, such as {rain.rate: 1.0e-5}");
+    return entry;
+  }
+  for (const auto& setting : set)
+    entry.settings.push_back(setting.first.Scalar() + "=" + flow_text(setting.second));
+  return entry;
+}
+
+/// The value of a parameter that is a number with a fraction.
+bool find_number(const Scenario& scenario, const std::string& path, double& found) {
+  bool there = false;
+  for_each_live_parameter(scenario, [&](const char* section, const auto& row, const auto& value) {
+    if constexpr (std::is_floating_point_v<std::decay_t<decltype(value)>>)
+      if (path == std::string(section) + "." + row.name) {
+        found = static_cast<double>(value);
+        there = true;
+      }
+  });
+  return there;
+}
+
+}  // namespace
+
+int Ramp::stair_at(double time) const {
+  if (time >= start + duration) return stairs;
+  return std::clamp(static_cast<int>(std::floor((time - start) / duration * stairs)), 0, stairs - 1);
+}
+
+std::vector<Ramp> take_ramps(const Scenario& scenario, std::vector<std::string>& settings, double time,
+                             double duration) {
+  std::vector<Ramp> ramps;
+  if (!(duration > 0)) return ramps;
+  std::vector<std::string> at_once;
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    Ramp ramp{setting.substr(0, equals), 0, 0, time, duration, 0};
+    if (find_number(scenario, ramp.path, ramp.from) &&
+        YAML::convert<double>::decode(YAML::Load(setting.substr(equals + 1)), ramp.to))
+      ramps.push_back(ramp);
+    else
+      at_once.push_back(setting);
+  }
+  settings = at_once;
+  return ramps;
+}
+
+std::vector<TimelineEntry> read_timeline(const YAML::Node& list, Faults& faults) {
+  std::vector<TimelineEntry> timeline;
+  const std::string key = "run.timeline";
+  if (!list.IsDefined() || list.IsNull()) return timeline;
+  if (!list.IsSequence()) {
+    faults.add(key, yaml::shown(list) + " where a list is expected");
+    return timeline;
+  }
+  if (list.size() > most_timeline_entries) {
+    faults.add(
+        key, std::to_string(list.size()) + " entries are more than " + std::to_string(most_timeline_entries));
+    return timeline;
+  }
+  for (std::size_t n = 0; n < list.size(); ++n) {
+    timeline.push_back(read_entry(list[n], key + "." + std::to_string(n), faults));
+    if (n > 0 && timeline[n].time < timeline[n - 1].time)
+      faults.add(key + "." + std::to_string(n) + ".time", "is before that of the entry before it");
+  }
+  return timeline;
+}
+
+void emit_timeline(YAML::Emitter& out, const std::vector<TimelineEntry>& timeline) {
+  out << YAML::Key << "timeline" << YAML::Value << YAML::BeginSeq;
+  for (const TimelineEntry& entry : timeline) {
+    out << YAML::Flow << YAML::BeginMap << YAML::Key << "time" << YAML::Value << entry.time << YAML::Key
+        << "ramp" << YAML::Value << entry.ramp << YAML::Key << "set" << YAML::Value << YAML::BeginMap;
+    for (const std::string& setting : entry.settings) {
+      const std::size_t equals = setting.find('=');
+      out << YAML::Key << setting.substr(0, equals) << YAML::Value << YAML::Load(setting.substr(equals + 1));
+    }
+    out << YAML::EndMap << YAML::EndMap;
+  }
+  out << YAML::EndSeq;
+}
+
+void check_timeline(const Scenario& scenario, Faults& faults) {
+  Scenario then = scenario;
+  then.timeline.clear();
+  for (std::size_t n = 0; n < scenario.timeline.size(); ++n) {
+    try {
+      then = with_live_settings(then, scenario.timeline[n].settings);
+    } catch (const ConfigError& e) {
+      faults.add("run.timeline." + std::to_string(n) + ".set", e.what());
+    }
+  }
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,253 @@
+// Water against what is known of it: a lake at rest, waves, a basin's slosh, a dam's break without momentum
+// advection (h_t + q_x = 0, q_t + (g h²/2)_x = 0), a channel's uniform flow.
+
+#include <cmath>
+
+#include "support/bench_terrain.hpp"
+#include "support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+constexpr double g = 9.81, pi = 3.14159265358979;
+
+class Water : public test::OnBackend {
+ protected:
+  static WaterParameters free_of_friction() {
+    WaterParameters p;
+    p.friction = 0;
+    p.most_substeps = 1000;
+    return p;
+  }
+};
+
+TEST_P(Water, LakeStaysAtRestAroundDryIslands) {
+  for (bool periodic : {true, false}) {
+    test::BenchTerrain t(exec(), 48, 40, 1, periodic);
+    const auto bed = [](int x, int y) {
+      return 3 * std::sin(0.4 * x) * std::cos(0.3 * y) + (x > 20 && x < 28 && y > 15 && y < 22 ? 9 : 0) +
+             (x < 2 || y < 2 || x > 45 || y > 37 ? 9 : 0);  // an open edge is dry: nothing leaves
+    };
+    t.set(Layer::bedrock, bed);
+    t.set(Layer::water, [&](int x, int y) { return std::max(1.5 - bed(x, y), 0.0); });
+    const std::vector<Quanta> before = t.quanta(Layer::water);
+    for (int n = 0; n < 100; ++n) t.flow(free_of_friction(), 1, n);
+    const std::vector<Quanta> after = t.quanta(Layer::water);
+    for (std::size_t i = 0; i < before.size(); ++i)
+      ASSERT_LE(std::abs(after[i] - before[i]), 10) << "cell " << i << (periodic ? ", periodic" : ", open");
+    EXPECT_EQ(t.booked(Material::water, 1), 0);
+  }
+}
+
+/// Time of `crossings` half periods of a signal that starts at its greatest, interpolated between samples.
+class Oscillation {
+ public:
+  void add(double time, double value) {
+    if (!times_.empty() || have_) {
+      if (last_ * value < 0) times_.push_back(last_time_ + (time - last_time_) * last_ / (last_ - value));
+    }
+    have_ = true;
+    last_ = value;
+    last_time_ = time;
+  }
+  std::size_t crossings() const { return times_.size(); }
+  double period() const {
+    return 2 * (times_.back() - times_.front()) / static_cast<double>(times_.size() - 1);
+  }
+
+ private:
+  bool have_ = false;
+  double last_ = 0, last_time_ = 0;
+  std::vector<double> times_;
+};
+
+TEST_P(Water, StandingWaveHasItsPeriodAndIsNotDamped) {
+  for (const double depth : {0.5, 2.0, 8.0}) {
+    const int cells = 64;
+    test::BenchTerrain t(exec(), cells, 3);
+    t.set(Layer::water,
+          [&](int x, int) { return depth * (1 + 0.01 * std::cos(2 * pi * (x + 0.5) / cells)); });
+    // On a torus of length L the mode of wavelength L: period L/√(g h) (of a basin of length L/2: 2 (L/2)/√).
+    const double expected = cells / std::sqrt(g * depth), step = expected / 40;
+    const auto amplitude = [&] {
+      double sum = 0;
+      for (int x = 0; x < cells; ++x)
+        sum += t.at(Layer::water, x, 1) * std::cos(2 * pi * (x + 0.5) / cells) * 2 / cells;
+      return sum / (0.01 * depth);
+    };
+    Oscillation mode;
+    double largest_late = 0;
+    for (int n = 0; n < 130; ++n) {
+      mode.add(n * step, amplitude());
+      if (n > 85) largest_late = std::max(largest_late, std::abs(amplitude()));
+      t.flow(free_of_friction(), static_cast<float>(step));
+    }
+    ASSERT_GE(mode.crossings(), 5u);
+    EXPECT_NEAR(mode.period() / expected, 1, 0.01) << "depth " << depth;
+    EXPECT_NEAR(largest_late, 1, 0.02) << "depth " << depth;
+  }
+}
+
+TEST_P(Water, TooFewPartsMakeDeepWavesSlowerButStable) {
+  test::BenchTerrain t(exec(), 32, 8);
+  t.set(Layer::water, [](int x, int) { return 20 + 0.5 * std::cos(2 * pi * x / 32); });
+  WaterParameters p = free_of_friction();
+  p.most_substeps = 2;
+  for (int n = 0; n < 300; ++n) t.flow(p, 1);
+  for (Quanta w : t.quanta(Layer::water)) ASSERT_NEAR(w * std::ldexp(1.0, -20), 20, 1.0);
+}
+
+/// Thacker's planar slosh in a parabolic basin H = D (r/a)², period 2π a/√(2 g D).
+TEST_P(Water, PlanarSloshKeepsPeriodAndAmplitude) {
+  const int cells = 160;
+  const double a = 50, depth = 2, eta = 0.05 * a, frequency = std::sqrt(2 * g * depth) / a;
+  test::BenchTerrain t(exec(), cells, cells, 1, true);
+  const auto bed = [&](int x, int y) {
+    const double dx = x + 0.5 - cells / 2, dy = y + 0.5 - cells / 2;
+    return std::min(depth * (dx * dx + dy * dy) / (a * a), 8.0);
+  };
+  t.set(Layer::bedrock, bed);
+  t.set(Layer::water, [&](int x, int y) {
+    const double dx = x + 0.5 - cells / 2;
+    return std::max(depth + eta * depth / (a * a) * (2 * dx - eta) - bed(x, y), 0.0);
+  });
+  const auto centre = [&] {  // of the water's mass
+    const std::vector<Quanta> water = t.quanta(Layer::water);
+    double sum = 0, moment = 0;
+    for (int y = 0; y < cells; ++y)
+      for (int x = 0; x < cells; ++x) {
+        const double w = water[static_cast<std::size_t>(y * cells + x)];
+        sum += w;
+        moment += w * (x + 0.5 - cells / 2);
+      }
+    return moment / sum;
+  };
+  const double start = centre(), period = 2 * pi / frequency, step = period / 80;
+  Oscillation slosh;
+  double back = 0;
+  for (int n = 0; n <= 110; ++n) {
+    slosh.add(n * step, centre());
+    if (n > 60 && n < 100) back = std::max(back, centre());
+    t.flow(free_of_friction(), static_cast<float>(step));
+  }
+  EXPECT_NEAR(start, eta, 0.02 * eta);
+  ASSERT_GE(slosh.crossings(), 3u);
+  EXPECT_NEAR(slosh.period() / period, 1, 0.01);
+  EXPECT_NEAR(back / start, 1, 0.05);
+}
+
+TEST_P(Water, DamBreaksAsWithoutMomentumAdvection) {
+  for (const auto& [right, plateau] : {std::pair{0.5, 0.771}, {0.1, 0.638}, {0.0, 0.6175}}) {
+    const int cells = 400, dam = 200;
+    test::BenchTerrain t(exec(), cells, 3, 1, false);
+    t.set(Layer::bedrock, [](int, int y) { return y == 1 ? 0 : 50; });  // a channel one cell wide
+    t.set(Layer::water, [&, right = right](int x, int y) { return y != 1 ? 0 : (x < dam ? 1 : right); });
+    const double time = 30, step = 0.05;
+    for (int n = 0; n < static_cast<int>(time / step); ++n)
+      t.flow(free_of_friction(), static_cast<float>(step));
+    // The rarefaction: h = (x/t)²/g behind the plateau, x leftward from the dam.
+    double error = 0, length = 0;
+    for (int x = dam - static_cast<int>(time * std::sqrt(g)); x < dam; ++x) {
+      const double speed = (dam - (x + 0.5)) / time, h = speed * speed / g;
+      if (h < plateau * 1.05) continue;
+      error += std::abs(t.at(Layer::water, x, 1) - h);
+      length += 1;
+    }
+    ASSERT_GT(length, 3);
+    EXPECT_LE(error / length, 0.04) << "right depth " << right;
+    // The plateau reaches leftward as far as the rarefaction's foot, √(g h_p) t.
+    EXPECT_NEAR(t.at(Layer::water, dam - 10, 1), plateau, 0.1 * plateau) << "right depth " << right;
+  }
+}
+
+TEST_P(Water, UniformChannelCarriesWhatFrictionAllows) {
+  for (const auto& [slope, friction] : {std::pair{0.01, 0.5}, {0.03, 1.0}}) {
+    const int cells = 64;
+    // A ramp on a torus has a cliff; so: a tilted surface of constant depth, carried by a periodic step that
+    // is held away from the middle, where the flow is measured before the cliff's wave comes there.
+    test::BenchTerrain t(exec(), 4096, 1, 1, true);
+    t.set(Layer::bedrock, [slope = slope](int x, int) { return slope * (4096 - x); });
+    t.set(Layer::water, [](int, int) { return 0.4; });
+    WaterParameters p = free_of_friction();
+    p.friction = static_cast<float>(friction);
+    for (int n = 0; n < 30; ++n) t.flow(p, 1);
+    const double expected = g * 0.4 * slope / friction;
+    for (int x = 2048; x < 2048 + cells; ++x) {
+      EXPECT_NEAR(t.at(Layer::water_flux_x, x, 0), expected, 0.01 * expected);
+      EXPECT_NEAR(t.at(Layer::water_velocity_x, x, 0), expected / 0.4, 0.02 * expected / 0.4);
+    }
+  }
+}
+
+TEST_P(Water, EvaporatesExponentiallyWhateverTheTimeStep) {
+  for (const double dt : {0.1, 1.0, 5.0}) {
+    test::BenchTerrain t(exec(), 5, 4);
+    t.set(Layer::water, 2.5);
+    const int steps = static_cast<int>(100 / dt);
+    with_backend(exec(), [&](auto& e) {
+      for (int n = 0; n < steps; ++n)
+        water_sources::evaporate(e, t.terrain.view(), 0.01f, static_cast<float>(dt), t.ledger());
+    });
+    const double expected = 2.5 * std::exp(-1.0);
+    EXPECT_NEAR(t.at(Layer::water, 2, 2), expected, 1e-6 * steps) << "time step " << dt;
+    EXPECT_EQ(t.booked(Material::water, 1), 20 * Quanta{5 << 19} - t.total(Layer::water));
+  }
+}
+
+TEST_P(Water, TheLastQuantumEvaporatesToo) {
+  test::BenchTerrain t(exec(), 3, 3);
+  t.set_quanta(Layer::water, [](int, int) { return 3; });
+  with_backend(exec(), [&](auto& e) {
+    for (int n = 0; n < 3; ++n) water_sources::evaporate(e, t.terrain.view(), 1e-4f, 1, t.ledger());
+  });
+  EXPECT_EQ(t.total(Layer::water), 0);
+}
+
+TEST_P(Water, MoistureOfOneModeSpreadsByTheDiscreteFactor) {
+  const int cells = 32, mode = 3;
+  for (const double number : {0.1, 0.25, 0.6}) {
+    test::BenchTerrain t(exec(), cells, 4);
+    t.set(Layer::sand, 3);
+    t.set(Layer::moisture, [&](int x, int) { return 0.15 + 0.05 * std::cos(2 * pi * mode * x / cells); });
+    MoistureParameters p;
+    p.evaporation = 0;
+    p.diffusion = static_cast<float>(number);
+    const auto amplitude = [&] {
+      double sum = 0;
+      for (int x = 0; x < cells; ++x)
+        sum += t.at(Layer::moisture, x, 2) * std::cos(2 * pi * mode * x / cells) * 2 / cells;
+      return sum;
+    };
+    const double before = amplitude();
+    const int steps = 5, parts = static_cast<int>(std::ceil(number * 4));
+    for (int n = 0; n < steps; ++n) t.soak(p);
+    const double sine = std::sin(pi * mode / cells);
+    const double factor = std::pow(1 - 4 * (number / parts) * sine * sine, parts * steps);
+    EXPECT_NEAR(amplitude() / before, factor, 1e-3) << "number " << number;
+  }
+}
+
+TEST_P(Water, SedimentComesToItsCapacityGeometrically) {
+  for (const bool above : {false, true}) {
+    test::BenchTerrain t(exec(), 6, 6);
+    t.set(Layer::sand, 5).set(Layer::water, 1).set(Layer::suspended_sediment, above ? 0.2 : 0.0);
+    t.terrain.require(Layer::water_velocity_x);
+    t.set(Layer::water_velocity_x, 1);  // whole cells a step: what comes is what goes
+    HydraulicErosionParameters p;
+    p.capacity = 2;
+    p.deep = 1e4f;
+    const double capacity = 2 * 0.05 * std::exp(-1e-4), rate = 0.1;
+    for (int n = 1; n <= 20; ++n) {
+      t.erode(p);
+      const double first = above ? 0.2 : 0.0,
+                   expected = capacity + (first - capacity) * std::pow(1 - rate, n);
+      EXPECT_NEAR(t.at(Layer::suspended_sediment, 3, 3), expected, 2e-5) << "step " << n;
+      EXPECT_NEAR(t.at(Layer::sand, 3, 3) + t.at(Layer::suspended_sediment, 3, 3), 5 + first, 1e-6);
+    }
+  }
+}
+
+DESERT_ON_EACH_BACKEND(Water);
+
+}  // namespace
+}  // namespace desert_sim
