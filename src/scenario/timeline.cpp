@@ -123,6 +123,8 @@ void emit_timeline(YAML::Emitter& out, const std::vector<TimelineEntry>& timelin
 void check_timeline(const Scenario& scenario, Faults& faults) {
   Scenario then = scenario;
   then.timeline.clear();
+  for (int* cells : {&then.grid.width, &then.grid.height}) *cells = *cells > 0 ? *cells : 1;
+  if (then.grid.cell_size == 0) then.grid.cell_size = 1;  // a raster may give it later
   for (std::size_t n = 0; n < scenario.timeline.size(); ++n) {
     try {
       then = with_live_settings(then, scenario.timeline[n].settings);
