@@ -2,14 +2,12 @@
 /// How an elevation that somebody holds follows the terrain, in steps. The one who sends them and the one who
 /// takes them compute the same bits.
 
-#include <cstdint>
-
 #include "desert_sim/kernels/macros.hpp"
 
 namespace desert_sim {
 
-/// What a cell that held `held` holds after `change` steps of `resolution` [m].
-DESERT_HD float changed_elevation(float held, std::int8_t change, float resolution) {
+/// What a cell that held `held` holds after `change` steps of `resolution` [m]; a whole number, −128 … 127.
+DESERT_HD float changed_elevation(float held, float change, float resolution) {
   return static_cast<float>(static_cast<double>(held) +
                             static_cast<double>(change) * static_cast<double>(resolution));
 }

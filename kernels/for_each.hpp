@@ -38,6 +38,19 @@ DESERT_HD Integer atomic_add(Integer* to, Integer amount) {
 #endif
 }
 
+/// Raises memory that other cells raise as well.
+template <class Integer>
+DESERT_HD void atomic_max(Integer* to, Integer value) {
+#if defined(__CUDA_ARCH__)
+  atomicMax(to, value);
+#else
+  Integer before = __atomic_load_n(to, __ATOMIC_RELAXED);
+  while (before < value &&
+         !__atomic_compare_exchange_n(to, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+#endif
+}
+
 /// A law for cells at least `margin` cells away from every edge of the grid, and one for the others.
 template <class Inside, class Border>
 struct Bordered {

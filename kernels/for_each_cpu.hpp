@@ -4,7 +4,9 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "desert_sim/kernels/for_each.hpp"
@@ -161,6 +163,45 @@ struct CpuTeam {
 /// Below so many cells, waking other threads costs more than they bring.
 constexpr int worth_threads = 16384;
 
+/// Pieces of work, 0 … count − 1, for the threads of a team. Each takes its own part, a few at a time, and
+/// then of the others' what these have not come to: the rest do not wait for a thread whose processor is
+/// taken from it, and where all goes well, each works on the same memory in every pass.
+class SharedWork {
+ public:
+  SharedWork(int threads, int count) : parts_(std::clamp(threads, 1, most_parts)) {
+    const auto start = [&](int part) { return std::int64_t{count} * part / parts_; };
+    for (int n = 0; n < parts_; ++n) {
+      part_[n].next = start(n);
+      part_[n].end = start(n + 1);
+    }
+    at_once_ = std::max(1, count / (parts_ * 16));
+  }
+  /// On each thread of the team: calls body(n) until there is nothing left to take.
+  template <class Body>
+  void work(const Body& body) {
+    const int own = omp_get_thread_num();
+    for (int n = 0; n < parts_; ++n) {
+      Part& part = part_[(own + n) % parts_];
+      for (;;) {
+        const std::int64_t first = part.next.fetch_add(at_once_, std::memory_order_relaxed);
+        if (first >= part.end) break;
+        const std::int64_t end = std::min(first + at_once_, part.end);
+        for (std::int64_t i = first; i < end; ++i) body(static_cast<int>(i));
+      }
+    }
+  }
+
+ private:
+  static constexpr int most_parts = 64;
+  struct alignas(64) Part {
+    std::atomic<std::int64_t> next{0};
+    std::int64_t end = 0;
+  };
+  int parts_;
+  std::int64_t at_once_;
+  Part part_[most_parts];
+};
+
 /// Calls law(x, y) for x in first … end−1. The law is copied, so that the compiler sees that no cell changes
 /// it.
 template <class Law>
@@ -175,21 +216,23 @@ void for_each_in_row(const Law& law, int first, int end, int y) {
 
 template <class Law>
 void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
-#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads)
-  for (int y = 0; y < grid.height; ++y) for_each_in_row(law, 0, grid.width, y);
+  SharedWork rows(exec.threads(), grid.height);
+#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
+  rows.work([&](int y) { for_each_in_row(law, 0, grid.width, y); });
 }
 
 template <class Inside, class Border>
 void for_each_cell(CpuExec& exec, const Grid& grid, const Bordered<Inside, Border>& law) {
-#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads)
-  for (int y = 0; y < grid.height; ++y) {
+  SharedWork rows(exec.threads(), grid.height);
+#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
+  rows.work([&](int y) {
     const bool inside = law.is_inside(y, grid.height);
     const int begin = inside ? std::min(law.margin, grid.width) : grid.width;
     const int end = std::max(begin, grid.width - law.margin);
     for_each_in_row(law.border, 0, begin, y);
     for_each_in_row(law.inside, begin, end, y);
     for_each_in_row(law.border, end, grid.width, y);
-  }
+  });
 }
 
 /// The cells of a row send what they have to `add`.
@@ -254,14 +297,15 @@ void for_each_cell_adding(CpuExec& exec, const Grid& grid, Quanta* sums, const L
 /// `Law::scratch_bytes<Team>` of memory are shared by the team; law(team, column, row).
 template <class Tiling, class Law>
 void for_each_tile(CpuExec& exec, const Tiling& tiles, const Law& law) {
-  const int columns = tiles.columns(), count = tiles.count();
+  const int columns = tiles.columns();
+  SharedWork all(exec.threads(), tiles.count());
 #pragma omp parallel num_threads(exec.threads()) if (tiles.grid.cells() >= worth_threads)
   {
     alignas(64) char scratch[Law::template scratch_bytes<CpuTeam>];
     const CpuTeam team{scratch};
-#pragma omp for schedule(static)
-    for (int t = 0; t < count; ++t)
+    all.work([&](int t) {
       with_widest_instructions([&]() DESERT_INLINE { law(team, t % columns, t / columns); });
+    });
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/layers.hpp"
+#include "desert_sim/kernels/surface.hpp"
 
 namespace desert_sim {
 
@@ -15,17 +16,29 @@ struct Metres {
 namespace layer_values {
 
 /// A layer that is not in use is null, and 0.
-struct Convert {
-  Grid grid;
+struct Stored {
   const Quanta* quanta;
   const float* real;
   Metres metres;
+  DESERT_HD float operator()(int i) const { return quanta ? metres(quanta[i]) : value_or_zero(real, i); }
+};
+
+/// The layer `elevation`, which no step fills, without it.
+struct Surface {
+  surface::SolidHeight height;
+  Metres metres;
+  DESERT_HD float operator()(int i) const { return metres(height(i)); }
+};
+
+template <class Values>
+struct Convert {
+  Grid grid;
+  Values values;
   int first;
   float* to;
 
   DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, wrap(first + y, grid.height));
-    to[grid.index(x, y)] = quanta ? metres(quanta[i]) : value_or_zero(real, i);
+    to[grid.index(x, y)] = values(grid.index(x, wrap(first + y, grid.height)));
   }
 };
 
@@ -33,12 +46,13 @@ struct Convert {
 /// beyond the north edge are those in the south.
 template <class E>
 void step(E& exec, const TerrainView& t, Layer layer, const Metres& metres, int first, int rows, float* to) {
-  const bool counted = info(layer).storage == Storage::quanta;
   Grid band = t.grid;
   band.height = rows;
-  for_each_cell(exec, band,
-                Convert{t.grid, counted ? t.quanta(layer) : nullptr, counted ? nullptr : t.real(layer),
-                        metres, first, to});
+  if (layer == Layer::elevation)
+    return for_each_cell(exec, band, Convert<Surface>{t.grid, {surface::SolidHeight(t), metres}, first, to});
+  const bool counted = info(layer).storage == Storage::quanta;
+  const Stored stored{counted ? t.quanta(layer) : nullptr, counted ? nullptr : t.real(layer), metres};
+  for_each_cell(exec, band, Convert<Stored>{t.grid, stored, first, to});
 }
 
 }  // namespace layer_values

@@ -52,6 +52,12 @@ DESERT_HD float positive_part(float v) {
   return float_of(static_cast<std::uint32_t>(bits > 0 ? bits : 0));
 #endif
 }
+/// |v| ≤ 2³⁰, halves go away from zero.
+DESERT_HD int nearest(float v) {
+  const int whole = static_cast<int>(v);
+  const float rest = v - static_cast<float>(whole);
+  return whole + (rest >= 0.5f ? 1 : 0) - (rest <= -0.5f ? 1 : 0);
+}
 DESERT_HD float hypotenuse(float x, float y) { return sqrtf(x * x + y * y); }
 
 /// e^(−x) for x ≥ 0, relative error below 3e-7; 0 from x = 87 on. Range reduction by ln 2 in two parts, then

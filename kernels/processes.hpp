@@ -6,6 +6,7 @@
 #include "desert_sim/kernels/avalanching_ground.hpp"
 #include "desert_sim/kernels/brush_smooth.hpp"
 #include "desert_sim/kernels/echo_dunes.hpp"
+#include "desert_sim/kernels/held_costs.hpp"
 #include "desert_sim/kernels/held_elevation.hpp"
 #include "desert_sim/kernels/hydraulic_erosion.hpp"
 #include "desert_sim/kernels/layer_values.hpp"

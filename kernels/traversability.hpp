@@ -195,11 +195,10 @@ struct Traversability {
     return excess * minimum(depth / limits.sand_depth, 1.0f);
   }
 
-  DESERT_HD void operator()(int x, int y) const {
+  DESERT_HD float at(int x, int y) const {
     const Surface& surface = roughness.surface;
     const int i = surface.grid.index(x, y);
-    traversability[i] = 0.0f;
-    if (value_or_zero(obstacle, i) > 0.0f) return;
+    if (value_or_zero(obstacle, i) > 0.0f) return 0.0f;
     const float loose = minimum(value_or_zero(sand, i) * surface.quantum / limits.sand_depth, 1.0f);
     float worst = arctangent(surface.steepness(x, y)) / lerp(slope, sand_slope, loose);
     worst = maximum(worst, limits.sand_cost * loose);
@@ -208,9 +207,32 @@ struct Traversability {
     worst = maximum(worst, value_or_zero(vegetation, i) / limits.vegetation);
     if (worst < 1.0f) worst = maximum(worst, step_height.at(x, y) / limits.step_height);
     if (worst < 1.0f) worst = maximum(worst, roughness.at(x, y) / limits.roughness);
-    traversability[i] = clamp(1.0f - worst, 0.0f, 1.0f);
+    return clamp(1.0f - worst, 0.0f, 1.0f);
+  }
+  DESERT_HD void operator()(int x, int y) const {
+    traversability[roughness.surface.grid.index(x, y)] = at(x, y);
   }
 };
+
+/// The law for this rover; it writes to those layers that the view has.
+inline Traversability law(const TerrainView& t, const TraversabilityParameters& p,
+                          const ReposeParameters& repose) {
+  const float degree = 3.14159265358979f / 180.0f;
+  const int reach = window_cells(p, t.grid.cell_size);
+  const Surface surface{t.grid, t.quanta(Layer::elevation), t.quantum};
+  return {{surface, reach, t.real(Layer::roughness)},
+          {surface, reach, tanf(p.slope_deg * degree), t.real(Layer::step_height)},
+          p.slope_deg * degree,
+          p.sand_slope_deg * degree,
+          p,
+          t.quanta(Layer::sand),
+          t.quanta(Layer::soil),
+          t.quanta(Layer::water),
+          repose::RelativeMoisture(t, repose),
+          t.real(Layer::vegetation),
+          t.real(Layer::obstacle),
+          t.real(Layer::traversability)};
+}
 
 /// A law on a band of rows: it is called for rows that begin with `first`, and go on over the edge.
 template <class Law>
@@ -224,34 +246,19 @@ struct OnRows {
 template <class E>
 void step(E& exec, const TerrainView& t, const TraversabilityParameters& p, const ReposeParameters& repose,
           int first, int rows) {
-  const float degree = 3.14159265358979f / 180.0f;
-  const int reach = window_cells(p, t.grid.cell_size);
-  const Surface surface{t.grid, t.quanta(Layer::elevation), t.quantum};
-  const Orientation orientation{surface, t.real(Layer::slope), t.real(Layer::normal_x),
+  const Traversability judge = law(t, p, repose);
+  const Orientation orientation{judge.roughness.surface, t.real(Layer::slope), t.real(Layer::normal_x),
                                 t.real(Layer::normal_y), t.real(Layer::normal_z)};
-  const Roughness roughness{surface, reach, t.real(Layer::roughness)};
-  const StepHeight step_height{surface, reach, tanf(p.slope_deg * degree), t.real(Layer::step_height)};
-  const Traversability traversability{roughness,
-                                      step_height,
-                                      p.slope_deg * degree,
-                                      p.sand_slope_deg * degree,
-                                      p,
-                                      t.quanta(Layer::sand),
-                                      t.quanta(Layer::soil),
-                                      t.quanta(Layer::water),
-                                      repose::RelativeMoisture(t, repose),
-                                      t.real(Layer::vegetation),
-                                      t.real(Layer::obstacle),
-                                      t.real(Layer::traversability)};
-  const auto run = [&](const auto& law, bool wanted) {
+  const auto run = [&](const auto& of_cell, bool wanted) {
     Grid band = t.grid;
     band.height = rows;
-    if (wanted) for_each_cell(exec, band, OnRows<std::decay_t<decltype(law)>>{law, first, t.grid.height});
+    if (wanted)
+      for_each_cell(exec, band, OnRows<std::decay_t<decltype(of_cell)>>{of_cell, first, t.grid.height});
   };
   run(orientation, orientation.slope || orientation.normal_x || orientation.normal_y || orientation.normal_z);
-  run(roughness, roughness.roughness != nullptr);
-  run(step_height, step_height.step_height != nullptr);
-  run(traversability, traversability.traversability != nullptr);
+  run(judge.roughness, judge.roughness.roughness != nullptr);
+  run(judge.step_height, judge.step_height.step_height != nullptr);
+  run(judge, judge.traversability != nullptr);
 }
 
 }  // namespace traversability

@@ -40,16 +40,16 @@ bool ElevationAssembler::is_held(const ElevationGrid& keyframe) const {
          !keyframe.header.stamp.isZero() && keyframe.header.stamp == keyframe_stamp_;
 }
 
-MapChange ElevationAssembler::take(const ElevationGrid& keyframe) {
-  if (const std::string fault = fault_of(keyframe); !fault.empty()) return refuse(fault);
+MapChange ElevationAssembler::take(const ElevationGrid::ConstPtr& keyframe) {
+  if (const std::string fault = fault_of(*keyframe); !fault.empty()) return refuse(fault);
   MapChange change;
   change.map = std::make_shared<const ElevationMap>(keyframe, map_.get(), change.cells);
-  if (is_held(keyframe)) {
+  if (is_held(*keyframe)) {
     sent_again_ = change.map;
     ++counts_.late;
     return {};
   }
-  keyframe_stamp_ = keyframe.header.stamp;
+  keyframe_stamp_ = keyframe->header.stamp;
   return hold(change);
 }
 

@@ -42,7 +42,8 @@ enum class KeyframeNeed {
 
 class ElevationAssembler {
  public:
-  MapChange take(const ElevationGrid& keyframe);
+  /// Keeps the message, which must not change any more.
+  MapChange take(const ElevationGrid::ConstPtr& keyframe);
   /// Keeps the message if its keyframe is still to come.
   MapChange take(const ElevationUpdate::ConstPtr& update);
   /// The keyframe that is expected has not come for too long: counts a gap, if a map is held.

@@ -1,9 +1,9 @@
 #include "desert_sim/client/elevation_map.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 
 #include "desert_sim/client/elevation_tile.hpp"
@@ -12,31 +12,16 @@ namespace desert_sim {
 
 namespace {
 
-constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
-
-/// Cells in a row of a block that lie on a grid of n cells, `first` being the first of them.
-std::uint32_t on_grid(std::uint32_t first, std::uint32_t side, std::uint32_t n) {
-  return std::min(side, n - first);
-}
-
-/// The smallest rectangle that has the cells in which two blocks at (x, y) differ; to the bit, so that NaN is
-/// NaN.
-template <class Block>
-ElevationMap::Rectangle difference(const Block& a, const Block& b, std::uint32_t x, std::uint32_t y,
-                                   std::uint32_t side) {
-  ElevationMap::Rectangle changed;
-  const auto same = [](const float* one, const float* other, std::uint32_t cells) {
-    return std::memcmp(one, other, cells * sizeof(float)) == 0;
+/// Of cells beside each other, those in which two runs differ; to the bit, so that NaN is NaN.
+ElevationMap::Rectangle difference(const float* a, const float* b, std::uint32_t cells) {
+  const auto same = [a, b](std::uint32_t first, std::uint32_t count) {
+    return std::memcmp(a + first, b + first, count * sizeof(float)) == 0;
   };
-  for (std::uint32_t row = 0; row < side; ++row) {
-    const float *one = a.data() + row * side, *other = b.data() + row * side;
-    if (same(one, other, side)) continue;
-    std::uint32_t first = 0, last = side - 1;
-    while (same(one + first, other + first, 1)) ++first;
-    while (same(one + last, other + last, 1)) --last;
-    changed.include({x + first, y + row, last - first + 1, 1});
-  }
-  return changed;
+  if (same(0, cells)) return {};
+  std::uint32_t first = 0, last = cells - 1;
+  while (same(first, 1)) ++first;
+  while (same(last, 1)) --last;
+  return {first, 0, last - first + 1, 1};
 }
 
 }  // namespace
@@ -57,32 +42,29 @@ void ElevationMap::Rectangle::include(const Rectangle& other) {
 
 // ---- making ----
 
-ElevationMap::ElevationMap(const ElevationGrid& keyframe, const ElevationMap* before, Rectangle& changed) {
-  info_.frame = keyframe.header.frame_id;
-  info_.stamp = keyframe.header.stamp;
-  info_.step = keyframe.step;
-  info_.sim_time = keyframe.sim_time;
-  info_.keyframe = keyframe.keyframe;
-  info_.width = keyframe.width;
-  info_.height = keyframe.height;
-  info_.cell_size = keyframe.cell_size;
-  info_.origin_x = keyframe.origin.position.x;
-  info_.origin_y = keyframe.origin.position.y;
+ElevationMap::ElevationMap(ElevationGrid::ConstPtr keyframe, const ElevationMap* before, Rectangle& changed)
+    : keyframe_(std::move(keyframe)) {
+  info_.frame = keyframe_->header.frame_id;
+  info_.stamp = keyframe_->header.stamp;
+  info_.step = keyframe_->step;
+  info_.sim_time = keyframe_->sim_time;
+  info_.keyframe = keyframe_->keyframe;
+  info_.width = keyframe_->width;
+  info_.height = keyframe_->height;
+  info_.cell_size = keyframe_->cell_size;
+  info_.origin_x = keyframe_->origin.position.x;
+  info_.origin_y = keyframe_->origin.position.y;
+  blocks_.resize(static_cast<std::size_t>(blocks_across()) * ((info_.height + side - 1) / side));
 
-  const bool comparable = before && same_geometry(*before);
-  changed = comparable ? Rectangle{} : Rectangle{0, 0, info_.width, info_.height};
-  for (std::uint32_t y = 0; y < info_.height; y += side)
-    for (std::uint32_t x = 0; x < info_.width; x += side) {
-      std::shared_ptr<Block> block(new Block);  // not filled with zeros first, as make_shared would
-      const std::uint32_t rows = on_grid(y, side, info_.height), columns = on_grid(x, side, info_.width);
-      if (rows < side || columns < side) block->fill(unknown);
-      for (std::uint32_t row = 0; row < rows; ++row)
-        std::copy_n(keyframe.elevation.data() + static_cast<std::size_t>(y + row) * info_.width + x, columns,
-                    block->data() + row * side);
-      const std::shared_ptr<const Block> held = comparable ? before->blocks_[blocks_.size()] : nullptr;
-      const Rectangle differs = held ? difference(*block, *held, x, y, side) : Rectangle{};
-      changed.include(differs);
-      blocks_.push_back(held && differs.empty() ? held : std::move(block));
+  changed = {0, 0, info_.width, info_.height};
+  if (!before || !same_geometry(*before)) return;
+  changed = {};
+  for (std::uint32_t y = 0; y < info_.height; ++y)
+    for (std::uint32_t x = 0; x < info_.width; x += run_length(x, info_.width)) {
+      Rectangle cells = difference(run(x, y), before->run(x, y), run_length(x, info_.width));
+      cells.x += x;
+      cells.y = y;
+      changed.include(cells);
     }
 }
 
@@ -92,25 +74,34 @@ std::shared_ptr<const ElevationMap> ElevationMap::after(const ElevationUpdate& u
   map->info_.step = update.step;
   map->info_.sim_time = update.sim_time;
   map->info_.sequence = update.sequence;
-  for (const ElevationTile& tile : update.tiles) map->write(tile, *this);
+  TileReader reader;
+  for (const ElevationTile& tile : update.tiles) map->write(tile, reader, *this);
   return map;
 }
 
-void ElevationMap::write(const ElevationTile& tile, const ElevationMap& before) {
+void ElevationMap::write(const ElevationTile& tile, TileReader& reader, const ElevationMap& before) {
   const std::uint32_t right = tile.x + tile.width, top = tile.y + tile.height;
-  TileReader reader(tile);
+  reader.begin(tile);
   for (std::uint32_t y = tile.y; y < top; ++y)
     for (std::uint32_t x = tile.x; x < right;) {
-      float* row = own_block(x, y, before).data() + y % side * side;
-      const std::uint32_t end = std::min(right, (x / side + 1) * side);
-      for (; x < end; ++x) reader.write_next(row[x % side]);
+      float* const row = own_block(x, y, before).data() + y % side * side;
+      const std::uint32_t cells = run_length(x, right);
+      reader.write_next(row + x % side, cells);
+      x += cells;
     }
 }
 
 /// A block that is still shared with the map before is copied first.
 ElevationMap::Block& ElevationMap::own_block(std::uint32_t x, std::uint32_t y, const ElevationMap& before) {
   const std::size_t n = y / side * blocks_across() + x / side;
-  if (blocks_[n] == before.blocks_[n]) blocks_[n] = std::make_shared<Block>(*blocks_[n]);
+  if (blocks_[n] == before.blocks_[n]) {
+    std::shared_ptr<Block> copy(new Block);  // not filled with zeros first, as make_shared would
+    const std::uint32_t west = x / side * side, south = y / side * side;
+    const std::uint32_t cells = run_length(west, info_.width), rows = run_length(south, info_.height);
+    for (std::uint32_t row = 0; row < rows; ++row)
+      std::copy_n(run(west, south + row), cells, copy->data() + row * side);
+    blocks_[n] = std::move(copy);
+  }
   return const_cast<Block&>(*blocks_[n]);  // ours alone until this map is handed out
 }
 
@@ -197,9 +188,8 @@ std::vector<float> ElevationMap::elevations(const Rectangle& r) const {
   copy.reserve(static_cast<std::size_t>(r.width) * r.height);
   for (std::uint32_t y = r.y; y < top; ++y)
     for (std::uint32_t x = r.x; x < right;) {
-      const std::uint32_t n = std::min(static_cast<std::uint32_t>(right), (x / side + 1) * side) - x;
-      const float* const from =
-          blocks_[y / side * blocks_across() + x / side]->data() + y % side * side + x % side;
+      const std::uint32_t n = run_length(x, static_cast<std::uint32_t>(right));
+      const float* const from = run(x, y);
       copy.insert(copy.end(), from, from + n);
       x += n;
     }
@@ -220,8 +210,10 @@ std::string wrong_size(std::size_t numbers, std::uint32_t width, std::uint32_t h
 }
 
 std::string infinite(const std::vector<float>& elevations) {
+  unsigned any = 0;  // without a branch, compilers look at several at once
+  for (const float z : elevations) any |= std::fabs(z) == HUGE_VALF ? 1u : 0u;
+  if (any == 0) return "";
   const auto bad = std::find_if(elevations.begin(), elevations.end(), [](float z) { return std::isinf(z); });
-  if (bad == elevations.end()) return "";
   return "elevation " + std::to_string(bad - elevations.begin()) + " is " + std::to_string(*bad) +
          ": must be finite, or NaN if unknown";
 }
@@ -233,14 +225,12 @@ std::size_t count_changed(const ElevationTile& tile, std::string& fault) {
     fault = std::to_string(tile.changed.size()) + " bytes of mask for " + cells_text(tile.width, tile.height);
     return 0;
   }
+  for (std::size_t bit = cells; bit < 8 * tile.changed.size(); ++bit)
+    if (mask_has(tile.changed, bit))
+      fault = "bit " + std::to_string(bit) + " of its mask is set, and it has " +
+              cells_text(tile.width, tile.height);
   std::size_t count = 0;
-  for (std::size_t bit = 0; bit < 8 * tile.changed.size(); ++bit)
-    if (mask_has(tile.changed, bit)) {
-      ++count;
-      if (bit >= cells)
-        fault = "bit " + std::to_string(bit) + " of its mask is set, and it has " +
-                cells_text(tile.width, tile.height);
-    }
+  for (const std::uint8_t eight : tile.changed) count += std::bitset<8>(eight).count();
   return count;
 }
 

@@ -1,12 +1,14 @@
 #pragma once
 /// The surface as a client holds it. A map never changes once it is made; the map after an update shares with
-/// the one before all blocks of cells that the update leaves alone.
+/// the one before all blocks of cells that the update leaves alone, and the keyframe's own cells where no
+/// update has written since.
 
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
 #include <geometry_msgs/Vector3.h>
 #include <ros/time.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -15,6 +17,8 @@
 #include <vector>
 
 namespace desert_sim {
+
+class TileReader;
 
 class ElevationMap {
  public:
@@ -41,7 +45,7 @@ class ElevationMap {
 
   /// Of a keyframe, which must be sound: see fault_of(). `changed` becomes the smallest rectangle of cells
   /// that differ from those of `before`, all cells if that is null or has another geometry.
-  ElevationMap(const ElevationGrid& keyframe, const ElevationMap* before, Rectangle& changed);
+  ElevationMap(ElevationGrid::ConstPtr keyframe, const ElevationMap* before, Rectangle& changed);
 
   const Info& info() const { return info_; }
   /// Whether both have the same frame, size, place and cells, so that cell (x, y) is the same piece of
@@ -77,16 +81,25 @@ class ElevationMap {
 
   ElevationMap() = default;
   std::uint32_t blocks_across() const { return (info_.width + side - 1) / side; }
-  float cell(std::uint32_t x, std::uint32_t y) const {
-    return (*blocks_[y / side * blocks_across() + x / side])[y % side * side + x % side];
+  /// The cells from this one eastwards, as far as its block goes.
+  const float* run(std::uint32_t x, std::uint32_t y) const {
+    const Block* const block = blocks_[y / side * blocks_across() + x / side].get();
+    return block ? block->data() + y % side * side + x % side
+                 : keyframe_->elevation.data() + static_cast<std::size_t>(y) * info_.width + x;
   }
-  void write(const ElevationTile& tile, const ElevationMap& before);
+  /// How many these are, or as many as lie before `end`.
+  static std::uint32_t run_length(std::uint32_t x, std::uint32_t end) {
+    return std::min(end, (x / side + 1) * side) - x;
+  }
+  float cell(std::uint32_t x, std::uint32_t y) const { return *run(x, y); }
+  void write(const ElevationTile& tile, TileReader& reader, const ElevationMap& before);
   Block& own_block(std::uint32_t x, std::uint32_t y, const ElevationMap& before);
   std::optional<Patch> patch(double x, double y) const;
   std::optional<Gradient> gradient(double x, double y) const;
 
   Info info_;
-  std::vector<std::shared_ptr<const Block>> blocks_;  ///< row-major; those at the edge are filled up with NaN
+  ElevationGrid::ConstPtr keyframe_;
+  std::vector<std::shared_ptr<const Block>> blocks_;  ///< row-major; null where all cells are the keyframe's
 };
 
 /// What makes a keyframe unfit to be held, with the value; empty if nothing does.

@@ -135,7 +135,7 @@ bool TerrainClient::wait(const std::function<bool()>& happened, double timeout) 
 
 void TerrainClient::take(const ElevationGrid::ConstPtr& keyframe) {
   const std::lock_guard<std::mutex> one_at_a_time(taking_);
-  tell(assembler_.take(*keyframe), nullptr);
+  tell(assembler_.take(keyframe), nullptr);
 }
 
 void TerrainClient::take(const ElevationUpdate::ConstPtr& update) {

@@ -11,19 +11,22 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/ros/held_costs.hpp"
 #include "desert_sim/ros/moment.hpp"
 
 namespace desert_sim {
 
-/// Numbers nothing: a subscriber needs one whole map and all updates since. One thread at a time.
+/// Numbers nothing: a subscriber needs one whole map and all updates since. What subscribers hold is kept by
+/// the simulation, which tells what they lack, and here beside it, because a rectangle has all its cells.
+/// One thread at a time.
 class CostmapStream {
  public:
   CostmapStream(ros::Publisher keyframes, ros::Publisher updates, std::string frame);
   /// A costmap_2d that takes two messages in between two of its own cycles only looks at the cells of the
   /// second: what was sent less than one and a half periods of `update_rate` ago (0: seconds) is part of the
-  /// next rectangle. `threshold`: see HeldCosts.
+  /// next rectangle. `threshold`: see CostQuery.
   void configure(double update_rate, int threshold);
+  /// What publish_update() needs. publish_keyframe() needs the whole map.
+  void ask_for_update(CostQuery& query);
   void publish_keyframe(const TerrainState& state);
   /// The smallest rectangle with all cells that differ from what is held by more than the threshold. Nothing,
   /// and false, if none does, or if a whole map is due first: subscribers hold one of another terrain or
@@ -38,18 +41,20 @@ class CostmapStream {
     CellBox cells;
   };
 
-  void hold(const TerrainState& state, std::vector<std::int8_t> now);
   bool holds(const TerrainState& state) const;
-  /// Adds what was sent lately, and remembers that it is sent now.
-  CellBox with_recent(const CellBox& cells);
+  void take(const CostChanges& changes, const TerrainState& state);
+  void publish_whole(const TerrainState& state);
+  void publish_box(const CellBox& box, const TerrainState& state);
 
   ros::Publisher keyframes_, updates_;
   std::string frame_;
   std::chrono::duration<double> repeat_{0};
-  HeldCosts held_;
-  std::uint64_t terrain_ = 0;
-  std::deque<Sent> sent_;
-  Clock::time_point replaced_;  ///< when the first whole map of another terrain was sent
+  int threshold_ = 0;
+  int width_ = 0, height_ = 0;
+  std::vector<std::int8_t> held_;  ///< row-major
+  std::uint64_t terrain_ = 0;      ///< that is held
+  std::deque<Sent> sent_;          ///< lately, without what was repeated
+  Clock::time_point replaced_;     ///< when a map of another terrain was held first
 };
 
 }  // namespace desert_sim

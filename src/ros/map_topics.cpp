@@ -100,8 +100,8 @@ void Topics::add_local_map() {
 void Topics::add_costmap() {
   const MapParameters& p = parameters_.maps.parameters;
   // In the order of ~elevation's, and for its reason.
-  Topic& updates = add(p.costmap_update_rate, {Layer::traversability});
-  Topic& keyframes = add(p.costmap_keyframe_rate, {Layer::traversability});
+  Topic& updates = add(p.costmap_update_rate, std::vector<Layer>());
+  Topic& keyframes = add(p.costmap_keyframe_rate, std::vector<Layer>());
   // move_base has two costmaps in one process, of which the second waits for a map and is no new subscriber
   // to us. roscpp hands it the last message there was, but only of a topic that somebody advertises as
   // latched.
@@ -111,6 +111,8 @@ void Topics::add_costmap() {
       advertise_named<map_msgs::OccupancyGridUpdate>("costmap_updates", 10, updates, keyframes);
   costmap_ = std::make_unique<CostmapStream>(keyframes.publisher, updates.publisher, frame_);
   keyframes.covered = [&updates, &keyframes] { return keyframes.names.are_among(updates.names); };
+  updates.held = [this](HeldQuery& held) { costmap_->ask_for_update(held.costs); };
+  keyframes.held = [](HeldQuery& held) { held.costs.whole = true; };
   updates.publish = [this](const TerrainState& state) { return costmap_->publish_update(state); };
   keyframes.publish = [this](const TerrainState& state) {
     costmap_->publish_keyframe(state);

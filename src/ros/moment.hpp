@@ -22,13 +22,14 @@ struct Moment {
   std::uint64_t terrain = 0;  ///< grows when the terrain is replaced: by a reset or a checkpoint
 };
 
-/// What is asked about the elevation that others hold, and what they hold afterwards.
+/// What is asked about what others hold: the elevation, with what they hold afterwards, and costs.
 struct HeldQuery {
   enum class Then { as_before, present, present_if_none, none };
   bool changes = false;  ///< whether the cells are wanted that differ by more than the threshold
   double threshold = 0;  ///< [m]
   int tile = 1;          ///< [cells]
   Then then = Then::as_before;
+  CostQuery costs;
 };
 
 /// Layers of the terrain at one moment; never changes once it is made.
@@ -36,6 +37,8 @@ struct TerrainState {
   Moment moment;
   std::shared_ptr<const Snapshot> snapshot;         ///< layers that are not in use are absent, and 0
   std::shared_ptr<const ElevationChanges> changes;  ///< if they were asked for; null if nothing was held
+  std::shared_ptr<const CostChanges> cost_update;   ///< likewise; then there is the whole map
+  std::shared_ptr<const CostChanges> whole_costs;
 };
 
 /// What save_terrain() takes; the snapshot has the elevation too.

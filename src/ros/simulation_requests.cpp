@@ -96,7 +96,8 @@ SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<
   snapshot_requested_ = steady_now();
   ++snapshots_;
   Simulation& s = session_->simulation();
-  StateUnderWay state{moment(), s.begin_snapshot(in_use, band), {}};
+  StateUnderWay state{moment(), s.begin_snapshot(in_use, band), {}, s.take_costs(held.costs)};
+  if (held.costs.update || held.costs.whole) costs_requested_ = steady_now();
   if (held.changes && s.holds_elevation())
     state.changes = s.take_elevation_changes(held.threshold, held.tile);
   const bool none = !s.holds_elevation();
@@ -106,12 +107,14 @@ SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<
   return state;
 }
 
+TerrainState SimulationThread::StateUnderWay::get() const {
+  return {moment, snapshot.get(), changes.get(), costs.update.get(), costs.whole.get()};
+}
+
 std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band,
                                                     const HeldQuery& held) {
   return wait_there<TerrainState>(ask<StateUnderWay>([=] { return begin_state(layers, band, held); }),
-                                  [](const StateUnderWay& s) {
-                                    return TerrainState{s.moment, s.snapshot.get(), s.changes.get()};
-                                  });
+                                  [](const StateUnderWay& state) { return state.get(); });
 }
 
 std::future<TerrainToSave> SimulationThread::terrain_to_save() {
@@ -120,16 +123,15 @@ std::future<TerrainToSave> SimulationThread::terrain_to_save() {
     Scenario scenario;
     std::uint64_t hash;
   };
-  return wait_there<TerrainToSave>(
-      ask<UnderWay>([this] {
-        const Simulation& s = session_->simulation();
-        std::vector<Layer> layers = terrain_layers(s);
-        layers.push_back(Layer::elevation);
-        return UnderWay{begin_state(layers, {}, {}), s.scenario(), state_hash()};
-      }),
-      [](const UnderWay& u) {
-        return TerrainToSave{{u.state.moment, u.state.snapshot.get(), nullptr}, u.scenario, u.hash};
-      });
+  return wait_there<TerrainToSave>(ask<UnderWay>([this] {
+                                     const Simulation& s = session_->simulation();
+                                     std::vector<Layer> layers = terrain_layers(s);
+                                     layers.push_back(Layer::elevation);
+                                     return UnderWay{begin_state(layers, {}, {}), s.scenario(), state_hash()};
+                                   }),
+                                   [](const UnderWay& u) {
+                                     return TerrainToSave{u.state.get(), u.scenario, u.hash};
+                                   });
 }
 
 std::future<Reached> SimulationThread::save_checkpoint(const std::string& path) {

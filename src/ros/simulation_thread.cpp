@@ -211,6 +211,7 @@ void SimulationThread::release_unused_memory() {
     return true;
   };
   if (unused(layers_requested_)) session_->simulation().release_requested_layers();
+  if (unused(costs_requested_)) session_->simulation().forget_costs();
   if (unused(snapshot_requested_)) session_->simulation().staging().release();
 }
 

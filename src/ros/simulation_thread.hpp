@@ -102,6 +102,8 @@ class SimulationThread {
     Moment moment;
     PendingSnapshot snapshot;
     Pending<ElevationChanges> changes;
+    TakenCosts costs;
+    TerrainState get() const;
   };
   StateUnderWay begin_state(const std::vector<Layer>& layers, const RowBand& band, const HeldQuery& held);
   Moment moment();
@@ -132,8 +134,8 @@ class SimulationThread {
   bool paused_, waiting_for_clock_ = false;
   int unsettled_steps_ = 0;
   std::uint64_t snapshots_ = 0;
-  /// When layers that exist on request, and snapshots, were last asked for [s]; 0: they have no memory.
-  double layers_requested_ = 0, snapshot_requested_ = 0;
+  /// When layers that exist on request, costs and snapshots were last asked for [s]; 0: they have no memory.
+  double layers_requested_ = 0, costs_requested_ = 0, snapshot_requested_ = 0;
   // Measuring: now and then a step is timed, process by process, while somebody looks at reports.
   double measure_until_ = 0;
   int steps_until_timed_ = 0, timed_steps_ = 0;

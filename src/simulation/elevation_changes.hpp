@@ -29,6 +29,6 @@ struct ElevationChanges {
 };
 
 /// Reads what held_elevation::take_changes() has packed in `slot`; only that is copied.
-std::vector<TileChange> unpacked_changes(Staging::Slot& slot, const held_elevation::Tiling& tiles);
+std::vector<TileChange> unpacked_changes(Staging::Slot& slot, const packed_tiles::Tiling& tiles);
 
 }  // namespace desert_sim

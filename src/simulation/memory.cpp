@@ -155,6 +155,7 @@ std::vector<MemoryPart> Simulation::memory() const {
   add("capacity for sediment", erosion_work_.capacity.bytes());
   add("ledger", ledger_.bytes());
   add("elevation that others hold", held_.bytes());
+  add("costs that others hold", costs_.bytes());
   add("staging memory", staging_.bytes());
   return parts;
 }

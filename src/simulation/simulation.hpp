@@ -10,6 +10,7 @@
 #include "desert_sim/kernels/processes.hpp"
 #include "desert_sim/scenario/terrain_builder.hpp"
 #include "desert_sim/simulation/command.hpp"
+#include "desert_sim/simulation/cost_changes.hpp"
 #include "desert_sim/simulation/elevation_changes.hpp"
 #include "desert_sim/simulation/snapshot.hpp"
 #include "desert_sim/simulation/step_recordings.hpp"
@@ -102,6 +103,11 @@ class Simulation {
   /// Throws StateError if nothing is held.
   Pending<ElevationChanges> take_elevation_changes(double threshold, int tile);
 
+  /// Starts a copy of what others lack of the costs of the terrain, for the rover of the scenario's section
+  /// `traversability`; it is held then: whoever drops the answer lacks it from then on.
+  TakenCosts take_costs(const CostQuery& query);
+  void forget_costs() { costs_ = {}; }
+
   /// Memory through which copies go to the host.
   Staging& staging() { return staging_; }
   /// Layers that are in use, derived ones included.
@@ -150,9 +156,6 @@ class Simulation {
   void refresh_derived();
   /// Computes those of `layers` that exist on request, in a band that lies on the terrain.
   void judge(const std::vector<Layer>& layers, const RowBand& rows);
-  /// Packs what changed in rows of tiles, and sends it on its way to the end of `changes`.
-  void send_changes(const std::shared_ptr<ElevationChanges>& changes, const held_elevation::Tiling& tiles,
-                    float threshold, const std::shared_ptr<Readback>& readback);
   /// A snapshot's frame; its layers are there and empty.
   std::shared_ptr<Snapshot> frame_of(const std::vector<Layer>& layers, const RowBand& rows) const;
   /// Sends rows of the snapshot's layers on their way to the end of what it has.
@@ -211,6 +214,7 @@ class Simulation {
   Buffer<float> reptation_strength_;
   Buffer<Quanta> landed_;  ///< of saltation; what comes after it in a step may scribble there
   Buffer<float> held_;     ///< the elevation that others hold [m]; none if they hold none
+  HeldCosts costs_;        ///< likewise
 
   StepRecordings recordings_;
   bool timing_ = false;

@@ -49,9 +49,6 @@ PendingSnapshot Simulation::begin_snapshot(const std::vector<Layer>& layers, con
   const std::shared_ptr<Snapshot> snapshot = frame_of(layers, rows);
   refresh_derived();
   const bool judged = std::any_of(layers.begin(), layers.end(), on_request);
-  // No step fills that layer.
-  if (judged || std::count(layers.begin(), layers.end(), Layer::elevation) > 0)
-    with_backend(exec(), [&](auto& e) { surface::fill_elevation(e, terrain_.view()); });
   if (judged) judge(layers, rows);
   auto readback = std::make_shared<Readback>();
   if (layers.empty()) return {snapshot, readback};
@@ -99,6 +96,7 @@ void Simulation::judge(const std::vector<Layer>& layers, const RowBand& rows) {
     if (on_request(row.layer) && std::count(layers.begin(), layers.end(), row.layer) == 0)
       view.layers[static_cast<int>(row.layer)] = nullptr;
   with_backend(exec(), [&](auto& e) {
+    surface::fill_elevation(e, view);
     traversability::step(e, view, scenario_.traversability, scenario_.repose, rows.first, rows.count);
   });
 }

@@ -17,6 +17,9 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 class Assembler : public testing::Test {
  protected:
+  MapChange take(const ElevationGrid& keyframe) {
+    return assembler_.take(boost::make_shared<ElevationGrid>(keyframe));
+  }
   float corner() const { return assembler_.map()->at(0, 0); }
   const desert_sim::StreamCounts& counts() const { return assembler_.counts(); }
   bool whole() const { return assembler_.need() == KeyframeNeed::none; }
@@ -37,7 +40,7 @@ TEST_F(Assembler, BeginsWithNothingAndExpectsAKeyframe) {
 }
 
 TEST_F(Assembler, WritesUpdatesOverTheKeyframe) {
-  const MapChange first = assembler_.take(keyframe(4, 10));
+  const MapChange first = take(keyframe(4, 10));
   EXPECT_TRUE(first.replaced);
   EXPECT_EQ(first.cells.width * first.cells.height, 130u * 70u);
   const MapChange second = assembler_.take(update(4, 1, 11, 5));
@@ -55,7 +58,7 @@ TEST_F(Assembler, WritesUpdatesOverTheKeyframe) {
 }
 
 TEST_F(Assembler, AnUpdateWithoutTilesMovesTimeOnly) {
-  assembler_.take(keyframe(1, 1, 130, 70, 3));
+  take(keyframe(1, 1, 130, 70, 3));
   const auto nothing = update(1, 1, 9);
   nothing->tiles.clear();
   const MapChange change = assembler_.take(nothing);
@@ -65,12 +68,12 @@ TEST_F(Assembler, AnUpdateWithoutTilesMovesTimeOnly) {
 }
 
 TEST_F(Assembler, AKeyframeThatConfirmsChangesNoCell) {
-  assembler_.take(keyframe(1, 1));
-  const MapChange change = assembler_.take(keyframe(2, 5));
+  take(keyframe(1, 1));
+  const MapChange change = take(keyframe(2, 5));
   EXPECT_TRUE(change.cells.empty());
   EXPECT_FALSE(change.replaced);
   EXPECT_EQ(assembler_.map()->info().step, 5u);
-  const MapChange another_size = assembler_.take(keyframe(3, 6, 20, 33));
+  const MapChange another_size = take(keyframe(3, 6, 20, 33));
   EXPECT_TRUE(another_size.replaced);
 }
 
@@ -80,18 +83,18 @@ TEST_F(Assembler, UpdatesWaitForTheirKeyframe) {
   assembler_.take(update(1, 1, 2, 8));
   assembler_.take(update(1, 2, 3, 9));
   EXPECT_EQ(assembler_.map(), nullptr);
-  const MapChange change = assembler_.take(keyframe(1, 1));
+  const MapChange change = take(keyframe(1, 1));
   EXPECT_EQ(change.map->info().sequence, 2u);
   EXPECT_EQ(corner(), 9);
   EXPECT_TRUE(whole());
 }
 
 TEST_F(Assembler, UpdatesThatOvertakeALaterKeyframeAreNoGap) {
-  assembler_.take(keyframe(1, 1));
+  take(keyframe(1, 1));
   assembler_.take(update(2, 1, 3, 7));
   EXPECT_EQ(assembler_.need(), KeyframeNeed::expected);
   EXPECT_EQ(corner(), 0);
-  const MapChange change = assembler_.take(keyframe(2, 2));
+  const MapChange change = take(keyframe(2, 2));
   EXPECT_EQ(corner(), 7);
   EXPECT_EQ(change.cells.width, 2u) << "the keyframe differs in no cell, the update in some";
   EXPECT_TRUE(whole());
@@ -99,8 +102,8 @@ TEST_F(Assembler, UpdatesThatOvertakeALaterKeyframeAreNoGap) {
 }
 
 TEST_F(Assembler, TheLastUpdateOfTheOldKeyframeMayComeLate) {
-  assembler_.take(keyframe(1, 1));
-  assembler_.take(keyframe(2, 3, 130, 70, 4));
+  take(keyframe(1, 1));
+  take(keyframe(2, 3, 130, 70, 4));
   assembler_.take(update(1, 1, 3, 8));
   EXPECT_EQ(corner(), 4);
   EXPECT_TRUE(whole());
@@ -108,9 +111,9 @@ TEST_F(Assembler, TheLastUpdateOfTheOldKeyframeMayComeLate) {
 }
 
 TEST_F(Assembler, ALatchedKeyframeThatIsSentAgainDoesNotTurnTimeBack) {
-  assembler_.take(keyframe(1, 1));
+  take(keyframe(1, 1));
   assembler_.take(update(1, 1, 2, 8));
-  assembler_.take(keyframe(1, 1));
+  take(keyframe(1, 1));
   EXPECT_EQ(corner(), 8);
   EXPECT_EQ(counts().restarts, 0u);
   assembler_.take(update(1, 2, 3, 9));
@@ -120,7 +123,7 @@ TEST_F(Assembler, ALatchedKeyframeThatIsSentAgainDoesNotTurnTimeBack) {
 // ---- torn ----
 
 TEST_F(Assembler, AMissingUpdateIsAGapUntilTheNextKeyframe) {
-  assembler_.take(keyframe(1, 1));
+  take(keyframe(1, 1));
   assembler_.take(update(1, 1, 2, 5));
   assembler_.take(update(1, 3, 4, 7));
   expect_gap("update 2 of keyframe 1 is missing: 3 came next");
@@ -128,7 +131,7 @@ TEST_F(Assembler, AMissingUpdateIsAGapUntilTheNextKeyframe) {
   EXPECT_EQ(corner(), 5) << "the last good map";
   EXPECT_EQ(counts().unusable, 2u);
   assembler_.take(update(2, 1, 7, 9));
-  assembler_.take(keyframe(2, 6, 130, 70, 8));
+  take(keyframe(2, 6, 130, 70, 8));
   EXPECT_EQ(corner(), 9);
   EXPECT_TRUE(whole());
   EXPECT_EQ(counts().gaps, 1u);
@@ -136,46 +139,46 @@ TEST_F(Assembler, AMissingUpdateIsAGapUntilTheNextKeyframe) {
 
 TEST_F(Assembler, AFirstUpdateThatIsMissingIsAGapToo) {
   assembler_.take(update(1, 2, 3));
-  assembler_.take(keyframe(1, 1));
+  take(keyframe(1, 1));
   expect_gap("update 1 of keyframe 1 is missing");
 }
 
 TEST_F(Assembler, AKeyframeThatDoesNotComeIsAGapOnceItIsOverdue) {
-  assembler_.take(keyframe(1, 1));
+  take(keyframe(1, 1));
   assembler_.keyframe_overdue();
   EXPECT_TRUE(whole()) << "none was expected";
   assembler_.take(update(2, 1, 3));
   assembler_.keyframe_overdue();
   expect_gap("keyframe 2");
-  assembler_.take(keyframe(3, 4));
+  take(keyframe(3, 4));
   EXPECT_TRUE(whole());
 }
 
 TEST_F(Assembler, ARestartIsNoticedByUpdatesAndHealedByTheKeyframe) {
-  assembler_.take(keyframe(7, 100));
+  take(keyframe(7, 100));
   assembler_.take(update(7, 1, 101, 5));
   assembler_.take(update(1, 1, 201, 2));  // the node has been started anew
   expect_gap("started anew");
   EXPECT_EQ(corner(), 5);
-  assembler_.take(keyframe(1, 200));
+  take(keyframe(1, 200));
   EXPECT_EQ(corner(), 2);
   EXPECT_TRUE(whole());
   EXPECT_EQ(counts().restarts, 1u);
 }
 
 TEST_F(Assembler, ARestartWithTheSameNumbersIsNoticed) {
-  assembler_.take(keyframe(1, 100));
+  take(keyframe(1, 100));
   for (std::uint32_t n = 1; n < 9; ++n) assembler_.take(update(1, n, 100 + n, 5));
   assembler_.take(update(1, 3, 203, 6));
   expect_gap("update 3 of keyframe 1 came after update 8");
-  assembler_.take(keyframe(1, 202, 130, 70, 4));
+  take(keyframe(1, 202, 130, 70, 4));
   EXPECT_EQ(assembler_.need(), KeyframeNeed::lost) << "updates 1 and 2 were never here";
   EXPECT_EQ(counts().gaps, 2u);
   EXPECT_EQ(corner(), 4);
 }
 
 TEST_F(Assembler, AnotherRunWhoseNumbersHappenToFollowIsNoticed) {
-  assembler_.take(keyframe(1, 100));
+  take(keyframe(1, 100));
   assembler_.take(update(1, 1, 101, 5));
   auto fresh = update(1, 2, 3, 6);
   fresh->header.stamp = ros::Time(200, 0);
@@ -189,7 +192,7 @@ TEST_F(Assembler, AnotherRunWhoseNumbersHappenToFollowIsNoticed) {
 class Played : public Assembler {
  protected:
   void play_keyframe(std::uint32_t number, std::uint32_t step) {
-    assembler_.take(keyframe(number, step, 130, 70, static_cast<float>(step)));
+    take(keyframe(number, step, 130, 70, static_cast<float>(step)));
   }
   void play_updates(std::uint32_t number, std::uint32_t step, std::uint32_t count) {
     for (std::uint32_t n = 1; n <= count; ++n)
@@ -253,10 +256,10 @@ TEST_F(Played, OfSeveralKeyframesInAnyOrderOfTheTwoConnections) {
 }
 
 TEST_F(Assembler, AStepBackOfTheScenarioIsNotARestart) {
-  assembler_.take(keyframe(1, 100));
+  take(keyframe(1, 100));
   ElevationGrid reset = keyframe(2, 101);
   reset.step = 0;
-  assembler_.take(reset);
+  take(reset);
   EXPECT_EQ(assembler_.map()->info().step, 0u);
   EXPECT_EQ(counts().restarts, 0u);
   EXPECT_TRUE(whole());
@@ -298,7 +301,7 @@ TEST_F(Assembler, RefusesBadKeyframesAndSaysWhy) {
   for (const BadKeyframe& b : bad) {
     ElevationGrid k = keyframe(1, 1);
     b.spoil(k);
-    EXPECT_EQ(assembler_.take(k).map, nullptr);
+    EXPECT_EQ(take(k).map, nullptr);
     EXPECT_EQ(counts().refused, ++refused) << b.names;
     EXPECT_NE(counts().last_refusal.find(b.names), std::string::npos) << counts().last_refusal;
     EXPECT_NE(counts().last_refusal.find("keyframe 1"), std::string::npos) << counts().last_refusal;
@@ -342,7 +345,7 @@ TEST_F(Assembler, RefusesBadUpdatesWhollyAndNeedsAKeyframeThen) {
   std::uint32_t number = 0;
   for (const BadUpdate& b : bad) {
     ++number;
-    assembler_.take(keyframe(number, 10 * number));
+    take(keyframe(number, 10 * number));
     const auto u = update(number, 1, 10 * number + 1);
     u->tiles.push_back(u->tiles[0]);
     b.spoil(*u);
@@ -357,7 +360,7 @@ TEST_F(Assembler, RefusesBadUpdatesWhollyAndNeedsAKeyframeThen) {
 
 TEST_F(Assembler, AnUpdateThatWaitedIsCheckedAgainstItsKeyframe) {
   assembler_.take(update(1, 1, 2));
-  assembler_.take(keyframe(1, 1, 1, 70));
+  take(keyframe(1, 1, 1, 70));
   EXPECT_EQ(counts().refused, 1u);
   expect_gap("tile 0 reaches to cell (2, 3) of a grid of 1 x 70");
 }

@@ -18,7 +18,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 std::shared_ptr<const ElevationMap> map_of(const ElevationGrid& grid) {
   Rectangle changed;
-  return std::make_shared<const ElevationMap>(grid, nullptr, changed);
+  return std::make_shared<const ElevationMap>(boost::make_shared<ElevationGrid>(grid), nullptr, changed);
 }
 
 void expect_rectangle(const Rectangle& r, std::uint32_t x, std::uint32_t y, std::uint32_t width,
@@ -118,16 +118,16 @@ TEST(ElevationMap, AKeyframeTellsWhichCellsDiffer) {
   const ElevationGrid grid = keyframe_of([](double x, double y) { return x == 3 ? unknown : y; });
   const auto before = map_of(grid);
   Rectangle changed;
-  const ElevationMap same(grid, before.get(), changed);
+  const ElevationMap same(boost::make_shared<ElevationGrid>(grid), before.get(), changed);
   EXPECT_TRUE(changed.empty()) << "unknown cells do not differ from unknown ones";
   ElevationGrid other = grid;
   other.elevation[5 * 130 + 10] = 99;
   other.elevation[68 * 130 + 127] = static_cast<float>(unknown);
-  const ElevationMap differs(other, before.get(), changed);
+  const ElevationMap differs(boost::make_shared<ElevationGrid>(other), before.get(), changed);
   expect_rectangle(changed, 10, 5, 118, 64);
   other = grid;
   other.origin.position.x += 1;
-  const ElevationMap moved(other, before.get(), changed);
+  const ElevationMap moved(boost::make_shared<ElevationGrid>(other), before.get(), changed);
   expect_rectangle(changed, 0, 0, 130, 70);
 }
 

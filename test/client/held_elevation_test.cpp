@@ -32,7 +32,7 @@ class Stream {
     ElevationGrid grid = keyframe(1, 1, width, height);
     grid.elevation = terrain_.elevation();
     ElevationMap::Rectangle changed;
-    map_ = std::make_shared<const ElevationMap>(grid, nullptr, changed);
+    map_ = std::make_shared<const ElevationMap>(boost::make_shared<ElevationGrid>(grid), nullptr, changed);
   }
   /// The tiles of the update to `elevation`, which the client takes.
   std::vector<ElevationTile> update(const std::vector<float>& elevation) {

@@ -4,10 +4,10 @@
 #include <desert_sim/client/terrain_client.hpp>
 
 int main(int argc, char** argv) {
-  desert_sim::ElevationGrid keyframe;
-  keyframe.width = keyframe.height = 1;
-  keyframe.cell_size = keyframe.origin.orientation.w = 1;
-  keyframe.elevation = {7};
+  const desert_sim::ElevationGrid::Ptr keyframe(new desert_sim::ElevationGrid);
+  keyframe->width = keyframe->height = 1;
+  keyframe->cell_size = keyframe->origin.orientation.w = 1;
+  keyframe->elevation = {7};
   desert_sim::ElevationAssembler assembler;
   assembler.take(keyframe);
   if (assembler.map()->elevation(0.5, 0.5) != 7) return 1;

@@ -184,7 +184,7 @@ void expect_updates_lead_to(std::uint64_t step, const Listener<ElevationGrid>& k
   ElevationAssembler held;
   ElevationGrid now;
   for (const ElevationGrid& grid : keyframes.all()) {
-    if (grid.keyframe == keyframe) held.take(grid);
+    if (grid.keyframe == keyframe) held.take(boost::make_shared<ElevationGrid>(grid));
     if (grid.keyframe > keyframe) now = grid;
   }
   ASSERT_EQ(now.step, step);

@@ -25,7 +25,7 @@ HeldTerrain::HeldTerrain(Exec& exec, int width, int height)
       staging_(exec) {}
 
 void HeldTerrain::set(const std::vector<float>& elevation) {
-  terrain_.set_values(Layer::elevation, std::vector<double>(elevation.begin(), elevation.end()));
+  terrain_.set_values(Layer::bedrock, std::vector<double>(elevation.begin(), elevation.end()));
 }
 
 void HeldTerrain::hold() {
@@ -35,17 +35,16 @@ void HeldTerrain::hold() {
 }
 
 std::vector<TileChange> HeldTerrain::take(float threshold, int tile) {
-  held_elevation::Tiling tiles{terrain_.grid(), tile, 0, 0};
-  tiles.row_count = tiles.across(tiles.grid.height);
-  Staging::Slot& slot =
-      staging_.next(held_elevation::most_packed(static_cast<std::size_t>(tiles.count()), held_.size()));
+  const packed_tiles::Tiling tiles = packed_tiles::tiling(terrain_.grid(), tile);
+  Staging::Slot& slot = staging_.next(
+      packed_tiles::most_packed(static_cast<std::size_t>(tiles.count()), held_.size(), sizeof(float)));
   with_backend(exec_, [&](auto& e) {
     held_elevation::take_changes(e, terrain_.view(), terrain_.metres(Layer::elevation), tiles, threshold,
                                  held_.data(), slot.device());
   });
   std::vector<TileChange> changes;
   auto readback = std::make_shared<Readback>();
-  staging_.send(slot, sizeof(held_elevation::PackedHead), readback,
+  staging_.send(slot, sizeof(packed_tiles::PackedHead), readback,
                 [&](Staging::Slot& arrived) { changes = unpacked_changes(arrived, tiles); });
   readback->wait();
   return changes;

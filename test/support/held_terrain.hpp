@@ -8,13 +8,13 @@
 
 namespace desert_sim::test {
 
-/// Heights that a test chooses, between 0 and 300 m.
+/// Heights that a test chooses, between 0 and 300 m: of bare rock.
 class HeldTerrain {
  public:
   HeldTerrain(Exec& exec, int width, int height);
   /// In metres; rounded to quanta.
   void set(const std::vector<float>& elevation);
-  std::vector<float> elevation() const { return terrain_.values(Layer::elevation); }
+  std::vector<float> elevation() const { return terrain_.values(Layer::bedrock); }
   void hold();
   std::vector<TileChange> take(float threshold, int tile);
   std::vector<float> held() const { return held_.download(); }

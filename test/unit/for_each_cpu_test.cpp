@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstring>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -17,6 +20,43 @@ namespace {
 
 /// One cell to work alone; rows fewer than threads; widths that fill no vector; enough cells for all threads.
 const Grid grids[] = {{1, 1}, {7, 3}, {20000, 2}, {3, 7001}, {203, 187}, {256, 256}};
+
+// ---- who does what
+
+TEST(SharedWork, EachPieceIsDoneOnceBySomeTeam) {
+  for (int parts : {1, 2, 5, 64, 100})
+    for (int team : {1, 2, 4})
+      for (int count : {0, 1, 3, 31, 1000}) {
+        std::vector<std::atomic<int>> done(static_cast<std::size_t>(count));
+        SharedWork all(parts, count);
+#pragma omp parallel num_threads(team)
+        all.work([&](int n) { ++done[static_cast<std::size_t>(n)]; });
+        for (const std::atomic<int>& times : done)
+          ASSERT_EQ(times, 1) << parts << ", " << team << ", " << count;
+      }
+}
+
+/// The first thread comes no further than its first piece until the other has done all but a few.
+TEST(SharedWork, NobodyWaitsForAThreadThatIsHeldUp) {
+  constexpr int count = 3200, few = count / 32;
+  std::atomic<int> done{0}, team{0};
+  const auto start = std::chrono::steady_clock::now();
+  const auto late = [start] { return std::chrono::steady_clock::now() - start > std::chrono::minutes(2); };
+  SharedWork all(2, count);
+#pragma omp parallel num_threads(2)
+  {
+    team = omp_get_num_threads();
+#pragma omp barrier
+    all.work([&](int) {
+      while (omp_get_thread_num() == 0 && team == 2 && done < count - few && !late())
+        std::this_thread::yield();
+      ++done;
+    });
+  }
+  if (team != 2) GTEST_SKIP() << "no second thread";
+  EXPECT_EQ(done, count);
+  EXPECT_FALSE(late()) << "what the first thread had not begun was left to it";
+}
 
 /// Each cell sends to itself, to the next row (from the last to the first) and to a place anywhere.
 struct Spread {

@@ -84,8 +84,7 @@ TEST_P(HeldElevation, OnlyTilesThatChangedArePacked) {
   EXPECT_EQ(changes[0].steps.size(), 32u * 32u);
   EXPECT_EQ(changes[0].bits, 4);
   EXPECT_EQ(changes[1].elevations.size(), 32u * 32u) << "more than 127 steps";
-  EXPECT_EQ(held_elevation::packed_bytes(1024, 4), 1024u + 16u);
-  EXPECT_EQ(held_elevation::packed_bytes(1024, 0), 4096u + 16u);
+  EXPECT_EQ(packed_tiles::packed_units(1024) * packed_tiles::pack_unit, 1024u + 16u);
 }
 
 DESERT_ON_EACH_BACKEND(HeldElevation);

@@ -1,0 +1,87 @@
+#include "desert_sim/client/elevation_tile.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace desert_sim {
+
+namespace {
+
+// Loops over whole bytes and without branches, which compilers make vectors of.
+
+constexpr std::size_t spare = 8;  // what may be read beyond the last change
+
+void unpack(const std::vector<std::int8_t>& packed, int bits, std::vector<std::int8_t>& changes) {
+  const std::size_t bytes = packed.size();
+  changes.resize((bits == 4 ? 2 : 1) * bytes + spare);
+  const std::int8_t* const from = packed.data();
+  std::int8_t* const to = changes.data();
+  if (bits == 8) {
+    std::copy_n(from, bytes, to);
+    return;
+  }
+  for (std::size_t n = 0; n < bytes; ++n) {
+    const int both = from[n];
+    to[2 * n] = static_cast<std::int8_t>(both >> 4);
+    to[2 * n + 1] = static_cast<std::int8_t>(((both & 15) ^ 8) - 8);
+  }
+}
+
+/// For each byte of a mask: how many of its cells changed, of all and before each.
+struct Ranks {
+  std::array<std::array<std::uint8_t, 8>, 256> before{};
+  std::array<std::uint8_t, 256> count{};
+};
+constexpr Ranks make_ranks() {
+  Ranks ranks;
+  for (std::size_t byte = 0; byte < 256; ++byte)
+    for (std::size_t n = 0; n < 8; ++n) {
+      ranks.before[byte][n] = ranks.count[byte];
+      ranks.count[byte] = static_cast<std::uint8_t>(ranks.count[byte] + (byte >> (7 - n) & 1));
+    }
+  return ranks;
+}
+constexpr Ranks ranks = make_ranks();
+
+/// 0 for the cells that the mask does not have.
+void spread(const std::int8_t* changes, const std::vector<std::uint8_t>& mask, float* to) {
+  for (const std::uint8_t eight : mask) {
+    const std::array<std::uint8_t, 8>& before = ranks.before[eight];
+    for (std::size_t n = 0; n < 8; ++n)
+      to[n] = static_cast<float>(changes[before[n]] & -(eight >> (7 - n) & 1));
+    changes += ranks.count[eight];
+    to += 8;
+  }
+}
+
+}  // namespace
+
+void TileReader::begin(const ElevationTile& tile) {
+  tile_ = &tile;
+  cell_ = value_ = 0;
+  if (tile.changes.empty()) return;
+  unpack(tile.changes, tile.bits, changes_);
+  if (tile.changed.empty()) {
+    steps_.assign(changes_.begin(), changes_.end());
+    return;
+  }
+  steps_.resize(8 * tile.changed.size());
+  spread(changes_.data(), tile.changed, steps_.data());
+}
+
+void TileReader::write_next(float* held, std::size_t cells) {
+  const std::size_t first = cell_;
+  cell_ += cells;
+  if (!tile_->changes.empty()) {
+    const float* const steps = steps_.data() + first;
+    const float resolution = tile_->resolution;
+    for (std::size_t n = 0; n < cells; ++n) held[n] = changed_elevation(held[n], steps[n], resolution);
+  } else if (tile_->changed.empty()) {
+    std::copy_n(tile_->data.begin() + static_cast<std::ptrdiff_t>(first), cells, held);
+  } else {
+    for (std::size_t n = 0; n < cells; ++n)
+      if (mask_has(tile_->changed, first + n)) held[n] = tile_->data[value_++];
+  }
+}
+
+}  // namespace desert_sim
