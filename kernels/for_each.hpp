@@ -4,6 +4,7 @@
 ///     for_each_cell(exec, grid, law);              // law(x, y)
 ///     for_each_cell_adding(exec, grid, sums, law); // sums[n] = Σ of what cells send to cell n
 ///     for_each_tile(exec, tiles, law);             // law(team, column, row): a team works on a tile
+///     for_each_item(exec, count, law);             // law(n): items in a row
 ///     sum_cells(exec, grid, law) -> long long      // Σ law(x, y), exact
 ///     max_cells(exec, grid, law) -> float          // max of 0 and law(x, y)
 ///

@@ -309,6 +309,14 @@ void for_each_tile(CpuExec& exec, const Tiling& tiles, const Law& law) {
   }
 }
 
+/// Items are as much work as hundreds of cells.
+template <class Law>
+void for_each_item(CpuExec& exec, int count, const Law& law) {
+  constexpr int worth = 256;
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (count >= worth)
+  for (int n = 0; n < count; ++n) law(n);
+}
+
 template <class Law>
 long long sum_cells(CpuExec& exec, const Grid& grid, const Law& law) {
   long long total = 0;

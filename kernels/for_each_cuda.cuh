@@ -157,6 +157,12 @@ __global__ void tiles_kernel(Law law) {
 }
 
 template <class Law>
+__global__ void items_kernel(int count, Law law) {
+  const int n = blockIdx.x * blockDim.x + threadIdx.x;
+  if (n < count) law(n);
+}
+
+template <class Law>
 __global__ void sum_kernel(Grid grid, Law law, long long* total) {
   long long mine = 0;
   for (int y = blockIdx.y * block_y + threadIdx.y; y < grid.height; y += gridDim.y * block_y)
@@ -207,6 +213,14 @@ void for_each_tile(CudaExec& exec, const Tiling& tiles, const Law& law) {
       "asking for shared memory");
   cuda::tiles_kernel<<<dim3(tiles.columns(), tiles.rows()), cuda::block(), bytes, cuda::stream(exec)>>>(law);
   check_cuda(cudaGetLastError(), "launch over tiles");
+}
+
+template <class Law>
+void for_each_item(CudaExec& exec, int count, const Law& law) {
+  if (count == 0) return;
+  constexpr int block = 128;
+  cuda::items_kernel<<<(count + block - 1) / block, block, 0, cuda::stream(exec)>>>(count, law);
+  check_cuda(cudaGetLastError(), "launch over items");
 }
 
 template <class Law>

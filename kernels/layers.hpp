@@ -33,6 +33,8 @@ enum class Layer : int {
   wind_shadow,
   echo,
   illumination,
+  illumination_canopy,
+  canopy_height,
   slope,
   normal_x,
   normal_y,
@@ -61,7 +63,7 @@ struct LayerInfo {
 
 constexpr double any_height = 1e6;
 
-constexpr std::array<LayerInfo, 29> layer_table{{
+constexpr std::array<LayerInfo, 31> layer_table{{
     {Layer::bedrock, "bedrock", "m", Storage::quanta, Lifetime::persistent, -any_height, any_height,
      "Top of the rock, absolute."},
     {Layer::soil, "soil", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
@@ -104,7 +106,11 @@ constexpr std::array<LayerInfo, 29> layer_table{{
     {Layer::echo, "echo", "1", Storage::real, Lifetime::derived, -1, 1,
      "In front of cliffs: < 0 erosion, > 0 sticky."},
     {Layer::illumination, "illumination", "1", Storage::real, Lifetime::derived, 0, 1,
-     "Light on the ground."},
+     "Light on the ground over the day; 1 in the open."},
+    {Layer::illumination_canopy, "illumination_canopy", "1", Storage::real, Lifetime::derived, 0, 1,
+     "Light at the top of the plants."},
+    {Layer::canopy_height, "canopy_height", "m", Storage::real, Lifetime::derived, 0, any_height,
+     "Height of the plants above the ground."},
     {Layer::slope, "slope", "rad", Storage::real, Lifetime::on_request, 0, 1.5707964,
      "Angle of the surface to the horizontal."},
     {Layer::normal_x, "normal_x", "1", Storage::real, Lifetime::on_request, -1, 1,

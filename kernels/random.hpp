@@ -17,16 +17,28 @@ enum class Purpose : std::uint32_t {
   terrain_discs,
   wind_rose,
   turbulence,
-  rain
+  rain,
+  plants = 32,
+  planting,
 };
+
+/// Four random words from three counters.
+struct RandomWords {
+  std::uint32_t word[4];
+};
+DESERT_HD RandomWords random_words(std::uint64_t seed, Purpose purpose, std::uint32_t a, std::uint32_t b,
+                                   std::uint32_t c) {
+  const r123::Philox4x32::ctr_type counter{{a, b, c, static_cast<std::uint32_t>(purpose)}};
+  const r123::Philox4x32::key_type key{
+      {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
+  const r123::Philox4x32::ctr_type words = r123::Philox4x32()(counter, key);
+  return {{words[0], words[1], words[2], words[3]}};
+}
 
 /// Uniform in [0, 1), 24 bits, from up to three counters.
 DESERT_HD float random_unit(std::uint64_t seed, Purpose purpose, std::uint32_t a, std::uint32_t b = 0,
                             std::uint32_t c = 0) {
-  const r123::Philox4x32::ctr_type counter{{a, b, c, static_cast<std::uint32_t>(purpose)}};
-  const r123::Philox4x32::key_type key{
-      {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
-  return static_cast<float>(r123::Philox4x32()(counter, key)[0] >> 8) * (1.0f / 16777216.0f);
+  return static_cast<float>(random_words(seed, purpose, a, b, c).word[0] >> 8) * (1.0f / 16777216.0f);
 }
 
 /// Smooth value noise in [−1, 1]: random values on the integer lattice, interpolated with continuous second

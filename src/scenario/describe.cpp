@@ -54,6 +54,16 @@ std::string describe_parameters() {
          "change while a simulation runs, such as `rain.rate`) change to the values; numbers over `ramp` "
          "seconds "
          "(0 if not given), all else at once.\n";
+  out << "\n## `species`: a list of at most " << most_species << "\n\n";
+  write_parameter_table(out, SpeciesName());
+  out << "\nPresets:";
+  for (const std::string& preset : species_presets()) out << " `" << preset << "`";
+  out << " (config/species).\n\n";
+  write_parameter_table(out, SpeciesTraits());
+  out << "\n## `competition`: a list of rows\n\nHow much each species (column, in the order of `species`) "
+         "hinders the "
+         "growth of each (row), 0 … "
+      << strongest_competition << ". Without it all hinder each other, and themselves, with 1.\n";
   out << "\n## `terrain`: a list of steps, in order\n";
   terrain_steps(out);
   out << "\n## What cannot change while a simulation runs\n\n";

@@ -216,7 +216,7 @@ Scenario parse_scenario(const YAML::Node& root, const std::string& name, const s
     faults.add("top level", yaml::shown(root) + " where the sections of a scenario are expected");
     faults.throw_if_any();
   }
-  std::set<std::string> known{"terrain", "wind", "water", "run"};
+  std::set<std::string> known{"terrain", "wind", "water", "run", "species", "competition"};
   for_each_section(s, [&](const char* section, auto& parameters) {
     known.insert(section);
     yaml::read_section(root[section], section, faults, parameters);
@@ -229,7 +229,9 @@ Scenario parse_scenario(const YAML::Node& root, const std::string& name, const s
   read_wind(root["wind"], faults, s);
   read_water(root["water"], faults, s);
   read_run(root["run"], faults, s);
+  read_species(root, faults, s);
   check_together(s, faults);
+  check_plants(s, faults);
   faults.throw_if_any();
   check_timeline(s, faults);  // needs a scenario without faults
   faults.throw_if_any();
@@ -273,7 +275,9 @@ std::string dump_scenario(const Scenario& s) {
   out << YAML::EndMap << YAML::Key << "run" << YAML::Value << YAML::BeginMap;
   yaml::emit_parameters(out, s.run);
   emit_timeline(out, s.timeline);
-  out << YAML::EndMap << YAML::EndMap;
+  out << YAML::EndMap;
+  emit_species(out, s);
+  out << YAML::EndMap;
   return out.c_str();
 }
 

@@ -22,6 +22,7 @@
 #include "desert_sim/kernels/wind.hpp"
 #include "desert_sim/kernels/wind_features.hpp"
 #include "desert_sim/kernels/wind_shadow.hpp"
+#include "desert_sim/scenario/species.hpp"
 #include "desert_sim/scenario/terrain_steps.hpp"
 #include "desert_sim/scenario/timeline.hpp"
 #include "desert_sim/simulation/wind_regime.hpp"
@@ -103,6 +104,9 @@ struct Scenario {
   HydraulicErosionParameters hydraulic_erosion;
   MoistureParameters moisture;
   SoilParameters soil;
+  VegetationParameters vegetation;
+  std::vector<Species> species;   ///< at most most_species
+  CompetitionMatrix competition;  ///< as many rows and columns as there are species
   TraversabilityParameters traversability;
   RunParameters run;
   std::vector<TimelineEntry> timeline;  ///< in order of time

@@ -15,7 +15,7 @@ constexpr auto parameter_table(const SeedParameter*) {
 static_assert(table_is_complete<SeedParameter>());
 
 /// Calls visit(name, parameters) for each section that is one table; `wind`, `water` and `terrain` have lists
-/// besides.
+/// besides, and `species` is one.
 template <class S, class Visit>
 void for_each_section(S& scenario, Visit&& visit) {
   visit("grid", scenario.grid);
@@ -30,6 +30,7 @@ void for_each_section(S& scenario, Visit&& visit) {
   visit("hydraulic_erosion", scenario.hydraulic_erosion);
   visit("moisture", scenario.moisture);
   visit("soil", scenario.soil);
+  visit("vegetation", scenario.vegetation);
   visit("traversability", scenario.traversability);
 }
 

@@ -6,6 +6,7 @@
 #include "desert_sim/scenario/yaml_parameters.hpp"
 #include "desert_sim/simulation/command_checks.hpp"
 #include "desert_sim/simulation/memory.hpp"
+#include "desert_sim/simulation/plant_edit.hpp"
 #include "desert_sim/simulation/simulation.hpp"
 #include "desert_sim/simulation/terrain_edit.hpp"
 
@@ -136,6 +137,21 @@ CommandResult Simulation::apply(const command::EditTerrain& command, bool with_c
   const CommandResult result = edit.book(with_change);
   bedrock_loose_ = bedrock_loose_ || bedrock;
   soil_loose_ = soil_loose_ || soil || (bedrock && terrain_.has(Layer::soil));
+  return result;
+}
+
+CommandResult Simulation::apply(const command::EditPlants& command) {
+  check_plant_edit(command, scenario_);
+  const int before = plants_.count;
+  set_plants(edited_plants(command, scenario_, terrain_, steps_, plants_.capacity, plants::words(plants_)));
+  // Who looks before the next step sees them.
+  with_backend(exec(), [this](auto& e) {
+    surface::measure(e, terrain_.view(), heights_);
+    plants::cover(e, terrain_.view(), scenario_.vegetation, 0.0f, heights_, true, plants_);
+  });
+  derived_ready_ = false;
+  CommandResult result;
+  result.plants = plants_.count - before;
   return result;
 }
 

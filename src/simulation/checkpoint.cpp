@@ -75,6 +75,7 @@ class CheckpointAccess {
     entry("bedrock_loose", s.bedrock_loose_);
     entry("soil_loose", s.soil_loose_);
     entry("avalanche_iterations", s.avalanche_iterations_);
+    entry("plants", s.plants_.count);
     entry("next_timeline_entry", s.next_entry_);
     out << YAML::Key << "ramps" << YAML::Value << YAML::BeginSeq;
     for (const Ramp& r : s.ramps_) {
@@ -129,6 +130,9 @@ class CheckpointAccess {
   }
 
   static Terrain& terrain(Simulation& s) { return s.terrain_; }
+  static void set_plants(Simulation& s, const std::vector<std::uint32_t>& words) {
+    if (s.plants_) s.set_plants(words);
+  }
 
  private:
   static Scenario read_scenario(const YAML::Node& header, const char* key, const std::string& path) {
@@ -179,6 +183,8 @@ std::string checkpoint_bytes(const Simulation& simulation) {
   for (const LayerInfo& row : layer_table)
     if (row.lifetime == Lifetime::persistent && simulation.terrain().has(row.layer))
       length += static_cast<std::size_t>(simulation.terrain().grid().cells()) * sizeof(std::uint32_t);
+  length +=
+      static_cast<std::size_t>(simulation.plants().count) * plants::column_count * sizeof(std::uint32_t);
   bytes.reserve(length);  // growing could take three times as much
   bytes = magic;
   append(bytes, version);
@@ -189,6 +195,8 @@ std::string checkpoint_bytes(const Simulation& simulation) {
     const std::vector<std::uint32_t> words = simulation.terrain().words(row.layer);
     bytes.append(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t));
   }
+  const std::vector<std::uint32_t> plants = plants::words(simulation.plants());
+  bytes.append(reinterpret_cast<const char*>(plants.data()), plants.size() * sizeof(std::uint32_t));
   append(bytes, static_cast<std::uint64_t>(XXH3_64bits(bytes.data(), bytes.size())));
   return bytes;
 }
@@ -207,13 +215,18 @@ std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec)
     at += length;
     std::unique_ptr<Simulation> simulation = CheckpointAccess::make(header, exec, path);
     const std::size_t cells = static_cast<std::size_t>(simulation->terrain().grid().cells());
-    for (const YAML::Node& name : header["layers"]) {
-      std::vector<std::uint32_t> words(cells);
-      if (bytes.size() - at < cells * sizeof(std::uint32_t)) throw ConfigError(path + ": is cut off");
-      std::memcpy(words.data(), bytes.data() + at, cells * sizeof(std::uint32_t));
-      at += cells * sizeof(std::uint32_t);
-      CheckpointAccess::terrain(*simulation).set_words(layer_by_name(name.as<std::string>()), words);
-    }
+    const auto next_words = [&](std::size_t count) {
+      std::vector<std::uint32_t> words(count);
+      if ((bytes.size() - at) / sizeof(std::uint32_t) < count) throw ConfigError(path + ": is cut off");
+      std::memcpy(words.data(), bytes.data() + at, count * sizeof(std::uint32_t));
+      at += count * sizeof(std::uint32_t);
+      return words;
+    };
+    for (const YAML::Node& name : header["layers"])
+      CheckpointAccess::terrain(*simulation)
+          .set_words(layer_by_name(name.as<std::string>()), next_words(cells));
+    CheckpointAccess::set_plants(*simulation,
+                                 next_words(header["plants"].as<std::size_t>() * plants::column_count));
     return simulation;
   } catch (const YAML::Exception& e) {
     throw ConfigError(path + ": its header cannot be read: " + e.msg);

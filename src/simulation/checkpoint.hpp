@@ -3,7 +3,7 @@
 ///
 /// Format: the line "desert_sim checkpoint", version (u32), length of the header (u64), header (YAML:
 /// scenario now and at its start, clock, wind regime, height scale, books, layers), the layers' words as
-/// stored, XXH3-64 of all before. Little-endian. Written to a temporary name, fsynced and renamed, so that a
+/// stored, the plants' columns, XXH3-64 of all before. Little-endian. Written to a temporary name, fsynced and renamed, so that a
 /// file of that name is always whole.
 
 #include <memory>

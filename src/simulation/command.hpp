@@ -16,6 +16,9 @@ namespace desert_sim {
 enum class WindEdit : int { add, change, remove, clear };
 constexpr const char* wind_edits[] = {"add", "change", "remove", "clear"};
 
+enum class PlantEdit : int { plant, clear };
+constexpr const char* plant_edits[] = {"plant", "clear"};
+
 /// The commands themselves; a namespace of their own because the ROS services have the same names.
 namespace command {
 
@@ -123,6 +126,43 @@ struct EditTerrain : EditParameters {
   Patch patch;
 };
 
+struct EditPlantsParameters {
+  PlantEdit operation = PlantEdit::plant;
+  std::string species;
+  BrushShape shape = BrushShape::circle;
+  double x = 0, y = 0;
+  double radius = 1;
+  double radius_y = 1;
+  double angle_deg = 0;
+  double density = 0.1;
+  double size = 0.05;
+  std::uint64_t seed = 0;
+};
+constexpr auto parameter_table(const EditPlantsParameters*) {
+  using P = EditPlantsParameters;
+  return std::make_tuple(
+      parameter("operation", &P::operation, plant_edits, "What is done in the region."),
+      parameter("species", &P::species, "By name; to clear, empty means all."),
+      parameter("shape", &P::shape, brush_shapes, "Shape of the region; not patch."),
+      parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
+      parameter("y", &P::y, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
+      parameter("radius", &P::radius, 1e-3, 1e6, "m", "As of edit_terrain."),
+      parameter("radius_y", &P::radius_y, 1e-3, 1e6, "m", "The semi-axis or half the side across."),
+      parameter("angle_deg", &P::angle_deg, -360, 360, "deg",
+                "Direction of the first axis, counter-clockwise from +x."),
+      parameter("density", &P::density, 0, 1000, "1/m^2", "Plants that are put on a square metre."),
+      parameter("size", &P::size, 1e-3, 1, "1",
+                "Their radius as a share of the widest that there is room for."),
+      parameter("seed", &P::seed, 0, 1.8e19, "1", "Of their places; added to the scenario's."));
+}
+static_assert(table_is_complete<EditPlantsParameters>());
+
+/// Puts healthy plants of a species at random places of a region, or takes plants away that stand there. None
+/// are put on bare rock or on obstacles; whether they can live there is not asked.
+struct EditPlants : EditPlantsParameters {
+  std::vector<Place> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
+};
+
 /// Parameters that can change while a simulation runs (live_parameters.hpp), each "path=value"; all or none.
 /// Over `ramp` seconds numbers go to their values (see Ramp); all else changes at once.
 struct SetParameters {
@@ -161,9 +201,9 @@ bool replaces_terrain(const Command& command) {
 
 }  // namespace command
 
-using Command =
-    std::variant<command::SetWind, command::SetWindSchedule, command::EditWind, command::EditTerrain,
-                 command::SetParameters, command::Reset, command::LoadCheckpoint, command::LoadScenario>;
+using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditWind,
+                             command::EditTerrain, command::EditPlants, command::SetParameters,
+                             command::Reset, command::LoadCheckpoint, command::LoadScenario>;
 
 /// Cells that a command changed: x0 ≤ x < x1, y0 ≤ y < y1 (empty if x1 ≤ x0).
 struct CellRectangle {
@@ -181,6 +221,7 @@ struct CommandResult {
   double volume_m3 = 0;  ///< material added (+) or removed (−) by an edit
   double moved_m3 =
       0;  ///< instead of it, of an edit that conserves: from the ring into the shape (+), or back
+  long long plants = 0;  ///< put (+) or taken away (−)
   CellRectangle touched;
   LayerChange change;  ///< in `touched`
 };

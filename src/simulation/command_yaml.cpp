@@ -78,14 +78,34 @@ WindRegime read_regime(const YAML::Node& node, const std::string& source) {
 
 namespace {
 
-/// The corners as x, y, x, y …, and a patch's values as base64 of 32-bit floats: every bit is kept.
+/// The corners as x, y, x, y …
+void emit_points(YAML::Emitter& out, const std::vector<command::Place>& points) {
+  if (points.empty()) return;
+  out << YAML::Key << "points" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  for (const command::Place& p : points) out << p.x << p.y;
+  out << YAML::EndSeq;
+}
+
+std::vector<command::Place> read_points(const YAML::Node& node, const std::string& source) {
+  const YAML::Node points = node["points"];
+  if (!points) return {};
+  constexpr std::size_t most = command::EditTerrain::most_points;
+  if (!points.IsSequence() || points.size() % 2 != 0 || points.size() > 2 * most)
+    throw ConfigError(source + ": points: must be x, y of at most " + std::to_string(most) + " points");
+  std::vector<command::Place> places(points.size() / 2);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    command::Place& p = places[n / 2];
+    if (!YAML::convert<double>::decode(points[n], n % 2 ? p.y : p.x))
+      throw ConfigError(source + ": points[" + std::to_string(n) + "]: " + yaml::shown(points[n]) +
+                        " is not a number");
+  }
+  return places;
+}
+
+/// A patch's values as base64 of 32-bit floats: every bit is kept.
 void emit_edit(YAML::Emitter& out, const command::EditTerrain& edit) {
   yaml::emit_parameters(out, static_cast<const command::EditParameters&>(edit));
-  if (!edit.points.empty()) {
-    out << YAML::Key << "points" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-    for (const command::Place& p : edit.points) out << p.x << p.y;
-    out << YAML::EndSeq;
-  }
+  emit_points(out, edit.points);
   const command::Patch& patch = edit.patch;
   if (patch.values.empty()) return;
   out << YAML::Key << "patch_columns" << YAML::Value << patch.columns;
@@ -113,18 +133,7 @@ command::Patch read_patch(const YAML::Node& node, const std::string& source) {
 
 command::EditTerrain read_edit(const YAML::Node& node, const std::string& source) {
   command::EditTerrain edit{read_all<command::EditParameters>(node, source), {}, {}};
-  if (const YAML::Node points = node["points"]) {
-    if (!points.IsSequence() || points.size() % 2 != 0 || points.size() > 2 * edit.most_points)
-      throw ConfigError(source + ": points: must be x, y of at most " + std::to_string(edit.most_points) +
-                        " points");
-    edit.points.resize(points.size() / 2);
-    for (std::size_t n = 0; n < points.size(); ++n) {
-      command::Place& p = edit.points[n / 2];
-      if (!YAML::convert<double>::decode(points[n], n % 2 ? p.y : p.x))
-        throw ConfigError(source + ": points[" + std::to_string(n) + "]: " + yaml::shown(points[n]) +
-                          " is not a number");
-    }
-  }
+  edit.points = read_points(node, source);
   if (node["patch"]) edit.patch = read_patch(node, source);
   return edit;
 }
@@ -146,6 +155,10 @@ void emit_command(YAML::Emitter& out, const Command& command) {
   } else if (const auto* edit = std::get_if<command::EditTerrain>(&command)) {
     name("edit_terrain");
     emit_edit(out, *edit);
+  } else if (const auto* plants = std::get_if<command::EditPlants>(&command)) {
+    name("edit_plants");
+    yaml::emit_parameters(out, static_cast<const command::EditPlantsParameters&>(*plants));
+    emit_points(out, plants->points);
   } else if (const auto* parameters = std::get_if<command::SetParameters>(&command)) {
     name("set_parameters");
     out << YAML::Key << "settings" << YAML::Value << YAML::Flow << YAML::BeginSeq;
@@ -177,6 +190,9 @@ Command read_command(const YAML::Node& node, const std::string& source) {
     return edit;
   }
   if (name == "edit_terrain") return read_edit(node, source);
+  if (name == "edit_plants")
+    return command::EditPlants{read_all<command::EditPlantsParameters>(node, source),
+                               read_points(node, source)};
   if (name == "set_parameters") return read_settings(node, source);
   if (name == "reset") return command::Reset{};
   if (name == "load_checkpoint")

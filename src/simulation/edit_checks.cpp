@@ -39,9 +39,11 @@ bool without_area(const std::vector<Place>& points) {
   });
 }
 
-void check_points(const EditTerrain& edit, Faults& faults) {
-  const std::size_t given = edit.points.size();
-  const bool polygon = edit.shape == BrushShape::polygon, capsule = edit.shape == BrushShape::capsule;
+}  // namespace
+
+void check_points(BrushShape shape, const std::vector<Place>& points, Faults& faults) {
+  const std::size_t given = points.size();
+  const bool polygon = shape == BrushShape::polygon, capsule = shape == BrushShape::capsule;
   const std::size_t least = polygon ? 3 : (capsule ? 2 : 0),
                     most = polygon ? EditTerrain::most_points : (capsule ? 2 : 0);
   if (given < least || given > most) {
@@ -52,15 +54,17 @@ void check_points(const EditTerrain& edit, Faults& faults) {
     return;
   }
   for (std::size_t n = 0; n < given; ++n)
-    for (const double v : {edit.points[n].x, edit.points[n].y})
+    for (const double v : {points[n].x, points[n].y})
       if (!(std::abs(v) <= farthest)) {
         std::ostringstream text;
         text << "= " << v << " is not in [" << -farthest << ", " << farthest << "] m";
         faults.add("points[" + std::to_string(n) + "]", text.str());
         return;
       }
-  if (polygon && without_area(edit.points)) faults.add("points", "all lie on one line: no area is inside");
+  if (polygon && without_area(points)) faults.add("points", "all lie on one line: no area is inside");
 }
+
+namespace {
 
 void check_patch(const EditTerrain& edit, Faults& faults) {
   const Patch& patch = edit.patch;
@@ -109,7 +113,7 @@ void check_edit(const EditTerrain& edit, const Terrain& terrain) {
   check_ranges(static_cast<const command::EditParameters&>(edit), "edit_terrain");
   Faults faults("edit_terrain");
   check_layer(edit, terrain, faults);
-  check_points(edit, faults);
+  check_points(edit.shape, edit.points, faults);
   check_patch(edit, faults);
   faults.throw_if_any();
   check_depth(edit, faults);

@@ -86,7 +86,32 @@ void Simulation::allocate_work() {
   heights_ = surface::make_heights(e, grid);
   repose_.set_zero();
   prepare_processes();
+  make_plants();
   upload_wind_features();
+}
+
+void Simulation::make_plants() {
+  const Scenario& s = scenario_;
+  if (!s.vegetation.enabled) return;
+  for (Layer layer : {Layer::vegetation, Layer::humus, Layer::canopy_height, Layer::illumination,
+                      Layer::illumination_canopy})
+    terrain_.require(layer);
+  std::vector<SpeciesTraits> traits;
+  for (const Species& species : s.species) traits.push_back(species.traits);
+  const int most = s.vegetation.max_plants;
+  plants_ = plants::make_workspace(exec(), terrain_.grid(), most > 0 ? most : terrain_.grid().cells(), traits,
+                                   s.competition);
+}
+
+void Simulation::set_plants(const std::vector<std::uint32_t>& words) {
+  const std::size_t count = words.size() / plants::column_count,
+                    room = static_cast<std::size_t>(plants_.capacity);
+  if (count > room)
+    throw ConfigError(std::to_string(count) + " plants are more than there is room for, " +
+                      std::to_string(room));
+  for (std::size_t c = 0; c < plants::column_count && count > 0; ++c)
+    exec().upload(plants_.next.data() + c * room, words.data() + c * count, count * sizeof(std::uint32_t));
+  with_backend(exec(), [&](auto& e) { plants::order(e, static_cast<int>(count), 0, plants_); });
 }
 
 void Simulation::prepare_processes() {

@@ -153,6 +153,7 @@ std::vector<MemoryPart> Simulation::memory() const {
   add("avalanches of rock and soil", bytes_of_all(ground_work_.received, ground_work_.share));
   add("water's pipes", pipes_work_.held.bytes());
   add("capacity for sediment", erosion_work_.capacity.bytes());
+  add("plants", plants_.bytes());
   add("ledger", ledger_.bytes());
   add("elevation that others hold", held_.bytes());
   add("costs that others hold", costs_.bytes());

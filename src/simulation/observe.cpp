@@ -26,6 +26,11 @@ std::uint64_t Simulation::state_hash() const {
     XXH3_64bits_update(state, row.name, std::char_traits<char>::length(row.name));
     XXH3_64bits_update(state, words.data(), words.size() * sizeof(std::uint32_t));
   }
+  if (plants_) {
+    const std::vector<std::uint32_t> words = plants::words(plants_);
+    XXH3_64bits_update(state, "plants", 6);
+    XXH3_64bits_update(state, words.data(), words.size() * sizeof(std::uint32_t));
+  }
   const std::vector<long long> books = read_ledger();
   XXH3_64bits_update(state, books.data(), books.size() * sizeof(long long));
   XXH3_64bits_update(state, &steps_, sizeof steps_);
@@ -63,6 +68,27 @@ long long Simulation::material_now(Material material) {
       return total(Layer::moisture);
   }
   throw Error("unknown material");
+}
+
+std::vector<PlantCount> Simulation::plant_counts() const {
+  std::vector<PlantCount> counts;
+  if (!plants_) return counts;
+  for (const Species& species : scenario_.species) counts.push_back({species.name});
+  const auto count = static_cast<std::size_t>(plants_.count),
+             room = static_cast<std::size_t>(plants_.capacity);
+  const auto column = [&](plants::Column c) {
+    std::vector<std::uint32_t> words(count);
+    if (count > 0) plants_.now.download(static_cast<std::size_t>(c) * room, count, words.data());
+    return words;
+  };
+  const std::vector<std::uint32_t> kinds = column(plants::Column::species),
+                                   radii = column(plants::Column::radius);
+  for (std::size_t n = 0; n < count; ++n) {
+    PlantCount& of_kind = counts[kinds[n]];
+    ++of_kind.plants;
+    of_kind.mature += plants::is_mature(scenario_.species[kinds[n]].traits, float_of(radii[n])) ? 1 : 0;
+  }
+  return counts;
 }
 
 double MaterialBalance::relative_residual() const {

@@ -20,13 +20,21 @@ void Simulation::run_processes(E& exec) {
   // Wind at the surface: speed-up, deflection by the terrain, divergence-free, local features (A1–A5).
   run(exec, "wind", {Layer::wind_x, Layer::wind_y}, [&] { update_wind(exec, view); });
 
+  // Plants cover the ground, and shade each other (D).
+  if (plants_) {
+    run(exec, "plant_cover", {Layer::vegetation, Layer::humus, Layer::canopy_height},
+        [&] { plants::cover(exec, view, s.vegetation, dt, heights_, true, plants_); });
+    run(exec, "illumination", {Layer::illumination, Layer::illumination_canopy},
+        [&] { plants::illuminate(exec, view, s.vegetation, heights_, plants_); });
+  }
+
   // Shelter in the lee of what is higher upwind (A6). Where starting passes is what takes time, and nothing
   // else asks for it before sand is lifted, that pass finds it.
   constexpr int few_cells = 1 << 19;
   const bool shade_in_passing = !works_on_rows<E> && view.grid.cells() <= few_cells && shadow_can_wait();
   if (s.wind_shadow.enabled && !shade_in_passing)
     run(exec, "wind_shadow", {Layer::wind_shadow},
-        [&] { wind_shadow::step(exec, view, s.wind_shadow, heights_, shadow_work_); });
+        [&] { wind_shadow::step(exec, view, s.wind_shadow, obstructing_heights(), shadow_work_); });
 
   // The eddy before cliffs, which holds sand off and piles it up ahead (A7).
   if (s.echo_dunes.enabled)
@@ -40,7 +48,7 @@ void Simulation::run_processes(E& exec) {
     run(exec, "saltation", {Layer::sand, Layer::airborne_sand, Layer::bedrock}, [&] {
       std::optional<wind_shadow::Shadow> shade;
       if (shade_in_passing)
-        shade = wind_shadow::straight_shadow(exec, view, s.wind_shadow, heights_, shadow_work_);
+        shade = wind_shadow::straight_shadow(exec, view, s.wind_shadow, obstructing_heights(), shadow_work_);
       saltation::step(exec, view, s.saltation, s.abrasion, s.repose, dt, ledger(), landed_.data(),
                       {angle, reptation_strength_.data()}, shade ? &*shade : nullptr);
     });
@@ -60,6 +68,10 @@ void Simulation::run_processes(E& exec) {
       slide_ground(exec, view);
       avalanching::step(exec, view, s.avalanching, steps_, repose_.data(), avalanche_work_);
     });
+}
+
+const surface::Heights& Simulation::obstructing_heights() const {
+  return plants_ && scenario_.vegetation.canopy_shadow ? plants_.tops : heights_;
 }
 
 template <class E>
@@ -204,6 +216,14 @@ void Simulation::step() {
         soil::step(e, terrain_.view(), scenario_.soil, scenario_.repose, scenario_.run.time_step, ledger());
       });
     });
+  // Plants drink, grow, suffer and die, and new ones come up (D).
+  if (plants_)
+    with_backend(exec(), [this](auto& e) {
+      run(e, "vegetation", {Layer::moisture, Layer::humus}, [&] {
+        plants::live(e, terrain_.view(), scenario_.vegetation, scenario_.repose, heights_,
+                     scenario_.run.time_step, scenario_.seed, steps_, ledger(), plants_);
+      });
+    });
   if (scenario_.avalanching.enabled)
     avalanche_iterations_ += static_cast<std::uint64_t>(avalanche_work_.iterations);
   ++steps_;
@@ -216,7 +236,11 @@ void Simulation::refresh_derived() {
   with_backend(exec(), [&](auto& e) {
     const TerrainView view = terrain_.view();
     update_wind(e, view);
-    if (s.wind_shadow.enabled) wind_shadow::step(e, view, s.wind_shadow, heights_, shadow_work_);
+    if (plants_) {
+      plants::cover(e, view, s.vegetation, 0.0f, heights_, false, plants_);
+      plants::illuminate(e, view, s.vegetation, heights_, plants_);
+    }
+    if (s.wind_shadow.enabled) wind_shadow::step(e, view, s.wind_shadow, obstructing_heights(), shadow_work_);
     if (s.echo_dunes.enabled) echo_dunes::step(e, view, s.echo_dunes, heights_, repose_.data());
     reptation::set_angles(e, view, reptation::Angle(view, s.reptation, s.repose, repose_.data()), s.repose,
                           nullptr);

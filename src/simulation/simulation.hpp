@@ -37,6 +37,12 @@ struct ProcessTime {
   double milliseconds = 0;
 };
 
+/// How many plants of a species there are.
+struct PlantCount {
+  std::string species;
+  int plants = 0, mature = 0;
+};
+
 /// A part of the memory that a simulation holds on its backend's device.
 struct MemoryPart {
   std::string name;  ///< a layer's, or of what processes work with
@@ -64,6 +70,7 @@ class Simulation {
   CommandResult apply(const command::EditWind& command);
   /// `with_change`: the result tells what changed, cell by cell.
   CommandResult apply(const command::EditTerrain& command, bool with_change = false);
+  CommandResult apply(const command::EditPlants& command);
   CommandResult apply(const command::SetParameters& command);
 
   std::uint64_t steps() const { return steps_; }
@@ -117,6 +124,9 @@ class Simulation {
   std::uint64_t state_hash() const;
   std::array<MaterialBalance, material_count> balance();
   Residual residual();
+  /// Plants by species, in the order of the scenario; none where plants are off.
+  std::vector<PlantCount> plant_counts() const;
+  const plants::Workspace& plants() const { return plants_; }
   double max_sand_slope_deg();
   double mean_avalanche_iterations() const;
 
@@ -177,6 +187,11 @@ class Simulation {
   void slide_ground(E& exec, const TerrainView& view);
   /// Brings the scenario's features of the wind to the backend.
   void upload_wind_features();
+  void make_plants();
+  /// Puts plants (columns as plants::words() gives them) in the place of those that are there.
+  void set_plants(const std::vector<std::uint32_t>& words);
+  /// What the wind is blocked by.
+  const surface::Heights& obstructing_heights() const;
   void start_books();
   void set_regime(WindRegime regime);
   std::vector<long long> read_ledger() const;
@@ -208,6 +223,7 @@ class Simulation {
   virtual_pipes::Workspace pipes_work_;
   hydraulic_erosion::Workspace erosion_work_;
   Buffer<wind_features::Prepared> features_;
+  plants::Workspace plants_;  ///< empty where plants are off
   Buffer<float> perturbation_x_, perturbation_y_;
   /// The tangents of repose, from reptation on; what comes before it in a step may scribble there.
   Buffer<float> repose_;

@@ -75,6 +75,11 @@ std::string summary(Simulation& s, const RunReport& report) {
   for (std::size_t m = 0; m < balance.size(); ++m)
     out << (m ? ", " : "") << json_text(material_names[m]) << ": "
         << json_number(balance[m].relative_residual());
+  out << "},\n  \"plants\": {";
+  const std::vector<PlantCount> plants = s.plant_counts();
+  for (std::size_t n = 0; n < plants.size(); ++n)
+    out << (n ? ", " : "") << json_text(plants[n].species) << ": {\"plants\": " << plants[n].plants
+        << ", \"mature\": " << plants[n].mature << "}";
   const Residual r = s.residual();
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);

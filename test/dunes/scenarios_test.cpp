@@ -134,6 +134,33 @@ TEST(Dunes, Nebkha) {
   EXPECT_GT(lee, 1.3 * upwind);
 }
 
+/// Bushes that came up by themselves hold sand, with tails downwind.
+TEST(Dunes, LivingNebkha) {
+  Running scene(shipped("nebkha_live", small));
+  scene.run(400);
+  const Field sand = scene.field(Layer::sand);
+  const plants::Workspace& bushes = scene.simulation().plants();
+  const std::vector<std::uint32_t> words = plants::words(bushes);
+  const auto count = static_cast<std::size_t>(bushes.count);
+  ASSERT_GT(count, 10u);
+  double on = 0, lee = 0, upwind = 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    const int x = static_cast<int>(float_of(words[n])), y = static_cast<int>(float_of(words[count + n]));
+    on += sand.at(x, y) / static_cast<double>(count);
+    for (int away = 6; away <= 10; ++away) {
+      lee += sand.at(x + away, y) / (5.0 * static_cast<double>(count));
+      upwind += sand.at(x - away, y) / (5.0 * static_cast<double>(count));
+    }
+  }
+  const double all = mean_where(sand, std::vector<char>(sand.values.size(), 1));
+  DESERT_REPORT(
+      "%zu bushes; sand: mean %.2f m, under them %.2f m, 6 to 10 m downwind of them %.2f m, upwind %.2f m",
+      count, all, on, lee, upwind);
+  EXPECT_GT(on, 2 * all);
+  EXPECT_GT(lee, 1.3 * upwind);
+  scene.expect_balanced();
+}
+
 /// A dune in front of the tower, off it by a lane of 0.3 to 1 of the tower's height.
 TEST(Dunes, Echo) {
   constexpr double tower = 15;

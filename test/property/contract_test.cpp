@@ -20,7 +20,8 @@ class Contract : public test::OnBackend {
     for (Layer layer : {Layer::airborne_sand, Layer::moisture, Layer::suspended_sediment, Layer::humus})
       t->set(layer, [&](int x, int y) { return 0.03 * wave(x, 2 * y); });
     t->set(Layer::water, [&](int x, int y) { return x % 5 ? 0 : 0.1 * wave(x, y); });
-    for (Layer layer : {Layer::vegetation, Layer::erosion_resistance, Layer::illumination})
+    for (Layer layer : {Layer::vegetation, Layer::erosion_resistance, Layer::illumination,
+                        Layer::illumination_canopy, Layer::canopy_height})
       t->set(layer, [&](int x, int y) { return x % 4 ? 0 : wave(x, 3 * y); });
     t->set(Layer::obstacle, [&](int x, int y) { return x / 4 == 3 && y / 4 == 2 ? 1 : 0; });
     t->set(Layer::wind_x, [&](int x, int y) { return 4 + wave(x, y); });
@@ -129,6 +130,45 @@ TEST_P(Contract, OfBedrockAvalanching) {
     p.bedrock_to_sand = false;
     t.avalanche_bedrock(p);
   });
+}
+
+TEST_P(Contract, OfPlants) {
+  const auto with_plants = [](const auto& step) {
+    return [step](test::BenchTerrain& t) {
+      SpeciesTraits s;
+      s.spawn = 200;
+      s.moisture_lowest = 0;
+      plants::Workspace work = plants::make_workspace(t.exec(), t.grid(), t.grid().cells(), {s}, {1});
+      // Some plants come up first, on a terrain that is set back.
+      std::vector<std::vector<std::uint32_t>> before;
+      for (const LayerInfo& row : layer_table) before.push_back(t.terrain.words(row.layer));
+      with_backend(t.exec(), [&](auto& e) {
+        plants::live(e, t.terrain.view(), {}, {}, t.heights, 1, 1, 1, t.ledger(), work);
+      });
+      ASSERT_GT(work.count, 20);
+      for (const LayerInfo& row : layer_table)
+        if (t.terrain.has(row.layer))
+          t.terrain.set_words(row.layer, before[static_cast<std::size_t>(row.layer)]);
+      with_backend(t.exec(), [&](auto& e) { step(e, t, work); });
+      t.exec().synchronise();
+    };
+  };
+  expect_only("plant cover", {Layer::vegetation, Layer::humus, Layer::canopy_height}, true,
+              with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {
+                plants::cover(e, t.terrain.view(), {}, 1, t.heights, true, work);
+              }));
+  expect_only("a look at plant cover", {Layer::canopy_height}, true,
+              with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {
+                plants::cover(e, t.terrain.view(), {}, 1, t.heights, false, work);
+              }));
+  expect_only("illumination", {Layer::illumination, Layer::illumination_canopy}, true,
+              with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {
+                plants::illuminate(e, t.terrain.view(), {}, t.heights, work);
+              }));
+  expect_only("vegetation", {Layer::moisture, Layer::humus}, true,
+              with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {
+                plants::live(e, t.terrain.view(), {}, {}, t.heights, 1, 1, 2, t.ledger(), work);
+              }));
 }
 
 DESERT_ON_EACH_BACKEND(Contract);

@@ -94,6 +94,22 @@ std::vector<Case> process_cases(bool transforms) {
           wind +
           "water: {enabled: true, evaporation: 0.3}\nmoisture: {enabled: true, diffusion: "
           "0.4, evaporation: 20}\nsoil: {enabled: true, drying: 0.1}\n");
+  // Many seeds, so that within a few steps there are births, deaths, thirst, and all of a kind's places
+  // taken.
+  const std::string life =
+      terrain +
+      "  - noise: {layer: soil, low: 0.5, high: 4, scale: 8, seed: 3}\n"
+      "  - noise: {layer: moisture, low: 0, high: 0.2, scale: 10, seed: 6}\n"
+      "  - noise: {layer: water, low: 0, high: 4, scale: 10, threshold: 0.7, seed: 7}\n" +
+      wind +
+      "species: [{preset: bush, spawn: 200, light_highest: 2, moisture_lowest: 0, maturity_time: 4, "
+      "separation: 10, "
+      "growth: 0.5, slope: 9}, {preset: seaweed, spawn: 300, spawn_wind: 99, slope: 9}, "
+      "{preset: tree, spawn: 50, growth: 3, moisture_lowest: 0, slope: 9}]\n"
+      "competition: [[1, 0, 2], [0.5, 1, 1], [0.1, 1, 1]]\n";
+  add("plants", life + "vegetation: {enabled: true, draw: 1}\nrun: {check_every: 2}\n");
+  add("plants, more than there is room for",
+      life + "vegetation: {enabled: true, max_plants: 40, light_deg: 30}\nrun: {time_step: 0.3}\n");
   add("everything",
       terrain +
           "  - noise: {layer: soil, low: 0, high: 2, scale: 8, threshold: 0.5, seed: 3}\n"

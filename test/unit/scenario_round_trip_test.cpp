@@ -43,6 +43,17 @@ Scenario scenario_at(const std::function<double()>& share) {
   for (WindSegment& segment : s.wind_segments) set_all(segment, share);
   s.wind_features.resize(2);
   for (WindFeature& feature : s.wind_features) set_all(feature, share);
+  s.species.resize(3);
+  for (std::size_t n = 0; n < s.species.size(); ++n) {
+    Species& species = s.species[n];
+    species.name = "kind " + std::to_string(n) + ": \"a\"";
+    set_all(species.traits, share);
+    species.traits.moisture_lowest =
+        std::min(species.traits.moisture_lowest, species.traits.moisture_highest);
+    float &low = species.traits.light_lowest, &high = species.traits.light_highest;
+    if (!(low < high)) low = -10, high = std::max(high, -9.5f);
+  }
+  for (int n = 0; n < 9; ++n) s.competition.push_back(static_cast<float>(share() * strongest_competition));
   const auto step = [&](auto one) {
     set_all(one, share);
     s.terrain.push_back(one);
@@ -134,6 +145,7 @@ TEST(ParameterTables, HaveRangesThatHoldTheirDefaultsAndDocumentation) {
     });
   };
   for_each_section(s, check);
+  check("species", SpeciesTraits{});
   check("wind", s.wind);
   check("wind", s.wind_regime);
   check("segment", WindSegment{});

@@ -1,0 +1,170 @@
+#pragma once
+/// Growth, health and death. Nilles 2025 §3.2.4 and 3.2.5; physics.md D.
+///
+///   r += Δt φ_g Π g,  health += Δt (φ_g Π g − φ_d Σ d); any damage d > 0 stops growth
+///   competition  g = 1 − Σ ¼ D_kj (min(distance − (r_k + r_j), 0) / r_k)²
+///   light        1 in the middle of the species' interval, 0 at its ends; at the top of the stem
+///   slope        1 − slope / slope_max;   standing water 1 − depth / (resistance · stem)
+///   water        1 where the need is met, up to 2 with twice as much about the roots
+///   ground       share of the roots in soil and sand, by how well the species grows there
+///   r at most    min(height above rock / root, g_competition g_light r_max), under water also height of the
+///                water's surface / stem; a tenth more is damage, and who can shrinks
+///
+/// Damages are 0 at the border of what is allowed and at most 1: too wide, too little water, light, too wet a
+/// ground, too steep, roots bare, stem buried, too deep in water, or not in it. Dead at health 0, or when not
+/// mature in time; the dead leave humus. Plants read their neighbours as they were before the step.
+
+#include "desert_sim/kernels/plants/drinking.hpp"
+#include "desert_sim/kernels/plants/workspace.hpp"
+
+namespace desert_sim::plants {
+
+/// Growth factors and damages of a plant, and how wide it may be [m].
+struct Response {
+  float competition = 1, light = 1, slope = 1, water = 1, flood = 1, ground = 1;
+  float damage = 0, widest = 0;
+  DESERT_HD float growth() const { return competition * light * slope * water * flood * ground; }
+};
+
+/// How far a value is beyond a limit, over a scale: 0 … 1.
+DESERT_HD float excess(float beyond, float scale) {
+  return clamp(beyond / maximum(scale, 1e-6f), 0.0f, 1.0f);
+}
+
+struct Competition {
+  Neighbourhood near;
+  View plants;
+  const float* matrix;
+  int species_count;
+  float quantum;
+
+  DESERT_HD float operator()(int k) const {
+    const float x = plants.x[k], y = plants.y[k], r = plants.radius[k];
+    const Quanta z = plants.z[k];
+    const float* row = matrix + plants.species[k] * species_count;
+    float sum = 0.0f;
+    near.around(x, y, r, [&](int j) {
+      if (j == k) return;
+      const float dx = near.lookup.difference_x(x, plants.x[j]),
+                  dy = near.lookup.difference_y(y, plants.y[j]);
+      const float both = r + plants.radius[j], flat2 = dx * dx + dy * dy;
+      if (!(flat2 < both * both)) return;
+      const float dz = static_cast<float>(z - plants.z[j]) * quantum;
+      const float overlap = minimum(sqrtf(flat2 + dz * dz) - both, 0.0f) / r;
+      sum += 0.25f * row[plants.species[j]] * (overlap * overlap);
+    });
+    return clamp(1.0f - sum, 0.0f, 1.0f);
+  }
+};
+
+/// The plant's light: between that on the ground and that on the canopy.
+DESERT_HD float light_at(float ground, float canopy, float canopy_height, float top_above_ground) {
+  const float t = canopy_height > 1e-6f ? clamp(top_above_ground / canopy_height, 0.0f, 1.0f) : 0.0f;
+  return lerp(ground, canopy, t);
+}
+DESERT_HD float light_factor(const SpeciesTraits& s, float light) {
+  const float middle = 0.5f * (s.light_lowest + s.light_highest);
+  const float half = maximum(0.5f * (s.light_highest - s.light_lowest), 1e-6f);
+  return clamp(1.0f - fabsf(light - middle) / half, 0.0f, 1.0f);
+}
+
+struct Grow {
+  Drinking drinking;
+  Competition competition;
+  View plants, later;
+  const SpeciesTraits* species;
+  const long long* wishes;
+  const float *canopy_height, *illumination, *illumination_canopy;
+  float time_step, litter;
+  Quanta *drunk, *humus;
+  int* deaths;
+
+  DESERT_HD const Site& site() const { return drinking.site; }
+
+  /// How the plant takes its place; all but water and competition.
+  DESERT_HD void feel(const SpeciesTraits& s, int n, int cell, Response& r) const {
+    const Site& here = site();
+    const float radius = plants.radius[n], stem = radius * s.stem, root = radius * s.root;
+    const float above_ground = static_cast<float>(plants.z[n] - here.surface(cell)) * here.quantum;
+    const float light =
+        light_at(illumination[cell], illumination_canopy[cell], canopy_height[cell], above_ground + stem);
+    r.light = light_factor(s, light);
+    r.damage += excess(maximum(s.light_lowest - light, light - s.light_highest),
+                       0.5f * (s.light_highest - s.light_lowest));
+    const float slope = here.slope(cell);
+    r.slope = clamp(1.0f - slope / s.slope, 0.0f, 1.0f);
+    r.damage += excess(slope - s.slope, s.slope);
+    r.damage += excess(here.relative_moisture(cell) - s.moisture_highest, 1.0f - s.moisture_highest);
+    const Ground g =
+        here.ground(cell, plants.z[n], stem * here.quanta_per_metre, root * here.quanta_per_metre);
+    r.ground = ground_quality(s, g);
+    r.damage += excess(s.root_cover - g.root_cover, s.root_cover);
+    r.damage += excess(g.stem_cover - s.stem_cover, 1.0f - s.stem_cover);
+    r.widest = static_cast<float>(plants.z[n] - here.bedrock[cell]) * here.quantum / s.root;
+    const float depth = here.water_depth(cell);
+    if (lives_under_water(s)) {
+      r.damage += depth > wet_depth ? 0.0f : 1.0f;
+      r.widest = minimum(r.widest, (depth - above_ground) / s.stem);
+    } else if (depth > wet_depth) {
+      const float allowed = s.water_resistance * stem;
+      r.flood = clamp(1.0f - depth / maximum(allowed, wet_depth), 0.0f, 1.0f);
+      r.damage += excess(depth - allowed, stem);
+    }
+  }
+
+  /// What the plant stores afterwards.
+  DESERT_HD float drink(const SpeciesTraits& s, int n, int cell, Response& r) const {
+    const float stored = plants.water[n];
+    const Thirst t = drinking.thirst(s, plants.radius[n], stored, cell);
+    drunk[n] = drinking.granted(t.wish, wishes[cell], cell);
+    const float share = t.wish > 0 ? static_cast<float>(drunk[n]) / static_cast<float>(t.wish) : 1.0f;
+    const float left = stored + t.wanted * share - t.needed;
+    r.damage += t.needed > 0.0f && left < 0.0f ? excess(-left, t.needed) : 0.0f;
+    r.water = t.needed > 0.0f ? 1.0f + clamp(t.reachable * share / t.needed - 1.0f, 0.0f, 1.0f) : 2.0f;
+    return clamp(left, 0.0f, t.stored_most);
+  }
+
+  /// The new radius; too wide is a damage.
+  DESERT_HD float widen(const SpeciesTraits& s, float radius, Response& r) const {
+    r.widest = minimum(r.widest, r.competition * r.light * s.max_radius);
+    const bool too_wide = radius > 1.1f * r.widest;
+    if (too_wide) r.damage += excess(radius - 1.1f * r.widest, 1.1f * maximum(r.widest, 0.0f));
+    if (too_wide) return maximum(radius - time_step * s.shrink, maximum(r.widest, 0.05f * radius));
+    if (r.damage > 0.0f || radius >= r.widest) return radius;
+    return minimum(radius + time_step * s.growth * r.growth(), r.widest);
+  }
+
+  DESERT_HD Quanta follow(const SpeciesTraits& s, Quanta z, int cell) const {
+    const Quanta most = take(s.position_adjust * time_step, site().quanta_per_metre, load_limit);
+    const Quanta way = site().surface(cell) - z;
+    return z + (way > most ? most : (way < -most ? -most : way));
+  }
+
+  DESERT_HD void operator()(int n) const {
+    const SpeciesTraits& s = species[plants.species[n]];
+    const int cell = site().cell(plants.x[n], plants.y[n]);
+    const float radius = plants.radius[n], age = plants.age[n];
+    Response r;
+    r.competition = competition(n);
+    feel(s, n, cell, r);
+    const float stored = drink(s, n, cell, r);
+    const float grown = widen(s, radius, r);
+    const float gain = r.damage > 0.0f || radius >= r.widest ? 0.0f : s.growth * r.growth();
+    float health = minimum(plants.health[n] + time_step * (gain - s.damage * r.damage), 1.0f);
+    const bool due = age < s.maturity_time && age + time_step >= s.maturity_time;
+    if (due && !is_mature(s, grown)) health = 0.0f;
+    later.x[n] = plants.x[n];
+    later.y[n] = plants.y[n];
+    later.z[n] = follow(s, plants.z[n], cell);
+    later.radius[n] = grown;
+    later.health[n] = health;
+    later.water[n] = stored;
+    later.age[n] = age + time_step;
+    later.species[n] = plants.species[n];
+    if (health > 0.0f) return;
+    atomic_add(deaths, 1);
+    atomic_add(&humus[cell], take(litter * s.humus, site().quanta_per_metre, load_limit >> 10));
+  }
+};
+
+}  // namespace desert_sim::plants

@@ -1,0 +1,141 @@
+#pragma once
+/// New plants. Nilles 2025 §3.2.2, eq. 13–15; physics.md D.
+///
+///   weight  p_j = base (1 + k_density min(ρ_j, 1) + k_wind min(ρ_wj, 1)), 0 where the place does not suit
+///   event   P = 1 − (1 − min(Σp / N_cells, 1))^Δt, one plant a cell, its species drawn by weight
+///   radius  5 % of min(depth of soil and sand / root, r_max); health 1, age 0, no water
+///
+/// A place suits if it is as wet, flat and loose as the species needs, and its like is not too near. Random
+/// numbers are by (seed, step, cell). New plants stand behind the others in the order of their cells; where
+/// there is room for only some, these are spread evenly over the cells that have one.
+
+#include "desert_sim/kernels/plants/site.hpp"
+#include "desert_sim/kernels/plants/workspace.hpp"
+#include "desert_sim/kernels/random.hpp"
+
+namespace desert_sim::plants {
+
+constexpr float seedling_share = 0.05f;
+
+DESERT_HD float weight_of(const SpeciesTraits& s, float density, float downwind) {
+  return s.spawn * (1.0f + s.spawn_density * minimum(density, 1.0f) + s.spawn_wind * minimum(downwind, 1.0f));
+}
+
+/// 1 − (1 − q)^dt for q in 0 … 1.
+DESERT_HD double event_probability(double q, double dt) { return q >= 1.0 ? 1.0 : -expm1(dt * log1p(-q)); }
+
+/// [m]
+DESERT_HD float seedling_radius(const SpeciesTraits& s, float loose_depth) {
+  return seedling_share * minimum(loose_depth / s.root, s.max_radius);
+}
+
+struct Seeding {
+  Site site;
+  const SpeciesTraits* species;
+  int species_count;
+  const float *density, *downwind;
+  float time_step;
+  std::uint64_t seed, step;
+
+  DESERT_HD float weight(int kind, int i) const {
+    const long long at = kind * static_cast<long long>(site.grid.cells()) + i;
+    return weight_of(species[kind], density[at], downwind[at]);
+  }
+
+  DESERT_HD bool suits(int kind, int i, float slope) const {
+    const SpeciesTraits& s = species[kind];
+    const float radius = seedling_radius(s, site.loose_depth(i)), depth = site.water_depth(i);
+    if (!(radius > 0.0f) || value_or_zero(site.obstacle, i) > 0.0f || slope > s.slope) return false;
+    if (density[kind * static_cast<long long>(site.grid.cells()) + i] > s.separation) return false;
+    const float stem = radius * s.stem;
+    if (lives_under_water(s) ? depth < stem || depth <= wet_depth
+                             : depth > maximum(s.water_resistance * stem, wet_depth))
+      return false;
+    const float moisture = site.relative_moisture(i);
+    if (moisture < s.moisture_lowest || moisture > s.moisture_highest) return false;
+    const float in_quanta = radius * site.quanta_per_metre;
+    return ground_quality(s, site.ground(i, site.surface(i), in_quanta * s.stem, in_quanta * s.root)) > 0.0f;
+  }
+
+  /// Random words of a cell in this step; `which` = 0 for the event and the species, 1 for the place.
+  DESERT_HD RandomWords draw(int i, std::uint32_t which) const {
+    return random_words(seed, Purpose::plants, static_cast<std::uint32_t>(i),
+                        static_cast<std::uint32_t>(step),
+                        static_cast<std::uint32_t>(step >> 32) << 1 | which);
+  }
+
+  /// The species that comes up in a cell, or −1.
+  DESERT_HD int species_of(int i) const {
+    const auto share = [&](float weights) {
+      const double q = static_cast<double>(weights) / site.grid.cells();
+      return q < 1.0 ? q : 1.0;
+    };
+    float likely = 0.0f;
+    for (int k = 0; k < species_count; ++k) likely += weight(k, i);
+    const RandomWords words = draw(i, 0);
+    const double chance = (words.word[0] + words.word[1] * 0x1p-32) * 0x1p-32;
+    // Most cells are through here: that is above P, even if all species found the place to suit.
+    if (chance >= share(likely) * (time_step > 1.0f ? time_step : 1.0f)) return -1;
+    float weights[most_species], all = 0.0f;
+    const float slope = site.slope(i);
+    for (int k = 0; k < species_count; ++k) all += weights[k] = suits(k, i, slope) ? weight(k, i) : 0.0f;
+    if (!(chance < event_probability(share(all), time_step))) return -1;
+    float left = static_cast<float>(words.word[2] >> 8) * (1.0f / 16777216.0f) * all;
+    int last = -1;
+    for (int k = 0; k < species_count; ++k) {
+      if (!(weights[k] > 0.0f)) continue;
+      last = k;
+      if (left < weights[k]) return k;
+      left -= weights[k];
+    }
+    return last;
+  }
+};
+
+/// 1 where a plant comes up.
+struct Sow {
+  Seeding seeding;
+  int* seeds;
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = seeding.site.grid.index(x, y);
+    seeds[i] = seeding.species_of(i) >= 0 ? 1 : 0;
+  }
+};
+
+/// The place of the j-th of `all` seeds among those that come up, at most `room`; −1 if it finds none.
+DESERT_HD int place_of(long long j, long long all, long long room) {
+  if (all <= room) return static_cast<int>(j);
+  const long long place = j * room / all;
+  return (j + 1) * room / all > place ? static_cast<int>(place) : -1;
+}
+
+struct Sprout {
+  Seeding seeding;
+  const int *seeds, *places;
+  View later;
+  int count, capacity;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const Site& site = seeding.site;
+    const int i = site.grid.index(x, y);
+    if (seeds[i] == 0) return;
+    const int place = place_of(places[i], places[site.grid.cells()], capacity - count);
+    if (place < 0) return;
+    const int n = count + place, kind = seeding.species_of(i);
+    const RandomWords words = seeding.draw(i, 1);
+    const auto within = [&](int cell, std::uint32_t word) {
+      return (static_cast<float>(cell) + static_cast<float>(word >> 8) * (1.0f / 16777216.0f)) *
+             site.grid.cell_size;
+    };
+    later.x[n] = within(x, words.word[0]);
+    later.y[n] = within(y, words.word[1]);
+    later.z[n] = site.surface(i);
+    later.radius[n] = seedling_radius(seeding.species[kind], site.loose_depth(i));
+    later.health[n] = 1.0f;
+    later.water[n] = 0.0f;
+    later.age[n] = 0.0f;
+    later.species[n] = kind;
+  }
+};
+
+}  // namespace desert_sim::plants

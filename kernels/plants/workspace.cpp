@@ -1,0 +1,49 @@
+#include "desert_sim/kernels/plants/workspace.hpp"
+
+namespace desert_sim::plants {
+
+Workspace make_workspace(Exec& exec, const Grid& grid, int capacity,
+                         const std::vector<SpeciesTraits>& species, const std::vector<float>& competition) {
+  const auto cells = static_cast<std::size_t>(grid.cells()), room = static_cast<std::size_t>(capacity);
+  Workspace work;
+  work.capacity = capacity;
+  work.species_count = static_cast<int>(species.size());
+  work.lookup = Lookup(grid);
+  for (Buffer<std::uint32_t>* columns : {&work.now, &work.next})
+    *columns = Buffer<std::uint32_t>(exec, column_count * room);
+  work.spans = Buffer<Span>(exec, static_cast<std::size_t>(work.lookup.cells + Lookup::levels));
+  work.spans.set_zero();
+  work.ordering = Ordering(exec, capacity, grid.cells() + 1);
+  work.species = Buffer<SpeciesTraits>(exec, species.size());
+  work.species.upload(species);
+  work.competition = Buffer<float>(exec, competition.size());
+  work.competition.upload(competition);
+  work.drunk = Buffer<Quanta>(exec, room);
+  work.wishes = Buffer<long long>(exec, cells);
+  for (Buffer<float>* map : {&work.density, &work.downwind}) {
+    *map = Buffer<float>(exec, cells * species.size());
+    map->set_zero();
+  }
+  work.seeds = Buffer<int>(exec, cells + 1);
+  work.seeds.set_zero();
+  work.places = Buffer<int>(exec, cells + 1);
+  work.tally = Buffer<int>(exec, 2);
+  work.tops = surface::make_heights(exec, grid);
+  return work;
+}
+
+std::size_t Workspace::bytes() const {
+  return now.bytes() + next.bytes() + spans.bytes() + ordering.bytes() + species.bytes() +
+         competition.bytes() + drunk.bytes() + wishes.bytes() + density.bytes() + downwind.bytes() +
+         seeds.bytes() + places.bytes() + tally.bytes() + tops.of_cells.bytes() + tops.highest.bytes();
+}
+
+std::vector<std::uint32_t> words(const Workspace& work) {
+  const auto count = static_cast<std::size_t>(work.count), room = static_cast<std::size_t>(work.capacity);
+  std::vector<std::uint32_t> all(column_count * count);
+  for (std::size_t c = 0; c < column_count && count > 0; ++c)
+    work.now.download(c * room, count, all.data() + c * count);
+  return all;
+}
+
+}  // namespace desert_sim::plants

@@ -1,0 +1,151 @@
+#include "desert_sim/scenario/species.hpp"
+
+#include <set>
+#include <utility>
+
+#include "desert_sim/scenario/scenario.hpp"
+#include "desert_sim/scenario/yaml_parameters.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr std::pair<const char*, const char*> presets[] = {
+#include "desert_sim/species_presets.inc"
+};
+
+const char* preset_text(const std::string& name) {
+  for (const auto& [known, text] : presets)
+    if (name == known) return text;
+  return nullptr;
+}
+
+std::string known_presets() {
+  std::string all;
+  for (const std::string& name : species_presets()) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
+void read_one(const YAML::Node& node, const std::string& key, Faults& faults, Species& species) {
+  std::set<std::string> known;
+  SpeciesName name;
+  yaml::read_parameters(node, key + ".", faults, name, known);
+  if (!name.preset.empty()) {
+    if (preset_text(name.preset))
+      species = {name.preset, species_preset(name.preset)};
+    else
+      faults.add(key + ".preset", "'" + name.preset + "' is not one of: " + known_presets());
+  }
+  if (!name.name.empty()) species.name = name.name;
+  yaml::read_parameters(node, key + ".", faults, species.traits, known);
+  yaml::refuse_unknown(node, key + ".", known, faults);
+  if (!node.IsMap())
+    faults.add(key, yaml::shown(node) + " where a species is expected, such as {preset: tree}");
+  if (node.IsMap() && species.name.empty() && name.preset.empty())
+    faults.add(key, "needs a name, or a preset that gives it one");
+}
+
+/// A row or the whole must have one entry a species.
+bool has_entries(const YAML::Node& list, const std::string& key, std::size_t count, Faults& faults) {
+  if (list.IsSequence() && list.size() == count) return true;
+  faults.add(key,
+             (list.IsSequence() ? "has " + std::to_string(list.size()) + " entries" : yaml::shown(list)) +
+                 " where a list of one entry a species, " + std::to_string(count) + ", is expected");
+  return false;
+}
+
+void read_competition(const YAML::Node& rows, std::size_t count, Faults& faults, CompetitionMatrix& matrix) {
+  if (!rows.IsDefined() || rows.IsNull() || !has_entries(rows, "competition", count, faults)) return;
+  struct Row {
+    double lowest = 0, highest = strongest_competition;
+    const char* unit = "1";
+  } range;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::string key = "competition." + std::to_string(k);
+    if (!has_entries(rows[k], key, count, faults)) continue;
+    for (std::size_t j = 0; j < count; ++j) {
+      double value = 1;
+      if (yaml::read_number<float>(rows[k][j], range, key + "." + std::to_string(j), faults, value))
+        matrix[k * count + j] = static_cast<float>(value);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> species_presets() {
+  std::set<std::string> names;
+  for (const auto& preset : presets) names.insert(preset.first);
+  return {names.begin(), names.end()};
+}
+
+SpeciesTraits species_preset(const std::string& name) {
+  const char* text = preset_text(name);
+  if (!text) throw ConfigError("species preset '" + name + "' is not one of: " + known_presets());
+  Faults faults("species preset " + name);
+  SpeciesTraits traits;
+  yaml::read_section(YAML::Load(text), name, faults, traits);
+  faults.throw_if_any();
+  return traits;
+}
+
+void read_species(const YAML::Node& root, Faults& faults, Scenario& s) {
+  const YAML::Node list = root["species"];
+  if (list.IsDefined() && !list.IsNull()) {
+    if (!list.IsSequence()) return faults.add("species", yaml::shown(list) + " where a list is expected");
+    if (list.size() > most_species)
+      return faults.add(
+          "species", std::to_string(list.size()) + " entries are more than " + std::to_string(most_species));
+    for (std::size_t n = 0; n < list.size(); ++n) {
+      s.species.emplace_back();
+      read_one(list[n], "species." + std::to_string(n), faults, s.species.back());
+    }
+  }
+  s.competition.assign(s.species.size() * s.species.size(), 1.0f);
+  read_competition(root["competition"], s.species.size(), faults, s.competition);
+}
+
+void emit_species(YAML::Emitter& out, const Scenario& s) {
+  out << YAML::Key << "species" << YAML::Value << YAML::BeginSeq;
+  for (const Species& species : s.species) {
+    out << YAML::Flow << YAML::BeginMap << YAML::Key << "name" << YAML::Value << YAML::DoubleQuoted
+        << species.name;
+    yaml::emit_parameters(out, species.traits);
+    out << YAML::EndMap;
+  }
+  out << YAML::EndSeq << YAML::Key << "competition" << YAML::Value << YAML::BeginSeq;
+  for (std::size_t k = 0; k < s.species.size(); ++k) {
+    out << YAML::Flow << YAML::BeginSeq;
+    for (std::size_t j = 0; j < s.species.size(); ++j) out << s.competition[k * s.species.size() + j];
+    out << YAML::EndSeq;
+  }
+  out << YAML::EndSeq;
+}
+
+void check_plants(const Scenario& s, Faults& faults) {
+  std::set<std::string> names;
+  for (std::size_t n = 0; n < s.species.size(); ++n) {
+    const Species& species = s.species[n];
+    const std::string key = "species." + std::to_string(n);
+    if (!species.name.empty() && !names.insert(species.name).second)
+      faults.add(key + ".name", "'" + species.name + "' is another's already");
+    if (species.traits.moisture_highest < species.traits.moisture_lowest)
+      faults.add(key + ".moisture_highest", "must not be below moisture_lowest");
+    if (species.traits.light_highest <= species.traits.light_lowest)
+      faults.add(key + ".light_highest", "must be above light_lowest");
+  }
+  if (!s.vegetation.enabled) return;
+  if (s.species.empty()) faults.add("vegetation.enabled", "needs at least one entry in species");
+  for (std::size_t n = 0; n < s.terrain.size(); ++n)
+    std::visit(
+        [&](const auto& step) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(step)>, ObstacleStep>)
+            if (step.layer == info(Layer::vegetation).name)
+              faults.add(
+                  "terrain." + std::to_string(n) + "." + terrain_step_names[s.terrain[n].index()] + ".layer",
+                  "vegetation cannot be painted while vegetation.enabled: plants make it");
+        },
+        s.terrain[n]);
+}
+
+}  // namespace desert_sim
