@@ -25,6 +25,7 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParamete
     work.received = Buffer<Quanta>(exec, cells);
     return work;
   }
+  if (p.quality == AvalancheQuality::converged) work.open = make_open_tiles(exec, grid, rounds_a_look + 1);
   Grid g = grid;
   while (g.cell_size < p.coarsest_cell * 0.999f && g.width / 2 >= fewest_cells &&
          g.height / 2 >= fewest_cells) {

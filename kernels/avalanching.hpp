@@ -14,8 +14,8 @@
 /// grid relaxed again last. Each relaxation is sweeps inside closed tiles whose seams move between passes
 /// (avalanching_tile.hpp), which leave what is below 2e-4 cell sizes. A slide that has begun aims at a slope
 /// a little below the angle of repose (`rest`), as that of sand does; or hardly anything would be at rest
-/// after so few sweeps. `sweeps`: synchronous sweeps of the whole grid, the reference. `taylor_keyser`: k_c =
-/// 0.25 of the largest drop, by tangents, for comparison.
+/// after so few sweeps. What `converged` adds: settle(). `sweeps`: synchronous sweeps of the whole grid, the
+/// reference. `taylor_keyser`: k_c = 0.25 of the largest drop, by tangents, for comparison.
 ///
 /// Reads bedrock, soil, obstacle and the repose tangents; writes sand. Soil and bedrock:
 /// avalanching_ground.hpp.
@@ -24,7 +24,7 @@
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/avalanching_tile.hpp"
-#include "desert_sim/kernels/buffer.hpp"
+#include "desert_sim/kernels/avalanching_unsettled.hpp"
 
 namespace desert_sim {
 
@@ -86,7 +86,8 @@ struct Schedule {
 };
 constexpr Schedule schedule(AvalancheQuality quality) {
   if (quality == AvalancheQuality::fast) return {1, 2, 1, 3, 0.3f};
-  return {1, 3, 2, 6, 0.2f};
+  if (quality == AvalancheQuality::good) return {1, 3, 2, 6, 0.2f};
+  return {1, 3, 4, 6, 0.2f};
 }
 static_assert(schedule(AvalancheQuality::good).sweeps <= most_sweeps);
 
@@ -101,6 +102,7 @@ struct Workspace {
   std::vector<Level> coarse;  ///< coarse[0] has cells twice as wide as the terrain's
   Buffer<float> share;        ///< of the synchronous schemes; made when one is used
   Buffer<Quanta> given, received;
+  OpenTiles open;      ///< of the multilevel scheme, when it converges
   int iterations = 0;  ///< fine sweeps of the last step; at least, where tiles may go on
 };
 
@@ -120,6 +122,9 @@ inline LevelView finest(const TerrainView& t, const float* repose) {
 /// imprint.
 constexpr int seam_offsets[] = {0, 16, 8, 24, 4, 20, 12, 28};
 constexpr std::uint64_t turns = 8;
+inline int seam_offset(std::uint64_t turn, int pass) {
+  return seam_offsets[(5 * turn + static_cast<std::uint64_t>(pass)) % turns];
+}
 
 /// Whether every coarse cell's children lie in one tile, whatever its offset: then they can get their share
 /// there.
@@ -136,7 +141,7 @@ void relax(E& exec, const LevelView& level, Prolong from_coarse, const Avalanchi
     from_coarse = {};
   }
   for (int pass = first; pass < last; ++pass) {
-    const Tiles tiles{level.grid, seam_offsets[(5 * turn + static_cast<std::uint64_t>(pass)) % turns]};
+    const Tiles tiles{level.grid, seam_offset(turn, pass)};
     relax_tiles(exec, RelaxTile{tiles, level, from_coarse, p.transfer, p.rest, sweeps, plenty});
     from_coarse = {};
   }
@@ -183,6 +188,70 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
   relax(exec, fine, change, p, plan.before, plan.before + plan.after, plan.sweeps, plan.plenty, turn);
 }
 
+/// Rounds of passes over what is not yet at rest, between two looks at what they left.
+constexpr int rounds_a_look = 2;
+/// Slides are handed on further (avalanching_units.hpp) from round to round, by so much, up to ½: the fewer
+/// there are left, the sooner they come to their end. With ½ from the start hardly a slope stayed near its
+/// angle of repose.
+constexpr float onward_a_round = 0.1f;
+
+/// Finds what the passes from `pass` on are to go over; the cells that are too steep are counted in
+/// counts[round].
+template <class E>
+void find_unsettled(E& exec, const LevelView& fine, float tolerance, std::uint64_t turn, int pass, int round,
+                    const OpenTiles& open) {
+  OpenNearUnsettled law{
+      {fine}, tolerance, {}, open.flags.data(), open.most_tiles, open.counts.data() + round};
+  for (int n = 0; n < passes_a_round; ++n) law.offsets[n] = seam_offset(turn, pass + n);
+  exec.set_zero(law.flags, open.flags.bytes());
+  exec.set_zero(law.count, sizeof(Quanta));
+  for_each_cell(exec, fine.grid, law);
+}
+
+/// A cycle, and then rounds of passes over those tiles alone that are not at rest: what is left are trains of
+/// small slides on their way down. Where two rounds do not halve the cells that are too steep, something
+/// large slides, and it takes another cycle. The host looks every two rounds; if there is nothing left
+/// before, kernels end at once.
+template <class E>
+void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std::uint64_t turn,
+            Workspace& work) {
+  const Schedule plan = schedule(p.quality);
+  const OpenTiles& open = work.open;
+  // Cells that are too steep: before each round, and after the last.
+  Quanta counts[rounds_a_look + 1] = {};
+  float onward = 0.0f;
+  bool much = true;
+  for (int pass = 0; work.iterations < p.max_iterations;) {
+    const Quanta left = counts[rounds_a_look];
+    if (much) {
+      cycle(exec, fine, p, plan, turn++, work);
+      work.iterations += (plan.before + plan.after) * plan.sweeps;
+      onward = 0.0f;
+      find_unsettled(exec, fine, p.tolerance, turn, pass, 0, open);
+    }
+    for (int round = 1; round <= rounds_a_look; ++round) {
+      onward = minimum(onward + onward_a_round, 0.5f);
+      for (int n = 0; n < passes_a_round; ++n, ++pass)
+        relax_tiles(exec, RelaxTile{{fine.grid, seam_offset(turn, pass)},
+                                    fine,
+                                    Prolong{},
+                                    p.transfer,
+                                    p.rest,
+                                    most_sweeps,
+                                    0.0f,
+                                    onward,
+                                    open.of_pass(n)});
+      find_unsettled(exec, fine, p.tolerance, turn, pass, round, open);
+    }
+    open.counts.download(0, rounds_a_look + 1, counts);
+    if (!much) counts[0] = left;
+    for (int round = 0; round < rounds_a_look; ++round)
+      if (counts[round] > 0) work.iterations += passes_a_round * most_sweeps;
+    if (counts[rounds_a_look] == 0) return;
+    much = counts[rounds_a_look] > counts[0] / 2;
+  }
+}
+
 template <class E>
 void sweep(E& exec, const LevelView& level, float transfer, bool by_tangent, Workspace& work) {
   for_each_cell(exec, level.grid,
@@ -200,18 +269,15 @@ void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::ui
           const float* repose, Workspace& work) {
   const LevelView fine = finest(t, repose);
   const bool converge = p.quality == AvalancheQuality::converged;
-  const auto unsettled = [&] { return max_cells(exec, t.grid, Excess{fine}) > p.tolerance; };
   work.iterations = 0;
   if (p.scheme == AvalancheScheme::multilevel) {
+    if (converge) return settle(exec, fine, p, tick, work);
     const Schedule plan = schedule(p.quality);
-    const int fine_sweeps = (plan.before + plan.after) * plan.sweeps;
-    std::uint64_t turn = tick;
-    do {
-      cycle(exec, fine, p, plan, turn++, work);
-      work.iterations += fine_sweeps;
-    } while (converge && work.iterations < p.max_iterations && unsettled());
+    cycle(exec, fine, p, plan, tick, work);
+    work.iterations = (plan.before + plan.after) * plan.sweeps;
     return;
   }
+  const auto unsettled = [&] { return max_cells(exec, t.grid, Excess{fine}) > p.tolerance; };
   const bool by_tangent = p.scheme == AvalancheScheme::taylor_keyser;
   const float transfer = by_tangent ? 0.25f * p.transfer : p.transfer;
   do {

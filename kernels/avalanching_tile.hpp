@@ -30,19 +30,26 @@ struct RelaxTile {
   LevelView level;
   Prolong from_coarse;  ///< what the tile's cells get first; their families lie in one tile
   float transfer, rest;
-  int sweeps;    ///< at most most_sweeps
-  float plenty;  ///< [cell sizes]
+  int sweeps;                    ///< at most most_sweeps
+  float plenty;                  ///< [cell sizes]
+  float onward = 0.0f;           ///< how far slides are handed on (avalanching_units.hpp)
+  const Quanta* open = nullptr;  ///< 0 for tiles that are left as they are; null: none
+
+  DESERT_HD bool closed(int column, int row) const {
+    return open && open[row * tiles.columns() + column] == 0;
+  }
 
   template <class Team>
   static constexpr int scratch_bytes = (3 * cells + Team::rows_at_once * layouts * stride + 2 * flags) * 4;
 
   template <class Team>
   DESERT_HD void operator()(const Team& team, int column, int row) const {
+    if (closed(column, row)) return;
     float* h = reinterpret_cast<float*>(team.scratch);
     float *ground = h + cells, *drop = ground + cells, *laid_out = drop + cells;
     int* giving = reinterpret_cast<int*>(laid_out + Team::rows_at_once * layouts * stride);
     int* giving_next = giving + flags;
-    const float k_c = transfer, ends = rest;
+    const float k_c = transfer, ends = rest, on = onward;
 
     clear(team, h, ground, drop, laid_out, giving);
     if (from_coarse.sand_after)
@@ -60,7 +67,7 @@ struct RelaxTile {
         const bool stale = (near[0] | near[1] | near[2] | near[3] | near[4]) != 0;
         float* to = laid_out + slot<Team>(y);
         const float most = stale ? team.most_in_row([=](int x) DESERT_INLINE {
-          return lay_out(h, ground, drop, ends, k_c, local(x, y), to + x);
+          return lay_out(h, ground, drop, ends, k_c, on, local(x, y), to + x);
         })
                                  : 0.0f;
         if (team.leads_row()) giving_next[y + 2] = most > much ? 2 : (most > 0.0f ? 1 : 0);
@@ -188,12 +195,12 @@ struct RelaxTile {
 
   /// What cell n gives in all.
   DESERT_HD static float lay_out(const float* h, const float* ground, const float* drop, float rest,
-                                 float transfer, int n, float* to) {
+                                 float transfer, float onward, int n, float* to) {
     float around[Neighbours::count];
     Neighbours::unrolled([&](auto k) DESERT_INLINE { around[k] = h[n + offset_to(k)]; });
     const Slide slide(h[n], around, lower(lower(around[0], around[1]), lower(around[2], around[3])),
                       lower(lower(around[4], around[5]), lower(around[6], around[7])), ground[n], drop[n],
-                      rest, transfer);
+                      rest, transfer, onward);
     Neighbours::unrolled([&](auto k) DESERT_INLINE { to[k * stride] = slide.part[k]; });
     to[8 * stride] = slide.left;
     return h[n] - slide.left;

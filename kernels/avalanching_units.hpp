@@ -9,6 +9,8 @@
 /// more (relief of more than 64 cell sizes within 32 cells). What is below a unit stays where it is, and so
 /// does a film of up to four units, the most by which rounding to nearest could take too much from a cell.
 
+#include <type_traits>
+
 #include "desert_sim/kernels/grid.hpp"
 #include "desert_sim/kernels/math.hpp"
 #include "desert_sim/kernels/quanta.hpp"
@@ -70,23 +72,31 @@ DESERT_HD float reciprocal_below(float x) {
   return guess * fused(-x, guess, 2.0f);
 }
 
+/// Says that slides are not handed on; spares four instructions a cell and sweep.
+struct NoOnward {};
+
 /// What a cell gives to its neighbours in one sweep: shares of its excesses B in whole units (equations in
 /// avalanching.hpp):
 ///
-///   A/B_sum = min(k_c B_max B_sum, s (B_sum + B_max)) / (B_sum (B_sum + B_max))
+///   A = min(k_c min(B_max/(1 + B_max/B_sum) + o d, B_max), s)
 ///
 /// with s the sand over the film, at most most_given; nothing, if no neighbour is lower by more than the drop
-/// over which sand starts to slide. The cell stays above the lowest neighbour but for rounding (A ≤ 8/9
-/// B_max). Rounding to nearest takes at most ½ unit too much eight times: hence the film.
+/// over which sand starts to slide. With o = 0 that is the equation, which reckons that what receivers get
+/// stays there. On a slope it does not: each cell hands on half of what it gets, so that slides spread
+/// instead of running down. So o lets a cell give more, by a share of the drop d at rest, up to all that is
+/// too much; with o = ½ a cell and its only receiver end level at worst. The cell stays above the lowest
+/// neighbour but for rounding (A ≤ B_max). Rounding to nearest takes at most ½ unit too much eight times:
+/// hence the film.
 struct Slide {
   float part[Neighbours::count];
   float left;  ///< the cell's height less all parts; exactly
 
   /// `around`: heights of the neighbours; `straight`, `diagonal`: the lowest of each four; `ground`: the
   /// film's top; `start`: the drop over one cell at which sand starts to slide, `rest` the share of it that a
-  /// slide aims at.
+  /// slide aims at; `onward`: o, or NoOnward for 0.
+  template <class Onward>
   DESERT_HD Slide(float height, const float (&around)[Neighbours::count], float straight, float diagonal,
-                  float ground, float start, float rest, float transfer) {
+                  float ground, float start, float rest, float transfer, Onward onward) {
     const bool slides =
         higher(height - straight, (height - diagonal) * (1.0f / Neighbours::distance(4))) > start;
     const float drop = rest * start;
@@ -98,9 +108,11 @@ struct Slide {
     const float sum = Neighbours::sum(b), both = sum + largest;
     const float sand = lower(positive_part(height - ground), Units::most_given);
     constexpr float tiny = 1e-30f;
+    float amount = largest * sum;  // times `both`
+    if constexpr (!std::is_same_v<Onward, NoOnward>)
+      amount = lower(fused(onward * drop, both, amount), largest * both);
     const float share =
-        slides ? lower(transfer * largest * sum, sand * both) * reciprocal_below(fused(sum, both, tiny))
-               : 0.0f;
+        slides ? lower(transfer * amount, sand * both) * reciprocal_below(fused(sum, both, tiny)) : 0.0f;
     left = height;
     Neighbours::unrolled([&](auto k) DESERT_INLINE {
       const float after = fused(-share, b[k], left);

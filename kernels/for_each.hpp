@@ -20,6 +20,7 @@
 
 #include "desert_sim/kernels/exec.hpp"
 #include "desert_sim/kernels/grid.hpp"
+#include "desert_sim/kernels/quanta.hpp"
 
 namespace desert_sim {
 
@@ -49,6 +50,15 @@ DESERT_HD void atomic_max(Integer* to, Integer value) {
   while (before < value &&
          !__atomic_compare_exchange_n(to, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
   }
+#endif
+}
+
+/// Sets to 1 what other cells may set as well.
+DESERT_HD void raise_flag(Quanta* flag) {
+#if defined(__CUDA_ARCH__)
+  if (*flag == 0) *flag = 1;
+#else
+  if (__atomic_load_n(flag, __ATOMIC_RELAXED) == 0) __atomic_store_n(flag, Quanta{1}, __ATOMIC_RELAXED);
 #endif
 }
 
@@ -95,6 +105,15 @@ struct Tiles {
   DESERT_HD int columns() const { return across(grid.width, grid.periodic_x); }
   DESERT_HD int rows() const { return across(grid.height, grid.periodic_y); }
   DESERT_HD int count() const { return columns() * rows(); }
+  /// The column, and the row, of the tile that cell (x, y) lies in. Beyond the grid: of the cell that stands
+  /// for it.
+  DESERT_HD int column_of(int x) const { return along(x, grid.width, grid.periodic_x); }
+  DESERT_HD int row_of(int y) const { return along(y, grid.height, grid.periodic_y); }
+
+ private:
+  DESERT_HD int along(int n, int cells, bool periodic) const {
+    return (periodic ? wrap(n + offset, cells) : clamp_index(n, cells) + offset) / side;
+  }
 };
 
 }  // namespace desert_sim

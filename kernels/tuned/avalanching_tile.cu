@@ -30,7 +30,7 @@ namespace {
 constexpr int side = Tiles::side;
 constexpr unsigned whole_warp = 0xffffffffu;
 /// Rows of a strip: many, where there are tiles enough to fill the GPU, because what strips hand each other
-/// takes time; few, where a tile's own time is what counts.
+/// takes time; few, where a tile's own time is what counts, or little moves and warps sit out.
 constexpr int long_strip = 8, short_strip = 4, shortest_strip = 2;
 constexpr int tiles_for_long = 1200, tiles_for_short = 400;
 /// Threads of a multiprocessor: leaves each 64 registers.
@@ -76,8 +76,9 @@ __device__ void build_walls(Shared<strip>& shared) {
 
 /// One sweep of a warp's strip: its heights but for what comes over the borders, and what goes over them.
 /// The most that one of the thread's cells gives.
-template <int strip>
-__device__ float sweep_strip(Shared<strip>& shared, Column<strip>& c, float rest, float transfer) {
+template <int strip, class Onward>
+__device__ float sweep_strip(Shared<strip>& shared, Column<strip>& c, float rest, float transfer,
+                             Onward onward) {
   const int x = static_cast<int>(threadIdx.x), warp = static_cast<int>(threadIdx.y);
   const float not_first = x > 0 ? 1.0f : 0.0f, not_last = x < side - 1 ? 1.0f : 0.0f;
   const float(*lines)[side + 2] = shared.h + warp * strip;  // line n of the strip
@@ -104,7 +105,8 @@ __device__ float sweep_strip(Shared<strip>& shared, Column<strip>& c, float rest
     const float around[] = {here.east,  here.west,  north.middle, south.middle,
                             north.east, south.west, north.west,   south.east};
     const Slide slide(here.middle, around, lower(here.lower, lower(north.middle, south.middle)),
-                      lower(north.lower, south.lower), c.ground[n - 1], c.drop[n - 1], rest, transfer);
+                      lower(north.lower, south.lower), c.ground[n - 1], c.drop[n - 1], rest, transfer,
+                      onward);
     most = higher(most, here.middle - slide.left);
     left[n - 1] = slide.left;
     // A line's sums begin with what its southern neighbour gives, but for the two southernmost.
@@ -176,9 +178,11 @@ __device__ void cells_of(const RelaxTile& law, const Shared<strip>& shared, int 
   }
 }
 
-template <int strip>
+template <int strip, class Onward>
 __global__ __launch_bounds__(side* side / strip,
-                             threads_at_once* strip / (side * side)) void relax_tiles_kernel(RelaxTile law) {
+                             threads_at_once* strip / (side * side)) void relax_tiles_kernel(RelaxTile law,
+                                                                                             Onward onward) {
+  if (law.closed(static_cast<int>(blockIdx.x), static_cast<int>(blockIdx.y))) return;
   constexpr int strips = side / strip;
   __shared__ Shared<strip> shared;
   const int x = static_cast<int>(threadIdx.x), warp = static_cast<int>(threadIdx.y), y = warp * strip;
@@ -204,7 +208,7 @@ __global__ __launch_bounds__(side* side / strip,
 #pragma unroll
       for (int n = 0; n < strip; ++n) shared.h[y + n + 1][x + 1] = c.h[n];
     __syncthreads();
-    const float most = stale ? sweep_strip(shared, c, law.rest, law.transfer) : 0.0f;
+    const float most = stale ? sweep_strip(shared, c, law.rest, law.transfer, onward) : 0.0f;
     const bool gives = __any_sync(whole_warp, most > 0.0f), gives_much = __any_sync(whole_warp, most > much);
     if (x == 0) shared.gave[warp + 1] = gives_much ? 2 : (gives ? 1 : 0);
     __syncthreads();
@@ -229,8 +233,11 @@ __global__ __launch_bounds__(side* side / strip,
 
 template <int strip>
 void launch(CudaExec& exec, const RelaxTile& law) {
-  relax_tiles_kernel<strip>
-      <<<dim3(law.tiles.columns(), law.tiles.rows()), dim3(side, side / strip), 0, cuda::stream(exec)>>>(law);
+  const dim3 tiles(law.tiles.columns(), law.tiles.rows()), threads(side, side / strip);
+  if (law.onward > 0.0f)
+    relax_tiles_kernel<strip><<<tiles, threads, 0, cuda::stream(exec)>>>(law, law.onward);
+  else
+    relax_tiles_kernel<strip><<<tiles, threads, 0, cuda::stream(exec)>>>(law, NoOnward{});
   check_cuda(cudaGetLastError(), "launch over tiles, tuned");
 }
 
@@ -238,7 +245,7 @@ void launch(CudaExec& exec, const RelaxTile& law) {
 
 void relax_tiles(CudaExec& exec, const RelaxTile& law) {
   const int tiles = law.tiles.count();
-  if (tiles >= tiles_for_long) return launch<long_strip>(exec, law);
+  if (tiles >= tiles_for_long && !law.open) return launch<long_strip>(exec, law);
   if (tiles >= tiles_for_short) return launch<short_strip>(exec, law);
   launch<shortest_strip>(exec, law);
 }

@@ -7,17 +7,18 @@
 namespace desert_sim {
 namespace {
 
-void expect_same_bits(const test::TileField& field, float transfer, float rest) {
+void expect_same_bits(const test::TileField& field, float transfer, float rest, float onward = 0) {
   const auto cpu = make_exec("cpu", 2), cuda = make_exec("cuda");
   for (int offset : {0, 4, 20})
     for (int sweeps : {1, 4, 8}) {
       SCOPED_TRACE(field.name + ", offset " + std::to_string(offset) + ", " + std::to_string(sweeps) +
-                   " sweeps, k_c " + std::to_string(transfer) + ", rest " + std::to_string(rest));
+                   " sweeps, k_c " + std::to_string(transfer) + ", rest " + std::to_string(rest) +
+                   ", onward " + std::to_string(onward));
       for (float plenty : {100.0f, 0.1f}) {
-        const auto reference = field.relaxed(*cpu, offset, sweeps, true, transfer, rest, plenty);
-        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, true, transfer, rest, plenty))
+        const auto reference = field.relaxed(*cpu, offset, sweeps, true, transfer, rest, plenty, onward);
+        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, true, transfer, rest, plenty, onward))
             << "the reference, plenty " << plenty;
-        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, false, transfer, rest, plenty))
+        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, false, transfer, rest, plenty, onward))
             << "the tuned kernel, plenty " << plenty;
       }
     }
@@ -30,11 +31,19 @@ TEST_P(TileParity, IsBitForBit) {
   const test::TileField field = test::tile_fields()[static_cast<std::size_t>(GetParam())];
   for (float transfer : {1.0f, 0.3f})
     for (float rest : {1.0f, 0.95f}) expect_same_bits(field, transfer, rest);
+  expect_same_bits(field, 1, 0.98f, 0.5f);
 }
 
 TEST(TilesOfFamilies, AreTheSameBitForBit) {
   DESERT_NEED_GPU();
   for (const test::TileField& field : test::tile_fields_of_families()) expect_same_bits(field, 1, 0.98f);
+}
+
+TEST(ClosedTiles, AreTheSameBitForBit) {
+  DESERT_NEED_GPU();
+  test::TileField field = test::tile_fields().front();
+  for (int n = 0; n < Tiles{field.grid, Tiles::side - 1}.count(); ++n) field.open.push_back(n * n % 3);
+  expect_same_bits(field, 1, 0.98f, 0.5f);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, TileParity, ::testing::Range(0, static_cast<int>(test::tile_fields().size())));

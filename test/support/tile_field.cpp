@@ -48,7 +48,7 @@ TileField field(const std::string& name, const Grid& grid, const Height& ground,
 }  // namespace
 
 std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool by_law, float transfer,
-                                       float rest, float plenty) const {
+                                       float rest, float plenty, float onward) const {
   Buffer<Quanta> ground_there = on(exec, ground), sand_there = on(exec, sand), soil_there = on(exec, soil);
   Buffer<float> obstacle_there = on(exec, obstacle), repose_there = on(exec, repose);
   const avalanching::LevelView level{grid,
@@ -61,7 +61,9 @@ std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool 
   Buffer<Quanta> before = on(exec, coarse_before), after = on(exec, coarse_after);
   const avalanching::Prolong from_coarse{coarse(), or_null(after, coarse_after),
                                          or_null(before, coarse_before), grid, sand_there.data()};
-  const avalanching::RelaxTile law{{grid, offset}, level, from_coarse, transfer, rest, sweeps, plenty};
+  Buffer<Quanta> open_there = on(exec, open);
+  const avalanching::RelaxTile law{
+      {grid, offset}, level, from_coarse, transfer, rest, sweeps, plenty, onward, or_null(open_there, open)};
   with_backend(
       exec, [&](auto& e) { by_law ? avalanching::relax_by_law(e, law) : avalanching::relax_tiles(e, law); });
   return sand_there.download();

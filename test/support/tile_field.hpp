@@ -17,6 +17,7 @@ struct TileField {
   std::vector<Quanta> soil;     ///< may be empty
   std::vector<float> obstacle;  ///< may be empty
   std::vector<float> repose;
+  std::vector<Quanta> open;                         ///< a tile each; may be empty: all are
   std::vector<Quanta> coarse_before, coarse_after;  ///< may be empty; of the next coarser grid
 
   Grid coarse() const {
@@ -25,7 +26,7 @@ struct TileField {
   /// The sand after one pass of `sweeps` sweeps in tiles that begin at −offset; by the reference, or as the
   /// backend does it best.
   std::vector<Quanta> relaxed(Exec& exec, int offset, int sweeps, bool by_law, float transfer = 1,
-                              float rest = 1, float plenty = 100) const;
+                              float rest = 1, float plenty = 100, float onward = 0) const;
 };
 
 /// Dunes, cliffs of hundreds of metres, pits, films, columns as high as can be, walls, on whole and broken

@@ -133,6 +133,28 @@ TEST_P(AvalanchingTile, SlidesFromItsAngleToWhereItRests) {
       << "half of what is over 0.45 goes from one to the other";
 }
 
+/// Sand that is handed on: more than half of the excess, up to all of it; at worst the two end level.
+TEST_P(AvalanchingTile, HandsOnMoreBySharesOfTheDropAtRest) {
+  const auto moved = [&](double excess, float onward) {
+    const TileField f = row({0, 0}, {1.5 + excess, 1});  // a drop of 0.5 at rest
+    return f.relaxed(exec(), 0, 1, false, 1, 1, 100, onward)[1] / 1048576.0 - 1;
+  };
+  EXPECT_NEAR(moved(0.4, 0), 0.2, 0.001);
+  EXPECT_NEAR(moved(0.4, 0.25f), 0.2 + 0.125, 0.001);
+  EXPECT_NEAR(moved(0.4, 0.5f), 0.4, 0.0015) << "all of the excess, no more";
+  EXPECT_NEAR(moved(0.4, 1), 0.4, 0.0015);
+  EXPECT_NEAR(moved(1.5, 0.5f), 1, 0.0035) << "they are level";
+}
+
+TEST_P(AvalanchingTile, LeavesClosedTilesAsTheyAre) {
+  TileField f = row(std::vector<double>(96, 0.0), std::vector<double>(96, 0.0));
+  for (std::size_t x : {10, 40, 80}) f.sand[x] = 4 << 20;
+  const auto all = f.relaxed(exec(), 0, 4, false);
+  f.open = {1, 0, 7};
+  const auto some = f.relaxed(exec(), 0, 4, false);
+  for (std::size_t x = 0; x < 96; ++x) EXPECT_EQ(some[x], x / 32 == 1 ? f.sand[x] : all[x]) << x;
+}
+
 /// What eight neighbours get is as equations 9–11 have it.
 TEST_P(AvalanchingTile, OfOneTowerIsNillesEquationsNineToEleven) {
   TileField f = row(std::vector<double>(9, 0.0), {0, 0, 0, 0, 2, 0, 0, 0, 0});
@@ -178,6 +200,28 @@ TEST_P(AvalanchingTile, OfAColumnOfFourHundredMetresSlides) {
 }
 
 DESERT_ON_EACH_BACKEND(AvalanchingTile);
+
+TEST(Tiles, KnowInWhichOfThemACellLies) {
+  for (const Grid& g :
+       {Grid{77, 45, 1, true, false}, Grid{64, 96, 1, false, true}, Grid{5, 33, 1, true, true}})
+    for (int offset : avalanching::seam_offsets) {
+      avalanching::LevelView level{};
+      level.grid = g;
+      const avalanching::RelaxTile law{{g, offset}, level, {}, 1, 1, 1, 1};
+      const Tiles& tiles = law.tiles;
+      std::vector<int> columns(static_cast<std::size_t>(g.width), -1),
+          rows(static_cast<std::size_t>(g.height), -1);
+      for (int tile = 0; tile < tiles.columns(); ++tile)
+        for (int n = 0; n < Tiles::side; ++n)
+          if (law.grid_x(tile, n) >= 0) columns[static_cast<std::size_t>(law.grid_x(tile, n))] = tile;
+      for (int tile = 0; tile < tiles.rows(); ++tile)
+        for (int n = 0; n < Tiles::side; ++n)
+          if (law.grid_y(tile, n) >= 0) rows[static_cast<std::size_t>(law.grid_y(tile, n))] = tile;
+      for (int x = 0; x < g.width; ++x) EXPECT_EQ(tiles.column_of(x), columns[static_cast<std::size_t>(x)]);
+      for (int y = 0; y < g.height; ++y) EXPECT_EQ(tiles.row_of(y), rows[static_cast<std::size_t>(y)]);
+      EXPECT_EQ(tiles.column_of(-3), g.periodic_x ? tiles.column_of(wrap(-3, g.width)) : tiles.column_of(0));
+    }
+}
 
 TEST(AvalanchingUnits, ReciprocalIsBelowByLittle) {
   for (float x : {1e-30f, 1e-10f, 0.37f, 1.0f, 1.9f, 72.0f})
