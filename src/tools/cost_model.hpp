@@ -16,7 +16,7 @@ struct ProcessCost {
 };
 
 /// Of a step of sand on bare rock with the default processes: no soil, plants, water, open edges or abrasion.
-/// Avalanches of quality `converged` may take several cycles; this counts one.
+/// Avalanches of quality `converged` go on where they must; this counts the first cycle.
 std::vector<ProcessCost> cost_model(AvalancheQuality quality);
 
 /// Of one process; 0 if the model does not have it.
