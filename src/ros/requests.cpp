@@ -227,8 +227,8 @@ void require_upright(const tf2::Transform& transform, const std::string& frame) 
 }
 
 /// Centre, sizes and angle, as far as the shape has them.
-void set_rectangle(const EditTerrainRequest& request, const tf2::Transform& transform,
-                   command::EditTerrain& command) {
+template <class Request, class Command>
+void set_rectangle(const Request& request, const tf2::Transform& transform, Command& command) {
   desert_sim::require_finite(request.center, "center");
   require_finite(request.angle_deg, "angle_deg");
   const tf2::Vector3 center = transform * tf2::Vector3(request.center.x, request.center.y, request.center.z);
@@ -242,11 +242,12 @@ void set_rectangle(const EditTerrainRequest& request, const tf2::Transform& tran
   command.angle_deg = same ? request.angle_deg : turned(request.angle_deg, transform);
 }
 
-void set_points(const EditTerrainRequest& request, const tf2::Transform& transform,
-                command::EditTerrain& command) {
-  if (request.points.size() > command.most_points)
+template <class Request, class Command>
+void set_points(const Request& request, const tf2::Transform& transform, Command& command) {
+  constexpr std::size_t most = command::EditTerrain::most_points;
+  if (request.points.size() > most)
     throw ConfigError("points: " + std::to_string(request.points.size()) +
-                      " are given (allowed: " + std::to_string(command.most_points) + ")");
+                      " are given (allowed: " + std::to_string(most) + ")");
   for (std::size_t n = 0; n < request.points.size(); ++n) {
     const geometry_msgs::Point& given = request.points[n];
     desert_sim::require_finite(given, "points[" + std::to_string(n) + "]");
@@ -289,6 +290,26 @@ command::EditTerrain edit_command(const EditTerrainRequest& request, const Frame
   }
   command.conserve = request.conserve;
   if (command.conserve) command.ring_width = request.ring_width;
+  return command;
+}
+
+command::EditPlants plants_command(const EditPlantsRequest& request, const Frames& frames) {
+  command::EditPlants command;
+  command.operation = choose<PlantEdit>(plant_edits, request.operation, "operation");
+  command.species = request.species;
+  command.shape = choose<BrushShape>(brush_shapes, request.shape, "shape");
+  const bool capsule = command.shape == BrushShape::capsule;
+  const tf2::Transform transform = frames.to_terrain(request.header);
+  if (capsule || command.shape == BrushShape::polygon)
+    set_points(request, transform, command);
+  else
+    set_rectangle(request, transform, command);
+  if (capsule) command.radius = request.radius;
+  if (command.operation == PlantEdit::plant) {
+    command.density = request.density;
+    command.size = request.size;
+    command.seed = request.seed;
+  }
   return command;
 }
 

@@ -2,6 +2,7 @@
 /// From service requests to the simulation's commands. All throw ConfigError that names the field, its value
 /// and what is allowed; ranges are checked by the simulation itself when it applies the command.
 
+#include <desert_sim/EditPlants.h>
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/EditWind.h>
 #include <desert_sim/SetWeather.h>
@@ -21,6 +22,7 @@ command::EditWind wind_edit_command(const EditWindRequest& request, const Frames
 command::SetParameters weather_command(const SetWeatherRequest& request);
 /// Of ~cmd_wind.
 command::SetWind streamed_wind(const geometry_msgs::Vector3Stamped& message, const Frames& frames);
+command::EditPlants plants_command(const EditPlantsRequest& request, const Frames& frames);
 command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames);
 
 TerrainFormat terrain_format(const std::string& name);

@@ -89,6 +89,7 @@ Services::Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, Simulat
   advertise<desert_sim::SetWindSchedule>("set_wind_schedule", &Services::set_wind_schedule);
   advertise<desert_sim::SetWeather>("set_weather", &Services::set_weather);
   advertise<desert_sim::EditWind>("edit_wind", &Services::edit_wind);
+  advertise<desert_sim::EditPlants>("edit_plants", &Services::edit_plants);
   advertise<desert_sim::EditTerrain>("edit_terrain", &Services::edit_terrain);
   advertise<desert_sim::QueryTerrain>("query_terrain", &Services::query_terrain);
   advertise<desert_sim::GetSubmap>("get_submap", &Services::get_submap);
@@ -121,6 +122,13 @@ void Services::set_weather(const SetWeatherRequest& request, SetWeatherResponse&
 
 void Services::edit_wind(const EditWindRequest& request, EditWindResponse&) {
   simulation_.apply(wind_edit_command(request, frames_)).get();
+  topics_.status_changed();
+}
+
+void Services::edit_plants(const EditPlantsRequest& request, EditPlantsResponse& response) {
+  const Reached reached = simulation_.apply(plants_command(request, frames_)).get();
+  response.plants = reached.result.plants;
+  response.step = reached.moment.step;
   topics_.status_changed();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// The services. Each turns a request into a command and waits for the simulation thread's answer.
 
+#include <desert_sim/EditPlants.h>
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/EditWind.h>
 #include <desert_sim/LoadCheckpoint.h>
@@ -46,6 +47,7 @@ class Services {
   void set_wind_schedule(const SetWindScheduleRequest& request, SetWindScheduleResponse& response);
   void set_weather(const SetWeatherRequest& request, SetWeatherResponse& response);
   void edit_wind(const EditWindRequest& request, EditWindResponse& response);
+  void edit_plants(const EditPlantsRequest& request, EditPlantsResponse& response);
   void edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response);
   void query_terrain(const QueryTerrainRequest& request, QueryTerrainResponse& response);
   void get_submap(const GetSubmapRequest& request, GetSubmapResponse& response);

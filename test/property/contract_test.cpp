@@ -136,8 +136,11 @@ TEST_P(Contract, OfPlants) {
   const auto with_plants = [](const auto& step) {
     return [step](test::BenchTerrain& t) {
       SpeciesTraits s;
-      s.spawn = 200;
+      s.spawn = 5000;
       s.moisture_lowest = 0;
+      s.moisture_highest = 1;
+      s.sand = 1;
+      s.slope = 100;
       plants::Workspace work = plants::make_workspace(t.exec(), t.grid(), t.grid().cells(), {s}, {1});
       // Some plants come up first, on a terrain that is set back.
       std::vector<std::vector<std::uint32_t>> before;
