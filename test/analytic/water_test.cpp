@@ -179,6 +179,36 @@ TEST_P(Water, UniformChannelCarriesWhatFrictionAllows) {
   }
 }
 
+TEST_P(Water, RainFillsHollowsToTheirRimsAndPondsAreLevel) {
+  const int cells = 40;
+  test::BenchTerrain t(exec(), cells, cells, 1, false);
+  const auto bed = [&](int x,
+                       int y) {  // a bowl whose rim is lowest, 2 m, in the west; the ground falls outside
+    const double dx = x + 0.5 - 20, dy = y + 0.5 - 20, r = std::sqrt(dx * dx + dy * dy);
+    const double rim = 2 + 0.5 * (1 + dx / std::max(r, 1.0));
+    return r < 12 ? rim * r * r / 144 : rim * (1 - (r - 12) / 20);
+  };
+  t.set(Layer::bedrock, bed).set(Layer::water, [&](int x, int y) { return bed(x, y) < 0 ? 0 : 0.5; });
+  WaterParameters p;
+  p.friction = 0.5f;
+  for (int n = 0; n < 100; ++n) {  // rain, until it runs over
+    std::vector<Quanta> water = t.quanta(Layer::water);
+    t.set_quanta(Layer::water,
+                 [&](int x, int y) { return water[static_cast<std::size_t>(y * cells + x)] + (20 << 10); });
+    t.flow(p, 1, n);
+  }
+  for (int n = 0; n < 600; ++n) t.flow(p, 1, n);
+  double lowest = 1e9, highest = -1e9;
+  for (int y = 14; y < 27; ++y)
+    for (int x = 14; x < 27; ++x) {
+      const double surface = t.at(Layer::bedrock, x, y) + t.at(Layer::water, x, y);
+      lowest = std::min(lowest, surface);
+      highest = std::max(highest, surface);
+    }
+  EXPECT_LT(highest - lowest, 1e-3);
+  EXPECT_NEAR(highest, 2, 0.1);  // the rim goes through cells
+}
+
 TEST_P(Water, EvaporatesExponentiallyWhateverTheTimeStep) {
   for (const double dt : {0.1, 1.0, 5.0}) {
     test::BenchTerrain t(exec(), 5, 4);

@@ -140,6 +140,12 @@ TEST_P(TraversabilityLaw, EachCriterionAlone) {
   EXPECT_NEAR(worth_with(put(Layer::sand, 0.15)), 0.9, 1e-5);
   EXPECT_NEAR(worth_with(put(Layer::water, 0.15)), 0.5, 1e-5);
   EXPECT_EQ(worth_with(put(Layer::water, 0.31)), 0);
+  const auto wet = [](double moisture) {
+    return [=](BenchTerrain& t) { t.set(Layer::sand, 5).set(Layer::moisture, moisture); };
+  };
+  EXPECT_NEAR(worth_with(wet(0.15)), 0.8, 1e-5);  // half of what it can hold: firm
+  EXPECT_NEAR(worth_with(wet(0.21)), 0.5, 1e-4);
+  EXPECT_EQ(worth_with(wet(0.29)), 0);  // mud
   EXPECT_NEAR(worth_with(put(Layer::vegetation, 0.4)), 0.5, 1e-6);
   EXPECT_EQ(worth_with(put(Layer::vegetation, 0.9)), 0);
   EXPECT_EQ(worth_with([](BenchTerrain& t) {
