@@ -11,9 +11,9 @@
 #include "desert_sim/tools/bench_report.hpp"
 #include "desert_sim/tools/bench_scenes.hpp"
 #include "desert_sim/tools/cost_model.hpp"
+#include "desert_sim/tools/drawing.hpp"
 #include "desert_sim/tools/options.hpp"
 #include "desert_sim/tools/rasters.hpp"
-#include "desert_sim/tools/roofline.hpp"
 
 using namespace desert_sim;
 
@@ -174,7 +174,7 @@ int main_(const Options& o) {
   const std::string picture = o.text("roofline", "");
   if (!o.positional().empty()) {
     if (picture.empty()) throw ConfigError("'" + o.positional()[0] + "': unexpected (--help shows how)");
-    return draw_roofline(picture, o.positional()), 0;
+    return draw("--roofline", "roofline.py", picture, o.positional()), 0;
   }
   const std::string json = o.text("json", "");
   if (!picture.empty() && (json.empty() || json == "-"))
@@ -182,7 +182,7 @@ int main_(const Options& o) {
   const BenchReport report = bench(o);
   std::fputs((json == "-" ? bench_json(report) : bench_text(report)).c_str(), stdout);
   if (!json.empty() && json != "-") write_file(json, bench_json(report));
-  if (!picture.empty()) draw_roofline(picture, {json});
+  if (!picture.empty()) draw("--roofline", "roofline.py", picture, {json});
   if (report.sand.residual() == 0) return 0;
   std::fprintf(stderr, "desert_bench: %lld quanta of sand were lost\n", -report.sand.residual());
   return 1;

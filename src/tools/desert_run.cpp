@@ -9,6 +9,7 @@
 #include "desert_sim/core/error.hpp"
 #include "desert_sim/simulation/checkpoint.hpp"
 #include "desert_sim/simulation/session.hpp"
+#include "desert_sim/tools/drawing.hpp"
 #include "desert_sim/tools/options.hpp"
 #include "desert_sim/tools/outputs.hpp"
 #include "desert_sim/tools/progress.hpp"
@@ -27,6 +28,9 @@ const char usage[] =
     "  --seed S              same as --set seed=S\n"
     "  --out DIR             write rasters, pictures and summary.json there\n"
     "  --every N             also every N steps, into DIR/step_NNNNNNNN\n"
+    "  --plot FILE           draw areas by material and plants by species over time, of those steps (PNG; "
+    "needs "
+    "python3 with matplotlib)\n"
     "  --checkpoint FILE     save the state there at the end\n"
     "  --checkpoint-every N  and every N steps\n"
     "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be left out)\n"
@@ -43,6 +47,7 @@ void interrupt(int) { interrupted = 1; }
 struct Plan {
   Options options;
   std::string out, checkpoint;
+  std::vector<std::string> summaries;  ///< that were written on the way
   std::uint64_t every = 0, checkpoint_every = 0;
 };
 
@@ -68,7 +73,7 @@ void time_processes(Simulation& simulation, bool timed, RunReport& report) {
 }
 
 /// Runs from where the session stands to `last` ticks, with the journal's commands in between.
-void run(Session& session, const Plan& plan, const Journal& journal, std::uint64_t last, RunReport& report) {
+void run(Session& session, Plan& plan, const Journal& journal, std::uint64_t last, RunReport& report) {
   using Clock = std::chrono::steady_clock;
   std::size_t next = 0;
   const auto replay = [&] {
@@ -94,6 +99,7 @@ void run(Session& session, const Plan& plan, const Journal& journal, std::uint64
       std::snprintf(name, sizeof name, "/step_%08llu", static_cast<unsigned long long>(step));
       prepare_folder(plan.out + name);
       write_outputs(plan.out + name, session.simulation(), report);
+      plan.summaries.push_back(plan.out + name + "/summary.json");
     }
     if (plan.checkpoint_every && step % plan.checkpoint_every == 0) session.save_checkpoint(plan.checkpoint);
     progress.at(session.ticks());
@@ -103,10 +109,14 @@ void run(Session& session, const Plan& plan, const Journal& journal, std::uint64
 
 int main_(int argc, char** argv) {
   Plan plan{Options(argc, argv,
-                    {"steps", "backend", "threads", "set", "seed", "out", "every", "checkpoint",
+                    {"steps", "backend", "threads", "set", "seed", "out", "every", "plot", "checkpoint",
                      "checkpoint-every", "resume", "replay"},
                     {"describe", "quiet", "help"}),
-            "", "", 0, 0};
+            "",
+            "",
+            {},
+            0,
+            0};
   const Options& o = plan.options;
   if (o.has("help")) return std::fputs(usage, stdout), 0;
   if (o.has("describe")) return std::cout << describe_parameters(), 0;
@@ -116,6 +126,7 @@ int main_(int argc, char** argv) {
   plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
   const auto steps = static_cast<std::uint64_t>(o.number("steps", 0, 0, 1LL << 40));
   if (plan.every && plan.out.empty()) throw ConfigError("--every: needs --out");
+  if (o.has("plot") && !plan.every) throw ConfigError("--plot: needs --out and --every");
   if (plan.checkpoint_every && plan.checkpoint.empty())
     throw ConfigError("--checkpoint-every: needs --checkpoint");
   const int threads = static_cast<int>(o.number("threads", 0, 1, 4096));
@@ -134,7 +145,8 @@ int main_(int argc, char** argv) {
   }
   Simulation& simulation = session->simulation();
   if (!plan.out.empty()) prepare_folder(plan.out);
-  const std::uint64_t scenario_steps = o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps);
+  const std::uint64_t scenario_steps =
+      o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps);
   const std::uint64_t asked = o.has("steps") ? steps : scenario_steps;
   // A resumed run goes on until the step that is asked for.
   const std::uint64_t last =
@@ -151,6 +163,8 @@ int main_(int argc, char** argv) {
   if (const auto* cpu = dynamic_cast<CpuExec*>(&simulation.exec())) report.threads = cpu->threads();
   run(*session, plan, journal, last, report);
   if (!plan.out.empty()) write_outputs(plan.out, session->simulation(), report);
+  if (o.has("plot") && !plan.summaries.empty())
+    draw("--plot", "plot_run.py", o.text("plot", ""), plan.summaries);
   if (!plan.checkpoint.empty()) session->save_checkpoint(plan.checkpoint);
   if (plan.out.empty() && !o.has("quiet")) std::cout << summary(session->simulation(), report);
   return interrupted ? 130 : 0;

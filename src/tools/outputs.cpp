@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "desert_sim/core/error.hpp"
@@ -37,6 +38,27 @@ void write_pictures(const std::string& folder, const Snapshot& s) {
                                                values(Layer::wind_y), picture.elevation));
 }
 #endif
+
+/// What one sees from above: area of each kind of ground [m²].
+struct Areas {
+  static constexpr const char* names[] = {"rock", "soil", "sand", "plants", "water"};
+  double square_metres[5] = {};
+};
+Areas areas_of(Simulation& simulation) {
+  constexpr float puddle = 0.02f, cover = 0.02f, thicket = 0.3f;  // [m], [m], density
+  const auto s = simulation.snapshot({Layer::soil, Layer::sand, Layer::vegetation, Layer::water});
+  const auto values = [&](Layer layer) -> const std::vector<float>& { return s->layers.at(layer); };
+  const auto seen = [&](std::size_t i) {
+    if (values(Layer::water)[i] > puddle) return 4;
+    if (values(Layer::vegetation)[i] > thicket) return 3;
+    if (values(Layer::sand)[i] > cover) return 2;
+    return values(Layer::soil)[i] > cover ? 1 : 0;
+  };
+  Areas areas;
+  for (std::size_t i = 0; i < values(Layer::sand).size(); ++i)
+    areas.square_metres[seen(i)] += s->cell_size * s->cell_size;
+  return areas;
+}
 
 }  // namespace
 
@@ -75,6 +97,10 @@ std::string summary(Simulation& s, const RunReport& report) {
   for (std::size_t m = 0; m < balance.size(); ++m)
     out << (m ? ", " : "") << json_text(material_names[m]) << ": "
         << json_number(balance[m].relative_residual());
+  const Areas areas = areas_of(s);
+  out << "},\n  \"area_m2\": {";
+  for (std::size_t n = 0; n < std::size(Areas::names); ++n)
+    out << (n ? ", " : "") << json_text(Areas::names[n]) << ": " << json_number(areas.square_metres[n]);
   out << "},\n  \"plants\": {";
   const std::vector<PlantCount> plants = s.plant_counts();
   for (std::size_t n = 0; n < plants.size(); ++n)

@@ -25,6 +25,8 @@ TEST_F(Run, WritesASummaryWithAllKeys) {
                           "total",
                           "volume_m3",
                           "mass_residual",
+                          "area_m2",
+                          "plants",
                           "max_sand_slope_deg",
                           "avalanche_iterations_mean",
                           "state_hash",
@@ -164,9 +166,27 @@ TEST_F(Run, DescribesAndHelps) {
   EXPECT_EQ(described.out, describe_parameters());
   EXPECT_EQ(helped.status, 0);
   for (const char* option :
-       {"--steps", "--backend", "--threads", "--set", "--seed", "--out", "--every", "--checkpoint",
+       {"--steps", "--backend", "--threads", "--set", "--seed", "--out", "--every", "--plot", "--checkpoint",
         "--checkpoint-every", "--resume", "--replay", "--describe", "--quiet"})
     EXPECT_NE(helped.out.find(option), std::string::npos) << option;
+}
+
+TEST_F(Run, PlotsARunOverTimeOrSaysWhyNot) {
+  const auto has = [](const std::string& what) {
+    return test::run_program("/usr/bin/env", {"python3", "-c", what}).status == 0;
+  };
+  const test::ProgramRun r = run({scenario_, "--backend", "cpu", "--steps", "6", "--out", path("o"),
+                                  "--every", "2", "--plot", path("plot.png"), "--quiet"});
+  if (has("import matplotlib")) {
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_EQ(test::file_bytes(path("plot.png")).substr(1, 3), "PNG");
+  } else {
+    EXPECT_EQ(r.status, 2);
+    EXPECT_NE(r.err.find(has("") ? "matplotlib" : "python3"), std::string::npos) << r.err;
+  }
+  const test::ProgramRun alone = run({scenario_, "--plot", path("plot.png")});
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_NE(alone.err.find("--plot: needs --out and --every"), std::string::npos) << alone.err;
 }
 
 TEST_F(Run, InterruptedFinishesItsStepWritesOutputsAndExits130) {

@@ -1,4 +1,4 @@
-#include "desert_sim/tools/roofline.hpp"
+#include "desert_sim/tools/drawing.hpp"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -14,31 +14,32 @@ namespace desert_sim {
 
 namespace {
 
-std::string script_path() {
+std::string script_path(const std::string& option, const std::string& script) {
   namespace fs = std::filesystem;
   std::error_code ignored;  // a place that cannot be looked at has no script
   const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  const std::vector<fs::path> places{beside / "roofline.py", fs::path(DESERT_BENCH_SCRIPTS) / "roofline.py"};
+  const std::vector<fs::path> places{beside / script, fs::path(DESERT_BENCH_SCRIPTS) / script};
   for (const fs::path& place : places)
     if (fs::is_regular_file(place, ignored)) return place.string();
-  throw ConfigError("--roofline: its script is neither " + places[0].string() + " nor " + places[1].string());
+  throw ConfigError(option + ": its script is neither " + places[0].string() + " nor " + places[1].string());
 }
 
 }  // namespace
 
-void draw_roofline(const std::string& picture, const std::vector<std::string>& results) {
-  std::vector<std::string> words{"python3", script_path(), picture};
+void draw(const std::string& option, const std::string& script, const std::string& picture,
+          const std::vector<std::string>& results) {
+  std::vector<std::string> words{"python3", script_path(option, script), picture};
   words.insert(words.end(), results.begin(), results.end());
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t child = 0;
   const int failure = posix_spawnp(&child, "python3", nullptr, nullptr, arguments.data(), environ);
-  if (failure != 0) throw ConfigError(std::string("--roofline: python3: ") + std::strerror(failure));
+  if (failure != 0) throw ConfigError(option + ": python3: " + std::strerror(failure));
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw ConfigError("--roofline " + picture + ": " + words[1] + " failed");
+    throw ConfigError(option + " " + picture + ": " + words[1] + " failed");
 }
 
 }  // namespace desert_sim
