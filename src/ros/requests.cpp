@@ -298,6 +298,8 @@ command::EditPlants plants_command(const EditPlantsRequest& request, const Frame
   command.operation = choose<PlantEdit>(plant_edits, request.operation, "operation");
   command.species = request.species;
   command.shape = choose<BrushShape>(brush_shapes, request.shape, "shape");
+  if (command.shape == BrushShape::patch)
+    throw ConfigError("shape: 'patch' is not one of: circle, ellipse, rectangle, capsule, polygon");
   const bool capsule = command.shape == BrushShape::capsule;
   const tf2::Transform transform = frames.to_terrain(request.header);
   if (capsule || command.shape == BrushShape::polygon)

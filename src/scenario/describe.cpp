@@ -3,6 +3,7 @@
 
 #include "desert_sim/core/parameter_page.hpp"
 #include "desert_sim/kernels/layers.hpp"
+#include "desert_sim/scenario/climate.hpp"
 #include "desert_sim/scenario/live_parameters.hpp"
 #include "desert_sim/simulation/wind_regime.hpp"
 
@@ -29,6 +30,10 @@ std::string describe_parameters() {
          "[node_parameters.md](node_parameters.md). 0 in `grid` stands for \"not given\".\n\n"
          "## top level\n\n";
   write_parameter_table(out, SeedParameter());
+  out << "\n`climate`, if given, sets rain, evaporation, soil and species together; what the scenario says "
+         "of them "
+         "overrides it (config/climates):\n\n";
+  for (const std::string& name : climates()) out << "- `" << name << "`: " << climate_doc(name) << "\n";
   Scenario defaults;
   for_each_section(defaults, [&](const char* section, const auto& parameters) {
     out << "\n## `" << section << "`\n\n";

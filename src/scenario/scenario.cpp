@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "desert_sim/core/files.hpp"
+#include "desert_sim/scenario/climate.hpp"
 #include "desert_sim/scenario/sections.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
 
@@ -207,16 +208,17 @@ Scenario parse_scenario_text(const std::string& yaml, const std::string& name, c
   return parse_with_settings(yaml, name, "", settings);
 }
 
-Scenario parse_scenario(const YAML::Node& root, const std::string& name, const std::string& folder) {
+Scenario parse_scenario(const YAML::Node& given, const std::string& name, const std::string& folder) {
   Faults faults(name);
   Scenario s;
   s.name = name;
   s.folder = folder;
-  if (!root.IsMap()) {
-    faults.add("top level", yaml::shown(root) + " where the sections of a scenario are expected");
+  if (!given.IsMap()) {
+    faults.add("top level", yaml::shown(given) + " where the sections of a scenario are expected");
     faults.throw_if_any();
   }
-  std::set<std::string> known{"terrain", "wind", "water", "run", "species", "competition"};
+  const YAML::Node root = with_climate(given, faults);
+  std::set<std::string> known{"climate", "terrain", "wind", "water", "run", "species", "competition"};
   for_each_section(s, [&](const char* section, auto& parameters) {
     known.insert(section);
     yaml::read_section(root[section], section, faults, parameters);
