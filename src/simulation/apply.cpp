@@ -25,10 +25,25 @@ Scenario Simulation::present_scenario() const {
   return scenario;
 }
 
+namespace {
+
+/// What heights are counted in cannot change any more: a sea above them could not be counted. One below them
+/// is no sea, whatever its level.
+void require_sea(const Scenario& s, const HeightScale& scale) {
+  const double highest = scale.datum + load_limit * scale.quantum();
+  if (s.water.sea == Sea::none || s.water.sea_level <= highest) return;
+  throw ConfigError("set_parameters: water.sea_level: = " + std::to_string(s.water.sea_level) +
+                    " m is above what this terrain's heights can be (allowed: up to " +
+                    std::to_string(highest) + " m)");
+}
+
+}  // namespace
+
 CommandResult Simulation::apply(const command::SetParameters& command) {
   if (!(command.ramp >= 0 && command.ramp <= command.longest_ramp))
     throw ConfigError("set_parameters: ramp: = " + std::to_string(command.ramp) + " is not in [0, 1e+12] s");
   const Scenario present = present_scenario(), wanted = with_live_settings(present, command.settings);
+  require_sea(wanted, terrain_.scale());
   require_more_memory(*this, wanted);  // also of what comes at the end of a ramp
   std::vector<std::string> settings = command.settings;
   const std::vector<Ramp> before = ramps_;
@@ -47,6 +62,7 @@ void Simulation::set_parameters(const std::vector<std::string>& settings) {
   const Scenario before = scenario_, present = present_scenario(),
                  changed = with_live_settings(present, settings);
   require_reach(changed);
+  require_sea(changed, terrain_.scale());
   require_more_memory(*this, changed);
   exec().synchronise();  // memory that steps in flight work with is given back
   scenario_ = changed;

@@ -140,6 +140,27 @@ TEST_P(LiveParameters, RefusedChangesChangeNothing) {
                  "grid.cell_size: cannot change");
 }
 
+TEST_P(LiveParameters, ASeaThatHeightsCannotReachIsRefused) {
+  auto s = simulation("grid: {width: 8, height: 8}\n");
+  const auto flood = [&](const char* level) {
+    s->apply(command::SetParameters{{level, "water.sea=everywhere", "water.enabled=true"}});
+  };
+  const std::uint64_t before = s->state_hash();
+  try {
+    flood("water.sea_level=5000");
+    ADD_FAILURE() << "was not refused";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("water.sea_level: = 5000"), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(s->state_hash(), before);
+  flood("water.sea_level=-5000");
+  test::run(*s, 1);
+  EXPECT_EQ(s->balance()[static_cast<std::size_t>(Material::water)].in, 0);
+  flood("water.sea_level=5");
+  test::run(*s, 1);
+  EXPECT_GT(s->balance()[static_cast<std::size_t>(Material::water)].in, 0);
+}
+
 DESERT_ON_EACH_BACKEND(LiveParameters);
 
 }  // namespace
