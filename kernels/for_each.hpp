@@ -5,6 +5,7 @@
 ///     for_each_cell_adding(exec, grid, sums, law); // sums[n] = Σ of what cells send to cell n
 ///     for_each_tile(exec, tiles, law);             // law(team, column, row): a team works on a tile
 ///     for_each_item(exec, count, law);             // law(n): items in a row
+///     for_each_cell_of_rows(exec, grid, first, rows, law);  // law(x, y): rows first … , over the north edge
 ///     sum_cells(exec, grid, law) -> long long      // Σ law(x, y), exact
 ///     max_cells(exec, grid, law) -> float          // max of 0 and law(x, y)
 ///
@@ -78,6 +79,20 @@ struct Bordered {
       border(x, y);
   }
 };
+
+/// A law on a band of rows: it is called for rows that begin with `first`, and go on over the edge.
+template <class Law>
+struct OnRows {
+  Law law;
+  int first, height;
+  DESERT_HD void operator()(int x, int y) const { law(x, wrap(first + y, height)); }
+};
+template <class E, class Law>
+void for_each_cell_of_rows(E& exec, const Grid& grid, int first, int rows, const Law& law) {
+  Grid band = grid;
+  band.height = rows;
+  for_each_cell(exec, band, OnRows<Law>{law, first, grid.height});
+}
 
 /// body(n) for n = 0 … count − 1 as compile-time constants: loops over cells vectorise only around straight
 /// code.

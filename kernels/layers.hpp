@@ -25,7 +25,6 @@ enum class Layer : int {
   water_flux_x,
   water_flux_y,
   elevation,
-  water_surface,
   water_velocity_x,
   water_velocity_y,
   wind_x,
@@ -42,6 +41,8 @@ enum class Layer : int {
   roughness,
   step_height,
   traversability,
+  water_surface,
+  plants,
 };
 
 enum class Storage { quanta, real };  ///< fixed-point metres, or float32; both four bytes
@@ -63,7 +64,7 @@ struct LayerInfo {
 
 constexpr double any_height = 1e6;
 
-constexpr std::array<LayerInfo, 31> layer_table{{
+constexpr std::array<LayerInfo, 32> layer_table{{
     {Layer::bedrock, "bedrock", "m", Storage::quanta, Lifetime::persistent, -any_height, any_height,
      "Top of the rock, absolute."},
     {Layer::soil, "soil", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
@@ -91,8 +92,6 @@ constexpr std::array<LayerInfo, 31> layer_table{{
      any_height, "Water that flows through a cell's north face."},
     {Layer::elevation, "elevation", "m", Storage::quanta, Lifetime::derived, -any_height, any_height,
      "Solid surface: bedrock + soil + sand."},
-    {Layer::water_surface, "water_surface", "m", Storage::quanta, Lifetime::derived, -any_height, any_height,
-     "Elevation + water."},
     {Layer::water_velocity_x, "water_velocity_x", "m/s", Storage::real, Lifetime::derived, 0, 0,
      "Mean velocity of the water, eastward part."},
     {Layer::water_velocity_y, "water_velocity_y", "m/s", Storage::real, Lifetime::derived, 0, 0,
@@ -125,6 +124,10 @@ constexpr std::array<LayerInfo, 31> layer_table{{
      "Largest rise or drop nearby that is no slope a rover could drive."},
     {Layer::traversability, "traversability", "1", Storage::real, Lifetime::on_request, 0, 1,
      "1 free ground … 0 no way for the rover of the section traversability."},
+    {Layer::water_surface, "water_surface", "m", Storage::quanta, Lifetime::on_request, -any_height,
+     any_height, "Elevation + water."},
+    {Layer::plants, "plants", "1", Storage::real, Lifetime::on_request, 0, 16,
+     "Species of the plant that is densest here: its place in the list, from 1 on; 0 where none grows."},
 }};
 constexpr int layer_count = static_cast<int>(layer_table.size());
 

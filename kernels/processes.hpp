@@ -15,6 +15,7 @@
 #include "desert_sim/kernels/plants/cover.hpp"
 #include "desert_sim/kernels/plants/illumination.hpp"
 #include "desert_sim/kernels/plants/life.hpp"
+#include "desert_sim/kernels/plants/marking.hpp"
 #include "desert_sim/kernels/reptation.hpp"
 #include "desert_sim/kernels/saltation.hpp"
 #include "desert_sim/kernels/soil.hpp"

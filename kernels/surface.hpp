@@ -46,6 +46,26 @@ void fill_elevation(E& exec, const TerrainView& terrain) {
   for_each_cell(exec, terrain.grid, SolidSurface(terrain));
 }
 
+/// Elevation + water; writes water_surface.
+struct WaterSurface {
+  Grid grid;
+  SolidHeight height;
+  const Quanta* water;
+  Quanta* surface;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    surface[i] = height(i) + value_or_zero(water, i);
+  }
+};
+
+template <class E>
+void fill_water_surface(E& exec, const TerrainView& t, int first, int rows) {
+  for_each_cell_of_rows(
+      exec, t.grid, first, rows,
+      WaterSurface{t.grid, SolidHeight(t), t.quanta(Layer::water), t.quanta(Layer::water_surface)});
+}
+
 /// Width of a block [cells].
 constexpr int block_side = 4;
 

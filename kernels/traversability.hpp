@@ -234,14 +234,6 @@ inline Traversability law(const TerrainView& t, const TraversabilityParameters& 
           t.real(Layer::traversability)};
 }
 
-/// A law on a band of rows: it is called for rows that begin with `first`, and go on over the edge.
-template <class Law>
-struct OnRows {
-  Law law;
-  int first, height;
-  DESERT_HD void operator()(int x, int y) const { law(x, wrap(first + y, height)); }
-};
-
 /// For `rows` rows from `first` on. `elevation` must be up to date everywhere.
 template <class E>
 void step(E& exec, const TerrainView& t, const TraversabilityParameters& p, const ReposeParameters& repose,
@@ -250,10 +242,7 @@ void step(E& exec, const TerrainView& t, const TraversabilityParameters& p, cons
   const Orientation orientation{judge.roughness.surface, t.real(Layer::slope), t.real(Layer::normal_x),
                                 t.real(Layer::normal_y), t.real(Layer::normal_z)};
   const auto run = [&](const auto& of_cell, bool wanted) {
-    Grid band = t.grid;
-    band.height = rows;
-    if (wanted)
-      for_each_cell(exec, band, OnRows<std::decay_t<decltype(of_cell)>>{of_cell, first, t.grid.height});
+    if (wanted) for_each_cell_of_rows(exec, t.grid, first, rows, of_cell);
   };
   run(orientation, orientation.slope || orientation.normal_x || orientation.normal_y || orientation.normal_z);
   run(judge.roughness, judge.roughness.roughness != nullptr);

@@ -78,6 +78,16 @@ cv::Mat layer_of(const float* values, int width, int height) {
   return reduced(flipped);
 }
 
+/// A layer of numbers that have no mean, likewise.
+cv::Mat numbers_of(const float* values, int width, int height) {
+  if (!values) return {};
+  const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // only read
+  cv::Mat flipped, result;
+  cv::flip(view, flipped, 0);
+  cv::resize(flipped, result, working_size(width, height), 0, 0, cv::INTER_NEAREST);
+  return result;
+}
+
 /// Elevation at the working size, north up; the mean of the known cells, NaN where less than half is known.
 cv::Mat surface_of(const float* values, int width, int height) {
   cv::Mat elevation = layer_of(values, width, height);
@@ -169,13 +179,21 @@ Colour lit(const Colour& colour, float shade) {
 }
 
 struct Materials {
-  cv::Mat sand, vegetation, obstacle, water, soil, wind_shadow;  // empty where not in use
+  cv::Mat sand, vegetation, plants, obstacle, water, soil, wind_shadow;  // empty where not in use
+  const std::vector<std::array<float, 3>>& crown_colours;
+
+  Colour of_plants(int row, int column) const {
+    const auto species = static_cast<std::size_t>(at(plants, row, column));
+    if (species == 0 || species > crown_colours.size()) return kVegetation;
+    const auto& [r, g, b] = crown_colours[species - 1];
+    return Colour(b, g, r) * 255.0F;
+  }
 
   /// Colour of the ground lit with `shade`, and of the water on it.
   Colour colour(int row, int column, float shade) const {
     Colour ground = mix(kRock, kSoil, smooth_step(0.02F, 0.12F, at(soil, row, column)));
     ground = mix(ground, kSand, smooth_step(0.02F, 0.12F, at(sand, row, column)));
-    ground = mix(ground, kVegetation, 0.9F * smooth_step(0, 0.8F, at(vegetation, row, column)));
+    ground = mix(ground, of_plants(row, column), 0.9F * smooth_step(0, 0.8F, at(vegetation, row, column)));
     ground = mix(ground, kObstacle, smooth_step(0.25F, 0.75F, at(obstacle, row, column)));
     ground = lit(ground, shade * (1 - 0.12F * std::clamp(at(wind_shadow, row, column), 0.0F, 1.0F)));
     const float depth = std::max(at(water, row, column), 0.0F);
@@ -261,9 +279,10 @@ cv::Mat hillshade_picture(const PictureInput& input) {
   const double exaggeration = exaggeration_of(elevation, pixel_size);
   const cv::Mat shade = shading(elevation, pixel_size, exaggeration);
   const Materials materials{
-      layer_of(input.sand, width, height),     layer_of(input.vegetation, width, height),
-      layer_of(input.obstacle, width, height), layer_of(input.water, width, height),
-      layer_of(input.soil, width, height),     layer_of(input.wind_shadow, width, height)};
+      layer_of(input.sand, width, height),        layer_of(input.vegetation, width, height),
+      numbers_of(input.plants, width, height),    layer_of(input.obstacle, width, height),
+      layer_of(input.water, width, height),       layer_of(input.soil, width, height),
+      layer_of(input.wind_shadow, width, height), input.crown_colours};
   double lowest = 0, highest = 0;
   cv::minMaxLoc(elevation, &lowest, &highest, nullptr, nullptr, elevation == elevation);
   cv::Mat picture(elevation.size(), CV_8UC3);

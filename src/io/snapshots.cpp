@@ -26,6 +26,8 @@ PictureInput picture_of(const Snapshot& s) {
   picture.elevation = values(Layer::elevation);
   picture.sand = values(Layer::sand);
   picture.vegetation = values(Layer::vegetation);
+  picture.plants = values(Layer::plants);
+  picture.crown_colours = s.crown_colours;
   picture.obstacle = values(Layer::obstacle);
   picture.water = values(Layer::water);
   picture.soil = values(Layer::soil);

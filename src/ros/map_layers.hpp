@@ -9,31 +9,42 @@
 
 namespace desert_sim {
 
+/// What cells that are merged into one take: the mean, the lowest value, or that of the one in the middle.
+enum class Merged { mean, lowest, middle };
+
 struct MapLayer {
   const char* name;
   Layer layer;
-  bool worst;  ///< cells that are merged take the lowest value, not the mean
+  Merged merged = Merged::mean;
 };
 
-constexpr std::array<MapLayer, 18> map_layers{{
-    {"elevation", Layer::elevation, false},
-    {"bedrock", Layer::bedrock, false},
-    {"sand_depth", Layer::sand, false},
-    {"water_depth", Layer::water, false},
-    {"soil_depth", Layer::soil, false},
-    {"vegetation", Layer::vegetation, false},
-    {"moisture", Layer::moisture, false},
-    {"obstacle", Layer::obstacle, false},
-    {"wind_x", Layer::wind_x, false},
-    {"wind_y", Layer::wind_y, false},
-    {"wind_shadow", Layer::wind_shadow, false},
-    {"slope", Layer::slope, false},
-    {"roughness", Layer::roughness, false},
-    {"step_height", Layer::step_height, false},
-    {"traversability", Layer::traversability, true},
-    {"normal_x", Layer::normal_x, false},
-    {"normal_y", Layer::normal_y, false},
-    {"normal_z", Layer::normal_z, false},
+constexpr std::array<MapLayer, 26> map_layers{{
+    {"elevation", Layer::elevation},
+    {"bedrock", Layer::bedrock},
+    {"water_surface", Layer::water_surface},
+    {"sand_depth", Layer::sand},
+    {"water_depth", Layer::water},
+    {"soil_depth", Layer::soil},
+    {"vegetation", Layer::vegetation},
+    {"plants", Layer::plants, Merged::middle},
+    {"canopy_height", Layer::canopy_height},
+    {"illumination", Layer::illumination},
+    {"humus", Layer::humus},
+    {"moisture", Layer::moisture},
+    {"suspended_sediment", Layer::suspended_sediment},
+    {"water_velocity_x", Layer::water_velocity_x},
+    {"water_velocity_y", Layer::water_velocity_y},
+    {"obstacle", Layer::obstacle},
+    {"wind_x", Layer::wind_x},
+    {"wind_y", Layer::wind_y},
+    {"wind_shadow", Layer::wind_shadow},
+    {"slope", Layer::slope},
+    {"roughness", Layer::roughness},
+    {"step_height", Layer::step_height},
+    {"traversability", Layer::traversability, Merged::lowest},
+    {"normal_x", Layer::normal_x},
+    {"normal_y", Layer::normal_y},
+    {"normal_z", Layer::normal_z},
 }};
 
 /// The names of all, with ", " between them.

@@ -55,7 +55,8 @@ struct Blocks {
     return values ? values[static_cast<std::size_t>(rows[y]) * stride + static_cast<std::size_t>(columns[x])]
                   : 0.0f;
   }
-  float block(std::size_t x0, std::size_t x1, std::size_t y0, std::size_t y1, bool worst) const {
+  float block(std::size_t x0, std::size_t x1, std::size_t y0, std::size_t y1, Merged merged) const {
+    if (merged == Merged::middle) return cell((x0 + x1) / 2, (y0 + y1) / 2);
     double sum = 0;
     float lowest = std::numeric_limits<float>::infinity();
     int cells = 0;
@@ -68,7 +69,7 @@ struct Blocks {
         ++cells;
       }
     if (cells == 0) return unknown;
-    return worst ? lowest : static_cast<float>(sum / cells);
+    return merged == Merged::lowest ? lowest : static_cast<float>(sum / cells);
   }
 };
 
@@ -108,7 +109,7 @@ std::vector<float> window_values(const Snapshot& s, const MapLayer& layer, const
     for (std::size_t x = 0; x < columns; x += step)
       result.push_back(
           step == 1 ? blocks.cell(x, y)
-                    : blocks.block(x, std::min(x + step, columns), y, std::min(y + step, rows), layer.worst));
+                    : blocks.block(x, std::min(x + step, columns), y, std::min(y + step, rows), layer.merged));
   return result;
 }
 

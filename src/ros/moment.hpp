@@ -41,6 +41,12 @@ struct TerrainState {
   std::shared_ptr<const CostChanges> whole_costs;
 };
 
+/// Plants at one moment.
+struct PlantsState {
+  Moment moment;
+  std::shared_ptr<const PlantList> list;
+};
+
 /// What save_terrain() takes; the snapshot has the elevation too.
 struct TerrainToSave {
   TerrainState state;

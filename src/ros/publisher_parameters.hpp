@@ -19,6 +19,11 @@ struct PublisherParameters {
   int wind_markers_count = 180;
   double points_rate = 4;
   int points_count = 70000;
+  double water_points_rate = 4;
+  double plants_rate = 1;
+  int plants_count = 200000;
+  double plant_markers_rate = 1;
+  int plant_markers_count = 10000;
   double status_rate = 1;
 };
 constexpr auto parameter_table(const PublisherParameters*) {
@@ -38,6 +43,14 @@ constexpr auto parameter_table(const PublisherParameters*) {
       parameter("points_rate", &P::points_rate, 0, 1000, "Hz", "~points."),
       parameter("points_count", &P::points_count, 1, 100000000, "1",
                 "At most so many points; rviz stays fluid with 40000 to 100000."),
+      parameter("water_points_rate", &P::water_points_rate, 0, 1000, "Hz",
+                "~water_points; at most points_count of them."),
+      parameter("plants_rate", &P::plants_rate, 0, 1000, "Hz", "~plants."),
+      parameter("plants_count", &P::plants_count, 1, 100000000, "1",
+                "At most so many plants; if there are more, the widest."),
+      parameter("plant_markers_rate", &P::plant_markers_rate, 0, 1000, "Hz", "~plant_markers."),
+      parameter("plant_markers_count", &P::plant_markers_count, 1, 1000000, "1",
+                "At most so many plants, the widest; a tenth of them with trunk and crown."),
       parameter("status_rate", &P::status_rate, 0, 1000, "Hz", "~status; it is also sent on change."));
 }
 static_assert(table_is_complete<PublisherParameters>());

@@ -89,9 +89,8 @@ SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<
   settle();  // the stamp is of the state that is reached, not of a step that is under way
   std::vector<Layer> in_use;
   for (Layer layer : layers) {
-    const bool on_request = info(layer).lifetime == Lifetime::on_request;
-    if (on_request) layers_requested_ = steady_now();
-    if (on_request || session_->simulation().terrain().has(layer)) in_use.push_back(layer);
+    if (info(layer).lifetime == Lifetime::on_request) layers_requested_ = steady_now();
+    if (session_->simulation().shows(layer)) in_use.push_back(layer);
   }
   snapshot_requested_ = steady_now();
   ++snapshots_;
@@ -115,6 +114,22 @@ std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& la
                                                     const HeldQuery& held) {
   return wait_there<TerrainState>(ask<StateUnderWay>([=] { return begin_state(layers, band, held); }),
                                   [](const StateUnderWay& state) { return state.get(); });
+}
+
+std::future<PlantsState> SimulationThread::plants() {
+  struct UnderWay {
+    Moment moment;
+    PendingPlants list;
+  };
+  return wait_there<PlantsState>(ask<UnderWay>([this] {
+                                   settle();
+                                   snapshot_requested_ = steady_now();
+                                   ++snapshots_;
+                                   return UnderWay{moment(), session_->simulation().begin_plants()};
+                                 }),
+                                 [](const UnderWay& u) {
+                                   return PlantsState{u.moment, u.list.get()};
+                                 });
 }
 
 std::future<TerrainToSave> SimulationThread::terrain_to_save() {

@@ -56,6 +56,8 @@ class SimulationThread {
   /// The simulation goes on while the copy is under way: who calls get() waits for the copy there.
   std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {},
                                     const HeldQuery& held = {});
+  /// Likewise.
+  std::future<PlantsState> plants();
   std::future<TerrainToSave> terrain_to_save();
   /// With the parameters and the wind regime of now.
   std::future<Scenario> scenario();

@@ -25,6 +25,10 @@ float value(const std::vector<float>* layer, std::size_t i) { return layer ? (*l
 
 }  // namespace
 
+Colour water_colour(float depth) {
+  return mix(shallow_colour, deep_colour, std::min(1.0f, depth / deep_water));
+}
+
 SurfaceColour::SurfaceColour(const Snapshot& snapshot, int reach)
     : s_(snapshot),
       reach_(std::max(1, reach)),
@@ -33,7 +37,15 @@ SurfaceColour::SurfaceColour(const Snapshot& snapshot, int reach)
       soil_(s_.find(Layer::soil)),
       water_(s_.find(Layer::water)),
       vegetation_(s_.find(Layer::vegetation)),
+      plants_(s_.find(Layer::plants)),
       obstacle_(s_.find(Layer::obstacle)) {}
+
+Colour SurfaceColour::plants(std::size_t i) const {
+  const auto species = static_cast<std::size_t>(value(plants_, i));
+  if (species == 0 || species > s_.crown_colours.size()) return plant_colour;
+  const auto& [r, g, b] = s_.crown_colours[species - 1];
+  return {r, g, b};
+}
 
 Colour SurfaceColour::material(std::size_t i) const {
   if (value(obstacle_, i) > 0) return obstacle_colour;
@@ -42,9 +54,8 @@ Colour SurfaceColour::material(std::size_t i) const {
   };
   Colour colour = mix(rock_colour, soil_colour, share(soil_, that_hides_ground));
   colour = mix(colour, sand_colour, share(sand_, that_hides_ground));
-  colour = mix(colour, plant_colour, share(vegetation_, 1.0f));
-  const Colour water = mix(shallow_colour, deep_colour, share(water_, deep_water));
-  return mix(colour, water, 0.85f * share(water_, puddle));
+  colour = mix(colour, plants(i), share(vegetation_, 1.0f));
+  return mix(colour, water_colour(value(water_, i)), 0.85f * share(water_, puddle));
 }
 
 /// 1 on level ground.

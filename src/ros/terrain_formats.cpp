@@ -13,7 +13,7 @@ namespace {
 MapLayer as_map_layer(Layer layer) {
   const auto found = std::find_if(map_layers.begin(), map_layers.end(),
                                   [layer](const MapLayer& offered) { return offered.layer == layer; });
-  return found == map_layers.end() ? MapLayer{info(layer).name, layer, false} : *found;
+  return found == map_layers.end() ? MapLayer{info(layer).name, layer} : *found;
 }
 
 /// All layers in one bag, and the elevation for who looks at it.

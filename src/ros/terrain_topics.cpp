@@ -1,4 +1,5 @@
-/// The topics that show the terrain as it is: ~elevation and its updates, ~wind, ~wind_markers, ~points.
+/// The topics that show the terrain as it is: ~elevation and its updates, ~wind, ~wind_markers, ~points,
+/// ~water_points, ~plants, ~plant_markers.
 #include <std_msgs/Empty.h>
 
 #include <algorithm>
@@ -76,6 +77,31 @@ void Topics::add_points() {
   points.publisher = advertise_terrain<sensor_msgs::PointCloud2>("points", 1, points);
   points.publish = [this, &points](const TerrainState& state) {
     points.publisher.publish(point_cloud(state, frame_, parameters_.topics.points_count));
+    return true;
+  };
+  Topic& water = add(parameters_.topics.water_points_rate, water_point_layers());
+  water.publisher = advertise_terrain<sensor_msgs::PointCloud2>("water_points", 1, water);
+  water.publish = [this, &water](const TerrainState& state) {
+    water.publisher.publish(water_cloud(state, frame_, parameters_.topics.points_count));
+    return true;
+  };
+}
+
+/// Plants are no layers: these topics ask for them themselves, after what else is due.
+void Topics::add_plants() {
+  Topic& plants = add(parameters_.topics.plants_rate, std::vector<Layer>());
+  plants.publisher = advertise_terrain<Plants>("plants", 1, plants);
+  plants.publish = [this, &plants](const TerrainState&) {
+    plants.publisher.publish(
+        plants_message(simulation_.plants().get(), frame_, parameters_.topics.plants_count));
+    return true;
+  };
+  Topic& markers = add(parameters_.topics.plant_markers_rate, std::vector<Layer>());
+  plant_markers_ = std::make_unique<PlantMarkers>(frame_);
+  markers.publisher = advertise_terrain<visualization_msgs::MarkerArray>("plant_markers", 1, markers);
+  markers.publish = [this, &markers](const TerrainState&) {
+    markers.publisher.publish(
+        plant_markers_->markers(simulation_.plants().get(), parameters_.topics.plant_markers_count));
     return true;
   };
 }

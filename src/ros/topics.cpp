@@ -19,6 +19,7 @@ Topics::Topics(ros::NodeHandle node, const PublisherSetup& parameters, const Fra
   add_elevation();
   add_wind();
   add_points();
+  add_plants();
   add_grid_map();
   add_local_map();
   add_costmap();

@@ -22,6 +22,7 @@
 #include "desert_sim/ros/elevation_stream.hpp"
 #include "desert_sim/ros/frames.hpp"
 #include "desert_sim/ros/messages.hpp"
+#include "desert_sim/ros/plant_topics.hpp"
 #include "desert_sim/ros/publisher_parameters.hpp"
 #include "desert_sim/ros/simulation_thread.hpp"
 #include "desert_sim/ros/topic.hpp"
@@ -82,6 +83,7 @@ class Topics {
   void add_elevation();
   void add_wind();
   void add_points();
+  void add_plants();
   void add_grid_map();
   void add_local_map();
   void add_costmap();
@@ -115,6 +117,7 @@ class Topics {
   std::vector<std::unique_ptr<Topic>> topics_;
   std::unique_ptr<ElevationStream> elevation_;
   std::unique_ptr<WindMarkers> markers_;
+  std::unique_ptr<PlantMarkers> plant_markers_;
   std::unique_ptr<CostmapStream> costmap_;
   ros::Publisher status_, diff_;
   ros::Publisher costmap_is_latched_;  ///< publishes nothing

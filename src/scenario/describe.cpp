@@ -65,6 +65,8 @@ std::string describe_parameters() {
   for (const std::string& preset : species_presets()) out << " `" << preset << "`";
   out << " (config/species).\n\n";
   write_parameter_table(out, SpeciesTraits());
+  out << "\n";
+  write_parameter_table(out, SpeciesLook());
   out << "\n## `competition`: a list of rows\n\nHow much each species (column, in the order of `species`) "
          "hinders the "
          "growth of each (row), 0 … "

@@ -1,5 +1,7 @@
 #include "desert_sim/scenario/species.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -32,12 +34,13 @@ void read_one(const YAML::Node& node, const std::string& key, Faults& faults, Sp
   yaml::read_parameters(node, key + ".", faults, name, known);
   if (!name.preset.empty()) {
     if (preset_text(name.preset))
-      species = {name.preset, species_preset(name.preset)};
+      species = species_preset(name.preset);
     else
       faults.add(key + ".preset", "'" + name.preset + "' is not one of: " + known_presets());
   }
   if (!name.name.empty()) species.name = name.name;
   yaml::read_parameters(node, key + ".", faults, species.traits, known);
+  yaml::read_parameters(node, key + ".", faults, species.look, known);
   yaml::refuse_unknown(node, key + ".", known, faults);
   if (!node.IsMap())
     faults.add(key, yaml::shown(node) + " where a species is expected, such as {preset: tree}");
@@ -79,14 +82,28 @@ std::vector<std::string> species_presets() {
   return {names.begin(), names.end()};
 }
 
-SpeciesTraits species_preset(const std::string& name) {
+Species species_preset(const std::string& name) {
   const char* text = preset_text(name);
   if (!text) throw ConfigError("species preset '" + name + "' is not one of: " + known_presets());
   Faults faults("species preset " + name);
-  SpeciesTraits traits;
-  yaml::read_section(YAML::Load(text), name, faults, traits);
+  Species species{name, {}, {}};
+  const YAML::Node node = YAML::Load(text);
+  std::set<std::string> known;
+  yaml::read_parameters(node, "", faults, species.traits, known);
+  yaml::read_parameters(node, "", faults, species.look, known);
+  yaml::refuse_unknown(node, "", known, faults);
   faults.throw_if_any();
-  return traits;
+  return species;
+}
+
+std::array<float, 3> crown_colour(const SpeciesLook& look) {
+  constexpr float dull = 0.13f, bright = 0.52f;
+  const auto channel = [&](float peak) {
+    // 1 within 60 degrees of the channel's own hue, 0 from 120 degrees on.
+    const float away = std::abs(std::remainder(look.hue - peak, 360.0f));
+    return dull + (bright - dull) * std::clamp(2.0f - away / 60.0f, 0.0f, 1.0f);
+  };
+  return {channel(0), channel(120), channel(240)};
 }
 
 void read_species(const YAML::Node& root, Faults& faults, Scenario& s) {
@@ -111,6 +128,7 @@ void emit_species(YAML::Emitter& out, const Scenario& s) {
     out << YAML::Flow << YAML::BeginMap << YAML::Key << "name" << YAML::Value << YAML::DoubleQuoted
         << species.name;
     yaml::emit_parameters(out, species.traits);
+    yaml::emit_parameters(out, species.look);
     out << YAML::EndMap;
   }
   out << YAML::EndSeq << YAML::Key << "competition" << YAML::Value << YAML::BeginSeq;

@@ -98,6 +98,8 @@ class Simulation {
   std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers, const RowBand& band = {}) {
     return begin_snapshot(layers, band).get();
   }
+  /// Starts a copy of all plants to the host, in the order of their look-up.
+  PendingPlants begin_plants();
   /// Gives back the memory of layers that exist on request, until one is asked for again.
   void release_requested_layers();
 
@@ -117,6 +119,8 @@ class Simulation {
 
   /// Memory through which copies go to the host.
   Staging& staging() { return staging_; }
+  /// Whether a snapshot of the layer has more to show than 0 everywhere.
+  bool shows(Layer layer) const;
   /// Layers that are in use, derived ones included.
   std::vector<Layer> layers_in_use() const;
 

@@ -26,6 +26,11 @@ bool on_request(Layer layer) { return info(layer).lifetime == Lifetime::on_reque
 
 }  // namespace
 
+bool Simulation::shows(Layer layer) const {
+  if (layer == Layer::plants) return static_cast<bool>(plants_);
+  return on_request(layer) || terrain_.has(layer);
+}
+
 std::shared_ptr<Snapshot> Simulation::frame_of(const std::vector<Layer>& layers, const RowBand& rows) const {
   auto s = std::make_shared<Snapshot>();
   const GridParameters& g = scenario_.grid;
@@ -40,6 +45,7 @@ std::shared_ptr<Snapshot> Simulation::frame_of(const std::vector<Layer>& layers,
   s->step = steps_;
   s->time = time();
   s->wind_above = wind_above();
+  for (const Species& species : scenario_.species) s->crown_colours.push_back(crown_colour(species.look));
   for (Layer layer : layers) s->layers[layer];
   return s;
 }
@@ -88,6 +94,33 @@ void Simulation::send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowB
   });
 }
 
+PendingPlants Simulation::begin_plants() {
+  auto list = std::make_shared<PlantList>();
+  list->origin_x = scenario_.grid.origin_x;
+  list->origin_y = scenario_.grid.origin_y;
+  list->step = steps_;
+  list->time = time();
+  if (plants_) list->species = scenario_.species;
+  auto readback = std::make_shared<Readback>();
+  const int most = static_cast<int>(std::max<std::size_t>(1, staging_.slot_bytes() / sizeof(plants::Listed)));
+  for (int first = 0; first < plants_.count; first += most) {
+    const int count = std::min(most, plants_.count - first);
+    const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(plants::Listed);
+    Staging::Slot& slot = staging_.next(bytes);
+    with_backend(exec(), [&](auto& e) {
+      plants::list(e, plants_.plants(), terrain_.metres(Layer::bedrock), first, count,
+                   reinterpret_cast<plants::Listed*>(slot.device()));
+    });
+    staging_.send(slot, bytes, readback, [waited = std::weak_ptr<PlantList>(list), bytes, count](auto& arrived) {
+      const std::shared_ptr<PlantList> all = waited.lock();
+      if (!all) return;
+      const auto* from = reinterpret_cast<const plants::Listed*>(arrived.host(bytes));
+      all->plants.insert(all->plants.end(), from, from + count);
+    });
+  }
+  return {list, readback};
+}
+
 void Simulation::judge(const std::vector<Layer>& layers, const RowBand& rows) {
   for (Layer layer : layers)
     if (on_request(layer)) terrain_.require(layer);
@@ -98,6 +131,10 @@ void Simulation::judge(const std::vector<Layer>& layers, const RowBand& rows) {
   with_backend(exec(), [&](auto& e) {
     surface::fill_elevation(e, view);
     traversability::step(e, view, scenario_.traversability, scenario_.repose, rows.first, rows.count);
+    if (view.quanta(Layer::water_surface)) surface::fill_water_surface(e, view, rows.first, rows.count);
+    if (plants_ && view.real(Layer::plants))
+      plants::mark_species(e, view, rows.first, rows.count, plants_.neighbourhood(), plants_.plants(),
+                           plants_.species.data());
   });
 }
 

@@ -1,12 +1,15 @@
 #pragma once
 /// Layers at one moment, on the host.
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <vector>
 
 #include "desert_sim/kernels/layers.hpp"
+#include "desert_sim/kernels/plants/marking.hpp"
 #include "desert_sim/kernels/wind.hpp"
+#include "desert_sim/scenario/species.hpp"
 #include "desert_sim/simulation/staging.hpp"
 
 namespace desert_sim {
@@ -26,10 +29,22 @@ struct Snapshot {
   std::uint64_t step = 0;
   double time = 0;  ///< simulated [s]
   wind::Vector wind_above;
+  std::vector<std::array<float, 3>> crown_colours;  ///< by species: of 1 in the layer plants, of 2 …
   std::map<Layer, std::vector<float>> layers;
   const std::vector<float>* find(Layer layer) const;  ///< null if it was not asked for
 };
 
 using PendingSnapshot = Pending<Snapshot>;
+
+/// Plants at one moment, one by one.
+struct PlantList {
+  double origin_x = 0, origin_y = 0;  ///< [m] of the terrain's south-west corner
+  std::uint64_t step = 0;
+  double time = 0;               ///< simulated [s]
+  std::vector<Species> species;  ///< of the scenario; none where plants are off
+  std::vector<plants::Listed> plants;
+};
+
+using PendingPlants = Pending<PlantList>;
 
 }  // namespace desert_sim

@@ -124,7 +124,9 @@ std::string summary(Simulation& s, const RunReport& report) {
 
 void write_outputs(const std::string& folder, Simulation& simulation, const RunReport& report) {
 #if DESERT_WITH_IO
-  const auto snapshot = simulation.snapshot(simulation.layers_in_use());
+  std::vector<Layer> layers = simulation.layers_in_use();
+  if (simulation.shows(Layer::plants)) layers.push_back(Layer::plants);
+  const auto snapshot = simulation.snapshot(layers);
   write_rasters(folder, *snapshot, simulation.scenario().projection);
   write_pictures(folder, *snapshot);
 #endif

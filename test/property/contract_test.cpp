@@ -30,7 +30,6 @@ class Contract : public test::OnBackend {
     t->set(Layer::echo, [&](int x, int y) { return x % 6 ? 0 : wave(x, y) - 0.5; });
     t->set_strength([&](int x, int y) { return wave(x, y); });
     t->set_repose([&](int, int) { return 0.6; });
-    t->terrain.require(Layer::water_surface);
     t->surface();
     return t;
   }
