@@ -2,7 +2,8 @@
 /// Which species grows where, and plants as others see them. Not part of a step: computed for who asks
 /// (Lifetime::on_request).
 ///
-///   plants   1 + the species of the plant that is densest on the ground of a cell's centre, of equal ones the
+///   plants   1 + the species of the plant that is densest on the ground of a cell's centre, of equal ones
+///   the
 ///            first in order; 0 where none is denser than `bare`
 ///
 /// Reads bedrock, soil, sand and the plants; writes plants.
@@ -34,7 +35,8 @@ struct MarkSpecies {
     float densest = bare;
     int found = 0;
     near.around(x, y, 0.0f, [&](int n) {
-      const float dx = near.lookup.difference_x(x, plants.x[n]), dy = near.lookup.difference_y(y, plants.y[n]);
+      const float dx = near.lookup.difference_x(x, plants.x[n]),
+                  dy = near.lookup.difference_y(y, plants.y[n]);
       const SpeciesTraits& s = species[plants.species[n]];
       const float above = static_cast<float>(z - plants.z[n]) * quantum;
       const float d = density_at(dx * dx + dy * dy, above, plants.radius[n], s.stem, s.root);
@@ -48,8 +50,8 @@ struct MarkSpecies {
 
 /// For rows first … first + rows − 1, over the north edge.
 template <class E>
-void mark_species(E& exec, const TerrainView& t, int first, int rows, const Neighbourhood& near, const View& plants,
-                  const SpeciesTraits* species) {
+void mark_species(E& exec, const TerrainView& t, int first, int rows, const Neighbourhood& near,
+                  const View& plants, const SpeciesTraits* species) {
   for_each_cell_of_rows(
       exec, t.grid, first, rows,
       MarkSpecies{t.grid, near, plants, species, surface::SolidHeight(t), t.quantum, t.real(Layer::plants)});
@@ -57,9 +59,9 @@ void mark_species(E& exec, const TerrainView& t, int first, int rows, const Neig
 
 /// A plant as it goes to the host.
 struct Listed {
-  float x, y;    ///< [m] from the grid's south-west corner
-  float z;       ///< [m] where stem and root meet
-  float radius;  ///< [m]
+  float x, y;                    ///< [m] from the grid's south-west corner
+  float z;                       ///< [m] where stem and root meet
+  float radius;                  ///< [m]
   std::uint8_t species, health;  ///< health: 255 is full
 };
 

@@ -133,7 +133,8 @@ double exaggeration_of(const cv::Mat& elevation, float pixel_size) {
       if (slope > kFlat) slopes.push_back(slope);
     }
   if (slopes.empty()) return 1;
-  const auto steep = slopes.begin() + static_cast<std::ptrdiff_t>(kSteep * static_cast<double>(slopes.size() - 1));
+  const auto steep =
+      slopes.begin() + static_cast<std::ptrdiff_t>(kSteep * static_cast<double>(slopes.size() - 1));
   std::nth_element(slopes.begin(), steep, slopes.end());
   return std::clamp(kWanted / *steep, kLeast, kMost);
 }

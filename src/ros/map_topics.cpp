@@ -13,7 +13,7 @@ namespace desert_sim {
 
 namespace {
 
-const std::vector<Layer> picture_layers{Layer::elevation, Layer::sand, Layer::vegetation, Layer::obstacle,
+const std::vector<Layer> picture_layers{Layer::elevation, Layer::sand, Layer::vegetation,  Layer::obstacle,
                                         Layer::water,     Layer::soil, Layer::wind_shadow, Layer::plants};
 
 sensor_msgs::ImagePtr picture_message(const TerrainState& state, const std::string& frame) {

@@ -107,9 +107,9 @@ std::vector<float> window_values(const Snapshot& s, const MapLayer& layer, const
   result.reserve(((columns + step - 1) / step) * ((rows + step - 1) / step));
   for (std::size_t y = 0; y < rows; y += step)
     for (std::size_t x = 0; x < columns; x += step)
-      result.push_back(
-          step == 1 ? blocks.cell(x, y)
-                    : blocks.block(x, std::min(x + step, columns), y, std::min(y + step, rows), layer.merged));
+      result.push_back(step == 1 ? blocks.cell(x, y)
+                                 : blocks.block(x, std::min(x + step, columns), y, std::min(y + step, rows),
+                                                layer.merged));
   return result;
 }
 

@@ -23,7 +23,8 @@ std::vector<std::size_t> widest(const std::vector<Listed>& plants, std::size_t c
   const auto wider = [&](std::size_t a, std::size_t b) {
     return plants[a].radius != plants[b].radius ? plants[a].radius > plants[b].radius : a < b;
   };
-  std::nth_element(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(count), numbers.end(), wider);
+  std::nth_element(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(count), numbers.end(),
+                   wider);
   numbers.resize(count);
   std::sort(numbers.begin(), numbers.end());
   return numbers;
@@ -126,7 +127,8 @@ PlantsPtr plants_message(const PlantsState& state, const std::string& frame, int
   }
   message->total = list.plants.size();
   const std::vector<std::size_t> numbers = widest(list.plants, static_cast<std::size_t>(count));
-  for (auto* column : {&message->x, &message->y, &message->z, &message->radius}) column->reserve(numbers.size());
+  for (auto* column : {&message->x, &message->y, &message->z, &message->radius})
+    column->reserve(numbers.size());
   for (auto* column : {&message->species_index, &message->health}) column->reserve(numbers.size());
   for (std::size_t n : numbers) {
     const Listed& plant = list.plants[n];

@@ -19,8 +19,8 @@ struct Point {
   float more[2];
 };
 
-sensor_msgs::PointCloud2Ptr empty_cloud(const TerrainState& state, const std::string& frame, const char* fifth,
-                                        const char* sixth) {
+sensor_msgs::PointCloud2Ptr empty_cloud(const TerrainState& state, const std::string& frame,
+                                        const char* fifth, const char* sixth) {
   auto cloud = boost::make_shared<sensor_msgs::PointCloud2>();
   cloud->header = header_of(state.moment, frame);
   for (const char* name : {"x", "y", "z", "rgb", fifth, sixth}) {
@@ -97,8 +97,9 @@ float value(const std::vector<float>* layer, std::size_t i) { return layer ? (*l
 }  // namespace
 
 const std::vector<Layer>& point_layers() {
-  static const std::vector<Layer> layers{Layer::elevation, Layer::sand,       Layer::wind_shadow, Layer::soil,
-                                         Layer::water,     Layer::vegetation, Layer::plants,      Layer::obstacle};
+  static const std::vector<Layer> layers{Layer::elevation, Layer::sand,    Layer::wind_shadow,
+                                         Layer::soil,      Layer::water,   Layer::vegetation,
+                                         Layer::plants,    Layer::obstacle};
   return layers;
 }
 
@@ -129,7 +130,7 @@ sensor_msgs::PointCloud2Ptr water_cloud(const TerrainState& state, const std::st
   const Snapshot& s = *state.snapshot;
   const std::vector<float>& elevation = s.layers.at(Layer::elevation);
   const std::vector<float>*water = s.find(Layer::water), *u = s.find(Layer::water_velocity_x),
-                          *v = s.find(Layer::water_velocity_y);
+        *v = s.find(Layer::water_velocity_y);
   std::vector<Point> points;
   if (water)
     Sampling(s, count).for_each(s, [&](int x, int y, std::size_t i) {

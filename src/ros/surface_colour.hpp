@@ -18,8 +18,8 @@ class SurfaceColour {
  public:
   /// Keeps a reference to the snapshot. `reach` [cells]: slopes are taken over twice as many.
   SurfaceColour(const Snapshot& snapshot, int reach);
-  /// Sand warm, soil brown and rock grey-brown where sand is thin, plants in their species' colour, water blue by depth,
-  /// obstacles violet; times the light.
+  /// Sand warm, soil brown and rock grey-brown where sand is thin, plants in their species' colour, water
+  /// blue by depth, obstacles violet; times the light.
   Colour at(int x, int y) const;
 
  private:

@@ -65,6 +65,7 @@ class Arrows {
       : s_(s),
         reach_(reach),
         z_(s.layers.at(Layer::elevation)),
+        water_(s.find(Layer::water)),
         u_(s.find(Layer::wind_x)),
         v_(s.find(Layer::wind_y)) {
     const double above = std::hypot(s.wind_above.x, s.wind_above.y);
@@ -87,7 +88,7 @@ class Arrows {
   }
 
  private:
-  /// So that no slope hides the arrow.
+  /// So that neither a slope nor water hides the arrow.
   double highest_below(int x, int y, double yaw, double length) const {
     constexpr int samples = 4;
     double highest = -std::numeric_limits<double>::infinity();
@@ -95,7 +96,8 @@ class Arrows {
       const double cells = n * length / (samples * s_.cell_size);
       const int ix = std::clamp(x + static_cast<int>(std::lround(cells * std::cos(yaw))), 0, s_.width - 1);
       const int iy = std::clamp(y + static_cast<int>(std::lround(cells * std::sin(yaw))), 0, s_.height - 1);
-      highest = std::max(highest, static_cast<double>(z_[static_cast<std::size_t>(iy) * s_.width + ix]));
+      const std::size_t i = static_cast<std::size_t>(iy) * s_.width + ix;
+      highest = std::max(highest, static_cast<double>(z_[i] + (water_ ? (*water_)[i] : 0.0f)));
     }
     return highest;
   }
@@ -103,13 +105,13 @@ class Arrows {
   const Snapshot& s_;
   const double reach_;
   double reference_;  ///< speed above [m/s]
-  const std::vector<float>&z_, *u_, *v_;
+  const std::vector<float>&z_, *water_, *u_, *v_;
 };
 
 }  // namespace
 
 const std::vector<Layer>& wind_marker_layers() {
-  static const std::vector<Layer> layers{Layer::elevation, Layer::wind_x, Layer::wind_y};
+  static const std::vector<Layer> layers{Layer::elevation, Layer::water, Layer::wind_x, Layer::wind_y};
   return layers;
 }
 

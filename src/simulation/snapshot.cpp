@@ -111,12 +111,13 @@ PendingPlants Simulation::begin_plants() {
       plants::list(e, plants_.plants(), terrain_.metres(Layer::bedrock), first, count,
                    reinterpret_cast<plants::Listed*>(slot.device()));
     });
-    staging_.send(slot, bytes, readback, [waited = std::weak_ptr<PlantList>(list), bytes, count](auto& arrived) {
-      const std::shared_ptr<PlantList> all = waited.lock();
-      if (!all) return;
-      const auto* from = reinterpret_cast<const plants::Listed*>(arrived.host(bytes));
-      all->plants.insert(all->plants.end(), from, from + count);
-    });
+    staging_.send(slot, bytes, readback,
+                  [waited = std::weak_ptr<PlantList>(list), bytes, count](auto& arrived) {
+                    const std::shared_ptr<PlantList> all = waited.lock();
+                    if (!all) return;
+                    const auto* from = reinterpret_cast<const plants::Listed*>(arrived.host(bytes));
+                    all->plants.insert(all->plants.end(), from, from + count);
+                  });
   }
   return {list, readback};
 }

@@ -28,6 +28,7 @@ class Contract : public test::OnBackend {
     t->set(Layer::wind_y, [&](int x, int y) { return 2 - wave(y, x); });
     t->set(Layer::wind_shadow, [&](int x, int y) { return wave(x, y); });
     t->set(Layer::echo, [&](int x, int y) { return x % 6 ? 0 : wave(x, y) - 0.5; });
+    for (Layer layer : {Layer::plants, Layer::water_surface}) t->terrain.require(layer);
     t->set_strength([&](int x, int y) { return wave(x, y); });
     t->set_repose([&](int, int) { return 0.6; });
     t->surface();
@@ -162,6 +163,12 @@ TEST_P(Contract, OfPlants) {
   expect_only("a look at plant cover", {Layer::canopy_height}, true,
               with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {
                 plants::cover(e, t.terrain.view(), {}, 1, t.heights, false, work);
+              }));
+  expect_only("a look at species", {Layer::plants}, true,
+              with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {
+                const TerrainView view = t.terrain.view();
+                plants::mark_species(e, view, 0, view.grid.height, work.neighbourhood(), work.plants(),
+                                     work.species.data());
               }));
   expect_only("illumination", {Layer::illumination, Layer::illumination_canopy}, true,
               with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {

@@ -58,7 +58,8 @@ class Tools(unittest.TestCase):
     def test_rostopic_list_type_and_info(self):
         topics = run("rostopic", "list").split()
         for name in ("elevation", "elevation_updates", "grid_map", "local_map", "costmap", "costmap_updates", "image",
-                     "wind", "wind_markers", "points", "terrain_diff", "status", "cmd_wind", "request_keyframe"):
+                     "wind", "wind_markers", "points",
+                     "water_points", "plants", "plant_markers", "terrain_diff", "status", "cmd_wind", "request_keyframe"):
             self.assertIn("/desert_sim/" + name, topics)
         self.assertEqual(run("rostopic", "type", "/desert_sim/elevation").strip(), "desert_sim/ElevationGrid")
         self.assertEqual(run("rostopic", "type", "/desert_sim/grid_map").strip(), "grid_map_msgs/GridMap")

@@ -84,6 +84,21 @@ TEST(Hillshade, MaterialsHaveTheirColoursInTheirPlace) {
   EXPECT_LT(brightness(shadow), 330);
 }
 
+TEST(Hillshade, PlantsHaveTheirSpeciesColour) {
+  Ground ground;
+  std::vector<float> cover(ground.layer.size(), 1);
+  ground.fill_quarter(2, 1);
+  ground.fill_quarter(1, 2);
+  ground.fill_quarter(0, 3);  // of which there is no colour
+  ground.input.vegetation = cover.data();
+  ground.input.plants = ground.layer.data();
+  ground.input.crown_colours = {{0.5F, 0.1F, 0.1F}, {0.1F, 0.1F, 0.5F}};
+  const cv::Mat picture = hillshade_picture(ground.input);
+  EXPECT_GT(red(pixel(picture, 2)), 2 * blue(pixel(picture, 2)));
+  EXPECT_GT(blue(pixel(picture, 1)), 2 * red(pixel(picture, 1)));
+  for (int quarter : {0, 3}) EXPECT_GT(green(pixel(picture, quarter)), red(pixel(picture, quarter)));
+}
+
 TEST(Hillshade, SandBlendsIn) {
   Ground ground;
   ground.input.sand = ground.layer.data();

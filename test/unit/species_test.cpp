@@ -46,15 +46,29 @@ TEST(SpeciesList, ThePresetsAreThoseOfTheModel) {
   }
   // The tree is what a species is if nothing is said: every default stands in one place more, and is the
   // same.
-  const SpeciesTraits tree = species_preset("tree"), defaults;
+  const SpeciesTraits tree = species_preset("tree").traits, defaults;
   for_each_parameter(defaults, [&](const auto& row, const auto& value) {
     EXPECT_EQ(tree.*(row.member), value) << row.name;
   });
-  const SpeciesTraits seaweed = species_preset("seaweed"), palm = species_preset("palm");
+  const SpeciesTraits seaweed = species_preset("seaweed").traits, palm = species_preset("palm").traits;
   EXPECT_EQ(seaweed.water_resistance, 1);
   EXPECT_GT(palm.sand, tree.sand);
   EXPECT_LT(palm.water_use, tree.water_use);
   EXPECT_GT(palm.stem, tree.stem);
+}
+
+TEST(SpeciesList, AHueIsAColour) {
+  const auto of = [](float hue) { return crown_colour(SpeciesLook{hue}); };
+  const auto [r, g, b] = of(120);
+  EXPECT_GT(g, 2 * r);
+  EXPECT_EQ(r, b);
+  EXPECT_EQ(of(0), of(360));
+  EXPECT_GT(of(0)[0], 2 * of(0)[1]);
+  EXPECT_GT(of(240)[2], 2 * of(240)[1]);
+  EXPECT_EQ(of(60)[0], of(60)[1]) << "yellow";
+  EXPECT_EQ(test::scenario_of("species: [{preset: palm, hue: 300}]\n").species[0].look.hue, 300);
+  EXPECT_NE(species_preset("palm").look.hue, species_preset("tree").look.hue);
+  expect_refused("species: [{preset: tree, hue: 400}]", {"species.0.hue", "400", "360"});
 }
 
 TEST(SpeciesList, TheMatrixIsReadRowByRow) {
