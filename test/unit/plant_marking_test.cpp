@@ -58,13 +58,14 @@ TEST_P(PlantMarking, APlantThatIsBuriedDoesNotShow) {
 const char* const meadow =
     "grid: {width: 60, height: 50, cell_size: 2, origin_x: 100, origin_y: -40}\n"
     "terrain:\n"
-    "  - noise: {layer: soil, low: 2, high: 5, scale: 20}\n"
-    "  - uniform: {layer: moisture, value: 0.2}\n"
-    "  - noise: {layer: water, low: 0, high: 2, scale: 20, threshold: 0.6, seed: 2}\n"
+    "  - noise: {layer: bedrock, low: 0, high: 4, scale: 40}\n"
+    "  - uniform: {layer: soil, value: 2}\n"
+    "  - noise: {layer: moisture, low: 0.01, high: 0.25, scale: 30, seed: 4}\n"
+    "  - noise: {layer: water, low: 0, high: 5, scale: 30, threshold: 0.6, seed: 5}\n"
     "vegetation: {enabled: true}\n"
     "species:\n"
-    "  - {preset: bush, light_lowest: -2, light_highest: 3, spawn: 50, hue: 300}\n"
-    "  - {preset: seaweed, spawn: 50}\n";
+    "  - {preset: bush, light_lowest: -2, light_highest: 3, spawn: 5, spawn_density: 100, hue: 300}\n"
+    "  - {preset: seaweed, spawn: 20}\n";
 
 TEST_P(PlantMarking, ASnapshotShowsSpeciesAndTheWatersSurface) {
   auto s = simulation(meadow);
@@ -80,11 +81,13 @@ TEST_P(PlantMarking, ASnapshotShowsSpeciesAndTheWatersSurface) {
   int of[3] = {};
   for (std::size_t i = 0; i < marks.size(); ++i) {
     ++of[static_cast<int>(marks[i])];
-    if (marks[i] == 0) EXPECT_LT(density[i], 0.5);
+    if (marks[i] == 0) {
+      EXPECT_LT(density[i], 0.5);
+    }
     const float surface = all->layers.at(Layer::elevation)[i] + all->layers.at(Layer::water)[i];
     EXPECT_NEAR(all->layers.at(Layer::water_surface)[i], surface, 1e-5);
   }
-  for (int n : of) EXPECT_GT(n, 10);
+  for (int n = 0; n < 3; ++n) EXPECT_GT(of[n], 4) << "kind " << n;
 }
 
 TEST_P(PlantMarking, AListHasEveryPlantInItsOrder) {
