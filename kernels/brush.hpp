@@ -34,7 +34,7 @@ struct Brush {
   bool depth;  ///< cannot fall below 0
   Material material;
   Quanta* layer;
-  const Quanta* rest[2];  ///< other layers that make up the surface, or null
+  const Quanta* rest[3];  ///< other layers of the column, or null
   LedgerView ledger;
 
   DESERT_HD Grid area() const { return Grid{columns, rows, 1.0f, false, false}; }
@@ -90,7 +90,7 @@ struct BeyondLimit {
     const int i = b.cell(x, y);
     long long surface = static_cast<long long>(b.layer[i]) + change[k];
     if (surface >= wall_height - 1 || surface <= 1 - wall_height) return 1;
-    for (int n = 0; n < 2; ++n) surface += b.rest[n] ? b.rest[n][i] : 0;
+    for (int n = 0; n < 3; ++n) surface += b.rest[n] ? b.rest[n][i] : 0;
     return surface >= load_limit || surface <= -load_limit ? 1 : 0;
   }
 };

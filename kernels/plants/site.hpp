@@ -8,9 +8,6 @@
 
 namespace desert_sim::plants {
 
-/// Water that is less deep than this does not count [m].
-constexpr float wet_depth = 1e-5f;
-
 /// What roots and stem reach through: shares of their length.
 struct Ground {
   float soil, sand;              ///< of the roots

@@ -218,7 +218,7 @@ std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec)
     const auto next_words = [&](std::size_t count) {
       std::vector<std::uint32_t> words(count);
       if ((bytes.size() - at) / sizeof(std::uint32_t) < count) throw ConfigError(path + ": is cut off");
-      std::memcpy(words.data(), bytes.data() + at, count * sizeof(std::uint32_t));
+      if (count > 0) std::memcpy(words.data(), bytes.data() + at, count * sizeof(std::uint32_t));
       at += count * sizeof(std::uint32_t);
       return words;
     };

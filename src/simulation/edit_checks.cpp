@@ -19,8 +19,11 @@ constexpr double farthest = 1e7;       // [m], as of a centre
 constexpr double highest_pixel = 1e5;  // [m], as of a value
 
 void check_layer(const EditTerrain& edit, const Terrain& terrain, Faults& faults) {
-  if (edit.layer != "sand" && edit.layer != "soil" && edit.layer != "bedrock")
-    faults.add("layer", quoted(edit.layer) + " is not one of: sand, bedrock, soil");
+  if (edit.layer != "sand" && edit.layer != "soil" && edit.layer != "bedrock" && edit.layer != "water")
+    faults.add("layer", quoted(edit.layer) + " is not one of: sand, bedrock, soil, water");
+  if (edit.layer == "water" && !terrain.has(Layer::water))
+    faults.add("layer",
+               "water: this terrain has none (a scenario with rain, springs, a sea or the layer water has)");
   if (edit.layer == "soil" && !terrain.has(Layer::soil))
     faults.add("layer", "soil: this terrain has none (a scenario that fills the layer soil has)");
 }

@@ -60,10 +60,10 @@ TerrainEdit::TerrainEdit(const command::EditTerrain& command, const Terrain& ter
 
 void TerrainEdit::choose_layer() {
   const TerrainView view = terrain_.view();
-  const Layer layers[] = {Layer::bedrock, Layer::soil, Layer::sand};
-  const Material materials[] = {Material::bedrock, Material::soil, Material::sand};
+  const Layer layers[] = {Layer::bedrock, Layer::soil, Layer::sand, Layer::water};
+  const Material materials[] = {Material::bedrock, Material::soil, Material::sand, Material::water};
   int rest = 0;
-  for (int n = 0; n < 3; ++n) {
+  for (int n = 0; n < 4; ++n) {
     if (command_.layer == info(layers[n]).name) {
       brush_.layer = view.quanta(layers[n]);
       brush_.material = materials[n];

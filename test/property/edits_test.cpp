@@ -17,14 +17,14 @@ using command::EditTerrain;
 const char* const rough =
     ", noise: {layer: bedrock, low: 30, high: 33, scale: 3}, noise: {layer: sand, low: "
     "1.5, high: 4, scale: 2, seed: 3}, noise: {layer: soil, low: 0.5, high: 2, scale: "
-    "3, seed: 4}";
+    "3, seed: 4}, noise: {layer: water, low: 0.2, high: 1, scale: 3, seed: 5}";
 
 /// Every shape with every merge on every layer.
 std::vector<EditTerrain> all_edits() {
   std::vector<EditTerrain> edits;
   for (const EditTerrain& shape : test::one_of_each_shape())
     for (int merge = 0; merge < static_cast<int>(std::size(brush_merges)); ++merge)
-      for (const char* layer : {"sand", "soil", "bedrock"}) {
+      for (const char* layer : {"sand", "soil", "bedrock", "water"}) {
         EditTerrain e = shape;
         e.merge = static_cast<BrushMerge>(merge);
         e.layer = layer;

@@ -307,7 +307,9 @@ TEST_F(Edits, RefusesShapesThatAreNone) {
   refused(
       circle, [](auto& r) { r.layer = "soil"; }, "soil", "none");
   refused(
-      circle, [](auto& r) { r.layer = "water"; }, "'water'", "sand, bedrock, soil");
+      circle, [](auto& r) { r.layer = "water"; }, "water", "none");
+  refused(
+      circle, [](auto& r) { r.layer = "snow"; }, "'snow'", "sand, bedrock, soil, water");
   refused(
       circle, [](auto& r) { r.conserve = true; }, "ring_width: = 0", "m");
   refused(
