@@ -5,16 +5,17 @@
 ///   sediment] below it   sand, soil where there is no sand, rock where there is neither, go into the water:
 ///              K Δt (C − S), K by material, of rock · (1 − resistance)
 ///   above it   K_d (1 + v) Δt (S − C) falls, as sand; all of it where the ground is dry
-///   transport  S moves by U Δt/l cells, shared bilinearly among four (scattered integers: exact, any order)
+///   transport  with the water: sediment_transport.hpp
 ///
-/// α is the angle of the solid surface, U the water's velocity. Over open edges sediment leaves with the
-/// water. Reads bedrock, soil, sand, water, water_velocity_*, vegetation, erosion_resistance, obstacle;
-/// writes bedrock, soil, sand, suspended_sediment.
+/// α is the angle of the solid surface, U the water's velocity. Reads bedrock, soil, sand, water,
+/// water_velocity_*, vegetation, erosion_resistance, obstacle; writes bedrock, soil, sand,
+/// suspended_sediment.
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/buffer.hpp"
-#include "desert_sim/kernels/carried.hpp"
+#include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/layers.hpp"
+#include "desert_sim/kernels/ledger.hpp"
 #include "desert_sim/kernels/math.hpp"
 
 namespace desert_sim {
@@ -53,18 +54,14 @@ struct Workspace {
   Buffer<float> capacity;  ///< [m of sediment]
 };
 
-/// Carries sediment away, and finds what each cell's water can carry, while the ground is still as it was.
-struct Transport {
-  template <int count>
-  using Parcels = Carried<count>;
+/// What each cell's water can carry, while the ground is still as it was.
+struct Capacity {
   Grid grid;
   HydraulicErosionParameters p;
-  float cells_a_speed, quantum;
+  float quantum;
   const Quanta *bedrock, *soil, *sand, *water;
   const float *velocity_x, *velocity_y, *vegetation;
-  const Quanta* sediment;
   float* capacity;
-  LedgerView ledger;
 
   DESERT_HD float surface(int x, int y) const {
     const int i = sample_index(grid, x, y);
@@ -84,16 +81,9 @@ struct Transport {
            (minimum(0.1f + 0.9f * w, 1.0f) * exp_negative(w / p.deep));
   }
 
-  template <int count>
-  DESERT_HD void prepare(int x, int y, Carried<count>& parcels, int n) const {
+  DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    const float u = velocity_x[i], v = velocity_y[i];
-    capacity[i] = carries(i, sine(x, y), hypotenuse(u, v));
-    parcels.set(n, x, y, subcells(u * cells_a_speed), subcells(v * cells_a_speed), sediment[i]);
-  }
-  template <int count, class Add>
-  DESERT_HD void deliver(int x, int y, const Carried<count>& parcels, int n, const Add& add) const {
-    Landing{grid, Material::sediment, ledger}.deliver(x, y, parcels, n, add);
+    capacity[i] = carries(i, sine(x, y), hypotenuse(velocity_x[i], velocity_y[i]));
   }
 };
 
@@ -103,7 +93,7 @@ struct Exchange {
   HydraulicErosionParameters p;
   float time_step, quantum, quanta_per_metre;
   const float *capacity, *vegetation, *resistance, *obstacle;
-  const Quanta *water, *arrived;
+  const Quanta* water;
   Quanta *bedrock, *soil, *sand, *sediment;
   LedgerView ledger;
 
@@ -127,9 +117,8 @@ struct Exchange {
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    const Quanta carried = arrived[i];
+    const Quanta carried = sediment[i];
     const float more = capacity[i] - carried * quantum;
-    sediment[i] = carried;
     if (value_or_zero(obstacle, i) > 0.0f) return;
     const bool dry = !(water[i] * quantum > wet_depth);
     if (more < 0.0f || dry) {
@@ -146,22 +135,19 @@ struct Exchange {
   }
 };
 
-/// `arrived`: scratch of one value a cell.
 template <class E>
 void step(E& exec, const TerrainView& t, const HydraulicErosionParameters& p, float time_step,
-          LedgerView ledger, Quanta* arrived, Workspace& work) {
+          LedgerView ledger, Workspace& work) {
   Quanta *bedrock = t.quanta(Layer::bedrock), *soil = t.quanta(Layer::soil), *sand = t.quanta(Layer::sand);
   const Quanta* water = t.quanta(Layer::water);
-  Quanta* sediment = t.quanta(Layer::suspended_sediment);
   const float* vegetation = t.real(Layer::vegetation);
-  for_each_cell_adding(exec, t.grid, arrived,
-                       Transport{t.grid, p, time_step / t.grid.cell_size, t.quantum, bedrock, soil, sand,
-                                 water, t.real(Layer::water_velocity_x), t.real(Layer::water_velocity_y),
-                                 vegetation, sediment, work.capacity.data(), ledger});
+  for_each_cell(exec, t.grid,
+                Capacity{t.grid, p, t.quantum, bedrock, soil, sand, water, t.real(Layer::water_velocity_x),
+                         t.real(Layer::water_velocity_y), vegetation, work.capacity.data()});
   for_each_cell(exec, t.grid,
                 Exchange{t.grid, p, time_step, t.quantum, t.quanta_per_metre, work.capacity.data(),
                          vegetation, t.real(Layer::erosion_resistance), t.real(Layer::obstacle), water,
-                         arrived, bedrock, soil, sand, sediment, ledger});
+                         bedrock, soil, sand, t.quanta(Layer::suspended_sediment), ledger});
 }
 
 }  // namespace hydraulic_erosion

@@ -2,6 +2,7 @@
 /// Water flows through virtual pipes between cells. Mei 2007, Nilles 2025 §3.4; physics.md C2.
 ///
 ///   q ← (1 − c Δt) q + Δt A (g (W_i − W_j)/l + a_wave),   A = l · h_face
+///           then q + (c_f Δt/(l h_face²)) |q| q = that: drag of the bed, − c_f |u| u/h (Chézy)
 ///   h_face  water above the higher bed of the two: max(W_i, W_j) − max(H_i, H_j), not below 0
 ///   a_wave = s (1 − e^(−½ 0.01 (w_i + w_j)²)) max(sin 2π t/T, 0) (mean wind · pipe's direction)
 ///   w += Δt (Σ in − Σ out)/l²,   what a cell gives in all held to what it has
@@ -19,99 +20,22 @@
 /// A pass cannot change the fluxes of a neighbour, so what a cell's supply holds back (`held`) is taken off
 /// its fluxes when they are next used.
 ///
-/// Reads bedrock, soil, sand, water, water_flux_*, wind; writes water, water_flux_*, water_velocity_*.
+/// Sediment goes with the water that it is in (sediment_transport.hpp).
+/// Reads bedrock, soil, sand, water, water_flux_*, wind; writes water, water_flux_*, water_velocity_*,
+/// suspended_sediment.
 
 #include "desert_sim/kernels/buffer.hpp"
-#include "desert_sim/kernels/for_each.hpp"
-#include "desert_sim/kernels/layers.hpp"
 #include "desert_sim/kernels/ledger.hpp"
-#include "desert_sim/kernels/math.hpp"
+#include "desert_sim/kernels/sediment_transport.hpp"
 #include "desert_sim/kernels/water_sources.hpp"
 
 namespace desert_sim::virtual_pipes {
 
-constexpr float gravity = 9.81f;  ///< [m/s²]
 /// What is left of the longest stable time: depths may double within a step.
 constexpr float safety = 0.65f;
 
 struct Workspace {
   Buffer<float> held;  ///< share of its outflow that a cell has water for
-};
-
-/// What the laws look at. `inside`: of cells that have all four neighbours beside them, so that rows of cells
-/// can be vectors.
-template <bool inside>
-struct Flow {
-  Grid grid;
-  float time_step, quantum, quanta_per_metre;  ///< of a part of a step [s]
-  float highest_face;                          ///< [quanta]
-  bool sea;
-  Quanta sea_level;
-  const Quanta *bedrock, *soil, *sand;
-  Quanta* water;
-  float *flux_x, *flux_y;  ///< through the east and the north face [m³/s]
-  float* held;
-
-  DESERT_HD Quanta bed(int i) const { return bedrock[i] + value_or_zero(soil, i) + sand[i]; }
-  DESERT_HD int east(int x, int y) const {
-    return inside ? grid.index(x, y) + 1 : neighbour_index(grid, x + 1, y);
-  }
-  DESERT_HD int west(int x, int y) const {
-    return inside ? grid.index(x, y) - 1 : neighbour_index(grid, x - 1, y);
-  }
-  DESERT_HD int north(int x, int y) const {
-    return inside ? grid.index(x, y) + grid.width : neighbour_index(grid, x, y + 1);
-  }
-  DESERT_HD int south(int x, int y) const {
-    return inside ? grid.index(x, y) - grid.width : neighbour_index(grid, x, y - 1);
-  }
-
-  /// Quanta of depth that a flux moves in this time.
-  DESERT_HD float amount(float flux) const {
-    return flux * (time_step * quanta_per_metre / (grid.cell_size * grid.cell_size));
-  }
-  /// What leaves over an open edge [quanta], `through`: what comes through the opposite face towards it
-  /// [m³/s].
-  DESERT_HD float over_edge(int i, float through) const {
-    const Quanta above = sea ? bed(i) + water[i] - sea_level : water[i];
-    const Quanta free = above < water[i] ? above : water[i];
-    if (free <= 0) return 0.0f;
-    const float depth = static_cast<float>(free) * quantum;
-    const float sill = grid.cell_size * depth * sqrtf(gravity * depth);
-    return minimum(amount(maximum(sill, through)), static_cast<float>(free));
-  }
-
-  /// What a cell's faces let out, positive [quanta], before supply holds it back; fluxes through faces.
-  struct Faces {
-    int east, west, north, south;  ///< neighbours, −1: an open edge
-    float to_east, to_west, to_north, to_south;
-  };
-  DESERT_HD Faces faces(int x, int y) const {
-    const int i = grid.index(x, y);
-    Faces f{east(x, y), west(x, y), north(x, y), south(x, y), 0.0f, 0.0f, 0.0f, 0.0f};
-    const float qe = inside || f.east >= 0 ? flux_x[i] : 0.0f,
-                qw = inside || f.west >= 0 ? flux_x[f.west] : 0.0f;
-    const float qn = inside || f.north >= 0 ? flux_y[i] : 0.0f,
-                qs = inside || f.south >= 0 ? flux_y[f.south] : 0.0f;
-    if (inside) {
-      f.to_east = amount(qe);
-      f.to_west = amount(-qw);
-      f.to_north = amount(qn);
-      f.to_south = amount(-qs);
-      return f;
-    }
-    f.to_east = f.east >= 0 ? amount(qe) : over_edge(i, qw);
-    f.to_west = f.west >= 0 ? amount(-qw) : over_edge(i, -qe);
-    f.to_north = f.north >= 0 ? amount(qn) : over_edge(i, qs);
-    f.to_south = f.south >= 0 ? amount(-qs) : over_edge(i, -qn);
-    return f;
-  }
-
-  /// Whole quanta of an amount from a donor that has water for a share of it: to the nearest where it has
-  /// plenty, down where not.
-  DESERT_HD static Quanta whole(float amount, float share) {
-    return static_cast<Quanta>(share < 1.0f ? amount * share : rintf(amount));
-  }
 };
 
 /// The wind's pull on the water.
@@ -125,6 +49,7 @@ struct Accelerate {
   Flow<inside> flow;
   Waves waves;
   float keeps;  ///< 1 − c Δt
+  float drag;   ///< c_f Δt/l [s/m]
   bool first;   ///< part of the step: supply has held nothing back yet
 
   DESERT_HD float through(int i, int j, float flux, const float* wind) const {
@@ -140,7 +65,8 @@ struct Accelerate {
       pull += waves.strength * (1.0f - exp_negative(0.005f * both * both)) * 0.5f * (wind[i] + wind[j]);
     }
     const float left = first ? flux : flux * (flux > 0.0f ? flow.held[i] : flow.held[j]);
-    return keeps * left + flow.time_step * (flow.grid.cell_size * face) * pull;
+    const float free = keeps * left + flow.time_step * (flow.grid.cell_size * face) * pull;
+    return 2.0f * free / (1.0f + sqrtf(1.0f + 4.0f * (drag / (face * face)) * fabsf(free)));
   }
   DESERT_HD void operator()(int x, int y) const {
     const int i = flow.grid.index(x, y), east = flow.east(x, y), north = flow.north(x, y);
@@ -172,17 +98,14 @@ struct Move {
   float *velocity_x, *velocity_y;
   LedgerView ledger;
 
-  /// Net amount through a face that lets `out` out, or −out in.
-  DESERT_HD Quanta through(int i, int j, float out) const {
-    return Flow<inside>::whole(out, out > 0.0f || (!inside && j < 0) ? flow.held[i] : flow.held[j]);
-  }
   DESERT_HD void operator()(int x, int y) const {
     const int i = flow.grid.index(x, y);
     const typename Flow<inside>::Faces f = flow.faces(x, y);
-    const Quanta e = through(i, f.east, f.to_east), w = through(i, f.west, f.to_west);
-    const Quanta n = through(i, f.north, f.to_north), s = through(i, f.south, f.to_south);
+    const Quanta e = flow.through(i, f.east, f.to_east), w = flow.through(i, f.west, f.to_west);
+    const Quanta n = flow.through(i, f.north, f.to_north), s = flow.through(i, f.south, f.to_south);
     const Quanta before = flow.water[i], after = before - ((e + w) + (n + s));
     flow.water[i] = after;
+    if (flow.sediment) flow.sediment[i] = flow.sediment_next[i];
     if (!inside) {
       const Quanta over =
           (f.east < 0 ? e : 0) + (f.west < 0 ? w : 0) + (f.north < 0 ? n : 0) + (f.south < 0 ? s : 0);
@@ -211,18 +134,6 @@ struct Settle {
   }
 };
 
-/// A law for all cells.
-template <template <bool> class Law, class E, class... Rest>
-void for_each_pipe(E& exec, const Flow<true>& flow, const Rest&... rest) {
-  const Flow<false> border{flow.grid,         flow.time_step, flow.quantum,   flow.quanta_per_metre,
-                           flow.highest_face, flow.sea,       flow.sea_level, flow.bedrock,
-                           flow.soil,         flow.sand,      flow.water,     flow.flux_x,
-                           flow.flux_y,       flow.held};
-  for_each_cell(
-      exec, flow.grid,
-      Bordered<Law<true>, Law<false>>{flow.grid, 1, Law<true>{flow, rest...}, Law<false>{border, rest...}});
-}
-
 struct Depth {
   Grid grid;
   const Quanta* water;
@@ -236,10 +147,10 @@ inline int substeps(const WaterParameters& p, const Grid& grid, float time_step,
   return parts < 1 ? 1 : (parts > p.most_substeps ? p.most_substeps : static_cast<int>(parts));
 }
 
-/// `time` [s] that waves are at; reads the greatest depth back.
+/// `time` [s] that waves are at; `carried`: scratch of one value a cell. Reads the greatest depth back.
 template <class E>
 void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_step, double time,
-          Quanta sea_level, LedgerView ledger, Workspace& work) {
+          Quanta sea_level, LedgerView ledger, Quanta* carried, Workspace& work) {
   const double deepest =
       static_cast<double>(max_cells(exec, t.grid, Depth{t.grid, t.quanta(Layer::water)})) * t.quantum;
   const int parts = substeps(p, t.grid, time_step, deepest);
@@ -260,15 +171,18 @@ void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_st
                         t.quanta(Layer::water),
                         t.real(Layer::water_flux_x),
                         t.real(Layer::water_flux_y),
-                        work.held.data()};
+                        work.held.data(),
+                        t.quanta(Layer::suspended_sediment),
+                        carried};
   float *velocity_x = t.real(Layer::water_velocity_x), *velocity_y = t.real(Layer::water_velocity_y);
   const float keeps = maximum(1.0f - p.friction * part, 0.0f);
   for (int n = 0; n < parts; ++n) {
     const double phase = 6.283185307179586 * (time + (n + 0.5) * part) / p.wave_period;
     const float swell = p.wave_strength * static_cast<float>(std::fmax(std::sin(phase), 0.0));
     const Waves waves{swell, t.real(Layer::wind_x), t.real(Layer::wind_y)};
-    for_each_pipe<Accelerate>(exec, flow, waves, keeps, n == 0);
+    for_each_pipe<Accelerate>(exec, flow, waves, keeps, p.drag * part / l, n == 0);
     for_each_pipe<Hold>(exec, flow);
+    if (flow.sediment) for_each_pipe<CarrySediment>(exec, flow, ledger);
     for_each_pipe<Move>(exec, flow, velocity_x, velocity_y, ledger);
   }
   for_each_pipe<Settle>(exec, flow);

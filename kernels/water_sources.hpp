@@ -42,6 +42,7 @@ constexpr const char* seas[] = {"none", "border", "everywhere"};
 struct WaterParameters {
   bool enabled = false;
   float friction = 0.1f;
+  float drag = 0.0f;
   int most_substeps = 64;
   float evaporation = 0.01f;
   Sea sea = Sea::none;
@@ -56,7 +57,11 @@ constexpr auto parameter_table(const WaterParameters*) {
       parameter("enabled", &P::enabled,
                 "Whether there is water on the ground; rain, springs, hydraulic_erosion and moisture bring "
                 "it too."),
-      parameter("friction", &P::friction, 0, 100, "1/s", "How fast flow slows down by itself (c)."),
+      parameter("friction", &P::friction, 0, 100, "1/s",
+                "How fast flow slows down by itself, whatever its depth (c)."),
+      parameter("drag", &P::drag, 0, 10, "1",
+                "Drag of the bed, which holds shallow water most (c_f): 0.002 of mud, 0.01 of sand, 0.05 of "
+                "stones; 0: none."),
       parameter("most_substeps", &P::most_substeps, 1, 10000, "1",
                 "Most parts that a step is divided into; waves on water that would need more travel slower."),
       parameter("evaporation", &P::evaporation, 0, 10, "1/s",

@@ -8,6 +8,9 @@
 /// the same share, times `draw` and how much of its cell the plant covers, leaves the moisture of its own
 /// cell, in whole quanta, booked as out. Where the plants of a cell want more than there is, each gets in
 /// proportion to its wish, rounded down: integers, whose order cannot matter.
+///
+/// Plants live faster than in nature, and drink as much faster: at a `draw` of 1/100 a closed cover of bushes
+/// still takes what rain of some 2 m an hour brings; at 1/10 no rain of the climates kept the ground moist.
 /// Reads moisture, soil, sand; writes moisture.
 
 #include "desert_sim/kernels/for_each.hpp"

@@ -86,7 +86,7 @@ struct VegetationParameters {
   int max_plants = 0;
   float light_deg = 90.0f;
   float light_decay = 0.3f;
-  float draw = 0.1f;
+  float draw = 0.01f;
   float litter = 10.0f;
   float humus_limit = 1.0f;
   bool canopy_shadow = true;

@@ -90,16 +90,16 @@ void Simulation::run_water(E& exec) {
   });
 
   // Water runs from high to low, and waves over it (C2).
-  run(exec, "virtual_pipes", {Layer::water, Layer::water_flux_x, Layer::water_flux_y},
-      [&] { virtual_pipes::step(exec, view, s.water, dt, time(), sea_level(), ledger(), pipes_work_); });
+  run(exec, "virtual_pipes",
+      {Layer::water, Layer::water_flux_x, Layer::water_flux_y, Layer::suspended_sediment}, [&] {
+        virtual_pipes::step(exec, view, s.water, dt, time(), sea_level(), ledger(), landed_.data(),
+                            pipes_work_);
+      });
 
-  // It takes ground with it, and lets it fall where it slows down (C3).
+  // It takes ground up, and lets it fall where it slows down (C3).
   if (s.hydraulic_erosion.enabled)
     run(exec, "hydraulic_erosion", {Layer::bedrock, Layer::soil, Layer::sand, Layer::suspended_sediment},
-        [&] {
-          hydraulic_erosion::step(exec, view, s.hydraulic_erosion, dt, ledger(), landed_.data(),
-                                  erosion_work_);
-        });
+        [&] { hydraulic_erosion::step(exec, view, s.hydraulic_erosion, dt, ledger(), erosion_work_); });
 
   // It seeps into the ground, spreads there, and dries, as what stands on the ground does (C4).
   run(exec, "moisture", {Layer::water, Layer::moisture}, [&] {

@@ -149,7 +149,7 @@ void BenchTerrain::flow(const WaterParameters& p, float time_step, double time, 
     terrain.require(layer);
   virtual_pipes::Workspace work{Buffer<float>(exec(), cells())};
   with_backend(exec(), [&](auto& e) {
-    virtual_pipes::step(e, terrain.view(), p, time_step, time, sea_level, ledger(), work);
+    virtual_pipes::step(e, terrain.view(), p, time_step, time, sea_level, ledger(), landed.data(), work);
   });
   exec().synchronise();
 }
@@ -159,9 +159,8 @@ void BenchTerrain::erode(const HydraulicErosionParameters& p, float time_step) {
        {Layer::water, Layer::suspended_sediment, Layer::water_velocity_x, Layer::water_velocity_y})
     terrain.require(layer);
   hydraulic_erosion::Workspace work{Buffer<float>(exec(), cells())};
-  with_backend(exec(), [&](auto& e) {
-    hydraulic_erosion::step(e, terrain.view(), p, time_step, ledger(), landed.data(), work);
-  });
+  with_backend(exec(),
+               [&](auto& e) { hydraulic_erosion::step(e, terrain.view(), p, time_step, ledger(), work); });
   exec().synchronise();
 }
 

@@ -81,7 +81,7 @@ std::vector<Case> process_cases(bool transforms) {
   const std::string soil = "  - noise: {layer: soil, low: 0, high: 3, scale: 8, threshold: 0.3, seed: 3}\n";
   add("springs on bare rock", terrain + wind + "hydraulic_erosion: {enabled: true}\nwater: {" + springs +
                                   "}\nrun: {check_every: 1}\n");
-  add("rivers", terrain + soil + wind + wet + "water: {" + springs + "}\n");
+  add("rivers", terrain + soil + wind + wet + "water: {drag: 0.02, " + springs + "}\n");
   add("sea, waves",
       terrain + soil + obstacles + wind + wet +
           "water: {enabled: true, sea: border, sea_level: 2.5, wave_strength: 0.05, wave_period: "
