@@ -30,7 +30,7 @@ constexpr auto parameter_table(const Spring*) {
       parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
       parameter("y", &P::y, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
       parameter("radius", &P::radius, 0, 1e5, "m",
-                "Cells with their centre in it share the discharge; at least one does."),
+                "Cells of the terrain with their centre in it share the discharge; at least one does."),
       parameter("discharge", &P::discharge, 0, 1e5, "m^3/s", "Water that comes out a second."));
 }
 static_assert(table_is_complete<Spring>());
@@ -107,20 +107,26 @@ void pour(E& exec, const TerrainView& t, const Spring& spring, double x, double 
   const Grid& g = t.grid;
   const double l = g.cell_size;
   const double column = x / l, row = y / l, reach = spring.radius / l;
-  // A disc that has no cell's centre in it is the cell that it lies in; of a torus it is there once.
+  // A disc that has no cell's centre in it is the cell that it lies in; of a torus each cell is there once.
   const bool point = reach < 0.7072;
-  const auto first = [&](double at) { return static_cast<int>(std::floor(point ? at : at - reach)); };
-  const auto count = [&](double at, int cells) {
-    const int all = static_cast<int>(std::floor(point ? at : at + reach)) - first(at) + 1;
-    return all < cells ? all : cells;
+  struct Cells {
+    int first, count;
   };
-  const int x0 = first(column), y0 = first(row);
-  const Grid box{count(column, g.width), count(row, g.height), g.cell_size};
+  const auto cells_of = [&](double at, int n, bool periodic) -> Cells {
+    int first = static_cast<int>(std::floor(point ? at : at - reach)),
+        last = static_cast<int>(std::floor(point ? at : at + reach));
+    if (periodic && last - first >= n) return {static_cast<int>(std::floor(at)) - n / 2, n};
+    if (!periodic) first = first > 0 ? first : 0, last = last < n ? last : n - 1;
+    return {first, last - first + 1};
+  };
+  const Cells columns = cells_of(column, g.width, g.periodic_x), rows = cells_of(row, g.height, g.periodic_y);
+  if (columns.count <= 0 || rows.count <= 0) return;  // it lies off the terrain
+  const Grid box{columns.count, rows.count, g.cell_size};
   Pour law{g,
-           x0,
-           y0,
-           static_cast<float>(column - x0),
-           static_cast<float>(row - y0),
+           columns.first,
+           rows.first,
+           static_cast<float>(column - columns.first),
+           static_cast<float>(row - rows.first),
            static_cast<float>(point ? 2.0 : reach),
            0,
            t.quanta(Layer::water),
@@ -128,6 +134,7 @@ void pour(E& exec, const TerrainView& t, const Spring& spring, double x, double 
   long long cells = 0;
   for (int cell_y = 0; cell_y < box.height; ++cell_y)
     for (int cell_x = 0; cell_x < box.width; ++cell_x) cells += law.wet(cell_x, cell_y);
+  if (cells == 0) return;
   const double depth =
       static_cast<double>(spring.discharge) * time_step / (l * l * static_cast<double>(cells));
   law.amount = rain::of_step(depth * t.quanta_per_metre, tick);

@@ -110,6 +110,18 @@ TEST_P(WaterLaws, SpringsGiveTheirDischargeOnADiscAroundTheTorusToo) {
   EXPECT_EQ(off.total(Layer::water), 0);  // beyond an open edge
 }
 
+TEST_P(WaterLaws, SpringsWiderThanTheTerrainOrOverItsEdgeGiveAllTheyHave) {
+  for (const bool periodic : {true, false})
+    for (const auto& [width, height] : {std::pair{1, 1}, {1, 20}, {20, 3}, {9, 8}})
+      for (const float radius : {0.8f, 4.0f, 50.0f, 1e5f}) {
+        test::BenchTerrain t(exec(), width, height, 1, periodic);
+        pour(t, {0.5f, 0.5f, radius, 2.0f});
+        const double poured = static_cast<double>(t.total(Layer::water)) * quantum;
+        EXPECT_NEAR(poured, 2, 1e-4) << width << " x " << height << ", radius " << radius << ", periodic "
+                                     << periodic;
+      }
+}
+
 TEST_P(WaterLaws, TheSeaFillsWhatLiesBelowIt) {
   for (const Sea sea : {Sea::border, Sea::everywhere}) {
     test::BenchTerrain t(exec(), 9, 9, 1, false);
