@@ -37,7 +37,7 @@ TEST(Beach, WavesBringSandAshoreAndTheWindTakesItInland) {
     EXPECT_GT(now, before + 3) << "after " << look + 1 << " times 100 s";
     before = now;
   }
-  const double without = ashore(still.run(402)).volume;
+  const double without = ashore(still.run(202)).volume;
   EXPECT_LT(without, 1) << "no waves, no sand";
   const Ashore beach = ashore(scene.run(298));  // the waves stop at 600 s
   EXPECT_GE(beach.volume, before);
@@ -50,7 +50,7 @@ TEST(Beach, WavesBringSandAshoreAndTheWindTakesItInland) {
 
 TEST(ShadedHill, EachSpeciesLivesInItsLight) {
   Running scene(shipped("shaded_hill"));
-  scene.run(150);
+  scene.run(100);
   const Field top = scene.field(Layer::elevation), species = scene.field(Layer::plants);
   double flank = 0, rest = 0, shade_on_flank = 0, shade = 0, sun_on_rest = 0, sun = 0;
   for (int y = 1; y + 1 < top.height; ++y)
@@ -79,12 +79,12 @@ TEST(Climates, KeepTheirPlants) {
   const auto mature = [](const std::string& climate) {
     Running scene(parse_scenario_text(
         "climate: " + climate +
-            "\ngrid: {width: 96, height: 96, cell_size: 1, boundary: periodic}\n"
+            "\ngrid: {width: 64, height: 64, cell_size: 1, boundary: periodic}\n"
             "terrain:\n  - noise: {layer: bedrock, low: 0, high: 6, scale: 60}\n"
             "  - uniform: {layer: soil, value: 1.5}\n  - noise: {layer: sand, low: 0.2, high: 0.6, seed: 2}\n"
             "wind: {speed: 3, direction_deg: 20}\n",
         climate));
-    scene.run(400);
+    scene.run(250);
     return scene.simulation().plant_counts();
   };
   for (const std::string climate : {"arid", "savanna", "wetland", "forest"})
