@@ -190,22 +190,38 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
 
 /// Rounds of passes over what is not yet at rest, between two looks at what they left.
 constexpr int rounds_a_look = 2;
+static_assert(rounds_a_look % 2 == 0, "tiles of the last round and of the next change places with each");
 /// Slides are handed on further (avalanching_units.hpp) from round to round, by so much, up to ½: the fewer
 /// there are left, the sooner they come to their end. With ½ from the start hardly a slope stayed near its
 /// angle of repose.
 constexpr float onward_a_round = 0.1f;
 
-/// Finds what the passes from `pass` on are to go over; the cells that are too steep are counted in
-/// counts[round].
+/// The tiles of the round whose passes begin with `pass`.
+inline RoundOfTiles tiles_of_round(const OpenTiles& open, const Grid& grid, std::uint64_t turn, int pass,
+                                   int round) {
+  RoundOfTiles tiles{grid, {}, open.of_round(round), open.most_tiles};
+  for (int n = 0; n < passes_a_round; ++n) tiles.offsets[n] = seam_offset(turn, pass + n);
+  return tiles;
+}
+
+/// Finds what the passes from `pass` on, of the next round, are to go over; the cells that are too steep are
+/// counted in counts[round]. Everywhere, or (`after_round`) around what the round has passed over.
 template <class E>
 void find_unsettled(E& exec, const LevelView& fine, float tolerance, std::uint64_t turn, int pass, int round,
-                    const OpenTiles& open) {
-  OpenNearUnsettled law{
-      {fine}, tolerance, {}, open.flags.data(), open.most_tiles, open.counts.data() + round};
-  for (int n = 0; n < passes_a_round; ++n) law.offsets[n] = seam_offset(turn, pass + n);
-  exec.set_zero(law.flags, open.flags.bytes());
-  exec.set_zero(law.count, sizeof(Quanta));
-  for_each_cell(exec, fine.grid, law);
+                    bool after_round, const OpenTiles& open) {
+  const RoundOfTiles next = tiles_of_round(open, fine.grid, turn, pass, round + 1);
+  Quanta *count = open.counts.data() + round, *ask = after_round ? open.ask.data() : nullptr;
+  if (after_round) {
+    const RoundOfTiles passed = tiles_of_round(open, fine.grid, turn, pass - passes_a_round, round);
+    exec.set_zero(ask, open.ask.bytes());
+    for_each_cell(exec, Grid{open.most_tiles, passes_a_round}, AskAround{passed, ask});
+  }
+  exec.set_zero(next.flags, open.flags.bytes() / 2);
+  exec.set_zero(count, sizeof(Quanta));
+  const OpenNearUnsettled<true> law{{fine, tolerance}, ask, next, count};
+  const OpenNearUnsettled<false> border{{fine, tolerance}, ask, next, count};
+  for_each_cell(exec, fine.grid,
+                Bordered<OpenNearUnsettled<true>, OpenNearUnsettled<false>>{fine.grid, 1, law, border});
 }
 
 /// A cycle, and then rounds of passes over those tiles alone that are not at rest: what is left are trains of
@@ -227,21 +243,15 @@ void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std:
       cycle(exec, fine, p, plan, turn++, work);
       work.iterations += (plan.before + plan.after) * plan.sweeps;
       onward = 0.0f;
-      find_unsettled(exec, fine, p.tolerance, turn, pass, 0, open);
+      find_unsettled(exec, fine, p.tolerance, turn, pass, 0, false, open);
     }
     for (int round = 1; round <= rounds_a_look; ++round) {
       onward = minimum(onward + onward_a_round, 0.5f);
+      const RoundOfTiles tiles = tiles_of_round(open, fine.grid, turn, pass, round);
       for (int n = 0; n < passes_a_round; ++n, ++pass)
-        relax_tiles(exec, RelaxTile{{fine.grid, seam_offset(turn, pass)},
-                                    fine,
-                                    Prolong{},
-                                    p.transfer,
-                                    p.rest,
-                                    most_sweeps,
-                                    0.0f,
-                                    onward,
-                                    open.of_pass(n)});
-      find_unsettled(exec, fine, p.tolerance, turn, pass, round, open);
+        relax_tiles(exec, RelaxTile{tiles.of(n), fine, Prolong{}, p.transfer, p.rest, most_sweeps, 0.0f,
+                                    onward, tiles.of_pass(n)});
+      find_unsettled(exec, fine, p.tolerance, turn, pass, round, true, open);
     }
     open.counts.download(0, rounds_a_look + 1, counts);
     if (!much) counts[0] = left;
