@@ -26,7 +26,7 @@ class Maps(MapTest):
         self.expect_header(grid_map.info.header)
         self.assertEqual(grid_map.basic_layers, ["elevation"])
         self.assertEqual((grid_map.info.resolution, grid_map.info.length_x, grid_map.info.length_y), (2, 128, 96))
-        self.assertEqual(len(grid_map.layers), 18)
+        self.assertEqual(len(grid_map.layers), 26)
         layers = {name: cells(grid_map, name) for name in grid_map.layers}
         for x in range(64):
             for y in range(48):
@@ -34,7 +34,9 @@ class Maps(MapTest):
                 self.assertAlmostEqual(layers["elevation"][at], elevation(x, y), 4, (x, y))
                 self.assertAlmostEqual(layers["sand_depth"][at], elevation(x, y) - 1, 4)
                 self.assertAlmostEqual(layers["bedrock"][at], 1, 4)
-                for absent in ("water_depth", "soil_depth", "vegetation", "moisture", "obstacle"):
+                self.assertEqual(layers["water_surface"][at], layers["elevation"][at], "dry")
+                for absent in ("water_depth", "soil_depth", "vegetation", "moisture", "obstacle", "plants", "canopy_height",
+                               "illumination", "humus", "suspended_sediment", "water_velocity_x", "water_velocity_y"):
                     self.assertEqual(layers[absent][at], 0, absent)
                 self.assertGreater(layers["wind_x"][at], 1)
         self.check_derived(layers)
@@ -187,9 +189,10 @@ class Maps(MapTest):
         self.assertAlmostEqual(submap.origin.position.y + submap.height, 20.2, delta=1)
         self.assertEqual(self.submap(100, 20, 1e-3, 1e-3).map.width, 1)
         self.assertEqual([layer.name for layer in self.submap(100, 20, 4, 4, []).map.layers],
-                         ["elevation", "bedrock", "sand_depth", "water_depth", "soil_depth", "vegetation", "moisture",
-                          "obstacle", "wind_x", "wind_y", "wind_shadow", "slope", "roughness", "step_height",
-                          "traversability", "normal_x", "normal_y", "normal_z"], "all")
+                         ["elevation", "bedrock", "water_surface", "sand_depth", "water_depth", "soil_depth", "vegetation",
+                          "plants", "canopy_height", "illumination", "humus", "moisture", "suspended_sediment",
+                          "water_velocity_x", "water_velocity_y", "obstacle", "wind_x", "wind_y", "wind_shadow", "slope",
+                          "roughness", "step_height", "traversability", "normal_x", "normal_y", "normal_z"], "all")
 
     def test_get_submap_refuses(self):
         nan, inf = float("nan"), float("inf")
