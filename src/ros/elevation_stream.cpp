@@ -15,17 +15,17 @@ void ElevationStream::configure(double threshold, int tile) {
   tile_ = tile;
 }
 
-void ElevationStream::ask_for_update(HeldQuery& held) {
+void ElevationStream::ask_for_update(StateQuery& held) {
   held.changes = true;
   held.threshold = threshold_;
   held.tile = tile_;
   starts_without_ = keyframes_.getNumSubscribers() == 0;
-  held.then = starts_without_ ? HeldQuery::Then::present_if_none : HeldQuery::Then::as_before;
+  held.then = starts_without_ ? StateQuery::Then::present_if_none : StateQuery::Then::as_before;
 }
 
-void ElevationStream::ask_for_keyframe(HeldQuery& held) {
+void ElevationStream::ask_for_keyframe(StateQuery& held) {
   starts_without_ = false;
-  held.then = updates_.getNumSubscribers() > 0 ? HeldQuery::Then::present : HeldQuery::Then::none;
+  held.then = updates_.getNumSubscribers() > 0 ? StateQuery::Then::present : StateQuery::Then::none;
 }
 
 void ElevationStream::start_keyframe() {

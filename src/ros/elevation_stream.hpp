@@ -20,8 +20,8 @@ class ElevationStream {
   void configure(double threshold, int tile);
 
   // What has to be asked for; where both are due, the update first.
-  void ask_for_update(HeldQuery& held);
-  void ask_for_keyframe(HeldQuery& held);
+  void ask_for_update(StateQuery& held);
+  void ask_for_keyframe(StateQuery& held);
 
   void publish_keyframe(const TerrainState& state);
   /// Starts a keyframe that nobody gets if there is no subscriber to keyframes and none has been started for

@@ -111,8 +111,8 @@ void Topics::add_costmap() {
       advertise_named<map_msgs::OccupancyGridUpdate>("costmap_updates", 10, updates, keyframes);
   costmap_ = std::make_unique<CostmapStream>(keyframes.publisher, updates.publisher, frame_);
   keyframes.covered = [&updates, &keyframes] { return keyframes.names.are_among(updates.names); };
-  updates.held = [this](HeldQuery& held) { costmap_->ask_for_update(held.costs); };
-  keyframes.held = [](HeldQuery& held) { held.costs.whole = true; };
+  updates.besides = [this](StateQuery& held) { costmap_->ask_for_update(held.costs); };
+  keyframes.besides = [](StateQuery& held) { held.costs.whole = true; };
   updates.publish = [this](const TerrainState& state) { return costmap_->publish_update(state); };
   keyframes.publish = [this](const TerrainState& state) {
     costmap_->publish_keyframe(state);

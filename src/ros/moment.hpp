@@ -22,14 +22,16 @@ struct Moment {
   std::uint64_t terrain = 0;  ///< grows when the terrain is replaced: by a reset or a checkpoint
 };
 
-/// What is asked about what others hold: the elevation, with what they hold afterwards, and costs.
-struct HeldQuery {
+/// What is asked for besides layers: what others lack of the elevation, with what they hold afterwards, and
+/// of costs; and plants.
+struct StateQuery {
   enum class Then { as_before, present, present_if_none, none };
   bool changes = false;  ///< whether the cells are wanted that differ by more than the threshold
   double threshold = 0;  ///< [m]
   int tile = 1;          ///< [cells]
   Then then = Then::as_before;
   CostQuery costs;
+  bool plants = false;  ///< whether they are wanted one by one
 };
 
 /// Layers of the terrain at one moment; never changes once it is made.
@@ -39,12 +41,7 @@ struct TerrainState {
   std::shared_ptr<const ElevationChanges> changes;  ///< if they were asked for; null if nothing was held
   std::shared_ptr<const CostChanges> cost_update;   ///< likewise; then there is the whole map
   std::shared_ptr<const CostChanges> whole_costs;
-};
-
-/// Plants at one moment.
-struct PlantsState {
-  Moment moment;
-  std::shared_ptr<const PlantList> list;
+  std::shared_ptr<const PlantList> plants;  ///< if they were asked for
 };
 
 /// What save_terrain() takes; the snapshot has the elevation too.

@@ -81,7 +81,7 @@ struct Shape {
   void draw_simply(Mesh mesh) const { mesh.cone(4, x, y, foot, 0.8 * radius, top); }
 };
 
-Marker base(const PlantsState& state, const std::string& frame, const std::string& species, int id) {
+Marker base(const TerrainState& state, const std::string& frame, const std::string& species, int id) {
   Marker m;
   m.header = header_of(state.moment, frame);
   m.ns = species;
@@ -106,8 +106,8 @@ std_msgs::ColorRGBA crowns(const Species& species) {
 
 }  // namespace
 
-PlantsPtr plants_message(const PlantsState& state, const std::string& frame, int count) {
-  const PlantList& list = *state.list;
+PlantsPtr plants_message(const TerrainState& state, const std::string& frame, int count) {
+  const PlantList& list = *state.plants;
   const auto message = boost::make_shared<Plants>();
   message->header = header_of(state.moment, frame);
   message->step = list.step;
@@ -142,8 +142,8 @@ PlantsPtr plants_message(const PlantsState& state, const std::string& frame, int
   return message;
 }
 
-visualization_msgs::MarkerArrayPtr PlantMarkers::markers(const PlantsState& state, int count) {
-  const PlantList& list = *state.list;
+visualization_msgs::MarkerArrayPtr PlantMarkers::markers(const TerrainState& state, int count) {
+  const PlantList& list = *state.plants;
   auto array = boost::make_shared<visualization_msgs::MarkerArray>();
   std::vector<std::string> names;
   for (const Species& species : list.species) names.push_back(species.name);

@@ -12,7 +12,7 @@
 namespace desert_sim {
 
 /// At most `count` plants, the widest; in the order of the list.
-PlantsPtr plants_message(const PlantsState& state, const std::string& frame, int count);
+PlantsPtr plants_message(const TerrainState& state, const std::string& frame, int count);
 
 /// Plants as triangles, a marker a species and level of detail, in the species' namespace: id 0 has the
 /// widest tenth of `count` plants, with trunk and crown of six sides, id 1 the others of the `count` widest,
@@ -20,7 +20,7 @@ PlantsPtr plants_message(const PlantsState& state, const std::string& frame, int
 class PlantMarkers {
  public:
   explicit PlantMarkers(std::string frame) : frame_(std::move(frame)) {}
-  visualization_msgs::MarkerArrayPtr markers(const PlantsState& state, int count);
+  visualization_msgs::MarkerArrayPtr markers(const TerrainState& state, int count);
 
  private:
   std::string frame_;

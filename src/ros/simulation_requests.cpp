@@ -85,7 +85,7 @@ std::future<void> SimulationThread::set_step_rate(double rate) {
 }
 
 SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<Layer>& layers,
-                                                              const RowBand& band, const HeldQuery& held) {
+                                                              const RowBand& band, const StateQuery& held) {
   settle();  // the stamp is of the state that is reached, not of a step that is under way
   std::vector<Layer> in_use;
   for (Layer layer : layers) {
@@ -95,41 +95,26 @@ SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<
   snapshot_requested_ = steady_now();
   ++snapshots_;
   Simulation& s = session_->simulation();
-  StateUnderWay state{moment(), s.begin_snapshot(in_use, band), {}, s.take_costs(held.costs)};
+  StateUnderWay state{moment(), s.begin_snapshot(in_use, band), {}, s.take_costs(held.costs), {}};
+  if (held.plants) state.plants = s.begin_plants();
   if (held.costs.update || held.costs.whole) costs_requested_ = steady_now();
   if (held.changes && s.holds_elevation())
     state.changes = s.take_elevation_changes(held.threshold, held.tile);
   const bool none = !s.holds_elevation();
-  if (held.then == HeldQuery::Then::present || (held.then == HeldQuery::Then::present_if_none && none))
+  if (held.then == StateQuery::Then::present || (held.then == StateQuery::Then::present_if_none && none))
     s.hold_elevation();
-  if (held.then == HeldQuery::Then::none) s.forget_elevation();
+  if (held.then == StateQuery::Then::none) s.forget_elevation();
   return state;
 }
 
 TerrainState SimulationThread::StateUnderWay::get() const {
-  return {moment, snapshot.get(), changes.get(), costs.update.get(), costs.whole.get()};
+  return {moment, snapshot.get(), changes.get(), costs.update.get(), costs.whole.get(), plants.get()};
 }
 
 std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band,
-                                                    const HeldQuery& held) {
+                                                    const StateQuery& held) {
   return wait_there<TerrainState>(ask<StateUnderWay>([=] { return begin_state(layers, band, held); }),
                                   [](const StateUnderWay& state) { return state.get(); });
-}
-
-std::future<PlantsState> SimulationThread::plants() {
-  struct UnderWay {
-    Moment moment;
-    PendingPlants list;
-  };
-  return wait_there<PlantsState>(ask<UnderWay>([this] {
-                                   settle();
-                                   snapshot_requested_ = steady_now();
-                                   ++snapshots_;
-                                   return UnderWay{moment(), session_->simulation().begin_plants()};
-                                 }),
-                                 [](const UnderWay& u) {
-                                   return PlantsState{u.moment, u.list.get()};
-                                 });
 }
 
 std::future<TerrainToSave> SimulationThread::terrain_to_save() {

@@ -55,9 +55,7 @@ class SimulationThread {
   std::future<void> set_step_rate(double rate);
   /// The simulation goes on while the copy is under way: who calls get() waits for the copy there.
   std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {},
-                                    const HeldQuery& held = {});
-  /// Likewise.
-  std::future<PlantsState> plants();
+                                    const StateQuery& held = {});
   std::future<TerrainToSave> terrain_to_save();
   /// With the parameters and the wind regime of now.
   std::future<Scenario> scenario();
@@ -105,9 +103,10 @@ class SimulationThread {
     PendingSnapshot snapshot;
     Pending<ElevationChanges> changes;
     TakenCosts costs;
+    PendingPlants plants;
     TerrainState get() const;
   };
-  StateUnderWay begin_state(const std::vector<Layer>& layers, const RowBand& band, const HeldQuery& held);
+  StateUnderWay begin_state(const std::vector<Layer>& layers, const RowBand& band, const StateQuery& held);
   Moment moment();
   Reached reached(bool with_hash);
   std::uint64_t state_hash();

@@ -47,8 +47,8 @@ void Topics::add_elevation() {
   // roscpp has one connection a topic and process: those who share one are no new subscribers, and ask.
   keyframe_requests_ = node_.subscribe<std_msgs::Empty>(
       "request_keyframe", 1, [this, &keyframes](const std_msgs::Empty::ConstPtr&) { want(keyframes); });
-  updates.held = [this](HeldQuery& held) { elevation_->ask_for_update(held); };
-  keyframes.held = [this](HeldQuery& held) { elevation_->ask_for_keyframe(held); };
+  updates.besides = [this](StateQuery& held) { elevation_->ask_for_update(held); };
+  keyframes.besides = [this](StateQuery& held) { elevation_->ask_for_keyframe(held); };
   updates.publish = [this](const TerrainState& state) { return elevation_->publish_update(state); };
   keyframes.publish = [this](const TerrainState& state) {
     elevation_->publish_keyframe(state);
@@ -87,21 +87,21 @@ void Topics::add_points() {
   };
 }
 
-/// Plants are no layers: these topics ask for them themselves, after what else is due.
 void Topics::add_plants() {
+  const auto ask = [](StateQuery& besides) { besides.plants = true; };
   Topic& plants = add(parameters_.topics.plants_rate, std::vector<Layer>());
   plants.publisher = advertise_terrain<Plants>("plants", 1, plants);
-  plants.publish = [this, &plants](const TerrainState&) {
-    plants.publisher.publish(
-        plants_message(simulation_.plants().get(), frame_, parameters_.topics.plants_count));
+  plants.besides = ask;
+  plants.publish = [this, &plants](const TerrainState& state) {
+    plants.publisher.publish(plants_message(state, frame_, parameters_.topics.plants_count));
     return true;
   };
   Topic& markers = add(parameters_.topics.plant_markers_rate, std::vector<Layer>());
   plant_markers_ = std::make_unique<PlantMarkers>(frame_);
   markers.publisher = advertise_terrain<visualization_msgs::MarkerArray>("plant_markers", 1, markers);
-  markers.publish = [this, &markers](const TerrainState&) {
-    markers.publisher.publish(
-        plant_markers_->markers(simulation_.plants().get(), parameters_.topics.plant_markers_count));
+  markers.besides = ask;
+  markers.publish = [this, &markers](const TerrainState& state) {
+    markers.publisher.publish(plant_markers_->markers(state, parameters_.topics.plant_markers_count));
     return true;
   };
 }

@@ -40,7 +40,7 @@ struct Topic {
   image_transport::Publisher image;  ///< in the publisher's place, where it is set
   const double* rate = nullptr;      ///< [Hz]; 0: none
   std::function<std::vector<Layer>()> layers;
-  std::function<void(HeldQuery&)> held;  ///< if set: says what it wants to know of what subscribers hold
+  std::function<void(StateQuery&)> besides;          ///< if set: says what it wants besides layers
   std::function<bool(const TerrainState&)> publish;  ///< whether a message went out
   bool follows = false;           ///< is published at its rate even while the terrain stays as it is
   std::function<bool()> ready;    ///< if set: whether there is something to publish

@@ -240,9 +240,9 @@ std::vector<Topic*> Topics::ready_ones(const std::vector<Topic*>& due) {
 
 void Topics::publish_terrain(const std::vector<Topic*>& due) {
   std::vector<Layer> layers;
-  HeldQuery held;
+  StateQuery held;
   for (const Topic* topic : due) {
-    if (topic->held) topic->held(held);
+    if (topic->besides) topic->besides(held);
     for (Layer layer : topic->layers())
       if (std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
   }

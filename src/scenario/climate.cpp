@@ -1,23 +1,16 @@
 #include "desert_sim/scenario/climate.hpp"
 
-#include <algorithm>
-#include <utility>
-
+#include "desert_sim/scenario/presets.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 
 namespace {
 
-constexpr std::pair<const char*, const char*> presets[] = {
+constexpr Presets::Row preset_rows[] = {
 #include "desert_sim/climates_presets.inc"
 };
-
-const char* text_of(const std::string& name) {
-  for (const auto& [known, text] : presets)
-    if (name == known) return text;
-  return nullptr;
-}
+constexpr Presets presets(preset_rows);
 
 /// Maps are merged; anything else that is there stays.
 void fill_in(YAML::Node scenario, const YAML::Node& climate) {
@@ -32,26 +25,19 @@ void fill_in(YAML::Node scenario, const YAML::Node& climate) {
 
 }  // namespace
 
-std::vector<std::string> climates() {
-  std::vector<std::string> names;
-  for (const auto& preset : presets) names.push_back(preset.first);
-  std::sort(names.begin(), names.end());
-  return names;
-}
+std::vector<std::string> climates() { return presets.names(); }
 
 std::string climate_doc(const std::string& name) {
-  const std::string text = text_of(name);
+  const std::string text = presets.text(name);
   return text.substr(2, text.find('\n') - 2);  // without "# "
 }
 
 YAML::Node with_climate(const YAML::Node& root, Faults& faults) {
   const YAML::Node given = root["climate"];
   if (!given.IsDefined() || given.IsNull()) return root;
-  const char* const text = given.IsScalar() ? text_of(given.Scalar()) : nullptr;
+  const char* const text = given.IsScalar() ? presets.text(given.Scalar()) : nullptr;
   if (!text) {
-    std::string known;
-    for (const std::string& name : climates()) known += (known.empty() ? "" : ", ") + name;
-    faults.add("climate", "'" + yaml::shown(given) + "' is not one of: " + known);
+    faults.add("climate", "'" + yaml::shown(given) + "' is not one of: " + presets.listed());
     return root;
   }
   YAML::Node whole = YAML::Clone(root);

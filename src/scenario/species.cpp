@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <utility>
 
+#include "desert_sim/scenario/presets.hpp"
 #include "desert_sim/scenario/scenario.hpp"
 #include "desert_sim/scenario/yaml_parameters.hpp"
 
@@ -12,31 +12,20 @@ namespace desert_sim {
 
 namespace {
 
-constexpr std::pair<const char*, const char*> presets[] = {
+constexpr Presets::Row preset_rows[] = {
 #include "desert_sim/species_presets.inc"
 };
-
-const char* preset_text(const std::string& name) {
-  for (const auto& [known, text] : presets)
-    if (name == known) return text;
-  return nullptr;
-}
-
-std::string known_presets() {
-  std::string all;
-  for (const std::string& name : species_presets()) all += (all.empty() ? "" : ", ") + name;
-  return all;
-}
+constexpr Presets presets(preset_rows);
 
 void read_one(const YAML::Node& node, const std::string& key, Faults& faults, Species& species) {
   std::set<std::string> known;
   SpeciesName name;
   yaml::read_parameters(node, key + ".", faults, name, known);
   if (!name.preset.empty()) {
-    if (preset_text(name.preset))
+    if (presets.text(name.preset))
       species = species_preset(name.preset);
     else
-      faults.add(key + ".preset", "'" + name.preset + "' is not one of: " + known_presets());
+      faults.add(key + ".preset", "'" + name.preset + "' is not one of: " + presets.listed());
   }
   if (!name.name.empty()) species.name = name.name;
   yaml::read_parameters(node, key + ".", faults, species.traits, known);
@@ -76,15 +65,11 @@ void read_competition(const YAML::Node& rows, std::size_t count, Faults& faults,
 
 }  // namespace
 
-std::vector<std::string> species_presets() {
-  std::set<std::string> names;
-  for (const auto& preset : presets) names.insert(preset.first);
-  return {names.begin(), names.end()};
-}
+std::vector<std::string> species_presets() { return presets.names(); }
 
 Species species_preset(const std::string& name) {
-  const char* text = preset_text(name);
-  if (!text) throw ConfigError("species preset '" + name + "' is not one of: " + known_presets());
+  const char* text = presets.text(name);
+  if (!text) throw ConfigError("species preset '" + name + "' is not one of: " + presets.listed());
   Faults faults("species preset " + name);
   Species species{name, {}, {}};
   const YAML::Node node = YAML::Load(text);
