@@ -87,9 +87,9 @@ struct Schedule {
 constexpr Schedule schedule(AvalancheQuality quality) {
   if (quality == AvalancheQuality::fast) return {1, 2, 1, 3, 0.3f};
   if (quality == AvalancheQuality::good) return {1, 3, 2, 6, 0.2f};
-  return {1, 3, 4, 6, 0.2f};
+  return {1, 3, 3, 8, 0.2f};
 }
-static_assert(schedule(AvalancheQuality::good).sweeps <= most_sweeps);
+static_assert(schedule(AvalancheQuality::converged).sweeps <= most_sweeps);
 
 /// A level's own memory (the finest uses the terrain's sand).
 struct Level {
@@ -204,24 +204,24 @@ inline RoundOfTiles tiles_of_round(const OpenTiles& open, const Grid& grid, std:
   return tiles;
 }
 
-/// Finds what the passes from `pass` on, of the next round, are to go over; the cells that are too steep are
-/// counted in counts[round]. Everywhere, or (`after_round`) around what the round has passed over.
+/// Finds what the passes from `pass` on, those after `round`, are to go over, and how many cells are too
+/// steep: of the whole grid, or after a round around what it has passed over.
 template <class E>
 void find_unsettled(E& exec, const LevelView& fine, float tolerance, std::uint64_t turn, int pass, int round,
-                    bool after_round, const OpenTiles& open) {
+                    const OpenTiles& open) {
   const RoundOfTiles next = tiles_of_round(open, fine.grid, turn, pass, round + 1);
-  Quanta *count = open.counts.data() + round, *ask = after_round ? open.ask.data() : nullptr;
-  if (after_round) {
+  const Grid blocks = Blocks{fine.grid}.cells();
+  Quanta *steep = open.steep.data(), *ask = round > 0 ? open.ask.data() : nullptr;
+  if (ask) {
     const RoundOfTiles passed = tiles_of_round(open, fine.grid, turn, pass - passes_a_round, round);
-    exec.set_zero(ask, open.ask.bytes());
-    for_each_cell(exec, Grid{open.most_tiles, passes_a_round}, AskAround{passed, ask});
+    for_each_cell(exec, blocks, AskAround{passed, ask});
   }
+  exec.set_zero(steep, open.steep.bytes());
   exec.set_zero(next.flags, open.flags.bytes() / 2);
-  exec.set_zero(count, sizeof(Quanta));
-  const OpenNearUnsettled<true> law{{fine, tolerance}, ask, next, count};
-  const OpenNearUnsettled<false> border{{fine, tolerance}, ask, next, count};
-  for_each_cell(exec, fine.grid,
-                Bordered<OpenNearUnsettled<true>, OpenNearUnsettled<false>>{fine.grid, 1, law, border});
+  exec.set_zero(open.tally(round).parts, Tally::size * sizeof(Quanta));
+  const CountSteep count{{fine, tolerance}, ask, steep};
+  for_each_cell(exec, count.strips(), count);
+  for_each_cell(exec, blocks, OpenNear{steep, next, open.tally(round)});
 }
 
 /// A cycle, and then rounds of passes over those tiles alone that are not at rest: what is left are trains of
@@ -233,17 +233,16 @@ void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std:
             Workspace& work) {
   const Schedule plan = schedule(p.quality);
   const OpenTiles& open = work.open;
-  // Cells that are too steep: before each round, and after the last.
-  Quanta counts[rounds_a_look + 1] = {};
+  std::array<long long, rounds_a_look + 1> steep{};  // cells: before each round, and after the last
   float onward = 0.0f;
   bool much = true;
   for (int pass = 0; work.iterations < p.max_iterations;) {
-    const Quanta left = counts[rounds_a_look];
+    const long long left = steep.back();
     if (much) {
       cycle(exec, fine, p, plan, turn++, work);
       work.iterations += (plan.before + plan.after) * plan.sweeps;
       onward = 0.0f;
-      find_unsettled(exec, fine, p.tolerance, turn, pass, 0, false, open);
+      find_unsettled(exec, fine, p.tolerance, turn, pass, 0, open);
     }
     for (int round = 1; round <= rounds_a_look; ++round) {
       onward = minimum(onward + onward_a_round, 0.5f);
@@ -251,14 +250,14 @@ void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std:
       for (int n = 0; n < passes_a_round; ++n, ++pass)
         relax_tiles(exec, RelaxTile{tiles.of(n), fine, Prolong{}, p.transfer, p.rest, most_sweeps, 0.0f,
                                     onward, tiles.of_pass(n)});
-      find_unsettled(exec, fine, p.tolerance, turn, pass, round, true, open);
+      find_unsettled(exec, fine, p.tolerance, turn, pass, round, open);
     }
-    open.counts.download(0, rounds_a_look + 1, counts);
-    if (!much) counts[0] = left;
+    steep = open.steep_cells<rounds_a_look + 1>();
+    if (!much) steep[0] = left;
     for (int round = 0; round < rounds_a_look; ++round)
-      if (counts[round] > 0) work.iterations += passes_a_round * most_sweeps;
-    if (counts[rounds_a_look] == 0) return;
-    much = counts[rounds_a_look] > counts[0] / 2;
+      if (steep[static_cast<std::size_t>(round)] > 0) work.iterations += passes_a_round * most_sweeps;
+    if (steep.back() == 0) return;
+    much = steep.back() > steep[0] / 2;
   }
 }
 

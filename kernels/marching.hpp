@@ -12,31 +12,27 @@ namespace desert_sim::marching {
 /// A march along a straight line, one column (or row) of cells a step, whichever the line crosses faster:
 /// there a sample lies between two cells.
 struct Line {
-  bool along_x;
-  int step;                          ///< ±1: column (row) by column (row)
-  int drift;                         ///< a step's way across, 16.16 fixed point
-  float steps_a_cell, cells_a_step;  ///< √½ … 1 … √2
+  int heading;  ///< ±1: column by column to greater or lesser x, ±2: row by row
+  int drift;    ///< a step's way across, 16.16 fixed point, −1 … 1
 
-  /// Against the wind (u, v) of speed `speed`.
-  DESERT_HD Line(float u, float v, float speed) {
-    along_x = fabsf(u) >= fabsf(v);
+  /// Against the wind (u, v), not 0. To 2⁻¹² of a cell a step, so that winds which differ by rounding alone
+  /// have one direction.
+  DESERT_HD static Line against(float u, float v) {
+    const bool along_x = fabsf(u) >= fabsf(v);
     const float along = along_x ? u : v, across = along_x ? v : u;
-    step = along > 0.0f ? -1 : 1;
-    const float per_along = 1.0f / fabsf(along);
-    drift = -subcells(across * per_along);
-    steps_a_cell = fabsf(along) / speed;
-    cells_a_step = speed * per_along;
+    return {(along_x ? 1 : 2) * (along > 0.0f ? -1 : 1), -16 * nearest(4096.0f * (across / fabsf(along)))};
+  }
+  DESERT_HD bool along_x() const { return heading & 1; }
+  DESERT_HD int step() const { return heading > 0 ? 1 : -1; }
+  /// 1 … √2
+  DESERT_HD float cells_a_step() const {
+    const float slope = static_cast<float>(drift) * (1.0f / 65536.0f);
+    return sqrtf(1.0f + slope * slope);
   }
   /// The cell at or before the sample of step j, relative to the march's first.
-  DESERT_HD int dx(int j) const { return along_x ? j * step : (j * drift) >> 16; }
-  DESERT_HD int dy(int j) const { return along_x ? (j * drift) >> 16 : j * step; }
+  DESERT_HD int dx(int j) const { return along_x() ? j * step() : (j * drift) >> 16; }
+  DESERT_HD int dy(int j) const { return along_x() ? (j * drift) >> 16 : j * step(); }
 };
-
-/// The height between two cells, `place` from the first.
-DESERT_HD float height_between(float first, float second, int place) {
-  const float share = fraction(place);
-  return first * (1.0f - share) + second * share;
-}
 
 /// Cells around a sample and its place between them: (x, y) + (dx, dy)/65536 cells.
 struct Place {

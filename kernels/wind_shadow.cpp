@@ -12,12 +12,13 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const WindShadowParameter
   for (int j = 1; j <= steps; ++j) reciprocals[static_cast<std::size_t>(j)] = 1.0f / static_cast<float>(j);
   work.reciprocals = Buffer<float>(exec, reciprocals.size());
   work.reciprocals.upload(reciprocals);
-  constexpr int side = Blocks::side;
+  if (p.curved) return work;
+  const std::size_t blocks = static_cast<std::size_t>((grid.width + side - 1) / side) *
+                             static_cast<std::size_t>((grid.height + side - 1) / side);
+  work.lines = Buffer<int>(exec, blocks);
   const bool fits =
       (!grid.periodic_x || grid.width % side == 0) && (!grid.periodic_y || grid.height % side == 0);
-  if (fits && !p.curved && steps > Blocks::piece)
-    work.around = Buffer<float>(exec, static_cast<std::size_t>((grid.width + side - 1) / side) *
-                                          static_cast<std::size_t>((grid.height + side - 1) / side));
+  if (fits && steps > 2 * piece) work.around = Buffer<float>(exec, blocks);
   return work;
 }
 

@@ -59,10 +59,10 @@ void mark_species(E& exec, const TerrainView& t, int first, int rows, const Neig
 
 /// A plant as it goes to the host.
 struct Listed {
-  float x, y;                    ///< [m] from the grid's south-west corner
-  float z;                       ///< [m] where stem and root meet
-  float radius;                  ///< [m]
-  std::uint8_t species, health;  ///< health: 255 is full
+  float x, y;                     ///< [m] from the grid's south-west corner
+  float z;                        ///< [m] where stem and root meet
+  float radius;                   ///< [m]
+  std::uint16_t species, health;  ///< health: 255 is full; no bytes lie between or behind that nobody writes
 };
 
 struct List {
@@ -76,8 +76,8 @@ struct List {
              plants.y[n],
              metres(plants.z[n]),
              plants.radius[n],
-             static_cast<std::uint8_t>(plants.species[n]),
-             static_cast<std::uint8_t>(255.0f * clamp(plants.health[n], 0.0f, 1.0f) + 0.5f)};
+             static_cast<std::uint16_t>(plants.species[n]),
+             static_cast<std::uint16_t>(255.0f * clamp(plants.health[n], 0.0f, 1.0f) + 0.5f)};
   }
 };
 

@@ -30,8 +30,8 @@ std::size_t bytes_of_wind(const wind::Workspace& work) {
 }
 
 std::size_t bytes_of_avalanches(const avalanching::Workspace& work) {
-  std::size_t bytes =
-      bytes_of_all(work.share, work.given, work.received, work.open.flags, work.open.ask, work.open.counts);
+  std::size_t bytes = bytes_of_all(work.share, work.given, work.received, work.open.flags, work.open.steep,
+                                   work.open.ask, work.open.tallies);
   for (const avalanching::Level& level : work.coarse)
     bytes += bytes_of_all(level.ground, level.sand, level.sand_before, level.repose);
   return bytes;
@@ -149,7 +149,8 @@ std::vector<MemoryPart> Simulation::memory() const {
   add("wind's transforms", bytes_of_wind(wind_work_));
   add("wind's features", bytes_of_all(features_, perturbation_x_, perturbation_y_));
   add("heights", bytes_of_all(heights_.of_cells, heights_.highest));
-  add("wind shadow's blocks", bytes_of_all(shadow_work_.reciprocals, shadow_work_.around));
+  add("wind shadow's blocks",
+      bytes_of_all(shadow_work_.reciprocals, shadow_work_.around, shadow_work_.lines));
   add("avalanches' levels", bytes_of_avalanches(avalanche_work_));
   add("avalanches of rock and soil", bytes_of_all(ground_work_.received, ground_work_.share));
   add("water's pipes", pipes_work_.held.bytes());

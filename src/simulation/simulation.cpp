@@ -48,7 +48,8 @@ void Simulation::run_processes(E& exec) {
     run(exec, "saltation", {Layer::sand, Layer::airborne_sand, Layer::bedrock}, [&] {
       std::optional<wind_shadow::Shadow> shade;
       if (shade_in_passing)
-        shade = wind_shadow::straight_shadow(exec, view, s.wind_shadow, obstructing_heights(), shadow_work_);
+        shade = wind_shadow::straight_shadow(exec, view, s.wind_shadow, obstructing_heights(), shadow_work_,
+                                             nullptr);
       saltation::step(exec, view, s.saltation, s.abrasion, s.repose, dt, ledger(), landed_.data(),
                       {angle, reptation_strength_.data()}, shade ? &*shade : nullptr);
     });

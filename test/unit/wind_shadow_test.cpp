@@ -18,10 +18,12 @@ float noise(int x, int y, std::uint32_t what) {
   return random_unit(seed, Purpose::turbulence, static_cast<std::uint32_t>(y * 1000 + x), what, 0);
 }
 
-/// Sand of 0 … 3 m; winds to all sides, some along an axis or a diagonal, some too weak to shelter from.
+/// Sand of 0 … 3 m; from block to block winds to all sides, some along an axis or a diagonal, some too weak
+/// to shelter from.
 void make_weather(test::BenchTerrain& t) {
   t.set(Layer::sand, [](int x, int y) { return 3 * noise(x, y, 1); });
   const auto wind = [](int x, int y, int axis) -> double {
+    x /= wind_shadow::side, y /= wind_shadow::side;
     const float u = 8 * noise(x, y, 2) - 4, v = 8 * noise(x, y, 3) - 4, kind = noise(x, y, 4);
     if (kind < 0.05f) return 0;
     if (kind < 0.1f) return 1e-7;
@@ -40,11 +42,17 @@ std::vector<float> one_by_one(const test::BenchTerrain& t, const WindShadowParam
   const int steps = wind_shadow::march_steps(view.grid, p);
   std::vector<float> reciprocals(static_cast<std::size_t>(steps) + 1), shadow(t.cells(), -1);
   for (int j = 1; j <= steps; ++j) reciprocals[static_cast<std::size_t>(j)] = 1.0f / static_cast<float>(j);
-  wind_shadow::Shadow law{{view.grid, wind_shadow::Shade(p, view.grid.cell_size * view.quanta_per_metre),
-                           t.heights.of_cells.data(), view.real(Layer::wind_x), view.real(Layer::wind_y),
-                           reciprocals.data(), steps, p.distance / view.grid.cell_size, shadow.data()},
-                          t.heights.blocks,
-                          nullptr};
+  const wind_shadow::Shadow law{
+      {view.grid, view.real(Layer::wind_x), view.real(Layer::wind_y)},
+      p.distance / view.grid.cell_size,
+      steps,
+      wind_shadow::Shade(p.start_deg, p.full_deg, view.grid.cell_size * view.quanta_per_metre),
+      t.heights.of_cells.data(),
+      reciprocals.data(),
+      shadow.data(),
+      t.heights.blocks,
+      nullptr,
+      nullptr};
   for (int y = 0; y < view.grid.height; ++y)
     for (int x = 0; x < view.grid.width; ++x) law(x, y);
   return shadow;
