@@ -34,9 +34,8 @@ struct Blocks {
 /// From a block with a cell that is too steep, tiles so many cells away are passed over too: slides come that
 /// far.
 constexpr int slides_reach = 4;
-static_assert(Blocks::side + 2 * slides_reach <= Tiles::side);
 static_assert(Blocks::side + 2 * slides_reach <= Tiles::side,
-              "then a tile within reach holds a corner of it");
+              "far from edges a tile within reach then holds a corner of what is");
 
 /// The tiles of a round's passes: 0 for one that need not be passed over.
 struct RoundOfTiles {
