@@ -55,7 +55,7 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
       parameter("scheme", &P::scheme, avalanche_schemes, "How slides are computed."),
       parameter(
           "quality", &P::quality, avalanche_qualities,
-          "fast: 2 x 3 fine sweeps, good: 3 x 6, both up to 8 a pass where much slides; converged: until "
+          "fast: 2 x 3 fine sweeps, good: 3 x 3, both up to 8 a pass where much slides; converged: until "
           "tolerance (also for sweeps)."),
       parameter("transfer", &P::transfer, 0.05, 1, "1",
                 "Share of what would stabilise a cell that one sweep moves (k_c)."),
@@ -78,16 +78,16 @@ static_assert(table_is_complete<AvalanchingParameters>());
 namespace avalanching {
 
 /// Passes over shifted tiles: of the fine grid before the coarse levels, of each coarse level, and of the
-/// fine grid after them; sweeps in each at least, and how much a cell gives [cell sizes] for its tile to go
-/// on (but before the coarse levels).
+/// fine grid after them; sweeps in each at least, of the fine grid and of a coarse level; and how much a cell
+/// gives [cell sizes] for its tile to go on (but before the coarse levels).
 struct Schedule {
-  int before, coarse, after, sweeps;
+  int before, coarse, after, sweeps, coarse_sweeps;
   float plenty;
 };
 constexpr Schedule schedule(AvalancheQuality quality) {
-  if (quality == AvalancheQuality::fast) return {1, 2, 1, 3, 0.3f};
-  if (quality == AvalancheQuality::good) return {1, 3, 2, 6, 0.2f};
-  return {1, 3, 3, 8, 0.2f};
+  if (quality == AvalancheQuality::fast) return {1, 2, 1, 3, 3, 0.3f};
+  if (quality == AvalancheQuality::good) return {1, 3, 2, 3, 8, 0.15f};
+  return {1, 3, 3, 8, 8, 0.2f};
 }
 static_assert(schedule(AvalancheQuality::converged).sweeps <= most_sweeps);
 
@@ -132,28 +132,28 @@ inline bool families_share_tiles(const Grid& g) {
   return (!g.periodic_x || g.width % 2 == 0) && (!g.periodic_y || g.height % 2 == 0);
 }
 
-/// Passes over one level, which first gets what the coarser one has done.
-template <class E>
+/// Passes over one level, which first gets what the coarser one has done. `then`: what becomes of its cells
+/// (relax_tiles_then()).
+template <class E, class Then>
 void relax(E& exec, const LevelView& level, Prolong from_coarse, const AvalanchingParameters& p, int first,
-           int last, int sweeps, float plenty, std::uint64_t turn) {
+           int last, int sweeps, float plenty, std::uint64_t turn, const Then& then) {
   if (from_coarse.sand_after && !families_share_tiles(level.grid)) {
     for_each_cell(exec, from_coarse.coarse, from_coarse);
     from_coarse = {};
   }
   for (int pass = first; pass < last; ++pass) {
     const Tiles tiles{level.grid, seam_offset(turn, pass)};
-    relax_tiles(exec, RelaxTile{tiles, level, from_coarse, p.transfer, p.rest, sweeps, plenty});
+    const RelaxTile law{tiles, level, from_coarse, p.transfer, p.rest, sweeps, plenty};
+    if (pass + 1 < last)
+      relax_tiles(exec, law);
+    else
+      relax_tiles_then(exec, law, then);
     from_coarse = {};
   }
 }
 
-/// Fills the coarse levels, two a pass; views[n + 1] is what the avalanches see of coarse[n].
-template <class E>
-void restrict_levels(E& exec, std::vector<Level>& coarse, LevelView* views) {
-  const auto out = [](Level& level) {
-    return LevelOut{level.grid, level.ground.data(), level.sand.data(), level.sand_before.data(),
-                    level.repose.data()};
-  };
+/// What the avalanches see of the coarse levels: views[n + 1] of coarse[n].
+inline void view_levels(std::vector<Level>& coarse, LevelView* views) {
   for (std::size_t n = 0; n < coarse.size(); ++n) {
     Level& level = coarse[n];
     views[n + 1] = {level.grid,
@@ -163,29 +163,43 @@ void restrict_levels(E& exec, std::vector<Level>& coarse, LevelView* views) {
                     level.sand.data(),
                     level.repose.data(),
                     2.0f * views[n].quanta_per_cell};
-    if (n % 2 == 1) continue;
-    const Restrict law{views[n], out(level), n + 1 < coarse.size() ? out(coarse[n + 1]) : LevelOut{}};
-    for_each_cell(exec, law.blocks(), law);
   }
 }
 
-/// Relaxes the fine grid, then the coarse levels from the coarsest, then the fine grid again.
-template <class E>
+/// Fills coarse[n], and the next level if there is one, from the level below.
+inline Restrict filling(std::vector<Level>& coarse, std::size_t n, const LevelView& below) {
+  const auto out = [](Level& level) {
+    return LevelOut{level.grid, level.ground.data(), level.sand.data(), level.sand_before.data(),
+                    level.repose.data()};
+  };
+  return {below, out(coarse[n]), n + 1 < coarse.size() ? out(coarse[n + 1]) : LevelOut{}};
+}
+
+/// Relaxes the fine grid, then the coarse levels from the coarsest, then the fine grid again. `then`: what
+/// becomes of the fine grid's cells.
+template <class E, class Then>
 void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const Schedule& plan,
-           std::uint64_t turn, Workspace& work) {
+           std::uint64_t turn, Workspace& work, const Then& then) {
   std::vector<Level>& coarse = work.coarse;
   std::array<LevelView, 32> views;
   views[0] = fine;
+  view_levels(coarse, views.data());
   constexpr float never = 1e6f;
-  relax(exec, fine, Prolong{}, p, 0, plan.before, plan.sweeps, never, turn);
-  restrict_levels(exec, coarse, views.data());
+  if (coarse.empty())
+    relax(exec, fine, Prolong{}, p, 0, plan.before, plan.sweeps, never, turn, NothingThen{});
+  else
+    relax(exec, fine, Prolong{}, p, 0, plan.before, plan.sweeps, never, turn, filling(coarse, 0, fine));
+  for (std::size_t n = 2; n < coarse.size(); n += 2) {
+    const Restrict law = filling(coarse, n, views[n]);
+    for_each_cell(exec, law.blocks(), law);
+  }
   Prolong change{};
   for (std::size_t n = coarse.size(); n > 0; --n) {
-    relax(exec, views[n], change, p, 0, plan.coarse, plan.sweeps, plan.plenty, turn);
+    relax(exec, views[n], change, p, 0, plan.coarse, plan.coarse_sweeps, plan.plenty, turn, NothingThen{});
     const Level& done = coarse[n - 1];
     change = {done.grid, done.sand.data(), done.sand_before.data(), views[n - 1].grid, views[n - 1].sand};
   }
-  relax(exec, fine, change, p, plan.before, plan.before + plan.after, plan.sweeps, plan.plenty, turn);
+  relax(exec, fine, change, p, plan.before, plan.before + plan.after, plan.sweeps, plan.plenty, turn, then);
 }
 
 /// Rounds of passes over what is not yet at rest, between two looks at what they left.
@@ -239,7 +253,7 @@ void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std:
   for (int pass = 0; work.iterations < p.max_iterations;) {
     const long long left = steep.back();
     if (much) {
-      cycle(exec, fine, p, plan, turn++, work);
+      cycle(exec, fine, p, plan, turn++, work, NothingThen{});
       work.iterations += (plan.before + plan.after) * plan.sweeps;
       onward = 0.0f;
       find_unsettled(exec, fine, p.tolerance, turn, pass, 0, open);
@@ -272,27 +286,37 @@ void sweep(E& exec, const LevelView& level, float transfer, bool by_tangent, Wor
                 ApplySweep{level.grid, work.given.data(), work.received.data(), level.sand});
 }
 
-/// `repose`: tangents of each cell's angle of repose; `tick`: steps done.
+/// The schemes of synchronous sweeps over the whole grid.
 template <class E>
-void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::uint64_t tick,
-          const float* repose, Workspace& work) {
-  const LevelView fine = finest(t, repose);
-  const bool converge = p.quality == AvalancheQuality::converged;
-  work.iterations = 0;
-  if (p.scheme == AvalancheScheme::multilevel) {
-    if (converge) return settle(exec, fine, p, tick, work);
-    const Schedule plan = schedule(p.quality);
-    cycle(exec, fine, p, plan, tick, work);
-    work.iterations = (plan.before + plan.after) * plan.sweeps;
-    return;
-  }
-  const auto unsettled = [&] { return max_cells(exec, t.grid, Excess{fine}) > p.tolerance; };
+void sweep_all(E& exec, const LevelView& fine, const AvalanchingParameters& p, Workspace& work) {
+  const auto unsettled = [&] { return max_cells(exec, fine.grid, Excess{fine}) > p.tolerance; };
   const bool by_tangent = p.scheme == AvalancheScheme::taylor_keyser;
   const float transfer = by_tangent ? 0.25f * p.transfer : p.transfer;
   do {
     for (int n = 0; n < p.sweeps; ++n) sweep(exec, fine, transfer, by_tangent, work);
     work.iterations += p.sweeps;
-  } while (converge && work.iterations < p.max_iterations && unsettled());
+  } while (p.quality == AvalancheQuality::converged && work.iterations < p.max_iterations && unsettled());
+}
+
+/// `repose`: tangents of each cell's angle of repose; `tick`: steps done; `heights`: measured when all is
+/// done.
+template <class E>
+void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::uint64_t tick,
+          const float* repose, const surface::MeasureBlock& heights, Workspace& work) {
+  const LevelView fine = finest(t, repose);
+  const bool converge = p.quality == AvalancheQuality::converged;
+  work.iterations = 0;
+  if (p.scheme == AvalancheScheme::multilevel && !converge) {
+    const Schedule plan = schedule(p.quality);
+    cycle(exec, fine, p, plan, tick, work, heights);
+    work.iterations = (plan.before + plan.after) * plan.sweeps;
+    return;
+  }
+  if (p.scheme == AvalancheScheme::multilevel)
+    settle(exec, fine, p, tick, work);
+  else
+    sweep_all(exec, fine, p, work);
+  for_each_cell(exec, heights.blocks, heights);
 }
 
 }  // namespace avalanching

@@ -15,6 +15,7 @@
 
 #include "desert_sim/kernels/avalanching_laws.hpp"
 #include "desert_sim/kernels/avalanching_units.hpp"
+#include "desert_sim/kernels/surface.hpp"
 
 namespace desert_sim::avalanching {
 
@@ -104,17 +105,18 @@ struct RelaxTile {
     return along(row * side - tiles.offset + y, level.grid.height, level.grid.periodic_y);
   }
 
- private:
-  DESERT_HD int along(int p, int cells_along, bool periodic) const {
-    if (periodic) return p < cells_along - tiles.offset ? wrap(p, cells_along) : -1;
-    return p >= 0 && p < cells_along ? p : -1;
-  }
   /// Whether the tile's cells are all there, side by side.
   DESERT_HD bool whole(int column, int row) const {
     const int x = column * side - tiles.offset, y = row * side - tiles.offset;
     const int right = level.grid.width - (level.grid.periodic_x ? tiles.offset : 0);
     const int top = level.grid.height - (level.grid.periodic_y ? tiles.offset : 0);
     return x >= 0 && y >= 0 && x + side <= right && y + side <= top;
+  }
+
+ private:
+  DESERT_HD int along(int p, int cells_along, bool periodic) const {
+    if (periodic) return p < cells_along - tiles.offset ? wrap(p, cells_along) : -1;
+    return p >= 0 && p < cells_along ? p : -1;
   }
   DESERT_HD static int local(int x, int y) { return (y + 1) * stride + lead + x; }
   DESERT_HD static constexpr int offset_to(int k) { return Neighbours::dy(k) * stride + Neighbours::dx(k); }
@@ -233,8 +235,28 @@ template <class E>
 void relax_tiles(E& exec, const RelaxTile& law) {
   relax_by_law(exec, law);
 }
-#if DESERT_WITH_CUDA
-void relax_tiles(CudaExec& exec, const RelaxTile& law);  // tuned/avalanching_tile.cu
+/// All tiles, and then the coarse levels that the grid fills, or its heights: a backend may do that in
+/// passing.
+template <class E>
+void relax_tiles_then(E& exec, const RelaxTile& law, const Restrict& then) {
+  relax_tiles(exec, law);
+  for_each_cell(exec, then.blocks(), then);
+}
+template <class E>
+void relax_tiles_then(E& exec, const RelaxTile& law, const surface::MeasureBlock& then) {
+  relax_tiles(exec, law);
+  for_each_cell(exec, then.blocks, then);
+}
+#if DESERT_WITH_CUDA  // tuned/avalanching_tile.cu
+void relax_tiles(CudaExec& exec, const RelaxTile& law);
+void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const Restrict& then);
+void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const surface::MeasureBlock& then);
 #endif
+/// And then nothing.
+struct NothingThen {};
+template <class E>
+void relax_tiles_then(E& exec, const RelaxTile& law, NothingThen) {
+  relax_tiles(exec, law);
+}
 
 }  // namespace desert_sim::avalanching

@@ -53,12 +53,13 @@ struct Units {
   /// Of deep sand counts what eight sweeps can take.
   DESERT_HD float depth_over_film(Quanta sand) const {
     const Quanta units = sand >> shift, most = per_one / 2;
-    return static_cast<float>((units < most ? units : most) - film) * unit;
+    const float one_and = float_of(bits_of(floor) + static_cast<std::uint32_t>(units < most ? units : most));
+    return one_and - (floor + film * unit);  // exact, and without a conversion
   }
   /// Drop over one cell at repose; from 1 on nothing slides.
   DESERT_HD float drop(float repose, float quanta_per_cell) const {
     const float scale = float_of(static_cast<std::uint32_t>(127 - 23 - shift) << 23);  // 2^(−23 − shift)
-    return lower(repose * quanta_per_cell * scale, floor);
+    return lower(repose * (quanta_per_cell * scale), floor);
   }
   /// What a cell has gained [quanta].
   DESERT_HD Quanta gain(float before, float after) const {
@@ -99,8 +100,9 @@ struct Slide {
                   float ground, float start, float rest, float transfer, Onward onward) {
     const bool slides =
         higher(height - straight, (height - diagonal) * (1.0f / Neighbours::distance(4))) > start;
-    const float drop = rest * start;
-    const float top = height - drop, diagonal_top = fused(-Neighbours::distance(4), drop, height);
+    // A product of the drop would be kept for each cell through all sweeps, and registers are few.
+    const float top = fused(-rest, start, height),
+                diagonal_top = fused(-Neighbours::distance(4) * rest, start, height);
     float b[Neighbours::count];
     Neighbours::unrolled(
         [&](auto k) DESERT_INLINE { b[k] = positive_part((k < 4 ? top : diagonal_top) - around[k]); });
@@ -110,9 +112,9 @@ struct Slide {
     constexpr float tiny = 1e-30f;
     float amount = largest * sum;  // times `both`
     if constexpr (!std::is_same_v<Onward, NoOnward>)
-      amount = lower(fused(onward * drop, both, amount), largest * both);
-    const float share =
-        slides ? lower(transfer * amount, sand * both) * reciprocal_below(fused(sum, both, tiny)) : 0.0f;
+      amount = lower(fused(onward * (rest * start), both, amount), largest * both);
+    const float per_both = reciprocal_below(fused(sum, both, tiny));  // a branch around it costs a GPU more
+    const float share = lower(transfer * amount, sand * both) * (slides ? per_both : 0.0f);
     left = height;
     Neighbours::unrolled([&](auto k) DESERT_INLINE {
       const float after = fused(-share, b[k], left);

@@ -111,11 +111,13 @@ struct MeasureBlock {
   }
 };
 
+inline MeasureBlock measuring(const TerrainView& t, Heights& heights) {
+  return {t.grid,         t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
+          heights.blocks, heights.of_cells.data(),  heights.highest.data()};
+}
 template <class E>
 void measure(E& exec, const TerrainView& t, Heights& heights) {
-  for_each_cell(exec, heights.blocks,
-                MeasureBlock{t.grid, t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
-                             heights.blocks, heights.of_cells.data(), heights.highest.data()});
+  for_each_cell(exec, heights.blocks, measuring(t, heights));
 }
 
 }  // namespace desert_sim::surface

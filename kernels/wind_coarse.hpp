@@ -36,11 +36,14 @@ DESERT_HD float mean_over(float left, float right, int n, const Value& value) {
   const int last = clamp_index(static_cast<int>(ceilf(right - 1e-4f)) - 1, n);
   const float base = value(first);
   float sum = 0, length = 0;
-  for (int i = first; i <= last; ++i) {
-    const float share = minimum(right, i + 1.0f) - maximum(left, static_cast<float>(i));
+  const auto add = [&](int i, float share) {
     sum += share * (value(i) - base);
     length += share;
-  }
+  };
+  const auto overlap = [=](int i) { return minimum(right, i + 1.0f) - maximum(left, static_cast<float>(i)); };
+  add(first, overlap(first));
+  for (int i = first + 1; i < last; ++i) add(i, 1.0f);  // what overlap() gives there
+  if (last > first) add(last, overlap(last));
   return base + sum / length;
 }
 

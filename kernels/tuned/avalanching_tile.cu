@@ -22,46 +22,20 @@
 
 #include "desert_sim/kernels/avalanching_tile.hpp"
 #include "desert_sim/kernels/for_each_cuda.cuh"
+#include "desert_sim/kernels/tuned/tile_blocks.cuh"
+#include "desert_sim/kernels/tuned/tile_cells.cuh"
 
 namespace desert_sim::avalanching {
 
+namespace tuned {
 namespace {
 
-constexpr int side = Tiles::side;
-constexpr unsigned whole_warp = 0xffffffffu;
 /// Rows of a strip: many, where there are tiles enough to fill the GPU, because what strips hand each other
 /// takes time; few, where a tile's own time is what counts, or little moves and warps sit out.
 constexpr int long_strip = 8, short_strip = 4, shortest_strip = 2;
 constexpr int tiles_for_long = 1200, tiles_for_short = 400;
 /// Threads of a multiprocessor: leaves each 64 registers.
 constexpr int threads_at_once = 1024;
-
-/// What the warps of a tile share. Line and column 0 and side + 1 are walls.
-template <int strip>
-struct Shared {
-  static constexpr int strips = side / strip;
-  float h[side + 2][side + 2];
-  float northward[strips + 1][side], southward[strips + 1][side];  ///< over the border below strip n
-  int gave[strips + 2];  ///< in the last sweep: nothing, something, much; strip n at n + 1
-  int lowest[strips], highest[strips];
-  int first_of_row[side];  ///< the grid's cell at x = 0, or −1
-};
-
-/// A thread's column of its warp's strip.
-template <int strip>
-struct Column {
-  float h[strip], ground[strip], drop[strip];
-};
-
-/// The least of all values in the block.
-template <int strips>
-__device__ int lowest_in_block(int value, int (&of_warps)[strips]) {
-  for (int step = 16; step > 0; step /= 2) value = min(value, __shfl_xor_sync(whole_warp, value, step));
-  if (threadIdx.x == 0) of_warps[threadIdx.y] = value;
-  __syncthreads();
-  for (int n = 0; n < strips; ++n) value = min(value, of_warps[n]);
-  return value;
-}
 
 template <int strip>
 __device__ void build_walls(Shared<strip>& shared) {
@@ -130,77 +104,13 @@ __device__ float sweep_strip(Shared<strip>& shared, Column<strip>& c, float rest
   return most;
 }
 
-/// Registers from the grid; the tile's units. Fetches all before it uses any.
-template <int strip>
-__device__ Units load(const RelaxTile& law, Shared<strip>& shared, const int (&cell)[strip],
-                      Column<strip>& c) {
-  const LevelView& level = law.level;
-  Quanta height[strip], sand[strip];
-#pragma unroll
-  for (int n = 0; n < strip; ++n) {
-    height[n] = cell[n] < 0 ? wall_height : level.ground[cell[n]];
-    sand[n] = cell[n] < 0 ? 0 : level.sand[cell[n]];
-    c.drop[n] = cell[n] < 0 ? 0.0f : level.repose[cell[n]];
-  }
-  if (level.soil)
-#pragma unroll
-    for (int n = 0; n < strip; ++n) height[n] += cell[n] < 0 ? 0 : level.soil[cell[n]];
-  if (level.obstacle)
-#pragma unroll
-    for (int n = 0; n < strip; ++n)
-      if (cell[n] >= 0 && level.obstacle[cell[n]] > 0.0f) height[n] = wall_height;
-  int lowest = wall_height, lowest_depth = wall_height;
-#pragma unroll
-  for (int n = 0; n < strip; ++n) {
-    height[n] = height[n] < wall_height ? height[n] + sand[n] : wall_height;
-    lowest = min(lowest, height[n]);
-    lowest_depth = min(lowest_depth, height[n] < wall_height ? -height[n] : wall_height);
-  }
-  lowest = lowest_in_block(lowest, shared.lowest);
-  const Units units(lowest, -lowest_in_block(lowest_depth, shared.highest), level.quanta_per_cell);
-#pragma unroll
-  for (int n = 0; n < strip; ++n) {
-    const bool wall = height[n] >= wall_height;
-    c.h[n] = wall ? Units::wall : units.height(height[n]);
-    c.ground[n] = wall ? Units::wall_ground : c.h[n] - units.depth_over_film(sand[n]);
-    c.drop[n] = units.drop(c.drop[n], level.quanta_per_cell);
-  }
-  return units;
-}
-
-template <int strip>
-__device__ void cells_of(const RelaxTile& law, const Shared<strip>& shared, int (&cell)[strip]) {
-  const int x = law.grid_x(static_cast<int>(blockIdx.x), static_cast<int>(threadIdx.x));
-#pragma unroll
-  for (int n = 0; n < strip; ++n) {
-    const int first = shared.first_of_row[threadIdx.y * strip + n];
-    cell[n] = x < 0 || first < 0 ? -1 : first + x;
-  }
-}
-
+/// Sweeps over what is loaded, until the tile is at rest or has had enough of them. Whether this warp's cells
+/// have changed.
 template <int strip, class Onward>
-__global__ __launch_bounds__(side* side / strip,
-                             threads_at_once* strip / (side * side)) void relax_tiles_kernel(RelaxTile law,
-                                                                                             Onward onward) {
-  if (law.closed(static_cast<int>(blockIdx.x), static_cast<int>(blockIdx.y))) return;
+__device__ bool relax(const RelaxTile& law, Shared<strip>& shared, Column<strip>& c, const Units& units,
+                      Onward onward) {
   constexpr int strips = side / strip;
-  __shared__ Shared<strip> shared;
   const int x = static_cast<int>(threadIdx.x), warp = static_cast<int>(threadIdx.y), y = warp * strip;
-  if (warp == 0) {
-    const int there = law.grid_y(static_cast<int>(blockIdx.y), x);
-    shared.first_of_row[x] = there < 0 ? -1 : there * law.level.grid.width;
-  }
-  build_walls(shared);
-  if (law.from_coarse.sand_after)
-    for (int n = y * side / strip + x; n < RelaxTile::families; n += side * strips)
-      law.prolong_family(static_cast<int>(blockIdx.x), static_cast<int>(blockIdx.y), n);
-  __syncthreads();
-  Column<strip> c;
-  int cell[strip];
-  cells_of(law, shared, cell);
-  const Units units = load(law, shared, cell, c);
-  if (units.lowest >= wall_height) return;
-
   bool stale = true, moved = false;
   const float much = units.drop(law.plenty, law.level.quanta_per_cell);
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
@@ -222,32 +132,77 @@ __global__ __launch_bounds__(side* side / strip,
     for (int n = 1; n <= strips; ++n) any = max(any, shared.gave[n]);
     if (any < (sweep + 1 < law.sweeps ? 1 : 2)) break;
   }
-  if (!moved) return;
-  cells_of(law, shared, cell);
-  Quanta* sand = law.level.sand;
-#pragma unroll
-  for (int n = 0; n < strip; ++n)
-    if (cell[n] >= 0 && c.h[n] < Units::wall)
-      sand[cell[n]] += units.gain(c.ground[n] + units.depth_over_film(sand[cell[n]]), c.h[n]);
+  return moved;
 }
 
-template <int strip>
-void launch(CudaExec& exec, const RelaxTile& law) {
+template <int strip, class Onward, class Then>
+__global__ __launch_bounds__(side* side / strip,
+                             threads_at_once* strip / (side * side)) void relax_tiles_kernel(RelaxTile law,
+                                                                                             Onward onward,
+                                                                                             Then then) {
+  const int column = static_cast<int>(blockIdx.x), row = static_cast<int>(blockIdx.y);
+  if (law.closed(column, row)) return;
+  constexpr int strips = side / strip;
+  __shared__ Shared<strip> shared;
+  const int x = static_cast<int>(threadIdx.x), warp = static_cast<int>(threadIdx.y);
+  if (warp == 0) shared.row[x] = law.grid_y(row, x);
+  build_walls(shared);
+  if (law.from_coarse.sand_after)
+    for (int n = warp * side + x; n < RelaxTile::families; n += side * strips)
+      law.prolong_family(column, row, n);
+  __syncthreads();
+  const bool whole = law.whole(column, row);
+  Column<strip> c;
+  const Units units = whole ? load<true>(law, shared, c) : load<false>(law, shared, c);
+  if (units.lowest < wall_height && relax(law, shared, c, units, onward))
+    whole ? store<true>(law, shared, units, c) : store<false>(law, shared, units, c);
+  whole ? then.template operator()<true>(law, shared) : then.template operator()<false>(law, shared);
+}
+
+template <int strip, class Then>
+void launch(CudaExec& exec, const RelaxTile& law, const Then& then) {
   const dim3 tiles(law.tiles.columns(), law.tiles.rows()), threads(side, side / strip);
-  if (law.onward > 0.0f)
-    relax_tiles_kernel<strip><<<tiles, threads, 0, cuda::stream(exec)>>>(law, law.onward);
-  else
-    relax_tiles_kernel<strip><<<tiles, threads, 0, cuda::stream(exec)>>>(law, NoOnward{});
+  if constexpr (!Then::anything)
+    if (law.onward > 0.0f) {
+      relax_tiles_kernel<strip><<<tiles, threads, 0, cuda::stream(exec)>>>(law, law.onward, then);
+      return check_cuda(cudaGetLastError(), "launch over tiles, tuned");
+    }
+  relax_tiles_kernel<strip><<<tiles, threads, 0, cuda::stream(exec)>>>(law, NoOnward{}, then);
   check_cuda(cudaGetLastError(), "launch over tiles, tuned");
 }
 
+/// If it can be done in the same pass: blocks lie in one tile each, and all tiles are passed over.
+template <class Then>
+bool relaxed_with(CudaExec& exec, const RelaxTile& law, const Then& then) {
+  if (law.open || law.onward > 0.0f || !blocks_share_tiles(law.tiles)) return false;
+  if (law.tiles.count() >= tiles_for_long)
+    launch<long_strip>(exec, law, then);
+  else
+    launch<short_strip>(exec, law, then);
+  return true;
+}
+
 }  // namespace
+}  // namespace tuned
 
 void relax_tiles(CudaExec& exec, const RelaxTile& law) {
   const int tiles = law.tiles.count();
-  if (tiles >= tiles_for_long && !law.open) return launch<long_strip>(exec, law);
-  if (tiles >= tiles_for_short) return launch<short_strip>(exec, law);
-  launch<shortest_strip>(exec, law);
+  if (tiles >= tuned::tiles_for_long && !law.open)
+    return tuned::launch<tuned::long_strip>(exec, law, tuned::Nothing{});
+  if (tiles >= tuned::tiles_for_short) return tuned::launch<tuned::short_strip>(exec, law, tuned::Nothing{});
+  tuned::launch<tuned::shortest_strip>(exec, law, tuned::Nothing{});
+}
+
+void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const Restrict& then) {
+  if (tuned::relaxed_with(exec, law, tuned::ThenRestrict{then})) return;
+  relax_tiles(exec, law);
+  for_each_cell(exec, then.blocks(), then);
+}
+
+void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const surface::MeasureBlock& then) {
+  if (tuned::relaxed_with(exec, law, tuned::ThenMeasure{then})) return;
+  relax_tiles(exec, law);
+  for_each_cell(exec, then.blocks, then);
 }
 
 }  // namespace desert_sim::avalanching

@@ -74,6 +74,7 @@ void Simulation::set_parameters(const std::vector<std::string>& settings) {
     throw;
   }
   derived_ready_ = false;
+  heights_stale_ = true;
   const auto regime = [](const Scenario& s) {
     YAML::Emitter out;
     yaml::keep_all_bits(out);
@@ -147,6 +148,7 @@ CommandResult Simulation::apply(const command::EditWind& command) {
 }
 
 CommandResult Simulation::apply(const command::EditTerrain& command, bool with_change) {
+  heights_stale_ = true;
   TerrainEdit edit(command, terrain_, scenario_.grid, ledger());
   const bool bedrock = edit.material() == Material::bedrock, soil = edit.material() == Material::soil;
   if (bedrock || soil) prepare_ground_avalanches();

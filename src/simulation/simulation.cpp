@@ -67,7 +67,8 @@ void Simulation::run_processes(E& exec) {
   if (s.avalanching.enabled)
     run(exec, "avalanching", {Layer::sand, Layer::bedrock}, [&] {
       slide_ground(exec, view);
-      avalanching::step(exec, view, s.avalanching, steps_, repose_.data(), avalanche_work_);
+      avalanching::step(exec, view, s.avalanching, steps_, repose_.data(), surface::measuring(view, heights_),
+                        avalanche_work_);
     });
 }
 
@@ -130,7 +131,7 @@ void Simulation::slide_ground(E& exec, const TerrainView& view) {
 
 template <class E>
 void Simulation::update_wind(E& exec, const TerrainView& view) {
-  surface::measure(exec, view, heights_);
+  if (heights_stale_) surface::measure(exec, view, heights_);
   if (features_)
     wind_features::step(exec, view.grid, features_, static_cast<float>(time()), repose_.data(),
                         perturbation_x_.data(), perturbation_y_.data());
@@ -206,9 +207,11 @@ void Simulation::step() {
   follow_timeline();
   const auto work = [this] { with_backend(exec(), [this](auto& e) { run_processes(e); }); };
   if (recordable())
-    recordings_.run(exec(), {wind_above(), steps_ % avalanching::turns, terrain_.view()}, work);
+    recordings_.run(exec(), {wind_above(), steps_ % avalanching::turns, heights_stale_, terrain_.view()},
+                    work);
   else
     work();
+  heights_stale_ = !scenario_.avalanching.enabled || scenario_.has_water() || scenario_.soil.enabled;
   if (scenario_.has_water()) with_backend(exec(), [this](auto& e) { run_water(e); });
   // Soil dries to sand, and becomes soil again (C5).
   if (scenario_.soil.enabled)

@@ -210,6 +210,8 @@ class Simulation {
   std::uint64_t steps_ = 0;
   Quanta wind_reference_ = 0;  ///< lowest solid surface at load
   bool derived_ready_ = false;
+  bool heights_stale_ =
+      true;  ///< something other than an avalanche, which measures them, has moved ground since
   bool bedrock_loose_ = false;  ///< bedrock was edited and has not come to rest since
   bool soil_loose_ = false;     ///< soil, or bedrock below it, was edited and soil has not come to rest since
   std::size_t next_entry_ = 0;  ///< of the timeline

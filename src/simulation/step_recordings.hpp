@@ -18,7 +18,8 @@ namespace desert_sim {
 /// All that a step's kernels are given and that can differ between two steps with the same parameters.
 struct StepKey {
   wind::Vector wind_above;
-  std::uint64_t turn = 0;  ///< of the avalanches' seams
+  std::uint64_t turn = 0;      ///< of the avalanches' seams
+  bool heights_stale = false;  ///< whether the step measures heights first
   TerrainView view;
   bool operator==(const StepKey& other) const;
 };

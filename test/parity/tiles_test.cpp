@@ -39,6 +39,32 @@ TEST(TilesOfFamilies, AreTheSameBitForBit) {
   for (const test::TileField& field : test::tile_fields_of_families()) expect_same_bits(field, 1, 0.98f);
 }
 
+/// In passing, where blocks lie in one tile each, and as a pass of its own.
+TEST_P(TileParity, WhatIsFilledAfterwardsIsBitForBit) {
+  DESERT_NEED_GPU();
+  const auto cpu = make_exec("cpu", 2), cuda = make_exec("cuda");
+  const test::TileField field = test::tile_fields()[static_cast<std::size_t>(GetParam())];
+  for (int offset : {0, 4, 20, 6}) {
+    SCOPED_TRACE(field.name + ", offset " + std::to_string(offset));
+    EXPECT_TRUE(field.relaxed_and_measured(*cpu, offset) == field.relaxed_and_measured(*cuda, offset));
+    if (field.coarse().cells() == 0) continue;
+    EXPECT_TRUE(field.relaxed_and_restricted(*cpu, offset) == field.relaxed_and_restricted(*cuda, offset));
+  }
+}
+
+/// Long strips, which only many tiles get.
+TEST(ManyTiles, AreTheSameBitForBit) {
+  DESERT_NEED_GPU();
+  const auto cpu = make_exec("cpu", 2), cuda = make_exec("cuda");
+  const test::TileField field = test::tiled(test::tile_fields().front(), 13, 20);
+  ASSERT_GE((Tiles{field.grid, 0}.count()), 1200);
+  for (int offset : {0, 12}) {
+    EXPECT_TRUE(field.relaxed(*cpu, offset, 4, true) == field.relaxed(*cuda, offset, 4, false));
+    EXPECT_TRUE(field.relaxed_and_restricted(*cpu, offset) == field.relaxed_and_restricted(*cuda, offset));
+    EXPECT_TRUE(field.relaxed_and_measured(*cpu, offset) == field.relaxed_and_measured(*cuda, offset));
+  }
+}
+
 TEST(ClosedTiles, AreTheSameBitForBit) {
   DESERT_NEED_GPU();
   test::TileField field = test::tile_fields().front();

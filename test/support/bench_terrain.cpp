@@ -122,7 +122,10 @@ void BenchTerrain::reptation(const ReptationParameters& p, const ReposeParameter
 
 int BenchTerrain::avalanche(const AvalanchingParameters& p, std::uint64_t tick) {
   avalanching::Workspace work = avalanching::make_workspace(exec(), grid(), p);
-  with_backend(exec(), [&](auto& e) { avalanching::step(e, terrain.view(), p, tick, repose.data(), work); });
+  with_backend(exec(), [&](auto& e) {
+    avalanching::step(e, terrain.view(), p, tick, repose.data(), surface::measuring(terrain.view(), heights),
+                      work);
+  });
   exec().synchronise();
   return work.iterations;
 }

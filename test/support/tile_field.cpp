@@ -1,6 +1,7 @@
 #include "support/tile_field.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <functional>
 
 #include "desert_sim/kernels/random.hpp"
@@ -19,6 +20,15 @@ Buffer<T> on(Exec& exec, const std::vector<T>& values) {
 template <class T>
 T* or_null(Buffer<T>& buffer, const std::vector<T>& values) {
   return values.empty() ? nullptr : buffer.data();
+}
+
+/// The bits of a buffer's values behind those that are there.
+template <class T>
+void append(std::vector<std::uint32_t>& bits, const Buffer<T>& buffer) {
+  for (T value : buffer.download()) {
+    bits.emplace_back();
+    std::memcpy(&bits.back(), &value, sizeof value);
+  }
 }
 
 /// Uniform in [0, 1), of its own for each purpose.
@@ -47,26 +57,86 @@ TileField field(const std::string& name, const Grid& grid, const Height& ground,
 
 }  // namespace
 
+struct TileField::There {
+  Buffer<Quanta> ground, sand, soil;
+  Buffer<float> obstacle, repose;
+  avalanching::LevelView level;
+
+  There(Exec& exec, const TileField& f)
+      : ground(on(exec, f.ground)),
+        sand(on(exec, f.sand)),
+        soil(on(exec, f.soil)),
+        obstacle(on(exec, f.obstacle)),
+        repose(on(exec, f.repose)),
+        level{f.grid,      ground.data(), or_null(soil, f.soil), or_null(obstacle, f.obstacle),
+              sand.data(), repose.data(), f.quanta_per_cell} {}
+};
+
 std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool by_law, float transfer,
                                        float rest, float plenty, float onward) const {
-  Buffer<Quanta> ground_there = on(exec, ground), sand_there = on(exec, sand), soil_there = on(exec, soil);
-  Buffer<float> obstacle_there = on(exec, obstacle), repose_there = on(exec, repose);
-  const avalanching::LevelView level{grid,
-                                     ground_there.data(),
-                                     or_null(soil_there, soil),
-                                     or_null(obstacle_there, obstacle),
-                                     sand_there.data(),
-                                     repose_there.data(),
-                                     quanta_per_cell};
+  There there(exec, *this);
   Buffer<Quanta> before = on(exec, coarse_before), after = on(exec, coarse_after);
   const avalanching::Prolong from_coarse{coarse(), or_null(after, coarse_after),
-                                         or_null(before, coarse_before), grid, sand_there.data()};
+                                         or_null(before, coarse_before), grid, there.sand.data()};
   Buffer<Quanta> open_there = on(exec, open);
-  const avalanching::RelaxTile law{
-      {grid, offset}, level, from_coarse, transfer, rest, sweeps, plenty, onward, or_null(open_there, open)};
+  const avalanching::RelaxTile law{{grid, offset}, there.level, from_coarse,
+                                   transfer,       rest,        sweeps,
+                                   plenty,         onward,      or_null(open_there, open)};
   with_backend(
       exec, [&](auto& e) { by_law ? avalanching::relax_by_law(e, law) : avalanching::relax_tiles(e, law); });
-  return sand_there.download();
+  return there.sand.download();
+}
+
+avalanching::RelaxTile TileField::three_sweeps(There& there, int offset) const {
+  return {{grid, offset}, there.level, {}, 1.0f, 0.98f, 3, 0.2f};
+}
+
+std::vector<std::uint32_t> TileField::relaxed_and_restricted(Exec& exec, int offset) const {
+  There there(exec, *this);
+  struct Coarse {
+    Buffer<Quanta> ground, sand, sand_before;
+    Buffer<float> repose;
+    avalanching::LevelOut out;
+    Coarse(Exec& e, const Grid& g)
+        : ground(e, cells(g)),
+          sand(e, cells(g)),
+          sand_before(e, cells(g)),
+          repose(e, cells(g)),
+          out{g, ground.data(), sand.data(), sand_before.data(), repose.data()} {}
+    static std::size_t cells(const Grid& g) { return static_cast<std::size_t>(g.cells()); }
+  };
+  const Grid half = coarse(),
+             quarter{half.width / 2, half.height / 2, 2 * half.cell_size, half.periodic_x, half.periodic_y};
+  Coarse first(exec, half), second(exec, quarter);
+  with_backend(exec, [&](auto& e) {
+    avalanching::relax_tiles_then(e, three_sweeps(there, offset),
+                                  avalanching::Restrict{there.level, first.out, second.out});
+  });
+  std::vector<std::uint32_t> bits;
+  append(bits, there.sand);
+  for (Coarse* level : {&first, &second}) {
+    append(bits, level->ground);
+    append(bits, level->sand);
+    append(bits, level->sand_before);
+    append(bits, level->repose);
+  }
+  return bits;
+}
+
+std::vector<std::uint32_t> TileField::relaxed_and_measured(Exec& exec, int offset) const {
+  There there(exec, *this);
+  surface::Heights heights = surface::make_heights(exec, grid);
+  with_backend(exec, [&](auto& e) {
+    avalanching::relax_tiles_then(
+        e, three_sweeps(there, offset),
+        surface::MeasureBlock{grid, there.ground.data(), or_null(there.soil, soil), there.sand.data(),
+                              heights.blocks, heights.of_cells.data(), heights.highest.data()});
+  });
+  std::vector<std::uint32_t> bits;
+  append(bits, there.sand);
+  append(bits, heights.of_cells);
+  append(bits, heights.highest);
+  return bits;
 }
 
 std::vector<TileField> tile_fields() {
@@ -117,6 +187,23 @@ std::vector<TileField> tile_fields() {
   walls.name = "nothing but walls";
   fields.push_back(walls);
   return fields;
+}
+
+TileField tiled(const TileField& field, int columns, int rows) {
+  TileField f;
+  f.name = field.name + ", many";
+  f.grid = field.grid;
+  f.grid.width *= columns;
+  f.grid.height *= rows;
+  f.quanta_per_cell = field.quanta_per_cell;
+  for (int y = 0; y < f.grid.height; ++y)
+    for (int x = 0; x < f.grid.width; ++x) {
+      const auto i = static_cast<std::size_t>(field.grid.index(x % field.grid.width, y % field.grid.height));
+      f.ground.push_back(field.ground[i]);
+      f.sand.push_back(field.sand[i]);
+      f.repose.push_back(field.repose[i]);
+    }
+  return f;
 }
 
 std::vector<TileField> tile_fields_of_families() {

@@ -2,6 +2,7 @@
 /// Levels for tests of the sweeps inside tiles: ordinary ones, and those that go to the ends of what floats
 /// can count.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -27,11 +28,22 @@ struct TileField {
   /// backend does it best.
   std::vector<Quanta> relaxed(Exec& exec, int offset, int sweeps, bool by_law, float transfer = 1,
                               float rest = 1, float plenty = 100, float onward = 0) const;
+  /// The sand after one pass of three sweeps, and what is filled after it, the bits of one layer after
+  /// another: both coarse levels, or the heights with the highest of each block.
+  std::vector<std::uint32_t> relaxed_and_restricted(Exec& exec, int offset) const;
+  std::vector<std::uint32_t> relaxed_and_measured(Exec& exec, int offset) const;
+
+ private:
+  struct There;  ///< the level in a backend's memory
+  avalanching::RelaxTile three_sweeps(There& there, int offset) const;
 };
 
 /// Dunes, cliffs of hundreds of metres, pits, films, columns as high as can be, walls, on whole and broken
 /// tiles.
 std::vector<TileField> tile_fields();
+
+/// `columns` × `rows` copies of a field beside each other.
+TileField tiled(const TileField& field, int columns, int rows);
 
 /// Fields to which a coarser grid has something to hand down: more sand, less, and as good as all.
 std::vector<TileField> tile_fields_of_families();
