@@ -74,6 +74,7 @@ struct Heights {
   Grid blocks;  ///< at the far edges with fewer cells
   Buffer<float> of_cells, highest;
 };
+Grid blocks_of(const Grid& grid);
 Heights make_heights(Exec& exec, const Grid& grid);
 
 /// The heights of one block's cells, and the highest of them.

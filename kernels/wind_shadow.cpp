@@ -13,8 +13,7 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const WindShadowParameter
   work.reciprocals = Buffer<float>(exec, reciprocals.size());
   work.reciprocals.upload(reciprocals);
   if (p.curved) return work;
-  const std::size_t blocks = static_cast<std::size_t>((grid.width + side - 1) / side) *
-                             static_cast<std::size_t>((grid.height + side - 1) / side);
+  const auto blocks = static_cast<std::size_t>(surface::blocks_of(grid).cells());
   work.lines = Buffer<int>(exec, blocks);
   const bool fits =
       (!grid.periodic_x || grid.width % side == 0) && (!grid.periodic_y || grid.height % side == 0);

@@ -10,22 +10,23 @@ constexpr double layer = 4;  // bytes a cell
 
 /// Passes of avalanching read ground, sand and tangents, and write sand. All coarse levels together have a
 /// third of the grid's cells; each is filled (ground, sand twice, tangents), passed over, and read again
-/// (sand, before and after). That the fine grid is read to fill the first is not counted: a pass could do it.
+/// (sand, before and after). The fine grid is read for the first in passing. The last pass writes the
+/// heights.
 ProcessCost avalanches(AvalancheQuality quality) {
   const avalanching::Schedule plan = avalanching::schedule(quality);
   const int fine = plan.before + plan.after;
-  const double coarse = (4 + 4 * plan.coarse + 2) / 3.0;
+  const double heights = 1, coarse = (4 + 4 * plan.coarse + 2) / 3.0;
   const std::string times = fine == 1 ? "" : " x " + std::to_string(fine);
-  return {"avalanching", layer * (4 * fine + coarse), "(bedrock, sand, tangents)" + times + "; levels",
-          "sand" + times + "; levels"};
+  return {"avalanching", layer * (4 * fine + coarse + heights),
+          "(bedrock, sand, tangents)" + times + "; levels", "sand" + times + "; levels; heights"};
 }
 
 }  // namespace
 
 std::vector<ProcessCost> cost_model(AvalancheQuality quality) {
   return {
-      {"wind", 6 * layer, "bedrock, sand; heights", "heights; wind (2)"},
-      {"wind_shadow", 4 * layer, "heights, wind (2)", "shadow"},
+      {"wind", 4 * layer, "heights; heights", "wind (2)"},
+      {"wind_shadow", 3 * layer, "heights, wind (2) of every other row", "shadow"},
       {"echo_dunes", 6 * layer, "heights, wind (2); cliffs", "cliffs; echo"},
       {"saltation", 13 * layer, "sand, airborne, wind (2), shadow; landed, sand, shadow",
        "sand, landed; sand, airborne, tangents"},

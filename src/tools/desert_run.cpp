@@ -38,8 +38,9 @@ const char usage[] =
     "says else\n"
     "  --describe            print every parameter as markdown\n"
     "  --quiet               no progress\n"
-    "Exit status: 0; 2 for input it refuses; 3 for a failure at run time; 130 after Ctrl-C (outputs are "
-    "written).\n";
+    "Exit status: 0; 1 if the books do not close (outputs are written); 2 for input it refuses; 3 for a "
+    "failure "
+    "at run time;\n130 after Ctrl-C (outputs are written).\n";
 
 volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
@@ -167,6 +168,9 @@ int main_(int argc, char** argv) {
     draw("--plot", "plot_run.py", o.text("plot", ""), plan.summaries);
   if (!plan.checkpoint.empty()) session->save_checkpoint(plan.checkpoint);
   if (plan.out.empty() && !o.has("quiet")) std::cout << summary(session->simulation(), report);
+  const std::string missing = missing_material(session->simulation().balance());
+  if (!missing.empty())
+    return std::fprintf(stderr, "desert_run: the books do not close: %s\n", missing.c_str()), 1;
   return interrupted ? 130 : 0;
 }
 

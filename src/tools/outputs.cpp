@@ -71,6 +71,14 @@ void prepare_folder(const std::string& folder) {
   if (access(folder.c_str(), W_OK) != 0) throw ConfigError("--out " + folder + ": cannot be written to");
 }
 
+std::string missing_material(const std::array<MaterialBalance, material_count>& balance) {
+  std::string missing;
+  for (std::size_t m = 0; m < balance.size(); ++m)
+    if (const long long quanta = balance[m].residual(); quanta != 0)
+      missing += (missing.empty() ? "" : ", ") + std::to_string(quanta) + " quanta of " + material_names[m];
+  return missing;
+}
+
 std::string summary(Simulation& s, const RunReport& report) {
   std::ostringstream out;
   const GridParameters& g = s.scenario().grid;

@@ -2,6 +2,7 @@
 
 #include "desert_sim/scenario/scenario.hpp"
 #include "desert_sim/simulation/session.hpp"
+#include "desert_sim/tools/outputs.hpp"
 #include "support/run_fixture.hpp"
 
 namespace desert_sim {
@@ -51,6 +52,19 @@ TEST_F(Run, WritesASummaryWithAllKeys) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '{'), std::count(text.begin(), text.end(), '}'));
   for (const char* bad : {"nan", "inf", "-nan"})
     EXPECT_EQ(text.find(": " + std::string(bad)), std::string::npos) << text;
+}
+
+TEST(Books, SayWhatIsMissing) {
+  std::array<MaterialBalance, material_count> balance{};
+  MaterialBalance& sand = balance[static_cast<std::size_t>(Material::sand)];
+  sand.initial = 100;
+  sand.in = 7;
+  sand.out = 5;
+  sand.final = 102;
+  EXPECT_EQ(missing_material(balance), "");
+  sand.final = 99;
+  balance[static_cast<std::size_t>(Material::water)].final = 2;
+  EXPECT_EQ(missing_material(balance), "-3 quanta of sand, 2 quanta of water");
 }
 
 TEST_F(Run, TimesEachProcess) {
