@@ -59,14 +59,15 @@ struct Angle {
         spared_shadow(p.use_shadow ? t.real(Layer::wind_shadow) : nullptr),
         repose(tangents_of_repose) {}
 
+  /// The tangent of dry bare sand. Reads, but does not write: a law that calls this before it writes anything
+  /// waits for memory once.
+  DESERT_HD float loosened(int i, float r, float speed) const {
+    if (!(loosening > 0.0f)) return tangents.sand;
+    return tangents.sand * exp_negative(loosening * r * speed * (1.0f - value_or_zero(spared_shadow, i)));
+  }
   /// v vegetation, m relative moisture.
-  DESERT_HD void set(int i, float r, float speed, float v, float m) const {
-    float sand = tangents.sand;
-    if (loosening > 0.0f) {
-      const float open = 1.0f - value_or_zero(spared_shadow, i);
-      sand *= exp_negative(loosening * r * speed * open);
-    }
-    repose[i] = lerp(sand, tangents.vegetated, v) * repose::moisture_factor(m);
+  DESERT_HD void set(int i, float dry_and_bare, float v, float m) const {
+    repose[i] = lerp(dry_and_bare, tangents.vegetated, v) * repose::moisture_factor(m);
   }
 };
 
@@ -75,8 +76,8 @@ struct Impacts {
   Angle angle;
   float* strength;  ///< [m], or null
 
-  DESERT_HD void set(int i, float r, float speed, float v, float m) const {
-    angle.set(i, r, speed, v, m);
+  DESERT_HD void set(int i, float r, float loosened_angle, float v, float m) const {
+    angle.set(i, loosened_angle, v, m);
     if (strength) strength[i] = r;
   }
 };
@@ -90,7 +91,8 @@ struct SetAngles {
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    angle.set(i, value_or_zero(strength, i), hypotenuse(wind_x[i], wind_y[i]), value_or_zero(vegetation, i),
+    const float speed = hypotenuse(wind_x[i], wind_y[i]);
+    angle.set(i, angle.loosened(i, value_or_zero(strength, i), speed), value_or_zero(vegetation, i),
               moisture(i));
   }
 };

@@ -84,9 +84,9 @@ struct LiftAndAdvect {
   DESERT_HD void prepare(int x, int y, Carried<count>& parcels, int n) const {
     const int i = in.grid.index(x, y);
     const float u = in.wind_x[i], v = in.wind_y[i];
-    const Quanta lying = sand[i], lift = lifted(i, lying, hypotenuse(u, v));
-    sand[i] = lying - lift;
-    parcels.set(n, x, y, subcells(u * cells_a_speed), subcells(v * cells_a_speed), airborne[i] + lift);
+    const Quanta lying = sand[i], carried = airborne[i], lift = lifted(i, lying, hypotenuse(u, v));
+    sand[i] = lying - lift;  // after all that is read, for which a GPU then waits once
+    parcels.set(n, x, y, subcells(u * cells_a_speed), subcells(v * cells_a_speed), carried + lift);
   }
 
   template <int count, class Add>
@@ -174,11 +174,12 @@ struct Deposit {
     const float held = share(i, cover, v, m);
     const Quanta deposited = take(held * (arriving * in.quantum), in.quanta_per_metre, arriving);
     const Quanta bouncing = arriving - deposited;
+    const float speed = hypotenuse(in.wind_x[i], in.wind_y[i]), strength = arriving * in.quantum * (1.0f - v);
+    const float angle = impacts.angle.loosened(i, strength, speed);
     sand[i] = cover + deposited;
     airborne[i] = bouncing;
-    const float speed = hypotenuse(in.wind_x[i], in.wind_y[i]);
     if (!bare) wear(i, cover, bouncing, speed, v, m, held);
-    impacts.set(i, arriving * in.quantum * (1.0f - v), speed, v, in.moisture(i));
+    impacts.set(i, strength, angle, v, in.moisture(i));
   }
 };
 

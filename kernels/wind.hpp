@@ -16,6 +16,7 @@
 /// Reads the heights of the surface; writes wind_x, wind_y.
 
 #include <memory>
+#include <type_traits>
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/buffer.hpp"
@@ -90,7 +91,9 @@ struct SmoothedGradients {
 /// Factor of the wind above, `rise` metres above the lowest ground.
 struct SpeedUp {
   float per_metre, lowest, highest;
-  DESERT_HD float operator()(float rise) const { return clamp(1.0f + per_metre * rise, lowest, highest); }
+  DESERT_HD float operator()(float rise) const {
+    return lower(higher(1.0f + per_metre * rise, lowest), highest);
+  }
 };
 
 /// The wind above, turned by the smoothed terrain, and what wind there is near the ground of each coarse cell
@@ -164,9 +167,9 @@ struct ProjectionCorrection {
 };
 
 /// The wind of each cell: direction from the coarse grid, speed by its own height, what the projection
-/// corrects, and the perturbation of local features (null where there is none). `strip` cells, one above the
-/// other, share what they read of the coarse grid.
-template <int strip>
+/// corrects, and, if `perturbed`, the perturbation of local features. `strip` cells, one above the other,
+/// share what they read of the coarse grid.
+template <int strip, bool perturbed>
 struct SurfaceWind {
   CoarseGrid coarse;
   const float* heights;
@@ -174,8 +177,8 @@ struct SurfaceWind {
   Vector above;
   float per_speed_squared;  ///< 1/|above|², or 0
   SpeedUp speed_up;
-  const Complex *turned, *correction;            ///< both null: the wind above, and none
-  const float *perturbation_x, *perturbation_y;  ///< both null: none
+  const Complex *turned, *correction;  ///< both null: the wind above, and none
+  const float *perturbation_x, *perturbation_y;
   float *wind_x, *wind_y;
 
   DESERT_HD Grid strips() const {
@@ -193,26 +196,30 @@ struct SurfaceWind {
   }
 
   DESERT_HD void operator()(int x, int n) const {
+    const int first = strip * n, rows = strip == 1 ? 1 : clamp_index(coarse.fine.height - first, strip + 1);
+    float h[strip];  // all are read before anything is written, for which a GPU then waits once
+    unrolled<strip>([&](auto k) DESERT_INLINE {
+      if (strip == 1 || k < rows) h[k] = heights[coarse.fine.index(x, first + k)];
+    });
     const AxisPlace across = coarse.across(x);
     CoarseColumn direction(turned, across, coarse.width), corrections(correction, across, coarse.width);
     int row = -1;
-    for (int k = 0; k < strip; ++k) {
-      const int y = strip * n + k;
-      if (strip > 1 && y >= coarse.fine.height) return;
-      const int i = coarse.fine.index(x, y);
-      const AxisPlace along = coarse.along(y);
+    unrolled<strip>([&](auto k) DESERT_INLINE {
+      if (strip > 1 && k >= rows) return;
+      const AxisPlace along = coarse.along(first + k);
       if (turned && (strip == 1 || along.first != row)) {
         direction.move_to(along);
         corrections.move_to(along);
         row = along.first;
       }
-      const float factor = speed_up((heights[i] - reference) * quantum);
+      const float factor = speed_up((h[k] - reference) * quantum);
       const Vector wind = turned ? at_full_speed(direction.at(along.share)) : above;
       const Complex corrected = corrections.at(along.share);
-      const Vector local = perturbation_x ? Vector{perturbation_x[i], perturbation_y[i]} : Vector{};
+      const int i = coarse.fine.index(x, first + k);
+      const Vector local = perturbed ? Vector{perturbation_x[i], perturbation_y[i]} : Vector{};
       wind_x[i] = wind.x * factor + corrected.re + local.x;
       wind_y[i] = wind.y * factor + corrected.im + local.y;
-    }
+    });
   }
 };
 
@@ -283,21 +290,24 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
   const SpeedUp speed_up{p.speedup, p.speedup_lowest, p.speedup_highest};
   const bool coarse_fields = p.warping || p.projection;
   if (coarse_fields) coarse_wind(exec, t, p, above, speed_above, speed_up, heights, lowest, work);
-  constexpr int strip = works_on_rows<E> ? 1 : 4;
-  const SurfaceWind<strip> law{work.coarse,
-                               heights.of_cells.data(),
-                               lowest,
-                               t.quantum,
-                               above,
-                               speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f,
-                               speed_up,
-                               coarse_fields ? work.turned.data() : nullptr,
-                               coarse_fields ? work.correction.data() : nullptr,
-                               perturbation_x,
-                               perturbation_y,
-                               t.real(Layer::wind_x),
-                               t.real(Layer::wind_y)};
-  for_each_cell(exec, law.strips(), law);
+  const auto run = [&](auto is_perturbed) {
+    constexpr int strip = works_on_rows<E> ? 1 : 4;
+    const SurfaceWind<strip, is_perturbed> law{work.coarse,
+                                               heights.of_cells.data(),
+                                               lowest,
+                                               t.quantum,
+                                               above,
+                                               speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f,
+                                               speed_up,
+                                               coarse_fields ? work.turned.data() : nullptr,
+                                               coarse_fields ? work.correction.data() : nullptr,
+                                               perturbation_x,
+                                               perturbation_y,
+                                               t.real(Layer::wind_x),
+                                               t.real(Layer::wind_y)};
+    for_each_cell(exec, law.strips(), law);
+  };
+  perturbation_x ? run(std::true_type()) : run(std::false_type());
 }
 
 }  // namespace wind
