@@ -290,8 +290,7 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
   const SpeedUp speed_up{p.speedup, p.speedup_lowest, p.speedup_highest};
   const bool coarse_fields = p.warping || p.projection;
   if (coarse_fields) coarse_wind(exec, t, p, above, speed_above, speed_up, heights, lowest, work);
-  const auto run = [&](auto is_perturbed) {
-    constexpr int strip = works_on_rows<E> ? 1 : 4;
+  const auto run = [&](auto strip, auto is_perturbed) {
     const SurfaceWind<strip, is_perturbed> law{work.coarse,
                                                heights.of_cells.data(),
                                                lowest,
@@ -307,7 +306,16 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
                                                t.real(Layer::wind_y)};
     for_each_cell(exec, law.strips(), law);
   };
-  perturbation_x ? run(std::true_type()) : run(std::false_type());
+  const auto run_strips = [&](auto strip) {
+    perturbation_x ? run(strip, std::true_type()) : run(strip, std::false_type());
+  };
+  constexpr int many_cells = 1 << 22;  // that fill a GPU even in long strips
+  if constexpr (works_on_rows<E>)
+    run_strips(std::integral_constant<int, 1>());
+  else if (t.grid.cells() >= many_cells)
+    run_strips(std::integral_constant<int, 8>());
+  else
+    run_strips(std::integral_constant<int, 4>());
 }
 
 }  // namespace wind
