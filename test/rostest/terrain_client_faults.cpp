@@ -2,6 +2,7 @@
 /// kills.
 #include <desert_sim/QueryTerrain.h>
 #include <desert_sim/Step.h>
+#include <std_msgs/Empty.h>
 
 #include <cmath>
 
@@ -195,6 +196,12 @@ TEST(Lifecycle, AKilledNodeThatStartsAnewIsFollowed) {
   const TerrainClient client(ros::NodeHandle(), options("/killed"));
   ASSERT_TRUE(client.wait_for_terrain(timeout));
   for (int n = 0; n < 10; ++n) ASSERT_TRUE(client.wait_for_step(step(*node, 2), timeout));
+  // The next node's numbers are seen to begin anew if this one's have come further than its first few.
+  ros::Publisher request = ros::NodeHandle().advertise<std_msgs::Empty>("/killed/request_keyframe", 1);
+  ASSERT_TRUE(wait_until([&] {
+    request.publish(std_msgs::Empty());
+    return client.map()->info().keyframe >= 10;
+  }));
   node.reset();
   EXPECT_TRUE(client.elevation(30, 10)) << "what it has, it has";
 
