@@ -22,58 +22,11 @@
 
 #include <vector>
 
-#include "desert_sim/core/parameters.hpp"
+#include "desert_sim/kernels/avalanching_parameters.hpp"
 #include "desert_sim/kernels/avalanching_tile.hpp"
 #include "desert_sim/kernels/avalanching_unsettled.hpp"
 
 namespace desert_sim {
-
-enum class AvalancheScheme : int { multilevel, sweeps, taylor_keyser };
-constexpr const char* avalanche_schemes[] = {"multilevel", "sweeps", "taylor_keyser"};
-enum class AvalancheQuality : int { fast, good, converged };
-constexpr const char* avalanche_qualities[] = {"fast", "good", "converged"};
-
-struct AvalanchingParameters {
-  bool enabled = true;
-  AvalancheScheme scheme = AvalancheScheme::multilevel;
-  AvalancheQuality quality = AvalancheQuality::good;
-  float transfer = 1.0f;
-  float rest = 0.98f;
-  float coarsest_cell = 4.0f;
-  int sweeps = 50;
-  float tolerance = 0.001f;
-  int max_iterations = 20000;
-  bool soil = true;
-  bool bedrock = true;
-  bool bedrock_to_sand = true;
-};
-
-constexpr auto parameter_table(const AvalanchingParameters*) {
-  using P = AvalanchingParameters;
-  return std::make_tuple(
-      parameter("enabled", &P::enabled, "Whether steep sand slides."),
-      parameter("scheme", &P::scheme, avalanche_schemes, "How slides are computed."),
-      parameter(
-          "quality", &P::quality, avalanche_qualities,
-          "fast: 2 x 3 fine sweeps, good: 3 x 3, both up to 8 a pass where much slides; converged: until "
-          "tolerance (also for sweeps)."),
-      parameter("transfer", &P::transfer, 0.05, 1, "1",
-                "Share of what would stabilise a cell that one sweep moves (k_c)."),
-      parameter("rest", &P::rest, 0.8, 1, "1",
-                "Slope that slides aim at, as a share of that at which sand starts to slide (multilevel)."),
-      parameter("coarsest_cell", &P::coarsest_cell, 0.001, 1000, "m",
-                "Width of cells at which coarsening stops."),
-      parameter("sweeps", &P::sweeps, 1, 100000, "1",
-                "Sweeps a step of the schemes sweeps and taylor_keyser, unless converged."),
-      parameter("tolerance", &P::tolerance, 1e-6, 1, "1",
-                "Largest excess that counts as converged, in cell sizes; multilevel gets to 2e-4."),
-      parameter("max_iterations", &P::max_iterations, 1, 1000000, "1",
-                "Most fine sweeps a step when converging."),
-      parameter("soil", &P::soil, "Whether steep soil slides, where it changed."),
-      parameter("bedrock", &P::bedrock, "Whether steep bedrock breaks, where it changed."),
-      parameter("bedrock_to_sand", &P::bedrock_to_sand, "Whether broken bedrock turns to sand."));
-}
-static_assert(table_is_complete<AvalanchingParameters>());
 
 namespace avalanching {
 
@@ -89,7 +42,11 @@ constexpr Schedule schedule(AvalancheQuality quality) {
   if (quality == AvalancheQuality::good) return {1, 3, 2, 3, 8, 0.15f};
   return {1, 3, 3, 8, 8, 0.2f};
 }
-static_assert(schedule(AvalancheQuality::converged).sweeps <= most_sweeps);
+constexpr bool is_bounded(const Schedule& plan) {
+  return plan.sweeps <= most_sweeps && plan.coarse_sweeps <= most_sweeps;
+}
+static_assert(is_bounded(schedule(AvalancheQuality::fast)) && is_bounded(schedule(AvalancheQuality::good)) &&
+              is_bounded(schedule(AvalancheQuality::converged)));
 
 /// A level's own memory (the finest uses the terrain's sand).
 struct Level {
