@@ -256,16 +256,19 @@ void sweep_all(E& exec, const LevelView& fine, const AvalanchingParameters& p, W
 }
 
 /// `repose`: tangents of each cell's angle of repose; `tick`: steps done; `heights`: measured when all is
-/// done.
+/// done, or null.
 template <class E>
 void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::uint64_t tick,
-          const float* repose, const surface::MeasureBlock& heights, Workspace& work) {
+          const float* repose, const surface::MeasureBlock* heights, Workspace& work) {
   const LevelView fine = finest(t, repose);
   const bool converge = p.quality == AvalancheQuality::converged;
   work.iterations = 0;
   if (p.scheme == AvalancheScheme::multilevel && !converge) {
     const Schedule plan = schedule(p.quality);
-    cycle(exec, fine, p, plan, tick, work, heights);
+    if (heights)
+      cycle(exec, fine, p, plan, tick, work, *heights);
+    else
+      cycle(exec, fine, p, plan, tick, work, NothingThen{});
     work.iterations = (plan.before + plan.after) * plan.sweeps;
     return;
   }
@@ -273,7 +276,7 @@ void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::ui
     settle(exec, fine, p, tick, work);
   else
     sweep_all(exec, fine, p, work);
-  for_each_cell(exec, heights.blocks, heights);
+  if (heights) for_each_cell(exec, passed_over(*heights), *heights);
 }
 
 }  // namespace avalanching

@@ -13,6 +13,8 @@
 /// Heights and amounts are floats that count whole units (avalanching_units.hpp). This is the reference; on a
 /// GPU tuned/avalanching_tile.cu gives the same bits sooner.
 
+#include <type_traits>
+
 #include "desert_sim/kernels/avalanching_laws.hpp"
 #include "desert_sim/kernels/avalanching_units.hpp"
 #include "desert_sim/kernels/surface.hpp"
@@ -235,28 +237,21 @@ template <class E>
 void relax_tiles(E& exec, const RelaxTile& law) {
   relax_by_law(exec, law);
 }
-/// All tiles, and then the coarse levels that the grid fills, or its heights: a backend may do that in
-/// passing.
-template <class E>
-void relax_tiles_then(E& exec, const RelaxTile& law, const Restrict& then) {
+/// What a pass can be followed by: nothing, filling coarse levels, or measuring the heights; the grid that
+/// the latter two are called for.
+struct NothingThen {};
+inline Grid passed_over(const Restrict& law) { return law.blocks(); }
+inline Grid passed_over(const surface::MeasureBlock& law) { return law.blocks; }
+/// All tiles, and then that: a backend may do it in passing.
+template <class E, class Then>
+void relax_tiles_then(E& exec, const RelaxTile& law, const Then& then) {
   relax_tiles(exec, law);
-  for_each_cell(exec, then.blocks(), then);
-}
-template <class E>
-void relax_tiles_then(E& exec, const RelaxTile& law, const surface::MeasureBlock& then) {
-  relax_tiles(exec, law);
-  for_each_cell(exec, then.blocks, then);
+  if constexpr (!std::is_same_v<Then, NothingThen>) for_each_cell(exec, passed_over(then), then);
 }
 #if DESERT_WITH_CUDA  // tuned/avalanching_tile.cu
 void relax_tiles(CudaExec& exec, const RelaxTile& law);
 void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const Restrict& then);
 void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const surface::MeasureBlock& then);
 #endif
-/// And then nothing.
-struct NothingThen {};
-template <class E>
-void relax_tiles_then(E& exec, const RelaxTile& law, NothingThen) {
-  relax_tiles(exec, law);
-}
 
 }  // namespace desert_sim::avalanching

@@ -74,6 +74,7 @@ struct Heights {
   Grid blocks;  ///< at the far edges with fewer cells
   Buffer<float> of_cells, highest;
 };
+/// The blocks as a coarser grid.
 Grid blocks_of(const Grid& grid);
 Heights make_heights(Exec& exec, const Grid& grid);
 
@@ -112,6 +113,7 @@ struct MeasureBlock {
   }
 };
 
+/// The law that measures all of `heights`.
 inline MeasureBlock measuring(const TerrainView& t, Heights& heights) {
   return {t.grid,         t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
           heights.blocks, heights.of_cells.data(),  heights.highest.data()};

@@ -87,10 +87,8 @@ struct HighestAround {
 
   DESERT_HD void operator()(int column, int row) const {
     float top = -static_cast<float>(wall_height);
-    const bool inside = blocks.inside(column - 1, row - 1) && blocks.inside(column + 1, row + 1);
     for (int y = row - 1; y <= row + 1; ++y)
-      for (int x = column - 1; x <= column + 1; ++x)
-        top = maximum(top, highest[inside ? blocks.index(x, y) : sample_index(blocks, x, y)]);
+      for (int x = column - 1; x <= column + 1; ++x) top = maximum(top, highest[sample_index(blocks, x, y)]);
     around[blocks.index(column, row)] = top + rounding(top);
   }
   /// More than what rounding adds to heights of this size, and to their differences [quanta].

@@ -194,15 +194,13 @@ void relax_tiles(CudaExec& exec, const RelaxTile& law) {
 }
 
 void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const Restrict& then) {
-  if (tuned::relaxed_with(exec, law, tuned::ThenRestrict{then})) return;
-  relax_tiles(exec, law);
-  for_each_cell(exec, then.blocks(), then);
+  if (!tuned::relaxed_with(exec, law, tuned::ThenRestrict{then}))
+    relax_tiles_then<CudaExec, Restrict>(exec, law, then);
 }
 
 void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const surface::MeasureBlock& then) {
-  if (tuned::relaxed_with(exec, law, tuned::ThenMeasure{then})) return;
-  relax_tiles(exec, law);
-  for_each_cell(exec, then.blocks, then);
+  if (!tuned::relaxed_with(exec, law, tuned::ThenMeasure{then}))
+    relax_tiles_then<CudaExec, surface::MeasureBlock>(exec, law, then);
 }
 
 }  // namespace desert_sim::avalanching

@@ -67,8 +67,9 @@ void Simulation::run_processes(E& exec) {
   if (s.avalanching.enabled)
     run(exec, "avalanching", {Layer::sand, Layer::bedrock}, [&] {
       slide_ground(exec, view);
-      avalanching::step(exec, view, s.avalanching, steps_, repose_.data(), surface::measuring(view, heights_),
-                        avalanche_work_);
+      const surface::MeasureBlock heights = surface::measuring(view, heights_);
+      avalanching::step(exec, view, s.avalanching, steps_, repose_.data(),
+                        avalanches_end_the_step() ? &heights : nullptr, avalanche_work_);
     });
 }
 
@@ -182,6 +183,10 @@ bool Simulation::shadow_can_wait() const {
          !timing_ && !checks_layers();
 }
 
+bool Simulation::avalanches_end_the_step() const {
+  return scenario_.avalanching.enabled && !scenario_.has_water() && !scenario_.soil.enabled;
+}
+
 bool Simulation::checks_layers() const {
   const int every = scenario_.run.check_every;
   return every > 0 && (steps_ + 1) % static_cast<std::uint64_t>(every) == 0;
@@ -211,7 +216,7 @@ void Simulation::step() {
                     work);
   else
     work();
-  heights_stale_ = !scenario_.avalanching.enabled || scenario_.has_water() || scenario_.soil.enabled;
+  heights_stale_ = !avalanches_end_the_step();
   if (scenario_.has_water()) with_backend(exec(), [this](auto& e) { run_water(e); });
   // Soil dries to sand, and becomes soil again (C5).
   if (scenario_.soil.enabled)

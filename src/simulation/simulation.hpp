@@ -155,9 +155,12 @@ class Simulation {
   Quanta sea_level() const;
   /// Whether the next step is the same work as others before and after it.
   bool recordable() const;
-  /// Whether the next step looks through the layers that it writes.
   bool shadow_can_wait() const;
+  /// Whether the next step looks through the layers that it writes.
   bool checks_layers() const;
+  /// Whether nothing moves ground in a step after the avalanches: what they measure is what the next step
+  /// needs.
+  bool avalanches_end_the_step() const;
   template <class E>
   void update_wind(E& exec, const TerrainView& view);
   /// Runs a process; on checking steps looks through the layers it writes; times it while timing is on.
@@ -210,8 +213,7 @@ class Simulation {
   std::uint64_t steps_ = 0;
   Quanta wind_reference_ = 0;  ///< lowest solid surface at load
   bool derived_ready_ = false;
-  bool heights_stale_ =
-      true;  ///< something other than an avalanche, which measures them, has moved ground since
+  bool heights_stale_ = true;   ///< ground has moved since heights_ were measured
   bool bedrock_loose_ = false;  ///< bedrock was edited and has not come to rest since
   bool soil_loose_ = false;     ///< soil, or bedrock below it, was edited and soil has not come to rest since
   std::size_t next_entry_ = 0;  ///< of the timeline

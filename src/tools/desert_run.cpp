@@ -38,9 +38,8 @@ const char usage[] =
     "says else\n"
     "  --describe            print every parameter as markdown\n"
     "  --quiet               no progress\n"
-    "Exit status: 0; 1 if the books do not close (outputs are written); 2 for input it refuses; 3 for a "
-    "failure "
-    "at run time;\n130 after Ctrl-C (outputs are written).\n";
+    "Exit status: 0; 1 if the books do not close; 2 for input it refuses; 3 for a failure at run time; 130\n"
+    "after Ctrl-C. Outputs are written but for 2 and 3.\n";
 
 volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
