@@ -168,9 +168,9 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
 /// Rounds of passes over what is not yet at rest, between two looks at what they left.
 constexpr int rounds_a_look = 2;
 static_assert(rounds_a_look % 2 == 0, "tiles of the last round and of the next change places with each");
-/// Of an excess slides in rounds: all, where only trains of small slides are left, because what a pair keeps
-/// it hands on in later sweeps, which is what takes time; less while something large slides, or it would go
-/// too far.
+/// Of an excess slides in rounds: all, because what is left after a cycle are mostly trains of small slides,
+/// and what a pair keeps of one it hands on in later sweeps, which is what takes time; less where something
+/// large slides, so that a cycle was not enough, or it would go too far.
 constexpr float share_in_trains = 1.0f, share_in_large_slides = 0.7f;
 
 /// The tiles of the round whose passes begin with `pass`.
@@ -212,14 +212,16 @@ void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std:
   const OpenTiles& open = work.open;
   std::array<long long, rounds_a_look + 1> steep{};  // cells: before each round, and after the last
   bool much = true;
+  int cycles = 0;
   for (int pass = 0; work.iterations < p.max_iterations;) {
     const long long left = steep.back();
     if (much) {
       cycle(exec, fine, p, plan, turn++, work, NothingThen{});
+      ++cycles;
       work.iterations += plan.fine_sweeps();
       find_unsettled(exec, fine, p.tolerance, turn, pass, 0, open);
     }
-    const float share = (much ? share_in_large_slides : share_in_trains) * p.transfer;
+    const float share = (much && cycles > 1 ? share_in_large_slides : share_in_trains) * p.transfer;
     for (int round = 1; round <= rounds_a_look; ++round) {
       const RoundOfTiles tiles = tiles_of_round(open, fine.grid, turn, pass, round);
       for (int n = 0; n < passes_a_round; ++n, ++pass)
