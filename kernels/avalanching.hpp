@@ -30,17 +30,15 @@ namespace desert_sim {
 
 namespace avalanching {
 
-/// Of a pair's excess slides so much (ω in avalanching_patch.hpp): ½ leaves the two at repose, more settles
-/// the whole sooner. With 0.8 slopes end too far below their angle.
-constexpr float share_of_excess = 0.68f;
-
 /// Sweeps, at least, of the one pass over the fine grid before the coarse levels, of the one over each coarse
 /// level, and of each of the last passes over the fine grid, whose seams lie elsewhere; and how much a pair
 /// moves [cell sizes] for its tile to go on (but in the first pass). With fewer sweeps in the first pass more
-/// is left to coarse levels, which slide what would have come to rest by itself.
+/// is left to coarse levels, which slide what would have come to rest by itself. `share`: of a pair's excess
+/// (ω in avalanching_patch.hpp); ½ leaves the two at repose, more settles the whole sooner, with 0.8 slopes
+/// end too far below their angle, and with more than 0.68 heaps that slide in many cycles too low.
 struct Schedule {
   int first_sweeps, coarse_sweeps, last_sweeps, last_passes;
-  float plenty;
+  float plenty, share;
 
   constexpr int fine_passes() const { return 1 + last_passes; }
   constexpr int fine_sweeps() const { return first_sweeps + last_passes * last_sweeps; }
@@ -49,10 +47,13 @@ struct Schedule {
   }
 };
 constexpr Schedule schedule(AvalancheQuality quality) {
-  if (quality == AvalancheQuality::fast) return {4, 8, 4, 1, 0.3f};
-  return {4, 8, 3, 2, 0.3f};  // converged goes on from there
+  if (quality == AvalancheQuality::fast) return {4, 8, 4, 1, 0.3f, 0.7f};
+  if (quality == AvalancheQuality::good) return {4, 8, 3, 2, 0.3f, 0.7f};
+  return {4, 8, 3, 2, 0.3f, 0.68f};
 }
-static_assert(schedule(AvalancheQuality::fast).is_bounded() && schedule(AvalancheQuality::good).is_bounded());
+static_assert(schedule(AvalancheQuality::fast).is_bounded() &&
+              schedule(AvalancheQuality::good).is_bounded() &&
+              schedule(AvalancheQuality::converged).is_bounded());
 
 /// A level's own memory (the finest uses the terrain's sand).
 struct Level {
@@ -98,15 +99,15 @@ inline bool families_share_tiles(const Grid& g) {
 /// Passes over one level, which first gets what the coarser one has done. `then`: what becomes of its cells
 /// (relax_tiles_then()).
 template <class E, class Then>
-void relax(E& exec, const LevelView& level, Prolong from_coarse, const AvalanchingParameters& p, int first,
-           int last, int sweeps, float plenty, std::uint64_t turn, const Then& then) {
+void relax(E& exec, const LevelView& level, Prolong from_coarse, float share, int first, int last, int sweeps,
+           float plenty, std::uint64_t turn, const Then& then) {
   if (from_coarse.sand_after && !families_share_tiles(level.grid)) {
     for_each_cell(exec, from_coarse.coarse, from_coarse);
     from_coarse = {};
   }
   for (int pass = first; pass < last; ++pass) {
     const Tiles tiles{level.grid, seam_offset(turn, pass)};
-    const RelaxTile law{tiles, level, from_coarse, share_of_excess * p.transfer, sweeps, plenty};
+    const RelaxTile law{tiles, level, from_coarse, share, sweeps, plenty};
     if (pass + 1 < last)
       relax_tiles(exec, law);
     else
@@ -148,21 +149,22 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
   views[0] = fine;
   view_levels(coarse, views.data());
   constexpr float never = 1e6f;
+  const float share = plan.share * p.transfer;
   if (coarse.empty())
-    relax(exec, fine, Prolong{}, p, 0, 1, plan.first_sweeps, never, turn, NothingThen{});
+    relax(exec, fine, Prolong{}, share, 0, 1, plan.first_sweeps, never, turn, NothingThen{});
   else
-    relax(exec, fine, Prolong{}, p, 0, 1, plan.first_sweeps, never, turn, filling(coarse, 0, fine));
+    relax(exec, fine, Prolong{}, share, 0, 1, plan.first_sweeps, never, turn, filling(coarse, 0, fine));
   for (std::size_t n = 2; n < coarse.size(); n += 2) {
     const Restrict law = filling(coarse, n, views[n]);
     for_each_cell(exec, law.blocks(), law);
   }
   Prolong change{};
   for (std::size_t n = coarse.size(); n > 0; --n) {
-    relax(exec, views[n], change, p, 0, 1, plan.coarse_sweeps, plan.plenty, turn, NothingThen{});
+    relax(exec, views[n], change, share, 0, 1, plan.coarse_sweeps, plan.plenty, turn, NothingThen{});
     const Level& done = coarse[n - 1];
     change = {done.grid, done.sand.data(), done.sand_before.data(), views[n - 1].grid, views[n - 1].sand};
   }
-  relax(exec, fine, change, p, 1, plan.fine_passes(), plan.last_sweeps, plan.plenty, turn, then);
+  relax(exec, fine, change, share, 1, plan.fine_passes(), plan.last_sweeps, plan.plenty, turn, then);
 }
 
 /// Rounds of passes over what is not yet at rest, between two looks at what they left.
