@@ -8,7 +8,7 @@
 ///      registers       heights and depths in the tile's units; what falls to the patch from the coarse level
 ///           |
 ///      shared memory   heights, top of the ground, drop at repose      <---+
-///           |   by patches shifted by half a patch                         | heights
+///           |   by patches, elsewhere in each sweep                        | heights
 ///      registers       the pairs of a patch, one after the other       ----+
 ///           |
 ///      global memory   sand, 16 bytes a row of a patch; and what is made of a block of 4 × 4 cells
