@@ -4,18 +4,18 @@
 ///   B_ij = max(h_i − h_j − tan θ_i d l, 0),  A_i = min(k_c B_max/(1 + B_max/B_sum), s_i),  j gets A_i B_ij /
 ///   B_sum
 ///
-/// Releases are computed from one state, then handed over: what a donor loses is to the bit what its
-/// receivers get, so that nothing is made or lost and no order matters. Obstacles neither give nor take (they
-/// stand as walls).
+/// What a donor loses is to the bit what its receivers get, so that nothing is made or lost. Obstacles
+/// neither give nor take (they stand as walls).
 ///
 /// Schemes: `multilevel` (the default), half a V-cycle a step: the fine grid is relaxed a little, so that
 /// small slides end where they are; sand and ground are averaged down by two a level until cells are
 /// `coarsest_cell` wide; the coarsest is relaxed first, the change handed to the four children, and the fine
 /// grid relaxed again last. Each relaxation is sweeps inside closed tiles whose seams move between passes
-/// (avalanching_tile.hpp), which leave what is below 2e-4 cell sizes. A slide that has begun aims at a slope
-/// a little below the angle of repose (`rest`), as that of sand does; or hardly anything would be at rest
-/// after so few sweeps. What `converged` adds: settle(). `sweeps`: synchronous sweeps of the whole grid, the
-/// reference. `taylor_keyser`: k_c = 0.25 of the largest drop, by tangents, for comparison.
+/// (avalanching_tile.hpp): pair by pair, each seeing what those before it have done (avalanching_patch.hpp),
+/// which settles in fewer sweeps than releases from one state, with half of the arithmetic. It leaves what
+/// is below 2e-4 cell sizes. What `converged` adds: settle(). `sweeps`: synchronous sweeps of the whole grid
+/// by the equation above, the reference. `taylor_keyser`: k_c = 0.25 of the largest drop, by tangents, for
+/// comparison.
 ///
 /// Reads bedrock, soil, obstacle and the repose tangents; writes sand. Soil and bedrock:
 /// avalanching_ground.hpp.
@@ -30,23 +30,31 @@ namespace desert_sim {
 
 namespace avalanching {
 
-/// Passes over shifted tiles: of the fine grid before the coarse levels, of each coarse level, and of the
-/// fine grid after them; sweeps in each at least, of the fine grid and of a coarse level; and how much a cell
-/// gives [cell sizes] for its tile to go on (but before the coarse levels).
+/// Sweeps, at least, of the one pass over the fine grid before the coarse levels, of the one over each coarse
+/// level, and of each of the last passes over the fine grid, whose seams lie elsewhere; and how much a pair
+/// moves [cell sizes] for its tile to go on (but in the first pass). With fewer sweeps in the first pass more
+/// is left to coarse levels, which slide what would have come to rest by itself. `share`, `coarse_share`: of
+/// a pair's excess (ω in avalanching_patch.hpp) on the fine grid and on coarse levels; ½ leaves the two at
+/// repose, more settles the whole sooner, with 0.8 slopes end too far below their angle. Coarse levels make
+/// somewhat more slopes of 6 … 18 degrees than there should be, the more the larger their share.
 struct Schedule {
-  int before, coarse, after, sweeps, coarse_sweeps;
-  float plenty;
+  int first_sweeps, coarse_sweeps, last_sweeps, last_passes;
+  float plenty, share, coarse_share;
+
+  constexpr int fine_passes() const { return 1 + last_passes; }
+  constexpr int fine_sweeps() const { return first_sweeps + last_passes * last_sweeps; }
+  constexpr bool is_bounded() const {
+    return first_sweeps <= most_sweeps && coarse_sweeps <= most_sweeps && last_sweeps <= most_sweeps;
+  }
 };
 constexpr Schedule schedule(AvalancheQuality quality) {
-  if (quality == AvalancheQuality::fast) return {1, 2, 1, 3, 3, 0.3f};
-  if (quality == AvalancheQuality::good) return {1, 3, 2, 3, 8, 0.15f};
-  return {1, 3, 3, 8, 8, 0.2f};
+  if (quality == AvalancheQuality::fast) return {4, 8, 4, 1, 0.3f, 0.7f, 0.6f};
+  if (quality == AvalancheQuality::good) return {4, 8, 3, 2, 0.3f, 0.7f, 0.7f};
+  return {4, 8, 3, 2, 0.3f, 0.6f, 0.6f};
 }
-constexpr bool is_bounded(const Schedule& plan) {
-  return plan.sweeps <= most_sweeps && plan.coarse_sweeps <= most_sweeps;
-}
-static_assert(is_bounded(schedule(AvalancheQuality::fast)) && is_bounded(schedule(AvalancheQuality::good)) &&
-              is_bounded(schedule(AvalancheQuality::converged)));
+static_assert(schedule(AvalancheQuality::fast).is_bounded() &&
+              schedule(AvalancheQuality::good).is_bounded() &&
+              schedule(AvalancheQuality::converged).is_bounded());
 
 /// A level's own memory (the finest uses the terrain's sand).
 struct Level {
@@ -92,15 +100,15 @@ inline bool families_share_tiles(const Grid& g) {
 /// Passes over one level, which first gets what the coarser one has done. `then`: what becomes of its cells
 /// (relax_tiles_then()).
 template <class E, class Then>
-void relax(E& exec, const LevelView& level, Prolong from_coarse, const AvalanchingParameters& p, int first,
-           int last, int sweeps, float plenty, std::uint64_t turn, const Then& then) {
+void relax(E& exec, const LevelView& level, Prolong from_coarse, float share, int first, int last, int sweeps,
+           float plenty, std::uint64_t turn, const Then& then) {
   if (from_coarse.sand_after && !families_share_tiles(level.grid)) {
     for_each_cell(exec, from_coarse.coarse, from_coarse);
     from_coarse = {};
   }
   for (int pass = first; pass < last; ++pass) {
     const Tiles tiles{level.grid, seam_offset(turn, pass)};
-    const RelaxTile law{tiles, level, from_coarse, p.transfer, p.rest, sweeps, plenty};
+    const RelaxTile law{tiles, level, from_coarse, share, sweeps, plenty};
     if (pass + 1 < last)
       relax_tiles(exec, law);
     else
@@ -142,30 +150,30 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
   views[0] = fine;
   view_levels(coarse, views.data());
   constexpr float never = 1e6f;
+  const float share = plan.share * p.transfer, coarse_share = plan.coarse_share * p.transfer;
   if (coarse.empty())
-    relax(exec, fine, Prolong{}, p, 0, plan.before, plan.sweeps, never, turn, NothingThen{});
+    relax(exec, fine, Prolong{}, share, 0, 1, plan.first_sweeps, never, turn, NothingThen{});
   else
-    relax(exec, fine, Prolong{}, p, 0, plan.before, plan.sweeps, never, turn, filling(coarse, 0, fine));
+    relax(exec, fine, Prolong{}, share, 0, 1, plan.first_sweeps, never, turn, filling(coarse, 0, fine));
   for (std::size_t n = 2; n < coarse.size(); n += 2) {
     const Restrict law = filling(coarse, n, views[n]);
     for_each_cell(exec, law.blocks(), law);
   }
   Prolong change{};
   for (std::size_t n = coarse.size(); n > 0; --n) {
-    relax(exec, views[n], change, p, 0, plan.coarse, plan.coarse_sweeps, plan.plenty, turn, NothingThen{});
+    relax(exec, views[n], change, coarse_share, 0, 1, plan.coarse_sweeps, plan.plenty, turn, NothingThen{});
     const Level& done = coarse[n - 1];
     change = {done.grid, done.sand.data(), done.sand_before.data(), views[n - 1].grid, views[n - 1].sand};
   }
-  relax(exec, fine, change, p, plan.before, plan.before + plan.after, plan.sweeps, plan.plenty, turn, then);
+  relax(exec, fine, change, share, 1, plan.fine_passes(), plan.last_sweeps, plan.plenty, turn, then);
 }
 
 /// Rounds of passes over what is not yet at rest, between two looks at what they left.
 constexpr int rounds_a_look = 2;
 static_assert(rounds_a_look % 2 == 0, "tiles of the last round and of the next change places with each");
-/// Slides are handed on further (avalanching_units.hpp) from round to round, by so much, up to ½: the fewer
-/// there are left, the sooner they come to their end. With ½ from the start hardly a slope stayed near its
-/// angle of repose.
-constexpr float onward_a_round = 0.1f;
+/// Of an excess slides in rounds: all. What is left after a cycle are mostly trains of small slides, and what
+/// a pair keeps of one it hands on in later sweeps, which is what takes time.
+constexpr float share_in_rounds = 1.0f;
 
 /// The tiles of the round whose passes begin with `pass`.
 inline RoundOfTiles tiles_of_round(const OpenTiles& open, const Grid& grid, std::uint64_t turn, int pass,
@@ -205,22 +213,19 @@ void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std:
   const Schedule plan = schedule(p.quality);
   const OpenTiles& open = work.open;
   std::array<long long, rounds_a_look + 1> steep{};  // cells: before each round, and after the last
-  float onward = 0.0f;
   bool much = true;
   for (int pass = 0; work.iterations < p.max_iterations;) {
     const long long left = steep.back();
     if (much) {
       cycle(exec, fine, p, plan, turn++, work, NothingThen{});
-      work.iterations += (plan.before + plan.after) * plan.sweeps;
-      onward = 0.0f;
+      work.iterations += plan.fine_sweeps();
       find_unsettled(exec, fine, p.tolerance, turn, pass, 0, open);
     }
     for (int round = 1; round <= rounds_a_look; ++round) {
-      onward = minimum(onward + onward_a_round, 0.5f);
       const RoundOfTiles tiles = tiles_of_round(open, fine.grid, turn, pass, round);
       for (int n = 0; n < passes_a_round; ++n, ++pass)
-        relax_tiles(exec, RelaxTile{tiles.of(n), fine, Prolong{}, p.transfer, p.rest, most_sweeps, 0.0f,
-                                    onward, tiles.of_pass(n)});
+        relax_tiles(exec, RelaxTile{tiles.of(n), fine, Prolong{}, share_in_rounds * p.transfer, most_sweeps,
+                                    0.0f, tiles.of_pass(n)});
       find_unsettled(exec, fine, p.tolerance, turn, pass, round, open);
     }
     steep = open.steep_cells<rounds_a_look + 1>();
@@ -269,7 +274,7 @@ void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::ui
       cycle(exec, fine, p, plan, tick, work, *heights);
     else
       cycle(exec, fine, p, plan, tick, work, NothingThen{});
-    work.iterations = (plan.before + plan.after) * plan.sweeps;
+    work.iterations = plan.fine_sweeps();
     return;
   }
   if (p.scheme == AvalancheScheme::multilevel)

@@ -98,35 +98,68 @@ struct Restrict {
   }
 
   DESERT_HD void operator()(int x, int y) const {
+    if (fine.grid.width % 4 == 0 && first.grid.inside(2 * x + 1, 2 * y + 1)) return fill_whole(x, y);
     LevelCell filled[4] = {};
-    if (fine.grid.width % 4 == 0 && first.grid.inside(2 * x + 1, 2 * y + 1)) {
-      for (int half = 0; half < 2; ++half) {
-        LevelCell south[4], north[4];
-        fine_row(fine.grid.index(4 * x, 4 * y + 2 * half), south);
-        fine_row(fine.grid.index(4 * x, 4 * y + 2 * half + 1), north);
-        for (int n = 0; n < 2; ++n) {
-          const LevelCell children[4] = {south[2 * n], south[2 * n + 1], north[2 * n], north[2 * n + 1]};
-          filled[2 * half + n] = coarse_cell(children);
-        }
-      }
-      for (int n = 0; n < 4; ++n) first.put(2 * x + n % 2, 2 * y + n / 2, filled[n]);
-    } else {
-      for (int n = 0; n < 4; ++n) {
-        const int fx = 2 * x + n % 2, fy = 2 * y + n / 2;
-        if (!first.grid.inside(fx, fy)) continue;
-        const int i = fine.grid.index(2 * fx, 2 * fy), north = i + fine.grid.width;
-        const LevelCell children[4] = {fine_cell(i), fine_cell(i + 1), fine_cell(north),
-                                       fine_cell(north + 1)};
-        filled[n] = coarse_cell(children);
-        first.put(fx, fy, filled[n]);
-      }
+    for (int n = 0; n < 4; ++n) {
+      const int fx = 2 * x + n % 2, fy = 2 * y + n / 2;
+      if (!first.grid.inside(fx, fy)) continue;
+      const int i = fine.grid.index(2 * fx, 2 * fy), north = i + fine.grid.width;
+      const LevelCell children[4] = {fine_cell(i), fine_cell(i + 1), fine_cell(north), fine_cell(north + 1)};
+      filled[n] = coarse_cell(children);
+      first.put(fx, fy, filled[n]);
     }
     if (second.grid.inside(x, y)) second.put(x, y, coarse_cell(filled));
   }
+
+  /// Likewise where all of the cells are there and rows of the fine grid begin at multiples of 16 bytes.
+  DESERT_HD void fill_whole(int x, int y) const {
+    LevelCell filled[4] = {};
+    for (int half = 0; half < 2; ++half) {
+      LevelCell south[4], north[4];
+      fine_row(fine.grid.index(4 * x, 4 * y + 2 * half), south);
+      fine_row(fine.grid.index(4 * x, 4 * y + 2 * half + 1), north);
+      for (int n = 0; n < 2; ++n) {
+        const LevelCell children[4] = {south[2 * n], south[2 * n + 1], north[2 * n], north[2 * n + 1]};
+        filled[2 * half + n] = coarse_cell(children);
+      }
+    }
+    for (int n = 0; n < 4; ++n) first.put(2 * x + n % 2, 2 * y + n / 2, filled[n]);
+    if (second.grid.width > 0) second.put(x, y, coarse_cell(filled));
+  }
 };
 
-/// Hands a coarse cell's change to its four children: alike, but where one has too little to give, in
+/// Takes 4·|change| from four children in proportion to their sand; exactly.
+inline DESERT_RARE void take_in_proportion(Quanta change, Quanta* sand) {
+  long long all = 0;
+  for (int n = 0; n < 4; ++n) all += sand[n];
+  const long long wanted = -4LL * change;
+  long long missing = wanted;
+  for (int n = 0; n < 4; ++n) {
+    const Quanta part = static_cast<Quanta>(wanted * sand[n] / all);
+    sand[n] -= part;
+    missing -= part;
+  }
+  for (int n = 0; n < 4; ++n) {
+    const Quanta part = sand[n] < missing ? sand[n] : static_cast<Quanta>(missing);
+    sand[n] -= part;
+    missing -= part;
+  }
+}
+
+/// A coarse cell's change handed to its four children: alike, but where one has too little to give, in
 /// proportion to their sand. What the four change by is exactly four times the coarse change.
+DESERT_HD void hand_down(Quanta change, Quanta& a, Quanta& b, Quanta& c, Quanta& d) {
+  const Quanta south = a < b ? a : b, north = c < d ? c : d;
+  if ((south < north ? south : north) + change >= 0) {
+    a += change, b += change, c += change, d += change;
+    return;
+  }
+  Quanta sand[4] = {a, b, c, d};
+  take_in_proportion(change, sand);
+  a = sand[0], b = sand[1], c = sand[2], d = sand[3];
+}
+
+/// Hands a coarse cell's change down.
 struct Prolong {
   Grid coarse;
   const Quanta *sand_after, *sand_before;  ///< null: nothing to hand down
@@ -138,29 +171,7 @@ struct Prolong {
     const Quanta change = sand_after[i] - sand_before[i];
     if (change == 0) return;
     const int c = fine.index(2 * x, 2 * y);
-    const int child[4] = {c, c + 1, c + fine.width, c + fine.width + 1};
-    Quanta thinnest = sand[c];
-    long long all = 0;
-    for (int n = 0; n < 4; ++n) {
-      thinnest = sand[child[n]] < thinnest ? sand[child[n]] : thinnest;
-      all += sand[child[n]];
-    }
-    if (thinnest + change >= 0) {
-      for (int n = 0; n < 4; ++n) sand[child[n]] += change;
-      return;
-    }
-    const long long wanted = -4LL * change;
-    long long missing = wanted;
-    for (int n = 0; n < 4; ++n) {
-      const Quanta part = static_cast<Quanta>(wanted * sand[child[n]] / all);
-      sand[child[n]] -= part;
-      missing -= part;
-    }
-    for (int n = 0; n < 4; ++n) {
-      const Quanta part = sand[child[n]] < missing ? sand[child[n]] : static_cast<Quanta>(missing);
-      sand[child[n]] -= part;
-      missing -= part;
-    }
+    hand_down(change, sand[c], sand[c + 1], sand[c + fine.width], sand[c + fine.width + 1]);
   }
 };
 

@@ -15,7 +15,6 @@ struct AvalanchingParameters {
   AvalancheScheme scheme = AvalancheScheme::multilevel;
   AvalancheQuality quality = AvalancheQuality::good;
   float transfer = 1.0f;
-  float rest = 0.98f;
   float coarsest_cell = 4.0f;
   int sweeps = 50;
   float tolerance = 0.001f;
@@ -30,14 +29,11 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
   return std::make_tuple(
       parameter("enabled", &P::enabled, "Whether steep sand slides."),
       parameter("scheme", &P::scheme, avalanche_schemes, "How slides are computed."),
-      parameter(
-          "quality", &P::quality, avalanche_qualities,
-          "fast: 2 x 3 fine sweeps, good: 3 x 3, both up to 8 a pass where much slides; converged: until "
-          "tolerance (also for sweeps)."),
+      parameter("quality", &P::quality, avalanche_qualities,
+                "fast: 4 + 4 fine sweeps, good: 4 + 3 + 3, more where much slides; converged: until "
+                "tolerance (also for sweeps)."),
       parameter("transfer", &P::transfer, 0.05, 1, "1",
                 "Share of what would stabilise a cell that one sweep moves (k_c)."),
-      parameter("rest", &P::rest, 0.8, 1, "1",
-                "Slope that slides aim at, as a share of that at which sand starts to slide (multilevel)."),
       parameter("coarsest_cell", &P::coarsest_cell, 0.001, 1000, "m",
                 "Width of cells at which coarsening stops."),
       parameter("sweeps", &P::sweeps, 1, 100000, "1",

@@ -3,39 +3,73 @@
 /// the tile, obstacles, and what lies beyond the grid, stand in it as walls: infinitely high, so that nothing
 /// slides there, and without sand, so that nothing slides from there.
 ///
-/// A tile takes at least `sweeps` sweeps, unless it comes to rest, and goes on while one of its cells gives
-/// `plenty`.
+/// A sweep goes through the pairs of all patches of the tile (avalanching_patch.hpp). In each of four sweeps
+/// these begin a cell further east and south, so that all cells are alike to them:
 ///
-/// A sweep is synchronous: each cell lays out what it gives to its eight neighbours, then each takes what is
-/// laid out for it. Most of a desert is at rest: a row gives again only if a row within two of it gave in the
-/// sweep before, and takes only from rows that give. That leaves out only what would change nothing.
+// clang-format off
+///      . . . . . .
+///      . 0 . . . .     a corner of the patches in sweeps 0, 1, 2, 3, and then again;
+///      . . 1 . . .     every other pass begins with sweep 2
+///      . . . 2 . .
+///      . . . . 3 .
+// clang-format on
 ///
-/// Heights and amounts are floats that count whole units (avalanching_units.hpp). This is the reference; on a
-/// GPU tuned/avalanching_tile.cu gives the same bits sooner.
+/// What is shifted out of the tile on one side comes in on the other, where no pair reaches over the edge.
+/// Two sweeps that follow each other have all pairs between them, but for diagonal ones across an edge of
+/// each.
+///
+/// A tile takes `sweeps` sweeps, unless two that follow each other move nothing, and goes on while a pair
+/// moves `plenty`.
+///
+/// Heights are floats that count whole units (avalanching_units.hpp). This is the reference; on a GPU
+/// tuned/avalanching_tile.cu gives the same bits sooner.
 
 #include <type_traits>
 
 #include "desert_sim/kernels/avalanching_laws.hpp"
+#include "desert_sim/kernels/avalanching_patch.hpp"
 #include "desert_sim/kernels/avalanching_units.hpp"
 #include "desert_sim/kernels/surface.hpp"
 
 namespace desert_sim::avalanching {
 
+/// Sweeps that a tile may take before it is stored.
+constexpr int most_sweeps = 8;
+
+/// How far the patches of a sweep are shifted, to the east and to the north [cells].
+struct PatchShift {
+  int x, y;
+
+  /// Of the nth sweep of a pass whose tiles begin at −offset. Tiles of passes that follow each other lie 16
+  /// cells apart (seam_offsets in avalanching.hpp).
+  DESERT_HD PatchShift(int n, int offset) {
+    x = (n + offset / 16 * 2) % Patch::side;
+    y = (Patch::side - x) % Patch::side;
+  }
+  /// The share of what slides from a patch's column k to the next, in the tile's nth patch from the west:
+  /// none over the tile's edge. Likewise from row to row.
+  DESERT_HD float share_x(float share, int n, int k) const { return across(x, n, k) ? 0.0f : share; }
+  DESERT_HD float share_y(float share, int n, int k) const { return across(y, n, k) ? 0.0f : share; }
+
+ private:
+  DESERT_HD static bool across(int shift, int n, int k) {
+    return n * Patch::side + shift + k == Tiles::side - 1;
+  }
+};
+
 struct RelaxTile {
-  static constexpr int side = Tiles::side;
-  static constexpr int lead = 8, stride = lead + side,
-                       cells = (side + 2) * stride + lead;  // vectors begin at x = 0
-  static constexpr int flags = side + 4;  ///< a row's flag, with two rows of margin on either side
-  static constexpr int layouts =
-      Neighbours::count + 1;  ///< what a row lays out: eight parts, and what is left
+  static constexpr int side = Tiles::side, patches = side / Patch::side;  ///< along an axis
+  /// A row of cells lies in memory as four of patches' columns, each with the tile's first cell again at its
+  /// end: then patches beside each other are a vector, also where they are shifted over the edge.
+  static constexpr int column_stride = patches + 4, stride = Patch::side * column_stride,
+                       cells = side * stride;
 
   Tiles tiles;
   LevelView level;
-  Prolong from_coarse;  ///< what the tile's cells get first; their families lie in one tile
-  float transfer, rest;
+  Prolong from_coarse;           ///< what the tile's cells get first; their families lie in one tile
+  float share;                   ///< ω (avalanching_patch.hpp), in (0, 1]
   int sweeps;                    ///< at most most_sweeps
   float plenty;                  ///< [cell sizes]
-  float onward = 0.0f;           ///< how far slides are handed on (avalanching_units.hpp)
   const Quanta* open = nullptr;  ///< 0 for tiles that are left as they are; null: none
 
   DESERT_HD bool closed(int column, int row) const {
@@ -43,52 +77,32 @@ struct RelaxTile {
   }
 
   template <class Team>
-  static constexpr int scratch_bytes = (3 * cells + Team::rows_at_once * layouts * stride + 2 * flags) * 4;
+  static constexpr int scratch_bytes = 4 * cells * 4;
 
   template <class Team>
   DESERT_HD void operator()(const Team& team, int column, int row) const {
     if (closed(column, row)) return;
     float* h = reinterpret_cast<float*>(team.scratch);
-    float *ground = h + cells, *drop = ground + cells, *laid_out = drop + cells;
-    int* giving = reinterpret_cast<int*>(laid_out + Team::rows_at_once * layouts * stride);
-    int* giving_next = giving + flags;
-    const float k_c = transfer, ends = rest, on = onward;
-
-    clear(team, h, ground, drop, laid_out, giving);
+    float *ground = h + cells, *drop = ground + cells;
+    Quanta* base = reinterpret_cast<Quanta*>(drop + cells);
+    clear(team, h, ground, drop);
     if (from_coarse.sand_after)
       team.for_each(families, [=](int n) DESERT_INLINE { prolong_family(column, row, n); });
     Quanta lowest, highest;
     load_heights(team, column, row, h, lowest, highest);
     if (lowest >= wall_height) return;
     const Units units(lowest, highest, level.quanta_per_cell);
-    load(team, column, row, units, h, ground, drop);
-    bool moved = false;
+    load(team, column, row, units, h, ground, drop, base);
     const float much = units.drop(plenty, level.quanta_per_cell);
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-      const auto give = [=](int y) DESERT_INLINE {
-        const int* near = giving + y;  // rows y − 2 … y + 2
-        const bool stale = (near[0] | near[1] | near[2] | near[3] | near[4]) != 0;
-        float* to = laid_out + slot<Team>(y);
-        const float most = stale ? team.most_in_row([=](int x) DESERT_INLINE {
-          return lay_out(h, ground, drop, ends, k_c, on, local(x, y), to + x);
-        })
-                                 : 0.0f;
-        if (team.leads_row()) giving_next[y + 2] = most > much ? 2 : (most > 0.0f ? 1 : 0);
-      };
-      const auto take = [=](int y) DESERT_INLINE {
-        if (giving_next[y + 2]) take_what_is_left(team, h, laid_out + slot<Team>(y), y);
-        if (giving_next[y + 1]) take_from<2, 4, 6>(team, h, laid_out + slot<Team>(y - 1), y);
-        if (giving_next[y + 3]) take_from<3, 5, 7>(team, h, laid_out + slot<Team>(y + 1), y);
-      };
-      team.for_each_row_then_behind(give, take);
-      if (!team.any(side, [=](int y) { return giving_next[y + 2] != 0; })) break;
-      moved = true;
-      if (sweep + 1 >= sweeps && !team.any(side, [=](int y) { return giving_next[y + 2] == 2; })) break;
-      int* last = giving;
-      giving = giving_next;
-      giving_next = last;
+    bool moved = false, moved_before = true;
+    for (int n = 0; n < most_sweeps; ++n) {
+      const float most = sweep(team, PatchShift(n, tiles.offset), h, ground, drop);
+      moved = moved || most > 0.0f;
+      if (most == 0.0f && !moved_before) break;
+      if (n + 1 >= sweeps && !(most > much)) break;
+      moved_before = most > 0.0f;
     }
-    if (moved) store(team, column, row, units, h, ground);
+    if (moved) store(team, column, row, units, h, base);
   }
 
   static constexpr int families = side / 2 * (side / 2);
@@ -120,42 +134,76 @@ struct RelaxTile {
     if (periodic) return p < cells_along - tiles.offset ? wrap(p, cells_along) : -1;
     return p >= 0 && p < cells_along ? p : -1;
   }
-  DESERT_HD static int local(int x, int y) { return (y + 1) * stride + lead + x; }
-  DESERT_HD static constexpr int offset_to(int k) { return Neighbours::dy(k) * stride + Neighbours::dx(k); }
-  /// Where row y lays out: layout k of cell x at [k·stride + x]. Beside the row there is always 0.
+
+  /// Where column k of the nth patch of row y lies.
+  DESERT_HD static constexpr int local(int y, int n, int k) { return y * stride + k * column_stride + n; }
+
+  /// Where the cells of a row of patches lie, from patch `first` on.
+  struct At {
+    PatchShift shift;
+    int patch_row, first;
+    DESERT_HD int operator()(int row, int column) const {
+      const int y = (patch_row * Patch::side + shift.y + row) % side, x = shift.x + column;
+      return local(y, first + x / Patch::side, x % Patch::side);
+    }
+  };
+
+  /// The most that a pair has moved.
   template <class Team>
-  DESERT_HD static int slot(int y) {
-    return (y % Team::rows_at_once) * layouts * stride + lead;
+  DESERT_HD float sweep(const Team& team, const PatchShift& shift, float* h, const float* ground,
+                        const float* drop) const {
+    const float omega = share;
+    const auto copy_first = [=](int from, int to) DESERT_INLINE {
+      team.for_each(side, [=](int y) DESERT_INLINE {
+        for (int k = 0; k < shift.x; ++k) h[local(y, to, k)] = h[local(y, from, k)];
+      });
+    };
+    copy_first(0, patches);
+    const float most = team.most(patches * patches / Team::patches_at_once, [=](int i) DESERT_INLINE {
+      constexpr int lanes = Team::patches_at_once, pieces = patches / lanes;
+      const int patch_row = i / pieces, first = i % pieces * lanes;
+      Shares<lanes> shares;
+      float most_of[lanes] = {};
+      for (int k = 0; k + 1 < Patch::side; ++k) {
+        shares.y[k] = shift.share_y(omega, patch_row, k);
+        for (int n = 0; n < lanes; ++n) shares.x[k][n] = shift.share_x(omega, first + n, k);
+      }
+      PairsOfPatches<lanes, At>{h, ground, drop, At{shift, patch_row, first}, shares, most_of}.relax();
+      float most_here = 0.0f;
+      for (int n = 0; n < lanes; ++n) most_here = higher(most_here, most_of[n]);
+      return most_here;
+    });
+    copy_first(patches, 0);
+    return most;
   }
 
   /// Calls body(i, n) with the grid's cell and the tile's for each cell of the tile that is there.
   template <class Team, class Body>
   DESERT_HD void for_each_cell_of_tile(const Team& team, int column, int row, const Body& body) const {
     const int width = level.grid.width;
-    const int first = (row * side - tiles.offset) * width + column * side - tiles.offset;
+    const int corner = (row * side - tiles.offset) * width + column * side - tiles.offset;
     const bool simple = whole(column, row);
     team.for_each_row([=](int y) DESERT_INLINE {
+      const int first = corner + y * width;
       if (simple)
-        team.for_each_in_row([=](int x) DESERT_INLINE { body(first + y * width + x, local(x, y)); });
+        team.template for_each_in_row<Patch::side>(
+            [=](int n, auto k) DESERT_INLINE { body(first + n * Patch::side + k, local(y, n, k)); });
       else
-        team.for_each_in_row([=](int x) DESERT_INLINE {
-          const int there_x = grid_x(column, x), there_y = grid_y(row, y);
-          if (there_x >= 0 && there_y >= 0) body(there_y * width + there_x, local(x, y));
+        team.template for_each_in_row<Patch::side>([=](int n, auto k) DESERT_INLINE {
+          const int there_x = grid_x(column, n * Patch::side + k), there_y = grid_y(row, y);
+          if (there_x >= 0 && there_y >= 0) body(there_y * width + there_x, local(y, n, k));
         });
     });
   }
 
-  /// Walls everywhere; at first every row may give, the margins never do.
+  /// Walls everywhere.
   template <class Team>
-  DESERT_HD static void clear(const Team& team, float* h, float* ground, float* drop, float* laid_out,
-                              int* giving) {
+  DESERT_HD static void clear(const Team& team, float* h, float* ground, float* drop) {
     team.for_each(cells, [=](int n) DESERT_INLINE {
       h[n] = float_of(static_cast<std::uint32_t>(wall_height));
-      ground[n] = Units::wall_ground;
+      ground[n] = Units::wall;
       drop[n] = 0.0f;
     });
-    team.for_each(Team::rows_at_once * layouts * stride, [=](int n) DESERT_INLINE { laid_out[n] = 0.0f; });
-    team.for_each(2 * flags, [=](int n) DESERT_INLINE { giving[n] = n >= 2 && n < side + 2 ? 1 : 0; });
   }
 
   /// In `h` lie the bits of the integers until load() has their units. Lowest and highest: of all but walls.
@@ -173,57 +221,34 @@ struct RelaxTile {
     highest = -team.lowest(cells, depth);
   }
 
+  /// `base`: of a cell's sand, what does not change with its height.
   template <class Team>
   DESERT_HD void load(const Team& team, int column, int row, const Units& units, float* h, float* ground,
-                      float* drop) const {
+                      float* drop, Quanta* base) const {
     const LevelView from = level;
-    team.for_each(cells, [=](int n) DESERT_INLINE {
-      const Quanta height = static_cast<Quanta>(bits_of(h[n]));
-      h[n] = height < wall_height ? units.height(height) : Units::wall;
-    });
     for_each_cell_of_tile(team, column, row, [=](int i, int n) DESERT_INLINE {
-      ground[n] = h[n] < Units::wall ? h[n] - units.depth_over_film(from.sand[i]) : Units::wall_ground;
+      const Quanta height = static_cast<Quanta>(bits_of(h[n])), sand = from.sand[i];
+      const bool wall = height >= wall_height;
+      h[n] = wall ? Units::wall : units.height(height);
+      ground[n] = wall ? Units::wall : units.ground(height, sand);
       drop[n] = units.drop(from.repose[i], from.quanta_per_cell);
+      base[n] = sand - units.of_height(h[n]);
+    });
+    team.for_each(cells, [=](int n) DESERT_INLINE { h[n] = ground[n] == Units::wall ? Units::wall : h[n]; });
+    // The first cells of a row again at its end.
+    team.for_each(side * Patch::side, [=](int i) DESERT_INLINE {
+      const int y = i / Patch::side, k = i % Patch::side;
+      ground[local(y, patches, k)] = ground[local(y, 0, k)];
+      drop[local(y, patches, k)] = drop[local(y, 0, k)];
     });
   }
 
   template <class Team>
   DESERT_HD void store(const Team& team, int column, int row, const Units& units, const float* h,
-                       const float* ground) const {
+                       const Quanta* base) const {
     Quanta* sand = level.sand;
-    for_each_cell_of_tile(team, column, row, [=](int i, int n) DESERT_INLINE {
-      const Quanta gain = units.gain(ground[n] + units.depth_over_film(sand[i]), h[n]);
-      sand[i] += h[n] < Units::wall ? gain : 0;  // always stored: so it can be a vector
-    });
-  }
-
-  /// What cell n gives in all.
-  DESERT_HD static float lay_out(const float* h, const float* ground, const float* drop, float rest,
-                                 float transfer, float onward, int n, float* to) {
-    float around[Neighbours::count];
-    Neighbours::unrolled([&](auto k) DESERT_INLINE { around[k] = h[n + offset_to(k)]; });
-    const Slide slide(h[n], around, lower(lower(around[0], around[1]), lower(around[2], around[3])),
-                      lower(lower(around[4], around[5]), lower(around[6], around[7])), ground[n], drop[n],
-                      rest, transfer, onward);
-    Neighbours::unrolled([&](auto k) DESERT_INLINE { to[k * stride] = slide.part[k]; });
-    to[8 * stride] = slide.left;
-    return h[n] - slide.left;
-  }
-
-  /// What is left of row y, and what its cells give along it.
-  template <class Team>
-  DESERT_HD static void take_what_is_left(const Team& team, float* h, const float* from, int y) {
-    team.for_each_in_row([=](int x) DESERT_INLINE {
-      h[local(x, y)] = from[8 * stride + x] + (from[x - 1] + from[stride + x + 1]);
-    });
-  }
-  /// Parts a, b and c, which come from the next row on one side.
-  template <int a, int b, int c, class Team>
-  DESERT_HD static void take_from(const Team& team, float* h, const float* from, int y) {
-    team.for_each_in_row([=](int x) DESERT_INLINE {
-      h[local(x, y)] += from[a * stride + x - Neighbours::dx(a)] +
-                        (from[b * stride + x - Neighbours::dx(b)] + from[c * stride + x - Neighbours::dx(c)]);
-    });
+    for_each_cell_of_tile(team, column, row,
+                          [=](int i, int n) DESERT_INLINE { sand[i] = base[n] + units.of_height(h[n]); });
   }
 };
 

@@ -82,7 +82,7 @@ void with_widest_instructions(const Work& work) {
 
 /// One thread as the whole team that works on a tile.
 struct CpuTeam {
-  static constexpr int rows_at_once = 4;  ///< of what for_each_row_then_behind() leaves behind
+  static constexpr int patches_at_once = 8;  ///< patches of a tile that lie beside each other, as vectors
   char* scratch;
 
   /// Calls body(i) for i in 0…n−1; all of it is done when it returns.
@@ -90,19 +90,22 @@ struct CpuTeam {
   DESERT_HD void for_each(int n, const Body& body) const {
     for (int i = 0; i < n; ++i) body(i);
   }
-  /// Whether predicate(i) holds for any i in 0…n−1.
-  template <class Predicate>
-  DESERT_HD bool any(int n, const Predicate& predicate) const {
-    for (int i = 0; i < n; ++i)
-      if (predicate(i)) return true;
-    return false;
-  }
   /// The least of value(i) for i in 0…n−1.
   template <class Value>
   DESERT_HD int lowest(int n, const Value& value) const {
     int least = value(0);
     for (int i = 1; i < n; ++i) least = value(i) < least ? value(i) : least;
     return least;
+  }
+  /// Calls value(i) once for each i in 0…n−1; the greatest, at least 0.
+  template <class Value>
+  DESERT_HD float most(int n, const Value& value) const {
+    float greatest = 0;
+    for (int i = 0; i < n; ++i) {
+      const float v = value(i);
+      greatest = v > greatest ? v : greatest;
+    }
+    return greatest;
   }
   /// Both for x in 0…width−1 and y in 0…height−1, which do not depend on each other.
   template <class Body>
@@ -124,40 +127,18 @@ struct CpuTeam {
     }
     return least;
   }
-  /// Calls first(y) and second(y) for the rows of a tile: second(y) when first() is done for y − 1, y and y +
-  /// 1, and before first(y + rows_at_once − 1). It may change what first(y − 1 … y + 1) reads, no more. (One
-  /// row sooner it would wait for what first() has just written.)
-  template <class First, class Second>
-  DESERT_HD void for_each_row_then_behind(const First& first, const Second& second) const {
-    for (int y = 0; y < Tiles::side + 2; ++y) {
-      if (y < Tiles::side) first(y);
-      if (y > 1) second(y - 2);
-    }
-  }
   /// Calls body(y) for the rows of a tile; all are done when it returns.
   template <class Body>
   DESERT_HD void for_each_row(const Body& body) const {
     for (int y = 0; y < Tiles::side; ++y) body(y);
   }
-  /// Inside a row: body(x) for its cells, which do not depend on each other.
-  template <class Body>
+  /// Inside a row: body(n, k) for the cells n · count + k, which do not depend on each other; k is a
+  /// compile-time constant if that is of use.
+  template <int count, class Body>
   DESERT_HD void for_each_in_row(const Body& body) const {
 #pragma omp simd
-    for (int x = 0; x < Tiles::side; ++x) body(x);
+    for (int n = 0; n < Tiles::side / count; ++n) unrolled<count>([&](auto k) DESERT_INLINE { body(n, k); });
   }
-  /// Inside a row: runs body(x) for all its cells; the greatest of what it returns, at least 0.
-  template <class Body>
-  DESERT_HD float most_in_row(const Body& body) const {
-    float most = 0;
-#pragma omp simd reduction(max : most)
-    for (int x = 0; x < Tiles::side; ++x) {
-      const float value = body(x);
-      most = value > most ? value : most;
-    }
-    return most;
-  }
-  /// Inside a row: whether this is the one thread that writes what the row shares.
-  DESERT_HD bool leads_row() const { return true; }
 };
 
 /// Below so many cells, waking other threads costs more than they bring.

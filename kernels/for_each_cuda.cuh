@@ -65,7 +65,7 @@ struct AddingLaw {
 /// The 256 threads of a block as the team that works on a tile. (Marked host too, because laws are; empty
 /// there.)
 struct Team {
-  static constexpr int rows_at_once = Tiles::side;
+  static constexpr int patches_at_once = 1;
   char* scratch;
 
   template <class Body>
@@ -74,16 +74,6 @@ struct Team {
     for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y) body(i);
     __syncthreads();
 #endif
-  }
-  template <class Predicate>
-  DESERT_HD bool any(int n, const Predicate& predicate) const {
-    int found = 0;
-#if defined(__CUDA_ARCH__)
-    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y)
-      found |= predicate(i) ? 1 : 0;
-    found = __syncthreads_or(found);
-#endif
-    return found != 0;
   }
   template <class Value>
   DESERT_HD int lowest(int n, const Value& value) const {
@@ -103,6 +93,22 @@ struct Team {
     return 0;
 #endif
   }
+  template <class Value>
+  DESERT_HD float most(int n, const Value& value) const {
+    float greatest = 0;
+#if defined(__CUDA_ARCH__)
+    __shared__ int bits;  // of floats that are not negative, which order like their bits
+    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y)
+      greatest = fmaxf(greatest, value(i));
+    if (threadIdx.x == 0 && threadIdx.y == 0) bits = 0;
+    __syncthreads();
+    atomicMax(&bits, __float_as_int(greatest));
+    __syncthreads();
+    greatest = __int_as_float(bits);
+    __syncthreads();
+#endif
+    return greatest;
+  }
   template <class Body>
   DESERT_HD void for_each(int width, int height, const Body& body) const {
     for_each(width * height, [&](int i) { body(i % width, i / width); });
@@ -110,12 +116,6 @@ struct Team {
   template <class Value>
   DESERT_HD int lowest(int width, int height, const Value& value) const {
     return lowest(width * height, [&](int i) { return value(i % width, i / width); });
-  }
-  /// All rows by the first, then all by the second.
-  template <class First, class Second>
-  DESERT_HD void for_each_row_then_behind(const First& first, const Second& second) const {
-    for_each_row(first);
-    for_each_row(second);
   }
   /// A warp a row.
   template <class Body>
@@ -125,26 +125,11 @@ struct Team {
     __syncthreads();
 #endif
   }
-  template <class Body>
+  template <int count, class Body>
   DESERT_HD void for_each_in_row(const Body& body) const {
 #if defined(__CUDA_ARCH__)
-    body(static_cast<int>(threadIdx.x));
-#endif
-  }
-  template <class Body>
-  DESERT_HD float most_in_row(const Body& body) const {
-    float most = 0;
-#if defined(__CUDA_ARCH__)
-    most = fmaxf(most, body(static_cast<int>(threadIdx.x)));
-    for (int step = 16; step > 0; step /= 2) most = fmaxf(most, __shfl_xor_sync(0xffffffffu, most, step));
-#endif
-    return most;
-  }
-  DESERT_HD bool leads_row() const {
-#if defined(__CUDA_ARCH__)
-    return threadIdx.x == 0;
-#else
-    return true;
+    const int x = static_cast<int>(threadIdx.x);
+    body(x / count, x % count);
 #endif
   }
 };

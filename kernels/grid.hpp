@@ -1,8 +1,6 @@
 #pragma once
 /// The grid of cells: shape, boundaries, and the arithmetic of indices.
 
-#include <type_traits>
-
 #include "desert_sim/kernels/macros.hpp"
 
 namespace desert_sim {
@@ -70,15 +68,6 @@ struct Neighbours {
   }
   /// Distance in cells.
   DESERT_HD static constexpr float distance(int k) { return k < 4 ? 1.0f : 1.41421356f; }
-  /// body(k) for k = 0…7 with k as a compile-time constant: loops over cells vectorise only around straight
-  /// code.
-  template <class Body>
-  DESERT_HD static void unrolled(const Body& body) {
-    body(std::integral_constant<int, 0>()), body(std::integral_constant<int, 1>());
-    body(std::integral_constant<int, 2>()), body(std::integral_constant<int, 3>());
-    body(std::integral_constant<int, 4>()), body(std::integral_constant<int, 5>());
-    body(std::integral_constant<int, 6>()), body(std::integral_constant<int, 7>());
-  }
   DESERT_HD static float sum(const float (&v)[8]) {
     return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
   }

@@ -42,8 +42,8 @@ DESERT_HD float float_of(std::uint32_t bits) {
   memcpy(&v, &bits, sizeof v);
   return v;
 }
-/// max(v, 0) for v ≤ 1. A negative float's bits are a negative integer: of integers compilers see that this
-/// is a maximum, of floats they make comparisons and masks.
+/// max(v, 0) for v ≤ 1; from there on at least 1. A negative float's bits are a negative integer: of integers
+/// compilers see that this is a maximum, of floats they make comparisons and masks.
 DESERT_HD float positive_part(float v) {
 #if defined(__CUDA_ARCH__)
   return __saturatef(v);  // comes with the subtraction before it

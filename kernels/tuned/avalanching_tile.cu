@@ -1,205 +1,356 @@
-/// RelaxTile for GPUs: the same laws and the same bits, with the tile in registers.
+/// RelaxTile for GPUs: the same laws and the same bits, with a patch of 4 × 4 cells in a thread's registers.
 ///
-/// A tile is a block; a warp has a strip of rows, a lane one column of them:
+/// A tile is a block of 64 threads, which have its patches, east by east and then north:
 ///
 // clang-format off
-///      lane 0 … 31          a warp's lines, south to north
-///     +------------+       +--------------+
-///     | warp 3     |       | line strip+1 |  its neighbour's; what goes there: shared memory
-///     +------------+       +--------------+
-///     | warp 2     |       | line strip   |
-///     +------------+       |  …           |  heights, ground, drop: registers;
-///     | warp 1     |       | line 1       |  parts to columns beside: shuffled, three rows' in one
-///     +------------+       +--------------+
-///     | warp 0     |       | line 0       |  as line strip+1
-///     +------------+       +--------------+
+///      global memory   16 bytes a row of a patch: ground, sand, tangents
+///           |
+///      registers       heights and depths in the tile's units; what falls to the patch from the coarse level
+///           |
+///      shared memory   heights, top of the ground, drop at repose      <---+
+///           |   by patches, elsewhere in each sweep                        | heights
+///      registers       the pairs of a patch, one after the other       ----+
+///           |
+///      global memory   sand, 16 bytes a row of a patch; and what is made of a block of 4 × 4 cells
 // clang-format on
 ///
-/// A sweep: the heights go to shared memory, where walls lie around them; | every warp slides its rows from
-/// south to north, and completes a row when the next one is done; | what crossed the strips' borders is
-/// added. (| a barrier.) A warp sits out a sweep if neither it nor one beside it gave anything in the one
-/// before. Sums of parts are exact, so that their order here needs not be the reference's.
+/// Between two sweeps is one barrier: a thread writes the cells that it has read.
 
 #include "desert_sim/kernels/avalanching_tile.hpp"
 #include "desert_sim/kernels/for_each_cuda.cuh"
-#include "desert_sim/kernels/tuned/tile_blocks.cuh"
-#include "desert_sim/kernels/tuned/tile_cells.cuh"
 
 namespace desert_sim::avalanching {
 
 namespace tuned {
 namespace {
 
-/// Rows of a strip: many, where there are tiles enough to fill the GPU, because what strips hand each other
-/// takes time; few, where a tile's own time is what counts, or little moves and warps sit out.
-constexpr int long_strip = 8, short_strip = 4, shortest_strip = 2;
-constexpr int tiles_for_long = 1200, tiles_for_short = 400;
-/// Threads of a multiprocessor: leaves each 64 registers.
-constexpr int threads_at_once = 1024;
+constexpr int side = Tiles::side, patches = RelaxTile::patches, threads = patches * patches;
+constexpr int warps = threads / 32;
+/// Tiles of a multiprocessor: leaves a thread 128 registers, of which it takes 113. With ten, and 96, fewer
+/// pairs lie side by side, and a pass takes a sixth longer.
+constexpr int tiles_at_once = 8;
 
-template <int strip>
-__device__ void build_walls(Shared<strip>& shared) {
-  constexpr int strips = side / strip;
-  const int first = static_cast<int>(threadIdx.y * side + threadIdx.x);
-  for (int n = first; n < 4 * (side + 2); n += side * strips) {
-    const int along = n >> 2, end = n & 1 ? side + 1 : 0;
-    (n & 2 ? shared.h[along][end] : shared.h[end][along]) = Units::wall;
+/// One value of each cell of a tile. Columns 0, 4, 8 … lie apart from columns 1, 5, 9 … and so on, rows so
+/// that the cells which the threads of a warp fetch at once lie in 32 banks, wherever patches are.
+struct PerCell {
+  static constexpr int stride = patches + 2;
+  float values[Patch::side][side * stride];
+  __device__ float& at(int x, int y) { return values[x % Patch::side][y * stride + x / Patch::side]; }
+};
+
+struct Shared {
+  PerCell h, ground, drop;
+  Four<Quanta> base[Patch::side][threads];  ///< of a cell's sand what does not change with its height
+  int lowest[warps], highest[warps];
+  int moved[2][warps];  ///< nothing, something, much; of sweeps in turns
+};
+
+/// A value of each cell of a patch.
+template <class T>
+struct OfPatch {
+  Four<T> rows[Patch::side];
+  __device__ T& operator[](int n) { return rows[n / Patch::side].values[n % Patch::side]; }
+};
+
+/// A thread's patch in the grid. `whole`: width and height of the grid are multiples of four, as tiles'
+/// offsets are, so that patches lie in the grid as a whole, their rows aligned, or not at all.
+template <bool whole>
+struct Place {
+  const RelaxTile& law;
+  int x, y;  ///< of its first cell; if `whole`, in the grid, −1 if it is not there; else in the tile
+
+  __device__ explicit Place(const RelaxTile& tile)
+      : law(tile),
+        x(static_cast<int>(threadIdx.x) % patches * Patch::side),
+        y(static_cast<int>(threadIdx.x) / patches * Patch::side) {
+    if (!whole) return;
+    x = grid_x(x);
+    y = grid_y(y);
   }
-  if (first < strips + 2) shared.gave[first] = 0;
+  __device__ bool there() const { return x >= 0 && y >= 0; }  ///< if `whole`
+  __device__ bool there(int n) const { return whole ? there() : cell(n / Patch::side, n % Patch::side) >= 0; }
+  /// The grid's cell, or −1.
+  __device__ int cell(int row, int column) const {
+    const int width = law.level.grid.width;
+    if (whole) return there() ? (y + row) * width + x + column : -1;
+    const int there_x = grid_x(x + column), there_y = grid_y(y + row);
+    return there_x < 0 || there_y < 0 ? -1 : there_y * width + there_x;
+  }
+  /// The coarse cell of which this and the three beside and above it are the children, or −1.
+  __device__ int parent(int row, int column) const {
+    const Grid& coarse = law.from_coarse.coarse;
+    const int there_x = whole ? x + column : grid_x(x + column), there_y = whole ? y + row : grid_y(y + row);
+    if ((whole && !there()) || there_x < 0 || there_y < 0) return -1;
+    return coarse.inside(there_x / 2, there_y / 2) ? coarse.index(there_x / 2, there_y / 2) : -1;
+  }
+
+  /// What stands for cells that are not there is of no account: their heights are walls'.
+  template <class T>
+  __device__ void fetch(const T* from, OfPatch<T>& to) const {
+#pragma unroll
+    for (int row = 0; row < Patch::side; ++row) {
+      if constexpr (whole) {
+        to.rows[row] = four_at(from + (there() ? cell(row, 0) : 0));
+      } else {
+#pragma unroll
+        for (int n = 0; n < Patch::side; ++n) {
+          const int i = cell(row, n);
+          to.rows[row].values[n] = from[i < 0 ? 0 : i];
+        }
+      }
+    }
+  }
+  __device__ void put_row(Quanta* to, int row, const Four<Quanta>& four) const {
+    if constexpr (whole) {
+      if (there()) put_four(to + cell(row, 0), four);
+    } else {
+#pragma unroll
+      for (int n = 0; n < Patch::side; ++n)
+        if (const int i = cell(row, n); i >= 0) to[i] = four.values[n];
+    }
+  }
+
+ private:
+  __device__ int grid_x(int n) const { return law.grid_x(static_cast<int>(blockIdx.x), n); }
+  __device__ int grid_y(int n) const { return law.grid_y(static_cast<int>(blockIdx.y), n); }
+};
+
+/// Lowest and highest of all values in the block.
+__device__ void reduce_in_block(Shared& shared, int& lowest, int& highest) {
+  for (int step = 16; step > 0; step /= 2) {
+    lowest = min(lowest, __shfl_xor_sync(0xffffffffu, lowest, step));
+    highest = max(highest, __shfl_xor_sync(0xffffffffu, highest, step));
+  }
+  if (threadIdx.x % 32 == 0) {
+    shared.lowest[threadIdx.x / 32] = lowest;
+    shared.highest[threadIdx.x / 32] = highest;
+  }
+  __syncthreads();
+  for (int n = 0; n < warps; ++n) {
+    lowest = min(lowest, shared.lowest[n]);
+    highest = max(highest, shared.highest[n]);
+  }
 }
 
-/// One sweep of a warp's strip: its heights but for what comes over the borders, and what goes over them.
-/// The most that one of the thread's cells gives.
-template <int strip, class Onward>
-__device__ float sweep_strip(Shared<strip>& shared, Column<strip>& c, float rest, float transfer,
-                             Onward onward) {
-  const int x = static_cast<int>(threadIdx.x), warp = static_cast<int>(threadIdx.y);
-  const float not_first = x > 0 ? 1.0f : 0.0f, not_last = x < side - 1 ? 1.0f : 0.0f;
-  const float(*lines)[side + 2] = shared.h + warp * strip;  // line n of the strip
-  // What each line gets: from the columns beside, and from its own.
-  float left[strip], east[strip + 2] = {}, west[strip + 2] = {}, straight[strip + 2] = {};
-
-  struct Line {
-    float west, middle, east, lower;  ///< of columns x − 1, x, x + 1; the lower of the outer two
-  };
-  const auto line = [&](int n) {
-    const float w = lines[n][x], e = lines[n][x + 2];
-    return Line{w, n > 0 && n <= strip ? c.h[n - 1] : lines[n][x + 1], e, lower(w, e)};
-  };
-  const auto incoming = [&](int n) {
-    return fused(not_first, __shfl_up_sync(whole_warp, east[n], 1),
-                 fused(not_last, __shfl_down_sync(whole_warp, west[n], 1), straight[n]));
-  };
-
-  float most = 0.0f;
-  Line south = line(0), here = line(1);
+/// Hands the patch's sand what the coarse level has done. Fetches all before it uses any.
+template <bool whole>
+__device__ void prolong(const Place<whole>& place, OfPatch<Quanta>& sand) {
+  constexpr int families = Patch::side / 2;
+  const Prolong& coarse = place.law.from_coarse;
+  Quanta change[families][families];
 #pragma unroll
-  for (int n = 1; n <= strip; ++n) {
-    const Line north = line(n + 1);
-    const float around[] = {here.east,  here.west,  north.middle, south.middle,
-                            north.east, south.west, north.west,   south.east};
-    const Slide slide(here.middle, around, lower(here.lower, lower(north.middle, south.middle)),
-                      lower(north.lower, south.lower), c.ground[n - 1], c.drop[n - 1], rest, transfer,
-                      onward);
-    most = higher(most, here.middle - slide.left);
-    left[n - 1] = slide.left;
-    // A line's sums begin with what its southern neighbour gives, but for the two southernmost.
-    east[n - 1] = n == 1 ? slide.part[7] : east[n - 1] + slide.part[7];
-    west[n - 1] = n == 1 ? slide.part[5] : west[n - 1] + slide.part[5];
-    straight[n - 1] = n <= 2 ? slide.part[3] : straight[n - 1] + slide.part[3];
-    east[n] = n == 1 ? slide.part[0] : east[n] + slide.part[0];
-    west[n] = n == 1 ? slide.part[1] : west[n] + slide.part[1];
-    east[n + 1] = slide.part[4];
-    west[n + 1] = slide.part[6];
-    straight[n + 1] = slide.part[2];
-    if (n == 1)
-      shared.southward[warp][x] = incoming(0);
-    else
-      c.h[n - 2] = left[n - 2] + incoming(n - 1);
-    south = here;
-    here = north;
+  for (int row = 0; row < families; ++row)
+#pragma unroll
+    for (int column = 0; column < families; ++column) {
+      const int i = place.parent(2 * row, 2 * column);
+      change[row][column] = i >= 0 ? coarse.sand_after[i] - coarse.sand_before[i] : 0;
+    }
+#pragma unroll
+  for (int row = 0; row < families; ++row)
+#pragma unroll
+    for (int column = 0; column < families; ++column) {
+      Quanta *south = sand.rows[2 * row].values + 2 * column,
+             *north = sand.rows[2 * row + 1].values + 2 * column;
+      hand_down(change[row][column], south[0], south[1], north[0], north[1]);
+    }
+}
+
+/// Heights of the patch's cells, from wall_height on for walls, and their sand.
+template <bool whole>
+__device__ void fetch_heights(const Place<whole>& place, OfPatch<Quanta>& height, OfPatch<Quanta>& sand) {
+  const LevelView& level = place.law.level;
+  place.fetch(level.ground, height);
+  place.fetch(static_cast<const Quanta*>(level.sand), sand);
+  if (place.law.from_coarse.sand_after) prolong(place, sand);
+  if (level.soil) {
+    OfPatch<Quanta> soil;
+    place.fetch(level.soil, soil);
+#pragma unroll
+    for (int n = 0; n < Patch::cells; ++n) height[n] += height[n] < wall_height ? soil[n] : 0;
   }
-  c.h[strip - 1] = left[strip - 1] + incoming(strip);
-  shared.northward[warp + 1][x] = incoming(strip + 1);
+  if (level.obstacle) {
+    OfPatch<float> obstacle;
+    place.fetch(level.obstacle, obstacle);
+#pragma unroll
+    for (int n = 0; n < Patch::cells; ++n) height[n] = obstacle[n] > 0.0f ? wall_height : height[n];
+  }
+#pragma unroll
+  for (int n = 0; n < Patch::cells; ++n) {
+    height[n] += sand[n];
+    if (!place.there(n)) height[n] = wall_height;
+  }
+}
+
+/// Shared memory from the grid; the tile's units.
+template <bool whole>
+__device__ Units load(const Place<whole>& place, Shared& shared) {
+  const LevelView& level = place.law.level;
+  OfPatch<Quanta> height, sand;
+  OfPatch<float> drop;
+  place.fetch(level.repose, drop);
+  fetch_heights(place, height, sand);
+  int lowest = height[0], highest = height[0];
+#pragma unroll
+  for (int n = 1; n < Patch::cells; ++n) {
+    lowest = min(lowest, height[n]);
+    highest = max(highest, height[n]);
+  }
+  const bool walls = highest >= wall_height;
+  if (walls) {
+    highest = -wall_height;
+#pragma unroll
+    for (int n = 0; n < Patch::cells; ++n)
+      highest = max(highest, height[n] >= wall_height ? -wall_height : height[n]);
+  }
+  reduce_in_block(shared, lowest, highest);
+  const Units units(lowest, highest, level.quanta_per_cell);
+  const int px = static_cast<int>(threadIdx.x) % patches, py = static_cast<int>(threadIdx.x) / patches;
+#pragma unroll
+  for (int n = 0; n < Patch::cells; ++n) {
+    const int x = px * Patch::side + n % Patch::side, y = py * Patch::side + n / Patch::side;
+    const float h = units.height(height[n]);
+    shared.h.at(x, y) = h;
+    shared.ground.at(x, y) = units.ground(height[n], sand[n]);
+    shared.drop.at(x, y) = units.drop(drop[n], level.quanta_per_cell);
+    sand[n] -= units.of_height(h);
+  }
+  if (walls)
+#pragma unroll
+    for (int n = 0; n < Patch::cells; ++n)
+      if (height[n] >= wall_height) {
+        const int x = px * Patch::side + n % Patch::side, y = py * Patch::side + n / Patch::side;
+        shared.h.at(x, y) = shared.ground.at(x, y) = Units::wall;
+        sand[n] += units.of_height(units.height(height[n])) - units.of_height(Units::wall);
+      }
+#pragma unroll
+  for (int row = 0; row < Patch::side; ++row) shared.base[row][threadIdx.x] = sand.rows[row];
+  return units;
+}
+
+/// The sand of the patch, to the grid.
+template <bool whole>
+__device__ void store(const Place<whole>& place, Shared& shared, const Units& units) {
+  const int px = static_cast<int>(threadIdx.x) % patches, py = static_cast<int>(threadIdx.x) / patches;
+#pragma unroll
+  for (int row = 0; row < Patch::side; ++row) {
+    Four<Quanta> sand = shared.base[row][threadIdx.x];
+#pragma unroll
+    for (int n = 0; n < Patch::side; ++n)
+      sand.values[n] += units.of_height(shared.h.at(px * Patch::side + n, py * Patch::side + row));
+    place.put_row(place.law.level.sand, row, sand);
+  }
+}
+
+/// Where a patch's cell lies among its registers.
+struct InRegisters {
+  __device__ constexpr int operator()(int row, int column) const { return row * Patch::side + column; }
+};
+
+/// The pairs of this thread's patch; the most that one of them moves.
+__device__ float sweep_patch(Shared& shared, const PatchShift& shift, float share) {
+  const int px = static_cast<int>(threadIdx.x) % patches, py = static_cast<int>(threadIdx.x) / patches;
+  int columns[Patch::side], rows[Patch::side];
+#pragma unroll
+  for (int n = 0; n < Patch::side; ++n) {
+    columns[n] = (px * Patch::side + shift.x + n) % side;
+    rows[n] = (py * Patch::side + shift.y + n) % side;
+  }
+  float h[Patch::cells], ground[Patch::cells], drop[Patch::cells];
+#pragma unroll
+  for (int n = 0; n < Patch::cells; ++n) {
+    const int x = columns[n % Patch::side], y = rows[n / Patch::side];
+    h[n] = shared.h.at(x, y);
+    ground[n] = shared.ground.at(x, y);
+    drop[n] = shared.drop.at(x, y);
+  }
+  Shares<1> shares;
+#pragma unroll
+  for (int n = 0; n + 1 < Patch::side; ++n) {
+    shares.x[n][0] = shift.share_x(share, px, n);
+    shares.y[n] = shift.share_y(share, py, n);
+  }
+  float most = 0.0f;
+  PairsOfPatches<1, InRegisters>{h, ground, drop, {}, shares, &most}.relax();
+#pragma unroll
+  for (int n = 0; n < Patch::cells; ++n) shared.h.at(columns[n % Patch::side], rows[n / Patch::side]) = h[n];
   return most;
 }
 
-/// Sweeps over what is loaded, until the tile is at rest or has had enough of them. Whether this warp's cells
-/// have changed.
-template <int strip, class Onward>
-__device__ bool relax(const RelaxTile& law, Shared<strip>& shared, Column<strip>& c, const Units& units,
-                      Onward onward) {
-  constexpr int strips = side / strip;
-  const int x = static_cast<int>(threadIdx.x), warp = static_cast<int>(threadIdx.y), y = warp * strip;
-  bool stale = true, moved = false;
+/// Sweeps over what is loaded, until the tile is at rest or has had enough of them. Whether anything moved.
+__device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units) {
   const float much = units.drop(law.plenty, law.level.quanta_per_cell);
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    if (stale)
-#pragma unroll
-      for (int n = 0; n < strip; ++n) shared.h[y + n + 1][x + 1] = c.h[n];
+  bool moved = false, moved_before = true;
+  for (int n = 0; n < most_sweeps; ++n) {
+    const float most = sweep_patch(shared, PatchShift(n, law.tiles.offset), law.share);
+    const bool any = __any_sync(0xffffffffu, most > 0.0f), any_much = __any_sync(0xffffffffu, most > much);
+    if (threadIdx.x % 32 == 0) shared.moved[n % 2][threadIdx.x / 32] = any_much ? 2 : (any ? 1 : 0);
     __syncthreads();
-    const float most = stale ? sweep_strip(shared, c, law.rest, law.transfer, onward) : 0.0f;
-    const bool gives = __any_sync(whole_warp, most > 0.0f), gives_much = __any_sync(whole_warp, most > much);
-    if (x == 0) shared.gave[warp + 1] = gives_much ? 2 : (gives ? 1 : 0);
-    __syncthreads();
-    const bool from_south = shared.gave[warp], from_north = shared.gave[warp + 2];
-    if (from_south) c.h[0] += shared.northward[warp][x];
-    if (from_north) c.h[strip - 1] += shared.southward[warp + 1][x];
-    stale = gives || from_south || from_north;
-    moved = moved || stale;
-    int any = 0;
+    int here = 0;
 #pragma unroll
-    for (int n = 1; n <= strips; ++n) any = max(any, shared.gave[n]);
-    if (any < (sweep + 1 < law.sweeps ? 1 : 2)) break;
+    for (int k = 0; k < warps; ++k) here = max(here, shared.moved[n % 2][k]);
+    moved = moved || here > 0;
+    if (here == 0 && !moved_before) break;
+    if (n + 1 >= law.sweeps && here < 2) break;
+    moved_before = here > 0;
   }
   return moved;
 }
 
-template <int strip, class Onward, class Then>
-__global__ __launch_bounds__(side* side / strip,
-                             threads_at_once* strip / (side * side)) void relax_tiles_kernel(RelaxTile law,
-                                                                                             Onward onward,
-                                                                                             Then then) {
-  const int column = static_cast<int>(blockIdx.x), row = static_cast<int>(blockIdx.y);
-  if (law.closed(column, row)) return;
-  constexpr int strips = side / strip;
-  __shared__ Shared<strip> shared;
-  const int x = static_cast<int>(threadIdx.x), warp = static_cast<int>(threadIdx.y);
-  if (warp == 0) shared.row[x] = law.grid_y(row, x);
-  build_walls(shared);
-  if (law.from_coarse.sand_after)
-    for (int n = warp * side + x; n < RelaxTile::families; n += side * strips)
-      law.prolong_family(column, row, n);
+/// What becomes of a block of 4 × 4 cells.
+__device__ void finish(NothingThen, int, int) {}
+__device__ void finish(const Restrict& law, int column, int row) { law.fill_whole(column, row); }
+__device__ void finish(const surface::MeasureBlock& law, int column, int row) { law(column, row); }
+
+template <bool whole, class Then>
+__global__ __launch_bounds__(threads, tiles_at_once) void relax_tiles_kernel(RelaxTile law, Then then) {
+  if (law.closed(static_cast<int>(blockIdx.x), static_cast<int>(blockIdx.y))) return;
+  __shared__ Shared shared;
+  const Place<whole> place(law);
+  const Units units = load(place, shared);
   __syncthreads();
-  const bool whole = law.whole(column, row);
-  Column<strip> c;
-  const Units units = whole ? load<true>(law, shared, c) : load<false>(law, shared, c);
-  if (units.lowest < wall_height && relax(law, shared, c, units, onward))
-    whole ? store<true>(law, shared, units, c) : store<false>(law, shared, units, c);
-  whole ? then.template operator()<true>(law, shared) : then.template operator()<false>(law, shared);
+  if (units.lowest < wall_height) {
+    const bool moved = relax(law, shared, units);
+    if (moved || law.from_coarse.sand_after) store(place, shared, units);
+  }
+  if (whole && place.there()) finish(then, place.x / Patch::side, place.y / Patch::side);
 }
 
-template <int strip, class Then>
+bool patches_are_whole(const RelaxTile& law) {
+  const Grid& grid = law.level.grid;
+  return law.tiles.offset % Patch::side == 0 && grid.width % Patch::side == 0 &&
+         grid.height % Patch::side == 0;
+}
+
+template <class Then>
 void launch(CudaExec& exec, const RelaxTile& law, const Then& then) {
-  const dim3 tiles(law.tiles.columns(), law.tiles.rows()), threads(side, side / strip);
-  if constexpr (!Then::anything)
-    if (law.onward > 0.0f) {
-      relax_tiles_kernel<strip><<<tiles, threads, 0, cuda::stream(exec)>>>(law, law.onward, then);
-      return check_cuda(cudaGetLastError(), "launch over tiles, tuned");
-    }
-  relax_tiles_kernel<strip><<<tiles, threads, 0, cuda::stream(exec)>>>(law, NoOnward{}, then);
+  const dim3 tiles(law.tiles.columns(), law.tiles.rows());
+  if (patches_are_whole(law))
+    relax_tiles_kernel<true><<<tiles, threads, 0, cuda::stream(exec)>>>(law, then);
+  else
+    relax_tiles_kernel<false><<<tiles, threads, 0, cuda::stream(exec)>>>(law, NothingThen{});
   check_cuda(cudaGetLastError(), "launch over tiles, tuned");
 }
 
-/// If it can be done in the same pass: blocks lie in one tile each, and all tiles are passed over.
+/// In the same pass, if blocks are patches and all tiles are passed over.
 template <class Then>
 bool relaxed_with(CudaExec& exec, const RelaxTile& law, const Then& then) {
-  if (law.open || law.onward > 0.0f || !blocks_share_tiles(law.tiles)) return false;
-  if (law.tiles.count() >= tiles_for_long)
-    launch<long_strip>(exec, law, then);
-  else
-    launch<short_strip>(exec, law, then);
+  if (law.open || !patches_are_whole(law)) return false;
+  launch(exec, law, then);
   return true;
 }
+static_assert(surface::block_side == Patch::side);
 
 }  // namespace
 }  // namespace tuned
 
-void relax_tiles(CudaExec& exec, const RelaxTile& law) {
-  const int tiles = law.tiles.count();
-  if (tiles >= tuned::tiles_for_long && !law.open)
-    return tuned::launch<tuned::long_strip>(exec, law, tuned::Nothing{});
-  if (tiles >= tuned::tiles_for_short) return tuned::launch<tuned::short_strip>(exec, law, tuned::Nothing{});
-  tuned::launch<tuned::shortest_strip>(exec, law, tuned::Nothing{});
-}
+void relax_tiles(CudaExec& exec, const RelaxTile& law) { tuned::launch(exec, law, NothingThen{}); }
 
 void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const Restrict& then) {
-  if (!tuned::relaxed_with(exec, law, tuned::ThenRestrict{then}))
-    relax_tiles_then<CudaExec, Restrict>(exec, law, then);
+  if (!tuned::relaxed_with(exec, law, then)) relax_tiles_then<CudaExec, Restrict>(exec, law, then);
 }
 
 void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const surface::MeasureBlock& then) {
-  if (!tuned::relaxed_with(exec, law, tuned::ThenMeasure{then}))
+  if (!tuned::relaxed_with(exec, law, then))
     relax_tiles_then<CudaExec, surface::MeasureBlock>(exec, law, then);
 }
 

@@ -9,13 +9,13 @@ namespace {
 constexpr double layer = 4;  // bytes a cell
 
 /// Passes of avalanching read ground, sand and tangents, and write sand. All coarse levels together have a
-/// third of the grid's cells; each is filled (ground, sand twice, tangents), passed over, and read again
+/// third of the grid's cells; each is filled (ground, sand twice, tangents), passed over once, and read again
 /// (sand, before and after). The fine grid is read for the first in passing. The last pass writes the
 /// heights.
 ProcessCost avalanches(AvalancheQuality quality) {
   const avalanching::Schedule plan = avalanching::schedule(quality);
-  const int fine = plan.before + plan.after;
-  const double heights = 1, coarse = (4 + 4 * plan.coarse + 2) / 3.0;
+  const int fine = plan.fine_passes();
+  const double heights = 1, coarse = (4 + 4 + 2) / 3.0;
   const std::string times = fine == 1 ? "" : " x " + std::to_string(fine);
   return {"avalanching", layer * (4 * fine + coarse + heights),
           "(bedrock, sand, tangents)" + times + "; levels", "sand" + times + "; levels; heights"};

@@ -196,12 +196,10 @@ TEST_F(Parity, CheckpointsGoFromOneToTheOther) {
 const char* const dunes =
     "terrain: [noise: {layer: bedrock, low: 0, high: 10, scale: 30}, noise: {layer: sand, low: 0.5, high: 4, "
     "scale: 12}]\n"
-    "wind: {speed: 5, direction_deg: 20, radii: [60, 20]}\nreptation: {method: smoothing}\navalanching: "
-    "{rest: 1}\n";
+    "wind: {speed: 5, direction_deg: 20, radii: [60, 20]}\nreptation: {method: smoothing}\n";
 
 /// FFTW and cuFFT round differently: the wind by at most 2e-5 of its speed after one step. That can tip a
 /// march or a release over an edge, so of the sand: 2 mm at most anywhere, 10 µm rms (a step moves metres).
-/// Slides end where they began (rest: 1): whether one begins is a question of more than that.
 TEST_F(Parity, WithTransformsOneStepDiffersByLittle) {
   for (const char* boundary : {"periodic", "open"}) {
     auto a = test::simulate(cpu(), test::grid_yaml(128, 96, boundary) + dunes);

@@ -72,23 +72,22 @@ struct TileField::There {
               sand.data(), repose.data(), f.quanta_per_cell} {}
 };
 
-std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool by_law, float transfer,
-                                       float rest, float plenty, float onward) const {
+std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool by_law, float share,
+                                       float plenty) const {
   There there(exec, *this);
   Buffer<Quanta> before = on(exec, coarse_before), after = on(exec, coarse_after);
   const avalanching::Prolong from_coarse{coarse(), or_null(after, coarse_after),
                                          or_null(before, coarse_before), grid, there.sand.data()};
   Buffer<Quanta> open_there = on(exec, open);
-  const avalanching::RelaxTile law{{grid, offset}, there.level, from_coarse,
-                                   transfer,       rest,        sweeps,
-                                   plenty,         onward,      or_null(open_there, open)};
+  const avalanching::RelaxTile law{{grid, offset},           there.level, from_coarse, share, sweeps, plenty,
+                                   or_null(open_there, open)};
   with_backend(
       exec, [&](auto& e) { by_law ? avalanching::relax_by_law(e, law) : avalanching::relax_tiles(e, law); });
   return there.sand.download();
 }
 
-avalanching::RelaxTile TileField::three_sweeps(There& there, int offset) const {
-  return {{grid, offset}, there.level, {}, 1.0f, 0.98f, 3, 0.2f};
+avalanching::RelaxTile TileField::four_sweeps(There& there, int offset) const {
+  return {{grid, offset}, there.level, {}, 0.65f, 4, 0.2f};
 }
 
 std::vector<std::uint32_t> TileField::relaxed_and_restricted(Exec& exec, int offset) const {
@@ -109,7 +108,7 @@ std::vector<std::uint32_t> TileField::relaxed_and_restricted(Exec& exec, int off
              quarter{half.width / 2, half.height / 2, 2 * half.cell_size, half.periodic_x, half.periodic_y};
   Coarse first(exec, half), second(exec, quarter);
   with_backend(exec, [&](auto& e) {
-    avalanching::relax_tiles_then(e, three_sweeps(there, offset),
+    avalanching::relax_tiles_then(e, four_sweeps(there, offset),
                                   avalanching::Restrict{there.level, first.out, second.out});
   });
   std::vector<std::uint32_t> bits;
@@ -128,7 +127,7 @@ std::vector<std::uint32_t> TileField::relaxed_and_measured(Exec& exec, int offse
   surface::Heights heights = surface::make_heights(exec, grid);
   with_backend(exec, [&](auto& e) {
     avalanching::relax_tiles_then(
-        e, three_sweeps(there, offset),
+        e, four_sweeps(there, offset),
         surface::MeasureBlock{grid, there.ground.data(), or_null(there.soil, soil), there.sand.data(),
                               heights.blocks, heights.of_cells.data(), heights.highest.data()});
   });

@@ -26,16 +26,16 @@ struct TileField {
   }
   /// The sand after one pass of `sweeps` sweeps in tiles that begin at −offset; by the reference, or as the
   /// backend does it best.
-  std::vector<Quanta> relaxed(Exec& exec, int offset, int sweeps, bool by_law, float transfer = 1,
-                              float rest = 1, float plenty = 100, float onward = 0) const;
-  /// The sand after one pass of three sweeps, and what is filled after it, the bits of one layer after
+  std::vector<Quanta> relaxed(Exec& exec, int offset, int sweeps, bool by_law, float share = 0.5f,
+                              float plenty = 100) const;
+  /// The sand after one pass of four sweeps, and what is filled after it, the bits of one layer after
   /// another: both coarse levels, or the heights with the highest of each block.
   std::vector<std::uint32_t> relaxed_and_restricted(Exec& exec, int offset) const;
   std::vector<std::uint32_t> relaxed_and_measured(Exec& exec, int offset) const;
 
  private:
   struct There;  ///< the level in a backend's memory
-  avalanching::RelaxTile three_sweeps(There& there, int offset) const;
+  avalanching::RelaxTile four_sweeps(There& there, int offset) const;
 };
 
 /// Dunes, cliffs of hundreds of metres, pits, films, columns as high as can be, walls, on whole and broken
