@@ -15,7 +15,7 @@
 /// Pairs that share no cell stand together, so that they do not wait for each other. Diagonal pairs come
 /// first, which start to slide last, at √2 times the drop: behind the others, which leave them next to
 /// nothing, sand hardly ever goes down a slope that faces north-east by the shortest way, and crests under
-/// two winds turn 4 … 7 degrees away from where they belong.
+/// two winds lie 4 … 8 degrees off (test/bench/README.md, "Diagonal pairs first").
 ///
 // clang-format off
 ///     diagonals, by quads of      columns             rows
