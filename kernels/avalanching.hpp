@@ -12,7 +12,7 @@
 /// `coarsest_cell` wide; the coarsest is relaxed first, the change handed to the four children, and the fine
 /// grid relaxed again last. Each relaxation is sweeps inside closed tiles whose seams move between passes
 /// (avalanching_tile.hpp): pair by pair, each seeing what those before it have done (avalanching_patch.hpp),
-/// which settles in fewer sweeps than releases from one state, with half of the arithmetic. It leaves what
+/// which settles sooner than releases from one state, with less arithmetic a sweep. It leaves what
 /// is below 2e-4 cell sizes. What `converged` adds: settle(). `sweeps`: synchronous sweeps of the whole grid
 /// by the equation above, the reference. `taylor_keyser`: k_c = 0.25 of the largest drop, by tangents, for
 /// comparison.

@@ -145,8 +145,8 @@ TEST_P(AvalanchingTile, PassesOverEveryPairInTwoPasses) {
   }
 }
 
-/// A tile goes on while one of its cells gives plenty, and only that tile.
-TEST_P(AvalanchingTile, GoesOnWhileACellGivesPlenty) {
+/// A tile goes on while one of its pairs moves plenty, and only that tile.
+TEST_P(AvalanchingTile, GoesOnWhileAPairMovesPlenty) {
   TileField f = row(std::vector<double>(64, 0.0), std::vector<double>(64, 0.0));
   f.sand[10] = 4 * 1048576;  // in the first tile
   f.sand[40] = 600000;       // in the second: gives less than 0.1
