@@ -30,16 +30,19 @@ namespace desert_sim {
 
 namespace avalanching {
 
-/// Sweeps, at least, of the one pass over the fine grid before the coarse levels, of the one over each coarse
-/// level, and of each of the last passes over the fine grid, whose seams lie elsewhere; and how much a pair
-/// moves [cell sizes] for its tile to go on (but in the first pass). With fewer sweeps in the first pass more
-/// is left to coarse levels, which slide what would have come to rest by itself. `share`, `coarse_share`: of
-/// a pair's excess (ω in avalanching_patch.hpp) on the fine grid and on coarse levels; ½ leaves the two at
-/// repose, more settles the whole sooner, with 0.8 slopes end too far below their angle. Coarse levels make
-/// somewhat more slopes of 6 … 18 degrees than there should be, the more the larger their share.
+/// Sweeps, at least, of the one pass over the fine grid before the coarse levels, of the passes over each
+/// coarse level together (two over the finest two of these, one over others), and of each of the last passes
+/// over the fine grid, whose seams lie elsewhere; and how much a pair moves [cell sizes] for its tile to go
+/// on (but in the first pass). With fewer sweeps in the first pass more is left to coarse levels, which slide
+/// what would have come to rest by itself. `share`, `coarse_share`: of a pair's excess (ω in
+/// avalanching_patch.hpp) on the fine grid and on coarse levels; ½ leaves the two at repose, more settles the
+/// whole sooner, with 0.8 slopes end too far below their angle. Coarse levels make somewhat more slopes of 6
+/// … 18 degrees than there should be, the more the larger their share. `last_at_edges`: of the share, next to
+/// edges of the last pass's tiles (ShareOfGap), which no later pass goes over.
 struct Schedule {
   int first_sweeps, coarse_sweeps, last_sweeps, last_passes;
-  float plenty, share, coarse_share;
+  float plenty, share, coarse_share, last_at_edges;
+  static constexpr std::size_t coarse_levels_twice = 2;
 
   constexpr int fine_passes() const { return 1 + last_passes; }
   constexpr int fine_sweeps() const { return first_sweeps + last_passes * last_sweeps; }
@@ -48,9 +51,9 @@ struct Schedule {
   }
 };
 constexpr Schedule schedule(AvalancheQuality quality) {
-  if (quality == AvalancheQuality::fast) return {4, 8, 4, 1, 0.3f, 0.7f, 0.6f};
-  if (quality == AvalancheQuality::good) return {4, 8, 3, 2, 0.3f, 0.7f, 0.7f};
-  return {4, 8, 3, 2, 0.3f, 0.6f, 0.6f};
+  if (quality == AvalancheQuality::fast) return {4, 8, 4, 1, 0.3f, 0.7f, 0.6f, 0.6f};
+  if (quality == AvalancheQuality::good) return {5, 8, 3, 2, 0.25f, 0.7f, 0.68f, 0.6f};
+  return {6, 8, 3, 2, 0.3f, 0.6f, 0.6f, 1.0f};
 }
 static_assert(schedule(AvalancheQuality::fast).is_bounded() &&
               schedule(AvalancheQuality::good).is_bounded() &&
@@ -97,22 +100,31 @@ inline bool families_share_tiles(const Grid& g) {
   return (!g.periodic_x || g.width % 2 == 0) && (!g.periodic_y || g.height % 2 == 0);
 }
 
+/// Passes over a level: the `first` of a step to before the `last`, with so many sweeps each; of the very
+/// last one `at_edges`.
+struct Passes {
+  int first, last, sweeps;
+  float share, plenty, at_edges;
+};
+
 /// Passes over one level, which first gets what the coarser one has done. `then`: what becomes of its cells
 /// (relax_tiles_then()).
 template <class E, class Then>
-void relax(E& exec, const LevelView& level, Prolong from_coarse, float share, int first, int last, int sweeps,
-           float plenty, std::uint64_t turn, const Then& then) {
+void relax(E& exec, const LevelView& level, Prolong from_coarse, const Passes& p, std::uint64_t turn,
+           const Then& then) {
   if (from_coarse.sand_after && !families_share_tiles(level.grid)) {
     for_each_cell(exec, from_coarse.coarse, from_coarse);
     from_coarse = {};
   }
-  for (int pass = first; pass < last; ++pass) {
+  for (int pass = p.first; pass < p.last; ++pass) {
     const Tiles tiles{level.grid, seam_offset(turn, pass)};
-    const RelaxTile law{tiles, level, from_coarse, share, sweeps, plenty};
-    if (pass + 1 < last)
-      relax_tiles(exec, law);
-    else
+    const bool is_last = pass + 1 == p.last;
+    const ShareOfGap share{p.share, is_last ? p.share * p.at_edges : p.share};
+    const RelaxTile law{tiles, level, from_coarse, share, p.sweeps, p.plenty};
+    if (is_last)
       relax_tiles_then(exec, law, then);
+    else
+      relax_tiles(exec, law);
     from_coarse = {};
   }
 }
@@ -151,21 +163,25 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
   view_levels(coarse, views.data());
   constexpr float never = 1e6f;
   const float share = plan.share * p.transfer, coarse_share = plan.coarse_share * p.transfer;
+  const Passes before{0, 1, plan.first_sweeps, share, never, 1.0f};
   if (coarse.empty())
-    relax(exec, fine, Prolong{}, share, 0, 1, plan.first_sweeps, never, turn, NothingThen{});
+    relax(exec, fine, Prolong{}, before, turn, NothingThen{});
   else
-    relax(exec, fine, Prolong{}, share, 0, 1, plan.first_sweeps, never, turn, filling(coarse, 0, fine));
+    relax(exec, fine, Prolong{}, before, turn, filling(coarse, 0, fine));
   for (std::size_t n = 2; n < coarse.size(); n += 2) {
     const Restrict law = filling(coarse, n, views[n]);
     for_each_cell(exec, law.blocks(), law);
   }
   Prolong change{};
   for (std::size_t n = coarse.size(); n > 0; --n) {
-    relax(exec, views[n], change, coarse_share, 0, 1, plan.coarse_sweeps, plan.plenty, turn, NothingThen{});
+    const int passes = n <= plan.coarse_levels_twice ? 2 : 1;
+    relax(exec, views[n], change, {0, passes, plan.coarse_sweeps / passes, coarse_share, plan.plenty, 1.0f},
+          turn, NothingThen{});
     const Level& done = coarse[n - 1];
     change = {done.grid, done.sand.data(), done.sand_before.data(), views[n - 1].grid, views[n - 1].sand};
   }
-  relax(exec, fine, change, share, 1, plan.fine_passes(), plan.last_sweeps, plan.plenty, turn, then);
+  relax(exec, fine, change, {1, plan.fine_passes(), plan.last_sweeps, share, plan.plenty, plan.last_at_edges},
+        turn, then);
 }
 
 /// Rounds of passes over what is not yet at rest, between two looks at what they left.
@@ -211,6 +227,7 @@ template <class E>
 void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std::uint64_t turn,
             Workspace& work) {
   const Schedule plan = schedule(p.quality);
+  const float share = share_in_rounds * p.transfer;
   const OpenTiles& open = work.open;
   std::array<long long, rounds_a_look + 1> steep{};  // cells: before each round, and after the last
   bool much = true;
@@ -224,8 +241,9 @@ void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std:
     for (int round = 1; round <= rounds_a_look; ++round) {
       const RoundOfTiles tiles = tiles_of_round(open, fine.grid, turn, pass, round);
       for (int n = 0; n < passes_a_round; ++n, ++pass)
-        relax_tiles(exec, RelaxTile{tiles.of(n), fine, Prolong{}, share_in_rounds * p.transfer, most_sweeps,
-                                    0.0f, tiles.of_pass(n)});
+        relax_tiles(
+            exec,
+            RelaxTile{tiles.of(n), fine, Prolong{}, {share, share}, most_sweeps, 0.0f, tiles.of_pass(n)});
       find_unsettled(exec, fine, p.tolerance, turn, pass, round, open);
     }
     steep = open.steep_cells<rounds_a_look + 1>();

@@ -30,7 +30,7 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
       parameter("enabled", &P::enabled, "Whether steep sand slides."),
       parameter("scheme", &P::scheme, avalanche_schemes, "How slides are computed."),
       parameter("quality", &P::quality, avalanche_qualities,
-                "fast: 4 + 4 fine sweeps, good: 4 + 3 + 3, more where much slides; converged: until "
+                "fast: 4 + 4 fine sweeps, good: 5 + 3 + 3, more where much slides; converged: until "
                 "tolerance (also for sweeps)."),
       parameter("transfer", &P::transfer, 0.05, 1, "1",
                 "Share of what would stabilise a cell that one sweep moves (k_c)."),

@@ -11,6 +11,10 @@
 /// too far (ω a little over ½) gets sooner to where all are at rest. A never makes the receiver higher than
 /// the donor was (ω ≤ 1).
 ///
+/// So no cell falls below the lowest of its tile, and in a tile where the ground nowhere reaches above that
+/// (flat rock, or deep sand over any) no pair ever wants more than the donor has. Such a tile is `deep`: its
+/// pairs do not ask what is below the sand, and a slide is one multiplication and addition, rounded once.
+///
 /// A thread works on a patch, which it holds in registers; a CPU on several beside each other, as vectors.
 /// Pairs that share no cell stand together, so that they do not wait for each other. Diagonal pairs come
 /// first, which start to slide last, at √2 times the drop: behind the others, which leave them next to
@@ -45,12 +49,16 @@ struct Shares {
   float x[Patch::side - 1][lanes], y[Patch::side - 1];
 };
 
+/// Of a diagonal pair's share, what counts its excess over one cell as it is over √2: a little less, so that
+/// no rounding makes ω = 1 more than all that lies between the two.
+constexpr float diagonal_distance = 1.414213f;
+
 /// The pairs of `lanes` patches beside each other, whose heights h, top of the ground below the sand, and
 /// drop at repose over one cell stand at [at(row, column) + lane]; heights and grounds in Units.
-template <int lanes, class At>
+template <int lanes, bool deep, class At>
 struct PairsOfPatches {
   float* h;
-  const float *ground, *drop;
+  const float *ground, *drop;  ///< `deep`: no ground
   At at;
   const Shares<lanes>& shares;
   float* most;  ///< of each patch: raised to the most that a pair has moved
@@ -73,29 +81,32 @@ struct PairsOfPatches {
     pair<row, column, 1, 1>();
     pair<row, column + 1, 1, -1>();
   }
-  /// A cell and the one that lies `up` rows and `right` columns from it.
+  /// A cell a and the one that lies `up` rows and `right` columns from it, b: what slides from a to b, or if
+  /// it is negative, from b to a.
   template <int row, int column, int up, int right>
   DESERT_HD void pair() const {
     constexpr bool diagonal = up != 0 && right != 0;
     constexpr int gap = right < 0 ? column - 1 : column;
     float *a = h + at(row, column), *b = h + at(row + up, column + right);
-    const float *ground_a = ground + at(row, column), *ground_b = ground + at(row + up, column + right);
+    const float* ground_a = deep ? nullptr : ground + at(row, column);
+    const float* ground_b = deep ? nullptr : ground + at(row + up, column + right);
     const float *drop_a = drop + at(row, column), *drop_b = drop + at(row + up, column + right);
     DESERT_SIMD
     for (int n = 0; n < lanes; ++n) {
-      const float share = diagonal ? lower(shares.x[gap][n], shares.y[row]) * Neighbours::distance(4)
+      const float share = diagonal ? lower(shares.x[gap][n], shares.y[row]) * diagonal_distance
                                    : (up != 0 ? shares.y[row] : shares.x[gap][n]);
-      slide<diagonal>(a[n], b[n], ground_a[n], ground_b[n], drop_a[n], drop_b[n], share, most[n]);
+      const float over_one = diagonal ? (a[n] - b[n]) * (1.0f / Neighbours::distance(4)) : a[n] - b[n];
+      const float excess = positive_part(over_one - drop_a[n]) - positive_part(-over_one - drop_b[n]);
+      if constexpr (deep)
+        slide(a[n], b[n], fused(-share, excess, a[n]), most[n]);
+      else
+        slide(a[n], b[n], a[n] - lower(higher(share * excess, ground_b[n] - b[n]), a[n] - ground_a[n]),
+              most[n]);
     }
   }
-  /// What slides from a to b, or if it is negative, from b to a.
-  template <bool diagonal>
-  DESERT_HD static void slide(float& a, float& b, float ground_a, float ground_b, float drop_a, float drop_b,
-                              float share, float& most) {
-    const float over_one = diagonal ? (a - b) * (1.0f / Neighbours::distance(4)) : a - b;
-    const float excess = positive_part(over_one - drop_a) - positive_part(-over_one - drop_b);
-    const float amount = lower(higher(share * excess, ground_b - b), a - ground_a);
-    const float left = a - amount, moved = a - left;  // whole units
+  /// What is no longer in a is in b. All are whole units.
+  DESERT_HD static void slide(float& a, float& b, float left, float& most) {
+    const float moved = a - left;
     b += moved;
     a = left;
     most = higher(most, fabsf(moved));

@@ -1,7 +1,7 @@
 #pragma once
 /// Sweeps inside one closed tile: nothing crosses its edge, so tiles do not see each other. What is around
-/// the tile, obstacles, and what lies beyond the grid, stand in it as walls: infinitely high, so that nothing
-/// slides there, and without sand, so that nothing slides from there.
+/// the tile, obstacles, and what lies beyond the grid, stand in it as walls: too high for anything to slide
+/// there, and so steep at rest that nothing slides from there.
 ///
 /// A sweep goes through the pairs of all patches of the tile (avalanching_patch.hpp). In each of four sweeps
 /// these begin a cell further east and south, so that all cells are alike to them:
@@ -14,7 +14,7 @@
 ///      . . . . 3 .
 // clang-format on
 ///
-/// What is shifted out of the tile on one side comes in on the other, where no pair reaches over the edge.
+/// What is shifted out of the tile on one side comes in on the other, where nothing slides over the edge.
 /// Two sweeps that follow each other have all pairs between them, but for diagonal ones across an edge of
 /// each.
 ///
@@ -46,15 +46,30 @@ struct PatchShift {
     x = (n + offset / 16 * 2) % Patch::side;
     y = (Patch::side - x) % Patch::side;
   }
-  /// The share of what slides from a patch's column k to the next, in the tile's nth patch from the west:
-  /// none over the tile's edge. Likewise from row to row.
-  DESERT_HD float share_x(float share, int n, int k) const { return across(x, n, k) ? 0.0f : share; }
-  DESERT_HD float share_y(float share, int n, int k) const { return across(y, n, k) ? 0.0f : share; }
+};
 
- private:
-  DESERT_HD static bool across(int shift, int n, int k) {
-    return n * Patch::side + shift + k == Tiles::side - 1;
+/// The share ω of an excess that slides over the nth gap between a tile's columns, or between its rows,
+/// counted over its edge: what is shifted out of the tile on one side comes in on the other, but nothing
+/// slides there.
+struct ShareOfGap {
+  float inside;
+  /// Next to the edge. What cannot go on over it piles up before it, and is missing behind it; where less
+  /// slides to the last cells, that is spread over more of them.
+  float next_to_edge;
+
+  DESERT_HD float operator()(int n) const {
+    const int gap = n % Tiles::side;
+    if (gap == Tiles::side - 1) return 0.0f;
+    return gap == 0 || gap == Tiles::side - 2 ? next_to_edge : inside;
   }
+};
+
+/// Of the cells of a tile, but walls [quanta].
+struct Range {
+  Quanta lowest, highest;
+  Quanta highest_ground;
+  /// avalanching_patch.hpp
+  DESERT_HD bool deep() const { return highest_ground <= lowest; }
 };
 
 struct RelaxTile {
@@ -67,7 +82,7 @@ struct RelaxTile {
   Tiles tiles;
   LevelView level;
   Prolong from_coarse;           ///< what the tile's cells get first; their families lie in one tile
-  float share;                   ///< ω (avalanching_patch.hpp), in (0, 1]
+  ShareOfGap share;              ///< ω (avalanching_patch.hpp), in (0, 1]
   int sweeps;                    ///< at most most_sweeps
   float plenty;                  ///< [cell sizes]
   const Quanta* open = nullptr;  ///< 0 for tiles that are left as they are; null: none
@@ -88,15 +103,16 @@ struct RelaxTile {
     clear(team, h, ground, drop);
     if (from_coarse.sand_after)
       team.for_each(families, [=](int n) DESERT_INLINE { prolong_family(column, row, n); });
-    Quanta lowest, highest;
-    load_heights(team, column, row, h, lowest, highest);
-    if (lowest >= wall_height) return;
-    const Units units(lowest, highest, level.quanta_per_cell);
+    const Range range = load_heights(team, column, row, h, ground);
+    if (range.lowest >= wall_height) return;
+    const Units units(range.lowest, range.highest, level.quanta_per_cell);
     load(team, column, row, units, h, ground, drop, base);
     const float much = units.drop(plenty, level.quanta_per_cell);
     bool moved = false, moved_before = true;
     for (int n = 0; n < most_sweeps; ++n) {
-      const float most = sweep(team, PatchShift(n, tiles.offset), h, ground, drop);
+      const PatchShift shift(n, tiles.offset);
+      const float most = range.deep() ? sweep<true>(team, shift, h, ground, drop)
+                                      : sweep<false>(team, shift, h, ground, drop);
       moved = moved || most > 0.0f;
       if (most == 0.0f && !moved_before) break;
       if (n + 1 >= sweeps && !(most > much)) break;
@@ -149,10 +165,10 @@ struct RelaxTile {
   };
 
   /// The most that a pair has moved.
-  template <class Team>
+  template <bool deep, class Team>
   DESERT_HD float sweep(const Team& team, const PatchShift& shift, float* h, const float* ground,
                         const float* drop) const {
-    const float omega = share;
+    const ShareOfGap omega = share;
     const auto copy_first = [=](int from, int to) DESERT_INLINE {
       team.for_each(side, [=](int y) DESERT_INLINE {
         for (int k = 0; k < shift.x; ++k) h[local(y, to, k)] = h[local(y, from, k)];
@@ -165,10 +181,10 @@ struct RelaxTile {
       Shares<lanes> shares;
       float most_of[lanes] = {};
       for (int k = 0; k + 1 < Patch::side; ++k) {
-        shares.y[k] = shift.share_y(omega, patch_row, k);
-        for (int n = 0; n < lanes; ++n) shares.x[k][n] = shift.share_x(omega, first + n, k);
+        shares.y[k] = omega(patch_row * Patch::side + shift.y + k);
+        for (int n = 0; n < lanes; ++n) shares.x[k][n] = omega((first + n) * Patch::side + shift.x + k);
       }
-      PairsOfPatches<lanes, At>{h, ground, drop, At{shift, patch_row, first}, shares, most_of}.relax();
+      PairsOfPatches<lanes, deep, At>{h, ground, drop, At{shift, patch_row, first}, shares, most_of}.relax();
       float most_here = 0.0f;
       for (int n = 0; n < lanes; ++n) most_here = higher(most_here, most_of[n]);
       return most_here;
@@ -202,23 +218,25 @@ struct RelaxTile {
     team.for_each(cells, [=](int n) DESERT_INLINE {
       h[n] = float_of(static_cast<std::uint32_t>(wall_height));
       ground[n] = Units::wall;
-      drop[n] = 0.0f;
+      drop[n] = Units::wall;
     });
   }
 
-  /// In `h` lie the bits of the integers until load() has their units. Lowest and highest: of all but walls.
+  /// In `h` and `ground` lie the bits of integers until load() has their units.
   template <class Team>
-  DESERT_HD void load_heights(const Team& team, int column, int row, float* h, Quanta& lowest,
-                              Quanta& highest) const {
+  DESERT_HD Range load_heights(const Team& team, int column, int row, float* h, float* ground) const {
     const LevelView from = level;
     for_each_cell_of_tile(team, column, row, [=](int i, int n) DESERT_INLINE {
-      h[n] = float_of(static_cast<std::uint32_t>(from.height(i)));
+      const Quanta height = from.height(i);
+      h[n] = float_of(static_cast<std::uint32_t>(height));
+      ground[n] = float_of(static_cast<std::uint32_t>(height - from.sand[i]));
     });
     const auto height = [=](int n) DESERT_INLINE { return static_cast<Quanta>(bits_of(h[n])); };
-    const auto depth = [=](int n)
-                           DESERT_INLINE { return height(n) < wall_height ? -height(n) : wall_height; };
-    lowest = team.lowest(cells, height);
-    highest = -team.lowest(cells, depth);
+    const auto below = [=](int n, const float* of) DESERT_INLINE {
+      return height(n) < wall_height ? -static_cast<Quanta>(bits_of(of[n])) : wall_height;
+    };
+    return {team.lowest(cells, height), -team.lowest(cells, [=](int n) DESERT_INLINE { return below(n, h); }),
+            -team.lowest(cells, [=](int n) DESERT_INLINE { return below(n, ground); })};
   }
 
   /// `base`: of a cell's sand, what does not change with its height.
@@ -231,7 +249,7 @@ struct RelaxTile {
       const bool wall = height >= wall_height;
       h[n] = wall ? Units::wall : units.height(height);
       ground[n] = wall ? Units::wall : units.ground(height, sand);
-      drop[n] = units.drop(from.repose[i], from.quanta_per_cell);
+      drop[n] = wall ? Units::wall : units.drop(from.repose[i], from.quanta_per_cell);
       base[n] = sand - units.of_height(h[n]);
     });
     team.for_each(cells, [=](int n) DESERT_INLINE { h[n] = ground[n] == Units::wall ? Units::wall : h[n]; });

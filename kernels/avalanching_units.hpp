@@ -17,7 +17,8 @@ struct Units {
   static constexpr float floor = 1.0f, unit = 1.0f / 8388608.0f;
   /// The highest cell stands less than this over the lowest; sand that slides never leaves what lies between.
   static constexpr int relief = 8388608;
-  /// Walls are out of reach from below and have no sand.
+  /// The height of walls, out of reach from below; the top of their ground; and a drop at repose that nothing
+  /// exceeds.
   static constexpr float wall = 4.0f;
 
   Quanta lowest;  ///< of the tile's cells but walls

@@ -31,16 +31,26 @@ struct CompactWarps : std::false_type {};
 template <class Law>
 struct CompactWarps<Law, std::enable_if_t<Law::compact_warps>> : std::true_type {};
 
-/// A warp works on 32 × 1 cells, or on 8 × 4 for a law that says `compact_warps`.
+/// A warp works on 32 × 1 cells, and eight are a block. Of a law that says `compact_warps` a warp works on 8
+/// × 4, and two are a block: some of its warps take much longer than others, and a block's room is free when
+/// all are done.
+template <class Law>
+constexpr int warps_a_block = CompactWarps<Law>::value ? 2 : block_y;
+
 template <class Law>
 __global__ void cells_kernel(Grid grid, Law law) {
-  int dx = threadIdx.x, dy = threadIdx.y;
+  int x = blockIdx.x * block_x + threadIdx.x, y = blockIdx.y * block_y + threadIdx.y;
   if constexpr (CompactWarps<Law>::value) {
-    dx = 8 * (threadIdx.y % 4) + threadIdx.x % 8;
-    dy = 4 * (threadIdx.y / 4) + threadIdx.x / 8;
+    x = 8 * (blockIdx.x * warps_a_block<Law> + threadIdx.y) + threadIdx.x % 8;
+    y = 4 * blockIdx.y + threadIdx.x / 8;
   }
-  const int x = blockIdx.x * block_x + dx, y = blockIdx.y * block_y + dy;
   if (x < grid.width && y < grid.height) law(x, y);
+}
+template <class Law>
+dim3 blocks_of(const Grid& g) {
+  if (!CompactWarps<Law>::value) return blocks(g);
+  constexpr int width = 8 * warps_a_block<Law>;
+  return dim3((g.width + width - 1) / width, (g.height + 3) / 4);
 }
 
 struct AtomicSums {
@@ -180,7 +190,8 @@ inline dim3 reduction_blocks(const Grid& g) {
 
 template <class Law>
 void for_each_cell(CudaExec& exec, const Grid& grid, const Law& law) {
-  cuda::cells_kernel<<<cuda::blocks(grid), cuda::block(), 0, cuda::stream(exec)>>>(grid, law);
+  const dim3 threads(cuda::block_x, cuda::warps_a_block<Law>);
+  cuda::cells_kernel<<<cuda::blocks_of<Law>(grid), threads, 0, cuda::stream(exec)>>>(grid, law);
   check_cuda(cudaGetLastError(), "launch over cells");
 }
 

@@ -10,7 +10,6 @@
 
 namespace desert_sim {
 
-DESERT_HD float lerp(float a, float b, float t) { return a + t * (b - a); }
 DESERT_HD float minimum(float a, float b) { return a < b ? a : b; }
 DESERT_HD float maximum(float a, float b) { return a > b ? a : b; }
 /// Of two numbers that are not NaN, nor zeros of different sign; on a GPU one instruction, which a comparison
@@ -32,6 +31,7 @@ DESERT_HD float higher(float a, float b) {
 DESERT_HD float clamp(float v, float low, float high) { return minimum(maximum(v, low), high); }
 /// a·b + c, rounded once. Where the processor has no such instruction the library computes it, slowly.
 DESERT_HD float fused(float a, float b, float c) { return fmaf(a, b, c); }
+DESERT_HD float lerp(float a, float b, float t) { return fused(t, b - a, a); }
 DESERT_HD std::uint32_t bits_of(float v) {
   std::uint32_t bits;
   memcpy(&bits, &v, sizeof bits);
@@ -41,6 +41,14 @@ DESERT_HD float float_of(std::uint32_t bits) {
   float v;
   memcpy(&v, &bits, sizeof v);
   return v;
+}
+/// What no thread changes while this law is at work.
+DESERT_HD float constant_at(const float* place) {
+#if defined(__CUDA_ARCH__)
+  return __ldg(place);
+#else
+  return *place;
+#endif
 }
 /// max(v, 0) for v ≤ 1; from there on at least 1. A negative float's bits are a negative integer: of integers
 /// compilers see that this is a maximum, of floats they make comparisons and masks.
@@ -65,15 +73,15 @@ DESERT_HD float hypotenuse(float x, float y) { return sqrtf(x * x + y * y); }
 DESERT_HD float exp_negative(float x) {
   constexpr float end = 87.0f;
   const float y = minimum(x, end), n = rintf(y * 1.44269504f);
-  const float r = (n * 0.693359375f - y) + n * -2.12194440e-4f;  // r = n ln2 − y
+  const float r = fused(n, -2.12194440e-4f, fused(n, 0.693359375f, -y));  // r = n ln2 − y
   float p = 1.0f / 5040.0f;
-  p = p * r + 1.0f / 720.0f;
-  p = p * r + 1.0f / 120.0f;
-  p = p * r + 1.0f / 24.0f;
-  p = p * r + 1.0f / 6.0f;
-  p = p * r + 0.5f;
-  p = p * r + 1.0f;
-  p = p * r + 1.0f;
+  p = fused(p, r, 1.0f / 720.0f);
+  p = fused(p, r, 1.0f / 120.0f);
+  p = fused(p, r, 1.0f / 24.0f);
+  p = fused(p, r, 1.0f / 6.0f);
+  p = fused(p, r, 0.5f);
+  p = fused(p, r, 1.0f);
+  p = fused(p, r, 1.0f);
   p = p * float_of(static_cast<std::uint32_t>(127 - static_cast<int>(n)) << 23);
   return x >= end ? 0.0f : p;
 }

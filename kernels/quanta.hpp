@@ -38,13 +38,15 @@ DESERT_HD int subcells(float cells) {
   return static_cast<int>(rintf(held * 65536.0f));
 }
 constexpr int subcell_one = 65536;
-/// What a displacement goes beyond whole cells, 0 … 1: exact, without the slow conversion from an integer.
-DESERT_HD float fraction(int subcell) {
-  const std::uint32_t bits = 0x3f800000u | static_cast<std::uint32_t>(subcell & 65535) << 7;  // 1 + fraction
+/// 1 and what a displacement goes beyond whole cells: exact, without the slow conversion from an integer.
+DESERT_HD float one_and_fraction(int subcell) {
+  const std::uint32_t bits = 0x3f800000u + static_cast<std::uint32_t>(subcell & 65535) * 128;
   float one_and;
   memcpy(&one_and, &bits, sizeof one_and);
-  return one_and - 1.0f;
+  return one_and;
 }
+/// What a displacement goes beyond whole cells, 0 … 1.
+DESERT_HD float fraction(int subcell) { return one_and_fraction(subcell) - 1.0f; }
 /// The nearest whole cell to a displacement; halves go away from zero, so that mirrored marches mirror.
 DESERT_HD int nearest_cell(int subcell) { return (subcell + 32768 - (subcell < 0 ? 1 : 0)) >> 16; }
 

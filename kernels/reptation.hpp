@@ -48,26 +48,24 @@ namespace reptation {
 /// The angle of repose of a cell's sand where impacts of strength r [m] loosen it, in the wind's speed [m/s].
 struct Angle {
   repose::Tangents tangents;
-  float loosening;             ///< k_r of adaptive_repose, else 0
-  const float* spared_shadow;  ///< null: nothing is spared
+  float loosening;  ///< k_r of adaptive_repose, else 0
+  float sparing;    ///< share of the loosening from which the wind's shadow spares: 1 or 0
   float* repose;
 
-  Angle(const TerrainView& t, const ReptationParameters& p, const ReposeParameters& repose_parameters,
-        float* tangents_of_repose)
+  Angle(const ReptationParameters& p, const ReposeParameters& repose_parameters, float* tangents_of_repose)
       : tangents(repose_parameters),
         loosening(p.method == ReptationMethod::adaptive_repose ? p.strength : 0.0f),
-        spared_shadow(p.use_shadow ? t.real(Layer::wind_shadow) : nullptr),
+        sparing(p.use_shadow ? 1.0f : 0.0f),
         repose(tangents_of_repose) {}
 
-  /// The tangent of dry bare sand. Reads, but does not write: a law that calls this before it writes anything
-  /// waits for memory once.
-  DESERT_HD float loosened(int i, float r, float speed) const {
+  /// The tangent of dry bare sand.
+  DESERT_HD float loosened(float r, float speed, float shadow) const {
     if (!(loosening > 0.0f)) return tangents.sand;
-    return tangents.sand * exp_negative(loosening * r * speed * (1.0f - value_or_zero(spared_shadow, i)));
+    return tangents.sand * exp_negative(loosening * r * speed * (1.0f - shadow * sparing));
   }
   /// v vegetation, m relative moisture.
-  DESERT_HD void set(int i, float dry_and_bare, float v, float m) const {
-    repose[i] = lerp(dry_and_bare, tangents.vegetated, v) * repose::moisture_factor(m);
+  DESERT_HD float of(float dry_and_bare, float v, float m) const {
+    return lerp(dry_and_bare, tangents.vegetated, v) * repose::moisture_factor(m);
   }
 };
 
@@ -77,7 +75,7 @@ struct Impacts {
   float* strength;  ///< [m], or null
 
   DESERT_HD void set(int i, float r, float loosened_angle, float v, float m) const {
-    angle.set(i, loosened_angle, v, m);
+    angle.repose[i] = angle.of(loosened_angle, v, m);
     if (strength) strength[i] = r;
   }
 };
@@ -86,22 +84,23 @@ struct Impacts {
 struct SetAngles {
   Grid grid;
   Angle angle;
-  const float *strength, *wind_x, *wind_y, *vegetation;  ///< strength: null where nothing hits
+  const float *strength, *wind_x, *wind_y, *wind_shadow, *vegetation;  ///< strength: null where nothing hits
   repose::RelativeMoisture moisture;
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     const float speed = hypotenuse(wind_x[i], wind_y[i]);
-    angle.set(i, angle.loosened(i, value_or_zero(strength, i), speed), value_or_zero(vegetation, i),
-              moisture(i));
+    const float dry = angle.loosened(value_or_zero(strength, i), speed, value_or_zero(wind_shadow, i));
+    angle.repose[i] = angle.of(dry, value_or_zero(vegetation, i), moisture(i));
   }
 };
 template <class E>
 void set_angles(E& exec, const TerrainView& t, const Angle& angle, const ReposeParameters& p,
                 const float* strength) {
-  for_each_cell(exec, t.grid,
-                SetAngles{t.grid, angle, strength, t.real(Layer::wind_x), t.real(Layer::wind_y),
-                          t.real(Layer::vegetation), repose::RelativeMoisture(t, p)});
+  for_each_cell(
+      exec, t.grid,
+      SetAngles{t.grid, angle, strength, t.real(Layer::wind_x), t.real(Layer::wind_y),
+                t.real(Layer::wind_shadow), t.real(Layer::vegetation), repose::RelativeMoisture(t, p)});
 }
 
 /// Whether step() does anything: adaptive_repose has done with the angles.

@@ -19,6 +19,7 @@
 #include "desert_sim/kernels/abrasion.hpp"
 #include "desert_sim/kernels/carried.hpp"
 #include "desert_sim/kernels/for_each.hpp"
+#include "desert_sim/kernels/four.hpp"
 #include "desert_sim/kernels/ledger.hpp"
 #include "desert_sim/kernels/reptation.hpp"
 #include "desert_sim/kernels/saltation_inputs.hpp"
@@ -70,8 +71,9 @@ struct LiftAndAdvect {
   const Quanta* airborne;
   LedgerView ledger;
 
-  DESERT_HD Quanta lifted(int i, Quanta available, float speed) const {
-    if (available <= 0 || !(speed > 0.0f) || speed < p.threshold_speed) return 0;
+  DESERT_HD Quanta lifted(int i, Quanta available, float speed_squared) const {
+    if (available <= 0 || !(speed_squared > 0.0f)) return 0;
+    if (speed_squared < p.threshold_speed * p.threshold_speed) return 0;
     const float r_e = in.eddy(i);
     const float wet = in.flooded(i) ? 0.0f : dryness(in.moisture(i));
     const float metres = in.time_step * (p.lift * (1.0f - value_or_zero(in.wind_shadow, i)) *
@@ -84,7 +86,7 @@ struct LiftAndAdvect {
   DESERT_HD void prepare(int x, int y, Carried<count>& parcels, int n) const {
     const int i = in.grid.index(x, y);
     const float u = in.wind_x[i], v = in.wind_y[i];
-    const Quanta lying = sand[i], carried = airborne[i], lift = lifted(i, lying, hypotenuse(u, v));
+    const Quanta lying = sand[i], carried = airborne[i], lift = lifted(i, lying, u * u + v * v);
     sand[i] = lying - lift;  // after all that is read, for which a GPU then waits once
     parcels.set(n, x, y, subcells(u * cells_a_speed), subcells(v * cells_a_speed), carried + lift);
   }
@@ -156,30 +158,61 @@ struct Deposit {
   reptation::Impacts impacts;
 
   /// `cover`: the sand that lies there; v vegetation, m relative moisture.
-  DESERT_HD float share(int i, Quanta cover, float v, float m) const {
+  DESERT_HD float share(int i, Quanta cover, float shadow, float v, float m) const {
     const float r_e = in.eddy(i);
     if (r_e < 0.0f || in.solid(i)) return 0.0f;
     const bool sandy = cover > 0 && cover * in.quantum >= p.bare_depth;
     const float bounce =
         sandy ? p.bounce_on_sand : (in.there_may_be(in.soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
-    const float held = maximum((1.0f - bounce) + v * bounce, maximum(value_or_zero(in.wind_shadow, i), r_e));
+    const float held = maximum((1.0f - bounce) + v * bounce, maximum(shadow, r_e));
     const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
     return clamp(held, 0.0f, 1.0f) * wet;
+  }
+  DESERT_HD Quanta deposited(Quanta arriving, float held) const {
+    return take(held * (arriving * in.quantum), in.quanta_per_metre, arriving);
   }
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = in.grid.index(x, y);
     const Quanta arriving = landed[i], cover = sand[i];
-    const float v = in.plants(i), m = in.moisture(i);
-    const float held = share(i, cover, v, m);
-    const Quanta deposited = take(held * (arriving * in.quantum), in.quanta_per_metre, arriving);
-    const Quanta bouncing = arriving - deposited;
+    const float v = in.plants(i), m = in.moisture(i), shadow = value_or_zero(in.wind_shadow, i);
+    const float held = share(i, cover, shadow, v, m);
+    const Quanta stays = deposited(arriving, held), bouncing = arriving - stays;
     const float speed = hypotenuse(in.wind_x[i], in.wind_y[i]), strength = arriving * in.quantum * (1.0f - v);
-    const float angle = impacts.angle.loosened(i, strength, speed);
-    sand[i] = cover + deposited;
+    const float angle = impacts.angle.loosened(strength, speed, shadow);
+    sand[i] = cover + stays;
     airborne[i] = bouncing;
     if (!bare) wear(i, cover, bouncing, speed, v, m, held);
     impacts.set(i, strength, angle, v, in.moisture(i));
+  }
+};
+
+/// Deposit of four cells beside each other in a bare desert, whose rows are multiples of four long.
+struct DepositOfFour {
+  Deposit<true> one;
+
+  DESERT_HD Grid fours() const { return {one.in.grid.width / 4, one.in.grid.height, 1}; }
+  DESERT_HD void operator()(int x, int y) const {
+    const int first = one.in.grid.index(4 * x, y);
+    const auto arriving = four_at(one.landed + first), cover = four_at(one.sand + first);
+    const auto u = four_at(one.in.wind_x + first), v = four_at(one.in.wind_y + first);
+    Four<float> shadow{}, angle;
+    if (one.in.wind_shadow) shadow = four_at(one.in.wind_shadow + first);
+    Four<Quanta> sand, airborne;
+    for (int n = 0; n < 4; ++n) {
+      const float strength = arriving.values[n] * one.in.quantum;
+      const float held = one.share(first + n, cover.values[n], shadow.values[n], 0.0f, 0.0f);
+      const Quanta stays = one.deposited(arriving.values[n], held);
+      sand.values[n] = cover.values[n] + stays;
+      airborne.values[n] = arriving.values[n] - stays;
+      const float dry =
+          one.impacts.angle.loosened(strength, hypotenuse(u.values[n], v.values[n]), shadow.values[n]);
+      angle.values[n] = one.impacts.angle.of(dry, 0.0f, 0.0f);
+      if (one.impacts.strength) one.impacts.strength[first + n] = strength;
+    }
+    put_four(one.sand + first, sand);
+    put_four(one.airborne + first, airborne);
+    put_four(one.impacts.angle.repose + first, angle);
   }
 };
 
@@ -196,7 +229,13 @@ void step_where(E& exec, const TerrainView& t, const SaltationParameters& p, con
     for_each_cell_adding(exec, t.grid, landed, lift);
   if (!t.grid.periodic() && p.influx > 0.0f)
     for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, landed, ledger});
-  for_each_cell(exec, t.grid, Deposit<bare>{in, p, wear, landed, sand, airborne, impacts});
+  const Deposit<bare> deposit{in, p, wear, landed, sand, airborne, impacts};
+  if constexpr (bare && !works_on_rows<E>)
+    if (t.grid.width % 4 == 0) {
+      const DepositOfFour four{deposit};
+      return for_each_cell(exec, four.fours(), four);
+    }
+  for_each_cell(exec, t.grid, deposit);
 }
 
 /// `landed` (quanta): scratch memory of one value a cell. `shade`: what finds the wind's shadow first, or

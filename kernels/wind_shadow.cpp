@@ -14,10 +14,10 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const WindShadowParameter
   work.reciprocals.upload(reciprocals);
   if (p.curved) return work;
   const auto blocks = static_cast<std::size_t>(surface::blocks_of(grid).cells());
-  work.lines = Buffer<int>(exec, blocks);
+  work.courses = Buffer<Course>(exec, blocks);
   const bool fits =
       (!grid.periodic_x || grid.width % side == 0) && (!grid.periodic_y || grid.height % side == 0);
-  if (fits && steps > 2 * piece) work.around = Buffer<float>(exec, blocks);
+  if (fits && steps > 3 * piece) work.around = Buffer<float>(exec, blocks);
   return work;
 }
 

@@ -43,16 +43,19 @@ static_assert(table_is_complete<WindShadowParameters>());
 namespace wind_shadow {
 
 /// `around` is empty where marches are too short for it to pay, or blocks do not fit a periodic axis; it and
-/// `lines` are where marches follow the wind.
+/// `courses` where marches follow the wind.
 struct Workspace {
   Buffer<float> reciprocals, around;
-  Buffer<int> lines;
+  Buffer<Course> courses;
 };
 
 inline int march_steps(const Grid& grid, const WindShadowParameters& p) {
   return static_cast<int>(maximum(1.0f, floorf(p.distance / grid.cell_size)));
 }
 Workspace make_workspace(Exec& exec, const Grid& grid, const WindShadowParameters& p);
+
+/// The longest march for which a CPU has a law of its own [steps].
+constexpr int short_march = 7;
 
 /// Of marches of at most `longest` steps.
 template <int longest, class E>
@@ -64,15 +67,15 @@ void short_shadow(E& exec, const Shadow& shadow) {
                 Bordered<Inside, Shadow>{shadow.grid(), Inside::margin, {shadow}, shadow});
 }
 
-/// The law of straight marches, ready for the terrain as it is. `lines`: those of the workspace, or null,
-/// where that spares a pass.
+/// The law of straight marches, ready for the terrain as it is. `courses`: those of the workspace, or
+/// null, where that spares a pass.
 template <class E>
 Shadow straight_shadow(E& exec, const TerrainView& t, const WindShadowParameters& p,
-                       const surface::Heights& heights, const Workspace& work, int* lines) {
-  const FindLine find{t.grid, t.real(Layer::wind_x), t.real(Layer::wind_y)};
-  if (lines || work.around)
+                       const surface::Heights& heights, const Workspace& work, Course* courses) {
+  const FindCourse find{t.grid, t.real(Layer::wind_x), t.real(Layer::wind_y)};
+  if (courses || work.around)
     for_each_cell(exec, heights.blocks,
-                  PrepareBlock{{find, heights.blocks, lines},
+                  PrepareBlock{{find, heights.blocks, courses},
                                {heights.blocks, heights.highest.data(), work.around.data()}});
   return {find,
           p.distance / t.grid.cell_size,
@@ -82,7 +85,7 @@ Shadow straight_shadow(E& exec, const TerrainView& t, const WindShadowParameters
           work.reciprocals.data(),
           t.real(Layer::wind_shadow),
           heights.blocks,
-          lines,
+          courses,
           work.around.data()};
 }
 
@@ -90,8 +93,8 @@ template <class E>
 void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const surface::Heights& heights,
           const Workspace& work) {
   // A pass over the blocks pays where it spares pieces of marches too, and where cells are worked on in rows.
-  int* lines = works_on_rows<E> || work.around ? work.lines.data() : nullptr;
-  const Shadow shadow = straight_shadow(exec, t, p, heights, work, lines);
+  Course* courses = works_on_rows<E> || work.around ? work.courses.data() : nullptr;
+  const Shadow shadow = straight_shadow(exec, t, p, heights, work, courses);
   if (p.curved) {
     for_each_cell(exec, t.grid,
                   CurvedShadow{t.grid, shadow.shade, shadow.heights, shadow.find.wind_x, shadow.find.wind_y,
@@ -99,7 +102,7 @@ void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const su
     return;
   }
   if constexpr (works_on_rows<E>)
-    if (shadow.steps <= piece) return short_shadow<piece>(exec, shadow);
+    if (shadow.steps <= short_march) return short_shadow<short_march>(exec, shadow);
   const ShadowOfFour four{shadow};
   for_each_cell(exec, four.fours(), four);
 }

@@ -12,9 +12,9 @@
 ///   |  |  |  | 0|            | 0| 1| 2| 3|
 ///   +--+--+--+--+            +--+--+--+--+
 ///
-/// A long march is cut into pieces. A piece is left out if the highest ground around it is too low to matter:
-/// neither steeper to look up to than what was found nearer, nor than where shadow begins. That changes no
-/// bit of the result.
+/// A march is cut into pieces of four steps. Of a long one a piece is left out if the highest ground around
+/// it is too low to matter: not steeper to look up to than what was found nearer, or than where shadow
+/// begins. That changes no bit of the result.
 
 #include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/marching.hpp"
@@ -24,38 +24,31 @@
 namespace desert_sim::wind_shadow {
 
 constexpr int side = surface::block_side;
-/// Steps of a march that stay within `side` cells of the cell under its middle, the second of the two cells
-/// of a sample included.
-constexpr int piece = 2 * (side - 1) + 1;
+/// Steps of a march that are left out together: as many as a block is wide, so that they stay within two by
+/// two blocks.
+constexpr int piece = side;
 
 /// Where the wind is no faster, nothing is sheltered from it [m/s].
 constexpr float calm = 1e-6f;
 
 /// Where the marches of a block's cells go.
-struct Course {
-  marching::Line line;
-  float cells_a_step, steps_a_cell;
-  int steps;  ///< 0 where it is calm
+struct alignas(8) Course {
+  int word;  ///< the line: its drift, a multiple of 16, and its heading + 2
+  float steps_a_cell;
 
-  /// Of at most `most` steps that reach `reach` cells far.
-  DESERT_HD Course(const marching::Line& l, float reach, int most)
-      : line(l), cells_a_step(l.cells_a_step()), steps_a_cell(1.0f / cells_a_step) {
-    const int wanted = static_cast<int>(reach * steps_a_cell + 1e-3f);
-    steps = l.heading == 0 ? 0 : (wanted < 1 ? 1 : (wanted < most ? wanted : most));
-  }
+  Course() = default;
+  DESERT_HD explicit Course(const marching::Line& l)
+      : word(l.drift + l.heading + 2), steps_a_cell(1.0f / l.cells_a_step()) {}
+  DESERT_HD marching::Line line() const { return {(word & 15) - 2, word & ~15}; }
 };
 
-/// The line of a block's marches, in a word.
-struct FindLine {
+/// The course of a block's marches.
+struct FindCourse {
   Grid grid;
   const float *wind_x, *wind_y;
 
-  DESERT_HD static int word(const marching::Line& line) { return line.drift / 16 * 8 + line.heading + 2; }
-  DESERT_HD static marching::Line line(int word) { return {(word & 7) - 2, (word >> 3) * 16}; }
-
-  /// Against the mean wind of the four cells in the middle; heading 0 where it is calm. Mirrored or turned
-  /// wind gives the same bits.
-  DESERT_HD marching::Line operator()(int column, int row) const {
+  /// Against the mean wind of the four cells in the middle. Mirrored or turned wind gives the same bits.
+  DESERT_HD Course operator()(int column, int row) const {
     const int west = clamp_index(side * column + 1, grid.width), east = clamp_index(west + 1, grid.width);
     const int south = clamp_index(side * row + 1, grid.height), north = clamp_index(south + 1, grid.height);
     const int cells[] = {grid.index(west, south), grid.index(east, north), grid.index(east, south),
@@ -64,22 +57,22 @@ struct FindLine {
       return 0.25f * ((w[cells[0]] + w[cells[1]]) + (w[cells[2]] + w[cells[3]]));
     };
     const float u = middle(wind_x), v = middle(wind_y);
-    return hypotenuse(u, v) > calm ? marching::Line::against(u, v) : marching::Line{0, 0};
+    const bool calms = !(hypotenuse(u, v) > calm);
+    return Course(calms ? marching::Line{0, 0} : marching::Line::against(u, v));
   }
 };
 
-struct SetLine {
-  FindLine find;
+struct SetCourse {
+  FindCourse find;
   Grid blocks;
-  int* lines;
+  Course* courses;
   DESERT_HD void operator()(int column, int row) const {
-    lines[blocks.index(column, row)] = FindLine::word(find(column, row));
+    courses[blocks.index(column, row)] = find(column, row);
   }
 };
 
-/// `around` holds, for each block of the surface, the highest of it and of the eight next to it, all ground
-/// within `side` cells of any cell of the block; and a little more, so that no rounding of a sample gets
-/// above it.
+/// `around` holds, for each block of the surface, the highest of it and of those to the east, north and
+/// north-east of it; and a little more, so that no rounding of a sample gets above it.
 struct HighestAround {
   Grid blocks;
   const float* highest;
@@ -87,8 +80,8 @@ struct HighestAround {
 
   DESERT_HD void operator()(int column, int row) const {
     float top = -static_cast<float>(wall_height);
-    for (int y = row - 1; y <= row + 1; ++y)
-      for (int x = column - 1; x <= column + 1; ++x) top = maximum(top, highest[sample_index(blocks, x, y)]);
+    for (int y = row; y <= row + 1; ++y)
+      for (int x = column; x <= column + 1; ++x) top = maximum(top, highest[sample_index(blocks, x, y)]);
     around[blocks.index(column, row)] = top + rounding(top);
   }
   /// More than what rounding adds to heights of this size, and to their differences [quanta].
@@ -97,10 +90,10 @@ struct HighestAround {
 
 /// What marches need of a block.
 struct PrepareBlock {
-  SetLine line;           ///< `lines` null: not needed
+  SetCourse course;       ///< `courses` null: not needed
   HighestAround highest;  ///< `around` null: not needed
   DESERT_HD void operator()(int column, int row) const {
-    if (line.lines) line(column, row);
+    if (course.courses) course(column, row);
     if (highest.around) highest(column, row);
   }
 };
@@ -122,10 +115,13 @@ struct Shade {
   }
 };
 
+/// Of a march, if that is known before it is compiled: columns of cells lie beside each other in memory.
+enum class Way { along_x, along_y, either };
+
 /// The straight march.
 struct Shadow {
   static constexpr bool compact_warps = true;  ///< cells near each other leave out the same pieces
-  FindLine find;
+  FindCourse find;
   float reach;  ///< [cells]
   int steps;    ///< at most
   Shade shade;
@@ -133,118 +129,131 @@ struct Shadow {
   const float* reciprocals;  ///< 1/j for j = 0 … steps (but for 0)
   float* wind_shadow;
   Grid blocks;
-  const int* lines;     ///< of the blocks; null: found by each cell
-  const float* around;  ///< null: no piece is left out
+  const Course* courses;  ///< of the blocks; null: found by each cell
+  const float* around;    ///< null: no piece is left out
 
   DESERT_HD const Grid& grid() const { return find.grid; }
   DESERT_HD Course course(int column, int row) const {
-    const marching::Line line = lines ? FindLine::line(lines[blocks.index(column, row)]) : find(column, row);
-    return Course(line, reach, steps);
+    return courses ? courses[blocks.index(column, row)] : find(column, row);
+  }
+  /// Of the cells that go there; none where it is calm.
+  DESERT_HD int steps_of(const Course& c) const {
+    const int wanted = static_cast<int>(reach * c.steps_a_cell + 1e-3f);
+    return c.line().heading == 0 ? 0 : (wanted < 1 ? 1 : (wanted < steps ? wanted : steps));
   }
 
-  /// Of `count` cells beside each other across the march, of which (x, y) is the first.
-  template <int count>
+  /// `count` cells beside each other across the march, of which (x, y) is the first.
+  template <Way way, int count>
   struct Cells {
+    DESERT_HD bool along_x() const { return way == Way::either ? line.along_x() : way == Way::along_x; }
+
+    marching::Line line;
     int x, y, first;
     int along, across;               ///< to the next cell's index
-    const float* beside[count + 1];  ///< heights, from k cells across on: so that a GPU adds nothing else
+    const float* beside[count + 1];  ///< heights, from k cells across on
     float base[count];
+
+    DESERT_HD Cells(const Shadow& law, const marching::Line& to, int first_x, int first_y)
+        : line(to), x(first_x), y(first_y), first(law.grid().index(x, y)) {
+      const int width = law.grid().width;
+      along = line.step() * (along_x() ? 1 : width);
+      across = along_x() ? width : 1;
+      for (int k = 0; k <= count; ++k) beside[k] = law.heights + k * across;
+      for (int k = 0; k < count; ++k) base[k] = constant_at(beside[k] + first);
+    }
+    DESERT_HD float height(int k, int j, int drifted) const {
+      return constant_at(beside[k] + (first + j * along + drifted * across));
+    }
   };
-  template <int count>
-  DESERT_HD Cells<count> cells(const Course& c, int x, int y) const {
-    const bool along_x = c.line.along_x();
-    const int width = grid().width;
-    Cells<count> cells{x,  y, grid().index(x, y), c.line.step() * (along_x ? 1 : width), along_x ? width : 1,
-                       {}, {}};
-    for (int k = 0; k <= count; ++k) cells.beside[k] = heights + k * cells.across;
-    for (int k = 0; k < count; ++k) cells.base[k] = cells.beside[k][cells.first];
-    return cells;
-  }
 
   /// What the cells find at step j [quanta a step].
-  template <bool inside, int count>
-  DESERT_HD void look(const Course& c, const Cells<count>& cells, int j, float (&steepest)[count]) const {
-    const int place = j * c.line.drift, across = place >> 16;
-    const float share = fraction(place), per_step = reciprocals[j];
-    const float of_nearer = (1.0f - share) * per_step, of_farther = share * per_step;
+  template <bool inside, Way way, int count>
+  DESERT_HD void look(const Cells<way, count>& cells, int j, float (&steepest)[count]) const {
+    const int place = j * cells.line.drift, drifted = place >> 16;
+    const float per_step = constant_at(reciprocals + j), one_and = one_and_fraction(place);
+    const float of_nearer = fused(-one_and, per_step, 2.0f * per_step),
+                of_farther = fused(one_and, per_step, -per_step);
     float h[count + 1];
-    for (int k = 0; k <= count; ++k) h[k] = height<inside>(c, cells, j, across, k);
+    for (int k = 0; k <= count; ++k)
+      h[k] = inside ? cells.height(k, j, drifted) : height(cells, k, j, drifted);
     for (int k = 0; k < count; ++k)
       steepest[k] =
           higher(steepest[k], fused(-per_step, cells.base[k], h[k] * of_nearer + h[k + 1] * of_farther));
   }
 
-  /// The steepest rises [quanta a step]; `inside`: the whole march is on the grid.
-  template <bool inside, int count>
-  DESERT_HD void march(const Course& c, const Cells<count>& cells, float (&steepest)[count]) const {
-    const float enough = shade.full * c.cells_a_step * 1.00001f,
-                begins = shade.start * c.cells_a_step * 0.99999f;
+  /// The steepest rises [quanta a step] of `end` steps; `inside`: the whole march is on the grid.
+  template <bool inside, Way way, int count>
+  DESERT_HD void march(const Cells<way, count>& cells, int end, float (&steepest)[count]) const {
+    const float cells_a_step = cells.line.cells_a_step();
+    const float enough = shade.full * cells_a_step * 1.00001f, begins = shade.start * cells_a_step * 0.99999f;
+    float rounding = 0.0f;
+    for (float base : cells.base) rounding = higher(rounding, HighestAround::rounding(base));
     for (float& s : steepest) s = 0.0f;
-    for (int first = 1; first <= c.steps && any_below(enough, steepest); first += piece) {
-      if (around && !matters<inside>(c, cells, first, enough, begins, steepest)) continue;
-      if (first + piece <= c.steps + 1) {
-        for (int n = 0; n < piece; ++n) look<inside>(c, cells, first + n, steepest);
+    for (int first = 1; first <= end && lowest(steepest) < enough; first += piece) {
+      if (around && !matters<inside>(cells, first, end, begins, rounding, steepest)) continue;
+      if (inside && first + piece <= end + 1) {
+        for (int n = 0; n < piece; ++n) look<inside>(cells, first + n, steepest);
       } else {
-        for (int j = first; j <= c.steps; ++j) look<inside>(c, cells, j, steepest);
+        DESERT_ROLLED
+        for (int j = first; j <= end && j < first + piece; ++j) look<inside>(cells, j, steepest);
       }
     }
   }
 
-  /// Of `count` cells; `inside` all of them are on the grid.
-  template <int count>
+  /// Of `count` cells, all on the grid.
+  template <Way way, int count>
   DESERT_HD void shelter(const Course& c, int x, int y) const {
     const Grid& g = grid();
-    const Cells<count> these = cells<count>(c, x, y);
-    const bool along_x = c.line.along_x();
-    const int end_x = x + c.line.dx(c.steps), end_y = y + c.line.dy(c.steps);
-    const int east = along_x ? 0 : count, north = along_x ? count : 0;  // to the last that a sample takes
+    const Cells<way, count> cells(*this, c.line(), x, y);
+    const int end = steps_of(c), end_x = x + cells.line.dx(end), end_y = y + cells.line.dy(end);
+    const int east = cells.along_x() ? 0 : count, north = cells.along_x() ? count : 0;  // to a sample's last
     float steepest[count];
     if (g.inside(x + east, y + north) && g.inside(end_x, end_y) && g.inside(end_x + east, end_y + north))
-      march<true>(c, these, steepest);
+      march<true>(cells, end, steepest);
     else
-      march<false>(c, these, steepest);
+      march<false>(cells, end, steepest);
     for (int k = 0; k < count; ++k)
-      wind_shadow[these.first + k * these.across] = shade(steepest[k] * c.steps_a_cell);
+      wind_shadow[cells.first + k * cells.across] = shade(steepest[k] * c.steps_a_cell);
   }
 
-  DESERT_HD void operator()(int x, int y) const { shelter<1>(course(x / side, y / side), x, y); }
+  DESERT_HD void operator()(int x, int y) const { shelter<Way::either, 1>(course(x / side, y / side), x, y); }
 
  private:
-  /// The height `across` + k cells beside where step j of the first cell is when it does not drift.
-  template <bool inside, int count>
-  DESERT_HD float height(const Course& c, const Cells<count>& cells, int j, int across, int k) const {
-    if (inside) return cells.beside[k][cells.first + j * cells.along + across * cells.across];
-    const int along = j * c.line.step();
-    return heights[c.line.along_x() ? sample_index(grid(), cells.x + along, cells.y + across + k)
-                                    : sample_index(grid(), cells.x + across + k, cells.y + along)];
+  /// Likewise where the march leaves the grid.
+  template <Way way, int count>
+  DESERT_HD float height(const Cells<way, count>& cells, int k, int j, int drifted) const {
+    const int along = j * cells.line.step();
+    return heights[cells.along_x() ? sample_index(grid(), cells.x + along, cells.y + drifted + k)
+                                   : sample_index(grid(), cells.x + drifted + k, cells.y + along)];
   }
 
   template <int count>
-  DESERT_HD static bool any_below(float enough, const float (&steepest)[count]) {
-    bool any = false;
-    for (float s : steepest) any = any || s < enough;
-    return any;
+  DESERT_HD static float lowest(const float (&of)[count]) {
+    float least = of[0];
+    for (int k = 1; k < count; ++k) least = lower(least, of[k]);
+    return least;
   }
 
-  /// Whether the piece that begins with step `first` can change a cell's shadow. What lies around its first
-  /// and its last cell in the piece's middle is around those between, too.
-  template <bool inside, int count>
-  DESERT_HD bool matters(const Course& c, const Cells<count>& cells, int first, float enough, float begins,
+  /// Whether the piece from step `first` on, of `end` at most, can change a cell's shadow. What each of the
+  /// marches looks at there lies east and north of a cell of its, in that one's block and the three which
+  /// `around` adds to it. `rounding`: of the cells' heights.
+  template <bool inside, Way way, int count>
+  DESERT_HD bool matters(const Cells<way, count>& cells, int first, int end, float begins, float rounding,
                          const float (&steepest)[count]) const {
     static_assert(count <= side);
-    const int half_way = first + side - 1, middle = half_way < c.steps ? half_way : c.steps;
-    const int x = cells.x + c.line.dx(middle), y = cells.y + c.line.dy(middle);
+    const int last = first + piece - 1 < end ? first + piece - 1 : end;
+    const int along = cells.line.heading > 0 ? first : -last,
+              across = ((cells.line.drift < 0 ? last : first) * cells.line.drift) >> 16;
+    const int x = cells.x + (cells.along_x() ? along : across),
+              y = cells.y + (cells.along_x() ? across : along);
     float top = highest_around<inside>(x, y);
-    if (count > 1)
-      top = higher(top, c.line.along_x() ? highest_around<inside>(x, y + count - 1)
-                                         : highest_around<inside>(x + count - 1, y));
-    bool any = false;
-    for (int k = 0; k < count; ++k) {
-      const float low = cells.base[k] - HighestAround::rounding(cells.base[k]);
-      any = any ||
-            (steepest[k] < enough && top - low > higher(steepest[k], begins) * static_cast<float>(first));
-    }
-    return any;
+    if (count > 1)  // of the last; those between look where these two do
+      top = higher(top, cells.along_x() ? highest_around<inside>(x, y + count - 1)
+                                        : highest_around<inside>(x + count - 1, y));
+    float to_exceed[count];
+    for (int k = 0; k < count; ++k)
+      to_exceed[k] = fused(higher(steepest[k], begins), static_cast<float>(first), cells.base[k]);
+    return top + rounding > lowest(to_exceed);
   }
 
   template <bool inside>
@@ -254,8 +263,8 @@ struct Shadow {
       x = g.periodic_x ? wrap(x, g.width) : clamp_index(x, g.width);
       y = g.periodic_y ? wrap(y, g.height) : clamp_index(y, g.height);
     }
-    return around[static_cast<unsigned>(y) / side * static_cast<unsigned>(blocks.width) +
-                  static_cast<unsigned>(x) / side];
+    return constant_at(around + (static_cast<unsigned>(y) / side * static_cast<unsigned>(blocks.width) +
+                                 static_cast<unsigned>(x) / side));
   }
 };
 
@@ -267,16 +276,24 @@ struct ShadowOfFour {
   DESERT_HD Grid fours() const { return {side * shadow.blocks.width, shadow.blocks.height, 1}; }
   DESERT_HD void operator()(int four, int row) const {
     const Course c = shadow.course(four / side, row);
-    const bool along_x = c.line.along_x();
+    c.line().along_x() ? shelter<Way::along_x>(c, four, row) : shelter<Way::along_y>(c, four, row);
+  }
+
+ private:
+  template <Way way>
+  DESERT_HD void shelter(const Course& c, int four, int row) const {
+    constexpr bool along_x = way == Way::along_x;
     const int x = four / side * side + (along_x ? four % side : 0);
     const int y = row * side + (along_x ? 0 : four % side);
-    const int east = along_x ? 0 : 1, north = along_x ? 1 : 0;
-    if (shadow.grid().inside(x + (side - 1) * east, y + (side - 1) * north))
-      shadow.shelter<side>(c, x, y);
-    else
-      for (int k = 0; k < side; ++k)
-        if (shadow.grid().inside(x + k * east, y + k * north))
-          shadow.shelter<1>(c, x + k * east, y + k * north);
+    constexpr int east = along_x ? 0 : 1, north = along_x ? 1 : 0;
+    if (shadow.grid().inside(x + (side - 1) * east, y + (side - 1) * north)) {
+      shadow.shelter<way, side>(c, x, y);
+      return;
+    }
+    DESERT_ROLLED
+    for (int k = 0; k < side; ++k)
+      if (shadow.grid().inside(x + k * east, y + k * north))
+        shadow.shelter<way, 1>(c, x + k * east, y + k * north);
   }
 };
 
@@ -285,17 +302,17 @@ struct ShadowOfFour {
 template <int longest>
 struct ShortShadow {
   static constexpr int margin = longest + 1;
-  Shadow shadow;  ///< with lines
+  Shadow shadow;  ///< with courses
 
   DESERT_HD void operator()(int x, int y) const {
-    const int word = shadow.lines[y / side * shadow.blocks.width + x / side];
-    const Course c(FindLine::line(word), shadow.reach, shadow.steps);
-    const Shadow::Cells<1> cell = shadow.cells<1>(c, x, y);
+    const Course c = shadow.courses[y / side * shadow.blocks.width + x / side];
+    const int end = shadow.steps_of(c);
+    const Shadow::Cells<Way::either, 1> cell(shadow, c.line(), x, y);
     float steepest[1] = {0.0f};
     unrolled<longest>([&](auto n) DESERT_INLINE {
       float found[1] = {steepest[0]};
-      shadow.look<true>(c, cell, n + 1, found);
-      steepest[0] = n + 1 <= c.steps ? found[0] : steepest[0];
+      shadow.look<true>(cell, n + 1, found);
+      steepest[0] = n + 1 <= end ? found[0] : steepest[0];
     });
     shadow.wind_shadow[cell.first] = shadow.shade(steepest[0] * c.steps_a_cell);
   }

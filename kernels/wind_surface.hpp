@@ -16,7 +16,7 @@ struct Vector {
 struct SpeedUp {
   float per_metre, lowest, highest;
   DESERT_HD float operator()(float rise) const {
-    return lower(higher(1.0f + per_metre * rise, lowest), highest);
+    return lower(higher(fused(per_metre, rise, 1.0f), lowest), highest);
   }
 };
 
@@ -42,10 +42,9 @@ struct SurfaceWind {
   /// Between differing directions a linear interpolation is too short; the series makes up for it within 0.1
   /// % where they differ by up to 60 degrees.
   DESERT_HD Vector at_full_speed(const Complex& w) const {
-    const float missing = 1.0f - (w.re * w.re + w.im * w.im) * per_speed_squared;
-    const float scale = w.re == above.x && w.im == above.y
-                            ? 1.0f
-                            : 1.0f + missing * (0.5f + missing * (0.375f + missing * 0.3125f));
+    const float missing = fused(-(w.re * w.re + w.im * w.im), per_speed_squared, 1.0f);
+    const float series = fused(missing, fused(missing, fused(missing, 0.3125f, 0.375f), 0.5f), 1.0f);
+    const float scale = w.re == above.x && w.im == above.y ? 1.0f : series;
     return {w.re * scale, w.im * scale};
   }
 
@@ -71,8 +70,8 @@ struct SurfaceWind {
       const Complex corrected = corrections.at(along.share);
       const int i = coarse.fine.index(x, first + k);
       const Vector local = perturbed ? Vector{perturbation_x[i], perturbation_y[i]} : Vector{};
-      wind_x[i] = wind.x * factor + corrected.re + local.x;
-      wind_y[i] = wind.y * factor + corrected.im + local.y;
+      wind_x[i] = fused(wind.x, factor, corrected.re) + local.x;
+      wind_y[i] = fused(wind.y, factor, corrected.im) + local.y;
     });
   }
 };

@@ -7,7 +7,8 @@
 ///           |
 ///      registers       heights and depths in the tile's units; what falls to the patch from the coarse level
 ///           |
-///      shared memory   heights, top of the ground, drop at repose      <---+
+///      shared memory   heights, drop at repose, top of the ground if   <---+
+///           |          the tile is not deep                                |
 ///           |   by patches, elsewhere in each sweep                        | heights
 ///      registers       the pairs of a patch, one after the other       ----+
 ///           |
@@ -41,7 +42,8 @@ struct PerCell {
 struct Shared {
   PerCell h, ground, drop;
   Four<Quanta> base[Patch::side][threads];  ///< of a cell's sand what does not change with its height
-  int lowest[warps], highest[warps];
+  float share[side + Patch::side];          ///< of the gaps, as ShareOfGap counts them
+  Range range[warps];
   int moved[2][warps];  ///< nothing, something, much; of sweeps in turns
 };
 
@@ -115,21 +117,29 @@ struct Place {
   __device__ int grid_y(int n) const { return law.grid_y(static_cast<int>(blockIdx.y), n); }
 };
 
-/// Lowest and highest of all values in the block.
-__device__ void reduce_in_block(Shared& shared, int& lowest, int& highest) {
-  for (int step = 16; step > 0; step /= 2) {
-    lowest = min(lowest, __shfl_xor_sync(0xffffffffu, lowest, step));
-    highest = max(highest, __shfl_xor_sync(0xffffffffu, highest, step));
-  }
-  if (threadIdx.x % 32 == 0) {
-    shared.lowest[threadIdx.x / 32] = lowest;
-    shared.highest[threadIdx.x / 32] = highest;
-  }
+/// Of all values in a warp.
+__device__ int lowest_of_warp(int value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_min_sync(0xffffffffu, value);
+#else
+  for (int step = 16; step > 0; step /= 2) value = min(value, __shfl_xor_sync(0xffffffffu, value, step));
+  return value;
+#endif
+}
+__device__ int highest_of_warp(int value) { return ~lowest_of_warp(~value); }
+
+/// Of the block, by what each thread has found.
+__device__ Range range_of_block(Shared& shared, Range range) {
+  range = {lowest_of_warp(range.lowest), highest_of_warp(range.highest),
+           highest_of_warp(range.highest_ground)};
+  if (threadIdx.x % 32 == 0) shared.range[threadIdx.x / 32] = range;
   __syncthreads();
   for (int n = 0; n < warps; ++n) {
-    lowest = min(lowest, shared.lowest[n]);
-    highest = max(highest, shared.highest[n]);
+    const Range& other = shared.range[n];
+    range = {min(range.lowest, other.lowest), max(range.highest, other.highest),
+             max(range.highest_ground, other.highest_ground)};
   }
+  return range;
 }
 
 /// Hands the patch's sand what the coarse level has done. Fetches all before it uses any.
@@ -181,50 +191,59 @@ __device__ void fetch_heights(const Place<whole>& place, OfPatch<Quanta>& height
   }
 }
 
-/// Shared memory from the grid; the tile's units.
+/// What a patch adds to its tile's.
+__device__ Range range_of_patch(OfPatch<Quanta>& height, OfPatch<Quanta>& sand, bool& walls) {
+  Range range{height[0], height[0], height[0] - sand[0]};
+#pragma unroll
+  for (int n = 1; n < Patch::cells; ++n)
+    range = {min(range.lowest, height[n]), max(range.highest, height[n]),
+             max(range.highest_ground, height[n] - sand[n])};
+  walls = range.highest >= wall_height;
+  if (walls) {
+    range.highest = range.highest_ground = -wall_height;
+#pragma unroll
+    for (int n = 0; n < Patch::cells; ++n)
+      if (height[n] < wall_height)
+        range = {range.lowest, max(range.highest, height[n]), max(range.highest_ground, height[n] - sand[n])};
+  }
+  return range;
+}
+
+/// Shared memory from the grid.
 template <bool whole>
-__device__ Units load(const Place<whole>& place, Shared& shared) {
+__device__ Range load(const Place<whole>& place, Shared& shared) {
   const LevelView& level = place.law.level;
   OfPatch<Quanta> height, sand;
   OfPatch<float> drop;
   place.fetch(level.repose, drop);
   fetch_heights(place, height, sand);
-  int lowest = height[0], highest = height[0];
-#pragma unroll
-  for (int n = 1; n < Patch::cells; ++n) {
-    lowest = min(lowest, height[n]);
-    highest = max(highest, height[n]);
-  }
-  const bool walls = highest >= wall_height;
-  if (walls) {
-    highest = -wall_height;
-#pragma unroll
-    for (int n = 0; n < Patch::cells; ++n)
-      highest = max(highest, height[n] >= wall_height ? -wall_height : height[n]);
-  }
-  reduce_in_block(shared, lowest, highest);
-  const Units units(lowest, highest, level.quanta_per_cell);
+  bool walls;
+  const Range range = range_of_block(shared, range_of_patch(height, sand, walls));
+  const Units units(range.lowest, range.highest, level.quanta_per_cell);
   const int px = static_cast<int>(threadIdx.x) % patches, py = static_cast<int>(threadIdx.x) / patches;
+  const auto at = [&](PerCell& values, int n) -> float& {
+    return values.at(px * Patch::side + n % Patch::side, py * Patch::side + n / Patch::side);
+  };
+  if (!range.deep())
+#pragma unroll
+    for (int n = 0; n < Patch::cells; ++n) at(shared.ground, n) = units.ground(height[n], sand[n]);
 #pragma unroll
   for (int n = 0; n < Patch::cells; ++n) {
-    const int x = px * Patch::side + n % Patch::side, y = py * Patch::side + n / Patch::side;
     const float h = units.height(height[n]);
-    shared.h.at(x, y) = h;
-    shared.ground.at(x, y) = units.ground(height[n], sand[n]);
-    shared.drop.at(x, y) = units.drop(drop[n], level.quanta_per_cell);
+    at(shared.h, n) = h;
+    at(shared.drop, n) = units.drop(drop[n], level.quanta_per_cell);
     sand[n] -= units.of_height(h);
   }
   if (walls)
 #pragma unroll
     for (int n = 0; n < Patch::cells; ++n)
       if (height[n] >= wall_height) {
-        const int x = px * Patch::side + n % Patch::side, y = py * Patch::side + n / Patch::side;
-        shared.h.at(x, y) = shared.ground.at(x, y) = Units::wall;
+        at(shared.h, n) = at(shared.ground, n) = at(shared.drop, n) = Units::wall;
         sand[n] += units.of_height(units.height(height[n])) - units.of_height(Units::wall);
       }
 #pragma unroll
   for (int row = 0; row < Patch::side; ++row) shared.base[row][threadIdx.x] = sand.rows[row];
-  return units;
+  return range;
 }
 
 /// The sand of the patch, to the grid.
@@ -247,7 +266,8 @@ struct InRegisters {
 };
 
 /// The pairs of this thread's patch; the most that one of them moves.
-__device__ float sweep_patch(Shared& shared, const PatchShift& shift, float share) {
+template <bool deep>
+__device__ float sweep_patch(Shared& shared, const PatchShift& shift) {
   const int px = static_cast<int>(threadIdx.x) % patches, py = static_cast<int>(threadIdx.x) / patches;
   int columns[Patch::side], rows[Patch::side];
 #pragma unroll
@@ -260,28 +280,29 @@ __device__ float sweep_patch(Shared& shared, const PatchShift& shift, float shar
   for (int n = 0; n < Patch::cells; ++n) {
     const int x = columns[n % Patch::side], y = rows[n / Patch::side];
     h[n] = shared.h.at(x, y);
-    ground[n] = shared.ground.at(x, y);
+    if (!deep) ground[n] = shared.ground.at(x, y);
     drop[n] = shared.drop.at(x, y);
   }
   Shares<1> shares;
 #pragma unroll
   for (int n = 0; n + 1 < Patch::side; ++n) {
-    shares.x[n][0] = shift.share_x(share, px, n);
-    shares.y[n] = shift.share_y(share, py, n);
+    shares.x[n][0] = shared.share[px * Patch::side + shift.x + n];
+    shares.y[n] = shared.share[py * Patch::side + shift.y + n];
   }
   float most = 0.0f;
-  PairsOfPatches<1, InRegisters>{h, ground, drop, {}, shares, &most}.relax();
+  PairsOfPatches<1, deep, InRegisters>{h, ground, drop, {}, shares, &most}.relax();
 #pragma unroll
   for (int n = 0; n < Patch::cells; ++n) shared.h.at(columns[n % Patch::side], rows[n / Patch::side]) = h[n];
   return most;
 }
 
 /// Sweeps over what is loaded, until the tile is at rest or has had enough of them. Whether anything moved.
+template <bool deep>
 __device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units) {
   const float much = units.drop(law.plenty, law.level.quanta_per_cell);
   bool moved = false, moved_before = true;
   for (int n = 0; n < most_sweeps; ++n) {
-    const float most = sweep_patch(shared, PatchShift(n, law.tiles.offset), law.share);
+    const float most = sweep_patch<deep>(shared, PatchShift(n, law.tiles.offset));
     const bool any = __any_sync(0xffffffffu, most > 0.0f), any_much = __any_sync(0xffffffffu, most > much);
     if (threadIdx.x % 32 == 0) shared.moved[n % 2][threadIdx.x / 32] = any_much ? 2 : (any ? 1 : 0);
     __syncthreads();
@@ -305,11 +326,13 @@ template <bool whole, class Then>
 __global__ __launch_bounds__(threads, tiles_at_once) void relax_tiles_kernel(RelaxTile law, Then then) {
   if (law.closed(static_cast<int>(blockIdx.x), static_cast<int>(blockIdx.y))) return;
   __shared__ Shared shared;
+  if (threadIdx.x < side + Patch::side) shared.share[threadIdx.x] = law.share(static_cast<int>(threadIdx.x));
   const Place<whole> place(law);
-  const Units units = load(place, shared);
+  const Range range = load(place, shared);
   __syncthreads();
-  if (units.lowest < wall_height) {
-    const bool moved = relax(law, shared, units);
+  if (range.lowest < wall_height) {
+    const Units units(range.lowest, range.highest, law.level.quanta_per_cell);
+    const bool moved = range.deep() ? relax<true>(law, shared, units) : relax<false>(law, shared, units);
     if (moved || law.from_coarse.sand_after) store(place, shared, units);
   }
   if (whole && place.there()) finish(then, place.x / Patch::side, place.y / Patch::side);

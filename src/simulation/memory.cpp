@@ -150,7 +150,7 @@ std::vector<MemoryPart> Simulation::memory() const {
   add("wind's features", bytes_of_all(features_, perturbation_x_, perturbation_y_));
   add("heights", bytes_of_all(heights_.of_cells, heights_.highest));
   add("wind shadow's blocks",
-      bytes_of_all(shadow_work_.reciprocals, shadow_work_.around, shadow_work_.lines));
+      bytes_of_all(shadow_work_.reciprocals, shadow_work_.around, shadow_work_.courses));
   add("avalanches' levels", bytes_of_avalanches(avalanche_work_));
   add("avalanches of rock and soil", bytes_of_all(ground_work_.received, ground_work_.share));
   add("water's pipes", pipes_work_.held.bytes());

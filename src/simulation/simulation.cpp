@@ -43,7 +43,7 @@ void Simulation::run_processes(E& exec) {
 
   // Sand is lifted, carried a hop, deposited or bounced on; bouncing sand wears rock (B1–B4).
   // Impacts loosen what they hit, which sets its angle of repose (B5, B7).
-  const reptation::Angle angle(view, s.reptation, s.repose, repose_.data());
+  const reptation::Angle angle(s.reptation, s.repose, repose_.data());
   if (s.saltation.enabled)
     run(exec, "saltation", {Layer::sand, Layer::airborne_sand, Layer::bedrock}, [&] {
       std::optional<wind_shadow::Shadow> shade;
@@ -251,7 +251,7 @@ void Simulation::refresh_derived() {
     }
     if (s.wind_shadow.enabled) wind_shadow::step(e, view, s.wind_shadow, obstructing_heights(), shadow_work_);
     if (s.echo_dunes.enabled) echo_dunes::step(e, view, s.echo_dunes, heights_, repose_.data());
-    reptation::set_angles(e, view, reptation::Angle(view, s.reptation, s.repose, repose_.data()), s.repose,
+    reptation::set_angles(e, view, reptation::Angle(s.reptation, s.repose, repose_.data()), s.repose,
                           nullptr);
   });
   derived_ready_ = true;

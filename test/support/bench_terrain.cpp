@@ -105,7 +105,7 @@ void BenchTerrain::echo(const EchoDuneParameters& p) {
 void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParameters& a,
                              const ReposeParameters& r, float time_step) {
   with_backend(exec(), [&](auto& e) {
-    const reptation::Angle angle(terrain.view(), {}, r, repose.data());
+    const reptation::Angle angle({}, r, repose.data());
     saltation::step(e, terrain.view(), p, a, r, time_step, ledger(), landed.data(), {angle, strength.data()},
                     nullptr);
   });
@@ -114,8 +114,7 @@ void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParamet
 void BenchTerrain::reptation(const ReptationParameters& p, const ReposeParameters& r, float time_step,
                              std::uint64_t tick) {
   with_backend(exec(), [&](auto& e) {
-    reptation::set_angles(e, terrain.view(), reptation::Angle(terrain.view(), p, r, repose.data()), r,
-                          strength.data());
+    reptation::set_angles(e, terrain.view(), reptation::Angle(p, r, repose.data()), r, strength.data());
     reptation::step(e, terrain.view(), p, time_step, 1, tick, strength.data(), landed.data());
   });
 }

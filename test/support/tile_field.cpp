@@ -73,21 +73,22 @@ struct TileField::There {
 };
 
 std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool by_law, float share,
-                                       float plenty) const {
+                                       float plenty, float at_edges) const {
   There there(exec, *this);
   Buffer<Quanta> before = on(exec, coarse_before), after = on(exec, coarse_after);
   const avalanching::Prolong from_coarse{coarse(), or_null(after, coarse_after),
                                          or_null(before, coarse_before), grid, there.sand.data()};
   Buffer<Quanta> open_there = on(exec, open);
-  const avalanching::RelaxTile law{{grid, offset},           there.level, from_coarse, share, sweeps, plenty,
-                                   or_null(open_there, open)};
+  const avalanching::RelaxTile law{
+      {grid, offset},           there.level, from_coarse, {share, at_edges * share}, sweeps, plenty,
+      or_null(open_there, open)};
   with_backend(
       exec, [&](auto& e) { by_law ? avalanching::relax_by_law(e, law) : avalanching::relax_tiles(e, law); });
   return there.sand.download();
 }
 
 avalanching::RelaxTile TileField::four_sweeps(There& there, int offset) const {
-  return {{grid, offset}, there.level, {}, 0.65f, 4, 0.2f};
+  return {{grid, offset}, there.level, {}, {0.65f, 0.4f}, 4, 0.2f};
 }
 
 std::vector<std::uint32_t> TileField::relaxed_and_restricted(Exec& exec, int offset) const {
@@ -180,6 +181,10 @@ std::vector<TileField> tile_fields() {
     solid.soil.push_back(static_cast<Quanta>(1e6 * chance(6, i)));
     solid.obstacle.push_back(chance(7, i) < 0.3 ? 1.0f : 0.0f);
   }
+  TileField walled = field("walls in deep sand", torus, flat, noise);
+  for (int i = 0; i < walled.grid.cells(); ++i)
+    if (chance(5, i) < 0.2) walled.ground[static_cast<std::size_t>(i)] = wall_height;
+  fields.push_back(walled);
   fields.push_back(walls);
   fields.push_back(solid);
   for (Quanta& ground : walls.ground) ground = wall_height;
