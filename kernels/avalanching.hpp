@@ -42,8 +42,9 @@ namespace avalanching {
 struct Schedule {
   int first_sweeps, coarse_sweeps, last_sweeps, last_passes;
   float plenty, share, coarse_share, last_at_edges;
-  static constexpr std::size_t coarse_levels_twice = 2;
 
+  /// Over the nth coarse level, from 1 for the finest; they share `coarse_sweeps`.
+  static constexpr int coarse_passes(std::size_t n) { return n <= 2 ? 2 : 1; }
   constexpr int fine_passes() const { return 1 + last_passes; }
   constexpr int fine_sweeps() const { return first_sweeps + last_passes * last_sweeps; }
   constexpr bool is_bounded() const {
@@ -174,7 +175,7 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
   }
   Prolong change{};
   for (std::size_t n = coarse.size(); n > 0; --n) {
-    const int passes = n <= plan.coarse_levels_twice ? 2 : 1;
+    const int passes = Schedule::coarse_passes(n);
     relax(exec, views[n], change, {0, passes, plan.coarse_sweeps / passes, coarse_share, plan.plenty, 1.0f},
           turn, NothingThen{});
     const Level& done = coarse[n - 1];

@@ -168,22 +168,31 @@ struct Deposit {
     const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
     return clamp(held, 0.0f, 1.0f) * wet;
   }
-  DESERT_HD Quanta deposited(Quanta arriving, float held) const {
-    return take(held * (arriving * in.quantum), in.quanta_per_metre, arriving);
+
+  /// What becomes of sand that arrives. Reads, but does not write: what is written waits for all that is read
+  /// once.
+  struct Outcome {
+    float held;  ///< share
+    Quanta stays, bounces;
+    float strength, loosened;  ///< of the impacts, and the angle of dry bare sand that they leave
+  };
+  DESERT_HD Outcome settle(int i, Quanta arriving, Quanta cover, float shadow, float speed, float v,
+                           float m) const {
+    const float held = share(i, cover, shadow, v, m), depth = arriving * in.quantum;
+    const Quanta stays = take(held * depth, in.quanta_per_metre, arriving);
+    const float strength = depth * (1.0f - v);
+    return {held, stays, arriving - stays, strength, impacts.angle.loosened(strength, speed, shadow)};
   }
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = in.grid.index(x, y);
-    const Quanta arriving = landed[i], cover = sand[i];
-    const float v = in.plants(i), m = in.moisture(i), shadow = value_or_zero(in.wind_shadow, i);
-    const float held = share(i, cover, shadow, v, m);
-    const Quanta stays = deposited(arriving, held), bouncing = arriving - stays;
-    const float speed = hypotenuse(in.wind_x[i], in.wind_y[i]), strength = arriving * in.quantum * (1.0f - v);
-    const float angle = impacts.angle.loosened(strength, speed, shadow);
-    sand[i] = cover + stays;
-    airborne[i] = bouncing;
-    if (!bare) wear(i, cover, bouncing, speed, v, m, held);
-    impacts.set(i, strength, angle, v, in.moisture(i));
+    const Quanta cover = sand[i];
+    const float v = in.plants(i), m = in.moisture(i), speed = hypotenuse(in.wind_x[i], in.wind_y[i]);
+    const Outcome o = settle(i, landed[i], cover, value_or_zero(in.wind_shadow, i), speed, v, m);
+    sand[i] = cover + o.stays;
+    airborne[i] = o.bounces;
+    if (!bare) wear(i, cover, o.bounces, speed, v, m, o.held);
+    impacts.set(i, o.strength, o.loosened, v, in.moisture(i));
   }
 };
 
@@ -200,15 +209,12 @@ struct DepositOfFour {
     if (one.in.wind_shadow) shadow = four_at(one.in.wind_shadow + first);
     Four<Quanta> sand, airborne;
     for (int n = 0; n < 4; ++n) {
-      const float strength = arriving.values[n] * one.in.quantum;
-      const float held = one.share(first + n, cover.values[n], shadow.values[n], 0.0f, 0.0f);
-      const Quanta stays = one.deposited(arriving.values[n], held);
-      sand.values[n] = cover.values[n] + stays;
-      airborne.values[n] = arriving.values[n] - stays;
-      const float dry =
-          one.impacts.angle.loosened(strength, hypotenuse(u.values[n], v.values[n]), shadow.values[n]);
-      angle.values[n] = one.impacts.angle.of(dry, 0.0f, 0.0f);
-      if (one.impacts.strength) one.impacts.strength[first + n] = strength;
+      const auto o = one.settle(first + n, arriving.values[n], cover.values[n], shadow.values[n],
+                                hypotenuse(u.values[n], v.values[n]), 0.0f, 0.0f);
+      sand.values[n] = cover.values[n] + o.stays;
+      airborne.values[n] = o.bounces;
+      angle.values[n] = one.impacts.angle.of(o.loosened, 0.0f, 0.0f);
+      if (one.impacts.strength) one.impacts.strength[first + n] = o.strength;
     }
     put_four(one.sand + first, sand);
     put_four(one.airborne + first, airborne);

@@ -8,14 +8,19 @@ namespace {
 
 constexpr double layer = 4;  // bytes a cell
 
-/// Passes of avalanching read ground, sand and tangents, and write sand. All coarse levels together have a
-/// third of the grid's cells; each is filled (ground, sand twice, tangents), passed over once, and read again
+/// Passes of avalanching read ground, sand and tangents, and write sand. Each coarse level has a quarter of
+/// the cells of the one below; it is filled (ground, sand twice, tangents), passed over, and read again
 /// (sand, before and after). The fine grid is read for the first in passing. The last pass writes the
 /// heights.
 ProcessCost avalanches(AvalancheQuality quality) {
   const avalanching::Schedule plan = avalanching::schedule(quality);
   const int fine = plan.fine_passes();
-  const double heights = 1, coarse = (4 + 4 + 2) / 3.0;
+  constexpr double heights = 1, filling = 4, handing_down = 2;
+  double coarse = 0, cells = 1;
+  for (std::size_t n = 1; n < 16; ++n) {
+    cells /= 4;
+    coarse += cells * (filling + 4 * avalanching::Schedule::coarse_passes(n) + handing_down);
+  }
   const std::string times = fine == 1 ? "" : " x " + std::to_string(fine);
   return {"avalanching", layer * (4 * fine + coarse + heights),
           "(bedrock, sand, tangents)" + times + "; levels", "sand" + times + "; levels; heights"};

@@ -82,6 +82,26 @@ TEST_P(AvalanchingTile, OfOnePairMovesItsShareOfTheExcess) {
   }
 }
 
+/// Next to the tile's edges another share, of a pair and of its mirror image, along both axes; not further
+/// in.
+TEST_P(AvalanchingTile, OfPairsNextToItsEdgesMovesTheShareThere) {
+  constexpr int last = Tiles::side - 1;
+  for (bool upright : {false, true})
+    for (int from : {0, 1, 15, last - 2, last - 1}) {
+      TileField f = row(std::vector<double>(Tiles::side, 100.0), std::vector<double>(Tiles::side, 0.0));
+      if (upright) f.grid = {1, Tiles::side, 1, false, false};
+      const auto donor = static_cast<std::size_t>(from);
+      f.ground[donor] = f.ground[donor + 1] = 0;
+      f.sand[donor] = 2 << 20;                                             // an excess of 1.5 m
+      const auto after = f.relaxed(exec(), 0, 2, false, 0.5f, 100, 0.4f);  // two sweeps have every pair
+      const bool at_edge = from == 0 || from == last - 1;
+      const double once = (at_edge ? 0.2 : 0.5) * 1.5, twice = once + 0.2 * (1.5 - 2 * once);
+      const double moved = after[donor + 1] / 1048576.0;
+      EXPECT_TRUE(std::abs(moved - once) < 1e-4 || (at_edge && std::abs(moved - twice) < 1e-4))
+          << "from cell " << from << (upright ? ", upright: " : ": ") << moved;
+    }
+}
+
 /// Likewise between cells above each other, and, over their distance, on both diagonals.
 TEST_P(AvalanchingTile, OfAPairSlidesInAllEightDirections) {
   const double straight = 0.5 * 1.5, diagonal = 0.5 * (2 - 0.5 * std::sqrt(2.0));
