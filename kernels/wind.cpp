@@ -43,8 +43,20 @@ std::vector<Transfer> transfer(int n, double ratio, double sigma, double cell_si
   return table;
 }
 
-Buffer<Transfer> on_device(Exec& exec, const std::vector<Transfer>& table) {
-  Buffer<Transfer> buffer(exec, table.size());
+/// e^(−2πi j/n).
+std::vector<Complex> roots(int n) {
+  std::vector<Complex> table(static_cast<std::size_t>(n));
+  for (int j = 0; j < n; ++j) {
+    const double angle = 2 * 3.14159265358979323846 * j / n;
+    table[static_cast<std::size_t>(j)] = {static_cast<float>(std::cos(angle)),
+                                          static_cast<float>(-std::sin(angle))};
+  }
+  return table;
+}
+
+template <class Value>
+Buffer<Value> on_device(Exec& exec, const std::vector<Value>& table) {
+  Buffer<Value> buffer(exec, table.size());
   buffer.upload(table);
   return buffer;
 }
@@ -72,6 +84,8 @@ CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p) {
   c.ratio_y = static_cast<float>(fine.height) / c.rows;
   c.share_x = 1.0f / c.ratio_x;
   c.share_y = 1.0f / c.ratio_y;
+  c.wavenumber_x = 6.28318531f / (c.width * c.ratio_x);
+  c.wavenumber_y = 6.28318531f / (c.height * c.ratio_y);
   return c;
 }
 
@@ -81,13 +95,22 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   if (!p.warping && !p.projection) return work;
   const CoarseGrid& c = work.coarse;
   const auto values = static_cast<std::size_t>(c.values());
-  work.one = exec.make_fft(c.width, c.height);
   work.row_means = Buffer<float>(exec, static_cast<std::size_t>(c.columns) * fine.height);
   work.rise = Buffer<float>(exec, values);
   for (Buffer<Complex>* buffer : {&work.spectrum, &work.turned, &work.correction})
     *buffer = Buffer<Complex>(exec, values);
+  work.by_lines = with_backend(exec, [](auto& e) { return !works_on_rows<std::decay_t<decltype(e)>>; }) &&
+                  LineTransform::suits(c.width) && LineTransform::suits(c.height);
+  if (work.by_lines) {
+    work.lines_along_x = LineTransform::of(c.width);
+    work.lines_along_y = LineTransform::of(c.height);
+    work.roots_x = on_device(exec, roots(c.width));
+    work.roots_y = on_device(exec, roots(c.height));
+  } else {
+    work.one = exec.make_fft(c.width, c.height);
+  }
   if (!p.warping || p.radii.count == 0) return work;
-  work.all_radii = exec.make_fft(c.width, c.height, p.radii.count);
+  if (!work.by_lines) work.all_radii = exec.make_fft(c.width, c.height, p.radii.count);
   work.gradients = Buffer<Complex>(exec, values * static_cast<std::size_t>(p.radii.count));
   for (int r = 0; r < p.radii.count; ++r) {
     const double sigma = 0.5 * p.radii.values[r] / fine.cell_size;

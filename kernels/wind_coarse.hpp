@@ -19,6 +19,7 @@ struct CoarseGrid {
   int width = 0, height = 0;
   float ratio_x = 1, ratio_y = 1;  ///< fine cells a coarse cell
   float share_x = 1, share_y = 1;  ///< 1 / ratio
+  float wavenumber_x = 0, wavenumber_y = 0;  ///< of the first modes [rad per fine cell]
 
   DESERT_HD int mirrored_column(int x) const { return x < columns ? x : 2 * columns - 1 - x; }
   DESERT_HD int mirrored_row(int y) const { return y < rows ? y : 2 * rows - 1 - y; }
@@ -71,14 +72,16 @@ struct CoarsenColumns {
   float* rise;        ///< [m]
   Complex* spectrum;  ///< the same, for a transform
 
-  DESERT_HD void operator()(int x, int y) const {
+  DESERT_HD void operator()(int x, int y) const { spectrum[y * coarse.width + x] = {rise_at(x, y), 0.0f}; }
+  /// Writes `rise`, and returns it.
+  DESERT_HD float rise_at(int x, int y) const {
     const int row = coarse.mirrored_row(y), columns = coarse.columns;
     const float* column = means + coarse.mirrored_column(x);
     const float mean =
         quantum * mean_over(row * coarse.ratio_y, (row + 1) * coarse.ratio_y, coarse.fine.height,
                             [column, columns](int i) { return column[i * columns]; });
     rise[y * coarse.width + x] = mean;
-    spectrum[y * coarse.width + x] = {mean, 0.0f};
+    return mean;
   }
 };
 
@@ -131,8 +134,8 @@ struct Mode {
   DESERT_HD Mode(const CoarseGrid& c, int i, int j) {
     const int mx = 2 * i > c.width ? i - c.width : i, my = 2 * j > c.height ? j - c.height : j;
     nyquist = 2 * i == c.width || 2 * j == c.height;
-    kx = 6.28318531f * mx / (c.width * c.ratio_x);
-    ky = 6.28318531f * my / (c.height * c.ratio_y);
+    kx = c.wavenumber_x * mx;
+    ky = c.wavenumber_y * my;
   }
 };
 

@@ -21,8 +21,8 @@ std::size_t bytes_of_all(const Buffers&... buffers) {
 }
 
 std::size_t bytes_of_wind(const wind::Workspace& work) {
-  std::size_t bytes =
-      bytes_of_all(work.row_means, work.rise, work.spectrum, work.turned, work.correction, work.gradients);
+  std::size_t bytes = bytes_of_all(work.row_means, work.rise, work.spectrum, work.turned, work.correction,
+                                   work.gradients, work.roots_x, work.roots_y);
   for (const std::unique_ptr<Fft>* transform : {&work.one, &work.all_radii})
     bytes += *transform ? (*transform)->bytes() : 0;
   for (int r = 0; r < ShortList::capacity; ++r) bytes += bytes_of_all(work.along_x[r], work.along_y[r]);
