@@ -72,7 +72,14 @@ struct Workspace {
   Buffer<float> share;        ///< of the synchronous schemes; made when one is used
   Buffer<Quanta> given, received;
   OpenTiles open;      ///< of the multilevel scheme, when it converges
-  int iterations = 0;  ///< fine sweeps of the last step; at least, where tiles may go on
+  int iterations = 0;         ///< fine sweeps of the last step, but those that the device counts
+  /// Fine sweeps of all steps that the device has counted.
+  long long counted_iterations() const {
+    if (!open.progress) return 0;
+    Progress progress;
+    open.progress.download(0, 1, &progress);
+    return progress.sweeps;
+  }
 };
 
 Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParameters& p);
@@ -221,40 +228,39 @@ void find_unsettled(E& exec, const LevelView& fine, float tolerance, std::uint64
 }
 
 /// A cycle, and then rounds of passes over those tiles alone that are not at rest: what is left are trains of
-/// small slides on their way down. Where two rounds do not halve the cells that are too steep, something
-/// large slides, and it takes another cycle. The host looks every two rounds; if there is nothing left
-/// before, kernels end at once.
+/// small slides on their way down. Every two rounds it is looked what is left; if there was nothing before,
+/// kernels end at once.
 template <class E>
 void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std::uint64_t turn,
             Workspace& work) {
   const Schedule plan = schedule(p.quality);
   const float share = share_in_rounds * p.transfer;
   const OpenTiles& open = work.open;
-  std::array<long long, rounds_a_look + 1> steep{};  // cells: before each round, and after the last
-  bool much = true;
-  for (int pass = 0; work.iterations < p.max_iterations;) {
-    const long long left = steep.back();
-    if (much) {
-      cycle(exec, fine, p, plan, turn++, work, NothingThen{});
-      work.iterations += plan.fine_sweeps();
-      find_unsettled(exec, fine, p.tolerance, turn, pass, 0, open);
-    }
-    for (int round = 1; round <= rounds_a_look; ++round) {
-      const RoundOfTiles tiles = tiles_of_round(open, fine.grid, turn, pass, round);
+  Progress* const progress = open.progress.data();
+  const Look look{progress, open.tally(0), p.max_iterations, rounds_a_look, passes_a_round * most_sweeps};
+  const auto do_rounds = [&](std::uint64_t seams) {
+    for (int round = 1, pass = 0; round <= rounds_a_look; ++round) {
+      const RoundOfTiles tiles = tiles_of_round(open, fine.grid, seams, pass, round);
       for (int n = 0; n < passes_a_round; ++n, ++pass)
         relax_tiles(
             exec,
             RelaxTile{tiles.of(n), fine, Prolong{}, {share, share}, most_sweeps, 0.0f, tiles.of_pass(n)});
-      find_unsettled(exec, fine, p.tolerance, turn, pass, round, open);
+      find_unsettled(exec, fine, p.tolerance, seams, pass, round, open);
     }
-    steep = open.steep_cells<rounds_a_look + 1>();
-    if (!much) steep[0] = left;
-    for (int round = 0; round < rounds_a_look; ++round)
-      if (steep[static_cast<std::size_t>(round)] > 0) work.iterations += passes_a_round * most_sweeps;
-    if (steep.back() == 0) return;
-    much = steep.back() > steep[0] / 2;
-  }
+    for_each_item(exec, 1, LookAfterRounds{look});
+  };
+  const auto do_cycle = [&](std::uint64_t seams) {
+    cycle(exec, fine, p, plan, seams, work, NothingThen{});
+    find_unsettled(exec, fine, p.tolerance, seams + 1, 0, 0, open);
+    for_each_item(exec, 1, LookAfterCycle{look, plan.fine_sweeps()});
+    exec.repeat_while(&progress->more_rounds, [&] { do_rounds(seams + 1); });
+  };
+  for_each_item(exec, 1, LookAhead{look});
+  do_cycle(turn);
+  exec.repeat_while(&progress->more_cycles, [&] { do_cycle(turn + 1); });
 }
+static_assert(rounds_a_look * passes_a_round % static_cast<int>(turns) == 0,
+              "rounds that are repeated have their seams where those before would have gone on");
 
 template <class E>
 void sweep(E& exec, const LevelView& level, float transfer, bool by_tangent, Workspace& work) {

@@ -88,36 +88,46 @@ struct Tally {
   static constexpr std::size_t size = places * apart;
   Quanta* parts;
   DESERT_HD void add(int place, Quanta n) const { atomic_add(&parts[place % places * apart], n); }
+  DESERT_HD long long total() const {
+    long long sum = 0;
+    for (int n = 0; n < places; ++n) sum += parts[n * apart];
+    return sum;
+  }
+};
+
+/// How far a step has come to rest, kept on the device.
+struct Progress {
+  long long sweeps;   ///< of the fine grid, of all steps; at least, where tiles may go on
+  long long of_step;  ///< of these, of this step
+  long long steep;    ///< cells that are too steep, at the last look
+  long long more_rounds, more_cycles;  ///< whether there is to be another, 0 or 1
 };
 
 struct OpenTiles {
-  Buffer<Quanta> flags;    ///< of two rounds
-  Buffer<Quanta> steep;    ///< cells of each block that are too steep
-  Buffer<Quanta> ask;      ///< blocks that are to be asked
-  Buffer<Quanta> tallies;  ///< of cells that are too steep, of rounds that follow each other
-  int most_tiles = 0;      ///< of a pass
+  Buffer<Quanta> flags;       ///< of two rounds
+  Buffer<Quanta> steep;       ///< cells of each block that are too steep
+  Buffer<Quanta> ask;         ///< blocks that are to be asked
+  Buffer<Quanta> tallies;     ///< of cells that are too steep, of rounds that follow each other
+  Buffer<Progress> progress;  ///< one
+  int most_tiles = 0;         ///< of a pass
 
   Quanta* of_round(int round) const {
     return flags.data() + static_cast<std::size_t>(round % 2) * passes_a_round * most_tiles;
   }
   Tally tally(int round) const { return {tallies.data() + round * Tally::size}; }
-  /// What the first `rounds` tallies say; waits for them.
-  template <int rounds>
-  std::array<long long, rounds> steep_cells() const {
-    std::array<Quanta, rounds * Tally::size> parts;
-    tallies.download(0, parts.size(), parts.data());
-    std::array<long long, rounds> cells{};
-    for (std::size_t n = 0; n < parts.size(); ++n) cells[n / Tally::size] += parts[n];
-    return cells;
-  }
 };
 
 inline OpenTiles make_open_tiles(Exec& exec, const Grid& grid, int rounds) {
   const std::size_t most = static_cast<std::size_t>(Tiles{grid, Tiles::side - 1}.count());
   const std::size_t blocks = static_cast<std::size_t>(Blocks{grid}.count());
-  return {Buffer<Quanta>(exec, 2 * passes_a_round * most), Buffer<Quanta>(exec, blocks),
-          Buffer<Quanta>(exec, blocks), Buffer<Quanta>(exec, static_cast<std::size_t>(rounds) * Tally::size),
-          static_cast<int>(most)};
+  OpenTiles open{Buffer<Quanta>(exec, 2 * passes_a_round * most),
+                 Buffer<Quanta>(exec, blocks),
+                 Buffer<Quanta>(exec, blocks),
+                 Buffer<Quanta>(exec, static_cast<std::size_t>(rounds) * Tally::size),
+                 Buffer<Progress>(exec, 1),
+                 static_cast<int>(most)};
+  open.progress.set_zero();
+  return open;
 }
 
 /// Whether a block has cells in, or beside, a tile that has been passed over: called for each block.
@@ -219,6 +229,55 @@ struct OpenNear {
     if (cells == 0) return;
     tally.add(column + row, cells);
     next.for_each_around(column, row, slides_reach, [](Quanta* open) { raise_flag(open); });
+  }
+};
+
+/// What follows from what is too steep, as items of one: nothing but the device needs to know it.
+struct Look {
+  Progress* progress;
+  Tally tallies;  ///< `rounds` + 1 that follow each other: before the rounds, and after each
+  int most_sweeps;
+  int rounds, sweeps_a_round;
+
+  DESERT_HD Tally tally(int round) const { return {tallies.parts + round * Tally::size}; }
+  DESERT_HD void count(int sweeps) const {
+    progress->sweeps += sweeps;
+    progress->of_step += sweeps;
+  }
+  DESERT_HD void decide(bool much) const {
+    const bool more = progress->steep > 0 && progress->of_step < most_sweeps;
+    progress->more_rounds = more && !much;
+    progress->more_cycles = more && much;
+  }
+};
+/// Before a step's first cycle.
+struct LookAhead : Look {
+  DESERT_HD void operator()(int) const {
+    progress->of_step = 0;
+    progress->more_cycles = 1;
+  }
+};
+/// After a cycle, of `sweeps` fine sweeps.
+struct LookAfterCycle : Look {
+  int sweeps;
+  DESERT_HD void operator()(int) const {
+    count(sweeps);
+    progress->steep = tally(0).total();
+    decide(false);
+  }
+};
+/// After rounds; those that found something count. Where they do not halve what is too steep, something large
+/// slides, and it takes another cycle.
+struct LookAfterRounds : Look {
+  DESERT_HD void operator()(int) const {
+    long long before = progress->steep;
+    const long long half = before / 2;
+    for (int round = 1; round <= rounds; ++round) {
+      if (before > 0) count(sweeps_a_round);
+      before = tally(round).total();
+    }
+    progress->steep = before;
+    decide(before > half);
   }
 };
 

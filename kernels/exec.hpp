@@ -83,11 +83,20 @@ class Exec {
   /// them. It must not read anything back. Only where records().
   virtual std::unique_ptr<Recording> record(const std::function<void()>& work);
 
+  /// Calls `body`, which starts the same each time and reads nothing back, again and again while the word
+  /// `*go_on` on the device, which it changes, is not 0. The host looks before each turn, or in a recording
+  /// the device itself.
+  virtual void repeat_while(const long long* go_on, const std::function<void()>& body);
+  /// Whether a recording may hold that.
+  virtual bool records_repeats() const { return false; }
+
   /// Waits for all that was started but copies of start_download(); throws CudaError if any of it failed.
   virtual void synchronise() = 0;
 
   /// A complex 2-D transform of width × height (x fastest), in place, unnormalised; of `fields` of them at once.
   virtual std::unique_ptr<Fft> make_fft(int width, int height, int fields = 1) = 0;
+  /// Whether kernels transform lines by themselves, where LineTransform suits (wind::transform_lines()).
+  virtual bool transforms_lines() const { return false; }
 
  protected:
   virtual void* take(std::size_t bytes) = 0;
@@ -150,7 +159,10 @@ class CudaExec final : public Exec {
   void synchronise() override;
   bool records() const override { return true; }
   std::unique_ptr<Recording> record(const std::function<void()>& work) override;
+  void repeat_while(const long long* go_on, const std::function<void()>& body) override;
+  bool records_repeats() const override;
   std::unique_ptr<Fft> make_fft(int width, int height, int fields) override;
+  bool transforms_lines() const override;
 
   /// One 64-bit word on the device and its pinned mirror, for reductions.
   long long* reduction_word() const { return reduction_word_; }

@@ -161,6 +161,15 @@ std::unique_ptr<HostCopy> Exec::start_download(void* to, const void* from, std::
   return done;
 }
 
+void Exec::repeat_while(const long long* go_on, const std::function<void()>& body) {
+  for (;;) {
+    long long word = 0;
+    download(&word, go_on, sizeof word);
+    if (word == 0) return;
+    body();
+  }
+}
+
 std::unique_ptr<Recording> Exec::record(const std::function<void()>&) {
   throw Error(std::string("backend ") + backend() + " records nothing");
 }

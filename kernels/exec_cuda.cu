@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include "desert_sim/core/error.hpp"
 #include "desert_sim/kernels/fft.hpp"
@@ -102,6 +103,52 @@ class GraphRecording final : public Recording {
   cudaStream_t stream_;
   cudaGraphExec_t executable_ = nullptr;
 };
+
+#if CUDART_VERSION >= 13000  // the first whose functions for it have these arguments
+__global__ void look(cudaGraphConditionalHandle condition, const long long* go_on) {
+  cudaGraphSetConditional(condition, *go_on != 0);
+}
+
+/// Adds a loop to the graph that `stream` notes, whose body is what `body_stream` is given by `body`.
+void note_loop(cudaStream_t stream, cudaStream_t body_stream, const long long* go_on,
+               const std::function<void()>& body) {
+  const char* const what = "recording a loop";
+  cudaStreamCaptureStatus status;
+  unsigned long long id = 0;
+  cudaGraph_t graph = nullptr;
+  const auto info = [&](const cudaGraphNode_t** before, const cudaGraphEdgeData** edges, std::size_t* count) {
+    check_cuda(cudaStreamGetCaptureInfo(stream, &status, &id, &graph, before, edges, count), what);
+  };
+  info(nullptr, nullptr, nullptr);
+  cudaGraphConditionalHandle condition;
+  check_cuda(cudaGraphConditionalHandleCreate(&condition, graph, 0, cudaGraphCondAssignDefault), what);
+  look<<<1, 1, 0, stream>>>(condition, go_on);
+  const cudaGraphNode_t* before = nullptr;
+  const cudaGraphEdgeData* edges = nullptr;
+  std::size_t count = 0;
+  info(&before, &edges, &count);
+  cudaGraphNodeParams loop{};
+  loop.type = cudaGraphNodeTypeConditional;
+  loop.conditional.handle = condition;
+  loop.conditional.type = cudaGraphCondTypeWhile;
+  loop.conditional.size = 1;
+  cudaGraphNode_t node = nullptr;
+  check_cuda(cudaGraphAddNode(&node, graph, before, edges, count, &loop), what);
+  check_cuda(cudaStreamBeginCaptureToGraph(body_stream, loop.conditional.phGraph_out[0], nullptr, nullptr, 0,
+                                           cudaStreamCaptureModeThreadLocal),
+             what);
+  cudaGraph_t noted = nullptr;
+  try {
+    body();
+    look<<<1, 1, 0, body_stream>>>(condition, go_on);
+  } catch (...) {
+    cudaStreamEndCapture(body_stream, &noted);  // its failure is the one that is under way
+    throw;
+  }
+  check_cuda(cudaStreamEndCapture(body_stream, &noted), what);
+  check_cuda(cudaStreamUpdateCaptureDependencies(stream, &node, nullptr, 1, cudaStreamSetCaptureDependencies), what);
+}
+#endif
 
 }  // namespace
 
@@ -217,6 +264,33 @@ void CudaExec::synchronise() {
 std::unique_ptr<Recording> CudaExec::record(const std::function<void()>& work) {
   return std::make_unique<GraphRecording>(as_stream(stream_), work);
 }
+
+bool CudaExec::records_repeats() const { return CUDART_VERSION >= 13000; }
+
+void CudaExec::repeat_while(const long long* go_on, const std::function<void()>& body) {
+#if CUDART_VERSION >= 13000
+  cudaStreamCaptureStatus status;
+  check_cuda(cudaStreamIsCapturing(as_stream(stream_), &status), "asking whether work is recorded");
+  if (status == cudaStreamCaptureStatusActive) {
+    cudaStream_t inner = nullptr;  // a loop in a loop has another
+    check_cuda(cudaStreamCreateWithFlags(&inner, cudaStreamNonBlocking), "making a stream");
+    void* const outer = std::exchange(stream_, inner);
+    try {
+      note_loop(as_stream(outer), inner, go_on, body);
+    } catch (...) {
+      stream_ = outer;
+      log_failure(cudaStreamDestroy(inner), "ending a stream");
+      throw;
+    }
+    stream_ = outer;
+    check_cuda(cudaStreamDestroy(inner), "ending a stream");
+    return;
+  }
+#endif
+  Exec::repeat_while(go_on, body);
+}
+
+bool CudaExec::transforms_lines() const { return CUDART_VERSION >= 12000; }
 
 std::unique_ptr<Fft> CudaExec::make_fft(int width, int height, int fields) {
   return std::make_unique<CufftTransform>(as_stream(stream_), width, height, fields);

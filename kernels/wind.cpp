@@ -99,8 +99,8 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   work.rise = Buffer<float>(exec, values);
   for (Buffer<Complex>* buffer : {&work.spectrum, &work.turned, &work.correction})
     *buffer = Buffer<Complex>(exec, values);
-  work.by_lines = with_backend(exec, [](auto& e) { return !works_on_rows<std::decay_t<decltype(e)>>; }) &&
-                  LineTransform::suits(c.width) && LineTransform::suits(c.height);
+  work.by_lines =
+      exec.transforms_lines() && LineTransform::suits(c.width) && LineTransform::suits(c.height);
   if (work.by_lines) {
     work.lines_along_x = LineTransform::of(c.width);
     work.lines_along_y = LineTransform::of(c.height);

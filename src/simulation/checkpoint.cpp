@@ -74,7 +74,7 @@ class CheckpointAccess {
     entry("wind_reference", s.wind_reference_);
     entry("bedrock_loose", s.bedrock_loose_);
     entry("soil_loose", s.soil_loose_);
-    entry("avalanche_iterations", s.avalanche_iterations_);
+    entry("avalanche_iterations", s.avalanche_iterations());
     entry("plants", s.plants_.count);
     entry("next_timeline_entry", s.next_entry_);
     out << YAML::Key << "ramps" << YAML::Value << YAML::BeginSeq;

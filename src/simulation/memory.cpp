@@ -31,7 +31,7 @@ std::size_t bytes_of_wind(const wind::Workspace& work) {
 
 std::size_t bytes_of_avalanches(const avalanching::Workspace& work) {
   std::size_t bytes = bytes_of_all(work.share, work.given, work.received, work.open.flags, work.open.steep,
-                                   work.open.ask, work.open.tallies);
+                                   work.open.ask, work.open.tallies, work.open.progress);
   for (const avalanching::Level& level : work.coarse)
     bytes += bytes_of_all(level.ground, level.sand, level.sand_before, level.repose);
   return bytes;

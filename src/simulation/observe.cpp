@@ -122,8 +122,12 @@ double Simulation::max_sand_slope_deg() {
   return std::atan(tangent) * 180 / 3.14159265358979;
 }
 
+std::uint64_t Simulation::avalanche_iterations() const {
+  return avalanche_iterations_ + static_cast<std::uint64_t>(avalanche_work_.counted_iterations());
+}
+
 double Simulation::mean_avalanche_iterations() const {
-  return steps_ ? static_cast<double>(avalanche_iterations_) / static_cast<double>(steps_) : 0.0;
+  return steps_ ? static_cast<double>(avalanche_iterations()) / static_cast<double>(steps_) : 0.0;
 }
 
 void Simulation::clear_process_times() { process_times_.clear(); }

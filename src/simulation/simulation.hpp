@@ -202,6 +202,7 @@ class Simulation {
   void start_books();
   void set_regime(WindRegime regime);
   std::vector<long long> read_ledger() const;
+  std::uint64_t avalanche_iterations() const;  ///< of all steps
   long long material_now(Material material);
   LedgerView ledger() const { return {ledger_.data()}; }
 
@@ -218,7 +219,7 @@ class Simulation {
   bool soil_loose_ = false;     ///< soil, or bedrock below it, was edited and soil has not come to rest since
   std::size_t next_entry_ = 0;  ///< of the timeline
   std::vector<Ramp> ramps_;
-  std::uint64_t avalanche_iterations_ = 0;
+  std::uint64_t avalanche_iterations_ = 0;  ///< but those that avalanche_work_ has counted
   std::array<long long, material_count> initial_{};
 
   // What the processes work with; made once, so that a step allocates nothing.

@@ -124,7 +124,7 @@ int BenchTerrain::avalanche(const AvalanchingParameters& p, std::uint64_t tick) 
   with_backend(exec(),
                [&](auto& e) { avalanching::step(e, terrain.view(), p, tick, repose.data(), nullptr, work); });
   exec().synchronise();
-  return work.iterations;
+  return work.iterations + static_cast<int>(work.counted_iterations());
 }
 
 void BenchTerrain::avalanche_soil(const AvalanchingParameters& p, const ReposeParameters& r) {
