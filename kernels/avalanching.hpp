@@ -20,6 +20,7 @@
 /// Reads bedrock, soil, obstacle and the repose tangents; writes sand. Soil and bedrock:
 /// avalanching_ground.hpp.
 
+#include <array>
 #include <vector>
 
 #include "desert_sim/kernels/avalanching_parameters.hpp"
@@ -72,7 +73,7 @@ struct Workspace {
   Buffer<float> share;        ///< of the synchronous schemes; made when one is used
   Buffer<Quanta> given, received;
   OpenTiles open;      ///< of the multilevel scheme, when it converges
-  int iterations = 0;         ///< fine sweeps of the last step, but those that the device counts
+  int iterations = 0;  ///< fine sweeps of the last step, but those that the device counts
   /// Fine sweeps of all steps that the device has counted.
   long long counted_iterations() const {
     if (!open.progress) return 0;
@@ -228,8 +229,9 @@ void find_unsettled(E& exec, const LevelView& fine, float tolerance, std::uint64
 }
 
 /// A cycle, and then rounds of passes over those tiles alone that are not at rest: what is left are trains of
-/// small slides on their way down. Every two rounds it is looked what is left; if there was nothing before,
-/// kernels end at once.
+/// small slides on their way down. Every two rounds it is looked what is left, and whether it takes another
+/// cycle (LookAfterRounds); if there was nothing before, kernels end at once. Cycles after the first have the
+/// same seams, rounds between them all eight.
 template <class E>
 void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std::uint64_t turn,
             Workspace& work) {

@@ -9,8 +9,6 @@
 /// since, so that after a round only the blocks around its tiles are asked. There are two sets of tiles, of
 /// the last round and of the next, in turns.
 
-#include <array>
-
 #include "desert_sim/kernels/avalanching_laws.hpp"
 #include "desert_sim/kernels/buffer.hpp"
 
@@ -87,6 +85,8 @@ struct Tally {
   static constexpr int places = 16, apart = 32;
   static constexpr std::size_t size = places * apart;
   Quanta* parts;
+  /// The nth after this one.
+  DESERT_HD Tally after(int n) const { return {parts + n * size}; }
   DESERT_HD void add(int place, Quanta n) const { atomic_add(&parts[place % places * apart], n); }
   DESERT_HD long long total() const {
     long long sum = 0;
@@ -97,9 +97,9 @@ struct Tally {
 
 /// How far a step has come to rest, kept on the device.
 struct Progress {
-  long long sweeps;   ///< of the fine grid, of all steps; at least, where tiles may go on
-  long long of_step;  ///< of these, of this step
-  long long steep;    ///< cells that are too steep, at the last look
+  long long sweeps;                    ///< of the fine grid, of all steps; at least, where tiles may go on
+  long long of_step;                   ///< of these, of this step
+  long long steep;                     ///< cells that are too steep, at the last look
   long long more_rounds, more_cycles;  ///< whether there is to be another, 0 or 1
 };
 
@@ -114,7 +114,7 @@ struct OpenTiles {
   Quanta* of_round(int round) const {
     return flags.data() + static_cast<std::size_t>(round % 2) * passes_a_round * most_tiles;
   }
-  Tally tally(int round) const { return {tallies.data() + round * Tally::size}; }
+  Tally tally(int round) const { return Tally{tallies.data()}.after(round); }
 };
 
 inline OpenTiles make_open_tiles(Exec& exec, const Grid& grid, int rounds) {
@@ -236,33 +236,29 @@ struct OpenNear {
 struct Look {
   Progress* progress;
   Tally tallies;  ///< `rounds` + 1 that follow each other: before the rounds, and after each
-  int most_sweeps;
+  int max_iterations;
   int rounds, sweeps_a_round;
 
-  DESERT_HD Tally tally(int round) const { return {tallies.parts + round * Tally::size}; }
   DESERT_HD void count(int sweeps) const {
     progress->sweeps += sweeps;
     progress->of_step += sweeps;
   }
   DESERT_HD void decide(bool much) const {
-    const bool more = progress->steep > 0 && progress->of_step < most_sweeps;
+    const bool more = progress->steep > 0 && progress->of_step < max_iterations;
     progress->more_rounds = more && !much;
     progress->more_cycles = more && much;
   }
 };
 /// Before a step's first cycle.
 struct LookAhead : Look {
-  DESERT_HD void operator()(int) const {
-    progress->of_step = 0;
-    progress->more_cycles = 1;
-  }
+  DESERT_HD void operator()(int) const { progress->of_step = 0; }
 };
 /// After a cycle, of `sweeps` fine sweeps.
 struct LookAfterCycle : Look {
   int sweeps;
   DESERT_HD void operator()(int) const {
     count(sweeps);
-    progress->steep = tally(0).total();
+    progress->steep = tallies.total();
     decide(false);
   }
 };
@@ -274,7 +270,7 @@ struct LookAfterRounds : Look {
     const long long half = before / 2;
     for (int round = 1; round <= rounds; ++round) {
       if (before > 0) count(sweeps_a_round);
-      before = tally(round).total();
+      before = tallies.after(round).total();
     }
     progress->steep = before;
     decide(before > half);

@@ -79,13 +79,13 @@ class Exec {
 
   /// Whether recording work is worth it here.
   virtual bool records() const { return false; }
-  /// Calls `work` and notes the laws, copies on the device and transforms that it starts, instead of doing
-  /// them. It must not read anything back. Only where records().
+  /// Calls `work` and notes the laws, copies on the device, transforms and loops that it starts, instead of
+  /// doing them. It must not read anything back. Only where records().
   virtual std::unique_ptr<Recording> record(const std::function<void()>& work);
 
-  /// Calls `body`, which starts the same each time and reads nothing back, again and again while the word
-  /// `*go_on` on the device, which it changes, is not 0. The host looks before each turn, or in a recording
-  /// the device itself.
+  /// Calls `body`, which starts the same each time, no transforms, and reads nothing back, again and again
+  /// while the word `*go_on` on the device, which it changes, is not 0. The host looks before each turn, or in
+  /// a recording the device itself.
   virtual void repeat_while(const long long* go_on, const std::function<void()>& body);
   /// Whether a recording may hold that.
   virtual bool records_repeats() const { return false; }
@@ -95,8 +95,9 @@ class Exec {
 
   /// A complex 2-D transform of width × height (x fastest), in place, unnormalised; of `fields` of them at once.
   virtual std::unique_ptr<Fft> make_fft(int width, int height, int fields = 1) = 0;
-  /// Whether kernels transform lines by themselves, where LineTransform suits (wind::transform_lines()).
-  virtual bool transforms_lines() const { return false; }
+  /// Shared memory that a kernel may take which transforms lines by itself (wind::by_lines()) [bytes]; 0 where
+  /// there is none.
+  virtual std::size_t memory_for_lines() const { return 0; }
 
  protected:
   virtual void* take(std::size_t bytes) = 0;
@@ -142,7 +143,8 @@ class CudaExec final : public Exec {
   /// Takes the current device; throws CudaError if there is none.
   CudaExec();
   ~CudaExec() override;
-  /// The stream that all work but copies of start_download() goes to (a cudaStream_t).
+  /// The stream that all work but copies of start_download() goes to (a cudaStream_t); in a loop that is being
+  /// recorded, the loop's.
   void* stream() const { return stream_; }
 
   const char* backend() const override { return "cuda"; }
@@ -162,7 +164,7 @@ class CudaExec final : public Exec {
   void repeat_while(const long long* go_on, const std::function<void()>& body) override;
   bool records_repeats() const override;
   std::unique_ptr<Fft> make_fft(int width, int height, int fields) override;
-  bool transforms_lines() const override;
+  std::size_t memory_for_lines() const override;
 
   /// One 64-bit word on the device and its pinned mirror, for reductions.
   long long* reduction_word() const { return reduction_word_; }

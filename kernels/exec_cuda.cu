@@ -123,6 +123,7 @@ void note_loop(cudaStream_t stream, cudaStream_t body_stream, const long long* g
   cudaGraphConditionalHandle condition;
   check_cuda(cudaGraphConditionalHandleCreate(&condition, graph, 0, cudaGraphCondAssignDefault), what);
   look<<<1, 1, 0, stream>>>(condition, go_on);
+  check_cuda(cudaGetLastError(), what);
   const cudaGraphNode_t* before = nullptr;
   const cudaGraphEdgeData* edges = nullptr;
   std::size_t count = 0;
@@ -141,6 +142,7 @@ void note_loop(cudaStream_t stream, cudaStream_t body_stream, const long long* g
   try {
     body();
     look<<<1, 1, 0, body_stream>>>(condition, go_on);
+    check_cuda(cudaGetLastError(), what);
   } catch (...) {
     cudaStreamEndCapture(body_stream, &noted);  // its failure is the one that is under way
     throw;
@@ -290,7 +292,18 @@ void CudaExec::repeat_while(const long long* go_on, const std::function<void()>&
   Exec::repeat_while(go_on, body);
 }
 
-bool CudaExec::transforms_lines() const { return CUDART_VERSION >= 12000; }
+std::size_t CudaExec::memory_for_lines() const {
+  const auto ask = [](cudaDeviceAttr what) {
+    int device = 0, value = 0;
+    check_cuda(cudaGetDevice(&device), "asking for the device");
+    check_cuda(cudaDeviceGetAttribute(&value, what, device), "asking for the device's limits");
+    return value;
+  };
+  // In graphs, and with parameters that are not copied, only from these on.
+  if (CUDART_VERSION < 12000 || ask(cudaDevAttrComputeCapabilityMajor) < 7 || !ask(cudaDevAttrCooperativeLaunch))
+    return 0;
+  return static_cast<std::size_t>(ask(cudaDevAttrMaxSharedMemoryPerBlockOptin));
+}
 
 std::unique_ptr<Fft> CudaExec::make_fft(int width, int height, int fields) {
   return std::make_unique<CufftTransform>(as_stream(stream_), width, height, fields);

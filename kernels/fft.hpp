@@ -1,5 +1,6 @@
 #pragma once
-/// The one small interface to FFTW3 (CPU) and cuFFT (GPU).
+/// The one small interface to FFTW3 (CPU) and cuFFT (GPU). Kernels that transform short lines by themselves do
+/// not need it (line_transform.hpp).
 
 #include <cstddef>
 

@@ -25,24 +25,14 @@ DESERT_HD Complex operator*(Complex a, Complex b) {
   return {fused(a.re, b.re, -(a.im * b.im)), fused(a.re, b.im, a.im * b.re)};
 }
 /// a + s·b
-DESERT_HD Complex plus_times(Complex a, float s, Complex b) { return {fused(s, b.re, a.re), fused(s, b.im, a.im)}; }
+DESERT_HD Complex plus_times(Complex a, float s, Complex b) {
+  return {fused(s, b.re, a.re), fused(s, b.im, a.im)};
+}
 /// a − i s·b
 DESERT_HD Complex minus_i_times(Complex a, float s, Complex b) {
   return {fused(s, b.im, a.re), fused(-s, b.re, a.im)};
 }
 DESERT_HD Complex parts_exchanged(Complex a) { return {a.im, a.re}; }
-
-/// e^(−2πi j/n), by its series: constants of the compiler.
-constexpr Complex root_of_unity(int j, int n) {
-  j %= n;
-  const double angle = -2 * 3.14159265358979323846 * (2 * j > n ? j - n : j) / n;
-  double re = 0, im = 0, term = 1;
-  for (int k = 0; k < 40; ++k) {
-    (k % 2 == 0 ? re : im) += (k % 4 < 2 ? term : -term);
-    term *= angle / (k + 1);
-  }
-  return {static_cast<float>(re), static_cast<float>(im)};
-}
 
 /// A number of values in registers, transformed. Of values that are all alike, every mode but the first is
 /// exactly 0.
@@ -77,49 +67,28 @@ DESERT_HD void transform_few(Complex (&v)[5]) {
   v[2] = minus_i_times(minus_i_times(second, sin_144, near_gap), -sin_72, far_gap);
   v[3] = minus_i_times(minus_i_times(second, -sin_144, near_gap), sin_72, far_gap);
 }
-/// a·b values, as a table of b columns with a rows, whose columns are transformed, turned, and then its rows.
-/// If a and b have no common factor, places can be chosen so that nothing needs turning (Good, Thomas).
-template <int a, int b, bool coprime>
-DESERT_HD void transform_table(Complex (&v)[a * b]) {
-  constexpr int n = a * b;
-  constexpr auto unit = [](int of, int other) constexpr {  // multiple of `of` that is 1 mod `other`
-    int multiple = of;
-    while (multiple % other != 1) multiple += of;
-    return multiple;
-  };
-  Complex table[n];
-  unrolled<b>([&](auto column) {
-    Complex line[a];
-    unrolled<a>([&](auto row) {
-      constexpr int place = coprime ? (b * row + a * column) % n : b * row + column;
-      line[row] = v[place];
-    });
-    transform_few(line);
-    unrolled<a>([&](auto row) {
-      constexpr Complex root = root_of_unity(row * column, n);
-      table[row * b + column] = coprime || row * column == 0 ? line[row] : line[row] * root;
-    });
-  });
-  unrolled<a>([&](auto row) {
-    Complex line[b];
-    unrolled<b>([&](auto column) { line[column] = table[row * b + column]; });
-    transform_few(line);
-    unrolled<b>([&](auto column) {
-      constexpr int mode = coprime ? (unit(b, a) * row + unit(a, b) * column) % n : row + a * column;
-      v[mode] = line[column];
-    });
-  });
+/// As two of three values; places are chosen so that nothing needs turning (Good, Thomas).
+DESERT_HD void transform_few(Complex (&v)[6]) {
+  Complex a[3] = {v[0], v[2], v[4]}, b[3] = {v[3], v[5], v[1]};
+  transform_few(a);
+  transform_few(b);
+  v[0] = a[0] + b[0];
+  v[1] = a[1] - b[1];
+  v[2] = a[2] + b[2];
+  v[3] = a[0] - b[0];
+  v[4] = a[1] + b[1];
+  v[5] = a[2] - b[2];
 }
-DESERT_HD void transform_few(Complex (&v)[6]) { transform_table<3, 2, true>(v); }
-DESERT_HD void transform_few(Complex (&v)[8]) { transform_table<4, 2, false>(v); }
-DESERT_HD void transform_few(Complex (&v)[9]) { transform_table<3, 3, false>(v); }
-DESERT_HD void transform_few(Complex (&v)[10]) { transform_table<5, 2, true>(v); }
-DESERT_HD void transform_few(Complex (&v)[12]) { transform_table<4, 3, true>(v); }
-DESERT_HD void transform_few(Complex (&v)[15]) { transform_table<5, 3, true>(v); }
-DESERT_HD void transform_few(Complex (&v)[16]) { transform_table<4, 4, false>(v); }
+
+/// Whether n ≥ 1 has no other prime factors than 2, 3 and 5.
+inline bool smooth(int n) {
+  for (int factor : {2, 3, 5})
+    while (n % factor == 0) n /= factor;
+  return n == 1;
+}
 
 struct LineTransform {
-  static constexpr int longest = 512, most_stages = 4;
+  static constexpr int longest = 512, most_stages = 5;
 
   struct Stage {
     int radix, done;
@@ -130,13 +99,8 @@ struct LineTransform {
   int length = 0, count = 0;
   Stage stages[most_stages] = {};
 
-  /// Whether `n` is no longer than `longest` and has no other prime factors than 2, 3 and 5.
-  static bool suits(int n) {
-    if (n < 2 || n > longest) return false;
-    for (int factor : {2, 3, 5})
-      while (n % factor == 0) n /= factor;
-    return n == 1;
-  }
+  /// Whether `n` is no longer than `longest` and smooth().
+  static bool suits(int n) { return n >= 2 && n <= longest && smooth(n); }
   /// Of lines of `n` values; `n` suits.
   static LineTransform of(int n) {
     LineTransform t;
@@ -155,7 +119,8 @@ struct LineTransform {
 
   /// Butterfly b of length/radix. `roots`: e^(−2πi j/n), n of them.
   template <int radix>
-  DESERT_HD void butterfly(const Stage& stage, int b, const Complex* roots, const Complex* in, Complex* out) const {
+  DESERT_HD void butterfly(const Stage& stage, int b, const Complex* roots, const Complex* in,
+                           Complex* out) const {
     const int apart = length / radix, done = stage.done;
     const int before = static_cast<int>((static_cast<float>(b) + 0.5f) * stage.share) * done, k = b - before;
     Complex v[radix];
@@ -172,23 +137,23 @@ struct LineTransform {
   DESERT_HD void butterflies(const Stage& stage, int first, int step, const Complex* roots, const Complex* in,
                              Complex* out) const {
     switch (stage.radix) {
-      case 2: return all<2>(stage, first, step, roots, in, out);
-      case 3: return all<3>(stage, first, step, roots, in, out);
-      case 4: return all<4>(stage, first, step, roots, in, out);
-      case 5: return all<5>(stage, first, step, roots, in, out);
-      case 6: return all<6>(stage, first, step, roots, in, out);
-      case 8: return all<8>(stage, first, step, roots, in, out);
-      case 9: return all<9>(stage, first, step, roots, in, out);
-      case 10: return all<10>(stage, first, step, roots, in, out);
-      case 12: return all<12>(stage, first, step, roots, in, out);
-      case 15: return all<15>(stage, first, step, roots, in, out);
-      default: return all<16>(stage, first, step, roots, in, out);
+      case 2:
+        return all<2>(stage, first, step, roots, in, out);
+      case 3:
+        return all<3>(stage, first, step, roots, in, out);
+      case 4:
+        return all<4>(stage, first, step, roots, in, out);
+      case 5:
+        return all<5>(stage, first, step, roots, in, out);
+      default:
+        return all<6>(stage, first, step, roots, in, out);
     }
   }
 
  private:
-  /// Odd ones first: what the first stage writes is a radix apart, in different banks of shared memory then.
-  static constexpr int radices[] = {15, 5, 9, 3, 10, 12, 8, 6, 16, 4, 2};
+  /// Five first: what the first stage writes is a radix apart, for an odd one in different banks of shared
+  /// memory.
+  static constexpr int radices[] = {5, 3, 6, 4, 2};
 
   template <int radix>
   DESERT_HD void all(const Stage& stage, int first, int step, const Complex* roots, const Complex* in,

@@ -12,12 +12,8 @@ constexpr int fewest_coarse_cells = 64;
 
 /// The next number whose only prime factors are 2, 3 and 5: transforms of such lengths are fast.
 int smooth_length(int n) {
-  for (;; ++n) {
-    int rest = n;
-    for (int factor : {2, 3, 5})
-      while (rest % factor == 0) rest /= factor;
-    if (rest == 1) return n;
-  }
+  while (!smooth(n)) ++n;
+  return n;
 }
 
 /// Transfer of a Gaussian of `sigma` fine cells along an axis of n coarse modes, each coarse cell `ratio`
@@ -99,8 +95,9 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   work.rise = Buffer<float>(exec, values);
   for (Buffer<Complex>* buffer : {&work.spectrum, &work.turned, &work.correction})
     *buffer = Buffer<Complex>(exec, values);
-  work.by_lines =
-      exec.transforms_lines() && LineTransform::suits(c.width) && LineTransform::suits(c.height);
+  const int radius_count = p.warping ? p.radii.count : 0;
+  work.by_lines = LineTransform::suits(c.width) && LineTransform::suits(c.height) &&
+                  bytes_for_lines(c, radius_count) <= exec.memory_for_lines();
   if (work.by_lines) {
     work.lines_along_x = LineTransform::of(c.width);
     work.lines_along_y = LineTransform::of(c.height);
@@ -109,7 +106,7 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   } else {
     work.one = exec.make_fft(c.width, c.height);
   }
-  if (!p.warping || p.radii.count == 0) return work;
+  if (radius_count == 0) return work;
   if (!work.by_lines) work.all_radii = exec.make_fft(c.width, c.height, p.radii.count);
   work.gradients = Buffer<Complex>(exec, values * static_cast<std::size_t>(p.radii.count));
   for (int r = 0; r < p.radii.count; ++r) {

@@ -70,10 +70,10 @@ namespace wind {
 /// Buffers and transforms of the coarse grid; none if neither warping nor projection needs them.
 struct Workspace {
   CoarseGrid coarse;
-  std::unique_ptr<Fft> one, all_radii;   ///< none if `by_lines`
-  bool by_lines = false;                 ///< transform_lines() instead of transforms by the library
+  std::unique_ptr<Fft> one, all_radii;  ///< none if `by_lines`
+  bool by_lines = false;                ///< transform_by_lines() instead of by the library
   LineTransform lines_along_x, lines_along_y;
-  Buffer<Complex> roots_x, roots_y;      ///< of these
+  Buffer<Complex> roots_x, roots_y;  ///< of these
   Buffer<float> row_means, rise;
   Buffer<Complex> spectrum, turned, correction, gradients;
   Buffer<Transfer> along_x[ShortList::capacity], along_y[ShortList::capacity];  ///< of each radius
@@ -139,8 +139,16 @@ void transform_by_library(E& exec, const CoarseLaws& laws, Workspace& work) {
 }
 #if DESERT_WITH_CUDA
 /// The same in one kernel; tuned/coarse_wind.cu.
-void transform_lines(CudaExec& exec, const CoarseLaws& laws, Workspace& work);
+void transform_by_lines(CudaExec& exec, const CoarseLaws& laws, Workspace& work);
 #endif
+/// A block of that kernel works on so many lines at a time,
+constexpr int lines_at_once = 2;
+/// and has in shared memory two places for each of them, of each radius, and the roots of unity of both axes.
+inline std::size_t bytes_for_lines(const CoarseGrid& c, int radius_count) {
+  const int longest = c.width > c.height ? c.width : c.height, fields = radius_count > 1 ? radius_count : 1;
+  return sizeof(Complex) *
+         static_cast<std::size_t>(2 * longest * lines_at_once * fields + c.width + c.height);
+}
 
 template <class E>
 void coarse_wind(E& exec, const CoarseLaws& laws, const surface::Heights& heights, float reference,
@@ -149,7 +157,7 @@ void coarse_wind(E& exec, const CoarseLaws& laws, const surface::Heights& height
   for_each_cell(exec, rows.grid(), rows);
   if (!laws.projected) work.correction.set_zero();
   if constexpr (!works_on_rows<E>)
-    if (work.by_lines) return transform_lines(exec, laws, work);
+    if (work.by_lines) return transform_by_lines(exec, laws, work);
   transform_by_library(exec, laws, work);
 }
 

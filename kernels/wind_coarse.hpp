@@ -17,8 +17,8 @@ struct CoarseGrid {
   Grid fine;
   int columns = 0, rows = 0;
   int width = 0, height = 0;
-  float ratio_x = 1, ratio_y = 1;  ///< fine cells a coarse cell
-  float share_x = 1, share_y = 1;  ///< 1 / ratio
+  float ratio_x = 1, ratio_y = 1;            ///< fine cells a coarse cell
+  float share_x = 1, share_y = 1;            ///< 1 / ratio
   float wavenumber_x = 0, wavenumber_y = 0;  ///< of the first modes [rad per fine cell]
 
   DESERT_HD int mirrored_column(int x) const { return x < columns ? x : 2 * columns - 1 - x; }

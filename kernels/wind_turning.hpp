@@ -1,7 +1,7 @@
 #pragma once
 /// What the coarse grid's transforms have between them: slopes of the smoothed terrains, the wind that they
-/// turn, and what makes it free of divergence. See wind.hpp. Each law says what becomes of one value; as a law
-/// over cells it reads that from memory, and writes it there.
+/// turn, and what makes it free of divergence. See wind.hpp. Each law says what becomes of one value; as a
+/// law over cells it reads that from memory, and writes it there.
 
 #include "desert_sim/core/parameters.hpp"
 #include "desert_sim/kernels/wind_coarse.hpp"

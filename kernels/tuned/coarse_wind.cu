@@ -1,15 +1,15 @@
 /// What wind::transform_by_library() does, in one kernel: the same laws, and between them lines of the coarse
-/// grid transformed in shared memory. The coarse grid is small (180 × 180 values for a terrain of 1024 m), and
-/// the thirteen launches that the library's transforms take were longer than their work.
+/// grid transformed in shared memory. The coarse grid is small (180 × 180 values for a terrain of 1024 m),
+/// and twelve launches with the library's transforms took longer than their work.
 ///
-/// A block takes two lines at a time. Between the stages of the table all blocks wait for each other: they are
-/// as many as the GPU holds at once.
+/// A block takes two lines at a time. Between the stages of the table all blocks wait for each other: they
+/// are as many as the GPU holds at once.
 ///
 // clang-format off
 ///      lines                       from memory        in shared memory, → is a transform        to memory
 ///   1  columns x, x + 1            means of rows      rise →                                    spectrum
 ///   2  rows j, j + 1               spectrum           → slopes of each radius →                 gradients
-///   3  columns x, x + 1            gradients          → turned wind, its deviation →            spectrum
+///   3  columns x, x + 1            gradients (or 1's)  → turned wind, its deviation →           spectrum
 ///   4  rows j, −j                  spectrum           → projection →                            correction
 ///   5  columns x, x + 1            correction         →                                         correction
 // clang-format on
@@ -25,22 +25,31 @@
 
 namespace desert_sim::wind {
 
+#if CUDART_VERSION < 12000  // CudaExec::memory_for_lines(): never called
+void transform_by_lines(CudaExec&, const CoarseLaws&, Workspace&) { throw Error("lines need CUDA 12"); }
+#else
 namespace tuned {
 namespace {
 
-constexpr int at_once = 2;  ///< lines of a stage that a block takes
-/// A thread has a value of each line while laws are at work (of 180 there are in a line), and half a warp a
-/// line while it is transformed (180 values are 12 butterflies of 15, and 15 of 12): then nobody else is
-/// waited for.
-constexpr int threads_a_line = 192, threads = threads_a_line * at_once, team = 16;
-static_assert(at_once * ShortList::capacity * team <= threads);
+constexpr int at_once = lines_at_once;
+/// While laws are at work a thread has a value of each line (of 180 there are in a line). While lines are
+/// transformed each has a team of two warps (180 values are 36, 30 and 30 butterflies), which waits for
+/// nobody else.
+constexpr int threads_a_line = 192, threads = threads_a_line * at_once, team = 64, teams = threads / team;
+static_assert(team % 32 == 0 && threads % team == 0 && teams < 16,
+              "whole warps, and a barrier for each team");
+
+__device__ void wait_for_team() {
+  const unsigned barrier = 1 + threadIdx.x / team;  // 0 is __syncthreads()
+  asm volatile("bar.sync %0, %1;" ::"r"(barrier), "n"(team) : "memory");
+}
 
 struct Axis {
   LineTransform transform;
   const Complex* roots;
 };
 
-struct Stages {
+struct Arguments {
   CoarseLaws laws;
   Axis x, y;
 
@@ -55,15 +64,15 @@ extern __shared__ Complex shared[];
 
 /// A block at work on lines `first` and those with it.
 struct Block {
-  const Stages& s;
+  const Arguments& s;
   const CoarseGrid& coarse;
   int longest, width, height;
   int place = 0;  ///< where the lines are
 
-  __device__ explicit Block(const Stages& stages)
-      : s(stages),
-        coarse(stages.laws.turn.coarse),
-        longest(stages.longest()),
+  __device__ explicit Block(const Arguments& arguments)
+      : s(arguments),
+        coarse(arguments.laws.turn.coarse),
+        longest(arguments.longest()),
         width(coarse.width),
         height(coarse.height) {
     Complex* const roots = shared + line(s.lines(), 0);
@@ -81,33 +90,34 @@ struct Block {
   __device__ void columns(int x, const Body& body) const {
     const int c = static_cast<int>(threadIdx.x) % at_once;
     if (x + c < width)
-      for (int y = static_cast<int>(threadIdx.x) / at_once; y < height; y += threads_a_line) body(c, x + c, y);
+      for (int y = static_cast<int>(threadIdx.x) / at_once; y < height; y += threads_a_line)
+        body(c, x + c, y);
   }
   /// body(c, i, row) for the values of rows j and `other`, if that is there (≥ 0).
   template <class Body>
   __device__ void rows(int j, int other, const Body& body) const {
     const int c = static_cast<int>(threadIdx.x) / threads_a_line, row = c == 0 ? j : other;
     if (row >= 0)
-      for (int i = static_cast<int>(threadIdx.x) % threads_a_line; i < width; i += threads_a_line) body(c, i, row);
+      for (int i = static_cast<int>(threadIdx.x) % threads_a_line; i < width; i += threads_a_line)
+        body(c, i, row);
   }
 
-  /// Of `count` lines, whole warps of them.
+  /// Of `count` lines.
   __device__ void transform(const Axis& axis, int roots, int count) {
     const LineTransform& law = axis.transform;
-    const int l = static_cast<int>(threadIdx.x) / team, first = static_cast<int>(threadIdx.x) % team;
+    const int first = static_cast<int>(threadIdx.x) % team;
     __syncthreads();
-    if (l < count)
+    for (int l = static_cast<int>(threadIdx.x) / team; l < count; l += teams)
       for (int n = 0; n < law.count; ++n) {
         const int at = (place + n) % 2;
         law.butterflies(law.stages[n], first, team, shared + line(s.lines(), 0) + roots, shared + line(l, at),
                         shared + line(l, 1 - at));
-        __syncwarp();
+        wait_for_team();
       }
     place = (place + law.count) % 2;
     __syncthreads();
   }
 };
-static_assert(at_once * team % 32 == 0);
 
 /// See the table above.
 enum Stage { rises, slopes, turning, projecting, correction, stage_count };
@@ -182,7 +192,13 @@ __device__ void store(const Block& b, int stage, int n, int other) {
   }
 }
 
-__global__ void __launch_bounds__(threads, 1) stages_kernel(const __grid_constant__ Stages s) {
+#if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ >= 700
+#define DESERT_GRID_CONSTANT __grid_constant__
+#else  // not known there; and never called
+#define DESERT_GRID_CONSTANT
+#endif
+
+__global__ void __launch_bounds__(threads, 1) coarse_wind_kernel(DESERT_GRID_CONSTANT const Arguments s) {
   Block b(s);
   const bool turns = s.radii() > 0, projects = s.laws.projected;
   for (int stage = turns ? rises : turning; stage < (projects ? stage_count : projecting); ++stage) {
@@ -215,28 +231,28 @@ __global__ void __launch_bounds__(threads, 1) stages_kernel(const __grid_constan
 }  // namespace
 }  // namespace tuned
 
-void transform_lines(CudaExec& exec, const CoarseLaws& laws, Workspace& work) {
+void transform_by_lines(CudaExec& exec, const CoarseLaws& laws, Workspace& work) {
   using namespace tuned;
   const CoarseGrid& coarse = work.coarse;
-  Stages stages{laws,
-                {work.lines_along_x, work.roots_x.data()},
-                {work.lines_along_y, work.roots_y.data()}};
-  const int longest = stages.longest();
-  const std::size_t bytes = sizeof(Complex) * static_cast<std::size_t>(2 * longest * stages.lines() +
-                                                                       coarse.width + coarse.height);
-  check_cuda(cudaFuncSetAttribute(stages_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
+  Arguments kernel_arguments{
+      laws, {work.lines_along_x, work.roots_x.data()}, {work.lines_along_y, work.roots_y.data()}};
+  const std::size_t bytes = bytes_for_lines(coarse, laws.gradients.radius_count);
+  check_cuda(cudaFuncSetAttribute(coarse_wind_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
                                   static_cast<int>(bytes)),
              "asking for shared memory");
   int device = 0, multiprocessors = 0, a_multiprocessor = 0;
   check_cuda(cudaGetDevice(&device), "asking for the device");
-  check_cuda(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device), "asking for the device");
-  check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&a_multiprocessor, stages_kernel, threads, bytes),
-             "asking how many blocks fit");
-  const int blocks = std::min(longest / at_once + 1, multiprocessors * a_multiprocessor);
-  void* arguments[] = {&stages};
-  check_cuda(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(stages_kernel), dim3(blocks), dim3(threads),
-                                         arguments, bytes, cuda::stream(exec)),
+  check_cuda(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
+             "asking for the device");
+  check_cuda(
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&a_multiprocessor, coarse_wind_kernel, threads, bytes),
+      "asking how many blocks fit");
+  const int blocks = std::min(kernel_arguments.longest() / at_once + 1, multiprocessors * a_multiprocessor);
+  void* arguments[] = {&kernel_arguments};
+  check_cuda(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(coarse_wind_kernel), dim3(blocks),
+                                         dim3(threads), arguments, bytes, cuda::stream(exec)),
              "launch of the coarse wind");
 }
+#endif
 
 }  // namespace desert_sim::wind

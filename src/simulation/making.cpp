@@ -129,8 +129,9 @@ void Simulation::prepare_processes() {
   }
   wind_work_ = wind::make_workspace(e, grid, s.wind);
   shadow_work_ = wind_shadow::make_workspace(e, grid, s.wind_shadow);
+  avalanching::Workspace avalanches = avalanching::make_workspace(e, grid, s.avalanching);
   avalanche_iterations_ = avalanche_iterations();
-  avalanche_work_ = avalanching::make_workspace(e, grid, s.avalanching);
+  avalanche_work_ = std::move(avalanches);
   prepare_water();
   if (wears_ground(s) || bedrock_loose_ || soil_loose_) prepare_ground_avalanches();
 }

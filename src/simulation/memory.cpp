@@ -39,7 +39,8 @@ std::size_t bytes_of_avalanches(const avalanching::Workspace& work) {
 
 // ---- planning
 
-/// cuFFT's transforms take about as much as their values.
+/// cuFFT's transforms take about as much as their values; kernels that transform lines need none, which a plan
+/// does not know.
 class PlannedFft final : public Fft {
  public:
   PlannedFft(int width, int height, int fields)

@@ -196,10 +196,10 @@ bool Simulation::recordable() const {
   const Scenario& s = scenario_;
   const bool steady_reptation =
       s.reptation.method == ReptationMethod::off || s.reptation.method == ReptationMethod::adaptive_repose;
-  const bool fixed_sweeps = !s.avalanching.enabled || s.avalanching.quality != AvalancheQuality::converged ||
+  const bool without_host = !s.avalanching.enabled || s.avalanching.quality != AvalancheQuality::converged ||
                             (s.avalanching.scheme == AvalancheScheme::multilevel && exec().records_repeats());
   return exec().records() && !timing_ && !checks_layers() && s.wind_features.empty() && steady_reptation &&
-         fixed_sweeps && !bedrock_loose_ && !soil_loose_;
+         without_host && !bedrock_loose_ && !soil_loose_;
 }
 
 Quanta Simulation::sea_level() const {

@@ -1,6 +1,7 @@
 // The coarse wind in one kernel against the same laws and lines, one after the other on the host.
 
-#include <numeric>
+#include <algorithm>
+#include <cmath>
 
 #include "support/bench_terrain.hpp"
 #include "support/world.hpp"
@@ -19,23 +20,27 @@ void transform_lines_of(Values& values, const Axis& axis, int lines, int from_li
   const int n = axis.transform.length;
   Values line(static_cast<std::size_t>(n)), other(line);
   for (int l = 0; l < lines; ++l) {
-    for (int i = 0; i < n; ++i) line[static_cast<std::size_t>(i)] = values[static_cast<std::size_t>(l * from_line + i * from_value)];
+    for (int i = 0; i < n; ++i)
+      line[static_cast<std::size_t>(i)] = values[static_cast<std::size_t>(l * from_line + i * from_value)];
     for (int s = 0; s < axis.transform.count; ++s) {
-      axis.transform.butterflies(axis.transform.stages[s], 0, 1, axis.roots.data(), line.data(), other.data());
+      axis.transform.butterflies(axis.transform.stages[s], 0, 1, axis.roots.data(), line.data(),
+                                 other.data());
       line.swap(other);
     }
-    for (int i = 0; i < n; ++i) values[static_cast<std::size_t>(l * from_line + i * from_value)] = line[static_cast<std::size_t>(i)];
+    for (int i = 0; i < n; ++i)
+      values[static_cast<std::size_t>(l * from_line + i * from_value)] = line[static_cast<std::size_t>(i)];
   }
 }
 
 class CoarseWind : public test::OnBoth {
  protected:
   /// What the GPU makes of the wind over `t`, and the host of the same workspace's laws.
-  void expect_same(const test::BenchTerrain& on_cpu, const test::BenchTerrain& on_gpu, const WindParameters& p) {
+  void expect_same(const test::BenchTerrain& on_cpu, const test::BenchTerrain& on_gpu,
+                   const WindParameters& p) {
     const wind::Vector above{3, -4};
     wind::Workspace host = wind::make_workspace(on_cpu.exec(), on_cpu.grid(), p);
     wind::Workspace device = wind::make_workspace(on_gpu.exec(), on_gpu.grid(), p);
-    ASSERT_TRUE(device.by_lines);
+    ASSERT_TRUE(device.by_lines) << "lines of " << device.coarse.width << " and " << device.coarse.height;
     with_backend(on_gpu.exec(), [&](auto& e) {
       wind::step(e, on_gpu.terrain.view(), p, above, on_gpu.heights, 0, nullptr, nullptr, device);
     });
@@ -52,7 +57,8 @@ class CoarseWind : public test::OnBoth {
     const wind::SpeedUp speed_up{p.speedup, p.speedup_lowest, p.speedup_highest};
     const wind::CoarseLaws laws =
         wind::coarse_laws(t.terrain.view(), p, above, hypotenuse(above.x, above.y), speed_up, work);
-    const Axis x{lines.lines_along_x, lines.roots_x.download()}, y{lines.lines_along_y, lines.roots_y.download()};
+    const Axis x{lines.lines_along_x, lines.roots_x.download()},
+        y{lines.lines_along_y, lines.roots_y.download()};
     const auto all = [](const Grid& g, const auto& law) {
       for (int j = 0; j < g.height; ++j)
         for (int i = 0; i < g.width; ++i) law(i, j);
@@ -75,7 +81,8 @@ class CoarseWind : public test::OnBoth {
     if (laws.gradients.radius_count > 0) {
       transform(work.spectrum.data(), false);
       all(laws.gradients.grid(), laws.gradients);
-      for (int r = 0; r < laws.gradients.radius_count; ++r) transform(work.gradients.data() + r * coarse.values(), true);
+      for (int r = 0; r < laws.gradients.radius_count; ++r)
+        transform(work.gradients.data() + r * coarse.values(), true);
     }
     all(coarse.transformed(), laws.turn);
     work.correction.set_zero();
@@ -99,6 +106,7 @@ class CoarseWind : public test::OnBoth {
 };
 
 TEST_F(CoarseWind, IsBitForBitThatOfLinesOneAfterTheOther) {
+  if (cuda().memory_for_lines() < 100000) GTEST_SKIP() << "this GPU has the library's transforms";
   struct Case {
     int width, height, coarsening;
     bool periodic, warping, projection;
@@ -116,9 +124,12 @@ TEST_F(CoarseWind, IsBitForBitThatOfLinesOneAfterTheOther) {
     p.radii = ShortList{{50, 9, 20, 5}, c.radii};
     p.weights = ShortList{{0.5f, 0.2f, 0.2f, 0.1f}, c.radii};
     p.deflections = ShortList{{30, 5, 10, 3}, c.radii};
-    test::BenchTerrain on_cpu(cpu(), c.width, c.height, 1, c.periodic), on_gpu(cuda(), c.width, c.height, 1, c.periodic);
+    test::BenchTerrain on_cpu(cpu(), c.width, c.height, 1, c.periodic),
+        on_gpu(cuda(), c.width, c.height, 1, c.periodic);
     for (test::BenchTerrain* t : {&on_cpu, &on_gpu}) {
-      t->set(Layer::bedrock, [](int x, int y) { return 5 * std::sin(0.3 * x) * std::cos(0.2 * y) + 0.01 * ((x * 7 + y * 13) % 31); });
+      t->set(Layer::bedrock, [](int x, int y) {
+        return 5 * std::sin(0.3 * x) * std::cos(0.2 * y) + 0.01 * ((x * 7 + y * 13) % 31);
+      });
       t->surface();
     }
     expect_same(on_cpu, on_gpu, p);

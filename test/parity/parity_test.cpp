@@ -198,8 +198,9 @@ const char* const dunes =
     "scale: 12}]\n"
     "wind: {speed: 5, direction_deg: 20, radii: [60, 20]}\nreptation: {method: smoothing}\n";
 
-/// FFTW and cuFFT round differently: the wind by at most 2e-5 of its speed after one step. That can tip a
-/// march or a release over an edge, so of the sand: 2 mm at most anywhere, 10 µm rms (a step moves metres).
+/// FFTW and the transforms on a GPU round differently: the wind by at most 2e-5 of its speed after one step.
+/// That can tip a march or a release over an edge, so of the sand: 2 mm at most anywhere, 10 µm rms (a step
+/// moves metres).
 TEST_F(Parity, WithTransformsOneStepDiffersByLittle) {
   for (const char* boundary : {"periodic", "open"}) {
     auto a = test::simulate(cpu(), test::grid_yaml(128, 96, boundary) + dunes);

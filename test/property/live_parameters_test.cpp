@@ -108,6 +108,20 @@ TEST_P(LiveParameters, TheWindThatBlowsIsWhatChanges) {
   EXPECT_NEAR(s->wind_above().y, 3, 1e-6) << "the wind is left as it is";
 }
 
+/// The device counts them while steps converge.
+TEST_P(LiveParameters, SweepsThatWereCountedAreKept) {
+  const auto s = simulation(world + "avalanching: {quality: converged}\n");
+  test::run(*s, 20);
+  const double before = s->mean_avalanche_iterations();
+  EXPECT_GE(before, 12);  // of a cycle
+  for (const char* change : {"saltation.lift=0.5", "avalanching.tolerance=0.002", "avalanching.quality=fast"}) {
+    s->apply(command::SetParameters{{change}});
+    EXPECT_EQ(s->mean_avalanche_iterations(), before) << change;
+  }
+  s->step();
+  EXPECT_NEAR(s->mean_avalanche_iterations(), (20 * before + 8) / 21, 1e-9);
+}
+
 TEST_P(LiveParameters, RefusedChangesChangeNothing) {
   const auto s = simulation(world);
   test::run(*s, 2);

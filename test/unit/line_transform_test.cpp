@@ -1,12 +1,13 @@
 // Transforms of lines against the sum that defines them, in double precision.
 
+#include "desert_sim/kernels/line_transform.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <complex>
 #include <vector>
 
-#include "desert_sim/kernels/line_transform.hpp"
 #include "desert_sim/kernels/random.hpp"
 
 namespace desert_sim {
@@ -41,7 +42,8 @@ Line transformed(Line line, int threads) {
 Line some_line(int n) {
   Line line;
   for (int j = 0; j < n; ++j)
-    line.push_back({static_cast<float>(std::sin(3.7 * j * j + n)), static_cast<float>(std::cos(1.3 * j * j * j))});
+    line.push_back(
+        {static_cast<float>(std::sin(3.7 * j * j + n)), static_cast<float>(std::cos(1.3 * j * j * j))});
   return line;
 }
 
@@ -55,7 +57,8 @@ TEST(LineTransform, IsTheSumForEveryLengthThatSuits) {
     for (int k = 0; k < n; ++k) {
       std::complex<double> sum = 0;
       for (int j = 0; j < n; ++j)
-        sum += std::complex<double>(line[j].re, line[j].im) * std::polar(1.0, -2 * pi * (static_cast<long>(j) * k % n) / n);
+        sum += std::complex<double>(line[j].re, line[j].im) *
+               std::polar(1.0, -2 * pi * (static_cast<long>(j) * k % n) / n);
       error += std::norm(sum - std::complex<double>(modes[k].re, modes[k].im));
       size += std::norm(sum);
     }
