@@ -54,7 +54,7 @@ struct Schedule {
 };
 constexpr Schedule schedule(AvalancheQuality quality) {
   if (quality == AvalancheQuality::fast) return {4, 8, 4, 1, 0.3f, 0.7f, 0.6f, 0.6f};
-  if (quality == AvalancheQuality::good) return {5, 8, 3, 2, 0.25f, 0.7f, 0.68f, 0.6f};
+  if (quality == AvalancheQuality::good) return {5, 8, 3, 2, 0.25f, 0.7f, 0.7f, 0.6f};
   return {6, 8, 3, 2, 0.3f, 0.6f, 0.6f, 1.0f};
 }
 static_assert(schedule(AvalancheQuality::fast).is_bounded() &&
