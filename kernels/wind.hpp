@@ -151,10 +151,19 @@ inline std::size_t bytes_for_lines(const CoarseGrid& c, int radius_count) {
 }
 
 template <class E>
+void coarsen_rows(E& exec, const CoarsenRows& law) {
+  for_each_cell(exec, law.grid(), law);
+}
+#if DESERT_WITH_CUDA
+/// The same by way of shared memory; tuned/coarsen_rows.cu.
+void coarsen_rows(CudaExec& exec, const CoarsenRows& law);
+#endif
+
+template <class E>
 void coarse_wind(E& exec, const CoarseLaws& laws, const surface::Heights& heights, float reference,
                  Workspace& work) {
   const CoarsenRows rows{work.coarse, heights.of_cells.data(), reference, work.row_means.data()};
-  for_each_cell(exec, rows.grid(), rows);
+  coarsen_rows(exec, rows);
   if (!laws.projected) work.correction.set_zero();
   if constexpr (!works_on_rows<E>)
     if (work.by_lines) return transform_by_lines(exec, laws, work);

@@ -57,10 +57,16 @@ struct CoarsenRows {
 
   DESERT_HD Grid grid() const { return Grid{coarse.columns, coarse.fine.height, 1, true, true}; }
   DESERT_HD void operator()(int column, int y) const {
-    const float *row = heights + coarse.fine.index(0, y), ref = reference;
+    const float* row = heights + coarse.fine.index(0, y);
+    put_mean(column, y, [row](int x) { return row[x]; });
+  }
+  /// With the heights of row y from height(x).
+  template <class Height>
+  DESERT_HD void put_mean(int column, int y, const Height& height) const {
+    const float ref = reference;
     means[y * coarse.columns + column] =
         mean_over(column * coarse.ratio_x, (column + 1) * coarse.ratio_x, coarse.fine.width,
-                  [row, ref](int x) { return row[x] - ref; });
+                  [height, ref](int x) { return height(x) - ref; });
   }
 };
 

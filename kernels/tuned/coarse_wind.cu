@@ -33,16 +33,8 @@ namespace {
 
 constexpr int at_once = lines_at_once;
 /// While laws are at work a thread has a value of each line (of 180 there are in a line). While lines are
-/// transformed each has a team of two warps (180 values are 36, 30 and 30 butterflies), which waits for
-/// nobody else.
+/// transformed each has a team of two warps (180 values are 36, 30 and 30 butterflies).
 constexpr int threads_a_line = 192, threads = threads_a_line * at_once, team = 64, teams = threads / team;
-static_assert(team % 32 == 0 && threads % team == 0 && teams < 16,
-              "whole warps, and a barrier for each team");
-
-__device__ void wait_for_team() {
-  const unsigned barrier = 1 + threadIdx.x / team;  // 0 is __syncthreads()
-  asm volatile("bar.sync %0, %1;" ::"r"(barrier), "n"(team) : "memory");
-}
 
 struct Axis {
   LineTransform transform;
@@ -107,15 +99,13 @@ struct Block {
     const LineTransform& law = axis.transform;
     const int first = static_cast<int>(threadIdx.x) % team;
     __syncthreads();
-    for (int l = static_cast<int>(threadIdx.x) / team; l < count; l += teams)
-      for (int n = 0; n < law.count; ++n) {
-        const int at = (place + n) % 2;
-        law.butterflies(law.stages[n], first, team, shared + line(s.lines(), 0) + roots, shared + line(l, at),
-                        shared + line(l, 1 - at));
-        wait_for_team();
-      }
-    place = (place + law.count) % 2;
-    __syncthreads();
+    for (int n = 0; n < law.count; ++n) {
+      for (int l = static_cast<int>(threadIdx.x) / team; l < count; l += teams)
+        law.butterflies(law.stages[n], first, team, shared + line(s.lines(), 0) + roots,
+                        shared + line(l, place), shared + line(l, 1 - place));
+      place = 1 - place;
+      __syncthreads();
+    }
   }
 };
 
