@@ -54,7 +54,7 @@ struct Arguments {
 /// For each line of a block two places, between which its transform goes; then the roots of unity of x and y.
 extern __shared__ Complex shared[];
 
-/// A block at work on lines `first` and those with it.
+/// A block and its lines.
 struct Block {
   const Arguments& s;
   const CoarseGrid& coarse;
