@@ -12,6 +12,9 @@
 ///
 /// The inverse, without 1/n: real and imaginary parts change places, before and after.
 
+#include <cmath>
+#include <vector>
+
 #include "desert_sim/kernels/fft.hpp"
 #include "desert_sim/kernels/for_each.hpp"
 #include "desert_sim/kernels/macros.hpp"
@@ -117,7 +120,18 @@ struct LineTransform {
     return t;
   }
 
-  /// Butterfly b of length/radix. `roots`: e^(−2πi j/n), n of them.
+  /// e^(−2πi j/n), n of them, which butterflies() is given.
+  std::vector<Complex> roots() const {
+    std::vector<Complex> table(static_cast<std::size_t>(length));
+    for (int j = 0; j < length; ++j) {
+      const double angle = -2 * 3.14159265358979323846 * j / length;
+      table[static_cast<std::size_t>(j)] = {static_cast<float>(std::cos(angle)),
+                                            static_cast<float>(std::sin(angle))};
+    }
+    return table;
+  }
+
+  /// Butterfly b of length/radix.
   template <int radix>
   DESERT_HD void butterfly(const Stage& stage, int b, const Complex* roots, const Complex* in,
                            Complex* out) const {

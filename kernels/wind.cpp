@@ -39,17 +39,6 @@ std::vector<Transfer> transfer(int n, double ratio, double sigma, double cell_si
   return table;
 }
 
-/// e^(−2πi j/n).
-std::vector<Complex> roots(int n) {
-  std::vector<Complex> table(static_cast<std::size_t>(n));
-  for (int j = 0; j < n; ++j) {
-    const double angle = 2 * 3.14159265358979323846 * j / n;
-    table[static_cast<std::size_t>(j)] = {static_cast<float>(std::cos(angle)),
-                                          static_cast<float>(-std::sin(angle))};
-  }
-  return table;
-}
-
 template <class Value>
 Buffer<Value> on_device(Exec& exec, const std::vector<Value>& table) {
   Buffer<Value> buffer(exec, table.size());
@@ -101,8 +90,8 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   if (work.by_lines) {
     work.lines_along_x = LineTransform::of(c.width);
     work.lines_along_y = LineTransform::of(c.height);
-    work.roots_x = on_device(exec, roots(c.width));
-    work.roots_y = on_device(exec, roots(c.height));
+    work.roots_x = on_device(exec, work.lines_along_x.roots());
+    work.roots_y = on_device(exec, work.lines_along_y.roots());
   } else {
     work.one = exec.make_fft(c.width, c.height);
   }

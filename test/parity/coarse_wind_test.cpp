@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "support/bench_terrain.hpp"
+#include "support/lines.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {
 namespace {
 
-using Values = std::vector<Complex>;
+using Values = test::Line;
 
 struct Axis {
   LineTransform transform;
@@ -17,18 +18,14 @@ struct Axis {
 };
 
 void transform_lines_of(Values& values, const Axis& axis, int lines, int from_line, int from_value) {
-  const int n = axis.transform.length;
-  Values line(static_cast<std::size_t>(n)), other(line);
+  Values line(static_cast<std::size_t>(axis.transform.length));
   for (int l = 0; l < lines; ++l) {
-    for (int i = 0; i < n; ++i)
-      line[static_cast<std::size_t>(i)] = values[static_cast<std::size_t>(l * from_line + i * from_value)];
-    for (int s = 0; s < axis.transform.count; ++s) {
-      axis.transform.butterflies(axis.transform.stages[s], 0, 1, axis.roots.data(), line.data(),
-                                 other.data());
-      line.swap(other);
-    }
-    for (int i = 0; i < n; ++i)
-      values[static_cast<std::size_t>(l * from_line + i * from_value)] = line[static_cast<std::size_t>(i)];
+    const auto value = [&](std::size_t i) -> Complex& {
+      return values[static_cast<std::size_t>(l * from_line) + i * static_cast<std::size_t>(from_value)];
+    };
+    for (std::size_t i = 0; i < line.size(); ++i) line[i] = value(i);
+    const Values modes = test::transformed(axis.transform, axis.roots, line);
+    for (std::size_t i = 0; i < modes.size(); ++i) value(i) = modes[i];
   }
 }
 

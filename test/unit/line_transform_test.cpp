@@ -6,37 +6,18 @@
 
 #include <cmath>
 #include <complex>
-#include <vector>
 
-#include "desert_sim/kernels/random.hpp"
+#include "support/lines.hpp"
 
 namespace desert_sim {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-using Line = std::vector<Complex>;
+using test::Line;
 
-std::vector<Complex> roots(int n) {
-  std::vector<Complex> table;
-  for (int j = 0; j < n; ++j) {
-    const std::complex<double> root = std::polar(1.0, -2 * pi * j / n);
-    table.push_back({static_cast<float>(root.real()), static_cast<float>(root.imag())});
-  }
-  return table;
-}
-
-/// As a team of `threads` does it, one after the other.
-Line transformed(Line line, int threads) {
-  const int n = static_cast<int>(line.size());
-  const LineTransform transform = LineTransform::of(n);
-  const Line table = roots(n);
-  Line other(line.size());
-  for (int s = 0; s < transform.count; ++s) {
-    for (int thread = 0; thread < threads; ++thread)
-      transform.butterflies(transform.stages[s], thread, threads, table.data(), line.data(), other.data());
-    line.swap(other);
-  }
-  return line;
+Line transformed(const Line& line, int threads) {
+  const LineTransform transform = LineTransform::of(static_cast<int>(line.size()));
+  return test::transformed(transform, transform.roots(), line, threads);
 }
 
 Line some_line(int n) {
