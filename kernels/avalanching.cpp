@@ -14,7 +14,31 @@ Grid coarser(const Grid& g) {
   return Grid{g.width / 2, g.height / 2, 2 * g.cell_size, g.periodic_x && g.width % 2 == 0,
               g.periodic_y && g.height % 2 == 0};
 }
+
+/// From the finest.
+std::vector<Grid> coarse_grids(const Grid& grid, const AvalanchingParameters& p) {
+  std::vector<Grid> grids;
+  Grid g = grid;
+  while (g.cell_size < p.coarsest_cell * 0.999f && g.width / 2 >= fewest_cells &&
+         g.height / 2 >= fewest_cells) {
+    g = coarser(g);
+    grids.push_back(g);
+  }
+  return grids;
+}
 }  // namespace
+
+Schedule schedule(const AvalanchingParameters& p, const Grid& grid) {
+  Schedule plan = preset(p.quality);
+  if (p.last_passes > 0) {
+    plan.last_passes = p.last_passes;
+  } else if (p.quality == AvalancheQuality::good) {
+    constexpr int few_cells = 1 << 18, some_cells = 1 << 20, many_levels = 5;
+    if (grid.cells() <= some_cells || coarse_grids(grid, p).size() >= many_levels) plan.last_passes = 3;
+    if (grid.cells() <= few_cells) plan.last_sweeps = 6, plan.levels_twice = 0, plan.coarse_share = 0.6f;
+  }
+  return plan;
+}
 
 Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParameters& p) {
   Workspace work;
@@ -25,11 +49,8 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParamete
     work.received = Buffer<Quanta>(exec, cells);
     return work;
   }
-  if (p.quality == AvalancheQuality::converged) work.open = make_open_tiles(exec, grid, rounds_a_look + 1);
-  Grid g = grid;
-  while (g.cell_size < p.coarsest_cell * 0.999f && g.width / 2 >= fewest_cells &&
-         g.height / 2 >= fewest_cells) {
-    g = coarser(g);
+  if (p.quality == AvalancheQuality::converged) work.open = make_open_tiles(exec, grid);
+  for (const Grid& g : coarse_grids(grid, p)) {
     const std::size_t n = static_cast<std::size_t>(g.cells());
     work.coarse.push_back({g, Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n),
                            Buffer<float>(exec, n)});

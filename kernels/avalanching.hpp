@@ -32,34 +32,33 @@ namespace desert_sim {
 namespace avalanching {
 
 /// Sweeps, at least, of the one pass over the fine grid before the coarse levels, of the passes over each
-/// coarse level together (two over the finest two of these, one over others), and of each of the last passes
-/// over the fine grid, whose seams lie elsewhere; and how much a pair moves [cell sizes] for its tile to go
-/// on (but in the first pass). With fewer sweeps in the first pass more is left to coarse levels, which slide
-/// what would have come to rest by itself. `share`, `coarse_share`: of a pair's excess (ω in
+/// coarse level together (two over the finest `levels_twice` of these, one over others), and of each of the
+/// last passes over the fine grid, whose seams lie elsewhere; and how much a pair moves [cell sizes] for its
+/// tile to go on (but in the first pass). With fewer sweeps in the first pass more is left to coarse levels,
+/// which slide what would have come to rest by itself. `share`, `coarse_share`: of a pair's excess (ω in
 /// avalanching_patch.hpp) on the fine grid and on coarse levels; ½ leaves the two at repose, more settles the
 /// whole sooner, with 0.8 slopes end too far below their angle. Coarse levels make somewhat more slopes of 6
 /// … 18 degrees than there should be, the more the larger their share. `last_at_edges`: of the share, next to
 /// edges of the last pass's tiles (ShareOfGap), which no later pass goes over.
 struct Schedule {
   int first_sweeps, coarse_sweeps, last_sweeps, last_passes;
+  std::size_t levels_twice;
   float plenty, share, coarse_share, last_at_edges;
 
   /// Over the nth coarse level, from 1 for the finest; they share `coarse_sweeps`.
-  static constexpr int coarse_passes(std::size_t n) { return n <= 2 ? 2 : 1; }
+  constexpr int coarse_passes(std::size_t n) const { return n <= levels_twice ? 2 : 1; }
   constexpr int fine_passes() const { return 1 + last_passes; }
   constexpr int fine_sweeps() const { return first_sweeps + last_passes * last_sweeps; }
-  constexpr bool is_bounded() const {
-    return first_sweeps <= most_sweeps && coarse_sweeps <= most_sweeps && last_sweeps <= most_sweeps;
-  }
 };
-constexpr Schedule schedule(AvalancheQuality quality) {
-  if (quality == AvalancheQuality::fast) return {4, 8, 4, 1, 0.3f, 0.7f, 0.6f, 0.6f};
-  if (quality == AvalancheQuality::good) return {5, 8, 3, 2, 0.25f, 0.7f, 0.7f, 0.6f};
-  return {6, 8, 3, 2, 0.3f, 0.6f, 0.6f, 1.0f};
+constexpr Schedule preset(AvalancheQuality quality) {
+  if (quality == AvalancheQuality::fast) return {4, 8, 4, 1, 2, 0.3f, 0.7f, 0.6f, 0.6f};
+  if (quality == AvalancheQuality::good) return {5, 8, 3, 2, 2, 0.25f, 0.7f, 0.7f, 0.45f};
+  return {6, 8, 3, 1, 2, 0.3f, 0.6f, 0.6f, 1.0f};
 }
-static_assert(schedule(AvalancheQuality::fast).is_bounded() &&
-              schedule(AvalancheQuality::good).is_bounded() &&
-              schedule(AvalancheQuality::converged).is_bounded());
+/// The preset, or on grids where `good` would leave single cells too steep one with more sweeps: on small
+/// ones, which they hardly cost anything on a GPU, and where there are five coarse levels, because slides
+/// there are the longest. With `last_passes` that of other grids.
+Schedule schedule(const AvalanchingParameters& p, const Grid& grid);
 
 /// A level's own memory (the finest uses the terrain's sand).
 struct Level {
@@ -183,7 +182,7 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
   }
   Prolong change{};
   for (std::size_t n = coarse.size(); n > 0; --n) {
-    const int passes = Schedule::coarse_passes(n);
+    const int passes = plan.coarse_passes(n);
     relax(exec, views[n], change, {0, passes, plan.coarse_sweeps / passes, coarse_share, plan.plenty, 1.0f},
           turn, NothingThen{});
     const Level& done = coarse[n - 1];
@@ -193,76 +192,51 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
         turn, then);
 }
 
-/// Rounds of passes over what is not yet at rest, between two looks at what they left.
-constexpr int rounds_a_look = 2;
-static_assert(rounds_a_look % 2 == 0, "tiles of the last round and of the next change places with each");
 /// Of an excess slides in rounds: all. What is left after a cycle are mostly trains of small slides, and what
 /// a pair keeps of one it hands on in later sweeps, which is what takes time.
 constexpr float share_in_rounds = 1.0f;
+/// Of a pass of a round, at most: its tiles come to rest as far as they can.
+constexpr int sweeps_in_rounds = 32;
 
-/// The tiles of the round whose passes begin with `pass`.
-inline RoundOfTiles tiles_of_round(const OpenTiles& open, const Grid& grid, std::uint64_t turn, int pass,
-                                   int round) {
-  RoundOfTiles tiles{grid, {}, open.of_round(round), open.most_tiles};
-  for (int n = 0; n < passes_a_round; ++n) tiles.offsets[n] = seam_offset(turn, pass + n);
-  return tiles;
-}
-
-/// Finds what the passes from `pass` on, those after `round`, are to go over, and how many cells are too
-/// steep: of the whole grid, or after a round around what it has passed over.
+/// Finds how many cells are too steep, and the tiles of a round that these call for: in the whole grid, or
+/// after a round of them around what it has passed over.
 template <class E>
-void find_unsettled(E& exec, const LevelView& fine, float tolerance, std::uint64_t turn, int pass, int round,
-                    const OpenTiles& open) {
-  const RoundOfTiles next = tiles_of_round(open, fine.grid, turn, pass, round + 1);
+void find_unsettled(E& exec, const LevelView& fine, float tolerance, const RoundOfTiles& round,
+                    bool after_round, const OpenTiles& open) {
   const Grid blocks = Blocks{fine.grid}.cells();
-  Quanta *steep = open.steep.data(), *ask = round > 0 ? open.ask.data() : nullptr;
-  if (ask) {
-    const RoundOfTiles passed = tiles_of_round(open, fine.grid, turn, pass - passes_a_round, round);
-    for_each_cell(exec, blocks, AskAround{passed, ask});
-  }
-  exec.set_zero(steep, open.steep.bytes());
-  exec.set_zero(next.flags, open.flags.bytes() / 2);
-  exec.set_zero(open.tally(round).parts, Tally::size * sizeof(Quanta));
-  const CountSteep count{{fine, tolerance}, ask, steep};
-  for_each_cell(exec, count.strips(), count);
-  for_each_cell(exec, blocks, OpenNear{steep, next, open.tally(round)});
+  Quanta* const ask = after_round ? open.ask.data() : nullptr;
+  if (after_round) for_each_cell(exec, blocks, AskAround{round, ask});
+  exec.set_zero(open.found.data(), open.found.bytes());
+  const CountSteep count{{fine, tolerance}, ask, open.steep()};
+  for_each_cell(exec, count.squares(), count);
+  for_each_cell(exec, blocks, OpenNear{open.steep(), round, open.tally()});
 }
 
-/// A cycle, and then rounds of passes over those tiles alone that are not at rest: what is left are trains of
-/// small slides on their way down. Every two rounds it is looked what is left, and whether it takes another
-/// cycle (LookAfterRounds); if there was nothing before, kernels end at once. Cycles after the first have the
-/// same seams, rounds between them all eight.
+/// A cycle, and then rounds of passes over those tiles alone that are not at rest, until all are: what is
+/// left is on its way down. All rounds of a step have the same seams, those of the cycle's next passes.
 template <class E>
 void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std::uint64_t turn,
             Workspace& work) {
-  const Schedule plan = schedule(p.quality);
+  const Schedule plan = schedule(p, fine.grid);
   const float share = share_in_rounds * p.transfer;
   const OpenTiles& open = work.open;
   Progress* const progress = open.progress.data();
-  const Look look{progress, open.tally(0), p.max_iterations, rounds_a_look, passes_a_round * most_sweeps};
-  const auto do_rounds = [&](std::uint64_t seams) {
-    for (int round = 1, pass = 0; round <= rounds_a_look; ++round) {
-      const RoundOfTiles tiles = tiles_of_round(open, fine.grid, seams, pass, round);
-      for (int n = 0; n < passes_a_round; ++n, ++pass)
-        relax_tiles(
-            exec,
-            RelaxTile{tiles.of(n), fine, Prolong{}, {share, share}, most_sweeps, 0.0f, tiles.of_pass(n)});
-      find_unsettled(exec, fine, p.tolerance, seams, pass, round, open);
-    }
-    for_each_item(exec, 1, LookAfterRounds{look});
-  };
-  const auto do_cycle = [&](std::uint64_t seams) {
-    cycle(exec, fine, p, plan, seams, work, NothingThen{});
-    find_unsettled(exec, fine, p.tolerance, seams + 1, 0, 0, open);
-    for_each_item(exec, 1, LookAfterCycle{look, plan.fine_sweeps()});
-    exec.repeat_while(&progress->more_rounds, [&] { do_rounds(seams + 1); });
-  };
-  for_each_item(exec, 1, LookAhead{look});
-  do_cycle(turn);
-  exec.repeat_while(&progress->more_cycles, [&] { do_cycle(turn + 1); });
+  RoundOfTiles round{fine.grid, {}, open.flags(), open.most_tiles};
+  for (int n = 0; n < passes_a_round; ++n) round.offsets[n] = seam_offset(turn, plan.fine_passes() + n);
+
+  cycle(exec, fine, p, plan, turn, work, NothingThen{});
+  find_unsettled(exec, fine, p.tolerance, round, false, open);
+  for_each_item(exec, 1, Look{progress, open.tally(), p.max_iterations, plan.fine_sweeps(), true});
+  exec.repeat_while(&progress->more_rounds, [&] {
+    for (int n = 0; n < passes_a_round; ++n)
+      relax_tiles(
+          exec,
+          RelaxTile{round.of(n), fine, Prolong{}, {share, share}, sweeps_in_rounds, 0.0f, round.of_pass(n)});
+    find_unsettled(exec, fine, p.tolerance, round, true, open);
+    for_each_item(exec, 1,
+                  Look{progress, open.tally(), p.max_iterations, passes_a_round * sweeps_in_rounds, false});
+  });
 }
-static_assert(rounds_a_look * passes_a_round % static_cast<int>(turns) == 0,
-              "rounds that are repeated have their seams where those before would have gone on");
 
 template <class E>
 void sweep(E& exec, const LevelView& level, float transfer, bool by_tangent, Workspace& work) {
@@ -296,7 +270,7 @@ void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::ui
   const bool converge = p.quality == AvalancheQuality::converged;
   work.iterations = 0;
   if (p.scheme == AvalancheScheme::multilevel && !converge) {
-    const Schedule plan = schedule(p.quality);
+    const Schedule plan = schedule(p, t.grid);
     if (heights)
       cycle(exec, fine, p, plan, tick, work, *heights);
     else

@@ -16,6 +16,7 @@ struct AvalanchingParameters {
   AvalancheQuality quality = AvalancheQuality::good;
   float transfer = 1.0f;
   float coarsest_cell = 4.0f;
+  int last_passes = 0;
   int sweeps = 50;
   float tolerance = 0.001f;
   int max_iterations = 20000;
@@ -30,12 +31,14 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
       parameter("enabled", &P::enabled, "Whether steep sand slides."),
       parameter("scheme", &P::scheme, avalanche_schemes, "How slides are computed."),
       parameter("quality", &P::quality, avalanche_qualities,
-                "fast: 4 + 4 fine sweeps, good: 5 + 3 + 3, more where much slides; converged: until "
-                "tolerance (also for sweeps)."),
+                "fast: 4 + 4 fine sweeps, good: 5 + 3 + 3 and up to 5 + 6 + 6 + 6 on small grids, more where "
+                "much slides; converged: until tolerance (also for sweeps)."),
       parameter("transfer", &P::transfer, 0.05, 1, "1",
                 "Share of what would stabilise a cell that one sweep moves (k_c)."),
       parameter("coarsest_cell", &P::coarsest_cell, 0.001, 1000, "m",
                 "Width of cells at which coarsening stops."),
+      parameter("last_passes", &P::last_passes, 0, 16, "1",
+                "Passes over the fine grid after the coarse levels; 0: by quality and grid."),
       parameter("sweeps", &P::sweeps, 1, 100000, "1",
                 "Sweeps a step of the schemes sweeps and taylor_keyser, unless converged."),
       parameter("tolerance", &P::tolerance, 1e-6, 1, "1",

@@ -18,8 +18,8 @@
 /// Two sweeps that follow each other have all pairs between them, but for diagonal ones across an edge of
 /// each.
 ///
-/// A tile takes `sweeps` sweeps, unless two that follow each other move nothing, and goes on while a pair
-/// moves `plenty`.
+/// A tile takes `sweeps` sweeps, unless two that follow each other move nothing, and goes on, up to
+/// `most_sweeps`, while a pair moves `plenty`.
 ///
 /// Heights are floats that count whole units (avalanching_units.hpp). This is the reference; on a GPU
 /// tuned/avalanching_tile.cu gives the same bits sooner.
@@ -33,7 +33,7 @@
 
 namespace desert_sim::avalanching {
 
-/// Sweeps that a tile may take before it is stored.
+/// Sweeps up to which a tile goes on where much slides.
 constexpr int most_sweeps = 8;
 
 /// How far the patches of a sweep are shifted, to the east and to the north [cells].
@@ -81,14 +81,19 @@ struct RelaxTile {
 
   Tiles tiles;
   LevelView level;
-  Prolong from_coarse;           ///< what the tile's cells get first; their families lie in one tile
-  ShareOfGap share;              ///< ω (avalanching_patch.hpp), in (0, 1]
-  int sweeps;                    ///< at most most_sweeps
+  Prolong from_coarse;  ///< what the tile's cells get first; their families lie in one tile
+  ShareOfGap share;     ///< ω (avalanching_patch.hpp), in (0, 1]
+  int sweeps;
   float plenty;                  ///< [cell sizes]
   const Quanta* open = nullptr;  ///< 0 for tiles that are left as they are; null: none
 
   DESERT_HD bool closed(int column, int row) const {
     return open && open[row * tiles.columns() + column] == 0;
+  }
+
+  /// After so many sweeps, where the last has moved much or has not.
+  DESERT_HD bool has_had_enough(int done, bool much) const {
+    return done >= sweeps && (done >= most_sweeps || !much);
   }
 
   template <class Team>
@@ -109,13 +114,13 @@ struct RelaxTile {
     load(team, column, row, units, h, ground, drop, base);
     const float much = units.drop(plenty, level.quanta_per_cell);
     bool moved = false, moved_before = true;
-    for (int n = 0; n < most_sweeps; ++n) {
+    for (int n = 0;; ++n) {
       const PatchShift shift(n, tiles.offset);
       const float most = range.deep() ? sweep<true>(team, shift, h, ground, drop)
                                       : sweep<false>(team, shift, h, ground, drop);
       moved = moved || most > 0.0f;
       if (most == 0.0f && !moved_before) break;
-      if (n + 1 >= sweeps && !(most > much)) break;
+      if (has_had_enough(n + 1, most > much)) break;
       moved_before = most > 0.0f;
     }
     if (moved) store(team, column, row, units, h, base);

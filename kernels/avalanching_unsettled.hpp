@@ -6,8 +6,7 @@
 ///                                                            --OpenNear--> tiles of the next round
 ///
 /// A cell that was at rest can only have become too steep in or beside a tile that has been passed over
-/// since, so that after a round only the blocks around its tiles are asked. There are two sets of tiles, of
-/// the last round and of the next, in turns.
+/// since, so that after a round only the blocks around its tiles are asked.
 
 #include "desert_sim/kernels/avalanching_laws.hpp"
 #include "desert_sim/kernels/buffer.hpp"
@@ -45,17 +44,34 @@ struct RoundOfTiles {
   DESERT_HD Tiles of(int pass) const { return {grid, offsets[pass]}; }
   DESERT_HD Quanta* of_pass(int pass) const { return flags + static_cast<long long>(pass) * most_tiles; }
 
-  /// Calls body(flag) for each tile of each pass that has a cell in a block, or at most `margin` cells from
-  /// it.
+  /// Of each pass four, perhaps the same.
+  static constexpr int corners = 4 * passes_a_round;
+  /// The flags of the tiles of each pass that have a cell in a block, or at most `margin` cells from it,
+  /// where all tiles there are whole: what is narrower than a tile has cells of those alone that its corners
+  /// lie in. Nobody waits for one after the other. False if they may not be whole.
+  DESERT_HD bool find_corners(int block_column, int block_row, int margin, Quanta* (&around)[corners]) const {
+    const int west = block_column * Blocks::side - margin, south = block_row * Blocks::side - margin;
+    const int last = Blocks::side + 2 * margin - 1;
+    if (!are_whole(west, last, grid.width, grid.periodic_x) ||
+        !are_whole(south, last, grid.height, grid.periodic_y))
+      return false;
+    for (int pass = 0; pass < passes_a_round; ++pass) {
+      const int columns = of(pass).columns();
+      for (int n = 0; n < 4; ++n) {
+        const int column = tile_at(west + n % 2 * last + offsets[pass], grid.width);
+        const int row = tile_at(south + n / 2 * last + offsets[pass], grid.height);
+        around[4 * pass + n] = of_pass(pass) + row * columns + column;
+      }
+    }
+    return true;
+  }
+  /// Calls body(flag) for each of them, wherever they lie.
   template <class Body>
   DESERT_HD void for_each_around(int block_column, int block_row, int margin, const Body& body) const {
     const int west = block_column * Blocks::side - margin, south = block_row * Blocks::side - margin;
     const int last = Blocks::side + 2 * margin - 1;
     // Tiles begin at multiples of four; but over a periodic edge, where the grid's width is none, anywhere.
-    const bool fours = grid.width % 4 == 0 && grid.height % 4 == 0;
-    // What is narrower than a tile holds one of its ends, if no tile is cut off by the grid's edge there.
-    const bool far = is_far(west, last, grid.width) && is_far(south, last, grid.height);
-    const int step = far ? last : (fours ? 4 : 1);
+    const int step = grid.width % 4 == 0 && grid.height % 4 == 0 ? 4 : 1;
     for (int pass = 0; pass < passes_a_round; ++pass) {
       const Tiles tiles = of(pass);
       int last_row = -1;
@@ -74,9 +90,13 @@ struct RoundOfTiles {
   }
 
  private:
-  /// From the edges of an axis of n cells.
-  DESERT_HD static bool is_far(int first, int last, int n) {
-    return first >= Tiles::side && first + last < n - Tiles::side;
+  /// Along an axis of n cells, far from its ends, or where tiles go on over them.
+  DESERT_HD static bool are_whole(int first, int last, int n, bool periodic) {
+    return (first >= Tiles::side && first + last < n - Tiles::side) || (periodic && n % Tiles::side == 0);
+  }
+  /// Of a cell's place, counted from where the tiles begin: without a division where it can be.
+  DESERT_HD static int tile_at(int place, int n) {
+    return (place >= 0 && place < n ? place : wrap(place, n)) / Tiles::side;
   }
 };
 
@@ -85,8 +105,6 @@ struct Tally {
   static constexpr int places = 16, apart = 32;
   static constexpr std::size_t size = places * apart;
   Quanta* parts;
-  /// The nth after this one.
-  DESERT_HD Tally after(int n) const { return {parts + n * size}; }
   DESERT_HD void add(int place, Quanta n) const { atomic_add(&parts[place % places * apart], n); }
   DESERT_HD long long total() const {
     long long sum = 0;
@@ -97,35 +115,28 @@ struct Tally {
 
 /// How far a step has come to rest, kept on the device.
 struct Progress {
-  long long sweeps;                    ///< of the fine grid, of all steps; at least, where tiles may go on
-  long long of_step;                   ///< of these, of this step
-  long long steep;                     ///< cells that are too steep, at the last look
-  long long more_rounds, more_cycles;  ///< whether there is to be another, 0 or 1
+  long long sweeps;       ///< of the fine grid, of all steps; at least, where tiles may go on
+  long long of_step;      ///< of these, of this step
+  long long more_rounds;  ///< whether there is to be another, 0 or 1
 };
 
 struct OpenTiles {
-  Buffer<Quanta> flags;       ///< of two rounds
-  Buffer<Quanta> steep;       ///< cells of each block that are too steep
-  Buffer<Quanta> ask;         ///< blocks that are to be asked
-  Buffer<Quanta> tallies;     ///< of cells that are too steep, of rounds that follow each other
-  Buffer<Progress> progress;  ///< one
-  int most_tiles = 0;         ///< of a pass
+  Buffer<Quanta> ask;              ///< blocks that are to be asked
+  Buffer<Quanta> found;            ///< what is found, in one piece, because all of it begins with 0: as below
+  Buffer<Progress> progress;       ///< one
+  int blocks = 0, most_tiles = 0;  ///< most_tiles: of a pass
 
-  Quanta* of_round(int round) const {
-    return flags.data() + static_cast<std::size_t>(round % 2) * passes_a_round * most_tiles;
-  }
-  Tally tally(int round) const { return Tally{tallies.data()}.after(round); }
+  Tally tally() const { return {found.data()}; }                ///< cells that are too steep
+  Quanta* steep() const { return found.data() + Tally::size; }  ///< of these, in each block
+  Quanta* flags() const { return steep() + blocks; }            ///< of a round
 };
 
-inline OpenTiles make_open_tiles(Exec& exec, const Grid& grid, int rounds) {
-  const std::size_t most = static_cast<std::size_t>(Tiles{grid, Tiles::side - 1}.count());
-  const std::size_t blocks = static_cast<std::size_t>(Blocks{grid}.count());
-  OpenTiles open{Buffer<Quanta>(exec, 2 * passes_a_round * most),
-                 Buffer<Quanta>(exec, blocks),
-                 Buffer<Quanta>(exec, blocks),
-                 Buffer<Quanta>(exec, static_cast<std::size_t>(rounds) * Tally::size),
-                 Buffer<Progress>(exec, 1),
-                 static_cast<int>(most)};
+inline OpenTiles make_open_tiles(Exec& exec, const Grid& grid) {
+  const int most = Tiles{grid, Tiles::side - 1}.count(), blocks = Blocks{grid}.count();
+  const std::size_t of_blocks = static_cast<std::size_t>(blocks),
+                    of_tiles = static_cast<std::size_t>(passes_a_round) * static_cast<std::size_t>(most);
+  OpenTiles open{Buffer<Quanta>(exec, of_blocks), Buffer<Quanta>(exec, Tally::size + of_blocks + of_tiles),
+                 Buffer<Progress>(exec, 1), blocks, most};
   open.progress.set_zero();
   return open;
 }
@@ -137,7 +148,11 @@ struct AskAround {
 
   DESERT_HD void operator()(int column, int row) const {
     Quanta any = 0;
-    passed.for_each_around(column, row, 1, [&](const Quanta* open) { any |= *open; });
+    Quanta* around[RoundOfTiles::corners];
+    if (passed.find_corners(column, row, 1, around))
+      for (const Quanta* open : around) any |= *open;
+    else
+      passed.for_each_around(column, row, 1, [&](const Quanta* open) { any |= *open; });
     ask[row * Blocks{passed.grid}.columns() + column] = any;
   }
 };
@@ -147,15 +162,16 @@ struct TooSteep {
   LevelView level;
   float tolerance;
 
-  /// Of cell i, `height` high; the lowest of its straight and of its diagonal neighbours.
-  DESERT_HD bool operator()(int i, Quanta height, Quanta straight, Quanta diagonal) const {
+  /// Of a cell; `straight`, `diagonal`: the lowest of its neighbours.
+  DESERT_HD bool operator()(Quanta height, Quanta sand, float repose, Quanta straight,
+                            Quanta diagonal) const {
     constexpr float guard = 1.0f - 1e-4f;  // what Excess finds over the tolerance is never missed by rounding
     constexpr float far = Neighbours::distance(4);
-    const float least = guard * tolerance * level.quanta_per_cell, sand = static_cast<float>(level.sand[i]);
-    const float drop = level.repose[i] * level.quanta_per_cell + least;
-    return height < wall_height && sand > least &&
+    const float least = guard * tolerance * level.quanta_per_cell, available = static_cast<float>(sand);
+    const float drop = repose * level.quanta_per_cell + least;
+    return height < wall_height && available > least &&
            (static_cast<float>(height - straight) > drop ||
-            (static_cast<float>(height - diagonal) > far * drop && sand > far * least));
+            (static_cast<float>(height - diagonal) > far * drop && available > far * least));
   }
   /// Of a cell that may lack neighbours.
   DESERT_HD bool operator()(int x, int y) const {
@@ -166,53 +182,93 @@ struct TooSteep {
       lowest[k / 4] = h < lowest[k / 4] ? h : lowest[k / 4];
     }
     const int i = level.grid.index(x, y);
-    return (*this)(i, level.height(i), lowest[0], lowest[1]);
+    return (*this)(level.height(i), level.sand[i], level.repose[i], lowest[0], lowest[1]);
   }
 };
 
-/// Called for strips of cells above each other, which share what they look at.
+/// Called for squares of cells, which share what they look at.
 struct CountSteep {
-  static constexpr int strip = 4;
-  static_assert(Blocks::side % strip == 0, "then a strip lies in one block");
+  static constexpr int side = 4;
+  static_assert(Blocks::side % side == 0, "then a square lies in one block");
   TooSteep too_steep;
   const Quanta* ask;  ///< null: everywhere
   Quanta* steep;      ///< all 0
 
-  DESERT_HD Grid strips() const {
+  DESERT_HD Grid squares() const {
     const Grid& g = too_steep.level.grid;
-    return {g.width, (g.height + strip - 1) / strip, 1};
+    return {(g.width + side - 1) / side, (g.height + side - 1) / side, 1};
   }
-  DESERT_HD void operator()(int x, int n) const {
+  DESERT_HD void operator()(int column, int row) const {
     const Grid& g = too_steep.level.grid;
-    const int first = strip * n, block = Blocks{g}.of_cell(x, first);
+    const int west = side * column, south = side * row, block = Blocks{g}.of_cell(west, south);
     if (ask && ask[block] == 0) return;
     Quanta found = 0;
-    if (x > 0 && x + 1 < g.width && first > 0 && first + strip < g.height) {
-      found = count_inside(g.index(x, first));
+    if (g.width % side == 0) {
+      found = count(west, south);
     } else {
-      for (int y = first; y < first + strip && y < g.height; ++y) found += too_steep(x, y) ? 1 : 0;
+      for (int y = south; y < south + side && y < g.height; ++y)
+        for (int x = west; x < west + side && x < g.width; ++x) found += too_steep(x, y) ? 1 : 0;
     }
     if (found > 0) atomic_add(&steep[block], found);
   }
 
  private:
-  /// Of a strip that begins with cell i and has all neighbours.
-  DESERT_HD Quanta count_inside(int i) const {
+  /// A row of a square, with the cells west and east of it.
+  struct Row {
+    Quanta heights[side + 2];
+    Four<Quanta> sand;
+    /// The lower one of the two beside the nth cell.
+    DESERT_HD Quanta beside(int n) const { return lower(heights[n], heights[n + 2]); }
+  };
+  /// A place on an axis, or one that is next to the axis: −1 if nothing is there.
+  DESERT_HD static int place(int p, int cells, bool periodic) {
+    if (p >= 0 && p < cells) return p;
+    return periodic ? wrap(p, cells) : -1;
+  }
+  /// From column x on, between columns `before` and `after`, if these are there; of walls if y is not. Loads
+  /// wait for no answer, so that all of a square's are on their way at once.
+  DESERT_HD Row row_at(int before, int x, int after, int y) const {
     const LevelView& level = too_steep.level;
-    Quanta middle[strip + 2], beside[strip + 2];  // of the rows from the one before the strip on
-    for (int row = 0; row < strip + 2; ++row) {
-      const int j = i + (row - 1) * level.grid.width;
-      const Quanta west = level.height(j - 1), east = level.height(j + 1);
-      middle[row] = level.height(j);
-      beside[row] = lower(west, east);
+    const int first = level.grid.index(0, y >= 0 ? y : 0);
+    Row row;
+    row.sand = four_at(static_cast<const Quanta*>(level.sand) + first + x);
+    const Four<Quanta> ground = four_at(level.ground + first + x);
+    row.heights[0] = level.height(first + (before >= 0 ? before : x));
+    row.heights[side + 1] = level.height(first + (after >= 0 ? after : x));
+    for (int n = 0; n < side; ++n) {
+      const Quanta top = ground.values[n];
+      row.heights[n + 1] = level.soil || level.obstacle
+                               ? level.height(first + x + n)
+                               : (top >= wall_height ? wall_height : top + row.sand.values[n]);
+    }
+    if (before < 0) row.heights[0] = wall_height;
+    if (after < 0) row.heights[side + 1] = wall_height;
+    if (y < 0)
+      for (Quanta& height : row.heights) height = wall_height;
+    return row;
+  }
+  /// In the square whose south-west corner is (x, y), of rows of four.
+  DESERT_HD Quanta count(int x, int y) const {
+    const LevelView& level = too_steep.level;
+    const Grid& g = level.grid;
+    const int before = place(x - 1, g.width, g.periodic_x), after = place(x + side, g.width, g.periodic_x);
+    Row rows[side + 2];  // from the one before the square on
+    for (int n = 0; n < side + 2; ++n) {
+      const int there = y + n - 1 <= g.height ? place(y + n - 1, g.height, g.periodic_y) : -1;
+      rows[n] = row_at(before, x, after, there);
     }
     Quanta found = 0;
-    for (int row = 1; row <= strip; ++row)
-      found += too_steep(i + (row - 1) * level.grid.width, middle[row],
-                         lower(beside[row], lower(middle[row - 1], middle[row + 1])),
-                         lower(beside[row - 1], beside[row + 1]))
-                   ? 1
-                   : 0;
+    for (int n = 0; n < side; ++n) {
+      if (y + n >= g.height) break;
+      const Row &below = rows[n], &row = rows[n + 1], &above = rows[n + 2];
+      const Four<float> repose = four_at(level.repose + g.index(x, y + n));
+      for (int k = 0; k < side; ++k)
+        found += too_steep(row.heights[k + 1], row.sand.values[k], repose.values[k],
+                           lower(row.beside(k), lower(below.heights[k + 1], above.heights[k + 1])),
+                           lower(below.beside(k), above.beside(k)))
+                     ? 1
+                     : 0;
+    }
     return found;
   }
   DESERT_HD static Quanta lower(Quanta a, Quanta b) { return a < b ? a : b; }
@@ -228,52 +284,31 @@ struct OpenNear {
     const Quanta cells = steep[row * Blocks{next.grid}.columns() + column];
     if (cells == 0) return;
     tally.add(column + row, cells);
-    next.for_each_around(column, row, slides_reach, [](Quanta* open) { raise_flag(open); });
+    Quanta* around[RoundOfTiles::corners];
+    if (!next.find_corners(column, row, slides_reach, around))
+      return next.for_each_around(column, row, slides_reach, [](Quanta* open) {
+        if (is_lowered(open)) raise_flag(open);
+      });
+    bool closed[RoundOfTiles::corners];
+    for (int n = 0; n < RoundOfTiles::corners; ++n) closed[n] = is_lowered(around[n]);
+    for (int n = 0; n < RoundOfTiles::corners; ++n)
+      if (closed[n]) raise_flag(around[n]);
   }
 };
 
-/// What follows from what is too steep, as items of one: nothing but the device needs to know it.
+/// What follows from what is too steep, as an item of one: nothing but the device needs to know it.
 struct Look {
   Progress* progress;
-  Tally tallies;  ///< `rounds` + 1 that follow each other: before the rounds, and after each
+  Tally tally;
   int max_iterations;
-  int rounds, sweeps_a_round;
+  int sweeps;     ///< done since the look before
+  bool is_first;  ///< of this step
 
-  DESERT_HD void count(int sweeps) const {
-    progress->sweeps += sweeps;
+  DESERT_HD void operator()(int) const {
+    if (is_first) progress->of_step = 0;
     progress->of_step += sweeps;
-  }
-  DESERT_HD void decide(bool much) const {
-    const bool more = progress->steep > 0 && progress->of_step < max_iterations;
-    progress->more_rounds = more && !much;
-    progress->more_cycles = more && much;
-  }
-};
-/// Before a step's first cycle.
-struct LookAhead : Look {
-  DESERT_HD void operator()(int) const { progress->of_step = 0; }
-};
-/// After a cycle, of `sweeps` fine sweeps.
-struct LookAfterCycle : Look {
-  int sweeps;
-  DESERT_HD void operator()(int) const {
-    count(sweeps);
-    progress->steep = tallies.total();
-    decide(false);
-  }
-};
-/// After rounds; those that found something count. Where they do not halve what is too steep, something large
-/// slides, and it takes another cycle.
-struct LookAfterRounds : Look {
-  DESERT_HD void operator()(int) const {
-    long long before = progress->steep;
-    const long long half = before / 2;
-    for (int round = 1; round <= rounds; ++round) {
-      if (before > 0) count(sweeps_a_round);
-      before = tallies.after(round).total();
-    }
-    progress->steep = before;
-    decide(before > half);
+    progress->sweeps += sweeps;
+    progress->more_rounds = tally.total() > 0 && progress->of_step < max_iterations;
   }
 };
 

@@ -54,12 +54,19 @@ DESERT_HD void atomic_max(Integer* to, Integer value) {
 #endif
 }
 
-/// Sets to 1 what other cells may set as well.
+/// Flags, 0 or 1, that other cells may raise as well. Whoever asks first spares those who only read a write.
+DESERT_HD bool is_lowered(const Quanta* flag) {
+#if defined(__CUDA_ARCH__)
+  return *flag == 0;
+#else
+  return __atomic_load_n(flag, __ATOMIC_RELAXED) == 0;
+#endif
+}
 DESERT_HD void raise_flag(Quanta* flag) {
 #if defined(__CUDA_ARCH__)
-  if (*flag == 0) *flag = 1;
+  *flag = 1;
 #else
-  if (__atomic_load_n(flag, __ATOMIC_RELAXED) == 0) __atomic_store_n(flag, Quanta{1}, __ATOMIC_RELAXED);
+  __atomic_store_n(flag, Quanta{1}, __ATOMIC_RELAXED);
 #endif
 }
 

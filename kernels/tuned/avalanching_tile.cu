@@ -301,7 +301,7 @@ template <bool deep>
 __device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units) {
   const float much = units.drop(law.plenty, law.level.quanta_per_cell);
   bool moved = false, moved_before = true;
-  for (int n = 0; n < most_sweeps; ++n) {
+  for (int n = 0;; ++n) {
     const float most = sweep_patch<deep>(shared, PatchShift(n, law.tiles.offset));
     const bool any = __any_sync(0xffffffffu, most > 0.0f), any_much = __any_sync(0xffffffffu, most > much);
     if (threadIdx.x % 32 == 0) shared.moved[n % 2][threadIdx.x / 32] = any_much ? 2 : (any ? 1 : 0);
@@ -311,7 +311,7 @@ __device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units) 
     for (int k = 0; k < warps; ++k) here = max(here, shared.moved[n % 2][k]);
     moved = moved || here > 0;
     if (here == 0 && !moved_before) break;
-    if (n + 1 >= law.sweeps && here < 2) break;
+    if (law.has_had_enough(n + 1, here == 2)) break;
     moved_before = here > 0;
   }
   return moved;

@@ -30,8 +30,8 @@ std::size_t bytes_of_wind(const wind::Workspace& work) {
 }
 
 std::size_t bytes_of_avalanches(const avalanching::Workspace& work) {
-  std::size_t bytes = bytes_of_all(work.share, work.given, work.received, work.open.flags, work.open.steep,
-                                   work.open.ask, work.open.tallies, work.open.progress);
+  std::size_t bytes =
+      bytes_of_all(work.share, work.given, work.received, work.open.ask, work.open.found, work.open.progress);
   for (const avalanching::Level& level : work.coarse)
     bytes += bytes_of_all(level.ground, level.sand, level.sand_before, level.repose);
   return bytes;
@@ -39,8 +39,8 @@ std::size_t bytes_of_avalanches(const avalanching::Workspace& work) {
 
 // ---- planning
 
-/// cuFFT's transforms take about as much as their values; kernels that transform lines need none, which a plan
-/// does not know.
+/// cuFFT's transforms take about as much as their values; kernels that transform lines need none, which a
+/// plan does not know.
 class PlannedFft final : public Fft {
  public:
   PlannedFft(int width, int height, int fields)

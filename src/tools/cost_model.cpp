@@ -12,14 +12,13 @@ constexpr double layer = 4;  // bytes a cell
 /// the cells of the one below; it is filled (ground, sand twice, tangents), passed over, and read again
 /// (sand, before and after). The fine grid is read for the first in passing. The last pass writes the
 /// heights.
-ProcessCost avalanches(AvalancheQuality quality) {
-  const avalanching::Schedule plan = avalanching::schedule(quality);
+ProcessCost avalanches(const avalanching::Schedule& plan) {
   const int fine = plan.fine_passes();
   constexpr double heights = 1, filling = 4, handing_down = 2;
   double coarse = 0, cells = 1;
   for (std::size_t n = 1; n < 16; ++n) {
     cells /= 4;
-    coarse += cells * (filling + 4 * avalanching::Schedule::coarse_passes(n) + handing_down);
+    coarse += cells * (filling + 4 * plan.coarse_passes(n) + handing_down);
   }
   const std::string times = fine == 1 ? "" : " x " + std::to_string(fine);
   return {"avalanching", layer * (4 * fine + coarse + heights),
@@ -28,14 +27,14 @@ ProcessCost avalanches(AvalancheQuality quality) {
 
 }  // namespace
 
-std::vector<ProcessCost> cost_model(AvalancheQuality quality) {
+std::vector<ProcessCost> cost_model(const avalanching::Schedule& plan) {
   return {
       {"wind", 4 * layer, "heights; heights", "wind (2)"},
       {"wind_shadow", 3 * layer, "heights, wind (2) of every other row", "shadow"},
       {"echo_dunes", 6 * layer, "heights, wind (2); cliffs", "cliffs; echo"},
       {"saltation", 13 * layer, "sand, airborne, wind (2), shadow; landed, sand, shadow",
        "sand, landed; sand, airborne, tangents"},
-      avalanches(quality),
+      avalanches(plan),
   };
 }
 
@@ -52,9 +51,9 @@ std::string cost_table() {
     std::snprintf(bytes, sizeof bytes, "%.0f", cost.bytes);
     text += "| " + name + " | " + cost.reads + " | " + cost.writes + " | " + bytes + " |\n";
   };
-  for (const ProcessCost& cost : cost_model(AvalancheQuality::fast))
+  for (const ProcessCost& cost : cost_model(avalanching::preset(AvalancheQuality::fast)))
     add(cost, std::string(cost.process) == "avalanching" ? "avalanching, fast" : cost.process);
-  add(cost_model(AvalancheQuality::good).back(), "avalanching, good");
+  add(cost_model(avalanching::preset(AvalancheQuality::good)).back(), "avalanching, good");
   return text;
 }
 

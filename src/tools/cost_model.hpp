@@ -17,12 +17,12 @@ struct ProcessCost {
 
 /// Of a step of sand on bare rock with the default processes: no soil, plants, water, open edges or abrasion.
 /// Avalanches of quality `converged` go on where they must; this counts the first cycle.
-std::vector<ProcessCost> cost_model(AvalancheQuality quality);
+std::vector<ProcessCost> cost_model(const avalanching::Schedule& plan);
 
 /// Of one process; 0 if the model does not have it.
 double fewest_bytes(const std::vector<ProcessCost>& model, const std::string& process);
 
-/// Rows of a markdown table.
+/// Rows of a markdown table; of avalanches by their presets.
 std::string cost_table();
 
 }  // namespace desert_sim

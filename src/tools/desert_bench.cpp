@@ -124,7 +124,8 @@ std::vector<double> timed_blocks(Session& session, int count) {
 
 std::vector<BenchReport::Process> timed_processes(Session& session, int steps) {
   Simulation& s = session.simulation();
-  const std::vector<ProcessCost> model = cost_model(s.scenario().avalanching.quality);
+  const std::vector<ProcessCost> model =
+      cost_model(avalanching::schedule(s.scenario().avalanching, s.terrain().grid()));
   s.exec().synchronise();
   s.set_timing(true);
   for (int n = 0; n < steps; ++n) session.step();

@@ -84,7 +84,7 @@ TEST_F(Bench, WritesEveryFigureOfARun) {
   EXPECT_EQ(r["sand_lost_quanta"].as<long long>(), 0);
   for (const char* figure : {"share_over_1e-3", "share_over_1e-2", "mean_excess", "largest_excess"})
     EXPECT_GE(r["residual"][figure].as<double>(), 0) << figure;
-  const auto model = cost_model(AvalancheQuality::fast);
+  const auto model = cost_model(avalanching::preset(AvalancheQuality::fast));
   double bytes = 0;
   for (const char* name : {"wind", "wind_shadow", "saltation", "avalanching"}) {
     const YAML::Node p = r["processes"][name];
@@ -114,10 +114,9 @@ TEST_F(Bench, ScenesBeginWithTheirWarmUpOrACheckpoint) {
   EXPECT_EQ(warm["warm_up_steps"].as<int>(), 15);
   EXPECT_EQ(again["warm_up_steps"].as<int>(), 15);
   EXPECT_EQ(again["scene"].as<std::string>(), "mature");
-  const YAML::Node edited =
-      measure({"--scene", "edited", "--start", path("a.ck"), "--quality", "fast", "--set",
-               "avalanching.enabled=false"},
-              "edited.json");
+  const YAML::Node edited = measure({"--scene", "edited", "--start", path("a.ck"), "--quality", "fast",
+                                     "--set", "avalanching.enabled=false"},
+                                    "edited.json");
   EXPECT_EQ(edited["scene"].as<std::string>(), "edited");
   EXPECT_EQ(edited["quality"].as<std::string>(), "fast");
   EXPECT_EQ(edited["sand_lost_quanta"].as<long long>(), 0);

@@ -247,6 +247,53 @@ struct Hierarchy {
   }
 };
 
+/// What is found by corners alone, where that is said to do, is what is found cell by cell.
+TEST(RoundOfTiles, HasTheSameTilesByCorners) {
+  constexpr int passes = avalanching::passes_a_round;
+  int by_corners = 0;
+  for (const Grid& g : {Grid{128, 96, 1, true, true}, Grid{128, 100, 1, true, false},
+                        Grid{101, 140, 1, true, true}, Grid{144, 160, 1, false, false}})
+    for (int margin : {1, avalanching::slides_reach}) {
+      const int most = Tiles{g, Tiles::side - 1}.count();
+      std::vector<Quanta> flags(static_cast<std::size_t>(passes * most));
+      const avalanching::RoundOfTiles round{g, {0, 16, 8, 28}, flags.data(), most};
+      const Grid blocks = avalanching::Blocks{g}.cells();
+      for (int row = 0; row < blocks.height; ++row)
+        for (int column = 0; column < blocks.width; ++column) {
+          std::set<const Quanta*> one_by_one;
+          round.for_each_around(column, row, margin, [&](const Quanta* flag) { one_by_one.insert(flag); });
+          Quanta* corners[avalanching::RoundOfTiles::corners];
+          if (!round.find_corners(column, row, margin, corners)) continue;
+          ++by_corners;
+          EXPECT_EQ(std::set<const Quanta*>(std::begin(corners), std::end(corners)), one_by_one)
+              << g.width << " x " << g.height << ", " << column << ", " << row;
+        }
+    }
+  EXPECT_GT(by_corners, 2 * 16 * 12);
+}
+
+TEST(Schedule, OfGoodHasMoreSweepsOnSmallGridsAndOverManyLevels) {
+  AvalanchingParameters p;
+  const auto of = [&](int side, float cell_size) {
+    return avalanching::schedule(p, Grid{side, side, cell_size, true, true});
+  };
+  const avalanching::Schedule usual = avalanching::preset(AvalancheQuality::good);
+  EXPECT_EQ(of(2048, 0.5f).fine_sweeps(), usual.fine_sweeps());
+  EXPECT_EQ(of(4096, 0.25f).fine_sweeps(), usual.fine_sweeps());
+  EXPECT_EQ(of(8192, 1.0f).fine_sweeps(), usual.fine_sweeps());
+  EXPECT_EQ(of(8192, 0.125f).last_passes, usual.last_passes + 1);
+  EXPECT_EQ(of(1024, 1.0f).last_passes, usual.last_passes + 1);
+  EXPECT_EQ(of(512, 2.0f).last_passes, usual.last_passes + 1);
+  EXPECT_GT(of(512, 2.0f).fine_sweeps(), of(1024, 1.0f).fine_sweeps());
+  p.last_passes = usual.last_passes;
+  EXPECT_EQ(of(512, 2.0f).fine_sweeps(), usual.fine_sweeps());
+  p.last_passes = 0;
+  for (AvalancheQuality quality : {AvalancheQuality::fast, AvalancheQuality::converged}) {
+    p.quality = quality;
+    EXPECT_EQ(of(512, 2.0f).fine_sweeps(), avalanching::preset(quality).fine_sweeps());
+  }
+}
+
 TEST(Restrict, AveragesFourChildrenRoundedDownAndKeepsTheSteepestAngle) {
   Hierarchy h;
   h.sand = {1, 2, 0, 0, 3, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
