@@ -198,7 +198,7 @@ constexpr float share_in_rounds = 1.0f;
 /// Of a pass of a round, at most: its tiles come to rest as far as they can.
 constexpr int sweeps_in_rounds = 32;
 
-/// Finds how many cells are too steep, and the tiles of a round that these call for: in the whole grid, or
+/// Finds whether cells are too steep, and the tiles of a round that these call for: in the whole grid, or
 /// after a round of them around what it has passed over.
 template <class E>
 void find_unsettled(E& exec, const LevelView& fine, float tolerance, const RoundOfTiles& round,
@@ -207,9 +207,9 @@ void find_unsettled(E& exec, const LevelView& fine, float tolerance, const Round
   Quanta* const ask = after_round ? open.ask.data() : nullptr;
   if (after_round) for_each_cell(exec, blocks, AskAround{round, ask});
   exec.set_zero(open.found.data(), open.found.bytes());
-  const CountSteep count{{fine, tolerance}, ask, open.steep()};
-  for_each_cell(exec, count.squares(), count);
-  for_each_cell(exec, blocks, OpenNear{open.steep(), round, open.tally()});
+  const FindSteep find{{fine, tolerance}, ask, open.steep()};
+  for_each_cell(exec, find.squares(), find);
+  for_each_cell(exec, blocks, OpenNear{open.steep(), round, open.any()});
 }
 
 /// A cycle, and then rounds of passes over those tiles alone that are not at rest, until all are: what is
@@ -226,7 +226,7 @@ void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std:
 
   cycle(exec, fine, p, plan, turn, work, NothingThen{});
   find_unsettled(exec, fine, p.tolerance, round, false, open);
-  for_each_item(exec, 1, Look{progress, open.tally(), p.max_iterations, plan.fine_sweeps(), true});
+  for_each_item(exec, 1, Look{progress, open.any(), p.max_iterations, plan.fine_sweeps(), true});
   exec.repeat_while(&progress->more_rounds, [&] {
     for (int n = 0; n < passes_a_round; ++n)
       relax_tiles(
@@ -234,7 +234,7 @@ void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std:
           RelaxTile{round.of(n), fine, Prolong{}, {share, share}, sweeps_in_rounds, 0.0f, round.of_pass(n)});
     find_unsettled(exec, fine, p.tolerance, round, true, open);
     for_each_item(exec, 1,
-                  Look{progress, open.tally(), p.max_iterations, passes_a_round * sweeps_in_rounds, false});
+                  Look{progress, open.any(), p.max_iterations, passes_a_round * sweeps_in_rounds, false});
   });
 }
 

@@ -2,7 +2,7 @@
 /// Which tiles still have to be passed over, when most of the grid is at rest: those within reach of a cell
 /// that is too steep. Found and kept on the device, by blocks of 8 × 8 cells:
 ///
-///   tiles of the round's passes --AskAround--> blocks to ask --CountSteep--> too steep cells a block
+///   tiles of the round's passes --AskAround--> blocks to ask --FindSteep--> blocks with too steep cells
 ///                                                            --OpenNear--> tiles of the next round
 ///
 /// A cell that was at rest can only have become too steep in or beside a tile that has been passed over
@@ -100,19 +100,6 @@ struct RoundOfTiles {
   }
 };
 
-/// A number that many add to at once, in several places, far enough from each other not to wait.
-struct Tally {
-  static constexpr int places = 16, apart = 32;
-  static constexpr std::size_t size = places * apart;
-  Quanta* parts;
-  DESERT_HD void add(int place, Quanta n) const { atomic_add(&parts[place % places * apart], n); }
-  DESERT_HD long long total() const {
-    long long sum = 0;
-    for (int n = 0; n < places; ++n) sum += parts[n * apart];
-    return sum;
-  }
-};
-
 /// How far a step has come to rest, kept on the device.
 struct Progress {
   long long sweeps;       ///< of the fine grid, of all steps; at least, where tiles may go on
@@ -126,16 +113,16 @@ struct OpenTiles {
   Buffer<Progress> progress;       ///< one
   int blocks = 0, most_tiles = 0;  ///< most_tiles: of a pass
 
-  Tally tally() const { return {found.data()}; }                ///< cells that are too steep
-  Quanta* steep() const { return found.data() + Tally::size; }  ///< of these, in each block
-  Quanta* flags() const { return steep() + blocks; }            ///< of a round
+  Quanta* any() const { return found.data(); }        ///< whether a cell is too steep, 0 or 1
+  Quanta* steep() const { return any() + 1; }         ///< likewise in each block
+  Quanta* flags() const { return steep() + blocks; }  ///< of a round's tiles
 };
 
 inline OpenTiles make_open_tiles(Exec& exec, const Grid& grid) {
   const int most = Tiles{grid, Tiles::side - 1}.count(), blocks = Blocks{grid}.count();
   const std::size_t of_blocks = static_cast<std::size_t>(blocks),
                     of_tiles = static_cast<std::size_t>(passes_a_round) * static_cast<std::size_t>(most);
-  OpenTiles open{Buffer<Quanta>(exec, of_blocks), Buffer<Quanta>(exec, Tally::size + of_blocks + of_tiles),
+  OpenTiles open{Buffer<Quanta>(exec, of_blocks), Buffer<Quanta>(exec, 1 + of_blocks + of_tiles),
                  Buffer<Progress>(exec, 1), blocks, most};
   open.progress.set_zero();
   return open;
@@ -187,7 +174,7 @@ struct TooSteep {
 };
 
 /// Called for squares of cells, which share what they look at.
-struct CountSteep {
+struct FindSteep {
   static constexpr int side = 4;
   static_assert(Blocks::side % side == 0, "then a square lies in one block");
   TooSteep too_steep;
@@ -202,14 +189,7 @@ struct CountSteep {
     const Grid& g = too_steep.level.grid;
     const int west = side * column, south = side * row, block = Blocks{g}.of_cell(west, south);
     if (ask && ask[block] == 0) return;
-    Quanta found = 0;
-    if (g.width % side == 0) {
-      found = count(west, south);
-    } else {
-      for (int y = south; y < south + side && y < g.height; ++y)
-        for (int x = west; x < west + side && x < g.width; ++x) found += too_steep(x, y) ? 1 : 0;
-    }
-    if (found > 0) atomic_add(&steep[block], found);
+    if (g.width % side == 0 ? is_any_of_fours(west, south) : is_any(west, south)) raise_flag(&steep[block]);
   }
 
  private:
@@ -226,7 +206,7 @@ struct CountSteep {
     return periodic ? wrap(p, cells) : -1;
   }
   /// From column x on, between columns `before` and `after`, if these are there; of walls if y is not. Loads
-  /// wait for no answer, so that all of a square's are on their way at once.
+  /// wait for no answer.
   DESERT_HD Row row_at(int before, int x, int after, int y) const {
     const LevelView& level = too_steep.level;
     const int first = level.grid.index(0, y >= 0 ? y : 0);
@@ -247,29 +227,37 @@ struct CountSteep {
       for (Quanta& height : row.heights) height = wall_height;
     return row;
   }
-  /// In the square whose south-west corner is (x, y), of rows of four.
-  DESERT_HD Quanta count(int x, int y) const {
+  /// In the square whose south-west corner is (x, y).
+  DESERT_HD bool is_any(int west, int south) const {
+    const Grid& g = too_steep.level.grid;
+    for (int y = south; y < south + side && y < g.height; ++y)
+      for (int x = west; x < west + side && x < g.width; ++x)
+        if (too_steep(x, y)) return true;
+    return false;
+  }
+  /// Likewise where rows are whole.
+  DESERT_HD bool is_any_of_fours(int x, int y) const {
     const LevelView& level = too_steep.level;
     const Grid& g = level.grid;
     const int before = place(x - 1, g.width, g.periodic_x), after = place(x + side, g.width, g.periodic_x);
-    Row rows[side + 2];  // from the one before the square on
-    for (int n = 0; n < side + 2; ++n) {
-      const int there = y + n - 1 <= g.height ? place(y + n - 1, g.height, g.periodic_y) : -1;
-      rows[n] = row_at(before, x, after, there);
-    }
-    Quanta found = 0;
+    const auto row_number = [&](int n) {
+      const int there = y + n <= g.height ? place(y + n, g.height, g.periodic_y) : -1;
+      return row_at(before, x, after, there);
+    };
+    bool any = false;
+    Row below = row_number(-1), row = row_number(0);
     for (int n = 0; n < side; ++n) {
       if (y + n >= g.height) break;
-      const Row &below = rows[n], &row = rows[n + 1], &above = rows[n + 2];
+      const Row above = row_number(n + 1);
       const Four<float> repose = four_at(level.repose + g.index(x, y + n));
       for (int k = 0; k < side; ++k)
-        found += too_steep(row.heights[k + 1], row.sand.values[k], repose.values[k],
-                           lower(row.beside(k), lower(below.heights[k + 1], above.heights[k + 1])),
-                           lower(below.beside(k), above.beside(k)))
-                     ? 1
-                     : 0;
+        any = any || too_steep(row.heights[k + 1], row.sand.values[k], repose.values[k],
+                               lower(row.beside(k), lower(below.heights[k + 1], above.heights[k + 1])),
+                               lower(below.beside(k), above.beside(k)));
+      below = row;
+      row = above;
     }
-    return found;
+    return any;
   }
   DESERT_HD static Quanta lower(Quanta a, Quanta b) { return a < b ? a : b; }
 };
@@ -278,12 +266,11 @@ struct CountSteep {
 struct OpenNear {
   const Quanta* steep;
   RoundOfTiles next;  ///< all 0
-  Tally tally;        ///< all 0
+  Quanta* any;        ///< 0
 
   DESERT_HD void operator()(int column, int row) const {
-    const Quanta cells = steep[row * Blocks{next.grid}.columns() + column];
-    if (cells == 0) return;
-    tally.add(column + row, cells);
+    if (steep[row * Blocks{next.grid}.columns() + column] == 0) return;
+    if (is_lowered(any)) raise_flag(any);
     Quanta* around[RoundOfTiles::corners];
     if (!next.find_corners(column, row, slides_reach, around))
       return next.for_each_around(column, row, slides_reach, [](Quanta* open) {
@@ -299,7 +286,7 @@ struct OpenNear {
 /// What follows from what is too steep, as an item of one: nothing but the device needs to know it.
 struct Look {
   Progress* progress;
-  Tally tally;
+  const Quanta* any;
   int max_iterations;
   int sweeps;     ///< done since the look before
   bool is_first;  ///< of this step
@@ -308,7 +295,7 @@ struct Look {
     if (is_first) progress->of_step = 0;
     progress->of_step += sweeps;
     progress->sweeps += sweeps;
-    progress->more_rounds = tally.total() > 0 && progress->of_step < max_iterations;
+    progress->more_rounds = *any != 0 && progress->of_step < max_iterations;
   }
 };
 
