@@ -102,7 +102,7 @@ struct RoundOfTiles {
 
 /// How far a step has come to rest, kept on the device.
 struct Progress {
-  long long sweeps;       ///< of the fine grid, of all steps; at least, where tiles may go on
+  long long sweeps;       ///< of the fine grid, of all steps, as if all tiles took as many as planned
   long long of_step;      ///< of these, of this step
   long long more_rounds;  ///< whether there is to be another, 0 or 1
 };
