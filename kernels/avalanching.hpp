@@ -198,8 +198,8 @@ constexpr float share_in_rounds = 1.0f;
 /// Of a pass of a round, at most: its tiles come to rest as far as they can.
 constexpr int sweeps_in_rounds = 32;
 
-/// Finds whether cells are too steep, and the tiles of a round that these call for: in the whole grid, or
-/// after a round of them around what it has passed over.
+/// Finds what blocks have cells that are too steep, and the tiles of a round that these call for: in the
+/// whole grid, or after a round of them around what it has passed over.
 template <class E>
 void find_unsettled(E& exec, const LevelView& fine, float tolerance, const RoundOfTiles& round,
                     bool after_round, const OpenTiles& open) {
@@ -209,33 +209,41 @@ void find_unsettled(E& exec, const LevelView& fine, float tolerance, const Round
   exec.set_zero(open.found.data(), open.found.bytes());
   const FindSteep find{{fine, tolerance}, ask, open.steep()};
   for_each_cell(exec, find.squares(), find);
-  for_each_cell(exec, blocks, OpenNear{open.steep(), round, open.any()});
+  for_each_cell(exec, blocks, OpenNear{open.steep(), round, open.tally()});
 }
 
 /// A cycle, and then rounds of passes over those tiles alone that are not at rest, until all are: what is
-/// left is on its way down. All rounds of a step have the same seams, those of the cycle's next passes.
+/// left is on its way down; or another cycle (Look). Rounds between two cycles have the same seams, those of
+/// the cycle's next passes.
 template <class E>
 void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std::uint64_t turn,
             Workspace& work) {
+  using After = Look::After;
   const Schedule plan = schedule(p, fine.grid);
   const float share = share_in_rounds * p.transfer;
   const OpenTiles& open = work.open;
   Progress* const progress = open.progress.data();
-  RoundOfTiles round{fine.grid, {}, open.flags(), open.most_tiles};
-  for (int n = 0; n < passes_a_round; ++n) round.offsets[n] = seam_offset(turn, plan.fine_passes() + n);
-
-  cycle(exec, fine, p, plan, turn, work, NothingThen{});
-  find_unsettled(exec, fine, p.tolerance, round, false, open);
-  for_each_item(exec, 1, Look{progress, open.any(), p.max_iterations, plan.fine_sweeps(), true});
-  exec.repeat_while(&progress->more_rounds, [&] {
-    for (int n = 0; n < passes_a_round; ++n)
-      relax_tiles(
-          exec,
-          RelaxTile{round.of(n), fine, Prolong{}, {share, share}, sweeps_in_rounds, 0.0f, round.of_pass(n)});
-    find_unsettled(exec, fine, p.tolerance, round, true, open);
-    for_each_item(exec, 1,
-                  Look{progress, open.any(), p.max_iterations, passes_a_round * sweeps_in_rounds, false});
-  });
+  const auto look = [&](After after, int sweeps) {
+    for_each_item(exec, 1, Look{progress, open.tally(), p.max_iterations, after, sweeps});
+  };
+  const auto do_cycle = [&](std::uint64_t seams, After what) {
+    RoundOfTiles round{fine.grid, {}, open.flags(), open.most_tiles};
+    for (int n = 0; n < passes_a_round; ++n) round.offsets[n] = seam_offset(seams, plan.fine_passes() + n);
+    cycle(exec, fine, p, plan, seams, work, NothingThen{});
+    find_unsettled(exec, fine, p.tolerance, round, false, open);
+    look(what, plan.fine_sweeps());
+    exec.repeat_while(&progress->more_rounds, [&] {
+      for (int n = 0; n < passes_a_round; ++n)
+        relax_tiles(
+            exec,
+            RelaxTile{
+                round.of(n), fine, Prolong{}, {share, share}, sweeps_in_rounds, 0.0f, round.of_pass(n)});
+      find_unsettled(exec, fine, p.tolerance, round, true, open);
+      look(After::round, passes_a_round * sweeps_in_rounds);
+    });
+  };
+  do_cycle(turn, After::first_cycle);
+  exec.repeat_while(&progress->more_cycles, [&] { do_cycle(turn + 1, After::cycle); });
 }
 
 template <class E>

@@ -8,25 +8,13 @@
 /// A cell that was at rest can only have become too steep in or beside a tile that has been passed over
 /// since, so that after a round only the blocks around its tiles are asked.
 
-#include "desert_sim/kernels/avalanching_laws.hpp"
+#include "desert_sim/kernels/avalanching_steep.hpp"
 #include "desert_sim/kernels/buffer.hpp"
 
 namespace desert_sim::avalanching {
 
 /// Passes that follow each other before it is asked again what is too steep.
 constexpr int passes_a_round = 4;
-
-/// Blocks of cells.
-struct Blocks {
-  static constexpr int side = 8;
-  Grid grid;
-
-  DESERT_HD int columns() const { return (grid.width + side - 1) / side; }
-  DESERT_HD int rows() const { return (grid.height + side - 1) / side; }
-  DESERT_HD int count() const { return columns() * rows(); }
-  DESERT_HD Grid cells() const { return {columns(), rows(), 1}; }
-  DESERT_HD int of_cell(int x, int y) const { return y / side * columns() + x / side; }
-};
 
 /// From a block with a cell that is too steep, tiles so many cells away are passed over too: slides come that
 /// far.
@@ -100,11 +88,26 @@ struct RoundOfTiles {
   }
 };
 
+/// A number that many add to at once, in several places, far enough from each other not to wait.
+struct Tally {
+  static constexpr int places = 64, apart = 32;
+  static constexpr std::size_t size = places * apart;
+  Quanta* parts;
+  DESERT_HD void add(int place, Quanta n) const { atomic_add(&parts[place % places * apart], n); }
+  DESERT_HD long long total() const {
+    long long sum = 0;
+    for (int n = 0; n < places; ++n) sum += parts[n * apart];
+    return sum;
+  }
+};
+
 /// How far a step has come to rest, kept on the device.
 struct Progress {
-  long long sweeps;       ///< of the fine grid, of all steps, as if all tiles took as many as planned
-  long long of_step;      ///< of these, of this step
-  long long more_rounds;  ///< whether there is to be another, 0 or 1
+  long long sweeps;   ///< of the fine grid, of all steps, as if all tiles took as many as planned
+  long long of_step;  ///< of these, of this step
+  long long rounds;   ///< since the last cycle
+  long long steep;    ///< blocks with cells too steep, after the last cycle
+  long long more_rounds, more_cycles;  ///< whether there is to be another, 0 or 1
 };
 
 struct OpenTiles {
@@ -113,16 +116,16 @@ struct OpenTiles {
   Buffer<Progress> progress;       ///< one
   int blocks = 0, most_tiles = 0;  ///< most_tiles: of a pass
 
-  Quanta* any() const { return found.data(); }        ///< whether a cell is too steep, 0 or 1
-  Quanta* steep() const { return any() + 1; }         ///< likewise in each block
-  Quanta* flags() const { return steep() + blocks; }  ///< of a round's tiles
+  Tally tally() const { return {found.data()}; }                ///< of blocks with cells that are too steep
+  Quanta* steep() const { return found.data() + Tally::size; }  ///< whether a block is one, 0 or 1
+  Quanta* flags() const { return steep() + blocks; }            ///< of a round's tiles
 };
 
 inline OpenTiles make_open_tiles(Exec& exec, const Grid& grid) {
   const int most = Tiles{grid, Tiles::side - 1}.count(), blocks = Blocks{grid}.count();
   const std::size_t of_blocks = static_cast<std::size_t>(blocks),
                     of_tiles = static_cast<std::size_t>(passes_a_round) * static_cast<std::size_t>(most);
-  OpenTiles open{Buffer<Quanta>(exec, of_blocks), Buffer<Quanta>(exec, 1 + of_blocks + of_tiles),
+  OpenTiles open{Buffer<Quanta>(exec, of_blocks), Buffer<Quanta>(exec, Tally::size + of_blocks + of_tiles),
                  Buffer<Progress>(exec, 1), blocks, most};
   open.progress.set_zero();
   return open;
@@ -144,133 +147,15 @@ struct AskAround {
   }
 };
 
-/// Whether a cell's excess (Excess) is over the tolerance, without a division.
-struct TooSteep {
-  LevelView level;
-  float tolerance;
-
-  /// Of a cell; `straight`, `diagonal`: the lowest of its neighbours.
-  DESERT_HD bool operator()(Quanta height, Quanta sand, float repose, Quanta straight,
-                            Quanta diagonal) const {
-    constexpr float guard = 1.0f - 1e-4f;  // what Excess finds over the tolerance is never missed by rounding
-    constexpr float far = Neighbours::distance(4);
-    const float least = guard * tolerance * level.quanta_per_cell, available = static_cast<float>(sand);
-    const float drop = repose * level.quanta_per_cell + least;
-    return height < wall_height && available > least &&
-           (static_cast<float>(height - straight) > drop ||
-            (static_cast<float>(height - diagonal) > far * drop && available > far * least));
-  }
-  /// Of a cell that may lack neighbours.
-  DESERT_HD bool operator()(int x, int y) const {
-    Quanta lowest[2] = {wall_height, wall_height};
-    for (int k = 0; k < Neighbours::count; ++k) {
-      const int j = neighbour_index(level.grid, x + Neighbours::dx(k), y + Neighbours::dy(k));
-      const Quanta h = j >= 0 ? level.height(j) : wall_height;
-      lowest[k / 4] = h < lowest[k / 4] ? h : lowest[k / 4];
-    }
-    const int i = level.grid.index(x, y);
-    return (*this)(level.height(i), level.sand[i], level.repose[i], lowest[0], lowest[1]);
-  }
-};
-
-/// Called for squares of cells, which share what they look at.
-struct FindSteep {
-  static constexpr int side = 4;
-  static_assert(Blocks::side % side == 0, "then a square lies in one block");
-  TooSteep too_steep;
-  const Quanta* ask;  ///< null: everywhere
-  Quanta* steep;      ///< all 0
-
-  DESERT_HD Grid squares() const {
-    const Grid& g = too_steep.level.grid;
-    return {(g.width + side - 1) / side, (g.height + side - 1) / side, 1};
-  }
-  DESERT_HD void operator()(int column, int row) const {
-    const Grid& g = too_steep.level.grid;
-    const int west = side * column, south = side * row, block = Blocks{g}.of_cell(west, south);
-    if (ask && ask[block] == 0) return;
-    if (g.width % side == 0 ? is_any_of_fours(west, south) : is_any(west, south)) raise_flag(&steep[block]);
-  }
-
- private:
-  /// A row of a square, with the cells west and east of it.
-  struct Row {
-    Quanta heights[side + 2];
-    Four<Quanta> sand;
-    /// The lower one of the two beside the nth cell.
-    DESERT_HD Quanta beside(int n) const { return lower(heights[n], heights[n + 2]); }
-  };
-  /// A place on an axis, or one that is next to the axis: −1 if nothing is there.
-  DESERT_HD static int place(int p, int cells, bool periodic) {
-    if (p >= 0 && p < cells) return p;
-    return periodic ? wrap(p, cells) : -1;
-  }
-  /// From column x on, between columns `before` and `after`, if these are there; of walls if y is not. Loads
-  /// wait for no answer.
-  DESERT_HD Row row_at(int before, int x, int after, int y) const {
-    const LevelView& level = too_steep.level;
-    const int first = level.grid.index(0, y >= 0 ? y : 0);
-    Row row;
-    row.sand = four_at(static_cast<const Quanta*>(level.sand) + first + x);
-    const Four<Quanta> ground = four_at(level.ground + first + x);
-    row.heights[0] = level.height(first + (before >= 0 ? before : x));
-    row.heights[side + 1] = level.height(first + (after >= 0 ? after : x));
-    for (int n = 0; n < side; ++n) {
-      const Quanta top = ground.values[n];
-      row.heights[n + 1] = level.soil || level.obstacle
-                               ? level.height(first + x + n)
-                               : (top >= wall_height ? wall_height : top + row.sand.values[n]);
-    }
-    if (before < 0) row.heights[0] = wall_height;
-    if (after < 0) row.heights[side + 1] = wall_height;
-    if (y < 0)
-      for (Quanta& height : row.heights) height = wall_height;
-    return row;
-  }
-  /// In the square whose south-west corner is (x, y).
-  DESERT_HD bool is_any(int west, int south) const {
-    const Grid& g = too_steep.level.grid;
-    for (int y = south; y < south + side && y < g.height; ++y)
-      for (int x = west; x < west + side && x < g.width; ++x)
-        if (too_steep(x, y)) return true;
-    return false;
-  }
-  /// Likewise where rows are whole.
-  DESERT_HD bool is_any_of_fours(int x, int y) const {
-    const LevelView& level = too_steep.level;
-    const Grid& g = level.grid;
-    const int before = place(x - 1, g.width, g.periodic_x), after = place(x + side, g.width, g.periodic_x);
-    const auto row_number = [&](int n) {
-      const int there = y + n <= g.height ? place(y + n, g.height, g.periodic_y) : -1;
-      return row_at(before, x, after, there);
-    };
-    bool any = false;
-    Row below = row_number(-1), row = row_number(0);
-    for (int n = 0; n < side; ++n) {
-      if (y + n >= g.height) break;
-      const Row above = row_number(n + 1);
-      const Four<float> repose = four_at(level.repose + g.index(x, y + n));
-      for (int k = 0; k < side; ++k)
-        any = any || too_steep(row.heights[k + 1], row.sand.values[k], repose.values[k],
-                               lower(row.beside(k), lower(below.heights[k + 1], above.heights[k + 1])),
-                               lower(below.beside(k), above.beside(k)));
-      below = row;
-      row = above;
-    }
-    return any;
-  }
-  DESERT_HD static Quanta lower(Quanta a, Quanta b) { return a < b ? a : b; }
-};
-
 /// Opens the next round's tiles within reach of what is too steep: called for each block.
 struct OpenNear {
   const Quanta* steep;
   RoundOfTiles next;  ///< all 0
-  Quanta* any;        ///< 0
+  Tally tally;        ///< all 0
 
   DESERT_HD void operator()(int column, int row) const {
     if (steep[row * Blocks{next.grid}.columns() + column] == 0) return;
-    if (is_lowered(any)) raise_flag(any);
+    tally.add(column + row, 1);
     Quanta* around[RoundOfTiles::corners];
     if (!next.find_corners(column, row, slides_reach, around))
       return next.for_each_around(column, row, slides_reach, [](Quanta* open) {
@@ -283,19 +168,31 @@ struct OpenNear {
   }
 };
 
-/// What follows from what is too steep, as an item of one: nothing but the device needs to know it.
+/// What follows from what is too steep, as an item of one: nothing but the device needs to know it. Where the
+/// first round after a cycle does not halve it, something large slides, which another cycle brings down
+/// sooner, and more evenly to all sides. What remains of small slides later rounds take longer to halve, but
+/// a cycle would start more of them.
 struct Look {
+  enum class After { first_cycle, cycle, round };  ///< first_cycle: of this step
   Progress* progress;
-  const Quanta* any;
+  Tally tally;
   int max_iterations;
-  int sweeps;     ///< done since the look before
-  bool is_first;  ///< of this step
+  After after;
+  int sweeps;  ///< done since the look before
 
   DESERT_HD void operator()(int) const {
-    if (is_first) progress->of_step = 0;
+    const long long steep = tally.total();
+    if (after == After::first_cycle) progress->of_step = 0;
+    if (after != After::round)
+      progress->rounds = 0, progress->steep = steep;
+    else
+      ++progress->rounds;
     progress->of_step += sweeps;
     progress->sweeps += sweeps;
-    progress->more_rounds = *any != 0 && progress->of_step < max_iterations;
+    const bool more = steep > 0 && progress->of_step < max_iterations;
+    const bool large = progress->rounds == 1 && steep > progress->steep / 2;
+    progress->more_rounds = more && !large;
+    progress->more_cycles = more && large;
   }
 };
 
