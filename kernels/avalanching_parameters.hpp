@@ -38,7 +38,8 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
       parameter("coarsest_cell", &P::coarsest_cell, 0.001, 1000, "m",
                 "Width of cells at which coarsening stops."),
       parameter("last_passes", &P::last_passes, 0, 16, "1",
-                "Passes over the fine grid after the coarse levels; 0: by quality and grid."),
+                "Passes over the fine grid after the coarse levels, each with the sweeps of large "
+                "grids; 0: by quality and grid."),
       parameter("sweeps", &P::sweeps, 1, 100000, "1",
                 "Sweeps a step of the schemes sweeps and taylor_keyser, unless converged."),
       parameter("tolerance", &P::tolerance, 1e-6, 1, "1",

@@ -79,8 +79,8 @@ struct FindSteep {
     if (p >= 0 && p < cells) return p;
     return periodic ? wrap(p, cells) : -1;
   }
-  /// From column x on, between columns `before` and `after`, if these are there; of walls if y is not. Loads
-  /// wait for no answer.
+  /// From column x on, between columns `before` and `after`, if these are there; of walls if y is not. What
+  /// is not there is read from elsewhere first: then no load waits for an answer.
   DESERT_HD Row row_at(int before, int x, int after, int y) const {
     const LevelView& level = too_steep.level;
     const int first = level.grid.index(0, y >= 0 ? y : 0);
@@ -115,8 +115,7 @@ struct FindSteep {
     const Grid& g = level.grid;
     const int before = place(x - 1, g.width, g.periodic_x), after = place(x + side, g.width, g.periodic_x);
     const auto row_number = [&](int n) {
-      const int there = y + n <= g.height ? place(y + n, g.height, g.periodic_y) : -1;
-      return row_at(before, x, after, there);
+      return row_at(before, x, after, place(y + n, g.height, g.periodic_y));
     };
     bool any = false;
     Row below = row_number(-1), row = row_number(0);
