@@ -123,7 +123,10 @@ struct Tiles {
   Grid grid;
   int offset = 0;  ///< 0 … side−1: the first tile begins at −offset
 
-  DESERT_HD int across(int cells, bool) const { return (cells + offset + side - 1) / side; }
+  /// Along a periodic axis the first tile also has the last cells, `offset` of them.
+  DESERT_HD int across(int cells, bool periodic) const {
+    return (cells + (periodic ? 0 : offset) + side - 1) / side;
+  }
   DESERT_HD int columns() const { return across(grid.width, grid.periodic_x); }
   DESERT_HD int rows() const { return across(grid.height, grid.periodic_y); }
   DESERT_HD int count() const { return columns() * rows(); }
