@@ -26,8 +26,14 @@ struct Carried {
     south_east[n] = bilinear_share(carried, east, south);
     north_west[n] = bilinear_share(carried, west, north);
     north_east[n] = bilinear_share(carried, east, north);
+    // What rounding leaves, at most three quanta, to the nearest; mirrored, that is the mirrored one.
+    const Quanta rest = left(n), eastern = east > west ? rest : 0, western = east < west ? rest : 0;
+    south_west[n] += south > north ? western : 0;
+    south_east[n] += south > north ? eastern : 0;
+    north_west[n] += south < north ? western : 0;
+    north_east[n] += south < north ? eastern : 0;
   }
-  /// What rounding leaves, at most three quanta.
+  /// Where none is the nearest, that stays in the cell: then no direction is favoured either.
   DESERT_HD Quanta left(int n) const {
     return amount[n] - south_west[n] - south_east[n] - north_west[n] - north_east[n];
   }
@@ -54,18 +60,15 @@ struct Landing {
     if (parcels.amount[n] == 0) return;
     const int i = grid.index(x, y), at_x = parcels.x[n], at_y = parcels.y[n];
     if (grid.inside(at_x, at_y) && grid.inside(at_x + 1, at_y + 1)) {
-      const int south = grid.index(at_x, at_y), north = south + grid.width;
-      add(south, parcels.south_west[n]);
-      add(south + 1, parcels.south_east[n]);
-      add(north, parcels.north_west[n]);
-      add(north + 1, parcels.north_east[n]);
+      add.square(grid.index(at_x, at_y), grid.width, parcels.south_west[n], parcels.south_east[n],
+                 parcels.north_west[n], parcels.north_east[n]);
     } else {
       land(i, at_x, at_y, parcels.south_west[n], add);
       land(i, at_x + 1, at_y, parcels.south_east[n], add);
       land(i, at_x, at_y + 1, parcels.north_west[n], add);
       land(i, at_x + 1, at_y + 1, parcels.north_east[n], add);
     }
-    add(i, parcels.left(n));  // stays here: that favours no direction
+    add(i, parcels.left(n));
   }
 };
 

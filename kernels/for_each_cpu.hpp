@@ -251,6 +251,13 @@ struct AddToBand {
     else
       keep(cell, amount);
   }
+  void square(int south, int width, Quanta south_west, Quanta south_east, Quanta north_west,
+              Quanta north_east) const {
+    (*this)(south, south_west);
+    (*this)(south + 1, south_east);
+    (*this)(south + width, north_west);
+    (*this)(south + width + 1, north_east);
+  }
 
  private:
   __attribute__((noinline)) void keep(int cell, Quanta amount) const { kept->push_back({cell, amount}); }

@@ -58,6 +58,27 @@ struct AtomicSums {
   DESERT_HD void operator()(int cell, Quanta amount) const {
     if (amount != 0) atomic_add(&sums[cell], amount);
   }
+  /// To cell `south`, the one east of it, and those north of the two. A neighbour's eastern cells mostly are
+  /// this thread's western ones: then that one's share is handed on, and added with this one's.
+  DESERT_HD void square(int south, int width, Quanta south_west, Quanta south_east, Quanta north_west,
+                        Quanta north_east) const {
+#if defined(__CUDA_ARCH__)
+    const unsigned there = __activemask(), lane = threadIdx.x % 32;
+    const int before = __shfl_up_sync(there, south, 1), after = __shfl_down_sync(there, south, 1);
+    const Quanta handed_south = __shfl_up_sync(there, south_east, 1),
+                 handed_north = __shfl_up_sync(there, north_east, 1);
+    const bool takes = lane > 0 && (there >> (lane - 1) & 1u) && before + 1 == south;
+    const bool hands = lane < 31 && (there >> (lane + 1) & 1u) && after == south + 1;
+    (*this)(south, south_west + (takes ? handed_south : 0));
+    (*this)(south + width, north_west + (takes ? handed_north : 0));
+    if (!hands) {
+      (*this)(south + 1, south_east);
+      (*this)(south + width + 1, north_east);
+    }
+#else  // laws are made for the CPU, too, where nobody calls this
+    (void)south, (void)width, (void)south_west, (void)south_east, (void)north_west, (void)north_east;
+#endif
+  }
 };
 
 template <class Law>

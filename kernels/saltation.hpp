@@ -71,24 +71,41 @@ struct LiftAndAdvect {
   const Quanta* airborne;
   LedgerView ledger;
 
-  DESERT_HD Quanta lifted(int i, Quanta available, float speed_squared) const {
-    if (available <= 0 || !(speed_squared > 0.0f)) return 0;
+  /// What a cell's lift depends on. All of it is read before anything is asked, so that a GPU waits once.
+  struct Cell {
+    float u, v;
+    Quanta lying, carried;
+    float shadow, eddy, plants, moisture;
+    bool flooded;
+  };
+  DESERT_HD Cell read(int x, int y, float shadow) const {
+    const int i = in.grid.index(x, y);
+    return {in.wind_x[i], in.wind_y[i], sand[i],        airborne[i],  shadow,
+            in.eddy(i),   in.plants(i), in.moisture(i), in.flooded(i)};
+  }
+  DESERT_HD Cell read(int x, int y) const {
+    return read(x, y, value_or_zero(in.wind_shadow, in.grid.index(x, y)));
+  }
+  DESERT_HD Quanta lifted(const Cell& c) const {
+    const float speed_squared = c.u * c.u + c.v * c.v;
+    if (c.lying <= 0 || !(speed_squared > 0.0f)) return 0;
     if (speed_squared < p.threshold_speed * p.threshold_speed) return 0;
-    const float r_e = in.eddy(i);
-    const float wet = in.flooded(i) ? 0.0f : dryness(in.moisture(i));
-    const float metres = in.time_step * (p.lift * (1.0f - value_or_zero(in.wind_shadow, i)) *
-                                             (1.0f - in.plants(i)) * (r_e > 0.0f ? 0.5f : 1.0f) * wet +
-                                         (r_e < 0.0f ? -r_e : 0.0f));
-    return take(metres, in.quanta_per_metre, available);
+    const float wet = c.flooded ? 0.0f : dryness(c.moisture);
+    const float metres =
+        in.time_step * (p.lift * (1.0f - c.shadow) * (1.0f - c.plants) * (c.eddy > 0.0f ? 0.5f : 1.0f) * wet +
+                        (c.eddy < 0.0f ? -c.eddy : 0.0f));
+    return take(metres, in.quanta_per_metre, c.lying);
   }
 
   template <int count>
+  DESERT_HD void prepare(int x, int y, const Cell& c, Carried<count>& parcels, int n) const {
+    const Quanta lift = lifted(c);
+    sand[in.grid.index(x, y)] = c.lying - lift;
+    parcels.set(n, x, y, subcells(c.u * cells_a_speed), subcells(c.v * cells_a_speed), c.carried + lift);
+  }
+  template <int count>
   DESERT_HD void prepare(int x, int y, Carried<count>& parcels, int n) const {
-    const int i = in.grid.index(x, y);
-    const float u = in.wind_x[i], v = in.wind_y[i];
-    const Quanta lying = sand[i], carried = airborne[i], lift = lifted(i, lying, u * u + v * v);
-    sand[i] = lying - lift;  // after all that is read, for which a GPU then waits once
-    parcels.set(n, x, y, subcells(u * cells_a_speed), subcells(v * cells_a_speed), carried + lift);
+    prepare(x, y, read(x, y), parcels, n);
   }
 
   template <int count, class Add>
@@ -108,8 +125,9 @@ struct ShadeAndLift {
 
   template <int count>
   DESERT_HD void prepare(int x, int y, Carried<count>& parcels, int n) const {
-    shade(x, y);
-    lift.prepare(x, y, parcels, n);
+    auto cell = lift.read(x, y, 0.0f);
+    cell.shadow = shade(x, y);
+    lift.prepare(x, y, cell, parcels, n);
   }
   template <int count, class Add>
   DESERT_HD void deliver(int x, int y, const Carried<count>& parcels, int n, const Add& add) const {

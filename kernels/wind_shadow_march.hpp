@@ -200,9 +200,9 @@ struct Shadow {
     }
   }
 
-  /// Of `count` cells, all on the grid.
+  /// Of `count` cells, all on the grid; that of the first.
   template <Way way, int count>
-  DESERT_HD void shelter(const Course& c, int x, int y) const {
+  DESERT_HD float shelter(const Course& c, int x, int y) const {
     const Grid& g = grid();
     const Cells<way, count> cells(*this, c.line(), x, y);
     const int end = steps_of(c), end_x = x + cells.line.dx(end), end_y = y + cells.line.dy(end);
@@ -212,11 +212,14 @@ struct Shadow {
       march<true>(cells, end, steepest);
     else
       march<false>(cells, end, steepest);
-    for (int k = 0; k < count; ++k)
-      wind_shadow[cells.first + k * cells.across] = shade(steepest[k] * c.steps_a_cell);
+    for (float& s : steepest) s = shade(s * c.steps_a_cell);
+    for (int k = 0; k < count; ++k) wind_shadow[cells.first + k * cells.across] = steepest[k];
+    return steepest[0];
   }
 
-  DESERT_HD void operator()(int x, int y) const { shelter<Way::either, 1>(course(x / side, y / side), x, y); }
+  DESERT_HD float operator()(int x, int y) const {
+    return shelter<Way::either, 1>(course(x / side, y / side), x, y);
+  }
 
  private:
   /// Likewise where the march leaves the grid.
