@@ -5,6 +5,7 @@
 #include "desert_sim/kernels/four.hpp"
 #include "desert_sim/kernels/layers.hpp"
 #include "desert_sim/kernels/math.hpp"
+#include "desert_sim/kernels/surface.hpp"
 
 namespace desert_sim {
 namespace avalanching {
@@ -74,6 +75,15 @@ struct LevelOut {
     sand[i] = sand_before[i] = cell.sand;
     repose[i] = cell.repose;
   }
+  /// Of two cells beside each other, where x and the width are even.
+  DESERT_HD void put_two(int x, int y, const LevelCell& west, const LevelCell& east) const {
+    const int i = grid.index(x, y);
+    const Two<Quanta> both{west.sand, east.sand};
+    put_beside(ground + i, Two<Quanta>{west.ground, east.ground});
+    put_beside(sand + i, both);
+    put_beside(sand_before + i, both);
+    put_beside(repose + i, Two<float>{west.repose, east.repose});
+  }
 };
 
 /// Fills one coarse level from the next finer one, and the one after that, if there is one, in the same pass.
@@ -87,18 +97,19 @@ struct Restrict {
   DESERT_HD LevelCell fine_cell(int i) const {
     return {fine.wall(i) ? wall_height : fine.ground_top(i), fine.sand[i], fine.repose[i]};
   }
-  /// Four cells in a row, of which the first has an index that is a multiple of four.
-  DESERT_HD void fine_row(int i, LevelCell* cells) const {
-    const auto ground = four_at(fine.ground + i), sand = four_at(fine.sand + i);
-    const auto repose = four_at(fine.repose + i);
-    for (int n = 0; n < 4; ++n) {
-      cells[n] = {ground.values[n], sand.values[n], repose.values[n]};
-      if (fine.soil || fine.obstacle) cells[n] = fine_cell(i + n);
-    }
+  /// Four cells in a row, of which the first has an index that is a multiple of four; walls are ground, too.
+  DESERT_HD surface::GroundAndSand row_at(int i) const {
+    surface::GroundAndSand row{four_at(fine.ground + i), four_at(static_cast<const Quanta*>(fine.sand) + i)};
+    if (fine.soil || fine.obstacle)
+      for (int n = 0; n < 4; ++n) row.ground.values[n] = fine_cell(i + n).ground;
+    return row;
   }
 
   DESERT_HD void operator()(int x, int y) const {
-    if (fine.grid.width % 4 == 0 && first.grid.inside(2 * x + 1, 2 * y + 1)) return fill_whole(x, y);
+    if (fine.grid.width % 4 == 0 && first.grid.inside(2 * x + 1, 2 * y + 1)) {
+      const int corner = fine.grid.index(4 * x, 4 * y);
+      return fill_whole(x, y, [&](int n) { return row_at(corner + n * fine.grid.width); });
+    }
     LevelCell filled[4] = {};
     for (int n = 0; n < 4; ++n) {
       const int fx = 2 * x + n % 2, fy = 2 * y + n / 2;
@@ -111,19 +122,27 @@ struct Restrict {
     if (second.grid.inside(x, y)) second.put(x, y, coarse_cell(filled));
   }
 
-  /// Likewise where all of the cells are there and rows of the fine grid begin at multiples of 16 bytes.
-  DESERT_HD void fill_whole(int x, int y) const {
-    LevelCell filled[4] = {};
-    for (int half = 0; half < 2; ++half) {
-      LevelCell south[4], north[4];
-      fine_row(fine.grid.index(4 * x, 4 * y + 2 * half), south);
-      fine_row(fine.grid.index(4 * x, 4 * y + 2 * half + 1), north);
+  /// Likewise where all of the cells are there and rows of the fine grid begin at multiples of 16 bytes, with
+  /// what row_of(n) knows of the nth row of the four.
+  template <class RowOf>
+  DESERT_HD void fill_whole(int x, int y, const RowOf& row_of) const {
+    const int corner = fine.grid.index(4 * x, 4 * y);
+    LevelCell filled[4];
+    unrolled<2>([&](auto half) DESERT_INLINE {
+      const surface::GroundAndSand row[2] = {row_of(2 * half), row_of(2 * half + 1)};
+      const Four<float> repose[2] = {four_at(fine.repose + corner + 2 * half * fine.grid.width),
+                                     four_at(fine.repose + corner + (2 * half + 1) * fine.grid.width)};
       for (int n = 0; n < 2; ++n) {
-        const LevelCell children[4] = {south[2 * n], south[2 * n + 1], north[2 * n], north[2 * n + 1]};
+        LevelCell children[4];
+        for (int k = 0; k < 4; ++k) {
+          const int from = 2 * n + k % 2;
+          children[k] = {row[k / 2].ground.values[from], row[k / 2].sand.values[from],
+                         repose[k / 2].values[from]};
+        }
         filled[2 * half + n] = coarse_cell(children);
       }
-    }
-    for (int n = 0; n < 4; ++n) first.put(2 * x + n % 2, 2 * y + n / 2, filled[n]);
+      first.put_two(2 * x, 2 * y + half, filled[2 * half], filled[2 * half + 1]);
+    });
     if (second.grid.width > 0) second.put(x, y, coarse_cell(filled));
   }
 };
@@ -146,11 +165,15 @@ inline DESERT_RARE void take_in_proportion(Quanta change, Quanta* sand) {
   }
 }
 
+/// Whether each of four children has enough for a coarse cell's change.
+DESERT_HD bool have_enough(Quanta change, Quanta a, Quanta b, Quanta c, Quanta d) {
+  const Quanta south = a < b ? a : b, north = c < d ? c : d;
+  return (south < north ? south : north) + change >= 0;
+}
 /// A coarse cell's change handed to its four children: alike, but where one has too little to give, in
 /// proportion to their sand. What the four change by is exactly four times the coarse change.
 DESERT_HD void hand_down(Quanta change, Quanta& a, Quanta& b, Quanta& c, Quanta& d) {
-  const Quanta south = a < b ? a : b, north = c < d ? c : d;
-  if ((south < north ? south : north) + change >= 0) {
+  if (have_enough(change, a, b, c, d)) {
     a += change, b += change, c += change, d += change;
     return;
   }

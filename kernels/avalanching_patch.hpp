@@ -42,16 +42,19 @@ struct Patch {
   static constexpr int side = 4, cells = side * side;
 };
 
-/// Shares ω of what slides over the three gaps between a patch's columns, and between its rows; the latter
-/// are alike for patches beside each other.
+/// A share whose last bit is set, next to the given one and less than 1. Its product with an excess then
+/// never lies halfway between two whole units: rounded once where it is taken away and once where it is
+/// added, it becomes the same number of them.
+DESERT_HD float never_halfway(float share) {
+  return share == 0.0f ? 0.0f : lower(float_of(bits_of(share) | 1u), 1.0f - 1.0f / 16777216.0f);
+}
+
+/// Shares ω of what slides over the three gaps between a patch's columns, and between its rows, as
+/// never_halfway() has them; the latter are alike for patches beside each other.
 template <int lanes>
 struct Shares {
   float x[Patch::side - 1][lanes], y[Patch::side - 1];
 };
-
-/// Of a diagonal pair's share, what counts its excess over one cell as it is over √2: a little less, so that
-/// no rounding makes ω = 1 more than all that lies between the two.
-constexpr float diagonal_distance = 1.414213f;
 
 /// The pairs of `lanes` patches beside each other, whose heights h, top of the ground below the sand, and
 /// drop at repose over one cell stand at [at(row, column) + lane]; heights and grounds in Units.
@@ -82,10 +85,11 @@ struct PairsOfPatches {
     pair<row, column + 1, 1, -1>();
   }
   /// A cell a and the one that lies `up` rows and `right` columns from it, b: what slides from a to b, or if
-  /// it is negative, from b to a.
+  /// it is negative, from b to a. All heights are whole units.
   template <int row, int column, int up, int right>
   DESERT_HD void pair() const {
     constexpr bool diagonal = up != 0 && right != 0;
+    constexpr float distance = diagonal ? Neighbours::distance(4) : 1.0f;
     constexpr int gap = right < 0 ? column - 1 : column;
     float *a = h + at(row, column), *b = h + at(row + up, column + right);
     const float* ground_a = deep ? nullptr : ground + at(row, column);
@@ -93,23 +97,23 @@ struct PairsOfPatches {
     const float *drop_a = drop + at(row, column), *drop_b = drop + at(row + up, column + right);
     DESERT_SIMD
     for (int n = 0; n < lanes; ++n) {
-      const float share = diagonal ? lower(shares.x[gap][n], shares.y[row]) * diagonal_distance
-                                   : (up != 0 ? shares.y[row] : shares.x[gap][n]);
-      const float over_one = diagonal ? (a[n] - b[n]) * (1.0f / Neighbours::distance(4)) : a[n] - b[n];
-      const float excess = positive_part(over_one - drop_a[n]) - positive_part(-over_one - drop_b[n]);
-      if constexpr (deep)
-        slide(a[n], b[n], fused(-share, excess, a[n]), most[n]);
-      else
-        slide(a[n], b[n], a[n] - lower(higher(share * excess, ground_b[n] - b[n]), a[n] - ground_a[n]),
-              most[n]);
+      const float share =
+          diagonal ? lower(shares.x[gap][n], shares.y[row]) : (up != 0 ? shares.y[row] : shares.x[gap][n]);
+      const float before_a = a[n], before_b = b[n], difference = before_a - before_b;
+      const float excess = positive_part(fused(-distance, drop_a[n], difference)) -
+                           positive_part(fused(-distance, drop_b[n], -difference));
+      const float left = fused(-share, excess, before_a);
+      if constexpr (deep) {
+        const float risen = fused(share, excess, before_b);
+        a[n] = left, b[n] = risen;
+        most[n] = higher(most[n], fabsf(before_a - left));
+      } else {
+        const float limited = higher(lower(left, before_a - (ground_b[n] - before_b)), ground_a[n]);
+        const float moved = before_a - limited;
+        a[n] = limited, b[n] = before_b + moved;
+        most[n] = higher(most[n], fabsf(moved));
+      }
     }
-  }
-  /// What is no longer in a is in b. All are whole units.
-  DESERT_HD static void slide(float& a, float& b, float left, float& most) {
-    const float moved = a - left;
-    b += moved;
-    a = left;
-    most = higher(most, fabsf(moved));
   }
 };
 

@@ -42,26 +42,31 @@ struct PatchShift {
 
   /// Of the nth sweep of a pass whose tiles begin at −offset. Tiles of passes that follow each other lie 16
   /// cells apart (seam_offsets in avalanching.hpp).
-  DESERT_HD PatchShift(int n, int offset) {
-    x = (n + offset / 16 * 2) % Patch::side;
-    y = (Patch::side - x) % Patch::side;
+  DESERT_HD PatchShift(int n, int offset) : PatchShift(n + offset / 16 * 2) {}
+  DESERT_HD explicit constexpr PatchShift(int n)
+      : x(n & (Patch::side - 1)), y((Patch::side - x) & (Patch::side - 1)) {
+    static_assert(Patch::side == 4);
   }
 };
 
 /// The share ω of an excess that slides over the nth gap between a tile's columns, or between its rows,
 /// counted over its edge: what is shifted out of the tile on one side comes in on the other, but nothing
 /// slides there.
-struct ShareOfGap {
-  float inside;
-  /// Next to the edge. What cannot go on over it piles up before it, and is missing behind it; where less
+class ShareOfGap {
+ public:
+  /// `next_to_edge`: what cannot go on over the edge piles up before it, and is missing behind it; where less
   /// slides to the last cells, that is spread over more of them.
-  float next_to_edge;
+  ShareOfGap(float inside, float next_to_edge)
+      : inside_(never_halfway(inside)), next_to_edge_(never_halfway(next_to_edge)) {}
 
   DESERT_HD float operator()(int n) const {
     const int gap = n % Tiles::side;
-    if (gap == Tiles::side - 1) return 0.0f;
-    return gap == 0 || gap == Tiles::side - 2 ? next_to_edge : inside;
+    const float share = gap == 0 || gap == Tiles::side - 2 ? next_to_edge_ : inside_;
+    return gap == Tiles::side - 1 ? 0.0f : share;
   }
+
+ private:
+  float inside_, next_to_edge_;
 };
 
 /// Of the cells of a tile, but walls [quanta].
@@ -152,8 +157,8 @@ struct RelaxTile {
 
  private:
   DESERT_HD int along(int p, int cells_along, bool periodic) const {
-    if (periodic) return p < cells_along - tiles.offset ? wrap(p, cells_along) : -1;
-    return p >= 0 && p < cells_along ? p : -1;
+    if (p >= (periodic ? cells_along - tiles.offset : cells_along)) return -1;
+    return p >= 0 ? p : (periodic ? wrap(p, cells_along) : -1);
   }
 
   /// Where column k of the nth patch of row y lies.
