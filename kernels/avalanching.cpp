@@ -29,14 +29,12 @@ std::vector<Grid> coarse_grids(const Grid& grid, const AvalanchingParameters& p)
 }  // namespace
 
 Schedule schedule(const AvalanchingParameters& p, const Grid& grid) {
+  constexpr int few_cells = 1 << 18;
   Schedule plan = preset(p.quality);
-  if (p.last_passes > 0) {
+  if (p.last_passes > 0)
     plan.last_passes = p.last_passes;
-  } else if (p.quality == AvalancheQuality::good) {
-    constexpr int few_cells = 1 << 18, some_cells = 1 << 20, many_levels = 5;
-    if (grid.cells() <= some_cells || coarse_grids(grid, p).size() >= many_levels) plan.last_passes = 3;
-    if (grid.cells() <= few_cells) plan.last_sweeps = 6, plan.levels_twice = 0, plan.coarse_share = 0.6f;
-  }
+  else if (p.quality == AvalancheQuality::good && grid.cells() <= few_cells)
+    plan.last_sweeps = 7, plan.levels_twice = 0, plan.coarse_share = 0.6f;
   return plan;
 }
 

@@ -52,12 +52,11 @@ struct Schedule {
 };
 constexpr Schedule preset(AvalancheQuality quality) {
   if (quality == AvalancheQuality::fast) return {4, 8, 4, 1, 2, 0.3f, 0.7f, 0.6f, 0.6f};
-  if (quality == AvalancheQuality::good) return {5, 8, 3, 2, 2, 0.25f, 0.7f, 0.7f, 0.45f};
+  if (quality == AvalancheQuality::good) return {5, 8, 3, 3, 2, 0.25f, 0.7f, 0.7f, 0.45f};
   return {6, 8, 3, 1, 2, 0.3f, 0.6f, 0.6f, 1.0f};
 }
-/// The preset, or on grids where `good` would leave single cells too steep one with more sweeps: on small
-/// ones, which they hardly cost anything on a GPU, and where there are five coarse levels, because slides
-/// there are the longest. With `last_passes` that of other grids.
+/// The preset; on small grids `good` has more last sweeps, which hardly cost anything on a GPU, so that next to
+/// nothing is left there. With `last_passes` that of large grids.
 Schedule schedule(const AvalanchingParameters& p, const Grid& grid);
 
 /// A level's own memory (the finest uses the terrain's sand).

@@ -272,21 +272,20 @@ TEST(RoundOfTiles, HasTheSameTilesByCorners) {
   EXPECT_GT(by_corners, 2 * 16 * 12);
 }
 
-TEST(Schedule, OfGoodHasMoreSweepsOnSmallGridsAndOverManyLevels) {
+TEST(Schedule, OfGoodHasMoreSweepsOnSmallGrids) {
   AvalanchingParameters p;
   const auto of = [&](int side, float cell_size) {
     return avalanching::schedule(p, Grid{side, side, cell_size, true, true});
   };
   const avalanching::Schedule usual = avalanching::preset(AvalancheQuality::good);
-  EXPECT_EQ(of(2048, 0.5f).fine_sweeps(), usual.fine_sweeps());
-  EXPECT_EQ(of(4096, 0.25f).fine_sweeps(), usual.fine_sweeps());
-  EXPECT_EQ(of(8192, 1.0f).fine_sweeps(), usual.fine_sweeps());
-  EXPECT_EQ(of(8192, 0.125f).last_passes, usual.last_passes + 1);
-  EXPECT_EQ(of(1024, 1.0f).last_passes, usual.last_passes + 1);
-  EXPECT_EQ(of(512, 2.0f).last_passes, usual.last_passes + 1);
-  EXPECT_GT(of(512, 2.0f).fine_sweeps(), of(1024, 1.0f).fine_sweeps());
-  p.last_passes = usual.last_passes;
-  EXPECT_EQ(of(512, 2.0f).fine_sweeps(), usual.fine_sweeps());
+  EXPECT_EQ(of(1024, 1.0f).fine_sweeps(), usual.fine_sweeps());
+  EXPECT_EQ(of(8192, 0.125f).fine_sweeps(), usual.fine_sweeps());
+  EXPECT_GT(of(512, 2.0f).fine_sweeps(), usual.fine_sweeps());
+  for (int passes : {1, usual.last_passes}) {
+    p.last_passes = passes;
+    for (int side : {512, 2048})
+      EXPECT_EQ(of(side, 1.0f).fine_sweeps(), usual.first_sweeps + passes * usual.last_sweeps) << side;
+  }
   p.last_passes = 0;
   for (AvalancheQuality quality : {AvalancheQuality::fast, AvalancheQuality::converged}) {
     p.quality = quality;
