@@ -71,35 +71,44 @@ struct PairsOfPatches {
     quad<0, 1>(), quad<2, 1>();
     quad<1, 0>(), quad<1, 2>();
     quad<1, 1>();
-    unrolled<Patch::side>([&](auto n) DESERT_INLINE { pair<0, n, 1, 0>(), pair<2, n, 1, 0>(); });
-    unrolled<Patch::side>([&](auto n) DESERT_INLINE { pair<1, n, 1, 0>(); });
-    unrolled<Patch::side>([&](auto n) DESERT_INLINE { pair<n, 0, 0, 1>(), pair<n, 2, 0, 1>(); });
-    unrolled<Patch::side>([&](auto n) DESERT_INLINE { pair<n, 1, 0, 1>(); });
+    unrolled<Patch::side>([&](auto n) DESERT_INLINE { upright<0, n>(), upright<2, n>(); });
+    unrolled<Patch::side>([&](auto n) DESERT_INLINE { upright<1, n>(); });
+    unrolled<Patch::side>([&](auto n) DESERT_INLINE { level<n, 0>(), level<n, 2>(); });
+    unrolled<Patch::side>([&](auto n) DESERT_INLINE { level<n, 1>(); });
   }
 
  private:
   /// Both diagonal pairs of four cells.
   template <int row, int column>
   DESERT_HD void quad() const {
-    pair<row, column, 1, 1>();
-    pair<row, column + 1, 1, -1>();
+    float share[lanes];  // by itself: in the pairs' own loops compilers see no minimum, and make no vectors
+    DESERT_SIMD
+    for (int n = 0; n < lanes; ++n) share[n] = lower(shares.x[column][n], shares.y[row]);
+    const auto of = [&](int n) DESERT_INLINE { return share[n]; };
+    pair<row, column, 1, 1>(of);
+    pair<row, column + 1, 1, -1>(of);
+  }
+  /// A pair above each other, and one beside each other.
+  template <int row, int column>
+  DESERT_HD void upright() const {
+    pair<row, column, 1, 0>([&](int) DESERT_INLINE { return shares.y[row]; });
+  }
+  template <int row, int column>
+  DESERT_HD void level() const {
+    pair<row, column, 0, 1>([&](int n) DESERT_INLINE { return shares.x[column][n]; });
   }
   /// A cell a and the one that lies `up` rows and `right` columns from it, b: what slides from a to b, or if
   /// it is negative, from b to a. All heights are whole units.
-  template <int row, int column, int up, int right>
-  DESERT_HD void pair() const {
-    constexpr bool diagonal = up != 0 && right != 0;
-    constexpr float distance = diagonal ? Neighbours::distance(4) : 1.0f;
-    constexpr int gap = right < 0 ? column - 1 : column;
+  template <int row, int column, int up, int right, class ShareOf>
+  DESERT_HD void pair(const ShareOf& share_of) const {
+    constexpr float distance = up != 0 && right != 0 ? Neighbours::distance(4) : 1.0f;
     float *a = h + at(row, column), *b = h + at(row + up, column + right);
     const float* ground_a = deep ? nullptr : ground + at(row, column);
     const float* ground_b = deep ? nullptr : ground + at(row + up, column + right);
     const float *drop_a = drop + at(row, column), *drop_b = drop + at(row + up, column + right);
     DESERT_SIMD
     for (int n = 0; n < lanes; ++n) {
-      const float share =
-          diagonal ? lower(shares.x[gap][n], shares.y[row]) : (up != 0 ? shares.y[row] : shares.x[gap][n]);
-      const float before_a = a[n], before_b = b[n], difference = before_a - before_b;
+      const float share = share_of(n), before_a = a[n], before_b = b[n], difference = before_a - before_b;
       const float excess = positive_part(fused(-distance, drop_a[n], difference)) -
                            positive_part(fused(-distance, drop_b[n], -difference));
       const float left = fused(-share, excess, before_a);
