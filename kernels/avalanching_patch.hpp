@@ -13,7 +13,8 @@
 ///
 /// So no cell falls below the lowest of its tile, and in a tile where the ground nowhere reaches above that
 /// (flat rock, or deep sand over any) no pair ever wants more than the donor has. Such a tile is `deep`: its
-/// pairs do not ask what is below the sand, and a slide is one multiplication and addition, rounded once.
+/// pairs do not ask what is below the sand, and a slide is two multiplications and additions, each rounded
+/// once.
 ///
 /// A thread works on a patch, which it holds in registers; a CPU on several beside each other, as vectors.
 /// Pairs that share no cell stand together, so that they do not wait for each other. Diagonal pairs come

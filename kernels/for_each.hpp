@@ -13,7 +13,8 @@
 ///
 /// A law that sends amounts to other cells has two parts: law.prepare(x, y, parcels, n) fills the n-th of
 /// Law::Parcels<count>, which is made of arrays, and law.deliver(x, y, parcels, n, add) sends that, with
-/// add(cell, amount). A CPU prepares several cells at once. Neither part reads `sums`.
+/// add(cell, amount), or add.square(…) for four cells beside and above each other. A CPU prepares several
+/// cells at once. Neither part reads `sums`.
 ///
 /// The CPU's are in for_each_cpu.hpp, the GPU's in for_each_cuda.cuh; only the backends include them.
 

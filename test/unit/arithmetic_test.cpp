@@ -8,6 +8,7 @@
 #include <set>
 
 #include "desert_sim/core/error.hpp"
+#include "desert_sim/kernels/carried.hpp"
 #include "desert_sim/kernels/grid.hpp"
 #include "desert_sim/kernels/math.hpp"
 #include "desert_sim/kernels/quanta.hpp"
@@ -92,6 +93,39 @@ TEST(BilinearShare, IsTheAmountTimesItsWeights) {
   EXPECT_EQ(bilinear_share(1 << 20, subcell_one, subcell_one), 1 << 20);
   EXPECT_EQ(bilinear_share(1 << 20, subcell_one / 2, subcell_one / 4), 1 << 17);
   EXPECT_EQ(bilinear_share(3, subcell_one / 2, subcell_one), 1);
+}
+
+/// What is carried arrives, or stays where it was; what rounding leaves at the nearest of the four, so that a
+/// mirrored hop arrives mirrored.
+TEST(Carried, ArrivesWholeAndMirrored) {
+  for (Quanta amount : {1, 2, 3, 7, 1000003})
+    for (int dx : {0, 1, 13, 16384, 32768, 40000, 65535})
+      for (int dy : {0, 20000, 32768, 65535}) {
+        Carried<2> parcels;
+        parcels.set(0, 10, 20, dx, dy, amount);
+        parcels.set(1, 10, 20, -dx, dy, amount);
+        for (int n = 0; n < 2; ++n) {
+          const Quanta parts[] = {parcels.south_west[n], parcels.south_east[n], parcels.north_west[n],
+                                  parcels.north_east[n]};
+          for (Quanta part : parts) EXPECT_GE(part, 0);
+          EXPECT_GE(parcels.left(n), 0);
+          if (dx != 32768 && dy != 32768) {
+            EXPECT_EQ(parcels.left(n), 0) << dx << ", " << dy;
+          }
+        }
+        const auto at = [&](int n, int x) {  // in a column, south and north
+          return parcels.x[n] == x
+                     ? std::pair{parcels.south_west[n], parcels.north_west[n]}
+                     : (parcels.x[n] + 1 == x ? std::pair{parcels.south_east[n], parcels.north_east[n]}
+                                              : std::pair{0, 0});
+        };
+        for (int away : {0, 1})
+          EXPECT_EQ(at(0, 10 + away), at(1, 10 - away)) << amount << ": " << dx << ", " << dy;
+        EXPECT_EQ(parcels.left(0), parcels.left(1));
+      }
+  Carried<1> one;
+  one.set(0, 0, 0, 20000, 60000, 3);
+  EXPECT_EQ(one.north_west[0], 3) << "of three quanta each share is less than one";
 }
 
 TEST(HeightScale, CoversWhatItIsAskedFor) {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <numeric>
+#include <random>
+#include <set>
 
 #include "support/tile_field.hpp"
 #include "support/world.hpp"
@@ -297,8 +299,37 @@ TEST(Tiles, KnowInWhichOfThemACellLies) {
           if (law.grid_y(tile, n) >= 0) rows[static_cast<std::size_t>(law.grid_y(tile, n))] = tile;
       for (int x = 0; x < g.width; ++x) EXPECT_EQ(tiles.column_of(x), columns[static_cast<std::size_t>(x)]);
       for (int y = 0; y < g.height; ++y) EXPECT_EQ(tiles.row_of(y), rows[static_cast<std::size_t>(y)]);
+      EXPECT_EQ(std::set<int>(columns.begin(), columns.end()).size(),
+                static_cast<std::size_t>(tiles.columns()))
+          << "a tile without cells, offset " << offset;
+      EXPECT_EQ(std::set<int>(rows.begin(), rows.end()).size(), static_cast<std::size_t>(tiles.rows()));
       EXPECT_EQ(tiles.column_of(-3), g.periodic_x ? tiles.column_of(wrap(-3, g.width)) : tiles.column_of(0));
     }
+}
+
+/// What one of a pair loses and the other gets, each rounded once, is the same; with shares as they are given
+/// it is not, where a product lies halfway.
+TEST(AvalanchingPatch, RoundsWhatSlidesAlikeOnBothSides) {
+  using avalanching::never_halfway;
+  EXPECT_EQ(never_halfway(0.0f), 0.0f);
+  EXPECT_LT(never_halfway(1.0f), 1.0f);
+  std::mt19937 random(1);
+  int halfway = 0;
+  for (float given : {0.25f, 0.315f, 0.5f, 0.6f, 0.625f, 0.7f, 0.75f, 1.0f}) {
+    const float share = never_halfway(given);
+    EXPECT_NEAR(share, given, 1e-7);
+    for (int n = 0; n < 100000; ++n) {
+      // Whole units in [1, 2), and an excess that need not be one but is no more than their difference.
+      const auto unit = [&] { return float_of(bits_of(1.0f) + (random() & 0x7fffff)); };
+      const float one = unit(), other = unit(), a = higher(one, other), b = lower(one, other);
+      const float repose = (n % 2 ? 1.0f : 0.37f) * (a - b) * static_cast<float>(random() % 1000) / 1000.0f;
+      const float excess = (a - b) - (n % 3 ? repose : 0.0f);
+      ASSERT_EQ(a - fused(-share, excess, a), fused(share, excess, b) - b)
+          << a << ", " << b << ", excess " << excess << ", share " << given;
+      halfway += a - fused(-given, excess, a) != fused(given, excess, b) - b;
+    }
+  }
+  EXPECT_GT(halfway, 1000);
 }
 
 TEST(AvalanchingUnits, CountHeightsWithoutLoss) {
