@@ -37,11 +37,11 @@ std::vector<Dune> barchans(std::uint64_t seed) {
 }
 
 /// Height to width 0.06…0.15, stoss 8…15 degrees, slip face 31…35 degrees to within 20 degrees of downwind,
-/// horns downwind. Of eight seeds together: among single ones the median stoss slope is anything from 8 to 20
-/// degrees, and height to width from 0.03 to 0.11.
+/// horns downwind. Of 24 seeds together: among single ones the median stoss slope is anything from 8 to 20
+/// degrees, and height to width from 0.03 to 0.11; of eight together it was 14.1 … 15.01.
 TEST(Dunes, Barchan) {
   std::vector<std::future<std::vector<Dune>>> runs;
-  for (std::uint64_t seed = 1; seed <= 8; ++seed)
+  for (std::uint64_t seed = 1; seed <= 24; ++seed)
     runs.push_back(std::async(std::launch::async, barchans, seed));
   std::vector<double> ratio, stoss, slip, direction, horns;
   int downwind = 0;
