@@ -189,12 +189,12 @@ struct Prolong {
   Grid fine;
   Quanta* sand;
 
+  DESERT_HD Quanta change(int i) const { return sand_after[i] - sand_before[i]; }  ///< of coarse cell i
   DESERT_HD void operator()(int x, int y) const {
-    const int i = coarse.index(x, y);
-    const Quanta change = sand_after[i] - sand_before[i];
-    if (change == 0) return;
+    const Quanta by = change(coarse.index(x, y));
+    if (by == 0) return;
     const int c = fine.index(2 * x, 2 * y);
-    hand_down(change, sand[c], sand[c + 1], sand[c + fine.width], sand[c + fine.width + 1]);
+    hand_down(by, sand[c], sand[c + 1], sand[c + fine.width], sand[c + fine.width + 1]);
   }
 };
 

@@ -31,8 +31,8 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
       parameter("enabled", &P::enabled, "Whether steep sand slides."),
       parameter("scheme", &P::scheme, avalanche_schemes, "How slides are computed."),
       parameter("quality", &P::quality, avalanche_qualities,
-                "fast: 4 + 4 fine sweeps, good: 5 + 3 + 3 and up to 5 + 6 + 6 + 6 on small grids, more where "
-                "much slides; converged: until tolerance (also for sweeps)."),
+                "fast: few sweeps, good: more, and most of all on small grids; both more where much slides; "
+                "converged: until tolerance (also for sweeps)."),
       parameter("transfer", &P::transfer, 0.05, 1, "1",
                 "Share of what would stabilise a cell that one sweep moves (k_c)."),
       parameter("coarsest_cell", &P::coarsest_cell, 0.001, 1000, "m",

@@ -125,7 +125,7 @@ struct ShadeAndLift {
 
   template <int count>
   DESERT_HD void prepare(int x, int y, Carried<count>& parcels, int n) const {
-    auto cell = lift.read(x, y, 0.0f);
+    auto cell = lift.read(x, y, 0.0f);  // on its way while the shadow is looked for
     cell.shadow = shade(x, y);
     lift.prepare(x, y, cell, parcels, n);
   }

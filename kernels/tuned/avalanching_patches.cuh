@@ -86,8 +86,7 @@ struct Place {
     const Prolong& from = law.from_coarse;
     const int there_x = grid_x(x + column), there_y = grid_y(y + row);
     if (there_x < 0 || there_y < 0 || !from.coarse.inside(there_x / 2, there_y / 2)) return 0;
-    const int i = from.coarse.index(there_x / 2, there_y / 2);
-    return from.sand_after[i] - from.sand_before[i];
+    return from.change(from.coarse.index(there_x / 2, there_y / 2));
   }
   __device__ int grid_x(int n) const { return law.grid_x(static_cast<int>(blockIdx.x), n); }
   __device__ int grid_y(int n) const { return law.grid_y(static_cast<int>(blockIdx.y), n); }

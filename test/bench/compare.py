@@ -7,9 +7,8 @@
 A time is divided by what a copy of 100 bytes a cell took in the same run. A row fails if
   - the whole step is slower than the baseline's by more than the tolerance (15 %), or a process that takes a
     tenth of it or more by twice that (not on grids so small that one by one they wait for the host);
-  - a figure of the residual has grown: by more than a tenth of it and 0.002 (shares) or 0.001 (mean excess, unless of
-    less than 0.002 of the cells), or to more than twice the largest excess, which is one cell's and as different
-    between two seeds;
+  - a figure of the residual has grown: by more than a tenth of it and 0.002 (shares) or 0.001 (mean excess), or to more
+    than twice the largest excess, which is one cell's and as different between two seeds;
   - sand was lost, or memory a cell has grown by more than 1 %.
 Results are compared with the record of the same scene, grid, quality, backend, threads and steps. Those that have
 none are listed; with --require-all they fail. --write puts results in the place of their records.
@@ -29,7 +28,6 @@ WORTH_LOOKING = 0.1  # share of a step from which a process counts
 ONE_BY_ONE = 1.2     # times a step that processes may take one by one: on small grids it is the host that they wait for
 GROWTH = {"share_over_1e-3": (1.1, 0.002), "share_over_1e-2": (1.1, 0.002), "mean_excess": (1.1, 0.001),
           "largest_excess": (2, 0.02)}  # times what it was, and more
-ENOUGH_CELLS = 0.002  # share of cells over 1e-3 from which their mean says something
 
 
 def read(path, form):
@@ -71,10 +69,7 @@ def faults_of(new, old, tolerance):
     for name, process in new["processes"].items() if whole <= ONE_BY_ONE * new["ms_per_step"] else ():
         if name in old["processes"] and process["ms"] >= WORTH_LOOKING * whole:
             slower(name, process["ms"], old["processes"][name]["ms"], 2 * tolerance)
-    few = new["residual"]["share_over_1e-3"] < ENOUGH_CELLS
     for figure, (times, slack) in GROWTH.items():
-        if figure == "mean_excess" and few:
-            continue
         now, was = new["residual"][figure], old["residual"][figure]
         if not now <= times * was + slack:
             faults.append("residual: %s has grown from %.4g to %.4g" % (figure, was, now))
