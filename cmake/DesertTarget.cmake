@@ -1,4 +1,4 @@
-# How targets are made: one set of flags for all of them, one header path for all rooms.
+# How targets are made: one set of flags and one header path for all of them.
 include(GNUInstallDirs)
 
 option(DESERT_WERROR "Warnings are errors" ON)
@@ -8,22 +8,10 @@ set(DESERT_SANITIZE "" CACHE STRING "Sanitizers for all of the project's own cod
 # `undefined` leaves out the overflow that heights and depths could meet on their way to quanta.
 string(REPLACE "undefined" "undefined,float-cast-overflow" DESERT_SANITIZERS "${DESERT_SANITIZE}")
 
-# ---- Rooms: `#include "desert_sim/<room>/<file>.hpp"` everywhere, in the build tree through links ----
-set(DESERT_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
-file(MAKE_DIRECTORY ${DESERT_INCLUDE_DIR}/desert_sim)
-set_property(GLOBAL PROPERTY DESERT_ROOMS "")
-foreach(room IN ITEMS kernels core terrain scenario simulation io grid_map tools client ros)
-  set(folder ${PROJECT_SOURCE_DIR}/src/${room})
-  if(room STREQUAL "kernels")
-    set(folder ${PROJECT_SOURCE_DIR}/kernels)
-  endif()
-  file(GLOB headers CONFIGURE_DEPENDS ${folder}/*.hpp) # a new room configures anew
-  if(IS_DIRECTORY "${folder}")
-    file(CREATE_LINK ${folder} ${DESERT_INCLUDE_DIR}/desert_sim/${room} SYMBOLIC)
-    set_property(GLOBAL APPEND PROPERTY DESERT_ROOMS ${room})
-    set_property(GLOBAL PROPERTY DESERT_ROOM_${room} ${folder})
-  endif()
-endforeach()
+# Headers are included by their path from the root of the repository: #include "kernels/wind/wind.hpp". What CMake
+# generates (desert_sim/config.hpp, the presets) is below DESERT_GENERATED_DIR.
+set(DESERT_GENERATED_DIR ${PROJECT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${DESERT_GENERATED_DIR}/desert_sim)
 
 # Faster loops in the physics without changing a result: no errno from sqrt(), no floating-point traps; what a law asks
 # and no cell changes (whether there is a layer) is asked before a loop, of which there is then one for each answer.
@@ -44,7 +32,8 @@ function(desert_target target)
     POSITION_INDEPENDENT_CODE ON
     INSTALL_RPATH_USE_LINK_PATH ON
     INSTALL_RPATH "$ORIGIN;$ORIGIN/..;$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
-  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${DESERT_INCLUDE_DIR}>)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${DESERT_GENERATED_DIR}>)
 
   set(host -Wall -Wextra -Wshadow -ffp-contract=off)
   if(DESERT_WERROR)
@@ -85,15 +74,15 @@ function(desert_link target)
 endfunction()
 
 # desert_library(<target> [STATIC] FOLDERS <folder>... [EXCLUDE <regex>] [LINK [PUBLIC|PRIVATE] <library>...])
-# A library of all sources in the folders (.cu ones with CUDA only); none while the folders are empty.
+# A library of all sources in and below the folders (.cu ones with CUDA only); none while the folders are empty.
 function(desert_library target)
   cmake_parse_arguments(arg "STATIC" "EXCLUDE" "FOLDERS;LINK" ${ARGN})
   set(sources "")
   foreach(folder IN LISTS arg_FOLDERS)
-    file(GLOB found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
     list(APPEND sources ${found})
     if(DESERT_WITH_CUDA)
-      file(GLOB found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cu)
+      file(GLOB_RECURSE found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cu)
       list(APPEND sources ${found})
     endif()
   endforeach()

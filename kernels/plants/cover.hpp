@@ -12,10 +12,10 @@
 /// writes vegetation, canopy_height, humus. `tops` get the canopy's surface, for the wind's shadow and for
 /// light: the ground's heights where nothing grows.
 
-#include "desert_sim/kernels/for_each.hpp"
-#include "desert_sim/kernels/layers.hpp"
-#include "desert_sim/kernels/plants/density.hpp"
-#include "desert_sim/kernels/plants/workspace.hpp"
+#include "kernels/backend/for_each.hpp"
+#include "kernels/field/layers.hpp"
+#include "kernels/plants/density.hpp"
+#include "kernels/plants/workspace.hpp"
 
 namespace desert_sim::plants {
 

@@ -6,8 +6,8 @@
 /// with d the horizontal distance and z how far the place is above where stem and root meet: a Gaussian split
 /// there, which is exactly 0 at the plant's own radius.
 
-#include "desert_sim/kernels/math.hpp"
-#include "desert_sim/kernels/plants/species.hpp"
+#include "kernels/field/math.hpp"
+#include "kernels/plants/species.hpp"
 
 namespace desert_sim::plants {
 

@@ -13,10 +13,10 @@
 /// still takes what rain of some 2 m an hour brings; at 1/10 no rain of the climates kept the ground moist.
 /// Reads moisture, soil, sand; writes moisture.
 
-#include "desert_sim/kernels/for_each.hpp"
-#include "desert_sim/kernels/ledger.hpp"
-#include "desert_sim/kernels/plants/population.hpp"
-#include "desert_sim/kernels/plants/site.hpp"
+#include "kernels/backend/for_each.hpp"
+#include "kernels/field/ledger.hpp"
+#include "kernels/plants/population.hpp"
+#include "kernels/plants/site.hpp"
 
 namespace desert_sim::plants {
 

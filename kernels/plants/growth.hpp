@@ -14,8 +14,8 @@
 /// ground, too steep, roots bare, stem buried, too deep in water, or not in it. Dead at health 0, or when not
 /// mature in time; the dead leave humus. Plants read their neighbours as they were before the step.
 
-#include "desert_sim/kernels/plants/drinking.hpp"
-#include "desert_sim/kernels/plants/workspace.hpp"
+#include "kernels/plants/drinking.hpp"
+#include "kernels/plants/workspace.hpp"
 
 namespace desert_sim::plants {
 

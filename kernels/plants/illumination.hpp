@@ -8,9 +8,9 @@
 /// exp(−decay · depth of the level). Reads the heights, the canopy's tops and water; writes illumination and
 /// illumination_canopy.
 
-#include "desert_sim/kernels/for_each.hpp"
-#include "desert_sim/kernels/layers.hpp"
-#include "desert_sim/kernels/plants/workspace.hpp"
+#include "kernels/backend/for_each.hpp"
+#include "kernels/field/layers.hpp"
+#include "kernels/plants/workspace.hpp"
 
 namespace desert_sim::plants {
 

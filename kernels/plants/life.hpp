@@ -6,8 +6,8 @@
 /// Plants are kept sorted by their key in the look-up, so that neighbours stand together in memory. The sort
 /// is stable, so that their order, and with it every sum, depends on the state alone.
 
-#include "desert_sim/kernels/plants/growth.hpp"
-#include "desert_sim/kernels/plants/spawning.hpp"
+#include "kernels/plants/growth.hpp"
+#include "kernels/plants/spawning.hpp"
 
 namespace desert_sim::plants {
 

@@ -8,10 +8,10 @@
 
 #include <cstdint>
 
-#include "desert_sim/kernels/grid.hpp"
-#include "desert_sim/kernels/math.hpp"
-#include "desert_sim/kernels/plants/population.hpp"
-#include "desert_sim/kernels/plants/species.hpp"
+#include "kernels/field/grid.hpp"
+#include "kernels/field/math.hpp"
+#include "kernels/plants/population.hpp"
+#include "kernels/plants/species.hpp"
 
 namespace desert_sim::plants {
 

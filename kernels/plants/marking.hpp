@@ -8,10 +8,10 @@
 ///
 /// Reads bedrock, soil, sand and the plants; writes plants.
 
-#include "desert_sim/kernels/for_each.hpp"
-#include "desert_sim/kernels/layer_values.hpp"
-#include "desert_sim/kernels/plants/density.hpp"
-#include "desert_sim/kernels/plants/lookup.hpp"
+#include "kernels/backend/for_each.hpp"
+#include "kernels/plants/density.hpp"
+#include "kernels/plants/lookup.hpp"
+#include "kernels/view/layer_values.hpp"
 
 namespace desert_sim::plants {
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "desert_sim/kernels/buffer.hpp"
-#include "desert_sim/kernels/quanta.hpp"
+#include "kernels/backend/buffer.hpp"
+#include "kernels/field/quanta.hpp"
 
 namespace desert_sim::plants {
 

@@ -1,10 +1,10 @@
 #pragma once
 /// What a plant meets in the cell where it stands.
 
-#include "desert_sim/kernels/layers.hpp"
-#include "desert_sim/kernels/math.hpp"
-#include "desert_sim/kernels/plants/species.hpp"
-#include "desert_sim/kernels/repose.hpp"
+#include "kernels/field/layers.hpp"
+#include "kernels/field/math.hpp"
+#include "kernels/plants/species.hpp"
+#include "kernels/sand/repose.hpp"
 
 namespace desert_sim::plants {
 

@@ -9,9 +9,9 @@
 /// numbers are by (seed, step, cell). New plants stand behind the others in the order of their cells; where
 /// there is room for only some, these are spread evenly over the cells that have one.
 
-#include "desert_sim/kernels/plants/site.hpp"
-#include "desert_sim/kernels/plants/workspace.hpp"
-#include "desert_sim/kernels/random.hpp"
+#include "kernels/field/random.hpp"
+#include "kernels/plants/site.hpp"
+#include "kernels/plants/workspace.hpp"
 
 namespace desert_sim::plants {
 

@@ -2,7 +2,7 @@
 /// What makes a species, and what holds for all plants: parameters of the vegetation model. Nilles 2025 §3.2,
 /// table 1; physics.md D.
 
-#include "desert_sim/core/parameters.hpp"
+#include "src/core/parameters.hpp"
 
 namespace desert_sim {
 

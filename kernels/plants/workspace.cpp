@@ -1,4 +1,4 @@
-#include "desert_sim/kernels/plants/workspace.hpp"
+#include "kernels/plants/workspace.hpp"
 
 namespace desert_sim::plants {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/kernels/ordering.hpp"
-#include "desert_sim/kernels/plants/lookup.hpp"
-#include "desert_sim/kernels/plants/species.hpp"
-#include "desert_sim/kernels/surface.hpp"
+#include "kernels/backend/radix_sort.hpp"
+#include "kernels/field/surface.hpp"
+#include "kernels/plants/lookup.hpp"
+#include "kernels/plants/species.hpp"
 
 namespace desert_sim::plants {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/client/elevation_assembler.hpp"
+#include "src/client/elevation_assembler.hpp"
 
 namespace desert_sim {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "desert_sim/client/elevation_map.hpp"
+#include "src/client/elevation_map.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/client/elevation_map.hpp"
+#include "src/client/elevation_map.hpp"
 
 #include <algorithm>
 #include <bitset>
@@ -6,7 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "desert_sim/client/elevation_tile.hpp"
+#include "src/client/elevation_tile.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/client/elevation_tile.hpp"
+#include "src/client/elevation_tile.hpp"
 
 #include <algorithm>
 #include <array>

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "desert_sim/kernels/elevation_step.hpp"
+#include "kernels/view/elevation_step.hpp"
 
 namespace desert_sim {
 

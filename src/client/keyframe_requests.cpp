@@ -1,4 +1,4 @@
-#include "desert_sim/client/keyframe_requests.hpp"
+#include "src/client/keyframe_requests.hpp"
 
 #include <algorithm>
 

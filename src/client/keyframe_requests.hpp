@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "desert_sim/client/elevation_assembler.hpp"
+#include "src/client/elevation_assembler.hpp"
 
 namespace desert_sim {
 

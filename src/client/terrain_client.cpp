@@ -1,4 +1,4 @@
-#include "desert_sim/client/terrain_client.hpp"
+#include "src/client/terrain_client.hpp"
 
 #include <ros/console.h>
 #include <ros/init.h>
@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 
 namespace desert_sim {
 

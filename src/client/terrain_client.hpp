@@ -26,9 +26,9 @@
 #include <string>
 #include <thread>
 
-#include "desert_sim/client/elevation_assembler.hpp"
-#include "desert_sim/client/elevation_map.hpp"
-#include "desert_sim/client/keyframe_requests.hpp"
+#include "src/client/elevation_assembler.hpp"
+#include "src/client/elevation_map.hpp"
+#include "src/client/keyframe_requests.hpp"
 
 namespace desert_sim {
 

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-#include "desert_sim/client/terrain_client.hpp"
+#include "src/client/terrain_client.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/core/files.hpp"
+#include "src/core/files.hpp"
 
 #include <sys/stat.h>
 
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 
 namespace desert_sim {
 

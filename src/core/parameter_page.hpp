@@ -6,7 +6,7 @@
 #include <string>
 #include <type_traits>
 
-#include "desert_sim/core/parameters.hpp"
+#include "src/core/parameters.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/grid_map/bag_records.hpp"
+#include "src/grid_map/bag_records.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/grid_map/grid_map_bag.hpp"
+#include "src/grid_map/grid_map_bag.hpp"
 
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -9,10 +9,10 @@
 #include <memory>
 #include <set>
 
-#include "desert_sim/core/quoted.hpp"
-#include "desert_sim/grid_map/bag_records.hpp"
-#include "desert_sim/grid_map/message_bytes.hpp"
-#include "desert_sim/io/raster_loader.hpp"
+#include "src/core/quoted.hpp"
+#include "src/grid_map/bag_records.hpp"
+#include "src/grid_map/message_bytes.hpp"
+#include "src/io/raster_loader.hpp"
 
 namespace desert_sim {
 

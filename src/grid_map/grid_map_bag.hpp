@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "desert_sim/grid_map/grid_map_msg.hpp"
-#include "desert_sim/io/raster.hpp"
-#include "desert_sim/scenario/band_terrain.hpp"
+#include "src/grid_map/grid_map_msg.hpp"
+#include "src/io/raster.hpp"
+#include "src/scenario/band_terrain.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/grid_map/grid_map_msg.hpp"
+#include "src/grid_map/grid_map_msg.hpp"
 
 namespace desert_sim {
 

@@ -3,8 +3,8 @@
 #include <set>
 #include <sstream>
 
-#include "desert_sim/core/quoted.hpp"
-#include "desert_sim/grid_map/grid_map_bag.hpp"
+#include "src/core/quoted.hpp"
+#include "src/grid_map/grid_map_bag.hpp"
 
 namespace desert_sim {
 

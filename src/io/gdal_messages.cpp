@@ -1,4 +1,4 @@
-#include "desert_sim/io/gdal_messages.hpp"
+#include "src/io/gdal_messages.hpp"
 
 #include <gdal_priv.h>
 

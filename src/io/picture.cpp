@@ -1,4 +1,4 @@
-#include "desert_sim/io/picture.hpp"
+#include "src/io/picture.hpp"
 
 #include <unistd.h>
 
@@ -16,7 +16,7 @@
 #include <sstream>
 #include <vector>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 
 namespace desert_sim {
 namespace {

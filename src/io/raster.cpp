@@ -1,4 +1,4 @@
-#include "desert_sim/io/raster.hpp"
+#include "src/io/raster.hpp"
 
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
@@ -15,8 +15,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/io/gdal_messages.hpp"
+#include "src/core/error.hpp"
+#include "src/io/gdal_messages.hpp"
 
 namespace desert_sim {
 namespace {

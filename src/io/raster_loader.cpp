@@ -1,10 +1,10 @@
-#include "desert_sim/io/raster_loader.hpp"
+#include "src/io/raster_loader.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "desert_sim/io/resample.hpp"
+#include "src/io/resample.hpp"
 
 namespace desert_sim {
 

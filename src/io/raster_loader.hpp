@@ -1,8 +1,8 @@
 #pragma once
 /// Rasters for a scenario's terrain.
 
-#include "desert_sim/io/raster.hpp"
-#include "desert_sim/scenario/scenario.hpp"
+#include "src/io/raster.hpp"
+#include "src/scenario/scenario.hpp"
 
 namespace desert_sim {
 

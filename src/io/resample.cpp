@@ -1,4 +1,4 @@
-#include "desert_sim/io/resample.hpp"
+#include "src/io/resample.hpp"
 
 #include <gdal_alg.h>
 #include <gdal_priv.h>
@@ -10,8 +10,8 @@
 #include <memory>
 #include <sstream>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/io/gdal_messages.hpp"
+#include "src/core/error.hpp"
+#include "src/io/gdal_messages.hpp"
 
 namespace desert_sim {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 /// Rasters brought to another grid, and holes in them filled; both by GDAL.
 
-#include "desert_sim/io/raster.hpp"
+#include "src/io/raster.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/io/snapshots.hpp"
+#include "src/io/snapshots.hpp"
 
 namespace desert_sim {
 

@@ -1,9 +1,9 @@
 #pragma once
 /// Snapshots as rasters and pictures.
 
-#include "desert_sim/io/picture.hpp"
-#include "desert_sim/io/raster.hpp"
-#include "desert_sim/simulation/simulation.hpp"
+#include "src/io/picture.hpp"
+#include "src/io/raster.hpp"
+#include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/io/terrain_files.hpp"
+#include "src/io/terrain_files.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <opencv2/core.hpp>
 #include <set>
 
-#include "desert_sim/core/files.hpp"
-#include "desert_sim/io/snapshots.hpp"
+#include "src/core/files.hpp"
+#include "src/io/snapshots.hpp"
 
 namespace desert_sim {
 

@@ -1,9 +1,9 @@
-#include "desert_sim/scenario/band_terrain.hpp"
+#include "src/scenario/band_terrain.hpp"
 
 #include <algorithm>
 
-#include "desert_sim/core/quoted.hpp"
-#include "desert_sim/kernels/layers.hpp"
+#include "kernels/field/layers.hpp"
+#include "src/core/quoted.hpp"
 
 namespace desert_sim {
 

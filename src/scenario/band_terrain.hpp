@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "desert_sim/scenario/scenario.hpp"
+#include "src/scenario/scenario.hpp"
 
 namespace desert_sim {
 

@@ -1,7 +1,7 @@
-#include "desert_sim/scenario/climate.hpp"
+#include "src/scenario/climate.hpp"
 
-#include "desert_sim/scenario/presets.hpp"
-#include "desert_sim/scenario/yaml_parameters.hpp"
+#include "src/scenario/presets.hpp"
+#include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 

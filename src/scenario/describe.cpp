@@ -1,11 +1,11 @@
 /// The page of all parameters, from the tables.
 #include <sstream>
 
-#include "desert_sim/core/parameter_page.hpp"
-#include "desert_sim/kernels/layers.hpp"
-#include "desert_sim/scenario/climate.hpp"
-#include "desert_sim/scenario/live_parameters.hpp"
-#include "desert_sim/simulation/wind_regime.hpp"
+#include "kernels/field/layers.hpp"
+#include "src/core/parameter_page.hpp"
+#include "src/scenario/climate.hpp"
+#include "src/scenario/live_parameters.hpp"
+#include "src/scenario/wind_regime.hpp"
 
 namespace desert_sim {
 

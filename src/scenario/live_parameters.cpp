@@ -1,11 +1,11 @@
-#include "desert_sim/scenario/live_parameters.hpp"
+#include "src/scenario/live_parameters.hpp"
 
 #include <yaml-cpp/yaml.h>
 
 #include <map>
 #include <set>
 
-#include "desert_sim/scenario/yaml_parameters.hpp"
+#include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "desert_sim/scenario/sections.hpp"
+#include "src/scenario/sections.hpp"
 
 namespace desert_sim {
 

@@ -1,14 +1,14 @@
-#include "desert_sim/scenario/scenario.hpp"
+#include "src/scenario/scenario.hpp"
 
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <fstream>
 
-#include "desert_sim/core/files.hpp"
-#include "desert_sim/scenario/climate.hpp"
-#include "desert_sim/scenario/sections.hpp"
-#include "desert_sim/scenario/yaml_parameters.hpp"
+#include "src/core/files.hpp"
+#include "src/scenario/climate.hpp"
+#include "src/scenario/sections.hpp"
+#include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 

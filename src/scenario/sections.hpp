@@ -1,7 +1,7 @@
 #pragma once
 /// Which sections a scenario has; the one place to add a process's.
 
-#include "desert_sim/scenario/scenario.hpp"
+#include "src/scenario/scenario.hpp"
 
 namespace desert_sim {
 

@@ -1,12 +1,12 @@
-#include "desert_sim/scenario/species.hpp"
+#include "src/scenario/species.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "desert_sim/scenario/presets.hpp"
-#include "desert_sim/scenario/scenario.hpp"
-#include "desert_sim/scenario/yaml_parameters.hpp"
+#include "src/scenario/presets.hpp"
+#include "src/scenario/scenario.hpp"
+#include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 

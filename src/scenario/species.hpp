@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/core/parameters.hpp"
-#include "desert_sim/kernels/plants/species.hpp"
+#include "kernels/plants/species.hpp"
+#include "src/core/parameters.hpp"
 
 namespace YAML {
 class Node;

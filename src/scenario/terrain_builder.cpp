@@ -1,11 +1,11 @@
-#include "desert_sim/scenario/terrain_builder.hpp"
+#include "src/scenario/terrain_builder.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "desert_sim/kernels/random.hpp"
-#include "desert_sim/scenario/sections.hpp"
-#include "desert_sim/terrain/terrain.hpp"
+#include "kernels/field/random.hpp"
+#include "src/scenario/sections.hpp"
+#include "src/terrain/terrain.hpp"
 
 namespace desert_sim {
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <vector>
 
-#include "desert_sim/kernels/layers.hpp"
-#include "desert_sim/scenario/scenario.hpp"
+#include "kernels/field/layers.hpp"
+#include "src/scenario/scenario.hpp"
 
 namespace desert_sim {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "desert_sim/core/parameters.hpp"
+#include "src/core/parameters.hpp"
 
 namespace desert_sim {
 

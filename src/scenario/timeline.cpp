@@ -1,12 +1,12 @@
-#include "desert_sim/scenario/timeline.hpp"
+#include "src/scenario/timeline.hpp"
 
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "desert_sim/scenario/live_parameters.hpp"
-#include "desert_sim/scenario/yaml_parameters.hpp"
+#include "src/scenario/live_parameters.hpp"
+#include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/core/parameters.hpp"
+#include "src/core/error.hpp"
+#include "src/core/parameters.hpp"
 
 namespace desert_sim {
 

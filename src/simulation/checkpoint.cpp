@@ -1,4 +1,4 @@
-#include "desert_sim/simulation/checkpoint.hpp"
+#include "src/simulation/checkpoint.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -8,11 +8,11 @@
 #include <cerrno>
 #include <cstring>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/core/files.hpp"
-#include "desert_sim/scenario/yaml_parameters.hpp"
-#include "desert_sim/simulation/command_yaml.hpp"
-#include "desert_sim/simulation/memory.hpp"
+#include "src/core/error.hpp"
+#include "src/core/files.hpp"
+#include "src/scenario/yaml_parameters.hpp"
+#include "src/simulation/commands/command_yaml.hpp"
+#include "src/simulation/pipeline/memory.hpp"
 
 namespace desert_sim {
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-#include "desert_sim/simulation/simulation.hpp"
+#include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
 

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/scenario/yaml_parameters.hpp"
-#include "desert_sim/simulation/memory.hpp"
-#include "desert_sim/simulation/simulation.hpp"
+#include "src/core/error.hpp"
+#include "src/scenario/yaml_parameters.hpp"
+#include "src/simulation/pipeline/memory.hpp"
+#include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
 

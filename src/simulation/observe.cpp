@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/simulation/simulation.hpp"
+#include "src/core/error.hpp"
+#include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
 

@@ -1,12 +1,12 @@
-#include "desert_sim/simulation/session.hpp"
+#include "src/simulation/session.hpp"
 
 #include <xxhash.h>
 
 #include <cstdio>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/scenario/band_terrain.hpp"
-#include "desert_sim/simulation/checkpoint.hpp"
+#include "src/core/error.hpp"
+#include "src/scenario/band_terrain.hpp"
+#include "src/simulation/checkpoint.hpp"
 
 namespace desert_sim {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "desert_sim/simulation/journal.hpp"
-#include "desert_sim/simulation/simulation.hpp"
+#include "src/simulation/commands/journal.hpp"
+#include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
 

@@ -1,13 +1,13 @@
-#include "desert_sim/simulation/simulation.hpp"
+#include "src/simulation/simulation.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/scenario/yaml_parameters.hpp"
-#include "desert_sim/simulation/memory.hpp"
+#include "src/core/error.hpp"
+#include "src/scenario/yaml_parameters.hpp"
+#include "src/simulation/pipeline/memory.hpp"
 
 namespace desert_sim {
 

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/kernels/processes.hpp"
-#include "desert_sim/scenario/terrain_builder.hpp"
-#include "desert_sim/simulation/command.hpp"
-#include "desert_sim/simulation/cost_changes.hpp"
-#include "desert_sim/simulation/elevation_changes.hpp"
-#include "desert_sim/simulation/snapshot.hpp"
-#include "desert_sim/simulation/step_recordings.hpp"
-#include "desert_sim/terrain/terrain.hpp"
+#include "kernels/processes.hpp"
+#include "src/scenario/terrain_builder.hpp"
+#include "src/simulation/commands/command.hpp"
+#include "src/simulation/pipeline/step_recordings.hpp"
+#include "src/simulation/views/cost_changes.hpp"
+#include "src/simulation/views/elevation_changes.hpp"
+#include "src/simulation/views/snapshot.hpp"
+#include "src/terrain/terrain.hpp"
 
 namespace desert_sim {
 

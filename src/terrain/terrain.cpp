@@ -1,11 +1,11 @@
-#include "desert_sim/terrain/terrain.hpp"
+#include "src/terrain/terrain.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 
 namespace desert_sim {
 

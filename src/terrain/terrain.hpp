@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/kernels/buffer.hpp"
-#include "desert_sim/kernels/layer_values.hpp"
+#include "kernels/backend/buffer.hpp"
+#include "kernels/view/layer_values.hpp"
 
 namespace desert_sim {
 

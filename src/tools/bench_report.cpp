@@ -1,12 +1,12 @@
-#include "desert_sim/tools/bench_report.hpp"
+#include "src/tools/bench_report.hpp"
 
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <sstream>
 
-#include "desert_sim/simulation/memory.hpp"
-#include "desert_sim/tools/json_text.hpp"
+#include "src/simulation/pipeline/memory.hpp"
+#include "src/tools/json_text.hpp"
 
 namespace desert_sim {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/simulation/simulation.hpp"
+#include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
 

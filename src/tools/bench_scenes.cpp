@@ -1,4 +1,4 @@
-#include "desert_sim/tools/bench_scenes.hpp"
+#include "src/tools/bench_scenes.hpp"
 
 #include <sstream>
 

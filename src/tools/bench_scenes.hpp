@@ -12,7 +12,7 @@
 #include <memory>
 #include <string>
 
-#include "desert_sim/simulation/session.hpp"
+#include "src/simulation/session.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/tools/cost_model.hpp"
+#include "src/tools/cost_model.hpp"
 
 #include <cstdio>
 

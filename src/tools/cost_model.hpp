@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/kernels/avalanching.hpp"
+#include "kernels/avalanching/avalanching.hpp"
 
 namespace desert_sim {
 

@@ -6,14 +6,14 @@
 #include <chrono>
 #include <cstdio>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/core/files.hpp"
-#include "desert_sim/tools/bench_report.hpp"
-#include "desert_sim/tools/bench_scenes.hpp"
-#include "desert_sim/tools/cost_model.hpp"
-#include "desert_sim/tools/drawing.hpp"
-#include "desert_sim/tools/options.hpp"
-#include "desert_sim/tools/rasters.hpp"
+#include "src/core/error.hpp"
+#include "src/core/files.hpp"
+#include "src/tools/bench_report.hpp"
+#include "src/tools/bench_scenes.hpp"
+#include "src/tools/cost_model.hpp"
+#include "src/tools/drawing.hpp"
+#include "src/tools/options.hpp"
+#include "src/tools/rasters.hpp"
 
 using namespace desert_sim;
 

@@ -6,14 +6,14 @@
 #include <cstdio>
 #include <iostream>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/simulation/checkpoint.hpp"
-#include "desert_sim/simulation/session.hpp"
-#include "desert_sim/tools/drawing.hpp"
-#include "desert_sim/tools/options.hpp"
-#include "desert_sim/tools/outputs.hpp"
-#include "desert_sim/tools/progress.hpp"
-#include "desert_sim/tools/rasters.hpp"
+#include "src/core/error.hpp"
+#include "src/simulation/checkpoint.hpp"
+#include "src/simulation/session.hpp"
+#include "src/tools/drawing.hpp"
+#include "src/tools/options.hpp"
+#include "src/tools/outputs.hpp"
+#include "src/tools/progress.hpp"
+#include "src/tools/rasters.hpp"
 
 using namespace desert_sim;
 

@@ -1,4 +1,4 @@
-#include "desert_sim/tools/drawing.hpp"
+#include "src/tools/drawing.hpp"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -6,7 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 
 extern char** environ;
 

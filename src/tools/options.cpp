@@ -1,10 +1,10 @@
-#include "desert_sim/tools/options.hpp"
+#include "src/tools/options.hpp"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/tools/outputs.hpp"
+#include "src/tools/outputs.hpp"
 
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -12,11 +12,11 @@
 #include <iterator>
 #include <sstream>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/core/files.hpp"
-#include "desert_sim/tools/json_text.hpp"
+#include "src/core/error.hpp"
+#include "src/core/files.hpp"
+#include "src/tools/json_text.hpp"
 #if DESERT_WITH_IO
-#include "desert_sim/io/snapshots.hpp"
+#include "src/io/snapshots.hpp"
 #endif
 
 namespace desert_sim {

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "desert_sim/simulation/simulation.hpp"
+#include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "desert_sim/tools/progress.hpp"
+#include "src/tools/progress.hpp"
 
 #include <unistd.h>
 

@@ -2,11 +2,11 @@
 /// The raster loader of this build.
 
 #if DESERT_WITH_BAGS
-#include "desert_sim/grid_map/grid_map_bag.hpp"
+#include "src/grid_map/grid_map_bag.hpp"
 #elif DESERT_WITH_IO
-#include "desert_sim/io/raster_loader.hpp"
+#include "src/io/raster_loader.hpp"
 #else
-#include "desert_sim/scenario/scenario.hpp"
+#include "src/scenario/scenario.hpp"
 #endif
 
 namespace desert_sim {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/client/terrain_client.hpp"
+#include "src/client/terrain_client.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 /// What a client makes of a stream of keyframes and updates that is whole, reordered, torn or broken.
-#include "desert_sim/client/elevation_assembler.hpp"
+#include "src/client/elevation_assembler.hpp"
 
 #include <gtest/gtest.h>
 

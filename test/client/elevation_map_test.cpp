@@ -1,5 +1,5 @@
 /// What a client answers about the surface it holds.
-#include "desert_sim/client/elevation_map.hpp"
+#include "src/client/elevation_map.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <random>
 
 #include "client/messages.hpp"
-#include "desert_sim/client/elevation_map.hpp"
-#include "desert_sim/ros/elevation_tiles.hpp"
-#include "desert_sim/ros/topic.hpp"
+#include "src/client/elevation_map.hpp"
+#include "src/ros/topics/elevation_tiles.hpp"
+#include "src/ros/topics/topic.hpp"
 #include "support/held_terrain.hpp"
 
 namespace {

@@ -7,11 +7,11 @@
 #include <memory>
 #include <string>
 
-#include "desert_sim/simulation/session.hpp"
+#include "src/simulation/session.hpp"
 #include "support/crest_pattern.hpp"
 #include "support/dune_shape.hpp"
 #if DESERT_WITH_IO
-#include "desert_sim/io/raster_loader.hpp"
+#include "src/io/raster_loader.hpp"
 #endif
 
 namespace desert_sim {

@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <limits>
 
-#include "desert_sim/grid_map/message_bytes.hpp"
-#include "desert_sim/ros/map_layers.hpp"
-#include "desert_sim/simulation/session.hpp"
-#include "desert_sim/tools/rasters.hpp"
 #include "grid_map/maps.hpp"
+#include "src/grid_map/message_bytes.hpp"
+#include "src/ros/topics/map_layers.hpp"
+#include "src/simulation/session.hpp"
+#include "src/tools/rasters.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/grid_map/grid_map_bag.hpp"
+#include "src/grid_map/grid_map_bag.hpp"
 
 namespace desert_sim::test {
 

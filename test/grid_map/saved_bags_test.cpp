@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "desert_sim/grid_map/grid_map_bag.hpp"
-#include "desert_sim/ros/terrain_formats.hpp"
-#include "desert_sim/simulation/session.hpp"
+#include "src/grid_map/grid_map_bag.hpp"
+#include "src/ros/services/terrain_formats.hpp"
+#include "src/simulation/session.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "desert_sim/simulation/checkpoint.hpp"
+#include "src/simulation/checkpoint.hpp"
 #include "support/bench_terrain.hpp"
 #include "support/cases.hpp"
 #include "support/edits.hpp"

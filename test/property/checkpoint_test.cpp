@@ -1,11 +1,11 @@
 // Checkpoints: what is cut, flipped or of another version is refused with a reason and changes nothing.
 
-#include "desert_sim/simulation/checkpoint.hpp"
+#include "src/simulation/checkpoint.hpp"
 
 #include <cstring>
 #include <filesystem>
 
-#include "desert_sim/simulation/session.hpp"
+#include "src/simulation/session.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 

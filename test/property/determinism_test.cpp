@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "desert_sim/simulation/checkpoint.hpp"
+#include "src/simulation/checkpoint.hpp"
 #include "support/cases.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"

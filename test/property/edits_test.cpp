@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "desert_sim/simulation/session.hpp"
+#include "src/simulation/session.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace desert_sim {

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "desert_sim/simulation/checkpoint.hpp"
-#include "desert_sim/simulation/journal.hpp"
+#include "src/simulation/checkpoint.hpp"
+#include "src/simulation/commands/journal.hpp"
 #include "support/cases.hpp"
 #include "support/edits.hpp"
 #include "support/temporary_folder.hpp"

@@ -1,6 +1,6 @@
 // The journal: what was written and replayed gives the same hash; what was cut in its last line still reads.
 
-#include "desert_sim/simulation/session.hpp"
+#include "src/simulation/session.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 

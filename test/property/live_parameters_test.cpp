@@ -1,11 +1,11 @@
 // Parameters that change while a simulation runs: each of them, in the middle of a run.
 
-#include "desert_sim/scenario/live_parameters.hpp"
+#include "src/scenario/live_parameters.hpp"
 
 #include <algorithm>
 
-#include "desert_sim/scenario/yaml_parameters.hpp"
-#include "desert_sim/simulation/checkpoint.hpp"
+#include "src/scenario/yaml_parameters.hpp"
+#include "src/simulation/checkpoint.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 
@@ -114,7 +114,8 @@ TEST_P(LiveParameters, SweepsThatWereCountedAreKept) {
   test::run(*s, 20);
   const double before = s->mean_avalanche_iterations();
   EXPECT_GE(before, 12);  // of a cycle
-  for (const char* change : {"saltation.lift=0.5", "avalanching.tolerance=0.002", "avalanching.quality=fast"}) {
+  for (const char* change :
+       {"saltation.lift=0.5", "avalanching.tolerance=0.002", "avalanching.quality=fast"}) {
     s->apply(command::SetParameters{{change}});
     EXPECT_EQ(s->mean_avalanche_iterations(), before) << change;
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "desert_sim/simulation/session.hpp"
+#include "src/simulation/session.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 

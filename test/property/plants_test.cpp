@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <random>
 
-#include "desert_sim/simulation/checkpoint.hpp"
-#include "desert_sim/simulation/session.hpp"
+#include "src/simulation/checkpoint.hpp"
+#include "src/simulation/session.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 

@@ -13,9 +13,9 @@
 #include <atomic>
 #include <filesystem>
 
-#include "desert_sim/client/terrain_client.hpp"
-#include "desert_sim/grid_map/grid_map_msg.hpp"
 #include "rostest/child_process.hpp"
+#include "src/client/terrain_client.hpp"
+#include "src/grid_map/grid_map_msg.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <map>
 
-#include "desert_sim/grid_map/grid_map_msg.hpp"
 #include "rostest/service_tests.hpp"
+#include "src/grid_map/grid_map_msg.hpp"
 
 namespace {
 

@@ -12,10 +12,10 @@
 #include <filesystem>
 #include <future>
 
-#include "desert_sim/ros/messages.hpp"
-#include "desert_sim/ros/pacer.hpp"
-#include "desert_sim/simulation/session.hpp"
 #include "rostest/client.hpp"
+#include "src/ros/conversion/messages.hpp"
+#include "src/ros/node/pacer.hpp"
+#include "src/simulation/session.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 /// TerrainClient on a node that runs: what it holds is what the node says when it is asked.
-#include "desert_sim/client/terrain_client.hpp"
+#include "src/client/terrain_client.hpp"
 
 #include <desert_sim/QueryTerrain.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <map>
 
-#include "desert_sim/core/error.hpp"
 #include "rostest/service_tests.hpp"
+#include "src/core/error.hpp"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "client/messages.hpp"
-#include "desert_sim/client/terrain_client.hpp"
 #include "rostest/child_process.hpp"
+#include "src/client/terrain_client.hpp"
 
 namespace {
 

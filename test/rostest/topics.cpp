@@ -18,8 +18,8 @@
 #include <map>
 #include <set>
 
-#include "desert_sim/client/elevation_assembler.hpp"
 #include "rostest/client.hpp"
+#include "src/client/elevation_assembler.hpp"
 
 namespace {
 

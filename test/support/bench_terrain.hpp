@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "desert_sim/kernels/processes.hpp"
-#include "desert_sim/terrain/terrain.hpp"
+#include "kernels/processes.hpp"
+#include "src/terrain/terrain.hpp"
 
 namespace desert_sim::test {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 
 namespace desert_sim::test {
 

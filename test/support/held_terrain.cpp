@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "desert_sim/kernels/processes.hpp"
+#include "kernels/processes.hpp"
 
 namespace desert_sim::test {
 

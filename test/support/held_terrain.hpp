@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "desert_sim/simulation/elevation_changes.hpp"
-#include "desert_sim/terrain/terrain.hpp"
+#include "src/simulation/views/elevation_changes.hpp"
+#include "src/terrain/terrain.hpp"
 
 namespace desert_sim::test {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "desert_sim/kernels/line_transform.hpp"
+#include "kernels/wind/tuned/line_transform.hpp"
 
 namespace desert_sim::test {
 

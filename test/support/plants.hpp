@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "desert_sim/kernels/processes.hpp"
+#include "kernels/processes.hpp"
 #include "support/bench_terrain.hpp"
 
 namespace desert_sim::test {

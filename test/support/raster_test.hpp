@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/io/raster.hpp"
+#include "src/core/error.hpp"
+#include "src/io/raster.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace desert_sim {

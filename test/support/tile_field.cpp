@@ -4,7 +4,7 @@
 #include <cstring>
 #include <functional>
 
-#include "desert_sim/kernels/random.hpp"
+#include "kernels/field/random.hpp"
 
 namespace desert_sim::test {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/kernels/processes.hpp"
+#include "kernels/processes.hpp"
 
 namespace desert_sim::test {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "desert_sim/scenario/scenario.hpp"
-#include "desert_sim/simulation/simulation.hpp"
+#include "src/scenario/scenario.hpp"
+#include "src/simulation/simulation.hpp"
 
 namespace desert_sim::test {
 

@@ -6,8 +6,8 @@
 
 #include <filesystem>
 
-#include "desert_sim/tools/bench_scenes.hpp"
-#include "desert_sim/tools/cost_model.hpp"
+#include "src/tools/bench_scenes.hpp"
+#include "src/tools/cost_model.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 

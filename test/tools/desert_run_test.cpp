@@ -1,8 +1,8 @@
 // desert_run: outputs, resuming, replaying, interrupting.
 
-#include "desert_sim/scenario/scenario.hpp"
-#include "desert_sim/simulation/session.hpp"
-#include "desert_sim/tools/outputs.hpp"
+#include "src/scenario/scenario.hpp"
+#include "src/simulation/session.hpp"
+#include "src/tools/outputs.hpp"
 #include "support/run_fixture.hpp"
 
 namespace desert_sim {

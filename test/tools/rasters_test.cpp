@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "desert_sim/io/raster.hpp"
+#include "src/io/raster.hpp"
 #include "support/run_fixture.hpp"
 
 namespace desert_sim {

@@ -7,13 +7,13 @@
 #include <limits>
 #include <set>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/kernels/carried.hpp"
-#include "desert_sim/kernels/grid.hpp"
-#include "desert_sim/kernels/math.hpp"
-#include "desert_sim/kernels/quanta.hpp"
-#include "desert_sim/kernels/random.hpp"
-#include "desert_sim/terrain/terrain.hpp"
+#include "kernels/field/grid.hpp"
+#include "kernels/field/math.hpp"
+#include "kernels/field/quanta.hpp"
+#include "kernels/field/random.hpp"
+#include "kernels/sand/carried.hpp"
+#include "src/core/error.hpp"
+#include "src/terrain/terrain.hpp"
 
 namespace desert_sim {
 namespace {

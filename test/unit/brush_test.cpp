@@ -20,7 +20,8 @@ class BrushEdit : public test::OnBackend {
         "}\nterrain: [uniform: {layer: bedrock, value: 30}, uniform: {layer: sand, value: 2}]\n");
   }
   /// A brush at the centre of cell (x, y), radius in cells.
-  static command::EditTerrain brush_at(int x, int y, double cells, double value, BrushMerge merge = BrushMerge::add) {
+  static command::EditTerrain brush_at(int x, int y, double cells, double value,
+                                       BrushMerge merge = BrushMerge::add) {
     command::EditTerrain e;
     e.x = 100 + 0.5 * (x + 0.5);
     e.y = -50 + 0.5 * (y + 0.5);

@@ -1,6 +1,6 @@
 // Climates: one word for rain, evaporation and species, which a scenario can override.
 
-#include "desert_sim/scenario/climate.hpp"
+#include "src/scenario/climate.hpp"
 
 #include "support/world.hpp"
 

@@ -1,6 +1,6 @@
 // Loops of the CPU backend: what they sum, which law gets which cell, and that threads change no bit.
 
-#include "desert_sim/kernels/for_each_cpu.hpp"
+#include "kernels/backend/for_each_cpu.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "desert_sim/kernels/fft.hpp"
+#include "kernels/backend/fft.hpp"
 
 namespace desert_sim {
 namespace {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "desert_sim/simulation/memory.hpp"
+#include "src/simulation/pipeline/memory.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {

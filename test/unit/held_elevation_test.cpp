@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 #include "support/held_terrain.hpp"
 #include "support/world.hpp"
 

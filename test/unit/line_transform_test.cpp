@@ -1,6 +1,6 @@
 // Transforms of lines against the sum that defines them, in double precision.
 
-#include "desert_sim/kernels/line_transform.hpp"
+#include "kernels/wind/tuned/line_transform.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Memory: what a simulation holds is what its parts say and what was planned, is little a cell, and is
 // refused before anything is allocated where it does not fit.
 
-#include "desert_sim/simulation/memory.hpp"
+#include "src/simulation/pipeline/memory.hpp"
 
 #include <cstdio>
 
-#include "desert_sim/simulation/checkpoint.hpp"
-#include "desert_sim/tools/bench_scenes.hpp"
+#include "src/simulation/checkpoint.hpp"
+#include "src/tools/bench_scenes.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 

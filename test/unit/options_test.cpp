@@ -1,10 +1,10 @@
 // Command lines: what is read, what is refused.
 
-#include "desert_sim/tools/options.hpp"
+#include "src/tools/options.hpp"
 
 #include <gtest/gtest.h>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 
 namespace desert_sim {
 namespace {

@@ -1,10 +1,9 @@
 // Sorting by key and prefix sums: stable, the same on every backend with any number of threads.
 
-#include "desert_sim/kernels/ordering.hpp"
-
 #include <algorithm>
 #include <random>
 
+#include "kernels/backend/radix_sort.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {

@@ -1,6 +1,6 @@
 // Pictures: north is up, each material has its colour, sizes, unknown ground, and files.
 
-#include "desert_sim/io/picture.hpp"
+#include "src/io/picture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace desert_sim {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <opencv2/imgcodecs.hpp>
 
-#include "desert_sim/io/raster.hpp"
+#include "src/io/raster.hpp"
 #include "support/raster_test.hpp"
 
 namespace desert_sim {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "desert_sim/io/raster.hpp"
+#include "src/io/raster.hpp"
 #include "support/raster_test.hpp"
 
 namespace desert_sim {

@@ -1,12 +1,13 @@
 // Reading and writing rasters: orientation, geotransform, what is left behind.
 
-#include "desert_sim/io/raster.hpp"
-#include "support/raster_test.hpp"
+#include "src/io/raster.hpp"
 
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
+
+#include "support/raster_test.hpp"
 
 namespace desert_sim {
 namespace {

@@ -1,6 +1,6 @@
 // Work that is repeated while a word on the device is not 0: by the host, and inside a recording.
 
-#include "desert_sim/kernels/buffer.hpp"
+#include "kernels/backend/buffer.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {

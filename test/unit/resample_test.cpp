@@ -1,7 +1,7 @@
 // Resampling: ramps stay ramps, averages keep the mean, nodata has no weight, outside is NaN; holes are
 // filled.
 
-#include "desert_sim/io/resample.hpp"
+#include "src/io/resample.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-#include "desert_sim/core/error.hpp"
+#include "src/core/error.hpp"
 
 namespace desert_sim {
 namespace {

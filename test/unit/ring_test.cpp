@@ -1,6 +1,6 @@
 // What a ring gives and takes, by hand.
 
-#include "desert_sim/simulation/ring.hpp"
+#include "src/simulation/commands/ring.hpp"
 
 #include <gtest/gtest.h>
 

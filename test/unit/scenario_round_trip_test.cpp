@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <random>
 
-#include "desert_sim/scenario/sections.hpp"
+#include "src/scenario/sections.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 

@@ -133,9 +133,10 @@ TEST_P(ASimulation, RefusesWrongWindsAndChangesNothing) {
 }
 
 TEST_P(ASimulation, NamesTheProcessLayerAndCellOfABrokenState) {
-  auto s = simulation(std::string(world) +
-                      "avalanching: {enabled: false}\nsaltation: {enabled: false}\nreptation: {method: smoothing}\n"
-                      "wind: {speed: 0, warping: false, projection: false}\n");
+  auto s = simulation(
+      std::string(world) +
+      "avalanching: {enabled: false}\nsaltation: {enabled: false}\nreptation: {method: smoothing}\n"
+      "wind: {speed: 0, warping: false, projection: false}\n");
   Terrain& terrain = const_cast<Terrain&>(s->terrain());
   std::vector<std::uint32_t> sand = terrain.words(Layer::sand);
   sand[5 * 24 + 7] = static_cast<std::uint32_t>(-3);

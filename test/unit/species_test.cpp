@@ -1,6 +1,6 @@
 // The list of species: presets and what overrides them, the matrix, and what is refused.
 
-#include "desert_sim/scenario/live_parameters.hpp"
+#include "src/scenario/live_parameters.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {

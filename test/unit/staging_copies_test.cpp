@@ -10,9 +10,9 @@
 #include <string>
 #include <thread>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/kernels/fft.hpp"
-#include "desert_sim/simulation/staging.hpp"
+#include "kernels/backend/fft.hpp"
+#include "src/core/error.hpp"
+#include "src/simulation/views/staging.hpp"
 
 namespace desert_sim {
 namespace {

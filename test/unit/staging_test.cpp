@@ -2,8 +2,8 @@
 
 #include <thread>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/simulation/memory.hpp"
+#include "src/core/error.hpp"
+#include "src/simulation/pipeline/memory.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {

@@ -1,6 +1,6 @@
 // The steps of a scenario's terrain: shapes, merges, places, random ones.
 
-#include "desert_sim/scenario/terrain_builder.hpp"
+#include "src/scenario/terrain_builder.hpp"
 
 #include <cmath>
 

@@ -1,13 +1,13 @@
 // A terrain saved as rasters and loaded again, by Session and by what a journal replays.
 
-#include "desert_sim/io/terrain_files.hpp"
+#include "src/io/terrain_files.hpp"
 
 #include <cmath>
 #include <filesystem>
 
-#include "desert_sim/core/files.hpp"
-#include "desert_sim/io/raster_loader.hpp"
-#include "desert_sim/simulation/session.hpp"
+#include "src/core/files.hpp"
+#include "src/io/raster_loader.hpp"
+#include "src/simulation/session.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 

@@ -1,6 +1,6 @@
 // The wind high above the ground: constant, ramp, timeline, rose.
 
-#include "desert_sim/simulation/wind_regime.hpp"
+#include "src/scenario/wind_regime.hpp"
 
 #include <gtest/gtest.h>
 

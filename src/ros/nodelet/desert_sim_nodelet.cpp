@@ -6,8 +6,8 @@
 #include <pluginlib/class_list_macros.hpp>
 #include <string>
 
-#include "desert_sim/core/error.hpp"
-#include "desert_sim/ros/desert_sim_server.hpp"
+#include "src/core/error.hpp"
+#include "src/ros/node/desert_sim_server.hpp"
 
 namespace desert_sim {
 

@@ -1,0 +1,4 @@
+#pragma once
+/// Public header: the exceptions that the libraries throw.
+
+#include "src/core/error.hpp"

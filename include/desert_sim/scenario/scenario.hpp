@@ -1,0 +1,4 @@
+#pragma once
+/// Public header: all that defines a run, and reading it from YAML.
+
+#include "src/scenario/scenario.hpp"

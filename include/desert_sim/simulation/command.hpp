@@ -1,0 +1,4 @@
+#pragma once
+/// Public header: what changes a running simulation from outside.
+
+#include "src/simulation/commands/command.hpp"

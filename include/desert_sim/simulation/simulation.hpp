@@ -1,0 +1,4 @@
+#pragma once
+/// Public header: a simulation.
+
+#include "src/simulation/simulation.hpp"

@@ -1,0 +1,138 @@
+#pragma once
+/// Which blocks of 8 × 8 cells have a cell that is too steep. By squares of 4 × 4, whose cells share what
+/// they look at: heights of six rows, of four cells and those beside them.
+
+#include "kernels/avalanching/laws.hpp"
+
+namespace desert_sim::avalanching {
+
+/// Blocks of cells.
+struct Blocks {
+  static constexpr int side = 8;
+  Grid grid;
+
+  DESERT_HD int columns() const { return (grid.width + side - 1) / side; }
+  DESERT_HD int rows() const { return (grid.height + side - 1) / side; }
+  DESERT_HD int count() const { return columns() * rows(); }
+  DESERT_HD Grid cells() const { return {columns(), rows(), 1}; }
+  DESERT_HD int of_cell(int x, int y) const { return y / side * columns() + x / side; }
+};
+
+/// Whether a cell's excess (Excess) is over the tolerance, without a division.
+struct TooSteep {
+  LevelView level;
+  float tolerance;
+
+  /// Of a cell; `straight`, `diagonal`: the lowest of its neighbours.
+  DESERT_HD bool operator()(Quanta height, Quanta sand, float repose, Quanta straight,
+                            Quanta diagonal) const {
+    constexpr float guard = 1.0f - 1e-4f;  // what Excess finds over the tolerance is never missed by rounding
+    constexpr float far = Neighbours::distance(4);
+    const float least = guard * tolerance * level.quanta_per_cell, available = static_cast<float>(sand);
+    const float drop = repose * level.quanta_per_cell + least;
+    return height < wall_height && available > least &&
+           (static_cast<float>(height - straight) > drop ||
+            (static_cast<float>(height - diagonal) > far * drop && available > far * least));
+  }
+  /// Of a cell that may lack neighbours.
+  DESERT_HD bool operator()(int x, int y) const {
+    Quanta lowest[2] = {wall_height, wall_height};
+    for (int k = 0; k < Neighbours::count; ++k) {
+      const int j = neighbour_index(level.grid, x + Neighbours::dx(k), y + Neighbours::dy(k));
+      const Quanta h = j >= 0 ? level.height(j) : wall_height;
+      lowest[k / 4] = h < lowest[k / 4] ? h : lowest[k / 4];
+    }
+    const int i = level.grid.index(x, y);
+    return (*this)(level.height(i), level.sand[i], level.repose[i], lowest[0], lowest[1]);
+  }
+};
+
+/// Called for squares of cells, which share what they look at.
+struct FindSteep {
+  static constexpr int side = 4;
+  static_assert(Blocks::side % side == 0, "then a square lies in one block");
+  TooSteep too_steep;
+  const Quanta* ask;  ///< null: everywhere
+  Quanta* steep;      ///< all 0
+
+  DESERT_HD Grid squares() const {
+    const Grid& g = too_steep.level.grid;
+    return {(g.width + side - 1) / side, (g.height + side - 1) / side, 1};
+  }
+  DESERT_HD void operator()(int column, int row) const {
+    const Grid& g = too_steep.level.grid;
+    const int west = side * column, south = side * row, block = Blocks{g}.of_cell(west, south);
+    if (ask && ask[block] == 0) return;
+    if (g.width % side == 0 ? is_any_of_fours(west, south) : is_any(west, south)) raise_flag(&steep[block]);
+  }
+
+ private:
+  /// A row of a square, with the cells west and east of it.
+  struct Row {
+    Quanta heights[side + 2];
+    Four<Quanta> sand;
+    /// The lower one of the two beside the nth cell.
+    DESERT_HD Quanta beside(int n) const { return lower(heights[n], heights[n + 2]); }
+  };
+  /// A place on an axis, or one that is next to the axis: −1 if nothing is there.
+  DESERT_HD static int place(int p, int cells, bool periodic) {
+    if (p >= 0 && p < cells) return p;
+    return periodic ? wrap(p, cells) : -1;
+  }
+  /// From column x on, between columns `before` and `after`, if these are there; of walls if y is not. What
+  /// is not there is read from elsewhere first: then no load waits for an answer.
+  DESERT_HD Row row_at(int before, int x, int after, int y) const {
+    const LevelView& level = too_steep.level;
+    const int first = level.grid.index(0, y >= 0 ? y : 0);
+    Row row;
+    row.sand = four_at(static_cast<const Quanta*>(level.sand) + first + x);
+    const Four<Quanta> ground = four_at(level.ground + first + x);
+    row.heights[0] = level.height(first + (before >= 0 ? before : x));
+    row.heights[side + 1] = level.height(first + (after >= 0 ? after : x));
+    for (int n = 0; n < side; ++n) {
+      const Quanta top = ground.values[n];
+      row.heights[n + 1] = level.soil || level.obstacle
+                               ? level.height(first + x + n)
+                               : (top >= wall_height ? wall_height : top + row.sand.values[n]);
+    }
+    if (before < 0) row.heights[0] = wall_height;
+    if (after < 0) row.heights[side + 1] = wall_height;
+    if (y < 0)
+      for (Quanta& height : row.heights) height = wall_height;
+    return row;
+  }
+  /// In the square whose south-west corner is (x, y).
+  DESERT_HD bool is_any(int west, int south) const {
+    const Grid& g = too_steep.level.grid;
+    for (int y = south; y < south + side && y < g.height; ++y)
+      for (int x = west; x < west + side && x < g.width; ++x)
+        if (too_steep(x, y)) return true;
+    return false;
+  }
+  /// Likewise where rows are whole.
+  DESERT_HD bool is_any_of_fours(int x, int y) const {
+    const LevelView& level = too_steep.level;
+    const Grid& g = level.grid;
+    const int before = place(x - 1, g.width, g.periodic_x), after = place(x + side, g.width, g.periodic_x);
+    const auto row_number = [&](int n) {
+      return row_at(before, x, after, place(y + n, g.height, g.periodic_y));
+    };
+    bool any = false;
+    Row below = row_number(-1), row = row_number(0);
+    for (int n = 0; n < side; ++n) {
+      if (y + n >= g.height) break;
+      const Row above = row_number(n + 1);
+      const Four<float> repose = four_at(level.repose + g.index(x, y + n));
+      for (int k = 0; k < side; ++k)
+        any = any || too_steep(row.heights[k + 1], row.sand.values[k], repose.values[k],
+                               lower(row.beside(k), lower(below.heights[k + 1], above.heights[k + 1])),
+                               lower(below.beside(k), above.beside(k)));
+      below = row;
+      row = above;
+    }
+    return any;
+  }
+  DESERT_HD static Quanta lower(Quanta a, Quanta b) { return a < b ? a : b; }
+};
+
+}  // namespace desert_sim::avalanching

@@ -1,0 +1,259 @@
+#pragma once
+/// The way of a tile's patches from the grid to shared memory and back.
+
+#include "kernels/avalanching/tuned/sweeps.cuh"
+
+namespace desert_sim::avalanching::tuned {
+
+/// A value of each cell of a patch.
+template <class T>
+struct OfPatch {
+  Four<T> rows[Patch::side];
+  __device__ T& operator[](int n) { return rows[n / Patch::side].values[n % Patch::side]; }
+};
+
+/// The ground of all patches [quanta], kept for what follows the sweeps; or nothing.
+struct Ground {
+  Four<Quanta> rows[Patch::side][threads];
+};
+
+/// A thread's patch in the grid. `whole`: width and height of the grid are multiples of four, as tiles'
+/// offsets are, so that patches lie in the grid as a whole, their rows aligned, or not at all.
+template <bool whole>
+struct Place {
+  const RelaxTile& law;
+  int x, y;  ///< of its first cell; if `whole`, in the grid, −1 if it is not there; else in the tile
+
+  __device__ explicit Place(const RelaxTile& tile)
+      : law(tile),
+        x(static_cast<int>(threadIdx.x) % patches * Patch::side),
+        y(static_cast<int>(threadIdx.x) / patches * Patch::side) {
+    if (!whole) return;
+    x = grid_x(x);
+    y = grid_y(y);
+  }
+  __device__ bool there() const { return x >= 0 && y >= 0; }  ///< if `whole`
+  __device__ bool there(int n) const { return whole ? there() : cell(n / Patch::side, n % Patch::side) >= 0; }
+  /// The grid's cell, or −1.
+  __device__ int cell(int row, int column) const {
+    const int width = law.level.grid.width;
+    if (whole) return there() ? (y + row) * width + x + column : -1;
+    const int there_x = grid_x(x + column), there_y = grid_y(y + row);
+    return there_x < 0 || there_y < 0 ? -1 : there_y * width + there_x;
+  }
+  /// What the coarse cells have changed by, of which the cells of two rows are the children.
+  __device__ Two<Quanta> changes(int row) const {
+    const Prolong& from = law.from_coarse;
+    if constexpr (whole) {
+      if (!there()) return {};
+      const int i = from.coarse.index(x / 2, (y + row) / 2);
+      const Two<Quanta> after = beside_at<2>(from.sand_after + i),
+                        before = beside_at<2>(from.sand_before + i);
+      return {after.values[0] - before.values[0], after.values[1] - before.values[1]};
+    } else {
+      return {change(row, 0), change(row, 2)};
+    }
+  }
+
+  /// What stands for cells that are not there is of no account: their heights are walls'.
+  template <class T>
+  __device__ void fetch(const T* from, OfPatch<T>& to) const {
+#pragma unroll
+    for (int row = 0; row < Patch::side; ++row) {
+      if constexpr (whole) {
+        to.rows[row] = four_at(from + (there() ? cell(row, 0) : 0));
+      } else {
+#pragma unroll
+        for (int n = 0; n < Patch::side; ++n) {
+          const int i = cell(row, n);
+          to.rows[row].values[n] = from[i < 0 ? 0 : i];
+        }
+      }
+    }
+  }
+  __device__ void put_row(Quanta* to, int row, const Four<Quanta>& four) const {
+    if constexpr (whole) {
+      if (there()) put_four(to + cell(row, 0), four);
+    } else {
+#pragma unroll
+      for (int n = 0; n < Patch::side; ++n)
+        if (const int i = cell(row, n); i >= 0) to[i] = four.values[n];
+    }
+  }
+
+ private:
+  __device__ Quanta change(int row, int column) const {
+    const Prolong& from = law.from_coarse;
+    const int there_x = grid_x(x + column), there_y = grid_y(y + row);
+    if (there_x < 0 || there_y < 0 || !from.coarse.inside(there_x / 2, there_y / 2)) return 0;
+    return from.change(from.coarse.index(there_x / 2, there_y / 2));
+  }
+  __device__ int grid_x(int n) const { return law.grid_x(static_cast<int>(blockIdx.x), n); }
+  __device__ int grid_y(int n) const { return law.grid_y(static_cast<int>(blockIdx.y), n); }
+};
+
+/// Of all values in a warp.
+__device__ inline int lowest_of_warp(int value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_min_sync(0xffffffffu, value);
+#else
+  for (int step = 16; step > 0; step /= 2) value = min(value, __shfl_xor_sync(0xffffffffu, value, step));
+  return value;
+#endif
+}
+__device__ inline int highest_of_warp(int value) { return ~lowest_of_warp(~value); }
+
+/// Of the block, by what each thread has found.
+__device__ inline Range range_of_block(Shared& shared, Range range) {
+  range = {lowest_of_warp(range.lowest), highest_of_warp(range.highest),
+           highest_of_warp(range.highest_ground)};
+  if (threadIdx.x % 32 == 0) shared.range[threadIdx.x / 32] = range;
+  __syncthreads();
+  for (int n = 0; n < warps; ++n) {
+    const Range& other = shared.range[n];
+    range = {min(range.lowest, other.lowest), max(range.highest, other.highest),
+             max(range.highest_ground, other.highest_ground)};
+  }
+  return range;
+}
+
+constexpr int families = Patch::side / 2;  ///< of a coarse cell's four children, along an axis
+
+/// What the patch's families get from the coarse level.
+template <bool whole>
+__device__ void fetch_changes(const Place<whole>& place, Two<Quanta> (&change)[families]) {
+#pragma unroll
+  for (int row = 0; row < families; ++row)
+    change[row] = place.law.from_coarse.sand_after ? place.changes(2 * row) : Two<Quanta>{};
+}
+
+/// Hands it to their sand.
+__device__ inline void prolong(const Two<Quanta> (&change)[families], OfPatch<Quanta>& sand) {
+  const auto for_each_family = [&](const auto& body) {
+#pragma unroll
+    for (int n = 0; n < families * families; ++n) {
+      const int row = n / families, column = n % families;
+      Quanta *south = sand.rows[2 * row].values + 2 * column,
+             *north = sand.rows[2 * row + 1].values + 2 * column;
+      body(change[row].values[column], south[0], south[1], north[0], north[1]);
+    }
+  };
+  bool enough = true;  // asked for all before any changes: one branch, which next to no patch takes
+  for_each_family([&](Quanta d, Quanta& sw, Quanta& se, Quanta& nw, Quanta& ne) {
+    enough = enough && have_enough(d, sw, se, nw, ne);
+  });
+  if (enough)
+    for_each_family([&](Quanta d, Quanta& sw, Quanta& se, Quanta& nw, Quanta& ne) {
+      sw += d, se += d, nw += d, ne += d;
+    });
+  else
+    for_each_family(
+        [](Quanta d, Quanta& sw, Quanta& se, Quanta& nw, Quanta& ne) { hand_down(d, sw, se, nw, ne); });
+}
+
+/// Of the ground, from wall_height on for walls, the patch's heights.
+template <bool whole>
+__device__ void add_up(const Place<whole>& place, OfPatch<Quanta>& height, OfPatch<Quanta>& sand) {
+  const LevelView& level = place.law.level;
+  if (level.soil) {
+    OfPatch<Quanta> soil;
+    place.fetch(level.soil, soil);
+#pragma unroll
+    for (int n = 0; n < Patch::cells; ++n) height[n] += height[n] < wall_height ? soil[n] : 0;
+  }
+  if (level.obstacle) {
+    OfPatch<float> obstacle;
+    place.fetch(level.obstacle, obstacle);
+#pragma unroll
+    for (int n = 0; n < Patch::cells; ++n) height[n] = obstacle[n] > 0.0f ? wall_height : height[n];
+  }
+#pragma unroll
+  for (int n = 0; n < Patch::cells; ++n) {
+    height[n] += sand[n];
+    if (!place.there(n)) height[n] = wall_height;
+  }
+}
+
+/// What a patch adds to its tile's.
+__device__ inline Range range_of_patch(OfPatch<Quanta>& height, OfPatch<Quanta>& sand, bool& walls) {
+  Range range{height[0], height[0], height[0] - sand[0]};
+#pragma unroll
+  for (int n = 1; n < Patch::cells; ++n)
+    range = {min(range.lowest, height[n]), max(range.highest, height[n]),
+             max(range.highest_ground, height[n] - sand[n])};
+  walls = range.highest >= wall_height;
+  if (walls) {
+    range.highest = range.highest_ground = -wall_height;
+#pragma unroll
+    for (int n = 0; n < Patch::cells; ++n)
+      if (height[n] < wall_height)
+        range = {range.lowest, max(range.highest, height[n]), max(range.highest_ground, height[n] - sand[n])};
+  }
+  return range;
+}
+
+/// Shared memory from the grid. `kept`: or null.
+template <bool whole>
+__device__ Range load(const Place<whole>& place, Shared& shared, Ground* kept) {
+  const LevelView& level = place.law.level;
+  OfPatch<Quanta> height, sand;
+  OfPatch<float> drop;
+  Two<Quanta> change[families];
+  place.fetch(level.ground, height);
+  place.fetch(static_cast<const Quanta*>(level.sand), sand);
+  fetch_changes(place, change);
+  place.fetch(level.repose, drop);
+  // While all that is on its way.
+  if (threadIdx.x < side + Patch::side)
+    shared.share[threadIdx.x] = place.law.share(static_cast<int>(threadIdx.x));
+  prolong(change, sand);
+  add_up(place, height, sand);
+  if (kept) {
+#pragma unroll
+    for (int row = 0; row < Patch::side; ++row) {
+      Four<Quanta>& ground = kept->rows[row][threadIdx.x];
+#pragma unroll
+      for (int n = 0; n < Patch::side; ++n)
+        ground.values[n] = height.rows[row].values[n] - sand.rows[row].values[n];
+    }
+  }
+  bool walls;
+  const Range range = range_of_block(shared, range_of_patch(height, sand, walls));
+  const Units units(range.lowest, range.highest, level.quanta_per_cell);
+  const int px = static_cast<int>(threadIdx.x) % patches, py = static_cast<int>(threadIdx.x) / patches;
+  const auto at = [&](PerCell& values, int n) -> float& {
+    return values.at(px * Patch::side + n % Patch::side, py * Patch::side + n / Patch::side);
+  };
+  if (!range.deep())
+#pragma unroll
+    for (int n = 0; n < Patch::cells; ++n) at(shared.ground, n) = units.ground(height[n], sand[n]);
+#pragma unroll
+  for (int n = 0; n < Patch::cells; ++n) {
+    const float h = units.height(height[n]);
+    at(shared.h, n) = h;
+    at(shared.drop, n) = units.drop(drop[n], level.quanta_per_cell);
+    sand[n] -= units.of_height(h);
+  }
+  if (walls)
+#pragma unroll
+    for (int n = 0; n < Patch::cells; ++n)
+      if (height[n] >= wall_height) {
+        at(shared.h, n) = at(shared.ground, n) = at(shared.drop, n) = Units::wall;
+        sand[n] += units.of_height(units.height(height[n])) - units.of_height(Units::wall);
+      }
+#pragma unroll
+  for (int row = 0; row < Patch::side; ++row) shared.base[row][threadIdx.x] = sand.rows[row];
+  return range;
+}
+
+/// The sand of a row of the patch.
+__device__ inline Four<Quanta> sand_of_row(Shared& shared, const Units& units, int row) {
+  const int px = static_cast<int>(threadIdx.x) % patches, py = static_cast<int>(threadIdx.x) / patches;
+  Four<Quanta> sand = shared.base[row][threadIdx.x];
+#pragma unroll
+  for (int n = 0; n < Patch::side; ++n)
+    sand.values[n] += units.of_height(shared.h.at(px * Patch::side + n, py * Patch::side + row));
+  return sand;
+}
+
+}  // namespace desert_sim::avalanching::tuned

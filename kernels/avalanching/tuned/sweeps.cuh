@@ -1,0 +1,111 @@
+#pragma once
+/// A tile in a GPU's shared memory, and sweeps over it; what for and in which order avalanching_tile.cu says.
+
+#include "kernels/avalanching/tile.hpp"
+#include "kernels/backend/vec4.hpp"
+
+namespace desert_sim::avalanching::tuned {
+
+constexpr int side = Tiles::side, patches = RelaxTile::patches, threads = patches * patches;
+constexpr int warps = threads / 32;
+
+/// One value of each cell of a tile. Columns 0, 4, 8 … lie apart from columns 1, 5, 9 … and so on, rows so
+/// that the cells which the threads of a warp fetch at once lie in 32 banks, wherever patches are.
+struct PerCell {
+  static constexpr int stride = patches + 2;
+  float values[Patch::side][side * stride];
+  __device__ float& at(int x, int y) { return values[x % Patch::side][y * stride + x / Patch::side]; }
+};
+
+struct Shared {
+  PerCell h, ground, drop;
+  Four<Quanta> base[Patch::side][threads];  ///< of a cell's sand what does not change with its height
+  float share[side + Patch::side];          ///< of the gaps, as ShareOfGap counts them
+  Range range[warps];
+  int moved[2][warps];  ///< nothing, something, much; of sweeps in turns
+};
+
+/// Where a patch's cell lies among its registers.
+struct InRegisters {
+  __device__ constexpr int operator()(int row, int column) const { return row * Patch::side + column; }
+};
+
+/// The pairs of this thread's patch, shifted so far; the most that one of them moves.
+template <bool deep>
+__device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& shift) {
+  constexpr unsigned bytes = sizeof(float), row_bytes = PerCell::stride * bytes;
+  const unsigned px = threadIdx.x % patches, py = threadIdx.x / patches;
+  const unsigned next_x = (px + 1) % patches, next_y = (py + 1) % patches;
+  unsigned columns[Patch::side], rows[Patch::side];  // of PerCell, in bytes: then a place is one addition
+#pragma unroll
+  for (int n = 0; n < Patch::side; ++n) {
+    const unsigned x = static_cast<unsigned>(shift.x + n), y = static_cast<unsigned>(shift.y + n);
+    columns[n] = x % Patch::side * (side * row_bytes) + (x < Patch::side ? px : next_x) * bytes;
+    rows[n] = y % Patch::side * row_bytes + (y < Patch::side ? py : next_y) * (Patch::side * row_bytes);
+  }
+  const auto at = [&](PerCell& values, int n) -> float& {
+    char* const first = reinterpret_cast<char*>(values.values);
+    return *reinterpret_cast<float*>(first + (rows[n / Patch::side] + columns[n % Patch::side]));
+  };
+  float h[Patch::cells], ground[Patch::cells], drop[Patch::cells];
+#pragma unroll
+  for (int n = 0; n < Patch::cells; ++n) {
+    h[n] = at(shared.h, n);
+    if (!deep) ground[n] = at(shared.ground, n);
+    drop[n] = at(shared.drop, n);
+  }
+  Shares<1> shares;
+#pragma unroll
+  for (int n = 0; n + 1 < Patch::side; ++n) {
+    shares.x[n][0] = shared.share[px * Patch::side + shift.x + n];
+    shares.y[n] = shared.share[py * Patch::side + shift.y + n];
+  }
+  float most = 0.0f;
+  PairsOfPatches<1, deep, InRegisters>{h, ground, drop, {}, shares, &most}.relax();
+#pragma unroll
+  for (int n = 0; n < Patch::cells; ++n) at(shared.h, n) = h[n];
+  return most;
+}
+
+/// Code for each of the four shifts, in which nothing is left to compute of where cells lie. It pays where
+/// tiles take many sweeps; of few, fetching the instructions takes longer than it saves.
+enum class Code { one_for_all_shifts, one_a_shift };
+
+template <bool deep, Code code>
+__device__ float sweep_patch(Shared& shared, const PatchShift& shift) {
+  static_assert(Patch::side == 4);
+  if constexpr (code == Code::one_a_shift) switch (shift.x) {
+      case 0:
+        return sweep_patch<deep>(shared, PatchShift(0));
+      case 1:
+        return sweep_patch<deep>(shared, PatchShift(1));
+      case 2:
+        return sweep_patch<deep>(shared, PatchShift(2));
+      default:
+        return sweep_patch<deep>(shared, PatchShift(3));
+    }
+  return sweep_patch<deep>(shared, shift);
+}
+
+/// Sweeps over what is loaded, until the tile is at rest or has had enough of them. Whether anything moved.
+template <bool deep, Code code>
+__device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units) {
+  const float much = units.drop(law.plenty, law.level.quanta_per_cell);
+  bool moved = false, moved_before = true;
+  for (int n = 0;; ++n) {
+    const float most = sweep_patch<deep, code>(shared, PatchShift(n, law.tiles.offset));
+    const bool any = __any_sync(0xffffffffu, most > 0.0f), any_much = __any_sync(0xffffffffu, most > much);
+    if (threadIdx.x % 32 == 0) shared.moved[n % 2][threadIdx.x / 32] = any_much ? 2 : (any ? 1 : 0);
+    __syncthreads();
+    int here = 0;
+#pragma unroll
+    for (int k = 0; k < warps; ++k) here = max(here, shared.moved[n % 2][k]);
+    moved = moved || here > 0;
+    if (here == 0 && !moved_before) break;
+    if (law.has_had_enough(n + 1, here == 2)) break;
+    moved_before = here > 0;
+  }
+  return moved;
+}
+
+}  // namespace desert_sim::avalanching::tuned

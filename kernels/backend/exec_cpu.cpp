@@ -1,0 +1,203 @@
+#include <fftw3.h>
+#include <omp.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <mutex>
+#include <new>
+
+#include "kernels/backend/exec.hpp"
+#include "kernels/backend/fft.hpp"
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+/// FFTW's planner is not thread-safe.
+std::mutex& planner() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// One thread a field, whatever the Exec has: plans for other numbers of threads may add in another order,
+/// and the hash of a run must not depend on them. The grid of the wind is coarse, so this costs little.
+class FftwTransform final : public Fft {
+ public:
+  FftwTransform(int width, int height, int fields, int threads)
+      : values_(width * height), fields_(fields), threads_(threads) {
+    const std::lock_guard<std::mutex> lock(planner());
+    auto* memory = static_cast<fftwf_complex*>(fftwf_malloc(sizeof(fftwf_complex) * values_ * fields));
+    if (!memory)
+      throw ConfigError("no memory for a transform of " + std::to_string(width) + " x " +
+                        std::to_string(height));
+    const bool alike = fields == 1 || fftwf_alignment_of(memory[0]) == fftwf_alignment_of(memory[values_]);
+    const unsigned flags = FFTW_ESTIMATE | (alike ? 0u : FFTW_UNALIGNED);
+    forward_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_FORWARD, flags);
+    inverse_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_BACKWARD, flags);
+    fftwf_free(memory);
+    if (!forward_ || !inverse_)
+      throw Error("FFTW made no plan for " + std::to_string(width) + " x " + std::to_string(height));
+  }
+  ~FftwTransform() override {
+    const std::lock_guard<std::mutex> lock(planner());
+    fftwf_destroy_plan(forward_);
+    fftwf_destroy_plan(inverse_);
+  }
+  void forward(Complex* values) override { execute(forward_, values); }
+  void inverse(Complex* values) override { execute(inverse_, values); }
+
+ private:
+  void execute(fftwf_plan plan, Complex* values) const {
+#pragma omp parallel for schedule(static) num_threads(threads_) if (fields_ > 1)
+    for (int n = 0; n < fields_; ++n) {
+      auto* v = reinterpret_cast<fftwf_complex*>(values + static_cast<std::ptrdiff_t>(n) * values_);
+      fftwf_execute_dft(plan, v, v);
+    }
+  }
+  int values_, fields_, threads_;
+  fftwf_plan forward_ = nullptr, inverse_ = nullptr;
+};
+
+/// A copy that was done when it was started.
+class DoneCopy final : public HostCopy {
+ public:
+  explicit DoneCopy(Exec& exec) : exec_(exec) {}
+  void wait() override {}
+  void fetch(void* to, const void* from, std::size_t bytes) override {
+    if (to != from) exec_.download(to, from, bytes);
+  }
+
+ private:
+  Exec& exec_;
+};
+
+constexpr std::size_t alignment = 64;  // a cache line, and what FFTW's fastest code wants
+
+/// Calls work(begin, size) for parts of so many bytes, by all threads where there is more than one part.
+template <class Work>
+void in_parts(std::size_t bytes, int threads, const Work& work) {
+  const std::ptrdiff_t part = 1 << 16, parts = (static_cast<std::ptrdiff_t>(bytes) + part - 1) / part;
+#pragma omp parallel for schedule(static) num_threads(threads) if (parts > 1)
+  for (std::ptrdiff_t n = 0; n < parts; ++n) {
+    const std::size_t begin = static_cast<std::size_t>(n * part);
+    work(begin, std::min(static_cast<std::size_t>(part), bytes - begin));
+  }
+}
+
+std::size_t machine_memory_available() {
+  std::ifstream info("/proc/meminfo");
+  std::string key, unit;
+  std::size_t kilobytes;
+  while (info >> key >> kilobytes >> unit)
+    if (key == "MemAvailable:") return kilobytes * 1024;
+  return static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) *
+         static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// Within the limit of a container (control groups, version 2); its cache of files can be given up.
+std::size_t group_memory_available() {
+  constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+  const std::string folder = "/sys/fs/cgroup/memory.";
+  std::size_t most = 0, used = 0, cached = 0;
+  if (!(std::ifstream(folder + "max") >> most) || !(std::ifstream(folder + "current") >> used))
+    return unlimited;  // "max", or no such limit here
+  std::ifstream parts(folder + "stat");
+  std::string key;
+  std::size_t bytes;
+  while (parts >> key >> bytes)
+    if (key == "inactive_file") cached = bytes;
+  const std::size_t held = used - std::min(used, cached);
+  return most - std::min(most, held);
+}
+
+}  // namespace
+
+CpuExec::CpuExec(int threads) : threads_(threads > 0 ? threads : omp_get_num_procs()) {}
+
+std::string CpuExec::device() const {
+  std::ifstream info("/proc/cpuinfo");
+  std::string line, name = "CPU";
+  while (std::getline(info, line))
+    if (line.rfind("model name", 0) == 0) {
+      name = line.substr(line.find(':') + 2);
+      break;
+    }
+  return name + ", " + std::to_string(threads_) + (threads_ == 1 ? " thread" : " threads");
+}
+
+std::size_t host_memory_available() { return std::min(machine_memory_available(), group_memory_available()); }
+
+void* CpuExec::take(std::size_t bytes) {
+  void* memory = ::operator new(bytes, std::align_val_t(alignment), std::nothrow);
+  if (!memory) throw ConfigError("no memory for " + std::to_string(bytes) + " bytes");
+  return memory;
+}
+
+void CpuExec::give_back(void* memory) noexcept { ::operator delete(memory, std::align_val_t(alignment)); }
+
+void CpuExec::set_zero(void* memory, std::size_t bytes) {
+  in_parts(bytes, threads_, [=](std::size_t begin, std::size_t size) {
+    std::memset(static_cast<char*>(memory) + begin, 0, size);
+  });
+}
+
+void CpuExec::copy(void* to, const void* from, std::size_t bytes) {
+  in_parts(bytes, threads_, [=](std::size_t begin, std::size_t size) {
+    std::memcpy(static_cast<char*>(to) + begin, static_cast<const char*>(from) + begin, size);
+  });
+}
+
+std::unique_ptr<Fft> CpuExec::make_fft(int width, int height, int fields) {
+  return std::make_unique<FftwTransform>(width, height, fields, threads_);
+}
+
+std::unique_ptr<HostCopy> Exec::start_download(void* to, const void* from, std::size_t bytes) {
+  auto done = std::make_unique<DoneCopy>(*this);
+  done->fetch(to, from, bytes);
+  return done;
+}
+
+void Exec::repeat_while(const long long* go_on, const std::function<void()>& body) {
+  for (;;) {
+    long long word = 0;
+    download(&word, go_on, sizeof word);
+    if (word == 0) return;
+    body();
+  }
+}
+
+std::unique_ptr<Recording> Exec::record(const std::function<void()>&) {
+  throw Error(std::string("backend ") + backend() + " records nothing");
+}
+
+std::unique_ptr<Exec> make_exec(const std::string& backend, int threads, std::string* why) {
+  const auto say = [&](const std::string& reason) {
+    if (why) *why = reason;
+  };
+  if (backend != "auto" && backend != "cpu" && backend != "cuda")
+    throw ConfigError("backend '" + backend + "' is not one of auto, cpu, cuda");
+  if (backend == "cpu") {
+    say("cpu, as asked");
+    return std::make_unique<CpuExec>(threads);
+  }
+  const CudaStatus cuda = cuda_status();
+#if DESERT_WITH_CUDA
+  if (cuda.usable) {
+    say(backend == "auto" ? "cuda, because there is a device" : "cuda, as asked");
+    return std::make_unique<CudaExec>();
+  }
+#endif
+  if (backend == "cuda") throw ConfigError("backend cuda: " + cuda.reason);
+  say("cpu, because " + cuda.reason);
+  return std::make_unique<CpuExec>(threads);
+}
+
+#if !DESERT_WITH_CUDA
+CudaStatus cuda_status() { return {false, "this build has no CUDA"}; }
+#endif
+
+}  // namespace desert_sim

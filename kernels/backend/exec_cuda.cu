@@ -1,0 +1,322 @@
+#include <cuda_runtime.h>
+#include <cufft.h>
+
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "kernels/backend/fft.hpp"
+#include "kernels/backend/for_each_cuda.cuh"
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+void check_cufft(cufftResult status, const char* what) {
+  if (status != CUFFT_SUCCESS)
+    throw CudaError(std::string("cuFFT: ") + what + ": error " + std::to_string(status));
+}
+
+class CufftTransform final : public Fft {
+ public:
+  CufftTransform(cudaStream_t stream, int width, int height, int fields) {
+    int size[] = {height, width};
+    const int values = width * height;
+    check_cufft(cufftPlanMany(&plan_, 2, size, nullptr, 1, values, nullptr, 1, values, CUFFT_C2C, fields),
+                "plan");
+    check_cufft(cufftSetStream(plan_, stream), "stream");
+  }
+  ~CufftTransform() override { cufftDestroy(plan_); }
+  void forward(Complex* values) override { execute(values, CUFFT_FORWARD); }
+  void inverse(Complex* values) override { execute(values, CUFFT_INVERSE); }
+  std::size_t bytes() const override {
+    std::size_t bytes = 0;
+    check_cufft(cufftGetSize(plan_, &bytes), "size");
+    return bytes;
+  }
+
+ private:
+  void execute(Complex* values, int direction) {
+    auto* v = reinterpret_cast<cufftComplex*>(values);
+    check_cufft(cufftExecC2C(plan_, v, v, direction), "transform");
+  }
+  cufftHandle plan_ = 0;
+};
+
+cudaStream_t as_stream(void* stream) { return static_cast<cudaStream_t>(stream); }
+cudaEvent_t as_event(void* event) { return static_cast<cudaEvent_t>(event); }
+
+/// Destructors and releases cannot throw: they log.
+void log_failure(cudaError_t status, const char* what) noexcept {
+  if (status != cudaSuccess)
+    std::fprintf(stderr, "desert_sim: CUDA: %s: %s\n", what, cudaGetErrorString(status));
+}
+
+/// On a stream of its own; its event sleeps instead of spinning, because who waits is not in a hurry.
+class CudaCopy final : public HostCopy {
+ public:
+  explicit CudaCopy(cudaStream_t stream) : stream_(stream) {
+    check_cuda(cudaEventCreateWithFlags(&done_, cudaEventDisableTiming | cudaEventBlockingSync),
+               "making an event");
+  }
+  ~CudaCopy() override { log_failure(cudaEventDestroy(done_), "ending an event"); }
+  void start(void* to, const void* from, std::size_t bytes) {
+    check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, stream_), "copy to the host");
+    check_cuda(cudaEventRecord(done_, stream_), "marking a copy's end");
+  }
+  void wait() override { check_cuda(cudaEventSynchronize(done_), "waiting for a copy"); }
+  void fetch(void* to, const void* from, std::size_t bytes) override {
+    start(to, from, bytes);
+    wait();
+  }
+  cudaEvent_t done() const { return done_; }
+
+ private:
+  cudaStream_t stream_;
+  cudaEvent_t done_ = nullptr;
+};
+
+/// A CUDA graph of what a stream was given.
+class GraphRecording final : public Recording {
+ public:
+  GraphRecording(cudaStream_t stream, const std::function<void()>& work) : stream_(stream) {
+    check_cuda(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal), "beginning a recording");
+    cudaGraph_t graph = nullptr;
+    try {
+      work();
+    } catch (...) {
+      cudaStreamEndCapture(stream, &graph);  // its failure is the one that is under way
+      if (graph) cudaGraphDestroy(graph);
+      throw;
+    }
+    check_cuda(cudaStreamEndCapture(stream, &graph), "ending a recording");
+    const cudaError_t made = cudaGraphInstantiateWithFlags(&executable_, graph, 0);
+    cudaGraphDestroy(graph);
+    check_cuda(made, "making a graph");
+  }
+  ~GraphRecording() override {
+    log_failure(cudaStreamSynchronize(stream_), "waiting for a graph");
+    log_failure(cudaGraphExecDestroy(executable_), "ending a graph");
+  }
+  void replay() override { check_cuda(cudaGraphLaunch(executable_, stream_), "launch of a graph"); }
+
+ private:
+  cudaStream_t stream_;
+  cudaGraphExec_t executable_ = nullptr;
+};
+
+#if CUDART_VERSION >= 13000  // the first whose functions for it have these arguments
+__global__ void look(cudaGraphConditionalHandle condition, const long long* go_on) {
+  cudaGraphSetConditional(condition, *go_on != 0);
+}
+
+/// Adds a loop to the graph that `stream` notes, whose body is what `body_stream` is given by `body`.
+void note_loop(cudaStream_t stream, cudaStream_t body_stream, const long long* go_on,
+               const std::function<void()>& body) {
+  const char* const what = "recording a loop";
+  cudaStreamCaptureStatus status;
+  unsigned long long id = 0;
+  cudaGraph_t graph = nullptr;
+  const auto info = [&](const cudaGraphNode_t** before, const cudaGraphEdgeData** edges, std::size_t* count) {
+    check_cuda(cudaStreamGetCaptureInfo(stream, &status, &id, &graph, before, edges, count), what);
+  };
+  info(nullptr, nullptr, nullptr);
+  cudaGraphConditionalHandle condition;
+  check_cuda(cudaGraphConditionalHandleCreate(&condition, graph, 0, cudaGraphCondAssignDefault), what);
+  look<<<1, 1, 0, stream>>>(condition, go_on);
+  check_cuda(cudaGetLastError(), what);
+  const cudaGraphNode_t* before = nullptr;
+  const cudaGraphEdgeData* edges = nullptr;
+  std::size_t count = 0;
+  info(&before, &edges, &count);
+  cudaGraphNodeParams loop{};
+  loop.type = cudaGraphNodeTypeConditional;
+  loop.conditional.handle = condition;
+  loop.conditional.type = cudaGraphCondTypeWhile;
+  loop.conditional.size = 1;
+  cudaGraphNode_t node = nullptr;
+  check_cuda(cudaGraphAddNode(&node, graph, before, edges, count, &loop), what);
+  check_cuda(cudaStreamBeginCaptureToGraph(body_stream, loop.conditional.phGraph_out[0], nullptr, nullptr, 0,
+                                           cudaStreamCaptureModeThreadLocal),
+             what);
+  cudaGraph_t noted = nullptr;
+  try {
+    body();
+    look<<<1, 1, 0, body_stream>>>(condition, go_on);
+    check_cuda(cudaGetLastError(), what);
+  } catch (...) {
+    cudaStreamEndCapture(body_stream, &noted);  // its failure is the one that is under way
+    throw;
+  }
+  check_cuda(cudaStreamEndCapture(body_stream, &noted), what);
+  check_cuda(cudaStreamUpdateCaptureDependencies(stream, &node, nullptr, 1, cudaStreamSetCaptureDependencies),
+             what);
+}
+#endif
+
+}  // namespace
+
+CudaStatus cuda_status() {
+  int count = 0;
+  const cudaError_t status = cudaGetDeviceCount(&count);
+  if (status != cudaSuccess) {
+    cudaGetLastError();
+    return {false, std::string("CUDA is not usable: ") + cudaGetErrorString(status)};
+  }
+  if (count == 0) return {false, "there is no CUDA device"};
+  return {true, ""};
+}
+
+CudaExec::CudaExec() {
+  cudaStream_t stream = nullptr;
+  check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream");
+  stream_ = stream;
+  check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream for copies");
+  copy_stream_ = stream;
+  cudaEvent_t event = nullptr;
+  check_cuda(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "making an event");
+  before_copy_ = event;
+  reduction_word_ = static_cast<long long*>(allocate(sizeof(long long)));
+  reduction_host_ = static_cast<long long*>(allocate_host(sizeof(long long)));
+}
+
+CudaExec::~CudaExec() {
+  release(reduction_word_, sizeof(long long));
+  release_host(reduction_host_);
+  log_failure(cudaEventDestroy(as_event(before_copy_)), "ending an event");
+  log_failure(cudaStreamDestroy(as_stream(copy_stream_)), "ending the stream for copies");
+  log_failure(cudaStreamDestroy(as_stream(stream_)), "ending a stream");
+}
+
+std::string CudaExec::device() const {
+  int device = 0;
+  cudaDeviceProp properties;
+  check_cuda(cudaGetDevice(&device), "asking for the device");
+  check_cuda(cudaGetDeviceProperties(&properties, device), "asking for the device's properties");
+  return properties.name;
+}
+
+std::size_t CudaExec::memory_available() const {
+  std::size_t available = 0, total = 0;
+  check_cuda(cudaMemGetInfo(&available, &total), "asking for memory");
+  return available;
+}
+
+void* CudaExec::take(std::size_t bytes) {
+  void* memory = nullptr;
+  const cudaError_t status = cudaMalloc(&memory, bytes ? bytes : 1);
+  if (status == cudaErrorMemoryAllocation) {
+    cudaGetLastError();
+    throw ConfigError("no memory on the GPU for " + std::to_string(bytes) + " bytes");
+  }
+  check_cuda(status, "allocation");
+  return memory;
+}
+
+void CudaExec::give_back(void* memory) noexcept { log_failure(cudaFree(memory), "releasing memory"); }
+
+void* CudaExec::allocate_host(std::size_t bytes) {
+  void* memory = nullptr;
+  const cudaError_t status = cudaMallocHost(&memory, bytes ? bytes : 1);
+  if (status == cudaErrorMemoryAllocation) {
+    cudaGetLastError();
+    throw ConfigError("no pinned memory for " + std::to_string(bytes) + " bytes");
+  }
+  check_cuda(status, "allocation of pinned memory");
+  return memory;
+}
+
+void CudaExec::release_host(void* memory) noexcept {
+  log_failure(cudaFreeHost(memory), "releasing pinned memory");
+}
+
+void CudaExec::set_zero(void* memory, std::size_t bytes) {
+  check_cuda(cudaMemsetAsync(memory, 0, bytes, as_stream(stream_)), "clearing memory");
+}
+
+void CudaExec::copy(void* to, const void* from, std::size_t bytes) {
+  check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, as_stream(stream_)), "copy");
+}
+
+void CudaExec::upload(void* to, const void* from, std::size_t bytes) {
+  check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, as_stream(stream_)), "upload");
+  synchronise();
+}
+
+void CudaExec::download(void* to, const void* from, std::size_t bytes) {
+  check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, as_stream(stream_)), "download");
+  synchronise();
+}
+
+std::unique_ptr<HostCopy> CudaExec::start_download(void* to, const void* from, std::size_t bytes) {
+  auto copy = std::make_unique<CudaCopy>(as_stream(copy_stream_));
+  check_cuda(cudaEventRecord(as_event(before_copy_), as_stream(stream_)), "marking what a copy waits for");
+  check_cuda(cudaStreamWaitEvent(as_stream(copy_stream_), as_event(before_copy_), 0),
+             "a copy's wait for work");
+  copy->start(to, from, bytes);
+  return copy;
+}
+
+void CudaExec::follow(const HostCopy& copy) {
+  check_cuda(cudaStreamWaitEvent(as_stream(stream_), static_cast<const CudaCopy&>(copy).done(), 0),
+             "waiting for a copy on the device");
+}
+
+void CudaExec::synchronise() {
+  check_cuda(cudaStreamSynchronize(as_stream(stream_)), "waiting for the device");
+}
+
+std::unique_ptr<Recording> CudaExec::record(const std::function<void()>& work) {
+  return std::make_unique<GraphRecording>(as_stream(stream_), work);
+}
+
+bool CudaExec::records_repeats() const { return CUDART_VERSION >= 13000; }
+
+void CudaExec::repeat_while(const long long* go_on, const std::function<void()>& body) {
+#if CUDART_VERSION >= 13000
+  cudaStreamCaptureStatus status;
+  check_cuda(cudaStreamIsCapturing(as_stream(stream_), &status), "asking whether work is recorded");
+  if (status == cudaStreamCaptureStatusActive) {
+    cudaStream_t inner = nullptr;  // a loop in a loop has another
+    check_cuda(cudaStreamCreateWithFlags(&inner, cudaStreamNonBlocking), "making a stream");
+    void* const outer = std::exchange(stream_, inner);
+    try {
+      note_loop(as_stream(outer), inner, go_on, body);
+    } catch (...) {
+      stream_ = outer;
+      log_failure(cudaStreamDestroy(inner), "ending a stream");
+      throw;
+    }
+    stream_ = outer;
+    check_cuda(cudaStreamDestroy(inner), "ending a stream");
+    return;
+  }
+#endif
+  Exec::repeat_while(go_on, body);
+}
+
+std::size_t CudaExec::memory_for_lines() const {
+  const auto ask = [](cudaDeviceAttr what) {
+    int device = 0, value = 0;
+    check_cuda(cudaGetDevice(&device), "asking for the device");
+    check_cuda(cudaDeviceGetAttribute(&value, what, device), "asking for the device's limits");
+    return value;
+  };
+  // In graphs, and with parameters that are not copied, only from these on.
+  if (CUDART_VERSION < 12000 || ask(cudaDevAttrComputeCapabilityMajor) < 7 ||
+      !ask(cudaDevAttrCooperativeLaunch))
+    return 0;
+  return static_cast<std::size_t>(ask(cudaDevAttrMaxSharedMemoryPerBlockOptin));
+}
+
+std::unique_ptr<Fft> CudaExec::make_fft(int width, int height, int fields) {
+  return std::make_unique<CufftTransform>(as_stream(stream_), width, height, fields);
+}
+
+long long CudaExec::read_reduction_word() {
+  download(reduction_host_, reduction_word_, sizeof(long long));
+  return *reduction_host_;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,331 @@
+#pragma once
+/// Loops over cells and tiles on the CPU, with OpenMP; see for_each.hpp.
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/backend/for_each.hpp"
+#include "kernels/field/quanta.hpp"
+
+namespace desert_sim {
+
+// ---- Instruction sets: inner loops are compiled for several, and the widest that the processor has is
+// taken. The compiler fuses no multiplication with an addition on any of them (-ffp-contract=off): all give
+// the same bits. A law's own fused() is one instruction on all but the oldest.
+
+enum class InstructionSet { oldest, avx2, avx512 };
+
+inline InstructionSet widest_instructions() {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return InstructionSet::oldest;
+  for (bool has : {__builtin_cpu_supports("avx512f") != 0, __builtin_cpu_supports("avx512dq") != 0,
+                   __builtin_cpu_supports("avx512bw") != 0, __builtin_cpu_supports("avx512vl") != 0})
+    if (!has) return InstructionSet::avx2;
+  return InstructionSet::avx512;
+#else
+  return InstructionSet::oldest;
+#endif
+}
+inline const InstructionSet instruction_set = widest_instructions();
+
+#if defined(__x86_64__)
+#define DESERT_FOR_AVX2 __attribute__((noinline, target("avx2,fma")))
+#define DESERT_AVX512 "avx512f,avx512dq,avx512bw,avx512vl,avx2,fma"
+#define DESERT_FOR_AVX512 __attribute__((noinline, target(DESERT_AVX512)))
+#if defined(__clang__)
+#define DESERT_FOR_AVX512_MASKS DESERT_FOR_AVX2  // it cannot be told the width
+#else
+#define DESERT_FOR_AVX512_MASKS __attribute__((noinline, target(DESERT_AVX512 ",prefer-vector-width=256")))
+#endif
+#else
+#define DESERT_FOR_AVX2
+#define DESERT_FOR_AVX512
+#define DESERT_FOR_AVX512_MASKS
+#endif
+
+template <class Work>
+void with_oldest(const Work& work) {
+  work();
+}
+template <class Work>
+DESERT_FOR_AVX2 void with_avx2(const Work& work) {
+  work();
+}
+template <class Work>
+DESERT_FOR_AVX512_MASKS void with_avx512_masks(const Work& work) {
+  work();
+}
+template <class Work>
+DESERT_FOR_AVX512 void with_avx512(const Work& work) {
+  work();
+}
+/// Calls work(), a lambda marked DESERT_INLINE, with vectors of at most 256 bits: wider ones made most laws
+/// no quicker, and the wind's slower. What AVX-512 has for choosing between values makes many quicker.
+template <class Work>
+void with_wide_instructions(const Work& work) {
+  if (instruction_set == InstructionSet::oldest) return with_oldest(work);
+  if (instruction_set == InstructionSet::avx512) return with_avx512_masks(work);
+  with_avx2(work);
+}
+/// Likewise, with the widest. Sweeps of tiles, which are nothing but arithmetic, are a third quicker so.
+template <class Work>
+void with_widest_instructions(const Work& work) {
+  if (instruction_set == InstructionSet::avx512) return with_avx512(work);
+  with_wide_instructions(work);
+}
+
+/// One thread as the whole team that works on a tile.
+struct CpuTeam {
+  static constexpr int patches_at_once = 8;  ///< patches of a tile that lie beside each other, as vectors
+  char* scratch;
+
+  /// Calls body(i) for i in 0…n−1; all of it is done when it returns.
+  template <class Body>
+  DESERT_HD void for_each(int n, const Body& body) const {
+    for (int i = 0; i < n; ++i) body(i);
+  }
+  /// The least of value(i) for i in 0…n−1.
+  template <class Value>
+  DESERT_HD int lowest(int n, const Value& value) const {
+    int least = value(0);
+    for (int i = 1; i < n; ++i) least = value(i) < least ? value(i) : least;
+    return least;
+  }
+  /// Calls value(i) once for each i in 0…n−1; the greatest, at least 0.
+  template <class Value>
+  DESERT_HD float most(int n, const Value& value) const {
+    float greatest = 0;
+    for (int i = 0; i < n; ++i) {
+      const float v = value(i);
+      greatest = v > greatest ? v : greatest;
+    }
+    return greatest;
+  }
+  /// Both for x in 0…width−1 and y in 0…height−1, which do not depend on each other.
+  template <class Body>
+  DESERT_HD void for_each(int width, int height, const Body& body) const {
+    for (int y = 0; y < height; ++y) {
+#pragma omp simd
+      for (int x = 0; x < width; ++x) body(x, y);
+    }
+  }
+  template <class Value>
+  DESERT_HD int lowest(int width, int height, const Value& value) const {
+    int least = value(0, 0);
+    for (int y = 0; y < height; ++y) {
+#pragma omp simd reduction(min : least)
+      for (int x = 0; x < width; ++x) {
+        const int v = value(x, y);
+        least = v < least ? v : least;
+      }
+    }
+    return least;
+  }
+  /// Calls body(y) for the rows of a tile; all are done when it returns.
+  template <class Body>
+  DESERT_HD void for_each_row(const Body& body) const {
+    for (int y = 0; y < Tiles::side; ++y) body(y);
+  }
+  /// Inside a row: body(n, k) for the cells n · count + k, which do not depend on each other; k is a
+  /// compile-time constant if that is of use.
+  template <int count, class Body>
+  DESERT_HD void for_each_in_row(const Body& body) const {
+#pragma omp simd
+    for (int n = 0; n < Tiles::side / count; ++n) unrolled<count>([&](auto k) DESERT_INLINE { body(n, k); });
+  }
+};
+
+/// Below so many cells, waking other threads costs more than they bring.
+constexpr int worth_threads = 16384;
+
+/// Pieces of work, 0 … count − 1, for the threads of a team. Each takes its own part, a few at a time, and
+/// then of the others' what these have not come to: the rest do not wait for a thread whose processor is
+/// taken from it, and where all goes well, each works on the same memory in every pass.
+class SharedWork {
+ public:
+  SharedWork(int threads, int count) : parts_(std::clamp(threads, 1, most_parts)) {
+    const auto start = [&](int part) { return std::int64_t{count} * part / parts_; };
+    for (int n = 0; n < parts_; ++n) {
+      part_[n].next = start(n);
+      part_[n].end = start(n + 1);
+    }
+    at_once_ = std::max(1, count / (parts_ * 16));
+  }
+  /// On each thread of the team: calls body(n) until there is nothing left to take.
+  template <class Body>
+  void work(const Body& body) {
+    const int own = omp_get_thread_num();
+    for (int n = 0; n < parts_; ++n) {
+      Part& part = part_[(own + n) % parts_];
+      for (;;) {
+        const std::int64_t first = part.next.fetch_add(at_once_, std::memory_order_relaxed);
+        if (first >= part.end) break;
+        const std::int64_t end = std::min(first + at_once_, part.end);
+        for (std::int64_t i = first; i < end; ++i) body(static_cast<int>(i));
+      }
+    }
+  }
+
+ private:
+  static constexpr int most_parts = 64;
+  struct alignas(64) Part {
+    std::atomic<std::int64_t> next{0};
+    std::int64_t end = 0;
+  };
+  int parts_;
+  std::int64_t at_once_;
+  Part part_[most_parts];
+};
+
+/// Calls law(x, y) for x in first … end−1. The law is copied, so that the compiler sees that no cell changes
+/// it.
+template <class Law>
+void for_each_in_row(const Law& law, int first, int end, int y) {
+  with_wide_instructions([&]() DESERT_INLINE {
+    const Law own = law;
+    const int from = first, to = end, row = y;
+#pragma omp simd
+    for (int x = from; x < to; ++x) own(x, row);
+  });
+}
+
+template <class Law>
+void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
+  SharedWork rows(exec.threads(), grid.height);
+#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
+  rows.work([&](int y) { for_each_in_row(law, 0, grid.width, y); });
+}
+
+template <class Inside, class Border>
+void for_each_cell(CpuExec& exec, const Grid& grid, const Bordered<Inside, Border>& law) {
+  SharedWork rows(exec.threads(), grid.height);
+#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
+  rows.work([&](int y) {
+    const bool inside = law.is_inside(y, grid.height);
+    const int begin = inside ? std::min(law.margin, grid.width) : grid.width;
+    const int end = std::max(begin, grid.width - law.margin);
+    for_each_in_row(law.border, 0, begin, y);
+    for_each_in_row(law.inside, begin, end, y);
+    for_each_in_row(law.border, end, grid.width, y);
+  });
+}
+
+/// The cells of a row send what they have to `add`.
+template <class Law, class Add>
+void add_row(const Law& law, int width, int y, const Add& add) {
+  with_wide_instructions([&]() DESERT_INLINE {
+    constexpr int most = 64;
+    typename Law::template Parcels<most> parcels;
+    const Law own = law;
+    const Add own_add = add;
+    const int row = y, end = width;
+    for (int first = 0; first < end; first += most) {
+      const int count = std::min(most, end - first);
+#pragma omp simd
+      for (int n = 0; n < count; ++n) own.prepare(first + n, row, parcels, n);
+      for (int n = 0; n < count; ++n) own.deliver(first + n, row, parcels, n, own_add);
+    }
+  });
+}
+
+/// Adds to the cells of the rows that a thread works on. What goes to others' rows is kept for when these are
+/// done with them. (With locked additions everywhere, saltation took three times as long.)
+struct AddToBand {
+  struct Kept {
+    int cell;
+    Quanta amount;
+  };
+  Quanta* sums;
+  std::size_t first, count;  ///< cells of the band
+  std::vector<Kept>* kept;
+
+  void operator()(int cell, Quanta amount) const {
+    if (static_cast<std::size_t>(cell) - first < count)
+      sums[cell] += amount;
+    else
+      keep(cell, amount);
+  }
+  void square(int south, int width, Quanta south_west, Quanta south_east, Quanta north_west,
+              Quanta north_east) const {
+    (*this)(south, south_west);
+    (*this)(south + 1, south_east);
+    (*this)(south + width, north_west);
+    (*this)(south + width + 1, north_east);
+  }
+
+ private:
+  __attribute__((noinline)) void keep(int cell, Quanta amount) const { kept->push_back({cell, amount}); }
+};
+
+template <class Law>
+void for_each_cell_adding(CpuExec& exec, const Grid& grid, Quanta* sums, const Law& law) {
+#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
+  {
+    const int thread = omp_get_thread_num(), threads = omp_get_num_threads();
+    const auto row_of = [&](int t) {
+      return static_cast<int>(static_cast<long long>(grid.height) * t / threads);
+    };
+    const int begin = row_of(thread), end = row_of(thread + 1);
+    std::vector<AddToBand::Kept> kept;
+    const auto width = static_cast<std::size_t>(grid.width);
+    const AddToBand band{sums, width * begin, width * (end - begin), &kept};
+    std::fill_n(sums + band.first, band.count, 0);
+    for (int y = begin; y < end; ++y) add_row(law, grid.width, y, band);
+#pragma omp barrier
+    for (const AddToBand::Kept& k : kept) atomic_add(sums + k.cell, k.amount);
+  }
+}
+
+/// `Law::scratch_bytes<Team>` of memory are shared by the team; law(team, column, row).
+template <class Tiling, class Law>
+void for_each_tile(CpuExec& exec, const Tiling& tiles, const Law& law) {
+  const int columns = tiles.columns();
+  SharedWork all(exec.threads(), tiles.count());
+#pragma omp parallel num_threads(exec.threads()) if (tiles.grid.cells() >= worth_threads)
+  {
+    alignas(64) char scratch[Law::template scratch_bytes<CpuTeam>];
+    const CpuTeam team{scratch};
+    all.work([&](int t) {
+      with_widest_instructions([&]() DESERT_INLINE { law(team, t % columns, t / columns); });
+    });
+  }
+}
+
+/// Items are as much work as hundreds of cells.
+template <class Law>
+void for_each_item(CpuExec& exec, int count, const Law& law) {
+  constexpr int worth = 256;
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (count >= worth)
+  for (int n = 0; n < count; ++n) law(n);
+}
+
+template <class Law>
+long long sum_cells(CpuExec& exec, const Grid& grid, const Law& law) {
+  long long total = 0;
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads) reduction(+ : total)
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) total += law(x, y);
+  return total;
+}
+
+template <class Law>
+float max_cells(CpuExec& exec, const Grid& grid, const Law& law) {
+  float largest = 0;
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads) \
+    reduction(max                                                                                        \
+              : largest)
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) {
+      const float value = law(x, y);
+      largest = value > largest ? value : largest;
+    }
+  return largest;
+}
+
+}  // namespace desert_sim

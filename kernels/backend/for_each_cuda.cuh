@@ -1,0 +1,264 @@
+#pragma once
+/// Loops over cells and tiles on the GPU; see for_each.hpp.
+
+#include <cuda_runtime.h>
+
+#include <type_traits>
+
+#include "kernels/backend/for_each.hpp"
+#include "kernels/field/quanta.hpp"
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+inline void check_cuda(cudaError_t status, const char* what) {
+  if (status != cudaSuccess)
+    throw CudaError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(status));
+}
+
+namespace cuda {
+
+constexpr int block_x = 32, block_y = 8;
+
+inline cudaStream_t stream(const CudaExec& exec) { return static_cast<cudaStream_t>(exec.stream()); }
+inline dim3 block() { return dim3(block_x, block_y); }
+inline dim3 blocks(const Grid& g) {
+  return dim3((g.width + block_x - 1) / block_x, (g.height + block_y - 1) / block_y);
+}
+
+template <class Law, class = void>
+struct CompactWarps : std::false_type {};
+template <class Law>
+struct CompactWarps<Law, std::enable_if_t<Law::compact_warps>> : std::true_type {};
+
+/// A warp works on 32 × 1 cells, and eight are a block. Of a law that says `compact_warps` a warp works on 8
+/// × 4, and two are a block: some of its warps take much longer than others, and a block's room is free when
+/// all are done.
+template <class Law>
+constexpr int warps_a_block = CompactWarps<Law>::value ? 2 : block_y;
+
+template <class Law>
+__global__ void cells_kernel(Grid grid, Law law) {
+  int x = blockIdx.x * block_x + threadIdx.x, y = blockIdx.y * block_y + threadIdx.y;
+  if constexpr (CompactWarps<Law>::value) {
+    x = 8 * (blockIdx.x * warps_a_block<Law> + threadIdx.y) + threadIdx.x % 8;
+    y = 4 * blockIdx.y + threadIdx.x / 8;
+  }
+  if (x < grid.width && y < grid.height) law(x, y);
+}
+template <class Law>
+dim3 blocks_of(const Grid& g) {
+  if (!CompactWarps<Law>::value) return blocks(g);
+  constexpr int width = 8 * warps_a_block<Law>;
+  return dim3((g.width + width - 1) / width, (g.height + 3) / 4);
+}
+
+struct AtomicSums {
+  Quanta* sums;
+  DESERT_HD void operator()(int cell, Quanta amount) const {
+    if (amount != 0) atomic_add(&sums[cell], amount);
+  }
+  /// To cell `south`, the one east of it, and those north of the two. A neighbour's eastern cells mostly are
+  /// this thread's western ones: then that one's share is handed on, and added with this one's.
+  DESERT_HD void square(int south, int width, Quanta south_west, Quanta south_east, Quanta north_west,
+                        Quanta north_east) const {
+#if defined(__CUDA_ARCH__)
+    const unsigned there = __activemask(), lane = threadIdx.x % 32;
+    const int before = __shfl_up_sync(there, south, 1), after = __shfl_down_sync(there, south, 1);
+    const Quanta handed_south = __shfl_up_sync(there, south_east, 1),
+                 handed_north = __shfl_up_sync(there, north_east, 1);
+    const bool takes = lane > 0 && (there >> (lane - 1) & 1u) && before + 1 == south;
+    const bool hands = lane < 31 && (there >> (lane + 1) & 1u) && after == south + 1;
+    (*this)(south, south_west + (takes ? handed_south : 0));
+    (*this)(south + width, north_west + (takes ? handed_north : 0));
+    if (!hands) {
+      (*this)(south + 1, south_east);
+      (*this)(south + width + 1, north_east);
+    }
+#else  // laws are made for the CPU, too, where nobody calls this
+    (void)south, (void)width, (void)south_west, (void)south_east, (void)north_west, (void)north_east;
+#endif
+  }
+};
+
+template <class Law>
+struct AddingLaw {
+  static constexpr bool compact_warps = CompactWarps<Law>::value;
+  Law law;
+  AtomicSums add;
+  DESERT_HD void operator()(int x, int y) const {
+    typename Law::template Parcels<1> parcel;
+    law.prepare(x, y, parcel, 0);
+    law.deliver(x, y, parcel, 0, add);
+  }
+};
+
+/// The 256 threads of a block as the team that works on a tile. (Marked host too, because laws are; empty
+/// there.)
+struct Team {
+  static constexpr int patches_at_once = 1;
+  char* scratch;
+
+  template <class Body>
+  DESERT_HD void for_each(int n, const Body& body) const {
+#if defined(__CUDA_ARCH__)
+    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y) body(i);
+    __syncthreads();
+#endif
+  }
+  template <class Value>
+  DESERT_HD int lowest(int n, const Value& value) const {
+#if defined(__CUDA_ARCH__)
+    __shared__ int least;
+    int mine = value(0);
+    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y)
+      mine = min(mine, value(i));
+    if (threadIdx.x == 0 && threadIdx.y == 0) least = mine;
+    __syncthreads();
+    atomicMin(&least, mine);
+    __syncthreads();
+    mine = least;
+    __syncthreads();
+    return mine;
+#else
+    return 0;
+#endif
+  }
+  template <class Value>
+  DESERT_HD float most(int n, const Value& value) const {
+    float greatest = 0;
+#if defined(__CUDA_ARCH__)
+    __shared__ int bits;  // of floats that are not negative, which order like their bits
+    for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y)
+      greatest = fmaxf(greatest, value(i));
+    if (threadIdx.x == 0 && threadIdx.y == 0) bits = 0;
+    __syncthreads();
+    atomicMax(&bits, __float_as_int(greatest));
+    __syncthreads();
+    greatest = __int_as_float(bits);
+    __syncthreads();
+#endif
+    return greatest;
+  }
+  template <class Body>
+  DESERT_HD void for_each(int width, int height, const Body& body) const {
+    for_each(width * height, [&](int i) { body(i % width, i / width); });
+  }
+  template <class Value>
+  DESERT_HD int lowest(int width, int height, const Value& value) const {
+    return lowest(width * height, [&](int i) { return value(i % width, i / width); });
+  }
+  /// A warp a row.
+  template <class Body>
+  DESERT_HD void for_each_row(const Body& body) const {
+#if defined(__CUDA_ARCH__)
+    for (int y = threadIdx.y; y < Tiles::side; y += block_y) body(y);
+    __syncthreads();
+#endif
+  }
+  template <int count, class Body>
+  DESERT_HD void for_each_in_row(const Body& body) const {
+#if defined(__CUDA_ARCH__)
+    const int x = static_cast<int>(threadIdx.x);
+    body(x / count, x % count);
+#endif
+  }
+};
+static_assert(Tiles::side == block_x, "a warp works along a row of a tile");
+
+template <class Law>
+__global__ void tiles_kernel(Law law) {
+  extern __shared__ __align__(16) char scratch[];
+  law(Team{scratch}, blockIdx.x, blockIdx.y);
+}
+
+template <class Law>
+__global__ void items_kernel(int count, Law law) {
+  const int n = blockIdx.x * blockDim.x + threadIdx.x;
+  if (n < count) law(n);
+}
+
+template <class Law>
+__global__ void sum_kernel(Grid grid, Law law, long long* total) {
+  long long mine = 0;
+  for (int y = blockIdx.y * block_y + threadIdx.y; y < grid.height; y += gridDim.y * block_y)
+    for (int x = blockIdx.x * block_x + threadIdx.x; x < grid.width; x += gridDim.x * block_x)
+      mine += law(x, y);
+  for (int o = 16; o > 0; o /= 2) mine += __shfl_down_sync(0xffffffffu, mine, o);
+  if (threadIdx.x == 0 && mine != 0) atomic_add(total, mine);
+}
+
+/// Non-negative floats order like their bits.
+template <class Law>
+__global__ void max_kernel(Grid grid, Law law, long long* largest) {
+  float mine = 0;
+  for (int y = blockIdx.y * block_y + threadIdx.y; y < grid.height; y += gridDim.y * block_y)
+    for (int x = blockIdx.x * block_x + threadIdx.x; x < grid.width; x += gridDim.x * block_x) {
+      const float value = law(x, y);
+      mine = value > mine ? value : mine;
+    }
+  int bits = __float_as_int(mine);
+  for (int o = 16; o > 0; o /= 2) bits = max(bits, __shfl_down_sync(0xffffffffu, bits, o));
+  if (threadIdx.x == 0) atomicMax(reinterpret_cast<int*>(largest), bits);
+}
+
+inline dim3 reduction_blocks(const Grid& g) {
+  const dim3 all = blocks(g);
+  return dim3(all.x < 32 ? all.x : 32, all.y < 32 ? all.y : 32);
+}
+
+}  // namespace cuda
+
+template <class Law>
+void for_each_cell(CudaExec& exec, const Grid& grid, const Law& law) {
+  const dim3 threads(cuda::block_x, cuda::warps_a_block<Law>);
+  cuda::cells_kernel<<<cuda::blocks_of<Law>(grid), threads, 0, cuda::stream(exec)>>>(grid, law);
+  check_cuda(cudaGetLastError(), "launch over cells");
+}
+
+template <class Law>
+void for_each_cell_adding(CudaExec& exec, const Grid& grid, Quanta* sums, const Law& law) {
+  exec.set_zero(sums, sizeof(Quanta) * static_cast<std::size_t>(grid.cells()));
+  for_each_cell(exec, grid, cuda::AddingLaw<Law>{law, {sums}});
+}
+
+template <class Tiling, class Law>
+void for_each_tile(CudaExec& exec, const Tiling& tiles, const Law& law) {
+  constexpr int bytes = Law::template scratch_bytes<cuda::Team>;
+  check_cuda(
+      cudaFuncSetAttribute(cuda::tiles_kernel<Law>, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes),
+      "asking for shared memory");
+  cuda::tiles_kernel<<<dim3(tiles.columns(), tiles.rows()), cuda::block(), bytes, cuda::stream(exec)>>>(law);
+  check_cuda(cudaGetLastError(), "launch over tiles");
+}
+
+template <class Law>
+void for_each_item(CudaExec& exec, int count, const Law& law) {
+  if (count == 0) return;
+  constexpr int block = 128;
+  cuda::items_kernel<<<(count + block - 1) / block, block, 0, cuda::stream(exec)>>>(count, law);
+  check_cuda(cudaGetLastError(), "launch over items");
+}
+
+template <class Law>
+long long sum_cells(CudaExec& exec, const Grid& grid, const Law& law) {
+  exec.set_zero(exec.reduction_word(), sizeof(long long));
+  cuda::sum_kernel<<<cuda::reduction_blocks(grid), cuda::block(), 0, cuda::stream(exec)>>>(
+      grid, law, exec.reduction_word());
+  check_cuda(cudaGetLastError(), "launch of a sum");
+  return exec.read_reduction_word();
+}
+
+template <class Law>
+float max_cells(CudaExec& exec, const Grid& grid, const Law& law) {
+  exec.set_zero(exec.reduction_word(), sizeof(long long));
+  cuda::max_kernel<<<cuda::reduction_blocks(grid), cuda::block(), 0, cuda::stream(exec)>>>(
+      grid, law, exec.reduction_word());
+  check_cuda(cudaGetLastError(), "launch of a maximum");
+  const int bits = static_cast<int>(exec.read_reduction_word());
+  float value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,40 @@
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
+#include <string>
+
+#include "kernels/backend/for_each_cuda.cuh"
+#include "kernels/backend/radix_sort.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+/// Calls work(memory, bytes) as CUB wants it: first to learn how much memory it takes, then with that.
+template <class Work>
+void with_temporary(const Ordering& ordering, const char* what, const Work& work) {
+  std::size_t bytes = 0;
+  check_cuda(work(nullptr, bytes), what);
+  if (bytes > ordering.temporary.bytes())
+    throw CudaError(std::string("CUDA: ") + what + " takes " + std::to_string(bytes) + " bytes; there are " +
+                    std::to_string(ordering.temporary.bytes()));
+  bytes = ordering.temporary.bytes();
+  check_cuda(work(ordering.temporary.data(), bytes), what);
+}
+
+}  // namespace
+
+void sort_words(CudaExec& exec, Ordering& ordering, int count, int bits) {
+  cub::DoubleBuffer<std::uint64_t> words(ordering.words.data(), ordering.other.data());
+  with_temporary(ordering, "sorting", [&](void* memory, std::size_t& bytes) {
+    return cub::DeviceRadixSort::SortKeys(memory, bytes, words, count, 32, 32 + bits, cuda::stream(exec));
+  });
+  if (words.Current() != ordering.words.data()) ordering.words.swap(ordering.other);
+}
+
+void prefix_sums(CudaExec& exec, Ordering& ordering, const int* values, int* sums, int count) {
+  with_temporary(ordering, "summing", [&](void* memory, std::size_t& bytes) {
+    return cub::DeviceScan::ExclusiveSum(memory, bytes, values, sums, count, cuda::stream(exec));
+  });
+}
+
+}  // namespace desert_sim

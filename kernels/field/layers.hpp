@@ -1,0 +1,157 @@
+#pragma once
+/// The one table of layers, and the plain view of them that laws work on.
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+#include "kernels/field/grid.hpp"
+#include "kernels/field/quanta.hpp"
+
+namespace desert_sim {
+
+enum class Layer : int {
+  bedrock,
+  soil,
+  sand,
+  water,
+  airborne_sand,
+  suspended_sediment,
+  moisture,
+  humus,
+  vegetation,
+  erosion_resistance,
+  obstacle,
+  water_flux_x,
+  water_flux_y,
+  elevation,
+  water_velocity_x,
+  water_velocity_y,
+  wind_x,
+  wind_y,
+  wind_shadow,
+  echo,
+  illumination,
+  illumination_canopy,
+  canopy_height,
+  slope,
+  normal_x,
+  normal_y,
+  normal_z,
+  roughness,
+  step_height,
+  traversability,
+  water_surface,
+  plants,
+};
+
+enum class Storage { quanta, real };  ///< fixed-point metres, or float32; both four bytes
+enum class Lifetime {
+  persistent,  ///< the state
+  derived,     ///< follows from it, for the processes of a step
+  on_request   ///< follows from it, for who looks: computed only when a snapshot asks for it
+};
+
+struct LayerInfo {
+  Layer layer;
+  const char* name;
+  const char* unit;
+  Storage storage;
+  Lifetime lifetime;
+  double lowest, highest;  ///< values that scenarios and edits may set, in `unit`
+  const char* doc;
+};
+
+constexpr double any_height = 1e6;
+
+constexpr std::array<LayerInfo, 32> layer_table{{
+    {Layer::bedrock, "bedrock", "m", Storage::quanta, Lifetime::persistent, -any_height, any_height,
+     "Top of the rock, absolute."},
+    {Layer::soil, "soil", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Depth of soil on the rock."},
+    {Layer::sand, "sand", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Depth of sand on soil and rock."},
+    {Layer::water, "water", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Depth of standing water."},
+    {Layer::airborne_sand, "airborne_sand", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Sand that the wind carries over a cell, as a depth."},
+    {Layer::suspended_sediment, "suspended_sediment", "m", Storage::quanta, Lifetime::persistent, 0,
+     any_height, "Sediment in the water, as a depth."},
+    {Layer::moisture, "moisture", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Water in the ground, as a depth."},
+    {Layer::humus, "humus", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
+     "Humus in the soil, as a depth."},
+    {Layer::vegetation, "vegetation", "1", Storage::real, Lifetime::persistent, 0, 1, "Density of plants."},
+    {Layer::erosion_resistance, "erosion_resistance", "1", Storage::real, Lifetime::persistent, 0, 1,
+     "Resistance of the rock to abrasion; 1 never wears."},
+    {Layer::obstacle, "obstacle", "1", Storage::real, Lifetime::persistent, 0, 1,
+     "1 where a solid object stands, that neither gives nor takes sand."},
+    {Layer::water_flux_x, "water_flux_x", "m^3/s", Storage::real, Lifetime::persistent, -any_height,
+     any_height, "Water that flows through a cell's east face."},
+    {Layer::water_flux_y, "water_flux_y", "m^3/s", Storage::real, Lifetime::persistent, -any_height,
+     any_height, "Water that flows through a cell's north face."},
+    {Layer::elevation, "elevation", "m", Storage::quanta, Lifetime::derived, -any_height, any_height,
+     "Solid surface: bedrock + soil + sand."},
+    {Layer::water_velocity_x, "water_velocity_x", "m/s", Storage::real, Lifetime::derived, 0, 0,
+     "Mean velocity of the water, eastward part."},
+    {Layer::water_velocity_y, "water_velocity_y", "m/s", Storage::real, Lifetime::derived, 0, 0,
+     "Mean velocity of the water, northward part."},
+    {Layer::wind_x, "wind_x", "m/s", Storage::real, Lifetime::derived, 0, 0,
+     "Wind at the surface, eastward part."},
+    {Layer::wind_y, "wind_y", "m/s", Storage::real, Lifetime::derived, 0, 0,
+     "Wind at the surface, northward part."},
+    {Layer::wind_shadow, "wind_shadow", "1", Storage::real, Lifetime::derived, 0, 1,
+     "0 in the open … 1 fully in the lee."},
+    {Layer::echo, "echo", "1", Storage::real, Lifetime::derived, -1, 1,
+     "In front of cliffs: < 0 erosion, > 0 sticky."},
+    {Layer::illumination, "illumination", "1", Storage::real, Lifetime::derived, 0, 1,
+     "Light on the ground over the day; 1 in the open."},
+    {Layer::illumination_canopy, "illumination_canopy", "1", Storage::real, Lifetime::derived, 0, 1,
+     "Light at the top of the plants."},
+    {Layer::canopy_height, "canopy_height", "m", Storage::real, Lifetime::derived, 0, any_height,
+     "Height of the plants above the ground."},
+    {Layer::slope, "slope", "rad", Storage::real, Lifetime::on_request, 0, 1.5707964,
+     "Angle of the surface to the horizontal."},
+    {Layer::normal_x, "normal_x", "1", Storage::real, Lifetime::on_request, -1, 1,
+     "Unit normal of the surface, eastward part."},
+    {Layer::normal_y, "normal_y", "1", Storage::real, Lifetime::on_request, -1, 1,
+     "Unit normal of the surface, northward part."},
+    {Layer::normal_z, "normal_z", "1", Storage::real, Lifetime::on_request, 0, 1,
+     "Unit normal of the surface, upward part."},
+    {Layer::roughness, "roughness", "m", Storage::real, Lifetime::on_request, 0, any_height,
+     "Rms deviation from the plane that fits the surroundings best."},
+    {Layer::step_height, "step_height", "m", Storage::real, Lifetime::on_request, 0, any_height,
+     "Largest rise or drop nearby that is no slope a rover could drive."},
+    {Layer::traversability, "traversability", "1", Storage::real, Lifetime::on_request, 0, 1,
+     "1 free ground … 0 no way for the rover of the section traversability."},
+    {Layer::water_surface, "water_surface", "m", Storage::quanta, Lifetime::on_request, -any_height,
+     any_height, "Elevation + water."},
+    {Layer::plants, "plants", "1", Storage::real, Lifetime::on_request, 0, 16,
+     "Species of the plant that is densest here: its place in the list, from 1 on; 0 where none grows."},
+}};
+constexpr int layer_count = static_cast<int>(layer_table.size());
+
+constexpr const LayerInfo& info(Layer layer) { return layer_table[static_cast<std::size_t>(layer)]; }
+
+/// Plain pointers to the layers on the backend's device, passed by value to laws. A layer that is not in use
+/// is null and stands for 0 everywhere. Heights are quanta above the datum.
+struct TerrainView {
+  Grid grid;
+  float quantum = 0;           ///< [m]
+  float quanta_per_metre = 0;  ///< 1 / quantum, exact
+  void* layers[layer_count] = {};
+
+  DESERT_HD Quanta* quanta(Layer layer) const {
+    return static_cast<Quanta*>(layers[static_cast<int>(layer)]);
+  }
+  DESERT_HD float* real(Layer layer) const { return static_cast<float*>(layers[static_cast<int>(layer)]); }
+};
+
+/// Water deeper than this covers the ground: it stops the wind's work, and the ground below does not dry [m].
+constexpr float wet_depth = 1e-5f;
+
+/// The value of a layer that may not be in use.
+DESERT_HD Quanta value_or_zero(const Quanta* layer, int i) { return layer ? layer[i] : 0; }
+DESERT_HD float value_or_zero(const float* layer, int i) { return layer ? layer[i] : 0.0f; }
+
+}  // namespace desert_sim

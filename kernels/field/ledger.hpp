@@ -1,0 +1,37 @@
+#pragma once
+/// The books of the mass balance: what entered and left each material, in quanta. For every material
+/// final − initial − in + out = 0, exactly. Conversions (abrasion: bedrock to sand) are out of one and into
+/// another.
+
+#include "kernels/backend/for_each.hpp"
+#include "kernels/field/quanta.hpp"
+
+namespace desert_sim {
+
+enum class Material : int { bedrock, soil, sand, water, sediment, moisture };
+constexpr int material_count = 6;
+constexpr const char* material_names[material_count] = {"bedrock", "soil",     "sand",
+                                                        "water",   "sediment", "moisture"};
+
+/// Accounts are striped, so that cells which book at the same time rarely meet.
+struct LedgerView {
+  static constexpr int stripes = 256;
+  static constexpr int words = material_count * 2 * stripes;
+  long long* words_on_device = nullptr;
+
+  DESERT_HD void book_in(Material m, int cell, Quanta amount) const { book(m, 0, cell, amount); }
+  DESERT_HD void book_out(Material m, int cell, Quanta amount) const { book(m, 1, cell, amount); }
+  DESERT_HD void convert(Material from, Material to, int cell, Quanta amount) const {
+    book_out(from, cell, amount);
+    book_in(to, cell, amount);
+  }
+
+ private:
+  DESERT_HD void book(Material m, int side, int cell, Quanta amount) const {
+    if (amount == 0) return;
+    const int account = static_cast<int>(m) * 2 + side;
+    atomic_add(&words_on_device[account * stripes + (cell & (stripes - 1))], static_cast<long long>(amount));
+  }
+};
+
+}  // namespace desert_sim

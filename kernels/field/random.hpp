@@ -1,0 +1,65 @@
+#pragma once
+/// Counter-based random numbers: a number depends on (seed, purpose, counters) alone, never on order or
+/// threads.
+
+#include <Random123/philox.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "kernels/backend/macros.hpp"
+
+namespace desert_sim {
+
+enum class Purpose : std::uint32_t {
+  reptation = 1,
+  terrain_noise,
+  terrain_discs,
+  wind_rose,
+  turbulence,
+  rain,
+  plants = 32,
+  planting,
+};
+
+/// Four random words from three counters.
+struct RandomWords {
+  std::uint32_t word[4];
+};
+DESERT_HD RandomWords random_words(std::uint64_t seed, Purpose purpose, std::uint32_t a, std::uint32_t b,
+                                   std::uint32_t c) {
+  const r123::Philox4x32::ctr_type counter{{a, b, c, static_cast<std::uint32_t>(purpose)}};
+  const r123::Philox4x32::key_type key{
+      {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
+  const r123::Philox4x32::ctr_type words = r123::Philox4x32()(counter, key);
+  return {{words[0], words[1], words[2], words[3]}};
+}
+
+/// Uniform in [0, 1), 24 bits, from up to three counters.
+DESERT_HD float random_unit(std::uint64_t seed, Purpose purpose, std::uint32_t a, std::uint32_t b = 0,
+                            std::uint32_t c = 0) {
+  return static_cast<float>(random_words(seed, purpose, a, b, c).word[0] >> 8) * (1.0f / 16777216.0f);
+}
+
+/// Smooth value noise in [−1, 1]: random values on the integer lattice, interpolated with continuous second
+/// derivatives. `period` > 0 repeats x and y after so many lattice cells.
+DESERT_HD float value_noise(std::uint64_t seed, Purpose purpose, float x, float y, float z, int period_x = 0,
+                            int period_y = 0) {
+  const int x0 = static_cast<int>(floorf(x)), y0 = static_cast<int>(floorf(y)),
+            z0 = static_cast<int>(floorf(z));
+  const auto fade = [](float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); };
+  const float fx = fade(x - x0), fy = fade(y - y0), fz = fade(z - z0);
+  const auto cycled = [](int i, int period) { return period > 0 ? ((i % period) + period) % period : i; };
+  float sum = 0.0f;
+  for (int n = 0; n < 8; ++n) {
+    const int dx = n & 1, dy = (n >> 1) & 1, dz = n >> 2;
+    const float weight = (dx ? fx : 1.0f - fx) * (dy ? fy : 1.0f - fy) * (dz ? fz : 1.0f - fz);
+    const float value = random_unit(seed, purpose, static_cast<std::uint32_t>(cycled(x0 + dx, period_x)),
+                                    static_cast<std::uint32_t>(cycled(y0 + dy, period_y)),
+                                    static_cast<std::uint32_t>(z0 + dz));
+    sum += weight * (2.0f * value - 1.0f);
+  }
+  return sum;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,60 @@
+#pragma once
+/// What the laws of saltation read, and how wet ground hinders them.
+
+#include "kernels/field/layers.hpp"
+#include "kernels/field/math.hpp"
+#include "kernels/sand/abrasion.hpp"
+#include "kernels/sand/repose.hpp"
+
+namespace desert_sim::saltation {
+
+DESERT_HD float dryness(float relative_moisture) {
+  return clamp(1.0f - 10.0f * relative_moisture, 0.0f, 1.0f);
+}
+
+/// What the laws read. `bare`: of a desert of rock and sand alone, where there are none of the layers that a
+/// desert need not have and nothing wears; laws for that leave out the questions after them.
+template <bool bare>
+struct Inputs {
+  Grid grid;
+  float quantum, quanta_per_metre, time_step;
+  const float *wind_x, *wind_y, *wind_shadow, *echo, *vegetation, *obstacle;
+  const Quanta *water, *soil;
+  repose::RelativeMoisture relative_moisture;
+
+  Inputs(const TerrainView& t, const ReposeParameters& repose, float dt)
+      : grid(t.grid),
+        quantum(t.quantum),
+        quanta_per_metre(t.quanta_per_metre),
+        time_step(dt),
+        wind_x(t.real(Layer::wind_x)),
+        wind_y(t.real(Layer::wind_y)),
+        wind_shadow(t.real(Layer::wind_shadow)),
+        echo(t.real(Layer::echo)),
+        vegetation(t.real(Layer::vegetation)),
+        obstacle(t.real(Layer::obstacle)),
+        water(t.quanta(Layer::water)),
+        soil(t.quanta(Layer::soil)),
+        relative_moisture(t, repose) {}
+
+  template <class Value>
+  DESERT_HD Value there_may_be(const Value* layer, int i) const {
+    return bare ? Value{} : value_or_zero(layer, i);
+  }
+  DESERT_HD float plants(int i) const { return there_may_be(vegetation, i); }
+  DESERT_HD float eddy(int i) const { return there_may_be(echo, i); }
+  DESERT_HD bool solid(int i) const { return there_may_be(obstacle, i) > 0.0f; }
+  DESERT_HD float moisture(int i) const { return bare ? 0.0f : relative_moisture(i); }
+  DESERT_HD bool flooded(int i) const { return there_may_be(water, i) * quantum > wet_depth; }
+};
+
+inline bool is_bare(const TerrainView& t, const AbrasionParameters& a) {
+  if (a.rate > 0.0f) return false;
+  for (Layer layer : {Layer::echo, Layer::vegetation, Layer::obstacle})
+    if (t.real(layer)) return false;
+  for (Layer layer : {Layer::water, Layer::soil, Layer::moisture})
+    if (t.quanta(layer)) return false;
+  return true;
+}
+
+}  // namespace desert_sim::saltation

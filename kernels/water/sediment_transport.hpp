@@ -1,0 +1,44 @@
+#pragma once
+/// Sediment goes through virtual pipes with the water that it is in: of a cell that gives a share of its
+/// water, the same share of its sediment. physics.md C3.
+///
+///   S_i += Σ_in S_j q_j/w_j − Σ_out S_i q_i/w_i,   q what a face lets through in a part of a step
+///
+/// So it comes only to where water comes. (Published: it is moved by U Δt, which lands on dry ground beside a
+/// stream that is fast or bends, and builds ridges of one cell's width there.)
+
+#include "kernels/field/ledger.hpp"
+#include "kernels/water/pipe_flow.hpp"
+
+namespace desert_sim::virtual_pipes {
+
+template <bool inside>
+struct CarrySediment {
+  Flow<inside> flow;
+  LedgerView ledger;
+
+  /// Of a cell's sediment, what goes with so much of its water; in whole quanta, rounded down.
+  DESERT_HD Quanta with(int from, Quanta water) const {
+    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // four shares round
+    const float share = static_cast<float>(water) / static_cast<float>(flow.water[from]);
+    return static_cast<Quanta>(static_cast<float>(flow.sediment[from]) * (share * guard));
+  }
+  /// What cell i loses through a face, from what water does.
+  DESERT_HD Quanta loses(int i, int j, float out) const {
+    const Quanta water = flow.through(i, j, out);
+    return water > 0 ? with(i, water) : (water < 0 ? -with(j, -water) : 0);
+  }
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = flow.grid.index(x, y);
+    const typename Flow<inside>::Faces f = flow.faces(x, y);
+    const Quanta e = loses(i, f.east, f.to_east), w = loses(i, f.west, f.to_west);
+    const Quanta n = loses(i, f.north, f.to_north), s = loses(i, f.south, f.to_south);
+    flow.sediment_next[i] = flow.sediment[i] - ((e + w) + (n + s));
+    if (inside) return;
+    const Quanta over =
+        (f.east < 0 ? e : 0) + (f.west < 0 ? w : 0) + (f.north < 0 ? n : 0) + (f.south < 0 ? s : 0);
+    ledger.book_out(Material::sediment, i, over);
+  }
+};
+
+}  // namespace desert_sim::virtual_pipes

@@ -1,0 +1,54 @@
+#pragma once
+/// Marches over the surface: where their samples lie between cells, and how high the ground is there. Places
+/// are 16.16 fixed point, so that mirrored or turned terrain gives the same bits; heights between cells are
+/// formed for that too.
+
+#include "kernels/field/grid.hpp"
+#include "kernels/field/math.hpp"
+#include "kernels/field/quanta.hpp"
+
+namespace desert_sim::marching {
+
+/// A march along a straight line, one column (or row) of cells a step, whichever the line crosses faster:
+/// there a sample lies between two cells.
+struct Line {
+  int heading;  ///< ±1: column by column to greater or lesser x, ±2: row by row
+  int drift;    ///< a step's way across, 16.16 fixed point, −1 … 1
+
+  /// Against the wind (u, v), not 0. To 2⁻¹² of a cell a step, so that winds which differ by rounding alone
+  /// have one direction.
+  DESERT_HD static Line against(float u, float v) {
+    const bool along_x = fabsf(u) >= fabsf(v);
+    const float along = along_x ? u : v, across = along_x ? v : u;
+    return {(along_x ? 1 : 2) * (along > 0.0f ? -1 : 1), -16 * nearest(4096.0f * (across / fabsf(along)))};
+  }
+  DESERT_HD bool along_x() const { return heading & 1; }
+  DESERT_HD int step() const { return heading > 0 ? 1 : -1; }
+  /// 1 … √2
+  DESERT_HD float cells_a_step() const {
+    const float slope = static_cast<float>(drift) * (1.0f / 65536.0f);
+    return sqrtf(1.0f + slope * slope);
+  }
+  /// The cell at or before the sample of step j, relative to the march's first.
+  DESERT_HD int dx(int j) const { return along_x() ? j * step() : (j * drift) >> 16; }
+  DESERT_HD int dy(int j) const { return along_x() ? (j * drift) >> 16 : j * step(); }
+};
+
+/// Cells around a sample and its place between them: (x, y) + (dx, dy)/65536 cells.
+struct Place {
+  int x, y;
+  float fx, fy;
+  DESERT_HD Place(int cell_x, int cell_y, int dx, int dy)
+      : x(cell_x + (dx >> 16)), y(cell_y + (dy >> 16)), fx(fraction(dx)), fy(fraction(dy)) {}
+};
+
+/// Bilinear height between four cells.
+DESERT_HD float height_at(const Grid& g, const float* h, const Place& p) {
+  const float h00 = h[sample_index(g, p.x, p.y)], h10 = h[sample_index(g, p.x + 1, p.y)];
+  const float h01 = h[sample_index(g, p.x, p.y + 1)], h11 = h[sample_index(g, p.x + 1, p.y + 1)];
+  const float a = h00 * ((1.0f - p.fx) * (1.0f - p.fy)), b = h10 * (p.fx * (1.0f - p.fy));
+  const float c = h01 * ((1.0f - p.fx) * p.fy), d = h11 * (p.fx * p.fy);
+  return (a + d) + (b + c);
+}
+
+}  // namespace desert_sim::marching

@@ -1,0 +1,248 @@
+/// What wind::transform_by_library() does, in one kernel: the same laws, and between them lines of the coarse
+/// grid transformed in shared memory. The coarse grid is small (180 × 180 values for a terrain of 1024 m),
+/// and twelve launches with the library's transforms took longer than their work.
+///
+/// A block takes two lines at a time. Between the stages of the table all blocks wait for each other: they
+/// are as many as the GPU holds at once.
+///
+// clang-format off
+///      lines                       from memory        in shared memory, → is a transform        to memory
+///   1  columns x, x + 1            means of rows      rise →                                    spectrum
+///   2  rows j, j + 1               spectrum           → slopes of each radius →                 gradients
+///   3  columns x, x + 1            gradients (or 1's)  → turned wind, its deviation →           spectrum
+///   4  rows j, −j                  spectrum           → projection →                            correction
+///   5  columns x, x + 1            correction         →                                         correction
+// clang-format on
+///
+/// On their way back from modes to places, values have their parts exchanged (LineTransform).
+
+#include <cooperative_groups.h>
+
+#include <algorithm>
+
+#include "kernels/backend/for_each_cuda.cuh"
+#include "kernels/wind/wind.hpp"
+
+namespace desert_sim::wind {
+
+#if CUDART_VERSION < 12000  // CudaExec::memory_for_lines(): never called
+void transform_by_lines(CudaExec&, const CoarseLaws&, Workspace&) { throw Error("lines need CUDA 12"); }
+#else
+namespace tuned {
+namespace {
+
+constexpr int at_once = lines_at_once;
+/// While laws are at work a thread has a value of each line (of 180 there are in a line). While lines are
+/// transformed each has a team of two warps (180 values are 36, 30 and 30 butterflies).
+constexpr int threads_a_line = 192, threads = threads_a_line * at_once, team = 64, teams = threads / team;
+
+struct Axis {
+  LineTransform transform;
+  const Complex* roots;
+};
+
+struct Arguments {
+  CoarseLaws laws;
+  Axis x, y;
+
+  __host__ __device__ int longest() const { return max(laws.turn.coarse.width, laws.turn.coarse.height); }
+  __host__ __device__ int radii() const { return laws.gradients.radius_count; }
+  /// That a block has in shared memory: of each radius, if there are any.
+  __host__ __device__ int lines() const { return at_once * max(1, radii()); }
+};
+
+/// For each line of a block two places, between which its transform goes; then the roots of unity of x and y.
+extern __shared__ Complex shared[];
+
+/// A block and its lines.
+struct Block {
+  const Arguments& s;
+  const CoarseGrid& coarse;
+  int longest, width, height;
+  int place = 0;  ///< where the lines are
+
+  __device__ explicit Block(const Arguments& arguments)
+      : s(arguments),
+        coarse(arguments.laws.turn.coarse),
+        longest(arguments.longest()),
+        width(coarse.width),
+        height(coarse.height) {
+    Complex* const roots = shared + line(s.lines(), 0);
+    for (int n = threadIdx.x; n < width; n += threads) roots[n] = s.x.roots[n];
+    for (int n = threadIdx.x; n < height; n += threads) roots[width + n] = s.y.roots[n];
+  }
+
+  __device__ int line(int n, int at) const { return (2 * n + at) * longest; }
+  __device__ Complex& here(int n, int i) const { return shared[line(n, place) + i]; }
+  __device__ Complex& next(int n, int i) const { return shared[line(n, 1 - place) + i]; }
+
+  /// body(c, x + c, y) for the values of columns x and x + 1, if they are there; threads beside each other
+  /// have the values that are so in memory.
+  template <class Body>
+  __device__ void columns(int x, const Body& body) const {
+    const int c = static_cast<int>(threadIdx.x) % at_once;
+    if (x + c < width)
+      for (int y = static_cast<int>(threadIdx.x) / at_once; y < height; y += threads_a_line)
+        body(c, x + c, y);
+  }
+  /// body(c, i, row) for the values of rows j and `other`, if that is there (≥ 0).
+  template <class Body>
+  __device__ void rows(int j, int other, const Body& body) const {
+    const int c = static_cast<int>(threadIdx.x) / threads_a_line, row = c == 0 ? j : other;
+    if (row >= 0)
+      for (int i = static_cast<int>(threadIdx.x) % threads_a_line; i < width; i += threads_a_line)
+        body(c, i, row);
+  }
+
+  /// Of `count` lines.
+  __device__ void transform(const Axis& axis, int roots, int count) {
+    const LineTransform& law = axis.transform;
+    const int first = static_cast<int>(threadIdx.x) % team;
+    __syncthreads();
+    for (int n = 0; n < law.count; ++n) {
+      for (int l = static_cast<int>(threadIdx.x) / team; l < count; l += teams)
+        law.butterflies(law.stages[n], first, team, shared + line(s.lines(), 0) + roots,
+                        shared + line(l, place), shared + line(l, 1 - place));
+      place = 1 - place;
+      __syncthreads();
+    }
+  }
+};
+
+/// See the table above.
+enum Stage { rises, slopes, turning, projecting, correction, stage_count };
+
+/// The other line that a block has with line n of a stage, or −1.
+__device__ int other_line(const Block& b, int stage, int n) {
+  if (stage == slopes) return n + 1 < b.height ? n + 1 : -1;
+  if (n > 0) return b.height - n;
+  return b.height % 2 == 0 ? b.height / 2 : -1;  // it is its own mirror, as row 0 is
+}
+
+/// Fills the lines from memory.
+__device__ void fill(Block& b, int stage, int n, int other) {
+  const CoarseLaws& laws = b.s.laws;
+  const Complex* const spectrum = laws.columns.spectrum;
+  const int width = b.width, values = b.coarse.values();
+  if (stage == rises) {
+    b.columns(n, [&](int c, int x, int y) { b.here(c, y) = {laws.columns.rise_at(x, y), 0.0f}; });
+  } else if (stage == turning) {
+    for (int r = 0; r < b.s.radii(); ++r)
+      b.columns(n, [&](int c, int x, int y) {
+        b.here(at_once * r + c, y) = laws.gradients.out[r * values + y * width + b.coarse.mirrored_column(x)];
+      });
+    if (b.s.radii() == 0) b.columns(n, [&](int, int x, int y) { laws.columns.rise_at(x, y); });
+  } else if (stage == correction) {
+    b.columns(n, [&](int c, int x, int y) { b.here(c, y) = laws.correct.out[y * width + x]; });
+  } else {
+    b.rows(n, other, [&](int c, int i, int row) { b.here(c, i) = spectrum[row * width + i]; });
+  }
+}
+
+/// What becomes of them when they are transformed, before they are once more.
+__device__ void change(Block& b, int stage, int n, int other) {
+  const CoarseLaws& laws = b.s.laws;
+  const int width = b.width, radii = b.s.radii();
+  if (stage == slopes) {
+    b.rows(n, other, [&](int c, int i, int row) {
+      const Complex h = b.here(c, i);
+      for (int r = 0; r < radii; ++r)
+        b.next(at_once * r + c, i) = parts_exchanged(laws.gradients.of_mode(r, i, row, h));
+    });
+  } else if (stage == turning) {
+    b.columns(n, [&](int c, int x, int y) {
+      const int ground = b.coarse.mirrored_row(y);
+      b.next(c, y) =
+          laws.turn.turn(x, y, [&](int r) { return parts_exchanged(b.here(at_once * r + c, ground)); });
+    });
+  } else {
+    b.rows(n, other, [&](int c, int i, int row) {
+      const Complex mirror = b.here(n > 0 ? 1 - c : c, i == 0 ? 0 : width - i);
+      b.next(c, i) = parts_exchanged(laws.correct.of_mode(i, row, b.here(c, i), mirror));
+    });
+  }
+  b.place = 1 - b.place;
+}
+
+__device__ void store(const Block& b, int stage, int n, int other) {
+  const CoarseLaws& laws = b.s.laws;
+  Complex *const spectrum = laws.columns.spectrum, *const out = laws.correct.out;
+  const int width = b.width, values = b.coarse.values();
+  if (stage == slopes) {
+    for (int r = 0; r < b.s.radii(); ++r)
+      b.rows(n, other, [&](int c, int i, int row) {
+        laws.gradients.out[r * values + row * width + i] = b.here(at_once * r + c, i);
+      });
+  } else if (stage == projecting) {
+    b.rows(n, other, [&](int c, int i, int row) { out[row * width + i] = b.here(c, i); });
+  } else if (stage == correction) {
+    b.columns(n, [&](int c, int x, int y) { out[y * width + x] = parts_exchanged(b.here(c, y)); });
+  } else {
+    b.columns(n, [&](int c, int x, int y) { spectrum[y * width + x] = b.here(c, y); });
+  }
+}
+
+#if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ >= 700
+#define DESERT_GRID_CONSTANT __grid_constant__
+#else  // not known there; and never called
+#define DESERT_GRID_CONSTANT
+#endif
+
+__global__ void __launch_bounds__(threads, 1) coarse_wind_kernel(DESERT_GRID_CONSTANT const Arguments s) {
+  Block b(s);
+  const bool turns = s.radii() > 0, projects = s.laws.projected;
+  for (int stage = turns ? rises : turning; stage < (projects ? stage_count : projecting); ++stage) {
+    const bool along_y = stage == rises || stage == turning || stage == correction;
+    const int lines = along_y ? b.width : stage == slopes ? b.height : b.height / 2 + 1;
+    // Of rows and their mirrors, each pair once.
+    const int step = along_y || stage == slopes ? at_once : 1;
+    for (int n = step * static_cast<int>(blockIdx.x); n < lines; n += step * static_cast<int>(gridDim.x)) {
+      const int other = along_y ? -1 : other_line(b, stage, n);
+      if (stage == projecting && other == n) continue;  // it is with row 0
+      __syncthreads();
+      fill(b, stage, n, other);
+      const int from_memory = stage == turning ? s.radii() : 1;
+      const bool twice = stage != rises && stage != correction;
+      for (int time = from_memory > 0 ? 0 : 1; time < (twice ? 2 : 1); ++time) {
+        if (time == 1) {
+          __syncthreads();
+          change(b, stage, n, other);
+          if (stage == turning && !projects) break;
+        }
+        const int of_each = time == 0 ? from_memory : stage == slopes ? s.radii() : 1;
+        b.transform(along_y ? s.y : s.x, along_y ? b.width : 0, at_once * of_each);
+      }
+      if (stage != turning || projects) store(b, stage, n, other);
+    }
+    if (stage + 1 < (projects ? stage_count : projecting)) cooperative_groups::this_grid().sync();
+  }
+}
+
+}  // namespace
+}  // namespace tuned
+
+void transform_by_lines(CudaExec& exec, const CoarseLaws& laws, Workspace& work) {
+  using namespace tuned;
+  const CoarseGrid& coarse = work.coarse;
+  Arguments kernel_arguments{
+      laws, {work.lines_along_x, work.roots_x.data()}, {work.lines_along_y, work.roots_y.data()}};
+  const std::size_t bytes = bytes_for_lines(coarse, laws.gradients.radius_count);
+  check_cuda(cudaFuncSetAttribute(coarse_wind_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                  static_cast<int>(bytes)),
+             "asking for shared memory");
+  int device = 0, multiprocessors = 0, a_multiprocessor = 0;
+  check_cuda(cudaGetDevice(&device), "asking for the device");
+  check_cuda(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
+             "asking for the device");
+  check_cuda(
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&a_multiprocessor, coarse_wind_kernel, threads, bytes),
+      "asking how many blocks fit");
+  const int blocks = std::min(kernel_arguments.longest() / at_once + 1, multiprocessors * a_multiprocessor);
+  void* arguments[] = {&kernel_arguments};
+  check_cuda(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(coarse_wind_kernel), dim3(blocks),
+                                         dim3(threads), arguments, bytes, cuda::stream(exec)),
+             "launch of the coarse wind");
+}
+#endif
+
+}  // namespace desert_sim::wind

@@ -1,0 +1,189 @@
+#pragma once
+/// Discrete Fourier transforms of short lines by a team of threads in memory that they share, as a part of a
+/// kernel: where transforms are small, cuFFT's launches take longer than their work.
+///
+///   X(k) = Σ_j x(j) e^(−2πi jk/n),  n without prime factors but 2, 3 and 5
+///
+/// Stockham's autosort form with mixed radices. A stage of radix r takes n/r butterflies, and reads what the
+/// stage before it has written; `done` is the product of the radices before it:
+///
+///   butterfly b:  v(q) = in[b + q n/r] · e^(−2πi q k/(done·r)),  k = b mod done
+///                 out[(b − k) r + k + q·done] = DFT_r(v)(q)
+///
+/// The inverse, without 1/n: real and imaginary parts change places, before and after.
+
+#include <cmath>
+#include <vector>
+
+#include "kernels/backend/fft.hpp"
+#include "kernels/backend/for_each.hpp"
+#include "kernels/backend/macros.hpp"
+#include "kernels/field/math.hpp"
+
+namespace desert_sim {
+
+DESERT_HD Complex operator+(Complex a, Complex b) { return {a.re + b.re, a.im + b.im}; }
+DESERT_HD Complex operator-(Complex a, Complex b) { return {a.re - b.re, a.im - b.im}; }
+DESERT_HD Complex operator*(Complex a, Complex b) {
+  return {fused(a.re, b.re, -(a.im * b.im)), fused(a.re, b.im, a.im * b.re)};
+}
+/// a + s·b
+DESERT_HD Complex plus_times(Complex a, float s, Complex b) {
+  return {fused(s, b.re, a.re), fused(s, b.im, a.im)};
+}
+/// a − i s·b
+DESERT_HD Complex minus_i_times(Complex a, float s, Complex b) {
+  return {fused(s, b.im, a.re), fused(-s, b.re, a.im)};
+}
+DESERT_HD Complex parts_exchanged(Complex a) { return {a.im, a.re}; }
+
+/// A number of values in registers, transformed. Of values that are all alike, every mode but the first is
+/// exactly 0.
+DESERT_HD void transform_few(Complex (&v)[2]) {
+  const Complex sum = v[0] + v[1];
+  v[1] = v[0] - v[1];
+  v[0] = sum;
+}
+DESERT_HD void transform_few(Complex (&v)[3]) {
+  constexpr float sin_60 = 0.866025404f;
+  const Complex sum = v[1] + v[2], difference = v[1] - v[2], middle = plus_times(v[0], -0.5f, sum);
+  v[0] = v[0] + sum;
+  v[1] = minus_i_times(middle, sin_60, difference);
+  v[2] = minus_i_times(middle, -sin_60, difference);
+}
+DESERT_HD void transform_few(Complex (&v)[4]) {
+  const Complex even = v[0] + v[2], odd = v[1] + v[3], across = v[0] - v[2], aslant = v[1] - v[3];
+  v[0] = even + odd;
+  v[1] = {across.re + aslant.im, across.im - aslant.re};
+  v[2] = even - odd;
+  v[3] = {across.re - aslant.im, across.im + aslant.re};
+}
+DESERT_HD void transform_few(Complex (&v)[5]) {
+  constexpr float sin_72 = 0.951056516f, sin_144 = 0.587785252f, quarter_root_5 = 0.559016994f;
+  const Complex near = v[1] + v[4], far = v[2] + v[3], near_gap = v[1] - v[4], far_gap = v[2] - v[3];
+  const Complex sum = near + far, middle = plus_times(v[0], -0.25f, sum), spread = near - far;
+  const Complex first = plus_times(middle, quarter_root_5, spread);
+  const Complex second = plus_times(middle, -quarter_root_5, spread);
+  v[0] = v[0] + sum;
+  v[1] = minus_i_times(minus_i_times(first, sin_72, near_gap), sin_144, far_gap);
+  v[4] = minus_i_times(minus_i_times(first, -sin_72, near_gap), -sin_144, far_gap);
+  v[2] = minus_i_times(minus_i_times(second, sin_144, near_gap), -sin_72, far_gap);
+  v[3] = minus_i_times(minus_i_times(second, -sin_144, near_gap), sin_72, far_gap);
+}
+/// As two of three values; places are chosen so that nothing needs turning (Good, Thomas).
+DESERT_HD void transform_few(Complex (&v)[6]) {
+  Complex a[3] = {v[0], v[2], v[4]}, b[3] = {v[3], v[5], v[1]};
+  transform_few(a);
+  transform_few(b);
+  v[0] = a[0] + b[0];
+  v[1] = a[1] - b[1];
+  v[2] = a[2] + b[2];
+  v[3] = a[0] - b[0];
+  v[4] = a[1] + b[1];
+  v[5] = a[2] - b[2];
+}
+
+/// Whether n ≥ 1 has no other prime factors than 2, 3 and 5.
+inline bool smooth(int n) {
+  for (int factor : {2, 3, 5})
+    while (n % factor == 0) n /= factor;
+  return n == 1;
+}
+
+struct LineTransform {
+  static constexpr int longest = 512, most_stages = 5;
+
+  struct Stage {
+    int radix, done;
+    int turn;     ///< n / (done · radix)
+    float share;  ///< 1 / done
+  };
+
+  int length = 0, count = 0;
+  Stage stages[most_stages] = {};
+
+  /// Whether `n` is no longer than `longest` and smooth().
+  static bool suits(int n) { return n >= 2 && n <= longest && smooth(n); }
+  /// Of lines of `n` values; `n` suits.
+  static LineTransform of(int n) {
+    LineTransform t;
+    t.length = n;
+    while (!t.divide(n, ++t.count)) {
+    }
+    int done = 1;
+    for (int i = 0; i < t.count; done *= t.stages[i++].radix) {
+      Stage& stage = t.stages[i];
+      stage.done = done;
+      stage.turn = n / (done * stage.radix);
+      stage.share = 1.0f / static_cast<float>(done);
+    }
+    return t;
+  }
+
+  /// e^(−2πi j/n), n of them, which butterflies() is given.
+  std::vector<Complex> roots() const {
+    std::vector<Complex> table(static_cast<std::size_t>(length));
+    for (int j = 0; j < length; ++j) {
+      const double angle = -2 * 3.14159265358979323846 * j / length;
+      table[static_cast<std::size_t>(j)] = {static_cast<float>(std::cos(angle)),
+                                            static_cast<float>(std::sin(angle))};
+    }
+    return table;
+  }
+
+  /// Butterfly b of length/radix.
+  template <int radix>
+  DESERT_HD void butterfly(const Stage& stage, int b, const Complex* roots, const Complex* in,
+                           Complex* out) const {
+    const int apart = length / radix, done = stage.done;
+    const int before = static_cast<int>((static_cast<float>(b) + 0.5f) * stage.share) * done, k = b - before;
+    Complex v[radix];
+    unrolled<radix>([&](auto q) { v[q] = in[b + q * apart]; });
+    if (done > 1) {
+      const int turn = k * stage.turn;
+      unrolled<radix - 1>([&](auto q) { v[q + 1] = v[q + 1] * roots[(q + 1) * turn]; });
+    }
+    transform_few(v);
+    out += before * radix + k;
+    unrolled<radix>([&](auto q) { out[q * done] = v[q]; });
+  }
+  /// The first, first + step, first + 2 step … butterflies of a stage.
+  DESERT_HD void butterflies(const Stage& stage, int first, int step, const Complex* roots, const Complex* in,
+                             Complex* out) const {
+    switch (stage.radix) {
+      case 2:
+        return all<2>(stage, first, step, roots, in, out);
+      case 3:
+        return all<3>(stage, first, step, roots, in, out);
+      case 4:
+        return all<4>(stage, first, step, roots, in, out);
+      case 5:
+        return all<5>(stage, first, step, roots, in, out);
+      default:
+        return all<6>(stage, first, step, roots, in, out);
+    }
+  }
+
+ private:
+  /// Five first: what the first stage writes is a radix apart, for an odd one in different banks of shared
+  /// memory.
+  static constexpr int radices[] = {5, 3, 6, 4, 2};
+
+  template <int radix>
+  DESERT_HD void all(const Stage& stage, int first, int step, const Complex* roots, const Complex* in,
+                     Complex* out) const {
+    for (int b = first; b < length / radix; b += step) butterfly<radix>(stage, b, roots, in, out);
+  }
+
+  /// Finds radices for the last `left` of `count` stages whose product is n.
+  bool divide(int n, int left) {
+    if (left == 0) return n == 1;
+    for (int radix : radices) {
+      stages[count - left].radix = radix;
+      if (n % radix == 0 && divide(n / radix, left - 1)) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace desert_sim

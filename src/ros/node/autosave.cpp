@@ -1,0 +1,158 @@
+#include "src/ros/node/autosave.hpp"
+
+#include <ros/console.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
+#include "src/ros/conversion/messages.hpp"
+#include "src/simulation/checkpoint.hpp"
+
+namespace desert_sim {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char *subfolder = "autosave", *ending = ".ckpt";
+constexpr std::size_t kept = 2;  // the one before the last too: a disk may lose what it said was durable
+
+}  // namespace
+
+// ---- files
+
+AutosaveFiles::AutosaveFiles(const DataFolder& folder, const std::string& node, const Scenario& scenario)
+    : folder_(&folder), name_(node.substr(node.find_first_not_of('/'))) {
+  std::replace(name_.begin(), name_.end(), '/', '.');
+  name_ += "-" + hash_text(scenario_hash(scenario)) + "-";
+}
+
+std::string AutosaveFiles::file_name(unsigned long number) const {
+  char digits[24];
+  std::snprintf(digits, sizeof digits, "%010lu", number);
+  return std::string(subfolder) + "/" + name_ + digits + ending;
+}
+
+std::vector<std::string> AutosaveFiles::found() const {
+  std::vector<std::string> names;
+  std::error_code missing;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(folder_->path() + "/" + subfolder, missing)) {
+    const std::string name = entry.path().filename().string();
+    if (name.compare(0, name_.size(), name_) == 0 && entry.path().extension() == ending)
+      names.push_back(entry.path().string());
+  }
+  std::sort(names.rbegin(), names.rend());
+  return names;
+}
+
+std::string AutosaveFiles::next() const {
+  const std::vector<std::string> names = found();
+  unsigned long newest = 0;
+  if (!names.empty()) {
+    const std::string stem = fs::path(names.front()).stem().string();
+    newest = std::strtoul(stem.c_str() + name_.size(), nullptr, 10);
+  }
+  return folder_->for_writing(file_name(newest + 1));
+}
+
+void AutosaveFiles::keep(std::size_t count) const {
+  const std::vector<std::string> names = found();
+  for (std::size_t n = count; n < names.size(); ++n) fs::remove(names[n]);
+}
+
+// ---- saving
+
+Autosave::Autosave(AutosaveFiles files, double period, SimulationThread& simulation)
+    : files_(std::move(files)), period_(period), simulation_(simulation) {
+  state_.period = period;
+  thread_ = std::thread([this] { thread(); });
+}
+
+Autosave::~Autosave() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+    stopped_.notify_all();
+  }
+  thread_.join();
+}
+
+Autosave::State Autosave::state() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  State state = state_;
+  state.age = std::chrono::duration<double>(Clock::now() - saved_at_).count();
+  return state;
+}
+
+void Autosave::save_as(AutosaveFiles files) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  files_ = std::move(files);
+  saved_change_ = 0;
+}
+
+void Autosave::thread() {
+  const auto period = std::chrono::duration<double>(period_);
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!stopped_.wait_for(lock, period, [this] { return stopping_; })) {
+    lock.unlock();
+    std::string fault;
+    try {
+      save();
+    } catch (const std::exception& e) {
+      if (simulation_.ended()) return;  // which has been told; there is nothing more to save
+      fault = e.what();
+      ROS_ERROR("autosave: %s", fault.c_str());
+    }
+    lock.lock();
+    state_.fault = fault;
+    if (fault.empty())
+      saved_at_ = Clock::now();
+    else
+      saved_change_ = 0;
+  }
+}
+
+void Autosave::save() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const std::uint64_t change = simulation_.changes();
+  if (saved_change_ == change) return;
+  saved_change_ = change;  // the copy can only be newer; save_as() and a fault take this back
+  const AutosaveFiles files = files_;
+  lock.unlock();
+  const CheckpointCopy copy = simulation_.checkpoint().get();
+  const std::string path = files.next();
+  write_checkpoint(path, copy.bytes);
+  files.keep(kept);
+  lock.lock();
+  state_.path = path;
+  state_.step = copy.moment.step;
+}
+
+// ---- resuming
+
+void load_newest(Session& session, const std::vector<std::string>& checkpoints, const std::string& journal) {
+  for (const std::string& checkpoint : checkpoints) {
+    try {
+      std::string path = checkpoint;
+      if (!journal.empty()) {
+        path = journal + ".checkpoint";
+        fs::copy_file(checkpoint, path, fs::copy_options::overwrite_existing);
+      }
+      session.apply(command::LoadCheckpoint{path, 0});
+      ROS_INFO("resumed at step %lu from %s", static_cast<unsigned long>(session.simulation().steps()),
+               checkpoint.c_str());
+      return;
+    } catch (const ConfigError& e) {
+      ROS_WARN("not resumed from this one: %s", e.what());
+    } catch (const fs::filesystem_error& e) {
+      ROS_WARN("not resumed from this one: %s", e.what());
+    }
+  }
+  ROS_INFO("there is no whole autosave to resume from: this is the scenario's start");
+}
+
+}  // namespace desert_sim

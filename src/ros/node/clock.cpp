@@ -1,0 +1,64 @@
+#include "src/ros/node/clock.hpp"
+
+#include <ros/master.h>
+#include <ros/node_handle.h>
+#include <ros/this_node.h>
+#include <rosgraph_msgs/Clock.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr const char* topic = "/clock";
+
+/// A node that publishes /clock, or empty.
+std::string other_publisher() {
+  std::vector<std::string> ours;
+  ros::this_node::getAdvertisedTopics(ours);
+  if (std::find(ours.begin(), ours.end(), topic) != ours.end()) return "another part of this process";
+  XmlRpc::XmlRpcValue request, response, state;
+  request[0] = ros::this_node::getName();
+  if (!ros::master::execute("getSystemState", request, response, state, false))
+    throw Error("publish_clock: the master does not say who publishes /clock");
+  XmlRpc::XmlRpcValue& publishers = state[0];
+  for (int n = 0; n < publishers.size(); ++n) {
+    XmlRpc::XmlRpcValue &name = publishers[n][0], &nodes = publishers[n][1];
+    if (static_cast<std::string>(name) != topic) continue;
+    for (int k = 0; k < nodes.size(); ++k)
+      if (static_cast<std::string>(nodes[k]) != ros::this_node::getName()) return nodes[k];
+  }
+  return "";
+}
+
+}  // namespace
+
+ros::Time clock_time(double simulated) {
+  if (!(simulated >= 0 && simulated < std::numeric_limits<std::uint32_t>::max()))
+    throw Error("publish_clock: " + std::to_string(simulated) +
+                " s of simulated time are more than ROS time can hold (allowed: [0, 4294967295) s)");
+  return std::max(ros::Time(simulated), ros::Time(0, 1));
+}
+
+ClockPublisher::ClockPublisher() {
+  const std::string other = other_publisher();
+  if (!other.empty())
+    throw ConfigError("publish_clock: " + other +
+                      " publishes /clock already, and between two clocks time would jump to and fro; end it, "
+                      "or leave publish_clock false to follow its clock under use_sim_time");
+  publisher_ = ros::NodeHandle().advertise<rosgraph_msgs::Clock>(topic, 100, true);
+}
+
+void ClockPublisher::publish(double simulated) const {
+  const auto message = boost::make_shared<rosgraph_msgs::Clock>();
+  message->clock = clock_time(simulated);
+  if (publisher_) publisher_.publish(message);  // a node told to end while it starts has none
+}
+
+}  // namespace desert_sim

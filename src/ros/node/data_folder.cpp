@@ -1,0 +1,95 @@
+#include "src/ros/node/data_folder.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "src/core/error.hpp"
+#include "src/core/quoted.hpp"
+
+namespace desert_sim {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string ros_folder() {
+  if (const char* home = std::getenv("ROS_HOME")) return home;
+  const char* home = std::getenv("HOME");
+  return (home ? std::string(home) : "") + "/.ros";
+}
+
+/// What the name alone says.
+fs::path checked(const std::string& name) {
+  const auto refuse = [&](const char* why) {
+    throw ConfigError(quoted(name) + ": " + why + " (allowed: a path below ~data_dir)");
+  };
+  if (name.empty()) refuse("is empty");
+  if (name.find('\0') != std::string::npos) refuse("has a zero byte in it");
+  const fs::path path(name);
+  if (path.is_absolute()) refuse("is absolute");
+  for (const fs::path& part : path)
+    if (part == "..") refuse("has '..' in it");
+  if (path.filename().empty() || path.filename() == ".") refuse("names no file");
+  return path;
+}
+
+bool is_below(const fs::path& folder, const fs::path& path) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+/// `path` with its links followed, if it is still below `root`. The last part need not exist, unless it is a
+/// link.
+fs::path followed(const fs::path& root, const fs::path& path, const std::string& name) {
+  const fs::path real = fs::is_symlink(fs::symlink_status(path))
+                            ? fs::canonical(path)
+                            : fs::canonical(path.parent_path()) / path.filename();
+  if (!is_below(root, real)) throw ConfigError(quoted(name) + ": a link leads out of " + root.string());
+  return real;
+}
+
+}  // namespace
+
+DataFolder::DataFolder(const std::string& path) : path_(path.empty() ? ros_folder() + "/desert_sim" : path) {}
+
+std::string DataFolder::for_reading(const std::string& name) const {
+  const fs::path relative = checked(name);
+  try {
+    const fs::path root = fs::canonical(path_);
+    const fs::path file = followed(root, root / relative, name);
+    if (!fs::exists(file)) throw ConfigError(quoted(name) + ": there is no such file in " + root.string());
+    if (!fs::is_regular_file(file)) throw ConfigError(quoted(name) + ": is not a file");
+    return file.string();
+  } catch (const fs::filesystem_error& e) {
+    throw ConfigError(quoted(name) + ": " + e.code().message() + " (in " + path_ + ")");
+  }
+}
+
+void DataFolder::require_below(const std::string& path) const {
+  std::error_code error;
+  const fs::path real = fs::canonical(path, error), root = error ? fs::path() : fs::canonical(path_, error);
+  if (error) throw ConfigError(quoted(path) + ": " + error.message());
+  if (!is_below(root, real)) throw ConfigError(quoted(path) + ": is not below " + root.string());
+}
+
+std::string DataFolder::for_writing(const std::string& name) const {
+  const fs::path relative = checked(name);
+  try {
+    fs::create_directories(path_);
+    fs::path folder = fs::canonical(path_);
+    const fs::path root = folder;
+    for (const fs::path& part : relative.parent_path()) {
+      folder = followed(root, folder / part, name);
+      fs::create_directory(folder);
+    }
+    const fs::path file = followed(root, folder / relative.filename(), name);
+    if (fs::exists(file) && !fs::is_regular_file(file)) throw ConfigError(quoted(name) + ": is not a file");
+    // Checkpoints are written under this name first.
+    followed(root, file.string() + ".part", name);
+    return file.string();
+  } catch (const fs::filesystem_error& e) {
+    throw ConfigError(quoted(name) + ": " + e.code().message() + " (in " + path_ + ")");
+  }
+}
+
+}  // namespace desert_sim

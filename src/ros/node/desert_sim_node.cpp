@@ -1,0 +1,53 @@
+/// desert_sim_node: the simulation as a ROS node. With --describe it prints the page of its parameters and
+/// ends. Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time.
+#include <ros/console.h>
+#include <ros/init.h>
+
+#include <csignal>
+#include <iostream>
+#include <string>
+
+#include "src/core/error.hpp"
+#include "src/ros/node/desert_sim_server.hpp"
+#include "src/ros/node/node_parameter_page.hpp"
+
+namespace {
+
+constexpr int refused = 2, failed = 3;
+
+int run() {
+  const desert_sim::DesertSimServer server(ros::NodeHandle("~"));
+  std::string failure;
+  while (ros::ok() && failure.empty()) {
+    ros::WallDuration(0.05).sleep();
+    failure = server.failure();
+  }
+  if (failure.empty()) return 0;
+  ROS_FATAL("%s", failure.c_str());
+  ros::WallDuration(0.5).sleep();  // the last status is on its way
+  return failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc == 2 && argv[1] == std::string("--describe")) {
+    std::cout << desert_sim::describe_node_parameters();
+    return 0;
+  }
+  ros::init(argc, argv, "desert_sim");
+  // systemd, docker and roslaunch's second attempt; roscpp itself only knows Ctrl-C.
+  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  ros::start();  // the log ends with ROS, and must outlive the server
+  int status = failed;
+  try {
+    status = run();
+  } catch (const desert_sim::ConfigError& e) {
+    ROS_FATAL("%s", e.what());
+    status = refused;
+  } catch (const std::exception& e) {
+    ROS_FATAL("%s", e.what());
+  }
+  ros::shutdown();
+  return status;
+}

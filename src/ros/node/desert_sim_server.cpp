@@ -1,0 +1,120 @@
+#include "src/ros/node/desert_sim_server.hpp"
+
+#include <ros/console.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "src/grid_map/grid_map_bag.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr std::uint32_t threads = 4, step_threads = 2;
+
+/// A journal is what explains a run that failed; the run that is started in its place must not overwrite it.
+void keep_previous_journal(const std::string& path) {
+  std::error_code error;
+  if (path.empty() || !std::filesystem::is_regular_file(path, error)) return;
+  std::filesystem::rename(path, path + ".previous", error);
+  if (error)
+    throw ConfigError(path + ": cannot be renamed to make room for a new journal: " + error.message());
+}
+
+SimulationThread::Options options_of(const NodeParameters& p) {
+  SimulationThread::Options options;
+  options.backend = backend_choices[static_cast<int>(p.backend)];
+  options.threads = p.threads;
+  options.niceness = p.niceness;
+  options.step_rate = p.step_rate;
+  options.paused = p.paused;
+  options.journal = p.journal;
+  return options;
+}
+
+/// Says what runs. Points and markers in rviz are single precision: 1e5 m leave a centimetre.
+void announce(const Scenario& scenario, const std::string& backend) {
+  const GridParameters& grid = scenario.grid;
+  ROS_INFO("scenario %s: %d x %d cells of %g m; backend: %s", scenario.name.c_str(), grid.width, grid.height,
+           grid.cell_size, backend.c_str());
+  const double farthest = std::max(std::abs(grid.origin_x), std::abs(grid.origin_y));
+  if (farthest > 1e5)
+    ROS_WARN(
+        "the terrain lies up to %.0f m from its frame's origin: float32 coordinates (~points, rviz) are only "
+        "good to %.2f m there",
+        farthest, farthest * 6e-8);
+}
+
+}  // namespace
+
+DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
+    : node_(private_node), spinner_(threads, &queue_), step_spinner_(step_threads, &step_queue_) {
+  node_.setCallbackQueue(&queue_);
+  NodeSetup setup = read_node_setup(node_);
+  resolve_grid(setup.scenario, raster_loader_with_bags());
+  const NodeParameters& p = setup.node;
+  check_map_sizes(setup.publishers.maps, setup.scenario.grid);
+  keep_previous_journal(p.journal);
+  files_ = std::make_unique<DataFolder>(p.data_dir);
+  frames_ = std::make_unique<Frames>(p.frame_id);
+  SimulationThread::Options options = options_of(p);
+  if (p.publish_clock) {
+    clock_ = std::make_unique<ClockPublisher>();
+    if (!ros::Time::isSimTime())
+      ROS_WARN("publish_clock: nobody follows /clock while use_sim_time is not set");
+    options.publish_clock = [this](double simulated) { clock_->publish(simulated); };
+  }
+  const AutosaveFiles autosaves(*files_, node_.getNamespace(), setup.scenario);
+  if (p.resume) options.resume_from = autosaves.found();
+  if (p.resume && options.resume_from.empty()) ROS_INFO("there is no autosave to resume from");
+  options.check_scenario = [this, own = rasters_of(setup.scenario)](const Scenario& scenario) {
+    for (const std::string& raster : rasters_of(scenario))
+      if (std::count(own.begin(), own.end(), raster) == 0) files_->require_below(raster);
+  };
+  simulation_ =
+      std::make_unique<SimulationThread>(setup.scenario, raster_loader_with_bags(), options, [this] {
+        if (Topics* topics = to_notify_) topics->notify();
+      });
+  announce(simulation_->scenario().get(), simulation_->backend_choice());
+  if (!p.center_frame.empty())
+    frames_->announce_center(p.center_frame, *simulation_->terrain({Layer::elevation}).get().snapshot);
+  topics_ = std::make_unique<Topics>(node_, setup.publishers, *frames_, *simulation_);
+  to_notify_ = topics_.get();
+  try {
+    services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *topics_, *frames_, *files_);
+    if (p.autosave_period > 0)
+      autosave_ = std::make_unique<Autosave>(autosaves, p.autosave_period, *simulation_);
+    diagnostics_ =
+        std::make_unique<Diagnostics>(node_, p.diagnostic_period, *simulation_, *topics_, autosave_.get());
+    wind_stream_ = std::make_unique<WindStream>(node_, *simulation_, *frames_);
+    reconfigure_ = std::make_unique<Reconfigure>(node_, *simulation_, *topics_);
+    reload_ =
+        std::make_unique<Reload>(node_, setup, *simulation_, *topics_, [this](const Scenario& scenario) {
+          if (autosave_) autosave_->save_as(AutosaveFiles(*files_, node_.getNamespace(), scenario));
+        });
+    spinner_.start();
+    step_spinner_.start();
+  } catch (...) {
+    simulation_->stop();  // it must not notify topics that are gone
+    throw;
+  }
+}
+
+DesertSimServer::~DesertSimServer() {
+  // First what others wait for, so that they get their answers; then those who wait.
+  simulation_->stop();
+  topics_->stop();
+  spinner_.stop();
+  step_spinner_.stop();
+  reload_.reset();
+  reconfigure_.reset();
+  wind_stream_.reset();
+  diagnostics_.reset();
+  autosave_.reset();
+  services_.reset();
+  topics_.reset();
+}
+
+}  // namespace desert_sim

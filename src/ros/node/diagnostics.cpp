@@ -1,0 +1,152 @@
+#include "src/ros/node/diagnostics.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+namespace desert_sim {
+
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+constexpr auto patience = std::chrono::seconds(2);
+constexpr int slow_periods = 3;
+constexpr const char* states[] = {"running", "paused", "waiting for /clock"};
+
+double mebibytes(double bytes) { return bytes / (1 << 20); }
+
+double resident_bytes() {
+  double all = 0, resident = 0;  // [pages]
+  std::ifstream("/proc/self/statm") >> all >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+double peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+}  // namespace
+
+Diagnostics::Diagnostics(ros::NodeHandle node, double period, SimulationThread& simulation,
+                         const Topics& topics, const Autosave* autosave)
+    : simulation_(simulation),
+      topics_(topics),
+      autosave_(autosave),
+      updater_(node, node, node.getNamespace()) {
+  listeners_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1);
+  updater_.setHardwareID("desert_sim");
+  updater_.add("simulation", [this](Status& status) { this->simulation(status); });
+  updater_.add("mass balance", [this](Status& status) { mass(status); });
+  updater_.add("memory", [this](Status& status) { memory(status); });
+  updater_.add("topics", [this](Status& status) { rates(status); });
+  updater_.add("autosave", [this](Status& status) { saving(status); });
+  timer_ = node.createWallTimer(ros::WallDuration(period), [this](const ros::WallTimerEvent&) { update(); });
+}
+
+void Diagnostics::update() {
+  if (listeners_.getNumSubscribers() == 0) return;
+  report_.reset();
+  try {
+    std::future<StatusReport> answer = simulation_.report(false);
+    if (answer.wait_for(patience) == std::future_status::ready) report_ = answer.get();
+  } catch (const Error&) {
+    // It has failed, which simulation() tells, or it is ending.
+  }
+  if (report_) updater_.setHardwareID(report_->device);
+  updater_.force_update();
+}
+
+void Diagnostics::simulation(Status& status) const {
+  const std::string failure = topics_.failure().empty() ? simulation_.failure() : topics_.failure();
+  if (!failure.empty()) return status.summary(DiagnosticStatus::ERROR, failure);
+  if (!report_) return status.summary(DiagnosticStatus::WARN, "no answer yet: a step takes long");
+  const StatusReport& r = *report_;
+  if (r.state == RunState::waiting) {
+    status.summary(DiagnosticStatus::WARN, "use_sim_time is set, and nobody has published /clock yet");
+  } else if (r.lag > Pacer::backlog) {
+    status.summaryf(DiagnosticStatus::WARN, "%.1f s behind: %.1f of %.1f steps a second", r.lag,
+                    r.steps_per_second, r.step_rate);
+  } else {
+    status.summary(DiagnosticStatus::OK, states[static_cast<int>(r.state)]);
+  }
+  status.add("state", states[static_cast<int>(r.state)]);
+  status.add("scenario", r.scenario);
+  status.add("backend", r.backend_choice);
+  status.add("device", r.device);
+  status.add("step", r.moment.step);
+  status.add("simulated time [s]", r.moment.time);
+  status.add("steps a second wanted", r.step_rate);
+  status.add("steps a second", r.steps_per_second);
+  status.add("lag [s]", r.lag);
+}
+
+void Diagnostics::mass(Status& status) const {
+  if (!report_) return status.summary(DiagnosticStatus::OK, "not looked at");
+  long long lost = 0;
+  for (int m = 0; m < material_count; ++m) {
+    const MaterialBalance& b = report_->balance[static_cast<std::size_t>(m)];
+    lost += std::abs(b.residual());
+    status.addf(material_names[m], "residual %lld quanta (relative %g)", b.residual(), b.relative_residual());
+  }
+  if (lost == 0)
+    status.summary(DiagnosticStatus::OK, "every quantum is accounted for");
+  else
+    status.summaryf(DiagnosticStatus::ERROR, "%lld quanta are not accounted for", lost);
+}
+
+void Diagnostics::memory(Status& status) const {
+  status.addf("host, resident [MiB]", "%.1f", mebibytes(resident_bytes()));
+  status.addf("host, peak [MiB]", "%.1f", mebibytes(peak_bytes()));
+  if (!report_) return status.summary(DiagnosticStatus::OK, "the backend's was not looked at");
+  const auto layers = static_cast<double>(report_->layer_bytes),
+             available = static_cast<double>(report_->memory_available);
+  status.addf("layers [MiB]", "%.1f", mebibytes(layers));
+  status.addf("available to the backend [MiB]", "%.1f", mebibytes(available));
+  // The old terrain stays until the new one is whole.
+  if (available < report_->memory_needed)
+    status.summaryf(DiagnosticStatus::WARN, "%.0f MiB are left, and a reset or a load needs %.0f",
+                    mebibytes(available), mebibytes(report_->memory_needed));
+  else
+    status.summary(DiagnosticStatus::OK, "enough");
+}
+
+void Diagnostics::rates(Status& status) {
+  const std::string failure = topics_.failure();
+  std::string slow;
+  for (const TopicRate& topic : topics_.rates()) {
+    status.addf(topic.name, "%.2f of %.2f Hz, %u subscribers", topic.achieved, topic.wanted,
+                topic.subscribers);
+    // What has not changed is not sent again.
+    const bool runs = report_ && report_->state == RunState::running && topic.subscribers > 0;
+    const double expected = runs ? std::min(topic.wanted, report_->steps_per_second) : 0;
+    int& periods = slow_[topic.name];
+    periods = topic.achieved < 0.5 * expected ? periods + 1 : 0;
+    if (periods >= slow_periods) slow += (slow.empty() ? "" : ", ") + topic.name;
+  }
+  if (!failure.empty()) return status.summary(DiagnosticStatus::ERROR, failure);
+  status.summary(DiagnosticStatus::OK, "as wanted");
+  if (!slow.empty()) status.mergeSummary(DiagnosticStatus::WARN, "under half the wanted rate: " + slow);
+  for (const auto& [topic, problem] : topics_.problems())
+    status.mergeSummary(DiagnosticStatus::WARN, topic + ": " + problem);
+}
+
+void Diagnostics::saving(Status& status) const {
+  if (!autosave_) return status.summary(DiagnosticStatus::OK, "off");
+  const Autosave::State s = autosave_->state();
+  status.add("period [s]", s.period);
+  status.add("last file", s.path);
+  status.add("its step", s.step);
+  status.addf("its age [s]", "%.1f", s.age);
+  if (!s.fault.empty())
+    status.summary(DiagnosticStatus::ERROR, s.fault);
+  else if (s.age > 2 * s.period + std::chrono::duration<double>(patience).count())
+    status.summaryf(DiagnosticStatus::WARN, "none since %.0f s", s.age);
+  else
+    status.summary(DiagnosticStatus::OK, s.path.empty() ? "on" : "saved");
+}
+
+}  // namespace desert_sim

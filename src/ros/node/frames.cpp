@@ -1,0 +1,77 @@
+#include "src/ros/node/frames.hpp"
+
+#include <ros/init.h>
+#include <tf2/LinearMath/Quaternion.h>
+
+#include <chrono>
+#include <numeric>
+#include <thread>
+
+#include "src/core/error.hpp"
+#include "src/core/quoted.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr auto patience = std::chrono::milliseconds(200);  // of wall time: ROS time may stand still
+
+tf2::Transform transform_of(const geometry_msgs::TransformStamped& found) {
+  const auto& r = found.transform.rotation;
+  const auto& t = found.transform.translation;
+  return tf2::Transform(tf2::Quaternion(r.x, r.y, r.z, r.w), tf2::Vector3(t.x, t.y, t.z));
+}
+
+}  // namespace
+
+Frames::Frames(std::string terrain_frame) : terrain_frame_(std::move(terrain_frame)), listener_(buffer_) {}
+
+tf2::Transform Frames::to_terrain(const std_msgs::Header& header) const {
+  const std::string& given = header.frame_id;
+  const std::string frame = !given.empty() && given[0] == '/' ? given.substr(1) : given;
+  if (frame.empty() || frame == terrain_frame_) return tf2::Transform::getIdentity();
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (true) {
+    try {
+      return transform_of(buffer_.lookupTransform(terrain_frame_, frame, header.stamp));
+    } catch (const tf2::TransformException& e) {
+      if (std::chrono::steady_clock::now() >= end)
+        throw ConfigError("frame " + quoted(given) + " cannot be brought into the terrain's, '" +
+                          terrain_frame_ + "': " + shortened(e.what()));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+bool Frames::latest_to_terrain(const std::string& frame, tf2::Transform& transform, std::string& why) const {
+  try {
+    transform = transform_of(buffer_.lookupTransform(terrain_frame_, frame, ros::Time(0)));
+    return true;
+  } catch (const tf2::TransformException& e) {
+    why = "frame " + quoted(frame) + " cannot be brought into the terrain's, '" + terrain_frame_ +
+          "': " + shortened(e.what());
+    return false;
+  }
+}
+
+void Frames::announce_center(const std::string& name, const Snapshot& snapshot) {
+  center_name_ = name;
+  broadcaster_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
+  move_center(snapshot);
+}
+
+void Frames::move_center(const Snapshot& s) {
+  const std::vector<float>& z = s.layers.at(Layer::elevation);
+  geometry_msgs::TransformStamped center;
+  center.header.stamp = ros::Time::now();
+  center.header.frame_id = terrain_frame_;
+  center.child_frame_id = center_name_;
+  center.transform.translation.x = s.origin_x + 0.5 * s.width * s.cell_size;
+  center.transform.translation.y = s.origin_y + 0.5 * s.height * s.cell_size;
+  center.transform.translation.z = std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
+  center.transform.rotation.w = 1;
+  // A node told to end while it starts: the broadcaster got no publisher, and tf2 asserts that it has one.
+  if (!ros::isShuttingDown()) broadcaster_->sendTransform(center);
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,49 @@
+#include "src/ros/node/job_queue.hpp"
+
+namespace desert_sim {
+
+void JobQueue::put(Job job) {
+  std::string reason;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!closed_) {
+      jobs_.push_back(std::move(job));
+      changed_.notify_all();
+      return;
+    }
+    reason = reason_;
+  }
+  job.refuse(std::make_exception_ptr(Error(reason)));
+}
+
+bool JobQueue::take(Job& job) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (jobs_.empty()) return false;
+  job = std::move(jobs_.front());
+  jobs_.pop_front();
+  return true;
+}
+
+void JobQueue::wait_for(std::chrono::duration<double> time) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  changed_.wait_for(lock, time, [this] { return closed_ || !jobs_.empty(); });
+}
+
+void JobQueue::close(const std::string& reason) {
+  std::deque<Job> left;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!closed_) reason_ = reason;
+    closed_ = true;
+    left.swap(jobs_);
+    changed_.notify_all();
+  }
+  for (Job& job : left) job.refuse(std::make_exception_ptr(Error(reason)));
+}
+
+bool JobQueue::closed() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return closed_;
+}
+
+}  // namespace desert_sim

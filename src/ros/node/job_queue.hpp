@@ -1,0 +1,69 @@
+#pragma once
+/// What other threads want the simulation thread to do between two steps.
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+/// A job and the promise that it owes an answer to.
+struct Job {
+  std::function<void()> run;  ///< may throw after it has answered with the same exception
+  std::function<void(std::exception_ptr)> refuse;
+};
+
+/// Makes a job of `body`, which returns R. An input that is refused (ConfigError) only goes to who asked; any
+/// other exception goes to both sides.
+template <class R>
+Job make_job(std::function<R()> body, std::future<R>& answer) {
+  auto promise = std::make_shared<std::promise<R>>();
+  answer = promise->get_future();
+  Job job;
+  job.run = [promise, body] {
+    try {
+      if constexpr (std::is_void_v<R>) {
+        body();
+        promise->set_value();
+      } else {
+        promise->set_value(body());
+      }
+    } catch (const ConfigError&) {
+      promise->set_exception(std::current_exception());
+    } catch (...) {
+      promise->set_exception(std::current_exception());
+      throw;
+    }
+  };
+  job.refuse = [promise](std::exception_ptr why) { promise->set_exception(why); };
+  return job;
+}
+
+/// Many threads put, one takes. No lock is held while a job runs.
+class JobQueue {
+ public:
+  /// Once the queue is closed, the job is refused with the reason of close().
+  void put(Job job);
+  bool take(Job& job);
+  /// Sleeps until there is a job, or the time is over, or the queue is closed.
+  void wait_for(std::chrono::duration<double> time);
+  /// Refuses the jobs that wait and all that come. The first reason stays.
+  void close(const std::string& reason);
+  bool closed() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Job> jobs_;
+  bool closed_ = false;
+  std::string reason_;
+};
+
+}  // namespace desert_sim

@@ -1,0 +1,79 @@
+#pragma once
+/// The node's private parameters, and the scenario that it is to run.
+
+#include <ros/node_handle.h>
+
+#include <string>
+
+#include "src/core/parameters.hpp"
+#include "src/ros/topics/publisher_parameters.hpp"
+#include "src/scenario/scenario.hpp"
+
+namespace desert_sim {
+
+enum class BackendChoice : int { automatic, cpu, cuda };
+constexpr const char* backend_choices[] = {"auto", "cpu", "cuda"};
+
+/// What the node does.
+struct NodeParameters {
+  std::string scenario;
+  std::string frame_id = "map";
+  std::string center_frame = "terrain_center";
+  BackendChoice backend = BackendChoice::automatic;
+  int threads = 0;
+  int niceness = 10;
+  double step_rate = 10;
+  bool paused = false;
+  std::string data_dir;
+  std::string journal;
+  double autosave_period = 0;
+  bool resume = false;
+  bool publish_clock = false;
+  double diagnostic_period = 1;
+};
+constexpr auto parameter_table(const NodeParameters*) {
+  using P = NodeParameters;
+  return std::make_tuple(
+      parameter("scenario", &P::scenario,
+                "A file, or the bare name of one in the package's config/scenarios; empty: the scenario's "
+                "sections are parameters."),
+      parameter("frame_id", &P::frame_id, "Frame of the terrain."),
+      parameter("center_frame", &P::center_frame,
+                "Static frame that is published in the middle of the terrain, for views; empty: none."),
+      parameter("backend", &P::backend, backend_choices, "auto takes CUDA where it is usable."),
+      parameter("threads", &P::threads, 0, 4096, "1", "Threads of the CPU backend; 0: one a processor."),
+      parameter("niceness", &P::niceness, 0, 19, "1",
+                "Of the simulation's threads, as in nice(1): on a busy machine publishing and subscribers "
+                "come first."),
+      parameter("step_rate", &P::step_rate, 0, 1e6, "steps/s",
+                "In wall time, or ROS time under use_sim_time; 0: as fast as it can."),
+      parameter("paused", &P::paused, "Whether it starts paused."),
+      parameter(
+          "data_dir", &P::data_dir,
+          "Checkpoints lie below this folder; empty: desert_sim in ROS's own folder ($ROS_HOME, or ~/.ros)."),
+      parameter(
+          "journal", &P::journal,
+          "File for the journal of commands; a file of that name gets the ending .previous. Empty: none."),
+      parameter("autosave_period", &P::autosave_period, 0, 1e9, "s",
+                "Of wall time, from one checkpoint in ~data_dir/autosave to the next; 0: none."),
+      parameter("resume", &P::resume, "Whether it starts with its newest autosave that is whole."),
+      parameter("publish_clock", &P::publish_clock,
+                "Whether it publishes simulated time on /clock; it then follows wall time itself."),
+      parameter("diagnostic_period", &P::diagnostic_period, 0.01, 1e6, "s",
+                "Of wall time, from one message on /diagnostics to the next."));
+}
+static_assert(table_is_complete<NodeParameters>());
+
+struct NodeSetup {
+  NodeParameters node;
+  PublisherSetup publishers;
+  Scenario scenario;  ///< not yet resolved
+};
+
+/// Reads all private parameters of `private_node`: those above, the lists
+/// `grid_map_layers` and `local_map_layers`, `settings` (a list of "path=value" for a
+/// scenario that is a file), and the sections of a scenario. Sections given beside a file override the file's
+/// keys. Throws ConfigError that lists all faults; a parameter that nobody knows is one.
+NodeSetup read_node_setup(const ros::NodeHandle& private_node);
+
+}  // namespace desert_sim

@@ -1,0 +1,74 @@
+#include "src/ros/node/pacer.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace desert_sim {
+
+double steady_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double Pacer::due_time() const { return start_ + static_cast<double>(done_) / rate_; }
+
+bool Pacer::due(double now) {
+  if (rate_ <= 0) return true;
+  if (running_ && now < last_) {
+    running_ = false;
+    jumped_back_ = true;
+  }
+  if (!running_) {
+    running_ = true;
+    start_ = now;
+    done_ = 0;
+    given_up_ = 0;
+  }
+  last_ = now;
+  const double behind = now - due_time() - backlog;
+  if (behind > 0) {
+    start_ += behind;
+    given_up_ += behind;
+  }
+  return now >= due_time();
+}
+
+void Pacer::forgive(double now) {
+  if (rate_ > 0 && running_) start_ += std::max(0.0, now - due_time());
+}
+
+void Pacer::stepped() {
+  if (rate_ <= 0) return;
+  ++done_;
+}
+
+double Pacer::until_due(double now) const {
+  return rate_ <= 0 || !running_ ? 0.0 : std::max(0.0, due_time() - now);
+}
+
+double Pacer::lag(double now) const {
+  return rate_ <= 0 || !running_ ? 0.0 : given_up_ + std::max(0.0, now - due_time());
+}
+
+bool Pacer::jumped_back() {
+  const bool jumped = jumped_back_;
+  jumped_back_ = false;
+  return jumped;
+}
+
+void RateMeter::count(double now) {
+  constexpr double window = 2.0, apart = 0.05;
+  ++steps_;
+  if (!marks_.empty() && now - marks_.back().time < apart) return;
+  marks_.push_back({now, steps_});
+  while (marks_.size() > 2 && now - marks_[1].time > window) marks_.pop_front();
+}
+
+double RateMeter::rate(double now) const {
+  if (marks_.size() < 2) return 0.0;
+  // Steps that stopped coming: the rate falls as time goes on.
+  const double interval = (marks_.back().time - marks_.front().time) / static_cast<double>(marks_.size() - 1);
+  const double last = marks_.back().time, end = now - last > 2 * interval + 0.5 ? now : last;
+  return static_cast<double>(marks_.back().steps - marks_.front().steps) / (end - marks_.front().time);
+}
+
+}  // namespace desert_sim

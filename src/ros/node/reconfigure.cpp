@@ -1,0 +1,92 @@
+#include "src/ros/node/reconfigure.hpp"
+
+#include <dynamic_reconfigure/ConfigDescription.h>
+#include <ros/console.h>
+#include <ros/serialization.h>
+
+#include <utility>
+
+namespace desert_sim {
+
+namespace {
+
+constexpr double look_every = 0.2;  // [s]
+
+bool same(const dynamic_reconfigure::Config& a, const dynamic_reconfigure::Config& b) {
+  const ros::SerializedMessage x = ros::serialization::serializeMessage(a),
+                               y = ros::serialization::serializeMessage(b);
+  return x.num_bytes == y.num_bytes && std::equal(x.buf.get(), x.buf.get() + x.num_bytes, y.buf.get());
+}
+
+}  // namespace
+
+Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Topics& topics)
+    : simulation_(simulation), topics_(topics) {
+  const LiveParameters defaults = present();
+  descriptions_ = node.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true);
+  updates_ = node.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true);
+  if (!descriptions_ || !updates_) return;  // ROS is shutting down and advertises nothing any more
+  descriptions_.publish(
+      boost::make_shared<dynamic_reconfigure::ConfigDescription>(reconfigure_description(defaults)));
+  publish(reconfigure_values(defaults));
+  service_ = node.advertiseService("set_parameters", &Reconfigure::set, this);
+  timer_ =
+      node.createWallTimer(ros::WallDuration(look_every), [this](const ros::WallTimerEvent&) { look(); });
+}
+
+LiveParameters Reconfigure::present() const {
+  return {simulation_.scenario().get(), topics_.parameters(), simulation_.step_rate()};
+}
+
+/// In their order, and without the lock across a publish.
+void Reconfigure::publish(const dynamic_reconfigure::Config& values) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  if (same(values, published_)) return;
+  published_ = values;
+  to_publish_ = boost::make_shared<dynamic_reconfigure::Config>(values);
+  if (publishing_) return;  // whoever does so now takes this one too
+  publishing_ = true;
+  while (to_publish_) {
+    const dynamic_reconfigure::ConfigConstPtr next = std::exchange(to_publish_, nullptr);
+    lock.unlock();
+    updates_.publish(next);
+    lock.lock();
+  }
+  publishing_ = false;
+}
+
+bool Reconfigure::set(Request& request, Response& response) {
+  try {
+    const LiveChange change = reconfigure_change(request.config, present());
+    // First what may yet be refused.
+    if (!change.settings.empty()) {
+      simulation_.apply(command::SetParameters{change.settings}).get();
+      topics_.status_changed();
+    }
+    if (change.step_rate != simulation_.step_rate()) simulation_.set_step_rate(change.step_rate).get();
+    topics_.set_parameters(change.publishers);
+    response.config = reconfigure_values(present());
+    publish(response.config);
+    return true;
+  } catch (const Error& e) {
+    ROS_WARN("%s", e.what());  // its answer has no place for a reason
+    return false;
+  }
+}
+
+/// Other commands change the wind, a reset or a checkpoint everything, and ~reload_parameters anything.
+void Reconfigure::look() {
+  const std::uint64_t commands = simulation_.commands(), publishers = topics_.parameter_changes();
+  const double rate = simulation_.step_rate();
+  if (commands == seen_ && publishers == seen_publishers_ && rate == seen_rate_) return;
+  try {
+    publish(reconfigure_values(present()));
+    seen_ = commands;
+    seen_publishers_ = publishers;
+    seen_rate_ = rate;
+  } catch (const Error&) {
+    // The simulation is ending, or has failed, which ~status tells.
+  }
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,254 @@
+#include "src/ros/node/simulation_thread.hpp"
+
+#include <pthread.h>
+#include <ros/console.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "src/ros/node/autosave.hpp"
+#include "src/ros/node/clock.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr int steps_in_flight = 8;  // a GPU may be that far behind before the thread waits for it
+constexpr int timed_every = 16;     // steps from one that is timed to the next
+constexpr double keep_memory = 60;  // [s] that layers on request, and staging memory, stay while nobody asks
+
+/// Of the calling thread, for top -H and for the scheduler. The backend's threads are its children and
+/// inherit both.
+void name_and_nice(const char* name, int niceness) {
+  pthread_setname_np(pthread_self(), name);
+  const auto thread = static_cast<id_t>(syscall(SYS_gettid));  // Linux has a niceness for each thread
+  errno = 0;
+  const int now = getpriority(PRIO_PROCESS, thread);
+  if (errno == 0 && now >= niceness) return;
+  if (setpriority(PRIO_PROCESS, thread, niceness) != 0)
+    ROS_WARN("niceness %d of the simulation's threads: %s", niceness, std::strerror(errno));
+}
+
+}  // namespace
+
+SimulationThread::SimulationThread(const Scenario& scenario, const RasterLoader& load_raster,
+                                   const Options& options, std::function<void()> on_change)
+    : options_(options),
+      on_change_(std::move(on_change)),
+      step_rate_(options.step_rate),
+      pacer_(options.step_rate),
+      paused_(options.paused) {
+  std::promise<void> started;
+  std::future<void> ready = started.get_future();
+  thread_ = std::thread([&] { thread(scenario, load_raster, started); });
+  try {
+    ready.get();
+  } catch (...) {
+    thread_.join();
+    throw;
+  }
+}
+
+SimulationThread::~SimulationThread() { stop(); }
+
+void SimulationThread::stop() {
+  jobs_.close("the simulation is ending");
+  if (thread_.joinable()) thread_.join();
+}
+
+std::string SimulationThread::failure() const {
+  const std::lock_guard<std::mutex> lock(failure_mutex_);
+  return failure_;
+}
+
+// ---- from here on: on the simulation thread ----
+
+void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load_raster,
+                              std::promise<void>& started) {
+  name_and_nice("simulation", options_.niceness);
+  try {
+    session_ = std::make_unique<Session>(scenario, load_raster, options_.backend, options_.threads,
+                                         options_.journal);
+    if (options_.check_scenario) session_->check_with(options_.check_scenario);
+    backend_choice_ = session_->backend_choice();
+    if (!options_.resume_from.empty()) load_newest(*session_, options_.resume_from, options_.journal);
+    stamp_ = stamp_now();
+    if (options_.publish_clock) options_.publish_clock(session_->simulation().time());
+  } catch (...) {
+    session_.reset();
+    started.set_exception(std::current_exception());
+    return;
+  }
+  started.set_value();  // from here on, `scenario`, `load_raster` and `started` are gone
+  try {
+    loop();
+  } catch (const std::exception& e) {
+    fail(e.what());
+  } catch (...) {
+    fail("an exception of an unknown type");
+  }
+  const std::string why =
+      failure().empty() ? "the simulation is ending" : "the simulation has failed: " + failure();
+  for (StepRequest& request : step_requests_)
+    request.answer.set_exception(std::make_exception_ptr(Error(why)));
+  step_requests_.clear();
+  session_.reset();
+}
+
+void SimulationThread::loop() {
+  while (serve_jobs()) {
+    release_unused_memory();
+    if (!step_requests_.empty()) {
+      serve_step_request();
+    } else if (!paused_ && step_is_due()) {
+      step();
+      pacer_.stepped();
+    } else {
+      settle();
+      jobs_.wait_for(std::chrono::duration<double>(idle_time()));
+    }
+  }
+}
+
+/// How long there is nothing to do unless a job comes [s].
+double SimulationThread::idle_time() const {
+  if (paused_) return 1.0;
+  if (waiting_for_clock_) return 0.02;
+  if (follows_ros_time())
+    return 0.001;  // nobody knows when that clock will have come so far: look again and again
+  return std::min(0.1, std::max(1e-4, pacer_.until_due(clock_now())));
+}
+
+/// False if the thread is to end.
+bool SimulationThread::serve_jobs() {
+  for (Job job; jobs_.take(job);) job.run();
+  return !jobs_.closed();
+}
+
+void SimulationThread::serve_step_request() {
+  StepRequest& request = step_requests_.front();
+  if (request.done < request.asked) {
+    step();
+    ++request.done;
+  }
+  if (request.done < request.asked) return;
+  ++commands_;
+  pacer_.forgive(clock_now());  // what these steps took is not to be caught up
+  request.answer.set_value(reached(true));
+  step_requests_.pop_front();
+}
+
+void SimulationThread::end_step_requests(const std::string& by) {
+  for (StepRequest& request : step_requests_)
+    request.answer.set_exception(
+        std::make_exception_ptr(ConfigError("ended by " + by + " after " + std::to_string(request.done) +
+                                            " of " + std::to_string(request.asked) + " steps")));
+  step_requests_.clear();
+}
+
+/// A simulation that is the clock cannot wait for it.
+bool SimulationThread::follows_ros_time() const { return ros::Time::isSimTime() && !options_.publish_clock; }
+
+/// Under use_sim_time, its own clock's time comes back to it only later.
+ros::Time SimulationThread::stamp_now() const {
+  return options_.publish_clock && ros::Time::isSimTime() ? clock_time(session_->simulation().time())
+                                                          : ros::Time::now();
+}
+
+double SimulationThread::clock_now() const {
+  return follows_ros_time() ? ros::Time::now().toSec() : steady_now();
+}
+
+bool SimulationThread::step_is_due() {
+  if (pacer_.rate() > 0 && follows_ros_time()) {
+    const bool waiting = !ros::Time::isValid();
+    if (waiting != waiting_for_clock_) ROS_INFO("%s", waiting ? "waiting for /clock" : "/clock is there");
+    waiting_for_clock_ = waiting;
+    if (waiting) return false;
+  }
+  const bool due = pacer_.due(clock_now());
+  if (pacer_.jumped_back()) ROS_WARN("the clock went back: the schedule of steps begins anew");
+  const double lag = pacer_.lag(clock_now());
+  if (lag > Pacer::backlog)
+    ROS_WARN_THROTTLE(30, "%.0f s behind: this machine makes %.1f steps a second, %.1f are wanted", lag,
+                      meter_.rate(steady_now()), pacer_.rate());
+  return due;
+}
+
+void SimulationThread::step() {
+  const double now = steady_now();
+  const bool timed = now < measure_until_ && --steps_until_timed_ <= 0;
+  if (timed) {
+    settle();
+    steps_until_timed_ = timed_every;
+    ++timed_steps_;
+  }
+  session_->simulation().set_timing(timed);
+  session_->step();
+  if (++unsettled_steps_ >= steps_in_flight || pacer_.rate() > 0) settle();
+  stamp_ = stamp_now();
+  meter_.count(steady_now());
+  changed();
+}
+
+/// Waits until the steps that were started are done.
+void SimulationThread::settle() {
+  if (unsettled_steps_ == 0) return;
+  session_->simulation().exec().synchronise();
+  unsettled_steps_ = 0;
+  stamp_ = stamp_now();
+}
+
+void SimulationThread::release_unused_memory() {
+  const auto unused = [now = steady_now()](double& asked) {
+    if (asked == 0 || now - asked < keep_memory) return false;
+    asked = 0;
+    return true;
+  };
+  if (unused(layers_requested_)) session_->simulation().release_requested_layers();
+  if (unused(costs_requested_)) session_->simulation().forget_costs();
+  if (unused(snapshot_requested_)) session_->simulation().staging().release();
+}
+
+void SimulationThread::changed() {
+  ++changes_;
+  if (options_.publish_clock) options_.publish_clock(session_->simulation().time());
+  on_change_();
+}
+
+Moment SimulationThread::moment() {
+  const Simulation& s = session_->simulation();
+  return {s.steps(), s.time(), stamp_, changes_, commands_, terrains_};
+}
+
+Reached SimulationThread::reached(bool with_hash) {
+  settle();
+  Reached r;
+  r.moment = moment();
+  if (with_hash) r.hash = state_hash();
+  return r;
+}
+
+/// Made anew only after a change.
+std::uint64_t SimulationThread::state_hash() {
+  if (hashed_change_ != changes_) hash_ = session_->simulation().state_hash();
+  hashed_change_ = changes_;
+  return hash_;
+}
+
+void SimulationThread::fail(const std::string& what) {
+  {
+    const std::lock_guard<std::mutex> lock(failure_mutex_);
+    failure_ = what.empty() ? "the simulation failed" : what;
+  }
+  failed_ = true;
+  jobs_.close("the simulation has failed: " + what);
+  on_change_();
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,36 @@
+#pragma once
+/// The terrain between cell centres: bilinear, continued unchanged beyond the outermost centres.
+
+#include <desert_sim/TerrainSample.h>
+
+#include <vector>
+
+#include "src/simulation/simulation.hpp"
+
+namespace desert_sim {
+
+/// The layers that TerrainSampler reads.
+const std::vector<Layer>& sampled_layers();
+
+class TerrainSampler {
+ public:
+  /// Keeps a reference to the snapshot.
+  explicit TerrainSampler(const Snapshot& snapshot);
+  /// At (x, y) of the terrain's frame [m].
+  TerrainSample at(double x, double y) const;
+
+ private:
+  /// The four cells around a point and the point's place between them, 0…1.
+  struct Patch {
+    std::size_t i00, i10, i01, i11;
+    double fx, fy;
+  };
+  Patch patch(double x, double y) const;
+  static double value(const std::vector<float>* layer, const Patch& p);
+
+  const Snapshot& s_;
+  const std::vector<float>*elevation_, *bedrock_, *sand_, *soil_, *water_, *moisture_, *vegetation_, *wind_x_,
+      *wind_y_;
+};
+
+}  // namespace desert_sim

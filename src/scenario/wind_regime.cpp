@@ -1,0 +1,79 @@
+#include "src/scenario/wind_regime.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/field/random.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+wind::Vector of(const WindSegment& s) { return wind_vector(s.direction_deg, s.speed); }
+
+/// From `a` to `b` as `elapsed` of `ramp` seconds have passed.
+wind::Vector ramped(wind::Vector a, wind::Vector b, double elapsed, double ramp) {
+  if (ramp <= 0 || elapsed >= ramp) return b;
+  const double t = elapsed / ramp;
+  return {static_cast<float>(a.x + t * (b.x - a.x)), static_cast<float>(a.y + t * (b.y - a.y))};
+}
+
+}  // namespace
+
+wind::Vector unit_vector(double direction_deg) {
+  const double turned = std::fmod(direction_deg, 360.0);
+  const double quarters = turned / 90.0;
+  if (quarters == std::floor(quarters)) {
+    constexpr int cosines[] = {1, 0, -1, 0};
+    const int q = (static_cast<int>(quarters) % 4 + 4) % 4;
+    return {static_cast<float>(cosines[q]), static_cast<float>(cosines[(q + 3) % 4])};
+  }
+  return {static_cast<float>(std::cos(turned * pi / 180)), static_cast<float>(std::sin(turned * pi / 180))};
+}
+
+wind::Vector wind_vector(double direction_deg, double speed) {
+  const wind::Vector u = unit_vector(direction_deg);
+  return {static_cast<float>(u.x * speed), static_cast<float>(u.y * speed)};
+}
+
+void speed_and_direction(wind::Vector w, double& speed, double& direction_deg) {
+  speed = std::hypot(static_cast<double>(w.x), static_cast<double>(w.y));
+  direction_deg = speed > 0 ? std::atan2(static_cast<double>(w.y), static_cast<double>(w.x)) * 180 / pi : 0;
+}
+
+wind::Vector WindRegime::at(double time) const {
+  const double elapsed = std::max(0.0, time - start_time);
+  if (regime == WindRegimeKind::constant)
+    return ramped(from, wind_vector(direction_deg, speed), elapsed, ramp);
+  if (regime == WindRegimeKind::rose) {
+    const auto hold = static_cast<std::uint64_t>(elapsed / hold_time);
+    double total = 0;
+    for (const WindSegment& s : segments) total += s.probability;
+    double draw = total * random_unit(rose_seed, Purpose::wind_rose, static_cast<std::uint32_t>(hold),
+                                      static_cast<std::uint32_t>(hold >> 32));
+    for (const WindSegment& s : segments) {
+      draw -= s.probability;
+      if (draw < 0) return of(s);
+    }
+    return of(segments.back());
+  }
+  double length = 0;
+  for (const WindSegment& s : segments) length += s.duration;
+  double t = elapsed;
+  bool first_round = true;
+  if (repeat && t >= length) {
+    t = std::fmod(t, length);
+    first_round = false;
+  }
+  wind::Vector before = first_round ? from : of(segments.back());
+  for (const WindSegment& s : segments) {
+    if (t < s.duration) return ramped(before, of(s), t, s.ramp);
+    t -= s.duration;
+    before = of(s);
+  }
+  return of(segments.back());
+}
+
+}  // namespace desert_sim

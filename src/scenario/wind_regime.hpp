@@ -1,0 +1,83 @@
+#pragma once
+/// The wind high above the ground as a function of time: constant (with a ramp), timeline of segments, or
+/// wind rose. Directions are where the air moves to, counter-clockwise from +x (east).
+
+#include <cstdint>
+#include <vector>
+
+#include "kernels/wind/wind.hpp"
+#include "src/core/parameters.hpp"
+
+namespace desert_sim {
+
+enum class WindRegimeKind : int { constant, timeline, rose };
+constexpr const char* wind_regime_kinds[] = {"constant", "timeline", "rose"};
+
+/// One entry of a timeline, or one direction of a rose.
+struct WindSegment {
+  float direction_deg = 0;
+  float speed = 5;
+  float duration = 100;
+  float ramp = 0;
+  float probability = 1;
+};
+
+constexpr auto parameter_table(const WindSegment*) {
+  using P = WindSegment;
+  return std::make_tuple(
+      parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
+                "Where the wind blows to, counter-clockwise from +x."),
+      parameter("speed", &P::speed, 0, 100, "m/s", "Speed high above the ground."),
+      parameter("duration", &P::duration, 1e-3, 1e12, "s",
+                "How long a segment of a timeline lasts, its ramp included."),
+      parameter("ramp", &P::ramp, 0, 1e12, "s",
+                "Time in which the wind turns to this segment from the one before."),
+      parameter("probability", &P::probability, 0, 1e6, "1", "Weight of this direction in a rose."));
+}
+static_assert(table_is_complete<WindSegment>());
+
+/// The parts of a regime that are plain parameters (section `wind` of a scenario, next to WindParameters).
+struct WindRegimeParameters {
+  WindRegimeKind regime = WindRegimeKind::constant;
+  float direction_deg = 0;
+  float speed = 5;
+  float ramp = 0;
+  bool repeat = true;
+  float hold_time = 50;
+  std::uint64_t rose_seed = 1;
+};
+
+constexpr auto parameter_table(const WindRegimeParameters*) {
+  using P = WindRegimeParameters;
+  return std::make_tuple(
+      parameter("regime", &P::regime, wind_regime_kinds,
+                "constant; timeline: `segments` in turn; rose: one of `segments` drawn every hold_time."),
+      parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
+                "Where the constant wind blows to, counter-clockwise from +x."),
+      parameter("speed", &P::speed, 0, 100, "m/s", "Speed of the constant wind high above the ground."),
+      parameter("ramp", &P::ramp, 0, 1e12, "s",
+                "Time in which the constant wind rises, or turns from the one before."),
+      parameter("repeat", &P::repeat,
+                "Whether a timeline starts anew at its end; else its last segment holds."),
+      parameter("hold_time", &P::hold_time, 1e-3, 1e12, "s", "How long a rose keeps a direction."),
+      parameter("rose_seed", &P::rose_seed, 0, 1.8e19, "1", "Seed of the rose."));
+}
+static_assert(table_is_complete<WindRegimeParameters>());
+
+/// A wind regime and where it stands.
+struct WindRegime : WindRegimeParameters {
+  std::vector<WindSegment> segments{};  ///< of a timeline or rose
+  double start_time = 0;                ///< when it began [s]
+  wind::Vector from{};                  ///< the wind then, which the first ramp starts from
+
+  /// The wind at simulated time `time` [s]. A timeline that does not repeat holds its last segment.
+  wind::Vector at(double time) const;
+};
+
+/// A unit vector that is exact for multiples of 90 degrees.
+wind::Vector unit_vector(double direction_deg);
+wind::Vector wind_vector(double direction_deg, double speed);
+/// Speed and direction [deg, −180…180] of a vector.
+void speed_and_direction(wind::Vector w, double& speed, double& direction_deg);
+
+}  // namespace desert_sim

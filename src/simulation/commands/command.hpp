@@ -1,0 +1,229 @@
+#pragma once
+/// Commands: what changes a running simulation from outside. They are applied between steps, refused whole or
+/// applied whole, and journalled. Positions are in the terrain's frame [m].
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "kernels/edit/brush.hpp"
+#include "kernels/field/layers.hpp"
+#include "kernels/wind/wind_features.hpp"
+#include "src/scenario/wind_regime.hpp"
+
+namespace desert_sim {
+
+enum class WindEdit : int { add, change, remove, clear };
+constexpr const char* wind_edits[] = {"add", "change", "remove", "clear"};
+
+enum class PlantEdit : int { plant, clear };
+constexpr const char* plant_edits[] = {"plant", "clear"};
+
+/// The commands themselves; a namespace of their own because the ROS services have the same names.
+namespace command {
+
+/// The high-altitude wind from now on: constant, reached over `ramp` seconds.
+struct SetWind {
+  float direction_deg = 0;
+  float speed = 0;
+  float ramp = 0;
+};
+constexpr auto parameter_table(const SetWind*) {
+  using P = SetWind;
+  return std::make_tuple(parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
+                                   "Where the wind blows to, counter-clockwise from +x."),
+                         parameter("speed", &P::speed, 0, 100, "m/s", "Speed high above the ground."),
+                         parameter("ramp", &P::ramp, 0, 1e12, "s", "Time in which the wind changes."));
+}
+static_assert(table_is_complete<SetWind>());
+
+/// A timeline or rose from now on (`regime.kind` says which; `start_time` and `from` are filled in when
+/// applied).
+struct SetWindSchedule {
+  WindRegime regime;
+};
+
+/// Adds, changes, removes one local feature of the wind, which `feature.id` names, or removes all (`clear`).
+/// A scenario holds at most most_wind_features.
+struct EditWind {
+  WindEdit operation = WindEdit::add;
+  WindFeature feature;  ///< of remove only `id`, of clear nothing
+};
+constexpr auto parameter_table(const EditWind*) {
+  using P = EditWind;
+  return std::make_tuple(
+      parameter("operation", &P::operation, wind_edits, "What is done with the feature of this id."));
+}
+
+struct EditParameters {
+  std::string layer = "sand";
+  BrushShape shape = BrushShape::circle;
+  BrushMerge merge = BrushMerge::add;
+  double x = 0, y = 0;
+  double radius = 1;
+  double radius_y = 1;
+  double angle_deg = 0;
+  double inner = 0;
+  double falloff = 0;
+  double value = 0;
+  PatchUse patch_use = PatchUse::heights;
+  double smooth_radius = 1;
+  int smooth_passes = 1;
+  bool conserve = false;
+  double ring_width = 1;
+};
+constexpr auto parameter_table(const EditParameters*) {
+  using P = EditParameters;
+  return std::make_tuple(
+      parameter("layer", &P::layer, "sand, soil or bedrock."),
+      parameter("shape", &P::shape, brush_shapes, "Shape of the brush."),
+      parameter("merge", &P::merge, brush_merges, "How the brush meets what is there."),
+      parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
+      parameter("y", &P::y, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
+      parameter(
+          "radius", &P::radius, 1e-3, 1e6, "m",
+          "Radius; of an ellipse the semi-axis and of a rectangle or patch half the side along its angle."),
+      parameter("radius_y", &P::radius_y, 1e-3, 1e6, "m", "The semi-axis or half the side across."),
+      parameter("angle_deg", &P::angle_deg, -360, 360, "deg",
+                "Direction of the first axis, counter-clockwise from +x."),
+      parameter(
+          "inner", &P::inner, 0, 1, "1",
+          "Share of the radius (of a rectangle, of half its sides) within which the brush has full weight."),
+      parameter("falloff", &P::falloff, 0, 1e6, "m",
+                "Of a polygon or patch: how far inside its edge the brush has full weight."),
+      parameter("value", &P::value, -1e5, 1e5, "m", "Height or depth of the brush; see merge."),
+      parameter("patch_use", &P::patch_use, patch_uses,
+                "Whether a patch holds heights that are added to value, or weights."),
+      parameter("smooth_radius", &P::smooth_radius, 1e-3, 1e6, "m",
+                "Half the width of the square over which smooth takes means, at most 64 cells."),
+      parameter("smooth_passes", &P::smooth_passes, 1, 16, "1", "How often smooth takes means."),
+      parameter("conserve", &P::conserve,
+                "Take from, or give to, a ring around the shape what the edit adds or removes."),
+      parameter("ring_width", &P::ring_width, 1e-3, 1e6, "m", "Width of that ring."));
+}
+static_assert(table_is_complete<EditParameters>());
+
+/// A place in the terrain's frame [m].
+struct Place {
+  double x = 0, y = 0;
+};
+
+/// A picture of heights [m] or weights (0 … 1), row-major; its top row first, as in an image.
+struct Patch {
+  static constexpr int most_pixels = 1 << 20;
+  int columns = 0, rows = 0;
+  std::vector<float> values;
+};
+
+/// Brush on `layer`: sand, bedrock, or soil where the terrain has some. The weight of the shape and what a
+/// merge does with it are in kernels/brush_shape.hpp and brush.hpp. For sand and soil `value` is a depth [m];
+/// for bedrock an elevation [m], or with add and sub a change. With `conserve`, the material comes from, or
+/// goes to, the cells within `ring_width` of the shape: what is taken in proportion to what they have, of
+/// bedrock and what is given in equal parts. The sum of all changes is then 0, to the quantum.
+struct EditTerrain : EditParameters {
+  static constexpr std::size_t most_points = 512;
+  std::vector<Place> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
+  Patch patch;
+};
+
+struct EditPlantsParameters {
+  PlantEdit operation = PlantEdit::plant;
+  std::string species;
+  BrushShape shape = BrushShape::circle;
+  double x = 0, y = 0;
+  double radius = 1;
+  double radius_y = 1;
+  double angle_deg = 0;
+  double density = 0.1;
+  double size = 0.05;
+  std::uint64_t seed = 0;
+};
+constexpr auto parameter_table(const EditPlantsParameters*) {
+  using P = EditPlantsParameters;
+  return std::make_tuple(
+      parameter("operation", &P::operation, plant_edits, "What is done in the region."),
+      parameter("species", &P::species, "By name; to clear, empty means all."),
+      parameter("shape", &P::shape, brush_shapes, "Shape of the region; not patch."),
+      parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
+      parameter("y", &P::y, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
+      parameter("radius", &P::radius, 1e-3, 1e6, "m", "As of edit_terrain."),
+      parameter("radius_y", &P::radius_y, 1e-3, 1e6, "m", "The semi-axis or half the side across."),
+      parameter("angle_deg", &P::angle_deg, -360, 360, "deg",
+                "Direction of the first axis, counter-clockwise from +x."),
+      parameter("density", &P::density, 0, 1000, "1/m^2", "Plants that are put on a square metre."),
+      parameter("size", &P::size, 1e-3, 1, "1",
+                "Their radius as a share of the widest that there is room for."),
+      parameter("seed", &P::seed, 0, 1.8e19, "1", "Of their places; added to the scenario's."));
+}
+static_assert(table_is_complete<EditPlantsParameters>());
+
+/// Puts healthy plants of a species at random places of a region, or takes plants away that stand there. None
+/// are put on bare rock or on obstacles; whether they can live there is not asked.
+struct EditPlants : EditPlantsParameters {
+  std::vector<Place> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
+};
+
+/// Parameters that can change while a simulation runs (live_parameters.hpp), each "path=value"; all or none.
+/// Over `ramp` seconds numbers go to their values (see Ramp); all else changes at once.
+struct SetParameters {
+  static constexpr double longest_ramp = 1e12;
+  std::vector<std::string> settings;
+  double ramp = 0;
+};
+
+/// Back to the scenario's start: terrain, parameters, wind, clock.
+struct Reset {};
+
+/// Continue from a checkpoint of a terrain of any shape; a reset goes back to the start of its scenario from
+/// then on. `path` as the process can open it.
+struct LoadCheckpoint {
+  std::string path;
+  std::uint64_t hash = 0;  ///< state hash after loading; 0 if not known yet. A replay refuses another one.
+};
+
+/// Another scenario from its start; with `terrain_only`, only its grid and terrain under the physics and wind
+/// of the present one. A reset goes back to it from then on. `path` as the process can open it; with
+/// `terrain_only` it may be a bag (see scenario_of_bands()), whose gaps `fill_nodata` fills. `hash` as in
+/// LoadCheckpoint.
+struct LoadScenario {
+  std::string path;
+  bool terrain_only = false;
+  std::uint64_t hash = 0;
+  bool fill_nodata = false;
+};
+
+/// Whether the terrain is another one after the command, perhaps of another shape.
+template <class Command>
+bool replaces_terrain(const Command& command) {
+  return std::holds_alternative<Reset>(command) || std::holds_alternative<LoadCheckpoint>(command) ||
+         std::holds_alternative<LoadScenario>(command);
+}
+
+}  // namespace command
+
+using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditWind,
+                             command::EditTerrain, command::EditPlants, command::SetParameters,
+                             command::Reset, command::LoadCheckpoint, command::LoadScenario>;
+
+/// Cells that a command changed: x0 ≤ x < x1, y0 ≤ y < y1 (empty if x1 ≤ x0).
+struct CellRectangle {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// What an edit changed in a layer, cell by cell.
+struct LayerChange {
+  std::string layer;
+  double x = 0, y = 0, cell_size = 0;  ///< lower left corner and cells of the rectangle [m]
+  std::vector<float> values;           ///< new − old [m], row-major; empty if nobody asked
+};
+
+struct CommandResult {
+  double volume_m3 = 0;  ///< material added (+) or removed (−) by an edit
+  double moved_m3 =
+      0;  ///< instead of it, of an edit that conserves: from the ring into the shape (+), or back
+  long long plants = 0;  ///< put (+) or taken away (−)
+  CellRectangle touched;
+  LayerChange change;  ///< in `touched`
+};
+
+}  // namespace desert_sim

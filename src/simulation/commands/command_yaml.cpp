@@ -1,0 +1,208 @@
+#include "src/simulation/commands/command_yaml.hpp"
+
+#include <yaml-cpp/binary.h>
+
+#include <cstring>
+
+#include "src/scenario/yaml_parameters.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+template <class Item>
+YAML::Node required(const YAML::Node& node, const char* key, const Item& source) {
+  if (!node.IsMap() || !node[key]) throw ConfigError(source + ": there is no '" + key + "'");
+  return node[key];
+}
+
+template <class T>
+T scalar(const YAML::Node& node, const char* key, const std::string& source) {
+  T value{};
+  const YAML::Node found = required(node, key, source);
+  if (!found.IsScalar() || !YAML::convert<T>::decode(found, value))
+    throw ConfigError(source + ": " + key + ": " + yaml::shown(found) + " cannot be read");
+  return value;
+}
+
+template <class P>
+P read_all(const YAML::Node& node, const std::string& source) {
+  Faults faults(source);
+  P parameters;
+  std::set<std::string> known;
+  yaml::read_parameters(node, "", faults, parameters, known);
+  faults.throw_if_any();
+  return parameters;
+}
+
+command::SetParameters read_settings(const YAML::Node& node, const std::string& source) {
+  command::SetParameters command{{}, scalar<double>(node, "ramp", source)};
+  const YAML::Node settings = required(node, "settings", source);
+  if (!settings.IsSequence()) throw ConfigError(source + ": settings: must be a list of path=value");
+  for (const YAML::Node& setting : settings) {
+    if (!setting.IsScalar()) throw ConfigError(source + ": settings: must be a list of path=value");
+    command.settings.push_back(setting.Scalar());
+  }
+  return command;
+}
+
+}  // namespace
+
+void emit_regime(YAML::Emitter& out, const WindRegime& r) {
+  yaml::emit_parameters(out, static_cast<const WindRegimeParameters&>(r));
+  out << YAML::Key << "start_time" << YAML::Value << r.start_time;
+  out << YAML::Key << "from" << YAML::Value << YAML::Flow << YAML::BeginSeq << r.from.x << r.from.y
+      << YAML::EndSeq;
+  out << YAML::Key << "segments" << YAML::Value << YAML::BeginSeq;
+  for (const WindSegment& segment : r.segments) {
+    out << YAML::Flow << YAML::BeginMap;
+    yaml::emit_parameters(out, segment);
+    out << YAML::EndMap;
+  }
+  out << YAML::EndSeq;
+}
+
+WindRegime read_regime(const YAML::Node& node, const std::string& source) {
+  WindRegime r{read_all<WindRegimeParameters>(node, source)};
+  r.start_time = scalar<double>(node, "start_time", source);
+  const YAML::Node from = required(node, "from", source);
+  if (!from.IsSequence() || from.size() != 2 || !YAML::convert<float>::decode(from[0], r.from.x) ||
+      !YAML::convert<float>::decode(from[1], r.from.y))
+    throw ConfigError(source + ": from: must be two numbers");
+  for (const YAML::Node& segment : required(node, "segments", source))
+    r.segments.push_back(read_all<WindSegment>(segment, source));
+  if (r.regime != WindRegimeKind::constant && r.segments.empty())
+    throw ConfigError(source + ": segments: there is none");
+  return r;
+}
+
+namespace {
+
+/// The corners as x, y, x, y …
+void emit_points(YAML::Emitter& out, const std::vector<command::Place>& points) {
+  if (points.empty()) return;
+  out << YAML::Key << "points" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  for (const command::Place& p : points) out << p.x << p.y;
+  out << YAML::EndSeq;
+}
+
+std::vector<command::Place> read_points(const YAML::Node& node, const std::string& source) {
+  const YAML::Node points = node["points"];
+  if (!points) return {};
+  constexpr std::size_t most = command::EditTerrain::most_points;
+  if (!points.IsSequence() || points.size() % 2 != 0 || points.size() > 2 * most)
+    throw ConfigError(source + ": points: must be x, y of at most " + std::to_string(most) + " points");
+  std::vector<command::Place> places(points.size() / 2);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    command::Place& p = places[n / 2];
+    if (!YAML::convert<double>::decode(points[n], n % 2 ? p.y : p.x))
+      throw ConfigError(source + ": points[" + std::to_string(n) + "]: " + yaml::shown(points[n]) +
+                        " is not a number");
+  }
+  return places;
+}
+
+/// A patch's values as base64 of 32-bit floats: every bit is kept.
+void emit_edit(YAML::Emitter& out, const command::EditTerrain& edit) {
+  yaml::emit_parameters(out, static_cast<const command::EditParameters&>(edit));
+  emit_points(out, edit.points);
+  const command::Patch& patch = edit.patch;
+  if (patch.values.empty()) return;
+  out << YAML::Key << "patch_columns" << YAML::Value << patch.columns;
+  out << YAML::Key << "patch_rows" << YAML::Value << patch.rows;
+  out << YAML::Key << "patch" << YAML::Value << YAML::DoubleQuoted
+      << YAML::EncodeBase64(reinterpret_cast<const unsigned char*>(patch.values.data()),
+                            patch.values.size() * sizeof(float));
+}
+
+command::Patch read_patch(const YAML::Node& node, const std::string& source) {
+  command::Patch patch;
+  patch.columns = scalar<int>(node, "patch_columns", source);
+  patch.rows = scalar<int>(node, "patch_rows", source);
+  const std::vector<unsigned char> bytes = YAML::DecodeBase64(scalar<std::string>(node, "patch", source));
+  if (patch.columns < 1 || patch.rows < 1 || patch.columns > command::Patch::most_pixels / patch.rows)
+    throw ConfigError(source + ": patch: cannot be of " + std::to_string(patch.columns) + " x " +
+                      std::to_string(patch.rows) + " values");
+  patch.values.resize(static_cast<std::size_t>(patch.columns) * static_cast<std::size_t>(patch.rows));
+  if (bytes.size() != patch.values.size() * sizeof(float))
+    throw ConfigError(source + ": patch: is not " + std::to_string(patch.values.size()) +
+                      " values of 4 bytes in base64");
+  std::memcpy(patch.values.data(), bytes.data(), bytes.size());
+  return patch;
+}
+
+command::EditTerrain read_edit(const YAML::Node& node, const std::string& source) {
+  command::EditTerrain edit{read_all<command::EditParameters>(node, source), {}, {}};
+  edit.points = read_points(node, source);
+  if (node["patch"]) edit.patch = read_patch(node, source);
+  return edit;
+}
+
+}  // namespace
+
+void emit_command(YAML::Emitter& out, const Command& command) {
+  const auto name = [&](const char* text) { out << YAML::Key << "command" << YAML::Value << text; };
+  if (const auto* set_wind = std::get_if<command::SetWind>(&command)) {
+    name("set_wind");
+    yaml::emit_parameters(out, *set_wind);
+  } else if (const auto* schedule = std::get_if<command::SetWindSchedule>(&command)) {
+    name("set_wind_schedule");
+    emit_regime(out, schedule->regime);
+  } else if (const auto* edit_wind = std::get_if<command::EditWind>(&command)) {
+    name("edit_wind");
+    yaml::emit_parameters(out, *edit_wind);
+    yaml::emit_parameters(out, edit_wind->feature);
+  } else if (const auto* edit = std::get_if<command::EditTerrain>(&command)) {
+    name("edit_terrain");
+    emit_edit(out, *edit);
+  } else if (const auto* plants = std::get_if<command::EditPlants>(&command)) {
+    name("edit_plants");
+    yaml::emit_parameters(out, static_cast<const command::EditPlantsParameters&>(*plants));
+    emit_points(out, plants->points);
+  } else if (const auto* parameters = std::get_if<command::SetParameters>(&command)) {
+    name("set_parameters");
+    out << YAML::Key << "settings" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+    for (const std::string& setting : parameters->settings) out << YAML::DoubleQuoted << setting;
+    out << YAML::EndSeq;
+    out << YAML::Key << "ramp" << YAML::Value << parameters->ramp;
+  } else if (std::holds_alternative<command::Reset>(command)) {
+    name("reset");
+  } else if (const auto* load = std::get_if<command::LoadCheckpoint>(&command)) {
+    name("load_checkpoint");
+    out << YAML::Key << "path" << YAML::Value << YAML::DoubleQuoted << load->path;
+    out << YAML::Key << "hash" << YAML::Value << load->hash;
+  } else if (const auto* other = std::get_if<command::LoadScenario>(&command)) {
+    name("load_scenario");
+    out << YAML::Key << "path" << YAML::Value << YAML::DoubleQuoted << other->path;
+    out << YAML::Key << "terrain_only" << YAML::Value << other->terrain_only;
+    out << YAML::Key << "hash" << YAML::Value << other->hash;
+    out << YAML::Key << "fill_nodata" << YAML::Value << other->fill_nodata;
+  }
+}
+
+Command read_command(const YAML::Node& node, const std::string& source) {
+  const auto name = scalar<std::string>(node, "command", source);
+  if (name == "set_wind") return read_all<command::SetWind>(node, source);
+  if (name == "set_wind_schedule") return command::SetWindSchedule{read_regime(node, source)};
+  if (name == "edit_wind") {
+    auto edit = read_all<command::EditWind>(node, source);
+    edit.feature = read_all<WindFeature>(node, source);
+    return edit;
+  }
+  if (name == "edit_terrain") return read_edit(node, source);
+  if (name == "edit_plants")
+    return command::EditPlants{read_all<command::EditPlantsParameters>(node, source),
+                               read_points(node, source)};
+  if (name == "set_parameters") return read_settings(node, source);
+  if (name == "reset") return command::Reset{};
+  if (name == "load_checkpoint")
+    return command::LoadCheckpoint{scalar<std::string>(node, "path", source),
+                                   scalar<std::uint64_t>(node, "hash", source)};
+  if (name == "load_scenario")
+    return command::LoadScenario{
+        scalar<std::string>(node, "path", source), scalar<bool>(node, "terrain_only", source),
+        scalar<std::uint64_t>(node, "hash", source), scalar<bool>(node, "fill_nodata", source)};
+  throw ConfigError(source + ": unknown command '" + name + "'");
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,18 @@
+#pragma once
+/// What an edit must be before it is looked at any further.
+
+#include "src/simulation/commands/command.hpp"
+#include "src/terrain/terrain.hpp"
+
+namespace desert_sim {
+
+class Faults;
+
+/// Throws ConfigError that names every parameter which is out of range, a layer that this terrain does not
+/// have or that cannot be edited, points and patches that do not make a shape.
+void check_edit(const command::EditTerrain& edit, const Terrain& terrain);
+
+/// Adds a fault if the points are not those of such a shape.
+void check_points(BrushShape shape, const std::vector<command::Place>& points, Faults& faults);
+
+}  // namespace desert_sim

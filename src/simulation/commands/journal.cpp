@@ -1,0 +1,120 @@
+#include "src/simulation/commands/journal.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <cerrno>
+#include <cstring>
+#include <sstream>
+
+#include "src/core/files.hpp"
+#include "src/scenario/yaml_parameters.hpp"
+#include "src/simulation/commands/command_yaml.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr int journal_version = 1;
+
+/// One line of YAML in flow style.
+class Line {
+ public:
+  Line() {
+    yaml::keep_all_bits(out_);
+    out_.SetMapFormat(YAML::Flow);
+    out_.SetSeqFormat(YAML::Flow);
+    out_ << YAML::BeginMap;
+  }
+  template <class T>
+  Line& entry(const char* key, const T& value) {
+    out_ << YAML::Key << key << YAML::Value << value;
+    return *this;
+  }
+  Line& command(const Command& command) {
+    emit_command(out_, command);
+    return *this;
+  }
+  /// Flow style breaks long lines; a line of a journal is one line.
+  std::string text() {
+    out_ << YAML::EndMap;
+    std::string text = out_.c_str();
+    for (char& c : text)
+      if (c == '\n') c = ' ';
+    return text;
+  }
+
+ private:
+  YAML::Emitter out_;
+};
+
+}  // namespace
+
+JournalWriter::JournalWriter(const std::string& path, std::uint64_t scenario_hash, const std::string& backend)
+    : path_(path), file_(std::fopen(path.c_str(), "w")) {
+  if (!file_) throw ConfigError(path + ": the journal cannot be written: " + std::strerror(errno));
+  line(Line()
+           .entry("journal", journal_version)
+           .entry("scenario_hash", scenario_hash)
+           .entry("backend", backend)
+           .text());
+}
+
+JournalWriter::~JournalWriter() {
+  if (std::fclose(file_) != 0)
+    std::fprintf(stderr, "desert_sim: %s: closing the journal: %s\n", path_.c_str(), std::strerror(errno));
+}
+
+void JournalWriter::line(const std::string& text) {
+  if (std::fputs((text + "\n").c_str(), file_) < 0 || std::fflush(file_) != 0)
+    throw Error(path_ + ": writing the journal: " + std::strerror(errno));
+}
+
+void JournalWriter::write(std::uint64_t tick, const Command& command) {
+  line(Line().entry("tick", tick).command(command).text());
+}
+
+void JournalWriter::end(std::uint64_t tick) {
+  line(Line().entry("tick", tick).entry("command", "end").text());
+}
+
+Journal read_journal(const std::string& path) {
+  std::istringstream file(read_file(path));
+  Journal journal;
+  std::string text;
+  for (int n = 1; std::getline(file, text); ++n) {
+    const std::string source = path + ": line " + std::to_string(n);
+    if (file.eof()) break;  // no newline: the writer was killed in the middle of it
+    YAML::Node node;
+    try {
+      node = YAML::Load(text);
+    } catch (const YAML::Exception& e) {
+      throw ConfigError(source + ": " + e.msg);
+    }
+    const auto number = [&](const char* key) {
+      std::uint64_t value = 0;
+      if (!node.IsMap() || !node[key] || !YAML::convert<std::uint64_t>::decode(node[key], value))
+        throw ConfigError(source + ": there is no '" + std::string(key) + "'");
+      return value;
+    };
+    if (n == 1) {
+      if (number("journal") != journal_version)
+        throw ConfigError(source + ": a journal of version " + std::to_string(number("journal")) +
+                          "; this program reads version 1");
+      journal.scenario_hash = number("scenario_hash");
+      journal.backend = node["backend"] ? node["backend"].Scalar() : "";
+      continue;
+    }
+    const std::uint64_t tick = number("tick");
+    if (journal.ended || tick < journal.ticks)
+      throw ConfigError(source + ": tick " + std::to_string(tick) + " is out of order");
+    journal.ticks = tick;
+    if (node["command"] && node["command"].IsScalar() && node["command"].Scalar() == "end")
+      journal.ended = true;
+    else
+      journal.entries.push_back({tick, read_command(node, source)});
+  }
+  if (journal.scenario_hash == 0 && journal.backend.empty()) throw ConfigError(path + ": is not a journal");
+  return journal;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,45 @@
+#pragma once
+/// The journal: every command with the tick (steps done in the session) before which it was applied, one YAML
+/// document a line, so that a run that is killed leaves a journal that is whole up to its last line.
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "src/simulation/commands/command.hpp"
+
+namespace desert_sim {
+
+class JournalWriter {
+ public:
+  /// Starts a new file with a header that names the scenario's hash and the backend. Throws ConfigError.
+  JournalWriter(const std::string& path, std::uint64_t scenario_hash, const std::string& backend);
+  ~JournalWriter();
+  void write(std::uint64_t tick, const Command& command);
+  /// How many ticks the session made; written when it ends.
+  void end(std::uint64_t tick);
+
+ private:
+  void line(const std::string& text);
+  std::string path_;
+  std::FILE* file_ = nullptr;
+};
+
+struct Journal {
+  struct Entry {
+    std::uint64_t tick;
+    Command command;
+  };
+  std::uint64_t scenario_hash = 0;
+  std::string backend;
+  std::vector<Entry> entries;
+  bool ended = false;
+  std::uint64_t ticks = 0;  ///< if it ended: all ticks of the session; else the last entry's
+};
+
+/// Throws ConfigError with file and line.
+Journal read_journal(const std::string& path);
+
+}  // namespace desert_sim

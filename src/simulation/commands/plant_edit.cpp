@@ -1,0 +1,188 @@
+#include "src/simulation/commands/plant_edit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "kernels/field/random.hpp"
+#include "kernels/plants/lookup.hpp"
+#include "src/core/quoted.hpp"
+#include "src/simulation/commands/command_checks.hpp"
+#include "src/simulation/commands/edit_checks.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+using plants::Column;
+
+/// −1: all of them.
+int species_index(const command::EditPlants& edit, const Scenario& s) {
+  for (std::size_t n = 0; n < s.species.size(); ++n)
+    if (s.species[n].name == edit.species) return static_cast<int>(n);
+  return -1;
+}
+
+/// The region in metres from the grid's corner.
+class Region {
+ public:
+  Region(const command::EditPlants& edit, const Scenario& s) : lookup_(s.make_grid()) {
+    const bool circle = edit.shape == BrushShape::circle;
+    const wind::Vector axis = circle ? wind::Vector{1, 0} : unit_vector(edit.angle_deg);
+    double x = edit.x, y = edit.y;
+    if (!edit.points.empty()) {
+      const auto [west, east] = std::minmax_element(edit.points.begin(), edit.points.end(),
+                                                    [](const auto& p, const auto& q) { return p.x < q.x; });
+      const auto [south, north] = std::minmax_element(edit.points.begin(), edit.points.end(),
+                                                      [](const auto& p, const auto& q) { return p.y < q.y; });
+      x = 0.5 * (west->x + east->x), y = 0.5 * (south->y + north->y);
+      for (const command::Place& p : edit.points)
+        vertices_.push_back({static_cast<float>(p.x - x), static_cast<float>(p.y - y)});
+    }
+    x_ = lookup_.onto_x(x - s.grid.origin_x);
+    y_ = lookup_.onto_y(y - s.grid.origin_y);
+    shape_ = {edit.shape,
+              static_cast<float>(edit.radius),
+              static_cast<float>(circle ? edit.radius : edit.radius_y),
+              axis.x,
+              axis.y,
+              0.0f,
+              0.0f,
+              vertices_.data(),
+              static_cast<int>(vertices_.size()),
+              {},
+              {}};
+  }
+  bool covers(float x, float y) const {
+    return shape_.covers({lookup_.difference_x(x, x_), lookup_.difference_y(y, y_)}, 0.0f);
+  }
+
+ private:
+  plants::Lookup lookup_;
+  float x_ = 0, y_ = 0;
+  std::vector<brush::Point> vertices_;
+  brush::Shape shape_;
+};
+
+class Edit {
+ public:
+  Edit(const command::EditPlants& edit, const Scenario& scenario, const Terrain& terrain, std::uint64_t step,
+       int most)
+      : edit_(edit), s_(scenario), grid_(terrain.grid()), step_(step), most_(most), region_(edit, scenario) {}
+
+  std::vector<std::uint32_t> clear(const std::vector<std::uint32_t>& words) {
+    const std::size_t count = words.size() / plants::column_count;
+    const int kind = species_index(edit_, s_);
+    const auto at = [&](Column c, std::size_t n) { return words[static_cast<std::size_t>(c) * count + n]; };
+    for (std::size_t n = 0; n < count; ++n) {
+      const bool meant = kind < 0 || static_cast<int>(at(Column::species, n)) == kind;
+      if (meant && region_.covers(float_of(at(Column::x, n)), float_of(at(Column::y, n)))) continue;
+      for (std::size_t c = 0; c < plants::column_count; ++c) columns_[c].push_back(words[c * count + n]);
+    }
+    return joined();
+  }
+
+  std::vector<std::uint32_t> plant(const std::vector<std::uint32_t>& words, const Terrain& terrain) {
+    const std::size_t count = words.size() / plants::column_count;
+    for (std::size_t c = 0; c < plants::column_count; ++c)
+      columns_[c].assign(words.begin() + static_cast<std::ptrdiff_t>(c * count),
+                         words.begin() + static_cast<std::ptrdiff_t>((c + 1) * count));
+    for (Layer layer : {Layer::bedrock, Layer::soil, Layer::sand})
+      if (terrain.has(layer)) ground_.push_back(terrain.words(layer));
+    const std::vector<float> obstacle = terrain.values(Layer::obstacle);
+    for (int y = 0; y < grid_.height; ++y)
+      for (int x = 0; x < grid_.width; ++x)
+        if (obstacle[static_cast<std::size_t>(grid_.index(x, y))] == 0)
+          plant_cell(x, y, terrain.scale().quantum());
+    return joined();
+  }
+
+ private:
+  void plant_cell(int x, int y, double quantum) {
+    const int i = grid_.index(x, y);
+    const SpeciesTraits& traits = s_.species[static_cast<std::size_t>(species_index(edit_, s_))].traits;
+    Quanta surface = 0;
+    for (const auto& layer : ground_) surface += static_cast<Quanta>(layer[static_cast<std::size_t>(i)]);
+    const auto bedrock = static_cast<Quanta>(ground_[0][static_cast<std::size_t>(i)]);
+    const float loose = static_cast<float>((surface - bedrock) * quantum);
+    const float radius = static_cast<float>(edit_.size) * std::min(loose / traits.root, traits.max_radius);
+    if (!(radius > 0)) return;
+    const double expected = edit_.density * grid_.cell_size * grid_.cell_size;
+    const auto draw = [&](std::uint32_t which) {
+      return random_words(s_.seed + edit_.seed, Purpose::planting, static_cast<std::uint32_t>(i),
+                          static_cast<std::uint32_t>(step_), which);
+    };
+    const auto wanted = static_cast<std::uint32_t>(expected + draw(0).word[0] * 0x1p-32);
+    for (std::uint32_t n = 0; n < wanted; ++n) {
+      const RandomWords words = draw(n + 1);
+      const auto within = [&](int cell, std::uint32_t word) {
+        return (static_cast<float>(cell) + static_cast<float>(word >> 8) * (1.0f / 16777216.0f)) *
+               grid_.cell_size;
+      };
+      const float px = within(x, words.word[0]), py = within(y, words.word[1]);
+      if (region_.covers(px, py)) put(px, py, surface, radius);
+    }
+  }
+
+  void put(float x, float y, Quanta z, float radius) {
+    if (columns_[0].size() >= static_cast<std::size_t>(most_))
+      throw ConfigError("edit_plants: density: there would be more than " + std::to_string(most_) +
+                        " plants, for which there is no room (vegetation.max_plants makes room)");
+    const auto to = [&](Column c) -> std::vector<std::uint32_t>& {
+      return columns_[static_cast<std::size_t>(c)];
+    };
+    to(Column::x).push_back(bits_of(x));
+    to(Column::y).push_back(bits_of(y));
+    to(Column::z).push_back(static_cast<std::uint32_t>(z));
+    to(Column::radius).push_back(bits_of(radius));
+    to(Column::health).push_back(bits_of(1.0f));
+    to(Column::water).push_back(bits_of(0.0f));
+    to(Column::age).push_back(bits_of(0.0f));
+    to(Column::species).push_back(static_cast<std::uint32_t>(species_index(edit_, s_)));
+  }
+
+  std::vector<std::uint32_t> joined() const {
+    std::vector<std::uint32_t> all;
+    for (const auto& column : columns_) all.insert(all.end(), column.begin(), column.end());
+    return all;
+  }
+
+  const command::EditPlants& edit_;
+  const Scenario& s_;
+  Grid grid_;
+  std::uint64_t step_;
+  int most_;
+  Region region_;
+  std::vector<std::vector<std::uint32_t>> ground_;  ///< bedrock first
+  std::array<std::vector<std::uint32_t>, plants::column_count> columns_;
+};
+
+}  // namespace
+
+void check_plant_edit(const command::EditPlants& edit, const Scenario& s) {
+  if (!s.vegetation.enabled)
+    throw ConfigError("edit_plants: this scenario has no plants (vegetation.enabled)");
+  check_ranges(static_cast<const command::EditPlantsParameters&>(edit), "edit_plants");
+  Faults faults("edit_plants");
+  if (edit.shape == BrushShape::patch)
+    faults.add("shape", "patch is not one of: circle, ellipse, rectangle, polygon, capsule");
+  else
+    check_points(edit.shape, edit.points, faults);
+  const bool all = edit.operation == PlantEdit::clear && edit.species.empty();
+  if (!all && species_index(edit, s) < 0) {
+    std::string known;
+    for (const Species& species : s.species) known += (known.empty() ? "" : ", ") + species.name;
+    faults.add("species", quoted(edit.species) + " is not one of: " + known);
+  }
+  faults.throw_if_any();
+}
+
+std::vector<std::uint32_t> edited_plants(const command::EditPlants& edit, const Scenario& scenario,
+                                         const Terrain& terrain, std::uint64_t step, int most,
+                                         const std::vector<std::uint32_t>& words) {
+  Edit work(edit, scenario, terrain, step, most);
+  return edit.operation == PlantEdit::clear ? work.clear(words) : work.plant(words, terrain);
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,46 @@
+#pragma once
+/// An edit of the terrain: placed on the grid, worked out, checked, and only then made.
+
+#include <vector>
+
+#include "kernels/processes.hpp"
+#include "src/scenario/scenario.hpp"
+#include "src/simulation/commands/command.hpp"
+#include "src/terrain/terrain.hpp"
+
+namespace desert_sim {
+
+class TerrainEdit {
+ public:
+  /// Works out what the edit changes. Throws ConfigError, and has changed nothing, if it is refused: see
+  /// check_edit(); shapes that touch no cell or reach around a periodic terrain; heights out of the terrain's
+  /// scale; a ring that cannot give or take what it should.
+  TerrainEdit(const command::EditTerrain& command, const Terrain& terrain, const GridParameters& grid,
+              LedgerView ledger);
+
+  Material material() const { return brush_.material; }
+  /// Makes the change. `with_change`: the result tells it cell by cell.
+  CommandResult book(bool with_change);
+
+ private:
+  void place_shape();
+  void place_window(double centre_x, double centre_y, double reach_x, double reach_y);
+  void choose_layer();
+  void merge();
+  void smooth();
+  void conserve();
+  void require_heights() const;
+  std::vector<float> change_of_touched() const;
+
+  const command::EditTerrain& command_;
+  const Terrain& terrain_;
+  const GridParameters& grid_;
+  brush::Brush brush_{};
+  Buffer<brush::Point> vertices_;
+  Buffer<float> patch_;
+  Buffer<Quanta> change_;
+  CellRectangle touched_;
+  long long total_ = 0;  ///< of the shape, without the ring [quanta]
+};
+
+}  // namespace desert_sim

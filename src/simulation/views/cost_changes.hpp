@@ -1,0 +1,61 @@
+#pragma once
+/// What others lack of the costs of the terrain: kernels/held_costs.hpp.
+
+#include <cstdint>
+#include <vector>
+
+#include "kernels/backend/buffer.hpp"
+#include "kernels/view/held_costs.hpp"
+#include "src/simulation/views/staging.hpp"
+
+namespace desert_sim {
+
+struct CostQuery {
+  bool update = false;  ///< the smallest box with all cells that are off by more than `threshold`
+  int threshold = 0;    ///< 0 … 99; lethal and unknown cells are never off
+  CellBox recent;       ///< if there is such a cell, the box is to have these as well
+  bool whole = false;   ///< all cells, after the update
+};
+
+/// Costs of tiles, row-major, which are held now; those of all others were held before.
+struct CostChanges {
+  struct Tile {
+    CellBox cells;
+    std::vector<std::int8_t> costs;
+  };
+  CellBox changed;  ///< has all cells that were off by more than the threshold
+  CellBox box;      ///< that is up to date now
+  std::vector<Tile> tiles;
+
+  /// Over what is held, row-major; of the size of the terrain.
+  void write_to(std::vector<std::int8_t>& held, int width) const;
+};
+
+/// Null what was not asked for. An update where nothing is held is a whole map.
+struct TakenCosts {
+  Pending<CostChanges> update, whole;
+};
+
+/// On the device.
+class HeldCosts {
+ public:
+  HeldCosts() = default;  ///< nobody holds any
+  HeldCosts(Exec& exec, const Grid& grid);
+  explicit operator bool() const { return static_cast<bool>(now_); }
+  /// What laws write the costs of now to, row-major.
+  std::int8_t* now() const { return now_.data(); }
+  std::size_t bytes() const { return now_.bytes() + held_.bytes() + changed_.bytes(); }
+  /// Of the costs of now; see Simulation::take_costs().
+  TakenCosts take(Exec& exec, Staging& staging, const CostQuery& query);
+
+ private:
+  Pending<CostChanges> take_box(Exec& exec, Staging& staging, const held_costs::GrowingBox* changed,
+                                const CellBox& recent);
+
+  Grid grid_;
+  bool complete_ = false;  ///< whether others hold all cells
+  Buffer<std::int8_t> now_, held_;
+  Buffer<held_costs::GrowingBox> changed_;
+};
+
+}  // namespace desert_sim

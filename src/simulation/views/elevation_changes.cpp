@@ -1,0 +1,68 @@
+#include "src/simulation/views/elevation_changes.hpp"
+
+#include "src/core/error.hpp"
+#include "src/simulation/simulation.hpp"
+#include "src/simulation/views/tile_transfer.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+TileChange unpacked(const PackedTile& packed) {
+  const packed_tiles::TileOfGrid& place = packed.place;
+  TileChange tile;
+  tile.x = place.x0;
+  tile.y = place.y0;
+  tile.width = place.width;
+  tile.height = place.height;
+  tile.bits = packed.head.bits;
+  tile.resolution = packed.head.resolution;
+  if (tile.bits) {
+    const auto* steps = reinterpret_cast<const std::int8_t*>(packed.cells);
+    tile.steps.assign(steps, steps + place.cells());
+  } else {
+    const auto* elevations = reinterpret_cast<const float*>(packed.cells);
+    tile.elevations.assign(elevations, elevations + place.cells());
+  }
+  return tile;
+}
+
+}  // namespace
+
+std::vector<TileChange> unpacked_changes(Staging::Slot& slot, const packed_tiles::Tiling& tiles) {
+  std::vector<TileChange> changes;
+  for (const PackedTile& tile : packed_tiles_in(slot, tiles)) changes.push_back(unpacked(tile));
+  return changes;
+}
+
+void Simulation::hold_elevation() {
+  if (!held_) held_ = Buffer<float>(exec(), static_cast<std::size_t>(terrain_.grid().cells()));
+  with_backend(exec(), [this](auto& e) {
+    held_elevation::hold(e, terrain_.view(), terrain_.metres(Layer::elevation), held_.data());
+  });
+}
+
+Pending<ElevationChanges> Simulation::take_elevation_changes(double threshold, int tile) {
+  if (!held_) throw StateError("changes of the elevation were asked for, but none is held");
+  auto changes = std::make_shared<ElevationChanges>();
+  auto readback = std::make_shared<Readback>();
+  TileTransfer transfer;
+  transfer.tiles = packed_tiles::tiling(terrain_.grid(), tile);
+  transfer.bytes_of_cell = sizeof(float);
+  transfer.pack = [&](const packed_tiles::Tiling& rows, char* to) {
+    with_backend(exec(), [&](auto& e) {
+      held_elevation::take_changes(e, terrain_.view(), terrain_.metres(Layer::elevation), rows,
+                                   static_cast<float>(threshold), held_.data(), to);
+    });
+  };
+  transfer.unpack = [waited = std::weak_ptr<ElevationChanges>(changes)](Staging::Slot& arrived,
+                                                                        const packed_tiles::Tiling& rows) {
+    const std::shared_ptr<ElevationChanges> all = waited.lock();
+    if (!all) return;
+    for (TileChange& changed : unpacked_changes(arrived, rows)) all->tiles.push_back(std::move(changed));
+  };
+  send_tiles(staging_, transfer, readback);
+  return {changes, readback};
+}
+
+}  // namespace desert_sim

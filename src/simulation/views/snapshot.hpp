@@ -1,0 +1,50 @@
+#pragma once
+/// Layers at one moment, on the host.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "kernels/field/layers.hpp"
+#include "kernels/plants/marking.hpp"
+#include "kernels/wind/wind.hpp"
+#include "src/scenario/species.hpp"
+#include "src/simulation/views/staging.hpp"
+
+namespace desert_sim {
+
+/// Rows first … first + count − 1 of a terrain; all if count is 0. On a periodic one they go on over its
+/// edges.
+struct RowBand {
+  int first = 0, count = 0;
+};
+
+/// Layers at one moment, converted to floats in the layer's unit. Immutable once made; outlives the
+/// simulation.
+struct Snapshot {
+  int width = 0, height = 0;
+  double cell_size = 1, origin_x = 0, origin_y = 0;
+  bool periodic_x = true, periodic_y = true;  ///< else open; a band of rows is open to north and south
+  std::uint64_t step = 0;
+  double time = 0;  ///< simulated [s]
+  wind::Vector wind_above;
+  std::vector<std::array<float, 3>> crown_colours;  ///< by species: of 1 in the layer plants, of 2 …
+  std::map<Layer, std::vector<float>> layers;
+  const std::vector<float>* find(Layer layer) const;  ///< null if it was not asked for
+};
+
+using PendingSnapshot = Pending<Snapshot>;
+
+/// Plants at one moment, one by one.
+struct PlantList {
+  double origin_x = 0, origin_y = 0;  ///< [m] of the terrain's south-west corner
+  std::uint64_t step = 0;
+  double time = 0;               ///< simulated [s]
+  std::vector<Species> species;  ///< of the scenario; none where plants are off
+  std::vector<plants::Listed> plants;
+};
+
+using PendingPlants = Pending<PlantList>;
+
+}  // namespace desert_sim
