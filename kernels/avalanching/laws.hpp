@@ -5,7 +5,7 @@
 #include "kernels/backend/vec4.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/math.hpp"
-#include "kernels/field/surface.hpp"
+#include "kernels/field/surface_laws.hpp"
 
 namespace desert_sim {
 namespace avalanching {
@@ -41,6 +41,17 @@ struct LevelView {
   DESERT_HD Quanta ground_top(int i) const { return ground[i] + value_or_zero(soil, i); }
   DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : ground_top(i) + sand[i]; }
 };
+
+/// The terrain as the finest level; `repose` has the tangent of each cell.
+inline LevelView finest(const TerrainView& t, const float* repose) {
+  return {t.grid,
+          t.quanta(Layer::bedrock),
+          t.quanta(Layer::soil),
+          t.real(Layer::obstacle),
+          t.quanta(Layer::sand),
+          repose,
+          t.grid.cell_size * t.quanta_per_metre};
+}
 
 /// What a level knows of a cell; ground at wall_height is a wall.
 struct LevelCell {

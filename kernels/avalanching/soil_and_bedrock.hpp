@@ -6,114 +6,29 @@
 /// the laws of avalanching_laws.hpp. Bedrock breaks where it is steeper than `bedrock_deg`, by its own height
 /// alone, and falls as sand or as rock. Reads and writes bedrock, soil, sand.
 
-#include "kernels/avalanching/avalanching.hpp"
+#include "kernels/avalanching/parameters.hpp"
+#include "kernels/backend/buffer.hpp"
+#include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
 #include "kernels/sand/repose.hpp"
 
 namespace desert_sim::avalanching {
-
-/// Soil as a level on rock, at its own angle.
-struct SoilLevel {
-  struct Angle {
-    float bare, vegetated;  ///< tangents
-    const float* vegetation;
-    repose::RelativeMoisture moisture;
-    DESERT_HD float operator[](int i) const {
-      const float dry = lerp(bare, vegetated, value_or_zero(vegetation, i));
-      return dry * repose::moisture_factor(moisture(i));
-    }
-  };
-
-  Grid grid;
-  const Quanta *bedrock, *sand;  ///< what slides is called sand on every level: here it is soil
-  const float* obstacle;         ///< or null
-  Angle repose;
-  float quanta_per_cell;
-
-  DESERT_HD bool wall(int i) const { return bedrock[i] >= wall_height || value_or_zero(obstacle, i) > 0.0f; }
-  DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : bedrock[i] + sand[i]; }
-};
-
-/// Bedrock as a level whose material is all of it, down to the lowest possible ground, at one angle
-/// everywhere.
-struct RockLevel {
-  static constexpr Quanta lowest_ground = 1 - wall_height;
-  struct Column {
-    const Quanta* bedrock;
-    DESERT_HD Quanta operator[](int i) const { return bedrock[i] - lowest_ground; }
-  };
-  struct Everywhere {
-    float tangent;
-    DESERT_HD float operator[](int) const { return tangent; }
-  };
-
-  Grid grid;
-  Column sand;
-  const float* obstacle;  ///< or null
-  Everywhere repose;
-  float quanta_per_cell;
-
-  DESERT_HD bool wall(int i) const { return value_or_zero(obstacle, i) > 0.0f; }
-  DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : sand.bedrock[i]; }
-};
-
-struct ApplyRockfall {
-  Grid grid;
-  const Quanta *given, *received;
-  bool to_sand;
-  Quanta *bedrock, *sand;
-  LedgerView ledger;
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    if (given[i] == 0 && received[i] == 0) return;
-    bedrock[i] -= given[i];
-    (to_sand ? sand : bedrock)[i] += received[i];
-    if (to_sand) {
-      ledger.book_out(Material::bedrock, i, given[i]);
-      ledger.book_in(Material::sand, i, received[i]);
-    }
-  }
-};
 
 /// Scratch for the ground's avalanches: one value a cell each.
 struct GroundWorkspace {
   Buffer<Quanta> received;
   Buffer<float> share;
 };
+
 GroundWorkspace make_ground_workspace(Exec& exec, const Grid& grid);
 
 /// `given`: scratch, and afterwards what each cell gave.
 template <class E>
 void step_soil(E& exec, const TerrainView& t, const AvalanchingParameters& p, const ReposeParameters& repose,
-               Quanta* given, GroundWorkspace& work) {
-  const repose::Tangents tangents(repose);
-  const SoilLevel level{t.grid,
-                        t.quanta(Layer::bedrock),
-                        t.quanta(Layer::soil),
-                        t.real(Layer::obstacle),
-                        {tangents.soil, tangents.soil_vegetated, t.real(Layer::vegetation),
-                         repose::RelativeMoisture(t, repose)},
-                        t.grid.cell_size * t.quanta_per_metre};
-  for_each_cell(exec, t.grid, Release<SoilLevel>{level, p.transfer, false, work.share.data(), given});
-  for_each_cell(exec, t.grid,
-                Gather<SoilLevel>{level, false, work.share.data(), given, work.received.data()});
-  for_each_cell(exec, t.grid, ApplySweep{t.grid, given, work.received.data(), t.quanta(Layer::soil)});
-}
+               Quanta* given, GroundWorkspace& work);
 
 template <class E>
 void step_bedrock(E& exec, const TerrainView& t, const AvalanchingParameters& p,
-                  const ReposeParameters& repose, LedgerView ledger, Quanta* given, GroundWorkspace& work) {
-  const RockLevel level{t.grid,
-                        {t.quanta(Layer::bedrock)},
-                        t.real(Layer::obstacle),
-                        {repose::Tangents(repose).bedrock},
-                        t.grid.cell_size * t.quanta_per_metre};
-  for_each_cell(exec, t.grid, Release<RockLevel>{level, p.transfer, false, work.share.data(), given});
-  for_each_cell(exec, t.grid,
-                Gather<RockLevel>{level, false, work.share.data(), given, work.received.data()});
-  for_each_cell(exec, t.grid,
-                ApplyRockfall{t.grid, given, work.received.data(), p.bedrock_to_sand,
-                              t.quanta(Layer::bedrock), t.quanta(Layer::sand), ledger});
-}
+                  const ReposeParameters& repose, LedgerView ledger, Quanta* given, GroundWorkspace& work);
 
 }  // namespace desert_sim::avalanching

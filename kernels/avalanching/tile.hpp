@@ -280,31 +280,19 @@ struct RelaxTile {
   }
 };
 
-/// All tiles, by the law above.
+/// Relaxes all tiles by the law above.
 template <class E>
-void relax_by_law(E& exec, const RelaxTile& law) {
-  for_each_tile(exec, law.tiles, law);
-}
-/// All tiles, as the backend does it best.
-template <class E>
-void relax_tiles(E& exec, const RelaxTile& law) {
-  relax_by_law(exec, law);
-}
+void relax_by_law(E& exec, const RelaxTile& law);
+
 /// What a pass can be followed by: nothing, filling coarse levels, or measuring the heights; the grid that
 /// the latter two are called for.
 struct NothingThen {};
 inline Grid passed_over(const Restrict& law) { return law.blocks(); }
 inline Grid passed_over(const surface::MeasureBlock& law) { return law.blocks; }
-/// All tiles, and then that: a backend may do it in passing.
+
+/// Relaxes all tiles, as the backend does it best, and then calls `then`, perhaps in the same pass. `Then` is one
+/// of the three above.
 template <class E, class Then>
-void relax_tiles_then(E& exec, const RelaxTile& law, const Then& then) {
-  relax_tiles(exec, law);
-  if constexpr (!std::is_same_v<Then, NothingThen>) for_each_cell(exec, passed_over(then), then);
-}
-#if DESERT_WITH_CUDA  // tuned/avalanching_tile.cu
-void relax_tiles(CudaExec& exec, const RelaxTile& law);
-void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const Restrict& then);
-void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const surface::MeasureBlock& then);
-#endif
+void relax_tiles(E& exec, const RelaxTile& law, const Then& then);
 
 }  // namespace desert_sim::avalanching

@@ -9,7 +9,6 @@
 /// An edit is worked out as a change of each cell of the brush's rectangle, checked, and then booked: depths
 /// stop at 0; what is added and removed is in and out of the material.
 
-#include "kernels/backend/for_each.hpp"
 #include "kernels/edit/brush_shape.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
@@ -57,92 +56,23 @@ struct Brush {
   }
 };
 
-struct Change {
-  Brush b;
-  Quanta* change;
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = b.cell(x, y);
-    const Point p = b.point(x, y);
-    const float w = b.shape.weight(p);
-    change[y * b.columns + x] = i < 0 || w <= 0.0f ? 0 : b.edited(i, p, w) - b.layer[i];
-  }
-};
-
-/// What each cell of the ring holds; −1 in cells that are not of the ring.
-struct RingStock {
-  Brush b;
-  Quanta* stock;
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = b.cell(x, y);
-    const Point p = b.point(x, y);
-    const bool in_ring = i >= 0 && b.shape.covers(p, b.ring) && !b.shape.covers(p, 0.0f);
-    // Rock goes down as far as heights do: any ring of it has enough.
-    stock[y * b.columns + x] = !in_ring ? -1 : (b.depth ? b.layer[i] : wall_height);
-  }
-};
-
-struct BeyondLimit {
-  Brush b;
-  const Quanta* change;
-  DESERT_HD long long operator()(int x, int y) const {
-    const int k = y * b.columns + x;
-    if (change[k] == 0) return 0;
-    const int i = b.cell(x, y);
-    long long surface = static_cast<long long>(b.layer[i]) + change[k];
-    if (surface >= wall_height - 1 || surface <= 1 - wall_height) return 1;
-    for (int n = 0; n < 3; ++n) surface += b.rest[n] ? b.rest[n][i] : 0;
-    return surface >= load_limit || surface <= -load_limit ? 1 : 0;
-  }
-};
-
-struct Sum {
-  int columns;
-  const Quanta* change;
-  DESERT_HD long long operator()(int x, int y) const { return change[y * columns + x]; }
-};
-
-struct Book {
-  Brush b;
-  const Quanta* change;
-  bool moved;  ///< within the layer: nothing comes in or goes out
-  DESERT_HD void operator()(int x, int y) const {
-    const Quanta c = change[y * b.columns + x];
-    if (c == 0) return;
-    const int i = b.cell(x, y);
-    b.layer[i] += c;
-    if (moved) return;
-    if (c > 0) b.ledger.book_in(b.material, i, c);
-    if (c < 0) b.ledger.book_out(b.material, i, -c);
-  }
-};
-
 /// What the brush does to each cell, by every merge but smooth.
 template <class E>
-void merge(E& exec, const Brush& b, Quanta* change) {
-  for_each_cell(exec, b.area(), Change{b, change});
-}
+void merge(E& exec, const Brush& b, Quanta* change);
 
 template <class E>
-void ring_stock(E& exec, const Brush& b, Quanta* stock) {
-  for_each_cell(exec, b.area(), RingStock{b, stock});
-}
+void ring_stock(E& exec, const Brush& b, Quanta* stock);
 
 /// How many cells the change would raise or lower beyond what the height scale holds.
 template <class E>
-long long cells_beyond_limit(E& exec, const Brush& b, const Quanta* change) {
-  return sum_cells(exec, b.area(), BeyondLimit{b, change});
-}
+long long cells_beyond_limit(E& exec, const Brush& b, const Quanta* change);
 
 template <class E>
-long long total(E& exec, const Brush& b, const Quanta* change) {
-  return sum_cells(exec, b.area(), Sum{b.columns, change});
-}
+long long total(E& exec, const Brush& b, const Quanta* change);
 
 /// Makes the change. `moved`: its sum is 0, and material only goes from cell to cell.
 template <class E>
-void book(E& exec, const Brush& b, const Quanta* change, bool moved) {
-  for_each_cell(exec, b.area(), Book{b, change, moved});
-}
+void book(E& exec, const Brush& b, const Quanta* change, bool moved);
 
 }  // namespace brush
 }  // namespace desert_sim

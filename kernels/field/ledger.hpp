@@ -3,7 +3,7 @@
 /// final − initial − in + out = 0, exactly. Conversions (abrasion: bedrock to sand) are out of one and into
 /// another.
 
-#include "kernels/backend/for_each.hpp"
+#include "kernels/backend/atomics.hpp"
 #include "kernels/field/quanta.hpp"
 
 namespace desert_sim {

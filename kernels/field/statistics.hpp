@@ -2,7 +2,8 @@
 /// Sums and figures over the whole terrain. Each reads a result back and so waits for the device; not part of
 /// a step.
 
-#include "kernels/avalanching/avalanching.hpp"
+#include "kernels/backend/exec.hpp"
+#include "kernels/field/layers.hpp"
 
 namespace desert_sim {
 
@@ -14,93 +15,18 @@ struct Residual {
 
 namespace statistics {
 
-struct Sum {
-  Grid grid;
-  const Quanta* layer;
-  DESERT_HD long long operator()(int x, int y) const { return layer[grid.index(x, y)]; }
-};
-
-struct CountOver {
-  avalanching::Excess excess;
-  float threshold;
-  DESERT_HD long long operator()(int x, int y) const { return excess(x, y) > threshold ? 1 : 0; }
-};
-
-/// Sum of the excess over 1e-3, in units of 2⁻³⁰ so that its order does not matter.
-struct SumExcess {
-  avalanching::Excess excess;
-  DESERT_HD long long operator()(int x, int y) const {
-    const float e = excess(x, y);
-    return e > 1e-3f ? static_cast<long long>(e * 1073741824.0f) : 0;
-  }
-};
-
-/// Steepest slope that is made of sand: the drop to a neighbour, as far as the cell's sand reaches, as a
-/// tangent.
-struct SandSlope {
-  Grid grid;
-  const Quanta *bedrock, *soil, *sand;
-  const float* obstacle;
-  float quanta_per_cell;
-  DESERT_HD Quanta height(int i) const { return bedrock[i] + value_or_zero(soil, i) + sand[i]; }
-  DESERT_HD float operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    if (sand[i] <= 0 || value_or_zero(obstacle, i) > 0.0f) return 0.0f;
-    const Quanta h = height(i);
-    float steepest = 0.0f;
-    for (int k = 0; k < Neighbours::count; ++k) {
-      const int j = neighbour_index(grid, x + Neighbours::dx(k), y + Neighbours::dy(k));
-      if (j < 0 || value_or_zero(obstacle, j) > 0.0f) continue;
-      const Quanta drop = h - height(j) < sand[i] ? h - height(j) : sand[i];
-      steepest = maximum(steepest, static_cast<float>(drop) / (Neighbours::distance(k) * quanta_per_cell));
-    }
-    return steepest;
-  }
-};
-
-/// 1 + the cell's index where a layer broke its promise, else 0.
-struct Broken {
-  Grid grid;
-  const Quanta* quanta;
-  const float* real;
-  bool depth;  ///< must not be negative
-  DESERT_HD long long operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    if (quanta)
-      return quanta[i] >= wall_height || quanta[i] <= -wall_height || (depth && quanta[i] < 0) ? 1 : 0;
-    return real[i] - real[i] == 0.0f ? 0 : 1;  // neither NaN nor infinite
-  }
-};
+template <class E>
+long long sum(E& exec, const Grid& grid, const Quanta* layer);
 
 template <class E>
-long long sum(E& exec, const Grid& grid, const Quanta* layer) {
-  return layer ? sum_cells(exec, grid, Sum{grid, layer}) : 0;
-}
+long long broken_cells(E& exec, const Grid& grid, const Quanta* quanta, const float* real, bool depth);
 
 template <class E>
-long long broken_cells(E& exec, const Grid& grid, const Quanta* quanta, const float* real, bool depth) {
-  return sum_cells(exec, grid, Broken{grid, quanta, real, depth});
-}
-
-template <class E>
-float sand_slope(E& exec, const TerrainView& t) {
-  return max_cells(exec, t.grid,
-                   SandSlope{t.grid, t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
-                             t.real(Layer::obstacle), t.grid.cell_size * t.quanta_per_metre});
-}
+float sand_slope(E& exec, const TerrainView& t);
 
 /// Against the repose tangents of the last step.
 template <class E>
-Residual residual(E& exec, const TerrainView& t, const float* repose) {
-  const avalanching::Excess excess{avalanching::finest(t, repose)};
-  const long long over = sum_cells(exec, t.grid, CountOver{excess, 1e-3f});
-  Residual r;
-  r.share_over_1e3 = static_cast<double>(over) / t.grid.cells();
-  r.share_over_1e2 = static_cast<double>(sum_cells(exec, t.grid, CountOver{excess, 1e-2f})) / t.grid.cells();
-  r.mean_excess = over ? sum_cells(exec, t.grid, SumExcess{excess}) / 1073741824.0 / over : 0.0;
-  r.largest_excess = max_cells(exec, t.grid, excess);
-  return r;
-}
+Residual residual(E& exec, const TerrainView& t, const float* repose);
 
 }  // namespace statistics
 }  // namespace desert_sim

@@ -1,17 +1,57 @@
+/// The step of surface.hpp; compiled once for each backend.
 #include "kernels/field/surface.hpp"
+
+#include "kernels/backend/loops.hpp"
+#include "kernels/field/surface_laws.hpp"
 
 namespace desert_sim::surface {
 
-Grid blocks_of(const Grid& grid) {
-  const auto blocks = [](int cells) { return (cells + block_side - 1) / block_side; };
-  return {blocks(grid.width), blocks(grid.height), grid.cell_size * block_side, grid.periodic_x,
-          grid.periodic_y};
+/// Writes elevation.
+struct SolidSurface {
+  Grid grid;
+  SolidHeight height;
+  Quanta* elevation;
+
+  explicit SolidSurface(const TerrainView& t)
+      : grid(t.grid), height(t), elevation(t.quanta(Layer::elevation)) {}
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    elevation[i] = height(i);
+  }
+};
+
+template <class E>
+void fill_elevation(E& exec, const TerrainView& terrain) {
+  for_each_cell(exec, terrain.grid, SolidSurface(terrain));
 }
 
-Heights make_heights(Exec& exec, const Grid& grid) {
-  const Grid blocks = blocks_of(grid);
-  return {blocks, Buffer<float>(exec, static_cast<std::size_t>(grid.cells())),
-          Buffer<float>(exec, static_cast<std::size_t>(blocks.cells()))};
+/// Elevation + water; writes water_surface.
+struct WaterSurface {
+  Grid grid;
+  SolidHeight height;
+  const Quanta* water;
+  Quanta* surface;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    surface[i] = height(i) + value_or_zero(water, i);
+  }
+};
+
+template <class E>
+void fill_water_surface(E& exec, const TerrainView& t, int first, int rows) {
+  for_each_cell_of_rows(
+      exec, t.grid, first, rows,
+      WaterSurface{t.grid, SolidHeight(t), t.quanta(Layer::water), t.quanta(Layer::water_surface)});
 }
+
+template <class E>
+void measure(E& exec, const TerrainView& t, Heights& heights) {
+  for_each_cell(exec, heights.blocks, measuring(t, heights));
+}
+
+template void fill_elevation(Backend&, const TerrainView&);
+template void fill_water_surface(Backend&, const TerrainView&, int, int);
+template void measure(Backend&, const TerrainView&, Heights&);
 
 }  // namespace desert_sim::surface

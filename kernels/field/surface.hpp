@@ -6,65 +6,15 @@
 /// heights as whole quanta; nothing in a step reads it.
 
 #include "kernels/backend/buffer.hpp"
-#include "kernels/backend/for_each.hpp"
-#include "kernels/backend/vec4.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/math.hpp"
 
 namespace desert_sim::surface {
 
-/// Of a cell [quanta]. Reads bedrock, soil, sand. Where there is no soil, it takes none of something else
-/// instead of asking cell by cell, for which a CPU could not work on several at once.
-struct SolidHeight {
-  const Quanta *bedrock, *sand, *soil;
-  Quanta soil_bits;
-
-  explicit SolidHeight(const TerrainView& t)
-      : bedrock(t.quanta(Layer::bedrock)),
-        sand(t.quanta(Layer::sand)),
-        soil(t.quanta(Layer::soil) ? t.quanta(Layer::soil) : sand),
-        soil_bits(t.quanta(Layer::soil) ? ~Quanta{0} : 0) {}
-  DESERT_HD Quanta operator()(int i) const { return bedrock[i] + (soil[i] & soil_bits) + sand[i]; }
-};
-
-/// Writes elevation.
-struct SolidSurface {
-  Grid grid;
-  SolidHeight height;
-  Quanta* elevation;
-
-  explicit SolidSurface(const TerrainView& t)
-      : grid(t.grid), height(t), elevation(t.quanta(Layer::elevation)) {}
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    elevation[i] = height(i);
-  }
-};
+template <class E>
+void fill_elevation(E& exec, const TerrainView& terrain);
 
 template <class E>
-void fill_elevation(E& exec, const TerrainView& terrain) {
-  for_each_cell(exec, terrain.grid, SolidSurface(terrain));
-}
-
-/// Elevation + water; writes water_surface.
-struct WaterSurface {
-  Grid grid;
-  SolidHeight height;
-  const Quanta* water;
-  Quanta* surface;
-
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    surface[i] = height(i) + value_or_zero(water, i);
-  }
-};
-
-template <class E>
-void fill_water_surface(E& exec, const TerrainView& t, int first, int rows) {
-  for_each_cell_of_rows(
-      exec, t.grid, first, rows,
-      WaterSurface{t.grid, SolidHeight(t), t.quanta(Layer::water), t.quanta(Layer::water_surface)});
-}
+void fill_water_surface(E& exec, const TerrainView& t, int first, int rows);
 
 /// Width of a block [cells].
 constexpr int block_side = 4;
@@ -74,74 +24,13 @@ struct Heights {
   Grid blocks;  ///< at the far edges with fewer cells
   Buffer<float> of_cells, highest;
 };
+
 /// The blocks as a coarser grid.
 Grid blocks_of(const Grid& grid);
+
 Heights make_heights(Exec& exec, const Grid& grid);
 
-/// Of four cells beside each other.
-struct GroundAndSand {
-  Four<Quanta> ground, sand;
-};
-
-/// The heights of one block's cells, and the highest of them.
-struct MeasureBlock {
-  Grid grid;
-  const Quanta *bedrock, *soil, *sand;
-  Grid blocks;
-  float *heights, *highest;
-
-  DESERT_HD void operator()(int column, int row) const {
-    const int x0 = block_side * column, y0 = block_side * row;
-    float top = -static_cast<float>(wall_height);
-    for (int y = y0; y < y0 + block_side && y < grid.height; ++y) {
-      if (grid.width % block_side == 0) {
-        top = maximum(top, put_row(grid.index(x0, y), row_at(grid.index(x0, y))));
-        continue;
-      }
-      for (int x = x0; x < x0 + block_side && x < grid.width; ++x)
-        top = maximum(top, measure(grid.index(x, y)));
-    }
-    highest[blocks.index(column, row)] = top;
-  }
-  /// Likewise, of a block that is there as a whole, on a grid whose width is a multiple of block_side, with
-  /// what row_of(n) knows of its nth row.
-  template <class RowOf>
-  DESERT_HD void measure_whole(int column, int row, const RowOf& row_of) const {
-    const int first = grid.index(block_side * column, block_side * row);
-    float top = -static_cast<float>(wall_height);
-    unrolled<block_side>(
-        [&](auto n) DESERT_INLINE { top = maximum(top, put_row(first + n * grid.width, row_of(n))); });
-    highest[blocks.index(column, row)] = top;
-  }
-
- private:
-  DESERT_HD GroundAndSand row_at(int first) const {
-    GroundAndSand row{four_at(bedrock + first), four_at(sand + first)};
-    if (soil) {
-      const Four<Quanta> above = four_at(soil + first);
-      for (int n = 0; n < 4; ++n) row.ground.values[n] += above.values[n];
-    }
-    return row;
-  }
-  DESERT_HD float put_row(int first, const GroundAndSand& row) const {
-    Four<float> h;
-    for (int n = 0; n < 4; ++n) h.values[n] = static_cast<float>(row.ground.values[n] + row.sand.values[n]);
-    put_four(heights + first, h);
-    return maximum(maximum(h.values[0], h.values[1]), maximum(h.values[2], h.values[3]));
-  }
-  DESERT_HD float measure(int i) const {
-    return heights[i] = static_cast<float>(bedrock[i] + value_or_zero(soil, i) + sand[i]);
-  }
-};
-
-/// The law that measures all of `heights`.
-inline MeasureBlock measuring(const TerrainView& t, Heights& heights) {
-  return {t.grid,         t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
-          heights.blocks, heights.of_cells.data(),  heights.highest.data()};
-}
 template <class E>
-void measure(E& exec, const TerrainView& t, Heights& heights) {
-  for_each_cell(exec, heights.blocks, measuring(t, heights));
-}
+void measure(E& exec, const TerrainView& t, Heights& heights);
 
 }  // namespace desert_sim::surface

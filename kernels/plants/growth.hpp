@@ -14,6 +14,7 @@
 /// ground, too steep, roots bare, stem buried, too deep in water, or not in it. Dead at health 0, or when not
 /// mature in time; the dead leave humus. Plants read their neighbours as they were before the step.
 
+#include "kernels/plants/density.hpp"
 #include "kernels/plants/drinking.hpp"
 #include "kernels/plants/workspace.hpp"
 

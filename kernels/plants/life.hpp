@@ -6,101 +6,20 @@
 /// Plants are kept sorted by their key in the look-up, so that neighbours stand together in memory. The sort
 /// is stable, so that their order, and with it every sum, depends on the state alone.
 
-#include "kernels/plants/growth.hpp"
-#include "kernels/plants/spawning.hpp"
+#include "kernels/field/layers.hpp"
+#include "kernels/field/ledger.hpp"
+#include "kernels/plants/workspace.hpp"
+#include "kernels/sand/repose.hpp"
 
 namespace desert_sim::plants {
 
-struct Key {
-  Lookup lookup;
-  View plants;
-  std::uint64_t* words;
-  DESERT_HD void operator()(int n) const {
-    const int key = plants.health[n] > 0.0f ? lookup.key(plants.x[n], plants.y[n], plants.radius[n])
-                                            : lookup.cells;  // the dead come last
-    words[n] =
-        static_cast<std::uint64_t>(static_cast<std::uint32_t>(key)) << 32 | static_cast<std::uint32_t>(n);
-  }
-};
-
-struct Gather {
-  const std::uint64_t* words;
-  View from, to;
-  DESERT_HD void operator()(int n) const { to.take(n, from, static_cast<int>(words[n] & 0xffffffffu)); }
-};
-
-/// Of cells, and of whole levels.
-struct MarkSpans {
-  Lookup lookup;
-  const std::uint64_t* words;
-  int count;
-  Span* spans;
-  DESERT_HD int key(int n) const { return static_cast<int>(words[n] >> 32); }
-  DESERT_HD int level(int n) const { return lookup.cells + lookup.level_of_cell(key(n)); }
-  DESERT_HD void operator()(int n) const {
-    const bool first = n == 0, last = n == count - 1;
-    if (first || key(n - 1) != key(n)) spans[key(n)].begin = n;
-    if (last || key(n + 1) != key(n)) spans[key(n)].end = n + 1;
-    if (first || level(n - 1) != level(n)) spans[level(n)].begin = n;
-    if (last || level(n + 1) != level(n)) spans[level(n)].end = n + 1;
-  }
-};
-
 /// Brings the first `all` plants of `later` in order, of which so many are dead and left out.
 template <class E>
-void order(E& exec, int all, int dead, Workspace& work) {
-  for_each_item(exec, all, Key{work.lookup, work.later(), work.ordering.words.data()});
-  sort_words(exec, work.ordering, all, bits_up_to(static_cast<std::uint32_t>(work.lookup.cells)));
-  work.count = all - dead;
-  const std::uint64_t* words = work.ordering.words.data();
-  for_each_item(exec, work.count, Gather{words, work.later(), work.plants()});
-  work.spans.set_zero();
-  for_each_item(exec, work.count, MarkSpans{work.lookup, words, work.count, work.spans.data()});
-}
-
-/// New plants behind those that are there.
-template <class E>
-void spawn(E& exec, const Site& site, std::uint64_t seed, std::uint64_t step, float time_step,
-           Workspace& work) {
-  const Seeding seeding{site,
-                        work.species.data(),
-                        work.species_count,
-                        work.density.data(),
-                        work.downwind.data(),
-                        time_step,
-                        seed,
-                        step};
-  for_each_cell(exec, site.grid, Sow{seeding, work.seeds.data()});
-  prefix_sums(exec, work.ordering, work.seeds.data(), work.places.data(), site.grid.cells() + 1);
-  for_each_cell(
-      exec, site.grid,
-      Sprout{seeding, work.seeds.data(), work.places.data(), work.later(), work.count, work.capacity});
-  exec.copy(work.tally.data() + 1, work.places.data() + site.grid.cells(), sizeof(int));
-}
+void order(E& exec, int all, int dead, Workspace& work);
 
 template <class E>
 void live(E& exec, const TerrainView& t, const VegetationParameters& p, const ReposeParameters& repose,
           const surface::Heights& heights, float time_step, std::uint64_t seed, std::uint64_t step,
-          LedgerView ledger, Workspace& work) {
-  const Drinking drinking(t, repose, p, heights.of_cells.data(), time_step);
-  work.tally.set_zero();
-  work.wishes.set_zero();
-  for_each_item(exec, work.count, Wish{drinking, work.plants(), work.species.data(), work.wishes.data()});
-  const Competition competition{work.neighbourhood(), work.plants(), work.competition.data(),
-                                work.species_count, t.quantum};
-  for_each_item(
-      exec, work.count,
-      Grow{drinking, competition, work.plants(), work.later(), work.species.data(), work.wishes.data(),
-           t.real(Layer::canopy_height), t.real(Layer::illumination), t.real(Layer::illumination_canopy),
-           time_step, p.litter, work.drunk.data(), t.quanta(Layer::humus), work.tally.data()});
-  spawn(exec, drinking.site, seed, step, time_step, work);
-  if (t.quanta(Layer::moisture))
-    for_each_item(exec, work.count,
-                  Drink{drinking.site, work.plants(), work.drunk.data(), t.quanta(Layer::moisture), ledger});
-  int tally[2];
-  work.tally.download(0, 2, tally);
-  const int room = work.capacity - work.count;
-  order(exec, work.count + (tally[1] < room ? tally[1] : room), tally[0], work);
-}
+          LedgerView ledger, Workspace& work);
 
 }  // namespace desert_sim::plants

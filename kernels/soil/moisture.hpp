@@ -11,10 +11,8 @@
 /// depth they are the same. Diffusion is divided so that D Δt/l² ≤ ¼. Reads soil, sand, water, moisture,
 /// vegetation; writes water, moisture.
 
-#include "kernels/backend/for_each.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
-#include "kernels/field/math.hpp"
 #include "src/core/parameters.hpp"
 
 namespace desert_sim {
@@ -46,114 +44,10 @@ static_assert(table_is_complete<MoistureParameters>());
 
 namespace moisture {
 
-/// The ground's room and speed.
-struct Ground {
-  const Quanta *soil, *sand;
-  float capacity, quantum, quanta_per_metre;
-  MoistureParameters p;
-
-  /// Quanta that the ground can hold.
-  DESERT_HD Quanta room(int i) const {
-    const float depth = static_cast<float>(value_or_zero(soil, i) + sand[i]) * quantum;
-    return static_cast<Quanta>(capacity * minimum(depth, 1.0f) * quanta_per_metre);
-  }
-  DESERT_HD float rate(int i) const {
-    return lerp(p.seepage_soil, p.seepage_sand, minimum(sand[i] * quantum, 1.0f));
-  }
-};
-
-/// `part` of `from`, at least one quantum, if there is any.
-DESERT_HD Quanta some_of(Quanta from, float part) {
-  if (from <= 0 || !(part > 0.0f)) return 0;
-  const Quanta taken = static_cast<Quanta>(rintf(part * static_cast<float>(from)));
-  return taken < 1 ? 1 : (taken > from ? from : taken);
-}
-
-/// Water into the ground, or out of it where it is too full; then dries what no water covers.
-struct SeepAndDry {
-  Grid grid;
-  Ground ground;
-  float time_step;
-  const float* vegetation;
-  Quanta *water, *moisture;
-  LedgerView ledger;
-
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    const Quanta room = ground.room(i), full = moisture[i], there = water[i];
-    const float rate = ground.rate(i);
-    Quanta in = room - full;  // what is too much comes out
-    if (in > 0) {
-      const float part =
-          rate * time_step * (2 * static_cast<long long>(full) > room ? ground.p.when_wet : 1.0f);
-      const Quanta wanted = some_of(in, minimum(part, 1.0f));
-      in = wanted < there ? wanted : there;
-      ledger.convert(Material::water, Material::moisture, i, in);
-    } else {
-      ledger.convert(Material::moisture, Material::water, i, -in);
-    }
-    const Quanta wet = full + in;
-    water[i] = there - in;
-    Quanta dried = 0;
-    if (!((there - in) * ground.quantum > wet_depth)) {
-      const float speed = ground.p.evaporation * rate * (1.0f - 0.75f * value_or_zero(vegetation, i));
-      dried = some_of(wet, 1.0f - exp_negative(speed * time_step));
-      ledger.book_out(Material::moisture, i, dried);
-    }
-    moisture[i] = wet - dried;
-  }
-};
-
-/// What cells get from those beside them.
-struct Spread {
-  Grid grid;
-  Ground ground;
-  float number;  ///< D Δt/l² ≤ ¼
-  const Quanta* moisture;
-  Quanta* gain;
-
-  DESERT_HD Quanta from(Quanta room, float wet, int x, int y) const {
-    const int j = neighbour_index(grid, x, y);
-    if (j < 0) return 0;
-    const Quanta there = ground.room(j);
-    if (there <= 0 || room <= 0) return 0;
-    const float other = static_cast<float>(moisture[j]) / static_cast<float>(there);
-    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // four parts of a quarter round
-    return static_cast<Quanta>(number * guard * static_cast<float>(room < there ? room : there) *
-                               (other - wet));
-  }
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    const Quanta room = ground.room(i);
-    const float wet = room > 0 ? static_cast<float>(moisture[i]) / static_cast<float>(room) : 0.0f;
-    gain[i] = (from(room, wet, x + 1, y) + from(room, wet, x - 1, y)) +
-              (from(room, wet, x, y + 1) + from(room, wet, x, y - 1));
-  }
-};
-struct ApplySpread {
-  Grid grid;
-  const Quanta* gain;
-  Quanta* moisture;
-  DESERT_HD void operator()(int x, int y) const { moisture[grid.index(x, y)] += gain[grid.index(x, y)]; }
-};
-
 /// `capacity`: c_M; `gain`: scratch of one value a cell.
 template <class E>
 void step(E& exec, const TerrainView& t, const MoistureParameters& p, float capacity, float time_step,
-          LedgerView ledger, Quanta* gain) {
-  const Ground ground{
-      t.quanta(Layer::soil), t.quanta(Layer::sand), capacity, t.quantum, t.quanta_per_metre, p};
-  Quanta *water = t.quanta(Layer::water), *moisture = t.quanta(Layer::moisture);
-  for_each_cell(exec, t.grid,
-                SeepAndDry{t.grid, ground, time_step, t.real(Layer::vegetation), water, moisture, ledger});
-  const float number = p.diffusion * time_step / (t.grid.cell_size * t.grid.cell_size);
-  if (!(number > 0.0f)) return;
-  const int parts = static_cast<int>(std::ceil(number * 4.0f));
-  for (int n = 0; n < parts; ++n) {
-    for_each_cell(exec, t.grid, Spread{t.grid, ground, number / static_cast<float>(parts), moisture, gain});
-    for_each_cell(exec, t.grid, ApplySpread{t.grid, gain, moisture});
-  }
-}
+          LedgerView ledger, Quanta* gain);
 
 }  // namespace moisture
 }  // namespace desert_sim

@@ -3,127 +3,29 @@
 /// and tiles that changed are packed one behind the other, so that only they need to go to the host.
 /// Reads bedrock, soil, sand; writes what is held.
 
+#include <cmath>
 #include <cstdint>
 
-#include "kernels/field/math.hpp"
-#include "kernels/view/elevation_step.hpp"
+#include "kernels/field/layers.hpp"
 #include "kernels/view/layer_values.hpp"
 #include "kernels/view/packed_tiles.hpp"
 
 namespace desert_sim::held_elevation {
 
-using packed_tiles::TileHead;
-using packed_tiles::TileOfGrid;
 using packed_tiles::Tiling;
 
 /// In the place of a cell that did not change: no step is so long, and no elevation is infinite.
 constexpr std::int8_t no_step = -128;
+
 constexpr float no_elevation = -HUGE_VALF;
-
-using layer_values::Surface;
-
-struct Hold {
-  Grid grid;
-  Surface now;
-  float* held;
-  DESERT_HD void operator()(int x, int y) const { held[grid.index(x, y)] = now(grid.index(x, y)); }
-};
-
-/// Of a tile in which a cell is off by more than the threshold: packs the cells that are, after which they
-/// are held: as steps, the error of which is within the threshold, or as elevations, where steps in eight
-/// bits would be too coarse.
-struct TakeChanges {
-  Tiling tiles;
-  Surface now;
-  float* held;
-  float threshold;
-  char* pack;
-
-  template <class Team>
-  static constexpr int scratch_bytes = packed_tiles::scratch_bytes;
-
-  /// Half a step is the largest error; a little less than the threshold, so that rounding does not exceed it.
-  DESERT_HD bool tells(int bits, float largest) const {
-    const float step = largest / static_cast<float>(most_steps(bits));
-    return step > 0.0f && step <= 1.99f * threshold;
-  }
-
-  template <class Team>
-  DESERT_HD void operator()(const Team& team, int column, int row_of_band) const {
-    const Part part{*this, {tiles, column, tiles.first_row + row_of_band}};
-    // Floats that are not negative order like their bits: minus the bits of the largest change.
-    const int least = team.lowest(part.width, part.height, [part](int x, int y) DESERT_INLINE {
-      const float change = fabsf(part.change(part.index(x, y)));
-      return change > part.threshold ? -static_cast<int>(bits_of(change)) : 0;
-    });
-    if (least == 0) return;
-    TileHead head;
-    const float largest = float_of(static_cast<std::uint32_t>(-least));
-    head.tile = part.number;
-    head.bits = tells(4, largest) ? 4 : (tells(8, largest) ? 8 : 0);
-    head.resolution = head.bits ? largest / static_cast<float>(most_steps(head.bits)) : 0.0f;
-    const std::size_t bytes = part.cells() * (head.bits == 0 ? sizeof(float) : 1);
-    char* const cells = packed_tiles::begin_tile(team, pack, head, bytes);
-    if (head.bits == 0)
-      write_elevations(team, part, reinterpret_cast<float*>(cells));
-    else
-      write_steps(team, part, head, reinterpret_cast<std::int8_t*>(cells));
-  }
-
- private:
-  /// A tile and what its cells need, by value: the compiler then knows that nothing of it changes while
-  /// cells are written. No branches either, so that it can make vectors of them.
-  struct Part : TileOfGrid {
-    Surface now;
-    float* held;
-    float threshold;
-
-    DESERT_HD Part(const TakeChanges& law, const TileOfGrid& tile)
-        : TileOfGrid(tile), now(law.now), held(law.held), threshold(law.threshold) {}
-    DESERT_HD float change(int i) const { return now(i) - held[i]; }
-  };
-
-  template <class Team>
-  DESERT_HD void write_elevations(const Team& team, const Part& part, float* to) const {
-    team.for_each(part.width, part.height, [part, to](int x, int y) DESERT_INLINE {
-      const int i = part.index(x, y);
-      const float before = part.held[i], after = part.now(i);
-      const bool changed = fabsf(after - before) > part.threshold;
-      part.held[i] = changed ? after : before;
-      to[y * part.width + x] = changed ? after : float{no_elevation};
-    });
-  }
-
-  template <class Team>
-  DESERT_HD void write_steps(const Team& team, const Part& part, const TileHead& head,
-                             std::int8_t* to) const {
-    const int most = most_steps(head.bits);
-    const float resolution = head.resolution;
-    team.for_each(part.width, part.height, [part, most, resolution, to](int x, int y) DESERT_INLINE {
-      const int i = part.index(x, y);
-      const float before = part.held[i], change = part.change(i);
-      const bool changed = fabsf(change) > part.threshold;
-      const int steps = nearest(change / resolution), low = steps < -most ? -most : steps;
-      const auto step = static_cast<std::int8_t>(low > most ? most : low);
-      const float after = changed_elevation(before, step, resolution);
-      part.held[i] = changed ? after : before;
-      to[y * part.width + x] = changed ? step : std::int8_t{no_step};
-    });
-  }
-};
 
 /// Holds the whole surface.
 template <class E>
-void hold(E& exec, const TerrainView& t, const Metres& metres, float* held) {
-  for_each_cell(exec, t.grid, Hold{t.grid, {surface::SolidHeight(t), metres}, held});
-}
+void hold(E& exec, const TerrainView& t, const Metres& metres, float* held);
 
 /// Packs what changed by more than `threshold` [m] ≥ 0 in `tiles`; `pack` has room for most_packed().
 template <class E>
 void take_changes(E& exec, const TerrainView& t, const Metres& metres, const Tiling& tiles, float threshold,
-                  float* held, char* pack) {
-  exec.set_zero(pack, sizeof(packed_tiles::PackedHead));
-  for_each_tile(exec, tiles, TakeChanges{tiles, {surface::SolidHeight(t), metres}, held, threshold, pack});
-}
+                  float* held, char* pack);
 
 }  // namespace desert_sim::held_elevation

@@ -1,9 +1,8 @@
 #pragma once
 /// Layers as others see them: floats in the layer's unit.
 
-#include "kernels/backend/for_each.hpp"
+#include "kernels/backend/exec.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/surface.hpp"
 
 namespace desert_sim {
 
@@ -15,45 +14,10 @@ struct Metres {
 
 namespace layer_values {
 
-/// A layer that is not in use is null, and 0.
-struct Stored {
-  const Quanta* quanta;
-  const float* real;
-  Metres metres;
-  DESERT_HD float operator()(int i) const { return quanta ? metres(quanta[i]) : value_or_zero(real, i); }
-};
-
-/// The layer `elevation`, which no step fills, without it.
-struct Surface {
-  surface::SolidHeight height;
-  Metres metres;
-  DESERT_HD float operator()(int i) const { return metres(height(i)); }
-};
-
-template <class Values>
-struct Convert {
-  Grid grid;
-  Values values;
-  int first;
-  float* to;
-
-  DESERT_HD void operator()(int x, int y) const {
-    to[grid.index(x, y)] = values(grid.index(x, wrap(first + y, grid.height)));
-  }
-};
-
 /// Writes the values of rows first … first + rows − 1 of a layer, row-major, to `to` on the device. Rows
 /// beyond the north edge are those in the south.
 template <class E>
-void step(E& exec, const TerrainView& t, Layer layer, const Metres& metres, int first, int rows, float* to) {
-  Grid band = t.grid;
-  band.height = rows;
-  if (layer == Layer::elevation)
-    return for_each_cell(exec, band, Convert<Surface>{t.grid, {surface::SolidHeight(t), metres}, first, to});
-  const bool counted = info(layer).storage == Storage::quanta;
-  const Stored stored{counted ? t.quanta(layer) : nullptr, counted ? nullptr : t.real(layer), metres};
-  for_each_cell(exec, band, Convert<Stored>{t.grid, stored, first, to});
-}
+void step(E& exec, const TerrainView& t, Layer layer, const Metres& metres, int first, int rows, float* to);
 
 }  // namespace layer_values
 }  // namespace desert_sim

@@ -25,167 +25,19 @@
 /// suspended_sediment.
 
 #include "kernels/backend/buffer.hpp"
+#include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
-#include "kernels/water/sediment_transport.hpp"
 #include "kernels/water/water_sources.hpp"
 
 namespace desert_sim::virtual_pipes {
-
-/// What is left of the longest stable time: depths may double within a step.
-constexpr float safety = 0.65f;
 
 struct Workspace {
   Buffer<float> held;  ///< share of its outflow that a cell has water for
 };
 
-/// The wind's pull on the water.
-struct Waves {
-  float strength;  ///< now: s max(sin 2π t/T, 0) [1/s]
-  const float *wind_x, *wind_y;
-};
-
-template <bool inside>
-struct Accelerate {
-  Flow<inside> flow;
-  Waves waves;
-  float keeps;  ///< 1 − c Δt
-  float drag;   ///< c_f Δt/l [s/m]
-  bool first;   ///< part of the step: supply has held nothing back yet
-
-  DESERT_HD float through(int i, int j, float flux, const float* wind) const {
-    const Quanta bed_i = flow.bed(i), bed_j = flow.bed(j);
-    const Quanta top_i = bed_i + flow.water[i], top_j = bed_j + flow.water[j];
-    const Quanta bed = bed_i > bed_j ? bed_i : bed_j, top = top_i > top_j ? top_i : top_j;
-    if (top <= bed) return 0.0f;
-    const float face = minimum(static_cast<float>(top - bed), flow.highest_face) * flow.quantum;
-    const float slope = static_cast<float>(top_i - top_j) * flow.quantum / flow.grid.cell_size;
-    float pull = gravity * slope;
-    if (waves.strength > 0.0f) {
-      const float both = static_cast<float>(flow.water[i] + flow.water[j]) * flow.quantum;
-      pull += waves.strength * (1.0f - exp_negative(0.005f * both * both)) * 0.5f * (wind[i] + wind[j]);
-    }
-    const float left = first ? flux : flux * (flux > 0.0f ? flow.held[i] : flow.held[j]);
-    const float free = keeps * left + flow.time_step * (flow.grid.cell_size * face) * pull;
-    return 2.0f * free / (1.0f + sqrtf(1.0f + 4.0f * (drag / (face * face)) * fabsf(free)));
-  }
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = flow.grid.index(x, y), east = flow.east(x, y), north = flow.north(x, y);
-    if (inside || east >= 0) flow.flux_x[i] = through(i, east, flow.flux_x[i], waves.wind_x);
-    if (inside || north >= 0) flow.flux_y[i] = through(i, north, flow.flux_y[i], waves.wind_y);
-  }
-};
-
-/// How much of its outflow a cell has water for.
-template <bool inside>
-struct Hold {
-  Flow<inside> flow;
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = flow.grid.index(x, y);
-    const typename Flow<inside>::Faces f = flow.faces(x, y);
-    const float out = (maximum(f.to_east, 0.0f) + maximum(f.to_west, 0.0f)) +
-                      (maximum(f.to_north, 0.0f) + maximum(f.to_south, 0.0f));
-    const float there = static_cast<float>(flow.water[i]);
-    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // sums round
-    // Four amounts that are rounded to the nearest may be two quanta more than their sum.
-    flow.held[i] = out + 4.0f <= there * guard ? 1.0f : minimum(there / (out + 1e-20f), 1.0f) * guard;
-  }
-};
-
-/// What all faces let through, and the velocity.
-template <bool inside>
-struct Move {
-  Flow<inside> flow;
-  float *velocity_x, *velocity_y;
-  LedgerView ledger;
-
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = flow.grid.index(x, y);
-    const typename Flow<inside>::Faces f = flow.faces(x, y);
-    const Quanta e = flow.through(i, f.east, f.to_east), w = flow.through(i, f.west, f.to_west);
-    const Quanta n = flow.through(i, f.north, f.to_north), s = flow.through(i, f.south, f.to_south);
-    const Quanta before = flow.water[i], after = before - ((e + w) + (n + s));
-    flow.water[i] = after;
-    if (flow.sediment) flow.sediment[i] = flow.sediment_next[i];
-    if (!inside) {
-      const Quanta over =
-          (f.east < 0 ? e : 0) + (f.west < 0 ? w : 0) + (f.north < 0 ? n : 0) + (f.south < 0 ? s : 0);
-      ledger.book_out(Material::water, i, over);
-    }
-    // Through the mean of two faces, over the mean depth of the time; films have no velocity.
-    const Quanta depth = (before + after) / 2;
-    const float per = depth * flow.quantum > film
-                          ? 0.5f * flow.grid.cell_size / (static_cast<float>(depth) * flow.time_step)
-                          : 0.0f;
-    velocity_x[i] = static_cast<float>(e - w) * per;
-    velocity_y[i] = static_cast<float>(n - s) * per;
-  }
-  static constexpr float film = 1e-4f;  ///< [m]
-};
-
-/// At the end of a step: takes off the fluxes what supply held back.
-template <bool inside>
-struct Settle {
-  Flow<inside> flow;
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = flow.grid.index(x, y), east = flow.east(x, y), north = flow.north(x, y);
-    const float qx = flow.flux_x[i], qy = flow.flux_y[i];
-    if (inside || east >= 0) flow.flux_x[i] = qx * (qx > 0.0f ? flow.held[i] : flow.held[east]);
-    if (inside || north >= 0) flow.flux_y[i] = qy * (qy > 0.0f ? flow.held[i] : flow.held[north]);
-  }
-};
-
-struct Depth {
-  Grid grid;
-  const Quanta* water;
-  DESERT_HD float operator()(int x, int y) const { return static_cast<float>(water[grid.index(x, y)]); }
-};
-
-/// Parts that a step is divided into, with the deepest water [m].
-inline int substeps(const WaterParameters& p, const Grid& grid, float time_step, double deepest) {
-  const double longest = safety * grid.cell_size / std::sqrt(2.0 * gravity * deepest + 1e-12);
-  const double parts = std::ceil(time_step / longest);
-  return parts < 1 ? 1 : (parts > p.most_substeps ? p.most_substeps : static_cast<int>(parts));
-}
-
 /// `time` [s] that waves are at; `carried`: scratch of one value a cell. Reads the greatest depth back.
 template <class E>
 void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_step, double time,
-          Quanta sea_level, LedgerView ledger, Quanta* carried, Workspace& work) {
-  const double deepest =
-      static_cast<double>(max_cells(exec, t.grid, Depth{t.grid, t.quanta(Layer::water)})) * t.quantum;
-  const int parts = substeps(p, t.grid, time_step, deepest);
-  const float part = time_step / static_cast<float>(parts);
-  const float l = t.grid.cell_size;
-  // Where safety leaves nothing of the room that it is for: Δt² 2 g h = l².
-  const float highest = l * l / (2.0f * gravity * part * part);
-  const Flow<true> flow{t.grid,
-                        part,
-                        t.quantum,
-                        t.quanta_per_metre,
-                        highest * t.quanta_per_metre,
-                        p.sea != Sea::none,
-                        sea_level,
-                        t.quanta(Layer::bedrock),
-                        t.quanta(Layer::soil),
-                        t.quanta(Layer::sand),
-                        t.quanta(Layer::water),
-                        t.real(Layer::water_flux_x),
-                        t.real(Layer::water_flux_y),
-                        work.held.data(),
-                        t.quanta(Layer::suspended_sediment),
-                        carried};
-  float *velocity_x = t.real(Layer::water_velocity_x), *velocity_y = t.real(Layer::water_velocity_y);
-  const float keeps = maximum(1.0f - p.friction * part, 0.0f);
-  for (int n = 0; n < parts; ++n) {
-    const double phase = 6.283185307179586 * (time + (n + 0.5) * part) / p.wave_period;
-    const float swell = p.wave_strength * static_cast<float>(std::fmax(std::sin(phase), 0.0));
-    const Waves waves{swell, t.real(Layer::wind_x), t.real(Layer::wind_y)};
-    for_each_pipe<Accelerate>(exec, flow, waves, keeps, p.drag * part / l, n == 0);
-    for_each_pipe<Hold>(exec, flow);
-    if (flow.sediment) for_each_pipe<CarrySediment>(exec, flow, ledger);
-    for_each_pipe<Move>(exec, flow, velocity_x, velocity_y, ledger);
-  }
-  for_each_pipe<Settle>(exec, flow);
-}
+          Quanta sea_level, LedgerView ledger, Quanta* carried, Workspace& work);
 
 }  // namespace desert_sim::virtual_pipes

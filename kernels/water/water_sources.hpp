@@ -8,11 +8,10 @@
 ///
 /// Reads bedrock, soil, sand, water; writes water.
 
-#include "kernels/backend/for_each.hpp"
+#include <cstdint>
+
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
-#include "kernels/field/math.hpp"
-#include "kernels/water/rain.hpp"
 #include "src/core/parameters.hpp"
 
 namespace desert_sim {
@@ -78,116 +77,16 @@ static_assert(table_is_complete<WaterParameters>());
 
 namespace water_sources {
 
-/// A box of cells around a disc, and what each cell in the disc gets.
-struct Pour {
-  Grid grid;
-  int first_x, first_y;              ///< of the box
-  float centre_x, centre_y, radius;  ///< [cells], of the box's first cell's corner
-  Quanta amount;
-  Quanta* water;
-  LedgerView ledger;
-
-  DESERT_HD bool wet(int x, int y) const {
-    const float dx = static_cast<float>(x) + 0.5f - centre_x, dy = static_cast<float>(y) + 0.5f - centre_y;
-    return dx * dx + dy * dy <= radius * radius;
-  }
-  DESERT_HD void operator()(int x, int y) const {
-    if (!wet(x, y)) return;
-    const int i = neighbour_index(grid, first_x + x, first_y + y);
-    if (i < 0) return;
-    water[i] += amount;
-    ledger.book_in(Material::water, i, amount);
-  }
-};
-
 /// `x`, `y` [m] from the terrain's south-west corner.
 template <class E>
 void pour(E& exec, const TerrainView& t, const Spring& spring, double x, double y, float time_step,
-          std::uint64_t tick, LedgerView ledger) {
-  const Grid& g = t.grid;
-  const double l = g.cell_size;
-  const double column = x / l, row = y / l, reach = spring.radius / l;
-  // A disc that has no cell's centre in it is the cell that it lies in; of a torus each cell is there once.
-  const bool point = reach < 0.7072;
-  struct Cells {
-    int first, count;
-  };
-  const auto cells_of = [&](double at, int n, bool periodic) -> Cells {
-    int first = static_cast<int>(std::floor(point ? at : at - reach)),
-        last = static_cast<int>(std::floor(point ? at : at + reach));
-    if (periodic && last - first >= n) return {static_cast<int>(std::floor(at)) - n / 2, n};
-    if (!periodic) first = first > 0 ? first : 0, last = last < n ? last : n - 1;
-    return {first, last - first + 1};
-  };
-  const Cells columns = cells_of(column, g.width, g.periodic_x), rows = cells_of(row, g.height, g.periodic_y);
-  if (columns.count <= 0 || rows.count <= 0) return;  // it lies off the terrain
-  const Grid box{columns.count, rows.count, g.cell_size};
-  Pour law{g,
-           columns.first,
-           rows.first,
-           static_cast<float>(column - columns.first),
-           static_cast<float>(row - rows.first),
-           static_cast<float>(point ? 2.0 : reach),
-           0,
-           t.quanta(Layer::water),
-           ledger};
-  long long cells = 0;
-  for (int cell_y = 0; cell_y < box.height; ++cell_y)
-    for (int cell_x = 0; cell_x < box.width; ++cell_x) cells += law.wet(cell_x, cell_y);
-  if (cells == 0) return;
-  const double depth =
-      static_cast<double>(spring.discharge) * time_step / (l * l * static_cast<double>(cells));
-  law.amount = rain::of_step(depth * t.quanta_per_metre, tick);
-  if (law.amount > 0) for_each_cell(exec, box, law);
-}
-
-struct FillSea {
-  Grid grid;
-  bool everywhere;
-  Quanta level;
-  const Quanta *bedrock, *soil, *sand;
-  Quanta* water;
-  LedgerView ledger;
-  DESERT_HD void operator()(int x, int y) const {
-    if (!everywhere && x > 0 && y > 0 && x < grid.width - 1 && y < grid.height - 1) return;
-    const int i = grid.index(x, y);
-    const Quanta missing = level - (bedrock[i] + value_or_zero(soil, i) + sand[i] + water[i]);
-    if (missing <= 0) return;
-    water[i] += missing;
-    ledger.book_in(Material::water, i, missing);
-  }
-};
+          std::uint64_t tick, LedgerView ledger);
 
 template <class E>
-void fill_sea(E& exec, const TerrainView& t, Sea sea, Quanta level, LedgerView ledger) {
-  if (sea == Sea::none) return;
-  for_each_cell(exec, t.grid,
-                FillSea{t.grid, sea == Sea::everywhere, level, t.quanta(Layer::bedrock),
-                        t.quanta(Layer::soil), t.quanta(Layer::sand), t.quanta(Layer::water), ledger});
-}
-
-struct Evaporate {
-  Grid grid;
-  float lost;  ///< 1 − e^(−φ Δt)
-  Quanta* water;
-  LedgerView ledger;
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    const Quanta w = water[i];
-    if (w <= 0) return;
-    Quanta part = static_cast<Quanta>(rintf(lost * static_cast<float>(w)));
-    part = part < 1 ? 1 : (part > w ? w : part);
-    water[i] = w - part;
-    ledger.book_out(Material::water, i, part);
-  }
-};
+void fill_sea(E& exec, const TerrainView& t, Sea sea, Quanta level, LedgerView ledger);
 
 template <class E>
-void evaporate(E& exec, const TerrainView& t, float rate, float time_step, LedgerView ledger) {
-  if (!(rate > 0.0f)) return;
-  const double lost = -std::expm1(-static_cast<double>(rate) * time_step);
-  for_each_cell(exec, t.grid, Evaporate{t.grid, static_cast<float>(lost), t.quanta(Layer::water), ledger});
-}
+void evaporate(E& exec, const TerrainView& t, float rate, float time_step, LedgerView ledger);
 
 }  // namespace water_sources
 }  // namespace desert_sim

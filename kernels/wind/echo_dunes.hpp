@@ -9,8 +9,8 @@
 /// The rise is taken over the whole cliff: from this cell upwind to where the ground stops being a cliff.
 /// Erosion wins; else the stickiest cliff counts. Reads the heights, wind_x, wind_y; writes echo.
 
+#include "kernels/field/layers.hpp"
 #include "kernels/field/surface.hpp"
-#include "kernels/wind/marching.hpp"
 #include "src/core/parameters.hpp"
 
 namespace desert_sim {
@@ -40,76 +40,10 @@ static_assert(table_is_complete<EchoDuneParameters>());
 
 namespace echo_dunes {
 
-struct CliffHeight {
-  Grid grid;
-  float quantum;
-  const float *heights, *wind_x, *wind_y;
-  float steepness;  ///< tangent
-  float highest;
-  float* cliff;  ///< [m], 0 where there is none
-
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    const float speed = hypotenuse(wind_x[i], wind_y[i]);
-    cliff[i] = 0.0f;
-    if (!(speed > 1e-6f)) return;
-    const int dx = subcells(-wind_x[i] / speed), dy = subcells(-wind_y[i] / speed);
-    const float drop = steepness * grid.cell_size / quantum;  // quanta a step
-    float last = 0.0f, rise = 0.0f;  // heights here and below it, relative to this cell
-    for (int j = 1; rise * quantum < highest; ++j) {
-      const marching::Place place(x, y, j * dx, j * dy);
-      const float next = marching::height_at(grid, heights, place) - heights[i];
-      if (last - next < drop) break;
-      last = next;
-      rise = -next;
-    }
-    cliff[i] = minimum(rise * quantum, highest);
-  }
-};
-
-struct Classify {
-  Grid grid;
-  const float* cliff;
-  const float *wind_x, *wind_y;
-  EchoDuneParameters p;
-  float* echo;
-
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    float u = wind_x[i], v = wind_y[i];
-    const float speed = hypotenuse(u, v);
-    echo[i] = 0.0f;
-    if (!(speed > 1e-6f)) return;
-    const int dx = subcells(u / speed), dy = subcells(v / speed);
-    const int steps = static_cast<int>(p.sticky_reach * p.highest / grid.cell_size);
-    float sticky = 0.0f;
-    for (int j = 1; j <= steps; ++j) {
-      const float height = cliff[sample_index(grid, x + nearest_cell(j * dx), y + nearest_cell(j * dy))];
-      const float distance = j * grid.cell_size, lane = p.erosion_reach * height,
-                  end = p.sticky_reach * height;
-      if (height <= 0.0f || distance > end) continue;
-      if (distance <= lane) {
-        echo[i] = -p.erosion_rate;
-        return;
-      }
-      sticky = maximum(sticky, clamp(1.1f - (distance - lane) / (end - lane), 0.0f, 1.0f));
-    }
-    echo[i] = sticky;
-  }
-};
-
 /// `cliff` is scratch memory of one float a cell.
 template <class E>
 void step(E& exec, const TerrainView& t, const EchoDuneParameters& p, const surface::Heights& heights,
-          float* cliff) {
-  const float steepness = tanf(p.cliff_deg * 3.14159265358979f / 180.0f);
-  for_each_cell(exec, t.grid,
-                CliffHeight{t.grid, t.quantum, heights.of_cells.data(), t.real(Layer::wind_x),
-                            t.real(Layer::wind_y), steepness, p.highest, cliff});
-  for_each_cell(
-      exec, t.grid,
-      Classify{t.grid, cliff, t.real(Layer::wind_x), t.real(Layer::wind_y), p, t.real(Layer::echo)});
-}
+          float* cliff);
 
 }  // namespace echo_dunes
 }  // namespace desert_sim

@@ -1,109 +1,83 @@
+/// The step of wind.hpp; compiled once for each backend.
 #include "kernels/wind/wind.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
+#include "kernels/backend/loops.hpp"
+#include "kernels/wind/tuned/coarse_wind.hpp"
+#include "kernels/wind/wind_laws.hpp"
 
 namespace desert_sim::wind {
 
-namespace {
-/// Coarse axes shorter than this gain nothing and would show in the result.
-constexpr int fewest_coarse_cells = 64;
-
-/// The next number whose only prime factors are 2, 3 and 5: transforms of such lengths are fast.
-int smooth_length(int n) {
-  while (!smooth(n)) ++n;
-  return n;
-}
-
-/// Transfer of a Gaussian of `sigma` fine cells along an axis of n coarse modes, each coarse cell `ratio`
-/// fine ones. The derivative's 1/l and the transform's 1/n go into it too.
-std::vector<Transfer> transfer(int n, double ratio, double sigma, double cell_size) {
-  std::vector<Transfer> table(static_cast<std::size_t>(n));
-  for (int i = 0; i < n; ++i) {
-    if (2 * i == n) {
-      table[static_cast<std::size_t>(i)] = {0, 0};
-      continue;
-    }
-    const double k = 2 * 3.14159265358979323846 * (2 * i > n ? i - n : i) / (n * ratio), half = 0.5 * k;
-    double lost = 1;
-    if (ratio > 1 && i != 0) {
-      const double box = std::sin(half * ratio) / (ratio * std::sin(half));
-      const double linear = std::sin(half * ratio) / (half * ratio);
-      lost = box * linear * linear;
-    }
-    const double smooth = std::exp(-0.5 * sigma * sigma * k * k) / (lost * n);
-    table[static_cast<std::size_t>(i)] = {static_cast<float>(smooth),
-                                          static_cast<float>(smooth * std::sin(k) / cell_size)};
+/// The wind's turning, and what corrects its divergence, from the means of the terrain's rows.
+template <class E>
+void transform_by_library(E& exec, const CoarseLaws& laws, Workspace& work) {
+  const Grid grid = work.coarse.transformed();
+  for_each_cell(exec, grid, laws.columns);
+  if (laws.gradients.radius_count > 0) {
+    work.one->forward(work.spectrum.data());
+    for_each_cell(exec, laws.gradients.grid(), laws.gradients);
+    work.all_radii->inverse(work.gradients.data());
   }
-  return table;
+  for_each_cell(exec, grid, laws.turn);
+  if (!laws.projected) return;
+  work.one->forward(work.spectrum.data());
+  for_each_cell(exec, grid, laws.correct);
+  work.one->inverse(work.correction.data());
 }
 
-template <class Value>
-Buffer<Value> on_device(Exec& exec, const std::vector<Value>& table) {
-  Buffer<Value> buffer(exec, table.size());
-  buffer.upload(table);
-  return buffer;
+template <class E>
+void coarsen_rows(E& exec, const CoarsenRows& law) {
+  for_each_cell(exec, law.grid(), law);
 }
-}  // namespace
 
-CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p) {
-  float ratio = static_cast<float>(p.coarsening);
-  if (p.coarsening == 0) {
-    float smallest = 1e9f;
-    for (int r = 0; r < p.radii.count; ++r) smallest = std::min(smallest, p.radii.values[r]);
-    ratio = std::max(1.0f, std::floor(0.5f * smallest / 4.0f / fine.cell_size));
-  }
-  const auto cells = [&](int n) {
-    const int coarse = std::max(1, static_cast<int>(std::lround(n / ratio)));
-    if (p.coarsening != 0) return coarse;
-    return std::min(n, smooth_length(std::max(coarse, fewest_coarse_cells)));
+template <class E>
+void coarse_wind(E& exec, const CoarseLaws& laws, const surface::Heights& heights, float reference,
+                 Workspace& work) {
+  const CoarsenRows rows{work.coarse, heights.of_cells.data(), reference, work.row_means.data()};
+  coarsen_rows(exec, rows);
+  if (!laws.projected) work.correction.set_zero();
+  if constexpr (!works_on_rows<E>)
+    if (work.by_lines) return transform_by_lines(exec, laws, work);
+  transform_by_library(exec, laws, work);
+}
+
+template <class E>
+void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
+          const surface::Heights& heights, Quanta reference, const float* perturbation_x,
+          const float* perturbation_y, Workspace& work) {
+  const float speed_above = hypotenuse(above.x, above.y), lowest = static_cast<float>(reference);
+  const SpeedUp speed_up{p.speedup, p.speedup_lowest, p.speedup_highest};
+  const bool coarse_fields = p.warping || p.projection;
+  if (coarse_fields)
+    coarse_wind(exec, coarse_laws(t, p, above, speed_above, speed_up, work), heights, lowest, work);
+  const auto run = [&](auto strip, auto is_perturbed) {
+    const SurfaceWind<strip, is_perturbed> law{work.coarse,
+                                               heights.of_cells.data(),
+                                               lowest,
+                                               t.quantum,
+                                               above,
+                                               speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f,
+                                               speed_up,
+                                               coarse_fields ? work.turned.data() : nullptr,
+                                               coarse_fields ? work.correction.data() : nullptr,
+                                               perturbation_x,
+                                               perturbation_y,
+                                               t.real(Layer::wind_x),
+                                               t.real(Layer::wind_y)};
+    for_each_cell(exec, law.strips(), law);
   };
-  CoarseGrid c;
-  c.fine = fine;
-  c.columns = cells(fine.width);
-  c.rows = cells(fine.height);
-  c.width = fine.periodic_x ? c.columns : 2 * c.columns;
-  c.height = fine.periodic_y ? c.rows : 2 * c.rows;
-  c.ratio_x = static_cast<float>(fine.width) / c.columns;
-  c.ratio_y = static_cast<float>(fine.height) / c.rows;
-  c.share_x = 1.0f / c.ratio_x;
-  c.share_y = 1.0f / c.ratio_y;
-  c.wavenumber_x = 6.28318531f / (c.width * c.ratio_x);
-  c.wavenumber_y = 6.28318531f / (c.height * c.ratio_y);
-  return c;
+  const auto run_strips = [&](auto strip) {
+    perturbation_x ? run(strip, std::true_type()) : run(strip, std::false_type());
+  };
+  constexpr int many_cells = 1 << 22;  // that fill a GPU even in long strips
+  if constexpr (works_on_rows<E>)
+    run_strips(std::integral_constant<int, 1>());
+  else if (t.grid.cells() >= many_cells)
+    run_strips(std::integral_constant<int, 8>());
+  else
+    run_strips(std::integral_constant<int, 4>());
 }
 
-Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) {
-  Workspace work;
-  work.coarse = coarse_grid(fine, p);
-  if (!p.warping && !p.projection) return work;
-  const CoarseGrid& c = work.coarse;
-  const auto values = static_cast<std::size_t>(c.values());
-  work.row_means = Buffer<float>(exec, static_cast<std::size_t>(c.columns) * fine.height);
-  work.rise = Buffer<float>(exec, values);
-  for (Buffer<Complex>* buffer : {&work.spectrum, &work.turned, &work.correction})
-    *buffer = Buffer<Complex>(exec, values);
-  const int radius_count = p.warping ? p.radii.count : 0;
-  work.by_lines = LineTransform::suits(c.width) && LineTransform::suits(c.height) &&
-                  bytes_for_lines(c, radius_count) <= exec.memory_for_lines();
-  if (work.by_lines) {
-    work.lines_along_x = LineTransform::of(c.width);
-    work.lines_along_y = LineTransform::of(c.height);
-    work.roots_x = on_device(exec, work.lines_along_x.roots());
-    work.roots_y = on_device(exec, work.lines_along_y.roots());
-  } else {
-    work.one = exec.make_fft(c.width, c.height);
-  }
-  if (radius_count == 0) return work;
-  if (!work.by_lines) work.all_radii = exec.make_fft(c.width, c.height, p.radii.count);
-  work.gradients = Buffer<Complex>(exec, values * static_cast<std::size_t>(p.radii.count));
-  for (int r = 0; r < p.radii.count; ++r) {
-    const double sigma = 0.5 * p.radii.values[r] / fine.cell_size;
-    work.along_x[r] = on_device(exec, transfer(c.width, c.ratio_x, sigma, fine.cell_size));
-    work.along_y[r] = on_device(exec, transfer(c.height, c.ratio_y, sigma, fine.cell_size));
-  }
-  return work;
-}
+template void step(Backend&, const TerrainView&, const WindParameters&, Vector, const surface::Heights&,
+                   Quanta, const float*, const float*, Workspace&);
 
 }  // namespace desert_sim::wind

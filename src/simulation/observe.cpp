@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/plants/density.hpp"
 #include "src/core/error.hpp"
 #include "src/simulation/simulation.hpp"
 

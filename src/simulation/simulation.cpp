@@ -67,9 +67,8 @@ void Simulation::run_processes(E& exec) {
   if (s.avalanching.enabled)
     run(exec, "avalanching", {Layer::sand, Layer::bedrock}, [&] {
       slide_ground(exec, view);
-      const surface::MeasureBlock heights = surface::measuring(view, heights_);
       avalanching::step(exec, view, s.avalanching, steps_, repose_.data(),
-                        avalanches_end_the_step() ? &heights : nullptr, avalanche_work_);
+                        avalanches_end_the_step() ? &heights_ : nullptr, avalanche_work_);
     });
 }
 

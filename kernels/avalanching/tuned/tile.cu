@@ -21,6 +21,7 @@
 #include <type_traits>
 
 #include "kernels/avalanching/tuned/patches.cuh"
+#include "kernels/avalanching/tuned/tile.hpp"
 #include "kernels/backend/for_each_cuda.cuh"
 
 namespace desert_sim::avalanching {
@@ -93,25 +94,22 @@ void launch(CudaExec& exec, const RelaxTile& law) {
 
 /// In the same pass, if blocks are patches and all tiles are passed over.
 template <class Then>
-bool relaxed_with(CudaExec& exec, const RelaxTile& law, const Then& then) {
-  if (law.open || !patches_are_whole(law)) return false;
-  launch_as<true, Code::one_for_all_shifts>(exec, law, then);
-  return true;
+void launch_with(CudaExec& exec, const RelaxTile& law, const Then& then) {
+  if (!law.open && patches_are_whole(law)) return launch_as<true, Code::one_for_all_shifts>(exec, law, then);
+  launch(exec, law);
+  for_each_cell(exec, passed_over(then), then);
 }
 static_assert(surface::block_side == Patch::side);
 
 }  // namespace
 }  // namespace tuned
 
-void relax_tiles(CudaExec& exec, const RelaxTile& law) { tuned::launch(exec, law); }
-
-void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const Restrict& then) {
-  if (!tuned::relaxed_with(exec, law, then)) relax_tiles_then<CudaExec, Restrict>(exec, law, then);
+void relax_tiles_tuned(CudaExec& exec, const RelaxTile& law, const NothingThen&) { tuned::launch(exec, law); }
+void relax_tiles_tuned(CudaExec& exec, const RelaxTile& law, const Restrict& then) {
+  tuned::launch_with(exec, law, then);
 }
-
-void relax_tiles_then(CudaExec& exec, const RelaxTile& law, const surface::MeasureBlock& then) {
-  if (!tuned::relaxed_with(exec, law, then))
-    relax_tiles_then<CudaExec, surface::MeasureBlock>(exec, law, then);
+void relax_tiles_tuned(CudaExec& exec, const RelaxTile& law, const surface::MeasureBlock& then) {
+  tuned::launch_with(exec, law, then);
 }
 
 }  // namespace desert_sim::avalanching

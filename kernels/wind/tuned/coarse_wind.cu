@@ -21,7 +21,7 @@
 #include <algorithm>
 
 #include "kernels/backend/for_each_cuda.cuh"
-#include "kernels/wind/wind.hpp"
+#include "kernels/wind/tuned/coarse_wind.hpp"
 
 namespace desert_sim::wind {
 

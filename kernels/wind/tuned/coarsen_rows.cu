@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "kernels/backend/for_each_cuda.cuh"
-#include "kernels/wind/wind.hpp"
+#include "kernels/wind/tuned/coarse_wind.hpp"
 
 namespace desert_sim::wind {
 

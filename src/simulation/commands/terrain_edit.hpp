@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kernels/processes.hpp"
+#include "kernels/edit/brush_smooth.hpp"
 #include "src/scenario/scenario.hpp"
 #include "src/simulation/commands/command.hpp"
 #include "src/terrain/terrain.hpp"

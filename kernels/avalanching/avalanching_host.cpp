@@ -1,0 +1,63 @@
+#include "kernels/avalanching/avalanching.hpp"
+#include "kernels/avalanching/soil_and_bedrock.hpp"
+
+namespace desert_sim::avalanching {
+
+namespace {
+/// Coarsening further would leave less than a tile.
+constexpr int fewest_cells = 16;
+
+/// Cells twice as wide. An axis with an odd cell left over has a wall there on this level; finer levels see
+/// to it.
+Grid coarser(const Grid& g) {
+  return Grid{g.width / 2, g.height / 2, 2 * g.cell_size, g.periodic_x && g.width % 2 == 0,
+              g.periodic_y && g.height % 2 == 0};
+}
+
+/// From the finest.
+std::vector<Grid> coarse_grids(const Grid& grid, const AvalanchingParameters& p) {
+  std::vector<Grid> grids;
+  Grid g = grid;
+  while (g.cell_size < p.coarsest_cell * 0.999f && g.width / 2 >= fewest_cells &&
+         g.height / 2 >= fewest_cells) {
+    g = coarser(g);
+    grids.push_back(g);
+  }
+  return grids;
+}
+}  // namespace
+
+Schedule schedule(const AvalanchingParameters& p, const Grid& grid) {
+  constexpr int few_cells = 1 << 18;
+  Schedule plan = preset(p.quality);
+  if (p.last_passes > 0)
+    plan.last_passes = p.last_passes;
+  else if (p.quality == AvalancheQuality::good && grid.cells() <= few_cells)
+    plan.last_sweeps = 7, plan.levels_twice = 0, plan.coarse_share = 0.6f;
+  return plan;
+}
+
+Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParameters& p) {
+  Workspace work;
+  const std::size_t cells = static_cast<std::size_t>(grid.cells());
+  if (p.scheme != AvalancheScheme::multilevel) {
+    work.share = Buffer<float>(exec, cells);
+    work.given = Buffer<Quanta>(exec, cells);
+    work.received = Buffer<Quanta>(exec, cells);
+    return work;
+  }
+  if (p.quality == AvalancheQuality::converged) work.open = make_open_tiles(exec, grid);
+  for (const Grid& g : coarse_grids(grid, p)) {
+    const std::size_t n = static_cast<std::size_t>(g.cells());
+    work.coarse.push_back({g, Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n),
+                           Buffer<float>(exec, n)});
+  }
+  return work;
+}
+
+GroundWorkspace make_ground_workspace(Exec& exec, const Grid& grid) {
+  const std::size_t n = static_cast<std::size_t>(grid.cells());
+  return {Buffer<Quanta>(exec, n), Buffer<float>(exec, n)};
+}
+
+}  // namespace desert_sim::avalanching

@@ -1,0 +1,102 @@
+/// The laws and the step of brush.hpp; compiled once for each backend.
+#include "kernels/edit/brush.hpp"
+
+#include "kernels/backend/for_each.hpp"
+#include "kernels/backend/loops.hpp"
+#include "kernels/edit/brush_shape.hpp"
+#include "kernels/field/layers.hpp"
+#include "kernels/field/ledger.hpp"
+
+namespace desert_sim::brush {
+
+struct Change {
+  Brush b;
+  Quanta* change;
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = b.cell(x, y);
+    const Point p = b.point(x, y);
+    const float w = b.shape.weight(p);
+    change[y * b.columns + x] = i < 0 || w <= 0.0f ? 0 : b.edited(i, p, w) - b.layer[i];
+  }
+};
+
+/// What each cell of the ring holds; −1 in cells that are not of the ring.
+struct RingStock {
+  Brush b;
+  Quanta* stock;
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = b.cell(x, y);
+    const Point p = b.point(x, y);
+    const bool in_ring = i >= 0 && b.shape.covers(p, b.ring) && !b.shape.covers(p, 0.0f);
+    // Rock goes down as far as heights do: any ring of it has enough.
+    stock[y * b.columns + x] = !in_ring ? -1 : (b.depth ? b.layer[i] : wall_height);
+  }
+};
+
+struct BeyondLimit {
+  Brush b;
+  const Quanta* change;
+  DESERT_HD long long operator()(int x, int y) const {
+    const int k = y * b.columns + x;
+    if (change[k] == 0) return 0;
+    const int i = b.cell(x, y);
+    long long surface = static_cast<long long>(b.layer[i]) + change[k];
+    if (surface >= wall_height - 1 || surface <= 1 - wall_height) return 1;
+    for (int n = 0; n < 3; ++n) surface += b.rest[n] ? b.rest[n][i] : 0;
+    return surface >= load_limit || surface <= -load_limit ? 1 : 0;
+  }
+};
+
+struct Sum {
+  int columns;
+  const Quanta* change;
+  DESERT_HD long long operator()(int x, int y) const { return change[y * columns + x]; }
+};
+
+struct Book {
+  Brush b;
+  const Quanta* change;
+  bool moved;  ///< within the layer: nothing comes in or goes out
+  DESERT_HD void operator()(int x, int y) const {
+    const Quanta c = change[y * b.columns + x];
+    if (c == 0) return;
+    const int i = b.cell(x, y);
+    b.layer[i] += c;
+    if (moved) return;
+    if (c > 0) b.ledger.book_in(b.material, i, c);
+    if (c < 0) b.ledger.book_out(b.material, i, -c);
+  }
+};
+
+template <class E>
+void merge(E& exec, const Brush& b, Quanta* change) {
+  for_each_cell(exec, b.area(), Change{b, change});
+}
+
+template <class E>
+void ring_stock(E& exec, const Brush& b, Quanta* stock) {
+  for_each_cell(exec, b.area(), RingStock{b, stock});
+}
+
+template <class E>
+long long cells_beyond_limit(E& exec, const Brush& b, const Quanta* change) {
+  return sum_cells(exec, b.area(), BeyondLimit{b, change});
+}
+
+template <class E>
+long long total(E& exec, const Brush& b, const Quanta* change) {
+  return sum_cells(exec, b.area(), Sum{b.columns, change});
+}
+
+template <class E>
+void book(E& exec, const Brush& b, const Quanta* change, bool moved) {
+  for_each_cell(exec, b.area(), Book{b, change, moved});
+}
+
+template void merge(Backend&, const Brush&, Quanta*);
+template void ring_stock(Backend&, const Brush&, Quanta*);
+template long long cells_beyond_limit(Backend&, const Brush&, const Quanta*);
+template long long total(Backend&, const Brush&, const Quanta*);
+template void book(Backend&, const Brush&, const Quanta*, bool);
+
+}  // namespace desert_sim::brush

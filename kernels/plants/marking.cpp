@@ -1,0 +1,76 @@
+/// The laws and the step of marking.hpp; compiled once for each backend.
+#include "kernels/plants/marking.hpp"
+
+#include "kernels/backend/for_each.hpp"
+#include "kernels/backend/loops.hpp"
+#include "kernels/field/surface_laws.hpp"
+#include "kernels/plants/density.hpp"
+#include "kernels/plants/lookup.hpp"
+#include "kernels/view/layer_values.hpp"
+
+namespace desert_sim::plants {
+
+struct MarkSpecies {
+  Grid grid;
+  Neighbourhood near;
+  View plants;
+  const SpeciesTraits* species;
+  surface::SolidHeight height;
+  float quantum;
+  float* mark;
+
+  DESERT_HD void operator()(int column, int row) const {
+    const int i = grid.index(column, row);
+    const float x = (static_cast<float>(column) + 0.5f) * grid.cell_size,
+                y = (static_cast<float>(row) + 0.5f) * grid.cell_size;
+    const Quanta z = height(i);
+    float densest = bare;
+    int found = 0;
+    near.around(x, y, 0.0f, [&](int n) {
+      const float dx = near.lookup.difference_x(x, plants.x[n]),
+                  dy = near.lookup.difference_y(y, plants.y[n]);
+      const SpeciesTraits& s = species[plants.species[n]];
+      const float above = static_cast<float>(z - plants.z[n]) * quantum;
+      const float d = density_at(dx * dx + dy * dy, above, plants.radius[n], s.stem, s.root);
+      if (!(d > densest)) return;
+      densest = d;
+      found = 1 + plants.species[n];
+    });
+    mark[i] = static_cast<float>(found);
+  }
+};
+
+template <class E>
+void mark_species(E& exec, const TerrainView& t, int first, int rows, const Neighbourhood& near,
+                  const View& plants, const SpeciesTraits* species) {
+  for_each_cell_of_rows(
+      exec, t.grid, first, rows,
+      MarkSpecies{t.grid, near, plants, species, surface::SolidHeight(t), t.quantum, t.real(Layer::plants)});
+}
+
+struct List {
+  View plants;
+  Metres metres;
+  Listed* to;
+  int first;
+  DESERT_HD void operator()(int k) const {
+    const int n = first + k;
+    to[k] = {plants.x[n],
+             plants.y[n],
+             metres(plants.z[n]),
+             plants.radius[n],
+             static_cast<std::uint16_t>(plants.species[n]),
+             static_cast<std::uint16_t>(255.0f * clamp(plants.health[n], 0.0f, 1.0f) + 0.5f)};
+  }
+};
+
+template <class E>
+void list(E& exec, const View& plants, const Metres& metres, int first, int count, Listed* to) {
+  for_each_item(exec, count, List{plants, metres, to, first});
+}
+
+template void mark_species(Backend&, const TerrainView&, int, int, const Neighbourhood&, const View&,
+                           const SpeciesTraits*);
+template void list(Backend&, const View&, const Metres&, int, int, Listed*);
+
+}  // namespace desert_sim::plants

@@ -1,0 +1,179 @@
+#pragma once
+/// The laws of traversability.hpp, cell by cell.
+
+#include "kernels/backend/for_each.hpp"
+#include "kernels/field/layers.hpp"
+#include "kernels/field/math.hpp"
+#include "kernels/rover/traversability.hpp"
+#include "kernels/sand/repose.hpp"
+#include "src/core/parameters.hpp"
+
+namespace desert_sim::traversability {
+
+/// Differences of heights [quanta], exact: sums of them do not depend on an order, so that mirrored or turned
+/// terrain gives the same bits.
+struct Surface {
+  Grid grid;
+  const Quanta* elevation;
+  float quantum;
+
+  /// Neighbour's height above cell i's; false where the grid ends.
+  DESERT_HD bool rise(int i, int x, int y, Quanta& quanta) const {
+    const int j = neighbour_index(grid, x, y);
+    if (j < 0) return false;
+    quanta = elevation[j] - elevation[i];
+    return true;
+  }
+  /// Per cell, in metres; of a whole axis that has no second cell 0.
+  DESERT_HD float central(int x, int y, int dx, int dy) const {
+    const int i = grid.index(x, y);
+    Quanta ahead = 0, behind = 0;
+    const int sides = rise(i, x + dx, y + dy, ahead) + rise(i, x - dx, y - dy, behind);
+    return sides == 0 ? 0.0f : (static_cast<float>(ahead) - static_cast<float>(behind)) * quantum / sides;
+  }
+  /// The flatter of the two one-sided differences; 0 where one rises and the other falls.
+  DESERT_HD float flatter(int x, int y, int dx, int dy) const {
+    const int i = grid.index(x, y);
+    Quanta ahead = 0, back = 0;
+    const bool has_ahead = rise(i, x + dx, y + dy, ahead), has_back = rise(i, x - dx, y - dy, back);
+    const float a = ahead * quantum, b = -(back * quantum);
+    if (!has_ahead || !has_back) return has_ahead ? a : (has_back ? b : 0.0f);
+    if (a > 0.0f && b > 0.0f) return minimum(a, b);
+    return a < 0.0f && b < 0.0f ? maximum(a, b) : 0.0f;
+  }
+  /// Tangent of the slope.
+  DESERT_HD float steepness(int x, int y) const {
+    return hypotenuse(central(x, y, 1, 0), central(x, y, 0, 1)) / grid.cell_size;
+  }
+};
+
+/// Slope and normal; outputs that are not wanted are null.
+struct Orientation {
+  Surface surface;
+  float *slope, *normal_x, *normal_y, *normal_z;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = surface.grid.index(x, y);
+    if (slope) slope[i] = arctangent(surface.steepness(x, y));
+    const float gx = surface.central(x, y, 1, 0) / surface.grid.cell_size,
+                gy = surface.central(x, y, 0, 1) / surface.grid.cell_size;
+    const float length = sqrtf(1.0f + (gx * gx + gy * gy));
+    if (normal_x) normal_x[i] = -gx / length;
+    if (normal_y) normal_y[i] = -gy / length;
+    if (normal_z) normal_z[i] = 1.0f / length;
+  }
+};
+
+struct Roughness {
+  Surface surface;
+  int reach;  ///< of the window [cells]
+  float* roughness;
+
+  /// By the sums of the least-squares fit. The window is a rectangle, so that its axes separate. Heights are
+  /// held to 2²⁶ quanta around the cell's, with which the sums fit 63 bits.
+  DESERT_HD float at(int x, int y) const {
+    constexpr Quanta held = Quanta{1} << 26;
+    const int i = surface.grid.index(x, y);
+    long long n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sh = 0, sxh = 0, syh = 0, shh = 0;
+    for (int dy = -reach; dy <= reach; ++dy)
+      for (int dx = -reach; dx <= reach; ++dx) {
+        Quanta rise;
+        if (!surface.rise(i, x + dx, y + dy, rise)) continue;
+        const long long h = rise > held ? held : (rise < -held ? -held : rise);
+        n += 1, sx += dx, sy += dy, sxx += dx * dx, syy += dy * dy;
+        sh += h, sxh += dx * h, syh += dy * h, shh += h * h;
+      }
+    const auto explained = [n](long long covariance, long long variance) {
+      const double c = static_cast<double>(covariance);
+      return variance == 0 ? 0.0 : c * c / (static_cast<double>(variance) * static_cast<double>(n));
+    };
+    const double mean = static_cast<double>(sh) * static_cast<double>(sh) / static_cast<double>(n);
+    const double in_plane =
+        explained(n * sxh - sx * sh, n * sxx - sx * sx) + explained(n * syh - sy * sh, n * syy - sy * sy);
+    const double left = static_cast<double>(shh) - mean - in_plane;
+    return left > 0 ? static_cast<float>(sqrt(left / static_cast<double>(n))) * surface.quantum : 0.0f;
+  }
+  DESERT_HD void operator()(int x, int y) const { roughness[surface.grid.index(x, y)] = at(x, y); }
+};
+
+struct StepHeight {
+  Surface surface;
+  int reach;       ///< of the window [cells]
+  float drivable;  ///< tangent of the slope up to which a rise is no step
+  float* step_height;
+
+  DESERT_HD float at(int x, int y) const {
+    const int i = surface.grid.index(x, y);
+    const float gx = surface.flatter(x, y, 1, 0), gy = surface.flatter(x, y, 0, 1);
+    float highest = 0.0f;
+    for (int dy = -reach; dy <= reach; ++dy)
+      for (int dx = -reach; dx <= reach; ++dx) {
+        Quanta quanta;
+        if (!surface.rise(i, x + dx, y + dy, quanta)) continue;
+        const float rise = quanta * surface.quantum;
+        const float run = hypotenuse(static_cast<float>(dx), static_cast<float>(dy)) * surface.grid.cell_size;
+        if (fabsf(rise) > run * drivable) highest = maximum(highest, fabsf(rise - (gx * dx + gy * dy)));
+      }
+    return highest;
+  }
+  DESERT_HD void operator()(int x, int y) const { step_height[surface.grid.index(x, y)] = at(x, y); }
+};
+
+struct Traversability {
+  Roughness roughness;
+  StepHeight step_height;
+  float slope, sand_slope;  ///< limits [rad]
+  TraversabilityParameters limits;
+  const Quanta *sand, *soil, *water;
+  repose::RelativeMoisture moisture;
+  const float *vegetation, *obstacle;
+  float* traversability;
+
+  /// Half-wet ground holds best; from there on it turns to mud, where there is enough of it.
+  DESERT_HD float mud(int i) const {
+    const float depth =
+        static_cast<float>(value_or_zero(sand, i) + value_or_zero(soil, i)) * roughness.surface.quantum;
+    const float excess = maximum(moisture(i) - 0.5f, 0.0f) / (limits.mud - 0.5f);
+    return excess * minimum(depth / limits.sand_depth, 1.0f);
+  }
+
+  DESERT_HD float at(int x, int y) const {
+    const Surface& surface = roughness.surface;
+    const int i = surface.grid.index(x, y);
+    if (value_or_zero(obstacle, i) > 0.0f) return 0.0f;
+    const float loose = minimum(value_or_zero(sand, i) * surface.quantum / limits.sand_depth, 1.0f);
+    float worst = arctangent(surface.steepness(x, y)) / lerp(slope, sand_slope, loose);
+    worst = maximum(worst, limits.sand_cost * loose);
+    worst = maximum(worst, value_or_zero(water, i) * surface.quantum / limits.water_depth);
+    worst = maximum(worst, mud(i));
+    worst = maximum(worst, value_or_zero(vegetation, i) / limits.vegetation);
+    if (worst < 1.0f) worst = maximum(worst, step_height.at(x, y) / limits.step_height);
+    if (worst < 1.0f) worst = maximum(worst, roughness.at(x, y) / limits.roughness);
+    return clamp(1.0f - worst, 0.0f, 1.0f);
+  }
+  DESERT_HD void operator()(int x, int y) const {
+    traversability[roughness.surface.grid.index(x, y)] = at(x, y);
+  }
+};
+
+/// The law for this rover; it writes to those layers that the view has.
+inline Traversability law(const TerrainView& t, const TraversabilityParameters& p,
+                          const ReposeParameters& repose) {
+  const float degree = 3.14159265358979f / 180.0f;
+  const int reach = window_cells(p, t.grid.cell_size);
+  const Surface surface{t.grid, t.quanta(Layer::elevation), t.quantum};
+  return {{surface, reach, t.real(Layer::roughness)},
+          {surface, reach, tanf(p.slope_deg * degree), t.real(Layer::step_height)},
+          p.slope_deg * degree,
+          p.sand_slope_deg * degree,
+          p,
+          t.quanta(Layer::sand),
+          t.quanta(Layer::soil),
+          t.quanta(Layer::water),
+          repose::RelativeMoisture(t, repose),
+          t.real(Layer::vegetation),
+          t.real(Layer::obstacle),
+          t.real(Layer::traversability)};
+}
+
+}  // namespace desert_sim::traversability

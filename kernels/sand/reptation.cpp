@@ -1,0 +1,174 @@
+/// The laws and the step of reptation.hpp; compiled once for each backend.
+#include "kernels/sand/reptation.hpp"
+
+#include "kernels/backend/for_each.hpp"
+#include "kernels/backend/loops.hpp"
+#include "kernels/field/random.hpp"
+#include "kernels/sand/repose.hpp"
+#include "src/core/parameters.hpp"
+
+namespace desert_sim::reptation {
+
+/// Angles of repose where there is no saltation that sets them.
+struct SetAngles {
+  Grid grid;
+  Angle angle;
+  const float *strength, *wind_x, *wind_y, *wind_shadow, *vegetation;  ///< strength: null where nothing hits
+  repose::RelativeMoisture moisture;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    const float speed = hypotenuse(wind_x[i], wind_y[i]);
+    const float dry = angle.loosened(value_or_zero(strength, i), speed, value_or_zero(wind_shadow, i));
+    angle.repose[i] = angle.of(dry, value_or_zero(vegetation, i), moisture(i));
+  }
+};
+
+template <class E>
+void set_angles(E& exec, const TerrainView& t, const Angle& angle, const ReposeParameters& p,
+                const float* strength) {
+  for_each_cell(
+      exec, t.grid,
+      SetAngles{t.grid, angle, strength, t.real(Layer::wind_x), t.real(Layer::wind_y),
+                t.real(Layer::wind_shadow), t.real(Layer::vegetation), repose::RelativeMoisture(t, p)});
+}
+
+/// What the laws below share: heights, and the change of sand that they write.
+struct Surface {
+  Grid grid;
+  const Quanta *bedrock, *soil, *sand;
+  const float *reptation_strength, *wind_x, *wind_y, *obstacle;
+
+  DESERT_HD Quanta height(int i) const { return bedrock[i] + value_or_zero(soil, i) + sand[i]; }
+  DESERT_HD float speed(int i) const { return hypotenuse(wind_x[i], wind_y[i]); }
+  DESERT_HD bool solid(int i) const { return value_or_zero(obstacle, i) > 0.0f; }
+};
+
+struct SmoothingFlux {
+  Surface s;
+  float strength;  ///< k_r Δt / (sub-steps · l)
+  Quanta* change;
+
+  /// What i gives to its neighbour j (negative: gets), the same number whichever of the two computes it.
+  DESERT_HD Quanta flux(int i, int j, int k) const {
+    const Quanta drop = s.height(i) - s.height(j);
+    const float steep = strength * static_cast<float>(drop < 0 ? -drop : drop) / Neighbours::distance(k) *
+                        0.5f * (s.reptation_strength[i] + s.reptation_strength[j]) * 0.5f *
+                        (s.speed(i) + s.speed(j));
+    const Quanta available = s.sand[drop > 0 ? i : j];
+    const Quanta moved = (steep < static_cast<float>(available) ? static_cast<Quanta>(steep) : available) / 8;
+    return drop > 0 ? moved : -moved;
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = s.grid.index(x, y);
+    Quanta given = 0;
+    if (!s.solid(i))
+      for (int k = 0; k < Neighbours::count; ++k) {
+        const int j = neighbour_index(s.grid, x + Neighbours::dx(k), y + Neighbours::dy(k));
+        if (j >= 0 && !s.solid(j)) given += flux(i, j, k);
+      }
+    change[i] = -given;
+  }
+};
+
+/// Greatest diffusivity r |w|, which sets the number of sub-steps.
+struct Diffusivity {
+  Surface s;
+  DESERT_HD float operator()(int x, int y) const {
+    const int i = s.grid.index(x, y);
+    return s.reptation_strength[i] * s.speed(i);
+  }
+};
+
+struct SteepestEvent {
+  Surface s;
+  const float* vegetation;
+  std::uint64_t seed, tick;
+  float slab, quanta_per_metre;
+  Quanta* change;
+
+  DESERT_HD float chance(int cell) const {
+    return random_unit(seed, Purpose::reptation, static_cast<std::uint32_t>(cell),
+                       static_cast<std::uint32_t>(tick), static_cast<std::uint32_t>(tick >> 32));
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = s.grid.index(x, y);
+    const float probability =
+        (1.0f - value_or_zero(vegetation, i)) * (1.0f - exp_negative(s.reptation_strength[i]));
+    if (s.sand[i] <= 0 || s.solid(i) || chance(i) >= probability) return;
+    int first = -1, second = -1;
+    float first_slope = 0.0f, second_slope = 0.0f;
+    for (int k = 0; k < Neighbours::count; ++k) {
+      const int j = neighbour_index(s.grid, x + Neighbours::dx(k), y + Neighbours::dy(k));
+      if (j < 0 || s.solid(j)) continue;
+      const float slope = static_cast<float>(s.height(i) - s.height(j)) / Neighbours::distance(k);
+      if (slope > first_slope) {
+        second = first;
+        second_slope = first_slope;
+        first = j;
+        first_slope = slope;
+      } else if (slope > second_slope) {
+        second = j;
+        second_slope = slope;
+      }
+    }
+    if (first < 0) return;
+    // No more than evens out the steepest pair, so that events do not overshoot.
+    const float level = 0.5f * first_slope;
+    const Quanta moved = take(minimum(slab, level / quanta_per_metre), quanta_per_metre, s.sand[i]);
+    const Quanta to_second =
+        second < 0 ? 0 : static_cast<Quanta>(moved * (second_slope / (first_slope + second_slope)));
+    atomic_add(&change[i], -moved);
+    atomic_add(&change[first], moved - to_second);
+    if (second >= 0) atomic_add(&change[second], to_second);
+  }
+};
+
+struct ApplyChange {
+  Grid grid;
+  const Quanta* change;
+  Quanta* sand;
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    sand[i] += change[i];
+  }
+};
+
+template <class E>
+void step(E& exec, const TerrainView& t, const ReptationParameters& p, float time_step, std::uint64_t seed,
+          std::uint64_t tick, const float* reptation_strength, Quanta* change) {
+  if (!moves_sand(p)) return;
+  const Surface surface{t.grid,
+                        t.quanta(Layer::bedrock),
+                        t.quanta(Layer::soil),
+                        t.quanta(Layer::sand),
+                        reptation_strength,
+                        t.real(Layer::wind_x),
+                        t.real(Layer::wind_y),
+                        t.real(Layer::obstacle)};
+  const ApplyChange apply{t.grid, change, t.quanta(Layer::sand)};
+  if (p.method == ReptationMethod::smoothing) {
+    // Stable while a cell gives less than half of what would level it with all eight: strength · r |w| ≤ ½.
+    const float strength = p.strength * time_step / t.grid.cell_size;
+    const float diffusivity = max_cells(exec, t.grid, Diffusivity{surface});
+    const int substeps = static_cast<int>(clamp(ceilf(strength * diffusivity / 0.5f), 1.0f, 1000.0f));
+    for (int n = 0; n < substeps; ++n) {
+      for_each_cell(exec, t.grid, SmoothingFlux{surface, strength / substeps, change});
+      for_each_cell(exec, t.grid, apply);
+    }
+  } else {
+    exec.set_zero(change, sizeof(Quanta) * t.grid.cells());
+    for_each_cell(exec, t.grid,
+                  SteepestEvent{surface, t.real(Layer::vegetation), seed, tick, p.slab * time_step,
+                                t.quanta_per_metre, change});
+    for_each_cell(exec, t.grid, apply);
+  }
+}
+
+template void set_angles(Backend&, const TerrainView&, const Angle&, const ReposeParameters&, const float*);
+template void step(Backend&, const TerrainView&, const ReptationParameters&, float, std::uint64_t,
+                   std::uint64_t, const float*, Quanta*);
+
+}  // namespace desert_sim::reptation

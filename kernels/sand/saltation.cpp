@@ -1,0 +1,55 @@
+/// The step of saltation.hpp; compiled once for each backend.
+#include "kernels/sand/saltation.hpp"
+
+#include "kernels/backend/loops.hpp"
+#include "kernels/sand/saltation_laws.hpp"
+#include "kernels/sand/tuned/saltation_fused.hpp"
+
+namespace desert_sim::saltation {
+
+template <bool bare, class E>
+void step_where(E& exec, const TerrainView& t, const SaltationParameters& p, const ReposeParameters& repose,
+                float time_step, LedgerView ledger, Quanta* landed, const abrasion::Wear& wear,
+                const reptation::Impacts& impacts, const wind_shadow::Shadow* shade) {
+  const Inputs<bare> in(t, repose, time_step);
+  Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand);
+  const LiftAndAdvect<bare> lift{in, p, time_step / t.grid.cell_size, sand, airborne, ledger};
+  if (shade)
+    for_each_cell_adding(exec, t.grid, landed, ShadeAndLift<bare>{*shade, lift});
+  else
+    for_each_cell_adding(exec, t.grid, landed, lift);
+  if (!t.grid.periodic() && p.influx > 0.0f)
+    for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, landed, ledger});
+  const Deposit<bare> deposit{in, p, wear, landed, sand, airborne, impacts};
+  if constexpr (bare && !works_on_rows<E>)
+    if (t.grid.width % 4 == 0) {
+      const DepositOfFour four{deposit};
+      return for_each_cell(exec, four.fours(), four);
+    }
+  for_each_cell(exec, t.grid, deposit);
+}
+
+template <class E>
+void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
+          const ReposeParameters& repose, float time_step, LedgerView ledger, Quanta* landed,
+          const reptation::Impacts& impacts, const wind_shadow::Shadow* shade) {
+  const abrasion::Wear wear{a.rate * time_step,
+                            take(a.cover, t.quanta_per_metre, wall_height),
+                            t.quantum,
+                            t.quanta_per_metre,
+                            t.quanta(Layer::bedrock),
+                            t.quanta(Layer::soil),
+                            t.quanta(Layer::sand),
+                            t.real(Layer::erosion_resistance),
+                            ledger};
+  if (is_bare(t, a))
+    step_where<true>(exec, t, p, repose, time_step, ledger, landed, wear, impacts, shade);
+  else
+    step_where<false>(exec, t, p, repose, time_step, ledger, landed, wear, impacts, shade);
+}
+
+template void step(Backend&, const TerrainView&, const SaltationParameters&, const AbrasionParameters&,
+                   const ReposeParameters&, float, LedgerView, Quanta*, const reptation::Impacts&,
+                   const wind_shadow::Shadow*);
+
+}  // namespace desert_sim::saltation

@@ -1,0 +1,150 @@
+#pragma once
+/// The laws of saltation.hpp, cell by cell.
+
+#include "kernels/backend/for_each.hpp"
+#include "kernels/backend/vec4.hpp"
+#include "kernels/field/ledger.hpp"
+#include "kernels/sand/abrasion.hpp"
+#include "kernels/sand/carried.hpp"
+#include "kernels/sand/reptation.hpp"
+#include "kernels/sand/saltation.hpp"
+#include "kernels/sand/saltation_inputs.hpp"
+#include "src/core/parameters.hpp"
+
+namespace desert_sim::saltation {
+
+/// Lifts, and scatters what is in the air over a cell to the four cells around where it lands.
+template <bool bare>
+struct LiftAndAdvect {
+  template <int count>
+  using Parcels = Carried<count>;
+  Inputs<bare> in;
+  SaltationParameters p;
+  float cells_a_speed;  ///< of a hop
+  Quanta* sand;
+  const Quanta* airborne;
+  LedgerView ledger;
+
+  /// What a cell's lift depends on. All of it is read before anything is asked, so that a GPU waits once.
+  struct Cell {
+    float u, v;
+    Quanta lying, carried;
+    float shadow, eddy, plants, moisture;
+    bool flooded;
+  };
+  DESERT_HD Cell read(int x, int y, float shadow) const {
+    const int i = in.grid.index(x, y);
+    return {in.wind_x[i], in.wind_y[i], sand[i],        airborne[i],  shadow,
+            in.eddy(i),   in.plants(i), in.moisture(i), in.flooded(i)};
+  }
+  DESERT_HD Cell read(int x, int y) const {
+    return read(x, y, value_or_zero(in.wind_shadow, in.grid.index(x, y)));
+  }
+  DESERT_HD Quanta lifted(const Cell& c) const {
+    const float speed_squared = c.u * c.u + c.v * c.v;
+    if (c.lying <= 0 || !(speed_squared > 0.0f)) return 0;
+    if (speed_squared < p.threshold_speed * p.threshold_speed) return 0;
+    const float wet = c.flooded ? 0.0f : dryness(c.moisture);
+    const float metres =
+        in.time_step * (p.lift * (1.0f - c.shadow) * (1.0f - c.plants) * (c.eddy > 0.0f ? 0.5f : 1.0f) * wet +
+                        (c.eddy < 0.0f ? -c.eddy : 0.0f));
+    return take(metres, in.quanta_per_metre, c.lying);
+  }
+
+  template <int count>
+  DESERT_HD void prepare(int x, int y, const Cell& c, Carried<count>& parcels, int n) const {
+    const Quanta lift = lifted(c);
+    sand[in.grid.index(x, y)] = c.lying - lift;
+    parcels.set(n, x, y, subcells(c.u * cells_a_speed), subcells(c.v * cells_a_speed), c.carried + lift);
+  }
+  template <int count>
+  DESERT_HD void prepare(int x, int y, Carried<count>& parcels, int n) const {
+    prepare(x, y, read(x, y), parcels, n);
+  }
+
+  template <int count, class Add>
+  DESERT_HD void deliver(int x, int y, const Carried<count>& parcels, int n, const Add& add) const {
+    Landing{in.grid, Material::sand, ledger}.deliver(x, y, parcels, n, add);
+  }
+};
+
+/// Sand that the wind brings in over an open edge; see `influx`.
+template <bool bare>
+struct Influx {
+  Inputs<bare> in;
+  float influx;
+  Quanta* landed;
+  LedgerView ledger;
+
+  /// Depth brought over one edge to the cell that lies `cell` cells from it, with wind `speed` into the grid.
+  DESERT_HD float over_edge(int cell, float speed) const {
+    const float l = in.grid.cell_size, hop = speed * in.time_step;
+    if (!(hop > 0.0f)) return 0.0f;
+    return influx * in.time_step / hop * clamp((hop - cell * l) / l, 0.0f, 1.0f);
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const Grid& g = in.grid;
+    const int i = g.index(x, y);
+    const float u = in.wind_x[i], v = in.wind_y[i];
+    const float speed = hypotenuse(u, v);
+    if (!(speed > 1e-6f)) return;
+    float depth = 0.0f;
+    if (!g.periodic_x) depth += over_edge(u > 0.0f ? x : g.width - 1 - x, fabsf(u)) * fabsf(u) / speed;
+    if (!g.periodic_y) depth += over_edge(v > 0.0f ? y : g.height - 1 - y, fabsf(v)) * fabsf(v) / speed;
+    const Quanta amount = take(depth, in.quanta_per_metre, wall_height);
+    landed[i] += amount;
+    ledger.book_in(Material::sand, i, amount);
+  }
+};
+
+/// Deposits a share of what landed; the rest bounces on. Wears the ground, and leaves the impacts' marks.
+template <bool bare>
+struct Deposit {
+  Inputs<bare> in;
+  SaltationParameters p;
+  abrasion::Wear wear;
+  const Quanta* landed;
+  Quanta *sand, *airborne;
+  reptation::Impacts impacts;
+
+  /// `cover`: the sand that lies there; v vegetation, m relative moisture.
+  DESERT_HD float share(int i, Quanta cover, float shadow, float v, float m) const {
+    const float r_e = in.eddy(i);
+    if (r_e < 0.0f || in.solid(i)) return 0.0f;
+    const bool sandy = cover > 0 && cover * in.quantum >= p.bare_depth;
+    const float bounce =
+        sandy ? p.bounce_on_sand : (in.there_may_be(in.soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
+    const float held = maximum((1.0f - bounce) + v * bounce, maximum(shadow, r_e));
+    const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
+    return clamp(held, 0.0f, 1.0f) * wet;
+  }
+
+  /// What becomes of sand that arrives. Reads, but does not write: what is written waits for all that is read
+  /// once.
+  struct Outcome {
+    float held;  ///< share
+    Quanta stays, bounces;
+    float strength, loosened;  ///< of the impacts, and the angle of dry bare sand that they leave
+  };
+  DESERT_HD Outcome settle(int i, Quanta arriving, Quanta cover, float shadow, float speed, float v,
+                           float m) const {
+    const float held = share(i, cover, shadow, v, m), depth = arriving * in.quantum;
+    const Quanta stays = take(held * depth, in.quanta_per_metre, arriving);
+    const float strength = depth * (1.0f - v);
+    return {held, stays, arriving - stays, strength, impacts.angle.loosened(strength, speed, shadow)};
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = in.grid.index(x, y);
+    const Quanta cover = sand[i];
+    const float v = in.plants(i), m = in.moisture(i), speed = hypotenuse(in.wind_x[i], in.wind_y[i]);
+    const Outcome o = settle(i, landed[i], cover, value_or_zero(in.wind_shadow, i), speed, v, m);
+    sand[i] = cover + o.stays;
+    airborne[i] = o.bounces;
+    if (!bare) wear(i, cover, o.bounces, speed, v, m, o.held);
+    impacts.set(i, o.strength, o.loosened, v, in.moisture(i));
+  }
+};
+
+}  // namespace desert_sim::saltation

@@ -1,0 +1,34 @@
+/// The step of layer_values.hpp; compiled once for each backend.
+#include "kernels/view/layer_values.hpp"
+
+#include "kernels/backend/loops.hpp"
+#include "kernels/view/layer_values_laws.hpp"
+
+namespace desert_sim::layer_values {
+
+template <class Values>
+struct Convert {
+  Grid grid;
+  Values values;
+  int first;
+  float* to;
+
+  DESERT_HD void operator()(int x, int y) const {
+    to[grid.index(x, y)] = values(grid.index(x, wrap(first + y, grid.height)));
+  }
+};
+
+template <class E>
+void step(E& exec, const TerrainView& t, Layer layer, const Metres& metres, int first, int rows, float* to) {
+  Grid band = t.grid;
+  band.height = rows;
+  if (layer == Layer::elevation)
+    return for_each_cell(exec, band, Convert<Surface>{t.grid, {surface::SolidHeight(t), metres}, first, to});
+  const bool counted = info(layer).storage == Storage::quanta;
+  const Stored stored{counted ? t.quanta(layer) : nullptr, counted ? nullptr : t.real(layer), metres};
+  for_each_cell(exec, band, Convert<Stored>{t.grid, stored, first, to});
+}
+
+template void step(Backend&, const TerrainView&, Layer, const Metres&, int, int, float*);
+
+}  // namespace desert_sim::layer_values

@@ -1,0 +1,113 @@
+/// The laws and the step of hydraulic_erosion.hpp; compiled once for each backend.
+#include "kernels/water/hydraulic_erosion.hpp"
+
+#include "kernels/backend/buffer.hpp"
+#include "kernels/backend/for_each.hpp"
+#include "kernels/backend/loops.hpp"
+#include "kernels/field/layers.hpp"
+#include "kernels/field/ledger.hpp"
+#include "kernels/field/math.hpp"
+#include "src/core/parameters.hpp"
+
+namespace desert_sim::hydraulic_erosion {
+
+/// What each cell's water can carry, while the ground is still as it was.
+struct Capacity {
+  Grid grid;
+  HydraulicErosionParameters p;
+  float quantum;
+  const Quanta *bedrock, *soil, *sand, *water;
+  const float *velocity_x, *velocity_y, *vegetation;
+  float* capacity;
+
+  DESERT_HD float surface(int x, int y) const {
+    const int i = sample_index(grid, x, y);
+    return static_cast<float>(bedrock[i] + value_or_zero(soil, i) + sand[i]);
+  }
+  DESERT_HD float sine(int x, int y) const {
+    const float per = 0.5f * quantum / grid.cell_size;
+    const float dx = (surface(x + 1, y) - surface(x - 1, y)) * per;
+    const float dy = (surface(x, y + 1) - surface(x, y - 1)) * per;
+    const float tangent2 = dx * dx + dy * dy;
+    return sqrtf(tangent2 / (1.0f + tangent2));
+  }
+  DESERT_HD float carries(int i, float slope, float speed) const {
+    const float w = water[i] * quantum;
+    if (!(w > wet_depth)) return 0.0f;
+    return p.capacity * maximum(slope, p.least_slope) * speed * (1.0f - 0.5f * value_or_zero(vegetation, i)) *
+           (minimum(0.1f + 0.9f * w, 1.0f) * exp_negative(w / p.deep));
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    capacity[i] = carries(i, sine(x, y), hypotenuse(velocity_x[i], velocity_y[i]));
+  }
+};
+
+/// Takes from the ground what the water can carry more, or lets fall what it can't.
+struct Exchange {
+  Grid grid;
+  HydraulicErosionParameters p;
+  float time_step, quantum, quanta_per_metre;
+  const float *capacity, *vegetation, *resistance, *obstacle;
+  const Quanta* water;
+  Quanta *bedrock, *soil, *sand, *sediment;
+  LedgerView ledger;
+
+  DESERT_HD float missing(float rate, float metres) const { return minimum(rate * time_step, 1.0f) * metres; }
+
+  /// Moves `metres` · rate from a layer of ground, of which there is `available`.
+  DESERT_HD Quanta dissolve(int i, Material from, Quanta* layer, Quanta available, float rate,
+                            float metres) const {
+    const Quanta worn = take(missing(rate, metres), quanta_per_metre, available);
+    layer[i] -= worn;
+    ledger.convert(from, Material::sediment, i, worn);
+    return worn;
+  }
+  DESERT_HD Quanta settle(int i, Quanta carried, float metres, bool dry) const {
+    const float rate = p.deposit * (1.0f + value_or_zero(vegetation, i));
+    const Quanta fallen = dry ? carried : take(missing(rate, metres), quanta_per_metre, carried);
+    sand[i] += fallen;
+    ledger.convert(Material::sediment, Material::sand, i, fallen);
+    return fallen;
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    const Quanta carried = sediment[i];
+    const float more = capacity[i] - carried * quantum;
+    if (value_or_zero(obstacle, i) > 0.0f) return;
+    const bool dry = !(water[i] * quantum > wet_depth);
+    if (more < 0.0f || dry) {
+      sediment[i] = carried - settle(i, carried, -more, dry);
+    } else if (sand[i] > 0) {
+      sediment[i] = carried + dissolve(i, Material::sand, sand, sand[i], p.sand, more);
+    } else if (soil && soil[i] > 0) {
+      sediment[i] = carried + dissolve(i, Material::soil, soil, soil[i], p.soil, more);
+    } else {
+      const Quanta room = bedrock[i] > -wall_height ? bedrock[i] + wall_height : 0;
+      const float rate = p.rock * (1.0f - value_or_zero(resistance, i));
+      sediment[i] = carried + dissolve(i, Material::bedrock, bedrock, room, rate, more);
+    }
+  }
+};
+
+template <class E>
+void step(E& exec, const TerrainView& t, const HydraulicErosionParameters& p, float time_step,
+          LedgerView ledger, Workspace& work) {
+  Quanta *bedrock = t.quanta(Layer::bedrock), *soil = t.quanta(Layer::soil), *sand = t.quanta(Layer::sand);
+  const Quanta* water = t.quanta(Layer::water);
+  const float* vegetation = t.real(Layer::vegetation);
+  for_each_cell(exec, t.grid,
+                Capacity{t.grid, p, t.quantum, bedrock, soil, sand, water, t.real(Layer::water_velocity_x),
+                         t.real(Layer::water_velocity_y), vegetation, work.capacity.data()});
+  for_each_cell(exec, t.grid,
+                Exchange{t.grid, p, time_step, t.quantum, t.quanta_per_metre, work.capacity.data(),
+                         vegetation, t.real(Layer::erosion_resistance), t.real(Layer::obstacle), water,
+                         bedrock, soil, sand, t.quanta(Layer::suspended_sediment), ledger});
+}
+
+template void step(Backend&, const TerrainView&, const HydraulicErosionParameters&, float, LedgerView,
+                   Workspace&);
+
+}  // namespace desert_sim::hydraulic_erosion

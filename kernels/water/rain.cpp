@@ -1,0 +1,75 @@
+/// The laws and the step of rain.hpp; compiled once for each backend.
+#include "kernels/water/rain.hpp"
+
+#include "kernels/backend/for_each.hpp"
+#include "kernels/backend/loops.hpp"
+#include "kernels/field/layers.hpp"
+#include "kernels/field/ledger.hpp"
+#include "kernels/field/math.hpp"
+#include "kernels/field/random.hpp"
+#include "src/core/parameters.hpp"
+
+namespace desert_sim::rain {
+
+struct Fall {
+  Grid grid;
+  RainParameters p;
+  std::uint64_t seed;
+  float phase;             ///< t · frequency
+  float datum, quantum;    ///< [m]
+  int repeat_x, repeat_y;  ///< showers after which a periodic axis has them again; 0: never
+  Quanta amount;
+  const Quanta *bedrock, *soil, *sand;
+  Quanta* water;
+  LedgerView ledger;
+
+  DESERT_HD float share(int i) const {
+    const Quanta surface = bedrock[i] + value_or_zero(soil, i) + sand[i] + water[i];
+    return lerp(p.share_low, p.share_high, clamp((datum + surface * quantum) / p.height, 0.0f, 1.0f));
+  }
+  /// Position in showers; of a repeating axis so that a whole number of them fits.
+  DESERT_HD float place(int cell, int cells, int repeat) const {
+    const float at = static_cast<float>(cell) + 0.5f;
+    return repeat > 0 ? at * (static_cast<float>(repeat) / static_cast<float>(cells))
+                      : at * grid.cell_size / p.scale;
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    const float part = share(i);
+    if (!(part > 0.0f)) return;
+    if (part < 1.0f) {
+      const float noise = value_noise(seed, Purpose::rain, place(x, grid.width, repeat_x),
+                                      place(y, grid.height, repeat_y), phase, repeat_x, repeat_y);
+      const float odds = 4.0f * (noise < 0.0f ? -noise : noise), e = exp_negative(odds);
+      const float uniform = noise < 0.0f ? e / (1.0f + e) : 1.0f / (1.0f + e);
+      if (uniform > part) return;
+    }
+    water[i] += amount;
+    ledger.book_in(Material::water, i, amount);
+  }
+};
+
+template <class E>
+void step(E& exec, const TerrainView& t, const RainParameters& p, float time_step, std::uint64_t seed,
+          std::uint64_t tick, double datum, LedgerView ledger) {
+  const Quanta amount = of_step(static_cast<double>(p.rate) * time_step * t.quanta_per_metre, tick);
+  if (amount <= 0) return;
+  const auto repeat = [&](int cells, bool periodic) {
+    const float showers = static_cast<float>(cells) * t.grid.cell_size / p.scale;
+    return periodic ? (showers > 1.0f ? static_cast<int>(showers) : 1) : 0;
+  };
+  const double phase = static_cast<double>(tick) * time_step * p.frequency;
+  // Far out a float no longer tells one step from the next; the noise has no memory that this would break.
+  constexpr double cycle = 65536.0;
+  for_each_cell(exec, t.grid,
+                Fall{t.grid, p, seed, static_cast<float>(std::fmod(phase, cycle)), static_cast<float>(datum),
+                     t.quantum, repeat(t.grid.width, t.grid.periodic_x),
+                     repeat(t.grid.height, t.grid.periodic_y), amount, t.quanta(Layer::bedrock),
+                     t.quanta(Layer::soil), t.quanta(Layer::sand), t.quanta(Layer::water), ledger});
+}
+
+template void step(Backend&, const TerrainView&, const RainParameters&, float, std::uint64_t, std::uint64_t,
+                   double, LedgerView);
+
+}  // namespace desert_sim::rain

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "kernels/wind/wind_laws.hpp"
+
+namespace desert_sim::wind {
+
+namespace {
+/// Coarse axes shorter than this gain nothing and would show in the result.
+constexpr int fewest_coarse_cells = 64;
+
+/// The next number whose only prime factors are 2, 3 and 5: transforms of such lengths are fast.
+int smooth_length(int n) {
+  while (!smooth(n)) ++n;
+  return n;
+}
+
+/// Transfer of a Gaussian of `sigma` fine cells along an axis of n coarse modes, each coarse cell `ratio`
+/// fine ones. The derivative's 1/l and the transform's 1/n go into it too.
+std::vector<Transfer> transfer(int n, double ratio, double sigma, double cell_size) {
+  std::vector<Transfer> table(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) {
+    if (2 * i == n) {
+      table[static_cast<std::size_t>(i)] = {0, 0};
+      continue;
+    }
+    const double k = 2 * 3.14159265358979323846 * (2 * i > n ? i - n : i) / (n * ratio), half = 0.5 * k;
+    double lost = 1;
+    if (ratio > 1 && i != 0) {
+      const double box = std::sin(half * ratio) / (ratio * std::sin(half));
+      const double linear = std::sin(half * ratio) / (half * ratio);
+      lost = box * linear * linear;
+    }
+    const double smooth = std::exp(-0.5 * sigma * sigma * k * k) / (lost * n);
+    table[static_cast<std::size_t>(i)] = {static_cast<float>(smooth),
+                                          static_cast<float>(smooth * std::sin(k) / cell_size)};
+  }
+  return table;
+}
+
+template <class Value>
+Buffer<Value> on_device(Exec& exec, const std::vector<Value>& table) {
+  Buffer<Value> buffer(exec, table.size());
+  buffer.upload(table);
+  return buffer;
+}
+}  // namespace
+
+CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p) {
+  float ratio = static_cast<float>(p.coarsening);
+  if (p.coarsening == 0) {
+    float smallest = 1e9f;
+    for (int r = 0; r < p.radii.count; ++r) smallest = std::min(smallest, p.radii.values[r]);
+    ratio = std::max(1.0f, std::floor(0.5f * smallest / 4.0f / fine.cell_size));
+  }
+  const auto cells = [&](int n) {
+    const int coarse = std::max(1, static_cast<int>(std::lround(n / ratio)));
+    if (p.coarsening != 0) return coarse;
+    return std::min(n, smooth_length(std::max(coarse, fewest_coarse_cells)));
+  };
+  CoarseGrid c;
+  c.fine = fine;
+  c.columns = cells(fine.width);
+  c.rows = cells(fine.height);
+  c.width = fine.periodic_x ? c.columns : 2 * c.columns;
+  c.height = fine.periodic_y ? c.rows : 2 * c.rows;
+  c.ratio_x = static_cast<float>(fine.width) / c.columns;
+  c.ratio_y = static_cast<float>(fine.height) / c.rows;
+  c.share_x = 1.0f / c.ratio_x;
+  c.share_y = 1.0f / c.ratio_y;
+  c.wavenumber_x = 6.28318531f / (c.width * c.ratio_x);
+  c.wavenumber_y = 6.28318531f / (c.height * c.ratio_y);
+  return c;
+}
+
+Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) {
+  Workspace work;
+  work.coarse = coarse_grid(fine, p);
+  if (!p.warping && !p.projection) return work;
+  const CoarseGrid& c = work.coarse;
+  const auto values = static_cast<std::size_t>(c.values());
+  work.row_means = Buffer<float>(exec, static_cast<std::size_t>(c.columns) * fine.height);
+  work.rise = Buffer<float>(exec, values);
+  for (Buffer<Complex>* buffer : {&work.spectrum, &work.turned, &work.correction})
+    *buffer = Buffer<Complex>(exec, values);
+  const int radius_count = p.warping ? p.radii.count : 0;
+  work.by_lines = LineTransform::suits(c.width) && LineTransform::suits(c.height) &&
+                  bytes_for_lines(c, radius_count) <= exec.memory_for_lines();
+  if (work.by_lines) {
+    work.lines_along_x = LineTransform::of(c.width);
+    work.lines_along_y = LineTransform::of(c.height);
+    work.roots_x = on_device(exec, work.lines_along_x.roots());
+    work.roots_y = on_device(exec, work.lines_along_y.roots());
+  } else {
+    work.one = exec.make_fft(c.width, c.height);
+  }
+  if (radius_count == 0) return work;
+  if (!work.by_lines) work.all_radii = exec.make_fft(c.width, c.height, p.radii.count);
+  work.gradients = Buffer<Complex>(exec, values * static_cast<std::size_t>(p.radii.count));
+  for (int r = 0; r < p.radii.count; ++r) {
+    const double sigma = 0.5 * p.radii.values[r] / fine.cell_size;
+    work.along_x[r] = on_device(exec, transfer(c.width, c.ratio_x, sigma, fine.cell_size));
+    work.along_y[r] = on_device(exec, transfer(c.height, c.ratio_y, sigma, fine.cell_size));
+  }
+  return work;
+}
+
+}  // namespace desert_sim::wind

@@ -1,0 +1,72 @@
+#pragma once
+/// The laws of wind.hpp, cell by cell.
+
+#include <memory>
+#include <type_traits>
+
+#include "kernels/backend/buffer.hpp"
+#include "kernels/backend/fft.hpp"
+#include "kernels/backend/for_each.hpp"
+#include "kernels/field/layers.hpp"
+#include "kernels/field/math.hpp"
+#include "kernels/field/surface.hpp"
+#include "kernels/wind/coarse_wind.hpp"
+#include "kernels/wind/surface_wind.hpp"
+#include "kernels/wind/tuned/line_transform.hpp"
+#include "kernels/wind/wind.hpp"
+#include "kernels/wind/wind_turning.hpp"
+#include "src/core/parameters.hpp"
+
+namespace desert_sim::wind {
+
+/// What becomes of the coarse grid's values: means, [transform,] slopes [, back,] wind [, transform,]
+/// correction [, back].
+struct CoarseLaws {
+  CoarsenColumns columns;
+  SmoothedGradients gradients;  ///< of no radius without warping
+  TurnWind turn;
+  ProjectionCorrection correct;
+  bool projected;
+};
+
+inline CoarseLaws coarse_laws(const TerrainView& t, const WindParameters& p, Vector above, float speed_above,
+                              const SpeedUp& speed_up, const Workspace& work) {
+  const CoarseGrid& coarse = work.coarse;
+  Complex* const spectrum = work.spectrum.data();
+  const int radius_count = p.warping ? p.radii.count : 0;
+  CoarseLaws laws{{coarse, work.row_means.data(), t.quantum, work.rise.data(), spectrum},
+                  {coarse, radius_count, spectrum, {}, {}, work.gradients.data()},
+                  {coarse,
+                   work.rise.data(),
+                   above,
+                   speed_above,
+                   speed_up,
+                   radius_count,
+                   {},
+                   {},
+                   p.gradient_scale,
+                   work.gradients.data(),
+                   work.turned.data(),
+                   spectrum},
+                  {coarse, spectrum, 1.0f / static_cast<float>(coarse.values()), work.correction.data()},
+                  p.projection};
+  for (int r = 0; r < radius_count; ++r) {
+    laws.gradients.along_x[r] = work.along_x[r].data();
+    laws.gradients.along_y[r] = work.along_y[r].data();
+    laws.turn.weights[r] = p.weights.values[r];
+    laws.turn.deflections[r] = p.deflections.values[r];
+  }
+  return laws;
+}
+
+/// A block of that kernel works on so many lines at a time,
+constexpr int lines_at_once = 2;
+
+/// and has in shared memory two places for each of them, of each radius, and the roots of unity of both axes.
+inline std::size_t bytes_for_lines(const CoarseGrid& c, int radius_count) {
+  const int longest = c.width > c.height ? c.width : c.height, fields = radius_count > 1 ? radius_count : 1;
+  return sizeof(Complex) *
+         static_cast<std::size_t>(2 * longest * lines_at_once * fields + c.width + c.height);
+}
+
+}  // namespace desert_sim::wind

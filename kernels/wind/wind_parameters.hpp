@@ -1,0 +1,41 @@
+#pragma once
+/// Parameters of the wind; the equations are in wind.hpp.
+
+#include "src/core/parameters.hpp"
+
+namespace desert_sim {
+
+struct WindParameters {
+  float speedup = 0.005f;
+  float speedup_lowest = 0.5f;
+  float speedup_highest = 3.0f;
+  bool warping = true;
+  ShortList radii{{200, 50, 0, 0}, 2};
+  ShortList weights{{0.8f, 0.2f, 0, 0}, 2};
+  ShortList deflections{{30, 5, 0, 0}, 2};
+  float gradient_scale = 1.0f;
+  bool projection = true;
+  int coarsening = 0;
+};
+
+constexpr auto parameter_table(const WindParameters*) {
+  using P = WindParameters;
+  return std::make_tuple(
+      parameter("speedup", &P::speedup, 0, 1, "1/m",
+                "Speed-up of the wind per metre above the lowest ground (Venturi)."),
+      parameter("speedup_lowest", &P::speedup_lowest, 0, 1, "1", "Least factor of the speed-up."),
+      parameter("speedup_highest", &P::speedup_highest, 1, 10, "1", "Greatest factor of the speed-up."),
+      parameter("warping", &P::warping, "Whether the terrain deflects the wind."),
+      parameter("radii", &P::radii, 1, 5000, "m",
+                "Radii of the smoothed terrains that deflect the wind; sigma is half of each."),
+      parameter("weights", &P::weights, 0, 100, "1", "Weight of each radius."),
+      parameter("deflections", &P::deflections, 0, 1000, "1", "Strength of deflection of each radius."),
+      parameter("gradient_scale", &P::gradient_scale, 0, 10, "1",
+                "Scale of the smoothed terrains' gradients; small values let wind reach obstacles."),
+      parameter("projection", &P::projection, "Whether the wind is made free of divergence."),
+      parameter("coarsening", &P::coarsening, 0, 64, "cells",
+                "Cells of the terrain per cell of the FFT grid; 0 chooses a quarter of the smallest sigma."));
+}
+static_assert(table_is_complete<WindParameters>());
+
+}  // namespace desert_sim
