@@ -39,14 +39,23 @@ source_noetic() {
 # Debian's ROS lives under /usr and takes no distribution name.
 source_noetic || unset ROS_DISTRO
 
-packages() { # column [core: without the parts from `# ROS` on; all: with the part `# Sanitizers`]
-  local end='# Sanitizers'
-  case ${2:-} in core) end='# ROS' ;; all) end='none' ;; esac
-  sed -e "/^$end/,\$d" -e 's/#.*//' "$DESERT_ROOT/scripts/dependencies.txt" |
-    awk -F'|' -v column="$1" '{ gsub(/[ \t]/, "", $column); if ($column != "" && $column != "-") print $column }'
+# The names in one column of dependencies.txt: of what builds and runs, with ROS unless `core`, and with the part
+# `# Sanitizers` if so asked; or only those of the part `# Checks`.
+packages() { # column [core | sanitizers | checks]
+  local parts
+  case ${2:-} in
+    core) parts='building' ;;
+    sanitizers) parts='building|ROS|Sanitizers' ;;
+    checks) parts='Checks' ;;
+    *) parts='building|ROS' ;;
+  esac
+  awk -F'|' -v column="$1" -v parts="^# ($parts)" '
+    /^#/ { wanted = $0 ~ parts }
+    wanted { sub(/#.*/, ""); gsub(/[ \t]/, "", $column); if ($column != "" && $column != "-") print $column }
+  ' "$DESERT_ROOT/scripts/dependencies.txt"
 }
 
-missing_packages() { # column [core | all]
+missing_packages() { # column [core | sanitizers | checks]
   local package
   for package in $(packages "$@"); do
     dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
@@ -55,7 +64,7 @@ missing_packages() { # column [core | all]
 
 # Installs what is missing from dependencies.txt; with nothing missing it calls nothing.
 # shellcheck disable=SC2120 # arguments are optional
-desert_install() { # [core | all]
+desert_install() { # [core | sanitizers | checks]
   local missing as_root=()
   if [[ $DESERT_SYSTEM == 0 ]]; then
     say "this is neither Debian 12 nor Ubuntu 20.04: nothing is installed. Needed, by their Debian names:"

@@ -1,4 +1,5 @@
-/// The step of avalanching.hpp; compiled once for each backend.
+/// Steps of avalanching.hpp: synchronous sweeps, the multigrid cycle and convergence. Compiled once for each
+/// backend.
 #include "kernels/avalanching/avalanching.hpp"
 
 #include "kernels/avalanching/tile.hpp"
@@ -7,42 +8,42 @@
 
 namespace desert_sim::avalanching {
 
-/// Whether every coarse cell's children lie in one tile, whatever its offset: then they can get their share
-/// there.
-inline bool families_share_tiles(const Grid& g) {
+/// Whether the four children of every coarse cell lie in one tile, whatever the tiles' offset: then the
+/// change of the coarse level can be prolonged tile by tile.
+inline bool children_share_tiles(const Grid& g) {
   return (!g.periodic_x || g.width % 2 == 0) && (!g.periodic_y || g.height % 2 == 0);
 }
 
-/// Passes over a level: the `first` of a step to before the `last`, with so many sweeps each; of the very
-/// last one `at_edges`.
+/// Passes over a level: those numbered `first` to `last` − 1 in this step, with at least `sweeps` sweeps
+/// each. `share`, `plenty` and `edge_factor` are as in Schedule; `edge_factor` applies to the last of these passes.
 struct Passes {
   int first, last, sweeps;
-  float share, plenty, at_edges;
+  float share, plenty, edge_factor;
 };
 
-/// Passes over one level, which first gets what the coarser one has done. `then`: what becomes of its cells
-/// (relax_tiles()).
+/// Relaxes one level, after prolonging the change of the next coarser one to it. `then` is the law that
+/// follows the last pass (relax_tiles()).
 template <class E, class Then>
 void relax(E& exec, const LevelView& level, Prolong from_coarse, const Passes& p, std::uint64_t turn,
            const Then& then) {
-  if (from_coarse.sand_after && !families_share_tiles(level.grid)) {
+  if (from_coarse.sand_after && !children_share_tiles(level.grid)) {
     for_each_cell(exec, from_coarse.coarse, from_coarse);
     from_coarse = {};
   }
   for (int pass = p.first; pass < p.last; ++pass) {
     const Tiles tiles{level.grid, seam_offset(turn, pass)};
     const bool is_last = pass + 1 == p.last;
-    const ShareOfGap share{p.share, is_last ? p.share * p.at_edges : p.share};
+    const GapOmega share{p.share, is_last ? p.share * p.edge_factor : p.share};
     const RelaxTile law{tiles, level, from_coarse, share, p.sweeps, p.plenty};
     if (is_last)
       relax_tiles(exec, law, then);
     else
-      relax_tiles(exec, law, NothingThen{});
+      relax_tiles(exec, law, NoFollowUp{});
     from_coarse = {};
   }
 }
 
-/// What the avalanches see of the coarse levels: views[n + 1] of coarse[n].
+/// Fills views[n + 1] with the view of coarse[n]; views[0] is the finest level.
 inline void view_levels(std::vector<Level>& coarse, LevelView* views) {
   for (std::size_t n = 0; n < coarse.size(); ++n) {
     Level& level = coarse[n];
@@ -56,7 +57,7 @@ inline void view_levels(std::vector<Level>& coarse, LevelView* views) {
   }
 }
 
-/// Fills coarse[n], and the next level if there is one, from the level below.
+/// The law that restricts the level `below` to coarse[n] and, if there is one, to coarse[n + 1].
 inline Restrict filling(std::vector<Level>& coarse, std::size_t n, const LevelView& below) {
   const auto out = [](Level& level) {
     return LevelOut{level.grid, level.ground.data(), level.sand.data(), level.sand_before.data(),
@@ -65,8 +66,9 @@ inline Restrict filling(std::vector<Level>& coarse, std::size_t n, const LevelVi
   return {below, out(coarse[n]), n + 1 < coarse.size() ? out(coarse[n + 1]) : LevelOut{}};
 }
 
-/// Relaxes the fine grid, then the coarse levels from the coarsest, then the fine grid again. `then`: what
-/// becomes of the fine grid's cells.
+/// One multigrid cycle: relaxes the fine grid, restricts it to the coarse levels, relaxes these from the
+/// coarsest on, and relaxes the fine grid again. `then` is the law that follows the last pass over the fine
+/// grid.
 template <class E, class Then>
 void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const Schedule& plan,
            std::uint64_t turn, Workspace& work, const Then& then) {
@@ -78,7 +80,7 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
   const float share = plan.share * p.transfer, coarse_share = plan.coarse_share * p.transfer;
   const Passes before{0, 1, plan.first_sweeps, share, never, 1.0f};
   if (coarse.empty())
-    relax(exec, fine, Prolong{}, before, turn, NothingThen{});
+    relax(exec, fine, Prolong{}, before, turn, NoFollowUp{});
   else
     relax(exec, fine, Prolong{}, before, turn, filling(coarse, 0, fine));
   for (std::size_t n = 2; n < coarse.size(); n += 2) {
@@ -89,63 +91,64 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
   for (std::size_t n = coarse.size(); n > 0; --n) {
     const int passes = plan.coarse_passes(n);
     relax(exec, views[n], change, {0, passes, plan.coarse_sweeps / passes, coarse_share, plan.plenty, 1.0f},
-          turn, NothingThen{});
+          turn, NoFollowUp{});
     const Level& done = coarse[n - 1];
     change = {done.grid, done.sand.data(), done.sand_before.data(), views[n - 1].grid, views[n - 1].sand};
   }
-  relax(exec, fine, change, {1, plan.fine_passes(), plan.last_sweeps, share, plan.plenty, plan.last_at_edges},
-        turn, then);
+  relax(exec, fine, change,
+        {1, plan.fine_passes(), plan.last_sweeps, share, plan.plenty, plan.last_edge_factor}, turn, then);
 }
 
-/// Of an excess slides in rounds: all. What is left after a cycle are mostly trains of small slides, and what
-/// a pair keeps of one it hands on in later sweeps, which is what takes time.
-constexpr float share_in_rounds = 1.0f;
+/// In rounds the whole excess slides (ω = 1). Mostly chains of small slides are left after a cycle, and what
+/// a pair keeps back of one has to be passed on in later sweeps, which is what takes time.
+constexpr float omega_in_rounds = 1.0f;
 
-/// Of a pass of a round, at most: its tiles come to rest as far as they can.
-constexpr int sweeps_in_rounds = 32;
+/// Upper bound of sweeps per pass in a round; tiles that come to rest stop sooner.
+constexpr int max_sweeps_in_rounds = 32;
 
-/// Finds what blocks have cells that are too steep, and the tiles of a round that these call for: in the
-/// whole grid, or after a round of them around what it has passed over.
+/// Finds the blocks with cells that are too steep, and activates the tiles around them for the next round.
+/// The whole grid is checked, or after a round only the blocks around the tiles that it has relaxed.
 template <class E>
-void find_unsettled(E& exec, const LevelView& fine, float tolerance, const RoundOfTiles& round,
-                    bool after_round, const OpenTiles& open) {
+void update_active_tiles(E& exec, const LevelView& fine, float tolerance, const ActiveTileFlags& round,
+                         bool after_round, const ActiveTiles& open) {
   const Grid blocks = Blocks{fine.grid}.cells();
   Quanta* const ask = after_round ? open.ask.data() : nullptr;
-  if (after_round) for_each_cell(exec, blocks, AskAround{round, ask});
+  if (after_round) for_each_cell(exec, blocks, MarkNeighbours{round, ask});
   exec.set_zero(open.found.data(), open.found.bytes());
   const FindSteep find{{fine, tolerance}, ask, open.steep()};
   for_each_cell(exec, find.squares(), find);
-  for_each_cell(exec, blocks, OpenNear{open.steep(), round, open.tally()});
+  for_each_cell(exec, blocks, ActivateTiles{open.steep(), round, open.tally()});
 }
 
-/// A cycle, and then rounds of passes over those tiles alone that are not at rest, until all are: what is
-/// left is on its way down; or another cycle (Look). Rounds between two cycles have the same seams, those of
-/// the cycle's next passes.
+/// A multigrid cycle, then rounds of passes over the active tiles only, until no cell is too steep. What is
+/// left after a cycle are mostly small slides on their way down; where it is more, CheckConvergence asks for another
+/// cycle. All rounds between two cycles have the same seams, those of the passes that would follow the cycle.
 template <class E>
-void settle(E& exec, const LevelView& fine, const AvalanchingParameters& p, std::uint64_t turn,
-            Workspace& work) {
-  using After = Look::After;
+void relax_until_converged(E& exec, const LevelView& fine, const AvalanchingParameters& p, std::uint64_t turn,
+                           Workspace& work) {
+  using After = CheckConvergence::After;
   const Schedule plan = schedule(p, fine.grid);
-  const float share = share_in_rounds * p.transfer;
-  const OpenTiles& open = work.open;
+  const float share = omega_in_rounds * p.transfer;
+  const ActiveTiles& open = work.open;
   Progress* const progress = open.progress.data();
   const auto look = [&](After after, int sweeps) {
-    for_each_item(exec, 1, Look{progress, open.tally(), p.max_iterations, after, sweeps});
+    for_each_item(exec, 1, CheckConvergence{progress, open.tally(), p.max_iterations, after, sweeps});
   };
   const auto do_cycle = [&](std::uint64_t seams, After what) {
-    RoundOfTiles round{fine.grid, {}, open.flags(), open.most_tiles};
-    for (int n = 0; n < passes_a_round; ++n) round.offsets[n] = seam_offset(seams, plan.fine_passes() + n);
-    cycle(exec, fine, p, plan, seams, work, NothingThen{});
-    find_unsettled(exec, fine, p.tolerance, round, false, open);
+    ActiveTileFlags round{fine.grid, {}, open.flags(), open.most_tiles};
+    for (int n = 0; n < passes_per_round; ++n) round.offsets[n] = seam_offset(seams, plan.fine_passes() + n);
+    cycle(exec, fine, p, plan, seams, work, NoFollowUp{});
+    update_active_tiles(exec, fine, p.tolerance, round, false, open);
     look(what, plan.fine_sweeps());
     exec.repeat_while(&progress->more_rounds, [&] {
-      for (int n = 0; n < passes_a_round; ++n)
+      for (int n = 0; n < passes_per_round; ++n)
         relax_tiles(
             exec,
-            RelaxTile{round.of(n), fine, Prolong{}, {share, share}, sweeps_in_rounds, 0.0f, round.of_pass(n)},
-            NothingThen{});
-      find_unsettled(exec, fine, p.tolerance, round, true, open);
-      look(After::round, passes_a_round * sweeps_in_rounds);
+            RelaxTile{
+                round.of(n), fine, Prolong{}, {share, share}, max_sweeps_in_rounds, 0.0f, round.of_pass(n)},
+            NoFollowUp{});
+      update_active_tiles(exec, fine, p.tolerance, round, true, open);
+      look(After::round, passes_per_round * max_sweeps_in_rounds);
     });
   };
   do_cycle(turn, After::first_cycle);
@@ -163,7 +166,8 @@ void sweep(E& exec, const LevelView& level, float transfer, bool by_tangent, Wor
                 ApplySweep{level.grid, work.given.data(), work.received.data(), level.sand});
 }
 
-/// The schemes of synchronous sweeps over the whole grid.
+/// The schemes of synchronous sweeps over the whole grid. Quality `converged` repeats them until the largest
+/// excess is within the tolerance.
 template <class E>
 void sweep_all(E& exec, const LevelView& fine, const AvalanchingParameters& p, Workspace& work) {
   const auto unsettled = [&] { return max_cells(exec, fine.grid, Excess{fine}) > p.tolerance; };
@@ -186,12 +190,12 @@ void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::ui
     if (heights)
       cycle(exec, fine, p, plan, tick, work, surface::measuring(t, *heights));
     else
-      cycle(exec, fine, p, plan, tick, work, NothingThen{});
+      cycle(exec, fine, p, plan, tick, work, NoFollowUp{});
     work.iterations = plan.fine_sweeps();
     return;
   }
   if (p.scheme == AvalancheScheme::multilevel)
-    settle(exec, fine, p, tick, work);
+    relax_until_converged(exec, fine, p, tick, work);
   else
     sweep_all(exec, fine, p, work);
   if (heights) surface::measure(exec, t, *heights);

@@ -1,24 +1,66 @@
 #pragma once
-/// Avalanching: what is steeper than its angle of repose slides. Nilles 2024 eq. 9–11; physics.md B6.
+/// Avalanching: sand that is steeper than its angle of repose slides down. Nilles 2024, eq. 9–11; physics.md
+/// B6.
 ///
-///   B_ij = max(h_i − h_j − tan θ_i d l, 0),  A_i = min(k_c B_max/(1 + B_max/B_sum), s_i),  j gets A_i B_ij /
-///   B_sum
+///   B_ij = max(h_i − h_j − tan θ_i · d l, 0)          excess of cell i over its neighbour j
+///   A_i  = min(k_c B_max / (1 + B_max/B_sum), s_i)    sand that cell i releases
+///   A_ij = A_i B_ij / B_sum                           the part of it that neighbour j receives
 ///
-/// What a donor loses is to the bit what its receivers get, so that nothing is made or lost. Obstacles
-/// neither give nor take (they stand as walls).
+/// h is the height of the surface, θ_i the donor's angle of repose, d l the distance of the two cells (d = 1
+/// or √2, l the cell size), s the depth of sand; B_max and B_sum are the largest and the sum of the eight
+/// B_ij. A donor loses exactly what its receivers get, so sand is conserved to the bit. Obstacles neither
+/// give nor receive sand: they stand as walls.
 ///
-/// Schemes: `multilevel` (the default), half a V-cycle a step: the fine grid is relaxed a little, so that
-/// small slides end where they are; sand and ground are averaged down by two a level until cells are
-/// `coarsest_cell` wide; the coarsest is relaxed first, the change handed to the four children, and the fine
-/// grid relaxed again last. Each relaxation is sweeps inside closed tiles whose seams move between passes
-/// (avalanching_tile.hpp): pair by pair, each seeing what those before it have done (avalanching_patch.hpp),
-/// which settles sooner than releases from one state, with less arithmetic a sweep. It leaves what
-/// is below 2e-4 cell sizes. What `converged` adds: settle(). `sweeps`: synchronous sweeps of the whole grid
-/// by the equation above, the reference. `taylor_keyser`: k_c = 0.25 of the largest drop, by tangents, for
-/// comparison.
+/// Schemes:
 ///
-/// Reads bedrock, soil, obstacle and the repose tangents; writes sand. Soil and bedrock:
-/// avalanching_ground.hpp.
+///   multilevel      (default) One multigrid cycle a step. The fine grid is relaxed briefly, so that small
+///                   slides end where they are; ground and sand are restricted (averaged two by two) until
+///                   cells are `coarsest_cell` wide; then each level, from the coarsest to the finest, is
+///                   relaxed, and its change prolonged to the four children of each cell. With quality
+///                   `converged` more passes follow until the tolerance is met, which can be as low as 2e-4
+///                   (relax_until_converged()).
+///   sweeps          Synchronous sweeps (Jacobi) of the whole grid by the equations above; the reference.
+///   taylor_keyser   Synchronous sweeps that release ¼ k_c of the largest drop, distributed by tangents; for
+///                   comparison.
+///
+/// Relaxation in `multilevel` consists of sweeps inside closed tiles, whose edges no sand crosses and whose
+/// seams lie elsewhere in each pass (tile.hpp). A sweep relaxes pairs of neighbours one after the other, as
+/// Gauss-Seidel relaxation does (patch.hpp), which converges faster than releases computed from one state,
+/// with less arithmetic a sweep.
+///
+/// How the files fit together:
+///
+///   avalanching.cpp  step()
+///    |
+///    +-- sweep_all()  schemes `sweeps`, `taylor_keyser`
+///    |     laws.hpp          Release, Gather, ApplySweep: one synchronous sweep; Excess: what is left
+///    |
+///    +-- cycle()      scheme `multilevel`
+///    |     |
+///    |     |   fine grid       relax               relax     then surface::MeasureBlock
+///    |     |                      \             /
+///    |     |   coarse levels       restrict ... relax
+///    |     |
+///    |     laws.hpp          Restrict, Prolong: transfer between the levels
+///    |     tile.cpp          relax_tiles(): one pass over all tiles of a level
+///    |      |
+///    |      +-- CPU: tile.hpp        RelaxTile: one closed tile of 32 × 32 cells, the reference
+///    |      |        tile_units.hpp  Units: heights as floats that count whole units
+///    |      |        patch.hpp       PairsOfPatches: the pairs of 4 × 4 cells, in the order of relaxation
+///    |      |
+///    |      +-- GPU: tuned/          the same arithmetic in hand-written kernels
+///    |               tile.cu         the kernel: one tile a thread block, one patch a thread
+///    |               patches.cuh     from global to shared memory and back
+///    |               sweeps.cuh      sweeps in shared memory and registers
+///    |
+///    +-- relax_until_converged()     scheme `multilevel`, quality `converged`: cycle(), then passes over active tiles
+///          steep_blocks.hpp  FindSteep: blocks of 8 × 8 cells with a cell that is still too steep
+///          active_tiles.hpp  ActivateTiles: tiles of the next round; CheckConvergence: the convergence check
+///
+///   avalanching_host.cpp      schedule, grids and buffers of the coarse levels
+///   soil_and_bedrock.*        one synchronous sweep a step of soil and of bedrock, by Release and Gather
+///
+/// Reads bedrock, soil, obstacle and the tangents of the angles of repose; writes sand.
 
 #include <cstdint>
 #include <vector>
@@ -31,22 +73,30 @@
 
 namespace desert_sim::avalanching {
 
-/// Sweeps, at least, of the one pass over the fine grid before the coarse levels, of the passes over each
-/// coarse level together (two over the finest `levels_twice` of these, one over others), and of each of the
-/// last passes over the fine grid, whose seams lie elsewhere; and how much a pair moves [cell sizes] for its
-/// tile to go on (but in the first pass). With fewer sweeps in the first pass more is left to coarse levels,
-/// which slide what would have come to rest by itself. `share`, `coarse_share`: of a pair's excess (ω in
-/// avalanching_patch.hpp) on the fine grid and on coarse levels; ½ leaves the two at repose, more settles the
-/// whole sooner, with 0.8 slopes end too far below their angle. Coarse levels make somewhat more slopes of 6
-/// … 18 degrees than there should be, the more the larger their share. `last_at_edges`: of the share, next to
-/// edges of the last pass's tiles (ShareOfGap), which no later pass goes over.
+/// Numbers of passes and sweeps of a cycle, and the shares of an excess that slide (ω in patch.hpp).
+///
+///   first_sweeps    fewest sweeps of the one pass over the fine grid before the coarse levels. With fewer,
+///                   more is left to the coarse levels, which then move sand that would have come to rest by
+///                   itself.
+///   coarse_sweeps   fewest sweeps over a coarse level, in all its passes together
+///   last_sweeps     fewest sweeps of each pass over the fine grid after the coarse levels
+///   last_passes     number of those passes; their seams lie in different places
+///   two_pass_levels    number of coarse levels, from the finest on, that get two passes; others get one
+///   plenty          a tile goes on, up to `most_sweeps` (tile.hpp), while a pair moves more than this
+///                   [cell sizes]; not in the first pass
+///   share           ω on the fine grid. ½ leaves a pair at repose; more converges sooner, but with 0.8
+///                   slopes end too far below their angle of repose.
+///   coarse_share    ω on coarse levels. They make somewhat more slopes of 6 … 18 degrees than there should
+///                   be, the more so the larger ω is.
+///   last_edge_factor   factor on ω next to tile edges in the very last pass (GapOmega), because no later pass
+///                   relaxes across these edges
 struct Schedule {
   int first_sweeps, coarse_sweeps, last_sweeps, last_passes;
-  std::size_t levels_twice;
-  float plenty, share, coarse_share, last_at_edges;
+  std::size_t two_pass_levels;
+  float plenty, share, coarse_share, last_edge_factor;
 
-  /// Over the nth coarse level, from 1 for the finest; they share `coarse_sweeps`.
-  constexpr int coarse_passes(std::size_t n) const { return n <= levels_twice ? 2 : 1; }
+  /// Passes over the nth coarse level, from 1 for the finest; they share `coarse_sweeps`.
+  constexpr int coarse_passes(std::size_t n) const { return n <= two_pass_levels ? 2 : 1; }
   constexpr int fine_passes() const { return 1 + last_passes; }
   constexpr int fine_sweeps() const { return first_sweeps + last_passes * last_sweeps; }
 };
@@ -57,11 +107,12 @@ constexpr Schedule preset(AvalancheQuality quality) {
   return {6, 8, 3, 1, 2, 0.3f, 0.6f, 0.6f, 1.0f};
 }
 
-/// The preset; on small grids `good` has more last sweeps, which hardly cost anything on a GPU, so that next to
-/// nothing is left there. With `last_passes` that of large grids.
+/// The schedule of a quality. On small grids `good` takes more last sweeps, which cost next to nothing on a
+/// GPU, so that hardly any excess is left there. A positive `last_passes` replaces the number of last passes,
+/// and selects the sweeps of large grids.
 Schedule schedule(const AvalanchingParameters& p, const Grid& grid);
 
-/// A level's own memory (the finest uses the terrain's sand).
+/// Buffers of a coarse level. The finest level works on the layers of the terrain.
 struct Level {
   Grid grid;
   Buffer<Quanta> ground, sand, sand_before;
@@ -70,23 +121,24 @@ struct Level {
 
 struct Workspace {
   std::vector<Level> coarse;  ///< coarse[0] has cells twice as wide as the terrain's
-  Buffer<float> share;        ///< of the synchronous schemes; made when one is used
+  Buffer<float> share;        ///< with given, received: synchronous schemes only
   Buffer<Quanta> given, received;
-  OpenTiles open;      ///< of the multilevel scheme, when it converges
-  int iterations = 0;  ///< fine sweeps of the last step, but those that the device counts
-  /// Fine sweeps of all steps that the device has counted.
+  ActiveTiles open;    ///< scheme multilevel with quality converged only
+  int iterations = 0;  ///< fine sweeps of the last step that the host has counted
+  /// Fine sweeps of all steps that the device has counted (relax_until_converged()).
   long long counted_iterations() const {
     if (!open.progress) return 0;
     Progress progress;
     open.progress.download(0, 1, &progress);
     return progress.sweeps;
   }
+  std::size_t bytes() const;
 };
 
 Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParameters& p);
 
-/// Seams move between passes, and each pass meets them at all places in so many turns, so that they leave no
-/// imprint.
+/// Offsets of the tiles [cells]. Seams move from pass to pass, and in eight steps each pass has had all
+/// offsets, so that seams leave no imprint in the terrain.
 constexpr int seam_offsets[] = {0, 16, 8, 24, 4, 20, 12, 28};
 
 constexpr std::uint64_t turns = 8;
@@ -95,8 +147,8 @@ inline int seam_offset(std::uint64_t turn, int pass) {
   return seam_offsets[(5 * turn + static_cast<std::uint64_t>(pass)) % turns];
 }
 
-/// `repose`: tangents of each cell's angle of repose; `tick`: steps done; `heights`: measured when all is
-/// done, or null.
+/// `repose`: tangent of each cell's angle of repose. `tick`: number of steps done, which selects the seams.
+/// `heights`: measured once the sand has settled, or null.
 template <class E>
 void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::uint64_t tick,
           const float* repose, surface::Heights* heights, Workspace& work);

@@ -4,22 +4,22 @@
 namespace desert_sim::avalanching {
 
 namespace {
-/// Coarsening further would leave less than a tile.
-constexpr int fewest_cells = 16;
+/// Smallest width and height of a coarse level [cells]; coarser ones would not fill half a tile.
+constexpr int min_level_cells = 16;
 
-/// Cells twice as wide. An axis with an odd cell left over has a wall there on this level; finer levels see
-/// to it.
+/// The grid with cells twice as wide. If an axis has an odd number of cells, the last one has no coarse cell:
+/// the coarse level ends in a wall there, and only finer levels relax it.
 Grid coarser(const Grid& g) {
   return Grid{g.width / 2, g.height / 2, 2 * g.cell_size, g.periodic_x && g.width % 2 == 0,
               g.periodic_y && g.height % 2 == 0};
 }
 
-/// From the finest.
+/// Grids of the coarse levels, the finest first.
 std::vector<Grid> coarse_grids(const Grid& grid, const AvalanchingParameters& p) {
   std::vector<Grid> grids;
   Grid g = grid;
-  while (g.cell_size < p.coarsest_cell * 0.999f && g.width / 2 >= fewest_cells &&
-         g.height / 2 >= fewest_cells) {
+  while (g.cell_size < p.coarsest_cell * 0.999f && g.width / 2 >= min_level_cells &&
+         g.height / 2 >= min_level_cells) {
     g = coarser(g);
     grids.push_back(g);
   }
@@ -33,7 +33,7 @@ Schedule schedule(const AvalanchingParameters& p, const Grid& grid) {
   if (p.last_passes > 0)
     plan.last_passes = p.last_passes;
   else if (p.quality == AvalancheQuality::good && grid.cells() <= few_cells)
-    plan.last_sweeps = 7, plan.levels_twice = 0, plan.coarse_share = 0.6f;
+    plan.last_sweeps = 7, plan.two_pass_levels = 0, plan.coarse_share = 0.6f;
   return plan;
 }
 
@@ -46,7 +46,7 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParamete
     work.received = Buffer<Quanta>(exec, cells);
     return work;
   }
-  if (p.quality == AvalancheQuality::converged) work.open = make_open_tiles(exec, grid);
+  if (p.quality == AvalancheQuality::converged) work.open = make_active_tiles(exec, grid);
   for (const Grid& g : coarse_grids(grid, p)) {
     const std::size_t n = static_cast<std::size_t>(g.cells());
     work.coarse.push_back({g, Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n),
@@ -58,6 +58,14 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParamete
 GroundWorkspace make_ground_workspace(Exec& exec, const Grid& grid) {
   const std::size_t n = static_cast<std::size_t>(grid.cells());
   return {Buffer<Quanta>(exec, n), Buffer<float>(exec, n)};
+}
+
+std::size_t Workspace::bytes() const {
+  std::size_t total = share.bytes() + given.bytes() + received.bytes() + open.ask.bytes() +
+                      open.found.bytes() + open.progress.bytes();
+  for (const Level& level : coarse)
+    total += level.ground.bytes() + level.sand.bytes() + level.sand_before.bytes() + level.repose.bytes();
+  return total;
 }
 
 }  // namespace desert_sim::avalanching

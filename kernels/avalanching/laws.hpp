@@ -1,5 +1,6 @@
 #pragma once
-/// The per-cell and per-tile laws of avalanching; equations and schemes in avalanching.hpp.
+/// Laws of avalanching: synchronous sweeps cell by cell, and the transfer between levels (restriction and
+/// prolongation). Equations and schemes are in avalanching.hpp.
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/backend/vec4.hpp"
@@ -10,15 +11,17 @@
 namespace desert_sim {
 namespace avalanching {
 
-/// Rounding could make eight parts of a release exceed it by a few 2⁻²⁴; this keeps them below.
+/// Rounding could make the eight parts of a release exceed it by a few 2⁻²⁴ of it; this factor keeps their
+/// sum below.
 constexpr float rounding_guard = 1.0f - 1.0f / 1048576.0f;
 
-/// How far a donor stands above its neighbour beyond repose [quanta].
+/// B_ij: how far a donor stands above its neighbour beyond the drop at repose [quanta].
 DESERT_HD float excess(Quanta donor, Quanta receiver, float repose_drop) {
   return maximum(static_cast<float>(donor - receiver) - repose_drop, 0.0f);
 }
 
-/// Share of each excess that is released: A/B_sum with A = min(k_c B_max/(1 + B_max/B_sum), available).
+/// A/B_sum, the share of each excess that is released, with A = min(k_c B_max/(1 + B_max/B_sum), available).
+/// `transfer` is k_c.
 DESERT_HD float release_share(const float (&b)[8], float transfer, float available) {
   const float sum = Neighbours::sum(b);
   const float largest = maximum(maximum(maximum(b[0], b[1]), maximum(b[2], b[3])),
@@ -27,22 +30,22 @@ DESERT_HD float release_share(const float (&b)[8], float transfer, float availab
   return minimum(transfer * largest / (sum + largest + tiny), available / (sum + tiny)) * rounding_guard;
 }
 
-/// One level of the hierarchy, and the fine grid: sand that can move over ground that can't.
-/// Ground at wall_height or above is a wall, and so is an obstacle.
+/// One level of the hierarchy, or the fine grid: mobile sand on ground that does not move. Cells whose ground
+/// is at wall_height or above are walls, and so are obstacles.
 struct LevelView {
   Grid grid;
-  const Quanta *ground, *soil;  ///< the ground's top is their sum; without soil null
+  const Quanta *ground, *soil;  ///< the top of the ground is their sum; soil may be null
   const float* obstacle;        ///< or null
   Quanta* sand;
-  const float* repose;    ///< tangents
-  float quanta_per_cell;  ///< cell size / quantum: a tangent times this is the drop over one cell
+  const float* repose;    ///< tangent of the angle of repose
+  float quanta_per_cell;  ///< cell size / quantum; times a tangent: drop over one cell
 
   DESERT_HD bool wall(int i) const { return ground[i] >= wall_height || value_or_zero(obstacle, i) > 0.0f; }
   DESERT_HD Quanta ground_top(int i) const { return ground[i] + value_or_zero(soil, i); }
   DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : ground_top(i) + sand[i]; }
 };
 
-/// The terrain as the finest level; `repose` has the tangent of each cell.
+/// The terrain as the finest level; `repose` has the tangent of each cell's angle of repose.
 inline LevelView finest(const TerrainView& t, const float* repose) {
   return {t.grid,
           t.quanta(Layer::bedrock),
@@ -53,14 +56,15 @@ inline LevelView finest(const TerrainView& t, const float* repose) {
           t.grid.cell_size * t.quanta_per_metre};
 }
 
-/// What a level knows of a cell; ground at wall_height is a wall.
+/// One cell of a level; ground at wall_height marks a wall.
 struct LevelCell {
   Quanta ground, sand;
   float repose;
 };
 
-/// The means of four children's ground and sand, and the steepest angle of theirs: the brink of a slip face
-/// is no reason for the face below it to slide. A child that is a wall makes a wall.
+/// Restricts four children to one coarse cell: the means of their ground and sand, and the steepest of their
+/// angles of repose, because the lower angle at the brink of a slip face must not make the face below it
+/// slide. If one child is a wall, the coarse cell is a wall.
 DESERT_HD LevelCell coarse_cell(const LevelCell (&child)[4]) {
   long long ground = 0, sand = 0;
   bool wall = false;
@@ -74,7 +78,7 @@ DESERT_HD LevelCell coarse_cell(const LevelCell (&child)[4]) {
   return {wall ? wall_height : static_cast<Quanta>(ground >> 2), static_cast<Quanta>(sand >> 2), steepest};
 }
 
-/// A coarse level to be filled.
+/// The buffers of a coarse level that is to be filled.
 struct LevelOut {
   Grid grid;
   Quanta *ground, *sand, *sand_before;
@@ -86,31 +90,34 @@ struct LevelOut {
     sand[i] = sand_before[i] = cell.sand;
     repose[i] = cell.repose;
   }
-  /// Of two cells beside each other, where x and the width are even.
-  DESERT_HD void put_two(int x, int y, const LevelCell& west, const LevelCell& east) const {
+  /// Writes two cells beside each other at once; x and the width of the grid must be even.
+  DESERT_HD void store_two(int x, int y, const LevelCell& west, const LevelCell& east) const {
     const int i = grid.index(x, y);
-    const Two<Quanta> both{west.sand, east.sand};
-    put_beside(ground + i, Two<Quanta>{west.ground, east.ground});
-    put_beside(sand + i, both);
-    put_beside(sand_before + i, both);
-    put_beside(repose + i, Two<float>{west.repose, east.repose});
+    const Vec2<Quanta> both{west.sand, east.sand};
+    store_vec(ground + i, Vec2<Quanta>{west.ground, east.ground});
+    store_vec(sand + i, both);
+    store_vec(sand_before + i, both);
+    store_vec(repose + i, Vec2<float>{west.repose, east.repose});
   }
 };
 
-/// Fills one coarse level from the next finer one, and the one after that, if there is one, in the same pass.
+/// Restriction: fills one coarse level from the next finer one and, if there is one, the level after it in
+/// the same pass over memory.
 struct Restrict {
   LevelView fine;
-  LevelOut first, second;  ///< second: with an empty grid if there is none
+  LevelOut first, second;  ///< second: its grid is empty if there is none
 
-  /// What a thread fills: two by two cells of the first level, the last ones perhaps not whole.
+  /// One call fills two by two cells of the first level; blocks at the far edges may be incomplete.
   DESERT_HD Grid blocks() const { return {(first.grid.width + 1) / 2, (first.grid.height + 1) / 2, 1}; }
 
   DESERT_HD LevelCell fine_cell(int i) const {
     return {fine.wall(i) ? wall_height : fine.ground_top(i), fine.sand[i], fine.repose[i]};
   }
-  /// Four cells in a row, of which the first has an index that is a multiple of four; walls are ground, too.
+  /// Ground and sand of four cells in a row; the index of the first must be a multiple of four. Walls are
+  /// part of the ground.
   DESERT_HD surface::GroundAndSand row_at(int i) const {
-    surface::GroundAndSand row{four_at(fine.ground + i), four_at(static_cast<const Quanta*>(fine.sand) + i)};
+    surface::GroundAndSand row{load_vec4(fine.ground + i),
+                               load_vec4(static_cast<const Quanta*>(fine.sand) + i)};
     if (fine.soil || fine.obstacle)
       for (int n = 0; n < 4; ++n) row.ground.values[n] = fine_cell(i + n).ground;
     return row;
@@ -119,7 +126,7 @@ struct Restrict {
   DESERT_HD void operator()(int x, int y) const {
     if (fine.grid.width % 4 == 0 && first.grid.inside(2 * x + 1, 2 * y + 1)) {
       const int corner = fine.grid.index(4 * x, 4 * y);
-      return fill_whole(x, y, [&](int n) { return row_at(corner + n * fine.grid.width); });
+      return fill_complete_block(x, y, [&](int n) { return row_at(corner + n * fine.grid.width); });
     }
     LevelCell filled[4] = {};
     for (int n = 0; n < 4; ++n) {
@@ -133,16 +140,16 @@ struct Restrict {
     if (second.grid.inside(x, y)) second.put(x, y, coarse_cell(filled));
   }
 
-  /// Likewise where all of the cells are there and rows of the fine grid begin at multiples of 16 bytes, with
-  /// what row_of(n) knows of the nth row of the four.
+  /// Fills a block whose cells all exist, on a grid whose rows begin at multiples of 16 bytes. row_of(n)
+  /// gives ground and sand of the nth of its four rows of fine cells.
   template <class RowOf>
-  DESERT_HD void fill_whole(int x, int y, const RowOf& row_of) const {
+  DESERT_HD void fill_complete_block(int x, int y, const RowOf& row_of) const {
     const int corner = fine.grid.index(4 * x, 4 * y);
     LevelCell filled[4];
     unrolled<2>([&](auto half) DESERT_INLINE {
       const surface::GroundAndSand row[2] = {row_of(2 * half), row_of(2 * half + 1)};
-      const Four<float> repose[2] = {four_at(fine.repose + corner + 2 * half * fine.grid.width),
-                                     four_at(fine.repose + corner + (2 * half + 1) * fine.grid.width)};
+      const Vec4<float> repose[2] = {load_vec4(fine.repose + corner + 2 * half * fine.grid.width),
+                                     load_vec4(fine.repose + corner + (2 * half + 1) * fine.grid.width)};
       for (int n = 0; n < 2; ++n) {
         LevelCell children[4];
         for (int k = 0; k < 4; ++k) {
@@ -152,14 +159,15 @@ struct Restrict {
         }
         filled[2 * half + n] = coarse_cell(children);
       }
-      first.put_two(2 * x, 2 * y + half, filled[2 * half], filled[2 * half + 1]);
+      first.store_two(2 * x, 2 * y + half, filled[2 * half], filled[2 * half + 1]);
     });
     if (second.grid.width > 0) second.put(x, y, coarse_cell(filled));
   }
 };
 
-/// Takes 4·|change| from four children in proportion to their sand; exactly.
-inline DESERT_RARE void take_in_proportion(Quanta change, Quanta* sand) {
+/// Takes exactly 4·|change| from four children in proportion to their sand. What rounding leaves over is
+/// taken from the first children that still have sand.
+inline DESERT_NOINLINE void remove_in_proportion(Quanta change, Quanta* sand) {
   long long all = 0;
   for (int n = 0; n < 4; ++n) all += sand[n];
   const long long wanted = -4LL * change;
@@ -176,27 +184,28 @@ inline DESERT_RARE void take_in_proportion(Quanta change, Quanta* sand) {
   }
 }
 
-/// Whether each of four children has enough for a coarse cell's change.
-DESERT_HD bool have_enough(Quanta change, Quanta a, Quanta b, Quanta c, Quanta d) {
+/// Whether each of four children has enough sand for a coarse cell's change.
+DESERT_HD bool have_enough_sand(Quanta change, Quanta a, Quanta b, Quanta c, Quanta d) {
   const Quanta south = a < b ? a : b, north = c < d ? c : d;
   return (south < north ? south : north) + change >= 0;
 }
-/// A coarse cell's change handed to its four children: alike, but where one has too little to give, in
-/// proportion to their sand. What the four change by is exactly four times the coarse change.
-DESERT_HD void hand_down(Quanta change, Quanta& a, Quanta& b, Quanta& c, Quanta& d) {
-  if (have_enough(change, a, b, c, d)) {
+/// Prolongs a coarse cell's change to its four children: by the same amount to each, or, where one of them
+/// has too little sand to give, in proportion to their sand. The four together change by exactly four times
+/// the coarse change.
+DESERT_HD void prolong_change(Quanta change, Quanta& a, Quanta& b, Quanta& c, Quanta& d) {
+  if (have_enough_sand(change, a, b, c, d)) {
     a += change, b += change, c += change, d += change;
     return;
   }
   Quanta sand[4] = {a, b, c, d};
-  take_in_proportion(change, sand);
+  remove_in_proportion(change, sand);
   a = sand[0], b = sand[1], c = sand[2], d = sand[3];
 }
 
-/// Hands a coarse cell's change down.
+/// Prolongation: adds the change of each coarse cell to its four children.
 struct Prolong {
   Grid coarse;
-  const Quanta *sand_after, *sand_before;  ///< null: nothing to hand down
+  const Quanta *sand_after, *sand_before;  ///< null: nothing to prolong
   Grid fine;
   Quanta* sand;
 
@@ -205,13 +214,13 @@ struct Prolong {
     const Quanta by = change(coarse.index(x, y));
     if (by == 0) return;
     const int c = fine.index(2 * x, 2 * y);
-    hand_down(by, sand[c], sand[c + 1], sand[c + fine.width], sand[c + fine.width + 1]);
+    prolong_change(by, sand[c], sand[c + 1], sand[c + fine.width], sand[c + fine.width + 1]);
   }
 };
 
-/// One synchronous sweep over the whole grid, first half: each cell's share, and what it gives in all.
-/// `by_tangent` is Taylor & Keyser's distribution: k_c of the largest drop, in proportion to the tangents.
-/// `Level` is LevelView, or what looks like it.
+/// First half of a synchronous sweep over the whole grid: the share of its excesses that each cell releases,
+/// and the sum of what it gives. `by_tangent` selects the distribution of Taylor & Keyser: k_c of the largest
+/// drop, in proportion to the tangents. `Level` is LevelView or a type with the same interface.
 template <class Level>
 struct Release {
   Level level;
@@ -251,7 +260,7 @@ struct Release {
   }
 };
 
-/// Second half: what the neighbours give to each cell, less what it gives.
+/// Second half: the sum of what each cell receives from its neighbours.
 template <class Level>
 struct Gather {
   Level level;
@@ -286,7 +295,8 @@ struct ApplySweep {
   }
 };
 
-/// Largest excess of a cell over its own repose, as a tangent, that its sand could still slide off.
+/// Largest excess of a cell over its neighbours beyond its own angle of repose, as a tangent, no larger than
+/// the cell's sand allows.
 struct Excess {
   LevelView level;
 

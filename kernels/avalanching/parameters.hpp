@@ -1,5 +1,5 @@
 #pragma once
-/// What can be chosen of avalanching; what it means is in avalanching.hpp.
+/// Parameters of avalanching; avalanching.hpp explains the schemes.
 
 #include "src/core/parameters.hpp"
 

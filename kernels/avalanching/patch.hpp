@@ -1,38 +1,39 @@
 #pragma once
-/// Slides between pairs of neighbours, and the order in which a patch of 4 × 4 cells goes through its pairs.
+/// Slides between pairs of neighbours, and the order in which the pairs of a patch of 4 × 4 cells are
+/// relaxed.
 ///
-/// Where the drop from one cell to its neighbour is more than what sand rests at,
+/// Where the drop from cell i to its neighbour j exceeds the drop at repose, A slides from i to j:
 ///
-///   e = h_i − h_j − tan θ_i d l,   A = min(ω e, s_i)
+///   e = h_i − h_j − tan θ_i · d l
+///   A = min(ω e, s_i)
 ///
-/// slides from i to j: with ω = ½ that is what Nilles 2024, eq. 9–11, give for a cell with one receiver, and
-/// the two are left at repose. Pairs follow each other, each sees what those before it have done, so that a
-/// cell with several receivers serves them in turn; and as always when unknowns are relaxed in turn, going
-/// too far (ω a little over ½) gets sooner to where all are at rest. A never makes the receiver higher than
-/// the donor was (ω ≤ 1).
+/// With ω = ½ this is what Nilles 2024, eq. 9–11, gives for a cell with one receiver, and leaves the two at
+/// repose. Pairs are relaxed one after the other, each seeing what those before it have done (Gauss-Seidel),
+/// so that a cell with several receivers serves them in turn. As in successive over-relaxation, ω a little
+/// above ½ converges sooner. With ω ≤ 1 the receiver never gets higher than the donor was, and the donor
+/// never lower than the receiver was.
 ///
-/// So no cell falls below the lowest of its tile, and in a tile where the ground nowhere reaches above that
-/// (flat rock, or deep sand over any) no pair ever wants more than the donor has. Such a tile is `deep`: its
-/// pairs do not ask what is below the sand, and a slide is two multiplications and additions, each rounded
-/// once.
+/// No cell therefore falls below the lowest one of its tile, and in a tile whose ground nowhere reaches above
+/// that (flat rock, or sand deeper than the rock's relief) no pair ever asks for more sand than the donor
+/// has. Such a tile is `deep`: its pairs need not look at the ground, and a slide is two fused multiply-adds,
+/// each rounded once.
 ///
-/// A thread works on a patch, which it holds in registers; a CPU on several beside each other, as vectors.
-/// Pairs that share no cell stand together, so that they do not wait for each other. Diagonal pairs come
-/// first, which start to slide last, at √2 times the drop: behind the others, which leave them next to
-/// nothing, sand hardly ever goes down a slope that faces north-east by the shortest way, and crests under
-/// two winds lie 4 … 8 degrees off (test/bench/README.md, "Diagonal pairs first").
+/// On a GPU a thread holds one patch in registers; on a CPU patches beside each other form SIMD vectors.
+/// Pairs that share no cell follow each other in the code, so that they do not wait for each other. Diagonal
+/// pairs come first, because they start to slide last, at √2 times the drop. If they came after the straight
+/// pairs, these would leave them next to nothing, sand would hardly ever take the shortest way down a slope
+/// that faces north-east, and crests under two winds would lie 4 … 8 degrees off (doc/performance.md,
+/// "Diagonal pairs first").
 ///
-// clang-format off
-///     diagonals, by quads of      columns             rows
-///     cells with both of theirs
-///        o o o o                  o o o o             o-o-o-o
-///         A B A    A, then B,     | | | |
-///        o o o o   C, D           o o o o             first the outer
-///         C D C                   | | | |             two pairs, then
-///        o o o o                  o o o o             the middle one
-///         A B A                   | | | |
-///        o o o o                  o o o o
-// clang-format on
+///       diagonals, in quads of      columns             rows
+///       cells with both of theirs
+///          o o o o                  o o o o             o-o-o-o
+///           A B A    A, then B,     | | | |
+///          o o o o   C, D           o o o o             first the outer
+///           C D C                   | | | |             two pairs, then
+///          o o o o                  o o o o             the middle one
+///           A B A                   | | | |
+///          o o o o                  o o o o
 
 #include "kernels/avalanching/tile_units.hpp"
 #include "kernels/backend/for_each.hpp"
@@ -43,29 +44,29 @@ struct Patch {
   static constexpr int side = 4, cells = side * side;
 };
 
-/// A share whose last bit is set, next to the given one and less than 1. Its product with an excess then
-/// never lies halfway between two whole units: rounded once where it is taken away and once where it is
-/// added, it becomes the same number of them.
-DESERT_HD float never_halfway(float share) {
-  return share == 0.0f ? 0.0f : lower(float_of(bits_of(share) | 1u), 1.0f - 1.0f / 16777216.0f);
+/// The given share with the last bit of its mantissa set, and less than 1 (0 stays 0). Its product with an
+/// excess then never lies halfway between two whole units, so that it is rounded to the same number of units
+/// where it is subtracted from the donor and where it is added to the receiver.
+DESERT_HD float with_odd_mantissa(float share) {
+  return share == 0.0f ? 0.0f : lower(float_from_bits(bits_of(share) | 1u), 1.0f - 1.0f / 16777216.0f);
 }
 
-/// Shares ω of what slides over the three gaps between a patch's columns, and between its rows, as
-/// never_halfway() has them; the latter are alike for patches beside each other.
+/// Shares ω for the three gaps between a patch's columns and for those between its rows, prepared by
+/// with_odd_mantissa(). Those between rows are the same for all patches beside each other.
 template <int lanes>
 struct Shares {
   float x[Patch::side - 1][lanes], y[Patch::side - 1];
 };
 
-/// The pairs of `lanes` patches beside each other, whose heights h, top of the ground below the sand, and
-/// drop at repose over one cell stand at [at(row, column) + lane]; heights and grounds in Units.
+/// The pairs of `lanes` patches beside each other. Height h, top of the ground below the sand, and drop at
+/// repose over one cell are stored at index at(row, column) + lane, in Units.
 template <int lanes, bool deep, class At>
 struct PairsOfPatches {
   float* h;
-  const float *ground, *drop;  ///< `deep`: no ground
+  const float *ground, *drop;  ///< ground is not read if `deep`
   At at;
   const Shares<lanes>& shares;
-  float* most;  ///< of each patch: raised to the most that a pair has moved
+  float* most;  ///< a patch's maximum of what a pair has moved; updated
 
   DESERT_HD void relax() const {
     quad<0, 0>(), quad<0, 2>(), quad<2, 0>(), quad<2, 2>();
@@ -79,17 +80,17 @@ struct PairsOfPatches {
   }
 
  private:
-  /// Both diagonal pairs of four cells.
+  /// Both diagonal pairs of a quad of four cells.
   template <int row, int column>
   DESERT_HD void quad() const {
-    float share[lanes];  // by itself: in the pairs' own loops compilers see no minimum, and make no vectors
+    float share[lanes];  // in a loop of its own, because it would keep the pairs' loops from vectorising
     DESERT_SIMD
     for (int n = 0; n < lanes; ++n) share[n] = lower(shares.x[column][n], shares.y[row]);
     const auto of = [&](int n) DESERT_INLINE { return share[n]; };
     pair<row, column, 1, 1>(of);
     pair<row, column + 1, 1, -1>(of);
   }
-  /// A pair above each other, and one beside each other.
+  /// upright(): a pair in one column; level(): a pair in one row.
   template <int row, int column>
   DESERT_HD void upright() const {
     pair<row, column, 1, 0>([&](int) DESERT_INLINE { return shares.y[row]; });
@@ -98,8 +99,8 @@ struct PairsOfPatches {
   DESERT_HD void level() const {
     pair<row, column, 0, 1>([&](int n) DESERT_INLINE { return shares.x[column][n]; });
   }
-  /// A cell a and the one that lies `up` rows and `right` columns from it, b: what slides from a to b, or if
-  /// it is negative, from b to a. All heights are whole units.
+  /// The pair of a cell a and the cell b that lies `up` rows and `right` columns from it. The excess is
+  /// positive where sand slides from a to b, and negative from b to a. All heights are whole units.
   template <int row, int column, int up, int right, class ShareOf>
   DESERT_HD void pair(const ShareOf& share_of) const {
     constexpr float distance = up != 0 && right != 0 ? Neighbours::distance(4) : 1.0f;

@@ -1,4 +1,4 @@
-/// The laws and the step of soil_and_bedrock.hpp; compiled once for each backend.
+/// Laws and steps of soil_and_bedrock.hpp; compiled once for each backend.
 #include "kernels/avalanching/soil_and_bedrock.hpp"
 
 #include "kernels/avalanching/avalanching.hpp"
@@ -9,7 +9,8 @@
 
 namespace desert_sim::avalanching {
 
-/// Soil as a level on rock, at its own angle.
+/// Soil as the mobile layer of a level whose ground is the bedrock, with its own angle of repose. Has the
+/// interface of LevelView.
 struct SoilLevel {
   struct Angle {
     float bare, vegetated;  ///< tangents
@@ -22,7 +23,7 @@ struct SoilLevel {
   };
 
   Grid grid;
-  const Quanta *bedrock, *sand;  ///< what slides is called sand on every level: here it is soil
+  const Quanta *bedrock, *sand;  ///< `sand` is what slides on any level: here it is soil
   const float* obstacle;         ///< or null
   Angle repose;
   float quanta_per_cell;
@@ -31,8 +32,7 @@ struct SoilLevel {
   DESERT_HD Quanta height(int i) const { return wall(i) ? wall_height : bedrock[i] + sand[i]; }
 };
 
-/// Bedrock as a level whose material is all of it, down to the lowest possible ground, at one angle
-/// everywhere.
+/// Bedrock as a level that is mobile down to the lowest possible ground, with one angle of repose everywhere.
 struct RockLevel {
   static constexpr Quanta lowest_ground = 1 - wall_height;
   struct Column {

@@ -1,10 +1,14 @@
 #pragma once
-/// Avalanching of soil and of bedrock: one synchronous iteration a step, where they changed. Physics.md
-/// B6–B7.
+/// Avalanching of soil and of bedrock: one synchronous sweep a step, while something wears the ground or it
+/// still slides. Equations in avalanching.hpp.
 ///
-/// Soil slides over rock at its own angle (45° bare … 68° under vegetation, times the moisture factor), by
-/// the laws of avalanching_laws.hpp. Bedrock breaks where it is steeper than `bedrock_deg`, by its own height
-/// alone, and falls as sand or as rock. Reads and writes bedrock, soil, sand.
+///   soil      tan θ = lerp(tan θ_bare, tan θ_vegetated, v) · M
+///   bedrock   tan θ = tan θ_bedrock
+///
+/// By default θ_bare is 45°, the others are 68°. v is the density of vegetation, M the moisture factor
+/// (kernels/sand/repose.hpp). Soil slides over rock. Bedrock breaks where it is too steep, considering its own
+/// height only, and falls as sand or as rock. Both use the laws of laws.hpp. Reads and writes bedrock, soil
+/// and sand.
 
 #include "kernels/avalanching/parameters.hpp"
 #include "kernels/backend/buffer.hpp"
@@ -14,15 +18,16 @@
 
 namespace desert_sim::avalanching {
 
-/// Scratch for the ground's avalanches: one value a cell each.
+/// Work buffers for avalanches of the ground, with one value a cell each.
 struct GroundWorkspace {
   Buffer<Quanta> received;
   Buffer<float> share;
+  std::size_t bytes() const { return received.bytes() + share.bytes(); }
 };
 
 GroundWorkspace make_ground_workspace(Exec& exec, const Grid& grid);
 
-/// `given`: scratch, and afterwards what each cell gave.
+/// `given` is a work buffer, which holds what each cell gave when the step is done.
 template <class E>
 void step_soil(E& exec, const TerrainView& t, const AvalanchingParameters& p, const ReposeParameters& repose,
                Quanta* given, GroundWorkspace& work);

@@ -1,12 +1,12 @@
 #pragma once
-/// Which blocks of 8 × 8 cells have a cell that is too steep. By squares of 4 × 4, whose cells share what
-/// they look at: heights of six rows, of four cells and those beside them.
+/// Finds the blocks of 8 × 8 cells that have a cell which is too steep. Each call checks a square of 4 × 4
+/// cells, which share the heights that they compare: those of six rows of six cells.
 
 #include "kernels/avalanching/laws.hpp"
 
 namespace desert_sim::avalanching {
 
-/// Blocks of cells.
+/// The grid divided into square blocks of cells.
 struct Blocks {
   static constexpr int side = 8;
   Grid grid;
@@ -18,15 +18,16 @@ struct Blocks {
   DESERT_HD int of_cell(int x, int y) const { return y / side * columns() + x / side; }
 };
 
-/// Whether a cell's excess (Excess) is over the tolerance, without a division.
+/// Whether a cell's excess (Excess in laws.hpp) is over the tolerance, computed without a division.
 struct TooSteep {
   LevelView level;
   float tolerance;
 
-  /// Of a cell; `straight`, `diagonal`: the lowest of its neighbours.
+  /// `straight`, `diagonal`: height of the lowest neighbour in a row or column, and of the lowest diagonal
+  /// one.
   DESERT_HD bool operator()(Quanta height, Quanta sand, float repose, Quanta straight,
                             Quanta diagonal) const {
-    constexpr float guard = 1.0f - 1e-4f;  // what Excess finds over the tolerance is never missed by rounding
+    constexpr float guard = 1.0f - 1e-4f;  // rounding must not miss what Excess finds over the tolerance
     constexpr float far = Neighbours::distance(4);
     const float least = guard * tolerance * level.quanta_per_cell, available = static_cast<float>(sand);
     const float drop = repose * level.quanta_per_cell + least;
@@ -34,7 +35,7 @@ struct TooSteep {
            (static_cast<float>(height - straight) > drop ||
             (static_cast<float>(height - diagonal) > far * drop && available > far * least));
   }
-  /// Of a cell that may lack neighbours.
+  /// For a cell of which some neighbours may not exist.
   DESERT_HD bool operator()(int x, int y) const {
     Quanta lowest[2] = {wall_height, wall_height};
     for (int k = 0; k < Neighbours::count; ++k) {
@@ -47,13 +48,13 @@ struct TooSteep {
   }
 };
 
-/// Called for squares of cells, which share what they look at.
+/// Flags the blocks that are too steep. Called for each square of 4 × 4 cells.
 struct FindSteep {
   static constexpr int side = 4;
   static_assert(Blocks::side % side == 0, "then a square lies in one block");
   TooSteep too_steep;
-  const Quanta* ask;  ///< null: everywhere
-  Quanta* steep;      ///< all 0
+  const Quanta* ask;  ///< flags of the blocks to check; null: all
+  Quanta* steep;      ///< flags of the blocks, all 0 before
 
   DESERT_HD Grid squares() const {
     const Grid& g = too_steep.level.grid;
@@ -63,30 +64,30 @@ struct FindSteep {
     const Grid& g = too_steep.level.grid;
     const int west = side * column, south = side * row, block = Blocks{g}.of_cell(west, south);
     if (ask && ask[block] == 0) return;
-    if (g.width % side == 0 ? is_any_of_fours(west, south) : is_any(west, south)) raise_flag(&steep[block]);
+    if (g.width % side == 0 ? is_any_of_fours(west, south) : is_any(west, south)) set_flag(&steep[block]);
   }
 
  private:
   /// A row of a square, with the cells west and east of it.
   struct Row {
     Quanta heights[side + 2];
-    Four<Quanta> sand;
-    /// The lower one of the two beside the nth cell.
+    Vec4<Quanta> sand;
+    /// The lower one of the heights west and east of the nth cell.
     DESERT_HD Quanta beside(int n) const { return lower(heights[n], heights[n + 2]); }
   };
-  /// A place on an axis, or one that is next to the axis: −1 if nothing is there.
+  /// Index of a place on an axis or next to its ends; −1 where there is no cell.
   DESERT_HD static int place(int p, int cells, bool periodic) {
     if (p >= 0 && p < cells) return p;
     return periodic ? wrap(p, cells) : -1;
   }
-  /// From column x on, between columns `before` and `after`, if these are there; of walls if y is not. What
-  /// is not there is read from elsewhere first: then no load waits for an answer.
+  /// Row y from column x on, with columns `before` and `after`. An index of −1 stands for a wall: its value
+  /// is loaded from another cell and replaced afterwards, so that no load waits for a comparison.
   DESERT_HD Row row_at(int before, int x, int after, int y) const {
     const LevelView& level = too_steep.level;
     const int first = level.grid.index(0, y >= 0 ? y : 0);
     Row row;
-    row.sand = four_at(static_cast<const Quanta*>(level.sand) + first + x);
-    const Four<Quanta> ground = four_at(level.ground + first + x);
+    row.sand = load_vec4(static_cast<const Quanta*>(level.sand) + first + x);
+    const Vec4<Quanta> ground = load_vec4(level.ground + first + x);
     row.heights[0] = level.height(first + (before >= 0 ? before : x));
     row.heights[side + 1] = level.height(first + (after >= 0 ? after : x));
     for (int n = 0; n < side; ++n) {
@@ -101,7 +102,7 @@ struct FindSteep {
       for (Quanta& height : row.heights) height = wall_height;
     return row;
   }
-  /// In the square whose south-west corner is (x, y).
+  /// Whether a cell is too steep in the square whose south-west corner is (west, south).
   DESERT_HD bool is_any(int west, int south) const {
     const Grid& g = too_steep.level.grid;
     for (int y = south; y < south + side && y < g.height; ++y)
@@ -109,7 +110,7 @@ struct FindSteep {
         if (too_steep(x, y)) return true;
     return false;
   }
-  /// Likewise where rows are whole.
+  /// The same for grids whose width is a multiple of four, with loads of four values at a time.
   DESERT_HD bool is_any_of_fours(int x, int y) const {
     const LevelView& level = too_steep.level;
     const Grid& g = level.grid;
@@ -122,7 +123,7 @@ struct FindSteep {
     for (int n = 0; n < side; ++n) {
       if (y + n >= g.height) break;
       const Row above = row_number(n + 1);
-      const Four<float> repose = four_at(level.repose + g.index(x, y + n));
+      const Vec4<float> repose = load_vec4(level.repose + g.index(x, y + n));
       for (int k = 0; k < side; ++k)
         any = any || too_steep(row.heights[k + 1], row.sand.values[k], repose.values[k],
                                lower(row.beside(k), lower(below.heights[k + 1], above.heights[k + 1])),

@@ -1,28 +1,28 @@
 #pragma once
-/// Sweeps inside one closed tile: nothing crosses its edge, so tiles do not see each other. What is around
-/// the tile, obstacles, and what lies beyond the grid, stand in it as walls: too high for anything to slide
-/// there, and so steep at rest that nothing slides from there.
+/// Relaxation of one tile of 32 × 32 cells by sweeps over pairs of neighbours. Tiles are closed: nothing
+/// crosses a tile's edge, so that tiles do not depend on each other. Obstacles, and cells beyond the grid,
+/// stand in a tile as walls: too high to receive sand, and with an angle of repose so steep that they give
+/// none.
 ///
-/// A sweep goes through the pairs of all patches of the tile (avalanching_patch.hpp). In each of four sweeps
-/// these begin a cell further east and south, so that all cells are alike to them:
+/// A sweep relaxes the pairs of all patches of 4 × 4 cells in the tile (patch.hpp). From sweep to sweep the
+/// patches shift by one cell to the east and to the south, so that over four sweeps all cells are treated
+/// alike:
 ///
-// clang-format off
-///      . . . . . .
-///      . 0 . . . .     a corner of the patches in sweeps 0, 1, 2, 3, and then again;
-///      . . 1 . . .     every other pass begins with sweep 2
-///      . . . 2 . .
-///      . . . . 3 .
-// clang-format on
+///        . . . . . .
+///        . 0 . . . .     a corner of the patches in sweeps 0, 1, 2, 3, after which
+///        . . 1 . . .     the sequence repeats; every other pass begins with sweep 2
+///        . . . 2 . .
+///        . . . . 3 .
 ///
-/// What is shifted out of the tile on one side comes in on the other, where nothing slides over the edge.
-/// Two sweeps that follow each other have all pairs between them, but for diagonal ones across an edge of
-/// each.
+/// Patches that are shifted out of the tile on one side re-enter on the other; nothing slides between their
+/// two parts. Vec2 successive sweeps together cover all pairs of neighbours, except diagonal ones that cross
+/// an edge of a patch in both.
 ///
-/// A tile takes `sweeps` sweeps, unless two that follow each other move nothing, and goes on, up to
-/// `most_sweeps`, while a pair moves `plenty`.
+/// A tile takes at least `sweeps` sweeps, unless two successive ones move nothing, and goes on, up to
+/// `most_sweeps`, while a pair moves more than `plenty`.
 ///
-/// Heights are floats that count whole units (avalanching_units.hpp). This is the reference; on a GPU
-/// tuned/avalanching_tile.cu gives the same bits sooner.
+/// Heights are floats that count whole units (tile_units.hpp). This law is the reference; on a GPU
+/// tuned/tile.cu gives the same bits faster.
 
 #include <type_traits>
 
@@ -33,15 +33,15 @@
 
 namespace desert_sim::avalanching {
 
-/// Sweeps up to which a tile goes on where much slides.
+/// A tile in which much sand still slides takes up to this many sweeps.
 constexpr int most_sweeps = 8;
 
-/// How far the patches of a sweep are shifted, to the east and to the north [cells].
+/// Shift of a sweep's patches to the east and to the north [cells].
 struct PatchShift {
   int x, y;
 
-  /// Of the nth sweep of a pass whose tiles begin at −offset. Tiles of passes that follow each other lie 16
-  /// cells apart (seam_offsets in avalanching.hpp).
+  /// For the nth sweep of a pass whose tiles begin at −offset. The tiles of successive passes lie 16 cells
+  /// apart (seam_offsets in avalanching.hpp), and their sequences of shifts begin two sweeps apart.
   DESERT_HD PatchShift(int n, int offset) : PatchShift(n + offset / 16 * 2) {}
   DESERT_HD explicit constexpr PatchShift(int n)
       : x(n & (Patch::side - 1)), y((Patch::side - x) & (Patch::side - 1)) {
@@ -49,15 +49,15 @@ struct PatchShift {
   }
 };
 
-/// The share ω of an excess that slides over the nth gap between a tile's columns, or between its rows,
-/// counted over its edge: what is shifted out of the tile on one side comes in on the other, but nothing
-/// slides there.
-class ShareOfGap {
+/// The share ω of an excess that slides across the nth gap between columns, or between rows, of a tile. Gap n
+/// lies behind column n. Numbers continue beyond the tile's edge, because patches that are shifted over it
+/// re-enter on the other side; the gap at the edge itself is closed (ω = 0).
+class GapOmega {
  public:
-  /// `next_to_edge`: what cannot go on over the edge piles up before it, and is missing behind it; where less
-  /// slides to the last cells, that is spread over more of them.
-  ShareOfGap(float inside, float next_to_edge)
-      : inside_(never_halfway(inside)), next_to_edge_(never_halfway(next_to_edge)) {}
+  /// `next_to_edge`: ω of the first and the last gap. Sand that cannot cross the edge piles up before it and
+  /// is missing behind it; if less slides across the gap before the edge, this is spread over more cells.
+  GapOmega(float inside, float next_to_edge)
+      : inside_(with_odd_mantissa(inside)), next_to_edge_(with_odd_mantissa(next_to_edge)) {}
 
   DESERT_HD float operator()(int n) const {
     const int gap = n % Tiles::side;
@@ -69,35 +69,36 @@ class ShareOfGap {
   float inside_, next_to_edge_;
 };
 
-/// Of the cells of a tile, but walls [quanta].
+/// Lowest and highest surface, and highest ground, of the cells of a tile that are not walls [quanta].
 struct Range {
   Quanta lowest, highest;
   Quanta highest_ground;
-  /// avalanching_patch.hpp
+  /// Whether the ground nowhere reaches above the lowest cell; then pairs need not limit slides (patch.hpp).
   DESERT_HD bool deep() const { return highest_ground <= lowest; }
 };
 
 struct RelaxTile {
   static constexpr int side = Tiles::side, patches = side / Patch::side;  ///< along an axis
-  /// A row of cells lies in memory as four of patches' columns, each with the tile's first cell again at its
-  /// end: then patches beside each other are a vector, also where they are shifted over the edge.
+  /// Cells of a row are stored by their column within a patch: cells 0, 4, 8 … first, then cells 1, 5, 9 …
+  /// and so on, each group followed by a copy of its first cell. The same column of neighbouring patches is
+  /// then contiguous and can be loaded as a vector, also where patches are shifted over the tile's edge.
   static constexpr int column_stride = patches + 4, stride = Patch::side * column_stride,
                        cells = side * stride;
 
   Tiles tiles;
   LevelView level;
-  Prolong from_coarse;  ///< what the tile's cells get first; their families lie in one tile
-  ShareOfGap share;     ///< ω (avalanching_patch.hpp), in (0, 1]
+  Prolong from_coarse;  ///< prolonged first; children of a coarse cell lie in one tile
+  GapOmega share;       ///< ω (patch.hpp), in (0, 1]
   int sweeps;
   float plenty;                  ///< [cell sizes]
-  const Quanta* open = nullptr;  ///< 0 for tiles that are left as they are; null: none
+  const Quanta* open = nullptr;  ///< flags, 0 for tiles to skip; null: relax all
 
   DESERT_HD bool closed(int column, int row) const {
     return open && open[row * tiles.columns() + column] == 0;
   }
 
-  /// After so many sweeps, where the last has moved much or has not.
-  DESERT_HD bool has_had_enough(int done, bool much) const {
+  /// Whether the tile may stop after `done` sweeps; `much`: the last one has moved more than `plenty`.
+  DESERT_HD bool may_stop(int done, bool much) const {
     return done >= sweeps && (done >= most_sweeps || !much);
   }
 
@@ -112,7 +113,7 @@ struct RelaxTile {
     Quanta* base = reinterpret_cast<Quanta*>(drop + cells);
     clear(team, h, ground, drop);
     if (from_coarse.sand_after)
-      team.for_each(families, [=](int n) DESERT_INLINE { prolong_family(column, row, n); });
+      team.for_each(families, [=](int n) DESERT_INLINE { prolong_coarse_cell(column, row, n); });
     const Range range = load_heights(team, column, row, h, ground);
     if (range.lowest >= wall_height) return;
     const Units units(range.lowest, range.highest, level.quanta_per_cell);
@@ -125,21 +126,21 @@ struct RelaxTile {
                                       : sweep<false>(team, shift, h, ground, drop);
       moved = moved || most > 0.0f;
       if (most == 0.0f && !moved_before) break;
-      if (has_had_enough(n + 1, most > much)) break;
+      if (may_stop(n + 1, most > much)) break;
       moved_before = most > 0.0f;
     }
     if (moved) store(team, column, row, units, h, base);
   }
 
   static constexpr int families = side / 2 * (side / 2);
-  /// Hands the nth coarse cell of the tile, if it is there, its change down to its children.
-  DESERT_HD void prolong_family(int column, int row, int n) const {
+  /// Prolongs the change of the tile's nth coarse cell, if that exists, to its children.
+  DESERT_HD void prolong_coarse_cell(int column, int row, int n) const {
     const int x = grid_x(column, 2 * (n % (side / 2))), y = grid_y(row, 2 * (n / (side / 2)));
     if (x >= 0 && y >= 0 && from_coarse.coarse.inside(x / 2, y / 2)) from_coarse(x / 2, y / 2);
   }
 
-  /// The grid's column under column x of the tile, or −1; likewise its row. On a periodic axis each belongs
-  /// to exactly one tile.
+  /// The column of the grid at column x of the tile, or −1 if there is none; grid_y() gives the row. On a
+  /// periodic axis each cell of the grid belongs to exactly one tile.
   DESERT_HD int grid_x(int column, int x) const {
     return along(column * side - tiles.offset + x, level.grid.width, level.grid.periodic_x);
   }
@@ -147,7 +148,7 @@ struct RelaxTile {
     return along(row * side - tiles.offset + y, level.grid.height, level.grid.periodic_y);
   }
 
-  /// Whether the tile's cells are all there, side by side.
+  /// Whether all cells of the tile exist and its rows are contiguous in the grid.
   DESERT_HD bool whole(int column, int row) const {
     const int x = column * side - tiles.offset, y = row * side - tiles.offset;
     const int right = level.grid.width - (level.grid.periodic_x ? tiles.offset : 0);
@@ -161,10 +162,10 @@ struct RelaxTile {
     return p >= 0 ? p : (periodic ? wrap(p, cells_along) : -1);
   }
 
-  /// Where column k of the nth patch of row y lies.
+  /// Index of the cell in row y, in column k of the nth patch.
   DESERT_HD static constexpr int local(int y, int n, int k) { return y * stride + k * column_stride + n; }
 
-  /// Where the cells of a row of patches lie, from patch `first` on.
+  /// Index of a cell of a patch in row `patch_row` of patches, the first one being patch `first`.
   struct At {
     PatchShift shift;
     int patch_row, first;
@@ -174,19 +175,19 @@ struct RelaxTile {
     }
   };
 
-  /// The most that a pair has moved.
+  /// One sweep over all pairs. Returns the largest amount that a pair has moved.
   template <bool deep, class Team>
   DESERT_HD float sweep(const Team& team, const PatchShift& shift, float* h, const float* ground,
                         const float* drop) const {
-    const ShareOfGap omega = share;
+    const GapOmega omega = share;
     const auto copy_first = [=](int from, int to) DESERT_INLINE {
       team.for_each(side, [=](int y) DESERT_INLINE {
         for (int k = 0; k < shift.x; ++k) h[local(y, to, k)] = h[local(y, from, k)];
       });
     };
     copy_first(0, patches);
-    const float most = team.most(patches * patches / Team::patches_at_once, [=](int i) DESERT_INLINE {
-      constexpr int lanes = Team::patches_at_once, pieces = patches / lanes;
+    const float most = team.most(patches * patches / Team::patch_lanes, [=](int i) DESERT_INLINE {
+      constexpr int lanes = Team::patch_lanes, pieces = patches / lanes;
       const int patch_row = i / pieces, first = i % pieces * lanes;
       Shares<lanes> shares;
       float most_of[lanes] = {};
@@ -203,7 +204,7 @@ struct RelaxTile {
     return most;
   }
 
-  /// Calls body(i, n) with the grid's cell and the tile's for each cell of the tile that is there.
+  /// Calls body(i, n) for each cell of the tile that exists, with its index in the grid and in the tile.
   template <class Team, class Body>
   DESERT_HD void for_each_cell_of_tile(const Team& team, int column, int row, const Body& body) const {
     const int width = level.grid.width;
@@ -222,24 +223,25 @@ struct RelaxTile {
     });
   }
 
-  /// Walls everywhere.
+  /// Fills the tile with walls.
   template <class Team>
   DESERT_HD static void clear(const Team& team, float* h, float* ground, float* drop) {
     team.for_each(cells, [=](int n) DESERT_INLINE {
-      h[n] = float_of(static_cast<std::uint32_t>(wall_height));
+      h[n] = float_from_bits(static_cast<std::uint32_t>(wall_height));
       ground[n] = Units::wall;
       drop[n] = Units::wall;
     });
   }
 
-  /// In `h` and `ground` lie the bits of integers until load() has their units.
+  /// Loads heights and ground, and returns their range. `h` and `ground` hold the bits of integers until
+  /// load() converts them to units.
   template <class Team>
   DESERT_HD Range load_heights(const Team& team, int column, int row, float* h, float* ground) const {
     const LevelView from = level;
     for_each_cell_of_tile(team, column, row, [=](int i, int n) DESERT_INLINE {
       const Quanta height = from.height(i);
-      h[n] = float_of(static_cast<std::uint32_t>(height));
-      ground[n] = float_of(static_cast<std::uint32_t>(height - from.sand[i]));
+      h[n] = float_from_bits(static_cast<std::uint32_t>(height));
+      ground[n] = float_from_bits(static_cast<std::uint32_t>(height - from.sand[i]));
     });
     const auto height = [=](int n) DESERT_INLINE { return static_cast<Quanta>(bits_of(h[n])); };
     const auto below = [=](int n, const float* of) DESERT_INLINE {
@@ -249,7 +251,8 @@ struct RelaxTile {
             -team.lowest(cells, [=](int n) DESERT_INLINE { return below(n, ground); })};
   }
 
-  /// `base`: of a cell's sand, what does not change with its height.
+  /// Converts the tile to units. `base` gets the part of each cell's sand that does not change with its
+  /// height.
   template <class Team>
   DESERT_HD void load(const Team& team, int column, int row, const Units& units, float* h, float* ground,
                       float* drop, Quanta* base) const {
@@ -263,7 +266,7 @@ struct RelaxTile {
       base[n] = sand - units.of_height(h[n]);
     });
     team.for_each(cells, [=](int n) DESERT_INLINE { h[n] = ground[n] == Units::wall ? Units::wall : h[n]; });
-    // The first cells of a row again at its end.
+    // Copies of the first cells of each row at its end.
     team.for_each(side * Patch::side, [=](int i) DESERT_INLINE {
       const int y = i / Patch::side, k = i % Patch::side;
       ground[local(y, patches, k)] = ground[local(y, 0, k)];
@@ -280,18 +283,18 @@ struct RelaxTile {
   }
 };
 
-/// Relaxes all tiles by the law above.
+/// Relaxes all tiles by calling RelaxTile for each.
 template <class E>
-void relax_by_law(E& exec, const RelaxTile& law);
+void relax_tiles_reference(E& exec, const RelaxTile& law);
 
-/// What a pass can be followed by: nothing, filling coarse levels, or measuring the heights; the grid that
-/// the latter two are called for.
-struct NothingThen {};
-inline Grid passed_over(const Restrict& law) { return law.blocks(); }
-inline Grid passed_over(const surface::MeasureBlock& law) { return law.blocks; }
+/// Laws that may follow a pass: none, restriction to coarse levels, or measuring the heights. follow_up_grid()
+/// gives the grid that the latter two are called for.
+struct NoFollowUp {};
+inline Grid follow_up_grid(const Restrict& law) { return law.blocks(); }
+inline Grid follow_up_grid(const surface::MeasureBlock& law) { return law.blocks; }
 
-/// Relaxes all tiles, as the backend does it best, and then calls `then`, perhaps in the same pass. `Then` is one
-/// of the three above.
+/// Relaxes all tiles in the fastest way that the backend has, and then applies `then`, in the same kernel if
+/// possible. `Then` is one of the three laws above.
 template <class E, class Then>
 void relax_tiles(E& exec, const RelaxTile& law, const Then& then);
 

@@ -1,13 +1,13 @@
 #pragma once
-/// Memory that several cells write to at once, on the CPU and on the GPU.
+/// Atomic operations on memory that several cells write to at once, on the CPU and on the GPU.
 
 #include "kernels/backend/macros.hpp"
 #include "kernels/field/quanta.hpp"
 
 namespace desert_sim {
 
-/// Adds to memory that other cells add to as well, and returns what was there before. Integers commute, so
-/// the order can't matter to the sum.
+/// Adds to a value atomically, and returns what it was before. Integer addition commutes, so the sum does not
+/// depend on the order of threads.
 template <class Integer>
 DESERT_HD Integer atomic_add(Integer* to, Integer amount) {
 #if defined(__CUDA_ARCH__)
@@ -22,7 +22,7 @@ DESERT_HD Integer atomic_add(Integer* to, Integer amount) {
 #endif
 }
 
-/// Raises memory that other cells raise as well.
+/// Raises a value to at least `value`, atomically.
 template <class Integer>
 DESERT_HD void atomic_max(Integer* to, Integer value) {
 #if defined(__CUDA_ARCH__)
@@ -35,15 +35,16 @@ DESERT_HD void atomic_max(Integer* to, Integer value) {
 #endif
 }
 
-/// Flags, 0 or 1, that other cells may raise as well. Whoever asks first spares those who only read a write.
-DESERT_HD bool is_lowered(const Quanta* flag) {
+/// Flags, 0 or 1, that several threads may raise at once. Testing a flag before raising it saves a write,
+/// which would invalidate the cache line for all that only read it.
+DESERT_HD bool is_flag_clear(const Quanta* flag) {
 #if defined(__CUDA_ARCH__)
   return *flag == 0;
 #else
   return __atomic_load_n(flag, __ATOMIC_RELAXED) == 0;
 #endif
 }
-DESERT_HD void raise_flag(Quanta* flag) {
+DESERT_HD void set_flag(Quanta* flag) {
 #if defined(__CUDA_ARCH__)
   *flag = 1;
 #else

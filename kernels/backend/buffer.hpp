@@ -1,5 +1,5 @@
 #pragma once
-/// Device memory that is owned: move-only, uninitialised when made.
+/// Owned device memory: move-only, and uninitialised when it is created.
 
 #include <cstddef>
 #include <utility>
@@ -36,7 +36,7 @@ class Buffer {
     if (size_) download(0, size_, to.data());
     return to;
   }
-  /// Elements first … first + count − 1.
+  /// Copies elements first … first + count − 1 to the host.
   void download(std::size_t first, std::size_t count, T* to) const {
     exec_->download(to, data_ + first, count * sizeof(T));
   }

@@ -1,7 +1,7 @@
 #pragma once
-/// Where a simulation runs: memory, order of work, and (in for_each.hpp) loops over cells. CpuExec runs laws
-/// as OpenMP loops; CudaExec as kernels on one non-blocking stream of its own. A second stream carries what
-/// others want to see to the host, while the work goes on.
+/// Execution on a backend: device memory, copies, the order of work and, in for_each.hpp, loops over cells.
+/// CpuExec runs laws as OpenMP loops; CudaExec runs them as kernels on a non-blocking stream of its own. A
+/// second stream copies results to the host while the simulation goes on.
 
 #include <atomic>
 #include <cstddef>
@@ -15,21 +15,22 @@ namespace desert_sim {
 
 class Fft;
 
-/// Work that was recorded and can be done again, with the same arguments.
+/// Recorded work that can be replayed with the same arguments.
 class Recording {
  public:
   virtual ~Recording() = default;
   virtual void replay() = 0;
 };
 
-/// A copy to the host that runs beside other work.
+/// An asynchronous copy to the host.
 class HostCopy {
  public:
   virtual ~HostCopy() = default;
-  /// Returns when the copy is there; throws CudaError if it, or work before it, failed. From any thread.
+  /// Waits until the copy is complete. Throws CudaError if it, or work before it, failed. May be called from
+  /// any thread.
   virtual void wait() = 0;
-  /// Copies more of what was there when this copy began, likewise, and waits for it. From any thread, but one
-  /// at a time.
+  /// Copies more data, of the same state as this copy, and waits for it. May be called from any thread, but
+  /// only from one at a time.
   virtual void fetch(void* to, const void* from, std::size_t bytes) = 0;
 };
 
@@ -41,11 +42,11 @@ class Exec {
   Exec& operator=(const Exec&) = delete;
 
   virtual const char* backend() const = 0;           ///< "cpu" or "cuda"
-  virtual std::string device() const = 0;            ///< what a person would call it
-  virtual std::size_t memory_available() const = 0;  ///< bytes that an allocation may hope for
+  virtual std::string device() const = 0;            ///< name of the device for display
+  virtual std::size_t memory_available() const = 0;  ///< free memory [bytes]
 
-  /// Uninitialised memory on the device; throws ConfigError if there is not enough. Not for use inside a
-  /// step. `release` is told as many bytes as were allocated.
+  /// Allocates uninitialised memory on the device; throws ConfigError if there is not enough. Not for use
+  /// inside a step. release() must be given the same number of bytes.
   void* allocate(std::size_t bytes) {
     void* memory = take(bytes);
     bytes_held_ += bytes;
@@ -55,48 +56,49 @@ class Exec {
     give_back(memory);
     bytes_held_ -= bytes;
   }
-  /// What was allocated on the device and not released, less what transforms take for themselves.
+  /// Memory that is allocated on the device [bytes], not counting what FFT libraries allocate for themselves.
   std::size_t bytes_held() const { return bytes_held_; }
-  /// Host memory that copies to and from the device fast (pinned on a GPU).
+  /// Host memory for fast copies to and from the device (pinned on a GPU).
   virtual void* allocate_host(std::size_t bytes) = 0;
   virtual void release_host(void* memory) noexcept = 0;
-  /// Whether the memory of allocate() is the host's own: what laws write there can be read without a copy.
+  /// Whether allocate() returns host memory, so that results can be read without a copy.
   virtual bool shares_memory() const { return false; }
 
-  /// In order with the laws that were started before.
+  /// These run in order with the work that was started before them.
   virtual void set_zero(void* memory, std::size_t bytes) = 0;
   virtual void copy(void* to, const void* from, std::size_t bytes) = 0;  ///< device to device
   virtual void upload(void* to, const void* from,
                       std::size_t bytes) = 0;  ///< returns when `from` may be reused
   virtual void download(void* to, const void* from, std::size_t bytes) = 0;  ///< returns when `to` is filled
 
-  /// Starts a copy to memory of allocate_host() (or, where memory is shared, none from a place to itself),
-  /// which waits for all that was started before, and which all that is started later does not wait for. Not
-  /// for use inside a step. Unless a backend has another way, it is done when this returns.
+  /// Starts a copy to memory of allocate_host(). The copy waits for all work started before it; work started
+  /// later does not wait for the copy. Where memory is shared, `to` may be `from`, and nothing is copied. Not
+  /// for use inside a step. By default, the copy is complete when this returns.
   virtual std::unique_ptr<HostCopy> start_download(void* to, const void* from, std::size_t bytes);
-  /// What is started from here on waits for `copy`, which is one of this Exec's.
+  /// Makes all work that is started from here on wait for `copy`, which must be of this Exec.
   virtual void follow(const HostCopy&) {}
 
-  /// Whether recording work is worth it here.
+  /// Whether recording work is worthwhile on this backend.
   virtual bool records() const { return false; }
-  /// Calls `work` and notes the laws, copies on the device, transforms and loops that it starts, instead of
-  /// doing them. It must not read anything back. Only where records().
+  /// Calls `work`, and records the laws, device copies, transforms and loops that it starts instead of
+  /// executing them. `work` must not read results back. Only where records() is true.
   virtual std::unique_ptr<Recording> record(const std::function<void()>& work);
 
-  /// Calls `body`, which starts the same each time, no transforms, and reads nothing back, again and again
-  /// while the word `*go_on` on the device, which it changes, is not 0. The host looks before each turn, or in
-  /// a recording the device itself.
+  /// Repeats `body` while the word `*go_on` on the device, which `body` changes, is not 0. `body` must start
+  /// the same work each time, no transforms, and must not read results back. The host reads the word before
+  /// each repetition; in a recording the device does.
   virtual void repeat_while(const long long* go_on, const std::function<void()>& body);
-  /// Whether a recording may hold that.
-  virtual bool records_repeats() const { return false; }
+  /// Whether a recording may contain repeat_while().
+  virtual bool can_record_loops() const { return false; }
 
-  /// Waits for all that was started but copies of start_download(); throws CudaError if any of it failed.
+  /// Waits for all work except the copies of start_download(); throws CudaError if any of it failed.
   virtual void synchronise() = 0;
 
-  /// A complex 2-D transform of width × height (x fastest), in place, unnormalised; of `fields` of them at once.
+  /// A complex 2-D transform of width × height values (x fastest), in place and unnormalised, of `fields`
+  /// fields at once.
   virtual std::unique_ptr<Fft> make_fft(int width, int height, int fields = 1) = 0;
-  /// Shared memory that a kernel may take which transforms lines by itself (wind::by_lines()) [bytes]; 0 where
-  /// there is none.
+  /// Shared memory available to a kernel that transforms lines by itself (wind::by_lines()) [bytes]; 0 if the
+  /// device does not support such kernels.
   virtual std::size_t memory_for_lines() const { return 0; }
 
  protected:
@@ -107,12 +109,12 @@ class Exec {
   std::atomic<std::size_t> bytes_held_{0};
 };
 
-/// What the host's memory can still take [bytes], within the limit of its control group.
+/// Memory that the host can still allocate [bytes], within the limit of its control group.
 std::size_t host_memory_available();
 
 class CpuExec final : public Exec {
  public:
-  /// `threads` ≥ 1, or 0 for as many as there are processors.
+  /// `threads` ≥ 1, or 0 for one thread per processor.
   explicit CpuExec(int threads = 0);
   int threads() const { return threads_; }
 
@@ -140,11 +142,11 @@ class CpuExec final : public Exec {
 #if DESERT_WITH_CUDA
 class CudaExec final : public Exec {
  public:
-  /// Takes the current device; throws CudaError if there is none.
+  /// Uses the current device; throws CudaError if there is none.
   CudaExec();
   ~CudaExec() override;
-  /// The stream that all work but copies of start_download() goes to (a cudaStream_t); in a loop that is being
-  /// recorded, the loop's.
+  /// The stream (a cudaStream_t) of all work except the copies of start_download(). While a loop is being
+  /// recorded, it is the stream of the loop's body.
   void* stream() const { return stream_; }
 
   const char* backend() const override { return "cuda"; }
@@ -162,11 +164,11 @@ class CudaExec final : public Exec {
   bool records() const override { return true; }
   std::unique_ptr<Recording> record(const std::function<void()>& work) override;
   void repeat_while(const long long* go_on, const std::function<void()>& body) override;
-  bool records_repeats() const override;
+  bool can_record_loops() const override;
   std::unique_ptr<Fft> make_fft(int width, int height, int fields) override;
   std::size_t memory_for_lines() const override;
 
-  /// One 64-bit word on the device and its pinned mirror, for reductions.
+  /// A 64-bit word on the device for results of reductions, with a pinned mirror on the host.
   long long* reduction_word() const { return reduction_word_; }
   long long read_reduction_word();
 
@@ -177,13 +179,13 @@ class CudaExec final : public Exec {
  private:
   void* stream_ = nullptr;
   void* copy_stream_ = nullptr;
-  void* before_copy_ = nullptr;  ///< a cudaEvent_t: the work that a copy waits for
+  void* before_copy_ = nullptr;  ///< a cudaEvent_t behind the work that a copy waits for
   long long* reduction_word_ = nullptr;
   long long* reduction_host_ = nullptr;
 };
 #endif
 
-/// Calls body(exec) with the backend's own type, for which the processes are compiled.
+/// Calls body(exec) with the backend's concrete type, for which the processes are compiled.
 template <class Body>
 auto with_backend(Exec& exec, Body&& body) {
 #if DESERT_WITH_CUDA
@@ -199,8 +201,8 @@ struct CudaStatus {
 };
 CudaStatus cuda_status();
 
-/// "auto", "cpu" or "cuda". `auto` takes CUDA where it is usable; `cuda` without a device throws ConfigError.
-/// `why`, if given, gets a sentence on what was taken.
+/// Makes the Exec for `backend` = "auto", "cpu" or "cuda". "auto" uses CUDA where possible; "cuda" without a
+/// usable device throws ConfigError. `why`, if given, receives the reason for the choice.
 std::unique_ptr<Exec> make_exec(const std::string& backend, int threads = 0, std::string* why = nullptr);
 
 }  // namespace desert_sim

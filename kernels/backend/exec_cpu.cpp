@@ -23,8 +23,9 @@ std::mutex& planner() {
   return mutex;
 }
 
-/// One thread a field, whatever the Exec has: plans for other numbers of threads may add in another order,
-/// and the hash of a run must not depend on them. The grid of the wind is coarse, so this costs little.
+/// Transforms each field with one thread, however many the Exec has: FFTW's plans for other numbers of
+/// threads may add in another order, and the hash of a run must not depend on that. The wind's grid is
+/// coarse, so this costs little.
 class FftwTransform final : public Fft {
  public:
   FftwTransform(int width, int height, int fields, int threads)
@@ -62,10 +63,10 @@ class FftwTransform final : public Fft {
   fftwf_plan forward_ = nullptr, inverse_ = nullptr;
 };
 
-/// A copy that was done when it was started.
-class DoneCopy final : public HostCopy {
+/// A copy that was complete when it was started.
+class CompletedCopy final : public HostCopy {
  public:
-  explicit DoneCopy(Exec& exec) : exec_(exec) {}
+  explicit CompletedCopy(Exec& exec) : exec_(exec) {}
   void wait() override {}
   void fetch(void* to, const void* from, std::size_t bytes) override {
     if (to != from) exec_.download(to, from, bytes);
@@ -75,11 +76,11 @@ class DoneCopy final : public HostCopy {
   Exec& exec_;
 };
 
-constexpr std::size_t alignment = 64;  // a cache line, and what FFTW's fastest code wants
+constexpr std::size_t alignment = 64;  // a cache line, which also suits FFTW's SIMD code
 
-/// Calls work(begin, size) for parts of so many bytes, by all threads where there is more than one part.
+/// Calls work(begin, size) for parts of 64 KiB; all threads take part if there is more than one part.
 template <class Work>
-void in_parts(std::size_t bytes, int threads, const Work& work) {
+void for_each_chunk(std::size_t bytes, int threads, const Work& work) {
   const std::ptrdiff_t part = 1 << 16, parts = (static_cast<std::ptrdiff_t>(bytes) + part - 1) / part;
 #pragma omp parallel for schedule(static) num_threads(threads) if (parts > 1)
   for (std::ptrdiff_t n = 0; n < parts; ++n) {
@@ -98,13 +99,14 @@ std::size_t machine_memory_available() {
          static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-/// Within the limit of a container (control groups, version 2); its cache of files can be given up.
+/// Memory left within the limit of a container (control groups, version 2). Cached files count as free,
+/// because they can be dropped.
 std::size_t group_memory_available() {
   constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
   const std::string folder = "/sys/fs/cgroup/memory.";
   std::size_t most = 0, used = 0, cached = 0;
   if (!(std::ifstream(folder + "max") >> most) || !(std::ifstream(folder + "current") >> used))
-    return unlimited;  // "max", or no such limit here
+    return unlimited;  // the limit reads "max", or there is no control group
   std::ifstream parts(folder + "stat");
   std::string key;
   std::size_t bytes;
@@ -140,13 +142,13 @@ void* CpuExec::take(std::size_t bytes) {
 void CpuExec::give_back(void* memory) noexcept { ::operator delete(memory, std::align_val_t(alignment)); }
 
 void CpuExec::set_zero(void* memory, std::size_t bytes) {
-  in_parts(bytes, threads_, [=](std::size_t begin, std::size_t size) {
+  for_each_chunk(bytes, threads_, [=](std::size_t begin, std::size_t size) {
     std::memset(static_cast<char*>(memory) + begin, 0, size);
   });
 }
 
 void CpuExec::copy(void* to, const void* from, std::size_t bytes) {
-  in_parts(bytes, threads_, [=](std::size_t begin, std::size_t size) {
+  for_each_chunk(bytes, threads_, [=](std::size_t begin, std::size_t size) {
     std::memcpy(static_cast<char*>(to) + begin, static_cast<const char*>(from) + begin, size);
   });
 }
@@ -156,7 +158,7 @@ std::unique_ptr<Fft> CpuExec::make_fft(int width, int height, int fields) {
 }
 
 std::unique_ptr<HostCopy> Exec::start_download(void* to, const void* from, std::size_t bytes) {
-  auto done = std::make_unique<DoneCopy>(*this);
+  auto done = std::make_unique<CompletedCopy>(*this);
   done->fetch(to, from, bytes);
   return done;
 }

@@ -8,6 +8,7 @@
 #include "kernels/backend/fft.hpp"
 #include "kernels/backend/for_each_cuda.cuh"
 #include "src/core/error.hpp"
+#include "src/core/log.hpp"
 
 namespace desert_sim {
 
@@ -47,13 +48,13 @@ class CufftTransform final : public Fft {
 cudaStream_t as_stream(void* stream) { return static_cast<cudaStream_t>(stream); }
 cudaEvent_t as_event(void* event) { return static_cast<cudaEvent_t>(event); }
 
-/// Destructors and releases cannot throw: they log.
+/// Logs a failure; for destructors and release functions, which must not throw.
 void log_failure(cudaError_t status, const char* what) noexcept {
-  if (status != cudaSuccess)
-    std::fprintf(stderr, "desert_sim: CUDA: %s: %s\n", what, cudaGetErrorString(status));
+  if (status != cudaSuccess) log_error(std::string("CUDA: ") + what + ": " + cudaGetErrorString(status));
 }
 
-/// On a stream of its own; its event sleeps instead of spinning, because who waits is not in a hurry.
+/// A copy on the stream for copies. A thread that waits for its event sleeps instead of spinning, because it
+/// is not in a hurry.
 class CudaCopy final : public HostCopy {
  public:
   explicit CudaCopy(cudaStream_t stream) : stream_(stream) {
@@ -77,7 +78,7 @@ class CudaCopy final : public HostCopy {
   cudaEvent_t done_ = nullptr;
 };
 
-/// A CUDA graph of what a stream was given.
+/// A CUDA graph, captured from a stream.
 class GraphRecording final : public Recording {
  public:
   GraphRecording(cudaStream_t stream, const std::function<void()>& work) : stream_(stream) {
@@ -86,7 +87,7 @@ class GraphRecording final : public Recording {
     try {
       work();
     } catch (...) {
-      cudaStreamEndCapture(stream, &graph);  // its failure is the one that is under way
+      cudaStreamEndCapture(stream, &graph);  // the exception that is under way is what is reported
       if (graph) cudaGraphDestroy(graph);
       throw;
     }
@@ -106,14 +107,15 @@ class GraphRecording final : public Recording {
   cudaGraphExec_t executable_ = nullptr;
 };
 
-#if CUDART_VERSION >= 13000  // the first whose functions for it have these arguments
+#if CUDART_VERSION >= 13000  // the first version in which these functions have these arguments
 __global__ void look(cudaGraphConditionalHandle condition, const long long* go_on) {
   cudaGraphSetConditional(condition, *go_on != 0);
 }
 
-/// Adds a loop to the graph that `stream` notes, whose body is what `body_stream` is given by `body`.
-void note_loop(cudaStream_t stream, cudaStream_t body_stream, const long long* go_on,
-               const std::function<void()>& body) {
+/// Adds a while loop (a conditional node) to the graph that is captured from `stream`. The loop's body is
+/// what `body` sends to `body_stream`.
+void add_while_node(cudaStream_t stream, cudaStream_t body_stream, const long long* go_on,
+                    const std::function<void()>& body) {
   const char* const what = "recording a loop";
   cudaStreamCaptureStatus status;
   unsigned long long id = 0;
@@ -146,7 +148,7 @@ void note_loop(cudaStream_t stream, cudaStream_t body_stream, const long long* g
     look<<<1, 1, 0, body_stream>>>(condition, go_on);
     check_cuda(cudaGetLastError(), what);
   } catch (...) {
-    cudaStreamEndCapture(body_stream, &noted);  // its failure is the one that is under way
+    cudaStreamEndCapture(body_stream, &noted);  // the exception that is under way is what is reported
     throw;
   }
   check_cuda(cudaStreamEndCapture(body_stream, &noted), what);
@@ -271,18 +273,18 @@ std::unique_ptr<Recording> CudaExec::record(const std::function<void()>& work) {
   return std::make_unique<GraphRecording>(as_stream(stream_), work);
 }
 
-bool CudaExec::records_repeats() const { return CUDART_VERSION >= 13000; }
+bool CudaExec::can_record_loops() const { return CUDART_VERSION >= 13000; }
 
 void CudaExec::repeat_while(const long long* go_on, const std::function<void()>& body) {
 #if CUDART_VERSION >= 13000
   cudaStreamCaptureStatus status;
   check_cuda(cudaStreamIsCapturing(as_stream(stream_), &status), "asking whether work is recorded");
   if (status == cudaStreamCaptureStatusActive) {
-    cudaStream_t inner = nullptr;  // a loop in a loop has another
+    cudaStream_t inner = nullptr;  // each nested loop needs another one
     check_cuda(cudaStreamCreateWithFlags(&inner, cudaStreamNonBlocking), "making a stream");
     void* const outer = std::exchange(stream_, inner);
     try {
-      note_loop(as_stream(outer), inner, go_on, body);
+      add_while_node(as_stream(outer), inner, go_on, body);
     } catch (...) {
       stream_ = outer;
       log_failure(cudaStreamDestroy(inner), "ending a stream");
@@ -303,7 +305,7 @@ std::size_t CudaExec::memory_for_lines() const {
     check_cuda(cudaDeviceGetAttribute(&value, what, device), "asking for the device's limits");
     return value;
   };
-  // In graphs, and with parameters that are not copied, only from these on.
+  // Cooperative kernels in graphs, with __grid_constant__ parameters, need at least these versions.
   if (CUDART_VERSION < 12000 || ask(cudaDevAttrComputeCapabilityMajor) < 7 ||
       !ask(cudaDevAttrCooperativeLaunch))
     return 0;

@@ -1,6 +1,6 @@
 #pragma once
-/// The one small interface to FFTW3 (CPU) and cuFFT (GPU). Kernels that transform short lines by themselves do
-/// not need it (line_transform.hpp).
+/// Interface to FFTW3 (CPU) and cuFFT (GPU). Kernels that transform short lines by themselves do not need it
+/// (kernels/wind/tuned/line_transform.hpp).
 
 #include <cstddef>
 
@@ -14,12 +14,16 @@ struct alignas(8) Complex {
 class Fft {
  public:
   virtual ~Fft() = default;
-  /// X̂(k) = Σ x e^(−2πi k·n/N), in place on device memory of width × height values; of as many fields as it
-  /// was made for, one behind the other.
+  /// Forward transform, in place on device memory of width × height values for each field, one field after
+  /// the other:
+  ///
+  ///   X̂(k) = Σ_n x(n) e^(−2πi k·n/N)
   virtual void forward(Complex* values) = 0;
-  /// x = Σ X̂ e^(+2πi k·n/N), without the factor 1/N.
+  /// Inverse transform, without the factor 1/N:
+  ///
+  ///   x(n) = Σ_k X̂(k) e^(+2πi k·n/N)
   virtual void inverse(Complex* values) = 0;
-  /// Device memory that it works in besides the values.
+  /// Device memory of its work area, besides the values [bytes].
   virtual std::size_t bytes() const { return 0; }
 };
 

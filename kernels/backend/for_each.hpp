@@ -1,22 +1,26 @@
 #pragma once
-/// Loops over cells and tiles, the same call on both backends:
+/// Parallel loops over cells and tiles, called in the same way on both backends. A "law" is a function object
+/// that is copied to the device and called for each cell, tile or item:
 ///
 ///     for_each_cell(exec, grid, law);              // law(x, y)
-///     for_each_cell_adding(exec, grid, sums, law); // sums[n] = Σ of what cells send to cell n
-///     for_each_tile(exec, tiles, law);             // law(team, column, row): a team works on a tile
-///     for_each_item(exec, count, law);             // law(n): items in a row
-///     for_each_cell_of_rows(exec, grid, first, rows, law);  // law(x, y): rows first … , over the north edge
+///     for_each_cell_scatter(exec, grid, sums, law); // sums[n] = Σ of the amounts that cells send to cell n
+///     for_each_tile(exec, tiles, law);             // law(team, column, row): threads share a tile
+///     for_each_item(exec, count, law);             // law(n) for n = 0 … count − 1
+///     for_each_cell_of_rows(exec, grid, first, rows, law);  // law(x, y) in `rows` rows from `first` on,
+///                                                           // wrapped over the north edge
 ///     sum_cells(exec, grid, law) -> long long      // Σ law(x, y), exact
-///     max_cells(exec, grid, law) -> float          // max of 0 and law(x, y)
+///     max_cells(exec, grid, law) -> float          // maximum of 0 and all law(x, y)
 ///
-/// Cells of for_each_cell() must not depend on each other: a CPU works on several of a row at once.
+/// The calls of for_each_cell() must not depend on each other: a CPU processes several cells of a row at
+/// once, as SIMD vectors.
 ///
-/// A law that sends amounts to other cells has two parts: law.prepare(x, y, parcels, n) fills the n-th of
-/// Law::Parcels<count>, which is made of arrays, and law.deliver(x, y, parcels, n, add) sends that, with
-/// add(cell, amount), or add.square(…) for four cells beside and above each other. A CPU prepares several
-/// cells at once. Neither part reads `sums`.
+/// A law that sends amounts to other cells has two parts: law.prepare(x, y, parcels, n) fills the nth element
+/// of Law::Parcels<count>, a structure of arrays, and law.deliver(x, y, parcels, n, add) sends it with
+/// add(cell, amount), or with add.square(…) to a square of 2 × 2 cells. A CPU prepares several cells at once.
+/// Neither part may read `sums`.
 ///
-/// The CPU's are in for_each_cpu.hpp, the GPU's in for_each_cuda.cuh; only the backends include them.
+/// The loops are implemented in for_each_cpu.hpp and for_each_cuda.cuh; sources of processes include
+/// loops.hpp.
 
 #include <type_traits>
 
@@ -27,7 +31,7 @@
 
 namespace desert_sim {
 
-/// A law for cells at least `margin` cells away from every edge of the grid, and one for the others.
+/// Combines a law for cells at least `margin` cells away from every edge of the grid with one for all others.
 template <class Inside, class Border>
 struct Bordered {
   Grid grid;
@@ -44,9 +48,9 @@ struct Bordered {
   }
 };
 
-/// A law on a band of rows: it is called for rows that begin with `first`, and go on over the edge.
+/// A law for a band of rows from row `first` on, which continue in the south beyond the north edge.
 template <class Law>
-struct OnRows {
+struct RowBandLaw {
   Law law;
   int first, height;
   DESERT_HD void operator()(int x, int y) const { law(x, wrap(first + y, height)); }
@@ -55,11 +59,11 @@ template <class E, class Law>
 void for_each_cell_of_rows(E& exec, const Grid& grid, int first, int rows, const Law& law) {
   Grid band = grid;
   band.height = rows;
-  for_each_cell(exec, band, OnRows<Law>{law, first, grid.height});
+  for_each_cell(exec, band, RowBandLaw<Law>{law, first, grid.height});
 }
 
-/// body(n) for n = 0 … count − 1 as compile-time constants: loops over cells vectorise only around straight
-/// code.
+/// Calls body(n) for n = 0 … count − 1 as compile-time constants. Loops over cells vectorise only around
+/// straight-line code.
 template <int count, class Body>
 DESERT_HD void unrolled(const Body& body) {
   if constexpr (count > 0) {
@@ -68,27 +72,27 @@ DESERT_HD void unrolled(const Body& body) {
   }
 }
 
-/// Whether a backend works on cells beside each other at once, as vectors: there, what a cell shares with the
-/// one above it is not worth a loop.
+/// Whether a backend processes neighbouring cells of a row at once, as SIMD vectors. There, it does not pay
+/// if a law loops over rows in order to share values between cells above each other.
 template <class E>
-constexpr bool works_on_rows = std::is_same_v<E, CpuExec>;
+constexpr bool vectorises_rows = std::is_same_v<E, CpuExec>;
 
-/// Square tiles over a grid, shifted by an offset so that the seams of one pass lie inside the tiles of the
-/// next.
+/// Square tiles over a grid, shifted by an offset so that the seams of one pass lie inside the tiles of
+/// another.
 struct Tiles {
   static constexpr int side = 32;
   Grid grid;
   int offset = 0;  ///< 0 … side−1: the first tile begins at −offset
 
-  /// Along a periodic axis the first tile also has the last cells, `offset` of them.
+  /// Number of tiles along an axis. On a periodic axis the first tile also holds the last `offset` cells.
   DESERT_HD int across(int cells, bool periodic) const {
     return (cells + (periodic ? 0 : offset) + side - 1) / side;
   }
   DESERT_HD int columns() const { return across(grid.width, grid.periodic_x); }
   DESERT_HD int rows() const { return across(grid.height, grid.periodic_y); }
   DESERT_HD int count() const { return columns() * rows(); }
-  /// The column, and the row, of the tile that cell (x, y) lies in. Beyond the grid: of the cell that stands
-  /// for it.
+  /// Column and row of the tile that cell (x, y) lies in. Places beyond the grid are wrapped or clamped, as
+  /// in sample_index().
   DESERT_HD int column_of(int x) const { return along(x, grid.width, grid.periodic_x); }
   DESERT_HD int row_of(int y) const { return along(y, grid.height, grid.periodic_y); }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Loops over cells and tiles on the CPU, with OpenMP; see for_each.hpp.
+/// Parallel loops on the CPU, with OpenMP; see for_each.hpp.
 
 #include <omp.h>
 
@@ -7,6 +7,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <string>
 #include <vector>
 
 #include "kernels/backend/for_each.hpp"
@@ -14,9 +16,10 @@
 
 namespace desert_sim {
 
-// ---- Instruction sets: inner loops are compiled for several, and the widest that the processor has is
-// taken. The compiler fuses no multiplication with an addition on any of them (-ffp-contract=off): all give
-// the same bits. A law's own fused() is one instruction on all but the oldest.
+// ---- Instruction sets: inner loops are compiled for several ones, and the widest that the processor has is
+// chosen at run time. The compiler fuses no multiplication with an addition on any of them
+// (-ffp-contract=off), so all give the same bits. An explicit fused() is one instruction on all but the
+// oldest.
 
 enum class InstructionSet { oldest, avx2, avx512 };
 
@@ -32,14 +35,23 @@ inline InstructionSet widest_instructions() {
   return InstructionSet::oldest;
 #endif
 }
-inline const InstructionSet instruction_set = widest_instructions();
+/// The widest set that the processor has, or the one that the environment's variable DESERT_INSTRUCTIONS names
+/// (oldest, avx2) if that is less: for benchmarks of what a set brings.
+inline InstructionSet chosen_instructions() {
+  const InstructionSet widest = widest_instructions();
+  const char* const named = std::getenv("DESERT_INSTRUCTIONS");
+  if (!named) return widest;
+  if (std::string(named) == "oldest") return InstructionSet::oldest;
+  return std::string(named) == "avx2" ? std::min(widest, InstructionSet::avx2) : widest;
+}
+inline const InstructionSet instruction_set = chosen_instructions();
 
 #if defined(__x86_64__)
 #define DESERT_FOR_AVX2 __attribute__((noinline, target("avx2,fma")))
 #define DESERT_AVX512 "avx512f,avx512dq,avx512bw,avx512vl,avx2,fma"
 #define DESERT_FOR_AVX512 __attribute__((noinline, target(DESERT_AVX512)))
 #if defined(__clang__)
-#define DESERT_FOR_AVX512_MASKS DESERT_FOR_AVX2  // it cannot be told the width
+#define DESERT_FOR_AVX512_MASKS DESERT_FOR_AVX2  // Clang has no attribute for the preferred width
 #else
 #define DESERT_FOR_AVX512_MASKS __attribute__((noinline, target(DESERT_AVX512 ",prefer-vector-width=256")))
 #endif
@@ -65,39 +77,40 @@ template <class Work>
 DESERT_FOR_AVX512 void with_avx512(const Work& work) {
   work();
 }
-/// Calls work(), a lambda marked DESERT_INLINE, with vectors of at most 256 bits: wider ones made most laws
-/// no quicker, and the wind's slower. What AVX-512 has for choosing between values makes many quicker.
+/// Calls work(), a lambda marked DESERT_INLINE, with vectors of at most 256 bits. Wider ones made most laws
+/// no faster and the wind slower; the masked instructions of AVX-512 make many laws faster.
 template <class Work>
 void with_wide_instructions(const Work& work) {
   if (instruction_set == InstructionSet::oldest) return with_oldest(work);
   if (instruction_set == InstructionSet::avx512) return with_avx512_masks(work);
   with_avx2(work);
 }
-/// Likewise, with the widest. Sweeps of tiles, which are nothing but arithmetic, are a third quicker so.
+/// The same with the widest vectors, which make sweeps of tiles a third faster: these are nothing but
+/// arithmetic.
 template <class Work>
 void with_widest_instructions(const Work& work) {
   if (instruction_set == InstructionSet::avx512) return with_avx512(work);
   with_wide_instructions(work);
 }
 
-/// One thread as the whole team that works on a tile.
+/// One thread as the team that works on a tile.
 struct CpuTeam {
-  static constexpr int patches_at_once = 8;  ///< patches of a tile that lie beside each other, as vectors
+  static constexpr int patch_lanes = 8;  ///< patches beside each other that form a vector
   char* scratch;
 
-  /// Calls body(i) for i in 0…n−1; all of it is done when it returns.
+  /// Calls body(i) for i in 0…n−1. All calls are complete when it returns.
   template <class Body>
   DESERT_HD void for_each(int n, const Body& body) const {
     for (int i = 0; i < n; ++i) body(i);
   }
-  /// The least of value(i) for i in 0…n−1.
+  /// Minimum of value(i) for i in 0…n−1.
   template <class Value>
   DESERT_HD int lowest(int n, const Value& value) const {
     int least = value(0);
     for (int i = 1; i < n; ++i) least = value(i) < least ? value(i) : least;
     return least;
   }
-  /// Calls value(i) once for each i in 0…n−1; the greatest, at least 0.
+  /// Maximum of 0 and value(i) for i in 0…n−1; value(i) is called exactly once for each i.
   template <class Value>
   DESERT_HD float most(int n, const Value& value) const {
     float greatest = 0;
@@ -107,7 +120,7 @@ struct CpuTeam {
     }
     return greatest;
   }
-  /// Both for x in 0…width−1 and y in 0…height−1, which do not depend on each other.
+  /// The same for x in 0…width−1 and y in 0…height−1; the calls must not depend on each other.
   template <class Body>
   DESERT_HD void for_each(int width, int height, const Body& body) const {
     for (int y = 0; y < height; ++y) {
@@ -127,13 +140,13 @@ struct CpuTeam {
     }
     return least;
   }
-  /// Calls body(y) for the rows of a tile; all are done when it returns.
+  /// Calls body(y) for each row of a tile. All calls are complete when it returns.
   template <class Body>
   DESERT_HD void for_each_row(const Body& body) const {
     for (int y = 0; y < Tiles::side; ++y) body(y);
   }
-  /// Inside a row: body(n, k) for the cells n · count + k, which do not depend on each other; k is a
-  /// compile-time constant if that is of use.
+  /// Inside a row: calls body(n, k) for the cells n · count + k, which must not depend on each other. k is a
+  /// compile-time constant here, but not on a GPU.
   template <int count, class Body>
   DESERT_HD void for_each_in_row(const Body& body) const {
 #pragma omp simd
@@ -141,15 +154,15 @@ struct CpuTeam {
   }
 };
 
-/// Below so many cells, waking other threads costs more than they bring.
+/// Grids with fewer cells are left to one thread, because waking others costs more than it saves.
 constexpr int worth_threads = 16384;
 
-/// Pieces of work, 0 … count − 1, for the threads of a team. Each takes its own part, a few at a time, and
-/// then of the others' what these have not come to: the rest do not wait for a thread whose processor is
-/// taken from it, and where all goes well, each works on the same memory in every pass.
-class SharedWork {
+/// Work items 0 … count − 1, shared by the threads of a team (work stealing). Each thread takes items of its
+/// own part, a few at a time, and then those that are left of other parts. Threads thus do not wait for one
+/// that has lost its processor, and otherwise each works on the same memory in every pass.
+class WorkStealingRange {
  public:
-  SharedWork(int threads, int count) : parts_(std::clamp(threads, 1, most_parts)) {
+  WorkStealingRange(int threads, int count) : parts_(std::clamp(threads, 1, most_parts)) {
     const auto start = [&](int part) { return std::int64_t{count} * part / parts_; };
     for (int n = 0; n < parts_; ++n) {
       part_[n].next = start(n);
@@ -157,7 +170,7 @@ class SharedWork {
     }
     at_once_ = std::max(1, count / (parts_ * 16));
   }
-  /// On each thread of the team: calls body(n) until there is nothing left to take.
+  /// To be called by each thread of the team: calls body(n) until no items are left.
   template <class Body>
   void work(const Body& body) {
     const int own = omp_get_thread_num();
@@ -183,8 +196,8 @@ class SharedWork {
   Part part_[most_parts];
 };
 
-/// Calls law(x, y) for x in first … end−1. The law is copied, so that the compiler sees that no cell changes
-/// it.
+/// Calls law(x, y) for x in first … end−1. The law is copied to a local variable, so that the compiler sees
+/// that no cell changes it.
 template <class Law>
 void for_each_in_row(const Law& law, int first, int end, int y) {
   with_wide_instructions([&]() DESERT_INLINE {
@@ -197,14 +210,14 @@ void for_each_in_row(const Law& law, int first, int end, int y) {
 
 template <class Law>
 void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
-  SharedWork rows(exec.threads(), grid.height);
+  WorkStealingRange rows(exec.threads(), grid.height);
 #pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
   rows.work([&](int y) { for_each_in_row(law, 0, grid.width, y); });
 }
 
 template <class Inside, class Border>
 void for_each_cell(CpuExec& exec, const Grid& grid, const Bordered<Inside, Border>& law) {
-  SharedWork rows(exec.threads(), grid.height);
+  WorkStealingRange rows(exec.threads(), grid.height);
 #pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
   rows.work([&](int y) {
     const bool inside = law.is_inside(y, grid.height);
@@ -216,7 +229,7 @@ void for_each_cell(CpuExec& exec, const Grid& grid, const Bordered<Inside, Borde
   });
 }
 
-/// The cells of a row send what they have to `add`.
+/// Lets the cells of a row send their amounts through `add`.
 template <class Law, class Add>
 void add_row(const Law& law, int width, int y, const Add& add) {
   with_wide_instructions([&]() DESERT_INLINE {
@@ -234,8 +247,9 @@ void add_row(const Law& law, int width, int y, const Add& add) {
   });
 }
 
-/// Adds to the cells of the rows that a thread works on. What goes to others' rows is kept for when these are
-/// done with them. (With locked additions everywhere, saltation took three times as long.)
+/// Adds amounts to the cells of the band of rows that a thread owns. Amounts for other bands are kept until
+/// all threads are done with their own bands. (With atomic additions everywhere, saltation took three times
+/// as long.)
 struct AddToBand {
   struct Kept {
     int cell;
@@ -264,7 +278,7 @@ struct AddToBand {
 };
 
 template <class Law>
-void for_each_cell_adding(CpuExec& exec, const Grid& grid, Quanta* sums, const Law& law) {
+void for_each_cell_scatter(CpuExec& exec, const Grid& grid, Quanta* sums, const Law& law) {
 #pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
   {
     const int thread = omp_get_thread_num(), threads = omp_get_num_threads();
@@ -282,11 +296,11 @@ void for_each_cell_adding(CpuExec& exec, const Grid& grid, Quanta* sums, const L
   }
 }
 
-/// `Law::scratch_bytes<Team>` of memory are shared by the team; law(team, column, row).
+/// Calls law(team, column, row) for each tile. The team shares `Law::scratch_bytes<Team>` bytes of memory.
 template <class Tiling, class Law>
 void for_each_tile(CpuExec& exec, const Tiling& tiles, const Law& law) {
   const int columns = tiles.columns();
-  SharedWork all(exec.threads(), tiles.count());
+  WorkStealingRange all(exec.threads(), tiles.count());
 #pragma omp parallel num_threads(exec.threads()) if (tiles.grid.cells() >= worth_threads)
   {
     alignas(64) char scratch[Law::template scratch_bytes<CpuTeam>];
@@ -297,7 +311,7 @@ void for_each_tile(CpuExec& exec, const Tiling& tiles, const Law& law) {
   }
 }
 
-/// Items are as much work as hundreds of cells.
+/// Calls law(n) for each item. An item is taken to be as much work as hundreds of cells.
 template <class Law>
 void for_each_item(CpuExec& exec, int count, const Law& law) {
   constexpr int worth = 256;

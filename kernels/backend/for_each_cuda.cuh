@@ -1,5 +1,5 @@
 #pragma once
-/// Loops over cells and tiles on the GPU; see for_each.hpp.
+/// Parallel loops on the GPU; see for_each.hpp.
 
 #include <cuda_runtime.h>
 
@@ -31,9 +31,9 @@ struct CompactWarps : std::false_type {};
 template <class Law>
 struct CompactWarps<Law, std::enable_if_t<Law::compact_warps>> : std::true_type {};
 
-/// A warp works on 32 × 1 cells, and eight are a block. Of a law that says `compact_warps` a warp works on 8
-/// × 4, and two are a block: some of its warps take much longer than others, and a block's room is free when
-/// all are done.
+/// Warps of a thread block. A warp usually covers 32 × 1 cells, and a block has eight. If a law defines
+/// `compact_warps`, because some warps take much longer than others, a warp covers 8 × 4 cells and a block
+/// has two: a block's resources are only freed when all of its warps are done.
 template <class Law>
 constexpr int warps_a_block = CompactWarps<Law>::value ? 2 : block_y;
 
@@ -58,8 +58,9 @@ struct AtomicSums {
   DESERT_HD void operator()(int cell, Quanta amount) const {
     if (amount != 0) atomic_add(&sums[cell], amount);
   }
-  /// To cell `south`, the one east of it, and those north of the two. A neighbour's eastern cells mostly are
-  /// this thread's western ones: then that one's share is handed on, and added with this one's.
+  /// Adds to cell `south`, to the one east of it, and to those north of these two. This thread's eastern
+  /// cells are mostly the next thread's western ones: then the next thread takes over the eastern amounts by
+  /// a warp shuffle, and adds them together with its own.
   DESERT_HD void square(int south, int width, Quanta south_west, Quanta south_east, Quanta north_west,
                         Quanta north_east) const {
 #if defined(__CUDA_ARCH__)
@@ -75,14 +76,14 @@ struct AtomicSums {
       (*this)(south + 1, south_east);
       (*this)(south + width + 1, north_east);
     }
-#else  // laws are made for the CPU, too, where nobody calls this
+#else  // laws are compiled for the host, too, which never calls this
     (void)south, (void)width, (void)south_west, (void)south_east, (void)north_west, (void)north_east;
 #endif
   }
 };
 
 template <class Law>
-struct AddingLaw {
+struct ScatterLaw {
   static constexpr bool compact_warps = CompactWarps<Law>::value;
   Law law;
   AtomicSums add;
@@ -93,10 +94,10 @@ struct AddingLaw {
   }
 };
 
-/// The 256 threads of a block as the team that works on a tile. (Marked host too, because laws are; empty
-/// there.)
+/// The 256 threads of a block as the team that works on a tile. Its functions do what those of CpuTeam do.
+/// They are marked for the host because laws are, but are empty there.
 struct Team {
-  static constexpr int patches_at_once = 1;
+  static constexpr int patch_lanes = 1;
   char* scratch;
 
   template <class Body>
@@ -128,7 +129,7 @@ struct Team {
   DESERT_HD float most(int n, const Value& value) const {
     float greatest = 0;
 #if defined(__CUDA_ARCH__)
-    __shared__ int bits;  // of floats that are not negative, which order like their bits
+    __shared__ int bits;  // floats that are not negative compare like their bits
     for (int i = threadIdx.y * block_x + threadIdx.x; i < n; i += block_x * block_y)
       greatest = fmaxf(greatest, value(i));
     if (threadIdx.x == 0 && threadIdx.y == 0) bits = 0;
@@ -148,7 +149,7 @@ struct Team {
   DESERT_HD int lowest(int width, int height, const Value& value) const {
     return lowest(width * height, [&](int i) { return value(i % width, i / width); });
   }
-  /// A warp a row.
+  /// Each warp takes one row at a time.
   template <class Body>
   DESERT_HD void for_each_row(const Body& body) const {
 #if defined(__CUDA_ARCH__)
@@ -188,7 +189,7 @@ __global__ void sum_kernel(Grid grid, Law law, long long* total) {
   if (threadIdx.x == 0 && mine != 0) atomic_add(total, mine);
 }
 
-/// Non-negative floats order like their bits.
+/// The maximum of the floats' bits, because floats that are not negative compare like their bits.
 template <class Law>
 __global__ void max_kernel(Grid grid, Law law, long long* largest) {
   float mine = 0;
@@ -217,9 +218,9 @@ void for_each_cell(CudaExec& exec, const Grid& grid, const Law& law) {
 }
 
 template <class Law>
-void for_each_cell_adding(CudaExec& exec, const Grid& grid, Quanta* sums, const Law& law) {
+void for_each_cell_scatter(CudaExec& exec, const Grid& grid, Quanta* sums, const Law& law) {
   exec.set_zero(sums, sizeof(Quanta) * static_cast<std::size_t>(grid.cells()));
-  for_each_cell(exec, grid, cuda::AddingLaw<Law>{law, {sums}});
+  for_each_cell(exec, grid, cuda::ScatterLaw<Law>{law, {sums}});
 }
 
 template <class Tiling, class Law>

@@ -1,6 +1,6 @@
 #pragma once
-/// Putting items in order by a number, and counting places for them: a radix sort and prefix sums, CUB's on
-/// the GPU. Both give the same result on every backend with any number of threads.
+/// Stable radix sort and prefix sums; on the GPU those of CUB. Results are the same on every backend and with
+/// any number of threads.
 
 #include <cstdint>
 
@@ -8,29 +8,29 @@
 
 namespace desert_sim {
 
-/// Memory for ordering up to `items` items and for sums over up to `values` values.
-struct Ordering {
-  /// Each has the number to sort by in its upper half, and an item's own number in the lower.
+/// Work memory for sorting up to `items` items, and for prefix sums over up to `values` values.
+struct SortWorkspace {
+  /// Each word has an item's key in its upper 32 bits, and the item's number in the lower 32.
   Buffer<std::uint64_t> words, other;
   Buffer<char> temporary;
 
-  Ordering() = default;
-  Ordering(Exec& exec, int items, int values);
+  SortWorkspace() = default;
+  SortWorkspace(Exec& exec, int items, int values);
   std::size_t bytes() const { return words.bytes() + other.bytes() + temporary.bytes(); }
 };
 
-/// Sorts the first `count` of ordering.words by their upper half, of which the lowest `bits` bits count.
-/// Items of the same number keep their order.
-void sort_words(CpuExec& exec, Ordering& ordering, int count, int bits);
-/// sums[n] = Σ of values[0 … n − 1], for n = 0 … count − 1.
-void prefix_sums(CpuExec& exec, Ordering& ordering, const int* values, int* sums, int count);
+/// Sorts the first `count` of ordering.words by their keys, of which only the lowest `bits` bits count. The
+/// sort is stable: items with the same key keep their order.
+void sort_by_key(CpuExec& exec, SortWorkspace& ordering, int count, int bits);
+/// Exclusive prefix sums: sums[n] = Σ values[0 … n − 1] for n = 0 … count − 1.
+void prefix_sums(CpuExec& exec, SortWorkspace& ordering, const int* values, int* sums, int count);
 #if DESERT_WITH_CUDA
-void sort_words(CudaExec& exec, Ordering& ordering, int count, int bits);
-void prefix_sums(CudaExec& exec, Ordering& ordering, const int* values, int* sums, int count);
+void sort_by_key(CudaExec& exec, SortWorkspace& ordering, int count, int bits);
+void prefix_sums(CudaExec& exec, SortWorkspace& ordering, const int* values, int* sums, int count);
 #endif
 
-/// How many bits numbers up to `most` have.
-constexpr int bits_up_to(std::uint32_t most) {
+/// Number of bits of integers from 0 to `most`.
+constexpr int bit_width_of(std::uint32_t most) {
   int bits = 1;
   while (bits < 32 && (most >> bits) != 0) ++bits;
   return bits;

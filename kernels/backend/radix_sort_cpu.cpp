@@ -12,14 +12,14 @@ namespace desert_sim {
 namespace {
 
 constexpr int digit_bits = 8, digits = 1 << digit_bits;
-/// Below so many items, waking other threads costs more than they bring.
+/// Fewer items than this are left to one thread, because waking others costs more than it saves.
 constexpr int worth_threads = 1 << 14;
 
 int teams_for(const CpuExec& exec, int count) { return count < worth_threads ? 1 : exec.threads(); }
 int part(int count, int n, int parts) { return static_cast<int>(static_cast<long long>(count) * n / parts); }
 
-/// One pass of a radix sort: each part of the items counts its digits, and puts its items behind those of
-/// lower digits, and of the same digit in parts before it.
+/// One pass of a radix sort. Each part of the items counts its digits and then scatters its items: behind all
+/// items of lower digits, and behind those of the same digit in earlier parts.
 void sort_by_digit(const std::uint64_t* from, std::uint64_t* to, int count, int shift, int parts) {
   std::vector<std::array<int, digits>> places(static_cast<std::size_t>(parts));
   const auto digit = [shift](std::uint64_t word) {
@@ -44,14 +44,14 @@ void sort_by_digit(const std::uint64_t* from, std::uint64_t* to, int count, int 
 
 }  // namespace
 
-Ordering::Ordering(Exec& exec, int items, int values)
+SortWorkspace::SortWorkspace(Exec& exec, int items, int values)
     : words(exec, static_cast<std::size_t>(items)),
       other(exec, static_cast<std::size_t>(items)),
-      // More than CUB asks for; sort_words() and prefix_sums() see to that.
+      // More than CUB needs; on the GPU sort_by_key() and prefix_sums() check this.
       temporary(exec, (std::size_t{1} << 16) + 2 * static_cast<std::size_t>(items) +
                           static_cast<std::size_t>(values) / 8) {}
 
-void sort_words(CpuExec& exec, Ordering& ordering, int count, int bits) {
+void sort_by_key(CpuExec& exec, SortWorkspace& ordering, int count, int bits) {
   const int parts = teams_for(exec, count);
   for (int shift = 32; shift < 32 + bits; shift += digit_bits) {
     sort_by_digit(ordering.words.data(), ordering.other.data(), count, shift, parts);
@@ -59,7 +59,7 @@ void sort_words(CpuExec& exec, Ordering& ordering, int count, int bits) {
   }
 }
 
-void prefix_sums(CpuExec& exec, Ordering&, const int* values, int* sums, int count) {
+void prefix_sums(CpuExec& exec, SortWorkspace&, const int* values, int* sums, int count) {
   const int parts = teams_for(exec, count);
   std::vector<int> before(static_cast<std::size_t>(parts) + 1, 0);
 #pragma omp parallel for schedule(static) num_threads(parts) if (parts > 1)

@@ -9,9 +9,10 @@ namespace desert_sim {
 
 namespace {
 
-/// Calls work(memory, bytes) as CUB wants it: first to learn how much memory it takes, then with that.
+/// Calls work(memory, bytes) twice, as CUB requires: first to learn how much temporary memory it needs, then
+/// with that memory.
 template <class Work>
-void with_temporary(const Ordering& ordering, const char* what, const Work& work) {
+void with_temporary(const SortWorkspace& ordering, const char* what, const Work& work) {
   std::size_t bytes = 0;
   check_cuda(work(nullptr, bytes), what);
   if (bytes > ordering.temporary.bytes())
@@ -23,7 +24,7 @@ void with_temporary(const Ordering& ordering, const char* what, const Work& work
 
 }  // namespace
 
-void sort_words(CudaExec& exec, Ordering& ordering, int count, int bits) {
+void sort_by_key(CudaExec& exec, SortWorkspace& ordering, int count, int bits) {
   cub::DoubleBuffer<std::uint64_t> words(ordering.words.data(), ordering.other.data());
   with_temporary(ordering, "sorting", [&](void* memory, std::size_t& bytes) {
     return cub::DeviceRadixSort::SortKeys(memory, bytes, words, count, 32, 32 + bits, cuda::stream(exec));
@@ -31,7 +32,7 @@ void sort_words(CudaExec& exec, Ordering& ordering, int count, int bits) {
   if (words.Current() != ordering.words.data()) ordering.words.swap(ordering.other);
 }
 
-void prefix_sums(CudaExec& exec, Ordering& ordering, const int* values, int* sums, int count) {
+void prefix_sums(CudaExec& exec, SortWorkspace& ordering, const int* values, int* sums, int count) {
   with_temporary(ordering, "summing", [&](void* memory, std::size_t& bytes) {
     return cub::DeviceScan::ExclusiveSum(memory, bytes, values, sums, count, cuda::stream(exec));
   });

@@ -1,4 +1,4 @@
-/// The laws and the step of brush.hpp; compiled once for each backend.
+/// Laws and functions of brush.hpp; compiled once for each backend.
 #include "kernels/edit/brush.hpp"
 
 #include "kernels/backend/for_each.hpp"
@@ -20,7 +20,7 @@ struct Change {
   }
 };
 
-/// What each cell of the ring holds; −1 in cells that are not of the ring.
+/// Material in each cell of the ring; −1 in cells outside the ring.
 struct RingStock {
   Brush b;
   Quanta* stock;
@@ -28,7 +28,7 @@ struct RingStock {
     const int i = b.cell(x, y);
     const Point p = b.point(x, y);
     const bool in_ring = i >= 0 && b.shape.covers(p, b.ring) && !b.shape.covers(p, 0.0f);
-    // Rock goes down as far as heights do: any ring of it has enough.
+    // Rock reaches down to the lowest height, so that a ring of it always has enough.
     stock[y * b.columns + x] = !in_ring ? -1 : (b.depth ? b.layer[i] : wall_height);
   }
 };
@@ -56,7 +56,7 @@ struct Sum {
 struct Book {
   Brush b;
   const Quanta* change;
-  bool moved;  ///< within the layer: nothing comes in or goes out
+  bool moved;  ///< material stays within the layer, so nothing is booked
   DESERT_HD void operator()(int x, int y) const {
     const Quanta c = change[y * b.columns + x];
     if (c == 0) return;

@@ -1,13 +1,14 @@
 #pragma once
-/// A brush that edits a layer of material, with the weight w of its shape (brush_shape.hpp) in a cell:
+/// A brush that edits a layer of material. w is the weight of its shape in a cell (brush_shape.hpp), v the
+/// cell's value:
 ///
 ///   add, sub          v ± w · value
 ///   replace           lerp(v, value, w)
 ///   min, max, avg     lerp(v, min(v, value) | max(v, value) | ½(v + value), w)
-///   smooth            lerp(v, mean of v over a square, w), several times (brush_smooth.hpp)
+///   smooth            lerp(v, mean of v over a square, w), repeated (brush_smooth.hpp)
 ///
-/// An edit is worked out as a change of each cell of the brush's rectangle, checked, and then booked: depths
-/// stop at 0; what is added and removed is in and out of the material.
+/// An edit is computed as the change of each cell in the brush's rectangle, checked, and then booked. Depths
+/// do not fall below 0. What is added or removed is booked as in or out of the material.
 
 #include "kernels/edit/brush_shape.hpp"
 #include "kernels/field/layers.hpp"
@@ -20,13 +21,13 @@ constexpr const char* brush_merges[] = {"add", "sub", "replace", "min", "max", "
 
 namespace brush {
 
-/// Buffers of the brush have one value a cell of its rectangle, row-major: `columns` × `rows`.
+/// A brush on a grid. Its buffers have one value a cell of its rectangle, row-major: `columns` × `rows`.
 struct Brush {
   Grid grid;
-  int x0, y0, columns, rows;  ///< cells it may touch, before wrapping
+  int x0, y0, columns, rows;  ///< rectangle of the cells it may touch, before wrapping
   float centre_x, centre_y;   ///< of the shape [cells]
   Shape shape;
-  float ring;  ///< width of the ring around the shape that gives and takes [cells]; 0: none
+  float ring;  ///< width of the ring that gives and takes material [cells]; 0: none
   BrushMerge merge;
   double value;  ///< quanta (above the datum for bedrock)
   double quanta_per_metre;
@@ -40,7 +41,7 @@ struct Brush {
   DESERT_HD int cell(int x, int y) const { return neighbour_index(grid, x0 + x, y0 + y); }
   DESERT_HD Point point(int x, int y) const { return {x0 + x + 0.5f - centre_x, y0 + y + 0.5f - centre_y}; }
 
-  /// New value of a cell [quanta]; never more than a cell can hold.
+  /// New value of a cell [quanta], limited to what a cell can hold.
   DESERT_HD Quanta edited(int i, Point p, float w) const {
     const double v = layer[i], here = value + quanta_per_metre * shape.height(p);
     double target = here;
@@ -56,21 +57,21 @@ struct Brush {
   }
 };
 
-/// What the brush does to each cell, by every merge but smooth.
+/// Writes the change of each cell to `change`, for every merge but smooth.
 template <class E>
 void merge(E& exec, const Brush& b, Quanta* change);
 
 template <class E>
 void ring_stock(E& exec, const Brush& b, Quanta* stock);
 
-/// How many cells the change would raise or lower beyond what the height scale holds.
+/// Number of cells that the change would raise or lower beyond the limit of the height scale.
 template <class E>
 long long cells_beyond_limit(E& exec, const Brush& b, const Quanta* change);
 
 template <class E>
 long long total(E& exec, const Brush& b, const Quanta* change);
 
-/// Makes the change. `moved`: its sum is 0, and material only goes from cell to cell.
+/// Applies the change. `moved`: it sums to 0, because material only moves from cell to cell.
 template <class E>
 void book(E& exec, const Brush& b, const Quanta* change, bool moved);
 

@@ -1,15 +1,15 @@
 #pragma once
-/// The shapes of a brush: which cells it covers and with what weight, 0 … 1. Lengths in cells; a shape's
-/// coordinates count from the centre of the rectangle that bounds it.
+/// The shapes of a brush: which cells it covers, and with what weight, 0 … 1. Lengths are in cells; a shape's
+/// coordinates u (along its angle) and v (across) count from the centre of the rectangle that bounds it.
 ///
-///   circle, ellipse   r = |(u/a, v/b)|             u along the shape's angle, v across
+///   circle, ellipse   r = |(u/a, v/b)|
 ///   rectangle         r = max(|u|/a, |v|/b)
 ///   capsule           r = distance to the stroke's axis / a
 ///   polygon           inside by the even-odd rule; depth = distance to its nearest edge
 ///   patch             a rectangle; depth = distance to its nearest edge
 ///
-/// With r, the weight is 1 up to `inner` and falls linearly to 0 at r = 1. With a depth, it rises linearly
-/// from 0 at the edge to 1 at depth `falloff`.
+/// A shape with r has weight 1 up to r = `inner`, from where it falls linearly to 0 at r = 1. The weight of a
+/// shape with a depth rises linearly from 0 at the edge to 1 at depth `falloff`.
 
 #include "kernels/field/math.hpp"
 
@@ -18,7 +18,7 @@ namespace desert_sim {
 enum class BrushShape : int { circle, ellipse, rectangle, polygon, capsule, patch };
 constexpr const char* brush_shapes[] = {"circle", "ellipse", "rectangle", "polygon", "capsule", "patch"};
 
-/// What the values of a patch are: heights that are added to the brush's value, or weights.
+/// Meaning of the values of a patch: heights that are added to the brush's value, or weights.
 enum class PatchUse : int { heights, mask };
 constexpr const char* patch_uses[] = {"heights", "mask"};
 
@@ -28,7 +28,7 @@ struct Point {
   float x, y;
 };
 
-/// A point's distance to the segment from `from` to `to`.
+/// Distance from a point to the segment between `from` and `to`.
 DESERT_HD float distance_to_segment(Point p, Point from, Point to) {
   const float dx = to.x - from.x, dy = to.y - from.y, px = p.x - from.x, py = p.y - from.y;
   const float length2 = dx * dx + dy * dy;
@@ -36,13 +36,13 @@ DESERT_HD float distance_to_segment(Point p, Point from, Point to) {
   return hypotenuse(px - t * dx, py - t * dy);
 }
 
-/// Values on a grid of their own; row 0 lies at the side of +v, as the top row of a picture does.
+/// Values on a grid of their own. Row 0 lies on the side of +v, like the top row of a picture.
 struct PatchView {
   const float* values;
   int columns, rows;
 
-  /// Bilinear between the centres of the values, and the outermost values beyond them; across and down are
-  /// 0 … 1.
+  /// Bilinear interpolation between the centres of the values, constant beyond the outermost; `across` and
+  /// `down` are 0 … 1.
   DESERT_HD float at(float across, float down) const {
     const float x = clamp(across * columns - 0.5f, 0.0f, static_cast<float>(columns - 1));
     const float y = clamp(down * rows - 0.5f, 0.0f, static_cast<float>(rows - 1));
@@ -56,10 +56,10 @@ struct PatchView {
 
 struct Shape {
   BrushShape kind;
-  float a, b;      ///< semi-axes or half sides; of a capsule a is the radius
+  float a, b;      ///< semi-axes or half sides; a is the radius of a capsule
   float cos, sin;  ///< of the angle of the first axis
   float inner, falloff;
-  const Point* vertices;  ///< of a polygon its vertices, of a capsule the two ends of its axis
+  const Point* vertices;  ///< vertices of a polygon, or the two ends of a capsule's axis
   int count;
   PatchUse use;
   PatchView patch;
@@ -68,7 +68,7 @@ struct Shape {
   DESERT_HD float across(Point p) const { return p.y * cos - p.x * sin; }
   DESERT_HD bool has_depth() const { return kind == BrushShape::polygon || kind == BrushShape::patch; }
 
-  /// Relative distance from the middle, 1 on the edge of the shape grown by `by`.
+  /// Relative distance from the centre: 1 on the edge of the shape grown by `by` cells.
   DESERT_HD float relative(Point p, float by) const {
     if (kind == BrushShape::capsule) return distance_to_segment(p, vertices[0], vertices[1]) / (a + by);
     const float u = along(p) / (a + by), v = across(p) / (b + by);

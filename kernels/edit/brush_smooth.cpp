@@ -1,4 +1,4 @@
-/// The laws and the step of brush_smooth.hpp; compiled once for each backend.
+/// Laws and step of brush_smooth.hpp; compiled once for each backend.
 #include "kernels/edit/brush_smooth.hpp"
 
 #include "kernels/backend/buffer.hpp"
@@ -7,14 +7,14 @@
 
 namespace desert_sim::brush {
 
-/// How many of the cells at − r … at + r there are.
+/// How many of the cells from at − r to at + r exist on an axis of n cells.
 DESERT_HD int cells_around(int at, int r, int n, bool periodic) {
   if (periodic) return 2 * r + 1;
   const int low = at - r < 0 ? 0 : at - r, high = at + r >= n ? n - 1 : at + r;
   return high - low + 1;
 }
 
-/// Sums along x, for the brush's rows and `radius` more on both sides.
+/// Sums along x, for the brush's rows and `radius` more rows on both sides.
 struct RowSums {
   Brush b;
   int radius;
@@ -49,7 +49,7 @@ struct Blend {
   }
 };
 
-struct TakeOver {
+struct CopyBack {
   Brush b;
   const Quanta* blended;
   Quanta* values;
@@ -59,7 +59,7 @@ struct TakeOver {
   }
 };
 
-struct ChangeTo {
+struct ComputeChange {
   Brush b;
   const Quanta* values;
   Quanta* change;
@@ -76,9 +76,9 @@ void smooth(E& exec, const Brush& b, int radius, int passes, SmoothWorkspace& wo
   for (int n = 0; n < passes; ++n) {
     for_each_cell(exec, sums, RowSums{b, radius, work.values.data(), work.sums.data()});
     for_each_cell(exec, b.area(), Blend{b, radius, work.values.data(), work.sums.data(), change});
-    for_each_cell(exec, b.area(), TakeOver{b, change, work.values.data()});
+    for_each_cell(exec, b.area(), CopyBack{b, change, work.values.data()});
   }
-  for_each_cell(exec, b.area(), ChangeTo{b, work.values.data(), change});
+  for_each_cell(exec, b.area(), ComputeChange{b, work.values.data(), change});
 }
 
 template void smooth(Backend&, const Brush&, int, int, SmoothWorkspace&, Quanta*);

@@ -1,21 +1,25 @@
 #pragma once
-/// The brush's merge `smooth`: by its weight, a cell moves towards the mean of the (2r + 1)² cells around it;
-/// repeated. Every pass sees what the pass before left. Means wrap over periodic borders and take the cells
-/// that there are at open ones.
+/// The brush's merge `smooth`: in each pass, a cell's value v moves by the shape's weight w towards the mean
+/// of the (2r + 1)² cells around it,
+///
+///   v ← v + w (mean(v) − v)
+///
+/// starting from the result of the pass before. Means wrap over periodic borders, and take only the existing
+/// cells at open ones.
 
 #include "kernels/backend/buffer.hpp"
 #include "kernels/edit/brush.hpp"
 
 namespace desert_sim::brush {
 
-/// Scratch: `values` one a cell of the terrain, `sums` one a cell of the brush's rectangle grown by `radius`
-/// above and below.
+/// Work buffers: `values` has one value a cell of the terrain, `sums` one a cell of the brush's rectangle,
+/// extended by `radius` rows in the north and south.
 struct SmoothWorkspace {
   Buffer<Quanta> values;
   Buffer<long long> sums;
 };
 
-/// What smoothing does to each cell.
+/// Writes the change of each cell after `passes` passes to `change`.
 template <class E>
 void smooth(E& exec, const Brush& b, int radius, int passes, SmoothWorkspace& work, Quanta* change);
 

@@ -13,7 +13,7 @@ struct CellBox {
   DESERT_HD bool has(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
   int width() const { return x1 - x0; }
   int height() const { return y1 - y0; }
-  /// The smallest box that has both.
+  /// The smallest box that contains both.
   DESERT_HD CellBox with(const CellBox& other) const {
     if (empty()) return other;
     if (other.empty()) return *this;

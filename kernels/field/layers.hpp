@@ -1,5 +1,5 @@
 #pragma once
-/// The one table of layers, and the plain view of them that laws work on.
+/// The table of layers, and the view of them that is passed to laws.
 
 #include <array>
 #include <cstdint>
@@ -47,9 +47,9 @@ enum class Layer : int {
 
 enum class Storage { quanta, real };  ///< fixed-point metres, or float32; both four bytes
 enum class Lifetime {
-  persistent,  ///< the state
-  derived,     ///< follows from it, for the processes of a step
-  on_request   ///< follows from it, for who looks: computed only when a snapshot asks for it
+  persistent,  ///< part of the state
+  derived,     ///< computed from the state for the processes of a step
+  on_request   ///< computed from the state only when a snapshot needs it
 };
 
 struct LayerInfo {
@@ -131,10 +131,18 @@ constexpr std::array<LayerInfo, 32> layer_table{{
 }};
 constexpr int layer_count = static_cast<int>(layer_table.size());
 
+/// Whether each row stands where its layer's number says: info() looks rows up by that number.
+constexpr bool layer_table_is_ordered() {
+  for (std::size_t n = 0; n < layer_table.size(); ++n)
+    if (static_cast<std::size_t>(layer_table[n].layer) != n) return false;
+  return true;
+}
+static_assert(layer_table_is_ordered());
+
 constexpr const LayerInfo& info(Layer layer) { return layer_table[static_cast<std::size_t>(layer)]; }
 
-/// Plain pointers to the layers on the backend's device, passed by value to laws. A layer that is not in use
-/// is null and stands for 0 everywhere. Heights are quanta above the datum.
+/// Plain pointers to the layers on the backend's device, passed to laws by value. A layer that is not in use
+/// is null and counts as 0 everywhere. Heights are quanta above the datum.
 struct TerrainView {
   Grid grid;
   float quantum = 0;           ///< [m]
@@ -147,10 +155,10 @@ struct TerrainView {
   DESERT_HD float* real(Layer layer) const { return static_cast<float*>(layers[static_cast<int>(layer)]); }
 };
 
-/// Water deeper than this covers the ground: it stops the wind's work, and the ground below does not dry [m].
+/// Water deeper than this covers the ground: wind moves no sand there, and the ground does not dry [m].
 constexpr float wet_depth = 1e-5f;
 
-/// The value of a layer that may not be in use.
+/// The value of a layer, or 0 if the layer is not in use.
 DESERT_HD Quanta value_or_zero(const Quanta* layer, int i) { return layer ? layer[i] : 0; }
 DESERT_HD float value_or_zero(const float* layer, int i) { return layer ? layer[i] : 0.0f; }
 

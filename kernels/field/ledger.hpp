@@ -1,7 +1,10 @@
 #pragma once
-/// The books of the mass balance: what entered and left each material, in quanta. For every material
-/// final − initial − in + out = 0, exactly. Conversions (abrasion: bedrock to sand) are out of one and into
-/// another.
+/// Ledger of the mass balance: what has entered and left each material, in quanta. For every material
+///
+///   final − initial − in + out = 0
+///
+/// holds exactly. A conversion (such as abrasion, from bedrock to sand) counts as out of one material and
+/// into another.
 
 #include "kernels/backend/atomics.hpp"
 #include "kernels/field/quanta.hpp"
@@ -13,7 +16,8 @@ constexpr int material_count = 6;
 constexpr const char* material_names[material_count] = {"bedrock", "soil",     "sand",
                                                         "water",   "sediment", "moisture"};
 
-/// Accounts are striped, so that cells which book at the same time rarely meet.
+/// Each account is spread over several words (striped), so that cells which book at the same time rarely add
+/// to the same word.
 struct LedgerView {
   static constexpr int stripes = 256;
   static constexpr int words = material_count * 2 * stripes;

@@ -1,6 +1,7 @@
 #pragma once
-/// Small arithmetic whose bits are the same on host and device: only +, −, ×, ÷ and square roots, which IEEE
-/// rounds alike everywhere (library transcendental functions differ by units in the last place).
+/// Arithmetic that gives the same bits on host and device: it uses only +, −, ×, ÷, fused multiply-add and
+/// square roots, which IEEE 754 rounds alike everywhere, because library transcendental functions differ by
+/// units in the last place.
 
 #include <cmath>
 #include <cstdint>
@@ -12,8 +13,8 @@ namespace desert_sim {
 
 DESERT_HD float minimum(float a, float b) { return a < b ? a : b; }
 DESERT_HD float maximum(float a, float b) { return a > b ? a : b; }
-/// Of two numbers that are not NaN, nor zeros of different sign; on a GPU one instruction, which a comparison
-/// is not.
+/// Minimum and maximum of two numbers that are neither NaN nor zeros of different sign. On a GPU each is one
+/// instruction, which minimum() and maximum() are not.
 DESERT_HD float lower(float a, float b) {
 #if defined(__CUDA_ARCH__)
   return fminf(a, b);
@@ -29,7 +30,7 @@ DESERT_HD float higher(float a, float b) {
 #endif
 }
 DESERT_HD float clamp(float v, float low, float high) { return minimum(maximum(v, low), high); }
-/// a·b + c, rounded once. Where the processor has no such instruction the library computes it, slowly.
+/// a·b + c, rounded once. Where the processor has no such instruction, the library computes it slowly.
 DESERT_HD float fused(float a, float b, float c) { return fmaf(a, b, c); }
 DESERT_HD float lerp(float a, float b, float t) { return fused(t, b - a, a); }
 DESERT_HD std::uint32_t bits_of(float v) {
@@ -37,30 +38,31 @@ DESERT_HD std::uint32_t bits_of(float v) {
   memcpy(&bits, &v, sizeof bits);
   return bits;
 }
-DESERT_HD float float_of(std::uint32_t bits) {
+DESERT_HD float float_from_bits(std::uint32_t bits) {
   float v;
   memcpy(&v, &bits, sizeof v);
   return v;
 }
-/// What no thread changes while this law is at work.
-DESERT_HD float constant_at(const float* place) {
+/// Loads a value that no thread changes while the kernel runs (through the read-only cache on a GPU).
+DESERT_HD float load_read_only(const float* place) {
 #if defined(__CUDA_ARCH__)
   return __ldg(place);
 #else
   return *place;
 #endif
 }
-/// max(v, 0) for v ≤ 1; from there on at least 1. A negative float's bits are a negative integer: of integers
-/// compilers see that this is a maximum, of floats they make comparisons and masks.
+/// max(v, 0) for v ≤ 1; for larger v the result is at least 1. A CPU takes the maximum of the bits as
+/// integers (a negative float's bits are a negative integer), which compilers recognise as a maximum, while
+/// for floats they emit comparisons and masks.
 DESERT_HD float positive_part(float v) {
 #if defined(__CUDA_ARCH__)
-  return __saturatef(v);  // comes with the subtraction before it
+  return __saturatef(v);  // free: a modifier of the subtraction before it
 #else
   const std::int32_t bits = static_cast<std::int32_t>(bits_of(v));
-  return float_of(static_cast<std::uint32_t>(bits > 0 ? bits : 0));
+  return float_from_bits(static_cast<std::uint32_t>(bits > 0 ? bits : 0));
 #endif
 }
-/// |v| ≤ 2³⁰, halves go away from zero.
+/// Rounds to the nearest integer, halves away from zero; |v| ≤ 2³⁰.
 DESERT_HD int nearest(float v) {
   const int whole = static_cast<int>(v);
   const float rest = v - static_cast<float>(whole);
@@ -68,8 +70,11 @@ DESERT_HD int nearest(float v) {
 }
 DESERT_HD float hypotenuse(float x, float y) { return sqrtf(x * x + y * y); }
 
-/// e^(−x) for x ≥ 0, relative error below 3e-7; 0 from x = 87 on. Range reduction by ln 2 in two parts, then
-/// a Taylor polynomial of degree 7 on |r| ≤ ½ ln 2.
+/// e^(−x) for x ≥ 0, with a relative error below 3e-7; 0 from x = 87 on.
+///
+///   e^(−x) = 2^(−n) e^r,  n = round(x / ln 2),  r = n ln 2 − x,  |r| ≤ ½ ln 2
+///
+/// with ln 2 in two parts, and e^r by its Taylor polynomial of degree 7.
 DESERT_HD float exp_negative(float x) {
   constexpr float end = 87.0f;
   const float y = minimum(x, end), n = rintf(y * 1.44269504f);
@@ -82,12 +87,15 @@ DESERT_HD float exp_negative(float x) {
   p = fused(p, r, 0.5f);
   p = fused(p, r, 1.0f);
   p = fused(p, r, 1.0f);
-  p = p * float_of(static_cast<std::uint32_t>(127 - static_cast<int>(n)) << 23);
+  p = p * float_from_bits(static_cast<std::uint32_t>(127 - static_cast<int>(n)) << 23);
   return x >= end ? 0.0f : p;
 }
 
-/// arctan(x) for 0 ≤ x < 1e18, relative error below 1e-6. The angle is halved three times,
-/// arctan x = 2 arctan(x / (1 + √(1 + x²))), which leaves at most 0.2 to the series.
+/// arctan(x) for 0 ≤ x < 1e18, with a relative error below 1e-6. The angle is halved three times,
+///
+///   arctan x = 2 arctan(x / (1 + √(1 + x²)))
+///
+/// which leaves at most 0.2 as the argument of the Taylor series.
 DESERT_HD float arctangent(float x) {
   for (int halving = 0; halving < 3; ++halving) x = x / (1.0f + sqrtf(1.0f + x * x));
   const float q = x * x;

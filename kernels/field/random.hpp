@@ -1,5 +1,5 @@
 #pragma once
-/// Counter-based random numbers: a number depends on (seed, purpose, counters) alone, never on order or
+/// Counter-based random numbers: a number depends on (seed, purpose, counters) only, never on order or
 /// threads.
 
 #include <Random123/philox.h>
@@ -22,7 +22,7 @@ enum class Purpose : std::uint32_t {
   planting,
 };
 
-/// Four random words from three counters.
+/// Vec4 random words from three counters.
 struct RandomWords {
   std::uint32_t word[4];
 };
@@ -42,7 +42,7 @@ DESERT_HD float random_unit(std::uint64_t seed, Purpose purpose, std::uint32_t a
 }
 
 /// Smooth value noise in [−1, 1]: random values on the integer lattice, interpolated with continuous second
-/// derivatives. `period` > 0 repeats x and y after so many lattice cells.
+/// derivatives. With `period_x` or `period_y` > 0 it repeats after so many lattice cells.
 DESERT_HD float value_noise(std::uint64_t seed, Purpose purpose, float x, float y, float z, int period_x = 0,
                             int period_y = 0) {
   const int x0 = static_cast<int>(floorf(x)), y0 = static_cast<int>(floorf(y)),

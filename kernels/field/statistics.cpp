@@ -1,4 +1,4 @@
-/// The laws and the step of statistics.hpp; compiled once for each backend.
+/// Laws and functions of statistics.hpp; compiled once for each backend.
 #include "kernels/field/statistics.hpp"
 
 #include "kernels/avalanching/avalanching.hpp"
@@ -19,7 +19,7 @@ struct CountOver {
   DESERT_HD long long operator()(int x, int y) const { return excess(x, y) > threshold ? 1 : 0; }
 };
 
-/// Sum of the excess over 1e-3, in units of 2⁻³⁰ so that its order does not matter.
+/// Sum of the excesses over 1e-3, in integers of 2⁻³⁰, so that the order of additions does not matter.
 struct SumExcess {
   avalanching::Excess excess;
   DESERT_HD long long operator()(int x, int y) const {
@@ -28,8 +28,8 @@ struct SumExcess {
   }
 };
 
-/// Steepest slope that is made of sand: the drop to a neighbour, as far as the cell's sand reaches, as a
-/// tangent.
+/// Steepest slope of sand, as a tangent: the drop to a neighbour, but no more than the depth of the cell's
+/// sand, over their distance.
 struct SandSlope {
   Grid grid;
   const Quanta *bedrock, *soil, *sand;
@@ -51,7 +51,8 @@ struct SandSlope {
   }
 };
 
-/// 1 + the cell's index where a layer broke its promise, else 0.
+/// 1 for a cell whose value breaks the contract of its layer: a height at or beyond those of walls, a
+/// negative depth, or a float that is not finite; else 0.
 struct Broken {
   Grid grid;
   const Quanta* quanta;
@@ -71,7 +72,7 @@ long long sum(E& exec, const Grid& grid, const Quanta* layer) {
 }
 
 template <class E>
-long long broken_cells(E& exec, const Grid& grid, const Quanta* quanta, const float* real, bool depth) {
+long long count_violations(E& exec, const Grid& grid, const Quanta* quanta, const float* real, bool depth) {
   return sum_cells(exec, grid, Broken{grid, quanta, real, depth});
 }
 
@@ -95,7 +96,7 @@ Residual residual(E& exec, const TerrainView& t, const float* repose) {
 }
 
 template long long sum(Backend&, const Grid&, const Quanta*);
-template long long broken_cells(Backend&, const Grid&, const Quanta*, const float*, bool);
+template long long count_violations(Backend&, const Grid&, const Quanta*, const float*, bool);
 template float sand_slope(Backend&, const TerrainView&);
 template Residual residual(Backend&, const TerrainView&, const float*);
 

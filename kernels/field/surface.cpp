@@ -1,4 +1,4 @@
-/// The step of surface.hpp; compiled once for each backend.
+/// Laws and functions of surface.hpp; compiled once for each backend.
 #include "kernels/field/surface.hpp"
 
 #include "kernels/backend/loops.hpp"
@@ -6,7 +6,7 @@
 
 namespace desert_sim::surface {
 
-/// Writes elevation.
+/// Writes the solid surface to the layer elevation.
 struct SolidSurface {
   Grid grid;
   SolidHeight height;
@@ -25,7 +25,7 @@ void fill_elevation(E& exec, const TerrainView& terrain) {
   for_each_cell(exec, terrain.grid, SolidSurface(terrain));
 }
 
-/// Elevation + water; writes water_surface.
+/// Writes elevation + water to the layer water_surface.
 struct WaterSurface {
   Grid grid;
   SolidHeight height;

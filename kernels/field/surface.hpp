@@ -1,9 +1,11 @@
 #pragma once
-/// The solid surface, h = b + e + s, that wind, shadow and echo dunes look at.
+/// The solid surface that wind, wind shadow and echo dunes use:
+///
+///   h = b + e + s        (bedrock, soil, sand)
 ///
 /// A step works with its heights as floats [quanta above the datum], because a conversion costs a GPU as much
-/// as four additions, and with the highest of each block of 4 × 4 cells. The layer `elevation` has the same
-/// heights as whole quanta; nothing in a step reads it.
+/// as four additions, and with the highest one in each block of 4 × 4 cells. The layer `elevation` has the
+/// same heights in whole quanta; nothing in a step reads it.
 
 #include "kernels/backend/buffer.hpp"
 #include "kernels/field/layers.hpp"
@@ -19,10 +21,10 @@ void fill_water_surface(E& exec, const TerrainView& t, int first, int rows);
 /// Width of a block [cells].
 constexpr int block_side = 4;
 
-/// Heights and their blocks' highest.
+/// Heights of all cells, and the highest of each block.
 struct Heights {
-  Grid blocks;  ///< at the far edges with fewer cells
-  Buffer<float> of_cells, highest;
+  Grid blocks;  ///< those at the far edges may have fewer cells
+  Buffer<float> cell_heights, highest;
 };
 
 /// The blocks as a coarser grid.

@@ -1,5 +1,5 @@
 #pragma once
-/// The laws of surface.hpp, cell by cell.
+/// Laws of surface.hpp.
 
 #include "kernels/backend/buffer.hpp"
 #include "kernels/backend/for_each.hpp"
@@ -10,8 +10,8 @@
 
 namespace desert_sim::surface {
 
-/// Of a cell [quanta]. Reads bedrock, soil, sand. Where there is no soil, it takes none of something else
-/// instead of asking cell by cell, for which a CPU could not work on several at once.
+/// Height of a cell [quanta]. Reads bedrock, soil and sand. Without a layer of soil, sand is read in its
+/// place and masked to 0, because a branch for each cell would keep CPUs from vectorising.
 struct SolidHeight {
   const Quanta *bedrock, *sand, *soil;
   Quanta soil_bits;
@@ -24,12 +24,12 @@ struct SolidHeight {
   DESERT_HD Quanta operator()(int i) const { return bedrock[i] + (soil[i] & soil_bits) + sand[i]; }
 };
 
-/// Of four cells beside each other.
+/// Ground and sand of four cells beside each other.
 struct GroundAndSand {
-  Four<Quanta> ground, sand;
+  Vec4<Quanta> ground, sand;
 };
 
-/// The heights of one block's cells, and the highest of them.
+/// Writes the heights of one block's cells, and the highest of them.
 struct MeasureBlock {
   Grid grid;
   const Quanta *bedrock, *soil, *sand;
@@ -49,10 +49,10 @@ struct MeasureBlock {
     }
     highest[blocks.index(column, row)] = top;
   }
-  /// Likewise, of a block that is there as a whole, on a grid whose width is a multiple of block_side, with
-  /// what row_of(n) knows of its nth row.
+  /// The same for a block whose cells all exist, on a grid whose width is a multiple of block_side. row_of(n)
+  /// gives ground and sand of the nth of its rows.
   template <class RowOf>
-  DESERT_HD void measure_whole(int column, int row, const RowOf& row_of) const {
+  DESERT_HD void measure_complete_block(int column, int row, const RowOf& row_of) const {
     const int first = grid.index(block_side * column, block_side * row);
     float top = -static_cast<float>(wall_height);
     unrolled<block_side>(
@@ -62,17 +62,17 @@ struct MeasureBlock {
 
  private:
   DESERT_HD GroundAndSand row_at(int first) const {
-    GroundAndSand row{four_at(bedrock + first), four_at(sand + first)};
+    GroundAndSand row{load_vec4(bedrock + first), load_vec4(sand + first)};
     if (soil) {
-      const Four<Quanta> above = four_at(soil + first);
+      const Vec4<Quanta> above = load_vec4(soil + first);
       for (int n = 0; n < 4; ++n) row.ground.values[n] += above.values[n];
     }
     return row;
   }
   DESERT_HD float put_row(int first, const GroundAndSand& row) const {
-    Four<float> h;
+    Vec4<float> h;
     for (int n = 0; n < 4; ++n) h.values[n] = static_cast<float>(row.ground.values[n] + row.sand.values[n]);
-    put_four(heights + first, h);
+    store_vec4(heights + first, h);
     return maximum(maximum(h.values[0], h.values[1]), maximum(h.values[2], h.values[3]));
   }
   DESERT_HD float measure(int i) const {
@@ -82,8 +82,8 @@ struct MeasureBlock {
 
 /// The law that measures all of `heights`.
 inline MeasureBlock measuring(const TerrainView& t, Heights& heights) {
-  return {t.grid,         t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
-          heights.blocks, heights.of_cells.data(),  heights.highest.data()};
+  return {t.grid,         t.quanta(Layer::bedrock),    t.quanta(Layer::soil), t.quanta(Layer::sand),
+          heights.blocks, heights.cell_heights.data(), heights.highest.data()};
 }
 
 }  // namespace desert_sim::surface

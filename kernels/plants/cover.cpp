@@ -18,13 +18,13 @@ struct Cover {
   const float *heights, *wind_x, *wind_y;  ///< heights [quanta]
   float quantum, quanta_per_metre, time_step;
   Quanta humus_limit;
-  float *vegetation, *canopy_height;  ///< vegetation and humus: null where only what follows is wanted
+  float *vegetation, *canopy_height;  ///< vegetation: null if it and humus are not to be written
   Quanta* humus;
   float *density, *downwind;
 
   struct Sums {
     float density = 0, canopy = 0, humus = 0;
-    float of_species[most_species], downwind[most_species];
+    float of_species[max_species], downwind[max_species];
   };
 
   DESERT_HD void add(Sums& sums, int n, float x, float y, float height, float u, float v) const {
@@ -69,7 +69,7 @@ struct Cover {
   }
 };
 
-/// The heights of one block's cells with what grows there, and the highest of them.
+/// Heights of the canopy over one block's cells, and the greatest of them.
 struct RaiseBlock {
   Grid grid, blocks;
   const float *heights, *canopy_height;
@@ -94,13 +94,14 @@ void cover(E& exec, const TerrainView& t, const VegetationParameters& p, float t
            const surface::Heights& heights, bool makes_state, Workspace& work) {
   for_each_cell(exec, t.grid,
                 Cover{t.grid, work.neighbourhood(), work.plants(), work.species.data(), work.species_count,
-                      heights.of_cells.data(), t.real(Layer::wind_x), t.real(Layer::wind_y), t.quantum,
+                      heights.cell_heights.data(), t.real(Layer::wind_x), t.real(Layer::wind_y), t.quantum,
                       t.quanta_per_metre, time_step, take(p.humus_limit, t.quanta_per_metre, load_limit),
                       makes_state ? t.real(Layer::vegetation) : nullptr, t.real(Layer::canopy_height),
                       t.quanta(Layer::humus), work.density.data(), work.downwind.data()});
-  for_each_cell(exec, work.tops.blocks,
-                RaiseBlock{t.grid, work.tops.blocks, heights.of_cells.data(), t.real(Layer::canopy_height),
-                           t.quanta_per_metre, work.tops.of_cells.data(), work.tops.highest.data()});
+  for_each_cell(
+      exec, work.tops.blocks,
+      RaiseBlock{t.grid, work.tops.blocks, heights.cell_heights.data(), t.real(Layer::canopy_height),
+                 t.quanta_per_metre, work.tops.cell_heights.data(), work.tops.highest.data()});
 }
 
 template void cover(Backend&, const TerrainView&, const VegetationParameters&, float, const surface::Heights&,

@@ -1,17 +1,19 @@
 #pragma once
-/// How dense a plant is at a place. Nilles 2025 eq. 6 and 7; physics.md D.
+/// Density of a plant at a point. Nilles 2025 §3.2.1, eq. 6–7.
 ///
-///   D = max(exp(−½ (d²/σ² + z²/σ_z²)) − e⁻² d/r, 0),   σ = r/2,   σ_z = r·stem/2 above, r·root/2 below
+///   D = max(exp(−½ (d²/σ² + z²/σ_z²)) − e⁻² d/r, 0)
+///   σ = r/2,   σ_z = r h_s/2 where z > 0, r h_r/2 below
 ///
-/// with d the horizontal distance and z how far the place is above where stem and root meet: a Gaussian split
-/// there, which is exactly 0 at the plant's own radius.
+/// d is the horizontal distance, z the height above the point where stem and root meet, h_s and h_r are
+/// `stem` and `root`. This is a split Gaussian that is exactly 0 at the plant's own radius. (The covariance
+/// printed in the paper is 16 times as wide.)
 
 #include "kernels/field/math.hpp"
 #include "kernels/plants/species.hpp"
 
 namespace desert_sim::plants {
 
-/// `distance2` [m²], `above` [m], radius [m] > 0.
+/// `distance2`: d² [m²]; `above`: z [m]; `radius`: r > 0 [m].
 DESERT_HD float density_at(float distance2, float above, float radius, float stem, float root) {
   const float radius2 = radius * radius;
   if (!(distance2 < radius2)) return 0.0f;

@@ -1,33 +1,47 @@
 #pragma once
-/// Growth, health and death. Nilles 2025 §3.2.4 and 3.2.5; physics.md D.
+/// Growth, health and death of plants. Nilles 2025 §3.2.4–3.2.5, eq. 19–27.
 ///
-///   r += Δt φ_g Π g,  health += Δt (φ_g Π g − φ_d Σ d); any damage d > 0 stops growth
-///   competition  g = 1 − Σ ¼ D_kj (min(distance − (r_k + r_j), 0) / r_k)²
-///   light        1 in the middle of the species' interval, 0 at its ends; at the top of the stem
-///   slope        1 − slope / slope_max;   standing water 1 − depth / (resistance · stem)
-///   water        1 where the need is met, up to 2 with twice as much about the roots
-///   ground       share of the roots in soil and sand, by how well the species grows there
-///   r at most    min(height above rock / root, g_competition g_light r_max), under water also height of the
-///                water's surface / stem; a tenth more is damage, and who can shrinks
+///   radius   r      += Δt φ_g Π g
+///   health   health += Δt (φ_g Π g − φ_d Σ d),   at most 1
 ///
-/// Damages are 0 at the border of what is allowed and at most 1: too wide, too little water, light, too wet a
-/// ground, too steep, roots bare, stem buried, too deep in water, or not in it. Dead at health 0, or when not
-/// mature in time; the dead leave humus. Plants read their neighbours as they were before the step.
+/// The growth factors g of plant k are
+///
+///   competition   1 − Σ_j ¼ D_kj (min(|x_j − x_k| − (r_k + r_j), 0)/r_k)²
+///   light         1 in the middle of the species' interval, 0 at its ends; light at the top of the stem
+///   slope         1 − slope/slope_max
+///   flood         1 − depth of water/(`water_resistance` · height of the stem)
+///   water         1 + clamp(W_avail/W_req − 1, 0, 1)
+///   ground        `soil` · share of the roots in soil + `sand` · share in sand
+///
+/// with D_kj the competition matrix and W of water_uptake.hpp. The radius grows up to
+///
+///   r_most = min((z − bedrock)/h_r, g_competition g_light r_max)
+///   r_most ≤ (surface of the water − z)/h_s   for underwater plants
+///
+/// A plant wider than 1.1 r_most is damaged, and shrinks if its species can. The damages d are 0 at the limit
+/// of the allowed range and at most 1: radius too large, requirement of water not met, too dark or too
+/// bright, ground too wet, slope too steep, roots exposed, stem buried, water too deep or, for underwater
+/// plants, absent. Any damage stops growth. A plant dies at health 0, or if it is not mature by
+/// `maturity_time`; it leaves humus. Plants read their neighbours' state before the step, so that their order
+/// does not matter.
+///
+/// Reads bedrock, soil, sand, water, moisture, canopy_height, illumination, illumination_canopy and the
+/// plants; writes humus and the plants.
 
 #include "kernels/plants/density.hpp"
-#include "kernels/plants/drinking.hpp"
+#include "kernels/plants/water_uptake.hpp"
 #include "kernels/plants/workspace.hpp"
 
 namespace desert_sim::plants {
 
-/// Growth factors and damages of a plant, and how wide it may be [m].
+/// Growth factors and sum of the damages of a plant, and its largest allowed radius r_most [m].
 struct Response {
   float competition = 1, light = 1, slope = 1, water = 1, flood = 1, ground = 1;
   float damage = 0, widest = 0;
   DESERT_HD float growth() const { return competition * light * slope * water * flood * ground; }
 };
 
-/// How far a value is beyond a limit, over a scale: 0 … 1.
+/// How far a value is beyond a limit, relative to a scale and clamped to 0 … 1.
 DESERT_HD float excess(float beyond, float scale) {
   return clamp(beyond / maximum(scale, 1e-6f), 0.0f, 1.0f);
 }
@@ -58,7 +72,7 @@ struct Competition {
   }
 };
 
-/// The plant's light: between that on the ground and that on the canopy.
+/// Illumination at the top of a plant, interpolated between that of the ground and that of the canopy.
 DESERT_HD float light_at(float ground, float canopy, float canopy_height, float top_above_ground) {
   const float t = canopy_height > 1e-6f ? clamp(top_above_ground / canopy_height, 0.0f, 1.0f) : 0.0f;
   return lerp(ground, canopy, t);
@@ -70,20 +84,20 @@ DESERT_HD float light_factor(const SpeciesTraits& s, float light) {
 }
 
 struct Grow {
-  Drinking drinking;
+  WaterUptake water_uptake;
   Competition competition;
   View plants, later;
   const SpeciesTraits* species;
-  const long long* wishes;
+  const long long* water_requests;
   const float *canopy_height, *illumination, *illumination_canopy;
   float time_step, litter;
-  Quanta *drunk, *humus;
+  Quanta *granted_water, *humus;
   int* deaths;
 
-  DESERT_HD const Site& site() const { return drinking.site; }
+  DESERT_HD const Site& site() const { return water_uptake.site; }
 
-  /// How the plant takes its place; all but water and competition.
-  DESERT_HD void feel(const SpeciesTraits& s, int n, int cell, Response& r) const {
+  /// Growth factors and damages by the plant's environment, except water uptake and competition.
+  DESERT_HD void add_site_response(const SpeciesTraits& s, int n, int cell, Response& r) const {
     const Site& here = site();
     const float radius = plants.radius[n], stem = radius * s.stem, root = radius * s.root;
     const float above_ground = static_cast<float>(plants.z[n] - here.surface(cell)) * here.quantum;
@@ -113,20 +127,20 @@ struct Grow {
     }
   }
 
-  /// What the plant stores afterwards.
+  /// Water uptake and its effects; returns the water stored afterwards.
   DESERT_HD float drink(const SpeciesTraits& s, int n, int cell, Response& r) const {
     const float stored = plants.water[n];
-    const Thirst t = drinking.thirst(s, plants.radius[n], stored, cell);
-    drunk[n] = drinking.granted(t.wish, wishes[cell], cell);
-    const float share = t.wish > 0 ? static_cast<float>(drunk[n]) / static_cast<float>(t.wish) : 1.0f;
+    const WaterDemand t = water_uptake.water_demand(s, plants.radius[n], stored, cell);
+    granted_water[n] = water_uptake.granted(t.wish, water_requests[cell], cell);
+    const float share = t.wish > 0 ? static_cast<float>(granted_water[n]) / static_cast<float>(t.wish) : 1.0f;
     const float left = stored + t.wanted * share - t.needed;
     r.damage += t.needed > 0.0f && left < 0.0f ? excess(-left, t.needed) : 0.0f;
     r.water = t.needed > 0.0f ? 1.0f + clamp(t.reachable * share / t.needed - 1.0f, 0.0f, 1.0f) : 2.0f;
     return clamp(left, 0.0f, t.stored_most);
   }
 
-  /// The new radius; too wide is a damage.
-  DESERT_HD float widen(const SpeciesTraits& s, float radius, Response& r) const {
+  /// Returns the new radius, and adds the damage of a radius that is too large.
+  DESERT_HD float new_radius(const SpeciesTraits& s, float radius, Response& r) const {
     r.widest = minimum(r.widest, r.competition * r.light * s.max_radius);
     const bool too_wide = radius > 1.1f * r.widest;
     if (too_wide) r.damage += excess(radius - 1.1f * r.widest, 1.1f * maximum(r.widest, 0.0f));
@@ -147,9 +161,9 @@ struct Grow {
     const float radius = plants.radius[n], age = plants.age[n];
     Response r;
     r.competition = competition(n);
-    feel(s, n, cell, r);
+    add_site_response(s, n, cell, r);
     const float stored = drink(s, n, cell, r);
-    const float grown = widen(s, radius, r);
+    const float grown = new_radius(s, radius, r);
     const float gain = r.damage > 0.0f || radius >= r.widest ? 0.0f : s.growth * r.growth();
     float health = minimum(plants.health[n] + time_step * (gain - s.damage * r.damage), 1.0f);
     const bool due = age < s.maturity_time && age + time_step >= s.maturity_time;

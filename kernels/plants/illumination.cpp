@@ -5,14 +5,15 @@
 #include "kernels/backend/loops.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/plants/workspace.hpp"
+#include "src/core/constants.hpp"
 
 namespace desert_sim::plants {
 
-/// Offsets from which light comes, and what a quantum of rise there weighs.
+/// Offsets from which light comes, and the weight of one quantum of rise there.
 struct Rays {
   static constexpr int reach = 3, samples = 49, most = 24;
   int dx[most] = {}, dy[most] = {};
-  float weight[most] = {};  ///< 0: not one of them
+  float weight[most] = {};  ///< 0: unused entry
 
   Rays(float light_x, float light_y, float cell_size, float quantum) {
     int n = 0;
@@ -65,11 +66,11 @@ struct Illuminate {
 template <class E>
 void illuminate(E& exec, const TerrainView& t, const VegetationParameters& p, const surface::Heights& heights,
                 const Workspace& work) {
-  const float angle = p.light_deg * 3.14159265358979f / 180.0f;
+  const float angle = p.light_deg * static_cast<float>(pi) / 180.0f;
   const Illuminate<true> law{t.grid,
                              Rays(cosf(angle), sinf(angle), t.grid.cell_size, t.quantum),
-                             heights.of_cells.data(),
-                             work.tops.of_cells.data(),
+                             heights.cell_heights.data(),
+                             work.tops.cell_heights.data(),
                              t.quanta(Layer::water),
                              t.quantum,
                              p.light_decay,

@@ -1,12 +1,16 @@
 #pragma once
-/// Light over the day at the ground and at the canopy's top. Nilles 2025 §3.2.3, eq. 16–18; physics.md D.
+/// Mean illumination over the day, at the ground and at the top of the canopy. Nilles 2025 §3.2.3, eq. 16–18.
 ///
-///   σ = 2 · mean over the 7 × 7 offsets o of exp(−2 max(l (o·light), 0) / |l o|² · rise / |l o|)  −  1
-///   rise = max(top of the canopy at −o − the level here, 0), for the ground's level and the canopy's
+///   σ = 2 · mean over the 7 × 7 offsets o of exp(d α) − 1
+///   d = −2 max(l (o·light), 0)/|l o|²
+///   α = max(top of the canopy at −o − level here, 0)/|l o|
 ///
-/// so 1 in the open, and dimmer the steeper the view to where light comes from. Under water, times
-/// exp(−decay · depth of the level). Reads the heights, the canopy's tops and water; writes illumination and
-/// illumination_canopy.
+/// `light` is the unit vector in which light travels; the level is the ground's for illumination and the
+/// canopy's for illumination_canopy. σ is 1 in the open, and lower the steeper the view to where light comes
+/// from. Under water it is multiplied by exp(−`light_decay` · depth of the level).
+///
+/// Reads water, bedrock, soil and sand through `heights`, and canopy_height through the tops of the canopy;
+/// writes illumination, illumination_canopy.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/plants/workspace.hpp"

@@ -25,7 +25,7 @@ struct Gather {
   DESERT_HD void operator()(int n) const { to.take(n, from, static_cast<int>(words[n] & 0xffffffffu)); }
 };
 
-/// Of cells, and of whole levels.
+/// Finds the spans of sorted plants of each cell of the look-up, and of each of its levels.
 struct MarkSpans {
   Lookup lookup;
   const std::uint64_t* words;
@@ -43,9 +43,9 @@ struct MarkSpans {
 };
 
 template <class E>
-void order(E& exec, int all, int dead, Workspace& work) {
+void sort_plants(E& exec, int all, int dead, Workspace& work) {
   for_each_item(exec, all, Key{work.lookup, work.later(), work.ordering.words.data()});
-  sort_words(exec, work.ordering, all, bits_up_to(static_cast<std::uint32_t>(work.lookup.cells)));
+  sort_by_key(exec, work.ordering, all, bit_width_of(static_cast<std::uint32_t>(work.lookup.cells)));
   work.count = all - dead;
   const std::uint64_t* words = work.ordering.words.data();
   for_each_item(exec, work.count, Gather{words, work.later(), work.plants()});
@@ -53,53 +53,56 @@ void order(E& exec, int all, int dead, Workspace& work) {
   for_each_item(exec, work.count, MarkSpans{work.lookup, words, work.count, work.spans.data()});
 }
 
-/// New plants behind those that are there.
+/// Appends new plants to the existing ones.
 template <class E>
 void spawn(E& exec, const Site& site, std::uint64_t seed, std::uint64_t step, float time_step,
            Workspace& work) {
-  const Seeding seeding{site,
-                        work.species.data(),
-                        work.species_count,
-                        work.density.data(),
-                        work.downwind.data(),
-                        time_step,
-                        seed,
-                        step};
-  for_each_cell(exec, site.grid, Sow{seeding, work.seeds.data()});
+  const SpawningLaw seeding{site,
+                            work.species.data(),
+                            work.species_count,
+                            work.density.data(),
+                            work.downwind.data(),
+                            time_step,
+                            seed,
+                            step};
+  for_each_cell(exec, site.grid, MarkSpawningCells{seeding, work.seeds.data()});
   prefix_sums(exec, work.ordering, work.seeds.data(), work.places.data(), site.grid.cells() + 1);
   for_each_cell(
       exec, site.grid,
-      Sprout{seeding, work.seeds.data(), work.places.data(), work.later(), work.count, work.capacity});
+      CreatePlants{seeding, work.seeds.data(), work.places.data(), work.later(), work.count, work.capacity});
   exec.copy(work.tally.data() + 1, work.places.data() + site.grid.cells(), sizeof(int));
 }
 
 template <class E>
-void live(E& exec, const TerrainView& t, const VegetationParameters& p, const ReposeParameters& repose,
-          const surface::Heights& heights, float time_step, std::uint64_t seed, std::uint64_t step,
-          LedgerView ledger, Workspace& work) {
-  const Drinking drinking(t, repose, p, heights.of_cells.data(), time_step);
+void grow_and_spawn(E& exec, const TerrainView& t, const VegetationParameters& p,
+                    const ReposeParameters& repose, const surface::Heights& heights, float time_step,
+                    std::uint64_t seed, std::uint64_t step, LedgerView ledger, Workspace& work) {
+  const WaterUptake water_uptake(t, repose, p, heights.cell_heights.data(), time_step);
   work.tally.set_zero();
-  work.wishes.set_zero();
-  for_each_item(exec, work.count, Wish{drinking, work.plants(), work.species.data(), work.wishes.data()});
+  work.water_requests.set_zero();
+  for_each_item(exec, work.count,
+                SumRequests{water_uptake, work.plants(), work.species.data(), work.water_requests.data()});
   const Competition competition{work.neighbourhood(), work.plants(), work.competition.data(),
                                 work.species_count, t.quantum};
-  for_each_item(
-      exec, work.count,
-      Grow{drinking, competition, work.plants(), work.later(), work.species.data(), work.wishes.data(),
-           t.real(Layer::canopy_height), t.real(Layer::illumination), t.real(Layer::illumination_canopy),
-           time_step, p.litter, work.drunk.data(), t.quanta(Layer::humus), work.tally.data()});
-  spawn(exec, drinking.site, seed, step, time_step, work);
+  for_each_item(exec, work.count,
+                Grow{water_uptake, competition, work.plants(), work.later(), work.species.data(),
+                     work.water_requests.data(), t.real(Layer::canopy_height), t.real(Layer::illumination),
+                     t.real(Layer::illumination_canopy), time_step, p.litter, work.granted_water.data(),
+                     t.quanta(Layer::humus), work.tally.data()});
+  spawn(exec, water_uptake.site, seed, step, time_step, work);
   if (t.quanta(Layer::moisture))
     for_each_item(exec, work.count,
-                  Drink{drinking.site, work.plants(), work.drunk.data(), t.quanta(Layer::moisture), ledger});
+                  DebitMoisture{water_uptake.site, work.plants(), work.granted_water.data(),
+                                t.quanta(Layer::moisture), ledger});
   int tally[2];
   work.tally.download(0, 2, tally);
   const int room = work.capacity - work.count;
-  order(exec, work.count + (tally[1] < room ? tally[1] : room), tally[0], work);
+  sort_plants(exec, work.count + (tally[1] < room ? tally[1] : room), tally[0], work);
 }
 
-template void order(Backend&, int, int, Workspace&);
-template void live(Backend&, const TerrainView&, const VegetationParameters&, const ReposeParameters&,
-                   const surface::Heights&, float, std::uint64_t, std::uint64_t, LedgerView, Workspace&);
+template void sort_plants(Backend&, int, int, Workspace&);
+template void grow_and_spawn(Backend&, const TerrainView&, const VegetationParameters&,
+                             const ReposeParameters&, const surface::Heights&, float, std::uint64_t,
+                             std::uint64_t, LedgerView, Workspace&);
 
 }  // namespace desert_sim::plants

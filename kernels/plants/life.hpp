@@ -1,10 +1,13 @@
 #pragma once
-/// A step in the life of all plants: they drink, grow, suffer and die, and new ones come up. The laws are in
-/// drinking.hpp, growth.hpp and spawning.hpp. Reads the ground's layers, water, obstacle, canopy_height,
-/// illumination, illumination_canopy and what cover() found; writes moisture and humus.
+/// One step of all plants: water uptake (water_uptake.hpp), growth, damage and death (growth.hpp), and new plants
+/// (spawning.hpp), where the equations are.
 ///
-/// Plants are kept sorted by their key in the look-up, so that neighbours stand together in memory. The sort
-/// is stable, so that their order, and with it every sum, depends on the state alone.
+/// Plants are kept sorted by their key in the neighbour look-up, so that neighbours are close in memory. The
+/// sort is stable, so that the order of plants, and with it every sum, depends on the state alone.
+///
+/// Reads bedrock, soil, sand, water, moisture, obstacle, canopy_height, illumination, illumination_canopy,
+/// and the densities of the species that cover() wrote to the workspace. Writes moisture, humus and the
+/// plants.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
@@ -13,13 +16,13 @@
 
 namespace desert_sim::plants {
 
-/// Brings the first `all` plants of `later` in order, of which so many are dead and left out.
+/// Sorts the first `all` plants of `later` by key into `plants`; `dead` of them have died and are dropped.
 template <class E>
-void order(E& exec, int all, int dead, Workspace& work);
+void sort_plants(E& exec, int all, int dead, Workspace& work);
 
 template <class E>
-void live(E& exec, const TerrainView& t, const VegetationParameters& p, const ReposeParameters& repose,
-          const surface::Heights& heights, float time_step, std::uint64_t seed, std::uint64_t step,
-          LedgerView ledger, Workspace& work);
+void grow_and_spawn(E& exec, const TerrainView& t, const VegetationParameters& p,
+                    const ReposeParameters& repose, const surface::Heights& heights, float time_step,
+                    std::uint64_t seed, std::uint64_t step, LedgerView ledger, Workspace& work);
 
 }  // namespace desert_sim::plants

@@ -1,10 +1,10 @@
 #pragma once
-/// Look-up of neighbours: five uniform grids for plants of radii up to 1.25, 2.5, 5, 10 and 20 m, with cells
-/// at least twice that wide. Nilles 2025 §3.2.6, which has no grid for those up to 1.25 m; physics.md D. With
-/// it, two million bushes take 0.48 ms less of 4.8 a step (test/bench/oasis.yaml); a sixth grid takes more.
+/// Neighbour look-up of plants: five uniform grids for radii up to 1.25, 2.5, 5, 10 and 20 m, with cells at
+/// least twice that wide. Nilles 2025 §3.2.6 has no grid for radii up to 1.25 m; with it two million bushes
+/// take 0.48 ms less of 4.8 ms a step (test/bench/oasis.yaml), and a sixth grid takes longer.
 ///
-/// A plant's key is its grid and cell; plants are sorted by it, and each cell has the span of its own. On a
-/// periodic axis a whole number of cells fills the torus, and distances are to the nearest image.
+/// The key of a plant is its grid and cell. Plants are sorted by key, and each cell has the span of its
+/// plants. A periodic axis is divided into a whole number of cells, and distances are to the nearest image.
 
 #include <cstdint>
 
@@ -23,15 +23,15 @@ struct Span {
 struct Lookup {
   static constexpr int levels = 5;
   struct Level {
-    int columns = 1, rows = 1, first = 0;  ///< first: the number of its first cell
-    float per_x = 0, per_y = 0;            ///< cells a metre
-    float radius = 0;                      ///< of its largest plants [m]
+    int columns = 1, rows = 1, first = 0;  ///< first: index of its first cell
+    float per_x = 0, per_y = 0;            ///< cells per metre
+    float radius = 0;                      ///< largest radius of its plants [m]
   };
   Level level[levels];
   float width = 0, height = 0;  ///< of the terrain [m]
   bool periodic_x = true, periodic_y = true;
-  float slack = 0;  ///< more than positions round by [m]
-  int cells = 0;    ///< of all grids
+  float slack = 0;  ///< upper bound of the rounding errors of positions [m]
+  int cells = 0;    ///< number of cells of all grids
 
   Lookup() = default;
   explicit Lookup(const Grid& grid)
@@ -72,13 +72,13 @@ struct Lookup {
     return at.first + clamp_index(static_cast<int>(y * at.per_y), at.rows) * at.columns +
            clamp_index(static_cast<int>(x * at.per_x), at.columns);
   }
-  /// From b to a, the shortest way.
+  /// a − b, to the nearest image on a periodic axis.
   DESERT_HD static float difference(float a, float b, float length, bool periodic) {
     const float d = a - b;
     if (!periodic) return d;
     return d > 0.5f * length ? d - length : (d < -0.5f * length ? d + length : d);
   }
-  /// A coordinate where the grid is: on a periodic axis any place has an image there.
+  /// A coordinate moved onto the grid, to its image there on a periodic axis.
   float onto_x(double x) const { return onto(x, width, periodic_x); }
   float onto_y(double y) const { return onto(y, height, periodic_y); }
   static float onto(double at, float length, bool periodic) {
@@ -88,7 +88,7 @@ struct Lookup {
   DESERT_HD float difference_y(float a, float b) const { return difference(a, b, height, periodic_y); }
 };
 
-/// Cells first … last along an axis, not yet wrapped; each at most once.
+/// Cells first … last along an axis that lie within `reach`, not yet wrapped; each at most once.
 struct Reach {
   int first, last;
   DESERT_HD Reach(float at, float reach, float per_metre, int cells, bool periodic)
@@ -102,13 +102,13 @@ struct Reach {
   }
 };
 
-/// Plants that are sorted, and their spans.
+/// Spans of the sorted plants, for visiting those near a point.
 struct Neighbourhood {
   Lookup lookup;
-  const Span* spans = nullptr;  ///< of the cells, and behind them of the levels
+  const Span* spans = nullptr;  ///< of the cells, followed by those of the levels
 
-  /// Calls visit(n) for each plant of a level in cells within `reach` [m] of (x, y), in an order that depends
-  /// on nothing else.
+  /// Calls visit(n) for each plant of a level in the cells within `reach` [m] of (x, y), in the order of the
+  /// cells and of the sorted plants.
   template <class Visit>
   DESERT_HD void in_level(int number, float x, float y, float reach, const Visit& visit) const {
     const Span all = spans[lookup.cells + number];
@@ -125,7 +125,7 @@ struct Neighbourhood {
       }
     }
   }
-  /// Of all levels, plants that may cover (x, y) with a radius of their own and `beyond` it.
+  /// Visits the plants of all levels that may reach (x, y) with their own radius plus `beyond` [m].
   template <class Visit>
   DESERT_HD void around(float x, float y, float beyond, const Visit& visit) const {
     for (int n = 0; n < Lookup::levels; ++n) in_level(n, x, y, lookup.level[n].radius + beyond, visit);

@@ -10,7 +10,7 @@
 
 namespace desert_sim::plants {
 
-struct MarkSpecies {
+struct DominantSpecies {
   Grid grid;
   Neighbourhood near;
   View plants;
@@ -41,17 +41,17 @@ struct MarkSpecies {
 };
 
 template <class E>
-void mark_species(E& exec, const TerrainView& t, int first, int rows, const Neighbourhood& near,
-                  const View& plants, const SpeciesTraits* species) {
-  for_each_cell_of_rows(
-      exec, t.grid, first, rows,
-      MarkSpecies{t.grid, near, plants, species, surface::SolidHeight(t), t.quantum, t.real(Layer::plants)});
+void find_dominant_species(E& exec, const TerrainView& t, int first, int rows, const Neighbourhood& near,
+                           const View& plants, const SpeciesTraits* species) {
+  for_each_cell_of_rows(exec, t.grid, first, rows,
+                        DominantSpecies{t.grid, near, plants, species, surface::SolidHeight(t), t.quantum,
+                                        t.real(Layer::plants)});
 }
 
 struct List {
   View plants;
   Metres metres;
-  Listed* to;
+  PlantRecord* to;
   int first;
   DESERT_HD void operator()(int k) const {
     const int n = first + k;
@@ -65,12 +65,12 @@ struct List {
 };
 
 template <class E>
-void list(E& exec, const View& plants, const Metres& metres, int first, int count, Listed* to) {
+void export_plants(E& exec, const View& plants, const Metres& metres, int first, int count, PlantRecord* to) {
   for_each_item(exec, count, List{plants, metres, to, first});
 }
 
-template void mark_species(Backend&, const TerrainView&, int, int, const Neighbourhood&, const View&,
-                           const SpeciesTraits*);
-template void list(Backend&, const View&, const Metres&, int, int, Listed*);
+template void find_dominant_species(Backend&, const TerrainView&, int, int, const Neighbourhood&, const View&,
+                                    const SpeciesTraits*);
+template void export_plants(Backend&, const View&, const Metres&, int, int, PlantRecord*);
 
 }  // namespace desert_sim::plants

@@ -1,12 +1,12 @@
 #pragma once
-/// Which species grows where, and plants as others see them. Not part of a step: computed for who asks
-/// (Lifetime::on_request).
+/// The dominant species of each cell, and the plants in the form in which they are sent to the host. Both are
+/// no part of a simulation step, but computed on request (Lifetime::on_request).
 ///
-///   plants   1 + the species of the plant that is densest on the ground of a cell's centre, of equal ones
-///   the
-///            first in order; 0 where none is denser than `bare`
+///   plants = 1 + species of the plant k with the largest density D_k
+///   plants = 0 where no D_k exceeds `bare`
 ///
-/// Reads bedrock, soil, sand and the plants; writes plants.
+/// D is the density (density.hpp) on the ground at the cell's centre; of equally dense plants the first in
+/// order counts. Reads bedrock, soil, sand and the plants; writes the layer plants.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/plants/lookup.hpp"
@@ -17,21 +17,21 @@ namespace desert_sim::plants {
 /// Density below which a place counts as bare.
 constexpr float bare = 0.02f;
 
-/// For rows first … first + rows − 1, over the north edge.
+/// Computes rows first … first + rows − 1, which continue over the north edge.
 template <class E>
-void mark_species(E& exec, const TerrainView& t, int first, int rows, const Neighbourhood& near,
-                  const View& plants, const SpeciesTraits* species);
+void find_dominant_species(E& exec, const TerrainView& t, int first, int rows, const Neighbourhood& near,
+                           const View& plants, const SpeciesTraits* species);
 
-/// A plant as it goes to the host.
-struct Listed {
+/// A plant as it is sent to the host.
+struct PlantRecord {
   float x, y;                     ///< [m] from the grid's south-west corner
   float z;                        ///< [m] where stem and root meet
   float radius;                   ///< [m]
-  std::uint16_t species, health;  ///< health: 255 is full; no bytes lie between or behind that nobody writes
+  std::uint16_t species, health;  ///< health: 255 is full. The structure has no padding bytes
 };
 
-/// Plants first … first + count − 1, in their order, to `to` on the device.
+/// Writes plants first … first + count − 1, in their order, to `to` on the device.
 template <class E>
-void list(E& exec, const View& plants, const Metres& metres, int first, int count, Listed* to);
+void export_plants(E& exec, const View& plants, const Metres& metres, int first, int count, PlantRecord* to);
 
 }  // namespace desert_sim::plants

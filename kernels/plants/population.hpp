@@ -1,5 +1,5 @@
 #pragma once
-/// Individual plants, one column a quantity, on the device.
+/// The plants on the device as a structure of arrays, one column for each quantity.
 
 #include <cstdint>
 
@@ -13,10 +13,14 @@ enum class Column : int { x, y, z, radius, health, water, age, species };
 constexpr int column_count = 8;
 
 /// Plain pointers to the columns.
-///   x, y     [m] from the grid's south-west corner, in the grid
-///   z        [quanta above the datum] where stem and root meet; the ground's surface when it came up
-///   radius   [m];  health 0 … 1;  age [s];  species: index into the list
-///   water    what it stores [m³ of soaked ground]
+///
+///   x, y      position [m] from the grid's south-west corner, inside the grid
+///   z         where stem and root meet [quanta above the datum]; initially the surface of the ground
+///   radius    [m]
+///   health    0 … 1
+///   water     stored water [m³ of saturated ground]
+///   age       [s]
+///   species   index into the list of species
 struct View {
   float *x = nullptr, *y = nullptr;
   Quanta* z = nullptr;

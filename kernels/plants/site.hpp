@@ -1,5 +1,5 @@
 #pragma once
-/// What a plant meets in the cell where it stands.
+/// The environment of a plant in the cell where it stands.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/math.hpp"
@@ -8,10 +8,10 @@
 
 namespace desert_sim::plants {
 
-/// What roots and stem reach through: shares of their length.
+/// The ground along roots and stem, as shares of their length.
 struct Ground {
   float soil, sand;              ///< of the roots
-  float root_cover, stem_cover;  ///< in the ground
+  float root_cover, stem_cover;  ///< shares that are in the ground
 };
 
 struct Site {
@@ -53,7 +53,7 @@ struct Site {
     return hypotenuse(along_x * per_metre, along_y * per_metre);
   }
 
-  /// Of a plant whose stem and root meet at z, with so long a stem and roots [quanta].
+  /// The ground of a plant whose stem and root meet at z; `stem`, `root`: their lengths [quanta].
   DESERT_HD Ground ground(int i, Quanta z, float stem, float root) const {
     const float rock = static_cast<float>(bedrock[i] - z),
                 below_sand = rock + static_cast<float>(value_or_zero(soil, i)),

@@ -1,13 +1,18 @@
 #pragma once
-/// New plants. Nilles 2025 §3.2.2, eq. 13–15; physics.md D.
+/// Spawning of plants. Nilles 2025 §3.2.2, eq. 13–15.
 ///
-///   weight  p_j = base (1 + k_density min(ρ_j, 1) + k_wind min(ρ_wj, 1)), 0 where the place does not suit
-///   event   P = 1 − (1 − min(Σp / N_cells, 1))^Δt, one plant a cell, its species drawn by weight
-///   radius  5 % of min(depth of soil and sand / root, r_max); health 1, age 0, no water
+///   weight   p_j = p_b (1 + k_density min(ρ_j, 1) + k_wind min(ρ_wj, 1)),   0 where the place does not suit
+///   event    P   = 1 − (1 − min(Σ_j p_j/N_cells, 1))^Δt
+///   radius   5 % of min((soil + sand)/h_r, r_max)
 ///
-/// A place suits if it is as wet, flat and loose as the species needs, and its like is not too near. Random
-/// numbers are by (seed, step, cell). New plants stand behind the others in the order of their cells; where
-/// there is room for only some, these are spread evenly over the cells that have one.
+/// ρ_j and ρ_wj are the densities of species j that cover.hpp finds. An event creates one plant in a cell,
+/// its species drawn by weight, with health 1, age 0 and no stored water. A place suits a species if there is
+/// no obstacle, moisture, slope, ground and depth of water are in the species' range, and ρ_j ≤ `separation`.
+///
+/// Random numbers are counter-based (Philox), by seed, step and cell. New plants are appended in the order of
+/// their cells; where there is memory for only some of them, these are spread evenly over the cells.
+///
+/// Reads bedrock, soil, sand, water, moisture, obstacle and the densities; writes the plants.
 
 #include "kernels/field/random.hpp"
 #include "kernels/plants/site.hpp"
@@ -24,12 +29,12 @@ DESERT_HD float weight_of(const SpeciesTraits& s, float density, float downwind)
 /// 1 − (1 − q)^dt for q in 0 … 1.
 DESERT_HD double event_probability(double q, double dt) { return q >= 1.0 ? 1.0 : -expm1(dt * log1p(-q)); }
 
-/// [m]
+/// Radius of a new plant [m]; `loose_depth`: soil + sand [m].
 DESERT_HD float seedling_radius(const SpeciesTraits& s, float loose_depth) {
   return seedling_share * minimum(loose_depth / s.root, s.max_radius);
 }
 
-struct Seeding {
+struct SpawningLaw {
   Site site;
   const SpeciesTraits* species;
   int species_count;
@@ -57,14 +62,14 @@ struct Seeding {
     return ground_quality(s, site.ground(i, site.surface(i), in_quanta * s.stem, in_quanta * s.root)) > 0.0f;
   }
 
-  /// Random words of a cell in this step; `which` = 0 for the event and the species, 1 for the place.
+  /// Random words of a cell in this step; `which` is 0 for event and species, 1 for the position.
   DESERT_HD RandomWords draw(int i, std::uint32_t which) const {
     return random_words(seed, Purpose::plants, static_cast<std::uint32_t>(i),
                         static_cast<std::uint32_t>(step),
                         static_cast<std::uint32_t>(step >> 32) << 1 | which);
   }
 
-  /// The species that comes up in a cell, or −1.
+  /// The species that spawns in a cell, or −1.
   DESERT_HD int species_of(int i) const {
     const auto share = [&](float weights) {
       const double q = static_cast<double>(weights) / site.grid.cells();
@@ -74,9 +79,9 @@ struct Seeding {
     for (int k = 0; k < species_count; ++k) likely += weight(k, i);
     const RandomWords words = draw(i, 0);
     const double chance = (words.word[0] + words.word[1] * 0x1p-32) * 0x1p-32;
-    // Most cells are through here: that is above P, even if all species found the place to suit.
+    // Most cells return here: the bound is not below P even if the place suits all species.
     if (chance >= share(likely) * (time_step > 1.0f ? time_step : 1.0f)) return -1;
-    float weights[most_species], all = 0.0f;
+    float weights[max_species], all = 0.0f;
     const float slope = site.slope(i);
     for (int k = 0; k < species_count; ++k) all += weights[k] = suits(k, i, slope) ? weight(k, i) : 0.0f;
     if (!(chance < event_probability(share(all), time_step))) return -1;
@@ -92,9 +97,9 @@ struct Seeding {
   }
 };
 
-/// 1 where a plant comes up.
-struct Sow {
-  Seeding seeding;
+/// Writes 1 where a plant spawns, else 0.
+struct MarkSpawningCells {
+  SpawningLaw seeding;
   int* seeds;
   DESERT_HD void operator()(int x, int y) const {
     const int i = seeding.site.grid.index(x, y);
@@ -102,15 +107,17 @@ struct Sow {
   }
 };
 
-/// The place of the j-th of `all` seeds among those that come up, at most `room`; −1 if it finds none.
+/// Index of the j-th of `all` seeds among the new plants, of which there are at most `room`; −1 if it is
+/// dropped.
 DESERT_HD int place_of(long long j, long long all, long long room) {
   if (all <= room) return static_cast<int>(j);
   const long long place = j * room / all;
   return (j + 1) * room / all > place ? static_cast<int>(place) : -1;
 }
 
-struct Sprout {
-  Seeding seeding;
+/// Creates the new plants.
+struct CreatePlants {
+  SpawningLaw seeding;
   const int *seeds, *places;
   View later;
   int count, capacity;

@@ -1,17 +1,16 @@
 #pragma once
-/// What makes a species, and what holds for all plants: parameters of the vegetation model. Nilles 2025 §3.2,
-/// table 1; physics.md D.
+/// Parameters of the vegetation model: of a species (Nilles 2025 §3.2, table 1), and of all plants.
 
 #include "src/core/parameters.hpp"
 
 namespace desert_sim {
 
-/// No plant is wider [m]: the look-up of neighbours counts on it.
+/// Largest radius of a plant [m], on which the neighbour look-up relies.
 constexpr float largest_plant = 20.0f;
-constexpr int most_species = 16;
+constexpr int max_species = 16;
 
-/// The 26 parameters of a species; the defaults are a tree's. Lengths that grow with a plant are relative to
-/// its radius. Rates are per second.
+/// The 26 parameters of a species; the defaults are those of a tree. Lengths that grow with a plant are
+/// relative to its radius. Rates are per second.
 struct SpeciesTraits {
   float max_radius = 20.0f;
   float growth = 0.1f;

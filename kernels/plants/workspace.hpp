@@ -1,5 +1,5 @@
 #pragma once
-/// What plants live in: the population and the memory that its steps work with.
+/// The population of plants and the buffers of its steps.
 
 #include <string>
 #include <vector>
@@ -11,21 +11,21 @@
 
 namespace desert_sim::plants {
 
-/// A population of `count` plants; all memory is there from the start.
+/// A population of `count` plants; all memory is allocated at the start.
 struct Workspace {
   int count = 0, capacity = 0, species_count = 0;
   Lookup lookup;
-  Buffer<std::uint32_t> now, next;  ///< columns; `now` is sorted by key
-  Buffer<Span> spans;               ///< of the look-up's cells and levels
-  Ordering ordering;
+  Buffer<std::uint32_t> now, next;  ///< columns of View; `now` is sorted by key
+  Buffer<Span> spans;               ///< of the look-up's cells, then of its levels
+  SortWorkspace ordering;
   Buffer<SpeciesTraits> species;
-  Buffer<float> competition;        ///< [row of the hindered species][column of the other]
-  Buffer<Quanta> drunk;             ///< of each plant
-  Buffer<long long> wishes;         ///< what the plants of each terrain cell would drink [quanta]
-  Buffer<float> density, downwind;  ///< of mature plants: [species][cell]
-  Buffer<int> seeds, places;        ///< of each cell and one more
-  Buffer<int> tally;                ///< deaths, seeds
-  surface::Heights tops;            ///< of the canopy, or of the ground where there is none
+  Buffer<float> competition;         ///< matrix D_kj: [affected species k][other species j]
+  Buffer<Quanta> granted_water;      ///< granted water of each plant
+  Buffer<long long> water_requests;  ///< water requested in each terrain cell [quanta]
+  Buffer<float> density, downwind;   ///< of mature plants: [species][cell]
+  Buffer<int> seeds, places;         ///< one for each cell, and one more
+  Buffer<int> tally;                 ///< number of deaths, number of seeds
+  surface::Heights tops;             ///< surface of the canopy, or of the ground where there is none
 
   explicit operator bool() const { return static_cast<bool>(now); }
   View plants() const { return {now.data(), capacity}; }
@@ -38,7 +38,8 @@ struct Workspace {
 Workspace make_workspace(Exec& exec, const Grid& grid, int capacity,
                          const std::vector<SpeciesTraits>& species, const std::vector<float>& competition);
 
-/// The columns of all plants, for checkpoint and hash: Column::x of each, Column::y of each …
+/// The columns of all plants, for checkpoints and the state hash: all of Column::x, all of Column::y and so
+/// on.
 std::vector<std::uint32_t> words(const Workspace& work);
 
 }  // namespace desert_sim::plants

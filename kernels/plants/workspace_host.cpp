@@ -13,13 +13,13 @@ Workspace make_workspace(Exec& exec, const Grid& grid, int capacity,
     *columns = Buffer<std::uint32_t>(exec, column_count * room);
   work.spans = Buffer<Span>(exec, static_cast<std::size_t>(work.lookup.cells + Lookup::levels));
   work.spans.set_zero();
-  work.ordering = Ordering(exec, capacity, grid.cells() + 1);
+  work.ordering = SortWorkspace(exec, capacity, grid.cells() + 1);
   work.species = Buffer<SpeciesTraits>(exec, species.size());
   work.species.upload(species);
   work.competition = Buffer<float>(exec, competition.size());
   work.competition.upload(competition);
-  work.drunk = Buffer<Quanta>(exec, room);
-  work.wishes = Buffer<long long>(exec, cells);
+  work.granted_water = Buffer<Quanta>(exec, room);
+  work.water_requests = Buffer<long long>(exec, cells);
   for (Buffer<float>* map : {&work.density, &work.downwind}) {
     *map = Buffer<float>(exec, cells * species.size());
     map->set_zero();
@@ -34,8 +34,9 @@ Workspace make_workspace(Exec& exec, const Grid& grid, int capacity,
 
 std::size_t Workspace::bytes() const {
   return now.bytes() + next.bytes() + spans.bytes() + ordering.bytes() + species.bytes() +
-         competition.bytes() + drunk.bytes() + wishes.bytes() + density.bytes() + downwind.bytes() +
-         seeds.bytes() + places.bytes() + tally.bytes() + tops.of_cells.bytes() + tops.highest.bytes();
+         competition.bytes() + granted_water.bytes() + water_requests.bytes() + density.bytes() +
+         downwind.bytes() + seeds.bytes() + places.bytes() + tally.bytes() + tops.cell_heights.bytes() +
+         tops.highest.bytes();
 }
 
 std::vector<std::uint32_t> words(const Workspace& work) {

@@ -1,21 +1,28 @@
 #pragma once
-/// What the surface is to a rover: slope and normal, roughness, steps, and from these whether it gets
-/// through. Not part of a step: computed for who asks (Lifetime::on_request).
+/// Traversability: slope, normal, roughness and step height of the surface h, and from these and what lies on
+/// it whether a rover gets through. It is no part of a simulation step, but computed on request
+/// (Lifetime::on_request).
 ///
-///   slope, normal    of the central differences of the surface h; one-sided at open edges
-///   roughness        √(mean of (h − p)²) over the window, p the plane that fits it best
-///   step height      largest |h_j − h − g·d_j| in the window among cells j at distance d_j that lie higher
-///   or
-///                    lower by more than |d_j| tan `slope_deg`; g by axis the flatter of the two one-sided
-///                    differences (0 if they disagree), so that an edge beside flat ground counts in full
-///   traversability   the least of 1 − slope/limit, 1 − step/limit, 1 − roughness/limit, 1 − water/limit,
-///                    1 − plants/limit, 1 − mud, 1 − `sand_cost`·σ, and not below 0; 0 on obstacles
+///   slope            θ = arctan |∇h|, by central differences, one-sided at open edges
+///   normal           (−∂h/∂x, −∂h/∂y, 1)/√(1 + |∇h|²)
+///   roughness        √(mean of (h_j − p_j)²) over the window, p the plane that fits it best (least squares)
+///   step height      max |h_j − h − g·d_j|   where |h_j − h| > |d_j| l tan `slope_deg`
+///   traversability   max(1 − c, 0), and 0 on obstacles
+///                    c = max(θ/θ_max, step_height/limit, roughness/limit, water/limit, vegetation/limit,
+///                            mud, `sand_cost` σ)
+///                    σ = min(sand/`sand_depth`, 1)
+///                    θ_max = lerp(`slope_deg`, `sand_slope_deg`, σ)
+///                    mud = max(m − ½, 0)/(`mud` − ½) · min((sand + soil)/`sand_depth`, 1)
 ///
-/// The slope's limit goes from `slope_deg` to `sand_slope_deg` with σ = min(sand / `sand_depth`, 1), because
-/// wheels slip on loose sand. Mud is (m − ½)/(`mud` − ½) of relative moisture m, where there is enough
-/// ground. The window is the square of cells up to `window` away along x and y, one to 16 cells; at open
-/// edges what there is of it. Reads elevation, sand, soil, moisture, water, vegetation, obstacle; writes
-/// those of slope, normal_x, normal_y, normal_z, roughness, step_height, traversability that the view has.
+/// j runs over the cells of the window, at offsets d_j [cells]. g is, for each axis, the minmod_difference of the two
+/// one-sided differences, and 0 if these have opposite signs (minmod), so that an edge beside flat ground
+/// counts with its full height. The slope limit θ_max is lower on loose sand, because wheels slip there. m is
+/// relative moisture (repose.hpp). The window is the square of cells up to `window` away along x and y, 1 to
+/// 16 cells; at open edges the part of it that is on the grid. `limit` is the parameter that belongs to each
+/// quantity.
+///
+/// Reads elevation, sand, soil, moisture, water, vegetation, obstacle; writes those of slope, normal_x,
+/// normal_y, normal_z, roughness, step_height and traversability that are present in the view.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/math.hpp"
@@ -24,7 +31,7 @@
 
 namespace desert_sim {
 
-/// The defaults are a wheeled rover of a metre or so.
+/// The defaults describe a wheeled rover about a metre long.
 struct TraversabilityParameters {
   float slope_deg = 25.0f;
   float sand_slope_deg = 16.0f;
@@ -67,7 +74,8 @@ inline int window_cells(const TraversabilityParameters& p, float cell_size) {
   return static_cast<int>(clamp(p.window / cell_size, 1.0f, static_cast<float>(widest_window)));
 }
 
-/// For `rows` rows from `first` on. `elevation` must be up to date everywhere.
+/// Computes `rows` rows from row `first` on, which continue over the north edge. `elevation` must be up to
+/// date everywhere.
 template <class E>
 void step(E& exec, const TerrainView& t, const TraversabilityParameters& p, const ReposeParameters& repose,
           int first, int rows);

@@ -6,33 +6,34 @@
 #include "kernels/field/math.hpp"
 #include "kernels/rover/traversability.hpp"
 #include "kernels/sand/repose.hpp"
+#include "src/core/constants.hpp"
 #include "src/core/parameters.hpp"
 
 namespace desert_sim::traversability {
 
-/// Differences of heights [quanta], exact: sums of them do not depend on an order, so that mirrored or turned
-/// terrain gives the same bits.
+/// Differences of heights [quanta]. They are exact integers, whose sums do not depend on the order, so that
+/// mirrored or rotated terrain gives the same bits.
 struct Surface {
   Grid grid;
   const Quanta* elevation;
   float quantum;
 
-  /// Neighbour's height above cell i's; false where the grid ends.
+  /// Height of the neighbour (x, y) above cell i; returns false where the grid ends.
   DESERT_HD bool rise(int i, int x, int y, Quanta& quanta) const {
     const int j = neighbour_index(grid, x, y);
     if (j < 0) return false;
     quanta = elevation[j] - elevation[i];
     return true;
   }
-  /// Per cell, in metres; of a whole axis that has no second cell 0.
+  /// Central difference [m per cell], one-sided where the grid ends; 0 on an axis of a single cell.
   DESERT_HD float central(int x, int y, int dx, int dy) const {
     const int i = grid.index(x, y);
     Quanta ahead = 0, behind = 0;
     const int sides = rise(i, x + dx, y + dy, ahead) + rise(i, x - dx, y - dy, behind);
     return sides == 0 ? 0.0f : (static_cast<float>(ahead) - static_cast<float>(behind)) * quantum / sides;
   }
-  /// The flatter of the two one-sided differences; 0 where one rises and the other falls.
-  DESERT_HD float flatter(int x, int y, int dx, int dy) const {
+  /// The minmod_difference of the two one-sided differences [m per cell], 0 where their signs differ (minmod).
+  DESERT_HD float minmod_difference(int x, int y, int dx, int dy) const {
     const int i = grid.index(x, y);
     Quanta ahead = 0, back = 0;
     const bool has_ahead = rise(i, x + dx, y + dy, ahead), has_back = rise(i, x - dx, y - dy, back);
@@ -47,7 +48,7 @@ struct Surface {
   }
 };
 
-/// Slope and normal; outputs that are not wanted are null.
+/// Slope and normal; outputs that are null are not written.
 struct Orientation {
   Surface surface;
   float *slope, *normal_x, *normal_y, *normal_z;
@@ -66,11 +67,12 @@ struct Orientation {
 
 struct Roughness {
   Surface surface;
-  int reach;  ///< of the window [cells]
+  int reach;  ///< half width of the window [cells]
   float* roughness;
 
-  /// By the sums of the least-squares fit. The window is a rectangle, so that its axes separate. Heights are
-  /// held to 2²⁶ quanta around the cell's, with which the sums fit 63 bits.
+  /// Root mean square residual, from the sums of the least-squares fit. The window is a rectangle, so that
+  /// the fits along x and y separate. Heights are clamped to ±2²⁶ quanta around the cell's, so that the sums
+  /// fit 63 bits.
   DESERT_HD float at(int x, int y) const {
     constexpr Quanta held = Quanta{1} << 26;
     const int i = surface.grid.index(x, y);
@@ -98,13 +100,13 @@ struct Roughness {
 
 struct StepHeight {
   Surface surface;
-  int reach;       ///< of the window [cells]
+  int reach;       ///< half width of the window [cells]
   float drivable;  ///< tangent of the slope up to which a rise is no step
   float* step_height;
 
   DESERT_HD float at(int x, int y) const {
     const int i = surface.grid.index(x, y);
-    const float gx = surface.flatter(x, y, 1, 0), gy = surface.flatter(x, y, 0, 1);
+    const float gx = surface.minmod_difference(x, y, 1, 0), gy = surface.minmod_difference(x, y, 0, 1);
     float highest = 0.0f;
     for (int dy = -reach; dy <= reach; ++dy)
       for (int dx = -reach; dx <= reach; ++dx) {
@@ -129,7 +131,7 @@ struct Traversability {
   const float *vegetation, *obstacle;
   float* traversability;
 
-  /// Half-wet ground holds best; from there on it turns to mud, where there is enough of it.
+  /// Half-saturated ground is firmest; wetter ground turns to mud, the more the deeper it is.
   DESERT_HD float mud(int i) const {
     const float depth =
         static_cast<float>(value_or_zero(sand, i) + value_or_zero(soil, i)) * roughness.surface.quantum;
@@ -156,10 +158,10 @@ struct Traversability {
   }
 };
 
-/// The law for this rover; it writes to those layers that the view has.
+/// The law for this rover; it writes those layers that are present in the view.
 inline Traversability law(const TerrainView& t, const TraversabilityParameters& p,
                           const ReposeParameters& repose) {
-  const float degree = 3.14159265358979f / 180.0f;
+  const float degree = static_cast<float>(pi) / 180.0f;
   const int reach = window_cells(p, t.grid.cell_size);
   const Surface surface{t.grid, t.quanta(Layer::elevation), t.quantum};
   return {{surface, reach, t.real(Layer::roughness)},

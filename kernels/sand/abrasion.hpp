@@ -1,11 +1,14 @@
 #pragma once
-/// Abrasion: bouncing sand wears rock and soil to sand. Paris 2019 §5.2, Nilles 2024 §3.6; physics.md B4.
+/// Abrasion: bouncing sand wears bedrock, or soil where there is some, and turns it into sand. Paris 2019
+/// §5.2; Nilles 2024 §3.6; Nilles 2025 §3.3.2 for soil.
 ///
-///   where s (before the deposit) < `cover` and sand bounces:  wear = k_a Δt |w| (1 − v)(1 − ρ)(1 − p) min(bouncing, 1 m)
+///   bedrock   ε = k_a Δt |w| (1 − v)(1 − p) min(a, 1 m) · (1 − ρ)
+///   soil      ε = k_a Δt |w| (1 − v)(1 − p) min(a, 1 m) · max(1 − m/0.5, 0)
 ///
-/// Soil, where there is some, wears in the rock's place, less so with moisture: · max(1 − m/0.5, 0).
-/// Part of the deposit pass of saltation. Reads what deposit reads, and erosion_resistance; writes bedrock,
-/// soil, sand.
+/// w is the wind, v vegetation, p the share of sand that was deposited, a the sand that bounces [m],
+/// ρ erosion_resistance, m relative moisture. Abrasion acts where the sand before the deposit is shallower
+/// than `cover` and a > 0. It is part of saltation's deposition pass. Reads bedrock, soil, sand,
+/// erosion_resistance and what that pass reads; writes bedrock, soil, sand.
 
 #include "kernels/field/ledger.hpp"
 #include "kernels/sand/repose.hpp"
@@ -36,8 +39,8 @@ struct Wear {
   const float* resistance;
   LedgerView ledger;
 
-  /// `sand_hit`: the cell's sand before any was deposited; `bouncing`: sand that stays in the air over cell i; `speed` of the wind; v vegetation; m relative
-  /// moisture; p the share of sand that was deposited.
+  /// `sand_hit`: sand of cell i before the deposit; `bouncing`: sand that stays airborne over it; `speed`: of
+  /// the wind [m/s]; v: vegetation; m: relative moisture; p: deposited share.
   DESERT_HD void operator()(int i, Quanta sand_hit, Quanta bouncing, float speed, float v, float m,
                             float p) const {
     if (rate <= 0.0f || bouncing <= 0 || sand_hit >= cover) return;

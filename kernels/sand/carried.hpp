@@ -1,6 +1,6 @@
 #pragma once
-/// Material that is carried from a cell and comes down between four: shared among them bilinearly, in whole
-/// quanta, of which none is lost. What for_each_cell_adding() works with.
+/// Transported material is scattered bilinearly to the four cells around its landing point, in whole quanta,
+/// so that mass is conserved exactly. Laws of for_each_cell_scatter() use these parcels.
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/field/ledger.hpp"
@@ -8,17 +8,18 @@
 
 namespace desert_sim {
 
-/// Of several cells: where each cell's comes down, (x, y) and the next ones to the east and north, and each
-/// one's share.
+/// Parcels of `count` cells, as a structure of arrays. A landing point lies between cell (x, y) and its
+/// neighbours to the east, north and north-east; each of the four gets its share of `amount`.
 template <int count>
-struct Carried {
+struct BilinearParcels {
   int x[count], y[count];
   Quanta amount[count];
   Quanta south_west[count], south_east[count], north_west[count], north_east[count];
 
-  /// From cell (cell_x, cell_y), by (dx, dy) subcells.
+  /// Fills parcel n, which is carried from cell (cell_x, cell_y) by (dx, dy) [cells, 16.16 fixed point].
   DESERT_HD void set(int n, int cell_x, int cell_y, int dx, int dy, Quanta carried) {
-    const int east = dx & 65535, north = dy & 65535, west = subcell_one - east, south = subcell_one - north;
+    const int east = dx & 65535, north = dy & 65535, west = fixed_point_one - east,
+              south = fixed_point_one - north;
     x[n] = cell_x + (dx >> 16);
     y[n] = cell_y + (dy >> 16);
     amount[n] = carried;
@@ -26,20 +27,22 @@ struct Carried {
     south_east[n] = bilinear_share(carried, east, south);
     north_west[n] = bilinear_share(carried, west, north);
     north_east[n] = bilinear_share(carried, east, north);
-    // What rounding leaves, at most three quanta, to the nearest; mirrored, that is the mirrored one.
+    // The remainder of rounding, at most three quanta, goes to the nearest cell. In mirrored terrain that is
+    // the mirrored cell.
     const Quanta rest = left(n), eastern = east > west ? rest : 0, western = east < west ? rest : 0;
     south_west[n] += south > north ? western : 0;
     south_east[n] += south > north ? eastern : 0;
     north_west[n] += south < north ? western : 0;
     north_east[n] += south < north ? eastern : 0;
   }
-  /// Where none is the nearest, that stays in the cell: then no direction is favoured either.
+  /// What the four shares leave of the amount. After set() it is 0, except where no cell is the nearest: then
+  /// the remainder stays in the source cell, so that no direction is favoured.
   DESERT_HD Quanta left(int n) const {
     return amount[n] - south_west[n] - south_east[n] - north_west[n] - north_east[n];
   }
 };
 
-/// Where carried material goes; over an open edge, into the books.
+/// Delivers parcels to their cells; what crosses an open edge is recorded in the ledger as outflow.
 struct Landing {
   Grid grid;
   Material material;
@@ -54,9 +57,9 @@ struct Landing {
       ledger.book_out(material, from, amount);
   }
 
-  /// What cell (x, y) sends, the nth of `parcels`.
+  /// Delivers the n-th of `parcels`, which cell (x, y) sends.
   template <int count, class Add>
-  DESERT_HD void deliver(int x, int y, const Carried<count>& parcels, int n, const Add& add) const {
+  DESERT_HD void deliver(int x, int y, const BilinearParcels<count>& parcels, int n, const Add& add) const {
     if (parcels.amount[n] == 0) return;
     const int i = grid.index(x, y), at_x = parcels.x[n], at_y = parcels.y[n];
     if (grid.inside(at_x, at_y) && grid.inside(at_x + 1, at_y + 1)) {

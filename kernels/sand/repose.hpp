@@ -1,13 +1,17 @@
 #pragma once
-/// The angle of repose of a cell's sand: the one table that reptation and avalanching use. Physics.md B7.
+/// Angles of repose of sand, soil and bedrock, which reptation and avalanching share. Nilles 2024 §3.8 for
+/// vegetation; Nilles 2025 §3.3.2 for soil and moisture.
 ///
-///   tan θ = lerp(tan θ_dry, tan θ_vegetated, v) · moisture factor
-///   factor, M = 2m − 1:  M ≤ 0: 1.5 + 0.5 M;  M > 0: 1.5 − 1.35 M   (dry 1, half-wet 1.5, saturated 0.15)
+///   tan θ = lerp(tan θ_bare, tan θ_vegetated, v) · f(m)
+///   f(m)  = 1.5 + 0.5 M    where M ≤ 0,   M = 2 m − 1
+///   f(m)  = 1.5 − 1.35 M   where M > 0                  (dry 1, half saturated 1.5, saturated 0.15)
 ///
-/// Relative moisture m is the water in the ground over the ground's capacity, capacity · min(e + s, 1 m).
+/// Relative moisture m is the moisture over the ground's capacity, `moisture_capacity` · min(e + s, 1 m),
+/// with the depths e of soil and s of sand. Bedrock has one angle everywhere.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/math.hpp"
+#include "src/core/constants.hpp"
 #include "src/core/parameters.hpp"
 
 namespace desert_sim {
@@ -38,8 +42,8 @@ static_assert(table_is_complete<ReposeParameters>());
 
 namespace repose {
 
-/// Moisture of the ground relative to its capacity, 0…1; 0 where there is no ground or the layer is not in
-/// use.
+/// Moisture of the ground relative to its capacity, 0 … 1; 0 where the layer `moisture` is not in use. Ground
+/// shallower than 1 mm has the capacity of 1 mm.
 struct RelativeMoisture {
   const Quanta *moisture, *soil, *sand;
   float capacity, quantum;
@@ -73,9 +77,7 @@ struct Tangents {
         soil(tangent(p.soil_deg)),
         soil_vegetated(tangent(p.soil_vegetated_deg)),
         bedrock(tangent(p.bedrock_deg)) {}
-  static float tangent(float degrees) {
-    return static_cast<float>(std::tan(degrees * 3.14159265358979 / 180.0));
-  }
+  static float tangent(float degrees) { return static_cast<float>(std::tan(degrees * pi / 180.0)); }
 };
 
 }  // namespace repose

@@ -9,11 +9,11 @@
 
 namespace desert_sim::reptation {
 
-/// Angles of repose where there is no saltation that sets them.
+/// Sets the angles of repose where saltation, whose deposition pass otherwise does so, is off.
 struct SetAngles {
   Grid grid;
   Angle angle;
-  const float *strength, *wind_x, *wind_y, *wind_shadow, *vegetation;  ///< strength: null where nothing hits
+  const float *strength, *wind_x, *wind_y, *wind_shadow, *vegetation;  ///< strength: null without impacts
   repose::RelativeMoisture moisture;
 
   DESERT_HD void operator()(int x, int y) const {
@@ -33,7 +33,7 @@ void set_angles(E& exec, const TerrainView& t, const Angle& angle, const ReposeP
                 t.real(Layer::wind_shadow), t.real(Layer::vegetation), repose::RelativeMoisture(t, p)});
 }
 
-/// What the laws below share: heights, and the change of sand that they write.
+/// Heights, impact strengths and winds that the laws below read.
 struct Surface {
   Grid grid;
   const Quanta *bedrock, *soil, *sand;
@@ -49,7 +49,8 @@ struct SmoothingFlux {
   float strength;  ///< k_r Δt / (sub-steps · l)
   Quanta* change;
 
-  /// What i gives to its neighbour j (negative: gets), the same number whichever of the two computes it.
+  /// Sand that i gives to its neighbour j [quanta], negative if it receives. The magnitude is the same
+  /// whichever of the two cells computes it.
   DESERT_HD Quanta flux(int i, int j, int k) const {
     const Quanta drop = s.height(i) - s.height(j);
     const float steep = strength * static_cast<float>(drop < 0 ? -drop : drop) / Neighbours::distance(k) *
@@ -72,7 +73,7 @@ struct SmoothingFlux {
   }
 };
 
-/// Greatest diffusivity r |w|, which sets the number of sub-steps.
+/// Diffusivity r |w|, whose maximum sets the number of sub-steps.
 struct Diffusivity {
   Surface s;
   DESERT_HD float operator()(int x, int y) const {
@@ -115,7 +116,7 @@ struct SteepestEvent {
       }
     }
     if (first < 0) return;
-    // No more than evens out the steepest pair, so that events do not overshoot.
+    // At most half the steepest drop moves, so that an event does not overshoot.
     const float level = 0.5f * first_slope;
     const Quanta moved = take(minimum(slab, level / quanta_per_metre), quanta_per_metre, s.sand[i]);
     const Quanta to_second =
@@ -150,7 +151,8 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, float tim
                         t.real(Layer::obstacle)};
   const ApplyChange apply{t.grid, change, t.quanta(Layer::sand)};
   if (p.method == ReptationMethod::smoothing) {
-    // Stable while a cell gives less than half of what would level it with all eight: strength · r |w| ≤ ½.
+    // The explicit scheme is stable while k_r Δt/l · r |w| ≤ ½: then a cell gives less than half of what
+    // would level it with its eight neighbours.
     const float strength = p.strength * time_step / t.grid.cell_size;
     const float diffusivity = max_cells(exec, t.grid, Diffusivity{surface});
     const int substeps = static_cast<int>(clamp(ceilf(strength * diffusivity / 0.5f), 1.0f, 1000.0f));

@@ -1,19 +1,25 @@
 #pragma once
-/// Reptation: grains that saltation hits creep down the slope. Nilles 2024 §3.7 and its later version, Paris
-/// 2019 §5.1; physics.md B5. r is the strength that saltation left: (deposited + bounced)(1 − v) [m].
+/// Reptation (creep): the impacts of saltating grains move sand down the slope. Nilles 2024 §3.7, eq. 6–8
+/// (smoothing); Nilles and Günther 2024 (adaptive_repose); Paris 2019 §5.1 (steepest).
 ///
-///   adaptive_repose  tan θ = lerp(tan θ_sand exp(−k_r r |w| (1 − r_s use_shadow)), tan θ_vegetated, v) ·
-///   moisture,
-///                    the donor's angle in the avalanche that follows
-///   smoothing        flux between neighbours k_r |Δh|/(l d) ½(r_i + r_j) ½(|w_i| + |w_j|) Δt, down the
-///   slope, at most
-///                    the donor's sand, mean over 8; in as many sub-steps as its diffusion number needs
-///   steepest         with probability (1 − v)(1 − e^(−r)), `slab`·Δt to the two steepest neighbours, by
-///   their slopes
+/// Saltation gives each cell an impact strength r = (deposited + bounced)(1 − v) [m]. The methods are
 ///
-/// Saltation's deposit sets the angles, of every choice (without r but for adaptive_repose), in the same
-/// pass: see Impacts. Reads sand, bedrock, soil, wind, wind_shadow, vegetation, moisture; writes sand and the
-/// scratch layer of repose tangents.
+///   adaptive_repose   tan θ = lerp(tan θ_sand · exp(−k_r r |w| (1 − r_s)), tan θ_vegetated, v) · f(m)
+///   smoothing         q_ij  = ⅛ min(k_r Δt |h_i − h_j|/(l d) · ½(r_i + r_j) · ½(|w_i| + |w_j|), s_donor)
+///   steepest          P     = (1 − v)(1 − e^(−r)),   amount = min(`slab` Δt, half the steepest drop, s)
+///
+/// with the factors of repose.hpp, d = 1 or √2. `adaptive_repose` lowers the donor's angle of repose θ in the
+/// avalanche that follows; without `use_shadow` its r_s is 0. `smoothing` moves q_ij [m] from the higher to
+/// the lower of two neighbours, in as many sub-steps as its diffusion number needs. `steepest` is a random
+/// event of probability P in each cell, which divides the amount among the two steepest neighbours in
+/// proportion to their slopes.
+///
+/// The deposition pass of saltation sets the angles of repose for every method (see Impacts), and
+/// set_angles() does so where saltation is off; r lowers them with adaptive_repose only.
+///
+/// set_angles() reads soil, sand, moisture, vegetation, wind_x, wind_y, wind_shadow; it writes the tangents
+/// of repose, which are scratch. step() reads bedrock, soil, sand, obstacle, wind_x, wind_y and, for
+/// `steepest`, vegetation; it writes sand.
 
 #include <cstdint>
 
@@ -45,11 +51,11 @@ static_assert(table_is_complete<ReptationParameters>());
 
 namespace reptation {
 
-/// The angle of repose of a cell's sand where impacts of strength r [m] loosen it, in the wind's speed [m/s].
+/// The angle of repose of a cell's sand, which impacts may lower.
 struct Angle {
   repose::Tangents tangents;
   float loosening;  ///< k_r of adaptive_repose, else 0
-  float sparing;    ///< share of the loosening from which the wind's shadow spares: 1 or 0
+  float sparing;    ///< weight of the wind shadow r_s: 1 with `use_shadow`, else 0
   float* repose;
 
   Angle(const ReptationParameters& p, const ReposeParameters& repose_parameters, float* tangents_of_repose)
@@ -58,18 +64,19 @@ struct Angle {
         sparing(p.use_shadow ? 1.0f : 0.0f),
         repose(tangents_of_repose) {}
 
-  /// The tangent of dry bare sand.
+  /// Tangent of dry bare sand under impacts of strength r [m], at wind speed [m/s] and wind shadow r_s.
   DESERT_HD float loosened(float r, float speed, float shadow) const {
     if (!(loosening > 0.0f)) return tangents.sand;
     return tangents.sand * exp_negative(loosening * r * speed * (1.0f - shadow * sparing));
   }
-  /// v vegetation, m relative moisture.
+  /// Tangent at vegetation v and relative moisture m, from that of dry bare sand.
   DESERT_HD float of(float dry_and_bare, float v, float m) const {
     return lerp(dry_and_bare, tangents.vegetated, v) * repose::moisture_factor(m);
   }
 };
 
-/// What saltation leaves behind in a cell: its angle, and the strength itself where somebody needs it.
+/// What saltation writes to a cell: its tangent of repose and, if `strength` is not null, the impact
+/// strength.
 struct Impacts {
   Angle angle;
   float* strength;  ///< [m], or null
@@ -84,14 +91,14 @@ template <class E>
 void set_angles(E& exec, const TerrainView& t, const Angle& angle, const ReposeParameters& p,
                 const float* strength);
 
-/// Whether step() does anything: adaptive_repose has done with the angles.
+/// Whether step() moves sand; adaptive_repose acts through the angles of repose alone.
 inline bool moves_sand(const ReptationParameters& p) {
   return p.method == ReptationMethod::steepest ||
          (p.method == ReptationMethod::smoothing && p.strength > 0.0f);
 }
 
-/// Moves sand. Scratch: `change` (quanta) one a cell. `seed` and `tick` (steps done) draw the events of
-/// `steepest`.
+/// Moves sand by `smoothing` or `steepest`. `change`: scratch, one value a cell [quanta]. `seed` and `tick`
+/// (steps done) are key and counter of the random numbers of `steepest`.
 template <class E>
 void step(E& exec, const TerrainView& t, const ReptationParameters& p, float time_step, std::uint64_t seed,
           std::uint64_t tick, const float* reptation_strength, Quanta* change);

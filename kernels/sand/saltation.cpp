@@ -15,13 +15,13 @@ void step_where(E& exec, const TerrainView& t, const SaltationParameters& p, con
   Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand);
   const LiftAndAdvect<bare> lift{in, p, time_step / t.grid.cell_size, sand, airborne, ledger};
   if (shade)
-    for_each_cell_adding(exec, t.grid, landed, ShadeAndLift<bare>{*shade, lift});
+    for_each_cell_scatter(exec, t.grid, landed, ShadowAndLift<bare>{*shade, lift});
   else
-    for_each_cell_adding(exec, t.grid, landed, lift);
+    for_each_cell_scatter(exec, t.grid, landed, lift);
   if (!t.grid.periodic() && p.influx > 0.0f)
     for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, landed, ledger});
   const Deposit<bare> deposit{in, p, wear, landed, sand, airborne, impacts};
-  if constexpr (bare && !works_on_rows<E>)
+  if constexpr (bare && !vectorises_rows<E>)
     if (t.grid.width % 4 == 0) {
       const DepositOfFour four{deposit};
       return for_each_cell(exec, four.fours(), four);

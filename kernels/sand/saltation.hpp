@@ -1,19 +1,31 @@
 #pragma once
-/// Saltation: the wind lifts sand, carries it a hop, and part of it stays. Expected values, no dice.
-/// Nilles 2024 §3.6; physics.md B1–B3.
+/// Saltation: the wind lifts sand, carries it a hop, and a share of it is deposited where it lands; the rest
+/// bounces on. Expected values replace random events. Nilles 2024 §3.6, eq. 5; Nilles 2025 §3.3.2 for soil,
+/// moisture and water.
 ///
-///   lift     L = min(s, ε_s (1 − r_s)(1 − v)(r_e > 0 ? ½ : 1) M + (r_e < 0 ? k_e : 0)),  a += L
-///            M = clamp(1 − 10 m, 0, 1), 0 under water; nothing lifts in still air or below the threshold
-///            speed
-///   advect   a moves by w Δt / l cells and is shared bilinearly among four (scattered integers: exact, any
-///   order) deposit  p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1), f = 0.4 on sand, 0.5 on soil, 0.6 on
-///   rock; 0 on obstacles
-///            and in the lane before a cliff; · clamp(1 − 10 m, 0.01, 1), under water · 0.01;  s += p a
-///   bounce   a ← (1 − p) a stays in the air; strength of reptation r = (deposited + bounced)(1 − v)
+///   lift      L = min(s, Δt (ε_s (1 − r_s)(1 − v)(r_e > 0 ? ½ : 1) M + (r_e < 0 ? k_e : 0)))
+///             M = clamp(1 − 10 m, 0, 1), and 0 under water
+///             s ← s − L
+///             a ← a + L
+///   advect    a moves by w Δt / l cells and is scattered bilinearly to the four cells around
+///   deposit   p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1) · clamp(1 − 10 m, 0.01, 1)
+///             p = 0 on obstacles and where r_e < 0
+///             f = 0.4 on sand, 0.5 on soil, 0.6 on rock
+///             s ← s + p a
+///   bounce    a ← (1 − p) a
+///   impacts   r = (deposited + bounced)(1 − v), the strength of reptation
 ///
-/// On open edges sand that is carried over an edge is booked as out; `influx` enters where the wind blows in,
-/// spread over the first hop. Reads sand, wind, wind_shadow, echo, vegetation, obstacle, moisture, water;
-/// writes sand, airborne_sand, and through abrasion bedrock and soil.
+/// Symbols: s sand, a airborne_sand, w wind, r_s wind_shadow, r_e echo, v vegetation, m relative moisture.
+/// Nothing is lifted in still air or below `threshold_speed`. Under water the last factor of p is 0.01. The
+/// scatter adds integers, so that its result does not depend on the order of threads.
+///
+/// Sand that the wind carries over an open edge is recorded in the ledger as outflow; `influx` enters where
+/// the wind blows in, spread over the length of a hop.
+///
+/// Reads sand, airborne_sand, soil, water, moisture, vegetation, obstacle, wind_x, wind_y, wind_shadow, echo,
+/// and for abrasion bedrock and erosion_resistance. Writes sand, airborne_sand, the tangents of repose and
+/// the impact strength (scratch), with abrasion also bedrock and soil, and wind_shadow where it computes that
+/// in the same pass.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
@@ -58,8 +70,8 @@ struct Shadow;
 
 namespace saltation {
 
-/// `landed` (quanta): scratch memory of one value a cell. `shade`: what finds the wind's shadow first, or
-/// null where it is there.
+/// `landed`: scratch, one value a cell [quanta]. `shade`: the law that computes the wind shadow in the pass
+/// of the lift, or null where the layer is up to date.
 template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
           const ReposeParameters& repose, float time_step, LedgerView ledger, Quanta* landed,

@@ -1,5 +1,5 @@
 #pragma once
-/// What the laws of saltation read, and how wet ground hinders them.
+/// Layers that the laws of saltation read, and the factor by which moisture reduces lift and deposition.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/math.hpp"
@@ -12,8 +12,8 @@ DESERT_HD float dryness(float relative_moisture) {
   return clamp(1.0f - 10.0f * relative_moisture, 0.0f, 1.0f);
 }
 
-/// What the laws read. `bare`: of a desert of rock and sand alone, where there are none of the layers that a
-/// desert need not have and nothing wears; laws for that leave out the questions after them.
+/// Layers that the laws read. `bare` is a desert of rock and sand alone, without the optional layers and
+/// without abrasion; laws for it are compiled without the tests for these.
 template <bool bare>
 struct Inputs {
   Grid grid;
@@ -38,14 +38,14 @@ struct Inputs {
         relative_moisture(t, repose) {}
 
   template <class Value>
-  DESERT_HD Value there_may_be(const Value* layer, int i) const {
+  DESERT_HD Value value_if_present(const Value* layer, int i) const {
     return bare ? Value{} : value_or_zero(layer, i);
   }
-  DESERT_HD float plants(int i) const { return there_may_be(vegetation, i); }
-  DESERT_HD float eddy(int i) const { return there_may_be(echo, i); }
-  DESERT_HD bool solid(int i) const { return there_may_be(obstacle, i) > 0.0f; }
+  DESERT_HD float plants(int i) const { return value_if_present(vegetation, i); }
+  DESERT_HD float eddy(int i) const { return value_if_present(echo, i); }
+  DESERT_HD bool solid(int i) const { return value_if_present(obstacle, i) > 0.0f; }
   DESERT_HD float moisture(int i) const { return bare ? 0.0f : relative_moisture(i); }
-  DESERT_HD bool flooded(int i) const { return there_may_be(water, i) * quantum > wet_depth; }
+  DESERT_HD bool flooded(int i) const { return value_if_present(water, i) * quantum > wet_depth; }
 };
 
 inline bool is_bare(const TerrainView& t, const AbrasionParameters& a) {

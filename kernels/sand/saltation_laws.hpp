@@ -13,19 +13,20 @@
 
 namespace desert_sim::saltation {
 
-/// Lifts, and scatters what is in the air over a cell to the four cells around where it lands.
+/// Lifts sand, and scatters the airborne sand of a cell to the four cells around its landing point.
 template <bool bare>
 struct LiftAndAdvect {
   template <int count>
-  using Parcels = Carried<count>;
+  using Parcels = BilinearParcels<count>;
   Inputs<bare> in;
   SaltationParameters p;
-  float cells_a_speed;  ///< of a hop
+  float hop_per_speed;  ///< length of a hop over wind speed, Δt / l [cells s/m]
   Quanta* sand;
   const Quanta* airborne;
   LedgerView ledger;
 
-  /// What a cell's lift depends on. All of it is read before anything is asked, so that a GPU waits once.
+  /// Values on which a cell's lift depends. All are loaded before the first branch, so that a GPU waits for
+  /// memory once.
   struct Cell {
     float u, v;
     Quanta lying, carried;
@@ -52,23 +53,24 @@ struct LiftAndAdvect {
   }
 
   template <int count>
-  DESERT_HD void prepare(int x, int y, const Cell& c, Carried<count>& parcels, int n) const {
+  DESERT_HD void prepare(int x, int y, const Cell& c, BilinearParcels<count>& parcels, int n) const {
     const Quanta lift = lifted(c);
     sand[in.grid.index(x, y)] = c.lying - lift;
-    parcels.set(n, x, y, subcells(c.u * cells_a_speed), subcells(c.v * cells_a_speed), c.carried + lift);
+    parcels.set(n, x, y, to_fixed_point(c.u * hop_per_speed), to_fixed_point(c.v * hop_per_speed),
+                c.carried + lift);
   }
   template <int count>
-  DESERT_HD void prepare(int x, int y, Carried<count>& parcels, int n) const {
+  DESERT_HD void prepare(int x, int y, BilinearParcels<count>& parcels, int n) const {
     prepare(x, y, read(x, y), parcels, n);
   }
 
   template <int count, class Add>
-  DESERT_HD void deliver(int x, int y, const Carried<count>& parcels, int n, const Add& add) const {
+  DESERT_HD void deliver(int x, int y, const BilinearParcels<count>& parcels, int n, const Add& add) const {
     Landing{in.grid, Material::sand, ledger}.deliver(x, y, parcels, n, add);
   }
 };
 
-/// Sand that the wind brings in over an open edge; see `influx`.
+/// Sand that the wind carries in over an open edge (parameter `influx`).
 template <bool bare>
 struct Influx {
   Inputs<bare> in;
@@ -76,7 +78,8 @@ struct Influx {
   Quanta* landed;
   LedgerView ledger;
 
-  /// Depth brought over one edge to the cell that lies `cell` cells from it, with wind `speed` into the grid.
+  /// Depth [m] that one edge brings to the cell which lies `cell` cells from it; `speed`: of the wind into
+  /// the grid [m/s].
   DESERT_HD float over_edge(int cell, float speed) const {
     const float l = in.grid.cell_size, hop = speed * in.time_step;
     if (!(hop > 0.0f)) return 0.0f;
@@ -98,7 +101,8 @@ struct Influx {
   }
 };
 
-/// Deposits a share of what landed; the rest bounces on. Wears the ground, and leaves the impacts' marks.
+/// Deposits a share of the sand that landed and lets the rest bounce; abrades the ground and sets the
+/// impacts.
 template <bool bare>
 struct Deposit {
   Inputs<bare> in;
@@ -108,24 +112,25 @@ struct Deposit {
   Quanta *sand, *airborne;
   reptation::Impacts impacts;
 
-  /// `cover`: the sand that lies there; v vegetation, m relative moisture.
+  /// The deposited share p. `cover`: sand of the cell before the deposit [quanta]; v: vegetation; m: relative
+  /// moisture.
   DESERT_HD float share(int i, Quanta cover, float shadow, float v, float m) const {
     const float r_e = in.eddy(i);
     if (r_e < 0.0f || in.solid(i)) return 0.0f;
     const bool sandy = cover > 0 && cover * in.quantum >= p.bare_depth;
-    const float bounce =
-        sandy ? p.bounce_on_sand : (in.there_may_be(in.soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
+    const float bounce = sandy ? p.bounce_on_sand
+                               : (in.value_if_present(in.soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
     const float held = maximum((1.0f - bounce) + v * bounce, maximum(shadow, r_e));
     const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
     return clamp(held, 0.0f, 1.0f) * wet;
   }
 
-  /// What becomes of sand that arrives. Reads, but does not write: what is written waits for all that is read
-  /// once.
+  /// What a cell does with the sand that lands. settle() computes it without writing, so that all loads come
+  /// before the first store.
   struct Outcome {
-    float held;  ///< share
+    float held;  ///< deposited share
     Quanta stays, bounces;
-    float strength, loosened;  ///< of the impacts, and the angle of dry bare sand that they leave
+    float strength, loosened;  ///< impact strength [m]; tangent of repose of dry bare sand under the impacts
   };
   DESERT_HD Outcome settle(int i, Quanta arriving, Quanta cover, float shadow, float speed, float v,
                            float m) const {

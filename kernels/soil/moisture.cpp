@@ -10,13 +10,13 @@
 
 namespace desert_sim::moisture {
 
-/// The ground's room and speed.
+/// Capacity and seepage rate of the ground.
 struct Ground {
   const Quanta *soil, *sand;
   float capacity, quantum, quanta_per_metre;
   MoistureParameters p;
 
-  /// Quanta that the ground can hold.
+  /// Moisture that the ground can hold, C [quanta].
   DESERT_HD Quanta room(int i) const {
     const float depth = static_cast<float>(value_or_zero(soil, i) + sand[i]) * quantum;
     return static_cast<Quanta>(capacity * minimum(depth, 1.0f) * quanta_per_metre);
@@ -26,14 +26,15 @@ struct Ground {
   }
 };
 
-/// `part` of `from`, at least one quantum, if there is any.
-DESERT_HD Quanta some_of(Quanta from, float part) {
+/// The share `part` of `from` [quanta], but at least one quantum where there is any.
+DESERT_HD Quanta at_least_one_of(Quanta from, float part) {
   if (from <= 0 || !(part > 0.0f)) return 0;
   const Quanta taken = static_cast<Quanta>(rintf(part * static_cast<float>(from)));
   return taken < 1 ? 1 : (taken > from ? from : taken);
 }
 
-/// Water into the ground, or out of it where it is too full; then dries what no water covers.
+/// Moves water into the ground, or out of it above its capacity; then evaporates moisture where no water
+/// stands.
 struct SeepAndDry {
   Grid grid;
   Ground ground;
@@ -46,11 +47,11 @@ struct SeepAndDry {
     const int i = grid.index(x, y);
     const Quanta room = ground.room(i), full = moisture[i], there = water[i];
     const float rate = ground.rate(i);
-    Quanta in = room - full;  // what is too much comes out
+    Quanta in = room - full;  // negative: the excess re-emerges
     if (in > 0) {
       const float part =
           rate * time_step * (2 * static_cast<long long>(full) > room ? ground.p.when_wet : 1.0f);
-      const Quanta wanted = some_of(in, minimum(part, 1.0f));
+      const Quanta wanted = at_least_one_of(in, minimum(part, 1.0f));
       in = wanted < there ? wanted : there;
       ledger.convert(Material::water, Material::moisture, i, in);
     } else {
@@ -61,15 +62,15 @@ struct SeepAndDry {
     Quanta dried = 0;
     if (!((there - in) * ground.quantum > wet_depth)) {
       const float speed = ground.p.evaporation * rate * (1.0f - 0.75f * value_or_zero(vegetation, i));
-      dried = some_of(wet, 1.0f - exp_negative(speed * time_step));
+      dried = at_least_one_of(wet, 1.0f - exp_negative(speed * time_step));
       ledger.book_out(Material::moisture, i, dried);
     }
     moisture[i] = wet - dried;
   }
 };
 
-/// What cells get from those beside them.
-struct Spread {
+/// Moisture that a cell gains from its four neighbours by diffusion.
+struct DiffuseMoisture {
   Grid grid;
   Ground ground;
   float number;  ///< D Δt/l² ≤ ¼
@@ -82,7 +83,7 @@ struct Spread {
     const Quanta there = ground.room(j);
     if (there <= 0 || room <= 0) return 0;
     const float other = static_cast<float>(moisture[j]) / static_cast<float>(there);
-    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // four parts of a quarter round
+    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // four quarters are rounded
     return static_cast<Quanta>(number * guard * static_cast<float>(room < there ? room : there) *
                                (other - wet));
   }
@@ -95,7 +96,7 @@ struct Spread {
   }
 };
 
-struct ApplySpread {
+struct ApplyDiffusion {
   Grid grid;
   const Quanta* gain;
   Quanta* moisture;
@@ -114,8 +115,9 @@ void step(E& exec, const TerrainView& t, const MoistureParameters& p, float capa
   if (!(number > 0.0f)) return;
   const int parts = static_cast<int>(std::ceil(number * 4.0f));
   for (int n = 0; n < parts; ++n) {
-    for_each_cell(exec, t.grid, Spread{t.grid, ground, number / static_cast<float>(parts), moisture, gain});
-    for_each_cell(exec, t.grid, ApplySpread{t.grid, gain, moisture});
+    for_each_cell(exec, t.grid,
+                  DiffuseMoisture{t.grid, ground, number / static_cast<float>(parts), moisture, gain});
+    for_each_cell(exec, t.grid, ApplyDiffusion{t.grid, gain, moisture});
   }
 }
 

@@ -1,15 +1,19 @@
 #pragma once
-/// Water in the ground, of its upper metre. Nilles 2025 §3.4.4–3.4.5; physics.md C4.
+/// Moisture of the upper metre of the ground. Nilles 2025 §3.4.4–3.4.5, eq. 32, 33, 35.
 ///
-///   capacity   C = c_M min(e + s, 1 m)
-///   rate       r = lerp(r_soil, r_sand, min(s, 1 m))
-///   seepage    M += min(r Δt (C − M), w), where M > C/2 · `when_wet`; what is over C comes out again
-///   diffusion  M_i −= D Δt/l² min(C_i, C_j)(m_i − m_j), m = M/C: what is equally wet is at rest
-///   drying     M ← M e^(−φ r (1 − ¾ v) Δt), at least one quantum, where no water stands
+///   capacity      C = c_M min(e + s, 1 m)
+///   rate          r = lerp(r_soil, r_sand, min(s/1 m, 1))
+///   seepage       M += min(r Δt (C − M), w)   where M < C; r is multiplied by `when_wet` where M > C/2
+///   excess        w += M − C,  M ← C          where M > C
+///   evaporation   M ← M e^(−φ r (1 − ¾ v) Δt)   where there is no surface water
+///   diffusion     M_i −= Σ_j D Δt/l² min(C_i, C_j)(m_i − m_j),   m = M/C
 ///
-/// Published: diffusion of M itself, which would lift water into ground that has no room. On ground of one
-/// depth they are the same. Diffusion is divided so that D Δt/l² ≤ ¼. Reads soil, sand, water, moisture,
-/// vegetation; writes water, moisture.
+/// M is moisture, w water, e soil, s sand [m], v vegetation. Seepage and evaporation move at least one
+/// quantum. The published method diffuses M itself, which would move water into ground without capacity for
+/// it; on ground of equal depth the two are the same. Diffusion has as many sub-steps as keep D Δt/l² ≤ ¼.
+/// The ledger records evaporation as outflow.
+///
+/// Reads soil, sand, water, moisture, vegetation; writes water, moisture.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
@@ -44,7 +48,7 @@ static_assert(table_is_complete<MoistureParameters>());
 
 namespace moisture {
 
-/// `capacity`: c_M; `gain`: scratch of one value a cell.
+/// `capacity`: c_M; `gain`: scratch, one value a cell.
 template <class E>
 void step(E& exec, const TerrainView& t, const MoistureParameters& p, float capacity, float time_step,
           LedgerView ledger, Quanta* gain);

@@ -9,7 +9,7 @@
 
 namespace desert_sim::soil {
 
-struct Change {
+struct ConvertSoilAndSand {
   Grid grid;
   SoilParameters p;
   float time_step, quantum, quanta_per_metre;
@@ -39,10 +39,11 @@ struct Change {
 template <class E>
 void step(E& exec, const TerrainView& t, const SoilParameters& p, const ReposeParameters& repose,
           float time_step, LedgerView ledger) {
-  for_each_cell(exec, t.grid,
-                Change{t.grid, p, time_step, t.quantum, t.quanta_per_metre,
-                       repose::RelativeMoisture(t, repose), t.real(Layer::vegetation), t.quanta(Layer::soil),
-                       t.quanta(Layer::sand), t.quanta(Layer::humus), ledger});
+  for_each_cell(
+      exec, t.grid,
+      ConvertSoilAndSand{t.grid, p, time_step, t.quantum, t.quanta_per_metre,
+                         repose::RelativeMoisture(t, repose), t.real(Layer::vegetation),
+                         t.quanta(Layer::soil), t.quanta(Layer::sand), t.quanta(Layer::humus), ledger});
 }
 
 template void step(Backend&, const TerrainView&, const SoilParameters&, const ReposeParameters&, float,

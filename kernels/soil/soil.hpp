@@ -1,11 +1,14 @@
 #pragma once
-/// Soil dries to sand; humus makes sand soil again. Nilles 2025 eq. 28–29; physics.md C5.
+/// Formation and drying of soil: dry soil turns to sand, and humus turns sand to soil. Nilles 2025 §3.3.2,
+/// eq. 28–29.
 ///
-///   drying   φ_d Δt (1 − v) max(1 − m/m_dry, 0) e^(−10 s/1 m)   of soil becomes sand, as much humus goes
-///   forming  min(φ_h Δt v m, s, humus)                            of sand becomes soil, as much humus goes
+///   drying    min(φ_d Δt (1 − v) max(1 − m/m_dry, 0) e^(−10 s/1 m), e)   of soil becomes sand
+///   forming   min(φ_h Δt v m, s, humus)                                  of sand becomes soil
 ///
-/// m is the ground's relative moisture (repose.hpp). Reads soil, sand, humus, moisture, vegetation; writes
-/// soil, sand, humus.
+/// e is the depth of soil, s of sand [m], v vegetation, m relative moisture (repose.hpp). Each reduces humus
+/// by the same depth, as far as there is any. Without the layer humus no soil forms.
+///
+/// Reads soil, sand, humus, moisture, vegetation; writes soil, sand, humus.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"

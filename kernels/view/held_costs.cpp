@@ -1,4 +1,4 @@
-/// The laws and the step of held_costs.hpp; compiled once for each backend.
+/// Laws and functions of held_costs.hpp; compiled once for each backend.
 #include "kernels/view/held_costs.hpp"
 
 #include "kernels/backend/loops.hpp"
@@ -18,7 +18,7 @@ DESERT_HD bool differs(std::int8_t now, std::int8_t held, int threshold) {
   return off > (is_special(now) || is_special(held) ? 0 : threshold);
 }
 
-struct Judge {
+struct ComputeCosts {
   traversability::Traversability law;
   std::int8_t* now;
   DESERT_HD void operator()(int x, int y) const {
@@ -26,20 +26,20 @@ struct Judge {
   }
 };
 
-/// The box of the cells that changed.
-struct FindChanges {
+/// Grows a box around all cells that changed.
+struct FindChangedBox {
   Tiling tiles;
   const std::int8_t *now, *held;
   int threshold;
-  GrowingBox* box;
+  BoundingBox* box;
 
   template <class Team>
   static constexpr int scratch_bytes = packed_tiles::scratch_bytes;
 
-  /// The greatest of value(x, y) > 0 for cells that changed; 0 if none did.
+  /// Maximum of value(x, y) > 0 over the cells of a tile that changed; 0 if none did.
   template <class Team, class Value>
   DESERT_HD int most(const Team& team, const TileOfGrid& tile, const Value& value) const {
-    const FindChanges law = *this;
+    const FindChangedBox law = *this;
     return -team.lowest(tile.width, tile.height, [law, tile, value](int x, int y) DESERT_INLINE {
       const int i = tile.index(x, y);
       return differs(law.now[i], law.held[i], law.threshold) ? -value(tile.x0 + x, tile.y0 + y) : 0;
@@ -50,13 +50,13 @@ struct FindChanges {
   DESERT_HD void operator()(const Team& team, int column, int row_of_band) const {
     const TileOfGrid tile(tiles, column, tiles.first_row + row_of_band);
     const Grid grid = tiles.grid;
-    GrowingBox mine;
+    BoundingBox mine;
     mine.east = most(team, tile, [](int x, int) DESERT_INLINE { return x + 1; });
     if (mine.east == 0) return;
     mine.west = most(team, tile, [grid](int x, int) DESERT_INLINE { return grid.width - x; });
     mine.north = most(team, tile, [](int, int y) DESERT_INLINE { return y + 1; });
     mine.south = most(team, tile, [grid](int, int y) DESERT_INLINE { return grid.height - y; });
-    GrowingBox* const all = box;
+    BoundingBox* const all = box;
     team.for_each(1, [mine, all](int) {
       atomic_max(&all->west, mine.west);
       atomic_max(&all->south, mine.south);
@@ -66,13 +66,14 @@ struct FindChanges {
   }
 };
 
-/// Holds the costs of a box, and packs the tiles of which that changes something, as they are held then: the
-/// box of what changed, unless it is empty, with that of `recent`; or `recent` alone if `changed` is null.
-struct TakeBox {
+/// Copies the current costs of a box to the held ones, and packs each tile in which that changes something,
+/// as it is held afterwards. The box is that of `changed` joined with `recent`; nothing is done if `changed`
+/// is empty. If `changed` is null, the box is `recent`.
+struct CopyRegion {
   Tiling tiles;
   const std::int8_t* now;
   std::int8_t* held;
-  const GrowingBox* changed;
+  const BoundingBox* changed;
   CellBox recent;
   char* pack;
 
@@ -92,10 +93,10 @@ struct TakeBox {
       return box.has(tile.x0 + x, tile.y0 + y) && from[i] != to[i] ? -1 : 0;
     });
     if (none == 0) return;
-    packed_tiles::TileHead head;
+    packed_tiles::TileHeader head;
     head.tile = tile.number;
     auto* const packed =
-        reinterpret_cast<std::int8_t*>(packed_tiles::begin_tile(team, pack, head, tile.cells()));
+        reinterpret_cast<std::int8_t*>(packed_tiles::reserve_tile(team, pack, head, tile.cells()));
     team.for_each(tile.width, tile.height, [=](int x, int y) DESERT_INLINE {
       const int i = tile.index(x, y);
       const std::int8_t cost = box.has(tile.x0 + x, tile.y0 + y) ? from[i] : to[i];
@@ -106,29 +107,30 @@ struct TakeBox {
 };
 
 template <class E>
-void judge(E& exec, const TerrainView& t, const TraversabilityParameters& p, const ReposeParameters& repose,
-           std::int8_t* now) {
-  for_each_cell(exec, t.grid, Judge{traversability::law(t, p, repose), now});
+void compute_costs(E& exec, const TerrainView& t, const TraversabilityParameters& p,
+                   const ReposeParameters& repose, std::int8_t* now) {
+  for_each_cell(exec, t.grid, ComputeCosts{traversability::law(t, p, repose), now});
 }
 
 template <class E>
-void find_changes(E& exec, const Tiling& tiles, const std::int8_t* now, const std::int8_t* held,
-                  int threshold, GrowingBox* box) {
+void find_changed_box(E& exec, const Tiling& tiles, const std::int8_t* now, const std::int8_t* held,
+                      int threshold, BoundingBox* box) {
   exec.set_zero(box, sizeof *box);
-  for_each_tile(exec, tiles, FindChanges{tiles, now, held, threshold, box});
+  for_each_tile(exec, tiles, FindChangedBox{tiles, now, held, threshold, box});
 }
 
 template <class E>
-void take_box(E& exec, const Tiling& tiles, const std::int8_t* now, std::int8_t* held,
-              const GrowingBox* changed, const CellBox& recent, char* pack) {
-  exec.set_zero(pack, sizeof(packed_tiles::PackedHead));
-  for_each_tile(exec, tiles, TakeBox{tiles, now, held, changed, recent, pack});
+void copy_region(E& exec, const Tiling& tiles, const std::int8_t* now, std::int8_t* held,
+                 const BoundingBox* changed, const CellBox& recent, char* pack) {
+  exec.set_zero(pack, sizeof(packed_tiles::PackHeader));
+  for_each_tile(exec, tiles, CopyRegion{tiles, now, held, changed, recent, pack});
 }
 
-template void judge(Backend&, const TerrainView&, const TraversabilityParameters&, const ReposeParameters&,
-                    std::int8_t*);
-template void find_changes(Backend&, const Tiling&, const std::int8_t*, const std::int8_t*, int, GrowingBox*);
-template void take_box(Backend&, const Tiling&, const std::int8_t*, std::int8_t*, const GrowingBox*,
-                       const CellBox&, char*);
+template void compute_costs(Backend&, const TerrainView&, const TraversabilityParameters&,
+                            const ReposeParameters&, std::int8_t*);
+template void find_changed_box(Backend&, const Tiling&, const std::int8_t*, const std::int8_t*, int,
+                               BoundingBox*);
+template void copy_region(Backend&, const Tiling&, const std::int8_t*, std::int8_t*, const BoundingBox*,
+                          const CellBox&, char*);
 
 }  // namespace desert_sim::held_costs

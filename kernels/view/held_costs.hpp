@@ -1,12 +1,15 @@
 #pragma once
-/// What others hold of the costs of a terrain, and what they lack.
+/// Incremental updates of the costs of a terrain: the device keeps the costs that subscribers hold, and finds
+/// where they are out of date.
 ///
-///   cost   lethal where the traversability is 0, else 99 (1 − traversability) rounded, 0 … 99; unknown where
-///          it is NaN
+///   cost = lethal                 where the traversability t is 0
+///          round(99 (1 − t))      where 0 < t ≤ 1, so 0 … 99
+///          unknown                where t is NaN
 ///
-/// A cell has changed if its cost is off by more than a threshold; to and from lethal and unknown always. The
-/// smallest box with all cells that changed is brought up to date; tiles of it that differ at all from what
-/// is held are packed. Reads what traversability reads; writes the costs of now, and what is held.
+/// A cell has changed if its cost differs from the held one by more than a threshold; a change to or from
+/// lethal and unknown always counts. The smallest box that contains all changed cells is brought up to date:
+/// those of its tiles that differ at all from what is held are packed. Reads what traversability reads;
+/// writes the current and the held costs.
 
 #include "kernels/field/cell_box.hpp"
 #include "kernels/rover/traversability.hpp"
@@ -18,7 +21,7 @@ using packed_tiles::Tiling;
 
 constexpr std::int8_t unknown_cost = -1, lethal_cost = 100;
 
-/// No cost: where nothing is held.
+/// Not a cost: stands where nothing is held yet.
 constexpr std::int8_t no_cost = -128;
 
 DESERT_HD std::int8_t cost_of(float traversability) {
@@ -27,27 +30,28 @@ DESERT_HD std::int8_t cost_of(float traversability) {
   return static_cast<std::int8_t>(nearest(99.0f * (1.0f - minimum(traversability, 1.0f))));
 }
 
-/// A box that cells are added to, in numbers that grow with it; all 0 while it is empty.
-struct GrowingBox {
+/// A bounding box, stored as four numbers that only increase as cells are added, so that atomic maxima can
+/// grow it; all 0 while it is empty.
+struct BoundingBox {
   int west = 0, south = 0, east = 0, north = 0;  ///< width − x0, height − y0, x1, y1
   DESERT_HD CellBox cells(const Grid& grid) const {
     return {grid.width - west, grid.height - south, east, north};
   }
 };
 
-/// The costs of now, of all cells. `elevation` must be up to date.
+/// Computes the current costs of all cells. `elevation` must be up to date.
 template <class E>
-void judge(E& exec, const TerrainView& t, const TraversabilityParameters& p, const ReposeParameters& repose,
-           std::int8_t* now);
+void compute_costs(E& exec, const TerrainView& t, const TraversabilityParameters& p,
+                   const ReposeParameters& repose, std::int8_t* now);
 
-/// Writes to `box`.
+/// Writes the bounding box of the cells that changed to `box`.
 template <class E>
-void find_changes(E& exec, const Tiling& tiles, const std::int8_t* now, const std::int8_t* held,
-                  int threshold, GrowingBox* box);
+void find_changed_box(E& exec, const Tiling& tiles, const std::int8_t* now, const std::int8_t* held,
+                      int threshold, BoundingBox* box);
 
-/// See TakeBox; `pack` has room for most_packed().
+/// Brings a box of held costs up to date, see CopyRegion. `pack` must have room for max_packed_bytes().
 template <class E>
-void take_box(E& exec, const Tiling& tiles, const std::int8_t* now, std::int8_t* held,
-              const GrowingBox* changed, const CellBox& recent, char* pack);
+void copy_region(E& exec, const Tiling& tiles, const std::int8_t* now, std::int8_t* held,
+                 const BoundingBox* changed, const CellBox& recent, char* pack);
 
 }  // namespace desert_sim::held_costs

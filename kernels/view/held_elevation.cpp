@@ -1,4 +1,4 @@
-/// The laws and the step of held_elevation.hpp; compiled once for each backend.
+/// Laws and functions of held_elevation.hpp; compiled once for each backend.
 #include "kernels/view/held_elevation.hpp"
 
 #include <cstdint>
@@ -11,23 +11,23 @@
 
 namespace desert_sim::held_elevation {
 
-using packed_tiles::TileHead;
+using packed_tiles::TileHeader;
 
 using packed_tiles::TileOfGrid;
 
 using layer_values::Surface;
 
-struct Hold {
+struct SetHeld {
   Grid grid;
   Surface now;
   float* held;
   DESERT_HD void operator()(int x, int y) const { held[grid.index(x, y)] = now(grid.index(x, y)); }
 };
 
-/// Of a tile in which a cell is off by more than the threshold: packs the cells that are, after which they
-/// are held: as steps, the error of which is within the threshold, or as elevations, where steps in eight
-/// bits would be too coarse.
-struct TakeChanges {
+/// If a cell of a tile is off by more than the threshold, packs all such cells of the tile and updates what
+/// is held of them. They are packed as steps, whose error is within the threshold, or as elevations, where
+/// steps of eight bits would be too coarse.
+struct PackChanges {
   Tiling tiles;
   Surface now;
   float* held;
@@ -37,7 +37,8 @@ struct TakeChanges {
   template <class Team>
   static constexpr int scratch_bytes = packed_tiles::scratch_bytes;
 
-  /// Half a step is the largest error; a little less than the threshold, so that rounding does not exceed it.
+  /// Whether steps of `bits` bits are fine enough. The largest error is half a step, which has to be a little
+  /// less than the threshold, so that rounding does not exceed it.
   DESERT_HD bool tells(int bits, float largest) const {
     const float step = largest / static_cast<float>(most_steps(bits));
     return step > 0.0f && step <= 1.99f * threshold;
@@ -46,19 +47,19 @@ struct TakeChanges {
   template <class Team>
   DESERT_HD void operator()(const Team& team, int column, int row_of_band) const {
     const Part part{*this, {tiles, column, tiles.first_row + row_of_band}};
-    // Floats that are not negative order like their bits: minus the bits of the largest change.
+    // Floats that are not negative compare like their bits. This is minus the bits of the largest change.
     const int least = team.lowest(part.width, part.height, [part](int x, int y) DESERT_INLINE {
       const float change = fabsf(part.change(part.index(x, y)));
       return change > part.threshold ? -static_cast<int>(bits_of(change)) : 0;
     });
     if (least == 0) return;
-    TileHead head;
-    const float largest = float_of(static_cast<std::uint32_t>(-least));
+    TileHeader head;
+    const float largest = float_from_bits(static_cast<std::uint32_t>(-least));
     head.tile = part.number;
     head.bits = tells(4, largest) ? 4 : (tells(8, largest) ? 8 : 0);
     head.resolution = head.bits ? largest / static_cast<float>(most_steps(head.bits)) : 0.0f;
     const std::size_t bytes = part.cells() * (head.bits == 0 ? sizeof(float) : 1);
-    char* const cells = packed_tiles::begin_tile(team, pack, head, bytes);
+    char* const cells = packed_tiles::reserve_tile(team, pack, head, bytes);
     if (head.bits == 0)
       write_elevations(team, part, reinterpret_cast<float*>(cells));
     else
@@ -66,14 +67,14 @@ struct TakeChanges {
   }
 
  private:
-  /// A tile and what its cells need, by value: the compiler then knows that nothing of it changes while
-  /// cells are written. No branches either, so that it can make vectors of them.
+  /// A tile and what its cells need, by value, so that the compiler knows that writing cells does not change
+  /// it. The loops over it have no branches either, so that they vectorise.
   struct Part : TileOfGrid {
     Surface now;
     float* held;
     float threshold;
 
-    DESERT_HD Part(const TakeChanges& law, const TileOfGrid& tile)
+    DESERT_HD Part(const PackChanges& law, const TileOfGrid& tile)
         : TileOfGrid(tile), now(law.now), held(law.held), threshold(law.threshold) {}
     DESERT_HD float change(int i) const { return now(i) - held[i]; }
   };
@@ -85,12 +86,12 @@ struct TakeChanges {
       const float before = part.held[i], after = part.now(i);
       const bool changed = fabsf(after - before) > part.threshold;
       part.held[i] = changed ? after : before;
-      to[y * part.width + x] = changed ? after : float{no_elevation};
+      to[y * part.width + x] = changed ? after : float{unchanged_elevation};
     });
   }
 
   template <class Team>
-  DESERT_HD void write_steps(const Team& team, const Part& part, const TileHead& head,
+  DESERT_HD void write_steps(const Team& team, const Part& part, const TileHeader& head,
                              std::int8_t* to) const {
     const int most = most_steps(head.bits);
     const float resolution = head.resolution;
@@ -102,24 +103,24 @@ struct TakeChanges {
       const auto step = static_cast<std::int8_t>(low > most ? most : low);
       const float after = changed_elevation(before, step, resolution);
       part.held[i] = changed ? after : before;
-      to[y * part.width + x] = changed ? step : std::int8_t{no_step};
+      to[y * part.width + x] = changed ? step : std::int8_t{unchanged_step};
     });
   }
 };
 
 template <class E>
-void hold(E& exec, const TerrainView& t, const Metres& metres, float* held) {
-  for_each_cell(exec, t.grid, Hold{t.grid, {surface::SolidHeight(t), metres}, held});
+void set_held(E& exec, const TerrainView& t, const Metres& metres, float* held) {
+  for_each_cell(exec, t.grid, SetHeld{t.grid, {surface::SolidHeight(t), metres}, held});
 }
 
 template <class E>
-void take_changes(E& exec, const TerrainView& t, const Metres& metres, const Tiling& tiles, float threshold,
+void pack_changes(E& exec, const TerrainView& t, const Metres& metres, const Tiling& tiles, float threshold,
                   float* held, char* pack) {
-  exec.set_zero(pack, sizeof(packed_tiles::PackedHead));
-  for_each_tile(exec, tiles, TakeChanges{tiles, {surface::SolidHeight(t), metres}, held, threshold, pack});
+  exec.set_zero(pack, sizeof(packed_tiles::PackHeader));
+  for_each_tile(exec, tiles, PackChanges{tiles, {surface::SolidHeight(t), metres}, held, threshold, pack});
 }
 
-template void hold(Backend&, const TerrainView&, const Metres&, float*);
-template void take_changes(Backend&, const TerrainView&, const Metres&, const Tiling&, float, float*, char*);
+template void set_held(Backend&, const TerrainView&, const Metres&, float*);
+template void pack_changes(Backend&, const TerrainView&, const Metres&, const Tiling&, float, float*, char*);
 
 }  // namespace desert_sim::held_elevation

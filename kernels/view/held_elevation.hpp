@@ -1,7 +1,7 @@
 #pragma once
-/// What others hold of the surface, and what they lack: cells are compared with what is held, tile by tile,
-/// and tiles that changed are packed one behind the other, so that only they need to go to the host.
-/// Reads bedrock, soil, sand; writes what is held.
+/// Incremental updates of the elevation: the device keeps the elevation that subscribers hold, compares it
+/// tile by tile with the current one, and packs the tiles that changed one after another, so that only they
+/// are copied to the host. Reads bedrock, soil and sand; writes the held elevation.
 
 #include <cmath>
 #include <cstdint>
@@ -14,18 +14,19 @@ namespace desert_sim::held_elevation {
 
 using packed_tiles::Tiling;
 
-/// In the place of a cell that did not change: no step is so long, and no elevation is infinite.
-constexpr std::int8_t no_step = -128;
+/// Stand for a cell that did not change: no step is so long, and no elevation is infinite.
+constexpr std::int8_t unchanged_step = -128;
 
-constexpr float no_elevation = -HUGE_VALF;
+constexpr float unchanged_elevation = -HUGE_VALF;
 
-/// Holds the whole surface.
+/// Sets the held elevation to the current one, for the whole grid.
 template <class E>
-void hold(E& exec, const TerrainView& t, const Metres& metres, float* held);
+void set_held(E& exec, const TerrainView& t, const Metres& metres, float* held);
 
-/// Packs what changed by more than `threshold` [m] ≥ 0 in `tiles`; `pack` has room for most_packed().
+/// Packs the cells of `tiles` that changed by more than `threshold` [m] ≥ 0, and updates what is held of
+/// them. `pack` must have room for max_packed_bytes().
 template <class E>
-void take_changes(E& exec, const TerrainView& t, const Metres& metres, const Tiling& tiles, float threshold,
+void pack_changes(E& exec, const TerrainView& t, const Metres& metres, const Tiling& tiles, float threshold,
                   float* held, char* pack);
 
 }  // namespace desert_sim::held_elevation

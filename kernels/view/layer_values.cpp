@@ -1,4 +1,4 @@
-/// The step of layer_values.hpp; compiled once for each backend.
+/// Law and step of layer_values.hpp; compiled once for each backend.
 #include "kernels/view/layer_values.hpp"
 
 #include "kernels/backend/loops.hpp"

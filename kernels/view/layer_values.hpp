@@ -1,12 +1,12 @@
 #pragma once
-/// Layers as others see them: floats in the layer's unit.
+/// Values of layers for output: floats in the layer's unit.
 
 #include "kernels/backend/exec.hpp"
 #include "kernels/field/layers.hpp"
 
 namespace desert_sim {
 
-/// What a number of quanta stands for [m]. Rounded once: the same bits on every backend.
+/// Converts quanta to metres, rounded once, so that all backends give the same bits.
 struct Metres {
   double quantum = 1, datum = 0;
   DESERT_HD float operator()(Quanta quanta) const { return static_cast<float>(datum + quanta * quantum); }
@@ -15,7 +15,7 @@ struct Metres {
 namespace layer_values {
 
 /// Writes the values of rows first … first + rows − 1 of a layer, row-major, to `to` on the device. Rows
-/// beyond the north edge are those in the south.
+/// continue in the south beyond the north edge.
 template <class E>
 void step(E& exec, const TerrainView& t, Layer layer, const Metres& metres, int first, int rows, float* to);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The laws of layer_values.hpp, cell by cell.
+/// Laws of layer_values.hpp.
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/field/layers.hpp"
@@ -8,7 +8,7 @@
 
 namespace desert_sim::layer_values {
 
-/// A layer that is not in use is null, and 0.
+/// Value of a stored layer; 0 if both pointers are null because the layer is not in use.
 struct Stored {
   const Quanta* quanta;
   const float* real;
@@ -16,7 +16,7 @@ struct Stored {
   DESERT_HD float operator()(int i) const { return quanta ? metres(quanta[i]) : value_or_zero(real, i); }
 };
 
-/// The layer `elevation`, which no step fills, without it.
+/// Value of the layer `elevation`, computed from the layers below it, because no step fills it.
 struct Surface {
   surface::SolidHeight height;
   Metres metres;

@@ -1,6 +1,6 @@
 #pragma once
-/// Tiles of a grid, packed one behind the other: of what others hold, only those need to go to the host in
-/// which something changed.
+/// Tiles of a grid, packed one after another in a buffer, so that only tiles in which something changed are
+/// copied to the host.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,35 +9,35 @@
 
 namespace desert_sim::packed_tiles {
 
-/// Before the tiles: bytes of all of them, without this.
-struct PackedHead {
+/// Header of the buffer: size of all tiles [bytes], without this header.
+struct PackHeader {
   unsigned long long bytes = 0, reserved = 0;
 };
-/// Before the cells of a tile, which are row-major.
-struct TileHead {
-  std::int32_t tile = 0;    ///< its number, row-major
-  std::uint32_t units = 0;  ///< that it takes, with this
-  std::int32_t bits = 0;    ///< of cells that are steps, how many tell them; 0: cells are values
-  float resolution = 0;     ///< of a step, in the values' unit
+/// Header of a tile. Its cells follow, row-major.
+struct TileHeader {
+  std::int32_t tile = 0;    ///< number of the tile, row-major
+  std::uint32_t units = 0;  ///< size with this header [pack_unit]
+  std::int32_t bits = 0;    ///< bits of a step; 0: cells are values, not steps
+  float resolution = 0;     ///< size of a step, in the values' unit
 };
 
-constexpr std::size_t pack_unit = sizeof(TileHead);
-static_assert(sizeof(PackedHead) == pack_unit, "what lies in a pack lies at multiples of this");
-/// Of a tile whose cells take so many bytes.
+constexpr std::size_t pack_unit = sizeof(TileHeader);
+static_assert(sizeof(PackHeader) == pack_unit, "what lies in a pack lies at multiples of this");
+/// Size of a tile with its header, whose cells take `bytes_of_cells` bytes [pack_unit].
 DESERT_HD constexpr std::size_t packed_units(std::size_t bytes_of_cells) {
   return 1 + (bytes_of_cells + pack_unit - 1) / pack_unit;
 }
 
-/// What tiles of so many cells in all take at most, with what stands before them [bytes].
-constexpr std::size_t most_packed(std::size_t tiles, std::size_t cells, std::size_t bytes_of_cell) {
-  return sizeof(PackedHead) + tiles * (2 * pack_unit) + cells * bytes_of_cell;
+/// Upper bound of the size of `tiles` tiles with `cells` cells in all, with all headers [bytes].
+constexpr std::size_t max_packed_bytes(std::size_t tiles, std::size_t cells, std::size_t bytes_of_cell) {
+  return sizeof(PackHeader) + tiles * (2 * pack_unit) + cells * bytes_of_cell;
 }
 
 /// Tiles of at most side × side cells over rows of a grid, the first one in its south-west corner.
 struct Tiling {
   Grid grid;
   int side = 1;
-  int first_row = 0, row_count = 0;  ///< of tiles
+  int first_row = 0, row_count = 0;  ///< rows of tiles
 
   DESERT_HD int across(int cells) const { return (cells - 1) / side + 1; }
   DESERT_HD int columns() const { return across(grid.width); }
@@ -48,7 +48,7 @@ struct Tiling {
   DESERT_HD int least(int cells) const { return cells < side ? cells : side; }
 };
 
-/// All of a grid.
+/// The tiling of a whole grid.
 inline Tiling tiling(const Grid& grid, int side) {
   Tiling all{grid, side, 0, 0};
   all.row_count = all.across(grid.height);
@@ -73,21 +73,21 @@ struct TileOfGrid {
   }
 };
 
-/// Of Law::scratch_bytes, what begin_tile() needs.
+/// The part of Law::scratch_bytes that reserve_tile() needs.
 constexpr int scratch_bytes = sizeof(unsigned long long);
 
-/// Makes room in the pack for a tile whose cells take so many bytes. Tiles lie in the order in which they
-/// come to this. Returns where the cells go.
+/// Reserves room in the buffer for a tile whose cells take `bytes_of_cells` bytes, and returns where they go.
+/// Tiles lie in the order of these calls.
 template <class Team>
-DESERT_HD char* begin_tile(const Team& team, char* pack, TileHead head, std::size_t bytes_of_cells) {
+DESERT_HD char* reserve_tile(const Team& team, char* pack, TileHeader head, std::size_t bytes_of_cells) {
   auto* const place = reinterpret_cast<unsigned long long*>(team.scratch);
   head.units = static_cast<std::uint32_t>(packed_units(bytes_of_cells));
   team.for_each(1, [&](int) {
-    auto* const used = &reinterpret_cast<PackedHead*>(pack)->bytes;
+    auto* const used = &reinterpret_cast<PackHeader*>(pack)->bytes;
     *place = atomic_add(used, static_cast<unsigned long long>(head.units) * pack_unit);
-    *reinterpret_cast<TileHead*>(pack + sizeof(PackedHead) + *place) = head;
+    *reinterpret_cast<TileHeader*>(pack + sizeof(PackHeader) + *place) = head;
   });
-  return pack + sizeof(PackedHead) + *place + sizeof(TileHead);
+  return pack + sizeof(PackHeader) + *place + sizeof(TileHeader);
 }
 
 }  // namespace desert_sim::packed_tiles

@@ -11,7 +11,7 @@
 
 namespace desert_sim::hydraulic_erosion {
 
-/// What each cell's water can carry, while the ground is still as it was.
+/// Sediment capacity of each cell, computed before any ground changes.
 struct Capacity {
   Grid grid;
   HydraulicErosionParameters p;
@@ -44,7 +44,8 @@ struct Capacity {
   }
 };
 
-/// Takes from the ground what the water can carry more, or lets fall what it can't.
+/// Dissolves ground where the water carries less than its capacity, and deposits sediment where it carries
+/// more.
 struct Exchange {
   Grid grid;
   HydraulicErosionParameters p;
@@ -56,7 +57,7 @@ struct Exchange {
 
   DESERT_HD float missing(float rate, float metres) const { return minimum(rate * time_step, 1.0f) * metres; }
 
-  /// Moves `metres` · rate from a layer of ground, of which there is `available`.
+  /// Dissolves the share rate · Δt of `metres` from a layer of ground, at most `available` quanta of it.
   DESERT_HD Quanta dissolve(int i, Material from, Quanta* layer, Quanta available, float rate,
                             float metres) const {
     const Quanta worn = take(missing(rate, metres), quanta_per_metre, available);

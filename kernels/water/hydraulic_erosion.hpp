@@ -1,15 +1,18 @@
 #pragma once
-/// Flowing water wears the ground, carries it, and lets it fall. Mei 2007, Nilles 2025 §3.4; physics.md C3.
+/// Hydraulic erosion: flowing water dissolves ground into sediment up to its transport capacity, and deposits
+/// the sediment above it. Mei 2007; Nilles 2025 §3.4.1.
 ///
-///   capacity   C = k_c max(sin α, floor) |U| (1 − ½ v) · min(0.1 + 0.9 w/1 m, 1) e^(−w/deep)   [m of
-///   sediment] below it   sand, soil where there is no sand, rock where there is neither, go into the water:
-///              K Δt (C − S), K by material, of rock · (1 − resistance)
-///   above it   K_d (1 + v) Δt (S − C) falls, as sand; all of it where the ground is dry
-///   transport  with the water: sediment_transport.hpp
+///   capacity    C = k_c max(sin α, `least_slope`) |U| (1 − ½ v) · min(0.1 + 0.9 w/1 m, 1) · e^(−w/`deep`)
+///   dissolve    S += min(K Δt, 1) (C − S)             where S < C
+///               K = K_sand, K_soil where there is no sand, K_rock (1 − ρ) where there is neither
+///   deposit     S −= min(K_d (1 + v) Δt, 1) (S − C)   where S > C, as sand; all of S on dry ground
+///   transport   S moves with the water: sediment_transport.hpp
 ///
-/// α is the angle of the solid surface, U the water's velocity. Reads bedrock, soil, sand, water,
-/// water_velocity_*, vegetation, erosion_resistance, obstacle; writes bedrock, soil, sand,
-/// suspended_sediment.
+/// C and S (suspended_sediment) are depths of sediment [m], α is the slope angle of the solid surface, U the
+/// water's velocity, w its depth, v vegetation, ρ erosion_resistance. Cells with an obstacle do not change.
+///
+/// Reads bedrock, soil, sand, water, water_velocity_x, water_velocity_y, suspended_sediment, vegetation,
+/// erosion_resistance, obstacle; writes bedrock, soil, sand, suspended_sediment.
 
 #include "kernels/backend/buffer.hpp"
 #include "kernels/field/layers.hpp"
@@ -50,6 +53,7 @@ namespace hydraulic_erosion {
 
 struct Workspace {
   Buffer<float> capacity;  ///< [m of sediment]
+  std::size_t bytes() const { return capacity.bytes(); }
 };
 
 template <class E>

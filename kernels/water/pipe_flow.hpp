@@ -1,6 +1,6 @@
 #pragma once
-/// What flows through virtual pipes (virtual_pipes.hpp): the state that its laws look at, and how they are
-/// run.
+/// The state that the laws of virtual_pipes.hpp share, the flow through a cell's faces, and the loop that
+/// runs the laws.
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/field/layers.hpp"
@@ -10,20 +10,25 @@ namespace desert_sim::virtual_pipes {
 
 constexpr float gravity = 9.81f;  ///< [m/s²]
 
-/// What the laws look at. `inside`: of cells that have all four neighbours beside them, so that rows of cells
-/// can be vectors.
-template <bool inside>
-struct Flow {
+/// The fields that the laws of the flow share.
+struct FlowFields {
   Grid grid;
-  float time_step, quantum, quanta_per_metre;  ///< of a part of a step [s]
-  float highest_face;                          ///< [quanta]
+  float time_step, quantum, quanta_per_metre;  ///< time_step: of a sub-step [s]
+  float highest_face;                          ///< upper bound of h_face [quanta]
   bool sea;
   Quanta sea_level;
   const Quanta *bedrock, *soil, *sand;
   Quanta* water;
-  float *flux_x, *flux_y;  ///< through the east and the north face [m³/s]
-  float* held;
-  Quanta *sediment, *sediment_next;  ///< null: the water carries none; what it has after this part
+  float *flux_x, *flux_y;            ///< through the east and the north face [m³/s]
+  float* held;                       ///< share of its outflow that a cell has water for
+  Quanta *sediment, *sediment_next;  ///< null without sediment; sediment after this sub-step
+};
+
+/// State of the flow. `inside` is for cells that are not at an edge: their neighbours' indices need no test,
+/// so that rows of cells vectorise (SIMD).
+template <bool inside>
+struct Flow : FlowFields {
+  DESERT_HD explicit Flow(const FlowFields& fields) : FlowFields(fields) {}
 
   DESERT_HD Quanta bed(int i) const { return bedrock[i] + value_or_zero(soil, i) + sand[i]; }
   DESERT_HD int east(int x, int y) const {
@@ -39,12 +44,12 @@ struct Flow {
     return inside ? grid.index(x, y) - grid.width : neighbour_index(grid, x, y - 1);
   }
 
-  /// Quanta of depth that a flux moves in this time.
+  /// Depth [quanta] that a flux [m³/s] moves in a sub-step.
   DESERT_HD float amount(float flux) const {
     return flux * (time_step * quanta_per_metre / (grid.cell_size * grid.cell_size));
   }
-  /// What leaves over an open edge [quanta], `through`: what comes through the opposite face towards it
-  /// [m³/s].
+  /// Outflow over an open edge [quanta], as over a sill. `through`: flux through the opposite face towards
+  /// the edge [m³/s].
   DESERT_HD float over_edge(int i, float through) const {
     const Quanta above = sea ? bed(i) + water[i] - sea_level : water[i];
     const Quanta free = above < water[i] ? above : water[i];
@@ -54,7 +59,8 @@ struct Flow {
     return minimum(amount(maximum(sill, through)), static_cast<float>(free));
   }
 
-  /// What a cell's faces let out, positive [quanta], before supply holds it back; fluxes through faces.
+  /// Outflow through each face of a cell [quanta], negative for inflow, before it is limited to the water
+  /// that the donor has.
   struct Faces {
     int east, west, north, south;  ///< neighbours, −1: an open edge
     float to_east, to_west, to_north, to_south;
@@ -80,27 +86,24 @@ struct Flow {
     return f;
   }
 
-  /// Whole quanta of an amount from a donor that has water for a share of it: to the nearest where it has
-  /// plenty, down where not.
+  /// Whole quanta of an amount from a donor that has water for `share` of it: rounded to nearest if that is
+  /// 1, else rounded down.
   DESERT_HD static Quanta whole(float amount, float share) {
     return static_cast<Quanta>(share < 1.0f ? amount * share : rintf(amount));
   }
-  /// Net amount through the face between i and j (−1: an open edge) that lets `out` out of i, or −out in.
+  /// Amount [quanta] that leaves i through the face to j (−1: an open edge), negative if it enters; `out`:
+  /// the same before the limit.
   DESERT_HD Quanta through(int i, int j, float out) const {
     return whole(out, out > 0.0f || (!inside && j < 0) ? held[i] : held[j]);
   }
 };
 
-/// A law for all cells.
+/// Runs a law for all cells.
 template <template <bool> class Law, class E, class... Rest>
-void for_each_pipe(E& exec, const Flow<true>& flow, const Rest&... rest) {
-  const Flow<false> border{flow.grid,         flow.time_step, flow.quantum,   flow.quanta_per_metre,
-                           flow.highest_face, flow.sea,       flow.sea_level, flow.bedrock,
-                           flow.soil,         flow.sand,      flow.water,     flow.flux_x,
-                           flow.flux_y,       flow.held,      flow.sediment,  flow.sediment_next};
-  for_each_cell(
-      exec, flow.grid,
-      Bordered<Law<true>, Law<false>>{flow.grid, 1, Law<true>{flow, rest...}, Law<false>{border, rest...}});
+void for_each_pipe(E& exec, const FlowFields& fields, const Rest&... rest) {
+  for_each_cell(exec, fields.grid,
+                Bordered<Law<true>, Law<false>>{fields.grid, 1, Law<true>{Flow<true>(fields), rest...},
+                                                Law<false>{Flow<false>(fields), rest...}});
 }
 
 }  // namespace desert_sim::virtual_pipes

@@ -11,13 +11,13 @@
 
 namespace desert_sim::rain {
 
-struct Fall {
+struct RainOnCell {
   Grid grid;
   RainParameters p;
   std::uint64_t seed;
   float phase;             ///< t · frequency
   float datum, quantum;    ///< [m]
-  int repeat_x, repeat_y;  ///< showers after which a periodic axis has them again; 0: never
+  int repeat_x, repeat_y;  ///< period of the noise along a periodic axis [lattice cells]; 0: none
   Quanta amount;
   const Quanta *bedrock, *soil, *sand;
   Quanta* water;
@@ -27,7 +27,7 @@ struct Fall {
     const Quanta surface = bedrock[i] + value_or_zero(soil, i) + sand[i] + water[i];
     return lerp(p.share_low, p.share_high, clamp((datum + surface * quantum) / p.height, 0.0f, 1.0f));
   }
-  /// Position in showers; of a repeating axis so that a whole number of them fits.
+  /// Position in the lattice of the noise; a periodic axis is scaled to a whole number of lattice cells.
   DESERT_HD float place(int cell, int cells, int repeat) const {
     const float at = static_cast<float>(cell) + 0.5f;
     return repeat > 0 ? at * (static_cast<float>(repeat) / static_cast<float>(cells))
@@ -53,20 +53,20 @@ struct Fall {
 template <class E>
 void step(E& exec, const TerrainView& t, const RainParameters& p, float time_step, std::uint64_t seed,
           std::uint64_t tick, double datum, LedgerView ledger) {
-  const Quanta amount = of_step(static_cast<double>(p.rate) * time_step * t.quanta_per_metre, tick);
+  const Quanta amount = quanta_of_step(static_cast<double>(p.rate) * time_step * t.quanta_per_metre, tick);
   if (amount <= 0) return;
   const auto repeat = [&](int cells, bool periodic) {
     const float showers = static_cast<float>(cells) * t.grid.cell_size / p.scale;
     return periodic ? (showers > 1.0f ? static_cast<int>(showers) : 1) : 0;
   };
   const double phase = static_cast<double>(tick) * time_step * p.frequency;
-  // Far out a float no longer tells one step from the next; the noise has no memory that this would break.
+  // At a large phase a float could not resolve single steps, so the phase wraps; there the showers jump.
   constexpr double cycle = 65536.0;
   for_each_cell(exec, t.grid,
-                Fall{t.grid, p, seed, static_cast<float>(std::fmod(phase, cycle)), static_cast<float>(datum),
-                     t.quantum, repeat(t.grid.width, t.grid.periodic_x),
-                     repeat(t.grid.height, t.grid.periodic_y), amount, t.quanta(Layer::bedrock),
-                     t.quanta(Layer::soil), t.quanta(Layer::sand), t.quanta(Layer::water), ledger});
+                RainOnCell{t.grid, p, seed, static_cast<float>(std::fmod(phase, cycle)),
+                           static_cast<float>(datum), t.quantum, repeat(t.grid.width, t.grid.periodic_x),
+                           repeat(t.grid.height, t.grid.periodic_y), amount, t.quanta(Layer::bedrock),
+                           t.quanta(Layer::soil), t.quanta(Layer::sand), t.quanta(Layer::water), ledger});
 }
 
 template void step(Backend&, const TerrainView&, const RainParameters&, float, std::uint64_t, std::uint64_t,

@@ -1,12 +1,13 @@
 #pragma once
-/// Rain: showers that drift and change, of the same strength wherever it rains. Nilles 2025 eq. 31;
-/// physics.md C1.
+/// Rain: showers that come and go, with the same intensity wherever it rains. Nilles 2025 §3.4.3, eq. 31.
 ///
-///   w += Δt φ  where  u(n(x / scale, t · frequency)) ≤ p,   p = lerp(p_low, p_high, clamp(W / h, 0, 1))
+///   w += Δt φ   where u(n(x/`scale`, t·`frequency`)) ≤ p
+///   p    = lerp(p_low, p_high, clamp(W/`height`, 0, 1)),   W = elevation + water
+///   u(n) = 1/(1 + e^(−4 n))
 ///
-/// n is smooth value noise, u(n) = 1/(1 + e^(−4n)) makes it uniform in 0…1 within 0.02, so that p is the
-/// share of the ground on which it rains; W = elevation + water. What falls in a step is whole quanta, of
-/// which so many fall in n steps as the rate says, however little it is a step.
+/// φ is `rate` and n smooth value noise. u makes the noise uniform in 0 … 1 to within 0.02, so that p is the
+/// share of the ground on which it rains. A step adds whole quanta, whose sum over the steps follows the
+/// rate, however little falls in one step. The ledger records them as inflow.
 ///
 /// Reads bedrock, soil, sand, water; writes water.
 
@@ -44,8 +45,8 @@ static_assert(table_is_complete<RainParameters>());
 
 namespace rain {
 
-/// Whole quanta of step n of something that comes at `quanta` a step.
-inline Quanta of_step(double quanta, std::uint64_t n) {
+/// Whole quanta of step n of a source of `quanta` a step; sums over steps are rounded down only once.
+inline Quanta quanta_of_step(double quanta, std::uint64_t n) {
   const double before = static_cast<double>(n);
   return static_cast<Quanta>(std::floor(quanta * (before + 1.0)) - std::floor(quanta * before));
 }

@@ -1,11 +1,12 @@
 #pragma once
-/// Sediment goes through virtual pipes with the water that it is in: of a cell that gives a share of its
-/// water, the same share of its sediment. physics.md C3.
+/// Transport of suspended sediment through the virtual pipes (donor-cell scheme): a cell that gives a share
+/// of its water gives the same share of its sediment.
 ///
-///   S_i += Σ_in S_j q_j/w_j − Σ_out S_i q_i/w_i,   q what a face lets through in a part of a step
+///   S_i += Σ_in S_j q_j/w_j − Σ_out S_i q_i/w_i
 ///
-/// So it comes only to where water comes. (Published: it is moved by U Δt, which lands on dry ground beside a
-/// stream that is fast or bends, and builds ridges of one cell's width there.)
+/// q is the depth of water that passes a face in a sub-step. So sediment comes only to where water comes. The
+/// published method (Nilles 2025 §3.4.1) moves it by U Δt, which lands on dry ground beside a stream that is
+/// fast or bends, and builds ridges one cell wide there.
 
 #include "kernels/field/ledger.hpp"
 #include "kernels/water/pipe_flow.hpp"
@@ -17,13 +18,13 @@ struct CarrySediment {
   Flow<inside> flow;
   LedgerView ledger;
 
-  /// Of a cell's sediment, what goes with so much of its water; in whole quanta, rounded down.
+  /// Sediment [quanta, rounded down] that leaves cell `from` with so much of its water [quanta].
   DESERT_HD Quanta with(int from, Quanta water) const {
-    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // four shares round
+    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // four shares are rounded
     const float share = static_cast<float>(water) / static_cast<float>(flow.water[from]);
     return static_cast<Quanta>(static_cast<float>(flow.sediment[from]) * (share * guard));
   }
-  /// What cell i loses through a face, from what water does.
+  /// Sediment [quanta] that cell i loses through a face, negative if it gains.
   DESERT_HD Quanta loses(int i, int j, float out) const {
     const Quanta water = flow.through(i, j, out);
     return water > 0 ? with(i, water) : (water < 0 ? -with(j, -water) : 0);

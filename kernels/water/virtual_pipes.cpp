@@ -6,25 +6,27 @@
 #include "kernels/field/ledger.hpp"
 #include "kernels/water/sediment_transport.hpp"
 #include "kernels/water/water_sources.hpp"
+#include "src/core/constants.hpp"
 
 namespace desert_sim::virtual_pipes {
 
-/// What is left of the longest stable time: depths may double within a step.
+/// Sub-step over the longest stable time step; it allows depths to double within a step.
 constexpr float safety = 0.65f;
 
-/// The wind's pull on the water.
+/// Acceleration of the water by the wind.
 struct Waves {
-  float strength;  ///< now: s max(sin 2π t/T, 0) [1/s]
+  float strength;  ///< at the current time: s max(sin 2π t/T, 0) [1/s]
   const float *wind_x, *wind_y;
 };
 
+/// Updates the fluxes through a cell's east and north face.
 template <bool inside>
 struct Accelerate {
   Flow<inside> flow;
   Waves waves;
   float keeps;  ///< 1 − c Δt
   float drag;   ///< c_f Δt/l [s/m]
-  bool first;   ///< part of the step: supply has held nothing back yet
+  bool first;   ///< first sub-step of a step, whose fluxes already respect the supply
 
   DESERT_HD float through(int i, int j, float flux, const float* wind) const {
     const Quanta bed_i = flow.bed(i), bed_j = flow.bed(j);
@@ -49,9 +51,9 @@ struct Accelerate {
   }
 };
 
-/// How much of its outflow a cell has water for.
+/// Finds the share of its outflow that a cell has water for.
 template <bool inside>
-struct Hold {
+struct LimitOutflow {
   Flow<inside> flow;
   DESERT_HD void operator()(int x, int y) const {
     const int i = flow.grid.index(x, y);
@@ -59,15 +61,15 @@ struct Hold {
     const float out = (maximum(f.to_east, 0.0f) + maximum(f.to_west, 0.0f)) +
                       (maximum(f.to_north, 0.0f) + maximum(f.to_south, 0.0f));
     const float there = static_cast<float>(flow.water[i]);
-    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // sums round
-    // Four amounts that are rounded to the nearest may be two quanta more than their sum.
+    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // the sum is rounded
+    // Vec4 amounts that are each rounded to nearest may exceed their sum by two quanta.
     flow.held[i] = out + 4.0f <= there * guard ? 1.0f : minimum(there / (out + 1e-20f), 1.0f) * guard;
   }
 };
 
-/// What all faces let through, and the velocity.
+/// Moves water through all faces of a cell, and computes its velocity.
 template <bool inside>
-struct Move {
+struct MoveWater {
   Flow<inside> flow;
   float *velocity_x, *velocity_y;
   LedgerView ledger;
@@ -85,7 +87,7 @@ struct Move {
           (f.east < 0 ? e : 0) + (f.west < 0 ? w : 0) + (f.north < 0 ? n : 0) + (f.south < 0 ? s : 0);
       ledger.book_out(Material::water, i, over);
     }
-    // Through the mean of two faces, over the mean depth of the time; films have no velocity.
+    // Mean flux of two opposite faces over the mean depth of the sub-step; films have no velocity.
     const Quanta depth = (before + after) / 2;
     const float per = depth * flow.quantum > film
                           ? 0.5f * flow.grid.cell_size / (static_cast<float>(depth) * flow.time_step)
@@ -93,12 +95,12 @@ struct Move {
     velocity_x[i] = static_cast<float>(e - w) * per;
     velocity_y[i] = static_cast<float>(n - s) * per;
   }
-  static constexpr float film = 1e-4f;  ///< [m]
+  static constexpr float film = 1e-4f;  ///< depth up to which water is a film [m]
 };
 
-/// At the end of a step: takes off the fluxes what supply held back.
+/// At the end of a step, applies the limit by the cells' supply to the fluxes.
 template <bool inside>
-struct Settle {
+struct ApplyLimits {
   Flow<inside> flow;
   DESERT_HD void operator()(int x, int y) const {
     const int i = flow.grid.index(x, y), east = flow.east(x, y), north = flow.north(x, y);
@@ -114,7 +116,7 @@ struct Depth {
   DESERT_HD float operator()(int x, int y) const { return static_cast<float>(water[grid.index(x, y)]); }
 };
 
-/// Parts that a step is divided into, with the deepest water [m].
+/// Number of sub-steps of a step; `deepest`: the greatest depth of water [m].
 inline int substeps(const WaterParameters& p, const Grid& grid, float time_step, double deepest) {
   const double longest = safety * grid.cell_size / std::sqrt(2.0 * gravity * deepest + 1e-12);
   const double parts = std::ceil(time_step / longest);
@@ -129,36 +131,37 @@ void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_st
   const int parts = substeps(p, t.grid, time_step, deepest);
   const float part = time_step / static_cast<float>(parts);
   const float l = t.grid.cell_size;
-  // Where safety leaves nothing of the room that it is for: Δt² 2 g h = l².
+  // The greatest depth that is stable with this sub-step, without the safety margin: Δt² 2 g h = l².
   const float highest = l * l / (2.0f * gravity * part * part);
-  const Flow<true> flow{t.grid,
-                        part,
-                        t.quantum,
-                        t.quanta_per_metre,
-                        highest * t.quanta_per_metre,
-                        p.sea != Sea::none,
-                        sea_level,
-                        t.quanta(Layer::bedrock),
-                        t.quanta(Layer::soil),
-                        t.quanta(Layer::sand),
-                        t.quanta(Layer::water),
-                        t.real(Layer::water_flux_x),
-                        t.real(Layer::water_flux_y),
-                        work.held.data(),
-                        t.quanta(Layer::suspended_sediment),
-                        carried};
+  FlowFields flow{};
+  flow.grid = t.grid;
+  flow.time_step = part;
+  flow.quantum = t.quantum;
+  flow.quanta_per_metre = t.quanta_per_metre;
+  flow.highest_face = highest * t.quanta_per_metre;
+  flow.sea = p.sea != Sea::none;
+  flow.sea_level = sea_level;
+  flow.bedrock = t.quanta(Layer::bedrock);
+  flow.soil = t.quanta(Layer::soil);
+  flow.sand = t.quanta(Layer::sand);
+  flow.water = t.quanta(Layer::water);
+  flow.flux_x = t.real(Layer::water_flux_x);
+  flow.flux_y = t.real(Layer::water_flux_y);
+  flow.held = work.held.data();
+  flow.sediment = t.quanta(Layer::suspended_sediment);
+  flow.sediment_next = carried;
   float *velocity_x = t.real(Layer::water_velocity_x), *velocity_y = t.real(Layer::water_velocity_y);
   const float keeps = maximum(1.0f - p.friction * part, 0.0f);
   for (int n = 0; n < parts; ++n) {
-    const double phase = 6.283185307179586 * (time + (n + 0.5) * part) / p.wave_period;
+    const double phase = 2 * pi * (time + (n + 0.5) * part) / p.wave_period;
     const float swell = p.wave_strength * static_cast<float>(std::fmax(std::sin(phase), 0.0));
     const Waves waves{swell, t.real(Layer::wind_x), t.real(Layer::wind_y)};
     for_each_pipe<Accelerate>(exec, flow, waves, keeps, p.drag * part / l, n == 0);
-    for_each_pipe<Hold>(exec, flow);
+    for_each_pipe<LimitOutflow>(exec, flow);
     if (flow.sediment) for_each_pipe<CarrySediment>(exec, flow, ledger);
-    for_each_pipe<Move>(exec, flow, velocity_x, velocity_y, ledger);
+    for_each_pipe<MoveWater>(exec, flow, velocity_x, velocity_y, ledger);
   }
-  for_each_pipe<Settle>(exec, flow);
+  for_each_pipe<ApplyLimits>(exec, flow);
 }
 
 template void step(Backend&, const TerrainView&, const WaterParameters&, float, double, Quanta, LedgerView,

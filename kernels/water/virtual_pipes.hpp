@@ -1,28 +1,31 @@
 #pragma once
-/// Water flows through virtual pipes between cells. Mei 2007, Nilles 2025 §3.4; physics.md C2.
+/// Shallow water flow through virtual pipes between cells. Mei 2007; Nilles 2025 §3.4.1–3.4.2, eq. 30.
 ///
-///   q ← (1 − c Δt) q + Δt A (g (W_i − W_j)/l + a_wave),   A = l · h_face
-///           then q + (c_f Δt/(l h_face²)) |q| q = that: drag of the bed, − c_f |u| u/h (Chézy)
-///   h_face  water above the higher bed of the two: max(W_i, W_j) − max(H_i, H_j), not below 0
-///   a_wave = s (1 − e^(−½ 0.01 (w_i + w_j)²)) max(sin 2π t/T, 0) (mean wind · pipe's direction)
-///   w += Δt (Σ in − Σ out)/l²,   what a cell gives in all held to what it has
+///   flux       q* = (1 − c Δt) q + Δt A (g (W_i − W_j)/l + a_wave),   A = l h_face
+///   drag       q + c_f Δt/(l h_face²) |q| q = q*   (Chézy: − c_f |u| u/h, implicit)
+///   face       h_face = max(max(W_i, W_j) − max(H_i, H_j), 0)
+///   waves      a_wave = s (1 − e^(−½ · 0.01 (w_i + w_j)²)) max(sin 2π t/T, 0) · ½(u_i + u_j)
+///   depth      w += Δt (Σ q_in − Σ q_out)/l²,   where a cell's outflow is limited to its water
+///   velocity   U_x = ½(q_west + q_east)/(l w),   U_y = ½(q_south + q_north)/(l w)
 ///
-/// One signed flux a face: that of a cell's east face and of its north face are its own. Amounts are rounded
-/// to quanta once a face, the same from both sides, so that none is lost. (Published: two outflows a pair,
-/// which make waves √2 too fast when the flow turns, and a constant section, with which waves do not know the
-/// depth.)
+/// H is the solid surface, w the depth of water, W = H + w, u the wind's component along the pipe; in the
+/// velocity w is the mean depth of the sub-step, and films have none. Each face has one signed flux; a cell
+/// stores those of its east and its north face. Amounts are rounded to quanta once a face, alike from both
+/// sides, so that none is lost. The published method has two outflow fluxes per pair of cells, which makes
+/// waves √2 too fast once the flow reverses, and a constant pipe section, with which the speed of waves does
+/// not depend on depth.
 ///
-/// A step is divided so that Δt < l/√(2 g h) with the deepest water, with room for it to become deeper; if
-/// that would be more parts than `most_substeps`, faces are no higher than is stable, and waves on deeper
-/// water slower than they should be. Over open edges water leaves as over a sill, at the speed √(g h), or as
-/// fast as it comes through the cell; down to the sea's level, where there is one.
+/// A step is divided into sub-steps with Δt < l/√(2 g w) for the deepest water, with a margin for it to
+/// become deeper. Where that takes more than `most_substeps`, h_face is limited to what is stable, and waves
+/// on deeper water are slower than they should be. Over open edges water leaves as over a sill, at the speed
+/// √(g w) or as fast as it flows through the cell, down to the level of the sea where there is one.
 ///
-/// A pass cannot change the fluxes of a neighbour, so what a cell's supply holds back (`held`) is taken off
-/// its fluxes when they are next used.
+/// A pass cannot change the fluxes of a neighbour, so the limit by a cell's supply (`held`) is applied to its
+/// fluxes when they are next used.
 ///
-/// Sediment goes with the water that it is in (sediment_transport.hpp).
-/// Reads bedrock, soil, sand, water, water_flux_*, wind; writes water, water_flux_*, water_velocity_*,
-/// suspended_sediment.
+/// Sediment moves with its water (sediment_transport.hpp). Reads bedrock, soil, sand, water, water_flux_x,
+/// water_flux_y, suspended_sediment, wind_x, wind_y; writes water, water_flux_x, water_flux_y,
+/// water_velocity_x, water_velocity_y, suspended_sediment.
 
 #include "kernels/backend/buffer.hpp"
 #include "kernels/field/layers.hpp"
@@ -33,9 +36,11 @@ namespace desert_sim::virtual_pipes {
 
 struct Workspace {
   Buffer<float> held;  ///< share of its outflow that a cell has water for
+  std::size_t bytes() const { return held.bytes(); }
 };
 
-/// `time` [s] that waves are at; `carried`: scratch of one value a cell. Reads the greatest depth back.
+/// `time`: time of the waves [s]; `carried`: scratch, one value a cell. Copies the greatest depth to the
+/// host.
 template <class E>
 void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_step, double time,
           Quanta sea_level, LedgerView ledger, Quanta* carried, Workspace& work);

@@ -11,11 +11,11 @@
 
 namespace desert_sim::water_sources {
 
-/// A box of cells around a disc, and what each cell in the disc gets.
-struct Pour {
+/// Adds `amount` to each cell of a box whose centre lies in a disc.
+struct AddInDisc {
   Grid grid;
   int first_x, first_y;              ///< of the box
-  float centre_x, centre_y, radius;  ///< [cells], of the box's first cell's corner
+  float centre_x, centre_y, radius;  ///< [cells] from the south-west corner of the box
   Quanta amount;
   Quanta* water;
   LedgerView ledger;
@@ -34,12 +34,13 @@ struct Pour {
 };
 
 template <class E>
-void pour(E& exec, const TerrainView& t, const Spring& spring, double x, double y, float time_step,
-          std::uint64_t tick, LedgerView ledger) {
+void add_spring(E& exec, const TerrainView& t, const Spring& spring, double x, double y, float time_step,
+                std::uint64_t tick, LedgerView ledger) {
   const Grid& g = t.grid;
   const double l = g.cell_size;
   const double column = x / l, row = y / l, reach = spring.radius / l;
-  // A disc that has no cell's centre in it is the cell that it lies in; of a torus each cell is there once.
+  // A disc so small that it may contain no cell's centre is replaced by the cell that it lies in. On a
+  // periodic axis each cell is visited at most once.
   const bool point = reach < 0.7072;
   struct Cells {
     int first, count;
@@ -52,24 +53,24 @@ void pour(E& exec, const TerrainView& t, const Spring& spring, double x, double 
     return {first, last - first + 1};
   };
   const Cells columns = cells_of(column, g.width, g.periodic_x), rows = cells_of(row, g.height, g.periodic_y);
-  if (columns.count <= 0 || rows.count <= 0) return;  // it lies off the terrain
+  if (columns.count <= 0 || rows.count <= 0) return;  // the disc lies off the terrain
   const Grid box{columns.count, rows.count, g.cell_size};
-  Pour law{g,
-           columns.first,
-           rows.first,
-           static_cast<float>(column - columns.first),
-           static_cast<float>(row - rows.first),
-           static_cast<float>(point ? 2.0 : reach),
-           0,
-           t.quanta(Layer::water),
-           ledger};
+  AddInDisc law{g,
+                columns.first,
+                rows.first,
+                static_cast<float>(column - columns.first),
+                static_cast<float>(row - rows.first),
+                static_cast<float>(point ? 2.0 : reach),
+                0,
+                t.quanta(Layer::water),
+                ledger};
   long long cells = 0;
   for (int cell_y = 0; cell_y < box.height; ++cell_y)
     for (int cell_x = 0; cell_x < box.width; ++cell_x) cells += law.wet(cell_x, cell_y);
   if (cells == 0) return;
   const double depth =
       static_cast<double>(spring.discharge) * time_step / (l * l * static_cast<double>(cells));
-  law.amount = rain::of_step(depth * t.quanta_per_metre, tick);
+  law.amount = rain::quanta_of_step(depth * t.quanta_per_metre, tick);
   if (law.amount > 0) for_each_cell(exec, box, law);
 }
 
@@ -121,8 +122,8 @@ void evaporate(E& exec, const TerrainView& t, float rate, float time_step, Ledge
   for_each_cell(exec, t.grid, Evaporate{t.grid, static_cast<float>(lost), t.quanta(Layer::water), ledger});
 }
 
-template void pour(Backend&, const TerrainView&, const Spring&, double, double, float, std::uint64_t,
-                   LedgerView);
+template void add_spring(Backend&, const TerrainView&, const Spring&, double, double, float, std::uint64_t,
+                         LedgerView);
 template void fill_sea(Backend&, const TerrainView&, Sea, Quanta, LedgerView);
 template void evaporate(Backend&, const TerrainView&, float, float, LedgerView);
 

@@ -1,12 +1,12 @@
 #pragma once
-/// Water that comes and goes by itself: springs, the sea, evaporation. Nilles 2025 §3.4.3, 3.4.5; physics.md
-/// C1, C4.
+/// Sources and sinks of surface water: springs, the sea, evaporation. Nilles 2025 §3.4.3 and 3.4.5, eq. 34.
 ///
-///   springs     discharge Q [m³/s], spread evenly over the cells of a disc
-///   sea         w ← max(w, level − elevation), on the border or everywhere
-///   evaporation w ← w e^(−φ Δt), at least one quantum
+///   springs       w += Q Δt/(n l²)                 on the n cells of a disc, with the discharge Q [m³/s]
+///   sea           w ← max(w, level − elevation)    on the border or everywhere
+///   evaporation   w ← w e^(−φ Δt)                  and at least one quantum less
 ///
-/// Reads bedrock, soil, sand, water; writes water.
+/// The ledger records what is added as inflow, and what evaporates as outflow. pour() and evaporate() read
+/// and write water; fill_sea() reads bedrock, soil, sand, water and writes water.
 
 #include <cstdint>
 
@@ -33,7 +33,7 @@ constexpr auto parameter_table(const Spring*) {
       parameter("discharge", &P::discharge, 0, 1e5, "m^3/s", "Water that comes out a second."));
 }
 static_assert(table_is_complete<Spring>());
-constexpr std::size_t most_springs = 64;
+constexpr std::size_t max_springs = 64;
 
 enum class Sea : int { none, border, everywhere };
 constexpr const char* seas[] = {"none", "border", "everywhere"};
@@ -79,8 +79,8 @@ namespace water_sources {
 
 /// `x`, `y` [m] from the terrain's south-west corner.
 template <class E>
-void pour(E& exec, const TerrainView& t, const Spring& spring, double x, double y, float time_step,
-          std::uint64_t tick, LedgerView ledger);
+void add_spring(E& exec, const TerrainView& t, const Spring& spring, double x, double y, float time_step,
+                std::uint64_t tick, LedgerView ledger);
 
 template <class E>
 void fill_sea(E& exec, const TerrainView& t, Sea sea, Quanta level, LedgerView ledger);

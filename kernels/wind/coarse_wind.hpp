@@ -1,6 +1,6 @@
 #pragma once
-/// The coarse grid on which the wind's transforms live: how it lies over the terrain, how values get there
-/// and back, and the wavenumbers of its modes. See wind.hpp.
+/// The coarse grid on which the wind is transformed: its layout over the terrain, averaging onto it,
+/// interpolation back, and the wavenumbers of its Fourier modes. Equations in wind.hpp.
 
 #include "kernels/backend/fft.hpp"
 #include "kernels/field/grid.hpp"
@@ -9,28 +9,28 @@
 
 namespace desert_sim::wind {
 
-struct AxisPlace;
+struct AxisInterpolation;
 
-/// The coarse grid of the transforms: `grid` cells cover the terrain, `width` × `height` values are
-/// transformed (twice as many along an open axis, where the terrain is mirrored).
+/// The coarse grid: `columns` × `rows` cells cover the terrain, and `width` × `height` values are transformed
+/// (twice as many along an open axis, where the terrain is mirrored).
 struct CoarseGrid {
   Grid fine;
   int columns = 0, rows = 0;
   int width = 0, height = 0;
-  float ratio_x = 1, ratio_y = 1;            ///< fine cells a coarse cell
+  float ratio_x = 1, ratio_y = 1;            ///< fine cells per coarse cell
   float share_x = 1, share_y = 1;            ///< 1 / ratio
   float wavenumber_x = 0, wavenumber_y = 0;  ///< of the first modes [rad per fine cell]
 
   DESERT_HD int mirrored_column(int x) const { return x < columns ? x : 2 * columns - 1 - x; }
   DESERT_HD int mirrored_row(int y) const { return y < rows ? y : 2 * rows - 1 - y; }
-  DESERT_HD AxisPlace across(int x) const;
-  DESERT_HD AxisPlace along(int y) const;
+  DESERT_HD AxisInterpolation across(int x) const;
+  DESERT_HD AxisInterpolation along(int y) const;
   DESERT_HD int values() const { return width * height; }
   DESERT_HD Grid transformed() const { return Grid{width, height, fine.cell_size * ratio_x, true, true}; }
 };
 
-/// Mean of value(i) over left … right [cells of an axis of n cells], by length. Of values that are all the
-/// same it is exactly that value: uniform ground stays uniform.
+/// Box filter: mean of value(i) over the interval left … right of an axis of n cells, weighted by overlap.
+/// Equal values have exactly that mean, so that uniform ground stays uniform.
 template <class Value>
 DESERT_HD float mean_over(float left, float right, int n, const Value& value) {
   const int first = static_cast<int>(left + 1e-4f);
@@ -43,12 +43,12 @@ DESERT_HD float mean_over(float left, float right, int n, const Value& value) {
   };
   const auto overlap = [=](int i) { return minimum(right, i + 1.0f) - maximum(left, static_cast<float>(i)); };
   add(first, overlap(first));
-  for (int i = first + 1; i < last; ++i) add(i, 1.0f);  // what overlap() gives there
+  for (int i = first + 1; i < last; ++i) add(i, 1.0f);  // their overlap is 1
   if (last > first) add(last, overlap(last));
   return base + sum / length;
 }
 
-/// Means of the surface along the rows of the terrain, `columns` a row. [quanta above `reference`]
+/// Box filter of the surface along the rows of the terrain: `columns` means a row [quanta above `reference`].
 struct CoarsenRows {
   CoarseGrid coarse;
   const float* heights;
@@ -60,7 +60,7 @@ struct CoarsenRows {
     const float* row = heights + coarse.fine.index(0, y);
     put_mean(column, y, [row](int x) { return row[x]; });
   }
-  /// With the heights of row y from height(x).
+  /// Writes one mean of row y, whose heights are height(x).
   template <class Height>
   DESERT_HD void put_mean(int column, int y, const Height& height) const {
     const float ref = reference;
@@ -70,16 +70,16 @@ struct CoarsenRows {
   }
 };
 
-/// Those means' means along the columns, on the grid of the transform.
+/// Box filter along the columns of the row means; gives the values on the grid of the transform.
 struct CoarsenColumns {
   CoarseGrid coarse;
   const float* means;
   float quantum;
   float* rise;        ///< [m]
-  Complex* spectrum;  ///< the same, for a transform
+  Complex* spectrum;  ///< the same, as input of the transform
 
   DESERT_HD void operator()(int x, int y) const { spectrum[y * coarse.width + x] = {rise_at(x, y), 0.0f}; }
-  /// Writes `rise`, and returns it.
+  /// Computes one value of `rise`, writes and returns it.
   DESERT_HD float rise_at(int x, int y) const {
     const int row = coarse.mirrored_row(y), columns = coarse.columns;
     const float* column = means + coarse.mirrored_column(x);
@@ -91,33 +91,33 @@ struct CoarsenColumns {
   }
 };
 
-/// Where a fine cell lies along an axis between two coarse ones.
-struct AxisPlace {
+/// Position of a fine cell along an axis between two coarse cells, for linear interpolation.
+struct AxisInterpolation {
   int first, second;
-  float share;  ///< of the second
+  float share;  ///< weight of the second
 
-  DESERT_HD AxisPlace(int cell, int coarse_cells, float coarse_a_cell) {
+  DESERT_HD AxisInterpolation(int cell, int coarse_cells, float coarse_a_cell) {
     const float place = (cell + 0.5f) * coarse_a_cell - 0.5f, before = floorf(place);
-    share = place - before;  // at full resolution 0: the value itself
+    share = place - before;  // 0 at full resolution: the value itself
     first = wrap_once(static_cast<int>(before), coarse_cells);
     second = wrap_once(static_cast<int>(before) + 1, coarse_cells);
   }
 };
 
-DESERT_HD AxisPlace CoarseGrid::across(int x) const { return {x, width, share_x}; }
-DESERT_HD AxisPlace CoarseGrid::along(int y) const { return {y, height, share_y}; }
+DESERT_HD AxisInterpolation CoarseGrid::across(int x) const { return {x, width, share_x}; }
+DESERT_HD AxisInterpolation CoarseGrid::along(int y) const { return {y, height, share_y}; }
 
-/// A field of the coarse grid along a column of fine cells, between two coarse columns. Several cells in a
-/// row lie between the same two coarse rows: what these have at the column is read once.
+/// A coarse field, interpolated bilinearly along a column of fine cells. Consecutive cells of the column lie
+/// between the same two coarse rows, whose values are loaded once.
 struct CoarseColumn {
   const Complex* field;
-  AxisPlace across;
+  AxisInterpolation across;
   int width;
   Complex south{0, 0}, north{0, 0};
 
-  DESERT_HD CoarseColumn(const Complex* values, const AxisPlace& place_across, int row_width)
+  DESERT_HD CoarseColumn(const Complex* values, const AxisInterpolation& place_across, int row_width)
       : field(values), across(place_across), width(row_width) {}
-  DESERT_HD void move_to(const AxisPlace& along) {
+  DESERT_HD void move_to(const AxisInterpolation& along) {
     south = in_row(along.first);
     north = in_row(along.second);
   }
@@ -132,7 +132,8 @@ struct CoarseColumn {
   }
 };
 
-/// Wavenumbers of a mode [rad per fine cell], zero at the Nyquist rows.
+/// Wavenumbers of a Fourier mode [rad per fine cell]; `nyquist`: whether one of them is the Nyquist
+/// wavenumber, whose sign is undefined, so that the mode is removed from the wind.
 struct Mode {
   float kx, ky;
   bool nyquist;
@@ -145,9 +146,9 @@ struct Mode {
   }
 };
 
-/// The transfer of one radius along one axis, one pair a mode: the Gaussian, divided by what averaging over
-/// cells and interpolating between the averages take away; and that times the derivative's sin(k)/l. It is
-/// separable, so two short tables, made once on the host, hold all of it.
+/// Spectral transfer function of one radius along one axis, one pair a mode. `smooth` is the Gaussian divided
+/// by the attenuation of the box filter and of the linear interpolation back; `derive` is that times sin(k)/l
+/// of the central difference. The function is separable, so two short tables, made once on the host, hold it.
 struct Transfer {
   float smooth, derive;
 };

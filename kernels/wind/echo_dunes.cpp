@@ -4,6 +4,7 @@
 #include "kernels/backend/loops.hpp"
 #include "kernels/field/surface.hpp"
 #include "kernels/wind/marching.hpp"
+#include "src/core/constants.hpp"
 #include "src/core/parameters.hpp"
 
 namespace desert_sim::echo_dunes {
@@ -14,16 +15,16 @@ struct CliffHeight {
   const float *heights, *wind_x, *wind_y;
   float steepness;  ///< tangent
   float highest;
-  float* cliff;  ///< [m], 0 where there is none
+  float* cliff;  ///< height of the cliff [m], 0 where there is none
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     const float speed = hypotenuse(wind_x[i], wind_y[i]);
     cliff[i] = 0.0f;
     if (!(speed > 1e-6f)) return;
-    const int dx = subcells(-wind_x[i] / speed), dy = subcells(-wind_y[i] / speed);
-    const float drop = steepness * grid.cell_size / quantum;  // quanta a step
-    float last = 0.0f, rise = 0.0f;  // heights here and below it, relative to this cell
+    const int dx = to_fixed_point(-wind_x[i] / speed), dy = to_fixed_point(-wind_y[i] / speed);
+    const float drop = steepness * grid.cell_size / quantum;  // [quanta per step]
+    float last = 0.0f, rise = 0.0f;  // of the previous sample above this cell, and of this cell above it
     for (int j = 1; rise * quantum < highest; ++j) {
       const marching::Place place(x, y, j * dx, j * dy);
       const float next = marching::height_at(grid, heights, place) - heights[i];
@@ -48,7 +49,7 @@ struct Classify {
     const float speed = hypotenuse(u, v);
     echo[i] = 0.0f;
     if (!(speed > 1e-6f)) return;
-    const int dx = subcells(u / speed), dy = subcells(v / speed);
+    const int dx = to_fixed_point(u / speed), dy = to_fixed_point(v / speed);
     const int steps = static_cast<int>(p.sticky_reach * p.highest / grid.cell_size);
     float sticky = 0.0f;
     for (int j = 1; j <= steps; ++j) {
@@ -69,9 +70,9 @@ struct Classify {
 template <class E>
 void step(E& exec, const TerrainView& t, const EchoDuneParameters& p, const surface::Heights& heights,
           float* cliff) {
-  const float steepness = tanf(p.cliff_deg * 3.14159265358979f / 180.0f);
+  const float steepness = tanf(p.cliff_deg * static_cast<float>(pi) / 180.0f);
   for_each_cell(exec, t.grid,
-                CliffHeight{t.grid, t.quantum, heights.of_cells.data(), t.real(Layer::wind_x),
+                CliffHeight{t.grid, t.quantum, heights.cell_heights.data(), t.real(Layer::wind_x),
                             t.real(Layer::wind_y), steepness, p.highest, cliff});
   for_each_cell(
       exec, t.grid,

@@ -1,13 +1,16 @@
 #pragma once
-/// Echo dunes: the eddy in front of a cliff keeps a lane free of sand, and sand piles up ahead of it. Tsoar
-/// 1983, Taylor & Keyser 2023; physics.md A7.
+/// Echo dunes: the vortex in front of a cliff keeps a lane free of sand, and sand piles up upwind of that
+/// lane. Tsoar 1983; Taylor & Keyser 2023; Nilles 2024 §3.5.
 ///
-///   cliff    (h(here) − h(one cell upwind))/l ≥ tan `cliff_deg`; its height H = min(rise over the cliff,
-///   `highest`) erosion  a cliff of height H within `erosion_reach`·H downwind: r_e = −k_e sticky   within
-///   `sticky_reach`·H: r_e = clamp(1.1 − (d − erosion_reach H)/((sticky_reach − erosion_reach) H), 0, 1)
+///   cliff     (h(here) − h(one cell upwind))/l ≥ tan `cliff_deg`,   H = min(rise, `highest`)
+///   erosion   r_e = −k_e                                       where d ≤ d_e
+///   sticky    r_e = clamp(1.1 − (d − d_e)/(d_s − d_e), 0, 1)   where d_e < d ≤ d_s
+///             d_e = `erosion_reach` H,   d_s = `sticky_reach` H
 ///
-/// The rise is taken over the whole cliff: from this cell upwind to where the ground stops being a cliff.
-/// Erosion wins; else the stickiest cliff counts. Reads the heights, wind_x, wind_y; writes echo.
+/// H is the height of the cliff: its rise from where, upwind of the cell, the ground stops being a cliff. d
+/// is the distance from a cell downwind to the cliff. Where several cliffs lie downwind, erosion has
+/// precedence over sticky, and otherwise the largest r_e counts. Reads bedrock, soil and sand through
+/// `heights`, wind_x, wind_y; writes echo.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/surface.hpp"
@@ -40,7 +43,7 @@ static_assert(table_is_complete<EchoDuneParameters>());
 
 namespace echo_dunes {
 
-/// `cliff` is scratch memory of one float a cell.
+/// `cliff`: scratch, one float a cell.
 template <class E>
 void step(E& exec, const TerrainView& t, const EchoDuneParameters& p, const surface::Heights& heights,
           float* cliff);

@@ -1,7 +1,7 @@
 #pragma once
-/// Marches over the surface: where their samples lie between cells, and how high the ground is there. Places
-/// are 16.16 fixed point, so that mirrored or turned terrain gives the same bits; heights between cells are
-/// formed for that too.
+/// Marches over the surface along the wind: where their samples lie between cells, and the height there.
+/// Positions are 16.16 fixed point, and interpolation sums in a symmetric order, so that mirrored or rotated
+/// terrain gives the same bits.
 
 #include "kernels/field/grid.hpp"
 #include "kernels/field/math.hpp"
@@ -9,14 +9,14 @@
 
 namespace desert_sim::marching {
 
-/// A march along a straight line, one column (or row) of cells a step, whichever the line crosses faster:
-/// there a sample lies between two cells.
+/// A march along a straight line. A step advances by one column of cells, or by one row where the line
+/// crosses rows faster; the sample lies between two cells of that column or row.
 struct Line {
-  int heading;  ///< ±1: column by column to greater or lesser x, ±2: row by row
-  int drift;    ///< a step's way across, 16.16 fixed point, −1 … 1
+  int heading;  ///< ±1: column by column towards ±x; ±2: row by row towards ±y; 0: no march
+  int drift;    ///< displacement across the heading per step [cells], 16.16 fixed point, −1 … 1
 
-  /// Against the wind (u, v), not 0. To 2⁻¹² of a cell a step, so that winds which differ by rounding alone
-  /// have one direction.
+  /// The line against the wind (u, v), which must not be 0. The drift is rounded to 2⁻¹² cells per step, so
+  /// that winds which differ only by rounding have the same line.
   DESERT_HD static Line against(float u, float v) {
     const bool along_x = fabsf(u) >= fabsf(v);
     const float along = along_x ? u : v, across = along_x ? v : u;
@@ -24,17 +24,17 @@ struct Line {
   }
   DESERT_HD bool along_x() const { return heading & 1; }
   DESERT_HD int step() const { return heading > 0 ? 1 : -1; }
-  /// 1 … √2
+  /// Length of a step [cells], 1 … √2.
   DESERT_HD float cells_a_step() const {
     const float slope = static_cast<float>(drift) * (1.0f / 65536.0f);
     return sqrtf(1.0f + slope * slope);
   }
-  /// The cell at or before the sample of step j, relative to the march's first.
+  /// Offset of the cell at or before the sample of step j from the first cell of the march.
   DESERT_HD int dx(int j) const { return along_x() ? j * step() : (j * drift) >> 16; }
   DESERT_HD int dy(int j) const { return along_x() ? (j * drift) >> 16 : j * step(); }
 };
 
-/// Cells around a sample and its place between them: (x, y) + (dx, dy)/65536 cells.
+/// Position of a sample, (x, y) + (dx, dy)/65536 [cells]: the cell to its south-west, and the fractions.
 struct Place {
   int x, y;
   float fx, fy;
@@ -42,7 +42,7 @@ struct Place {
       : x(cell_x + (dx >> 16)), y(cell_y + (dy >> 16)), fx(fraction(dx)), fy(fraction(dy)) {}
 };
 
-/// Bilinear height between four cells.
+/// Bilinear height between the four cells around a sample.
 DESERT_HD float height_at(const Grid& g, const float* h, const Place& p) {
   const float h00 = h[sample_index(g, p.x, p.y)], h10 = h[sample_index(g, p.x + 1, p.y)];
   const float h01 = h[sample_index(g, p.x, p.y + 1)], h11 = h[sample_index(g, p.x + 1, p.y + 1)];

@@ -1,18 +1,14 @@
 #pragma once
-/// The wind of each cell from that of the coarse grid; equations in wind.hpp.
+/// The wind of each terrain cell from the wind of the coarse grid; equations in wind.hpp.
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/field/math.hpp"
 #include "kernels/wind/coarse_wind.hpp"
+#include "kernels/wind/vector.hpp"
 
 namespace desert_sim::wind {
 
-/// The wind high above the ground, now [m/s].
-struct Vector {
-  float x = 0, y = 0;
-};
-
-/// Factor of the wind above, `rise` metres above the lowest ground.
+/// Speed-up factor over the high-altitude wind, at `rise` metres above the lowest ground.
 struct SpeedUp {
   float per_metre, lowest, highest;
   DESERT_HD float operator()(float rise) const {
@@ -20,9 +16,9 @@ struct SpeedUp {
   }
 };
 
-/// The wind of each cell: direction from the coarse grid, speed by its own height, what the projection
-/// corrects, and, if `perturbed`, the perturbation of local features. `strip` cells, one above the other,
-/// share what they read of the coarse grid.
+/// The wind of each cell: direction from the coarse grid, speed-up by the cell's own height, correction of
+/// the projection and, if `perturbed`, the perturbation of local features. One call computes `strip` cells of
+/// a column, which share the values that they load from the coarse grid.
 template <int strip, bool perturbed>
 struct SurfaceWind {
   CoarseGrid coarse;
@@ -31,7 +27,7 @@ struct SurfaceWind {
   Vector above;
   float per_speed_squared;  ///< 1/|above|², or 0
   SpeedUp speed_up;
-  const Complex *turned, *correction;  ///< both null: the wind above, and none
+  const Complex *turned, *correction;  ///< both null: uniform wind, no correction
   const float *perturbation_x, *perturbation_y;
   float *wind_x, *wind_y;
 
@@ -39,9 +35,9 @@ struct SurfaceWind {
     return Grid{coarse.fine.width, (coarse.fine.height + strip - 1) / strip, 1};
   }
 
-  /// Between differing directions a linear interpolation is too short; the series makes up for it within 0.1
-  /// % where they differ by up to 60 degrees.
-  DESERT_HD Vector at_full_speed(const Complex& w) const {
+  /// Linear interpolation between vectors of different direction shortens them. The series restores the speed
+  /// to within 0.1 % where directions differ by up to 60 degrees.
+  DESERT_HD Vector restore_speed(const Complex& w) const {
     const float missing = fused(-(w.re * w.re + w.im * w.im), per_speed_squared, 1.0f);
     const float series = fused(missing, fused(missing, fused(missing, 0.3125f, 0.375f), 0.5f), 1.0f);
     const float scale = w.re == above.x && w.im == above.y ? 1.0f : series;
@@ -50,23 +46,23 @@ struct SurfaceWind {
 
   DESERT_HD void operator()(int x, int n) const {
     const int first = strip * n, rows = strip == 1 ? 1 : clamp_index(coarse.fine.height - first, strip + 1);
-    float h[strip];  // all are read before anything is written, for which a GPU then waits once
+    float h[strip];  // all loads come before the first store, so that a GPU waits for memory once
     unrolled<strip>([&](auto k) DESERT_INLINE {
       if (strip == 1 || k < rows) h[k] = heights[coarse.fine.index(x, first + k)];
     });
-    const AxisPlace across = coarse.across(x);
+    const AxisInterpolation across = coarse.across(x);
     CoarseColumn direction(turned, across, coarse.width), corrections(correction, across, coarse.width);
     int row = -1;
     unrolled<strip>([&](auto k) DESERT_INLINE {
       if (strip > 1 && k >= rows) return;
-      const AxisPlace along = coarse.along(first + k);
+      const AxisInterpolation along = coarse.along(first + k);
       if (turned && (strip == 1 || along.first != row)) {
         direction.move_to(along);
         corrections.move_to(along);
         row = along.first;
       }
       const float factor = speed_up((h[k] - reference) * quantum);
-      const Vector wind = turned ? at_full_speed(direction.at(along.share)) : above;
+      const Vector wind = turned ? restore_speed(direction.at(along.share)) : above;
       const Complex corrected = corrections.at(along.share);
       const int i = coarse.fine.index(x, first + k);
       const Vector local = perturbed ? Vector{perturbation_x[i], perturbation_y[i]} : Vector{};

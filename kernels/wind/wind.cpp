@@ -7,7 +7,7 @@
 
 namespace desert_sim::wind {
 
-/// The wind's turning, and what corrects its divergence, from the means of the terrain's rows.
+/// Warped wind and correction of the projection from the row means of the terrain, with the FFT library.
 template <class E>
 void transform_by_library(E& exec, const CoarseLaws& laws, Workspace& work) {
   const Grid grid = work.coarse.transformed();
@@ -15,7 +15,7 @@ void transform_by_library(E& exec, const CoarseLaws& laws, Workspace& work) {
   if (laws.gradients.radius_count > 0) {
     work.one->forward(work.spectrum.data());
     for_each_cell(exec, laws.gradients.grid(), laws.gradients);
-    work.all_radii->inverse(work.gradients.data());
+    work.fft_all_radii->inverse(work.gradients.data());
   }
   for_each_cell(exec, grid, laws.turn);
   if (!laws.projected) return;
@@ -32,10 +32,10 @@ void coarsen_rows(E& exec, const CoarsenRows& law) {
 template <class E>
 void coarse_wind(E& exec, const CoarseLaws& laws, const surface::Heights& heights, float reference,
                  Workspace& work) {
-  const CoarsenRows rows{work.coarse, heights.of_cells.data(), reference, work.row_means.data()};
+  const CoarsenRows rows{work.coarse, heights.cell_heights.data(), reference, work.row_means.data()};
   coarsen_rows(exec, rows);
   if (!laws.projected) work.correction.set_zero();
-  if constexpr (!works_on_rows<E>)
+  if constexpr (!vectorises_rows<E>)
     if (work.by_lines) return transform_by_lines(exec, laws, work);
   transform_by_library(exec, laws, work);
 }
@@ -50,26 +50,27 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
   if (coarse_fields)
     coarse_wind(exec, coarse_laws(t, p, above, speed_above, speed_up, work), heights, lowest, work);
   const auto run = [&](auto strip, auto is_perturbed) {
-    const SurfaceWind<strip, is_perturbed> law{work.coarse,
-                                               heights.of_cells.data(),
-                                               lowest,
-                                               t.quantum,
-                                               above,
-                                               speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f,
-                                               speed_up,
-                                               coarse_fields ? work.turned.data() : nullptr,
-                                               coarse_fields ? work.correction.data() : nullptr,
-                                               perturbation_x,
-                                               perturbation_y,
-                                               t.real(Layer::wind_x),
-                                               t.real(Layer::wind_y)};
+    SurfaceWind<strip, is_perturbed> law{};
+    law.coarse = work.coarse;
+    law.heights = heights.cell_heights.data();
+    law.reference = lowest;
+    law.quantum = t.quantum;
+    law.above = above;
+    law.per_speed_squared = speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f;
+    law.speed_up = speed_up;
+    law.turned = coarse_fields ? work.turned.data() : nullptr;
+    law.correction = coarse_fields ? work.correction.data() : nullptr;
+    law.perturbation_x = perturbation_x;
+    law.perturbation_y = perturbation_y;
+    law.wind_x = t.real(Layer::wind_x);
+    law.wind_y = t.real(Layer::wind_y);
     for_each_cell(exec, law.strips(), law);
   };
   const auto run_strips = [&](auto strip) {
     perturbation_x ? run(strip, std::true_type()) : run(strip, std::false_type());
   };
-  constexpr int many_cells = 1 << 22;  // that fill a GPU even in long strips
-  if constexpr (works_on_rows<E>)
+  constexpr int many_cells = 1 << 22;  // these fill a GPU even in long strips
+  if constexpr (vectorises_rows<E>)
     run_strips(std::integral_constant<int, 1>());
   else if (t.grid.cells() >= many_cells)
     run_strips(std::integral_constant<int, 8>());

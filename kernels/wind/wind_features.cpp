@@ -19,7 +19,7 @@ struct StreamFunction {
   float time;
   float* stream;
 
-  /// Distance on a torus is the shortest; `extent` of the axis in metres.
+  /// Coordinate difference [m], to the nearest image on a periodic axis; `extent`: length of the axis [m].
   DESERT_HD static float shortest(float d, float extent, bool periodic) {
     return periodic ? d - extent * rintf(d / extent) : d;
   }

@@ -1,14 +1,19 @@
 #pragma once
-/// Local features of the wind: a divergence-free perturbation from a stream function ψ (curl noise: Bridson
-/// 2007); physics.md A5. With distances ξ along and η across the feature's direction, r² = ξ² + η²:
+/// Local features of the wind: a divergence-free perturbation from a stream function ψ (curl noise, Bridson
+/// 2007).
 ///
-///   vortex      ψ = speed R exp(½(1 − r²/R²)): fastest, `speed`, at r = R; counter-clockwise, or clockwise
-///   if < 0 jet         ψ = speed η exp(−½(ξ²/length² + η²/R²)): `speed` along `direction_deg` in the middle,
-///   return flow beside turbulence  ψ = ¾ speed · scale · noise(ξ/scale, η/scale, t/life_time) (1 − r²/R²)²
-///   inside R
+///   vortex       ψ = speed R exp(½ (1 − r²/R²))
+///   jet          ψ = speed η exp(−½ (ξ²/length² + η²/R²))
+///   turbulence   ψ = ¾ speed scale noise(ξ/scale, η/scale, t/life_time) (1 − r²/R²)²   where r < R
 ///
-///   u = ∂ψ/∂y, v = −∂ψ/∂x by central differences, whose discrete divergence is 0. Writes the perturbation
-///   only.
+///   u =  ∂ψ/∂y
+///   v = −∂ψ/∂x
+///
+/// ξ and η are the distances from the feature's centre along and across its direction, r² = ξ² + η², R its
+/// radius. A vortex is fastest at r = R, with `speed`; it turns counter-clockwise, or clockwise if `speed` is
+/// negative. A jet blows with `speed` along `direction_deg` in its middle, with return flow beside it.
+/// Derivatives are central differences, for which the discrete divergence is 0. Reads no layer, and writes
+/// the perturbation only.
 
 #include <vector>
 
@@ -55,14 +60,15 @@ static_assert(table_is_complete<WindFeature>());
 
 namespace wind_features {
 
-/// A feature made ready on the host: positions relative to the grid's lower-left corner, direction as a unit
-/// vector.
+/// A feature prepared on the host: its position relative to the grid's south-west corner, its direction as a
+/// unit vector.
 struct Prepared {
   WindFeature feature;
   float cos = 1, sin = 0;
 };
 
-/// `perturbation_x/y` and `stream`: one float a cell. `time`: simulated [s]; turbulence lives by it.
+/// `perturbation_x`, `perturbation_y` [m/s] and the scratch `stream` [m²/s]: one float a cell. `time`:
+/// simulated time [s], which drives turbulence.
 template <class E>
 void step(E& exec, const Grid& grid, const Buffer<Prepared>& features, float time, float* stream,
           float* perturbation_x, float* perturbation_y);

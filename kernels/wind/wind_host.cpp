@@ -3,11 +3,12 @@
 #include <vector>
 
 #include "kernels/wind/wind_laws.hpp"
+#include "src/core/constants.hpp"
 
 namespace desert_sim::wind {
 
 namespace {
-/// Coarse axes shorter than this gain nothing and would show in the result.
+/// Least length of a coarse axis: shorter ones would save no time, and show in the result.
 constexpr int fewest_coarse_cells = 64;
 
 /// The next number whose only prime factors are 2, 3 and 5: transforms of such lengths are fast.
@@ -16,8 +17,8 @@ int smooth_length(int n) {
   return n;
 }
 
-/// Transfer of a Gaussian of `sigma` fine cells along an axis of n coarse modes, each coarse cell `ratio`
-/// fine ones. The derivative's 1/l and the transform's 1/n go into it too.
+/// Spectral transfer function of a Gaussian of `sigma` fine cells along an axis of n modes, with `ratio` fine
+/// cells per coarse cell. It includes the derivative's 1/l and the normalisation 1/n of the transform.
 std::vector<Transfer> transfer(int n, double ratio, double sigma, double cell_size) {
   std::vector<Transfer> table(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
@@ -25,7 +26,7 @@ std::vector<Transfer> transfer(int n, double ratio, double sigma, double cell_si
       table[static_cast<std::size_t>(i)] = {0, 0};
       continue;
     }
-    const double k = 2 * 3.14159265358979323846 * (2 * i > n ? i - n : i) / (n * ratio), half = 0.5 * k;
+    const double k = 2 * pi * (2 * i > n ? i - n : i) / (n * ratio), half = 0.5 * k;
     double lost = 1;
     if (ratio > 1 && i != 0) {
       const double box = std::sin(half * ratio) / (ratio * std::sin(half));
@@ -69,8 +70,8 @@ CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p) {
   c.ratio_y = static_cast<float>(fine.height) / c.rows;
   c.share_x = 1.0f / c.ratio_x;
   c.share_y = 1.0f / c.ratio_y;
-  c.wavenumber_x = 6.28318531f / (c.width * c.ratio_x);
-  c.wavenumber_y = 6.28318531f / (c.height * c.ratio_y);
+  c.wavenumber_x = 2.0f * static_cast<float>(pi) / (c.width * c.ratio_x);
+  c.wavenumber_y = 2.0f * static_cast<float>(pi) / (c.height * c.ratio_y);
   return c;
 }
 
@@ -96,7 +97,7 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
     work.one = exec.make_fft(c.width, c.height);
   }
   if (radius_count == 0) return work;
-  if (!work.by_lines) work.all_radii = exec.make_fft(c.width, c.height, p.radii.count);
+  if (!work.by_lines) work.fft_all_radii = exec.make_fft(c.width, c.height, p.radii.count);
   work.gradients = Buffer<Complex>(exec, values * static_cast<std::size_t>(p.radii.count));
   for (int r = 0; r < p.radii.count; ++r) {
     const double sigma = 0.5 * p.radii.values[r] / fine.cell_size;
@@ -104,6 +105,15 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
     work.along_y[r] = on_device(exec, transfer(c.height, c.ratio_y, sigma, fine.cell_size));
   }
   return work;
+}
+
+std::size_t Workspace::bytes() const {
+  std::size_t total = row_means.bytes() + rise.bytes() + spectrum.bytes() + turned.bytes() +
+                      correction.bytes() + gradients.bytes() + roots_x.bytes() + roots_y.bytes();
+  for (const std::unique_ptr<Fft>* transform : {&one, &fft_all_radii})
+    total += *transform ? (*transform)->bytes() : 0;
+  for (int r = 0; r < ShortList::capacity; ++r) total += along_x[r].bytes() + along_y[r].bytes();
+  return total;
 }
 
 }  // namespace desert_sim::wind

@@ -19,12 +19,12 @@
 
 namespace desert_sim::wind {
 
-/// What becomes of the coarse grid's values: means, [transform,] slopes [, back,] wind [, transform,]
-/// correction [, back].
+/// Laws of the coarse grid in the order in which they run: box filter, FFT, gradients, inverse FFT, warped
+/// wind, FFT, correction of the projection, inverse FFT.
 struct CoarseLaws {
   CoarsenColumns columns;
-  SmoothedGradients gradients;  ///< of no radius without warping
-  TurnWind turn;
+  SmoothedGradients gradients;  ///< without warping for no radius
+  WarpWind turn;
   ProjectionCorrection correct;
   bool projected;
 };
@@ -59,10 +59,11 @@ inline CoarseLaws coarse_laws(const TerrainView& t, const WindParameters& p, Vec
   return laws;
 }
 
-/// A block of that kernel works on so many lines at a time,
+/// Lines that a thread block of transform_by_lines() transforms at a time.
 constexpr int lines_at_once = 2;
 
-/// and has in shared memory two places for each of them, of each radius, and the roots of unity of both axes.
+/// Shared memory of such a block [bytes]: two buffers for each line of each radius, between which the
+/// transform alternates, and the roots of unity of both axes.
 inline std::size_t bytes_for_lines(const CoarseGrid& c, int radius_count) {
   const int longest = c.width > c.height ? c.width : c.height, fields = radius_count > 1 ? radius_count : 1;
   return sizeof(Complex) *

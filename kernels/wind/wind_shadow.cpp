@@ -11,10 +11,10 @@
 
 namespace desert_sim::wind_shadow {
 
-/// The longest march for which a CPU has a law of its own [steps].
+/// The longest march for which a CPU uses ShortShadow [steps].
 constexpr int short_march = 7;
 
-/// Of marches of at most `longest` steps.
+/// Runs ShortShadow for the actual number of steps, which must not be greater than `longest`.
 template <int longest, class E>
 void short_shadow(E& exec, const Shadow& shadow) {
   if constexpr (longest > 1)
@@ -26,44 +26,47 @@ void short_shadow(E& exec, const Shadow& shadow) {
 
 template <class E>
 Shadow straight_shadow(E& exec, const TerrainView& t, const WindShadowParameters& p,
-                       const surface::Heights& heights, const Workspace& work, Course* courses) {
-  const FindCourse find{t.grid, t.real(Layer::wind_x), t.real(Layer::wind_y)};
-  if (courses || work.around)
+                       const surface::Heights& heights, const Workspace& work,
+                       MarchDirection* march_directions) {
+  const FindMarchDirection find{t.grid, t.real(Layer::wind_x), t.real(Layer::wind_y)};
+  if (march_directions || work.around)
     for_each_cell(exec, heights.blocks,
-                  PrepareBlock{{find, heights.blocks, courses},
+                  PrepareBlock{{find, heights.blocks, march_directions},
                                {heights.blocks, heights.highest.data(), work.around.data()}});
   return {find,
           p.distance / t.grid.cell_size,
           march_steps(t.grid, p),
-          Shade(p.start_deg, p.full_deg, t.grid.cell_size * t.quanta_per_metre),
-          heights.of_cells.data(),
+          ShadowFromSlope(p.start_deg, p.full_deg, t.grid.cell_size * t.quanta_per_metre),
+          heights.cell_heights.data(),
           work.reciprocals.data(),
           t.real(Layer::wind_shadow),
           heights.blocks,
-          courses,
+          march_directions,
           work.around.data()};
 }
 
 template <class E>
 void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const surface::Heights& heights,
           const Workspace& work) {
-  // A pass over the blocks pays where it spares pieces of marches too, and where cells are worked on in rows.
-  Course* courses = works_on_rows<E> || work.around ? work.courses.data() : nullptr;
-  const Shadow shadow = straight_shadow(exec, t, p, heights, work, courses);
+  // A separate pass over the blocks pays where it also lets marches skip pieces, and where rows of cells are
+  // vectors.
+  MarchDirection* march_directions =
+      vectorises_rows<E> || work.around ? work.march_directions.data() : nullptr;
+  const Shadow shadow = straight_shadow(exec, t, p, heights, work, march_directions);
   if (p.curved) {
     for_each_cell(exec, t.grid,
                   CurvedShadow{t.grid, shadow.shade, shadow.heights, shadow.find.wind_x, shadow.find.wind_y,
                                shadow.reciprocals, shadow.steps, shadow.wind_shadow});
     return;
   }
-  if constexpr (works_on_rows<E>)
+  if constexpr (vectorises_rows<E>)
     if (shadow.steps <= short_march) return short_shadow<short_march>(exec, shadow);
   const ShadowOfFour four{shadow};
   for_each_cell(exec, four.fours(), four);
 }
 
 template Shadow straight_shadow(Backend&, const TerrainView&, const WindShadowParameters&,
-                                const surface::Heights&, const Workspace&, Course*);
+                                const surface::Heights&, const Workspace&, MarchDirection*);
 template void step(Backend&, const TerrainView&, const WindShadowParameters&, const surface::Heights&,
                    const Workspace&);
 

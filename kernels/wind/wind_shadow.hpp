@@ -1,15 +1,18 @@
 #pragma once
-/// Wind shadow: how far a cell lies in the lee. Nilles 2024 eq. 4; physics.md A6.
+/// Wind shadow: how far a cell lies in the lee of higher ground. Nilles 2024 §3.4, eq. 4.
 ///
-///   t = max over steps of Δh / distance, marching upwind up to `distance`
-///   r_s = clamp((t − tan start) / (tan full − tan start), 0, 1)
+///   tan α = max over samples of (h(sample) − h(here)) / distance to the sample
+///   r_s   = clamp((tan α − tan `start_deg`) / (tan `full_deg` − tan `start_deg`), 0, 1)
 ///
-/// Cells of a block of 4 × 4 march in one direction, the wind's in its middle: the wind turns over many
-/// blocks, and cells beside each other then share what they look at. A step goes to the next column of cells,
-/// or the next row if the wind crosses rows faster, and looks between two cells there. `curved` goes one cell
-/// width a step, between four cells, against each cell's own wind, which it re-reads at every step. Marches
-/// go through periodic borders; beyond an open edge the edge goes on. Reads the heights, wind_x, wind_y;
-/// writes wind_shadow. Laws: wind_shadow_march.hpp.
+/// Samples are those of a march upwind up to `distance`. The cells of a block of 4 × 4 march in one
+/// direction, that of the wind in the block's middle: the wind turns over many blocks, and adjacent cells
+/// then share their samples. A step goes to the next column of cells, or to the next row where the line
+/// crosses rows faster, and interpolates linearly between two cells there. With `curved` each cell marches
+/// against its own wind, one cell width per step with bilinear samples, and reads the wind again at every
+/// step. Marches wrap around periodic edges; beyond an open edge the height of the edge continues.
+///
+/// Reads bedrock, soil, sand and, with plants, canopy_height through `heights`, wind_x, wind_y; writes
+/// wind_shadow. The laws are in wind_shadow_march.hpp.
 
 #include "kernels/backend/buffer.hpp"
 #include "kernels/field/layers.hpp"
@@ -21,11 +24,12 @@ namespace desert_sim {
 
 namespace wind_shadow {
 
-/// `around` is empty where marches are too short for it to pay, or blocks do not fit a periodic axis; it and
-/// `courses` where marches follow the wind.
+/// `reciprocals`: 1/j for each step j. `around` is empty where marches are too short for it to pay, or where
+/// blocks do not divide a periodic axis. Both `around` and `march_directions` are empty with `curved`.
 struct Workspace {
   Buffer<float> reciprocals, around;
-  Buffer<Course> courses;
+  Buffer<MarchDirection> march_directions;
+  std::size_t bytes() const { return reciprocals.bytes() + around.bytes() + march_directions.bytes(); }
 };
 
 inline int march_steps(const Grid& grid, const WindShadowParameters& p) {
@@ -34,11 +38,12 @@ inline int march_steps(const Grid& grid, const WindShadowParameters& p) {
 
 Workspace make_workspace(Exec& exec, const Grid& grid, const WindShadowParameters& p);
 
-/// The law of straight marches, ready for the terrain as it is. `courses`: those of the workspace, or
-/// null, where that spares a pass.
+/// The law of straight marches over the terrain as it is now. `march_directions`: those of the workspace, or null
+/// where each cell computes its own, which saves a pass over the blocks.
 template <class E>
 Shadow straight_shadow(E& exec, const TerrainView& t, const WindShadowParameters& p,
-                       const surface::Heights& heights, const Workspace& work, Course* courses);
+                       const surface::Heights& heights, const Workspace& work,
+                       MarchDirection* march_directions);
 
 template <class E>
 void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const surface::Heights& heights,

@@ -14,7 +14,7 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const WindShadowParameter
   work.reciprocals.upload(reciprocals);
   if (p.curved) return work;
   const auto blocks = static_cast<std::size_t>(surface::blocks_of(grid).cells());
-  work.courses = Buffer<Course>(exec, blocks);
+  work.march_directions = Buffer<MarchDirection>(exec, blocks);
   const bool fits =
       (!grid.periodic_x || grid.width % side == 0) && (!grid.periodic_y || grid.height % side == 0);
   if (fits && steps > 3 * piece) work.around = Buffer<float>(exec, blocks);

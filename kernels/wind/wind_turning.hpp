@@ -1,7 +1,7 @@
 #pragma once
-/// What the coarse grid's transforms have between them: slopes of the smoothed terrains, the wind that they
-/// turn, and what makes it free of divergence. See wind.hpp. Each law says what becomes of one value; as a
-/// law over cells it reads that from memory, and writes it there.
+/// The laws between the transforms of the coarse grid: gradients of the smoothed terrains, the wind that they
+/// deflect, and the correction that makes it divergence-free; equations in wind.hpp. Each law has a function
+/// for a single value, and a call operator that loads and stores the value of a cell.
 
 #include "kernels/wind/coarse_wind.hpp"
 #include "kernels/wind/surface_wind.hpp"
@@ -9,8 +9,8 @@
 
 namespace desert_sim::wind {
 
-/// Of several radii: spectra of ∂x H_R + i ∂y H_R, one behind the other, as rows of one tall grid. The
-/// derivative is the central difference over two fine cells, i sin(k)/l.
+/// Spectra of ∂x H_R + i ∂y H_R of every radius R, with H_R the smoothed terrain, stacked as rows of one tall
+/// grid. The derivative is the central difference over two fine cells, i sin(k)/l.
 struct SmoothedGradients {
   CoarseGrid coarse;
   int radius_count;
@@ -30,9 +30,10 @@ struct SmoothedGradients {
   }
 };
 
-/// The wind above, turned by the smoothed terrain, and what wind there is near the ground of each coarse cell
-/// less the wind above: a transform takes that exactly to 0 where there is none.
-struct TurnWind {
+/// The high-altitude wind, deflected by the smoothed terrains, and the deviation of the wind at the ground of
+/// each coarse cell from the high-altitude wind. The deviation is what is transformed, because a deviation of
+/// 0 everywhere stays exactly 0.
+struct WarpWind {
   CoarseGrid coarse;
   const float* rise;
   Vector above;
@@ -51,7 +52,7 @@ struct TurnWind {
     const auto gradient = [of_ground, values](int r) { return of_ground[r * values]; };
     deviation[y * coarse.width + x] = turn(x, y, gradient);
   }
-  /// Writes `turned`, returns the deviation. gradient_of(r): of the r-th smoothed terrain.
+  /// Writes `turned` and returns the deviation. gradient_of(r): gradient of the r-th smoothed terrain.
   template <class Gradient>
   DESERT_HD Complex turn(int x, int y, const Gradient& gradient_of) const {
     const int n = y * coarse.width + x;
@@ -79,9 +80,9 @@ struct TurnWind {
   }
 };
 
-/// Spectrum of what to add to the wind: −k (k·û)/|k|². The field u + iv is one complex transform; û and v̂ are
-/// its parts of even and odd conjugate symmetry, so a mode needs its mirror mode too and writes to another
-/// buffer.
+/// Spectrum of the correction of the Helmholtz projection, −k (k·û)/|k|², which is added to the wind. The
+/// field u + iv is one complex transform; û and v̂ are its parts of even and odd conjugate symmetry, so that
+/// a mode also needs its mirror mode, and the result goes to another buffer.
 struct ProjectionCorrection {
   CoarseGrid coarse;
   const Complex* field;

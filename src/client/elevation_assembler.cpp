@@ -4,8 +4,8 @@ namespace desert_sim {
 
 namespace {
 
-// What may wait for a keyframe. Whoever loses more than this would be better off with the keyframe anyway.
-constexpr std::size_t most_waiting = 256, most_waiting_cells = std::size_t{1} << 24;
+// Limits of the updates that are kept until their keyframe arrives. Beyond them a new keyframe costs less.
+constexpr std::size_t max_queued_updates = 256, max_queued_cells = std::size_t{1} << 24;
 
 std::size_t cells_of(const ElevationUpdate& update) {
   std::size_t cells = 0;
@@ -22,30 +22,32 @@ std::string name_of(const std::pair<std::uint32_t, std::uint32_t>& number) {
 
 KeyframeNeed ElevationAssembler::need() const {
   if (!complete_) return KeyframeNeed::lost;
-  return map_ && waiting_.empty() ? KeyframeNeed::none : KeyframeNeed::expected;
+  return map_ && queued_updates_.empty() ? KeyframeNeed::none : KeyframeNeed::expected;
 }
 
 void ElevationAssembler::keyframe_overdue() {
-  if (map_ && !waiting_.empty())
-    lose("keyframe " + std::to_string(waiting_.back()->keyframe) + ", which updates build on, has not come");
+  if (map_ && !queued_updates_.empty())
+    lose("keyframe " + std::to_string(queued_updates_.back()->keyframe) +
+         ", which updates build on, has not arrived");
 }
 
 // ---- keyframes ----
 
-/// A sender that latches its last message sends it again to whoever connects anew.
-bool ElevationAssembler::is_held(const ElevationGrid& keyframe) const {
-  if (!map_ || went_back_) return false;
+/// Whether this is the keyframe of the map once more: a latching publisher repeats its last message on every
+/// new connection.
+bool ElevationAssembler::is_repeated_keyframe(const ElevationGrid& keyframe) const {
+  if (!map_ || sender_restarted_) return false;
   const ElevationMap::Info& held = map_->info();
   return keyframe.keyframe == held.keyframe && keyframe.step <= held.step &&
          !keyframe.header.stamp.isZero() && keyframe.header.stamp == keyframe_stamp_;
 }
 
 MapChange ElevationAssembler::take(const ElevationGrid::ConstPtr& keyframe) {
-  if (const std::string fault = fault_of(*keyframe); !fault.empty()) return refuse(fault);
+  if (const std::string fault = validation_error(*keyframe); !fault.empty()) return refuse(fault);
   MapChange change;
   change.map = std::make_shared<const ElevationMap>(keyframe, map_.get(), change.cells);
-  if (is_held(*keyframe)) {
-    sent_again_ = change.map;
+  if (is_repeated_keyframe(*keyframe)) {
+    repeated_keyframe_map_ = change.map;
     ++counts_.late;
     return {};
   }
@@ -57,19 +59,20 @@ MapChange ElevationAssembler::hold(MapChange change) {
   if (map_ && change.map->info().keyframe <= map_->info().keyframe) ++counts_.restarts;
   change.replaced = !map_ || !change.map->same_geometry(*map_);
   map_ = change.map;
-  sent_again_.reset();
+  repeated_keyframe_map_.reset();
   complete_ = true;
-  went_back_ = false;
+  sender_restarted_ = false;
   ++counts_.keyframes;
-  write_waiting(change);
+  apply_queued(change);
   return change;
 }
 
-/// Those that build on the keyframe that has just been taken; those of a later one wait on.
-void ElevationAssembler::write_waiting(MapChange& change) {
+/// Writes the waiting updates that build on the keyframe just taken. Updates of a later keyframe keep
+/// waiting.
+void ElevationAssembler::apply_queued(MapChange& change) {
   std::deque<ElevationUpdate::ConstPtr> waiting;
-  waiting.swap(waiting_);
-  waiting_cells_ = 0;
+  waiting.swap(queued_updates_);
+  queued_cells_ = 0;
   for (const ElevationUpdate::ConstPtr& update : waiting) {
     const bool of_a_node_before = update->header.stamp < keyframe_stamp_;
     if (of_a_node_before || update->keyframe < map_->info().keyframe) {
@@ -85,7 +88,7 @@ void ElevationAssembler::write_waiting(MapChange& change) {
 
 // ---- updates ----
 
-/// Older than what is held. A node that has started anew counts from the beginning too, but at a later time.
+/// Whether an update is older than the map. A restarted node also counts from 1, but its stamps are later.
 bool ElevationAssembler::is_late(const ElevationUpdate& update) const {
   const ElevationMap::Info& held = map_->info();
   const bool before = update.keyframe < held.keyframe ||
@@ -93,7 +96,7 @@ bool ElevationAssembler::is_late(const ElevationUpdate& update) const {
   return before && update.header.stamp <= held.stamp;
 }
 
-/// Whether it is the one that what is held waits for.
+/// Whether an update is the next one in sequence.
 bool ElevationAssembler::follows(const ElevationUpdate& update) const {
   const ElevationMap::Info& held = map_->info();
   return complete_ && update.keyframe == held.keyframe && update.sequence == held.sequence + 1 &&
@@ -101,22 +104,23 @@ bool ElevationAssembler::follows(const ElevationUpdate& update) const {
 }
 
 MapChange ElevationAssembler::take(const ElevationUpdate::ConstPtr& update) {
-  if (const std::string fault = fault_of(*update); !fault.empty()) return refuse(fault);
-  const Number before = newest_;
-  newest_ = {update->keyframe, update->sequence};
+  if (const std::string fault = validation_error(*update); !fault.empty()) return refuse(fault);
+  const Number before = last_received_;
+  last_received_ = {update->keyframe, update->sequence};
   if (!map_) {
     keep(update);
     return {};
   }
   const ElevationMap::Info& held = map_->info();
-  const bool of_another_run = !went_back_ && update->keyframe == held.keyframe && update->step < held.step;
-  if (newest_ > before && !of_another_run) return place(update);
-  while (!waiting_.empty()) drop_first_waiting();
-  return follows(*update) ? write(*update) : go_back(update, before);
+  const bool of_another_run =
+      !sender_restarted_ && update->keyframe == held.keyframe && update->step < held.step;
+  if (last_received_ > before && !of_another_run) return place(update);
+  while (!queued_updates_.empty()) drop_oldest_queued();
+  return follows(*update) ? write(*update) : handle_restart(update, before);
 }
 
 MapChange ElevationAssembler::place(const ElevationUpdate::ConstPtr& update) {
-  if (went_back_) {
+  if (sender_restarted_) {
     keep(update);
     return {};
   }
@@ -130,7 +134,7 @@ MapChange ElevationAssembler::place(const ElevationUpdate::ConstPtr& update) {
     return {};
   }
   if (update->keyframe < held.keyframe || update->sequence <= held.sequence)
-    return go_back(update, {held.keyframe, held.sequence});
+    return handle_restart(update, {held.keyframe, held.sequence});
   if (update->sequence != held.sequence + 1)
     lose(name_of({held.keyframe, held.sequence + 1}) + " is missing: " + std::to_string(update->sequence) +
          " came next");
@@ -141,25 +145,27 @@ MapChange ElevationAssembler::place(const ElevationUpdate::ConstPtr& update) {
   return write(*update);
 }
 
-/// Updates keep their order on their way: the sender has started anew, or plays its recording again. If its
-/// keyframe was here first, and was taken for what was held already, that is where to begin.
-MapChange ElevationAssembler::go_back(const ElevationUpdate::ConstPtr& update, const Number& from) {
+/// Handles an update whose number is not above the previous one. A connection preserves the order of its
+/// messages, so the sender has restarted or replays a recording. If its keyframe arrived before this update
+/// and was taken for a repetition, the map begins again with that keyframe; otherwise its keyframe is
+/// missing.
+MapChange ElevationAssembler::handle_restart(const ElevationUpdate::ConstPtr& update, const Number& from) {
   keep(update);
-  if (sent_again_ && sent_again_->info().keyframe == update->keyframe) {
-    const ElevationMap::Info& info = sent_again_->info();
-    return hold({sent_again_, {0, 0, info.width, info.height}, false});
+  if (repeated_keyframe_map_ && repeated_keyframe_map_->info().keyframe == update->keyframe) {
+    const ElevationMap::Info& info = repeated_keyframe_map_->info();
+    return hold({repeated_keyframe_map_, {0, 0, info.width, info.height}, false});
   }
   lose(name_of({update->keyframe, update->sequence}) + " came after " + name_of(from) +
        ": the sender has started anew");
-  went_back_ = true;
+  sender_restarted_ = true;
   return {};
 }
 
 MapChange ElevationAssembler::write(const ElevationUpdate& update) {
-  if (const std::string fault = fault_of(update, map_->info()); !fault.empty()) return refuse(fault);
+  if (const std::string fault = validation_error(update, map_->info()); !fault.empty()) return refuse(fault);
   MapChange change;
   change.map = map_ = map_->after(update);
-  sent_again_.reset();  // that was all it was
+  repeated_keyframe_map_.reset();  // it was only a repetition
   for (const ElevationTile& tile : update.tiles)
     change.cells.include({tile.x, tile.y, tile.width, tile.height});
   ++counts_.updates;
@@ -167,21 +173,22 @@ MapChange ElevationAssembler::write(const ElevationUpdate& update) {
 }
 
 void ElevationAssembler::keep(const ElevationUpdate::ConstPtr& update) {
-  waiting_.push_back(update);
-  waiting_cells_ += cells_of(*update);
-  while (waiting_.size() > most_waiting || (waiting_.size() > 1 && waiting_cells_ > most_waiting_cells))
-    drop_first_waiting();
+  queued_updates_.push_back(update);
+  queued_cells_ += cells_of(*update);
+  while (queued_updates_.size() > max_queued_updates ||
+         (queued_updates_.size() > 1 && queued_cells_ > max_queued_cells))
+    drop_oldest_queued();
 }
 
-void ElevationAssembler::drop_first_waiting() {
-  waiting_cells_ -= cells_of(*waiting_.front());
-  waiting_.pop_front();
+void ElevationAssembler::drop_oldest_queued() {
+  queued_cells_ -= cells_of(*queued_updates_.front());
+  queued_updates_.pop_front();
   ++counts_.unusable;
 }
 
-// ---- what goes wrong ----
+// ---- faults ----
 
-/// A refused message leaves a hole: whatever it was, what is held is no longer known to be up to date.
+/// A refused message leaves a gap: the map may lack the changes that it contained.
 MapChange ElevationAssembler::refuse(const std::string& why) {
   ++counts_.refused;
   counts_.last_refusal = why;

@@ -1,7 +1,7 @@
 #pragma once
-/// Puts keyframes and updates together to maps, and notices what is missing between them. The two kinds come
-/// over connections of their own, so that an update may be here before its keyframe, and the last update of a
-/// keyframe after the next one. No threads, no clock, no ROS graph: one caller at a time.
+/// Builds maps from keyframes and updates, and detects missing messages. Keyframes and updates arrive over
+/// separate connections, so an update can arrive before its keyframe, and the last update of a keyframe after
+/// the next keyframe. The class uses no threads, no clock and no ROS graph, and is not thread-safe.
 
 #include <cstdint>
 #include <deque>
@@ -13,71 +13,74 @@
 
 namespace desert_sim {
 
-/// What a message changed.
+/// The effect of a message on the map.
 struct MapChange {
-  std::shared_ptr<const ElevationMap> map;  ///< the new map; null if there is none
-  ElevationMap::Rectangle cells;  ///< those that may differ from the map before; empty: only its time
-  bool replaced = false;          ///< no map before, or of another frame, size or place
+  std::shared_ptr<const ElevationMap> map;  ///< the new map; null if the message changed nothing
+  /// The cells that may differ from the previous map; empty if only the map's time changed.
+  ElevationMap::Rectangle cells;
+  bool replaced = false;  ///< the previous map had another frame, size or place, or none existed
 };
 
-/// What has come in since the beginning.
+/// Counts of the messages since the start.
 struct StreamCounts {
-  std::uint64_t keyframes = 0;  ///< that were taken
-  std::uint64_t updates = 0;    ///< that were written into a map
-  std::uint64_t late = 0;       ///< of something older than what was held: left out, and nothing is lost
-  std::uint64_t unusable = 0;   ///< updates that came after a gap, or whose keyframe never came: left out
-  std::uint64_t refused = 0;    ///< broken messages: left out
-  std::uint64_t gaps = 0;       ///< times that something was missing and a new keyframe was needed
-  std::uint64_t restarts = 0;   ///< times that the numbers of keyframes began anew
-  std::string last_refusal;     ///< why; empty if nothing was refused
-  std::string last_gap;         ///< why; empty without gaps
+  std::uint64_t keyframes = 0;  ///< keyframes that became the map
+  std::uint64_t updates = 0;    ///< updates that were written into the map
+  std::uint64_t late = 0;       ///< messages older than the map, which were ignored without loss
+  std::uint64_t unusable = 0;   ///< ignored updates: after a gap, or without their keyframe
+  std::uint64_t refused = 0;    ///< malformed messages, which were ignored
+  std::uint64_t gaps = 0;       ///< how often messages were missing, so that a keyframe was needed
+  std::uint64_t restarts = 0;   ///< how often the numbers of keyframes began again
+  std::string last_refusal;     ///< reason for the last refusal; empty if there was none
+  std::string last_gap;         ///< reason for the last gap; empty if there was none
 };
 
-/// Whether a new keyframe is needed to go on.
+/// Whether a keyframe is needed to continue.
 enum class KeyframeNeed {
   none,
-  expected,  ///< one should be on its way
-  lost       ///< what is held cannot be continued
+  expected,  ///< the first keyframe, or that of waiting updates, should arrive soon
+  lost       ///< messages are missing: the map cannot be continued without a keyframe
 };
 
 class ElevationAssembler {
  public:
-  /// Keeps the message, which must not change any more.
+  /// Takes a keyframe. The map keeps the message, which must not be modified afterwards.
   MapChange take(const ElevationGrid::ConstPtr& keyframe);
-  /// Keeps the message if its keyframe is still to come.
+  /// Takes an update. It is kept until its keyframe arrives if that is not here yet.
   MapChange take(const ElevationUpdate::ConstPtr& update);
-  /// The keyframe that is expected has not come for too long: counts a gap, if a map is held.
+  /// Reports that the expected keyframe did not arrive in time. If there is a map, that counts as a gap.
   void keyframe_overdue();
 
-  /// The last good one, also after a gap; null before the first keyframe.
+  /// The last valid map, which stays after a gap; null before the first keyframe.
   const std::shared_ptr<const ElevationMap>& map() const { return map_; }
   KeyframeNeed need() const;
   const StreamCounts& counts() const { return counts_; }
 
  private:
-  using Number = std::pair<std::uint32_t, std::uint32_t>;  ///< of an update: its keyframe's, and its own
+  using Number = std::pair<std::uint32_t, std::uint32_t>;  ///< an update's keyframe number and sequence
 
-  bool is_held(const ElevationGrid& keyframe) const;
+  bool is_repeated_keyframe(const ElevationGrid& keyframe) const;
   MapChange hold(MapChange change);
   bool is_late(const ElevationUpdate& update) const;
   bool follows(const ElevationUpdate& update) const;
   MapChange place(const ElevationUpdate::ConstPtr& update);
-  MapChange go_back(const ElevationUpdate::ConstPtr& update, const Number& from);
+  MapChange handle_restart(const ElevationUpdate::ConstPtr& update, const Number& from);
   MapChange refuse(const std::string& why);
   void lose(const std::string& why);
   void keep(const ElevationUpdate::ConstPtr& update);
-  void drop_first_waiting();
+  void drop_oldest_queued();
   MapChange write(const ElevationUpdate& update);
-  void write_waiting(MapChange& change);
+  void apply_queued(MapChange& change);
 
   std::shared_ptr<const ElevationMap> map_;
-  ros::Time keyframe_stamp_;                        ///< of the keyframe that map_ is built on
-  bool complete_ = true;                            ///< nothing is missing after what is held
-  bool went_back_ = false;                          ///< the sender has begun anew; its keyframe is to come
-  Number newest_{0, 0};                             ///< of the last update that came, whatever became of it
-  std::shared_ptr<const ElevationMap> sent_again_;  ///< of the keyframe that map_ is built on, come anew
-  std::deque<ElevationUpdate::ConstPtr> waiting_;   ///< for their keyframe, in the order of their coming
-  std::size_t waiting_cells_ = 0;
+  ros::Time keyframe_stamp_;       ///< stamp of the keyframe on which map_ is built
+  bool complete_ = true;           ///< no update is missing after those in map_
+  bool sender_restarted_ = false;  ///< the sender restarted; its keyframe is missing
+  Number last_received_{0, 0};     ///< number of the last update, whether used or not
+  /// A map of the repeated keyframe, if the one on which map_ is built was sent again.
+  std::shared_ptr<const ElevationMap> repeated_keyframe_map_;
+  std::deque<ElevationUpdate::ConstPtr>
+      queued_updates_;            ///< updates without their keyframe, in order of arrival
+  std::size_t queued_cells_ = 0;  ///< cells of all tiles in queued_updates_
   StreamCounts counts_;
 };
 

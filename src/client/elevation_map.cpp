@@ -12,7 +12,8 @@ namespace desert_sim {
 
 namespace {
 
-/// Of cells beside each other, those in which two runs differ; to the bit, so that NaN is NaN.
+/// The range of cells in which two rows of elevations differ, as a rectangle in row 0. They are compared bit
+/// by bit, so that NaN equals NaN.
 ElevationMap::Rectangle difference(const float* a, const float* b, std::uint32_t cells) {
   const auto same = [a, b](std::uint32_t first, std::uint32_t count) {
     return std::memcmp(a + first, b + first, count * sizeof(float)) == 0;
@@ -40,7 +41,7 @@ void ElevationMap::Rectangle::include(const Rectangle& other) {
   height = top - y;
 }
 
-// ---- making ----
+// ---- construction ----
 
 ElevationMap::ElevationMap(ElevationGrid::ConstPtr keyframe, const ElevationMap* before, Rectangle& changed)
     : keyframe_(std::move(keyframe)) {
@@ -74,38 +75,39 @@ std::shared_ptr<const ElevationMap> ElevationMap::after(const ElevationUpdate& u
   map->info_.step = update.step;
   map->info_.sim_time = update.sim_time;
   map->info_.sequence = update.sequence;
-  TileReader reader;
+  TileDecoder reader;
   for (const ElevationTile& tile : update.tiles) map->write(tile, reader, *this);
   return map;
 }
 
-void ElevationMap::write(const ElevationTile& tile, TileReader& reader, const ElevationMap& before) {
+void ElevationMap::write(const ElevationTile& tile, TileDecoder& reader, const ElevationMap& before) {
   const std::uint32_t right = tile.x + tile.width, top = tile.y + tile.height;
   reader.begin(tile);
   for (std::uint32_t y = tile.y; y < top; ++y)
     for (std::uint32_t x = tile.x; x < right;) {
-      float* const row = own_block(x, y, before).data() + y % side * side;
+      float* const row = writable_block(x, y, before).data() + y % side * side;
       const std::uint32_t cells = run_length(x, right);
       reader.write_next(row + x % side, cells);
       x += cells;
     }
 }
 
-/// A block that is still shared with the map before is copied first.
-ElevationMap::Block& ElevationMap::own_block(std::uint32_t x, std::uint32_t y, const ElevationMap& before) {
+/// The block of a cell, for writing. A block that is still shared with the previous map is copied first.
+ElevationMap::Block& ElevationMap::writable_block(std::uint32_t x, std::uint32_t y,
+                                                  const ElevationMap& before) {
   const std::size_t n = y / side * blocks_across() + x / side;
   if (blocks_[n] == before.blocks_[n]) {
-    std::shared_ptr<Block> copy(new Block);  // not filled with zeros first, as make_shared would
+    std::shared_ptr<Block> copy(new Block);  // make_shared would fill it with zeros
     const std::uint32_t west = x / side * side, south = y / side * side;
     const std::uint32_t cells = run_length(west, info_.width), rows = run_length(south, info_.height);
     for (std::uint32_t row = 0; row < rows; ++row)
       std::copy_n(run(west, south + row), cells, copy->data() + row * side);
     blocks_[n] = std::move(copy);
   }
-  return const_cast<Block&>(*blocks_[n]);  // ours alone until this map is handed out
+  return const_cast<Block&>(*blocks_[n]);  // no other map refers to this block yet
 }
 
-// ---- reading ----
+// ---- queries ----
 
 bool ElevationMap::same_geometry(const ElevationMap& other) const {
   const Info &a = info_, &b = other.info_;
@@ -120,7 +122,7 @@ float ElevationMap::at(std::uint32_t x, std::uint32_t y) const {
   return cell(x, y);
 }
 
-/// The four cells around a point and the point's place between their centres, 0…1.
+/// Elevations of the four cells around a point, and the point's position between their centres, 0…1.
 struct ElevationMap::Patch {
   double z00, z10, z01, z11, fx, fy;
 };
@@ -142,7 +144,7 @@ std::optional<ElevationMap::Patch> ElevationMap::patch(double x, double y) const
 std::optional<double> ElevationMap::elevation(double x, double y) const {
   const std::optional<Patch> p = patch(x, y);
   if (!p) return std::nullopt;
-  // A cell without weight may be unknown.
+  // A cell of weight 0 may be unknown (NaN).
   const auto part = [](double weight, double z) { return weight > 0 ? weight * z : 0.0; };
   const double z = part((1 - p->fx) * (1 - p->fy), p->z00) + part(p->fx * (1 - p->fy), p->z10) +
                    part((1 - p->fx) * p->fy, p->z01) + part(p->fx * p->fy, p->z11);
@@ -196,7 +198,7 @@ std::vector<float> ElevationMap::elevations(const Rectangle& r) const {
   return copy;
 }
 
-// ---- checking ----
+// ---- validation ----
 
 namespace {
 
@@ -210,7 +212,7 @@ std::string wrong_size(std::size_t numbers, std::uint32_t width, std::uint32_t h
 }
 
 std::string infinite(const std::vector<float>& elevations) {
-  unsigned any = 0;  // without a branch, compilers look at several at once
+  unsigned any = 0;  // without a branch, compilers can vectorise the loop
   for (const float z : elevations) any |= std::fabs(z) == HUGE_VALF ? 1u : 0u;
   if (any == 0) return "";
   const auto bad = std::find_if(elevations.begin(), elevations.end(), [](float z) { return std::isinf(z); });
@@ -218,7 +220,7 @@ std::string infinite(const std::vector<float>& elevations) {
          ": must be finite, or NaN if unknown";
 }
 
-/// Of a tile with a mask: the cells that it has; `fault` if it does not fit.
+/// Number of cells that the mask of a tile selects. Sets `fault` if the mask does not fit the tile's size.
 std::size_t count_changed(const ElevationTile& tile, std::string& fault) {
   const std::uint64_t cells = std::uint64_t{tile.width} * tile.height;
   if (tile.changed.size() != mask_bytes(cells)) {
@@ -234,7 +236,7 @@ std::size_t count_changed(const ElevationTile& tile, std::string& fault) {
   return count;
 }
 
-std::string fault_of(const ElevationTile& tile) {
+std::string validation_error(const ElevationTile& tile) {
   std::string fault;
   if (!tile.changes.empty() && !tile.data.empty()) return "has changes and elevations";
   if (!tile.changes.empty() && tile.bits != 8 && tile.bits != 4)
@@ -254,7 +256,7 @@ std::string fault_of(const ElevationTile& tile) {
 
 }  // namespace
 
-std::string fault_of(const ElevationGrid& keyframe) {
+std::string validation_error(const ElevationGrid& keyframe) {
   const std::string where = "keyframe " + std::to_string(keyframe.keyframe) + ": ";
   if (const std::string fault = wrong_size(keyframe.elevation.size(), keyframe.width, keyframe.height);
       !fault.empty())
@@ -274,19 +276,19 @@ std::string fault_of(const ElevationGrid& keyframe) {
   return "";
 }
 
-std::string fault_of(const ElevationUpdate& update) {
+std::string validation_error(const ElevationUpdate& update) {
   const std::string where =
       "update " + std::to_string(update.sequence) + " of keyframe " + std::to_string(update.keyframe) + ": ";
   if (update.sequence == 0) return where + "sequence counts from 1";
   if (!std::isfinite(update.sim_time)) return where + "sim_time is not finite";
   for (std::size_t i = 0; i < update.tiles.size(); ++i) {
-    const std::string fault = fault_of(update.tiles[i]);
+    const std::string fault = validation_error(update.tiles[i]);
     if (!fault.empty()) return where + "tile " + std::to_string(i) + ": " + fault;
   }
   return "";
 }
 
-std::string fault_of(const ElevationUpdate& update, const ElevationMap::Info& map) {
+std::string validation_error(const ElevationUpdate& update, const ElevationMap::Info& map) {
   const std::string where =
       "update " + std::to_string(update.sequence) + " of keyframe " + std::to_string(update.keyframe) + ": ";
   if (update.header.frame_id != map.frame)

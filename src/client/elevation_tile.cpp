@@ -7,9 +7,9 @@ namespace desert_sim {
 
 namespace {
 
-// Loops over whole bytes and without branches, which compilers make vectors of.
+// These loops process whole bytes without branches, so that compilers can vectorise them.
 
-constexpr std::size_t spare = 8;  // what may be read beyond the last change
+constexpr std::size_t spare = 8;  // number of values that are read beyond the last change
 
 void unpack(const std::vector<std::int8_t>& packed, int bits, std::vector<std::int8_t>& changes) {
   const std::size_t bytes = packed.size();
@@ -27,7 +27,7 @@ void unpack(const std::vector<std::int8_t>& packed, int bits, std::vector<std::i
   }
 }
 
-/// For each byte of a mask: how many of its cells changed, of all and before each.
+/// For each value of a mask byte: the number of its set bits, in all and before each bit.
 struct Ranks {
   std::array<std::array<std::uint8_t, 8>, 256> before{};
   std::array<std::uint8_t, 256> count{};
@@ -43,7 +43,7 @@ constexpr Ranks make_ranks() {
 }
 constexpr Ranks ranks = make_ranks();
 
-/// 0 for the cells that the mask does not have.
+/// Distributes the changes to all cells of the mask; cells that it does not select get 0.
 void spread(const std::int8_t* changes, const std::vector<std::uint8_t>& mask, float* to) {
   for (const std::uint8_t eight : mask) {
     const std::array<std::uint8_t, 8>& before = ranks.before[eight];
@@ -56,7 +56,7 @@ void spread(const std::int8_t* changes, const std::vector<std::uint8_t>& mask, f
 
 }  // namespace
 
-void TileReader::begin(const ElevationTile& tile) {
+void TileDecoder::begin(const ElevationTile& tile) {
   tile_ = &tile;
   cell_ = value_ = 0;
   if (tile.changes.empty()) return;
@@ -69,7 +69,7 @@ void TileReader::begin(const ElevationTile& tile) {
   spread(changes_.data(), tile.changed, steps_.data());
 }
 
-void TileReader::write_next(float* held, std::size_t cells) {
+void TileDecoder::write_next(float* held, std::size_t cells) {
   const std::size_t first = cell_;
   cell_ += cells;
   if (!tile_->changes.empty()) {

@@ -1,6 +1,6 @@
 #pragma once
-/// How a tile of an update is read; see ElevationTile.msg. The node writes tiles with the same arithmetic, so
-/// that it knows to the bit what its subscribers hold.
+/// Decodes the tiles of an update; ElevationTile.msg describes their format. The node encodes tiles with the
+/// same arithmetic, so that it knows exactly which elevations its subscribers have.
 
 #include <desert_sim/ElevationTile.h>
 
@@ -12,27 +12,31 @@
 
 namespace desert_sim {
 
-/// Bytes that so many changes take; `bits` is 8 or 4.
+/// Size of the packed changes [bytes]; `bits` per change is 8 or 4.
 inline std::size_t change_bytes(std::size_t changes, int bits) {
   return bits == 4 ? (changes + 1) / 2 : changes;
 }
+/// Size of a tile's mask [bytes].
 inline std::size_t mask_bytes(std::size_t cells) { return (cells + 7) / 8; }
+/// Whether the mask selects the cell with this number.
 inline bool mask_has(const std::vector<std::uint8_t>& mask, std::size_t cell) {
   return (mask[cell / 8] >> (7 - cell % 8)) & 1;
 }
 
-/// Reads tiles cell by cell, in their order. A tile must be sound: see fault_of() in elevation_map.hpp.
-class TileReader {
+/// Decodes tiles cell by cell, in the order of the tile. A tile must be valid: see validation_error() in
+/// elevation_map.hpp.
+class TileDecoder {
  public:
+  /// Starts with the first cell of a tile, which must outlive the calls of write_next().
   void begin(const ElevationTile& tile);
-  /// Writes the next cells over what is held, where they changed.
+  /// Applies the next `cells` cells of the tile to the elevations in `held`; cells that did not change stay.
   void write_next(float* held, std::size_t cells);
 
  private:
   const ElevationTile* tile_ = nullptr;
   std::size_t cell_ = 0, value_ = 0;
-  std::vector<std::int8_t> changes_;  ///< of the cells that changed
-  std::vector<float> steps_;          ///< of all cells, 0 where they did not
+  std::vector<std::int8_t> changes_;  ///< unpacked changes of the selected cells
+  std::vector<float> steps_;          ///< changes of all cells, 0 if not selected
 };
 
 }  // namespace desert_sim

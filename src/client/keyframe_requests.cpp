@@ -10,19 +10,19 @@ bool KeyframeRequests::due(KeyframeNeed need, Clock::time_point now) {
     since_ = now;
   }
   if (need == KeyframeNeed::none) {
-    // A stream that breaks again soon after each keyframe does not get the short pause back.
+    // The pause becomes short again only after the stream has been complete for longer than a pause.
     if (now - since_ > pause_) {
-      calm_ = true;
+      stable_ = true;
       pause_ = shortest_;
     }
     return false;
   }
   if (need == KeyframeNeed::expected && now - since_ < 2 * pause_)
-    return false;  // a large one takes its time
-  if (!calm_ && now - asked_ < pause_) return false;
-  pause_ = calm_ ? shortest_ : std::min(2 * pause_, longest_);
-  calm_ = false;
-  asked_ = now;
+    return false;  // the transfer of a large keyframe takes time
+  if (!stable_ && now - last_request_ < pause_) return false;
+  pause_ = stable_ ? shortest_ : std::min(2 * pause_, longest_);
+  stable_ = false;
+  last_request_ = now;
   return true;
 }
 

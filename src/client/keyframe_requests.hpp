@@ -1,6 +1,7 @@
 #pragma once
-/// When to ask for a keyframe: at once after a loss, then with pauses that double while asking does not help
-/// for long, so that a stream that is faster than its reader does not make the reader ask all the time.
+/// Decides when to request a keyframe: immediately after a loss, then with exponential backoff while requests
+/// do not help for long. A reader that is too slow for its stream therefore does not request keyframes all
+/// the time.
 
 #include <chrono>
 
@@ -12,19 +13,21 @@ class KeyframeRequests {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Pauses between requests, 0 < shortest <= longest. An expected keyframe may take twice the present pause.
+  /// The shortest and longest pause between requests, 0 < shortest <= longest. An expected keyframe is
+  /// requested only after twice the present pause.
   KeyframeRequests(Clock::duration shortest, Clock::duration longest)
       : shortest_(shortest), longest_(longest), pause_(shortest) {}
 
-  /// Whether to ask now, in which case it counts as asked.
+  /// Whether to send a request now; if so, it counts as sent.
   bool due(KeyframeNeed need, Clock::time_point now);
   /// The pause between the last request and the next.
   Clock::duration pause() const { return pause_; }
 
  private:
   Clock::duration shortest_, longest_, pause_;
-  Clock::time_point asked_{}, since_{};  ///< since when the need has been what it is
-  bool calm_ = true;                     ///< no request yet, or all has been well for long since the last
+  Clock::time_point last_request_{};  ///< time of the last request
+  Clock::time_point since_{};         ///< time since which need_ has been the same
+  bool stable_ = true;  ///< no request yet, or no need for longer than a pause since the last one
   KeyframeNeed need_ = KeyframeNeed::none;
 };
 

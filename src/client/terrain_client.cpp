@@ -17,13 +17,13 @@ namespace {
 
 using Clock = KeyframeRequests::Clock;
 
-constexpr std::chrono::milliseconds tick{100};  // how often the client looks whether it needs a keyframe
+constexpr std::chrono::milliseconds tick{100};  // how often the client checks whether it needs a keyframe
 
 Clock::duration duration_of(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-/// Options with the names of the topics; throws ConfigError.
+/// Checks the options and fills in empty topic names. Throws ConfigError.
 TerrainClient::Options checked(TerrainClient::Options options) {
   if (options.elevation_topic.empty()) options.elevation_topic = options.node + "/elevation";
   if (options.updates_topic.empty()) options.updates_topic = options.node + "/elevation_updates";
@@ -51,7 +51,7 @@ TerrainClient::TerrainClient(const ros::NodeHandle& node, Options options)
       node_(node),
       requests_(duration_of(options_.shortest_pause), duration_of(options_.longest_pause)) {
   if (options_.own_thread) node_.setCallbackQueue(&queue_);
-  asks_ = node_.advertise<std_msgs::Empty>(options_.request_topic, 1);
+  request_publisher_ = node_.advertise<std_msgs::Empty>(options_.request_topic, 1);
   subscribe_to_keyframes();
   updates_ = node_.subscribe<ElevationUpdate>(
       options_.updates_topic, options_.update_queue,
@@ -68,11 +68,11 @@ TerrainClient::~TerrainClient() {
   }
   queue_.disable();  // wakes its thread
   thread_.join();
-  updates_.shutdown();  // with a queue of someone else's: waits for a call that is under way
+  updates_.shutdown();  // on a queue of the caller, this waits for a running callback
   keyframes_.shutdown();
 }
 
-// ---- for readers ----
+// ---- queries ----
 
 std::shared_ptr<const ElevationMap> TerrainClient::map() const {
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -134,12 +134,12 @@ bool TerrainClient::wait(const std::function<bool()>& happened, double timeout) 
 // ---- messages ----
 
 void TerrainClient::take(const ElevationGrid::ConstPtr& keyframe) {
-  const std::lock_guard<std::mutex> one_at_a_time(taking_);
+  const std::lock_guard<std::mutex> one_at_a_time(processing_mutex_);
   tell(assembler_.take(keyframe), nullptr);
 }
 
 void TerrainClient::take(const ElevationUpdate::ConstPtr& update) {
-  const std::lock_guard<std::mutex> one_at_a_time(taking_);
+  const std::lock_guard<std::mutex> one_at_a_time(processing_mutex_);
   tell(assembler_.take(update), &update->header.stamp);
 }
 
@@ -182,10 +182,10 @@ void TerrainClient::thread() {
 }
 
 bool TerrainClient::keyframe_is_due() {
-  // Without a connection there is nobody to ask; whoever comes sends a keyframe anyway.
+  // Without a publisher there is nobody to ask, and a new publisher sends a keyframe anyway.
   if (!ros::ok() || !connected()) return false;
-  const std::unique_lock<std::mutex> one_at_a_time(taking_, std::try_to_lock);
-  if (!one_at_a_time) return false;  // in the middle of a message, which may be the one
+  const std::unique_lock<std::mutex> one_at_a_time(processing_mutex_, std::try_to_lock);
+  if (!one_at_a_time) return false;  // a message is being processed, which may be the keyframe
   if (!requests_.due(assembler_.need(), Clock::now())) return false;
   assembler_.keyframe_overdue();
   tell({}, nullptr);
@@ -193,15 +193,15 @@ bool TerrainClient::keyframe_is_due() {
 }
 
 void TerrainClient::ask_for_keyframe() {
-  bool by_message = asks_.getNumSubscribers() > 0;
+  bool by_message = request_publisher_.getNumSubscribers() > 0;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     by_message = by_message && statistics_.requests % 2 == 0;
     ++statistics_.requests;
   }
   if (by_message) {
-    asks_.publish(std_msgs::Empty());
-  } else if (ros::master::check()) {  // to subscribe without a master would wait for one
+    request_publisher_.publish(std_msgs::Empty());
+  } else if (ros::master::check()) {  // subscribing without a master would block
     subscribe_to_keyframes();
   }
 }
@@ -212,7 +212,7 @@ void TerrainClient::subscribe_to_keyframes() {
     const std::lock_guard<std::mutex> lock(mutex_);
     before = keyframes_;
   }
-  // roscpp waits for callbacks that are under way: no lock may be held.
+  // shutdown() waits for running callbacks, so no lock may be held here.
   before.shutdown();
   const ros::Subscriber anew = node_.subscribe<ElevationGrid>(
       options_.elevation_topic, 1, [this](const ElevationGrid::ConstPtr& keyframe) { take(keyframe); },

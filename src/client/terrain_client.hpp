@@ -1,19 +1,20 @@
 #pragma once
-/// The live terrain of a desert_sim node, for other programs: subscribes to keyframes and updates, keeps the
-/// surface up to date, and answers questions about it from any thread.
+/// The live terrain of a desert_sim node, for other programs. The client subscribes to keyframes and updates,
+/// keeps an elevation map up to date, and answers queries on it from any thread.
 ///
 ///     ros::init(argc, argv, "my_planner");
 ///     desert_sim::TerrainClient terrain;
-///     if (!terrain.wait_for_terrain(10.0)) ...;                         // no node
-///     std::optional<double> z = terrain.elevation(12.0, 34.0);          // [m], in
-///     terrain.map()->info().frame std::shared_ptr<const desert_sim::ElevationMap> map = terrain.map();  //
-///     one moment, which never changes
+///     if (!terrain.wait_for_terrain(10.0)) ...;                 // there is no node
+///     // Elevation [m] in the frame terrain.map()->info().frame:
+///     std::optional<double> z = terrain.elevation(12.0, 34.0);
+///     // An immutable map of one moment:
+///     std::shared_ptr<const desert_sim::ElevationMap> map = terrain.map();
 ///
-/// What is lost between the node and the client is noticed, and a new keyframe is asked for; until it comes
-/// the last good map is held. There are two ways to ask, taken in turn: a message on ~request_keyframe of the
-/// node, and a new connection for keyframes, which any sender answers that sends its present state to new
-/// subscribers (roscpp makes no new connection while something else in the process is subscribed to the same
-/// topic).
+/// The client detects lost messages and requests a new keyframe; until it arrives, the last valid map stays.
+/// It uses two kinds of request in turn: a message on the node's topic ~request_keyframe, and a new
+/// subscription to the keyframes, since publishers send the present state to new subscribers. (roscpp makes
+/// no new connection while another subscriber in the process uses the same topic, so the second kind alone is
+/// not enough.)
 
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
@@ -35,53 +36,54 @@ namespace desert_sim {
 class TerrainClient {
  public:
   struct Options {
-    std::string node = "desert_sim";  ///< name of the simulator's node; topics are in its namespace
-    std::string elevation_topic;      ///< of keyframes; empty: <node>/elevation
-    std::string updates_topic;        ///< empty: <node>/elevation_updates
-    std::string request_topic;        ///< empty: <node>/request_keyframe
-    /// Whether messages are taken in by a thread of the client's own. Otherwise by the callback queue of the
-    /// node handle that was given (ros::spin(), a spinner, a nodelet's threads).
+    std::string node = "desert_sim";  ///< name of the simulator's node, whose namespace has the topics
+    std::string elevation_topic;      ///< topic of keyframes; empty: <node>/elevation
+    std::string updates_topic;        ///< topic of updates; empty: <node>/elevation_updates
+    std::string request_topic;        ///< topic of requests; empty: <node>/request_keyframe
+    /// Whether the client processes messages on its own thread. Otherwise they are processed by the callback
+    /// queue of the given node handle (ros::spin(), a spinner, a nodelet's threads).
     bool own_thread = true;
-    std::uint32_t update_queue = 200;  ///< updates that may wait to be taken in; more are a gap
-    double shortest_pause = 0.5;       ///< between requests for a keyframe [s], > 0
-    double longest_pause = 10;         ///< it doubles up to this while requests do not help for long [s]
-    /// Called after each change of cells, one at a time and in order, on the thread that takes messages in.
-    /// It may use the client, but not destroy it, and must not throw. While it runs no message is taken in.
+    std::uint32_t update_queue = 200;  ///< size of the subscriber queue of updates; an overflow is a gap
+    double shortest_pause = 0.5;       ///< shortest pause between keyframe requests [s], > 0
+    double longest_pause = 10;         ///< limit of the pause, which doubles while requests do not help [s]
+    /// Called after each change of cells, in order and never concurrently, on the thread that processes
+    /// messages. The function may use the client, but must not destroy it and must not throw. No message is
+    /// processed while it runs.
     std::function<void(const MapChange&)> on_change;
   };
 
   struct Statistics : StreamCounts {
-    std::uint64_t requests = 0;  ///< times that a keyframe was asked for
-    /// From the time at which a state was reached to its being readable here, of updates [s of ROS time]:
-    /// last, mean and largest; 0 before the first. Clocks of two machines differ: so does this.
+    std::uint64_t requests = 0;  ///< number of keyframe requests
+    /// Latency of updates [s of ROS time], from the stamp of a state to the map that contains it: last, mean
+    /// and largest; 0 before the first update. An offset between the clocks of two machines adds to it.
     double latency = 0, mean_latency = 0, largest_latency = 0;
   };
 
-  /// Subscribes. Waits for the master if there is none, but not for the node. Throws ConfigError for options
-  /// that cannot be.
+  /// Subscribes. Waits for the ROS master if there is none, but not for the node. Throws ConfigError for
+  /// invalid options.
   explicit TerrainClient(const ros::NodeHandle& node = ros::NodeHandle());
   TerrainClient(const ros::NodeHandle& node, Options options);
-  /// Ends after the message that is being taken in.
+  /// Waits for the message that is being processed.
   ~TerrainClient();
   TerrainClient(const TerrainClient&) = delete;
   TerrainClient& operator=(const TerrainClient&) = delete;
 
-  /// The newest map; null before the first keyframe. For questions that belong together: it never changes.
+  /// The newest map; null before the first keyframe. It is immutable, so that several queries on it agree.
   std::shared_ptr<const ElevationMap> map() const;
-  /// Of the newest map, as ElevationMap's; none without one.
+  /// The query of the same name on the newest map; empty if there is no map.
   std::optional<double> elevation(double x, double y) const;
   std::optional<geometry_msgs::Vector3> normal(double x, double y) const;
   std::optional<double> slope(double x, double y) const;
 
-  /// Whether nothing is known to be missing: false before the first keyframe and between a gap and the next
-  /// one.
+  /// Whether no message is known to be missing: false before the first keyframe, and from a gap to the next
+  /// keyframe.
   bool up_to_date() const;
-  /// Whether someone publishes keyframes.
+  /// Whether keyframes have a publisher.
   bool connected() const;
-  /// Waits for the first map, at most `timeout` seconds of wall time. False if there is none then, or ROS
-  /// ends. Another thread must take messages in.
+  /// Waits for the first map, at most `timeout` seconds of wall time. False if there is no map by then, or if
+  /// ROS shuts down. Messages must be processed by another thread meanwhile.
   bool wait_for_terrain(double timeout) const;
-  /// Waits for a map of this step or a later one. False as above.
+  /// Waits in the same way for a map of this step or a later one.
   bool wait_for_step(std::uint64_t step, double timeout) const;
   Statistics statistics() const;
 
@@ -98,18 +100,18 @@ class TerrainClient {
   Options options_;
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
-  ros::Publisher asks_;
+  ros::Publisher request_publisher_;
   ros::Subscriber updates_;
 
-  std::mutex taking_;  ///< held while a message is taken in and told of; readers never wait for it
+  std::mutex processing_mutex_;  ///< held while a message is processed; queries do not wait for it
   ElevationAssembler assembler_;
   KeyframeRequests requests_;
 
-  mutable std::mutex mutex_;  ///< of what readers see; held for an instant
+  mutable std::mutex mutex_;  ///< protects the members below; held only briefly
   mutable std::condition_variable changed_;
   std::shared_ptr<const ElevationMap> map_;
   Statistics statistics_;
-  std::uint64_t timed_ = 0;  ///< updates in the mean latency
+  std::uint64_t timed_ = 0;  ///< number of updates in the mean latency
   bool up_to_date_ = false, stopping_ = false;
   ros::Subscriber keyframes_;
   std::thread thread_;

@@ -1,9 +1,9 @@
-/// Prints the height under a point whenever the terrain there changes: a program to copy.
+/// Example of TerrainClient: prints the elevation at a point whenever the terrain there changes.
 ///
 ///     rosrun desert_sim terrain_client_example _x:=40 _y:=25
 ///
-/// Parameters: ~x, ~y [m, in the terrain's frame; default: the middle], ~node (desert_sim).
-/// With a geometry_msgs/PointStamped on ~point, in the terrain's frame, it follows that, as a robot's
+/// Parameters: ~x, ~y [m, in the terrain's frame; default: the middle of the terrain], ~node (desert_sim).
+/// A geometry_msgs/PointStamped on ~point, in the terrain's frame, moves the point, for instance to a robot's
 /// position. Exit status: 0, or 1 if there is no terrain within ten seconds.
 #include <geometry_msgs/PointStamped.h>
 #include <ros/ros.h>
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   std::optional<double> printed;
   for (ros::Rate rate(10); ros::ok(); rate.sleep()) {
     ros::spinOnce();
-    const auto map = terrain.map();  // one moment for all questions
+    const auto map = terrain.map();  // all queries use the map of one moment
     const std::optional<double> z = map->elevation(x, y);
     if (z && printed && std::abs(*z - *printed) < 1e-3) continue;
     if (z || printed) print(*map, x, y);

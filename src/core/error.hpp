@@ -1,6 +1,6 @@
 #pragma once
-/// Errors. Library code throws these and never exits or prints; the message says where, what and which
-/// values.
+/// Exception classes. Library code throws them and neither exits nor prints. The message names the place, the
+/// fault and the values concerned.
 
 #include <stdexcept>
 #include <string>
@@ -12,19 +12,21 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Input that is refused: scenario, raster, command, checkpoint. Nothing has been changed when it is thrown.
+/// Invalid input: a scenario, raster, command or checkpoint. Nothing has been changed when it is thrown.
 class ConfigError : public Error {
  public:
   using Error::Error;
 };
 
-/// A failure of the GPU or its driver. These are sticky: the process should report and end.
+/// A failure of the GPU or its driver. CUDA errors are sticky: every later call fails too, so the process
+/// should report the error and exit.
 class CudaError : public Error {
  public:
   using Error::Error;
 };
 
-/// The terrain's state broke a promise of its layer (negative depth, NaN): names the process, layer and cell.
+/// The terrain's state violates an invariant of a layer (a negative depth, NaN). The message names the
+/// process, the layer and the cell.
 class StateError : public Error {
  public:
   using Error::Error;

@@ -1,5 +1,5 @@
 #pragma once
-/// Parameter tables as markdown.
+/// Writes parameter tables as markdown.
 
 #include <ostream>
 #include <sstream>
@@ -10,8 +10,8 @@
 
 namespace desert_sim {
 
-/// Writes a markdown table with a row a parameter: key, default (the value in `defaults`), unit, allowed,
-/// what.
+/// Writes a markdown table with one row per parameter: key, default (the value in `defaults`), unit, allowed
+/// range and description.
 template <class P>
 void write_parameter_table(std::ostream& out, const P& defaults) {
   out << "| key | default | unit | allowed | what |\n|---|---|---|---|---|\n";

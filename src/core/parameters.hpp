@@ -1,8 +1,8 @@
 #pragma once
-/// Parameter tables. A process keeps its parameters in a plain struct whose initialisers are the defaults,
-/// and beside it a table: one row a member, in the order of the members, with name, range, unit and a line of
-/// documentation. The YAML loader, ROS parameters, `--describe`, the generated documentation, commands,
-/// journal and checkpoint all visit that one table.
+/// Parameter tables. A process keeps its parameters in a plain struct whose initialisers are the defaults.
+/// PackedVec the struct is a table with one row per member, in the order of the members: name, range, unit and a
+/// line of documentation. The YAML loader, ROS parameters, `--describe`, the generated documentation,
+/// commands, journal and checkpoint all use this table.
 ///
 ///     struct Example { float height = 1; bool flat = false; };
 ///     constexpr auto parameter_table(const Example*) {
@@ -20,7 +20,7 @@
 
 namespace desert_sim {
 
-/// Up to four numbers, for a parameter that is a short list.
+/// A list of up to four numbers, for a parameter that is a short list.
 struct ShortList {
   static constexpr int capacity = 4;
   float values[capacity] = {0, 0, 0, 0};
@@ -31,7 +31,7 @@ template <class Owner, class T>
 struct Parameter {
   const char* name;
   T Owner::*member;
-  double lowest, highest;      ///< allowed range of a number (of each number of a list)
+  double lowest, highest;      ///< allowed range of a number, or of each number in a list
   const char* unit;            ///< SI; "1" if dimensionless
   const char* doc;             ///< one line
   const char* const* choices;  ///< names of an enumeration's values, in order; null for other types
@@ -44,14 +44,14 @@ constexpr Parameter<Owner, T> parameter(const char* name, T Owner::*member, doub
   return {name, member, lowest, highest, unit, doc, nullptr, 0};
 }
 
-/// A switch or a text.
+/// The row of a boolean or string parameter.
 template <class Owner, class T>
 constexpr Parameter<Owner, T> parameter(const char* name, T Owner::*member, const char* doc) {
   static_assert(std::is_same_v<T, bool> || std::is_same_v<T, std::string>, "numbers need a range and a unit");
   return {name, member, 0, 1, "", doc, nullptr, 0};
 }
 
-/// One of a few named values; `choices[i]` names the enumerator with value i.
+/// The row of an enumeration; `choices[i]` is the name of the enumerator with value i.
 template <class Owner, class T, int N>
 constexpr Parameter<Owner, T> parameter(const char* name, T Owner::*member, const char* const (&choices)[N],
                                         const char* doc) {
@@ -78,8 +78,8 @@ constexpr std::size_t laid_out(std::size_t offset, const Parameter<Owner, T>&) {
 }
 }  // namespace detail
 
-/// True if the rows, in order, account for every byte of the struct but padding: a member without a row is
-/// caught at compile time.
+/// True if the rows, in order, account for every byte of the struct except padding. A static_assert on it
+/// reports a member without a row at compile time.
 template <class P>
 constexpr bool table_is_complete() {
   std::size_t size = 0;

@@ -16,7 +16,7 @@ namespace {
 
 const std::string first_line = "#ROSBAG V2.0\n";
 constexpr char chunk_op = 5, index_op = 4;
-constexpr std::uint32_t index_entry = 12;  // bytes: a time and an offset into the chunk
+constexpr std::uint32_t index_entry = 12;  // size of an entry [bytes]: a time and an offset in the chunk
 
 std::uint32_t number(const std::string& bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -59,7 +59,7 @@ class Bag {
     return bytes;
   }
 
-  /// Stops where its data begins.
+  /// Reads the header of the record at the present position and stops at the beginning of its data.
   Record next(std::uint64_t end) {
     Record record;
     const std::string header = read(end, number(read(end, 4), 0));
@@ -89,7 +89,7 @@ class Bag {
     }
   }
 
-  /// Of the chunk before it.
+  /// Checks that the entries of an index point to records of the chunk before it.
   void check_index(Record index) {
     if (std::uint64_t{number(index.fields["count"], 0)} * index_entry != index.size) fail();
     const std::string entries = read(end_, index.size);
@@ -100,8 +100,8 @@ class Bag {
   std::ifstream file_;
   const std::uint64_t end_;
   std::uint64_t at_ = 0;
-  bool plain_ = false;               ///< the last chunk is not compressed
-  std::set<std::uint64_t> records_;  ///< where in it they begin
+  bool plain_ = false;               ///< whether the last chunk is uncompressed
+  std::set<std::uint64_t> records_;  ///< offsets of its records, if it is uncompressed
 };
 
 }  // namespace

@@ -1,14 +1,14 @@
 #pragma once
-/// Bags as files: https://wiki.ros.org/Bags/Format/2.0.
+/// Checks the records of bag files; the format is described at https://wiki.ros.org/Bags/Format/2.0.
 
 #include <string>
 
 namespace desert_sim {
 
-/// Throws ConfigError, with the byte, unless the records of a bag (version 2.0) lie one behind the other up
-/// to its end, those in its uncompressed chunks too, and indexes point to records. rosbag's own library
-/// trusts their lengths: a damaged one makes it read beyond its memory. Compressed chunks have checksums of
-/// their own.
+/// Checks that the records of a bag (version 2.0) follow one another up to the end of the file, also inside
+/// uncompressed chunks, and that index entries point to records. Throws ConfigError with the byte offset
+/// otherwise. The rosbag library trusts the lengths in a file, so that a corrupt length makes it read out of
+/// bounds. Compressed chunks have checksums of their own.
 void require_whole_records(const std::string& path);
 
 }  // namespace desert_sim

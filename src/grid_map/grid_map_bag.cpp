@@ -20,7 +20,7 @@ namespace {
 
 using Type = GridMapType<GridMap>;
 
-constexpr double most_bytes = 2e9;  // rosbag counts in 32 bits, and doubles what it has
+constexpr double most_bytes = 2e9;  // rosbag has 32-bit sizes and doubles its buffers
 
 boost::shared_ptr<ros::M_string> connection_header() {
   auto header = boost::make_shared<ros::M_string>();

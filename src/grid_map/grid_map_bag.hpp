@@ -1,5 +1,5 @@
 #pragma once
-/// Bags (rosbag) with a terrain as grid_map_msgs/GridMap.
+/// Reads and writes bags (rosbag) that contain a terrain as grid_map_msgs/GridMap.
 
 #include <string>
 
@@ -9,20 +9,23 @@
 
 namespace desert_sim {
 
-/// Writes a bag with one message, latched when it is played. To a temporary name first. Throws ConfigError if
-/// it cannot be written or the map is beyond what a bag can hold (2 GB); a file of that name is then as
-/// before.
+/// Writes a bag with one message, which is latched when the bag is played. The data go to a temporary file
+/// first, which is then renamed. Throws ConfigError if the bag cannot be written or the map is larger than a
+/// bag allows (2 GB); an existing file of that name is then unchanged.
 void write_grid_map(const std::string& path, const std::string& topic, const GridMap& map);
 
-/// The last GridMap in a bag. Throws ConfigError, naming the file and the reason: missing, no bag, cut off or
-/// corrupt, none in it, several topics that have some, one of another definition.
+/// Reads the last GridMap in a bag. Throws ConfigError that names the file and the reason: the file is
+/// missing, is not a bag, is truncated or corrupt, has no GridMap, has GridMaps on several topics, or has one
+/// with another message definition.
 GridMap read_grid_map(const std::string& path);
 
-/// Layer `band` (counted from 1) as a raster; the map's start indices are honoured. value = raw · scale +
-/// offset. Throws ConfigError, naming `source`, for what is no map (see LoadTerrain.srv).
+/// Converts layer `band` (counted from 1) to a raster, with value = raw · scale + offset. The start indices
+/// of the map's circular buffer are taken into account. Throws ConfigError that names `source` for an invalid
+/// map (see LoadTerrain.srv).
 Raster raster_of(const GridMap& map, const RasterOptions& options, const std::string& source);
 
-/// As gdal_raster_loader(), and reads GridMaps in bags too: their layers are its bands.
+/// A loader that reads .bag files as GridMaps, whose layers are its bands, and other files like
+/// gdal_raster_loader().
 RasterLoader raster_loader_with_bags();
 
 }  // namespace desert_sim

@@ -23,7 +23,7 @@ std::string section(const char* type, const std::string& fields) {
   return "\n" + std::string(80, '=') + "\nMSG: " + type + "\n" + fields;
 }
 
-/// What GridMap is made of: its own types, and those of the packages that define them.
+/// The definitions of the message types that GridMap contains.
 std::string parts() {
   namespace traits = ros::message_traits;
   return section("grid_map_msgs/GridMapInfo", info_fields) +

@@ -1,11 +1,12 @@
 #pragma once
-/// grid_map_msgs/GridMap and GetGridMap, wire-compatible with the real ones, without depending on grid_map.
-/// The tables below give roscpp the types' names, checksums and definitions, and the order of their fields.
+/// grid_map_msgs/GridMap and GetGridMap, wire-compatible with the original types, without a dependency on
+/// grid_map. The traits and serializers below give roscpp the types' names, checksums, definitions and order
+/// of fields.
 ///
-/// Layout, as grid_map reads it: the pose is the map's centre; logical index (0, 0) is the cell in the corner
-/// of largest x and y; rows run towards lower x, columns towards lower y; data[column * rows + row]; dim[0]
-/// is
-/// {"column_index", columns, rows * columns}, dim[1] {"row_index", rows, rows}. NaN is no data.
+/// Layout, as in grid_map: the pose is the map's centre; logical index (0, 0) is the cell in the corner of
+/// largest x and y; rows run towards lower x, columns towards lower y; the array is data[column * rows +
+/// row]; dim[0] is {"column_index", columns, rows * columns} and dim[1] is {"row_index", rows, rows}. NaN
+/// means no data.
 
 #include <geometry_msgs/Pose.h>
 #include <ros/message_traits.h>
@@ -23,20 +24,20 @@ struct GridMapInfo {
   std_msgs::Header header;
   double resolution = 0;              ///< [m/cell]
   double length_x = 0, length_y = 0;  ///< [m]
-  geometry_msgs::Pose pose;           ///< of the centre
+  geometry_msgs::Pose pose;           ///< pose of the centre
 };
 
 struct GridMap {
   GridMapInfo info;
   std::vector<std::string> layers;
-  std::vector<std::string> basic_layers;  ///< a cell is valid where these are
+  std::vector<std::string> basic_layers;  ///< a cell is valid if these layers are
   std::vector<std_msgs::Float32MultiArray> data;
   std::uint16_t outer_start_index = 0, inner_start_index = 0;
 };
 
 struct GetGridMapRequest {
   std::string frame_id;
-  double position_x = 0, position_y = 0;  ///< of the centre [m]
+  double position_x = 0, position_y = 0;  ///< centre of the region [m]
   double length_x = 0, length_y = 0;      ///< [m]
   std::vector<std::string> layers;        ///< all if empty
 };
@@ -65,7 +66,8 @@ struct GridMapType<GridMap> {
 template <>
 struct GridMapType<GetGridMapRequest> {
   static constexpr const char* name = "grid_map_msgs/GetGridMapRequest";
-  static constexpr const char* md5 = "802c2cbc7b10fada2d44db75ddb8c738";  // both sides carry the service's
+  // A request and a response have the checksum of their service.
+  static constexpr const char* md5 = "802c2cbc7b10fada2d44db75ddb8c738";
   static std::string definition();
 };
 template <>

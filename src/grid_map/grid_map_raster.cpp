@@ -1,4 +1,4 @@
-/// From a GridMap's layer to a raster.
+/// Converts a layer of a GridMap to a raster.
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -19,7 +19,8 @@ template <class... Parts>
   throw ConfigError(text.str());
 }
 
-/// grid_map knows no turned maps, and most who fill in messages by hand leave the orientation at zero.
+/// Refuses a rotated map, because grid_map has none. An all-zero quaternion is accepted, since programs that
+/// fill in the message by hand often leave it unset.
 void require_upright(const GridMapInfo& info, const std::string& source) {
   const auto& q = info.pose.orientation;
   const bool unset = q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0;
@@ -46,7 +47,7 @@ void require_layers(const GridMap& map, const std::string& source) {
     if (!names.insert(name).second) refuse(source, "layers: ", quoted(name), " stands there twice");
 }
 
-/// Throws unless the layer is column-major and has as many cells as the lengths say.
+/// Throws ConfigError unless the layer is column-major and its number of cells agrees with the map's lengths.
 void require_cells(const GridMap& map, std::size_t n, const std::string& source) {
   const std_msgs::Float32MultiArray& layer = map.data[n];
   const std::string name = "layer " + quoted(map.layers[n]);
@@ -92,7 +93,8 @@ Raster raster_of(const GridMap& map, const RasterOptions& options, const std::st
   raster.height = static_cast<int>(columns);
   place(raster, map.info);
   raster.values.resize(rows * columns);
-  // Rows count from the far end of x and columns from that of y, both from where the circular buffer starts.
+  // Row indices run towards lower x and column indices towards lower y, beginning at the start indices of the
+  // circular buffer.
   for (std::size_t column = 0; column < columns; ++column)
     for (std::size_t row = 0; row < rows; ++row) {
       const std::size_t from =

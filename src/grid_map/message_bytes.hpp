@@ -1,5 +1,5 @@
 #pragma once
-/// Messages out of files that may be damaged.
+/// Deserialization of messages from files that may be corrupt.
 
 #include <ros/serialization.h>
 
@@ -9,8 +9,8 @@
 
 namespace desert_sim {
 
-/// Bytes to deserialize a message from. Unlike roscpp's own stream, it takes no memory for more elements than
-/// there are bytes. Throws ros::serialization::StreamOverrunException.
+/// An input stream for deserializing a message. Unlike roscpp's IStream, it does not allocate an array of
+/// more elements than the remaining bytes can contain. Throws ros::serialization::StreamOverrunException.
 class MessageBytes : public ros::serialization::Stream {
  public:
   static const ros::serialization::StreamType stream_type = ros::serialization::stream_types::Input;

@@ -1,12 +1,13 @@
 #pragma once
+/// GDAL's warnings and errors as text.
 
 #include <string>
 #include <vector>
 
 namespace desert_sim {
 
-/// While it lives, GDAL's messages of this thread are kept here instead of going to stderr. Registers GDAL's
-/// drivers. Not copyable; instances nest.
+/// Collects GDAL's messages of the current thread during its lifetime, instead of their being printed to
+/// stderr. The constructor registers GDAL's drivers. Instances can be nested.
 class GdalMessages {
  public:
   GdalMessages();

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kSmallest = 512, kLargest = 2048;  // long side of a hillshade [pixels]
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-using Colour = cv::Vec3f;  // B, G, R in 0..255, as OpenCV wants it
+using Colour = cv::Vec3f;  // B, G, R in 0..255, OpenCV's order
 
 const Colour kRock{100, 112, 124}, kSoil{58, 82, 108}, kSand{118, 180, 218}, kVegetation{52, 122, 70},
     kObstacle{88, 30, 64}, kShallow{205, 165, 95}, kDeep{120, 55, 20}, kUnknownGround{215, 215, 215};
@@ -39,7 +39,7 @@ void check_input(int width, int height, double cell_size, const char* missing) {
   if (!text.str().empty()) throw ConfigError("picture: " + text.str());
 }
 
-/// The size that a picture is worked out at: the grid's own, at most kLargest on its long side.
+/// The size at which a picture is computed: that of the grid, but at most kLargest on its long side.
 cv::Size working_size(int width, int height) {
   const int longest = std::max(width, height);
   if (longest <= kLargest) return {width, height};
@@ -54,8 +54,8 @@ cv::Mat enlarged(const cv::Mat& picture, int smallest) {
   const int longest = std::max(picture.cols, picture.rows), factor = (smallest + longest - 1) / longest;
   if (factor <= 1) return picture;
   cv::Mat result;
-  const int method =
-      factor > 8 ? cv::INTER_NEAREST : cv::INTER_CUBIC;  // of so few cells one wants to see each
+  // In a picture of a very small grid, single cells stay visible.
+  const int method = factor > 8 ? cv::INTER_NEAREST : cv::INTER_CUBIC;
   cv::resize(picture, result, picture.size() * factor, 0, 0, method);
   return result;
 }
@@ -68,30 +68,32 @@ cv::Mat reduced(const cv::Mat& layer) {
   return result;
 }
 
-/// A layer at the working size, north up, 0 where NaN; empty where the layer is not in use.
+/// A layer at the working size, north up, with 0 in place of NaN; empty if the layer is not in use.
 cv::Mat layer_of(const float* values, int width, int height) {
   if (!values) return {};
-  const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // only read
+  const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // not written to
   cv::Mat flipped;
   cv::flip(view, flipped, 0);
   flipped.setTo(0, flipped != flipped);
   return reduced(flipped);
 }
 
-/// A layer of numbers that have no mean, likewise.
+/// The same for a layer of class numbers (species): it samples the nearest cell, since their mean has no
+/// meaning.
 cv::Mat numbers_of(const float* values, int width, int height) {
   if (!values) return {};
-  const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // only read
+  const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // not written to
   cv::Mat flipped, result;
   cv::flip(view, flipped, 0);
   cv::resize(flipped, result, working_size(width, height), 0, 0, cv::INTER_NEAREST);
   return result;
 }
 
-/// Elevation at the working size, north up; the mean of the known cells, NaN where less than half is known.
+/// Elevation at the working size, north up. A pixel is the mean of its known cells, or NaN where less than
+/// half of it is known.
 cv::Mat surface_of(const float* values, int width, int height) {
   cv::Mat elevation = layer_of(values, width, height);
-  const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // only read
+  const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // not written to
   cv::Mat known;
   cv::flip(view == view, known, 0);
   if (cv::countNonZero(known) == width * height) return elevation;
@@ -102,7 +104,7 @@ cv::Mat surface_of(const float* values, int width, int height) {
   return elevation;
 }
 
-/// Slope (dz/dx, dz/dy) with y north; one-sided beside unknown ground and the border.
+/// Slope (dz/dx, dz/dy) with y north; a one-sided difference beside unknown ground and at the border.
 cv::Vec2f gradient(const cv::Mat& elevation, int row, int column, float pixel_size) {
   const float here = elevation.at<float>(row, column);
   const auto along = [&](int row_step, int column_step) {
@@ -171,8 +173,8 @@ float smooth_step(float from, float to, float value) {
 
 Colour mix(const Colour& a, const Colour& b, float share) { return a * (1 - share) + b * share; }
 
-/// The colour times `shade`; what would be over the brightest is mixed in as white, so that slopes keep their
-/// form.
+/// The colour multiplied by `shade`. Where that exceeds the largest channel value, white is mixed in instead,
+/// so that bright slopes keep their contrast.
 Colour lit(const Colour& colour, float shade) {
   const Colour white{225, 245, 255};
   const float most = 240 / std::max({colour[0], colour[1], colour[2], 1.0F});
@@ -180,7 +182,7 @@ Colour lit(const Colour& colour, float shade) {
 }
 
 struct Materials {
-  cv::Mat sand, vegetation, plants, obstacle, water, soil, wind_shadow;  // empty where not in use
+  cv::Mat sand, vegetation, plants, obstacle, water, soil, wind_shadow;  // empty if not in use
   const std::vector<std::array<float, 3>>& crown_colours;
 
   Colour of_plants(int row, int column) const {
@@ -203,7 +205,7 @@ struct Materials {
   }
 };
 
-/// Text at the lower left, readable on any ground; left out where the picture is too small for it.
+/// Writes outlined text at the lower left; it is omitted if the picture is too small for it.
 void write_caption(cv::Mat& picture, const std::string& text) {
   const double scale = std::max(0.45, picture.cols / 2200.0);
   const int face = cv::FONT_HERSHEY_SIMPLEX;
@@ -215,7 +217,7 @@ void write_caption(cv::Mat& picture, const std::string& text) {
   cv::putText(picture, text, at_left, face, scale, {250, 250, 250}, 1, cv::LINE_AA);
 }
 
-/// Three digits, more where the whole part has more.
+/// The number with three significant digits, or with all digits of its integer part if these are more.
 std::string number(double value) {
   std::ostringstream text;
   text << std::fixed
@@ -236,7 +238,8 @@ void draw_arrow(cv::Mat& picture, cv::Point2f centre, cv::Point2f half, const cv
              4);
 }
 
-/// Arrows to where the air moves, about 32 along the long side; their length is in proportion to the speed.
+/// Draws about 32 arrows along the long side, which point to where the air moves; their length is
+/// proportional to the speed.
 void draw_arrows(cv::Mat& picture, const cv::Mat& u, const cv::Mat& v, float fastest) {
   constexpr int kAcross = 32;
   const float spacing = static_cast<float>(std::max(picture.cols, picture.rows)) / kAcross;
@@ -245,7 +248,7 @@ void draw_arrows(cv::Mat& picture, const cv::Mat& u, const cv::Mat& v, float fas
   for (float y = spacing / 2; y < static_cast<float>(picture.rows); y += spacing)
     for (float x = spacing / 2; x < static_cast<float>(picture.cols); x += spacing) {
       const cv::Point cell(static_cast<int>(x / enlargement), static_cast<int>(y / enlargement));
-      const cv::Point2f wind(u.at<float>(cell), -v.at<float>(cell));  // pictures count y down
+      const cv::Point2f wind(u.at<float>(cell), -v.at<float>(cell));  // a picture's y axis points down
       if (cv::norm(wind) <= 0.02 * fastest) continue;
       const cv::Point2f half = wind * (0.42F * spacing / fastest);
       draw_arrow(picture, {x, y}, half, {40, 40, 40}, thickness + 2);
@@ -313,7 +316,7 @@ cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_
   cv::magnitude(u, v, speed);
   double slowest = 0, fastest = 0;
   cv::minMaxLoc(speed, &slowest, &fastest);
-  const double darkest = std::min(slowest, 0.9 * fastest);  // an even wind shows no pattern of its rounding
+  const double darkest = std::min(slowest, 0.9 * fastest);  // hides rounding noise of a uniform wind
   const double contrast = fastest > 0 ? 255 / (fastest - darkest) : 0;
   speed.convertTo(level, CV_8U, contrast, -contrast * darkest);
   cv::applyColorMap(level, picture, cv::COLORMAP_VIRIDIS);

@@ -22,11 +22,11 @@ namespace desert_sim {
 namespace {
 
 constexpr double kSquareTolerance = 1e-3;    // relative difference of cell width and height
-constexpr double kRotationTolerance = 1e-6;  // shear, in cells a cell
+constexpr double kRotationTolerance = 1e-6;  // shear [cells per cell]
 constexpr std::int64_t kMaxCells = std::int64_t{1} << 31;
 constexpr float kNoData = std::numeric_limits<float>::quiet_NaN();
-using GeoTransform =
-    std::array<double, 6>;  // GDAL's: x = g0 + g1 column + g2 row, y = g3 + g4 column + g5 row
+/// As in GDAL: x = g0 + g1 column + g2 row, y = g3 + g4 column + g5 row.
+using GeoTransform = std::array<double, 6>;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& reason) {
   throw ConfigError("raster '" + path + "': " + reason);
@@ -55,10 +55,10 @@ void check_shape(const std::string& path, std::int64_t width, std::int64_t heigh
     refuse(path, text_of("size is ", width, " x ", height, " cells, at most 2^31 cells are allowed"));
 }
 
-/// What no geotransform means: cells of 1, the lower-left corner at 0, north up.
+/// Geotransform of a raster that has none: cells of size 1, lower-left corner at (0, 0), north up.
 GeoTransform unplaced(int height) { return {0, 1, 0, static_cast<double>(height), 0, -1}; }
 
-/// The dataset's geotransform, turned north-up; `south_up` says whether it had to be turned.
+/// The dataset's geotransform, flipped to north-up; `south_up` is set if it had to be flipped.
 GeoTransform north_up_geotransform(const std::string& path, GDALDataset& dataset, bool& south_up) {
   const GeoTransform none{0, 1, 0, 0, 0, 1};
   GeoTransform g = none;
@@ -85,7 +85,7 @@ GeoTransform north_up_geotransform(const std::string& path, GDALDataset& dataset
   return g;
 }
 
-/// cell_size and origin as the geotransform gives them.
+/// Sets the raster's geotransform, and its cell_size and origin accordingly.
 void place(Raster& raster, const GeoTransform& g) {
   raster.geotransform = g;
   raster.cell_size = 0.5 * (g[1] - g[5]);
@@ -93,8 +93,8 @@ void place(Raster& raster, const GeoTransform& g) {
   raster.origin_y = g[3] + raster.height * g[5];
 }
 
-/// The geotransform to write: the recorded one while it still holds, else the one made of cell_size and
-/// origin.
+/// The geotransform to write: the recorded one if it agrees with cell_size and origin, otherwise one that is
+/// computed from them.
 GeoTransform geotransform_of(const Raster& raster) {
   Raster recorded;
   recorded.height = raster.height;
@@ -152,7 +152,7 @@ bool is_exr_without_driver(const std::string& path) {
 }
 
 Raster read_exr(const std::string& path, const RasterOptions& options) {
-  static std::once_flag once;  // OpenCV asks for this once, at its first EXR file
+  static std::once_flag once;  // OpenCV reads this variable once, at its first EXR file
   std::call_once(once, [] { setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0); });
   cv::Mat picture;
   try {
@@ -163,8 +163,8 @@ Raster read_exr(const std::string& path, const RasterOptions& options) {
   if (picture.empty()) refuse(path, "not an EXR file that OpenCV can read");
   const int channels = picture.channels();
   check_shape(path, picture.cols, picture.rows, channels, options.band);
-  const int channel =
-      channels >= 3 && options.band <= 3 ? 3 - options.band : options.band - 1;  // OpenCV: B, G, R, A
+  // OpenCV orders the channels B, G, R, A.
+  const int channel = channels >= 3 && options.band <= 3 ? 3 - options.band : options.band - 1;
   cv::Mat numbers;
   picture.convertTo(numbers, CV_64F);
   Raster raster;
@@ -178,7 +178,7 @@ Raster read_exr(const std::string& path, const RasterOptions& options) {
   return raster;
 }
 
-/// GDAL reads what a cut-off raw file lacks as zeros; this refuses it.
+/// Refuses a truncated raw file (ENVI, EHdr), because GDAL would read the missing part as zeros.
 void check_raw_file(const std::string& path, GDALDataset& dataset) {
   const std::string driver = dataset.GetDriver() ? dataset.GetDriver()->GetDescription() : "";
   const char* compressed = dataset.GetMetadataItem("file_compression", "ENVI");
@@ -230,8 +230,8 @@ void check_writable(const std::string& path, const Raster& raster) {
                          ", ", raster.origin_y, "; must be finite, cell_size > 0"));
 }
 
-/// Writes a GeoTIFF under this very name; false if GDAL reported a failure, also one at closing (a full
-/// disk).
+/// Writes a GeoTIFF directly to `path`; false if GDAL reported a failure, which can also happen on closing
+/// the file, for instance on a full disk.
 bool write_dataset(const std::string& path, const Raster& raster, GdalMessages& messages) {
   const char* settings[] = {"COMPRESS=DEFLATE", "PREDICTOR=3", "ZLEVEL=1", "BIGTIFF=IF_SAFER", nullptr};
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
@@ -299,7 +299,7 @@ void write_geotiff(const std::string& path, const Raster& raster) {
     std::filesystem::remove(unfinished, error);
     refuse(path, "cannot be written: " + reason);
   }
-  std::filesystem::remove(path + ".aux.xml", error);  // what GDAL remembered of the file that was here
+  std::filesystem::remove(path + ".aux.xml", error);  // GDAL's metadata of the replaced file
 }
 
 }  // namespace desert_sim

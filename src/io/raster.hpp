@@ -1,4 +1,5 @@
 #pragma once
+/// Reads and writes single-band rasters through GDAL.
 
 #include <array>
 #include <string>
@@ -6,8 +7,8 @@
 
 namespace desert_sim {
 
-/// A single-band raster in this package's orientation: row-major, x fastest, row 0 = SOUTH (GDAL's row 0 is
-/// north).
+/// A single-band raster in this package's orientation: row-major, x fastest, row 0 = SOUTH (in GDAL, row 0 is
+/// the northern row).
 struct Raster {
   int width = 0, height = 0;
   double cell_size = 1;               ///< side of a square cell [unit of the CRS, see length_unit()]
@@ -15,35 +16,37 @@ struct Raster {
   std::string projection;             ///< WKT, empty if none
   std::vector<float> values;          ///< width * height values, NaN where nodata
 
-  /// The north-up geotransform of the file this was read from, all zero if none. write_geotiff() uses it as
-  /// long as it still says what cell_size and origin say, so that reading and writing keeps it to the bit.
+  /// The north-up geotransform of the file that the raster was read from; all zero if there is none.
+  /// write_geotiff() writes it unchanged as long as it agrees with cell_size and origin, so that reading and
+  /// writing a raster preserves its geotransform exactly.
   std::array<double, 6> geotransform{};
 
   /// Number of NaN values.
   long nodata_count() const;
-  /// Unit of cell_size and origin by the projection: "metre", "degree" (a geographic CRS: this is no metric
-  /// grid), another linear unit by its name, or empty where there is no projection.
+  /// Unit of cell_size and origin by the projection: "metre", "degree" (a geographic CRS, so that the grid is
+  /// not metric), the name of another linear unit, or empty if there is no projection.
   std::string length_unit() const;
 };
 
-/// How the numbers in a file become values: value = raw * scale + offset. Scale and offset that the file
-/// itself declares for a band are not applied, as in GDAL.
+/// The band to read and the conversion of its raw numbers: value = raw * scale + offset. As in GDAL, a scale
+/// and offset that the file itself declares for a band are not applied.
 struct RasterOptions {
-  int band = 1;  ///< counted from 1; of an EXR picture read by OpenCV: R, G, B, A
+  int band = 1;  ///< counted from 1; for EXR files read by OpenCV: R, G, B, A
   double scale = 1, offset = 0;
 };
 
 /// Reads one band of any raster that GDAL can open (GeoTIFF, ESRI ASCII, USGS DEM, ENVI raw, 16-bit PNG,
 /// ...). EXR goes through OpenCV where GDAL has no driver for it. A raster without geotransform gets
-/// cell_size 1 and origin 0; south-up rasters are turned. Masked and nodata cells become NaN. Throws
-/// ConfigError, naming the file and the reason: file missing or not a raster, no such band, zero size or more
-/// than 2^31 cells, a rotated or mirrored geotransform, cells not square to 0.1 %, complex numbers, infinite
-/// values, nodata everywhere, scale or offset not finite or scale zero, or what GDAL says.
+/// cell_size 1 and origin 0; south-up rasters are flipped. Masked and nodata cells become NaN. Throws
+/// ConfigError that names the file and the reason: the file is missing or not a raster, there is no such
+/// band, the size is zero or more than 2^31 cells, the geotransform is rotated or mirrored, cells are not
+/// square to 0.1 %, numbers are complex, values are infinite, all cells are nodata, scale or offset is not
+/// finite, scale is zero, or GDAL reports an error.
 Raster read_raster(const std::string& path, const RasterOptions& options = {});
 
-/// Writes a float32 GeoTIFF, north up, nodata NaN, with geotransform and projection. The file is written to a
-/// temporary name in the same folder and renamed. Throws ConfigError; the file of that name is then as
-/// before.
+/// Writes a float32 GeoTIFF, north up, with NaN as nodata value, geotransform and projection. The data go to
+/// a temporary file in the same folder, which is then renamed. Throws ConfigError; an existing file of that
+/// name is then unchanged.
 void write_geotiff(const std::string& path, const Raster& raster);
 
 }  // namespace desert_sim

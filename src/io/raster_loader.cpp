@@ -32,7 +32,7 @@ void stretch(Raster& r, const RasterRequest& q) {
   r.height = q.height;
 }
 
-/// Cells whose centre the raster does not reach get the value of the nearest one that it does.
+/// Gives cells whose centre lies outside the source raster the value of the nearest cell inside it.
 void continue_edges(Raster& r, const Raster& source) {
   const auto reached = [](double origin, double cell, double from, double to, int n, int& first, int& last) {
     first = std::clamp(static_cast<int>(std::ceil((from - origin) / cell - 0.5 + 1e-6)), 0, n - 1);
@@ -48,7 +48,7 @@ void continue_edges(Raster& r, const Raster& source) {
       const int nearest = std::clamp(y, y0, y1) * r.width + std::clamp(x, x0, x1);
       r.values[static_cast<std::size_t>(y) * r.width + x] = r.values[static_cast<std::size_t>(nearest)];
     }
-  if (r.nodata_count() > 0) fill_nodata(r);  // a few beside edges that interpolation could not reach
+  if (r.nodata_count() > 0) fill_nodata(r);  // interpolation leaves some beside the edges
 }
 
 void to_grid(Raster& r, const RasterRequest& q) {
@@ -58,7 +58,7 @@ void to_grid(Raster& r, const RasterRequest& q) {
       q.origin_y > r.origin_y + r.height * r.cell_size - extent ||
       q.origin_x + q.width * q.cell_size < r.origin_x + extent ||
       q.origin_y + q.height * q.cell_size < r.origin_y + extent)
-    throw ConfigError(q.path + ": lies wholly outside the grid");
+    throw ConfigError(q.path + ": lies completely outside the grid");
   const double ratio = q.cell_size / r.cell_size;
   const Resampling method =
       ratio > 1.5 ? Resampling::average : (ratio < 0.99 ? Resampling::cubic : Resampling::bilinear);
@@ -84,7 +84,7 @@ RasterField fitted(Raster r, const RasterRequest& q) {
   if (q.width > 0) {
     if (r.nodata_count() > 0 && !q.fill_nodata)
       throw ConfigError(q.path + ": has " + std::to_string(r.nodata_count()) +
-                        " cells without data; say fill_nodata: true to fill them from around");
+                        " cells without data; say fill_nodata: true to fill them from their neighbours");
     if (r.nodata_count() > 0) fill_nodata(r);
     if (q.stretch || !placed) {
       stretch(r, q);

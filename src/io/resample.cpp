@@ -53,9 +53,9 @@ void check_raster(const Raster& raster) {
                       size_text(raster.width, raster.height, raster.cell_size));
 }
 
-/// A GDAL dataset over a raster's own values. Its first line is our southern row: instead of copying, it
-/// lives in a frame whose y points south, with the given corner as origin so that large coordinates cost no
-/// digits.
+/// A GDAL dataset in memory that refers to the raster's values without a copy. GDAL's first line is then the
+/// raster's southern row, so the dataset uses coordinates whose y axis points south. Their origin is the
+/// given corner, so that large coordinates lose no precision.
 GDALDatasetUniquePtr view_of(Raster& raster, double corner_x, double corner_y) {
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
   GDALDatasetUniquePtr dataset(
@@ -130,7 +130,7 @@ Raster resample(const Raster& source, int width, int height, double cell_size, d
   result.values.assign(static_cast<std::size_t>(width) * height, kNoData);
 
   GdalMessages messages;
-  auto from = view_of(const_cast<Raster&>(source), source.origin_x, source.origin_y);  // only read
+  auto from = view_of(const_cast<Raster&>(source), source.origin_x, source.origin_y);  // not written
   auto to = view_of(result, source.origin_x, source.origin_y);
   if (!from || !to || !warp(*from, *to, gdal_method(method)))
     throw StateError("resampling to " + size_text(width, height, cell_size) + " failed: " + messages.text());
@@ -141,7 +141,7 @@ Raster resample(const Raster& source, int width, int height, double cell_size, d
 Raster resample_to_cell_size(const Raster& source, double cell_size) {
   check_raster(source);
   check_grid("target", 1, 1, cell_size);
-  // Half a cell is rounded down, so that the last centre lies within the source.
+  // Half a cell is rounded down, so that the centre of the last cell lies within the source.
   const auto cells = [&](int count) {
     return std::ceil(count * (source.cell_size / cell_size) - 0.5 - 1e-9);
   };
@@ -167,7 +167,8 @@ void fill_nodata(Raster& raster) {
   const char* settings[] = {"TEMP_FILE_DRIVER=MEM", nullptr};
   long left = holes;
   bool done = true;
-  // GDAL's time grows with its reach, so it goes far only for what lies far from every value.
+  // GDAL's time grows with the search distance, so the distance is doubled only while unfilled cells are
+  // left.
   for (double reach = 100; done && left > 0 && reach < 4.0 * (raster.width + raster.height) + 200;
        reach *= 2) {
     auto view = view_of(filled, filled.origin_x, filled.origin_y);

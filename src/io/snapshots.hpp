@@ -1,5 +1,5 @@
 #pragma once
-/// Snapshots as rasters and pictures.
+/// Converts snapshots to rasters and to the input of pictures.
 
 #include "src/io/picture.hpp"
 #include "src/io/raster.hpp"
@@ -7,10 +7,10 @@
 
 namespace desert_sim {
 
-/// One of the snapshot's layers where the snapshot lies.
+/// A raster of `values`, one of the snapshot's layers, with the snapshot's grid and position.
 Raster raster_of(const Snapshot& snapshot, const std::vector<float>& values, const std::string& projection);
 
-/// Points into the snapshot's layers.
+/// The snapshot's layers as input of a picture, which points into the snapshot and must not outlive it.
 PictureInput picture_of(const Snapshot& snapshot);
 
 }  // namespace desert_sim

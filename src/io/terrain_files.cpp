@@ -15,10 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* marker = "terrain-";  // what the files of a saved terrain begin with
+constexpr const char* marker = "terrain-";  // prefix of the files of a saved terrain
 const std::set<std::string> endings{".tif", ".png", ".bag"};
 
-/// Values are raw · scale + offset, the first row of the picture in the north.
+/// Writes a 16-bit PNG, north up, and sets scale and offset: value = raw · scale + offset.
 void write_layer_png16(const std::string& path, const std::vector<float>& values, const Snapshot& s,
                        double& scale, double& offset) {
   constexpr double most = 65535;
@@ -86,7 +86,7 @@ LayerWriter png16_writer() {
       step.layer = info(layer).name;
       step.file = layer_file(step.layer, tag, ".png");
       write_layer_png16(folder + "/" + step.file, *s.find(layer), s, step.scale, step.offset);
-      step.stretch = true;  // a PNG has no place
+      step.stretch = true;  // a PNG has no georeference
       saved.steps.push_back(step);
     }
     return saved;
@@ -108,7 +108,7 @@ void save_terrain(const std::string& scenario_file, const Scenario& scenario, co
     remove_files_but(folder, names);
   } catch (const fs::filesystem_error& e) {
     throw ConfigError(folder.string() +
-                      ": an earlier terrain's files cannot be removed: " + e.code().message());
+                      ": the files of an earlier terrain cannot be removed: " + e.code().message());
   }
 }
 

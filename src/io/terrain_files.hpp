@@ -1,5 +1,5 @@
 #pragma once
-/// A terrain as files: its layers, and a scenario that builds the same terrain from them.
+/// Saves a terrain as files: its layers, and a scenario that builds the same terrain from them.
 
 #include <functional>
 #include <string>
@@ -8,32 +8,33 @@
 
 namespace desert_sim {
 
-/// Layers that make up a terrain; a snapshot of them is what save_terrain() takes.
+/// The persistent layers in use, which make up a terrain. save_terrain() takes a snapshot of them.
 std::vector<Layer> terrain_layers(const Simulation& simulation);
-/// Those that a snapshot has.
+/// The persistent layers of a snapshot.
 std::vector<Layer> terrain_layers(const Snapshot& snapshot);
 
-/// How a scenario builds the layers again, from files that are named relative to their folder.
+/// The steps with which a scenario loads the saved layers. File names are relative to the scenario's folder.
 struct SavedLayers {
   std::vector<RasterStep> steps;
-  std::string georeferenced;  ///< the file that has the projection; empty: none has
+  std::string georeferenced;  ///< a file with georeference and projection; empty: none
 };
 
-/// Writes the layers that make up a terrain to files of a folder. Their names are made by layer_file().
-/// Throws ConfigError naming the file.
+/// Writes the persistent layers of a snapshot to files in `folder`, with names from layer_file(). Throws
+/// ConfigError that names the file.
 using LayerWriter =
     std::function<SavedLayers(const Snapshot& snapshot, const std::string& folder, const std::string& tag)>;
+/// Name of the file of a saved layer: "terrain-<what>-<tag><ending>".
 std::string layer_file(const std::string& what, const std::string& tag, const std::string& ending);
 
-/// float32 GeoTIFFs.
+/// Writes each layer as a float32 GeoTIFF.
 LayerWriter geotiff_writer(const std::string& projection);
-/// 16-bit PNGs between a layer's lowest and highest value, north up.
+/// Writes each layer as a 16-bit PNG, scaled between the layer's lowest and highest value, north up.
 LayerWriter png16_writer();
 
-/// Writes the snapshot's layers into the folder of `scenario_file`, then that file: `scenario` with the
-/// terrain made of these files. Heights are rounded to the format; a checkpoint keeps every bit. `tag` sets
-/// the files' names apart from those of an earlier save, which stays whole until the new scenario file has
-/// taken its place, and is removed then. Throws ConfigError naming the file.
+/// Writes the snapshot's layers into the folder of `scenario_file`, then the scenario file itself, whose
+/// terrain steps load these files. Heights are rounded to the format's precision; only a checkpoint is exact.
+/// `tag` makes the file names differ from those of an earlier save, whose files stay valid until the new
+/// scenario file has replaced the old one, and are then removed. Throws ConfigError that names the file.
 void save_terrain(const std::string& scenario_file, const Scenario& scenario, const Snapshot& snapshot,
                   const LayerWriter& write_layers, const std::string& tag);
 

@@ -11,7 +11,7 @@ namespace {
 
 const std::string ending = ".bag";
 
-/// Counted from 1; 0 if there is none.
+/// Number of the layer's band, counted from 1; 0 if there is none.
 int band_of(const std::string& layer, const std::vector<std::string>& bands) {
   for (const std::string& name : {layer, layer + "_depth"}) {
     const auto found = std::find(bands.begin(), bands.end(), name);

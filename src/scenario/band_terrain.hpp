@@ -1,5 +1,5 @@
 #pragma once
-/// A terrain whose layers are the named bands of one file, such as a GridMap in a bag.
+/// A scenario whose terrain is one raster file with named bands, such as a GridMap in a bag.
 
 #include <string>
 
@@ -7,13 +7,14 @@
 
 namespace desert_sim {
 
-/// Whether a path is that of a bag (rosbag), by its ending.
+/// Whether a path has the extension .bag, so that it names a rosbag.
 bool is_bag(const std::string& path);
 
-/// A scenario whose grid is the file's, with open edges, and whose layers are its bands of the same name, or
-/// of that name with _depth behind it; other bands are not looked at. Without a band `bedrock`, the bedrock
-/// is `elevation` less the soil and sand on it. Gaps are filled from around, or else refused when the terrain
-/// is built. Throws ConfigError, naming the bands, if there is neither.
+/// A scenario with the file's grid and open boundaries. Each layer is read from the band of the same name, or
+/// of that name followed by _depth; other bands are ignored. Without a band `bedrock`, the bedrock is
+/// `elevation` minus the soil and sand. With `fill_nodata`, cells without data are filled from their
+/// neighbours; otherwise build_terrain() refuses them. Throws ConfigError, listing the bands, if the file has
+/// neither `bedrock` nor `elevation`.
 Scenario scenario_of_bands(const std::string& path, const RasterLoader& load_raster, bool fill_nodata);
 
 }  // namespace desert_sim

@@ -12,7 +12,8 @@ constexpr Presets::Row preset_rows[] = {
 };
 constexpr Presets presets(preset_rows);
 
-/// Maps are merged; anything else that is there stays.
+/// Adds the climate's values that the scenario does not set. Maps are merged recursively; any other value of
+/// the scenario stays.
 void fill_in(YAML::Node scenario, const YAML::Node& climate) {
   for (const auto& entry : climate) {
     const std::string key = entry.first.Scalar();
@@ -29,10 +30,10 @@ std::vector<std::string> climates() { return presets.names(); }
 
 std::string climate_doc(const std::string& name) {
   const std::string text = presets.text(name);
-  return text.substr(2, text.find('\n') - 2);  // without "# "
+  return text.substr(2, text.find('\n') - 2);  // skips the leading "# "
 }
 
-YAML::Node with_climate(const YAML::Node& root, Faults& faults) {
+YAML::Node apply_climate(const YAML::Node& root, Faults& faults) {
   const YAML::Node given = root["climate"];
   if (!given.IsDefined() || given.IsNull()) return root;
   const char* const text = given.IsScalar() ? presets.text(given.Scalar()) : nullptr;
@@ -42,7 +43,7 @@ YAML::Node with_climate(const YAML::Node& root, Faults& faults) {
   }
   YAML::Node whole = YAML::Clone(root);
   const YAML::Node climate = YAML::Load(text);
-  // A list of species comes with a matrix of its own.
+  // A scenario with its own list of species does not use the climate's competition matrix either.
   const bool own_species = root["species"].IsDefined();
   for (const auto& entry : climate) {
     const std::string key = entry.first.Scalar();

@@ -1,6 +1,6 @@
 #pragma once
-/// `climate`: one word that sets rain, evaporation, soil and species together; what else the scenario says
-/// about them overrides it. The climates are config/climates.
+/// The key `climate` selects a preset of rain, evaporation, soil and species from config/climates. Values
+/// that the scenario itself gives override the preset.
 
 #include <string>
 #include <vector>
@@ -13,11 +13,13 @@ namespace desert_sim {
 
 class Faults;
 
-/// Names of the climates, in alphabetical order, and the first line of each.
+/// Names of the climates, in alphabetical order.
 std::vector<std::string> climates();
+/// The comment in the first line of a climate's file, without "# ".
 std::string climate_doc(const std::string& name);
 
-/// The scenario with what its climate sets and it does not say; itself if it names none.
-YAML::Node with_climate(const YAML::Node& root, Faults& faults);
+/// The scenario completed with the values of the climate that it names; unchanged if it names none. An
+/// unknown climate is added to `faults`.
+YAML::Node apply_climate(const YAML::Node& root, Faults& faults);
 
 }  // namespace desert_sim

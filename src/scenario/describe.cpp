@@ -1,4 +1,4 @@
-/// The page of all parameters, from the tables.
+/// Writes config/parameters.md, the page of all parameters, from the parameter tables.
 #include <sstream>
 
 #include "kernels/field/layers.hpp"
@@ -39,6 +39,10 @@ std::string describe_parameters() {
     out << "\n## `" << section << "`\n\n";
     write_parameter_table(out, parameters);
   });
+  for (const auto& [section, parameters] : defaults.process_sections.all()) {
+    out << "\n## `" << section << "`\n\n";
+    parameters->describe(out);
+  }
   out << "\n## `wind`\n\n### high above the ground\n\n";
   write_parameter_table(out, WindRegimeParameters());
   out << "\n### each of `wind.segments`\n\n";
@@ -59,7 +63,7 @@ std::string describe_parameters() {
          "change while a simulation runs, such as `rain.rate`) change to the values; numbers over `ramp` "
          "seconds "
          "(0 if not given), all else at once.\n";
-  out << "\n## `species`: a list of at most " << most_species << "\n\n";
+  out << "\n## `species`: a list of at most " << max_species << "\n\n";
   write_parameter_table(out, SpeciesName());
   out << "\nPresets:";
   for (const std::string& preset : species_presets()) out << " `" << preset << "`";
@@ -70,7 +74,7 @@ std::string describe_parameters() {
   out << "\n## `competition`: a list of rows\n\nHow much each species (column, in the order of `species`) "
          "hinders the "
          "growth of each (row), 0 … "
-      << strongest_competition << ". Without it all hinder each other, and themselves, with 1.\n";
+      << max_competition << ". Without it all hinder each other, and themselves, with 1.\n";
   out << "\n## `terrain`: a list of steps, in order\n";
   terrain_steps(out);
   out << "\n## What cannot change while a simulation runs\n\n";

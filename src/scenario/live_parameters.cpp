@@ -17,6 +17,8 @@ std::set<std::string> live_paths() {
   for_each_live_parameter(scenario, [&](const char* section, const auto& row, const auto&) {
     paths.insert(std::string(section) + "." + row.name);
   });
+  for (const auto& [section, parameters] : scenario.process_sections.all())
+    for (const std::string& key : parameters->keys()) paths.insert(section + "." + key);
   return paths;
 }
 
@@ -41,7 +43,7 @@ std::map<std::string, std::string> leaves(const Scenario& scenario) {
 
 }  // namespace
 
-const char* why_fixed(const std::string& path) {
+const char* fixed_reason(const std::string& path) {
   for (const FixedParameter& fixed : fixed_parameters)
     if (path == fixed.path || path.compare(0, path.find('.'), fixed.path) == 0) return fixed.why;
   return nullptr;
@@ -52,7 +54,7 @@ Scenario with_live_settings(const Scenario& scenario, const Settings& settings) 
   Faults faults("set_parameters");
   for (const std::string& setting : settings) {
     const std::string path = setting.substr(0, setting.find('='));
-    if (const char* why = why_fixed(path)) {
+    if (const char* why = fixed_reason(path)) {
       faults.add(path, std::string("cannot change while the simulation runs: ") + why);
     } else if (!live.count(path)) {
       faults.add(path, "unknown parameter (config/parameters.md has them all)");

@@ -1,5 +1,5 @@
 #pragma once
-/// Which parameters of a scenario can change while its simulation runs, and changing them.
+/// Parameters of a scenario that can change while its simulation runs.
 
 #include <string>
 #include <utility>
@@ -9,35 +9,35 @@
 
 namespace desert_sim {
 
-/// What cannot: a parameter, a list, or (without a dot) a whole section.
+/// A parameter, a list, or (a path without a dot) a whole section that cannot change, and the reason.
 struct FixedParameter {
   const char *path, *why;
 };
 constexpr FixedParameter fixed_parameters[] = {
-    {"seed", "the terrain was made with it"},
-    {"grid", "it shapes the terrain's memory"},
-    {"terrain", "it is what the terrain was made of"},
-    {"vegetation.enabled", "plants are there from the start, or never"},
-    {"vegetation.max_plants", "the plants' memory has that size"},
-    {"species", "plants that stand are of them"},
-    {"competition", "it goes with species"},
-    {"run.steps", "it is of a headless run"},
+    {"seed", "the initial terrain was generated with it"},
+    {"grid", "the layers are allocated for this grid"},
+    {"terrain", "it describes the initial terrain"},
+    {"vegetation.enabled", "plants are set up at the start of a simulation"},
+    {"vegetation.max_plants", "the memory of the plants is allocated for this number"},
+    {"species", "existing plants refer to them"},
+    {"competition", "it belongs to the list of species"},
+    {"run.steps", "it is the length of a headless run"},
     {"run.time_step", "simulated time is counted in it"},
-    {"run.timeline", "it is followed from the start on"},
+    {"run.timeline", "it begins at the start of a simulation"},
     {"wind.segments", "set_wind_schedule changes them together"},
     {"wind.features", "edit_wind adds, changes and removes them"},
 };
 
-/// Why the parameter or list `path` ("grid.width", "wind.segments") cannot change while a simulation runs;
-/// null if it can, or is unknown.
-const char* why_fixed(const std::string& path);
+/// The reason why the parameter or list `path` ("grid.width", "wind.segments") cannot change while a
+/// simulation runs; null if it can change or is unknown.
+const char* fixed_reason(const std::string& path);
 
 /// Calls visit(section, row, value) for each parameter that can change.
 template <class S, class Visit>
 void for_each_live_parameter(S& scenario, Visit&& visit) {
   const auto rows = [&](const char* section, auto& parameters) {
     for_each_parameter(parameters, [&](const auto& row, auto& value) {
-      if (!why_fixed(std::string(section) + "." + row.name)) visit(section, row, value);
+      if (!fixed_reason(std::string(section) + "." + row.name)) visit(section, row, value);
     });
   };
   for_each_section(scenario, rows);
@@ -47,11 +47,11 @@ void for_each_live_parameter(S& scenario, Visit&& visit) {
   rows("run", scenario.run);
 }
 
-/// `scenario` with settings ("wind.speed=7") of parameters that can change. Throws ConfigError that lists all
-/// that cannot, are unknown, or have a value that is refused.
+/// A copy of `scenario` with some parameters set ("wind.speed=7"). Throws ConfigError that lists all settings
+/// that cannot change, are unknown, or have an invalid value.
 Scenario with_live_settings(const Scenario& scenario, const Settings& settings);
 
-/// What `now` has other than `before`, as path and value; a list is one value.
+/// The parameters of `now` that differ from `before`, as path and value; a list counts as one value.
 std::vector<std::pair<std::string, std::string>> changed_parameters(const Scenario& before,
                                                                     const Scenario& now);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Texts by name that are part of the library: what cmake/DesertPresets.cmake makes of a folder below config.
+/// Preset files of a folder below config. cmake/DesertPresets.cmake compiles their texts into the library.
 
 #include <algorithm>
 #include <string>
@@ -15,19 +15,19 @@ class Presets {
   template <std::size_t count>
   explicit constexpr Presets(const Row (&rows)[count]) : rows_(rows), count_(count) {}
 
-  /// Null if there is none of this name.
+  /// The text of the preset with this name; null if there is none.
   const char* text(const std::string& name) const {
     const Row* found = std::find_if(rows_, rows_ + count_, [&](const Row& row) { return name == row.first; });
     return found == rows_ + count_ ? nullptr : found->second;
   }
-  /// In alphabetical order.
+  /// Names of all presets, in alphabetical order.
   std::vector<std::string> names() const {
     std::vector<std::string> all;
     for (std::size_t n = 0; n < count_; ++n) all.emplace_back(rows_[n].first);
     std::sort(all.begin(), all.end());
     return all;
   }
-  /// Likewise, with ", " between them: for errors.
+  /// The same names separated by ", ", for error messages.
   std::string listed() const {
     std::string all;
     for (const std::string& name : names()) all += (all.empty() ? "" : ", ") + name;

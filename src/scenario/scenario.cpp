@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t most_segments = 4096;
 
-/// "layer" of a terrain step must name a persistent layer.
+/// Checks that `layer` of a terrain step names a persistent layer.
 template <class Step>
 void check_layer(const Step& step, const std::string& key, Faults& faults) {
   if constexpr (!std::is_same_v<Step, ObstacleStep>) {
@@ -83,7 +83,7 @@ void read_wind(const YAML::Node& node, Faults& faults, Scenario& s) {
   yaml::refuse_unknown(node, "wind.", known, faults);
   if (!node.IsDefined() || !node.IsMap()) return;
   read_items(node["segments"], "wind.segments", most_segments, faults, s.wind_segments);
-  read_items(node["features"], "wind.features", most_wind_features, faults, s.wind_features);
+  read_items(node["features"], "wind.features", max_wind_features, faults, s.wind_features);
 }
 
 void read_water(const YAML::Node& node, Faults& faults, Scenario& s) {
@@ -91,7 +91,7 @@ void read_water(const YAML::Node& node, Faults& faults, Scenario& s) {
   yaml::read_parameters(node, "water.", faults, s.water, known);
   yaml::refuse_unknown(node, "water.", known, faults);
   if (node.IsDefined() && node.IsMap())
-    read_items(node["springs"], "water.springs", most_springs, faults, s.springs);
+    read_items(node["springs"], "water.springs", max_springs, faults, s.springs);
 }
 
 void read_run(const YAML::Node& node, Faults& faults, Scenario& s) {
@@ -101,8 +101,8 @@ void read_run(const YAML::Node& node, Faults& faults, Scenario& s) {
   if (node.IsDefined() && node.IsMap()) s.timeline = read_timeline(node["timeline"], faults);
 }
 
-/// What no single row can say.
-void check_together(const Scenario& s, Faults& faults) {
+/// Checks conditions that involve more than one parameter.
+void check_dependencies(const Scenario& s, Faults& faults) {
   if (s.wind.radii.count != s.wind.weights.count || s.wind.radii.count != s.wind.deflections.count)
     faults.add("wind.radii", "radii, weights and deflections must be lists of the same length");
   float weight = 0;
@@ -119,7 +119,7 @@ void check_together(const Scenario& s, Faults& faults) {
   for (std::size_t n = 0; n < s.wind_features.size(); ++n)
     if (const int id = s.wind_features[n].id; id != 0 && !ids.insert(id).second)
       faults.add("wind.features." + std::to_string(n) + ".id",
-                 "= " + std::to_string(id) + " is another's already");
+                 "= " + std::to_string(id) + " is the id of another feature already");
   float probability = 0;
   for (const WindSegment& segment : s.wind_segments) probability += segment.probability;
   if (s.wind_regime.regime == WindRegimeKind::rose && !s.wind_segments.empty() && !(probability > 0))
@@ -155,7 +155,7 @@ void apply_setting(YAML::Node root, const std::string& setting) {
       throw ConfigError("--set '" + setting + "': '" + key + "' is not an index into a list of " +
                         std::to_string(node.size()));
     if (node.IsScalar())
-      throw ConfigError("--set '" + setting + "': there is nothing below '" +
+      throw ConfigError("--set '" + setting + "': there is no key below '" +
                         path.substr(0, begin ? begin - 1 : 0) + "'");
     YAML::Node next = node.IsSequence() ? node[std::stoul(key)] : node[key];
     if (dot == std::string::npos) {
@@ -217,12 +217,16 @@ Scenario parse_scenario(const YAML::Node& given, const std::string& name, const 
     faults.add("top level", yaml::shown(given) + " where the sections of a scenario are expected");
     faults.throw_if_any();
   }
-  const YAML::Node root = with_climate(given, faults);
+  const YAML::Node root = apply_climate(given, faults);
   std::set<std::string> known{"climate", "terrain", "wind", "water", "run", "species", "competition"};
   for_each_section(s, [&](const char* section, auto& parameters) {
     known.insert(section);
     yaml::read_section(root[section], section, faults, parameters);
   });
+  for (const auto& [section, parameters] : s.process_sections.all()) {
+    known.insert(section);
+    parameters->read(root[section], section, faults);
+  }
   SeedParameter seed{s.seed};
   yaml::read_parameters(root, "", faults, seed, known);
   s.seed = seed.seed;
@@ -232,17 +236,17 @@ Scenario parse_scenario(const YAML::Node& given, const std::string& name, const 
   read_water(root["water"], faults, s);
   read_run(root["run"], faults, s);
   read_species(root, faults, s);
-  check_together(s, faults);
+  check_dependencies(s, faults);
   check_plants(s, faults);
   faults.throw_if_any();
-  check_timeline(s, faults);  // needs a scenario without faults
+  check_timeline(s, faults);  // it applies settings, which needs a valid scenario
   faults.throw_if_any();
   return s;
 }
 
 std::string dump_scenario(const Scenario& s) {
   YAML::Emitter out;
-  yaml::keep_all_bits(out);
+  yaml::set_full_precision(out);
   out << YAML::BeginMap;
   yaml::emit_parameters(out, SeedParameter{s.seed});
   for_each_section(s, [&](const char* section, const auto& parameters) {
@@ -250,6 +254,11 @@ std::string dump_scenario(const Scenario& s) {
     yaml::emit_parameters(out, parameters);
     out << YAML::EndMap;
   });
+  for (const auto& [section, parameters] : s.process_sections.all()) {
+    out << YAML::Key << section << YAML::Value << YAML::BeginMap;
+    parameters->emit(out);
+    out << YAML::EndMap;
+  }
   out << YAML::Key << "terrain" << YAML::Value << YAML::BeginSeq;
   for (const TerrainStep& step : s.terrain) {
     out << YAML::Flow << YAML::BeginMap << YAML::Key << terrain_step_names[step.index()] << YAML::Value
@@ -293,7 +302,7 @@ Grid Scenario::make_grid() const {
 }
 
 RasterField refuse_rasters(const RasterRequest& request) {
-  throw ConfigError(request.path + ": this build reads no rasters (it was made without GDAL)");
+  throw ConfigError(request.path + ": this build cannot read rasters (it was built without GDAL)");
 }
 
 void resolve_grid(Scenario& s, const RasterLoader& load_raster) {
@@ -309,7 +318,7 @@ void resolve_grid(Scenario& s, const RasterLoader& load_raster) {
     if (g.width == 0) g.width = std::max(1, static_cast<int>(std::lround(extent_x / cell)));
     if (g.height == 0) g.height = std::max(1, static_cast<int>(std::lround(extent_y / cell)));
     if (g.origin_x == 0 && g.origin_y == 0) {
-      // A size of its own: the middle of the raster.
+      // A grid whose size the scenario gives is centred on the raster.
       g.origin_x = raster.origin_x + (sized ? 0.5 * (extent_x - g.width * cell) : 0.0);
       g.origin_y = raster.origin_y + (sized ? 0.5 * (extent_y - g.height * cell) : 0.0);
     }

@@ -1,6 +1,7 @@
 #pragma once
-/// A scenario: all that defines a run. Read from YAML (file, text, or ROS parameters turned into YAML); see
-/// config/parameters.md for every key. All faults of a file are found at once.
+/// A scenario: everything that defines a run. It is read from YAML (a file, a text, or ROS parameters that
+/// were turned into YAML); config/parameters.md documents every key. All faults of a file are reported at
+/// once.
 
 #include <cstdint>
 #include <functional>
@@ -8,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/avalanching/avalanching.hpp"
+#include "kernels/avalanching/parameters.hpp"
 #include "kernels/rover/traversability.hpp"
 #include "kernels/sand/reptation.hpp"
 #include "kernels/sand/saltation.hpp"
@@ -18,10 +19,11 @@
 #include "kernels/water/rain.hpp"
 #include "kernels/water/water_sources.hpp"
 #include "kernels/wind/echo_dunes.hpp"
-#include "kernels/wind/wind.hpp"
 #include "kernels/wind/wind_features.hpp"
-#include "kernels/wind/wind_shadow.hpp"
+#include "kernels/wind/wind_parameters.hpp"
+#include "kernels/wind/wind_shadow_parameters.hpp"
 #include "src/core/error.hpp"
+#include "src/scenario/process_sections.hpp"
 #include "src/scenario/species.hpp"
 #include "src/scenario/terrain_steps.hpp"
 #include "src/scenario/timeline.hpp"
@@ -36,7 +38,7 @@ namespace desert_sim {
 enum class Boundary : int { periodic, open };
 constexpr const char* boundaries[] = {"periodic", "open"};
 
-/// Zero stands for "not given" and is filled in by resolve_grid().
+/// Zero means "not given"; resolve_grid() replaces it.
 struct GridParameters {
   int width = 0;
   int height = 0;
@@ -50,17 +52,20 @@ struct GridParameters {
 constexpr auto parameter_table(const GridParameters*) {
   using P = GridParameters;
   return std::make_tuple(
-      parameter("width", &P::width, 1, 65536, "cells", "Cells from west to east; 256, or the raster's."),
-      parameter("height", &P::height, 1, 65536, "cells", "Cells from south to north; 256, or the raster's."),
-      parameter("cell_size", &P::cell_size, 1e-3, 1e4, "m",
-                "Width of a cell; 1, or the raster's (which is resampled to another)."),
+      parameter("width", &P::width, 1, 65536, "cells",
+                "Cells from west to east; if not given, the raster's, or 256."),
+      parameter("height", &P::height, 1, 65536, "cells",
+                "Cells from south to north; if not given, the raster's, or 256."),
+      parameter(
+          "cell_size", &P::cell_size, 1e-3, 1e4, "m",
+          "Width of a cell; if not given, the raster's, or 1. The raster is resampled to another width."),
       parameter("boundary", &P::boundary, boundaries,
                 "periodic: a torus; open: sand leaves and enters over the edges."),
       parameter("origin_x", &P::origin_x, -1e8, 1e8, "m", "West edge of the grid in the terrain's frame."),
       parameter("origin_y", &P::origin_y, -1e8, 1e8, "m", "South edge of the grid in the terrain's frame."),
       parameter("from_raster", &P::from_raster,
-                "A raster that gives size, cell size and origin where they are not given; a larger width or "
-                "height continues its edge."));
+                "A raster that gives size, cell size and origin where they are not given; cells beyond it "
+                "continue its edge values."));
 }
 static_assert(table_is_complete<GridParameters>());
 
@@ -79,17 +84,17 @@ constexpr auto parameter_table(const RunParameters*) {
 }
 static_assert(table_is_complete<RunParameters>());
 
-constexpr std::size_t most_wind_features = 64;
+constexpr std::size_t max_wind_features = 64;
 
 struct Scenario {
-  std::string name;    ///< file name without ending, or what the caller says
-  std::string folder;  ///< relative raster paths are looked up here
+  std::string name;    ///< file name without extension, or the caller's name for it
+  std::string folder;  ///< relative raster paths are looked up here first
   std::uint64_t seed = 1;
   GridParameters grid;
   std::vector<TerrainStep> terrain;
   WindRegimeParameters wind_regime;
   std::vector<WindSegment> wind_segments;
-  std::vector<WindFeature> wind_features;  ///< at most most_wind_features
+  std::vector<WindFeature> wind_features;  ///< at most max_wind_features
   WindParameters wind;
   WindShadowParameters wind_shadow;
   EchoDuneParameters echo_dunes;
@@ -100,20 +105,21 @@ struct Scenario {
   AvalanchingParameters avalanching;
   RainParameters rain;
   WaterParameters water;
-  std::vector<Spring> springs;  ///< at most most_springs
+  std::vector<Spring> springs;  ///< at most max_springs
   HydraulicErosionParameters hydraulic_erosion;
   MoistureParameters moisture;
   SoilParameters soil;
   VegetationParameters vegetation;
-  std::vector<Species> species;   ///< at most most_species
+  std::vector<Species> species;   ///< at most max_species
   CompetitionMatrix competition;  ///< as many rows and columns as there are species
   TraversabilityParameters traversability;
+  ProcessSections process_sections;  ///< of processes whose parameters are no member here
   RunParameters run;
   std::vector<TimelineEntry> timeline;  ///< in order of time
   std::string projection;               ///< WKT of the raster that gave the grid; kept for what is written
 
   Grid make_grid() const;
-  /// Whether there is water: asked for, or needed by rain, springs, erosion or moisture.
+  /// Whether water is simulated: it is enabled, or rain, springs, hydraulic erosion or moisture need it.
   bool has_water() const;
 };
 
@@ -121,42 +127,45 @@ struct Scenario {
 /// "terrain.0.raster.file=dem.tif".
 using Settings = std::vector<std::string>;
 
-/// Throw ConfigError that lists all faults: file, key, value, what is allowed.
+/// These functions read and check a scenario. They throw ConfigError that lists all faults, each with file,
+/// key, value and allowed range.
 Scenario load_scenario(const std::string& path, const Settings& settings = {});
 Scenario parse_scenario_text(const std::string& yaml, const std::string& name, const Settings& settings = {});
 Scenario parse_scenario(const YAML::Node& root, const std::string& name, const std::string& folder);
-/// The scenario as YAML with every parameter spelled out; parse_scenario() reads it back the same.
+/// The scenario as YAML with all parameters, defaults included; parse_scenario() reads back the same
+/// scenario.
 std::string dump_scenario(const Scenario& scenario);
 
-/// Loads rasters for the terrain; desert_io has the one that uses GDAL. Without it, any raster is refused.
+/// A raster as a RasterLoader returns it. The loader that uses GDAL is in the library desert_io; without it,
+/// refuse_rasters() refuses every raster.
 struct RasterField {
   int width = 0, height = 0;
   double cell_size = 1, origin_x = 0, origin_y = 0;
   bool georeferenced = false;
   std::string projection;
-  std::vector<std::string> bands;  ///< names of all bands, in their order; none where they have no names
+  std::vector<std::string> bands;  ///< names of all bands in order; empty if they have none
   std::vector<float> values;       ///< row-major from the south-west, NaN = nodata
 };
 struct RasterRequest {
   std::string path;
   int band = 1;
   double scale = 1, offset = 0;
-  bool fill_nodata = false;  ///< else nodata is refused
-  // The grid to resample to; width 0: as it is.
+  bool fill_nodata = false;  ///< fill nodata from neighbours; otherwise it is refused
+  // The grid to resample to; with width 0 the raster keeps its own grid.
   int width = 0, height = 0;
   double cell_size = 0, origin_x = 0, origin_y = 0;
-  bool stretch = false;  ///< the raster's extent is stretched over the grid's
+  bool stretch = false;  ///< stretch the raster over the grid, whatever its position
 };
 using RasterLoader = std::function<RasterField(const RasterRequest&)>;
 RasterField refuse_rasters(const RasterRequest& request);
 
-/// Paths of all rasters that the scenario reads, as the process can open them.
+/// Paths of all rasters that the scenario reads, resolved by raster_path().
 std::vector<std::string> rasters_of(const Scenario& scenario);
 
-/// Fills in what the grid section left open, from the raster if it names one.
+/// Sets the values that the section `grid` leaves open: from its raster if it names one, else to defaults.
 void resolve_grid(Scenario& scenario, const RasterLoader& load_raster);
 
-/// Every parameter as a markdown page: what `desert_run --describe` prints and config/parameters.md holds.
+/// All parameters as a markdown page, which `desert_run --describe` prints and config/parameters.md contains.
 std::string describe_parameters();
 
 }  // namespace desert_sim

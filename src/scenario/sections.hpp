@@ -1,5 +1,5 @@
 #pragma once
-/// Which sections a scenario has; the one place to add a process's.
+/// The list of a scenario's sections. The section of a new process is added here.
 
 #include "src/scenario/scenario.hpp"
 
@@ -10,12 +10,12 @@ struct SeedParameter {
 };
 constexpr auto parameter_table(const SeedParameter*) {
   return std::make_tuple(
-      parameter("seed", &SeedParameter::seed, 0, 1.8e19, "1", "Seed of everything random."));
+      parameter("seed", &SeedParameter::seed, 0, 1.8e19, "1", "Seed of all random numbers."));
 }
 static_assert(table_is_complete<SeedParameter>());
 
-/// Calls visit(name, parameters) for each section that is one table; `wind`, `water` and `terrain` have lists
-/// besides, and `species` is one.
+/// Calls visit(name, parameters) for each section that consists of one parameter table. The sections `wind`,
+/// `water` and `run` also have lists, and `terrain` and `species` are lists; scenario.cpp reads these.
 template <class S, class Visit>
 void for_each_section(S& scenario, Visit&& visit) {
   visit("grid", scenario.grid);
@@ -34,7 +34,7 @@ void for_each_section(S& scenario, Visit&& visit) {
   visit("traversability", scenario.traversability);
 }
 
-/// `file` beside the scenario, if it is there; else as it is.
+/// The path of `file` in the scenario's folder if it exists there; otherwise `file` itself.
 std::string raster_path(const Scenario& scenario, const std::string& file);
 
 }  // namespace desert_sim

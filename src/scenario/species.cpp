@@ -37,19 +37,19 @@ void read_one(const YAML::Node& node, const std::string& key, Faults& faults, Sp
     faults.add(key, "needs a name, or a preset that gives it one");
 }
 
-/// A row or the whole must have one entry a species.
+/// Whether a row or the whole matrix is a list with one entry per species; adds a fault if not.
 bool has_entries(const YAML::Node& list, const std::string& key, std::size_t count, Faults& faults) {
   if (list.IsSequence() && list.size() == count) return true;
   faults.add(key,
              (list.IsSequence() ? "has " + std::to_string(list.size()) + " entries" : yaml::shown(list)) +
-                 " where a list of one entry a species, " + std::to_string(count) + ", is expected");
+                 " where a list of one entry per species (" + std::to_string(count) + ") is expected");
   return false;
 }
 
 void read_competition(const YAML::Node& rows, std::size_t count, Faults& faults, CompetitionMatrix& matrix) {
   if (!rows.IsDefined() || rows.IsNull() || !has_entries(rows, "competition", count, faults)) return;
   struct Row {
-    double lowest = 0, highest = strongest_competition;
+    double lowest = 0, highest = max_competition;
     const char* unit = "1";
   } range;
   for (std::size_t k = 0; k < count; ++k) {
@@ -84,7 +84,7 @@ Species species_preset(const std::string& name) {
 std::array<float, 3> crown_colour(const SpeciesLook& look) {
   constexpr float dull = 0.13f, bright = 0.52f;
   const auto channel = [&](float peak) {
-    // 1 within 60 degrees of the channel's own hue, 0 from 120 degrees on.
+    // The channel is bright within 60 degrees of its own hue and dull beyond 120 degrees.
     const float away = std::abs(std::remainder(look.hue - peak, 360.0f));
     return dull + (bright - dull) * std::clamp(2.0f - away / 60.0f, 0.0f, 1.0f);
   };
@@ -95,9 +95,9 @@ void read_species(const YAML::Node& root, Faults& faults, Scenario& s) {
   const YAML::Node list = root["species"];
   if (list.IsDefined() && !list.IsNull()) {
     if (!list.IsSequence()) return faults.add("species", yaml::shown(list) + " where a list is expected");
-    if (list.size() > most_species)
+    if (list.size() > max_species)
       return faults.add(
-          "species", std::to_string(list.size()) + " entries are more than " + std::to_string(most_species));
+          "species", std::to_string(list.size()) + " entries are more than " + std::to_string(max_species));
     for (std::size_t n = 0; n < list.size(); ++n) {
       s.species.emplace_back();
       read_one(list[n], "species." + std::to_string(n), faults, s.species.back());
@@ -146,7 +146,7 @@ void check_plants(const Scenario& s, Faults& faults) {
             if (step.layer == info(Layer::vegetation).name)
               faults.add(
                   "terrain." + std::to_string(n) + "." + terrain_step_names[s.terrain[n].index()] + ".layer",
-                  "vegetation cannot be painted while vegetation.enabled: plants make it");
+                  "vegetation cannot be set while vegetation.enabled is true: the plants determine it");
         },
         s.terrain[n]);
 }

@@ -26,12 +26,13 @@ struct SpeciesName {
 constexpr auto parameter_table(const SpeciesName*) {
   using P = SpeciesName;
   return std::make_tuple(
-      parameter("preset", &P::preset, "Of config/species; what else stands here overrides it."),
-      parameter("name", &P::name, "Unlike the others'; the preset's if not given."));
+      parameter("preset", &P::preset,
+                "Name of a preset in config/species; other keys of the entry override its values."),
+      parameter("name", &P::name, "Unique name; if not given, the preset's."));
 }
 static_assert(table_is_complete<SpeciesName>());
 
-/// How it is drawn; nothing that lives depends on it.
+/// How a species is drawn. The simulation does not depend on it.
 struct SpeciesLook {
   float hue = 120;
 };
@@ -49,22 +50,24 @@ struct Species {
   SpeciesLook look;
 };
 
-/// Of a species' crowns: red, green, blue, each 0 … 1.
+/// Colour of a species' crowns as red, green and blue, each 0 … 1.
 std::array<float, 3> crown_colour(const SpeciesLook& look);
 
-/// How much each species (column) hinders the growth of each (row), row by row: 1 where nothing is said.
+/// How much each species (column) hinders the growth of each species (row), row-major; 1 where the scenario
+/// gives no value.
 using CompetitionMatrix = std::vector<float>;
-constexpr float strongest_competition = 1000;
+constexpr float max_competition = 1000;
 
-/// Names of the presets, in alphabetical order, and one of them. Throws ConfigError for an unknown name.
+/// Names of the presets, in alphabetical order.
 std::vector<std::string> species_presets();
+/// The preset with this name. Throws ConfigError for an unknown name.
 Species species_preset(const std::string& name);
 
-/// Reads both keys of a scenario.
+/// Reads the keys `species` and `competition` of a scenario.
 void read_species(const YAML::Node& root, Faults& faults, Scenario& scenario);
-/// Writes them as map entries, every parameter spelled out.
+/// Writes both keys as entries of an open map, with all parameters.
 void emit_species(YAML::Emitter& out, const Scenario& scenario);
-/// What no single key can say about plants.
+/// Checks conditions on plants that involve more than one key.
 void check_plants(const Scenario& scenario, Faults& faults);
 
 }  // namespace desert_sim

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernels/field/random.hpp"
+#include "src/core/constants.hpp"
 #include "src/scenario/sections.hpp"
 #include "src/terrain/terrain.hpp"
 
@@ -11,10 +12,10 @@ namespace desert_sim {
 
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180.0;
+constexpr double degree = pi / 180.0;  // [rad]
 
-/// Centre of a step's shape relative to the grid's lower-left corner [m], and the shortest way to a cell from
-/// it.
+/// Position of a step's shape: its centre relative to the grid's lower-left corner [m], and the direction of
+/// its axes. On a periodic axis, a cell's distance from the centre is the shortest one.
 struct Placement {
   Grid grid;
   double x, y, cos = 1, sin = 0;
@@ -29,7 +30,7 @@ struct Placement {
     cos = std::cos(angle_deg * degree);
     sin = std::sin(angle_deg * degree);
   }
-  /// Cell centre seen from the shape's centre, in the shape's axes.
+  /// Position of a cell's centre relative to the shape's centre, along the shape's axes [m].
   void local(int ix, int iy, double l, double& along, double& across) const {
     double dx = (ix + 0.5) * l - x, dy = (iy + 0.5) * l - y;
     if (grid.periodic_x) dx -= grid.width * l * std::round(dx / (grid.width * l));
@@ -62,7 +63,7 @@ class Builder {
            (raster ? " (" + file_of(*raster) + ")" : "");
   }
 
-  /// As the process can open it; empty if the step names none.
+  /// Path of the step's raster; empty if neither the step nor the grid names one.
   std::string file_of(const RasterStep& p) const {
     return raster_path(s_, p.file.empty() ? s_.grid.from_raster : p.file);
   }
@@ -73,7 +74,7 @@ class Builder {
     return values;
   }
 
-  /// Merges value(ix, iy) into the step's layer.
+  /// Merges value(ix, iy) into all cells of the step's layer.
   template <class Value>
   void fill(const std::string& name, Merge merge, const Value& value) {
     touched_ = layer_by_name(name);
@@ -87,7 +88,7 @@ class Builder {
       }
   }
 
-  /// As fill(), where inside(along, across) holds.
+  /// Merges `value` into those cells of the step's layer for which inside(along, across) is true.
   template <class Inside>
   void fill_inside(const std::string& name, Merge merge, double value, const Placement& place,
                    const Inside& inside) {
@@ -132,13 +133,13 @@ class Builder {
     });
   }
 
-  /// Octaves of value noise, 0…1, whose lattice repeats with a periodic grid.
+  /// Sum of octaves of value noise, scaled to 0…1. On a periodic axis the lattice repeats with the grid.
   double smooth_noise(const NoiseStep& p, std::uint64_t seed, int x, int y) const {
     const Grid g = s_.make_grid();
     const double l = s_.grid.cell_size, extent_x = g.width * l, extent_y = g.height * l;
     double sum = 0, total = 0, amplitude = 1, size = p.scale;
     for (int octave = 0; octave < p.octaves; ++octave, amplitude *= 0.5, size *= 0.5) {
-      // The nearest lattice that fits the grid a whole number of times.
+      // The lattice spacing is rounded so that a whole number of lattice cells fits the grid.
       const int nx = std::max(1, static_cast<int>(std::lround(extent_x / (size * p.stretch))));
       const int ny = std::max(1, static_cast<int>(std::lround(extent_y / size)));
       sum += amplitude * value_noise(seed, Purpose::terrain_noise,
@@ -226,7 +227,7 @@ class Builder {
     });
   }
 
-  /// Depths that a step made negative are cut to 0; anything else out of range is a fault.
+  /// Sets depths that a step made negative to 0, and throws ConfigError for any other value out of range.
   void check(const std::string& step) {
     const LayerInfo& row = info(touched_);
     std::vector<double>& values = layers_[touched_];

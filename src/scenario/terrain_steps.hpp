@@ -1,6 +1,6 @@
 #pragma once
-/// The steps of a scenario's `terrain` list: each fills or changes a layer, in order. Positions are metres in
-/// the terrain's frame unless `relative` says shares of the grid's extent.
+/// The steps of a scenario's `terrain` list. They are run in order, and each fills or changes a layer.
+/// Positions are metres in the terrain's frame or, with `relative`, fractions of the grid's extent.
 
 #include <cstdint>
 #include <string>
@@ -21,14 +21,16 @@ struct UniformStep {
 };
 constexpr auto parameter_table(const UniformStep*) {
   using P = UniformStep;
-  return std::make_tuple(parameter("layer", &P::layer, "Layer to fill."),
-                         parameter("merge", &P::merge, merges, "How it meets what is there."),
-                         parameter("value", &P::value, -1e6, 1e6, "layer's", "Value."));
+  return std::make_tuple(
+      parameter("layer", &P::layer, "Layer to fill."),
+      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
+      parameter("value", &P::value, -1e6, 1e6, "layer's", "Value."));
 }
 static_assert(table_is_complete<UniformStep>());
 
-/// Noise between `low` and `high`: white (scale 0: each cell uniform, as in the papers' scenes), or octaves
-/// of smooth noise whose largest features are `scale` metres. Tiles on periodic axes.
+/// Noise between `low` and `high`. With scale 0 it is white noise: each cell has an independent uniform
+/// value, as in the scenes of the papers. Otherwise it is a sum of octaves of smooth noise whose largest
+/// features measure `scale` metres. It repeats on periodic axes.
 struct NoiseStep {
   std::string layer = "sand";
   Merge merge = Merge::replace;
@@ -44,19 +46,21 @@ constexpr auto parameter_table(const NoiseStep*) {
   using P = NoiseStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to fill."),
-      parameter("merge", &P::merge, merges, "How it meets what is there."),
-      parameter("low", &P::low, -1e6, 1e6, "layer's", "Value of the noise's least."),
-      parameter("high", &P::high, -1e6, 1e6, "layer's", "Value of the noise's greatest."),
+      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
+      parameter("low", &P::low, -1e6, 1e6, "layer's", "Value where the noise is lowest."),
+      parameter("high", &P::high, -1e6, 1e6, "layer's", "Value where the noise is highest."),
       parameter("scale", &P::scale, 0, 1e6, "m", "Size of the largest features; 0 is white noise."),
-      parameter("octaves", &P::octaves, 1, 12, "1", "Octaves, each half as large and as strong."),
+      parameter("octaves", &P::octaves, 1, 12, "1",
+                "Number of octaves; each has half the size and amplitude of the one before."),
       parameter("stretch", &P::stretch, 0.01, 100, "1",
                 "Length of features along x over their length along y."),
-      parameter("threshold", &P::threshold, 0, 1, "1", "Share of the noise's range that is cut to low."),
+      parameter("threshold", &P::threshold, 0, 1, "1",
+                "Lower share of the noise's range that is set to low."),
       parameter("seed", &P::seed, 0, 1.8e19, "1", "Added to the scenario's seed."));
 }
 static_assert(table_is_complete<NoiseStep>());
 
-/// A plane: `value` at the grid's centre, rising by the slopes.
+/// An inclined plane with `value` at the grid's centre.
 struct RampStep {
   std::string layer = "bedrock";
   Merge merge = Merge::replace;
@@ -66,18 +70,19 @@ struct RampStep {
 };
 constexpr auto parameter_table(const RampStep*) {
   using P = RampStep;
-  return std::make_tuple(parameter("layer", &P::layer, "Layer to fill."),
-                         parameter("merge", &P::merge, merges, "How it meets what is there."),
-                         parameter("value", &P::value, -1e6, 1e6, "layer's", "Value at the grid's centre."),
-                         parameter("slope_x", &P::slope_x, -100, 100, "1/m", "Rise per metre east."),
-                         parameter("slope_y", &P::slope_y, -100, 100, "1/m", "Rise per metre north."));
+  return std::make_tuple(
+      parameter("layer", &P::layer, "Layer to fill."),
+      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
+      parameter("value", &P::value, -1e6, 1e6, "layer's", "Value at the grid's centre."),
+      parameter("slope_x", &P::slope_x, -100, 100, "1/m", "Rise per metre east."),
+      parameter("slope_y", &P::slope_y, -100, 100, "1/m", "Rise per metre north."));
 }
 static_assert(table_is_complete<RampStep>());
 
 enum class HillShape : int { cone, gaussian, dome };
 constexpr const char* hill_shapes[] = {"cone", "gaussian", "dome"};
 
-/// A round hill (or hollow, with a negative height) on what is there.
+/// A round hill, or with a negative height a hollow.
 struct ConeStep {
   std::string layer = "sand";
   Merge merge = Merge::add;
@@ -92,11 +97,11 @@ constexpr auto parameter_table(const ConeStep*) {
   using P = ConeStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to change."),
-      parameter("merge", &P::merge, merges, "How it meets what is there."),
+      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
       parameter("shape", &P::shape, hill_shapes, "cone; gaussian (radius is sigma); dome (paraboloid)."),
       parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
       parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
-      parameter("radius", &P::radius, 1e-3, 1e6, "m", "Radius of the foot, or sigma."),
+      parameter("radius", &P::radius, 1e-3, 1e6, "m", "Radius of the base, or sigma."),
       parameter("height", &P::height, -1e5, 1e5, "layer's", "Height of the top."));
 }
 static_assert(table_is_complete<ConeStep>());
@@ -104,7 +109,7 @@ static_assert(table_is_complete<ConeStep>());
 enum class Footprint : int { box, cylinder };
 constexpr const char* footprints[] = {"box", "cylinder"};
 
-/// A column with vertical walls: of sand, of rock, a patch of vegetation…
+/// A column with vertical walls, such as a block of sand or rock, or a patch of vegetation.
 struct ColumnStep {
   std::string layer = "sand";
   Merge merge = Merge::add;
@@ -121,18 +126,22 @@ constexpr auto parameter_table(const ColumnStep*) {
   using P = ColumnStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to change."),
-      parameter("merge", &P::merge, merges, "How it meets what is there."),
-      parameter("shape", &P::shape, footprints, "Its outline."),
+      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
+      parameter("shape", &P::shape, footprints, "Outline seen from above."),
       parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
       parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
-      parameter("size_x", &P::size_x, 0, 1e7, "m", "Width; of a cylinder the diameter."),
-      parameter("size_y", &P::size_y, 0, 1e7, "m", "Depth; of a cylinder the other diameter."),
-      parameter("angle_deg", &P::angle_deg, -360, 360, "deg", "Turn, counter-clockwise."),
-      parameter("height", &P::height, -1e5, 1e5, "layer's", "Height, or value."));
+      parameter("size_x", &P::size_x, 0, 1e7, "m",
+                "Length along the first axis; for a cylinder the diameter."),
+      parameter("size_y", &P::size_y, 0, 1e7, "m",
+                "Length along the second axis; for a cylinder the diameter."),
+      parameter("angle_deg", &P::angle_deg, -360, 360, "deg",
+                "Direction of the first axis, counter-clockwise from +x."),
+      parameter("height", &P::height, -1e5, 1e5, "layer's",
+                "Height, or value of a layer that is not a height."));
 }
 static_assert(table_is_complete<ColumnStep>());
 
-/// Discs at random places until they cover a share of the grid.
+/// Discs at random positions, added until they cover a share of the grid.
 struct DiscsStep {
   std::string layer = "sand";
   Merge merge = Merge::max;
@@ -146,16 +155,16 @@ constexpr auto parameter_table(const DiscsStep*) {
   using P = DiscsStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to change."),
-      parameter("merge", &P::merge, merges, "How a disc meets what is there."),
+      parameter("merge", &P::merge, merges, "How a disc's value is combined with the present one."),
       parameter("coverage", &P::coverage, 0, 0.95, "1", "Share of the cells that discs cover."),
-      parameter("radius_low", &P::radius_low, 1e-3, 1e6, "m", "Least radius."),
-      parameter("radius_high", &P::radius_high, 1e-3, 1e6, "m", "Greatest radius."),
-      parameter("height", &P::height, 0, 1e5, "layer's", "Height, or value."),
+      parameter("radius_low", &P::radius_low, 1e-3, 1e6, "m", "Smallest radius."),
+      parameter("radius_high", &P::radius_high, 1e-3, 1e6, "m", "Largest radius."),
+      parameter("height", &P::height, 0, 1e5, "layer's", "Height, or value of a layer that is not a height."),
       parameter("seed", &P::seed, 0, 1.8e19, "1", "Added to the scenario's seed."));
 }
 static_assert(table_is_complete<DiscsStep>());
 
-/// A solid object: raises the bedrock to `height` above what is there and marks the cells as obstacle.
+/// A solid object: the step raises the bedrock by `height` and marks the cells as obstacle.
 struct ObstacleStep {
   Footprint shape = Footprint::cylinder;
   bool relative = false;
@@ -169,17 +178,20 @@ struct ObstacleStep {
 constexpr auto parameter_table(const ObstacleStep*) {
   using P = ObstacleStep;
   return std::make_tuple(
-      parameter("shape", &P::shape, footprints, "Its outline."),
+      parameter("shape", &P::shape, footprints, "Outline seen from above."),
       parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
       parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
-      parameter("size_x", &P::size_x, 1e-3, 1e7, "m", "Width; of a cylinder the diameter."),
-      parameter("size_y", &P::size_y, 1e-3, 1e7, "m", "Depth; of a cylinder the other diameter."),
-      parameter("angle_deg", &P::angle_deg, -360, 360, "deg", "Turn, counter-clockwise."),
+      parameter("size_x", &P::size_x, 1e-3, 1e7, "m",
+                "Length along the first axis; for a cylinder the diameter."),
+      parameter("size_y", &P::size_y, 1e-3, 1e7, "m",
+                "Length along the second axis; for a cylinder the diameter."),
+      parameter("angle_deg", &P::angle_deg, -360, 360, "deg",
+                "Direction of the first axis, counter-clockwise from +x."),
       parameter("height", &P::height, 0, 1e5, "m", "Height above the ground."));
 }
 static_assert(table_is_complete<ObstacleStep>());
 
-/// Any raster that GDAL (or, for EXR, OpenCV) reads, into any layer: value = raw · scale + offset.
+/// Fills a layer from a raster that GDAL (or, for EXR, OpenCV) can read: value = raw · scale + offset.
 struct RasterStep {
   std::string layer = "bedrock";
   Merge merge = Merge::replace;
@@ -194,13 +206,14 @@ constexpr auto parameter_table(const RasterStep*) {
   using P = RasterStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to fill."),
-      parameter("merge", &P::merge, merges, "How it meets what is there."),
-      parameter("file", &P::file, "Path, also relative to the scenario's folder; empty: grid.from_raster."),
+      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
+      parameter("file", &P::file,
+                "Path, absolute or relative to the scenario's folder; empty: grid.from_raster."),
       parameter("band", &P::band, 1, 10000, "1", "Band of the raster."),
-      parameter("scale", &P::scale, -1e9, 1e9, "layer's", "Factor."),
+      parameter("scale", &P::scale, -1e9, 1e9, "layer's", "Factor applied to the raster's values."),
       parameter("offset", &P::offset, -1e9, 1e9, "layer's", "Added after the factor."),
       parameter("fill_nodata", &P::fill_nodata,
-                "Whether gaps are filled from around; else they are refused."),
+                "Whether cells without data are filled from their neighbours; otherwise they are refused."),
       parameter("stretch", &P::stretch,
                 "Whether the raster is stretched over the grid, wherever it lies; always so if it is not "
                 "georeferenced."));

@@ -47,7 +47,7 @@ TimelineEntry read_entry(const YAML::Node& node, const std::string& key, Faults&
   return entry;
 }
 
-/// The value of a parameter that is a number with a fraction.
+/// Sets `found` to the value of a floating-point parameter that can change; false if `path` is none.
 bool find_number(const Scenario& scenario, const std::string& path, double& found) {
   bool there = false;
   for_each_live_parameter(scenario, [&](const char* section, const auto& row, const auto& value) {
@@ -93,15 +93,15 @@ std::vector<TimelineEntry> read_timeline(const YAML::Node& list, Faults& faults)
     faults.add(key, yaml::shown(list) + " where a list is expected");
     return timeline;
   }
-  if (list.size() > most_timeline_entries) {
+  if (list.size() > max_timeline_entries) {
     faults.add(
-        key, std::to_string(list.size()) + " entries are more than " + std::to_string(most_timeline_entries));
+        key, std::to_string(list.size()) + " entries are more than " + std::to_string(max_timeline_entries));
     return timeline;
   }
   for (std::size_t n = 0; n < list.size(); ++n) {
     timeline.push_back(read_entry(list[n], key + "." + std::to_string(n), faults));
     if (n > 0 && timeline[n].time < timeline[n - 1].time)
-      faults.add(key + "." + std::to_string(n) + ".time", "is before that of the entry before it");
+      faults.add(key + "." + std::to_string(n) + ".time", "is earlier than that of the previous entry");
   }
   return timeline;
 }
@@ -124,7 +124,7 @@ void check_timeline(const Scenario& scenario, Faults& faults) {
   Scenario then = scenario;
   then.timeline.clear();
   for (int* cells : {&then.grid.width, &then.grid.height}) *cells = *cells > 0 ? *cells : 1;
-  if (then.grid.cell_size == 0) then.grid.cell_size = 1;  // a raster may give it later
+  if (then.grid.cell_size == 0) then.grid.cell_size = 1;  // resolve_grid() may set it later
   for (std::size_t n = 0; n < scenario.timeline.size(); ++n) {
     try {
       then = with_live_settings(then, scenario.timeline[n].settings);

@@ -1,12 +1,13 @@
 #pragma once
-/// `run.timeline`: parameters that change by themselves at given times, at once or over a while.
+/// `run.timeline`: parameters that change at given simulated times, at once or over a ramp.
 ///
 ///     run:
 ///       timeline:
 ///         - {time: 500, ramp: 200, set: {rain.rate: 2.0e-5, wind.speed: 3}}
 ///
-/// Any parameter that can change while a simulation runs can be set. Over `ramp` seconds numbers go straight
-/// from what they are at `time` to what is set, in Ramp::stairs equal steps; all else changes at `time`.
+/// Any parameter that can change while a simulation runs can be set. A floating-point parameter changes
+/// linearly over `ramp` seconds from its value at `time` to the new one, in Ramp::stairs equal steps; all
+/// others change at `time`.
 
 #include <string>
 #include <utility>
@@ -26,28 +27,31 @@ struct TimelineEntry {
   double time = 0, ramp = 0;            ///< [s]
   std::vector<std::string> settings{};  ///< "path=value"
 };
-constexpr std::size_t most_timeline_entries = 4096;
+constexpr std::size_t max_timeline_entries = 4096;
 
-/// A number that goes from one value to another.
+/// A parameter that changes linearly from one value to another, in a number of equal steps.
 struct Ramp {
   static constexpr int stairs = 50;
   std::string path;
   double from = 0, to = 0;
   double start = 0, duration = 0;  ///< [s]
-  int stair = 0;                   ///< that it is on
+  int stair = 0;                   ///< the step that has been reached, 0 … stairs
 
+  /// The step that belongs to a simulated time [s].
   int stair_at(double time) const;
+  /// The parameter's value at the present step.
   double value() const { return stair == stairs ? to : from + (to - from) * stair / stairs; }
 };
 
-/// Which settings of an entry begin to change as ramps from what `scenario` has; the others stay in
-/// `settings`.
+/// Removes the settings of floating-point parameters from `settings` and returns them as ramps that begin at
+/// `time` with the values in `scenario`; the others stay. If `duration` is 0 there are no ramps, and all
+/// stay.
 std::vector<Ramp> take_ramps(const Scenario& scenario, std::vector<std::string>& settings, double time,
                              double duration);
 
 std::vector<TimelineEntry> read_timeline(const YAML::Node& list, Faults& faults);
 void emit_timeline(YAML::Emitter& out, const std::vector<TimelineEntry>& timeline);
-/// Adds a fault for each entry that could not be carried out after those before it.
+/// Applies the entries in order to a copy of the scenario and adds a fault for each that is refused.
 void check_timeline(const Scenario& scenario, Faults& faults);
 
 }  // namespace desert_sim

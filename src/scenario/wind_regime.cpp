@@ -4,16 +4,15 @@
 #include <cmath>
 
 #include "kernels/field/random.hpp"
+#include "src/core/constants.hpp"
 
 namespace desert_sim {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 wind::Vector of(const WindSegment& s) { return wind_vector(s.direction_deg, s.speed); }
 
-/// From `a` to `b` as `elapsed` of `ramp` seconds have passed.
+/// Linear interpolation from `a` to `b` after `elapsed` of `ramp` seconds.
 wind::Vector ramped(wind::Vector a, wind::Vector b, double elapsed, double ramp) {
   if (ramp <= 0 || elapsed >= ramp) return b;
   const double t = elapsed / ramp;

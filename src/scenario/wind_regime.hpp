@@ -1,11 +1,11 @@
 #pragma once
-/// The wind high above the ground as a function of time: constant (with a ramp), timeline of segments, or
-/// wind rose. Directions are where the air moves to, counter-clockwise from +x (east).
+/// The wind high above the ground as a function of time: constant (after a ramp), a timeline of segments, or
+/// a wind rose. A direction is the one towards which the air moves, counter-clockwise from +x (east).
 
 #include <cstdint>
 #include <vector>
 
-#include "kernels/wind/wind.hpp"
+#include "kernels/wind/vector.hpp"
 #include "src/core/parameters.hpp"
 
 namespace desert_sim {
@@ -58,23 +58,23 @@ constexpr auto parameter_table(const WindRegimeParameters*) {
       parameter("ramp", &P::ramp, 0, 1e12, "s",
                 "Time in which the constant wind rises, or turns from the one before."),
       parameter("repeat", &P::repeat,
-                "Whether a timeline starts anew at its end; else its last segment holds."),
+                "Whether a timeline starts again at its end; otherwise its last segment stays."),
       parameter("hold_time", &P::hold_time, 1e-3, 1e12, "s", "How long a rose keeps a direction."),
-      parameter("rose_seed", &P::rose_seed, 0, 1.8e19, "1", "Seed of the rose."));
+      parameter("rose_seed", &P::rose_seed, 0, 1.8e19, "1", "Seed of the random draws of a rose."));
 }
 static_assert(table_is_complete<WindRegimeParameters>());
 
-/// A wind regime and where it stands.
+/// A wind regime with its segments and the state from which it began.
 struct WindRegime : WindRegimeParameters {
-  std::vector<WindSegment> segments{};  ///< of a timeline or rose
-  double start_time = 0;                ///< when it began [s]
-  wind::Vector from{};                  ///< the wind then, which the first ramp starts from
+  std::vector<WindSegment> segments{};  ///< segments of a timeline, or directions of a rose
+  double start_time = 0;                ///< simulated time at which it began [s]
+  wind::Vector from{};                  ///< wind at start_time, from which the first ramp starts
 
   /// The wind at simulated time `time` [s]. A timeline that does not repeat holds its last segment.
   wind::Vector at(double time) const;
 };
 
-/// A unit vector that is exact for multiples of 90 degrees.
+/// Unit vector of a direction, exact for multiples of 90 degrees.
 wind::Vector unit_vector(double direction_deg);
 wind::Vector wind_vector(double direction_deg, double speed);
 /// Speed and direction [deg, −180…180] of a vector.

@@ -1,5 +1,5 @@
 #pragma once
-/// Parameter tables to and from YAML.
+/// Reads and writes the parameters of a table as YAML.
 
 #include <yaml-cpp/yaml.h>
 
@@ -15,7 +15,7 @@
 
 namespace desert_sim {
 
-/// Collects all faults of an input, to be thrown at once.
+/// Collects all faults of an input, so that one exception reports them together.
 class Faults {
  public:
   explicit Faults(std::string source) : source_(std::move(source)) {}
@@ -48,7 +48,8 @@ std::string allowed_range(const Row& row) {
   return text.str();
 }
 
-/// Whether a number is in the row's range as a T, so that a limit that T rounds still is. NaN is in no range.
+/// Whether a number is in the row's range. Numbers and limits of float parameters are compared as floats, so
+/// that a limit is in range although its conversion to float rounds it. NaN is never in range.
 template <class T, class Row>
 bool in_range(double number, const Row& row) {
   if constexpr (std::is_same_v<T, float> || std::is_same_v<T, ShortList>)
@@ -58,8 +59,8 @@ bool in_range(double number, const Row& row) {
     return number >= row.lowest && number <= row.highest;
 }
 
-/// A number in the row's range, or a fault. YAML's NaN and infinities are read, so that they are named when
-/// refused.
+/// Reads a number and adds a fault if it is not in the row's range. NaN and infinities (.nan, .inf) are
+/// parsed too, so that the fault names them.
 template <class T, class Row>
 bool read_number(const YAML::Node& node, const Row& row, const std::string& key, Faults& faults,
                  double& number) {
@@ -132,7 +133,7 @@ void read_parameters(const YAML::Node& section, const std::string& path, Faults&
   });
 }
 
-/// Faults for keys that nobody knows, with what is known.
+/// Adds a fault for each key that is not in `known`, and for each key that is given twice.
 inline void refuse_unknown(const YAML::Node& section, const std::string& path,
                            const std::set<std::string>& known, Faults& faults) {
   if (!section.IsDefined() || section.IsNull()) return;
@@ -151,7 +152,7 @@ inline void refuse_unknown(const YAML::Node& section, const std::string& path,
   }
 }
 
-/// A section that is one table.
+/// Reads a section that consists of one parameter table.
 template <class P>
 void read_section(const YAML::Node& section, const std::string& path, Faults& faults, P& parameters) {
   std::set<std::string> known;
@@ -159,7 +160,7 @@ void read_section(const YAML::Node& section, const std::string& path, Faults& fa
   refuse_unknown(section, path + ".", known, faults);
 }
 
-/// Writes all parameters as map entries into an open map. Floats keep every bit.
+/// Writes all parameters as entries of an open map. After set_full_precision(), floats are read back exactly.
 template <class P>
 void emit_parameters(YAML::Emitter& out, const P& parameters) {
   for_each_parameter(parameters, [&](const auto& row, const auto& value) {
@@ -179,7 +180,8 @@ void emit_parameters(YAML::Emitter& out, const P& parameters) {
   });
 }
 
-inline void keep_all_bits(YAML::Emitter& out) {
+/// Sets a precision at which every float and double is read back exactly.
+inline void set_full_precision(YAML::Emitter& out) {
   out.SetFloatPrecision(std::numeric_limits<float>::max_digits10);
   out.SetDoublePrecision(std::numeric_limits<double>::max_digits10);
 }

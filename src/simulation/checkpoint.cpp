@@ -1,11 +1,8 @@
 #include "src/simulation/checkpoint.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
 #include <xxhash.h>
 #include <yaml-cpp/yaml.h>
 
-#include <cerrno>
 #include <cstring>
 
 #include "src/core/error.hpp"
@@ -13,6 +10,7 @@
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/commands/command_yaml.hpp"
 #include "src/simulation/pipeline/memory.hpp"
+#include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
 
@@ -53,156 +51,143 @@ std::string read_whole(const std::string& path) {
 
 }  // namespace
 
-/// Reads and writes what Simulation keeps to itself.
-class CheckpointAccess {
- public:
-  static std::string header(const Simulation& s) {
-    YAML::Emitter out;
-    yaml::keep_all_bits(out);
-    const auto entry = [&](const char* key, const auto& value) {
-      out << YAML::Key << key << YAML::Value << value;
-    };
-    out << YAML::BeginMap;
-    entry("name", s.scenario_.name);
-    entry("folder", s.scenario_.folder);
-    entry("projection", s.scenario_.projection);
-    entry("start", dump_scenario(s.start_));
-    entry("scenario", dump_scenario(s.scenario_));
-    entry("steps", s.steps_);
-    entry("datum", s.terrain_.scale().datum);
-    entry("exponent", s.terrain_.scale().exponent);
-    entry("wind_reference", s.wind_reference_);
-    entry("bedrock_loose", s.bedrock_loose_);
-    entry("soil_loose", s.soil_loose_);
-    entry("avalanche_iterations", s.avalanche_iterations());
-    entry("plants", s.plants_.count);
-    entry("next_timeline_entry", s.next_entry_);
-    out << YAML::Key << "ramps" << YAML::Value << YAML::BeginSeq;
-    for (const Ramp& r : s.ramps_) {
-      out << YAML::Flow << YAML::BeginMap;
-      entry("path", r.path);
-      entry("from", r.from);
-      entry("to", r.to);
-      entry("start", r.start);
-      entry("duration", r.duration);
-      entry("stair", r.stair);
-      out << YAML::EndMap;
-    }
-    out << YAML::EndSeq << YAML::Key << "initial" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-    for (long long quanta : s.initial_) out << quanta;
-    out << YAML::EndSeq << YAML::Key << "ledger" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-    for (long long quanta : s.read_ledger()) out << quanta;
-    out << YAML::EndSeq << YAML::Key << "wind" << YAML::Value << YAML::BeginMap;
-    emit_regime(out, s.regime_);
-    out << YAML::EndMap << YAML::Key << "layers" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-    for (const LayerInfo& row : layer_table)
-      if (row.lifetime == Lifetime::persistent && s.terrain_.has(row.layer)) out << row.name;
-    out << YAML::EndSeq << YAML::EndMap;
-    return out.c_str();
-  }
+namespace {
 
-  static std::unique_ptr<Simulation> make(const YAML::Node& header, Exec& exec, const std::string& path) {
-    const Scenario scenario = read_scenario(header, "scenario", path);
-    HeightScale scale;
-    scale.datum = header["datum"].as<double>();
-    scale.exponent = header["exponent"].as<int>();
-    require_memory(exec, scenario, sizeof(std::uint32_t));
-    std::unique_ptr<Simulation> s(new Simulation(scenario, Terrain(exec, scenario.make_grid(), scale)));
-    s->start_ = read_scenario(header, "start", path);
-    s->steps_ = header["steps"].as<std::uint64_t>();
-    s->wind_reference_ = header["wind_reference"].as<Quanta>();
-    s->bedrock_loose_ = header["bedrock_loose"].as<bool>();
-    s->soil_loose_ = header["soil_loose"].as<bool>();
-    if (s->bedrock_loose_ || s->soil_loose_) s->prepare_ground_avalanches();
-    s->avalanche_iterations_ = header["avalanche_iterations"].as<std::uint64_t>();
-    s->next_entry_ = header["next_timeline_entry"].as<std::size_t>();
-    for (const YAML::Node& r : header["ramps"])
-      s->ramps_.push_back({r["path"].as<std::string>(), r["from"].as<double>(), r["to"].as<double>(),
-                           r["start"].as<double>(), r["duration"].as<double>(), r["stair"].as<int>()});
-    for (std::size_t m = 0; m < s->initial_.size(); ++m)
-      s->initial_[m] = header["initial"][m].as<long long>();
-    std::vector<long long> words(LedgerView::words, 0);
-    for (std::size_t account = 0; account < material_count * 2; ++account)
-      words[account * LedgerView::stripes] = header["ledger"][account].as<long long>();
-    s->ledger_.upload(words);
-    s->regime_ = read_regime(header["wind"], path + ": wind");
-    return s;
-  }
-
-  static Terrain& terrain(Simulation& s) { return s.terrain_; }
-  static void set_plants(Simulation& s, const std::vector<std::uint32_t>& words) {
-    if (s.plants_) s.set_plants(words);
-  }
-
- private:
-  static Scenario read_scenario(const YAML::Node& header, const char* key, const std::string& path) {
-    Scenario scenario =
-        parse_scenario(YAML::Load(header[key].as<std::string>()), path, header["folder"].as<std::string>());
-    scenario.name = header["name"].as<std::string>();
-    scenario.projection = header["projection"].as<std::string>();
-    return scenario;
-  }
-};
-
-/// To a temporary file first, which gets its name when it is durable.
-void write_checkpoint(const std::string& path, const std::string& bytes) {
-  const std::string temporary = path + ".part";
-  const auto fail = [&](const char* what) {
-    const std::string reason = std::strerror(errno);
-    unlink(temporary.c_str());
-    throw ConfigError(path + ": " + what + ": " + reason);
-  };
-  const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) fail("cannot be written");
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t n = write(file, bytes.data() + done, bytes.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const int error = errno;
-      close(file);
-      errno = error;
-      fail("writing");
-    }
-    done += static_cast<std::size_t>(n);
-  }
-  if (fsync(file) != 0 || close(file) != 0) fail("making it durable");
-  if (rename(temporary.c_str(), path.c_str()) != 0) fail("renaming");
-  const std::size_t slash = path.rfind('/');
-  const int folder =
-      open(slash == std::string::npos ? "." : path.substr(0, slash + 1).c_str(), O_RDONLY | O_CLOEXEC);
-  if (folder >= 0) {
-    fsync(folder);  // the name itself; a file system that cannot do this still has the data
-    close(folder);
-  }
+std::vector<Layer> saved_layers(const Terrain& terrain) {
+  std::vector<Layer> layers;
+  for (const LayerInfo& row : layer_table)
+    if (row.lifetime == Lifetime::persistent && terrain.has(row.layer)) layers.push_back(row.layer);
+  return layers;
 }
 
+template <class T>
+void entry(YAML::Emitter& out, const char* key, const T& value) {
+  out << YAML::Key << key << YAML::Value << value;
+}
+
+void emit_ramps(YAML::Emitter& out, const std::vector<Ramp>& ramps) {
+  out << YAML::Key << "ramps" << YAML::Value << YAML::BeginSeq;
+  for (const Ramp& r : ramps) {
+    out << YAML::Flow << YAML::BeginMap;
+    entry(out, "path", r.path);
+    entry(out, "from", r.from);
+    entry(out, "to", r.to);
+    entry(out, "start", r.start);
+    entry(out, "duration", r.duration);
+    entry(out, "stair", r.stair);
+    out << YAML::EndMap;
+  }
+  out << YAML::EndSeq;
+}
+
+template <class Numbers>
+void emit_quanta(YAML::Emitter& out, const char* key, const Numbers& numbers) {
+  out << YAML::Key << key << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  for (long long quanta : numbers) out << quanta;
+  out << YAML::EndSeq;
+}
+
+std::string header_of(const Simulation& simulation) {
+  const SimulationState& s = simulation.state();
+  YAML::Emitter out;
+  yaml::set_full_precision(out);
+  out << YAML::BeginMap;
+  entry(out, "name", s.scenario.name);
+  entry(out, "folder", s.scenario.folder);
+  entry(out, "projection", s.scenario.projection);
+  entry(out, "start", dump_scenario(s.start));
+  entry(out, "scenario", dump_scenario(s.scenario));
+  entry(out, "steps", s.steps);
+  entry(out, "datum", s.terrain.scale().datum);
+  entry(out, "exponent", s.terrain.scale().exponent);
+  entry(out, "wind_reference", s.wind_reference);
+  entry(out, "bedrock_loose", s.bedrock_loose);
+  entry(out, "soil_loose", s.soil_loose);
+  entry(out, "avalanche_iterations", simulation.pipeline().avalanche_iterations());
+  entry(out, "plants", s.plants.count);
+  entry(out, "next_timeline_entry", s.next_timeline_entry);
+  emit_ramps(out, s.ramps);
+  emit_quanta(out, "initial", s.initial);
+  emit_quanta(out, "ledger", s.read_ledger());
+  out << YAML::Key << "wind" << YAML::Value << YAML::BeginMap;
+  emit_regime(out, s.wind_regime);
+  out << YAML::EndMap << YAML::Key << "layers" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  for (Layer layer : saved_layers(s.terrain)) out << info(layer).name;
+  out << YAML::EndSeq << YAML::EndMap;
+  return out.c_str();
+}
+
+Scenario read_scenario(const YAML::Node& header, const char* key, const std::string& path) {
+  Scenario scenario =
+      parse_scenario(YAML::Load(header[key].as<std::string>()), path, header["folder"].as<std::string>());
+  scenario.name = header["name"].as<std::string>();
+  scenario.projection = header["projection"].as<std::string>();
+  return scenario;
+}
+
+/// A simulation with all of its state but the layers and plants.
+std::unique_ptr<Simulation> simulation_of(const YAML::Node& header, Exec& exec, const std::string& path) {
+  const Scenario scenario = read_scenario(header, "scenario", path);
+  HeightScale scale;
+  scale.datum = header["datum"].as<double>();
+  scale.exponent = header["exponent"].as<int>();
+  require_memory(exec, scenario, sizeof(std::uint32_t));
+  auto simulation = std::make_unique<Simulation>(scenario, Terrain(exec, scenario.make_grid(), scale));
+  SimulationState& s = simulation->state();
+  s.start = read_scenario(header, "start", path);
+  s.steps = header["steps"].as<std::uint64_t>();
+  s.wind_reference = header["wind_reference"].as<Quanta>();
+  s.bedrock_loose = header["bedrock_loose"].as<bool>();
+  s.soil_loose = header["soil_loose"].as<bool>();
+  s.avalanche_iterations = header["avalanche_iterations"].as<std::uint64_t>();
+  s.next_timeline_entry = header["next_timeline_entry"].as<std::size_t>();
+  for (const YAML::Node& node : header["ramps"]) {
+    Ramp r;
+    r.path = node["path"].as<std::string>();
+    r.from = node["from"].as<double>();
+    r.to = node["to"].as<double>();
+    r.start = node["start"].as<double>();
+    r.duration = node["duration"].as<double>();
+    r.stair = node["stair"].as<int>();
+    s.ramps.push_back(r);
+  }
+  for (std::size_t m = 0; m < s.initial.size(); ++m) s.initial[m] = header["initial"][m].as<long long>();
+  std::vector<long long> accounts;
+  for (std::size_t account = 0; account < material_count * 2; ++account)
+    accounts.push_back(header["ledger"][account].as<long long>());
+  s.write_ledger(accounts);
+  s.wind_regime = read_regime(header["wind"], path + ": wind");
+  simulation->pipeline().adapt();  // ground that is loose needs memory
+  return simulation;
+}
+
+}  // namespace
+
 std::string checkpoint_bytes(const Simulation& simulation) {
-  const std::string header = CheckpointAccess::header(simulation);
+  const SimulationState& state = simulation.state();
+  const std::string header = header_of(simulation);
+  const std::vector<Layer> layers = saved_layers(state.terrain);
+  const std::vector<std::uint32_t> plants = plants::words(state.plants);
+  const std::size_t layer_bytes =
+      static_cast<std::size_t>(state.terrain.grid().cells()) * sizeof(std::uint32_t);
   std::string bytes;
-  std::size_t length = header.size() + 256;
-  for (const LayerInfo& row : layer_table)
-    if (row.lifetime == Lifetime::persistent && simulation.terrain().has(row.layer))
-      length += static_cast<std::size_t>(simulation.terrain().grid().cells()) * sizeof(std::uint32_t);
-  length +=
-      static_cast<std::size_t>(simulation.plants().count) * plants::column_count * sizeof(std::uint32_t);
-  bytes.reserve(length);  // growing could take three times as much
+  // Growing could take three times as much memory.
+  bytes.reserve(header.size() + 256 + layers.size() * layer_bytes + plants.size() * sizeof(std::uint32_t));
   bytes = magic;
   append(bytes, version);
   append(bytes, static_cast<std::uint64_t>(header.size()));
   bytes += header;
-  for (const LayerInfo& row : layer_table) {
-    if (row.lifetime != Lifetime::persistent || !simulation.terrain().has(row.layer)) continue;
-    const std::vector<std::uint32_t> words = simulation.terrain().words(row.layer);
+  const auto append_words = [&bytes](const std::vector<std::uint32_t>& words) {
     bytes.append(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t));
-  }
-  const std::vector<std::uint32_t> plants = plants::words(simulation.plants());
-  bytes.append(reinterpret_cast<const char*>(plants.data()), plants.size() * sizeof(std::uint32_t));
+  };
+  for (Layer layer : layers) append_words(state.terrain.words(layer));
+  append_words(plants);
   append(bytes, static_cast<std::uint64_t>(XXH3_64bits(bytes.data(), bytes.size())));
   return bytes;
 }
 
 void save_checkpoint(const std::string& path, const Simulation& simulation) {
-  write_checkpoint(path, checkpoint_bytes(simulation));
+  write_file(path, checkpoint_bytes(simulation));
 }
 
 std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec) {
@@ -213,8 +198,9 @@ std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec)
   try {
     const YAML::Node header = YAML::Load(bytes.substr(at, length));
     at += length;
-    std::unique_ptr<Simulation> simulation = CheckpointAccess::make(header, exec, path);
-    const std::size_t cells = static_cast<std::size_t>(simulation->terrain().grid().cells());
+    std::unique_ptr<Simulation> simulation = simulation_of(header, exec, path);
+    SimulationState& state = simulation->state();
+    const std::size_t cells = static_cast<std::size_t>(state.terrain.grid().cells());
     const auto next_words = [&](std::size_t count) {
       std::vector<std::uint32_t> words(count);
       if ((bytes.size() - at) / sizeof(std::uint32_t) < count) throw ConfigError(path + ": is cut off");
@@ -223,10 +209,10 @@ std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec)
       return words;
     };
     for (const YAML::Node& name : header["layers"])
-      CheckpointAccess::terrain(*simulation)
-          .set_words(layer_by_name(name.as<std::string>()), next_words(cells));
-    CheckpointAccess::set_plants(*simulation,
-                                 next_words(header["plants"].as<std::size_t>() * plants::column_count));
+      state.terrain.set_words(layer_by_name(name.as<std::string>()), next_words(cells));
+    const std::vector<std::uint32_t> plants =
+        next_words(header["plants"].as<std::size_t>() * plants::column_count);
+    if (state.plants) state.set_plants(plants);
     return simulation;
   } catch (const YAML::Exception& e) {
     throw ConfigError(path + ": its header cannot be read: " + e.msg);

@@ -1,9 +1,9 @@
 #pragma once
 /// Checkpoints: a whole simulation in a file.
 ///
-/// Format: the line "desert_sim checkpoint", version (u32), length of the header (u64), header (YAML:
-/// scenario now and at its start, clock, wind regime, height scale, books, layers), the layers' words as
-/// stored, the plants' columns, XXH3-64 of all before. Little-endian. Written to a temporary name, fsynced and renamed, so that a
+/// Format: the line "desert_sim checkpoint", version (u32), length of the header (u64), header (YAML: scenario now and
+/// at its start, clock, wind regime, height scale, accounts of material, layers), the layers' words as stored, the
+/// plants' columns, XXH3-64 of all before. All numbers are little-endian. Files are written by write_file(), so that a
 /// file of that name is always whole.
 
 #include <memory>
@@ -13,11 +13,9 @@
 
 namespace desert_sim {
 
-/// A checkpoint's bytes, and writing them durably. The latter needs no simulation, and throws ConfigError if
-/// the file cannot be written.
+/// The content of a checkpoint; write_file() needs no simulation.
 std::string checkpoint_bytes(const Simulation& simulation);
-void write_checkpoint(const std::string& path, const std::string& bytes);
-/// Both of them.
+/// Throws ConfigError if the file cannot be written.
 void save_checkpoint(const std::string& path, const Simulation& simulation);
 /// Throws ConfigError if the file is missing, of another version, cut off or corrupt.
 std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec);

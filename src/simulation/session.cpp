@@ -2,9 +2,8 @@
 
 #include <xxhash.h>
 
-#include <cstdio>
-
 #include "src/core/error.hpp"
+#include "src/core/log.hpp"
 #include "src/scenario/band_terrain.hpp"
 #include "src/simulation/checkpoint.hpp"
 
@@ -48,7 +47,7 @@ Session::~Session() {
   try {
     journal_->end(ticks_);
   } catch (const Error& e) {
-    std::fprintf(stderr, "desert_sim: %s\n", e.what());
+    log_error(e.what());
   }
 }
 
@@ -83,44 +82,31 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
   return hash;
 }
 
-CommandResult Session::dispatch(const Command& command, bool with_change, Command& journalled) {
-  if (std::holds_alternative<command::Reset>(command)) {
-    check_scenario_(simulation_->start());
-    simulation_ = std::make_unique<Simulation>(*exec_, simulation_->start(), load_raster_);
-    return {};
-  }
-  if (const auto* load = std::get_if<command::LoadCheckpoint>(&command)) {
-    std::unique_ptr<Simulation> loaded = load_checkpoint(load->path, *exec_);
-    const std::uint64_t hash = loaded->state_hash();
-    if (load->hash != 0 && load->hash != hash)
-      throw ConfigError(load->path +
-                        ": is not the checkpoint that the journal means (its state hash differs)");
-    simulation_ = std::move(loaded);
-    journalled = command::LoadCheckpoint{load->path, hash};
-    return {};
-  }
-  if (const auto* load = std::get_if<command::LoadScenario>(&command)) {
-    journalled =
-        command::LoadScenario{load->path, load->terrain_only, load_scenario(*load), load->fill_nodata};
-    return {};
-  }
-  return std::visit(
-      [&](const auto& c) -> CommandResult {
-        using C = std::decay_t<decltype(c)>;
-        if constexpr (std::is_same_v<C, command::Reset> || std::is_same_v<C, command::LoadCheckpoint> ||
-                      std::is_same_v<C, command::LoadScenario>)
-          throw Error("handled above");
-        else if constexpr (std::is_same_v<C, command::EditTerrain>)
-          return simulation_->apply(c, with_change);
-        else
-          return simulation_->apply(c);
-      },
-      command);
+CommandResult Session::carry_out(const command::Reset&, bool, Command&) {
+  check_scenario_(simulation_->start());
+  simulation_ = std::make_unique<Simulation>(*exec_, simulation_->start(), load_raster_);
+  return {};
+}
+
+CommandResult Session::carry_out(const command::LoadCheckpoint& load, bool, Command& journalled) {
+  std::unique_ptr<Simulation> loaded = load_checkpoint(load.path, *exec_);
+  const std::uint64_t hash = loaded->state_hash();
+  if (load.hash != 0 && load.hash != hash)
+    throw ConfigError(load.path + ": is not the checkpoint that the journal means (its state hash differs)");
+  simulation_ = std::move(loaded);
+  journalled = command::LoadCheckpoint{load.path, hash};
+  return {};
+}
+
+CommandResult Session::carry_out(const command::LoadScenario& load, bool, Command& journalled) {
+  journalled = command::LoadScenario{load.path, load.terrain_only, load_scenario(load), load.fill_nodata};
+  return {};
 }
 
 CommandResult Session::apply(const Command& command, bool with_change) {
   Command journalled = command;
-  const CommandResult result = dispatch(command, with_change, journalled);
+  const CommandResult result =
+      std::visit([&](const auto& c) { return carry_out(c, with_change, journalled); }, command);
   if (journal_) journal_->write(ticks_, journalled);
   return result;
 }

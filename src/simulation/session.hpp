@@ -45,7 +45,17 @@ class Session {
 
  private:
   Session(const RasterLoader& load_raster, const std::string& backend, int threads);
-  CommandResult dispatch(const Command& command, bool with_change, Command& journalled);
+  /// Each replaces what the journal will have by what a replay needs to find the same again.
+  CommandResult carry_out(const command::Reset& command, bool with_change, Command& journalled);
+  CommandResult carry_out(const command::LoadCheckpoint& command, bool with_change, Command& journalled);
+  CommandResult carry_out(const command::LoadScenario& command, bool with_change, Command& journalled);
+  CommandResult carry_out(const command::EditTerrain& command, bool with_change, Command&) {
+    return simulation_->apply(command, with_change);
+  }
+  template <class Other>
+  CommandResult carry_out(const Other& command, bool, Command&) {
+    return simulation_->apply(command);
+  }
   Scenario read_scenario(const command::LoadScenario& command) const;
   /// Returns the state hash at the new scenario's start.
   std::uint64_t load_scenario(const command::LoadScenario& command);

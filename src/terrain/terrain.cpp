@@ -29,9 +29,9 @@ HeightScale HeightScale::covering(double lowest, double highest) {
 Terrain::Terrain(Exec& exec, const Grid& grid, const HeightScale& scale)
     : exec_(&exec), grid_(grid), scale_(scale) {
   const long long cells = static_cast<long long>(grid.width) * grid.height;
-  if (cells > most_cells)
+  if (cells > max_grid_cells)
     throw ConfigError("grid of " + std::to_string(grid.width) + " x " + std::to_string(grid.height) +
-                      " has " + std::to_string(cells) + " cells; more than " + std::to_string(most_cells) +
+                      " has " + std::to_string(cells) + " cells; more than " + std::to_string(max_grid_cells) +
                       " cannot be indexed");
   for (Layer layer :
        {Layer::bedrock, Layer::sand, Layer::airborne_sand, Layer::elevation, Layer::wind_x, Layer::wind_y})

@@ -1,5 +1,5 @@
 #pragma once
-/// The terrain: its grid, where it lies, and its layers on the backend's device.
+/// The terrain: its grid, its height scale, and its layers in the memory of the backend's device.
 
 #include <array>
 #include <cmath>
@@ -12,19 +12,20 @@
 
 namespace desert_sim {
 
-/// Layer by name; throws ConfigError that lists the known ones.
+/// The layer with this name. Throws ConfigError that lists the known names.
 Layer layer_by_name(const std::string& name);
 
-/// How heights are counted: value [m] = datum + quanta · 2^exponent for elevations, quanta · 2^exponent for
-/// depths.
+/// How heights are stored as integers (quanta): value [m] = datum + quanta · 2^exponent for elevations, and
+/// quanta · 2^exponent for depths.
 struct HeightScale {
   double datum = 0;    ///< [m]
   int exponent = -20;  ///< quantum = 2^exponent m
 
   double quantum() const { return std::ldexp(1.0, exponent); }
-  /// The finest scale (not below 2⁻²⁰ m) that holds heights from `lowest` to `highest` with room for moving
-  /// sand.
+  /// The finest scale (not below 2⁻²⁰ m) that can represent heights from `lowest` to `highest` [m] with
+  /// headroom for moving sand.
   static HeightScale covering(double lowest, double highest);
+  /// Whether the layer's values are elevations, which count from the datum.
   bool absolute(Layer layer) const {
     return layer == Layer::bedrock || layer == Layer::elevation || layer == Layer::water_surface;
   }
@@ -32,34 +33,35 @@ struct HeightScale {
 
 class Terrain {
  public:
-  /// All cells of all layers are 0 (bedrock: the datum). Throws ConfigError if there are more than
-  /// most_cells, or if memory runs out; whether it will, require_memory() of simulation/memory.hpp tells
-  /// before.
+  /// Sets all cells of all layers to 0 (the bedrock to the datum). Throws ConfigError if the grid has more
+  /// than max_grid_cells, or if memory runs out; require_memory() in src/simulation/pipeline/memory.hpp checks
+  /// the memory beforehand.
   Terrain(Exec& exec, const Grid& grid, const HeightScale& scale);
 
   Exec& exec() const { return *exec_; }
   const Grid& grid() const { return grid_; }
   const HeightScale& scale() const { return scale_; }
   bool has(Layer layer) const { return static_cast<bool>(layers_[static_cast<std::size_t>(layer)]); }
-  /// Takes the layer into use, all 0, if it is not yet.
+  /// Allocates the layer and fills it with 0, unless it is allocated already.
   void require(Layer layer);
-  /// Takes a derived layer into use, or out of it.
+  /// Allocates a derived layer as require() does, or frees it.
   void use(Layer layer, bool wanted);
   TerrainView view() const;
 
-  /// Values in the layer's unit (bedrock and elevation absolute), row-major from the south-west; 0 if not in
-  /// use.
+  /// Values in the layer's unit (bedrock and elevation absolute), row-major from the south-west; all 0 if the
+  /// layer is not allocated.
   std::vector<float> values(Layer layer) const;
-  /// What a number of quanta in a layer stands for.
+  /// The conversion of a layer's quanta to metres.
   Metres metres(Layer layer) const;
-  /// Rounds to quanta. `values` must have one per cell, within the layer's range (checked by the caller).
+  /// Sets a layer, rounding to quanta. `values` must have one value per cell, within the layer's range; the
+  /// caller checks that.
   void set_values(Layer layer, const std::vector<double>& values);
 
-  /// Bits as stored, for checkpoint and hash.
+  /// The layer's words as stored, for checkpoints and state hashes.
   std::vector<std::uint32_t> words(Layer layer) const;
   void set_words(Layer layer, const std::vector<std::uint32_t>& words);
   std::uint32_t* data(Layer layer) const { return layers_[static_cast<std::size_t>(layer)].data(); }
-  /// Bytes of all layers.
+  /// Memory of all layers [bytes].
   std::size_t bytes() const;
 
  private:

@@ -12,7 +12,7 @@ namespace desert_sim {
 
 namespace {
 
-/// As printf() writes it.
+/// A text formatted as by printf(), of at most 511 bytes.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...) {
   char text[512];
   va_list values;
@@ -49,21 +49,21 @@ std::string bench_text(const BenchReport& r) {
                 r.quality.c_str(), r.steps, static_cast<unsigned long long>(r.warm_up));
   text += formatted("  %-12s %10.4f ms (median of %zu; %.4f ... %.4f)  %.2f M cell-steps/s\n", "whole step",
                     ms, r.repeats.size(), *fastest, *slowest, r.cells() / ms * 1e-3);
-  text += formatted("  %-12s %10.1f GB/s; a step's fewest bytes, %.0f a cell, are %.1f %% of it\n", "copy",
-                    r.copied * 1e-9, r.bytes(), 100 * r.share_of_copy(r.bytes(), ms));
+  text +=
+      formatted("  %-12s %10.1f GB/s; the least traffic of a step, %.0f bytes per cell, is %.1f %% of it\n",
+                "copy", r.copied * 1e-9, r.bytes(), 100 * r.share_of_copy(r.bytes(), ms));
   for (const BenchReport::Process& p : r.processes)
     text +=
-        formatted("  %-12s %10.4f ms  %5.1f bytes a cell at least: %5.1f %% of copy speed\n", p.name.c_str(),
-                  p.milliseconds, p.bytes, 100 * r.share_of_copy(p.bytes, p.milliseconds));
+        formatted("  %-12s %10.4f ms  at least %5.1f bytes per cell: %5.1f %% of copy speed\n",
+                  p.name.c_str(), p.milliseconds, p.bytes, 100 * r.share_of_copy(p.bytes, p.milliseconds));
   text += formatted(
       "  residual     %.4f %% of cells over 1e-3, %.4f %% over 1e-2, mean excess %.5f, largest %.5f; %.1f "
-      "fine "
-      "sweeps a step\n",
+      "sweeps of the fine grid per step\n",
       100 * r.residual.share_over_1e3, 100 * r.residual.share_over_1e2, r.residual.mean_excess,
       r.residual.largest_excess, r.fine_sweeps);
   text += formatted("  sand lost    %lld quanta of %lld\n", r.sand.residual(), r.sand.initial);
   const double bytes = static_cast<double>(total_bytes(r.memory));
-  text += formatted("  memory       %.1f bytes a cell, %.1f MiB:", bytes / r.cells(), bytes / 1048576);
+  text += formatted("  memory       %.1f bytes per cell, %.1f MiB:", bytes / r.cells(), bytes / 1048576);
   for (const MemoryPart& part : r.memory)
     text += formatted(" %s %.1f,", part.name.c_str(), static_cast<double>(part.bytes) / r.cells());
   text.back() = '\n';

@@ -1,9 +1,10 @@
 #pragma once
-/// What desert_bench measured, as text for people and as JSON for programs.
+/// The measurements of desert_bench, formatted as text and as JSON.
 
 #include <string>
 #include <vector>
 
+#include "kernels/field/statistics.hpp"
 #include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
@@ -11,32 +12,33 @@ namespace desert_sim {
 struct BenchReport {
   struct Process {
     std::string name;
-    double milliseconds = 0;  ///< a step, timed by itself; includes the wait for the device
-    double bytes = 0;         ///< fewest a cell (cost_model.hpp); 0: not in the model
+    double milliseconds = 0;  ///< time per step, measured separately, synchronisation included
+    double bytes = 0;         ///< least traffic per cell and step (cost_model.hpp); 0: not modelled
   };
 
   std::string scene, backend, device, quality;
-  int width = 0, height = 0, threads = 0;  ///< threads of the CPU; 0 on a GPU
+  int width = 0, height = 0, threads = 0;  ///< threads of the CPU backend; 0 on a GPU
   double cell_size = 0;                    ///< [m]
-  std::uint64_t warm_up = 0;    ///< steps done before the scene's timing began, of its checkpoint or by us
-  int steps = 0;                ///< after that, until the residual was taken
-  std::vector<double> repeats;  ///< milliseconds a step of each block of steps
-  double copied = 0;            ///< bytes a second that a copy reads and writes, measured on the same device
+  std::uint64_t warm_up = 0;               ///< steps before the timing, including those of a checkpoint
+  int steps = 0;                           ///< steps after the warm-up, before the residual was computed
+  std::vector<double> repeats;             ///< time per step in each block of steps [ms]
+  double copied = 0;  ///< bandwidth of a copy on the same device, read and written [bytes/s]
   std::vector<Process> processes;
   Residual residual;
-  double fine_sweeps = 0;  ///< of avalanching, a step
+  double fine_sweeps = 0;  ///< mean sweeps of avalanching over the fine grid per step
   MaterialBalance sand;
   std::vector<MemoryPart> memory;
 
   double cells() const { return static_cast<double>(width) * height; }
-  double milliseconds() const;  ///< a step: the repeats' median
-  double bytes() const;         ///< fewest a cell of all processes
-  /// Bytes a cell in so many milliseconds, over what a copy moves in that time.
+  double milliseconds() const;  ///< time per step: the median of the repeats
+  double bytes() const;         ///< least traffic per cell and step of all processes
+  /// Bandwidth of `bytes_a_cell` bytes per cell in `ms` milliseconds, relative to that of a copy.
   double share_of_copy(double bytes_a_cell, double ms) const;
 };
 
+/// The report as text for people.
 std::string bench_text(const BenchReport& report);
-/// One object; its fields are in test/bench/README.md.
+/// The report as one JSON object; doc/performance.md describes its fields.
 std::string bench_json(const BenchReport& report);
 
 }  // namespace desert_sim

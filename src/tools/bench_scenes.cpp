@@ -24,7 +24,7 @@ Scenario bench_scenario(const std::string& scene, int size, const Settings& sett
        << "terrain:\n  - noise: {layer: sand, low: " << (thick ? 3.0 : 0.5)
        << ", high: " << (thick ? 5.0 : 2.0) << "}\n"
        << "wind: {speed: " << (thick ? 3 : 5) << ", direction_deg: 0}\n";
-  // One name for both: a checkpoint of the one is a start of the other.
+  // `edited` has the name of `mature`, so that a checkpoint of one is a start of the other.
   return parse_scenario_text(text.str(), scene == "edited" ? "mature" : scene, settings);
 }
 

@@ -1,28 +1,29 @@
 #pragma once
-/// The fewest bytes a cell that each process must move through memory in a step: every layer that a pass over
-/// the grid reads or writes, once, four bytes each. The one table of it; test/bench/README.md shows it.
+/// Cost model: the least memory traffic per cell of each process in a step, as the processes declare it
+/// (Process::traffic). doc/performance.md shows the table.
 
 #include <string>
 #include <vector>
 
-#include "kernels/avalanching/avalanching.hpp"
+#include "src/simulation/pipeline/process.hpp"
+#include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
 
 struct ProcessCost {
-  const char* process;
-  double bytes;  ///< a cell and step
-  std::string reads, writes;
+  std::string process;
+  MemoryTraffic traffic;
 };
 
-/// Of a step of sand on bare rock with the default processes: no soil, plants, water, open edges or abrasion.
-/// Avalanches of quality `converged` go on where they must; this counts the first cycle.
-std::vector<ProcessCost> cost_model(const avalanching::Schedule& plan);
+/// Costs of the processes for sand on bare rock, without soil, plants, water, open boundaries or abrasion.
+/// For avalanching of quality `converged` only the first cycle is counted.
+std::vector<ProcessCost> cost_model(const Scenario& scenario, const Grid& grid);
 
-/// Of one process; 0 if the model does not have it.
-double fewest_bytes(const std::vector<ProcessCost>& model, const std::string& process);
+/// Least traffic of one process [bytes per cell and step]; 0 if it is not in the model.
+double min_bytes(const std::vector<ProcessCost>& model, const std::string& process);
 
-/// Rows of a markdown table; of avalanches by their presets.
+/// The costs on a large grid as rows of a markdown table, with one row for each of the avalanching presets
+/// fast and good.
 std::string cost_table();
 
 }  // namespace desert_sim

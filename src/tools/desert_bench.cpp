@@ -1,5 +1,4 @@
-/// desert_bench: times the benchmark scenes by size and backend. See test/bench/README.md for what was
-/// measured.
+/// desert_bench: measures the time per step of the benchmark scenes. doc/performance.md has results.
 #include <omp.h>
 
 #include <algorithm>
@@ -22,26 +21,23 @@ namespace {
 const char usage[] =
     "usage: desert_bench [options]\n"
     "       desert_bench --roofline PICTURE.png RESULT.json...\n"
-    "  --scene S         A (barchans, default), B (transverse), mature (A after 2000 steps), edited (mature, "
-    "and\n"
-    "                    a column of sand, 50 m high, dropped into it), all 1024 m square; or SCENARIO.yaml\n"
-    "  --size N          cells a side (default 512)\n"
+    "  --scene S         A (barchans, default), B (transverse), mature (A after 2000 steps), edited (mature\n"
+    "                    with a column of sand, 50 m high, added), all 1024 m square; or SCENARIO.yaml\n"
+    "  --size N          cells along each side (default 512)\n"
     "  --steps N         steps to time (default by size), in ten blocks, the first of which is not timed\n"
     "  --warm-up N       steps before these (default 2000 for mature and edited, else 0)\n"
-    "  --start FILE      a checkpoint of the scene instead of its start and its warm-up\n"
-    "  --save-start FILE save the state after the warm-up there, for --start\n"
+    "  --start FILE      start from a checkpoint of the scene, without a warm-up\n"
+    "  --save-start FILE save the state after the warm-up to FILE, for --start\n"
     "  --backend B       auto (default), cpu or cuda\n"
     "  --threads N       threads of the CPU backend\n"
     "  --quality Q       fast, good or converged (default: the scenario's)\n"
     "  --set PATH=VAL    override a key of the scenario; may be repeated\n"
-    "  --json FILE       write the result there (-: print it instead of text); test/bench/README.md tells "
-    "the "
-    "fields\n"
-    "  --roofline FILE   draw bytes a cell against milliseconds as a picture (needs python3 with "
-    "matplotlib): of\n"
-    "                    the JSON results that are given, or of this run\n"
-    "  --cost-model      print the fewest bytes a cell that processes must move, as a markdown table\n"
-    "Exit status: 0; 1 if sand was lost; 2 for input it refuses; 3 for a failure at run time.\n";
+    "  --json FILE       write the result to FILE (-: print it instead of text); doc/performance.md\n"
+    "                    describes its fields\n"
+    "  --roofline FILE   draw a picture of bytes per cell against milliseconds for the given JSON results\n"
+    "                    or for this run (needs python3 with matplotlib)\n"
+    "  --cost-model      print the least memory traffic per cell of each process, as a markdown table\n"
+    "Exit status: 0; 1 if sand was lost; 2 for invalid input; 3 for a failure at run time.\n";
 
 constexpr int blocks = 10;
 
@@ -54,7 +50,7 @@ int default_steps(int size, bool gpu) {
   return size <= 1024 ? 1000 : (size <= 2048 ? 600 : (size <= 4096 ? 200 : (size <= 8192 ? 40 : 20)));
 }
 
-/// Bytes a second that a large copy reads and writes.
+/// Bandwidth of a large copy, read and written [bytes/s].
 double measured_copy(Exec& exec) {
   const std::size_t most = std::string(exec.backend()) == "cpu" ? std::size_t{1} << 28 : std::size_t{1} << 30;
   const std::size_t bytes = std::min(most, exec.memory_available() / 8);
@@ -79,25 +75,26 @@ Settings settings_of(const Options& o) {
   return settings;
 }
 
-/// From the checkpoint of --start, with what the options say about its parameters.
+/// A session from the checkpoint of --start, with the parameters that other options set.
 std::unique_ptr<Session> resumed(const Options& o, const std::string& scene, int threads) {
   const std::string path = o.text("start", "");
-  if (o.has("warm-up")) throw ConfigError("--warm-up: a --start has its own");
+  if (o.has("warm-up")) throw ConfigError("--warm-up: cannot be combined with --start");
   auto session = Session::resumed(path, raster_loader(), o.text("backend", "auto"), threads);
   const Scenario& found = session->simulation().scenario();
   const std::string wanted = bench_scenario(scene, found.grid.width, {}).name;
   if (found.name != wanted)
-    throw ConfigError("--start " + path + ": is of the scene " + found.name + ", not of " + wanted);
+    throw ConfigError("--start " + path + ": is a checkpoint of the scene " + found.name + ", not of " +
+                      wanted);
   const long long size = o.number("size", found.grid.width, 16, 65536);
   if (size != found.grid.width)
-    throw ConfigError("--size " + std::to_string(size) + ": --start " + path + " has " +
-                      std::to_string(found.grid.width));
+    throw ConfigError("--size " + std::to_string(size) + ": the checkpoint of --start " + path +
+                      " has the size " + std::to_string(found.grid.width));
   const Settings settings = settings_of(o);
   if (!settings.empty()) session->apply(command::SetParameters{settings});
   return session;
 }
 
-/// At its start, or after its warm-up.
+/// A session at the state from which timing starts.
 std::unique_ptr<Session> ready_session(const Options& o, const std::string& scene, int threads) {
   if (o.has("start")) return resumed(o, scene, threads);
   const int size = static_cast<int>(o.number("size", 512, 16, 65536));
@@ -108,7 +105,7 @@ std::unique_ptr<Session> ready_session(const Options& o, const std::string& scen
   return session;
 }
 
-/// Milliseconds a step of each block of `count` steps.
+/// Milliseconds per step in each block of `count` steps, without the first block.
 std::vector<double> timed_blocks(Session& session, int count) {
   Exec& exec = session.simulation().exec();
   std::vector<double> times;
@@ -124,15 +121,14 @@ std::vector<double> timed_blocks(Session& session, int count) {
 
 std::vector<BenchReport::Process> timed_processes(Session& session, int steps) {
   Simulation& s = session.simulation();
-  const std::vector<ProcessCost> model =
-      cost_model(avalanching::schedule(s.scenario().avalanching, s.terrain().grid()));
+  const std::vector<ProcessCost> model = cost_model(s.scenario(), s.terrain().grid());
   s.exec().synchronise();
   s.set_timing(true);
   for (int n = 0; n < steps; ++n) session.step();
   s.set_timing(false);
   std::vector<BenchReport::Process> processes;
   for (const ProcessTime& t : s.process_times())
-    processes.push_back({t.process, t.milliseconds / steps, fewest_bytes(model, t.process)});
+    processes.push_back({t.process, t.milliseconds / steps, min_bytes(model, t.process)});
   return processes;
 }
 
@@ -174,12 +170,14 @@ int main_(const Options& o) {
   if (o.has("cost-model")) return std::fputs(cost_table().c_str(), stdout), 0;
   const std::string picture = o.text("roofline", "");
   if (!o.positional().empty()) {
-    if (picture.empty()) throw ConfigError("'" + o.positional()[0] + "': unexpected (--help shows how)");
+    if (picture.empty())
+      throw ConfigError("'" + o.positional()[0] + "': unexpected argument (--help shows the usage)");
     return draw("--roofline", "roofline.py", picture, o.positional()), 0;
   }
   const std::string json = o.text("json", "");
   if (!picture.empty() && (json.empty() || json == "-"))
-    throw ConfigError("--roofline " + picture + ": needs results, or --json FILE for that of this run");
+    throw ConfigError("--roofline " + picture +
+                      ": needs JSON results, or --json FILE for the result of this run");
   const BenchReport report = bench(o);
   std::fputs((json == "-" ? bench_json(report) : bench_text(report)).c_str(), stdout);
   if (!json.empty() && json != "-") write_file(json, bench_json(report));

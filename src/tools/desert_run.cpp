@@ -21,25 +21,25 @@ namespace {
 
 const char usage[] =
     "usage: desert_run SCENARIO.yaml [options]\n"
-    "  --steps N             steps to run (default: the scenario's run.steps; with --resume: until step N)\n"
+    "  --steps N             steps to run (default: the scenario's run.steps); with --resume: the last step\n"
     "  --backend B           auto (default), cpu or cuda\n"
     "  --threads N           threads of the CPU backend\n"
     "  --set PATH=VALUE      override a key of the scenario; may be repeated\n"
     "  --seed S              same as --set seed=S\n"
-    "  --out DIR             write rasters, pictures and summary.json there\n"
-    "  --every N             also every N steps, into DIR/step_NNNNNNNN\n"
-    "  --plot FILE           draw areas by material and plants by species over time, of those steps (PNG; "
-    "needs "
-    "python3 with matplotlib)\n"
-    "  --checkpoint FILE     save the state there at the end\n"
-    "  --checkpoint-every N  and every N steps\n"
-    "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be left out)\n"
-    "  --replay JOURNAL      apply the commands of a journal; runs as many steps as it has unless --steps "
-    "says else\n"
-    "  --describe            print every parameter as markdown\n"
-    "  --quiet               no progress\n"
-    "Exit status: 0; 1 if the books do not close; 2 for input it refuses; 3 for a failure at run time; 130\n"
-    "after Ctrl-C. Outputs are written but for 2 and 3.\n";
+    "  --out DIR             write rasters, pictures and summary.json to DIR, which is created if needed\n"
+    "  --every N             also write them every N steps, to DIR/step_NNNNNNNN\n"
+    "  --plot FILE           draw a PNG of areas by material and plants by species over these steps (needs\n"
+    "                        python3 with matplotlib)\n"
+    "  --checkpoint FILE     save the state to FILE at the end\n"
+    "  --checkpoint-every N  also save it every N steps\n"
+    "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be omitted)\n"
+    "  --replay JOURNAL      apply the commands of a journal; without --steps, run as many steps as it has\n"
+    "  --describe            print all parameters as markdown\n"
+    "  --describe-processes  print the table of processes as markdown\n"
+    "  --pipeline            print the processes of a step of the scenario in order, with layers and memory\n"
+    "  --quiet               print no progress\n"
+    "Exit status: 0; 1 if a material was lost or gained; 2 for invalid input; 3 for a failure at run time;\n"
+    "130 after Ctrl-C. Outputs are written except for 2 and 3.\n";
 
 volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
@@ -47,24 +47,25 @@ void interrupt(int) { interrupted = 1; }
 struct Plan {
   Options options;
   std::string out, checkpoint;
-  std::vector<std::string> summaries;  ///< that were written on the way
+  std::vector<std::string> summaries;  ///< paths of the summaries written during the run
   std::uint64_t every = 0, checkpoint_every = 0;
 };
 
 Scenario scenario_of(const Options& o) {
   if (o.positional().size() > 1)
     throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
-  if (o.positional().empty()) throw ConfigError("no scenario given (--help shows how)");
+  if (o.positional().empty()) throw ConfigError("no scenario given (--help shows the usage)");
   Settings settings = o.all("set");
   if (o.has("seed")) settings.push_back("seed=" + o.text("seed", ""));
   return load_scenario(o.positional()[0], settings);
 }
 
-/// Each process is timed in one step of so many; on a GPU that step has to wait after each process.
+/// The processes are timed in one of this many steps, because on a GPU a timed step synchronises after each
+/// process.
 constexpr std::uint64_t timed_every = 16;
 
 void time_processes(Simulation& simulation, bool timed, RunReport& report) {
-  if (report.timed != &simulation) report.timed_steps = 0;  // a reset or a load began with a new one
+  if (report.timed != &simulation) report.timed_steps = 0;  // a reset or load has replaced the simulation
   report.timed = &simulation;
   simulation.set_timing(timed);
   if (!timed) return;
@@ -72,7 +73,7 @@ void time_processes(Simulation& simulation, bool timed, RunReport& report) {
   ++report.timed_steps;
 }
 
-/// Runs from where the session stands to `last` ticks, with the journal's commands in between.
+/// Runs the session until tick `last` and applies the journal's commands at their ticks.
 void run(Session& session, Plan& plan, const Journal& journal, std::uint64_t last, RunReport& report) {
   using Clock = std::chrono::steady_clock;
   std::size_t next = 0;
@@ -97,7 +98,7 @@ void run(Session& session, Plan& plan, const Journal& journal, std::uint64_t las
     if (plan.every && step % plan.every == 0) {
       char name[32];
       std::snprintf(name, sizeof name, "/step_%08llu", static_cast<unsigned long long>(step));
-      prepare_folder(plan.out + name);
+      create_output_folder(plan.out + name);
       write_outputs(plan.out + name, session.simulation(), report);
       plan.summaries.push_back(plan.out + name + "/summary.json");
     }
@@ -111,7 +112,7 @@ int main_(int argc, char** argv) {
   Plan plan{Options(argc, argv,
                     {"steps", "backend", "threads", "set", "seed", "out", "every", "plot", "checkpoint",
                      "checkpoint-every", "resume", "replay"},
-                    {"describe", "quiet", "help"}),
+                    {"describe", "describe-processes", "pipeline", "quiet", "help"}),
             "",
             "",
             {},
@@ -120,6 +121,7 @@ int main_(int argc, char** argv) {
   const Options& o = plan.options;
   if (o.has("help")) return std::fputs(usage, stdout), 0;
   if (o.has("describe")) return std::cout << describe_parameters(), 0;
+  if (o.has("describe-processes")) return std::cout << describe_processes(process_table()), 0;
   plan.out = o.text("out", "");
   plan.checkpoint = o.text("checkpoint", "");
   plan.every = static_cast<std::uint64_t>(o.number("every", 0, 1, 1LL << 40));
@@ -144,11 +146,12 @@ int main_(int argc, char** argv) {
     if (o.has("resume")) session->apply(command::LoadCheckpoint{o.text("resume", ""), 0});
   }
   Simulation& simulation = session->simulation();
-  if (!plan.out.empty()) prepare_folder(plan.out);
+  if (o.has("pipeline")) return std::cout << describe_pipeline(simulation.pipeline()), 0;
+  if (!plan.out.empty()) create_output_folder(plan.out);
   const std::uint64_t scenario_steps =
       o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps);
   const std::uint64_t asked = o.has("steps") ? steps : scenario_steps;
-  // A resumed run goes on until the step that is asked for.
+  // A resumed run continues until the requested step.
   const std::uint64_t last =
       o.has("resume") ? (asked > simulation.steps() ? asked - simulation.steps() : 0) : asked;
   if (!o.has("quiet"))
@@ -167,9 +170,9 @@ int main_(int argc, char** argv) {
     draw("--plot", "plot_run.py", o.text("plot", ""), plan.summaries);
   if (!plan.checkpoint.empty()) session->save_checkpoint(plan.checkpoint);
   if (plan.out.empty() && !o.has("quiet")) std::cout << summary(session->simulation(), report);
-  const std::string missing = missing_material(session->simulation().balance());
+  const std::string missing = conservation_error(session->simulation().balance());
   if (!missing.empty())
-    return std::fprintf(stderr, "desert_run: the books do not close: %s\n", missing.c_str()), 1;
+    return std::fprintf(stderr, "desert_run: material is not conserved: %s\n", missing.c_str()), 1;
   return interrupted ? 130 : 0;
 }
 

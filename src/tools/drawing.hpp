@@ -1,14 +1,15 @@
 #pragma once
-/// Pictures of results, drawn by scripts in Python with matplotlib: test/bench/roofline.py, plot_run.py.
+/// Pictures of results, drawn by the Python scripts test/bench/roofline.py and test/bench/plot_run.py with
+/// matplotlib.
 
 #include <string>
 #include <vector>
 
 namespace desert_sim {
 
-/// Has `script` write `picture` (PNG) from JSON results; the script is looked for beside the program, then
-/// where the program was built from. Throws ConfigError that names `option` if it is not there, if there is
-/// no python3, or if it fails.
+/// Runs `script`, which draws `picture` (PNG) from JSON results. The script is searched for in the program's
+/// folder, then in the source tree. Throws ConfigError that names `option` if the script or python3 is
+/// missing, or if the script fails.
 void draw(const std::string& option, const std::string& script, const std::string& picture,
           const std::vector<std::string>& results);
 

@@ -1,18 +1,19 @@
 #pragma once
-/// Numbers and texts as JSON writes them.
+/// Numbers and strings in JSON.
 
 #include <cstdio>
 #include <string>
 
 namespace desert_sim {
 
-/// All digits of a double, as few as that takes.
+/// A double with 17 significant digits, which is read back exactly.
 inline std::string json_number(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.17g", value);
   return text;
 }
 
+/// The text in double quotes, with special characters escaped.
 inline std::string json_text(const std::string& text) {
   std::string out = "\"";
   for (char c : text) {

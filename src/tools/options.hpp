@@ -1,5 +1,6 @@
 #pragma once
-/// Command lines: options with and without values, refused with a reason when they are unknown or malformed.
+/// Parses command lines: options with and without values. Unknown or malformed ones are refused with a
+/// reason.
 
 #include <map>
 #include <string>
@@ -9,15 +10,18 @@ namespace desert_sim {
 
 class Options {
  public:
-  /// `with_value` and `flags` name what is known, without the dashes. Throws ConfigError.
+  /// `with_value` and `flags` are the names of the known options, without the dashes. Throws ConfigError.
   Options(int argc, char** argv, const std::vector<std::string>& with_value,
           const std::vector<std::string>& flags);
 
   const std::vector<std::string>& positional() const { return positional_; }
   bool has(const std::string& name) const { return values_.count(name) > 0; }
+  /// The last value of an option, or `otherwise` if it was not given.
   std::string text(const std::string& name, const std::string& otherwise) const;
+  /// All values of an option in order.
   const std::vector<std::string>& all(const std::string& name) const;
-  /// A whole number in [lowest, highest]; throws ConfigError.
+  /// The last value as an integer in [lowest, highest], or `otherwise` if the option was not given. Throws
+  /// ConfigError.
   long long number(const std::string& name, long long otherwise, long long lowest, long long highest) const;
 
  private:

@@ -1,17 +1,15 @@
 #include "src/tools/outputs.hpp"
 
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cinttypes>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
+#include <filesystem>
 #include <iterator>
 #include <sstream>
 
+#include "kernels/field/statistics.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/tools/json_text.hpp"
@@ -39,7 +37,7 @@ void write_pictures(const std::string& folder, const Snapshot& s) {
 }
 #endif
 
-/// What one sees from above: area of each kind of ground [m²].
+/// Area of each kind of ground as seen from above [m²].
 struct Areas {
   static constexpr const char* names[] = {"rock", "soil", "sand", "plants", "water"};
   double square_metres[5] = {};
@@ -62,16 +60,16 @@ Areas areas_of(Simulation& simulation) {
 
 }  // namespace
 
-void prepare_folder(const std::string& folder) {
-  if (mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST)
-    throw ConfigError("--out " + folder + ": cannot be made: " + std::strerror(errno));
-  struct stat status;
-  if (stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode))
+void create_output_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw ConfigError("--out " + folder + ": cannot be created: " + error.message());
+  if (!std::filesystem::is_directory(folder, error))
     throw ConfigError("--out " + folder + ": is not a folder");
   if (access(folder.c_str(), W_OK) != 0) throw ConfigError("--out " + folder + ": cannot be written to");
 }
 
-std::string missing_material(const std::array<MaterialBalance, material_count>& balance) {
+std::string conservation_error(const std::array<MaterialBalance, material_count>& balance) {
   std::string missing;
   for (std::size_t m = 0; m < balance.size(); ++m)
     if (const long long quanta = balance[m].residual(); quanta != 0)

@@ -1,5 +1,5 @@
 #pragma once
-/// What a headless run leaves behind.
+/// Output files of a headless run.
 
 #include <array>
 #include <string>
@@ -10,24 +10,25 @@ namespace desert_sim {
 
 struct RunReport {
   std::string backend, device;
-  int threads = 0;                    ///< of the CPU backend; 0 on a GPU
-  double milliseconds = 0;            ///< of all steps together
-  std::uint64_t steps_run = 0;        ///< in this run; a resumed one began later
-  const Simulation* timed = nullptr;  ///< whose processes were timed, in so many steps
-  std::uint64_t timed_steps = 0;
+  int threads = 0;                    ///< threads of the CPU backend; 0 on a GPU
+  double milliseconds = 0;            ///< wall time of all steps
+  std::uint64_t steps_run = 0;        ///< steps of this run, without those before a resume
+  const Simulation* timed = nullptr;  ///< simulation whose processes were timed
+  std::uint64_t timed_steps = 0;      ///< steps in which they were timed
 };
 
-/// Makes the folder (its parent must exist) and checks that it can be written to. Throws ConfigError.
-void prepare_folder(const std::string& folder);
+/// Creates the folder and its missing parents, and checks that it is writable. Throws ConfigError.
+void create_output_folder(const std::string& folder);
 
-/// `<layer>.tif` for each layer in use, elevation.png, wind.png and summary.json. Without GDAL and OpenCV
-/// only summary.json, which says so.
+/// Writes `<layer>.tif` for each layer in use, elevation.png, wind.png and summary.json. A build without GDAL
+/// and OpenCV writes only summary.json, with "rasters": false.
 void write_outputs(const std::string& folder, Simulation& simulation, const RunReport& report);
 
-/// What the books of a run miss, "-3 quanta of sand, 2 quanta of water"; empty if they close.
-std::string missing_material(const std::array<MaterialBalance, material_count>& balance);
+/// The material that a run lost or gained, such as "-3 quanta of sand, 2 quanta of water"; empty if all
+/// material is conserved.
+std::string conservation_error(const std::array<MaterialBalance, material_count>& balance);
 
-/// summary.json as text.
+/// The content of summary.json.
 std::string summary(Simulation& simulation, const RunReport& report);
 
 }  // namespace desert_sim

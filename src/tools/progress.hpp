@@ -1,5 +1,6 @@
 #pragma once
-/// Progress of a long run: a bar with rate and time left on a terminal, a plain line now and then otherwise.
+/// Prints the progress of a long run to stderr: on a terminal a bar with the rate and the remaining time,
+/// otherwise a plain line every few seconds.
 
 #include <chrono>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-/// The raster loader of this build.
+/// The raster loader of this build, which depends on the libraries that it was built with.
 
 #if DESERT_WITH_BAGS
 #include "src/grid_map/grid_map_bag.hpp"

@@ -79,7 +79,7 @@ TEST(ElevationMap, AMaskSaysWhichCellsOfATileChangeAndStepsByHowMuch) {
   elevations.changed = {0b01010000};
   elevations.data = {-7, -8};
   u->tiles = {steps, elevations};
-  ASSERT_EQ(fault_of(*u), "");
+  ASSERT_EQ(validation_error(*u), "");
   grid.elevation[60 * 130 + 63] -= 32;
   grid.elevation[62 * 130 + 64] += 0.75f;
   grid.elevation[64 * 130 + 65] += 31.75f;
@@ -100,18 +100,18 @@ TEST(ElevationMap, ChangesOfFourBitsLieTwoInAByte) {
   tile.resolution = 0.5f;
   tile.bits = 4;
   message->tiles = {tile};
-  ASSERT_EQ(fault_of(*message), "");
+  ASSERT_EQ(validation_error(*message), "");
   const float change[] = {3.5f, -0.5f, -4, 0, 1.5f};
   for (std::size_t n = 0; n < 5; ++n) grid.elevation[20 * 130 + 10 + n] += change[n];
   EXPECT_EQ(before->after(*message)->elevations(), grid.elevation);
   message->tiles[0].changed = {0b11100000};  // an odd number: half of the last byte is left
-  EXPECT_EQ(fault_of(*message), "");
+  EXPECT_EQ(validation_error(*message), "");
   message->tiles[0].changed = {0b11000000};
-  EXPECT_NE(fault_of(*message).find("4 values for 2 cells that changed"), std::string::npos)
-      << fault_of(*message);
+  EXPECT_NE(validation_error(*message).find("4 values for 2 cells that changed"), std::string::npos)
+      << validation_error(*message);
   message->tiles[0].bits = 5;
-  EXPECT_NE(fault_of(*message).find("changes of 5 bits: must be 8 or 4"), std::string::npos)
-      << fault_of(*message);
+  EXPECT_NE(validation_error(*message).find("changes of 5 bits: must be 8 or 4"), std::string::npos)
+      << validation_error(*message);
 }
 
 TEST(ElevationMap, AKeyframeTellsWhichCellsDiffer) {

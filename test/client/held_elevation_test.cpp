@@ -7,7 +7,7 @@
 
 #include "client/messages.hpp"
 #include "src/client/elevation_map.hpp"
-#include "src/ros/topics/elevation_tiles.hpp"
+#include "src/ros/topics/elevation_topic.hpp"
 #include "src/ros/topics/topic.hpp"
 #include "support/held_terrain.hpp"
 
@@ -43,8 +43,8 @@ class Stream {
     update.sequence = map_->info().sequence + 1;
     for (const TileChange& change : terrain_.take(threshold_, tile_))
       update.tiles.push_back(tile_message(change));
-    EXPECT_EQ(fault_of(update), "");
-    EXPECT_EQ(fault_of(update, map_->info()), "");
+    EXPECT_EQ(validation_error(update), "");
+    EXPECT_EQ(validation_error(update, map_->info()), "");
     map_ = map_->after(update);
     EXPECT_EQ(map_->elevations(), terrain_.held()) << "both know what is held";
     return update.tiles;

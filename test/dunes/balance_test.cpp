@@ -1,4 +1,5 @@
-// No shipped scenario makes or loses material: books close to the last quantum.
+// No shipped scenario makes or loses material: books close to the last quantum. The tests of landforms check
+// that of the scenarios that they run.
 
 #include <gtest/gtest.h>
 
@@ -18,10 +19,7 @@ TEST_P(Balance, ClosesExactly) {
 
 const auto name_of = [](const auto& test) { return std::string(test.param); };
 
-INSTANTIATE_TEST_SUITE_P(Scenarios, Balance,
-                         ::testing::Values("barchan", "transverse", "linear", "star", "nebkha", "echo_dune",
-                                           "climbing_dune", "yardang", "venturi"),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(Scenarios, Balance, ::testing::Values("climbing_dune", "venturi"), name_of);
 #if DESERT_WITH_IO
 INSTANTIATE_TEST_SUITE_P(OfRasters, Balance, ::testing::Values("dem"), name_of);
 #endif

@@ -1,11 +1,18 @@
-// The shipped scenarios make the landforms that they are named for. Gates: published figures.
+// The shipped scenarios make the landforms that they are named for, and keep their material to the last
+// quantum. Bounds are published figures, unless a comment says otherwise.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <future>
+#include <limits>
+#include <map>
+#include <mutex>
 
 #include "dunes/running.hpp"
 
@@ -22,13 +29,21 @@ double mean_where(const Field& values, const std::vector<char>& mask) {
   return count ? sum / static_cast<double>(count) : 0;
 }
 
+// ---- barchans: one test a seed, and one of the barchans of all seeds ----
+
+constexpr std::uint64_t barchan_seeds = 24;
+
+/// The barchans of five looks at the shipped scenario, from 360 to 520 steps. The grid is narrower than the
+/// scenario's but longer along the wind, because dunes are steeper where the periodic border is near upwind:
+/// the mean stoss slope of 24 seeds is 16.2 degrees on 256 x 256 cells, 14.9 on the scenario's 384 x 384, and
+/// 12.8 on 768 x 128, which are two thirds as many.
 /// Dunes are cut apart at 1.5 m, so that the thin sand between their horns does not join them.
-std::vector<Dune> barchans(std::uint64_t seed) {
-  Running scene(shipped("barchan", {"seed=" + std::to_string(seed)}));
+std::vector<Dune> run_barchans(std::uint64_t seed) {
+  Running scene(shipped("barchan", {"seed=" + std::to_string(seed), "grid.width=768", "grid.height=128"}));
   std::vector<Dune> found;
-  scene.run(400);
+  scene.run(320);
   for (int look = 0; look < 5; ++look) {
-    scene.run(80);
+    scene.run(40);
     for (const Dune& d : find_dunes(scene.field(Layer::elevation), scene.field(Layer::sand), 0, 1.5, 100))
       if (d.height >= 3.5) found.push_back(d);
   }
@@ -36,40 +51,127 @@ std::vector<Dune> barchans(std::uint64_t seed) {
   return found;
 }
 
-/// Height to width 0.06…0.15, stoss 8…15 degrees, slip face 31…35 degrees to within 20 degrees of downwind,
-/// horns downwind. Of 24 seeds together: among single ones the median stoss slope is anything from 8 to 20
-/// degrees, and height to width from 0.03 to 0.11; of eight together it was 14.1 … 15.01.
-TEST(Dunes, Barchan) {
-  std::vector<std::future<std::vector<Dune>>> runs;
-  for (std::uint64_t seed = 1; seed <= 24; ++seed)
-    runs.push_back(std::async(std::launch::async, barchans, seed));
-  std::vector<double> ratio, stoss, slip, direction, horns;
-  int downwind = 0;
-  for (auto& run : runs)
-    for (const Dune& d : run.get()) {
-      ratio.push_back(d.height / d.width);
-      stoss.push_back(d.stoss_deg);
-      slip.push_back(d.slip_face_deg);
-      direction.push_back(angle_between_deg(d.slip_direction_deg, 0));
-      horns.push_back(angle_between_deg(d.horn_direction_deg, 0));
-      downwind += d.horn_reach > 0 ? 1 : 0;
-    }
-  ASSERT_GE(ratio.size(), 20u);
-  DESERT_REPORT(
-      "%zu barchans: h/w %.3f, stoss %.1f, slip face %.1f, to within %.0f of downwind, horns %.0f; %d reach "
-      "out",
-      ratio.size(), quantile(ratio, 0.5), quantile(stoss, 0.5), quantile(slip, 0.5), quantile(direction, 0.5),
-      quantile(horns, 0.5), downwind);
-  EXPECT_GE(quantile(ratio, 0.5), 0.06);
-  EXPECT_LE(quantile(ratio, 0.5), 0.15);
-  EXPECT_GE(quantile(stoss, 0.5), 8);
-  EXPECT_LE(quantile(stoss, 0.5), 15);
-  EXPECT_GE(quantile(slip, 0.5), 31);
-  EXPECT_LE(quantile(slip, 0.5), 35);
-  EXPECT_LE(quantile(direction, 0.5), 20);
-  EXPECT_LE(quantile(horns, 0.5), 20);
-  EXPECT_GE(2.5 * downwind, static_cast<double>(ratio.size())) << "about half of them do";
+/// The run of a seed, which begins with the first call; a process runs each seed once.
+std::shared_future<std::vector<Dune>> barchans(std::uint64_t seed) {
+  static std::mutex mutex;
+  static std::map<std::uint64_t, std::shared_future<std::vector<Dune>>> runs;
+  const std::lock_guard<std::mutex> lock(mutex);
+  std::shared_future<std::vector<Dune>>& run = runs[seed];
+  if (!run.valid()) run = std::async(std::launch::async, run_barchans, seed).share();
+  return run;
 }
+
+/// ctest runs each test in a process of its own: there the test of a seed writes its barchans to a file of
+/// the folder DESERT_BARCHANS, and the test of all seeds reads them. Empty without DESERT_BARCHANS.
+std::string barchan_file(std::uint64_t seed) {
+  const char* folder = std::getenv("DESERT_BARCHANS");
+  return folder ? folder + ("/" + std::to_string(seed)) : "";
+}
+
+void write_barchans(const std::string& path, const std::vector<Dune>& dunes) {
+  std::ofstream file(path);
+  file.precision(std::numeric_limits<double>::max_digits10);
+  for (const Dune& d : dunes)
+    file << d.height << ' ' << d.width << ' ' << d.stoss_deg << ' ' << d.slip_face_deg << ' '
+         << d.slip_direction_deg << ' ' << d.horn_direction_deg << ' ' << d.horn_reach << '\n';
+  ASSERT_TRUE(file.flush()) << path;
+}
+
+std::vector<Dune> read_barchans(std::ifstream& file) {
+  std::vector<Dune> dunes;
+  for (Dune d; file >> d.height >> d.width >> d.stoss_deg >> d.slip_face_deg >> d.slip_direction_deg >>
+               d.horn_direction_deg >> d.horn_reach;)
+    dunes.push_back(d);
+  return dunes;
+}
+
+/// Medians over dunes, unless they say else; directions are angles from downwind.
+struct BarchanShape {
+  double height_to_width;
+  double stoss_deg;  ///< mean, which scatters less from seed to seed than the median
+  double slip_face_deg, slip_direction_deg, horn_direction_deg;
+  double horns_downwind;  ///< share of the dunes whose two horns reach beyond their middle
+};
+
+BarchanShape shape_of(const std::vector<Dune>& dunes) {
+  std::vector<double> ratio, slip, direction, horns;
+  const auto count = static_cast<double>(dunes.size());
+  double stoss = 0, downwind = 0;
+  for (const Dune& d : dunes) {
+    ratio.push_back(d.height / d.width);
+    stoss += d.stoss_deg / count;
+    slip.push_back(d.slip_face_deg);
+    direction.push_back(angle_between_deg(d.slip_direction_deg, 0));
+    horns.push_back(angle_between_deg(d.horn_direction_deg, 0));
+    downwind += d.horn_reach > 0 ? 1 / count : 0;
+  }
+  const BarchanShape s{quantile(ratio, 0.5), stoss,   quantile(slip, 0.5), quantile(direction, 0.5),
+                       quantile(horns, 0.5), downwind};
+  DESERT_REPORT(
+      "%zu barchans: h/w %.3f, stoss %.1f, slip face %.1f, to within %.0f of downwind, horns %.0f; %.0f %% "
+      "reach out",
+      dunes.size(), s.height_to_width, s.stoss_deg, s.slip_face_deg, s.slip_direction_deg,
+      s.horn_direction_deg, 100 * s.horns_downwind);
+  return s;
+}
+
+class Barchans : public ::testing::TestWithParam<std::uint64_t> {};
+
+/// Bounds are wide, because the five looks at a seed find 5 to 21 dunes. Over seeds 1 to 96 the shapes of
+/// single seeds were: height to width 0.041…0.181, stoss 6.7…17.1 degrees, slip face 32.8…34.5 degrees to
+/// within 1…35 degrees of downwind, horns to within 1…13 degrees, both horns downwind in 9…100 %.
+TEST_P(Barchans, OfOneSeed) {
+  const std::string file = barchan_file(GetParam());
+  if (!file.empty()) std::filesystem::remove(file);
+  const std::vector<Dune> dunes = barchans(GetParam()).get();
+  ASSERT_GE(dunes.size(), 3u);
+  const BarchanShape s = shape_of(dunes);
+  EXPECT_GE(s.height_to_width, 0.03);
+  EXPECT_LE(s.height_to_width, 0.22);
+  EXPECT_GE(s.stoss_deg, 5);
+  EXPECT_LE(s.stoss_deg, 20);
+  EXPECT_GE(s.slip_face_deg, 31);
+  EXPECT_LE(s.slip_face_deg, 35);
+  EXPECT_LE(s.slip_direction_deg, 60);
+  EXPECT_LE(s.horn_direction_deg, 30);
+  EXPECT_GT(s.horns_downwind, 0);
+  if (!file.empty()) write_barchans(file, dunes);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Barchans, ::testing::Range<std::uint64_t>(1, barchan_seeds + 1),
+                         [](const auto& test) { return std::to_string(test.param); });
+
+/// Published: height to width 0.06…0.15, stoss 8…15 degrees, slip face 31…35 degrees to within 20 degrees of
+/// downwind, horns downwind. The bounds are narrower, as far as the scatter between sets of 24 seeds allows:
+/// seeds 1 to 96 have a height to width of 0.121 (standard deviation of sets of 24, resampled: 0.008), stoss
+/// 13.1 (0.38), slip face 33.0 (0.01) to within 8.7 (1.1) of downwind, horns to within 3.4 (0.4), and both
+/// horns downwind in 73 % (4 %). Seeds 1 to 24 have 0.116, 12.8, 33.0, 11.4, 3.2 and 60 %.
+TEST(Dunes, Barchan) {
+  std::vector<Dune> dunes;
+  std::vector<std::shared_future<std::vector<Dune>>> runs;
+  for (std::uint64_t seed = 1; seed <= barchan_seeds; ++seed) {
+    std::ifstream file(barchan_file(seed));
+    if (!file) {
+      runs.push_back(barchans(seed));
+      continue;
+    }
+    for (const Dune& d : read_barchans(file)) dunes.push_back(d);
+  }
+  for (const auto& run : runs) dunes.insert(dunes.end(), run.get().begin(), run.get().end());
+  ASSERT_GE(dunes.size(), 150u);
+  const BarchanShape s = shape_of(dunes);
+  EXPECT_GE(s.height_to_width, 0.09);
+  EXPECT_LE(s.height_to_width, 0.15);
+  EXPECT_GE(s.stoss_deg, 11.9);
+  EXPECT_LE(s.stoss_deg, 14.3);
+  EXPECT_GE(s.slip_face_deg, 32.5);
+  EXPECT_LE(s.slip_face_deg, 33.5);
+  EXPECT_LE(s.slip_direction_deg, 18);
+  EXPECT_LE(s.horn_direction_deg, 10);
+  EXPECT_GE(s.horns_downwind, 0.45);
+}
+
+// ---- other landforms ----
 
 /// Crests within 20 degrees of perpendicular to the wind; the distance between them grows.
 TEST(Dunes, Transverse) {
@@ -84,6 +186,7 @@ TEST(Dunes, Transverse) {
   EXPECT_GT(o.coherence, 0.5);
   EXPECT_GT(early, 0);
   EXPECT_GT(late, 1.5 * early);
+  scene.expect_balanced();
 }
 
 /// Crests along the resultant of two winds more than 90 degrees apart.
@@ -93,6 +196,7 @@ TEST(Dunes, Linear) {
   DESERT_REPORT("crests at %.1f degrees (coherence %.2f)", o.crest_deg, o.coherence);
   EXPECT_LT(line_angle_between_deg(o.crest_deg, 0), 15);
   EXPECT_GT(o.coherence, 0.5);
+  scene.expect_balanced();
 }
 
 /// Slip faces to at least three sides at one time.
@@ -109,6 +213,7 @@ TEST(Dunes, Star) {
     DESERT_REPORT("slip faces to%s", text.c_str());
   }
   EXPECT_GE(quantile(counts, 0.5), 3);
+  scene.expect_balanced();
 }
 
 /// Sand lies where the plants are, and its tail downwind of them.
@@ -132,6 +237,7 @@ TEST(Dunes, Nebkha) {
                 lee, upwind);
   EXPECT_GT(on, 3 * all);
   EXPECT_GT(lee, 1.3 * upwind);
+  scene.expect_balanced();
 }
 
 /// Bushes that came up by themselves hold sand, with tails downwind.
@@ -145,7 +251,8 @@ TEST(Dunes, LivingNebkha) {
   ASSERT_GT(count, 10u);
   double on = 0, lee = 0, upwind = 0;
   for (std::size_t n = 0; n < count; ++n) {
-    const int x = static_cast<int>(float_of(words[n])), y = static_cast<int>(float_of(words[count + n]));
+    const int x = static_cast<int>(float_from_bits(words[n])),
+              y = static_cast<int>(float_from_bits(words[count + n]));
     on += sand.at(x, y) / static_cast<double>(count);
     for (int away = 6; away <= 10; ++away) {
       lee += sand.at(x + away, y) / (5.0 * static_cast<double>(count));
@@ -174,6 +281,7 @@ TEST(Dunes, Echo) {
   EXPECT_LE(front.lane, 1.0 * tower);
   EXPECT_GT(front.dune_height, 1.5);
   EXPECT_LT(front.dune_distance, 2.0 * tower);
+  scene.expect_balanced();
 }
 
 /// Ridges of rock within 10 degrees of the wind, whichever way it blows over rock that varies alike in all
@@ -194,6 +302,7 @@ TEST(Dunes, Yardang) {
     EXPECT_LT(line_angle_between_deg(o.crest_deg, turn), 10);
     EXPECT_GT(o.coherence, 0.25);
     EXPECT_LT(before.coherence, 0.15);
+    scene.expect_balanced();
   }
 }
 

@@ -9,7 +9,7 @@
 
 #include "grid_map/maps.hpp"
 #include "src/grid_map/message_bytes.hpp"
-#include "src/ros/topics/map_layers.hpp"
+#include "src/ros/conversion/map_window.hpp"
 #include "src/simulation/session.hpp"
 #include "src/tools/rasters.hpp"
 #include "support/temporary_folder.hpp"
@@ -291,7 +291,7 @@ TEST_F(ForeignBags, ThatAreNoBagsAreRefused) {
   EXPECT_NE(refusal().find("no such file"), std::string::npos);
 }
 
-/// Four billion elements in four bytes: refused before memory is taken for them.
+/// Vec4 billion elements in four bytes: refused before memory is taken for them.
 TEST_F(ForeignBags, LengthsThatLieTakeNoMemory) {
   std::vector<std::uint8_t> bytes(40, 0xff);
   std::vector<float> floats;

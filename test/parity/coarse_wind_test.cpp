@@ -63,7 +63,7 @@ class CoarseWind : public test::OnBoth {
     const auto transform = [&](Complex* field, bool back) {
       Values values(field, field + coarse.values());
       const auto exchange = [&] {
-        for (Complex& v : values) v = parts_exchanged(v);
+        for (Complex& v : values) v = swap_re_im(v);
       };
       if (back) exchange();
       if (back) transform_lines_of(values, x, coarse.height, coarse.width, 1);
@@ -72,7 +72,7 @@ class CoarseWind : public test::OnBoth {
       if (back) exchange();
       std::copy(values.begin(), values.end(), field);
     };
-    const wind::CoarsenRows rows{coarse, t.heights.of_cells.data(), 0.0f, work.row_means.data()};
+    const wind::CoarsenRows rows{coarse, t.heights.cell_heights.data(), 0.0f, work.row_means.data()};
     all(rows.grid(), rows);
     all(coarse.transformed(), laws.columns);
     if (laws.gradients.radius_count > 0) {

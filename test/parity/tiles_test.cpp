@@ -14,11 +14,11 @@ void expect_same_bits(const test::TileField& field, float share) {
       SCOPED_TRACE(field.name + ", offset " + std::to_string(offset) + ", " + std::to_string(sweeps) +
                    " sweeps, share " + std::to_string(share));
       for (float plenty : {100.0f, 0.1f}) {
-        const float at_edges = plenty > 1 ? 1 : 0.5f;
-        const auto reference = field.relaxed(*cpu, offset, sweeps, true, share, plenty, at_edges);
-        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, true, share, plenty, at_edges))
+        const float edge_factor = plenty > 1 ? 1 : 0.5f;
+        const auto reference = field.relaxed(*cpu, offset, sweeps, true, share, plenty, edge_factor);
+        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, true, share, plenty, edge_factor))
             << "the reference, plenty " << plenty;
-        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, false, share, plenty, at_edges))
+        EXPECT_TRUE(reference == field.relaxed(*cuda, offset, sweeps, false, share, plenty, edge_factor))
             << "the tuned kernel, plenty " << plenty;
       }
     }

@@ -1,183 +1,175 @@
-// Each process changes only the layers that its header says it writes.
+// Every process changes only the layers that its row says it writes, and what it does depends only on those that its
+// row says it reads. The processes come from the table: a new one is tested without a line here.
 
+#include <algorithm>
+#include <map>
 #include <set>
 
-#include "support/bench_terrain.hpp"
+#include "src/simulation/processes/processes.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {
 namespace {
 
+/// Between them, these worlds give every process something to do, by every scheme.
+const std::map<std::string, std::string> worlds{
+    {"everything",
+     "grid: {width: 40, height: 36, boundary: open}\n"
+     "terrain: [noise: {layer: bedrock, low: 0, high: 8, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
+     "  noise: {layer: sand, low: 0.1, high: 2, scale: 5}, uniform: {layer: water, value: 0.05},\n"
+     "  uniform: {layer: erosion_resistance, value: 0.2}, uniform: {layer: moisture, value: 0.02},\n"
+     "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
+     "wind: {speed: 6, direction_deg: 20, features: [{kind: vortex, x: 10, y: 10, radius: 5}]}\n"
+     "echo_dunes: {enabled: true}\nabrasion: {rate: 0.05, cover: 3}\nsaltation: {influx: 0.3}\n"
+     "reptation: {method: smoothing}\nrain: {rate: 1.0e-4}\n"
+     "water: {evaporation: 0.05, wave_strength: 0.1, sea: border, sea_level: 1,\n"
+     "  springs: [{x: 12, y: 20, radius: 3, discharge: 2}]}\n"
+     "hydraulic_erosion: {enabled: true}\nmoisture: {enabled: true}\nsoil: {enabled: true, dry: 1}\n"
+     "vegetation: {enabled: true, draw: 1}\n"
+     "species: [{preset: bush, spawn: 50000, moisture_lowest: 0, moisture_highest: 1, slope: 100}]\n"
+     "run: {check_every: 1}\n"},
+    {"steep",
+     "grid: {width: 40, height: 36}\n"
+     "terrain: [noise: {layer: bedrock, low: 0, high: 90, scale: 5}, noise: {layer: soil, low: 0, high: 30, "
+     "scale: 5},\n"
+     "  noise: {layer: sand, low: 0, high: 20, scale: 3}]\n"
+     "wind: {speed: 6}\nabrasion: {rate: 0.01}\nreptation: {method: steepest}\nsoil: {enabled: true}\n"
+     "avalanching: {bedrock_to_sand: false}\n"},
+    {"still",
+     "grid: {width: 40, height: 36}\nterrain: [noise: {layer: sand, low: 0, high: 9, scale: 3}]\n"
+     "saltation: {enabled: false}\navalanching: {scheme: sweeps, sweeps: 3}\nwind_shadow: {curved: true}\n"},
+};
+
+using Words = std::vector<std::uint32_t>;
+
+std::vector<Words> all_words(const Simulation& s) {
+  std::vector<Words> words;
+  for (const LayerInfo& row : layer_table) words.push_back(s.terrain().words(row.layer));
+  return words;
+}
+
+/// Every layer is in use, so that a process could write what it should not.
+void bring_all_into_use(Simulation& s) {
+  for (const LayerInfo& row : layer_table) s.state().terrain.require(row.layer);
+}
+
+/// Changes every cell, to values that the layer may have.
+void disturb(Simulation& s, Layer layer) {
+  Words words = s.terrain().words(layer);
+  const bool quanta = info(layer).storage == Storage::quanta;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    words[i] = quanta ? static_cast<std::uint32_t>(static_cast<Quanta>(words[i]) + 300000 +
+                                                   1000 * static_cast<Quanta>(i % 7))
+                      : bits_of(0.5f * float_from_bits(words[i]) + 0.0625f * static_cast<float>(1 + i % 5));
+  s.state().terrain.set_words(layer, words);
+}
+
 class Contract : public test::OnBackend {
  protected:
-  /// A terrain with every layer in use, full of relief.
-  std::unique_ptr<test::BenchTerrain> terrain(bool periodic) {
-    auto t = std::make_unique<test::BenchTerrain>(exec(), 37, 41, 1.0, periodic);
-    const auto wave = [](int x, int y) { return 0.5 + 0.5 * std::sin(0.7 * x + 1.3 * std::cos(0.5 * y)); };
-    t->set(Layer::bedrock, [&](int x, int y) { return 20 * wave(x, y) + (x > 20 && y > 20 ? 30 : 0); });
-    t->set(Layer::soil, [&](int x, int y) { return x % 3 ? 4 * wave(y, x) : 0; });
-    t->set(Layer::sand, [&](int x, int y) { return (x + y) % 4 ? 3 * wave(x + 3, y) : 0; });
-    for (Layer layer : {Layer::airborne_sand, Layer::moisture, Layer::suspended_sediment, Layer::humus})
-      t->set(layer, [&](int x, int y) { return 0.03 * wave(x, 2 * y); });
-    t->set(Layer::water, [&](int x, int y) { return x % 5 ? 0 : 0.1 * wave(x, y); });
-    for (Layer layer : {Layer::vegetation, Layer::erosion_resistance, Layer::illumination,
-                        Layer::illumination_canopy, Layer::canopy_height})
-      t->set(layer, [&](int x, int y) { return x % 4 ? 0 : wave(x, 3 * y); });
-    t->set(Layer::obstacle, [&](int x, int y) { return x / 4 == 3 && y / 4 == 2 ? 1 : 0; });
-    t->set(Layer::wind_x, [&](int x, int y) { return 4 + wave(x, y); });
-    t->set(Layer::wind_y, [&](int x, int y) { return 2 - wave(y, x); });
-    t->set(Layer::wind_shadow, [&](int x, int y) { return wave(x, y); });
-    t->set(Layer::echo, [&](int x, int y) { return x % 6 ? 0 : wave(x, y) - 0.5; });
-    for (Layer layer : {Layer::plants, Layer::water_surface}) t->terrain.require(layer);
-    t->set_strength([&](int x, int y) { return wave(x, y); });
-    t->set_repose([&](int, int) { return 0.6; });
-    t->surface();
-    return t;
-  }
-
-  template <class Process>
-  void expect_only(const char* name, const std::set<Layer>& writes, bool must_change,
-                   const Process& process) {
-    for (bool periodic : {true, false}) {
-      SCOPED_TRACE(std::string(name) + (periodic ? ", periodic" : ", open"));
-      auto t = terrain(periodic);
-      std::vector<std::vector<std::uint32_t>> before;
-      for (const LayerInfo& row : layer_table) before.push_back(t->terrain.words(row.layer));
-      process(*t);
-      bool changed = false;
-      for (const LayerInfo& row : layer_table) {
-        const bool same = before[static_cast<std::size_t>(row.layer)] == t->terrain.words(row.layer);
-        if (!writes.count(row.layer)) {
-          EXPECT_TRUE(same) << "writes " << row.name << ", which its header does not say";
-        }
-        changed = changed || !same;
-      }
-      EXPECT_TRUE(changed || !must_change) << "the terrain gives it nothing to do";
-    }
+  /// After a few steps, with every layer in use.
+  std::unique_ptr<Simulation> world(const std::string& name) {
+    auto s = simulation(worlds.at(name));
+    test::run(*s, 4);
+    s->exec().synchronise();
+    bring_all_into_use(*s);
+    return s;
   }
 };
 
-TEST_P(Contract, OfSurface) {
-  expect_only("surface", {Layer::elevation, Layer::sand}, true, [](test::BenchTerrain& t) {
-    t.set(Layer::sand, 0);
-    t.surface();
-  });
-  expect_only("surface, again", {}, false, [](test::BenchTerrain& t) { t.surface(); });
-}
-TEST_P(Contract, OfWind) {
-  expect_only("wind", {Layer::wind_x, Layer::wind_y}, true, [](test::BenchTerrain& t) {
-    t.blow({}, {5, 2});
-  });
-}
-TEST_P(Contract, OfWindShadow) {
-  expect_only("wind_shadow", {Layer::wind_shadow}, true, [](test::BenchTerrain& t) { t.shadow(); });
-}
-TEST_P(Contract, OfEchoDunes) {
-  expect_only("echo_dunes", {Layer::echo}, true, [](test::BenchTerrain& t) { t.echo({}); });
-}
-TEST_P(Contract, OfTraversability) {
-  expect_only("traversability",
-              {Layer::slope, Layer::normal_x, Layer::normal_y, Layer::normal_z, Layer::roughness,
-               Layer::step_height, Layer::traversability},
-              true, [](test::BenchTerrain& t) { t.judge(); });
-}
-TEST_P(Contract, OfSaltationAndAbrasion) {
-  expect_only("saltation", {Layer::sand, Layer::airborne_sand, Layer::bedrock, Layer::soil}, true,
-              [](test::BenchTerrain& t) {
-                AbrasionParameters a;
-                a.rate = 0.05f;
-                a.cover = 1;
-                SaltationParameters p;
-                p.influx = 1;
-                t.saltation(p, a);
-              });
-}
-TEST_P(Contract, OfSaltationWithoutAbrasion) {
-  expect_only("saltation", {Layer::sand, Layer::airborne_sand}, true,
-              [](test::BenchTerrain& t) { t.saltation(); });
-}
-TEST_P(Contract, OfReptation) {
-  for (ReptationMethod method : {ReptationMethod::smoothing, ReptationMethod::steepest})
-    expect_only("reptation", {Layer::sand}, true, [method](test::BenchTerrain& t) {
-      ReptationParameters p;
-      p.method = method;
-      t.reptation(p);
-    });
-  for (ReptationMethod method : {ReptationMethod::off, ReptationMethod::adaptive_repose})
-    expect_only("reptation", {}, false, [method](test::BenchTerrain& t) {
-      ReptationParameters p;
-      p.method = method;
-      t.reptation(p);
-    });
-}
-TEST_P(Contract, OfAvalanching) {
-  for (AvalancheScheme scheme :
-       {AvalancheScheme::multilevel, AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser})
-    expect_only("avalanching", {Layer::sand}, true, [scheme](test::BenchTerrain& t) {
-      AvalanchingParameters p;
-      p.scheme = scheme;
-      t.avalanche(p);
-    });
-}
-TEST_P(Contract, OfSoilAvalanching) {
-  expect_only("soil", {Layer::soil}, true, [](test::BenchTerrain& t) { t.avalanche_soil(); });
-}
-TEST_P(Contract, OfBedrockAvalanching) {
-  expect_only("bedrock to sand", {Layer::bedrock, Layer::sand}, true,
-              [](test::BenchTerrain& t) { t.avalanche_bedrock(); });
-  expect_only("bedrock to bedrock", {Layer::bedrock}, true, [](test::BenchTerrain& t) {
-    AvalanchingParameters p;
-    p.bedrock_to_sand = false;
-    t.avalanche_bedrock(p);
-  });
+TEST_P(Contract, ProcessesWriteOnlyTheLayersOfTheirRows) {
+  std::set<std::string> idle;
+  for (const Process& p : process_table().processes)
+    if (!p.writes.empty()) idle.insert(p.name);
+  for (const auto& [name, text] : worlds) {
+    std::vector<std::string> active;
+    for (const Pipeline::Stage& stage : world(name)->pipeline().stages())
+      active.push_back(stage.process->name);
+    for (const std::string& process : active) {
+      SCOPED_TRACE(process + " in " + name);
+      auto s = world(name);
+      const std::vector<Words> before = all_words(*s);
+      s->pipeline().step_alone(process);
+      const std::vector<Words> after = all_words(*s);
+      const auto row = std::find_if(process_table().processes.begin(), process_table().processes.end(),
+                                    [&](const Process& p) { return p.name == process; });
+      for (const LayerInfo& layer : layer_table) {
+        const auto n = static_cast<std::size_t>(layer.layer);
+        if (before[n] == after[n]) continue;
+        EXPECT_TRUE(row->may_write(layer.layer)) << "writes " << layer.name << ", which its row does not say";
+        idle.erase(process);
+      }
+    }
+  }
+  for (const std::string& process : idle) ADD_FAILURE() << process << " had nothing to do in any world";
 }
 
-TEST_P(Contract, OfPlants) {
-  const auto with_plants = [](const auto& step) {
-    return [step](test::BenchTerrain& t) {
-      SpeciesTraits s;
-      s.spawn = 5000;
-      s.moisture_lowest = 0;
-      s.moisture_highest = 1;
-      s.sand = 1;
-      s.slope = 100;
-      plants::Workspace work = plants::make_workspace(t.exec(), t.grid(), t.grid().cells(), {s}, {1});
-      // Some plants come up first, on a terrain that is set back.
-      std::vector<std::vector<std::uint32_t>> before;
-      for (const LayerInfo& row : layer_table) before.push_back(t.terrain.words(row.layer));
-      with_backend(t.exec(), [&](auto& e) {
-        plants::live(e, t.terrain.view(), {}, {}, t.heights, 1, 1, 1, t.ledger(), work);
-      });
-      ASSERT_GT(work.count, 20);
-      for (const LayerInfo& row : layer_table)
-        if (t.terrain.has(row.layer))
-          t.terrain.set_words(row.layer, before[static_cast<std::size_t>(row.layer)]);
-      with_backend(t.exec(), [&](auto& e) { step(e, t, work); });
-      t.exec().synchronise();
-    };
-  };
-  expect_only("plant cover", {Layer::vegetation, Layer::humus, Layer::canopy_height}, true,
-              with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {
-                plants::cover(e, t.terrain.view(), {}, 1, t.heights, true, work);
-              }));
-  expect_only("a look at plant cover", {Layer::canopy_height}, true,
-              with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {
-                plants::cover(e, t.terrain.view(), {}, 1, t.heights, false, work);
-              }));
-  expect_only("a look at species", {Layer::plants}, true,
-              with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {
-                const TerrainView view = t.terrain.view();
-                plants::mark_species(e, view, 0, view.grid.height, work.neighbourhood(), work.plants(),
-                                     work.species.data());
-              }));
-  expect_only("illumination", {Layer::illumination, Layer::illumination_canopy}, true,
-              with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {
-                plants::illuminate(e, t.terrain.view(), {}, t.heights, work);
-              }));
-  expect_only("vegetation", {Layer::moisture, Layer::humus}, true,
-              with_plants([](auto& e, test::BenchTerrain& t, plants::Workspace& work) {
-                plants::live(e, t.terrain.view(), {}, {}, t.heights, 1, 1, 2, t.ledger(), work);
-              }));
+TEST_P(Contract, ProcessesDependOnlyOnTheLayersOfTheirRows) {
+  for (const auto& [name, text] : worlds) {
+    const auto reference = world(name);
+    for (const Pipeline::Stage& stage : reference->pipeline().stages()) {
+      const Process& p = *stage.process;
+      SCOPED_TRACE(p.name + " in " + name);
+      auto plain = world(name), disturbed = world(name);
+      for (const LayerInfo& layer : layer_table)
+        if (std::count(p.reads.begin(), p.reads.end(), layer.layer) == 0 && !p.may_write(layer.layer))
+          disturb(*disturbed, layer.layer);
+      plain->pipeline().step_alone(p.name);
+      disturbed->pipeline().step_alone(p.name);
+      for (const std::vector<Layer>* layers : {&p.writes, &p.writes_if_in_use})
+        for (Layer layer : *layers)
+          EXPECT_EQ(plain->terrain().words(layer), disturbed->terrain().words(layer))
+              << "what it writes to " << info(layer).name
+              << " depends on a layer that its row does not say it reads";
+      EXPECT_EQ(plain->pipeline().fields().repose.download(),
+                disturbed->pipeline().fields().repose.download());
+      EXPECT_EQ(plants::words(plain->plants()), plants::words(disturbed->plants()));
+    }
+  }
+}
+
+/// What refreshes derived layers before somebody looks must leave the state alone.
+TEST_P(Contract, RefreshingDerivedLayersChangesNoState) {
+  for (const auto& [name, text] : worlds) {
+    SCOPED_TRACE(name);
+    auto s = world(name);
+    const std::uint64_t before = s->state_hash();
+    s->pipeline().derived_changed();
+    s->pipeline().refresh_derived();
+    EXPECT_EQ(s->state_hash(), before);
+  }
+}
+
+TEST(ProcessTable, RowsAreComplete) {
+  std::set<std::string> names;
+  const Scenario scenario;
+  for (const Process& p : process_table().processes) {
+    SCOPED_TRACE(p.name);
+    EXPECT_TRUE(names.insert(p.name).second) << "two rows have this name";
+    EXPECT_FALSE(p.source.empty());
+    EXPECT_FALSE(p.parameters.empty());
+    EXPECT_TRUE(p.active && p.step && p.can_be_recorded);
+    if (p.adapt || p.counted_iterations || p.after_step) {
+      EXPECT_TRUE(p.keep) << "it keeps nothing that could be stale or count";
+    }
+    for (Layer layer : p.writes)
+      EXPECT_EQ(std::count(p.writes_if_in_use.begin(), p.writes_if_in_use.end(), layer), 0)
+          << info(layer).name;
+  }
+  for (const FusedProcesses& f : process_table().fused)
+    EXPECT_TRUE(names.count(f.first) && names.count(f.second)) << f.name;
+}
+
+/// If this fails: desert_run --describe-processes > config/processes.md
+TEST(ProcessTable, PageIsUpToDate) {
+  const std::string page = test::file_bytes(std::string(DESERT_SOURCE_DIR) + "/config/processes.md");
+  EXPECT_EQ(page, describe_processes(process_table()))
+      << "config/processes.md is stale: desert_run --describe-processes > config/processes.md";
+}
+
+TEST(ProcessTable, EveryProcessHasItsHeader) {
+  for (const Process& p : process_table().processes)
+    EXPECT_FALSE(test::file_bytes(std::string(DESERT_SOURCE_DIR) + "/" + p.header).empty()) << p.header;
 }
 
 DESERT_ON_EACH_BACKEND(Contract);

@@ -35,7 +35,7 @@ class PlantEdits : public test::OnBackend {
     const auto count = static_cast<std::size_t>(s.plants().count);
     std::vector<float> values;
     for (std::size_t n = 0; n < count; ++n)
-      values.push_back(float_of(words[static_cast<std::size_t>(c) * count + n]));
+      values.push_back(float_from_bits(words[static_cast<std::size_t>(c) * count + n]));
     return values;
   }
   static std::string refusal(Simulation& s, const command::EditPlants& edit) {

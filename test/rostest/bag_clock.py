@@ -22,8 +22,8 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Empty
 from std_srvs.srv import Trigger
 
-STEP_RATE = 10  # as in bag_clock.test
-BEGIN, SECONDS = 1500000000, 2  # of the bag
+STEP_RATE = 20  # as in bag_clock.test
+BEGIN, SECONDS = 1500000000, 1  # of the bag
 
 
 class BagClock:

@@ -86,6 +86,7 @@ class Bags : public testing::Test {
     words.push_back(recording.bag);
     return words;
   }
+  static void pause(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
   static void record_both();
   static void record(NodeProcess& node, const TerrainClient& client, Recording& recording,
                      const std::string& name, int keyframes_on_the_way);
@@ -120,19 +121,19 @@ void Bags::record(NodeProcess& node, const TerrainClient& client, Recording& rec
   ChildProcess recorder(words);
   ASSERT_TRUE(wait_until([&] { return client.statistics().keyframes > keyframes; }, timeout))
       << "the recorder is a new subscriber";
-  std::this_thread::sleep_for(std::chrono::seconds(1));  // it has subscribed to all of them
+  pause(0.3);  // it has subscribed to the other topics too
   node.call<std_srvs::Trigger>("resume", {});
   ros::Publisher asks = ros::NodeHandle().advertise<std_msgs::Empty>("/desert_sim/request_keyframe", 1);
   for (int n = 0; n < keyframes_on_the_way; ++n) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    pause(0.4);
     asks.publish(std_msgs::Empty());
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+  pause(keyframes_on_the_way > 0 ? 0.4 : 1);
   node.call<std_srvs::Trigger>("pause", {});
   recording.last_step = node.call<Step>("step", {}).step;
   ASSERT_TRUE(client.wait_for_step(recording.last_step, timeout));
   live_.add(*client.map());
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // what was published last is on its way
+  pause(0.3);  // what was published last is on its way
   EXPECT_EQ(recorder.end(SIGINT), 0);
   ASSERT_TRUE(fs::exists(recording.bag));
 }
@@ -152,7 +153,7 @@ void Bags::record_both() {
   const TerrainClient client(ros::NodeHandle(), options([](const MapChange& c) { live_.add(*c.map); }));
   ASSERT_TRUE(client.wait_for_terrain(timeout));
   record(node, client, short_, "short.bag", 0);
-  record(node, client, long_, "long.bag", 3);
+  record(node, client, long_, "long.bag", 5);
   ASSERT_GT(short_.last_step, 5u);
   EXPECT_EQ(node.end(SIGINT), 0);
   ros::param::set("/use_sim_time", true);  // for the players too
@@ -216,7 +217,7 @@ TEST_F(Bags, GiveAClientThatComesLateTheTerrainFromTheNextKeyframeOn) {
   EXPECT_EQ(player.wait(), 0);
 }
 
-// ---- again and again ----
+// ---- again and again, at twice the speed of the recording ----
 
 void Bags::play_in_a_loop_and_expect(const Recording& recording) {
   std::atomic<int> turns{0}, compared{0}, wrong{0};
@@ -228,7 +229,7 @@ void Bags::play_in_a_loop_and_expect(const Recording& recording) {
                                ++compared;
                                wrong += change.map->elevations() != live;
                              }));
-  ChildProcess player(play(recording, {"--loop"}));
+  ChildProcess player(play(recording, {"--loop", "--rate=2"}));
   ASSERT_TRUE(wait_until([&] { return turns >= 3 && client.statistics().restarts >= 2; }, 60))
       << turns << " turns; " << told(client);
   EXPECT_GT(compared, 20);

@@ -8,6 +8,8 @@
 #include <cmath>
 
 #include "rostest/service_tests.hpp"
+#include "src/core/error.hpp"
+#include "src/ros/services/requests.hpp"
 
 namespace {
 
@@ -49,10 +51,10 @@ class CmdWind : public Services {
       if (warning.find(text) != std::string::npos) return true;
     return false;
   }
-  /// Nothing changes, and a warning has the text in it.
-  void expect_refused(const geometry_msgs::Vector3Stamped& message, const std::string& text) {
+  /// Nothing changes, and a warning of the node has the text in it. The node warns at most every two seconds.
+  void expect_warning(const geometry_msgs::Vector3Stamped& message, const std::string& text) {
     const geometry_msgs::Vector3 before = status_.last().wind_above;
-    EXPECT_TRUE(wait_until([&] {  // warnings are throttled
+    EXPECT_TRUE(wait_until([&] {
       publisher_.publish(message);
       ros::WallDuration(0.1).sleep();
       return told("cmd_wind") && told(text);
@@ -112,11 +114,32 @@ TEST_F(CmdWind, IsTurnedIntoTheTerrainsFrame) {
 TEST_F(CmdWind, RefusesWithAWarning) {
   publisher_.publish(wind(2, 1));
   ASSERT_TRUE(blows(2, 1));
+  expect_warning(wind(not_a_number, 1), "vector.x: = nan");
+  expect_warning(wind(300, 400), "speed: = 500 is not in [0, 100] m/s");
+}
+
+/// The reasons are read from the function that the node calls for each message, because warnings of the node
+/// are two seconds apart.
+TEST_F(CmdWind, MalformedWindsAreRefusedWithTheirReasons) {
+  const Frames frames("terrain");
+  const auto expect_refused = [&](const geometry_msgs::Vector3Stamped& message, const std::string& text) {
+    try {
+      cmd_wind_command(message, frames);
+      ADD_FAILURE() << "taken: " << message;
+    } catch (const ConfigError& e) {
+      EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
+    }
+    const geometry_msgs::Vector3 before = status_.last().wind_above;
+    const std::size_t n = status_.count();
+    publisher_.publish(message);
+    EXPECT_TRUE(status_.wait_for_count(n + 4));
+    EXPECT_EQ(status_.last().wind_above, before) << text;
+  };
   expect_refused(wind(not_a_number, 1), "vector.x: = nan");
   expect_refused(wind(1, infinity), "vector.y: = inf");
   expect_refused(wind(1, 0, 0.5), "must be 0: the wind is horizontal");
-  expect_refused(wind(300, 400), "speed: = 500 is not in [0, 100] m/s");
   expect_refused(wind(1, 0, 0, "nowhere"), "frame 'nowhere' cannot be brought into the terrain's, 'terrain'");
+  EXPECT_NO_THROW(cmd_wind_command(wind(3, 4), frames));
 }
 
 TEST_F(CmdWind, AStreamFromManyLeavesTheLastAndTheServicesAnswer) {

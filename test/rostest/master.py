@@ -2,6 +2,7 @@
 """A master that dies and comes back, while a node runs. The master is this test's own, not rostest's."""
 import contextlib
 import os
+import random
 import signal
 import socket
 import subprocess
@@ -21,9 +22,12 @@ SHUTDOWN = 5  # [s]; what it took is printed: under one on a machine that does n
 
 
 def free_port():
-    with contextlib.closing(socket.socket()) as probe:
-        probe.bind(("localhost", 0))
-        return probe.getsockname()[1]
+    """A port below those that the kernel gives to connections of others, which could take it while the master is away."""
+    for port in random.sample(range(20000, 30000), 100):
+        with contextlib.closing(socket.socket()) as probe, contextlib.suppress(OSError):
+            probe.bind(("localhost", port))
+            return port
+    raise OSError("none of 100 ports is free")
 
 
 class OwnMaster:
@@ -85,7 +89,7 @@ class Master(Scenarios):
     def step(self):
         return self.statuses[-1].step if self.statuses else 0
 
-    def rate(self, seconds=2):
+    def rate(self, seconds=1):
         """Steps a second of wall time."""
         first, start = self.steps(0).step, time.monotonic()
         time.sleep(seconds)

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Parameters of a live node: dynamic_reconfigure with its own clients, and ~reload_parameters."""
 import signal
-import subprocess
 import threading
 import time
 
@@ -12,9 +11,9 @@ from desert_sim.srv import SetWind, Step
 from dynamic_reconfigure.client import Client
 from dynamic_reconfigure.msg import DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure as ReconfigureService
-from lifecycle import CORNER, PATIENCE, Scenarios, Trigger
+from lifecycle import CORNER, PATIENCE, Scenarios, Trigger, wait_until
 from map_client import Listener
-from roslib.packages import find_node
+from resume import saved_steps
 from sensor_msgs.msg import PointCloud2
 
 # Some of all kinds, and each that needs other memory than the scenario's.
@@ -78,14 +77,6 @@ class Reconfigure(Scenarios):
         live = node.call("step", Step, 12).state_hash
         self.assertEqual(live, self.run_without_ros(CORNER, "--steps", "12", *as_settings(CHANGES)))
         self.assertNotEqual(live, self.run_without_ros(CORNER, "--steps", "12"))
-
-    def test_dynparam(self):
-        node, _ = self.client("typed")
-        dynparam = find_node("dynamic_reconfigure", "dynparam")[0]
-        subprocess.run([dynparam, "set", "/typed", "wind__speed", "6.25"], check=True, timeout=20 * PATIENCE)
-        self.assertEqual(self.wind(node), 6.25)
-        shown = subprocess.run([dynparam, "get", "/typed"], check=True, timeout=20 * PATIENCE, stdout=subprocess.PIPE, text=True).stdout
-        self.assertIn("'wind__speed': 6.25", shown)
 
     def test_refused_changes_nothing(self):
         node, client = self.client("refusing")
@@ -187,7 +178,7 @@ class Reconfigure(Scenarios):
         node, client = self.client("kept", **private)
         client.update_configuration({"saltation__lift": 0.321})
         node.call("step", Step, 1)
-        time.sleep(1.0)
+        wait_until(lambda: 1 in saved_steps(self.folder), "no autosave of step 1")
         node.end(signal.SIGKILL)
         _, again = self.client("kept", **private)
         self.assertEqual(self.values(again)["saltation__lift"], 0.321)

@@ -5,11 +5,13 @@ import os
 import random
 import shutil
 import signal
+import struct
 import time
 import xmlrpc.client
 
 import rospy
 import rostest
+import yaml
 from desert_sim.msg import SimulationStatus
 from desert_sim.srv import LoadScenario, SetWind, Step
 from lifecycle import CORNER, PATIENCE, Scenarios, Trigger, wait_until
@@ -21,6 +23,26 @@ AUTOSAVED = {"scenario": CORNER, "autosave_period": 0.1, "resume": True}
 def autosaves(folder):
     """Oldest first."""
     return sorted(glob.glob(os.path.join(folder, "autosave", "*.ckpt")))
+
+
+def step_of(checkpoint):
+    """The step of the state that a checkpoint holds. The file begins with a line of text, the version of its format
+    (uint32) and the length (uint64) of a YAML header, which has the step."""
+    with open(checkpoint, "rb") as file:
+        file.readline()
+        _, length = struct.unpack("<IQ", file.read(12))
+        return yaml.safe_load(file.read(length))["steps"]
+
+
+def saved_steps(folder):
+    """The steps of all autosaves that there are."""
+    steps = set()
+    for path in autosaves(folder):
+        try:
+            steps.add(step_of(path))
+        except FileNotFoundError:
+            pass  # the node has removed it since the folder was listed
+    return steps
 
 
 def number(path):
@@ -55,11 +77,8 @@ class Resume(Scenarios):
     def saved(self, name, steps, **more):
         """A node that was killed after it had saved that many steps."""
         node = self.start(name, dict(AUTOSAVED, data_dir=self.folder, **more))
-        before = autosaves(self.folder)
         node.call("step", Step, steps)
-        if steps:
-            wait_until(lambda: autosaves(self.folder) != before or node.process.poll() is not None, "no autosave")
-            time.sleep(1)  # a later one, in case that was of before the steps; with no change there is none
+        wait_until(lambda: steps in saved_steps(self.folder), "no autosave of step %d" % steps)
         node.end(signal.SIGKILL)
         return node
 
@@ -145,9 +164,7 @@ class Resume(Scenarios):
         self.path("other.yaml", "grid: {width: 9, height: 7}\nterrain: [noise: {layer: sand, high: 2}]\n")
         start = node.call("load_scenario", LoadScenario, name="other.yaml").state_hash
         live = node.call("step", Step, 3).state_hash
-        before = autosaves(self.folder)
-        wait_until(lambda: autosaves(self.folder) != before, "no autosave")
-        time.sleep(1)
+        wait_until(lambda: 3 in saved_steps(self.folder), "no autosave of step 3")
         node.end(signal.SIGKILL)
         node, step = self.again("loaded")
         self.assertEqual(step, 3)

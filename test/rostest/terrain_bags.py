@@ -13,6 +13,7 @@ import rospy
 import rostest
 from desert_sim.msg import ElevationGrid
 from desert_sim.srv import LoadScenario, LoadTerrain, SaveTerrain, Step
+from lifecycle import wait_until
 from map_client import GRID_MAP, GRID_MAP_MD5, Listener, MapTest, call, cells, center, elevation, parts
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, String
 
@@ -121,7 +122,8 @@ class TerrainBags(MapTest):
         player = subprocess.Popen(["rosbag", "play", "--quiet", "--keep-alive", path, "/desert_sim/grid_map:=/played"])
         self.addCleanup(player.wait)
         self.addCleanup(player.terminate)
-        rospy.sleep(2)
+        wait_until(lambda: "/played" in [topic for topic, _ in rospy.get_published_topics()], "nothing is played")
+        rospy.sleep(0.7)  # rosbag plays what is in the bag 0.2 s after it has advertised it
         with Listener("/played") as late:
             message = late.first("the map")
             self.assertEqual(late.header["latching"], "1")

@@ -149,7 +149,7 @@ class Tools(unittest.TestCase):
         topics = {"elevation": "desert_sim/ElevationGrid", "elevation_updates": "desert_sim/ElevationUpdate",
                   "grid_map": "grid_map_msgs/GridMap", "costmap": "nav_msgs/OccupancyGrid", "wind": "desert_sim/WindField",
                   "status": "desert_sim/SimulationStatus"}
-        run("rosbag", "record", "--duration=3", "-O", bag, *("/desert_sim/" + name for name in topics))
+        run("rosbag", "record", "--duration=2", "-O", bag, *("/desert_sim/" + name for name in topics))
         info = yaml.safe_load(run("rosbag", "info", "-y", bag))
         recorded = {topic["topic"]: (topic["type"], topic["messages"]) for topic in info["topics"]}
         for name, kind in topics.items():

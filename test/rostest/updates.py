@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Keyframes and updates, put together as the README shows for Python."""
+"""Keyframes and updates, put together as doc/ros_interface.md shows for Python."""
 import time
 
 import numpy

@@ -171,7 +171,7 @@ void BenchTerrain::soak(const MoistureParameters& p, float capacity, float time_
   });
 }
 
-void BenchTerrain::ripen(const SoilParameters& p, const ReposeParameters& r, float time_step) {
+void BenchTerrain::develop_soil(const SoilParameters& p, const ReposeParameters& r, float time_step) {
   terrain.require(Layer::soil);
   with_backend(exec(), [&](auto& e) { soil::step(e, terrain.view(), p, r, time_step, ledger()); });
 }

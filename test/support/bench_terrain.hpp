@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "kernels/avalanching/avalanching.hpp"
 #include "kernels/avalanching/soil_and_bedrock.hpp"
 #include "kernels/edit/brush_smooth.hpp"
 #include "kernels/field/statistics.hpp"
@@ -79,7 +80,7 @@ class BenchTerrain {
   void flow(const WaterParameters& p, float time_step, double time = 0, Quanta sea_level = 0);
   void erode(const HydraulicErosionParameters& p, float time_step = 1);
   void soak(const MoistureParameters& p, float capacity = 0.3f, float time_step = 1);
-  void ripen(const SoilParameters& p, const ReposeParameters& r = {}, float time_step = 1);
+  void develop_soil(const SoilParameters& p, const ReposeParameters& r = {}, float time_step = 1);
   void blow(const WindParameters& p, wind::Vector above, Quanta reference = 0);
 };
 

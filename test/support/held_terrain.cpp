@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/processes.hpp"
+#include "kernels/view/held_elevation.hpp"
 
 namespace desert_sim::test {
 
@@ -30,21 +30,21 @@ void HeldTerrain::set(const std::vector<float>& elevation) {
 
 void HeldTerrain::hold() {
   with_backend(exec_, [this](auto& e) {
-    held_elevation::hold(e, terrain_.view(), terrain_.metres(Layer::elevation), held_.data());
+    held_elevation::set_held(e, terrain_.view(), terrain_.metres(Layer::elevation), held_.data());
   });
 }
 
 std::vector<TileChange> HeldTerrain::take(float threshold, int tile) {
   const packed_tiles::Tiling tiles = packed_tiles::tiling(terrain_.grid(), tile);
   Staging::Slot& slot = staging_.next(
-      packed_tiles::most_packed(static_cast<std::size_t>(tiles.count()), held_.size(), sizeof(float)));
+      packed_tiles::max_packed_bytes(static_cast<std::size_t>(tiles.count()), held_.size(), sizeof(float)));
   with_backend(exec_, [&](auto& e) {
-    held_elevation::take_changes(e, terrain_.view(), terrain_.metres(Layer::elevation), tiles, threshold,
+    held_elevation::pack_changes(e, terrain_.view(), terrain_.metres(Layer::elevation), tiles, threshold,
                                  held_.data(), slot.device());
   });
   std::vector<TileChange> changes;
   auto readback = std::make_shared<Readback>();
-  staging_.send(slot, sizeof(packed_tiles::PackedHead), readback,
+  staging_.send(slot, sizeof(packed_tiles::PackHeader), readback,
                 [&](Staging::Slot& arrived) { changes = unpacked_changes(arrived, tiles); });
   readback->wait();
   return changes;

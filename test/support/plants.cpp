@@ -57,7 +57,8 @@ void PlantBench::put(const std::vector<Plant>& plants) {
     at(plants::Column::species, n) = static_cast<std::uint32_t>(plants[n].species);
   }
   work.next.upload(words);
-  with_backend(terrain.exec(), [&](auto& e) { plants::order(e, static_cast<int>(plants.size()), 0, work); });
+  with_backend(terrain.exec(),
+               [&](auto& e) { plants::sort_plants(e, static_cast<int>(plants.size()), 0, work); });
 }
 
 std::vector<Plant> PlantBench::plants() const {
@@ -68,7 +69,8 @@ std::vector<Plant> PlantBench::plants() const {
     return words[static_cast<std::size_t>(c) * count + n];
   };
   for (std::size_t n = 0; n < count; ++n) {
-    for_each_real([&](plants::Column c, float Plant::*member) { found[n].*member = float_of(at(c, n)); });
+    for_each_real(
+        [&](plants::Column c, float Plant::*member) { found[n].*member = float_from_bits(at(c, n)); });
     found[n].z = static_cast<float>(static_cast<Quanta>(at(plants::Column::z, n))) / quanta_per_metre;
     found[n].species = static_cast<int>(at(plants::Column::species, n));
   }
@@ -94,8 +96,8 @@ void PlantBench::live(float time_step, std::uint64_t step, std::uint64_t seed, b
   terrain.surface();
   if (lit) terrain.set(Layer::illumination, 1).set(Layer::illumination_canopy, 1);
   with_backend(terrain.exec(), [&](auto& e) {
-    plants::live(e, terrain.terrain.view(), parameters, repose, terrain.heights, time_step, seed, step,
-                 terrain.ledger(), work);
+    plants::grow_and_spawn(e, terrain.terrain.view(), parameters, repose, terrain.heights, time_step, seed,
+                           step, terrain.ledger(), work);
   });
   terrain.exec().synchronise();
 }

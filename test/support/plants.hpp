@@ -3,7 +3,10 @@
 
 #include <vector>
 
-#include "kernels/processes.hpp"
+#include "kernels/plants/cover.hpp"
+#include "kernels/plants/illumination.hpp"
+#include "kernels/plants/life.hpp"
+#include "kernels/plants/marking.hpp"
 #include "support/bench_terrain.hpp"
 
 namespace desert_sim::test {

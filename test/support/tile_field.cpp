@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "kernels/field/random.hpp"
+#include "kernels/field/surface_laws.hpp"
 
 namespace desert_sim::test {
 
@@ -73,17 +74,19 @@ struct TileField::There {
 };
 
 std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool by_law, float share,
-                                       float plenty, float at_edges) const {
+                                       float plenty, float edge_factor) const {
   There there(exec, *this);
   Buffer<Quanta> before = on(exec, coarse_before), after = on(exec, coarse_after);
   const avalanching::Prolong from_coarse{coarse(), or_null(after, coarse_after),
                                          or_null(before, coarse_before), grid, there.sand.data()};
   Buffer<Quanta> open_there = on(exec, open);
   const avalanching::RelaxTile law{
-      {grid, offset},           there.level, from_coarse, {share, at_edges * share}, sweeps, plenty,
+      {grid, offset},           there.level, from_coarse, {share, edge_factor * share}, sweeps, plenty,
       or_null(open_there, open)};
-  with_backend(
-      exec, [&](auto& e) { by_law ? avalanching::relax_by_law(e, law) : avalanching::relax_tiles(e, law); });
+  with_backend(exec, [&](auto& e) {
+    by_law ? avalanching::relax_tiles_reference(e, law)
+           : avalanching::relax_tiles(e, law, avalanching::NoFollowUp{});
+  });
   return there.sand.download();
 }
 
@@ -109,8 +112,8 @@ std::vector<std::uint32_t> TileField::relaxed_and_restricted(Exec& exec, int off
              quarter{half.width / 2, half.height / 2, 2 * half.cell_size, half.periodic_x, half.periodic_y};
   Coarse first(exec, half), second(exec, quarter);
   with_backend(exec, [&](auto& e) {
-    avalanching::relax_tiles_then(e, four_sweeps(there, offset),
-                                  avalanching::Restrict{there.level, first.out, second.out});
+    avalanching::relax_tiles(e, four_sweeps(there, offset),
+                             avalanching::Restrict{there.level, first.out, second.out});
   });
   std::vector<std::uint32_t> bits;
   append(bits, there.sand);
@@ -127,14 +130,14 @@ std::vector<std::uint32_t> TileField::relaxed_and_measured(Exec& exec, int offse
   There there(exec, *this);
   surface::Heights heights = surface::make_heights(exec, grid);
   with_backend(exec, [&](auto& e) {
-    avalanching::relax_tiles_then(
+    avalanching::relax_tiles(
         e, four_sweeps(there, offset),
         surface::MeasureBlock{grid, there.ground.data(), or_null(there.soil, soil), there.sand.data(),
-                              heights.blocks, heights.of_cells.data(), heights.highest.data()});
+                              heights.blocks, heights.cell_heights.data(), heights.highest.data()});
   });
   std::vector<std::uint32_t> bits;
   append(bits, there.sand);
-  append(bits, heights.of_cells);
+  append(bits, heights.cell_heights);
   append(bits, heights.highest);
   return bits;
 }

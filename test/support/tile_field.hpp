@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/processes.hpp"
+#include "kernels/avalanching/tile.hpp"
 
 namespace desert_sim::test {
 
@@ -27,7 +27,7 @@ struct TileField {
   /// The sand after one pass of `sweeps` sweeps in tiles that begin at −offset; by the reference, or as the
   /// backend does it best.
   std::vector<Quanta> relaxed(Exec& exec, int offset, int sweeps, bool by_law, float share = 0.5f,
-                              float plenty = 100, float at_edges = 1) const;
+                              float plenty = 100, float edge_factor = 1) const;
   /// The sand after one pass of four sweeps, and what is filled after it, the bits of one layer after
   /// another: both coarse levels, or the heights with the highest of each block.
   std::vector<std::uint32_t> relaxed_and_restricted(Exec& exec, int offset) const;

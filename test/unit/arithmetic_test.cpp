@@ -1,4 +1,4 @@
-// Rounding and counting: quanta, bilinear shares, subcells, exponentials, height scales, indices, random
+// Rounding and counting: quanta, bilinear shares, to_fixed_point, exponentials, height scales, indices, random
 // numbers.
 
 #include <gtest/gtest.h>
@@ -72,16 +72,16 @@ TEST(Take, NeverTakesMoreThanThereIsWhereFloatsAreCoarse) {
 
 TEST(Subcells, RoundSymmetrically) {
   for (float cells : {0.0f, 0.1f, 0.5f, 1.0f, 7.30001f, 1.0f / 65536, 0.5f / 65536, 1.5f / 65536})
-    EXPECT_EQ(subcells(-cells), -subcells(cells)) << cells;
-  EXPECT_EQ(subcells(1.0f), subcell_one);
-  EXPECT_EQ(subcells(0.25f), 16384);
+    EXPECT_EQ(to_fixed_point(-cells), -to_fixed_point(cells)) << cells;
+  EXPECT_EQ(to_fixed_point(1.0f), fixed_point_one);
+  EXPECT_EQ(to_fixed_point(0.25f), 16384);
 }
 
 TEST(BilinearShare, FourSharesNeverExceedTheAmountAndLeaveAtMostThree) {
   for (Quanta amount : {0, 1, 2, 3, 7, 1000003, wall_height, std::numeric_limits<Quanta>::max()})
     for (int fx : {0, 1, 13, 32768, 65535})
       for (int fy : {0, 1, 40000, 65535}) {
-        const int gx = subcell_one - fx, gy = subcell_one - fy;
+        const int gx = fixed_point_one - fx, gy = fixed_point_one - fy;
         const long long sum = 0LL + bilinear_share(amount, gx, gy) + bilinear_share(amount, fx, gy) +
                               bilinear_share(amount, gx, fy) + bilinear_share(amount, fx, fy);
         EXPECT_LE(sum, amount);
@@ -90,18 +90,18 @@ TEST(BilinearShare, FourSharesNeverExceedTheAmountAndLeaveAtMostThree) {
 }
 
 TEST(BilinearShare, IsTheAmountTimesItsWeights) {
-  EXPECT_EQ(bilinear_share(1 << 20, subcell_one, subcell_one), 1 << 20);
-  EXPECT_EQ(bilinear_share(1 << 20, subcell_one / 2, subcell_one / 4), 1 << 17);
-  EXPECT_EQ(bilinear_share(3, subcell_one / 2, subcell_one), 1);
+  EXPECT_EQ(bilinear_share(1 << 20, fixed_point_one, fixed_point_one), 1 << 20);
+  EXPECT_EQ(bilinear_share(1 << 20, fixed_point_one / 2, fixed_point_one / 4), 1 << 17);
+  EXPECT_EQ(bilinear_share(3, fixed_point_one / 2, fixed_point_one), 1);
 }
 
 /// What is carried arrives, or stays where it was; what rounding leaves at the nearest of the four, so that a
 /// mirrored hop arrives mirrored.
-TEST(Carried, ArrivesWholeAndMirrored) {
+TEST(BilinearParcels, ArrivesWholeAndMirrored) {
   for (Quanta amount : {1, 2, 3, 7, 1000003})
     for (int dx : {0, 1, 13, 16384, 32768, 40000, 65535})
       for (int dy : {0, 20000, 32768, 65535}) {
-        Carried<2> parcels;
+        BilinearParcels<2> parcels;
         parcels.set(0, 10, 20, dx, dy, amount);
         parcels.set(1, 10, 20, -dx, dy, amount);
         for (int n = 0; n < 2; ++n) {
@@ -123,7 +123,7 @@ TEST(Carried, ArrivesWholeAndMirrored) {
           EXPECT_EQ(at(0, 10 + away), at(1, 10 - away)) << amount << ": " << dx << ", " << dy;
         EXPECT_EQ(parcels.left(0), parcels.left(1));
       }
-  Carried<1> one;
+  BilinearParcels<1> one;
   one.set(0, 0, 0, 20000, 60000, 3);
   EXPECT_EQ(one.north_west[0], 3) << "of three quanta each share is less than one";
 }

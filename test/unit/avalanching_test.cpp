@@ -248,22 +248,22 @@ struct Hierarchy {
 };
 
 /// What is found by corners alone, where that is said to do, is what is found cell by cell.
-TEST(RoundOfTiles, HasTheSameTilesByCorners) {
-  constexpr int passes = avalanching::passes_a_round;
+TEST(ActiveTileFlags, HasTheSameTilesByCorners) {
+  constexpr int passes = avalanching::passes_per_round;
   int by_corners = 0;
   for (const Grid& g : {Grid{128, 96, 1, true, true}, Grid{128, 100, 1, true, false},
                         Grid{101, 140, 1, true, true}, Grid{144, 160, 1, false, false}})
-    for (int margin : {1, avalanching::slides_reach}) {
+    for (int margin : {1, avalanching::activation_margin}) {
       const int most = Tiles{g, Tiles::side - 1}.count();
       std::vector<Quanta> flags(static_cast<std::size_t>(passes * most));
-      const avalanching::RoundOfTiles round{g, {0, 16, 8, 28}, flags.data(), most};
+      const avalanching::ActiveTileFlags round{g, {0, 16, 8, 28}, flags.data(), most};
       const Grid blocks = avalanching::Blocks{g}.cells();
       for (int row = 0; row < blocks.height; ++row)
         for (int column = 0; column < blocks.width; ++column) {
           std::set<const Quanta*> one_by_one;
           round.for_each_around(column, row, margin, [&](const Quanta* flag) { one_by_one.insert(flag); });
-          Quanta* corners[avalanching::RoundOfTiles::corners];
-          if (!round.find_corners(column, row, margin, corners)) continue;
+          Quanta* corners[avalanching::ActiveTileFlags::corners];
+          if (!round.find_corner_flags(column, row, margin, corners)) continue;
           ++by_corners;
           EXPECT_EQ(std::set<const Quanta*>(std::begin(corners), std::end(corners)), one_by_one)
               << g.width << " x " << g.height << ", " << column << ", " << row;

@@ -310,17 +310,17 @@ TEST(Tiles, KnowInWhichOfThemACellLies) {
 /// What one of a pair loses and the other gets, each rounded once, is the same; with shares as they are given
 /// it is not, where a product lies halfway.
 TEST(AvalanchingPatch, RoundsWhatSlidesAlikeOnBothSides) {
-  using avalanching::never_halfway;
-  EXPECT_EQ(never_halfway(0.0f), 0.0f);
-  EXPECT_LT(never_halfway(1.0f), 1.0f);
+  using avalanching::with_odd_mantissa;
+  EXPECT_EQ(with_odd_mantissa(0.0f), 0.0f);
+  EXPECT_LT(with_odd_mantissa(1.0f), 1.0f);
   std::mt19937 random(1);
   int halfway = 0;
   for (float given : {0.25f, 0.315f, 0.5f, 0.6f, 0.625f, 0.7f, 0.75f, 1.0f}) {
-    const float share = never_halfway(given);
+    const float share = with_odd_mantissa(given);
     EXPECT_NEAR(share, given, 1e-7);
     for (int n = 0; n < 100000; ++n) {
       // Whole units in [1, 2), and an excess that need not be one but is no more than their difference.
-      const auto unit = [&] { return float_of(bits_of(1.0f) + (random() & 0x7fffff)); };
+      const auto unit = [&] { return float_from_bits(bits_of(1.0f) + (random() & 0x7fffff)); };
       const float one = unit(), other = unit(), a = higher(one, other), b = lower(one, other);
       const float repose = (n % 2 ? 1.0f : 0.37f) * (a - b) * static_cast<float>(random() % 1000) / 1000.0f;
       const float excess = (a - b) - (n % 3 ? repose : 0.0f);

@@ -99,7 +99,7 @@ TEST_P(EditWind, RefusesAndChangesNothing) {
   edit.feature.radius = std::numeric_limits<float>::quiet_NaN();
   refused(edit, "radius");
   edit = vortex(WindEdit::add);
-  for (int id = 8; id < 8 + static_cast<int>(most_wind_features) - 1; ++id) {
+  for (int id = 8; id < 8 + static_cast<int>(max_wind_features) - 1; ++id) {
     edit.feature.id = id;
     edit.feature.speed = 0;
     s->apply(edit);

@@ -23,12 +23,12 @@ const Grid grids[] = {{1, 1}, {7, 3}, {20000, 2}, {3, 7001}, {203, 187}, {256, 2
 
 // ---- who does what
 
-TEST(SharedWork, EachPieceIsDoneOnceBySomeTeam) {
+TEST(WorkStealingRange, EachPieceIsDoneOnceBySomeTeam) {
   for (int parts : {1, 2, 5, 64, 100})
     for (int team : {1, 2, 4})
       for (int count : {0, 1, 3, 31, 1000}) {
         std::vector<std::atomic<int>> done(static_cast<std::size_t>(count));
-        SharedWork all(parts, count);
+        WorkStealingRange all(parts, count);
 #pragma omp parallel num_threads(team)
         all.work([&](int n) { ++done[static_cast<std::size_t>(n)]; });
         for (const std::atomic<int>& times : done)
@@ -37,12 +37,12 @@ TEST(SharedWork, EachPieceIsDoneOnceBySomeTeam) {
 }
 
 /// The first thread comes no further than its first piece until the other has done all but a few.
-TEST(SharedWork, NobodyWaitsForAThreadThatIsHeldUp) {
+TEST(WorkStealingRange, NobodyWaitsForAThreadThatIsHeldUp) {
   constexpr int count = 3200, few = count / 32;
   std::atomic<int> done{0}, team{0};
   const auto start = std::chrono::steady_clock::now();
   const auto late = [start] { return std::chrono::steady_clock::now() - start > std::chrono::minutes(2); };
-  SharedWork all(2, count);
+  WorkStealingRange all(2, count);
 #pragma omp parallel num_threads(2)
   {
     team = omp_get_num_threads();
@@ -71,7 +71,7 @@ struct Spread {
   void prepare(int x, int y, Parcels<count>& parcels, int n) const {
     const auto i = static_cast<std::uint32_t>(grid.index(x, y));
     parcels.anywhere[n] =
-        static_cast<int>(high_product(i * 2654435761u, static_cast<std::uint32_t>(grid.cells())));
+        static_cast<int>(multiply_high(i * 2654435761u, static_cast<std::uint32_t>(grid.cells())));
     parcels.amount[n] = static_cast<Quanta>(i % 1000u) - 300;
   }
   template <int count, class Add>
@@ -101,7 +101,7 @@ TEST(ForEachCellAdding, SumsTheSameWithAnyNumberOfThreadsWhateverWasThere) {
     for (int threads : {1, 2, 5, 16}) {
       CpuExec exec(threads);
       std::vector<Quanta> sums(expected.size(), -12345);
-      for_each_cell_adding(exec, grid, sums.data(), Spread{grid});
+      for_each_cell_scatter(exec, grid, sums.data(), Spread{grid});
       EXPECT_EQ(sums, expected) << grid.width << " x " << grid.height << ", " << threads << " threads";
     }
   }

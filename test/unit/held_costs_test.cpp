@@ -206,7 +206,7 @@ TEST_P(HeldCostsTold, OfASimulationFollowItsTraversability) {
   Costs held(90 * 70, unknown_cost);
   first.whole.get()->write_to(held, 90);
   s->staging().release();
-  EXPECT_EQ(exec().bytes_held() - before, 2 * 90 * 70 + sizeof(held_costs::GrowingBox));
+  EXPECT_EQ(exec().bytes_held() - before, 2 * 90 * 70 + sizeof(held_costs::BoundingBox));
   EXPECT_EQ(total_bytes(s->memory()) - parts, exec().bytes_held() - before);
   EXPECT_FALSE(s->terrain().has(Layer::traversability)) << "nobody asked for the layer";
   for (int round = 0; round < 5; ++round) {

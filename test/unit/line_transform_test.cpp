@@ -52,7 +52,7 @@ TEST(LineTransform, BackAgainWithPartsExchanged) {
   for (int n : {2, 45, 64, 180, 486, 512}) {
     const Line line = some_line(n);
     Line modes = transformed(line, 16);
-    for (Complex& mode : modes) mode = parts_exchanged(mode);
+    for (Complex& mode : modes) mode = swap_re_im(mode);
     const Line back = transformed(modes, 7);
     for (int j = 0; j < n; ++j) {
       EXPECT_NEAR(back[j].im / n, line[j].re, 1e-6) << n << ' ' << j;

@@ -19,10 +19,10 @@ std::vector<std::uint64_t> random_words(int count, std::uint32_t keys) {
 
 template <class E>
 void expect_sorted(E& exec, int count, std::uint32_t keys) {
-  Ordering ordering(exec, count, 1);
+  SortWorkspace ordering(exec, count, 1);
   std::vector<std::uint64_t> words = random_words(count, keys);
   ordering.words.upload(words);
-  sort_words(exec, ordering, count, bits_up_to(keys - 1));
+  sort_by_key(exec, ordering, count, bit_width_of(keys - 1));
   std::stable_sort(words.begin(), words.end(), [](auto a, auto b) { return a >> 32 < b >> 32; });
   EXPECT_TRUE(ordering.words.download() == words) << count << " of " << keys << " keys";
 }
@@ -37,7 +37,7 @@ TEST_P(OrderingOf, ItemsOfTheSameKeyKeepTheirOrder) {
 
 TEST_P(OrderingOf, PrefixSumsLeaveOutTheirOwnValue) {
   for (int count : {1, 2, 777, 70001}) {
-    Ordering ordering(exec(), 1, count);
+    SortWorkspace ordering(exec(), 1, count);
     std::vector<int> values, expected;
     int sum = 0;
     for (int n = 0; n < count; ++n) {
@@ -52,19 +52,19 @@ TEST_P(OrderingOf, PrefixSumsLeaveOutTheirOwnValue) {
   }
 }
 
-TEST(Ordering, DoesNotDependOnTheNumberOfThreads) {
+TEST(SortWorkspace, DoesNotDependOnTheNumberOfThreads) {
   for (int threads : {2, 3, 7}) {
     CpuExec exec(threads);
     expect_sorted(exec, 50000, 999);
   }
 }
 
-TEST(Ordering, BitsOfTheLargestKey) {
-  EXPECT_EQ(bits_up_to(0), 1);
-  EXPECT_EQ(bits_up_to(1), 1);
-  EXPECT_EQ(bits_up_to(255), 8);
-  EXPECT_EQ(bits_up_to(256), 9);
-  EXPECT_EQ(bits_up_to(0xffffffffu), 32);
+TEST(SortWorkspace, BitsOfTheLargestKey) {
+  EXPECT_EQ(bit_width_of(0), 1);
+  EXPECT_EQ(bit_width_of(1), 1);
+  EXPECT_EQ(bit_width_of(255), 8);
+  EXPECT_EQ(bit_width_of(256), 9);
+  EXPECT_EQ(bit_width_of(0xffffffffu), 32);
 }
 
 DESERT_ON_EACH_BACKEND(OrderingOf);

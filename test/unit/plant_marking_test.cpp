@@ -18,8 +18,8 @@ class PlantMarking : public test::OnBackend {
     b.terrain.terrain.require(Layer::plants);
     const TerrainView view = b.terrain.terrain.view();
     with_backend(exec(), [&](auto& e) {
-      plants::mark_species(e, view, first, rows ? rows : view.grid.height, b.work.neighbourhood(),
-                           b.work.plants(), b.work.species.data());
+      plants::find_dominant_species(e, view, first, rows ? rows : view.grid.height, b.work.neighbourhood(),
+                                    b.work.plants(), b.work.species.data());
     });
   }
 };
@@ -99,7 +99,8 @@ TEST_P(PlantMarking, AListHasEveryPlantInItsOrder) {
   const auto word = [&](plants::Column c, int n) {
     return words[static_cast<std::size_t>(c) * static_cast<std::size_t>(count) + static_cast<std::size_t>(n)];
   };
-  for (std::size_t slot : {s->staging().slot_bytes(), 7 * sizeof(plants::Listed)}) {  // in one piece, in many
+  for (std::size_t slot :
+       {s->staging().slot_bytes(), 7 * sizeof(plants::PlantRecord)}) {  // in one piece, in many
     s->staging().set_slot_bytes(slot);
     const auto list = s->begin_plants().get();
     EXPECT_EQ(list->origin_x, 100);
@@ -109,12 +110,12 @@ TEST_P(PlantMarking, AListHasEveryPlantInItsOrder) {
     EXPECT_EQ(list->species[0].name, "bush");
     ASSERT_EQ(list->plants.size(), static_cast<std::size_t>(count));
     for (int n = 0; n < count; ++n) {
-      const plants::Listed& plant = list->plants[static_cast<std::size_t>(n)];
-      EXPECT_EQ(plant.x, float_of(word(plants::Column::x, n)));
-      EXPECT_EQ(plant.y, float_of(word(plants::Column::y, n)));
-      EXPECT_EQ(plant.radius, float_of(word(plants::Column::radius, n)));
+      const plants::PlantRecord& plant = list->plants[static_cast<std::size_t>(n)];
+      EXPECT_EQ(plant.x, float_from_bits(word(plants::Column::x, n)));
+      EXPECT_EQ(plant.y, float_from_bits(word(plants::Column::y, n)));
+      EXPECT_EQ(plant.radius, float_from_bits(word(plants::Column::radius, n)));
       EXPECT_EQ(plant.species, word(plants::Column::species, n));
-      EXPECT_NEAR(plant.health / 255.0, float_of(word(plants::Column::health, n)), 0.5 / 255 + 1e-6);
+      EXPECT_NEAR(plant.health / 255.0, float_from_bits(word(plants::Column::health, n)), 0.5 / 255 + 1e-6);
       const double z = s->terrain().scale().datum +
                        static_cast<std::int32_t>(word(plants::Column::z, n)) * s->terrain().scale().quantum();
       EXPECT_NEAR(plant.z, z, 1e-5);

@@ -30,7 +30,7 @@ class Repeat : public test::OnBackend {
   /// Replays `work` once it is recorded, where that can be; else does it.
   void recorded(const std::function<void()>& work, const std::function<void()>& before_each, int times) {
     std::unique_ptr<Recording> recording;
-    if (exec().records_repeats()) recording = exec().record(work);
+    if (exec().can_record_loops()) recording = exec().record(work);
     for (int n = 0; n < times; ++n) {
       before_each();
       recording ? recording->replay() : work();

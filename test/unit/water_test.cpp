@@ -19,7 +19,7 @@ class WaterLaws : public test::OnBackend {
   void pour(test::BenchTerrain& t, const Spring& spring, std::uint64_t tick = 0) {
     t.terrain.require(Layer::water);
     with_backend(exec(), [&](auto& e) {
-      water_sources::pour(e, t.terrain.view(), spring, spring.x, spring.y, 1, tick, t.ledger());
+      water_sources::add_spring(e, t.terrain.view(), spring, spring.x, spring.y, 1, tick, t.ledger());
     });
   }
 };
@@ -315,7 +315,7 @@ TEST_P(WaterLaws, DrySoilBecomesSandAndHumusMakesItSoilAgain) {
     test::BenchTerrain t(exec(), 3, 3);
     t.set(Layer::soil, 1).set(Layer::sand, sand).set(Layer::moisture, moisture);
     t.set(Layer::vegetation, vegetation).set(Layer::humus, humus);
-    t.ripen({});
+    t.develop_soil({});
     EXPECT_NEAR(t.at(Layer::soil, 1, 1) + t.at(Layer::sand, 1, 1), 1 + sand, 1e-6);
     EXPECT_NEAR(humus - t.at(Layer::humus, 1, 1), std::min(humus, std::abs(t.at(Layer::sand, 1, 1) - sand)),
                 2e-6);

@@ -1,28 +1,32 @@
 #pragma once
-/// The way of a tile's patches from the grid to shared memory and back.
+/// Transfer of a tile's patches from global to shared memory and back.
 
 #include "kernels/avalanching/tuned/sweeps.cuh"
 
 namespace desert_sim::avalanching::tuned {
 
-/// A value of each cell of a patch.
+/// One value for each cell of a patch, in registers.
 template <class T>
 struct OfPatch {
-  Four<T> rows[Patch::side];
+  Vec4<T> rows[Patch::side];
   __device__ T& operator[](int n) { return rows[n / Patch::side].values[n % Patch::side]; }
 };
 
-/// The ground of all patches [quanta], kept for what follows the sweeps; or nothing.
+/// The ground of all patches [quanta], kept in shared memory for the law that follows the sweeps, if there is
+/// one.
 struct Ground {
-  Four<Quanta> rows[Patch::side][threads];
+  Vec4<Quanta> rows[Patch::side][threads];
 };
 
-/// A thread's patch in the grid. `whole`: width and height of the grid are multiples of four, as tiles'
-/// offsets are, so that patches lie in the grid as a whole, their rows aligned, or not at all.
+/// Where a thread's patch lies in the grid. `whole`: the grid's width and height are multiples of four, as
+/// the tiles' offset is, so that a patch lies completely inside the grid, with aligned rows, or completely
+/// outside.
 template <bool whole>
 struct Place {
   const RelaxTile& law;
-  int x, y;  ///< of its first cell; if `whole`, in the grid, −1 if it is not there; else in the tile
+  /// First cell of the patch: its place in the grid if `whole` (−1 where the patch lies outside), else in the
+  /// tile.
+  int x, y;
 
   __device__ explicit Place(const RelaxTile& tile)
       : law(tile),
@@ -32,36 +36,35 @@ struct Place {
     x = grid_x(x);
     y = grid_y(y);
   }
-  __device__ bool there() const { return x >= 0 && y >= 0; }  ///< if `whole`
+  __device__ bool there() const { return x >= 0 && y >= 0; }  ///< valid if `whole`
   __device__ bool there(int n) const { return whole ? there() : cell(n / Patch::side, n % Patch::side) >= 0; }
-  /// The grid's cell, or −1.
+  /// Index of a cell in the grid, or −1 where it does not exist.
   __device__ int cell(int row, int column) const {
     const int width = law.level.grid.width;
     if (whole) return there() ? (y + row) * width + x + column : -1;
     const int there_x = grid_x(x + column), there_y = grid_y(y + row);
     return there_x < 0 || there_y < 0 ? -1 : there_y * width + there_x;
   }
-  /// What the coarse cells have changed by, of which the cells of two rows are the children.
-  __device__ Two<Quanta> changes(int row) const {
+  /// Changes of the two coarse cells whose children are the cells of rows `row` and `row` + 1.
+  __device__ Vec2<Quanta> changes(int row) const {
     const Prolong& from = law.from_coarse;
     if constexpr (whole) {
       if (!there()) return {};
       const int i = from.coarse.index(x / 2, (y + row) / 2);
-      const Two<Quanta> after = beside_at<2>(from.sand_after + i),
-                        before = beside_at<2>(from.sand_before + i);
+      const Vec2<Quanta> after = load_vec<2>(from.sand_after + i), before = load_vec<2>(from.sand_before + i);
       return {after.values[0] - before.values[0], after.values[1] - before.values[1]};
     } else {
       return {change(row, 0), change(row, 2)};
     }
   }
 
-  /// What stands for cells that are not there is of no account: their heights are walls'.
+  /// Loads a layer. Cells that do not exist get values of other cells; their heights will be those of walls.
   template <class T>
   __device__ void fetch(const T* from, OfPatch<T>& to) const {
 #pragma unroll
     for (int row = 0; row < Patch::side; ++row) {
       if constexpr (whole) {
-        to.rows[row] = four_at(from + (there() ? cell(row, 0) : 0));
+        to.rows[row] = load_vec4(from + (there() ? cell(row, 0) : 0));
       } else {
 #pragma unroll
         for (int n = 0; n < Patch::side; ++n) {
@@ -71,9 +74,9 @@ struct Place {
       }
     }
   }
-  __device__ void put_row(Quanta* to, int row, const Four<Quanta>& four) const {
+  __device__ void put_row(Quanta* to, int row, const Vec4<Quanta>& four) const {
     if constexpr (whole) {
-      if (there()) put_four(to + cell(row, 0), four);
+      if (there()) store_vec4(to + cell(row, 0), four);
     } else {
 #pragma unroll
       for (int n = 0; n < Patch::side; ++n)
@@ -92,7 +95,7 @@ struct Place {
   __device__ int grid_y(int n) const { return law.grid_y(static_cast<int>(blockIdx.y), n); }
 };
 
-/// Of all values in a warp.
+/// Minimum over the threads of a warp.
 __device__ inline int lowest_of_warp(int value) {
 #if __CUDA_ARCH__ >= 800
   return __reduce_min_sync(0xffffffffu, value);
@@ -103,7 +106,7 @@ __device__ inline int lowest_of_warp(int value) {
 }
 __device__ inline int highest_of_warp(int value) { return ~lowest_of_warp(~value); }
 
-/// Of the block, by what each thread has found.
+/// Range of the tile (thread block), combined from those of the threads.
 __device__ inline Range range_of_block(Shared& shared, Range range) {
   range = {lowest_of_warp(range.lowest), highest_of_warp(range.highest),
            highest_of_warp(range.highest_ground)};
@@ -117,18 +120,18 @@ __device__ inline Range range_of_block(Shared& shared, Range range) {
   return range;
 }
 
-constexpr int families = Patch::side / 2;  ///< of a coarse cell's four children, along an axis
+constexpr int families = Patch::side / 2;  ///< groups of a coarse cell's children in a patch, along an axis
 
-/// What the patch's families get from the coarse level.
+/// Loads the changes of the coarse cells above the patch; 0 if there is nothing to prolong.
 template <bool whole>
-__device__ void fetch_changes(const Place<whole>& place, Two<Quanta> (&change)[families]) {
+__device__ void fetch_changes(const Place<whole>& place, Vec2<Quanta> (&change)[families]) {
 #pragma unroll
   for (int row = 0; row < families; ++row)
-    change[row] = place.law.from_coarse.sand_after ? place.changes(2 * row) : Two<Quanta>{};
+    change[row] = place.law.from_coarse.sand_after ? place.changes(2 * row) : Vec2<Quanta>{};
 }
 
-/// Hands it to their sand.
-__device__ inline void prolong(const Two<Quanta> (&change)[families], OfPatch<Quanta>& sand) {
+/// Prolongs them to the sand of the children.
+__device__ inline void prolong(const Vec2<Quanta> (&change)[families], OfPatch<Quanta>& sand) {
   const auto for_each_family = [&](const auto& body) {
 #pragma unroll
     for (int n = 0; n < families * families; ++n) {
@@ -138,9 +141,9 @@ __device__ inline void prolong(const Two<Quanta> (&change)[families], OfPatch<Qu
       body(change[row].values[column], south[0], south[1], north[0], north[1]);
     }
   };
-  bool enough = true;  // asked for all before any changes: one branch, which next to no patch takes
+  bool enough = true;  // for all children first: one branch, which is hardly ever taken
   for_each_family([&](Quanta d, Quanta& sw, Quanta& se, Quanta& nw, Quanta& ne) {
-    enough = enough && have_enough(d, sw, se, nw, ne);
+    enough = enough && have_enough_sand(d, sw, se, nw, ne);
   });
   if (enough)
     for_each_family([&](Quanta d, Quanta& sw, Quanta& se, Quanta& nw, Quanta& ne) {
@@ -148,10 +151,11 @@ __device__ inline void prolong(const Two<Quanta> (&change)[families], OfPatch<Qu
     });
   else
     for_each_family(
-        [](Quanta d, Quanta& sw, Quanta& se, Quanta& nw, Quanta& ne) { hand_down(d, sw, se, nw, ne); });
+        [](Quanta d, Quanta& sw, Quanta& se, Quanta& nw, Quanta& ne) { prolong_change(d, sw, se, nw, ne); });
 }
 
-/// Of the ground, from wall_height on for walls, the patch's heights.
+/// Turns ground into heights by adding soil and sand. Walls, and cells that do not exist, get wall_height or
+/// more.
 template <bool whole>
 __device__ void add_up(const Place<whole>& place, OfPatch<Quanta>& height, OfPatch<Quanta>& sand) {
   const LevelView& level = place.law.level;
@@ -174,7 +178,7 @@ __device__ void add_up(const Place<whole>& place, OfPatch<Quanta>& height, OfPat
   }
 }
 
-/// What a patch adds to its tile's.
+/// Range of a patch, without its walls; `walls`: whether it has any.
 __device__ inline Range range_of_patch(OfPatch<Quanta>& height, OfPatch<Quanta>& sand, bool& walls) {
   Range range{height[0], height[0], height[0] - sand[0]};
 #pragma unroll
@@ -192,18 +196,18 @@ __device__ inline Range range_of_patch(OfPatch<Quanta>& height, OfPatch<Quanta>&
   return range;
 }
 
-/// Shared memory from the grid. `kept`: or null.
+/// Loads a patch into shared memory, and returns the tile's range. `kept` gets the ground; it may be null.
 template <bool whole>
 __device__ Range load(const Place<whole>& place, Shared& shared, Ground* kept) {
   const LevelView& level = place.law.level;
   OfPatch<Quanta> height, sand;
   OfPatch<float> drop;
-  Two<Quanta> change[families];
+  Vec2<Quanta> change[families];
   place.fetch(level.ground, height);
   place.fetch(static_cast<const Quanta*>(level.sand), sand);
   fetch_changes(place, change);
   place.fetch(level.repose, drop);
-  // While all that is on its way.
+  // Done while the loads above are under way.
   if (threadIdx.x < side + Patch::side)
     shared.share[threadIdx.x] = place.law.share(static_cast<int>(threadIdx.x));
   prolong(change, sand);
@@ -211,7 +215,7 @@ __device__ Range load(const Place<whole>& place, Shared& shared, Ground* kept) {
   if (kept) {
 #pragma unroll
     for (int row = 0; row < Patch::side; ++row) {
-      Four<Quanta>& ground = kept->rows[row][threadIdx.x];
+      Vec4<Quanta>& ground = kept->rows[row][threadIdx.x];
 #pragma unroll
       for (int n = 0; n < Patch::side; ++n)
         ground.values[n] = height.rows[row].values[n] - sand.rows[row].values[n];
@@ -246,10 +250,10 @@ __device__ Range load(const Place<whole>& place, Shared& shared, Ground* kept) {
   return range;
 }
 
-/// The sand of a row of the patch.
-__device__ inline Four<Quanta> sand_of_row(Shared& shared, const Units& units, int row) {
+/// The sand of one row of the patch after the sweeps.
+__device__ inline Vec4<Quanta> sand_of_row(Shared& shared, const Units& units, int row) {
   const int px = static_cast<int>(threadIdx.x) % patches, py = static_cast<int>(threadIdx.x) / patches;
-  Four<Quanta> sand = shared.base[row][threadIdx.x];
+  Vec4<Quanta> sand = shared.base[row][threadIdx.x];
 #pragma unroll
   for (int n = 0; n < Patch::side; ++n)
     sand.values[n] += units.of_height(shared.h.at(px * Patch::side + n, py * Patch::side + row));

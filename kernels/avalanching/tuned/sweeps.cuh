@@ -1,5 +1,5 @@
 #pragma once
-/// A tile in a GPU's shared memory, and sweeps over it; what for and in which order avalanching_tile.cu says.
+/// A tile in a GPU's shared memory, and the sweeps over it. tile.cu gives an overview.
 
 #include "kernels/avalanching/tile.hpp"
 #include "kernels/backend/vec4.hpp"
@@ -9,8 +9,9 @@ namespace desert_sim::avalanching::tuned {
 constexpr int side = Tiles::side, patches = RelaxTile::patches, threads = patches * patches;
 constexpr int warps = threads / 32;
 
-/// One value of each cell of a tile. Columns 0, 4, 8 … lie apart from columns 1, 5, 9 … and so on, rows so
-/// that the cells which the threads of a warp fetch at once lie in 32 banks, wherever patches are.
+/// One value for each cell of a tile. Columns 0, 4, 8 … are stored apart from columns 1, 5, 9 … and so on,
+/// and the stride of rows is such that the cells which the threads of a warp access at once lie in 32
+/// different banks, however the patches are shifted.
 struct PerCell {
   static constexpr int stride = patches + 2;
   float values[Patch::side][side * stride];
@@ -19,24 +20,24 @@ struct PerCell {
 
 struct Shared {
   PerCell h, ground, drop;
-  Four<Quanta> base[Patch::side][threads];  ///< of a cell's sand what does not change with its height
-  float share[side + Patch::side];          ///< of the gaps, as ShareOfGap counts them
+  Vec4<Quanta> base[Patch::side][threads];  ///< part of a cell's sand that does not change with its height
+  float share[side + Patch::side];          ///< ω of each gap, numbered as in GapOmega
   Range range[warps];
-  int moved[2][warps];  ///< nothing, something, much; of sweeps in turns
+  int moved[2][warps];  ///< by warp: 0 nothing, 1 something, 2 much; even and odd sweeps
 };
 
-/// Where a patch's cell lies among its registers.
+/// Index of a patch's cell among its registers.
 struct InRegisters {
   __device__ constexpr int operator()(int row, int column) const { return row * Patch::side + column; }
 };
 
-/// The pairs of this thread's patch, shifted so far; the most that one of them moves.
+/// Relaxes the pairs of this thread's patch. Returns the largest amount that one of them moves.
 template <bool deep>
 __device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& shift) {
   constexpr unsigned bytes = sizeof(float), row_bytes = PerCell::stride * bytes;
   const unsigned px = threadIdx.x % patches, py = threadIdx.x / patches;
   const unsigned next_x = (px + 1) % patches, next_y = (py + 1) % patches;
-  unsigned columns[Patch::side], rows[Patch::side];  // of PerCell, in bytes: then a place is one addition
+  unsigned columns[Patch::side], rows[Patch::side];  // byte offsets in PerCell: an address is one addition
 #pragma unroll
   for (int n = 0; n < Patch::side; ++n) {
     const unsigned x = static_cast<unsigned>(shift.x + n), y = static_cast<unsigned>(shift.y + n);
@@ -67,14 +68,14 @@ __device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& s
   return most;
 }
 
-/// Code for each of the four shifts, in which nothing is left to compute of where cells lie. It pays where
-/// tiles take many sweeps; of few, fetching the instructions takes longer than it saves.
-enum class Code { one_for_all_shifts, one_a_shift };
+/// Whether the kernel has separate code for each of the four shifts, in which all offsets are constants. This
+/// pays where tiles take many sweeps; with few, fetching the instructions takes longer than it saves.
+enum class Code { shared_by_shifts, one_per_shift };
 
 template <bool deep, Code code>
 __device__ float sweep_patch(Shared& shared, const PatchShift& shift) {
   static_assert(Patch::side == 4);
-  if constexpr (code == Code::one_a_shift) switch (shift.x) {
+  if constexpr (code == Code::one_per_shift) switch (shift.x) {
       case 0:
         return sweep_patch<deep>(shared, PatchShift(0));
       case 1:
@@ -87,7 +88,7 @@ __device__ float sweep_patch(Shared& shared, const PatchShift& shift) {
   return sweep_patch<deep>(shared, shift);
 }
 
-/// Sweeps over what is loaded, until the tile is at rest or has had enough of them. Whether anything moved.
+/// Sweeps over the loaded tile until it is at rest or may stop. Returns whether anything moved.
 template <bool deep, Code code>
 __device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units) {
   const float much = units.drop(law.plenty, law.level.quanta_per_cell);
@@ -102,7 +103,7 @@ __device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units) 
     for (int k = 0; k < warps; ++k) here = max(here, shared.moved[n % 2][k]);
     moved = moved || here > 0;
     if (here == 0 && !moved_before) break;
-    if (law.has_had_enough(n + 1, here == 2)) break;
+    if (law.may_stop(n + 1, here == 2)) break;
     moved_before = here > 0;
   }
   return moved;

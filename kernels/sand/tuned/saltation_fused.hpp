@@ -1,6 +1,6 @@
 #pragma once
-/// Forms of saltation's laws for the GPU, with the bits of saltation_laws.hpp: the lift that finds the wind's shadow
-/// in passing, and the deposit of four cells at a time.
+/// GPU forms of the laws of saltation_laws.hpp, with bit-identical results: a lift that computes the wind
+/// shadow in the same pass, and a deposit of four cells at a time.
 
 #include "kernels/backend/vec4.hpp"
 #include "kernels/sand/saltation_laws.hpp"
@@ -8,39 +8,39 @@
 
 namespace desert_sim::saltation {
 
-/// LiftAndAdvect of a cell whose shadow is found in the same pass.
+/// LiftAndAdvect that computes the cell's wind shadow in the same pass.
 template <bool bare>
-struct ShadeAndLift {
+struct ShadowAndLift {
   static constexpr bool compact_warps = true;
   template <int count>
-  using Parcels = Carried<count>;
+  using Parcels = BilinearParcels<count>;
   wind_shadow::Shadow shade;
   LiftAndAdvect<bare> lift;
 
   template <int count>
-  DESERT_HD void prepare(int x, int y, Carried<count>& parcels, int n) const {
-    auto cell = lift.read(x, y, 0.0f);  // on its way while the shadow is looked for
+  DESERT_HD void prepare(int x, int y, BilinearParcels<count>& parcels, int n) const {
+    auto cell = lift.read(x, y, 0.0f);  // these loads overlap with the march of the wind shadow
     cell.shadow = shade(x, y);
     lift.prepare(x, y, cell, parcels, n);
   }
   template <int count, class Add>
-  DESERT_HD void deliver(int x, int y, const Carried<count>& parcels, int n, const Add& add) const {
+  DESERT_HD void deliver(int x, int y, const BilinearParcels<count>& parcels, int n, const Add& add) const {
     lift.deliver(x, y, parcels, n, add);
   }
 };
 
-/// Deposit of four cells beside each other in a bare desert, whose rows are multiples of four long.
+/// Deposit of four adjacent cells of a row in a bare desert; the grid's width must be a multiple of four.
 struct DepositOfFour {
   Deposit<true> one;
 
   DESERT_HD Grid fours() const { return {one.in.grid.width / 4, one.in.grid.height, 1}; }
   DESERT_HD void operator()(int x, int y) const {
     const int first = one.in.grid.index(4 * x, y);
-    const auto arriving = four_at(one.landed + first), cover = four_at(one.sand + first);
-    const auto u = four_at(one.in.wind_x + first), v = four_at(one.in.wind_y + first);
-    Four<float> shadow{}, angle;
-    if (one.in.wind_shadow) shadow = four_at(one.in.wind_shadow + first);
-    Four<Quanta> sand, airborne;
+    const auto arriving = load_vec4(one.landed + first), cover = load_vec4(one.sand + first);
+    const auto u = load_vec4(one.in.wind_x + first), v = load_vec4(one.in.wind_y + first);
+    Vec4<float> shadow{}, angle;
+    if (one.in.wind_shadow) shadow = load_vec4(one.in.wind_shadow + first);
+    Vec4<Quanta> sand, airborne;
     for (int n = 0; n < 4; ++n) {
       const auto o = one.settle(first + n, arriving.values[n], cover.values[n], shadow.values[n],
                                 hypotenuse(u.values[n], v.values[n]), 0.0f, 0.0f);
@@ -49,9 +49,9 @@ struct DepositOfFour {
       angle.values[n] = one.impacts.angle.of(o.loosened, 0.0f, 0.0f);
       if (one.impacts.strength) one.impacts.strength[first + n] = o.strength;
     }
-    put_four(one.sand + first, sand);
-    put_four(one.airborne + first, airborne);
-    put_four(one.impacts.angle.repose + first, angle);
+    store_vec4(one.sand + first, sand);
+    store_vec4(one.airborne + first, airborne);
+    store_vec4(one.impacts.angle.repose + first, angle);
   }
 };
 

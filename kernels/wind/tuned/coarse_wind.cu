@@ -1,20 +1,21 @@
-/// What wind::transform_by_library() does, in one kernel: the same laws, and between them lines of the coarse
-/// grid transformed in shared memory. The coarse grid is small (180 × 180 values for a terrain of 1024 m),
-/// and twelve launches with the library's transforms took longer than their work.
+/// All passes of wind::transform_by_library() in one cooperative kernel: the same laws, and between them the
+/// lines of the coarse grid are transformed in shared memory. The coarse grid is small (180 × 180 values for
+/// a terrain of 1024 m), and the twelve launches with the FFT library took longer than their work.
 ///
-/// A block takes two lines at a time. Between the stages of the table all blocks wait for each other: they
-/// are as many as the GPU holds at once.
+/// A thread block transforms two lines at a time. Between the stages of the table all blocks synchronise
+/// across the grid; therefore no more blocks are launched than the GPU can hold at once.
 ///
 // clang-format off
 ///      lines                       from memory        in shared memory, → is a transform        to memory
 ///   1  columns x, x + 1            means of rows      rise →                                    spectrum
-///   2  rows j, j + 1               spectrum           → slopes of each radius →                 gradients
-///   3  columns x, x + 1            gradients (or 1's)  → turned wind, its deviation →           spectrum
+///   2  rows j, j + 1               spectrum           → gradients of each radius →              gradients
+///   3  columns x, x + 1            gradients          → warped wind, its deviation →            spectrum
 ///   4  rows j, −j                  spectrum           → projection →                            correction
 ///   5  columns x, x + 1            correction         →                                         correction
 // clang-format on
 ///
-/// On their way back from modes to places, values have their parts exchanged (LineTransform).
+/// Without warping stages 1 and 2 are skipped, and stage 3 reads the means of rows. In inverse transforms
+/// real and imaginary parts of the values are exchanged (LineTransform).
 
 #include <cooperative_groups.h>
 
@@ -25,15 +26,15 @@
 
 namespace desert_sim::wind {
 
-#if CUDART_VERSION < 12000  // CudaExec::memory_for_lines(): never called
+#if CUDART_VERSION < 12000  // never called, because CudaExec::memory_for_lines() is 0
 void transform_by_lines(CudaExec&, const CoarseLaws&, Workspace&) { throw Error("lines need CUDA 12"); }
 #else
 namespace tuned {
 namespace {
 
 constexpr int at_once = lines_at_once;
-/// While laws are at work a thread has a value of each line (of 180 there are in a line). While lines are
-/// transformed each has a team of two warps (180 values are 36, 30 and 30 butterflies).
+/// The laws run with 192 threads a line, one for each value (180 in the example above). The transforms run
+/// with a team of two warps a line (180 values need 36, 30 and 30 butterflies in the three stages).
 constexpr int threads_a_line = 192, threads = threads_a_line * at_once, team = 64, teams = threads / team;
 
 struct Axis {
@@ -47,19 +48,20 @@ struct Arguments {
 
   __host__ __device__ int longest() const { return max(laws.turn.coarse.width, laws.turn.coarse.height); }
   __host__ __device__ int radii() const { return laws.gradients.radius_count; }
-  /// That a block has in shared memory: of each radius, if there are any.
+  /// Lines that a thread block holds in shared memory: those of every radius, if there are any.
   __host__ __device__ int lines() const { return at_once * max(1, radii()); }
 };
 
-/// For each line of a block two places, between which its transform goes; then the roots of unity of x and y.
+/// Vec2 buffers for each line of a block, between which its transform alternates, followed by the roots of
+/// unity of x and y.
 extern __shared__ Complex shared[];
 
-/// A block and its lines.
+/// A thread block and its lines in shared memory.
 struct Block {
   const Arguments& s;
   const CoarseGrid& coarse;
   int longest, width, height;
-  int place = 0;  ///< where the lines are
+  int place = 0;  ///< which of the two buffers holds the lines
 
   __device__ explicit Block(const Arguments& arguments)
       : s(arguments),
@@ -76,8 +78,8 @@ struct Block {
   __device__ Complex& here(int n, int i) const { return shared[line(n, place) + i]; }
   __device__ Complex& next(int n, int i) const { return shared[line(n, 1 - place) + i]; }
 
-  /// body(c, x + c, y) for the values of columns x and x + 1, if they are there; threads beside each other
-  /// have the values that are so in memory.
+  /// Calls body(c, x + c, y) for the values of columns x and x + 1, where these exist. Adjacent threads
+  /// access adjacent values in memory (coalesced).
   template <class Body>
   __device__ void columns(int x, const Body& body) const {
     const int c = static_cast<int>(threadIdx.x) % at_once;
@@ -85,7 +87,7 @@ struct Block {
       for (int y = static_cast<int>(threadIdx.x) / at_once; y < height; y += threads_a_line)
         body(c, x + c, y);
   }
-  /// body(c, i, row) for the values of rows j and `other`, if that is there (≥ 0).
+  /// Calls body(c, i, row) for the values of row j and, if it is not negative, of row `other`.
   template <class Body>
   __device__ void rows(int j, int other, const Body& body) const {
     const int c = static_cast<int>(threadIdx.x) / threads_a_line, row = c == 0 ? j : other;
@@ -94,7 +96,7 @@ struct Block {
         body(c, i, row);
   }
 
-  /// Of `count` lines.
+  /// Transforms `count` lines.
   __device__ void transform(const Axis& axis, int roots, int count) {
     const LineTransform& law = axis.transform;
     const int first = static_cast<int>(threadIdx.x) % team;
@@ -109,17 +111,17 @@ struct Block {
   }
 };
 
-/// See the table above.
+/// The stages of the table above.
 enum Stage { rises, slopes, turning, projecting, correction, stage_count };
 
-/// The other line that a block has with line n of a stage, or −1.
+/// The other line that a block processes together with line n of a stage, or −1.
 __device__ int other_line(const Block& b, int stage, int n) {
   if (stage == slopes) return n + 1 < b.height ? n + 1 : -1;
   if (n > 0) return b.height - n;
-  return b.height % 2 == 0 ? b.height / 2 : -1;  // it is its own mirror, as row 0 is
+  return b.height % 2 == 0 ? b.height / 2 : -1;  // that row is its own mirror, as row 0 is
 }
 
-/// Fills the lines from memory.
+/// Loads the lines from global memory.
 __device__ void fill(Block& b, int stage, int n, int other) {
   const CoarseLaws& laws = b.s.laws;
   const Complex* const spectrum = laws.columns.spectrum;
@@ -139,7 +141,7 @@ __device__ void fill(Block& b, int stage, int n, int other) {
   }
 }
 
-/// What becomes of them when they are transformed, before they are once more.
+/// Applies the law of a stage to its transformed lines, before these are transformed once more.
 __device__ void change(Block& b, int stage, int n, int other) {
   const CoarseLaws& laws = b.s.laws;
   const int width = b.width, radii = b.s.radii();
@@ -147,18 +149,17 @@ __device__ void change(Block& b, int stage, int n, int other) {
     b.rows(n, other, [&](int c, int i, int row) {
       const Complex h = b.here(c, i);
       for (int r = 0; r < radii; ++r)
-        b.next(at_once * r + c, i) = parts_exchanged(laws.gradients.of_mode(r, i, row, h));
+        b.next(at_once * r + c, i) = swap_re_im(laws.gradients.of_mode(r, i, row, h));
     });
   } else if (stage == turning) {
     b.columns(n, [&](int c, int x, int y) {
       const int ground = b.coarse.mirrored_row(y);
-      b.next(c, y) =
-          laws.turn.turn(x, y, [&](int r) { return parts_exchanged(b.here(at_once * r + c, ground)); });
+      b.next(c, y) = laws.turn.turn(x, y, [&](int r) { return swap_re_im(b.here(at_once * r + c, ground)); });
     });
   } else {
     b.rows(n, other, [&](int c, int i, int row) {
       const Complex mirror = b.here(n > 0 ? 1 - c : c, i == 0 ? 0 : width - i);
-      b.next(c, i) = parts_exchanged(laws.correct.of_mode(i, row, b.here(c, i), mirror));
+      b.next(c, i) = swap_re_im(laws.correct.of_mode(i, row, b.here(c, i), mirror));
     });
   }
   b.place = 1 - b.place;
@@ -176,7 +177,7 @@ __device__ void store(const Block& b, int stage, int n, int other) {
   } else if (stage == projecting) {
     b.rows(n, other, [&](int c, int i, int row) { out[row * width + i] = b.here(c, i); });
   } else if (stage == correction) {
-    b.columns(n, [&](int c, int x, int y) { out[y * width + x] = parts_exchanged(b.here(c, y)); });
+    b.columns(n, [&](int c, int x, int y) { out[y * width + x] = swap_re_im(b.here(c, y)); });
   } else {
     b.columns(n, [&](int c, int x, int y) { spectrum[y * width + x] = b.here(c, y); });
   }
@@ -184,7 +185,7 @@ __device__ void store(const Block& b, int stage, int n, int other) {
 
 #if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ >= 700
 #define DESERT_GRID_CONSTANT __grid_constant__
-#else  // not known there; and never called
+#else  // older architectures do not know it, and never run the kernel
 #define DESERT_GRID_CONSTANT
 #endif
 
@@ -194,11 +195,11 @@ __global__ void __launch_bounds__(threads, 1) coarse_wind_kernel(DESERT_GRID_CON
   for (int stage = turns ? rises : turning; stage < (projects ? stage_count : projecting); ++stage) {
     const bool along_y = stage == rises || stage == turning || stage == correction;
     const int lines = along_y ? b.width : stage == slopes ? b.height : b.height / 2 + 1;
-    // Of rows and their mirrors, each pair once.
+    // In the stage of the projection each pair of a row and its mirror is visited once.
     const int step = along_y || stage == slopes ? at_once : 1;
     for (int n = step * static_cast<int>(blockIdx.x); n < lines; n += step * static_cast<int>(gridDim.x)) {
       const int other = along_y ? -1 : other_line(b, stage, n);
-      if (stage == projecting && other == n) continue;  // it is with row 0
+      if (stage == projecting && other == n) continue;  // it is processed together with row 0
       __syncthreads();
       fill(b, stage, n, other);
       const int from_memory = stage == turning ? s.radii() : 1;

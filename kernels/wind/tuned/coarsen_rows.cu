@@ -1,11 +1,11 @@
-/// wind::CoarsenRows for GPUs: the same law and the same bits. A mean's cells lie beside each other, so that
-/// threads that read them from memory each fetch from other places at once. Here threads fetch cells beside
-/// each other, into shared memory, and take their means from there:
+/// wind::CoarsenRows for GPUs, with bit-identical results. The cells of a mean are adjacent, so threads that
+/// each read the cells of their own mean access memory with a stride. Here adjacent threads load adjacent
+/// cells into shared memory (coalesced), and form the means from there:
 ///
 // clang-format off
 ///      a row of the terrain   | . . . . . . . . . | . . . . . . . . . |      a block's piece of it,
 ///                               0 1 2 … 63 0 1 2 …                           fetched by 64 threads
-///      its means              |    0    |   1    |    2   |   3    | …       a thread each, `columns_a_block`
+///      its means              |    0    |   1    |    2   |   3    | …       one a thread, `columns_a_block`
 // clang-format on
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int columns_a_block = 60, threads_a_row = 64, rows_a_block = 4;
 
-/// `room`: for the cells of a block's columns.
+/// `room`: number of cells in shared memory for each row of a block.
 __global__ void coarsen_rows_kernel(CoarsenRows law, int room) {
   extern __shared__ float pieces[];
   const CoarseGrid& coarse = law.coarse;
@@ -45,7 +45,7 @@ void coarsen_rows(CudaExec& exec, const CoarsenRows& law) {
   const CoarseGrid& coarse = law.coarse;
   const int room = static_cast<int>(std::ceil(columns_a_block * coarse.ratio_x)) + 2;
   const std::size_t bytes = sizeof(float) * static_cast<std::size_t>(room * rows_a_block);
-  constexpr std::size_t everywhere = 48 << 10;  // that every GPU has
+  constexpr std::size_t everywhere = 48 << 10;  // shared memory [bytes] that a block has on every GPU
   if (bytes > everywhere) return for_each_cell(exec, law.grid(), law);
   const dim3 blocks((coarse.columns + columns_a_block - 1) / columns_a_block,
                     (coarse.fine.height + rows_a_block - 1) / rows_a_block);

@@ -1,16 +1,18 @@
 #pragma once
-/// Discrete Fourier transforms of short lines by a team of threads in memory that they share, as a part of a
-/// kernel: where transforms are small, cuFFT's launches take longer than their work.
+/// Discrete Fourier transforms of short lines in shared memory, by a team of threads as part of a kernel:
+/// where transforms are small, the kernel launches of cuFFT take longer than their work.
 ///
-///   X(k) = Σ_j x(j) e^(−2πi jk/n),  n without prime factors but 2, 3 and 5
+///   X(k) = Σ_j x(j) e^(−2πi jk/n),   n without prime factors other than 2, 3 and 5
 ///
-/// Stockham's autosort form with mixed radices. A stage of radix r takes n/r butterflies, and reads what the
-/// stage before it has written; `done` is the product of the radices before it:
+/// This is Stockham's autosort FFT with mixed radices. A stage of radix r has n/r butterflies, and reads what
+/// the previous stage has written. Butterfly b of a stage is
 ///
-///   butterfly b:  v(q) = in[b + q n/r] · e^(−2πi q k/(done·r)),  k = b mod done
-///                 out[(b − k) r + k + q·done] = DFT_r(v)(q)
+///   k = b mod done,   `done` the product of the radices of the previous stages
+///   v(q) = in[b + q n/r] · e^(−2πi q k/(done·r)),   q = 0 … r − 1
+///   out[(b − k) r + k + q·done] = DFT_r(v)(q)
 ///
-/// The inverse, without 1/n: real and imaginary parts change places, before and after.
+/// The inverse without the factor 1/n is the same transform with real and imaginary parts exchanged before
+/// and after it.
 
 #include <cmath>
 #include <vector>
@@ -19,6 +21,7 @@
 #include "kernels/backend/for_each.hpp"
 #include "kernels/backend/macros.hpp"
 #include "kernels/field/math.hpp"
+#include "src/core/constants.hpp"
 
 namespace desert_sim {
 
@@ -35,30 +38,29 @@ DESERT_HD Complex plus_times(Complex a, float s, Complex b) {
 DESERT_HD Complex minus_i_times(Complex a, float s, Complex b) {
   return {fused(s, b.im, a.re), fused(-s, b.re, a.im)};
 }
-DESERT_HD Complex parts_exchanged(Complex a) { return {a.im, a.re}; }
+DESERT_HD Complex swap_re_im(Complex a) { return {a.im, a.re}; }
 
-/// A number of values in registers, transformed. Of values that are all alike, every mode but the first is
-/// exactly 0.
-DESERT_HD void transform_few(Complex (&v)[2]) {
+/// Transforms of 2 … 6 values in registers, in place. Of equal values every mode but the first is exactly 0.
+DESERT_HD void small_dft(Complex (&v)[2]) {
   const Complex sum = v[0] + v[1];
   v[1] = v[0] - v[1];
   v[0] = sum;
 }
-DESERT_HD void transform_few(Complex (&v)[3]) {
+DESERT_HD void small_dft(Complex (&v)[3]) {
   constexpr float sin_60 = 0.866025404f;
   const Complex sum = v[1] + v[2], difference = v[1] - v[2], middle = plus_times(v[0], -0.5f, sum);
   v[0] = v[0] + sum;
   v[1] = minus_i_times(middle, sin_60, difference);
   v[2] = minus_i_times(middle, -sin_60, difference);
 }
-DESERT_HD void transform_few(Complex (&v)[4]) {
+DESERT_HD void small_dft(Complex (&v)[4]) {
   const Complex even = v[0] + v[2], odd = v[1] + v[3], across = v[0] - v[2], aslant = v[1] - v[3];
   v[0] = even + odd;
   v[1] = {across.re + aslant.im, across.im - aslant.re};
   v[2] = even - odd;
   v[3] = {across.re - aslant.im, across.im + aslant.re};
 }
-DESERT_HD void transform_few(Complex (&v)[5]) {
+DESERT_HD void small_dft(Complex (&v)[5]) {
   constexpr float sin_72 = 0.951056516f, sin_144 = 0.587785252f, quarter_root_5 = 0.559016994f;
   const Complex near = v[1] + v[4], far = v[2] + v[3], near_gap = v[1] - v[4], far_gap = v[2] - v[3];
   const Complex sum = near + far, middle = plus_times(v[0], -0.25f, sum), spread = near - far;
@@ -70,11 +72,11 @@ DESERT_HD void transform_few(Complex (&v)[5]) {
   v[2] = minus_i_times(minus_i_times(second, sin_144, near_gap), -sin_72, far_gap);
   v[3] = minus_i_times(minus_i_times(second, -sin_144, near_gap), sin_72, far_gap);
 }
-/// As two of three values; places are chosen so that nothing needs turning (Good, Thomas).
-DESERT_HD void transform_few(Complex (&v)[6]) {
+/// The Good–Thomas prime-factor algorithm: two transforms of three values, without twiddle factors.
+DESERT_HD void small_dft(Complex (&v)[6]) {
   Complex a[3] = {v[0], v[2], v[4]}, b[3] = {v[3], v[5], v[1]};
-  transform_few(a);
-  transform_few(b);
+  small_dft(a);
+  small_dft(b);
   v[0] = a[0] + b[0];
   v[1] = a[1] - b[1];
   v[2] = a[2] + b[2];
@@ -83,7 +85,7 @@ DESERT_HD void transform_few(Complex (&v)[6]) {
   v[5] = a[2] - b[2];
 }
 
-/// Whether n ≥ 1 has no other prime factors than 2, 3 and 5.
+/// Whether n ≥ 1 has no prime factors other than 2, 3 and 5.
 inline bool smooth(int n) {
   for (int factor : {2, 3, 5})
     while (n % factor == 0) n /= factor;
@@ -95,7 +97,7 @@ struct LineTransform {
 
   struct Stage {
     int radix, done;
-    int turn;     ///< n / (done · radix)
+    int turn;     ///< stride of the twiddle factors in the table of roots, n / (done · radix)
     float share;  ///< 1 / done
   };
 
@@ -104,7 +106,7 @@ struct LineTransform {
 
   /// Whether `n` is no longer than `longest` and smooth().
   static bool suits(int n) { return n >= 2 && n <= longest && smooth(n); }
-  /// Of lines of `n` values; `n` suits.
+  /// The transform of lines of `n` values, where suits(n) must hold.
   static LineTransform of(int n) {
     LineTransform t;
     t.length = n;
@@ -120,18 +122,18 @@ struct LineTransform {
     return t;
   }
 
-  /// e^(−2πi j/n), n of them, which butterflies() is given.
+  /// The roots of unity e^(−2πi j/n), j = 0 … n − 1, which butterflies() needs.
   std::vector<Complex> roots() const {
     std::vector<Complex> table(static_cast<std::size_t>(length));
     for (int j = 0; j < length; ++j) {
-      const double angle = -2 * 3.14159265358979323846 * j / length;
+      const double angle = -2 * pi * j / length;
       table[static_cast<std::size_t>(j)] = {static_cast<float>(std::cos(angle)),
                                             static_cast<float>(std::sin(angle))};
     }
     return table;
   }
 
-  /// Butterfly b of length/radix.
+  /// Butterfly b of a stage, 0 ≤ b < length/radix.
   template <int radix>
   DESERT_HD void butterfly(const Stage& stage, int b, const Complex* roots, const Complex* in,
                            Complex* out) const {
@@ -143,11 +145,11 @@ struct LineTransform {
       const int turn = k * stage.turn;
       unrolled<radix - 1>([&](auto q) { v[q + 1] = v[q + 1] * roots[(q + 1) * turn]; });
     }
-    transform_few(v);
+    small_dft(v);
     out += before * radix + k;
     unrolled<radix>([&](auto q) { out[q * done] = v[q]; });
   }
-  /// The first, first + step, first + 2 step … butterflies of a stage.
+  /// The butterflies first, first + step, first + 2 step … of a stage.
   DESERT_HD void butterflies(const Stage& stage, int first, int step, const Complex* roots, const Complex* in,
                              Complex* out) const {
     switch (stage.radix) {
@@ -165,8 +167,8 @@ struct LineTransform {
   }
 
  private:
-  /// Five first: what the first stage writes is a radix apart, for an odd one in different banks of shared
-  /// memory.
+  /// Order of preference. Five comes first, because the first stage writes with a stride of its radix, and an
+  /// odd stride avoids bank conflicts in shared memory.
   static constexpr int radices[] = {5, 3, 6, 4, 2};
 
   template <int radix>
@@ -175,7 +177,7 @@ struct LineTransform {
     for (int b = first; b < length / radix; b += step) butterfly<radix>(stage, b, roots, in, out);
   }
 
-  /// Finds radices for the last `left` of `count` stages whose product is n.
+  /// Finds radices whose product is n for the last `left` of `count` stages; false if there are none.
   bool divide(int n, int left) {
     if (left == 0) return n == 1;
     for (int radix : radices) {

@@ -38,7 +38,8 @@ GridMap grid_map(const TerrainState& state, const std::string& frame, const std:
     map.data.emplace_back();
     map.data.back().layout.dim = {dimension("column_index", columns, rows * columns),
                                   dimension("row_index", rows, rows)};
-    // Rows count from the far end of x and columns from that of y, rows the faster: ours, backwards.
+    // A GridMap counts rows from the largest x and columns from the largest y, with rows as the inner index:
+    // this is the order of a snapshot, reversed.
     map.data.back().data = window_values(s, layer, window, decimation);
     std::reverse(map.data.back().data.begin(), map.data.back().data.end());
   }

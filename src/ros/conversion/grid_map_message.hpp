@@ -1,5 +1,5 @@
 #pragma once
-/// Windows of the terrain as messages.
+/// Windows of the terrain as messages: a grid_map_msgs/GridMap, and the answer of ~get_submap.
 
 #include <desert_sim/TerrainSubmap.h>
 
@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "src/grid_map/grid_map_msg.hpp"
-#include "src/ros/node/moment.hpp"
-#include "src/ros/topics/map_window.hpp"
+#include "src/ros/conversion/map_window.hpp"
+#include "src/ros/node/terrain_state.hpp"
 
 namespace desert_sim {
 
-/// Blocks of `decimation`² cells (see window_values()); resolution is their width. basic_layers is elevation,
-/// where it is one of the layers.
+/// A cell of the map is a block of `decimation`² cells of the terrain (see window_values()). `basic_layers`
+/// is elevation, where that is one of the layers.
 GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
                  const MapWindow& window, int decimation = 1);
 

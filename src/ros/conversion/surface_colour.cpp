@@ -10,10 +10,10 @@ namespace {
 constexpr Colour sand_colour{0.93f, 0.76f, 0.50f}, rock_colour{0.45f, 0.40f, 0.36f},
     soil_colour{0.42f, 0.32f, 0.23f}, plant_colour{0.27f, 0.46f, 0.16f}, shallow_colour{0.37f, 0.65f, 0.80f},
     deep_colour{0.08f, 0.22f, 0.47f}, obstacle_colour{0.56f, 0.36f, 0.78f};
-constexpr float that_hides_ground = 0.1f;           // of sand or soil [m]
+constexpr float covering_depth = 0.1f;              // of sand or soil, which hides what is below [m]
 constexpr float puddle = 0.02f, deep_water = 3.0f;  // [m]
 
-// The sun: low in the west-north-west, so that slip faces under a west wind lie in shade.
+// The direction of the sun, low in the west-north-west, so that slip faces under a west wind are in shade.
 constexpr float sun_x = -0.760f, sun_y = 0.276f, sun_z = 0.588f;
 constexpr float ambient = 0.30f, brightest = 1.30f;
 
@@ -52,13 +52,13 @@ Colour SurfaceColour::material(std::size_t i) const {
   const auto share = [i](const std::vector<float>* layer, float all) {
     return std::min(1.0f, value(layer, i) / all);
   };
-  Colour colour = mix(rock_colour, soil_colour, share(soil_, that_hides_ground));
-  colour = mix(colour, sand_colour, share(sand_, that_hides_ground));
+  Colour colour = mix(rock_colour, soil_colour, share(soil_, covering_depth));
+  colour = mix(colour, sand_colour, share(sand_, covering_depth));
   colour = mix(colour, plants(i), share(vegetation_, 1.0f));
   return mix(colour, water_colour(value(water_, i)), 0.85f * share(water_, puddle));
 }
 
-/// 1 on level ground.
+/// The factor by which light brightens or darkens the colour; 1 on level ground.
 float SurfaceColour::light(int x, int y) const {
   const int x0 = std::max(0, x - reach_), x1 = std::min(s_.width - 1, x + reach_);
   const int y0 = std::max(0, y - reach_), y1 = std::min(s_.height - 1, y + reach_);

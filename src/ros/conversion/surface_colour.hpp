@@ -1,5 +1,5 @@
 #pragma once
-/// How the surface looks: the colour of its material, and its light.
+/// The colour of the surface in point clouds: that of its material, shaded by the sun.
 
 #include <vector>
 
@@ -11,15 +11,15 @@ struct Colour {
   float r = 0, g = 0, b = 0;  ///< 0…1
 };
 
-/// Of water so deep [m], unlit.
+/// The colour of water of this depth [m], without shading.
 Colour water_colour(float depth);
 
 class SurfaceColour {
  public:
-  /// Keeps a reference to the snapshot. `reach` [cells]: slopes are taken over twice as many.
+  /// Keeps a reference to the snapshot. Slopes are central differences over 2 · `reach` cells.
   SurfaceColour(const Snapshot& snapshot, int reach);
-  /// Sand warm, soil brown and rock grey-brown where sand is thin, plants in their species' colour, water
-  /// blue by depth, obstacles violet; times the light.
+  /// The colour at cell (x, y): sand is warm, soil brown and rock grey-brown where sand is thin, plants have
+  /// the colour of their species, water is blue by depth, obstacles are violet; all are shaded.
   Colour at(int x, int y) const;
 
  private:

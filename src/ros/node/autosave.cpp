@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 
+#include "src/core/files.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/simulation/checkpoint.hpp"
 
@@ -18,11 +19,11 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char *subfolder = "autosave", *ending = ".ckpt";
-constexpr std::size_t kept = 2;  // the one before the last too: a disk may lose what it said was durable
+constexpr std::size_t kept = 2;  // files; a second one, because a disk may lose what it reported as written
 
 }  // namespace
 
-// ---- files
+// ---- Files.
 
 AutosaveFiles::AutosaveFiles(const DataFolder& folder, const std::string& node, const Scenario& scenario)
     : folder_(&folder), name_(node.substr(node.find_first_not_of('/'))) {
@@ -64,7 +65,7 @@ void AutosaveFiles::keep(std::size_t count) const {
   for (std::size_t n = count; n < names.size(); ++n) fs::remove(names[n]);
 }
 
-// ---- saving
+// ---- Saving.
 
 Autosave::Autosave(AutosaveFiles files, double period, SimulationThread& simulation)
     : files_(std::move(files)), period_(period), simulation_(simulation) {
@@ -103,7 +104,7 @@ void Autosave::thread() {
     try {
       save();
     } catch (const std::exception& e) {
-      if (simulation_.ended()) return;  // which has been told; there is nothing more to save
+      if (simulation_.ended()) return;  // the log says so already, and there is nothing more to save
       fault = e.what();
       ROS_ERROR("autosave: %s", fault.c_str());
     }
@@ -120,19 +121,19 @@ void Autosave::save() {
   std::unique_lock<std::mutex> lock(mutex_);
   const std::uint64_t change = simulation_.changes();
   if (saved_change_ == change) return;
-  saved_change_ = change;  // the copy can only be newer; save_as() and a fault take this back
+  saved_change_ = change;  // the copy can only be newer; save_as() and a fault reset this
   const AutosaveFiles files = files_;
   lock.unlock();
   const CheckpointCopy copy = simulation_.checkpoint().get();
   const std::string path = files.next();
-  write_checkpoint(path, copy.bytes);
+  write_file(path, copy.bytes);
   files.keep(kept);
   lock.lock();
   state_.path = path;
   state_.step = copy.moment.step;
 }
 
-// ---- resuming
+// ---- Resuming.
 
 void load_newest(Session& session, const std::vector<std::string>& checkpoints, const std::string& journal) {
   for (const std::string& checkpoint : checkpoints) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Checkpoints that the node writes by itself, and goes on from when it is started anew.
+/// Autosaves: checkpoints that the node writes by itself, and resumes from when it is started again.
 
 #include <chrono>
 #include <condition_variable>
@@ -13,17 +13,18 @@
 
 namespace desert_sim {
 
-/// Files autosave/NAME-NUMBER.ckpt below the data folder; the highest number is the newest. NAME is the
-/// node's and the hash of the scenario in its parameters, so that a node only resumes its own. A scenario
-/// that a service has put in its place is in the file: a node that is started anew knows only its parameters.
+/// The files autosave/NAME-NUMBER.ckpt below the data folder; the highest number is the newest. NAME is made
+/// of the name of the node and the hash of the scenario in its parameters, so that a node resumes only its
+/// own files. That holds also while a service has loaded another scenario: the file has that one, but a node
+/// that is started again knows only its parameters.
 class AutosaveFiles {
  public:
   AutosaveFiles(const DataFolder& folder, const std::string& node, const Scenario& scenario);
-  /// Newest first.
+  /// The paths of the files there are, newest first.
   std::vector<std::string> found() const;
-  /// Path of one that is newer than all.
+  /// The path for a file that is newer than all.
   std::string next() const;
-  /// Removes all but the newest `count`.
+  /// Removes all files but the newest `count`.
   void keep(std::size_t count) const;
 
  private:
@@ -32,24 +33,24 @@ class AutosaveFiles {
   std::string name_;
 };
 
-/// Writes a checkpoint every `period` seconds of wall time, if something has changed, and keeps the last two.
-/// The copy is made between two steps; the file is written on a thread of its own. One that cannot be written
-/// is an error in the log and on /diagnostics, and is tried again.
+/// Writes a checkpoint every `period` seconds of wall time, if something has changed, and keeps the last two
+/// files. The copy is made between two steps; the file is written on a thread of its own. If a file cannot be
+/// written, the log and /diagnostics have an error, and it is tried again a period later.
 class Autosave {
  public:
   struct State {
     double period = 0;       ///< [s]
-    std::string path;        ///< of the last one; empty: none yet
-    std::uint64_t step = 0;  ///< of the last one
-    double age = 0;          ///< since the terrain was last found saved, or since the start [s]
-    std::string fault;       ///< why the last one could not be written; empty if it was
+    std::string path;        ///< of the last file; empty if there is none yet
+    std::uint64_t step = 0;  ///< of the last file
+    double age = 0;          ///< since it was last found that the terrain is saved, or since the start [s]
+    std::string fault;       ///< why the last file could not be written; empty if it was
   };
 
   Autosave(AutosaveFiles files, double period, SimulationThread& simulation);
   /// Waits for the file that is being written.
   ~Autosave();
   State state() const;
-  /// From now on, under these names: the scenario in the node's parameters is another.
+  /// Saves to these files from now on, because the scenario in the node's parameters has changed.
   void save_as(AutosaveFiles files);
 
  private:
@@ -57,11 +58,11 @@ class Autosave {
   void thread();
   void save();
 
-  AutosaveFiles files_;  ///< under mutex_
+  AutosaveFiles files_;  ///< guarded by mutex_
   const double period_;
   SimulationThread& simulation_;
   std::uint64_t saved_change_ = 0;
-  mutable std::mutex mutex_;
+  mutable std::mutex mutex_;  ///< guards all that is not const, except thread_
   std::condition_variable stopped_;
   bool stopping_ = false;
   State state_;
@@ -69,9 +70,9 @@ class Autosave {
   std::thread thread_;
 };
 
-/// Loads the first of `checkpoints` that is whole, and warns of those that are not. With a journal, it is
-/// loaded from a copy beside it, `journal`.checkpoint, so that the journal can be replayed when the autosaves
-/// have gone. Without a whole one, the session stays at the scenario's start.
+/// Loads the first of `checkpoints` that is complete, and warns of those that are not. With a journal, it is
+/// loaded from a copy beside the journal, `journal`.checkpoint, so that the journal can be replayed when the
+/// autosaves are gone. If none is complete, the session stays at the start of the scenario.
 void load_newest(Session& session, const std::vector<std::string>& checkpoints, const std::string& journal);
 
 }  // namespace desert_sim

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* topic = "/clock";
 
-/// A node that publishes /clock, or empty.
+/// The name of another node that publishes /clock; empty if there is none.
 std::string other_publisher() {
   std::vector<std::string> ours;
   ros::this_node::getAdvertisedTopics(ours);
@@ -58,7 +58,7 @@ ClockPublisher::ClockPublisher() {
 void ClockPublisher::publish(double simulated) const {
   const auto message = boost::make_shared<rosgraph_msgs::Clock>();
   message->clock = clock_time(simulated);
-  if (publisher_) publisher_.publish(message);  // a node told to end while it starts has none
+  if (publisher_) publisher_.publish(message);  // there is none if the node was told to end while it started
 }
 
 }  // namespace desert_sim

@@ -1,20 +1,20 @@
 #pragma once
-/// /clock from simulated time, for a simulation that is the clock of others.
+/// /clock: simulated time as the ROS time of all nodes.
 
 #include <ros/publisher.h>
 #include <ros/time.h>
 
 namespace desert_sim {
 
-/// Simulated time [s] as ROS time. ROS takes 0 for "no time yet": the start is shown as one nanosecond.
+/// Simulated time [s] as ROS time. For ROS, 0 means "no time yet": the start becomes one nanosecond.
 /// Throws Error beyond what ROS time can hold (136 years).
 ros::Time clock_time(double simulated);
 
 class ClockPublisher {
  public:
-  /// Throws ConfigError if another node publishes /clock: between two clocks time would jump to and fro.
+  /// Throws ConfigError if another node publishes /clock: with two clocks, time would jump back and forth.
   ClockPublisher();
-  /// Latched, so that whoever comes while the simulation is paused has a time.
+  /// The message is latched, so that a node that starts while the simulation is paused has a time.
   void publish(double simulated) const;
 
  private:

@@ -19,7 +19,7 @@ std::string ros_folder() {
   return (home ? std::string(home) : "") + "/.ros";
 }
 
-/// What the name alone says.
+/// The name as a path, if nothing is wrong with the name itself.
 fs::path checked(const std::string& name) {
   const auto refuse = [&](const char* why) {
     throw ConfigError(quoted(name) + ": " + why + " (allowed: a path below ~data_dir)");
@@ -38,8 +38,8 @@ bool is_below(const fs::path& folder, const fs::path& path) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// `path` with its links followed, if it is still below `root`. The last part need not exist, unless it is a
-/// link.
+/// `path` with its links followed. Throws if that is not below `root`. The last part of the path need not
+/// exist, unless it is a link.
 fs::path followed(const fs::path& root, const fs::path& path, const std::string& name) {
   const fs::path real = fs::is_symlink(fs::symlink_status(path))
                             ? fs::canonical(path)

@@ -1,5 +1,5 @@
 #pragma once
-/// The one folder below which services may read and write files.
+/// The data folder: services may read and write files below it, and nowhere else.
 
 #include <string>
 
@@ -11,14 +11,12 @@ class DataFolder {
   explicit DataFolder(const std::string& path);
   const std::string& path() const { return path_; }
 
-  /// The file that `name` (a path below the folder) stands for. Both throw ConfigError for a name that is
-  /// empty, absolute, has
-  /// "..", or leads out of the folder through links.
+  /// The path of the file `name` (a path below the folder). Both throw ConfigError for a name that is empty
+  /// or absolute, has "..", or leads out of the folder through links.
   std::string for_reading(const std::string& name) const;
-  /// Makes the folders that are missing.
+  /// Also creates the folders that are missing.
   std::string for_writing(const std::string& name) const;
-  /// Throws ConfigError unless `path`, its links followed, lies below the folder; a file that is not there
-  /// does not.
+  /// Throws ConfigError unless the file `path`, its links followed, exists and lies below the folder.
   void require_below(const std::string& path) const;
 
  private:

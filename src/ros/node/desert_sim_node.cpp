@@ -9,7 +9,7 @@
 
 #include "src/core/error.hpp"
 #include "src/ros/node/desert_sim_server.hpp"
-#include "src/ros/node/node_parameter_page.hpp"
+#include "src/ros/node/node_parameters.hpp"
 
 namespace {
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t threads = 4, step_threads = 2;
 
-/// A journal is what explains a run that failed; the run that is started in its place must not overwrite it.
+/// Renames an old journal: it can explain why a run failed, so the run that follows must not overwrite it.
 void keep_previous_journal(const std::string& path) {
   std::error_code error;
   if (path.empty() || !std::filesystem::is_regular_file(path, error)) return;
@@ -34,8 +34,8 @@ SimulationThread::Options options_of(const NodeParameters& p) {
   return options;
 }
 
-/// Says what runs. Points and markers in rviz are single precision: 1e5 m leave a centimetre.
-void announce(const Scenario& scenario, const std::string& backend) {
+/// Logs what runs. Points and markers in rviz are single precision, which resolves a centimetre at 1e5 m.
+void log_start(const Scenario& scenario, const std::string& backend) {
   const GridParameters& grid = scenario.grid;
   ROS_INFO("scenario %s: %d x %d cells of %g m; backend: %s", scenario.name.c_str(), grid.width, grid.height,
            grid.cell_size, backend.c_str());
@@ -75,46 +75,46 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   };
   simulation_ =
       std::make_unique<SimulationThread>(setup.scenario, raster_loader_with_bags(), options, [this] {
-        if (Topics* topics = to_notify_) topics->notify();
+        if (TopicPublisher* publisher = publisher_to_notify_) publisher->notify();
       });
-  announce(simulation_->scenario().get(), simulation_->backend_choice());
+  log_start(simulation_->scenario().get(), simulation_->backend_choice());
   if (!p.center_frame.empty())
     frames_->announce_center(p.center_frame, *simulation_->terrain({Layer::elevation}).get().snapshot);
-  topics_ = std::make_unique<Topics>(node_, setup.publishers, *frames_, *simulation_);
-  to_notify_ = topics_.get();
+  publisher_ = std::make_unique<TopicPublisher>(node_, setup.publishers, *frames_, *simulation_);
+  publisher_to_notify_ = publisher_.get();
   try {
-    services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *topics_, *frames_, *files_);
+    services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *publisher_, *frames_, *files_);
     if (p.autosave_period > 0)
       autosave_ = std::make_unique<Autosave>(autosaves, p.autosave_period, *simulation_);
     diagnostics_ =
-        std::make_unique<Diagnostics>(node_, p.diagnostic_period, *simulation_, *topics_, autosave_.get());
-    wind_stream_ = std::make_unique<WindStream>(node_, *simulation_, *frames_);
-    reconfigure_ = std::make_unique<Reconfigure>(node_, *simulation_, *topics_);
-    reload_ =
-        std::make_unique<Reload>(node_, setup, *simulation_, *topics_, [this](const Scenario& scenario) {
+        std::make_unique<Diagnostics>(node_, p.diagnostic_period, *simulation_, *publisher_, autosave_.get());
+    cmd_wind_ = std::make_unique<CmdWindSubscriber>(node_, *simulation_, *frames_);
+    reconfigure_ = std::make_unique<Reconfigure>(node_, *simulation_, *publisher_);
+    reload_ = std::make_unique<ParameterReload>(
+        node_, setup, *simulation_, *publisher_, [this](const Scenario& scenario) {
           if (autosave_) autosave_->save_as(AutosaveFiles(*files_, node_.getNamespace(), scenario));
         });
     spinner_.start();
     step_spinner_.start();
   } catch (...) {
-    simulation_->stop();  // it must not notify topics that are gone
+    simulation_->stop();  // it must not notify a publisher that is gone
     throw;
   }
 }
 
 DesertSimServer::~DesertSimServer() {
-  // First what others wait for, so that they get their answers; then those who wait.
+  // First what others wait for, so that they get their answers; then what waited.
   simulation_->stop();
-  topics_->stop();
+  publisher_->stop();
   spinner_.stop();
   step_spinner_.stop();
   reload_.reset();
   reconfigure_.reset();
-  wind_stream_.reset();
+  cmd_wind_.reset();
   diagnostics_.reset();
   autosave_.reset();
   services_.reset();
-  topics_.reset();
+  publisher_.reset();
 }
 
 }  // namespace desert_sim

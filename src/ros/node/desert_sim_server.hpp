@@ -1,5 +1,6 @@
 #pragma once
-/// The node: parameters, simulation, topics and services, on threads of its own. For a program or a nodelet.
+/// The node as an object, for the program desert_sim_node and for the nodelet: parameters, simulation, topics
+/// and services, on threads of its own.
 
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
@@ -15,11 +16,11 @@
 #include "src/ros/node/diagnostics.hpp"
 #include "src/ros/node/frames.hpp"
 #include "src/ros/node/reconfigure.hpp"
-#include "src/ros/node/reload.hpp"
+#include "src/ros/node/reload_parameters.hpp"
 #include "src/ros/node/simulation_thread.hpp"
 #include "src/ros/services/services.hpp"
-#include "src/ros/topics/topics.hpp"
-#include "src/ros/topics/wind_stream.hpp"
+#include "src/ros/topics/cmd_wind.hpp"
+#include "src/ros/topics/topic_publisher.hpp"
 
 namespace desert_sim {
 
@@ -28,29 +29,29 @@ class DesertSimServer {
   /// Reads the parameters below `private_node`, builds the terrain and starts. Throws ConfigError for input
   /// that is refused.
   explicit DesertSimServer(const ros::NodeHandle& private_node);
-  /// Ends after the step that it is in; callers of services that wait get success = false.
+  /// Ends after the present step. Calls of services that wait get success = false.
   ~DesertSimServer();
 
-  /// What went wrong at run time, of which ~status has told by then; empty while all is well.
-  std::string failure() const { return topics_->failure(); }
+  /// What failed at run time, which ~status has said by then; empty while all is well.
+  std::string failure() const { return publisher_->failure(); }
 
  private:
-  // Callbacks have queues and threads of their own, because services wait for the simulation. ~step, which
-  // can take long, is apart from the rest.
+  // Callbacks have queues and threads of their own, because services wait for the simulation. ~step can take
+  // long, and has a queue apart from the others.
   ros::CallbackQueue queue_, step_queue_;
   ros::NodeHandle node_;
   std::unique_ptr<DataFolder> files_;
   std::unique_ptr<Frames> frames_;
   std::unique_ptr<ClockPublisher> clock_;
-  std::atomic<Topics*> to_notify_{nullptr};
+  std::atomic<TopicPublisher*> publisher_to_notify_{nullptr};
   std::unique_ptr<SimulationThread> simulation_;
-  std::unique_ptr<Topics> topics_;
+  std::unique_ptr<TopicPublisher> publisher_;
   std::unique_ptr<Services> services_;
   std::unique_ptr<Autosave> autosave_;
   std::unique_ptr<Diagnostics> diagnostics_;
-  std::unique_ptr<WindStream> wind_stream_;
+  std::unique_ptr<CmdWindSubscriber> cmd_wind_;
   std::unique_ptr<Reconfigure> reconfigure_;
-  std::unique_ptr<Reload> reload_;
+  std::unique_ptr<ParameterReload> reload_;
   ros::AsyncSpinner spinner_, step_spinner_;
 };
 

@@ -11,7 +11,7 @@ namespace desert_sim {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
-constexpr auto patience = std::chrono::seconds(2);
+constexpr auto answer_timeout = std::chrono::seconds(2);
 constexpr int slow_periods = 3;
 constexpr const char* states[] = {"running", "paused", "waiting for /clock"};
 
@@ -32,36 +32,36 @@ double peak_bytes() {
 }  // namespace
 
 Diagnostics::Diagnostics(ros::NodeHandle node, double period, SimulationThread& simulation,
-                         const Topics& topics, const Autosave* autosave)
+                         const TopicPublisher& publisher, const Autosave* autosave)
     : simulation_(simulation),
-      topics_(topics),
+      publisher_(publisher),
       autosave_(autosave),
       updater_(node, node, node.getNamespace()) {
-  listeners_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1);
+  diagnostics_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1);
   updater_.setHardwareID("desert_sim");
-  updater_.add("simulation", [this](Status& status) { this->simulation(status); });
-  updater_.add("mass balance", [this](Status& status) { mass(status); });
-  updater_.add("memory", [this](Status& status) { memory(status); });
-  updater_.add("topics", [this](Status& status) { rates(status); });
-  updater_.add("autosave", [this](Status& status) { saving(status); });
+  updater_.add("simulation", [this](Status& status) { check_simulation(status); });
+  updater_.add("mass balance", [this](Status& status) { check_mass(status); });
+  updater_.add("memory", [this](Status& status) { check_memory(status); });
+  updater_.add("topics", [this](Status& status) { check_topics(status); });
+  updater_.add("autosave", [this](Status& status) { check_autosave(status); });
   timer_ = node.createWallTimer(ros::WallDuration(period), [this](const ros::WallTimerEvent&) { update(); });
 }
 
 void Diagnostics::update() {
-  if (listeners_.getNumSubscribers() == 0) return;
+  if (diagnostics_.getNumSubscribers() == 0) return;
   report_.reset();
   try {
     std::future<StatusReport> answer = simulation_.report(false);
-    if (answer.wait_for(patience) == std::future_status::ready) report_ = answer.get();
+    if (answer.wait_for(answer_timeout) == std::future_status::ready) report_ = answer.get();
   } catch (const Error&) {
-    // It has failed, which simulation() tells, or it is ending.
+    // The simulation has failed, which check_simulation() says, or it is ending.
   }
   if (report_) updater_.setHardwareID(report_->device);
   updater_.force_update();
 }
 
-void Diagnostics::simulation(Status& status) const {
-  const std::string failure = topics_.failure().empty() ? simulation_.failure() : topics_.failure();
+void Diagnostics::check_simulation(Status& status) const {
+  const std::string failure = publisher_.failure().empty() ? simulation_.failure() : publisher_.failure();
   if (!failure.empty()) return status.summary(DiagnosticStatus::ERROR, failure);
   if (!report_) return status.summary(DiagnosticStatus::WARN, "no answer yet: a step takes long");
   const StatusReport& r = *report_;
@@ -84,7 +84,7 @@ void Diagnostics::simulation(Status& status) const {
   status.add("lag [s]", r.lag);
 }
 
-void Diagnostics::mass(Status& status) const {
+void Diagnostics::check_mass(Status& status) const {
   if (!report_) return status.summary(DiagnosticStatus::OK, "not looked at");
   long long lost = 0;
   for (int m = 0; m < material_count; ++m) {
@@ -98,7 +98,7 @@ void Diagnostics::mass(Status& status) const {
     status.summaryf(DiagnosticStatus::ERROR, "%lld quanta are not accounted for", lost);
 }
 
-void Diagnostics::memory(Status& status) const {
+void Diagnostics::check_memory(Status& status) const {
   status.addf("host, resident [MiB]", "%.1f", mebibytes(resident_bytes()));
   status.addf("host, peak [MiB]", "%.1f", mebibytes(peak_bytes()));
   if (!report_) return status.summary(DiagnosticStatus::OK, "the backend's was not looked at");
@@ -106,7 +106,7 @@ void Diagnostics::memory(Status& status) const {
              available = static_cast<double>(report_->memory_available);
   status.addf("layers [MiB]", "%.1f", mebibytes(layers));
   status.addf("available to the backend [MiB]", "%.1f", mebibytes(available));
-  // The old terrain stays until the new one is whole.
+  // A reset or a load keeps the old terrain until the new one is complete.
   if (available < report_->memory_needed)
     status.summaryf(DiagnosticStatus::WARN, "%.0f MiB are left, and a reset or a load needs %.0f",
                     mebibytes(available), mebibytes(report_->memory_needed));
@@ -114,13 +114,13 @@ void Diagnostics::memory(Status& status) const {
     status.summary(DiagnosticStatus::OK, "enough");
 }
 
-void Diagnostics::rates(Status& status) {
-  const std::string failure = topics_.failure();
+void Diagnostics::check_topics(Status& status) {
+  const std::string failure = publisher_.failure();
   std::string slow;
-  for (const TopicRate& topic : topics_.rates()) {
+  for (const TopicRate& topic : publisher_.rates()) {
     status.addf(topic.name, "%.2f of %.2f Hz, %u subscribers", topic.achieved, topic.wanted,
                 topic.subscribers);
-    // What has not changed is not sent again.
+    // A state that has not changed is not published again.
     const bool runs = report_ && report_->state == RunState::running && topic.subscribers > 0;
     const double expected = runs ? std::min(topic.wanted, report_->steps_per_second) : 0;
     int& periods = slow_[topic.name];
@@ -130,11 +130,11 @@ void Diagnostics::rates(Status& status) {
   if (!failure.empty()) return status.summary(DiagnosticStatus::ERROR, failure);
   status.summary(DiagnosticStatus::OK, "as wanted");
   if (!slow.empty()) status.mergeSummary(DiagnosticStatus::WARN, "under half the wanted rate: " + slow);
-  for (const auto& [topic, problem] : topics_.problems())
+  for (const auto& [topic, problem] : publisher_.problems())
     status.mergeSummary(DiagnosticStatus::WARN, topic + ": " + problem);
 }
 
-void Diagnostics::saving(Status& status) const {
+void Diagnostics::check_autosave(Status& status) const {
   if (!autosave_) return status.summary(DiagnosticStatus::OK, "off");
   const Autosave::State s = autosave_->state();
   status.add("period [s]", s.period);
@@ -143,7 +143,7 @@ void Diagnostics::saving(Status& status) const {
   status.addf("its age [s]", "%.1f", s.age);
   if (!s.fault.empty())
     status.summary(DiagnosticStatus::ERROR, s.fault);
-  else if (s.age > 2 * s.period + std::chrono::duration<double>(patience).count())
+  else if (s.age > 2 * s.period + std::chrono::duration<double>(answer_timeout).count())
     status.summaryf(DiagnosticStatus::WARN, "none since %.0f s", s.age);
   else
     status.summary(DiagnosticStatus::OK, s.path.empty() ? "on" : "saved");

@@ -1,6 +1,7 @@
 #include "src/ros/node/frames.hpp"
 
 #include <ros/init.h>
+#include <ros/names.h>
 #include <tf2/LinearMath/Quaternion.h>
 
 #include <chrono>
@@ -9,12 +10,13 @@
 
 #include "src/core/error.hpp"
 #include "src/core/quoted.hpp"
+#include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 
 namespace {
 
-constexpr auto patience = std::chrono::milliseconds(200);  // of wall time: ROS time may stand still
+constexpr auto transform_timeout = std::chrono::milliseconds(200);  // of wall time: ROS time may stand still
 
 tf2::Transform transform_of(const geometry_msgs::TransformStamped& found) {
   const auto& r = found.transform.rotation;
@@ -24,13 +26,20 @@ tf2::Transform transform_of(const geometry_msgs::TransformStamped& found) {
 
 }  // namespace
 
+void check_frame(std::string& frame, const std::string& key, Faults& faults) {
+  if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
+  std::string reason;
+  if (frame.empty() || !ros::names::validate(frame, reason))
+    faults.add(key, "'" + frame + "' is not the name of a frame" + (reason.empty() ? "" : ": " + reason));
+}
+
 Frames::Frames(std::string terrain_frame) : terrain_frame_(std::move(terrain_frame)), listener_(buffer_) {}
 
 tf2::Transform Frames::to_terrain(const std_msgs::Header& header) const {
   const std::string& given = header.frame_id;
   const std::string frame = !given.empty() && given[0] == '/' ? given.substr(1) : given;
   if (frame.empty() || frame == terrain_frame_) return tf2::Transform::getIdentity();
-  const auto end = std::chrono::steady_clock::now() + patience;
+  const auto end = std::chrono::steady_clock::now() + transform_timeout;
   while (true) {
     try {
       return transform_of(buffer_.lookupTransform(terrain_frame_, frame, header.stamp));
@@ -70,7 +79,8 @@ void Frames::move_center(const Snapshot& s) {
   center.transform.translation.y = s.origin_y + 0.5 * s.height * s.cell_size;
   center.transform.translation.z = std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
   center.transform.rotation.w = 1;
-  // A node told to end while it starts: the broadcaster got no publisher, and tf2 asserts that it has one.
+  // If the node was told to end while it started, the broadcaster has no publisher, and tf2 asserts that it
+  // has one.
   if (!ros::isShuttingDown()) broadcaster_->sendTransform(center);
 }
 

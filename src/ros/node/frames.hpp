@@ -1,5 +1,6 @@
 #pragma once
-/// Points of other frames, brought into the terrain's; and a frame in the middle of the terrain.
+/// Frames: transforms to the terrain's frame, a static frame in the middle of the terrain, and names of
+/// frames.
 
 #include <std_msgs/Header.h>
 #include <tf2/LinearMath/Transform.h>
@@ -14,24 +15,31 @@
 
 namespace desert_sim {
 
+class Faults;
+
+/// Removes a leading '/', which tf2 does not know, from the value of the parameter `key`. A value that is no
+/// name of a frame is a fault.
+void check_frame(std::string& frame, const std::string& key, Faults& faults);
+
 class Frames {
  public:
   /// Listens to /tf on threads of its own.
   explicit Frames(std::string terrain_frame);
   const std::string& terrain_frame() const { return terrain_frame_; }
 
-  /// From the header's frame (empty: the terrain's) at its stamp (0: the latest there is) to the terrain's.
-  /// Waits a moment for a transform that is on its way; throws ConfigError with the reason if there is none.
+  /// The transform from the header's frame (empty: the terrain's) at its stamp (0: the latest there is) to
+  /// the terrain's. Waits a moment for a transform that is on its way; throws ConfigError with the reason if
+  /// there is none.
   tf2::Transform to_terrain(const std_msgs::Header& header) const;
 
-  /// Of the latest there is, from `frame` to the terrain's, without waiting; if there is none false, and
-  /// `why`.
+  /// The latest transform from `frame` to the terrain's, without waiting. If there is none, returns false,
+  /// and `why` says the reason.
   bool latest_to_terrain(const std::string& frame, tf2::Transform& transform, std::string& why) const;
 
-  /// Publishes the static frame `name` in the middle of the terrain, at its mean height.
+  /// Publishes the static frame `name` in the middle of the terrain, at its mean elevation.
   void announce_center(const std::string& name, const Snapshot& snapshot);
   bool has_center() const { return broadcaster_ != nullptr; }
-  /// Moves it to the middle of another terrain. By one thread at a time.
+  /// Moves that frame to the middle of another terrain. Only one thread may call it at a time.
   void move_center(const Snapshot& snapshot);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// What other threads want the simulation thread to do between two steps.
+/// The queue of jobs that other threads want the simulation thread to do between two steps.
 
 #include <chrono>
 #include <condition_variable>
@@ -14,14 +14,14 @@
 
 namespace desert_sim {
 
-/// A job and the promise that it owes an answer to.
+/// A job, and the promise to which it gives its answer.
 struct Job {
   std::function<void()> run;  ///< may throw after it has answered with the same exception
   std::function<void(std::exception_ptr)> refuse;
 };
 
-/// Makes a job of `body`, which returns R. An input that is refused (ConfigError) only goes to who asked; any
-/// other exception goes to both sides.
+/// Makes a job of `body`, which returns R. Refused input (ConfigError) is only thrown to the thread that
+/// asked; any other exception is thrown to both threads.
 template <class R>
 Job make_job(std::function<R()> body, std::future<R>& answer) {
   auto promise = std::make_shared<std::promise<R>>();
@@ -46,20 +46,21 @@ Job make_job(std::function<R()> body, std::future<R>& answer) {
   return job;
 }
 
-/// Many threads put, one takes. No lock is held while a job runs.
+/// Many threads put jobs, one takes them. The mutex is not held while a job runs.
 class JobQueue {
  public:
   /// Once the queue is closed, the job is refused with the reason of close().
   void put(Job job);
+  /// The next job, if there is one.
   bool take(Job& job);
-  /// Sleeps until there is a job, or the time is over, or the queue is closed.
+  /// Sleeps until there is a job, the time [s] is over, or the queue is closed.
   void wait_for(std::chrono::duration<double> time);
   /// Refuses the jobs that wait and all that come. The first reason stays.
   void close(const std::string& reason);
   bool closed() const;
 
  private:
-  mutable std::mutex mutex_;
+  mutable std::mutex mutex_;  ///< guards all below
   std::condition_variable changed_;
   std::deque<Job> jobs_;
   bool closed_ = false;

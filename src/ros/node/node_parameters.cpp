@@ -2,19 +2,65 @@
 
 #include <ros/master.h>
 #include <ros/param.h>
+#include <xmlrpcpp/XmlRpcValue.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cmath>
+#include <cstdio>
 #include <set>
+#include <sstream>
 
-#include "src/ros/node/frame_name.hpp"
-#include "src/ros/node/package_folder.hpp"
-#include "src/ros/node/xmlrpc_yaml.hpp"
+#include "src/core/parameter_page.hpp"
+#include "src/ros/node/frames.hpp"
+#include "src/ros/node/scenario_file.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 
 namespace {
 
+// ---- Reading.
+
+/// A number with all its bits. One that is not finite gets YAML's name for it, which the loader shows when it
+/// refuses the number.
+std::string number_text(double value) {
+  if (std::isnan(value)) return ".nan";
+  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+/// A ROS parameter as YAML, so that one loader reads both: structs become maps, arrays lists, all else
+/// scalars. Throws ConfigError, naming `key`, for a type that YAML does not have (dates, binary data).
+YAML::Node yaml_from_xmlrpc(XmlRpc::XmlRpcValue value, const std::string& key) {
+  using Value = XmlRpc::XmlRpcValue;
+  switch (value.getType()) {
+    case Value::TypeBoolean:
+      return YAML::Node(static_cast<bool>(value));
+    case Value::TypeInt:
+      return YAML::Node(static_cast<int>(value));
+    case Value::TypeDouble:
+      return YAML::Node(number_text(static_cast<double>(value)));
+    case Value::TypeString:
+      return YAML::Node(static_cast<std::string>(value));
+    case Value::TypeArray: {
+      YAML::Node list(YAML::NodeType::Sequence);
+      for (int n = 0; n < value.size(); ++n)
+        list.push_back(yaml_from_xmlrpc(value[n], key + "." + std::to_string(n)));
+      return list;
+    }
+    case Value::TypeStruct: {
+      YAML::Node map(YAML::NodeType::Map);
+      for (auto& entry : value) map[entry.first] = yaml_from_xmlrpc(entry.second, key + "." + entry.first);
+      return map;
+    }
+    default:
+      throw ConfigError(key + ": is of a type that no parameter has (a date, or binary data)");
+  }
+}
+
+/// All parameters below `name`.
 YAML::Node read_namespace(const std::string& name) {
   XmlRpc::XmlRpcValue value;
   if (!ros::param::get(name, value)) {
@@ -31,7 +77,8 @@ std::set<std::string> scenario_sections() {
   return names;
 }
 
-/// Splits off the scenario's sections; a key that is neither one nor in `known` is a fault.
+/// The sections of the scenario among the parameters. A key that is neither a section nor in `known` is a
+/// fault.
 YAML::Node take_sections(const YAML::Node& root, const std::set<std::string>& known, Faults& faults) {
   const std::set<std::string> sections = scenario_sections();
   YAML::Node scenario(YAML::NodeType::Map);
@@ -67,7 +114,8 @@ Settings read_settings(const YAML::Node& node, Faults& faults) {
   return settings;
 }
 
-/// The leaves of the sections as settings, so that they override single keys of a file. A list is one leaf.
+/// Adds the leaves of the sections as settings, so that they override single keys of a file. A list is one
+/// leaf.
 void flatten(const YAML::Node& node, const std::string& path, Settings& settings) {
   if (node.IsMap()) {
     for (const auto& entry : node)
@@ -101,6 +149,23 @@ Scenario read_scenario(const std::string& source, const NodeParameters& node, co
   return load_scenario(scenario_file(node.scenario), all);
 }
 
+// ---- The page.
+
+void write_map_layers(std::ostream& out) {
+  const MapSetup defaults;
+  out << "\n## Layers of maps\n\n"
+         "`grid_map_layers` (default `"
+      << yaml_list(defaults.grid_map_layers) << "`) and `local_map_layers` (default `"
+      << yaml_list(defaults.local_map_layers)
+      << "`) are lists of these; `~get_submap` and `~get_grid_map` know the same. A layer that nobody asks "
+         "for is "
+         "not computed; one that the terrain does not have is 0.\n\n| layer | unit | what |\n|---|---|---|\n";
+  for (const MapLayer& layer : map_layers) {
+    const LayerInfo& about = info(layer.layer);
+    out << "| `" << layer.name << "` | " << about.unit << " | " << about.doc << " |\n";
+  }
+}
+
 }  // namespace
 
 NodeSetup read_node_setup(const ros::NodeHandle& private_node) {
@@ -118,6 +183,26 @@ NodeSetup read_node_setup(const ros::NodeHandle& private_node) {
   faults.throw_if_any();
   setup.scenario = read_scenario(source, setup.node, sections, settings);
   return setup;
+}
+
+std::string describe_node_parameters() {
+  std::ostringstream out;
+  out << "# Parameters of the node\n\n"
+         "Written by `desert_sim_node --describe`; a test fails when it is stale. All are private to the "
+         "node. "
+         "Beside them it takes the sections of a scenario ([parameters.md](parameters.md)), and `settings`, "
+         "a "
+         "list of `path=value` that override keys of the scenario file.\n\n## Node\n\n";
+  write_parameter_table(out, NodeParameters());
+  out << "\n## Topics\n\n"
+         "Rates are of wall time; without subscribers nothing is sent. A rate of 0 leaves what is sent to a "
+         "new "
+         "subscriber, before the service `~step` answers, and after a reset or load.\n\n";
+  write_parameter_table(out, PublisherParameters());
+  out << "\n## Maps\n\n";
+  write_parameter_table(out, MapParameters());
+  write_map_layers(out);
+  return out.str();
 }
 
 }  // namespace desert_sim

@@ -1,5 +1,5 @@
 #pragma once
-/// The node's private parameters, and the scenario that it is to run.
+/// The node's private parameters, the scenario that it is to run, and the page that describes the parameters.
 
 #include <ros/node_handle.h>
 
@@ -14,7 +14,7 @@ namespace desert_sim {
 enum class BackendChoice : int { automatic, cpu, cuda };
 constexpr const char* backend_choices[] = {"auto", "cpu", "cuda"};
 
-/// What the node does.
+/// Parameters of the node itself. Those of its topics are PublisherParameters and MapParameters.
 struct NodeParameters {
   std::string scenario;
   std::string frame_id = "map";
@@ -70,10 +70,14 @@ struct NodeSetup {
   Scenario scenario;  ///< not yet resolved
 };
 
-/// Reads all private parameters of `private_node`: those above, the lists
-/// `grid_map_layers` and `local_map_layers`, `settings` (a list of "path=value" for a
-/// scenario that is a file), and the sections of a scenario. Sections given beside a file override the file's
-/// keys. Throws ConfigError that lists all faults; a parameter that nobody knows is one.
+/// Reads all private parameters of `private_node`: those of the tables, the lists `grid_map_layers` and
+/// `local_map_layers`, `settings` (a list of "path=value" for a scenario that is a file), and the sections of
+/// a scenario. Sections that are given beside a file override the file's keys. Throws ConfigError that lists
+/// all faults; an unknown parameter is one.
 NodeSetup read_node_setup(const ros::NodeHandle& private_node);
+
+/// The page of the parameters in markdown, from their tables: what `desert_sim_node --describe` prints, and
+/// what config/node_parameters.md holds.
+std::string describe_node_parameters();
 
 }  // namespace desert_sim

@@ -32,7 +32,7 @@ bool Pacer::due(double now) {
   return now >= due_time();
 }
 
-void Pacer::forgive(double now) {
+void Pacer::drop_backlog(double now) {
   if (rate_ > 0 && running_) start_ += std::max(0.0, now - due_time());
 }
 
@@ -65,7 +65,7 @@ void RateMeter::count(double now) {
 
 double RateMeter::rate(double now) const {
   if (marks_.size() < 2) return 0.0;
-  // Steps that stopped coming: the rate falls as time goes on.
+  // If no more steps come, the rate falls as time goes on.
   const double interval = (marks_.back().time - marks_.front().time) / static_cast<double>(marks_.size() - 1);
   const double last = marks_.back().time, end = now - last > 2 * interval + 0.5 ? now : last;
   return static_cast<double>(marks_.back().steps - marks_.front().steps) / (end - marks_.front().time);

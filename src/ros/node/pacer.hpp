@@ -1,5 +1,5 @@
 #pragma once
-/// When the next step is due, and how fast steps come.
+/// The schedule of steps (Pacer), and the measured rate of steps or messages (RateMeter).
 
 #include <cstdint>
 #include <deque>
@@ -9,8 +9,8 @@ namespace desert_sim {
 /// Seconds of a clock that never jumps.
 double steady_now();
 
-/// Keeps a rate of steps on a clock that may be slow, stand still, or jump. Times are that clock's seconds.
-/// A backlog of up to `backlog` seconds is caught up; what goes beyond it is given up and only shows in
+/// Keeps a rate of steps on a clock that may be slow, stand still, or jump. Times are seconds of that clock.
+/// If steps are late, up to `backlog` seconds are caught up; what exceeds them is given up, and only shows in
 /// lag().
 class Pacer {
  public:
@@ -20,17 +20,18 @@ class Pacer {
   explicit Pacer(double rate) : rate_(rate) {}
   double rate() const { return rate_; }
 
-  /// The schedule begins anew at the next due(), with no lag: after a pause, a reset, a jump.
+  /// The schedule starts again at the next due(), without lag: after a pause, a reset, or a jump of the
+  /// clock.
   void restart() { running_ = false; }
-  /// What is behind the schedule at time `now` need not be done, and is no lag.
-  void forgive(double now);
+  /// Steps that are late at time `now` need not be caught up, and do not count as lag.
+  void drop_backlog(double now);
   /// Whether a step is due at time `now`. A clock that went back restarts the schedule (see jumped_back()).
   bool due(double now);
   /// A step that was due has been done.
   void stepped();
   /// Time until the next step is due [s]; 0 if it is.
   double until_due(double now) const;
-  /// How far the steps are behind the schedule since it began [s], time given up included.
+  /// How far the steps are behind the schedule since it started [s], including the time that was given up.
   double lag(double now) const;
   /// Whether the clock went back since the last call.
   bool jumped_back();
@@ -43,7 +44,7 @@ class Pacer {
   std::uint64_t done_ = 0;
 };
 
-/// Steps per second over the last two seconds; over the last two steps if they are slower.
+/// Measures steps per second over the last two seconds, or over the last two steps if they took longer.
 class RateMeter {
  public:
   /// A step was done at `now` [s, any steady clock].

@@ -10,7 +10,7 @@ namespace desert_sim {
 
 namespace {
 
-constexpr double look_every = 0.2;  // [s]
+constexpr double check_period = 0.2;  // [s]
 
 bool same(const dynamic_reconfigure::Config& a, const dynamic_reconfigure::Config& b) {
   const ros::SerializedMessage x = ros::serialization::serializeMessage(a),
@@ -20,8 +20,8 @@ bool same(const dynamic_reconfigure::Config& a, const dynamic_reconfigure::Confi
 
 }  // namespace
 
-Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Topics& topics)
-    : simulation_(simulation), topics_(topics) {
+Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, TopicPublisher& publisher)
+    : simulation_(simulation), publisher_(publisher) {
   const LiveParameters defaults = present();
   descriptions_ = node.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true);
   updates_ = node.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true);
@@ -30,21 +30,21 @@ Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Top
       boost::make_shared<dynamic_reconfigure::ConfigDescription>(reconfigure_description(defaults)));
   publish(reconfigure_values(defaults));
   service_ = node.advertiseService("set_parameters", &Reconfigure::set, this);
-  timer_ =
-      node.createWallTimer(ros::WallDuration(look_every), [this](const ros::WallTimerEvent&) { look(); });
+  timer_ = node.createWallTimer(ros::WallDuration(check_period),
+                                [this](const ros::WallTimerEvent&) { publish_if_changed(); });
 }
 
 LiveParameters Reconfigure::present() const {
-  return {simulation_.scenario().get(), topics_.parameters(), simulation_.step_rate()};
+  return {simulation_.scenario().get(), publisher_.parameters(), simulation_.step_rate()};
 }
 
-/// In their order, and without the lock across a publish.
+/// Publishes in the order of calls, and without holding the mutex while it does.
 void Reconfigure::publish(const dynamic_reconfigure::Config& values) {
   std::unique_lock<std::mutex> lock(mutex_);
   if (same(values, published_)) return;
   published_ = values;
   to_publish_ = boost::make_shared<dynamic_reconfigure::Config>(values);
-  if (publishing_) return;  // whoever does so now takes this one too
+  if (publishing_) return;  // the thread that is publishing takes these values too
   publishing_ = true;
   while (to_publish_) {
     const dynamic_reconfigure::ConfigConstPtr next = std::exchange(to_publish_, nullptr);
@@ -58,34 +58,35 @@ void Reconfigure::publish(const dynamic_reconfigure::Config& values) {
 bool Reconfigure::set(Request& request, Response& response) {
   try {
     const LiveChange change = reconfigure_change(request.config, present());
-    // First what may yet be refused.
+    // First what can still be refused.
     if (!change.settings.empty()) {
       simulation_.apply(command::SetParameters{change.settings}).get();
-      topics_.status_changed();
+      publisher_.status_changed();
     }
     if (change.step_rate != simulation_.step_rate()) simulation_.set_step_rate(change.step_rate).get();
-    topics_.set_parameters(change.publishers);
+    publisher_.set_parameters(change.publishers);
     response.config = reconfigure_values(present());
     publish(response.config);
     return true;
   } catch (const Error& e) {
-    ROS_WARN("%s", e.what());  // its answer has no place for a reason
+    ROS_WARN("%s", e.what());  // the answer has no field for a reason
     return false;
   }
 }
 
-/// Other commands change the wind, a reset or a checkpoint everything, and ~reload_parameters anything.
-void Reconfigure::look() {
-  const std::uint64_t commands = simulation_.commands(), publishers = topics_.parameter_changes();
+/// Parameters change not only by set(): commands change the wind, a reset or a checkpoint everything, and
+/// ~reload_parameters anything.
+void Reconfigure::publish_if_changed() {
+  const std::uint64_t commands = simulation_.commands(), publishers = publisher_.parameter_changes();
   const double rate = simulation_.step_rate();
-  if (commands == seen_ && publishers == seen_publishers_ && rate == seen_rate_) return;
+  if (commands == seen_commands_ && publishers == seen_publishers_ && rate == seen_rate_) return;
   try {
     publish(reconfigure_values(present()));
-    seen_ = commands;
+    seen_commands_ = commands;
     seen_publishers_ = publishers;
     seen_rate_ = rate;
   } catch (const Error&) {
-    // The simulation is ending, or has failed, which ~status tells.
+    // The simulation is ending, or has failed, which ~status says.
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-/// dynamic_reconfigure for the parameters that can change live, without a .cfg file: the parameter tables
-/// are the description. ~parameter_descriptions, ~parameter_updates, ~set_parameters as its clients expect.
+/// A server of dynamic_reconfigure for the parameters that can change live, without a .cfg file: the
+/// parameter tables are the description. It has ~parameter_descriptions, ~parameter_updates and
+/// ~set_parameters, as clients expect.
 
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <ros/node_handle.h>
@@ -10,7 +11,7 @@
 
 #include "src/ros/node/reconfigure_messages.hpp"
 #include "src/ros/node/simulation_thread.hpp"
-#include "src/ros/topics/topics.hpp"
+#include "src/ros/topics/topic_publisher.hpp"
 
 namespace desert_sim {
 
@@ -19,25 +20,26 @@ namespace desert_sim {
 /// change shows in ~parameter_updates.
 class Reconfigure {
  public:
-  Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Topics& topics);
+  Reconfigure(ros::NodeHandle node, SimulationThread& simulation, TopicPublisher& publisher);
 
  private:
   using Request = dynamic_reconfigure::Reconfigure::Request;
   using Response = dynamic_reconfigure::Reconfigure::Response;
   bool set(Request& request, Response& response);
-  void look();
+  void publish_if_changed();
   LiveParameters present() const;
   void publish(const dynamic_reconfigure::Config& values);
 
   SimulationThread& simulation_;
-  Topics& topics_;
-  std::mutex mutex_;
-  dynamic_reconfigure::Config published_;  ///< under mutex_, as the next two
+  TopicPublisher& publisher_;
+  std::mutex mutex_;                       ///< guards the next three
+  dynamic_reconfigure::Config published_;  ///< what was published last
   dynamic_reconfigure::ConfigConstPtr to_publish_;
   bool publishing_ = false;
-  std::uint64_t seen_ = 0;             ///< commands of the simulation, when it was last looked at
-  std::uint64_t seen_publishers_ = 0;  ///< changes of the topics' parameters then
-  double seen_rate_ = -1;              ///< step rate then [steps/s]
+  // When it was last checked whether parameters have changed; of the timer's callback alone:
+  std::uint64_t seen_commands_ = 0;    ///< of the simulation
+  std::uint64_t seen_publishers_ = 0;  ///< changes of the parameters of topics
+  double seen_rate_ = -1;              ///< step rate [steps/s]
   ros::Publisher descriptions_, updates_;
   ros::ServiceServer service_;
   ros::WallTimer timer_;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char *separator = "__", *step_rate_name = "step_rate";
 
-/// How a parameter travels.
+/// The type that dynamic_reconfigure has for parameters of type T.
 template <class T>
 constexpr const char* type_name() {
   if (std::is_same_v<T, bool>) return "bool";
@@ -58,7 +58,7 @@ void put(Entries& entries, const std::string& name, const Value& value) {
   entries.back().value = value;
 }
 
-/// One value; which list of the message it goes to follows from its type.
+/// Adds one value to the list of the message that is for its type.
 template <class Row, class T>
 void add_value(Config& config, const std::string& name, const Row& row, const T& value) {
   if constexpr (std::is_same_v<T, bool>)
@@ -84,7 +84,7 @@ void add_limit(Config& config, const std::string& name, const Row& row, double l
   (void)row;
 }
 
-/// What rqt_reconfigure shows as a drop-down list: a Python dictionary as text.
+/// The choices that rqt_reconfigure shows as a drop-down list: a Python dictionary as text.
 template <class Row>
 std::string edit_method(const Row& row) {
   if (!row.choices) return "";
@@ -116,7 +116,8 @@ void describe(dynamic_reconfigure::ConfigDescription& description, dynamic_recon
   add_limit<T>(description.max, name, row, row.highest);
 }
 
-/// Calls visit(group, name, row, value) for all that can change, group by group; the group "" is the first.
+/// Calls visit(group, name, row, value) for all parameters that can change, group by group. The first group
+/// is "".
 template <class Live, class Visit>
 void for_each_live(Live& live, Visit&& visit) {
   const auto step_rate = [&](const auto& row, const auto& value) {
@@ -132,7 +133,8 @@ void for_each_live(Live& live, Visit&& visit) {
   });
 }
 
-/// In their order; a group's id is its index. dynamic_reconfigure calls the first one Default.
+/// The groups in their order; the id of a group is its index. dynamic_reconfigure calls the first one
+/// Default.
 std::vector<dynamic_reconfigure::GroupState> group_states() {
   std::vector<dynamic_reconfigure::GroupState> groups;
   const LiveParameters live;
@@ -147,15 +149,15 @@ std::vector<dynamic_reconfigure::GroupState> group_states() {
   return groups;
 }
 
-/// Texts of all values, by name.
+/// The texts of all values, by name.
 std::map<std::string, std::string> texts(const Config& config) {
   std::map<std::string, std::string> all;
   for (const auto& entry : config.bools) all[entry.name] = entry.value ? "true" : "false";
   for (const auto& entry : config.ints) all[entry.name] = std::to_string(entry.value);
   for (const auto& entry : config.strs) all[entry.name] = entry.value;
   for (const auto& entry : config.doubles) {
-    YAML::Emitter text;  // which has words for what is not finite
-    yaml::keep_all_bits(text);
+    YAML::Emitter text;  // it has names for numbers that are not finite
+    yaml::set_full_precision(text);
     text << entry.value;
     all[entry.name] = text.c_str();
   }
@@ -195,14 +197,14 @@ LiveChange reconfigure_change(const Config& request, const LiveParameters& prese
   const std::map<std::string, std::string> now = texts(reconfigure_values(present));
   Faults faults("set_parameters");
   LiveChange change;
-  YAML::Node others(YAML::NodeType::Map);  // of the node and its publishers
+  YAML::Node others(YAML::NodeType::Map);  // parameters of the node and its topics
   for (const auto& [name, value] : texts(request)) {
     const std::size_t split = name.find(separator);
     const std::string path =
         split == std::string::npos ? name : name.substr(0, split) + "." + name.substr(split + 2);
     const auto found = now.find(name);
     if (found == now.end()) {
-      const char* why = why_fixed(path);
+      const char* why = fixed_reason(path);
       faults.add(path, why ? std::string("cannot change while the simulation runs: ") + why
                            : std::string("unknown parameter"));
     } else if (found->second != value) {

@@ -18,13 +18,13 @@ namespace desert_sim {
 
 namespace {
 
-constexpr int steps_in_flight = 8;  // a GPU may be that far behind before the thread waits for it
-constexpr int timed_every = 16;     // steps from one that is timed to the next
-constexpr double keep_memory = 60;  // [s] that layers on request, and staging memory, stay while nobody asks
+constexpr int most_steps_under_way = 8;  // that a GPU may be behind before the thread waits for it
+constexpr int timed_every = 16;          // steps from one that is timed to the next
+constexpr double keep_memory = 60;  // [s] for layers on request, costs and snapshots that nobody asks for
 
-/// Of the calling thread, for top -H and for the scheduler. The backend's threads are its children and
-/// inherit both.
-void name_and_nice(const char* name, int niceness) {
+/// Sets the name (for top -H) and the niceness of the calling thread. The threads of the backend are started
+/// by it and inherit both.
+void set_name_and_niceness(const char* name, int niceness) {
   pthread_setname_np(pthread_self(), name);
   const auto thread = static_cast<id_t>(syscall(SYS_gettid));  // Linux has a niceness for each thread
   errno = 0;
@@ -66,11 +66,11 @@ std::string SimulationThread::failure() const {
   return failure_;
 }
 
-// ---- from here on: on the simulation thread ----
+// ---- On the simulation thread.
 
 void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load_raster,
                               std::promise<void>& started) {
-  name_and_nice("simulation", options_.niceness);
+  set_name_and_niceness("simulation", options_.niceness);
   try {
     session_ = std::make_unique<Session>(scenario, load_raster, options_.backend, options_.threads,
                                          options_.journal);
@@ -84,7 +84,7 @@ void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load
     started.set_exception(std::current_exception());
     return;
   }
-  started.set_value();  // from here on, `scenario`, `load_raster` and `started` are gone
+  started.set_value();  // from here on, `scenario`, `load_raster` and `started` no longer exist
   try {
     loop();
   } catch (const std::exception& e) {
@@ -109,18 +109,18 @@ void SimulationThread::loop() {
       step();
       pacer_.stepped();
     } else {
-      settle();
+      wait_for_steps();
       jobs_.wait_for(std::chrono::duration<double>(idle_time()));
     }
   }
 }
 
-/// How long there is nothing to do unless a job comes [s].
+/// How long there is nothing to do, unless a job comes [s].
 double SimulationThread::idle_time() const {
   if (paused_) return 1.0;
   if (waiting_for_clock_) return 0.02;
   if (follows_ros_time())
-    return 0.001;  // nobody knows when that clock will have come so far: look again and again
+    return 0.001;  // it is unknown when that clock will reach the due time: check again and again
   return std::min(0.1, std::max(1e-4, pacer_.until_due(clock_now())));
 }
 
@@ -138,7 +138,7 @@ void SimulationThread::serve_step_request() {
   }
   if (request.done < request.asked) return;
   ++commands_;
-  pacer_.forgive(clock_now());  // what these steps took is not to be caught up
+  pacer_.drop_backlog(clock_now());  // the time that these steps took is not to be caught up
   request.answer.set_value(reached(true));
   step_requests_.pop_front();
 }
@@ -151,10 +151,11 @@ void SimulationThread::end_step_requests(const std::string& by) {
   step_requests_.clear();
 }
 
-/// A simulation that is the clock cannot wait for it.
+/// Whether steps follow ROS time. A simulation that is the clock cannot wait for it.
 bool SimulationThread::follows_ros_time() const { return ros::Time::isSimTime() && !options_.publish_clock; }
 
-/// Under use_sim_time, its own clock's time comes back to it only later.
+/// The stamp of the present state. A simulation that is the clock takes its own time: under use_sim_time, ROS
+/// time only reaches it later.
 ros::Time SimulationThread::stamp_now() const {
   return options_.publish_clock && ros::Time::isSimTime() ? clock_time(session_->simulation().time())
                                                           : ros::Time::now();
@@ -184,23 +185,23 @@ void SimulationThread::step() {
   const double now = steady_now();
   const bool timed = now < measure_until_ && --steps_until_timed_ <= 0;
   if (timed) {
-    settle();
+    wait_for_steps();
     steps_until_timed_ = timed_every;
     ++timed_steps_;
   }
   session_->simulation().set_timing(timed);
   session_->step();
-  if (++unsettled_steps_ >= steps_in_flight || pacer_.rate() > 0) settle();
+  if (++steps_under_way_ >= most_steps_under_way || pacer_.rate() > 0) wait_for_steps();
   stamp_ = stamp_now();
   meter_.count(steady_now());
-  changed();
+  note_change();
 }
 
-/// Waits until the steps that were started are done.
-void SimulationThread::settle() {
-  if (unsettled_steps_ == 0) return;
+/// Waits until all steps that were started are done.
+void SimulationThread::wait_for_steps() {
+  if (steps_under_way_ == 0) return;
   session_->simulation().exec().synchronise();
-  unsettled_steps_ = 0;
+  steps_under_way_ = 0;
   stamp_ = stamp_now();
 }
 
@@ -215,7 +216,7 @@ void SimulationThread::release_unused_memory() {
   if (unused(snapshot_requested_)) session_->simulation().staging().release();
 }
 
-void SimulationThread::changed() {
+void SimulationThread::note_change() {
   ++changes_;
   if (options_.publish_clock) options_.publish_clock(session_->simulation().time());
   on_change_();
@@ -227,14 +228,14 @@ Moment SimulationThread::moment() {
 }
 
 Reached SimulationThread::reached(bool with_hash) {
-  settle();
+  wait_for_steps();
   Reached r;
   r.moment = moment();
   if (with_hash) r.hash = state_hash();
   return r;
 }
 
-/// Made anew only after a change.
+/// The hash of the present state; it is computed only after a change.
 std::uint64_t SimulationThread::state_hash() {
   if (hashed_change_ != changes_) hash_ = session_->simulation().state_hash();
   hashed_change_ = changes_;

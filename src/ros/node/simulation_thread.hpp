@@ -1,6 +1,6 @@
 #pragma once
-/// The one thread that owns the simulation. Other threads ask it for something and wait for the answer; it
-/// serves them between steps. A step, a copy of the terrain or an answer never happens under a lock.
+/// The thread that owns the simulation. Other threads ask it for something and wait for the answer; it serves
+/// them between two steps. It holds no mutex during a step, a copy of the terrain, or an answer.
 
 #include <atomic>
 #include <deque>
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "src/ros/node/job_queue.hpp"
-#include "src/ros/node/moment.hpp"
 #include "src/ros/node/pacer.hpp"
+#include "src/ros/node/terrain_state.hpp"
 #include "src/simulation/session.hpp"
 
 namespace desert_sim {
@@ -27,44 +27,48 @@ class SimulationThread {
     double step_rate = 10;  ///< [steps/s]; 0: as fast as it can
     bool paused = false;
     std::string journal;  ///< file, or empty
-    /// Begin with the first of these checkpoints that is whole, if there is one.
+    /// It starts from the first of these checkpoints that is complete, if there is one.
     std::vector<std::string> resume_from;
     /// See Session::check_with().
     std::function<void(const Scenario&)> check_scenario;
-    /// Called on the simulation thread with the simulated time [s], at the start and after each step. With
-    /// it, the simulation is the clock: it follows wall time, whatever use_sim_time says.
+    /// If set, the simulation is the clock of all nodes: this is called on the simulation thread with the
+    /// simulated time [s], at the start and after each step, and steps follow wall time, whatever
+    /// use_sim_time says.
     std::function<void(double)> publish_clock;
   };
 
   /// Builds the terrain, and then runs. `on_change` is called on the simulation thread after each step and
-  /// command, and when the simulation has failed; it must be quick. Throws ConfigError.
+  /// command, and when the simulation has failed; it must return quickly. Throws ConfigError.
   SimulationThread(const Scenario& scenario, const RasterLoader& load_raster, const Options& options,
                    std::function<void()> on_change);
   ~SimulationThread();
 
-  // All of these return at once. The future holds ConfigError if the request was refused and has changed
-  // nothing, Error if the simulation ends or has failed before it is served.
+  // ---- Requests, from any thread. They return at once. The future holds ConfigError if the request was
+  // refused and has changed nothing, and Error if the simulation ends or fails before it serves the request.
 
-  /// `with_change`: the result of an edit tells it cell by cell.
+  /// `with_change`: the result of an edit has its change cell by cell.
   std::future<Reached> apply(const Command& command, bool with_hash = false, bool with_change = false);
-  /// Exactly `steps` steps, as fast as it can. Ended early (ConfigError) by a pause, a reset or a load.
+  /// Makes exactly `steps` steps, as fast as possible. A pause, a reset or a load ends them early
+  /// (ConfigError).
   std::future<Reached> step(std::uint32_t steps);
   std::future<void> pause();
   std::future<void> resume();
-  /// [steps/s]; 0: as fast as it can. The schedule begins anew. Not journalled: the terrain does not feel it.
+  /// Sets the rate [steps/s]; 0: as fast as possible. The schedule starts again. The journal does not have
+  /// this: it has no effect on the terrain.
   std::future<void> set_step_rate(double rate);
-  /// The simulation goes on while the copy is under way: who calls get() waits for the copy there.
+  /// A copy of layers (of a band of rows, if it has any), and of what `query` asks for. The simulation
+  /// continues while the copy is under way: the thread that calls get() waits for it.
   std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {},
-                                    const StateQuery& held = {});
+                                    const StateQuery& query = {});
   std::future<TerrainToSave> terrain_to_save();
-  /// With the parameters and the wind regime of now.
+  /// The scenario with the present parameters and the present wind regime.
   std::future<Scenario> scenario();
-  /// With `measure`, processes are timed for a while, which costs some speed.
+  /// `measure`: processes are timed for a while from now on, which costs some speed.
   std::future<StatusReport> report(bool measure = true);
   std::future<Reached> save_checkpoint(const std::string& path);
   std::future<CheckpointCopy> checkpoint();
 
-  /// Counters of Moment, of what has been done; for deciding whether a copy is still good.
+  /// The present counters of Moment: they tell whether a copy is still up to date.
   std::uint64_t changes() const { return changes_; }
   std::uint64_t commands() const { return commands_; }
   std::uint64_t terrains() const { return terrains_; }
@@ -76,7 +80,7 @@ class SimulationThread {
   bool failed() const { return failed_; }
   /// Failed or stopped.
   bool ended() const { return jobs_.closed(); }
-  /// Ends the thread, after the step that it is in; requests that wait hold Error then.
+  /// Ends the thread after the present step. Requests that wait then hold Error.
   void stop();
 
  private:
@@ -94,10 +98,11 @@ class SimulationThread {
   void end_step_requests(const std::string& by);
   bool step_is_due();
   void step();
-  void settle();
-  /// Of what has not been asked for in a while.
+  void wait_for_steps();
+  /// Releases memory that holds what has not been asked for in a while.
   void release_unused_memory();
-  void changed();
+  void note_change();
+  /// A TerrainState whose copies are under way.
   struct StateUnderWay {
     Moment moment;
     PendingSnapshot snapshot;
@@ -106,7 +111,7 @@ class SimulationThread {
     PendingPlants plants;
     TerrainState get() const;
   };
-  StateUnderWay begin_state(const std::vector<Layer>& layers, const RowBand& band, const StateQuery& held);
+  StateUnderWay begin_state(const std::vector<Layer>& layers, const RowBand& band, const StateQuery& query);
   Moment moment();
   Reached reached(bool with_hash);
   std::uint64_t state_hash();
@@ -123,21 +128,22 @@ class SimulationThread {
   std::string backend_choice_;
   std::atomic<double> step_rate_;
   std::atomic<bool> failed_{false};
-  mutable std::mutex failure_mutex_;
+  mutable std::mutex failure_mutex_;  ///< guards failure_
   std::string failure_;
 
-  // Below: of the simulation thread alone.
+  // Used by the simulation thread alone, and without a mutex:
   std::unique_ptr<Session> session_;
   std::deque<StepRequest> step_requests_;
   Pacer pacer_;
   RateMeter meter_;
   ros::Time stamp_;
   bool paused_, waiting_for_clock_ = false;
-  int unsettled_steps_ = 0;
+  int steps_under_way_ = 0;  ///< started on the device, and perhaps not done yet
   std::uint64_t snapshots_ = 0;
-  /// When layers that exist on request, costs and snapshots were last asked for [s]; 0: they have no memory.
+  /// When layers that exist on request, costs, and snapshots were last asked for [s]; 0 if no memory is held
+  /// for them.
   double layers_requested_ = 0, costs_requested_ = 0, snapshot_requested_ = 0;
-  // Measuring: now and then a step is timed, process by process, while somebody looks at reports.
+  // Timing: while somebody asks for reports, some steps are timed, process by process.
   double measure_until_ = 0;
   int steps_until_timed_ = 0, timed_steps_ = 0;
   std::vector<ProcessTime> process_times_;

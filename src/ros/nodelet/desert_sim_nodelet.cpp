@@ -1,4 +1,4 @@
-/// desert_sim/DesertSimNodelet: DesertSimServer inside a nodelet manager.
+/// The nodelet desert_sim/DesertSimNodelet: DesertSimServer inside a nodelet manager.
 #include <nodelet/nodelet.h>
 #include <ros/wall_timer.h>
 
@@ -11,8 +11,8 @@
 
 namespace desert_sim {
 
-/// Input that is refused makes loading fail. A failure at run time is logged and told by ~status, and every
-/// service answers with it; the manager and its other nodelets live on.
+/// Input that is refused makes loading fail. A failure at run time is in the log, in ~status, and in the
+/// answer of every service; the manager and its other nodelets continue.
 class DesertSimNodelet : public nodelet::Nodelet {
  private:
   void onInit() override {

@@ -1,6 +1,6 @@
 #pragma once
-/// From service requests to the simulation's commands. All throw ConfigError that names the field, its value
-/// and what is allowed; ranges are checked by the simulation itself when it applies the command.
+/// Converts service requests into commands of the simulation. All throw ConfigError that names the field, its
+/// value and what is allowed. Ranges are checked by the simulation itself when it applies the command.
 
 #include <desert_sim/EditPlants.h>
 #include <desert_sim/EditTerrain.h>
@@ -11,23 +11,17 @@
 #include <geometry_msgs/Vector3Stamped.h>
 
 #include "src/ros/node/frames.hpp"
-#include "src/ros/services/terrain_formats.hpp"
 #include "src/simulation/commands/command.hpp"
 
 namespace desert_sim {
 
 command::SetWind wind_command(const SetWindRequest& request);
-command::SetWindSchedule schedule_command(const SetWindScheduleRequest& request);
+command::SetWindSchedule wind_schedule_command(const SetWindScheduleRequest& request);
 command::EditWind wind_edit_command(const EditWindRequest& request, const Frames& frames);
 command::SetParameters weather_command(const SetWeatherRequest& request);
-/// Of ~cmd_wind.
-command::SetWind streamed_wind(const geometry_msgs::Vector3Stamped& message, const Frames& frames);
+/// A message on ~cmd_wind.
+command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message, const Frames& frames);
 command::EditPlants plants_command(const EditPlantsRequest& request, const Frames& frames);
 command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames);
-
-TerrainFormat terrain_format(const std::string& name);
-
-/// Throws ConfigError unless all are finite; `name` is what the point is called.
-void require_finite(const geometry_msgs::Point& point, const std::string& name);
 
 }  // namespace desert_sim

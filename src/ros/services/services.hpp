@@ -1,9 +1,11 @@
 #pragma once
-/// The services. Each turns a request into a command and waits for the simulation thread's answer.
+/// The services of the node. Each turns a request into a command, or a question, and waits for the answer of
+/// the simulation thread. The table of services is advertise_all() in services.cpp.
 
 #include <desert_sim/EditPlants.h>
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/EditWind.h>
+#include <desert_sim/GetSubmap.h>
 #include <desert_sim/LoadCheckpoint.h>
 #include <desert_sim/LoadScenario.h>
 #include <desert_sim/LoadTerrain.h>
@@ -14,6 +16,7 @@
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
 #include <desert_sim/Step.h>
+#include <desert_sim/TerrainDiff.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <std_srvs/Trigger.h>
@@ -23,21 +26,26 @@
 #include <string>
 #include <vector>
 
+#include "src/grid_map/grid_map_msg.hpp"
+#include "src/ros/conversion/map_window.hpp"
 #include "src/ros/node/data_folder.hpp"
 #include "src/ros/node/frames.hpp"
 #include "src/ros/node/simulation_thread.hpp"
-#include "src/ros/services/submaps.hpp"
-#include "src/ros/topics/topics.hpp"
+#include "src/ros/topics/topic_publisher.hpp"
 
 namespace desert_sim {
 
 class Services {
  public:
-  /// `step_queue` serves ~step apart from the rest: it can take long, and a pause must come through.
-  Services(ros::NodeHandle node, ros::CallbackQueue& step_queue, SimulationThread& simulation, Topics& topics,
-           Frames& frames, const DataFolder& files);
+  /// `step_queue` serves ~step apart from the other services: it can take long, and ~pause must not wait for
+  /// it.
+  Services(const ros::NodeHandle& node, ros::CallbackQueue& step_queue, SimulationThread& simulation,
+           TopicPublisher& publisher, Frames& frames, const DataFolder& files);
 
  private:
+  void advertise_all(ros::CallbackQueue& step_queue);
+  /// Calls `serve` for each request. What it refuses (ConfigError), or any other failure, becomes the answer
+  /// success = false with the reason.
   template <class Service>
   void advertise(const std::string& name,
                  void (Services::*serve)(const typename Service::Request&, typename Service::Response&),
@@ -51,7 +59,8 @@ class Services {
   void edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response);
   void query_terrain(const QueryTerrainRequest& request, QueryTerrainResponse& response);
   void get_submap(const GetSubmapRequest& request, GetSubmapResponse& response);
-  void advertise_grid_map();
+  GridMap get_grid_map(const GetGridMapRequest& request) const;
+  void advertise_get_grid_map();
   void step(const StepRequest& request, StepResponse& response);
   void pause(const std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response);
   void resume(const std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response);
@@ -61,22 +70,26 @@ class Services {
   void save_terrain(const SaveTerrainRequest& request, SaveTerrainResponse& response);
   void load_terrain(const LoadTerrainRequest& request, LoadTerrainResponse& response);
   void load_scenario(const LoadScenarioRequest& request, LoadScenarioResponse& response);
-  /// Returns the hash at the new start.
-  std::string begin(const command::LoadScenario& command);
-  /// Tells the world of another terrain.
+  /// Starts from what the command loads. Returns the hash of the new state.
+  std::string load(const command::LoadScenario& command);
+  /// Moves the frame in the middle of the terrain, and publishes all topics.
   void terrain_replaced();
 
-  /// A copy that is new enough for a query; made anew only if the last one is not.
+  /// A copy of the terrain that is new enough for a query: the last one, if it still is.
   TerrainState recent_terrain();
+  /// The layers in a rectangle around `center`, in the frame of `header` [m]. Throws ConfigError that names
+  /// the field, its value and what is allowed.
+  MapCut cut_region(const std::vector<MapLayer>& layers, const std_msgs::Header& header,
+                    const geometry_msgs::Point& center, double length_x, double length_y) const;
 
   ros::NodeHandle node_;
   SimulationThread& simulation_;
-  Topics& topics_;
+  TopicPublisher& publisher_;
   Frames& frames_;
   const DataFolder& files_;
-  Submaps submaps_;
-  std::mutex center_mutex_;  ///< of what terrain_replaced() does
-  std::mutex recent_mutex_;
+  ros::Publisher terrain_diff_;   ///< ~terrain_diff: what each edit of the terrain changed
+  std::mutex move_center_mutex_;  ///< held while terrain_replaced() moves the frame
+  std::mutex recent_mutex_;       ///< guards the next two
   TerrainState recent_;
   std::chrono::steady_clock::time_point recent_time_;
   std::vector<ros::ServiceServer> servers_;

@@ -4,19 +4,20 @@
 
 #include "src/grid_map/grid_map_bag.hpp"
 #include "src/ros/conversion/grid_map_message.hpp"
+#include "src/ros/services/request_fields.hpp"
 
 namespace desert_sim {
 
 namespace {
 
-/// Under the name that maps have for it.
+/// The layer with the name that it has in maps, and with its own name if maps do not offer it.
 MapLayer as_map_layer(Layer layer) {
   const auto found = std::find_if(map_layers.begin(), map_layers.end(),
                                   [layer](const MapLayer& offered) { return offered.layer == layer; });
   return found == map_layers.end() ? MapLayer{info(layer).name, layer} : *found;
 }
 
-/// All layers in one bag, and the elevation for who looks at it.
+/// Writes all layers into one bag, and the elevation with them for viewers of the map.
 LayerWriter bag_writer(const TerrainState& state, const std::string& frame, const std::string& topic) {
   return [&state, frame, topic](const Snapshot& s, const std::string& folder, const std::string& tag) {
     const std::string file = layer_file("grid_map", tag, ".bag");
@@ -36,6 +37,10 @@ LayerWriter bag_writer(const TerrainState& state, const std::string& frame, cons
 }
 
 }  // namespace
+
+TerrainFormat terrain_format(const std::string& name) {
+  return choice_named<TerrainFormat>(terrain_formats, name, "format");
+}
 
 LayerWriter layer_writer(TerrainFormat format, const TerrainToSave& terrain, const std::string& frame,
                          const std::string& topic) {

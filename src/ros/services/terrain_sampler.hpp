@@ -1,5 +1,6 @@
 #pragma once
-/// The terrain between cell centres: bilinear, continued unchanged beyond the outermost centres.
+/// Samples of the terrain at points, for ~query_terrain: bilinear between cell centres, and constant beyond
+/// the outermost centres.
 
 #include <desert_sim/TerrainSample.h>
 
@@ -16,11 +17,11 @@ class TerrainSampler {
  public:
   /// Keeps a reference to the snapshot.
   explicit TerrainSampler(const Snapshot& snapshot);
-  /// At (x, y) of the terrain's frame [m].
+  /// The sample at (x, y) in the terrain's frame [m]; outside the terrain all values are NaN.
   TerrainSample at(double x, double y) const;
 
  private:
-  /// The four cells around a point and the point's place between them, 0…1.
+  /// The indices of the four cells whose centres surround a point, and the point's place between them, 0…1.
   struct Patch {
     std::size_t i00, i10, i01, i11;
     double fx, fy;

@@ -1,14 +1,60 @@
 #include "src/ros/topics/publisher_parameters.hpp"
 
-#include "src/ros/node/frame_name.hpp"
+#include "src/ros/node/frames.hpp"
 
 namespace desert_sim {
+
+namespace {
+
+/// Reads a list of names of layers; a missing one leaves `layers`.
+void read_layers(const YAML::Node& node, const std::string& key, Faults& faults,
+                 std::vector<MapLayer>& layers) {
+  if (!node.IsDefined()) return;
+  if (!node.IsSequence() || node.size() == 0)
+    return faults.add(key, (node.IsSequence() ? "an empty list" : yaml::shown(node)) +
+                               " where a list of layers is expected (known: " + map_layer_names() + ")");
+  std::vector<std::string> names;
+  for (const YAML::Node& name : node) names.push_back(name.IsScalar() ? name.Scalar() : yaml::shown(name));
+  try {
+    layers = map_layers_named(names, key);
+  } catch (const ConfigError& e) {
+    faults.add(key, std::string(e.what()).substr(key.size() + 2));
+  }
+}
+
+void read_map_setup(const YAML::Node& root, Faults& faults, MapSetup& maps, std::set<std::string>& known) {
+  yaml::read_parameters(root, "", faults, maps.parameters, known);
+  known.insert({"grid_map_layers", "local_map_layers"});
+  read_layers(root["grid_map_layers"], "grid_map_layers", faults, maps.grid_map_layers);
+  read_layers(root["local_map_layers"], "local_map_layers", faults, maps.local_map_layers);
+  const MapParameters& p = maps.parameters;
+  if ((p.grid_map_length_x == 0) != (p.grid_map_length_y == 0))
+    faults.add("grid_map_length_x", "and grid_map_length_y must both be 0 or both be above it");
+}
+
+}  // namespace
 
 void read_publisher_setup(const YAML::Node& root, Faults& faults, PublisherSetup& setup,
                           std::set<std::string>& known) {
   yaml::read_parameters(root, "", faults, setup.topics, known);
   read_map_setup(root, faults, setup.maps, known);
   check_frame(setup.maps.parameters.robot_frame, "robot_frame", faults);
+}
+
+void check_map_sizes(const MapSetup& maps, const GridParameters& grid) {
+  Snapshot s;
+  s.width = grid.width;
+  s.height = grid.height;
+  s.cell_size = grid.cell_size;
+  s.origin_x = grid.origin_x;
+  s.origin_y = grid.origin_y;
+  const MapParameters& p = maps.parameters;
+  // The whole terrain is as large as it is: nobody has to subscribe.
+  if (p.grid_map_length_x > 0)
+    require_map_size(window_of({p.grid_map_x, p.grid_map_y, p.grid_map_length_x, p.grid_map_length_y}, s),
+                     maps.grid_map_layers.size(), "grid_map_length_x and grid_map_length_y");
+  require_map_size(window_of({grid.origin_x, grid.origin_y, p.local_map_length_x, p.local_map_length_y}, s),
+                   maps.local_map_layers.size(), "local_map_length_x and local_map_length_y");
 }
 
 }  // namespace desert_sim

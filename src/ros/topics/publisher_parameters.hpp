@@ -1,13 +1,21 @@
 #pragma once
-/// How often and how finely the node publishes: all that config/publishers.yaml says. All of it can change
-/// while the node runs.
+/// The parameters of the topics: how often each is published, and how finely. config/publishers.yaml has them
+/// all, and all can change while the node runs. A rate of 0 leaves what is sent to new subscribers, before
+/// ~step answers, and after a reset or a load.
 
-#include "src/ros/topics/map_parameters.hpp"
+#include <yaml-cpp/yaml.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "src/core/parameters.hpp"
+#include "src/ros/conversion/map_window.hpp"
+#include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 
-/// How often topics are published, and how finely. A rate of 0 leaves only what is sent to new subscribers,
-/// after the service step, and after a reset or load.
+/// The rates and sizes of the topics that are no maps.
 struct PublisherParameters {
   double keyframe_rate = 1;
   double update_rate = 10;
@@ -55,17 +63,71 @@ constexpr auto parameter_table(const PublisherParameters*) {
 }
 static_assert(table_is_complete<PublisherParameters>());
 
-/// Of all topics.
+/// The rates and cells of ~grid_map, ~local_map, ~costmap and ~image.
+struct MapParameters {
+  double grid_map_rate = 1;
+  int grid_map_decimation = 1;
+  double grid_map_x = 0;
+  double grid_map_y = 0;
+  double grid_map_length_x = 0;
+  double grid_map_length_y = 0;
+  double local_map_rate = 5;
+  double local_map_length_x = 20;
+  double local_map_length_y = 20;
+  std::string robot_frame = "base_link";
+  double costmap_update_rate = 1;
+  double costmap_keyframe_rate = 0.1;
+  int costmap_update_threshold = 3;
+  double image_rate = 1;
+};
+constexpr auto parameter_table(const MapParameters*) {
+  using P = MapParameters;
+  return std::make_tuple(
+      parameter("grid_map_rate", &P::grid_map_rate, 0, 1000, "Hz", "~grid_map."),
+      parameter("grid_map_decimation", &P::grid_map_decimation, 1, 65536, "cells",
+                "Cells of the terrain in a row that make one of ~grid_map."),
+      parameter("grid_map_x", &P::grid_map_x, -1e9, 1e9, "m", "Centre of the region of ~grid_map."),
+      parameter("grid_map_y", &P::grid_map_y, -1e9, 1e9, "m", "Centre of the region of ~grid_map."),
+      parameter("grid_map_length_x", &P::grid_map_length_x, 0, 1e9, "m",
+                "Length of the region; both 0: the whole terrain."),
+      parameter("grid_map_length_y", &P::grid_map_length_y, 0, 1e9, "m",
+                "Length of the region; both 0: the whole terrain."),
+      parameter("local_map_rate", &P::local_map_rate, 0, 1000, "Hz", "~local_map."),
+      parameter("local_map_length_x", &P::local_map_length_x, 1e-3, 1e9, "m", "Length of ~local_map."),
+      parameter("local_map_length_y", &P::local_map_length_y, 1e-3, 1e9, "m", "Length of ~local_map."),
+      parameter("robot_frame", &P::robot_frame, "Frame whose origin ~local_map follows."),
+      parameter("costmap_update_rate", &P::costmap_update_rate, 0, 1000, "Hz",
+                "~costmap_updates; not above the update_frequency of a costmap_2d that listens."),
+      parameter("costmap_keyframe_rate", &P::costmap_keyframe_rate, 0, 1000, "Hz", "~costmap, whole."),
+      parameter(
+          "costmap_update_threshold", &P::costmap_update_threshold, 0, 98, "1",
+          "Change of a cost, since what subscribers hold, that sends it; lethal and unknown always do."),
+      parameter("image_rate", &P::image_rate, 0, 1000, "Hz", "~image."));
+}
+static_assert(table_is_complete<MapParameters>());
+
+/// The parameters of the maps: those of the table, and two lists, which a table has no rows for.
+struct MapSetup {
+  MapParameters parameters;
+  std::vector<MapLayer> grid_map_layers =
+      map_layers_named({"elevation", "sand_depth", "slope", "traversability"}, "");
+  std::vector<MapLayer> local_map_layers = map_layers_named({"elevation", "traversability"}, "");
+};
+
+/// The parameters of all topics.
 struct PublisherSetup {
   PublisherParameters topics;
   MapSetup maps;
 };
 
-/// Reads the keys that `root` has, adds all that there are to `known`, and what is wrong to `faults`.
+/// Reads the keys that `root` has, adds all keys that there are to `known`, and what is wrong to `faults`.
 void read_publisher_setup(const YAML::Node& root, Faults& faults, PublisherSetup& setup,
                           std::set<std::string>& known);
 
-/// Calls visit(row, value) for all parameters but the lists of layers.
+/// Throws ConfigError, naming the parameter, if a map would have more than 67108864 values on this grid.
+void check_map_sizes(const MapSetup& maps, const GridParameters& grid);
+
+/// Calls visit(row, value) for all parameters except the lists of layers.
 template <class Setup, class Visit>
 void for_each_publisher_parameter(Setup& setup, Visit&& visit) {
   for_each_parameter(setup.topics, visit);

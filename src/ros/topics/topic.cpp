@@ -1,5 +1,7 @@
 #include "src/ros/topics/topic.hpp"
 
+#include <ros/console.h>
+
 #include <algorithm>
 
 namespace desert_sim {
@@ -9,7 +11,7 @@ SteadyClock::duration period_of(double rate) {
                   : SteadyClock::duration::zero();
 }
 
-void next_time(SteadyClock::time_point& due, SteadyClock::duration period) {
+void advance_due_time(SteadyClock::time_point& due, SteadyClock::duration period) {
   const SteadyClock::time_point now = SteadyClock::now();
   due += period;
   if (due <= now) due = now + period;
@@ -25,12 +27,61 @@ bool SubscriberNames::are_among(const SubscriberNames& others) const {
                      [&](const auto& entry) { return others.count_.count(entry.first) > 0; });
 }
 
-void Topic::shown(std::uint64_t that_change, std::uint64_t that_terrain) {
-  change = that_change;
-  terrain = that_terrain;
-  next_time(due, period_of(*rate));
+Topic::Topic(const TopicContext& context, const std::string& name)
+    : context_(context), short_name_(name), name_(context.node.resolveName(name)) {}
+
+// ---- From any thread.
+
+void Topic::request() {
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  requested_ = true;
+  context_.woken.notify_all();
 }
 
-void Topic::rate_changed() { due = std::min(due, SteadyClock::now() + period_of(*rate)); }
+void Topic::subscriber_joined(const std::string& subscriber, Topic& due) {
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  names_.joined(subscriber);
+  due.requested_ = true;
+  context_.woken.notify_all();
+}
+
+void Topic::subscriber_left(const std::string& subscriber) {
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  names_.left(subscriber);
+}
+
+TopicRate Topic::measured_rate() const { return {name_, rate(), meter_.rate(steady_now()), subscribers()}; }
+
+// ---- On the publishing thread.
+
+void Topic::count_message() {
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  meter_.count(steady_now());
+}
+
+void Topic::shown(std::uint64_t change, std::uint64_t terrain) {
+  shown_change_ = change;
+  shown_terrain_ = terrain;
+  advance_due_time(due_, period_of(rate()));
+}
+
+void Topic::rate_changed() { due_ = std::min(due_, SteadyClock::now() + period_of(rate())); }
+
+void Topic::set_problem(const std::string& problem) {
+  if (!problem.empty()) ROS_WARN_THROTTLE(30, "%s: %s", short_name_.c_str(), problem.c_str());
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  problem_ = problem;
+}
+
+bool Topic::publish_or_set_problem(const std::function<void()>& publish) {
+  std::string problem;
+  try {
+    publish();
+  } catch (const ConfigError& e) {
+    problem = e.what();
+  }
+  set_problem(problem);
+  return problem.empty();
+}
 
 }  // namespace desert_sim

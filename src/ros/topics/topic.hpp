@@ -1,18 +1,24 @@
 #pragma once
-/// One topic that shows the terrain: what it needs, and when it is due.
+/// The base class of the topics that show the terrain. A topic says what it needs of the state, how often it
+/// is published, and how a state becomes its message; TopicPublisher decides when that happens. Each topic is
+/// a class in a file of its own (wind_topic.cpp has ~wind), and topic_list.hpp lists them all.
 
-#include <image_transport/publisher.h>
+#include <ros/node_handle.h>
 #include <ros/publisher.h>
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
+#include "src/ros/node/frames.hpp"
 #include "src/ros/node/pacer.hpp"
 #include "src/ros/node/simulation_thread.hpp"
+#include "src/ros/topics/publisher_parameters.hpp"
 
 namespace desert_sim {
 
@@ -20,10 +26,10 @@ using SteadyClock = std::chrono::steady_clock;
 
 /// 1 / rate; 0 for a rate of 0.
 SteadyClock::duration period_of(double rate);
-/// Moves `due` on by a period, or to a period from now if that has passed already.
-void next_time(SteadyClock::time_point& due, SteadyClock::duration period);
+/// Moves `due` on by a period, or to a period from now if that time has passed already.
+void advance_due_time(SteadyClock::time_point& due, SteadyClock::duration period);
 
-/// Of the nodes that listen to a topic. A node that connects anew may be there twice for a while.
+/// The names of the nodes that subscribe to a topic. A node that reconnects may be counted twice for a while.
 class SubscriberNames {
  public:
   void joined(const std::string& name) { ++count_[name]; }
@@ -35,38 +41,150 @@ class SubscriberNames {
   std::map<std::string, int> count_;
 };
 
-struct Topic {
-  ros::Publisher publisher;
-  image_transport::Publisher image;  ///< in the publisher's place, where it is set
-  const double* rate = nullptr;      ///< [Hz]; 0: none
-  std::function<std::vector<Layer>()> layers;
-  std::function<void(StateQuery&)> besides;          ///< if set: says what it wants besides layers
-  std::function<bool(const TerrainState&)> publish;  ///< whether a message went out
-  bool follows = false;           ///< is published at its rate even while the terrain stays as it is
-  std::function<bool()> ready;    ///< if set: whether there is something to publish
-  std::function<bool()> covered;  ///< if set: whether another topic tells all subscribers of changes
-  SteadyClock::time_point due;
-  std::uint64_t change = 0, terrain = 0;  ///< of the state that was published last
-  bool wanted = false;                    ///< by a new subscriber
-  SubscriberNames names;                  ///< only of topics that cover one another
-  RateMeter meter;
+/// The target and the measured rate of a topic [Hz].
+struct TopicRate {
+  std::string name;
+  double wanted = 0, achieved = 0;
+  unsigned subscribers = 0;
+};
 
-  std::uint32_t subscribers() const {
-    return image ? image.getNumSubscribers() : publisher.getNumSubscribers();
-  }
+/// What the publisher shares with its topics. It outlives them.
+struct TopicContext {
+  ros::NodeHandle node;  ///< private to the node; another thread serves its callback queue
+  SimulationThread& simulation;
+  const Frames& frames;
+  /// The present parameters. Only the publishing thread changes them, and only under `mutex`: that thread
+  /// reads them without it, any other thread with it.
+  const PublisherSetup& parameters;
+  /// Guards, in every topic, the request, the subscriber names, the rate meter and the problem.
+  std::mutex& mutex;
+  std::condition_variable& woken;  ///< wakes the publishing thread
+};
+
+/// A topic that shows the terrain. A topic without subscribers asks the simulation for nothing. Topics behave
+/// like latched ones: a new subscriber is sent the present state, not an old one.
+class Topic {
+ public:
+  virtual ~Topic() = default;
+  Topic(const Topic&) = delete;
+  Topic& operator=(const Topic&) = delete;
+
+  // ---- What a topic defines. All but rate() and subscribers() are called by the publishing thread only.
+
+  /// How often it is published while there is something new [Hz]. A rate of 0 leaves what is sent to new
+  /// subscribers, before ~step answers, and after a reset or a load.
+  virtual double rate() const = 0;
+  virtual std::uint32_t subscribers() const = 0;
+  /// The layers that publish() reads from the snapshot of the state.
+  virtual std::vector<Layer> layers() const { return {}; }
+  /// Adds to `query` what publish() reads besides layers.
+  virtual void add_to(StateQuery& /*query*/) {}
+  /// Whether it can be published now. If not, it has set its problem, and waits for its next due time.
+  virtual bool ready() { return true; }
+  /// Whether it is published at its rate only after the state has changed.
+  virtual bool only_after_change() const { return true; }
+  /// Publishes the state. False if there was no message to send.
+  virtual bool publish(const TerrainState& state) = 0;
+
+  // ---- What the publisher asks of all topics.
+
+  /// The name as ROS resolves it, such as /desert_sim/wind.
+  const std::string& name() const { return name_; }
+  /// The name without the node's namespace, such as wind.
+  const std::string& short_name() const { return short_name_; }
   bool has_subscribers() const { return subscribers() > 0; }
-  std::string name() const { return image ? image.getTopic() : publisher.getTopic(); }
+  /// `updates` publishes every change of what this topic shows as a whole: nodes that subscribe to both need
+  /// no message here because of a change.
+  void set_updates(const Topic& updates) { updates_ = &updates; }
+  /// Makes the topic due now, whatever its rate. From any thread.
+  void request();
+  /// Counts a message for the measured rate. Takes the mutex.
+  void count_message();
 
-  bool changed(const SimulationThread& now) const { return change != now.changes(); }
-  /// Whatever its rate: a new subscriber, or another terrain.
-  bool due_at_once(const SimulationThread& now) const { return wanted || terrain != now.terrains(); }
-  bool due_by_rate(const SimulationThread& now) const {
-    return *rate > 0 && SteadyClock::now() >= due && (follows || changed(now));
-  }
-  /// Shows this state now: the next one is due a period later.
-  void shown(std::uint64_t that_change, std::uint64_t that_terrain);
-  /// The rate has changed: not later than a period from now.
+  // The caller holds the mutex of the context:
+  void drop_request() { requested_ = false; }
+  /// Whether the state has changed since it was published here, and no updates tell all subscribers so.
+  bool shows_change() const { return changed() && !is_covered(); }
+  /// Whether it must be published now: for a new subscriber, for another terrain, or at its rate.
+  bool is_due() const { return due_at_once() || due_by_rate(); }
+  TopicRate measured_rate() const;
+  /// Why nothing could be published when the topic was last due; empty if something could.
+  const std::string& problem() const { return problem_; }
+
+  // For the publishing thread alone:
+  /// When it is due by its rate.
+  SteadyClock::time_point due_time() const { return due_; }
+  /// Notes which state subscribers have been shown (counters of Moment); the next one is due a period later.
+  void shown(std::uint64_t change, std::uint64_t terrain);
+  /// The rate may have changed: the topic is due a period from now at the latest.
   void rate_changed();
+
+ protected:
+  Topic(const TopicContext& context, const std::string& name);
+  const TopicContext& context() const { return context_; }
+  const PublisherSetup& parameters() const { return context_.parameters; }
+  const std::string& frame() const { return context_.frames.terrain_frame(); }
+
+  const Topic* updates() const { return updates_; }
+
+  // For callbacks of the publisher:
+  /// Makes `due` due: this topic, or the one that a new subscriber needs first.
+  void subscriber_joined(const std::string& subscriber, Topic& due);
+  void subscriber_left(const std::string& subscriber);
+
+  /// Keeps `problem`, and warns of it; an empty one means that all is well.
+  void set_problem(const std::string& problem);
+  /// Calls publish(). If it refuses (ConfigError), its reason becomes the problem, and the result is false.
+  bool publish_or_set_problem(const std::function<void()>& publish);
+
+ private:
+  bool changed() const { return shown_change_ != context_.simulation.changes(); }
+  bool due_at_once() const { return requested_ || shown_terrain_ != context_.simulation.terrains(); }
+  bool due_by_rate() const {
+    return rate() > 0 && SteadyClock::now() >= due_ && (!only_after_change() || changed());
+  }
+  bool is_covered() const { return updates_ && names_.are_among(updates_->names_); }
+
+  const TopicContext& context_;
+  const std::string short_name_, name_;
+  const Topic* updates_ = nullptr;
+
+  // Used by the publishing thread alone:
+  SteadyClock::time_point due_;
+  std::uint64_t shown_change_ = 0, shown_terrain_ = 0;  ///< counters of the Moment that was shown last
+
+  // Guarded by the mutex of the context:
+  bool requested_ = false;  ///< by a new subscriber, say
+  SubscriberNames names_;
+  RateMeter meter_;
+  std::string problem_;
+};
+
+/// A topic of one type of message, with the publisher that roscpp makes for it.
+template <class Message>
+class MessageTopic : public Topic {
+ public:
+  std::uint32_t subscribers() const override { return publisher_.getNumSubscribers(); }
+
+ protected:
+  /// `queue`: how many messages may wait for a slow subscriber. A new subscriber makes this topic due.
+  MessageTopic(const TopicContext& context, const std::string& name, std::uint32_t queue = 1)
+      : MessageTopic(context, name, queue, *this) {}
+  /// A new subscriber makes `due` due instead.
+  MessageTopic(const TopicContext& context, const std::string& name, std::uint32_t queue, Topic& due)
+      : Topic(context, name) {
+    ros::NodeHandle node = context.node;
+    publisher_ = node.advertise<Message>(
+        name, queue,
+        [this, &due](const ros::SingleSubscriberPublisher& subscriber) {
+          subscriber_joined(subscriber.getSubscriberName(), due);
+        },
+        [this](const ros::SingleSubscriberPublisher& subscriber) {
+          subscriber_left(subscriber.getSubscriberName());
+        });
+  }
+
+  ros::Publisher publisher_;
 };
 
 }  // namespace desert_sim

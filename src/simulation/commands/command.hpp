@@ -44,7 +44,7 @@ struct SetWindSchedule {
 };
 
 /// Adds, changes, removes one local feature of the wind, which `feature.id` names, or removes all (`clear`).
-/// A scenario holds at most most_wind_features.
+/// A scenario holds at most max_wind_features.
 struct EditWind {
   WindEdit operation = WindEdit::add;
   WindFeature feature;  ///< of remove only `id`, of clear nothing
@@ -75,7 +75,7 @@ struct EditParameters {
 constexpr auto parameter_table(const EditParameters*) {
   using P = EditParameters;
   return std::make_tuple(
-      parameter("layer", &P::layer, "sand, soil or bedrock."),
+      parameter("layer", &P::layer, "sand, soil, bedrock or water."),
       parameter("shape", &P::shape, brush_shapes, "Shape of the brush."),
       parameter("merge", &P::merge, brush_merges, "How the brush meets what is there."),
       parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
@@ -110,18 +110,18 @@ struct Place {
 
 /// A picture of heights [m] or weights (0 … 1), row-major; its top row first, as in an image.
 struct Patch {
-  static constexpr int most_pixels = 1 << 20;
+  static constexpr int max_pixels = 1 << 20;
   int columns = 0, rows = 0;
   std::vector<float> values;
 };
 
-/// Brush on `layer`: sand, bedrock, or soil where the terrain has some. The weight of the shape and what a
-/// merge does with it are in kernels/brush_shape.hpp and brush.hpp. For sand and soil `value` is a depth [m];
-/// for bedrock an elevation [m], or with add and sub a change. With `conserve`, the material comes from, or
+/// A brush on `layer`: sand, bedrock, or soil and water where the terrain has some. The weight of the shape and
+/// what a merge does with it are in kernels/edit/brush_shape.hpp and brush.hpp. For sand, soil and water `value` is
+/// a depth [m]; for bedrock an elevation [m], or with add and sub a change. With `conserve`, the material comes from, or
 /// goes to, the cells within `ring_width` of the shape: what is taken in proportion to what they have, of
 /// bedrock and what is given in equal parts. The sum of all changes is then 0, to the quantum.
 struct EditTerrain : EditParameters {
-  static constexpr std::size_t most_points = 512;
+  static constexpr std::size_t max_points = 512;
   std::vector<Place> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
   Patch patch;
 };

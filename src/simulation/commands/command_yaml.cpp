@@ -89,7 +89,7 @@ void emit_points(YAML::Emitter& out, const std::vector<command::Place>& points) 
 std::vector<command::Place> read_points(const YAML::Node& node, const std::string& source) {
   const YAML::Node points = node["points"];
   if (!points) return {};
-  constexpr std::size_t most = command::EditTerrain::most_points;
+  constexpr std::size_t most = command::EditTerrain::max_points;
   if (!points.IsSequence() || points.size() % 2 != 0 || points.size() > 2 * most)
     throw ConfigError(source + ": points: must be x, y of at most " + std::to_string(most) + " points");
   std::vector<command::Place> places(points.size() / 2);
@@ -120,7 +120,7 @@ command::Patch read_patch(const YAML::Node& node, const std::string& source) {
   patch.columns = scalar<int>(node, "patch_columns", source);
   patch.rows = scalar<int>(node, "patch_rows", source);
   const std::vector<unsigned char> bytes = YAML::DecodeBase64(scalar<std::string>(node, "patch", source));
-  if (patch.columns < 1 || patch.rows < 1 || patch.columns > command::Patch::most_pixels / patch.rows)
+  if (patch.columns < 1 || patch.rows < 1 || patch.columns > command::Patch::max_pixels / patch.rows)
     throw ConfigError(source + ": patch: cannot be of " + std::to_string(patch.columns) + " x " +
                       std::to_string(patch.rows) + " values");
   patch.values.resize(static_cast<std::size_t>(patch.columns) * static_cast<std::size_t>(patch.rows));

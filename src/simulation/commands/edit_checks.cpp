@@ -48,7 +48,7 @@ void check_points(BrushShape shape, const std::vector<Place>& points, Faults& fa
   const std::size_t given = points.size();
   const bool polygon = shape == BrushShape::polygon, capsule = shape == BrushShape::capsule;
   const std::size_t least = polygon ? 3 : (capsule ? 2 : 0),
-                    most = polygon ? EditTerrain::most_points : (capsule ? 2 : 0);
+                    most = polygon ? EditTerrain::max_points : (capsule ? 2 : 0);
   if (given < least || given > most) {
     faults.add("points", std::to_string(given) + " are given (allowed for this shape: " +
                              (least == most ? std::to_string(least)
@@ -76,11 +76,11 @@ void check_patch(const EditTerrain& edit, Faults& faults) {
     return;
   }
   const auto pixels = static_cast<long long>(patch.columns) * patch.rows;
-  if (patch.columns < 1 || patch.rows < 1 || pixels > Patch::most_pixels ||
+  if (patch.columns < 1 || patch.rows < 1 || pixels > Patch::max_pixels ||
       static_cast<std::size_t>(pixels) != patch.values.size()) {
     faults.add("patch", std::to_string(patch.columns) + " x " + std::to_string(patch.rows) + " with " +
                             std::to_string(patch.values.size()) + " values (allowed: 1 to " +
-                            std::to_string(Patch::most_pixels) + " of them, as many as its size says)");
+                            std::to_string(Patch::max_pixels) + " of them, as many as its size says)");
     return;
   }
   const bool mask = edit.patch_use == PatchUse::mask;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "src/core/files.hpp"
+#include "src/core/log.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/commands/command_yaml.hpp"
 
@@ -20,7 +21,7 @@ constexpr int journal_version = 1;
 class Line {
  public:
   Line() {
-    yaml::keep_all_bits(out_);
+    yaml::set_full_precision(out_);
     out_.SetMapFormat(YAML::Flow);
     out_.SetSeqFormat(YAML::Flow);
     out_ << YAML::BeginMap;
@@ -60,8 +61,7 @@ JournalWriter::JournalWriter(const std::string& path, std::uint64_t scenario_has
 }
 
 JournalWriter::~JournalWriter() {
-  if (std::fclose(file_) != 0)
-    std::fprintf(stderr, "desert_sim: %s: closing the journal: %s\n", path_.c_str(), std::strerror(errno));
+  if (std::fclose(file_) != 0) log_error(path_ + ": closing the journal: " + std::strerror(errno));
 }
 
 void JournalWriter::line(const std::string& text) {

@@ -77,7 +77,8 @@ class Edit {
     const auto at = [&](Column c, std::size_t n) { return words[static_cast<std::size_t>(c) * count + n]; };
     for (std::size_t n = 0; n < count; ++n) {
       const bool meant = kind < 0 || static_cast<int>(at(Column::species, n)) == kind;
-      if (meant && region_.covers(float_of(at(Column::x, n)), float_of(at(Column::y, n)))) continue;
+      if (meant && region_.covers(float_from_bits(at(Column::x, n)), float_from_bits(at(Column::y, n))))
+        continue;
       for (std::size_t c = 0; c < plants::column_count; ++c) columns_[c].push_back(words[c * count + n]);
     }
     return joined();

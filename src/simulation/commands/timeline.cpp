@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "src/core/error.hpp"
-#include "src/simulation/simulation.hpp"
+#include "src/simulation/commands/commands.hpp"
 
 namespace desert_sim {
 
@@ -19,25 +19,27 @@ std::string path_of(const std::string& setting) { return setting.substr(0, setti
 
 }  // namespace
 
-void Simulation::begin_ramps(std::vector<std::string>& settings, double duration) {
+void Commands::begin_ramps(std::vector<std::string>& settings, double duration) {
   for (const std::string& setting : settings)
-    ramps_.erase(std::remove_if(ramps_.begin(), ramps_.end(),
-                                [&](const Ramp& r) { return r.path == path_of(setting); }),
-                 ramps_.end());
-  for (Ramp& ramp : take_ramps(present_scenario(), settings, time(), duration))
-    ramps_.push_back(std::move(ramp));
+    state_.ramps.erase(std::remove_if(state_.ramps.begin(), state_.ramps.end(),
+                                      [&](const Ramp& r) { return r.path == path_of(setting); }),
+                       state_.ramps.end());
+  for (Ramp& ramp : take_ramps(state_.present_scenario(), settings, state_.time(), duration))
+    state_.ramps.push_back(std::move(ramp));
 }
 
-void Simulation::follow_timeline() {
-  const std::vector<TimelineEntry>& timeline = scenario_.timeline;
+void Commands::follow_timeline() {
+  const std::vector<TimelineEntry>& timeline = state_.scenario.timeline;
   std::vector<std::string> due;
-  for (; next_entry_ < timeline.size() && timeline[next_entry_].time <= time(); ++next_entry_) {
-    std::vector<std::string> settings = timeline[next_entry_].settings;
-    begin_ramps(settings, timeline[next_entry_].ramp);
+  for (; state_.next_timeline_entry < timeline.size() &&
+         timeline[state_.next_timeline_entry].time <= state_.time();
+       ++state_.next_timeline_entry) {
+    std::vector<std::string> settings = timeline[state_.next_timeline_entry].settings;
+    begin_ramps(settings, timeline[state_.next_timeline_entry].ramp);
     due.insert(due.end(), settings.begin(), settings.end());
   }
-  for (Ramp& ramp : ramps_) {
-    const int stair = ramp.stair_at(time());
+  for (Ramp& ramp : state_.ramps) {
+    const int stair = ramp.stair_at(state_.time());
     if (stair == ramp.stair) continue;
     ramp.stair = stair;
     due.push_back(ramp.path + "=" + text_of(ramp.value()));
@@ -46,20 +48,20 @@ void Simulation::follow_timeline() {
   try {
     set_parameters(due);
   } catch (const ConfigError& e) {
-    throw StateError("run.timeline at " + text_of(time()) + " s: " + e.what());
+    throw StateError("run.timeline at " + text_of(state_.time()) + " s: " + e.what());
   }
-  ramps_.erase(
-      std::remove_if(ramps_.begin(), ramps_.end(), [](const Ramp& r) { return r.stair == Ramp::stairs; }),
-      ramps_.end());
+  state_.ramps.erase(std::remove_if(state_.ramps.begin(), state_.ramps.end(),
+                                    [](const Ramp& r) { return r.stair == Ramp::stairs; }),
+                     state_.ramps.end());
 }
 
-std::string Simulation::describe_changes() const {
+std::string Commands::describe_changes() const {
   std::string text;
   const auto add = [&text](const std::string& line) { text += (text.empty() ? "" : "; ") + line; };
-  for (const Ramp& ramp : ramps_)
+  for (const Ramp& ramp : state_.ramps)
     add(ramp.path + " -> " + text_of(ramp.to) + " until " + text_of(ramp.start + ramp.duration) + " s");
-  if (next_entry_ < scenario_.timeline.size()) {
-    const TimelineEntry& next = scenario_.timeline[next_entry_];
+  if (state_.next_timeline_entry < state_.scenario.timeline.size()) {
+    const TimelineEntry& next = state_.scenario.timeline[state_.next_timeline_entry];
     std::string settings;
     for (const std::string& setting : next.settings) settings += (settings.empty() ? "" : ", ") + setting;
     add("at " + text_of(next.time) + " s: " + settings);

@@ -4,38 +4,13 @@
 #include <cstdio>
 
 #include "kernels/backend/fft.hpp"
+#include "kernels/wind/wind.hpp"
 #include "src/core/error.hpp"
+#include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
 
 namespace {
-
-template <class T>
-std::size_t bytes_of(const Buffer<T>& buffer) {
-  return buffer.bytes();
-}
-
-template <class... Buffers>
-std::size_t bytes_of_all(const Buffers&... buffers) {
-  return (std::size_t{0} + ... + bytes_of(buffers));
-}
-
-std::size_t bytes_of_wind(const wind::Workspace& work) {
-  std::size_t bytes = bytes_of_all(work.row_means, work.rise, work.spectrum, work.turned, work.correction,
-                                   work.gradients, work.roots_x, work.roots_y);
-  for (const std::unique_ptr<Fft>* transform : {&work.one, &work.all_radii})
-    bytes += *transform ? (*transform)->bytes() : 0;
-  for (int r = 0; r < ShortList::capacity; ++r) bytes += bytes_of_all(work.along_x[r], work.along_y[r]);
-  return bytes;
-}
-
-std::size_t bytes_of_avalanches(const avalanching::Workspace& work) {
-  std::size_t bytes =
-      bytes_of_all(work.share, work.given, work.received, work.open.ask, work.open.found, work.open.progress);
-  for (const avalanching::Level& level : work.coarse)
-    bytes += bytes_of_all(level.ground, level.sand, level.sand_before, level.repose);
-  return bytes;
-}
 
 // ---- planning
 
@@ -123,46 +98,19 @@ void require_cells(const Scenario& scenario) {
   const Grid grid = scenario.make_grid();
   const std::string shape = name_of_grid(scenario);
   const long long cells = static_cast<long long>(grid.width) * grid.height;
-  if (cells > most_cells)
+  if (cells > max_grid_cells)
     throw ConfigError(shape + "has " + std::to_string(cells) +
-                      ", more than can be indexed (allowed: " + std::to_string(most_cells) + ")");
+                      ", more than can be indexed (allowed: " + std::to_string(max_grid_cells) + ")");
   if (!scenario.wind.warping && !scenario.wind.projection) return;
   const wind::CoarseGrid coarse = wind::coarse_grid(grid, scenario.wind);
   const long long values = static_cast<long long>(coarse.width) * coarse.height;
-  if (values > most_cells)
+  if (values > max_grid_cells)
     throw ConfigError(shape + "would need a transform of " + std::to_string(values) +
                       " values for its wind, more than can be indexed (allowed: " +
-                      std::to_string(most_cells) + "; wind.coarsening makes it smaller)");
+                      std::to_string(max_grid_cells) + "; wind.coarsening makes it smaller)");
 }
 
 }  // namespace
-
-std::vector<MemoryPart> Simulation::memory() const {
-  std::vector<MemoryPart> parts;
-  const std::size_t layer_bytes = static_cast<std::size_t>(terrain_.grid().cells()) * sizeof(std::uint32_t);
-  for (Layer layer : layers_in_use()) parts.push_back({info(layer).name, layer_bytes});
-  const auto add = [&parts](const char* name, std::size_t bytes) {
-    if (bytes > 0) parts.push_back({name, bytes});
-  };
-  add("landed sand", landed_.bytes());
-  add("strength of reptation", reptation_strength_.bytes());
-  add("tangents of repose", repose_.bytes());
-  add("wind's transforms", bytes_of_wind(wind_work_));
-  add("wind's features", bytes_of_all(features_, perturbation_x_, perturbation_y_));
-  add("heights", bytes_of_all(heights_.of_cells, heights_.highest));
-  add("wind shadow's blocks",
-      bytes_of_all(shadow_work_.reciprocals, shadow_work_.around, shadow_work_.courses));
-  add("avalanches' levels", bytes_of_avalanches(avalanche_work_));
-  add("avalanches of rock and soil", bytes_of_all(ground_work_.received, ground_work_.share));
-  add("water's pipes", pipes_work_.held.bytes());
-  add("capacity for sediment", erosion_work_.capacity.bytes());
-  add("plants", plants_.bytes());
-  add("ledger", ledger_.bytes());
-  add("elevation that others hold", held_.bytes());
-  add("costs that others hold", costs_.bytes());
-  add("staging memory", staging_.bytes());
-  return parts;
-}
 
 std::size_t total_bytes(const std::vector<MemoryPart>& parts) {
   std::size_t total = 0;
@@ -192,12 +140,12 @@ void require_memory(const Exec& exec, const Scenario& scenario, double host_byte
           "on the host while the terrain is made");
 }
 
-void require_more_memory(const Simulation& simulation, const Scenario& scenario) {
+void require_more_memory(const SimulationState& state, const Scenario& scenario) {
   require_cells(scenario);
   const double more = static_cast<double>(total_bytes(planned_memory(scenario))) -
-                      static_cast<double>(total_bytes(planned_memory(simulation.scenario())));
-  require(scenario, more, simulation.exec().memory_available(),
-          std::string("more on the ") + simulation.exec().backend() + " backend");
+                      static_cast<double>(total_bytes(planned_memory(state.scenario)));
+  require(scenario, more, state.exec().memory_available(),
+          std::string("more on the ") + state.exec().backend() + " backend");
 }
 
 }  // namespace desert_sim

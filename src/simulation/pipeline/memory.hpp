@@ -1,14 +1,18 @@
 #pragma once
 /// How much memory a simulation takes: counted by making it without memory, before any is allocated.
 
-#include "src/simulation/simulation.hpp"
+#include <vector>
+
+#include "src/scenario/scenario.hpp"
+#include "src/simulation/pipeline/memory_part.hpp"
+#include "src/simulation/state.hpp"
 
 namespace desert_sim {
 
 std::size_t total_bytes(const std::vector<MemoryPart>& parts);
 
 /// What Simulation::memory() of `scenario` would say at its start, layers that its terrain steps fill
-/// included. `scenario` must be resolved, with at most most_cells cells. What transforms take for themselves
+/// included. `scenario` must be resolved, with at most max_grid_cells cells. What transforms take for themselves
 /// is estimated.
 std::vector<MemoryPart> planned_memory(const Scenario& scenario);
 
@@ -19,7 +23,7 @@ double bytes_to_build(const Scenario& scenario);
 /// `exec`, or on the host, which holds `host_bytes` a cell besides while the terrain is made. The message has
 /// what is needed, what there is, bytes a cell, and the grid.
 void require_memory(const Exec& exec, const Scenario& scenario, double host_bytes);
-/// Likewise, if what `scenario` needs more than that of `simulation` is not there.
-void require_more_memory(const Simulation& simulation, const Scenario& scenario);
+/// Throws ConfigError if what `scenario` needs more than the present one of `state` is not there.
+void require_more_memory(const SimulationState& state, const Scenario& scenario);
 
 }  // namespace desert_sim

@@ -2,26 +2,27 @@
 
 #include <algorithm>
 
-#include "src/simulation/simulation.hpp"
+#include "kernels/field/surface.hpp"
 #include "src/simulation/views/tile_transfer.hpp"
+#include "src/simulation/views/views.hpp"
 
 namespace desert_sim {
 
-using held_costs::GrowingBox;
+using held_costs::BoundingBox;
 using packed_tiles::Tiling;
 
 namespace {
 
 constexpr int tile_side = 32;
-static_assert(sizeof(GrowingBox) % packed_tiles::pack_unit == 0, "it stands before the tiles");
+static_assert(sizeof(BoundingBox) % packed_tiles::pack_unit == 0, "it stands before the tiles");
 
 /// Adds what has arrived.
 void unpack(CostChanges& changes, Staging::Slot& slot, const Tiling& rows, const CellBox& recent,
             bool whole) {
-  const auto* found = reinterpret_cast<const GrowingBox*>(slot.host(sizeof(GrowingBox)));
+  const auto* found = reinterpret_cast<const BoundingBox*>(slot.host(sizeof(BoundingBox)));
   changes.changed = whole ? recent : found->cells(rows.grid);
   changes.box = changes.changed.empty() ? CellBox{} : changes.changed.with(recent);
-  for (const PackedTile& tile : packed_tiles_in(slot, rows, sizeof(GrowingBox))) {
+  for (const PackedTile& tile : packed_tiles_in(slot, rows, sizeof(BoundingBox))) {
     const packed_tiles::TileOfGrid& at = tile.place;
     const auto* costs = reinterpret_cast<const std::int8_t*>(tile.cells);
     changes.tiles.push_back(
@@ -52,29 +53,29 @@ TakenCosts HeldCosts::take(Exec& exec, Staging& staging, const CostQuery& query)
   TakenCosts taken;
   if (query.update && complete_) {
     with_backend(exec, [&](auto& e) {
-      held_costs::find_changes(e, packed_tiles::tiling(grid_, tile_side), now_.data(), held_.data(),
-                               query.threshold, changed_.data());
+      held_costs::find_changed_box(e, packed_tiles::tiling(grid_, tile_side), now_.data(), held_.data(),
+                                   query.threshold, changed_.data());
     });
-    taken.update = take_box(exec, staging, changed_.data(), query.recent);
+    taken.update = copy_region(exec, staging, changed_.data(), query.recent);
   }
   if (query.whole || !complete_)
-    taken.whole = take_box(exec, staging, nullptr, {0, 0, grid_.width, grid_.height});
+    taken.whole = copy_region(exec, staging, nullptr, {0, 0, grid_.width, grid_.height});
   complete_ = true;
   return taken;
 }
 
 /// What changed, with `recent`; `recent` alone if `changed` is null.
-Pending<CostChanges> HeldCosts::take_box(Exec& exec, Staging& staging, const GrowingBox* changed,
-                                         const CellBox& recent) {
+Pending<CostChanges> HeldCosts::copy_region(Exec& exec, Staging& staging, const BoundingBox* changed,
+                                            const CellBox& recent) {
   auto changes = std::make_shared<CostChanges>();
   auto readback = std::make_shared<Readback>();
   TileTransfer transfer;
   transfer.tiles = packed_tiles::tiling(grid_, tile_side);
-  transfer.before = sizeof(GrowingBox);
+  transfer.before = sizeof(BoundingBox);
   transfer.pack = [&](const Tiling& rows, char* to) {
     if (changed) exec.copy(to, changed, sizeof *changed);
     with_backend(exec, [&](auto& e) {
-      held_costs::take_box(e, rows, now_.data(), held_.data(), changed, recent, to + sizeof(GrowingBox));
+      held_costs::copy_region(e, rows, now_.data(), held_.data(), changed, recent, to + sizeof(BoundingBox));
     });
   };
   transfer.unpack = [waited = std::weak_ptr<CostChanges>(changes), recent, whole = !changed](
@@ -85,14 +86,15 @@ Pending<CostChanges> HeldCosts::take_box(Exec& exec, Staging& staging, const Gro
   return {changes, readback};
 }
 
-TakenCosts Simulation::take_costs(const CostQuery& query) {
+TakenCosts Views::take_costs(const CostQuery& query) {
   if (!query.update && !query.whole) return {};
-  if (!costs_) costs_ = HeldCosts(exec(), terrain_.grid());
-  with_backend(exec(), [&](auto& e) {
-    surface::fill_elevation(e, terrain_.view());
-    held_costs::judge(e, terrain_.view(), scenario_.traversability, scenario_.repose, costs_.now());
+  if (!costs_) costs_ = HeldCosts(state_.exec(), state_.terrain.grid());
+  with_backend(state_.exec(), [&](auto& e) {
+    surface::fill_elevation(e, state_.terrain.view());
+    held_costs::compute_costs(e, state_.terrain.view(), state_.scenario.traversability,
+                              state_.scenario.repose, costs_.now());
   });
-  return costs_.take(exec(), staging_, query);
+  return costs_.take(state_.exec(), staging_, query);
 }
 
 }  // namespace desert_sim

@@ -49,13 +49,13 @@ class HeldCosts {
   TakenCosts take(Exec& exec, Staging& staging, const CostQuery& query);
 
  private:
-  Pending<CostChanges> take_box(Exec& exec, Staging& staging, const held_costs::GrowingBox* changed,
-                                const CellBox& recent);
+  Pending<CostChanges> copy_region(Exec& exec, Staging& staging, const held_costs::BoundingBox* changed,
+                                   const CellBox& recent);
 
   Grid grid_;
   bool complete_ = false;  ///< whether others hold all cells
   Buffer<std::int8_t> now_, held_;
-  Buffer<held_costs::GrowingBox> changed_;
+  Buffer<held_costs::BoundingBox> changed_;
 };
 
 }  // namespace desert_sim

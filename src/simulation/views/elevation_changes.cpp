@@ -1,8 +1,8 @@
 #include "src/simulation/views/elevation_changes.hpp"
 
 #include "src/core/error.hpp"
-#include "src/simulation/simulation.hpp"
 #include "src/simulation/views/tile_transfer.hpp"
+#include "src/simulation/views/views.hpp"
 
 namespace desert_sim {
 
@@ -35,24 +35,26 @@ std::vector<TileChange> unpacked_changes(Staging::Slot& slot, const packed_tiles
   return changes;
 }
 
-void Simulation::hold_elevation() {
-  if (!held_) held_ = Buffer<float>(exec(), static_cast<std::size_t>(terrain_.grid().cells()));
-  with_backend(exec(), [this](auto& e) {
-    held_elevation::hold(e, terrain_.view(), terrain_.metres(Layer::elevation), held_.data());
+void Views::hold_elevation() {
+  if (!held_elevation_)
+    held_elevation_ = Buffer<float>(state_.exec(), static_cast<std::size_t>(state_.terrain.grid().cells()));
+  with_backend(state_.exec(), [this](auto& e) {
+    held_elevation::set_held(e, state_.terrain.view(), state_.terrain.metres(Layer::elevation),
+                             held_elevation_.data());
   });
 }
 
-Pending<ElevationChanges> Simulation::take_elevation_changes(double threshold, int tile) {
-  if (!held_) throw StateError("changes of the elevation were asked for, but none is held");
+Pending<ElevationChanges> Views::take_elevation_changes(double threshold, int tile) {
+  if (!held_elevation_) throw StateError("changes of the elevation were asked for, but none is held");
   auto changes = std::make_shared<ElevationChanges>();
   auto readback = std::make_shared<Readback>();
   TileTransfer transfer;
-  transfer.tiles = packed_tiles::tiling(terrain_.grid(), tile);
+  transfer.tiles = packed_tiles::tiling(state_.terrain.grid(), tile);
   transfer.bytes_of_cell = sizeof(float);
   transfer.pack = [&](const packed_tiles::Tiling& rows, char* to) {
-    with_backend(exec(), [&](auto& e) {
-      held_elevation::take_changes(e, terrain_.view(), terrain_.metres(Layer::elevation), rows,
-                                   static_cast<float>(threshold), held_.data(), to);
+    with_backend(state_.exec(), [&](auto& e) {
+      held_elevation::pack_changes(e, state_.terrain.view(), state_.terrain.metres(Layer::elevation), rows,
+                                   static_cast<float>(threshold), held_elevation_.data(), to);
     });
   };
   transfer.unpack = [waited = std::weak_ptr<ElevationChanges>(changes)](Staging::Slot& arrived,

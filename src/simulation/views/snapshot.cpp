@@ -1,9 +1,12 @@
-/// Snapshots of a simulation.
 #include "src/simulation/views/snapshot.hpp"
 
 #include <algorithm>
 
-#include "src/simulation/simulation.hpp"
+#include "kernels/field/surface.hpp"
+#include "kernels/plants/marking.hpp"
+#include "kernels/rover/traversability.hpp"
+#include "kernels/view/layer_values.hpp"
+#include "src/simulation/views/views.hpp"
 
 namespace desert_sim {
 
@@ -26,15 +29,15 @@ bool on_request(Layer layer) { return info(layer).lifetime == Lifetime::on_reque
 
 }  // namespace
 
-bool Simulation::shows(Layer layer) const {
-  if (layer == Layer::plants) return static_cast<bool>(plants_);
-  return on_request(layer) || terrain_.has(layer);
+bool Views::shows(Layer layer) const {
+  if (layer == Layer::plants) return static_cast<bool>(state_.plants);
+  return on_request(layer) || state_.terrain.has(layer);
 }
 
-std::shared_ptr<Snapshot> Simulation::frame_of(const std::vector<Layer>& layers, const RowBand& rows) const {
+std::shared_ptr<Snapshot> Views::frame_of(const std::vector<Layer>& layers, const RowBand& rows) const {
   auto s = std::make_shared<Snapshot>();
-  const GridParameters& g = scenario_.grid;
-  const Grid& grid = terrain_.grid();
+  const GridParameters& g = state_.scenario.grid;
+  const Grid& grid = state_.terrain.grid();
   s->width = g.width;
   s->height = rows.count;
   s->cell_size = g.cell_size;
@@ -42,20 +45,20 @@ std::shared_ptr<Snapshot> Simulation::frame_of(const std::vector<Layer>& layers,
   s->origin_y = g.origin_y + rows.first * g.cell_size;
   s->periodic_x = grid.periodic_x;
   s->periodic_y = grid.periodic_y && rows.count == grid.height;
-  s->step = steps_;
-  s->time = time();
-  s->wind_above = wind_above();
-  for (const Species& species : scenario_.species) s->crown_colours.push_back(crown_colour(species.look));
+  s->step = state_.steps;
+  s->time = state_.time();
+  s->wind_above = state_.wind_above();
+  for (const Species& species : state_.scenario.species)
+    s->crown_colours.push_back(crown_colour(species.look));
   for (Layer layer : layers) s->layers[layer];
   return s;
 }
 
-PendingSnapshot Simulation::begin_snapshot(const std::vector<Layer>& layers, const RowBand& band) {
-  const RowBand rows = held_to(band, terrain_.grid());
+PendingSnapshot Views::begin_snapshot(const std::vector<Layer>& layers, const RowBand& band) {
+  const RowBand rows = held_to(band, state_.terrain.grid());
   const std::shared_ptr<Snapshot> snapshot = frame_of(layers, rows);
-  refresh_derived();
-  const bool judged = std::any_of(layers.begin(), layers.end(), on_request);
-  if (judged) judge(layers, rows);
+  pipeline_.refresh_derived();
+  if (std::any_of(layers.begin(), layers.end(), on_request)) compute_requested_layers(layers, rows);
   auto readback = std::make_shared<Readback>();
   if (layers.empty()) return {snapshot, readback};
   const std::size_t row_bytes =
@@ -67,16 +70,17 @@ PendingSnapshot Simulation::begin_snapshot(const std::vector<Layer>& layers, con
   return {snapshot, readback};
 }
 
-void Simulation::send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowBand& rows,
-                           const std::shared_ptr<Readback>& readback) {
+void Views::send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowBand& rows,
+                      const std::shared_ptr<Readback>& readback) {
   const std::size_t cells = static_cast<std::size_t>(snapshot->width) * static_cast<std::size_t>(rows.count),
                     bytes = snapshot->layers.size() * cells * sizeof(float);
   Staging::Slot& slot = staging_.next(bytes);
   float* to = reinterpret_cast<float*>(slot.device());
   for (const auto& entry : snapshot->layers) {
     const Layer layer = entry.first;
-    with_backend(exec(), [&](auto& e) {
-      layer_values::step(e, terrain_.view(), layer, terrain_.metres(layer), rows.first, rows.count, to);
+    with_backend(state_.exec(), [&](auto& e) {
+      layer_values::step(e, state_.terrain.view(), layer, state_.terrain.metres(layer), rows.first,
+                         rows.count, to);
     });
     to += cells;
   }
@@ -94,55 +98,68 @@ void Simulation::send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowB
   });
 }
 
-PendingPlants Simulation::begin_plants() {
+PendingPlants Views::begin_plants() {
   auto list = std::make_shared<PlantList>();
-  list->origin_x = scenario_.grid.origin_x;
-  list->origin_y = scenario_.grid.origin_y;
-  list->step = steps_;
-  list->time = time();
-  if (plants_) list->species = scenario_.species;
+  list->origin_x = state_.scenario.grid.origin_x;
+  list->origin_y = state_.scenario.grid.origin_y;
+  list->step = state_.steps;
+  list->time = state_.time();
+  if (state_.plants) list->species = state_.scenario.species;
   auto readback = std::make_shared<Readback>();
-  const int most = static_cast<int>(std::max<std::size_t>(1, staging_.slot_bytes() / sizeof(plants::Listed)));
-  for (int first = 0; first < plants_.count; first += most) {
-    const int count = std::min(most, plants_.count - first);
-    const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(plants::Listed);
+  const int most =
+      static_cast<int>(std::max<std::size_t>(1, staging_.slot_bytes() / sizeof(plants::PlantRecord)));
+  for (int first = 0; first < state_.plants.count; first += most) {
+    const int count = std::min(most, state_.plants.count - first);
+    const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(plants::PlantRecord);
     Staging::Slot& slot = staging_.next(bytes);
-    with_backend(exec(), [&](auto& e) {
-      plants::list(e, plants_.plants(), terrain_.metres(Layer::bedrock), first, count,
-                   reinterpret_cast<plants::Listed*>(slot.device()));
+    with_backend(state_.exec(), [&](auto& e) {
+      plants::export_plants(e, state_.plants.plants(), state_.terrain.metres(Layer::bedrock), first, count,
+                            reinterpret_cast<plants::PlantRecord*>(slot.device()));
     });
     staging_.send(slot, bytes, readback,
                   [waited = std::weak_ptr<PlantList>(list), bytes, count](auto& arrived) {
                     const std::shared_ptr<PlantList> all = waited.lock();
                     if (!all) return;
-                    const auto* from = reinterpret_cast<const plants::Listed*>(arrived.host(bytes));
+                    const auto* from = reinterpret_cast<const plants::PlantRecord*>(arrived.host(bytes));
                     all->plants.insert(all->plants.end(), from, from + count);
                   });
   }
   return {list, readback};
 }
 
-void Simulation::judge(const std::vector<Layer>& layers, const RowBand& rows) {
+void Views::compute_requested_layers(const std::vector<Layer>& layers, const RowBand& rows) {
   for (Layer layer : layers)
-    if (on_request(layer)) terrain_.require(layer);
-  TerrainView view = terrain_.view();
+    if (on_request(layer)) state_.terrain.require(layer);
+  TerrainView view = state_.terrain.view();
   for (const LayerInfo& row : layer_table)
     if (on_request(row.layer) && std::count(layers.begin(), layers.end(), row.layer) == 0)
       view.layers[static_cast<int>(row.layer)] = nullptr;
-  with_backend(exec(), [&](auto& e) {
+  with_backend(state_.exec(), [&](auto& e) {
     surface::fill_elevation(e, view);
-    traversability::step(e, view, scenario_.traversability, scenario_.repose, rows.first, rows.count);
+    traversability::step(e, view, state_.scenario.traversability, state_.scenario.repose, rows.first,
+                         rows.count);
     if (view.quanta(Layer::water_surface)) surface::fill_water_surface(e, view, rows.first, rows.count);
-    if (plants_ && view.real(Layer::plants))
-      plants::mark_species(e, view, rows.first, rows.count, plants_.neighbourhood(), plants_.plants(),
-                           plants_.species.data());
+    if (state_.plants && view.real(Layer::plants))
+      plants::find_dominant_species(e, view, rows.first, rows.count, state_.plants.neighbourhood(),
+                                    state_.plants.plants(), state_.plants.species.data());
   });
 }
 
-void Simulation::release_requested_layers() {
-  exec().synchronise();
+void Views::release_requested_layers() {
+  state_.exec().synchronise();
   for (const LayerInfo& row : layer_table)
-    if (on_request(row.layer)) terrain_.use(row.layer, false);
+    if (on_request(row.layer)) state_.terrain.use(row.layer, false);
+}
+
+std::vector<MemoryPart> Views::memory() const {
+  std::vector<MemoryPart> parts;
+  const auto add = [&parts](const char* name, std::size_t bytes) {
+    if (bytes > 0) parts.push_back({name, bytes});
+  };
+  add("elevation that subscribers hold", held_elevation_.bytes());
+  add("costs that subscribers hold", costs_.bytes());
+  add("staging memory", staging_.bytes());
+  return parts;
 }
 
 }  // namespace desert_sim

@@ -42,7 +42,7 @@ struct PlantList {
   std::uint64_t step = 0;
   double time = 0;               ///< simulated [s]
   std::vector<Species> species;  ///< of the scenario; none where plants are off
-  std::vector<plants::Listed> plants;
+  std::vector<plants::PlantRecord> plants;
 };
 
 using PendingPlants = Pending<PlantList>;

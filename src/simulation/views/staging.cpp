@@ -1,9 +1,9 @@
 #include "src/simulation/views/staging.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "src/core/error.hpp"
+#include "src/core/log.hpp"
 
 namespace desert_sim {
 
@@ -46,7 +46,7 @@ void Staging::Slot::release() {
 // ---- both
 
 namespace {
-/// Four layers of 4096 × 4096 cells; where it takes memory of the host twice, of 2048 × 2048.
+/// Vec4 layers of 4096 × 4096 cells; where it takes memory of the host twice, of 2048 × 2048.
 constexpr std::size_t bytes_on_device = std::size_t{256} << 20, bytes_if_shared = std::size_t{64} << 20;
 }  // namespace
 
@@ -57,7 +57,7 @@ Staging::~Staging() {
   try {
     release();
   } catch (const Error& e) {
-    std::fprintf(stderr, "desert_sim: %s\n", e.what());
+    log_error(e.what());
   }
 }
 

@@ -27,7 +27,8 @@ std::size_t bytes_of(const TileTransfer& transfer, const Tiling& rows) {
   const long long north =
       std::min<long long>(rows.grid.height, south + static_cast<long long>(rows.row_count) * rows.side);
   const auto cells = static_cast<std::size_t>(rows.grid.width) * static_cast<std::size_t>(north - south);
-  return transfer.before + most_packed(static_cast<std::size_t>(rows.count()), cells, transfer.bytes_of_cell);
+  return transfer.before +
+         max_packed_bytes(static_cast<std::size_t>(rows.count()), cells, transfer.bytes_of_cell);
 }
 
 }  // namespace
@@ -47,14 +48,14 @@ void send_tiles(Staging& staging, const TileTransfer& transfer, const std::share
 }
 
 std::vector<PackedTile> packed_tiles_in(Staging::Slot& slot, const Tiling& tiles, std::size_t before) {
-  const std::size_t start = before + sizeof(PackedHead);
-  const auto packed = read<PackedHead>(slot.host(start) + before);
+  const std::size_t start = before + sizeof(PackHeader);
+  const auto packed = read<PackHeader>(slot.host(start) + before);
   const char* at = slot.host(start + packed.bytes) + start;
   std::vector<PackedTile> found;
   for (const char* const end = at + packed.bytes; at < end;) {
-    const auto head = read<TileHead>(at);
+    const auto head = read<TileHeader>(at);
     const TileOfGrid place(tiles, head.tile % tiles.columns(), head.tile / tiles.columns());
-    found.push_back({head, place, at + sizeof(TileHead)});
+    found.push_back({head, place, at + sizeof(TileHeader)});
     at += head.units * pack_unit;
   }
   // They lie in the order in which they happened to be done.

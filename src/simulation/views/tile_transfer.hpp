@@ -14,7 +14,7 @@ namespace desert_sim {
 struct TileTransfer {
   packed_tiles::Tiling tiles;     ///< of the whole grid
   std::size_t bytes_of_cell = 1;  ///< at most
-  std::size_t before = 0;  ///< bytes that pack() writes before the PackedHead; packed_tiles::pack_unit's
+  std::size_t before = 0;  ///< bytes that pack() writes before the PackHeader; packed_tiles::pack_unit's
                            ///< multiple
   /// Starts laws that pack some rows of the tiles.
   std::function<void(const packed_tiles::Tiling& rows, char* to)> pack;
@@ -26,7 +26,7 @@ struct TileTransfer {
 void send_tiles(Staging& staging, const TileTransfer& transfer, const std::shared_ptr<Readback>& readback);
 
 struct PackedTile {
-  packed_tiles::TileHead head;
+  packed_tiles::TileHeader head;
   packed_tiles::TileOfGrid place;
   const char* cells;
 };

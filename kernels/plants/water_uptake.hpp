@@ -1,0 +1,103 @@
+#pragma once
+/// Water uptake of plants from the ground. Nilles 2025 §3.2.4, eq. 22–24.
+///
+///   volumes     V_stem = ⅔ π r³ h_s,   V_root = ⅔ π r³ h_r
+///   required    W_req   = Δt φ_w V_stem
+///   available   W_avail = min(Δt, 1 s) M V_root,   M = min(moisture/`moisture_capacity`, 1)
+///   capacity    W_cap   = w_c (V_stem + V_root)
+///   uptake      W = min(W_avail, W_req + max(W_cap − stored, 0))
+///   debit       `draw` · min(π r²/l², 1) · moisture · W/(M V_root)   from the cell's moisture
+///
+/// Volumes of water [m³] are counted as volumes of saturated ground. The debit is in whole quanta, at least
+/// one, and the ledger records it as outflow. Where the plants of a cell request more than there is, each
+/// gets a part in proportion to its request, rounded down; the requests are summed as integers, so that their
+/// order does not matter.
+///
+/// Plants live faster than in nature, and take up water as much faster: at a `draw` of 1/100 a closed cover
+/// of bushes still takes up a rain of some 2 m an hour; at 1/10 no rain of the climates kept the ground
+/// moist. Reads and writes moisture.
+
+#include "kernels/backend/for_each.hpp"
+#include "kernels/field/ledger.hpp"
+#include "kernels/plants/population.hpp"
+#include "kernels/plants/site.hpp"
+#include "src/core/constants.hpp"
+
+namespace desert_sim::plants {
+
+/// Water that a plant requires, can store, can reach, and takes up if its request is granted.
+struct WaterDemand {
+  float needed = 0, stored_most = 0, reachable = 0, wanted = 0;  ///< [m³ of saturated ground]
+  Quanta wish = 0;                                               ///< requested from the cell's moisture
+};
+
+struct WaterUptake {
+  Site site;
+  const Quanta* moisture;
+  float capacity, time_step, draw;
+
+  WaterUptake(const TerrainView& t, const ReposeParameters& repose, const VegetationParameters& p,
+              const float* heights, float dt)
+      : site(t, repose, heights),
+        moisture(t.quanta(Layer::moisture)),
+        capacity(repose.moisture_capacity),
+        time_step(dt),
+        draw(p.draw) {}
+
+  DESERT_HD WaterDemand water_demand(const SpeciesTraits& s, float radius, float stored, int cell) const {
+    const float volume = 2.0943951f * radius * radius * radius;
+    const float roots = volume * s.root, stem = volume * s.stem;
+    const float there = static_cast<float>(value_or_zero(moisture, cell)) * site.quantum;
+    const float soaked = minimum(there / capacity, 1.0f);
+    WaterDemand t;
+    t.needed = time_step * s.water_use * stem;
+    t.stored_most = s.water_capacity * (stem + roots);
+    t.reachable = minimum(time_step, 1.0f) * soaked * roots;
+    t.wanted = minimum(t.reachable, t.needed + maximum(t.stored_most - stored, 0.0f));
+    if (!(t.wanted > 0.0f) || !(draw > 0.0f)) return t;
+    const float covered =
+        minimum(static_cast<float>(pi) * radius * radius / (site.grid.cell_size * site.grid.cell_size), 1.0f);
+    const float depth = draw * covered * there * (t.wanted / (soaked * roots));
+    t.wish = take(depth, site.quanta_per_metre, moisture[cell]);
+    if (t.wish == 0) t.wish = 1;  // a request that rounds to 0 would be free water
+    return t;
+  }
+  /// What a plant gets [quanta] of its request `wish`; `wishes`: sum over all plants of the cell.
+  DESERT_HD Quanta granted(Quanta wish, long long water_requests, int cell) const {
+    if (wish == 0 || water_requests <= moisture[cell]) return wish;
+    return static_cast<Quanta>(static_cast<long long>(wish) * moisture[cell] / water_requests);
+  }
+};
+
+/// Sums the requests of all plants of each cell.
+struct SumRequests {
+  WaterUptake water_uptake;
+  View plants;
+  const SpeciesTraits* species;
+  long long* water_requests;
+
+  DESERT_HD void operator()(int n) const {
+    const int cell = water_uptake.site.cell(plants.x[n], plants.y[n]);
+    const WaterDemand t =
+        water_uptake.water_demand(species[plants.species[n]], plants.radius[n], plants.water[n], cell);
+    if (t.wish > 0) atomic_add(&water_requests[cell], static_cast<long long>(t.wish));
+  }
+};
+
+/// Removes the granted water from the moisture of the cells.
+struct DebitMoisture {
+  Site site;
+  View plants;
+  const Quanta* granted_water;
+  Quanta* moisture;
+  LedgerView ledger;
+
+  DESERT_HD void operator()(int n) const {
+    if (granted_water[n] == 0) return;
+    const int cell = site.cell(plants.x[n], plants.y[n]);
+    atomic_add(&moisture[cell], -granted_water[n]);
+    ledger.book_out(Material::moisture, cell, granted_water[n]);
+  }
+};
+
+}  // namespace desert_sim::plants

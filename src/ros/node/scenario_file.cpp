@@ -1,0 +1,87 @@
+#include "src/ros/node/scenario_file.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int deepest =
+    6;  // levels of folders that are searched below an entry of the path, such as /usr/share
+
+bool is_this_package(const fs::path& folder) {
+  std::ifstream manifest(folder / "package.xml");
+  std::stringstream text;
+  text << manifest.rdbuf();
+  return text.str().find("<name>desert_sim</name>") != std::string::npos;
+}
+
+/// The folder of this package in `folder` or below it; empty if it is not there.
+std::string find_below(const fs::path& folder, int depth) {
+  std::error_code error;
+  if (fs::exists(folder / "CATKIN_IGNORE", error) || fs::exists(folder / "rospack_nosubdirs", error))
+    return "";
+  if (fs::exists(folder / "package.xml", error)) return is_this_package(folder) ? folder.string() : "";
+  if (depth == deepest) return "";
+  std::vector<fs::path> below;
+  for (fs::directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error), end;
+       !error && entry != end; entry.increment(error))
+    if (entry->is_directory(error) && entry->path().filename().string()[0] != '.')
+      below.push_back(entry->path());
+  // The folder that has the package's name is the likeliest one; the others follow by name.
+  std::sort(below.begin(), below.end(), [](const fs::path& a, const fs::path& b) {
+    const bool likely_a = a.filename() == "desert_sim", likely_b = b.filename() == "desert_sim";
+    return likely_a != likely_b ? likely_a : a < b;
+  });
+  for (const fs::path& next : below)
+    if (const std::string found = find_below(next, depth + 1); !found.empty()) return found;
+  return "";
+}
+
+bool ends_with(const std::string& text, const std::string& ending) {
+  return text.size() >= ending.size() &&
+         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+/// The folder of desert_sim among the packages of ROS_PACKAGE_PATH, found as rospack does: entries in turn,
+/// the folders below them, but not those inside packages. Empty if it is not there.
+std::string package_folder() {
+  const char* path = std::getenv("ROS_PACKAGE_PATH");
+  std::stringstream entries(path ? path : "");
+  for (std::string entry; std::getline(entries, entry, ':');)
+    if (!entry.empty())
+      if (const std::string found = find_below(entry, 0); !found.empty()) return found;
+  return "";
+}
+
+}  // namespace
+
+std::string scenario_file(const std::string& name) {
+  if (name.find('/') != std::string::npos || ends_with(name, ".yaml") || ends_with(name, ".yml")) return name;
+  const std::string package = package_folder();
+  if (package.empty())
+    throw ConfigError("~scenario: '" + name +
+                      "' is not a path, and the package desert_sim is not in ROS_PACKAGE_PATH");
+  const fs::path folder = fs::path(package) / "config" / "scenarios";
+  std::error_code error;
+  if (fs::exists(folder / (name + ".yaml"), error)) return (folder / (name + ".yaml")).string();
+  std::vector<std::string> known;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().extension() == ".yaml") known.push_back(entry->path().stem().string());
+  std::sort(known.begin(), known.end());
+  std::string all;
+  for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
+  throw ConfigError("~scenario: there is no '" + name + "' in " + folder.string() + " (there are: " + all +
+                    ")");
+}
+
+}  // namespace desert_sim

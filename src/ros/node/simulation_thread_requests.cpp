@@ -1,0 +1,196 @@
+/// SimulationThread: the requests of other threads.
+
+#include "src/io/terrain_files.hpp"
+#include "src/ros/node/simulation_thread.hpp"
+#include "src/simulation/checkpoint.hpp"
+#include "src/simulation/pipeline/memory.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr double measure_for = 5;  // [s] after a report
+
+/// The answer that finish() makes, once `begun` has a copy that is under way. finish() waits for that copy,
+/// on the thread that asks for the answer.
+template <class Answer, class UnderWay, class Finish>
+std::future<Answer> wait_for_copy(std::future<UnderWay> begun, Finish finish) {
+  return std::async(
+      std::launch::deferred, [finish](std::future<UnderWay> under_way) { return finish(under_way.get()); },
+      std::move(begun));
+}
+
+}  // namespace
+
+template <class R>
+std::future<R> SimulationThread::ask(std::function<R()> body) {
+  std::future<R> answer;
+  jobs_.put(make_job<R>(std::move(body), answer));
+  return answer;
+}
+
+std::future<Reached> SimulationThread::apply(const Command& command, bool with_hash, bool with_change) {
+  return ask<Reached>([=] {
+    const CommandResult result = session_->apply(command, with_change);
+    ++commands_;
+    stamp_ = stamp_now();
+    if (command::replaces_terrain(command)) {
+      end_step_requests(std::holds_alternative<command::Reset>(command) ? "a reset" : "a load");
+      ++terrains_;
+      timed_steps_ = 0;
+      pacer_.restart();
+    }
+    note_change();
+    Reached r = reached(with_hash);
+    r.result = result;
+    return r;
+  });
+}
+
+std::future<Reached> SimulationThread::step(std::uint32_t steps) {
+  // Vec2 promises: the job's, which only says that the request has been taken, and the request's own.
+  auto request = std::make_shared<StepRequest>();
+  request->asked = steps;
+  std::future<Reached> answer = request->answer.get_future();
+  Job job;
+  job.run = [this, request] { step_requests_.push_back(std::move(*request)); };
+  job.refuse = [request](std::exception_ptr why) { request->answer.set_exception(why); };
+  jobs_.put(std::move(job));
+  return answer;
+}
+
+std::future<void> SimulationThread::pause() {
+  return ask<void>([this] {
+    end_step_requests("a pause");
+    paused_ = true;
+    pacer_.restart();
+    wait_for_steps();
+  });
+}
+
+std::future<void> SimulationThread::resume() {
+  return ask<void>([this] {
+    if (!paused_) return;
+    paused_ = false;
+    pacer_.restart();
+    meter_.clear();
+  });
+}
+
+std::future<void> SimulationThread::set_step_rate(double rate) {
+  return ask<void>([this, rate] {
+    pacer_ = Pacer(rate);
+    step_rate_ = rate;
+    meter_.clear();
+    waiting_for_clock_ = false;
+  });
+}
+
+SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<Layer>& layers,
+                                                              const RowBand& band, const StateQuery& query) {
+  wait_for_steps();  // the stamp must be that of the state that is copied
+  std::vector<Layer> in_use;
+  for (Layer layer : layers) {
+    if (info(layer).lifetime == Lifetime::on_request) layers_requested_ = steady_now();
+    if (session_->simulation().shows(layer)) in_use.push_back(layer);
+  }
+  snapshot_requested_ = steady_now();
+  ++snapshots_;
+  Simulation& s = session_->simulation();
+  StateUnderWay state{moment(), s.begin_snapshot(in_use, band), {}, s.take_costs(query.costs), {}};
+  if (query.plants) state.plants = s.begin_plants();
+  if (query.costs.update || query.costs.whole) costs_requested_ = steady_now();
+  if (query.elevation_changes && s.holds_elevation())
+    state.changes = s.take_elevation_changes(query.elevation_threshold, query.elevation_tile);
+  const bool none = !s.holds_elevation();
+  if (query.hold == StateQuery::Hold::present || (query.hold == StateQuery::Hold::present_if_none && none))
+    s.hold_elevation();
+  if (query.hold == StateQuery::Hold::none) s.forget_elevation();
+  return state;
+}
+
+TerrainState SimulationThread::StateUnderWay::get() const {
+  return {moment, snapshot.get(), changes.get(), costs.update.get(), costs.whole.get(), plants.get()};
+}
+
+std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band,
+                                                    const StateQuery& query) {
+  return wait_for_copy<TerrainState>(ask<StateUnderWay>([=] { return begin_state(layers, band, query); }),
+                                     [](const StateUnderWay& state) { return state.get(); });
+}
+
+std::future<TerrainToSave> SimulationThread::terrain_to_save() {
+  struct UnderWay {
+    StateUnderWay state;
+    Scenario scenario;
+    std::uint64_t hash;
+  };
+  return wait_for_copy<TerrainToSave>(
+      ask<UnderWay>([this] {
+        const Simulation& s = session_->simulation();
+        std::vector<Layer> layers = terrain_layers(s);
+        layers.push_back(Layer::elevation);
+        return UnderWay{begin_state(layers, {}, {}), s.scenario(), state_hash()};
+      }),
+      [](const UnderWay& u) {
+        return TerrainToSave{u.state.get(), u.scenario, u.hash};
+      });
+}
+
+std::future<Reached> SimulationThread::save_checkpoint(const std::string& path) {
+  return ask<Reached>([=] {
+    wait_for_steps();
+    session_->save_checkpoint(path);
+    return reached(true);
+  });
+}
+
+std::future<CheckpointCopy> SimulationThread::checkpoint() {
+  return ask<CheckpointCopy>([this] {
+    wait_for_steps();
+    return CheckpointCopy{moment(), checkpoint_bytes(session_->simulation())};
+  });
+}
+
+std::future<Scenario> SimulationThread::scenario() {
+  return ask<Scenario>([this] { return session_->simulation().present_scenario(); });
+}
+
+std::future<StatusReport> SimulationThread::report(bool measure) {
+  return ask<StatusReport>([this, measure] {
+    wait_for_steps();
+    Simulation& s = session_->simulation();
+    StatusReport r;
+    r.moment = moment();
+    r.state = paused_ ? RunState::paused : (waiting_for_clock_ ? RunState::waiting : RunState::running);
+    r.scenario = s.scenario().name;
+    r.backend = s.exec().backend();
+    r.backend_choice = backend_choice_;
+    r.device = s.exec().device();
+    r.step_rate = step_rate_;
+    r.steps_per_second = meter_.rate(steady_now());
+    r.lag = pacer_.lag(clock_now());
+    if (timed_steps_ > 0) {
+      process_times_ = s.process_times();
+      for (ProcessTime& t : process_times_) t.milliseconds /= timed_steps_;
+      s.clear_process_times();
+      timed_steps_ = 0;
+    }
+    r.process_times = process_times_;
+    r.balance = s.balance();
+    r.changes = s.describe_changes();
+    r.wind_above = s.wind_above();
+    r.snapshots = snapshots_;
+    if (paused_ && step_requests_.empty()) {
+      r.hashed = true;
+      r.hash = state_hash();
+    }
+    r.layer_bytes = s.terrain().bytes();
+    r.memory_available = s.exec().memory_available();
+    r.memory_needed = static_cast<double>(total_bytes(s.memory()));
+    if (measure) measure_until_ = steady_now() + measure_for;
+    return r;
+  });
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,94 @@
+#pragma once
+/// What the simulation thread answers with: states of the terrain, reports, and the moment that they show.
+
+#include <ros/time.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "src/simulation/simulation.hpp"
+
+namespace desert_sim {
+
+/// The moment of a state: its time, and counters that tell whether it is still the present one.
+struct Moment {
+  std::uint64_t step = 0;     ///< since the scenario's start
+  double time = 0;            ///< simulated [s]
+  ros::Time stamp;            ///< ROS time at which this state was reached
+  std::uint64_t change = 0;   ///< grows with each step and each command
+  std::uint64_t command = 0;  ///< grows with each command and each request for steps
+  std::uint64_t terrain = 0;  ///< grows when the terrain is replaced: by a reset or a checkpoint
+};
+
+/// What is asked for besides layers. The simulation keeps what the subscribers of updates hold of the
+/// elevation and of costs, so that it can answer with what they lack.
+struct StateQuery {
+  /// Which elevation the simulation is to keep, after its answer, as the one that subscribers hold: the same
+  /// as before (with the changes of this answer), the present one, the present one if it keeps none, or none.
+  enum class Hold { as_before, present, present_if_none, none };
+
+  /// Whether the cells are asked for that differ from what subscribers hold by more than the threshold.
+  bool elevation_changes = false;
+  double elevation_threshold = 0;  ///< [m]
+  int elevation_tile = 1;          ///< largest width and height of a rectangle of changes [cells]
+  Hold hold = Hold::as_before;
+  CostQuery costs;
+  bool plants = false;  ///< all plants, one by one
+};
+
+/// Layers of the terrain at one moment, and what else was asked for. It never changes once it is made.
+struct TerrainState {
+  Moment moment;
+  std::shared_ptr<const Snapshot> snapshot;  ///< layers that are not in use are absent, and count as 0
+  // What follows is null unless it was asked for:
+  std::shared_ptr<const ElevationChanges> changes;  ///< also null if subscribers held no elevation
+  std::shared_ptr<const CostChanges> cost_update;   ///< also null if they held no costs: then see whole_costs
+  std::shared_ptr<const CostChanges> whole_costs;
+  std::shared_ptr<const PlantList> plants;
+};
+
+/// What save_terrain() takes. The snapshot has the elevation too.
+struct TerrainToSave {
+  TerrainState state;
+  Scenario scenario;
+  std::uint64_t hash = 0;
+};
+
+/// The state in which a command or a request for steps ended.
+struct Reached {
+  Moment moment;
+  std::uint64_t hash = 0;  ///< of the state; 0 if it was not asked for
+  CommandResult result;    ///< of an edit
+};
+
+/// A checkpoint in memory.
+struct CheckpointCopy {
+  Moment moment;
+  std::string bytes;
+};
+
+enum class RunState { running, paused, waiting };
+
+/// What ~status and /diagnostics say.
+struct StatusReport {
+  Moment moment;
+  RunState state = RunState::paused;
+  std::string scenario, backend, backend_choice, device;
+  double step_rate = 0, steps_per_second = 0;  ///< wanted and measured [steps/s]
+  double lag = 0;                              ///< [s]
+  std::vector<ProcessTime> process_times;      ///< means
+  std::array<MaterialBalance, material_count> balance;
+  std::string changes;  ///< of parameters, by timeline and ramps
+  wind::Vector wind_above;
+  bool hashed = false;  ///< only while paused
+  std::uint64_t hash = 0;
+  std::uint64_t snapshots = 0;       ///< copies of the terrain so far
+  std::size_t layer_bytes = 0;       ///< of the terrain, on the backend's device
+  std::size_t memory_available = 0;  ///< on that device [bytes]
+  double memory_needed = 0;          ///< on that device, for a second terrain like this one [bytes]
+};
+
+}  // namespace desert_sim

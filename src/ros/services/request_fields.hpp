@@ -1,0 +1,59 @@
+#pragma once
+/// Checks and conversions of the fields of requests. What is refused throws ConfigError that names the field,
+/// its value and what is allowed.
+
+#include <geometry_msgs/Point.h>
+#include <tf2/LinearMath/Transform.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include "src/core/error.hpp"
+#include "src/core/quoted.hpp"
+
+namespace desert_sim {
+
+constexpr double degrees_per_radian = 180 / 3.14159265358979323846;
+
+inline void require_finite(double value, const std::string& name) {
+  if (std::isfinite(value)) return;
+  std::ostringstream text;
+  text << name << ": = " << value << " is not a finite number";
+  throw ConfigError(text.str());
+}
+
+/// Throws unless all coordinates are finite; `name` is what the point is called.
+inline void require_finite(const geometry_msgs::Point& point, const std::string& name) {
+  require_finite(point.x, name + ".x");
+  require_finite(point.y, name + ".y");
+  require_finite(point.z, name + ".z");
+}
+
+/// As a float. A number that a float cannot hold becomes infinite, which the simulation refuses by name.
+inline float to_float(double value) {
+  if (std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()) || std::isnan(value))
+    return static_cast<float>(value);
+  return std::copysign(std::numeric_limits<float>::infinity(), static_cast<float>(std::copysign(1.0, value)));
+}
+
+/// The enumerator, numbered as `choices` are, whose name is `text`.
+template <class Choice, int N>
+Choice choice_named(const char* const (&choices)[N], const std::string& text, const std::string& name) {
+  std::string all;
+  for (int n = 0; n < N; ++n) {
+    if (text == choices[n]) return static_cast<Choice>(n);
+    all += (n ? ", " : "") + std::string(choices[n]);
+  }
+  throw ConfigError(name + ": " + quoted(text) + " is not one of: " + all);
+}
+
+/// A direction in another frame as a direction in the terrain's, both seen from above [deg].
+inline double direction_in_terrain(double angle_deg, const tf2::Transform& transform) {
+  const tf2::Vector3 axis = transform.getBasis() * tf2::Vector3(std::cos(angle_deg / degrees_per_radian),
+                                                                std::sin(angle_deg / degrees_per_radian), 0);
+  return std::atan2(axis.y(), axis.x()) * degrees_per_radian;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,174 @@
+/// Requests that change wind and weather: ~set_wind, ~cmd_wind, ~set_wind_schedule, ~edit_wind, ~set_weather.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "src/ros/services/request_fields.hpp"
+#include "src/ros/services/requests.hpp"
+
+namespace desert_sim {
+
+// ---- Wind.
+
+command::SetWind wind_command(const SetWindRequest& request) {
+  command::SetWind command;
+  command.ramp = to_float(request.ramp);
+  if (!request.use_vector) {
+    command.speed = to_float(request.speed);
+    command.direction_deg = to_float(request.direction_deg);
+    return command;
+  }
+  require_finite(request.vector.x, "vector.x");
+  require_finite(request.vector.y, "vector.y");
+  if (!(request.vector.z == 0))
+    throw ConfigError("vector.z: = " + std::to_string(request.vector.z) +
+                      " must be 0: the wind is horizontal");
+  command.speed = to_float(std::hypot(request.vector.x, request.vector.y));
+  command.direction_deg = to_float(std::atan2(request.vector.y, request.vector.x) * degrees_per_radian);
+  return command;
+}
+
+command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message, const Frames& frames) {
+  constexpr double largest_slope = 1e-6;  // the rounding of a rotation leaves less
+  require_finite(message.vector.x, "vector.x");
+  require_finite(message.vector.y, "vector.y");
+  require_finite(message.vector.z, "vector.z");
+  const tf2::Vector3 wind = frames.to_terrain(message.header).getBasis() *
+                            tf2::Vector3(message.vector.x, message.vector.y, message.vector.z);
+  if (std::abs(wind.z()) > largest_slope * wind.length())
+    throw ConfigError("vector: its vertical part in frame '" + frames.terrain_frame() + "' is " +
+                      std::to_string(wind.z()) + " m/s and must be 0: the wind is horizontal");
+  command::SetWind command;
+  command.speed = to_float(std::hypot(wind.x(), wind.y()));
+  command.direction_deg = to_float(std::atan2(wind.y(), wind.x()) * degrees_per_radian);
+  return command;
+}
+
+command::SetWindSchedule wind_schedule_command(const SetWindScheduleRequest& request) {
+  constexpr const char* kinds[] = {"timeline", "rose"};
+  command::SetWindSchedule command;
+  WindRegime& regime = command.regime;
+  regime.regime =
+      choice_named<int>(kinds, request.kind, "kind") == 0 ? WindRegimeKind::timeline : WindRegimeKind::rose;
+  const bool rose = regime.regime == WindRegimeKind::rose;
+  if (request.segments.size() > 4096)
+    throw ConfigError("segments: " + std::to_string(request.segments.size()) + " entries are more than 4096");
+  regime.repeat = request.repeat;
+  if (rose) regime.hold_time = to_float(request.hold_time);
+  regime.rose_seed = request.seed;
+  // Fields that do not belong to the kind keep their defaults, whatever the request says.
+  for (const WindScheduleSegment& s : request.segments) {
+    WindSegment segment;
+    segment.direction_deg = to_float(s.direction_deg);
+    segment.speed = to_float(s.speed);
+    if (rose) {
+      segment.probability = to_float(s.probability);
+    } else {
+      segment.duration = to_float(s.duration);
+      segment.ramp = to_float(s.ramp);
+    }
+    regime.segments.push_back(segment);
+  }
+  return command;
+}
+
+command::EditWind wind_edit_command(const EditWindRequest& request, const Frames& frames) {
+  command::EditWind command;
+  WindFeature& feature = command.feature;
+  command.operation = choice_named<WindEdit>(wind_edits, request.operation, "operation");
+  feature.id = request.id;
+  if (command.operation == WindEdit::remove || command.operation == WindEdit::clear) return command;
+  feature.kind = choice_named<WindFeatureKind>(wind_feature_kinds, request.kind, "kind");
+  require_finite(request.center, "center");
+  const tf2::Transform transform = frames.to_terrain(request.header);
+  const tf2::Vector3 center = transform * tf2::Vector3(request.center.x, request.center.y, request.center.z);
+  feature.x = to_float(center.x());
+  feature.y = to_float(center.y());
+  feature.radius = to_float(request.radius);
+  feature.speed = to_float(request.speed);
+  // Fields that do not belong to the kind keep their defaults, whatever the request says.
+  if (feature.kind == WindFeatureKind::jet) {
+    require_finite(request.direction_deg, "direction_deg");
+    feature.direction_deg = to_float(transform == tf2::Transform::getIdentity()
+                                         ? request.direction_deg
+                                         : direction_in_terrain(request.direction_deg, transform));
+    feature.length = to_float(request.length);
+  }
+  if (feature.kind == WindFeatureKind::turbulence) {
+    feature.scale = to_float(request.scale);
+    feature.life_time = to_float(request.life_time);
+    feature.seed = request.seed;
+  }
+  return command;
+}
+
+// ---- Weather: fields of the request become settings of parameters.
+
+namespace {
+
+std::string setting(const std::string& path, double value, const std::string& name) {
+  require_finite(value, name);
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  text << path << "=" << value;
+  return text.str();
+}
+
+std::string springs_setting(const SetWeatherRequest& request) {
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  text << "water.springs=[";
+  for (std::size_t n = 0; n < request.springs.size(); ++n) {
+    const auto& s = request.springs[n];
+    const std::string name = "springs[" + std::to_string(n) + "].";
+    require_finite(s.x, name + "x");
+    require_finite(s.y, name + "y");
+    require_finite(s.radius, name + "radius");
+    require_finite(s.discharge, name + "discharge");
+    text << (n ? ", " : "") << "{x: " << s.x << ", y: " << s.y << ", radius: " << s.radius
+         << ", discharge: " << s.discharge << "}";
+  }
+  return text.str() + "]";
+}
+
+}  // namespace
+
+command::SetParameters weather_command(const SetWeatherRequest& r) {
+  struct Number {
+    const char* name;
+    double value;
+    std::vector<const char*> paths;
+  };
+  const std::vector<Number> numbers{{"rain_rate", r.rain_rate, {"rain.rate"}},
+                                    {"rain_share", r.rain_share, {"rain.share_low", "rain.share_high"}},
+                                    {"evaporation", r.evaporation, {"water.evaporation"}},
+                                    {"ground_evaporation", r.ground_evaporation, {"moisture.evaporation"}},
+                                    {"sea_level", r.sea_level, {"water.sea_level"}},
+                                    {"wave_strength", r.wave_strength, {"water.wave_strength"}},
+                                    {"wave_period", r.wave_period, {"water.wave_period"}}};
+  require_finite(r.ramp, "ramp");
+  if (r.change.empty()) throw ConfigError("change: names nothing that is to change");
+  command::SetParameters command{{}, r.ramp};
+  for (const std::string& field : r.change) {
+    const auto number =
+        std::find_if(numbers.begin(), numbers.end(), [&](const Number& n) { return n.name == field; });
+    if (number != numbers.end()) {
+      for (const char* path : number->paths) command.settings.push_back(setting(path, number->value, field));
+    } else if (field == "sea") {
+      choice_named<Sea>(seas, r.sea, "sea");
+      command.settings.push_back("water.sea=" + r.sea);
+      if (r.sea != "none") command.settings.push_back("water.enabled=true");
+    } else if (field == "springs") {
+      command.settings.push_back(springs_setting(r));
+    } else {
+      std::string all = "sea, springs";
+      for (const Number& known : numbers) all += std::string(", ") + known.name;
+      throw ConfigError("change: " + quoted(field) + " is not one of: " + all);
+    }
+  }
+  return command;
+}
+
+}  // namespace desert_sim

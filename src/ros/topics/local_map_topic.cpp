@@ -1,0 +1,55 @@
+/// ~local_map: layers of the terrain around the robot, as a grid_map_msgs/GridMap.
+
+#include <boost/make_shared.hpp>
+
+#include "src/ros/conversion/grid_map_message.hpp"
+#include "src/ros/topics/topic_list.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+class LocalMapTopic : public MessageTopic<GridMap> {
+ public:
+  explicit LocalMapTopic(const TopicContext& context) : MessageTopic(context, "local_map") {}
+  double rate() const override { return map().local_map_rate; }
+  /// The robot moves, even if the terrain does not change.
+  bool only_after_change() const override { return false; }
+  /// There must be a transform from the robot's frame to the terrain's.
+  bool ready() override {
+    tf2::Transform robot;
+    std::string why;
+    const bool found = context().frames.latest_to_terrain(map().robot_frame, robot, why);
+    if (!found) set_problem(why);
+    return found;
+  }
+  bool publish(const TerrainState&) override {
+    return publish_or_set_problem([this] {
+      const std::vector<MapLayer>& layers = parameters().maps.local_map_layers;
+      const MapCut cut =
+          cut_terrain(context().simulation, layers, short_name(),
+                      [this](const Snapshot& terrain) { return window_around_robot(terrain); });
+      publisher_.publish(boost::make_shared<GridMap>(grid_map(cut.state, frame(), layers, cut.window)));
+    });
+  }
+
+ private:
+  const MapParameters& map() const { return parameters().maps.parameters; }
+
+  MapWindow window_around_robot(const Snapshot& terrain) const {
+    tf2::Transform robot;
+    std::string why;
+    if (!context().frames.latest_to_terrain(map().robot_frame, robot, why)) throw ConfigError(why);
+    return window_of(
+        {robot.getOrigin().x(), robot.getOrigin().y(), map().local_map_length_x, map().local_map_length_y},
+        terrain);
+  }
+};
+
+}  // namespace
+
+void add_local_map_topic(const TopicContext& context, TopicList& topics) {
+  topics.push_back(std::make_unique<LocalMapTopic>(context));
+}
+
+}  // namespace desert_sim

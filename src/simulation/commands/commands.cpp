@@ -1,0 +1,174 @@
+#include "src/simulation/commands/commands.hpp"
+
+#include <algorithm>
+
+#include "kernels/field/surface.hpp"
+#include "kernels/plants/cover.hpp"
+#include "src/core/error.hpp"
+#include "src/scenario/live_parameters.hpp"
+#include "src/scenario/yaml_parameters.hpp"
+#include "src/simulation/commands/command_checks.hpp"
+#include "src/simulation/commands/plant_edit.hpp"
+#include "src/simulation/commands/terrain_edit.hpp"
+#include "src/simulation/pipeline/memory.hpp"
+#include "src/simulation/simulation.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+/// What heights are counted in cannot change any more: a sea above them could not be counted. One below them
+/// is no sea, whatever its level.
+void require_sea(const Scenario& s, const HeightScale& scale) {
+  const double highest = scale.datum + load_limit * scale.quantum();
+  if (s.water.sea == Sea::none || s.water.sea_level <= highest) return;
+  throw ConfigError("set_parameters: water.sea_level: = " + std::to_string(s.water.sea_level) +
+                    " m is above what this terrain's heights can be (allowed: up to " +
+                    std::to_string(highest) + " m)");
+}
+
+}  // namespace
+
+CommandResult Commands::apply(const command::SetParameters& command) {
+  if (!(command.ramp >= 0 && command.ramp <= command.longest_ramp))
+    throw ConfigError("set_parameters: ramp: = " + std::to_string(command.ramp) + " is not in [0, 1e+12] s");
+  const Scenario present = state_.present_scenario(), wanted = with_live_settings(present, command.settings);
+  require_sea(wanted, state_.terrain.scale());
+  require_more_memory(state_, wanted);  // also of what comes at the end of a ramp
+  std::vector<std::string> settings = command.settings;
+  const std::vector<Ramp> before = state_.ramps;
+  begin_ramps(settings, command.ramp);
+  try {
+    set_parameters(settings);
+  } catch (...) {
+    state_.ramps = before;
+    throw;
+  }
+  return {};
+}
+
+void Commands::set_parameters(const std::vector<std::string>& settings) {
+  if (settings.empty()) return;
+  const Scenario before = state_.scenario, present = state_.present_scenario(),
+                 changed = with_live_settings(present, settings);
+  require_reach(changed);
+  require_sea(changed, state_.terrain.scale());
+  require_more_memory(state_, changed);
+  state_.exec().synchronise();  // memory that steps in flight work with is given back
+  state_.scenario = changed;
+  try {
+    pipeline_.prepare();
+  } catch (...) {
+    state_.scenario = before;
+    pipeline_.prepare();
+    throw;
+  }
+  const auto regime = [](const Scenario& s) {
+    YAML::Emitter out;
+    yaml::set_full_precision(out);
+    out << YAML::BeginMap;
+    yaml::emit_parameters(out, s.wind_regime);
+    return std::string(out.c_str());
+  };
+  if (regime(changed) != regime(present))
+    state_.set_wind_regime({changed.wind_regime, changed.wind_segments});
+}
+
+CommandResult Commands::apply(const command::SetWind& command) {
+  check_ranges(command, "set_wind");
+  WindRegime regime;
+  regime.direction_deg = command.direction_deg;
+  regime.speed = command.speed;
+  regime.ramp = command.ramp;
+  state_.set_wind_regime(regime);
+  return {};
+}
+
+CommandResult Commands::apply(const command::SetWindSchedule& command) {
+  const WindRegime& r = command.regime;
+  Faults faults("set_wind_schedule");
+  if (r.regime == WindRegimeKind::constant) faults.add("kind", "must be timeline or rose");
+  if (r.segments.empty()) faults.add("segments", "there must be at least one");
+  if (!(r.hold_time >= 1e-3f && r.hold_time <= 1e12f))
+    faults.add("hold_time", "= " + std::to_string(r.hold_time) + " is not in [0.001, 1e+12] s");
+  double probability = 0;
+  for (std::size_t n = 0; n < r.segments.size(); ++n) {
+    check_ranges(r.segments[n], "set_wind_schedule: segment " + std::to_string(n));
+    if (r.segments[n].ramp > r.segments[n].duration)
+      faults.add("segment " + std::to_string(n) + ": ramp", "is longer than the segment's duration");
+    probability += r.segments[n].probability;
+  }
+  if (r.regime == WindRegimeKind::rose && !(probability > 0))
+    faults.add("segments", "the probabilities must not all be 0");
+  faults.throw_if_any();
+  state_.set_wind_regime(r);
+  return {};
+}
+
+CommandResult Commands::apply(const command::EditWind& command) {
+  const int id = command.feature.id;
+  std::vector<WindFeature>& features = state_.scenario.wind_features;
+  if (command.operation == WindEdit::clear) {
+    features.clear();
+    pipeline_.adapt();
+    return {};
+  }
+  if (id < 1) throw ConfigError("edit_wind: id: = " + std::to_string(id) + " must be 1 or more");
+  const auto found =
+      std::find_if(features.begin(), features.end(), [id](const WindFeature& f) { return f.id == id; });
+  const bool known = found != features.end();
+  if (known == (command.operation == WindEdit::add))
+    throw ConfigError("edit_wind: id: = " + std::to_string(id) +
+                      (known ? " is another feature's already" : " is no feature's"));
+  if (command.operation == WindEdit::remove) {
+    features.erase(found);
+  } else {
+    check_ranges(command.feature, "edit_wind");
+    if (known)
+      *found = command.feature;
+    else if (features.size() < max_wind_features)
+      features.push_back(command.feature);
+    else
+      throw ConfigError("edit_wind: there are " + std::to_string(max_wind_features) +
+                        " features already, and no more are allowed");
+  }
+  pipeline_.adapt();
+  return {};
+}
+
+CommandResult Commands::apply(const command::EditTerrain& command, bool with_change) {
+  pipeline_.ground_changed();
+  TerrainEdit edit(command, state_.terrain, state_.scenario.grid, state_.ledger());
+  const bool bedrock = edit.material() == Material::bedrock, soil = edit.material() == Material::soil;
+  const bool bedrock_was_loose = state_.bedrock_loose, soil_was_loose = state_.soil_loose;
+  state_.bedrock_loose = bedrock_was_loose || bedrock;
+  state_.soil_loose = soil_was_loose || soil || (bedrock && state_.terrain.has(Layer::soil));
+  try {
+    pipeline_.adapt();  // avalanches of soil and bedrock need memory
+    return edit.book(with_change);
+  } catch (...) {
+    state_.bedrock_loose = bedrock_was_loose;
+    state_.soil_loose = soil_was_loose;
+    throw;
+  }
+}
+
+CommandResult Commands::apply(const command::EditPlants& command) {
+  check_plant_edit(command, state_.scenario);
+  const int before = state_.plants.count;
+  state_.set_plants(edited_plants(command, state_.scenario, state_.terrain, state_.steps,
+                                  state_.plants.capacity, plants::words(state_.plants)));
+  // Who looks before the next step sees them.
+  with_backend(state_.exec(), [this](auto& e) {
+    const TerrainView view = state_.terrain.view();
+    surface::Heights& heights = pipeline_.fields().heights;
+    surface::measure(e, view, heights);
+    plants::cover(e, view, state_.scenario.vegetation, 0.0f, heights, true, state_.plants);
+  });
+  pipeline_.derived_changed();
+  CommandResult result;
+  result.plants = state_.plants.count - before;
+  return result;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,40 @@
+#pragma once
+/// What changes a simulation between steps: commands from outside, and the scenario's timeline.
+
+#include <string>
+#include <vector>
+
+#include "src/simulation/commands/command.hpp"
+#include "src/simulation/pipeline/pipeline.hpp"
+#include "src/simulation/state.hpp"
+
+namespace desert_sim {
+
+class Commands {
+ public:
+  Commands(SimulationState& state, Pipeline& pipeline) : state_(state), pipeline_(pipeline) {}
+
+  /// Each is applied whole, or throws ConfigError and changes nothing.
+  CommandResult apply(const command::SetWind& command);
+  CommandResult apply(const command::SetWindSchedule& command);
+  CommandResult apply(const command::EditWind& command);
+  /// `with_change`: the result tells what changed, cell by cell.
+  CommandResult apply(const command::EditTerrain& command, bool with_change = false);
+  CommandResult apply(const command::EditPlants& command);
+  CommandResult apply(const command::SetParameters& command);
+
+  /// Changes the parameters that the timeline and ramps change now. Throws StateError if they are refused.
+  void follow_timeline();
+  /// What the timeline and ramps are changing, and what comes next; empty if nothing.
+  std::string describe_changes() const;
+
+ private:
+  void set_parameters(const std::vector<std::string>& settings);
+  /// Of `settings`, numbers become ramps where there is a duration [s]; former ramps of the same parameters stop.
+  void begin_ramps(std::vector<std::string>& settings, double duration);
+
+  SimulationState& state_;
+  Pipeline& pipeline_;
+};
+
+}  // namespace desert_sim

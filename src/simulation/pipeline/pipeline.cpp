@@ -1,0 +1,256 @@
+#include "src/simulation/pipeline/pipeline.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "kernels/avalanching/avalanching.hpp"
+#include "kernels/field/statistics.hpp"
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+bool Process::may_write(Layer layer) const {
+  const auto has = [layer](const std::vector<Layer>& layers) {
+    return std::find(layers.begin(), layers.end(), layer) != layers.end();
+  };
+  return has(writes) || has(writes_if_in_use);
+}
+
+Pipeline::Pipeline(SimulationState& state, ProcessTable table)
+    : state_(state), table_(std::move(table)), fields_(state.exec(), state.terrain.grid()) {
+  prepare();
+}
+
+// ---- making the list
+
+void Pipeline::prepare() {
+  recordings_.forget();
+  state_.avalanche_iterations = avalanche_iterations();
+  bring_layers_into_use();
+  fields_.prepare(state_.exec(), state_.terrain.grid(), state_.scenario);
+  std::vector<Stage> before = std::move(stages_);
+  stages_.clear();
+  separate_.clear();
+  fastest_.clear();
+  stages_.reserve(table_.processes.size());
+  for (const Process& process : table_.processes) {
+    if (!process.active(state_.scenario)) continue;
+    Stage stage{&process, process.keep ? process.keep(state_) : nullptr};
+    // What the process kept before goes once its successor is there, not with all others': less memory at a time.
+    for (Stage& former : before)
+      if (former.process == &process) {
+        stage.milliseconds = former.milliseconds;
+        stage.timed = former.timed;
+        former.kept.reset();
+      }
+    stages_.push_back(std::move(stage));
+  }
+  make_launches();
+  derived_ready_ = false;
+  fields_.heights_stale = true;
+}
+
+/// A derived layer is there only while a process that writes it is active: others take its absence for "none". What
+/// lies in persistent layers stays there when their process is switched off.
+void Pipeline::bring_layers_into_use() {
+  std::vector<Layer> unused;
+  for (const Process& process : table_.processes)
+    for (Layer layer : process.writes) {
+      if (process.active(state_.scenario))
+        state_.terrain.require(layer);
+      else if (info(layer).lifetime == Lifetime::derived)
+        unused.push_back(layer);
+    }
+  for (Layer layer : unused) {
+    const bool used = std::any_of(table_.processes.begin(), table_.processes.end(), [&](const Process& p) {
+      return p.active(state_.scenario) && std::count(p.writes.begin(), p.writes.end(), layer) > 0;
+    });
+    if (!used) state_.terrain.use(layer, false);
+  }
+}
+
+void Pipeline::make_launches() {
+  separate_.clear();
+  fastest_.clear();
+  for (Stage& stage : stages_) separate_.push_back({&stage});
+  fastest_ = separate_;
+  for (const FusedProcesses& fused : table_.fused) {
+    Stage *first = find(fused.first), *second = find(fused.second);
+    if (!first || !second || !fused.applies(state_)) continue;
+    const auto at = std::find_if(fastest_.begin(), fastest_.end(),
+                                 [&](const Launch& launch) { return launch.stage == second; });
+    *at = {first, second, &fused};
+    fastest_.erase(std::find_if(fastest_.begin(), fastest_.end(), [&](const Launch& launch) {
+      return launch.stage == first && !launch.fused;
+    }));
+  }
+  avalanching_measures_heights_ = false;
+  for (const Stage& stage : stages_) {
+    if (stage.process->name == "avalanching") {
+      avalanching_measures_heights_ = true;
+      continue;
+    }
+    for (Layer layer : {Layer::bedrock, Layer::soil, Layer::sand, Layer::water})
+      if (stage.process->may_write(layer)) avalanching_measures_heights_ = false;
+  }
+}
+
+void Pipeline::adapt() {
+  for (Stage& stage : stages_)
+    if (stage.process->adapt) stage.process->adapt(state_, stage.kept.get());
+}
+
+// ---- a step
+
+StepContext Pipeline::context() {
+  return {state_, fields_, state_.terrain.view(), avalanching_measures_heights_};
+}
+
+void Pipeline::step() {
+  StepContext c = context();
+  const bool observed = timing_ || checks_layers();
+  if (observed) {
+    for (const Launch& launch : separate_) run_observed(launch, c);
+  } else {
+    const std::size_t recorded = recordable_stages();
+    const auto start = [&] {
+      for (std::size_t n = 0; n < recorded; ++n) run(fastest_[n], c);
+    };
+    if (recorded > 0)
+      recordings_.run(state_.exec(),
+                      {state_.wind_above(), state_.steps % avalanching::turns, fields_.heights_stale,
+                       recorded, c.terrain},
+                      start);
+    for (std::size_t n = recorded; n < fastest_.size(); ++n) run(fastest_[n], c);
+  }
+  fields_.heights_stale = !avalanching_measures_heights_;
+  for (Stage& stage : stages_)
+    if (stage.process->after_step) stage.process->after_step(c, stage.kept.get());
+  ++state_.steps;
+  derived_ready_ = true;
+}
+
+std::size_t Pipeline::recordable_stages() const {
+  if (!state_.exec().records()) return 0;
+  const auto can = [this](const Stage* stage) { return !stage || stage->process->can_be_recorded(state_); };
+  const auto end = std::find_if(fastest_.begin(), fastest_.end(), [&](const Launch& launch) {
+    return !can(launch.stage) || !can(launch.second);
+  });
+  return static_cast<std::size_t>(end - fastest_.begin());
+}
+
+void Pipeline::run(const Launch& launch, StepContext& c) {
+  if (launch.fused)
+    launch.fused->step(c, launch.stage->kept.get(), launch.second->kept.get());
+  else
+    launch.stage->process->step(c, launch.stage->kept.get());
+}
+
+/// Looks through the layers that the process writes where that is due, and times it while timing is on.
+void Pipeline::run_observed(const Launch& launch, StepContext& c) {
+  Stage& stage = *launch.stage;
+  const auto start = std::chrono::steady_clock::now();
+  run(launch, c);
+  if (checks_layers())
+    for (const std::vector<Layer>* layers : {&stage.process->writes, &stage.process->writes_if_in_use})
+      for (Layer layer : *layers) check(*stage.process, layer);
+  if (!timing_) return;
+  state_.exec().synchronise();
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  stage.milliseconds += elapsed.count();
+  stage.timed = true;
+}
+
+void Pipeline::step_alone(const std::string& process) {
+  Stage* stage = find(process);
+  if (!stage) throw Error("the process " + process + " is not active");
+  StepContext c = context();
+  stage->process->step(c, stage->kept.get());
+  state_.exec().synchronise();
+}
+
+void Pipeline::refresh_derived() {
+  if (derived_ready_) return;
+  StepContext c = context();
+  for (Stage& stage : stages_)
+    if (stage.process->refresh) stage.process->refresh(c, stage.kept.get());
+  derived_ready_ = true;
+}
+
+bool Pipeline::checks_layers() const {
+  const int every = state_.scenario.run.check_every;
+  return every > 0 && (state_.steps + 1) % static_cast<std::uint64_t>(every) == 0;
+}
+
+/// Throws StateError, which names the process and the first cell, if the layer has a value that is not finite, out of
+/// its scale, or negative where it must not be.
+void Pipeline::check(const Process& process, Layer layer) const {
+  if (!state_.terrain.has(layer)) return;
+  const LayerInfo& row = info(layer);
+  const TerrainView view = state_.terrain.view();
+  const bool quanta = row.storage == Storage::quanta;
+  const long long broken = with_backend(state_.exec(), [&](auto& e) {
+    return statistics::count_violations(e, view.grid, quanta ? view.quanta(layer) : nullptr,
+                                        quanta ? nullptr : view.real(layer), row.lowest == 0);
+  });
+  if (broken == 0) return;
+  const std::vector<float> values = state_.terrain.values(layer);
+  std::size_t cell = 0;
+  while (cell + 1 < values.size() && std::isfinite(values[cell]) && !(row.lowest == 0 && values[cell] < 0))
+    ++cell;
+  throw StateError("step " + std::to_string(state_.steps) + ": " + process.name + ": layer " + row.name +
+                   " is broken in " + std::to_string(broken) + " cells, first (" +
+                   std::to_string(cell % view.grid.width) + ", " + std::to_string(cell / view.grid.width) +
+                   ") = " + std::to_string(values[cell]));
+}
+
+// ---- what others ask
+
+Pipeline::Stage* Pipeline::find(const std::string& process) {
+  const auto found = std::find_if(stages_.begin(), stages_.end(),
+                                  [&](const Stage& stage) { return stage.process->name == process; });
+  return found == stages_.end() ? nullptr : &*found;
+}
+
+std::uint64_t Pipeline::avalanche_iterations() const {
+  std::uint64_t iterations = state_.avalanche_iterations;
+  for (const Stage& stage : stages_)
+    if (stage.process->counted_iterations) iterations += stage.process->counted_iterations(*stage.kept);
+  return iterations;
+}
+
+std::vector<ProcessTime> Pipeline::times() const {
+  std::vector<ProcessTime> times;
+  for (const Stage& stage : stages_)
+    if (stage.timed) times.push_back({stage.process->name, stage.milliseconds});
+  return times;
+}
+
+void Pipeline::clear_times() {
+  for (Stage& stage : stages_) stage.milliseconds = 0, stage.timed = false;
+}
+
+std::vector<MemoryPart> Pipeline::memory() const {
+  std::vector<MemoryPart> parts;
+  const auto add = [&parts](const std::string& name, std::size_t bytes) {
+    if (bytes > 0) parts.push_back({name, bytes});
+  };
+  for (const Stage& stage : stages_)
+    if (stage.kept) add("process " + stage.process->name, stage.kept->bytes());
+  add("heights", fields_.heights.cell_heights.bytes() + fields_.heights.highest.bytes());
+  add("tangents of repose", fields_.repose.bytes());
+  add("strength of impacts", fields_.impact_strength.bytes());
+  add("landed sand", fields_.landed.bytes());
+  return parts;
+}
+
+std::vector<std::string> Pipeline::names_of_fastest() const {
+  std::vector<std::string> names;
+  for (const Launch& launch : fastest_)
+    names.push_back(launch.fused ? launch.fused->first + " + " + launch.fused->second
+                                 : launch.stage->process->name);
+  return names;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,21 @@
+#include "src/simulation/pipeline/shared_fields.hpp"
+
+#include "kernels/sand/reptation.hpp"
+
+namespace desert_sim {
+
+SharedFields::SharedFields(Exec& exec, const Grid& grid)
+    : heights(surface::make_heights(exec, grid)),
+      repose(exec, static_cast<std::size_t>(grid.cells())),
+      landed(exec, static_cast<std::size_t>(grid.cells())) {
+  repose.set_zero();
+}
+
+void SharedFields::prepare(Exec& exec, const Grid& grid, const Scenario& scenario) {
+  impact_strength = {};
+  if (!reptation::moves_sand(scenario.reptation)) return;
+  impact_strength = Buffer<float>(exec, static_cast<std::size_t>(grid.cells()));
+  impact_strength.set_zero();  // without saltation there are no impacts
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,23 @@
+#pragma once
+/// Memory that the processes of a step share. It is no state: each step computes it anew.
+
+#include "kernels/backend/buffer.hpp"
+#include "kernels/field/surface.hpp"
+#include "src/scenario/scenario.hpp"
+
+namespace desert_sim {
+
+struct SharedFields {
+  /// Throws ConfigError if there is no memory.
+  SharedFields(Exec& exec, const Grid& grid);
+  /// What depends on parameters.
+  void prepare(Exec& exec, const Grid& grid, const Scenario& scenario);
+
+  surface::Heights heights;   ///< of the ground's surface
+  bool heights_stale = true;  ///< the ground has moved since they were measured
+  Buffer<float> repose;  ///< tangent of each cell's angle of repose; before saltation sets it, scratch memory
+  Buffer<float> impact_strength;  ///< of saltation, for reptation that moves sand [m]; else empty
+  Buffer<Quanta> landed;          ///< sand that comes down in saltation; after it, scratch memory
+};
+
+}  // namespace desert_sim

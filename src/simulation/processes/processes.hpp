@@ -1,0 +1,41 @@
+#pragma once
+/// The table of all processes, in the order of a step. A new one is a function here that returns its row, and a line
+/// in process_table().
+
+#include "src/simulation/pipeline/pipeline.hpp"
+
+namespace desert_sim {
+
+Process wind_process();  // wind.cpp
+Process wind_shadow_process();
+Process echo_dune_process();
+
+Process saltation_process();  // sand.cpp
+Process repose_process();
+Process reptation_process();
+Process avalanching_process();
+FusedProcesses shadow_found_in_passing();
+
+Process rain_process();  // water.cpp
+Process virtual_pipes_process();
+Process hydraulic_erosion_process();
+Process moisture_process();
+Process evaporation_process();
+Process soil_process();
+
+Process plant_cover_process();  // plants.cpp
+Process illumination_process();
+Process vegetation_process();
+
+const ProcessTable& process_table();
+
+/// What the wind is blocked by: the ground, or the plants' canopy.
+const surface::Heights& obstructing_heights(const StepContext& context);
+/// Whether something but edits changes rock or soil.
+bool wears_ground(const Scenario& scenario);
+/// The page config/processes.md: `desert_run --describe-processes`.
+std::string describe_processes(const ProcessTable& table);
+/// The steps of one scenario: `desert_run SCENARIO.yaml --pipeline`.
+std::string describe_pipeline(const Pipeline& pipeline);
+
+}  // namespace desert_sim

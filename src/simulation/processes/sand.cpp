@@ -1,0 +1,237 @@
+/// The processes of sand: saltation with abrasion, angles of repose, reptation, avalanches.
+#include <optional>
+
+#include "kernels/avalanching/avalanching.hpp"
+#include "kernels/avalanching/soil_and_bedrock.hpp"
+#include "kernels/field/statistics.hpp"
+#include "kernels/sand/reptation.hpp"
+#include "kernels/sand/saltation.hpp"
+#include "kernels/wind/wind_shadow.hpp"
+#include "src/simulation/processes/processes.hpp"
+
+namespace desert_sim {
+
+bool wears_ground(const Scenario& s) {
+  return s.abrasion.rate > 0 || s.hydraulic_erosion.enabled || s.soil.enabled;
+}
+
+namespace {
+
+// ---- saltation
+
+reptation::Angle angle_of_repose(const StepContext& c) {
+  return reptation::Angle(c.scenario().reptation, c.scenario().repose, c.fields.repose.data());
+}
+
+/// `shade` finds the wind's shadow first; null where the layer wind_shadow has it already.
+template <class E>
+void lift_and_deposit(E& e, StepContext& c, const wind_shadow::Shadow* shade) {
+  const Scenario& s = c.scenario();
+  saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.state.ledger(),
+                  c.fields.landed.data(), {angle_of_repose(c), c.fields.impact_strength.data()}, shade);
+}
+
+void saltate(StepContext& c, Kept*) {
+  with_backend(c.exec(), [&](auto& e) { lift_and_deposit(e, c, nullptr); });
+}
+
+void set_angles(StepContext& c, Kept*) {
+  with_backend(c.exec(), [&](auto& e) {
+    reptation::set_angles(e, c.terrain, angle_of_repose(c), c.scenario().repose, nullptr);
+  });
+}
+
+// ---- reptation
+
+void creep(StepContext& c, Kept*) {
+  const Scenario& s = c.scenario();
+  with_backend(c.exec(), [&](auto& e) {
+    reptation::step(e, c.terrain, s.reptation, c.time_step(), s.seed, c.state.steps,
+                    c.fields.impact_strength.data(), c.fields.landed.data());
+  });
+}
+
+// ---- avalanching
+
+struct AvalancheWork {
+  avalanching::Workspace sand;
+  avalanching::GroundWorkspace ground;  ///< empty where neither soil nor bedrock can slide
+
+  std::size_t bytes() const { return sand.bytes() + ground.bytes(); }
+
+  /// Only terrains whose rock or soil changes need memory for it.
+  void prepare_ground(const SimulationState& state) {
+    const AvalanchingParameters& p = state.scenario.avalanching;
+    const bool changes = wears_ground(state.scenario) || state.bedrock_loose || state.soil_loose;
+    if (!ground.received && changes && (p.soil || p.bedrock))
+      ground = avalanching::make_ground_workspace(state.exec(), state.terrain.grid());
+  }
+};
+
+AvalancheWork make_avalanche_work(const SimulationState& state) {
+  AvalancheWork work{
+      avalanching::make_workspace(state.exec(), state.terrain.grid(), state.scenario.avalanching), {}};
+  work.prepare_ground(state);
+  return work;
+}
+
+/// Soil and bedrock slide only where something changes them: abrasion, water, or an edit, until all has come to rest.
+template <class E>
+void slide_ground(E& e, StepContext& c, AvalancheWork& work) {
+  SimulationState& state = c.state;
+  const AvalanchingParameters& p = state.scenario.avalanching;
+  const ReposeParameters& repose = state.scenario.repose;
+  Quanta* const given = c.fields.landed.data();
+  const bool wearing = wears_ground(state.scenario), has_soil = state.terrain.has(Layer::soil);
+  const auto moved = [&] { return statistics::sum(e, c.terrain.grid, given) != 0; };
+  if (p.soil && (wearing || state.soil_loose) && has_soil) {
+    avalanching::step_soil(e, c.terrain, p, repose, given, work.ground);
+    if (state.soil_loose) state.soil_loose = moved();
+  }
+  if (p.bedrock && (wearing || state.bedrock_loose)) {
+    avalanching::step_bedrock(e, c.terrain, p, repose, state.ledger(), given, work.ground);
+    if (state.bedrock_loose) state.bedrock_loose = moved();
+  }
+  state.soil_loose = state.soil_loose || (state.bedrock_loose && has_soil);
+}
+
+void slide(StepContext& c, Kept* kept) {
+  AvalancheWork& work = kept_as<AvalancheWork>(kept);
+  with_backend(c.exec(), [&](auto& e) {
+    slide_ground(e, c, work);
+    avalanching::step(e, c.terrain, c.scenario().avalanching, c.state.steps, c.fields.repose.data(),
+                      c.avalanching_measures_heights ? &c.fields.heights : nullptr, work.sand);
+  });
+}
+
+/// Whether the host waits for nothing in a step of avalanching.
+bool avalanching_can_be_recorded(const SimulationState& state) {
+  const AvalanchingParameters& p = state.scenario.avalanching;
+  const bool asks_nothing = p.quality != AvalancheQuality::converged ||
+                            (p.scheme == AvalancheScheme::multilevel && state.exec().can_record_loops());
+  return asks_nothing && !state.bedrock_loose && !state.soil_loose;
+}
+
+/// Passes of avalanching read ground, sand and tangents, and write sand. Each coarse level has a quarter of the cells
+/// of the one below; it is filled (ground, sand twice, tangents), passed over, and read again (sand, before and
+/// after). The fine grid is read for the first in passing. The last pass writes the heights. Of quality `converged`
+/// this counts the first cycle.
+MemoryTraffic avalanche_traffic(const Scenario& s, const Grid& grid) {
+  constexpr double layer = 4, heights = 1, filling = 4, handing_down = 2;
+  const avalanching::Schedule plan = avalanching::schedule(s.avalanching, grid);
+  const int fine = plan.fine_passes();
+  double coarse = 0, cells = 1;
+  for (std::size_t n = 1; n < 16; ++n) {
+    cells /= 4;
+    coarse += cells * (filling + 4 * plan.coarse_passes(n) + handing_down);
+  }
+  const std::string times = fine == 1 ? "" : " x " + std::to_string(fine);
+  return {layer * (4 * fine + coarse + heights), "(bedrock, sand, tangents)" + times + "; levels",
+          "sand" + times + "; levels; heights"};
+}
+
+}  // namespace
+
+Process saltation_process() {
+  Process p;
+  p.name = "saltation";
+  p.parameters = {"saltation", "abrasion", "reptation", "repose"};
+  p.source = "Nilles 2024 §3.6, Paris 2019 §5.2";
+  p.header = "kernels/sand/saltation.hpp";
+  p.active = [](const Scenario& s) { return s.saltation.enabled; };
+  p.reads = {Layer::wind_x,   Layer::wind_y,     Layer::wind_shadow,
+             Layer::echo,     Layer::vegetation, Layer::obstacle,
+             Layer::moisture, Layer::water,      Layer::erosion_resistance};
+  p.writes = {Layer::sand, Layer::airborne_sand};
+  p.writes_if_in_use = {Layer::bedrock, Layer::soil};
+  p.step = saltate;
+  p.refresh = set_angles;  // the angles of repose that a step sets with the deposit
+  p.traffic = [](const Scenario&, const Grid&) {
+    return MemoryTraffic{13 * 4, "sand, airborne, wind (2), shadow; landed, sand, shadow",
+                         "sand, landed; sand, airborne, tangents"};
+  };
+  return p;
+}
+
+Process repose_process() {
+  Process p;
+  p.name = "repose";
+  p.parameters = {"repose", "reptation"};
+  p.source = "Nilles 2024 §3.7";
+  p.header = "kernels/sand/repose.hpp";
+  // Saltation's deposit sets the angles in its own pass.
+  p.active = [](const Scenario& s) { return !s.saltation.enabled; };
+  p.reads = {Layer::wind_x,   Layer::wind_y, Layer::wind_shadow, Layer::vegetation,
+             Layer::moisture, Layer::soil,   Layer::sand};
+  p.step = p.refresh = set_angles;
+  return p;
+}
+
+Process reptation_process() {
+  Process p;
+  p.name = "reptation";
+  p.parameters = {"reptation"};
+  p.source = "Nilles 2024 §3.7, Paris 2019 §5.1";
+  p.header = "kernels/sand/reptation.hpp";
+  p.active = [](const Scenario& s) { return reptation::moves_sand(s.reptation); };
+  p.reads = {Layer::bedrock, Layer::soil, Layer::wind_x, Layer::wind_y, Layer::vegetation, Layer::obstacle};
+  p.writes = {Layer::sand};
+  p.step = creep;
+  // The number of sub-steps is read back, and events are drawn by the step.
+  p.can_be_recorded = [](const SimulationState&) { return false; };
+  return p;
+}
+
+Process avalanching_process() {
+  Process p;
+  p.name = "avalanching";
+  p.parameters = {"avalanching", "repose"};
+  p.source = "Nilles 2024 eq. 9–11, Taylor & Keyser 2023";
+  p.header = "kernels/avalanching/avalanching.hpp";
+  p.active = [](const Scenario& s) { return s.avalanching.enabled; };
+  p.reads = {Layer::obstacle, Layer::vegetation, Layer::moisture};
+  p.writes = {Layer::sand};
+  p.writes_if_in_use = {Layer::bedrock, Layer::soil};
+  keep<AvalancheWork>(p, make_avalanche_work);
+  p.step = slide;
+  p.adapt = [](const SimulationState& state, Kept* kept) {
+    kept_as<AvalancheWork>(kept).prepare_ground(state);
+  };
+  p.counted_iterations = [](const Kept& kept) {
+    return static_cast<std::uint64_t>(
+        static_cast<const KeptAs<AvalancheWork>&>(kept).work.sand.counted_iterations());
+  };
+  p.after_step = [](StepContext& c, Kept* kept) {
+    c.state.avalanche_iterations += static_cast<std::uint64_t>(kept_as<AvalancheWork>(kept).sand.iterations);
+  };
+  p.can_be_recorded = avalanching_can_be_recorded;
+  p.traffic = avalanche_traffic;
+  return p;
+}
+
+/// Where starting passes is what takes time, and nothing but saltation asks for the wind's shadow before sand is
+/// lifted, the pass that lifts sand finds it.
+FusedProcesses shadow_found_in_passing() {
+  FusedProcesses f;
+  f.name = "shadow found in passing";
+  f.first = "wind_shadow";
+  f.second = "saltation";
+  f.applies = [](const SimulationState& state) {
+    constexpr int few_cells = 1 << 19;
+    const bool rows =
+        with_backend(state.exec(), [](auto& e) { return vectorises_rows<std::decay_t<decltype(e)>>; });
+    return !rows && state.terrain.grid().cells() <= few_cells && !state.scenario.wind_shadow.curved &&
+           !state.scenario.echo_dunes.enabled;
+  };
+  f.step = [](StepContext& c, Kept* shadow, Kept*) {
+    with_backend(c.exec(), [&](auto& e) {
+      const wind_shadow::Shadow shade =
+          wind_shadow::straight_shadow(e, c.terrain, c.scenario().wind_shadow, obstructing_heights(c),
+                                       kept_as<wind_shadow::Workspace>(shadow), nullptr);
+      lift_and_deposit(e, c, &shade);
+    });
+  };
+  return f;
+}
+
+}  // namespace desert_sim

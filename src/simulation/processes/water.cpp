@@ -1,0 +1,175 @@
+/// The processes of water and wet ground: rain, springs and the sea, rivers, their sediment, moisture, soil.
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/soil/moisture.hpp"
+#include "kernels/soil/soil.hpp"
+#include "kernels/water/hydraulic_erosion.hpp"
+#include "kernels/water/rain.hpp"
+#include "kernels/water/virtual_pipes.hpp"
+#include "kernels/water/water_sources.hpp"
+#include "src/simulation/processes/processes.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+bool there_is_water(const Scenario& s) { return s.has_water(); }
+/// Amounts of water are whole quanta that depend on the step, or on the deepest water, which is read back.
+bool never(const SimulationState&) { return false; }
+
+/// The level of the sea in quanta above the datum, as far as heights can be counted.
+Quanta sea_level(const SimulationState& state) {
+  const HeightScale& scale = state.terrain.scale();
+  const double quanta = (state.scenario.water.sea_level - scale.datum) / scale.quantum();
+  constexpr double limit = load_limit;
+  return static_cast<Quanta>(std::lrint(std::clamp(quanta, -limit, limit)));
+}
+
+void fall(StepContext& c, Kept*) {
+  const SimulationState& state = c.state;
+  const Scenario& s = state.scenario;
+  with_backend(c.exec(), [&](auto& e) {
+    rain::step(e, c.terrain, s.rain, c.time_step(), s.seed, state.steps, state.terrain.scale().datum,
+               state.ledger());
+    for (const Spring& spring : s.springs)
+      water_sources::add_spring(e, c.terrain, spring, spring.x - s.grid.origin_x, spring.y - s.grid.origin_y,
+                                c.time_step(), state.steps, state.ledger());
+    water_sources::fill_sea(e, c.terrain, s.water.sea, sea_level(state), state.ledger());
+  });
+}
+
+virtual_pipes::Workspace make_pipes(const SimulationState& state) {
+  return {Buffer<float>(state.exec(), static_cast<std::size_t>(state.terrain.grid().cells()))};
+}
+
+void flow(StepContext& c, Kept* kept) {
+  with_backend(c.exec(), [&](auto& e) {
+    virtual_pipes::step(e, c.terrain, c.scenario().water, c.time_step(), c.state.time(), sea_level(c.state),
+                        c.state.ledger(), c.fields.landed.data(), kept_as<virtual_pipes::Workspace>(kept));
+  });
+}
+
+hydraulic_erosion::Workspace make_capacity(const SimulationState& state) {
+  return {Buffer<float>(state.exec(), static_cast<std::size_t>(state.terrain.grid().cells()))};
+}
+
+void erode(StepContext& c, Kept* kept) {
+  with_backend(c.exec(), [&](auto& e) {
+    hydraulic_erosion::step(e, c.terrain, c.scenario().hydraulic_erosion, c.time_step(), c.state.ledger(),
+                            kept_as<hydraulic_erosion::Workspace>(kept));
+  });
+}
+
+void soak(StepContext& c, Kept*) {
+  const Scenario& s = c.scenario();
+  with_backend(c.exec(), [&](auto& e) {
+    moisture::step(e, c.terrain, s.moisture, s.repose.moisture_capacity, c.time_step(), c.state.ledger(),
+                   c.fields.landed.data());
+  });
+}
+
+void evaporate(StepContext& c, Kept*) {
+  with_backend(c.exec(), [&](auto& e) {
+    water_sources::evaporate(e, c.terrain, c.scenario().water.evaporation, c.time_step(), c.state.ledger());
+  });
+}
+
+void dry_and_form(StepContext& c, Kept*) {
+  with_backend(c.exec(), [&](auto& e) {
+    soil::step(e, c.terrain, c.scenario().soil, c.scenario().repose, c.time_step(), c.state.ledger());
+  });
+}
+
+}  // namespace
+
+Process rain_process() {
+  Process p;
+  p.name = "rain";
+  p.parameters = {"rain", "water"};
+  p.source = "Nilles 2025 §3.4.3, 3.4.5, eq. 31";
+  p.header = "kernels/water/rain.hpp";
+  p.active = there_is_water;
+  p.reads = {Layer::bedrock, Layer::soil, Layer::sand};
+  p.writes = {Layer::water};
+  p.step = fall;
+  p.can_be_recorded = never;
+  return p;
+}
+
+Process virtual_pipes_process() {
+  Process p;
+  p.name = "virtual_pipes";
+  p.parameters = {"water"};
+  p.source = "Mei 2007, Nilles 2025 §3.4";
+  p.header = "kernels/water/virtual_pipes.hpp";
+  p.active = there_is_water;
+  p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::wind_x, Layer::wind_y};
+  p.writes = {Layer::water, Layer::water_flux_x, Layer::water_flux_y, Layer::water_velocity_x,
+              Layer::water_velocity_y};
+  p.writes_if_in_use = {Layer::suspended_sediment};
+  keep<virtual_pipes::Workspace>(p, make_pipes);
+  p.step = flow;
+  p.can_be_recorded = never;
+  return p;
+}
+
+Process hydraulic_erosion_process() {
+  Process p;
+  p.name = "hydraulic_erosion";
+  p.parameters = {"hydraulic_erosion"};
+  p.source = "Mei 2007, Nilles 2025 §3.4";
+  p.header = "kernels/water/hydraulic_erosion.hpp";
+  p.active = [](const Scenario& s) { return s.hydraulic_erosion.enabled; };
+  p.reads = {Layer::water,      Layer::water_velocity_x,   Layer::water_velocity_y,
+             Layer::vegetation, Layer::erosion_resistance, Layer::obstacle};
+  p.writes = {Layer::bedrock, Layer::sand, Layer::suspended_sediment};
+  p.writes_if_in_use = {Layer::soil};
+  keep<hydraulic_erosion::Workspace>(p, make_capacity);
+  p.step = erode;
+  p.can_be_recorded = never;
+  return p;
+}
+
+Process moisture_process() {
+  Process p;
+  p.name = "moisture";
+  p.parameters = {"moisture", "repose"};
+  p.source = "Nilles 2025 §3.4.4";
+  p.header = "kernels/soil/moisture.hpp";
+  p.active = [](const Scenario& s) { return s.moisture.enabled; };
+  p.reads = {Layer::soil, Layer::sand, Layer::vegetation};
+  p.writes = {Layer::water, Layer::moisture};
+  p.step = soak;
+  p.can_be_recorded = never;
+  return p;
+}
+
+Process evaporation_process() {
+  Process p;
+  p.name = "evaporation";
+  p.parameters = {"water"};
+  p.source = "Nilles 2025 §3.4.4";
+  p.header = "kernels/water/water_sources.hpp";
+  p.active = there_is_water;
+  p.writes = {Layer::water};
+  p.step = evaporate;
+  p.can_be_recorded = never;
+  return p;
+}
+
+Process soil_process() {
+  Process p;
+  p.name = "soil";
+  p.parameters = {"soil", "repose"};
+  p.source = "Nilles 2025 eq. 28–29";
+  p.header = "kernels/soil/soil.hpp";
+  p.active = [](const Scenario& s) { return s.soil.enabled; };
+  p.reads = {Layer::moisture, Layer::vegetation};
+  p.writes = {Layer::soil, Layer::sand};
+  p.writes_if_in_use = {Layer::humus};
+  p.step = dry_and_form;
+  return p;
+}
+
+}  // namespace desert_sim

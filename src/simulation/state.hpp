@@ -1,0 +1,90 @@
+#pragma once
+/// The state of a simulation: the terrain, the plants, the clock, the wind regime, and the accounts of material.
+/// It is all that a checkpoint saves; everything else follows from it.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kernels/field/ledger.hpp"
+#include "kernels/plants/workspace.hpp"
+#include "src/scenario/scenario.hpp"
+#include "src/terrain/terrain.hpp"
+
+namespace desert_sim {
+
+/// What one material did since the start, in quanta and in cubic metres.
+struct MaterialBalance {
+  long long initial = 0, final = 0, in = 0, out = 0;  ///< [quanta]
+  double quantum_volume = 0;                          ///< [m³] of one quantum
+  double base_volume = 0;                             ///< [m³] between elevation 0 and the datum; of bedrock
+  /// final − initial − in + out, which must be 0 [quanta]
+  long long residual() const { return final - initial - in + out; }
+  double cubic_metres(long long quanta) const { return static_cast<double>(quanta) * quantum_volume; }
+  double initial_m3() const { return base_volume + cubic_metres(initial); }
+  double final_m3() const { return base_volume + cubic_metres(final); }
+  double relative_residual() const;
+};
+
+/// How many plants of a species there are.
+struct PlantCount {
+  std::string species;
+  int plants = 0, mature = 0;
+};
+
+/// Members are public: the parts of the simulation (pipeline, commands, views, checkpoint) all work on it. Only the
+/// thread that owns the simulation may use it.
+struct SimulationState {
+  /// A terrain without material under the scenario, at step 0. Throws ConfigError if memory runs out.
+  SimulationState(const Scenario& scenario, Terrain terrain);
+  SimulationState(const SimulationState&) = delete;
+  SimulationState& operator=(const SimulationState&) = delete;
+
+  Exec& exec() const { return terrain.exec(); }
+  double time() const { return static_cast<double>(steps) * scenario.run.time_step; }  ///< simulated [s]
+  wind::Vector wind_above() const { return wind_regime.at(time()); }  ///< the high-altitude wind [m/s]
+  LedgerView ledger() const { return {ledger_words.data()}; }
+  /// The scenario with the wind regime that blows now, which commands may have replaced.
+  Scenario present_scenario() const;
+  /// Layers that are in use, derived ones included.
+  std::vector<Layer> layers_in_use() const;
+
+  /// Lets another wind regime begin now; its first ramp starts from the present wind.
+  void set_wind_regime(WindRegime regime);
+  /// Replaces all plants; `words` are columns as plants::words() gives them. Throws ConfigError if there are more than
+  /// there is room for.
+  void set_plants(const std::vector<std::uint32_t>& words);
+
+  /// Takes the material that the terrain holds now as what it began with, and its lowest surface as the reference of
+  /// the wind's speed-up.
+  void begin_balance();
+  /// What is booked in and out of each material [quanta]: [2 · material] in, [2 · material + 1] out.
+  std::vector<long long> read_ledger() const;
+  void write_ledger(const std::vector<long long>& accounts);
+  std::array<MaterialBalance, material_count> balance() const;
+  /// Plants by species, in the order of the scenario; none where vegetation is off.
+  std::vector<PlantCount> plant_counts() const;
+  /// XXH3-64 over the persistent layers, the plants, the clock and the accounts.
+  std::uint64_t hash() const;
+
+  Scenario start;     ///< the scenario that it began with: what a reset goes back to
+  Scenario scenario;  ///< `start`, as commands have changed it
+  Terrain terrain;
+  plants::Workspace plants;  ///< empty where vegetation is off
+  WindRegime wind_regime;
+  std::uint64_t steps = 0;
+  Quanta wind_reference = 0;               ///< lowest solid surface at load
+  bool bedrock_loose = false;              ///< bedrock was edited and has not come to rest since
+  bool soil_loose = false;                 ///< soil, or bedrock below it, was edited and has not come to rest
+  std::size_t next_timeline_entry = 0;     ///< of scenario.timeline
+  std::vector<Ramp> ramps;                 ///< parameters that are changing
+  std::uint64_t avalanche_iterations = 0;  ///< of all steps, but those that the device still counts
+  std::array<long long, material_count> initial{};  ///< material at the start [quanta]
+  Buffer<long long> ledger_words;                   ///< LedgerView's accounts, on the device
+
+ private:
+  long long material_now(Material material) const;
+};
+
+}  // namespace desert_sim

@@ -1,0 +1,33 @@
+/// The hash by which two states are compared.
+#include <xxhash.h>
+
+#include <memory>
+
+#include "src/core/error.hpp"
+#include "src/simulation/state.hpp"
+
+namespace desert_sim {
+
+std::uint64_t SimulationState::hash() const {
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> owned(XXH3_createState(), XXH3_freeState);
+  XXH3_state_t* const sum = owned.get();
+  if (!sum) throw Error("no memory for a hash");
+  XXH3_64bits_reset(sum);
+  for (const LayerInfo& row : layer_table) {
+    if (row.lifetime != Lifetime::persistent || !terrain.has(row.layer)) continue;
+    const std::vector<std::uint32_t> words = terrain.words(row.layer);
+    XXH3_64bits_update(sum, row.name, std::char_traits<char>::length(row.name));
+    XXH3_64bits_update(sum, words.data(), words.size() * sizeof(std::uint32_t));
+  }
+  if (plants) {
+    const std::vector<std::uint32_t> words = plants::words(plants);
+    XXH3_64bits_update(sum, "plants", 6);
+    XXH3_64bits_update(sum, words.data(), words.size() * sizeof(std::uint32_t));
+  }
+  const std::vector<long long> books = read_ledger();
+  XXH3_64bits_update(sum, books.data(), books.size() * sizeof(long long));
+  XXH3_64bits_update(sum, &steps, sizeof steps);
+  return XXH3_64bits_digest(sum);
+}
+
+}  // namespace desert_sim
