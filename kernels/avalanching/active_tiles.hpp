@@ -33,7 +33,7 @@ struct ActiveTileFlags {
   DESERT_HD Tiles of(int pass) const { return {grid, offsets[pass]}; }
   DESERT_HD Quanta* of_pass(int pass) const { return flags + static_cast<long long>(pass) * most_tiles; }
 
-  /// Vec4 corners for each pass; some may lie in the same tile.
+  /// Four corners for each pass; some may lie in the same tile.
   static constexpr int corners = 4 * passes_per_round;
   /// Finds the flags of those tiles of each pass that have a cell within `margin` cells of a block, where all
   /// tiles around are complete. That square is narrower than a tile, so the tiles under its four corners are

@@ -15,7 +15,7 @@
 ///        . . . . 3 .
 ///
 /// Patches that are shifted out of the tile on one side re-enter on the other; nothing slides between their
-/// two parts. Vec2 successive sweeps together cover all pairs of neighbours, except diagonal ones that cross
+/// two parts. Two successive sweeps together cover all pairs of neighbours, except diagonal ones that cross
 /// an edge of a patch in both.
 ///
 /// A tile takes at least `sweeps` sweeps, unless two successive ones move nothing, and goes on, up to
@@ -102,6 +102,24 @@ struct RelaxTile {
     return done >= sweeps && (done >= most_sweeps || !much);
   }
 
+  /// What one sweep has moved: `much` where a pair moved more than `plenty`.
+  enum class Moved { nothing, little, much };
+  /// The loop of sweeps over a tile, for every backend: sweeps until two in a row move nothing, or until the tile may
+  /// stop. `sweep(n, shift)` does the nth sweep. Returns whether anything moved.
+  template <class Sweep>
+  DESERT_HD bool relax(const Sweep& sweep) const {
+    bool moved = false, moved_before = true;
+    for (int n = 0;; ++n) {
+      const Moved now = sweep(n, PatchShift(n, tiles.offset));
+      const bool moves = now != Moved::nothing;
+      moved = moved || moves;
+      if (!moves && !moved_before) break;
+      if (may_stop(n + 1, now == Moved::much)) break;
+      moved_before = moves;
+    }
+    return moved;
+  }
+
   template <class Team>
   static constexpr int scratch_bytes = 4 * cells * 4;
 
@@ -119,16 +137,11 @@ struct RelaxTile {
     const Units units(range.lowest, range.highest, level.quanta_per_cell);
     load(team, column, row, units, h, ground, drop, base);
     const float much = units.drop(plenty, level.quanta_per_cell);
-    bool moved = false, moved_before = true;
-    for (int n = 0;; ++n) {
-      const PatchShift shift(n, tiles.offset);
+    const bool moved = relax([&](int, const PatchShift& shift) DESERT_INLINE {
       const float most = range.deep() ? sweep<true>(team, shift, h, ground, drop)
                                       : sweep<false>(team, shift, h, ground, drop);
-      moved = moved || most > 0.0f;
-      if (most == 0.0f && !moved_before) break;
-      if (may_stop(n + 1, most > much)) break;
-      moved_before = most > 0.0f;
-    }
+      return most > much ? Moved::much : (most > 0.0f ? Moved::little : Moved::nothing);
+    });
     if (moved) store(team, column, row, units, h, base);
   }
 

@@ -22,7 +22,7 @@ enum class Purpose : std::uint32_t {
   planting,
 };
 
-/// Vec4 random words from three counters.
+/// Four random words from three counters.
 struct RandomWords {
   std::uint32_t word[4];
 };

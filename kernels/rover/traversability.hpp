@@ -14,7 +14,7 @@
 ///                    θ_max = lerp(`slope_deg`, `sand_slope_deg`, σ)
 ///                    mud = max(m − ½, 0)/(`mud` − ½) · min((sand + soil)/`sand_depth`, 1)
 ///
-/// j runs over the cells of the window, at offsets d_j [cells]. g is, for each axis, the minmod_difference of the two
+/// j runs over the cells of the window, at offsets d_j [cells]. g is, for each axis, the flatter (minmod) of the two
 /// one-sided differences, and 0 if these have opposite signs (minmod), so that an edge beside flat ground
 /// counts with its full height. The slope limit θ_max is lower on loose sand, because wheels slip there. m is
 /// relative moisture (repose.hpp). The window is the square of cells up to `window` away along x and y, 1 to

@@ -32,7 +32,7 @@ struct Surface {
     const int sides = rise(i, x + dx, y + dy, ahead) + rise(i, x - dx, y - dy, behind);
     return sides == 0 ? 0.0f : (static_cast<float>(ahead) - static_cast<float>(behind)) * quantum / sides;
   }
-  /// The minmod_difference of the two one-sided differences [m per cell], 0 where their signs differ (minmod).
+  /// The flatter of the two one-sided differences [m per cell], 0 where their signs differ (minmod).
   DESERT_HD float minmod_difference(int x, int y, int dx, int dy) const {
     const int i = grid.index(x, y);
     Quanta ahead = 0, back = 0;

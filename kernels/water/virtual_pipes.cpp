@@ -62,7 +62,7 @@ struct LimitOutflow {
                       (maximum(f.to_north, 0.0f) + maximum(f.to_south, 0.0f));
     const float there = static_cast<float>(flow.water[i]);
     constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // the sum is rounded
-    // Vec4 amounts that are each rounded to nearest may exceed their sum by two quanta.
+    // Four amounts that are each rounded to nearest may exceed their sum by two quanta.
     flow.held[i] = out + 4.0f <= there * guard ? 1.0f : minimum(there / (out + 1e-20f), 1.0f) * guard;
   }
 };

@@ -30,7 +30,7 @@
 #include "kernels/backend/buffer.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
-#include "kernels/water/water_sources.hpp"
+#include "kernels/water/water_parameters.hpp"
 
 namespace desert_sim::virtual_pipes {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// The marches upwind that find the wind shadow; equations in wind_shadow.hpp.
 ///
-/// Vec4 cells of a block that lie beside each other across the direction of the march are computed together:
+/// Four cells of a block that lie beside each other across the direction of the march are computed together:
 /// their samples of a step lie between five cells. A block has four such groups.
 ///
 ///   march along x            march along y

@@ -1,6 +1,6 @@
 #pragma once
 /// Parameter tables. A process keeps its parameters in a plain struct whose initialisers are the defaults.
-/// PackedVec the struct is a table with one row per member, in the order of the members: name, range, unit and a
+/// Beside the struct is a table with one row per member, in the order of the members: name, range, unit and a
 /// line of documentation. The YAML loader, ROS parameters, `--describe`, the generated documentation,
 /// commands, journal and checkpoint all use this table.
 ///

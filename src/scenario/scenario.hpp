@@ -17,7 +17,7 @@
 #include "kernels/soil/soil.hpp"
 #include "kernels/water/hydraulic_erosion.hpp"
 #include "kernels/water/rain.hpp"
-#include "kernels/water/water_sources.hpp"
+#include "kernels/water/water_parameters.hpp"
 #include "kernels/wind/echo_dunes.hpp"
 #include "kernels/wind/wind_features.hpp"
 #include "kernels/wind/wind_parameters.hpp"

@@ -109,7 +109,7 @@ TEST_P(PlantTheory, SpawningIsABernoulliTrialACell) {
   EXPECT_LE(plants.size(), 226u);
   int first = 0;
   for (const Plant& plant : plants) first += plant.species == 0;
-  // Vec2 thirds are of the first; four standard deviations of 120.
+  // Two thirds are of the first; four standard deviations of 120.
   EXPECT_NEAR(first, plants.size() * 2.0 / 3.0, 4 * std::sqrt(plants.size() * 2.0 / 9.0));
 }
 

@@ -291,7 +291,7 @@ TEST_F(ForeignBags, ThatAreNoBagsAreRefused) {
   EXPECT_NE(refusal().find("no such file"), std::string::npos);
 }
 
-/// Vec4 billion elements in four bytes: refused before memory is taken for them.
+/// Four billion elements in four bytes: refused before memory is taken for them.
 TEST_F(ForeignBags, LengthsThatLieTakeNoMemory) {
   std::vector<std::uint8_t> bytes(40, 0xff);
   std::vector<float> floats;

@@ -1,8 +1,11 @@
 // The coarse wind in one kernel against the same laws and lines, one after the other on the host.
 
+#include "kernels/wind/tuned/coarse_wind.hpp"
+
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/wind/wind_laws.hpp"
 #include "support/bench_terrain.hpp"
 #include "support/lines.hpp"
 #include "support/world.hpp"

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/avalanching/avalanching.hpp"
 #include "kernels/avalanching/tile.hpp"
 
 namespace desert_sim::test {

@@ -1,4 +1,4 @@
-// Rounding and counting: quanta, bilinear shares, to_fixed_point, exponentials, height scales, indices, random
+// Rounding and counting: quanta, bilinear shares, fixed point, exponentials, height scales, indices, random
 // numbers.
 
 #include <gtest/gtest.h>

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "kernels/plants/growth.hpp"
 #include "support/plants.hpp"
 #include "support/world.hpp"
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "kernels/plants/spawning.hpp"
 #include "support/plants.hpp"
 #include "support/world.hpp"
 

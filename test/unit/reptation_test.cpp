@@ -68,7 +68,7 @@ TEST_P(Reptation, AdaptiveReposeSparesShadowIfAsked) {
   EXPECT_NEAR(tangent_at_one_cell(adaptive, sheltered, 2), tangent(33) * std::exp(-1.0), 1e-6);
 }
 
-// Vec2 cells, r = 1 and 0.5, |w| = 2 and 1, Δh = 0.4 m: flux = k_r Δh/l · 0.75 · 1.5, an eighth of it moves.
+// Two cells, r = 1 and 0.5, |w| = 2 and 1, Δh = 0.4 m: flux = k_r Δh/l · 0.75 · 1.5, an eighth of it moves.
 TEST_P(Reptation, SmoothingMovesTheMeanOfBothCellsStrengthAndWind) {
   test::BenchTerrain t(exec(), 2, 1, 1, false);
   t.set(Layer::sand, [](int x, int) { return x ? 1 : 1.4; });

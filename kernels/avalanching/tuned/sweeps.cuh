@@ -92,21 +92,16 @@ __device__ float sweep_patch(Shared& shared, const PatchShift& shift) {
 template <bool deep, Code code>
 __device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units) {
   const float much = units.drop(law.plenty, law.level.quanta_per_cell);
-  bool moved = false, moved_before = true;
-  for (int n = 0;; ++n) {
-    const float most = sweep_patch<deep, code>(shared, PatchShift(n, law.tiles.offset));
+  return law.relax([&](int n, const PatchShift& shift) {
+    const float most = sweep_patch<deep, code>(shared, shift);
     const bool any = __any_sync(0xffffffffu, most > 0.0f), any_much = __any_sync(0xffffffffu, most > much);
     if (threadIdx.x % 32 == 0) shared.moved[n % 2][threadIdx.x / 32] = any_much ? 2 : (any ? 1 : 0);
     __syncthreads();
     int here = 0;
 #pragma unroll
     for (int k = 0; k < warps; ++k) here = max(here, shared.moved[n % 2][k]);
-    moved = moved || here > 0;
-    if (here == 0 && !moved_before) break;
-    if (law.may_stop(n + 1, here == 2)) break;
-    moved_before = here > 0;
-  }
-  return moved;
+    return static_cast<RelaxTile::Moved>(here);
+  });
 }
 
 }  // namespace desert_sim::avalanching::tuned

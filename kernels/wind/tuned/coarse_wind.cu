@@ -52,7 +52,7 @@ struct Arguments {
   __host__ __device__ int lines() const { return at_once * max(1, radii()); }
 };
 
-/// Vec2 buffers for each line of a block, between which its transform alternates, followed by the roots of
+/// Two buffers for each line of a block, between which its transform alternates, followed by the roots of
 /// unity of x and y.
 extern __shared__ Complex shared[];
 

@@ -48,7 +48,7 @@ std::future<Reached> SimulationThread::apply(const Command& command, bool with_h
 }
 
 std::future<Reached> SimulationThread::step(std::uint32_t steps) {
-  // Vec2 promises: the job's, which only says that the request has been taken, and the request's own.
+  // Two promises: the job's, which only says that the request has been taken, and the request's own.
   auto request = std::make_shared<StepRequest>();
   request->asked = steps;
   std::future<Reached> answer = request->answer.get_future();

@@ -1,5 +1,5 @@
 #pragma once
-/// What others lack of the costs of the terrain: kernels/held_costs.hpp.
+/// What others lack of the costs of the terrain: kernels/view/held_costs.hpp.
 
 #include <cstdint>
 #include <vector>

@@ -46,7 +46,7 @@ void Staging::Slot::release() {
 // ---- both
 
 namespace {
-/// Vec4 layers of 4096 × 4096 cells; where it takes memory of the host twice, of 2048 × 2048.
+/// Four layers of 4096 × 4096 cells; where it takes memory of the host twice, of 2048 × 2048.
 constexpr std::size_t bytes_on_device = std::size_t{256} << 20, bytes_if_shared = std::size_t{64} << 20;
 }  // namespace
 

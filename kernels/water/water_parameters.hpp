@@ -1,0 +1,70 @@
+#pragma once
+/// Parameters of the section `water`: springs, pipe flow (virtual_pipes.hpp), the sea, waves, evaporation
+/// (water_sources.hpp).
+
+#include <cstddef>
+
+#include "src/core/parameters.hpp"
+
+namespace desert_sim {
+
+struct Spring {
+  float x = 0;
+  float y = 0;
+  float radius = 1;
+  float discharge = 0;
+};
+
+constexpr auto parameter_table(const Spring*) {
+  using P = Spring;
+  return std::make_tuple(
+      parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
+      parameter("y", &P::y, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
+      parameter("radius", &P::radius, 0, 1e5, "m",
+                "Cells of the terrain with their centre in it share the discharge; at least one does."),
+      parameter("discharge", &P::discharge, 0, 1e5, "m^3/s", "Water that comes out a second."));
+}
+static_assert(table_is_complete<Spring>());
+constexpr std::size_t max_springs = 64;
+
+enum class Sea : int { none, border, everywhere };
+constexpr const char* seas[] = {"none", "border", "everywhere"};
+
+struct WaterParameters {
+  bool enabled = false;
+  float friction = 0.1f;
+  float drag = 0.0f;
+  int most_substeps = 64;
+  float evaporation = 0.01f;
+  Sea sea = Sea::none;
+  float sea_level = 0.0f;
+  float wave_strength = 0.0f;
+  float wave_period = 10.0f;
+};
+
+constexpr auto parameter_table(const WaterParameters*) {
+  using P = WaterParameters;
+  return std::make_tuple(
+      parameter("enabled", &P::enabled,
+                "Whether there is water on the ground; rain, springs, hydraulic_erosion and moisture bring "
+                "it too."),
+      parameter("friction", &P::friction, 0, 100, "1/s",
+                "How fast flow slows down by itself, whatever its depth (c)."),
+      parameter("drag", &P::drag, 0, 10, "1",
+                "Drag of the bed, which holds shallow water most (c_f): 0.002 of mud, 0.01 of sand, 0.05 of "
+                "stones; 0: none."),
+      parameter("most_substeps", &P::most_substeps, 1, 10000, "1",
+                "Most parts that a step is divided into; waves on water that would need more travel slower."),
+      parameter("evaporation", &P::evaporation, 0, 10, "1/s",
+                "Share of standing water that evaporates a second."),
+      parameter(
+          "sea", &P::sea, seas,
+          "Where water stands at least at sea_level: nowhere, at the edges of the terrain, everywhere."),
+      parameter("sea_level", &P::sea_level, -1e6, 1e6, "m", "Elevation of the sea."),
+      parameter("wave_strength", &P::wave_strength, 0, 10, "1/s",
+                "Acceleration of deep water by 1 m/s of wind, at a wave's height (c_wave); 0: no waves."),
+      parameter("wave_period", &P::wave_period, 0.01, 1e6, "s", "From wave to wave."));
+}
+static_assert(table_is_complete<WaterParameters>());
+
+}  // namespace desert_sim
