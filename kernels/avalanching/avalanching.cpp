@@ -15,7 +15,8 @@ inline bool children_share_tiles(const Grid& g) {
 }
 
 /// Passes over a level: those numbered `first` to `last` − 1 in this step, with at least `sweeps` sweeps
-/// each. `share`, `plenty` and `edge_factor` are as in Schedule; `edge_factor` applies to the last of these passes.
+/// each. `share`, `plenty` and `edge_factor` are as in Schedule; `edge_factor` applies to the last of these
+/// passes.
 struct Passes {
   int first, last, sweeps;
   float share, plenty, edge_factor;
@@ -121,8 +122,9 @@ void update_active_tiles(E& exec, const LevelView& fine, float tolerance, const 
 }
 
 /// A multigrid cycle, then rounds of passes over the active tiles only, until no cell is too steep. What is
-/// left after a cycle are mostly small slides on their way down; where it is more, CheckConvergence asks for another
-/// cycle. All rounds between two cycles have the same seams, those of the passes that would follow the cycle.
+/// left after a cycle are mostly small slides on their way down; where it is more, CheckConvergence asks for
+/// another cycle. All rounds between two cycles have the same seams, those of the passes that would follow
+/// the cycle.
 template <class E>
 void relax_until_converged(E& exec, const LevelView& fine, const AvalanchingParameters& p, std::uint64_t turn,
                            Workspace& work) {

@@ -53,7 +53,7 @@
 ///    |               patches.cuh     from global to shared memory and back
 ///    |               sweeps.cuh      sweeps in shared memory and registers
 ///    |
-///    +-- relax_until_converged()     scheme `multilevel`, quality `converged`: cycle(), then passes over active tiles
+///    +-- relax_until_converged()     quality `converged`: cycle(), then passes over active tiles
 ///          steep_blocks.hpp  FindSteep: blocks of 8 × 8 cells with a cell that is still too steep
 ///          active_tiles.hpp  ActivateTiles: tiles of the next round; CheckConvergence: the convergence check
 ///
@@ -88,7 +88,7 @@ namespace desert_sim::avalanching {
 ///                   slopes end too far below their angle of repose.
 ///   coarse_share    ω on coarse levels. They make somewhat more slopes of 6 … 18 degrees than there should
 ///                   be, the more so the larger ω is.
-///   last_edge_factor   factor on ω next to tile edges in the very last pass (GapOmega), because no later pass
+///   last_edge_factor   factor on ω next to tile edges in the very last pass (GapOmega), as no later pass
 ///                   relaxes across these edges
 struct Schedule {
   int first_sweeps, coarse_sweeps, last_sweeps, last_passes;

@@ -6,9 +6,9 @@
 ///   bedrock   tan θ = tan θ_bedrock
 ///
 /// By default θ_bare is 45°, the others are 68°. v is the density of vegetation, M the moisture factor
-/// (kernels/sand/repose.hpp). Soil slides over rock. Bedrock breaks where it is too steep, considering its own
-/// height only, and falls as sand or as rock. Both use the laws of laws.hpp. Reads and writes bedrock, soil
-/// and sand.
+/// (kernels/sand/repose.hpp). Soil slides over rock. Bedrock breaks where it is too steep, considering its
+/// own height only, and falls as sand or as rock. Both use the laws of laws.hpp. Reads and writes bedrock,
+/// soil and sand.
 
 #include "kernels/avalanching/parameters.hpp"
 #include "kernels/backend/buffer.hpp"

@@ -104,8 +104,8 @@ struct RelaxTile {
 
   /// What one sweep has moved: `much` where a pair moved more than `plenty`.
   enum class Moved { nothing, little, much };
-  /// The loop of sweeps over a tile, for every backend: sweeps until two in a row move nothing, or until the tile may
-  /// stop. `sweep(n, shift)` does the nth sweep. Returns whether anything moved.
+  /// The loop of sweeps over a tile, for every backend: sweeps until two in a row move nothing, or until the
+  /// tile may stop. `sweep(n, shift)` does the nth sweep. Returns whether anything moved.
   template <class Sweep>
   DESERT_HD bool relax(const Sweep& sweep) const {
     bool moved = false, moved_before = true;
@@ -300,8 +300,8 @@ struct RelaxTile {
 template <class E>
 void relax_tiles_reference(E& exec, const RelaxTile& law);
 
-/// Laws that may follow a pass: none, restriction to coarse levels, or measuring the heights. follow_up_grid()
-/// gives the grid that the latter two are called for.
+/// Laws that may follow a pass: none, restriction to coarse levels, or measuring the heights.
+/// follow_up_grid() gives the grid that the latter two are called for.
 struct NoFollowUp {};
 inline Grid follow_up_grid(const Restrict& law) { return law.blocks(); }
 inline Grid follow_up_grid(const surface::MeasureBlock& law) { return law.blocks; }

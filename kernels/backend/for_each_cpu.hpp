@@ -35,8 +35,8 @@ inline InstructionSet widest_instructions() {
   return InstructionSet::oldest;
 #endif
 }
-/// The widest set that the processor has, or the one that the environment's variable DESERT_INSTRUCTIONS names
-/// (oldest, avx2) if that is less: for benchmarks of what a set brings.
+/// The widest set that the processor has, or the one that the environment's variable DESERT_INSTRUCTIONS
+/// names (oldest, avx2) if that is less: for benchmarks of what a set brings.
 inline InstructionSet chosen_instructions() {
   const InstructionSet widest = widest_instructions();
   const char* const named = std::getenv("DESERT_INSTRUCTIONS");

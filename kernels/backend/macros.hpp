@@ -6,7 +6,7 @@
 ///                   body is inlined, and do not inline large bodies by themselves.
 ///   DESERT_SIMD     before a loop whose iterations do not depend on each other
 ///   DESERT_NO_UNROLL   before a loop that must not be unrolled on a GPU
-///   DESERT_NOINLINE     before a function that is seldom called: never inlined on a GPU, to keep kernels small
+///   DESERT_NOINLINE     before a function that is seldom called: not inlined on a GPU, for small kernels
 
 #if defined(__CUDACC__)
 #define DESERT_HD __host__ __device__ __forceinline__

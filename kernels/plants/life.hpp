@@ -1,6 +1,6 @@
 #pragma once
-/// One step of all plants: water uptake (water_uptake.hpp), growth, damage and death (growth.hpp), and new plants
-/// (spawning.hpp), where the equations are.
+/// One step of all plants: water uptake (water_uptake.hpp), growth, damage and death (growth.hpp), and new
+/// plants (spawning.hpp), where the equations are.
 ///
 /// Plants are kept sorted by their key in the neighbour look-up, so that neighbours are close in memory. The
 /// sort is stable, so that the order of plants, and with it every sum, depends on the state alone.

@@ -14,12 +14,12 @@
 ///                    θ_max = lerp(`slope_deg`, `sand_slope_deg`, σ)
 ///                    mud = max(m − ½, 0)/(`mud` − ½) · min((sand + soil)/`sand_depth`, 1)
 ///
-/// j runs over the cells of the window, at offsets d_j [cells]. g is, for each axis, the flatter (minmod) of the two
-/// one-sided differences, and 0 if these have opposite signs (minmod), so that an edge beside flat ground
-/// counts with its full height. The slope limit θ_max is lower on loose sand, because wheels slip there. m is
-/// relative moisture (repose.hpp). The window is the square of cells up to `window` away along x and y, 1 to
-/// 16 cells; at open edges the part of it that is on the grid. `limit` is the parameter that belongs to each
-/// quantity.
+/// j runs over the cells of the window, at offsets d_j [cells]. g is, for each axis, the flatter (minmod) of
+/// the two one-sided differences, and 0 if these have opposite signs (minmod), so that an edge beside flat
+/// ground counts with its full height. The slope limit θ_max is lower on loose sand, because wheels slip
+/// there. m is relative moisture (repose.hpp). The window is the square of cells up to `window` away along x
+/// and y, 1 to 16 cells; at open edges the part of it that is on the grid. `limit` is the parameter that
+/// belongs to each quantity.
 ///
 /// Reads elevation, sand, soil, moisture, water, vegetation, obstacle; writes those of slope, normal_x,
 /// normal_y, normal_z, roughness, step_height and traversability that are present in the view.

@@ -5,8 +5,8 @@
 ///   sea           w ← max(w, level − elevation)    on the border or everywhere
 ///   evaporation   w ← w e^(−φ Δt)                  and at least one quantum less
 ///
-/// The ledger records what is added as inflow, and what evaporates as outflow. add_spring() and evaporate() read
-/// and write water; fill_sea() reads bedrock, soil, sand, water and writes water.
+/// The ledger records what is added as inflow, and what evaporates as outflow. add_spring() and evaporate()
+/// read and write water; fill_sea() reads bedrock, soil, sand, water and writes water.
 
 #include <cstdint>
 

@@ -38,8 +38,8 @@ inline int march_steps(const Grid& grid, const WindShadowParameters& p) {
 
 Workspace make_workspace(Exec& exec, const Grid& grid, const WindShadowParameters& p);
 
-/// The law of straight marches over the terrain as it is now. `march_directions`: those of the workspace, or null
-/// where each cell computes its own, which saves a pass over the blocks.
+/// The law of straight marches over the terrain as it is now. `march_directions`: those of the workspace, or
+/// null where each cell computes its own, which saves a pass over the blocks.
 template <class E>
 Shadow straight_shadow(E& exec, const TerrainView& t, const WindShadowParameters& p,
                        const surface::Heights& heights, const Workspace& work,

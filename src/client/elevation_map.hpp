@@ -44,9 +44,9 @@ class ElevationMap {
     double origin_y = 0;         ///< [m]
   };
 
-  /// The map of a keyframe, which must be valid (see validation_error()). Sets `changed` to the smallest rectangle
-  /// that contains all cells that differ from `before`, or to the whole grid if `before` is null or has
-  /// another geometry.
+  /// The map of a keyframe, which must be valid (see validation_error()). Sets `changed` to the smallest
+  /// rectangle that contains all cells that differ from `before`, or to the whole grid if `before` is null or
+  /// has another geometry.
   ElevationMap(ElevationGrid::ConstPtr keyframe, const ElevationMap* before, Rectangle& changed);
 
   const Info& info() const { return info_; }

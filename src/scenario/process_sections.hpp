@@ -1,12 +1,13 @@
 #pragma once
-/// Sections of parameters that processes bring along by themselves. A process whose parameters are no member of Scenario
-/// registers their struct, which has a parameter table (core/parameters.hpp), and asks for it in its step:
+/// Sections of parameters that processes bring along by themselves. A process whose parameters are no member
+/// of Scenario registers their struct, which has a parameter table (core/parameters.hpp), and asks for it in
+/// its step:
 ///
 ///     static const std::string section = register_section<FrostParameters>("frost");
 ///     scenario.process_sections.get<FrostParameters>("frost").rate
 ///
-/// The section is then read, checked, written, described and changed live like all others. dynamic_reconfigure does not
-/// list it; `~reload_parameters` and timelines change it.
+/// The section is then read, checked, written, described and changed live like all others.
+/// dynamic_reconfigure does not list it; `~reload_parameters` and timelines change it.
 
 #include <map>
 #include <memory>
@@ -75,8 +76,8 @@ class ProcessSections {
 namespace detail {
 void register_section(const std::string& name, std::unique_ptr<ProcessSection> defaults);
 }
-/// For scenarios that are made from then on; before other threads run. Returns the name. Registering it again replaces
-/// it.
+/// For scenarios that are made from then on; before other threads run. Returns the name. Registering it again
+/// replaces it.
 template <class P>
 std::string register_section(const std::string& name) {
   static_assert(table_is_complete<P>());

@@ -1,10 +1,10 @@
 #pragma once
 /// Checkpoints: a whole simulation in a file.
 ///
-/// Format: the line "desert_sim checkpoint", version (u32), length of the header (u64), header (YAML: scenario now and
-/// at its start, clock, wind regime, height scale, accounts of material, layers), the layers' words as stored, the
-/// plants' columns, XXH3-64 of all before. All numbers are little-endian. Files are written by write_file(), so that a
-/// file of that name is always whole.
+/// Format: the line "desert_sim checkpoint", version (u32), length of the header (u64), header (YAML:
+/// scenario now and at its start, clock, wind regime, height scale, accounts of material, layers), the
+/// layers' words as stored, the plants' columns, XXH3-64 of all before. All numbers are little-endian. Files
+/// are written by write_file(), so that a file of that name is always whole.
 
 #include <memory>
 #include <string>

@@ -1,12 +1,13 @@
 #pragma once
-/// The simulation in its parts: the state, the pipeline of processes that steps it, the commands that change it
-/// between steps, and the views that others have of it. Owned by one thread.
+/// The simulation in its parts: the state, the pipeline of processes that steps it, the commands that change
+/// it between steps, and the views that others have of it. Owned by one thread.
 
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "kernels/field/statistics.hpp"
 #include "src/scenario/terrain_builder.hpp"
 #include "src/simulation/commands/commands.hpp"
 #include "src/simulation/pipeline/pipeline.hpp"
@@ -15,8 +16,6 @@
 #include "src/simulation/views/views.hpp"
 
 namespace desert_sim {
-
-struct Residual;
 
 /// Throws ConfigError if a hop or a march could reach too far: they are counted in 16.16 fixed-point cells.
 void require_reach(const Scenario& scenario);
@@ -31,8 +30,8 @@ class Simulation {
 
   /// One step of `run.time_step` seconds.
   void step();
-  /// Applies a command between steps; throws ConfigError and changes nothing if it is refused. Reset and LoadCheckpoint
-  /// are the Session's business.
+  /// Applies a command between steps; throws ConfigError and changes nothing if it is refused. Reset and
+  /// LoadCheckpoint are the Session's business.
   template <class Command>
   CommandResult apply(const Command& command) {
     return commands_.apply(command);

@@ -1,6 +1,6 @@
 #pragma once
-/// The state of a simulation: the terrain, the plants, the clock, the wind regime, and the accounts of material.
-/// It is all that a checkpoint saves; everything else follows from it.
+/// The state of a simulation: the terrain, the plants, the clock, the wind regime, and the accounts of
+/// material. It is all that a checkpoint saves; everything else follows from it.
 
 #include <array>
 #include <cstdint>
@@ -33,8 +33,8 @@ struct PlantCount {
   int plants = 0, mature = 0;
 };
 
-/// Members are public: the parts of the simulation (pipeline, commands, views, checkpoint) all work on it. Only the
-/// thread that owns the simulation may use it.
+/// Members are public: the parts of the simulation (pipeline, commands, views, checkpoint) all work on it.
+/// Only the thread that owns the simulation may use it.
 struct SimulationState {
   /// A terrain without material under the scenario, at step 0. Throws ConfigError if memory runs out.
   SimulationState(const Scenario& scenario, Terrain terrain);
@@ -52,12 +52,12 @@ struct SimulationState {
 
   /// Lets another wind regime begin now; its first ramp starts from the present wind.
   void set_wind_regime(WindRegime regime);
-  /// Replaces all plants; `words` are columns as plants::words() gives them. Throws ConfigError if there are more than
-  /// there is room for.
+  /// Replaces all plants; `words` are columns as plants::words() gives them. Throws ConfigError if there are
+  /// more than there is room for.
   void set_plants(const std::vector<std::uint32_t>& words);
 
-  /// Takes the material that the terrain holds now as what it began with, and its lowest surface as the reference of
-  /// the wind's speed-up.
+  /// Takes the material that the terrain holds now as what it began with, and its lowest surface as the
+  /// reference of the wind's speed-up.
   void begin_balance();
   /// What is booked in and out of each material [quanta]: [2 · material] in, [2 · material + 1] out.
   std::vector<long long> read_ledger() const;

@@ -31,8 +31,8 @@ Terrain::Terrain(Exec& exec, const Grid& grid, const HeightScale& scale)
   const long long cells = static_cast<long long>(grid.width) * grid.height;
   if (cells > max_grid_cells)
     throw ConfigError("grid of " + std::to_string(grid.width) + " x " + std::to_string(grid.height) +
-                      " has " + std::to_string(cells) + " cells; more than " + std::to_string(max_grid_cells) +
-                      " cannot be indexed");
+                      " has " + std::to_string(cells) + " cells; more than " +
+                      std::to_string(max_grid_cells) + " cannot be indexed");
   for (Layer layer :
        {Layer::bedrock, Layer::sand, Layer::airborne_sand, Layer::elevation, Layer::wind_x, Layer::wind_y})
     require(layer);

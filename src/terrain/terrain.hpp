@@ -34,8 +34,8 @@ struct HeightScale {
 class Terrain {
  public:
   /// Sets all cells of all layers to 0 (the bedrock to the datum). Throws ConfigError if the grid has more
-  /// than max_grid_cells, or if memory runs out; require_memory() in src/simulation/pipeline/memory.hpp checks
-  /// the memory beforehand.
+  /// than max_grid_cells, or if memory runs out; require_memory() in src/simulation/pipeline/memory.hpp
+  /// checks the memory beforehand.
   Terrain(Exec& exec, const Grid& grid, const HeightScale& scale);
 
   Exec& exec() const { return *exec_; }

@@ -66,8 +66,8 @@ TEST_P(Column, SlidesToAHeapAtReposeWithMultilevel) {
   EXPECT_GE(*least / mean, 0.96) << *least << " to " << *greatest << " m";
 }
 
-/// A quarter of the size for the reference scheme, which takes many more sweeps. The coarse levels, of four cells
-/// across so small a column, take more off its top.
+/// A quarter of the size for the reference scheme, which takes many more sweeps. The coarse levels, of four
+/// cells across so small a column, take more off its top.
 TEST_P(Column, SlidesToTheSameHeapWithSweepsAndMultilevel) {
   constexpr int n = 96;
   std::vector<float> heaps[2];

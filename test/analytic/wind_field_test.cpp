@@ -135,8 +135,9 @@ std::array<double, 2> turned(double speed, double gx, double gy, double deflecti
 }
 
 TEST_P(WindField, GaussianHillIsSmoothedToItsClosedForm) {
-  // A exp(−r²/2s²) ⊗ Gauss(σ): peak A s²/(s² + σ²), width √(s² + σ²). Its slope is seen in how it turns the wind, beside
-  // the hill's axis: to either side of that the wind turns the other way, and the coarse grid blurs it.
+  // A exp(−r²/2s²) ⊗ Gauss(σ): peak A s²/(s² + σ²), width √(s² + σ²). Its slope is seen in how it turns the
+  // wind, beside the hill's axis: to either side of that the wind turns the other way, and the coarse grid
+  // blurs it.
   constexpr int n = 512;
   const double s = 15, radius = 40, sigma = 0.5 * radius, height = 20, speed = 5, deflection = 5;
   test::BenchTerrain t(exec(), n, n);

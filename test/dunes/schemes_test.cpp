@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "dunes/running.hpp"
+#include "kernels/avalanching/avalanching.hpp"
 
 namespace desert_sim {
 namespace {

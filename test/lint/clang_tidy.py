@@ -5,7 +5,8 @@
 
 Most of the time of a source goes into headers that its neighbours include too. Sources of a folder are therefore
 looked at in batches, one translation unit each, which is five times as quick. A batch that does not compile, because
-two of its sources use the same name, is halved until it does. Exit status 1 with findings.
+two of its sources use the same name, is halved until it does. Exit status 1 with findings, 77 if the build has no
+source of this repository.
 """
 import argparse
 import collections
@@ -56,6 +57,9 @@ def main():
 
     commands = host_commands(options.build)
     sources = set(options.files) & set(commands) if options.files else {s for s in commands if s.startswith(FOLDERS)}
+    if not sources and not options.files:
+        print("skipped: %s does not build the sources of this folder" % options.build)
+        sys.exit(77)
     folder = options.build / "lint"
     folder.mkdir(exist_ok=True)
 

@@ -1,5 +1,5 @@
-// Every process changes only the layers that its row says it writes, and what it does depends only on those that its
-// row says it reads. The processes come from the table: a new one is tested without a line here.
+// Every process changes only the layers that its row says it writes, and what it does depends only on those
+// that its row says it reads. The processes come from the table: a new one is tested without a line here.
 
 #include <algorithm>
 #include <map>
@@ -83,8 +83,8 @@ TEST_P(Contract, ProcessesWriteOnlyTheLayersOfTheirRows) {
     if (!p.writes.empty()) idle.insert(p.name);
   for (const auto& [name, text] : worlds) {
     std::vector<std::string> active;
-    for (const Pipeline::Stage& stage : world(name)->pipeline().stages())
-      active.push_back(stage.process->name);
+    const auto reference = world(name);
+    for (const Pipeline::Stage& stage : reference->pipeline().stages()) active.push_back(stage.process->name);
     for (const std::string& process : active) {
       SCOPED_TRACE(process + " in " + name);
       auto s = world(name);

@@ -91,7 +91,7 @@ TEST(TimelineFaults, AreAllNamed) {
            {"[{time: 1}]", "run.timeline.0.set: must name parameters"},
            {"[{time: 1, set: {rain.rate: 0}, at: 5}]", "run.timeline.0.at: unknown key"},
            {"[{time: 5, set: {rain.rate: 0}}, {time: 4, set: {rain.rate: 0}}]",
-            "run.timeline.1.time: is before"},
+            "run.timeline.1.time: is earlier"},
            {"[{time: 1, set: {rain.rat: 0}}]", "rain.rat: unknown parameter"},
            {"[{time: 1, set: {rain.rate: -1}}]", "rain.rate: = -1 is not in [0, 1] m/s"},
            {"[{time: 1, set: {grid.width: 7}}]", "grid.width: cannot change"},

@@ -7,7 +7,6 @@ import random
 import resource
 import threading
 import time
-import unittest
 
 import rospy
 import rostest

@@ -7,6 +7,7 @@
 #include "kernels/avalanching/avalanching.hpp"
 #include "kernels/avalanching/soil_and_bedrock.hpp"
 #include "kernels/edit/brush_smooth.hpp"
+#include "kernels/field/random.hpp"
 #include "kernels/field/statistics.hpp"
 #include "kernels/field/surface.hpp"
 #include "kernels/plants/cover.hpp"

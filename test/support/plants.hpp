@@ -4,9 +4,12 @@
 #include <vector>
 
 #include "kernels/plants/cover.hpp"
+#include "kernels/plants/density.hpp"
+#include "kernels/plants/growth.hpp"
 #include "kernels/plants/illumination.hpp"
 #include "kernels/plants/life.hpp"
 #include "kernels/plants/marking.hpp"
+#include "kernels/plants/spawning.hpp"
 #include "support/bench_terrain.hpp"
 
 namespace desert_sim::test {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "src/core/log.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
 
 namespace desert_sim {
@@ -52,6 +53,7 @@ void log_start(const Scenario& scenario, const std::string& backend) {
 DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
     : node_(private_node), spinner_(threads, &queue_), step_spinner_(step_threads, &step_queue_) {
   node_.setCallbackQueue(&queue_);
+  set_log_sink([](const std::string& message) { ROS_ERROR("%s", message.c_str()); });
   NodeSetup setup = read_node_setup(node_);
   resolve_grid(setup.scenario, raster_loader_with_bags());
   const NodeParameters& p = setup.node;

@@ -115,11 +115,12 @@ struct Patch {
   std::vector<float> values;
 };
 
-/// A brush on `layer`: sand, bedrock, or soil and water where the terrain has some. The weight of the shape and
-/// what a merge does with it are in kernels/edit/brush_shape.hpp and brush.hpp. For sand, soil and water `value` is
-/// a depth [m]; for bedrock an elevation [m], or with add and sub a change. With `conserve`, the material comes from, or
-/// goes to, the cells within `ring_width` of the shape: what is taken in proportion to what they have, of
-/// bedrock and what is given in equal parts. The sum of all changes is then 0, to the quantum.
+/// A brush on `layer`: sand, bedrock, or soil and water where the terrain has some. The weight of the shape
+/// and what a merge does with it are in kernels/edit/brush_shape.hpp and brush.hpp. For sand, soil and water
+/// `value` is a depth [m]; for bedrock an elevation [m], or with add and sub a change. With `conserve`, the
+/// material comes from, or goes to, the cells within `ring_width` of the shape: what is taken in proportion
+/// to what they have, of bedrock and what is given in equal parts. The sum of all changes is then 0, to the
+/// quantum.
 struct EditTerrain : EditParameters {
   static constexpr std::size_t max_points = 512;
   std::vector<Place> points;  ///< of a polygon its corners, of a capsule the two ends of its axis

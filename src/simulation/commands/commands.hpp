@@ -30,7 +30,8 @@ class Commands {
 
  private:
   void set_parameters(const std::vector<std::string>& settings);
-  /// Of `settings`, numbers become ramps where there is a duration [s]; former ramps of the same parameters stop.
+  /// Of `settings`, numbers become ramps where there is a duration [s]; former ramps of the same parameters
+  /// stop.
   void begin_ramps(std::vector<std::string>& settings, double duration);
 
   SimulationState& state_;

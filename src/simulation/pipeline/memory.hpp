@@ -12,8 +12,8 @@ namespace desert_sim {
 std::size_t total_bytes(const std::vector<MemoryPart>& parts);
 
 /// What Simulation::memory() of `scenario` would say at its start, layers that its terrain steps fill
-/// included. `scenario` must be resolved, with at most max_grid_cells cells. What transforms take for themselves
-/// is estimated.
+/// included. `scenario` must be resolved, with at most max_grid_cells cells. What transforms take for
+/// themselves is estimated.
 std::vector<MemoryPart> planned_memory(const Scenario& scenario);
 
 /// Bytes a cell that the host holds at once while the terrain of `scenario` is built from its steps.

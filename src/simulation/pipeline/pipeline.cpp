@@ -37,7 +37,8 @@ void Pipeline::prepare() {
   for (const Process& process : table_.processes) {
     if (!process.active(state_.scenario)) continue;
     Stage stage{&process, process.keep ? process.keep(state_) : nullptr};
-    // What the process kept before goes once its successor is there, not with all others': less memory at a time.
+    // What the process kept before goes once its successor is there, not with all others': less memory at a
+    // time.
     for (Stage& former : before)
       if (former.process == &process) {
         stage.milliseconds = former.milliseconds;
@@ -51,8 +52,8 @@ void Pipeline::prepare() {
   fields_.heights_stale = true;
 }
 
-/// A derived layer is there only while a process that writes it is active: others take its absence for "none". What
-/// lies in persistent layers stays there when their process is switched off.
+/// A derived layer is there only while a process that writes it is active: others take its absence for
+/// "none". What lies in persistent layers stays there when their process is switched off.
 void Pipeline::bring_layers_into_use() {
   std::vector<Layer> unused;
   for (const Process& process : table_.processes)
@@ -183,8 +184,8 @@ bool Pipeline::checks_layers() const {
   return every > 0 && (state_.steps + 1) % static_cast<std::uint64_t>(every) == 0;
 }
 
-/// Throws StateError, which names the process and the first cell, if the layer has a value that is not finite, out of
-/// its scale, or negative where it must not be.
+/// Throws StateError, which names the process and the first cell, if the layer has a value that is not
+/// finite, out of its scale, or negative where it must not be.
 void Pipeline::check(const Process& process, Layer layer) const {
   if (!state_.terrain.has(layer)) return;
   const LayerInfo& row = info(layer);

@@ -1,6 +1,6 @@
 #pragma once
-/// The pipeline: the processes of a scenario in their order, with what they keep. The list is made when the scenario
-/// is set or changed; a step is a loop over it.
+/// The pipeline: the processes of a scenario in their order, with what they keep. The list is made when the
+/// scenario is set or changed; a step is a loop over it.
 
 #include <memory>
 #include <string>
@@ -29,8 +29,9 @@ class Pipeline {
   /// For the present scenario of `state`. Throws ConfigError if there is no memory.
   Pipeline(SimulationState& state, ProcessTable table);
 
-  /// Makes the list, the layers in use, and what the processes keep anew: after parameters have changed, and when the
-  /// device is idle. Throws ConfigError if there is no memory; prepare() with the former scenario then restores it.
+  /// Makes the list, the layers in use, and what the processes keep anew: after parameters have changed, and
+  /// when the device is idle. Throws ConfigError if there is no memory; prepare() with the former scenario
+  /// then restores it.
   void prepare();
   /// After a command that did not change parameters; see Process::adapt.
   void adapt();

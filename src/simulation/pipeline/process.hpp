@@ -1,9 +1,9 @@
 #pragma once
-/// A process as a value. One row says its name, its sections of parameters, the source of its equations, when it is
-/// active, which layers it reads and writes, what it keeps between steps, and its step. From the rows of
-/// src/simulation/processes follow the order of a step, the layers that are allocated, the plan of memory, the times,
-/// the check for broken values, what is recomputed before somebody looks, what of a step can be recorded, the cost
-/// model, the contract test, and the page config/processes.md.
+/// A process as a value. One row says its name, its sections of parameters, the source of its equations, when
+/// it is active, which layers it reads and writes, what it keeps between steps, and its step. From the rows
+/// of src/simulation/processes follow the order of a step, the layers that are allocated, the plan of memory,
+/// the times, the check for broken values, what is recomputed before somebody looks, what of a step can be
+/// recorded, the cost model, the contract test, and the page config/processes.md.
 
 #include <functional>
 #include <memory>
@@ -21,7 +21,8 @@ struct StepContext {
   SimulationState& state;
   SharedFields& fields;
   TerrainView terrain;
-  /// No process after avalanching moves ground or water: it is to leave the heights measured for the next step.
+  /// No process after avalanching moves ground or water: it is to leave the heights measured for the next
+  /// step.
   bool avalanching_measures_heights = false;
 
   Exec& exec() const { return state.exec(); }
@@ -36,8 +37,8 @@ class Kept {
   virtual std::size_t bytes() const = 0;  ///< on the device
 };
 
-/// The fewest bytes that a process must move through memory in a step: every layer or field that a pass over the grid
-/// reads or writes, once, four bytes a cell.
+/// The fewest bytes that a process must move through memory in a step: every layer or field that a pass over
+/// the grid reads or writes, once, four bytes a cell.
 struct MemoryTraffic {
   double bytes = 0;  ///< a cell and step
   std::string reads, writes;
@@ -57,17 +58,19 @@ struct Process {
   /// Makes what it keeps; null if it keeps nothing. Throws ConfigError if there is no memory.
   std::function<std::unique_ptr<Kept>(const SimulationState&)> keep;
   std::function<void(StepContext&, Kept*)> step;
-  /// Recomputes, before somebody looks, what it derives from the state, which a loaded checkpoint does not have and
-  /// changed parameters make stale; it changes no persistent layer. Null if it derives nothing.
+  /// Recomputes, before somebody looks, what it derives from the state, which a loaded checkpoint does not
+  /// have and changed parameters make stale; it changes no persistent layer. Null if it derives nothing.
   std::function<void(StepContext&, Kept*)> refresh;
-  /// Brings what it keeps up to date after a command that did not change parameters (wind features, loose ground).
-  /// Throws ConfigError if there is no memory. Null if nothing can be stale.
+  /// Brings what it keeps up to date after a command that did not change parameters (wind features, loose
+  /// ground). Throws ConfigError if there is no memory. Null if nothing can be stale.
   std::function<void(const SimulationState&, Kept*)> adapt;
   /// Iterations that the device has counted since `keep`. Null if it counts none.
   std::function<std::uint64_t(const Kept&)> counted_iterations;
-  /// What the host counts after each step, also after one that was replayed from a recording. Null if nothing.
+  /// What the host counts after each step, also after one that was replayed from a recording. Null if
+  /// nothing.
   std::function<void(StepContext&, Kept*)> after_step;
-  /// Whether its next step starts the same work on the device as others before and after it, and reads nothing back.
+  /// Whether its next step starts the same work on the device as others before and after it, and reads
+  /// nothing back.
   std::function<bool(const SimulationState&)> can_be_recorded = [](const SimulationState&) { return true; };
   /// Of sand on bare rock with the default parameters. Null if the cost model does not have it.
   std::function<MemoryTraffic(const Scenario&, const Grid&)> traffic;
@@ -75,8 +78,8 @@ struct Process {
   bool may_write(Layer layer) const;
 };
 
-/// Of two active processes that are done in one pass where a rule says that it is faster. The bits are those of one
-/// after the other.
+/// Of two active processes that are done in one pass where a rule says that it is faster. The bits are those
+/// of one after the other.
 struct FusedProcesses {
   std::string name;  ///< of the rule
   std::string first, second;

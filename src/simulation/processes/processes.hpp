@@ -1,6 +1,6 @@
 #pragma once
-/// The table of all processes, in the order of a step. A new one is a function here that returns its row, and a line
-/// in process_table().
+/// The table of all processes, in the order of a step. A new one is a function here that returns its row, and
+/// a line in process_table().
 
 #include "src/simulation/pipeline/pipeline.hpp"
 

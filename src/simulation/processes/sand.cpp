@@ -75,7 +75,8 @@ AvalancheWork make_avalanche_work(const SimulationState& state) {
   return work;
 }
 
-/// Soil and bedrock slide only where something changes them: abrasion, water, or an edit, until all has come to rest.
+/// Soil and bedrock slide only where something changes them: abrasion, water, or an edit, until all has come
+/// to rest.
 template <class E>
 void slide_ground(E& e, StepContext& c, AvalancheWork& work) {
   SimulationState& state = c.state;
@@ -112,10 +113,10 @@ bool avalanching_can_be_recorded(const SimulationState& state) {
   return asks_nothing && !state.bedrock_loose && !state.soil_loose;
 }
 
-/// Passes of avalanching read ground, sand and tangents, and write sand. Each coarse level has a quarter of the cells
-/// of the one below; it is filled (ground, sand twice, tangents), passed over, and read again (sand, before and
-/// after). The fine grid is read for the first in passing. The last pass writes the heights. Of quality `converged`
-/// this counts the first cycle.
+/// Passes of avalanching read ground, sand and tangents, and write sand. Each coarse level has a quarter of
+/// the cells of the one below; it is filled (ground, sand twice, tangents), passed over, and read again
+/// (sand, before and after). The fine grid is read for the first in passing. The last pass writes the
+/// heights. Of quality `converged` this counts the first cycle.
 MemoryTraffic avalanche_traffic(const Scenario& s, const Grid& grid) {
   constexpr double layer = 4, heights = 1, filling = 4, handing_down = 2;
   const avalanching::Schedule plan = avalanching::schedule(s.avalanching, grid);
@@ -209,8 +210,8 @@ Process avalanching_process() {
   return p;
 }
 
-/// Where starting passes is what takes time, and nothing but saltation asks for the wind's shadow before sand is
-/// lifted, the pass that lifts sand finds it.
+/// Where starting passes is what takes time, and nothing but saltation asks for the wind's shadow before sand
+/// is lifted, the pass that lifts sand finds it.
 FusedProcesses shadow_found_in_passing() {
   FusedProcesses f;
   f.name = "shadow found in passing";

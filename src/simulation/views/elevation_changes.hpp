@@ -14,7 +14,8 @@ struct TileChange {
   int x = 0, y = 0, width = 0, height = 0;
   int bits = 0;          ///< of a step: 4 or 8; 0 if there are none
   float resolution = 0;  ///< of a step [m]
-  /// One of both, with held_elevation::unchanged_step or unchanged_elevation in the place of a cell that did not change.
+  /// One of both, with held_elevation::unchanged_step or unchanged_elevation in the place of a cell that did
+  /// not change.
   std::vector<std::int8_t> steps;
   std::vector<float> elevations;  ///< [m]
 

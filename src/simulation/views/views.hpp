@@ -1,6 +1,6 @@
 #pragma once
-/// What others see of a simulation: snapshots of layers, plants, and what subscribers lack of the elevation and of the
-/// costs. Copies to the host go on beside the next steps.
+/// What others see of a simulation: snapshots of layers, plants, and what subscribers lack of the elevation
+/// and of the costs. Copies to the host go on beside the next steps.
 
 #include <memory>
 #include <vector>
@@ -17,11 +17,11 @@ class Views {
  public:
   Views(SimulationState& state, Pipeline& pipeline) : state_(state), pipeline_(pipeline) {}
 
-  /// Starts a copy of layers to the host; the next step may be started at once, and does not show in it. Elevation and
-  /// wind are brought up to date first, and layers that exist on request computed, if they are asked for; what was
-  /// never asked for takes no memory.
-  /// Of a band of rows only those are copied and computed: the snapshot's height and origin are the band's, less what
-  /// lies off an open terrain (at least one row is left).
+  /// Starts a copy of layers to the host; the next step may be started at once, and does not show in it.
+  /// Elevation and wind are brought up to date first, and layers that exist on request computed, if they are
+  /// asked for; what was never asked for takes no memory. Of a band of rows only those are copied and
+  /// computed: the snapshot's height and origin are the band's, less what lies off an open terrain (at least
+  /// one row is left).
   PendingSnapshot begin_snapshot(const std::vector<Layer>& layers, const RowBand& band = {});
   /// Starts a copy of all plants to the host, in the order of their look-up.
   PendingPlants begin_plants();
@@ -34,13 +34,13 @@ class Views {
   void hold_elevation();
   void forget_elevation() { held_elevation_ = {}; }
   bool holds_elevation() const { return static_cast<bool>(held_elevation_); }
-  /// Starts a copy of the cells whose elevation differs by more than `threshold` [m] from what is held, which then is
-  /// held: whoever drops the answer lacks them from then on. `tile`: cells on a side of a tile. Throws StateError if
-  /// nothing is held.
+  /// Starts a copy of the cells whose elevation differs by more than `threshold` [m] from what is held, which
+  /// then is held: whoever drops the answer lacks them from then on. `tile`: cells on a side of a tile.
+  /// Throws StateError if nothing is held.
   Pending<ElevationChanges> take_elevation_changes(double threshold, int tile);
 
-  /// Starts a copy of what subscribers lack of the costs of the terrain, for the rover of the scenario's section
-  /// `traversability`; it is held then: whoever drops the answer lacks it from then on.
+  /// Starts a copy of what subscribers lack of the costs of the terrain, for the rover of the scenario's
+  /// section `traversability`; it is held then: whoever drops the answer lacks it from then on.
   TakenCosts take_costs(const CostQuery& query);
   void forget_costs() { costs_ = {}; }
 

@@ -1,9 +1,10 @@
-// A process that the test tree alone adds, frost.hpp, has everything that the others have: its section of parameters,
-// its place in the step, layers, times, memory, the check for broken values, checkpoints, live parameters, pages.
+// A process that the test tree alone adds, frost.hpp, has everything that the others have: its section of
+// parameters, its place in the step, layers, times, memory, the check for broken values, checkpoints, live
+// parameters, pages.
 
 #include <algorithm>
 
-#include "frost.hpp"
+#include "made_up/frost.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/processes/processes.hpp"
 #include "support/temporary_folder.hpp"
@@ -32,7 +33,7 @@ Process frost_process() {
   p.name = "frost";
   p.parameters = {section};
   p.source = "made up";
-  p.header = "test/property/frost.hpp";
+  p.header = "test/made_up/frost.hpp";
   p.active = [](const Scenario& s) { return parameters_of(s).enabled; };
   p.reads = {Layer::soil};
   p.writes = {Layer::bedrock, Layer::sand};
