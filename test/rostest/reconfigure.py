@@ -139,7 +139,7 @@ class Reconfigure(Scenarios):
     def test_what_cannot_change_is_refused_by_name(self):
         node, client = self.client("fixed")
         client.get_parameter_descriptions(timeout=10 * PATIENCE)
-        for name, text in (("grid__width", "grid.width: cannot change while the simulation runs: it shapes"),
+        for name, text in (("grid__width", "grid.width: cannot change while the simulation runs: the layers"),
                            ("nothing__such", "nothing.such: unknown parameter")):
             client._param_types[name] = int  # the client itself would not send it
             client.param_description.append({"name": name, "edit_method": ""})
