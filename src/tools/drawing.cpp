@@ -32,6 +32,7 @@ void draw(const std::string& option, const std::string& script, const std::strin
   std::vector<std::string> words{"python3", script_path(option, script), picture};
   words.insert(words.end(), results.begin(), results.end());
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t child = 0;

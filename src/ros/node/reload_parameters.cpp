@@ -80,7 +80,7 @@ PublisherSetup with_differences(const PublisherSetup& before, const PublisherSet
 
 ParameterReload::ParameterReload(ros::NodeHandle node, NodeSetup setup, SimulationThread& simulation,
                                  TopicPublisher& publisher, std::function<void(const Scenario&)> on_scenario)
-    : node_(std::move(node)),
+    : node_(node),
       last_(std::move(setup)),
       simulation_(simulation),
       publisher_(publisher),

@@ -106,7 +106,7 @@ constexpr const char* costmap = "costmap";
 class CostmapTopic : public MessageTopic<nav_msgs::OccupancyGrid> {
  public:
   CostmapTopic(const TopicContext& context, ros::Publisher latched)
-      : MessageTopic(context, costmap), latched_(std::move(latched)) {}
+      : MessageTopic(context, costmap), latched_(latched) {}
   SubscriberCosts& held() { return held_; }
 
   double rate() const override { return parameters().maps.parameters.costmap_keyframe_rate; }
