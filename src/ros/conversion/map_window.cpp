@@ -44,6 +44,7 @@ std::string yaml_list(const std::vector<MapLayer>& layers) {
 
 std::vector<Layer> layers_of(const std::vector<MapLayer>& layers) {
   std::vector<Layer> all;
+  all.reserve(all.size() + layers.size());
   for (const MapLayer& layer : layers) all.push_back(layer.layer);
   return all;
 }
