@@ -6,6 +6,7 @@
 #include "kernels/backend/loops.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/surface.hpp"
+#include "kernels/wind/tuned/shadow_marches.hpp"
 #include "kernels/wind/wind_shadow_march.hpp"
 #include "src/core/parameters.hpp"
 
