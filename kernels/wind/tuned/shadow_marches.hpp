@@ -1,6 +1,6 @@
 #pragma once
-/// Faster forms of the straight march, with the bits of Shadow (wind_shadow_march.hpp): four cells at a time for
-/// GPUs, and short marches without branches, which a CPU works on as vectors.
+/// Faster forms of the straight march, with the bits of Shadow (wind_shadow_march.hpp): four cells at a time
+/// for GPUs, and short marches without branches, which a CPU works on as vectors.
 
 #include "kernels/wind/wind_shadow_march.hpp"
 
