@@ -2,7 +2,7 @@
 /// Frost weathering: a process that is made up for made_up_process_test.cpp, which shows that a process costs
 /// one header (this one), one row, and one test.
 ///
-///   Δs = min(rate · Δt, room above −wall)  of bare rock becomes sand;  depth of weathered rock += Δs
+///   rate · Δt of bare rock becomes sand
 ///
 /// Reads bedrock, soil, sand; writes bedrock, sand.
 

@@ -21,7 +21,7 @@ const FrostParameters& parameters_of(const Scenario& s) {
   return s.process_sections.get<FrostParameters>(section);
 }
 
-/// Depth of rock that has been weathered, which the process keeps between steps.
+/// What the process keeps between steps.
 struct FrostWork {
   int steps = 0;
   Buffer<float> memory;

@@ -70,9 +70,8 @@ std::string describe_pipeline(const Pipeline& pipeline) {
   int n = 0;
   for (const Pipeline::Stage& stage : pipeline.stages()) {
     const Process& p = *stage.process;
-    std::vector<Layer> writes = p.writes;
     out << ++n << ". " << p.name << " (" << p.header << ")\n     reads   " << list_of(p.reads, "nothing else")
-        << "\n     writes  " << list_of(writes, "angles of repose") << "\n";
+        << "\n     writes  " << list_of(p.writes, "angles of repose") << "\n";
     if (!p.writes_if_in_use.empty())
       out << "     writes where in use  " << list_of(p.writes_if_in_use, "") << "\n";
     if (stage.kept) out << "     keeps   " << stage.kept->bytes() << " bytes\n";
