@@ -15,6 +15,8 @@ PATH=/usr/sbin:/usr/bin:/sbin:/bin:$PATH
 [[ -x /usr/local/cuda/bin/nvcc ]] && PATH=/usr/local/cuda/bin:$PATH
 unset PYTHONHOME PYTHONPATH
 export PATH ROS_VERSION=1 ROS_PYTHON_VERSION=3
+# Messages are generated for C++ and Python; nothing here needs those of the other languages.
+export ROS_LANG_DISABLE=${ROS_LANG_DISABLE-geneus:genlisp:gennodejs}
 
 # 1: Debian 12's column of dependencies.txt, 2: that of Ubuntu 20.04, 0: a system we have no names for.
 system_column() {

@@ -15,27 +15,27 @@ inline bool children_share_tiles(const Grid& g) {
 }
 
 /// Passes over a level: those numbered `first` to `last` − 1 in this step, with at least `sweeps` sweeps
-/// each. `share`, `plenty` and `edge_factor` are as in Schedule; `edge_factor` applies to the last of these
-/// passes.
+/// each. `share`, `continue_threshold` and `edge_factor` are as in Schedule; `edge_factor` applies to the
+/// last of these passes.
 struct Passes {
   int first, last, sweeps;
-  float share, plenty, edge_factor;
+  float share, continue_threshold, edge_factor;
 };
 
 /// Relaxes one level, after prolonging the change of the next coarser one to it. `then` is the law that
 /// follows the last pass (relax_tiles()).
 template <class E, class Then>
-void relax(E& exec, const LevelView& level, Prolong from_coarse, const Passes& p, std::uint64_t turn,
+void relax(E& exec, const LevelView& level, Prolong from_coarse, const Passes& p, std::uint64_t step_count,
            const Then& then) {
   if (from_coarse.sand_after && !children_share_tiles(level.grid)) {
     for_each_cell(exec, from_coarse.coarse, from_coarse);
     from_coarse = {};
   }
   for (int pass = p.first; pass < p.last; ++pass) {
-    const Tiles tiles{level.grid, seam_offset(turn, pass)};
+    const Tiles tiles{level.grid, seam_offset(step_count, pass)};
     const bool is_last = pass + 1 == p.last;
     const GapOmega share{p.share, is_last ? p.share * p.edge_factor : p.share};
-    const RelaxTile law{tiles, level, from_coarse, share, p.sweeps, p.plenty};
+    const RelaxTile law{tiles, level, from_coarse, share, p.sweeps, p.continue_threshold};
     if (is_last)
       relax_tiles(exec, law, then);
     else
@@ -59,12 +59,12 @@ inline void view_levels(std::vector<Level>& coarse, LevelView* views) {
 }
 
 /// The law that restricts the level `below` to coarse[n] and, if there is one, to coarse[n + 1].
-inline Restrict filling(std::vector<Level>& coarse, std::size_t n, const LevelView& below) {
+inline Restrict make_restriction(std::vector<Level>& coarse, std::size_t n, const LevelView& below) {
   const auto out = [](Level& level) {
-    return LevelOut{level.grid, level.ground.data(), level.sand.data(), level.sand_before.data(),
-                    level.repose.data()};
+    return LevelBuffers{level.grid, level.ground.data(), level.sand.data(), level.sand_before.data(),
+                        level.repose.data()};
   };
-  return {below, out(coarse[n]), n + 1 < coarse.size() ? out(coarse[n + 1]) : LevelOut{}};
+  return {below, out(coarse[n]), n + 1 < coarse.size() ? out(coarse[n + 1]) : LevelBuffers{}};
 }
 
 /// One multigrid cycle: relaxes the fine grid, restricts it to the coarse levels, relaxes these from the
@@ -72,7 +72,7 @@ inline Restrict filling(std::vector<Level>& coarse, std::size_t n, const LevelVi
 /// grid.
 template <class E, class Then>
 void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const Schedule& plan,
-           std::uint64_t turn, Workspace& work, const Then& then) {
+           std::uint64_t step_count, Workspace& work, const Then& then) {
   std::vector<Level>& coarse = work.coarse;
   std::array<LevelView, 32> views;
   views[0] = fine;
@@ -81,23 +81,25 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
   const float share = plan.share * p.transfer, coarse_share = plan.coarse_share * p.transfer;
   const Passes before{0, 1, plan.first_sweeps, share, never, 1.0f};
   if (coarse.empty())
-    relax(exec, fine, Prolong{}, before, turn, NoFollowUp{});
+    relax(exec, fine, Prolong{}, before, step_count, NoFollowUp{});
   else
-    relax(exec, fine, Prolong{}, before, turn, filling(coarse, 0, fine));
+    relax(exec, fine, Prolong{}, before, step_count, make_restriction(coarse, 0, fine));
   for (std::size_t n = 2; n < coarse.size(); n += 2) {
-    const Restrict law = filling(coarse, n, views[n]);
+    const Restrict law = make_restriction(coarse, n, views[n]);
     for_each_cell(exec, law.blocks(), law);
   }
   Prolong change{};
   for (std::size_t n = coarse.size(); n > 0; --n) {
     const int passes = plan.coarse_passes(n);
-    relax(exec, views[n], change, {0, passes, plan.coarse_sweeps / passes, coarse_share, plan.plenty, 1.0f},
-          turn, NoFollowUp{});
+    relax(exec, views[n], change,
+          {0, passes, plan.coarse_sweeps / passes, coarse_share, plan.continue_threshold, 1.0f}, step_count,
+          NoFollowUp{});
     const Level& done = coarse[n - 1];
     change = {done.grid, done.sand.data(), done.sand_before.data(), views[n - 1].grid, views[n - 1].sand};
   }
   relax(exec, fine, change,
-        {1, plan.fine_passes(), plan.last_sweeps, share, plan.plenty, plan.last_edge_factor}, turn, then);
+        {1, plan.fine_passes(), plan.last_sweeps, share, plan.continue_threshold, plan.last_edge_factor},
+        step_count, then);
 }
 
 /// In rounds the whole excess slides (ω = 1). Mostly chains of small slides are left after a cycle, and what
@@ -111,14 +113,14 @@ constexpr int max_sweeps_in_rounds = 32;
 /// The whole grid is checked, or after a round only the blocks around the tiles that it has relaxed.
 template <class E>
 void update_active_tiles(E& exec, const LevelView& fine, float tolerance, const ActiveTileFlags& round,
-                         bool after_round, const ActiveTiles& open) {
+                         bool after_round, const ActiveTiles& active) {
   const Grid blocks = Blocks{fine.grid}.cells();
-  Quanta* const ask = after_round ? open.ask.data() : nullptr;
-  if (after_round) for_each_cell(exec, blocks, MarkNeighbours{round, ask});
-  exec.set_zero(open.found.data(), open.found.bytes());
-  const FindSteep find{{fine, tolerance}, ask, open.steep()};
+  Quanta* const blocks_to_check = after_round ? active.blocks_to_check.data() : nullptr;
+  if (after_round) for_each_cell(exec, blocks, MarkNeighbours{round, blocks_to_check});
+  exec.set_zero(active.check_buffer.data(), active.check_buffer.bytes());
+  const FindSteep find{{fine, tolerance}, blocks_to_check, active.steep()};
   for_each_cell(exec, find.squares(), find);
-  for_each_cell(exec, blocks, ActivateTiles{open.steep(), round, open.tally()});
+  for_each_cell(exec, blocks, ActivateTiles{active.steep(), round, active.steep_counter()});
 }
 
 /// A multigrid cycle, then rounds of passes over the active tiles only, until no cell is too steep. What is
@@ -126,35 +128,40 @@ void update_active_tiles(E& exec, const LevelView& fine, float tolerance, const 
 /// another cycle. All rounds between two cycles have the same seams, those of the passes that would follow
 /// the cycle.
 template <class E>
-void relax_until_converged(E& exec, const LevelView& fine, const AvalanchingParameters& p, std::uint64_t turn,
-                           Workspace& work) {
+void relax_until_converged(E& exec, const LevelView& fine, const AvalanchingParameters& p,
+                           std::uint64_t step_count, Workspace& work) {
   using After = CheckConvergence::After;
   const Schedule plan = schedule(p, fine.grid);
   const float share = omega_in_rounds * p.transfer;
-  const ActiveTiles& open = work.open;
-  Progress* const progress = open.progress.data();
-  const auto look = [&](After after, int sweeps) {
-    for_each_item(exec, 1, CheckConvergence{progress, open.tally(), p.max_iterations, after, sweeps});
+  const ActiveTiles& active = work.active_tiles;
+  Progress* const progress = active.progress.data();
+  const auto check = [&](After after, int sweeps) {
+    for_each_item(exec, 1,
+                  CheckConvergence{progress, active.steep_counter(), p.max_iterations, after, sweeps});
   };
   const auto do_cycle = [&](std::uint64_t seams, After what) {
-    ActiveTileFlags round{fine.grid, {}, open.flags(), open.most_tiles};
+    ActiveTileFlags round{fine.grid, {}, active.flags(), active.max_tiles};
     for (int n = 0; n < passes_per_round; ++n) round.offsets[n] = seam_offset(seams, plan.fine_passes() + n);
     cycle(exec, fine, p, plan, seams, work, NoFollowUp{});
-    update_active_tiles(exec, fine, p.tolerance, round, false, open);
-    look(what, plan.fine_sweeps());
+    update_active_tiles(exec, fine, p.tolerance, round, false, active);
+    check(what, plan.fine_sweeps());
     exec.repeat_while(&progress->more_rounds, [&] {
       for (int n = 0; n < passes_per_round; ++n)
-        relax_tiles(
-            exec,
-            RelaxTile{
-                round.of(n), fine, Prolong{}, {share, share}, max_sweeps_in_rounds, 0.0f, round.of_pass(n)},
-            NoFollowUp{});
-      update_active_tiles(exec, fine, p.tolerance, round, true, open);
-      look(After::round, passes_per_round * max_sweeps_in_rounds);
+        relax_tiles(exec,
+                    RelaxTile{round.tiles_of_pass(n),
+                              fine,
+                              Prolong{},
+                              {share, share},
+                              max_sweeps_in_rounds,
+                              0.0f,
+                              round.flags_of_pass(n)},
+                    NoFollowUp{});
+      update_active_tiles(exec, fine, p.tolerance, round, true, active);
+      check(After::round, passes_per_round * max_sweeps_in_rounds);
     });
   };
-  do_cycle(turn, After::first_cycle);
-  exec.repeat_while(&progress->more_cycles, [&] { do_cycle(turn + 1, After::cycle); });
+  do_cycle(step_count, After::first_cycle);
+  exec.repeat_while(&progress->more_cycles, [&] { do_cycle(step_count + 1, After::cycle); });
 }
 
 template <class E>
@@ -184,13 +191,13 @@ void sweep_all(E& exec, const LevelView& fine, const AvalanchingParameters& p, W
 template <class E>
 void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::uint64_t tick,
           const float* repose, surface::Heights* heights, Workspace& work) {
-  const LevelView fine = finest(t, repose);
+  const LevelView fine = finest_level(t, repose);
   const bool converge = p.quality == AvalancheQuality::converged;
   work.iterations = 0;
   if (p.scheme == AvalancheScheme::multilevel && !converge) {
     const Schedule plan = schedule(p, t.grid);
     if (heights)
-      cycle(exec, fine, p, plan, tick, work, surface::measuring(t, *heights));
+      cycle(exec, fine, p, plan, tick, work, surface::make_heights_law(t, *heights));
     else
       cycle(exec, fine, p, plan, tick, work, NoFollowUp{});
     work.iterations = plan.fine_sweeps();
@@ -200,7 +207,7 @@ void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::ui
     relax_until_converged(exec, fine, p, tick, work);
   else
     sweep_all(exec, fine, p, work);
-  if (heights) surface::measure(exec, t, *heights);
+  if (heights) surface::compute_heights(exec, t, *heights);
 }
 
 template void step(Backend&, const TerrainView&, const AvalanchingParameters&, std::uint64_t, const float*,

@@ -37,7 +37,7 @@
 ///    |
 ///    +-- cycle()      scheme `multilevel`
 ///    |     |
-///    |     |   fine grid       relax               relax     then surface::MeasureBlock
+///    |     |   fine grid       relax               relax     then surface::ComputeBlockHeights
 ///    |     |                      \             /
 ///    |     |   coarse levels       restrict ... relax
 ///    |     |
@@ -82,8 +82,8 @@ namespace desert_sim::avalanching {
 ///   last_sweeps     fewest sweeps of each pass over the fine grid after the coarse levels
 ///   last_passes     number of those passes; their seams lie in different places
 ///   two_pass_levels    number of coarse levels, from the finest on, that get two passes; others get one
-///   plenty          a tile goes on, up to `most_sweeps` (tile.hpp), while a pair moves more than this
-///                   [cell sizes]; not in the first pass
+///   continue_threshold   a tile goes on, up to `max_sweeps_while_sliding` (tile.hpp), while a pair moves
+///                   more than this [cell sizes]; not in the first pass
 ///   share           ω on the fine grid. ½ leaves a pair at repose; more converges sooner, but with 0.8
 ///                   slopes end too far below their angle of repose.
 ///   coarse_share    ω on coarse levels. They make somewhat more slopes of 6 … 18 degrees than there should
@@ -93,7 +93,7 @@ namespace desert_sim::avalanching {
 struct Schedule {
   int first_sweeps, coarse_sweeps, last_sweeps, last_passes;
   std::size_t two_pass_levels;
-  float plenty, share, coarse_share, last_edge_factor;
+  float continue_threshold, share, coarse_share, last_edge_factor;
 
   /// Passes over the nth coarse level, from 1 for the finest; they share `coarse_sweeps`.
   constexpr int coarse_passes(std::size_t n) const { return n <= two_pass_levels ? 2 : 1; }
@@ -123,13 +123,13 @@ struct Workspace {
   std::vector<Level> coarse;  ///< coarse[0] has cells twice as wide as the terrain's
   Buffer<float> share;        ///< with given, received: synchronous schemes only
   Buffer<Quanta> given, received;
-  ActiveTiles open;    ///< scheme multilevel with quality converged only
-  int iterations = 0;  ///< fine sweeps of the last step that the host has counted
+  ActiveTiles active_tiles;  ///< scheme multilevel with quality converged only
+  int iterations = 0;        ///< fine sweeps of the last step that the host has counted
   /// Fine sweeps of all steps that the device has counted (relax_until_converged()).
   long long counted_iterations() const {
-    if (!open.progress) return 0;
+    if (!active_tiles.progress) return 0;
     Progress progress;
-    open.progress.download(0, 1, &progress);
+    active_tiles.progress.download(0, 1, &progress);
     return progress.sweeps;
   }
   std::size_t bytes() const;
@@ -141,10 +141,10 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParamete
 /// offsets, so that seams leave no imprint in the terrain.
 constexpr int seam_offsets[] = {0, 16, 8, 24, 4, 20, 12, 28};
 
-constexpr std::uint64_t turns = 8;
+constexpr std::uint64_t seam_period = 8;
 
-inline int seam_offset(std::uint64_t turn, int pass) {
-  return seam_offsets[(5 * turn + static_cast<std::uint64_t>(pass)) % turns];
+inline int seam_offset(std::uint64_t step_count, int pass) {
+  return seam_offsets[(5 * step_count + static_cast<std::uint64_t>(pass)) % seam_period];
 }
 
 /// `repose`: tangent of each cell's angle of repose. `tick`: number of steps done, which selects the seams.

@@ -46,7 +46,7 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParamete
     work.received = Buffer<Quanta>(exec, cells);
     return work;
   }
-  if (p.quality == AvalancheQuality::converged) work.open = make_active_tiles(exec, grid);
+  if (p.quality == AvalancheQuality::converged) work.active_tiles = make_active_tiles(exec, grid);
   for (const Grid& g : coarse_grids(grid, p)) {
     const std::size_t n = static_cast<std::size_t>(g.cells());
     work.coarse.push_back({g, Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n), Buffer<Quanta>(exec, n),
@@ -61,8 +61,9 @@ GroundWorkspace make_ground_workspace(Exec& exec, const Grid& grid) {
 }
 
 std::size_t Workspace::bytes() const {
-  std::size_t total = share.bytes() + given.bytes() + received.bytes() + open.ask.bytes() +
-                      open.found.bytes() + open.progress.bytes();
+  std::size_t total = share.bytes() + given.bytes() + received.bytes() +
+                      active_tiles.blocks_to_check.bytes() + active_tiles.check_buffer.bytes() +
+                      active_tiles.progress.bytes();
   for (const Level& level : coarse)
     total += level.ground.bytes() + level.sand.bytes() + level.sand_before.bytes() + level.repose.bytes();
   return total;

@@ -46,7 +46,7 @@ struct LevelView {
 };
 
 /// The terrain as the finest level; `repose` has the tangent of each cell's angle of repose.
-inline LevelView finest(const TerrainView& t, const float* repose) {
+inline LevelView finest_level(const TerrainView& t, const float* repose) {
   return {t.grid,
           t.quanta(Layer::bedrock),
           t.quanta(Layer::soil),
@@ -79,12 +79,12 @@ DESERT_HD LevelCell coarse_cell(const LevelCell (&child)[4]) {
 }
 
 /// The buffers of a coarse level that is to be filled.
-struct LevelOut {
+struct LevelBuffers {
   Grid grid;
   Quanta *ground, *sand, *sand_before;
   float* repose;
 
-  DESERT_HD void put(int x, int y, const LevelCell& cell) const {
+  DESERT_HD void store(int x, int y, const LevelCell& cell) const {
     const int i = grid.index(x, y);
     ground[i] = cell.ground;
     sand[i] = sand_before[i] = cell.sand;
@@ -105,7 +105,7 @@ struct LevelOut {
 /// the same pass over memory.
 struct Restrict {
   LevelView fine;
-  LevelOut first, second;  ///< second: its grid is empty if there is none
+  LevelBuffers first, second;  ///< second: its grid is empty if there is none
 
   /// One call fills two by two cells of the first level; blocks at the far edges may be incomplete.
   DESERT_HD Grid blocks() const { return {(first.grid.width + 1) / 2, (first.grid.height + 1) / 2, 1}; }
@@ -135,9 +135,9 @@ struct Restrict {
       const int i = fine.grid.index(2 * fx, 2 * fy), north = i + fine.grid.width;
       const LevelCell children[4] = {fine_cell(i), fine_cell(i + 1), fine_cell(north), fine_cell(north + 1)};
       filled[n] = coarse_cell(children);
-      first.put(fx, fy, filled[n]);
+      first.store(fx, fy, filled[n]);
     }
-    if (second.grid.inside(x, y)) second.put(x, y, coarse_cell(filled));
+    if (second.grid.inside(x, y)) second.store(x, y, coarse_cell(filled));
   }
 
   /// Fills a block whose cells all exist, on a grid whose rows begin at multiples of 16 bytes. row_of(n)
@@ -161,7 +161,7 @@ struct Restrict {
       }
       first.store_two(2 * x, 2 * y + half, filled[2 * half], filled[2 * half + 1]);
     });
-    if (second.grid.width > 0) second.put(x, y, coarse_cell(filled));
+    if (second.grid.width > 0) second.store(x, y, coarse_cell(filled));
   }
 };
 

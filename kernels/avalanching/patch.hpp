@@ -48,7 +48,7 @@ struct Patch {
 /// excess then never lies halfway between two whole units, so that it is rounded to the same number of units
 /// where it is subtracted from the donor and where it is added to the receiver.
 DESERT_HD float with_odd_mantissa(float share) {
-  return share == 0.0f ? 0.0f : lower(float_from_bits(bits_of(share) | 1u), 1.0f - 1.0f / 16777216.0f);
+  return share == 0.0f ? 0.0f : fast_min(float_from_bits(bits_of(share) | 1u), 1.0f - 1.0f / 16777216.0f);
 }
 
 /// Shares ω for the three gaps between a patch's columns and for those between its rows, prepared by
@@ -66,43 +66,45 @@ struct PairsOfPatches {
   const float *ground, *drop;  ///< ground is not read if `deep`
   At at;
   const Shares<lanes>& shares;
-  float* most;  ///< a patch's maximum of what a pair has moved; updated
+  float* max_moved;  ///< a patch's maximum of what a pair has moved; updated
 
   DESERT_HD void relax() const {
-    quad<0, 0>(), quad<0, 2>(), quad<2, 0>(), quad<2, 2>();
-    quad<0, 1>(), quad<2, 1>();
-    quad<1, 0>(), quad<1, 2>();
-    quad<1, 1>();
-    unrolled<Patch::side>([&](auto n) DESERT_INLINE { upright<0, n>(), upright<2, n>(); });
-    unrolled<Patch::side>([&](auto n) DESERT_INLINE { upright<1, n>(); });
-    unrolled<Patch::side>([&](auto n) DESERT_INLINE { level<n, 0>(), level<n, 2>(); });
-    unrolled<Patch::side>([&](auto n) DESERT_INLINE { level<n, 1>(); });
+    relax_quad<0, 0>(), relax_quad<0, 2>(), relax_quad<2, 0>(), relax_quad<2, 2>();
+    relax_quad<0, 1>(), relax_quad<2, 1>();
+    relax_quad<1, 0>(), relax_quad<1, 2>();
+    relax_quad<1, 1>();
+    unrolled<Patch::side>([&](auto n)
+                              DESERT_INLINE { relax_vertical_pair<0, n>(), relax_vertical_pair<2, n>(); });
+    unrolled<Patch::side>([&](auto n) DESERT_INLINE { relax_vertical_pair<1, n>(); });
+    unrolled<Patch::side>(
+        [&](auto n) DESERT_INLINE { relax_horizontal_pair<n, 0>(), relax_horizontal_pair<n, 2>(); });
+    unrolled<Patch::side>([&](auto n) DESERT_INLINE { relax_horizontal_pair<n, 1>(); });
   }
 
  private:
-  /// Both diagonal pairs of a quad of four cells.
+  /// Relaxes both diagonal pairs of a quad of four cells.
   template <int row, int column>
-  DESERT_HD void quad() const {
+  DESERT_HD void relax_quad() const {
     float share[lanes];  // in a loop of its own, because it would keep the pairs' loops from vectorising
     DESERT_SIMD
-    for (int n = 0; n < lanes; ++n) share[n] = lower(shares.x[column][n], shares.y[row]);
+    for (int n = 0; n < lanes; ++n) share[n] = fast_min(shares.x[column][n], shares.y[row]);
     const auto of = [&](int n) DESERT_INLINE { return share[n]; };
-    pair<row, column, 1, 1>(of);
-    pair<row, column + 1, 1, -1>(of);
+    relax_pair<row, column, 1, 1>(of);
+    relax_pair<row, column + 1, 1, -1>(of);
   }
-  /// upright(): a pair in one column; level(): a pair in one row.
+  /// Relaxes the pair of a column; relax_horizontal_pair() does so with that of a row.
   template <int row, int column>
-  DESERT_HD void upright() const {
-    pair<row, column, 1, 0>([&](int) DESERT_INLINE { return shares.y[row]; });
+  DESERT_HD void relax_vertical_pair() const {
+    relax_pair<row, column, 1, 0>([&](int) DESERT_INLINE { return shares.y[row]; });
   }
   template <int row, int column>
-  DESERT_HD void level() const {
-    pair<row, column, 0, 1>([&](int n) DESERT_INLINE { return shares.x[column][n]; });
+  DESERT_HD void relax_horizontal_pair() const {
+    relax_pair<row, column, 0, 1>([&](int n) DESERT_INLINE { return shares.x[column][n]; });
   }
-  /// The pair of a cell a and the cell b that lies `up` rows and `right` columns from it. The excess is
-  /// positive where sand slides from a to b, and negative from b to a. All heights are whole units.
+  /// Relaxes the pair of a cell a and the cell b that lies `up` rows and `right` columns from it. The excess
+  /// is positive where sand slides from a to b, and negative from b to a. All heights are whole units.
   template <int row, int column, int up, int right, class ShareOf>
-  DESERT_HD void pair(const ShareOf& share_of) const {
+  DESERT_HD void relax_pair(const ShareOf& share_of) const {
     constexpr float distance = up != 0 && right != 0 ? Neighbours::distance(4) : 1.0f;
     float *a = h + at(row, column), *b = h + at(row + up, column + right);
     const float* ground_a = deep ? nullptr : ground + at(row, column);
@@ -117,12 +119,12 @@ struct PairsOfPatches {
       if constexpr (deep) {
         const float risen = fused(share, excess, before_b);
         a[n] = left, b[n] = risen;
-        most[n] = higher(most[n], fabsf(before_a - left));
+        max_moved[n] = fast_max(max_moved[n], fabsf(before_a - left));
       } else {
-        const float limited = higher(lower(left, before_a - (ground_b[n] - before_b)), ground_a[n]);
+        const float limited = fast_max(fast_min(left, before_a - (ground_b[n] - before_b)), ground_a[n]);
         const float moved = before_a - limited;
         a[n] = limited, b[n] = before_b + moved;
-        most[n] = higher(most[n], fabsf(moved));
+        max_moved[n] = fast_max(max_moved[n], fabsf(moved));
       }
     }
   }

@@ -39,7 +39,7 @@ struct RockLevel {
     const Quanta* bedrock;
     DESERT_HD Quanta operator[](int i) const { return bedrock[i] - lowest_ground; }
   };
-  struct Everywhere {
+  struct UniformRepose {
     float tangent;
     DESERT_HD float operator[](int) const { return tangent; }
   };
@@ -47,7 +47,7 @@ struct RockLevel {
   Grid grid;
   Column sand;
   const float* obstacle;  ///< or null
-  Everywhere repose;
+  UniformRepose repose;
   float quanta_per_cell;
 
   DESERT_HD bool wall(int i) const { return value_or_zero(obstacle, i) > 0.0f; }

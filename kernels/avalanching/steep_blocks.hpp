@@ -53,8 +53,8 @@ struct FindSteep {
   static constexpr int side = 4;
   static_assert(Blocks::side % side == 0, "then a square lies in one block");
   TooSteep too_steep;
-  const Quanta* ask;  ///< flags of the blocks to check; null: all
-  Quanta* steep;      ///< flags of the blocks, all 0 before
+  const Quanta* blocks_to_check;  ///< flags of the blocks to check; null: all
+  Quanta* steep;                  ///< flags of the blocks, all 0 before
 
   DESERT_HD Grid squares() const {
     const Grid& g = too_steep.level.grid;
@@ -63,8 +63,9 @@ struct FindSteep {
   DESERT_HD void operator()(int column, int row) const {
     const Grid& g = too_steep.level.grid;
     const int west = side * column, south = side * row, block = Blocks{g}.of_cell(west, south);
-    if (ask && ask[block] == 0) return;
-    if (g.width % side == 0 ? is_any_of_fours(west, south) : is_any(west, south)) set_flag(&steep[block]);
+    if (blocks_to_check && blocks_to_check[block] == 0) return;
+    if (g.width % side == 0 ? is_any_too_steep_by_fours(west, south) : is_any_too_steep(west, south))
+      set_flag(&steep[block]);
   }
 
  private:
@@ -73,10 +74,10 @@ struct FindSteep {
     Quanta heights[side + 2];
     Vec4<Quanta> sand;
     /// The lower one of the heights west and east of the nth cell.
-    DESERT_HD Quanta beside(int n) const { return lower(heights[n], heights[n + 2]); }
+    DESERT_HD Quanta lower_side(int n) const { return lower(heights[n], heights[n + 2]); }
   };
   /// Index of a place on an axis or next to its ends; −1 where there is no cell.
-  DESERT_HD static int place(int p, int cells, bool periodic) {
+  DESERT_HD static int index_on_axis(int p, int cells, bool periodic) {
     if (p >= 0 && p < cells) return p;
     return periodic ? wrap(p, cells) : -1;
   }
@@ -103,7 +104,7 @@ struct FindSteep {
     return row;
   }
   /// Whether a cell is too steep in the square whose south-west corner is (west, south).
-  DESERT_HD bool is_any(int west, int south) const {
+  DESERT_HD bool is_any_too_steep(int west, int south) const {
     const Grid& g = too_steep.level.grid;
     for (int y = south; y < south + side && y < g.height; ++y)
       for (int x = west; x < west + side && x < g.width; ++x)
@@ -111,23 +112,24 @@ struct FindSteep {
     return false;
   }
   /// The same for grids whose width is a multiple of four, with loads of four values at a time.
-  DESERT_HD bool is_any_of_fours(int x, int y) const {
+  DESERT_HD bool is_any_too_steep_by_fours(int x, int y) const {
     const LevelView& level = too_steep.level;
     const Grid& g = level.grid;
-    const int before = place(x - 1, g.width, g.periodic_x), after = place(x + side, g.width, g.periodic_x);
-    const auto row_number = [&](int n) {
-      return row_at(before, x, after, place(y + n, g.height, g.periodic_y));
+    const int before = index_on_axis(x - 1, g.width, g.periodic_x),
+              after = index_on_axis(x + side, g.width, g.periodic_x);
+    const auto load_row = [&](int n) {
+      return row_at(before, x, after, index_on_axis(y + n, g.height, g.periodic_y));
     };
     bool any = false;
-    Row below = row_number(-1), row = row_number(0);
+    Row below = load_row(-1), row = load_row(0);
     for (int n = 0; n < side; ++n) {
       if (y + n >= g.height) break;
-      const Row above = row_number(n + 1);
+      const Row above = load_row(n + 1);
       const Vec4<float> repose = load_vec4(level.repose + g.index(x, y + n));
       for (int k = 0; k < side; ++k)
         any = any || too_steep(row.heights[k + 1], row.sand.values[k], repose.values[k],
-                               lower(row.beside(k), lower(below.heights[k + 1], above.heights[k + 1])),
-                               lower(below.beside(k), above.beside(k)));
+                               lower(row.lower_side(k), lower(below.heights[k + 1], above.heights[k + 1])),
+                               lower(below.lower_side(k), above.lower_side(k)));
       below = row;
       row = above;
     }

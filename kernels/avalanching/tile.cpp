@@ -24,6 +24,6 @@ void relax_tiles(E& exec, const RelaxTile& law, const Then& then) {
 template void relax_tiles_reference(Backend&, const RelaxTile&);
 template void relax_tiles(Backend&, const RelaxTile&, const NoFollowUp&);
 template void relax_tiles(Backend&, const RelaxTile&, const Restrict&);
-template void relax_tiles(Backend&, const RelaxTile&, const surface::MeasureBlock&);
+template void relax_tiles(Backend&, const RelaxTile&, const surface::ComputeBlockHeights&);
 
 }  // namespace desert_sim::avalanching

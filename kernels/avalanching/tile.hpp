@@ -19,7 +19,7 @@
 /// an edge of a patch in both.
 ///
 /// A tile takes at least `sweeps` sweeps, unless two successive ones move nothing, and goes on, up to
-/// `most_sweeps`, while a pair moves more than `plenty`.
+/// `max_sweeps_while_sliding`, while a pair moves more than `continue_threshold`.
 ///
 /// Heights are floats that count whole units (tile_units.hpp). This law is the reference; on a GPU
 /// tuned/tile.cu gives the same bits faster.
@@ -34,7 +34,7 @@
 namespace desert_sim::avalanching {
 
 /// A tile in which much sand still slides takes up to this many sweeps.
-constexpr int most_sweeps = 8;
+constexpr int max_sweeps_while_sliding = 8;
 
 /// Shift of a sweep's patches to the east and to the north [cells].
 struct PatchShift {
@@ -90,19 +90,20 @@ struct RelaxTile {
   Prolong from_coarse;  ///< prolonged first; children of a coarse cell lie in one tile
   GapOmega share;       ///< ω (patch.hpp), in (0, 1]
   int sweeps;
-  float plenty;                  ///< [cell sizes]
-  const Quanta* open = nullptr;  ///< flags, 0 for tiles to skip; null: relax all
+  float continue_threshold;              ///< [cell sizes]
+  const Quanta* active_flags = nullptr;  ///< flags, 0 for tiles to skip; null: relax all
 
-  DESERT_HD bool closed(int column, int row) const {
-    return open && open[row * tiles.columns() + column] == 0;
+  DESERT_HD bool is_skipped(int column, int row) const {
+    return active_flags && active_flags[row * tiles.columns() + column] == 0;
   }
 
-  /// Whether the tile may stop after `done` sweeps; `much`: the last one has moved more than `plenty`.
-  DESERT_HD bool may_stop(int done, bool much) const {
-    return done >= sweeps && (done >= most_sweeps || !much);
+  /// Whether the tile may stop after `done` sweeps; `moved_much`: the last one has moved more than
+  /// `continue_threshold`.
+  DESERT_HD bool may_stop(int done, bool moved_much) const {
+    return done >= sweeps && (done >= max_sweeps_while_sliding || !moved_much);
   }
 
-  /// What one sweep has moved: `much` where a pair moved more than `plenty`.
+  /// What one sweep has moved: `much` where a pair moved more than `continue_threshold`.
   enum class Moved { nothing, little, much };
   /// The loop of sweeps over a tile, for every backend: sweeps until two in a row move nothing, or until the
   /// tile may stop. `sweep(n, shift)` does the nth sweep. Returns whether anything moved.
@@ -125,27 +126,27 @@ struct RelaxTile {
 
   template <class Team>
   DESERT_HD void operator()(const Team& team, int column, int row) const {
-    if (closed(column, row)) return;
+    if (is_skipped(column, row)) return;
     float* h = reinterpret_cast<float*>(team.scratch);
     float *ground = h + cells, *drop = ground + cells;
     Quanta* base = reinterpret_cast<Quanta*>(drop + cells);
     clear(team, h, ground, drop);
     if (from_coarse.sand_after)
-      team.for_each(families, [=](int n) DESERT_INLINE { prolong_coarse_cell(column, row, n); });
+      team.for_each(sibling_groups, [=](int n) DESERT_INLINE { prolong_coarse_cell(column, row, n); });
     const Range range = load_heights(team, column, row, h, ground);
     if (range.lowest >= wall_height) return;
     const Units units(range.lowest, range.highest, level.quanta_per_cell);
     load(team, column, row, units, h, ground, drop, base);
-    const float much = units.drop(plenty, level.quanta_per_cell);
+    const float threshold = units.drop(continue_threshold, level.quanta_per_cell);
     const bool moved = relax([&](int, const PatchShift& shift) DESERT_INLINE {
-      const float most = range.deep() ? sweep<true>(team, shift, h, ground, drop)
-                                      : sweep<false>(team, shift, h, ground, drop);
-      return most > much ? Moved::much : (most > 0.0f ? Moved::little : Moved::nothing);
+      const float max_moved = range.deep() ? sweep<true>(team, shift, h, ground, drop)
+                                           : sweep<false>(team, shift, h, ground, drop);
+      return max_moved > threshold ? Moved::much : (max_moved > 0.0f ? Moved::little : Moved::nothing);
     });
     if (moved) store(team, column, row, units, h, base);
   }
 
-  static constexpr int families = side / 2 * (side / 2);
+  static constexpr int sibling_groups = side / 2 * (side / 2);
   /// Prolongs the change of the tile's nth coarse cell, if that exists, to its children.
   DESERT_HD void prolong_coarse_cell(int column, int row, int n) const {
     const int x = grid_x(column, 2 * (n % (side / 2))), y = grid_y(row, 2 * (n / (side / 2)));
@@ -162,7 +163,7 @@ struct RelaxTile {
   }
 
   /// Whether all cells of the tile exist and its rows are contiguous in the grid.
-  DESERT_HD bool whole(int column, int row) const {
+  DESERT_HD bool is_contiguous(int column, int row) const {
     const int x = column * side - tiles.offset, y = row * side - tiles.offset;
     const int right = level.grid.width - (level.grid.periodic_x ? tiles.offset : 0);
     const int top = level.grid.height - (level.grid.periodic_y ? tiles.offset : 0);
@@ -199,22 +200,24 @@ struct RelaxTile {
       });
     };
     copy_first(0, patches);
-    const float most = team.most(patches * patches / Team::patch_lanes, [=](int i) DESERT_INLINE {
-      constexpr int lanes = Team::patch_lanes, pieces = patches / lanes;
-      const int patch_row = i / pieces, first = i % pieces * lanes;
+    const float max_moved = team.max_of(patches * patches / Team::patch_lanes, [=](int i) DESERT_INLINE {
+      constexpr int lanes = Team::patch_lanes, vectors = patches / lanes;
+      const int patch_row = i / vectors, first = i % vectors * lanes;
       Shares<lanes> shares;
-      float most_of[lanes] = {};
+      float max_moved_by_patch[lanes] = {};
       for (int k = 0; k + 1 < Patch::side; ++k) {
         shares.y[k] = omega(patch_row * Patch::side + shift.y + k);
         for (int n = 0; n < lanes; ++n) shares.x[k][n] = omega((first + n) * Patch::side + shift.x + k);
       }
-      PairsOfPatches<lanes, deep, At>{h, ground, drop, At{shift, patch_row, first}, shares, most_of}.relax();
-      float most_here = 0.0f;
-      for (int n = 0; n < lanes; ++n) most_here = higher(most_here, most_of[n]);
-      return most_here;
+      PairsOfPatches<lanes, deep, At>{
+          h, ground, drop, At{shift, patch_row, first}, shares, max_moved_by_patch}
+          .relax();
+      float max_moved_here = 0.0f;
+      for (int n = 0; n < lanes; ++n) max_moved_here = fast_max(max_moved_here, max_moved_by_patch[n]);
+      return max_moved_here;
     });
     copy_first(patches, 0);
-    return most;
+    return max_moved;
   }
 
   /// Calls body(i, n) for each cell of the tile that exists, with its index in the grid and in the tile.
@@ -222,16 +225,16 @@ struct RelaxTile {
   DESERT_HD void for_each_cell_of_tile(const Team& team, int column, int row, const Body& body) const {
     const int width = level.grid.width;
     const int corner = (row * side - tiles.offset) * width + column * side - tiles.offset;
-    const bool simple = whole(column, row);
+    const bool contiguous = is_contiguous(column, row);
     team.for_each_row([=](int y) DESERT_INLINE {
       const int first = corner + y * width;
-      if (simple)
+      if (contiguous)
         team.template for_each_in_row<Patch::side>(
             [=](int n, auto k) DESERT_INLINE { body(first + n * Patch::side + k, local(y, n, k)); });
       else
         team.template for_each_in_row<Patch::side>([=](int n, auto k) DESERT_INLINE {
-          const int there_x = grid_x(column, n * Patch::side + k), there_y = grid_y(row, y);
-          if (there_x >= 0 && there_y >= 0) body(there_y * width + there_x, local(y, n, k));
+          const int cell_x = grid_x(column, n * Patch::side + k), cell_y = grid_y(row, y);
+          if (cell_x >= 0 && cell_y >= 0) body(cell_y * width + cell_x, local(y, n, k));
         });
     });
   }
@@ -260,8 +263,8 @@ struct RelaxTile {
     const auto below = [=](int n, const float* of) DESERT_INLINE {
       return height(n) < wall_height ? -static_cast<Quanta>(bits_of(of[n])) : wall_height;
     };
-    return {team.lowest(cells, height), -team.lowest(cells, [=](int n) DESERT_INLINE { return below(n, h); }),
-            -team.lowest(cells, [=](int n) DESERT_INLINE { return below(n, ground); })};
+    return {team.min_of(cells, height), -team.min_of(cells, [=](int n) DESERT_INLINE { return below(n, h); }),
+            -team.min_of(cells, [=](int n) DESERT_INLINE { return below(n, ground); })};
   }
 
   /// Converts the tile to units. `base` gets the part of each cell's sand that does not change with its
@@ -304,7 +307,7 @@ void relax_tiles_reference(E& exec, const RelaxTile& law);
 /// follow_up_grid() gives the grid that the latter two are called for.
 struct NoFollowUp {};
 inline Grid follow_up_grid(const Restrict& law) { return law.blocks(); }
-inline Grid follow_up_grid(const surface::MeasureBlock& law) { return law.blocks; }
+inline Grid follow_up_grid(const surface::ComputeBlockHeights& law) { return law.blocks; }
 
 /// Relaxes all tiles in the fastest way that the backend has, and then applies `then`, in the same kernel if
 /// possible. `Then` is one of the three laws above.

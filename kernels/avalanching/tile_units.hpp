@@ -48,7 +48,7 @@ struct Units {
   DESERT_HD float drop(float repose, float quanta_per_cell) const {
     const float scale =
         float_from_bits(static_cast<std::uint32_t>(127 - 23 - shift) << 23);  // 2^(−23 − shift)
-    return lower(repose * (quanta_per_cell * scale), floor);
+    return fast_min(repose * (quanta_per_cell * scale), floor);
   }
   /// The quanta that a height stands for. A cell's sand minus this value does not change while sand slides.
   /// It is computed modulo 2³², as all sums of Quanta are here.

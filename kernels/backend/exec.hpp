@@ -48,12 +48,12 @@ class Exec {
   /// Allocates uninitialised memory on the device; throws ConfigError if there is not enough. Not for use
   /// inside a step. release() must be given the same number of bytes.
   void* allocate(std::size_t bytes) {
-    void* memory = take(bytes);
+    void* memory = allocate_memory(bytes);
     bytes_held_ += bytes;
     return memory;
   }
   void release(void* memory, std::size_t bytes) noexcept {
-    give_back(memory);
+    free_memory(memory);
     bytes_held_ -= bytes;
   }
   /// Memory that is allocated on the device [bytes], not counting what FFT libraries allocate for themselves.
@@ -76,12 +76,12 @@ class Exec {
   /// for use inside a step. By default, the copy is complete when this returns.
   virtual std::unique_ptr<HostCopy> start_download(void* to, const void* from, std::size_t bytes);
   /// Makes all work that is started from here on wait for `copy`, which must be of this Exec.
-  virtual void follow(const HostCopy&) {}
+  virtual void wait_on_device_for(const HostCopy&) {}
 
   /// Whether recording work is worthwhile on this backend.
-  virtual bool records() const { return false; }
+  virtual bool can_record() const { return false; }
   /// Calls `work`, and records the laws, device copies, transforms and loops that it starts instead of
-  /// executing them. `work` must not read results back. Only where records() is true.
+  /// executing them. `work` must not read results back. Only where can_record() is true.
   virtual std::unique_ptr<Recording> record(const std::function<void()>& work);
 
   /// Repeats `body` while the word `*go_on` on the device, which `body` changes, is not 0. `body` must start
@@ -102,8 +102,8 @@ class Exec {
   virtual std::size_t memory_for_lines() const { return 0; }
 
  protected:
-  virtual void* take(std::size_t bytes) = 0;
-  virtual void give_back(void* memory) noexcept = 0;
+  virtual void* allocate_memory(std::size_t bytes) = 0;
+  virtual void free_memory(void* memory) noexcept = 0;
 
  private:
   std::atomic<std::size_t> bytes_held_{0};
@@ -121,8 +121,8 @@ class CpuExec final : public Exec {
   const char* backend() const override { return "cpu"; }
   std::string device() const override;
   std::size_t memory_available() const override { return host_memory_available(); }
-  void* allocate_host(std::size_t bytes) override { return take(bytes); }
-  void release_host(void* memory) noexcept override { give_back(memory); }
+  void* allocate_host(std::size_t bytes) override { return allocate_memory(bytes); }
+  void release_host(void* memory) noexcept override { free_memory(memory); }
   void set_zero(void* memory, std::size_t bytes) override;
   void copy(void* to, const void* from, std::size_t bytes) override;
   void upload(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
@@ -132,8 +132,8 @@ class CpuExec final : public Exec {
   std::unique_ptr<Fft> make_fft(int width, int height, int fields) override;
 
  protected:
-  void* take(std::size_t bytes) override;
-  void give_back(void* memory) noexcept override;
+  void* allocate_memory(std::size_t bytes) override;
+  void free_memory(void* memory) noexcept override;
 
  private:
   int threads_;
@@ -159,9 +159,9 @@ class CudaExec final : public Exec {
   void upload(void* to, const void* from, std::size_t bytes) override;
   void download(void* to, const void* from, std::size_t bytes) override;
   std::unique_ptr<HostCopy> start_download(void* to, const void* from, std::size_t bytes) override;
-  void follow(const HostCopy& copy) override;
+  void wait_on_device_for(const HostCopy& copy) override;
   void synchronise() override;
-  bool records() const override { return true; }
+  bool can_record() const override { return true; }
   std::unique_ptr<Recording> record(const std::function<void()>& work) override;
   void repeat_while(const long long* go_on, const std::function<void()>& body) override;
   bool can_record_loops() const override;
@@ -173,8 +173,8 @@ class CudaExec final : public Exec {
   long long read_reduction_word();
 
  protected:
-  void* take(std::size_t bytes) override;
-  void give_back(void* memory) noexcept override;
+  void* allocate_memory(std::size_t bytes) override;
+  void free_memory(void* memory) noexcept override;
 
  private:
   void* stream_ = nullptr;

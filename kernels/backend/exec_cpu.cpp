@@ -133,13 +133,13 @@ std::string CpuExec::device() const {
 
 std::size_t host_memory_available() { return std::min(machine_memory_available(), group_memory_available()); }
 
-void* CpuExec::take(std::size_t bytes) {
+void* CpuExec::allocate_memory(std::size_t bytes) {
   void* memory = ::operator new(bytes, std::align_val_t(alignment), std::nothrow);
   if (!memory) throw ConfigError("no memory for " + std::to_string(bytes) + " bytes");
   return memory;
 }
 
-void CpuExec::give_back(void* memory) noexcept { ::operator delete(memory, std::align_val_t(alignment)); }
+void CpuExec::free_memory(void* memory) noexcept { ::operator delete(memory, std::align_val_t(alignment)); }
 
 void CpuExec::set_zero(void* memory, std::size_t bytes) {
   for_each_chunk(bytes, threads_, [=](std::size_t begin, std::size_t size) {

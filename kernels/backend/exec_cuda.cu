@@ -108,7 +108,7 @@ class GraphRecording final : public Recording {
 };
 
 #if CUDART_VERSION >= 13000  // the first version in which these functions have these arguments
-__global__ void look(cudaGraphConditionalHandle condition, const long long* go_on) {
+__global__ void set_loop_condition(cudaGraphConditionalHandle condition, const long long* go_on) {
   cudaGraphSetConditional(condition, *go_on != 0);
 }
 
@@ -126,7 +126,7 @@ void add_while_node(cudaStream_t stream, cudaStream_t body_stream, const long lo
   info(nullptr, nullptr, nullptr);
   cudaGraphConditionalHandle condition;
   check_cuda(cudaGraphConditionalHandleCreate(&condition, graph, 0, cudaGraphCondAssignDefault), what);
-  look<<<1, 1, 0, stream>>>(condition, go_on);
+  set_loop_condition<<<1, 1, 0, stream>>>(condition, go_on);
   check_cuda(cudaGetLastError(), what);
   const cudaGraphNode_t* before = nullptr;
   const cudaGraphEdgeData* edges = nullptr;
@@ -142,16 +142,16 @@ void add_while_node(cudaStream_t stream, cudaStream_t body_stream, const long lo
   check_cuda(cudaStreamBeginCaptureToGraph(body_stream, loop.conditional.phGraph_out[0], nullptr, nullptr, 0,
                                            cudaStreamCaptureModeThreadLocal),
              what);
-  cudaGraph_t noted = nullptr;
+  cudaGraph_t body_graph = nullptr;
   try {
     body();
-    look<<<1, 1, 0, body_stream>>>(condition, go_on);
+    set_loop_condition<<<1, 1, 0, body_stream>>>(condition, go_on);
     check_cuda(cudaGetLastError(), what);
   } catch (...) {
-    cudaStreamEndCapture(body_stream, &noted);  // the exception that is under way is what is reported
+    cudaStreamEndCapture(body_stream, &body_graph);  // the exception that is under way is what is reported
     throw;
   }
-  check_cuda(cudaStreamEndCapture(body_stream, &noted), what);
+  check_cuda(cudaStreamEndCapture(body_stream, &body_graph), what);
   check_cuda(cudaStreamUpdateCaptureDependencies(stream, &node, nullptr, 1, cudaStreamSetCaptureDependencies),
              what);
 }
@@ -205,7 +205,7 @@ std::size_t CudaExec::memory_available() const {
   return available;
 }
 
-void* CudaExec::take(std::size_t bytes) {
+void* CudaExec::allocate_memory(std::size_t bytes) {
   void* memory = nullptr;
   const cudaError_t status = cudaMalloc(&memory, bytes ? bytes : 1);
   if (status == cudaErrorMemoryAllocation) {
@@ -216,7 +216,7 @@ void* CudaExec::take(std::size_t bytes) {
   return memory;
 }
 
-void CudaExec::give_back(void* memory) noexcept { log_failure(cudaFree(memory), "releasing memory"); }
+void CudaExec::free_memory(void* memory) noexcept { log_failure(cudaFree(memory), "releasing memory"); }
 
 void* CudaExec::allocate_host(std::size_t bytes) {
   void* memory = nullptr;
@@ -260,7 +260,7 @@ std::unique_ptr<HostCopy> CudaExec::start_download(void* to, const void* from, s
   return copy;
 }
 
-void CudaExec::follow(const HostCopy& copy) {
+void CudaExec::wait_on_device_for(const HostCopy& copy) {
   check_cuda(cudaStreamWaitEvent(as_stream(stream_), static_cast<const CudaCopy&>(copy).done(), 0),
              "waiting for a copy on the device");
 }

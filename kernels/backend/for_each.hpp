@@ -85,19 +85,19 @@ struct Tiles {
   int offset = 0;  ///< 0 … side−1: the first tile begins at −offset
 
   /// Number of tiles along an axis. On a periodic axis the first tile also holds the last `offset` cells.
-  DESERT_HD int across(int cells, bool periodic) const {
+  DESERT_HD int tiles_along(int cells, bool periodic) const {
     return (cells + (periodic ? 0 : offset) + side - 1) / side;
   }
-  DESERT_HD int columns() const { return across(grid.width, grid.periodic_x); }
-  DESERT_HD int rows() const { return across(grid.height, grid.periodic_y); }
+  DESERT_HD int columns() const { return tiles_along(grid.width, grid.periodic_x); }
+  DESERT_HD int rows() const { return tiles_along(grid.height, grid.periodic_y); }
   DESERT_HD int count() const { return columns() * rows(); }
   /// Column and row of the tile that cell (x, y) lies in. Places beyond the grid are wrapped or clamped, as
   /// in sample_index().
-  DESERT_HD int column_of(int x) const { return along(x, grid.width, grid.periodic_x); }
-  DESERT_HD int row_of(int y) const { return along(y, grid.height, grid.periodic_y); }
+  DESERT_HD int column_of(int x) const { return tile_of(x, grid.width, grid.periodic_x); }
+  DESERT_HD int row_of(int y) const { return tile_of(y, grid.height, grid.periodic_y); }
 
  private:
-  DESERT_HD int along(int n, int cells, bool periodic) const {
+  DESERT_HD int tile_of(int n, int cells, bool periodic) const {
     return (periodic ? wrap(n + offset, cells) : clamp_index(n, cells) + offset) / side;
   }
 };

@@ -19,29 +19,29 @@ namespace desert_sim {
 // ---- Instruction sets: inner loops are compiled for several ones, and the widest that the processor has is
 // chosen at run time. The compiler fuses no multiplication with an addition on any of them
 // (-ffp-contract=off), so all give the same bits. An explicit fused() is one instruction on all but the
-// oldest.
+// baseline.
 
-enum class InstructionSet { oldest, avx2, avx512 };
+enum class InstructionSet { baseline, avx2, avx512 };
 
 inline InstructionSet widest_instructions() {
 #if defined(__x86_64__)
   __builtin_cpu_init();
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return InstructionSet::oldest;
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return InstructionSet::baseline;
   for (bool has : {__builtin_cpu_supports("avx512f") != 0, __builtin_cpu_supports("avx512dq") != 0,
                    __builtin_cpu_supports("avx512bw") != 0, __builtin_cpu_supports("avx512vl") != 0})
     if (!has) return InstructionSet::avx2;
   return InstructionSet::avx512;
 #else
-  return InstructionSet::oldest;
+  return InstructionSet::baseline;
 #endif
 }
 /// The widest set that the processor has, or the one that the environment's variable DESERT_INSTRUCTIONS
-/// names (oldest, avx2) if that is less: for benchmarks of what a set brings.
+/// names (oldest: the baseline, or avx2) if that is less: for benchmarks of what a set brings.
 inline InstructionSet chosen_instructions() {
   const InstructionSet widest = widest_instructions();
   const char* const named = std::getenv("DESERT_INSTRUCTIONS");
   if (!named) return widest;
-  if (std::string(named) == "oldest") return InstructionSet::oldest;
+  if (std::string(named) == "oldest") return InstructionSet::baseline;
   return std::string(named) == "avx2" ? std::min(widest, InstructionSet::avx2) : widest;
 }
 inline const InstructionSet instruction_set = chosen_instructions();
@@ -62,7 +62,7 @@ inline const InstructionSet instruction_set = chosen_instructions();
 #endif
 
 template <class Work>
-void with_oldest(const Work& work) {
+void with_baseline(const Work& work) {
   work();
 }
 template <class Work>
@@ -81,7 +81,7 @@ DESERT_FOR_AVX512 void with_avx512(const Work& work) {
 /// no faster and the wind slower; the masked instructions of AVX-512 make many laws faster.
 template <class Work>
 void with_wide_instructions(const Work& work) {
-  if (instruction_set == InstructionSet::oldest) return with_oldest(work);
+  if (instruction_set == InstructionSet::baseline) return with_baseline(work);
   if (instruction_set == InstructionSet::avx512) return with_avx512_masks(work);
   with_avx2(work);
 }
@@ -105,14 +105,14 @@ struct CpuTeam {
   }
   /// Minimum of value(i) for i in 0…n−1.
   template <class Value>
-  DESERT_HD int lowest(int n, const Value& value) const {
+  DESERT_HD int min_of(int n, const Value& value) const {
     int least = value(0);
     for (int i = 1; i < n; ++i) least = value(i) < least ? value(i) : least;
     return least;
   }
   /// Maximum of 0 and value(i) for i in 0…n−1; value(i) is called exactly once for each i.
   template <class Value>
-  DESERT_HD float most(int n, const Value& value) const {
+  DESERT_HD float max_of(int n, const Value& value) const {
     float greatest = 0;
     for (int i = 0; i < n; ++i) {
       const float v = value(i);
@@ -129,7 +129,7 @@ struct CpuTeam {
     }
   }
   template <class Value>
-  DESERT_HD int lowest(int width, int height, const Value& value) const {
+  DESERT_HD int min_of(int width, int height, const Value& value) const {
     int least = value(0, 0);
     for (int y = 0; y < height; ++y) {
 #pragma omp simd reduction(min : least)
@@ -155,20 +155,20 @@ struct CpuTeam {
 };
 
 /// Grids with fewer cells are left to one thread, because waking others costs more than it saves.
-constexpr int worth_threads = 16384;
+constexpr int min_parallel_cells = 16384;
 
 /// Work items 0 … count − 1, shared by the threads of a team (work stealing). Each thread takes items of its
 /// own part, a few at a time, and then those that are left of other parts. Threads thus do not wait for one
 /// that has lost its processor, and otherwise each works on the same memory in every pass.
 class WorkStealingRange {
  public:
-  WorkStealingRange(int threads, int count) : parts_(std::clamp(threads, 1, most_parts)) {
+  WorkStealingRange(int threads, int count) : parts_(std::clamp(threads, 1, max_parts)) {
     const auto start = [&](int part) { return std::int64_t{count} * part / parts_; };
     for (int n = 0; n < parts_; ++n) {
       part_[n].next = start(n);
       part_[n].end = start(n + 1);
     }
-    at_once_ = std::max(1, count / (parts_ * 16));
+    chunk_size_ = std::max(1, count / (parts_ * 16));
   }
   /// To be called by each thread of the team: calls body(n) until no items are left.
   template <class Body>
@@ -177,23 +177,23 @@ class WorkStealingRange {
     for (int n = 0; n < parts_; ++n) {
       Part& part = part_[(own + n) % parts_];
       for (;;) {
-        const std::int64_t first = part.next.fetch_add(at_once_, std::memory_order_relaxed);
+        const std::int64_t first = part.next.fetch_add(chunk_size_, std::memory_order_relaxed);
         if (first >= part.end) break;
-        const std::int64_t end = std::min(first + at_once_, part.end);
+        const std::int64_t end = std::min(first + chunk_size_, part.end);
         for (std::int64_t i = first; i < end; ++i) body(static_cast<int>(i));
       }
     }
   }
 
  private:
-  static constexpr int most_parts = 64;
+  static constexpr int max_parts = 64;
   struct alignas(64) Part {
     std::atomic<std::int64_t> next{0};
     std::int64_t end = 0;
   };
   int parts_;
-  std::int64_t at_once_;
-  Part part_[most_parts];
+  std::int64_t chunk_size_;
+  Part part_[max_parts];
 };
 
 /// Calls law(x, y) for x in first … end−1. The law is copied to a local variable, so that the compiler sees
@@ -211,14 +211,14 @@ void for_each_in_row(const Law& law, int first, int end, int y) {
 template <class Law>
 void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
   WorkStealingRange rows(exec.threads(), grid.height);
-#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
+#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= min_parallel_cells)
   rows.work([&](int y) { for_each_in_row(law, 0, grid.width, y); });
 }
 
 template <class Inside, class Border>
 void for_each_cell(CpuExec& exec, const Grid& grid, const Bordered<Inside, Border>& law) {
   WorkStealingRange rows(exec.threads(), grid.height);
-#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
+#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= min_parallel_cells)
   rows.work([&](int y) {
     const bool inside = law.is_inside(y, grid.height);
     const int begin = inside ? std::min(law.margin, grid.width) : grid.width;
@@ -233,13 +233,13 @@ void for_each_cell(CpuExec& exec, const Grid& grid, const Bordered<Inside, Borde
 template <class Law, class Add>
 void add_row(const Law& law, int width, int y, const Add& add) {
   with_wide_instructions([&]() DESERT_INLINE {
-    constexpr int most = 64;
-    typename Law::template Parcels<most> parcels;
+    constexpr int batch = 64;
+    typename Law::template Parcels<batch> parcels;
     const Law own = law;
     const Add own_add = add;
     const int row = y, end = width;
-    for (int first = 0; first < end; first += most) {
-      const int count = std::min(most, end - first);
+    for (int first = 0; first < end; first += batch) {
+      const int count = std::min(batch, end - first);
 #pragma omp simd
       for (int n = 0; n < count; ++n) own.prepare(first + n, row, parcels, n);
       for (int n = 0; n < count; ++n) own.deliver(first + n, row, parcels, n, own_add);
@@ -251,19 +251,19 @@ void add_row(const Law& law, int width, int y, const Add& add) {
 /// all threads are done with their own bands. (With atomic additions everywhere, saltation took three times
 /// as long.)
 struct AddToBand {
-  struct Kept {
+  struct Deferred {
     int cell;
     Quanta amount;
   };
   Quanta* sums;
   std::size_t first, count;  ///< cells of the band
-  std::vector<Kept>* kept;
+  std::vector<Deferred>* deferred;
 
   void operator()(int cell, Quanta amount) const {
     if (static_cast<std::size_t>(cell) - first < count)
       sums[cell] += amount;
     else
-      keep(cell, amount);
+      defer(cell, amount);
   }
   void square(int south, int width, Quanta south_west, Quanta south_east, Quanta north_west,
               Quanta north_east) const {
@@ -274,25 +274,25 @@ struct AddToBand {
   }
 
  private:
-  __attribute__((noinline)) void keep(int cell, Quanta amount) const { kept->push_back({cell, amount}); }
+  __attribute__((noinline)) void defer(int cell, Quanta amount) const { deferred->push_back({cell, amount}); }
 };
 
 template <class Law>
 void for_each_cell_scatter(CpuExec& exec, const Grid& grid, Quanta* sums, const Law& law) {
-#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= worth_threads)
+#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= min_parallel_cells)
   {
     const int thread = omp_get_thread_num(), threads = omp_get_num_threads();
     const auto row_of = [&](int t) {
       return static_cast<int>(static_cast<long long>(grid.height) * t / threads);
     };
     const int begin = row_of(thread), end = row_of(thread + 1);
-    std::vector<AddToBand::Kept> kept;
+    std::vector<AddToBand::Deferred> deferred;
     const auto width = static_cast<std::size_t>(grid.width);
-    const AddToBand band{sums, width * begin, width * (end - begin), &kept};
+    const AddToBand band{sums, width * begin, width * (end - begin), &deferred};
     std::fill_n(sums + band.first, band.count, 0);
     for (int y = begin; y < end; ++y) add_row(law, grid.width, y, band);
 #pragma omp barrier
-    for (const AddToBand::Kept& k : kept) atomic_add(sums + k.cell, k.amount);
+    for (const AddToBand::Deferred& k : deferred) atomic_add(sums + k.cell, k.amount);
   }
 }
 
@@ -301,7 +301,7 @@ template <class Tiling, class Law>
 void for_each_tile(CpuExec& exec, const Tiling& tiles, const Law& law) {
   const int columns = tiles.columns();
   WorkStealingRange all(exec.threads(), tiles.count());
-#pragma omp parallel num_threads(exec.threads()) if (tiles.grid.cells() >= worth_threads)
+#pragma omp parallel num_threads(exec.threads()) if (tiles.grid.cells() >= min_parallel_cells)
   {
     alignas(64) char scratch[Law::template scratch_bytes<CpuTeam>];
     const CpuTeam team{scratch};
@@ -314,15 +314,16 @@ void for_each_tile(CpuExec& exec, const Tiling& tiles, const Law& law) {
 /// Calls law(n) for each item. An item is taken to be as much work as hundreds of cells.
 template <class Law>
 void for_each_item(CpuExec& exec, int count, const Law& law) {
-  constexpr int worth = 256;
-#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (count >= worth)
+  constexpr int min_parallel_items = 256;
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (count >= min_parallel_items)
   for (int n = 0; n < count; ++n) law(n);
 }
 
 template <class Law>
 long long sum_cells(CpuExec& exec, const Grid& grid, const Law& law) {
   long long total = 0;
-#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads) reduction(+ : total)
+#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= min_parallel_cells) \
+    reduction(+ : total)
   for (int y = 0; y < grid.height; ++y)
     for (int x = 0; x < grid.width; ++x) total += law(x, y);
   return total;
@@ -331,9 +332,9 @@ long long sum_cells(CpuExec& exec, const Grid& grid, const Law& law) {
 template <class Law>
 float max_cells(CpuExec& exec, const Grid& grid, const Law& law) {
   float largest = 0;
-#pragma omp parallel for schedule(static) num_threads(exec.threads()) if (grid.cells() >= worth_threads) \
-    reduction(max                                                                                        \
-              : largest)
+#pragma omp parallel for schedule(static)                                             \
+    num_threads(exec.threads()) if (grid.cells() >= min_parallel_cells) reduction(max \
+                                                                                  : largest)
   for (int y = 0; y < grid.height; ++y)
     for (int x = 0; x < grid.width; ++x) {
       const float value = law(x, y);

@@ -35,13 +35,13 @@ struct CompactWarps<Law, std::enable_if_t<Law::compact_warps>> : std::true_type 
 /// `compact_warps`, because some warps take much longer than others, a warp covers 8 × 4 cells and a block
 /// has two: a block's resources are only freed when all of its warps are done.
 template <class Law>
-constexpr int warps_a_block = CompactWarps<Law>::value ? 2 : block_y;
+constexpr int warps_per_block = CompactWarps<Law>::value ? 2 : block_y;
 
 template <class Law>
 __global__ void cells_kernel(Grid grid, Law law) {
   int x = blockIdx.x * block_x + threadIdx.x, y = blockIdx.y * block_y + threadIdx.y;
   if constexpr (CompactWarps<Law>::value) {
-    x = 8 * (blockIdx.x * warps_a_block<Law> + threadIdx.y) + threadIdx.x % 8;
+    x = 8 * (blockIdx.x * warps_per_block<Law> + threadIdx.y) + threadIdx.x % 8;
     y = 4 * blockIdx.y + threadIdx.x / 8;
   }
   if (x < grid.width && y < grid.height) law(x, y);
@@ -49,7 +49,7 @@ __global__ void cells_kernel(Grid grid, Law law) {
 template <class Law>
 dim3 blocks_of(const Grid& g) {
   if (!CompactWarps<Law>::value) return blocks(g);
-  constexpr int width = 8 * warps_a_block<Law>;
+  constexpr int width = 8 * warps_per_block<Law>;
   return dim3((g.width + width - 1) / width, (g.height + 3) / 4);
 }
 
@@ -64,15 +64,15 @@ struct AtomicSums {
   DESERT_HD void square(int south, int width, Quanta south_west, Quanta south_east, Quanta north_west,
                         Quanta north_east) const {
 #if defined(__CUDA_ARCH__)
-    const unsigned there = __activemask(), lane = threadIdx.x % 32;
-    const int before = __shfl_up_sync(there, south, 1), after = __shfl_down_sync(there, south, 1);
-    const Quanta handed_south = __shfl_up_sync(there, south_east, 1),
-                 handed_north = __shfl_up_sync(there, north_east, 1);
-    const bool takes = lane > 0 && (there >> (lane - 1) & 1u) && before + 1 == south;
-    const bool hands = lane < 31 && (there >> (lane + 1) & 1u) && after == south + 1;
-    (*this)(south, south_west + (takes ? handed_south : 0));
-    (*this)(south + width, north_west + (takes ? handed_north : 0));
-    if (!hands) {
+    const unsigned active = __activemask(), lane = threadIdx.x % 32;
+    const int before = __shfl_up_sync(active, south, 1), after = __shfl_down_sync(active, south, 1);
+    const Quanta received_south = __shfl_up_sync(active, south_east, 1),
+                 received_north = __shfl_up_sync(active, north_east, 1);
+    const bool receives = lane > 0 && (active >> (lane - 1) & 1u) && before + 1 == south;
+    const bool sends = lane < 31 && (active >> (lane + 1) & 1u) && after == south + 1;
+    (*this)(south, south_west + (receives ? received_south : 0));
+    (*this)(south + width, north_west + (receives ? received_north : 0));
+    if (!sends) {
       (*this)(south + 1, south_east);
       (*this)(south + width + 1, north_east);
     }
@@ -108,7 +108,7 @@ struct Team {
 #endif
   }
   template <class Value>
-  DESERT_HD int lowest(int n, const Value& value) const {
+  DESERT_HD int min_of(int n, const Value& value) const {
 #if defined(__CUDA_ARCH__)
     __shared__ int least;
     int mine = value(0);
@@ -126,7 +126,7 @@ struct Team {
 #endif
   }
   template <class Value>
-  DESERT_HD float most(int n, const Value& value) const {
+  DESERT_HD float max_of(int n, const Value& value) const {
     float greatest = 0;
 #if defined(__CUDA_ARCH__)
     __shared__ int bits;  // floats that are not negative compare like their bits
@@ -146,8 +146,8 @@ struct Team {
     for_each(width * height, [&](int i) { body(i % width, i / width); });
   }
   template <class Value>
-  DESERT_HD int lowest(int width, int height, const Value& value) const {
-    return lowest(width * height, [&](int i) { return value(i % width, i / width); });
+  DESERT_HD int min_of(int width, int height, const Value& value) const {
+    return min_of(width * height, [&](int i) { return value(i % width, i / width); });
   }
   /// Each warp takes one row at a time.
   template <class Body>
@@ -212,7 +212,7 @@ inline dim3 reduction_blocks(const Grid& g) {
 
 template <class Law>
 void for_each_cell(CudaExec& exec, const Grid& grid, const Law& law) {
-  const dim3 threads(cuda::block_x, cuda::warps_a_block<Law>);
+  const dim3 threads(cuda::block_x, cuda::warps_per_block<Law>);
   cuda::cells_kernel<<<cuda::blocks_of<Law>(grid), threads, 0, cuda::stream(exec)>>>(grid, law);
   check_cuda(cudaGetLastError(), "launch over cells");
 }

@@ -9,14 +9,14 @@
 
 namespace desert_sim::brush {
 
-struct Change {
+struct MergeChange {
   Brush b;
   Quanta* change;
   DESERT_HD void operator()(int x, int y) const {
     const int i = b.cell(x, y);
     const Point p = b.point(x, y);
     const float w = b.shape.weight(p);
-    change[y * b.columns + x] = i < 0 || w <= 0.0f ? 0 : b.edited(i, p, w) - b.layer[i];
+    change[y * b.columns + x] = i < 0 || w <= 0.0f ? 0 : b.new_value(i, p, w) - b.layer[i];
   }
 };
 
@@ -42,7 +42,7 @@ struct BeyondLimit {
     const int i = b.cell(x, y);
     long long surface = static_cast<long long>(b.layer[i]) + change[k];
     if (surface >= wall_height - 1 || surface <= 1 - wall_height) return 1;
-    for (int n = 0; n < 3; ++n) surface += b.rest[n] ? b.rest[n][i] : 0;
+    for (int n = 0; n < 3; ++n) surface += b.other_layers[n] ? b.other_layers[n][i] : 0;
     return surface >= load_limit || surface <= -load_limit ? 1 : 0;
   }
 };
@@ -53,10 +53,10 @@ struct Sum {
   DESERT_HD long long operator()(int x, int y) const { return change[y * columns + x]; }
 };
 
-struct Book {
+struct CommitChange {
   Brush b;
   const Quanta* change;
-  bool moved;  ///< material stays within the layer, so nothing is booked
+  bool moved;  ///< material stays within the layer, so the ledger records nothing
   DESERT_HD void operator()(int x, int y) const {
     const Quanta c = change[y * b.columns + x];
     if (c == 0) return;
@@ -70,7 +70,7 @@ struct Book {
 
 template <class E>
 void merge(E& exec, const Brush& b, Quanta* change) {
-  for_each_cell(exec, b.area(), Change{b, change});
+  for_each_cell(exec, b.area(), MergeChange{b, change});
 }
 
 template <class E>
@@ -89,14 +89,14 @@ long long total(E& exec, const Brush& b, const Quanta* change) {
 }
 
 template <class E>
-void book(E& exec, const Brush& b, const Quanta* change, bool moved) {
-  for_each_cell(exec, b.area(), Book{b, change, moved});
+void commit_change(E& exec, const Brush& b, const Quanta* change, bool moved) {
+  for_each_cell(exec, b.area(), CommitChange{b, change, moved});
 }
 
 template void merge(Backend&, const Brush&, Quanta*);
 template void ring_stock(Backend&, const Brush&, Quanta*);
 template long long cells_beyond_limit(Backend&, const Brush&, const Quanta*);
 template long long total(Backend&, const Brush&, const Quanta*);
-template void book(Backend&, const Brush&, const Quanta*, bool);
+template void commit_change(Backend&, const Brush&, const Quanta*, bool);
 
 }  // namespace desert_sim::brush

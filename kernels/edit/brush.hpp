@@ -7,8 +7,8 @@
 ///   min, max, avg     lerp(v, min(v, value) | max(v, value) | ½(v + value), w)
 ///   smooth            lerp(v, mean of v over a square, w), repeated (brush_smooth.hpp)
 ///
-/// An edit is computed as the change of each cell in the brush's rectangle, checked, and then booked. Depths
-/// do not fall below 0. What is added or removed is booked as in or out of the material.
+/// An edit is computed as the change of each cell in the brush's rectangle, checked, and then applied. Depths
+/// do not fall below 0. The ledger records what is added or removed as inflow or outflow of the material.
 
 #include "kernels/edit/brush_shape.hpp"
 #include "kernels/field/layers.hpp"
@@ -34,7 +34,7 @@ struct Brush {
   bool depth;  ///< cannot fall below 0
   Material material;
   Quanta* layer;
-  const Quanta* rest[3];  ///< other layers of the column, or null
+  const Quanta* other_layers[3];  ///< other layers of the column, or null
   LedgerView ledger;
 
   DESERT_HD Grid area() const { return Grid{columns, rows, 1.0f, false, false}; }
@@ -42,15 +42,15 @@ struct Brush {
   DESERT_HD Point point(int x, int y) const { return {x0 + x + 0.5f - centre_x, y0 + y + 0.5f - centre_y}; }
 
   /// New value of a cell [quanta], limited to what a cell can hold.
-  DESERT_HD Quanta edited(int i, Point p, float w) const {
-    const double v = layer[i], here = value + quanta_per_metre * shape.height(p);
-    double target = here;
-    if (merge == BrushMerge::min) target = v < here ? v : here;
-    if (merge == BrushMerge::max) target = v > here ? v : here;
-    if (merge == BrushMerge::avg) target = 0.5 * (v + here);
+  DESERT_HD Quanta new_value(int i, Point p, float w) const {
+    const double v = layer[i], brush_value = value + quanta_per_metre * shape.height(p);
+    double target = brush_value;
+    if (merge == BrushMerge::min) target = v < brush_value ? v : brush_value;
+    if (merge == BrushMerge::max) target = v > brush_value ? v : brush_value;
+    if (merge == BrushMerge::avg) target = 0.5 * (v + brush_value);
     double result = v + w * (target - v);
-    if (merge == BrushMerge::add) result = v + w * here;
-    if (merge == BrushMerge::sub) result = v - w * here;
+    if (merge == BrushMerge::add) result = v + w * brush_value;
+    if (merge == BrushMerge::sub) result = v - w * brush_value;
     result = rint(result);
     const double lowest = depth ? 0.0 : 1.0 - wall_height, highest = wall_height - 1.0;
     return static_cast<Quanta>(result < lowest ? lowest : (result > highest ? highest : result));
@@ -73,7 +73,7 @@ long long total(E& exec, const Brush& b, const Quanta* change);
 
 /// Applies the change. `moved`: it sums to 0, because material only moves from cell to cell.
 template <class E>
-void book(E& exec, const Brush& b, const Quanta* change, bool moved);
+void commit_change(E& exec, const Brush& b, const Quanta* change, bool moved);
 
 }  // namespace brush
 }  // namespace desert_sim

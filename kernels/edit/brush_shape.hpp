@@ -69,7 +69,7 @@ struct Shape {
   DESERT_HD bool has_depth() const { return kind == BrushShape::polygon || kind == BrushShape::patch; }
 
   /// Relative distance from the centre: 1 on the edge of the shape grown by `by` cells.
-  DESERT_HD float relative(Point p, float by) const {
+  DESERT_HD float relative_distance(Point p, float by) const {
     if (kind == BrushShape::capsule) return distance_to_segment(p, vertices[0], vertices[1]) / (a + by);
     const float u = along(p) / (a + by), v = across(p) / (b + by);
     if (kind == BrushShape::circle || kind == BrushShape::ellipse) return hypotenuse(u, v);
@@ -94,7 +94,7 @@ struct Shape {
 
   /// Whether the point lies in the shape grown by `by` cells on every side.
   DESERT_HD bool covers(Point p, float by) const {
-    if (kind != BrushShape::polygon) return relative(p, by) <= 1.0f;
+    if (kind != BrushShape::polygon) return relative_distance(p, by) <= 1.0f;
     return in_polygon(p) || (by > 0.0f && distance_to_edge(p) <= by);
   }
 
@@ -104,7 +104,7 @@ struct Shape {
 
   DESERT_HD float weight(Point p) const {
     if (!has_depth()) {
-      const float r = relative(p, 0.0f);
+      const float r = relative_distance(p, 0.0f);
       if (r > 1.0f) return 0.0f;
       return r <= inner ? 1.0f : (1.0f - r) / (1.0f - inner);
     }

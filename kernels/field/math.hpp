@@ -15,14 +15,14 @@ DESERT_HD float minimum(float a, float b) { return a < b ? a : b; }
 DESERT_HD float maximum(float a, float b) { return a > b ? a : b; }
 /// Minimum and maximum of two numbers that are neither NaN nor zeros of different sign. On a GPU each is one
 /// instruction, which minimum() and maximum() are not.
-DESERT_HD float lower(float a, float b) {
+DESERT_HD float fast_min(float a, float b) {
 #if defined(__CUDA_ARCH__)
   return fminf(a, b);
 #else
   return minimum(a, b);
 #endif
 }
-DESERT_HD float higher(float a, float b) {
+DESERT_HD float fast_max(float a, float b) {
 #if defined(__CUDA_ARCH__)
   return fmaxf(a, b);
 #else
@@ -63,7 +63,7 @@ DESERT_HD float positive_part(float v) {
 #endif
 }
 /// Rounds to the nearest integer, halves away from zero; |v| ≤ 2³⁰.
-DESERT_HD int nearest(float v) {
+DESERT_HD int round_to_int(float v) {
   const int whole = static_cast<int>(v);
   const float rest = v - static_cast<float>(whole);
   return whole + (rest >= 0.5f ? 1 : 0) - (rest <= -0.5f ? 1 : 0);

@@ -20,7 +20,7 @@ constexpr Quanta wall_height = Quanta{1} << 30;
 constexpr Quanta load_limit = Quanta{1} << 29;
 
 /// `metres` in quanta, rounded to nearest, not less than 0 and not more than `available`.
-DESERT_HD Quanta take(float metres, float quanta_per_metre, Quanta available) {
+DESERT_HD Quanta to_quanta_at_most(float metres, float quanta_per_metre, Quanta available) {
   const float wanted = rintf(metres * quanta_per_metre);
   if (!(wanted > 0.0f)) return 0;
   if (wanted >= static_cast<float>(available)) return available;

@@ -53,7 +53,7 @@ struct SandSlope {
 
 /// 1 for a cell whose value breaks the contract of its layer: a height at or beyond those of walls, a
 /// negative depth, or a float that is not finite; else 0.
-struct Broken {
+struct ContractViolation {
   Grid grid;
   const Quanta* quanta;
   const float* real;
@@ -73,7 +73,7 @@ long long sum(E& exec, const Grid& grid, const Quanta* layer) {
 
 template <class E>
 long long count_violations(E& exec, const Grid& grid, const Quanta* quanta, const float* real, bool depth) {
-  return sum_cells(exec, grid, Broken{grid, quanta, real, depth});
+  return sum_cells(exec, grid, ContractViolation{grid, quanta, real, depth});
 }
 
 template <class E>
@@ -85,7 +85,7 @@ float sand_slope(E& exec, const TerrainView& t) {
 
 template <class E>
 Residual residual(E& exec, const TerrainView& t, const float* repose) {
-  const avalanching::Excess excess{avalanching::finest(t, repose)};
+  const avalanching::Excess excess{avalanching::finest_level(t, repose)};
   const long long over = sum_cells(exec, t.grid, CountOver{excess, 1e-3f});
   Residual r;
   r.share_over_1e3 = static_cast<double>(over) / t.grid.cells();

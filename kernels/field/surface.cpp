@@ -46,12 +46,12 @@ void fill_water_surface(E& exec, const TerrainView& t, int first, int rows) {
 }
 
 template <class E>
-void measure(E& exec, const TerrainView& t, Heights& heights) {
-  for_each_cell(exec, heights.blocks, measuring(t, heights));
+void compute_heights(E& exec, const TerrainView& t, Heights& heights) {
+  for_each_cell(exec, heights.blocks, make_heights_law(t, heights));
 }
 
 template void fill_elevation(Backend&, const TerrainView&);
 template void fill_water_surface(Backend&, const TerrainView&, int, int);
-template void measure(Backend&, const TerrainView&, Heights&);
+template void compute_heights(Backend&, const TerrainView&, Heights&);
 
 }  // namespace desert_sim::surface

@@ -33,6 +33,6 @@ Grid blocks_of(const Grid& grid);
 Heights make_heights(Exec& exec, const Grid& grid);
 
 template <class E>
-void measure(E& exec, const TerrainView& t, Heights& heights);
+void compute_heights(E& exec, const TerrainView& t, Heights& heights);
 
 }  // namespace desert_sim::surface

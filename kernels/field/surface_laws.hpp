@@ -30,7 +30,7 @@ struct GroundAndSand {
 };
 
 /// Writes the heights of one block's cells, and the highest of them.
-struct MeasureBlock {
+struct ComputeBlockHeights {
   Grid grid;
   const Quanta *bedrock, *soil, *sand;
   Grid blocks;
@@ -41,22 +41,22 @@ struct MeasureBlock {
     float top = -static_cast<float>(wall_height);
     for (int y = y0; y < y0 + block_side && y < grid.height; ++y) {
       if (grid.width % block_side == 0) {
-        top = maximum(top, put_row(grid.index(x0, y), row_at(grid.index(x0, y))));
+        top = maximum(top, store_row(grid.index(x0, y), row_at(grid.index(x0, y))));
         continue;
       }
       for (int x = x0; x < x0 + block_side && x < grid.width; ++x)
-        top = maximum(top, measure(grid.index(x, y)));
+        top = maximum(top, compute_height(grid.index(x, y)));
     }
     highest[blocks.index(column, row)] = top;
   }
   /// The same for a block whose cells all exist, on a grid whose width is a multiple of block_side. row_of(n)
   /// gives ground and sand of the nth of its rows.
   template <class RowOf>
-  DESERT_HD void measure_complete_block(int column, int row, const RowOf& row_of) const {
+  DESERT_HD void compute_complete_block(int column, int row, const RowOf& row_of) const {
     const int first = grid.index(block_side * column, block_side * row);
     float top = -static_cast<float>(wall_height);
     unrolled<block_side>(
-        [&](auto n) DESERT_INLINE { top = maximum(top, put_row(first + n * grid.width, row_of(n))); });
+        [&](auto n) DESERT_INLINE { top = maximum(top, store_row(first + n * grid.width, row_of(n))); });
     highest[blocks.index(column, row)] = top;
   }
 
@@ -69,19 +69,19 @@ struct MeasureBlock {
     }
     return row;
   }
-  DESERT_HD float put_row(int first, const GroundAndSand& row) const {
+  DESERT_HD float store_row(int first, const GroundAndSand& row) const {
     Vec4<float> h;
     for (int n = 0; n < 4; ++n) h.values[n] = static_cast<float>(row.ground.values[n] + row.sand.values[n]);
     store_vec4(heights + first, h);
     return maximum(maximum(h.values[0], h.values[1]), maximum(h.values[2], h.values[3]));
   }
-  DESERT_HD float measure(int i) const {
+  DESERT_HD float compute_height(int i) const {
     return heights[i] = static_cast<float>(bedrock[i] + value_or_zero(soil, i) + sand[i]);
   }
 };
 
-/// The law that measures all of `heights`.
-inline MeasureBlock measuring(const TerrainView& t, Heights& heights) {
+/// The law that computes all of `heights`.
+inline ComputeBlockHeights make_heights_law(const TerrainView& t, Heights& heights) {
   return {t.grid,         t.quanta(Layer::bedrock),    t.quanta(Layer::soil), t.quanta(Layer::sand),
           heights.blocks, heights.cell_heights.data(), heights.highest.data()};
 }

@@ -54,7 +54,7 @@ struct Cover {
     const float height = heights[i];
     Sums sums;
     for (int k = 0; k < species_count; ++k) sums.of_species[k] = sums.downwind[k] = 0.0f;
-    near.around(x, y, 0.0f, [&](int n) { add(sums, n, x, y, height, u, v); });
+    near.visit_near(x, y, 0.0f, [&](int n) { add(sums, n, x, y, height, u, v); });
     canopy_height[i] = sums.canopy;
     for (int k = 0; k < species_count; ++k) {
       density[k * static_cast<long long>(grid.cells()) + i] = sums.of_species[k];
@@ -62,15 +62,16 @@ struct Cover {
     }
     if (!vegetation) return;
     vegetation[i] = minimum(sums.density, 1.0f);
-    const Quanta there = humus[i];
-    const Quanta room = humus_limit > there ? humus_limit - there : 0;
-    humus[i] =
-        there > humus_limit ? humus_limit : there + take(time_step * sums.humus, quanta_per_metre, room);
+    const Quanta present = humus[i];
+    const Quanta room = humus_limit > present ? humus_limit - present : 0;
+    humus[i] = present > humus_limit
+                   ? humus_limit
+                   : present + to_quanta_at_most(time_step * sums.humus, quanta_per_metre, room);
   }
 };
 
 /// Heights of the canopy over one block's cells, and the greatest of them.
-struct RaiseBlock {
+struct ComputeCanopyTops {
   Grid grid, blocks;
   const float *heights, *canopy_height;
   float quanta_per_metre;
@@ -92,16 +93,17 @@ struct RaiseBlock {
 template <class E>
 void cover(E& exec, const TerrainView& t, const VegetationParameters& p, float time_step,
            const surface::Heights& heights, bool makes_state, Workspace& work) {
-  for_each_cell(exec, t.grid,
-                Cover{t.grid, work.neighbourhood(), work.plants(), work.species.data(), work.species_count,
-                      heights.cell_heights.data(), t.real(Layer::wind_x), t.real(Layer::wind_y), t.quantum,
-                      t.quanta_per_metre, time_step, take(p.humus_limit, t.quanta_per_metre, load_limit),
-                      makes_state ? t.real(Layer::vegetation) : nullptr, t.real(Layer::canopy_height),
-                      t.quanta(Layer::humus), work.density.data(), work.downwind.data()});
+  for_each_cell(
+      exec, t.grid,
+      Cover{t.grid, work.neighbourhood(), work.plants(), work.species.data(), work.species_count,
+            heights.cell_heights.data(), t.real(Layer::wind_x), t.real(Layer::wind_y), t.quantum,
+            t.quanta_per_metre, time_step, to_quanta_at_most(p.humus_limit, t.quanta_per_metre, load_limit),
+            makes_state ? t.real(Layer::vegetation) : nullptr, t.real(Layer::canopy_height),
+            t.quanta(Layer::humus), work.density.data(), work.downwind.data()});
   for_each_cell(
       exec, work.tops.blocks,
-      RaiseBlock{t.grid, work.tops.blocks, heights.cell_heights.data(), t.real(Layer::canopy_height),
-                 t.quanta_per_metre, work.tops.cell_heights.data(), work.tops.highest.data()});
+      ComputeCanopyTops{t.grid, work.tops.blocks, heights.cell_heights.data(), t.real(Layer::canopy_height),
+                        t.quanta_per_metre, work.tops.cell_heights.data(), work.tops.highest.data()});
 }
 
 template void cover(Backend&, const TerrainView&, const VegetationParameters&, float, const surface::Heights&,

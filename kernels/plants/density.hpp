@@ -18,8 +18,8 @@ DESERT_HD float density_at(float distance2, float above, float radius, float ste
   const float radius2 = radius * radius;
   if (!(distance2 < radius2)) return 0.0f;
   const float half_height = radius * (above > 0.0f ? stem : root);
-  const float upright = above / half_height;
-  const float full = exp_negative(2.0f * (distance2 / radius2 + upright * upright));
+  const float relative_height = above / half_height;
+  const float full = exp_negative(2.0f * (distance2 / radius2 + relative_height * relative_height));
   return maximum(full - 0.13533528f * (sqrtf(distance2) / radius), 0.0f);
 }
 

@@ -15,15 +15,15 @@
 ///
 /// with D_kj the competition matrix and W of water_uptake.hpp. The radius grows up to
 ///
-///   r_most = min((z − bedrock)/h_r, g_competition g_light r_max)
-///   r_most ≤ (surface of the water − z)/h_s   for underwater plants
+///   r_largest = min((z − bedrock)/h_r, g_competition g_light r_max)
+///   r_largest ≤ (surface of the water − z)/h_s   for underwater plants
 ///
-/// A plant wider than 1.1 r_most is damaged, and shrinks if its species can. The damages d are 0 at the limit
-/// of the allowed range and at most 1: radius too large, requirement of water not met, too dark or too
+/// A plant wider than 1.1 r_largest is damaged, and shrinks if its species can. The damages d are 0 at the
+/// limit of the allowed range and at most 1: radius too large, requirement of water not met, too dark or too
 /// bright, ground too wet, slope too steep, roots exposed, stem buried, water too deep or, for underwater
 /// plants, absent. Any damage stops growth. A plant dies at health 0, or if it is not mature by
-/// `maturity_time`; it leaves humus. Plants read their neighbours' state before the step, so that their order
-/// does not matter.
+/// `maturity_time`; it leaves humus. Plants read their neighbours' state before the step, so that their
+/// order does not matter.
 ///
 /// Reads bedrock, soil, sand, water, moisture, canopy_height, illumination, illumination_canopy and the
 /// plants; writes humus and the plants.
@@ -34,10 +34,10 @@
 
 namespace desert_sim::plants {
 
-/// Growth factors and sum of the damages of a plant, and its largest allowed radius r_most [m].
+/// Growth factors and sum of the damages of a plant, and its largest allowed radius r_largest [m].
 struct Response {
   float competition = 1, light = 1, slope = 1, water = 1, flood = 1, ground = 1;
-  float damage = 0, widest = 0;
+  float damage = 0, largest_radius = 0;
   DESERT_HD float growth() const { return competition * light * slope * water * flood * ground; }
 };
 
@@ -58,7 +58,7 @@ struct Competition {
     const Quanta z = plants.z[k];
     const float* row = matrix + plants.species[k] * species_count;
     float sum = 0.0f;
-    near.around(x, y, r, [&](int j) {
+    near.visit_near(x, y, r, [&](int j) {
       if (j == k) return;
       const float dx = near.lookup.difference_x(x, plants.x[j]),
                   dy = near.lookup.difference_y(y, plants.y[j]);
@@ -86,7 +86,7 @@ DESERT_HD float light_factor(const SpeciesTraits& s, float light) {
 struct Grow {
   WaterUptake water_uptake;
   Competition competition;
-  View plants, later;
+  View plants, next_state;
   const SpeciesTraits* species;
   const long long* water_requests;
   const float *canopy_height, *illumination, *illumination_canopy;
@@ -115,11 +115,11 @@ struct Grow {
     r.ground = ground_quality(s, g);
     r.damage += excess(s.root_cover - g.root_cover, s.root_cover);
     r.damage += excess(g.stem_cover - s.stem_cover, 1.0f - s.stem_cover);
-    r.widest = static_cast<float>(plants.z[n] - here.bedrock[cell]) * here.quantum / s.root;
+    r.largest_radius = static_cast<float>(plants.z[n] - here.bedrock[cell]) * here.quantum / s.root;
     const float depth = here.water_depth(cell);
     if (lives_under_water(s)) {
       r.damage += depth > wet_depth ? 0.0f : 1.0f;
-      r.widest = minimum(r.widest, (depth - above_ground) / s.stem);
+      r.largest_radius = minimum(r.largest_radius, (depth - above_ground) / s.stem);
     } else if (depth > wet_depth) {
       const float allowed = s.water_resistance * stem;
       r.flood = clamp(1.0f - depth / maximum(allowed, wet_depth), 0.0f, 1.0f);
@@ -128,31 +128,36 @@ struct Grow {
   }
 
   /// Water uptake and its effects; returns the water stored afterwards.
-  DESERT_HD float drink(const SpeciesTraits& s, int n, int cell, Response& r) const {
+  DESERT_HD float take_up_water(const SpeciesTraits& s, int n, int cell, Response& r) const {
     const float stored = plants.water[n];
     const WaterDemand t = water_uptake.water_demand(s, plants.radius[n], stored, cell);
-    granted_water[n] = water_uptake.granted(t.wish, water_requests[cell], cell);
-    const float share = t.wish > 0 ? static_cast<float>(granted_water[n]) / static_cast<float>(t.wish) : 1.0f;
-    const float left = stored + t.wanted * share - t.needed;
-    r.damage += t.needed > 0.0f && left < 0.0f ? excess(-left, t.needed) : 0.0f;
-    r.water = t.needed > 0.0f ? 1.0f + clamp(t.reachable * share / t.needed - 1.0f, 0.0f, 1.0f) : 2.0f;
-    return clamp(left, 0.0f, t.stored_most);
+    granted_water[n] = water_uptake.granted(t.request, water_requests[cell], cell);
+    const float share =
+        t.request > 0 ? static_cast<float>(granted_water[n]) / static_cast<float>(t.request) : 1.0f;
+    const float left = stored + t.wanted_water * share - t.required_water;
+    r.damage += t.required_water > 0.0f && left < 0.0f ? excess(-left, t.required_water) : 0.0f;
+    r.water = t.required_water > 0.0f
+                  ? 1.0f + clamp(t.available_water * share / t.required_water - 1.0f, 0.0f, 1.0f)
+                  : 2.0f;
+    return clamp(left, 0.0f, t.storage_capacity);
   }
 
   /// Returns the new radius, and adds the damage of a radius that is too large.
   DESERT_HD float new_radius(const SpeciesTraits& s, float radius, Response& r) const {
-    r.widest = minimum(r.widest, r.competition * r.light * s.max_radius);
-    const bool too_wide = radius > 1.1f * r.widest;
-    if (too_wide) r.damage += excess(radius - 1.1f * r.widest, 1.1f * maximum(r.widest, 0.0f));
-    if (too_wide) return maximum(radius - time_step * s.shrink, maximum(r.widest, 0.05f * radius));
-    if (r.damage > 0.0f || radius >= r.widest) return radius;
-    return minimum(radius + time_step * s.growth * r.growth(), r.widest);
+    r.largest_radius = minimum(r.largest_radius, r.competition * r.light * s.max_radius);
+    const bool too_wide = radius > 1.1f * r.largest_radius;
+    if (too_wide)
+      r.damage += excess(radius - 1.1f * r.largest_radius, 1.1f * maximum(r.largest_radius, 0.0f));
+    if (too_wide) return maximum(radius - time_step * s.shrink, maximum(r.largest_radius, 0.05f * radius));
+    if (r.damage > 0.0f || radius >= r.largest_radius) return radius;
+    return minimum(radius + time_step * s.growth * r.growth(), r.largest_radius);
   }
 
-  DESERT_HD Quanta follow(const SpeciesTraits& s, Quanta z, int cell) const {
-    const Quanta most = take(s.position_adjust * time_step, site().quanta_per_metre, load_limit);
-    const Quanta way = site().surface(cell) - z;
-    return z + (way > most ? most : (way < -most ? -most : way));
+  DESERT_HD Quanta follow_ground(const SpeciesTraits& s, Quanta z, int cell) const {
+    const Quanta max_shift =
+        to_quanta_at_most(s.position_adjust * time_step, site().quanta_per_metre, load_limit);
+    const Quanta distance = site().surface(cell) - z;
+    return z + (distance > max_shift ? max_shift : (distance < -max_shift ? -max_shift : distance));
   }
 
   DESERT_HD void operator()(int n) const {
@@ -162,23 +167,23 @@ struct Grow {
     Response r;
     r.competition = competition(n);
     add_site_response(s, n, cell, r);
-    const float stored = drink(s, n, cell, r);
+    const float stored = take_up_water(s, n, cell, r);
     const float grown = new_radius(s, radius, r);
-    const float gain = r.damage > 0.0f || radius >= r.widest ? 0.0f : s.growth * r.growth();
+    const float gain = r.damage > 0.0f || radius >= r.largest_radius ? 0.0f : s.growth * r.growth();
     float health = minimum(plants.health[n] + time_step * (gain - s.damage * r.damage), 1.0f);
     const bool due = age < s.maturity_time && age + time_step >= s.maturity_time;
     if (due && !is_mature(s, grown)) health = 0.0f;
-    later.x[n] = plants.x[n];
-    later.y[n] = plants.y[n];
-    later.z[n] = follow(s, plants.z[n], cell);
-    later.radius[n] = grown;
-    later.health[n] = health;
-    later.water[n] = stored;
-    later.age[n] = age + time_step;
-    later.species[n] = plants.species[n];
+    next_state.x[n] = plants.x[n];
+    next_state.y[n] = plants.y[n];
+    next_state.z[n] = follow_ground(s, plants.z[n], cell);
+    next_state.radius[n] = grown;
+    next_state.health[n] = health;
+    next_state.water[n] = stored;
+    next_state.age[n] = age + time_step;
+    next_state.species[n] = plants.species[n];
     if (health > 0.0f) return;
     atomic_add(deaths, 1);
-    atomic_add(&humus[cell], take(litter * s.humus, site().quanta_per_metre, load_limit >> 10));
+    atomic_add(&humus[cell], to_quanta_at_most(litter * s.humus, site().quanta_per_metre, load_limit >> 10));
   }
 };
 

@@ -11,9 +11,9 @@ namespace desert_sim::plants {
 
 /// Offsets from which light comes, and the weight of one quantum of rise there.
 struct Rays {
-  static constexpr int reach = 3, samples = 49, most = 24;
-  int dx[most] = {}, dy[most] = {};
-  float weight[most] = {};  ///< 0: unused entry
+  static constexpr int reach = 3, samples = 49, count = 24;
+  int dx[count] = {}, dy[count] = {};
+  float weight[count] = {};  ///< 0: unused entry
 
   Rays(float light_x, float light_y, float cell_size, float quantum) {
     int n = 0;
@@ -40,7 +40,7 @@ struct Illuminate {
   float quantum, light_decay;
   float *ground, *canopy;
 
-  DESERT_HD float faded(float light, float depth) const {
+  DESERT_HD float attenuated(float light, float depth) const {
     return depth > 0.0f ? light * exp_negative(light_decay * depth) : light;
   }
 
@@ -48,18 +48,18 @@ struct Illuminate {
     const int i = grid.index(x, y);
     const float low = heights[i], high = tops[i];
     float on_ground = 0.0f, on_canopy = 0.0f;
-    unrolled<Rays::most>([&](auto n) DESERT_INLINE {
+    unrolled<Rays::count>([&](auto n) DESERT_INLINE {
       const int at = inside ? i + rays.dy[n] * grid.width + rays.dx[n]
                             : sample_index(grid, x + rays.dx[n], y + rays.dy[n]);
       const float top = tops[at];
       on_ground += exp_negative(rays.weight[n] * maximum(top - low, 0.0f));
       on_canopy += exp_negative(rays.weight[n] * maximum(top - high, 0.0f));
     });
-    constexpr float others = Rays::samples - Rays::most;
+    constexpr float others = Rays::samples - Rays::count;
     const float depth = static_cast<float>(value_or_zero(water, i)) * quantum;
     const float cover = (high - low) * quantum;
-    ground[i] = faded((on_ground + others) * (2.0f / Rays::samples) - 1.0f, depth);
-    canopy[i] = faded((on_canopy + others) * (2.0f / Rays::samples) - 1.0f, depth - cover);
+    ground[i] = attenuated((on_ground + others) * (2.0f / Rays::samples) - 1.0f, depth);
+    canopy[i] = attenuated((on_canopy + others) * (2.0f / Rays::samples) - 1.0f, depth - cover);
   }
 };
 

@@ -22,7 +22,7 @@ struct Key {
 struct Gather {
   const std::uint64_t* words;
   View from, to;
-  DESERT_HD void operator()(int n) const { to.take(n, from, static_cast<int>(words[n] & 0xffffffffu)); }
+  DESERT_HD void operator()(int n) const { to.copy_from(n, from, static_cast<int>(words[n] & 0xffffffffu)); }
 };
 
 /// Finds the spans of sorted plants of each cell of the look-up, and of each of its levels.
@@ -44,11 +44,11 @@ struct MarkSpans {
 
 template <class E>
 void sort_plants(E& exec, int all, int dead, Workspace& work) {
-  for_each_item(exec, all, Key{work.lookup, work.later(), work.ordering.words.data()});
-  sort_by_key(exec, work.ordering, all, bit_width_of(static_cast<std::uint32_t>(work.lookup.cells)));
+  for_each_item(exec, all, Key{work.lookup, work.next_state(), work.sort_workspace.sort_keys.data()});
+  sort_by_key(exec, work.sort_workspace, all, bit_width_of(static_cast<std::uint32_t>(work.lookup.cells)));
   work.count = all - dead;
-  const std::uint64_t* words = work.ordering.words.data();
-  for_each_item(exec, work.count, Gather{words, work.later(), work.plants()});
+  const std::uint64_t* words = work.sort_workspace.sort_keys.data();
+  for_each_item(exec, work.count, Gather{words, work.next_state(), work.plants()});
   work.spans.set_zero();
   for_each_item(exec, work.count, MarkSpans{work.lookup, words, work.count, work.spans.data()});
 }
@@ -57,20 +57,20 @@ void sort_plants(E& exec, int all, int dead, Workspace& work) {
 template <class E>
 void spawn(E& exec, const Site& site, std::uint64_t seed, std::uint64_t step, float time_step,
            Workspace& work) {
-  const SpawningLaw seeding{site,
-                            work.species.data(),
-                            work.species_count,
-                            work.density.data(),
-                            work.downwind.data(),
-                            time_step,
-                            seed,
-                            step};
-  for_each_cell(exec, site.grid, MarkSpawningCells{seeding, work.seeds.data()});
-  prefix_sums(exec, work.ordering, work.seeds.data(), work.places.data(), site.grid.cells() + 1);
-  for_each_cell(
-      exec, site.grid,
-      CreatePlants{seeding, work.seeds.data(), work.places.data(), work.later(), work.count, work.capacity});
-  exec.copy(work.tally.data() + 1, work.places.data() + site.grid.cells(), sizeof(int));
+  const SpawningLaw spawning{site,
+                             work.species.data(),
+                             work.species_count,
+                             work.density.data(),
+                             work.downwind.data(),
+                             time_step,
+                             seed,
+                             step};
+  for_each_cell(exec, site.grid, MarkSpawningCells{spawning, work.seeds.data()});
+  prefix_sums(exec, work.sort_workspace, work.seeds.data(), work.seed_offsets.data(), site.grid.cells() + 1);
+  for_each_cell(exec, site.grid,
+                CreatePlants{spawning, work.seeds.data(), work.seed_offsets.data(), work.next_state(),
+                             work.count, work.capacity});
+  exec.copy(work.event_counts.data() + 1, work.seed_offsets.data() + site.grid.cells(), sizeof(int));
 }
 
 template <class E>
@@ -78,26 +78,26 @@ void grow_and_spawn(E& exec, const TerrainView& t, const VegetationParameters& p
                     const ReposeParameters& repose, const surface::Heights& heights, float time_step,
                     std::uint64_t seed, std::uint64_t step, LedgerView ledger, Workspace& work) {
   const WaterUptake water_uptake(t, repose, p, heights.cell_heights.data(), time_step);
-  work.tally.set_zero();
+  work.event_counts.set_zero();
   work.water_requests.set_zero();
   for_each_item(exec, work.count,
                 SumRequests{water_uptake, work.plants(), work.species.data(), work.water_requests.data()});
   const Competition competition{work.neighbourhood(), work.plants(), work.competition.data(),
                                 work.species_count, t.quantum};
   for_each_item(exec, work.count,
-                Grow{water_uptake, competition, work.plants(), work.later(), work.species.data(),
+                Grow{water_uptake, competition, work.plants(), work.next_state(), work.species.data(),
                      work.water_requests.data(), t.real(Layer::canopy_height), t.real(Layer::illumination),
                      t.real(Layer::illumination_canopy), time_step, p.litter, work.granted_water.data(),
-                     t.quanta(Layer::humus), work.tally.data()});
+                     t.quanta(Layer::humus), work.event_counts.data()});
   spawn(exec, water_uptake.site, seed, step, time_step, work);
   if (t.quanta(Layer::moisture))
     for_each_item(exec, work.count,
                   DebitMoisture{water_uptake.site, work.plants(), work.granted_water.data(),
                                 t.quanta(Layer::moisture), ledger});
-  int tally[2];
-  work.tally.download(0, 2, tally);
+  int event_counts[2];
+  work.event_counts.download(0, 2, event_counts);
   const int room = work.capacity - work.count;
-  sort_plants(exec, work.count + (tally[1] < room ? tally[1] : room), tally[0], work);
+  sort_plants(exec, work.count + (event_counts[1] < room ? event_counts[1] : room), event_counts[0], work);
 }
 
 template void sort_plants(Backend&, int, int, Workspace&);

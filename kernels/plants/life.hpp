@@ -16,7 +16,8 @@
 
 namespace desert_sim::plants {
 
-/// Sorts the first `all` plants of `later` by key into `plants`; `dead` of them have died and are dropped.
+/// Sorts the first `all` plants of next_state() by key into plants(); `dead` of them have died and are
+/// dropped.
 template <class E>
 void sort_plants(E& exec, int all, int dead, Workspace& work);
 

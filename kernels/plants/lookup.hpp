@@ -79,9 +79,9 @@ struct Lookup {
     return d > 0.5f * length ? d - length : (d < -0.5f * length ? d + length : d);
   }
   /// A coordinate moved onto the grid, to its image there on a periodic axis.
-  float onto_x(double x) const { return onto(x, width, periodic_x); }
-  float onto_y(double y) const { return onto(y, height, periodic_y); }
-  static float onto(double at, float length, bool periodic) {
+  float wrap_onto_grid_x(double x) const { return wrap_onto_grid(x, width, periodic_x); }
+  float wrap_onto_grid_y(double y) const { return wrap_onto_grid(y, height, periodic_y); }
+  static float wrap_onto_grid(double at, float length, bool periodic) {
     return static_cast<float>(periodic ? at - length * std::floor(at / length) : at);
   }
   DESERT_HD float difference_x(float a, float b) const { return difference(a, b, width, periodic_x); }
@@ -89,9 +89,9 @@ struct Lookup {
 };
 
 /// Cells first … last along an axis that lie within `reach`, not yet wrapped; each at most once.
-struct Reach {
+struct CellRange {
   int first, last;
-  DESERT_HD Reach(float at, float reach, float per_metre, int cells, bool periodic)
+  DESERT_HD CellRange(float at, float reach, float per_metre, int cells, bool periodic)
       : first(static_cast<int>(floorf((at - reach) * per_metre))),
         last(static_cast<int>(floorf((at + reach) * per_metre))) {
     if (!periodic || last - first + 1 >= cells) {
@@ -110,13 +110,13 @@ struct Neighbourhood {
   /// Calls visit(n) for each plant of a level in the cells within `reach` [m] of (x, y), in the order of the
   /// cells and of the sorted plants.
   template <class Visit>
-  DESERT_HD void in_level(int number, float x, float y, float reach, const Visit& visit) const {
+  DESERT_HD void visit_level(int number, float x, float y, float reach, const Visit& visit) const {
     const Span all = spans[lookup.cells + number];
     if (all.begin == all.end) return;
     const Lookup::Level& at = lookup.level[number];
     const float wide = reach + lookup.slack;
-    const Reach across(x, wide, at.per_x, at.columns, lookup.periodic_x);
-    const Reach along(y, wide, at.per_y, at.rows, lookup.periodic_y);
+    const CellRange across(x, wide, at.per_x, at.columns, lookup.periodic_x);
+    const CellRange along(y, wide, at.per_y, at.rows, lookup.periodic_y);
     for (int row = along.first; row <= along.last; ++row) {
       const int first = at.first + wrap(row, at.rows) * at.columns;
       for (int column = across.first; column <= across.last; ++column) {
@@ -127,8 +127,8 @@ struct Neighbourhood {
   }
   /// Visits the plants of all levels that may reach (x, y) with their own radius plus `beyond` [m].
   template <class Visit>
-  DESERT_HD void around(float x, float y, float beyond, const Visit& visit) const {
-    for (int n = 0; n < Lookup::levels; ++n) in_level(n, x, y, lookup.level[n].radius + beyond, visit);
+  DESERT_HD void visit_near(float x, float y, float beyond, const Visit& visit) const {
+    for (int n = 0; n < Lookup::levels; ++n) visit_level(n, x, y, lookup.level[n].radius + beyond, visit);
   }
 };
 

@@ -24,9 +24,9 @@ struct DominantSpecies {
     const float x = (static_cast<float>(column) + 0.5f) * grid.cell_size,
                 y = (static_cast<float>(row) + 0.5f) * grid.cell_size;
     const Quanta z = height(i);
-    float densest = bare;
+    float densest = bare_density;
     int found = 0;
-    near.around(x, y, 0.0f, [&](int n) {
+    near.visit_near(x, y, 0.0f, [&](int n) {
       const float dx = near.lookup.difference_x(x, plants.x[n]),
                   dy = near.lookup.difference_y(y, plants.y[n]);
       const SpeciesTraits& s = species[plants.species[n]];
@@ -48,9 +48,9 @@ void find_dominant_species(E& exec, const TerrainView& t, int first, int rows, c
                                         t.real(Layer::plants)});
 }
 
-struct List {
+struct ExportPlants {
   View plants;
-  Metres metres;
+  QuantaToMetres metres;
   PlantRecord* to;
   int first;
   DESERT_HD void operator()(int k) const {
@@ -65,12 +65,13 @@ struct List {
 };
 
 template <class E>
-void export_plants(E& exec, const View& plants, const Metres& metres, int first, int count, PlantRecord* to) {
-  for_each_item(exec, count, List{plants, metres, to, first});
+void export_plants(E& exec, const View& plants, const QuantaToMetres& metres, int first, int count,
+                   PlantRecord* to) {
+  for_each_item(exec, count, ExportPlants{plants, metres, to, first});
 }
 
 template void find_dominant_species(Backend&, const TerrainView&, int, int, const Neighbourhood&, const View&,
                                     const SpeciesTraits*);
-template void export_plants(Backend&, const View&, const Metres&, int, int, PlantRecord*);
+template void export_plants(Backend&, const View&, const QuantaToMetres&, int, int, PlantRecord*);
 
 }  // namespace desert_sim::plants

@@ -3,7 +3,7 @@
 /// no part of a simulation step, but computed on request (Lifetime::on_request).
 ///
 ///   plants = 1 + species of the plant k with the largest density D_k
-///   plants = 0 where no D_k exceeds `bare`
+///   plants = 0 where no D_k exceeds `bare_density`
 ///
 /// D is the density (density.hpp) on the ground at the cell's centre; of equally dense plants the first in
 /// order counts. Reads bedrock, soil, sand and the plants; writes the layer plants.
@@ -15,7 +15,7 @@
 namespace desert_sim::plants {
 
 /// Density below which a place counts as bare.
-constexpr float bare = 0.02f;
+constexpr float bare_density = 0.02f;
 
 /// Computes rows first … first + rows − 1, which continue over the north edge.
 template <class E>
@@ -32,6 +32,7 @@ struct PlantRecord {
 
 /// Writes plants first … first + count − 1, in their order, to `to` on the device.
 template <class E>
-void export_plants(E& exec, const View& plants, const Metres& metres, int first, int count, PlantRecord* to);
+void export_plants(E& exec, const View& plants, const QuantaToMetres& metres, int first, int count,
+                   PlantRecord* to);
 
 }  // namespace desert_sim::plants

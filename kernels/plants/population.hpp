@@ -43,7 +43,7 @@ struct View {
   }
 
   /// Copies plant `n` of `from` to place `i`.
-  DESERT_HD void take(int i, const View& from, int n) const {
+  DESERT_HD void copy_from(int i, const View& from, int n) const {
     x[i] = from.x[n];
     y[i] = from.y[n];
     z[i] = from.z[n];

@@ -47,7 +47,7 @@ struct SpawningLaw {
     return weight_of(species[kind], density[at], downwind[at]);
   }
 
-  DESERT_HD bool suits(int kind, int i, float slope) const {
+  DESERT_HD bool is_suitable(int kind, int i, float slope) const {
     const SpeciesTraits& s = species[kind];
     const float radius = seedling_radius(s, site.loose_depth(i)), depth = site.water_depth(i);
     if (!(radius > 0.0f) || value_or_zero(site.obstacle, i) > 0.0f || slope > s.slope) return false;
@@ -83,7 +83,8 @@ struct SpawningLaw {
     if (chance >= share(likely) * (time_step > 1.0f ? time_step : 1.0f)) return -1;
     float weights[max_species], all = 0.0f;
     const float slope = site.slope(i);
-    for (int k = 0; k < species_count; ++k) all += weights[k] = suits(k, i, slope) ? weight(k, i) : 0.0f;
+    for (int k = 0; k < species_count; ++k)
+      all += weights[k] = is_suitable(k, i, slope) ? weight(k, i) : 0.0f;
     if (!(chance < event_probability(share(all), time_step))) return -1;
     float left = static_cast<float>(words.word[2] >> 8) * (1.0f / 16777216.0f) * all;
     int last = -1;
@@ -99,17 +100,17 @@ struct SpawningLaw {
 
 /// Writes 1 where a plant spawns, else 0.
 struct MarkSpawningCells {
-  SpawningLaw seeding;
+  SpawningLaw spawning;
   int* seeds;
   DESERT_HD void operator()(int x, int y) const {
-    const int i = seeding.site.grid.index(x, y);
-    seeds[i] = seeding.species_of(i) >= 0 ? 1 : 0;
+    const int i = spawning.site.grid.index(x, y);
+    seeds[i] = spawning.species_of(i) >= 0 ? 1 : 0;
   }
 };
 
 /// Index of the j-th of `all` seeds among the new plants, of which there are at most `room`; −1 if it is
 /// dropped.
-DESERT_HD int place_of(long long j, long long all, long long room) {
+DESERT_HD int index_of_new_plant(long long j, long long all, long long room) {
   if (all <= room) return static_cast<int>(j);
   const long long place = j * room / all;
   return (j + 1) * room / all > place ? static_cast<int>(place) : -1;
@@ -117,31 +118,31 @@ DESERT_HD int place_of(long long j, long long all, long long room) {
 
 /// Creates the new plants.
 struct CreatePlants {
-  SpawningLaw seeding;
-  const int *seeds, *places;
-  View later;
+  SpawningLaw spawning;
+  const int *seeds, *seed_offsets;
+  View next_state;
   int count, capacity;
 
   DESERT_HD void operator()(int x, int y) const {
-    const Site& site = seeding.site;
+    const Site& site = spawning.site;
     const int i = site.grid.index(x, y);
     if (seeds[i] == 0) return;
-    const int place = place_of(places[i], places[site.grid.cells()], capacity - count);
+    const int place = index_of_new_plant(seed_offsets[i], seed_offsets[site.grid.cells()], capacity - count);
     if (place < 0) return;
-    const int n = count + place, kind = seeding.species_of(i);
-    const RandomWords words = seeding.draw(i, 1);
+    const int n = count + place, kind = spawning.species_of(i);
+    const RandomWords words = spawning.draw(i, 1);
     const auto within = [&](int cell, std::uint32_t word) {
       return (static_cast<float>(cell) + static_cast<float>(word >> 8) * (1.0f / 16777216.0f)) *
              site.grid.cell_size;
     };
-    later.x[n] = within(x, words.word[0]);
-    later.y[n] = within(y, words.word[1]);
-    later.z[n] = site.surface(i);
-    later.radius[n] = seedling_radius(seeding.species[kind], site.loose_depth(i));
-    later.health[n] = 1.0f;
-    later.water[n] = 0.0f;
-    later.age[n] = 0.0f;
-    later.species[n] = kind;
+    next_state.x[n] = within(x, words.word[0]);
+    next_state.y[n] = within(y, words.word[1]);
+    next_state.z[n] = site.surface(i);
+    next_state.radius[n] = seedling_radius(spawning.species[kind], site.loose_depth(i));
+    next_state.health[n] = 1.0f;
+    next_state.water[n] = 0.0f;
+    next_state.age[n] = 0.0f;
+    next_state.species[n] = kind;
   }
 };
 

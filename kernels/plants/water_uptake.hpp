@@ -27,8 +27,9 @@ namespace desert_sim::plants {
 
 /// Water that a plant requires, can store, can reach, and takes up if its request is granted.
 struct WaterDemand {
-  float needed = 0, stored_most = 0, reachable = 0, wanted = 0;  ///< [m³ of saturated ground]
-  Quanta wish = 0;                                               ///< requested from the cell's moisture
+  /// Volumes [m³ of saturated ground].
+  float required_water = 0, storage_capacity = 0, available_water = 0, wanted_water = 0;
+  Quanta request = 0;  ///< requested from the cell's moisture
 };
 
 struct WaterUptake {
@@ -47,25 +48,26 @@ struct WaterUptake {
   DESERT_HD WaterDemand water_demand(const SpeciesTraits& s, float radius, float stored, int cell) const {
     const float volume = 2.0943951f * radius * radius * radius;
     const float roots = volume * s.root, stem = volume * s.stem;
-    const float there = static_cast<float>(value_or_zero(moisture, cell)) * site.quantum;
-    const float soaked = minimum(there / capacity, 1.0f);
+    const float moisture_depth = static_cast<float>(value_or_zero(moisture, cell)) * site.quantum;
+    const float saturation = minimum(moisture_depth / capacity, 1.0f);
     WaterDemand t;
-    t.needed = time_step * s.water_use * stem;
-    t.stored_most = s.water_capacity * (stem + roots);
-    t.reachable = minimum(time_step, 1.0f) * soaked * roots;
-    t.wanted = minimum(t.reachable, t.needed + maximum(t.stored_most - stored, 0.0f));
-    if (!(t.wanted > 0.0f) || !(draw > 0.0f)) return t;
+    t.required_water = time_step * s.water_use * stem;
+    t.storage_capacity = s.water_capacity * (stem + roots);
+    t.available_water = minimum(time_step, 1.0f) * saturation * roots;
+    t.wanted_water =
+        minimum(t.available_water, t.required_water + maximum(t.storage_capacity - stored, 0.0f));
+    if (!(t.wanted_water > 0.0f) || !(draw > 0.0f)) return t;
     const float covered =
         minimum(static_cast<float>(pi) * radius * radius / (site.grid.cell_size * site.grid.cell_size), 1.0f);
-    const float depth = draw * covered * there * (t.wanted / (soaked * roots));
-    t.wish = take(depth, site.quanta_per_metre, moisture[cell]);
-    if (t.wish == 0) t.wish = 1;  // a request that rounds to 0 would be free water
+    const float depth = draw * covered * moisture_depth * (t.wanted_water / (saturation * roots));
+    t.request = to_quanta_at_most(depth, site.quanta_per_metre, moisture[cell]);
+    if (t.request == 0) t.request = 1;  // a request that rounds to 0 would be free water
     return t;
   }
-  /// What a plant gets [quanta] of its request `wish`; `wishes`: sum over all plants of the cell.
-  DESERT_HD Quanta granted(Quanta wish, long long water_requests, int cell) const {
-    if (wish == 0 || water_requests <= moisture[cell]) return wish;
-    return static_cast<Quanta>(static_cast<long long>(wish) * moisture[cell] / water_requests);
+  /// What a plant gets [quanta] of its `request`; `water_requests`: sum over all plants of the cell.
+  DESERT_HD Quanta granted(Quanta request, long long water_requests, int cell) const {
+    if (request == 0 || water_requests <= moisture[cell]) return request;
+    return static_cast<Quanta>(static_cast<long long>(request) * moisture[cell] / water_requests);
   }
 };
 
@@ -80,7 +82,7 @@ struct SumRequests {
     const int cell = water_uptake.site.cell(plants.x[n], plants.y[n]);
     const WaterDemand t =
         water_uptake.water_demand(species[plants.species[n]], plants.radius[n], plants.water[n], cell);
-    if (t.wish > 0) atomic_add(&water_requests[cell], static_cast<long long>(t.wish));
+    if (t.request > 0) atomic_add(&water_requests[cell], static_cast<long long>(t.request));
   }
 };
 

@@ -17,19 +17,19 @@ struct Workspace {
   Lookup lookup;
   Buffer<std::uint32_t> now, next;  ///< columns of View; `now` is sorted by key
   Buffer<Span> spans;               ///< of the look-up's cells, then of its levels
-  SortWorkspace ordering;
+  SortWorkspace sort_workspace;
   Buffer<SpeciesTraits> species;
   Buffer<float> competition;         ///< matrix D_kj: [affected species k][other species j]
   Buffer<Quanta> granted_water;      ///< granted water of each plant
   Buffer<long long> water_requests;  ///< water requested in each terrain cell [quanta]
   Buffer<float> density, downwind;   ///< of mature plants: [species][cell]
-  Buffer<int> seeds, places;         ///< one for each cell, and one more
-  Buffer<int> tally;                 ///< number of deaths, number of seeds
+  Buffer<int> seeds, seed_offsets;   ///< one for each cell, and one more
+  Buffer<int> event_counts;          ///< number of deaths, number of seeds
   surface::Heights tops;             ///< surface of the canopy, or of the ground where there is none
 
   explicit operator bool() const { return static_cast<bool>(now); }
   View plants() const { return {now.data(), capacity}; }
-  View later() const { return {next.data(), capacity}; }
+  View next_state() const { return {next.data(), capacity}; }
   Neighbourhood neighbourhood() const { return {lookup, spans.data()}; }
   std::size_t bytes() const;
 };

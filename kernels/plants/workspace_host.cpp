@@ -13,7 +13,7 @@ Workspace make_workspace(Exec& exec, const Grid& grid, int capacity,
     *columns = Buffer<std::uint32_t>(exec, column_count * room);
   work.spans = Buffer<Span>(exec, static_cast<std::size_t>(work.lookup.cells + Lookup::levels));
   work.spans.set_zero();
-  work.ordering = SortWorkspace(exec, capacity, grid.cells() + 1);
+  work.sort_workspace = SortWorkspace(exec, capacity, grid.cells() + 1);
   work.species = Buffer<SpeciesTraits>(exec, species.size());
   work.species.upload(species);
   work.competition = Buffer<float>(exec, competition.size());
@@ -26,17 +26,17 @@ Workspace make_workspace(Exec& exec, const Grid& grid, int capacity,
   }
   work.seeds = Buffer<int>(exec, cells + 1);
   work.seeds.set_zero();
-  work.places = Buffer<int>(exec, cells + 1);
-  work.tally = Buffer<int>(exec, 2);
+  work.seed_offsets = Buffer<int>(exec, cells + 1);
+  work.event_counts = Buffer<int>(exec, 2);
   work.tops = surface::make_heights(exec, grid);
   return work;
 }
 
 std::size_t Workspace::bytes() const {
-  return now.bytes() + next.bytes() + spans.bytes() + ordering.bytes() + species.bytes() +
+  return now.bytes() + next.bytes() + spans.bytes() + sort_workspace.bytes() + species.bytes() +
          competition.bytes() + granted_water.bytes() + water_requests.bytes() + density.bytes() +
-         downwind.bytes() + seeds.bytes() + places.bytes() + tally.bytes() + tops.cell_heights.bytes() +
-         tops.highest.bytes();
+         downwind.bytes() + seeds.bytes() + seed_offsets.bytes() + event_counts.bytes() +
+         tops.cell_heights.bytes() + tops.highest.bytes();
 }
 
 std::vector<std::uint32_t> words(const Workspace& work) {

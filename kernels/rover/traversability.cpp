@@ -9,16 +9,16 @@ namespace desert_sim::traversability {
 template <class E>
 void step(E& exec, const TerrainView& t, const TraversabilityParameters& p, const ReposeParameters& repose,
           int first, int rows) {
-  const Traversability judge = law(t, p, repose);
-  const Orientation orientation{judge.roughness.surface, t.real(Layer::slope), t.real(Layer::normal_x),
-                                t.real(Layer::normal_y), t.real(Layer::normal_z)};
+  const Traversability traversability_law = make_law(t, p, repose);
+  const Orientation orientation{traversability_law.roughness.surface, t.real(Layer::slope),
+                                t.real(Layer::normal_x), t.real(Layer::normal_y), t.real(Layer::normal_z)};
   const auto run = [&](const auto& of_cell, bool wanted) {
     if (wanted) for_each_cell_of_rows(exec, t.grid, first, rows, of_cell);
   };
   run(orientation, orientation.slope || orientation.normal_x || orientation.normal_y || orientation.normal_z);
-  run(judge.roughness, judge.roughness.roughness != nullptr);
-  run(judge.step_height, judge.step_height.step_height != nullptr);
-  run(judge, judge.traversability != nullptr);
+  run(traversability_law.roughness, traversability_law.roughness.roughness != nullptr);
+  run(traversability_law.step_height, traversability_law.step_height.step_height != nullptr);
+  run(traversability_law, traversability_law.traversability != nullptr);
 }
 
 template void step(Backend&, const TerrainView&, const TraversabilityParameters&, const ReposeParameters&,

@@ -68,10 +68,10 @@ static_assert(table_is_complete<TraversabilityParameters>());
 
 namespace traversability {
 
-constexpr int widest_window = 16;  ///< [cells]
+constexpr int max_window = 16;  ///< [cells]
 
 inline int window_cells(const TraversabilityParameters& p, float cell_size) {
-  return static_cast<int>(clamp(p.window / cell_size, 1.0f, static_cast<float>(widest_window)));
+  return static_cast<int>(clamp(p.window / cell_size, 1.0f, static_cast<float>(max_window)));
 }
 
 /// Computes `rows` rows from row `first` on, which continue over the north edge. `elevation` must be up to

@@ -74,14 +74,15 @@ struct Roughness {
   /// the fits along x and y separate. Heights are clamped to ±2²⁶ quanta around the cell's, so that the sums
   /// fit 63 bits.
   DESERT_HD float at(int x, int y) const {
-    constexpr Quanta held = Quanta{1} << 26;
+    constexpr Quanta height_limit = Quanta{1} << 26;
     const int i = surface.grid.index(x, y);
     long long n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sh = 0, sxh = 0, syh = 0, shh = 0;
     for (int dy = -reach; dy <= reach; ++dy)
       for (int dx = -reach; dx <= reach; ++dx) {
         Quanta rise;
         if (!surface.rise(i, x + dx, y + dy, rise)) continue;
-        const long long h = rise > held ? held : (rise < -held ? -held : rise);
+        const long long h =
+            rise > height_limit ? height_limit : (rise < -height_limit ? -height_limit : rise);
         n += 1, sx += dx, sy += dy, sxx += dx * dx, syy += dy * dy;
         sh += h, sxh += dx * h, syh += dy * h, shh += h * h;
       }
@@ -92,8 +93,9 @@ struct Roughness {
     const double mean = static_cast<double>(sh) * static_cast<double>(sh) / static_cast<double>(n);
     const double in_plane =
         explained(n * sxh - sx * sh, n * sxx - sx * sx) + explained(n * syh - sy * sh, n * syy - sy * sy);
-    const double left = static_cast<double>(shh) - mean - in_plane;
-    return left > 0 ? static_cast<float>(sqrt(left / static_cast<double>(n))) * surface.quantum : 0.0f;
+    const double residual = static_cast<double>(shh) - mean - in_plane;
+    return residual > 0 ? static_cast<float>(sqrt(residual / static_cast<double>(n))) * surface.quantum
+                        : 0.0f;
   }
   DESERT_HD void operator()(int x, int y) const { roughness[surface.grid.index(x, y)] = at(x, y); }
 };
@@ -143,9 +145,9 @@ struct Traversability {
     const Surface& surface = roughness.surface;
     const int i = surface.grid.index(x, y);
     if (value_or_zero(obstacle, i) > 0.0f) return 0.0f;
-    const float loose = minimum(value_or_zero(sand, i) * surface.quantum / limits.sand_depth, 1.0f);
-    float worst = arctangent(surface.steepness(x, y)) / lerp(slope, sand_slope, loose);
-    worst = maximum(worst, limits.sand_cost * loose);
+    const float sand_share = minimum(value_or_zero(sand, i) * surface.quantum / limits.sand_depth, 1.0f);
+    float worst = arctangent(surface.steepness(x, y)) / lerp(slope, sand_slope, sand_share);
+    worst = maximum(worst, limits.sand_cost * sand_share);
     worst = maximum(worst, value_or_zero(water, i) * surface.quantum / limits.water_depth);
     worst = maximum(worst, mud(i));
     worst = maximum(worst, value_or_zero(vegetation, i) / limits.vegetation);
@@ -159,8 +161,8 @@ struct Traversability {
 };
 
 /// The law for this rover; it writes those layers that are present in the view.
-inline Traversability law(const TerrainView& t, const TraversabilityParameters& p,
-                          const ReposeParameters& repose) {
+inline Traversability make_law(const TerrainView& t, const TraversabilityParameters& p,
+                               const ReposeParameters& repose) {
   const float degree = static_cast<float>(pi) / 180.0f;
   const int reach = window_cells(p, t.grid.cell_size);
   const Surface surface{t.grid, t.quanta(Layer::elevation), t.quantum};

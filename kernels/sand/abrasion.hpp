@@ -31,7 +31,7 @@ static_assert(table_is_complete<AbrasionParameters>());
 
 namespace abrasion {
 
-struct Wear {
+struct Abrade {
   float rate;  ///< k_a Δt
   Quanta cover;
   float quantum, quanta_per_metre;
@@ -39,21 +39,23 @@ struct Wear {
   const float* resistance;
   LedgerView ledger;
 
-  /// `sand_hit`: sand of cell i before the deposit; `bouncing`: sand that stays airborne over it; `speed`: of
-  /// the wind [m/s]; v: vegetation; m: relative moisture; p: deposited share.
-  DESERT_HD void operator()(int i, Quanta sand_hit, Quanta bouncing, float speed, float v, float m,
+  /// `sand_before_deposit`: sand of cell i before the deposit; `bouncing`: sand that stays airborne over it;
+  /// `speed`: of the wind [m/s]; v: vegetation; m: relative moisture; p: deposited share.
+  DESERT_HD void operator()(int i, Quanta sand_before_deposit, Quanta bouncing, float speed, float v, float m,
                             float p) const {
-    if (rate <= 0.0f || bouncing <= 0 || sand_hit >= cover) return;
+    if (rate <= 0.0f || bouncing <= 0 || sand_before_deposit >= cover) return;
     const float strength = rate * speed * (1.0f - v) * (1.0f - p) * minimum(bouncing * quantum, 1.0f);
     if (soil && soil[i] > 0) {
-      const Quanta worn = take(strength * maximum(1.0f - 2.0f * m, 0.0f), quanta_per_metre, soil[i]);
+      const Quanta worn =
+          to_quanta_at_most(strength * maximum(1.0f - 2.0f * m, 0.0f), quanta_per_metre, soil[i]);
       soil[i] -= worn;
       sand[i] += worn;
       ledger.convert(Material::soil, Material::sand, i, worn);
       return;
     }
     const Quanta room = bedrock[i] > -wall_height ? bedrock[i] + wall_height : 0;
-    const Quanta worn = take(strength * (1.0f - value_or_zero(resistance, i)), quanta_per_metre, room);
+    const Quanta worn =
+        to_quanta_at_most(strength * (1.0f - value_or_zero(resistance, i)), quanta_per_metre, room);
     bedrock[i] -= worn;
     sand[i] += worn;
     ledger.convert(Material::bedrock, Material::sand, i, worn);

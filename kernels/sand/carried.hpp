@@ -29,7 +29,7 @@ struct BilinearParcels {
     north_east[n] = bilinear_share(carried, east, north);
     // The remainder of rounding, at most three quanta, goes to the nearest cell. In mirrored terrain that is
     // the mirrored cell.
-    const Quanta rest = left(n), eastern = east > west ? rest : 0, western = east < west ? rest : 0;
+    const Quanta rest = unshared(n), eastern = east > west ? rest : 0, western = east < west ? rest : 0;
     south_west[n] += south > north ? western : 0;
     south_east[n] += south > north ? eastern : 0;
     north_west[n] += south < north ? western : 0;
@@ -37,19 +37,19 @@ struct BilinearParcels {
   }
   /// What the four shares leave of the amount. After set() it is 0, except where no cell is the nearest: then
   /// the remainder stays in the source cell, so that no direction is favoured.
-  DESERT_HD Quanta left(int n) const {
+  DESERT_HD Quanta unshared(int n) const {
     return amount[n] - south_west[n] - south_east[n] - north_west[n] - north_east[n];
   }
 };
 
 /// Delivers parcels to their cells; what crosses an open edge is recorded in the ledger as outflow.
-struct Landing {
+struct ParcelDelivery {
   Grid grid;
   Material material;
   LedgerView ledger;
 
   template <class Add>
-  DESERT_HD void land(int from, int x, int y, Quanta amount, const Add& add) const {
+  DESERT_HD void add_to_cell(int from, int x, int y, Quanta amount, const Add& add) const {
     const int to = neighbour_index(grid, x, y);
     if (to >= 0)
       add(to, amount);
@@ -66,12 +66,12 @@ struct Landing {
       add.square(grid.index(at_x, at_y), grid.width, parcels.south_west[n], parcels.south_east[n],
                  parcels.north_west[n], parcels.north_east[n]);
     } else {
-      land(i, at_x, at_y, parcels.south_west[n], add);
-      land(i, at_x + 1, at_y, parcels.south_east[n], add);
-      land(i, at_x, at_y + 1, parcels.north_west[n], add);
-      land(i, at_x + 1, at_y + 1, parcels.north_east[n], add);
+      add_to_cell(i, at_x, at_y, parcels.south_west[n], add);
+      add_to_cell(i, at_x + 1, at_y, parcels.south_east[n], add);
+      add_to_cell(i, at_x, at_y + 1, parcels.north_west[n], add);
+      add_to_cell(i, at_x + 1, at_y + 1, parcels.north_east[n], add);
     }
-    add(i, parcels.left(n));
+    add(i, parcels.unshared(n));
   }
 };
 

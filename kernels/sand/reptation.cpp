@@ -19,8 +19,8 @@ struct SetAngles {
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     const float speed = hypotenuse(wind_x[i], wind_y[i]);
-    const float dry = angle.loosened(value_or_zero(strength, i), speed, value_or_zero(wind_shadow, i));
-    angle.repose[i] = angle.of(dry, value_or_zero(vegetation, i), moisture(i));
+    const float dry = angle.lowered_tangent(value_or_zero(strength, i), speed, value_or_zero(wind_shadow, i));
+    angle.repose[i] = angle.tangent_at(dry, value_or_zero(vegetation, i), moisture(i));
   }
 };
 
@@ -118,7 +118,8 @@ struct SteepestEvent {
     if (first < 0) return;
     // At most half the steepest drop moves, so that an event does not overshoot.
     const float level = 0.5f * first_slope;
-    const Quanta moved = take(minimum(slab, level / quanta_per_metre), quanta_per_metre, s.sand[i]);
+    const Quanta moved =
+        to_quanta_at_most(minimum(slab, level / quanta_per_metre), quanta_per_metre, s.sand[i]);
     const Quanta to_second =
         second < 0 ? 0 : static_cast<Quanta>(moved * (second_slope / (first_slope + second_slope)));
     atomic_add(&change[i], -moved);

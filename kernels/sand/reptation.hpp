@@ -54,23 +54,23 @@ namespace reptation {
 /// The angle of repose of a cell's sand, which impacts may lower.
 struct Angle {
   repose::Tangents tangents;
-  float loosening;  ///< k_r of adaptive_repose, else 0
-  float sparing;    ///< weight of the wind shadow r_s: 1 with `use_shadow`, else 0
+  float impact_factor;  ///< k_r of adaptive_repose, else 0
+  float shadow_weight;  ///< weight of the wind shadow r_s: 1 with `use_shadow`, else 0
   float* repose;
 
   Angle(const ReptationParameters& p, const ReposeParameters& repose_parameters, float* tangents_of_repose)
       : tangents(repose_parameters),
-        loosening(p.method == ReptationMethod::adaptive_repose ? p.strength : 0.0f),
-        sparing(p.use_shadow ? 1.0f : 0.0f),
+        impact_factor(p.method == ReptationMethod::adaptive_repose ? p.strength : 0.0f),
+        shadow_weight(p.use_shadow ? 1.0f : 0.0f),
         repose(tangents_of_repose) {}
 
   /// Tangent of dry bare sand under impacts of strength r [m], at wind speed [m/s] and wind shadow r_s.
-  DESERT_HD float loosened(float r, float speed, float shadow) const {
-    if (!(loosening > 0.0f)) return tangents.sand;
-    return tangents.sand * exp_negative(loosening * r * speed * (1.0f - shadow * sparing));
+  DESERT_HD float lowered_tangent(float r, float speed, float shadow) const {
+    if (!(impact_factor > 0.0f)) return tangents.sand;
+    return tangents.sand * exp_negative(impact_factor * r * speed * (1.0f - shadow * shadow_weight));
   }
   /// Tangent at vegetation v and relative moisture m, from that of dry bare sand.
-  DESERT_HD float of(float dry_and_bare, float v, float m) const {
+  DESERT_HD float tangent_at(float dry_and_bare, float v, float m) const {
     return lerp(dry_and_bare, tangents.vegetated, v) * repose::moisture_factor(m);
   }
 };
@@ -81,8 +81,8 @@ struct Impacts {
   Angle angle;
   float* strength;  ///< [m], or null
 
-  DESERT_HD void set(int i, float r, float loosened_angle, float v, float m) const {
-    angle.repose[i] = angle.of(loosened_angle, v, m);
+  DESERT_HD void set(int i, float r, float dry_tangent, float v, float m) const {
+    angle.repose[i] = angle.tangent_at(dry_tangent, v, m);
     if (strength) strength[i] = r;
   }
 };

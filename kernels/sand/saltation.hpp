@@ -70,12 +70,12 @@ struct Shadow;
 
 namespace saltation {
 
-/// `landed`: scratch, one value a cell [quanta]. `shade`: the law that computes the wind shadow in the pass
-/// of the lift, or null where the layer is up to date.
+/// `landed`: scratch, one value a cell [quanta]. `shadow_law`: the law that computes the wind shadow in the
+/// pass of the lift, or null where the layer is up to date.
 template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
           const ReposeParameters& repose, float time_step, LedgerView ledger, Quanta* landed,
-          const reptation::Impacts& impacts, const wind_shadow::Shadow* shade);
+          const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law);
 
 }  // namespace saltation
 }  // namespace desert_sim

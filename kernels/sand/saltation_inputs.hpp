@@ -42,7 +42,7 @@ struct Inputs {
     return bare ? Value{} : value_or_zero(layer, i);
   }
   DESERT_HD float plants(int i) const { return value_if_present(vegetation, i); }
-  DESERT_HD float eddy(int i) const { return value_if_present(echo, i); }
+  DESERT_HD float echo_value(int i) const { return value_if_present(echo, i); }
   DESERT_HD bool solid(int i) const { return value_if_present(obstacle, i) > 0.0f; }
   DESERT_HD float moisture(int i) const { return bare ? 0.0f : relative_moisture(i); }
   DESERT_HD bool flooded(int i) const { return value_if_present(water, i) * quantum > wet_depth; }

@@ -30,13 +30,13 @@ struct LiftAndAdvect {
   struct Cell {
     float u, v;
     Quanta lying, carried;
-    float shadow, eddy, plants, moisture;
+    float shadow, echo, plants, moisture;
     bool flooded;
   };
   DESERT_HD Cell read(int x, int y, float shadow) const {
     const int i = in.grid.index(x, y);
-    return {in.wind_x[i], in.wind_y[i], sand[i],        airborne[i],  shadow,
-            in.eddy(i),   in.plants(i), in.moisture(i), in.flooded(i)};
+    return {in.wind_x[i],     in.wind_y[i], sand[i],        airborne[i],  shadow,
+            in.echo_value(i), in.plants(i), in.moisture(i), in.flooded(i)};
   }
   DESERT_HD Cell read(int x, int y) const {
     return read(x, y, value_or_zero(in.wind_shadow, in.grid.index(x, y)));
@@ -47,9 +47,9 @@ struct LiftAndAdvect {
     if (speed_squared < p.threshold_speed * p.threshold_speed) return 0;
     const float wet = c.flooded ? 0.0f : dryness(c.moisture);
     const float metres =
-        in.time_step * (p.lift * (1.0f - c.shadow) * (1.0f - c.plants) * (c.eddy > 0.0f ? 0.5f : 1.0f) * wet +
-                        (c.eddy < 0.0f ? -c.eddy : 0.0f));
-    return take(metres, in.quanta_per_metre, c.lying);
+        in.time_step * (p.lift * (1.0f - c.shadow) * (1.0f - c.plants) * (c.echo > 0.0f ? 0.5f : 1.0f) * wet +
+                        (c.echo < 0.0f ? -c.echo : 0.0f));
+    return to_quanta_at_most(metres, in.quanta_per_metre, c.lying);
   }
 
   template <int count>
@@ -66,7 +66,7 @@ struct LiftAndAdvect {
 
   template <int count, class Add>
   DESERT_HD void deliver(int x, int y, const BilinearParcels<count>& parcels, int n, const Add& add) const {
-    Landing{in.grid, Material::sand, ledger}.deliver(x, y, parcels, n, add);
+    ParcelDelivery{in.grid, Material::sand, ledger}.deliver(x, y, parcels, n, add);
   }
 };
 
@@ -95,7 +95,7 @@ struct Influx {
     float depth = 0.0f;
     if (!g.periodic_x) depth += over_edge(u > 0.0f ? x : g.width - 1 - x, fabsf(u)) * fabsf(u) / speed;
     if (!g.periodic_y) depth += over_edge(v > 0.0f ? y : g.height - 1 - y, fabsf(v)) * fabsf(v) / speed;
-    const Quanta amount = take(depth, in.quanta_per_metre, wall_height);
+    const Quanta amount = to_quanta_at_most(depth, in.quanta_per_metre, wall_height);
     landed[i] += amount;
     ledger.book_in(Material::sand, i, amount);
   }
@@ -107,7 +107,7 @@ template <bool bare>
 struct Deposit {
   Inputs<bare> in;
   SaltationParameters p;
-  abrasion::Wear wear;
+  abrasion::Abrade abrade;
   const Quanta* landed;
   Quanta *sand, *airborne;
   reptation::Impacts impacts;
@@ -115,40 +115,42 @@ struct Deposit {
   /// The deposited share p. `cover`: sand of the cell before the deposit [quanta]; v: vegetation; m: relative
   /// moisture.
   DESERT_HD float share(int i, Quanta cover, float shadow, float v, float m) const {
-    const float r_e = in.eddy(i);
+    const float r_e = in.echo_value(i);
     if (r_e < 0.0f || in.solid(i)) return 0.0f;
     const bool sandy = cover > 0 && cover * in.quantum >= p.bare_depth;
     const float bounce = sandy ? p.bounce_on_sand
                                : (in.value_if_present(in.soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
-    const float held = maximum((1.0f - bounce) + v * bounce, maximum(shadow, r_e));
+    const float deposited_share = maximum((1.0f - bounce) + v * bounce, maximum(shadow, r_e));
     const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
-    return clamp(held, 0.0f, 1.0f) * wet;
+    return clamp(deposited_share, 0.0f, 1.0f) * wet;
   }
 
-  /// What a cell does with the sand that lands. settle() computes it without writing, so that all loads come
-  /// before the first store.
-  struct Outcome {
-    float held;  ///< deposited share
+  /// What a cell does with the sand that lands. split_landed() computes it without writing, so that all loads
+  /// come before the first store.
+  struct DepositResult {
+    float deposited_share;
     Quanta stays, bounces;
-    float strength, loosened;  ///< impact strength [m]; tangent of repose of dry bare sand under the impacts
+    float strength;         ///< impact strength [m]
+    float lowered_tangent;  ///< tangent of repose of dry bare sand under the impacts
   };
-  DESERT_HD Outcome settle(int i, Quanta arriving, Quanta cover, float shadow, float speed, float v,
-                           float m) const {
-    const float held = share(i, cover, shadow, v, m), depth = arriving * in.quantum;
-    const Quanta stays = take(held * depth, in.quanta_per_metre, arriving);
+  DESERT_HD DepositResult split_landed(int i, Quanta arriving, Quanta cover, float shadow, float speed,
+                                       float v, float m) const {
+    const float deposited_share = share(i, cover, shadow, v, m), depth = arriving * in.quantum;
+    const Quanta stays = to_quanta_at_most(deposited_share * depth, in.quanta_per_metre, arriving);
     const float strength = depth * (1.0f - v);
-    return {held, stays, arriving - stays, strength, impacts.angle.loosened(strength, speed, shadow)};
+    return {deposited_share, stays, arriving - stays, strength,
+            impacts.angle.lowered_tangent(strength, speed, shadow)};
   }
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = in.grid.index(x, y);
     const Quanta cover = sand[i];
     const float v = in.plants(i), m = in.moisture(i), speed = hypotenuse(in.wind_x[i], in.wind_y[i]);
-    const Outcome o = settle(i, landed[i], cover, value_or_zero(in.wind_shadow, i), speed, v, m);
+    const DepositResult o = split_landed(i, landed[i], cover, value_or_zero(in.wind_shadow, i), speed, v, m);
     sand[i] = cover + o.stays;
     airborne[i] = o.bounces;
-    if (!bare) wear(i, cover, o.bounces, speed, v, m, o.held);
-    impacts.set(i, o.strength, o.loosened, v, in.moisture(i));
+    if (!bare) abrade(i, cover, o.bounces, speed, v, m, o.deposited_share);
+    impacts.set(i, o.strength, o.lowered_tangent, v, in.moisture(i));
   }
 };
 

@@ -17,7 +17,7 @@ struct Ground {
   MoistureParameters p;
 
   /// Moisture that the ground can hold, C [quanta].
-  DESERT_HD Quanta room(int i) const {
+  DESERT_HD Quanta capacity_quanta(int i) const {
     const float depth = static_cast<float>(value_or_zero(soil, i) + sand[i]) * quantum;
     return static_cast<Quanta>(capacity * minimum(depth, 1.0f) * quanta_per_metre);
   }
@@ -45,22 +45,22 @@ struct SeepAndDry {
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    const Quanta room = ground.room(i), full = moisture[i], there = water[i];
+    const Quanta capacity = ground.capacity_quanta(i), moisture_before = moisture[i], standing = water[i];
     const float rate = ground.rate(i);
-    Quanta in = room - full;  // negative: the excess re-emerges
+    Quanta in = capacity - moisture_before;  // negative: the excess re-emerges
     if (in > 0) {
-      const float part =
-          rate * time_step * (2 * static_cast<long long>(full) > room ? ground.p.when_wet : 1.0f);
+      const float part = rate * time_step *
+                         (2 * static_cast<long long>(moisture_before) > capacity ? ground.p.when_wet : 1.0f);
       const Quanta wanted = at_least_one_of(in, minimum(part, 1.0f));
-      in = wanted < there ? wanted : there;
+      in = wanted < standing ? wanted : standing;
       ledger.convert(Material::water, Material::moisture, i, in);
     } else {
       ledger.convert(Material::moisture, Material::water, i, -in);
     }
-    const Quanta wet = full + in;
-    water[i] = there - in;
+    const Quanta wet = moisture_before + in;
+    water[i] = standing - in;
     Quanta dried = 0;
-    if (!((there - in) * ground.quantum > wet_depth)) {
+    if (!((standing - in) * ground.quantum > wet_depth)) {
       const float speed = ground.p.evaporation * rate * (1.0f - 0.75f * value_or_zero(vegetation, i));
       dried = at_least_one_of(wet, 1.0f - exp_negative(speed * time_step));
       ledger.book_out(Material::moisture, i, dried);
@@ -77,22 +77,23 @@ struct DiffuseMoisture {
   const Quanta* moisture;
   Quanta* gain;
 
-  DESERT_HD Quanta from(Quanta room, float wet, int x, int y) const {
+  DESERT_HD Quanta gain_from(Quanta capacity, float wet, int x, int y) const {
     const int j = neighbour_index(grid, x, y);
     if (j < 0) return 0;
-    const Quanta there = ground.room(j);
-    if (there <= 0 || room <= 0) return 0;
-    const float other = static_cast<float>(moisture[j]) / static_cast<float>(there);
+    const Quanta neighbour_capacity = ground.capacity_quanta(j);
+    if (neighbour_capacity <= 0 || capacity <= 0) return 0;
+    const float other = static_cast<float>(moisture[j]) / static_cast<float>(neighbour_capacity);
     constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // four quarters are rounded
-    return static_cast<Quanta>(number * guard * static_cast<float>(room < there ? room : there) *
-                               (other - wet));
+    return static_cast<Quanta>(
+        number * guard * static_cast<float>(capacity < neighbour_capacity ? capacity : neighbour_capacity) *
+        (other - wet));
   }
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    const Quanta room = ground.room(i);
-    const float wet = room > 0 ? static_cast<float>(moisture[i]) / static_cast<float>(room) : 0.0f;
-    gain[i] = (from(room, wet, x + 1, y) + from(room, wet, x - 1, y)) +
-              (from(room, wet, x, y + 1) + from(room, wet, x, y - 1));
+    const Quanta capacity = ground.capacity_quanta(i);
+    const float wet = capacity > 0 ? static_cast<float>(moisture[i]) / static_cast<float>(capacity) : 0.0f;
+    gain[i] = (gain_from(capacity, wet, x + 1, y) + gain_from(capacity, wet, x - 1, y)) +
+              (gain_from(capacity, wet, x, y + 1) + gain_from(capacity, wet, x, y - 1));
   }
 };
 

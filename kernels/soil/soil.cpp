@@ -24,10 +24,11 @@ struct ConvertSoilAndSand {
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     const float m = relative_moisture(i), v = value_or_zero(vegetation, i), s = sand[i] * quantum;
-    const float thirst = maximum(1.0f - m / p.dry, 0.0f) * exp_negative(10.0f * maximum(s, 0.0f));
-    const Quanta dried = take(p.drying * time_step * (1.0f - v) * thirst, quanta_per_metre, soil[i]);
+    const float drying_factor = maximum(1.0f - m / p.dry, 0.0f) * exp_negative(10.0f * maximum(s, 0.0f));
+    const Quanta dried =
+        to_quanta_at_most(p.drying * time_step * (1.0f - v) * drying_factor, quanta_per_metre, soil[i]);
     const Quanta fertile = humus ? (humus[i] < sand[i] ? humus[i] : sand[i]) : 0;
-    const Quanta formed = take(p.forming * time_step * v * m, quanta_per_metre, fertile);
+    const Quanta formed = to_quanta_at_most(p.forming * time_step * v * m, quanta_per_metre, fertile);
     soil[i] += formed - dried;
     sand[i] += dried - formed;
     lose_humus(i, dried + formed);

@@ -38,9 +38,9 @@ struct FindChangedBox {
 
   /// Maximum of value(x, y) > 0 over the cells of a tile that changed; 0 if none did.
   template <class Team, class Value>
-  DESERT_HD int most(const Team& team, const TileOfGrid& tile, const Value& value) const {
+  DESERT_HD int max_of_changed(const Team& team, const TileOfGrid& tile, const Value& value) const {
     const FindChangedBox law = *this;
-    return -team.lowest(tile.width, tile.height, [law, tile, value](int x, int y) DESERT_INLINE {
+    return -team.min_of(tile.width, tile.height, [law, tile, value](int x, int y) DESERT_INLINE {
       const int i = tile.index(x, y);
       return differs(law.now[i], law.held[i], law.threshold) ? -value(tile.x0 + x, tile.y0 + y) : 0;
     });
@@ -51,11 +51,11 @@ struct FindChangedBox {
     const TileOfGrid tile(tiles, column, tiles.first_row + row_of_band);
     const Grid grid = tiles.grid;
     BoundingBox mine;
-    mine.east = most(team, tile, [](int x, int) DESERT_INLINE { return x + 1; });
+    mine.east = max_of_changed(team, tile, [](int x, int) DESERT_INLINE { return x + 1; });
     if (mine.east == 0) return;
-    mine.west = most(team, tile, [grid](int x, int) DESERT_INLINE { return grid.width - x; });
-    mine.north = most(team, tile, [](int, int y) DESERT_INLINE { return y + 1; });
-    mine.south = most(team, tile, [grid](int, int y) DESERT_INLINE { return grid.height - y; });
+    mine.west = max_of_changed(team, tile, [grid](int x, int) DESERT_INLINE { return grid.width - x; });
+    mine.north = max_of_changed(team, tile, [](int, int y) DESERT_INLINE { return y + 1; });
+    mine.south = max_of_changed(team, tile, [grid](int, int y) DESERT_INLINE { return grid.height - y; });
     BoundingBox* const all = box;
     team.for_each(1, [mine, all](int) {
       atomic_max(&all->west, mine.west);
@@ -85,12 +85,12 @@ struct CopyRegion {
     const TileOfGrid tile(tiles, column, tiles.first_row + row_of_band);
     CellBox box = changed ? changed->cells(tiles.grid) : recent;
     if (box.empty()) return;
-    box = box.with(recent);
+    box = box.united_with(recent);
     const std::int8_t* const from = now;
     std::int8_t* const to = held;
-    const int none = team.lowest(tile.width, tile.height, [=](int x, int y) DESERT_INLINE {
+    const int none = team.min_of(tile.width, tile.height, [=](int x, int y) DESERT_INLINE {
       const int i = tile.index(x, y);
-      return box.has(tile.x0 + x, tile.y0 + y) && from[i] != to[i] ? -1 : 0;
+      return box.contains_cell(tile.x0 + x, tile.y0 + y) && from[i] != to[i] ? -1 : 0;
     });
     if (none == 0) return;
     packed_tiles::TileHeader head;
@@ -99,7 +99,7 @@ struct CopyRegion {
         reinterpret_cast<std::int8_t*>(packed_tiles::reserve_tile(team, pack, head, tile.cells()));
     team.for_each(tile.width, tile.height, [=](int x, int y) DESERT_INLINE {
       const int i = tile.index(x, y);
-      const std::int8_t cost = box.has(tile.x0 + x, tile.y0 + y) ? from[i] : to[i];
+      const std::int8_t cost = box.contains_cell(tile.x0 + x, tile.y0 + y) ? from[i] : to[i];
       to[i] = cost;
       packed[y * tile.width + x] = cost;
     });
@@ -109,7 +109,7 @@ struct CopyRegion {
 template <class E>
 void compute_costs(E& exec, const TerrainView& t, const TraversabilityParameters& p,
                    const ReposeParameters& repose, std::int8_t* now) {
-  for_each_cell(exec, t.grid, ComputeCosts{traversability::law(t, p, repose), now});
+  for_each_cell(exec, t.grid, ComputeCosts{traversability::make_law(t, p, repose), now});
 }
 
 template <class E>

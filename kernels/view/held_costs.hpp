@@ -27,7 +27,7 @@ constexpr std::int8_t no_cost = -128;
 DESERT_HD std::int8_t cost_of(float traversability) {
   if (!(traversability == traversability)) return unknown_cost;
   if (traversability <= 0.0f) return lethal_cost;
-  return static_cast<std::int8_t>(nearest(99.0f * (1.0f - minimum(traversability, 1.0f))));
+  return static_cast<std::int8_t>(round_to_int(99.0f * (1.0f - minimum(traversability, 1.0f))));
 }
 
 /// A bounding box, stored as four numbers that only increase as cells are added, so that atomic maxima can

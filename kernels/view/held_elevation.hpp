@@ -21,12 +21,12 @@ constexpr float unchanged_elevation = -HUGE_VALF;
 
 /// Sets the held elevation to the current one, for the whole grid.
 template <class E>
-void set_held(E& exec, const TerrainView& t, const Metres& metres, float* held);
+void set_held(E& exec, const TerrainView& t, const QuantaToMetres& metres, float* held);
 
 /// Packs the cells of `tiles` that changed by more than `threshold` [m] ≥ 0, and updates what is held of
 /// them. `pack` must have room for max_packed_bytes().
 template <class E>
-void pack_changes(E& exec, const TerrainView& t, const Metres& metres, const Tiling& tiles, float threshold,
-                  float* held, char* pack);
+void pack_changes(E& exec, const TerrainView& t, const QuantaToMetres& metres, const Tiling& tiles,
+                  float threshold, float* held, char* pack);
 
 }  // namespace desert_sim::held_elevation

@@ -19,16 +19,17 @@ struct Convert {
 };
 
 template <class E>
-void step(E& exec, const TerrainView& t, Layer layer, const Metres& metres, int first, int rows, float* to) {
+void step(E& exec, const TerrainView& t, Layer layer, const QuantaToMetres& metres, int first, int rows,
+          float* to) {
   Grid band = t.grid;
   band.height = rows;
   if (layer == Layer::elevation)
     return for_each_cell(exec, band, Convert<Surface>{t.grid, {surface::SolidHeight(t), metres}, first, to});
   const bool counted = info(layer).storage == Storage::quanta;
-  const Stored stored{counted ? t.quanta(layer) : nullptr, counted ? nullptr : t.real(layer), metres};
-  for_each_cell(exec, band, Convert<Stored>{t.grid, stored, first, to});
+  const StoredLayer stored{counted ? t.quanta(layer) : nullptr, counted ? nullptr : t.real(layer), metres};
+  for_each_cell(exec, band, Convert<StoredLayer>{t.grid, stored, first, to});
 }
 
-template void step(Backend&, const TerrainView&, Layer, const Metres&, int, int, float*);
+template void step(Backend&, const TerrainView&, Layer, const QuantaToMetres&, int, int, float*);
 
 }  // namespace desert_sim::layer_values

@@ -9,17 +9,17 @@
 namespace desert_sim::layer_values {
 
 /// Value of a stored layer; 0 if both pointers are null because the layer is not in use.
-struct Stored {
+struct StoredLayer {
   const Quanta* quanta;
   const float* real;
-  Metres metres;
+  QuantaToMetres metres;
   DESERT_HD float operator()(int i) const { return quanta ? metres(quanta[i]) : value_or_zero(real, i); }
 };
 
 /// Value of the layer `elevation`, computed from the layers below it, because no step fills it.
 struct Surface {
   surface::SolidHeight height;
-  Metres metres;
+  QuantaToMetres metres;
   DESERT_HD float operator()(int i) const { return metres(height(i)); }
 };
 

@@ -39,19 +39,19 @@ struct Tiling {
   int side = 1;
   int first_row = 0, row_count = 0;  ///< rows of tiles
 
-  DESERT_HD int across(int cells) const { return (cells - 1) / side + 1; }
-  DESERT_HD int columns() const { return across(grid.width); }
+  DESERT_HD int tiles_along(int cells) const { return (cells - 1) / side + 1; }
+  DESERT_HD int columns() const { return tiles_along(grid.width); }
   DESERT_HD int rows() const { return row_count; }
   DESERT_HD int count() const { return columns() * rows(); }
-  DESERT_HD int width(int column) const { return least(grid.width - column * side); }
-  DESERT_HD int height(int row) const { return least(grid.height - row * side); }
-  DESERT_HD int least(int cells) const { return cells < side ? cells : side; }
+  DESERT_HD int width(int column) const { return clipped_side(grid.width - column * side); }
+  DESERT_HD int height(int row) const { return clipped_side(grid.height - row * side); }
+  DESERT_HD int clipped_side(int cells) const { return cells < side ? cells : side; }
 };
 
 /// The tiling of a whole grid.
 inline Tiling tiling(const Grid& grid, int side) {
   Tiling all{grid, side, 0, 0};
-  all.row_count = all.across(grid.height);
+  all.row_count = all.tiles_along(grid.height);
   return all;
 }
 

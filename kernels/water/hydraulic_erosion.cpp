@@ -31,7 +31,7 @@ struct Capacity {
     const float tangent2 = dx * dx + dy * dy;
     return sqrtf(tangent2 / (1.0f + tangent2));
   }
-  DESERT_HD float carries(int i, float slope, float speed) const {
+  DESERT_HD float capacity_at(int i, float slope, float speed) const {
     const float w = water[i] * quantum;
     if (!(w > wet_depth)) return 0.0f;
     return p.capacity * maximum(slope, p.least_slope) * speed * (1.0f - 0.5f * value_or_zero(vegetation, i)) *
@@ -40,7 +40,7 @@ struct Capacity {
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    capacity[i] = carries(i, sine(x, y), hypotenuse(velocity_x[i], velocity_y[i]));
+    capacity[i] = capacity_at(i, sine(x, y), hypotenuse(velocity_x[i], velocity_y[i]));
   }
 };
 
@@ -55,19 +55,22 @@ struct Exchange {
   Quanta *bedrock, *soil, *sand, *sediment;
   LedgerView ledger;
 
-  DESERT_HD float missing(float rate, float metres) const { return minimum(rate * time_step, 1.0f) * metres; }
+  DESERT_HD float exchanged_depth(float rate, float metres) const {
+    return minimum(rate * time_step, 1.0f) * metres;
+  }
 
   /// Dissolves the share rate · Δt of `metres` from a layer of ground, at most `available` quanta of it.
   DESERT_HD Quanta dissolve(int i, Material from, Quanta* layer, Quanta available, float rate,
                             float metres) const {
-    const Quanta worn = take(missing(rate, metres), quanta_per_metre, available);
+    const Quanta worn = to_quanta_at_most(exchanged_depth(rate, metres), quanta_per_metre, available);
     layer[i] -= worn;
     ledger.convert(from, Material::sediment, i, worn);
     return worn;
   }
-  DESERT_HD Quanta settle(int i, Quanta carried, float metres, bool dry) const {
+  DESERT_HD Quanta deposit_sediment(int i, Quanta carried, float metres, bool dry) const {
     const float rate = p.deposit * (1.0f + value_or_zero(vegetation, i));
-    const Quanta fallen = dry ? carried : take(missing(rate, metres), quanta_per_metre, carried);
+    const Quanta fallen =
+        dry ? carried : to_quanta_at_most(exchanged_depth(rate, metres), quanta_per_metre, carried);
     sand[i] += fallen;
     ledger.convert(Material::sediment, Material::sand, i, fallen);
     return fallen;
@@ -76,19 +79,19 @@ struct Exchange {
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     const Quanta carried = sediment[i];
-    const float more = capacity[i] - carried * quantum;
+    const float capacity_deficit = capacity[i] - carried * quantum;
     if (value_or_zero(obstacle, i) > 0.0f) return;
     const bool dry = !(water[i] * quantum > wet_depth);
-    if (more < 0.0f || dry) {
-      sediment[i] = carried - settle(i, carried, -more, dry);
+    if (capacity_deficit < 0.0f || dry) {
+      sediment[i] = carried - deposit_sediment(i, carried, -capacity_deficit, dry);
     } else if (sand[i] > 0) {
-      sediment[i] = carried + dissolve(i, Material::sand, sand, sand[i], p.sand, more);
+      sediment[i] = carried + dissolve(i, Material::sand, sand, sand[i], p.sand, capacity_deficit);
     } else if (soil && soil[i] > 0) {
-      sediment[i] = carried + dissolve(i, Material::soil, soil, soil[i], p.soil, more);
+      sediment[i] = carried + dissolve(i, Material::soil, soil, soil[i], p.soil, capacity_deficit);
     } else {
       const Quanta room = bedrock[i] > -wall_height ? bedrock[i] + wall_height : 0;
       const float rate = p.rock * (1.0f - value_or_zero(resistance, i));
-      sediment[i] = carried + dissolve(i, Material::bedrock, bedrock, room, rate, more);
+      sediment[i] = carried + dissolve(i, Material::bedrock, bedrock, room, rate, capacity_deficit);
     }
   }
 };

@@ -20,7 +20,7 @@ struct FlowFields {
   const Quanta *bedrock, *soil, *sand;
   Quanta* water;
   float *flux_x, *flux_y;            ///< through the east and the north face [m³/s]
-  float* held;                       ///< share of its outflow that a cell has water for
+  float* supply_share;               ///< share of its outflow that a cell has water for
   Quanta *sediment, *sediment_next;  ///< null without sediment; sediment after this sub-step
 };
 
@@ -88,13 +88,13 @@ struct Flow : FlowFields {
 
   /// Whole quanta of an amount from a donor that has water for `share` of it: rounded to nearest if that is
   /// 1, else rounded down.
-  DESERT_HD static Quanta whole(float amount, float share) {
+  DESERT_HD static Quanta round_to_quanta(float amount, float share) {
     return static_cast<Quanta>(share < 1.0f ? amount * share : rintf(amount));
   }
   /// Amount [quanta] that leaves i through the face to j (−1: an open edge), negative if it enters; `out`:
   /// the same before the limit.
   DESERT_HD Quanta through(int i, int j, float out) const {
-    return whole(out, out > 0.0f || (!inside && j < 0) ? held[i] : held[j]);
+    return round_to_quanta(out, out > 0.0f || (!inside && j < 0) ? supply_share[i] : supply_share[j]);
   }
 };
 

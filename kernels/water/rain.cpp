@@ -28,7 +28,7 @@ struct RainOnCell {
     return lerp(p.share_low, p.share_high, clamp((datum + surface * quantum) / p.height, 0.0f, 1.0f));
   }
   /// Position in the lattice of the noise; a periodic axis is scaled to a whole number of lattice cells.
-  DESERT_HD float place(int cell, int cells, int repeat) const {
+  DESERT_HD float lattice_position(int cell, int cells, int repeat) const {
     const float at = static_cast<float>(cell) + 0.5f;
     return repeat > 0 ? at * (static_cast<float>(repeat) / static_cast<float>(cells))
                       : at * grid.cell_size / p.scale;
@@ -39,8 +39,8 @@ struct RainOnCell {
     const float part = share(i);
     if (!(part > 0.0f)) return;
     if (part < 1.0f) {
-      const float noise = value_noise(seed, Purpose::rain, place(x, grid.width, repeat_x),
-                                      place(y, grid.height, repeat_y), phase, repeat_x, repeat_y);
+      const float noise = value_noise(seed, Purpose::rain, lattice_position(x, grid.width, repeat_x),
+                                      lattice_position(y, grid.height, repeat_y), phase, repeat_x, repeat_y);
       const float odds = 4.0f * (noise < 0.0f ? -noise : noise), e = exp_negative(odds);
       const float uniform = noise < 0.0f ? e / (1.0f + e) : 1.0f / (1.0f + e);
       if (uniform > part) return;

@@ -19,21 +19,21 @@ struct CarrySediment {
   LedgerView ledger;
 
   /// Sediment [quanta, rounded down] that leaves cell `from` with so much of its water [quanta].
-  DESERT_HD Quanta with(int from, Quanta water) const {
+  DESERT_HD Quanta sediment_with(int from, Quanta water) const {
     constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // four shares are rounded
     const float share = static_cast<float>(water) / static_cast<float>(flow.water[from]);
     return static_cast<Quanta>(static_cast<float>(flow.sediment[from]) * (share * guard));
   }
   /// Sediment [quanta] that cell i loses through a face, negative if it gains.
-  DESERT_HD Quanta loses(int i, int j, float out) const {
+  DESERT_HD Quanta sediment_loss(int i, int j, float out) const {
     const Quanta water = flow.through(i, j, out);
-    return water > 0 ? with(i, water) : (water < 0 ? -with(j, -water) : 0);
+    return water > 0 ? sediment_with(i, water) : (water < 0 ? -sediment_with(j, -water) : 0);
   }
   DESERT_HD void operator()(int x, int y) const {
     const int i = flow.grid.index(x, y);
     const typename Flow<inside>::Faces f = flow.faces(x, y);
-    const Quanta e = loses(i, f.east, f.to_east), w = loses(i, f.west, f.to_west);
-    const Quanta n = loses(i, f.north, f.to_north), s = loses(i, f.south, f.to_south);
+    const Quanta e = sediment_loss(i, f.east, f.to_east), w = sediment_loss(i, f.west, f.to_west);
+    const Quanta n = sediment_loss(i, f.north, f.to_north), s = sediment_loss(i, f.south, f.to_south);
     flow.sediment_next[i] = flow.sediment[i] - ((e + w) + (n + s));
     if (inside) return;
     const Quanta over =

@@ -24,11 +24,11 @@ template <bool inside>
 struct Accelerate {
   Flow<inside> flow;
   Waves waves;
-  float keeps;  ///< 1 − c Δt
-  float drag;   ///< c_f Δt/l [s/m]
-  bool first;   ///< first sub-step of a step, whose fluxes already respect the supply
+  float friction_factor;  ///< 1 − c Δt
+  float drag;             ///< c_f Δt/l [s/m]
+  bool first;             ///< first sub-step of a step, whose fluxes already respect the supply
 
-  DESERT_HD float through(int i, int j, float flux, const float* wind) const {
+  DESERT_HD float accelerated_flux(int i, int j, float flux, const float* wind) const {
     const Quanta bed_i = flow.bed(i), bed_j = flow.bed(j);
     const Quanta top_i = bed_i + flow.water[i], top_j = bed_j + flow.water[j];
     const Quanta bed = bed_i > bed_j ? bed_i : bed_j, top = top_i > top_j ? top_i : top_j;
@@ -40,14 +40,16 @@ struct Accelerate {
       const float both = static_cast<float>(flow.water[i] + flow.water[j]) * flow.quantum;
       pull += waves.strength * (1.0f - exp_negative(0.005f * both * both)) * 0.5f * (wind[i] + wind[j]);
     }
-    const float left = first ? flux : flux * (flux > 0.0f ? flow.held[i] : flow.held[j]);
-    const float free = keeps * left + flow.time_step * (flow.grid.cell_size * face) * pull;
-    return 2.0f * free / (1.0f + sqrtf(1.0f + 4.0f * (drag / (face * face)) * fabsf(free)));
+    const float limited_flux =
+        first ? flux : flux * (flux > 0.0f ? flow.supply_share[i] : flow.supply_share[j]);
+    const float undamped_flux =
+        friction_factor * limited_flux + flow.time_step * (flow.grid.cell_size * face) * pull;
+    return 2.0f * undamped_flux / (1.0f + sqrtf(1.0f + 4.0f * (drag / (face * face)) * fabsf(undamped_flux)));
   }
   DESERT_HD void operator()(int x, int y) const {
     const int i = flow.grid.index(x, y), east = flow.east(x, y), north = flow.north(x, y);
-    if (inside || east >= 0) flow.flux_x[i] = through(i, east, flow.flux_x[i], waves.wind_x);
-    if (inside || north >= 0) flow.flux_y[i] = through(i, north, flow.flux_y[i], waves.wind_y);
+    if (inside || east >= 0) flow.flux_x[i] = accelerated_flux(i, east, flow.flux_x[i], waves.wind_x);
+    if (inside || north >= 0) flow.flux_y[i] = accelerated_flux(i, north, flow.flux_y[i], waves.wind_y);
   }
 };
 
@@ -60,10 +62,11 @@ struct LimitOutflow {
     const typename Flow<inside>::Faces f = flow.faces(x, y);
     const float out = (maximum(f.to_east, 0.0f) + maximum(f.to_west, 0.0f)) +
                       (maximum(f.to_north, 0.0f) + maximum(f.to_south, 0.0f));
-    const float there = static_cast<float>(flow.water[i]);
+    const float available = static_cast<float>(flow.water[i]);
     constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // the sum is rounded
     // Four amounts that are each rounded to nearest may exceed their sum by two quanta.
-    flow.held[i] = out + 4.0f <= there * guard ? 1.0f : minimum(there / (out + 1e-20f), 1.0f) * guard;
+    flow.supply_share[i] =
+        out + 4.0f <= available * guard ? 1.0f : minimum(available / (out + 1e-20f), 1.0f) * guard;
   }
 };
 
@@ -105,8 +108,10 @@ struct ApplyLimits {
   DESERT_HD void operator()(int x, int y) const {
     const int i = flow.grid.index(x, y), east = flow.east(x, y), north = flow.north(x, y);
     const float qx = flow.flux_x[i], qy = flow.flux_y[i];
-    if (inside || east >= 0) flow.flux_x[i] = qx * (qx > 0.0f ? flow.held[i] : flow.held[east]);
-    if (inside || north >= 0) flow.flux_y[i] = qy * (qy > 0.0f ? flow.held[i] : flow.held[north]);
+    if (inside || east >= 0)
+      flow.flux_x[i] = qx * (qx > 0.0f ? flow.supply_share[i] : flow.supply_share[east]);
+    if (inside || north >= 0)
+      flow.flux_y[i] = qy * (qy > 0.0f ? flow.supply_share[i] : flow.supply_share[north]);
   }
 };
 
@@ -147,16 +152,16 @@ void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_st
   flow.water = t.quanta(Layer::water);
   flow.flux_x = t.real(Layer::water_flux_x);
   flow.flux_y = t.real(Layer::water_flux_y);
-  flow.held = work.held.data();
+  flow.supply_share = work.supply_share.data();
   flow.sediment = t.quanta(Layer::suspended_sediment);
   flow.sediment_next = carried;
   float *velocity_x = t.real(Layer::water_velocity_x), *velocity_y = t.real(Layer::water_velocity_y);
-  const float keeps = maximum(1.0f - p.friction * part, 0.0f);
+  const float friction_factor = maximum(1.0f - p.friction * part, 0.0f);
   for (int n = 0; n < parts; ++n) {
     const double phase = 2 * pi * (time + (n + 0.5) * part) / p.wave_period;
     const float swell = p.wave_strength * static_cast<float>(std::fmax(std::sin(phase), 0.0));
     const Waves waves{swell, t.real(Layer::wind_x), t.real(Layer::wind_y)};
-    for_each_pipe<Accelerate>(exec, flow, waves, keeps, p.drag * part / l, n == 0);
+    for_each_pipe<Accelerate>(exec, flow, waves, friction_factor, p.drag * part / l, n == 0);
     for_each_pipe<LimitOutflow>(exec, flow);
     if (flow.sediment) for_each_pipe<CarrySediment>(exec, flow, ledger);
     for_each_pipe<MoveWater>(exec, flow, velocity_x, velocity_y, ledger);

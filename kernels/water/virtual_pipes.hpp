@@ -20,8 +20,8 @@
 /// on deeper water are slower than they should be. Over open edges water leaves as over a sill, at the speed
 /// √(g w) or as fast as it flows through the cell, down to the level of the sea where there is one.
 ///
-/// A pass cannot change the fluxes of a neighbour, so the limit by a cell's supply (`held`) is applied to its
-/// fluxes when they are next used.
+/// A pass cannot change the fluxes of a neighbour, so the limit by a cell's supply (`supply_share`) is
+/// applied to its fluxes when they are next used.
 ///
 /// Sediment moves with its water (sediment_transport.hpp). Reads bedrock, soil, sand, water, water_flux_x,
 /// water_flux_y, suspended_sediment, wind_x, wind_y; writes water, water_flux_x, water_flux_y,
@@ -35,8 +35,8 @@
 namespace desert_sim::virtual_pipes {
 
 struct Workspace {
-  Buffer<float> held;  ///< share of its outflow that a cell has water for
-  std::size_t bytes() const { return held.bytes(); }
+  Buffer<float> supply_share;  ///< share of its outflow that a cell has water for
+  std::size_t bytes() const { return supply_share.bytes(); }
 };
 
 /// `time`: time of the waves [s]; `carried`: scratch, one value a cell. Copies the greatest depth to the

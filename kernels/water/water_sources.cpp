@@ -20,12 +20,12 @@ struct AddInDisc {
   Quanta* water;
   LedgerView ledger;
 
-  DESERT_HD bool wet(int x, int y) const {
+  DESERT_HD bool in_disc(int x, int y) const {
     const float dx = static_cast<float>(x) + 0.5f - centre_x, dy = static_cast<float>(y) + 0.5f - centre_y;
     return dx * dx + dy * dy <= radius * radius;
   }
   DESERT_HD void operator()(int x, int y) const {
-    if (!wet(x, y)) return;
+    if (!in_disc(x, y)) return;
     const int i = neighbour_index(grid, first_x + x, first_y + y);
     if (i < 0) return;
     water[i] += amount;
@@ -66,7 +66,7 @@ void add_spring(E& exec, const TerrainView& t, const Spring& spring, double x, d
                 ledger};
   long long cells = 0;
   for (int cell_y = 0; cell_y < box.height; ++cell_y)
-    for (int cell_x = 0; cell_x < box.width; ++cell_x) cells += law.wet(cell_x, cell_y);
+    for (int cell_x = 0; cell_x < box.width; ++cell_x) cells += law.in_disc(cell_x, cell_y);
   if (cells == 0) return;
   const double depth =
       static_cast<double>(spring.discharge) * time_step / (l * l * static_cast<double>(cells));

@@ -23,8 +23,8 @@ struct CoarseGrid {
 
   DESERT_HD int mirrored_column(int x) const { return x < columns ? x : 2 * columns - 1 - x; }
   DESERT_HD int mirrored_row(int y) const { return y < rows ? y : 2 * rows - 1 - y; }
-  DESERT_HD AxisInterpolation across(int x) const;
-  DESERT_HD AxisInterpolation along(int y) const;
+  DESERT_HD AxisInterpolation interpolation_x(int x) const;
+  DESERT_HD AxisInterpolation interpolation_y(int y) const;
   DESERT_HD int values() const { return width * height; }
   DESERT_HD Grid transformed() const { return Grid{width, height, fine.cell_size * ratio_x, true, true}; }
 };
@@ -32,7 +32,7 @@ struct CoarseGrid {
 /// Box filter: mean of value(i) over the interval left … right of an axis of n cells, weighted by overlap.
 /// Equal values have exactly that mean, so that uniform ground stays uniform.
 template <class Value>
-DESERT_HD float mean_over(float left, float right, int n, const Value& value) {
+DESERT_HD float box_mean(float left, float right, int n, const Value& value) {
   const int first = static_cast<int>(left + 1e-4f);
   const int last = clamp_index(static_cast<int>(ceilf(right - 1e-4f)) - 1, n);
   const float base = value(first);
@@ -58,15 +58,15 @@ struct CoarsenRows {
   DESERT_HD Grid grid() const { return Grid{coarse.columns, coarse.fine.height, 1, true, true}; }
   DESERT_HD void operator()(int column, int y) const {
     const float* row = heights + coarse.fine.index(0, y);
-    put_mean(column, y, [row](int x) { return row[x]; });
+    store_mean(column, y, [row](int x) { return row[x]; });
   }
   /// Writes one mean of row y, whose heights are height(x).
   template <class Height>
-  DESERT_HD void put_mean(int column, int y, const Height& height) const {
+  DESERT_HD void store_mean(int column, int y, const Height& height) const {
     const float ref = reference;
     means[y * coarse.columns + column] =
-        mean_over(column * coarse.ratio_x, (column + 1) * coarse.ratio_x, coarse.fine.width,
-                  [height, ref](int x) { return height(x) - ref; });
+        box_mean(column * coarse.ratio_x, (column + 1) * coarse.ratio_x, coarse.fine.width,
+                 [height, ref](int x) { return height(x) - ref; });
   }
 };
 
@@ -84,8 +84,8 @@ struct CoarsenColumns {
     const int row = coarse.mirrored_row(y), columns = coarse.columns;
     const float* column = means + coarse.mirrored_column(x);
     const float mean =
-        quantum * mean_over(row * coarse.ratio_y, (row + 1) * coarse.ratio_y, coarse.fine.height,
-                            [column, columns](int i) { return column[i * columns]; });
+        quantum * box_mean(row * coarse.ratio_y, (row + 1) * coarse.ratio_y, coarse.fine.height,
+                           [column, columns](int i) { return column[i * columns]; });
     rise[y * coarse.width + x] = mean;
     return mean;
   }
@@ -96,30 +96,30 @@ struct AxisInterpolation {
   int first, second;
   float share;  ///< weight of the second
 
-  DESERT_HD AxisInterpolation(int cell, int coarse_cells, float coarse_a_cell) {
-    const float place = (cell + 0.5f) * coarse_a_cell - 0.5f, before = floorf(place);
-    share = place - before;  // 0 at full resolution: the value itself
+  DESERT_HD AxisInterpolation(int cell, int coarse_cells, float coarse_per_cell) {
+    const float position = (cell + 0.5f) * coarse_per_cell - 0.5f, before = floorf(position);
+    share = position - before;  // 0 at full resolution: the value itself
     first = wrap_once(static_cast<int>(before), coarse_cells);
     second = wrap_once(static_cast<int>(before) + 1, coarse_cells);
   }
 };
 
-DESERT_HD AxisInterpolation CoarseGrid::across(int x) const { return {x, width, share_x}; }
-DESERT_HD AxisInterpolation CoarseGrid::along(int y) const { return {y, height, share_y}; }
+DESERT_HD AxisInterpolation CoarseGrid::interpolation_x(int x) const { return {x, width, share_x}; }
+DESERT_HD AxisInterpolation CoarseGrid::interpolation_y(int y) const { return {y, height, share_y}; }
 
 /// A coarse field, interpolated bilinearly along a column of fine cells. Consecutive cells of the column lie
 /// between the same two coarse rows, whose values are loaded once.
 struct CoarseColumn {
   const Complex* field;
-  AxisInterpolation across;
+  AxisInterpolation interpolation_x;
   int width;
   Complex south{0, 0}, north{0, 0};
 
-  DESERT_HD CoarseColumn(const Complex* values, const AxisInterpolation& place_across, int row_width)
-      : field(values), across(place_across), width(row_width) {}
-  DESERT_HD void move_to(const AxisInterpolation& along) {
-    south = in_row(along.first);
-    north = in_row(along.second);
+  DESERT_HD CoarseColumn(const Complex* values, const AxisInterpolation& along_x, int row_width)
+      : field(values), interpolation_x(along_x), width(row_width) {}
+  DESERT_HD void move_to(const AxisInterpolation& along_y) {
+    south = in_row(along_y.first);
+    north = in_row(along_y.second);
   }
   DESERT_HD Complex at(float share) const {
     return {lerp(south.re, north.re, share), lerp(south.im, north.im, share)};
@@ -127,8 +127,9 @@ struct CoarseColumn {
 
  private:
   DESERT_HD Complex in_row(int row) const {
-    const Complex a = field[row * width + across.first], b = field[row * width + across.second];
-    return {lerp(a.re, b.re, across.share), lerp(a.im, b.im, across.share)};
+    const Complex a = field[row * width + interpolation_x.first],
+                  b = field[row * width + interpolation_x.second];
+    return {lerp(a.re, b.re, interpolation_x.share), lerp(a.im, b.im, interpolation_x.share)};
   }
 };
 

@@ -26,8 +26,8 @@ struct CliffHeight {
     const float drop = steepness * grid.cell_size / quantum;  // [quanta per step]
     float last = 0.0f, rise = 0.0f;  // of the previous sample above this cell, and of this cell above it
     for (int j = 1; rise * quantum < highest; ++j) {
-      const marching::Place place(x, y, j * dx, j * dy);
-      const float next = marching::height_at(grid, heights, place) - heights[i];
+      const marching::SamplePosition position(x, y, j * dx, j * dy);
+      const float next = marching::height_at(grid, heights, position) - heights[i];
       if (last - next < drop) break;
       last = next;
       rise = -next;

@@ -20,12 +20,13 @@ struct Line {
   DESERT_HD static Line against(float u, float v) {
     const bool along_x = fabsf(u) >= fabsf(v);
     const float along = along_x ? u : v, across = along_x ? v : u;
-    return {(along_x ? 1 : 2) * (along > 0.0f ? -1 : 1), -16 * nearest(4096.0f * (across / fabsf(along)))};
+    return {(along_x ? 1 : 2) * (along > 0.0f ? -1 : 1),
+            -16 * round_to_int(4096.0f * (across / fabsf(along)))};
   }
   DESERT_HD bool along_x() const { return heading & 1; }
   DESERT_HD int step() const { return heading > 0 ? 1 : -1; }
   /// Length of a step [cells], 1 … √2.
-  DESERT_HD float cells_a_step() const {
+  DESERT_HD float cells_per_step() const {
     const float slope = static_cast<float>(drift) * (1.0f / 65536.0f);
     return sqrtf(1.0f + slope * slope);
   }
@@ -35,15 +36,15 @@ struct Line {
 };
 
 /// Position of a sample, (x, y) + (dx, dy)/65536 [cells]: the cell to its south-west, and the fractions.
-struct Place {
+struct SamplePosition {
   int x, y;
   float fx, fy;
-  DESERT_HD Place(int cell_x, int cell_y, int dx, int dy)
+  DESERT_HD SamplePosition(int cell_x, int cell_y, int dx, int dy)
       : x(cell_x + (dx >> 16)), y(cell_y + (dy >> 16)), fx(fraction(dx)), fy(fraction(dy)) {}
 };
 
 /// Bilinear height between the four cells around a sample.
-DESERT_HD float height_at(const Grid& g, const float* h, const Place& p) {
+DESERT_HD float height_at(const Grid& g, const float* h, const SamplePosition& p) {
   const float h00 = h[sample_index(g, p.x, p.y)], h10 = h[sample_index(g, p.x + 1, p.y)];
   const float h01 = h[sample_index(g, p.x, p.y + 1)], h11 = h[sample_index(g, p.x + 1, p.y + 1)];
   const float a = h00 * ((1.0f - p.fx) * (1.0f - p.fy)), b = h10 * (p.fx * (1.0f - p.fy));

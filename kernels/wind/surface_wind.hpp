@@ -12,7 +12,7 @@ namespace desert_sim::wind {
 struct SpeedUp {
   float per_metre, lowest, highest;
   DESERT_HD float operator()(float rise) const {
-    return lower(higher(fused(per_metre, rise, 1.0f), lowest), highest);
+    return fast_min(fast_max(fused(per_metre, rise, 1.0f), lowest), highest);
   }
 };
 
@@ -27,7 +27,7 @@ struct SurfaceWind {
   Vector above;
   float per_speed_squared;  ///< 1/|above|², or 0
   SpeedUp speed_up;
-  const Complex *turned, *correction;  ///< both null: uniform wind, no correction
+  const Complex *warped_wind, *correction;  ///< both null: uniform wind, no correction
   const float *perturbation_x, *perturbation_y;
   float *wind_x, *wind_y;
 
@@ -50,20 +50,21 @@ struct SurfaceWind {
     unrolled<strip>([&](auto k) DESERT_INLINE {
       if (strip == 1 || k < rows) h[k] = heights[coarse.fine.index(x, first + k)];
     });
-    const AxisInterpolation across = coarse.across(x);
-    CoarseColumn direction(turned, across, coarse.width), corrections(correction, across, coarse.width);
+    const AxisInterpolation along_x = coarse.interpolation_x(x);
+    CoarseColumn direction(warped_wind, along_x, coarse.width),
+        corrections(correction, along_x, coarse.width);
     int row = -1;
     unrolled<strip>([&](auto k) DESERT_INLINE {
       if (strip > 1 && k >= rows) return;
-      const AxisInterpolation along = coarse.along(first + k);
-      if (turned && (strip == 1 || along.first != row)) {
-        direction.move_to(along);
-        corrections.move_to(along);
-        row = along.first;
+      const AxisInterpolation along_y = coarse.interpolation_y(first + k);
+      if (warped_wind && (strip == 1 || along_y.first != row)) {
+        direction.move_to(along_y);
+        corrections.move_to(along_y);
+        row = along_y.first;
       }
       const float factor = speed_up((h[k] - reference) * quantum);
-      const Vector wind = turned ? restore_speed(direction.at(along.share)) : above;
-      const Complex corrected = corrections.at(along.share);
+      const Vector wind = warped_wind ? restore_speed(direction.at(along_y.share)) : above;
+      const Complex corrected = corrections.at(along_y.share);
       const int i = coarse.fine.index(x, first + k);
       const Vector local = perturbed ? Vector{perturbation_x[i], perturbation_y[i]} : Vector{};
       wind_x[i] = fused(wind.x, factor, corrected.re) + local.x;

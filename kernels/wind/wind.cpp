@@ -13,15 +13,15 @@ void transform_by_library(E& exec, const CoarseLaws& laws, Workspace& work) {
   const Grid grid = work.coarse.transformed();
   for_each_cell(exec, grid, laws.columns);
   if (laws.gradients.radius_count > 0) {
-    work.one->forward(work.spectrum.data());
+    work.fft_one_field->forward(work.spectrum.data());
     for_each_cell(exec, laws.gradients.grid(), laws.gradients);
     work.fft_all_radii->inverse(work.gradients.data());
   }
-  for_each_cell(exec, grid, laws.turn);
+  for_each_cell(exec, grid, laws.warp);
   if (!laws.projected) return;
-  work.one->forward(work.spectrum.data());
+  work.fft_one_field->forward(work.spectrum.data());
   for_each_cell(exec, grid, laws.correct);
-  work.one->inverse(work.correction.data());
+  work.fft_one_field->inverse(work.correction.data());
 }
 
 template <class E>
@@ -58,7 +58,7 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
     law.above = above;
     law.per_speed_squared = speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f;
     law.speed_up = speed_up;
-    law.turned = coarse_fields ? work.turned.data() : nullptr;
+    law.warped_wind = coarse_fields ? work.warped_wind.data() : nullptr;
     law.correction = coarse_fields ? work.correction.data() : nullptr;
     law.perturbation_x = perturbation_x;
     law.perturbation_y = perturbation_y;

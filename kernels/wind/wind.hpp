@@ -36,12 +36,12 @@ namespace wind {
 /// Buffers and transforms of the coarse grid; empty if neither warping nor projection needs them.
 struct Workspace {
   CoarseGrid coarse;
-  std::unique_ptr<Fft> one, fft_all_radii;  ///< null if `by_lines`
-  bool by_lines = false;                    ///< use transform_by_lines() instead of transform_by_library()
+  std::unique_ptr<Fft> fft_one_field, fft_all_radii;  ///< null if `by_lines`
+  bool by_lines = false;  ///< use transform_by_lines() instead of transform_by_library()
   LineTransform lines_along_x, lines_along_y;
   Buffer<Complex> roots_x, roots_y;  ///< their roots of unity
   Buffer<float> row_means, rise;
-  Buffer<Complex> spectrum, turned, correction, gradients;
+  Buffer<Complex> spectrum, warped_wind, correction, gradients;
   Buffer<Transfer> along_x[ShortList::capacity], along_y[ShortList::capacity];  ///< of each radius
 
   std::size_t bytes() const;

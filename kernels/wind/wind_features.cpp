@@ -24,7 +24,7 @@ struct StreamFunction {
     return periodic ? d - extent * rintf(d / extent) : d;
   }
 
-  DESERT_HD float one(const Prepared& p, float x, float y) const {
+  DESERT_HD float feature_stream(const Prepared& p, float x, float y) const {
     const WindFeature& f = p.feature;
     const float dx = shortest(x - f.x, grid.width * grid.cell_size, grid.periodic_x);
     const float dy = shortest(y - f.y, grid.height * grid.cell_size, grid.periodic_y);
@@ -45,7 +45,7 @@ struct StreamFunction {
   DESERT_HD void operator()(int x, int y) const {
     float sum = 0.0f;
     for (int n = 0; n < count; ++n)
-      sum += one(features[n], (x + 0.5f) * grid.cell_size, (y + 0.5f) * grid.cell_size);
+      sum += feature_stream(features[n], (x + 0.5f) * grid.cell_size, (y + 0.5f) * grid.cell_size);
     stream[grid.index(x, y)] = sum;
   }
 };

@@ -9,11 +9,11 @@ namespace desert_sim::wind {
 
 namespace {
 /// Least length of a coarse axis: shorter ones would save no time, and show in the result.
-constexpr int fewest_coarse_cells = 64;
+constexpr int min_coarse_cells = 64;
 
 /// The next number whose only prime factors are 2, 3 and 5: transforms of such lengths are fast.
 int smooth_length(int n) {
-  while (!smooth(n)) ++n;
+  while (!has_small_factors(n)) ++n;
   return n;
 }
 
@@ -58,7 +58,7 @@ CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p) {
   const auto cells = [&](int n) {
     const int coarse = std::max(1, static_cast<int>(std::lround(n / ratio)));
     if (p.coarsening != 0) return coarse;
-    return std::min(n, smooth_length(std::max(coarse, fewest_coarse_cells)));
+    return std::min(n, smooth_length(std::max(coarse, min_coarse_cells)));
   };
   CoarseGrid c;
   c.fine = fine;
@@ -83,18 +83,18 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   const auto values = static_cast<std::size_t>(c.values());
   work.row_means = Buffer<float>(exec, static_cast<std::size_t>(c.columns) * fine.height);
   work.rise = Buffer<float>(exec, values);
-  for (Buffer<Complex>* buffer : {&work.spectrum, &work.turned, &work.correction})
+  for (Buffer<Complex>* buffer : {&work.spectrum, &work.warped_wind, &work.correction})
     *buffer = Buffer<Complex>(exec, values);
   const int radius_count = p.warping ? p.radii.count : 0;
-  work.by_lines = LineTransform::suits(c.width) && LineTransform::suits(c.height) &&
+  work.by_lines = LineTransform::supports_length(c.width) && LineTransform::supports_length(c.height) &&
                   bytes_for_lines(c, radius_count) <= exec.memory_for_lines();
   if (work.by_lines) {
-    work.lines_along_x = LineTransform::of(c.width);
-    work.lines_along_y = LineTransform::of(c.height);
+    work.lines_along_x = LineTransform::for_length(c.width);
+    work.lines_along_y = LineTransform::for_length(c.height);
     work.roots_x = on_device(exec, work.lines_along_x.roots());
     work.roots_y = on_device(exec, work.lines_along_y.roots());
   } else {
-    work.one = exec.make_fft(c.width, c.height);
+    work.fft_one_field = exec.make_fft(c.width, c.height);
   }
   if (radius_count == 0) return work;
   if (!work.by_lines) work.fft_all_radii = exec.make_fft(c.width, c.height, p.radii.count);
@@ -108,9 +108,9 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
 }
 
 std::size_t Workspace::bytes() const {
-  std::size_t total = row_means.bytes() + rise.bytes() + spectrum.bytes() + turned.bytes() +
+  std::size_t total = row_means.bytes() + rise.bytes() + spectrum.bytes() + warped_wind.bytes() +
                       correction.bytes() + gradients.bytes() + roots_x.bytes() + roots_y.bytes();
-  for (const std::unique_ptr<Fft>* transform : {&one, &fft_all_radii})
+  for (const std::unique_ptr<Fft>* transform : {&fft_one_field, &fft_all_radii})
     total += *transform ? (*transform)->bytes() : 0;
   for (int r = 0; r < ShortList::capacity; ++r) total += along_x[r].bytes() + along_y[r].bytes();
   return total;

@@ -24,7 +24,7 @@ namespace desert_sim::wind {
 struct CoarseLaws {
   CoarsenColumns columns;
   SmoothedGradients gradients;  ///< without warping for no radius
-  WarpWind turn;
+  WarpWind warp;
   ProjectionCorrection correct;
   bool projected;
 };
@@ -46,28 +46,28 @@ inline CoarseLaws coarse_laws(const TerrainView& t, const WindParameters& p, Vec
                    {},
                    p.gradient_scale,
                    work.gradients.data(),
-                   work.turned.data(),
+                   work.warped_wind.data(),
                    spectrum},
                   {coarse, spectrum, 1.0f / static_cast<float>(coarse.values()), work.correction.data()},
                   p.projection};
   for (int r = 0; r < radius_count; ++r) {
     laws.gradients.along_x[r] = work.along_x[r].data();
     laws.gradients.along_y[r] = work.along_y[r].data();
-    laws.turn.weights[r] = p.weights.values[r];
-    laws.turn.deflections[r] = p.deflections.values[r];
+    laws.warp.weights[r] = p.weights.values[r];
+    laws.warp.deflections[r] = p.deflections.values[r];
   }
   return laws;
 }
 
 /// Lines that a thread block of transform_by_lines() transforms at a time.
-constexpr int lines_at_once = 2;
+constexpr int lines_per_block = 2;
 
 /// Shared memory of such a block [bytes]: two buffers for each line of each radius, between which the
 /// transform alternates, and the roots of unity of both axes.
 inline std::size_t bytes_for_lines(const CoarseGrid& c, int radius_count) {
   const int longest = c.width > c.height ? c.width : c.height, fields = radius_count > 1 ? radius_count : 1;
   return sizeof(Complex) *
-         static_cast<std::size_t>(2 * longest * lines_at_once * fields + c.width + c.height);
+         static_cast<std::size_t>(2 * longest * lines_per_block * fields + c.width + c.height);
 }
 
 }  // namespace desert_sim::wind

@@ -30,10 +30,10 @@ Shadow straight_shadow(E& exec, const TerrainView& t, const WindShadowParameters
                        const surface::Heights& heights, const Workspace& work,
                        MarchDirection* march_directions) {
   const FindMarchDirection find{t.grid, t.real(Layer::wind_x), t.real(Layer::wind_y)};
-  if (march_directions || work.around)
+  if (march_directions || work.highest_nearby)
     for_each_cell(exec, heights.blocks,
                   PrepareBlock{{find, heights.blocks, march_directions},
-                               {heights.blocks, heights.highest.data(), work.around.data()}});
+                               {heights.blocks, heights.highest.data(), work.highest_nearby.data()}});
   return {find,
           p.distance / t.grid.cell_size,
           march_steps(t.grid, p),
@@ -43,7 +43,7 @@ Shadow straight_shadow(E& exec, const TerrainView& t, const WindShadowParameters
           t.real(Layer::wind_shadow),
           heights.blocks,
           march_directions,
-          work.around.data()};
+          work.highest_nearby.data()};
 }
 
 template <class E>
@@ -52,12 +52,12 @@ void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const su
   // A separate pass over the blocks pays where it also lets marches skip pieces, and where rows of cells are
   // vectors.
   MarchDirection* march_directions =
-      vectorises_rows<E> || work.around ? work.march_directions.data() : nullptr;
+      vectorises_rows<E> || work.highest_nearby ? work.march_directions.data() : nullptr;
   const Shadow shadow = straight_shadow(exec, t, p, heights, work, march_directions);
   if (p.curved) {
     for_each_cell(exec, t.grid,
-                  CurvedShadow{t.grid, shadow.shade, shadow.heights, shadow.find.wind_x, shadow.find.wind_y,
-                               shadow.reciprocals, shadow.steps, shadow.wind_shadow});
+                  CurvedShadow{t.grid, shadow.shadow_from_slope, shadow.heights, shadow.find.wind_x,
+                               shadow.find.wind_y, shadow.reciprocals, shadow.steps, shadow.wind_shadow});
     return;
   }
   if constexpr (vectorises_rows<E>)

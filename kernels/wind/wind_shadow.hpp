@@ -24,12 +24,15 @@ namespace desert_sim {
 
 namespace wind_shadow {
 
-/// `reciprocals`: 1/j for each step j. `around` is empty where marches are too short for it to pay, or where
-/// blocks do not divide a periodic axis. Both `around` and `march_directions` are empty with `curved`.
+/// `reciprocals`: 1/j for each step j. `highest_nearby` is empty where marches are too short for it to pay,
+/// or where blocks do not divide a periodic axis. Both `highest_nearby` and `march_directions` are empty with
+/// `curved`.
 struct Workspace {
-  Buffer<float> reciprocals, around;
+  Buffer<float> reciprocals, highest_nearby;
   Buffer<MarchDirection> march_directions;
-  std::size_t bytes() const { return reciprocals.bytes() + around.bytes() + march_directions.bytes(); }
+  std::size_t bytes() const {
+    return reciprocals.bytes() + highest_nearby.bytes() + march_directions.bytes();
+  }
 };
 
 inline int march_steps(const Grid& grid, const WindShadowParameters& p) {

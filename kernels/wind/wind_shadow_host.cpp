@@ -17,7 +17,7 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const WindShadowParameter
   work.march_directions = Buffer<MarchDirection>(exec, blocks);
   const bool fits =
       (!grid.periodic_x || grid.width % side == 0) && (!grid.periodic_y || grid.height % side == 0);
-  if (fits && steps > 3 * piece) work.around = Buffer<float>(exec, blocks);
+  if (fits && steps > 3 * piece_steps) work.highest_nearby = Buffer<float>(exec, blocks);
   return work;
 }
 

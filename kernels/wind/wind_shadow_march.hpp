@@ -27,7 +27,7 @@ namespace desert_sim::wind_shadow {
 constexpr int side = surface::block_side;
 /// Steps of a march that are skipped together: as many as a block is wide, so that their samples lie within
 /// 2 × 2 blocks.
-constexpr int piece = side;
+constexpr int piece_steps = side;
 
 /// Wind speed up to which the air counts as calm and there is no wind shadow [m/s].
 constexpr float calm = 1e-6f;
@@ -35,21 +35,21 @@ constexpr float calm = 1e-6f;
 /// Direction of the marches of a block's cells.
 struct alignas(8) MarchDirection {
   int word;  ///< the line, packed: its drift, a multiple of 16, plus its heading + 2
-  float steps_a_cell;
+  float steps_per_cell;
 
   MarchDirection() = default;
   DESERT_HD explicit MarchDirection(const marching::Line& l)
-      : word(l.drift + l.heading + 2), steps_a_cell(1.0f / l.cells_a_step()) {}
+      : word(l.drift + l.heading + 2), steps_per_cell(1.0f / l.cells_per_step()) {}
   DESERT_HD marching::Line line() const { return {(word & 15) - 2, word & ~15}; }
 };
 
-/// Finds the course of a block's marches.
+/// Finds the direction of a block's marches.
 struct FindMarchDirection {
   Grid grid;
   const float *wind_x, *wind_y;
 
-  /// The course is against the mean wind of the block's four middle cells. Mirrored or rotated wind gives the
-  /// same bits.
+  /// The direction is against the mean wind of the block's four middle cells. Mirrored or rotated wind gives
+  /// the same bits.
   DESERT_HD MarchDirection operator()(int column, int row) const {
     const int west = clamp_index(side * column + 1, grid.width), east = clamp_index(west + 1, grid.width);
     const int south = clamp_index(side * row + 1, grid.height), north = clamp_index(south + 1, grid.height);
@@ -59,8 +59,8 @@ struct FindMarchDirection {
       return 0.25f * ((w[cells[0]] + w[cells[1]]) + (w[cells[2]] + w[cells[3]]));
     };
     const float u = middle(wind_x), v = middle(wind_y);
-    const bool calms = !(hypotenuse(u, v) > calm);
-    return MarchDirection(calms ? marching::Line{0, 0} : marching::Line::against(u, v));
+    const bool is_calm = !(hypotenuse(u, v) > calm);
+    return MarchDirection(is_calm ? marching::Line{0, 0} : marching::Line::against(u, v));
   }
 };
 
@@ -73,18 +73,18 @@ struct SetMarchDirection {
   }
 };
 
-/// `around` holds, for each block of the surface, the greatest height of the block and of its neighbours to
-/// the east, north and north-east, plus a margin that covers the rounding of samples.
+/// `highest_nearby` holds, for each block of the surface, the greatest height of the block and of its
+/// neighbours to the east, north and north-east, plus a margin that covers the rounding of samples.
 struct HighestNearby {
   Grid blocks;
   const float* highest;
-  float* around;
+  float* highest_nearby;
 
   DESERT_HD void operator()(int column, int row) const {
     float top = -static_cast<float>(wall_height);
     for (int y = row; y <= row + 1; ++y)
       for (int x = column; x <= column + 1; ++x) top = maximum(top, highest[sample_index(blocks, x, y)]);
-    around[blocks.index(column, row)] = top + rounding(top);
+    highest_nearby[blocks.index(column, row)] = top + rounding(top);
   }
   /// Upper bound of the rounding errors of heights of this size and of their differences [quanta].
   DESERT_HD static float rounding(float height) { return 1.0f + 2e-6f * fabsf(height); }
@@ -92,11 +92,11 @@ struct HighestNearby {
 
 /// Prepares what marches need of each block.
 struct PrepareBlock {
-  SetMarchDirection course;  ///< `march_directions` null: not needed
-  HighestNearby highest;     ///< `around` null: not needed
+  SetMarchDirection direction;  ///< `march_directions` null: not needed
+  HighestNearby highest;        ///< `highest_nearby` null: not needed
   DESERT_HD void operator()(int column, int row) const {
-    if (course.march_directions) course(column, row);
-    if (highest.around) highest(column, row);
+    if (direction.march_directions) direction(column, row);
+    if (highest.highest_nearby) highest(column, row);
   }
 };
 
@@ -118,7 +118,7 @@ struct ShadowFromSlope {
 };
 
 /// Axis of a march, where it is known at compile time and index strides become constants.
-enum class Way { along_x, along_y, either };
+enum class MarchAxis { along_x, along_y, either };
 
 /// The straight march.
 struct Shadow {
@@ -126,87 +126,91 @@ struct Shadow {
   FindMarchDirection find;
   float reach;  ///< length of a march [cells]
   int steps;    ///< upper bound of its steps
-  ShadowFromSlope shade;
+  ShadowFromSlope shadow_from_slope;
   const float* heights;
   const float* reciprocals;  ///< 1/j for j = 1 … steps
   float* wind_shadow;
   Grid blocks;
   const MarchDirection* march_directions;  ///< of the blocks; null: each cell finds its own
-  const float* around;                     ///< see HighestNearby; null: no piece is skipped
+  const float* highest_nearby;             ///< see HighestNearby; null: no piece is skipped
 
   DESERT_HD const Grid& grid() const { return find.grid; }
-  DESERT_HD MarchDirection course(int column, int row) const {
+  DESERT_HD MarchDirection march_direction(int column, int row) const {
     return march_directions ? march_directions[blocks.index(column, row)] : find(column, row);
   }
-  /// Number of steps of a march on this course; 0 where it is calm.
+  /// Number of steps of a march in this direction; 0 where it is calm.
   DESERT_HD int steps_of(const MarchDirection& c) const {
-    const int wanted = static_cast<int>(reach * c.steps_a_cell + 1e-3f);
+    const int wanted = static_cast<int>(reach * c.steps_per_cell + 1e-3f);
     return c.line().heading == 0 ? 0 : (wanted < 1 ? 1 : (wanted < steps ? wanted : steps));
   }
 
   /// `count` cells that lie beside each other across the march; (x, y) is the first.
-  template <Way way, int count>
-  struct Cells {
-    DESERT_HD bool along_x() const { return way == Way::either ? line.along_x() : way == Way::along_x; }
+  template <MarchAxis axis, int count>
+  struct CellGroup {
+    DESERT_HD bool along_x() const {
+      return axis == MarchAxis::either ? line.along_x() : axis == MarchAxis::along_x;
+    }
 
     marching::Line line;
     int x, y, first;
-    int along, across;               ///< index strides along and across the march
-    const float* beside[count + 1];  ///< the heights, shifted by k cells across the march
+    int along, across;                        ///< index strides along and across the march
+    const float* shifted_heights[count + 1];  ///< the heights, shifted by k cells across the march
     float base[count];
 
-    DESERT_HD Cells(const Shadow& law, const marching::Line& to, int first_x, int first_y)
+    DESERT_HD CellGroup(const Shadow& law, const marching::Line& to, int first_x, int first_y)
         : line(to), x(first_x), y(first_y), first(law.grid().index(x, y)) {
       const int width = law.grid().width;
       along = line.step() * (along_x() ? 1 : width);
       across = along_x() ? width : 1;
-      for (int k = 0; k <= count; ++k) beside[k] = law.heights + k * across;
-      for (int k = 0; k < count; ++k) base[k] = load_read_only(beside[k] + first);
+      for (int k = 0; k <= count; ++k) shifted_heights[k] = law.heights + k * across;
+      for (int k = 0; k < count; ++k) base[k] = load_read_only(shifted_heights[k] + first);
     }
     DESERT_HD float height(int k, int j, int drifted) const {
-      return load_read_only(beside[k] + (first + j * along + drifted * across));
+      return load_read_only(shifted_heights[k] + (first + j * along + drifted * across));
     }
   };
 
   /// Updates the steepest rises with the samples of step j [quanta per step].
-  template <bool inside, Way way, int count>
-  DESERT_HD void look(const Cells<way, count>& cells, int j, float (&steepest)[count]) const {
+  template <bool inside, MarchAxis axis, int count>
+  DESERT_HD void sample_step(const CellGroup<axis, count>& cells, int j, float (&steepest)[count]) const {
     const int place = j * cells.line.drift, drifted = place >> 16;
     const float per_step = load_read_only(reciprocals + j), one_and = one_plus_fraction(place);
-    const float of_nearer = fused(-one_and, per_step, 2.0f * per_step),
-                of_farther = fused(one_and, per_step, -per_step);
+    const float nearer_weight = fused(-one_and, per_step, 2.0f * per_step),
+                farther_weight = fused(one_and, per_step, -per_step);
     float h[count + 1];
     for (int k = 0; k <= count; ++k)
       h[k] = inside ? cells.height(k, j, drifted) : height(cells, k, j, drifted);
     for (int k = 0; k < count; ++k)
-      steepest[k] =
-          higher(steepest[k], fused(-per_step, cells.base[k], h[k] * of_nearer + h[k + 1] * of_farther));
+      steepest[k] = fast_max(
+          steepest[k], fused(-per_step, cells.base[k], h[k] * nearer_weight + h[k + 1] * farther_weight));
   }
 
   /// Finds the steepest rises within `end` steps [quanta per step]; `inside`: the whole march is on the grid.
-  template <bool inside, Way way, int count>
-  DESERT_HD void march(const Cells<way, count>& cells, int end, float (&steepest)[count]) const {
-    const float cells_a_step = cells.line.cells_a_step();
-    const float enough = shade.full * cells_a_step * 1.00001f, begins = shade.start * cells_a_step * 0.99999f;
+  template <bool inside, MarchAxis axis, int count>
+  DESERT_HD void march(const CellGroup<axis, count>& cells, int end, float (&steepest)[count]) const {
+    const float cells_per_step = cells.line.cells_per_step();
+    const float full_rise = shadow_from_slope.full * cells_per_step * 1.00001f,
+                start_rise = shadow_from_slope.start * cells_per_step * 0.99999f;
     float rounding = 0.0f;
-    for (float base : cells.base) rounding = higher(rounding, HighestNearby::rounding(base));
+    for (float base : cells.base) rounding = fast_max(rounding, HighestNearby::rounding(base));
     for (float& s : steepest) s = 0.0f;
-    for (int first = 1; first <= end && lowest(steepest) < enough; first += piece) {
-      if (around && !matters<inside>(cells, first, end, begins, rounding, steepest)) continue;
-      if (inside && first + piece <= end + 1) {
-        for (int n = 0; n < piece; ++n) look<inside>(cells, first + n, steepest);
+    for (int first = 1; first <= end && min_of(steepest) < full_rise; first += piece_steps) {
+      if (highest_nearby && !can_change_shadow<inside>(cells, first, end, start_rise, rounding, steepest))
+        continue;
+      if (inside && first + piece_steps <= end + 1) {
+        for (int n = 0; n < piece_steps; ++n) sample_step<inside>(cells, first + n, steepest);
       } else {
         DESERT_NO_UNROLL
-        for (int j = first; j <= end && j < first + piece; ++j) look<inside>(cells, j, steepest);
+        for (int j = first; j <= end && j < first + piece_steps; ++j) sample_step<inside>(cells, j, steepest);
       }
     }
   }
 
   /// Writes the wind shadow of `count` cells, all on the grid, and returns that of the first.
-  template <Way way, int count>
-  DESERT_HD float shelter(const MarchDirection& c, int x, int y) const {
+  template <MarchAxis axis, int count>
+  DESERT_HD float compute_shadow(const MarchDirection& c, int x, int y) const {
     const Grid& g = grid();
-    const Cells<way, count> cells(*this, c.line(), x, y);
+    const CellGroup<axis, count> cells(*this, c.line(), x, y);
     const int end = steps_of(c), end_x = x + cells.line.dx(end), end_y = y + cells.line.dy(end);
     // Offset of the last cell that the samples of a step read.
     const int east = cells.along_x() ? 0 : count, north = cells.along_x() ? count : 0;
@@ -215,70 +219,71 @@ struct Shadow {
       march<true>(cells, end, steepest);
     else
       march<false>(cells, end, steepest);
-    for (float& s : steepest) s = shade(s * c.steps_a_cell);
+    for (float& s : steepest) s = shadow_from_slope(s * c.steps_per_cell);
     for (int k = 0; k < count; ++k) wind_shadow[cells.first + k * cells.across] = steepest[k];
     return steepest[0];
   }
 
   DESERT_HD float operator()(int x, int y) const {
-    return shelter<Way::either, 1>(course(x / side, y / side), x, y);
+    return compute_shadow<MarchAxis::either, 1>(march_direction(x / side, y / side), x, y);
   }
 
  private:
   /// Height where the march may leave the grid.
-  template <Way way, int count>
-  DESERT_HD float height(const Cells<way, count>& cells, int k, int j, int drifted) const {
+  template <MarchAxis axis, int count>
+  DESERT_HD float height(const CellGroup<axis, count>& cells, int k, int j, int drifted) const {
     const int along = j * cells.line.step();
     return heights[cells.along_x() ? sample_index(grid(), cells.x + along, cells.y + drifted + k)
                                    : sample_index(grid(), cells.x + drifted + k, cells.y + along)];
   }
 
   template <int count>
-  DESERT_HD static float lowest(const float (&of)[count]) {
+  DESERT_HD static float min_of(const float (&of)[count]) {
     float least = of[0];
-    for (int k = 1; k < count; ++k) least = lower(least, of[k]);
+    for (int k = 1; k < count; ++k) least = fast_min(least, of[k]);
     return least;
   }
 
   /// Whether the piece from step `first` on, up to step `end` at most, can change a cell's shadow. The
   /// samples of each march lie to the east and north of the cell (x, y) computed below, within the block of
-  /// that cell and the three blocks that `around` adds to it. `rounding`: upper bound of the rounding error
-  /// of the cells' heights.
-  template <bool inside, Way way, int count>
-  DESERT_HD bool matters(const Cells<way, count>& cells, int first, int end, float begins, float rounding,
-                         const float (&steepest)[count]) const {
+  /// that cell and the three blocks that `highest_nearby` adds to it. `rounding`: upper bound of the rounding
+  /// error of the cells' heights.
+  template <bool inside, MarchAxis axis, int count>
+  DESERT_HD bool can_change_shadow(const CellGroup<axis, count>& cells, int first, int end, float start_rise,
+                                   float rounding, const float (&steepest)[count]) const {
     static_assert(count <= side);
-    const int last = first + piece - 1 < end ? first + piece - 1 : end;
+    const int last = first + piece_steps - 1 < end ? first + piece_steps - 1 : end;
     const int along = cells.line.heading > 0 ? first : -last,
               across = ((cells.line.drift < 0 ? last : first) * cells.line.drift) >> 16;
     const int x = cells.x + (cells.along_x() ? along : across),
               y = cells.y + (cells.along_x() ? across : along);
-    float top = highest_around<inside>(x, y);
+    float top = highest_at<inside>(x, y);
     if (count > 1)  // of the last cell; the samples of those between lie in the blocks of these two
-      top = higher(top, cells.along_x() ? highest_around<inside>(x, y + count - 1)
-                                        : highest_around<inside>(x + count - 1, y));
+      top = fast_max(
+          top, cells.along_x() ? highest_at<inside>(x, y + count - 1) : highest_at<inside>(x + count - 1, y));
     float to_exceed[count];
     for (int k = 0; k < count; ++k)
-      to_exceed[k] = fused(higher(steepest[k], begins), static_cast<float>(first), cells.base[k]);
-    return top + rounding > lowest(to_exceed);
+      to_exceed[k] = fused(fast_max(steepest[k], start_rise), static_cast<float>(first), cells.base[k]);
+    return top + rounding > min_of(to_exceed);
   }
 
   template <bool inside>
-  DESERT_HD float highest_around(int x, int y) const {
+  DESERT_HD float highest_at(int x, int y) const {
     const Grid& g = grid();
     if (!inside) {
       x = g.periodic_x ? wrap(x, g.width) : clamp_index(x, g.width);
       y = g.periodic_y ? wrap(y, g.height) : clamp_index(y, g.height);
     }
-    return load_read_only(around + (static_cast<unsigned>(y) / side * static_cast<unsigned>(blocks.width) +
-                                    static_cast<unsigned>(x) / side));
+    return load_read_only(highest_nearby +
+                          (static_cast<unsigned>(y) / side * static_cast<unsigned>(blocks.width) +
+                           static_cast<unsigned>(x) / side));
   }
 };
 
 /// The march that follows the changing wind direction (`curved`).
 struct CurvedShadow {
   Grid grid;
-  ShadowFromSlope shade;
+  ShadowFromSlope shadow_from_slope;
   const float *heights, *wind_x, *wind_y;
   const float* reciprocals;
   int steps;
@@ -294,13 +299,14 @@ struct CurvedShadow {
       if (!(speed > calm)) break;
       dx -= to_fixed_point(u / speed);
       dy -= to_fixed_point(v / speed);
-      const float rise = marching::height_at(grid, heights, marching::Place(x, y, dx, dy)) - heights[i];
+      const float rise =
+          marching::height_at(grid, heights, marching::SamplePosition(x, y, dx, dy)) - heights[i];
       steepest = maximum(steepest, rise * reciprocals[j]);
       const int there = sample_index(grid, x + nearest_cell(dx), y + nearest_cell(dy));
       u = wind_x[there];
       v = wind_y[there];
     }
-    wind_shadow[i] = shade(steepest);
+    wind_shadow[i] = shadow_from_slope(steepest);
   }
 };
 

@@ -43,18 +43,18 @@ struct WarpWind {
   float weights[ShortList::capacity], deflections[ShortList::capacity];
   float gradient_scale;
   const Complex* gradients;
-  Complex *turned, *deviation;
+  Complex *warped_wind, *deviation;
 
   DESERT_HD void operator()(int x, int y) const {
     const int ground = coarse.mirrored_row(y) * coarse.width + coarse.mirrored_column(x);
     const Complex* of_ground = gradients + ground;
     const int values = coarse.values();
     const auto gradient = [of_ground, values](int r) { return of_ground[r * values]; };
-    deviation[y * coarse.width + x] = turn(x, y, gradient);
+    deviation[y * coarse.width + x] = warp_wind(x, y, gradient);
   }
-  /// Writes `turned` and returns the deviation. gradient_of(r): gradient of the r-th smoothed terrain.
+  /// Writes `warped_wind` and returns the deviation. gradient_of(r): gradient of the r-th smoothed terrain.
   template <class Gradient>
-  DESERT_HD Complex turn(int x, int y, const Gradient& gradient_of) const {
+  DESERT_HD Complex warp_wind(int x, int y, const Gradient& gradient_of) const {
     const int n = y * coarse.width + x;
     const float factor = speed_up(rise[n]);
     const float ux = above.x * factor, uy = above.y * factor;
@@ -75,7 +75,7 @@ struct WarpWind {
       const float stretch = speed_above / length;
       wind = {sx * stretch, sy * stretch};
     }
-    turned[n] = wind;
+    warped_wind[n] = wind;
     return {wind.re * factor - above.x, wind.im * factor - above.y};
   }
 };

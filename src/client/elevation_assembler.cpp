@@ -27,8 +27,8 @@ KeyframeNeed ElevationAssembler::need() const {
 
 void ElevationAssembler::keyframe_overdue() {
   if (map_ && !queued_updates_.empty())
-    lose("keyframe " + std::to_string(queued_updates_.back()->keyframe) +
-         ", which updates build on, has not arrived");
+    record_gap("keyframe " + std::to_string(queued_updates_.back()->keyframe) +
+               ", on which received updates are based, has not arrived");
 }
 
 // ---- keyframes ----
@@ -42,8 +42,8 @@ bool ElevationAssembler::is_repeated_keyframe(const ElevationGrid& keyframe) con
          !keyframe.header.stamp.isZero() && keyframe.header.stamp == keyframe_stamp_;
 }
 
-MapChange ElevationAssembler::take(const ElevationGrid::ConstPtr& keyframe) {
-  if (const std::string fault = validation_error(*keyframe); !fault.empty()) return refuse(fault);
+MapChange ElevationAssembler::process(const ElevationGrid::ConstPtr& keyframe) {
+  if (const std::string error = validation_error(*keyframe); !error.empty()) return refuse(error);
   MapChange change;
   change.map = std::make_shared<const ElevationMap>(keyframe, map_.get(), change.cells);
   if (is_repeated_keyframe(*keyframe)) {
@@ -52,10 +52,10 @@ MapChange ElevationAssembler::take(const ElevationGrid::ConstPtr& keyframe) {
     return {};
   }
   keyframe_stamp_ = keyframe->header.stamp;
-  return hold(change);
+  return replace_map(change);
 }
 
-MapChange ElevationAssembler::hold(MapChange change) {
+MapChange ElevationAssembler::replace_map(MapChange change) {
   if (map_ && change.map->info().keyframe <= map_->info().keyframe) ++counts_.restarts;
   change.replaced = !map_ || !change.map->same_geometry(*map_);
   map_ = change.map;
@@ -79,7 +79,7 @@ void ElevationAssembler::apply_queued(MapChange& change) {
       ++counts_.unusable;
       continue;
     }
-    const MapChange more = place(update);
+    const MapChange more = apply_in_order(update);
     if (!more.map) continue;
     change.map = more.map;
     change.cells.include(more.cells);
@@ -97,31 +97,31 @@ bool ElevationAssembler::is_late(const ElevationUpdate& update) const {
 }
 
 /// Whether an update is the next one in sequence.
-bool ElevationAssembler::follows(const ElevationUpdate& update) const {
+bool ElevationAssembler::is_next_update(const ElevationUpdate& update) const {
   const ElevationMap::Info& held = map_->info();
   return complete_ && update.keyframe == held.keyframe && update.sequence == held.sequence + 1 &&
          update.step >= held.step;
 }
 
-MapChange ElevationAssembler::take(const ElevationUpdate::ConstPtr& update) {
-  if (const std::string fault = validation_error(*update); !fault.empty()) return refuse(fault);
-  const Number before = last_received_;
+MapChange ElevationAssembler::process(const ElevationUpdate::ConstPtr& update) {
+  if (const std::string error = validation_error(*update); !error.empty()) return refuse(error);
+  const UpdateId before = last_received_;
   last_received_ = {update->keyframe, update->sequence};
   if (!map_) {
-    keep(update);
+    enqueue(update);
     return {};
   }
   const ElevationMap::Info& held = map_->info();
   const bool of_another_run =
       !sender_restarted_ && update->keyframe == held.keyframe && update->step < held.step;
-  if (last_received_ > before && !of_another_run) return place(update);
+  if (last_received_ > before && !of_another_run) return apply_in_order(update);
   while (!queued_updates_.empty()) drop_oldest_queued();
-  return follows(*update) ? write(*update) : handle_restart(update, before);
+  return is_next_update(*update) ? apply_update(*update) : handle_restart(update, before);
 }
 
-MapChange ElevationAssembler::place(const ElevationUpdate::ConstPtr& update) {
+MapChange ElevationAssembler::apply_in_order(const ElevationUpdate::ConstPtr& update) {
   if (sender_restarted_) {
-    keep(update);
+    enqueue(update);
     return {};
   }
   if (is_late(*update)) {
@@ -130,41 +130,41 @@ MapChange ElevationAssembler::place(const ElevationUpdate::ConstPtr& update) {
   }
   const ElevationMap::Info& held = map_->info();
   if (update->keyframe > held.keyframe) {
-    keep(update);
+    enqueue(update);
     return {};
   }
   if (update->keyframe < held.keyframe || update->sequence <= held.sequence)
     return handle_restart(update, {held.keyframe, held.sequence});
   if (update->sequence != held.sequence + 1)
-    lose(name_of({held.keyframe, held.sequence + 1}) + " is missing: " + std::to_string(update->sequence) +
-         " came next");
+    record_gap(name_of({held.keyframe, held.sequence + 1}) + " is missing: update " +
+               std::to_string(update->sequence) + " arrived instead");
   if (!complete_) {
     ++counts_.unusable;
     return {};
   }
-  return write(*update);
+  return apply_update(*update);
 }
 
 /// Handles an update whose number is not above the previous one. A connection preserves the order of its
 /// messages, so the sender has restarted or replays a recording. If its keyframe arrived before this update
 /// and was taken for a repetition, the map begins again with that keyframe; otherwise its keyframe is
 /// missing.
-MapChange ElevationAssembler::handle_restart(const ElevationUpdate::ConstPtr& update, const Number& from) {
-  keep(update);
+MapChange ElevationAssembler::handle_restart(const ElevationUpdate::ConstPtr& update, const UpdateId& from) {
+  enqueue(update);
   if (repeated_keyframe_map_ && repeated_keyframe_map_->info().keyframe == update->keyframe) {
     const ElevationMap::Info& info = repeated_keyframe_map_->info();
-    return hold({repeated_keyframe_map_, {0, 0, info.width, info.height}, false});
+    return replace_map({repeated_keyframe_map_, {0, 0, info.width, info.height}, false});
   }
-  lose(name_of({update->keyframe, update->sequence}) + " came after " + name_of(from) +
-       ": the sender has started anew");
+  record_gap(name_of({update->keyframe, update->sequence}) + " arrived after " + name_of(from) +
+             ": the sender has restarted");
   sender_restarted_ = true;
   return {};
 }
 
-MapChange ElevationAssembler::write(const ElevationUpdate& update) {
-  if (const std::string fault = validation_error(update, map_->info()); !fault.empty()) return refuse(fault);
+MapChange ElevationAssembler::apply_update(const ElevationUpdate& update) {
+  if (const std::string error = validation_error(update, map_->info()); !error.empty()) return refuse(error);
   MapChange change;
-  change.map = map_ = map_->after(update);
+  change.map = map_ = map_->with_update(update);
   repeated_keyframe_map_.reset();  // it was only a repetition
   for (const ElevationTile& tile : update.tiles)
     change.cells.include({tile.x, tile.y, tile.width, tile.height});
@@ -172,7 +172,7 @@ MapChange ElevationAssembler::write(const ElevationUpdate& update) {
   return change;
 }
 
-void ElevationAssembler::keep(const ElevationUpdate::ConstPtr& update) {
+void ElevationAssembler::enqueue(const ElevationUpdate::ConstPtr& update) {
   queued_updates_.push_back(update);
   queued_cells_ += cells_of(*update);
   while (queued_updates_.size() > max_queued_updates ||
@@ -186,17 +186,17 @@ void ElevationAssembler::drop_oldest_queued() {
   ++counts_.unusable;
 }
 
-// ---- faults ----
+// ---- errors ----
 
 /// A refused message leaves a gap: the map may lack the changes that it contained.
 MapChange ElevationAssembler::refuse(const std::string& why) {
   ++counts_.refused;
   counts_.last_refusal = why;
-  lose("refused " + why);
+  record_gap("a message was rejected: " + why);
   return {};
 }
 
-void ElevationAssembler::lose(const std::string& why) {
+void ElevationAssembler::record_gap(const std::string& why) {
   if (!map_ || !complete_) return;
   complete_ = false;
   ++counts_.gaps;

@@ -44,9 +44,9 @@ enum class KeyframeNeed {
 class ElevationAssembler {
  public:
   /// Takes a keyframe. The map keeps the message, which must not be modified afterwards.
-  MapChange take(const ElevationGrid::ConstPtr& keyframe);
+  MapChange process(const ElevationGrid::ConstPtr& keyframe);
   /// Takes an update. It is kept until its keyframe arrives if that is not here yet.
-  MapChange take(const ElevationUpdate::ConstPtr& update);
+  MapChange process(const ElevationUpdate::ConstPtr& update);
   /// Reports that the expected keyframe did not arrive in time. If there is a map, that counts as a gap.
   void keyframe_overdue();
 
@@ -56,26 +56,26 @@ class ElevationAssembler {
   const StreamCounts& counts() const { return counts_; }
 
  private:
-  using Number = std::pair<std::uint32_t, std::uint32_t>;  ///< an update's keyframe number and sequence
+  using UpdateId = std::pair<std::uint32_t, std::uint32_t>;  ///< an update's keyframe number and sequence
 
   bool is_repeated_keyframe(const ElevationGrid& keyframe) const;
-  MapChange hold(MapChange change);
+  MapChange replace_map(MapChange change);
   bool is_late(const ElevationUpdate& update) const;
-  bool follows(const ElevationUpdate& update) const;
-  MapChange place(const ElevationUpdate::ConstPtr& update);
-  MapChange handle_restart(const ElevationUpdate::ConstPtr& update, const Number& from);
+  bool is_next_update(const ElevationUpdate& update) const;
+  MapChange apply_in_order(const ElevationUpdate::ConstPtr& update);
+  MapChange handle_restart(const ElevationUpdate::ConstPtr& update, const UpdateId& from);
   MapChange refuse(const std::string& why);
-  void lose(const std::string& why);
-  void keep(const ElevationUpdate::ConstPtr& update);
+  void record_gap(const std::string& why);
+  void enqueue(const ElevationUpdate::ConstPtr& update);
   void drop_oldest_queued();
-  MapChange write(const ElevationUpdate& update);
+  MapChange apply_update(const ElevationUpdate& update);
   void apply_queued(MapChange& change);
 
   std::shared_ptr<const ElevationMap> map_;
   ros::Time keyframe_stamp_;       ///< stamp of the keyframe on which map_ is built
   bool complete_ = true;           ///< no update is missing after those in map_
   bool sender_restarted_ = false;  ///< the sender restarted; its keyframe is missing
-  Number last_received_{0, 0};     ///< number of the last update, whether used or not
+  UpdateId last_received_{0, 0};   ///< number of the last update, whether used or not
   /// A map of the repeated keyframe, if the one on which map_ is built was sent again.
   std::shared_ptr<const ElevationMap> repeated_keyframe_map_;
   std::deque<ElevationUpdate::ConstPtr>

@@ -14,7 +14,7 @@ namespace {
 
 /// The range of cells in which two rows of elevations differ, as a rectangle in row 0. They are compared bit
 /// by bit, so that NaN equals NaN.
-ElevationMap::Rectangle difference(const float* a, const float* b, std::uint32_t cells) {
+ElevationMap::Rectangle changed_range(const float* a, const float* b, std::uint32_t cells) {
   const auto same = [a, b](std::uint32_t first, std::uint32_t count) {
     return std::memcmp(a + first, b + first, count * sizeof(float)) == 0;
   };
@@ -55,39 +55,40 @@ ElevationMap::ElevationMap(ElevationGrid::ConstPtr keyframe, const ElevationMap*
   info_.cell_size = keyframe_->cell_size;
   info_.origin_x = keyframe_->origin.position.x;
   info_.origin_y = keyframe_->origin.position.y;
-  blocks_.resize(static_cast<std::size_t>(blocks_across()) * ((info_.height + side - 1) / side));
+  blocks_.resize(static_cast<std::size_t>(blocks_across()) * ((info_.height + block_side - 1) / block_side));
 
   changed = {0, 0, info_.width, info_.height};
   if (!before || !same_geometry(*before)) return;
   changed = {};
   for (std::uint32_t y = 0; y < info_.height; ++y)
-    for (std::uint32_t x = 0; x < info_.width; x += run_length(x, info_.width)) {
-      Rectangle cells = difference(run(x, y), before->run(x, y), run_length(x, info_.width));
+    for (std::uint32_t x = 0; x < info_.width; x += row_segment_length(x, info_.width)) {
+      Rectangle cells =
+          changed_range(row_segment(x, y), before->row_segment(x, y), row_segment_length(x, info_.width));
       cells.x += x;
       cells.y = y;
       changed.include(cells);
     }
 }
 
-std::shared_ptr<const ElevationMap> ElevationMap::after(const ElevationUpdate& update) const {
+std::shared_ptr<const ElevationMap> ElevationMap::with_update(const ElevationUpdate& update) const {
   std::shared_ptr<ElevationMap> map(new ElevationMap(*this));
   map->info_.stamp = update.header.stamp;
   map->info_.step = update.step;
   map->info_.sim_time = update.sim_time;
   map->info_.sequence = update.sequence;
   TileDecoder reader;
-  for (const ElevationTile& tile : update.tiles) map->write(tile, reader, *this);
+  for (const ElevationTile& tile : update.tiles) map->apply_tile(tile, reader, *this);
   return map;
 }
 
-void ElevationMap::write(const ElevationTile& tile, TileDecoder& reader, const ElevationMap& before) {
+void ElevationMap::apply_tile(const ElevationTile& tile, TileDecoder& reader, const ElevationMap& before) {
   const std::uint32_t right = tile.x + tile.width, top = tile.y + tile.height;
   reader.begin(tile);
   for (std::uint32_t y = tile.y; y < top; ++y)
     for (std::uint32_t x = tile.x; x < right;) {
-      float* const row = writable_block(x, y, before).data() + y % side * side;
-      const std::uint32_t cells = run_length(x, right);
-      reader.write_next(row + x % side, cells);
+      float* const row = writable_block(x, y, before).data() + y % block_side * block_side;
+      const std::uint32_t cells = row_segment_length(x, right);
+      reader.apply_next(row + x % block_side, cells);
       x += cells;
     }
 }
@@ -95,13 +96,14 @@ void ElevationMap::write(const ElevationTile& tile, TileDecoder& reader, const E
 /// The block of a cell, for writing. A block that is still shared with the previous map is copied first.
 ElevationMap::Block& ElevationMap::writable_block(std::uint32_t x, std::uint32_t y,
                                                   const ElevationMap& before) {
-  const std::size_t n = y / side * blocks_across() + x / side;
+  const std::size_t n = y / block_side * blocks_across() + x / block_side;
   if (blocks_[n] == before.blocks_[n]) {
     std::shared_ptr<Block> copy(new Block);  // make_shared would fill it with zeros
-    const std::uint32_t west = x / side * side, south = y / side * side;
-    const std::uint32_t cells = run_length(west, info_.width), rows = run_length(south, info_.height);
+    const std::uint32_t west = x / block_side * block_side, south = y / block_side * block_side;
+    const std::uint32_t cells = row_segment_length(west, info_.width),
+                        rows = row_segment_length(south, info_.height);
     for (std::uint32_t row = 0; row < rows; ++row)
-      std::copy_n(run(west, south + row), cells, copy->data() + row * side);
+      std::copy_n(row_segment(west, south + row), cells, copy->data() + row * block_side);
     blocks_[n] = std::move(copy);
   }
   return const_cast<Block&>(*blocks_[n]);  // no other map refers to this block yet
@@ -123,11 +125,11 @@ float ElevationMap::at(std::uint32_t x, std::uint32_t y) const {
 }
 
 /// Elevations of the four cells around a point, and the point's position between their centres, 0…1.
-struct ElevationMap::Patch {
+struct ElevationMap::CellQuad {
   double z00, z10, z01, z11, fx, fy;
 };
 
-std::optional<ElevationMap::Patch> ElevationMap::patch(double x, double y) const {
+std::optional<ElevationMap::CellQuad> ElevationMap::cells_around(double x, double y) const {
   const double east = (x - info_.origin_x) / info_.cell_size, north = (y - info_.origin_y) / info_.cell_size;
   if (!(east >= 0 && east <= info_.width && north >= 0 && north <= info_.height)) return std::nullopt;
   const auto between = [](double cells, std::uint32_t n, std::uint32_t& first, std::uint32_t& second) {
@@ -138,11 +140,11 @@ std::optional<ElevationMap::Patch> ElevationMap::patch(double x, double y) const
   };
   std::uint32_t x0, x1, y0, y1;
   const double fx = between(east, info_.width, x0, x1), fy = between(north, info_.height, y0, y1);
-  return Patch{cell(x0, y0), cell(x1, y0), cell(x0, y1), cell(x1, y1), fx, fy};
+  return CellQuad{cell(x0, y0), cell(x1, y0), cell(x0, y1), cell(x1, y1), fx, fy};
 }
 
 std::optional<double> ElevationMap::elevation(double x, double y) const {
-  const std::optional<Patch> p = patch(x, y);
+  const std::optional<CellQuad> p = cells_around(x, y);
   if (!p) return std::nullopt;
   // A cell of weight 0 may be unknown (NaN).
   const auto part = [](double weight, double z) { return weight > 0 ? weight * z : 0.0; };
@@ -153,7 +155,7 @@ std::optional<double> ElevationMap::elevation(double x, double y) const {
 }
 
 std::optional<ElevationMap::Gradient> ElevationMap::gradient(double x, double y) const {
-  const std::optional<Patch> p = patch(x, y);
+  const std::optional<CellQuad> p = cells_around(x, y);
   if (!p) return std::nullopt;
   const Gradient g{((p->z10 - p->z00) * (1 - p->fy) + (p->z11 - p->z01) * p->fy) / info_.cell_size,
                    ((p->z01 - p->z00) * (1 - p->fx) + (p->z11 - p->z10) * p->fx) / info_.cell_size};
@@ -190,8 +192,8 @@ std::vector<float> ElevationMap::elevations(const Rectangle& r) const {
   copy.reserve(static_cast<std::size_t>(r.width) * r.height);
   for (std::uint32_t y = r.y; y < top; ++y)
     for (std::uint32_t x = r.x; x < right;) {
-      const std::uint32_t n = run_length(x, static_cast<std::uint32_t>(right));
-      const float* const from = run(x, y);
+      const std::uint32_t n = row_segment_length(x, static_cast<std::uint32_t>(right));
+      const float* const from = row_segment(x, y);
       copy.insert(copy.end(), from, from + n);
       x += n;
     }
@@ -206,12 +208,12 @@ std::string cells_text(std::uint32_t width, std::uint32_t height) {
   return std::to_string(width) + " x " + std::to_string(height) + " cells";
 }
 
-std::string wrong_size(std::size_t numbers, std::uint32_t width, std::uint32_t height) {
+std::string size_error(std::size_t numbers, std::uint32_t width, std::uint32_t height) {
   if (width > 0 && height > 0 && numbers == static_cast<std::uint64_t>(width) * height) return "";
   return std::to_string(numbers) + " elevations for " + cells_text(width, height);
 }
 
-std::string infinite(const std::vector<float>& elevations) {
+std::string find_infinite(const std::vector<float>& elevations) {
   unsigned any = 0;  // without a branch, compilers can vectorise the loop
   for (const float z : elevations) any |= std::fabs(z) == HUGE_VALF ? 1u : 0u;
   if (any == 0) return "";
@@ -220,16 +222,16 @@ std::string infinite(const std::vector<float>& elevations) {
          ": must be finite, or NaN if unknown";
 }
 
-/// Number of cells that the mask of a tile selects. Sets `fault` if the mask does not fit the tile's size.
-std::size_t count_changed(const ElevationTile& tile, std::string& fault) {
+/// Number of cells that the mask of a tile selects. Sets `error` if the mask does not fit the tile's size.
+std::size_t count_changed(const ElevationTile& tile, std::string& error) {
   const std::uint64_t cells = std::uint64_t{tile.width} * tile.height;
   if (tile.changed.size() != mask_bytes(cells)) {
-    fault = std::to_string(tile.changed.size()) + " bytes of mask for " + cells_text(tile.width, tile.height);
+    error = std::to_string(tile.changed.size()) + " bytes of mask for " + cells_text(tile.width, tile.height);
     return 0;
   }
   for (std::size_t bit = cells; bit < 8 * tile.changed.size(); ++bit)
-    if (mask_has(tile.changed, bit))
-      fault = "bit " + std::to_string(bit) + " of its mask is set, and it has " +
+    if (mask_bit(tile.changed, bit))
+      error = "bit " + std::to_string(bit) + " of its mask is set, and it has " +
               cells_text(tile.width, tile.height);
   std::size_t count = 0;
   for (const std::uint8_t eight : tile.changed) count += std::bitset<8>(eight).count();
@@ -237,30 +239,30 @@ std::size_t count_changed(const ElevationTile& tile, std::string& fault) {
 }
 
 std::string validation_error(const ElevationTile& tile) {
-  std::string fault;
+  std::string error;
   if (!tile.changes.empty() && !tile.data.empty()) return "has changes and elevations";
   if (!tile.changes.empty() && tile.bits != 8 && tile.bits != 4)
     return "has changes of " + std::to_string(tile.bits) + " bits: must be 8 or 4";
   std::size_t cells = std::size_t{tile.width} * tile.height, values = tile.changes.size() + tile.data.size();
-  if (!tile.changed.empty()) cells = count_changed(tile, fault);
+  if (!tile.changed.empty()) cells = count_changed(tile, error);
   if (tile.bits == 4 && !tile.changes.empty()) values = values == change_bytes(cells, 4) ? cells : 2 * values;
   if (tile.changed.empty()) {
-    fault = wrong_size(values, tile.width, tile.height);
-  } else if (fault.empty() && (cells != values || values == 0)) {
-    fault = std::to_string(values) + " values for " + std::to_string(cells) + " cells that changed";
+    error = size_error(values, tile.width, tile.height);
+  } else if (error.empty() && (cells != values || values == 0)) {
+    error = std::to_string(values) + " values for " + std::to_string(cells) + " cells that changed";
   }
-  if (fault.empty() && !tile.changes.empty() && !(std::isfinite(tile.resolution) && tile.resolution > 0))
-    fault = "resolution is " + std::to_string(tile.resolution) + ": must be finite and above 0";
-  return fault.empty() ? infinite(tile.data) : fault;
+  if (error.empty() && !tile.changes.empty() && !(std::isfinite(tile.resolution) && tile.resolution > 0))
+    error = "resolution is " + std::to_string(tile.resolution) + ": must be finite and above 0";
+  return error.empty() ? find_infinite(tile.data) : error;
 }
 
 }  // namespace
 
 std::string validation_error(const ElevationGrid& keyframe) {
   const std::string where = "keyframe " + std::to_string(keyframe.keyframe) + ": ";
-  if (const std::string fault = wrong_size(keyframe.elevation.size(), keyframe.width, keyframe.height);
-      !fault.empty())
-    return where + fault;
+  if (const std::string error = size_error(keyframe.elevation.size(), keyframe.width, keyframe.height);
+      !error.empty())
+    return where + error;
   if (!(std::isfinite(keyframe.cell_size) && keyframe.cell_size > 0))
     return where + "cell_size is " + std::to_string(keyframe.cell_size) + ": must be finite and above 0";
   const geometry_msgs::Point& p = keyframe.origin.position;
@@ -272,7 +274,7 @@ std::string validation_error(const ElevationGrid& keyframe) {
     return where + "origin's orientation is (" + std::to_string(q.x) + ", " + std::to_string(q.y) + ", " +
            std::to_string(q.z) + ", " + std::to_string(q.w) + "): must be identity (0, 0, 0, 1)";
   if (!std::isfinite(keyframe.sim_time)) return where + "sim_time is not finite";
-  if (const std::string fault = infinite(keyframe.elevation); !fault.empty()) return where + fault;
+  if (const std::string error = find_infinite(keyframe.elevation); !error.empty()) return where + error;
   return "";
 }
 
@@ -282,8 +284,8 @@ std::string validation_error(const ElevationUpdate& update) {
   if (update.sequence == 0) return where + "sequence counts from 1";
   if (!std::isfinite(update.sim_time)) return where + "sim_time is not finite";
   for (std::size_t i = 0; i < update.tiles.size(); ++i) {
-    const std::string fault = validation_error(update.tiles[i]);
-    if (!fault.empty()) return where + "tile " + std::to_string(i) + ": " + fault;
+    const std::string error = validation_error(update.tiles[i]);
+    if (!error.empty()) return where + "tile " + std::to_string(i) + ": " + error;
   }
   return "";
 }

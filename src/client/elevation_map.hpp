@@ -72,32 +72,32 @@ class ElevationMap {
   std::vector<float> elevations(const Rectangle& cells) const;
 
   /// The map after an update, which must be valid for this map (see validation_error()).
-  std::shared_ptr<const ElevationMap> after(const ElevationUpdate& update) const;
+  std::shared_ptr<const ElevationMap> with_update(const ElevationUpdate& update) const;
 
  private:
-  static constexpr std::uint32_t side = 64;  ///< side of a block [cells]
-  using Block = std::array<float, side * side>;
+  static constexpr std::uint32_t block_side = 64;  ///< side of a block [cells]
+  using Block = std::array<float, block_side * block_side>;
   struct Gradient {
     double x, y;
   };
-  struct Patch;
+  struct CellQuad;
 
   ElevationMap() = default;
-  std::uint32_t blocks_across() const { return (info_.width + side - 1) / side; }
+  std::uint32_t blocks_across() const { return (info_.width + block_side - 1) / block_side; }
   /// The elevations from cell (x, y) eastwards, contiguous up to the end of its block.
-  const float* run(std::uint32_t x, std::uint32_t y) const {
-    const Block* const block = blocks_[y / side * blocks_across() + x / side].get();
-    return block ? block->data() + y % side * side + x % side
+  const float* row_segment(std::uint32_t x, std::uint32_t y) const {
+    const Block* const block = blocks_[y / block_side * blocks_across() + x / block_side].get();
+    return block ? block->data() + y % block_side * block_side + x % block_side
                  : keyframe_->elevation.data() + static_cast<std::size_t>(y) * info_.width + x;
   }
   /// The number of contiguous cells from column `x` to the end of its block, at most up to column `end`.
-  static std::uint32_t run_length(std::uint32_t x, std::uint32_t end) {
-    return std::min(end, (x / side + 1) * side) - x;
+  static std::uint32_t row_segment_length(std::uint32_t x, std::uint32_t end) {
+    return std::min(end, (x / block_side + 1) * block_side) - x;
   }
-  float cell(std::uint32_t x, std::uint32_t y) const { return *run(x, y); }
-  void write(const ElevationTile& tile, TileDecoder& reader, const ElevationMap& before);
+  float cell(std::uint32_t x, std::uint32_t y) const { return *row_segment(x, y); }
+  void apply_tile(const ElevationTile& tile, TileDecoder& reader, const ElevationMap& before);
   Block& writable_block(std::uint32_t x, std::uint32_t y, const ElevationMap& before);
-  std::optional<Patch> patch(double x, double y) const;
+  std::optional<CellQuad> cells_around(double x, double y) const;
   std::optional<Gradient> gradient(double x, double y) const;
 
   Info info_;

@@ -9,11 +9,11 @@ namespace {
 
 // These loops process whole bytes without branches, so that compilers can vectorise them.
 
-constexpr std::size_t spare = 8;  // number of values that are read beyond the last change
+constexpr std::size_t padding = 8;  // number of values that are read beyond the last change
 
 void unpack(const std::vector<std::int8_t>& packed, int bits, std::vector<std::int8_t>& changes) {
   const std::size_t bytes = packed.size();
-  changes.resize((bits == 4 ? 2 : 1) * bytes + spare);
+  changes.resize((bits == 4 ? 2 : 1) * bytes + padding);
   const std::int8_t* const from = packed.data();
   std::int8_t* const to = changes.data();
   if (bits == 8) {
@@ -28,12 +28,12 @@ void unpack(const std::vector<std::int8_t>& packed, int bits, std::vector<std::i
 }
 
 /// For each value of a mask byte: the number of its set bits, in all and before each bit.
-struct Ranks {
+struct MaskByteRanks {
   std::array<std::array<std::uint8_t, 8>, 256> before{};
   std::array<std::uint8_t, 256> count{};
 };
-constexpr Ranks make_ranks() {
-  Ranks ranks;
+constexpr MaskByteRanks make_ranks() {
+  MaskByteRanks ranks;
   for (std::size_t byte = 0; byte < 256; ++byte)
     for (std::size_t n = 0; n < 8; ++n) {
       ranks.before[byte][n] = ranks.count[byte];
@@ -41,10 +41,10 @@ constexpr Ranks make_ranks() {
     }
   return ranks;
 }
-constexpr Ranks ranks = make_ranks();
+constexpr MaskByteRanks ranks = make_ranks();
 
 /// Distributes the changes to all cells of the mask; cells that it does not select get 0.
-void spread(const std::int8_t* changes, const std::vector<std::uint8_t>& mask, float* to) {
+void expand_changes(const std::int8_t* changes, const std::vector<std::uint8_t>& mask, float* to) {
   for (const std::uint8_t eight : mask) {
     const std::array<std::uint8_t, 8>& before = ranks.before[eight];
     for (std::size_t n = 0; n < 8; ++n)
@@ -62,25 +62,25 @@ void TileDecoder::begin(const ElevationTile& tile) {
   if (tile.changes.empty()) return;
   unpack(tile.changes, tile.bits, changes_);
   if (tile.changed.empty()) {
-    steps_.assign(changes_.begin(), changes_.end());
+    expanded_changes_.assign(changes_.begin(), changes_.end());
     return;
   }
-  steps_.resize(8 * tile.changed.size());
-  spread(changes_.data(), tile.changed, steps_.data());
+  expanded_changes_.resize(8 * tile.changed.size());
+  expand_changes(changes_.data(), tile.changed, expanded_changes_.data());
 }
 
-void TileDecoder::write_next(float* held, std::size_t cells) {
+void TileDecoder::apply_next(float* elevations, std::size_t cells) {
   const std::size_t first = cell_;
   cell_ += cells;
   if (!tile_->changes.empty()) {
-    const float* const steps = steps_.data() + first;
+    const float* const steps = expanded_changes_.data() + first;
     const float resolution = tile_->resolution;
-    for (std::size_t n = 0; n < cells; ++n) held[n] = changed_elevation(held[n], steps[n], resolution);
+    for (std::size_t n = 0; n < cells; ++n) elevations[n] = apply_steps(elevations[n], steps[n], resolution);
   } else if (tile_->changed.empty()) {
-    std::copy_n(tile_->data.begin() + static_cast<std::ptrdiff_t>(first), cells, held);
+    std::copy_n(tile_->data.begin() + static_cast<std::ptrdiff_t>(first), cells, elevations);
   } else {
     for (std::size_t n = 0; n < cells; ++n)
-      if (mask_has(tile_->changed, first + n)) held[n] = tile_->data[value_++];
+      if (mask_bit(tile_->changed, first + n)) elevations[n] = tile_->data[value_++];
   }
 }
 

@@ -19,7 +19,7 @@ inline std::size_t change_bytes(std::size_t changes, int bits) {
 /// Size of a tile's mask [bytes].
 inline std::size_t mask_bytes(std::size_t cells) { return (cells + 7) / 8; }
 /// Whether the mask selects the cell with this number.
-inline bool mask_has(const std::vector<std::uint8_t>& mask, std::size_t cell) {
+inline bool mask_bit(const std::vector<std::uint8_t>& mask, std::size_t cell) {
   return (mask[cell / 8] >> (7 - cell % 8)) & 1;
 }
 
@@ -27,16 +27,16 @@ inline bool mask_has(const std::vector<std::uint8_t>& mask, std::size_t cell) {
 /// elevation_map.hpp.
 class TileDecoder {
  public:
-  /// Starts with the first cell of a tile, which must outlive the calls of write_next().
+  /// Starts with the first cell of a tile, which must outlive the calls of apply_next().
   void begin(const ElevationTile& tile);
-  /// Applies the next `cells` cells of the tile to the elevations in `held`; cells that did not change stay.
-  void write_next(float* held, std::size_t cells);
+  /// Applies the next `cells` cells of the tile to `elevations`; cells that did not change stay.
+  void apply_next(float* elevations, std::size_t cells);
 
  private:
   const ElevationTile* tile_ = nullptr;
   std::size_t cell_ = 0, value_ = 0;
-  std::vector<std::int8_t> changes_;  ///< unpacked changes of the selected cells
-  std::vector<float> steps_;          ///< changes of all cells, 0 if not selected
+  std::vector<std::int8_t> changes_;     ///< unpacked changes of the selected cells
+  std::vector<float> expanded_changes_;  ///< changes of all cells, 0 if not selected
 };
 
 }  // namespace desert_sim

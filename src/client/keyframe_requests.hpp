@@ -20,8 +20,6 @@ class KeyframeRequests {
 
   /// Whether to send a request now; if so, it counts as sent.
   bool due(KeyframeNeed need, Clock::time_point now);
-  /// The pause between the last request and the next.
-  Clock::duration pause() const { return pause_; }
 
  private:
   Clock::duration shortest_, longest_, pause_;

@@ -17,7 +17,8 @@ namespace {
 
 using Clock = KeyframeRequests::Clock;
 
-constexpr std::chrono::milliseconds tick{100};  // how often the client checks whether it needs a keyframe
+constexpr std::chrono::milliseconds poll_period{
+    100};  // how often the client checks whether it needs a keyframe
 
 Clock::duration duration_of(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
@@ -31,14 +32,15 @@ TerrainClient::Options checked(TerrainClient::Options options) {
   for (const std::string* name : {&options.elevation_topic, &options.updates_topic, &options.request_topic}) {
     std::string why;
     if (!ros::names::validate(*name, why))
-      throw ConfigError("TerrainClient: '" + *name + "' is not the name of a topic: " + why);
+      throw ConfigError("TerrainClient: '" + *name + "' is not a valid topic name: " + why);
   }
-  if (options.update_queue == 0) throw ConfigError("TerrainClient: update_queue is 0: must be 1 or more");
+  if (options.update_queue == 0) throw ConfigError("TerrainClient: update_queue is 0 (allowed: at least 1)");
   if (!(options.shortest_pause > 0 && options.longest_pause >= options.shortest_pause &&
         options.longest_pause <= 3600))
-    throw ConfigError("TerrainClient: pauses are " + std::to_string(options.shortest_pause) + " and " +
+    throw ConfigError("TerrainClient: shortest_pause and longest_pause are " +
+                      std::to_string(options.shortest_pause) + " and " +
                       std::to_string(options.longest_pause) +
-                      " s: must be 0 < shortest_pause <= longest_pause <= 3600");
+                      " s (allowed: 0 < shortest_pause <= longest_pause <= 3600 s)");
   return options;
 }
 
@@ -55,9 +57,9 @@ TerrainClient::TerrainClient(const ros::NodeHandle& node, Options options)
   subscribe_to_keyframes();
   updates_ = node_.subscribe<ElevationUpdate>(
       options_.updates_topic, options_.update_queue,
-      [this](const ElevationUpdate::ConstPtr& update) { take(update); }, ros::VoidConstPtr(),
+      [this](const ElevationUpdate::ConstPtr& update) { process(update); }, ros::VoidConstPtr(),
       ros::TransportHints().tcpNoDelay());
-  thread_ = std::thread([this] { thread(); });
+  thread_ = std::thread([this] { run_thread(); });
 }
 
 TerrainClient::~TerrainClient() {
@@ -121,29 +123,29 @@ bool TerrainClient::wait_for_step(std::uint64_t step, double timeout) const {
   return wait([this, step] { return map_ && map_->info().step >= step; }, timeout);
 }
 
-bool TerrainClient::wait(const std::function<bool()>& happened, double timeout) const {
+bool TerrainClient::wait(const std::function<bool()>& condition, double timeout) const {
   const Clock::time_point end = Clock::now() + duration_of(std::clamp(timeout, 0.0, 1e8));
   std::unique_lock<std::mutex> lock(mutex_);
-  while (!happened()) {
+  while (!condition()) {
     if (!ros::ok() || Clock::now() >= end) return false;
-    changed_.wait_until(lock, std::min(end, Clock::now() + tick));
+    changed_.wait_until(lock, std::min(end, Clock::now() + poll_period));
   }
   return true;
 }
 
 // ---- messages ----
 
-void TerrainClient::take(const ElevationGrid::ConstPtr& keyframe) {
+void TerrainClient::process(const ElevationGrid::ConstPtr& keyframe) {
   const std::lock_guard<std::mutex> one_at_a_time(processing_mutex_);
-  tell(assembler_.take(keyframe), nullptr);
+  publish_change(assembler_.process(keyframe), nullptr);
 }
 
-void TerrainClient::take(const ElevationUpdate::ConstPtr& update) {
+void TerrainClient::process(const ElevationUpdate::ConstPtr& update) {
   const std::lock_guard<std::mutex> one_at_a_time(processing_mutex_);
-  tell(assembler_.take(update), &update->header.stamp);
+  publish_change(assembler_.process(update), &update->header.stamp);
 }
 
-void TerrainClient::tell(const MapChange& change, const ros::Time* update_stamp) {
+void TerrainClient::publish_change(const MapChange& change, const ros::Time* update_stamp) {
   const StreamCounts& counts = assembler_.counts();
   std::string refusal, gap;
   {
@@ -155,29 +157,29 @@ void TerrainClient::tell(const MapChange& change, const ros::Time* update_stamp)
     if (change.map) map_ = change.map;
     if (change.map && update_stamp) {
       statistics_.latency = (ros::Time::now() - *update_stamp).toSec();
-      statistics_.mean_latency += (statistics_.latency - statistics_.mean_latency) / ++timed_;
+      statistics_.mean_latency += (statistics_.latency - statistics_.mean_latency) / ++latency_count_;
       statistics_.largest_latency = std::max(statistics_.largest_latency, statistics_.latency);
     }
     changed_.notify_all();
   }
-  if (!refusal.empty()) ROS_WARN_THROTTLE(5, "terrain client refused %s", refusal.c_str());
-  if (!gap.empty()) ROS_WARN_THROTTLE(5, "terrain client needs a new keyframe: %s", gap.c_str());
+  if (!refusal.empty()) ROS_WARN_THROTTLE(5, "The terrain client rejected a message: %s", refusal.c_str());
+  if (!gap.empty()) ROS_WARN_THROTTLE(5, "The terrain client needs a new keyframe: %s", gap.c_str());
   if (change.map && options_.on_change && (change.replaced || !change.cells.empty()))
     options_.on_change(change);
 }
 
 // ---- keyframes ----
 
-void TerrainClient::thread() {
+void TerrainClient::run_thread() {
   for (;;) {
     if (options_.own_thread)
-      queue_.callAvailable(ros::WallDuration(std::chrono::duration<double>(tick).count()));
+      queue_.callAvailable(ros::WallDuration(std::chrono::duration<double>(poll_period).count()));
     {
       std::unique_lock<std::mutex> lock(mutex_);
-      if (!options_.own_thread) changed_.wait_for(lock, tick, [this] { return stopping_; });
+      if (!options_.own_thread) changed_.wait_for(lock, poll_period, [this] { return stopping_; });
       if (stopping_) return;
     }
-    if (keyframe_is_due()) ask_for_keyframe();
+    if (keyframe_is_due()) request_keyframe();
   }
 }
 
@@ -188,11 +190,11 @@ bool TerrainClient::keyframe_is_due() {
   if (!one_at_a_time) return false;  // a message is being processed, which may be the keyframe
   if (!requests_.due(assembler_.need(), Clock::now())) return false;
   assembler_.keyframe_overdue();
-  tell({}, nullptr);
+  publish_change({}, nullptr);
   return true;
 }
 
-void TerrainClient::ask_for_keyframe() {
+void TerrainClient::request_keyframe() {
   bool by_message = request_publisher_.getNumSubscribers() > 0;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -215,7 +217,7 @@ void TerrainClient::subscribe_to_keyframes() {
   // shutdown() waits for running callbacks, so no lock may be held here.
   before.shutdown();
   const ros::Subscriber anew = node_.subscribe<ElevationGrid>(
-      options_.elevation_topic, 1, [this](const ElevationGrid::ConstPtr& keyframe) { take(keyframe); },
+      options_.elevation_topic, 1, [this](const ElevationGrid::ConstPtr& keyframe) { process(keyframe); },
       ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
   const std::lock_guard<std::mutex> lock(mutex_);
   keyframes_ = anew;

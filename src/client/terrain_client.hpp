@@ -89,12 +89,12 @@ class TerrainClient {
 
  private:
   void subscribe_to_keyframes();
-  void ask_for_keyframe();
-  void take(const ElevationGrid::ConstPtr& keyframe);
-  void take(const ElevationUpdate::ConstPtr& update);
-  void tell(const MapChange& change, const ros::Time* update_stamp);
-  bool wait(const std::function<bool()>& happened, double timeout) const;
-  void thread();
+  void request_keyframe();
+  void process(const ElevationGrid::ConstPtr& keyframe);
+  void process(const ElevationUpdate::ConstPtr& update);
+  void publish_change(const MapChange& change, const ros::Time* update_stamp);
+  bool wait(const std::function<bool()>& condition, double timeout) const;
+  void run_thread();
   bool keyframe_is_due();
 
   Options options_;
@@ -111,7 +111,7 @@ class TerrainClient {
   mutable std::condition_variable changed_;
   std::shared_ptr<const ElevationMap> map_;
   Statistics statistics_;
-  std::uint64_t timed_ = 0;  ///< number of updates in the mean latency
+  std::uint64_t latency_count_ = 0;  ///< number of updates in the mean latency
   bool up_to_date_ = false, stopping_ = false;
   ros::Subscriber keyframes_;
   std::thread thread_;

@@ -19,10 +19,10 @@ constexpr double degrees = 180 / M_PI;
 void print(const desert_sim::ElevationMap& map, double x, double y) {
   const std::optional<double> z = map.elevation(x, y), slope = map.slope(x, y);
   if (z && slope) {
-    ROS_INFO("step %lu: (%.2f, %.2f) lies at %.3f m, slope %.1f deg",
+    ROS_INFO("Step %lu: the elevation at (%.2f, %.2f) is %.3f m, the slope is %.1f deg.",
              static_cast<unsigned long>(map.info().step), x, y, *z, *slope * degrees);
   } else {
-    ROS_WARN("(%.2f, %.2f) is off the terrain, or unknown", x, y);
+    ROS_WARN("The point (%.2f, %.2f) is outside the terrain, or its elevation is unknown.", x, y);
   }
 }
 
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
   desert_sim::TerrainClient terrain(node, options);
   if (!terrain.wait_for_terrain(10)) {
     if (!ros::ok()) return 0;
-    ROS_ERROR("no terrain from %s within 10 s", options.node.c_str());
+    ROS_ERROR("The node %s sent no terrain within 10 s.", options.node.c_str());
     return 1;
   }
 
@@ -48,8 +48,10 @@ int main(int argc, char** argv) {
   const ros::Subscriber follow = parameters.subscribe<geometry_msgs::PointStamped>(
       "point", 1, [&](const geometry_msgs::PointStamped::ConstPtr& robot) {
         if (robot->header.frame_id != terrain.map()->info().frame) {
-          ROS_WARN("~point is in the frame '%s', the terrain in '%s': transform it first",
-                   robot->header.frame_id.c_str(), terrain.map()->info().frame.c_str());
+          ROS_WARN(
+              "The message on ~point is in the frame '%s', but the terrain is in '%s': transform the point "
+              "first.",
+              robot->header.frame_id.c_str(), terrain.map()->info().frame.c_str());
           return;
         }
         x = robot->point.x;

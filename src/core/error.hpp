@@ -1,6 +1,6 @@
 #pragma once
 /// Exception classes. Library code throws them and neither exits nor prints. The message names the place, the
-/// fault and the values concerned.
+/// error and the values concerned.
 
 #include <stdexcept>
 #include <string>

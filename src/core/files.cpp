@@ -18,7 +18,7 @@ std::string read_file(const std::string& path) {
   struct stat status;
   if (stat(path.c_str(), &status) != 0)
     throw ConfigError(path + ": cannot be opened: " + std::strerror(errno));
-  if (!S_ISREG(status.st_mode)) throw ConfigError(path + ": is not a file");
+  if (!S_ISREG(status.st_mode)) throw ConfigError(path + ": is not a regular file");
   std::ifstream file(path, std::ios::binary);
   std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
   if (!file || !file.read(&bytes[0], status.st_size))
@@ -45,14 +45,14 @@ class TemporaryFile {
     for (std::size_t done = 0; done < bytes.size();) {
       const ssize_t n = ::write(file_, bytes.data() + done, bytes.size() - done);
       if (n < 0 && errno == EINTR) continue;
-      if (n < 0) fail("writing");
+      if (n < 0) fail("cannot be written");
       done += static_cast<std::size_t>(n);
     }
-    if (fsync(file_) != 0) fail("making it durable");
-    if (close(std::exchange(file_, -1)) != 0) fail("making it durable");
+    if (fsync(file_) != 0) fail("cannot be synchronised to the disk");
+    if (close(std::exchange(file_, -1)) != 0) fail("cannot be synchronised to the disk");
   }
   void rename() {
-    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail("renaming");
+    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail("the temporary file cannot be renamed");
     renamed_ = true;
   }
 

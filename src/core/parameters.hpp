@@ -73,7 +73,7 @@ void for_each_parameter(P& parameters, Visit&& visit) {
 
 namespace detail {
 template <class Owner, class T>
-constexpr std::size_t laid_out(std::size_t offset, const Parameter<Owner, T>&) {
+constexpr std::size_t offset_after_member(std::size_t offset, const Parameter<Owner, T>&) {
   return (offset + alignof(T) - 1) / alignof(T) * alignof(T) + sizeof(T);
 }
 }  // namespace detail
@@ -83,7 +83,8 @@ constexpr std::size_t laid_out(std::size_t offset, const Parameter<Owner, T>&) {
 template <class P>
 constexpr bool table_is_complete() {
   std::size_t size = 0;
-  std::apply([&](const auto&... row) { ((size = detail::laid_out(size, row)), ...); }, table_of<P>());
+  std::apply([&](const auto&... row) { ((size = detail::offset_after_member(size, row)), ...); },
+             table_of<P>());
   return (size + alignof(P) - 1) / alignof(P) * alignof(P) == sizeof(P);
 }
 

@@ -30,12 +30,12 @@ class Bag {
       : file_(path, std::ios::binary), end_(std::filesystem::file_size(path)) {}
 
   void check() {
-    if (read(end_, first_line.size()) != first_line) throw ConfigError("is no bag of version 2.0");
+    if (read(end_, first_line.size()) != first_line) throw ConfigError("is not a bag of version 2.0");
     while (at_ < end_) {
-      const Record record = next(end_);
+      const Record record = read_record_header(end_);
       if (record.op == chunk_op) check_chunk(record);
       if (record.op == index_op) check_index(record);
-      go_to(record.data + record.size);
+      seek(record.data + record.size);
     }
   }
 
@@ -47,9 +47,9 @@ class Bag {
   };
 
   [[noreturn]] void fail() const {
-    throw ConfigError("is cut off or corrupt (at byte " + std::to_string(at_) + ")");
+    throw ConfigError("is truncated or corrupt (at byte " + std::to_string(at_) + ")");
   }
-  void go_to(std::uint64_t place) { file_.seekg(static_cast<std::streamoff>(at_ = place)); }
+  void seek(std::uint64_t place) { file_.seekg(static_cast<std::streamoff>(at_ = place)); }
 
   std::string read(std::uint64_t end, std::uint64_t size) {
     if (size > end - at_) fail();
@@ -60,7 +60,7 @@ class Bag {
   }
 
   /// Reads the header of the record at the present position and stops at the beginning of its data.
-  Record next(std::uint64_t end) {
+  Record read_record_header(std::uint64_t end) {
     Record record;
     const std::string header = read(end, number(read(end, 4), 0));
     for (std::size_t at = 0; at < header.size();) {
@@ -80,12 +80,12 @@ class Bag {
 
   void check_chunk(const Record& chunk) {
     const auto compression = chunk.fields.find("compression");
-    plain_ = compression != chunk.fields.end() && compression->second == "none";
+    uncompressed_ = compression != chunk.fields.end() && compression->second == "none";
     records_.clear();
-    while (plain_ && at_ < chunk.data + chunk.size) {
+    while (uncompressed_ && at_ < chunk.data + chunk.size) {
       records_.insert(at_ - chunk.data);
-      const Record record = next(chunk.data + chunk.size);
-      go_to(record.data + record.size);
+      const Record record = read_record_header(chunk.data + chunk.size);
+      seek(record.data + record.size);
     }
   }
 
@@ -93,19 +93,19 @@ class Bag {
   void check_index(Record index) {
     if (std::uint64_t{number(index.fields["count"], 0)} * index_entry != index.size) fail();
     const std::string entries = read(end_, index.size);
-    for (std::size_t at = 0; plain_ && at < entries.size(); at += index_entry)
+    for (std::size_t at = 0; uncompressed_ && at < entries.size(); at += index_entry)
       if (records_.count(number(entries, at + 8)) == 0) fail();
   }
 
   std::ifstream file_;
   const std::uint64_t end_;
   std::uint64_t at_ = 0;
-  bool plain_ = false;               ///< whether the last chunk is uncompressed
+  bool uncompressed_ = false;        ///< whether the last chunk is uncompressed
   std::set<std::uint64_t> records_;  ///< offsets of its records, if it is uncompressed
 };
 
 }  // namespace
 
-void require_whole_records(const std::string& path) { Bag(path).check(); }
+void validate_bag_records(const std::string& path) { Bag(path).check(); }
 
 }  // namespace desert_sim

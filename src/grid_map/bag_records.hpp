@@ -9,6 +9,6 @@ namespace desert_sim {
 /// uncompressed chunks, and that index entries point to records. Throws ConfigError with the byte offset
 /// otherwise. The rosbag library trusts the lengths in a file, so that a corrupt length makes it read out of
 /// bounds. Compressed chunks have checksums of their own.
-void require_whole_records(const std::string& path);
+void validate_bag_records(const std::string& path);
 
 }  // namespace desert_sim

@@ -20,7 +20,7 @@ namespace {
 
 using Type = GridMapType<GridMap>;
 
-constexpr double most_bytes = 2e9;  // rosbag has 32-bit sizes and doubles its buffers
+constexpr double max_bag_bytes = 2e9;  // rosbag has 32-bit sizes and doubles its buffers
 
 boost::shared_ptr<ros::M_string> connection_header() {
   auto header = boost::make_shared<ros::M_string>();
@@ -31,7 +31,7 @@ boost::shared_ptr<ros::M_string> connection_header() {
   return header;
 }
 
-std::string list_of(const std::set<std::string>& names) {
+std::string joined_names(const std::set<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   return shortened(list);
@@ -42,19 +42,20 @@ void require_one_topic(rosbag::Bag& bag, rosbag::View& maps) {
   for (const rosbag::ConnectionInfo* connection : maps.getConnections()) {
     topics.insert(connection->topic);
     if (connection->md5sum != Type::md5)
-      throw ConfigError("its " + std::string(Type::name) + " is of another definition (md5sum " +
+      throw ConfigError("its " + std::string(Type::name) + " has another message definition (md5sum " +
                         shortened(connection->md5sum) + " instead of " + Type::md5 + ")");
   }
   if (topics.size() > 1)
-    throw ConfigError("has GridMaps on several topics: " + list_of(topics) + " (rosbag filter leaves one)");
+    throw ConfigError("contains GridMaps on several topics: " + joined_names(topics) +
+                      " (rosbag filter can extract one)");
   if (maps.size() > 0) return;
   rosbag::View all(bag);
   for (const rosbag::ConnectionInfo* connection : all.getConnections()) types.insert(connection->datatype);
-  throw ConfigError("has no " + std::string(Type::name) + " in it" +
-                    (types.empty() ? "" : " (it has: " + list_of(types) + ")"));
+  throw ConfigError("contains no " + std::string(Type::name) +
+                    (types.empty() ? "" : " (it contains: " + joined_names(types) + ")"));
 }
 
-GridMap last_map(rosbag::Bag& bag) {
+GridMap read_last_map(rosbag::Bag& bag) {
   rosbag::View maps(bag, rosbag::TypeQuery(Type::name));
   require_one_topic(bag, maps);
   rosbag::View::iterator last = maps.begin();
@@ -63,7 +64,7 @@ GridMap last_map(rosbag::Bag& bag) {
   const std::unique_ptr<std::uint8_t[]> bytes(new std::uint8_t[size]);
   ros::serialization::OStream copy(bytes.get(), size);
   last->write(copy);
-  MessageBytes message(bytes.get(), size);
+  BoundedInputStream message(bytes.get(), size);
   GridMap map;
   message.next(map);
   return map;
@@ -75,7 +76,7 @@ void write_grid_map(const std::string& path, const std::string& topic, const Gri
   double bytes = 0;
   for (const std_msgs::Float32MultiArray& layer : map.data)
     bytes += 4.0 * static_cast<double>(layer.data.size());
-  if (bytes > most_bytes)
+  if (bytes > max_bag_bytes)
     throw ConfigError(path + ": a bag cannot hold the " + std::to_string(bytes * 1e-9) + " GB of this map");
   const std::string temporary = path + ".part";
   try {
@@ -90,17 +91,17 @@ void write_grid_map(const std::string& path, const std::string& topic, const Gri
 }
 
 GridMap read_grid_map(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw ConfigError(path + ": there is no such file");
+  if (!std::filesystem::is_regular_file(path)) throw ConfigError(path + ": no such file exists");
   try {
-    require_whole_records(path);
+    validate_bag_records(path);
     rosbag::Bag bag(path, rosbag::bagmode::Read);
-    return last_map(bag);
+    return read_last_map(bag);
   } catch (const rosbag::BagUnindexedException&) {
-    throw ConfigError(path + ": is cut off, or still being recorded (rosbag reindex repairs what is there)");
+    throw ConfigError(path + ": is truncated or still being recorded (rosbag reindex can repair it)");
   } catch (const ConfigError& e) {
     throw ConfigError(path + ": " + e.what());
   } catch (const std::exception& e) {
-    throw ConfigError(path + ": is no bag, cut off or corrupt: " + shortened(e.what()));
+    throw ConfigError(path + ": is not a bag, or is truncated or corrupt: " + shortened(e.what()));
   }
 }
 
@@ -112,7 +113,7 @@ RasterLoader raster_loader_with_bags() {
     options.band = request.band;
     options.scale = request.scale;
     options.offset = request.offset;
-    RasterField field = fitted(raster_of(map, options, request.path), request);
+    RasterField field = resample_to_request(to_raster(map, options, request.path), request);
     field.bands = map.layers;
     return field;
   };

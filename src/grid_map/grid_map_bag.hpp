@@ -22,7 +22,7 @@ GridMap read_grid_map(const std::string& path);
 /// Converts layer `band` (counted from 1) to a raster, with value = raw · scale + offset. The start indices
 /// of the map's circular buffer are taken into account. Throws ConfigError that names `source` for an invalid
 /// map (see LoadTerrain.srv).
-Raster raster_of(const GridMap& map, const RasterOptions& options, const std::string& source);
+Raster to_raster(const GridMap& map, const RasterOptions& options, const std::string& source);
 
 /// A loader that reads .bag files as GridMaps, whose layers are its bands, and other files like
 /// gdal_raster_loader().

@@ -24,7 +24,7 @@ std::string section(const char* type, const std::string& fields) {
 }
 
 /// The definitions of the message types that GridMap contains.
-std::string parts() {
+std::string nested_definitions() {
   namespace traits = ros::message_traits;
   return section("grid_map_msgs/GridMapInfo", info_fields) +
          section("std_msgs/Header", traits::definition<std_msgs::Header>()) +
@@ -34,7 +34,7 @@ std::string parts() {
 
 }  // namespace
 
-std::string GridMapType<GridMap>::definition() { return map_fields + parts(); }
+std::string GridMapType<GridMap>::definition() { return map_fields + nested_definitions(); }
 
 std::string GridMapType<GetGridMapRequest>::definition() {
   return "string frame_id\nfloat64 position_x\nfloat64 position_y\nfloat64 length_x\nfloat64 length_y\n"
@@ -42,7 +42,7 @@ std::string GridMapType<GetGridMapRequest>::definition() {
 }
 
 std::string GridMapType<GetGridMapResponse>::definition() {
-  return "grid_map_msgs/GridMap map\n" + section("grid_map_msgs/GridMap", map_fields) + parts();
+  return "grid_map_msgs/GridMap map\n" + section("grid_map_msgs/GridMap", map_fields) + nested_definitions();
 }
 
 }  // namespace desert_sim

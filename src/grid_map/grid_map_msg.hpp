@@ -47,10 +47,6 @@ struct GetGridMapResponse {
 struct GetGridMap {
   using Request = GetGridMapRequest;
   using Response = GetGridMapResponse;
-  using RequestType = Request;
-  using ResponseType = Response;
-  Request request;
-  Response response;
 };
 
 /// Name, checksum and definition of a type of grid_map_msgs.
@@ -133,8 +129,6 @@ namespace service_traits {
   };
 
 DESERT_GRID_MAP_SERVICE(desert_sim::GetGridMap)
-DESERT_GRID_MAP_SERVICE(desert_sim::GetGridMapRequest)
-DESERT_GRID_MAP_SERVICE(desert_sim::GetGridMapResponse)
 #undef DESERT_GRID_MAP_SERVICE
 
 }  // namespace service_traits

@@ -11,7 +11,7 @@ namespace desert_sim {
 namespace {
 
 template <class... Parts>
-[[noreturn]] void refuse(const std::string& source, const Parts&... parts) {
+[[noreturn]] void throw_error(const std::string& source, const Parts&... parts) {
   std::ostringstream text;
   text.precision(12);
   text << source << ": ";
@@ -21,55 +21,56 @@ template <class... Parts>
 
 /// Refuses a rotated map, because grid_map has none. An all-zero quaternion is accepted, since programs that
 /// fill in the message by hand often leave it unset.
-void require_upright(const GridMapInfo& info, const std::string& source) {
+void require_no_rotation(const GridMapInfo& info, const std::string& source) {
   const auto& q = info.pose.orientation;
   const bool unset = q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0;
   if (!unset && !(std::abs(q.x) < 1e-6 && std::abs(q.y) < 1e-6 && std::abs(q.z) < 1e-6))
-    refuse(source, "the map is turned: its orientation is (", q.x, ", ", q.y, ", ", q.z, ", ", q.w,
-           "), allowed: (0, 0, 0, 1)");
+    throw_error(source, "the map is rotated: its orientation is (", q.x, ", ", q.y, ", ", q.z, ", ", q.w,
+                "), allowed: (0, 0, 0, 1)");
 }
 
-void require_place(const GridMapInfo& info, const std::string& source) {
+void validate_geometry(const GridMapInfo& info, const std::string& source) {
   const auto& p = info.pose.position;
   if (!(std::isfinite(info.resolution) && info.resolution > 0))
-    refuse(source, "resolution: = ", info.resolution, " is not a finite number above 0");
+    throw_error(source, "resolution: = ", info.resolution, " is not a finite number above 0");
   for (double number : {info.length_x, info.length_y, p.x, p.y})
-    if (!std::isfinite(number)) refuse(source, "its lengths and position must be finite");
-  require_upright(info, source);
+    if (!std::isfinite(number)) throw_error(source, "its lengths and position must be finite");
+  require_no_rotation(info, source);
 }
 
-void require_layers(const GridMap& map, const std::string& source) {
-  if (map.layers.empty()) refuse(source, "the map has no layers");
+void validate_layers(const GridMap& map, const std::string& source) {
+  if (map.layers.empty()) throw_error(source, "the map has no layers");
   if (map.layers.size() != map.data.size())
-    refuse(source, "names ", map.layers.size(), " layers and has ", map.data.size());
+    throw_error(source, "names ", map.layers.size(), " layers but contains ", map.data.size());
   std::set<std::string> names;
   for (const std::string& name : map.layers)
-    if (!names.insert(name).second) refuse(source, "layers: ", quoted(name), " stands there twice");
+    if (!names.insert(name).second) throw_error(source, "layers: ", quoted(name), " is given twice");
 }
 
 /// Throws ConfigError unless the layer is column-major and its number of cells agrees with the map's lengths.
-void require_cells(const GridMap& map, std::size_t n, const std::string& source) {
+void validate_layout(const GridMap& map, std::size_t n, const std::string& source) {
   const std_msgs::Float32MultiArray& layer = map.data[n];
   const std::string name = "layer " + quoted(map.layers[n]);
   const auto& dim = layer.layout.dim;
   if (dim.size() != 2 || dim[0].label != "column_index" || dim[1].label != "row_index")
-    refuse(source, name, ": must be column-major: dim[0] column_index and dim[1] row_index");
+    throw_error(source, name, ": must be column-major: dim[0] column_index and dim[1] row_index");
   const std::uint64_t cells = std::uint64_t{dim[0].size} * dim[1].size;
   if (cells == 0 || cells != layer.data.size() || layer.layout.data_offset != 0)
-    refuse(source, name, ": ", dim[1].size, " x ", dim[0].size, " cells and ", layer.data.size(),
-           " values from ", layer.layout.data_offset);
+    throw_error(source, name, ": ", dim[1].size, " x ", dim[0].size, " cells and ", layer.data.size(),
+                " values from offset ", layer.layout.data_offset,
+                " do not match (required: one value per cell from offset 0)");
   const auto fits = [&](std::uint32_t size, double length) {
     return std::abs(size * map.info.resolution - length) < 0.5 * map.info.resolution;
   };
   if (!fits(dim[1].size, map.info.length_x) || !fits(dim[0].size, map.info.length_y))
-    refuse(source, name, ": ", dim[1].size, " x ", dim[0].size, " cells of ", map.info.resolution,
-           " m are not the map's ", map.info.length_x, " x ", map.info.length_y, " m");
+    throw_error(source, name, ": ", dim[1].size, " x ", dim[0].size, " cells of ", map.info.resolution,
+                " m do not match the map's lengths of ", map.info.length_x, " x ", map.info.length_y, " m");
   if (map.outer_start_index >= dim[1].size || map.inner_start_index >= dim[0].size)
-    refuse(source, "start indices (", map.outer_start_index, ", ", map.inner_start_index, ") are not below ",
-           dim[1].size, " x ", dim[0].size);
+    throw_error(source, "start indices (", map.outer_start_index, ", ", map.inner_start_index,
+                ") are not below ", dim[1].size, " x ", dim[0].size);
 }
 
-void place(Raster& raster, const GridMapInfo& info) {
+void set_geometry(Raster& raster, const GridMapInfo& info) {
   raster.cell_size = info.resolution;
   raster.origin_x = info.pose.position.x - 0.5 * raster.width * info.resolution;
   raster.origin_y = info.pose.position.y - 0.5 * raster.height * info.resolution;
@@ -79,19 +80,19 @@ void place(Raster& raster, const GridMapInfo& info) {
 
 }  // namespace
 
-Raster raster_of(const GridMap& map, const RasterOptions& options, const std::string& source) {
-  require_place(map.info, source);
-  require_layers(map, source);
+Raster to_raster(const GridMap& map, const RasterOptions& options, const std::string& source) {
+  validate_geometry(map.info, source);
+  validate_layers(map, source);
   if (options.band < 1 || options.band > static_cast<int>(map.layers.size()))
-    refuse(source, "has no band ", options.band, ": its layers are 1 to ", map.layers.size());
+    throw_error(source, "has no band ", options.band, ": its layers are 1 to ", map.layers.size());
   const auto n = static_cast<std::size_t>(options.band - 1);
-  require_cells(map, n, source);
+  validate_layout(map, n, source);
   const std_msgs::Float32MultiArray& layer = map.data[n];
   const std::size_t rows = layer.layout.dim[1].size, columns = layer.layout.dim[0].size;
   Raster raster;
   raster.width = static_cast<int>(rows);
   raster.height = static_cast<int>(columns);
-  place(raster, map.info);
+  set_geometry(raster, map.info);
   raster.values.resize(rows * columns);
   // Row indices run towards lower x and column indices towards lower y, beginning at the start indices of the
   // circular buffer.
@@ -100,7 +101,7 @@ Raster raster_of(const GridMap& map, const RasterOptions& options, const std::st
       const std::size_t from =
           (column + map.inner_start_index) % columns * rows + (row + map.outer_start_index) % rows;
       const double value = layer.data[from] * options.scale + options.offset;
-      if (std::isinf(value)) refuse(source, "layer ", quoted(map.layers[n]), ": has an infinite value");
+      if (std::isinf(value)) throw_error(source, "layer ", quoted(map.layers[n]), ": has an infinite value");
       raster.values[(columns - 1 - column) * rows + (rows - 1 - row)] = static_cast<float>(value);
     }
   return raster;

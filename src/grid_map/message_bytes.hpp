@@ -11,10 +11,10 @@ namespace desert_sim {
 
 /// An input stream for deserializing a message. Unlike roscpp's IStream, it does not allocate an array of
 /// more elements than the remaining bytes can contain. Throws ros::serialization::StreamOverrunException.
-class MessageBytes : public ros::serialization::Stream {
+class BoundedInputStream : public ros::serialization::Stream {
  public:
   static const ros::serialization::StreamType stream_type = ros::serialization::stream_types::Input;
-  MessageBytes(std::uint8_t* data, std::uint32_t size) : Stream(data, size) {}
+  BoundedInputStream(std::uint8_t* data, std::uint32_t size) : Stream(data, size) {}
 
   template <class T>
   void next(T& value) {

@@ -30,12 +30,12 @@ void GdalMessages::clear() {
 }
 
 void GdalMessages::add(bool failure, const char* message) {
-  constexpr std::size_t kKept = 3;
+  constexpr std::size_t max_texts = 3;
   failures_ += failure;
   auto& texts = failure ? failure_texts_ : warning_texts_;
   std::string line = message ? message : "";
   std::replace(line.begin(), line.end(), '\n', ' ');
-  if (texts.size() < kKept && std::find(texts.begin(), texts.end(), line) == texts.end())
+  if (texts.size() < max_texts && std::find(texts.begin(), texts.end(), line) == texts.end())
     texts.push_back(line);
 }
 

@@ -21,7 +21,7 @@
 namespace desert_sim {
 namespace {
 
-constexpr int kSmallest = 512, kLargest = 2048;  // long side of a hillshade [pixels]
+constexpr int kMinLongSide = 512, kMaxLongSide = 2048;  // long side of a hillshade [pixels]
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 using Colour = cv::Vec3f;  // B, G, R in 0..255, OpenCV's order
 
@@ -39,12 +39,12 @@ void check_input(int width, int height, double cell_size, const char* missing) {
   if (!text.str().empty()) throw ConfigError("picture: " + text.str());
 }
 
-/// The size at which a picture is computed: that of the grid, but at most kLargest on its long side.
+/// The size at which a picture is computed: that of the grid, but at most kMaxLongSide on its long side.
 cv::Size working_size(int width, int height) {
   const int longest = std::max(width, height);
-  if (longest <= kLargest) return {width, height};
+  if (longest <= kMaxLongSide) return {width, height};
   const auto reduced = [&](int n) {
-    return std::max(1, cvRound(static_cast<double>(n) * kLargest / longest));
+    return std::max(1, cvRound(static_cast<double>(n) * kMaxLongSide / longest));
   };
   return {reduced(width), reduced(height)};
 }
@@ -69,7 +69,7 @@ cv::Mat reduced(const cv::Mat& layer) {
 }
 
 /// A layer at the working size, north up, with 0 in place of NaN; empty if the layer is not in use.
-cv::Mat layer_of(const float* values, int width, int height) {
+cv::Mat layer_image(const float* values, int width, int height) {
   if (!values) return {};
   const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // not written to
   cv::Mat flipped;
@@ -80,7 +80,7 @@ cv::Mat layer_of(const float* values, int width, int height) {
 
 /// The same for a layer of class numbers (species): it samples the nearest cell, since their mean has no
 /// meaning.
-cv::Mat numbers_of(const float* values, int width, int height) {
+cv::Mat class_image(const float* values, int width, int height) {
   if (!values) return {};
   const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // not written to
   cv::Mat flipped, result;
@@ -91,8 +91,8 @@ cv::Mat numbers_of(const float* values, int width, int height) {
 
 /// Elevation at the working size, north up. A pixel is the mean of its known cells, or NaN where less than
 /// half of it is known.
-cv::Mat surface_of(const float* values, int width, int height) {
-  cv::Mat elevation = layer_of(values, width, height);
+cv::Mat elevation_image(const float* values, int width, int height) {
+  cv::Mat elevation = layer_image(values, width, height);
   const cv::Mat view(height, width, CV_32F, const_cast<float*>(values));  // not written to
   cv::Mat known;
   cv::flip(view == view, known, 0);
@@ -127,7 +127,7 @@ double exaggeration_of(const cv::Mat& elevation, float pixel_size) {
   constexpr float kFlat = 1e-4F;
   constexpr double kSteep = 0.9, kWanted = 0.6, kLeast = 0.5, kMost = 60;
   std::vector<float> slopes;
-  const int stride = std::max(1, std::max(elevation.rows, elevation.cols) / kSmallest);
+  const int stride = std::max(1, std::max(elevation.rows, elevation.cols) / kMinLongSide);
   for (int row = 0; row < elevation.rows; row += stride)
     for (int column = 0; column < elevation.cols; column += stride) {
       if (std::isnan(elevation.at<float>(row, column))) continue;
@@ -162,7 +162,7 @@ cv::Mat shading(const cv::Mat& elevation, float pixel_size, double exaggeration)
   return shade;
 }
 
-float at(const cv::Mat& layer, int row, int column) {
+float value_at(const cv::Mat& layer, int row, int column) {
   return layer.empty() ? 0.0F : layer.at<float>(row, column);
 }
 
@@ -175,7 +175,7 @@ Colour mix(const Colour& a, const Colour& b, float share) { return a * (1 - shar
 
 /// The colour multiplied by `shade`. Where that exceeds the largest channel value, white is mixed in instead,
 /// so that bright slopes keep their contrast.
-Colour lit(const Colour& colour, float shade) {
+Colour apply_shading(const Colour& colour, float shade) {
   const Colour white{225, 245, 255};
   const float most = 240 / std::max({colour[0], colour[1], colour[2], 1.0F});
   return shade <= most ? colour * shade : mix(colour * most, white, std::min(1.0F, shade - most));
@@ -185,8 +185,8 @@ struct Materials {
   cv::Mat sand, vegetation, plants, obstacle, water, soil, wind_shadow;  // empty if not in use
   const std::vector<std::array<float, 3>>& crown_colours;
 
-  Colour of_plants(int row, int column) const {
-    const auto species = static_cast<std::size_t>(at(plants, row, column));
+  Colour plant_colour(int row, int column) const {
+    const auto species = static_cast<std::size_t>(value_at(plants, row, column));
     if (species == 0 || species > crown_colours.size()) return kVegetation;
     const auto& [r, g, b] = crown_colours[species - 1];
     return Colour(b, g, r) * 255.0F;
@@ -194,12 +194,14 @@ struct Materials {
 
   /// Colour of the ground lit with `shade`, and of the water on it.
   Colour colour(int row, int column, float shade) const {
-    Colour ground = mix(kRock, kSoil, smooth_step(0.02F, 0.12F, at(soil, row, column)));
-    ground = mix(ground, kSand, smooth_step(0.02F, 0.12F, at(sand, row, column)));
-    ground = mix(ground, of_plants(row, column), 0.9F * smooth_step(0, 0.8F, at(vegetation, row, column)));
-    ground = mix(ground, kObstacle, smooth_step(0.25F, 0.75F, at(obstacle, row, column)));
-    ground = lit(ground, shade * (1 - 0.12F * std::clamp(at(wind_shadow, row, column), 0.0F, 1.0F)));
-    const float depth = std::max(at(water, row, column), 0.0F);
+    Colour ground = mix(kRock, kSoil, smooth_step(0.02F, 0.12F, value_at(soil, row, column)));
+    ground = mix(ground, kSand, smooth_step(0.02F, 0.12F, value_at(sand, row, column)));
+    ground = mix(ground, plant_colour(row, column),
+                 0.9F * smooth_step(0, 0.8F, value_at(vegetation, row, column)));
+    ground = mix(ground, kObstacle, smooth_step(0.25F, 0.75F, value_at(obstacle, row, column)));
+    ground = apply_shading(ground,
+                           shade * (1 - 0.12F * std::clamp(value_at(wind_shadow, row, column), 0.0F, 1.0F)));
+    const float depth = std::max(value_at(water, row, column), 0.0F);
     const Colour water_colour = mix(kShallow, kDeep, 1 - std::exp(-depth / 2)) * (0.75F + 0.25F * shade);
     return mix(ground, water_colour, 0.92F * smooth_step(0.001F, 0.2F, depth));
   }
@@ -271,22 +273,22 @@ void shade_lightly(cv::Mat& picture, const cv::Mat& elevation, double pixel_size
 
 double picture_exaggeration(const PictureInput& input) {
   check_input(input.width, input.height, input.cell_size, input.elevation ? nullptr : "elevation");
-  const cv::Mat elevation = surface_of(input.elevation, input.width, input.height);
+  const cv::Mat elevation = elevation_image(input.elevation, input.width, input.height);
   return exaggeration_of(elevation, static_cast<float>(input.cell_size * input.width / elevation.cols));
 }
 
 cv::Mat hillshade_picture(const PictureInput& input) {
   check_input(input.width, input.height, input.cell_size, input.elevation ? nullptr : "elevation");
   const int width = input.width, height = input.height;
-  const cv::Mat elevation = surface_of(input.elevation, width, height);
+  const cv::Mat elevation = elevation_image(input.elevation, width, height);
   const auto pixel_size = static_cast<float>(input.cell_size * width / elevation.cols);
   const double exaggeration = exaggeration_of(elevation, pixel_size);
   const cv::Mat shade = shading(elevation, pixel_size, exaggeration);
   const Materials materials{
-      layer_of(input.sand, width, height),        layer_of(input.vegetation, width, height),
-      numbers_of(input.plants, width, height),    layer_of(input.obstacle, width, height),
-      layer_of(input.water, width, height),       layer_of(input.soil, width, height),
-      layer_of(input.wind_shadow, width, height), input.crown_colours};
+      layer_image(input.sand, width, height),        layer_image(input.vegetation, width, height),
+      class_image(input.plants, width, height),      layer_image(input.obstacle, width, height),
+      layer_image(input.water, width, height),       layer_image(input.soil, width, height),
+      layer_image(input.wind_shadow, width, height), input.crown_colours};
   double lowest = 0, highest = 0;
   cv::minMaxLoc(elevation, &lowest, &highest, nullptr, nullptr, elevation == elevation);
   cv::Mat picture(elevation.size(), CV_8UC3);
@@ -301,7 +303,7 @@ cv::Mat hillshade_picture(const PictureInput& input) {
       }
       picture.at<cv::Vec3b>(row, column) = colour;
     }
-  picture = enlarged(picture, kSmallest);
+  picture = enlarged(picture, kMinLongSide);
   write_caption(picture, number(width * input.cell_size) + " x " + number(height * input.cell_size) +
                              " m, relief " + number(highest - lowest) + " m, shaded z x" +
                              number(exaggeration));
@@ -311,7 +313,7 @@ cv::Mat hillshade_picture(const PictureInput& input) {
 cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_x, const float* wind_y,
                      const float* elevation) {
   check_input(width, height, cell_size, !wind_x ? "wind_x" : !wind_y ? "wind_y" : nullptr);
-  const cv::Mat u = layer_of(wind_x, width, height), v = layer_of(wind_y, width, height);
+  const cv::Mat u = layer_image(wind_x, width, height), v = layer_image(wind_y, width, height);
   cv::Mat speed, level, picture;
   cv::magnitude(u, v, speed);
   double slowest = 0, fastest = 0;
@@ -321,8 +323,8 @@ cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_
   speed.convertTo(level, CV_8U, contrast, -contrast * darkest);
   cv::applyColorMap(level, picture, cv::COLORMAP_VIRIDIS);
   if (elevation)
-    shade_lightly(picture, surface_of(elevation, width, height), cell_size * width / picture.cols);
-  picture = enlarged(picture, 2 * kSmallest);
+    shade_lightly(picture, elevation_image(elevation, width, height), cell_size * width / picture.cols);
+  picture = enlarged(picture, 2 * kMinLongSide);
   draw_arrows(picture, u, v, static_cast<float>(fastest));
   write_caption(picture, "wind " + number(slowest) + " to " + number(fastest) + " m/s, dark to bright");
   return picture;
@@ -330,32 +332,32 @@ cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_
 
 void write_png(const std::string& path, const cv::Mat& picture) {
   static std::atomic<int> counter{0};
-  const auto refuse = [&](const std::string& reason) {
+  const auto throw_error = [&](const std::string& reason) {
     throw ConfigError("picture '" + path + "' cannot be written: " + reason);
   };
   std::vector<unsigned char> bytes;
   try {
-    if (picture.empty()) refuse("it has no pixels");
-    if (!cv::imencode(".png", picture, bytes)) refuse("OpenCV cannot encode it");
+    if (picture.empty()) throw_error("it has no pixels");
+    if (!cv::imencode(".png", picture, bytes)) throw_error("OpenCV cannot encode it");
   } catch (const cv::Exception& error) {
-    refuse(error.err);
+    throw_error(error.err);
   }
-  const std::string unfinished =
+  const std::string temporary_path =
       path + "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".part";
-  std::ofstream file(unfinished, std::ios::binary);
+  std::ofstream file(temporary_path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   file.close();
   std::error_code error;
   if (!file) {
     const std::string reason = std::strerror(errno);
-    std::filesystem::remove(unfinished, error);
-    refuse(reason);
+    std::filesystem::remove(temporary_path, error);
+    throw_error(reason);
   }
-  std::filesystem::rename(unfinished, path, error);
+  std::filesystem::rename(temporary_path, path, error);
   if (!error) return;
   std::error_code ignored;
-  std::filesystem::remove(unfinished, ignored);
-  refuse(error.message());
+  std::filesystem::remove(temporary_path, ignored);
+  throw_error(error.message());
 }
 
 }  // namespace desert_sim

@@ -28,12 +28,12 @@ constexpr float kNoData = std::numeric_limits<float>::quiet_NaN();
 /// As in GDAL: x = g0 + g1 column + g2 row, y = g3 + g4 column + g5 row.
 using GeoTransform = std::array<double, 6>;
 
-[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
+[[noreturn]] void throw_error(const std::string& path, const std::string& reason) {
   throw ConfigError("raster '" + path + "': " + reason);
 }
 
 template <class... Parts>
-std::string text_of(const Parts&... parts) {
+std::string concatenate(const Parts&... parts) {
   std::ostringstream text;
   text.precision(12);
   (text << ... << parts);
@@ -42,21 +42,24 @@ std::string text_of(const Parts&... parts) {
 
 void check_options(const std::string& path, const RasterOptions& options) {
   if (!std::isfinite(options.scale) || options.scale == 0)
-    refuse(path, text_of("scale is ", options.scale, ", must be finite and not 0"));
-  if (!std::isfinite(options.offset)) refuse(path, text_of("offset is ", options.offset, ", must be finite"));
+    throw_error(path, concatenate("scale is ", options.scale, ", must be finite and not 0"));
+  if (!std::isfinite(options.offset))
+    throw_error(path, concatenate("offset is ", options.offset, ", must be finite"));
 }
 
 void check_shape(const std::string& path, std::int64_t width, std::int64_t height, int bands, int band) {
-  if (bands < 1) refuse(path, "has no raster band");
-  if (band < 1 || band > bands) refuse(path, text_of("band ", band, " asked for, has bands 1 to ", bands));
+  if (bands < 1) throw_error(path, "has no raster band");
+  if (band < 1 || band > bands)
+    throw_error(path, concatenate("band ", band, " is requested, but the raster has the bands 1 to ", bands));
   if (width < 1 || height < 1)
-    refuse(path, text_of("size is ", width, " x ", height, " cells, must be at least 1 x 1"));
+    throw_error(path, concatenate("size is ", width, " x ", height, " cells, must be at least 1 x 1"));
   if (width * height > kMaxCells)
-    refuse(path, text_of("size is ", width, " x ", height, " cells, at most 2^31 cells are allowed"));
+    throw_error(path,
+                concatenate("size is ", width, " x ", height, " cells, at most 2^31 cells are allowed"));
 }
 
 /// Geotransform of a raster that has none: cells of size 1, lower-left corner at (0, 0), north up.
-GeoTransform unplaced(int height) { return {0, 1, 0, static_cast<double>(height), 0, -1}; }
+GeoTransform default_geotransform(int height) { return {0, 1, 0, static_cast<double>(height), 0, -1}; }
 
 /// The dataset's geotransform, flipped to north-up; `south_up` is set if it had to be flipped.
 GeoTransform north_up_geotransform(const std::string& path, GDALDataset& dataset, bool& south_up) {
@@ -64,18 +67,20 @@ GeoTransform north_up_geotransform(const std::string& path, GDALDataset& dataset
   GeoTransform g = none;
   south_up = false;
   const int height = dataset.GetRasterYSize();
-  if (dataset.GetGeoTransform(g.data()) != CE_None || g == none) return unplaced(height);
+  if (dataset.GetGeoTransform(g.data()) != CE_None || g == none) return default_geotransform(height);
   for (double term : g)
-    if (!std::isfinite(term)) refuse(path, text_of("geotransform has the value ", term, ", must be finite"));
+    if (!std::isfinite(term))
+      throw_error(path, concatenate("geotransform has the value ", term, ", must be finite"));
   if (std::max(std::abs(g[2]), std::abs(g[4])) >
       kRotationTolerance * std::max(std::abs(g[1]), std::abs(g[5])))
-    refuse(path, text_of("geotransform is rotated (row and column terms ", g[2], ", ", g[4], "), must be 0"));
+    throw_error(path, concatenate("geotransform is rotated (row and column terms ", g[2], ", ", g[4],
+                                  "), must be 0"));
   if (g[1] <= 0 || g[5] == 0)
-    refuse(path, text_of("cells are ", g[1], " x ", std::abs(g[5]),
-                         ", the width must be > 0 and the height not 0"));
+    throw_error(path, concatenate("cells are ", g[1], " x ", std::abs(g[5]),
+                                  ", the width must be > 0 and the height not 0"));
   if (std::abs(g[1] - std::abs(g[5])) > kSquareTolerance * g[1])
-    refuse(path, text_of("cells are not square: ", g[1], " x ", std::abs(g[5]),
-                         ", at most 0.1 % of difference allowed"));
+    throw_error(path, concatenate("cells are not square: ", g[1], " x ", std::abs(g[5]),
+                                  ", at most 0.1 % of difference allowed"));
   if (g[5] > 0) {
     south_up = true;
     g[3] += height * g[5];
@@ -86,7 +91,7 @@ GeoTransform north_up_geotransform(const std::string& path, GDALDataset& dataset
 }
 
 /// Sets the raster's geotransform, and its cell_size and origin accordingly.
-void place(Raster& raster, const GeoTransform& g) {
+void set_geotransform(Raster& raster, const GeoTransform& g) {
   raster.geotransform = g;
   raster.cell_size = 0.5 * (g[1] - g[5]);
   raster.origin_x = g[0];
@@ -98,7 +103,7 @@ void place(Raster& raster, const GeoTransform& g) {
 GeoTransform geotransform_of(const Raster& raster) {
   Raster recorded;
   recorded.height = raster.height;
-  place(recorded, raster.geotransform);
+  set_geotransform(recorded, raster.geotransform);
   if (recorded.cell_size == raster.cell_size && recorded.origin_x == raster.origin_x &&
       recorded.origin_y == raster.origin_y)
     return raster.geotransform;
@@ -123,7 +128,8 @@ void read_band(const std::string& path, GDALRasterBand& band, const RasterOption
     if (status == CE_None && mask)
       status = mask->RasterIO(GF_Read, 0, line, width, 1, valid.data(), width, 1, GDT_Byte, 0, 0, nullptr);
     if (status != CE_None || messages.failed())
-      refuse(path, text_of("cannot be read at line ", line + 1, " of ", height, ": ", messages.text()));
+      throw_error(path,
+                  concatenate("cannot be read at line ", line + 1, " of ", height, ": ", messages.text()));
     const int row = south_up ? line : height - 1 - line;
     float* out = raster.values.data() + static_cast<std::size_t>(row) * width;
     for (int x = 0; x < width; ++x) out[x] = valid[x] ? value_of(raw[x], options) : kNoData;
@@ -137,11 +143,12 @@ void check_values(const std::string& path, const Raster& raster) {
     finite += std::isfinite(raster.values[i]);
   }
   if (infinite > 0)
-    refuse(path,
-           text_of(infinite, " values are infinite or beyond float32, the first at column ",
-                   first % raster.width, ", row ", first / raster.width, " (row 0 = south), must be finite"));
+    throw_error(path, concatenate(infinite, " values are infinite or beyond float32, the first at column ",
+                                  first % raster.width, ", row ", first / raster.width,
+                                  " (row 0 = south), must be finite"));
   if (finite == 0)
-    refuse(path, text_of("all ", raster.values.size(), " cells are nodata, at least one value is needed"));
+    throw_error(path,
+                concatenate("all ", raster.values.size(), " cells are nodata, at least one value is needed"));
 }
 
 bool is_exr_without_driver(const std::string& path) {
@@ -158,9 +165,9 @@ Raster read_exr(const std::string& path, const RasterOptions& options) {
   try {
     picture = cv::imread(path, cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception& error) {
-    refuse(path, "OpenCV cannot read this EXR file: " + error.err);
+    throw_error(path, "OpenCV cannot read this EXR file: " + error.err);
   }
-  if (picture.empty()) refuse(path, "not an EXR file that OpenCV can read");
+  if (picture.empty()) throw_error(path, "is not an EXR file that OpenCV can read");
   const int channels = picture.channels();
   check_shape(path, picture.cols, picture.rows, channels, options.band);
   // OpenCV orders the channels B, G, R, A.
@@ -170,7 +177,7 @@ Raster read_exr(const std::string& path, const RasterOptions& options) {
   Raster raster;
   raster.width = picture.cols;
   raster.height = picture.rows;
-  place(raster, unplaced(raster.height));
+  set_geotransform(raster, default_geotransform(raster.height));
   raster.values.reserve(picture.total());
   for (int row = raster.height - 1; row >= 0; --row)
     for (int x = 0; x < raster.width; ++x)
@@ -194,26 +201,27 @@ void check_raw_file(const std::string& path, GDALDataset& dataset) {
       (header ? std::strtoull(header, nullptr, 10) : 0);
   std::error_code error;
   const std::uintmax_t found = std::filesystem::file_size(path, error);
-  if (!error && found < needed) refuse(path, text_of("is cut off: has ", found, " bytes of ", needed));
+  if (!error && found < needed)
+    throw_error(path, concatenate("is truncated: it has ", found, " bytes of ", needed));
 }
 
 Raster read_by_gdal(const std::string& path, const RasterOptions& options) {
   GdalMessages messages;
   GDALDatasetUniquePtr dataset(GDALDataset::FromHandle(GDALOpenEx(
       path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr, nullptr, nullptr)));
-  if (!dataset) refuse(path, "not a raster that GDAL can open: " + messages.text());
+  if (!dataset) throw_error(path, "is not a raster that GDAL can open: " + messages.text());
   check_shape(path, dataset->GetRasterXSize(), dataset->GetRasterYSize(), dataset->GetRasterCount(),
               options.band);
   GDALRasterBand& band = *dataset->GetRasterBand(options.band);
   if (GDALDataTypeIsComplex(band.GetRasterDataType()))
-    refuse(path, text_of("band ", options.band, " has complex numbers (",
-                         GDALGetDataTypeName(band.GetRasterDataType()), "), must be real"));
+    throw_error(path, concatenate("band ", options.band, " has complex numbers (",
+                                  GDALGetDataTypeName(band.GetRasterDataType()), "), must be real"));
   check_raw_file(path, *dataset);
   Raster raster;
   raster.width = dataset->GetRasterXSize();
   raster.height = dataset->GetRasterYSize();
   bool south_up = false;
-  place(raster, north_up_geotransform(path, *dataset, south_up));
+  set_geotransform(raster, north_up_geotransform(path, *dataset, south_up));
   if (const char* wkt = dataset->GetProjectionRef()) raster.projection = wkt;
   raster.values.resize(static_cast<std::size_t>(raster.width) * raster.height);
   read_band(path, band, options, south_up, raster, messages);
@@ -223,11 +231,11 @@ Raster read_by_gdal(const std::string& path, const RasterOptions& options) {
 void check_writable(const std::string& path, const Raster& raster) {
   check_shape(path, raster.width, raster.height, 1, 1);
   if (raster.values.size() != static_cast<std::size_t>(raster.width) * raster.height)
-    refuse(path, text_of("to be written with ", raster.values.size(), " values, ", raster.width, " x ",
-                         raster.height, " cells need as many"));
+    throw_error(path, concatenate("cannot be written with ", raster.values.size(), " values: ", raster.width,
+                                  " x ", raster.height, " cells need one value each"));
   if (!(raster.cell_size > 0) || !std::isfinite(raster.cell_size + raster.origin_x + raster.origin_y))
-    refuse(path, text_of("to be written with cell_size ", raster.cell_size, " and origin ", raster.origin_x,
-                         ", ", raster.origin_y, "; must be finite, cell_size > 0"));
+    throw_error(path, concatenate("cannot be written with cell_size ", raster.cell_size, " and origin ",
+                                  raster.origin_x, ", ", raster.origin_y, "; must be finite, cell_size > 0"));
 }
 
 /// Writes a GeoTIFF directly to `path`; false if GDAL reported a failure, which can also happen on closing
@@ -275,7 +283,7 @@ std::string Raster::length_unit() const {
 Raster read_raster(const std::string& path, const RasterOptions& options) {
   check_options(path, options);
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) refuse(path, error ? error.message() : "no such file");
+  if (!std::filesystem::exists(path, error)) throw_error(path, error ? error.message() : "no such file");
   { GdalMessages registers_drivers; }
   Raster raster = is_exr_without_driver(path) ? read_exr(path, options) : read_by_gdal(path, options);
   check_values(path, raster);
@@ -285,19 +293,19 @@ Raster read_raster(const std::string& path, const RasterOptions& options) {
 void write_geotiff(const std::string& path, const Raster& raster) {
   static std::atomic<int> counter{0};
   check_writable(path, raster);
-  const std::string unfinished = text_of(path, ".", getpid(), "-", counter++, ".part");
+  const std::string temporary_path = concatenate(path, ".", getpid(), "-", counter++, ".part");
   GdalMessages messages;
   std::error_code error;
-  if (!write_dataset(unfinished, raster, messages)) {
+  if (!write_dataset(temporary_path, raster, messages)) {
     const std::string reason = messages.text();
-    std::filesystem::remove(unfinished, error);
-    refuse(path, "cannot be written: " + reason);
+    std::filesystem::remove(temporary_path, error);
+    throw_error(path, "cannot be written: " + reason);
   }
-  std::filesystem::rename(unfinished, path, error);
+  std::filesystem::rename(temporary_path, path, error);
   if (error) {
     const std::string reason = error.message();
-    std::filesystem::remove(unfinished, error);
-    refuse(path, "cannot be written: " + reason);
+    std::filesystem::remove(temporary_path, error);
+    throw_error(path, "cannot be written: " + reason);
   }
   std::filesystem::remove(path + ".aux.xml", error);  // GDAL's metadata of the replaced file
 }

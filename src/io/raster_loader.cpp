@@ -14,14 +14,14 @@ bool georeferenced(const Raster& r) {
   return std::any_of(r.geotransform.begin(), r.geotransform.end(), [](double v) { return v != 0; });
 }
 
-bool on_grid(const Raster& r, const RasterRequest& q) {
+bool matches_grid(const Raster& r, const RasterRequest& q) {
   const double tolerance = 1e-6 * q.cell_size;
   return r.width == q.width && r.height == q.height &&
          std::abs(r.cell_size - q.cell_size) < 1e-9 * q.cell_size &&
          std::abs(r.origin_x - q.origin_x) < tolerance && std::abs(r.origin_y - q.origin_y) < tolerance;
 }
 
-void stretch(Raster& r, const RasterRequest& q) {
+void stretch_to_grid(Raster& r, const RasterRequest& q) {
   if (r.width == q.width && r.height == q.height) return;
   const cv::Mat source(r.height, r.width, CV_32F, r.values.data());
   cv::Mat target;
@@ -33,7 +33,7 @@ void stretch(Raster& r, const RasterRequest& q) {
 }
 
 /// Gives cells whose centre lies outside the source raster the value of the nearest cell inside it.
-void continue_edges(Raster& r, const Raster& source) {
+void extrapolate_edges(Raster& r, const Raster& source) {
   const auto reached = [](double origin, double cell, double from, double to, int n, int& first, int& last) {
     first = std::clamp(static_cast<int>(std::ceil((from - origin) / cell - 0.5 + 1e-6)), 0, n - 1);
     last = std::clamp(static_cast<int>(std::floor((to - origin) / cell - 0.5 - 1e-6)), first, n - 1);
@@ -51,8 +51,8 @@ void continue_edges(Raster& r, const Raster& source) {
   if (r.nodata_count() > 0) fill_nodata(r);  // interpolation leaves some beside the edges
 }
 
-void to_grid(Raster& r, const RasterRequest& q) {
-  if (on_grid(r, q)) return;
+void resample_to_grid(Raster& r, const RasterRequest& q) {
+  if (matches_grid(r, q)) return;
   const double extent = q.cell_size * 1e-6;
   if (q.origin_x > r.origin_x + r.width * r.cell_size - extent ||
       q.origin_y > r.origin_y + r.height * r.cell_size - extent ||
@@ -63,7 +63,7 @@ void to_grid(Raster& r, const RasterRequest& q) {
   const Resampling method =
       ratio > 1.5 ? Resampling::average : (ratio < 0.99 ? Resampling::cubic : Resampling::bilinear);
   Raster target = resample(r, q.width, q.height, q.cell_size, q.origin_x, q.origin_y, method);
-  continue_edges(target, r);
+  extrapolate_edges(target, r);
   r = std::move(target);
 }
 
@@ -72,24 +72,26 @@ RasterField load(const RasterRequest& q) {
   options.band = q.band;
   options.scale = q.scale;
   options.offset = q.offset;
-  return fitted(read_raster(q.path, options), q);
+  return resample_to_request(read_raster(q.path, options), q);
 }
 
 }  // namespace
 
-RasterField fitted(Raster r, const RasterRequest& q) {
+RasterField resample_to_request(Raster r, const RasterRequest& q) {
   if (r.length_unit() == "degree")
-    throw ConfigError(q.path + ": is in degrees; project it to metres first (gdalwarp -t_srs EPSG:326xx …)");
+    throw ConfigError(
+        q.path +
+        ": its coordinates are in degrees; project it to metres first (gdalwarp -t_srs EPSG:326xx …)");
   const bool placed = georeferenced(r);
   if (q.width > 0) {
     if (r.nodata_count() > 0 && !q.fill_nodata)
       throw ConfigError(q.path + ": has " + std::to_string(r.nodata_count()) +
-                        " cells without data; say fill_nodata: true to fill them from their neighbours");
+                        " cells without data; set fill_nodata to true to fill them from their neighbours");
     if (r.nodata_count() > 0) fill_nodata(r);
     if (q.stretch || !placed) {
-      stretch(r, q);
+      stretch_to_grid(r, q);
     } else {
-      to_grid(r, q);
+      resample_to_grid(r, q);
     }
   }
   RasterField field;
@@ -98,7 +100,6 @@ RasterField fitted(Raster r, const RasterRequest& q) {
   field.cell_size = r.cell_size;
   field.origin_x = r.origin_x;
   field.origin_y = r.origin_y;
-  field.georeferenced = placed;
   field.projection = r.projection;
   field.values = std::move(r.values);
   return field;

@@ -7,7 +7,7 @@
 namespace desert_sim {
 
 /// Fills nodata cells of a raster and resamples it to the requested grid, as gdal_raster_loader() does.
-RasterField fitted(Raster raster, const RasterRequest& request);
+RasterField resample_to_request(Raster raster, const RasterRequest& request);
 
 /// A loader that reads any raster and resamples it to the requested grid. Values are copied if the cells
 /// coincide, averaged if the grid is coarser, and interpolated if it is finer. Cells beyond the raster get

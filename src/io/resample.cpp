@@ -20,8 +20,6 @@ constexpr float kNoData = std::numeric_limits<float>::quiet_NaN();
 
 GDALResampleAlg gdal_method(Resampling method) {
   switch (method) {
-    case Resampling::nearest:
-      return GRA_NearestNeighbour;
     case Resampling::bilinear:
       return GRA_Bilinear;
     case Resampling::cubic:
@@ -56,7 +54,7 @@ void check_raster(const Raster& raster) {
 /// A GDAL dataset in memory that refers to the raster's values without a copy. GDAL's first line is then the
 /// raster's southern row, so the dataset uses coordinates whose y axis points south. Their origin is the
 /// given corner, so that large coordinates lose no precision.
-GDALDatasetUniquePtr view_of(Raster& raster, double corner_x, double corner_y) {
+GDALDatasetUniquePtr wrap_as_dataset(Raster& raster, double corner_x, double corner_y) {
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
   GDALDatasetUniquePtr dataset(
       driver ? driver->Create("", raster.width, raster.height, 0, GDT_Float32, nullptr) : nullptr);
@@ -130,55 +128,39 @@ Raster resample(const Raster& source, int width, int height, double cell_size, d
   result.values.assign(static_cast<std::size_t>(width) * height, kNoData);
 
   GdalMessages messages;
-  auto from = view_of(const_cast<Raster&>(source), source.origin_x, source.origin_y);  // not written
-  auto to = view_of(result, source.origin_x, source.origin_y);
+  auto from = wrap_as_dataset(const_cast<Raster&>(source), source.origin_x, source.origin_y);  // not written
+  auto to = wrap_as_dataset(result, source.origin_x, source.origin_y);
   if (!from || !to || !warp(*from, *to, gdal_method(method)))
     throw StateError("resampling to " + size_text(width, height, cell_size) + " failed: " + messages.text());
   to.reset();  // flushes into result.values
   return result;
 }
 
-Raster resample_to_cell_size(const Raster& source, double cell_size) {
-  check_raster(source);
-  check_grid("target", 1, 1, cell_size);
-  // Half a cell is rounded down, so that the centre of the last cell lies within the source.
-  const auto cells = [&](int count) {
-    return std::ceil(count * (source.cell_size / cell_size) - 0.5 - 1e-9);
-  };
-  const double width = cells(source.width), height = cells(source.height);
-  if (width < 1 || height < 1 || width * height > 2147483648.0)
-    throw ConfigError("resampling " + size_text(source.width, source.height, source.cell_size) +
-                      " to cells of " + std::to_string(cell_size) + " gives " +
-                      (width < 1 || height < 1 ? "no cell" : "over 2^31 cells"));
-  const Resampling method = cell_size > source.cell_size ? Resampling::average : Resampling::cubic;
-  return resample(source, static_cast<int>(width), static_cast<int>(height), cell_size, source.origin_x,
-                  source.origin_y, method);
-}
-
 void fill_nodata(Raster& raster) {
   check_raster(raster);
-  const long holes = raster.nodata_count();
-  if (holes == 0) return;
-  if (holes == static_cast<long>(raster.values.size()))
-    throw ConfigError("filling nodata: none of the " + std::to_string(holes) +
+  const long nodata_cells = raster.nodata_count();
+  if (nodata_cells == 0) return;
+  if (nodata_cells == static_cast<long>(raster.values.size()))
+    throw ConfigError("filling nodata: none of the " + std::to_string(nodata_cells) +
                       " cells has a value to fill from");
   Raster filled = raster;
   GdalMessages messages;
   const char* settings[] = {"TEMP_FILE_DRIVER=MEM", nullptr};
-  long left = holes;
+  long remaining = nodata_cells;
   bool done = true;
   // GDAL's time grows with the search distance, so the distance is doubled only while unfilled cells are
   // left.
-  for (double reach = 100; done && left > 0 && reach < 4.0 * (raster.width + raster.height) + 200;
-       reach *= 2) {
-    auto view = view_of(filled, filled.origin_x, filled.origin_y);
-    done = view && GDALFillNodata(GDALRasterBand::ToHandle(view->GetRasterBand(1)), nullptr, reach, 0, 0,
-                                  const_cast<char**>(settings), nullptr, nullptr) == CE_None;
+  for (double search_distance = 100;
+       done && remaining > 0 && search_distance < 4.0 * (raster.width + raster.height) + 200;
+       search_distance *= 2) {
+    auto view = wrap_as_dataset(filled, filled.origin_x, filled.origin_y);
+    done = view && GDALFillNodata(GDALRasterBand::ToHandle(view->GetRasterBand(1)), nullptr, search_distance,
+                                  0, 0, const_cast<char**>(settings), nullptr, nullptr) == CE_None;
     view.reset();
-    left = filled.nodata_count();
+    remaining = filled.nodata_count();
   }
-  if (!done || left > 0)
-    throw StateError("filling nodata: " + std::to_string(left) + " of " + std::to_string(holes) +
+  if (!done || remaining > 0)
+    throw StateError("filling nodata: " + std::to_string(remaining) + " of " + std::to_string(nodata_cells) +
                      " cells could not be filled: " + messages.text());
   raster.values = std::move(filled.values);
 }

@@ -7,7 +7,7 @@ namespace desert_sim {
 
 /// Resampling methods. `bilinear` and `cubic` widen their kernel when the new grid is coarser; `average`
 /// weights each cell by the area that it covers; `cubic` can overshoot beside a step.
-enum class Resampling { nearest, bilinear, cubic, average };
+enum class Resampling { bilinear, cubic, average };
 
 /// Resamples a raster to a grid of width x height cells of cell_size with its lower-left corner at the origin
 /// [unit of the raster's CRS]. NaN cells have no weight. A cell of the new grid is NaN if no valid cell is
@@ -15,11 +15,6 @@ enum class Resampling { nearest, bilinear, cubic, average };
 /// or a cell_size that is not > 0, and StateError if GDAL fails.
 Raster resample(const Raster& source, int width, int height, double cell_size, double origin_x,
                 double origin_y, Resampling method);
-
-/// Resamples a raster to another cell size with the same lower-left corner, by `average` to coarser cells and
-/// by `cubic` to finer ones. Width and height are the old extents divided by cell_size, rounded. Throws like
-/// resample(), and ConfigError if cell_size is more than twice an extent, so that no cell would be left.
-Raster resample_to_cell_size(const Raster& source, double cell_size);
 
 /// Fills all NaN cells with the distance-weighted mean of the nearest valid cells in the quadrants around
 /// them. Throws ConfigError if there is no valid cell, and StateError if GDAL fails; the raster is then

@@ -2,7 +2,7 @@
 
 namespace desert_sim {
 
-Raster raster_of(const Snapshot& s, const std::vector<float>& values, const std::string& projection) {
+Raster to_raster(const Snapshot& s, const std::vector<float>& values, const std::string& projection) {
   Raster raster;
   raster.width = s.width;
   raster.height = s.height;
@@ -14,7 +14,7 @@ Raster raster_of(const Snapshot& s, const std::vector<float>& values, const std:
   return raster;
 }
 
-PictureInput picture_of(const Snapshot& s) {
+PictureInput to_picture_input(const Snapshot& s) {
   const auto values = [&s](Layer layer) {
     const std::vector<float>* found = s.find(layer);
     return found ? found->data() : nullptr;

@@ -8,9 +8,9 @@
 namespace desert_sim {
 
 /// A raster of `values`, one of the snapshot's layers, with the snapshot's grid and position.
-Raster raster_of(const Snapshot& snapshot, const std::vector<float>& values, const std::string& projection);
+Raster to_raster(const Snapshot& snapshot, const std::vector<float>& values, const std::string& projection);
 
 /// The snapshot's layers as input of a picture, which points into the snapshot and must not outlive it.
-PictureInput picture_of(const Snapshot& snapshot);
+PictureInput to_picture_input(const Snapshot& snapshot);
 
 }  // namespace desert_sim

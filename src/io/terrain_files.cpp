@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* marker = "terrain-";  // prefix of the files of a saved terrain
-const std::set<std::string> endings{".tif", ".png", ".bag"};
+constexpr const char* file_prefix = "terrain-";  // prefix of the files of a saved terrain
+const std::set<std::string> saved_extensions{".tif", ".png", ".bag"};
 
 /// Writes a 16-bit PNG, north up, and sets scale and offset: value = raw · scale + offset.
 void write_layer_png16(const std::string& path, const std::vector<float>& values, const Snapshot& s,
@@ -35,42 +35,43 @@ void write_layer_png16(const std::string& path, const std::vector<float>& values
   write_png(path, picture);
 }
 
-void remove_files_but(const fs::path& folder, const std::set<std::string>& kept) {
+void remove_other_files(const fs::path& folder, const std::set<std::string>& kept) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    const bool saved = name.rfind(marker, 0) == 0 && endings.count(entry.path().extension().string()) > 0;
+    const bool saved =
+        name.rfind(file_prefix, 0) == 0 && saved_extensions.count(entry.path().extension().string()) > 0;
     if (saved && kept.count(name) == 0) fs::remove(entry.path());
   }
 }
 
 }  // namespace
 
-std::vector<Layer> terrain_layers(const Simulation& simulation) {
+std::vector<Layer> persistent_layers(const Simulation& simulation) {
   std::vector<Layer> layers;
   for (Layer layer : simulation.layers_in_use())
     if (info(layer).lifetime == Lifetime::persistent) layers.push_back(layer);
   return layers;
 }
 
-std::vector<Layer> terrain_layers(const Snapshot& snapshot) {
+std::vector<Layer> persistent_layers(const Snapshot& snapshot) {
   std::vector<Layer> layers;
   for (const auto& entry : snapshot.layers)
     if (info(entry.first).lifetime == Lifetime::persistent) layers.push_back(entry.first);
   return layers;
 }
 
-std::string layer_file(const std::string& what, const std::string& tag, const std::string& ending) {
-  return marker + what + "-" + tag + ending;
+std::string layer_file_name(const std::string& what, const std::string& tag, const std::string& ending) {
+  return file_prefix + what + "-" + tag + ending;
 }
 
 LayerWriter geotiff_writer(const std::string& projection) {
   return [projection](const Snapshot& s, const std::string& folder, const std::string& tag) {
     SavedLayers saved;
-    for (Layer layer : terrain_layers(s)) {
+    for (Layer layer : persistent_layers(s)) {
       RasterStep step;
       step.layer = info(layer).name;
-      step.file = layer_file(step.layer, tag, ".tif");
-      write_geotiff(folder + "/" + step.file, raster_of(s, *s.find(layer), projection));
+      step.file = layer_file_name(step.layer, tag, ".tif");
+      write_geotiff(folder + "/" + step.file, to_raster(s, *s.find(layer), projection));
       saved.georeferenced = step.file;
       saved.steps.push_back(step);
     }
@@ -81,10 +82,10 @@ LayerWriter geotiff_writer(const std::string& projection) {
 LayerWriter png16_writer() {
   return [](const Snapshot& s, const std::string& folder, const std::string& tag) {
     SavedLayers saved;
-    for (Layer layer : terrain_layers(s)) {
+    for (Layer layer : persistent_layers(s)) {
       RasterStep step;
       step.layer = info(layer).name;
-      step.file = layer_file(step.layer, tag, ".png");
+      step.file = layer_file_name(step.layer, tag, ".png");
       write_layer_png16(folder + "/" + step.file, *s.find(layer), s, step.scale, step.offset);
       step.stretch = true;  // a PNG has no georeference
       saved.steps.push_back(step);
@@ -105,7 +106,7 @@ void save_terrain(const std::string& scenario_file, const Scenario& scenario, co
   std::set<std::string> names;
   for (const RasterStep& step : layers.steps) names.insert(step.file);
   try {
-    remove_files_but(folder, names);
+    remove_other_files(folder, names);
   } catch (const fs::filesystem_error& e) {
     throw ConfigError(folder.string() +
                       ": the files of an earlier terrain cannot be removed: " + e.code().message());

@@ -9,9 +9,9 @@
 namespace desert_sim {
 
 /// The persistent layers in use, which make up a terrain. save_terrain() takes a snapshot of them.
-std::vector<Layer> terrain_layers(const Simulation& simulation);
+std::vector<Layer> persistent_layers(const Simulation& simulation);
 /// The persistent layers of a snapshot.
-std::vector<Layer> terrain_layers(const Snapshot& snapshot);
+std::vector<Layer> persistent_layers(const Snapshot& snapshot);
 
 /// The steps with which a scenario loads the saved layers. File names are relative to the scenario's folder.
 struct SavedLayers {
@@ -19,12 +19,12 @@ struct SavedLayers {
   std::string georeferenced;  ///< a file with georeference and projection; empty: none
 };
 
-/// Writes the persistent layers of a snapshot to files in `folder`, with names from layer_file(). Throws
+/// Writes the persistent layers of a snapshot to files in `folder`, with names from layer_file_name(). Throws
 /// ConfigError that names the file.
 using LayerWriter =
     std::function<SavedLayers(const Snapshot& snapshot, const std::string& folder, const std::string& tag)>;
 /// Name of the file of a saved layer: "terrain-<what>-<tag><ending>".
-std::string layer_file(const std::string& what, const std::string& tag, const std::string& ending);
+std::string layer_file_name(const std::string& what, const std::string& tag, const std::string& ending);
 
 /// Writes each layer as a float32 GeoTIFF.
 LayerWriter geotiff_writer(const std::string& projection);

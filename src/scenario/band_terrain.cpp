@@ -9,10 +9,10 @@ namespace desert_sim {
 
 namespace {
 
-const std::string ending = ".bag";
+const std::string bag_extension = ".bag";
 
 /// Number of the layer's band, counted from 1; 0 if there is none.
-int band_of(const std::string& layer, const std::vector<std::string>& bands) {
+int find_band(const std::string& layer, const std::vector<std::string>& bands) {
   for (const std::string& name : {layer, layer + "_depth"}) {
     const auto found = std::find(bands.begin(), bands.end(), name);
     if (found != bands.end()) return static_cast<int>(found - bands.begin()) + 1;
@@ -23,11 +23,11 @@ int band_of(const std::string& layer, const std::vector<std::string>& bands) {
 }  // namespace
 
 bool is_bag(const std::string& path) {
-  return path.size() >= ending.size() &&
-         path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+  return path.size() >= bag_extension.size() &&
+         path.compare(path.size() - bag_extension.size(), bag_extension.size(), bag_extension) == 0;
 }
 
-Scenario scenario_of_bands(const std::string& path, const RasterLoader& load_raster, bool fill_nodata) {
+Scenario scenario_from_bands(const std::string& path, const RasterLoader& load_raster, bool fill_nodata) {
   RasterRequest request;
   request.path = path;
   const std::vector<std::string> bands = load_raster(request).bands;
@@ -44,17 +44,17 @@ Scenario scenario_of_bands(const std::string& path, const RasterLoader& load_ras
     step.fill_nodata = fill_nodata;
     if (band > 0) s.terrain.push_back(step);
   };
-  const int bedrock = band_of("bedrock", bands), elevation = band_of("elevation", bands);
+  const int bedrock = find_band("bedrock", bands), elevation = find_band("elevation", bands);
   if (bedrock == 0 && elevation == 0) {
     std::string names;
     for (const std::string& band : bands) names += (names.empty() ? "" : ", ") + band;
-    throw ConfigError(path + ": has neither a layer bedrock nor elevation (it has: " + shortened(names) +
-                      ")");
+    throw ConfigError(path + ": contains neither a layer bedrock nor a layer elevation (it contains: " +
+                      shortened(names) + ")");
   }
   add(Layer::bedrock, bedrock > 0 ? bedrock : elevation, Merge::replace, 1);
   for (const LayerInfo& layer : layer_table) {
     if (layer.lifetime != Lifetime::persistent || layer.layer == Layer::bedrock) continue;
-    const int band = band_of(layer.name, bands);
+    const int band = find_band(layer.name, bands);
     add(layer.layer, band, Merge::replace, 1);
     if (bedrock == 0 && (layer.layer == Layer::sand || layer.layer == Layer::soil))
       add(Layer::bedrock, band, Merge::add, -1);

@@ -15,6 +15,6 @@ bool is_bag(const std::string& path);
 /// `elevation` minus the soil and sand. With `fill_nodata`, cells without data are filled from their
 /// neighbours; otherwise build_terrain() refuses them. Throws ConfigError, listing the bands, if the file has
 /// neither `bedrock` nor `elevation`.
-Scenario scenario_of_bands(const std::string& path, const RasterLoader& load_raster, bool fill_nodata);
+Scenario scenario_from_bands(const std::string& path, const RasterLoader& load_raster, bool fill_nodata);
 
 }  // namespace desert_sim

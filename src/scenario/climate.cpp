@@ -14,13 +14,13 @@ constexpr Presets presets(preset_rows);
 
 /// Adds the climate's values that the scenario does not set. Maps are merged recursively; any other value of
 /// the scenario stays.
-void fill_in(YAML::Node scenario, const YAML::Node& climate) {
+void merge_missing(YAML::Node scenario, const YAML::Node& climate) {
   for (const auto& entry : climate) {
     const std::string key = entry.first.Scalar();
     if (!scenario[key])
       scenario[key] = entry.second;
     else if (scenario[key].IsMap() && entry.second.IsMap())
-      fill_in(scenario[key], entry.second);
+      merge_missing(scenario[key], entry.second);
   }
 }
 
@@ -33,12 +33,12 @@ std::string climate_doc(const std::string& name) {
   return text.substr(2, text.find('\n') - 2);  // skips the leading "# "
 }
 
-YAML::Node apply_climate(const YAML::Node& root, Faults& faults) {
+YAML::Node apply_climate(const YAML::Node& root, ValidationErrors& errors) {
   const YAML::Node given = root["climate"];
   if (!given.IsDefined() || given.IsNull()) return root;
   const char* const text = given.IsScalar() ? presets.text(given.Scalar()) : nullptr;
   if (!text) {
-    faults.add("climate", "'" + yaml::shown(given) + "' is not one of: " + presets.listed());
+    errors.add("climate", "'" + yaml::node_text(given) + "' is not one of: " + presets.joined_names());
     return root;
   }
   YAML::Node whole = YAML::Clone(root);
@@ -50,7 +50,7 @@ YAML::Node apply_climate(const YAML::Node& root, Faults& faults) {
     if (own_species && (key == "species" || key == "competition")) continue;
     YAML::Node one(YAML::NodeType::Map);
     one[key] = entry.second;
-    fill_in(whole, one);
+    merge_missing(whole, one);
   }
   return whole;
 }

@@ -11,7 +11,7 @@ class Node;
 
 namespace desert_sim {
 
-class Faults;
+class ValidationErrors;
 
 /// Names of the climates, in alphabetical order.
 std::vector<std::string> climates();
@@ -19,7 +19,7 @@ std::vector<std::string> climates();
 std::string climate_doc(const std::string& name);
 
 /// The scenario completed with the values of the climate that it names; unchanged if it names none. An
-/// unknown climate is added to `faults`.
-YAML::Node apply_climate(const YAML::Node& root, Faults& faults);
+/// unknown climate is added to `errors`.
+YAML::Node apply_climate(const YAML::Node& root, ValidationErrors& errors);
 
 }  // namespace desert_sim

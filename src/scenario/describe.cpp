@@ -70,7 +70,7 @@ std::string describe_parameters() {
   out << " (config/species).\n\n";
   write_parameter_table(out, SpeciesTraits());
   out << "\n";
-  write_parameter_table(out, SpeciesLook());
+  write_parameter_table(out, SpeciesAppearance());
   out << "\n## `competition`: a list of rows\n\nHow much each species (column, in the order of `species`) "
          "hinders the "
          "growth of each (row), 0 … "
@@ -79,7 +79,7 @@ std::string describe_parameters() {
   terrain_steps(out);
   out << "\n## What cannot change while a simulation runs\n\n";
   for (const FixedParameter& fixed : fixed_parameters)
-    out << "- `" << fixed.path << "`: " << fixed.why << ".\n";
+    out << "- `" << fixed.path << "`: " << fixed.reason << ".\n";
   out << "\nAll else can: `dynamic_reconfigure`, `~reload_parameters`.\n";
   constexpr const char* kinds[] = {"persistent", "derived", "on request"};
   out << "\n## Layers\n\n| layer | unit | kind | what |\n|---|---|---|---|\n";

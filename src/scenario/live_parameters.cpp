@@ -22,10 +22,11 @@ std::set<std::string> live_paths() {
   return paths;
 }
 
-void leaves(const YAML::Node& node, const std::string& path, std::map<std::string, std::string>& found) {
+void collect_leaf_values(const YAML::Node& node, const std::string& path,
+                         std::map<std::string, std::string>& found) {
   if (node.IsMap()) {
     for (const auto& entry : node)
-      leaves(entry.second, (path.empty() ? "" : path + ".") + entry.first.Scalar(), found);
+      collect_leaf_values(entry.second, (path.empty() ? "" : path + ".") + entry.first.Scalar(), found);
     return;
   }
   YAML::Emitter out;
@@ -35,9 +36,9 @@ void leaves(const YAML::Node& node, const std::string& path, std::map<std::strin
   found[path] = out.c_str();
 }
 
-std::map<std::string, std::string> leaves(const Scenario& scenario) {
+std::map<std::string, std::string> collect_leaf_values(const Scenario& scenario) {
   std::map<std::string, std::string> found;
-  leaves(YAML::Load(dump_scenario(scenario)), "", found);
+  collect_leaf_values(YAML::Load(dump_scenario(scenario)), "", found);
   return found;
 }
 
@@ -45,22 +46,22 @@ std::map<std::string, std::string> leaves(const Scenario& scenario) {
 
 const char* fixed_reason(const std::string& path) {
   for (const FixedParameter& fixed : fixed_parameters)
-    if (path == fixed.path || path.compare(0, path.find('.'), fixed.path) == 0) return fixed.why;
+    if (path == fixed.path || path.compare(0, path.find('.'), fixed.path) == 0) return fixed.reason;
   return nullptr;
 }
 
 Scenario with_live_settings(const Scenario& scenario, const Settings& settings) {
   const std::set<std::string> live = live_paths();
-  Faults faults("set_parameters");
+  ValidationErrors errors("set_parameters");
   for (const std::string& setting : settings) {
     const std::string path = setting.substr(0, setting.find('='));
     if (const char* why = fixed_reason(path)) {
-      faults.add(path, std::string("cannot change while the simulation runs: ") + why);
+      errors.add(path, std::string("cannot change while the simulation runs: ") + why);
     } else if (!live.count(path)) {
-      faults.add(path, "unknown parameter (config/parameters.md has them all)");
+      errors.add(path, "unknown parameter (config/parameters.md lists all)");
     }
   }
-  faults.throw_if_any();
+  errors.throw_if_any();
   Scenario changed = parse_scenario_text(dump_scenario(scenario), "set_parameters", settings);
   changed.name = scenario.name;
   changed.folder = scenario.folder;
@@ -70,9 +71,9 @@ Scenario with_live_settings(const Scenario& scenario, const Settings& settings) 
 
 std::vector<std::pair<std::string, std::string>> changed_parameters(const Scenario& before,
                                                                     const Scenario& now) {
-  const std::map<std::string, std::string> old = leaves(before);
+  const std::map<std::string, std::string> old = collect_leaf_values(before);
   std::vector<std::pair<std::string, std::string>> changed;
-  for (const auto& [path, value] : leaves(now)) {
+  for (const auto& [path, value] : collect_leaf_values(now)) {
     const auto found = old.find(path);
     if (found == old.end() || found->second != value) changed.emplace_back(path, value);
   }

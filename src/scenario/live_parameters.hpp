@@ -11,7 +11,7 @@ namespace desert_sim {
 
 /// A parameter, a list, or (a path without a dot) a whole section that cannot change, and the reason.
 struct FixedParameter {
-  const char *path, *why;
+  const char *path, *reason;
 };
 constexpr FixedParameter fixed_parameters[] = {
     {"seed", "the initial terrain was generated with it"},

@@ -28,7 +28,7 @@ class Presets {
     return all;
   }
   /// The same names separated by ", ", for error messages.
-  std::string listed() const {
+  std::string joined_names() const {
     std::string all;
     for (const std::string& name : names()) all += (all.empty() ? "" : ", ") + name;
     return all;

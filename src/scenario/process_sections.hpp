@@ -26,7 +26,7 @@ class ProcessSection {
  public:
   virtual ~ProcessSection() = default;
   virtual std::unique_ptr<ProcessSection> clone() const = 0;
-  virtual void read(const YAML::Node& section, const std::string& name, Faults& faults) = 0;
+  virtual void read(const YAML::Node& section, const std::string& name, ValidationErrors& errors) = 0;
   virtual void emit(YAML::Emitter& out) const = 0;
   virtual void describe(std::ostream& out) const = 0;
   virtual std::vector<std::string> keys() const = 0;
@@ -36,8 +36,8 @@ template <class P>
 class ProcessSectionOf final : public ProcessSection {
  public:
   std::unique_ptr<ProcessSection> clone() const override { return std::make_unique<ProcessSectionOf>(*this); }
-  void read(const YAML::Node& section, const std::string& name, Faults& faults) override {
-    yaml::read_section(section, name, faults, parameters);
+  void read(const YAML::Node& section, const std::string& name, ValidationErrors& errors) override {
+    yaml::read_section(section, name, errors, parameters);
   }
   void emit(YAML::Emitter& out) const override { yaml::emit_parameters(out, parameters); }
   void describe(std::ostream& out) const override { write_parameter_table(out, parameters); }
@@ -64,7 +64,7 @@ class ProcessSections {
     const auto found = sections_.find(name);
     const auto* section =
         found == sections_.end() ? nullptr : dynamic_cast<const ProcessSectionOf<P>*>(found->second.get());
-    if (!section) throw Error("no section of parameters '" + name + "' is registered with this type");
+    if (!section) throw Error("no parameter section '" + name + "' is registered with this type");
     return section->parameters;
   }
   const std::map<std::string, std::unique_ptr<ProcessSection>>& all() const { return sections_; }

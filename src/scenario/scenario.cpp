@@ -14,11 +14,11 @@ namespace desert_sim {
 
 namespace {
 
-constexpr std::size_t most_segments = 4096;
+constexpr std::size_t max_wind_segments = 4096;
 
 /// Checks that `layer` of a terrain step names a persistent layer.
 template <class Step>
-void check_layer(const Step& step, const std::string& key, Faults& faults) {
+void check_layer(const Step& step, const std::string& key, ValidationErrors& errors) {
   if constexpr (!std::is_same_v<Step, ObstacleStep>) {
     for (const LayerInfo& layer : layer_table)
       if (step.layer == layer.name && layer.lifetime == Lifetime::persistent) return;
@@ -26,112 +26,114 @@ void check_layer(const Step& step, const std::string& key, Faults& faults) {
     for (const LayerInfo& layer : layer_table)
       if (layer.lifetime == Lifetime::persistent)
         known += (known.empty() ? "" : ", ") + std::string(layer.name);
-    faults.add(key + ".layer", "'" + step.layer + "' is not one of: " + known);
+    errors.add(key + ".layer", "'" + step.layer + "' is not one of: " + known);
   }
 }
 
 template <std::size_t N = 0>
-bool read_step(const std::string& name, const YAML::Node& node, const std::string& key, Faults& faults,
-               std::vector<TerrainStep>& steps) {
+bool read_step(const std::string& name, const YAML::Node& node, const std::string& key,
+               ValidationErrors& errors, std::vector<TerrainStep>& steps) {
   if constexpr (N < std::variant_size_v<TerrainStep>) {
-    if (name != terrain_step_names[N]) return read_step<N + 1>(name, node, key, faults, steps);
+    if (name != terrain_step_names[N]) return read_step<N + 1>(name, node, key, errors, steps);
     std::variant_alternative_t<N, TerrainStep> step;
-    yaml::read_section(node, key, faults, step);
-    check_layer(step, key, faults);
+    yaml::read_section(node, key, errors, step);
+    check_layer(step, key, errors);
     steps.push_back(step);
     return true;
   }
   return false;
 }
 
-void read_terrain(const YAML::Node& list, Faults& faults, std::vector<TerrainStep>& steps) {
+void read_terrain(const YAML::Node& list, ValidationErrors& errors, std::vector<TerrainStep>& steps) {
   if (!list.IsDefined() || list.IsNull()) return;
   if (!list.IsSequence())
-    return faults.add("terrain", yaml::shown(list) + " where a list of steps is expected");
+    return errors.add("terrain", yaml::node_text(list) + " is given where a list of steps is expected");
   for (std::size_t n = 0; n < list.size(); ++n) {
     const std::string key = "terrain." + std::to_string(n);
     if (!list[n].IsMap() || list[n].size() != 1) {
-      faults.add(key, "must be one step with its parameters, such as  - uniform: {layer: sand, value: 1}");
+      errors.add(key, "must be one step with its parameters, such as  - uniform: {layer: sand, value: 1}");
       continue;
     }
     const auto entry = *list[n].begin();
     const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "?";
     std::string known;
     for (const char* step : terrain_step_names) known += (known.empty() ? "" : ", ") + std::string(step);
-    if (!read_step(name, entry.second, key + "." + name, faults, steps))
-      faults.add(key, "unknown step '" + name + "' (known: " + known + ")");
+    if (!read_step(name, entry.second, key + "." + name, errors, steps))
+      errors.add(key, "unknown step '" + name + "' (known: " + known + ")");
   }
 }
 
 template <class Item>
-void read_items(const YAML::Node& list, const std::string& key, std::size_t most, Faults& faults,
+void read_items(const YAML::Node& list, const std::string& key, std::size_t most, ValidationErrors& errors,
                 std::vector<Item>& items) {
   if (!list.IsDefined() || list.IsNull()) return;
-  if (!list.IsSequence()) return faults.add(key, yaml::shown(list) + " where a list is expected");
+  if (!list.IsSequence())
+    return errors.add(key, yaml::node_text(list) + " is given where a list is expected");
   if (list.size() > most)
-    return faults.add(key, std::to_string(list.size()) + " entries are more than " + std::to_string(most));
+    return errors.add(key, std::to_string(list.size()) + " entries are given (allowed: at most " +
+                               std::to_string(most) + ")");
   for (std::size_t n = 0; n < list.size(); ++n) {
     items.emplace_back();
-    yaml::read_section(list[n], key + "." + std::to_string(n), faults, items.back());
+    yaml::read_section(list[n], key + "." + std::to_string(n), errors, items.back());
   }
 }
 
-void read_wind(const YAML::Node& node, Faults& faults, Scenario& s) {
+void read_wind(const YAML::Node& node, ValidationErrors& errors, Scenario& s) {
   std::set<std::string> known{"segments", "features"};
-  yaml::read_parameters(node, "wind.", faults, s.wind_regime, known);
-  yaml::read_parameters(node, "wind.", faults, s.wind, known);
-  yaml::refuse_unknown(node, "wind.", known, faults);
+  yaml::read_parameters(node, "wind.", errors, s.wind_regime, known);
+  yaml::read_parameters(node, "wind.", errors, s.wind, known);
+  yaml::reject_unknown_keys(node, "wind.", known, errors);
   if (!node.IsDefined() || !node.IsMap()) return;
-  read_items(node["segments"], "wind.segments", most_segments, faults, s.wind_segments);
-  read_items(node["features"], "wind.features", max_wind_features, faults, s.wind_features);
+  read_items(node["segments"], "wind.segments", max_wind_segments, errors, s.wind_segments);
+  read_items(node["features"], "wind.features", max_wind_features, errors, s.wind_features);
 }
 
-void read_water(const YAML::Node& node, Faults& faults, Scenario& s) {
+void read_water(const YAML::Node& node, ValidationErrors& errors, Scenario& s) {
   std::set<std::string> known{"springs"};
-  yaml::read_parameters(node, "water.", faults, s.water, known);
-  yaml::refuse_unknown(node, "water.", known, faults);
+  yaml::read_parameters(node, "water.", errors, s.water, known);
+  yaml::reject_unknown_keys(node, "water.", known, errors);
   if (node.IsDefined() && node.IsMap())
-    read_items(node["springs"], "water.springs", max_springs, faults, s.springs);
+    read_items(node["springs"], "water.springs", max_springs, errors, s.springs);
 }
 
-void read_run(const YAML::Node& node, Faults& faults, Scenario& s) {
+void read_run(const YAML::Node& node, ValidationErrors& errors, Scenario& s) {
   std::set<std::string> known{"timeline"};
-  yaml::read_parameters(node, "run.", faults, s.run, known);
-  yaml::refuse_unknown(node, "run.", known, faults);
-  if (node.IsDefined() && node.IsMap()) s.timeline = read_timeline(node["timeline"], faults);
+  yaml::read_parameters(node, "run.", errors, s.run, known);
+  yaml::reject_unknown_keys(node, "run.", known, errors);
+  if (node.IsDefined() && node.IsMap()) s.timeline = read_timeline(node["timeline"], errors);
 }
 
 /// Checks conditions that involve more than one parameter.
-void check_dependencies(const Scenario& s, Faults& faults) {
+void check_dependencies(const Scenario& s, ValidationErrors& errors) {
   if (s.wind.radii.count != s.wind.weights.count || s.wind.radii.count != s.wind.deflections.count)
-    faults.add("wind.radii", "radii, weights and deflections must be lists of the same length");
+    errors.add("wind.radii", "radii, weights and deflections must be lists of the same length");
   float weight = 0;
   for (int n = 0; n < s.wind.weights.count; ++n) weight += s.wind.weights.values[n];
-  if (!(weight > 0)) faults.add("wind.weights", "must not all be 0");
+  if (!(weight > 0)) errors.add("wind.weights", "must not all be 0");
   if (s.wind_regime.regime != WindRegimeKind::constant && s.wind_segments.empty())
-    faults.add("wind.segments", std::string("a ") +
-                                    wind_regime_kinds[static_cast<int>(s.wind_regime.regime)] +
+    errors.add("wind.segments", std::string("a ") +
+                                    wind_regime_kind_names[static_cast<int>(s.wind_regime.regime)] +
                                     " needs at least one segment");
   for (std::size_t n = 0; n < s.wind_segments.size(); ++n)
     if (s.wind_segments[n].ramp > s.wind_segments[n].duration)
-      faults.add("wind.segments." + std::to_string(n) + ".ramp", "is longer than the segment's duration");
+      errors.add("wind.segments." + std::to_string(n) + ".ramp", "is longer than the segment's duration");
   std::set<int> ids;
   for (std::size_t n = 0; n < s.wind_features.size(); ++n)
     if (const int id = s.wind_features[n].id; id != 0 && !ids.insert(id).second)
-      faults.add("wind.features." + std::to_string(n) + ".id",
-                 "= " + std::to_string(id) + " is the id of another feature already");
+      errors.add("wind.features." + std::to_string(n) + ".id",
+                 "= " + std::to_string(id) + " is already the id of another feature");
   float probability = 0;
   for (const WindSegment& segment : s.wind_segments) probability += segment.probability;
   if (s.wind_regime.regime == WindRegimeKind::rose && !s.wind_segments.empty() && !(probability > 0))
-    faults.add("wind.segments", "the probabilities of a rose must not all be 0");
+    errors.add("wind.segments", "the probabilities of a rose must not all be 0");
   if (s.wind_shadow.full_deg < s.wind_shadow.start_deg)
-    faults.add("wind_shadow.full_deg", "must not be below start_deg");
+    errors.add("wind_shadow.full_deg", "must not be below start_deg");
   if (s.echo_dunes.sticky_reach < s.echo_dunes.erosion_reach)
-    faults.add("echo_dunes.sticky_reach", "must not be below erosion_reach");
+    errors.add("echo_dunes.sticky_reach", "must not be below erosion_reach");
   for (std::size_t n = 0; n < s.terrain.size(); ++n)
     if (const auto* discs = std::get_if<DiscsStep>(&s.terrain[n]);
         discs && discs->radius_high < discs->radius_low)
-      faults.add("terrain." + std::to_string(n) + ".discs.radius_high", "must not be below radius_low");
+      errors.add("terrain." + std::to_string(n) + ".discs.radius_high", "must not be below radius_low");
 }
 
 void apply_setting(YAML::Node root, const std::string& setting) {
@@ -167,12 +169,12 @@ void apply_setting(YAML::Node root, const std::string& setting) {
   }
 }
 
-std::string folder_of(const std::string& path) {
+std::string parent_folder(const std::string& path) {
   const std::size_t slash = path.rfind('/');
   return slash == std::string::npos ? "." : path.substr(0, slash + 1);
 }
 
-std::string name_of(const std::string& path) {
+std::string base_name(const std::string& path) {
   const std::size_t slash = path.rfind('/');
   const std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
   return file.substr(0, file.rfind('.'));
@@ -199,8 +201,8 @@ Scenario parse_with_settings(const std::string& text, const std::string& source,
 }  // namespace
 
 Scenario load_scenario(const std::string& path, const Settings& settings) {
-  Scenario s = parse_with_settings(read_file(path), path, folder_of(path), settings);
-  s.name = name_of(path);
+  Scenario s = parse_with_settings(read_file(path), path, parent_folder(path), settings);
+  s.name = base_name(path);
   return s;
 }
 
@@ -209,38 +211,39 @@ Scenario parse_scenario_text(const std::string& yaml, const std::string& name, c
 }
 
 Scenario parse_scenario(const YAML::Node& given, const std::string& name, const std::string& folder) {
-  Faults faults(name);
+  ValidationErrors errors(name);
   Scenario s;
   s.name = name;
   s.folder = folder;
   if (!given.IsMap()) {
-    faults.add("top level", yaml::shown(given) + " where the sections of a scenario are expected");
-    faults.throw_if_any();
+    errors.add("top level",
+               yaml::node_text(given) + " is given where the sections of a scenario are expected");
+    errors.throw_if_any();
   }
-  const YAML::Node root = apply_climate(given, faults);
+  const YAML::Node root = apply_climate(given, errors);
   std::set<std::string> known{"climate", "terrain", "wind", "water", "run", "species", "competition"};
   for_each_section(s, [&](const char* section, auto& parameters) {
     known.insert(section);
-    yaml::read_section(root[section], section, faults, parameters);
+    yaml::read_section(root[section], section, errors, parameters);
   });
   for (const auto& [section, parameters] : s.process_sections.all()) {
     known.insert(section);
-    parameters->read(root[section], section, faults);
+    parameters->read(root[section], section, errors);
   }
   SeedParameter seed{s.seed};
-  yaml::read_parameters(root, "", faults, seed, known);
+  yaml::read_parameters(root, "", errors, seed, known);
   s.seed = seed.seed;
-  yaml::refuse_unknown(root, "", known, faults);
-  read_terrain(root["terrain"], faults, s.terrain);
-  read_wind(root["wind"], faults, s);
-  read_water(root["water"], faults, s);
-  read_run(root["run"], faults, s);
-  read_species(root, faults, s);
-  check_dependencies(s, faults);
-  check_plants(s, faults);
-  faults.throw_if_any();
-  check_timeline(s, faults);  // it applies settings, which needs a valid scenario
-  faults.throw_if_any();
+  yaml::reject_unknown_keys(root, "", known, errors);
+  read_terrain(root["terrain"], errors, s.terrain);
+  read_wind(root["wind"], errors, s);
+  read_water(root["water"], errors, s);
+  read_run(root["run"], errors, s);
+  read_species(root, errors, s);
+  check_dependencies(s, errors);
+  check_plants(s, errors);
+  errors.throw_if_any();
+  check_timeline(s, errors);  // it applies settings, which needs a valid scenario
+  errors.throw_if_any();
   return s;
 }
 
@@ -301,7 +304,7 @@ Grid Scenario::make_grid() const {
   return Grid{grid.width, grid.height, static_cast<float>(grid.cell_size), periodic, periodic};
 }
 
-RasterField refuse_rasters(const RasterRequest& request) {
+RasterField no_raster_loader(const RasterRequest& request) {
   throw ConfigError(request.path + ": this build cannot read rasters (it was built without GDAL)");
 }
 
@@ -337,7 +340,7 @@ std::string raster_path(const Scenario& s, const std::string& file) {
   return std::ifstream(beside) ? beside : file;
 }
 
-std::vector<std::string> rasters_of(const Scenario& s) {
+std::vector<std::string> raster_paths(const Scenario& s) {
   std::vector<std::string> paths;
   if (!s.grid.from_raster.empty()) paths.push_back(raster_path(s, s.grid.from_raster));
   for (const TerrainStep& step : s.terrain)

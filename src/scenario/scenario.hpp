@@ -1,6 +1,6 @@
 #pragma once
 /// A scenario: everything that defines a run. It is read from YAML (a file, a text, or ROS parameters that
-/// were turned into YAML); config/parameters.md documents every key. All faults of a file are reported at
+/// were turned into YAML); config/parameters.md documents every key. All errors of a file are reported at
 /// once.
 
 #include <cstdint>
@@ -36,7 +36,7 @@ class Node;
 namespace desert_sim {
 
 enum class Boundary : int { periodic, open };
-constexpr const char* boundaries[] = {"periodic", "open"};
+constexpr const char* boundary_names[] = {"periodic", "open"};
 
 /// Zero means "not given"; resolve_grid() replaces it.
 struct GridParameters {
@@ -59,7 +59,7 @@ constexpr auto parameter_table(const GridParameters*) {
       parameter(
           "cell_size", &P::cell_size, 1e-3, 1e4, "m",
           "Width of a cell; if not given, the raster's, or 1. The raster is resampled to another width."),
-      parameter("boundary", &P::boundary, boundaries,
+      parameter("boundary", &P::boundary, boundary_names,
                 "periodic: a torus; open: sand leaves and enters over the edges."),
       parameter("origin_x", &P::origin_x, -1e8, 1e8, "m", "West edge of the grid in the terrain's frame."),
       parameter("origin_y", &P::origin_y, -1e8, 1e8, "m", "South edge of the grid in the terrain's frame."),
@@ -127,7 +127,7 @@ struct Scenario {
 /// "terrain.0.raster.file=dem.tif".
 using Settings = std::vector<std::string>;
 
-/// These functions read and check a scenario. They throw ConfigError that lists all faults, each with file,
+/// These functions read and check a scenario. They throw ConfigError that lists all errors, each with file,
 /// key, value and allowed range.
 Scenario load_scenario(const std::string& path, const Settings& settings = {});
 Scenario parse_scenario_text(const std::string& yaml, const std::string& name, const Settings& settings = {});
@@ -137,11 +137,10 @@ Scenario parse_scenario(const YAML::Node& root, const std::string& name, const s
 std::string dump_scenario(const Scenario& scenario);
 
 /// A raster as a RasterLoader returns it. The loader that uses GDAL is in the library desert_io; without it,
-/// refuse_rasters() refuses every raster.
+/// no_raster_loader() refuses every raster.
 struct RasterField {
   int width = 0, height = 0;
   double cell_size = 1, origin_x = 0, origin_y = 0;
-  bool georeferenced = false;
   std::string projection;
   std::vector<std::string> bands;  ///< names of all bands in order; empty if they have none
   std::vector<float> values;       ///< row-major from the south-west, NaN = nodata
@@ -157,10 +156,10 @@ struct RasterRequest {
   bool stretch = false;  ///< stretch the raster over the grid, whatever its position
 };
 using RasterLoader = std::function<RasterField(const RasterRequest&)>;
-RasterField refuse_rasters(const RasterRequest& request);
+RasterField no_raster_loader(const RasterRequest& request);
 
 /// Paths of all rasters that the scenario reads, resolved by raster_path().
-std::vector<std::string> rasters_of(const Scenario& scenario);
+std::vector<std::string> raster_paths(const Scenario& scenario);
 
 /// Sets the values that the section `grid` leaves open: from its raster if it names one, else to defaults.
 void resolve_grid(Scenario& scenario, const RasterLoader& load_raster);

@@ -17,47 +17,50 @@ constexpr Presets::Row preset_rows[] = {
 };
 constexpr Presets presets(preset_rows);
 
-void read_one(const YAML::Node& node, const std::string& key, Faults& faults, Species& species) {
+void read_species_entry(const YAML::Node& node, const std::string& key, ValidationErrors& errors,
+                        Species& species) {
   std::set<std::string> known;
   SpeciesName name;
-  yaml::read_parameters(node, key + ".", faults, name, known);
+  yaml::read_parameters(node, key + ".", errors, name, known);
   if (!name.preset.empty()) {
     if (presets.text(name.preset))
       species = species_preset(name.preset);
     else
-      faults.add(key + ".preset", "'" + name.preset + "' is not one of: " + presets.listed());
+      errors.add(key + ".preset", "'" + name.preset + "' is not one of: " + presets.joined_names());
   }
   if (!name.name.empty()) species.name = name.name;
-  yaml::read_parameters(node, key + ".", faults, species.traits, known);
-  yaml::read_parameters(node, key + ".", faults, species.look, known);
-  yaml::refuse_unknown(node, key + ".", known, faults);
+  yaml::read_parameters(node, key + ".", errors, species.traits, known);
+  yaml::read_parameters(node, key + ".", errors, species.appearance, known);
+  yaml::reject_unknown_keys(node, key + ".", known, errors);
   if (!node.IsMap())
-    faults.add(key, yaml::shown(node) + " where a species is expected, such as {preset: tree}");
+    errors.add(key, yaml::node_text(node) + " is given where a species is expected, such as {preset: tree}");
   if (node.IsMap() && species.name.empty() && name.preset.empty())
-    faults.add(key, "needs a name, or a preset that gives it one");
+    errors.add(key, "needs a name, or a preset that gives it one");
 }
 
-/// Whether a row or the whole matrix is a list with one entry per species; adds a fault if not.
-bool has_entries(const YAML::Node& list, const std::string& key, std::size_t count, Faults& faults) {
+/// Whether a row or the whole matrix is a list with one entry per species; adds an error if not.
+bool check_entry_count(const YAML::Node& list, const std::string& key, std::size_t count,
+                       ValidationErrors& errors) {
   if (list.IsSequence() && list.size() == count) return true;
-  faults.add(key,
-             (list.IsSequence() ? "has " + std::to_string(list.size()) + " entries" : yaml::shown(list)) +
+  errors.add(key,
+             (list.IsSequence() ? "has " + std::to_string(list.size()) + " entries" : yaml::node_text(list)) +
                  " where a list of one entry per species (" + std::to_string(count) + ") is expected");
   return false;
 }
 
-void read_competition(const YAML::Node& rows, std::size_t count, Faults& faults, CompetitionMatrix& matrix) {
-  if (!rows.IsDefined() || rows.IsNull() || !has_entries(rows, "competition", count, faults)) return;
+void read_competition(const YAML::Node& rows, std::size_t count, ValidationErrors& errors,
+                      CompetitionMatrix& matrix) {
+  if (!rows.IsDefined() || rows.IsNull() || !check_entry_count(rows, "competition", count, errors)) return;
   struct Row {
     double lowest = 0, highest = max_competition;
     const char* unit = "1";
   } range;
   for (std::size_t k = 0; k < count; ++k) {
     const std::string key = "competition." + std::to_string(k);
-    if (!has_entries(rows[k], key, count, faults)) continue;
+    if (!check_entry_count(rows[k], key, count, errors)) continue;
     for (std::size_t j = 0; j < count; ++j) {
       double value = 1;
-      if (yaml::read_number<float>(rows[k][j], range, key + "." + std::to_string(j), faults, value))
+      if (yaml::read_number<float>(rows[k][j], range, key + "." + std::to_string(j), errors, value))
         matrix[k * count + j] = static_cast<float>(value);
     }
   }
@@ -69,42 +72,43 @@ std::vector<std::string> species_presets() { return presets.names(); }
 
 Species species_preset(const std::string& name) {
   const char* text = presets.text(name);
-  if (!text) throw ConfigError("species preset '" + name + "' is not one of: " + presets.listed());
-  Faults faults("species preset " + name);
+  if (!text) throw ConfigError("species preset '" + name + "' is not one of: " + presets.joined_names());
+  ValidationErrors errors("species preset " + name);
   Species species{name, {}, {}};
   const YAML::Node node = YAML::Load(text);
   std::set<std::string> known;
-  yaml::read_parameters(node, "", faults, species.traits, known);
-  yaml::read_parameters(node, "", faults, species.look, known);
-  yaml::refuse_unknown(node, "", known, faults);
-  faults.throw_if_any();
+  yaml::read_parameters(node, "", errors, species.traits, known);
+  yaml::read_parameters(node, "", errors, species.appearance, known);
+  yaml::reject_unknown_keys(node, "", known, errors);
+  errors.throw_if_any();
   return species;
 }
 
-std::array<float, 3> crown_colour(const SpeciesLook& look) {
+std::array<float, 3> crown_colour(const SpeciesAppearance& appearance) {
   constexpr float dull = 0.13f, bright = 0.52f;
   const auto channel = [&](float peak) {
     // The channel is bright within 60 degrees of its own hue and dull beyond 120 degrees.
-    const float away = std::abs(std::remainder(look.hue - peak, 360.0f));
+    const float away = std::abs(std::remainder(appearance.hue - peak, 360.0f));
     return dull + (bright - dull) * std::clamp(2.0f - away / 60.0f, 0.0f, 1.0f);
   };
   return {channel(0), channel(120), channel(240)};
 }
 
-void read_species(const YAML::Node& root, Faults& faults, Scenario& s) {
+void read_species(const YAML::Node& root, ValidationErrors& errors, Scenario& s) {
   const YAML::Node list = root["species"];
   if (list.IsDefined() && !list.IsNull()) {
-    if (!list.IsSequence()) return faults.add("species", yaml::shown(list) + " where a list is expected");
+    if (!list.IsSequence())
+      return errors.add("species", yaml::node_text(list) + " is given where a list is expected");
     if (list.size() > max_species)
-      return faults.add(
-          "species", std::to_string(list.size()) + " entries are more than " + std::to_string(max_species));
+      return errors.add("species", std::to_string(list.size()) + " entries are given (allowed: at most " +
+                                       std::to_string(max_species) + ")");
     for (std::size_t n = 0; n < list.size(); ++n) {
       s.species.emplace_back();
-      read_one(list[n], "species." + std::to_string(n), faults, s.species.back());
+      read_species_entry(list[n], "species." + std::to_string(n), errors, s.species.back());
     }
   }
   s.competition.assign(s.species.size() * s.species.size(), 1.0f);
-  read_competition(root["competition"], s.species.size(), faults, s.competition);
+  read_competition(root["competition"], s.species.size(), errors, s.competition);
 }
 
 void emit_species(YAML::Emitter& out, const Scenario& s) {
@@ -113,7 +117,7 @@ void emit_species(YAML::Emitter& out, const Scenario& s) {
     out << YAML::Flow << YAML::BeginMap << YAML::Key << "name" << YAML::Value << YAML::DoubleQuoted
         << species.name;
     yaml::emit_parameters(out, species.traits);
-    yaml::emit_parameters(out, species.look);
+    yaml::emit_parameters(out, species.appearance);
     out << YAML::EndMap;
   }
   out << YAML::EndSeq << YAML::Key << "competition" << YAML::Value << YAML::BeginSeq;
@@ -125,26 +129,26 @@ void emit_species(YAML::Emitter& out, const Scenario& s) {
   out << YAML::EndSeq;
 }
 
-void check_plants(const Scenario& s, Faults& faults) {
+void check_plants(const Scenario& s, ValidationErrors& errors) {
   std::set<std::string> names;
   for (std::size_t n = 0; n < s.species.size(); ++n) {
     const Species& species = s.species[n];
     const std::string key = "species." + std::to_string(n);
     if (!species.name.empty() && !names.insert(species.name).second)
-      faults.add(key + ".name", "'" + species.name + "' is another's already");
+      errors.add(key + ".name", "'" + species.name + "' is already the name of another species");
     if (species.traits.moisture_highest < species.traits.moisture_lowest)
-      faults.add(key + ".moisture_highest", "must not be below moisture_lowest");
+      errors.add(key + ".moisture_highest", "must not be below moisture_lowest");
     if (species.traits.light_highest <= species.traits.light_lowest)
-      faults.add(key + ".light_highest", "must be above light_lowest");
+      errors.add(key + ".light_highest", "must be above light_lowest");
   }
   if (!s.vegetation.enabled) return;
-  if (s.species.empty()) faults.add("vegetation.enabled", "needs at least one entry in species");
+  if (s.species.empty()) errors.add("vegetation.enabled", "needs at least one entry in species");
   for (std::size_t n = 0; n < s.terrain.size(); ++n)
     std::visit(
         [&](const auto& step) {
           if constexpr (!std::is_same_v<std::decay_t<decltype(step)>, ObstacleStep>)
             if (step.layer == info(Layer::vegetation).name)
-              faults.add(
+              errors.add(
                   "terrain." + std::to_string(n) + "." + terrain_step_names[s.terrain[n].index()] + ".layer",
                   "vegetation cannot be set while vegetation.enabled is true: the plants determine it");
         },

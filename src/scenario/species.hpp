@@ -16,7 +16,7 @@ class Emitter;
 
 namespace desert_sim {
 
-class Faults;
+class ValidationErrors;
 struct Scenario;
 
 struct SpeciesName {
@@ -33,25 +33,25 @@ constexpr auto parameter_table(const SpeciesName*) {
 static_assert(table_is_complete<SpeciesName>());
 
 /// How a species is drawn. The simulation does not depend on it.
-struct SpeciesLook {
+struct SpeciesAppearance {
   float hue = 120;
 };
-constexpr auto parameter_table(const SpeciesLook*) {
-  using P = SpeciesLook;
+constexpr auto parameter_table(const SpeciesAppearance*) {
+  using P = SpeciesAppearance;
   return std::make_tuple(
       parameter("hue", &P::hue, 0, 360, "deg",
                 "Colour in pictures and rviz: 0 red, 60 yellow, 120 green, 240 blue, 300 violet."));
 }
-static_assert(table_is_complete<SpeciesLook>());
+static_assert(table_is_complete<SpeciesAppearance>());
 
 struct Species {
   std::string name;
   SpeciesTraits traits;
-  SpeciesLook look;
+  SpeciesAppearance appearance;
 };
 
 /// Colour of a species' crowns as red, green and blue, each 0 … 1.
-std::array<float, 3> crown_colour(const SpeciesLook& look);
+std::array<float, 3> crown_colour(const SpeciesAppearance& appearance);
 
 /// How much each species (column) hinders the growth of each species (row), row-major; 1 where the scenario
 /// gives no value.
@@ -64,10 +64,10 @@ std::vector<std::string> species_presets();
 Species species_preset(const std::string& name);
 
 /// Reads the keys `species` and `competition` of a scenario.
-void read_species(const YAML::Node& root, Faults& faults, Scenario& scenario);
+void read_species(const YAML::Node& root, ValidationErrors& errors, Scenario& scenario);
 /// Writes both keys as entries of an open map, with all parameters.
 void emit_species(YAML::Emitter& out, const Scenario& scenario);
 /// Checks conditions on plants that involve more than one key.
-void check_plants(const Scenario& scenario, Faults& faults);
+void check_plants(const Scenario& scenario, ValidationErrors& errors);
 
 }  // namespace desert_sim

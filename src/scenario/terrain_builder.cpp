@@ -26,7 +26,7 @@ struct Placement {
     x = step.relative ? step.x * s.grid.width * l : step.x - s.grid.origin_x;
     y = step.relative ? step.y * s.grid.height * l : step.y - s.grid.origin_y;
   }
-  void turn(double angle_deg) {
+  void set_rotation(double angle_deg) {
     cos = std::cos(angle_deg * degree);
     sin = std::sin(angle_deg * degree);
   }
@@ -51,20 +51,20 @@ class Builder {
   HostLayers build() {
     for (std::size_t n = 0; n < s_.terrain.size(); ++n) {
       std::visit([&](const auto& step) { run(step); }, s_.terrain[n]);
-      check(name_of_step(n));
+      check(step_name(n));
     }
     return std::move(layers_);
   }
 
  private:
-  std::string name_of_step(std::size_t n) const {
+  std::string step_name(std::size_t n) const {
     const auto* raster = std::get_if<RasterStep>(&s_.terrain[n]);
     return "terrain." + std::to_string(n) + "." + terrain_step_names[s_.terrain[n].index()] +
-           (raster ? " (" + file_of(*raster) + ")" : "");
+           (raster ? " (" + raster_file(*raster) + ")" : "");
   }
 
   /// Path of the step's raster; empty if neither the step nor the grid names one.
-  std::string file_of(const RasterStep& p) const {
+  std::string raster_file(const RasterStep& p) const {
     return raster_path(s_, p.file.empty() ? s_.grid.from_raster : p.file);
   }
 
@@ -77,8 +77,8 @@ class Builder {
   /// Merges value(ix, iy) into all cells of the step's layer.
   template <class Value>
   void fill(const std::string& name, Merge merge, const Value& value) {
-    touched_ = layer_by_name(name);
-    std::vector<double>& values = layer(touched_);
+    current_layer_ = layer_by_name(name);
+    std::vector<double>& values = layer(current_layer_);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < s_.grid.height; ++y)
       for (int x = 0; x < s_.grid.width; ++x) {
@@ -92,8 +92,8 @@ class Builder {
   template <class Inside>
   void fill_inside(const std::string& name, Merge merge, double value, const Placement& place,
                    const Inside& inside) {
-    touched_ = layer_by_name(name);
-    std::vector<double>& values = layer(touched_);
+    current_layer_ = layer_by_name(name);
+    std::vector<double>& values = layer(current_layer_);
     for (int y = 0; y < s_.grid.height; ++y)
       for (int x = 0; x < s_.grid.width; ++x) {
         double along, across;
@@ -165,21 +165,21 @@ class Builder {
 
   void run(const ColumnStep& p) {
     Placement place(s_, p);
-    place.turn(p.angle_deg);
+    place.set_rotation(p.angle_deg);
     fill_inside(p.layer, p.merge, p.height, place, [&](double a, double b) { return in_footprint(p, a, b); });
   }
 
   void run(const ObstacleStep& p) {
     Placement place(s_, p);
-    place.turn(p.angle_deg);
+    place.set_rotation(p.angle_deg);
     const auto inside = [&](double a, double b) { return in_footprint(p, a, b); };
     fill_inside("bedrock", Merge::add, p.height, place, inside);
     fill_inside("obstacle", Merge::replace, 1.0, place, inside);
   }
 
   void run(const DiscsStep& p) {
-    touched_ = layer_by_name(p.layer);
-    std::vector<double>& values = layer(touched_);
+    current_layer_ = layer_by_name(p.layer);
+    std::vector<double>& values = layer(current_layer_);
     std::vector<char> covered(values.size(), 0);
     const Grid g = s_.make_grid();
     const double l = s_.grid.cell_size;
@@ -208,9 +208,9 @@ class Builder {
 
   void run(const RasterStep& p) {
     RasterRequest request;
-    request.path = file_of(p);
+    request.path = raster_file(p);
     if (request.path.empty())
-      throw ConfigError(s_.name + ": terrain: raster: names no file, and grid.from_raster is empty");
+      throw ConfigError(s_.name + ": terrain: raster: file is empty, and grid.from_raster is empty too");
     request.band = p.band;
     request.scale = p.scale;
     request.offset = p.offset;
@@ -229,8 +229,8 @@ class Builder {
 
   /// Sets depths that a step made negative to 0, and throws ConfigError for any other value out of range.
   void check(const std::string& step) {
-    const LayerInfo& row = info(touched_);
-    std::vector<double>& values = layers_[touched_];
+    const LayerInfo& row = info(current_layer_);
+    std::vector<double>& values = layers_[current_layer_];
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (row.lowest == 0 && values[i] < 0) values[i] = 0;
       if (!(values[i] >= row.lowest && values[i] <= row.highest))
@@ -244,7 +244,7 @@ class Builder {
   const Scenario& s_;
   const RasterLoader& load_raster_;
   HostLayers layers_;
-  Layer touched_ = Layer::bedrock;
+  Layer current_layer_ = Layer::bedrock;
 };
 
 }  // namespace

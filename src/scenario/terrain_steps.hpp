@@ -11,7 +11,7 @@
 namespace desert_sim {
 
 enum class Merge : int { replace, add, max };
-constexpr const char* merges[] = {"replace", "add", "max"};
+constexpr const char* merge_names[] = {"replace", "add", "max"};
 
 /// The same value everywhere.
 struct UniformStep {
@@ -23,7 +23,7 @@ constexpr auto parameter_table(const UniformStep*) {
   using P = UniformStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to fill."),
-      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
+      parameter("merge", &P::merge, merge_names, "How the step's value is combined with the present one."),
       parameter("value", &P::value, -1e6, 1e6, "layer's", "Value."));
 }
 static_assert(table_is_complete<UniformStep>());
@@ -46,7 +46,7 @@ constexpr auto parameter_table(const NoiseStep*) {
   using P = NoiseStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to fill."),
-      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
+      parameter("merge", &P::merge, merge_names, "How the step's value is combined with the present one."),
       parameter("low", &P::low, -1e6, 1e6, "layer's", "Value where the noise is lowest."),
       parameter("high", &P::high, -1e6, 1e6, "layer's", "Value where the noise is highest."),
       parameter("scale", &P::scale, 0, 1e6, "m", "Size of the largest features; 0 is white noise."),
@@ -72,7 +72,7 @@ constexpr auto parameter_table(const RampStep*) {
   using P = RampStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to fill."),
-      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
+      parameter("merge", &P::merge, merge_names, "How the step's value is combined with the present one."),
       parameter("value", &P::value, -1e6, 1e6, "layer's", "Value at the grid's centre."),
       parameter("slope_x", &P::slope_x, -100, 100, "1/m", "Rise per metre east."),
       parameter("slope_y", &P::slope_y, -100, 100, "1/m", "Rise per metre north."));
@@ -80,7 +80,7 @@ constexpr auto parameter_table(const RampStep*) {
 static_assert(table_is_complete<RampStep>());
 
 enum class HillShape : int { cone, gaussian, dome };
-constexpr const char* hill_shapes[] = {"cone", "gaussian", "dome"};
+constexpr const char* hill_shape_names[] = {"cone", "gaussian", "dome"};
 
 /// A round hill, or with a negative height a hollow.
 struct ConeStep {
@@ -97,8 +97,8 @@ constexpr auto parameter_table(const ConeStep*) {
   using P = ConeStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to change."),
-      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
-      parameter("shape", &P::shape, hill_shapes, "cone; gaussian (radius is sigma); dome (paraboloid)."),
+      parameter("merge", &P::merge, merge_names, "How the step's value is combined with the present one."),
+      parameter("shape", &P::shape, hill_shape_names, "cone; gaussian (radius is sigma); dome (paraboloid)."),
       parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
       parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
       parameter("radius", &P::radius, 1e-3, 1e6, "m", "Radius of the base, or sigma."),
@@ -107,7 +107,7 @@ constexpr auto parameter_table(const ConeStep*) {
 static_assert(table_is_complete<ConeStep>());
 
 enum class Footprint : int { box, cylinder };
-constexpr const char* footprints[] = {"box", "cylinder"};
+constexpr const char* footprint_names[] = {"box", "cylinder"};
 
 /// A column with vertical walls, such as a block of sand or rock, or a patch of vegetation.
 struct ColumnStep {
@@ -126,8 +126,8 @@ constexpr auto parameter_table(const ColumnStep*) {
   using P = ColumnStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to change."),
-      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
-      parameter("shape", &P::shape, footprints, "Outline seen from above."),
+      parameter("merge", &P::merge, merge_names, "How the step's value is combined with the present one."),
+      parameter("shape", &P::shape, footprint_names, "Outline seen from above."),
       parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
       parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
       parameter("size_x", &P::size_x, 0, 1e7, "m",
@@ -155,7 +155,7 @@ constexpr auto parameter_table(const DiscsStep*) {
   using P = DiscsStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to change."),
-      parameter("merge", &P::merge, merges, "How a disc's value is combined with the present one."),
+      parameter("merge", &P::merge, merge_names, "How a disc's value is combined with the present one."),
       parameter("coverage", &P::coverage, 0, 0.95, "1", "Share of the cells that discs cover."),
       parameter("radius_low", &P::radius_low, 1e-3, 1e6, "m", "Smallest radius."),
       parameter("radius_high", &P::radius_high, 1e-3, 1e6, "m", "Largest radius."),
@@ -178,7 +178,7 @@ struct ObstacleStep {
 constexpr auto parameter_table(const ObstacleStep*) {
   using P = ObstacleStep;
   return std::make_tuple(
-      parameter("shape", &P::shape, footprints, "Outline seen from above."),
+      parameter("shape", &P::shape, footprint_names, "Outline seen from above."),
       parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
       parameter("x", &P::x, -1e8, 1e8, "m", "Centre."), parameter("y", &P::y, -1e8, 1e8, "m", "Centre."),
       parameter("size_x", &P::size_x, 1e-3, 1e7, "m",
@@ -206,7 +206,7 @@ constexpr auto parameter_table(const RasterStep*) {
   using P = RasterStep;
   return std::make_tuple(
       parameter("layer", &P::layer, "Layer to fill."),
-      parameter("merge", &P::merge, merges, "How the step's value is combined with the present one."),
+      parameter("merge", &P::merge, merge_names, "How the step's value is combined with the present one."),
       parameter("file", &P::file,
                 "Path, absolute or relative to the scenario's folder; empty: grid.from_raster."),
       parameter("band", &P::band, 1, 10000, "1", "Band of the raster."),

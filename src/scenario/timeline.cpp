@@ -22,24 +22,24 @@ std::string flow_text(const YAML::Node& node) {
   return text;
 }
 
-double read_time(const YAML::Node& node, const std::string& key, Faults& faults) {
+double read_time(const YAML::Node& node, const std::string& key, ValidationErrors& errors) {
   double value = 0;
   if (node.IsDefined() &&
       (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !(value >= 0) || !(value <= 1e12)))
-    faults.add(key, yaml::shown(node) + " is not a time (allowed: [0, 1e+12] s)");
+    errors.add(key, yaml::node_text(node) + " is not a time (allowed: [0, 1e+12] s)");
   return value;
 }
 
-TimelineEntry read_entry(const YAML::Node& node, const std::string& key, Faults& faults) {
+TimelineEntry read_entry(const YAML::Node& node, const std::string& key, ValidationErrors& errors) {
   TimelineEntry entry;
-  yaml::refuse_unknown(node, key + ".", {"time", "ramp", "set"}, faults);
+  yaml::reject_unknown_keys(node, key + ".", {"time", "ramp", "set"}, errors);
   if (!node.IsMap()) return entry;
-  if (!node["time"]) faults.add(key + ".time", "is missing");
-  entry.time = read_time(node["time"], key + ".time", faults);
-  entry.ramp = read_time(node["ramp"], key + ".ramp", faults);
+  if (!node["time"]) errors.add(key + ".time", "is missing");
+  entry.time = read_time(node["time"], key + ".time", errors);
+  entry.ramp = read_time(node["ramp"], key + ".ramp", errors);
   const YAML::Node set = node["set"];
   if (!set || !set.IsMap() || set.size() == 0) {
-    faults.add(key + ".set", "must name parameters and their values, such as {rain.rate: 1.0e-5}");
+    errors.add(key + ".set", "must name parameters and their values, such as {rain.rate: 1.0e-5}");
     return entry;
   }
   for (const auto& setting : set)
@@ -62,16 +62,16 @@ bool find_number(const Scenario& scenario, const std::string& path, double& foun
 
 }  // namespace
 
-int Ramp::stair_at(double time) const {
-  if (time >= start + duration) return stairs;
-  return std::clamp(static_cast<int>(std::floor((time - start) / duration * stairs)), 0, stairs - 1);
+int Ramp::step_index_at(double time) const {
+  if (time >= start + duration) return step_count;
+  return std::clamp(static_cast<int>(std::floor((time - start) / duration * step_count)), 0, step_count - 1);
 }
 
-std::vector<Ramp> take_ramps(const Scenario& scenario, std::vector<std::string>& settings, double time,
-                             double duration) {
+std::vector<Ramp> extract_ramps(const Scenario& scenario, std::vector<std::string>& settings, double time,
+                                double duration) {
   std::vector<Ramp> ramps;
   if (!(duration > 0)) return ramps;
-  std::vector<std::string> at_once;
+  std::vector<std::string> immediate;
   for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
     Ramp ramp{setting.substr(0, equals), 0, 0, time, duration, 0};
@@ -79,29 +79,29 @@ std::vector<Ramp> take_ramps(const Scenario& scenario, std::vector<std::string>&
         YAML::convert<double>::decode(YAML::Load(setting.substr(equals + 1)), ramp.to))
       ramps.push_back(ramp);
     else
-      at_once.push_back(setting);
+      immediate.push_back(setting);
   }
-  settings = at_once;
+  settings = immediate;
   return ramps;
 }
 
-std::vector<TimelineEntry> read_timeline(const YAML::Node& list, Faults& faults) {
+std::vector<TimelineEntry> read_timeline(const YAML::Node& list, ValidationErrors& errors) {
   std::vector<TimelineEntry> timeline;
   const std::string key = "run.timeline";
   if (!list.IsDefined() || list.IsNull()) return timeline;
   if (!list.IsSequence()) {
-    faults.add(key, yaml::shown(list) + " where a list is expected");
+    errors.add(key, yaml::node_text(list) + " is given where a list is expected");
     return timeline;
   }
   if (list.size() > max_timeline_entries) {
-    faults.add(
-        key, std::to_string(list.size()) + " entries are more than " + std::to_string(max_timeline_entries));
+    errors.add(key, std::to_string(list.size()) + " entries are given (allowed: at most " +
+                        std::to_string(max_timeline_entries) + ")");
     return timeline;
   }
   for (std::size_t n = 0; n < list.size(); ++n) {
-    timeline.push_back(read_entry(list[n], key + "." + std::to_string(n), faults));
+    timeline.push_back(read_entry(list[n], key + "." + std::to_string(n), errors));
     if (n > 0 && timeline[n].time < timeline[n - 1].time)
-      faults.add(key + "." + std::to_string(n) + ".time", "is earlier than that of the previous entry");
+      errors.add(key + "." + std::to_string(n) + ".time", "is earlier than that of the previous entry");
   }
   return timeline;
 }
@@ -120,7 +120,7 @@ void emit_timeline(YAML::Emitter& out, const std::vector<TimelineEntry>& timelin
   out << YAML::EndSeq;
 }
 
-void check_timeline(const Scenario& scenario, Faults& faults) {
+void check_timeline(const Scenario& scenario, ValidationErrors& errors) {
   Scenario then = scenario;
   then.timeline.clear();
   for (int* cells : {&then.grid.width, &then.grid.height}) *cells = *cells > 0 ? *cells : 1;
@@ -129,7 +129,7 @@ void check_timeline(const Scenario& scenario, Faults& faults) {
     try {
       then = with_live_settings(then, scenario.timeline[n].settings);
     } catch (const ConfigError& e) {
-      faults.add("run.timeline." + std::to_string(n) + ".set", e.what());
+      errors.add("run.timeline." + std::to_string(n) + ".set", e.what());
     }
   }
 }

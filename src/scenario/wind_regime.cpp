@@ -10,10 +10,10 @@ namespace desert_sim {
 
 namespace {
 
-wind::Vector of(const WindSegment& s) { return wind_vector(s.direction_deg, s.speed); }
+wind::Vector segment_wind(const WindSegment& s) { return wind_vector(s.direction_deg, s.speed); }
 
 /// Linear interpolation from `a` to `b` after `elapsed` of `ramp` seconds.
-wind::Vector ramped(wind::Vector a, wind::Vector b, double elapsed, double ramp) {
+wind::Vector interpolate_ramp(wind::Vector a, wind::Vector b, double elapsed, double ramp) {
   if (ramp <= 0 || elapsed >= ramp) return b;
   const double t = elapsed / ramp;
   return {static_cast<float>(a.x + t * (b.x - a.x)), static_cast<float>(a.y + t * (b.y - a.y))};
@@ -22,14 +22,15 @@ wind::Vector ramped(wind::Vector a, wind::Vector b, double elapsed, double ramp)
 }  // namespace
 
 wind::Vector unit_vector(double direction_deg) {
-  const double turned = std::fmod(direction_deg, 360.0);
-  const double quarters = turned / 90.0;
+  const double angle_deg = std::fmod(direction_deg, 360.0);
+  const double quarters = angle_deg / 90.0;
   if (quarters == std::floor(quarters)) {
     constexpr int cosines[] = {1, 0, -1, 0};
     const int q = (static_cast<int>(quarters) % 4 + 4) % 4;
     return {static_cast<float>(cosines[q]), static_cast<float>(cosines[(q + 3) % 4])};
   }
-  return {static_cast<float>(std::cos(turned * pi / 180)), static_cast<float>(std::sin(turned * pi / 180))};
+  return {static_cast<float>(std::cos(angle_deg * pi / 180)),
+          static_cast<float>(std::sin(angle_deg * pi / 180))};
 }
 
 wind::Vector wind_vector(double direction_deg, double speed) {
@@ -45,18 +46,18 @@ void speed_and_direction(wind::Vector w, double& speed, double& direction_deg) {
 wind::Vector WindRegime::at(double time) const {
   const double elapsed = std::max(0.0, time - start_time);
   if (regime == WindRegimeKind::constant)
-    return ramped(from, wind_vector(direction_deg, speed), elapsed, ramp);
+    return interpolate_ramp(initial_wind, wind_vector(direction_deg, speed), elapsed, ramp);
   if (regime == WindRegimeKind::rose) {
-    const auto hold = static_cast<std::uint64_t>(elapsed / hold_time);
+    const auto draw_index = static_cast<std::uint64_t>(elapsed / hold_time);
     double total = 0;
     for (const WindSegment& s : segments) total += s.probability;
-    double draw = total * random_unit(rose_seed, Purpose::wind_rose, static_cast<std::uint32_t>(hold),
-                                      static_cast<std::uint32_t>(hold >> 32));
+    double draw = total * random_unit(rose_seed, Purpose::wind_rose, static_cast<std::uint32_t>(draw_index),
+                                      static_cast<std::uint32_t>(draw_index >> 32));
     for (const WindSegment& s : segments) {
       draw -= s.probability;
-      if (draw < 0) return of(s);
+      if (draw < 0) return segment_wind(s);
     }
-    return of(segments.back());
+    return segment_wind(segments.back());
   }
   double length = 0;
   for (const WindSegment& s : segments) length += s.duration;
@@ -66,13 +67,13 @@ wind::Vector WindRegime::at(double time) const {
     t = std::fmod(t, length);
     first_round = false;
   }
-  wind::Vector before = first_round ? from : of(segments.back());
+  wind::Vector before = first_round ? initial_wind : segment_wind(segments.back());
   for (const WindSegment& s : segments) {
-    if (t < s.duration) return ramped(before, of(s), t, s.ramp);
+    if (t < s.duration) return interpolate_ramp(before, segment_wind(s), t, s.ramp);
     t -= s.duration;
-    before = of(s);
+    before = segment_wind(s);
   }
-  return of(segments.back());
+  return segment_wind(segments.back());
 }
 
 }  // namespace desert_sim

@@ -11,7 +11,7 @@
 namespace desert_sim {
 
 enum class WindRegimeKind : int { constant, timeline, rose };
-constexpr const char* wind_regime_kinds[] = {"constant", "timeline", "rose"};
+constexpr const char* wind_regime_kind_names[] = {"constant", "timeline", "rose"};
 
 /// One entry of a timeline, or one direction of a rose.
 struct WindSegment {
@@ -50,7 +50,7 @@ struct WindRegimeParameters {
 constexpr auto parameter_table(const WindRegimeParameters*) {
   using P = WindRegimeParameters;
   return std::make_tuple(
-      parameter("regime", &P::regime, wind_regime_kinds,
+      parameter("regime", &P::regime, wind_regime_kind_names,
                 "constant; timeline: `segments` in turn; rose: one of `segments` drawn every hold_time."),
       parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
                 "Where the constant wind blows to, counter-clockwise from +x."),
@@ -68,7 +68,7 @@ static_assert(table_is_complete<WindRegimeParameters>());
 struct WindRegime : WindRegimeParameters {
   std::vector<WindSegment> segments{};  ///< segments of a timeline, or directions of a rose
   double start_time = 0;                ///< simulated time at which it began [s]
-  wind::Vector from{};                  ///< wind at start_time, from which the first ramp starts
+  wind::Vector initial_wind{};          ///< wind at start_time, from which the first ramp starts
 
   /// The wind at simulated time `time` [s]. A timeline that does not repeat holds its last segment.
   wind::Vector at(double time) const;

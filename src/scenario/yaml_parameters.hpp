@@ -15,10 +15,10 @@
 
 namespace desert_sim {
 
-/// Collects all faults of an input, so that one exception reports them together.
-class Faults {
+/// Collects all errors of an input, so that one exception reports them together.
+class ValidationErrors {
  public:
-  explicit Faults(std::string source) : source_(std::move(source)) {}
+  explicit ValidationErrors(std::string source) : source_(std::move(source)) {}
   void add(const std::string& key, const std::string& what) {
     text_ += (text_.empty() ? "" : "\n") + source_ + ": " + key + ": " + what;
   }
@@ -32,7 +32,7 @@ class Faults {
 
 namespace yaml {
 
-inline std::string shown(const YAML::Node& node) {
+inline std::string node_text(const YAML::Node& node) {
   if (node.IsScalar()) {
     const std::string text = node.Scalar();
     return text.size() <= 60 ? text : text.substr(0, 57) + "...";
@@ -59,33 +59,34 @@ bool in_range(double number, const Row& row) {
     return number >= row.lowest && number <= row.highest;
 }
 
-/// Reads a number and adds a fault if it is not in the row's range. NaN and infinities (.nan, .inf) are
-/// parsed too, so that the fault names them.
+/// Reads a number and adds an error if it is not in the row's range. NaN and infinities (.nan, .inf) are
+/// parsed too, so that the error names them.
 template <class T, class Row>
-bool read_number(const YAML::Node& node, const Row& row, const std::string& key, Faults& faults,
+bool read_number(const YAML::Node& node, const Row& row, const std::string& key, ValidationErrors& errors,
                  double& number) {
   if (!node.IsScalar() || node.Tag() == "!" || !YAML::convert<double>::decode(node, number)) {
-    faults.add(key, shown(node) + " is not a number (allowed: " + allowed_range(row) + ")");
+    errors.add(key, node_text(node) + " is not a number (allowed: " + allowed_range(row) + ")");
     return false;
   }
   if (!in_range<T>(number, row)) {
-    faults.add(key, "= " + shown(node) + " is not in " + allowed_range(row));
+    errors.add(key, "= " + node_text(node) + " is not in " + allowed_range(row));
     return false;
   }
   return true;
 }
 
 template <class Row, class T>
-void read_value(const YAML::Node& node, const Row& row, const std::string& key, Faults& faults, T& value) {
+void read_value(const YAML::Node& node, const Row& row, const std::string& key, ValidationErrors& errors,
+                T& value) {
   double number = 0;
   if constexpr (std::is_same_v<T, bool>) {
     if (!node.IsScalar() || node.Tag() == "!" || !YAML::convert<bool>::decode(node, value))
-      faults.add(key, shown(node) + " is not true or false");
+      errors.add(key, node_text(node) + " is not true or false");
   } else if constexpr (std::is_same_v<T, std::string>) {
     if (node.IsScalar()) {
       value = node.Scalar();
     } else {
-      faults.add(key, shown(node) + " is not a text");
+      errors.add(key, node_text(node) + " is not a string");
     }
   } else if constexpr (std::is_enum_v<T>) {
     std::string known;
@@ -96,26 +97,27 @@ void read_value(const YAML::Node& node, const Row& row, const std::string& key, 
       }
       known += (n ? ", " : "") + std::string(row.choices[n]);
     }
-    faults.add(key, "'" + shown(node) + "' is not one of: " + known);
+    errors.add(key, "'" + node_text(node) + "' is not one of: " + known);
   } else if constexpr (std::is_same_v<T, ShortList>) {
     if (!node.IsSequence() || node.size() < 1 || node.size() > ShortList::capacity) {
-      faults.add(key, "must be a list of 1 to " + std::to_string(ShortList::capacity) + " numbers");
+      errors.add(key, "must be a list of 1 to " + std::to_string(ShortList::capacity) + " numbers");
       return;
     }
     ShortList list;
     for (std::size_t n = 0; n < node.size(); ++n)
-      if (read_number<T>(node[n], row, key + "[" + std::to_string(n) + "]", faults, number))
+      if (read_number<T>(node[n], row, key + "[" + std::to_string(n) + "]", errors, number))
         list.values[list.count++] = static_cast<float>(number);
     if (list.count == static_cast<int>(node.size())) value = list;
   } else if constexpr (std::is_floating_point_v<T>) {
-    if (read_number<T>(node, row, key, faults, number)) value = static_cast<T>(number);
+    if (read_number<T>(node, row, key, errors, number)) value = static_cast<T>(number);
   } else {
-    if (!read_number<T>(node, row, key, faults, number)) return;
+    if (!read_number<T>(node, row, key, errors, number)) return;
     if (!YAML::convert<T>::decode(node, value)) {
       if (number == std::floor(number)) {
         value = static_cast<T>(number);
       } else {
-        faults.add(key, "= " + shown(node) + " is not a whole number (allowed: " + allowed_range(row) + ")");
+        errors.add(key,
+                   "= " + node_text(node) + " is not a whole number (allowed: " + allowed_range(row) + ")");
       }
     }
   }
@@ -123,23 +125,23 @@ void read_value(const YAML::Node& node, const Row& row, const std::string& key, 
 
 /// Reads the keys of `section` that belong to P and adds their names to `known`.
 template <class P>
-void read_parameters(const YAML::Node& section, const std::string& path, Faults& faults, P& parameters,
-                     std::set<std::string>& known) {
+void read_parameters(const YAML::Node& section, const std::string& path, ValidationErrors& errors,
+                     P& parameters, std::set<std::string>& known) {
   for_each_parameter(parameters, [&](const auto& row, auto& value) {
     known.insert(row.name);
     if (!section.IsDefined() || !section.IsMap()) return;
     const YAML::Node node = section[row.name];
-    if (node.IsDefined()) read_value(node, row, path + row.name, faults, value);
+    if (node.IsDefined()) read_value(node, row, path + row.name, errors, value);
   });
 }
 
-/// Adds a fault for each key that is not in `known`, and for each key that is given twice.
-inline void refuse_unknown(const YAML::Node& section, const std::string& path,
-                           const std::set<std::string>& known, Faults& faults) {
+/// Adds an error for each key that is not in `known`, and for each key that is given twice.
+inline void reject_unknown_keys(const YAML::Node& section, const std::string& path,
+                                const std::set<std::string>& known, ValidationErrors& errors) {
   if (!section.IsDefined() || section.IsNull()) return;
   if (!section.IsMap()) {
-    faults.add(path.empty() ? "top level" : path.substr(0, path.size() - 1),
-               shown(section) + " where keys and values are expected");
+    errors.add(path.empty() ? "top level" : path.substr(0, path.size() - 1),
+               node_text(section) + " is given where keys and values are expected");
     return;
   }
   std::string all;
@@ -147,17 +149,18 @@ inline void refuse_unknown(const YAML::Node& section, const std::string& path,
   std::set<std::string> seen;
   for (const auto& entry : section) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
-    if (!known.count(key)) faults.add(path + key, "unknown key (known here: " + all + ")");
-    if (!seen.insert(key).second) faults.add(path + key, "is given twice");
+    if (!known.count(key)) errors.add(path + key, "unknown key (known here: " + all + ")");
+    if (!seen.insert(key).second) errors.add(path + key, "is given twice");
   }
 }
 
 /// Reads a section that consists of one parameter table.
 template <class P>
-void read_section(const YAML::Node& section, const std::string& path, Faults& faults, P& parameters) {
+void read_section(const YAML::Node& section, const std::string& path, ValidationErrors& errors,
+                  P& parameters) {
   std::set<std::string> known;
-  read_parameters(section, path + ".", faults, parameters, known);
-  refuse_unknown(section, path + ".", known, faults);
+  read_parameters(section, path + ".", errors, parameters, known);
+  reject_unknown_keys(section, path + ".", known, errors);
 }
 
 /// Writes all parameters as entries of an open map. After set_full_precision(), floats are read back exactly.

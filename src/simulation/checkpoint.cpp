@@ -25,27 +25,27 @@ void append(std::string& to, const T& value) {
 }
 
 template <class T>
-T take_from(const std::string& from, std::size_t& at, const std::string& path) {
+T read_value(const std::string& from, std::size_t& at, const std::string& path) {
   T value;
-  if (from.size() - at < sizeof value) throw ConfigError(path + ": is cut off");
+  if (from.size() - at < sizeof value) throw ConfigError(path + ": is truncated");
   std::memcpy(&value, from.data() + at, sizeof value);
   at += sizeof value;
   return value;
 }
 
-std::string read_whole(const std::string& path) {
+std::string read_checked(const std::string& path) {
   std::string bytes = read_file(path);
   if (bytes.compare(0, magic.size(), magic) != 0) throw ConfigError(path + ": is not a checkpoint");
   std::size_t at = magic.size();
-  const auto found = take_from<std::uint32_t>(bytes, at, path);
+  const auto found = read_value<std::uint32_t>(bytes, at, path);
   if (found != version)
     throw ConfigError(path + ": is a checkpoint of version " + std::to_string(found) +
                       "; this program reads version " + std::to_string(version));
-  if (bytes.size() < at + sizeof(std::uint64_t) * 2) throw ConfigError(path + ": is cut off");
+  if (bytes.size() < at + sizeof(std::uint64_t) * 2) throw ConfigError(path + ": is truncated");
   std::size_t end = bytes.size() - sizeof(std::uint64_t);
   const std::size_t body = end;
-  if (take_from<std::uint64_t>(bytes, end, path) != XXH3_64bits(bytes.data(), body))
-    throw ConfigError(path + ": is cut off or corrupt (its checksum is wrong)");
+  if (read_value<std::uint64_t>(bytes, end, path) != XXH3_64bits(bytes.data(), body))
+    throw ConfigError(path + ": is truncated or corrupt (its checksum does not match)");
   return bytes;
 }
 
@@ -74,7 +74,7 @@ void emit_ramps(YAML::Emitter& out, const std::vector<Ramp>& ramps) {
     entry(out, "to", r.to);
     entry(out, "start", r.start);
     entry(out, "duration", r.duration);
-    entry(out, "stair", r.stair);
+    entry(out, "stair", r.step_index);
     out << YAML::EndMap;
   }
   out << YAML::EndSeq;
@@ -148,7 +148,7 @@ std::unique_ptr<Simulation> simulation_of(const YAML::Node& header, Exec& exec, 
     r.to = node["to"].as<double>();
     r.start = node["start"].as<double>();
     r.duration = node["duration"].as<double>();
-    r.stair = node["stair"].as<int>();
+    r.step_index = node["stair"].as<int>();
     s.ramps.push_back(r);
   }
   for (std::size_t m = 0; m < s.initial.size(); ++m) s.initial[m] = header["initial"][m].as<long long>();
@@ -180,7 +180,7 @@ std::string checkpoint_bytes(const Simulation& simulation) {
   const auto append_words = [&bytes](const std::vector<std::uint32_t>& words) {
     bytes.append(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t));
   };
-  for (Layer layer : layers) append_words(state.terrain.words(layer));
+  for (Layer layer : layers) append_words(state.terrain.raw_words(layer));
   append_words(plants);
   append(bytes, static_cast<std::uint64_t>(XXH3_64bits(bytes.data(), bytes.size())));
   return bytes;
@@ -191,10 +191,10 @@ void save_checkpoint(const std::string& path, const Simulation& simulation) {
 }
 
 std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec) {
-  const std::string bytes = read_whole(path);
+  const std::string bytes = read_checked(path);
   std::size_t at = magic.size() + sizeof version;
-  const auto length = take_from<std::uint64_t>(bytes, at, path);
-  if (length > bytes.size() - at) throw ConfigError(path + ": is cut off");
+  const auto length = read_value<std::uint64_t>(bytes, at, path);
+  if (length > bytes.size() - at) throw ConfigError(path + ": is truncated");
   try {
     const YAML::Node header = YAML::Load(bytes.substr(at, length));
     at += length;
@@ -203,13 +203,13 @@ std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec)
     const std::size_t cells = static_cast<std::size_t>(state.terrain.grid().cells());
     const auto next_words = [&](std::size_t count) {
       std::vector<std::uint32_t> words(count);
-      if ((bytes.size() - at) / sizeof(std::uint32_t) < count) throw ConfigError(path + ": is cut off");
+      if ((bytes.size() - at) / sizeof(std::uint32_t) < count) throw ConfigError(path + ": is truncated");
       if (count > 0) std::memcpy(words.data(), bytes.data() + at, count * sizeof(std::uint32_t));
       at += count * sizeof(std::uint32_t);
       return words;
     };
     for (const YAML::Node& name : header["layers"])
-      state.terrain.set_words(layer_by_name(name.as<std::string>()), next_words(cells));
+      state.terrain.set_raw_words(layer_by_name(name.as<std::string>()), next_words(cells));
     const std::vector<std::uint32_t> plants =
         next_words(header["plants"].as<std::size_t>() * plants::column_count);
     if (state.plants) state.set_plants(plants);

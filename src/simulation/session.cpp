@@ -28,8 +28,9 @@ Session::Session(const Scenario& scenario, const RasterLoader& load_raster, cons
 Session::Session(const RasterLoader& load_raster, const std::string& backend, int threads)
     : load_raster_(load_raster), exec_(make_exec(backend, threads, &backend_choice_)) {}
 
-std::unique_ptr<Session> Session::resumed(const std::string& checkpoint, const RasterLoader& load_raster,
-                                          const std::string& backend, int threads) {
+std::unique_ptr<Session> Session::from_checkpoint(const std::string& checkpoint,
+                                                  const RasterLoader& load_raster, const std::string& backend,
+                                                  int threads) {
   std::unique_ptr<Session> session(new Session(load_raster, backend, threads));
   session->simulation_ = load_checkpoint(checkpoint, *session->exec_);
   return session;
@@ -38,8 +39,8 @@ std::unique_ptr<Session> Session::resumed(const std::string& checkpoint, const R
 void Session::require_journal_of_this_scenario(const Journal& journal, const std::string& path) const {
   const Scenario& start = simulation_->start();
   if (journal.scenario_hash != scenario_hash(start))
-    throw ConfigError(path + ": is the journal of another scenario than " + start.name +
-                      " (or of other settings)");
+    throw ConfigError(path + ": is the journal of a scenario other than " + start.name +
+                      ", or of other settings");
 }
 
 Session::~Session() {
@@ -58,7 +59,7 @@ void Session::step() {
 
 Scenario Session::read_scenario(const command::LoadScenario& command) const {
   return command.terrain_only && is_bag(command.path)
-             ? scenario_of_bands(command.path, load_raster_, command.fill_nodata)
+             ? scenario_from_bands(command.path, load_raster_, command.fill_nodata)
              : desert_sim::load_scenario(command.path);
 }
 
@@ -66,39 +67,41 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
   Scenario next = read_scenario(command);
   check_scenario_(next);
   if (command.terrain_only) {
-    Scenario kept = simulation_->start();
-    kept.grid = next.grid;
-    kept.terrain = next.terrain;
-    kept.folder = next.folder;
-    kept.projection.clear();
-    next = std::move(kept);
+    Scenario merged = simulation_->start();
+    merged.grid = next.grid;
+    merged.terrain = next.terrain;
+    merged.folder = next.folder;
+    merged.projection.clear();
+    next = std::move(merged);
   }
   resolve_grid(next, load_raster_);
   auto simulation = std::make_unique<Simulation>(*exec_, next, load_raster_);
   const std::uint64_t hash = simulation->state_hash();
   if (command.hash != 0 && command.hash != hash)
-    throw ConfigError(command.path + ": is not the scenario that the journal means (its state hash differs)");
+    throw ConfigError(command.path +
+                      ": is not the scenario that the journal recorded (its state hash differs)");
   simulation_ = std::move(simulation);
   return hash;
 }
 
-CommandResult Session::carry_out(const command::Reset&, bool, Command&) {
+CommandResult Session::execute(const command::Reset&, bool, Command&) {
   check_scenario_(simulation_->start());
   simulation_ = std::make_unique<Simulation>(*exec_, simulation_->start(), load_raster_);
   return {};
 }
 
-CommandResult Session::carry_out(const command::LoadCheckpoint& load, bool, Command& journalled) {
+CommandResult Session::execute(const command::LoadCheckpoint& load, bool, Command& journalled) {
   std::unique_ptr<Simulation> loaded = load_checkpoint(load.path, *exec_);
   const std::uint64_t hash = loaded->state_hash();
   if (load.hash != 0 && load.hash != hash)
-    throw ConfigError(load.path + ": is not the checkpoint that the journal means (its state hash differs)");
+    throw ConfigError(load.path +
+                      ": is not the checkpoint that the journal recorded (its state hash differs)");
   simulation_ = std::move(loaded);
   journalled = command::LoadCheckpoint{load.path, hash};
   return {};
 }
 
-CommandResult Session::carry_out(const command::LoadScenario& load, bool, Command& journalled) {
+CommandResult Session::execute(const command::LoadScenario& load, bool, Command& journalled) {
   journalled = command::LoadScenario{load.path, load.terrain_only, load_scenario(load), load.fill_nodata};
   return {};
 }
@@ -106,7 +109,7 @@ CommandResult Session::carry_out(const command::LoadScenario& load, bool, Comman
 CommandResult Session::apply(const Command& command, bool with_change) {
   Command journalled = command;
   const CommandResult result =
-      std::visit([&](const auto& c) { return carry_out(c, with_change, journalled); }, command);
+      std::visit([&](const auto& c) { return execute(c, with_change, journalled); }, command);
   if (journal_) journal_->write(ticks_, journalled);
   return result;
 }

@@ -21,8 +21,9 @@ class Session {
           const std::string& journal_path = "");
   ~Session();
   /// Begins with a checkpoint, and with the scenario in it.
-  static std::unique_ptr<Session> resumed(const std::string& checkpoint, const RasterLoader& load_raster,
-                                          const std::string& backend, int threads);
+  static std::unique_ptr<Session> from_checkpoint(const std::string& checkpoint,
+                                                  const RasterLoader& load_raster, const std::string& backend,
+                                                  int threads);
   /// Throws ConfigError if the journal was written for another scenario; `path` names it in the message.
   void require_journal_of_this_scenario(const Journal& journal, const std::string& path) const;
 
@@ -31,7 +32,7 @@ class Session {
 
   /// Called before a command, a reset too, has rasters of a scenario read; throws ConfigError if they may not
   /// be.
-  void check_with(std::function<void(const Scenario&)> check) { check_scenario_ = std::move(check); }
+  void set_scenario_check(std::function<void(const Scenario&)> check) { check_scenario_ = std::move(check); }
 
   void step();
   /// Applies a command and journals it. A refused command throws ConfigError and changes nothing.
@@ -46,14 +47,14 @@ class Session {
  private:
   Session(const RasterLoader& load_raster, const std::string& backend, int threads);
   /// Each replaces what the journal will have by what a replay needs to find the same again.
-  CommandResult carry_out(const command::Reset& command, bool with_change, Command& journalled);
-  CommandResult carry_out(const command::LoadCheckpoint& command, bool with_change, Command& journalled);
-  CommandResult carry_out(const command::LoadScenario& command, bool with_change, Command& journalled);
-  CommandResult carry_out(const command::EditTerrain& command, bool with_change, Command&) {
+  CommandResult execute(const command::Reset& command, bool with_change, Command& journalled);
+  CommandResult execute(const command::LoadCheckpoint& command, bool with_change, Command& journalled);
+  CommandResult execute(const command::LoadScenario& command, bool with_change, Command& journalled);
+  CommandResult execute(const command::EditTerrain& command, bool with_change, Command&) {
     return simulation_->apply(command, with_change);
   }
   template <class Other>
-  CommandResult carry_out(const Other& command, bool, Command&) {
+  CommandResult execute(const Other& command, bool, Command&) {
     return simulation_->apply(command);
   }
   Scenario read_scenario(const command::LoadScenario& command) const;

@@ -41,11 +41,11 @@ Terrain build(Exec& exec, const Scenario& scenario, const RasterLoader& load_ras
 }  // namespace
 
 void require_reach(const Scenario& s) {
-  Faults faults(s.name);
+  ValidationErrors errors(s.name);
   const auto check = [&](const char* key, double metres) {
     const double cells = metres / s.grid.cell_size;
     if (cells > max_displacement)
-      faults.add(key, "reaches over " + std::to_string(static_cast<long long>(cells)) + " cells of " +
+      errors.add(key, "reaches across " + std::to_string(static_cast<long long>(cells)) + " cells of " +
                           std::to_string(s.grid.cell_size) +
                           " m (allowed: " + std::to_string(max_displacement) + ")");
   };
@@ -58,7 +58,7 @@ void require_reach(const Scenario& s) {
   for (const WindSegment& segment : s.wind_segments)
     fastest = std::max(fastest, static_cast<double>(segment.speed));
   check("run.time_step", fastest * s.wind.speedup_highest * s.run.time_step);
-  faults.throw_if_any();
+  errors.throw_if_any();
 }
 
 Simulation::Simulation(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster,
@@ -75,7 +75,7 @@ Simulation::Simulation(const Scenario& scenario, Terrain terrain, const ProcessT
       views_(state_, pipeline_) {}
 
 void Simulation::step() {
-  commands_.follow_timeline();
+  commands_.apply_timeline();
   pipeline_.step();
 }
 

@@ -45,7 +45,6 @@ class Simulation {
   const SimulationState& state() const { return state_; }
   Pipeline& pipeline() { return pipeline_; }
   const Pipeline& pipeline() const { return pipeline_; }
-  Views& views() { return views_; }
 
   // ---- What is asked most often of the parts
 
@@ -57,7 +56,6 @@ class Simulation {
   const Terrain& terrain() const { return state_.terrain; }
   Exec& exec() const { return state_.exec(); }
   wind::Vector wind_above() const { return state_.wind_above(); }
-  const plants::Workspace& plants() const { return state_.plants; }
   std::uint64_t state_hash() const { return state_.hash(); }
   std::array<MaterialBalance, material_count> balance() const { return state_.balance(); }
   std::vector<PlantCount> plant_counts() const { return state_.plant_counts(); }
@@ -76,10 +74,10 @@ class Simulation {
   void hold_elevation() { views_.hold_elevation(); }
   void forget_elevation() { views_.forget_elevation(); }
   bool holds_elevation() const { return views_.holds_elevation(); }
-  Pending<ElevationChanges> take_elevation_changes(double threshold, int tile) {
-    return views_.take_elevation_changes(threshold, tile);
+  Pending<ElevationChanges> begin_elevation_changes(double threshold, int tile) {
+    return views_.begin_elevation_changes(threshold, tile);
   }
-  TakenCosts take_costs(const CostQuery& query) { return views_.take_costs(query); }
+  PendingCosts begin_costs(const CostQuery& query) { return views_.begin_costs(query); }
   void forget_costs() { views_.forget_costs(); }
   Staging& staging() { return views_.staging(); }
 

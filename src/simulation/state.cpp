@@ -38,26 +38,25 @@ std::vector<Layer> SimulationState::layers_in_use() const {
 }
 
 void SimulationState::set_wind_regime(WindRegime regime) {
-  regime.from = wind_above();
+  regime.initial_wind = wind_above();
   regime.start_time = time();
   wind_regime = std::move(regime);
 }
 
 void SimulationState::set_plants(const std::vector<std::uint32_t>& words) {
   const std::size_t count = words.size() / plants::column_count,
-                    room = static_cast<std::size_t>(plants.capacity);
-  if (count > room)
-    throw ConfigError(std::to_string(count) + " plants are more than there is room for, " +
-                      std::to_string(room));
+                    capacity = static_cast<std::size_t>(plants.capacity);
+  if (count > capacity)
+    throw ConfigError(std::to_string(count) + " plants exceed the capacity of " + std::to_string(capacity));
   for (std::size_t c = 0; c < plants::column_count && count > 0; ++c)
-    exec().upload(plants.next.data() + c * room, words.data() + c * count, count * sizeof(std::uint32_t));
+    exec().upload(plants.next.data() + c * capacity, words.data() + c * count, count * sizeof(std::uint32_t));
   with_backend(exec(), [&](auto& e) { plants::sort_plants(e, static_cast<int>(count), 0, plants); });
 }
 
 void SimulationState::begin_balance() {
   with_backend(exec(), [this](auto& e) { surface::fill_elevation(e, terrain.view()); });
   wind_reference = wall_height;
-  for (std::uint32_t word : terrain.words(Layer::elevation))
+  for (std::uint32_t word : terrain.raw_words(Layer::elevation))
     wind_reference = std::min(wind_reference, static_cast<Quanta>(word));
   for (int m = 0; m < material_count; ++m)
     initial[static_cast<std::size_t>(m)] = material_now(static_cast<Material>(m));
@@ -96,18 +95,18 @@ long long SimulationState::material_now(Material material) const {
     case Material::moisture:
       return total(Layer::moisture);
   }
-  throw Error("unknown material");
+  throw Error("the material is unknown");
 }
 
 std::array<MaterialBalance, material_count> SimulationState::balance() const {
-  const std::vector<long long> books = read_ledger();
+  const std::vector<long long> accounts = read_ledger();
   const double cell = scenario.grid.cell_size * scenario.grid.cell_size;
   std::array<MaterialBalance, material_count> all;
   for (std::size_t m = 0; m < all.size(); ++m) {
     all[m].initial = initial[m];
     all[m].final = material_now(static_cast<Material>(m));
-    all[m].in = books[2 * m];
-    all[m].out = books[2 * m + 1];
+    all[m].in = accounts[2 * m];
+    all[m].out = accounts[2 * m + 1];
     all[m].quantum_volume = terrain.scale().quantum() * cell;
   }
   all[static_cast<std::size_t>(Material::bedrock)].base_volume =
@@ -126,10 +125,11 @@ std::vector<PlantCount> SimulationState::plant_counts() const {
   std::vector<PlantCount> counts;
   if (!plants) return counts;
   for (const Species& species : scenario.species) counts.push_back({species.name});
-  const auto count = static_cast<std::size_t>(plants.count), room = static_cast<std::size_t>(plants.capacity);
+  const auto count = static_cast<std::size_t>(plants.count),
+             capacity = static_cast<std::size_t>(plants.capacity);
   const auto column = [&](plants::Column c) {
     std::vector<std::uint32_t> words(count);
-    if (count > 0) plants.now.download(static_cast<std::size_t>(c) * room, count, words.data());
+    if (count > 0) plants.now.download(static_cast<std::size_t>(c) * capacity, count, words.data());
     return words;
   };
   const std::vector<std::uint32_t> kinds = column(plants::Column::species),

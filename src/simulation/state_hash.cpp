@@ -11,11 +11,11 @@ namespace desert_sim {
 std::uint64_t SimulationState::hash() const {
   const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> owned(XXH3_createState(), XXH3_freeState);
   XXH3_state_t* const sum = owned.get();
-  if (!sum) throw Error("no memory for a hash");
+  if (!sum) throw Error("the memory for the state hash cannot be allocated");
   XXH3_64bits_reset(sum);
   for (const LayerInfo& row : layer_table) {
     if (row.lifetime != Lifetime::persistent || !terrain.has(row.layer)) continue;
-    const std::vector<std::uint32_t> words = terrain.words(row.layer);
+    const std::vector<std::uint32_t> words = terrain.raw_words(row.layer);
     XXH3_64bits_update(sum, row.name, std::char_traits<char>::length(row.name));
     XXH3_64bits_update(sum, words.data(), words.size() * sizeof(std::uint32_t));
   }
@@ -24,8 +24,8 @@ std::uint64_t SimulationState::hash() const {
     XXH3_64bits_update(sum, "plants", 6);
     XXH3_64bits_update(sum, words.data(), words.size() * sizeof(std::uint32_t));
   }
-  const std::vector<long long> books = read_ledger();
-  XXH3_64bits_update(sum, books.data(), books.size() * sizeof(long long));
+  const std::vector<long long> accounts = read_ledger();
+  XXH3_64bits_update(sum, accounts.data(), accounts.size() * sizeof(long long));
   XXH3_64bits_update(sum, &steps, sizeof steps);
   return XXH3_64bits_digest(sum);
 }

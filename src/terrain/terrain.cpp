@@ -31,22 +31,22 @@ Terrain::Terrain(Exec& exec, const Grid& grid, const HeightScale& scale)
   const long long cells = static_cast<long long>(grid.width) * grid.height;
   if (cells > max_grid_cells)
     throw ConfigError("grid of " + std::to_string(grid.width) + " x " + std::to_string(grid.height) +
-                      " has " + std::to_string(cells) + " cells; more than " +
-                      std::to_string(max_grid_cells) + " cannot be indexed");
+                      " has " + std::to_string(cells) + " cells (allowed: at most " +
+                      std::to_string(max_grid_cells) + ")");
   for (Layer layer :
        {Layer::bedrock, Layer::sand, Layer::airborne_sand, Layer::elevation, Layer::wind_x, Layer::wind_y})
-    require(layer);
+    allocate(layer);
 }
 
-void Terrain::require(Layer layer) {
+void Terrain::allocate(Layer layer) {
   auto& buffer = layers_[static_cast<std::size_t>(layer)];
   if (buffer) return;
   buffer = Buffer<std::uint32_t>(*exec_, static_cast<std::size_t>(grid_.cells()));
   buffer.set_zero();
 }
 
-void Terrain::use(Layer layer, bool wanted) {
-  if (wanted) return require(layer);
+void Terrain::set_allocated(Layer layer, bool wanted) {
+  if (wanted) return allocate(layer);
   layers_[static_cast<std::size_t>(layer)] = {};
 }
 
@@ -59,23 +59,23 @@ TerrainView Terrain::view() const {
   return v;
 }
 
-std::vector<std::uint32_t> Terrain::words(Layer layer) const {
+std::vector<std::uint32_t> Terrain::raw_words(Layer layer) const {
   return layers_[static_cast<std::size_t>(layer)].download();
 }
 
-void Terrain::set_words(Layer layer, const std::vector<std::uint32_t>& words) {
-  require(layer);
-  layers_[static_cast<std::size_t>(layer)].upload(words);
+void Terrain::set_raw_words(Layer layer, const std::vector<std::uint32_t>& raw_words) {
+  allocate(layer);
+  layers_[static_cast<std::size_t>(layer)].upload(raw_words);
 }
 
-Metres Terrain::metres(Layer layer) const {
-  return {scale_.quantum(), scale_.absolute(layer) ? scale_.datum : 0.0};
+QuantaToMetres Terrain::metres(Layer layer) const {
+  return {scale_.quantum(), scale_.is_elevation(layer) ? scale_.datum : 0.0};
 }
 
 std::vector<float> Terrain::values(Layer layer) const {
   std::vector<float> values(static_cast<std::size_t>(grid_.cells()), 0.0f);
   if (!has(layer)) return values;
-  const std::vector<std::uint32_t> stored = words(layer);
+  const std::vector<std::uint32_t> stored = raw_words(layer);
   if (info(layer).storage == Storage::real) {
     std::memcpy(values.data(), stored.data(), stored.size() * sizeof(float));
     return values;
@@ -86,19 +86,19 @@ std::vector<float> Terrain::values(Layer layer) const {
 }
 
 void Terrain::set_values(Layer layer, const std::vector<double>& values) {
-  std::vector<std::uint32_t> words(values.size());
+  std::vector<std::uint32_t> raw_words(values.size());
   if (info(layer).storage == Storage::real) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const float value = static_cast<float>(values[i]);
-      std::memcpy(&words[i], &value, sizeof value);
+      std::memcpy(&raw_words[i], &value, sizeof value);
     }
   } else {
-    const double per_metre = 1.0 / scale_.quantum(), datum = scale_.absolute(layer) ? scale_.datum : 0.0;
+    const double per_metre = 1.0 / scale_.quantum(), datum = scale_.is_elevation(layer) ? scale_.datum : 0.0;
     for (std::size_t i = 0; i < values.size(); ++i)
-      words[i] =
+      raw_words[i] =
           static_cast<std::uint32_t>(static_cast<Quanta>(std::llround((values[i] - datum) * per_metre)));
   }
-  set_words(layer, words);
+  set_raw_words(layer, raw_words);
 }
 
 std::size_t Terrain::bytes() const {

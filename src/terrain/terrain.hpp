@@ -26,7 +26,7 @@ struct HeightScale {
   /// headroom for moving sand.
   static HeightScale covering(double lowest, double highest);
   /// Whether the layer's values are elevations, which count from the datum.
-  bool absolute(Layer layer) const {
+  bool is_elevation(Layer layer) const {
     return layer == Layer::bedrock || layer == Layer::elevation || layer == Layer::water_surface;
   }
 };
@@ -43,23 +43,23 @@ class Terrain {
   const HeightScale& scale() const { return scale_; }
   bool has(Layer layer) const { return static_cast<bool>(layers_[static_cast<std::size_t>(layer)]); }
   /// Allocates the layer and fills it with 0, unless it is allocated already.
-  void require(Layer layer);
+  void allocate(Layer layer);
   /// Allocates a derived layer as require() does, or frees it.
-  void use(Layer layer, bool wanted);
+  void set_allocated(Layer layer, bool wanted);
   TerrainView view() const;
 
   /// Values in the layer's unit (bedrock and elevation absolute), row-major from the south-west; all 0 if the
   /// layer is not allocated.
   std::vector<float> values(Layer layer) const;
   /// The conversion of a layer's quanta to metres.
-  Metres metres(Layer layer) const;
+  QuantaToMetres metres(Layer layer) const;
   /// Sets a layer, rounding to quanta. `values` must have one value per cell, within the layer's range; the
   /// caller checks that.
   void set_values(Layer layer, const std::vector<double>& values);
 
   /// The layer's words as stored, for checkpoints and state hashes.
-  std::vector<std::uint32_t> words(Layer layer) const;
-  void set_words(Layer layer, const std::vector<std::uint32_t>& words);
+  std::vector<std::uint32_t> raw_words(Layer layer) const;
+  void set_raw_words(Layer layer, const std::vector<std::uint32_t>& raw_words);
   std::uint32_t* data(Layer layer) const { return layers_[static_cast<std::size_t>(layer)].data(); }
   /// Memory of all layers [bytes].
   std::size_t bytes() const;

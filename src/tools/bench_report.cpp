@@ -24,8 +24,8 @@ namespace {
 
 }  // namespace
 
-double BenchReport::milliseconds() const {
-  std::vector<double> sorted = repeats;
+double BenchReport::median_ms() const {
+  std::vector<double> sorted = block_times_ms;
   std::sort(sorted.begin(), sorted.end());
   return sorted.empty() ? 0 : sorted[sorted.size() / 2];
 }
@@ -36,26 +36,26 @@ double BenchReport::bytes() const {
   return sum;
 }
 
-double BenchReport::share_of_copy(double bytes_a_cell, double ms) const {
-  return ms > 0 && copied > 0 ? bytes_a_cell * cells() / (ms * 1e-3) / copied : 0;
+double BenchReport::copy_bandwidth_fraction(double bytes_a_cell, double ms) const {
+  return ms > 0 && copy_bandwidth > 0 ? bytes_a_cell * cells() / (ms * 1e-3) / copy_bandwidth : 0;
 }
 
 std::string bench_text(const BenchReport& r) {
-  const double ms = r.milliseconds();
-  const auto [fastest, slowest] = std::minmax_element(r.repeats.begin(), r.repeats.end());
+  const double ms = r.median_ms();
+  const auto [fastest, slowest] = std::minmax_element(r.block_times_ms.begin(), r.block_times_ms.end());
   std::string text =
       formatted("scene %s, %d x %d cells of %g m, %s (%s), quality %s, %d steps after %llu\n",
                 r.scene.c_str(), r.width, r.height, r.cell_size, r.backend.c_str(), r.device.c_str(),
                 r.quality.c_str(), r.steps, static_cast<unsigned long long>(r.warm_up));
   text += formatted("  %-12s %10.4f ms (median of %zu; %.4f ... %.4f)  %.2f M cell-steps/s\n", "whole step",
-                    ms, r.repeats.size(), *fastest, *slowest, r.cells() / ms * 1e-3);
+                    ms, r.block_times_ms.size(), *fastest, *slowest, r.cells() / ms * 1e-3);
   text +=
       formatted("  %-12s %10.1f GB/s; the least traffic of a step, %.0f bytes per cell, is %.1f %% of it\n",
-                "copy", r.copied * 1e-9, r.bytes(), 100 * r.share_of_copy(r.bytes(), ms));
+                "copy", r.copy_bandwidth * 1e-9, r.bytes(), 100 * r.copy_bandwidth_fraction(r.bytes(), ms));
   for (const BenchReport::Process& p : r.processes)
-    text +=
-        formatted("  %-12s %10.4f ms  at least %5.1f bytes per cell: %5.1f %% of copy speed\n",
-                  p.name.c_str(), p.milliseconds, p.bytes, 100 * r.share_of_copy(p.bytes, p.milliseconds));
+    text += formatted("  %-12s %10.4f ms  at least %5.1f bytes per cell: %5.1f %% of copy speed\n",
+                      p.name.c_str(), p.milliseconds, p.bytes,
+                      100 * r.copy_bandwidth_fraction(p.bytes, p.milliseconds));
   text += formatted(
       "  residual     %.4f %% of cells over 1e-3, %.4f %% over 1e-2, mean excess %.5f, largest %.5f; %.1f "
       "sweeps of the fine grid per step\n",
@@ -73,23 +73,25 @@ std::string bench_text(const BenchReport& r) {
 std::string bench_json(const BenchReport& r) {
   std::ostringstream out;
   const auto number = [](double value) { return json_number(value); };
-  const double ms = r.milliseconds();
-  out << "{\n  \"format\": \"desert_bench 1\",\n  \"scene\": " << json_text(r.scene)
+  const double ms = r.median_ms();
+  out << "{\n  \"format\": \"desert_bench 1\",\n  \"scene\": " << json_string(r.scene)
       << ",\n  \"width\": " << r.width << ",\n  \"height\": " << r.height
-      << ",\n  \"cell_size_m\": " << number(r.cell_size) << ",\n  \"quality\": " << json_text(r.quality)
-      << ",\n  \"backend\": " << json_text(r.backend) << ",\n  \"device\": " << json_text(r.device)
+      << ",\n  \"cell_size_m\": " << number(r.cell_size) << ",\n  \"quality\": " << json_string(r.quality)
+      << ",\n  \"backend\": " << json_string(r.backend) << ",\n  \"device\": " << json_string(r.device)
       << ",\n  \"threads\": " << r.threads << ",\n  \"warm_up_steps\": " << r.warm_up
       << ",\n  \"steps\": " << r.steps << ",\n  \"ms_per_step\": " << number(ms)
       << ",\n  \"ms_per_step_repeats\": [";
-  for (std::size_t n = 0; n < r.repeats.size(); ++n) out << (n ? ", " : "") << number(r.repeats[n]);
-  out << "],\n  \"copy_bytes_per_s\": " << number(r.copied)
+  for (std::size_t n = 0; n < r.block_times_ms.size(); ++n)
+    out << (n ? ", " : "") << number(r.block_times_ms[n]);
+  out << "],\n  \"copy_bytes_per_s\": " << number(r.copy_bandwidth)
       << ",\n  \"bytes_per_cell\": " << number(r.bytes())
-      << ",\n  \"share_of_copy\": " << number(r.share_of_copy(r.bytes(), ms)) << ",\n  \"processes\": {";
+      << ",\n  \"share_of_copy\": " << number(r.copy_bandwidth_fraction(r.bytes(), ms))
+      << ",\n  \"processes\": {";
   for (std::size_t n = 0; n < r.processes.size(); ++n) {
     const BenchReport::Process& p = r.processes[n];
-    out << (n ? ",\n    " : "\n    ") << json_text(p.name) << ": {\"ms\": " << number(p.milliseconds)
+    out << (n ? ",\n    " : "\n    ") << json_string(p.name) << ": {\"ms\": " << number(p.milliseconds)
         << ", \"bytes_per_cell\": " << number(p.bytes)
-        << ", \"share_of_copy\": " << number(r.share_of_copy(p.bytes, p.milliseconds)) << "}";
+        << ", \"share_of_copy\": " << number(r.copy_bandwidth_fraction(p.bytes, p.milliseconds)) << "}";
   }
   out << "\n  },\n  \"residual\": {\"share_over_1e-3\": " << number(r.residual.share_over_1e3)
       << ", \"share_over_1e-2\": " << number(r.residual.share_over_1e2)
@@ -101,7 +103,7 @@ std::string bench_json(const BenchReport& r) {
       << ",\n  \"memory_bytes_per_cell\": " << number(static_cast<double>(total_bytes(r.memory)) / r.cells())
       << ",\n  \"memory_bytes\": {";
   for (std::size_t n = 0; n < r.memory.size(); ++n)
-    out << (n ? ", " : "") << json_text(r.memory[n].name) << ": " << r.memory[n].bytes;
+    out << (n ? ", " : "") << json_string(r.memory[n].name) << ": " << r.memory[n].bytes;
   out << "}\n}\n";
   return out.str();
 }

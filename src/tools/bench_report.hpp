@@ -21,8 +21,8 @@ struct BenchReport {
   double cell_size = 0;                    ///< [m]
   std::uint64_t warm_up = 0;               ///< steps before the timing, including those of a checkpoint
   int steps = 0;                           ///< steps after the warm-up, before the residual was computed
-  std::vector<double> repeats;             ///< time per step in each block of steps [ms]
-  double copied = 0;  ///< bandwidth of a copy on the same device, read and written [bytes/s]
+  std::vector<double> block_times_ms;      ///< time per step in each block of steps [ms]
+  double copy_bandwidth = 0;  ///< bandwidth of a copy on the same device, read and written [bytes/s]
   std::vector<Process> processes;
   Residual residual;
   double fine_sweeps = 0;  ///< mean sweeps of avalanching over the fine grid per step
@@ -30,10 +30,10 @@ struct BenchReport {
   std::vector<MemoryPart> memory;
 
   double cells() const { return static_cast<double>(width) * height; }
-  double milliseconds() const;  ///< time per step: the median of the repeats
-  double bytes() const;         ///< least traffic per cell and step of all processes
+  double median_ms() const;  ///< time per step: the median of the repeats
+  double bytes() const;      ///< least traffic per cell and step of all processes
   /// Bandwidth of `bytes_a_cell` bytes per cell in `ms` milliseconds, relative to that of a copy.
-  double share_of_copy(double bytes_a_cell, double ms) const;
+  double copy_bandwidth_fraction(double bytes_a_cell, double ms) const;
 };
 
 /// The report as text for people.

@@ -8,7 +8,9 @@ bool is_bench_scene(const std::string& name) {
   return name == "A" || name == "B" || name == "mature" || name == "edited";
 }
 
-int warm_up_of(const std::string& scene) { return scene == "mature" || scene == "edited" ? mature_steps : 0; }
+int default_warm_up_steps(const std::string& scene) {
+  return scene == "mature" || scene == "edited" ? mature_steps : 0;
+}
 
 Scenario bench_scenario(const std::string& scene, int size, const Settings& settings) {
   if (!is_bench_scene(scene)) {

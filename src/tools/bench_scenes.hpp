@@ -20,7 +20,7 @@ constexpr int mature_steps = 2000;
 
 bool is_bench_scene(const std::string& name);
 /// Default number of steps before the timed ones.
-int warm_up_of(const std::string& scene);
+int default_warm_up_steps(const std::string& scene);
 /// The scene with this name, or the scenario in this file, with `size` × `size` cells. Throws ConfigError.
 Scenario bench_scenario(const std::string& scene, int size, const Settings& settings);
 /// The command that adds the column of sand in the scene `edited`.

@@ -51,7 +51,7 @@ int default_steps(int size, bool gpu) {
 }
 
 /// Bandwidth of a large copy, read and written [bytes/s].
-double measured_copy(Exec& exec) {
+double measure_copy_bandwidth(Exec& exec) {
   const std::size_t most = std::string(exec.backend()) == "cpu" ? std::size_t{1} << 28 : std::size_t{1} << 30;
   const std::size_t bytes = std::min(most, exec.memory_available() / 8);
   Buffer<char> from(exec, bytes), to(exec, bytes);
@@ -70,16 +70,16 @@ double measured_copy(Exec& exec) {
 }
 
 Settings settings_of(const Options& o) {
-  Settings settings = o.all("set");
+  Settings settings = o.values("set");
   if (o.has("quality")) settings.push_back("avalanching.quality=" + o.text("quality", ""));
   return settings;
 }
 
 /// A session from the checkpoint of --start, with the parameters that other options set.
-std::unique_ptr<Session> resumed(const Options& o, const std::string& scene, int threads) {
+std::unique_ptr<Session> resume_session(const Options& o, const std::string& scene, int threads) {
   const std::string path = o.text("start", "");
   if (o.has("warm-up")) throw ConfigError("--warm-up: cannot be combined with --start");
-  auto session = Session::resumed(path, raster_loader(), o.text("backend", "auto"), threads);
+  auto session = Session::from_checkpoint(path, raster_loader(), o.text("backend", "auto"), threads);
   const Scenario& found = session->simulation().scenario();
   const std::string wanted = bench_scenario(scene, found.grid.width, {}).name;
   if (found.name != wanted)
@@ -95,18 +95,18 @@ std::unique_ptr<Session> resumed(const Options& o, const std::string& scene, int
 }
 
 /// A session at the state from which timing starts.
-std::unique_ptr<Session> ready_session(const Options& o, const std::string& scene, int threads) {
-  if (o.has("start")) return resumed(o, scene, threads);
+std::unique_ptr<Session> prepare_session(const Options& o, const std::string& scene, int threads) {
+  if (o.has("start")) return resume_session(o, scene, threads);
   const int size = static_cast<int>(o.number("size", 512, 16, 65536));
   auto session = std::make_unique<Session>(bench_scenario(scene, size, settings_of(o)), raster_loader(),
                                            o.text("backend", "auto"), threads);
-  const long long warm_up = o.number("warm-up", warm_up_of(scene), 0, 1000000);
+  const long long warm_up = o.number("warm-up", default_warm_up_steps(scene), 0, 1000000);
   for (long long n = 0; n < warm_up; ++n) session->step();
   return session;
 }
 
 /// Milliseconds per step in each block of `count` steps, without the first block.
-std::vector<double> timed_blocks(Session& session, int count) {
+std::vector<double> time_blocks(Session& session, int count) {
   Exec& exec = session.simulation().exec();
   std::vector<double> times;
   for (int block = 0; block < blocks; ++block) {
@@ -119,7 +119,7 @@ std::vector<double> timed_blocks(Session& session, int count) {
   return times;
 }
 
-std::vector<BenchReport::Process> timed_processes(Session& session, int steps) {
+std::vector<BenchReport::Process> time_processes(Session& session, int steps) {
   Simulation& s = session.simulation();
   const std::vector<ProcessCost> model = cost_model(s.scenario(), s.terrain().grid());
   s.exec().synchronise();
@@ -137,7 +137,7 @@ BenchReport bench(const Options& o) {
   const std::string scene = o.text("scene", "A");
   const int threads = static_cast<int>(o.number("threads", 0, 1, 4096));
   if (threads > 0) omp_set_num_threads(threads);
-  const auto session = ready_session(o, scene, threads);
+  const auto session = prepare_session(o, scene, threads);
   Simulation& s = session->simulation();
   if (o.has("save-start")) session->save_checkpoint(o.text("save-start", ""));
 
@@ -155,24 +155,24 @@ BenchReport bench(const Options& o) {
   r.steps = blocks * count;
 
   if (scene == "edited") session->apply(bench_edit(s.scenario().grid));
-  r.repeats = timed_blocks(*session, count);
+  r.block_times_ms = time_blocks(*session, count);
   r.residual = s.residual();
   r.fine_sweeps = s.mean_avalanche_iterations();
   r.memory = s.memory();
-  r.processes = timed_processes(*session, std::max(3, r.steps / 20));
+  r.processes = time_processes(*session, std::max(3, r.steps / 20));
   r.sand = s.balance()[static_cast<std::size_t>(Material::sand)];
-  r.copied = measured_copy(s.exec());
+  r.copy_bandwidth = measure_copy_bandwidth(s.exec());
   return r;
 }
 
-int main_(const Options& o) {
+int run_program(const Options& o) {
   if (o.has("help")) return std::fputs(usage, stdout), 0;
   if (o.has("cost-model")) return std::fputs(cost_table().c_str(), stdout), 0;
   const std::string picture = o.text("roofline", "");
   if (!o.positional().empty()) {
     if (picture.empty())
       throw ConfigError("'" + o.positional()[0] + "': unexpected argument (--help shows the usage)");
-    return draw("--roofline", "roofline.py", picture, o.positional()), 0;
+    return run_plot_script("--roofline", "roofline.py", picture, o.positional()), 0;
   }
   const std::string json = o.text("json", "");
   if (!picture.empty() && (json.empty() || json == "-"))
@@ -181,7 +181,7 @@ int main_(const Options& o) {
   const BenchReport report = bench(o);
   std::fputs((json == "-" ? bench_json(report) : bench_text(report)).c_str(), stdout);
   if (!json.empty() && json != "-") write_file(json, bench_json(report));
-  if (!picture.empty()) draw("--roofline", "roofline.py", picture, {json});
+  if (!picture.empty()) run_plot_script("--roofline", "roofline.py", picture, {json});
   if (report.sand.residual() == 0) return 0;
   std::fprintf(stderr, "desert_bench: %lld quanta of sand were lost\n", -report.sand.residual());
   return 1;
@@ -191,10 +191,10 @@ int main_(const Options& o) {
 
 int main(int argc, char** argv) {
   try {
-    return main_(Options(argc, argv,
-                         {"scene", "size", "steps", "warm-up", "start", "save-start", "backend", "threads",
-                          "quality", "set", "json", "roofline"},
-                         {"cost-model", "help"}));
+    return run_program(Options(argc, argv,
+                               {"scene", "size", "steps", "warm-up", "start", "save-start", "backend",
+                                "threads", "quality", "set", "json", "roofline"},
+                               {"cost-model", "help"}));
   } catch (const ConfigError& e) {
     std::fprintf(stderr, "desert_bench: %s\n", e.what());
     return 2;

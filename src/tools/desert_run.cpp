@@ -44,7 +44,7 @@ const char usage[] =
 volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
 
-struct Plan {
+struct RunPlan {
   Options options;
   std::string out, checkpoint;
   std::vector<std::string> summaries;  ///< paths of the summaries written during the run
@@ -55,7 +55,7 @@ Scenario scenario_of(const Options& o) {
   if (o.positional().size() > 1)
     throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
   if (o.positional().empty()) throw ConfigError("no scenario given (--help shows the usage)");
-  Settings settings = o.all("set");
+  Settings settings = o.values("set");
   if (o.has("seed")) settings.push_back("seed=" + o.text("seed", ""));
   return load_scenario(o.positional()[0], settings);
 }
@@ -74,7 +74,7 @@ void time_processes(Simulation& simulation, bool timed, RunReport& report) {
 }
 
 /// Runs the session until tick `last` and applies the journal's commands at their ticks.
-void run(Session& session, Plan& plan, const Journal& journal, std::uint64_t last, RunReport& report) {
+void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t last, RunReport& report) {
   using Clock = std::chrono::steady_clock;
   std::size_t next = 0;
   const auto replay = [&] {
@@ -108,16 +108,16 @@ void run(Session& session, Plan& plan, const Journal& journal, std::uint64_t las
   session.simulation().exec().synchronise();
 }
 
-int main_(int argc, char** argv) {
-  Plan plan{Options(argc, argv,
-                    {"steps", "backend", "threads", "set", "seed", "out", "every", "plot", "checkpoint",
-                     "checkpoint-every", "resume", "replay"},
-                    {"describe", "describe-processes", "pipeline", "quiet", "help"}),
-            "",
-            "",
-            {},
-            0,
-            0};
+int run_program(int argc, char** argv) {
+  RunPlan plan{Options(argc, argv,
+                       {"steps", "backend", "threads", "set", "seed", "out", "every", "plot", "checkpoint",
+                        "checkpoint-every", "resume", "replay"},
+                       {"describe", "describe-processes", "pipeline", "quiet", "help"}),
+               "",
+               "",
+               {},
+               0,
+               0};
   const Options& o = plan.options;
   if (o.has("help")) return std::fputs(usage, stdout), 0;
   if (o.has("describe")) return std::cout << describe_parameters(), 0;
@@ -127,10 +127,10 @@ int main_(int argc, char** argv) {
   plan.every = static_cast<std::uint64_t>(o.number("every", 0, 1, 1LL << 40));
   plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
   const auto steps = static_cast<std::uint64_t>(o.number("steps", 0, 0, 1LL << 40));
-  if (plan.every && plan.out.empty()) throw ConfigError("--every: needs --out");
-  if (o.has("plot") && !plan.every) throw ConfigError("--plot: needs --out and --every");
+  if (plan.every && plan.out.empty()) throw ConfigError("--every: --out is required too");
+  if (o.has("plot") && !plan.every) throw ConfigError("--plot: --out and --every are required too");
   if (plan.checkpoint_every && plan.checkpoint.empty())
-    throw ConfigError("--checkpoint-every: needs --checkpoint");
+    throw ConfigError("--checkpoint-every: --checkpoint is required too");
   const int threads = static_cast<int>(o.number("threads", 0, 1, 4096));
   if (threads > 0) omp_set_num_threads(threads);
 
@@ -139,7 +139,7 @@ int main_(int argc, char** argv) {
   const std::string backend = o.text("backend", "auto");
   std::unique_ptr<Session> session;
   if (o.has("resume") && o.positional().empty()) {
-    session = Session::resumed(o.text("resume", ""), raster_loader(), backend, threads);
+    session = Session::from_checkpoint(o.text("resume", ""), raster_loader(), backend, threads);
   } else {
     session = std::make_unique<Session>(scenario_of(o), raster_loader(), backend, threads);
     if (o.has("replay")) session->require_journal_of_this_scenario(journal, o.text("replay", ""));
@@ -167,7 +167,7 @@ int main_(int argc, char** argv) {
   run(*session, plan, journal, last, report);
   if (!plan.out.empty()) write_outputs(plan.out, session->simulation(), report);
   if (o.has("plot") && !plan.summaries.empty())
-    draw("--plot", "plot_run.py", o.text("plot", ""), plan.summaries);
+    run_plot_script("--plot", "plot_run.py", o.text("plot", ""), plan.summaries);
   if (!plan.checkpoint.empty()) session->save_checkpoint(plan.checkpoint);
   if (plan.out.empty() && !o.has("quiet")) std::cout << summary(session->simulation(), report);
   const std::string missing = conservation_error(session->simulation().balance());
@@ -180,12 +180,12 @@ int main_(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return main_(argc, argv);
+    return run_program(argc, argv);
   } catch (const ConfigError& e) {
     std::fprintf(stderr, "desert_run: %s\n", e.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "desert_run: not enough memory\n");
+    std::fprintf(stderr, "desert_run: the host has not enough memory\n");
     return 3;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "desert_run: %s\n", e.what());

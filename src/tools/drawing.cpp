@@ -27,8 +27,8 @@ std::string script_path(const std::string& option, const std::string& script) {
 
 }  // namespace
 
-void draw(const std::string& option, const std::string& script, const std::string& picture,
-          const std::vector<std::string>& results) {
+void run_plot_script(const std::string& option, const std::string& script, const std::string& picture,
+                     const std::vector<std::string>& results) {
   std::vector<std::string> words{"python3", script_path(option, script), picture};
   words.insert(words.end(), results.begin(), results.end());
   std::vector<char*> arguments;

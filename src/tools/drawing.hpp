@@ -10,7 +10,7 @@ namespace desert_sim {
 /// Runs `script`, which draws `picture` (PNG) from JSON results. The script is searched for in the program's
 /// folder, then in the source tree. Throws ConfigError that names `option` if the script or python3 is
 /// missing, or if the script fails.
-void draw(const std::string& option, const std::string& script, const std::string& picture,
-          const std::vector<std::string>& results);
+void run_plot_script(const std::string& option, const std::string& script, const std::string& picture,
+                     const std::vector<std::string>& results);
 
 }  // namespace desert_sim

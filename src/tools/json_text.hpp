@@ -14,7 +14,7 @@ inline std::string json_number(double value) {
 }
 
 /// The text in double quotes, with special characters escaped.
-inline std::string json_text(const std::string& text) {
+inline std::string json_string(const std::string& text) {
   std::string out = "\"";
   for (char c : text) {
     char code[8];

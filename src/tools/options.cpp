@@ -32,21 +32,21 @@ Options::Options(int argc, char** argv, const std::vector<std::string>& with_val
   }
 }
 
-std::string Options::text(const std::string& name, const std::string& otherwise) const {
+std::string Options::text(const std::string& name, const std::string& default_value) const {
   const auto found = values_.find(name);
-  return found == values_.end() || found->second.empty() ? otherwise : found->second.back();
+  return found == values_.end() || found->second.empty() ? default_value : found->second.back();
 }
 
-const std::vector<std::string>& Options::all(const std::string& name) const {
+const std::vector<std::string>& Options::values(const std::string& name) const {
   static const std::vector<std::string> none;
   const auto found = values_.find(name);
   return found == values_.end() ? none : found->second;
 }
 
-long long Options::number(const std::string& name, long long otherwise, long long lowest,
+long long Options::number(const std::string& name, long long default_value, long long lowest,
                           long long highest) const {
   const std::string value = text(name, "");
-  if (value.empty() && !has(name)) return otherwise;
+  if (value.empty() && !has(name)) return default_value;
   char* end = nullptr;
   errno = 0;
   const long long number = std::strtoll(value.c_str(), &end, 10);

@@ -16,13 +16,14 @@ class Options {
 
   const std::vector<std::string>& positional() const { return positional_; }
   bool has(const std::string& name) const { return values_.count(name) > 0; }
-  /// The last value of an option, or `otherwise` if it was not given.
-  std::string text(const std::string& name, const std::string& otherwise) const;
+  /// The last value of an option, or `default_value` if it was not given.
+  std::string text(const std::string& name, const std::string& default_value) const;
   /// All values of an option in order.
-  const std::vector<std::string>& all(const std::string& name) const;
-  /// The last value as an integer in [lowest, highest], or `otherwise` if the option was not given. Throws
-  /// ConfigError.
-  long long number(const std::string& name, long long otherwise, long long lowest, long long highest) const;
+  const std::vector<std::string>& values(const std::string& name) const;
+  /// The last value as an integer in [lowest, highest], or `default_value` if the option was not given.
+  /// Throws ConfigError.
+  long long number(const std::string& name, long long default_value, long long lowest,
+                   long long highest) const;
 
  private:
   std::map<std::string, std::vector<std::string>> values_;

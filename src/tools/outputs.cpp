@@ -24,11 +24,11 @@ namespace {
 #if DESERT_WITH_IO
 void write_rasters(const std::string& folder, const Snapshot& s, const std::string& projection) {
   for (const auto& [layer, values] : s.layers)
-    write_geotiff(folder + "/" + info(layer).name + ".tif", raster_of(s, values, projection));
+    write_geotiff(folder + "/" + info(layer).name + ".tif", to_raster(s, values, projection));
 }
 
 void write_pictures(const std::string& folder, const Snapshot& s) {
-  PictureInput picture = picture_of(s);
+  PictureInput picture = to_picture_input(s);
   picture.wind_shadow = nullptr;
   const auto values = [&s](Layer layer) { return s.layers.at(layer).data(); };
   write_png(folder + "/elevation.png", hillshade_picture(picture));
@@ -42,19 +42,20 @@ struct Areas {
   static constexpr const char* names[] = {"rock", "soil", "sand", "plants", "water"};
   double square_metres[5] = {};
 };
-Areas areas_of(Simulation& simulation) {
-  constexpr float puddle = 0.02f, cover = 0.02f, thicket = 0.3f;  // [m], [m], density
+Areas ground_areas(Simulation& simulation) {
+  constexpr float min_water_depth = 0.02f, min_cover_depth = 0.02f,
+                  min_plant_density = 0.3f;  // [m], [m], density
   const auto s = simulation.snapshot({Layer::soil, Layer::sand, Layer::vegetation, Layer::water});
   const auto values = [&](Layer layer) -> const std::vector<float>& { return s->layers.at(layer); };
-  const auto seen = [&](std::size_t i) {
-    if (values(Layer::water)[i] > puddle) return 4;
-    if (values(Layer::vegetation)[i] > thicket) return 3;
-    if (values(Layer::sand)[i] > cover) return 2;
-    return values(Layer::soil)[i] > cover ? 1 : 0;
+  const auto ground_kind = [&](std::size_t i) {
+    if (values(Layer::water)[i] > min_water_depth) return 4;
+    if (values(Layer::vegetation)[i] > min_plant_density) return 3;
+    if (values(Layer::sand)[i] > min_cover_depth) return 2;
+    return values(Layer::soil)[i] > min_cover_depth ? 1 : 0;
   };
   Areas areas;
   for (std::size_t i = 0; i < values(Layer::sand).size(); ++i)
-    areas.square_metres[seen(i)] += s->cell_size * s->cell_size;
+    areas.square_metres[ground_kind(i)] += s->cell_size * s->cell_size;
   return areas;
 }
 
@@ -80,37 +81,37 @@ std::string conservation_error(const std::array<MaterialBalance, material_count>
 std::string summary(Simulation& s, const RunReport& report) {
   std::ostringstream out;
   const GridParameters& g = s.scenario().grid;
-  out << "{\n  \"scenario\": " << json_text(s.scenario().name) << ",\n  \"steps\": " << s.steps()
+  out << "{\n  \"scenario\": " << json_string(s.scenario().name) << ",\n  \"steps\": " << s.steps()
       << ",\n  \"sim_time_s\": " << json_number(s.time()) << ",\n  \"width\": " << g.width
       << ",\n  \"height\": " << g.height << ",\n  \"cell_size_m\": " << json_number(g.cell_size)
-      << ",\n  \"backend\": " << json_text(report.backend) << ",\n  \"device\": " << json_text(report.device)
-      << ",\n  \"threads\": " << report.threads << ",\n  \"seed\": " << s.scenario().seed
-      << ",\n  \"ms_per_step\": {\"total\": "
+      << ",\n  \"backend\": " << json_string(report.backend)
+      << ",\n  \"device\": " << json_string(report.device) << ",\n  \"threads\": " << report.threads
+      << ",\n  \"seed\": " << s.scenario().seed << ",\n  \"ms_per_step\": {\"total\": "
       << json_number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
   for (const ProcessTime& t : s.process_times())
-    out << ", " << json_text(t.process) << ": "
+    out << ", " << json_string(t.process) << ": "
         << json_number(report.timed_steps ? t.milliseconds / static_cast<double>(report.timed_steps) : 0.0);
   out << "},\n  \"volume_m3\": {";
   const auto balance = s.balance();
   for (std::size_t m = 0; m < balance.size(); ++m) {
     const MaterialBalance& b = balance[m];
-    out << (m ? ",\n    " : "\n    ") << json_text(material_names[m])
+    out << (m ? ",\n    " : "\n    ") << json_string(material_names[m])
         << ": {\"initial\": " << json_number(b.initial_m3()) << ", \"final\": " << json_number(b.final_m3())
         << ", \"in\": " << json_number(b.cubic_metres(b.in))
         << ", \"out\": " << json_number(b.cubic_metres(b.out)) << "}";
   }
   out << "\n  },\n  \"mass_residual\": {";
   for (std::size_t m = 0; m < balance.size(); ++m)
-    out << (m ? ", " : "") << json_text(material_names[m]) << ": "
+    out << (m ? ", " : "") << json_string(material_names[m]) << ": "
         << json_number(balance[m].relative_residual());
-  const Areas areas = areas_of(s);
+  const Areas areas = ground_areas(s);
   out << "},\n  \"area_m2\": {";
   for (std::size_t n = 0; n < std::size(Areas::names); ++n)
-    out << (n ? ", " : "") << json_text(Areas::names[n]) << ": " << json_number(areas.square_metres[n]);
+    out << (n ? ", " : "") << json_string(Areas::names[n]) << ": " << json_number(areas.square_metres[n]);
   out << "},\n  \"plants\": {";
   const std::vector<PlantCount> plants = s.plant_counts();
   for (std::size_t n = 0; n < plants.size(); ++n)
-    out << (n ? ", " : "") << json_text(plants[n].species) << ": {\"plants\": " << plants[n].plants
+    out << (n ? ", " : "") << json_string(plants[n].species) << ": {\"plants\": " << plants[n].plants
         << ", \"mature\": " << plants[n].mature << "}";
   const Residual r = s.residual();
   rusage usage;

@@ -17,7 +17,7 @@ inline RasterLoader raster_loader() {
 #elif DESERT_WITH_IO
   return gdal_raster_loader();
 #else
-  return refuse_rasters;
+  return no_raster_loader;
 #endif
 }
 

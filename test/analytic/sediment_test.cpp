@@ -128,7 +128,7 @@ TEST_P(Sediment, ARoughPlaneInTheRainGrowsNoPatternOfSingleCells) {
     const double before = standing_out(t, cells);
     HydraulicErosionParameters p;
     p.capacity = 0.3f;
-    t.terrain.require(Layer::water);
+    t.terrain.allocate(Layer::water);
     for (int n = 0; n < 300; ++n) {
       const std::vector<Quanta> there = t.quanta(Layer::water);
       t.set_quanta(Layer::water,

@@ -276,7 +276,7 @@ TEST_P(Water, SedimentComesToItsCapacityGeometrically) {
   for (const bool above : {false, true}) {
     test::BenchTerrain t(exec(), 6, 6);
     t.set(Layer::sand, 5).set(Layer::water, 1).set(Layer::suspended_sediment, above ? 0.2 : 0.0);
-    t.terrain.require(Layer::water_velocity_x);
+    t.terrain.allocate(Layer::water_velocity_x);
     t.set(Layer::water_velocity_x, 1);  // whole cells a step: what comes is what goes
     HydraulicErosionParameters p;
     p.capacity = 2;

@@ -18,7 +18,7 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 class Assembler : public testing::Test {
  protected:
   MapChange take(const ElevationGrid& keyframe) {
-    return assembler_.take(boost::make_shared<ElevationGrid>(keyframe));
+    return assembler_.process(boost::make_shared<ElevationGrid>(keyframe));
   }
   float corner() const { return assembler_.map()->at(0, 0); }
   const desert_sim::StreamCounts& counts() const { return assembler_.counts(); }
@@ -43,12 +43,12 @@ TEST_F(Assembler, WritesUpdatesOverTheKeyframe) {
   const MapChange first = take(keyframe(4, 10));
   EXPECT_TRUE(first.replaced);
   EXPECT_EQ(first.cells.width * first.cells.height, 130u * 70u);
-  const MapChange second = assembler_.take(update(4, 1, 11, 5));
+  const MapChange second = assembler_.process(update(4, 1, 11, 5));
   EXPECT_FALSE(second.replaced);
   EXPECT_EQ(second.map, assembler_.map());
   EXPECT_EQ(second.cells.width, 2u);
   EXPECT_EQ(second.cells.height, 3u);
-  assembler_.take(update(4, 2, 12, 6));
+  assembler_.process(update(4, 2, 12, 6));
   EXPECT_EQ(corner(), 6);
   EXPECT_EQ(assembler_.map()->info().step, 12u);
   EXPECT_TRUE(whole());
@@ -61,7 +61,7 @@ TEST_F(Assembler, AnUpdateWithoutTilesMovesTimeOnly) {
   take(keyframe(1, 1, 130, 70, 3));
   const auto nothing = update(1, 1, 9);
   nothing->tiles.clear();
-  const MapChange change = assembler_.take(nothing);
+  const MapChange change = assembler_.process(nothing);
   EXPECT_TRUE(change.cells.empty());
   EXPECT_EQ(assembler_.map()->info().step, 9u);
   EXPECT_EQ(corner(), 3);
@@ -80,8 +80,8 @@ TEST_F(Assembler, AKeyframeThatConfirmsChangesNoCell) {
 // ---- reordered between the two connections ----
 
 TEST_F(Assembler, UpdatesWaitForTheirKeyframe) {
-  assembler_.take(update(1, 1, 2, 8));
-  assembler_.take(update(1, 2, 3, 9));
+  assembler_.process(update(1, 1, 2, 8));
+  assembler_.process(update(1, 2, 3, 9));
   EXPECT_EQ(assembler_.map(), nullptr);
   const MapChange change = take(keyframe(1, 1));
   EXPECT_EQ(change.map->info().sequence, 2u);
@@ -91,7 +91,7 @@ TEST_F(Assembler, UpdatesWaitForTheirKeyframe) {
 
 TEST_F(Assembler, UpdatesThatOvertakeALaterKeyframeAreNoGap) {
   take(keyframe(1, 1));
-  assembler_.take(update(2, 1, 3, 7));
+  assembler_.process(update(2, 1, 3, 7));
   EXPECT_EQ(assembler_.need(), KeyframeNeed::expected);
   EXPECT_EQ(corner(), 0);
   const MapChange change = take(keyframe(2, 2));
@@ -104,7 +104,7 @@ TEST_F(Assembler, UpdatesThatOvertakeALaterKeyframeAreNoGap) {
 TEST_F(Assembler, TheLastUpdateOfTheOldKeyframeMayComeLate) {
   take(keyframe(1, 1));
   take(keyframe(2, 3, 130, 70, 4));
-  assembler_.take(update(1, 1, 3, 8));
+  assembler_.process(update(1, 1, 3, 8));
   EXPECT_EQ(corner(), 4);
   EXPECT_TRUE(whole());
   EXPECT_EQ(counts().late, 1u);
@@ -112,11 +112,11 @@ TEST_F(Assembler, TheLastUpdateOfTheOldKeyframeMayComeLate) {
 
 TEST_F(Assembler, ALatchedKeyframeThatIsSentAgainDoesNotTurnTimeBack) {
   take(keyframe(1, 1));
-  assembler_.take(update(1, 1, 2, 8));
+  assembler_.process(update(1, 1, 2, 8));
   take(keyframe(1, 1));
   EXPECT_EQ(corner(), 8);
   EXPECT_EQ(counts().restarts, 0u);
-  assembler_.take(update(1, 2, 3, 9));
+  assembler_.process(update(1, 2, 3, 9));
   EXPECT_EQ(corner(), 9);
 }
 
@@ -124,13 +124,13 @@ TEST_F(Assembler, ALatchedKeyframeThatIsSentAgainDoesNotTurnTimeBack) {
 
 TEST_F(Assembler, AMissingUpdateIsAGapUntilTheNextKeyframe) {
   take(keyframe(1, 1));
-  assembler_.take(update(1, 1, 2, 5));
-  assembler_.take(update(1, 3, 4, 7));
-  expect_gap("update 2 of keyframe 1 is missing: 3 came next");
-  assembler_.take(update(1, 4, 5, 8));
+  assembler_.process(update(1, 1, 2, 5));
+  assembler_.process(update(1, 3, 4, 7));
+  expect_gap("update 2 of keyframe 1 is missing: update 3 arrived instead");
+  assembler_.process(update(1, 4, 5, 8));
   EXPECT_EQ(corner(), 5) << "the last good map";
   EXPECT_EQ(counts().unusable, 2u);
-  assembler_.take(update(2, 1, 7, 9));
+  assembler_.process(update(2, 1, 7, 9));
   take(keyframe(2, 6, 130, 70, 8));
   EXPECT_EQ(corner(), 9);
   EXPECT_TRUE(whole());
@@ -138,7 +138,7 @@ TEST_F(Assembler, AMissingUpdateIsAGapUntilTheNextKeyframe) {
 }
 
 TEST_F(Assembler, AFirstUpdateThatIsMissingIsAGapToo) {
-  assembler_.take(update(1, 2, 3));
+  assembler_.process(update(1, 2, 3));
   take(keyframe(1, 1));
   expect_gap("update 1 of keyframe 1 is missing");
 }
@@ -147,7 +147,7 @@ TEST_F(Assembler, AKeyframeThatDoesNotComeIsAGapOnceItIsOverdue) {
   take(keyframe(1, 1));
   assembler_.keyframe_overdue();
   EXPECT_TRUE(whole()) << "none was expected";
-  assembler_.take(update(2, 1, 3));
+  assembler_.process(update(2, 1, 3));
   assembler_.keyframe_overdue();
   expect_gap("keyframe 2");
   take(keyframe(3, 4));
@@ -156,9 +156,9 @@ TEST_F(Assembler, AKeyframeThatDoesNotComeIsAGapOnceItIsOverdue) {
 
 TEST_F(Assembler, ARestartIsNoticedByUpdatesAndHealedByTheKeyframe) {
   take(keyframe(7, 100));
-  assembler_.take(update(7, 1, 101, 5));
-  assembler_.take(update(1, 1, 201, 2));  // the node has been started anew
-  expect_gap("started anew");
+  assembler_.process(update(7, 1, 101, 5));
+  assembler_.process(update(1, 1, 201, 2));  // the node has been started anew
+  expect_gap("has restarted");
   EXPECT_EQ(corner(), 5);
   take(keyframe(1, 200));
   EXPECT_EQ(corner(), 2);
@@ -168,8 +168,8 @@ TEST_F(Assembler, ARestartIsNoticedByUpdatesAndHealedByTheKeyframe) {
 
 TEST_F(Assembler, ARestartWithTheSameNumbersIsNoticed) {
   take(keyframe(1, 100));
-  for (std::uint32_t n = 1; n < 9; ++n) assembler_.take(update(1, n, 100 + n, 5));
-  assembler_.take(update(1, 3, 203, 6));
+  for (std::uint32_t n = 1; n < 9; ++n) assembler_.process(update(1, n, 100 + n, 5));
+  assembler_.process(update(1, 3, 203, 6));
   expect_gap("update 3 of keyframe 1 came after update 8");
   take(keyframe(1, 202, 130, 70, 4));
   EXPECT_EQ(assembler_.need(), KeyframeNeed::lost) << "updates 1 and 2 were never here";
@@ -179,11 +179,11 @@ TEST_F(Assembler, ARestartWithTheSameNumbersIsNoticed) {
 
 TEST_F(Assembler, AnotherRunWhoseNumbersHappenToFollowIsNoticed) {
   take(keyframe(1, 100));
-  assembler_.take(update(1, 1, 101, 5));
+  assembler_.process(update(1, 1, 101, 5));
   auto fresh = update(1, 2, 3, 6);
   fresh->header.stamp = ros::Time(200, 0);
-  assembler_.take(fresh);
-  expect_gap("started anew");
+  assembler_.process(fresh);
+  expect_gap("has restarted");
   EXPECT_EQ(corner(), 5);
 }
 
@@ -196,7 +196,7 @@ class Played : public Assembler {
   }
   void play_updates(std::uint32_t number, std::uint32_t step, std::uint32_t count) {
     for (std::uint32_t n = 1; n <= count; ++n)
-      assembler_.take(update(number, n, step + n, static_cast<float>(step + n)));
+      assembler_.process(update(number, n, step + n, static_cast<float>(step + n)));
   }
   void expect_at(std::uint32_t step) const {
     EXPECT_EQ(assembler_.map()->info().step, step);
@@ -221,7 +221,7 @@ TEST_F(Played, OfOneKeyframeWhoseFirstUpdateOvertakesIt) {
   play_keyframe(1, 10);
   play_updates(1, 10, 4);
   play_updates(1, 10, 2);
-  expect_gap("started anew");
+  expect_gap("has restarted");
   EXPECT_EQ(corner(), 14) << "the last good map stays";
   play_keyframe(1, 10);
   expect_at(12);
@@ -266,14 +266,14 @@ TEST_F(Assembler, AStepBackOfTheScenarioIsNotARestart) {
 }
 
 TEST_F(Assembler, KeepsNoMoreWaitingUpdatesThanItShould) {
-  for (std::uint32_t n = 1; n <= 1000; ++n) assembler_.take(update(1, n, n + 1));
+  for (std::uint32_t n = 1; n <= 1000; ++n) assembler_.process(update(1, n, n + 1));
   EXPECT_EQ(counts().unusable, 1000u - 256u);
   auto large = [](std::uint32_t n) {
     const auto u = update(2, n, 2000 + n);
     u->tiles = {tile(0, 0, 2048, 2048, 1)};
     return u;
   };
-  for (std::uint32_t n = 1; n <= 6; ++n) assembler_.take(large(n));
+  for (std::uint32_t n = 1; n <= 6; ++n) assembler_.process(large(n));
   EXPECT_EQ(counts().unusable, 1002u) << "four of 2048 x 2048 cells are kept";
 }
 
@@ -349,7 +349,7 @@ TEST_F(Assembler, RefusesBadUpdatesWhollyAndNeedsAKeyframeThen) {
     const auto u = update(number, 1, 10 * number + 1);
     u->tiles.push_back(u->tiles[0]);
     b.spoil(*u);
-    EXPECT_EQ(assembler_.take(u).map, nullptr);
+    EXPECT_EQ(assembler_.process(u).map, nullptr);
     EXPECT_EQ(counts().refused, number) << b.names;
     EXPECT_NE(counts().last_refusal.find(b.names), std::string::npos) << counts().last_refusal;
     EXPECT_EQ(corner(), 0) << "its first tile is sound, and must not be written";
@@ -359,7 +359,7 @@ TEST_F(Assembler, RefusesBadUpdatesWhollyAndNeedsAKeyframeThen) {
 }
 
 TEST_F(Assembler, AnUpdateThatWaitedIsCheckedAgainstItsKeyframe) {
-  assembler_.take(update(1, 1, 2));
+  assembler_.process(update(1, 1, 2));
   take(keyframe(1, 1, 1, 70));
   EXPECT_EQ(counts().refused, 1u);
   expect_gap("tile 0 reaches to cell (2, 3) of a grid of 1 x 70");

@@ -56,7 +56,7 @@ TEST(ElevationMap, AnUpdateMakesANewMapAndLeavesTheOldOne) {
   const auto u = update(1, 1, 2);
   u->tiles = {tile(60, 61, 70, 9, -1),
               tile(60, 61, 2, 1, -2)};  // over the edges of blocks, and over each other
-  const auto after = before->after(*u);
+  const auto after = before->with_update(*u);
   EXPECT_EQ(before->elevations(), grid.elevation);
   for (std::uint32_t y = 61; y < 70; ++y)
     for (std::uint32_t x = 60; x < 130; ++x) grid.elevation[y * 130 + x] = y == 61 && x < 62 ? -2 : -1;
@@ -86,7 +86,7 @@ TEST(ElevationMap, AMaskSaysWhichCellsOfATileChangeAndStepsByHowMuch) {
   const auto before = map_of(keyframe_of([](double x, double y) { return 1000 * y + x; }));
   grid.elevation[1] = -7;
   grid.elevation[3] = -8;
-  EXPECT_EQ(before->after(*u)->elevations(), grid.elevation);
+  EXPECT_EQ(before->with_update(*u)->elevations(), grid.elevation);
 }
 
 TEST(ElevationMap, ChangesOfFourBitsLieTwoInAByte) {
@@ -103,7 +103,7 @@ TEST(ElevationMap, ChangesOfFourBitsLieTwoInAByte) {
   ASSERT_EQ(validation_error(*message), "");
   const float change[] = {3.5f, -0.5f, -4, 0, 1.5f};
   for (std::size_t n = 0; n < 5; ++n) grid.elevation[20 * 130 + 10 + n] += change[n];
-  EXPECT_EQ(before->after(*message)->elevations(), grid.elevation);
+  EXPECT_EQ(before->with_update(*message)->elevations(), grid.elevation);
   message->tiles[0].changed = {0b11100000};  // an odd number: half of the last byte is left
   EXPECT_EQ(validation_error(*message), "");
   message->tiles[0].changed = {0b11000000};

@@ -45,7 +45,7 @@ class Stream {
       update.tiles.push_back(tile_message(change));
     EXPECT_EQ(validation_error(update), "");
     EXPECT_EQ(validation_error(update, map_->info()), "");
-    map_ = map_->after(update);
+    map_ = map_->with_update(update);
     EXPECT_EQ(map_->elevations(), terrain_.held()) << "both know what is held";
     return update.tiles;
   }
@@ -139,19 +139,19 @@ TEST(HeldElevation, ADuneStepTakesAFractionOfAKeyframe) {
 
 TEST(SubscriberNames, AreAmongOthers) {
   SubscriberNames keyframes, updates;
-  EXPECT_TRUE(keyframes.are_among(updates));
-  keyframes.joined("/planner");
-  EXPECT_FALSE(keyframes.are_among(updates));
-  updates.joined("/planner");
-  updates.joined("/logger");
-  EXPECT_TRUE(keyframes.are_among(updates));
-  EXPECT_FALSE(updates.are_among(keyframes));
-  updates.joined("/planner");  // it connects anew, and the old connection goes after that
-  updates.left("/planner");
-  EXPECT_TRUE(keyframes.are_among(updates));
-  updates.left("/planner");
-  updates.left("/nobody");
-  EXPECT_FALSE(keyframes.are_among(updates));
+  EXPECT_TRUE(keyframes.is_subset_of(updates));
+  keyframes.add("/planner");
+  EXPECT_FALSE(keyframes.is_subset_of(updates));
+  updates.add("/planner");
+  updates.add("/logger");
+  EXPECT_TRUE(keyframes.is_subset_of(updates));
+  EXPECT_FALSE(updates.is_subset_of(keyframes));
+  updates.add("/planner");  // it connects anew, and the old connection goes after that
+  updates.remove("/planner");
+  EXPECT_TRUE(keyframes.is_subset_of(updates));
+  updates.remove("/planner");
+  updates.remove("/nobody");
+  EXPECT_FALSE(keyframes.is_subset_of(updates));
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ class Running {
 #if DESERT_WITH_IO
     return gdal_raster_loader();
 #else
-    return refuse_rasters;
+    return no_raster_loader;
 #endif
   }
   std::unique_ptr<Session> session_;

@@ -245,7 +245,7 @@ TEST(Dunes, LivingNebkha) {
   Running scene(shipped("nebkha_live", small));
   scene.run(400);
   const Field sand = scene.field(Layer::sand);
-  const plants::Workspace& bushes = scene.simulation().plants();
+  const plants::Workspace& bushes = scene.simulation().state().plants;
   const std::vector<std::uint32_t> words = plants::words(bushes);
   const auto count = static_cast<std::size_t>(bushes.count);
   ASSERT_GT(count, 10u);

@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   keyframe->cell_size = keyframe->origin.orientation.w = 1;
   keyframe->elevation = {7};
   desert_sim::ElevationAssembler assembler;
-  assembler.take(keyframe);
+  assembler.process(keyframe);
   if (assembler.map()->elevation(0.5, 0.5) != 7) return 1;
   if (argc == 1) return 0;
   ros::init(argc, argv, "uses_client");

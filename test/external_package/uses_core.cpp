@@ -12,7 +12,7 @@ static_assert(DESERT_WITH_CUDA == EXPECTED_WITH_CUDA);
 int main() {
   const desert_sim::Scenario scenario = desert_sim::parse_scenario_text(
       "{grid: {width: 32, height: 32}, terrain: [uniform: {layer: sand, value: 1}]}", "text");
-  desert_sim::Session session(scenario, desert_sim::refuse_rasters, "auto", 1);
+  desert_sim::Session session(scenario, desert_sim::no_raster_loader, "auto", 1);
   for (int n = 0; n < 3; ++n) session.step();
   if (session.simulation().steps() != 3) return 1;
   desert_sim::Exec& exec = session.simulation().exec();

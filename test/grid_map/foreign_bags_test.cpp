@@ -150,7 +150,7 @@ TEST_F(ForeignBags, GapsAreRefusedOrFilled) {
   GridMap map = a_map();
   map.data[0].data[7] = static_cast<float>(nan);
   write(map);
-  EXPECT_NE(refusal().find("1 cells without data; say fill_nodata: true"), std::string::npos);
+  EXPECT_NE(refusal().find("1 cells without data; set fill_nodata to true"), std::string::npos);
   load(true);
   for (float height : session_.simulation().terrain().values(Layer::bedrock)) {
     EXPECT_GE(height, 100);
@@ -210,30 +210,31 @@ TEST_F(ForeignBags, OfAnotherDefinitionAreRefused) {
   for (std::size_t at = bytes.find(sum); at != std::string::npos; at = bytes.find(sum))
     bytes.replace(at, sum.size(), sum.size(), '0');
   folder_.write("somebodys.bag", bytes);
-  EXPECT_NE(refusal().find("of another definition"), std::string::npos);
+  EXPECT_NE(refusal().find("another message definition"), std::string::npos);
 }
 
 TEST_F(ForeignBags, MapsThatAreNoneAreRefused) {
   const auto infinite = std::numeric_limits<float>::infinity();
   expect_refused([](GridMap& m) { m.layers[0] = "height"; },
-                 "neither a layer bedrock nor elevation (it has: height)");
+                 "neither a layer bedrock nor a layer elevation (it contains: height)");
   expect_refused([](GridMap& m) { m.layers.clear(), m.data.clear(); }, "no layers");
-  expect_refused([](GridMap& m) { m.layers.push_back("sand"); }, "names 2 layers and has 1");
+  expect_refused([](GridMap& m) { m.layers.push_back("sand"); }, "names 2 layers but contains 1");
   expect_refused([](GridMap& m) { m.layers.push_back("elevation"), m.data.push_back(m.data[0]); },
-                 "'elevation' stands there twice");
+                 "'elevation' is given twice");
   expect_refused([](GridMap& m) { m.info.resolution = 0; }, "resolution: = 0");
   expect_refused([](GridMap& m) { m.info.resolution = nan; }, "resolution: = nan");
   expect_refused([](GridMap& m) { m.info.length_x = std::numeric_limits<double>::infinity(); },
                  "must be finite");
   expect_refused([](GridMap& m) { m.info.pose.position.y = nan; }, "must be finite");
-  expect_refused([](GridMap& m) { m.info.length_x = 3; }, "5 x 4 cells of 0.5 m are not the map's 3 x 2 m");
+  expect_refused([](GridMap& m) { m.info.length_x = 3; },
+                 "5 x 4 cells of 0.5 m do not match the map's lengths of 3 x 2 m");
   expect_refused([](GridMap& m) { m.info.pose.orientation.z = 0.7, m.info.pose.orientation.w = 0.714; },
-                 "turned");
+                 "rotated");
   expect_refused([](GridMap& m) { std::swap(m.data[0].layout.dim[0], m.data[0].layout.dim[1]); },
                  "column-major");
   expect_refused([](GridMap& m) { m.data[0].layout.dim.clear(); }, "column-major");
   expect_refused([](GridMap& m) { m.data[0].data.pop_back(); }, "5 x 4 cells and 19 values");
-  expect_refused([](GridMap& m) { m.data[0].layout.data_offset = 1; }, "values from 1");
+  expect_refused([](GridMap& m) { m.data[0].layout.data_offset = 1; }, "values from offset 1");
   expect_refused([](GridMap& m) { m.data[0].layout.dim[0].size = 0xffffffffu; }, "4294967295 cells");
   expect_refused([](GridMap& m) { m.outer_start_index = 5; }, "(5, 0) are not below 5 x 4");
   expect_refused([](GridMap& m) { m.inner_start_index = 4; }, "(0, 4) are not below 5 x 4");
@@ -297,7 +298,7 @@ TEST_F(ForeignBags, LengthsThatLieTakeNoMemory) {
   std::vector<float> floats;
   std::vector<std::string> texts;
   std::vector<std_msgs::Float32MultiArray> layers;
-  const auto message = [&] { return MessageBytes(bytes.data(), 40); };
+  const auto message = [&] { return BoundedInputStream(bytes.data(), 40); };
   EXPECT_THROW(message().next(floats), ros::serialization::StreamOverrunException);
   EXPECT_THROW(message().next(texts), ros::serialization::StreamOverrunException);
   EXPECT_THROW(message().next(layers), ros::serialization::StreamOverrunException);

@@ -29,7 +29,7 @@ class SavedBags : public testing::Test {
   }
   void save(Session& session, const std::string& tag) {
     Simulation& s = session.simulation();
-    std::vector<Layer> layers = terrain_layers(s);
+    std::vector<Layer> layers = persistent_layers(s);
     layers.push_back(Layer::elevation);
     TerrainToSave terrain;
     terrain.state.snapshot = s.snapshot(layers);

@@ -35,7 +35,7 @@ struct Frost {
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     if (value_or_zero(soil, i) > 0 || sand[i] > 0) return;
-    const Quanta broken = take(metres, quanta_per_metre, bedrock[i] + wall_height);
+    const Quanta broken = to_quanta_at_most(metres, quanta_per_metre, bedrock[i] + wall_height);
     bedrock[i] -= broken;
     sand[i] += broken;
     ledger.convert(Material::bedrock, Material::sand, i, broken);

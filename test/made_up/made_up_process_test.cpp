@@ -37,11 +37,11 @@ Process frost_process() {
   p.active = [](const Scenario& s) { return parameters_of(s).enabled; };
   p.reads = {Layer::soil};
   p.writes = {Layer::bedrock, Layer::sand};
-  keep<FrostWork>(p, [](const SimulationState& state) {
+  set_workspace<FrostWork>(p, [](const SimulationState& state) {
     return FrostWork{0, Buffer<float>(state.exec(), static_cast<std::size_t>(state.terrain.grid().cells()))};
   });
-  p.step = [](StepContext& c, Kept* kept) {
-    ++kept_as<FrostWork>(kept).steps;
+  p.step = [](StepContext& c, ProcessWorkspace* workspace) {
+    ++workspace_as<FrostWork>(workspace).steps;
     test::frost_step(static_cast<CpuExec&>(c.exec()), c.terrain, parameters_of(c.scenario()), c.time_step(),
                      c.state.ledger());
   };
@@ -64,7 +64,7 @@ const char* const world =
 struct MadeUpProcess : ::testing::Test {
   std::unique_ptr<Exec> exec = make_exec("cpu", 1);
   std::unique_ptr<Simulation> made(const std::string& yaml, Process process = frost_process()) {
-    return std::make_unique<Simulation>(*exec, test::scenario_of(yaml), refuse_rasters,
+    return std::make_unique<Simulation>(*exec, test::scenario_of(yaml), no_raster_loader,
                                         table_with(std::move(process)));
   }
 };
@@ -100,7 +100,7 @@ TEST_F(MadeUpProcess, ParametersAreReadCheckedWrittenAndChangedLive) {
   s->step();
   EXPECT_NEAR(s->terrain().values(Layer::sand)[0], 0.02, 1e-6);
   s->apply(command::SetParameters{{"frost.enabled=false"}, 0});
-  const std::vector<std::string> names = s->pipeline().names_of_fastest();
+  const std::vector<std::string> names = s->pipeline().launch_names();
   EXPECT_EQ(std::count(names.begin(), names.end(), "frost"), 0);
 }
 
@@ -116,10 +116,10 @@ TEST_F(MadeUpProcess, IsInCheckpointsAndPages) {
 
 TEST_F(MadeUpProcess, ThatBreaksALayerIsNamed) {
   Process broken = frost_process();
-  broken.step = [](StepContext& c, Kept*) {
-    std::vector<std::uint32_t> words = c.state.terrain.words(Layer::sand);
+  broken.step = [](StepContext& c, ProcessWorkspace*) {
+    std::vector<std::uint32_t> words = c.state.terrain.raw_words(Layer::sand);
     words[7] = static_cast<std::uint32_t>(-1);
-    c.state.terrain.set_words(Layer::sand, words);
+    c.state.terrain.set_raw_words(Layer::sand, words);
   };
   auto s = made(world, broken);
   s->step();  // not a step that is checked
@@ -127,8 +127,9 @@ TEST_F(MadeUpProcess, ThatBreaksALayerIsNamed) {
     s->step();
     FAIL() << "nobody has looked";
   } catch (const StateError& e) {
-    EXPECT_NE(std::string(e.what()).find("frost: layer sand is broken in 1 cells, first (7, 0)"),
-              std::string::npos)
+    EXPECT_NE(
+        std::string(e.what()).find("frost: layer sand has an invalid value in 1 cells, the first at (7, 0)"),
+        std::string::npos)
         << e.what();
   }
 }

@@ -46,7 +46,7 @@ class CoarseWind : public test::OnBoth {
     });
     on_gpu.exec().synchronise();
     by_lines(on_cpu, p, above, device, host);
-    expect_same(host.turned, device.turned, "the turned wind");
+    expect_same(host.warped_wind, device.warped_wind, "the warped wind");
     expect_same(host.correction, device.correction, "the correction");
   }
 
@@ -84,7 +84,7 @@ class CoarseWind : public test::OnBoth {
       for (int r = 0; r < laws.gradients.radius_count; ++r)
         transform(work.gradients.data() + r * coarse.values(), true);
     }
-    all(coarse.transformed(), laws.turn);
+    all(coarse.transformed(), laws.warp);
     work.correction.set_zero();
     if (!laws.projected) return;
     transform(work.spectrum.data(), false);

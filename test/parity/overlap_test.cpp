@@ -32,7 +32,7 @@ TEST_F(Overlap, SnapshotsAndChangesAreThoseOfTheCpu) {
         test::run(*s, 2);
       }
       const auto x = a->begin_snapshot(a->layers_in_use()), y = b->begin_snapshot(b->layers_in_use());
-      const auto c = a->take_elevation_changes(threshold, 32), d = b->take_elevation_changes(threshold, 32);
+      const auto c = a->begin_elevation_changes(threshold, 32), d = b->begin_elevation_changes(threshold, 32);
       test::run(*a, 1);
       test::run(*b, 1);
       EXPECT_TRUE(x.get()->layers == y.get()->layers) << "round " << round;
@@ -45,7 +45,7 @@ TEST_F(Overlap, SnapshotsAndChangesAreThoseOfTheCpu) {
       std::vector<std::int8_t> held[2]{std::vector<std::int8_t>(150 * 131), held[0]};
       CellBox boxes[2];
       for (int n = 0; n < 2; ++n) {
-        const TakenCosts taken = (n == 0 ? a : b)->take_costs(query);
+        const PendingCosts taken = (n == 0 ? a : b)->begin_costs(query);
         for (const auto& changes : {taken.update.get(), taken.whole.get()}) {
           if (!changes) continue;
           changes->write_to(held[n], 150);
@@ -69,7 +69,7 @@ TEST_F(Overlap, LookingLeavesNoTraceInTheSimulation) {
     alone->step();
     watched->step();
     pending.push_back(watched->begin_snapshot({Layer::elevation, Layer::sand, Layer::wind_x}));
-    if (n % 3 == 0) watched->take_elevation_changes(0.01, 32);  // and nobody waits for it
+    if (n % 3 == 0) watched->begin_elevation_changes(0.01, 32);  // and nobody waits for it
     if (n == 30) watched->staging().release();
   }
   EXPECT_EQ(alone->state_hash(), watched->state_hash());
@@ -147,7 +147,7 @@ TEST_F(OverlapTime, AnUpdateOfAFewTilesTakesLessThanTheWholeSurface) {
     edit.radius = 20;
     edit.value = 1;
     s->apply(edit);
-    tiles = s->take_elevation_changes(0.01, 32).get()->tiles.size();
+    tiles = s->begin_elevation_changes(0.01, 32).get()->tiles.size();
   };
   update();
   const double changed = best_milliseconds(update);

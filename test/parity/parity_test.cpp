@@ -21,7 +21,7 @@ class Parity : public test::OnBoth {
   static void expect_same_layers(const Simulation& a, const Simulation& b, bool derived) {
     for (const LayerInfo& row : layer_table) {
       if ((row.lifetime == Lifetime::derived && !derived) || !a.terrain().has(row.layer)) continue;
-      const auto x = a.terrain().words(row.layer), y = b.terrain().words(row.layer);
+      const auto x = a.terrain().raw_words(row.layer), y = b.terrain().raw_words(row.layer);
       long different = 0;
       std::size_t first = 0;
       for (std::size_t i = x.size(); i-- > 0;)

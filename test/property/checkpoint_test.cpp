@@ -114,7 +114,7 @@ TEST_P(Checkpoint, LeavesNoTemporaryFile) {
 TEST_P(Checkpoint, RefusedLeavesTheSessionAsItWas) {
   const std::string bytes = test::file_bytes(saved());
   const std::string cut = folder_.write("cut.ck", bytes.substr(0, bytes.size() / 2));
-  Session session(test::scenario_of(world), refuse_rasters, GetParam(), 1);
+  Session session(test::scenario_of(world), no_raster_loader, GetParam(), 1);
   for (int n = 0; n < 3; ++n) session.step();
   const std::uint64_t before = session.simulation().state_hash();
   EXPECT_THROW(session.apply(command::LoadCheckpoint{cut, 0}), ConfigError);
@@ -125,7 +125,7 @@ TEST_P(Checkpoint, RefusedLeavesTheSessionAsItWas) {
 
 /// Terrain, parameters and wind of the scenario that the checkpoint is of, not as commands had changed them.
 TEST_P(Checkpoint, TakesAResetToTheStartOfItsOwnScenario) {
-  Session session(test::scenario_of(world), refuse_rasters, GetParam(), 1);
+  Session session(test::scenario_of(world), no_raster_loader, GetParam(), 1);
   const std::uint64_t start = session.simulation().state_hash();
   const std::string scenario = dump_scenario(session.simulation().scenario());
   session.apply(command::SetParameters{{"saltation.lift=0.3"}});
@@ -133,7 +133,7 @@ TEST_P(Checkpoint, TakesAResetToTheStartOfItsOwnScenario) {
   for (int n = 0; n < 3; ++n) session.step();
   session.save_checkpoint(folder_.path("own.ck"));
 
-  Session other(test::scenario_of("grid: {width: 8, height: 9}\n"), refuse_rasters, GetParam(), 1);
+  Session other(test::scenario_of("grid: {width: 8, height: 9}\n"), no_raster_loader, GetParam(), 1);
   other.apply(command::LoadCheckpoint{folder_.path("own.ck"), 0});
   EXPECT_EQ(other.simulation().scenario().saltation.lift, 0.3f);
   other.apply(command::Reset{});
@@ -146,9 +146,9 @@ TEST_P(Checkpoint, TakesAResetToTheStartOfItsOwnScenario) {
 }
 
 TEST_P(Checkpoint, OfAScenarioThatMayNotBeReadIsNotResetTo) {
-  Session session(test::scenario_of("grid: {width: 8, height: 9}\n"), refuse_rasters, GetParam(), 1);
+  Session session(test::scenario_of("grid: {width: 8, height: 9}\n"), no_raster_loader, GetParam(), 1);
   std::string checked;
-  session.check_with([&](const Scenario& scenario) {
+  session.set_scenario_check([&](const Scenario& scenario) {
     checked = dump_scenario(scenario);
     throw ConfigError("not this one");
   });
@@ -184,7 +184,7 @@ TEST_P(Checkpoint, KeepsClockWindOriginAndBooks) {
     EXPECT_EQ(b[m].residual(), 0);
   }
   for (Layer layer : test::persistent_layers(*s))
-    EXPECT_TRUE(s->terrain().words(layer) == t->terrain().words(layer));
+    EXPECT_TRUE(s->terrain().raw_words(layer) == t->terrain().raw_words(layer));
 }
 
 TEST_P(Checkpoint, SavedTwiceIsTheSameFile) {

@@ -45,24 +45,24 @@ using Words = std::vector<std::uint32_t>;
 
 std::vector<Words> all_words(const Simulation& s) {
   std::vector<Words> words;
-  for (const LayerInfo& row : layer_table) words.push_back(s.terrain().words(row.layer));
+  for (const LayerInfo& row : layer_table) words.push_back(s.terrain().raw_words(row.layer));
   return words;
 }
 
 /// Every layer is in use, so that a process could write what it should not.
 void bring_all_into_use(Simulation& s) {
-  for (const LayerInfo& row : layer_table) s.state().terrain.require(row.layer);
+  for (const LayerInfo& row : layer_table) s.state().terrain.allocate(row.layer);
 }
 
 /// Changes every cell, to values that the layer may have.
 void disturb(Simulation& s, Layer layer) {
-  Words words = s.terrain().words(layer);
+  Words words = s.terrain().raw_words(layer);
   const bool quanta = info(layer).storage == Storage::quanta;
   for (std::size_t i = 0; i < words.size(); ++i)
     words[i] = quanta ? static_cast<std::uint32_t>(static_cast<Quanta>(words[i]) + 300000 +
                                                    1000 * static_cast<Quanta>(i % 7))
                       : bits_of(0.5f * float_from_bits(words[i]) + 0.0625f * static_cast<float>(1 + i % 5));
-  s.state().terrain.set_words(layer, words);
+  s.state().terrain.set_raw_words(layer, words);
 }
 
 class Contract : public test::OnBackend {
@@ -121,12 +121,12 @@ TEST_P(Contract, ProcessesDependOnlyOnTheLayersOfTheirRows) {
       disturbed->pipeline().step_alone(p.name);
       for (const std::vector<Layer>* layers : {&p.writes, &p.writes_if_in_use})
         for (Layer layer : *layers)
-          EXPECT_EQ(plain->terrain().words(layer), disturbed->terrain().words(layer))
+          EXPECT_EQ(plain->terrain().raw_words(layer), disturbed->terrain().raw_words(layer))
               << "what it writes to " << info(layer).name
               << " depends on a layer that its row does not say it reads";
       EXPECT_EQ(plain->pipeline().fields().repose.download(),
                 disturbed->pipeline().fields().repose.download());
-      EXPECT_EQ(plants::words(plain->plants()), plants::words(disturbed->plants()));
+      EXPECT_EQ(plants::words(plain->state().plants), plants::words(disturbed->state().plants));
     }
   }
 }
@@ -153,7 +153,7 @@ TEST(ProcessTable, RowsAreComplete) {
     EXPECT_FALSE(p.parameters.empty());
     EXPECT_TRUE(p.active && p.step && p.can_be_recorded);
     if (p.adapt || p.counted_iterations || p.after_step) {
-      EXPECT_TRUE(p.keep) << "it keeps nothing that could be stale or count";
+      EXPECT_TRUE(p.make_workspace) << "it keeps nothing that could be stale or count";
     }
     for (Layer layer : p.writes)
       EXPECT_EQ(std::count(p.writes_if_in_use.begin(), p.writes_if_in_use.end(), layer), 0)

@@ -69,14 +69,15 @@ TEST_P(Edits, AreBookedToTheQuantumAndToldCellByCell) {
       const double quantum = s->terrain().scale().quantum();
       EXPECT_DOUBLE_EQ(r.volume_m3, static_cast<double>(sum(after) - sum(before)) * quantum * 0.25);
       EXPECT_EQ(r.moved_m3, 0);
-      const int width = r.touched.x1 - r.touched.x0, height = r.touched.y1 - r.touched.y0;
+      const int width = r.changed_cells.x1 - r.changed_cells.x0,
+                height = r.changed_cells.y1 - r.changed_cells.y0;
       EXPECT_EQ(r.change.layer, e.layer);
-      EXPECT_DOUBLE_EQ(r.change.x, 100 + 0.5 * r.touched.x0);
-      EXPECT_DOUBLE_EQ(r.change.y, -50 + 0.5 * r.touched.y0);
+      EXPECT_DOUBLE_EQ(r.change.x, 100 + 0.5 * r.changed_cells.x0);
+      EXPECT_DOUBLE_EQ(r.change.y, -50 + 0.5 * r.changed_cells.y0);
       ASSERT_EQ(r.change.values.size(), static_cast<std::size_t>(width * height));
       for (int y = 0; y < 16; ++y)
         for (int x = 0; x < 20; ++x) {
-          const int u = x - r.touched.x0, v = y - r.touched.y0;
+          const int u = x - r.changed_cells.x0, v = y - r.changed_cells.y0;
           const bool touched = u >= 0 && v >= 0 && u < width && v < height;
           const auto i = static_cast<std::size_t>(y * 20 + x);
           const float told = touched ? r.change.values[static_cast<std::size_t>(v * width + u)] : 0;
@@ -272,8 +273,8 @@ TEST_P(Edits, OfSoilStayWhereSoilDoesNotSlide) {
 
 TEST_P(Edits, OfSoilSlideOnAfterACheckpoint) {
   const test::TemporaryFolder folder;
-  Session live(test::scenario_of(soil_world), refuse_rasters, GetParam(), 1),
-      resumed(test::scenario_of(soil_world), refuse_rasters, GetParam(), 1);
+  Session live(test::scenario_of(soil_world), no_raster_loader, GetParam(), 1),
+      resumed(test::scenario_of(soil_world), no_raster_loader, GetParam(), 1);
   live.apply(soil_column());
   for (int n = 0; n < 5; ++n) live.step();
   live.save_checkpoint(folder.path("c"));
@@ -287,7 +288,7 @@ TEST_P(Edits, ReplayFromTheirJournalToTheSameHash) {
   const Scenario scenario = test::scenario_of(test::edit_world("periodic", rough));
   std::uint64_t hash = 0;
   {
-    Session live(scenario, refuse_rasters, GetParam(), 1, folder.path("j"));
+    Session live(scenario, no_raster_loader, GetParam(), 1, folder.path("j"));
     int n = 0;
     for (EditTerrain e : all_edits()) {
       e.conserve = ++n % 3 == 0;
@@ -298,7 +299,7 @@ TEST_P(Edits, ReplayFromTheirJournalToTheSameHash) {
   }
   const Journal journal = read_journal(folder.path("j"));
   ASSERT_EQ(journal.entries.size(), all_edits().size());
-  Session again(scenario, refuse_rasters, GetParam(), 1);
+  Session again(scenario, no_raster_loader, GetParam(), 1);
   for (const Journal::Entry& entry : journal.entries) {
     while (again.ticks() < entry.tick) again.step();
     again.apply(entry.command);

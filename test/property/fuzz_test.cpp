@@ -90,7 +90,7 @@ TEST(Fuzz, MutatedScenarioFilesAreRefusedOrLoaded) {
     const std::string path = folder.write("fuzz.yaml", text);
     try {
       Scenario s = load_scenario(path);
-      resolve_grid(s, refuse_rasters);
+      resolve_grid(s, no_raster_loader);
       dump_scenario(s);
       ++loaded;
     } catch (const ConfigError& e) {
@@ -115,7 +115,7 @@ TEST(Fuzz, MutatedScenariosThatLoadAlsoRun) {
       const Scenario s = test::scenario_of(text);
       // Sizes that take long, and shadows of millions of steps, are not what is looked for here.
       if (static_cast<long>(s.grid.width) * s.grid.height > 4096 || s.grid.cell_size < 0.1) continue;
-      Simulation simulation(exec, s, refuse_rasters);
+      Simulation simulation(exec, s, no_raster_loader);
       test::run(simulation, 2);
       test::expect_sound(simulation, "mutated");
       ++ran;

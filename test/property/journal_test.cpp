@@ -15,7 +15,7 @@ const char* const world =
 class JournalOf : public test::OnBackend {
  protected:
   std::unique_ptr<Session> session(const std::string& journal) {
-    return std::make_unique<Session>(test::scenario_of(world), refuse_rasters, GetParam(), 1, journal);
+    return std::make_unique<Session>(test::scenario_of(world), no_raster_loader, GetParam(), 1, journal);
   }
 
   static constexpr int commands = 9;
@@ -142,7 +142,7 @@ TEST_P(JournalOf, WithABrokenLineNamesTheLine) {
 
 TEST_P(JournalOf, AnotherScenarioIsRefused) {
   live(folder_.path("j"));
-  Session other(test::scenario_of(std::string(world) + "seed: 2\n"), refuse_rasters, GetParam(), 1);
+  Session other(test::scenario_of(std::string(world) + "seed: 2\n"), no_raster_loader, GetParam(), 1);
   EXPECT_THROW(other.require_journal_of_this_scenario(read_journal(folder_.path("j")), "j"), ConfigError);
 }
 

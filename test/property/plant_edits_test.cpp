@@ -31,8 +31,8 @@ command::EditPlants planting(const std::string& species, double x, double y, dou
 class PlantEdits : public test::OnBackend {
  protected:
   static std::vector<float> column(const Simulation& s, plants::Column c) {
-    const std::vector<std::uint32_t> words = plants::words(s.plants());
-    const auto count = static_cast<std::size_t>(s.plants().count);
+    const std::vector<std::uint32_t> words = plants::words(s.state().plants);
+    const auto count = static_cast<std::size_t>(s.state().plants.count);
     std::vector<float> values;
     for (std::size_t n = 0; n < count; ++n)
       values.push_back(float_from_bits(words[static_cast<std::size_t>(c) * count + n]));
@@ -58,7 +58,7 @@ TEST_P(PlantEdits, PlantsOfASpeciesStandInTheRegionAsDenseAsAsked) {
   const CommandResult result = s->apply(edit);
   const double expected = 3.14159 * 400 * 0.5;
   EXPECT_NEAR(result.plants, expected, 4 * std::sqrt(expected));
-  EXPECT_EQ(s->plants().count, result.plants);
+  EXPECT_EQ(s->state().plants.count, result.plants);
   EXPECT_EQ(s->plant_counts()[0].plants, result.plants);
   EXPECT_EQ(s->plant_counts()[1].plants, 0);
   const std::vector<float> x = column(*s, plants::Column::x), y = column(*s, plants::Column::y);
@@ -102,7 +102,7 @@ TEST_P(PlantEdits, ClearsByRegionAndSpecies) {
   clearing.points = {{1000, -500}, {1160, -500}, {1160, -440}, {1000, -440}};
   s->apply(clearing);
   for (float y : column(*s, plants::Column::y)) EXPECT_GE(y, 60);
-  EXPECT_GT(s->plants().count, 0);
+  EXPECT_GT(s->state().plants.count, 0);
 }
 
 TEST_P(PlantEdits, NoneStandOnRockOrOnObstacles) {
@@ -112,7 +112,7 @@ TEST_P(PlantEdits, NoneStandOnRockOrOnObstacles) {
       "y: 10, "
       "size_x: 8, size_y: 8}]\nvegetation: {enabled: true}\nspecies: [{preset: bush}]\n");
   s->apply(planting("bush", 20, 20, 100, 1));
-  EXPECT_GT(s->plants().count, 500);
+  EXPECT_GT(s->state().plants.count, 500);
   const std::vector<float> x = column(*s, plants::Column::x), y = column(*s, plants::Column::y);
   for (std::size_t n = 0; n < x.size(); ++n) {
     EXPECT_LT(x[n], 20);
@@ -148,7 +148,7 @@ TEST_P(PlantEdits, AreRefusedWhole) {
 TEST_P(PlantEdits, AreReplayedFromTheJournal) {
   const test::TemporaryFolder folder;
   const auto session = [&](const std::string& journal) {
-    return std::make_unique<Session>(test::scenario_of(meadow), refuse_rasters, GetParam(), 1, journal);
+    return std::make_unique<Session>(test::scenario_of(meadow), no_raster_loader, GetParam(), 1, journal);
   };
   std::uint64_t hash = 0;
   {

@@ -39,7 +39,7 @@ TEST_P(Garden, GrowsAndDiesAndKeepsItsBooks) {
   for (int n = 0; n < 12; ++n) {
     test::run(*s, 10);
     test::expect_sound(*s, "at step " + std::to_string(s->steps()));
-    most = std::max(most, s->plants().count);
+    most = std::max(most, s->state().plants.count);
   }
   EXPECT_GT(most, 100);
   const auto counts = s->plant_counts();
@@ -49,7 +49,7 @@ TEST_P(Garden, GrowsAndDiesAndKeepsItsBooks) {
     EXPECT_GT(c.plants, 0) << c.species;
     all += c.plants;
   }
-  EXPECT_EQ(all, s->plants().count);
+  EXPECT_EQ(all, s->state().plants.count);
   EXPECT_GT(counts[0].mature, 0);
   const auto balance = s->balance()[static_cast<std::size_t>(Material::moisture)];
   EXPECT_GT(balance.out, 0) << "plants drank";
@@ -61,16 +61,16 @@ TEST_P(Garden, IsTheSameThroughACheckpoint) {
   auto whole = simulation(garden), half = simulation(garden);
   test::run(*whole, 80);
   test::run(*half, 40);
-  ASSERT_GT(half->plants().count, 50);
+  ASSERT_GT(half->state().plants.count, 50);
   save_checkpoint(folder.path("half.ck"), *half);
   auto resumed = load_checkpoint(folder.path("half.ck"), exec());
   EXPECT_EQ(resumed->state_hash(), half->state_hash());
-  EXPECT_EQ(plants::words(resumed->plants()), plants::words(half->plants()));
+  EXPECT_EQ(plants::words(resumed->state().plants), plants::words(half->state().plants));
   resumed->snapshot(resumed->layers_in_use());
   EXPECT_EQ(resumed->state_hash(), half->state_hash()) << "a look changes nothing";
   test::run(*resumed, 40);
   EXPECT_EQ(resumed->state_hash(), whole->state_hash());
-  EXPECT_EQ(plants::words(resumed->plants()), plants::words(whole->plants()));
+  EXPECT_EQ(plants::words(resumed->state().plants), plants::words(whole->state().plants));
 }
 
 TEST(GardenOf, TheHashDoesNotDependOnTheNumberOfThreads) {
@@ -81,7 +81,7 @@ TEST(GardenOf, TheHashDoesNotDependOnTheNumberOfThreads) {
     test::run(*b, 10);
     EXPECT_EQ(a->state_hash(), b->state_hash()) << a->steps();
   }
-  EXPECT_GT(a->plants().count, 50);
+  EXPECT_GT(a->state().plants.count, 50);
 }
 
 TEST(GardenOf, TheHashIsOfThePlantsToo) {
@@ -94,24 +94,24 @@ TEST(GardenOf, TheHashIsOfThePlantsToo) {
        b = test::simulate(exec, still + "spawn: 40, humus: 0}]\n");
   a->step();
   b->step();
-  ASSERT_NE(a->plants().count, b->plants().count);
+  ASSERT_NE(a->state().plants.count, b->state().plants.count);
   EXPECT_NE(a->state_hash(), b->state_hash());
 }
 
 TEST(GardenOf, AResetBeginsAnew) {
-  Session session(test::scenario_of(garden), refuse_rasters, "cpu", 1);
+  Session session(test::scenario_of(garden), no_raster_loader, "cpu", 1);
   const std::uint64_t start = session.simulation().state_hash();
   for (int n = 0; n < 20; ++n) session.step();
-  ASSERT_GT(session.simulation().plants().count, 0);
+  ASSERT_GT(session.simulation().state().plants.count, 0);
   session.apply(command::Reset{});
-  EXPECT_EQ(session.simulation().plants().count, 0);
+  EXPECT_EQ(session.simulation().state().plants.count, 0);
   EXPECT_EQ(session.simulation().state_hash(), start);
 }
 
 TEST(GardenOf, MemoryIsWhatWasPlanned) {
   CpuExec exec(1);
   const Scenario scenario = test::scenario_of(garden);
-  Simulation s(exec, scenario, refuse_rasters);
+  Simulation s(exec, scenario, no_raster_loader);
   std::size_t held = 0;
   for (const MemoryPart& part : s.memory())
     if (part.name == "plants") held = part.bytes;
@@ -187,7 +187,7 @@ TEST_P(Garden, CanopiesBlockTheWind) {
   auto without = simulation(yaml + "vegetation: {enabled: true, canopy_shadow: false}\n");
   test::run(*with, 6);
   test::run(*without, 6);
-  ASSERT_GT(with->plants().count, 3);
+  ASSERT_GT(with->state().plants.count, 3);
   const auto shaded = [](Simulation& s) {
     const std::vector<float> shadow = test::real(s, Layer::wind_shadow);
     return std::count_if(shadow.begin(), shadow.end(), [](float v) { return v > 0.5f; });

@@ -31,7 +31,7 @@ TEST(Recorded, JournalIsReplayed) {
   EXPECT_TRUE(journal.ended);
   EXPECT_EQ(journal.ticks, 50u);
   ASSERT_EQ(journal.entries.size(), 15u);
-  Session session(load_scenario(folder + "scenario.yaml"), refuse_rasters, "cpu", 1);
+  Session session(load_scenario(folder + "scenario.yaml"), no_raster_loader, "cpu", 1);
   ASSERT_NO_THROW(session.require_journal_of_this_scenario(journal, "the journal"));
   std::size_t next = 0;
   while (session.ticks() < journal.ticks) {

@@ -12,10 +12,10 @@ class StillWorld : public test::OnBackend {
     auto s = simulation(yaml);
     const auto layers = test::persistent_layers(*s);
     std::vector<std::vector<std::uint32_t>> before;
-    for (Layer layer : layers) before.push_back(s->terrain().words(layer));
+    for (Layer layer : layers) before.push_back(s->terrain().raw_words(layer));
     test::run(*s, steps);
     for (std::size_t n = 0; n < layers.size(); ++n)
-      EXPECT_TRUE(before[n] == s->terrain().words(layers[n])) << info(layers[n]).name << " moved";
+      EXPECT_TRUE(before[n] == s->terrain().raw_words(layers[n])) << info(layers[n]).name << " moved";
   }
 };
 

@@ -97,7 +97,7 @@ class Symmetry : public test::OnBackend {
       auto other = simulation(yaml(more, boundary, m.turn(direction)));
       Terrain& terrain = const_cast<Terrain&>(other->terrain());
       for (Layer layer : moved_layers)
-        if (terrain.has(layer)) terrain.set_words(layer, moved(plain->terrain().words(layer), m));
+        if (terrain.has(layer)) terrain.set_raw_words(layer, moved(plain->terrain().raw_words(layer), m));
       // The winds themselves must be mirror images, or the test would ask too much.
       const wind::Vector a = plain->wind_above(), b = other->wind_above();
       ASSERT_TRUE(std::abs(a.x) == std::abs(b.x) || std::abs(a.x) == std::abs(b.y))
@@ -107,7 +107,7 @@ class Symmetry : public test::OnBackend {
         other->step();
         for (Layer layer : moved_layers) {
           if (!terrain.has(layer)) continue;
-          const auto expected = moved(plain->terrain().words(layer), m), found = terrain.words(layer);
+          const auto expected = moved(plain->terrain().raw_words(layer), m), found = terrain.raw_words(layer);
           long different = 0;
           for (std::size_t i = 0; i < expected.size(); ++i) different += expected[i] != found[i];
           ASSERT_EQ(different, 0) << "cells of " << info(layer).name << " after step " << step;
@@ -199,11 +199,12 @@ TEST_P(Symmetry, OfMultilevelUnderShiftsByTheCoarsestTile) {
     return to;
   };
   for (Layer layer : {Layer::bedrock, Layer::sand})
-    terrain.set_words(layer, shifted(plain->terrain().words(layer)));
+    terrain.set_raw_words(layer, shifted(plain->terrain().raw_words(layer)));
   test::run(*plain, 8);
   test::run(*other, 8);
-  EXPECT_TRUE(shifted(plain->terrain().words(Layer::sand)) == terrain.words(Layer::sand)) << "sand";
-  EXPECT_TRUE(shifted(plain->terrain().words(Layer::airborne_sand)) == terrain.words(Layer::airborne_sand))
+  EXPECT_TRUE(shifted(plain->terrain().raw_words(Layer::sand)) == terrain.raw_words(Layer::sand)) << "sand";
+  EXPECT_TRUE(shifted(plain->terrain().raw_words(Layer::airborne_sand)) ==
+              terrain.raw_words(Layer::airborne_sand))
       << "airborne_sand";
 }
 

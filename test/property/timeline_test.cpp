@@ -85,7 +85,7 @@ TEST(TimelineFaults, AreAllNamed) {
     return "";
   };
   for (const auto& [timeline, part] : std::vector<std::pair<std::string, std::string>>{
-           {"5", "run.timeline: 5 where a list is expected"},
+           {"5", "run.timeline: 5 is given where a list is expected"},
            {"[{ramp: 3, set: {rain.rate: 0}}]", "run.timeline.0.time: is missing"},
            {"[{time: -1, set: {rain.rate: 0}}]", "run.timeline.0.time: -1 is not a time"},
            {"[{time: 1}]", "run.timeline.0.set: must name parameters"},

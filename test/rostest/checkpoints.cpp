@@ -88,7 +88,7 @@ TEST_F(Checkpoints, BrokenFilesAreRefused) {
   ASSERT_TRUE(save("short.ckpt").success);
   fs::resize_file(folder_ + "/short.ckpt", fs::file_size(folder_ + "/short.ckpt") / 2);
   request.name = "short.ckpt";
-  expect_refused<LoadCheckpoint>("load_checkpoint", request, "short.ckpt", "cut off");
+  expect_refused<LoadCheckpoint>("load_checkpoint", request, "short.ckpt", "truncated");
   request.name = "real";
   fs::create_directories(folder_ + "/real");
   expect_refused<LoadCheckpoint>("load_checkpoint", request, "'real'", "not a file");

@@ -138,7 +138,8 @@ TEST_F(CmdWind, MalformedWindsAreRefusedWithTheirReasons) {
   expect_refused(wind(not_a_number, 1), "vector.x: = nan");
   expect_refused(wind(1, infinity), "vector.y: = inf");
   expect_refused(wind(1, 0, 0.5), "must be 0: the wind is horizontal");
-  expect_refused(wind(1, 0, 0, "nowhere"), "frame 'nowhere' cannot be brought into the terrain's, 'terrain'");
+  expect_refused(wind(1, 0, 0, "nowhere"),
+                 "frame 'nowhere' cannot be transformed into the terrain's frame 'terrain'");
   EXPECT_NO_THROW(cmd_wind_command(wind(3, 4), frames));
 }
 

@@ -56,9 +56,9 @@ class Diagnostics : public testing::Test {
 
 TEST_F(Diagnostics, ANodeThatIsWell) {
   EXPECT_TRUE(says("desert_sim: simulation", DiagnosticStatus::OK, "running"));
-  EXPECT_TRUE(says("desert_sim: mass balance", DiagnosticStatus::OK, "every quantum is accounted for"));
-  EXPECT_TRUE(says("desert_sim: memory", DiagnosticStatus::OK, "enough"));
-  EXPECT_TRUE(says("desert_sim: topics", DiagnosticStatus::OK, "as wanted"));
+  EXPECT_TRUE(says("desert_sim: mass balance", DiagnosticStatus::OK, "mass is conserved"));
+  EXPECT_TRUE(says("desert_sim: memory", DiagnosticStatus::OK, "the available memory is sufficient"));
+  EXPECT_TRUE(says("desert_sim: topics", DiagnosticStatus::OK, "all topics reach their rates"));
   EXPECT_TRUE(says("desert_sim: autosave", DiagnosticStatus::OK, "saved"));
   EXPECT_FALSE(latest("desert_sim: simulation").hardware_id.empty());
   EXPECT_NEAR(std::stod(value("desert_sim: simulation", "steps a second wanted")), 20, 1e-9);
@@ -81,16 +81,16 @@ TEST_F(Diagnostics, RatesOfTopicsAreWantedAndAchieved) {
 }
 
 TEST_F(Diagnostics, ANodeThatIsNot) {
-  EXPECT_TRUE(says("overworked: simulation", DiagnosticStatus::WARN, "s behind: "));
+  EXPECT_TRUE(says("overworked: simulation", DiagnosticStatus::WARN, " s behind its schedule: "));
   EXPECT_TRUE(says("overworked: autosave", DiagnosticStatus::ERROR, "/proc/no_folder"));
-  EXPECT_TRUE(says("overworked: mass balance", DiagnosticStatus::OK, "every quantum"));
+  EXPECT_TRUE(says("overworked: mass balance", DiagnosticStatus::OK, "mass is conserved"));
 }
 
 TEST_F(Diagnostics, AMissingTransformOfTheLocalMapIsNamed) {
   ros::Subscriber maps = ros::NodeHandle().subscribe<GridMap>(
       "/desert_sim/local_map", 1,
       boost::function<void(const boost::shared_ptr<const GridMap>&)>([](const auto&) {}));
-  EXPECT_TRUE(says("desert_sim: topics", DiagnosticStatus::WARN, "frame 'lost_rover' cannot be brought"));
+  EXPECT_TRUE(says("desert_sim: topics", DiagnosticStatus::WARN, "frame 'lost_rover' cannot be transformed"));
 }
 
 TEST_F(Diagnostics, APauseIsNoFault) {

@@ -159,7 +159,7 @@ class Lifecycle(Scenarios):
     def test_a_second_clock_is_refused(self):
         clock = rospy.Publisher("/clock", Clock, queue_size=1)
         try:
-            self.expect_refused({"scenario": CORNER, "publish_clock": True}, "publish_clock", "/lifecycle", "/clock already")
+            self.expect_refused({"scenario": CORNER, "publish_clock": True}, "publish_clock", "/lifecycle", "already publishes /clock")
         finally:
             clock.unregister()
 

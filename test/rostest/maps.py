@@ -204,7 +204,7 @@ class Maps(MapTest):
                                  ((10, 0, 4, 4), "from (10, -20) to (138, 76)"), ((1e300, 0, 2, 2), "center.x"),
                                  ((50, 0, 2, 2, ["lava"]), "'lava' is not one of: elevation, "),
                                  ((50, 0, 2, 2, [""]), "layers: ''"),
-                                 ((50, 0, 2, 2, ["slope", "slope"]), "'slope' stands there twice"),
+                                 ((50, 0, 2, 2, ["slope", "slope"]), "'slope' is given twice"),
                                  ((50, 0, 2, 2, ["x"] * 1000), "1000 names"),
                                  ((50, 0, 2, 2, ["slope"], "nowhere"), "nowhere")):
             answer = self.submap(*arguments)

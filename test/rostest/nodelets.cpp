@@ -197,13 +197,14 @@ TEST_F(Nodelets, AFailureStopsItAloneAndIsTold) {
   EXPECT_FALSE(call<SetWind>("set_wind").success);
   Listener<SimulationStatus> late("status");
   EXPECT_EQ(late.last().state, "error");
-  EXPECT_NE(late.last().message.find("writing the journal"), std::string::npos) << late.last().message;
+  EXPECT_NE(late.last().message.find("the journal cannot be written"), std::string::npos)
+      << late.last().message;
   const SetWind::Response refused = call<SetWind>("set_wind");
   EXPECT_FALSE(refused.success);
-  EXPECT_NE(refused.message.find("writing the journal"), std::string::npos) << refused.message;
+  EXPECT_NE(refused.message.find("the journal cannot be written"), std::string::npos) << refused.message;
   EXPECT_TRUE(wait_until([&] {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return diagnosed.find("writing the journal") != std::string::npos;
+    return diagnosed.find("the journal cannot be written") != std::string::npos;
   })) << "/diagnostics says: "
       << diagnosed;
   ASSERT_TRUE(loader_.unload("/desert_sim"));

@@ -121,9 +121,9 @@ class Reconfigure(Scenarios):
         self.wait_for(lambda: clouds[-1].width * clouds[-1].height <= 100, "fewer points")
         for changes, text in (({"keyframe_rate": -2.0, "points_count": 7}, "keyframe_rate: = -2 is not in [0, 1000] Hz"),
                               ({"update_threshold": float("nan")}, "update_threshold: = .nan"),
-                              ({"robot_frame": "no frame"}, "'no frame' is not the name of a frame"),
+                              ({"robot_frame": "no frame"}, "'no frame' is not a valid frame name"),
                               ({"grid_map_length_x": 4.0}, "grid_map_length_y must both be 0"),
-                              ({"local_map_length_x": 1e6, "local_map_length_y": 1e6}, "are more than 67108864 values")):
+                              ({"local_map_length_x": 1e6, "local_map_length_y": 1e6}, "are too many (allowed: at most 67108864 values)")):
             before = self.values(client)
             with self.assertRaises(Exception):
                 client.update_configuration(changes)
@@ -222,11 +222,12 @@ class Reconfigure(Scenarios):
         rospy.set_param("/reloaded/grid_map_layers", ["slope"])
         rospy.set_param("/reloaded/threads", 2)
         client.update_configuration({"keyframe_rate": 7.0})
-        for applied in ("applied: wind.speed=8.5, update_rate=3, grid_map_layers=[slope]", "nothing to apply"):
+        for applied in ("applied: wind.speed=8.5, update_rate=3, grid_map_layers=[slope]",
+                        "no parameter that can change live differs"):
             answer = node.call("reload_parameters", Trigger)
             self.assertTrue(answer.success, answer.message)
             self.assertIn(applied, answer.message)
-            self.assertIn("needs a restart of the node: grid.width=32, threads=2", answer.message)
+            self.assertIn("these need a restart of the node: grid.width=32, threads=2", answer.message)
         self.assertEqual(self.wind(node), 8.5)
         self.wait_for(lambda: self.values(client)["update_rate"] == 3, "shown")
         self.assertEqual(self.values(client)["keyframe_rate"], 7, "what no file changed stays")

@@ -113,7 +113,7 @@ class Resume(Scenarios):
         node, step = self.again("torn")
         self.assertEqual(step, 5)
         self.assertEqual(node.end()[0], 0)
-        self.assertEqual(node.output.count("not resumed from this one"), 3, node.output)
+        self.assertEqual(node.output.count("cannot be loaded"), 3, node.output)
         self.assertIn("0000000009.ckpt", node.output)
 
     def test_the_last_two_are_kept(self):
@@ -136,7 +136,7 @@ class Resume(Scenarios):
         with open(self.path("autosave"), "w") as file:
             file.write("not a folder")
         node = self.start("placeless", dict(AUTOSAVED, data_dir=self.folder))
-        wait_until(lambda: "autosave: " in node.output, "no error")
+        wait_until(lambda: "The autosave failed: " in node.output, "no error")
         self.assertEqual(node.call("step", Step, 2).step, 2)
         os.remove(self.path("autosave"))
         node.call("step", Step, 1)
@@ -149,7 +149,7 @@ class Resume(Scenarios):
         node, step = self.again("nothing")
         self.assertEqual(step, 0)
         node.end()
-        self.assertIn("no whole autosave", node.output)
+        self.assertIn("No complete autosave", node.output)
 
     def test_only_its_own_scenario_is_resumed(self):
         self.saved("own", 3)
@@ -173,7 +173,7 @@ class Resume(Scenarios):
         self.assertTrue(node.call("reset", Trigger).success)
         self.assertEqual(node.call("step", Step, 0).state_hash, start, "the start of the scenario that was loaded")
         node.end()
-        self.assertIn("scenario other: 9 x 7 cells", node.output)
+        self.assertIn("scenario other was loaded: 9 x 7 cells", node.output)
 
     def test_without_resume_it_starts_anew(self):
         self.saved("fresh", 3)

@@ -54,7 +54,7 @@ TEST_F(Stepping, StepsAreExactAndGiveTheHashOfAnyOtherRun) {
   ASSERT_TRUE(response.success) << response.message;
   EXPECT_EQ(response.step, 25u);
   EXPECT_EQ(response.sim_time, 25);
-  desert_sim::Session session(corner(), desert_sim::refuse_rasters, "cpu", 1);
+  desert_sim::Session session(corner(), desert_sim::no_raster_loader, "cpu", 1);
   for (int n = 0; n < 25; ++n) session.step();
   EXPECT_EQ(response.state_hash, desert_sim::hash_text(session.simulation().state_hash()));
 }
@@ -133,7 +133,7 @@ TEST_F(Stepping, ACheckpointOfAnotherSizeGivesAKeyframeOfThatSize) {
   ASSERT_TRUE(ros::param::get("/desert_sim/data_dir", folder));
   fs::create_directories(folder);
   desert_sim::Session small(corner({"grid.width=20", "grid.height=33", "terrain=[]"}),
-                            desert_sim::refuse_rasters, "cpu", 1);
+                            desert_sim::no_raster_loader, "cpu", 1);
   for (int n = 0; n < 3; ++n) small.step();
   small.save_checkpoint(folder + "/small.ckpt");
 

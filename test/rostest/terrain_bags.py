@@ -157,11 +157,11 @@ class TerrainBags(MapTest):
             self.expect_refused("torn.bag")
         with open(os.path.join(self.folder, "none.bag"), "w") as file:
             file.write("grid: {width: 9}\n")
-        self.expect_refused("none.bag", "is no bag")
+        self.expect_refused("none.bag", "is not a bag")
         turned = a_map()
         turned.info.pose.orientation.z = turned.info.pose.orientation.w = math.sqrt(0.5)
         self.write("turned.bag", turned)
-        self.expect_refused("turned.bag", "turned")
+        self.expect_refused("turned.bag", "rotated")
         rows = a_map()
         rows.data[0].layout.dim.reverse()
         self.write("rows.bag", rows)
@@ -169,7 +169,7 @@ class TerrainBags(MapTest):
         other = a_map()
         other.layers = ["height"]
         self.write("other.bag", other)
-        self.expect_refused("other.bag", "neither a layer bedrock nor elevation", "height")
+        self.expect_refused("other.bag", "neither a layer bedrock nor a layer elevation", "height")
         self.expect_refused("missing.bag", "no such file")
 
     def test_no_bag_outside_the_data_folder(self):
@@ -177,7 +177,7 @@ class TerrainBags(MapTest):
         outside = shutil.move(outside, self.folder + "_outside.bag")
         self.addCleanup(os.remove, outside)
         os.symlink(outside, os.path.join(self.folder, "link.bag"))
-        self.expect_refused("link.bag", "a link leads out")
+        self.expect_refused("link.bag", "a symbolic link points outside")
         self.expect_refused(outside, "~data_dir")
         with open(os.path.join(self.folder, "out.yaml"), "w") as file:
             file.write("grid: {from_raster: %s}\n" % outside)

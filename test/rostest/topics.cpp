@@ -184,14 +184,14 @@ void expect_updates_lead_to(std::uint64_t step, const Listener<ElevationGrid>& k
   ElevationAssembler held;
   ElevationGrid now;
   for (const ElevationGrid& grid : keyframes.all()) {
-    if (grid.keyframe == keyframe) held.take(boost::make_shared<ElevationGrid>(grid));
+    if (grid.keyframe == keyframe) held.process(boost::make_shared<ElevationGrid>(grid));
     if (grid.keyframe > keyframe) now = grid;
   }
   ASSERT_EQ(now.step, step);
   ASSERT_TRUE(held.map()) << "keyframe " << keyframe;
   ASSERT_LT(held.map()->info().step, now.step);
   for (const ElevationUpdate& update : updates.all())
-    if (update.keyframe == keyframe) held.take(boost::make_shared<ElevationUpdate>(update));
+    if (update.keyframe == keyframe) held.process(boost::make_shared<ElevationUpdate>(update));
   ASSERT_EQ(held.need(), KeyframeNeed::none) << held.counts().last_gap;
   EXPECT_EQ(held.map()->info().step, step);
   EXPECT_LE(largest_difference(held.map()->elevations(), now.elevation), threshold + 1e-6);

@@ -164,7 +164,7 @@ TEST_F(Services, EditWindAddsAJetAndTakesItAway) {
 
 TEST_F(Services, EditWindRefuses) {
   expect_refused<EditWind>("edit_wind", jet("blow"), "operation: 'blow'", "add, change, remove, clear");
-  expect_refused<EditWind>("edit_wind", jet("change"), "id: = 5", "no feature");
+  expect_refused<EditWind>("edit_wind", jet("change"), "id: = 5", "not the id of any feature");
   EditWind::Request request = jet("add");
   request.kind = "tornado";
   expect_refused<EditWind>("edit_wind", request, "kind: 'tornado'", "vortex, jet, turbulence");

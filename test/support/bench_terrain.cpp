@@ -14,7 +14,7 @@ BenchTerrain::BenchTerrain(Exec& exec, int width, int height, double cell_size, 
       heights(surface::make_heights(exec, grid())) {
   ledger_words.set_zero();
   for (Buffer<float>* buffer : {&strength, &repose, &cliff}) buffer->set_zero();
-  for (Layer layer : {Layer::wind_shadow, Layer::echo}) terrain.require(layer);
+  for (Layer layer : {Layer::wind_shadow, Layer::echo}) terrain.allocate(layer);
 }
 
 BenchTerrain& BenchTerrain::set(Layer layer, const std::function<double(int, int)>& f) {
@@ -33,7 +33,7 @@ BenchTerrain& BenchTerrain::set_quanta(Layer layer, const std::function<Quanta(i
   std::vector<std::uint32_t> words;
   for (int y = 0; y < grid().height; ++y)
     for (int x = 0; x < grid().width; ++x) words.push_back(static_cast<std::uint32_t>(f(x, y)));
-  terrain.set_words(layer, words);
+  terrain.set_raw_words(layer, words);
   return *this;
 }
 
@@ -55,7 +55,8 @@ double BenchTerrain::at(Layer layer, int x, int y) const {
 
 std::vector<Quanta> BenchTerrain::quanta(Layer layer) const {
   std::vector<Quanta> values(cells(), 0);
-  if (terrain.has(layer)) std::memcpy(values.data(), terrain.words(layer).data(), cells() * sizeof(Quanta));
+  if (terrain.has(layer))
+    std::memcpy(values.data(), terrain.raw_words(layer).data(), cells() * sizeof(Quanta));
   return values;
 }
 
@@ -81,20 +82,20 @@ long long BenchTerrain::booked(Material material, int side) const {
 void BenchTerrain::surface() {
   with_backend(exec(), [&](auto& e) {
     surface::fill_elevation(e, terrain.view());
-    surface::measure(e, terrain.view(), heights);
+    surface::compute_heights(e, terrain.view(), heights);
   });
 }
 
 void BenchTerrain::shadow(const WindShadowParameters& p, bool whole_marches) {
   surface();
   wind_shadow::Workspace work = wind_shadow::make_workspace(exec(), grid(), p);
-  if (whole_marches) work.around = {};
+  if (whole_marches) work.highest_nearby = {};
   with_backend(exec(), [&](auto& e) { wind_shadow::step(e, terrain.view(), p, heights, work); });
 }
 
 void BenchTerrain::judge(const TraversabilityParameters& p) {
   for (const LayerInfo& row : layer_table)
-    if (row.lifetime == Lifetime::on_request) terrain.require(row.layer);
+    if (row.lifetime == Lifetime::on_request) terrain.allocate(row.layer);
   with_backend(exec(), [&](auto& e) { traversability::step(e, terrain.view(), p, {}, 0, grid().height); });
 }
 void BenchTerrain::echo(const EchoDuneParameters& p) {
@@ -146,7 +147,7 @@ void BenchTerrain::avalanche_bedrock(const AvalanchingParameters& p, const Repos
 void BenchTerrain::flow(const WaterParameters& p, float time_step, double time, Quanta sea_level) {
   for (Layer layer : {Layer::water, Layer::water_flux_x, Layer::water_flux_y, Layer::water_velocity_x,
                       Layer::water_velocity_y, Layer::wind_x, Layer::wind_y})
-    terrain.require(layer);
+    terrain.allocate(layer);
   virtual_pipes::Workspace work{Buffer<float>(exec(), cells())};
   with_backend(exec(), [&](auto& e) {
     virtual_pipes::step(e, terrain.view(), p, time_step, time, sea_level, ledger(), landed.data(), work);
@@ -157,7 +158,7 @@ void BenchTerrain::flow(const WaterParameters& p, float time_step, double time, 
 void BenchTerrain::erode(const HydraulicErosionParameters& p, float time_step) {
   for (Layer layer :
        {Layer::water, Layer::suspended_sediment, Layer::water_velocity_x, Layer::water_velocity_y})
-    terrain.require(layer);
+    terrain.allocate(layer);
   hydraulic_erosion::Workspace work{Buffer<float>(exec(), cells())};
   with_backend(exec(),
                [&](auto& e) { hydraulic_erosion::step(e, terrain.view(), p, time_step, ledger(), work); });
@@ -165,14 +166,14 @@ void BenchTerrain::erode(const HydraulicErosionParameters& p, float time_step) {
 }
 
 void BenchTerrain::soak(const MoistureParameters& p, float capacity, float time_step) {
-  for (Layer layer : {Layer::water, Layer::moisture}) terrain.require(layer);
+  for (Layer layer : {Layer::water, Layer::moisture}) terrain.allocate(layer);
   with_backend(exec(), [&](auto& e) {
     moisture::step(e, terrain.view(), p, capacity, time_step, ledger(), landed.data());
   });
 }
 
 void BenchTerrain::develop_soil(const SoilParameters& p, const ReposeParameters& r, float time_step) {
-  terrain.require(Layer::soil);
+  terrain.allocate(Layer::soil);
   with_backend(exec(), [&](auto& e) { soil::step(e, terrain.view(), p, r, time_step, ledger()); });
 }
 

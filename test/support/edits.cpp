@@ -46,7 +46,7 @@ std::vector<EditTerrain> one_of_each_shape() {
 EditTerrain shifted(EditTerrain edit, double dx, double dy) {
   edit.x += dx;
   edit.y += dy;
-  for (command::Place& p : edit.points) p.x += dx, p.y += dy;
+  for (command::Point& p : edit.points) p.x += dx, p.y += dy;
   return edit;
 }
 
@@ -57,7 +57,7 @@ EditTerrain quarter_turned(EditTerrain edit, double x, double y) {
     py = y + dx;
   };
   turn(edit.x, edit.y);
-  for (command::Place& p : edit.points) turn(p.x, p.y);
+  for (command::Point& p : edit.points) turn(p.x, p.y);
   edit.angle_deg += 90;
   return edit;
 }

@@ -36,7 +36,7 @@ void HeldTerrain::hold() {
 
 std::vector<TileChange> HeldTerrain::take(float threshold, int tile) {
   const packed_tiles::Tiling tiles = packed_tiles::tiling(terrain_.grid(), tile);
-  Staging::Slot& slot = staging_.next(
+  Staging::Slot& slot = staging_.acquire(
       packed_tiles::max_packed_bytes(static_cast<std::size_t>(tiles.count()), held_.size(), sizeof(float)));
   with_backend(exec_, [&](auto& e) {
     held_elevation::pack_changes(e, terrain_.view(), terrain_.metres(Layer::elevation), tiles, threshold,

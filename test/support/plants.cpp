@@ -39,7 +39,7 @@ PlantBench::PlantBench(Exec& exec, int width, int height, std::vector<SpeciesTra
                                   species, competition.empty() ? all_ones(species.size()) : competition)) {
   for (Layer layer : {Layer::vegetation, Layer::humus, Layer::canopy_height, Layer::illumination,
                       Layer::illumination_canopy})
-    terrain.terrain.require(layer);
+    terrain.terrain.allocate(layer);
   terrain.set(Layer::bedrock, -100).set(Layer::soil, 100);
   terrain.surface();
 }

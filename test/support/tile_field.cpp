@@ -58,12 +58,12 @@ TileField field(const std::string& name, const Grid& grid, const Height& ground,
 
 }  // namespace
 
-struct TileField::There {
+struct TileField::DeviceField {
   Buffer<Quanta> ground, sand, soil;
   Buffer<float> obstacle, repose;
   avalanching::LevelView level;
 
-  There(Exec& exec, const TileField& f)
+  DeviceField(Exec& exec, const TileField& f)
       : ground(on(exec, f.ground)),
         sand(on(exec, f.sand)),
         soil(on(exec, f.soil)),
@@ -74,32 +74,36 @@ struct TileField::There {
 };
 
 std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool by_law, float share,
-                                       float plenty, float edge_factor) const {
-  There there(exec, *this);
+                                       float continue_threshold, float edge_factor) const {
+  DeviceField device(exec, *this);
   Buffer<Quanta> before = on(exec, coarse_before), after = on(exec, coarse_after);
   const avalanching::Prolong from_coarse{coarse(), or_null(after, coarse_after),
-                                         or_null(before, coarse_before), grid, there.sand.data()};
-  Buffer<Quanta> open_there = on(exec, open);
-  const avalanching::RelaxTile law{
-      {grid, offset},           there.level, from_coarse, {share, edge_factor * share}, sweeps, plenty,
-      or_null(open_there, open)};
+                                         or_null(before, coarse_before), grid, device.sand.data()};
+  Buffer<Quanta> device_flags = on(exec, active_flags);
+  const avalanching::RelaxTile law{{grid, offset},
+                                   device.level,
+                                   from_coarse,
+                                   {share, edge_factor * share},
+                                   sweeps,
+                                   continue_threshold,
+                                   or_null(device_flags, active_flags)};
   with_backend(exec, [&](auto& e) {
     by_law ? avalanching::relax_tiles_reference(e, law)
            : avalanching::relax_tiles(e, law, avalanching::NoFollowUp{});
   });
-  return there.sand.download();
+  return device.sand.download();
 }
 
-avalanching::RelaxTile TileField::four_sweeps(There& there, int offset) const {
-  return {{grid, offset}, there.level, {}, {0.65f, 0.4f}, 4, 0.2f};
+avalanching::RelaxTile TileField::four_sweeps(DeviceField& device, int offset) const {
+  return {{grid, offset}, device.level, {}, {0.65f, 0.4f}, 4, 0.2f};
 }
 
 std::vector<std::uint32_t> TileField::relaxed_and_restricted(Exec& exec, int offset) const {
-  There there(exec, *this);
+  DeviceField device(exec, *this);
   struct Coarse {
     Buffer<Quanta> ground, sand, sand_before;
     Buffer<float> repose;
-    avalanching::LevelOut out;
+    avalanching::LevelBuffers out;
     Coarse(Exec& e, const Grid& g)
         : ground(e, cells(g)),
           sand(e, cells(g)),
@@ -112,11 +116,11 @@ std::vector<std::uint32_t> TileField::relaxed_and_restricted(Exec& exec, int off
              quarter{half.width / 2, half.height / 2, 2 * half.cell_size, half.periodic_x, half.periodic_y};
   Coarse first(exec, half), second(exec, quarter);
   with_backend(exec, [&](auto& e) {
-    avalanching::relax_tiles(e, four_sweeps(there, offset),
-                             avalanching::Restrict{there.level, first.out, second.out});
+    avalanching::relax_tiles(e, four_sweeps(device, offset),
+                             avalanching::Restrict{device.level, first.out, second.out});
   });
   std::vector<std::uint32_t> bits;
-  append(bits, there.sand);
+  append(bits, device.sand);
   for (Coarse* level : {&first, &second}) {
     append(bits, level->ground);
     append(bits, level->sand);
@@ -127,16 +131,16 @@ std::vector<std::uint32_t> TileField::relaxed_and_restricted(Exec& exec, int off
 }
 
 std::vector<std::uint32_t> TileField::relaxed_and_measured(Exec& exec, int offset) const {
-  There there(exec, *this);
+  DeviceField device(exec, *this);
   surface::Heights heights = surface::make_heights(exec, grid);
   with_backend(exec, [&](auto& e) {
-    avalanching::relax_tiles(
-        e, four_sweeps(there, offset),
-        surface::MeasureBlock{grid, there.ground.data(), or_null(there.soil, soil), there.sand.data(),
-                              heights.blocks, heights.cell_heights.data(), heights.highest.data()});
+    avalanching::relax_tiles(e, four_sweeps(device, offset),
+                             surface::ComputeBlockHeights{
+                                 grid, device.ground.data(), or_null(device.soil, soil), device.sand.data(),
+                                 heights.blocks, heights.cell_heights.data(), heights.highest.data()});
   });
   std::vector<std::uint32_t> bits;
-  append(bits, there.sand);
+  append(bits, device.sand);
   append(bits, heights.cell_heights);
   append(bits, heights.highest);
   return bits;
@@ -213,7 +217,7 @@ TileField tiled(const TileField& field, int columns, int rows) {
   return f;
 }
 
-std::vector<TileField> tile_fields_of_families() {
+std::vector<TileField> tile_fields_with_coarse_changes() {
   std::vector<TileField> fields;
   for (const TileField& field : tile_fields()) {
     if (field.name != "dunes" && field.name != "open and of an odd size" && field.name != "obstacles on soil")

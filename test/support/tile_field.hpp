@@ -19,7 +19,7 @@ struct TileField {
   std::vector<Quanta> soil;     ///< may be empty
   std::vector<float> obstacle;  ///< may be empty
   std::vector<float> repose;
-  std::vector<Quanta> open;                         ///< a tile each; may be empty: all are
+  std::vector<Quanta> active_flags;                 ///< a tile each; may be empty: all are
   std::vector<Quanta> coarse_before, coarse_after;  ///< may be empty; of the next coarser grid
 
   Grid coarse() const {
@@ -28,15 +28,15 @@ struct TileField {
   /// The sand after one pass of `sweeps` sweeps in tiles that begin at −offset; by the reference, or as the
   /// backend does it best.
   std::vector<Quanta> relaxed(Exec& exec, int offset, int sweeps, bool by_law, float share = 0.5f,
-                              float plenty = 100, float edge_factor = 1) const;
+                              float continue_threshold = 100, float edge_factor = 1) const;
   /// The sand after one pass of four sweeps, and what is filled after it, the bits of one layer after
   /// another: both coarse levels, or the heights with the highest of each block.
   std::vector<std::uint32_t> relaxed_and_restricted(Exec& exec, int offset) const;
   std::vector<std::uint32_t> relaxed_and_measured(Exec& exec, int offset) const;
 
  private:
-  struct There;  ///< the level in a backend's memory
-  avalanching::RelaxTile four_sweeps(There& there, int offset) const;
+  struct DeviceField;  ///< the level in a backend's memory
+  avalanching::RelaxTile four_sweeps(DeviceField& device, int offset) const;
 };
 
 /// Dunes, cliffs of hundreds of metres, pits, films, columns as high as can be, walls, on whole and broken
@@ -46,7 +46,7 @@ std::vector<TileField> tile_fields();
 /// `columns` × `rows` copies of a field beside each other.
 TileField tiled(const TileField& field, int columns, int rows);
 
-/// Fields to which a coarser grid has something to hand down: more sand, less, and as good as all.
-std::vector<TileField> tile_fields_of_families();
+/// Fields to which a coarser grid has changes to prolong: more sand, less, and as good as all.
+std::vector<TileField> tile_fields_with_coarse_changes();
 
 }  // namespace desert_sim::test

@@ -12,12 +12,12 @@ Scenario parsed(const std::string& yaml) { return parse_scenario(YAML::Load(yaml
 
 Scenario scenario_of(const std::string& yaml) {
   Scenario scenario = parsed(yaml);
-  resolve_grid(scenario, refuse_rasters);
+  resolve_grid(scenario, no_raster_loader);
   return scenario;
 }
 
 std::unique_ptr<Simulation> simulate(Exec& exec, const std::string& yaml) {
-  return std::make_unique<Simulation>(exec, scenario_of(yaml), refuse_rasters);
+  return std::make_unique<Simulation>(exec, scenario_of(yaml), no_raster_loader);
 }
 
 void run(Simulation& simulation, int steps) {
@@ -29,7 +29,7 @@ template <class T>
 std::vector<T> words_as(const Simulation& simulation, Layer layer) {
   std::vector<T> values(static_cast<std::size_t>(simulation.terrain().grid().cells()), T{});
   if (!simulation.terrain().has(layer)) return values;
-  const std::vector<std::uint32_t> words = simulation.terrain().words(layer);
+  const std::vector<std::uint32_t> words = simulation.terrain().raw_words(layer);
   std::memcpy(values.data(), words.data(), words.size() * sizeof(T));
   return values;
 }

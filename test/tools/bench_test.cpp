@@ -105,9 +105,9 @@ TEST_F(Bench, WritesEveryFigureOfARun) {
 }
 
 TEST_F(Bench, ScenesBeginWithTheirWarmUpOrACheckpoint) {
-  EXPECT_EQ(warm_up_of("mature"), 2000);
-  EXPECT_EQ(warm_up_of("edited"), 2000);
-  EXPECT_EQ(warm_up_of("A"), 0);
+  EXPECT_EQ(default_warm_up_steps("mature"), 2000);
+  EXPECT_EQ(default_warm_up_steps("edited"), 2000);
+  EXPECT_EQ(default_warm_up_steps("A"), 0);
   const YAML::Node warm = measure(
       {"--scene", "mature", "--size", "128", "--warm-up", "15", "--save-start", path("a.ck")}, "warm.json");
   const YAML::Node again = measure({"--scene", "mature", "--start", path("a.ck")}, "again.json");
@@ -132,12 +132,12 @@ TEST_F(Bench, ScenesBeginWithTheirWarmUpOrACheckpoint) {
 
 TEST_F(Bench, TheEditOfASceneIsFiftyMetresOfSandInItsMiddle) {
   CpuExec exec(1);
-  Simulation s(exec, bench_scenario("edited", 64, {}), refuse_rasters);
+  Simulation s(exec, bench_scenario("edited", 64, {}), no_raster_loader);
   const CommandResult result = s.apply(bench_edit(s.scenario().grid));
   EXPECT_NEAR(result.volume_m3, 50 * 3.14159 * 20 * 20, 0.4 * 50 * 3.14159 * 20 * 20)
       << "cells are 16 m wide";
-  EXPECT_EQ(0.5 * (result.touched.x0 + result.touched.x1), 32);
-  EXPECT_EQ(0.5 * (result.touched.y0 + result.touched.y1), 32);
+  EXPECT_EQ(0.5 * (result.changed_cells.x0 + result.changed_cells.x1), 32);
+  EXPECT_EQ(0.5 * (result.changed_cells.y0 + result.changed_cells.y1), 32);
 }
 
 TEST_F(Bench, RefusesWhatItDoesNotUnderstand) {

@@ -132,7 +132,7 @@ TEST_F(Run, ReplaysAJournalToTheSameHash) {
   std::string live;
   {
     Scenario scenario = load_scenario(scenario_);
-    Session session(scenario, refuse_rasters, "cpu", 1, path("j"));
+    Session session(scenario, no_raster_loader, "cpu", 1, path("j"));
     for (int n = 0; n < 9; ++n) {
       if (n == 3) session.apply(command::SetWind{90, 9, 2});
       if (n == 6) {
@@ -202,7 +202,7 @@ TEST_F(Run, PlotsARunOverTimeOrSaysWhyNot) {
   }
   const test::ProgramRun alone = run({scenario_, "--plot", path("plot.png")});
   EXPECT_EQ(alone.status, 2);
-  EXPECT_NE(alone.err.find("--plot: needs --out and --every"), std::string::npos) << alone.err;
+  EXPECT_NE(alone.err.find("--plot: --out and --every are required too"), std::string::npos) << alone.err;
 }
 
 TEST_F(Run, InterruptedFinishesItsStepWritesOutputsAndExits130) {

@@ -76,7 +76,7 @@ TEST_F(Refusals, GridTooBigForMemory) {
   for (const char* layer : {"soil", "water", "moisture", "humus", "vegetation", "suspended_sediment"})
     layers += std::string("  - uniform: {layer: ") + layer + ", value: 0}\n";
   expect_text_refused("grid: {width: 46000, height: 46000}\nterrain:\n" + layers,
-                      {"46000 x 46000", "bytes", "GiB", " a cell", "there are"});
+                      {"46000 x 46000", "bytes", "GiB", " per cell", "available"});
 }
 
 TEST_F(Refusals, CheckpointThatIsCut) {

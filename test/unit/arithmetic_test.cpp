@@ -47,24 +47,24 @@ TEST(WrapOnce, IsWrapWhereItIsAllowed) {
 }
 
 TEST(Take, RoundsToNearestAndStopsAtWhatIsThere) {
-  EXPECT_EQ(take(1.0f, per_metre, 2000000), 1048576);
-  EXPECT_EQ(take(1.4f / per_metre, per_metre, 100), 1);
-  EXPECT_EQ(take(1.6f / per_metre, per_metre, 100), 2);
-  EXPECT_EQ(take(2.0f, per_metre, 7), 7);
-  EXPECT_EQ(take(1e30f, per_metre, 7), 7);
+  EXPECT_EQ(to_quanta_at_most(1.0f, per_metre, 2000000), 1048576);
+  EXPECT_EQ(to_quanta_at_most(1.4f / per_metre, per_metre, 100), 1);
+  EXPECT_EQ(to_quanta_at_most(1.6f / per_metre, per_metre, 100), 2);
+  EXPECT_EQ(to_quanta_at_most(2.0f, per_metre, 7), 7);
+  EXPECT_EQ(to_quanta_at_most(1e30f, per_metre, 7), 7);
 }
 
 TEST(Take, TakesNothingOfNothingOrNaN) {
-  EXPECT_EQ(take(0.0f, per_metre, 100), 0);
-  EXPECT_EQ(take(-1.0f, per_metre, 100), 0);
-  EXPECT_EQ(take(1.0f, per_metre, 0), 0);
-  EXPECT_EQ(take(std::nanf(""), per_metre, 100), 0);
+  EXPECT_EQ(to_quanta_at_most(0.0f, per_metre, 100), 0);
+  EXPECT_EQ(to_quanta_at_most(-1.0f, per_metre, 100), 0);
+  EXPECT_EQ(to_quanta_at_most(1.0f, per_metre, 0), 0);
+  EXPECT_EQ(to_quanta_at_most(std::nanf(""), per_metre, 100), 0);
 }
 
 TEST(Take, NeverTakesMoreThanThereIsWhereFloatsAreCoarse) {
   for (Quanta available : {(1 << 24) + 1, (1 << 25) + 3, wall_height - 1, std::numeric_limits<Quanta>::max()})
     for (float share : {0.5f, 0.9999999f, 1.0f, 1.0000001f, 2.0f}) {
-      const Quanta taken = take(available * (share / per_metre), per_metre, available);
+      const Quanta taken = to_quanta_at_most(available * (share / per_metre), per_metre, available);
       EXPECT_LE(taken, available);
       EXPECT_GE(taken, 0);
     }
@@ -108,9 +108,9 @@ TEST(BilinearParcels, ArrivesWholeAndMirrored) {
           const Quanta parts[] = {parcels.south_west[n], parcels.south_east[n], parcels.north_west[n],
                                   parcels.north_east[n]};
           for (Quanta part : parts) EXPECT_GE(part, 0);
-          EXPECT_GE(parcels.left(n), 0);
+          EXPECT_GE(parcels.unshared(n), 0);
           if (dx != 32768 && dy != 32768) {
-            EXPECT_EQ(parcels.left(n), 0) << dx << ", " << dy;
+            EXPECT_EQ(parcels.unshared(n), 0) << dx << ", " << dy;
           }
         }
         const auto at = [&](int n, int x) {  // in a column, south and north
@@ -121,7 +121,7 @@ TEST(BilinearParcels, ArrivesWholeAndMirrored) {
         };
         for (int away : {0, 1})
           EXPECT_EQ(at(0, 10 + away), at(1, 10 - away)) << amount << ": " << dx << ", " << dy;
-        EXPECT_EQ(parcels.left(0), parcels.left(1));
+        EXPECT_EQ(parcels.unshared(0), parcels.unshared(1));
       }
   BilinearParcels<1> one;
   one.set(0, 0, 0, 20000, 60000, 3);
@@ -162,8 +162,8 @@ TEST(Terrain, GivesBackWhatItWasGivenToHalfAQuantum) {
   const std::vector<double> values{1700.1234567, 1750.0000004, 1799.9999, 1700};
   terrain.set_values(Layer::bedrock, values);
   for (std::size_t i = 0; i < 4; ++i) {
-    const double stored = terrain.scale().datum +
-                          static_cast<Quanta>(terrain.words(Layer::bedrock)[i]) * terrain.scale().quantum();
+    const double stored = terrain.scale().datum + static_cast<Quanta>(terrain.raw_words(Layer::bedrock)[i]) *
+                                                      terrain.scale().quantum();
     EXPECT_NEAR(stored, values[i], 0.5001 * terrain.scale().quantum());
   }
   EXPECT_EQ(terrain.values(Layer::soil), std::vector<float>(4, 0.0f)) << "a layer that is not in use is 0";

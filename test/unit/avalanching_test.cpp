@@ -229,8 +229,8 @@ struct Hierarchy {
                                       sand.data(), repose.data(), 1e6f};
     fill(view, {coarse, coarse_ground.data(), coarse_sand.data(), before.data(), coarse_repose.data()}, {});
   }
-  static void fill(const avalanching::LevelView& from, const avalanching::LevelOut& first,
-                   const avalanching::LevelOut& second) {
+  static void fill(const avalanching::LevelView& from, const avalanching::LevelBuffers& first,
+                   const avalanching::LevelBuffers& second) {
     const avalanching::Restrict law{from, first, second};
     for (int y = 0; y < law.blocks().height; ++y)
       for (int x = 0; x < law.blocks().width; ++x) law(x, y);
@@ -261,7 +261,8 @@ TEST(ActiveTileFlags, HasTheSameTilesByCorners) {
       for (int row = 0; row < blocks.height; ++row)
         for (int column = 0; column < blocks.width; ++column) {
           std::set<const Quanta*> one_by_one;
-          round.for_each_around(column, row, margin, [&](const Quanta* flag) { one_by_one.insert(flag); });
+          round.for_each_nearby_flag(column, row, margin,
+                                     [&](const Quanta* flag) { one_by_one.insert(flag); });
           Quanta* corners[avalanching::ActiveTileFlags::corners];
           if (!round.find_corner_flags(column, row, margin, corners)) continue;
           ++by_corners;
@@ -318,7 +319,7 @@ struct FilledLevel {
         sand(ground),
         before(ground),
         repose(ground.size()) {}
-  avalanching::LevelOut out() { return {grid, ground.data(), sand.data(), before.data(), repose.data()}; }
+  avalanching::LevelBuffers out() { return {grid, ground.data(), sand.data(), before.data(), repose.data()}; }
   avalanching::LevelView view() {
     return {grid, ground.data(), nullptr, nullptr, sand.data(), repose.data(), 1e6f};
   }

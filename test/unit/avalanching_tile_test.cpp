@@ -187,7 +187,7 @@ TEST_P(AvalanchingTile, PassesOverEveryPairInTwoPasses) {
   }
 }
 
-/// A tile goes on while one of its pairs moves plenty, and only that tile.
+/// A tile goes on while one of its pairs moves more than the threshold, and only that tile.
 TEST_P(AvalanchingTile, GoesOnWhileAPairMovesPlenty) {
   TileField f = row(std::vector<double>(64, 0.0), std::vector<double>(64, 0.0));
   f.sand[10] = 4 * 1048576;  // in the first tile
@@ -205,7 +205,7 @@ TEST_P(AvalanchingTile, GoesOnWhileAPairMovesPlenty) {
 
 /// What a coarser grid hands down comes first, as if by itself.
 TEST_P(AvalanchingTile, GetsTheCoarserGridsChangeFirst) {
-  for (const TileField& f : test::tile_fields_of_families())
+  for (const TileField& f : test::tile_fields_with_coarse_changes())
     for (int offset : {0, 12}) {
       TileField g = f;
       const avalanching::Prolong prolong{g.coarse(), g.coarse_after.data(), g.coarse_before.data(), g.grid,
@@ -234,7 +234,7 @@ TEST_P(AvalanchingTile, LeavesClosedTilesAsTheyAre) {
   TileField f = row(std::vector<double>(96, 0.0), std::vector<double>(96, 0.0));
   for (std::size_t x : {10, 40, 80}) f.sand[x] = 4 << 20;
   const auto all = f.relaxed(exec(), 0, 4, false);
-  f.open = {1, 0, 7};
+  f.active_flags = {1, 0, 7};
   const auto some = f.relaxed(exec(), 0, 4, false);
   for (std::size_t x = 0; x < 96; ++x) EXPECT_EQ(some[x], x / 32 == 1 ? f.sand[x] : all[x]) << x;
 }
@@ -321,7 +321,7 @@ TEST(AvalanchingPatch, RoundsWhatSlidesAlikeOnBothSides) {
     for (int n = 0; n < 100000; ++n) {
       // Whole units in [1, 2), and an excess that need not be one but is no more than their difference.
       const auto unit = [&] { return float_from_bits(bits_of(1.0f) + (random() & 0x7fffff)); };
-      const float one = unit(), other = unit(), a = higher(one, other), b = lower(one, other);
+      const float one = unit(), other = unit(), a = fast_max(one, other), b = fast_min(one, other);
       const float repose = (n % 2 ? 1.0f : 0.37f) * (a - b) * static_cast<float>(random() % 1000) / 1000.0f;
       const float excess = (a - b) - (n % 3 ? repose : 0.0f);
       ASSERT_EQ(a - fused(-share, excess, a), fused(share, excess, b) - b)

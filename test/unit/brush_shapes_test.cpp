@@ -79,11 +79,11 @@ TEST_P(BrushShapes, APolygonIsFilledByTheEvenOddRule) {
     }
   EXPECT_EQ(raised, 48);
   // The other way round, and beginning elsewhere, it is the same.
-  const auto once = s->terrain().words(Layer::sand);
+  const auto once = s->terrain().raw_words(Layer::sand);
   s = world("periodic");
   e.points = {{103, -45}, {103, -47}, {105, -47}, {105, -49}, {101, -49}, {101, -45}};
   s->apply(e);
-  EXPECT_TRUE(once == s->terrain().words(Layer::sand));
+  EXPECT_TRUE(once == s->terrain().raw_words(Layer::sand));
   // A bow tie has two insides.
   s = world("periodic");
   e.points = {{101, -49}, {105, -45}, {105, -49}, {101, -45}};
@@ -128,12 +128,12 @@ TEST_P(BrushShapes, ACapsuleIsAStrokeWithRoundEnds) {
   s = world("periodic");
   e.points[1] = e.points[0];
   s->apply(e);
-  const auto dot = s->terrain().words(Layer::sand);
+  const auto dot = s->terrain().raw_words(Layer::sand);
   s = world("periodic");
   EditTerrain circle = edit_at(4, 8, BrushShape::circle);
   circle.radius = e.radius;
   s->apply(circle);
-  EXPECT_TRUE(dot == s->terrain().words(Layer::sand));
+  EXPECT_TRUE(dot == s->terrain().raw_words(Layer::sand));
 }
 
 TEST_P(BrushShapes, APatchLiesAsAPictureDoes) {
@@ -240,7 +240,7 @@ TEST_P(BrushShapes, SmoothTakesTheMeanOfASquare) {
 TEST_P(BrushShapes, SmoothLeavesAPlainAsItIsAtEveryBorder) {
   for (const char* boundary : {"periodic", "open"}) {
     s = world(boundary);
-    const auto before = s->terrain().words(Layer::sand);
+    const auto before = s->terrain().raw_words(Layer::sand);
     EditTerrain e = edit_at(0, 0, BrushShape::rectangle);
     e.radius = e.radius_y = 100;
     e.merge = BrushMerge::smooth;
@@ -248,7 +248,7 @@ TEST_P(BrushShapes, SmoothLeavesAPlainAsItIsAtEveryBorder) {
     e.smooth_passes = 3;
     e.inner = 1;
     s->apply(e);
-    EXPECT_TRUE(before == s->terrain().words(Layer::sand)) << boundary;
+    EXPECT_TRUE(before == s->terrain().raw_words(Layer::sand)) << boundary;
   }
 }
 
@@ -273,10 +273,10 @@ TEST_P(BrushShapes, EveryShapeWrapsOverPeriodicBorders) {
   for (const EditTerrain& inside : test::one_of_each_shape()) {
     s = world("periodic");
     s->apply(inside);
-    const auto here = s->terrain().words(Layer::sand);
+    const auto here = s->terrain().raw_words(Layer::sand);
     s = world("periodic");
     s->apply(test::shifted(inside, 10 * 0.5, 9 * 0.5));  // over both borders
-    const auto there = s->terrain().words(Layer::sand);
+    const auto there = s->terrain().raw_words(Layer::sand);
     const char* name = brush_shapes[static_cast<int>(inside.shape)];
     for (int y = 0; y < 16; ++y)
       for (int x = 0; x < 20; ++x)

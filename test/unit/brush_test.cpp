@@ -142,10 +142,10 @@ TEST_P(BrushEdit, WrapsOverPeriodicBordersAndStopsAtOpenOnes) {
     EXPECT_EQ(sand(0, 15) > 2, periodic);
     EXPECT_EQ(sand(19, 15) > 2, periodic);
     EXPECT_EQ(sand(10, 8), 2);
-    EXPECT_LE(result.touched.x0, 0);
-    EXPECT_GE(result.touched.x1, periodic ? 20 : 3);
-    EXPECT_LE(result.touched.x1, 20);
-    EXPECT_LE(result.touched.y1, 16);
+    EXPECT_LE(result.changed_cells.x0, 0);
+    EXPECT_GE(result.changed_cells.x1, periodic ? 20 : 3);
+    EXPECT_LE(result.changed_cells.x1, 20);
+    EXPECT_LE(result.changed_cells.y1, 16);
   }
 }
 
@@ -153,7 +153,7 @@ TEST_P(BrushEdit, TouchesNothingOutsideTheRectangleItReports) {
   for (const char* boundary : {"periodic", "open"})
     for (const auto& [x, y, r] : {std::tuple{4, 5, 2.7}, {19, 2, 4.0}, {-3, 18, 6.0}, {10, 8, 40.0}}) {
       s = world(boundary);
-      const CellRectangle t = s->apply(brush_at(x, y, r, 1)).touched;
+      const CellRectangle t = s->apply(brush_at(x, y, r, 1)).changed_cells;
       for (int j = 0; j < 16; ++j)
         for (int i = 0; i < 20; ++i)
           EXPECT_TRUE((i >= t.x0 && i < t.x1 && j >= t.y0 && j < t.y1) || sand(i, j) == 2)
@@ -163,10 +163,10 @@ TEST_P(BrushEdit, TouchesNothingOutsideTheRectangleItReports) {
 
 TEST_P(BrushEdit, OnATorusDoesNotDependOnWhichCopyOfTheCentreIsGiven) {
   s->apply(brush_at(3, 4, 4, 1));
-  const auto here = s->terrain().words(Layer::sand);
+  const auto here = s->terrain().raw_words(Layer::sand);
   s = world("periodic");
   s->apply(brush_at(3 - 20 * 7, 4 + 16 * 3, 4, 1));
-  EXPECT_TRUE(here == s->terrain().words(Layer::sand));
+  EXPECT_TRUE(here == s->terrain().raw_words(Layer::sand));
 }
 
 TEST_P(BrushEdit, LargerThanTheTorusTouchesEachCellOnce) {

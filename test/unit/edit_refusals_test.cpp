@@ -85,7 +85,7 @@ TEST_P(EditRefusals, OfPatches) {
   spoiled([](auto& e) { e.patch.values[4] = 2e5f; }, "column 4, row 0: = 200000");
   spoiled([](auto& e) { e.patch_use = PatchUse::mask; }, "is not in [0, 1]");
   spoiled([](auto& e) { e.patch = {2048, 1024, std::vector<float>(2048 * 1024)}; }, "1048576");
-  spoiled([](auto& e) { e.shape = BrushShape::circle; }, "another shape");
+  spoiled([](auto& e) { e.shape = BrushShape::circle; }, "the shape is not patch");
 }
 
 TEST_P(EditRefusals, OfSmoothingAndRings) {

@@ -85,12 +85,12 @@ TEST_P(EditWind, RefusesAndChangesNothing) {
       EXPECT_NE(std::string(e.what()).find(naming), std::string::npos) << e.what();
     }
   };
-  refused(vortex(WindEdit::add), "id: = 7 is another feature's already");
+  refused(vortex(WindEdit::add), "id: = 7 is already the id of another feature");
   command::EditWind edit = vortex(WindEdit::change);
   edit.feature.id = 8;
-  refused(edit, "id: = 8 is no feature's");
+  refused(edit, "id: = 8 is not the id of any feature");
   edit.operation = WindEdit::remove;
-  refused(edit, "id: = 8 is no feature's");
+  refused(edit, "id: = 8 is not the id of any feature");
   edit.feature.id = 0;
   refused(edit, "id: = 0 must be 1 or more");
   edit = vortex(WindEdit::change);

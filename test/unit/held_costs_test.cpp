@@ -30,7 +30,7 @@ class Told {
   /// Bytes of a piece on its way: 1 makes it a row of tiles.
   void set_slot_bytes(std::size_t bytes) { staging_.set_slot_bytes(bytes); }
   void set(const Costs& now) { exec_.upload(costs_.now(), now.data(), now.size()); }
-  TakenCosts take(const CostQuery& query) { return costs_.take(exec_, staging_, query); }
+  PendingCosts take(const CostQuery& query) { return costs_.begin_copy(exec_, staging_, query); }
   /// Takes the whole map.
   void hold() {
     CostQuery query;
@@ -45,7 +45,7 @@ class Told {
     query.update = true;
     query.threshold = threshold;
     query.recent = recent;
-    const TakenCosts taken = take(query);
+    const PendingCosts taken = take(query);
     EXPECT_FALSE(taken.whole);
     const CostChanges changes = *taken.update.get();
     changes.write_to(held_, width_);
@@ -69,7 +69,7 @@ CellBox changed_cells(const Costs& now, const Costs& held, int width, int thresh
     const bool exact = special(now[i]) || special(held[i]);
     if (now[i] == held[i] || (!exact && std::abs(now[i] - held[i]) <= threshold)) continue;
     const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
-    box = box.with({x, y, x + 1, y + 1});
+    box = box.united_with({x, y, x + 1, y + 1});
   }
   return box;
 }
@@ -80,7 +80,7 @@ Costs after(const Costs& now, Costs held, int width, const CellBox& box, std::si
   tiles = 0;
   for (std::size_t i = 0; i < now.size(); ++i) {
     const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
-    if (!box.has(x, y) || now[i] == held[i]) continue;
+    if (!box.contains_cell(x, y) || now[i] == held[i]) continue;
     held[i] = now[i];
     const std::size_t tile = static_cast<std::size_t>(y / 32 * ((width - 1) / 32 + 1) + x / 32);
     tiles += touched[tile] ? 0 : 1;
@@ -128,7 +128,7 @@ TEST_P(HeldCostsTold, BoxesAndTilesAreThoseOfABruteForceComparison) {
       const CellBox recent = round % 2 ? CellBox{width / 3, height / 4, width / 2, height} : CellBox{};
       SCOPED_TRACE(testing::Message() << width << " x " << height << ", round " << round);
       const CellBox changed = changed_cells(now, told.held(), width, threshold);
-      const CellBox box = changed.empty() ? CellBox{} : changed.with(recent);
+      const CellBox box = changed.empty() ? CellBox{} : changed.united_with(recent);
       std::size_t tiles = 0;
       const Costs expected = after(now, told.held(), width, box, tiles);
       told.set(now);
@@ -195,13 +195,13 @@ const char* const world =
 
 TEST_P(HeldCostsTold, OfASimulationFollowItsTraversability) {
   auto s = simulation(world);
-  EXPECT_FALSE(s->take_costs({}).update);
+  EXPECT_FALSE(s->begin_costs({}).update);
   EXPECT_FALSE(s->terrain().has(Layer::traversability));
   const std::size_t before = exec().bytes_held(), parts = total_bytes(s->memory());
   CostQuery query;
   query.update = true;
   query.threshold = 2;
-  const TakenCosts first = s->take_costs(query);
+  const PendingCosts first = s->begin_costs(query);
   EXPECT_FALSE(first.update) << "nothing was held";
   Costs held(90 * 70, unknown_cost);
   first.whole.get()->write_to(held, 90);
@@ -212,7 +212,7 @@ TEST_P(HeldCostsTold, OfASimulationFollowItsTraversability) {
   for (int round = 0; round < 5; ++round) {
     test::run(*s, 3);
     query.whole = round == 3;
-    const TakenCosts taken = s->take_costs(query);
+    const PendingCosts taken = s->begin_costs(query);
     const std::shared_ptr<const Snapshot> snapshot = s->snapshot({Layer::traversability});
     Costs now;
     for (float worth : snapshot->layers.at(Layer::traversability)) now.push_back(cost_of(worth));

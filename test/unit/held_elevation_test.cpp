@@ -46,7 +46,7 @@ const char* const world =
 TEST_P(HeldElevation, OfASimulationTellsWhatStepsChanged) {
   auto s = simulation(world);
   EXPECT_FALSE(s->holds_elevation());
-  EXPECT_THROW(s->take_elevation_changes(0.01, 32), StateError);
+  EXPECT_THROW(s->begin_elevation_changes(0.01, 32), StateError);
   test::run(*s, 2);
   s->hold_elevation();
   ASSERT_TRUE(s->holds_elevation());
@@ -58,7 +58,7 @@ TEST_P(HeldElevation, OfASimulationTellsWhatStepsChanged) {
     s->staging().set_slot_bytes(round % 2 ? 1 : usual);  // a row of tiles at a time
     test::run(*s, 3);
     const float threshold = 0.02f * static_cast<float>(round);
-    const auto pending = s->take_elevation_changes(threshold, 16);
+    const auto pending = s->begin_elevation_changes(threshold, 16);
     const std::vector<float> now = s->snapshot({Layer::elevation})->layers.at(Layer::elevation);
     test::run(*s, 2);  // meanwhile
     const auto expected = test::expected_changes(now, held, 90, threshold, 16);

@@ -16,7 +16,7 @@ constexpr double pi = 3.14159265358979323846;
 using test::Line;
 
 Line transformed(const Line& line, int threads) {
-  const LineTransform transform = LineTransform::of(static_cast<int>(line.size()));
+  const LineTransform transform = LineTransform::for_length(static_cast<int>(line.size()));
   return test::transformed(transform, transform.roots(), line, threads);
 }
 
@@ -31,7 +31,7 @@ Line some_line(int n) {
 TEST(LineTransform, IsTheSumForEveryLengthThatSuits) {
   int lengths = 0;
   for (int n = 2; n <= LineTransform::longest; ++n) {
-    if (!LineTransform::suits(n)) continue;
+    if (!LineTransform::supports_length(n)) continue;
     ++lengths;
     const Line line = some_line(n), modes = transformed(line, 16);
     double error = 0, size = 0;
@@ -63,7 +63,7 @@ TEST(LineTransform, BackAgainWithPartsExchanged) {
 
 TEST(LineTransform, UniformLinesHaveExactlyOneMode) {
   for (int n = 2; n <= LineTransform::longest; ++n) {
-    if (!LineTransform::suits(n)) continue;
+    if (!LineTransform::supports_length(n)) continue;
     const Line modes = transformed(Line(static_cast<std::size_t>(n), Complex{1.7f, 0.0f}), 16);
     for (int k = 1; k < n; ++k) {
       ASSERT_EQ(modes[k].re, 0.0f) << n << ' ' << k;
@@ -73,8 +73,8 @@ TEST(LineTransform, UniformLinesHaveExactlyOneMode) {
 }
 
 TEST(LineTransform, LongLinesAndOtherPrimesDoNotSuit) {
-  for (int n : {0, 1, 7, 44, 182, 513, 540}) EXPECT_FALSE(LineTransform::suits(n)) << n;
-  for (int n : {2, 3, 5, 180, 512}) EXPECT_TRUE(LineTransform::suits(n)) << n;
+  for (int n : {0, 1, 7, 44, 182, 513, 540}) EXPECT_FALSE(LineTransform::supports_length(n)) << n;
+  for (int n : {2, 3, 5, 180, 512}) EXPECT_TRUE(LineTransform::supports_length(n)) << n;
 }
 
 }  // namespace

@@ -142,14 +142,14 @@ TEST(Loader, ARasterThatIsMissingIsNamed) {
   Scenario s = test::scenario_of("grid: {width: 4, height: 4}\nterrain: [raster: {file: no/such.tif}]\n");
   CpuExec exec(1);
   try {
-    Simulation simulation(exec, s, refuse_rasters);
+    Simulation simulation(exec, s, no_raster_loader);
     FAIL();
   } catch (const ConfigError& e) {
     EXPECT_NE(std::string(e.what()).find("no/such.tif"), std::string::npos);
   }
   expect_refused("grid: {from_raster: no/such.tif}", {"no/such.tif"});
   Scenario unnamed = test::scenario_of("grid: {width: 4, height: 4}\nterrain: [raster: {layer: sand}]\n");
-  EXPECT_THROW(Simulation(exec, unnamed, refuse_rasters), ConfigError);
+  EXPECT_THROW(Simulation(exec, unnamed, no_raster_loader), ConfigError);
 }
 
 TEST(Loader, AStepThatLeavesALayersRangeIsNamedWithItsCell) {

@@ -42,8 +42,8 @@ class TightExec final : public Exec {
   std::unique_ptr<Fft> make_fft(int, int, int) override { throw Error("made a transform"); }
 
  protected:
-  void* take(std::size_t) override { throw Error("allocated before it was refused"); }
-  void give_back(void*) noexcept override {}
+  void* allocate_memory(std::size_t) override { throw Error("allocated before it was refused"); }
+  void free_memory(void*) noexcept override {}
 
  private:
   const char* backend_;
@@ -52,7 +52,7 @@ class TightExec final : public Exec {
 
 std::string refusal(Exec& exec, const Scenario& scenario) {
   try {
-    Simulation(exec, scenario, refuse_rasters);
+    Simulation(exec, scenario, no_raster_loader);
   } catch (const ConfigError& e) {
     return e.what();
   }
@@ -81,7 +81,7 @@ TEST_P(Memory, PartsAreAllThatIsHeldAndWhatWasPlanned) {
   for (const char* text : all_kinds) {
     const std::size_t before = exec().bytes_held();
     const Scenario scenario = test::scenario_of(text);
-    Simulation s(exec(), scenario, refuse_rasters);
+    Simulation s(exec(), scenario, no_raster_loader);
     std::vector<MemoryPart> held = s.memory(), planned = planned_memory(s.scenario());
     ASSERT_EQ(held.size(), planned.size()) << text;
     for (std::size_t n = 0; n < held.size(); ++n) {
@@ -107,7 +107,7 @@ TEST_P(Memory, IsGivenBack) {
 
 TEST_P(Memory, OfAllAeolianProcessesIsAtMostSixtyBytesACell) {
   constexpr int size = 1024;  // smaller ones are mostly the wind's transforms and the ledger
-  Simulation s(exec(), scene(size, all_aeolian), refuse_rasters);
+  Simulation s(exec(), scene(size, all_aeolian), no_raster_loader);
   s.step();
   for (const MemoryPart& p : s.memory())
     std::printf("  %-28s %6.2f bytes a cell\n", p.name.c_str(), bytes_a_cell({p}, size));
@@ -126,8 +126,9 @@ TEST(MemoryRefusal, TellsWhatIsNeededAndWhatThereIs) {
   for (const char* backend : {"cpu", "cuda"}) {
     TightExec exec(backend, needed - 1);
     const std::string why = refusal(exec, scenario);
-    for (const std::string& text : {std::string("1024 x 1024"), std::to_string(needed),
-                                    std::to_string(needed - 1), std::string(" a cell"), std::string(backend)})
+    for (const std::string& text :
+         {std::string("1024 x 1024"), std::to_string(needed), std::to_string(needed - 1),
+          std::string(" per cell"), std::string(backend)})
       EXPECT_NE(why.find(text), std::string::npos) << "no '" << text << "' in: " << why;
   }
 }
@@ -162,7 +163,7 @@ TEST(MemoryRefusal, OfGridsThatIndicesDoNotReach) {
 TEST(MemoryRefusal, OfACheckpointThatDoesNotFit) {
   const test::TemporaryFolder folder;
   CpuExec enough(1);
-  save_checkpoint(folder.path("small"), Simulation(enough, bench_scenario("A", 32, {}), refuse_rasters));
+  save_checkpoint(folder.path("small"), Simulation(enough, bench_scenario("A", 32, {}), no_raster_loader));
   TightExec tight("cuda", 1000);
   EXPECT_THROW(load_checkpoint(folder.path("small"), tight), ConfigError);
 }

@@ -20,7 +20,7 @@ TEST(Options, AreReadInAnyOrderWithSpaceOrEquals) {
   EXPECT_EQ(o.positional(), (std::vector<std::string>{"a.yaml", "b.yaml"}));
   EXPECT_TRUE(o.has("quiet"));
   EXPECT_EQ(o.number("steps", 0, 0, 100), 12);
-  EXPECT_EQ(o.all("set"), (std::vector<std::string>{"x=1", "y=2"}));
+  EXPECT_EQ(o.values("set"), (std::vector<std::string>{"x=1", "y=2"}));
   EXPECT_FALSE(parse({}).has("steps"));
   EXPECT_EQ(parse({}).number("steps", 7, 0, 100), 7);
   EXPECT_EQ(parse({}).text("set", "none"), "none");

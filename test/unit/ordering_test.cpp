@@ -19,12 +19,12 @@ std::vector<std::uint64_t> random_words(int count, std::uint32_t keys) {
 
 template <class E>
 void expect_sorted(E& exec, int count, std::uint32_t keys) {
-  SortWorkspace ordering(exec, count, 1);
+  SortWorkspace work(exec, count, 1);
   std::vector<std::uint64_t> words = random_words(count, keys);
-  ordering.words.upload(words);
-  sort_by_key(exec, ordering, count, bit_width_of(keys - 1));
+  work.sort_keys.upload(words);
+  sort_by_key(exec, work, count, bit_width_of(keys - 1));
   std::stable_sort(words.begin(), words.end(), [](auto a, auto b) { return a >> 32 < b >> 32; });
-  EXPECT_TRUE(ordering.words.download() == words) << count << " of " << keys << " keys";
+  EXPECT_TRUE(work.sort_keys.download() == words) << count << " of " << keys << " keys";
 }
 
 class OrderingOf : public test::OnBackend {};
@@ -37,7 +37,7 @@ TEST_P(OrderingOf, ItemsOfTheSameKeyKeepTheirOrder) {
 
 TEST_P(OrderingOf, PrefixSumsLeaveOutTheirOwnValue) {
   for (int count : {1, 2, 777, 70001}) {
-    SortWorkspace ordering(exec(), 1, count);
+    SortWorkspace work(exec(), 1, count);
     std::vector<int> values, expected;
     int sum = 0;
     for (int n = 0; n < count; ++n) {
@@ -47,7 +47,7 @@ TEST_P(OrderingOf, PrefixSumsLeaveOutTheirOwnValue) {
     }
     Buffer<int> from(exec(), values.size()), to(exec(), values.size());
     from.upload(values);
-    with_backend(exec(), [&](auto& e) { prefix_sums(e, ordering, from.data(), to.data(), count); });
+    with_backend(exec(), [&](auto& e) { prefix_sums(e, work, from.data(), to.data(), count); });
     EXPECT_TRUE(to.download() == expected) << count;
   }
 }

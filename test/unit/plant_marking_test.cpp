@@ -15,7 +15,7 @@ using test::undemanding;
 class PlantMarking : public test::OnBackend {
  protected:
   void mark(PlantBench& b, int first = 0, int rows = 0) {
-    b.terrain.terrain.require(Layer::plants);
+    b.terrain.terrain.allocate(Layer::plants);
     const TerrainView view = b.terrain.terrain.view();
     with_backend(exec(), [&](auto& e) {
       plants::find_dominant_species(e, view, first, rows ? rows : view.grid.height, b.work.neighbourhood(),
@@ -93,9 +93,9 @@ TEST_P(PlantMarking, ASnapshotShowsSpeciesAndTheWatersSurface) {
 TEST_P(PlantMarking, AListHasEveryPlantInItsOrder) {
   auto s = simulation(meadow);
   test::run(*s, 20);
-  const int count = s->plants().count;
+  const int count = s->state().plants.count;
   ASSERT_GT(count, 100);
-  const std::vector<std::uint32_t> words = plants::words(s->plants());
+  const std::vector<std::uint32_t> words = plants::words(s->state().plants);
   const auto word = [&](plants::Column c, int n) {
     return words[static_cast<std::size_t>(c) * static_cast<std::size_t>(count) + static_cast<std::size_t>(n)];
   };

@@ -143,7 +143,7 @@ TEST_P(PlantSpawning, EverySeedGetsADistinctPlace) {
   for (long long room : {0, 1, 7, 99, 100, 101}) {
     std::set<int> places;
     for (int j = 0; j < 100; ++j) {
-      const int place = plants::place_of(j, 100, room);
+      const int place = plants::index_of_new_plant(j, 100, room);
       EXPECT_TRUE(place < 0 || places.insert(place).second);
     }
     EXPECT_EQ(static_cast<long long>(places.size()), std::min(room, 100LL));

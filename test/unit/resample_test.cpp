@@ -92,31 +92,29 @@ TEST(Resample, LinearRampIsExact) {
 
 TEST(Resample, SameGridIsTheSame) {
   const Raster source = noise(17, 9, 3.3);
-  for (Resampling method :
-       {Resampling::nearest, Resampling::bilinear, Resampling::cubic, Resampling::average}) {
+  for (Resampling method : {Resampling::bilinear, Resampling::cubic, Resampling::average}) {
     const Raster r = resample(source, 17, 9, 3.3, source.origin_x, source.origin_y, method);
     for (std::size_t i = 0; i < r.values.size(); ++i) EXPECT_NEAR(r.values[i], source.values[i], 1e-5);
   }
 }
 
-TEST(Resample, NearestTakesTheCellAndKeepsSouthSouth) {
+TEST(Resample, HalvedCellsKeepTheirValueAndSouthStaysSouth) {
   Raster source = blank(3, 2, 10);
   source.values = {4, 5, 6, 1, 2, 3};
-  const Raster r = resample(source, 6, 4, 5, source.origin_x, source.origin_y, Resampling::nearest);
+  const Raster r = resample(source, 6, 4, 5, source.origin_x, source.origin_y, Resampling::average);
   EXPECT_EQ(r.values,
             (std::vector<float>{4, 4, 5, 5, 6, 6, 4, 4, 5, 5, 6, 6, 1, 1, 2, 2, 3, 3, 1, 1, 2, 2, 3, 3}));
   // One cell further north and east.
   const Raster moved =
-      resample(source, 2, 1, 10, source.origin_x + 10, source.origin_y + 10, Resampling::nearest);
+      resample(source, 2, 1, 10, source.origin_x + 10, source.origin_y + 10, Resampling::average);
   EXPECT_EQ(moved.values, (std::vector<float>{2, 3}));
 }
 
 TEST(Resample, AverageKeepsTheMean) {
   const Raster source = noise(60, 48, 1);
   for (double cell_size : {2.0, 3.0, 4.0, 6.0, 12.0}) {
-    const Raster r = resample_to_cell_size(source, cell_size);
-    EXPECT_EQ(r.width, 60 / cell_size);
-    EXPECT_EQ(r.height, 48 / cell_size);
+    const Raster r = resample(source, static_cast<int>(60 / cell_size), static_cast<int>(48 / cell_size),
+                              cell_size, source.origin_x, source.origin_y, Resampling::average);
     EXPECT_NEAR(mean(r), mean(source), 1e-4) << cell_size;
   }
 }
@@ -124,8 +122,7 @@ TEST(Resample, AverageKeepsTheMean) {
 TEST(Resample, OutsideIsNaN) {
   Raster source = blank(4, 4, 1);
   std::fill(source.values.begin(), source.values.end(), 2.0F);
-  for (Resampling method :
-       {Resampling::nearest, Resampling::bilinear, Resampling::cubic, Resampling::average}) {
+  for (Resampling method : {Resampling::bilinear, Resampling::cubic, Resampling::average}) {
     const Raster r = resample(source, 8, 8, 1, source.origin_x - 2, source.origin_y - 1, method);
     for (int y = 0; y < 8; ++y)
       for (int x = 0; x < 8; ++x) {
@@ -145,8 +142,7 @@ TEST(Resample, NoDataHasNoWeight) {
   std::fill(source.values.begin(), source.values.end(), 5.0F);
   for (int y = 4; y < 8; ++y)
     for (int x = 4; x < 8; ++x) source.values[y * 12 + x] = kNaN;
-  for (Resampling method :
-       {Resampling::nearest, Resampling::bilinear, Resampling::cubic, Resampling::average})
+  for (Resampling method : {Resampling::bilinear, Resampling::cubic, Resampling::average})
     for (double cell_size : {0.5, 3.0}) {
       const int cells = static_cast<int>(12 / cell_size);
       const Raster r = resample(source, cells, cells, cell_size, source.origin_x, source.origin_y, method);
@@ -163,46 +159,15 @@ TEST(Resample, NoDataHasNoWeight) {
   EXPECT_EQ(coarse.nodata_count(), 0);  // each coarse cell has some valid cell
 }
 
-TEST(ResampleToCellSize, KeepsExtentAndCorner) {
-  Raster source = ramp(105, 77, 4.988744589);
-  source.projection = "some text";
-  const Raster fine = resample_to_cell_size(source, 1);
-  EXPECT_EQ(fine.width, 524);
-  EXPECT_EQ(fine.height, 384);
-  EXPECT_EQ(fine.cell_size, 1);
-  EXPECT_EQ(fine.origin_x, source.origin_x);
-  EXPECT_EQ(fine.origin_y, source.origin_y);
-  EXPECT_EQ(fine.projection, "some text");
-  EXPECT_EQ(fine.nodata_count(), 0);
-  for (double cell_size : {0.3, 2.5, 7.0, 9.977489178, 33.3, 100.0}) {
-    const Raster r = resample_to_cell_size(source, cell_size);
-    EXPECT_EQ(r.nodata_count(), 0) << cell_size;
-    EXPECT_NEAR(r.width * cell_size, 105 * 4.988744589, 0.5001 * cell_size);
-    EXPECT_NEAR(r.height * cell_size, 77 * 4.988744589, 0.5001 * cell_size);
-  }
-  const Raster same = resample_to_cell_size(source, source.cell_size);
-  EXPECT_EQ(same.width, source.width);
-  for (std::size_t i = 0; i < same.values.size(); ++i) EXPECT_NEAR(same.values[i], source.values[i], 1e-4);
-}
-
 TEST(Resample, RefusesGridsWithoutCells) {
   const Raster source = ramp(4, 3, 2);
-  EXPECT_THROW(resample(source, 0, 3, 1, 0, 0, Resampling::nearest), ConfigError);
-  EXPECT_THROW(resample(source, 3, 3, 0, 0, 0, Resampling::nearest), ConfigError);
-  EXPECT_THROW(resample(source, 3, 3, kNaN, 0, 0, Resampling::nearest), ConfigError);
-  EXPECT_THROW(resample(source, 3, 3, 1, kNaN, 0, Resampling::nearest), ConfigError);
-  EXPECT_THROW(resample_to_cell_size(source, -1), ConfigError);
-  EXPECT_THROW(resample_to_cell_size(source, 1e-9), ConfigError);
-  try {
-    resample_to_cell_size(source, 50);
-    FAIL() << "not refused";
-  } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("50"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("no cell"), std::string::npos) << error.what();
-  }
+  EXPECT_THROW(resample(source, 0, 3, 1, 0, 0, Resampling::average), ConfigError);
+  EXPECT_THROW(resample(source, 3, 3, 0, 0, 0, Resampling::average), ConfigError);
+  EXPECT_THROW(resample(source, 3, 3, kNaN, 0, 0, Resampling::average), ConfigError);
+  EXPECT_THROW(resample(source, 3, 3, 1, kNaN, 0, Resampling::average), ConfigError);
   Raster wrong = source;
   wrong.values.pop_back();
-  EXPECT_THROW(resample_to_cell_size(wrong, 1), ConfigError);
+  EXPECT_THROW(resample(wrong, 3, 3, 1, 0, 0, Resampling::average), ConfigError);
 }
 
 TEST(FillNoData, FillsHolesFromAround) {

@@ -12,7 +12,7 @@ namespace {
 
 std::vector<Quanta> dealt(long long amount, const std::vector<Quanta>& stock) {
   std::vector<Quanta> change(stock.size(), 0);
-  deal_to_ring(amount, stock, change);
+  distribute_to_ring(amount, stock, change);
   return change;
 }
 
@@ -32,7 +32,7 @@ TEST(Ring, TakesInProportionToTheStock) {
 
 TEST(Ring, LeavesTheCellsOfTheShapeAlone) {
   Changes change{5, 0, 7};
-  deal_to_ring(-3, {-1, 8, -1}, change);
+  distribute_to_ring(-3, {-1, 8, -1}, change);
   EXPECT_EQ(change, (Changes{5, -3, 7}));
 }
 

@@ -48,7 +48,7 @@ Scenario scenario_at(const std::function<double()>& share) {
     Species& species = s.species[n];
     species.name = "kind " + std::to_string(n) + ": \"a\"";
     set_all(species.traits, share);
-    set_all(species.look, share);
+    set_all(species.appearance, share);
     species.traits.moisture_lowest =
         std::min(species.traits.moisture_lowest, species.traits.moisture_highest);
     float &low = species.traits.light_lowest, &high = species.traits.light_highest;

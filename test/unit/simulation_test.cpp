@@ -138,9 +138,9 @@ TEST_P(ASimulation, NamesTheProcessLayerAndCellOfABrokenState) {
       "avalanching: {enabled: false}\nsaltation: {enabled: false}\nreptation: {method: smoothing}\n"
       "wind: {speed: 0, warping: false, projection: false}\n");
   Terrain& terrain = const_cast<Terrain&>(s->terrain());
-  std::vector<std::uint32_t> sand = terrain.words(Layer::sand);
+  std::vector<std::uint32_t> sand = terrain.raw_words(Layer::sand);
   sand[5 * 24 + 7] = static_cast<std::uint32_t>(-3);
-  terrain.set_words(Layer::sand, sand);
+  terrain.set_raw_words(Layer::sand, sand);
   try {
     test::run(*s, 100);
     FAIL() << "a negative depth went unnoticed";

@@ -58,7 +58,7 @@ TEST(SpeciesList, ThePresetsAreThoseOfTheModel) {
 }
 
 TEST(SpeciesList, AHueIsAColour) {
-  const auto of = [](float hue) { return crown_colour(SpeciesLook{hue}); };
+  const auto of = [](float hue) { return crown_colour(SpeciesAppearance{hue}); };
   const auto [r, g, b] = of(120);
   EXPECT_GT(g, 2 * r);
   EXPECT_EQ(r, b);
@@ -66,8 +66,8 @@ TEST(SpeciesList, AHueIsAColour) {
   EXPECT_GT(of(0)[0], 2 * of(0)[1]);
   EXPECT_GT(of(240)[2], 2 * of(240)[1]);
   EXPECT_EQ(of(60)[0], of(60)[1]) << "yellow";
-  EXPECT_EQ(test::scenario_of("species: [{preset: palm, hue: 300}]\n").species[0].look.hue, 300);
-  EXPECT_NE(species_preset("palm").look.hue, species_preset("tree").look.hue);
+  EXPECT_EQ(test::scenario_of("species: [{preset: palm, hue: 300}]\n").species[0].appearance.hue, 300);
+  EXPECT_NE(species_preset("palm").appearance.hue, species_preset("tree").appearance.hue);
   expect_refused("species: [{preset: tree, hue: 400}]", {"species.0.hue", "400", "360"});
 }
 
@@ -83,7 +83,8 @@ TEST(SpeciesList, RefusesWhatItCannotUse) {
   expect_refused("species: [{preset: tree, growth: .nan}]", {"species.0.growth", "nan"});
   expect_refused("species: [{preset: tree, max_radius: 21}]", {"species.0.max_radius", "21", "20"});
   expect_refused("species: [{growth: 1}]", {"species.0", "name"});
-  expect_refused("species: [{preset: tree}, {preset: tree}]", {"species.1.name", "another's already"});
+  expect_refused("species: [{preset: tree}, {preset: tree}]",
+                 {"species.1.name", "already the name of another species"});
   expect_refused("species: {preset: tree}", {"species", "a list is expected"});
   expect_refused("species: [tree]", {"species.0"});
   expect_refused("species: [{preset: tree, light_lowest: 2}]", {"species.0.light_highest"});

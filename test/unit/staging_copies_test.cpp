@@ -26,8 +26,8 @@ class LateDevice final : public Exec {
   const char* backend() const override { return "late"; }
   std::string device() const override { return "the host, late"; }
   std::size_t memory_available() const override { return 1 << 30; }
-  void* allocate_host(std::size_t bytes) override { return take(bytes); }
-  void release_host(void* memory) noexcept override { give_back(memory); }
+  void* allocate_host(std::size_t bytes) override { return allocate_memory(bytes); }
+  void release_host(void* memory) noexcept override { free_memory(memory); }
   void set_zero(void* memory, std::size_t bytes) override { std::memset(memory, 0, bytes); }
   void copy(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
   void upload(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
@@ -46,14 +46,14 @@ class LateDevice final : public Exec {
     last_ = copy->done;
     return copy;
   }
-  void follow(const HostCopy& copy) override { static_cast<const LateCopy&>(copy).done.wait(); }
+  void wait_on_device_for(const HostCopy& copy) override { static_cast<const LateCopy&>(copy).done.wait(); }
 
  protected:
-  void* take(std::size_t bytes) override {
+  void* allocate_memory(std::size_t bytes) override {
     ++allocated;
     return ::operator new(bytes);
   }
-  void give_back(void* memory) noexcept override {
+  void free_memory(void* memory) noexcept override {
     --allocated;
     ::operator delete(memory);
   }
@@ -80,7 +80,7 @@ Pending<std::string> send(Staging& staging, char letter, int pieces) {
   const auto text = std::make_shared<std::string>();
   const auto readback = std::make_shared<Readback>();
   for (int n = 0; n < pieces; ++n) {
-    Staging::Slot& slot = staging.next(100);
+    Staging::Slot& slot = staging.acquire(100);
     std::memset(slot.device(), letter + n, 100);
     staging.send(slot, 10, readback, [waited = std::weak_ptr<std::string>(text)](Staging::Slot& arrived) {
       if (const auto all = waited.lock()) all->append(arrived.host(100), 100);

@@ -136,8 +136,8 @@ TEST_P(Staged, MemoryIsCountedAndGivenBack) {
 TEST_P(Staged, WhatGoesWrongOnTheWayIsToldToTheReaderEachTime) {
   Staging staging(exec());
   auto readback = std::make_shared<Readback>();
-  staging.send(staging.next(64), 64, readback, [](Staging::Slot&) { throw CudaError("lost"); });
-  staging.send(staging.next(64), 64, readback, [](Staging::Slot&) { FAIL() << "after a loss"; });
+  staging.send(staging.acquire(64), 64, readback, [](Staging::Slot&) { throw CudaError("lost"); });
+  staging.send(staging.acquire(64), 64, readback, [](Staging::Slot&) { FAIL() << "after a loss"; });
   staging.release();
   const Pending<int> pending(std::make_shared<int>(1), readback);
   EXPECT_THROW(pending.get(), CudaError);
@@ -146,7 +146,7 @@ TEST_P(Staged, WhatGoesWrongOnTheWayIsToldToTheReaderEachTime) {
 
 TEST_P(Staged, OnlyWhatIsAskedForIsCopied) {
   Staging staging(exec());
-  Staging::Slot& slot = staging.next(1000);
+  Staging::Slot& slot = staging.acquire(1000);
   const std::vector<char> sent(1000, 'a');
   exec().upload(slot.device(), sent.data(), 1000);
   auto readback = std::make_shared<Readback>();

@@ -20,7 +20,7 @@ struct Built {
 
 Built build(const std::string& steps,
             const std::string& grid = "width: 32, height: 20, cell_size: 0.5, origin_x: 10, origin_y: -4",
-            const RasterLoader& loader = refuse_rasters) {
+            const RasterLoader& loader = no_raster_loader) {
   Built b;
   b.scenario = test::scenario_of("grid: {" + grid + "}\nterrain: [" + steps + "]\n");
   b.layers = build_terrain(b.scenario, loader);
@@ -191,7 +191,6 @@ TEST(TerrainSteps, AGridFromARasterTakesSizeCellAndOriginUnlessTheyAreGiven) {
     field.cell_size = 10;
     field.origin_x = 500;
     field.origin_y = -200;
-    field.georeferenced = true;
     field.projection = "somewhere";
     return field;
   };

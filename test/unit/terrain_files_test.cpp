@@ -26,7 +26,7 @@ class TerrainFiles : public ::testing::TestWithParam<const char*> {
   }
   std::string save(Session& s, const std::string& tag) {
     Simulation& simulation = s.simulation();
-    save_terrain(file_, simulation.scenario(), *simulation.snapshot(terrain_layers(simulation)),
+    save_terrain(file_, simulation.scenario(), *simulation.snapshot(persistent_layers(simulation)),
                  as_geotiff() ? geotiff_writer("") : png16_writer(), tag);
     return file_;
   }
@@ -124,7 +124,7 @@ TEST_P(TerrainFiles, ThatAreBrokenAreRefusedAndTheSessionStays) {
     EXPECT_EQ(s->simulation().state_hash(), before);
   }
   folder_.write("terrain.yaml", good);
-  for (const std::string& raster : rasters_of(load_scenario(file_))) std::filesystem::remove(raster);
+  for (const std::string& raster : raster_paths(load_scenario(file_))) std::filesystem::remove(raster);
   EXPECT_THROW(s->apply(command::LoadScenario{file_, true, 0}), ConfigError);
   EXPECT_EQ(s->simulation().state_hash(), before);
 }

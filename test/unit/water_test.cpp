@@ -13,11 +13,11 @@ constexpr double quantum = 1.0 / (1 << 20);
 class WaterLaws : public test::OnBackend {
  protected:
   void rain(test::BenchTerrain& t, const RainParameters& p, std::uint64_t tick, double datum = 0) {
-    t.terrain.require(Layer::water);
+    t.terrain.allocate(Layer::water);
     with_backend(exec(), [&](auto& e) { rain::step(e, t.terrain.view(), p, 1, 7, tick, datum, t.ledger()); });
   }
   void pour(test::BenchTerrain& t, const Spring& spring, std::uint64_t tick = 0) {
-    t.terrain.require(Layer::water);
+    t.terrain.allocate(Layer::water);
     with_backend(exec(), [&](auto& e) {
       water_sources::add_spring(e, t.terrain.view(), spring, spring.x, spring.y, 1, tick, t.ledger());
     });
@@ -126,7 +126,7 @@ TEST_P(WaterLaws, TheSeaFillsWhatLiesBelowIt) {
   for (const Sea sea : {Sea::border, Sea::everywhere}) {
     test::BenchTerrain t(exec(), 9, 9, 1, false);
     t.set(Layer::bedrock, [](int x, int y) { return x - y; }).set(Layer::sand, 0.5);
-    t.terrain.require(Layer::water);
+    t.terrain.allocate(Layer::water);
     const Quanta level = 1 << 20;
     with_backend(exec(),
                  [&](auto& e) { water_sources::fill_sea(e, t.terrain.view(), sea, level, t.ledger()); });

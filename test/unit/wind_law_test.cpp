@@ -208,10 +208,10 @@ TEST_P(WindLaw, ShadowIsTheSameBitForBitWhenPiecesOfMarchesAreLeftOut) {
               .set(Layer::wind_y, [&](int x, int y) { return 4 * std::sin(0.1 * x + 0.02 * y * y); });
         WindShadowParameters p;
         p.distance = static_cast<float>(distance);
-        ASSERT_TRUE(wind_shadow::make_workspace(exec(), cut.grid(), p).around);
+        ASSERT_TRUE(wind_shadow::make_workspace(exec(), cut.grid(), p).highest_nearby);
         cut.shadow(p);
         whole.shadow(p, true);
-        EXPECT_EQ(cut.terrain.words(Layer::wind_shadow), whole.terrain.words(Layer::wind_shadow))
+        EXPECT_EQ(cut.terrain.raw_words(Layer::wind_shadow), whole.terrain.raw_words(Layer::wind_shadow))
             << (periodic ? "periodic, " : "open, ") << relief << " m, looked " << distance << " m far";
         if (relief > 0.5) {
           const std::vector<float> shadow = whole.terrain.values(Layer::wind_shadow);

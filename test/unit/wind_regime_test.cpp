@@ -49,7 +49,7 @@ TEST(WindRegime, IsConstantAfterItsRamp) {
   expect_wind(r.at(0), 0, 6);
   r.ramp = 10;
   r.start_time = 100;
-  r.from = {4, 0};
+  r.initial_wind = {4, 0};
   expect_wind(r.at(100), 4, 0);
   expect_wind(r.at(105), 2, 3);
   expect_wind(r.at(110), 0, 6);
@@ -61,7 +61,7 @@ WindRegime timeline(bool repeat) {
   WindRegime r;
   r.regime = WindRegimeKind::timeline;
   r.repeat = repeat;
-  r.from = {-2, 0};
+  r.initial_wind = {-2, 0};
   r.segments = {{0, 4, 10, 4, 1}, {90, 6, 20, 0, 1}, {180, 8, 5, 5, 1}};
   return r;
 }

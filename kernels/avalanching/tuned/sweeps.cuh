@@ -61,21 +61,21 @@ __device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& s
     shares.x[n][0] = shared.share[px * Patch::side + shift.x + n];
     shares.y[n] = shared.share[py * Patch::side + shift.y + n];
   }
-  float most = 0.0f;
-  PairsOfPatches<1, deep, InRegisters>{h, ground, drop, {}, shares, &most}.relax();
+  float max_moved = 0.0f;
+  PairsOfPatches<1, deep, InRegisters>{h, ground, drop, {}, shares, &max_moved}.relax();
 #pragma unroll
   for (int n = 0; n < Patch::cells; ++n) at(shared.h, n) = h[n];
-  return most;
+  return max_moved;
 }
 
 /// Whether the kernel has separate code for each of the four shifts, in which all offsets are constants. This
 /// pays where tiles take many sweeps; with few, fetching the instructions takes longer than it saves.
-enum class Code { shared_by_shifts, one_per_shift };
+enum class ShiftCode { shared_by_shifts, one_per_shift };
 
-template <bool deep, Code code>
+template <bool deep, ShiftCode code>
 __device__ float sweep_patch(Shared& shared, const PatchShift& shift) {
   static_assert(Patch::side == 4);
-  if constexpr (code == Code::one_per_shift) switch (shift.x) {
+  if constexpr (code == ShiftCode::one_per_shift) switch (shift.x) {
       case 0:
         return sweep_patch<deep>(shared, PatchShift(0));
       case 1:
@@ -89,18 +89,19 @@ __device__ float sweep_patch(Shared& shared, const PatchShift& shift) {
 }
 
 /// Sweeps over the loaded tile until it is at rest or may stop. Returns whether anything moved.
-template <bool deep, Code code>
+template <bool deep, ShiftCode code>
 __device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units) {
-  const float much = units.drop(law.plenty, law.level.quanta_per_cell);
+  const float threshold = units.drop(law.continue_threshold, law.level.quanta_per_cell);
   return law.relax([&](int n, const PatchShift& shift) {
-    const float most = sweep_patch<deep, code>(shared, shift);
-    const bool any = __any_sync(0xffffffffu, most > 0.0f), any_much = __any_sync(0xffffffffu, most > much);
+    const float max_moved = sweep_patch<deep, code>(shared, shift);
+    const bool any = __any_sync(0xffffffffu, max_moved > 0.0f),
+               any_much = __any_sync(0xffffffffu, max_moved > threshold);
     if (threadIdx.x % 32 == 0) shared.moved[n % 2][threadIdx.x / 32] = any_much ? 2 : (any ? 1 : 0);
     __syncthreads();
-    int here = 0;
+    int block_moved = 0;
 #pragma unroll
-    for (int k = 0; k < warps; ++k) here = max(here, shared.moved[n % 2][k]);
-    return static_cast<RelaxTile::Moved>(here);
+    for (int k = 0; k < warps; ++k) block_moved = max(block_moved, shared.moved[n % 2][k]);
+    return static_cast<RelaxTile::Moved>(block_moved);
   });
 }
 

@@ -37,26 +37,26 @@ constexpr int resident_tiles = 8;
 /// Applies the law that follows the sweeps to a block of 4 × 4 cells. Where there are obstacles, the tile
 /// holds the height of a wall instead of the ground's, so heights are measured from the layers again.
 template <class RowOf>
-__device__ void finish(const Restrict& law, bool, int column, int row, const RowOf& row_of) {
+__device__ void apply_follow_up(const Restrict& law, bool, int column, int row, const RowOf& row_of) {
   law.fill_complete_block(column, row, row_of);
 }
 template <class RowOf>
-__device__ void finish(const surface::MeasureBlock& law, bool obstacles, int column, int row,
-                       const RowOf& row_of) {
+__device__ void apply_follow_up(const surface::ComputeBlockHeights& law, bool obstacles, int column, int row,
+                                const RowOf& row_of) {
   if (obstacles) return law(column, row);
-  law.measure_complete_block(column, row, row_of);
+  law.compute_complete_block(column, row, row_of);
 }
 
-template <bool whole, Code code, class Then>
+template <bool patch_aligned, ShiftCode code, class Then>
 __global__ __launch_bounds__(threads, resident_tiles) void relax_tiles_kernel(RelaxTile law, Then then) {
   constexpr bool has_no_follow_up = std::is_same_v<Then, NoFollowUp>;
-  if (law.closed(static_cast<int>(blockIdx.x), static_cast<int>(blockIdx.y))) return;
+  if (law.is_skipped(static_cast<int>(blockIdx.x), static_cast<int>(blockIdx.y))) return;
   __shared__ Shared shared;
   __shared__ std::conditional_t<has_no_follow_up, NoFollowUp, Ground> ground;
-  const Place<whole> place(law);
-  Ground* kept = nullptr;
-  if constexpr (!has_no_follow_up) kept = &ground;
-  const Range range = load(place, shared, kept);
+  const PatchLocation<patch_aligned> patch(law);
+  Ground* kept_ground = nullptr;
+  if constexpr (!has_no_follow_up) kept_ground = &ground;
+  const Range range = load(patch, shared, kept_ground);
   __syncthreads();
   const Units units(range.lowest, range.highest, law.level.quanta_per_cell);
   bool changed = law.from_coarse.sand_after;
@@ -65,40 +65,40 @@ __global__ __launch_bounds__(threads, resident_tiles) void relax_tiles_kernel(Re
   if (changed)
 #pragma unroll
     for (int row = 0; row < Patch::side; ++row)
-      place.put_row(law.level.sand, row, sand_of_row(shared, units, row));
-  if constexpr (whole && !has_no_follow_up)
-    if (place.there())
-      finish(then, law.level.obstacle, place.x / Patch::side, place.y / Patch::side, [&](int row) {
+      patch.store_row(law.level.sand, row, sand_of_row(shared, units, row));
+  if constexpr (patch_aligned && !has_no_follow_up)
+    if (patch.is_in_grid())
+      apply_follow_up(then, law.level.obstacle, patch.x / Patch::side, patch.y / Patch::side, [&](int row) {
         return surface::GroundAndSand{ground.rows[row][threadIdx.x], sand_of_row(shared, units, row)};
       });
 }
 
-bool patches_are_whole(const RelaxTile& law) {
+bool patches_are_aligned(const RelaxTile& law) {
   const Grid& grid = law.level.grid;
   return law.tiles.offset % Patch::side == 0 && grid.width % Patch::side == 0 &&
          grid.height % Patch::side == 0;
 }
 
-template <bool whole, Code code, class Then>
+template <bool patch_aligned, ShiftCode code, class Then>
 void launch_kernel(CudaExec& exec, const RelaxTile& law, const Then& then) {
   const dim3 tiles(law.tiles.columns(), law.tiles.rows());
-  relax_tiles_kernel<whole, code><<<tiles, threads, 0, cuda::stream(exec)>>>(law, then);
+  relax_tiles_kernel<patch_aligned, code><<<tiles, threads, 0, cuda::stream(exec)>>>(law, then);
   check_cuda(cudaGetLastError(), "launch over tiles, tuned");
 }
 void launch(CudaExec& exec, const RelaxTile& law) {
-  if (!patches_are_whole(law))
-    launch_kernel<false, Code::shared_by_shifts>(exec, law, NoFollowUp{});
-  else if (law.sweeps > most_sweeps)
-    launch_kernel<true, Code::one_per_shift>(exec, law, NoFollowUp{});
+  if (!patches_are_aligned(law))
+    launch_kernel<false, ShiftCode::shared_by_shifts>(exec, law, NoFollowUp{});
+  else if (law.sweeps > max_sweeps_while_sliding)
+    launch_kernel<true, ShiftCode::one_per_shift>(exec, law, NoFollowUp{});
   else
-    launch_kernel<true, Code::shared_by_shifts>(exec, law, NoFollowUp{});
+    launch_kernel<true, ShiftCode::shared_by_shifts>(exec, law, NoFollowUp{});
 }
 
 /// Applies `then` in the same kernel if all patches lie in the grid as a whole and all tiles are relaxed.
 template <class Then>
 void launch_with_follow_up(CudaExec& exec, const RelaxTile& law, const Then& then) {
-  if (!law.open && patches_are_whole(law))
-    return launch_kernel<true, Code::shared_by_shifts>(exec, law, then);
+  if (!law.active_flags && patches_are_aligned(law))
+    return launch_kernel<true, ShiftCode::shared_by_shifts>(exec, law, then);
   launch(exec, law);
   for_each_cell(exec, follow_up_grid(then), then);
 }
@@ -111,7 +111,7 @@ void relax_tiles_tuned(CudaExec& exec, const RelaxTile& law, const NoFollowUp&) 
 void relax_tiles_tuned(CudaExec& exec, const RelaxTile& law, const Restrict& then) {
   tuned::launch_with_follow_up(exec, law, then);
 }
-void relax_tiles_tuned(CudaExec& exec, const RelaxTile& law, const surface::MeasureBlock& then) {
+void relax_tiles_tuned(CudaExec& exec, const RelaxTile& law, const surface::ComputeBlockHeights& then) {
   tuned::launch_with_follow_up(exec, law, then);
 }
 

@@ -8,7 +8,7 @@ namespace desert_sim::avalanching {
 
 void relax_tiles_tuned(CudaExec& exec, const RelaxTile& law, const NoFollowUp& then);
 void relax_tiles_tuned(CudaExec& exec, const RelaxTile& law, const Restrict& then);
-void relax_tiles_tuned(CudaExec& exec, const RelaxTile& law, const surface::MeasureBlock& then);
+void relax_tiles_tuned(CudaExec& exec, const RelaxTile& law, const surface::ComputeBlockHeights& then);
 
 }  // namespace desert_sim::avalanching
 #endif

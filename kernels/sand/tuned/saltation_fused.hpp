@@ -14,13 +14,13 @@ struct ShadowAndLift {
   static constexpr bool compact_warps = true;
   template <int count>
   using Parcels = BilinearParcels<count>;
-  wind_shadow::Shadow shade;
+  wind_shadow::Shadow shadow_law;
   LiftAndAdvect<bare> lift;
 
   template <int count>
   DESERT_HD void prepare(int x, int y, BilinearParcels<count>& parcels, int n) const {
     auto cell = lift.read(x, y, 0.0f);  // these loads overlap with the march of the wind shadow
-    cell.shadow = shade(x, y);
+    cell.shadow = shadow_law(x, y);
     lift.prepare(x, y, cell, parcels, n);
   }
   template <int count, class Add>
@@ -31,27 +31,27 @@ struct ShadowAndLift {
 
 /// Deposit of four adjacent cells of a row in a bare desert; the grid's width must be a multiple of four.
 struct DepositOfFour {
-  Deposit<true> one;
+  Deposit<true> deposit;
 
-  DESERT_HD Grid fours() const { return {one.in.grid.width / 4, one.in.grid.height, 1}; }
+  DESERT_HD Grid fours() const { return {deposit.in.grid.width / 4, deposit.in.grid.height, 1}; }
   DESERT_HD void operator()(int x, int y) const {
-    const int first = one.in.grid.index(4 * x, y);
-    const auto arriving = load_vec4(one.landed + first), cover = load_vec4(one.sand + first);
-    const auto u = load_vec4(one.in.wind_x + first), v = load_vec4(one.in.wind_y + first);
+    const int first = deposit.in.grid.index(4 * x, y);
+    const auto arriving = load_vec4(deposit.landed + first), cover = load_vec4(deposit.sand + first);
+    const auto u = load_vec4(deposit.in.wind_x + first), v = load_vec4(deposit.in.wind_y + first);
     Vec4<float> shadow{}, angle;
-    if (one.in.wind_shadow) shadow = load_vec4(one.in.wind_shadow + first);
+    if (deposit.in.wind_shadow) shadow = load_vec4(deposit.in.wind_shadow + first);
     Vec4<Quanta> sand, airborne;
     for (int n = 0; n < 4; ++n) {
-      const auto o = one.settle(first + n, arriving.values[n], cover.values[n], shadow.values[n],
-                                hypotenuse(u.values[n], v.values[n]), 0.0f, 0.0f);
+      const auto o = deposit.split_landed(first + n, arriving.values[n], cover.values[n], shadow.values[n],
+                                          hypotenuse(u.values[n], v.values[n]), 0.0f, 0.0f);
       sand.values[n] = cover.values[n] + o.stays;
       airborne.values[n] = o.bounces;
-      angle.values[n] = one.impacts.angle.of(o.loosened, 0.0f, 0.0f);
-      if (one.impacts.strength) one.impacts.strength[first + n] = o.strength;
+      angle.values[n] = deposit.impacts.angle.tangent_at(o.lowered_tangent, 0.0f, 0.0f);
+      if (deposit.impacts.strength) deposit.impacts.strength[first + n] = o.strength;
     }
-    store_vec4(one.sand + first, sand);
-    store_vec4(one.airborne + first, airborne);
-    store_vec4(one.impacts.angle.repose + first, angle);
+    store_vec4(deposit.sand + first, sand);
+    store_vec4(deposit.airborne + first, airborne);
+    store_vec4(deposit.impacts.angle.repose + first, angle);
   }
 };
 

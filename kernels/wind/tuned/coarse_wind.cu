@@ -32,10 +32,10 @@ void transform_by_lines(CudaExec&, const CoarseLaws&, Workspace&) { throw Error(
 namespace tuned {
 namespace {
 
-constexpr int at_once = lines_at_once;
 /// The laws run with 192 threads a line, one for each value (180 in the example above). The transforms run
 /// with a team of two warps a line (180 values need 36, 30 and 30 butterflies in the three stages).
-constexpr int threads_a_line = 192, threads = threads_a_line * at_once, team = 64, teams = threads / team;
+constexpr int threads_per_line = 192, threads = threads_per_line * lines_per_block, team = 64,
+              teams = threads / team;
 
 struct Axis {
   LineTransform transform;
@@ -46,10 +46,10 @@ struct Arguments {
   CoarseLaws laws;
   Axis x, y;
 
-  __host__ __device__ int longest() const { return max(laws.turn.coarse.width, laws.turn.coarse.height); }
+  __host__ __device__ int longest() const { return max(laws.warp.coarse.width, laws.warp.coarse.height); }
   __host__ __device__ int radii() const { return laws.gradients.radius_count; }
   /// Lines that a thread block holds in shared memory: those of every radius, if there are any.
-  __host__ __device__ int lines() const { return at_once * max(1, radii()); }
+  __host__ __device__ int lines() const { return lines_per_block * max(1, radii()); }
 };
 
 /// Two buffers for each line of a block, between which its transform alternates, followed by the roots of
@@ -61,11 +61,11 @@ struct Block {
   const Arguments& s;
   const CoarseGrid& coarse;
   int longest, width, height;
-  int place = 0;  ///< which of the two buffers holds the lines
+  int buffer_index = 0;  ///< which of the two buffers holds the lines
 
   __device__ explicit Block(const Arguments& arguments)
       : s(arguments),
-        coarse(arguments.laws.turn.coarse),
+        coarse(arguments.laws.warp.coarse),
         longest(arguments.longest()),
         width(coarse.width),
         height(coarse.height) {
@@ -75,24 +75,24 @@ struct Block {
   }
 
   __device__ int line(int n, int at) const { return (2 * n + at) * longest; }
-  __device__ Complex& here(int n, int i) const { return shared[line(n, place) + i]; }
-  __device__ Complex& next(int n, int i) const { return shared[line(n, 1 - place) + i]; }
+  __device__ Complex& current_value(int n, int i) const { return shared[line(n, buffer_index) + i]; }
+  __device__ Complex& other_buffer_value(int n, int i) const { return shared[line(n, 1 - buffer_index) + i]; }
 
   /// Calls body(c, x + c, y) for the values of columns x and x + 1, where these exist. Adjacent threads
   /// access adjacent values in memory (coalesced).
   template <class Body>
   __device__ void columns(int x, const Body& body) const {
-    const int c = static_cast<int>(threadIdx.x) % at_once;
+    const int c = static_cast<int>(threadIdx.x) % lines_per_block;
     if (x + c < width)
-      for (int y = static_cast<int>(threadIdx.x) / at_once; y < height; y += threads_a_line)
+      for (int y = static_cast<int>(threadIdx.x) / lines_per_block; y < height; y += threads_per_line)
         body(c, x + c, y);
   }
   /// Calls body(c, i, row) for the values of row j and, if it is not negative, of row `other`.
   template <class Body>
   __device__ void rows(int j, int other, const Body& body) const {
-    const int c = static_cast<int>(threadIdx.x) / threads_a_line, row = c == 0 ? j : other;
+    const int c = static_cast<int>(threadIdx.x) / threads_per_line, row = c == 0 ? j : other;
     if (row >= 0)
-      for (int i = static_cast<int>(threadIdx.x) % threads_a_line; i < width; i += threads_a_line)
+      for (int i = static_cast<int>(threadIdx.x) % threads_per_line; i < width; i += threads_per_line)
         body(c, i, row);
   }
 
@@ -104,15 +104,15 @@ struct Block {
     for (int n = 0; n < law.count; ++n) {
       for (int l = static_cast<int>(threadIdx.x) / team; l < count; l += teams)
         law.butterflies(law.stages[n], first, team, shared + line(s.lines(), 0) + roots,
-                        shared + line(l, place), shared + line(l, 1 - place));
-      place = 1 - place;
+                        shared + line(l, buffer_index), shared + line(l, 1 - buffer_index));
+      buffer_index = 1 - buffer_index;
       __syncthreads();
     }
   }
 };
 
 /// The stages of the table above.
-enum Stage { rises, slopes, turning, projecting, correction, stage_count };
+enum Stage { rises, slopes, warping, projecting, correction, stage_count };
 
 /// The other line that a block processes together with line n of a stage, or −1.
 __device__ int other_line(const Block& b, int stage, int n) {
@@ -122,47 +122,49 @@ __device__ int other_line(const Block& b, int stage, int n) {
 }
 
 /// Loads the lines from global memory.
-__device__ void fill(Block& b, int stage, int n, int other) {
+__device__ void load_lines(Block& b, int stage, int n, int other) {
   const CoarseLaws& laws = b.s.laws;
   const Complex* const spectrum = laws.columns.spectrum;
   const int width = b.width, values = b.coarse.values();
   if (stage == rises) {
-    b.columns(n, [&](int c, int x, int y) { b.here(c, y) = {laws.columns.rise_at(x, y), 0.0f}; });
-  } else if (stage == turning) {
+    b.columns(n, [&](int c, int x, int y) { b.current_value(c, y) = {laws.columns.rise_at(x, y), 0.0f}; });
+  } else if (stage == warping) {
     for (int r = 0; r < b.s.radii(); ++r)
       b.columns(n, [&](int c, int x, int y) {
-        b.here(at_once * r + c, y) = laws.gradients.out[r * values + y * width + b.coarse.mirrored_column(x)];
+        b.current_value(lines_per_block * r + c, y) =
+            laws.gradients.out[r * values + y * width + b.coarse.mirrored_column(x)];
       });
     if (b.s.radii() == 0) b.columns(n, [&](int, int x, int y) { laws.columns.rise_at(x, y); });
   } else if (stage == correction) {
-    b.columns(n, [&](int c, int x, int y) { b.here(c, y) = laws.correct.out[y * width + x]; });
+    b.columns(n, [&](int c, int x, int y) { b.current_value(c, y) = laws.correct.out[y * width + x]; });
   } else {
-    b.rows(n, other, [&](int c, int i, int row) { b.here(c, i) = spectrum[row * width + i]; });
+    b.rows(n, other, [&](int c, int i, int row) { b.current_value(c, i) = spectrum[row * width + i]; });
   }
 }
 
 /// Applies the law of a stage to its transformed lines, before these are transformed once more.
-__device__ void change(Block& b, int stage, int n, int other) {
+__device__ void apply_law(Block& b, int stage, int n, int other) {
   const CoarseLaws& laws = b.s.laws;
   const int width = b.width, radii = b.s.radii();
   if (stage == slopes) {
     b.rows(n, other, [&](int c, int i, int row) {
-      const Complex h = b.here(c, i);
+      const Complex h = b.current_value(c, i);
       for (int r = 0; r < radii; ++r)
-        b.next(at_once * r + c, i) = swap_re_im(laws.gradients.of_mode(r, i, row, h));
+        b.other_buffer_value(lines_per_block * r + c, i) = swap_re_im(laws.gradients.of_mode(r, i, row, h));
     });
-  } else if (stage == turning) {
+  } else if (stage == warping) {
     b.columns(n, [&](int c, int x, int y) {
       const int ground = b.coarse.mirrored_row(y);
-      b.next(c, y) = laws.turn.turn(x, y, [&](int r) { return swap_re_im(b.here(at_once * r + c, ground)); });
+      b.other_buffer_value(c, y) = laws.warp.warp_wind(
+          x, y, [&](int r) { return swap_re_im(b.current_value(lines_per_block * r + c, ground)); });
     });
   } else {
     b.rows(n, other, [&](int c, int i, int row) {
-      const Complex mirror = b.here(n > 0 ? 1 - c : c, i == 0 ? 0 : width - i);
-      b.next(c, i) = swap_re_im(laws.correct.of_mode(i, row, b.here(c, i), mirror));
+      const Complex mirror = b.current_value(n > 0 ? 1 - c : c, i == 0 ? 0 : width - i);
+      b.other_buffer_value(c, i) = swap_re_im(laws.correct.of_mode(i, row, b.current_value(c, i), mirror));
     });
   }
-  b.place = 1 - b.place;
+  b.buffer_index = 1 - b.buffer_index;
 }
 
 __device__ void store(const Block& b, int stage, int n, int other) {
@@ -172,14 +174,14 @@ __device__ void store(const Block& b, int stage, int n, int other) {
   if (stage == slopes) {
     for (int r = 0; r < b.s.radii(); ++r)
       b.rows(n, other, [&](int c, int i, int row) {
-        laws.gradients.out[r * values + row * width + i] = b.here(at_once * r + c, i);
+        laws.gradients.out[r * values + row * width + i] = b.current_value(lines_per_block * r + c, i);
       });
   } else if (stage == projecting) {
-    b.rows(n, other, [&](int c, int i, int row) { out[row * width + i] = b.here(c, i); });
+    b.rows(n, other, [&](int c, int i, int row) { out[row * width + i] = b.current_value(c, i); });
   } else if (stage == correction) {
-    b.columns(n, [&](int c, int x, int y) { out[y * width + x] = swap_re_im(b.here(c, y)); });
+    b.columns(n, [&](int c, int x, int y) { out[y * width + x] = swap_re_im(b.current_value(c, y)); });
   } else {
-    b.columns(n, [&](int c, int x, int y) { spectrum[y * width + x] = b.here(c, y); });
+    b.columns(n, [&](int c, int x, int y) { spectrum[y * width + x] = b.current_value(c, y); });
   }
 }
 
@@ -191,31 +193,32 @@ __device__ void store(const Block& b, int stage, int n, int other) {
 
 __global__ void __launch_bounds__(threads, 1) coarse_wind_kernel(DESERT_GRID_CONSTANT const Arguments s) {
   Block b(s);
-  const bool turns = s.radii() > 0, projects = s.laws.projected;
-  for (int stage = turns ? rises : turning; stage < (projects ? stage_count : projecting); ++stage) {
-    const bool along_y = stage == rises || stage == turning || stage == correction;
+  const bool has_warping = s.radii() > 0, has_projection = s.laws.projected;
+  for (int stage = has_warping ? rises : warping; stage < (has_projection ? stage_count : projecting);
+       ++stage) {
+    const bool along_y = stage == rises || stage == warping || stage == correction;
     const int lines = along_y ? b.width : stage == slopes ? b.height : b.height / 2 + 1;
     // In the stage of the projection each pair of a row and its mirror is visited once.
-    const int step = along_y || stage == slopes ? at_once : 1;
+    const int step = along_y || stage == slopes ? lines_per_block : 1;
     for (int n = step * static_cast<int>(blockIdx.x); n < lines; n += step * static_cast<int>(gridDim.x)) {
       const int other = along_y ? -1 : other_line(b, stage, n);
       if (stage == projecting && other == n) continue;  // it is processed together with row 0
       __syncthreads();
-      fill(b, stage, n, other);
-      const int from_memory = stage == turning ? s.radii() : 1;
+      load_lines(b, stage, n, other);
+      const int from_memory = stage == warping ? s.radii() : 1;
       const bool twice = stage != rises && stage != correction;
       for (int time = from_memory > 0 ? 0 : 1; time < (twice ? 2 : 1); ++time) {
         if (time == 1) {
           __syncthreads();
-          change(b, stage, n, other);
-          if (stage == turning && !projects) break;
+          apply_law(b, stage, n, other);
+          if (stage == warping && !has_projection) break;
         }
         const int of_each = time == 0 ? from_memory : stage == slopes ? s.radii() : 1;
-        b.transform(along_y ? s.y : s.x, along_y ? b.width : 0, at_once * of_each);
+        b.transform(along_y ? s.y : s.x, along_y ? b.width : 0, lines_per_block * of_each);
       }
-      if (stage != turning || projects) store(b, stage, n, other);
+      if (stage != warping || has_projection) store(b, stage, n, other);
     }
-    if (stage + 1 < (projects ? stage_count : projecting)) cooperative_groups::this_grid().sync();
+    if (stage + 1 < (has_projection ? stage_count : projecting)) cooperative_groups::this_grid().sync();
   }
 }
 
@@ -231,14 +234,15 @@ void transform_by_lines(CudaExec& exec, const CoarseLaws& laws, Workspace& work)
   check_cuda(cudaFuncSetAttribute(coarse_wind_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
                                   static_cast<int>(bytes)),
              "asking for shared memory");
-  int device = 0, multiprocessors = 0, a_multiprocessor = 0;
+  int device = 0, multiprocessors = 0, blocks_per_multiprocessor = 0;
   check_cuda(cudaGetDevice(&device), "asking for the device");
   check_cuda(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
              "asking for the device");
-  check_cuda(
-      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&a_multiprocessor, coarse_wind_kernel, threads, bytes),
-      "asking how many blocks fit");
-  const int blocks = std::min(kernel_arguments.longest() / at_once + 1, multiprocessors * a_multiprocessor);
+  check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks_per_multiprocessor, coarse_wind_kernel,
+                                                           threads, bytes),
+             "asking how many blocks fit");
+  const int blocks =
+      std::min(kernel_arguments.longest() / lines_per_block + 1, multiprocessors * blocks_per_multiprocessor);
   void* arguments[] = {&kernel_arguments};
   check_cuda(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(coarse_wind_kernel), dim3(blocks),
                                          dim3(threads), arguments, bytes, cuda::stream(exec)),

@@ -7,9 +7,9 @@
 /// This is Stockham's autosort FFT with mixed radices. A stage of radix r has n/r butterflies, and reads what
 /// the previous stage has written. Butterfly b of a stage is
 ///
-///   k = b mod done,   `done` the product of the radices of the previous stages
-///   v(q) = in[b + q n/r] · e^(−2πi q k/(done·r)),   q = 0 … r − 1
-///   out[(b − k) r + k + q·done] = DFT_r(v)(q)
+///   k = b mod p,   p = `product_before`, the product of the radices of the previous stages
+///   v(q) = in[b + q n/r] · e^(−2πi q k/(p·r)),   q = 0 … r − 1
+///   out[(b − k) r + k + q·p] = DFT_r(v)(q)
 ///
 /// The inverse without the factor 1/n is the same transform with real and imaginary parts exchanged before
 /// and after it.
@@ -86,38 +86,38 @@ DESERT_HD void small_dft(Complex (&v)[6]) {
 }
 
 /// Whether n ≥ 1 has no prime factors other than 2, 3 and 5.
-inline bool smooth(int n) {
+inline bool has_small_factors(int n) {
   for (int factor : {2, 3, 5})
     while (n % factor == 0) n /= factor;
   return n == 1;
 }
 
 struct LineTransform {
-  static constexpr int longest = 512, most_stages = 5;
+  static constexpr int longest = 512, max_stages = 5;
 
   struct Stage {
-    int radix, done;
-    int turn;     ///< stride of the twiddle factors in the table of roots, n / (done · radix)
-    float share;  ///< 1 / done
+    int radix, product_before;
+    int twiddle_stride;  ///< of the twiddle factors in the table of roots, length / (product_before · radix)
+    float share;         ///< 1 / product_before
   };
 
   int length = 0, count = 0;
-  Stage stages[most_stages] = {};
+  Stage stages[max_stages] = {};
 
   /// Whether `n` is no longer than `longest` and smooth().
-  static bool suits(int n) { return n >= 2 && n <= longest && smooth(n); }
-  /// The transform of lines of `n` values, where suits(n) must hold.
-  static LineTransform of(int n) {
+  static bool supports_length(int n) { return n >= 2 && n <= longest && has_small_factors(n); }
+  /// The transform of lines of `n` values, where supports_length(n) must hold.
+  static LineTransform for_length(int n) {
     LineTransform t;
     t.length = n;
-    while (!t.divide(n, ++t.count)) {
+    while (!t.find_radices(n, ++t.count)) {
     }
-    int done = 1;
-    for (int i = 0; i < t.count; done *= t.stages[i++].radix) {
+    int product_before = 1;
+    for (int i = 0; i < t.count; product_before *= t.stages[i++].radix) {
       Stage& stage = t.stages[i];
-      stage.done = done;
-      stage.turn = n / (done * stage.radix);
-      stage.share = 1.0f / static_cast<float>(done);
+      stage.product_before = product_before;
+      stage.twiddle_stride = n / (product_before * stage.radix);
+      stage.share = 1.0f / static_cast<float>(product_before);
     }
     return t;
   }
@@ -137,32 +137,33 @@ struct LineTransform {
   template <int radix>
   DESERT_HD void butterfly(const Stage& stage, int b, const Complex* roots, const Complex* in,
                            Complex* out) const {
-    const int apart = length / radix, done = stage.done;
-    const int before = static_cast<int>((static_cast<float>(b) + 0.5f) * stage.share) * done, k = b - before;
+    const int value_stride = length / radix, product_before = stage.product_before;
+    const int before = static_cast<int>((static_cast<float>(b) + 0.5f) * stage.share) * product_before,
+              k = b - before;
     Complex v[radix];
-    unrolled<radix>([&](auto q) { v[q] = in[b + q * apart]; });
-    if (done > 1) {
-      const int turn = k * stage.turn;
-      unrolled<radix - 1>([&](auto q) { v[q + 1] = v[q + 1] * roots[(q + 1) * turn]; });
+    unrolled<radix>([&](auto q) { v[q] = in[b + q * value_stride]; });
+    if (product_before > 1) {
+      const int twiddle = k * stage.twiddle_stride;
+      unrolled<radix - 1>([&](auto q) { v[q + 1] = v[q + 1] * roots[(q + 1) * twiddle]; });
     }
     small_dft(v);
     out += before * radix + k;
-    unrolled<radix>([&](auto q) { out[q * done] = v[q]; });
+    unrolled<radix>([&](auto q) { out[q * product_before] = v[q]; });
   }
   /// The butterflies first, first + step, first + 2 step … of a stage.
   DESERT_HD void butterflies(const Stage& stage, int first, int step, const Complex* roots, const Complex* in,
                              Complex* out) const {
     switch (stage.radix) {
       case 2:
-        return all<2>(stage, first, step, roots, in, out);
+        return run_butterflies<2>(stage, first, step, roots, in, out);
       case 3:
-        return all<3>(stage, first, step, roots, in, out);
+        return run_butterflies<3>(stage, first, step, roots, in, out);
       case 4:
-        return all<4>(stage, first, step, roots, in, out);
+        return run_butterflies<4>(stage, first, step, roots, in, out);
       case 5:
-        return all<5>(stage, first, step, roots, in, out);
+        return run_butterflies<5>(stage, first, step, roots, in, out);
       default:
-        return all<6>(stage, first, step, roots, in, out);
+        return run_butterflies<6>(stage, first, step, roots, in, out);
     }
   }
 
@@ -172,17 +173,17 @@ struct LineTransform {
   static constexpr int radices[] = {5, 3, 6, 4, 2};
 
   template <int radix>
-  DESERT_HD void all(const Stage& stage, int first, int step, const Complex* roots, const Complex* in,
-                     Complex* out) const {
+  DESERT_HD void run_butterflies(const Stage& stage, int first, int step, const Complex* roots,
+                                 const Complex* in, Complex* out) const {
     for (int b = first; b < length / radix; b += step) butterfly<radix>(stage, b, roots, in, out);
   }
 
   /// Finds radices whose product is n for the last `left` of `count` stages; false if there are none.
-  bool divide(int n, int left) {
+  bool find_radices(int n, int left) {
     if (left == 0) return n == 1;
     for (int radix : radices) {
       stages[count - left].radix = radix;
-      if (n % radix == 0 && divide(n / radix, left - 1)) return true;
+      if (n % radix == 0 && find_radices(n / radix, left - 1)) return true;
     }
     return false;
   }

@@ -13,25 +13,26 @@ struct ShadowOfFour {
 
   DESERT_HD Grid fours() const { return {side * shadow.blocks.width, shadow.blocks.height, 1}; }
   DESERT_HD void operator()(int four, int row) const {
-    const MarchDirection c = shadow.course(four / side, row);
-    c.line().along_x() ? shelter<Way::along_x>(c, four, row) : shelter<Way::along_y>(c, four, row);
+    const MarchDirection c = shadow.march_direction(four / side, row);
+    c.line().along_x() ? compute_shadow<MarchAxis::along_x>(c, four, row)
+                       : compute_shadow<MarchAxis::along_y>(c, four, row);
   }
 
  private:
-  template <Way way>
-  DESERT_HD void shelter(const MarchDirection& c, int four, int row) const {
-    constexpr bool along_x = way == Way::along_x;
+  template <MarchAxis axis>
+  DESERT_HD void compute_shadow(const MarchDirection& c, int four, int row) const {
+    constexpr bool along_x = axis == MarchAxis::along_x;
     const int x = four / side * side + (along_x ? four % side : 0);
     const int y = row * side + (along_x ? 0 : four % side);
     constexpr int east = along_x ? 0 : 1, north = along_x ? 1 : 0;
     if (shadow.grid().inside(x + (side - 1) * east, y + (side - 1) * north)) {
-      shadow.shelter<way, side>(c, x, y);
+      shadow.compute_shadow<axis, side>(c, x, y);
       return;
     }
     DESERT_NO_UNROLL
     for (int k = 0; k < side; ++k)
       if (shadow.grid().inside(x + k * east, y + k * north))
-        shadow.shelter<way, 1>(c, x + k * east, y + k * north);
+        shadow.compute_shadow<axis, 1>(c, x + k * east, y + k * north);
   }
 };
 
@@ -45,14 +46,14 @@ struct ShortShadow {
   DESERT_HD void operator()(int x, int y) const {
     const MarchDirection c = shadow.march_directions[y / side * shadow.blocks.width + x / side];
     const int end = shadow.steps_of(c);
-    const Shadow::Cells<Way::either, 1> cell(shadow, c.line(), x, y);
+    const Shadow::CellGroup<MarchAxis::either, 1> cell(shadow, c.line(), x, y);
     float steepest[1] = {0.0f};
     unrolled<longest>([&](auto n) DESERT_INLINE {
       float found[1] = {steepest[0]};
-      shadow.look<true>(cell, n + 1, found);
+      shadow.sample_step<true>(cell, n + 1, found);
       steepest[0] = n + 1 <= end ? found[0] : steepest[0];
     });
-    shadow.wind_shadow[cell.first] = shadow.shade(steepest[0] * c.steps_a_cell);
+    shadow.wind_shadow[cell.first] = shadow.shadow_from_slope(steepest[0] * c.steps_per_cell);
   }
 };
 

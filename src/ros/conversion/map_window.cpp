@@ -21,8 +21,8 @@ std::string map_layer_names() {
 
 std::vector<MapLayer> map_layers_named(const std::vector<std::string>& names, const std::string& key) {
   if (names.size() > map_layers.size())
-    throw ConfigError(key + ": " + std::to_string(names.size()) + " names are more than there are layers (" +
-                      std::to_string(map_layers.size()) + ")");
+    throw ConfigError(key + ": " + std::to_string(names.size()) + " names are given, but only " +
+                      std::to_string(map_layers.size()) + " layers exist");
   std::vector<MapLayer> chosen;
   for (const std::string& name : names) {
     const auto same = [&](const MapLayer& layer) { return name == layer.name; };
@@ -30,7 +30,7 @@ std::vector<MapLayer> map_layers_named(const std::vector<std::string>& names, co
     if (found == map_layers.end())
       throw ConfigError(key + ": " + quoted(name) + " is not one of: " + map_layer_names());
     if (std::any_of(chosen.begin(), chosen.end(), same))
-      throw ConfigError(key + ": " + quoted(name) + " stands there twice");
+      throw ConfigError(key + ": " + quoted(name) + " is given twice");
     chosen.push_back(*found);
   }
   return chosen;
@@ -54,10 +54,10 @@ std::vector<Layer> layers_of(const std::vector<MapLayer>& layers) {
 namespace {
 
 constexpr double max_grid_cells = 1 << 29;  // along an axis, so that sums of two still fit an int
-constexpr double most_values = 67108864;
+constexpr double max_values = 67108864;
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
-[[noreturn]] void refuse(const std::string& field, double value, const std::string& allowed) {
+[[noreturn]] void throw_error(const std::string& field, double value, const std::string& allowed) {
   std::ostringstream text;
   text << field << ": = " << value << " is not " << allowed;
   throw ConfigError(text.str());
@@ -66,12 +66,13 @@ constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 /// The first cell of a window along an axis, and the number of cells.
 void axis_window(const std::string& axis, double center, double length, double origin, double cell,
                  int& first, int& count) {
-  if (!std::isfinite(center)) refuse("center." + axis, center, "a finite number");
-  if (!std::isfinite(length) || length <= 0) refuse("length_" + axis, length, "a finite number above 0");
+  if (!std::isfinite(center)) throw_error("center." + axis, center, "a finite number");
+  if (!std::isfinite(length) || length <= 0) throw_error("length_" + axis, length, "a finite number above 0");
   const double cells = std::max(1.0, std::floor(length / cell + 0.5));
   const double start = std::floor((center - origin) / cell - 0.5 * cells + 0.5);
-  if (cells > max_grid_cells) refuse("length_" + axis, length, "at most 2^29 cells");
-  if (std::abs(start) > max_grid_cells) refuse("center." + axis, center, "within 2^29 cells of the terrain");
+  if (cells > max_grid_cells) throw_error("length_" + axis, length, "at most 2^29 cells");
+  if (std::abs(start) > max_grid_cells)
+    throw_error("center." + axis, center, "within 2^29 cells of the terrain");
   first = static_cast<int>(start);
   count = static_cast<int>(cells);
 }
@@ -98,8 +99,8 @@ struct WindowReader {
     return values ? values[static_cast<std::size_t>(rows[y]) * stride + static_cast<std::size_t>(columns[x])]
                   : 0.0f;
   }
-  float block(std::size_t x0, std::size_t x1, std::size_t y0, std::size_t y1, Merged merged) const {
-    if (merged == Merged::middle) return cell((x0 + x1) / 2, (y0 + y1) / 2);
+  float block(std::size_t x0, std::size_t x1, std::size_t y0, std::size_t y1, Aggregation aggregation) const {
+    if (aggregation == Aggregation::center) return cell((x0 + x1) / 2, (y0 + y1) / 2);
     double sum = 0;
     float lowest = std::numeric_limits<float>::infinity();
     int cells = 0;
@@ -112,7 +113,7 @@ struct WindowReader {
         ++cells;
       }
     if (cells == 0) return unknown;
-    return merged == Merged::lowest ? lowest : static_cast<float>(sum / cells);
+    return aggregation == Aggregation::min ? lowest : static_cast<float>(sum / cells);
   }
 };
 
@@ -140,10 +141,10 @@ void require_inside(const MapWindow& w, const MapRegion& region, const Snapshot&
 
 void require_map_size(const MapWindow& window, std::size_t layers, const std::string& what) {
   const double values = static_cast<double>(window.width) * window.height * static_cast<double>(layers);
-  if (values > most_values)
+  if (values > max_values)
     throw ConfigError(what + ": " + std::to_string(window.width) + " x " + std::to_string(window.height) +
-                      " cells of " + std::to_string(layers) + " layers are more than " +
-                      std::to_string(static_cast<long long>(most_values)) + " values");
+                      " cells of " + std::to_string(layers) + " layers are too many (allowed: at most " +
+                      std::to_string(static_cast<long long>(max_values)) + " values)");
 }
 
 std::vector<float> window_values(const Snapshot& s, const MapLayer& layer, const MapWindow& w,
@@ -160,7 +161,7 @@ std::vector<float> window_values(const Snapshot& s, const MapLayer& layer, const
     for (std::size_t x = 0; x < columns; x += step)
       result.push_back(step == 1 ? reader.cell(x, y)
                                  : reader.block(x, std::min(x + step, columns), y, std::min(y + step, rows),
-                                                layer.merged));
+                                                layer.aggregation));
   return result;
 }
 

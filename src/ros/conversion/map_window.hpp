@@ -18,12 +18,12 @@ class SimulationThread;
 
 /// The value of a block of cells that are merged into one: the mean, the lowest, or that of the cell in the
 /// middle.
-enum class Merged { mean, lowest, middle };
+enum class Aggregation { mean, min, center };
 
 struct MapLayer {
   const char* name;
   Layer layer;
-  Merged merged = Merged::mean;
+  Aggregation aggregation = Aggregation::mean;
 };
 
 constexpr std::array<MapLayer, 26> map_layers{{
@@ -34,7 +34,7 @@ constexpr std::array<MapLayer, 26> map_layers{{
     {"water_depth", Layer::water},
     {"soil_depth", Layer::soil},
     {"vegetation", Layer::vegetation},
-    {"plants", Layer::plants, Merged::middle},
+    {"plants", Layer::plants, Aggregation::center},
     {"canopy_height", Layer::canopy_height},
     {"illumination", Layer::illumination},
     {"humus", Layer::humus},
@@ -49,7 +49,7 @@ constexpr std::array<MapLayer, 26> map_layers{{
     {"slope", Layer::slope},
     {"roughness", Layer::roughness},
     {"step_height", Layer::step_height},
-    {"traversability", Layer::traversability, Merged::lowest},
+    {"traversability", Layer::traversability, Aggregation::min},
     {"normal_x", Layer::normal_x},
     {"normal_y", Layer::normal_y},
     {"normal_z", Layer::normal_z},

@@ -18,8 +18,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char *subfolder = "autosave", *ending = ".ckpt";
-constexpr std::size_t kept = 2;  // files; a second one, because a disk may lose what it reported as written
+constexpr const char *subfolder = "autosave", *file_extension = ".ckpt";
+constexpr std::size_t max_files =
+    2;  // files; a second one, because a disk may lose what it reported as written
 
 }  // namespace
 
@@ -34,24 +35,24 @@ AutosaveFiles::AutosaveFiles(const DataFolder& folder, const std::string& node, 
 std::string AutosaveFiles::file_name(unsigned long number) const {
   char digits[24];
   std::snprintf(digits, sizeof digits, "%010lu", number);
-  return std::string(subfolder) + "/" + name_ + digits + ending;
+  return std::string(subfolder) + "/" + name_ + digits + file_extension;
 }
 
-std::vector<std::string> AutosaveFiles::found() const {
+std::vector<std::string> AutosaveFiles::paths() const {
   std::vector<std::string> names;
   std::error_code missing;
   for (const fs::directory_entry& entry :
        fs::directory_iterator(folder_->path() + "/" + subfolder, missing)) {
     const std::string name = entry.path().filename().string();
-    if (name.compare(0, name_.size(), name_) == 0 && entry.path().extension() == ending)
+    if (name.compare(0, name_.size(), name_) == 0 && entry.path().extension() == file_extension)
       names.push_back(entry.path().string());
   }
   std::sort(names.rbegin(), names.rend());
   return names;
 }
 
-std::string AutosaveFiles::next() const {
-  const std::vector<std::string> names = found();
+std::string AutosaveFiles::next_path() const {
+  const std::vector<std::string> names = paths();
   unsigned long newest = 0;
   if (!names.empty()) {
     const std::string stem = fs::path(names.front()).stem().string();
@@ -60,8 +61,8 @@ std::string AutosaveFiles::next() const {
   return folder_->for_writing(file_name(newest + 1));
 }
 
-void AutosaveFiles::keep(std::size_t count) const {
-  const std::vector<std::string> names = found();
+void AutosaveFiles::keep_newest(std::size_t count) const {
+  const std::vector<std::string> names = paths();
   for (std::size_t n = count; n < names.size(); ++n) fs::remove(names[n]);
 }
 
@@ -70,7 +71,7 @@ void AutosaveFiles::keep(std::size_t count) const {
 Autosave::Autosave(AutosaveFiles files, double period, SimulationThread& simulation)
     : files_(std::move(files)), period_(period), simulation_(simulation) {
   state_.period = period;
-  thread_ = std::thread([this] { thread(); });
+  thread_ = std::thread([this] { run_thread(); });
 }
 
 Autosave::~Autosave() {
@@ -89,28 +90,28 @@ Autosave::State Autosave::state() const {
   return state;
 }
 
-void Autosave::save_as(AutosaveFiles files) {
+void Autosave::set_files(AutosaveFiles files) {
   const std::lock_guard<std::mutex> lock(mutex_);
   files_ = std::move(files);
   saved_change_ = 0;
 }
 
-void Autosave::thread() {
+void Autosave::run_thread() {
   const auto period = std::chrono::duration<double>(period_);
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopped_.wait_for(lock, period, [this] { return stopping_; })) {
     lock.unlock();
-    std::string fault;
+    std::string error;
     try {
       save();
     } catch (const std::exception& e) {
       if (simulation_.ended()) return;  // the log says so already, and there is nothing more to save
-      fault = e.what();
-      ROS_ERROR("autosave: %s", fault.c_str());
+      error = e.what();
+      ROS_ERROR("The autosave failed: %s", error.c_str());
     }
     lock.lock();
-    state_.fault = fault;
-    if (fault.empty())
+    state_.error = error;
+    if (error.empty())
       saved_at_ = Clock::now();
     else
       saved_change_ = 0;
@@ -121,13 +122,13 @@ void Autosave::save() {
   std::unique_lock<std::mutex> lock(mutex_);
   const std::uint64_t change = simulation_.changes();
   if (saved_change_ == change) return;
-  saved_change_ = change;  // the copy can only be newer; save_as() and a fault reset this
+  saved_change_ = change;  // the copy can only be newer; set_files() and an error reset this
   const AutosaveFiles files = files_;
   lock.unlock();
   const CheckpointCopy copy = simulation_.checkpoint().get();
-  const std::string path = files.next();
+  const std::string path = files.next_path();
   write_file(path, copy.bytes);
-  files.keep(kept);
+  files.keep_newest(max_files);
   lock.lock();
   state_.path = path;
   state_.step = copy.moment.step;
@@ -144,16 +145,16 @@ void load_newest(Session& session, const std::vector<std::string>& checkpoints, 
         fs::copy_file(checkpoint, path, fs::copy_options::overwrite_existing);
       }
       session.apply(command::LoadCheckpoint{path, 0});
-      ROS_INFO("resumed at step %lu from %s", static_cast<unsigned long>(session.simulation().steps()),
-               checkpoint.c_str());
+      ROS_INFO("The simulation was resumed at step %lu from the autosave %s.",
+               static_cast<unsigned long>(session.simulation().steps()), checkpoint.c_str());
       return;
     } catch (const ConfigError& e) {
-      ROS_WARN("not resumed from this one: %s", e.what());
+      ROS_WARN("The autosave %s cannot be loaded: %s", checkpoint.c_str(), e.what());
     } catch (const fs::filesystem_error& e) {
-      ROS_WARN("not resumed from this one: %s", e.what());
+      ROS_WARN("The autosave %s cannot be loaded: %s", checkpoint.c_str(), e.what());
     }
   }
-  ROS_INFO("there is no whole autosave to resume from: this is the scenario's start");
+  ROS_INFO("No complete autosave was found: the simulation starts at the beginning of the scenario.");
 }
 
 }  // namespace desert_sim

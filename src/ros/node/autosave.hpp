@@ -21,11 +21,11 @@ class AutosaveFiles {
  public:
   AutosaveFiles(const DataFolder& folder, const std::string& node, const Scenario& scenario);
   /// The paths of the files there are, newest first.
-  std::vector<std::string> found() const;
+  std::vector<std::string> paths() const;
   /// The path for a file that is newer than all.
-  std::string next() const;
+  std::string next_path() const;
   /// Removes all files but the newest `count`.
-  void keep(std::size_t count) const;
+  void keep_newest(std::size_t count) const;
 
  private:
   std::string file_name(unsigned long number) const;
@@ -43,7 +43,7 @@ class Autosave {
     std::string path;        ///< of the last file; empty if there is none yet
     std::uint64_t step = 0;  ///< of the last file
     double age = 0;          ///< since it was last found that the terrain is saved, or since the start [s]
-    std::string fault;       ///< why the last file could not be written; empty if it was
+    std::string error;       ///< why the last file could not be written; empty if it was
   };
 
   Autosave(AutosaveFiles files, double period, SimulationThread& simulation);
@@ -51,11 +51,11 @@ class Autosave {
   ~Autosave();
   State state() const;
   /// Saves to these files from now on, because the scenario in the node's parameters has changed.
-  void save_as(AutosaveFiles files);
+  void set_files(AutosaveFiles files);
 
  private:
   using Clock = std::chrono::steady_clock;
-  void thread();
+  void run_thread();
   void save();
 
   AutosaveFiles files_;  ///< guarded by mutex_

@@ -26,7 +26,7 @@ std::string other_publisher() {
   XmlRpc::XmlRpcValue request, response, state;
   request[0] = ros::this_node::getName();
   if (!ros::master::execute("getSystemState", request, response, state, false))
-    throw Error("publish_clock: the master does not say who publishes /clock");
+    throw Error("publish_clock: the ROS master does not answer the question which node publishes /clock");
   XmlRpc::XmlRpcValue& publishers = state[0];
   for (int n = 0; n < publishers.size(); ++n) {
     XmlRpc::XmlRpcValue &name = publishers[n][0], &nodes = publishers[n][1];
@@ -42,16 +42,17 @@ std::string other_publisher() {
 ros::Time clock_time(double simulated) {
   if (!(simulated >= 0 && simulated < std::numeric_limits<std::uint32_t>::max()))
     throw Error("publish_clock: " + std::to_string(simulated) +
-                " s of simulated time are more than ROS time can hold (allowed: [0, 4294967295) s)");
+                " s of simulated time exceed the range of ROS time (allowed: [0, 4294967295) s)");
   return std::max(ros::Time(simulated), ros::Time(0, 1));
 }
 
 ClockPublisher::ClockPublisher() {
   const std::string other = other_publisher();
   if (!other.empty())
-    throw ConfigError("publish_clock: " + other +
-                      " publishes /clock already, and between two clocks time would jump to and fro; end it, "
-                      "or leave publish_clock false to follow its clock under use_sim_time");
+    throw ConfigError(
+        "publish_clock: " + other +
+        " already publishes /clock, and with two publishers the time would jump back and forth; stop "
+        "that node, or set publish_clock to false and use_sim_time to true to follow its clock");
   publisher_ = ros::NodeHandle().advertise<rosgraph_msgs::Clock>(topic, 100, true);
 }
 

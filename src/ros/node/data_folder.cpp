@@ -20,17 +20,17 @@ std::string ros_folder() {
 }
 
 /// The name as a path, if nothing is wrong with the name itself.
-fs::path checked(const std::string& name) {
-  const auto refuse = [&](const char* why) {
-    throw ConfigError(quoted(name) + ": " + why + " (allowed: a path below ~data_dir)");
+fs::path checked_path(const std::string& name) {
+  const auto throw_error = [&](const char* reason) {
+    throw ConfigError(quoted(name) + ": " + reason + " (allowed: a path below ~data_dir)");
   };
-  if (name.empty()) refuse("is empty");
-  if (name.find('\0') != std::string::npos) refuse("has a zero byte in it");
+  if (name.empty()) throw_error("is empty");
+  if (name.find('\0') != std::string::npos) throw_error("contains a zero byte");
   const fs::path path(name);
-  if (path.is_absolute()) refuse("is absolute");
+  if (path.is_absolute()) throw_error("is absolute");
   for (const fs::path& part : path)
-    if (part == "..") refuse("has '..' in it");
-  if (path.filename().empty() || path.filename() == ".") refuse("names no file");
+    if (part == "..") throw_error("contains '..'");
+  if (path.filename().empty() || path.filename() == ".") throw_error("names no file");
   return path;
 }
 
@@ -40,11 +40,12 @@ bool is_below(const fs::path& folder, const fs::path& path) {
 
 /// `path` with its links followed. Throws if that is not below `root`. The last part of the path need not
 /// exist, unless it is a link.
-fs::path followed(const fs::path& root, const fs::path& path, const std::string& name) {
+fs::path resolve_links(const fs::path& root, const fs::path& path, const std::string& name) {
   const fs::path real = fs::is_symlink(fs::symlink_status(path))
                             ? fs::canonical(path)
                             : fs::canonical(path.parent_path()) / path.filename();
-  if (!is_below(root, real)) throw ConfigError(quoted(name) + ": a link leads out of " + root.string());
+  if (!is_below(root, real))
+    throw ConfigError(quoted(name) + ": a symbolic link points outside the folder " + root.string());
   return real;
 }
 
@@ -53,15 +54,16 @@ fs::path followed(const fs::path& root, const fs::path& path, const std::string&
 DataFolder::DataFolder(const std::string& path) : path_(path.empty() ? ros_folder() + "/desert_sim" : path) {}
 
 std::string DataFolder::for_reading(const std::string& name) const {
-  const fs::path relative = checked(name);
+  const fs::path relative = checked_path(name);
   try {
     const fs::path root = fs::canonical(path_);
-    const fs::path file = followed(root, root / relative, name);
-    if (!fs::exists(file)) throw ConfigError(quoted(name) + ": there is no such file in " + root.string());
+    const fs::path file = resolve_links(root, root / relative, name);
+    if (!fs::exists(file)) throw ConfigError(quoted(name) + ": no such file exists in " + root.string());
     if (!fs::is_regular_file(file)) throw ConfigError(quoted(name) + ": is not a file");
     return file.string();
   } catch (const fs::filesystem_error& e) {
-    throw ConfigError(quoted(name) + ": " + e.code().message() + " (in " + path_ + ")");
+    throw ConfigError(quoted(name) + ": the file system reports \"" + e.code().message() + "\" (in " + path_ +
+                      ")");
   }
 }
 
@@ -73,22 +75,23 @@ void DataFolder::require_below(const std::string& path) const {
 }
 
 std::string DataFolder::for_writing(const std::string& name) const {
-  const fs::path relative = checked(name);
+  const fs::path relative = checked_path(name);
   try {
     fs::create_directories(path_);
     fs::path folder = fs::canonical(path_);
     const fs::path root = folder;
     for (const fs::path& part : relative.parent_path()) {
-      folder = followed(root, folder / part, name);
+      folder = resolve_links(root, folder / part, name);
       fs::create_directory(folder);
     }
-    const fs::path file = followed(root, folder / relative.filename(), name);
+    const fs::path file = resolve_links(root, folder / relative.filename(), name);
     if (fs::exists(file) && !fs::is_regular_file(file)) throw ConfigError(quoted(name) + ": is not a file");
     // Checkpoints are written under this name first.
-    followed(root, file.string() + ".part", name);
+    resolve_links(root, file.string() + ".part", name);
     return file.string();
   } catch (const fs::filesystem_error& e) {
-    throw ConfigError(quoted(name) + ": " + e.code().message() + " (in " + path_ + ")");
+    throw ConfigError(quoted(name) + ": the file system reports \"" + e.code().message() + "\" (in " + path_ +
+                      ")");
   }
 }
 

@@ -13,7 +13,7 @@
 
 namespace {
 
-constexpr int refused = 2, failed = 3;
+constexpr int exit_invalid_input = 2, exit_failure = 3;
 
 int run() {
   const desert_sim::DesertSimServer server(ros::NodeHandle("~"));
@@ -25,7 +25,7 @@ int run() {
   if (failure.empty()) return 0;
   ROS_FATAL("%s", failure.c_str());
   ros::WallDuration(0.5).sleep();  // the last status is on its way
-  return failed;
+  return exit_failure;
 }
 
 }  // namespace
@@ -39,12 +39,12 @@ int main(int argc, char** argv) {
   // systemd, docker and roslaunch's second attempt; roscpp itself only knows Ctrl-C.
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   ros::start();  // the log ends with ROS, and must outlive the server
-  int status = failed;
+  int status = exit_failure;
   try {
     status = run();
   } catch (const desert_sim::ConfigError& e) {
     ROS_FATAL("%s", e.what());
-    status = refused;
+    status = exit_invalid_input;
   } catch (const std::exception& e) {
     ROS_FATAL("%s", e.what());
   }

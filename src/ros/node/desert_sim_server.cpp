@@ -21,7 +21,7 @@ void keep_previous_journal(const std::string& path) {
   if (path.empty() || !std::filesystem::is_regular_file(path, error)) return;
   std::filesystem::rename(path, path + ".previous", error);
   if (error)
-    throw ConfigError(path + ": cannot be renamed to make room for a new journal: " + error.message());
+    throw ConfigError(path + ": the previous journal cannot be renamed to *.previous: " + error.message());
 }
 
 SimulationThread::Options options_of(const NodeParameters& p) {
@@ -38,13 +38,13 @@ SimulationThread::Options options_of(const NodeParameters& p) {
 /// Logs what runs. Points and markers in rviz are single precision, which resolves a centimetre at 1e5 m.
 void log_start(const Scenario& scenario, const std::string& backend) {
   const GridParameters& grid = scenario.grid;
-  ROS_INFO("scenario %s: %d x %d cells of %g m; backend: %s", scenario.name.c_str(), grid.width, grid.height,
-           grid.cell_size, backend.c_str());
+  ROS_INFO("The scenario %s was loaded: %d x %d cells of %g m. Backend: %s.", scenario.name.c_str(),
+           grid.width, grid.height, grid.cell_size, backend.c_str());
   const double farthest = std::max(std::abs(grid.origin_x), std::abs(grid.origin_y));
   if (farthest > 1e5)
     ROS_WARN(
-        "the terrain lies up to %.0f m from its frame's origin: float32 coordinates (~points, rviz) are only "
-        "good to %.2f m there",
+        "The terrain extends to %.0f m from the origin of its frame: float32 coordinates (~points, rviz) "
+        "have a resolution of only %.2f m there.",
         farthest, farthest * 6e-8);
 }
 
@@ -65,14 +65,16 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   if (p.publish_clock) {
     clock_ = std::make_unique<ClockPublisher>();
     if (!ros::Time::isSimTime())
-      ROS_WARN("publish_clock: nobody follows /clock while use_sim_time is not set");
+      ROS_WARN("publish_clock is true, but use_sim_time is not: no node follows /clock.");
     options.publish_clock = [this](double simulated) { clock_->publish(simulated); };
   }
   const AutosaveFiles autosaves(*files_, node_.getNamespace(), setup.scenario);
-  if (p.resume) options.resume_from = autosaves.found();
-  if (p.resume && options.resume_from.empty()) ROS_INFO("there is no autosave to resume from");
-  options.check_scenario = [this, own = rasters_of(setup.scenario)](const Scenario& scenario) {
-    for (const std::string& raster : rasters_of(scenario))
+  if (p.resume) options.resume_from = autosaves.paths();
+  if (p.resume && options.resume_from.empty())
+    ROS_INFO(
+        "resume is true, but no autosave was found: the simulation starts at the beginning of the scenario.");
+  options.check_scenario = [this, own = raster_paths(setup.scenario)](const Scenario& scenario) {
+    for (const std::string& raster : raster_paths(scenario))
       if (std::count(own.begin(), own.end(), raster) == 0) files_->require_below(raster);
   };
   simulation_ =
@@ -94,7 +96,7 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
     reconfigure_ = std::make_unique<Reconfigure>(node_, *simulation_, *publisher_);
     reload_ = std::make_unique<ParameterReload>(
         node_, setup, *simulation_, *publisher_, [this](const Scenario& scenario) {
-          if (autosave_) autosave_->save_as(AutosaveFiles(*files_, node_.getNamespace(), scenario));
+          if (autosave_) autosave_->set_files(AutosaveFiles(*files_, node_.getNamespace(), scenario));
         });
     spinner_.start();
     step_spinner_.start();

@@ -63,12 +63,15 @@ void Diagnostics::update() {
 void Diagnostics::check_simulation(Status& status) const {
   const std::string failure = publisher_.failure().empty() ? simulation_.failure() : publisher_.failure();
   if (!failure.empty()) return status.summary(DiagnosticStatus::ERROR, failure);
-  if (!report_) return status.summary(DiagnosticStatus::WARN, "no answer yet: a step takes long");
+  if (!report_)
+    return status.summary(DiagnosticStatus::WARN,
+                          "the simulation has not answered for 2 s: a step takes long");
   const StatusReport& r = *report_;
   if (r.state == RunState::waiting) {
-    status.summary(DiagnosticStatus::WARN, "use_sim_time is set, and nobody has published /clock yet");
+    status.summary(DiagnosticStatus::WARN, "use_sim_time is true, but no message has arrived on /clock yet");
   } else if (r.lag > Pacer::backlog) {
-    status.summaryf(DiagnosticStatus::WARN, "%.1f s behind: %.1f of %.1f steps a second", r.lag,
+    status.summaryf(DiagnosticStatus::WARN,
+                    "the simulation is %.1f s behind its schedule: %.1f of %.1f steps per second", r.lag,
                     r.steps_per_second, r.step_rate);
   } else {
     status.summary(DiagnosticStatus::OK, states[static_cast<int>(r.state)]);
@@ -85,7 +88,9 @@ void Diagnostics::check_simulation(Status& status) const {
 }
 
 void Diagnostics::check_mass(Status& status) const {
-  if (!report_) return status.summary(DiagnosticStatus::OK, "not looked at");
+  if (!report_)
+    return status.summary(DiagnosticStatus::OK,
+                          "the simulation has not answered: the balance was not checked");
   long long lost = 0;
   for (int m = 0; m < material_count; ++m) {
     const MaterialBalance& b = report_->balance[static_cast<std::size_t>(m)];
@@ -93,25 +98,27 @@ void Diagnostics::check_mass(Status& status) const {
     status.addf(material_names[m], "residual %lld quanta (relative %g)", b.residual(), b.relative_residual());
   }
   if (lost == 0)
-    status.summary(DiagnosticStatus::OK, "every quantum is accounted for");
+    status.summary(DiagnosticStatus::OK, "mass is conserved");
   else
-    status.summaryf(DiagnosticStatus::ERROR, "%lld quanta are not accounted for", lost);
+    status.summaryf(DiagnosticStatus::ERROR, "mass is not conserved: the residual is %lld quanta", lost);
 }
 
 void Diagnostics::check_memory(Status& status) const {
   status.addf("host, resident [MiB]", "%.1f", mebibytes(resident_bytes()));
   status.addf("host, peak [MiB]", "%.1f", mebibytes(peak_bytes()));
-  if (!report_) return status.summary(DiagnosticStatus::OK, "the backend's was not looked at");
+  if (!report_)
+    return status.summary(DiagnosticStatus::OK,
+                          "the simulation has not answered: the memory of the backend was not checked");
   const auto layers = static_cast<double>(report_->layer_bytes),
              available = static_cast<double>(report_->memory_available);
   status.addf("layers [MiB]", "%.1f", mebibytes(layers));
   status.addf("available to the backend [MiB]", "%.1f", mebibytes(available));
   // A reset or a load keeps the old terrain until the new one is complete.
   if (available < report_->memory_needed)
-    status.summaryf(DiagnosticStatus::WARN, "%.0f MiB are left, and a reset or a load needs %.0f",
+    status.summaryf(DiagnosticStatus::WARN, "%.0f MiB are available, but a reset or a load needs %.0f MiB",
                     mebibytes(available), mebibytes(report_->memory_needed));
   else
-    status.summary(DiagnosticStatus::OK, "enough");
+    status.summary(DiagnosticStatus::OK, "the available memory is sufficient");
 }
 
 void Diagnostics::check_topics(Status& status) {
@@ -128,25 +135,27 @@ void Diagnostics::check_topics(Status& status) {
     if (periods >= slow_periods) slow += (slow.empty() ? "" : ", ") + topic.name;
   }
   if (!failure.empty()) return status.summary(DiagnosticStatus::ERROR, failure);
-  status.summary(DiagnosticStatus::OK, "as wanted");
-  if (!slow.empty()) status.mergeSummary(DiagnosticStatus::WARN, "under half the wanted rate: " + slow);
+  status.summary(DiagnosticStatus::OK, "all topics reach their rates");
+  if (!slow.empty())
+    status.mergeSummary(DiagnosticStatus::WARN, "less than half of the target rate: " + slow);
   for (const auto& [topic, problem] : publisher_.problems())
     status.mergeSummary(DiagnosticStatus::WARN, topic + ": " + problem);
 }
 
 void Diagnostics::check_autosave(Status& status) const {
-  if (!autosave_) return status.summary(DiagnosticStatus::OK, "off");
+  if (!autosave_) return status.summary(DiagnosticStatus::OK, "autosave is off");
   const Autosave::State s = autosave_->state();
   status.add("period [s]", s.period);
   status.add("last file", s.path);
   status.add("its step", s.step);
   status.addf("its age [s]", "%.1f", s.age);
-  if (!s.fault.empty())
-    status.summary(DiagnosticStatus::ERROR, s.fault);
+  if (!s.error.empty())
+    status.summary(DiagnosticStatus::ERROR, s.error);
   else if (s.age > 2 * s.period + std::chrono::duration<double>(answer_timeout).count())
-    status.summaryf(DiagnosticStatus::WARN, "none since %.0f s", s.age);
+    status.summaryf(DiagnosticStatus::WARN, "no autosave has been written for %.0f s", s.age);
   else
-    status.summary(DiagnosticStatus::OK, s.path.empty() ? "on" : "saved");
+    status.summary(DiagnosticStatus::OK, s.path.empty() ? "autosave is on; no file has been written yet"
+                                                        : "the last autosave succeeded");
 }
 
 }  // namespace desert_sim

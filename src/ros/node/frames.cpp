@@ -26,11 +26,11 @@ tf2::Transform transform_of(const geometry_msgs::TransformStamped& found) {
 
 }  // namespace
 
-void check_frame(std::string& frame, const std::string& key, Faults& faults) {
+void check_frame(std::string& frame, const std::string& key, ValidationErrors& errors) {
   if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
   std::string reason;
   if (frame.empty() || !ros::names::validate(frame, reason))
-    faults.add(key, "'" + frame + "' is not the name of a frame" + (reason.empty() ? "" : ": " + reason));
+    errors.add(key, "'" + frame + "' is not a valid frame name" + (reason.empty() ? "" : ": " + reason));
 }
 
 Frames::Frames(std::string terrain_frame) : terrain_frame_(std::move(terrain_frame)), listener_(buffer_) {}
@@ -45,20 +45,21 @@ tf2::Transform Frames::to_terrain(const std_msgs::Header& header) const {
       return transform_of(buffer_.lookupTransform(terrain_frame_, frame, header.stamp));
     } catch (const tf2::TransformException& e) {
       if (std::chrono::steady_clock::now() >= end)
-        throw ConfigError("frame " + quoted(given) + " cannot be brought into the terrain's, '" +
+        throw ConfigError("frame " + quoted(given) + " cannot be transformed into the terrain's frame '" +
                           terrain_frame_ + "': " + shortened(e.what()));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
 
-bool Frames::latest_to_terrain(const std::string& frame, tf2::Transform& transform, std::string& why) const {
+bool Frames::latest_to_terrain(const std::string& frame, tf2::Transform& transform,
+                               std::string& reason) const {
   try {
     transform = transform_of(buffer_.lookupTransform(terrain_frame_, frame, ros::Time(0)));
     return true;
   } catch (const tf2::TransformException& e) {
-    why = "frame " + quoted(frame) + " cannot be brought into the terrain's, '" + terrain_frame_ +
-          "': " + shortened(e.what());
+    reason = "frame " + quoted(frame) + " cannot be transformed into the terrain's frame '" + terrain_frame_ +
+             "': " + shortened(e.what());
     return false;
   }
 }

@@ -15,11 +15,11 @@
 
 namespace desert_sim {
 
-class Faults;
+class ValidationErrors;
 
 /// Removes a leading '/', which tf2 does not know, from the value of the parameter `key`. A value that is no
-/// name of a frame is a fault.
-void check_frame(std::string& frame, const std::string& key, Faults& faults);
+/// name of a frame is an error.
+void check_frame(std::string& frame, const std::string& key, ValidationErrors& errors);
 
 class Frames {
  public:
@@ -34,7 +34,7 @@ class Frames {
 
   /// The latest transform from `frame` to the terrain's, without waiting. If there is none, returns false,
   /// and `why` says the reason.
-  bool latest_to_terrain(const std::string& frame, tf2::Transform& transform, std::string& why) const;
+  bool latest_to_terrain(const std::string& frame, tf2::Transform& transform, std::string& reason) const;
 
   /// Publishes the static frame `name` in the middle of the terrain, at its mean elevation.
   void announce_center(const std::string& name, const Snapshot& snapshot);

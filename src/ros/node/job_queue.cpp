@@ -2,7 +2,7 @@
 
 namespace desert_sim {
 
-void JobQueue::put(Job job) {
+void JobQueue::push(Job job) {
   std::string reason;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -13,10 +13,10 @@ void JobQueue::put(Job job) {
     }
     reason = reason_;
   }
-  job.refuse(std::make_exception_ptr(Error(reason)));
+  job.reject(std::make_exception_ptr(Error(reason)));
 }
 
-bool JobQueue::take(Job& job) {
+bool JobQueue::pop(Job& job) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (jobs_.empty()) return false;
   job = std::move(jobs_.front());
@@ -30,15 +30,15 @@ void JobQueue::wait_for(std::chrono::duration<double> time) {
 }
 
 void JobQueue::close(const std::string& reason) {
-  std::deque<Job> left;
+  std::deque<Job> remaining;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!closed_) reason_ = reason;
     closed_ = true;
-    left.swap(jobs_);
+    remaining.swap(jobs_);
     changed_.notify_all();
   }
-  for (Job& job : left) job.refuse(std::make_exception_ptr(Error(reason)));
+  for (Job& job : remaining) job.reject(std::make_exception_ptr(Error(reason)));
 }
 
 bool JobQueue::closed() const {

@@ -17,7 +17,7 @@ namespace desert_sim {
 /// A job, and the promise to which it gives its answer.
 struct Job {
   std::function<void()> run;  ///< may throw after it has answered with the same exception
-  std::function<void(std::exception_ptr)> refuse;
+  std::function<void(std::exception_ptr)> reject;
 };
 
 /// Makes a job of `body`, which returns R. Refused input (ConfigError) is only thrown to the thread that
@@ -42,7 +42,7 @@ Job make_job(std::function<R()> body, std::future<R>& answer) {
       throw;
     }
   };
-  job.refuse = [promise](std::exception_ptr why) { promise->set_exception(why); };
+  job.reject = [promise](std::exception_ptr exception) { promise->set_exception(exception); };
   return job;
 }
 
@@ -50,9 +50,9 @@ Job make_job(std::function<R()> body, std::future<R>& answer) {
 class JobQueue {
  public:
   /// Once the queue is closed, the job is refused with the reason of close().
-  void put(Job job);
+  void push(Job job);
   /// The next job, if there is one.
-  bool take(Job& job);
+  bool pop(Job& job);
   /// Sleeps until there is a job, the time [s] is over, or the queue is closed.
   void wait_for(std::chrono::duration<double> time);
   /// Refuses the jobs that wait and all that come. The first reason stays.

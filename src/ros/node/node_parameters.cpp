@@ -56,7 +56,7 @@ YAML::Node yaml_from_xmlrpc(XmlRpc::XmlRpcValue value, const std::string& key) {
       return map;
     }
     default:
-      throw ConfigError(key + ": is of a type that no parameter has (a date, or binary data)");
+      throw ConfigError(key + ": has a type that parameters cannot have (a date or binary data)");
   }
 }
 
@@ -65,7 +65,7 @@ YAML::Node read_namespace(const std::string& name) {
   XmlRpc::XmlRpcValue value;
   if (!ros::param::get(name, value)) {
     if (!ros::master::check())
-      throw Error("the master, which keeps the parameters of " + name + ", does not answer");
+      throw Error("the ROS master does not answer, so the parameters of " + name + " cannot be read");
     return YAML::Node(YAML::NodeType::Map);
   }
   return yaml_from_xmlrpc(value, name);
@@ -78,8 +78,9 @@ std::set<std::string> scenario_sections() {
 }
 
 /// The sections of the scenario among the parameters. A key that is neither a section nor in `known` is a
-/// fault.
-YAML::Node take_sections(const YAML::Node& root, const std::set<std::string>& known, Faults& faults) {
+/// error.
+YAML::Node extract_sections(const YAML::Node& root, const std::set<std::string>& known,
+                            ValidationErrors& errors) {
   const std::set<std::string> sections = scenario_sections();
   YAML::Node scenario(YAML::NodeType::Map);
   std::string names, section_names;
@@ -90,25 +91,25 @@ YAML::Node take_sections(const YAML::Node& root, const std::set<std::string>& kn
     if (sections.count(key)) {
       scenario[key] = entry.second;
     } else if (!known.count(key)) {
-      faults.add(key,
+      errors.add(key,
                  "unknown parameter (known: " + names + "; sections of a scenario: " + section_names + ")");
     }
   }
   return scenario;
 }
 
-Settings read_settings(const YAML::Node& node, Faults& faults) {
+Settings read_settings(const YAML::Node& node, ValidationErrors& errors) {
   Settings settings;
   if (!node.IsDefined() || node.IsNull() || (node.IsScalar() && node.Scalar().empty())) return settings;
   if (node.IsScalar()) return {node.Scalar()};
   if (!node.IsSequence())
-    faults.add("settings", yaml::shown(node) + " where a list of path=value is expected");
+    errors.add("settings", yaml::node_text(node) + " is given where a list of path=value is expected");
   for (std::size_t n = 0; node.IsSequence() && n < node.size(); ++n) {
     if (node[n].IsScalar()) {
       settings.push_back(node[n].Scalar());
     } else {
-      faults.add("settings." + std::to_string(n),
-                 yaml::shown(node[n]) + " where a text path=value is expected");
+      errors.add("settings." + std::to_string(n),
+                 yaml::node_text(node[n]) + " is given where a text path=value is expected");
     }
   }
   return settings;
@@ -133,12 +134,13 @@ Scenario read_scenario(const std::string& source, const NodeParameters& node, co
                        const Settings& settings) {
   if (node.scenario.empty()) {
     if (sections.size() == 0)
-      throw ConfigError(source +
-                        ": no scenario: set ~scenario, or the sections of one (grid, terrain, wind, ...)");
+      throw ConfigError(
+          source +
+          ": no scenario is given: set ~scenario, or the sections of a scenario (grid, terrain, wind, ...)");
     if (!settings.empty())
       throw ConfigError(source +
-                        ": settings: change the keys of a scenario file, and ~scenario is empty; set the "
-                        "sections themselves");
+                        ": settings: they override keys of a scenario file, but ~scenario is empty; set the "
+                        "sections of the scenario instead");
     Scenario scenario = parse_scenario(sections, source, "");
     scenario.name = "parameters";
     return scenario;
@@ -171,16 +173,16 @@ void write_map_layers(std::ostream& out) {
 NodeSetup read_node_setup(const ros::NodeHandle& private_node) {
   const std::string name = private_node.getNamespace(), source = "parameters of " + name;
   const YAML::Node root = read_namespace(name);
-  Faults faults(source);
+  ValidationErrors errors(source);
   NodeSetup setup;
   std::set<std::string> known{"settings"};
-  yaml::read_parameters(root, "", faults, setup.node, known);
-  read_publisher_setup(root, faults, setup.publishers, known);
-  const Settings settings = read_settings(root["settings"], faults);
-  const YAML::Node sections = take_sections(root, known, faults);
-  check_frame(setup.node.frame_id, "frame_id", faults);
-  if (!setup.node.center_frame.empty()) check_frame(setup.node.center_frame, "center_frame", faults);
-  faults.throw_if_any();
+  yaml::read_parameters(root, "", errors, setup.node, known);
+  read_publisher_setup(root, errors, setup.publishers, known);
+  const Settings settings = read_settings(root["settings"], errors);
+  const YAML::Node sections = extract_sections(root, known, errors);
+  check_frame(setup.node.frame_id, "frame_id", errors);
+  if (!setup.node.center_frame.empty()) check_frame(setup.node.center_frame, "center_frame", errors);
+  errors.throw_if_any();
   setup.scenario = read_scenario(source, setup.node, sections, settings);
   return setup;
 }

@@ -73,7 +73,7 @@ struct NodeSetup {
 /// Reads all private parameters of `private_node`: those of the tables, the lists `grid_map_layers` and
 /// `local_map_layers`, `settings` (a list of "path=value" for a scenario that is a file), and the sections of
 /// a scenario. Sections that are given beside a file override the file's keys. Throws ConfigError that lists
-/// all faults; an unknown parameter is one.
+/// all errors; an unknown parameter is one.
 NodeSetup read_node_setup(const ros::NodeHandle& private_node);
 
 /// The page of the parameters in markdown, from their tables: what `desert_sim_node --describe` prints, and

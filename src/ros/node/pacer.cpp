@@ -21,13 +21,13 @@ bool Pacer::due(double now) {
     running_ = true;
     start_ = now;
     done_ = 0;
-    given_up_ = 0;
+    dropped_time_ = 0;
   }
   last_ = now;
   const double behind = now - due_time() - backlog;
   if (behind > 0) {
     start_ += behind;
-    given_up_ += behind;
+    dropped_time_ += behind;
   }
   return now >= due_time();
 }
@@ -46,7 +46,7 @@ double Pacer::until_due(double now) const {
 }
 
 double Pacer::lag(double now) const {
-  return rate_ <= 0 || !running_ ? 0.0 : given_up_ + std::max(0.0, now - due_time());
+  return rate_ <= 0 || !running_ ? 0.0 : dropped_time_ + std::max(0.0, now - due_time());
 }
 
 bool Pacer::jumped_back() {
@@ -56,9 +56,9 @@ bool Pacer::jumped_back() {
 }
 
 void RateMeter::count(double now) {
-  constexpr double window = 2.0, apart = 0.05;
+  constexpr double window = 2.0, min_interval = 0.05;
   ++steps_;
-  if (!marks_.empty() && now - marks_.back().time < apart) return;
+  if (!marks_.empty() && now - marks_.back().time < min_interval) return;
   marks_.push_back({now, steps_});
   while (marks_.size() > 2 && now - marks_[1].time > window) marks_.pop_front();
 }

@@ -40,7 +40,7 @@ class Pacer {
   double due_time() const;
   double rate_;
   bool running_ = false, jumped_back_ = false;
-  double start_ = 0, last_ = 0, given_up_ = 0;
+  double start_ = 0, last_ = 0, dropped_time_ = 0;
   std::uint64_t done_ = 0;
 };
 

@@ -26,8 +26,8 @@ constexpr const char* type_name() {
 }
 
 /// The shortest decimal number that is this float: 0.3, not 0.300000012.
-double shortest(double value) { return value; }
-double shortest(float value) {
+double shortest_decimal(double value) { return value; }
+double shortest_decimal(float value) {
   char text[32];
   for (int digits = 6; digits <= 9; ++digits) {
     std::snprintf(text, sizeof text, "%.*g", digits, static_cast<double>(value));
@@ -43,7 +43,7 @@ std::string as_text(const Row& row, const T& value) {
     text << row.choices[static_cast<int>(value)];
   } else if constexpr (std::is_same_v<T, ShortList>) {
     text << "[";
-    for (int n = 0; n < value.count; ++n) text << (n ? ", " : "") << shortest(value.values[n]);
+    for (int n = 0; n < value.count; ++n) text << (n ? ", " : "") << shortest_decimal(value.values[n]);
     text << "]";
   } else {
     text << value;
@@ -52,7 +52,7 @@ std::string as_text(const Row& row, const T& value) {
 }
 
 template <class Entries, class Value>
-void put(Entries& entries, const std::string& name, const Value& value) {
+void add_entry(Entries& entries, const std::string& name, const Value& value) {
   entries.emplace_back();
   entries.back().name = name;
   entries.back().value = value;
@@ -62,25 +62,25 @@ void put(Entries& entries, const std::string& name, const Value& value) {
 template <class Row, class T>
 void add_value(Config& config, const std::string& name, const Row& row, const T& value) {
   if constexpr (std::is_same_v<T, bool>)
-    put(config.bools, name, value);
+    add_entry(config.bools, name, value);
   else if constexpr (std::is_same_v<T, int>)
-    put(config.ints, name, value);
+    add_entry(config.ints, name, value);
   else if constexpr (std::is_floating_point_v<T>)
-    put(config.doubles, name, shortest(value));
+    add_entry(config.doubles, name, shortest_decimal(value));
   else
-    put(config.strs, name, as_text(row, value));
+    add_entry(config.strs, name, as_text(row, value));
 }
 
 template <class T, class Row>
 void add_limit(Config& config, const std::string& name, const Row& row, double limit) {
   if constexpr (std::is_same_v<T, bool>)
-    put(config.bools, name, limit > 0);
+    add_entry(config.bools, name, limit > 0);
   else if constexpr (std::is_same_v<T, int>)
-    put(config.ints, name, static_cast<int>(limit));
+    add_entry(config.ints, name, static_cast<int>(limit));
   else if constexpr (std::is_floating_point_v<T>)
-    put(config.doubles, name, limit);
+    add_entry(config.doubles, name, limit);
   else
-    put(config.strs, name, std::string());
+    add_entry(config.strs, name, std::string());
   (void)row;
 }
 
@@ -195,7 +195,7 @@ dynamic_reconfigure::ConfigDescription reconfigure_description(const LiveParamet
 
 LiveChange reconfigure_change(const Config& request, const LiveParameters& present) {
   const std::map<std::string, std::string> now = texts(reconfigure_values(present));
-  Faults faults("set_parameters");
+  ValidationErrors errors("set_parameters");
   LiveChange change;
   YAML::Node others(YAML::NodeType::Map);  // parameters of the node and its topics
   for (const auto& [name, value] : texts(request)) {
@@ -204,9 +204,9 @@ LiveChange reconfigure_change(const Config& request, const LiveParameters& prese
         split == std::string::npos ? name : name.substr(0, split) + "." + name.substr(split + 2);
     const auto found = now.find(name);
     if (found == now.end()) {
-      const char* why = fixed_reason(path);
-      faults.add(path, why ? std::string("cannot change while the simulation runs: ") + why
-                           : std::string("unknown parameter"));
+      const char* reason = fixed_reason(path);
+      errors.add(path, reason ? std::string("cannot change while the simulation runs: ") + reason
+                              : std::string("unknown parameter"));
     } else if (found->second != value) {
       if (split == std::string::npos)
         others[name] = value;
@@ -217,11 +217,11 @@ LiveChange reconfigure_change(const Config& request, const LiveParameters& prese
   std::set<std::string> known;
   NodeParameters node;
   node.step_rate = present.step_rate;
-  yaml::read_parameters(others, "", faults, node, known);
+  yaml::read_parameters(others, "", errors, node, known);
   change.step_rate = node.step_rate;
   change.publishers = present.publishers;
-  read_publisher_setup(others, faults, change.publishers, known);
-  faults.throw_if_any();
+  read_publisher_setup(others, errors, change.publishers, known);
+  errors.throw_if_any();
   check_map_sizes(change.publishers.maps, present.scenario.grid);
   return change;
 }

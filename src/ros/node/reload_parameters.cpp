@@ -40,7 +40,7 @@ std::vector<std::string> texts(const PublisherSetup& setup) {
   return texts.all;
 }
 
-std::string shown(double number) {
+std::string number_text(double number) {
   std::ostringstream text;
   text << number;
   return text.str();
@@ -50,25 +50,25 @@ void add(std::string& list, const std::string& item) { list += (list.empty() ? "
 
 template <class P>
 void add_differences(const P& before, const P& now, std::string& list) {
-  const std::vector<std::string> old = texts(before), fresh = texts(now);
-  for (std::size_t n = 0; n < fresh.size(); ++n)
-    if (old[n] != fresh[n]) add(list, fresh[n]);
+  const std::vector<std::string> old = texts(before), current = texts(now);
+  for (std::size_t n = 0; n < current.size(); ++n)
+    if (old[n] != current[n]) add(list, current[n]);
 }
 
 template <class P>
-void take_differences(const P& before, const P& now, P& present) {
-  const auto take = [&](const auto& row) {
+void copy_differences(const P& before, const P& now, P& present) {
+  const auto copy_if_changed = [&](const auto& row) {
     if (before.*(row.member) != now.*(row.member)) present.*(row.member) = now.*(row.member);
   };
-  std::apply([&](const auto&... row) { (take(row), ...); }, table_of<P>());
+  std::apply([&](const auto&... row) { (copy_if_changed(row), ...); }, table_of<P>());
 }
 
 /// `present` with the values that differ between two readings. What clients of ~set_parameters have changed
 /// otherwise stays.
 PublisherSetup with_differences(const PublisherSetup& before, const PublisherSetup& now,
                                 PublisherSetup present) {
-  take_differences(before.topics, now.topics, present.topics);
-  take_differences(before.maps.parameters, now.maps.parameters, present.maps.parameters);
+  copy_differences(before.topics, now.topics, present.topics);
+  copy_differences(before.maps.parameters, now.maps.parameters, present.maps.parameters);
   if (yaml_list(before.maps.grid_map_layers) != yaml_list(now.maps.grid_map_layers))
     present.maps.grid_map_layers = now.maps.grid_map_layers;
   if (yaml_list(before.maps.local_map_layers) != yaml_list(now.maps.local_map_layers))
@@ -104,7 +104,7 @@ std::string ParameterReload::reload() {
     }
   }
   const double rate = setup.node.step_rate;
-  if (rate != last_.node.step_rate) add(applied, "step_rate=" + shown(rate));
+  if (rate != last_.node.step_rate) add(applied, "step_rate=" + number_text(rate));
   NodeParameters others = setup.node;  // those that take effect at the start only
   others.step_rate = last_.node.step_rate;
   add_differences(last_.node, others, fixed);
@@ -120,8 +120,8 @@ std::string ParameterReload::reload() {
   on_scenario_(setup.scenario);
   last_.scenario =
       with_live_settings(last_.scenario, settings);  // what needs a restart is listed again next time
-  return (applied.empty() ? "nothing to apply" : "applied: " + applied) +
-         (fixed.empty() ? "" : "; needs a restart of the node: " + fixed);
+  return (applied.empty() ? "no parameter that can change live differs" : "applied: " + applied) +
+         (fixed.empty() ? "" : "; these need a restart of the node: " + fixed);
 }
 
 bool ParameterReload::serve(std_srvs::TriggerRequest&, std_srvs::TriggerResponse& response) {

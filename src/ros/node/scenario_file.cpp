@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int deepest =
+constexpr int max_depth =
     6;  // levels of folders that are searched below an entry of the path, such as /usr/share
 
 bool is_this_package(const fs::path& folder) {
@@ -31,7 +31,7 @@ std::string find_below(const fs::path& folder, int depth) {
   if (fs::exists(folder / "CATKIN_IGNORE", error) || fs::exists(folder / "rospack_nosubdirs", error))
     return "";
   if (fs::exists(folder / "package.xml", error)) return is_this_package(folder) ? folder.string() : "";
-  if (depth == deepest) return "";
+  if (depth == max_depth) return "";
   std::vector<fs::path> below;
   for (fs::directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error), end;
        !error && entry != end; entry.increment(error))
@@ -80,7 +80,7 @@ std::string scenario_file(const std::string& name) {
   std::sort(known.begin(), known.end());
   std::string all;
   for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
-  throw ConfigError("~scenario: there is no '" + name + "' in " + folder.string() + " (there are: " + all +
+  throw ConfigError("~scenario: no scenario '" + name + "' exists in " + folder.string() + " (known: " + all +
                     ")");
 }
 

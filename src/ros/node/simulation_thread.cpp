@@ -18,9 +18,10 @@ namespace desert_sim {
 
 namespace {
 
-constexpr int most_steps_under_way = 8;  // that a GPU may be behind before the thread waits for it
-constexpr int timed_every = 16;          // steps from one that is timed to the next
-constexpr double keep_memory = 60;  // [s] for layers on request, costs and snapshots that nobody asks for
+constexpr int max_steps_in_flight = 8;  // that a GPU may be behind before the thread waits for it
+constexpr int timed_every = 16;         // steps from one that is timed to the next
+constexpr double unused_memory_timeout =
+    60;  // [s] for layers on request, costs and snapshots that nobody asks for
 
 /// Sets the name (for top -H) and the niceness of the calling thread. The threads of the backend are started
 /// by it and inherit both.
@@ -31,7 +32,8 @@ void set_name_and_niceness(const char* name, int niceness) {
   const int now = getpriority(PRIO_PROCESS, thread);
   if (errno == 0 && now >= niceness) return;
   if (setpriority(PRIO_PROCESS, thread, niceness) != 0)
-    ROS_WARN("niceness %d of the simulation's threads: %s", niceness, std::strerror(errno));
+    ROS_WARN("The niceness of the simulation threads cannot be set to %d: %s", niceness,
+             std::strerror(errno));
 }
 
 }  // namespace
@@ -45,7 +47,7 @@ SimulationThread::SimulationThread(const Scenario& scenario, const RasterLoader&
       paused_(options.paused) {
   std::promise<void> started;
   std::future<void> ready = started.get_future();
-  thread_ = std::thread([&] { thread(scenario, load_raster, started); });
+  thread_ = std::thread([&] { run_thread(scenario, load_raster, started); });
   try {
     ready.get();
   } catch (...) {
@@ -68,13 +70,13 @@ std::string SimulationThread::failure() const {
 
 // ---- On the simulation thread.
 
-void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load_raster,
-                              std::promise<void>& started) {
+void SimulationThread::run_thread(const Scenario& scenario, const RasterLoader& load_raster,
+                                  std::promise<void>& started) {
   set_name_and_niceness("simulation", options_.niceness);
   try {
     session_ = std::make_unique<Session>(scenario, load_raster, options_.backend, options_.threads,
                                          options_.journal);
-    if (options_.check_scenario) session_->check_with(options_.check_scenario);
+    if (options_.check_scenario) session_->set_scenario_check(options_.check_scenario);
     backend_choice_ = session_->backend_choice();
     if (!options_.resume_from.empty()) load_newest(*session_, options_.resume_from, options_.journal);
     stamp_ = stamp_now();
@@ -90,12 +92,12 @@ void SimulationThread::thread(const Scenario& scenario, const RasterLoader& load
   } catch (const std::exception& e) {
     fail(e.what());
   } catch (...) {
-    fail("an exception of an unknown type");
+    fail("an exception of an unknown type was thrown");
   }
-  const std::string why =
+  const std::string reason =
       failure().empty() ? "the simulation is ending" : "the simulation has failed: " + failure();
   for (StepRequest& request : step_requests_)
-    request.answer.set_exception(std::make_exception_ptr(Error(why)));
+    request.answer.set_exception(std::make_exception_ptr(Error(reason)));
   step_requests_.clear();
   session_.reset();
 }
@@ -126,17 +128,17 @@ double SimulationThread::idle_time() const {
 
 /// False if the thread is to end.
 bool SimulationThread::serve_jobs() {
-  for (Job job; jobs_.take(job);) job.run();
+  for (Job job; jobs_.pop(job);) job.run();
   return !jobs_.closed();
 }
 
 void SimulationThread::serve_step_request() {
   StepRequest& request = step_requests_.front();
-  if (request.done < request.asked) {
+  if (request.done < request.requested) {
     step();
     ++request.done;
   }
-  if (request.done < request.asked) return;
+  if (request.done < request.requested) return;
   ++commands_;
   pacer_.drop_backlog(clock_now());  // the time that these steps took is not to be caught up
   request.answer.set_value(reached(true));
@@ -145,9 +147,9 @@ void SimulationThread::serve_step_request() {
 
 void SimulationThread::end_step_requests(const std::string& by) {
   for (StepRequest& request : step_requests_)
-    request.answer.set_exception(
-        std::make_exception_ptr(ConfigError("ended by " + by + " after " + std::to_string(request.done) +
-                                            " of " + std::to_string(request.asked) + " steps")));
+    request.answer.set_exception(std::make_exception_ptr(
+        ConfigError("the request was ended by " + by + " after " + std::to_string(request.done) + " of " +
+                    std::to_string(request.requested) + " steps")));
   step_requests_.clear();
 }
 
@@ -168,16 +170,20 @@ double SimulationThread::clock_now() const {
 bool SimulationThread::step_is_due() {
   if (pacer_.rate() > 0 && follows_ros_time()) {
     const bool waiting = !ros::Time::isValid();
-    if (waiting != waiting_for_clock_) ROS_INFO("%s", waiting ? "waiting for /clock" : "/clock is there");
+    if (waiting != waiting_for_clock_)
+      ROS_INFO("%s", waiting ? "The simulation waits for the first message on /clock."
+                             : "The first message on /clock has arrived.");
     waiting_for_clock_ = waiting;
     if (waiting) return false;
   }
   const bool due = pacer_.due(clock_now());
-  if (pacer_.jumped_back()) ROS_WARN("the clock went back: the schedule of steps begins anew");
+  if (pacer_.jumped_back()) ROS_WARN("ROS time has jumped back: the schedule of steps starts again.");
   const double lag = pacer_.lag(clock_now());
   if (lag > Pacer::backlog)
-    ROS_WARN_THROTTLE(30, "%.0f s behind: this machine makes %.1f steps a second, %.1f are wanted", lag,
-                      meter_.rate(steady_now()), pacer_.rate());
+    ROS_WARN_THROTTLE(
+        30,
+        "The simulation is %.0f s behind its schedule: it makes %.1f steps per second, the target is %.1f.",
+        lag, meter_.rate(steady_now()), pacer_.rate());
   return due;
 }
 
@@ -191,7 +197,7 @@ void SimulationThread::step() {
   }
   session_->simulation().set_timing(timed);
   session_->step();
-  if (++steps_under_way_ >= most_steps_under_way || pacer_.rate() > 0) wait_for_steps();
+  if (++steps_in_flight_ >= max_steps_in_flight || pacer_.rate() > 0) wait_for_steps();
   stamp_ = stamp_now();
   meter_.count(steady_now());
   note_change();
@@ -199,16 +205,16 @@ void SimulationThread::step() {
 
 /// Waits until all steps that were started are done.
 void SimulationThread::wait_for_steps() {
-  if (steps_under_way_ == 0) return;
+  if (steps_in_flight_ == 0) return;
   session_->simulation().exec().synchronise();
-  steps_under_way_ = 0;
+  steps_in_flight_ = 0;
   stamp_ = stamp_now();
 }
 
 void SimulationThread::release_unused_memory() {
-  const auto unused = [now = steady_now()](double& asked) {
-    if (asked == 0 || now - asked < keep_memory) return false;
-    asked = 0;
+  const auto unused = [now = steady_now()](double& requested) {
+    if (requested == 0 || now - requested < unused_memory_timeout) return false;
+    requested = 0;
     return true;
   };
   if (unused(layers_requested_)) session_->simulation().release_requested_layers();
@@ -227,9 +233,9 @@ Moment SimulationThread::moment() {
   return {s.steps(), s.time(), stamp_, changes_, commands_, terrains_};
 }
 
-Reached SimulationThread::reached(bool with_hash) {
+ReachedState SimulationThread::reached(bool with_hash) {
   wait_for_steps();
-  Reached r;
+  ReachedState r;
   r.moment = moment();
   if (with_hash) r.hash = state_hash();
   return r;

@@ -29,7 +29,7 @@ class SimulationThread {
     std::string journal;  ///< file, or empty
     /// It starts from the first of these checkpoints that is complete, if there is one.
     std::vector<std::string> resume_from;
-    /// See Session::check_with().
+    /// See Session::set_scenario_check().
     std::function<void(const Scenario&)> check_scenario;
     /// If set, the simulation is the clock of all nodes: this is called on the simulation thread with the
     /// simulated time [s], at the start and after each step, and steps follow wall time, whatever
@@ -47,10 +47,10 @@ class SimulationThread {
   // refused and has changed nothing, and Error if the simulation ends or fails before it serves the request.
 
   /// `with_change`: the result of an edit has its change cell by cell.
-  std::future<Reached> apply(const Command& command, bool with_hash = false, bool with_change = false);
+  std::future<ReachedState> apply(const Command& command, bool with_hash = false, bool with_change = false);
   /// Makes exactly `steps` steps, as fast as possible. A pause, a reset or a load ends them early
   /// (ConfigError).
-  std::future<Reached> step(std::uint32_t steps);
+  std::future<ReachedState> step(std::uint32_t steps);
   std::future<void> pause();
   std::future<void> resume();
   /// Sets the rate [steps/s]; 0: as fast as possible. The schedule starts again. The journal does not have
@@ -65,7 +65,7 @@ class SimulationThread {
   std::future<Scenario> scenario();
   /// `measure`: processes are timed for a while from now on, which costs some speed.
   std::future<StatusReport> report(bool measure = true);
-  std::future<Reached> save_checkpoint(const std::string& path);
+  std::future<ReachedState> save_checkpoint(const std::string& path);
   std::future<CheckpointCopy> checkpoint();
 
   /// The present counters of Moment: they tell whether a copy is still up to date.
@@ -85,13 +85,13 @@ class SimulationThread {
 
  private:
   struct StepRequest {
-    std::uint32_t asked = 0, done = 0;
-    std::promise<Reached> answer;
+    std::uint32_t requested = 0, done = 0;
+    std::promise<ReachedState> answer;
   };
 
   template <class R>
-  std::future<R> ask(std::function<R()> body);
-  void thread(const Scenario& scenario, const RasterLoader& load_raster, std::promise<void>& started);
+  std::future<R> submit(std::function<R()> body);
+  void run_thread(const Scenario& scenario, const RasterLoader& load_raster, std::promise<void>& started);
   void loop();
   bool serve_jobs();
   void serve_step_request();
@@ -103,17 +103,18 @@ class SimulationThread {
   void release_unused_memory();
   void note_change();
   /// A TerrainState whose copies are under way.
-  struct StateUnderWay {
+  struct PendingState {
     Moment moment;
     PendingSnapshot snapshot;
     Pending<ElevationChanges> changes;
-    TakenCosts costs;
+    PendingCosts costs;
     PendingPlants plants;
     TerrainState get() const;
   };
-  StateUnderWay begin_state(const std::vector<Layer>& layers, const RowBand& band, const StateQuery& query);
+  PendingState begin_state_copy(const std::vector<Layer>& layers, const RowBand& band,
+                                const StateQuery& query);
   Moment moment();
-  Reached reached(bool with_hash);
+  ReachedState reached(bool with_hash);
   std::uint64_t state_hash();
   double idle_time() const;
   void fail(const std::string& what);
@@ -138,7 +139,7 @@ class SimulationThread {
   RateMeter meter_;
   ros::Time stamp_;
   bool paused_, waiting_for_clock_ = false;
-  int steps_under_way_ = 0;  ///< started on the device, and perhaps not done yet
+  int steps_in_flight_ = 0;  ///< started on the device, and perhaps not done yet
   std::uint64_t snapshots_ = 0;
   /// When layers that exist on request, costs, and snapshots were last asked for [s]; 0 if no memory is held
   /// for them.

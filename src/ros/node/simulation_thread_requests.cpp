@@ -9,28 +9,28 @@ namespace desert_sim {
 
 namespace {
 
-constexpr double measure_for = 5;  // [s] after a report
+constexpr double measure_duration = 5;  // [s] after a report
 
 /// The answer that finish() makes, once `begun` has a copy that is under way. finish() waits for that copy,
 /// on the thread that asks for the answer.
-template <class Answer, class UnderWay, class Finish>
-std::future<Answer> wait_for_copy(std::future<UnderWay> begun, Finish finish) {
+template <class Answer, class PendingCopy, class Finish>
+std::future<Answer> wait_for_copy(std::future<PendingCopy> begun, Finish finish) {
   return std::async(
-      std::launch::deferred, [finish](std::future<UnderWay> under_way) { return finish(under_way.get()); },
+      std::launch::deferred, [finish](std::future<PendingCopy> pending) { return finish(pending.get()); },
       std::move(begun));
 }
 
 }  // namespace
 
 template <class R>
-std::future<R> SimulationThread::ask(std::function<R()> body) {
+std::future<R> SimulationThread::submit(std::function<R()> body) {
   std::future<R> answer;
-  jobs_.put(make_job<R>(std::move(body), answer));
+  jobs_.push(make_job<R>(std::move(body), answer));
   return answer;
 }
 
-std::future<Reached> SimulationThread::apply(const Command& command, bool with_hash, bool with_change) {
-  return ask<Reached>([=] {
+std::future<ReachedState> SimulationThread::apply(const Command& command, bool with_hash, bool with_change) {
+  return submit<ReachedState>([=] {
     const CommandResult result = session_->apply(command, with_change);
     ++commands_;
     stamp_ = stamp_now();
@@ -41,26 +41,26 @@ std::future<Reached> SimulationThread::apply(const Command& command, bool with_h
       pacer_.restart();
     }
     note_change();
-    Reached r = reached(with_hash);
+    ReachedState r = reached(with_hash);
     r.result = result;
     return r;
   });
 }
 
-std::future<Reached> SimulationThread::step(std::uint32_t steps) {
+std::future<ReachedState> SimulationThread::step(std::uint32_t steps) {
   // Two promises: the job's, which only says that the request has been taken, and the request's own.
   auto request = std::make_shared<StepRequest>();
-  request->asked = steps;
-  std::future<Reached> answer = request->answer.get_future();
+  request->requested = steps;
+  std::future<ReachedState> answer = request->answer.get_future();
   Job job;
   job.run = [this, request] { step_requests_.push_back(std::move(*request)); };
-  job.refuse = [request](std::exception_ptr why) { request->answer.set_exception(why); };
-  jobs_.put(std::move(job));
+  job.reject = [request](std::exception_ptr exception) { request->answer.set_exception(exception); };
+  jobs_.push(std::move(job));
   return answer;
 }
 
 std::future<void> SimulationThread::pause() {
-  return ask<void>([this] {
+  return submit<void>([this] {
     end_step_requests("a pause");
     paused_ = true;
     pacer_.restart();
@@ -69,7 +69,7 @@ std::future<void> SimulationThread::pause() {
 }
 
 std::future<void> SimulationThread::resume() {
-  return ask<void>([this] {
+  return submit<void>([this] {
     if (!paused_) return;
     paused_ = false;
     pacer_.restart();
@@ -78,7 +78,7 @@ std::future<void> SimulationThread::resume() {
 }
 
 std::future<void> SimulationThread::set_step_rate(double rate) {
-  return ask<void>([this, rate] {
+  return submit<void>([this, rate] {
     pacer_ = Pacer(rate);
     step_rate_ = rate;
     meter_.clear();
@@ -86,8 +86,9 @@ std::future<void> SimulationThread::set_step_rate(double rate) {
   });
 }
 
-SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<Layer>& layers,
-                                                              const RowBand& band, const StateQuery& query) {
+SimulationThread::PendingState SimulationThread::begin_state_copy(const std::vector<Layer>& layers,
+                                                                  const RowBand& band,
+                                                                  const StateQuery& query) {
   wait_for_steps();  // the stamp must be that of the state that is copied
   std::vector<Layer> in_use;
   for (Layer layer : layers) {
@@ -97,11 +98,11 @@ SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<
   snapshot_requested_ = steady_now();
   ++snapshots_;
   Simulation& s = session_->simulation();
-  StateUnderWay state{moment(), s.begin_snapshot(in_use, band), {}, s.take_costs(query.costs), {}};
+  PendingState state{moment(), s.begin_snapshot(in_use, band), {}, s.begin_costs(query.costs), {}};
   if (query.plants) state.plants = s.begin_plants();
   if (query.costs.update || query.costs.whole) costs_requested_ = steady_now();
   if (query.elevation_changes && s.holds_elevation())
-    state.changes = s.take_elevation_changes(query.elevation_threshold, query.elevation_tile);
+    state.changes = s.begin_elevation_changes(query.elevation_threshold, query.elevation_tile);
   const bool none = !s.holds_elevation();
   if (query.hold == StateQuery::Hold::present || (query.hold == StateQuery::Hold::present_if_none && none))
     s.hold_elevation();
@@ -109,36 +110,37 @@ SimulationThread::StateUnderWay SimulationThread::begin_state(const std::vector<
   return state;
 }
 
-TerrainState SimulationThread::StateUnderWay::get() const {
+TerrainState SimulationThread::PendingState::get() const {
   return {moment, snapshot.get(), changes.get(), costs.update.get(), costs.whole.get(), plants.get()};
 }
 
 std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band,
                                                     const StateQuery& query) {
-  return wait_for_copy<TerrainState>(ask<StateUnderWay>([=] { return begin_state(layers, band, query); }),
-                                     [](const StateUnderWay& state) { return state.get(); });
+  return wait_for_copy<TerrainState>(
+      submit<PendingState>([=] { return begin_state_copy(layers, band, query); }),
+      [](const PendingState& state) { return state.get(); });
 }
 
 std::future<TerrainToSave> SimulationThread::terrain_to_save() {
-  struct UnderWay {
-    StateUnderWay state;
+  struct PendingCopy {
+    PendingState state;
     Scenario scenario;
     std::uint64_t hash;
   };
   return wait_for_copy<TerrainToSave>(
-      ask<UnderWay>([this] {
+      submit<PendingCopy>([this] {
         const Simulation& s = session_->simulation();
-        std::vector<Layer> layers = terrain_layers(s);
+        std::vector<Layer> layers = persistent_layers(s);
         layers.push_back(Layer::elevation);
-        return UnderWay{begin_state(layers, {}, {}), s.scenario(), state_hash()};
+        return PendingCopy{begin_state_copy(layers, {}, {}), s.scenario(), state_hash()};
       }),
-      [](const UnderWay& u) {
+      [](const PendingCopy& u) {
         return TerrainToSave{u.state.get(), u.scenario, u.hash};
       });
 }
 
-std::future<Reached> SimulationThread::save_checkpoint(const std::string& path) {
-  return ask<Reached>([=] {
+std::future<ReachedState> SimulationThread::save_checkpoint(const std::string& path) {
+  return submit<ReachedState>([=] {
     wait_for_steps();
     session_->save_checkpoint(path);
     return reached(true);
@@ -146,18 +148,18 @@ std::future<Reached> SimulationThread::save_checkpoint(const std::string& path) 
 }
 
 std::future<CheckpointCopy> SimulationThread::checkpoint() {
-  return ask<CheckpointCopy>([this] {
+  return submit<CheckpointCopy>([this] {
     wait_for_steps();
     return CheckpointCopy{moment(), checkpoint_bytes(session_->simulation())};
   });
 }
 
 std::future<Scenario> SimulationThread::scenario() {
-  return ask<Scenario>([this] { return session_->simulation().present_scenario(); });
+  return submit<Scenario>([this] { return session_->simulation().present_scenario(); });
 }
 
 std::future<StatusReport> SimulationThread::report(bool measure) {
-  return ask<StatusReport>([this, measure] {
+  return submit<StatusReport>([this, measure] {
     wait_for_steps();
     Simulation& s = session_->simulation();
     StatusReport r;
@@ -188,7 +190,7 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     r.layer_bytes = s.terrain().bytes();
     r.memory_available = s.exec().memory_available();
     r.memory_needed = static_cast<double>(total_bytes(s.memory()));
-    if (measure) measure_until_ = steady_now() + measure_for;
+    if (measure) measure_until_ = steady_now() + measure_duration;
     return r;
   });
 }

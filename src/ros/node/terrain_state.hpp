@@ -58,7 +58,7 @@ struct TerrainToSave {
 };
 
 /// The state in which a command or a request for steps ended.
-struct Reached {
+struct ReachedState {
   Moment moment;
   std::uint64_t hash = 0;  ///< of the state; 0 if it was not asked for
   CommandResult result;    ///< of an edit

@@ -17,12 +17,12 @@ namespace {
 
 /// Throws if a frame is tilted so much that a direction in it has no meaning in the terrain's. (Points are
 /// projected.)
-void require_upright(const tf2::Transform& transform, const std::string& frame) {
+void check_tilt(const tf2::Transform& transform, const std::string& frame) {
   const double up = (transform.getBasis() * tf2::Vector3(0, 0, 1)).z();
   if (up >= std::cos(45 / degrees_per_radian)) return;
   throw ConfigError("frame " + quoted(frame) + " is tilted by " +
                     std::to_string(std::acos(std::max(-1.0, up)) * degrees_per_radian) +
-                    " deg against the terrain's, which leaves angle_deg without a meaning (allowed: 45)");
+                    " deg against the terrain's frame, so angle_deg is undefined (allowed: at most 45 deg)");
 }
 
 /// Sets the centre, and the sizes and the angle that the shape has.
@@ -36,7 +36,7 @@ void set_rectangle(const Request& request, const tf2::Transform& transform, Comm
   command.radius = request.radius;
   if (command.shape == BrushShape::circle) return;
   const bool same = transform == tf2::Transform::getIdentity();
-  if (!same) require_upright(transform, request.header.frame_id);
+  if (!same) check_tilt(transform, request.header.frame_id);
   command.radius_y = request.radius_y;
   command.angle_deg = same ? request.angle_deg : direction_in_terrain(request.angle_deg, transform);
 }
@@ -45,8 +45,8 @@ template <class Request, class Command>
 void set_points(const Request& request, const tf2::Transform& transform, Command& command) {
   constexpr std::size_t most = command::EditTerrain::max_points;
   if (request.points.size() > most)
-    throw ConfigError("points: " + std::to_string(request.points.size()) +
-                      " are given (allowed: " + std::to_string(most) + ")");
+    throw ConfigError("points: " + std::to_string(request.points.size()) + " are given (allowed: at most " +
+                      std::to_string(most) + ")");
   for (std::size_t n = 0; n < request.points.size(); ++n) {
     const geometry_msgs::Point& given = request.points[n];
     require_finite(given, "points[" + std::to_string(n) + "]");
@@ -73,13 +73,14 @@ void require_size(const sensor_msgs::Image& image, std::size_t bytes) {
     throw ConfigError("image: " + size + " pixels (allowed: 1 to " +
                       std::to_string(command::Patch::max_pixels) + " in all)");
   if (image.step < image.width * bytes)
-    throw ConfigError("image.step: = " + std::to_string(image.step) + " is too little for " +
-                      std::to_string(image.width) + " pixels of " + image.encoding + " (allowed: from " +
+    throw ConfigError("image.step: = " + std::to_string(image.step) + " is too small for " +
+                      std::to_string(image.width) + " pixels of " + image.encoding + " (allowed: at least " +
                       std::to_string(image.width * bytes) + ")");
   if (image.data.size() != std::uint64_t{image.step} * image.height)
-    throw ConfigError("image.data: " + std::to_string(image.data.size()) + " bytes are not what " + size +
-                      " with step " + std::to_string(image.step) +
-                      " needs (allowed: " + std::to_string(std::uint64_t{image.step} * image.height) + ")");
+    throw ConfigError("image.data: " + std::to_string(image.data.size()) +
+                      " bytes do not match an image of " + size + " pixels with step " +
+                      std::to_string(image.step) +
+                      " (allowed: " + std::to_string(std::uint64_t{image.step} * image.height) + ")");
 }
 
 /// A pixel of one or two bytes as 0 … 1 from black to white, one of four bytes as the float that it is.

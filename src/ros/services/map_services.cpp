@@ -19,7 +19,7 @@ namespace desert_sim {
 namespace {
 
 constexpr std::size_t max_points = 1000000;
-constexpr auto recent_enough = std::chrono::milliseconds(100);
+constexpr auto max_snapshot_age = std::chrono::milliseconds(100);
 
 /// All layers, if none is named.
 std::vector<MapLayer> requested_layers(const std::vector<std::string>& names) {
@@ -47,7 +47,7 @@ class GetGridMapCallback : public ros::ServiceCallbackHelper {
     } catch (const ConfigError& e) {
       params.response = ros::serialization::serializeServiceResponse(false, std::string(e.what()));
     } catch (const std::exception& e) {
-      ROS_ERROR("get_grid_map: %s", e.what());
+      ROS_ERROR("The service get_grid_map failed: %s", e.what());
       params.response = ros::serialization::serializeServiceResponse(false, std::string(e.what()));
     }
     return true;
@@ -66,7 +66,7 @@ TerrainState Services::recent_terrain() {
     const std::lock_guard<std::mutex> lock(recent_mutex_);
     const bool unchanged = recent_.moment.change == simulation_.changes();
     const bool uncommanded = recent_.moment.command == simulation_.commands();
-    const bool recent = std::chrono::steady_clock::now() - recent_time_ < recent_enough;
+    const bool recent = std::chrono::steady_clock::now() - recent_time_ < max_snapshot_age;
     if (recent_.snapshot && (unchanged || (uncommanded && recent))) return recent_;
   }
   const TerrainState state = simulation_.terrain(sampled_layers()).get();
@@ -78,8 +78,8 @@ TerrainState Services::recent_terrain() {
 
 void Services::query_terrain(const QueryTerrainRequest& request, QueryTerrainResponse& response) {
   if (request.points.size() > max_points)
-    throw ConfigError("points: " + std::to_string(request.points.size()) + " are more than " +
-                      std::to_string(max_points));
+    throw ConfigError("points: " + std::to_string(request.points.size()) + " are given (allowed: at most " +
+                      std::to_string(max_points) + ")");
   for (std::size_t n = 0; n < request.points.size(); ++n)
     require_finite(request.points[n], "points[" + std::to_string(n) + "]");
   const tf2::Transform transform = frames_.to_terrain(request.header);

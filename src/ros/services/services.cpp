@@ -28,7 +28,7 @@ void Services::advertise(const std::string& name,
       response.success = false;
       response.message = e.what();
     } catch (const std::exception& e) {
-      ROS_ERROR("%s: %s", name.c_str(), e.what());
+      ROS_ERROR("The service %s failed: %s", name.c_str(), e.what());
       response.success = false;
       response.message = e.what();
     }
@@ -96,7 +96,7 @@ void Services::edit_wind(const EditWindRequest& request, EditWindResponse&) {
 }
 
 void Services::edit_plants(const EditPlantsRequest& request, EditPlantsResponse& response) {
-  const Reached reached = simulation_.apply(plants_command(request, frames_)).get();
+  const ReachedState reached = simulation_.apply(plants_command(request, frames_)).get();
   response.plants = reached.result.plants;
   response.step = reached.moment.step;
   publisher_.status_changed();
@@ -107,8 +107,8 @@ void Services::edit_plants(const EditPlantsRequest& request, EditPlantsResponse&
 namespace {
 
 /// What an edit that was asked for with its change has changed.
-TerrainDiffPtr diff_message(const Reached& edit, const std::string& frame) {
-  const CellRectangle& touched = edit.result.touched;
+TerrainDiffPtr diff_message(const ReachedState& edit, const std::string& frame) {
+  const CellRectangle& touched = edit.result.changed_cells;
   const LayerChange& change = edit.result.change;
   TerrainDiffPtr message = boost::make_shared<TerrainDiff>();
   message->header = header_of(edit.moment, frame);
@@ -130,9 +130,9 @@ TerrainDiffPtr diff_message(const Reached& edit, const std::string& frame) {
 
 void Services::edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response) {
   const bool diff = terrain_diff_.getNumSubscribers() > 0;
-  const Reached reached = simulation_.apply(edit_command(request, frames_), false, diff).get();
+  const ReachedState reached = simulation_.apply(edit_command(request, frames_), false, diff).get();
   if (diff) terrain_diff_.publish(diff_message(reached, frames_.terrain_frame()));
-  const CellRectangle& touched = reached.result.touched;
+  const CellRectangle& touched = reached.result.changed_cells;
   response.volume = reached.result.volume_m3;
   response.moved = reached.result.moved_m3;
   response.x = static_cast<std::uint32_t>(touched.x0);
@@ -146,7 +146,7 @@ void Services::edit_terrain(const EditTerrainRequest& request, EditTerrainRespon
 // ---- Running.
 
 void Services::step(const StepRequest& request, StepResponse& response) {
-  const Reached reached = simulation_.step(request.steps).get();
+  const ReachedState reached = simulation_.step(request.steps).get();
   publisher_.publish_now();
   response.step = reached.moment.step;
   response.sim_time = reached.moment.time;
@@ -165,7 +165,7 @@ void Services::resume(const std_srvs::TriggerRequest&, std_srvs::TriggerResponse
 
 void Services::reset(const std_srvs::TriggerRequest&, std_srvs::TriggerResponse&) {
   simulation_.apply(command::Reset{}).get();
-  ROS_INFO("reset to the scenario's start");
+  ROS_INFO("The simulation was reset to the start of the scenario.");
   publisher_.publish_now();
 }
 
@@ -179,19 +179,21 @@ constexpr const char* terrain_file = "terrain.yaml";  // in the folder of a save
 
 void Services::save_checkpoint(const SaveCheckpointRequest& request, SaveCheckpointResponse& response) {
   response.path = files_.for_writing(request.name);
-  const Reached reached = simulation_.save_checkpoint(response.path).get();
+  const ReachedState reached = simulation_.save_checkpoint(response.path).get();
   response.step = reached.moment.step;
   response.state_hash = hash_text(reached.hash);
-  ROS_INFO("saved step %lu to %s", static_cast<unsigned long>(response.step), response.path.c_str());
+  ROS_INFO("The checkpoint of step %lu was saved to %s.", static_cast<unsigned long>(response.step),
+           response.path.c_str());
 }
 
 void Services::load_checkpoint(const LoadCheckpointRequest& request, LoadCheckpointResponse& response) {
   const std::string path = files_.for_reading(request.name);
-  const Reached reached = simulation_.apply(command::LoadCheckpoint{path, 0}, true).get();
+  const ReachedState reached = simulation_.apply(command::LoadCheckpoint{path, 0}, true).get();
   response.step = reached.moment.step;
   response.sim_time = reached.moment.time;
   response.state_hash = hash_text(reached.hash);
-  ROS_INFO("loaded step %lu from %s", static_cast<unsigned long>(response.step), path.c_str());
+  ROS_INFO("The checkpoint of step %lu was loaded from %s.", static_cast<unsigned long>(response.step),
+           path.c_str());
   terrain_replaced();
 }
 
@@ -208,7 +210,9 @@ void Services::terrain_replaced() {
 void Services::save_terrain(const SaveTerrainRequest& request, SaveTerrainResponse& response) {
   const TerrainFormat format = terrain_format(request.format);
   if (is_bag(request.name))
-    throw ConfigError("name: " + quoted(request.name) + " ends in .bag, which load_terrain takes for a file");
+    throw ConfigError(
+        "name: " + quoted(request.name) +
+        " has the extension .bag, which load_terrain reads as a file (allowed: the name of a folder)");
   response.path = files_.for_writing(request.name + "/" + terrain_file);
   const TerrainToSave terrain = simulation_.terrain_to_save().get();
   const LayerWriter writer =
@@ -216,7 +220,7 @@ void Services::save_terrain(const SaveTerrainRequest& request, SaveTerrainRespon
   desert_sim::save_terrain(response.path, terrain.scenario, *terrain.state.snapshot, writer,
                            hash_text(terrain.hash));
   response.step = terrain.state.moment.step;
-  ROS_INFO("saved the terrain of step %lu to %s", static_cast<unsigned long>(response.step),
+  ROS_INFO("The terrain of step %lu was saved to %s.", static_cast<unsigned long>(response.step),
            response.path.c_str());
 }
 
@@ -230,8 +234,8 @@ void Services::load_scenario(const LoadScenarioRequest& request, LoadScenarioRes
 }
 
 std::string Services::load(const command::LoadScenario& command) {
-  const Reached reached = simulation_.apply(command, true).get();
-  ROS_INFO("loaded %s", command.path.c_str());
+  const ReachedState reached = simulation_.apply(command, true).get();
+  ROS_INFO("%s was loaded.", command.path.c_str());
   terrain_replaced();
   return hash_text(reached.hash);
 }

@@ -20,10 +20,10 @@ MapLayer as_map_layer(Layer layer) {
 /// Writes all layers into one bag, and the elevation with them for viewers of the map.
 LayerWriter bag_writer(const TerrainState& state, const std::string& frame, const std::string& topic) {
   return [&state, frame, topic](const Snapshot& s, const std::string& folder, const std::string& tag) {
-    const std::string file = layer_file("grid_map", tag, ".bag");
+    const std::string file = layer_file_name("grid_map", tag, ".bag");
     std::vector<MapLayer> layers{as_map_layer(Layer::elevation)};
     SavedLayers saved;
-    for (Layer layer : terrain_layers(s)) {
+    for (Layer layer : persistent_layers(s)) {
       layers.push_back(as_map_layer(layer));
       RasterStep step;
       step.layer = info(layer).name;

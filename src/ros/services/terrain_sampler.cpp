@@ -25,7 +25,7 @@ TerrainSampler::TerrainSampler(const Snapshot& snapshot)
       wind_x_(s_.find(Layer::wind_x)),
       wind_y_(s_.find(Layer::wind_y)) {}
 
-TerrainSampler::Patch TerrainSampler::patch(double x, double y) const {
+TerrainSampler::CellQuad TerrainSampler::cells_around(double x, double y) const {
   const auto between = [](double cells, int n, int& first, int& second, double& share) {
     const double centre = std::clamp(cells - 0.5, 0.0, static_cast<double>(n - 1));
     first = std::min(static_cast<int>(centre), std::max(0, n - 2));
@@ -33,7 +33,7 @@ TerrainSampler::Patch TerrainSampler::patch(double x, double y) const {
     share = centre - first;
   };
   int x0, x1, y0, y1;
-  Patch p;
+  CellQuad p;
   between((x - s_.origin_x) / s_.cell_size, s_.width, x0, x1, p.fx);
   between((y - s_.origin_y) / s_.cell_size, s_.height, y0, y1, p.fy);
   const auto index = [this](int ix, int iy) { return static_cast<std::size_t>(iy) * s_.width + ix; };
@@ -44,7 +44,7 @@ TerrainSampler::Patch TerrainSampler::patch(double x, double y) const {
   return p;
 }
 
-double TerrainSampler::value(const std::vector<float>* layer, const Patch& p) {
+double TerrainSampler::value(const std::vector<float>* layer, const CellQuad& p) {
   if (!layer) return 0.0;
   const std::vector<float>& v = *layer;
   return (v[p.i00] * (1 - p.fx) + v[p.i10] * p.fx) * (1 - p.fy) +
@@ -65,7 +65,7 @@ TerrainSample TerrainSampler::at(double x, double y) const {
       *number = std::numeric_limits<double>::quiet_NaN();
     return sample;
   }
-  const Patch p = patch(x, y);
+  const CellQuad p = cells_around(x, y);
   sample.elevation = sample.position.z = value(elevation_, p);
   sample.sand = value(sand_, p);
   sample.soil = value(soil_, p);

@@ -22,12 +22,12 @@ class TerrainSampler {
 
  private:
   /// The indices of the four cells whose centres surround a point, and the point's place between them, 0…1.
-  struct Patch {
+  struct CellQuad {
     std::size_t i00, i10, i01, i11;
     double fx, fy;
   };
-  Patch patch(double x, double y) const;
-  static double value(const std::vector<float>* layer, const Patch& p);
+  CellQuad cells_around(double x, double y) const;
+  static double value(const std::vector<float>* layer, const CellQuad& p);
 
   const Snapshot& s_;
   const std::vector<float>*elevation_, *bedrock_, *sand_, *soil_, *water_, *moisture_, *vegetation_, *wind_x_,

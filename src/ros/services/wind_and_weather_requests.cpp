@@ -38,7 +38,7 @@ command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message, 
   const tf2::Vector3 wind = frames.to_terrain(message.header).getBasis() *
                             tf2::Vector3(message.vector.x, message.vector.y, message.vector.z);
   if (std::abs(wind.z()) > largest_slope * wind.length())
-    throw ConfigError("vector: its vertical part in frame '" + frames.terrain_frame() + "' is " +
+    throw ConfigError("vector: its vertical component in frame '" + frames.terrain_frame() + "' is " +
                       std::to_string(wind.z()) + " m/s and must be 0: the wind is horizontal");
   command::SetWind command;
   command.speed = to_float(std::hypot(wind.x(), wind.y()));
@@ -54,7 +54,8 @@ command::SetWindSchedule wind_schedule_command(const SetWindScheduleRequest& req
       choice_named<int>(kinds, request.kind, "kind") == 0 ? WindRegimeKind::timeline : WindRegimeKind::rose;
   const bool rose = regime.regime == WindRegimeKind::rose;
   if (request.segments.size() > 4096)
-    throw ConfigError("segments: " + std::to_string(request.segments.size()) + " entries are more than 4096");
+    throw ConfigError("segments: " + std::to_string(request.segments.size()) +
+                      " entries are given (allowed: at most 4096)");
   regime.repeat = request.repeat;
   if (rose) regime.hold_time = to_float(request.hold_time);
   regime.rose_seed = request.seed;
@@ -149,7 +150,7 @@ command::SetParameters weather_command(const SetWeatherRequest& r) {
                                     {"wave_strength", r.wave_strength, {"water.wave_strength"}},
                                     {"wave_period", r.wave_period, {"water.wave_period"}}};
   require_finite(r.ramp, "ramp");
-  if (r.change.empty()) throw ConfigError("change: names nothing that is to change");
+  if (r.change.empty()) throw ConfigError("change: is empty (allowed: the names of the fields to change)");
   command::SetParameters command{{}, r.ramp};
   for (const std::string& field : r.change) {
     const auto number =

@@ -25,12 +25,12 @@ class SubscriberCosts {
   int width() const { return width_; }
 
   /// Whether these are costs of the state's terrain.
-  bool are_of(const TerrainState& state) const {
+  bool match_terrain(const TerrainState& state) const {
     return !costs_.empty() && terrain_ == state.moment.terrain && width_ == state.snapshot->width &&
            height_ == state.snapshot->height;
   }
-  void take(const CostChanges& changes, const TerrainState& state) {
-    if (!are_of(state)) {
+  void apply(const CostChanges& changes, const TerrainState& state) {
+    if (!match_terrain(state)) {
       if (!costs_.empty()) replaced_ = SteadyClock::now();
       terrain_ = state.moment.terrain;
       width_ = state.snapshot->width;
@@ -47,7 +47,7 @@ class SubscriberCosts {
   CellBox sent_within(std::chrono::duration<double> time) {
     while (!sent_.empty() && SteadyClock::now() - sent_.front().time > time) sent_.pop_front();
     CellBox cells;
-    for (const Sent& sent : sent_) cells = cells.with(sent.cells);
+    for (const Sent& sent : sent_) cells = cells.united_with(sent.cells);
     return cells;
   }
   bool terrain_replaced_within(std::chrono::duration<double> time) const {
@@ -112,7 +112,7 @@ class CostmapTopic : public MessageTopic<nav_msgs::OccupancyGrid> {
   double rate() const override { return parameters().maps.parameters.costmap_keyframe_rate; }
   void add_to(StateQuery& query) override { query.costs.whole = true; }
   bool publish(const TerrainState& state) override {
-    held_.take(*state.whole_costs, state);
+    held_.apply(*state.whole_costs, state);
     publish_held(state);
     return true;
   }
@@ -138,7 +138,7 @@ class CostmapUpdatesTopic : public MessageTopic<map_msgs::OccupancyGridUpdate> {
   void add_to(StateQuery& query) override {
     query.costs.update = true;
     query.costs.threshold = parameters().maps.parameters.costmap_update_threshold;
-    query.costs.recent = query.costs.recent.with(keyframes_.held().sent_within(repeat_time()));
+    query.costs.recent = query.costs.recent.united_with(keyframes_.held().sent_within(repeat_time()));
   }
   /// Publishes the smallest rectangle with all cells whose costs differ from what subscribers hold by more
   /// than the threshold, and with those that were sent a moment ago. Publishes nothing if no cell does, or if
@@ -150,8 +150,8 @@ class CostmapUpdatesTopic : public MessageTopic<map_msgs::OccupancyGridUpdate> {
     // There is no update if the simulation keeps no costs: it forgets them when nobody has asked for long.
     const CostChanges& changes = state.cost_update ? *state.cost_update : *state.whole_costs;
     // Updates start from these costs if there were none of this terrain, even if nobody gets a whole map.
-    const bool continues = held.are_of(state);
-    held.take(changes, state);
+    const bool continues = held.match_terrain(state);
+    held.apply(changes, state);
     if (!continues || changes.box.empty()) return false;
     if (held.terrain_replaced_within(repeat_time()) && keyframes_.has_subscribers()) {
       keyframes_.publish_held(state);

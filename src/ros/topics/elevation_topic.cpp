@@ -29,7 +29,7 @@ CellBox changed_cells(const TileChange& change) {
     int x0 = 0, x1 = change.width;
     while (x0 < x1 && !changed(x0)) ++x0;
     while (x0 < x1 && !changed(x1 - 1)) --x1;
-    if (x0 < x1) found = found.with({x0, y, x1, y + 1});
+    if (x0 < x1) found = found.united_with({x0, y, x1, y + 1});
   }
   return found;
 }
@@ -49,7 +49,7 @@ std::vector<Value> cells_in(const std::vector<Value>& tile, int width, const Cel
 /// Removes the cells that did not change, without a branch for each cell. Returns the bit mask of those that
 /// did, or an empty one if all did.
 template <class Value>
-std::vector<std::uint8_t> keep_changed(std::vector<Value>& cells, Value unchanged) {
+std::vector<std::uint8_t> compact_changed(std::vector<Value>& cells, Value unchanged) {
   std::vector<std::uint8_t> mask(mask_bytes(cells.size()), 0);
   std::size_t kept = 0;
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
@@ -64,7 +64,7 @@ std::vector<std::uint8_t> keep_changed(std::vector<Value>& cells, Value unchange
 }
 
 /// Packs two changes of four bits into each byte, the first into its high half.
-std::vector<std::int8_t> packed_in_pairs(std::vector<std::int8_t> changes) {
+std::vector<std::int8_t> packed_nibbles(std::vector<std::int8_t> changes) {
   const std::size_t bytes = change_bytes(changes.size(), 4);
   changes.resize(2 * bytes, 0);
   for (std::size_t n = 0; n < bytes; ++n)
@@ -86,12 +86,12 @@ ElevationTile tile_message(const TileChange& change) {
   tile.resolution = change.resolution;
   if (change.bits == 0) {
     tile.data = cells_in(change.elevations, change.width, box);
-    tile.changed = keep_changed(tile.data, held_elevation::unchanged_elevation);
+    tile.changed = compact_changed(tile.data, held_elevation::unchanged_elevation);
     return tile;
   }
   std::vector<std::int8_t> steps = cells_in(change.steps, change.width, box);
-  tile.changed = keep_changed(steps, held_elevation::unchanged_step);
-  tile.changes = change.bits == 4 ? packed_in_pairs(std::move(steps)) : std::move(steps);
+  tile.changed = compact_changed(steps, held_elevation::unchanged_step);
+  tile.changes = change.bits == 4 ? packed_nibbles(std::move(steps)) : std::move(steps);
   return tile;
 }
 
@@ -134,7 +134,7 @@ ElevationUpdatePtr update_message(const TerrainState& state, const std::string& 
 struct KeyframeNumbers {
   std::uint32_t keyframe = 0, update = 0;
   /// Whether the state that was asked for may start a keyframe that nobody gets.
-  bool may_start_unseen = false;
+  bool may_start_unpublished = false;
 
   void start_keyframe() {
     ++keyframe;
@@ -156,7 +156,7 @@ class ElevationTopic : public MessageTopic<ElevationGrid> {
   double rate() const override { return parameters().topics.keyframe_rate; }
   std::vector<Layer> layers() const override { return {Layer::elevation}; }
   void add_to(StateQuery& query) override {
-    numbers_.may_start_unseen = false;
+    numbers_.may_start_unpublished = false;
     query.hold = updates()->has_subscribers() ? StateQuery::Hold::present : StateQuery::Hold::none;
   }
   bool publish(const TerrainState& state) override {
@@ -183,9 +183,9 @@ class ElevationUpdatesTopic : public MessageTopic<ElevationUpdate> {
     query.elevation_changes = true;
     query.elevation_threshold = parameters().topics.update_threshold;
     query.elevation_tile = parameters().topics.update_tile;
-    bool& unseen = keyframes_.numbers().may_start_unseen;
-    unseen = !keyframes_.has_subscribers();
-    query.hold = unseen ? StateQuery::Hold::present_if_none : StateQuery::Hold::as_before;
+    bool& unpublished = keyframes_.numbers().may_start_unpublished;
+    unpublished = !keyframes_.has_subscribers();
+    query.hold = unpublished ? StateQuery::Hold::present_if_none : StateQuery::Hold::as_before;
   }
   /// Publishes nothing if the simulation holds no elevation of subscribers and some of them listen to
   /// keyframes: then a keyframe is due first. If nobody listens to keyframes, one is started that nobody
@@ -193,7 +193,7 @@ class ElevationUpdatesTopic : public MessageTopic<ElevationUpdate> {
   bool publish(const TerrainState& state) override {
     KeyframeNumbers& numbers = keyframes_.numbers();
     if (!state.changes) {
-      if (!numbers.may_start_unseen) return false;
+      if (!numbers.may_start_unpublished) return false;
       numbers.start_keyframe();
     }
     publisher_.publish(update_message(state, frame(), numbers.keyframe, ++numbers.update));
@@ -207,10 +207,10 @@ class ElevationUpdatesTopic : public MessageTopic<ElevationUpdate> {
 /// How many updates may wait for a slow subscriber; a subscriber that misses one asks for a keyframe. An
 /// update is at most about as large as the whole surface.
 std::uint32_t update_queue(const Snapshot& terrain) {
-  constexpr std::size_t longest = 100, shortest = 2, most_bytes = std::size_t{256} << 20;
+  constexpr std::size_t max_length = 100, min_length = 2, max_bytes = std::size_t{256} << 20;
   const std::size_t bytes =
       sizeof(float) * static_cast<std::size_t>(terrain.width) * static_cast<std::size_t>(terrain.height);
-  return static_cast<std::uint32_t>(std::clamp(most_bytes / bytes, shortest, longest));
+  return static_cast<std::uint32_t>(std::clamp(max_bytes / bytes, min_length, max_length));
 }
 
 }  // namespace

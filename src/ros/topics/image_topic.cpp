@@ -13,7 +13,7 @@ namespace desert_sim {
 namespace {
 
 sensor_msgs::ImagePtr image_message(const TerrainState& state, const std::string& frame) {
-  const cv::Mat picture = hillshade_picture(picture_of(*state.snapshot));
+  const cv::Mat picture = hillshade_picture(to_picture_input(*state.snapshot));
   sensor_msgs::ImagePtr message = boost::make_shared<sensor_msgs::Image>();
   message->header = header_of(state.moment, frame);
   message->width = static_cast<std::uint32_t>(picture.cols);

@@ -18,9 +18,9 @@ class LocalMapTopic : public MessageTopic<GridMap> {
   /// There must be a transform from the robot's frame to the terrain's.
   bool ready() override {
     tf2::Transform robot;
-    std::string why;
-    const bool found = context().frames.latest_to_terrain(map().robot_frame, robot, why);
-    if (!found) set_problem(why);
+    std::string reason;
+    const bool found = context().frames.latest_to_terrain(map().robot_frame, robot, reason);
+    if (!found) set_problem(reason);
     return found;
   }
   bool publish(const TerrainState&) override {
@@ -38,8 +38,8 @@ class LocalMapTopic : public MessageTopic<GridMap> {
 
   MapWindow window_around_robot(const Snapshot& terrain) const {
     tf2::Transform robot;
-    std::string why;
-    if (!context().frames.latest_to_terrain(map().robot_frame, robot, why)) throw ConfigError(why);
+    std::string reason;
+    if (!context().frames.latest_to_terrain(map().robot_frame, robot, reason)) throw ConfigError(reason);
     return window_of(
         {robot.getOrigin().x(), robot.getOrigin().y(), map().local_map_length_x, map().local_map_length_y},
         terrain);

@@ -21,7 +21,7 @@ using visualization_msgs::Marker;
 
 /// The indices of the `count` widest plants, in ascending order; among plants of equal width the first ones
 /// count.
-std::vector<std::size_t> widest(const std::vector<PlantRecord>& plants, std::size_t count) {
+std::vector<std::size_t> widest_plants(const std::vector<PlantRecord>& plants, std::size_t count) {
   std::vector<std::size_t> numbers(plants.size());
   std::iota(numbers.begin(), numbers.end(), std::size_t{0});
   if (count >= numbers.size()) return numbers;
@@ -79,13 +79,13 @@ struct PlantShape {
   double height_at(double share) const { return foot + share * (top - foot); }
 
   /// A trunk, and a crown of two cones with six sides.
-  void draw_in_full(Mesh mesh) const {
+  void draw_detailed(Mesh mesh) const {
     mesh.cone(3, x, y, foot, 0.12 * radius, height_at(0.7));
     mesh.cone(6, x, y, height_at(0.55), 0.9 * radius, top);
     mesh.cone(6, x, y, height_at(0.55), 0.9 * radius, height_at(0.3));
   }
   /// A pyramid.
-  void draw_simply(Mesh mesh) const { mesh.cone(4, x, y, foot, 0.8 * radius, top); }
+  void draw_simple(Mesh mesh) const { mesh.cone(4, x, y, foot, 0.8 * radius, top); }
 };
 
 Marker base_marker(const TerrainState& state, const std::string& frame, const std::string& species, int id) {
@@ -102,7 +102,7 @@ Marker base_marker(const TerrainState& state, const std::string& frame, const st
 }
 
 std_msgs::ColorRGBA crown_colour_of(const Species& species) {
-  const auto [r, g, b] = crown_colour(species.look);
+  const auto [r, g, b] = crown_colour(species.appearance);
   std_msgs::ColorRGBA colour;
   colour.r = r;
   colour.g = g;
@@ -128,11 +128,11 @@ PlantsPtr plants_message(const TerrainState& state, const std::string& frame, in
     row.root = species.traits.root;
     row.max_radius = species.traits.max_radius;
     row.mature_radius = species.traits.maturity_share * species.traits.max_radius;
-    row.hue = species.look.hue;
+    row.hue = species.appearance.hue;
     message->species.push_back(row);
   }
   message->total = list.plants.size();
-  const std::vector<std::size_t> numbers = widest(list.plants, static_cast<std::size_t>(count));
+  const std::vector<std::size_t> numbers = widest_plants(list.plants, static_cast<std::size_t>(count));
   for (auto* column : {&message->x, &message->y, &message->z, &message->radius})
     column->reserve(numbers.size());
   for (auto* column : {&message->species_index, &message->health}) column->reserve(numbers.size());
@@ -197,14 +197,15 @@ visualization_msgs::MarkerArrayPtr PlantMarkersTopic::markers(const TerrainState
         {base_marker(state, frame(), species.name, 0), base_marker(state, frame(), species.name, 1)});
     for (Marker& marker : levels.back()) marker.color = crown_colour_of(species);
   }
-  const std::vector<std::size_t> drawn = widest(list.plants, static_cast<std::size_t>(count)),
-                                 full = widest(list.plants, (static_cast<std::size_t>(count) + 9) / 10);
+  const std::vector<std::size_t> drawn = widest_plants(list.plants, static_cast<std::size_t>(count)),
+                                 full =
+                                     widest_plants(list.plants, (static_cast<std::size_t>(count) + 9) / 10);
   for (std::size_t n : drawn) {
     const PlantRecord& plant = list.plants[n];
-    const bool in_full = std::binary_search(full.begin(), full.end(), n);
-    Mesh mesh(levels[plant.species][in_full ? 0 : 1].points);
+    const bool detailed = std::binary_search(full.begin(), full.end(), n);
+    Mesh mesh(levels[plant.species][detailed ? 0 : 1].points);
     const PlantShape shape(plant, list);
-    in_full ? shape.draw_in_full(mesh) : shape.draw_simply(mesh);
+    detailed ? shape.draw_detailed(mesh) : shape.draw_simple(mesh);
   }
   for (auto& of_species : levels)
     for (Marker& marker : of_species) {

@@ -20,7 +20,7 @@ namespace {
 struct Point {
   float x, y, z;
   std::uint32_t rgb;  // 0x00RRGGBB, in a field of type float32, as rviz expects
-  float more[2];
+  float extra[2];
 };
 
 sensor_msgs::PointCloud2Ptr empty_cloud(const TerrainState& state, const std::string& frame,
@@ -45,7 +45,7 @@ sensor_msgs::PointCloud2Ptr empty_cloud(const TerrainState& state, const std::st
   return cloud;
 }
 
-void fill(sensor_msgs::PointCloud2& cloud, int columns, int rows, const std::vector<Point>& points) {
+void fill_cloud(sensor_msgs::PointCloud2& cloud, int columns, int rows, const std::vector<Point>& points) {
   cloud.width = static_cast<std::uint32_t>(columns);
   cloud.height = static_cast<std::uint32_t>(rows);
   cloud.row_step = cloud.width * cloud.point_step;
@@ -53,7 +53,7 @@ void fill(sensor_msgs::PointCloud2& cloud, int columns, int rows, const std::vec
   if (!points.empty()) std::memcpy(cloud.data.data(), points.data(), cloud.data.size());
 }
 
-std::uint32_t packed(const Colour& c) {
+std::uint32_t packed_rgb(const Colour& c) {
   const auto byte = [](float v) { return static_cast<std::uint32_t>(std::lround(255.0f * v)); };
   return byte(c.r) << 16 | byte(c.g) << 8 | byte(c.b);
 }
@@ -93,7 +93,7 @@ Point point_at(const Snapshot& s, int x, int y, double z, const Colour& colour, 
   return {static_cast<float>(s.origin_x + (x + 0.5) * s.cell_size),
           static_cast<float>(s.origin_y + (y + 0.5) * s.cell_size),
           static_cast<float>(z),
-          packed(colour),
+          packed_rgb(colour),
           {fifth, sixth}};
 }
 
@@ -113,14 +113,14 @@ sensor_msgs::PointCloud2Ptr point_cloud(const TerrainState& state, const std::st
     points.push_back(point_at(s, x, y, elevation[i], colour.at(x, y), value(sand, i), value(shadow, i)));
   });
   const auto cloud = empty_cloud(state, frame, "sand", "wind_shadow");
-  fill(*cloud, sampling.columns, sampling.rows, points);
+  fill_cloud(*cloud, sampling.columns, sampling.rows, points);
   return cloud;
 }
 
 /// The surface of the water at those of the same samples that are under more than a centimetre of it, in the
 /// same order, in a cloud of one row. Fields, float32: x, y, z [m], rgb (by depth), depth [m], speed [m/s].
 sensor_msgs::PointCloud2Ptr water_cloud(const TerrainState& state, const std::string& frame, int count) {
-  constexpr float shallowest = 0.01f;  // [m]
+  constexpr float min_depth = 0.01f;  // [m]
   const Snapshot& s = *state.snapshot;
   const std::vector<float>& elevation = s.layers.at(Layer::elevation);
   const std::vector<float>*water = s.find(Layer::water), *u = s.find(Layer::water_velocity_x),
@@ -129,12 +129,12 @@ sensor_msgs::PointCloud2Ptr water_cloud(const TerrainState& state, const std::st
   if (water)
     Sampling(s, count).for_each(s, [&](int x, int y, std::size_t i) {
       const float depth = (*water)[i];
-      if (depth <= shallowest) return;
+      if (depth <= min_depth) return;
       points.push_back(point_at(s, x, y, elevation[i] + depth, water_colour(depth), depth,
                                 std::hypot(value(u, i), value(v, i))));
     });
   const auto cloud = empty_cloud(state, frame, "depth", "speed");
-  fill(*cloud, static_cast<int>(points.size()), 1, points);
+  fill_cloud(*cloud, static_cast<int>(points.size()), 1, points);
   return cloud;
 }
 

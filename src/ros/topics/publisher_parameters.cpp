@@ -7,38 +7,40 @@ namespace desert_sim {
 namespace {
 
 /// Reads a list of names of layers; a missing one leaves `layers`.
-void read_layers(const YAML::Node& node, const std::string& key, Faults& faults,
+void read_layers(const YAML::Node& node, const std::string& key, ValidationErrors& errors,
                  std::vector<MapLayer>& layers) {
   if (!node.IsDefined()) return;
   if (!node.IsSequence() || node.size() == 0)
-    return faults.add(key, (node.IsSequence() ? "an empty list" : yaml::shown(node)) +
+    return errors.add(key, (node.IsSequence() ? "an empty list" : yaml::node_text(node)) +
                                " where a list of layers is expected (known: " + map_layer_names() + ")");
   std::vector<std::string> names;
-  for (const YAML::Node& name : node) names.push_back(name.IsScalar() ? name.Scalar() : yaml::shown(name));
+  for (const YAML::Node& name : node)
+    names.push_back(name.IsScalar() ? name.Scalar() : yaml::node_text(name));
   try {
     layers = map_layers_named(names, key);
   } catch (const ConfigError& e) {
-    faults.add(key, std::string(e.what()).substr(key.size() + 2));
+    errors.add(key, std::string(e.what()).substr(key.size() + 2));
   }
 }
 
-void read_map_setup(const YAML::Node& root, Faults& faults, MapSetup& maps, std::set<std::string>& known) {
-  yaml::read_parameters(root, "", faults, maps.parameters, known);
+void read_map_setup(const YAML::Node& root, ValidationErrors& errors, MapSetup& maps,
+                    std::set<std::string>& known) {
+  yaml::read_parameters(root, "", errors, maps.parameters, known);
   known.insert({"grid_map_layers", "local_map_layers"});
-  read_layers(root["grid_map_layers"], "grid_map_layers", faults, maps.grid_map_layers);
-  read_layers(root["local_map_layers"], "local_map_layers", faults, maps.local_map_layers);
+  read_layers(root["grid_map_layers"], "grid_map_layers", errors, maps.grid_map_layers);
+  read_layers(root["local_map_layers"], "local_map_layers", errors, maps.local_map_layers);
   const MapParameters& p = maps.parameters;
   if ((p.grid_map_length_x == 0) != (p.grid_map_length_y == 0))
-    faults.add("grid_map_length_x", "and grid_map_length_y must both be 0 or both be above it");
+    errors.add("grid_map_length_x", "and grid_map_length_y must both be 0 or both be above it");
 }
 
 }  // namespace
 
-void read_publisher_setup(const YAML::Node& root, Faults& faults, PublisherSetup& setup,
+void read_publisher_setup(const YAML::Node& root, ValidationErrors& errors, PublisherSetup& setup,
                           std::set<std::string>& known) {
-  yaml::read_parameters(root, "", faults, setup.topics, known);
-  read_map_setup(root, faults, setup.maps, known);
-  check_frame(setup.maps.parameters.robot_frame, "robot_frame", faults);
+  yaml::read_parameters(root, "", errors, setup.topics, known);
+  read_map_setup(root, errors, setup.maps, known);
+  check_frame(setup.maps.parameters.robot_frame, "robot_frame", errors);
 }
 
 void check_map_sizes(const MapSetup& maps, const GridParameters& grid) {

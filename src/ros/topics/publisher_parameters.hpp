@@ -120,8 +120,8 @@ struct PublisherSetup {
   MapSetup maps;
 };
 
-/// Reads the keys that `root` has, adds all keys that there are to `known`, and what is wrong to `faults`.
-void read_publisher_setup(const YAML::Node& root, Faults& faults, PublisherSetup& setup,
+/// Reads the keys that `root` has, adds all keys that there are to `known`, and what is wrong to `errors`.
+void read_publisher_setup(const YAML::Node& root, ValidationErrors& errors, PublisherSetup& setup,
                           std::set<std::string>& known);
 
 /// Throws ConfigError, naming the parameter, if a map would have more than 67108864 values on this grid.

@@ -21,7 +21,7 @@ const char* state_text(RunState state) {
     case RunState::waiting:
       return SimulationStatus::WAITING.c_str();
   }
-  throw Error("unknown state");
+  throw Error("the run state is unknown");
 }
 
 SimulationStatusPtr status_message(const StatusReport& report, const std::string& frame) {
@@ -73,10 +73,10 @@ StatusTopic::StatusTopic(const TopicContext& context) : context_(context) {
 void StatusTopic::request() {
   const std::lock_guard<std::mutex> lock(context_.mutex);
   requested_ = true;
-  context_.woken.notify_all();
+  context_.wake_up.notify_all();
 }
 
-bool StatusTopic::take_request() { return std::exchange(requested_, false); }
+bool StatusTopic::consume_request() { return std::exchange(requested_, false); }
 
 void StatusTopic::rate_changed() { due_ = std::min(due_, SteadyClock::now() + period_of(rate())); }
 

@@ -22,7 +22,7 @@ class StatusTopic {
   // The caller holds the mutex of the context:
   bool is_requested() const { return requested_; }
   /// Whether it was requested; from then on it is not.
-  bool take_request();
+  bool consume_request();
 
   // For the publishing thread alone:
   bool is_due_by_rate() const { return rate() > 0 && SteadyClock::now() >= due_; }

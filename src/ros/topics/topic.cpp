@@ -17,12 +17,12 @@ void advance_due_time(SteadyClock::time_point& due, SteadyClock::duration period
   if (due <= now) due = now + period;
 }
 
-void SubscriberNames::left(const std::string& name) {
+void SubscriberNames::remove(const std::string& name) {
   const auto found = count_.find(name);
   if (found != count_.end() && --found->second == 0) count_.erase(found);
 }
 
-bool SubscriberNames::are_among(const SubscriberNames& others) const {
+bool SubscriberNames::is_subset_of(const SubscriberNames& others) const {
   return std::all_of(count_.begin(), count_.end(),
                      [&](const auto& entry) { return others.count_.count(entry.first) > 0; });
 }
@@ -35,19 +35,19 @@ Topic::Topic(const TopicContext& context, const std::string& name)
 void Topic::request() {
   const std::lock_guard<std::mutex> lock(context_.mutex);
   requested_ = true;
-  context_.woken.notify_all();
+  context_.wake_up.notify_all();
 }
 
 void Topic::subscriber_joined(const std::string& subscriber, Topic& due) {
   const std::lock_guard<std::mutex> lock(context_.mutex);
-  names_.joined(subscriber);
+  names_.add(subscriber);
   due.requested_ = true;
-  context_.woken.notify_all();
+  context_.wake_up.notify_all();
 }
 
 void Topic::subscriber_left(const std::string& subscriber) {
   const std::lock_guard<std::mutex> lock(context_.mutex);
-  names_.left(subscriber);
+  names_.remove(subscriber);
 }
 
 TopicRate Topic::measured_rate() const { return {name_, rate(), meter_.rate(steady_now()), subscribers()}; }
@@ -59,9 +59,9 @@ void Topic::count_message() {
   meter_.count(steady_now());
 }
 
-void Topic::shown(std::uint64_t change, std::uint64_t terrain) {
-  shown_change_ = change;
-  shown_terrain_ = terrain;
+void Topic::mark_published(std::uint64_t change, std::uint64_t terrain) {
+  published_change_ = change;
+  published_terrain_ = terrain;
   advance_due_time(due_, period_of(rate()));
 }
 

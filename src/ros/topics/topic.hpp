@@ -32,10 +32,10 @@ void advance_due_time(SteadyClock::time_point& due, SteadyClock::duration period
 /// The names of the nodes that subscribe to a topic. A node that reconnects may be counted twice for a while.
 class SubscriberNames {
  public:
-  void joined(const std::string& name) { ++count_[name]; }
-  void left(const std::string& name);
+  void add(const std::string& name) { ++count_[name]; }
+  void remove(const std::string& name);
   /// Whether all of these are among `others`.
-  bool are_among(const SubscriberNames& others) const;
+  bool is_subset_of(const SubscriberNames& others) const;
 
  private:
   std::map<std::string, int> count_;
@@ -58,7 +58,7 @@ struct TopicContext {
   const PublisherSetup& parameters;
   /// Guards, in every topic, the request, the subscriber names, the rate meter and the problem.
   std::mutex& mutex;
-  std::condition_variable& woken;  ///< wakes the publishing thread
+  std::condition_variable& wake_up;  ///< wakes the publishing thread
 };
 
 /// A topic that shows the terrain. A topic without subscribers asks the simulation for nothing. Topics behave
@@ -104,9 +104,9 @@ class Topic {
   // The caller holds the mutex of the context:
   void drop_request() { requested_ = false; }
   /// Whether the state has changed since it was published here, and no updates tell all subscribers so.
-  bool shows_change() const { return changed() && !is_covered(); }
+  bool has_unpublished_change() const { return changed() && !is_covered(); }
   /// Whether it must be published now: for a new subscriber, for another terrain, or at its rate.
-  bool is_due() const { return due_at_once() || due_by_rate(); }
+  bool is_due() const { return due_immediately() || due_by_rate(); }
   TopicRate measured_rate() const;
   /// Why nothing could be published when the topic was last due; empty if something could.
   const std::string& problem() const { return problem_; }
@@ -115,7 +115,7 @@ class Topic {
   /// When it is due by its rate.
   SteadyClock::time_point due_time() const { return due_; }
   /// Notes which state subscribers have been shown (counters of Moment); the next one is due a period later.
-  void shown(std::uint64_t change, std::uint64_t terrain);
+  void mark_published(std::uint64_t change, std::uint64_t terrain);
   /// The rate may have changed: the topic is due a period from now at the latest.
   void rate_changed();
 
@@ -138,12 +138,12 @@ class Topic {
   bool publish_or_set_problem(const std::function<void()>& publish);
 
  private:
-  bool changed() const { return shown_change_ != context_.simulation.changes(); }
-  bool due_at_once() const { return requested_ || shown_terrain_ != context_.simulation.terrains(); }
+  bool changed() const { return published_change_ != context_.simulation.changes(); }
+  bool due_immediately() const { return requested_ || published_terrain_ != context_.simulation.terrains(); }
   bool due_by_rate() const {
     return rate() > 0 && SteadyClock::now() >= due_ && (!only_after_change() || changed());
   }
-  bool is_covered() const { return updates_ && names_.are_among(updates_->names_); }
+  bool is_covered() const { return updates_ && names_.is_subset_of(updates_->names_); }
 
   const TopicContext& context_;
   const std::string short_name_, name_;
@@ -151,7 +151,8 @@ class Topic {
 
   // Used by the publishing thread alone:
   SteadyClock::time_point due_;
-  std::uint64_t shown_change_ = 0, shown_terrain_ = 0;  ///< counters of the Moment that was shown last
+  std::uint64_t published_change_ = 0,
+                published_terrain_ = 0;  ///< counters of the Moment that was shown last
 
   // Guarded by the mutex of the context:
   bool requested_ = false;  ///< by a new subscriber, say

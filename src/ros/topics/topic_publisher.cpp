@@ -10,10 +10,10 @@ TopicPublisher::TopicPublisher(const ros::NodeHandle& node, const PublisherSetup
                                const Frames& frames, SimulationThread& simulation)
     : simulation_(simulation),
       parameters_(parameters),
-      context_{node, simulation, frames, parameters_, mutex_, woken_},
+      context_{node, simulation, frames, parameters_, mutex_, wake_up_},
       status_(context_),
       topics_(make_topics(context_)),
-      thread_([this] { thread(); }) {}
+      thread_([this] { run_thread(); }) {}
 
 TopicPublisher::~TopicPublisher() { stop(); }
 
@@ -22,21 +22,21 @@ TopicPublisher::~TopicPublisher() { stop(); }
 void TopicPublisher::notify() {
   if (!listens_to_changes_ && !simulation_.failed()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
-  woken_.notify_all();
+  wake_up_.notify_all();
 }
 
 void TopicPublisher::publish_now() {
   std::unique_lock<std::mutex> lock(mutex_);
   const std::uint64_t mine = ++requests_;
-  woken_.notify_all();
-  served_one_.wait(lock, [&] { return served_ >= mine || stopping_ || !failure_.empty(); });
+  wake_up_.notify_all();
+  served_changed_.wait(lock, [&] { return served_ >= mine || stopping_ || !failure_.empty(); });
 }
 
 void TopicPublisher::set_parameters(const PublisherSetup& parameters) {
   const std::lock_guard<std::mutex> lock(mutex_);
   new_parameters_ = parameters;
   ++parameter_changes_;
-  woken_.notify_all();
+  wake_up_.notify_all();
 }
 
 PublisherSetup TopicPublisher::parameters() const {
@@ -48,8 +48,8 @@ void TopicPublisher::stop() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     stopping_ = true;
-    woken_.notify_all();
-    served_one_.notify_all();
+    wake_up_.notify_all();
+    served_changed_.notify_all();
   }
   if (thread_.joinable()) thread_.join();
 }
@@ -76,7 +76,7 @@ std::vector<TopicRate> TopicPublisher::rates() const {
 
 // ---- On the publishing thread.
 
-void TopicPublisher::thread() {
+void TopicPublisher::run_thread() {
   pthread_setname_np(pthread_self(), "publishing");  // for top -H and profilers
   std::string failure;
   try {
@@ -96,29 +96,29 @@ void TopicPublisher::publish_until_stopped() {
     publish_status_if_due(*work);
     const std::lock_guard<std::mutex> lock(mutex_);
     served_ = work->request;
-    served_one_.notify_all();
+    served_changed_.notify_all();
   }
 }
 
 std::optional<TopicPublisher::Work> TopicPublisher::wait_for_work() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_ && !simulation_.failed()) {
-    take_new_parameters();
+    apply_new_parameters();
     SteadyClock::time_point next = SteadyClock::now() + std::chrono::seconds(1);
     bool listen = false;
     listens_to_changes_ = true;  // before looking at what has changed, so that no change is missed
-    if (requests_ != served_ || status_.is_requested() || something_is_due(next, listen)) {
+    if (requests_ != served_ || status_.is_requested() || any_topic_is_due(next, listen)) {
       listens_to_changes_ = false;
-      return Work{requests_ != served_, status_.take_request(), requests_};
+      return Work{requests_ != served_, status_.consume_request(), requests_};
     }
     listens_to_changes_ = listen;
-    woken_.wait_until(lock, next);
+    wake_up_.wait_until(lock, next);
   }
   return std::nullopt;
 }
 
 /// The caller holds the mutex.
-void TopicPublisher::take_new_parameters() {
+void TopicPublisher::apply_new_parameters() {
   if (!new_parameters_) return;
   parameters_ = *new_parameters_;
   new_parameters_.reset();
@@ -128,7 +128,7 @@ void TopicPublisher::take_new_parameters() {
 
 /// If nothing is due, `next` becomes the time at which to look again, and `listen` says whether to look after
 /// each change too. The caller holds the mutex.
-bool TopicPublisher::something_is_due(SteadyClock::time_point& next, bool& listen) {
+bool TopicPublisher::any_topic_is_due(SteadyClock::time_point& next, bool& listen) {
   for (const auto& topic : topics_) {
     if (!topic->has_subscribers()) {
       topic->drop_request();
@@ -153,7 +153,7 @@ std::vector<Topic*> TopicPublisher::due_topics(bool all_changes) {
   std::vector<Topic*> due;
   for (const auto& topic : topics_) {
     if (!topic->has_subscribers()) continue;
-    if ((all_changes && topic->shows_change()) || topic->is_due()) due.push_back(topic.get());
+    if ((all_changes && topic->has_unpublished_change()) || topic->is_due()) due.push_back(topic.get());
     topic->drop_request();
   }
   return due;
@@ -166,7 +166,7 @@ std::vector<Topic*> TopicPublisher::ready_topics(const std::vector<Topic*>& due)
     if (topic->ready()) {
       ready.push_back(topic);
     } else {
-      topic->shown(simulation_.changes(), simulation_.terrains());
+      topic->mark_published(simulation_.changes(), simulation_.terrains());
     }
   }
   return ready;
@@ -187,7 +187,7 @@ void TopicPublisher::publish_topics(const std::vector<Topic*>& due) {
       ++publications_;
       topic->count_message();
     }
-    topic->shown(state.moment.change, state.moment.terrain);
+    topic->mark_published(state.moment.change, state.moment.terrain);
   }
 }
 
@@ -201,11 +201,11 @@ void TopicPublisher::repeat_failure_status(const std::string& failure) {
   status_.publish_failure(failure);
   std::unique_lock<std::mutex> lock(mutex_);
   failure_ = failure;
-  served_one_.notify_all();
-  status_.take_request();
+  served_changed_.notify_all();
+  status_.consume_request();
   while (!stopping_) {
-    woken_.wait(lock, [this] { return stopping_ || status_.is_requested(); });
-    if (!status_.take_request()) continue;
+    wake_up_.wait(lock, [this] { return stopping_ || status_.is_requested(); });
+    if (!status_.consume_request()) continue;
     lock.unlock();
     status_.publish_failure(failure);
     lock.lock();

@@ -61,12 +61,12 @@ class TopicPublisher {
     std::uint64_t request = 0;  ///< the calls of publish_now() that this serves
   };
 
-  void thread();
+  void run_thread();
   void publish_until_stopped();
   /// Sleeps until something is due or requested. None if the thread is to end.
   std::optional<Work> wait_for_work();
-  bool something_is_due(SteadyClock::time_point& next, bool& listen);
-  void take_new_parameters();
+  bool any_topic_is_due(SteadyClock::time_point& next, bool& listen);
+  void apply_new_parameters();
   std::vector<Topic*> due_topics(bool all_changes);
   std::vector<Topic*> ready_topics(const std::vector<Topic*>& due);
   void publish_topics(const std::vector<Topic*>& due);
@@ -78,7 +78,7 @@ class TopicPublisher {
   /// Guards the members up to failure_, the writes to parameters_, the request of status_, and in each topic
   /// what TopicContext::mutex says.
   mutable std::mutex mutex_;
-  std::condition_variable woken_, served_one_;
+  std::condition_variable wake_up_, served_changed_;
   std::optional<PublisherSetup> new_parameters_;
   bool stopping_ = false;
   std::uint64_t requests_ = 0, served_ = 0;  ///< calls of publish_now()

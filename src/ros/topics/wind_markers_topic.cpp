@@ -22,9 +22,9 @@ using visualization_msgs::Marker;
 std_msgs::ColorRGBA speed_colour(double relative) {
   // Blue up to half the high-altitude speed, near white at that speed, red from one and a half times on.
   constexpr float stops[3][3] = {{0.10f, 0.25f, 0.85f}, {0.92f, 0.97f, 1.0f}, {0.95f, 0.15f, 0.10f}};
-  const double place = std::clamp(2 * (relative - 0.5), 0.0, 2.0);
-  const int n = place < 1 ? 0 : 1;
-  const float f = static_cast<float>(place - n);
+  const double position = std::clamp(2 * (relative - 0.5), 0.0, 2.0);
+  const int n = position < 1 ? 0 : 1;
+  const float f = static_cast<float>(position - n);
   const auto channel = [&](int c) { return stops[n][c] + f * (stops[n + 1][c] - stops[n][c]); };
   std_msgs::ColorRGBA colour;
   colour.r = channel(0);
@@ -88,7 +88,7 @@ class Arrows {
     reference_ = above > 0.1 ? above : 1.0;
   }
 
-  void place(Marker& m, int x, int y) const {
+  void set_arrow(Marker& m, int x, int y) const {
     const std::size_t i = static_cast<std::size_t>(y) * s_.width + x;
     const double wind_x = u_ ? (*u_)[i] : 0.0, wind_y = v_ ? (*v_)[i] : 0.0,
                  speed = std::hypot(wind_x, wind_y);
@@ -162,7 +162,8 @@ class WindMarkersTopic : public MessageTopic<visualization_msgs::MarkerArray> {
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column) {
         Marker m = base_marker(state, frame(), "wind", row * columns + column, Marker::ARROW);
-        arrows.place(m, (2 * column + 1) * s.width / (2 * columns), (2 * row + 1) * s.height / (2 * rows));
+        arrows.set_arrow(m, (2 * column + 1) * s.width / (2 * columns),
+                         (2 * row + 1) * s.height / (2 * rows));
         array->markers.push_back(m);
       }
     array->markers.push_back(clock_marker(state, frame()));

@@ -37,8 +37,8 @@ constexpr auto parameter_table(const SetWind*) {
 }
 static_assert(table_is_complete<SetWind>());
 
-/// A timeline or rose from now on (`regime.kind` says which; `start_time` and `from` are filled in when
-/// applied).
+/// A timeline or rose from now on (`regime.kind` says which; `start_time` and `initial_wind` are set when the
+/// command is applied).
 struct SetWindSchedule {
   WindRegime regime;
 };
@@ -104,7 +104,7 @@ constexpr auto parameter_table(const EditParameters*) {
 static_assert(table_is_complete<EditParameters>());
 
 /// A place in the terrain's frame [m].
-struct Place {
+struct Point {
   double x = 0, y = 0;
 };
 
@@ -123,7 +123,7 @@ struct Patch {
 /// quantum.
 struct EditTerrain : EditParameters {
   static constexpr std::size_t max_points = 512;
-  std::vector<Place> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
+  std::vector<Point> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
   Patch patch;
 };
 
@@ -161,7 +161,7 @@ static_assert(table_is_complete<EditPlantsParameters>());
 /// Puts healthy plants of a species at random places of a region, or takes plants away that stand there. None
 /// are put on bare rock or on obstacles; whether they can live there is not asked.
 struct EditPlants : EditPlantsParameters {
-  std::vector<Place> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
+  std::vector<Point> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
 };
 
 /// Parameters that can change while a simulation runs (live_parameters.hpp), each "path=value"; all or none.
@@ -184,7 +184,7 @@ struct LoadCheckpoint {
 
 /// Another scenario from its start; with `terrain_only`, only its grid and terrain under the physics and wind
 /// of the present one. A reset goes back to it from then on. `path` as the process can open it; with
-/// `terrain_only` it may be a bag (see scenario_of_bands()), whose gaps `fill_nodata` fills. `hash` as in
+/// `terrain_only` it may be a bag (see scenario_from_bands()), whose gaps `fill_nodata` fills. `hash` as in
 /// LoadCheckpoint.
 struct LoadScenario {
   std::string path;
@@ -223,7 +223,7 @@ struct CommandResult {
   double moved_m3 =
       0;  ///< instead of it, of an edit that conserves: from the ring into the shape (+), or back
   long long plants = 0;  ///< put (+) or taken away (−)
-  CellRectangle touched;
+  CellRectangle changed_cells;
   LayerChange change;  ///< in `touched`
 };
 

@@ -12,22 +12,22 @@ namespace desert_sim {
 /// one.
 template <class P>
 void check_ranges(const P& parameters, const std::string& what) {
-  Faults faults(what);
+  ValidationErrors errors(what);
   for_each_parameter(parameters, [&](const auto& row, const auto& value) {
     using T = std::decay_t<decltype(value)>;
     if constexpr (std::is_enum_v<T>) {
       if (static_cast<int>(value) < 0 || static_cast<int>(value) >= row.choice_count)
-        faults.add(row.name, std::to_string(static_cast<int>(value)) + " is none of its choices");
+        errors.add(row.name, std::to_string(static_cast<int>(value)) + " is not one of its choices");
     } else if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
       const double number = static_cast<double>(value);
       if (!yaml::in_range<T>(number, row)) {
         std::ostringstream shown;
         shown << "= " << number << " is not in " << yaml::allowed_range(row);
-        faults.add(row.name, shown.str());
+        errors.add(row.name, shown.str());
       }
     }
   });
-  faults.throw_if_any();
+  errors.throw_if_any();
 }
 
 }  // namespace desert_sim

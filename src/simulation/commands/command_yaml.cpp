@@ -12,7 +12,7 @@ namespace {
 
 template <class Item>
 YAML::Node required(const YAML::Node& node, const char* key, const Item& source) {
-  if (!node.IsMap() || !node[key]) throw ConfigError(source + ": there is no '" + key + "'");
+  if (!node.IsMap() || !node[key]) throw ConfigError(source + ": the key '" + key + "' is missing");
   return node[key];
 }
 
@@ -21,17 +21,17 @@ T scalar(const YAML::Node& node, const char* key, const std::string& source) {
   T value{};
   const YAML::Node found = required(node, key, source);
   if (!found.IsScalar() || !YAML::convert<T>::decode(found, value))
-    throw ConfigError(source + ": " + key + ": " + yaml::shown(found) + " cannot be read");
+    throw ConfigError(source + ": " + key + ": " + yaml::node_text(found) + " cannot be read");
   return value;
 }
 
 template <class P>
 P read_all(const YAML::Node& node, const std::string& source) {
-  Faults faults(source);
+  ValidationErrors errors(source);
   P parameters;
   std::set<std::string> known;
-  yaml::read_parameters(node, "", faults, parameters, known);
-  faults.throw_if_any();
+  yaml::read_parameters(node, "", errors, parameters, known);
+  errors.throw_if_any();
   return parameters;
 }
 
@@ -51,8 +51,8 @@ command::SetParameters read_settings(const YAML::Node& node, const std::string& 
 void emit_regime(YAML::Emitter& out, const WindRegime& r) {
   yaml::emit_parameters(out, static_cast<const WindRegimeParameters&>(r));
   out << YAML::Key << "start_time" << YAML::Value << r.start_time;
-  out << YAML::Key << "from" << YAML::Value << YAML::Flow << YAML::BeginSeq << r.from.x << r.from.y
-      << YAML::EndSeq;
+  out << YAML::Key << "from" << YAML::Value << YAML::Flow << YAML::BeginSeq << r.initial_wind.x
+      << r.initial_wind.y << YAML::EndSeq;
   out << YAML::Key << "segments" << YAML::Value << YAML::BeginSeq;
   for (const WindSegment& segment : r.segments) {
     out << YAML::Flow << YAML::BeginMap;
@@ -66,37 +66,37 @@ WindRegime read_regime(const YAML::Node& node, const std::string& source) {
   WindRegime r{read_all<WindRegimeParameters>(node, source)};
   r.start_time = scalar<double>(node, "start_time", source);
   const YAML::Node from = required(node, "from", source);
-  if (!from.IsSequence() || from.size() != 2 || !YAML::convert<float>::decode(from[0], r.from.x) ||
-      !YAML::convert<float>::decode(from[1], r.from.y))
+  if (!from.IsSequence() || from.size() != 2 || !YAML::convert<float>::decode(from[0], r.initial_wind.x) ||
+      !YAML::convert<float>::decode(from[1], r.initial_wind.y))
     throw ConfigError(source + ": from: must be two numbers");
   for (const YAML::Node& segment : required(node, "segments", source))
     r.segments.push_back(read_all<WindSegment>(segment, source));
   if (r.regime != WindRegimeKind::constant && r.segments.empty())
-    throw ConfigError(source + ": segments: there is none");
+    throw ConfigError(source + ": segments: is empty (required: at least one segment)");
   return r;
 }
 
 namespace {
 
 /// The corners as x, y, x, y …
-void emit_points(YAML::Emitter& out, const std::vector<command::Place>& points) {
+void emit_points(YAML::Emitter& out, const std::vector<command::Point>& points) {
   if (points.empty()) return;
   out << YAML::Key << "points" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-  for (const command::Place& p : points) out << p.x << p.y;
+  for (const command::Point& p : points) out << p.x << p.y;
   out << YAML::EndSeq;
 }
 
-std::vector<command::Place> read_points(const YAML::Node& node, const std::string& source) {
+std::vector<command::Point> read_points(const YAML::Node& node, const std::string& source) {
   const YAML::Node points = node["points"];
   if (!points) return {};
   constexpr std::size_t most = command::EditTerrain::max_points;
   if (!points.IsSequence() || points.size() % 2 != 0 || points.size() > 2 * most)
     throw ConfigError(source + ": points: must be x, y of at most " + std::to_string(most) + " points");
-  std::vector<command::Place> places(points.size() / 2);
+  std::vector<command::Point> places(points.size() / 2);
   for (std::size_t n = 0; n < points.size(); ++n) {
-    command::Place& p = places[n / 2];
+    command::Point& p = places[n / 2];
     if (!YAML::convert<double>::decode(points[n], n % 2 ? p.y : p.x))
-      throw ConfigError(source + ": points[" + std::to_string(n) + "]: " + yaml::shown(points[n]) +
+      throw ConfigError(source + ": points[" + std::to_string(n) + "]: " + yaml::node_text(points[n]) +
                         " is not a number");
   }
   return places;
@@ -121,7 +121,7 @@ command::Patch read_patch(const YAML::Node& node, const std::string& source) {
   patch.rows = scalar<int>(node, "patch_rows", source);
   const std::vector<unsigned char> bytes = YAML::DecodeBase64(scalar<std::string>(node, "patch", source));
   if (patch.columns < 1 || patch.rows < 1 || patch.columns > command::Patch::max_pixels / patch.rows)
-    throw ConfigError(source + ": patch: cannot be of " + std::to_string(patch.columns) + " x " +
+    throw ConfigError(source + ": patch: cannot have " + std::to_string(patch.columns) + " x " +
                       std::to_string(patch.rows) + " values");
   patch.values.resize(static_cast<std::size_t>(patch.columns) * static_cast<std::size_t>(patch.rows));
   if (bytes.size() != patch.values.size() * sizeof(float))

@@ -23,7 +23,7 @@ void require_sea(const Scenario& s, const HeightScale& scale) {
   const double highest = scale.datum + load_limit * scale.quantum();
   if (s.water.sea == Sea::none || s.water.sea_level <= highest) return;
   throw ConfigError("set_parameters: water.sea_level: = " + std::to_string(s.water.sea_level) +
-                    " m is above what this terrain's heights can be (allowed: up to " +
+                    " m is above the highest elevation that this terrain can represent (allowed: at most " +
                     std::to_string(highest) + " m)");
 }
 
@@ -86,21 +86,21 @@ CommandResult Commands::apply(const command::SetWind& command) {
 
 CommandResult Commands::apply(const command::SetWindSchedule& command) {
   const WindRegime& r = command.regime;
-  Faults faults("set_wind_schedule");
-  if (r.regime == WindRegimeKind::constant) faults.add("kind", "must be timeline or rose");
-  if (r.segments.empty()) faults.add("segments", "there must be at least one");
+  ValidationErrors errors("set_wind_schedule");
+  if (r.regime == WindRegimeKind::constant) errors.add("kind", "must be timeline or rose");
+  if (r.segments.empty()) errors.add("segments", "is empty (required: at least one segment)");
   if (!(r.hold_time >= 1e-3f && r.hold_time <= 1e12f))
-    faults.add("hold_time", "= " + std::to_string(r.hold_time) + " is not in [0.001, 1e+12] s");
+    errors.add("hold_time", "= " + std::to_string(r.hold_time) + " is not in [0.001, 1e+12] s");
   double probability = 0;
   for (std::size_t n = 0; n < r.segments.size(); ++n) {
     check_ranges(r.segments[n], "set_wind_schedule: segment " + std::to_string(n));
     if (r.segments[n].ramp > r.segments[n].duration)
-      faults.add("segment " + std::to_string(n) + ": ramp", "is longer than the segment's duration");
+      errors.add("segment " + std::to_string(n) + ": ramp", "is longer than the segment's duration");
     probability += r.segments[n].probability;
   }
   if (r.regime == WindRegimeKind::rose && !(probability > 0))
-    faults.add("segments", "the probabilities must not all be 0");
-  faults.throw_if_any();
+    errors.add("segments", "the probabilities must not all be 0");
+  errors.throw_if_any();
   state_.set_wind_regime(r);
   return {};
 }
@@ -119,7 +119,7 @@ CommandResult Commands::apply(const command::EditWind& command) {
   const bool known = found != features.end();
   if (known == (command.operation == WindEdit::add))
     throw ConfigError("edit_wind: id: = " + std::to_string(id) +
-                      (known ? " is another feature's already" : " is no feature's"));
+                      (known ? " is already the id of another feature" : " is not the id of any feature"));
   if (command.operation == WindEdit::remove) {
     features.erase(found);
   } else {
@@ -129,8 +129,9 @@ CommandResult Commands::apply(const command::EditWind& command) {
     else if (features.size() < max_wind_features)
       features.push_back(command.feature);
     else
-      throw ConfigError("edit_wind: there are " + std::to_string(max_wind_features) +
-                        " features already, and no more are allowed");
+      throw ConfigError("edit_wind: " + std::to_string(max_wind_features) +
+                        " features already exist (allowed: at most " + std::to_string(max_wind_features) +
+                        ")");
   }
   pipeline_.adapt();
   return {};
@@ -145,7 +146,7 @@ CommandResult Commands::apply(const command::EditTerrain& command, bool with_cha
   state_.soil_loose = soil_was_loose || soil || (bedrock && state_.terrain.has(Layer::soil));
   try {
     pipeline_.adapt();  // avalanches of soil and bedrock need memory
-    return edit.book(with_change);
+    return edit.commit(with_change);
   } catch (...) {
     state_.bedrock_loose = bedrock_was_loose;
     state_.soil_loose = soil_was_loose;
@@ -162,7 +163,7 @@ CommandResult Commands::apply(const command::EditPlants& command) {
   with_backend(state_.exec(), [this](auto& e) {
     const TerrainView view = state_.terrain.view();
     surface::Heights& heights = pipeline_.fields().heights;
-    surface::measure(e, view, heights);
+    surface::compute_heights(e, view, heights);
     plants::cover(e, view, state_.scenario.vegetation, 0.0f, heights, true, state_.plants);
   });
   pipeline_.derived_changed();

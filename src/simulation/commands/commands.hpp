@@ -24,7 +24,7 @@ class Commands {
   CommandResult apply(const command::SetParameters& command);
 
   /// Changes the parameters that the timeline and ramps change now. Throws StateError if they are refused.
-  void follow_timeline();
+  void apply_timeline();
   /// What the timeline and ramps are changing, and what comes next; empty if nothing.
   std::string describe_changes() const;
 

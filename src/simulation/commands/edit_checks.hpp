@@ -6,13 +6,13 @@
 
 namespace desert_sim {
 
-class Faults;
+class ValidationErrors;
 
 /// Throws ConfigError that names every parameter which is out of range, a layer that this terrain does not
 /// have or that cannot be edited, points and patches that do not make a shape.
 void check_edit(const command::EditTerrain& edit, const Terrain& terrain);
 
-/// Adds a fault if the points are not those of such a shape.
-void check_points(BrushShape shape, const std::vector<command::Place>& points, Faults& faults);
+/// Adds an error if the points are not those of such a shape.
+void check_points(BrushShape shape, const std::vector<command::Point>& points, ValidationErrors& errors);
 
 }  // namespace desert_sim

@@ -61,12 +61,12 @@ JournalWriter::JournalWriter(const std::string& path, std::uint64_t scenario_has
 }
 
 JournalWriter::~JournalWriter() {
-  if (std::fclose(file_) != 0) log_error(path_ + ": closing the journal: " + std::strerror(errno));
+  if (std::fclose(file_) != 0) log_error(path_ + ": the journal cannot be closed: " + std::strerror(errno));
 }
 
 void JournalWriter::line(const std::string& text) {
   if (std::fputs((text + "\n").c_str(), file_) < 0 || std::fflush(file_) != 0)
-    throw Error(path_ + ": writing the journal: " + std::strerror(errno));
+    throw Error(path_ + ": the journal cannot be written: " + std::strerror(errno));
 }
 
 void JournalWriter::write(std::uint64_t tick, const Command& command) {
@@ -93,12 +93,12 @@ Journal read_journal(const std::string& path) {
     const auto number = [&](const char* key) {
       std::uint64_t value = 0;
       if (!node.IsMap() || !node[key] || !YAML::convert<std::uint64_t>::decode(node[key], value))
-        throw ConfigError(source + ": there is no '" + std::string(key) + "'");
+        throw ConfigError(source + ": the key '" + std::string(key) + "' is missing");
       return value;
     };
     if (n == 1) {
       if (number("journal") != journal_version)
-        throw ConfigError(source + ": a journal of version " + std::to_string(number("journal")) +
+        throw ConfigError(source + ": is a journal of version " + std::to_string(number("journal")) +
                           "; this program reads version 1");
       journal.scenario_hash = number("scenario_hash");
       journal.backend = node["backend"] ? node["backend"].Scalar() : "";

@@ -37,11 +37,11 @@ class Region {
       const auto [south, north] = std::minmax_element(edit.points.begin(), edit.points.end(),
                                                       [](const auto& p, const auto& q) { return p.y < q.y; });
       x = 0.5 * (west->x + east->x), y = 0.5 * (south->y + north->y);
-      for (const command::Place& p : edit.points)
+      for (const command::Point& p : edit.points)
         vertices_.push_back({static_cast<float>(p.x - x), static_cast<float>(p.y - y)});
     }
-    x_ = lookup_.onto_x(x - s.grid.origin_x);
-    y_ = lookup_.onto_y(y - s.grid.origin_y);
+    x_ = lookup_.wrap_onto_grid_x(x - s.grid.origin_x);
+    y_ = lookup_.wrap_onto_grid_y(y - s.grid.origin_y);
     shape_ = {edit.shape,
               static_cast<float>(edit.radius),
               static_cast<float>(circle ? edit.radius : edit.radius_y),
@@ -69,19 +69,24 @@ class Edit {
  public:
   Edit(const command::EditPlants& edit, const Scenario& scenario, const Terrain& terrain, std::uint64_t step,
        int most)
-      : edit_(edit), s_(scenario), grid_(terrain.grid()), step_(step), most_(most), region_(edit, scenario) {}
+      : edit_(edit),
+        s_(scenario),
+        grid_(terrain.grid()),
+        step_(step),
+        max_plants_(most),
+        region_(edit, scenario) {}
 
   std::vector<std::uint32_t> clear(const std::vector<std::uint32_t>& words) {
     const std::size_t count = words.size() / plants::column_count;
     const int kind = species_index(edit_, s_);
     const auto at = [&](Column c, std::size_t n) { return words[static_cast<std::size_t>(c) * count + n]; };
     for (std::size_t n = 0; n < count; ++n) {
-      const bool meant = kind < 0 || static_cast<int>(at(Column::species, n)) == kind;
-      if (meant && region_.covers(float_from_bits(at(Column::x, n)), float_from_bits(at(Column::y, n))))
+      const bool selected = kind < 0 || static_cast<int>(at(Column::species, n)) == kind;
+      if (selected && region_.covers(float_from_bits(at(Column::x, n)), float_from_bits(at(Column::y, n))))
         continue;
       for (std::size_t c = 0; c < plants::column_count; ++c) columns_[c].push_back(words[c * count + n]);
     }
-    return joined();
+    return concatenated();
   }
 
   std::vector<std::uint32_t> plant(const std::vector<std::uint32_t>& words, const Terrain& terrain) {
@@ -90,13 +95,13 @@ class Edit {
       columns_[c].assign(words.begin() + static_cast<std::ptrdiff_t>(c * count),
                          words.begin() + static_cast<std::ptrdiff_t>((c + 1) * count));
     for (Layer layer : {Layer::bedrock, Layer::soil, Layer::sand})
-      if (terrain.has(layer)) ground_.push_back(terrain.words(layer));
+      if (terrain.has(layer)) ground_.push_back(terrain.raw_words(layer));
     const std::vector<float> obstacle = terrain.values(Layer::obstacle);
     for (int y = 0; y < grid_.height; ++y)
       for (int x = 0; x < grid_.width; ++x)
         if (obstacle[static_cast<std::size_t>(grid_.index(x, y))] == 0)
           plant_cell(x, y, terrain.scale().quantum());
-    return joined();
+    return concatenated();
   }
 
  private:
@@ -117,19 +122,19 @@ class Edit {
     const auto wanted = static_cast<std::uint32_t>(expected + draw(0).word[0] * 0x1p-32);
     for (std::uint32_t n = 0; n < wanted; ++n) {
       const RandomWords words = draw(n + 1);
-      const auto within = [&](int cell, std::uint32_t word) {
+      const auto position_in_cell = [&](int cell, std::uint32_t word) {
         return (static_cast<float>(cell) + static_cast<float>(word >> 8) * (1.0f / 16777216.0f)) *
                grid_.cell_size;
       };
-      const float px = within(x, words.word[0]), py = within(y, words.word[1]);
-      if (region_.covers(px, py)) put(px, py, surface, radius);
+      const float px = position_in_cell(x, words.word[0]), py = position_in_cell(y, words.word[1]);
+      if (region_.covers(px, py)) add_plant(px, py, surface, radius);
     }
   }
 
-  void put(float x, float y, Quanta z, float radius) {
-    if (columns_[0].size() >= static_cast<std::size_t>(most_))
-      throw ConfigError("edit_plants: density: there would be more than " + std::to_string(most_) +
-                        " plants, for which there is no room (vegetation.max_plants makes room)");
+  void add_plant(float x, float y, Quanta z, float radius) {
+    if (columns_[0].size() >= static_cast<std::size_t>(max_plants_))
+      throw ConfigError("edit_plants: density: there would be more than " + std::to_string(max_plants_) +
+                        " plants, which is the capacity (vegetation.max_plants sets it)");
     const auto to = [&](Column c) -> std::vector<std::uint32_t>& {
       return columns_[static_cast<std::size_t>(c)];
     };
@@ -143,7 +148,7 @@ class Edit {
     to(Column::species).push_back(static_cast<std::uint32_t>(species_index(edit_, s_)));
   }
 
-  std::vector<std::uint32_t> joined() const {
+  std::vector<std::uint32_t> concatenated() const {
     std::vector<std::uint32_t> all;
     for (const auto& column : columns_) all.insert(all.end(), column.begin(), column.end());
     return all;
@@ -153,7 +158,7 @@ class Edit {
   const Scenario& s_;
   Grid grid_;
   std::uint64_t step_;
-  int most_;
+  int max_plants_;
   Region region_;
   std::vector<std::vector<std::uint32_t>> ground_;  ///< bedrock first
   std::array<std::vector<std::uint32_t>, plants::column_count> columns_;
@@ -165,18 +170,18 @@ void check_plant_edit(const command::EditPlants& edit, const Scenario& s) {
   if (!s.vegetation.enabled)
     throw ConfigError("edit_plants: this scenario has no plants (vegetation.enabled)");
   check_ranges(static_cast<const command::EditPlantsParameters&>(edit), "edit_plants");
-  Faults faults("edit_plants");
+  ValidationErrors errors("edit_plants");
   if (edit.shape == BrushShape::patch)
-    faults.add("shape", "patch is not one of: circle, ellipse, rectangle, polygon, capsule");
+    errors.add("shape", "patch is not one of: circle, ellipse, rectangle, polygon, capsule");
   else
-    check_points(edit.shape, edit.points, faults);
+    check_points(edit.shape, edit.points, errors);
   const bool all = edit.operation == PlantEdit::clear && edit.species.empty();
   if (!all && species_index(edit, s) < 0) {
     std::string known;
     for (const Species& species : s.species) known += (known.empty() ? "" : ", ") + species.name;
-    faults.add("species", quoted(edit.species) + " is not one of: " + known);
+    errors.add("species", quoted(edit.species) + " is not one of: " + known);
   }
-  faults.throw_if_any();
+  errors.throw_if_any();
 }
 
 std::vector<std::uint32_t> edited_plants(const command::EditPlants& edit, const Scenario& scenario,

@@ -19,6 +19,6 @@ RingTotals ring_totals(const std::vector<Quanta>& stock);
 /// is taken (< 0) comes in proportion to the stock and leaves no cell with less than nothing. Quanta that are
 /// left over by rounding are dealt one by one, in the cells' order. There must be a cell, and with
 /// amount < 0 a stock of at least −amount.
-void deal_to_ring(long long amount, const std::vector<Quanta>& stock, std::vector<Quanta>& change);
+void distribute_to_ring(long long amount, const std::vector<Quanta>& stock, std::vector<Quanta>& change);
 
 }  // namespace desert_sim

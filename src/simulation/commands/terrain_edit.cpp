@@ -11,17 +11,18 @@ namespace desert_sim {
 
 namespace {
 
-constexpr int widest_smoothing = 64;  // [cells]
+constexpr int max_smoothing_radius = 64;  // [cells]
 // What an edit may cost, so that no request holds up the simulation for long: visits of a cell by an edge or
 // by a mean.
-constexpr double most_edge_visits = 1e9, most_mean_visits = 4e9;
+constexpr double max_edge_visits = 1e9, max_mean_visits = 4e9;
 
-[[noreturn]] void refuse(const std::string& what) { throw ConfigError("edit_terrain: " + what); }
+[[noreturn]] void throw_error(const std::string& what) { throw ConfigError("edit_terrain: " + what); }
 
-void require_work(double visits, double most, double cells, const std::string& what) {
+void check_cost(double visits, double most, double cells, const std::string& what) {
   if (visits <= most) return;
-  refuse("the shape's rectangle has " + std::to_string(static_cast<long long>(cells)) + " cells, too many " +
-         what + " (allowed: " + std::to_string(static_cast<long long>(cells * most / visits)) + ")");
+  throw_error("the shape's rectangle has " + std::to_string(static_cast<long long>(cells)) +
+              " cells, too many " + what +
+              " (allowed: " + std::to_string(static_cast<long long>(cells * most / visits)) + ")");
 }
 
 /// The cells from `centre` − reach to `centre` + reach; not more than there are of a periodic axis, and those
@@ -43,13 +44,13 @@ TerrainEdit::TerrainEdit(const command::EditTerrain& command, const Terrain& ter
   brush_.grid = terrain.grid();
   brush_.ledger = ledger;
   choose_layer();
-  place_shape();
+  set_shape();
   change_ = Buffer<Quanta>(terrain.exec(), static_cast<std::size_t>(brush_.area().cells()));
   const double cells = brush_.area().cells();
   const int passes = command.merge == BrushMerge::smooth ? command.smooth_passes : 1;
   if (command.shape == BrushShape::polygon)
-    require_work(cells * brush_.shape.count * passes, most_edge_visits, cells,
-                 "for a polygon of " + std::to_string(brush_.shape.count) + " points");
+    check_cost(cells * brush_.shape.count * passes, max_edge_visits, cells,
+               "for a polygon of " + std::to_string(brush_.shape.count) + " points");
   if (command.merge == BrushMerge::smooth)
     smooth();
   else
@@ -62,13 +63,13 @@ void TerrainEdit::choose_layer() {
   const TerrainView view = terrain_.view();
   const Layer layers[] = {Layer::bedrock, Layer::soil, Layer::sand, Layer::water};
   const Material materials[] = {Material::bedrock, Material::soil, Material::sand, Material::water};
-  int rest = 0;
+  int other_count = 0;
   for (int n = 0; n < 4; ++n) {
     if (command_.layer == info(layers[n]).name) {
       brush_.layer = view.quanta(layers[n]);
       brush_.material = materials[n];
     } else {
-      brush_.rest[rest++] = view.quanta(layers[n]);
+      brush_.other_layers[other_count++] = view.quanta(layers[n]);
     }
   }
   brush_.depth = brush_.material != Material::bedrock;
@@ -80,7 +81,7 @@ void TerrainEdit::choose_layer() {
 }
 
 /// The shape in cells, and the rectangle of cells that bounds it.
-void TerrainEdit::place_shape() {
+void TerrainEdit::set_shape() {
   const double l = grid_.cell_size, ring = command_.conserve ? command_.ring_width / l : 0.0;
   const bool circle = command_.shape == BrushShape::circle;
   const wind::Vector axis = circle ? wind::Vector{1, 0} : unit_vector(command_.angle_deg);
@@ -101,29 +102,29 @@ void TerrainEdit::place_shape() {
 
   if (!command_.points.empty()) {
     double west = 1e300, south = 1e300, east = -1e300, north = -1e300;
-    for (const command::Place& p : command_.points) {
+    for (const command::Point& p : command_.points) {
       west = std::min(west, p.x), east = std::max(east, p.x);
       south = std::min(south, p.y), north = std::max(north, p.y);
     }
     const double x = 0.5 * (west + east), y = 0.5 * (south + north);
-    const double around = command_.shape == BrushShape::capsule ? a : 0.0;
+    const double cap_radius = command_.shape == BrushShape::capsule ? a : 0.0;
     std::vector<brush::Point> vertices;
-    for (const command::Place& p : command_.points)
+    for (const command::Point& p : command_.points)
       vertices.push_back({static_cast<float>((p.x - x) / l), static_cast<float>((p.y - y) / l)});
     vertices_ = Buffer<brush::Point>(terrain_.exec(), vertices.size());
     vertices_.upload(vertices);
     s.vertices = vertices_.data();
     s.count = static_cast<int>(vertices.size());
-    place_window(x, y, 0.5 * (east - west) / l + around, 0.5 * (north - south) / l + around);
+    set_window(x, y, 0.5 * (east - west) / l + cap_radius, 0.5 * (north - south) / l + cap_radius);
     return;
   }
   const double u = a + ring, v = b + ring;  // half extents of the turned shape, with its ring
   if (circle || command_.shape == BrushShape::ellipse) {
-    place_window(command_.x, command_.y, std::hypot(u * axis.x, v * axis.y) - ring,
-                 std::hypot(u * axis.y, v * axis.x) - ring);
+    set_window(command_.x, command_.y, std::hypot(u * axis.x, v * axis.y) - ring,
+               std::hypot(u * axis.y, v * axis.x) - ring);
   } else {
     const double along = std::abs(axis.x), across = std::abs(axis.y);
-    place_window(command_.x, command_.y, u * along + v * across - ring, u * across + v * along - ring);
+    set_window(command_.x, command_.y, u * along + v * across - ring, u * across + v * along - ring);
   }
   if (command_.shape != BrushShape::patch) return;
   patch_ = Buffer<float>(terrain_.exec(), command_.patch.values.size());
@@ -132,16 +133,16 @@ void TerrainEdit::place_shape() {
 }
 
 /// Centre [m] and half extents [cells] of the shape; the ring comes on top.
-void TerrainEdit::place_window(double centre_x, double centre_y, double reach_x, double reach_y) {
+void TerrainEdit::set_window(double centre_x, double centre_y, double reach_x, double reach_y) {
   const Grid& g = brush_.grid;
   const double l = grid_.cell_size, ring = brush_.ring;
   // What is longer than a periodic axis would lie on itself. Round and rectangular shapes are cut off there.
   const bool long_kind = !command_.points.empty() || command_.shape == BrushShape::patch;
   if (long_kind && ((g.periodic_x && 2 * reach_x > g.width * (1 + 1e-9)) ||
                     (g.periodic_y && 2 * reach_y > g.height * (1 + 1e-9))))
-    refuse("the shape, " + std::to_string(2 * reach_x * l) + " x " + std::to_string(2 * reach_y * l) +
-           " m, reaches around the periodic terrain (allowed: " + std::to_string(g.width * l) + " x " +
-           std::to_string(g.height * l) + " m)");
+    throw_error("the shape, " + std::to_string(2 * reach_x * l) + " x " + std::to_string(2 * reach_y * l) +
+                " m, reaches around the periodic terrain (allowed: " + std::to_string(g.width * l) + " x " +
+                std::to_string(g.height * l) + " m)");
   // Bring the centre onto a periodic grid, so that single precision places it.
   double x = (centre_x - grid_.origin_x) / l, y = (centre_y - grid_.origin_y) / l;
   if (g.periodic_x) x -= g.width * std::floor(x / g.width);
@@ -151,12 +152,14 @@ void TerrainEdit::place_window(double centre_x, double centre_y, double reach_x,
   brush_.centre_x = static_cast<float>(x);
   brush_.centre_y = static_cast<float>(y);
   if (brush_.columns == 0 || brush_.rows == 0)
-    refuse("the brush at (" + std::to_string(centre_x) + ", " + std::to_string(centre_y) +
-           ") touches no cell of the terrain");
-  touched_ = {brush_.x0, brush_.y0, brush_.x0 + brush_.columns, brush_.y0 + brush_.rows};
+    throw_error("the brush at (" + std::to_string(centre_x) + ", " + std::to_string(centre_y) +
+                ") covers no cell of the terrain");
+  changed_cells_ = {brush_.x0, brush_.y0, brush_.x0 + brush_.columns, brush_.y0 + brush_.rows};
   // Over a periodic border the rectangle that holds both parts is the whole axis.
-  if (touched_.x0 < 0 || touched_.x1 > g.width) touched_.x0 = 0, touched_.x1 = g.width;
-  if (touched_.y0 < 0 || touched_.y1 > g.height) touched_.y0 = 0, touched_.y1 = g.height;
+  if (changed_cells_.x0 < 0 || changed_cells_.x1 > g.width)
+    changed_cells_.x0 = 0, changed_cells_.x1 = g.width;
+  if (changed_cells_.y0 < 0 || changed_cells_.y1 > g.height)
+    changed_cells_.y0 = 0, changed_cells_.y1 = g.height;
 }
 
 void TerrainEdit::merge() {
@@ -168,14 +171,14 @@ void TerrainEdit::merge() {
 
 void TerrainEdit::smooth() {
   const double cells = std::max(1.0, std::round(command_.smooth_radius / grid_.cell_size));
-  if (cells > widest_smoothing)
-    refuse("smooth_radius: = " + std::to_string(command_.smooth_radius) + " is not in [0.001, " +
-           std::to_string(widest_smoothing * static_cast<double>(grid_.cell_size)) + "] m (" +
-           std::to_string(widest_smoothing) + " cells)");
+  if (cells > max_smoothing_radius)
+    throw_error("smooth_radius: = " + std::to_string(command_.smooth_radius) + " is not in [0.001, " +
+                std::to_string(max_smoothing_radius * static_cast<double>(grid_.cell_size)) + "] m (" +
+                std::to_string(max_smoothing_radius) + " cells)");
   const int radius = static_cast<int>(cells);
   const double area = brush_.area().cells();
-  require_work(area * command_.smooth_passes * 2 * (2 * radius + 1), most_mean_visits, area,
-               "to smooth over smooth_radius in smooth_passes");
+  check_cost(area * command_.smooth_passes * 2 * (2 * radius + 1), max_mean_visits, area,
+             "to smooth over smooth_radius in smooth_passes");
   Exec& exec = terrain_.exec();
   const std::size_t rows = static_cast<std::size_t>(brush_.rows + 2 * radius);
   brush::SmoothWorkspace work{Buffer<Quanta>(exec, static_cast<std::size_t>(brush_.grid.cells())),
@@ -196,17 +199,17 @@ void TerrainEdit::conserve() {
   const double quantum = terrain_.scale().quantum(), cell = quantum * grid_.cell_size * grid_.cell_size;
   const RingTotals ring = ring_totals(stock);
   const std::string width = "conserve: the ring of " + std::to_string(command_.ring_width) + " m ";
-  if (ring.cells == 0) refuse(width + "around the shape holds no cell (allowed: wider ones)");
+  if (ring.cells == 0) throw_error(width + "around the shape contains no cell (choose a larger ring_width)");
   if (total_ > 0 && ring.stock < total_)
-    refuse(width + "holds " + std::to_string(static_cast<double>(ring.stock) * cell) + " m^3 of " +
-           command_.layer + ", and the edit needs " + std::to_string(static_cast<double>(total_) * cell) +
-           " m^3");
+    throw_error(width + "contains " + std::to_string(static_cast<double>(ring.stock) * cell) + " m^3 of " +
+                command_.layer + ", and the edit needs " +
+                std::to_string(static_cast<double>(total_) * cell) + " m^3");
   if (std::abs(total_) / ring.cells >= load_limit)
-    refuse(width + "would change by " +
-           std::to_string(static_cast<double>(std::abs(total_) / ring.cells) * quantum) +
-           " m a cell (allowed: " + std::to_string(load_limit * quantum) + " m)");
+    throw_error(width + "would change by " +
+                std::to_string(static_cast<double>(std::abs(total_) / ring.cells) * quantum) +
+                " m per cell (allowed: at most " + std::to_string(load_limit * quantum) + " m)");
   std::vector<Quanta> change = change_.download();
-  deal_to_ring(-total_, stock, change);
+  distribute_to_ring(-total_, stock, change);
   change_.upload(change);
 }
 
@@ -216,35 +219,37 @@ void TerrainEdit::require_heights() const {
   if (beyond == 0) return;
   const double reach = static_cast<double>(load_limit) * terrain_.scale().quantum(),
                datum = terrain_.scale().datum;
-  refuse("value: = " + std::to_string(command_.value) + " would bring " + std::to_string(beyond) +
-         " cells out of this terrain's heights (allowed: [" + std::to_string(datum - reach) + ", " +
-         std::to_string(datum + reach) + "] m)");
+  throw_error("value: = " + std::to_string(command_.value) + " would bring " + std::to_string(beyond) +
+              " cells out of the range of elevations that this terrain can represent (allowed: [" +
+              std::to_string(datum - reach) + ", " + std::to_string(datum + reach) + "] m)");
 }
 
-CommandResult TerrainEdit::book(bool with_change) {
-  with_backend(terrain_.exec(), [&](auto& e) { brush::book(e, brush_, change_.data(), command_.conserve); });
+CommandResult TerrainEdit::commit(bool with_change) {
+  with_backend(terrain_.exec(),
+               [&](auto& e) { brush::commit_change(e, brush_, change_.data(), command_.conserve); });
   CommandResult result;
   const double volume =
       static_cast<double>(total_) * terrain_.scale().quantum() * grid_.cell_size * grid_.cell_size;
   (command_.conserve ? result.moved_m3 : result.volume_m3) = volume;
-  result.touched = touched_;
+  result.changed_cells = changed_cells_;
   if (with_change)
-    result.change = {command_.layer, grid_.origin_x + touched_.x0 * grid_.cell_size,
-                     grid_.origin_y + touched_.y0 * grid_.cell_size, grid_.cell_size, change_of_touched()};
+    result.change = {command_.layer, grid_.origin_x + changed_cells_.x0 * grid_.cell_size,
+                     grid_.origin_y + changed_cells_.y0 * grid_.cell_size, grid_.cell_size,
+                     change_of_rectangle()};
   return result;
 }
 
-std::vector<float> TerrainEdit::change_of_touched() const {
+std::vector<float> TerrainEdit::change_of_rectangle() const {
   const std::vector<Quanta> change = change_.download();
-  const auto width = static_cast<std::size_t>(touched_.x1 - touched_.x0);
-  std::vector<float> metres(width * static_cast<std::size_t>(touched_.y1 - touched_.y0), 0.0f);
+  const auto width = static_cast<std::size_t>(changed_cells_.x1 - changed_cells_.x0);
+  std::vector<float> metres(width * static_cast<std::size_t>(changed_cells_.y1 - changed_cells_.y0), 0.0f);
   const double quantum = terrain_.scale().quantum();
   std::size_t k = 0;
   for (int y = 0; y < brush_.rows; ++y)
     for (int x = 0; x < brush_.columns; ++x, ++k) {
       const int cell = brush_.cell(x, y);
-      const auto column = static_cast<std::size_t>(cell % brush_.grid.width - touched_.x0),
-                 row = static_cast<std::size_t>(cell / brush_.grid.width - touched_.y0);
+      const auto column = static_cast<std::size_t>(cell % brush_.grid.width - changed_cells_.x0),
+                 row = static_cast<std::size_t>(cell / brush_.grid.width - changed_cells_.y0);
       metres[row * width + column] = static_cast<float>(change[k] * quantum);
     }
   return metres;

@@ -20,17 +20,17 @@ class TerrainEdit {
 
   Material material() const { return brush_.material; }
   /// Makes the change. `with_change`: the result tells it cell by cell.
-  CommandResult book(bool with_change);
+  CommandResult commit(bool with_change);
 
  private:
-  void place_shape();
-  void place_window(double centre_x, double centre_y, double reach_x, double reach_y);
+  void set_shape();
+  void set_window(double centre_x, double centre_y, double reach_x, double reach_y);
   void choose_layer();
   void merge();
   void smooth();
   void conserve();
   void require_heights() const;
-  std::vector<float> change_of_touched() const;
+  std::vector<float> change_of_rectangle() const;
 
   const command::EditTerrain& command_;
   const Terrain& terrain_;
@@ -39,7 +39,7 @@ class TerrainEdit {
   Buffer<brush::Point> vertices_;
   Buffer<float> patch_;
   Buffer<Quanta> change_;
-  CellRectangle touched_;
+  CellRectangle changed_cells_;
   long long total_ = 0;  ///< of the shape, without the ring [quanta]
 };
 

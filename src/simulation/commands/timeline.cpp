@@ -24,11 +24,11 @@ void Commands::begin_ramps(std::vector<std::string>& settings, double duration) 
     state_.ramps.erase(std::remove_if(state_.ramps.begin(), state_.ramps.end(),
                                       [&](const Ramp& r) { return r.path == path_of(setting); }),
                        state_.ramps.end());
-  for (Ramp& ramp : take_ramps(state_.present_scenario(), settings, state_.time(), duration))
+  for (Ramp& ramp : extract_ramps(state_.present_scenario(), settings, state_.time(), duration))
     state_.ramps.push_back(std::move(ramp));
 }
 
-void Commands::follow_timeline() {
+void Commands::apply_timeline() {
   const std::vector<TimelineEntry>& timeline = state_.scenario.timeline;
   std::vector<std::string> due;
   for (; state_.next_timeline_entry < timeline.size() &&
@@ -39,9 +39,9 @@ void Commands::follow_timeline() {
     due.insert(due.end(), settings.begin(), settings.end());
   }
   for (Ramp& ramp : state_.ramps) {
-    const int stair = ramp.stair_at(state_.time());
-    if (stair == ramp.stair) continue;
-    ramp.stair = stair;
+    const int step_index = ramp.step_index_at(state_.time());
+    if (step_index == ramp.step_index) continue;
+    ramp.step_index = step_index;
     due.push_back(ramp.path + "=" + text_of(ramp.value()));
   }
   if (due.empty()) return;
@@ -51,7 +51,7 @@ void Commands::follow_timeline() {
     throw StateError("run.timeline at " + text_of(state_.time()) + " s: " + e.what());
   }
   state_.ramps.erase(std::remove_if(state_.ramps.begin(), state_.ramps.end(),
-                                    [](const Ramp& r) { return r.stair == Ramp::stairs; }),
+                                    [](const Ramp& r) { return r.step_index == Ramp::step_count; }),
                      state_.ramps.end());
 }
 

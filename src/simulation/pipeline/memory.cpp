@@ -20,12 +20,12 @@ class PlannedFft final : public Fft {
  public:
   PlannedFft(int width, int height, int fields)
       : values_(static_cast<std::size_t>(width) * height * fields) {}
-  void forward(Complex*) override { refuse(); }
-  void inverse(Complex*) override { refuse(); }
+  void forward(Complex*) override { throw_error(); }
+  void inverse(Complex*) override { throw_error(); }
   std::size_t bytes() const override { return values_ * sizeof(Complex); }
 
  private:
-  [[noreturn]] static void refuse() { throw Error("a transform that is only planned"); }
+  [[noreturn]] static void throw_error() { throw Error("a planned transform cannot be executed"); }
   std::size_t values_;
 };
 
@@ -35,23 +35,23 @@ class PlanningExec final : public Exec {
   const char* backend() const override { return "none"; }
   std::string device() const override { return "none"; }
   std::size_t memory_available() const override { return 0; }
-  void* allocate_host(std::size_t) override { refuse(); }
+  void* allocate_host(std::size_t) override { throw_error(); }
   void release_host(void*) noexcept override {}
   void set_zero(void*, std::size_t) override {}
   void copy(void*, const void*, std::size_t) override {}
   void upload(void*, const void*, std::size_t) override {}
-  void download(void*, const void*, std::size_t) override { refuse(); }
+  void download(void*, const void*, std::size_t) override { throw_error(); }
   void synchronise() override {}
   std::unique_ptr<Fft> make_fft(int width, int height, int fields) override {
     return std::make_unique<PlannedFft>(width, height, fields);
   }
 
  protected:
-  void* take(std::size_t) override { return this; }
-  void give_back(void*) noexcept override {}
+  void* allocate_memory(std::size_t) override { return this; }
+  void free_memory(void*) noexcept override {}
 
  private:
-  [[noreturn]] static void refuse() { throw Error("memory that is only planned"); }
+  [[noreturn]] static void throw_error() { throw Error("planned memory cannot be accessed"); }
 };
 
 /// Layers that the terrain steps fill, and bedrock and sand.
@@ -80,33 +80,34 @@ std::string amount(double bytes) {
   return text;
 }
 
-std::string name_of_grid(const Scenario& s) {
+std::string grid_text(const Scenario& s) {
   return s.name + ": the grid of " + std::to_string(s.grid.width) + " x " + std::to_string(s.grid.height) +
          " cells ";
 }
 
 /// Throws ConfigError if so many bytes are not there.
-void require(const Scenario& scenario, double needed, std::size_t available, const std::string& where) {
+void check_available(const Scenario& scenario, double needed, std::size_t available,
+                     const std::string& where) {
   if (needed <= static_cast<double>(available)) return;
   char each[40];
-  std::snprintf(each, sizeof each, ", %.1f a cell, ", needed / scenario.make_grid().cells());
-  throw ConfigError(name_of_grid(scenario) + "needs " + amount(needed) + each + where + "; there are " +
-                    amount(static_cast<double>(available)));
+  std::snprintf(each, sizeof each, ", %.1f bytes per cell, ", needed / scenario.make_grid().cells());
+  throw ConfigError(grid_text(scenario) + "needs " + amount(needed) + each + where +
+                    "; available: " + amount(static_cast<double>(available)));
 }
 
 void require_cells(const Scenario& scenario) {
   const Grid grid = scenario.make_grid();
-  const std::string shape = name_of_grid(scenario);
+  const std::string shape = grid_text(scenario);
   const long long cells = static_cast<long long>(grid.width) * grid.height;
   if (cells > max_grid_cells)
     throw ConfigError(shape + "has " + std::to_string(cells) +
-                      ", more than can be indexed (allowed: " + std::to_string(max_grid_cells) + ")");
+                      ", which cannot be indexed (allowed: at most " + std::to_string(max_grid_cells) + ")");
   if (!scenario.wind.warping && !scenario.wind.projection) return;
   const wind::CoarseGrid coarse = wind::coarse_grid(grid, scenario.wind);
   const long long values = static_cast<long long>(coarse.width) * coarse.height;
   if (values > max_grid_cells)
     throw ConfigError(shape + "would need a transform of " + std::to_string(values) +
-                      " values for its wind, more than can be indexed (allowed: " +
+                      " values for its wind, which cannot be indexed (allowed: at most " +
                       std::to_string(max_grid_cells) + "; wind.coarsening makes it smaller)");
 }
 
@@ -121,31 +122,31 @@ std::size_t total_bytes(const std::vector<MemoryPart>& parts) {
 std::vector<MemoryPart> planned_memory(const Scenario& scenario) {
   PlanningExec exec;
   Terrain terrain(exec, scenario.make_grid(), HeightScale{});
-  for (Layer layer : layers_filled(scenario)) terrain.require(layer);
+  for (Layer layer : layers_filled(scenario)) terrain.allocate(layer);
   return Simulation(scenario, std::move(terrain)).memory();
 }
 
 double bytes_to_build(const Scenario& scenario) {
-  constexpr double brought_over = sizeof(std::uint32_t);  // one layer at a time; a raster's are freed before
-  return static_cast<double>(layers_filled(scenario).size()) * sizeof(double) + brought_over;
+  constexpr double upload_bytes = sizeof(std::uint32_t);  // one layer at a time; a raster's are freed before
+  return static_cast<double>(layers_filled(scenario).size()) * sizeof(double) + upload_bytes;
 }
 
 void require_memory(const Exec& exec, const Scenario& scenario, double host_bytes) {
   require_cells(scenario);
   const double on_device = static_cast<double>(total_bytes(planned_memory(scenario)));
   const std::string backend = exec.backend();
-  require(scenario, on_device, exec.memory_available(), "on the " + backend + " backend");
+  check_available(scenario, on_device, exec.memory_available(), "on the " + backend + " backend");
   const double besides = backend == "cpu" ? on_device : 0.0;
-  require(scenario, host_bytes * scenario.make_grid().cells() + besides, host_memory_available(),
-          "on the host while the terrain is made");
+  check_available(scenario, host_bytes * scenario.make_grid().cells() + besides, host_memory_available(),
+                  "on the host while the terrain is built");
 }
 
 void require_more_memory(const SimulationState& state, const Scenario& scenario) {
   require_cells(scenario);
   const double more = static_cast<double>(total_bytes(planned_memory(scenario))) -
                       static_cast<double>(total_bytes(planned_memory(state.scenario)));
-  require(scenario, more, state.exec().memory_available(),
-          std::string("more on the ") + state.exec().backend() + " backend");
+  check_available(scenario, more, state.exec().memory_available(),
+                  std::string("more on the ") + state.exec().backend() + " backend");
 }
 
 }  // namespace desert_sim

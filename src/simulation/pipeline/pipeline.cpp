@@ -27,23 +27,23 @@ Pipeline::Pipeline(SimulationState& state, ProcessTable table)
 void Pipeline::prepare() {
   recordings_.forget();
   state_.avalanche_iterations = avalanche_iterations();
-  bring_layers_into_use();
+  allocate_layers();
   fields_.prepare(state_.exec(), state_.terrain.grid(), state_.scenario);
   std::vector<Stage> before = std::move(stages_);
   stages_.clear();
-  separate_.clear();
-  fastest_.clear();
+  unfused_launches_.clear();
+  fused_launches_.clear();
   stages_.reserve(table_.processes.size());
   for (const Process& process : table_.processes) {
     if (!process.active(state_.scenario)) continue;
-    Stage stage{&process, process.keep ? process.keep(state_) : nullptr};
+    Stage stage{&process, process.make_workspace ? process.make_workspace(state_) : nullptr};
     // What the process kept before goes once its successor is there, not with all others': less memory at a
     // time.
     for (Stage& former : before)
       if (former.process == &process) {
         stage.milliseconds = former.milliseconds;
         stage.timed = former.timed;
-        former.kept.reset();
+        former.workspace.reset();
       }
     stages_.push_back(std::move(stage));
   }
@@ -54,12 +54,12 @@ void Pipeline::prepare() {
 
 /// A derived layer is there only while a process that writes it is active: others take its absence for
 /// "none". What lies in persistent layers stays there when their process is switched off.
-void Pipeline::bring_layers_into_use() {
+void Pipeline::allocate_layers() {
   std::vector<Layer> unused;
   for (const Process& process : table_.processes)
     for (Layer layer : process.writes) {
       if (process.active(state_.scenario))
-        state_.terrain.require(layer);
+        state_.terrain.allocate(layer);
       else if (info(layer).lifetime == Lifetime::derived)
         unused.push_back(layer);
     }
@@ -67,24 +67,24 @@ void Pipeline::bring_layers_into_use() {
     const bool used = std::any_of(table_.processes.begin(), table_.processes.end(), [&](const Process& p) {
       return p.active(state_.scenario) && std::count(p.writes.begin(), p.writes.end(), layer) > 0;
     });
-    if (!used) state_.terrain.use(layer, false);
+    if (!used) state_.terrain.set_allocated(layer, false);
   }
 }
 
 void Pipeline::make_launches() {
-  separate_.clear();
-  fastest_.clear();
-  for (Stage& stage : stages_) separate_.push_back({&stage});
-  fastest_ = separate_;
+  unfused_launches_.clear();
+  fused_launches_.clear();
+  for (Stage& stage : stages_) unfused_launches_.push_back({&stage});
+  fused_launches_ = unfused_launches_;
   for (const FusedProcesses& fused : table_.fused) {
     Stage *first = find(fused.first), *second = find(fused.second);
     if (!first || !second || !fused.applies(state_)) continue;
-    const auto at = std::find_if(fastest_.begin(), fastest_.end(),
+    const auto at = std::find_if(fused_launches_.begin(), fused_launches_.end(),
                                  [&](const Launch& launch) { return launch.stage == second; });
     *at = {first, second, &fused};
-    fastest_.erase(std::find_if(fastest_.begin(), fastest_.end(), [&](const Launch& launch) {
-      return launch.stage == first && !launch.fused;
-    }));
+    fused_launches_.erase(
+        std::find_if(fused_launches_.begin(), fused_launches_.end(),
+                     [&](const Launch& launch) { return launch.stage == first && !launch.fused; }));
   }
   avalanching_measures_heights_ = false;
   for (const Stage& stage : stages_) {
@@ -99,7 +99,7 @@ void Pipeline::make_launches() {
 
 void Pipeline::adapt() {
   for (Stage& stage : stages_)
-    if (stage.process->adapt) stage.process->adapt(state_, stage.kept.get());
+    if (stage.process->adapt) stage.process->adapt(state_, stage.workspace.get());
 }
 
 // ---- a step
@@ -112,40 +112,40 @@ void Pipeline::step() {
   StepContext c = context();
   const bool observed = timing_ || checks_layers();
   if (observed) {
-    for (const Launch& launch : separate_) run_observed(launch, c);
+    for (const Launch& launch : unfused_launches_) run_observed(launch, c);
   } else {
     const std::size_t recorded = recordable_stages();
     const auto start = [&] {
-      for (std::size_t n = 0; n < recorded; ++n) run(fastest_[n], c);
+      for (std::size_t n = 0; n < recorded; ++n) run(fused_launches_[n], c);
     };
     if (recorded > 0)
       recordings_.run(state_.exec(),
-                      {state_.wind_above(), state_.steps % avalanching::turns, fields_.heights_stale,
+                      {state_.wind_above(), state_.steps % avalanching::seam_period, fields_.heights_stale,
                        recorded, c.terrain},
                       start);
-    for (std::size_t n = recorded; n < fastest_.size(); ++n) run(fastest_[n], c);
+    for (std::size_t n = recorded; n < fused_launches_.size(); ++n) run(fused_launches_[n], c);
   }
   fields_.heights_stale = !avalanching_measures_heights_;
   for (Stage& stage : stages_)
-    if (stage.process->after_step) stage.process->after_step(c, stage.kept.get());
+    if (stage.process->after_step) stage.process->after_step(c, stage.workspace.get());
   ++state_.steps;
   derived_ready_ = true;
 }
 
 std::size_t Pipeline::recordable_stages() const {
-  if (!state_.exec().records()) return 0;
+  if (!state_.exec().can_record()) return 0;
   const auto can = [this](const Stage* stage) { return !stage || stage->process->can_be_recorded(state_); };
-  const auto end = std::find_if(fastest_.begin(), fastest_.end(), [&](const Launch& launch) {
+  const auto end = std::find_if(fused_launches_.begin(), fused_launches_.end(), [&](const Launch& launch) {
     return !can(launch.stage) || !can(launch.second);
   });
-  return static_cast<std::size_t>(end - fastest_.begin());
+  return static_cast<std::size_t>(end - fused_launches_.begin());
 }
 
 void Pipeline::run(const Launch& launch, StepContext& c) {
   if (launch.fused)
-    launch.fused->step(c, launch.stage->kept.get(), launch.second->kept.get());
+    launch.fused->step(c, launch.stage->workspace.get(), launch.second->workspace.get());
   else
-    launch.stage->process->step(c, launch.stage->kept.get());
+    launch.stage->process->step(c, launch.stage->workspace.get());
 }
 
 /// Looks through the layers that the process writes where that is due, and times it while timing is on.
@@ -167,7 +167,7 @@ void Pipeline::step_alone(const std::string& process) {
   Stage* stage = find(process);
   if (!stage) throw Error("the process " + process + " is not active");
   StepContext c = context();
-  stage->process->step(c, stage->kept.get());
+  stage->process->step(c, stage->workspace.get());
   state_.exec().synchronise();
 }
 
@@ -175,7 +175,7 @@ void Pipeline::refresh_derived() {
   if (derived_ready_) return;
   StepContext c = context();
   for (Stage& stage : stages_)
-    if (stage.process->refresh) stage.process->refresh(c, stage.kept.get());
+    if (stage.process->refresh) stage.process->refresh(c, stage.workspace.get());
   derived_ready_ = true;
 }
 
@@ -201,7 +201,7 @@ void Pipeline::check(const Process& process, Layer layer) const {
   while (cell + 1 < values.size() && std::isfinite(values[cell]) && !(row.lowest == 0 && values[cell] < 0))
     ++cell;
   throw StateError("step " + std::to_string(state_.steps) + ": " + process.name + ": layer " + row.name +
-                   " is broken in " + std::to_string(broken) + " cells, first (" +
+                   " has an invalid value in " + std::to_string(broken) + " cells, the first at (" +
                    std::to_string(cell % view.grid.width) + ", " + std::to_string(cell / view.grid.width) +
                    ") = " + std::to_string(values[cell]));
 }
@@ -217,7 +217,7 @@ Pipeline::Stage* Pipeline::find(const std::string& process) {
 std::uint64_t Pipeline::avalanche_iterations() const {
   std::uint64_t iterations = state_.avalanche_iterations;
   for (const Stage& stage : stages_)
-    if (stage.process->counted_iterations) iterations += stage.process->counted_iterations(*stage.kept);
+    if (stage.process->counted_iterations) iterations += stage.process->counted_iterations(*stage.workspace);
   return iterations;
 }
 
@@ -238,7 +238,7 @@ std::vector<MemoryPart> Pipeline::memory() const {
     if (bytes > 0) parts.push_back({name, bytes});
   };
   for (const Stage& stage : stages_)
-    if (stage.kept) add("process " + stage.process->name, stage.kept->bytes());
+    if (stage.workspace) add("process " + stage.process->name, stage.workspace->bytes());
   add("heights", fields_.heights.cell_heights.bytes() + fields_.heights.highest.bytes());
   add("tangents of repose", fields_.repose.bytes());
   add("strength of impacts", fields_.impact_strength.bytes());
@@ -246,9 +246,9 @@ std::vector<MemoryPart> Pipeline::memory() const {
   return parts;
 }
 
-std::vector<std::string> Pipeline::names_of_fastest() const {
+std::vector<std::string> Pipeline::launch_names() const {
   std::vector<std::string> names;
-  for (const Launch& launch : fastest_)
+  for (const Launch& launch : fused_launches_)
     names.push_back(launch.fused ? launch.fused->first + " + " + launch.fused->second
                                  : launch.stage->process->name);
   return names;

@@ -60,13 +60,13 @@ class Pipeline {
   /// A process of this scenario.
   struct Stage {
     const Process* process;
-    std::unique_ptr<Kept> kept;
+    std::unique_ptr<ProcessWorkspace> workspace;
     double milliseconds = 0;  ///< since the times were cleared
     bool timed = false;
   };
   const std::vector<Stage>& stages() const { return stages_; }
   /// What steps that nobody observes run in the place of stages(): fused where a rule says so.
-  std::vector<std::string> names_of_fastest() const;
+  std::vector<std::string> launch_names() const;
   /// How many of these, from the first on, are recorded once and replayed.
   std::size_t recordable_stages() const;
 
@@ -79,7 +79,7 @@ class Pipeline {
   };
   StepContext context();
   void make_launches();
-  void bring_layers_into_use();
+  void allocate_layers();
   void run(const Launch& launch, StepContext& context);
   void run_observed(const Launch& launch, StepContext& context);
   void check(const Process& process, Layer layer) const;
@@ -90,7 +90,7 @@ class Pipeline {
   const ProcessTable table_;
   SharedFields fields_;
   std::vector<Stage> stages_;
-  std::vector<Launch> separate_, fastest_;
+  std::vector<Launch> unfused_launches_, fused_launches_;
   bool avalanching_measures_heights_ = false;
   bool derived_ready_ = false;
   StepRecordings recordings_;

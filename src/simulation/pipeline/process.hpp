@@ -30,10 +30,10 @@ struct StepContext {
   float time_step() const { return state.scenario.run.time_step; }
 };
 
-/// What a process keeps between steps: memory on the device, transforms, tables.
-class Kept {
+/// The data that a process keeps between steps: memory on the device, transforms, tables.
+class ProcessWorkspace {
  public:
-  virtual ~Kept() = default;
+  virtual ~ProcessWorkspace() = default;
   virtual std::size_t bytes() const = 0;  ///< on the device
 };
 
@@ -55,20 +55,20 @@ struct Process {
   std::vector<Layer> writes;  ///< brought into use while it is active
   std::vector<Layer> writes_if_in_use;
 
-  /// Makes what it keeps; null if it keeps nothing. Throws ConfigError if there is no memory.
-  std::function<std::unique_ptr<Kept>(const SimulationState&)> keep;
-  std::function<void(StepContext&, Kept*)> step;
+  /// Makes its workspace; null if it needs none. Throws ConfigError if there is no memory.
+  std::function<std::unique_ptr<ProcessWorkspace>(const SimulationState&)> make_workspace;
+  std::function<void(StepContext&, ProcessWorkspace*)> step;
   /// Recomputes, before somebody looks, what it derives from the state, which a loaded checkpoint does not
   /// have and changed parameters make stale; it changes no persistent layer. Null if it derives nothing.
-  std::function<void(StepContext&, Kept*)> refresh;
-  /// Brings what it keeps up to date after a command that did not change parameters (wind features, loose
+  std::function<void(StepContext&, ProcessWorkspace*)> refresh;
+  /// Brings its workspace up to date after a command that did not change parameters (wind features, loose
   /// ground). Throws ConfigError if there is no memory. Null if nothing can be stale.
-  std::function<void(const SimulationState&, Kept*)> adapt;
-  /// Iterations that the device has counted since `keep`. Null if it counts none.
-  std::function<std::uint64_t(const Kept&)> counted_iterations;
+  std::function<void(const SimulationState&, ProcessWorkspace*)> adapt;
+  /// Iterations that the device has counted since `make_workspace`. Null if it counts none.
+  std::function<std::uint64_t(const ProcessWorkspace&)> counted_iterations;
   /// What the host counts after each step, also after one that was replayed from a recording. Null if
   /// nothing.
-  std::function<void(StepContext&, Kept*)> after_step;
+  std::function<void(StepContext&, ProcessWorkspace*)> after_step;
   /// Whether its next step starts the same work on the device as others before and after it, and reads
   /// nothing back.
   std::function<bool(const SimulationState&)> can_be_recorded = [](const SimulationState&) { return true; };
@@ -84,24 +84,27 @@ struct FusedProcesses {
   std::string name;  ///< of the rule
   std::string first, second;
   std::function<bool(const SimulationState&)> applies;
-  std::function<void(StepContext&, Kept* first, Kept* second)> step;
+  std::function<void(StepContext&, ProcessWorkspace* first, ProcessWorkspace* second)> step;
 };
 
-/// Makes `process` keep a Work, made by `make`, which its `step` is given. Work has a member bytes().
+/// A workspace of type Work, which has a member bytes().
 template <class Work>
-class KeptAs final : public Kept {
+class WorkspaceHolder final : public ProcessWorkspace {
  public:
-  explicit KeptAs(Work made) : work(std::move(made)) {}
+  explicit WorkspaceHolder(Work made) : work(std::move(made)) {}
   std::size_t bytes() const override { return work.bytes(); }
   Work work;
 };
 template <class Work>
-Work& kept_as(Kept* kept) {
-  return static_cast<KeptAs<Work>&>(*kept).work;
+Work& workspace_as(ProcessWorkspace* workspace) {
+  return static_cast<WorkspaceHolder<Work>&>(*workspace).work;
 }
+/// Gives `process` a workspace of type Work, which `make` creates and which its `step` gets.
 template <class Work, class Make>
-void keep(Process& process, Make make) {
-  process.keep = [make](const SimulationState& state) { return std::make_unique<KeptAs<Work>>(make(state)); };
+void set_workspace(Process& process, Make make) {
+  process.make_workspace = [make](const SimulationState& state) {
+    return std::make_unique<WorkspaceHolder<Work>>(make(state));
+  };
 }
 
 }  // namespace desert_sim

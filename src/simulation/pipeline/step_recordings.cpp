@@ -10,8 +10,8 @@ constexpr std::size_t most_recordings = 16;
 }  // namespace
 
 bool StepKey::operator==(const StepKey& other) const {
-  return wind_above.x == other.wind_above.x && wind_above.y == other.wind_above.y && turn == other.turn &&
-         heights_stale == other.heights_stale && stages == other.stages &&
+  return wind_above.x == other.wind_above.x && wind_above.y == other.wind_above.y &&
+         seam_phase == other.seam_phase && heights_stale == other.heights_stale && stages == other.stages &&
          std::equal(std::begin(view.layers), std::end(view.layers), std::begin(other.view.layers));
 }
 

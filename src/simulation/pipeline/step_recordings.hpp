@@ -18,9 +18,9 @@ namespace desert_sim {
 /// All that a step's kernels are given and that can differ between two steps with the same parameters.
 struct StepKey {
   wind::Vector wind_above;
-  std::uint64_t turn = 0;      ///< of the avalanches' seams
-  bool heights_stale = false;  ///< whether the step measures heights first
-  std::size_t stages = 0;      ///< how many, from the first on, are in the recording
+  std::uint64_t seam_phase = 0;  ///< of the avalanches' seams
+  bool heights_stale = false;    ///< whether the step measures heights first
+  std::size_t stages = 0;        ///< how many, from the first on, are in the recording
   TerrainView view;
   bool operator==(const StepKey& other) const;
 };

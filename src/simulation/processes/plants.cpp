@@ -16,13 +16,13 @@ void cover_ground(StepContext& c, bool makes_state) {
   });
 }
 
-void illuminate(StepContext& c, Kept*) {
+void illuminate(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
     plants::illuminate(e, c.terrain, c.scenario().vegetation, c.fields.heights, c.state.plants);
   });
 }
 
-void live(StepContext& c, Kept*) {
+void update_plants(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
     plants::grow_and_spawn(e, c.terrain, s.vegetation, s.repose, c.fields.heights, c.time_step(), s.seed,
@@ -30,7 +30,7 @@ void live(StepContext& c, Kept*) {
   });
 }
 
-bool there_are_plants(const Scenario& s) { return s.vegetation.enabled; }
+bool has_plants(const Scenario& s) { return s.vegetation.enabled; }
 
 }  // namespace
 
@@ -40,11 +40,11 @@ Process plant_cover_process() {
   p.parameters = {"vegetation", "species"};
   p.source = "Nilles 2025 §3.2.1, eq. 8–12";
   p.header = "kernels/plants/cover.hpp";
-  p.active = there_are_plants;
+  p.active = has_plants;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::vegetation, Layer::humus, Layer::canopy_height};
-  p.step = [](StepContext& c, Kept*) { cover_ground(c, true); };
-  p.refresh = [](StepContext& c, Kept*) { cover_ground(c, false); };
+  p.step = [](StepContext& c, ProcessWorkspace*) { cover_ground(c, true); };
+  p.refresh = [](StepContext& c, ProcessWorkspace*) { cover_ground(c, false); };
   return p;
 }
 
@@ -54,7 +54,7 @@ Process illumination_process() {
   p.parameters = {"vegetation"};
   p.source = "Nilles 2025 §3.2.3, eq. 16–18";
   p.header = "kernels/plants/illumination.hpp";
-  p.active = there_are_plants;
+  p.active = has_plants;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::canopy_height, Layer::water};
   p.writes = {Layer::illumination, Layer::illumination_canopy};
   p.step = p.refresh = illuminate;
@@ -67,12 +67,12 @@ Process vegetation_process() {
   p.parameters = {"vegetation", "species", "competition", "repose"};
   p.source = "Nilles 2025 §3.2.2–3.2.6, eq. 13–24";
   p.header = "kernels/plants/life.hpp";
-  p.active = there_are_plants;
+  p.active = has_plants;
   p.reads = {Layer::bedrock,  Layer::soil,          Layer::sand,         Layer::water,
              Layer::obstacle, Layer::canopy_height, Layer::illumination, Layer::illumination_canopy};
   p.writes = {Layer::humus};
   p.writes_if_in_use = {Layer::moisture};
-  p.step = live;
+  p.step = update_plants;
   // New plants come up by dice that depend on the step, and their number is read back.
   p.can_be_recorded = [](const SimulationState&) { return false; };
   return p;

@@ -26,7 +26,7 @@ const ProcessTable& process_table() {
                                       soil_process(),
                                       vegetation_process(),
                                   },
-                                  {shadow_found_in_passing()}};
+                                  {fused_wind_shadow_and_saltation()}};
   return table;
 }
 
@@ -74,9 +74,9 @@ std::string describe_pipeline(const Pipeline& pipeline) {
         << "\n     writes  " << list_of(p.writes, "angles of repose") << "\n";
     if (!p.writes_if_in_use.empty())
       out << "     writes where in use  " << list_of(p.writes_if_in_use, "") << "\n";
-    if (stage.kept) out << "     keeps   " << stage.kept->bytes() << " bytes\n";
+    if (stage.workspace) out << "     keeps   " << stage.workspace->bytes() << " bytes\n";
   }
-  const std::vector<std::string> fastest = pipeline.names_of_fastest();
+  const std::vector<std::string> fastest = pipeline.launch_names();
   const std::size_t recorded = pipeline.recordable_stages();
   out << "Started as:";
   for (std::size_t k = 0; k < fastest.size(); ++k) out << (k ? ", " : " ") << fastest[k];

@@ -14,7 +14,7 @@ Process saltation_process();  // sand.cpp
 Process repose_process();
 Process reptation_process();
 Process avalanching_process();
-FusedProcesses shadow_found_in_passing();
+FusedProcesses fused_wind_shadow_and_saltation();
 
 Process rain_process();  // water.cpp
 Process virtual_pipes_process();

@@ -23,19 +23,19 @@ reptation::Angle angle_of_repose(const StepContext& c) {
   return reptation::Angle(c.scenario().reptation, c.scenario().repose, c.fields.repose.data());
 }
 
-/// `shade` finds the wind's shadow first; null where the layer wind_shadow has it already.
+/// `shadow_law` finds the wind's shadow first; null where the layer wind_shadow has it already.
 template <class E>
-void lift_and_deposit(E& e, StepContext& c, const wind_shadow::Shadow* shade) {
+void lift_and_deposit(E& e, StepContext& c, const wind_shadow::Shadow* shadow_law) {
   const Scenario& s = c.scenario();
   saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.state.ledger(),
-                  c.fields.landed.data(), {angle_of_repose(c), c.fields.impact_strength.data()}, shade);
+                  c.fields.landed.data(), {angle_of_repose(c), c.fields.impact_strength.data()}, shadow_law);
 }
 
-void saltate(StepContext& c, Kept*) {
+void saltate(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) { lift_and_deposit(e, c, nullptr); });
 }
 
-void set_angles(StepContext& c, Kept*) {
+void set_angles(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
     reptation::set_angles(e, c.terrain, angle_of_repose(c), c.scenario().repose, nullptr);
   });
@@ -43,7 +43,7 @@ void set_angles(StepContext& c, Kept*) {
 
 // ---- reptation
 
-void creep(StepContext& c, Kept*) {
+void creep(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
     reptation::step(e, c.terrain, s.reptation, c.time_step(), s.seed, c.state.steps,
@@ -96,8 +96,8 @@ void slide_ground(E& e, StepContext& c, AvalancheWork& work) {
   state.soil_loose = state.soil_loose || (state.bedrock_loose && has_soil);
 }
 
-void slide(StepContext& c, Kept* kept) {
-  AvalancheWork& work = kept_as<AvalancheWork>(kept);
+void slide(StepContext& c, ProcessWorkspace* workspace) {
+  AvalancheWork& work = workspace_as<AvalancheWork>(workspace);
   with_backend(c.exec(), [&](auto& e) {
     slide_ground(e, c, work);
     avalanching::step(e, c.terrain, c.scenario().avalanching, c.state.steps, c.fields.repose.data(),
@@ -108,9 +108,9 @@ void slide(StepContext& c, Kept* kept) {
 /// Whether the host waits for nothing in a step of avalanching.
 bool avalanching_can_be_recorded(const SimulationState& state) {
   const AvalanchingParameters& p = state.scenario.avalanching;
-  const bool asks_nothing = p.quality != AvalancheQuality::converged ||
-                            (p.scheme == AvalancheScheme::multilevel && state.exec().can_record_loops());
-  return asks_nothing && !state.bedrock_loose && !state.soil_loose;
+  const bool needs_no_readback = p.quality != AvalancheQuality::converged ||
+                                 (p.scheme == AvalancheScheme::multilevel && state.exec().can_record_loops());
+  return needs_no_readback && !state.bedrock_loose && !state.soil_loose;
 }
 
 /// Passes of avalanching read ground, sand and tangents, and write sand. Each coarse level has a quarter of
@@ -118,13 +118,13 @@ bool avalanching_can_be_recorded(const SimulationState& state) {
 /// (sand, before and after). The fine grid is read for the first in passing. The last pass writes the
 /// heights. Of quality `converged` this counts the first cycle.
 MemoryTraffic avalanche_traffic(const Scenario& s, const Grid& grid) {
-  constexpr double layer = 4, heights = 1, filling = 4, handing_down = 2;
+  constexpr double layer = 4, heights = 1, restriction = 4, prolongation = 2;
   const avalanching::Schedule plan = avalanching::schedule(s.avalanching, grid);
   const int fine = plan.fine_passes();
   double coarse = 0, cells = 1;
   for (std::size_t n = 1; n < 16; ++n) {
     cells /= 4;
-    coarse += cells * (filling + 4 * plan.coarse_passes(n) + handing_down);
+    coarse += cells * (restriction + 4 * plan.coarse_passes(n) + prolongation);
   }
   const std::string times = fine == 1 ? "" : " x " + std::to_string(fine);
   return {layer * (4 * fine + coarse + heights), "(bedrock, sand, tangents)" + times + "; levels",
@@ -193,17 +193,18 @@ Process avalanching_process() {
   p.reads = {Layer::obstacle, Layer::vegetation, Layer::moisture};
   p.writes = {Layer::sand};
   p.writes_if_in_use = {Layer::bedrock, Layer::soil};
-  keep<AvalancheWork>(p, make_avalanche_work);
+  set_workspace<AvalancheWork>(p, make_avalanche_work);
   p.step = slide;
-  p.adapt = [](const SimulationState& state, Kept* kept) {
-    kept_as<AvalancheWork>(kept).prepare_ground(state);
+  p.adapt = [](const SimulationState& state, ProcessWorkspace* workspace) {
+    workspace_as<AvalancheWork>(workspace).prepare_ground(state);
   };
-  p.counted_iterations = [](const Kept& kept) {
+  p.counted_iterations = [](const ProcessWorkspace& workspace) {
     return static_cast<std::uint64_t>(
-        static_cast<const KeptAs<AvalancheWork>&>(kept).work.sand.counted_iterations());
+        static_cast<const WorkspaceHolder<AvalancheWork>&>(workspace).work.sand.counted_iterations());
   };
-  p.after_step = [](StepContext& c, Kept* kept) {
-    c.state.avalanche_iterations += static_cast<std::uint64_t>(kept_as<AvalancheWork>(kept).sand.iterations);
+  p.after_step = [](StepContext& c, ProcessWorkspace* workspace) {
+    c.state.avalanche_iterations +=
+        static_cast<std::uint64_t>(workspace_as<AvalancheWork>(workspace).sand.iterations);
   };
   p.can_be_recorded = avalanching_can_be_recorded;
   p.traffic = avalanche_traffic;
@@ -212,24 +213,24 @@ Process avalanching_process() {
 
 /// Where starting passes is what takes time, and nothing but saltation asks for the wind's shadow before sand
 /// is lifted, the pass that lifts sand finds it.
-FusedProcesses shadow_found_in_passing() {
+FusedProcesses fused_wind_shadow_and_saltation() {
   FusedProcesses f;
   f.name = "shadow found in passing";
   f.first = "wind_shadow";
   f.second = "saltation";
   f.applies = [](const SimulationState& state) {
-    constexpr int few_cells = 1 << 19;
+    constexpr int max_cells = 1 << 19;
     const bool rows =
         with_backend(state.exec(), [](auto& e) { return vectorises_rows<std::decay_t<decltype(e)>>; });
-    return !rows && state.terrain.grid().cells() <= few_cells && !state.scenario.wind_shadow.curved &&
+    return !rows && state.terrain.grid().cells() <= max_cells && !state.scenario.wind_shadow.curved &&
            !state.scenario.echo_dunes.enabled;
   };
-  f.step = [](StepContext& c, Kept* shadow, Kept*) {
+  f.step = [](StepContext& c, ProcessWorkspace* shadow, ProcessWorkspace*) {
     with_backend(c.exec(), [&](auto& e) {
-      const wind_shadow::Shadow shade =
+      const wind_shadow::Shadow shadow_law =
           wind_shadow::straight_shadow(e, c.terrain, c.scenario().wind_shadow, obstructing_heights(c),
-                                       kept_as<wind_shadow::Workspace>(shadow), nullptr);
-      lift_and_deposit(e, c, &shade);
+                                       workspace_as<wind_shadow::Workspace>(shadow), nullptr);
+      lift_and_deposit(e, c, &shadow_law);
     });
   };
   return f;

@@ -14,9 +14,9 @@ namespace desert_sim {
 
 namespace {
 
-bool there_is_water(const Scenario& s) { return s.has_water(); }
+bool has_water_process(const Scenario& s) { return s.has_water(); }
 /// Amounts of water are whole quanta that depend on the step, or on the deepest water, which is read back.
-bool never(const SimulationState&) { return false; }
+bool cannot_be_recorded(const SimulationState&) { return false; }
 
 /// The level of the sea in quanta above the datum, as far as heights can be counted.
 Quanta sea_level(const SimulationState& state) {
@@ -26,7 +26,7 @@ Quanta sea_level(const SimulationState& state) {
   return static_cast<Quanta>(std::lrint(std::clamp(quanta, -limit, limit)));
 }
 
-void fall(StepContext& c, Kept*) {
+void add_water(StepContext& c, ProcessWorkspace*) {
   const SimulationState& state = c.state;
   const Scenario& s = state.scenario;
   with_backend(c.exec(), [&](auto& e) {
@@ -43,10 +43,11 @@ virtual_pipes::Workspace make_pipes(const SimulationState& state) {
   return {Buffer<float>(state.exec(), static_cast<std::size_t>(state.terrain.grid().cells()))};
 }
 
-void flow(StepContext& c, Kept* kept) {
+void move_water(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
     virtual_pipes::step(e, c.terrain, c.scenario().water, c.time_step(), c.state.time(), sea_level(c.state),
-                        c.state.ledger(), c.fields.landed.data(), kept_as<virtual_pipes::Workspace>(kept));
+                        c.state.ledger(), c.fields.landed.data(),
+                        workspace_as<virtual_pipes::Workspace>(workspace));
   });
 }
 
@@ -54,14 +55,14 @@ hydraulic_erosion::Workspace make_capacity(const SimulationState& state) {
   return {Buffer<float>(state.exec(), static_cast<std::size_t>(state.terrain.grid().cells()))};
 }
 
-void erode(StepContext& c, Kept* kept) {
+void erode(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
     hydraulic_erosion::step(e, c.terrain, c.scenario().hydraulic_erosion, c.time_step(), c.state.ledger(),
-                            kept_as<hydraulic_erosion::Workspace>(kept));
+                            workspace_as<hydraulic_erosion::Workspace>(workspace));
   });
 }
 
-void soak(StepContext& c, Kept*) {
+void update_moisture(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
     moisture::step(e, c.terrain, s.moisture, s.repose.moisture_capacity, c.time_step(), c.state.ledger(),
@@ -69,13 +70,13 @@ void soak(StepContext& c, Kept*) {
   });
 }
 
-void evaporate(StepContext& c, Kept*) {
+void evaporate(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
     water_sources::evaporate(e, c.terrain, c.scenario().water.evaporation, c.time_step(), c.state.ledger());
   });
 }
 
-void dry_and_form(StepContext& c, Kept*) {
+void update_soil(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
     soil::step(e, c.terrain, c.scenario().soil, c.scenario().repose, c.time_step(), c.state.ledger());
   });
@@ -89,11 +90,11 @@ Process rain_process() {
   p.parameters = {"rain", "water"};
   p.source = "Nilles 2025 §3.4.3, 3.4.5, eq. 31";
   p.header = "kernels/water/rain.hpp";
-  p.active = there_is_water;
+  p.active = has_water_process;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand};
   p.writes = {Layer::water};
-  p.step = fall;
-  p.can_be_recorded = never;
+  p.step = add_water;
+  p.can_be_recorded = cannot_be_recorded;
   return p;
 }
 
@@ -103,14 +104,14 @@ Process virtual_pipes_process() {
   p.parameters = {"water"};
   p.source = "Mei 2007, Nilles 2025 §3.4";
   p.header = "kernels/water/virtual_pipes.hpp";
-  p.active = there_is_water;
+  p.active = has_water_process;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::water, Layer::water_flux_x, Layer::water_flux_y, Layer::water_velocity_x,
               Layer::water_velocity_y};
   p.writes_if_in_use = {Layer::suspended_sediment};
-  keep<virtual_pipes::Workspace>(p, make_pipes);
-  p.step = flow;
-  p.can_be_recorded = never;
+  set_workspace<virtual_pipes::Workspace>(p, make_pipes);
+  p.step = move_water;
+  p.can_be_recorded = cannot_be_recorded;
   return p;
 }
 
@@ -125,9 +126,9 @@ Process hydraulic_erosion_process() {
              Layer::vegetation, Layer::erosion_resistance, Layer::obstacle};
   p.writes = {Layer::bedrock, Layer::sand, Layer::suspended_sediment};
   p.writes_if_in_use = {Layer::soil};
-  keep<hydraulic_erosion::Workspace>(p, make_capacity);
+  set_workspace<hydraulic_erosion::Workspace>(p, make_capacity);
   p.step = erode;
-  p.can_be_recorded = never;
+  p.can_be_recorded = cannot_be_recorded;
   return p;
 }
 
@@ -140,8 +141,8 @@ Process moisture_process() {
   p.active = [](const Scenario& s) { return s.moisture.enabled; };
   p.reads = {Layer::soil, Layer::sand, Layer::vegetation};
   p.writes = {Layer::water, Layer::moisture};
-  p.step = soak;
-  p.can_be_recorded = never;
+  p.step = update_moisture;
+  p.can_be_recorded = cannot_be_recorded;
   return p;
 }
 
@@ -151,10 +152,10 @@ Process evaporation_process() {
   p.parameters = {"water"};
   p.source = "Nilles 2025 §3.4.4";
   p.header = "kernels/water/water_sources.hpp";
-  p.active = there_is_water;
+  p.active = has_water_process;
   p.writes = {Layer::water};
   p.step = evaporate;
-  p.can_be_recorded = never;
+  p.can_be_recorded = cannot_be_recorded;
   return p;
 }
 
@@ -168,7 +169,7 @@ Process soil_process() {
   p.reads = {Layer::moisture, Layer::vegetation};
   p.writes = {Layer::soil, Layer::sand};
   p.writes_if_in_use = {Layer::humus};
-  p.step = dry_and_form;
+  p.step = update_soil;
   return p;
 }
 

@@ -53,11 +53,11 @@ WindWork make_wind_work(const SimulationState& state) {
   return work;
 }
 
-void blow(StepContext& c, Kept* kept) {
-  WindWork& work = kept_as<WindWork>(kept);
+void update_wind(StepContext& c, ProcessWorkspace* workspace) {
+  WindWork& work = workspace_as<WindWork>(workspace);
   const SimulationState& s = c.state;
   with_backend(c.exec(), [&](auto& e) {
-    if (c.fields.heights_stale) surface::measure(e, c.terrain, c.fields.heights);
+    if (c.fields.heights_stale) surface::compute_heights(e, c.terrain, c.fields.heights);
     if (work.features)
       wind_features::step(e, c.terrain.grid, work.features, static_cast<float>(s.time()),
                           c.fields.repose.data(), work.perturbation_x.data(), work.perturbation_y.data());
@@ -66,14 +66,14 @@ void blow(StepContext& c, Kept* kept) {
   });
 }
 
-void shade(StepContext& c, Kept* kept) {
+void update_wind_shadow(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
     wind_shadow::step(e, c.terrain, c.scenario().wind_shadow, obstructing_heights(c),
-                      kept_as<wind_shadow::Workspace>(kept));
+                      workspace_as<wind_shadow::Workspace>(workspace));
   });
 }
 
-void find_eddies(StepContext& c, Kept*) {
+void update_echo(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
     echo_dunes::step(e, c.terrain, c.scenario().echo_dunes, c.fields.heights, c.fields.repose.data());
   });
@@ -90,9 +90,11 @@ Process wind_process() {
   p.active = [](const Scenario&) { return true; };
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand};
   p.writes = {Layer::wind_x, Layer::wind_y};
-  keep<WindWork>(p, make_wind_work);
-  p.step = p.refresh = blow;
-  p.adapt = [](const SimulationState& state, Kept* kept) { kept_as<WindWork>(kept).set_features(state); };
+  set_workspace<WindWork>(p, make_wind_work);
+  p.step = p.refresh = update_wind;
+  p.adapt = [](const SimulationState& state, ProcessWorkspace* workspace) {
+    workspace_as<WindWork>(workspace).set_features(state);
+  };
   // The perturbation by local features depends on the time.
   p.can_be_recorded = [](const SimulationState& state) { return state.scenario.wind_features.empty(); };
   p.traffic = [](const Scenario&, const Grid&) {
@@ -110,10 +112,10 @@ Process wind_shadow_process() {
   p.active = [](const Scenario& s) { return s.wind_shadow.enabled; };
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::canopy_height, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::wind_shadow};
-  keep<wind_shadow::Workspace>(p, [](const SimulationState& state) {
+  set_workspace<wind_shadow::Workspace>(p, [](const SimulationState& state) {
     return wind_shadow::make_workspace(state.exec(), state.terrain.grid(), state.scenario.wind_shadow);
   });
-  p.step = p.refresh = shade;
+  p.step = p.refresh = update_wind_shadow;
   p.traffic = [](const Scenario&, const Grid&) {
     return MemoryTraffic{3 * 4, "heights, wind (2) of every other row", "shadow"};
   };
@@ -129,7 +131,7 @@ Process echo_dune_process() {
   p.active = [](const Scenario& s) { return s.echo_dunes.enabled; };
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::echo};
-  p.step = p.refresh = find_eddies;
+  p.step = p.refresh = update_echo;
   p.traffic = [](const Scenario&, const Grid&) {
     return MemoryTraffic{6 * 4, "heights, wind (2); cliffs", "cliffs; echo"};
   };

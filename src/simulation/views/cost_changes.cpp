@@ -21,7 +21,7 @@ void unpack(CostChanges& changes, Staging::Slot& slot, const Tiling& rows, const
             bool whole) {
   const auto* found = reinterpret_cast<const BoundingBox*>(slot.host(sizeof(BoundingBox)));
   changes.changed = whole ? recent : found->cells(rows.grid);
-  changes.box = changes.changed.empty() ? CellBox{} : changes.changed.with(recent);
+  changes.box = changes.changed.empty() ? CellBox{} : changes.changed.united_with(recent);
   for (const PackedTile& tile : packed_tiles_in(slot, rows, sizeof(BoundingBox))) {
     const packed_tiles::TileOfGrid& at = tile.place;
     const auto* costs = reinterpret_cast<const std::int8_t*>(tile.cells);
@@ -49,19 +49,19 @@ HeldCosts::HeldCosts(Exec& exec, const Grid& grid)
   held_.upload(std::vector<std::int8_t>(held_.size(), held_costs::no_cost));
 }
 
-TakenCosts HeldCosts::take(Exec& exec, Staging& staging, const CostQuery& query) {
-  TakenCosts taken;
+PendingCosts HeldCosts::begin_copy(Exec& exec, Staging& staging, const CostQuery& query) {
+  PendingCosts pending;
   if (query.update && complete_) {
     with_backend(exec, [&](auto& e) {
       held_costs::find_changed_box(e, packed_tiles::tiling(grid_, tile_side), now_.data(), held_.data(),
                                    query.threshold, changed_.data());
     });
-    taken.update = copy_region(exec, staging, changed_.data(), query.recent);
+    pending.update = copy_region(exec, staging, changed_.data(), query.recent);
   }
   if (query.whole || !complete_)
-    taken.whole = copy_region(exec, staging, nullptr, {0, 0, grid_.width, grid_.height});
+    pending.whole = copy_region(exec, staging, nullptr, {0, 0, grid_.width, grid_.height});
   complete_ = true;
-  return taken;
+  return pending;
 }
 
 /// What changed, with `recent`; `recent` alone if `changed` is null.
@@ -86,7 +86,7 @@ Pending<CostChanges> HeldCosts::copy_region(Exec& exec, Staging& staging, const 
   return {changes, readback};
 }
 
-TakenCosts Views::take_costs(const CostQuery& query) {
+PendingCosts Views::begin_costs(const CostQuery& query) {
   if (!query.update && !query.whole) return {};
   if (!costs_) costs_ = HeldCosts(state_.exec(), state_.terrain.grid());
   with_backend(state_.exec(), [&](auto& e) {
@@ -94,7 +94,7 @@ TakenCosts Views::take_costs(const CostQuery& query) {
     held_costs::compute_costs(e, state_.terrain.view(), state_.scenario.traversability,
                               state_.scenario.repose, costs_.now());
   });
-  return costs_.take(state_.exec(), staging_, query);
+  return costs_.begin_copy(state_.exec(), staging_, query);
 }
 
 }  // namespace desert_sim

@@ -32,7 +32,7 @@ struct CostChanges {
 };
 
 /// Null what was not asked for. An update where nothing is held is a whole map.
-struct TakenCosts {
+struct PendingCosts {
   Pending<CostChanges> update, whole;
 };
 
@@ -45,8 +45,8 @@ class HeldCosts {
   /// What laws write the costs of now to, row-major.
   std::int8_t* now() const { return now_.data(); }
   std::size_t bytes() const { return now_.bytes() + held_.bytes() + changed_.bytes(); }
-  /// Of the costs of now; see Simulation::take_costs().
-  TakenCosts take(Exec& exec, Staging& staging, const CostQuery& query);
+  /// Of the costs of now; see Simulation::begin_costs().
+  PendingCosts begin_copy(Exec& exec, Staging& staging, const CostQuery& query);
 
  private:
   Pending<CostChanges> copy_region(Exec& exec, Staging& staging, const held_costs::BoundingBox* changed,

@@ -44,8 +44,9 @@ void Views::hold_elevation() {
   });
 }
 
-Pending<ElevationChanges> Views::take_elevation_changes(double threshold, int tile) {
-  if (!held_elevation_) throw StateError("changes of the elevation were asked for, but none is held");
+Pending<ElevationChanges> Views::begin_elevation_changes(double threshold, int tile) {
+  if (!held_elevation_)
+    throw StateError("changes of the elevation were requested, but no held elevation exists");
   auto changes = std::make_shared<ElevationChanges>();
   auto readback = std::make_shared<Readback>();
   TileTransfer transfer;

@@ -18,7 +18,7 @@ const std::vector<float>* Snapshot::find(Layer layer) const {
 namespace {
 
 /// What a band comes to on this grid.
-RowBand held_to(const RowBand& band, const Grid& grid) {
+RowBand clamp_band(const RowBand& band, const Grid& grid) {
   if (band.count <= 0 || (grid.periodic_y && band.count >= grid.height)) return {0, grid.height};
   if (grid.periodic_y) return band;
   const int first = clamp_index(band.first, grid.height);
@@ -34,7 +34,8 @@ bool Views::shows(Layer layer) const {
   return on_request(layer) || state_.terrain.has(layer);
 }
 
-std::shared_ptr<Snapshot> Views::frame_of(const std::vector<Layer>& layers, const RowBand& rows) const {
+std::shared_ptr<Snapshot> Views::make_empty_snapshot(const std::vector<Layer>& layers,
+                                                     const RowBand& rows) const {
   auto s = std::make_shared<Snapshot>();
   const GridParameters& g = state_.scenario.grid;
   const Grid& grid = state_.terrain.grid();
@@ -49,14 +50,14 @@ std::shared_ptr<Snapshot> Views::frame_of(const std::vector<Layer>& layers, cons
   s->time = state_.time();
   s->wind_above = state_.wind_above();
   for (const Species& species : state_.scenario.species)
-    s->crown_colours.push_back(crown_colour(species.look));
+    s->crown_colours.push_back(crown_colour(species.appearance));
   for (Layer layer : layers) s->layers[layer];
   return s;
 }
 
 PendingSnapshot Views::begin_snapshot(const std::vector<Layer>& layers, const RowBand& band) {
-  const RowBand rows = held_to(band, state_.terrain.grid());
-  const std::shared_ptr<Snapshot> snapshot = frame_of(layers, rows);
+  const RowBand rows = clamp_band(band, state_.terrain.grid());
+  const std::shared_ptr<Snapshot> snapshot = make_empty_snapshot(layers, rows);
   pipeline_.refresh_derived();
   if (std::any_of(layers.begin(), layers.end(), on_request)) compute_requested_layers(layers, rows);
   auto readback = std::make_shared<Readback>();
@@ -74,7 +75,7 @@ void Views::send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowBand& 
                       const std::shared_ptr<Readback>& readback) {
   const std::size_t cells = static_cast<std::size_t>(snapshot->width) * static_cast<std::size_t>(rows.count),
                     bytes = snapshot->layers.size() * cells * sizeof(float);
-  Staging::Slot& slot = staging_.next(bytes);
+  Staging::Slot& slot = staging_.acquire(bytes);
   float* to = reinterpret_cast<float*>(slot.device());
   for (const auto& entry : snapshot->layers) {
     const Layer layer = entry.first;
@@ -111,7 +112,7 @@ PendingPlants Views::begin_plants() {
   for (int first = 0; first < state_.plants.count; first += most) {
     const int count = std::min(most, state_.plants.count - first);
     const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(plants::PlantRecord);
-    Staging::Slot& slot = staging_.next(bytes);
+    Staging::Slot& slot = staging_.acquire(bytes);
     with_backend(state_.exec(), [&](auto& e) {
       plants::export_plants(e, state_.plants.plants(), state_.terrain.metres(Layer::bedrock), first, count,
                             reinterpret_cast<plants::PlantRecord*>(slot.device()));
@@ -129,7 +130,7 @@ PendingPlants Views::begin_plants() {
 
 void Views::compute_requested_layers(const std::vector<Layer>& layers, const RowBand& rows) {
   for (Layer layer : layers)
-    if (on_request(layer)) state_.terrain.require(layer);
+    if (on_request(layer)) state_.terrain.allocate(layer);
   TerrainView view = state_.terrain.view();
   for (const LayerInfo& row : layer_table)
     if (on_request(row.layer) && std::count(layers.begin(), layers.end(), row.layer) == 0)
@@ -148,7 +149,7 @@ void Views::compute_requested_layers(const std::vector<Layer>& layers, const Row
 void Views::release_requested_layers() {
   state_.exec().synchronise();
   for (const LayerInfo& row : layer_table)
-    if (on_request(row.layer)) state_.terrain.use(row.layer, false);
+    if (on_request(row.layer)) state_.terrain.set_allocated(row.layer, false);
 }
 
 std::vector<MemoryPart> Views::memory() const {

@@ -17,8 +17,8 @@ const char* Staging::Slot::host(std::size_t bytes) {
   return to;
 }
 
-void Staging::Slot::vacate() {
-  if (reader_) reader_->bring_home(this);
+void Staging::Slot::finish_reading() {
+  if (reader_) reader_->read_back(this);
   reader_.reset();
 }
 
@@ -67,12 +67,12 @@ std::size_t Staging::bytes() const {
   return total;
 }
 
-Staging::Slot& Staging::next(std::size_t bytes) {
-  Slot& slot = slots_[turn_];
-  turn_ = 1 - turn_;
-  slot.vacate();
+Staging::Slot& Staging::acquire(std::size_t bytes) {
+  Slot& slot = slots_[next_slot_];
+  next_slot_ = 1 - next_slot_;
+  slot.finish_reading();
   slot.reserve(*exec_, bytes);
-  if (slot.copy_) exec_->follow(*slot.copy_);
+  if (slot.copy_) exec_->wait_on_device_for(*slot.copy_);
   return slot;
 }
 
@@ -85,7 +85,7 @@ void Staging::send(Slot& slot, std::size_t bytes, const std::shared_ptr<Readback
 }
 
 void Staging::release() {
-  for (Slot& slot : slots_) slot.vacate();
+  for (Slot& slot : slots_) slot.finish_reading();
   for (Slot& slot : slots_) slot.release();
 }
 
@@ -97,12 +97,12 @@ void Readback::add(Piece piece) {
 }
 
 void Readback::wait() {
-  bring_home(nullptr);
+  read_back(nullptr);
   const std::lock_guard<std::mutex> lock(mutex_);
   if (failure_) std::rethrow_exception(failure_);
 }
 
-void Readback::bring_home(const Staging::Slot* last) {
+void Readback::read_back(const Staging::Slot* last) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const bool waits = std::any_of(pieces_.begin(), pieces_.end(),
                                  [last](const Piece& piece) { return !last || piece.slot == last; });

@@ -34,7 +34,7 @@ class Staging {
     friend class Staging;
     friend class Readback;
     using HostMemory = std::unique_ptr<char, std::function<void(char*)>>;
-    void vacate();
+    void finish_reading();
     void reserve(Exec& exec, std::size_t bytes);
     void release();
 
@@ -58,7 +58,7 @@ class Staging {
 
   /// A slot with room for so much, which laws that are started next may write to. Throws ConfigError if there
   /// is no memory.
-  Slot& next(std::size_t bytes);
+  Slot& acquire(std::size_t bytes);
   /// What laws have written to the slot is a piece of what `reader` waits for. Its first `bytes` are copied
   /// now, more only if `unpack` asks for more.
   void send(Slot& slot, std::size_t bytes, const std::shared_ptr<Readback>& reader, Unpack unpack);
@@ -69,7 +69,7 @@ class Staging {
   Exec* exec_;
   std::size_t slot_bytes_;
   Slot slots_[2];
-  int turn_ = 0;
+  int next_slot_ = 0;
 };
 
 /// A result that is under way in pieces.
@@ -86,7 +86,7 @@ class Readback {
   };
   void add(Piece piece);
   /// In order, up to the one in this slot; all of them if it is null.
-  void bring_home(const Staging::Slot* last);
+  void read_back(const Staging::Slot* last);
 
   std::mutex mutex_;
   std::deque<Piece> pieces_;

@@ -10,9 +10,9 @@ using namespace packed_tiles;
 namespace {
 
 /// Copied before anybody knows how much there is; takes a few microseconds.
-constexpr std::size_t at_first = std::size_t{256} << 10;
+constexpr std::size_t initial_bytes = std::size_t{256} << 10;
 /// Of tiles at a time: a GPU takes no more.
-constexpr std::size_t most_rows = 65535;
+constexpr std::size_t max_rows = 65535;
 
 template <class T>
 T read(const char* from) {
@@ -36,13 +36,13 @@ std::size_t bytes_of(const TileTransfer& transfer, const Tiling& rows) {
 void send_tiles(Staging& staging, const TileTransfer& transfer, const std::shared_ptr<Readback>& readback) {
   const Tiling& all = transfer.tiles;
   const std::size_t row_bytes = bytes_of(transfer, {all.grid, all.side, 0, 1});
-  const int most = static_cast<int>(std::clamp<std::size_t>(staging.slot_bytes() / row_bytes, 1, most_rows));
+  const int most = static_cast<int>(std::clamp<std::size_t>(staging.slot_bytes() / row_bytes, 1, max_rows));
   for (int row = 0; row < all.row_count; row += most) {
     const Tiling rows{all.grid, all.side, row, std::min(most, all.row_count - row)};
     const std::size_t bytes = bytes_of(transfer, rows);
-    Staging::Slot& slot = staging.next(bytes);
+    Staging::Slot& slot = staging.acquire(bytes);
     transfer.pack(rows, slot.device());
-    staging.send(slot, std::min(bytes, at_first), readback,
+    staging.send(slot, std::min(bytes, initial_bytes), readback,
                  [unpack = transfer.unpack, rows](Staging::Slot& arrived) { unpack(arrived, rows); });
   }
 }

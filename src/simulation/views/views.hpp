@@ -37,11 +37,11 @@ class Views {
   /// Starts a copy of the cells whose elevation differs by more than `threshold` [m] from what is held, which
   /// then is held: whoever drops the answer lacks them from then on. `tile`: cells on a side of a tile.
   /// Throws StateError if nothing is held.
-  Pending<ElevationChanges> take_elevation_changes(double threshold, int tile);
+  Pending<ElevationChanges> begin_elevation_changes(double threshold, int tile);
 
   /// Starts a copy of what subscribers lack of the costs of the terrain, for the rover of the scenario's
   /// section `traversability`; it is held then: whoever drops the answer lacks it from then on.
-  TakenCosts take_costs(const CostQuery& query);
+  PendingCosts begin_costs(const CostQuery& query);
   void forget_costs() { costs_ = {}; }
 
   /// Memory through which copies go to the host.
@@ -50,7 +50,7 @@ class Views {
 
  private:
   /// A snapshot whose layers are there and empty.
-  std::shared_ptr<Snapshot> frame_of(const std::vector<Layer>& layers, const RowBand& rows) const;
+  std::shared_ptr<Snapshot> make_empty_snapshot(const std::vector<Layer>& layers, const RowBand& rows) const;
   /// Computes those of `layers` that exist on request, in a band that lies on the terrain.
   void compute_requested_layers(const std::vector<Layer>& layers, const RowBand& rows);
   /// Starts the copy of some rows of the snapshot's layers, which are appended to what it has.
