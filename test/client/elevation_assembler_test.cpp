@@ -170,7 +170,7 @@ TEST_F(Assembler, ARestartWithTheSameNumbersIsNoticed) {
   take(keyframe(1, 100));
   for (std::uint32_t n = 1; n < 9; ++n) assembler_.process(update(1, n, 100 + n, 5));
   assembler_.process(update(1, 3, 203, 6));
-  expect_gap("update 3 of keyframe 1 came after update 8");
+  expect_gap("update 3 of keyframe 1 arrived after update 8");
   take(keyframe(1, 202, 130, 70, 4));
   EXPECT_EQ(assembler_.need(), KeyframeNeed::lost) << "updates 1 and 2 were never here";
   EXPECT_EQ(counts().gaps, 2u);

@@ -191,9 +191,9 @@ TEST_F(ForeignBags, WithTwoTopicsOrNoMapAreRefused) {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     bag.write("/words", ros::Time(10), std_msgs::Header());
   }
-  EXPECT_NE(refusal().find("no grid_map_msgs/GridMap in it (it has: std_msgs/Header)"), std::string::npos);
+  EXPECT_NE(refusal().find("contains no grid_map_msgs/GridMap (it contains: std_msgs/Header)"), std::string::npos);
   rosbag::Bag(path_, rosbag::bagmode::Write).close();
-  EXPECT_NE(refusal().find("no grid_map_msgs/GridMap in it"), std::string::npos);
+  EXPECT_NE(refusal().find("contains no grid_map_msgs/GridMap"), std::string::npos);
 }
 
 TEST_F(ForeignBags, OfAnotherDefinitionAreRefused) {

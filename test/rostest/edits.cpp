@@ -305,9 +305,9 @@ TEST_F(Edits, RefusesShapesThatAreNone) {
       polygon, [](auto& r) { r.header.frame_id = "nowhere"; }, "'nowhere'", "'terrain'");
   const EditTerrain::Request circle = a_shape("circle");
   refused(
-      circle, [](auto& r) { r.layer = "soil"; }, "soil", "none");
+      circle, [](auto& r) { r.layer = "soil"; }, "soil", "this terrain has no layer soil");
   refused(
-      circle, [](auto& r) { r.layer = "water"; }, "water", "none");
+      circle, [](auto& r) { r.layer = "water"; }, "water", "this terrain has no layer water");
   refused(
       circle, [](auto& r) { r.layer = "snow"; }, "'snow'", "sand, bedrock, soil, water");
   refused(
@@ -350,8 +350,8 @@ TEST_F(Edits, RefusesImagesThatDoNotFit) {
   refused([](auto& r) { r.image.width = r.image.height = 0xffffffffu; }, "4294967295", "1048576");
   refused([](auto& r) { r.image.data.pop_back(); }, "3 bytes", "4");
   refused([](auto& r) { r.image.data.push_back(0); }, "5 bytes", "4");
-  refused([](auto& r) { r.image.step = 1; }, "image.step: = 1", "from 2");
-  refused([](auto& r) { r.image.encoding = "mono16"; }, "image.step: = 2", "from 4");
+  refused([](auto& r) { r.image.step = 1; }, "image.step: = 1", "at least 2");
+  refused([](auto& r) { r.image.encoding = "mono16"; }, "image.step: = 2", "at least 4");
   refused([](auto& r) { r.image_use = "stamp"; }, "'stamp'", "heights, mask");
   refused([](auto& r) { r.image_scale = not_a_number; }, "image_scale: = nan", "finite");
   refused([](auto& r) { r.image_scale = 1e300; }, "column 0, row 0: = inf", "100000");

@@ -61,7 +61,7 @@ TEST_F(Services, SetWeatherTakesSpringsAndTheSea) {
 
 TEST_F(Services, SetWeatherRefuses) {
   SetWeather::Request request;
-  expect_refused<SetWeather>("set_weather", request, "change", "nothing");
+  expect_refused<SetWeather>("set_weather", request, "change", "is empty");
   request.change = {"snow"};
   expect_refused<SetWeather>("set_weather", request, "change: 'snow'", "rain_rate");
   request.change = {"rain_rate"};
