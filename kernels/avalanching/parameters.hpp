@@ -40,11 +40,11 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
       parameter("last_passes", &P::last_passes, 0, 16, "1",
                 "Passes over the fine grid after the coarse levels, each with the sweeps of large "
                 "grids; 0: by quality and grid."),
-      parameter("sweeps", &P::sweeps, 1, 100000, "1",
+      parameter("sweeps", &P::sweeps, 1, 1000, "1",
                 "Sweeps a step of the schemes sweeps and taylor_keyser, unless converged."),
       parameter("tolerance", &P::tolerance, 1e-6, 1, "1",
                 "Largest excess that counts as converged, in cell sizes; multilevel gets to 2e-4."),
-      parameter("max_iterations", &P::max_iterations, 1, 1000000, "1",
+      parameter("max_iterations", &P::max_iterations, 1, 20000, "1",
                 "Most fine sweeps a step when converging."),
       parameter("soil", &P::soil, "Whether steep soil slides, where it changed."),
       parameter("bedrock", &P::bedrock, "Whether steep bedrock breaks, where it changed."),

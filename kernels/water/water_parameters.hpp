@@ -53,7 +53,7 @@ constexpr auto parameter_table(const WaterParameters*) {
       parameter("drag", &P::drag, 0, 10, "1",
                 "Drag of the bed, which holds shallow water most (c_f): 0.002 of mud, 0.01 of sand, 0.05 of "
                 "stones; 0: none."),
-      parameter("most_substeps", &P::most_substeps, 1, 10000, "1",
+      parameter("most_substeps", &P::most_substeps, 1, 256, "1",
                 "Most parts that a step is divided into; waves on water that would need more travel slower."),
       parameter("evaporation", &P::evaporation, 0, 10, "1/s",
                 "Share of standing water that evaporates a second."),

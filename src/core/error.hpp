@@ -7,9 +7,20 @@
 
 namespace desert_sim {
 
+/// Messages hold at most so many bytes, because what they quote can come from a file or a request of any size.
+constexpr std::size_t max_message_size = 2000;
+
+/// `message`, cut to max_message_size bytes; what is left out is said at its end.
+inline std::string limited_message(const std::string& message) {
+  if (message.size() <= max_message_size) return message;
+  constexpr std::size_t kept = max_message_size - 60;
+  return message.substr(0, kept) + " ... (" + std::to_string(message.size() - kept) +
+         " more bytes are left out)";
+}
+
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit Error(const std::string& message) : std::runtime_error(limited_message(message)) {}
 };
 
 /// Invalid input: a scenario, raster, command or checkpoint. Nothing has been changed when it is thrown.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "kernels/field/statistics.hpp"
 #include "src/core/constants.hpp"
@@ -38,9 +39,41 @@ Terrain build(Exec& exec, const Scenario& scenario, const RasterLoader& load_ras
   return terrain;
 }
 
+/// The fastest wind that the regime and the speed-up over hills can bring [m/s].
+double fastest_wind(const Scenario& s) {
+  double fastest = s.wind_regime.speed;
+  for (const WindSegment& segment : s.wind_segments)
+    fastest = std::max(fastest, static_cast<double>(segment.speed));
+  return fastest * s.wind.speedup_highest;
+}
+
+/// Sub-steps that follow from other parameters are bounded, so that a step cannot take for ever.
+void require_bounded_cost(const Scenario& s) {
+  ValidationErrors errors(s.name);
+  const double step = s.run.time_step, cell = s.grid.cell_size;
+  const auto check = [&](const char* key, double value, const char* unit, double substeps, int most) {
+    if (substeps <= most) return;
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "= %g %s needs %.0f sub-steps a step with cells of %g m and steps of %g s (allowed: at most %d, "
+        "which %g %s needs)",
+        value, unit, std::ceil(substeps), cell, step, most, value * most / substeps, unit);
+    errors.add(key, text);
+  };
+  if (s.moisture.enabled)
+    check("moisture.diffusion", s.moisture.diffusion, "m^2/s",
+          4 * s.moisture.diffusion * step / (cell * cell), 64);
+  if (s.reptation.method == ReptationMethod::smoothing)  // the shelter is at most 1
+    check("reptation.strength", s.reptation.strength, "s/m^2",
+          2 * s.reptation.strength * step / cell * fastest_wind(s), 256);
+  errors.throw_if_any();
+}
+
 }  // namespace
 
 void require_reach(const Scenario& s) {
+  require_bounded_cost(s);
   ValidationErrors errors(s.name);
   const auto check = [&](const char* key, double metres) {
     const double cells = metres / s.grid.cell_size;
@@ -54,10 +87,7 @@ void require_reach(const Scenario& s) {
   const double steepness = std::tan(s.echo_dunes.cliff_deg * pi / 180.0);
   if (s.echo_dunes.enabled)  // from the top of a cliff to its foot
     check("echo_dunes.highest", s.echo_dunes.highest / steepness);
-  double fastest = s.wind_regime.speed;
-  for (const WindSegment& segment : s.wind_segments)
-    fastest = std::max(fastest, static_cast<double>(segment.speed));
-  check("run.time_step", fastest * s.wind.speedup_highest * s.run.time_step);
+  check("run.time_step", fastest_wind(s) * s.run.time_step);
   errors.throw_if_any();
 }
 

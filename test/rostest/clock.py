@@ -7,9 +7,12 @@ import unittest
 import rospy
 import rostest
 from desert_sim.msg import ElevationGrid, SimulationStatus
-from desert_sim.srv import Step
+from desert_sim.srv import QueryTerrain, Step
+from geometry_msgs.msg import Point, TransformStamped
 from patience import PATIENCE
 from rosgraph_msgs.msg import Clock
+from std_msgs.msg import Header
+from tf2_msgs.msg import TFMessage
 
 
 class FollowsTheClock(unittest.TestCase):
@@ -67,6 +70,23 @@ class FollowsTheClock(unittest.TestCase):
         self.clock.publish(Clock(rospy.Time.from_sec(100000)))
         self.assertLess(self.steps() - after_two_seconds, 30, "a jump ahead is not caught up")
         self.wait_for(lambda s: s.lag > 1000, "but told as lag")
+        self.jump_by_a_century()
+
+    def jump_by_a_century(self):
+        """A difference of times that a ros::Duration cannot hold; transforms come all the while."""
+        transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        for seconds in (4e9, 10, 4.2e9, 20):
+            for _ in range(10):
+                self.clock.publish(Clock(rospy.Time.from_sec(seconds)))
+                transform = TransformStamped()
+                transform.header.stamp = rospy.Time.from_sec(seconds)
+                transform.header.frame_id, transform.child_frame_id = "map", "rover"
+                transform.transform.rotation.w = 1
+                transforms.publish(TFMessage([transform]))
+                time.sleep(0.02)
+        header = Header(frame_id="rover")
+        answer = rospy.ServiceProxy("/desert_sim/query_terrain", QueryTerrain)(header, [Point(20, 20, 0)])
+        self.assertTrue(answer.success, answer.message)
 
 
 if __name__ == "__main__":

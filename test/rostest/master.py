@@ -13,6 +13,7 @@ import rospy
 import rostest
 from desert_sim.msg import ElevationUpdate, SimulationStatus
 from desert_sim.srv import QueryTerrain, Step
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Point
 from lifecycle import CORNER, Scenarios, wait_until
 from resume import autosaves
@@ -53,9 +54,10 @@ class Master(Scenarios):
         self.journal = self.path("journal.yaml")
         self.node = self.start("orphan", {"scenario": CORNER, "paused": False, "step_rate": 20, "status_rate": 20,
                                           "journal": self.journal, "data_dir": self.folder, "autosave_period": 0.2})
-        self.updates, self.statuses = [], []
+        self.updates, self.statuses, self.diagnostics = [], [], {}
         self.subscribers = [rospy.Subscriber("/orphan/elevation_updates", ElevationUpdate, self.updates.append),
-                            rospy.Subscriber("/orphan/status", SimulationStatus, self.statuses.append)]
+                            rospy.Subscriber("/orphan/status", SimulationStatus, self.statuses.append),
+                            rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics)]
         # A call over a new connection looks the service up at the master.
         self.query = rospy.ServiceProxy("/orphan/query_terrain", QueryTerrain, persistent=True)
         self.steps = rospy.ServiceProxy("/orphan/step", Step, persistent=True)
@@ -63,6 +65,7 @@ class Master(Scenarios):
         self.reload = rospy.ServiceProxy("/orphan/reload_parameters", Trigger, persistent=True)
         wait_until(self.started, "it does not start")
         self.go_on()
+        wait_until(lambda: self.health("master") == DiagnosticStatus.OK, "diagnostics do not say that the master is there")
 
     def tearDown(self):
         for subscriber in self.subscribers:
@@ -77,6 +80,13 @@ class Master(Scenarios):
                 self.node.call("resume", Trigger).success
         except rospy.ServiceException:
             return False
+
+    def on_diagnostics(self, message):
+        for status in message.status:
+            self.diagnostics[status.name] = status.level
+
+    def health(self, part):
+        return self.diagnostics.get("orphan: " + part)
 
     def go_on(self):
         """The node steps, and tells those who are connected."""
@@ -104,8 +114,11 @@ class Master(Scenarios):
         answer = self.reload()
         self.assertFalse(answer.success, "the parameters are gone with the master, which is no wish to change them")
         self.assertIn("master", answer.message)
+        wait_until(lambda: self.health("master") == DiagnosticStatus.WARN, "diagnostics do not say that the master is gone")
         MASTER.start()
         self.go_on()
+        wait_until(lambda: self.health("master") == DiagnosticStatus.ERROR,
+                   "diagnostics do not say that the new master does not know the node")
         print("steps a second: %.1f with a master, %.1f without" % (before, without))
         self.assertEqual(self.node.end(signal.SIGTERM)[0], 0, self.node.output)
 

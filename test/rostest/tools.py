@@ -139,7 +139,8 @@ class Tools(unittest.TestCase):
         self.assertIn("'saltation__lift': 0.3", dynparam("get", "/desert_sim"))
 
     def test_tf_echo(self):
-        found = watch(r"Translation: \[([\d.]+), ([\d.]+),", "rosrun", "tf", "tf_echo", "map", "terrain_center")
+        found = watch(r"Translation: \[([\d.]+), ([\d.]+),", "rosrun", "tf", "tf_echo", "map",
+                      "desert_sim/terrain_center")
         self.assertEqual((float(found[1]), float(found[2])), (10 + 64, -20 + 48))
 
     # ---- bags; test bags plays them

@@ -87,13 +87,14 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   publisher_ = std::make_unique<TopicPublisher>(node_, setup.publishers, *frames_, *simulation_);
   publisher_to_notify_ = publisher_.get();
   try {
-    services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *publisher_, *frames_, *files_);
+    services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *publisher_, *frames_, *files_,
+                                           p.answer_timeout);
     if (p.autosave_period > 0)
       autosave_ = std::make_unique<Autosave>(autosaves, p.autosave_period, *simulation_);
     diagnostics_ =
         std::make_unique<Diagnostics>(node_, p.diagnostic_period, *simulation_, *publisher_, autosave_.get());
     cmd_wind_ = std::make_unique<CmdWindSubscriber>(node_, *simulation_, *frames_);
-    reconfigure_ = std::make_unique<Reconfigure>(node_, *simulation_, *publisher_);
+    reconfigure_ = std::make_unique<Reconfigure>(node_, *simulation_, *publisher_, p.answer_timeout);
     reload_ = std::make_unique<ParameterReload>(
         node_, setup, *simulation_, *publisher_, [this](const Scenario& scenario) {
           if (autosave_) autosave_->set_files(AutosaveFiles(*files_, node_.getNamespace(), scenario));

@@ -1,5 +1,9 @@
 #include "src/ros/node/diagnostics.hpp"
 
+#include <ros/console.h>
+#include <ros/master.h>
+#include <ros/this_node.h>
+#include <ros/xmlrpc_manager.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -12,6 +16,7 @@ namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 constexpr auto answer_timeout = std::chrono::seconds(2);
+constexpr auto master_period = std::chrono::seconds(2);
 constexpr int slow_periods = 3;
 constexpr const char* states[] = {"running", "paused", "waiting for /clock"};
 
@@ -44,10 +49,12 @@ Diagnostics::Diagnostics(ros::NodeHandle node, double period, SimulationThread& 
   updater_.add("memory", [this](Status& status) { check_memory(status); });
   updater_.add("topics", [this](Status& status) { check_topics(status); });
   updater_.add("autosave", [this](Status& status) { check_autosave(status); });
+  updater_.add("master", [this](Status& status) { check_master(status); });
   timer_ = node.createWallTimer(ros::WallDuration(period), [this](const ros::WallTimerEvent&) { update(); });
 }
 
 void Diagnostics::update() {
+  ask_master();
   if (diagnostics_.getNumSubscribers() == 0) return;
   report_.reset();
   try {
@@ -156,6 +163,38 @@ void Diagnostics::check_autosave(Status& status) const {
   else
     status.summary(DiagnosticStatus::OK, s.path.empty() ? "autosave is on; no file has been written yet"
                                                         : "the last autosave succeeded");
+}
+
+void Diagnostics::ask_master() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - asked_master_ < master_period) return;
+  asked_master_ = now;
+  XmlRpc::XmlRpcValue request, response, own_uri;
+  request[0] = request[1] = ros::this_node::getName();
+  const Master before = master_;
+  if (!ros::master::check())
+    master_ = Master::does_not_answer;
+  else if (ros::master::execute("lookupNode", request, response, own_uri, false) &&
+           own_uri.getType() == XmlRpc::XmlRpcValue::TypeString &&
+           static_cast<std::string>(own_uri) == ros::XMLRPCManager::instance()->getServerURI())
+    master_ = Master::knows_node;
+  else
+    master_ = Master::does_not_know_node;
+  if (master_ != before && master_ == Master::does_not_know_node)
+    ROS_ERROR("The ROS master was started anew and does not know this node: start the node anew, too.");
+}
+
+void Diagnostics::check_master(Status& status) const {
+  status.add("ROS_MASTER_URI", ros::master::getURI());
+  if (master_ == Master::knows_node)
+    status.summary(DiagnosticStatus::OK, "the ROS master knows this node");
+  else if (master_ == Master::does_not_answer)
+    status.summary(
+        DiagnosticStatus::WARN,
+        "the ROS master does not answer: nodes that are connected are served, others find nothing");
+  else
+    status.summary(DiagnosticStatus::ERROR,
+                   "the ROS master was started anew and does not know this node: start the node anew, too");
 }
 
 }  // namespace desert_sim

@@ -8,11 +8,15 @@
 ///   topics        WARN: one had less than half its rate for 3 periods, or cannot be published, for want of a
 ///                 transform, say. ERROR: publishing has failed
 ///   autosave      WARN: there was none for two periods. ERROR: the last one could not be written
+///   master        WARN: the ROS master does not answer. ERROR: it does not know the node, because it was started
+///                 anew: nobody finds the node's topics and services until the node is started anew, too. roscpp
+///                 registers only once
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 #include <ros/wall_timer.h>
 
+#include <chrono>
 #include <map>
 #include <optional>
 #include <string>
@@ -26,7 +30,7 @@ namespace desert_sim {
 class Diagnostics {
  public:
   /// Publishes every `period` seconds of wall time, on the callback queue of `node`; without subscribers it
-  /// does nothing. `autosave` may be null.
+  /// only asks the master, for the log. `autosave` may be null.
   Diagnostics(ros::NodeHandle node, double period, SimulationThread& simulation,
               const TopicPublisher& publisher, const Autosave* autosave);
 
@@ -38,6 +42,8 @@ class Diagnostics {
   void check_memory(Status& status) const;
   void check_topics(Status& status);
   void check_autosave(Status& status) const;
+  void check_master(Status& status) const;
+  void ask_master();
 
   SimulationThread& simulation_;
   const TopicPublisher& publisher_;
@@ -46,6 +52,9 @@ class Diagnostics {
   ros::Publisher diagnostics_;          ///< a second publisher of /diagnostics, to ask for its subscribers
   std::optional<StatusReport> report_;  ///< none if there was no answer in time
   std::map<std::string, int> slow_;     ///< by topic, the number of periods in a row with too few messages
+  enum class Master { knows_node, does_not_answer, does_not_know_node };
+  Master master_ = Master::knows_node;
+  std::chrono::steady_clock::time_point asked_master_;
   ros::WallTimer timer_;
 };
 

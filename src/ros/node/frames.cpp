@@ -1,7 +1,9 @@
 #include "src/ros/node/frames.hpp"
 
+#include <ros/console.h>
 #include <ros/init.h>
 #include <ros/names.h>
+#include <ros/node_handle.h>
 #include <tf2/LinearMath/Quaternion.h>
 
 #include <chrono>
@@ -33,7 +35,39 @@ void check_frame(std::string& frame, const std::string& key, ValidationErrors& e
     errors.add(key, "'" + frame + "' is not a valid frame name" + (reason.empty() ? "" : ": " + reason));
 }
 
-Frames::Frames(std::string terrain_frame) : terrain_frame_(std::move(terrain_frame)), listener_(buffer_) {}
+Frames::Frames(std::string terrain_frame) : terrain_frame_(std::move(terrain_frame)) {
+  ros::NodeHandle node;
+  node.setCallbackQueue(&queue_);
+  const auto subscribe = [&](const char* topic, bool is_static) {
+    const boost::function<void(const TransformEvent&)> callback =
+        [this, is_static](const TransformEvent& event) { receive(event, is_static); };
+    return node.subscribe<tf2_msgs::TFMessage>(topic, 100, callback);
+  };
+  transforms_ = subscribe("/tf", false);
+  static_transforms_ = subscribe("/tf_static", true);
+  spinner_.start();
+}
+
+Frames::~Frames() { spinner_.stop(); }
+
+/// Does what tf2_ros::TransformListener does, which throws out of its thread, and so ends the process, where the
+/// clock goes back by more than 2^31 s.
+void Frames::receive(const TransformEvent& event, bool is_static) {
+  const ros::Time now = ros::Time::now();
+  if (now < last_received_) {
+    ROS_WARN("ROS time has jumped back: the transforms that were received before it are forgotten.");
+    buffer_.clear();
+  }
+  last_received_ = now;
+  for (const geometry_msgs::TransformStamped& transform : event.getConstMessage()->transforms) {
+    try {
+      buffer_.setTransform(transform, event.getPublisherName(), is_static);
+    } catch (const std::exception& e) {
+      ROS_ERROR_THROTTLE(10, "A transform to frame %s is ignored: %s",
+                         quoted(transform.child_frame_id).c_str(), e.what());
+    }
+  }
+}
 
 tf2::Transform Frames::to_terrain(const std_msgs::Header& header) const {
   const std::string& given = header.frame_id;
@@ -43,7 +77,7 @@ tf2::Transform Frames::to_terrain(const std_msgs::Header& header) const {
   while (true) {
     try {
       return transform_of(buffer_.lookupTransform(terrain_frame_, frame, header.stamp));
-    } catch (const tf2::TransformException& e) {
+    } catch (const std::runtime_error& e) {  // of tf2, or of times that are too far apart
       if (std::chrono::steady_clock::now() >= end)
         throw ConfigError("frame " + quoted(given) + " cannot be transformed into the terrain's frame '" +
                           terrain_frame_ + "': " + shortened(e.what()));
@@ -57,7 +91,7 @@ bool Frames::latest_to_terrain(const std::string& frame, tf2::Transform& transfo
   try {
     transform = transform_of(buffer_.lookupTransform(terrain_frame_, frame, ros::Time(0)));
     return true;
-  } catch (const tf2::TransformException& e) {
+  } catch (const std::runtime_error& e) {  // of tf2, or of times that are too far apart
     reason = "frame " + quoted(frame) + " cannot be transformed into the terrain's frame '" + terrain_frame_ +
              "': " + shortened(e.what());
     return false;

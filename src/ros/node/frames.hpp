@@ -2,11 +2,15 @@
 /// Frames: transforms to the terrain's frame, a static frame in the middle of the terrain, and names of
 /// frames.
 
+#include <ros/callback_queue.h>
+#include <ros/message_event.h>
+#include <ros/spinner.h>
+#include <ros/subscriber.h>
 #include <std_msgs/Header.h>
 #include <tf2/LinearMath/Transform.h>
+#include <tf2_msgs/TFMessage.h>
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/static_transform_broadcaster.h>
-#include <tf2_ros/transform_listener.h>
 
 #include <memory>
 #include <string>
@@ -23,8 +27,9 @@ void check_frame(std::string& frame, const std::string& key, ValidationErrors& e
 
 class Frames {
  public:
-  /// Listens to /tf on threads of its own.
+  /// Listens to /tf and /tf_static on a thread of its own.
   explicit Frames(std::string terrain_frame);
+  ~Frames();
   const std::string& terrain_frame() const { return terrain_frame_; }
 
   /// The transform from the header's frame (empty: the terrain's) at its stamp (0: the latest there is) to
@@ -43,9 +48,15 @@ class Frames {
   void move_center(const Snapshot& snapshot);
 
  private:
+  using TransformEvent = ros::MessageEvent<const tf2_msgs::TFMessage>;
+  void receive(const TransformEvent& event, bool is_static);
+
   std::string terrain_frame_;
   tf2_ros::Buffer buffer_;
-  tf2_ros::TransformListener listener_;
+  ros::Time last_received_;  ///< of receive() alone
+  ros::CallbackQueue queue_;
+  ros::Subscriber transforms_, static_transforms_;
+  ros::AsyncSpinner spinner_{1, &queue_};
   std::string center_name_;
   std::unique_ptr<tf2_ros::StaticTransformBroadcaster> broadcaster_;
 };

@@ -1,19 +1,32 @@
 #include "src/ros/node/job_queue.hpp"
 
+#include <algorithm>
+
 namespace desert_sim {
 
-void JobQueue::push(Job job) {
+std::uint64_t JobQueue::push(Job job) {
   std::string reason;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    job.number = ++pushed_;
     if (!closed_) {
       jobs_.push_back(std::move(job));
       changed_.notify_all();
-      return;
+      return pushed_;
     }
     reason = reason_;
   }
   job.reject(std::make_exception_ptr(Error(reason)));
+  return job.number;
+}
+
+bool JobQueue::withdraw(std::uint64_t number) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto job =
+      std::find_if(jobs_.begin(), jobs_.end(), [number](const Job& j) { return j.number == number; });
+  if (job == jobs_.end()) return false;
+  jobs_.erase(job);
+  return true;
 }
 
 bool JobQueue::pop(Job& job) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <future>
@@ -18,6 +19,7 @@ namespace desert_sim {
 struct Job {
   std::function<void()> run;  ///< may throw after it has answered with the same exception
   std::function<void(std::exception_ptr)> reject;
+  std::uint64_t number = 0;  ///< given by the queue
 };
 
 /// Makes a job of `body`, which returns R. Refused input (ConfigError) is only thrown to the thread that
@@ -49,8 +51,10 @@ Job make_job(std::function<R()> body, std::future<R>& answer) {
 /// Many threads put jobs, one takes them. The mutex is not held while a job runs.
 class JobQueue {
  public:
-  /// Once the queue is closed, the job is refused with the reason of close().
-  void push(Job job);
+  /// Returns the job's number. Once the queue is closed, the job is refused with the reason of close().
+  std::uint64_t push(Job job);
+  /// Takes the job of this number out of the queue; false if it has been popped, and may be running.
+  bool withdraw(std::uint64_t number);
   /// The next job, if there is one.
   bool pop(Job& job);
   /// Sleeps until there is a job, the time [s] is over, or the queue is closed.
@@ -63,6 +67,7 @@ class JobQueue {
   mutable std::mutex mutex_;  ///< guards all below
   std::condition_variable changed_;
   std::deque<Job> jobs_;
+  std::uint64_t pushed_ = 0;
   bool closed_ = false;
   std::string reason_;
 };

@@ -181,7 +181,9 @@ NodeSetup read_node_setup(const ros::NodeHandle& private_node) {
   const Settings settings = read_settings(root["settings"], errors);
   const YAML::Node sections = extract_sections(root, known, errors);
   check_frame(setup.node.frame_id, "frame_id", errors);
-  if (!setup.node.center_frame.empty()) check_frame(setup.node.center_frame, "center_frame", errors);
+  std::string& center = setup.node.center_frame;
+  if (!center.empty() && center[0] == '~') center = name + "/" + center.substr(1);
+  if (!center.empty()) check_frame(center, "center_frame", errors);
   errors.throw_if_any();
   setup.scenario = read_scenario(source, setup.node, sections, settings);
   return setup;

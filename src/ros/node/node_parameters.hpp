@@ -18,7 +18,7 @@ constexpr const char* backend_choices[] = {"auto", "cpu", "cuda"};
 struct NodeParameters {
   std::string scenario;
   std::string frame_id = "map";
-  std::string center_frame = "terrain_center";
+  std::string center_frame = "~terrain_center";
   BackendChoice backend = BackendChoice::automatic;
   int threads = 0;
   int niceness = 10;
@@ -30,6 +30,7 @@ struct NodeParameters {
   bool resume = false;
   bool publish_clock = false;
   double diagnostic_period = 1;
+  double answer_timeout = 1;
 };
 constexpr auto parameter_table(const NodeParameters*) {
   using P = NodeParameters;
@@ -38,8 +39,10 @@ constexpr auto parameter_table(const NodeParameters*) {
                 "A file, or the bare name of one in the package's config/scenarios; empty: the scenario's "
                 "sections are parameters."),
       parameter("frame_id", &P::frame_id, "Frame of the terrain."),
-      parameter("center_frame", &P::center_frame,
-                "Static frame that is published in the middle of the terrain, for views; empty: none."),
+      parameter(
+          "center_frame", &P::center_frame,
+          "Static frame that is published in the middle of the terrain, for views; a leading ~ stands for "
+          "the node's name and a slash; empty: none."),
       parameter("backend", &P::backend, backend_choices, "auto takes CUDA where it is usable."),
       parameter("threads", &P::threads, 0, 4096, "1", "Threads of the CPU backend; 0: one a processor."),
       parameter("niceness", &P::niceness, 0, 19, "1",
@@ -60,7 +63,11 @@ constexpr auto parameter_table(const NodeParameters*) {
       parameter("publish_clock", &P::publish_clock,
                 "Whether it publishes simulated time on /clock; it then follows wall time itself."),
       parameter("diagnostic_period", &P::diagnostic_period, 0.01, 1e6, "s",
-                "Of wall time, from one message on /diagnostics to the next."));
+                "Of wall time, from one message on /diagnostics to the next."),
+      parameter(
+          "answer_timeout", &P::answer_timeout, 0, 1e6, "s",
+          "Of wall time: a service whose request has waited so long for a step or another request to end "
+          "refuses it, and changes nothing. 0: it waits. ~step waits for its steps."));
 }
 static_assert(table_is_complete<NodeParameters>());
 

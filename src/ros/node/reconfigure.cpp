@@ -6,6 +6,8 @@
 
 #include <utility>
 
+#include "src/ros/node/service_with_reason.hpp"
+
 namespace desert_sim {
 
 namespace {
@@ -20,8 +22,9 @@ bool same(const dynamic_reconfigure::Config& a, const dynamic_reconfigure::Confi
 
 }  // namespace
 
-Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, TopicPublisher& publisher)
-    : simulation_(simulation), publisher_(publisher) {
+Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, TopicPublisher& publisher,
+                         double answer_timeout)
+    : simulation_(simulation), publisher_(publisher), answer_timeout_(answer_timeout) {
   const LiveParameters defaults = present();
   descriptions_ = node.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true);
   updates_ = node.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true);
@@ -29,7 +32,9 @@ Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Top
   descriptions_.publish(
       boost::make_shared<dynamic_reconfigure::ConfigDescription>(reconfigure_description(defaults)));
   publish(reconfigure_values(defaults));
-  service_ = node.advertiseService("set_parameters", &Reconfigure::set, this);
+  auto options = service_with_reason<dynamic_reconfigure::Reconfigure>(
+      "set_parameters", [this](const Request& request, Response& response) { set(request, response); });
+  service_ = node.advertiseService(options);
   timer_ = node.createWallTimer(ros::WallDuration(check_period),
                                 [this](const ros::WallTimerEvent&) { publish_if_changed(); });
 }
@@ -55,23 +60,20 @@ void Reconfigure::publish(const dynamic_reconfigure::Config& values) {
   publishing_ = false;
 }
 
-bool Reconfigure::set(Request& request, Response& response) {
-  try {
-    const LiveChange change = reconfigure_change(request.config, present());
-    // First what can still be refused.
-    if (!change.settings.empty()) {
-      simulation_.apply(command::SetParameters{change.settings}).get();
-      publisher_.status_changed();
-    }
-    if (change.step_rate != simulation_.step_rate()) simulation_.set_step_rate(change.step_rate).get();
-    publisher_.set_parameters(change.publishers);
-    response.config = reconfigure_values(present());
-    publish(response.config);
-    return true;
-  } catch (const Error& e) {
-    ROS_WARN("%s", e.what());  // the answer has no field for a reason
-    return false;
+void Reconfigure::set(const Request& request, Response& response) {
+  const SimulationThread::Patience patience(answer_timeout_);
+  const LiveChange change = reconfigure_change(request.config, present());
+  // First what can still be refused.
+  if (!change.settings.empty()) {
+    simulation_.apply(command::SetParameters{change.settings}).get();
+    publisher_.status_changed();
   }
+  const SimulationThread::Patience unlimited(
+      0);  // some of it has been applied, and nothing else can be refused
+  if (change.step_rate != simulation_.step_rate()) simulation_.set_step_rate(change.step_rate).get();
+  publisher_.set_parameters(change.publishers);
+  response.config = reconfigure_values(present());
+  publish(response.config);
 }
 
 /// Parameters change not only by set(): commands change the wind, a reset or a checkpoint everything, and

@@ -16,22 +16,25 @@
 namespace desert_sim {
 
 /// A change of the scenario is a command: applied between steps, all of it or nothing, and journalled. A call
-/// that is refused fails, and the log says why. What commands, a reset, a checkpoint or ~reload_parameters
+/// that is refused fails with the reason. What commands, a reset, a checkpoint or ~reload_parameters
 /// change shows in ~parameter_updates.
 class Reconfigure {
  public:
-  Reconfigure(ros::NodeHandle node, SimulationThread& simulation, TopicPublisher& publisher);
+  /// `answer_timeout`: see SimulationThread::Patience.
+  Reconfigure(ros::NodeHandle node, SimulationThread& simulation, TopicPublisher& publisher,
+              double answer_timeout);
 
  private:
   using Request = dynamic_reconfigure::Reconfigure::Request;
   using Response = dynamic_reconfigure::Reconfigure::Response;
-  bool set(Request& request, Response& response);
+  void set(const Request& request, Response& response);
   void publish_if_changed();
   LiveParameters present() const;
   void publish(const dynamic_reconfigure::Config& values);
 
   SimulationThread& simulation_;
   TopicPublisher& publisher_;
+  const double answer_timeout_;            ///< [s]
   std::mutex mutex_;                       ///< guards the next three
   dynamic_reconfigure::Config published_;  ///< what was published last
   dynamic_reconfigure::ConfigConstPtr to_publish_;

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "src/ros/node/job_queue.hpp"
@@ -35,6 +36,22 @@ class SimulationThread {
     /// simulated time [s], at the start and after each step, and steps follow wall time, whatever
     /// use_sim_time says.
     std::function<void(double)> publish_clock;
+  };
+
+  /// While one of these lives, requests of its thread that the simulation has not begun to serve after `seconds`
+  /// are withdrawn: their future then holds ConfigError, and they have changed nothing. Without one, or with 0
+  /// seconds, a request waits as long as a step or another request takes.
+  class Patience {
+   public:
+    explicit Patience(double seconds) : outer_(std::exchange(seconds_, seconds)) {}
+    ~Patience() { seconds_ = outer_; }
+    Patience(const Patience&) = delete;
+    Patience& operator=(const Patience&) = delete;
+    static double seconds() { return seconds_; }
+
+   private:
+    static inline thread_local double seconds_ = 0;
+    const double outer_;
   };
 
   /// Builds the terrain, and then runs. `on_change` is called on the simulation thread after each step and

@@ -1,5 +1,8 @@
 /// SimulationThread: the requests of other threads.
 
+#include <chrono>
+#include <cstdio>
+
 #include "src/io/terrain_files.hpp"
 #include "src/ros/node/simulation_thread.hpp"
 #include "src/simulation/checkpoint.hpp"
@@ -10,6 +13,16 @@ namespace desert_sim {
 namespace {
 
 constexpr double measure_duration = 5;  // [s] after a report
+
+std::string busy_message(double seconds) {
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "the simulation has been busy with a step or another request for %g s (~answer_timeout); this "
+      "request was withdrawn and has changed nothing",
+      seconds);
+  return text;
+}
 
 /// The answer that finish() makes, once `begun` has a copy that is under way. finish() waits for that copy,
 /// on the thread that asks for the answer.
@@ -25,8 +38,18 @@ std::future<Answer> wait_for_copy(std::future<PendingCopy> begun, Finish finish)
 template <class R>
 std::future<R> SimulationThread::submit(std::function<R()> body) {
   std::future<R> answer;
-  jobs_.push(make_job<R>(std::move(body), answer));
-  return answer;
+  const std::uint64_t job = jobs_.push(make_job<R>(std::move(body), answer));
+  const double seconds = Patience::seconds();
+  if (!(seconds > 0)) return answer;
+  return std::async(
+      std::launch::deferred,
+      [this, job, seconds](std::future<R> pending) {
+        const bool late =
+            pending.wait_for(std::chrono::duration<double>(seconds)) == std::future_status::timeout;
+        if (late && jobs_.withdraw(job)) throw ConfigError(busy_message(seconds));
+        return pending.get();
+      },
+      std::move(answer));
 }
 
 std::future<ReachedState> SimulationThread::apply(const Command& command, bool with_hash, bool with_change) {

@@ -1,15 +1,10 @@
 /// Services that read the terrain: ~query_terrain at points, ~get_submap and ~get_grid_map in rectangles of
 /// cells.
 
-#include <ros/console.h>
-#include <ros/service_callback_helper.h>
-
-#include <boost/make_shared.hpp>
-#include <functional>
-
 #include "src/core/error.hpp"
 #include "src/ros/conversion/grid_map_message.hpp"
 #include "src/ros/conversion/messages.hpp"
+#include "src/ros/node/service_with_reason.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/services.hpp"
 #include "src/ros/services/terrain_sampler.hpp"
@@ -26,36 +21,6 @@ std::vector<MapLayer> requested_layers(const std::vector<std::string>& names) {
   if (names.empty()) return {map_layers.begin(), map_layers.end()};
   return map_layers_named(names, "layers");
 }
-
-/// Serves ~get_grid_map. The answer of GetGridMap has no field for a reason, but a call that fails has one,
-/// and clients show it. So a refusal is a call that fails. call() must return true all the same: roscpp then
-/// sends what is in `response`, whose first byte tells the client whether the call failed; to failures of its
-/// own it adds no reason.
-class GetGridMapCallback : public ros::ServiceCallbackHelper {
- public:
-  using Serve = std::function<GridMap(const GetGridMapRequest&)>;
-  explicit GetGridMapCallback(Serve serve) : serve_(std::move(serve)) {}
-
-  bool call(ros::ServiceCallbackHelperCallParams& params) override {
-    try {
-      GetGridMapRequest request;
-      ros::serialization::deserializeMessage(params.request, request);
-      GetGridMapResponse response;
-      response.map = serve_(request);
-      params.response = ros::serialization::serializeServiceResponse(true, response);
-      return true;
-    } catch (const ConfigError& e) {
-      params.response = ros::serialization::serializeServiceResponse(false, std::string(e.what()));
-    } catch (const std::exception& e) {
-      ROS_ERROR("The service get_grid_map failed: %s", e.what());
-      params.response = ros::serialization::serializeServiceResponse(false, std::string(e.what()));
-    }
-    return true;
-  }
-
- private:
-  Serve serve_;
-};
 
 }  // namespace
 
@@ -127,10 +92,11 @@ GridMap Services::get_grid_map(const GetGridMapRequest& r) const {
 }
 
 void Services::advertise_get_grid_map() {
-  ros::AdvertiseServiceOptions options;
-  options.init<GetGridMap>("get_grid_map", [](GetGridMapRequest&, GetGridMapResponse&) { return false; });
-  options.helper = boost::make_shared<GetGridMapCallback>(
-      [this](const GetGridMapRequest& request) { return get_grid_map(request); });
+  auto options = service_with_reason<GetGridMap>(
+      "get_grid_map", [this](const GetGridMapRequest& request, GetGridMapResponse& response) {
+        const SimulationThread::Patience patience(answer_timeout_);
+        response.map = get_grid_map(request);
+      });
   servers_.push_back(node_.advertiseService(options));
 }
 

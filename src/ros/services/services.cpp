@@ -21,6 +21,7 @@ void Services::advertise(const std::string& name,
   using Response = typename Service::Response;
   const boost::function<bool(Request&, Response&)> callback = [this, name, serve](Request& request,
                                                                                   Response& response) {
+    const SimulationThread::Patience patience(answer_timeout_);
     try {
       (this->*serve)(request, response);
       response.success = true;
@@ -30,7 +31,7 @@ void Services::advertise(const std::string& name,
     } catch (const std::exception& e) {
       ROS_ERROR("The service %s failed: %s", name.c_str(), e.what());
       response.success = false;
-      response.message = e.what();
+      response.message = limited_message(e.what());
     }
     return true;  // the answer, with its reason, is to reach who asked
   };
@@ -63,12 +64,13 @@ void Services::advertise_all(ros::CallbackQueue& step_queue) {
 }
 
 Services::Services(const ros::NodeHandle& node, ros::CallbackQueue& step_queue, SimulationThread& simulation,
-                   TopicPublisher& publisher, Frames& frames, const DataFolder& files)
+                   TopicPublisher& publisher, Frames& frames, const DataFolder& files, double answer_timeout)
     : node_(node),
       simulation_(simulation),
       publisher_(publisher),
       frames_(frames),
       files_(files),
+      answer_timeout_(answer_timeout),
       terrain_diff_(node_.advertise<TerrainDiff>("terrain_diff", 100)) {
   advertise_all(step_queue);
 }
@@ -198,6 +200,7 @@ void Services::load_checkpoint(const LoadCheckpointRequest& request, LoadCheckpo
 }
 
 void Services::terrain_replaced() {
+  const SimulationThread::Patience unlimited(0);  // the load has been done, and cannot be refused any more
   if (frames_.has_center()) {
     // One thread at a time, each with a copy of its own: the last one that moves the frame has seen the
     // newest terrain.

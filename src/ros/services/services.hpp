@@ -38,9 +38,9 @@ namespace desert_sim {
 class Services {
  public:
   /// `step_queue` serves ~step apart from the other services: it can take long, and ~pause must not wait for
-  /// it.
+  /// it. `answer_timeout`: see SimulationThread::Patience; ~step waits for its steps.
   Services(const ros::NodeHandle& node, ros::CallbackQueue& step_queue, SimulationThread& simulation,
-           TopicPublisher& publisher, Frames& frames, const DataFolder& files);
+           TopicPublisher& publisher, Frames& frames, const DataFolder& files, double answer_timeout);
 
  private:
   void advertise_all(ros::CallbackQueue& step_queue);
@@ -87,6 +87,7 @@ class Services {
   TopicPublisher& publisher_;
   Frames& frames_;
   const DataFolder& files_;
+  const double answer_timeout_;   ///< [s]
   ros::Publisher terrain_diff_;   ///< ~terrain_diff: what each edit of the terrain changed
   std::mutex move_center_mutex_;  ///< held while terrain_replaced() moves the frame
   std::mutex recent_mutex_;       ///< guards the next two

@@ -33,8 +33,10 @@ CommandResult Commands::apply(const command::SetParameters& command) {
   if (!(command.ramp >= 0 && command.ramp <= command.longest_ramp))
     throw ConfigError("set_parameters: ramp: = " + std::to_string(command.ramp) + " is not in [0, 1e+12] s");
   const Scenario present = state_.present_scenario(), wanted = with_live_settings(present, command.settings);
+  // Also what comes at the end of a ramp is refused now, not in the middle of the run:
+  require_reach(wanted);
   require_sea(wanted, state_.terrain.scale());
-  require_more_memory(state_, wanted);  // also of what comes at the end of a ramp
+  require_more_memory(state_, wanted);
   std::vector<std::string> settings = command.settings;
   const std::vector<Ramp> before = state_.ramps;
   begin_ramps(settings, command.ramp);
