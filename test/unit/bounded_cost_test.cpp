@@ -11,7 +11,7 @@ namespace desert_sim {
 namespace {
 
 const std::string ground =
-    "grid: {width: 48, height: 32, cell_size: 1}\nterrain: [{constant: {layer: sand, value: 1}}]\n";
+    "grid: {width: 48, height: 32, cell_size: 1}\nterrain: [{uniform: {layer: sand, value: 1}}]\n";
 
 std::string refusal(const std::function<void()>& act) {
   try {

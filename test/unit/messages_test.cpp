@@ -50,7 +50,7 @@ TEST(Messages, TheErrorsThatAreLeftOutAreCounted) {
 }
 
 TEST(Messages, AKeyOfAMegabyteIsCut) {
-  const std::string message = refusal("grid: {" + std::string(1000000, 'k') + ": 1}");
+  const std::string message = refusal("grid:\n  ? " + std::string(1000000, 'k') + "\n  : 1\n");
   EXPECT_LE(message.size(), max_message_size);
   EXPECT_NE(message.find("unknown key"), std::string::npos) << message;
 }
