@@ -33,7 +33,14 @@ Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Top
       boost::make_shared<dynamic_reconfigure::ConfigDescription>(reconfigure_description(defaults)));
   publish(reconfigure_values(defaults));
   auto options = service_with_reason<dynamic_reconfigure::Reconfigure>(
-      "set_parameters", [this](const Request& request, Response& response) { set(request, response); });
+      "set_parameters", [this](const Request& request, Response& response) {
+        try {
+          set(request, response);
+        } catch (const Error& e) {
+          ROS_WARN("%s", e.what());  // the client of dynamic_reconfigure keeps the reason from its user
+          throw;
+        }
+      });
   service_ = node.advertiseService(options);
   timer_ = node.createWallTimer(ros::WallDuration(check_period),
                                 [this](const ros::WallTimerEvent&) { publish_if_changed(); });

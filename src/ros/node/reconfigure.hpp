@@ -16,7 +16,7 @@
 namespace desert_sim {
 
 /// A change of the scenario is a command: applied between steps, all of it or nothing, and journalled. A call
-/// that is refused fails with the reason. What commands, a reset, a checkpoint or ~reload_parameters
+/// that is refused fails with the reason, which the log has too. What commands, a reset, a checkpoint or ~reload_parameters
 /// change shows in ~parameter_updates.
 class Reconfigure {
  public:
