@@ -4,12 +4,12 @@
 #include <rosbag/view.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <set>
 
 #include "src/core/quoted.hpp"
+#include "src/core/temporary_file.hpp"
 #include "src/grid_map/bag_records.hpp"
 #include "src/grid_map/message_bytes.hpp"
 #include "src/io/raster_loader.hpp"
@@ -78,16 +78,15 @@ void write_grid_map(const std::string& path, const std::string& topic, const Gri
     bytes += 4.0 * static_cast<double>(layer.data.size());
   if (bytes > max_bag_bytes)
     throw ConfigError(path + ": a bag cannot hold the " + std::to_string(bytes * 1e-9) + " GB of this map");
-  const std::string temporary = path + ".part";
+  TemporaryFile file(path);
   try {
-    rosbag::Bag bag(temporary, rosbag::bagmode::Write);
+    rosbag::Bag bag(file.library_path(), rosbag::bagmode::Write);
     bag.write(topic, std::max(map.info.header.stamp, ros::TIME_MIN), map, connection_header());
     bag.close();
-    std::filesystem::rename(temporary, path);
   } catch (const std::exception& e) {
-    std::remove(temporary.c_str());
-    throw ConfigError(path + ": cannot be written: " + e.what());
+    throw Error(path + ": cannot be written: " + e.what());
   }
+  file.publish();
 }
 
 GridMap read_grid_map(const std::string& path) {
