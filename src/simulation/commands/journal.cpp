@@ -1,5 +1,6 @@
 #include "src/simulation/commands/journal.hpp"
 
+#include <fcntl.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cerrno>
@@ -51,7 +52,10 @@ class Line {
 }  // namespace
 
 JournalWriter::JournalWriter(const std::string& path, std::uint64_t scenario_hash, const std::string& backend)
-    : path_(path), file_(std::fopen(path.c_str(), "w")) {
+    : path_(path) {
+  require_writable_file(path);
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (file >= 0) file_ = fdopen(file, "w");
   if (!file_) throw ConfigError(path + ": the journal cannot be written: " + std::strerror(errno));
   line(Line()
            .entry("journal", journal_version)
@@ -75,6 +79,13 @@ void JournalWriter::write(std::uint64_t tick, const Command& command) {
 
 void JournalWriter::end(std::uint64_t tick) {
   line(Line().entry("tick", tick).entry("command", "end").text());
+}
+
+std::vector<std::string> checkpoints_of(const Journal& journal) {
+  std::vector<std::string> paths;
+  for (const Journal::Entry& entry : journal.entries)
+    if (const auto* load = std::get_if<command::LoadCheckpoint>(&entry.command)) paths.push_back(load->path);
+  return paths;
 }
 
 Journal read_journal(const std::string& path) {

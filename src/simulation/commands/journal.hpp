@@ -39,6 +39,9 @@ struct Journal {
   std::uint64_t ticks = 0;  ///< if it ended: all ticks of the session; else the last entry's
 };
 
+/// The paths of the checkpoints that the journal loads.
+std::vector<std::string> checkpoints_of(const Journal& journal);
+
 /// Throws ConfigError with file and line.
 Journal read_journal(const std::string& path);
 
