@@ -1,6 +1,6 @@
 #pragma once
-/// Encodes a bag with one message in memory. rosbag::Bag writes to files only, and ends the program if the disk
-/// is full, because its destructor writes the index and throws.
+/// Encodes a bag with one message in memory. rosbag::Bag writes to files only, and ends the program if the
+/// disk is full, because its destructor writes the index and throws.
 
 #include <ros/datatypes.h>
 #include <ros/time.h>

@@ -178,6 +178,24 @@ TEST_P(JournalOf, KeepsTheCheckpointsThatItLoads) {
   without->save_checkpoint(first);
 }
 
+/// As a node does that is started again and again: the journal before the present one stays replayable.
+TEST_P(JournalOf, BeginsWithACheckpointThatThePreviousOneDoesNotNeed) {
+  const std::string path = folder_.path("j");
+  std::vector<std::string> checkpoints;
+  for (int start = 0; start < 4; ++start) {
+    if (std::filesystem::exists(path)) std::filesystem::rename(path, path + ".previous");
+    checkpoints.push_back(checkpoint_beside(path));
+    auto s = session(path);
+    s->step();
+    session("")->save_checkpoint(checkpoints.back());
+    s->apply(command::LoadCheckpoint{checkpoints.back(), 0});
+  }
+  EXPECT_EQ(checkpoints, (std::vector<std::string>{path + ".checkpoint", path + ".checkpoint.2",
+                                                   path + ".checkpoint", path + ".checkpoint.2"}));
+  folder_.write("j.previous", "[1\n");
+  EXPECT_EQ(checkpoint_beside(path), path + ".checkpoint") << "a journal that cannot be read needs nothing";
+}
+
 TEST_P(JournalOf, IsWrittenToARegularFileOnly) {
   folder_.write("victim", "precious");
   std::filesystem::create_symlink(folder_.path("victim"), folder_.path("link"));

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <sstream>
 
 #include "src/core/files.hpp"
@@ -126,6 +127,18 @@ Journal read_journal(const std::string& path) {
   }
   if (journal.scenario_hash == 0 && journal.backend.empty()) throw ConfigError(path + ": is not a journal");
   return journal;
+}
+
+std::string checkpoint_beside(const std::string& path) {
+  const std::string previous = path + ".previous", usual = path + ".checkpoint";
+  if (!std::filesystem::exists(previous)) return usual;
+  try {
+    for (const std::string& needed : checkpoints_of(read_journal(previous)))
+      if (same_file(needed, usual)) return usual + ".2";
+  } catch (const ConfigError& e) {
+    log_error(std::string("the checkpoint of the previous journal is not kept: ") + e.what());
+  }
+  return usual;
 }
 
 }  // namespace desert_sim
