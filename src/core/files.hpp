@@ -8,9 +8,15 @@ namespace desert_sim {
 /// The content of a file. Throws ConfigError if it is missing, is not a regular file, or cannot be read.
 std::string read_file(const std::string& path);
 
-/// Writes a file atomically and durably: the bytes go to a temporary file in the same folder, which is
-/// synchronised to the disk and then renamed, so that `path` is always either the old or the new file. Throws
-/// ConfigError if it cannot be written; the temporary file is then gone.
+/// Writes a file atomically and durably, through a TemporaryFile, so that `path` is always either the old or
+/// the new file. Throws what TemporaryFile throws; nothing is then left.
 void write_file(const std::string& path, const std::string& bytes);
+
+/// Throws ConfigError unless write_file() can write `path` at present: its folder exists and can be written
+/// to, and `path` is a regular file or does not exist. For checks before a long run.
+void require_writable_file(const std::string& path);
+
+/// Whether both paths lead to one file, or would if it existed: their links are followed.
+bool same_file(const std::string& a, const std::string& b);
 
 }  // namespace desert_sim

@@ -4,12 +4,13 @@
 #include <rosbag/view.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <set>
 
+#include "src/core/files.hpp"
 #include "src/core/quoted.hpp"
+#include "src/grid_map/bag_bytes.hpp"
 #include "src/grid_map/bag_records.hpp"
 #include "src/grid_map/message_bytes.hpp"
 #include "src/io/raster_loader.hpp"
@@ -22,13 +23,19 @@ using Type = GridMapType<GridMap>;
 
 constexpr double max_bag_bytes = 2e9;  // rosbag has 32-bit sizes and doubles its buffers
 
-boost::shared_ptr<ros::M_string> connection_header() {
-  auto header = boost::make_shared<ros::M_string>();
-  (*header)["type"] = Type::name;
-  (*header)["md5sum"] = Type::md5;
-  (*header)["message_definition"] = Type::definition();
-  (*header)["latching"] = "1";
-  return header;
+ros::M_string connection_header() {
+  return {{"type", Type::name},
+          {"md5sum", Type::md5},
+          {"message_definition", Type::definition()},
+          {"latching", "1"}};
+}
+
+std::string serialised(const GridMap& map) {
+  std::string bytes(ros::serialization::serializationLength(map), '\0');
+  ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
+                                     static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, map);
+  return bytes;
 }
 
 std::string joined_names(const std::set<std::string>& names) {
@@ -78,16 +85,8 @@ void write_grid_map(const std::string& path, const std::string& topic, const Gri
     bytes += 4.0 * static_cast<double>(layer.data.size());
   if (bytes > max_bag_bytes)
     throw ConfigError(path + ": a bag cannot hold the " + std::to_string(bytes * 1e-9) + " GB of this map");
-  const std::string temporary = path + ".part";
-  try {
-    rosbag::Bag bag(temporary, rosbag::bagmode::Write);
-    bag.write(topic, std::max(map.info.header.stamp, ros::TIME_MIN), map, connection_header());
-    bag.close();
-    std::filesystem::rename(temporary, path);
-  } catch (const std::exception& e) {
-    std::remove(temporary.c_str());
-    throw ConfigError(path + ": cannot be written: " + e.what());
-  }
+  const ros::Time time = std::max(map.info.header.stamp, ros::TIME_MIN);
+  write_file(path, bag_bytes(topic, connection_header(), time, serialised(map)));
 }
 
 GridMap read_grid_map(const std::string& path) {

@@ -1,14 +1,8 @@
 #include "src/io/picture.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
@@ -17,6 +11,7 @@
 #include <vector>
 
 #include "src/core/error.hpp"
+#include "src/core/files.hpp"
 
 namespace desert_sim {
 namespace {
@@ -331,7 +326,6 @@ cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_
 }
 
 void write_png(const std::string& path, const cv::Mat& picture) {
-  static std::atomic<int> counter{0};
   const auto throw_error = [&](const std::string& reason) {
     throw ConfigError("picture '" + path + "' cannot be written: " + reason);
   };
@@ -342,22 +336,7 @@ void write_png(const std::string& path, const cv::Mat& picture) {
   } catch (const cv::Exception& error) {
     throw_error(error.err);
   }
-  const std::string temporary_path =
-      path + "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".part";
-  std::ofstream file(temporary_path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code error;
-  if (!file) {
-    const std::string reason = std::strerror(errno);
-    std::filesystem::remove(temporary_path, error);
-    throw_error(reason);
-  }
-  std::filesystem::rename(temporary_path, path, error);
-  if (!error) return;
-  std::error_code ignored;
-  std::filesystem::remove(temporary_path, ignored);
-  throw_error(error.message());
+  write_file(path, std::string(bytes.begin(), bytes.end()));
 }
 
 }  // namespace desert_sim

@@ -45,8 +45,9 @@ cv::Mat hillshade_picture(const PictureInput& input);
 cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_x, const float* wind_y,
                      const float* elevation);
 
-/// Writes a PNG file atomically: to a temporary file in the same folder, which is then renamed. Throws
-/// ConfigError that names the file; an existing file of that name is then unchanged.
+/// Writes a PNG file by write_file(). Throws ConfigError that names the file if the path cannot be written
+/// or the picture is empty, Error if the disk is full or broken; an existing file of that name is then
+/// unchanged.
 void write_png(const std::string& path, const cv::Mat& picture);
 
 }  // namespace desert_sim

@@ -2,10 +2,8 @@
 
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
@@ -16,6 +14,7 @@
 #include <sstream>
 
 #include "src/core/error.hpp"
+#include "src/core/temporary_file.hpp"
 #include "src/io/gdal_messages.hpp"
 
 namespace desert_sim {
@@ -291,23 +290,15 @@ Raster read_raster(const std::string& path, const RasterOptions& options) {
 }
 
 void write_geotiff(const std::string& path, const Raster& raster) {
-  static std::atomic<int> counter{0};
   check_writable(path, raster);
-  const std::string temporary_path = concatenate(path, ".", getpid(), "-", counter++, ".part");
+  TemporaryFile file(path);
   GdalMessages messages;
+  if (!write_dataset(file.library_path(), raster, messages))
+    throw Error(concatenate("raster '", path, "': cannot be written: ", messages.text()));
+  file.publish();
   std::error_code error;
-  if (!write_dataset(temporary_path, raster, messages)) {
-    const std::string reason = messages.text();
-    std::filesystem::remove(temporary_path, error);
-    throw_error(path, "cannot be written: " + reason);
-  }
-  std::filesystem::rename(temporary_path, path, error);
-  if (error) {
-    const std::string reason = error.message();
-    std::filesystem::remove(temporary_path, error);
-    throw_error(path, "cannot be written: " + reason);
-  }
   std::filesystem::remove(path + ".aux.xml", error);  // GDAL's metadata of the replaced file
+  if (error) throw Error(path + ".aux.xml: cannot be removed: " + error.message());
 }
 
 }  // namespace desert_sim

@@ -6,7 +6,9 @@
 #include <opencv2/core.hpp>
 #include <set>
 
+#include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/core/temporary_file.hpp"
 #include "src/io/snapshots.hpp"
 
 namespace desert_sim {
@@ -35,13 +37,37 @@ void write_layer_png16(const std::string& path, const std::vector<float>& values
   write_png(path, picture);
 }
 
-void remove_other_files(const fs::path& folder, const std::set<std::string>& kept) {
+/// The names of the files of saved terrains in a folder, and of those that a save was killed over.
+std::set<std::string> saved_files(const fs::path& folder) {
+  std::set<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    const bool saved =
-        name.rfind(file_prefix, 0) == 0 && saved_extensions.count(entry.path().extension().string()) > 0;
-    if (saved && kept.count(name) == 0) fs::remove(entry.path());
+    const std::string name = entry.path().filename().string(), extension = entry.path().extension().string();
+    const bool whole = name.rfind(file_prefix, 0) == 0 && saved_extensions.count(extension) > 0;
+    const bool part = name.rfind("." + std::string(file_prefix), 0) == 0 && extension == ".part";
+    if (whole || part) names.insert(name);
   }
+  return names;
+}
+
+/// Removes the files of saved terrains except those in `kept`.
+void remove_other_files(const fs::path& folder, const std::set<std::string>& kept) {
+  for (const std::string& name : saved_files(folder))
+    if (kept.count(name) == 0) fs::remove(folder / name);
+}
+
+/// Writes the layers and then the scenario file. Returns the names of the files of the layers.
+std::set<std::string> write_terrain(const std::string& scenario_file, const fs::path& folder,
+                                    const Scenario& scenario, const Snapshot& snapshot,
+                                    const LayerWriter& write_layers, const std::string& tag) {
+  const SavedLayers layers = write_layers(snapshot, folder.string(), tag);
+  Scenario saved = scenario;
+  saved.terrain.assign(layers.steps.begin(), layers.steps.end());
+  saved.grid.from_raster = layers.georeferenced;
+  write_file(scenario_file, "# A terrain saved at step " + std::to_string(snapshot.step) + " of " +
+                                scenario.name + ".\n" + dump_scenario(saved));
+  std::set<std::string> names;
+  for (const RasterStep& step : layers.steps) names.insert(step.file);
+  return names;
 }
 
 }  // namespace
@@ -96,20 +122,22 @@ LayerWriter png16_writer() {
 
 void save_terrain(const std::string& scenario_file, const Scenario& scenario, const Snapshot& snapshot,
                   const LayerWriter& write_layers, const std::string& tag) {
-  const fs::path folder = fs::path(scenario_file).parent_path();
-  const SavedLayers layers = write_layers(snapshot, folder.string(), tag);
-  Scenario saved = scenario;
-  saved.terrain.assign(layers.steps.begin(), layers.steps.end());
-  saved.grid.from_raster = layers.georeferenced;
-  write_file(scenario_file, "# A terrain saved at step " + std::to_string(snapshot.step) + " of " +
-                                scenario.name + ".\n" + dump_scenario(saved));
-  std::set<std::string> names;
-  for (const RasterStep& step : layers.steps) names.insert(step.file);
+  const fs::path parent = fs::path(scenario_file).parent_path(), folder = parent.empty() ? "." : parent;
+  const FolderLock lock(folder.string());
   try {
-    remove_other_files(folder, names);
+    require_writable_file(scenario_file);
+    const std::set<std::string> before = saved_files(folder);
+    std::set<std::string> written;
+    try {
+      written = write_terrain(scenario_file, folder, scenario, snapshot, write_layers, tag);
+    } catch (...) {
+      remove_other_files(folder, before);
+      throw;
+    }
+    remove_other_files(folder, written);
   } catch (const fs::filesystem_error& e) {
-    throw ConfigError(folder.string() +
-                      ": the files of an earlier terrain cannot be removed: " + e.code().message());
+    throw Error(folder.string() +
+                ": the files of another terrain cannot be listed or removed: " + e.code().message());
   }
 }
 

@@ -3,6 +3,7 @@
 #include <xxhash.h>
 
 #include "src/core/error.hpp"
+#include "src/core/files.hpp"
 #include "src/core/log.hpp"
 #include "src/scenario/band_terrain.hpp"
 #include "src/simulation/checkpoint.hpp"
@@ -21,8 +22,9 @@ Session::Session(const Scenario& scenario, const RasterLoader& load_raster, cons
   resolve_grid(resolved, load_raster_);
   exec_ = make_exec(backend, threads, &backend_choice_);
   simulation_ = std::make_unique<Simulation>(*exec_, resolved, load_raster_);
-  if (!journal_path.empty())
-    journal_ = std::make_unique<JournalWriter>(journal_path, scenario_hash(resolved), exec_->backend());
+  if (journal_path.empty()) return;
+  journal_ = std::make_unique<JournalWriter>(journal_path, scenario_hash(resolved), exec_->backend());
+  journal_files_.push_back(journal_path);
 }
 
 Session::Session(const RasterLoader& load_raster, const std::string& backend, int threads)
@@ -110,10 +112,19 @@ CommandResult Session::apply(const Command& command, bool with_change) {
   Command journalled = command;
   const CommandResult result =
       std::visit([&](const auto& c) { return execute(c, with_change, journalled); }, command);
-  if (journal_) journal_->write(ticks_, journalled);
+  if (!journal_) return result;
+  journal_->write(ticks_, journalled);
+  if (const auto* load = std::get_if<command::LoadCheckpoint>(&journalled))
+    journal_files_.push_back(load->path);
   return result;
 }
 
-void Session::save_checkpoint(const std::string& path) { desert_sim::save_checkpoint(path, *simulation_); }
+void Session::save_checkpoint(const std::string& path) {
+  for (const std::string& needed : journal_files_)
+    if (same_file(path, needed))
+      throw ConfigError(path + ": cannot be saved: the journal " + journal_files_.front() +
+                        " needs this file to be replayed (allowed: another name)");
+  desert_sim::save_checkpoint(path, *simulation_);
+}
 
 }  // namespace desert_sim

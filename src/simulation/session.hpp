@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "src/simulation/commands/journal.hpp"
 #include "src/simulation/simulation.hpp"
@@ -41,7 +42,8 @@ class Session {
   /// Steps done in this session, through resets and loads; what the journal counts in.
   std::uint64_t ticks() const { return ticks_; }
 
-  /// Written to a temporary name, fsynced, renamed.
+  /// Writes a checkpoint by write_file(). Throws ConfigError also if `path` is the session's journal or a
+  /// checkpoint that it refers to, which could not be replayed afterwards.
   void save_checkpoint(const std::string& path);
 
  private:
@@ -67,6 +69,7 @@ class Session {
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<JournalWriter> journal_;
+  std::vector<std::string> journal_files_;  ///< the journal and the checkpoints that it loads
   std::uint64_t ticks_ = 0;
 };
 

@@ -12,6 +12,7 @@
 #include "src/tools/cost_model.hpp"
 #include "src/tools/drawing.hpp"
 #include "src/tools/options.hpp"
+#include "src/tools/program.hpp"
 #include "src/tools/rasters.hpp"
 
 using namespace desert_sim;
@@ -172,12 +173,16 @@ int run_program(const Options& o) {
   if (!o.positional().empty()) {
     if (picture.empty())
       throw ConfigError("'" + o.positional()[0] + "': unexpected argument (--help shows the usage)");
+    require_writable_file(picture);
     return run_plot_script("--roofline", "roofline.py", picture, o.positional()), 0;
   }
   const std::string json = o.text("json", "");
   if (!picture.empty() && (json.empty() || json == "-"))
     throw ConfigError("--roofline " + picture +
                       ": needs JSON results, or --json FILE for the result of this run");
+  if (!json.empty() && json != "-") require_writable_file(json);
+  if (!picture.empty()) require_writable_file(picture);
+  if (o.has("save-start")) require_writable_file(o.text("save-start", ""));
   const BenchReport report = bench(o);
   std::fputs((json == "-" ? bench_json(report) : bench_text(report)).c_str(), stdout);
   if (!json.empty() && json != "-") write_file(json, bench_json(report));
@@ -190,16 +195,10 @@ int run_program(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return run_main("desert_bench", argv, [&] {
     return run_program(Options(argc, argv,
                                {"scene", "size", "steps", "warm-up", "start", "save-start", "backend",
                                 "threads", "quality", "set", "json", "roofline"},
                                {"cost-model", "help"}));
-  } catch (const ConfigError& e) {
-    std::fprintf(stderr, "desert_bench: %s\n", e.what());
-    return 2;
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "desert_bench: %s\n", e.what());
-    return 3;
-  }
+  });
 }

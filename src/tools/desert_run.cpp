@@ -7,11 +7,13 @@
 #include <iostream>
 
 #include "src/core/error.hpp"
+#include "src/core/files.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/session.hpp"
 #include "src/tools/drawing.hpp"
 #include "src/tools/options.hpp"
 #include "src/tools/outputs.hpp"
+#include "src/tools/program.hpp"
 #include "src/tools/progress.hpp"
 #include "src/tools/rasters.hpp"
 
@@ -32,17 +34,27 @@ const char usage[] =
     "                        python3 with matplotlib)\n"
     "  --checkpoint FILE     save the state to FILE at the end\n"
     "  --checkpoint-every N  also save it every N steps\n"
-    "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be omitted)\n"
+    "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be omitted), with what "
+    "--set\n"
+    "                        sets of the parameters that can change while a simulation runs\n"
     "  --replay JOURNAL      apply the commands of a journal; without --steps, run as many steps as it has\n"
     "  --describe            print all parameters as markdown\n"
     "  --describe-processes  print the table of processes as markdown\n"
     "  --pipeline            print the processes of a step of the scenario in order, with layers and memory\n"
     "  --quiet               print no progress\n"
     "Exit status: 0; 1 if a material was lost or gained; 2 for invalid input; 3 for a failure at run time;\n"
-    "130 after Ctrl-C. Outputs are written except for 2 and 3.\n";
+    "130 after Ctrl-C, SIGTERM or SIGHUP. Outputs are written except for 2 and 3.\n";
 
 volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
+
+/// Ctrl-C, a request to end, and the loss of the terminal end the run after its step; under nohup, the last
+/// does not.
+void catch_signals() {
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  if (std::signal(SIGHUP, interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+}
 
 struct RunPlan {
   Options options;
@@ -51,13 +63,80 @@ struct RunPlan {
   std::uint64_t every = 0, checkpoint_every = 0;
 };
 
-Scenario scenario_of(const Options& o) {
+RunPlan plan_of(Options options) {
+  RunPlan plan{std::move(options), "", "", {}, 0, 0};
+  const Options& o = plan.options;
+  plan.out = o.text("out", "");
+  plan.checkpoint = o.text("checkpoint", "");
+  plan.every = static_cast<std::uint64_t>(o.number("every", 0, 1, 1LL << 40));
+  plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
   if (o.positional().size() > 1)
     throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
-  if (o.positional().empty()) throw ConfigError("no scenario given (--help shows the usage)");
+  if (plan.every && plan.out.empty()) throw ConfigError("--every: --out is required too");
+  if (o.has("plot") && !plan.every) throw ConfigError("--plot: --out and --every are required too");
+  if (plan.checkpoint_every && plan.checkpoint.empty())
+    throw ConfigError("--checkpoint-every: --checkpoint is required too");
+  return plan;
+}
+
+Settings settings_of(const Options& o) {
   Settings settings = o.values("set");
   if (o.has("seed")) settings.push_back("seed=" + o.text("seed", ""));
-  return load_scenario(o.positional()[0], settings);
+  return settings;
+}
+
+/// A session at the start of the scenario.
+std::unique_ptr<Session> begin_session(const Options& o, const Journal& journal, int threads) {
+  if (o.positional().empty()) throw ConfigError("no scenario given (--help shows the usage)");
+  const Scenario scenario = load_scenario(o.positional()[0], settings_of(o));
+  auto session = std::make_unique<Session>(scenario, raster_loader(), o.text("backend", "auto"), threads);
+  if (o.has("replay")) session->require_journal_of_this_scenario(journal, o.text("replay", ""));
+  return session;
+}
+
+/// A session at the state of the checkpoint of --resume, with the parameters of --set.
+std::unique_ptr<Session> resume_session(const Options& o, const Journal& journal, int threads) {
+  const std::string checkpoint = o.text("resume", "");
+  std::unique_ptr<Session> session;
+  if (o.positional().empty()) {
+    session = Session::from_checkpoint(checkpoint, raster_loader(), o.text("backend", "auto"), threads);
+  } else {
+    session = begin_session(o, journal, threads);
+    session->apply(command::LoadCheckpoint{checkpoint, 0});
+  }
+  const Settings settings = settings_of(o);
+  if (!settings.empty()) session->apply(command::SetParameters{settings});
+  return session;
+}
+
+/// A checkpoint must not replace what the run reads, or what its journal needs when it is replayed again. The
+/// checkpoint of --resume alone may be replaced by its continuation.
+void require_no_input_replaced(const RunPlan& plan, const Journal& journal) {
+  const Options& o = plan.options;
+  const auto require_other = [&plan](const std::string& input, const char* what) {
+    if (same_file(plan.checkpoint, input))
+      throw ConfigError("--checkpoint " + plan.checkpoint + ": would replace " + what + " (" + input +
+                        "; allowed: another file)");
+  };
+  for (const std::string& scenario : o.positional()) require_other(scenario, "the scenario");
+  if (!o.has("replay")) return;
+  require_other(o.text("replay", ""), "the journal");
+  if (o.has("resume")) require_other(o.text("resume", ""), "the checkpoint that the replay begins with");
+  for (const std::string& checkpoint : checkpoints_of(journal))
+    require_other(checkpoint, "a checkpoint that the journal loads");
+}
+
+/// Before the first step: refuses files that could not be written at the end. Creates the folder of --out.
+void prepare_outputs(const RunPlan& plan, const Journal& journal) {
+  if (!plan.checkpoint.empty()) require_no_input_replaced(plan, journal);
+  const std::string created = plan.out.empty() ? "" : create_output_folder(plan.out);
+  try {
+    if (!plan.checkpoint.empty()) require_writable_file(plan.checkpoint);
+    if (plan.options.has("plot")) require_writable_file(plan.options.text("plot", ""));
+  } catch (const ConfigError&) {
+    if (!created.empty()) remove_empty_folders(created, plan.out);
+    throw;
+  }
 }
 
 /// The processes are timed in one of this many steps, because on a GPU a timed step synchronises after each
@@ -109,45 +188,25 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
 }
 
 int run_program(int argc, char** argv) {
-  RunPlan plan{Options(argc, argv,
-                       {"steps", "backend", "threads", "set", "seed", "out", "every", "plot", "checkpoint",
-                        "checkpoint-every", "resume", "replay"},
-                       {"describe", "describe-processes", "pipeline", "quiet", "help"}),
-               "",
-               "",
-               {},
-               0,
-               0};
+  RunPlan plan = plan_of(Options(argc, argv,
+                                 {"steps", "backend", "threads", "set", "seed", "out", "every", "plot",
+                                  "checkpoint", "checkpoint-every", "resume", "replay"},
+                                 {"describe", "describe-processes", "pipeline", "quiet", "help"}));
   const Options& o = plan.options;
   if (o.has("help")) return std::fputs(usage, stdout), 0;
   if (o.has("describe")) return std::cout << describe_parameters(), 0;
   if (o.has("describe-processes")) return std::cout << describe_processes(process_table()), 0;
-  plan.out = o.text("out", "");
-  plan.checkpoint = o.text("checkpoint", "");
-  plan.every = static_cast<std::uint64_t>(o.number("every", 0, 1, 1LL << 40));
-  plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
   const auto steps = static_cast<std::uint64_t>(o.number("steps", 0, 0, 1LL << 40));
-  if (plan.every && plan.out.empty()) throw ConfigError("--every: --out is required too");
-  if (o.has("plot") && !plan.every) throw ConfigError("--plot: --out and --every are required too");
-  if (plan.checkpoint_every && plan.checkpoint.empty())
-    throw ConfigError("--checkpoint-every: --checkpoint is required too");
   const int threads = static_cast<int>(o.number("threads", 0, 1, 4096));
   if (threads > 0) omp_set_num_threads(threads);
 
   Journal journal;
   if (o.has("replay")) journal = read_journal(o.text("replay", ""));
-  const std::string backend = o.text("backend", "auto");
-  std::unique_ptr<Session> session;
-  if (o.has("resume") && o.positional().empty()) {
-    session = Session::from_checkpoint(o.text("resume", ""), raster_loader(), backend, threads);
-  } else {
-    session = std::make_unique<Session>(scenario_of(o), raster_loader(), backend, threads);
-    if (o.has("replay")) session->require_journal_of_this_scenario(journal, o.text("replay", ""));
-    if (o.has("resume")) session->apply(command::LoadCheckpoint{o.text("resume", ""), 0});
-  }
+  const std::unique_ptr<Session> session =
+      o.has("resume") ? resume_session(o, journal, threads) : begin_session(o, journal, threads);
   Simulation& simulation = session->simulation();
   if (o.has("pipeline")) return std::cout << describe_pipeline(simulation.pipeline()), 0;
-  if (!plan.out.empty()) create_output_folder(plan.out);
+  prepare_outputs(plan, journal);
   const std::uint64_t scenario_steps =
       o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps);
   const std::uint64_t asked = o.has("steps") ? steps : scenario_steps;
@@ -158,8 +217,7 @@ int run_program(int argc, char** argv) {
     std::fprintf(stderr, "backend: %s; %s\n", session->backend_choice().c_str(),
                  simulation.exec().device().c_str());
 
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
+  catch_signals();
   RunReport report;
   report.backend = simulation.exec().backend();
   report.device = simulation.exec().device();
@@ -179,16 +237,5 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run_program(argc, argv);
-  } catch (const ConfigError& e) {
-    std::fprintf(stderr, "desert_run: %s\n", e.what());
-    return 2;
-  } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "desert_run: the host has not enough memory\n");
-    return 3;
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "desert_run: %s\n", e.what());
-    return 3;
-  }
+  return run_main("desert_run", argv, [&] { return run_program(argc, argv); });
 }

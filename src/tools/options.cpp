@@ -25,7 +25,9 @@ Options::Options(int argc, char** argv, const std::vector<std::string>& with_val
       values_[name];
     } else if (known(with_value, name)) {
       if (equals == std::string::npos && n + 1 >= argc) throw ConfigError("--" + name + ": needs a value");
-      values_[name].push_back(equals == std::string::npos ? argv[++n] : argument.substr(equals + 1));
+      const std::string value = equals == std::string::npos ? argv[++n] : argument.substr(equals + 1);
+      if (value.empty()) throw ConfigError("--" + name + " '': needs a value that is not empty");
+      values_[name].push_back(value);
     } else {
       throw ConfigError(argument + ": unknown option (--help lists them)");
     }
@@ -46,11 +48,11 @@ const std::vector<std::string>& Options::values(const std::string& name) const {
 long long Options::number(const std::string& name, long long default_value, long long lowest,
                           long long highest) const {
   const std::string value = text(name, "");
-  if (value.empty() && !has(name)) return default_value;
+  if (value.empty()) return default_value;
   char* end = nullptr;
   errno = 0;
   const long long number = std::strtoll(value.c_str(), &end, 10);
-  if (value.empty() || *end || errno || number < lowest || number > highest)
+  if (*end || errno || number < lowest || number > highest)
     throw ConfigError("--" + name + " " + value + ": must be a whole number from " + std::to_string(lowest) +
                       " to " + std::to_string(highest));
   return number;

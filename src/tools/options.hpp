@@ -1,6 +1,6 @@
 #pragma once
-/// Parses command lines: options with and without values. Unknown or malformed ones are refused with a
-/// reason.
+/// Parses command lines: options with and without values. Unknown and malformed ones, and empty values, are
+/// refused with a reason.
 
 #include <map>
 #include <string>

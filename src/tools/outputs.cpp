@@ -1,7 +1,6 @@
 #include "src/tools/outputs.hpp"
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <cinttypes>
 #include <cstdio>
@@ -61,13 +60,38 @@ Areas ground_areas(Simulation& simulation) {
 
 }  // namespace
 
-void create_output_folder(const std::string& folder) {
+std::string create_output_folder(const std::string& folder) {
+  namespace fs = std::filesystem;
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw ConfigError("--out " + folder + ": cannot be created: " + error.message());
-  if (!std::filesystem::is_directory(folder, error))
-    throw ConfigError("--out " + folder + ": is not a folder");
-  if (access(folder.c_str(), W_OK) != 0) throw ConfigError("--out " + folder + ": cannot be written to");
+  std::string created;
+  for (fs::path p = fs::path(folder).lexically_normal(); !p.empty() && !fs::exists(p, error);
+       p = p.parent_path())
+    created = p.string();
+  fs::create_directories(folder, error);
+  if (error) {
+    const std::string reason = error.message();
+    if (!created.empty()) remove_empty_folders(created, folder);
+    throw ConfigError("--out " + folder + ": cannot be created: " + reason);
+  }
+  if (!fs::is_directory(folder, error)) throw ConfigError("--out " + folder + ": is not a folder");
+  try {
+    require_writable_file(folder + "/summary.json");
+  } catch (const ConfigError& e) {
+    if (!created.empty()) remove_empty_folders(created, folder);
+    throw ConfigError(std::string("--out ") + e.what());
+  }
+  return created;
+}
+
+void remove_empty_folders(const std::string& topmost, const std::string& folder) {
+  namespace fs = std::filesystem;
+  const fs::path last(topmost);
+  std::error_code not_empty;
+  for (fs::path p = fs::path(folder).lexically_normal(); !p.empty(); p = p.parent_path()) {
+    if (p.filename().empty()) continue;  // "a/b/"
+    fs::remove(p, not_empty);
+    if (p == last) return;
+  }
 }
 
 std::string conservation_error(const std::array<MaterialBalance, material_count>& balance) {

@@ -8,6 +8,7 @@
 #include "src/grid_map/grid_map_bag.hpp"
 #include "src/ros/services/terrain_formats.hpp"
 #include "src/simulation/session.hpp"
+#include "support/full_disk.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 
@@ -135,7 +136,23 @@ TEST_F(SavedBags, ThatCannotBeWrittenLeaveNothing) {
   EXPECT_THROW(write_grid_map(folder_.path("no/such/folder.bag"), "/map", GridMap()), ConfigError);
   std::filesystem::create_directories(folder_.path("taken.bag/full"));
   EXPECT_THROW(write_grid_map(folder_.path("taken.bag"), "/map", GridMap()), ConfigError);
-  EXPECT_FALSE(std::filesystem::exists(folder_.path("taken.bag.part")));
+  auto s = session(world);
+  save(*s, "a");
+  const GridMap map = read_grid_map(bag_);
+  const test::TemporaryFolder full;
+  for (const rlim_t bytes : {0, 1000, 8000}) {
+    const test::FullDisk disk(bytes);
+    EXPECT_THROW(write_grid_map(full.path("a.bag"), "/map", map), Error) << bytes;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(full.path(".")));
+}
+
+TEST_F(SavedBags, DoNotFollowLinksThatSomebodyHasPlanted) {
+  folder_.write("victim", "precious");
+  std::filesystem::create_symlink(folder_.path("victim"), folder_.path("a.bag.part"));
+  write_grid_map(folder_.path("a.bag"), "/map", GridMap());
+  EXPECT_EQ(test::file_bytes(folder_.path("victim")), "precious");
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder_.path("a.bag")));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // The journal: what was written and replayed gives the same hash; what was cut in its last line still reads.
 
+#include <filesystem>
+
 #include "src/simulation/session.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
@@ -138,6 +140,69 @@ TEST_P(JournalOf, WithABrokenLineNamesTheLine) {
       EXPECT_NE(std::string(e.what()).find("line "), std::string::npos) << e.what();
     }
   }
+}
+
+TEST_P(JournalOf, KeepsTheCheckpointsThatItLoads) {
+  const std::string first = folder_.path("first.ck"), second = folder_.path("second.ck");
+  std::uint64_t hash = 0;
+  {
+    auto s = session(folder_.path("j"));
+    s->step();
+    s->save_checkpoint(first);
+    s->save_checkpoint(first);  // nothing refers to it yet
+    s->step();
+    s->apply(command::LoadCheckpoint{first, 0});
+    s->step();
+    s->save_checkpoint(second);
+    const std::string bytes = test::file_bytes(first);
+    std::filesystem::create_directory_symlink(folder_.path("."), folder_.path("link"));
+    for (const std::string& path :
+         {first, folder_.path("./first.ck"), folder_.path("link/first.ck"), folder_.path("j")}) {
+      try {
+        s->save_checkpoint(path);
+        ADD_FAILURE() << path << " was replaced";
+      } catch (const ConfigError& e) {
+        EXPECT_NE(std::string(e.what()).find("journal " + folder_.path("j")), std::string::npos) << e.what();
+      }
+    }
+    EXPECT_EQ(test::file_bytes(first), bytes);
+    s->step();
+    s->save_checkpoint(second);
+    hash = s->simulation().state_hash();
+  }
+  const Journal journal = read_journal(folder_.path("j"));
+  EXPECT_EQ(checkpoints_of(journal), std::vector<std::string>{first});
+  EXPECT_EQ(replayed(journal), hash);
+  auto without = session("");
+  without->apply(command::LoadCheckpoint{first, 0});
+  without->save_checkpoint(first);
+}
+
+/// As a node does that is started again and again: the journal before the present one stays replayable.
+TEST_P(JournalOf, BeginsWithACheckpointThatThePreviousOneDoesNotNeed) {
+  const std::string path = folder_.path("j");
+  std::vector<std::string> checkpoints;
+  for (int start = 0; start < 4; ++start) {
+    if (std::filesystem::exists(path)) std::filesystem::rename(path, path + ".previous");
+    checkpoints.push_back(checkpoint_beside(path));
+    auto s = session(path);
+    s->step();
+    session("")->save_checkpoint(checkpoints.back());
+    s->apply(command::LoadCheckpoint{checkpoints.back(), 0});
+  }
+  EXPECT_EQ(checkpoints, (std::vector<std::string>{path + ".checkpoint", path + ".checkpoint.2",
+                                                   path + ".checkpoint", path + ".checkpoint.2"}));
+  folder_.write("j.previous", "[1\n");
+  EXPECT_EQ(checkpoint_beside(path), path + ".checkpoint") << "a journal that cannot be read needs nothing";
+}
+
+TEST_P(JournalOf, IsWrittenToARegularFileOnly) {
+  folder_.write("victim", "precious");
+  std::filesystem::create_symlink(folder_.path("victim"), folder_.path("link"));
+  for (const std::string& path :
+       {folder_.path("link"), folder_.path("no/such/folder"), std::string("/dev/null")})
+    EXPECT_THROW(session(path), ConfigError) << path;
+  EXPECT_EQ(test::file_bytes(folder_.path("victim")), "precious");
 }
 
 TEST_P(JournalOf, AnotherScenarioIsRefused) {

@@ -191,6 +191,29 @@ class Resume(Scenarios):
         self.assertEqual(node.end()[0], 0)
         self.assertEqual(self.run_without_ros(CORNER, "--replay", journal), live)
 
+    def test_the_previous_journal_still_replays(self):
+        journal = self.path("journal.yaml")
+        self.saved("previous", 4, journal=journal)
+        node, _ = self.again("previous", journal=journal)
+        live = node.call("step", Step, 6).state_hash
+        wait_until(lambda: 10 in saved_steps(self.folder), "no autosave of step 10")
+        self.assertEqual(node.end()[0], 0)
+        node, step = self.again("previous", journal=journal)
+        self.assertEqual(step, 10)
+        self.assertEqual(node.end()[0], 0)
+        self.assertEqual(self.run_without_ros(CORNER, "--replay", journal + ".previous"), live)
+
+    def test_a_chosen_name_does_not_win(self):
+        self.saved("chosen", 3)
+        newest = autosaves(self.folder)[-1]
+        for number in ("9999999999", "zzz"):
+            shutil.copy(newest, newest.rpartition("-")[0] + "-" + number + ".ckpt")
+        node, _ = self.again("chosen")
+        node.call("step", Step, 4)
+        wait_until(lambda: 7 in saved_steps(self.folder), "no autosave of step 7")
+        node.end(signal.SIGKILL)
+        self.assertEqual(self.again("chosen")[1], 7)
+
 
 if __name__ == "__main__":
     rospy.init_node("resume", disable_signals=True)

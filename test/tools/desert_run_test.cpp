@@ -1,5 +1,7 @@
 // desert_run: outputs, resuming, replaying, interrupting.
 
+#include <csignal>
+
 #include "src/scenario/scenario.hpp"
 #include "src/simulation/session.hpp"
 #include "src/tools/outputs.hpp"
@@ -216,6 +218,66 @@ TEST_F(Run, InterruptedFinishesItsStepWritesOutputsAndExits130) {
   EXPECT_LT(std::stoll(json(text, "steps")), 100000000);
   run_cpu({"--resume", path("a.ck"), "--steps", json(text, "steps"), "--out", path("again")});
   EXPECT_EQ(hash("again"), hash("out"));
+}
+
+TEST_F(Run, EndsAtTheLossOfItsTerminalAsAfterCtrlC) {
+  const std::vector<std::string> endless = {program_, scenario_, "--backend", "cpu", "--steps", "100000000"};
+  std::vector<std::string> hung_up = {"--preserve-status", "-s", "HUP", "2"};
+  hung_up.insert(hung_up.end(), endless.begin(), endless.end());
+  hung_up.insert(hung_up.end(), {"--out", path("out")});
+  const test::ProgramRun r = test::run_program("/usr/bin/timeout", hung_up);
+  EXPECT_EQ(r.status, 130) << r.err;
+  EXPECT_GT(std::stoll("0" + json(summary("out"), "steps")), 0);
+  // Not under nohup, which ignores the signal: the run goes on until it is killed.
+  std::vector<std::string> nohup = {"-s", "HUP", "-k", "1", "2", "/bin/sh", "-c", "trap '' HUP; exec \"$@\"",
+                                    "sh"};
+  nohup.insert(nohup.end(), endless.begin(), endless.end());
+  EXPECT_EQ(test::run_program("/usr/bin/timeout", nohup).status, 128 + SIGKILL);
+}
+
+TEST_F(Run, WithAStandardOutputThatIsFullFails) {
+  for (const char* option : {"--describe", "--help", "--pipeline", "--steps=1"}) {
+    const test::ProgramRun r = test::run_program(
+        "/bin/sh", {"-c", "exec \"$0\" \"$@\" > /dev/full", program_, scenario_, "--backend", "cpu", option});
+    EXPECT_EQ(r.status, 3) << option << "\n" << r.err;
+    EXPECT_NE(r.err.find("the standard output cannot be written"), std::string::npos) << r.err;
+  }
+}
+
+TEST_F(Run, ResumedTakesSettingsWithAndWithoutItsScenario) {
+  run_cpu({scenario_, "--steps", "4", "--checkpoint", path("a.ck")});
+  run_cpu({"--resume", path("a.ck"), "--steps", "8", "--out", path("same")});
+  run_cpu({"--resume", path("a.ck"), "--steps", "8", "--set", "saltation.lift=0.3", "--out", path("a")});
+  run_cpu({scenario_, "--resume", path("a.ck"), "--steps", "8", "--set", "saltation.lift=0.3", "--out",
+           path("b")});
+  Session session(load_scenario(scenario_), no_raster_loader, "cpu", 1);
+  session.apply(command::LoadCheckpoint{path("a.ck"), 0});
+  session.apply(command::SetParameters{{"saltation.lift=0.3"}});
+  for (int n = 0; n < 4; ++n) session.step();
+  char text[32];
+  std::snprintf(text, sizeof text, "\"%016llx\"",
+                static_cast<unsigned long long>(session.simulation().state_hash()));
+  EXPECT_EQ(hash("a"), text);
+  EXPECT_EQ(hash("b"), text);
+  EXPECT_NE(hash("same"), text);
+}
+
+/// OpenMP says what it has read from the environment; a program that executes itself anew says it twice.
+TEST_F(Run, LetsThreadsWaitWithoutSpinningUnlessTheUserHasChosen) {
+  const auto policy = [&](const std::vector<std::string>& environment) {
+    std::vector<std::string> arguments = {"-u", "OMP_WAIT_POLICY", "-u", "GOMP_SPINCOUNT",
+                                          "OMP_DISPLAY_ENV=TRUE"};
+    arguments.insert(arguments.end(), environment.begin(), environment.end());
+    arguments.insert(arguments.end(), {program_, "--help"});
+    const test::ProgramRun r = test::run_program("/usr/bin/env", arguments);
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_NE(r.out.find("usage: desert_run"), std::string::npos) << "the arguments are the same";
+    const std::size_t at = r.err.rfind("OMP_WAIT_POLICY = '");
+    return at == std::string::npos ? r.err : r.err.substr(at + 19, r.err.find('\'', at + 19) - at - 19);
+  };
+  EXPECT_EQ(policy({}), "PASSIVE");
+  EXPECT_EQ(policy({"OMP_WAIT_POLICY=active"}), "ACTIVE");
+  EXPECT_NE(policy({"GOMP_SPINCOUNT=5"}), "");
 }
 
 TEST_F(Run, OfZeroStepsWritesTheStart) {

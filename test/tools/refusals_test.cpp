@@ -1,9 +1,13 @@
 // desert_run refuses wrong input: status 2, soon, one clear line that names the culprit, nothing left in
 // --out.
 
+#include <sys/stat.h>
+
 #include <cstdlib>
 #include <cstring>
 
+#include "src/scenario/scenario.hpp"
+#include "src/simulation/session.hpp"
 #include "support/run_fixture.hpp"
 
 namespace desert_sim {
@@ -30,6 +34,15 @@ class Refusals : public test::DesertRun {
     EXPECT_EQ(r.out, "");
     EXPECT_FALSE(std::filesystem::exists(path("out"))) << "left something in --out";
     return r;
+  }
+  /// Before the first step, not after hours of them: a run that begins says on which backend.
+  void expect_refused_at_once(std::vector<std::string> arguments, const std::vector<std::string>& naming) {
+    arguments.insert(arguments.end(), {"--backend", "cpu", "--steps", "100000000"});
+    const test::ProgramRun r = run(arguments, soon);
+    EXPECT_EQ(r.status, 2) << r.err;
+    for (const std::string& text : naming) EXPECT_NE(r.err.find(text), std::string::npos) << r.err;
+    EXPECT_EQ(r.err.find("backend: "), std::string::npos) << "the run has begun:\n" << r.err;
+    EXPECT_LT(r.seconds, soon);
   }
   test::ProgramRun expect_text_refused(const std::string& yaml, const std::vector<std::string>& naming) {
     return expect_refused({folder_.write("wrong.yaml", yaml)}, naming);
@@ -147,12 +160,77 @@ TEST_F(Refusals, OutputsThatCannotBeWritten) {
   EXPECT_NE(file.err.find("small.yaml"), std::string::npos) << file.err;
 }
 
-/// Before the steps, not after hours of them.
+TEST_F(Refusals, OutIsRemovedAgainIfAnotherOutputIsRefused) {
+  const std::vector<std::string> more = {"--backend", "cpu", "--checkpoint", path("no/such/a.ck")};
+  std::vector<std::string> arguments = {scenario_, "--out", path("deep/er/out")};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  EXPECT_EQ(run(arguments).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("deep")));
+  std::filesystem::create_directories(path("deep/er"));
+  EXPECT_EQ(run(arguments).status, 2);
+  EXPECT_TRUE(std::filesystem::is_empty(path("deep/er")));
+  EXPECT_TRUE(std::filesystem::exists(path("deep/er"))) << "it was there before";
+}
+
+TEST_F(Refusals, EmptyValues) {
+  for (const char* option :
+       {"--out", "--checkpoint", "--resume", "--replay", "--plot", "--set", "--backend"}) {
+    const test::ProgramRun r = run({scenario_, "--backend", "cpu", "--steps", "1", option, ""});
+    EXPECT_EQ(r.status, 2) << option;
+    EXPECT_NE(r.err.find(std::string(option) + " ''"), std::string::npos) << r.err;
+  }
+}
+
 TEST_F(Refusals, CheckpointThatCannotBeWrittenIsRefusedBeforeTheRun) {
-  const test::ProgramRun r =
-      run({scenario_, "--backend", "cpu", "--steps", "200000", "--checkpoint", path("no/such/a.ck")}, 3);
-  EXPECT_EQ(r.status, 2) << r.err;
-  EXPECT_NE(r.err.find("no/such/a.ck"), std::string::npos) << r.err;
+  expect_refused_at_once({scenario_, "--checkpoint", path("no/such/a.ck")}, {"no/such/a.ck", "No such file"});
+}
+TEST_F(Refusals, CheckpointThatIsNoRegularFile) {
+  folder_.write("precious", "bytes");
+  std::filesystem::create_symlink(path("precious"), path("link"));
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  expect_refused_at_once({scenario_, "--checkpoint", path(".")}, {path("."), "names no file"});
+  expect_refused_at_once({scenario_, "--checkpoint", path("link")}, {"link: ", "a symbolic link"});
+  expect_refused_at_once({scenario_, "--checkpoint", path("pipe")}, {"pipe: ", "a pipe"});
+  EXPECT_TRUE(std::filesystem::is_fifo(path("pipe")));
+  EXPECT_EQ(test::file_bytes(path("precious")), "bytes");
+}
+TEST_F(Refusals, SummaryOrPlotThatIsNoRegularFile) {
+  std::filesystem::create_directories(path("out/summary.json"));
+  expect_refused_at_once({scenario_, "--out", path("out")}, {"--out", "summary.json", "a folder"});
+  expect_refused_at_once({scenario_, "--out", path("fine"), "--every", "5", "--plot", path(".")},
+                         {path("."), "names no file"});
+}
+TEST_F(Refusals, CheckpointThatWouldReplaceAnInput) {
+  expect_refused_at_once({scenario_, "--checkpoint", scenario_},
+                         {"--checkpoint", "small.yaml", "the scenario"});
+  run_cpu({scenario_, "--steps", "3", "--checkpoint", path("a.ck")});
+  {
+    Session session(load_scenario(scenario_), no_raster_loader, "cpu", 1, path("j"));
+    session.apply(command::LoadCheckpoint{path("a.ck"), 0});
+    session.step();
+  }
+  const std::string bytes = test::file_bytes(path("a.ck"));
+  const std::vector<std::string> replay = {scenario_, "--replay", path("j"), "--checkpoint"};
+  for (const auto& [file, what] :
+       {std::pair<std::string, std::string>{path("./a.ck"), "journal loads"}, {path("j"), "the journal"}}) {
+    std::vector<std::string> arguments = replay;
+    arguments.push_back(file);
+    expect_refused_at_once(arguments, {"--checkpoint " + file, what});
+  }
+  EXPECT_EQ(test::file_bytes(path("a.ck")), bytes);
+  run_cpu({scenario_, "--replay", path("j"), "--checkpoint", path("b.ck")});
+  run_cpu({"--resume", path("b.ck"), "--steps", "6", "--checkpoint", path("b.ck")});
+}
+
+TEST_F(Refusals, SettingsOfAResumedRunThatCannotChange) {
+  run_cpu({scenario_, "--steps", "2", "--checkpoint", path("a.ck")});
+  for (const char* setting : {"grid.width=8", "seed=7", "wind.sped=3", "wind.speed=fast"}) {
+    const std::string name = std::string(setting).substr(0, std::string(setting).find('='));
+    expect_refused({"--resume", path("a.ck"), "--set", setting}, {name});
+    if (name != "wind.sped" && name != "wind.speed")
+      expect_refused({scenario_, "--resume", path("a.ck"), "--set", setting}, {name});
+  }
+  expect_refused({"--resume", path("a.ck"), "--seed", "7"}, {"seed"});
 }
 
 }  // namespace

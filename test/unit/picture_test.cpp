@@ -3,6 +3,7 @@
 #include "src/io/picture.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "src/core/error.hpp"
+#include "support/full_disk.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace desert_sim {
@@ -266,6 +268,27 @@ TEST(WritePng, WritesWholeFilesOrNone) {
   }
   for (const auto& entry : fs::directory_iterator(folder.path(".")))
     EXPECT_NE(entry.path().extension(), ".part");
+}
+
+TEST(WritePng, DoesNotFollowLinksThatSomebodyHasPlanted) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.path("a.png"), victim = folder.write("victim", "precious");
+  for (int n = 0; n < 100; ++n)
+    fs::create_symlink(victim, file + "." + std::to_string(getpid()) + "-" + std::to_string(n) + ".part");
+  write_png(file, cv::Mat(4, 6, CV_8UC1, cv::Scalar(10)));
+  EXPECT_EQ(test::file_bytes(victim), "precious");
+  EXPECT_EQ(cv::imread(file).cols, 6);
+}
+
+TEST(WritePng, OnAFullDiskLeavesNothing) {
+  const test::TemporaryFolder folder;
+  cv::Mat noise(100, 100, CV_8UC3);
+  cv::randu(noise, 0, 255);
+  {
+    const test::FullDisk disk(1000);
+    EXPECT_THROW(write_png(folder.path("a.png"), noise), Error);
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path(".")));
 }
 
 }  // namespace

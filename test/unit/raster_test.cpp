@@ -2,11 +2,14 @@
 
 #include "src/io/raster.hpp"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
+#include "support/full_disk.hpp"
 #include "support/raster_test.hpp"
 
 namespace desert_sim {
@@ -106,6 +109,35 @@ TEST_F(RasterTest, WritingLeavesNothingElseBehind) {
     expect_says(error.what(), {"no_such_folder/a.tif", "cannot be written"});
   }
   for (const auto& entry : fs::directory_iterator(path("."))) EXPECT_NE(entry.path().extension(), ".part");
+}
+
+TEST_F(RasterTest, DoesNotFollowLinksThatSomebodyHasPlanted) {
+  Raster r;
+  r.width = r.height = 1;
+  r.values = {2};
+  folder_.write("victim", "precious");
+  for (int n = 0; n < 100; ++n)
+    fs::create_symlink(path("victim"),
+                       path("a.tif." + std::to_string(getpid()) + "-" + std::to_string(n) + ".part"));
+  write_geotiff(path("a.tif"), r);
+  EXPECT_EQ(read_raster(path("a.tif")).values, r.values);
+  EXPECT_EQ(test::file_bytes(path("victim")), "precious");
+  fs::create_symlink(path("victim"), path("link.tif"));
+  EXPECT_THROW(write_geotiff(path("link.tif"), r), ConfigError);
+  EXPECT_TRUE(fs::is_symlink(path("link.tif")));
+}
+
+TEST_F(RasterTest, OnAFullDiskIsNotWrittenAndLeavesNothing) {
+  Raster r;
+  r.width = r.height = 100;
+  for (int i = 0; i < 10000; ++i) r.values.push_back(std::sin(static_cast<float>(i) * i));
+  folder_.write("a.tif", "old");
+  {
+    const test::FullDisk disk(5000);
+    EXPECT_THROW(write_geotiff(path("a.tif"), r), Error);
+  }
+  EXPECT_EQ(test::file_bytes(path("a.tif")), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(path(".")), fs::directory_iterator()), 1);
 }
 
 TEST_F(RasterTest, RefusesToWriteNonsense) {

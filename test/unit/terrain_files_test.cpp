@@ -4,10 +4,13 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
+#include <thread>
 
 #include "src/core/files.hpp"
 #include "src/io/raster_loader.hpp"
 #include "src/simulation/session.hpp"
+#include "support/full_disk.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 
@@ -29,6 +32,13 @@ class TerrainFiles : public ::testing::TestWithParam<const char*> {
     save_terrain(file_, simulation.scenario(), *simulation.snapshot(persistent_layers(simulation)),
                  as_geotiff() ? geotiff_writer("") : png16_writer(), tag);
     return file_;
+  }
+  /// The names of the files that there are.
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path(".")))
+      names.insert(entry.path().filename());
+    return names;
   }
   bool as_geotiff() const { return GetParam() == std::string("geotiff"); }
   double tolerance() const { return as_geotiff() ? 4e-6 : 43 / 65535.0; }
@@ -81,6 +91,65 @@ TEST_P(TerrainFiles, ReplaceAnEarlierTerrainWhole) {
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path(".")))
     EXPECT_EQ(entry.path().filename().string().find("-a."), std::string::npos) << entry.path();
   session(world)->apply(command::LoadScenario{file_, true, 0});
+}
+
+/// Both writers have a terrain of their own; whoever comes last wins whole.
+TEST_P(TerrainFiles, SavedToOneFolderAtTheSameTimeAreOneOfThemWhole) {
+  auto a = session(world), b = session(world);
+  b->step();
+  std::set<std::uint64_t> allowed;
+  for (Session* s : {a.get(), b.get()}) {
+    save(*s, "x");
+    auto loaded = session(world);
+    loaded->apply(command::LoadScenario{file_, true, 0});
+    allowed.insert(loaded->simulation().state_hash());
+  }
+  ASSERT_EQ(allowed.size(), 2u);
+  for (int n = 0; n < 25; ++n) {
+    std::vector<std::thread> writers;
+    for (Session* s : {a.get(), b.get()})
+      writers.emplace_back([&, s] { save(*s, (s == a.get() ? "a" : "b") + std::to_string(n)); });
+    for (std::thread& writer : writers) writer.join();
+    auto loaded = session(world);
+    ASSERT_NO_THROW(loaded->apply(command::LoadScenario{file_, true, 0})) << "round " << n;
+    EXPECT_EQ(allowed.count(loaded->simulation().state_hash()), 1u) << "round " << n;
+    EXPECT_EQ(files().size(), load_scenario(file_).terrain.size() + 1) << "the other's files are left";
+  }
+}
+
+TEST_P(TerrainFiles, ThatCannotBeWrittenLeaveAnEarlierTerrainAndNothingElse) {
+  auto s = session(world);
+  save(*s, "a");
+  const std::set<std::string> before = files();
+  s->step();
+  const std::string taken = layer_file_name("sand", "b", as_geotiff() ? ".tif" : ".png");
+  std::filesystem::create_directory(folder_.path(taken));
+  EXPECT_THROW(save(*s, "b"), ConfigError);
+  std::filesystem::remove(folder_.path(taken));
+  EXPECT_EQ(files(), before) << "the layers that came before the one that failed";
+  session(world)->apply(command::LoadScenario{file_, true, 0});
+  {
+    const test::FullDisk disk(100);
+    EXPECT_THROW(save(*s, "b"), Error);
+  }
+  EXPECT_EQ(files(), before);
+  session(world)->apply(command::LoadScenario{file_, true, 0});
+}
+
+TEST_P(TerrainFiles, AreNotWrittenOverALink) {
+  auto s = session(world);
+  folder_.write("victim", "precious");
+  std::filesystem::create_symlink(folder_.path("victim"), file_);
+  EXPECT_THROW(save(*s, "a"), ConfigError);
+  EXPECT_EQ(read_file(folder_.path("victim")), "precious");
+  EXPECT_EQ(files(), (std::set<std::string>{"terrain.yaml", "victim"}));
+}
+
+TEST_P(TerrainFiles, OfASaveThatWasKilledAreRemovedByTheNext) {
+  folder_.write(".terrain-sand-a.tif.0123456789abcdef.part", "half");
+  auto s = session(world);
+  save(*s, "b");
+  EXPECT_EQ(files().count(".terrain-sand-a.tif.0123456789abcdef.part"), 0u);
 }
 
 TEST_P(TerrainFiles, ReplayFromAJournalAndAreRefusedWhenTheyHaveChanged) {

@@ -3,18 +3,12 @@
 #include <ros/console.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <map>
 
 #include "src/core/files.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/simulation/checkpoint.hpp"
 
 namespace desert_sim {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -26,44 +20,22 @@ constexpr std::size_t max_files =
 
 // ---- Files.
 
+namespace {
+
+std::string file_prefix(const std::string& node, const Scenario& scenario) {
+  std::string name = node.substr(node.find_first_not_of('/'));
+  std::replace(name.begin(), name.end(), '/', '.');
+  return name + "-" + hash_text(scenario_hash(scenario)) + "-";
+}
+
+}  // namespace
+
 AutosaveFiles::AutosaveFiles(const DataFolder& folder, const std::string& node, const Scenario& scenario)
-    : folder_(&folder), name_(node.substr(node.find_first_not_of('/'))) {
-  std::replace(name_.begin(), name_.end(), '/', '.');
-  name_ += "-" + hash_text(scenario_hash(scenario)) + "-";
-}
-
-std::string AutosaveFiles::file_name(unsigned long number) const {
-  char digits[24];
-  std::snprintf(digits, sizeof digits, "%010lu", number);
-  return std::string(subfolder) + "/" + name_ + digits + file_extension;
-}
-
-std::vector<std::string> AutosaveFiles::paths() const {
-  std::vector<std::string> names;
-  std::error_code missing;
-  for (const fs::directory_entry& entry :
-       fs::directory_iterator(folder_->path() + "/" + subfolder, missing)) {
-    const std::string name = entry.path().filename().string();
-    if (name.compare(0, name_.size(), name_) == 0 && entry.path().extension() == file_extension)
-      names.push_back(entry.path().string());
-  }
-  std::sort(names.rbegin(), names.rend());
-  return names;
-}
+    : folder_(&folder),
+      files_(folder.path() + "/" + subfolder, file_prefix(node, scenario), file_extension) {}
 
 std::string AutosaveFiles::next_path() const {
-  const std::vector<std::string> names = paths();
-  unsigned long newest = 0;
-  if (!names.empty()) {
-    const std::string stem = fs::path(names.front()).stem().string();
-    newest = std::strtoul(stem.c_str() + name_.size(), nullptr, 10);
-  }
-  return folder_->for_writing(file_name(newest + 1));
-}
-
-void AutosaveFiles::keep_newest(std::size_t count) const {
-  const std::vector<std::string> names = paths();
-  for (std::size_t n = count; n < names.size(); ++n) fs::remove(names[n]);
+  return folder_->for_writing(std::string(subfolder) + "/" + files_.next_name());
 }
 
 // ---- Saving.
@@ -141,16 +113,14 @@ void load_newest(Session& session, const std::vector<std::string>& checkpoints, 
     try {
       std::string path = checkpoint;
       if (!journal.empty()) {
-        path = journal + ".checkpoint";
-        fs::copy_file(checkpoint, path, fs::copy_options::overwrite_existing);
+        path = checkpoint_beside(journal);
+        write_file(path, read_file(checkpoint));
       }
       session.apply(command::LoadCheckpoint{path, 0});
       ROS_INFO("The simulation was resumed at step %lu from the autosave %s.",
                static_cast<unsigned long>(session.simulation().steps()), checkpoint.c_str());
       return;
     } catch (const ConfigError& e) {
-      ROS_WARN("The autosave %s cannot be loaded: %s", checkpoint.c_str(), e.what());
-    } catch (const fs::filesystem_error& e) {
       ROS_WARN("The autosave %s cannot be loaded: %s", checkpoint.c_str(), e.what());
     }
   }

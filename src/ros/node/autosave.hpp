@@ -8,29 +8,29 @@
 #include <thread>
 #include <vector>
 
+#include "src/core/numbered_files.hpp"
 #include "src/ros/node/data_folder.hpp"
 #include "src/ros/node/simulation_thread.hpp"
 
 namespace desert_sim {
 
-/// The files autosave/NAME-NUMBER.ckpt below the data folder; the highest number is the newest. NAME is made
-/// of the name of the node and the hash of the scenario in its parameters, so that a node resumes only its
-/// own files. That holds also while a service has loaded another scenario: the file has that one, but a node
-/// that is started again knows only its parameters.
+/// The files autosave/NAME-NUMBER.ckpt below the data folder, as NumberedFiles. NAME is made of the name of
+/// the node and the hash of the scenario in its parameters, so that a node resumes only its own files. That
+/// holds also while a service has loaded another scenario: the file has that one, but a node that is
+/// started again knows only its parameters.
 class AutosaveFiles {
  public:
   AutosaveFiles(const DataFolder& folder, const std::string& node, const Scenario& scenario);
   /// The paths of the files there are, newest first.
-  std::vector<std::string> paths() const;
+  std::vector<std::string> paths() const { return files_.paths(); }
   /// The path for a file that is newer than all.
   std::string next_path() const;
   /// Removes all files but the newest `count`.
-  void keep_newest(std::size_t count) const;
+  void keep_newest(std::size_t count) const { files_.keep_newest(count); }
 
  private:
-  std::string file_name(unsigned long number) const;
   const DataFolder* folder_;
-  std::string name_;
+  NumberedFiles files_;
 };
 
 /// Writes a checkpoint every `period` seconds of wall time, if something has changed, and keeps the last two
@@ -71,8 +71,8 @@ class Autosave {
 };
 
 /// Loads the first of `checkpoints` that is complete, and warns of those that are not. With a journal, it is
-/// loaded from a copy beside the journal, `journal`.checkpoint, so that the journal can be replayed when the
-/// autosaves are gone. If none is complete, the session stays at the start of the scenario.
+/// loaded from a copy, checkpoint_beside(journal), so that the journal can be replayed when the autosaves are
+/// gone. If none is complete, the session stays at the start of the scenario.
 void load_newest(Session& session, const std::vector<std::string>& checkpoints, const std::string& journal);
 
 }  // namespace desert_sim

@@ -86,8 +86,6 @@ std::string DataFolder::for_writing(const std::string& name) const {
     }
     const fs::path file = resolve_links(root, folder / relative.filename(), name);
     if (fs::exists(file) && !fs::is_regular_file(file)) throw ConfigError(quoted(name) + ": is not a file");
-    // Checkpoints are written under this name first.
-    resolve_links(root, file.string() + ".part", name);
     return file.string();
   } catch (const fs::filesystem_error& e) {
     throw ConfigError(quoted(name) + ": the file system reports \"" + e.code().message() + "\" (in " + path_ +

@@ -1,9 +1,11 @@
 #include "src/simulation/commands/journal.hpp"
 
+#include <fcntl.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <sstream>
 
 #include "src/core/files.hpp"
@@ -51,7 +53,10 @@ class Line {
 }  // namespace
 
 JournalWriter::JournalWriter(const std::string& path, std::uint64_t scenario_hash, const std::string& backend)
-    : path_(path), file_(std::fopen(path.c_str(), "w")) {
+    : path_(path) {
+  require_writable_file(path);
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (file >= 0) file_ = fdopen(file, "w");
   if (!file_) throw ConfigError(path + ": the journal cannot be written: " + std::strerror(errno));
   line(Line()
            .entry("journal", journal_version)
@@ -75,6 +80,13 @@ void JournalWriter::write(std::uint64_t tick, const Command& command) {
 
 void JournalWriter::end(std::uint64_t tick) {
   line(Line().entry("tick", tick).entry("command", "end").text());
+}
+
+std::vector<std::string> checkpoints_of(const Journal& journal) {
+  std::vector<std::string> paths;
+  for (const Journal::Entry& entry : journal.entries)
+    if (const auto* load = std::get_if<command::LoadCheckpoint>(&entry.command)) paths.push_back(load->path);
+  return paths;
 }
 
 Journal read_journal(const std::string& path) {
@@ -115,6 +127,18 @@ Journal read_journal(const std::string& path) {
   }
   if (journal.scenario_hash == 0 && journal.backend.empty()) throw ConfigError(path + ": is not a journal");
   return journal;
+}
+
+std::string checkpoint_beside(const std::string& path) {
+  const std::string previous = path + ".previous", usual = path + ".checkpoint";
+  if (!std::filesystem::exists(previous)) return usual;
+  try {
+    for (const std::string& needed : checkpoints_of(read_journal(previous)))
+      if (same_file(needed, usual)) return usual + ".2";
+  } catch (const ConfigError& e) {
+    log_error(std::string("the checkpoint of the previous journal is not kept: ") + e.what());
+  }
+  return usual;
 }
 
 }  // namespace desert_sim

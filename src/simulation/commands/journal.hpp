@@ -39,7 +39,14 @@ struct Journal {
   std::uint64_t ticks = 0;  ///< if it ended: all ticks of the session; else the last entry's
 };
 
+/// The paths of the checkpoints that the journal loads.
+std::vector<std::string> checkpoints_of(const Journal& journal);
+
 /// Throws ConfigError with file and line.
 Journal read_journal(const std::string& path);
+
+/// The path for a copy of the checkpoint that a new journal at `path` begins with: `path`.checkpoint, or
+/// `path`.checkpoint.2 if the journal that was there before, which is `path`.previous now, loads the former.
+std::string checkpoint_beside(const std::string& path);
 
 }  // namespace desert_sim

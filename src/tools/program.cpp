@@ -1,0 +1,55 @@
+#include "src/tools/program.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <new>
+
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+/// Does nothing if the user has chosen how threads wait, by OpenMP's variable or by one of GCC's runtime.
+void make_waiting_passive(char** argv) {
+  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
+  if (setenv("OMP_WAIT_POLICY", "passive", 0) == 0) execv("/proc/self/exe", argv);
+  throw Error(std::string("the program cannot be executed anew with OMP_WAIT_POLICY=passive: ") +
+              std::strerror(errno) + " (set OMP_WAIT_POLICY in the environment)");
+}
+
+void require_output_written() {
+  std::cout.flush();
+  errno = 0;
+  const bool flushed = std::fflush(stdout) == 0;
+  if (flushed && !std::ferror(stdout) && std::cout) return;
+  throw Error(std::string("the standard output cannot be written") +
+              (errno ? std::string(": ") + std::strerror(errno) : ""));
+}
+
+}  // namespace
+
+int run_main(const char* name, char** argv, const std::function<int()>& body) {
+  try {
+    make_waiting_passive(argv);
+    const int status = body();
+    require_output_written();
+    return status;
+  } catch (const ConfigError& e) {
+    std::fprintf(stderr, "%s: %s\n", name, e.what());
+    return 2;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "%s: the host has not enough memory\n", name);
+    return 3;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: %s\n", name, e.what());
+    return 3;
+  }
+}
+
+}  // namespace desert_sim
