@@ -26,6 +26,10 @@ const char usage[] =
     "  --threads N           threads of the CPU backend\n"
     "  --set PATH=VALUE      override a key of the scenario; may be repeated\n"
     "  --seed S              same as --set seed=S\n"
+    "  --all-raster-formats  read rasters of every format that GDAL reads, also what names other files or "
+    "hosts\n"
+    "                        (VRT, WMS, /vsi paths), not only GeoTIFF, ESRI ASCII, ENVI, PNG, EXR and USGS "
+    "DEM\n"
     "  --out DIR             write rasters, pictures and summary.json to DIR, which is created if needed\n"
     "  --every N             also write them every N steps, to DIR/step_NNNNNNNN\n"
     "  --plot FILE           draw a PNG of areas by material and plants by species over these steps (needs\n"
@@ -112,7 +116,7 @@ int run_program(int argc, char** argv) {
   RunPlan plan{Options(argc, argv,
                        {"steps", "backend", "threads", "set", "seed", "out", "every", "plot", "checkpoint",
                         "checkpoint-every", "resume", "replay"},
-                       {"describe", "describe-processes", "pipeline", "quiet", "help"}),
+                       {"all-raster-formats", "describe", "describe-processes", "pipeline", "quiet", "help"}),
                "",
                "",
                {},
@@ -137,11 +141,12 @@ int run_program(int argc, char** argv) {
   Journal journal;
   if (o.has("replay")) journal = read_journal(o.text("replay", ""));
   const std::string backend = o.text("backend", "auto");
+  const RasterLoader rasters = raster_loader(o.has("all-raster-formats"));
   std::unique_ptr<Session> session;
   if (o.has("resume") && o.positional().empty()) {
-    session = Session::from_checkpoint(o.text("resume", ""), raster_loader(), backend, threads);
+    session = Session::from_checkpoint(o.text("resume", ""), rasters, backend, threads);
   } else {
-    session = std::make_unique<Session>(scenario_of(o), raster_loader(), backend, threads);
+    session = std::make_unique<Session>(scenario_of(o), rasters, backend, threads);
     if (o.has("replay")) session->require_journal_of_this_scenario(journal, o.text("replay", ""));
     if (o.has("resume")) session->apply(command::LoadCheckpoint{o.text("resume", ""), 0});
   }

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "src/ros/node/data_folder.hpp"
+#include "src/core/data_folder.hpp"
 #include "src/ros/node/simulation_thread.hpp"
 
 namespace desert_sim {

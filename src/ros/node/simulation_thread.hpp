@@ -29,8 +29,7 @@ class SimulationThread {
     std::string journal;  ///< file, or empty
     /// It starts from the first of these checkpoints that is complete, if there is one.
     std::vector<std::string> resume_from;
-    /// See Session::set_scenario_check().
-    std::function<void(const Scenario&)> check_scenario;
+    std::string data_folder;  ///< that commands read files below; see Session::confine_commands()
     /// If set, the simulation is the clock of all nodes: this is called on the simulation thread with the
     /// simulated time [s], at the start and after each step, and steps follow wall time, whatever
     /// use_sim_time says.
