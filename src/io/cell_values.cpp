@@ -16,7 +16,8 @@ constexpr double isolation = 10;      // of a number that may be an elevation as
 
 /// The shortest text that is read back as the same number; as the same float if the number is one.
 std::string shortest_text(double number) {
-  const bool is_float = static_cast<double>(static_cast<float>(number)) == number;
+  const bool is_float = std::abs(number) <= std::numeric_limits<float>::max() &&
+                        static_cast<double>(static_cast<float>(number)) == number;
   char text[40];
   for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
     std::snprintf(text, sizeof text, "%.*g", digits, number);
@@ -33,8 +34,8 @@ std::string warning(const std::string& path, double number, long long count, lon
                 100.0 * static_cast<double>(count) / static_cast<double>(cells), count, cells);
   const std::string text = shortest_text(number);
   return "raster '" + path + "': " + share + text +
-         ", which seems to stand for missing data but is not declared to (in the raster step: nodata: " + text +
-         ")";
+         ", which seems to stand for missing data but is not declared to (in the raster step: nodata: " +
+         text + ")";
 }
 
 }  // namespace

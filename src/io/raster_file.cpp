@@ -192,6 +192,15 @@ void check_values(const std::string& path, const Raster& raster, const RasterWin
         path, concatenate("all ", raster.values.size(), " cells are nodata, at least one value is needed"));
 }
 
+void reverse_rows(Raster& raster) {
+  for (int y = 0; y < raster.height / 2; ++y) {
+    const auto row = [&](int n) {
+      return raster.values.begin() + static_cast<std::ptrdiff_t>(n) * raster.width;
+    };
+    std::swap_ranges(row(y), row(y + 1), row(raster.height - 1 - y));
+  }
+}
+
 bool is_exr(const std::string& path) {
   std::string extension = fs::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -222,21 +231,22 @@ Raster RasterFile::read(const RasterWindow& window) {
     raster.geotransform[0] = raster.origin_x;
     raster.geotransform[3] = raster.origin_y + window.height * header_.cell_size;
   }
-  raster.values.resize(static_cast<std::size_t>(window.width) * window.height);
+  // Files begin in the north, and one that ends too early costs no more than what it has.
+  raster.values.reserve(static_cast<std::size_t>(window.width) * window.height);
   CellValues cells(options_);
   std::vector<double> raw(window.width);
   std::vector<unsigned char> valid(window.width, 255);
-  for (int y = window.height - 1; y >= 0; --y) {  // files begin in the north
-    const int row = window.y + y;
+  for (int row = window.y + window.height - 1; row >= window.y; --row) {
     read_row(row, window.x, window.width, raw.data(), valid.data());
-    float* out = raster.values.data() + static_cast<std::size_t>(y) * window.width;
     for (int x = 0; x < window.width; ++x) {
       const int column = window.x + x;
       const bool at_edge =
           row == 0 || row == header_.height - 1 || column == 0 || column == header_.width - 1;
-      out[x] = valid[x] ? cells.convert(raw[x], at_edge) : std::numeric_limits<float>::quiet_NaN();
+      raster.values.push_back(valid[x] ? cells.convert(raw[x], at_edge)
+                                       : std::numeric_limits<float>::quiet_NaN());
     }
   }
+  reverse_rows(raster);
   warn_of_undeclared_nodata(cells, path_);
   check_values(path_, raster, window);
   return raster;

@@ -136,21 +136,22 @@ void Autosave::save() {
 
 // ---- Resuming.
 
-void load_newest(Session& session, const std::vector<std::string>& checkpoints, const std::string& journal) {
+void load_newest(Session& session, const std::vector<std::string>& checkpoints, const std::string& folder,
+                 const std::string& journal) {
   for (const std::string& checkpoint : checkpoints) {
     try {
       std::string path = checkpoint;
       if (!journal.empty()) {
         path = journal + ".checkpoint";
-        fs::copy_file(checkpoint, path, fs::copy_options::overwrite_existing);
+        write_file(path, read_file(checkpoint, folder));
+      } else {
+        session.confine_commands(folder);
       }
       session.apply(command::LoadCheckpoint{path, 0});
       ROS_INFO("The simulation was resumed at step %lu from the autosave %s.",
                static_cast<unsigned long>(session.simulation().steps()), checkpoint.c_str());
       return;
     } catch (const ConfigError& e) {
-      ROS_WARN("The autosave %s cannot be loaded: %s", checkpoint.c_str(), e.what());
-    } catch (const fs::filesystem_error& e) {
       ROS_WARN("The autosave %s cannot be loaded: %s", checkpoint.c_str(), e.what());
     }
   }
