@@ -23,8 +23,9 @@ struct CellMapping {
   double length = 1;  ///< of each cell
 };
 
-/// Limits the values of an interpolated raster to the range of the source's cells that cubic convolution weighs
-/// for them: two on each side, or more where the raster is coarser. NaN cells of the source do not count.
+/// Limits the values of an interpolated raster to the range of the source's cells that cubic convolution
+/// weighs for them: two on each side, or more where the raster is coarser. NaN cells of the source do not
+/// count.
 void limit_to_sources(Raster& raster, const Raster& source, const CellMapping& x, const CellMapping& y);
 
 /// Fills all NaN cells with the distance-weighted mean of the nearest valid cells in the quadrants around

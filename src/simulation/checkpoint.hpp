@@ -17,8 +17,8 @@ namespace desert_sim {
 std::string checkpoint_bytes(const Simulation& simulation);
 /// Throws ConfigError if the file cannot be written.
 void save_checkpoint(const std::string& path, const Simulation& simulation);
-/// Throws ConfigError if the file is missing, larger than the memory, of another version, cut off or corrupt, or
-/// not below `folder` if one is given.
+/// Throws ConfigError if the file is missing, larger than the memory, of another version, cut off or corrupt,
+/// or not below `folder` if one is given.
 std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec,
                                             const std::string& folder = "");
 

@@ -42,8 +42,8 @@ void log_to_ros(Severity severity, const std::string& message) {
     ROS_ERROR("%s", message.c_str());
 }
 
-/// Reads the rasters of the node's own scenario wherever they lie, and all others below the data folder, in the
-/// allowed formats, only.
+/// Reads the rasters of the node's own scenario wherever they lie, and all others below the data folder, in
+/// the allowed formats, only.
 RasterLoader node_raster_loader(const NodeSetup& setup, const DataFolder& files) {
   return [own = raster_paths(setup.scenario),
           load_own = raster_loader_with_bags({"", setup.node.all_raster_formats}),
