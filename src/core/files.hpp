@@ -5,7 +5,8 @@
 
 namespace desert_sim {
 
-/// The content of a regular file; with a `folder`, only of one below it. Throws ConfigError as InputFile does.
+/// The content of a regular file; with a `folder`, only of one below it. Throws ConfigError as InputFile
+/// does.
 std::string read_file(const std::string& path, const std::string& folder = "");
 
 /// Writes a file atomically and durably: the bytes go to a temporary file in the same folder, which is

@@ -1,6 +1,6 @@
 #pragma once
-/// Where libraries say what they cannot throw: errors, in destructors above all, and warnings. They never print
-/// by themselves.
+/// Where libraries say what they cannot throw: errors, in destructors above all, and warnings. They never
+/// print by themselves.
 
 #include <functional>
 #include <iostream>
@@ -32,7 +32,8 @@ inline void log_warning(const std::string& message) {
   detail::log_sink(Severity::warning, message);
 }
 
-/// The program's own log, which is called by whoever logs, on its thread, one at a time. Returns the one before.
+/// The program's own log, which is called by whoever logs, on its thread, one at a time. Returns the one
+/// before.
 inline LogSink set_log_sink(LogSink sink) {
   const std::lock_guard<std::mutex> lock(detail::log_mutex);
   return std::exchange(detail::log_sink, std::move(sink));

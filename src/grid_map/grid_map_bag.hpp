@@ -14,9 +14,9 @@ namespace desert_sim {
 /// bag allows (2 GB); an existing file of that name is then unchanged.
 void write_grid_map(const std::string& path, const std::string& topic, const GridMap& map);
 
-/// Reads the last GridMap in a bag; with a `folder`, of one below it. Throws ConfigError that names the file and
-/// the reason: the file cannot be opened (see InputFile), is not a bag, is truncated or corrupt, has no GridMap,
-/// has GridMaps on several topics, or has one with another message definition.
+/// Reads the last GridMap in a bag; with a `folder`, of one below it. Throws ConfigError that names the
+/// file and the reason: the file cannot be opened (see InputFile), is not a bag, is truncated or corrupt,
+/// has no GridMap, has GridMaps on several topics, or has one with another message definition.
 GridMap read_grid_map(const std::string& path, const std::string& folder = "");
 
 /// Converts layer `band` (counted from 1) to a raster, with value = raw · scale + offset. The start indices

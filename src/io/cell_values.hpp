@@ -18,9 +18,9 @@ class CellValues {
   /// the cell is one of the outermost of its raster.
   float convert(double raw, bool at_edge);
 
-  /// One line for each number that seems to stand for missing data, with its share of the converted cells, and
-  /// how to declare it: -9999, -32768, numbers beyond ±1e30 anywhere; 999 and 9999 only where they reach the
-  /// edge and no other number comes within 10 of them.
+  /// One line for each number that seems to stand for missing data, with its share of the converted cells,
+  /// and how to declare it: -9999, -32768, numbers beyond ±1e30 anywhere; 999 and 9999 only where they
+  /// reach the edge and no other number comes within 10 of them.
   std::vector<std::string> warnings(const std::string& path) const;
 
  private:

@@ -71,9 +71,9 @@ class Autosave {
 };
 
 /// Loads the first of `checkpoints` that is complete and lies below `folder`, and warns of those that are
-/// not. With a journal, it is loaded from a copy beside the journal, `journal`.checkpoint, so that the journal
-/// can be replayed when the autosaves are gone; without one, the session's commands are confined to the
-/// folder. If none is complete, the session stays at the start of the scenario.
+/// not. With a journal, it is loaded from a copy beside the journal, `journal`.checkpoint, so that the
+/// journal can be replayed when the autosaves are gone; without one, the session's commands are confined to
+/// the folder. If none is complete, the session stays at the start of the scenario.
 void load_newest(Session& session, const std::vector<std::string>& checkpoints, const std::string& folder,
                  const std::string& journal);
 
