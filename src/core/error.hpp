@@ -7,7 +7,8 @@
 
 namespace desert_sim {
 
-/// Messages hold at most so many bytes, because what they quote can come from a file or a request of any size.
+/// Messages hold at most so many bytes, because what they quote can come from a file or a request of any
+/// size.
 constexpr std::size_t max_message_size = 2000;
 
 /// `message`, cut to max_message_size bytes; what is left out is said at its end.

@@ -1,27 +1,14 @@
 #include "src/core/files.hpp"
 
-#include <sys/stat.h>
-
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
-#include "src/core/error.hpp"
+#include "src/core/input_file.hpp"
 #include "src/core/temporary_file.hpp"
 
 namespace desert_sim {
 
-std::string read_file(const std::string& path) {
-  struct stat status;
-  if (stat(path.c_str(), &status) != 0)
-    throw ConfigError(path + ": cannot be opened: " + std::strerror(errno));
-  if (!S_ISREG(status.st_mode)) throw ConfigError(path + ": is not a regular file");
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
-  if (!file || !file.read(&bytes[0], status.st_size))
-    throw ConfigError(path + ": cannot be read: " + std::strerror(errno));
-  return bytes;
+std::string read_file(const std::string& path, const std::string& folder) {
+  return InputFile(path, folder).read_all();
 }
 
 void write_file(const std::string& path, const std::string& bytes) {

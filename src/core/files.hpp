@@ -5,8 +5,9 @@
 
 namespace desert_sim {
 
-/// The content of a file. Throws ConfigError if it is missing, is not a regular file, or cannot be read.
-std::string read_file(const std::string& path);
+/// The content of a regular file; with a `folder`, only of one below it. Throws ConfigError as InputFile
+/// does.
+std::string read_file(const std::string& path, const std::string& folder = "");
 
 /// Writes a file atomically and durably, through a TemporaryFile, so that `path` is always either the old or
 /// the new file. Throws what TemporaryFile throws; nothing is then left.

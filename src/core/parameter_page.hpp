@@ -33,6 +33,9 @@ void write_parameter_table(std::ostream& out, const P& defaults) {
     } else if constexpr (std::is_same_v<T, std::string>) {
       out << (value.empty() ? "" : "`" + value + "`");
       allowed << "text";
+    } else if constexpr (is_optional_number<T>) {
+      if (value) out << *value;
+      allowed << row.lowest << " … " << row.highest;
     } else {
       out << value;
       allowed << row.lowest << " … " << row.highest;

@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -58,6 +59,12 @@ constexpr Parameter<Owner, T> parameter(const char* name, T Owner::*member, cons
   static_assert(std::is_enum_v<T>, "choices belong to an enumeration");
   return {name, member, 0, N - 1, "", doc, choices, N};
 }
+
+/// Whether T is a number that may be left out, which has no default: std::optional of a number.
+template <class T>
+constexpr bool is_optional_number = false;
+template <class T>
+inline constexpr bool is_optional_number<std::optional<T>> = std::is_arithmetic_v<T>;
 
 template <class P>
 constexpr auto table_of() {

@@ -17,17 +17,6 @@
 
 namespace desert_sim {
 
-// ---- Descriptors.
-
-Descriptor::~Descriptor() { close(); }
-
-void Descriptor::reset(int number) {
-  close();
-  number_ = number;
-}
-
-bool Descriptor::close() { return number_ < 0 || ::close(std::exchange(number_, -1)) == 0; }
-
 namespace {
 
 std::string folder_of(const std::string& path) {

@@ -3,24 +3,9 @@
 
 #include <string>
 
+#include "src/core/descriptor.hpp"
+
 namespace desert_sim {
-
-/// Owns a file descriptor.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor();
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number() const { return number_; }  ///< negative: none
-  /// Closes what it has owned, and owns `number` from now on.
-  void reset(int number);
-  /// False, with errno, if what was written could not be kept.
-  bool close();
-
- private:
-  int number_;
-};
 
 /// A file that is written under a random name in the folder of `path`, and gets the name `path` when it is
 /// complete. The folder is opened once and symbolic links are not followed, so that nobody who can write to

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -26,8 +25,7 @@ std::uint32_t number(const std::string& bytes, std::size_t at) {
 
 class Bag {
  public:
-  explicit Bag(const std::string& path)
-      : file_(path, std::ios::binary), end_(std::filesystem::file_size(path)) {}
+  explicit Bag(const InputFile& file) : file_(file.descriptor_path(), std::ios::binary), end_(file.size()) {}
 
   void check() {
     if (read(end_, first_line.size()) != first_line) throw ConfigError("is not a bag of version 2.0");
@@ -106,6 +104,6 @@ class Bag {
 
 }  // namespace
 
-void validate_bag_records(const std::string& path) { Bag(path).check(); }
+void validate_bag_records(const InputFile& file) { Bag(file).check(); }
 
 }  // namespace desert_sim

@@ -1,7 +1,7 @@
 #pragma once
 /// Checks the records of bag files; the format is described at https://wiki.ros.org/Bags/Format/2.0.
 
-#include <string>
+#include "src/core/input_file.hpp"
 
 namespace desert_sim {
 
@@ -9,6 +9,6 @@ namespace desert_sim {
 /// uncompressed chunks, and that index entries point to records. Throws ConfigError with the byte offset
 /// otherwise. The rosbag library trusts the lengths in a file, so that a corrupt length makes it read out of
 /// bounds. Compressed chunks have checksums of their own.
-void validate_bag_records(const std::string& path);
+void validate_bag_records(const InputFile& file);
 
 }  // namespace desert_sim

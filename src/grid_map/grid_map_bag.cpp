@@ -89,11 +89,11 @@ void write_grid_map(const std::string& path, const std::string& topic, const Gri
   write_file(path, bag_bytes(topic, connection_header(), time, serialised(map)));
 }
 
-GridMap read_grid_map(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw ConfigError(path + ": no such file exists");
+GridMap read_grid_map(const std::string& path, const std::string& folder) {
+  const InputFile file(path, folder);
   try {
-    validate_bag_records(path);
-    rosbag::Bag bag(path, rosbag::bagmode::Read);
+    validate_bag_records(file);
+    rosbag::Bag bag(file.descriptor_path(), rosbag::bagmode::Read);
     return read_last_map(bag);
   } catch (const rosbag::BagUnindexedException&) {
     throw ConfigError(path + ": is truncated or still being recorded (rosbag reindex can repair it)");
@@ -104,15 +104,11 @@ GridMap read_grid_map(const std::string& path) {
   }
 }
 
-RasterLoader raster_loader_with_bags() {
-  return [gdal = gdal_raster_loader()](const RasterRequest& request) {
+RasterLoader raster_loader_with_bags(const RasterAccess& access) {
+  return [access, gdal = gdal_raster_loader(access)](const RasterRequest& request) {
     if (!is_bag(request.path)) return gdal(request);
-    const GridMap map = read_grid_map(request.path);
-    RasterOptions options;
-    options.band = request.band;
-    options.scale = request.scale;
-    options.offset = request.offset;
-    RasterField field = resample_to_request(to_raster(map, options, request.path), request);
+    const GridMap map = read_grid_map(request.path, access.folder);
+    RasterField field = resample_to_request(to_raster(map, raster_options(request), request.path), request);
     field.bands = map.layers;
     return field;
   };

@@ -5,6 +5,7 @@
 
 #include "src/core/quoted.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
+#include "src/io/cell_values.hpp"
 
 namespace desert_sim {
 
@@ -94,16 +95,19 @@ Raster to_raster(const GridMap& map, const RasterOptions& options, const std::st
   raster.height = static_cast<int>(columns);
   set_geometry(raster, map.info);
   raster.values.resize(rows * columns);
+  CellValues cells(options);
   // Row indices run towards lower x and column indices towards lower y, beginning at the start indices of the
   // circular buffer.
   for (std::size_t column = 0; column < columns; ++column)
     for (std::size_t row = 0; row < rows; ++row) {
       const std::size_t from =
           (column + map.inner_start_index) % columns * rows + (row + map.outer_start_index) % rows;
-      const double value = layer.data[from] * options.scale + options.offset;
+      const bool at_edge = row == 0 || row == rows - 1 || column == 0 || column == columns - 1;
+      const float value = cells.convert(layer.data[from], at_edge);
       if (std::isinf(value)) throw_error(source, "layer ", quoted(map.layers[n]), ": has an infinite value");
-      raster.values[(columns - 1 - column) * rows + (rows - 1 - row)] = static_cast<float>(value);
+      raster.values[(columns - 1 - column) * rows + (rows - 1 - row)] = value;
     }
+  warn_of_undeclared_nodata(cells, source);
   return raster;
 }
 

@@ -2,6 +2,7 @@
 /// Reads and writes single-band rasters through GDAL.
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,16 +34,24 @@ struct Raster {
 struct RasterOptions {
   int band = 1;  ///< counted from 1; for EXR files read by OpenCV: R, G, B, A
   double scale = 1, offset = 0;
+  std::optional<double> nodata = {};  ///< a raw number that stands for missing data, besides the declared one
 };
 
-/// Reads one band of any raster that GDAL can open (GeoTIFF, ESRI ASCII, USGS DEM, ENVI raw, 16-bit PNG,
-/// ...). EXR goes through OpenCV where GDAL has no driver for it. A raster without geotransform gets
-/// cell_size 1 and origin 0; south-up rasters are flipped. Masked and nodata cells become NaN. Throws
-/// ConfigError that names the file and the reason: the file is missing or not a raster, there is no such
-/// band, the size is zero or more than 2^31 cells, the geotransform is rotated or mirrored, cells are not
-/// square to 0.1 %, numbers are complex, values are infinite, all cells are nodata, scale or offset is not
-/// finite, scale is zero, or GDAL reports an error.
-Raster read_raster(const std::string& path, const RasterOptions& options = {});
+/// Which rasters may be read. By default files of the formats GeoTIFF, ESRI ASCII (AAIGrid), ENVI, PNG, EXR
+/// and USGS DEM, with their companions (.hdr, .prj, world files); they cannot make GDAL read anything else.
+struct RasterAccess {
+  std::string folder;        ///< only files below it, as in InputFile; empty: any file
+  bool all_formats = false;  ///< whatever GDAL reads, also what names other files or hosts; needs no folder
+};
+
+/// Reads one band of a raster. EXR goes through OpenCV where GDAL has no driver for it. A raster without
+/// geotransform gets cell_size 1 and origin 0; south-up rasters are flipped. Masked and nodata cells become
+/// NaN. Throws ConfigError that names the file and the reason: the file is missing, may not be read or is not
+/// a raster, there is no such band, the size is zero, more than 2^31 cells or more than the memory holds, the
+/// geotransform is rotated or mirrored, cells are not square to 0.1 %, numbers are complex, values are
+/// infinite, all cells are nodata, scale or offset is not finite, scale is zero, or GDAL reports an error.
+Raster read_raster(const std::string& path, const RasterOptions& options = {},
+                   const RasterAccess& access = {});
 
 /// Writes a float32 GeoTIFF, north up, with NaN as nodata value, geotransform and projection. The data go
 /// through a TemporaryFile. Throws ConfigError if the path or the raster cannot be written, Error if the disk

@@ -4,11 +4,16 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "src/io/projection.hpp"
+#include "src/io/raster_file.hpp"
 #include "src/io/resample.hpp"
 
 namespace desert_sim {
 
 namespace {
+
+constexpr double bytes_to_fill =
+    24;  // of each cell: a copy, and distances, values and masks of GDALFillNodata()
 
 bool georeferenced(const Raster& r) {
   return std::any_of(r.geotransform.begin(), r.geotransform.end(), [](double v) { return v != 0; });
@@ -27,9 +32,15 @@ void stretch_to_grid(Raster& r, const RasterRequest& q) {
   cv::Mat target;
   const bool finer = q.width > r.width || q.height > r.height;
   cv::resize(source, target, cv::Size(q.width, q.height), 0, 0, finer ? cv::INTER_CUBIC : cv::INTER_AREA);
-  r.values.assign(target.ptr<float>(), target.ptr<float>() + target.total());
-  r.width = q.width;
-  r.height = q.height;
+  Raster stretched;
+  stretched.projection = r.projection;
+  stretched.values.assign(target.ptr<float>(), target.ptr<float>() + target.total());
+  stretched.width = q.width;
+  stretched.height = q.height;
+  if (finer)
+    limit_to_sources(stretched, r, {0, static_cast<double>(r.width) / q.width},
+                     {0, static_cast<double>(r.height) / q.height});
+  r = std::move(stretched);
 }
 
 /// Gives cells whose centre lies outside the source raster the value of the nearest cell inside it.
@@ -53,12 +64,6 @@ void extrapolate_edges(Raster& r, const Raster& source) {
 
 void resample_to_grid(Raster& r, const RasterRequest& q) {
   if (matches_grid(r, q)) return;
-  const double extent = q.cell_size * 1e-6;
-  if (q.origin_x > r.origin_x + r.width * r.cell_size - extent ||
-      q.origin_y > r.origin_y + r.height * r.cell_size - extent ||
-      q.origin_x + q.width * q.cell_size < r.origin_x + extent ||
-      q.origin_y + q.height * q.cell_size < r.origin_y + extent)
-    throw ConfigError(q.path + ": lies completely outside the grid");
   const double ratio = q.cell_size / r.cell_size;
   const Resampling method =
       ratio > 1.5 ? Resampling::average : (ratio < 0.99 ? Resampling::cubic : Resampling::bilinear);
@@ -67,33 +72,45 @@ void resample_to_grid(Raster& r, const RasterRequest& q) {
   r = std::move(target);
 }
 
-RasterField load(const RasterRequest& q) {
-  RasterOptions options;
-  options.band = q.band;
-  options.scale = q.scale;
-  options.offset = q.offset;
-  return resample_to_request(read_raster(q.path, options), q);
+bool is_stretched(const Raster& header, const RasterRequest& q) {
+  return q.stretch || !georeferenced(header);
 }
 
-}  // namespace
+void require_overlap(const Raster& header, const RasterRequest& q) {
+  const double extent = q.cell_size * 1e-6;
+  if (q.origin_x > header.origin_x + header.width * header.cell_size - extent ||
+      q.origin_y > header.origin_y + header.height * header.cell_size - extent ||
+      q.origin_x + q.width * q.cell_size < header.origin_x + extent ||
+      q.origin_y + q.height * q.cell_size < header.origin_y + extent)
+    throw ConfigError(q.path + ": lies completely outside the grid");
+}
 
-RasterField resample_to_request(Raster r, const RasterRequest& q) {
-  if (r.length_unit() == "degree")
-    throw ConfigError(
-        q.path +
-        ": its coordinates are in degrees; project it to metres first (gdalwarp -t_srs EPSG:326xx …)");
-  const bool placed = georeferenced(r);
-  if (q.width > 0) {
-    if (r.nodata_count() > 0 && !q.fill_nodata)
-      throw ConfigError(q.path + ": has " + std::to_string(r.nodata_count()) +
-                        " cells without data; set fill_nodata to true to fill them from their neighbours");
-    if (r.nodata_count() > 0) fill_nodata(r);
-    if (q.stretch || !placed) {
-      stretch_to_grid(r, q);
-    } else {
-      resample_to_grid(r, q);
-    }
-  }
+/// The cells that the grid's values depend on: all if the raster is stretched or gaps are filled from afar,
+/// else those that the grid covers and as many around them as the widest kernel weighs.
+RasterWindow needed_window(const Raster& header, const RasterRequest& q) {
+  const RasterWindow whole{0, 0, header.width, header.height};
+  if (is_stretched(header, q)) return whole;
+  require_overlap(header, q);
+  if (q.fill_nodata) return whole;
+  const double margin = 4 * std::max(1.0, q.cell_size / header.cell_size);
+  const auto range = [&](double from, double length, double origin, int cells, int& first, int& count) {
+    const double low = std::floor((from - origin) / header.cell_size - margin),
+                 high = std::ceil((from + length - origin) / header.cell_size + margin);
+    first = static_cast<int>(std::clamp(low, 0.0, cells - 1.0));
+    count = static_cast<int>(std::clamp(high, first + 1.0, 1.0 * cells)) - first;
+  };
+  RasterWindow window;
+  range(q.origin_x, q.width * q.cell_size, header.origin_x, header.width, window.x, window.width);
+  range(q.origin_y, q.height * q.cell_size, header.origin_y, header.height, window.y, window.height);
+  return window;
+}
+
+void refuse_raster_in_degrees(const Raster& header, const std::string& path) {
+  refuse_degrees(path, header.projection, header.origin_x + 0.5 * header.width * header.cell_size,
+                 header.origin_y + 0.5 * header.height * header.cell_size);
+}
+
+RasterField field_of(Raster r) {
   RasterField field;
   field.width = r.width;
   field.height = r.height;
@@ -105,6 +122,39 @@ RasterField resample_to_request(Raster r, const RasterRequest& q) {
   return field;
 }
 
-RasterLoader gdal_raster_loader() { return load; }
+}  // namespace
+
+RasterOptions raster_options(const RasterRequest& q) { return {q.band, q.scale, q.offset, q.nodata}; }
+
+RasterField resample_to_request(Raster r, const RasterRequest& q) {
+  if (q.width == 0) {
+    r.values.clear();
+    return field_of(std::move(r));
+  }
+  if (!is_stretched(r, q)) require_overlap(r, q);
+  if (const long missing = r.nodata_count(); missing > 0) {
+    if (!q.fill_nodata)
+      throw ConfigError(q.path + ": has " + std::to_string(missing) +
+                        " cells without data; set fill_nodata to true to fill them from their neighbours");
+    require_host_memory(q.path, bytes_to_fill * static_cast<double>(r.values.size()),
+                        "filling its cells without data");
+    fill_nodata(r);
+  }
+  if (is_stretched(r, q)) {
+    stretch_to_grid(r, q);
+  } else {
+    resample_to_grid(r, q);
+  }
+  return field_of(std::move(r));
+}
+
+RasterLoader gdal_raster_loader(const RasterAccess& access) {
+  return [access](const RasterRequest& q) {
+    const std::unique_ptr<RasterFile> file = open_raster(q.path, raster_options(q), access);
+    refuse_raster_in_degrees(file->header(), q.path);
+    return q.width == 0 ? field_of(file->header())
+                        : resample_to_request(file->read(needed_window(file->header(), q)), q);
+  };
+}
 
 }  // namespace desert_sim

@@ -4,11 +4,13 @@
 #include <gdal_priv.h>
 #include <gdalwarper.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <sstream>
+#include <vector>
 
 #include "src/core/error.hpp"
 #include "src/io/gdal_messages.hpp"
@@ -110,6 +112,23 @@ bool warp(GDALDataset& source, GDALDataset& target, GDALResampleAlg method) {
          operation.ChunkAndWarpImage(0, 0, target.GetRasterXSize(), target.GetRasterYSize()) == CE_None;
 }
 
+struct CellRange {
+  int first, last;
+};
+
+/// The source cells, of `count`, that cubic convolution weighs for each of `cells`.
+std::vector<CellRange> weighed_cells(const CellMapping& mapping, int cells, int count) {
+  const double reach = 2 * std::max(1.0, mapping.length);
+  std::vector<CellRange> ranges(cells);
+  for (int n = 0; n < cells; ++n) {
+    const double centre =
+        mapping.first + (n + 0.5) * mapping.length - 0.5;  // 0: that of the first source cell
+    ranges[n] = {static_cast<int>(std::clamp(std::ceil(centre - reach), 0.0, count - 1.0)),
+                 static_cast<int>(std::clamp(std::floor(centre + reach), 0.0, count - 1.0))};
+  }
+  return ranges;
+}
+
 }  // namespace
 
 Raster resample(const Raster& source, int width, int height, double cell_size, double origin_x,
@@ -133,7 +152,29 @@ Raster resample(const Raster& source, int width, int height, double cell_size, d
   if (!from || !to || !warp(*from, *to, gdal_method(method)))
     throw StateError("resampling to " + size_text(width, height, cell_size) + " failed: " + messages.text());
   to.reset();  // flushes into result.values
+  if (method == Resampling::cubic)
+    limit_to_sources(result, source,
+                     {(origin_x - source.origin_x) / source.cell_size, cell_size / source.cell_size},
+                     {(origin_y - source.origin_y) / source.cell_size, cell_size / source.cell_size});
   return result;
+}
+
+void limit_to_sources(Raster& raster, const Raster& source, const CellMapping& x, const CellMapping& y) {
+  const std::vector<CellRange> columns = weighed_cells(x, raster.width, source.width),
+                               rows = weighed_cells(y, raster.height, source.height);
+#pragma omp parallel for schedule(static)
+  for (int iy = 0; iy < raster.height; ++iy)
+    for (int ix = 0; ix < raster.width; ++ix) {
+      float low = std::numeric_limits<float>::infinity(), high = -low;
+      for (int j = rows[iy].first; j <= rows[iy].last; ++j)
+        for (int i = columns[ix].first; i <= columns[ix].last; ++i) {
+          const float v = source.values[static_cast<std::size_t>(j) * source.width + i];
+          if (v < low) low = v;
+          if (v > high) high = v;
+        }
+      float& value = raster.values[static_cast<std::size_t>(iy) * raster.width + ix];
+      if (low <= high && !std::isnan(value)) value = std::clamp(value, low, high);
+    }
 }
 
 void fill_nodata(Raster& raster) {

@@ -3,9 +3,10 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <fstream>
+#include <cmath>
+#include <filesystem>
 
-#include "src/core/files.hpp"
+#include "src/core/input_file.hpp"
 #include "src/scenario/climate.hpp"
 #include "src/scenario/sections.hpp"
 #include "src/scenario/yaml_parameters.hpp"
@@ -15,6 +16,7 @@ namespace desert_sim {
 namespace {
 
 constexpr std::size_t max_wind_segments = 4096;
+constexpr std::uint64_t max_scenario_bytes = std::uint64_t{1} << 24;
 
 /// Checks that `layer` of a terrain step names a persistent layer.
 template <class Step>
@@ -200,8 +202,12 @@ Scenario parse_with_settings(const std::string& text, const std::string& source,
 
 }  // namespace
 
-Scenario load_scenario(const std::string& path, const Settings& settings) {
-  Scenario s = parse_with_settings(read_file(path), path, parent_folder(path), settings);
+Scenario load_scenario(const std::string& path, const Settings& settings, const std::string& folder) {
+  const InputFile file(path, folder);
+  if (file.size() > max_scenario_bytes)
+    throw ConfigError(path + ": has " + std::to_string(file.size()) + " bytes (allowed: at most " +
+                      std::to_string(max_scenario_bytes) + ")");
+  Scenario s = parse_with_settings(file.read_all(), path, parent_folder(path), settings);
   s.name = base_name(path);
   return s;
 }
@@ -308,6 +314,19 @@ RasterField no_raster_loader(const RasterRequest& request) {
   throw ConfigError(request.path + ": this build cannot read rasters (it was built without GDAL)");
 }
 
+namespace {
+
+/// The size of a grid that follows from its raster.
+int cells_of(const char* key, double cells, const Scenario& s) {
+  if (!(cells < max_grid_extent + 0.5))
+    throw ConfigError(s.name + ": grid." + key + ": = " + std::to_string(std::llround(cells)) +
+                      " cells by the raster " + s.grid.from_raster + ", is not in [1, " +
+                      std::to_string(max_grid_extent) + "]; grid.cell_size makes it smaller");
+  return std::max(1, static_cast<int>(std::lround(cells)));
+}
+
+}  // namespace
+
 void resolve_grid(Scenario& s, const RasterLoader& load_raster) {
   GridParameters& g = s.grid;
   if (!g.from_raster.empty()) {
@@ -318,8 +337,8 @@ void resolve_grid(Scenario& s, const RasterLoader& load_raster) {
     const double cell = resampled ? g.cell_size : raster.cell_size;
     const double extent_x = raster.width * raster.cell_size, extent_y = raster.height * raster.cell_size;
     const bool sized = g.width > 0 || g.height > 0;
-    if (g.width == 0) g.width = std::max(1, static_cast<int>(std::lround(extent_x / cell)));
-    if (g.height == 0) g.height = std::max(1, static_cast<int>(std::lround(extent_y / cell)));
+    if (g.width == 0) g.width = cells_of("width", extent_x / cell, s);
+    if (g.height == 0) g.height = cells_of("height", extent_y / cell, s);
     if (g.origin_x == 0 && g.origin_y == 0) {
       // A grid whose size the scenario gives is centred on the raster.
       g.origin_x = raster.origin_x + (sized ? 0.5 * (extent_x - g.width * cell) : 0.0);
@@ -337,7 +356,8 @@ std::string raster_path(const Scenario& s, const std::string& file) {
   if (file.empty() || file[0] == '/') return file;
   const std::string beside =
       s.folder.empty() || s.folder.back() == '/' ? s.folder + file : s.folder + "/" + file;
-  return std::ifstream(beside) ? beside : file;
+  std::error_code error;
+  return std::filesystem::exists(beside, error) ? beside : file;
 }
 
 std::vector<std::string> raster_paths(const Scenario& s) {

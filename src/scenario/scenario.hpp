@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +39,8 @@ namespace desert_sim {
 enum class Boundary : int { periodic, open };
 constexpr const char* boundary_names[] = {"periodic", "open"};
 
+constexpr int max_grid_extent = 65536;  // [cells]
+
 /// Zero means "not given"; resolve_grid() replaces it.
 struct GridParameters {
   int width = 0;
@@ -52,9 +55,9 @@ struct GridParameters {
 constexpr auto parameter_table(const GridParameters*) {
   using P = GridParameters;
   return std::make_tuple(
-      parameter("width", &P::width, 1, 65536, "cells",
+      parameter("width", &P::width, 1, max_grid_extent, "cells",
                 "Cells from west to east; if not given, the raster's, or 256."),
-      parameter("height", &P::height, 1, 65536, "cells",
+      parameter("height", &P::height, 1, max_grid_extent, "cells",
                 "Cells from south to north; if not given, the raster's, or 256."),
       parameter(
           "cell_size", &P::cell_size, 1e-3, 1e4, "m",
@@ -129,7 +132,9 @@ using Settings = std::vector<std::string>;
 
 /// These functions read and check a scenario. They throw ConfigError that lists all errors, each with file,
 /// key, value and allowed range.
-Scenario load_scenario(const std::string& path, const Settings& settings = {});
+/// A file has at most 16 MiB, and lies below `folder` if one is given.
+Scenario load_scenario(const std::string& path, const Settings& settings = {},
+                       const std::string& folder = "");
 Scenario parse_scenario_text(const std::string& yaml, const std::string& name, const Settings& settings = {});
 Scenario parse_scenario(const YAML::Node& root, const std::string& name, const std::string& folder);
 /// The scenario as YAML with all parameters, defaults included; parse_scenario() reads back the same
@@ -143,14 +148,15 @@ struct RasterField {
   double cell_size = 1, origin_x = 0, origin_y = 0;
   std::string projection;
   std::vector<std::string> bands;  ///< names of all bands in order; empty if they have none
-  std::vector<float> values;       ///< row-major from the south-west, NaN = nodata
+  std::vector<float> values;       ///< row-major from the south-west; none if only the grid was asked for
 };
 struct RasterRequest {
   std::string path;
   int band = 1;
   double scale = 1, offset = 0;
-  bool fill_nodata = false;  ///< fill nodata from neighbours; otherwise it is refused
-  // The grid to resample to; with width 0 the raster keeps its own grid.
+  std::optional<double> nodata;  ///< a raw value that stands for missing data, besides the declared one
+  bool fill_nodata = false;      ///< fill nodata from neighbours; otherwise it is refused
+  // The grid to resample to; with width 0 only the raster's own grid is asked for, and no values are read.
   int width = 0, height = 0;
   double cell_size = 0, origin_x = 0, origin_y = 0;
   bool stretch = false;  ///< stretch the raster over the grid, whatever its position

@@ -214,6 +214,7 @@ class Builder {
     request.band = p.band;
     request.scale = p.scale;
     request.offset = p.offset;
+    request.nodata = p.nodata;
     request.fill_nodata = p.fill_nodata;
     request.width = s_.grid.width;
     request.height = s_.grid.height;

@@ -3,6 +3,8 @@
 /// Positions are metres in the terrain's frame or, with `relative`, fractions of the grid's extent.
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -191,7 +193,7 @@ constexpr auto parameter_table(const ObstacleStep*) {
 }
 static_assert(table_is_complete<ObstacleStep>());
 
-/// Fills a layer from a raster that GDAL (or, for EXR, OpenCV) can read: value = raw · scale + offset.
+/// Fills a layer from a raster: value = raw · scale + offset.
 struct RasterStep {
   std::string layer = "bedrock";
   Merge merge = Merge::replace;
@@ -199,6 +201,7 @@ struct RasterStep {
   int band = 1;
   double scale = 1;
   double offset = 0;
+  std::optional<double> nodata;
   bool fill_nodata = false;
   bool stretch = false;
 };
@@ -212,6 +215,11 @@ constexpr auto parameter_table(const RasterStep*) {
       parameter("band", &P::band, 1, 10000, "1", "Band of the raster."),
       parameter("scale", &P::scale, -1e9, 1e9, "layer's", "Factor applied to the raster's values."),
       parameter("offset", &P::offset, -1e9, 1e9, "layer's", "Added after the factor."),
+      parameter(
+          "nodata", &P::nodata, -std::numeric_limits<double>::max(), std::numeric_limits<double>::max(),
+          "raster's",
+          "Value in the raster that stands for missing data, besides the one that the file declares; not "
+          "given: none."),
       parameter("fill_nodata", &P::fill_nodata,
                 "Whether cells without data are filled from their neighbours; otherwise they are refused."),
       parameter("stretch", &P::stretch,

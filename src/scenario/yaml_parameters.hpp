@@ -16,8 +16,8 @@
 
 namespace desert_sim {
 
-/// Collects the errors of an input, so that one exception reports them together: those that fit into a message,
-/// and the number of the others.
+/// Collects the errors of an input, so that one exception reports them together: those that fit into a
+/// message, and the number of the others.
 class ValidationErrors {
  public:
   explicit ValidationErrors(std::string source) : source_(std::move(source)) {}
@@ -117,6 +117,10 @@ void read_value(const YAML::Node& node, const Row& row, const std::string& key, 
       if (read_number<T>(node[n], row, key + "[" + std::to_string(n) + "]", errors, number))
         list.values[list.count++] = static_cast<float>(number);
     if (list.count == static_cast<int>(node.size())) value = list;
+  } else if constexpr (is_optional_number<T>) {
+    typename T::value_type given{};
+    read_value(node, row, key, errors, given);
+    value = given;  // a value that is refused is never used
   } else if constexpr (std::is_floating_point_v<T>) {
     if (read_number<T>(node, row, key, errors, number)) value = static_cast<T>(number);
   } else {
@@ -172,22 +176,31 @@ void read_section(const YAML::Node& section, const std::string& path, Validation
   reject_unknown_keys(section, path + ".", known, errors);
 }
 
-/// Writes all parameters as entries of an open map. After set_full_precision(), floats are read back exactly.
+template <class Row, class T>
+void emit_value(YAML::Emitter& out, const Row& row, const T& value) {
+  if constexpr (std::is_enum_v<T>) {
+    out << row.choices[static_cast<int>(value)];
+  } else if constexpr (std::is_same_v<T, ShortList>) {
+    out << YAML::Flow << YAML::BeginSeq;
+    for (int n = 0; n < value.count; ++n) out << value.values[n];
+    out << YAML::EndSeq;
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    out << YAML::DoubleQuoted << value;
+  } else {
+    out << value;
+  }
+}
+
+/// Writes all parameters as entries of an open map, except numbers that were left out. After
+/// set_full_precision(), floats are read back exactly.
 template <class P>
 void emit_parameters(YAML::Emitter& out, const P& parameters) {
   for_each_parameter(parameters, [&](const auto& row, const auto& value) {
-    using T = std::decay_t<decltype(value)>;
-    out << YAML::Key << row.name << YAML::Value;
-    if constexpr (std::is_enum_v<T>) {
-      out << row.choices[static_cast<int>(value)];
-    } else if constexpr (std::is_same_v<T, ShortList>) {
-      out << YAML::Flow << YAML::BeginSeq;
-      for (int n = 0; n < value.count; ++n) out << value.values[n];
-      out << YAML::EndSeq;
-    } else if constexpr (std::is_same_v<T, std::string>) {
-      out << YAML::DoubleQuoted << value;
+    if constexpr (is_optional_number<std::decay_t<decltype(value)>>) {
+      if (value) out << YAML::Key << row.name << YAML::Value << *value;
     } else {
-      out << value;
+      out << YAML::Key << row.name << YAML::Value;
+      emit_value(out, row, value);
     }
   });
 }

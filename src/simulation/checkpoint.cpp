@@ -7,6 +7,7 @@
 
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/core/input_file.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/commands/command_yaml.hpp"
 #include "src/simulation/pipeline/memory.hpp"
@@ -33,9 +34,16 @@ T read_value(const std::string& from, std::size_t& at, const std::string& path) 
   return value;
 }
 
-std::string read_checked(const std::string& path) {
-  std::string bytes = read_file(path);
-  if (bytes.compare(0, magic.size(), magic) != 0) throw ConfigError(path + ": is not a checkpoint");
+/// The bytes of a checkpoint. What is no checkpoint, or does not fit, is refused before it is read.
+std::string read_checked(const std::string& path, const std::string& folder) {
+  const InputFile file(path, folder);
+  std::string start(magic.size(), '\0');
+  if (file.read(0, start.data(), start.size()) < start.size() || start != magic)
+    throw ConfigError(path + ": is not a checkpoint");
+  if (file.size() > host_memory_available())
+    throw ConfigError(path + ": has " + std::to_string(file.size()) +
+                      " bytes; memory that is available: " + std::to_string(host_memory_available()));
+  std::string bytes = file.read_all();
   std::size_t at = magic.size();
   const auto found = read_value<std::uint32_t>(bytes, at, path);
   if (found != version)
@@ -190,8 +198,8 @@ void save_checkpoint(const std::string& path, const Simulation& simulation) {
   write_file(path, checkpoint_bytes(simulation));
 }
 
-std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec) {
-  const std::string bytes = read_checked(path);
+std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec, const std::string& folder) {
+  const std::string bytes = read_checked(path, folder);
   std::size_t at = magic.size() + sizeof version;
   const auto length = read_value<std::uint64_t>(bytes, at, path);
   if (length > bytes.size() - at) throw ConfigError(path + ": is truncated");

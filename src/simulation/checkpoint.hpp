@@ -17,7 +17,9 @@ namespace desert_sim {
 std::string checkpoint_bytes(const Simulation& simulation);
 /// Throws ConfigError if the file cannot be written.
 void save_checkpoint(const std::string& path, const Simulation& simulation);
-/// Throws ConfigError if the file is missing, of another version, cut off or corrupt.
-std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec);
+/// Throws ConfigError if the file is missing, larger than the memory, of another version, cut off or corrupt,
+/// or not below `folder` if one is given.
+std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec,
+                                            const std::string& folder = "");
 
 }  // namespace desert_sim

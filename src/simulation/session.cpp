@@ -62,12 +62,11 @@ void Session::step() {
 Scenario Session::read_scenario(const command::LoadScenario& command) const {
   return command.terrain_only && is_bag(command.path)
              ? scenario_from_bands(command.path, load_raster_, command.fill_nodata)
-             : desert_sim::load_scenario(command.path);
+             : desert_sim::load_scenario(command.path, {}, folder_);
 }
 
 std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
   Scenario next = read_scenario(command);
-  check_scenario_(next);
   if (command.terrain_only) {
     Scenario merged = simulation_->start();
     merged.grid = next.grid;
@@ -87,13 +86,12 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
 }
 
 CommandResult Session::execute(const command::Reset&, bool, Command&) {
-  check_scenario_(simulation_->start());
   simulation_ = std::make_unique<Simulation>(*exec_, simulation_->start(), load_raster_);
   return {};
 }
 
 CommandResult Session::execute(const command::LoadCheckpoint& load, bool, Command& journalled) {
-  std::unique_ptr<Simulation> loaded = load_checkpoint(load.path, *exec_);
+  std::unique_ptr<Simulation> loaded = load_checkpoint(load.path, *exec_, folder_);
   const std::uint64_t hash = loaded->state_hash();
   if (load.hash != 0 && load.hash != hash)
     throw ConfigError(load.path +

@@ -2,7 +2,6 @@
 /// A session: a simulation with its backend, its journal, its start and its checkpoints. What the node and
 /// desert_run both drive. One thread at a time.
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,9 +30,9 @@ class Session {
   Simulation& simulation() { return *simulation_; }
   const std::string& backend_choice() const { return backend_choice_; }  ///< which backend, and why
 
-  /// Called before a command, a reset too, has rasters of a scenario read; throws ConfigError if they may not
-  /// be.
-  void set_scenario_check(std::function<void(const Scenario&)> check) { check_scenario_ = std::move(check); }
+  /// From now on, commands read scenarios and checkpoints below `folder` only, as InputFile does. Which
+  /// rasters may be read is for the raster loader to decide.
+  void confine_commands(const std::string& folder) { folder_ = folder; }
 
   void step();
   /// Applies a command and journals it. A refused command throws ConfigError and changes nothing.
@@ -64,7 +63,7 @@ class Session {
   std::uint64_t load_scenario(const command::LoadScenario& command);
 
   RasterLoader load_raster_;
-  std::function<void(const Scenario&)> check_scenario_ = [](const Scenario&) {};
+  std::string folder_;  ///< that commands read files below; empty: they read any file
   std::string backend_choice_;
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<Simulation> simulation_;

@@ -28,6 +28,10 @@ const char usage[] =
     "  --threads N           threads of the CPU backend\n"
     "  --set PATH=VALUE      override a key of the scenario; may be repeated\n"
     "  --seed S              same as --set seed=S\n"
+    "  --all-raster-formats  read rasters of every format that GDAL reads, also what names other files or "
+    "hosts\n"
+    "                        (VRT, WMS, /vsi paths), not only GeoTIFF, ESRI ASCII, ENVI, PNG, EXR and USGS "
+    "DEM\n"
     "  --out DIR             write rasters, pictures and summary.json to DIR, which is created if needed\n"
     "  --every N             also write them every N steps, to DIR/step_NNNNNNNN\n"
     "  --plot FILE           draw a PNG of areas by material and plants by species over these steps (needs\n"
@@ -89,7 +93,8 @@ Settings settings_of(const Options& o) {
 std::unique_ptr<Session> begin_session(const Options& o, const Journal& journal, int threads) {
   if (o.positional().empty()) throw ConfigError("no scenario given (--help shows the usage)");
   const Scenario scenario = load_scenario(o.positional()[0], settings_of(o));
-  auto session = std::make_unique<Session>(scenario, raster_loader(), o.text("backend", "auto"), threads);
+  auto session = std::make_unique<Session>(scenario, raster_loader(o.has("all-raster-formats")),
+                                           o.text("backend", "auto"), threads);
   if (o.has("replay")) session->require_journal_of_this_scenario(journal, o.text("replay", ""));
   return session;
 }
@@ -99,7 +104,8 @@ std::unique_ptr<Session> resume_session(const Options& o, const Journal& journal
   const std::string checkpoint = o.text("resume", "");
   std::unique_ptr<Session> session;
   if (o.positional().empty()) {
-    session = Session::from_checkpoint(checkpoint, raster_loader(), o.text("backend", "auto"), threads);
+    session = Session::from_checkpoint(checkpoint, raster_loader(o.has("all-raster-formats")),
+                                       o.text("backend", "auto"), threads);
   } else {
     session = begin_session(o, journal, threads);
     session->apply(command::LoadCheckpoint{checkpoint, 0});
@@ -188,10 +194,11 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
 }
 
 int run_program(int argc, char** argv) {
-  RunPlan plan = plan_of(Options(argc, argv,
-                                 {"steps", "backend", "threads", "set", "seed", "out", "every", "plot",
-                                  "checkpoint", "checkpoint-every", "resume", "replay"},
-                                 {"describe", "describe-processes", "pipeline", "quiet", "help"}));
+  RunPlan plan =
+      plan_of(Options(argc, argv,
+                      {"steps", "backend", "threads", "set", "seed", "out", "every", "plot", "checkpoint",
+                       "checkpoint-every", "resume", "replay"},
+                      {"all-raster-formats", "describe", "describe-processes", "pipeline", "quiet", "help"}));
   const Options& o = plan.options;
   if (o.has("help")) return std::fputs(usage, stdout), 0;
   if (o.has("describe")) return std::cout << describe_parameters(), 0;

@@ -11,12 +11,14 @@
 
 namespace desert_sim {
 
-inline RasterLoader raster_loader() {
+/// `all_formats`: as in RasterAccess.
+inline RasterLoader raster_loader(bool all_formats = false) {
 #if DESERT_WITH_BAGS
-  return raster_loader_with_bags();
+  return raster_loader_with_bags({"", all_formats});
 #elif DESERT_WITH_IO
-  return gdal_raster_loader();
+  return gdal_raster_loader({"", all_formats});
 #else
+  static_cast<void>(all_formats);
   return no_raster_loader;
 #endif
 }

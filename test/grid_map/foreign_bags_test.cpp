@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <filesystem>
@@ -191,7 +192,8 @@ TEST_F(ForeignBags, WithTwoTopicsOrNoMapAreRefused) {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     bag.write("/words", ros::Time(10), std_msgs::Header());
   }
-  EXPECT_NE(refusal().find("contains no grid_map_msgs/GridMap (it contains: std_msgs/Header)"), std::string::npos);
+  EXPECT_NE(refusal().find("contains no grid_map_msgs/GridMap (it contains: std_msgs/Header)"),
+            std::string::npos);
   rosbag::Bag(path_, rosbag::bagmode::Write).close();
   EXPECT_NE(refusal().find("contains no grid_map_msgs/GridMap"), std::string::npos);
 }
@@ -289,7 +291,27 @@ TEST_F(ForeignBags, ThatAreNoBagsAreRefused) {
   std::filesystem::remove(path_);
   EXPECT_NE(refusal().find("no such file"), std::string::npos);
   std::filesystem::create_directory(path_);
-  EXPECT_NE(refusal().find("no such file"), std::string::npos);
+  EXPECT_NE(refusal().find("is not a regular file"), std::string::npos);
+  std::filesystem::remove(path_);
+  ASSERT_EQ(mkfifo(path_.c_str(), 0600), 0);
+  EXPECT_NE(refusal().find("is not a regular file"), std::string::npos) << "without waiting for a writer";
+}
+
+TEST_F(ForeignBags, AreReadBelowTheFolderOnly) {
+  write(a_map());
+  const std::string data = folder_.path("data"), inside = data + "/a.bag", link = data + "/link.bag";
+  std::filesystem::create_directory(data);
+  std::filesystem::copy_file(path_, inside);
+  std::filesystem::create_symlink(path_, link);
+  RasterRequest request;
+  request.path = inside;
+  const RasterLoader load = raster_loader_with_bags({data, false});
+  EXPECT_EQ(load(request).width, 5);
+  for (const std::string& outside : {path_, link}) {
+    request.path = outside;
+    EXPECT_THROW(load(request), ConfigError) << outside;
+    EXPECT_EQ(raster_loader_with_bags()(request).width, 5);
+  }
 }
 
 /// Four billion elements in four bytes: refused before memory is taken for them.

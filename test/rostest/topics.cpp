@@ -200,8 +200,10 @@ void expect_updates_lead_to(std::uint64_t step, const Listener<ElevationGrid>& k
 TEST(Topics, AFrameStandsInTheMiddleOfTheTerrain) {
   tf2_ros::Buffer buffer;
   const tf2_ros::TransformListener listener(buffer);
-  ASSERT_TRUE(wait_until([&] { return buffer.canTransform("terrain", "desert_sim/terrain_center", ros::Time(0)); }));
-  const auto center = buffer.lookupTransform("terrain", "desert_sim/terrain_center", ros::Time(0)).transform.translation;
+  ASSERT_TRUE(
+      wait_until([&] { return buffer.canTransform("terrain", "desert_sim/terrain_center", ros::Time(0)); }));
+  const auto center =
+      buffer.lookupTransform("terrain", "desert_sim/terrain_center", ros::Time(0)).transform.translation;
   EXPECT_EQ(center.x, 10 + 64);
   EXPECT_EQ(center.y, -20 + 48);
   EXPECT_NEAR(center.z, 1.5 + 6.0 * 12 / (64 * 48), 1e-5);

@@ -56,9 +56,10 @@ class RasterTest : public ::testing::Test {
 };
 
 /// What is said when the raster is refused; empty if it is not.
-inline std::string refusal(const std::string& path, const RasterOptions& options = {}) {
+inline std::string refusal(const std::string& path, const RasterOptions& options = {},
+                           const RasterAccess& access = {}) {
   try {
-    read_raster(path, options);
+    read_raster(path, options, access);
   } catch (const ConfigError& error) {
     return error.what();
   }

@@ -1,5 +1,8 @@
 // desert_run and rasters: georeference, orientation, what each layer's file holds. Needs GDAL.
 
+#include <gdal_priv.h>
+#include <sys/resource.h>
+
 #include <cmath>
 
 #include "src/io/raster.hpp"
@@ -113,6 +116,57 @@ TEST_F(Rasters, NoDataIsRefusedUnlessItIsToBeFilled) {
   const Raster r = read_raster(path("out") + "/elevation.tif");
   EXPECT_GT(r.values[1], 1);
   EXPECT_LT(r.values[1], 6);
+}
+
+TEST_F(Rasters, AHugeSparseRasterIsRefusedByItsHeader) {
+  constexpr int extent = 30000;
+  GDALAllRegister();
+  const char* options[] = {"SPARSE_OK=TRUE", "COMPRESS=DEFLATE", "TILED=YES", nullptr};
+  GDALDatasetUniquePtr sparse(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      path("sparse.tif").c_str(), extent, extent, 1, GDT_Float64, const_cast<char**>(options)));
+  ASSERT_TRUE(sparse);
+  double placement[6] = {0, 1, 0, extent, 0, -1};
+  sparse->SetGeoTransform(placement);
+  sparse.reset();
+  ASSERT_LT(std::filesystem::file_size(path("sparse.tif")), 2u << 20);
+  const test::ProgramRun refused =
+      run({folder_.write("sparse.yaml", "grid: {from_raster: sparse.tif}\nterrain: [raster: {}]\n"),
+           "--backend", "cpu", "--threads", "1"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("30000 x 30000 cells needs"), std::string::npos) << refused.err;
+  rusage children{};  // the largest one of this test's, and of others in this process, which are small
+  ASSERT_EQ(getrusage(RUSAGE_CHILDREN, &children), 0);
+  EXPECT_LT(children.ru_maxrss, 400L << 10) << "the cells would take 3.6 GB";
+}
+
+TEST_F(Rasters, OtherFormatsNeedASwitch) {
+  dem();
+  folder_.write("dem.vrt",
+                "<VRTDataset rasterXSize=\"6\" rasterYSize=\"4\"><VRTRasterBand dataType=\"Float32\" "
+                "band=\"1\"><SimpleSource><SourceFilename relativeToVRT=\"1\">dem.asc</SourceFilename>"
+                "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>");
+  const std::string file =
+      folder_.write("vrt.yaml", "grid: {from_raster: dem.vrt}\nterrain: [raster: {layer: bedrock}]\n");
+  const test::ProgramRun refused = run({file, "--backend", "cpu"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("--all-raster-formats"), std::string::npos) << refused.err;
+  run_cpu({file, "--all-raster-formats", "--steps", "0", "--out", path("out")});
+  EXPECT_EQ(read_raster(path("out") + "/elevation.tif").values[0], 70);
+}
+
+TEST_F(Rasters, UndeclaredNoDataIsNamedOnTheStandardError) {
+  folder_.write("sea.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n4 -9999 -9999\n");
+  const std::string text =
+      "grid: {from_raster: sea.asc}\nterrain: [raster: {layer: bedrock, fill_nodata: true";
+  const test::ProgramRun warned =
+      run({folder_.write("a.yaml", text + "}]\n"), "--backend", "cpu", "--steps", "0", "--quiet"});
+  EXPECT_EQ(warned.status, 0);
+  EXPECT_NE(warned.err.find("33.3 % of its cells (2 of 6) are -9999"), std::string::npos) << warned.err;
+  const test::ProgramRun declared = run({folder_.write("b.yaml", text + ", nodata: -9999}]\n"), "--backend",
+                                         "cpu", "--steps", "0", "--quiet", "--out", path("out")});
+  EXPECT_EQ(declared.status, 0);
+  EXPECT_EQ(declared.err, "");
+  EXPECT_GT(read_raster(path("out") + "/elevation.tif").values[1], 0);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ TEST_F(RasterTest, RefusesWhatIsNoRaster) {
   expect_says(refusal(path("missing.tif")), {"missing.tif", "no such file"});
   expect_says(refusal(folder_.write("notes.txt", "dunes are nice\n")), {"notes.txt", "not a raster"});
   expect_says(refusal(folder_.write("empty.tif", "")), {"empty.tif", "not a raster"});
-  expect_says(refusal(path("")), {"not a raster"});  // a folder
+  expect_says(refusal(path("")), {"not a regular file"});  // a folder
 }
 
 TEST_F(RasterTest, RefusesBandScaleOffset) {
@@ -61,7 +61,7 @@ TEST_F(RasterTest, RefusesSizes) {
   const std::string huge = folder_.write("huge.vrt",
                                          "<VRTDataset rasterXSize=\"65536\" rasterYSize=\"65536\">"
                                          "<VRTRasterBand dataType=\"Byte\" band=\"1\"/></VRTDataset>");
-  expect_says(refusal(huge), {"huge.vrt", "65536 x 65536", "2^31"});
+  expect_says(refusal(huge, {}, {"", true}), {"huge.vrt", "65536 x 65536", "2^31"});
 }
 
 TEST_F(RasterTest, RefusesTruncatedFiles) {

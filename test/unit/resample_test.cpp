@@ -137,6 +137,43 @@ TEST(Resample, OutsideIsNaN) {
   }
 }
 
+/// A cliff of 100 m, resampled at any ratio and shift, stays between its foot and its rim.
+TEST(Resample, NothingOvershootsBesideAStep) {
+  Raster source = blank(20, 20, 4);
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 20; ++x) source.values[y * 20 + x] = x + y < 20 ? 0.0F : 100.0F;
+  for (Resampling method : {Resampling::bilinear, Resampling::cubic, Resampling::average})
+    for (double cell_size : {0.5, 1.9, 3.0, 4.0, 6.0, 13.0})
+      for (double shift : {0.0, 0.7}) {
+        const int cells = static_cast<int>(80 / cell_size);
+        const Raster r = resample(source, cells, cells, cell_size, source.origin_x + shift,
+                                  source.origin_y + shift, method);
+        for (float value : r.values)
+          if (!std::isnan(value)) {
+            EXPECT_GE(value, 0) << cell_size;
+            EXPECT_LE(value, 100) << cell_size;
+          }
+      }
+}
+
+TEST(Resample, ALimitedCubicIsStillSmootherThanALinearOne) {
+  const auto mean_error = [](Resampling method) {
+    Raster source = blank(40, 40, 2);
+    const auto hill = [](double east, double north) {
+      return static_cast<float>(30 * std::sin(east / 9) * std::cos(north / 11));
+    };
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 40; ++x) source.values[y * 40 + x] = hill(centre(source, x), centre(source, y));
+    const Raster r = resample(source, 160, 160, 0.5, source.origin_x, source.origin_y, method);
+    double sum = 0;
+    for (int y = 20; y < 140; ++y)
+      for (int x = 20; x < 140; ++x)
+        sum += std::abs(r.values[y * 160 + x] - hill(centre(r, x), centre(r, y)));
+    return sum / (120 * 120);
+  };
+  EXPECT_LT(mean_error(Resampling::cubic), 0.25 * mean_error(Resampling::bilinear));
+}
+
 TEST(Resample, NoDataHasNoWeight) {
   Raster source = blank(12, 12, 1);
   std::fill(source.values.begin(), source.values.end(), 5.0F);

@@ -28,6 +28,9 @@ void set_all(P& parameters, const std::function<double()>& share) {
       value.count = 3;
       for (int n = 0; n < 3; ++n)
         value.values[n] = static_cast<float>(row.lowest + share() * (row.highest - row.lowest));
+    } else if constexpr (is_optional_number<T>) {
+      const double s = share();  // the range itself may be wider than the largest number
+      value = row.lowest * (1 - s) + row.highest * s;
     } else {
       value = static_cast<T>(number);
     }

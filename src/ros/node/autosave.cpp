@@ -108,13 +108,16 @@ void Autosave::save() {
 
 // ---- Resuming.
 
-void load_newest(Session& session, const std::vector<std::string>& checkpoints, const std::string& journal) {
+void load_newest(Session& session, const std::vector<std::string>& checkpoints, const std::string& folder,
+                 const std::string& journal) {
   for (const std::string& checkpoint : checkpoints) {
     try {
       std::string path = checkpoint;
       if (!journal.empty()) {
         path = checkpoint_beside(journal);
-        write_file(path, read_file(checkpoint));
+        write_file(path, read_file(checkpoint, folder));
+      } else {
+        session.confine_commands(folder);
       }
       session.apply(command::LoadCheckpoint{path, 0});
       ROS_INFO("The simulation was resumed at step %lu from the autosave %s.",

@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "src/core/data_folder.hpp"
 #include "src/core/numbered_files.hpp"
-#include "src/ros/node/data_folder.hpp"
 #include "src/ros/node/simulation_thread.hpp"
 
 namespace desert_sim {
@@ -70,9 +70,11 @@ class Autosave {
   std::thread thread_;
 };
 
-/// Loads the first of `checkpoints` that is complete, and warns of those that are not. With a journal, it is
-/// loaded from a copy, checkpoint_beside(journal), so that the journal can be replayed when the autosaves are
-/// gone. If none is complete, the session stays at the start of the scenario.
-void load_newest(Session& session, const std::vector<std::string>& checkpoints, const std::string& journal);
+/// Loads the first of `checkpoints` that is complete and lies below `folder`, and warns of those that are
+/// not. With a journal, it is loaded from a copy, checkpoint_beside(journal), so that the journal can be
+/// replayed when the autosaves are gone; without one, the session's commands are confined to the folder. If
+/// none is complete, the session stays at the start of the scenario.
+void load_newest(Session& session, const std::vector<std::string>& checkpoints, const std::string& folder,
+                 const std::string& journal);
 
 }  // namespace desert_sim

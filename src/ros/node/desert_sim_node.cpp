@@ -1,7 +1,7 @@
 /// desert_sim_node: the simulation as a ROS node. With --describe it prints the page of its parameters and
-/// ends. Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time. After SIGTERM or
-/// Ctrl-C it ends within five seconds: a step that takes longer is given up (status 4), and its journal then ends
-/// with the last command.
+/// ends. Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time. After SIGTERM
+/// or Ctrl-C it ends within five seconds: a step that takes longer is given up (status 4), and its journal
+/// then ends with the last command.
 #include <ros/console.h>
 #include <ros/init.h>
 #include <unistd.h>

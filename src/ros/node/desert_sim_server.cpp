@@ -35,6 +35,24 @@ SimulationThread::Options options_of(const NodeParameters& p) {
   return options;
 }
 
+void log_to_ros(Severity severity, const std::string& message) {
+  if (severity == Severity::warning)
+    ROS_WARN("%s", message.c_str());
+  else
+    ROS_ERROR("%s", message.c_str());
+}
+
+/// Reads the rasters of the node's own scenario wherever they lie, and all others below the data folder, in
+/// the allowed formats, only.
+RasterLoader node_raster_loader(const NodeSetup& setup, const DataFolder& files) {
+  return [own = raster_paths(setup.scenario),
+          load_own = raster_loader_with_bags({"", setup.node.all_raster_formats}),
+          load_other = raster_loader_with_bags({files.path(), false})](const RasterRequest& request) {
+    const bool is_own = std::count(own.begin(), own.end(), request.path) > 0;
+    return is_own ? load_own(request) : load_other(request);
+  };
+}
+
 /// Logs what runs. Points and markers in rviz are single precision, which resolves a centimetre at 1e5 m.
 void log_start(const Scenario& scenario, const std::string& backend) {
   const GridParameters& grid = scenario.grid;
@@ -53,10 +71,10 @@ void log_start(const Scenario& scenario, const std::string& backend) {
 DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
     : node_(private_node), spinner_(threads, &queue_), step_spinner_(step_threads, &step_queue_) {
   node_.setCallbackQueue(&queue_);
-  set_log_sink([](const std::string& message) { ROS_ERROR("%s", message.c_str()); });
+  set_log_sink(log_to_ros);
   NodeSetup setup = read_node_setup(node_);
-  resolve_grid(setup.scenario, raster_loader_with_bags());
   const NodeParameters& p = setup.node;
+  resolve_grid(setup.scenario, raster_loader_with_bags({"", p.all_raster_formats}));
   check_map_sizes(setup.publishers.maps, setup.scenario.grid);
   keep_previous_journal(p.journal);
   files_ = std::make_unique<DataFolder>(p.data_dir);
@@ -73,12 +91,9 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   if (p.resume && options.resume_from.empty())
     ROS_INFO(
         "resume is true, but no autosave was found: the simulation starts at the beginning of the scenario.");
-  options.check_scenario = [this, own = raster_paths(setup.scenario)](const Scenario& scenario) {
-    for (const std::string& raster : raster_paths(scenario))
-      if (std::count(own.begin(), own.end(), raster) == 0) files_->require_below(raster);
-  };
+  options.data_folder = files_->path();
   simulation_ =
-      std::make_unique<SimulationThread>(setup.scenario, raster_loader_with_bags(), options, [this] {
+      std::make_unique<SimulationThread>(setup.scenario, node_raster_loader(setup, *files_), options, [this] {
         if (TopicPublisher* publisher = publisher_to_notify_) publisher->notify();
       });
   log_start(simulation_->scenario().get(), simulation_->backend_choice());

@@ -10,9 +10,9 @@
 #include <memory>
 #include <string>
 
+#include "src/core/data_folder.hpp"
 #include "src/ros/node/autosave.hpp"
 #include "src/ros/node/clock.hpp"
-#include "src/ros/node/data_folder.hpp"
 #include "src/ros/node/diagnostics.hpp"
 #include "src/ros/node/frames.hpp"
 #include "src/ros/node/reconfigure.hpp"

@@ -8,8 +8,10 @@
 ///   topics        WARN: one had less than half its rate for 3 periods, or cannot be published, for want of a
 ///                 transform, say. ERROR: publishing has failed
 ///   autosave      WARN: there was none for two periods. ERROR: the last one could not be written
-///   master        WARN: the ROS master does not answer. ERROR: it does not know the node, because it was started
-///                 anew: nobody finds the node's topics and services until the node is started anew, too. roscpp
+///   master        WARN: the ROS master does not answer. ERROR: it does not know the node, because it was
+/// started
+///                 anew: nobody finds the node's topics and services until the node is started anew, too.
+/// roscpp
 ///                 registers only once
 
 #include <diagnostic_updater/diagnostic_updater.h>

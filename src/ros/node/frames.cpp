@@ -50,8 +50,8 @@ Frames::Frames(std::string terrain_frame) : terrain_frame_(std::move(terrain_fra
 
 Frames::~Frames() { spinner_.stop(); }
 
-/// Does what tf2_ros::TransformListener does, which throws out of its thread, and so ends the process, where the
-/// clock goes back by more than 2^31 s.
+/// Does what tf2_ros::TransformListener does, which throws out of its thread, and so ends the process, where
+/// the clock goes back by more than 2^31 s.
 void Frames::receive(const TransformEvent& event, bool is_static) {
   const ros::Time now = ros::Time::now();
   if (now < last_received_) {

@@ -16,8 +16,8 @@
 namespace desert_sim {
 
 /// A change of the scenario is a command: applied between steps, all of it or nothing, and journalled. A call
-/// that is refused fails with the reason, which the log has too. What commands, a reset, a checkpoint or ~reload_parameters
-/// change shows in ~parameter_updates.
+/// that is refused fails with the reason, which the log has too. What commands, a reset, a checkpoint or
+/// ~reload_parameters change shows in ~parameter_updates.
 class Reconfigure {
  public:
   /// `answer_timeout`: see SimulationThread::Patience.

@@ -91,7 +91,7 @@ ParameterReload::ParameterReload(ros::NodeHandle node, NodeSetup setup, Simulati
 std::string ParameterReload::reload() {
   const std::lock_guard<std::mutex> lock(mutex_);
   NodeSetup setup = read_node_setup(node_);
-  resolve_grid(setup.scenario, raster_loader_with_bags());
+  resolve_grid(setup.scenario, raster_loader_with_bags({"", setup.node.all_raster_formats}));
   Settings settings;
   std::string applied, fixed;
   for (const auto& [path, value] : changed_parameters(last_.scenario, setup.scenario)) {

@@ -1,6 +1,7 @@
 #pragma once
-/// Services whose answer has no field for a reason (grid_map_msgs/GetGridMap, dynamic_reconfigure/Reconfigure): a
-/// call that is refused fails, and the reason reaches the caller all the same.
+/// Services whose answer has no field for a reason (grid_map_msgs/GetGridMap,
+/// dynamic_reconfigure/Reconfigure): a call that is refused fails, and the reason reaches the caller all the
+/// same.
 
 #include <ros/advertise_service_options.h>
 #include <ros/console.h>
@@ -17,8 +18,8 @@
 namespace desert_sim {
 
 /// Serves a request by a function that throws what it refuses. A call that fails has room for a reason, which
-/// clients show. call() must return true all the same: roscpp then sends what is in `response`, whose first byte
-/// tells the client whether the call failed; to failures of its own it adds no reason.
+/// clients show. call() must return true all the same: roscpp then sends what is in `response`, whose first
+/// byte tells the client whether the call failed; to failures of its own it adds no reason.
 template <class Service>
 class CallbackWithReason : public ros::ServiceCallbackHelper {
  public:

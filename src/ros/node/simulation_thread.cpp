@@ -76,9 +76,10 @@ void SimulationThread::run_thread(const Scenario& scenario, const RasterLoader& 
   try {
     session_ = std::make_unique<Session>(scenario, load_raster, options_.backend, options_.threads,
                                          options_.journal);
-    if (options_.check_scenario) session_->set_scenario_check(options_.check_scenario);
     backend_choice_ = session_->backend_choice();
-    if (!options_.resume_from.empty()) load_newest(*session_, options_.resume_from, options_.journal);
+    if (!options_.resume_from.empty())
+      load_newest(*session_, options_.resume_from, options_.data_folder, options_.journal);
+    session_->confine_commands(options_.data_folder);  // not before: a journal's checkpoint may lie elsewhere
     stamp_ = stamp_now();
     if (options_.publish_clock) options_.publish_clock(session_->simulation().time());
   } catch (...) {

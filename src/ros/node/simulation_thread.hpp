@@ -30,17 +30,16 @@ class SimulationThread {
     std::string journal;  ///< file, or empty
     /// It starts from the first of these checkpoints that is complete, if there is one.
     std::vector<std::string> resume_from;
-    /// See Session::set_scenario_check().
-    std::function<void(const Scenario&)> check_scenario;
+    std::string data_folder;  ///< that commands read files below; see Session::confine_commands()
     /// If set, the simulation is the clock of all nodes: this is called on the simulation thread with the
     /// simulated time [s], at the start and after each step, and steps follow wall time, whatever
     /// use_sim_time says.
     std::function<void(double)> publish_clock;
   };
 
-  /// While one of these lives, requests of its thread that the simulation has not begun to serve after `seconds`
-  /// are withdrawn: their future then holds ConfigError, and they have changed nothing. Without one, or with 0
-  /// seconds, a request waits as long as a step or another request takes.
+  /// While one of these lives, requests of its thread that the simulation has not begun to serve after
+  /// `seconds` are withdrawn: their future then holds ConfigError, and they have changed nothing. Without
+  /// one, or with 0 seconds, a request waits as long as a step or another request takes.
   class Patience {
    public:
     explicit Patience(double seconds) : outer_(std::exchange(seconds_, seconds)) {}

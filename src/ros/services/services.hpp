@@ -26,9 +26,9 @@
 #include <string>
 #include <vector>
 
+#include "src/core/data_folder.hpp"
 #include "src/grid_map/grid_map_msg.hpp"
 #include "src/ros/conversion/map_window.hpp"
-#include "src/ros/node/data_folder.hpp"
 #include "src/ros/node/frames.hpp"
 #include "src/ros/node/simulation_thread.hpp"
 #include "src/ros/topics/topic_publisher.hpp"

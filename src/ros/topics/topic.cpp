@@ -62,8 +62,8 @@ void Topic::count_message() {
 void Topic::mark_published(std::uint64_t change, std::uint64_t terrain) {
   published_change_ = change;
   published_terrain_ = terrain;
-  // A message that came early, for a new subscriber or a finished ~step, does not put off the next one that is due:
-  // many of them would put it off for long.
+  // A message that came early, for a new subscriber or a finished ~step, does not put off the next one that
+  // is due: many of them would put it off for long.
   if (SteadyClock::now() >= due_) advance_due_time(due_, period_of(rate()));
 }
 

@@ -11,13 +11,13 @@ class DataFolder {
   explicit DataFolder(const std::string& path);
   const std::string& path() const { return path_; }
 
-  /// The path of the file `name` (a path below the folder). Both throw ConfigError for a name that is empty
-  /// or absolute, has "..", or leads out of the folder through links.
+  /// The path of the file `name` (a path below the folder), its links followed. Throws ConfigError for a name
+  /// that is empty or absolute, has "..", a control character, more than 255 characters or more than 16
+  /// folders, or leads out of the folder through links; for_reading() also if it names no regular file. What
+  /// opens the path later has to make sure itself that no link was put in the way meanwhile: see InputFile.
   std::string for_reading(const std::string& name) const;
   /// Also creates the folders that are missing.
   std::string for_writing(const std::string& name) const;
-  /// Throws ConfigError unless the file `path`, its links followed, exists and lies below the folder.
-  void require_below(const std::string& path) const;
 
  private:
   std::string path_;

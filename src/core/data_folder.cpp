@@ -1,4 +1,4 @@
-#include "src/ros/node/data_folder.hpp"
+#include "src/core/data_folder.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -19,18 +19,34 @@ std::string ros_folder() {
   return (home ? std::string(home) : "") + "/.ros";
 }
 
+constexpr std::size_t longest_name = 255;  // [bytes]
+constexpr long most_folders = 16;
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
 /// The name as a path, if nothing is wrong with the name itself.
 fs::path checked_path(const std::string& name) {
-  const auto throw_error = [&](const char* reason) {
-    throw ConfigError(quoted(name) + ": " + reason + " (allowed: a path below ~data_dir)");
+  const auto throw_error = [&](const std::string& reason) {
+    std::string shown = shortened(name);  // a newline would begin another message in a log
+    std::replace_if(shown.begin(), shown.end(), is_control, '?');
+    throw ConfigError("'" + shown + "'" + ": " + reason + " (allowed: a path below ~data_dir)");
   };
   if (name.empty()) throw_error("is empty");
-  if (name.find('\0') != std::string::npos) throw_error("contains a zero byte");
+  if (name.size() > longest_name)
+    throw_error("has " + std::to_string(name.size()) + " characters, at most " +
+                std::to_string(longest_name) + " are allowed");
+  if (const auto control = std::find_if(name.begin(), name.end(), is_control); control != name.end())
+    throw_error("contains the control character with the code " + std::to_string(*control) + " after " +
+                std::to_string(control - name.begin()) + " others");
   const fs::path path(name);
   if (path.is_absolute()) throw_error("is absolute");
   for (const fs::path& part : path)
     if (part == "..") throw_error("contains '..'");
   if (path.filename().empty() || path.filename() == ".") throw_error("names no file");
+  const long folders = std::distance(path.begin(), path.end()) - 1;
+  if (folders > most_folders)
+    throw_error("lies " + std::to_string(folders) + " folders deep, at most " + std::to_string(most_folders) +
+                " are allowed");
   return path;
 }
 
@@ -65,13 +81,6 @@ std::string DataFolder::for_reading(const std::string& name) const {
     throw ConfigError(quoted(name) + ": the file system reports \"" + e.code().message() + "\" (in " + path_ +
                       ")");
   }
-}
-
-void DataFolder::require_below(const std::string& path) const {
-  std::error_code error;
-  const fs::path real = fs::canonical(path, error), root = error ? fs::path() : fs::canonical(path_, error);
-  if (error) throw ConfigError(quoted(path) + ": " + error.message());
-  if (!is_below(root, real)) throw ConfigError(quoted(path) + ": is not below " + root.string());
 }
 
 std::string DataFolder::for_writing(const std::string& name) const {

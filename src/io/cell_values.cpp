@@ -1,0 +1,82 @@
+#include "src/io/cell_values.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+#include "src/core/log.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr double huge_number = 1e30;  // real elevations are far smaller; nodata are ±1e38 or ±3.4e38
+constexpr double isolation = 10;      // of a number that may be an elevation as well
+
+/// The shortest text that is read back as the same number; as the same float if the number is one.
+std::string shortest_text(double number) {
+  const bool is_float = std::abs(number) <= std::numeric_limits<float>::max() &&
+                        static_cast<double>(static_cast<float>(number)) == number;
+  char text[40];
+  for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
+    std::snprintf(text, sizeof text, "%.*g", digits, number);
+    if (is_float ? std::strtof(text, nullptr) == static_cast<float>(number)
+                 : std::strtod(text, nullptr) == number)
+      break;
+  }
+  return text;
+}
+
+std::string warning(const std::string& path, double number, long long count, long long cells) {
+  char share[80];
+  std::snprintf(share, sizeof share, "%.3g %% of its cells (%lld of %lld) are ",
+                100.0 * static_cast<double>(count) / static_cast<double>(cells), count, cells);
+  const std::string text = shortest_text(number);
+  return "raster '" + path + "': " + share + text +
+         ", which seems to stand for missing data but is not declared to (in the raster step: nodata: " +
+         text + ")";
+}
+
+}  // namespace
+
+bool CellValues::is_nodata(double raw) const {
+  if (!options_.nodata) return false;
+  if (raw == *options_.nodata) return true;
+  // -3.4028235e38 and the like are rounded differently as text, as float and as double.
+  return std::abs(raw) > huge_number && std::abs(raw - *options_.nodata) < 1e-6 * std::abs(raw);
+}
+
+float CellValues::convert(double raw, bool at_edge) {
+  ++cells_;
+  if (is_nodata(raw)) return std::numeric_limits<float>::quiet_NaN();
+  if (std::abs(raw) > huge_number && std::isfinite(raw)) {
+    huge_ = raw;
+    ++huge_cells_;
+  }
+  for (Suspect& s : suspects_) {
+    if (!(std::abs(raw - s.number) < isolation)) continue;
+    if (raw == s.number) {
+      ++s.cells;
+      s.at_edge += at_edge;
+    } else {
+      ++s.near;
+    }
+  }
+  return static_cast<float>(raw * options_.scale + options_.offset);
+}
+
+std::vector<std::string> CellValues::warnings(const std::string& path) const {
+  std::vector<std::string> lines;
+  for (const Suspect& s : suspects_)
+    if (s.cells > 0 && (!s.only_at_edge || (s.at_edge > 0 && s.near == 0)))
+      lines.push_back(warning(path, s.number, s.cells, cells_));
+  if (huge_cells_ > 0) lines.push_back(warning(path, huge_, huge_cells_, cells_));
+  return lines;
+}
+
+void warn_of_undeclared_nodata(const CellValues& values, const std::string& path) {
+  for (const std::string& line : values.warnings(path)) log_warning(line);
+}
+
+}  // namespace desert_sim
