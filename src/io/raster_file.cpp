@@ -117,6 +117,7 @@ class GdalRasterFile final : public RasterFile {
     input_ = std::make_unique<GdalInput>(path(), access.folder);
     const std::vector<std::string> names = input_->siblings();
     std::vector<const char*> siblings;
+    siblings.reserve(names.size() + 1);
     for (const std::string& name : names) siblings.push_back(name.c_str());
     siblings.push_back(nullptr);
     dataset_.reset(GDALDataset::FromHandle(
