@@ -60,11 +60,16 @@ constexpr Parameter<Owner, T> parameter(const char* name, T Owner::*member, cons
   return {name, member, 0, N - 1, "", doc, choices, N};
 }
 
+namespace detail {
+template <class T>
+struct IsOptionalNumber : std::false_type {};
+template <class T>
+struct IsOptionalNumber<std::optional<T>> : std::is_arithmetic<T> {};
+}  // namespace detail
+
 /// Whether T is a number that may be left out, which has no default: std::optional of a number.
 template <class T>
-constexpr bool is_optional_number = false;
-template <class T>
-inline constexpr bool is_optional_number<std::optional<T>> = std::is_arithmetic_v<T>;
+inline constexpr bool is_optional_number = detail::IsOptionalNumber<T>::value;
 
 template <class P>
 constexpr auto table_of() {

@@ -8,9 +8,12 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
+#include <vector>
 
 #include "kernels/backend/exec.hpp"
 #include "src/core/log.hpp"
+#include "src/io/cell_values.hpp"
 #include "src/io/gdal_input.hpp"
 #include "src/io/gdal_messages.hpp"
 #include "src/io/projection.hpp"
@@ -114,6 +117,7 @@ class GdalRasterFile final : public RasterFile {
     input_ = std::make_unique<GdalInput>(path(), access.folder);
     const std::vector<std::string> names = input_->siblings();
     std::vector<const char*> siblings;
+    siblings.reserve(names.size() + 1);
     for (const std::string& name : names) siblings.push_back(name.c_str());
     siblings.push_back(nullptr);
     dataset_.reset(GDALDataset::FromHandle(
@@ -125,7 +129,7 @@ class GdalRasterFile final : public RasterFile {
                                      "; the rasters with which desert_run or the node starts may have "
                                      "other formats with --all-raster-formats or "
                                      "~all_raster_formats): ",
-                                     messages_.text()));
+                                     reason()));
     check_raw_file(path(), *dataset_, input_->file().size());
     if (!input_->unread_metadata().empty())
       log_warning("raster '" + path() + "': " + input_->unread_metadata() +
@@ -159,8 +163,17 @@ class GdalRasterFile final : public RasterFile {
     if (status == CE_None && mask_)
       status = mask_->RasterIO(GF_Read, x, line, width, 1, valid, width, 1, GDT_Byte, 0, 0, nullptr);
     if (status != CE_None || messages_.failed())
-      throw_raster_error(path(), concatenate("cannot be read at line ", line + 1, " of ", header_.height,
-                                             ": ", messages_.text()));
+      throw_raster_error(
+          path(), concatenate("cannot be read at line ", line + 1, " of ", header_.height, ": ", reason()));
+  }
+
+  /// What GDAL says, with the raster's path for its name in GDAL's file system.
+  std::string reason() const {
+    std::string text = messages_.text();
+    const std::string name = input_ ? input_->name() : path();
+    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + path().size()))
+      text.replace(at, name.size(), path());
+    return text;
   }
 
   double bytes_besides() const override {

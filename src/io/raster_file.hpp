@@ -3,9 +3,7 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "src/io/cell_values.hpp"
 #include "src/io/raster.hpp"
 
 namespace desert_sim {

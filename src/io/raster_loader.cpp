@@ -12,8 +12,8 @@ namespace desert_sim {
 
 namespace {
 
-constexpr double bytes_to_fill =
-    24;  // of each cell: a copy, and distances, values and masks of GDALFillNodata()
+/// Of each cell: a copy, and the distances, values and masks of GDALFillNodata().
+constexpr double bytes_to_fill = 24;
 
 bool georeferenced(const Raster& r) {
   return std::any_of(r.geotransform.begin(), r.geotransform.end(), [](double v) { return v != 0; });
@@ -37,6 +37,9 @@ void stretch_to_grid(Raster& r, const RasterRequest& q) {
   stretched.values.assign(target.ptr<float>(), target.ptr<float>() + target.total());
   stretched.width = q.width;
   stretched.height = q.height;
+  stretched.cell_size = q.cell_size;
+  stretched.origin_x = q.origin_x;
+  stretched.origin_y = q.origin_y;
   if (finer)
     limit_to_sources(stretched, r, {0, static_cast<double>(r.width) / q.width},
                      {0, static_cast<double>(r.height) / q.height});

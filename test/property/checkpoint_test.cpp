@@ -145,18 +145,43 @@ TEST_P(Checkpoint, TakesAResetToTheStartOfItsOwnScenario) {
   EXPECT_EQ(other.simulation().state_hash(), session.simulation().state_hash());
 }
 
-TEST_P(Checkpoint, OfAScenarioThatMayNotBeReadIsNotResetTo) {
+/// Its scenario's raster may be a file that the session's loader does not read.
+TEST_P(Checkpoint, OfAScenarioWhoseRasterMayNotBeReadIsNotResetTo) {
+  const RasterLoader loader = [](const RasterRequest& request) {
+    RasterField field;
+    field.values.assign(static_cast<std::size_t>(request.width) * request.height, 5);
+    return field;
+  };
+  const char* const on_raster =
+      "grid: {width: 8, height: 9}\nterrain: [raster: {file: /elsewhere/dem.tif}]\n";
+  Session(test::scenario_of(on_raster), loader, GetParam(), 1).save_checkpoint(folder_.path("raster.ck"));
   Session session(test::scenario_of("grid: {width: 8, height: 9}\n"), no_raster_loader, GetParam(), 1);
-  std::string checked;
-  session.set_scenario_check([&](const Scenario& scenario) {
-    checked = dump_scenario(scenario);
-    throw ConfigError("not this one");
-  });
-  session.apply(command::LoadCheckpoint{saved(), 0});
+  session.apply(command::LoadCheckpoint{folder_.path("raster.ck"), 0});
   const std::uint64_t before = session.simulation().state_hash();
-  EXPECT_THROW(session.apply(command::Reset{}), ConfigError);
-  EXPECT_EQ(checked, dump_scenario(test::scenario_of(world)));
+  try {
+    session.apply(command::Reset{});
+    ADD_FAILURE() << "was reset";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("/elsewhere/dem.tif"), std::string::npos) << e.what();
+  }
   EXPECT_EQ(session.simulation().state_hash(), before);
+}
+
+TEST_P(Checkpoint, IsReadBelowTheFolderOnlyIfCommandsAreConfined) {
+  const std::string outside = saved(), data = folder_.path("data");
+  std::filesystem::create_directory(data);
+  std::filesystem::copy_file(outside, data + "/inside.ck");
+  std::filesystem::create_symlink(outside, data + "/link.ck");
+  folder_.write("outside.yaml", "grid: {width: 5}\n");
+  Session session(test::scenario_of("grid: {width: 8, height: 9}\n"), no_raster_loader, GetParam(), 1);
+  session.confine_commands(data);
+  const std::uint64_t before = session.simulation().state_hash();
+  EXPECT_THROW(session.apply(command::LoadCheckpoint{outside, 0}), ConfigError);
+  EXPECT_THROW(session.apply(command::LoadCheckpoint{data + "/link.ck", 0}), ConfigError);
+  EXPECT_THROW(session.apply(command::LoadScenario{folder_.path("outside.yaml"), false, 0}), ConfigError);
+  EXPECT_EQ(session.simulation().state_hash(), before);
+  session.apply(command::LoadCheckpoint{data + "/inside.ck", 0});
+  EXPECT_NE(session.simulation().state_hash(), before);
 }
 
 TEST_P(Checkpoint, KeepsClockWindOriginAndBooks) {

@@ -3,6 +3,7 @@
 #include <desert_sim/LoadScenario.h>
 #include <desert_sim/LoadTerrain.h>
 #include <desert_sim/SaveTerrain.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <filesystem>
@@ -107,6 +108,33 @@ TEST_F(TerrainFiles, ReadNoRasterOutsideTheDataFolder) {
   expect_refused<LoadScenario>("load_scenario", beginning("up.yaml"), outside.filename().string(),
                                "is not below");
   fs::remove(outside);
+}
+
+TEST_F(TerrainFiles, ReadNoFormatThatNamesOtherFiles) {
+  write("passwd.vrt",
+        "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Byte\" band=\"1\" "
+        "subClass=\"VRTRawRasterBand\"><SourceFilename relativetoVRT=\"0\">/etc/passwd</SourceFilename>"
+        "<ImageOffset>0</ImageOffset><PixelOffset>1</PixelOffset><LineOffset>2</LineOffset></VRTRasterBand>"
+        "</VRTDataset>");
+  write("vrt.yaml", "grid: {from_raster: passwd.vrt}\nterrain: [raster: {layer: bedrock}]\n");
+  write("vrt/terrain.yaml", "grid: {from_raster: ../passwd.vrt}\nterrain: [raster: {layer: bedrock}]\n");
+  expect_refused<LoadScenario>("load_scenario", beginning("vrt.yaml"), "passwd.vrt", "GeoTIFF");
+  expect_refused<LoadTerrain>("load_terrain", loading("vrt"), "passwd.vrt", "GeoTIFF");
+}
+
+TEST_F(TerrainFiles, AreRegularFilesWithPlainNames) {
+  ASSERT_EQ(mkfifo((folder_ + "/fifo.yaml").c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo((folder_ + "/fifo.tif").c_str(), 0600), 0);
+  write("beside_fifo.yaml", "grid: {from_raster: fifo.tif}\n");
+  const ros::WallTime start = ros::WallTime::now();
+  expect_refused<LoadScenario>("load_scenario", beginning("fifo.yaml"), "'fifo.yaml'", "is not a file");
+  expect_refused<LoadScenario>("load_scenario", beginning("beside_fifo.yaml"), "fifo.tif",
+                               "is not a regular file");
+  EXPECT_LT((ros::WallTime::now() - start).toSec(), 1);
+  for (const std::string& name : {std::string("a\ngrid: {width: 3}"), std::string(300, 'a')}) {
+    expect_refused<SaveTerrain>("save_terrain", saving(name, "geotiff"), "character", "~data_dir");
+    expect_refused<LoadScenario>("load_scenario", beginning(name), "character", "~data_dir");
+  }
 }
 
 }  // namespace

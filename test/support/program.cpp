@@ -1,6 +1,7 @@
 #include "support/program.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -34,16 +35,18 @@ ProgramRun run_program(const std::string& program, const std::vector<std::string
     _exit(127);
   }
   int status = 0;
+  rusage usage{};
   bool ended = false;
   for (double waited = 0; !ended && waited < signal_after; waited += 0.02) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    ended = waitpid(child, &status, WNOHANG) == child;
+    ended = wait4(child, &status, WNOHANG, &usage) == child;
   }
   if (!ended && signal_after > 0) kill(child, SIGINT);
-  if (!ended) waitpid(child, &status, 0);
+  if (!ended) wait4(child, &status, 0, &usage);
   ProgramRun run;
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  run.resident_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
   run.out = file_bytes(out);
   run.err = file_bytes(err);
   return run;

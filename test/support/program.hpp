@@ -11,6 +11,7 @@ struct ProgramRun {
   int status = -1;       ///< exit status; 128 + signal if one ended it
   std::string out, err;  ///< what it wrote
   double seconds = 0;
+  double resident_bytes = 0;  ///< most memory it had; at least that of the test when it began
 };
 
 /// Path of the program: the environment variable `variable` if it is set, else `built`.

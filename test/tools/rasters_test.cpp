@@ -1,7 +1,6 @@
 // desert_run and rasters: georeference, orientation, what each layer's file holds. Needs GDAL.
 
 #include <gdal_priv.h>
-#include <sys/resource.h>
 
 #include <cmath>
 
@@ -134,9 +133,20 @@ TEST_F(Rasters, AHugeSparseRasterIsRefusedByItsHeader) {
            "--backend", "cpu", "--threads", "1"});
   EXPECT_EQ(refused.status, 2);
   EXPECT_NE(refused.err.find("30000 x 30000 cells needs"), std::string::npos) << refused.err;
-  rusage children{};  // the largest one of this test's, and of others in this process, which are small
-  ASSERT_EQ(getrusage(RUSAGE_CHILDREN, &children), 0);
-  EXPECT_LT(children.ru_maxrss, 400L << 10) << "the cells would take 3.6 GB";
+  EXPECT_LT(refused.resident_bytes, 4e8) << "the cells would take 3.6 GB";
+}
+
+TEST_F(Rasters, AHeaderThatPromisesTooMuchCostsNoMoreThanTheFile) {
+  folder_.write(
+      "short.asc",
+      "ncols 20000\nnrows 20000\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999.0\n1 2 3\n");
+  const test::ProgramRun refused = run(
+      {folder_.write("short.yaml",
+                     "grid: {width: 8, height: 8, cell_size: 2500}\nterrain: [raster: {file: short.asc}]\n"),
+       "--backend", "cpu", "--threads", "1"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("cannot be read at line 1 of 20000"), std::string::npos) << refused.err;
+  EXPECT_LT(refused.resident_bytes, 4e8) << "the cells would take 1.6 GB";
 }
 
 TEST_F(Rasters, OtherFormatsNeedASwitch) {

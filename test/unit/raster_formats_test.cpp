@@ -106,6 +106,21 @@ TEST_F(RasterTest, Exr) {
   expect_says(refusal(path("inf.exr")), {"inf.exr", "1 values are infinite", "column 1, row 0"});
 }
 
+TEST_F(RasterTest, AnExrIsRefusedByTheSizeInItsHeader) {
+  setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0);
+  if (!cv::imwrite(path("a.exr"), cv::Mat(2, 3, CV_32FC1, cv::Scalar(1))))
+    GTEST_SKIP() << "OpenCV without OpenEXR";
+  std::string bytes = test::file_bytes(path("a.exr"));
+  const std::string key("dataWindow\0box2i\0", 17);
+  const std::size_t at = bytes.find(key);
+  ASSERT_NE(at, std::string::npos);
+  const std::int32_t window[] = {0, 0, 65535, 65535};
+  bytes.replace(at + key.size() + 4, sizeof window,
+                std::string(reinterpret_cast<const char*>(window), sizeof window));
+  expect_says(refusal(folder_.write("huge.exr", bytes)), {"huge.exr", "65536 x 65536"});
+  expect_says(refusal(folder_.write("cut.exr", bytes.substr(0, at + 3))), {"cut.exr", "not an EXR"});
+}
+
 TEST_F(RasterTest, UsgsDem) {
   if (!GetGDALDriverManager()->GetDriverByName("USGSDEM")) GTEST_SKIP() << "GDAL without USGSDEM";
   std::vector<std::int16_t> values(20 * 10);

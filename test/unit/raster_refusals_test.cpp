@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 TEST_F(RasterTest, RefusesWhatIsNoRaster) {
   expect_says(refusal(path("missing.tif")), {"missing.tif", "no such file"});
-  expect_says(refusal(folder_.write("notes.txt", "dunes are nice\n")), {"notes.txt", "not a raster"});
+  const std::string notes = folder_.write("notes.txt", "dunes are nice\n");
+  expect_says(refusal(notes), {"notes.txt", "not a raster", ("`" + notes + "' not recognized").c_str()});
   expect_says(refusal(folder_.write("empty.tif", "")), {"empty.tif", "not a raster"});
   expect_says(refusal(path("")), {"not a regular file"});  // a folder
 }
