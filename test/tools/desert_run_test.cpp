@@ -262,8 +262,8 @@ TEST_F(Run, ResumedTakesSettingsWithAndWithoutItsScenario) {
   EXPECT_NE(hash("same"), text);
 }
 
-/// GCC's OpenMP says how often a waiting thread looks before it sleeps; a program that executes itself anew says
-/// it twice.
+/// GCC's OpenMP says how often a waiting thread looks before it sleeps; a program that executes itself anew
+/// says it twice.
 TEST_F(Run, LetsThreadsWaitWithoutSpinningUnlessTheUserHasChosen) {
   const auto spins = [&](const std::vector<std::string>& environment) {
     std::vector<std::string> arguments = {"-u", "OMP_WAIT_POLICY", "-u", "GOMP_SPINCOUNT",
