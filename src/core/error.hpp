@@ -44,4 +44,11 @@ class StateError : public Error {
   using Error::Error;
 };
 
+/// A file cannot be written although its path is valid: the disk is full or broken. What there was before is
+/// unchanged, and a simulation can go on.
+class WriteError : public Error {
+ public:
+  using Error::Error;
+};
+
 }  // namespace desert_sim

@@ -86,7 +86,7 @@ void TemporaryFile::publish() {
   exists_ = false;
   // Makes the name durable. Some file systems cannot synchronise a folder, and say so by EINVAL.
   if (fsync(folder_.number()) != 0 && errno != EINVAL)
-    throw Error(path_ + ": its folder cannot be synchronised to the disk: " + std::strerror(errno));
+    throw WriteError(path_ + ": its folder cannot be synchronised to the disk: " + std::strerror(errno));
 }
 
 void TemporaryFile::require_regular_or_free() const {
@@ -104,7 +104,7 @@ void TemporaryFile::require_regular_or_free() const {
 void TemporaryFile::fail(const char* what) const {
   const int reason = errno;
   const std::string message = path_ + ": " + what + ": " + std::strerror(reason);
-  if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG || reason == EIO) throw Error(message);
+  if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG || reason == EIO) throw WriteError(message);
   throw ConfigError(message);
 }
 

@@ -12,7 +12,7 @@ namespace desert_sim {
 /// the folder can have another file overwritten. The file is removed unless it has been published.
 ///
 /// Throws ConfigError if the folder cannot be written to, or if `path` is neither a regular file nor free;
-/// Error if the disk is full or broken.
+/// WriteError if the disk is full or broken.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& path);

@@ -10,8 +10,8 @@
 namespace desert_sim {
 
 /// Writes a bag with one message, which is latched when the bag is played, by write_file(). Throws
-/// ConfigError if the path cannot be written or the map is larger than a bag allows (2 GB), Error if the
-/// disk is full or broken; an existing file of that name is then unchanged.
+/// ConfigError if the path cannot be written or the map is larger than a bag allows (2 GB), WriteError if
+/// the disk is full or broken; an existing file of that name is then unchanged.
 void write_grid_map(const std::string& path, const std::string& topic, const GridMap& map);
 
 /// Reads the last GridMap in a bag; with a `folder`, of one below it. Throws ConfigError that names the

@@ -46,7 +46,7 @@ cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_
                      const float* elevation);
 
 /// Writes a PNG file by write_file(). Throws ConfigError that names the file if the path cannot be written
-/// or the picture is empty, Error if the disk is full or broken; an existing file of that name is then
+/// or the picture is empty, WriteError if the disk is full or broken; an existing file of that name is then
 /// unchanged.
 void write_png(const std::string& path, const cv::Mat& picture);
 

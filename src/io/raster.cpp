@@ -112,11 +112,11 @@ void write_geotiff(const std::string& path, const Raster& raster) {
   TemporaryFile file(path);
   GdalMessages messages;
   if (!write_dataset(file.library_path(), raster, messages))
-    throw Error(concatenate("raster '", path, "': cannot be written: ", messages.text()));
+    throw WriteError(concatenate("raster '", path, "': cannot be written: ", messages.text()));
   file.publish();
   std::error_code error;
   std::filesystem::remove(path + ".aux.xml", error);  // GDAL's metadata of the replaced file
-  if (error) throw Error(path + ".aux.xml: cannot be removed: " + error.message());
+  if (error) throw WriteError(path + ".aux.xml: cannot be removed: " + error.message());
 }
 
 }  // namespace desert_sim

@@ -54,8 +54,8 @@ Raster read_raster(const std::string& path, const RasterOptions& options = {},
                    const RasterAccess& access = {});
 
 /// Writes a float32 GeoTIFF, north up, with NaN as nodata value, geotransform and projection. The data go
-/// through a TemporaryFile. Throws ConfigError if the path or the raster cannot be written, Error if the disk
-/// is full or broken; an existing file of that name is then unchanged.
+/// through a TemporaryFile. Throws ConfigError if the path or the raster cannot be written, WriteError if
+/// the disk is full or broken; an existing file of that name is then unchanged.
 void write_geotiff(const std::string& path, const Raster& raster);
 
 }  // namespace desert_sim

@@ -136,7 +136,7 @@ void save_terrain(const std::string& scenario_file, const Scenario& scenario, co
     }
     remove_other_files(folder, written);
   } catch (const fs::filesystem_error& e) {
-    throw Error(folder.string() +
+    throw WriteError(folder.string() +
                 ": the files of another terrain cannot be listed or removed: " + e.code().message());
   }
 }

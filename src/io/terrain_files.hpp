@@ -32,11 +32,11 @@ LayerWriter geotiff_writer(const std::string& projection);
 LayerWriter png16_writer();
 
 /// Writes the snapshot's layers into the folder of `scenario_file`, then the scenario file itself, whose
-/// terrain steps load these files. Heights are rounded to the format's precision; only a checkpoint is exact.
-/// `tag` makes the file names differ from those of an earlier save, whose files stay valid until the new
-/// scenario file has replaced the old one, and are then removed. Saves to one folder, also those of other
-/// processes, wait for each other. Throws ConfigError or Error that names the file; an earlier terrain is
-/// then unchanged, and nothing new is left.
+/// terrain steps load these files. Heights are rounded to the format's precision; only a checkpoint is
+/// exact. `tag` makes the file names differ from those of an earlier save, whose files stay valid until the
+/// new scenario file has replaced the old one, and are then removed. Saves to one folder, also those of
+/// other processes, wait for each other. Throws ConfigError or WriteError that names the file; an earlier
+/// terrain is then unchanged, and nothing new is left.
 void save_terrain(const std::string& scenario_file, const Scenario& scenario, const Snapshot& snapshot,
                   const LayerWriter& write_layers, const std::string& tag);
 

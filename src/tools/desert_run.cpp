@@ -139,7 +139,7 @@ void prepare_outputs(const RunPlan& plan, const Journal& journal) {
   try {
     if (!plan.checkpoint.empty()) require_writable_file(plan.checkpoint);
     if (plan.options.has("plot")) require_writable_file(plan.options.text("plot", ""));
-  } catch (const ConfigError&) {
+  } catch (...) {
     if (!created.empty()) remove_empty_folders(created, plan.out);
     throw;
   }

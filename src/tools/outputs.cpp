@@ -76,7 +76,7 @@ std::string create_output_folder(const std::string& folder) {
   if (!fs::is_directory(folder, error)) throw ConfigError("--out " + folder + ": is not a folder");
   try {
     require_writable_file(folder + "/summary.json");
-  } catch (const ConfigError& e) {
+  } catch (const Error& e) {
     if (!created.empty()) remove_empty_folders(created, folder);
     throw ConfigError(std::string("--out ") + e.what());
   }

@@ -142,7 +142,7 @@ TEST_F(SavedBags, ThatCannotBeWrittenLeaveNothing) {
   const test::TemporaryFolder full;
   for (const rlim_t bytes : {0, 1000, 8000}) {
     const test::FullDisk disk(bytes);
-    EXPECT_THROW(write_grid_map(full.path("a.bag"), "/map", map), Error) << bytes;
+    EXPECT_THROW(write_grid_map(full.path("a.bag"), "/map", map), WriteError) << bytes;
   }
   EXPECT_TRUE(std::filesystem::is_empty(full.path(".")));
 }

@@ -149,6 +149,27 @@ TEST_F(Bench, RefusesWhatItDoesNotUnderstand) {
   refused({"--scene", "A", "--size", "65536", "--backend", "cpu"}, "65536 x 65536");
 }
 
+/// A run of this size would take minutes.
+TEST_F(Bench, RefusesOutputsThatCannotBeWrittenBeforeItMeasures) {
+  std::filesystem::create_directories(path("folder"));
+  for (const char* option : {"--json", "--save-start", "--roofline"})
+    for (const std::string& file : {path("no/such/file"), path("folder")}) {
+      SCOPED_TRACE(option);
+      std::vector<std::string> arguments = {"--backend", "cpu",  "--size", "2048",
+                                            "--steps",   "1000", option,   file};
+      if (option == std::string("--roofline")) arguments.insert(arguments.end(), {"--json", path("a.json")});
+      EXPECT_LT(refused(arguments, file).seconds, 10);
+    }
+  EXPECT_FALSE(std::filesystem::exists(path("a.json")));
+}
+
+TEST_F(Bench, FailsIfItsStandardOutputIsFull) {
+  const test::ProgramRun r =
+      test::run_program("/bin/sh", {"-c", "exec \"$0\" --cost-model > /dev/full", program_});
+  EXPECT_EQ(r.status, 3) << r.err;
+  EXPECT_NE(r.err.find("the standard output cannot be written"), std::string::npos) << r.err;
+}
+
 TEST_F(Bench, CostModelIsTheOneOfThePage) {
   const test::ProgramRun r = run({"--cost-model"});
   EXPECT_EQ(r.status, 0) << r.err;

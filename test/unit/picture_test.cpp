@@ -286,7 +286,7 @@ TEST(WritePng, OnAFullDiskLeavesNothing) {
   cv::randu(noise, 0, 255);
   {
     const test::FullDisk disk(1000);
-    EXPECT_THROW(write_png(folder.path("a.png"), noise), Error);
+    EXPECT_THROW(write_png(folder.path("a.png"), noise), WriteError);
   }
   EXPECT_TRUE(fs::is_empty(folder.path(".")));
 }

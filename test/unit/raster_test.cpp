@@ -134,7 +134,7 @@ TEST_F(RasterTest, OnAFullDiskIsNotWrittenAndLeavesNothing) {
   folder_.write("a.tif", "old");
   {
     const test::FullDisk disk(5000);
-    EXPECT_THROW(write_geotiff(path("a.tif"), r), Error);
+    EXPECT_THROW(write_geotiff(path("a.tif"), r), WriteError);
   }
   EXPECT_EQ(test::file_bytes(path("a.tif")), "old");
   EXPECT_EQ(std::distance(fs::directory_iterator(path(".")), fs::directory_iterator()), 1);

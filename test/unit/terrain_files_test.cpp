@@ -130,7 +130,7 @@ TEST_P(TerrainFiles, ThatCannotBeWrittenLeaveAnEarlierTerrainAndNothingElse) {
   session(world)->apply(command::LoadScenario{file_, true, 0});
   {
     const test::FullDisk disk(100);
-    EXPECT_THROW(save(*s, "b"), Error);
+    EXPECT_THROW(save(*s, "b"), WriteError);
   }
   EXPECT_EQ(files(), before);
   session(world)->apply(command::LoadScenario{file_, true, 0});

@@ -22,8 +22,8 @@ struct Job {
   std::uint64_t number = 0;  ///< given by the queue
 };
 
-/// Makes a job of `body`, which returns R. Refused input (ConfigError) is only thrown to the thread that
-/// asked; any other exception is thrown to both threads.
+/// Makes a job of `body`, which returns R. Refused input (ConfigError) and a file that cannot be written
+/// (WriteError) are only thrown to the thread that asked; any other exception is thrown to both threads.
 template <class R>
 Job make_job(std::function<R()> body, std::future<R>& answer) {
   auto promise = std::make_shared<std::promise<R>>();
@@ -38,6 +38,8 @@ Job make_job(std::function<R()> body, std::future<R>& answer) {
         promise->set_value(body());
       }
     } catch (const ConfigError&) {
+      promise->set_exception(std::current_exception());
+    } catch (const WriteError&) {
       promise->set_exception(std::current_exception());
     } catch (...) {
       promise->set_exception(std::current_exception());
