@@ -38,7 +38,7 @@ void write_parameter_table(std::ostream& out, const P& defaults) {
       allowed << row.lowest << " … " << row.highest;
     } else {
       out << value;
-      allowed << row.lowest << " … " << row.highest;
+      allowed << limit_text<T>(row.lowest) << " … " << limit_text<T>(row.highest);
     }
     out << " | " << row.unit << " | " << allowed.str() << " | " << row.doc << " |\n";
   });

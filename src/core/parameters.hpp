@@ -13,13 +13,31 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 
 namespace desert_sim {
+
+/// The upper limit of a parameter that may be any 64-bit integer: the double next to the largest, 2⁶⁴ − 1.
+constexpr double highest_uint64 = 0x1p64;
+
+/// A limit of a parameter of type T as text: all digits of whole numbers, six of others.
+template <class T>
+std::string limit_text(double limit) {
+  if constexpr (std::is_integral_v<T>) {
+    return limit >= highest_uint64 ? std::to_string(std::numeric_limits<std::uint64_t>::max())
+                                   : std::to_string(static_cast<long long>(limit));
+  } else {
+    std::ostringstream text;
+    text << limit;
+    return text.str();
+  }
+}
 
 /// A list of up to four numbers, for a parameter that is a short list.
 struct ShortList {

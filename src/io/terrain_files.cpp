@@ -1,6 +1,7 @@
 #include "src/io/terrain_files.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/core.hpp>
@@ -63,8 +64,13 @@ std::set<std::string> write_terrain(const std::string& scenario_file, const fs::
   Scenario saved = scenario;
   saved.terrain.assign(layers.steps.begin(), layers.steps.end());
   saved.grid.from_raster = layers.georeferenced;
-  write_file(scenario_file, "# A terrain saved at step " + std::to_string(snapshot.step) + " of " +
-                                scenario.name + ".\n" + dump_scenario(saved));
+  std::string name = scenario.name;  // a checkpoint may give any; a line break would end the comment
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
+  std::string comment = "# A terrain saved at step " + std::to_string(snapshot.step) + " of " + name + ".\n";
+  if (saved.vegetation.enabled)
+    comment += "# Its plants are not saved: others come up when it is loaded. A checkpoint keeps them.\n";
+  write_file(scenario_file, comment + dump_scenario(saved));
   std::set<std::string> names;
   for (const RasterStep& step : layers.steps) names.insert(step.file);
   return names;
@@ -73,9 +79,11 @@ std::set<std::string> write_terrain(const std::string& scenario_file, const fs::
 }  // namespace
 
 std::vector<Layer> persistent_layers(const Simulation& simulation) {
+  const bool plants = simulation.scenario().vegetation.enabled;
   std::vector<Layer> layers;
   for (Layer layer : simulation.layers_in_use())
-    if (info(layer).lifetime == Lifetime::persistent) layers.push_back(layer);
+    if (info(layer).lifetime == Lifetime::persistent && !(plants && layer == Layer::vegetation))
+      layers.push_back(layer);
   return layers;
 }
 
@@ -137,7 +145,7 @@ void save_terrain(const std::string& scenario_file, const Scenario& scenario, co
     remove_other_files(folder, written);
   } catch (const fs::filesystem_error& e) {
     throw WriteError(folder.string() +
-                ": the files of another terrain cannot be listed or removed: " + e.code().message());
+                     ": the files of another terrain cannot be listed or removed: " + e.code().message());
   }
 }
 

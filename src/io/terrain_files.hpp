@@ -8,7 +8,8 @@
 
 namespace desert_sim {
 
-/// The persistent layers in use, which make up a terrain. save_terrain() takes a snapshot of them.
+/// The persistent layers in use, which make up a terrain, but for vegetation that live plants make.
+/// save_terrain() takes a snapshot of them.
 std::vector<Layer> persistent_layers(const Simulation& simulation);
 /// The persistent layers of a snapshot.
 std::vector<Layer> persistent_layers(const Snapshot& snapshot);
@@ -32,11 +33,12 @@ LayerWriter geotiff_writer(const std::string& projection);
 LayerWriter png16_writer();
 
 /// Writes the snapshot's layers into the folder of `scenario_file`, then the scenario file itself, whose
-/// terrain steps load these files. Heights are rounded to the format's precision; only a checkpoint is
-/// exact. `tag` makes the file names differ from those of an earlier save, whose files stay valid until the
-/// new scenario file has replaced the old one, and are then removed. Saves to one folder, also those of
-/// other processes, wait for each other. Throws ConfigError or WriteError that names the file; an earlier
-/// terrain is then unchanged, and nothing new is left.
+/// terrain steps load these files. Plants are not saved: where the scenario has any, they come up anew when
+/// it is loaded, and the scenario file says so. Heights are rounded to the format's precision; only a
+/// checkpoint is exact. `tag` makes the file names differ from those of an earlier save, whose files stay
+/// valid until the new scenario file has replaced the old one, and are then removed. Saves to one folder,
+/// also those of other processes, wait for each other. Throws ConfigError or WriteError that names the file;
+/// an earlier terrain is then unchanged, and nothing new is left.
 void save_terrain(const std::string& scenario_file, const Scenario& scenario, const Snapshot& snapshot,
                   const LayerWriter& write_layers, const std::string& tag);
 

@@ -8,6 +8,7 @@
 
 #include "src/core/input_file.hpp"
 #include "src/scenario/climate.hpp"
+#include "src/scenario/range_checks.hpp"
 #include "src/scenario/sections.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -15,7 +16,6 @@ namespace desert_sim {
 
 namespace {
 
-constexpr std::size_t max_wind_segments = 4096;
 constexpr std::uint64_t max_scenario_bytes = std::uint64_t{1} << 24;
 
 /// Checks that `layer` of a terrain step names a persistent layer.
@@ -112,22 +112,12 @@ void check_dependencies(const Scenario& s, ValidationErrors& errors) {
   float weight = 0;
   for (int n = 0; n < s.wind.weights.count; ++n) weight += s.wind.weights.values[n];
   if (!(weight > 0)) errors.add("wind.weights", "must not all be 0");
-  if (s.wind_regime.regime != WindRegimeKind::constant && s.wind_segments.empty())
-    errors.add("wind.segments", std::string("a ") +
-                                    wind_regime_kind_names[static_cast<int>(s.wind_regime.regime)] +
-                                    " needs at least one segment");
-  for (std::size_t n = 0; n < s.wind_segments.size(); ++n)
-    if (s.wind_segments[n].ramp > s.wind_segments[n].duration)
-      errors.add("wind.segments." + std::to_string(n) + ".ramp", "is longer than the segment's duration");
+  check_wind_segments(s.wind_regime.regime, s.wind_segments, "wind.segments", errors);
   std::set<int> ids;
   for (std::size_t n = 0; n < s.wind_features.size(); ++n)
     if (const int id = s.wind_features[n].id; id != 0 && !ids.insert(id).second)
       errors.add("wind.features." + std::to_string(n) + ".id",
                  "= " + std::to_string(id) + " is already the id of another feature");
-  float probability = 0;
-  for (const WindSegment& segment : s.wind_segments) probability += segment.probability;
-  if (s.wind_regime.regime == WindRegimeKind::rose && !s.wind_segments.empty() && !(probability > 0))
-    errors.add("wind.segments", "the probabilities of a rose must not all be 0");
   if (s.wind_shadow.full_deg < s.wind_shadow.start_deg)
     errors.add("wind_shadow.full_deg", "must not be below start_deg");
   if (s.echo_dunes.sticky_reach < s.echo_dunes.erosion_reach)
@@ -350,6 +340,7 @@ void resolve_grid(Scenario& s, const RasterLoader& load_raster) {
   if (g.width == 0) g.width = 256;
   if (g.height == 0) g.height = 256;
   if (g.cell_size == 0) g.cell_size = 1;
+  check_ranges(g, s.name + ": grid");  // a raster can have any size and place
 }
 
 std::string raster_path(const Scenario& s, const std::string& file) {

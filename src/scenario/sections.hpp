@@ -10,7 +10,7 @@ struct SeedParameter {
 };
 constexpr auto parameter_table(const SeedParameter*) {
   return std::make_tuple(
-      parameter("seed", &SeedParameter::seed, 0, 1.8e19, "1", "Seed of all random numbers."));
+      parameter("seed", &SeedParameter::seed, 0, highest_uint64, "1", "Seed of all random numbers."));
 }
 static_assert(table_is_complete<SeedParameter>());
 

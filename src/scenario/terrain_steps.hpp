@@ -58,7 +58,7 @@ constexpr auto parameter_table(const NoiseStep*) {
                 "Length of features along x over their length along y."),
       parameter("threshold", &P::threshold, 0, 1, "1",
                 "Lower share of the noise's range that is set to low."),
-      parameter("seed", &P::seed, 0, 1.8e19, "1", "Added to the scenario's seed."));
+      parameter("seed", &P::seed, 0, highest_uint64, "1", "Added to the scenario's seed."));
 }
 static_assert(table_is_complete<NoiseStep>());
 
@@ -162,7 +162,7 @@ constexpr auto parameter_table(const DiscsStep*) {
       parameter("radius_low", &P::radius_low, 1e-3, 1e6, "m", "Smallest radius."),
       parameter("radius_high", &P::radius_high, 1e-3, 1e6, "m", "Largest radius."),
       parameter("height", &P::height, 0, 1e5, "layer's", "Height, or value of a layer that is not a height."),
-      parameter("seed", &P::seed, 0, 1.8e19, "1", "Added to the scenario's seed."));
+      parameter("seed", &P::seed, 0, highest_uint64, "1", "Added to the scenario's seed."));
 }
 static_assert(table_is_complete<DiscsStep>());
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/core/quoted.hpp"
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -83,6 +84,27 @@ std::vector<Ramp> extract_ramps(const Scenario& scenario, std::vector<std::strin
   }
   settings = immediate;
   return ramps;
+}
+
+void check_ramp(const Scenario& scenario, const Ramp& ramp, double time, const std::string& key,
+                ValidationErrors& errors) {
+  if (!(ramp.start <= time))
+    errors.add(key + ".start", "= " + std::to_string(ramp.start) + " s is later than the present time, " +
+                                   std::to_string(time) + " s");
+  bool found = false;
+  for_each_live_parameter(scenario, [&](const char* section, const auto& row, const auto& value) {
+    using T = std::decay_t<decltype(value)>;
+    if constexpr (std::is_floating_point_v<T>) {
+      if (ramp.path != std::string(section) + "." + row.name) return;
+      found = true;
+      for (const double end : {ramp.from, ramp.to})
+        if (!yaml::in_range<T>(end, row))
+          errors.add(key,
+                     ramp.path + " = " + std::to_string(end) + " is not in " + yaml::allowed_range<T>(row));
+    }
+  });
+  if (!found)
+    errors.add(key + ".path", quoted(ramp.path) + " is not a floating-point parameter that can change");
 }
 
 std::vector<TimelineEntry> read_timeline(const YAML::Node& list, ValidationErrors& errors) {

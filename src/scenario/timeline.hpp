@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "src/core/parameters.hpp"
+
 namespace YAML {
 class Node;
 class Emitter;
@@ -44,6 +46,23 @@ struct Ramp {
     return step_index == step_count ? to : from + (to - from) * step_index / step_count;
   }
 };
+
+constexpr auto parameter_table(const Ramp*) {
+  using P = Ramp;
+  return std::make_tuple(
+      parameter("path", &P::path, "Section and name of a floating-point parameter."),
+      parameter("from", &P::from, -1e300, 1e300, "", "Its value at the start."),
+      parameter("to", &P::to, -1e300, 1e300, "", "Its value at the end."),
+      parameter("start", &P::start, 0, 1e20, "s", "Simulated time at which the ramp began."),
+      parameter("duration", &P::duration, 0, 1e12, "s", "How long it lasts."),
+      parameter("stair", &P::step_index, 0, Ramp::step_count - 1, "1", "The step that has been reached."));
+}
+static_assert(table_is_complete<Ramp>());
+
+/// Adds an error for each value with which the ramp could not be going on at `time` [s]: a path that is no
+/// floating-point parameter or one that cannot change, ends out of its range, a start that lies ahead.
+void check_ramp(const Scenario& scenario, const Ramp& ramp, double time, const std::string& key,
+                ValidationErrors& errors);
 
 /// Removes the settings of floating-point parameters from `settings` and returns them as ramps that begin at
 /// `time` with the values in `scenario`; the others stay. If `duration` is 0 there are no ramps, and all

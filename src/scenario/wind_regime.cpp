@@ -5,6 +5,7 @@
 
 #include "kernels/field/random.hpp"
 #include "src/core/constants.hpp"
+#include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 
@@ -43,12 +44,30 @@ void speed_and_direction(wind::Vector w, double& speed, double& direction_deg) {
   direction_deg = speed > 0 ? std::atan2(static_cast<double>(w.y), static_cast<double>(w.x)) * 180 / pi : 0;
 }
 
+void check_wind_segments(WindRegimeKind kind, const std::vector<WindSegment>& segments,
+                         const std::string& key, ValidationErrors& errors) {
+  if (segments.size() > max_wind_segments)
+    errors.add(key, std::to_string(segments.size()) + " entries are given (allowed: at most " +
+                        std::to_string(max_wind_segments) + ")");
+  if (kind != WindRegimeKind::constant && segments.empty())
+    errors.add(key, std::string("a ") + wind_regime_kind_names[static_cast<int>(kind)] +
+                        " needs at least one segment");
+  float probability = 0;
+  for (std::size_t n = 0; n < segments.size(); ++n) {
+    if (segments[n].ramp > segments[n].duration)
+      errors.add(key + "." + std::to_string(n) + ".ramp", "is longer than the segment's duration");
+    probability += segments[n].probability;
+  }
+  if (kind == WindRegimeKind::rose && !segments.empty() && !(probability > 0))
+    errors.add(key, "the probabilities of a rose must not all be 0");
+}
+
 wind::Vector WindRegime::at(double time) const {
   const double elapsed = std::max(0.0, time - start_time);
   if (regime == WindRegimeKind::constant)
     return interpolate_ramp(initial_wind, wind_vector(direction_deg, speed), elapsed, ramp);
   if (regime == WindRegimeKind::rose) {
-    const auto draw_index = static_cast<std::uint64_t>(elapsed / hold_time);
+    const auto draw_index = static_cast<std::uint64_t>(std::min(elapsed / hold_time, 0x1p63));
     double total = 0;
     for (const WindSegment& s : segments) total += s.probability;
     double draw = total * random_unit(rose_seed, Purpose::wind_rose, static_cast<std::uint32_t>(draw_index),

@@ -3,12 +3,15 @@
 /// a wind rose. A direction is the one towards which the air moves, counter-clockwise from +x (east).
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "kernels/wind/vector.hpp"
 #include "src/core/parameters.hpp"
 
 namespace desert_sim {
+
+class ValidationErrors;
 
 enum class WindRegimeKind : int { constant, timeline, rose };
 constexpr const char* wind_regime_kind_names[] = {"constant", "timeline", "rose"};
@@ -60,9 +63,16 @@ constexpr auto parameter_table(const WindRegimeParameters*) {
       parameter("repeat", &P::repeat,
                 "Whether a timeline starts again at its end; otherwise its last segment stays."),
       parameter("hold_time", &P::hold_time, 1e-3, 1e12, "s", "How long a rose keeps a direction."),
-      parameter("rose_seed", &P::rose_seed, 0, 1.8e19, "1", "Seed of the random draws of a rose."));
+      parameter("rose_seed", &P::rose_seed, 0, highest_uint64, "1", "Seed of the random draws of a rose."));
 }
 static_assert(table_is_complete<WindRegimeParameters>());
+
+constexpr std::size_t max_wind_segments = 4096;
+
+/// Adds an error for each condition that a regime of this kind and its segments break together; `key` is that
+/// of the list of segments. The ranges of the segments' parameters are checked elsewhere.
+void check_wind_segments(WindRegimeKind kind, const std::vector<WindSegment>& segments,
+                         const std::string& key, ValidationErrors& errors);
 
 /// A wind regime with its segments and the state from which it began.
 struct WindRegime : WindRegimeParameters {

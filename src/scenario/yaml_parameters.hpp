@@ -49,12 +49,11 @@ inline std::string node_text(const YAML::Node& node) {
   return node.IsNull() ? "nothing" : (node.IsMap() ? "a map" : "a list");
 }
 
-template <class Row>
+/// `T`: the type of the row's parameter.
+template <class T, class Row>
 std::string allowed_range(const Row& row) {
-  std::ostringstream text;
-  text << "[" << row.lowest << ", " << row.highest << "]";
-  if (std::string(row.unit) != "1" && row.unit[0]) text << " " << row.unit;
-  return text.str();
+  const std::string range = "[" + limit_text<T>(row.lowest) + ", " + limit_text<T>(row.highest) + "]";
+  return std::string(row.unit) != "1" && row.unit[0] ? range + " " + row.unit : range;
 }
 
 /// Whether a number is in the row's range. Numbers and limits of float parameters are compared as floats, so
@@ -74,11 +73,11 @@ template <class T, class Row>
 bool read_number(const YAML::Node& node, const Row& row, const std::string& key, ValidationErrors& errors,
                  double& number) {
   if (!node.IsScalar() || node.Tag() == "!" || !YAML::convert<double>::decode(node, number)) {
-    errors.add(key, node_text(node) + " is not a number (allowed: " + allowed_range(row) + ")");
+    errors.add(key, node_text(node) + " is not a number (allowed: " + allowed_range<T>(row) + ")");
     return false;
   }
   if (!in_range<T>(number, row)) {
-    errors.add(key, "= " + node_text(node) + " is not in " + allowed_range(row));
+    errors.add(key, "= " + node_text(node) + " is not in " + allowed_range<T>(row));
     return false;
   }
   return true;
@@ -125,13 +124,19 @@ void read_value(const YAML::Node& node, const Row& row, const std::string& key, 
     if (read_number<T>(node, row, key, errors, number)) value = static_cast<T>(number);
   } else {
     if (!read_number<T>(node, row, key, errors, number)) return;
-    if (!YAML::convert<T>::decode(node, value)) {
-      if (number == std::floor(number)) {
-        value = static_cast<T>(number);
-      } else {
-        errors.add(key,
-                   "= " + node_text(node) + " is not a whole number (allowed: " + allowed_range(row) + ")");
-      }
+    T whole{};
+    if (YAML::convert<T>::decode(node, whole)) {
+      if (in_range<T>(static_cast<double>(whole), row))  // what begins with 0 is an octal number
+        value = whole;
+      else
+        errors.add(key, "= " + std::to_string(whole) + " is not in " + allowed_range<T>(row));
+    } else if (number != std::floor(number)) {
+      errors.add(key,
+                 "= " + node_text(node) + " is not a whole number (allowed: " + allowed_range<T>(row) + ")");
+    } else if (number >= highest_uint64) {  // which a larger integer is rounded to
+      errors.add(key, "= " + node_text(node) + " is not in " + allowed_range<T>(row));
+    } else {
+      value = static_cast<T>(number);
     }
   }
 }

@@ -17,8 +17,10 @@ namespace desert_sim {
 std::string checkpoint_bytes(const Simulation& simulation);
 /// Throws ConfigError if the file cannot be written.
 void save_checkpoint(const std::string& path, const Simulation& simulation);
-/// Throws ConfigError if the file is missing, larger than the memory, of another version, cut off or corrupt,
-/// or not below `folder` if one is given.
+/// Throws ConfigError if the file is missing, larger than the memory, not below `folder` if one is given, of
+/// another version, cut off or corrupt, or if its checksum is right but a simulation could not have saved it:
+/// fields or values out of their ranges, layers that the scenario does not go with, accounts that do not
+/// close. No layer is allocated for what is longer than the file.
 std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec,
                                             const std::string& folder = "");
 

@@ -6,6 +6,7 @@
 #include "src/core/files.hpp"
 #include "src/core/log.hpp"
 #include "src/scenario/band_terrain.hpp"
+#include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/checkpoint.hpp"
 
 namespace desert_sim {
@@ -73,6 +74,9 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
     merged.terrain = next.terrain;
     merged.folder = next.folder;
     merged.projection.clear();
+    ValidationErrors errors(command.path);
+    check_plants(merged, errors);  // which the terrain's vegetation must not meet
+    errors.throw_if_any();
     next = std::move(merged);
   }
   resolve_grid(next, load_raster_);

@@ -91,6 +91,14 @@ void require_reach(const Scenario& s) {
   errors.throw_if_any();
 }
 
+void require_sea(const Scenario& s, const HeightScale& scale, const std::string& what) {
+  const double highest = scale.datum + load_limit * scale.quantum();
+  if (s.water.sea == Sea::none || s.water.sea_level <= highest) return;
+  throw ConfigError(what + ": water.sea_level: = " + std::to_string(s.water.sea_level) +
+                    " m is above the highest elevation that this terrain can represent (allowed: at most " +
+                    std::to_string(highest) + " m)");
+}
+
 Simulation::Simulation(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster,
                        const ProcessTable& table)
     : Simulation(scenario, build(exec, scenario, load_raster), table) {
@@ -105,6 +113,8 @@ Simulation::Simulation(const Scenario& scenario, Terrain terrain, const ProcessT
       views_(state_, pipeline_) {}
 
 void Simulation::step() {
+  if (steps() >= max_steps)
+    throw StateError(std::to_string(max_steps) + " steps are done, which is as far as the clock counts");
   commands_.apply_timeline();
   pipeline_.step();
 }

@@ -21,6 +21,13 @@ namespace desert_sim {
 /// or if a process would need too many sub-steps.
 void require_reach(const Scenario& scenario);
 
+/// Throws ConfigError, in the name of `what`, if the sea is higher than the scale can represent. One that is
+/// lower is no sea, whatever its level.
+void require_sea(const Scenario& scenario, const HeightScale& scale, const std::string& what);
+
+/// Most steps of a simulation: a double counts so far, which the simulated time is a multiple of.
+constexpr std::uint64_t max_steps = 1ULL << 53;
+
 class Simulation {
  public:
   /// Builds the terrain. `scenario` must be resolved (see resolve_grid()). Throws ConfigError.
@@ -29,7 +36,7 @@ class Simulation {
   /// A terrain without material, for a checkpoint to fill.
   Simulation(const Scenario& scenario, Terrain terrain, const ProcessTable& table = process_table());
 
-  /// One step of `run.time_step` seconds.
+  /// One step of `run.time_step` seconds. Throws StateError after max_steps.
   void step();
   /// Applies a command between steps; throws ConfigError and changes nothing if it is refused. Reset and
   /// LoadCheckpoint are the Session's business.

@@ -18,8 +18,11 @@ Layer layer_by_name(const std::string& name);
 /// How heights are stored as integers (quanta): value [m] = datum + quanta · 2^exponent for elevations, and
 /// quanta · 2^exponent for depths.
 struct HeightScale {
-  double datum = 0;    ///< [m]
-  int exponent = -20;  ///< quantum = 2^exponent m
+  /// With the coarsest, load_limit is 2²¹ m: more than half the relief of bedrock, soil and sand that are
+  /// any_height high or deep.
+  static constexpr int finest = -20, coarsest = -8;
+  double datum = 0;       ///< [m]
+  int exponent = finest;  ///< quantum = 2^exponent m
 
   double quantum() const { return std::ldexp(1.0, exponent); }
   /// The finest scale (not below 2⁻²⁰ m) that can represent heights from `lowest` to `highest` [m] with

@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <new>
+#include <string>
 
 #include "src/core/error.hpp"
 
@@ -18,7 +20,10 @@ namespace {
 /// Does nothing if the user has chosen how threads wait, by OpenMP's variable or by one of GCC's runtime.
 void make_waiting_passive(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
-  if (setenv("OMP_WAIT_POLICY", "passive", 0) == 0) execv("/proc/self/exe", argv);
+  // By its path, not by the link: the process would be called "exe" for those who look for it by its name.
+  std::error_code missing;
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe", missing).string();
+  if (setenv("OMP_WAIT_POLICY", "passive", 0) == 0) execv(program.c_str(), argv);
   throw Error(std::string("the program cannot be executed anew with OMP_WAIT_POLICY=passive: ") +
               std::strerror(errno) + " (set OMP_WAIT_POLICY in the environment)");
 }

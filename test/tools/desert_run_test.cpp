@@ -284,6 +284,15 @@ TEST_F(Run, LetsThreadsWaitWithoutSpinningUnlessTheUserHasChosen) {
   EXPECT_EQ(spins({"GOMP_SPINCOUNT=5"}), "5");
 }
 
+TEST_F(Run, KeepsTheNameOfItsProcess) {
+  const test::ProgramRun r = test::run_program(
+      "/bin/sh",
+      {"-c",
+       "unset OMP_WAIT_POLICY GOMP_SPINCOUNT; \"$0\" \"$@\" & sleep 2; cat /proc/$!/comm; kill -KILL $!",
+       program_, scenario_, "--backend", "cpu", "--steps", "100000000", "--quiet"});
+  EXPECT_EQ(r.out, std::filesystem::path(program_).filename().string() + "\n") << r.err;
+}
+
 TEST_F(Run, OfZeroStepsWritesTheStart) {
   run_cpu({scenario_, "--steps", "0", "--out", path("out")});
   EXPECT_EQ(json(summary("out"), "steps"), "0");

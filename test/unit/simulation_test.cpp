@@ -122,7 +122,7 @@ TEST_P(ASimulation, RefusesWrongWindsAndChangesNothing) {
   schedule.regime.segments = {{0, 5, 10, 0, 0}};
   refused(schedule, "probabilit");
   schedule.regime.segments = {{0, 5, 10, 0, 1}, {0, 500, 10, 0, 1}};
-  refused(schedule, "segment 1");
+  refused(schedule, "segments.1: speed: = 500");
   schedule.regime.segments = {{0, 5, 10, 20, 1}};
   refused(schedule, "ramp");
   schedule.regime.segments = {{0, 5, 10, 0, 1}};

@@ -2,6 +2,7 @@
 
 #include "src/io/terrain_files.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -73,6 +74,14 @@ TEST_P(TerrainFiles, ComeBackWithinTheFormatsRounding) {
   other->step();
   other->apply(command::Reset{});
   EXPECT_EQ(other->simulation().state_hash(), start) << "a reset goes back to it";
+}
+
+TEST_P(TerrainFiles, OfAScenarioWhoseNameHasALineBreakHaveOneComment) {
+  auto s = session(world);
+  s->simulation().state().scenario.name = "dunes\nseed: 77";
+  save(*s, "a");
+  EXPECT_EQ(load_scenario(file_).seed, s->simulation().scenario().seed);
+  EXPECT_EQ(read_file(file_).find("\nseed: 77"), std::string::npos);
 }
 
 TEST_P(TerrainFiles, AreAScenarioThatRunsAsBefore) {
@@ -196,6 +205,39 @@ TEST_P(TerrainFiles, ThatAreBrokenAreRefusedAndTheSessionStays) {
   for (const std::string& raster : raster_paths(load_scenario(file_))) std::filesystem::remove(raster);
   EXPECT_THROW(s->apply(command::LoadScenario{file_, true, 0}), ConfigError);
   EXPECT_EQ(s->simulation().state_hash(), before);
+}
+
+const char* const garden =
+    "grid: {width: 30, height: 20}\n"
+    "terrain: [uniform: {layer: soil, value: 3}, uniform: {layer: sand, value: 0.2}]\n"
+    "vegetation: {enabled: true}\n"
+    "species: [{preset: bush, spawn: 200, moisture_lowest: 0, light_highest: 2}]\n";
+
+/// The layer vegetation follows from the plants, and a scenario that has plants may not paint it.
+TEST_P(TerrainFiles, WithLivePlantsLoadAndSayThatThePlantsAreNotSaved) {
+  auto s = session(garden);
+  for (int n = 0; n < 5; ++n) s->step();
+  ASSERT_GT(s->simulation().state().plants.count, 0);
+  save(*s, "a");
+  EXPECT_NE(read_file(file_).find("# Its plants are not saved"), std::string::npos);
+  auto other = session(world);
+  other->apply(command::LoadScenario{file_, false, 0});
+  EXPECT_EQ(other->simulation().state().plants.count, 0);
+  const std::vector<float> before = s->simulation().terrain().values(Layer::humus),
+                           after = other->simulation().terrain().values(Layer::humus);
+  ASSERT_GT(*std::max_element(before.begin(), before.end()), 0);
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(before[i], after[i], tolerance());
+  for (int n = 0; n < 5; ++n) other->step();
+  EXPECT_GT(other->simulation().state().plants.count, 0) << "others come up";
+}
+
+TEST_P(TerrainFiles, WithPaintedVegetationAreRefusedWherePlantsLive) {
+  auto s = session("grid: {width: 8, height: 9}\nterrain: [uniform: {layer: vegetation, value: 0.5}]\n");
+  save(*s, "a");
+  auto plants = session(garden);
+  const std::uint64_t before = plants->simulation().state_hash();
+  EXPECT_THROW(plants->apply(command::LoadScenario{file_, true, 0}), ConfigError);
+  EXPECT_EQ(plants->simulation().state_hash(), before);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, TerrainFiles, ::testing::Values("geotiff", "png16"),

@@ -154,7 +154,7 @@ constexpr auto parameter_table(const EditPlantsParameters*) {
       parameter("density", &P::density, 0, 1000, "1/m^2", "Plants that are put on a square metre."),
       parameter("size", &P::size, 1e-3, 1, "1",
                 "Their radius as a share of the widest that there is room for."),
-      parameter("seed", &P::seed, 0, 1.8e19, "1", "Of their places; added to the scenario's."));
+      parameter("seed", &P::seed, 0, highest_uint64, "1", "Of their places; added to the scenario's."));
 }
 static_assert(table_is_complete<EditPlantsParameters>());
 

@@ -71,8 +71,9 @@ WindRegime read_regime(const YAML::Node& node, const std::string& source) {
     throw ConfigError(source + ": from: must be two numbers");
   for (const YAML::Node& segment : required(node, "segments", source))
     r.segments.push_back(read_all<WindSegment>(segment, source));
-  if (r.regime != WindRegimeKind::constant && r.segments.empty())
-    throw ConfigError(source + ": segments: is empty (required: at least one segment)");
+  ValidationErrors errors(source);
+  check_wind_segments(r.regime, r.segments, "segments", errors);
+  errors.throw_if_any();
   return r;
 }
 
@@ -100,6 +101,24 @@ std::vector<command::Point> read_points(const YAML::Node& node, const std::strin
                         " is not a number");
   }
   return places;
+}
+
+/// Only what the operation uses: no other field has been checked.
+void emit_wind_edit(YAML::Emitter& out, const command::EditWind& edit) {
+  yaml::emit_parameters(out, edit);
+  if (edit.operation == WindEdit::remove)
+    out << YAML::Key << "id" << YAML::Value << edit.feature.id;
+  else if (edit.operation != WindEdit::clear)
+    yaml::emit_parameters(out, edit.feature);
+}
+
+command::EditWind read_wind_edit(const YAML::Node& node, const std::string& source) {
+  auto edit = read_all<command::EditWind>(node, source);
+  if (edit.operation == WindEdit::remove)
+    edit.feature.id = scalar<int>(node, "id", source);
+  else if (edit.operation != WindEdit::clear)
+    edit.feature = read_all<WindFeature>(node, source);
+  return edit;
 }
 
 /// A patch's values as base64 of 32-bit floats: every bit is kept.
@@ -150,8 +169,7 @@ void emit_command(YAML::Emitter& out, const Command& command) {
     emit_regime(out, schedule->regime);
   } else if (const auto* edit_wind = std::get_if<command::EditWind>(&command)) {
     name("edit_wind");
-    yaml::emit_parameters(out, *edit_wind);
-    yaml::emit_parameters(out, edit_wind->feature);
+    emit_wind_edit(out, *edit_wind);
   } else if (const auto* edit = std::get_if<command::EditTerrain>(&command)) {
     name("edit_terrain");
     emit_edit(out, *edit);
@@ -184,11 +202,7 @@ Command read_command(const YAML::Node& node, const std::string& source) {
   const auto name = scalar<std::string>(node, "command", source);
   if (name == "set_wind") return read_all<command::SetWind>(node, source);
   if (name == "set_wind_schedule") return command::SetWindSchedule{read_regime(node, source)};
-  if (name == "edit_wind") {
-    auto edit = read_all<command::EditWind>(node, source);
-    edit.feature = read_all<WindFeature>(node, source);
-    return edit;
-  }
+  if (name == "edit_wind") return read_wind_edit(node, source);
   if (name == "edit_terrain") return read_edit(node, source);
   if (name == "edit_plants")
     return command::EditPlants{read_all<command::EditPlantsParameters>(node, source),

@@ -6,8 +6,8 @@
 #include "kernels/plants/cover.hpp"
 #include "src/core/error.hpp"
 #include "src/scenario/live_parameters.hpp"
+#include "src/scenario/range_checks.hpp"
 #include "src/scenario/yaml_parameters.hpp"
-#include "src/simulation/commands/command_checks.hpp"
 #include "src/simulation/commands/plant_edit.hpp"
 #include "src/simulation/commands/terrain_edit.hpp"
 #include "src/simulation/pipeline/memory.hpp"
@@ -15,27 +15,13 @@
 
 namespace desert_sim {
 
-namespace {
-
-/// What heights are counted in cannot change any more: a sea above them could not be counted. One below them
-/// is no sea, whatever its level.
-void require_sea(const Scenario& s, const HeightScale& scale) {
-  const double highest = scale.datum + load_limit * scale.quantum();
-  if (s.water.sea == Sea::none || s.water.sea_level <= highest) return;
-  throw ConfigError("set_parameters: water.sea_level: = " + std::to_string(s.water.sea_level) +
-                    " m is above the highest elevation that this terrain can represent (allowed: at most " +
-                    std::to_string(highest) + " m)");
-}
-
-}  // namespace
-
 CommandResult Commands::apply(const command::SetParameters& command) {
   if (!(command.ramp >= 0 && command.ramp <= command.longest_ramp))
     throw ConfigError("set_parameters: ramp: = " + std::to_string(command.ramp) + " is not in [0, 1e+12] s");
   const Scenario present = state_.present_scenario(), wanted = with_live_settings(present, command.settings);
   // Also what comes at the end of a ramp is refused now, not in the middle of the run:
   require_reach(wanted);
-  require_sea(wanted, state_.terrain.scale());
+  require_sea(wanted, state_.terrain.scale(), "set_parameters");
   require_more_memory(state_, wanted);
   std::vector<std::string> settings = command.settings;
   const std::vector<Ramp> before = state_.ramps;
@@ -54,7 +40,7 @@ void Commands::set_parameters(const std::vector<std::string>& settings) {
   const Scenario before = state_.scenario, present = state_.present_scenario(),
                  changed = with_live_settings(present, settings);
   require_reach(changed);
-  require_sea(changed, state_.terrain.scale());
+  require_sea(changed, state_.terrain.scale(), "set_parameters");
   require_more_memory(state_, changed);
   state_.exec().synchronise();  // memory that steps in flight work with is given back
   state_.scenario = changed;
@@ -88,33 +74,25 @@ CommandResult Commands::apply(const command::SetWind& command) {
 
 CommandResult Commands::apply(const command::SetWindSchedule& command) {
   const WindRegime& r = command.regime;
+  check_ranges(static_cast<const WindRegimeParameters&>(r), "set_wind_schedule");
   ValidationErrors errors("set_wind_schedule");
   if (r.regime == WindRegimeKind::constant) errors.add("kind", "must be timeline or rose");
-  if (r.segments.empty()) errors.add("segments", "is empty (required: at least one segment)");
-  if (!(r.hold_time >= 1e-3f && r.hold_time <= 1e12f))
-    errors.add("hold_time", "= " + std::to_string(r.hold_time) + " is not in [0.001, 1e+12] s");
-  double probability = 0;
-  for (std::size_t n = 0; n < r.segments.size(); ++n) {
-    check_ranges(r.segments[n], "set_wind_schedule: segment " + std::to_string(n));
-    if (r.segments[n].ramp > r.segments[n].duration)
-      errors.add("segment " + std::to_string(n) + ": ramp", "is longer than the segment's duration");
-    probability += r.segments[n].probability;
-  }
-  if (r.regime == WindRegimeKind::rose && !(probability > 0))
-    errors.add("segments", "the probabilities must not all be 0");
+  check_wind_segments(r.regime, r.segments, "segments", errors);
   errors.throw_if_any();
+  for (std::size_t n = 0; n < r.segments.size(); ++n)
+    check_ranges(r.segments[n], "set_wind_schedule: segments." + std::to_string(n));
   state_.set_wind_regime(r);
   return {};
 }
 
-CommandResult Commands::apply(const command::EditWind& command) {
+namespace {
+
+/// The features as the command leaves them. Throws ConfigError if it is refused.
+std::vector<WindFeature> edited_features(const command::EditWind& command,
+                                         std::vector<WindFeature> features) {
+  check_ranges(command, "edit_wind");
+  if (command.operation == WindEdit::clear) return {};
   const int id = command.feature.id;
-  std::vector<WindFeature>& features = state_.scenario.wind_features;
-  if (command.operation == WindEdit::clear) {
-    features.clear();
-    pipeline_.adapt();
-    return {};
-  }
   if (id < 1) throw ConfigError("edit_wind: id: = " + std::to_string(id) + " must be 1 or more");
   const auto found =
       std::find_if(features.begin(), features.end(), [id](const WindFeature& f) { return f.id == id; });
@@ -135,7 +113,21 @@ CommandResult Commands::apply(const command::EditWind& command) {
                         " features already exist (allowed: at most " + std::to_string(max_wind_features) +
                         ")");
   }
-  pipeline_.adapt();
+  return features;
+}
+
+}  // namespace
+
+CommandResult Commands::apply(const command::EditWind& command) {
+  std::vector<WindFeature>& features = state_.scenario.wind_features;
+  std::vector<WindFeature> before = edited_features(command, features);
+  std::swap(before, features);
+  try {
+    pipeline_.adapt();  // features need memory
+  } catch (...) {
+    features = before;
+    throw;
+  }
   return {};
 }
 

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "src/core/quoted.hpp"
-#include "src/simulation/commands/command_checks.hpp"
+#include "src/scenario/range_checks.hpp"
 
 namespace desert_sim {
 

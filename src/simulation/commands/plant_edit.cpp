@@ -8,7 +8,7 @@
 #include "kernels/field/random.hpp"
 #include "kernels/plants/lookup.hpp"
 #include "src/core/quoted.hpp"
-#include "src/simulation/commands/command_checks.hpp"
+#include "src/scenario/range_checks.hpp"
 #include "src/simulation/commands/edit_checks.hpp"
 
 namespace desert_sim {

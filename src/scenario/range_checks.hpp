@@ -1,5 +1,6 @@
 #pragma once
-/// Checks that commands share: they come from services, whose fields can hold anything.
+/// Checks of parameters that were not read from YAML: of commands from services, whose fields can hold
+/// anything, and of values that were worked out.
 
 #include <sstream>
 #include <string>
@@ -22,7 +23,7 @@ void check_ranges(const P& parameters, const std::string& what) {
       const double number = static_cast<double>(value);
       if (!yaml::in_range<T>(number, row)) {
         std::ostringstream shown;
-        shown << "= " << number << " is not in " << yaml::allowed_range(row);
+        shown << "= " << number << " is not in " << yaml::allowed_range<T>(row);
         errors.add(row.name, shown.str());
       }
     }

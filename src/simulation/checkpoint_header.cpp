@@ -1,0 +1,243 @@
+#include "src/simulation/checkpoint_header.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/core/quoted.hpp"
+#include "src/scenario/yaml_parameters.hpp"
+#include "src/simulation/commands/command_yaml.hpp"
+
+namespace desert_sim {
+
+// ---- writing
+
+namespace {
+
+template <class T>
+void entry(YAML::Emitter& out, const char* key, const T& value) {
+  out << YAML::Key << key << YAML::Value << value;
+}
+
+void emit_ramps(YAML::Emitter& out, const std::vector<Ramp>& ramps) {
+  out << YAML::Key << "ramps" << YAML::Value << YAML::BeginSeq;
+  for (const Ramp& ramp : ramps) {
+    out << YAML::Flow << YAML::BeginMap;
+    yaml::emit_parameters(out, ramp);
+    out << YAML::EndMap;
+  }
+  out << YAML::EndSeq;
+}
+
+template <class Numbers>
+void emit_quanta(YAML::Emitter& out, const char* key, const Numbers& numbers) {
+  out << YAML::Key << key << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  for (long long quanta : numbers) out << quanta;
+  out << YAML::EndSeq;
+}
+
+}  // namespace
+
+CheckpointHeader header_of(const Simulation& simulation) {
+  const SimulationState& s = simulation.state();
+  CheckpointHeader header;
+  header.start = s.start;
+  header.scenario = s.scenario;
+  header.numbers = {s.steps,
+                    s.terrain.scale().datum,
+                    s.terrain.scale().exponent,
+                    s.wind_reference,
+                    s.bedrock_loose,
+                    s.soil_loose,
+                    simulation.pipeline().avalanche_iterations(),
+                    static_cast<std::uint64_t>(s.plants.count),
+                    s.next_timeline_entry};
+  header.ramps = s.ramps;
+  header.initial = s.initial;
+  header.ledger = s.read_ledger();
+  header.wind = s.wind_regime;
+  for (const LayerInfo& row : layer_table)
+    if (row.lifetime == Lifetime::persistent && s.terrain.has(row.layer)) header.layers.push_back(row.layer);
+  return header;
+}
+
+std::string header_text(const CheckpointHeader& header) {
+  YAML::Emitter out;
+  yaml::set_full_precision(out);
+  out << YAML::BeginMap;
+  entry(out, "name", header.scenario.name);
+  entry(out, "folder", header.scenario.folder);
+  entry(out, "projection", header.scenario.projection);
+  entry(out, "start", dump_scenario(header.start));
+  entry(out, "scenario", dump_scenario(header.scenario));
+  yaml::emit_parameters(out, header.numbers);
+  emit_ramps(out, header.ramps);
+  emit_quanta(out, "initial", header.initial);
+  emit_quanta(out, "ledger", header.ledger);
+  out << YAML::Key << "wind" << YAML::Value << YAML::BeginMap;
+  emit_regime(out, header.wind);
+  out << YAML::EndMap << YAML::Key << "layers" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  for (Layer layer : header.layers) out << info(layer).name;
+  out << YAML::EndSeq << YAML::EndMap;
+  return out.c_str();
+}
+
+// ---- reading
+
+namespace {
+
+std::string text_at(const YAML::Node& header, const char* key, const std::string& path) {
+  if (!header[key].IsScalar())
+    throw ConfigError(path + ": " + key + ": " + yaml::node_text(header[key]) + " is not text");
+  return header[key].Scalar();
+}
+
+/// A scenario whose grid is resolved, as that of a simulation is.
+Scenario read_scenario(const YAML::Node& header, const char* key, const std::string& path) {
+  const std::string source = path + ": " + key;
+  const YAML::Node root = YAML::Load(text_at(header, key, path));
+  Scenario scenario = parse_scenario(root, source, text_at(header, "folder", path));
+  scenario.name = text_at(header, "name", path);
+  scenario.projection = text_at(header, "projection", path);
+  const GridParameters& grid = scenario.grid;
+  if (grid.width < 1 || grid.height < 1 || !(grid.cell_size > 0))
+    throw ConfigError(source + ": grid: width, height and cell_size must be given");
+  return scenario;
+}
+
+/// A list of as many whole numbers as `numbers` has, none further from 0 than `limit`.
+template <class Numbers>
+void read_quanta(const YAML::Node& header, const char* key, long long limit, ValidationErrors& errors,
+                 Numbers& numbers) {
+  const YAML::Node list = header[key];
+  if (!list.IsSequence() || list.size() != numbers.size())
+    return errors.add(key, "must be a list of " + std::to_string(numbers.size()) + " whole numbers");
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    const std::string item = std::string(key) + "." + std::to_string(n);
+    long long value = 0;
+    if (!list[n].IsScalar() || !YAML::convert<long long>::decode(list[n], value))
+      errors.add(item, "= " + yaml::node_text(list[n]) + " is not a whole number");
+    else if (value < -limit || value > limit)
+      errors.add(item, "= " + std::to_string(value) + " is not in [" + std::to_string(-limit) + ", " +
+                           std::to_string(limit) + "] quanta");
+    else
+      numbers[n] = value;
+  }
+}
+
+void read_ramps(const YAML::Node& list, ValidationErrors& errors, CheckpointHeader& header) {
+  if (!list.IsSequence()) return errors.add("ramps", yaml::node_text(list) + " is not a list");
+  const double time = static_cast<double>(header.numbers.steps) * header.scenario.run.time_step;
+  for (std::size_t n = 0; n < list.size(); ++n) {
+    const std::string key = "ramps." + std::to_string(n);
+    Ramp ramp;
+    yaml::read_section(list[n], key, errors, ramp);
+    check_ramp(header.scenario, ramp, time, key, errors);
+    header.ramps.push_back(ramp);
+  }
+}
+
+WindRegime read_wind(const CheckpointHeader& header, const YAML::Node& node, const std::string& path) {
+  const WindRegime wind = read_regime(node, path + ": wind");
+  ValidationErrors errors(path + ": wind");
+  const double time = static_cast<double>(header.numbers.steps) * header.scenario.run.time_step;
+  if (!(wind.start_time >= 0 && wind.start_time <= time))
+    errors.add("start_time",
+               "= " + std::to_string(wind.start_time) + " is not in [0, " + std::to_string(time) + "] s");
+  constexpr float fastest = 101;  // a speed of 100 m/s, with what rounding may add
+  for (const float v : {wind.initial_wind.x, wind.initial_wind.y})
+    if (!(std::abs(v) <= fastest))
+      errors.add("from", "= " + std::to_string(v) + " is not in [-101, 101] m/s");
+  errors.throw_if_any();
+  return wind;
+}
+
+/// Layers that a simulation of the scenario has from its start.
+std::vector<Layer> needed_layers(const Scenario& scenario) {
+  std::vector<Layer> needed{Layer::bedrock, Layer::sand, Layer::airborne_sand};
+  for (const Process& process : process_table().processes)
+    if (process.active(scenario))
+      for (Layer layer : process.writes)
+        if (info(layer).lifetime == Lifetime::persistent) needed.push_back(layer);
+  return needed;
+}
+
+void read_layers(const YAML::Node& list, ValidationErrors& errors, CheckpointHeader& header) {
+  if (!list.IsSequence()) return errors.add("layers", yaml::node_text(list) + " is not a list");
+  std::size_t next = 0;  // layers follow each other as in the table
+  for (std::size_t n = 0; n < list.size(); ++n) {
+    const std::string name = list[n].IsScalar() ? list[n].Scalar() : yaml::node_text(list[n]);
+    const auto row = std::find_if(layer_table.begin(), layer_table.end(),
+                                  [&](const LayerInfo& layer) { return name == layer.name; });
+    const std::string key = "layers." + std::to_string(n);
+    if (row == layer_table.end() || row->lifetime != Lifetime::persistent)
+      return errors.add(key, quoted(name) + " is not a layer that checkpoints hold");
+    const auto place = static_cast<std::size_t>(row - layer_table.begin());
+    if (place < next) return errors.add(key, quoted(name) + " is given twice, or not in the order of layers");
+    next = place + 1;
+    header.layers.push_back(row->layer);
+  }
+  for (Layer layer : needed_layers(header.scenario))
+    if (std::count(header.layers.begin(), header.layers.end(), layer) == 0)
+      errors.add("layers", std::string(info(layer).name) + " is missing, which this scenario needs");
+}
+
+/// What no single number tells.
+void check_together(const CheckpointHeader& header, ValidationErrors& errors) {
+  const GridParameters &now = header.scenario.grid, &start = header.start.grid;
+  if (now.width != start.width || now.height != start.height || now.cell_size != start.cell_size ||
+      now.boundary != start.boundary)
+    errors.add("start", "its grid is not that of scenario");
+  if (header.numbers.next_timeline_entry > header.scenario.timeline.size())
+    errors.add("next_timeline_entry", "= " + std::to_string(header.numbers.next_timeline_entry) +
+                                          " is not in [0, " +
+                                          std::to_string(header.scenario.timeline.size()) + "]");
+  const VegetationParameters& vegetation = header.scenario.vegetation;
+  const auto room = static_cast<std::uint64_t>(!vegetation.enabled ? 0
+                                               : vegetation.max_plants > 0
+                                                   ? vegetation.max_plants
+                                                   : static_cast<long long>(now.width) * now.height);
+  if (header.numbers.plants > room)
+    errors.add("plants",
+               "= " + std::to_string(header.numbers.plants) + " is not in [0, " + std::to_string(room) + "]");
+}
+
+CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
+  ValidationErrors errors(path);
+  CheckpointHeader header;
+  std::set<std::string> known{"name",  "folder",  "projection", "start", "scenario",
+                              "ramps", "initial", "ledger",     "wind",  "layers"};
+  yaml::read_parameters(node, "", errors, header.numbers, known);
+  yaml::reject_unknown_keys(node, "", known, errors);
+  if (node.IsMap())
+    for (const std::string& key : known)
+      if (!node[key]) errors.add(key, "is missing");
+  errors.throw_if_any();
+  header.start = read_scenario(node, "start", path);
+  header.scenario = read_scenario(node, "scenario", path);
+  check_together(header, errors);
+  read_ramps(node["ramps"], errors, header);
+  // No sum of all that is booked overflows.
+  read_quanta(node, "initial", 1LL << 61, errors, header.initial);
+  header.ledger.resize(material_count * 2);
+  read_quanta(node, "ledger", 1LL << 60, errors, header.ledger);
+  read_layers(node["layers"], errors, header);
+  errors.throw_if_any();
+  header.wind = read_wind(header, node["wind"], path);
+  require_reach(header.scenario);
+  if (header.scenario.has_water()) require_sea(header.scenario, header.scale(), path + ": scenario");
+  return header;
+}
+
+}  // namespace
+
+CheckpointHeader read_header(const std::string& text, const std::string& path) {
+  try {
+    return read_header(YAML::Load(text), path);
+  } catch (const YAML::Exception& e) {
+    throw ConfigError(path + ": its header cannot be read: " + e.msg);
+  }
+}
+
+}  // namespace desert_sim

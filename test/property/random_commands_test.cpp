@@ -1,0 +1,75 @@
+// Random commands of every kind: whatever is accepted can be saved, loaded, saved again and replayed.
+// DESERT_FUZZ_ROUNDS says how many sessions.
+
+#include "support/random_commands.hpp"
+
+#include "src/simulation/checkpoint.hpp"
+#include "src/simulation/session.hpp"
+#include "support/fuzz_rounds.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+const char* const desert =
+    "grid: {width: 16, height: 12}\n"
+    "terrain: [noise: {layer: bedrock, low: 0, high: 2, scale: 6}, noise: {layer: sand, low: 0, high: 2}]\n"
+    "wind: {features: [{x: 5, y: 5, radius: 3, id: 3}]}\n";
+const char* const oasis =
+    "grid: {width: 14, height: 11, boundary: open}\n"
+    "terrain: [uniform: {layer: soil, value: 2}, noise: {layer: sand, low: 0, high: 1},\n"
+    "          uniform: {layer: moisture, value: 0.1}]\n"
+    "rain: {rate: 1.0e-5}\n"
+    "vegetation: {enabled: true}\n"
+    "species: [{preset: bush, spawn: 100, moisture_lowest: 0, light_highest: 2}, {preset: tree}]\n";
+
+TEST(RandomCommands, ThatAreAcceptedCanBeSavedLoadedAndReplayed) {
+  const test::TemporaryFolder folder;
+  const std::vector<std::string> scenarios{folder.write("desert.yaml", desert),
+                                           folder.write("oasis.yaml", oasis)};
+  int accepted = 0, refused = 0;
+  const int rounds = test::fuzz_rounds(60);
+  for (int round = 0; round < rounds; ++round) {
+    SCOPED_TRACE("round " + std::to_string(round));
+    test::RandomCommands random(static_cast<unsigned>(round));
+    const Scenario scenario = test::scenario_of(round % 2 ? desert : oasis);
+    std::vector<std::string> checkpoints;
+    std::uint64_t hash = 0;
+    {
+      Session live(scenario, no_raster_loader, "cpu", 1, folder.path("journal"));
+      for (int n = 0; n < 12; ++n) {
+        try {
+          live.apply(random.next(live.simulation(), checkpoints, scenarios));
+          ++accepted;
+        } catch (const ConfigError&) {
+          ++refused;
+        }
+        const std::string path = folder.path(std::to_string(n) + ".ck");
+        live.save_checkpoint(path);
+        std::unique_ptr<Simulation> loaded;
+        ASSERT_NO_THROW(loaded = load_checkpoint(path, live.simulation().exec()));
+        ASSERT_EQ(loaded->state_hash(), live.simulation().state_hash());
+        ASSERT_TRUE(checkpoint_bytes(*loaded) == test::file_bytes(path));
+        checkpoints.push_back(path);
+        if (random.one_in(3)) live.step();
+      }
+      hash = live.simulation().state_hash();
+    }
+    const Journal journal = read_journal(folder.path("journal"));
+    Session replay(scenario, no_raster_loader, "cpu", 1);
+    std::size_t next = 0;
+    for (std::uint64_t tick = 0;; ++tick) {
+      for (; next < journal.entries.size() && journal.entries[next].tick == tick; ++next)
+        ASSERT_NO_THROW(replay.apply(journal.entries[next].command));
+      if (tick == journal.ticks) break;
+      replay.step();
+    }
+    ASSERT_EQ(replay.simulation().state_hash(), hash);
+  }
+  EXPECT_GT(accepted, 3 * rounds);
+  EXPECT_GT(refused, rounds);
+}
+
+}  // namespace
+}  // namespace desert_sim
