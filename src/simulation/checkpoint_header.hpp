@@ -23,7 +23,7 @@ struct CheckpointNumbers {
 constexpr auto parameter_table(const CheckpointNumbers*) {
   using P = CheckpointNumbers;
   return std::make_tuple(
-      parameter("steps", &P::steps, 0, static_cast<double>(max_steps), "1", "Steps done."),
+      parameter("steps", &P::steps, 0, static_cast<double>(max_simulation_steps), "1", "Steps done."),
       parameter("datum", &P::datum, -any_height, 2 * any_height, "m", "Datum of the elevations."),
       parameter("exponent", &P::exponent, HeightScale::finest, HeightScale::coarsest, "1",
                 "Of 2, which gives the quantum in metres."),

@@ -113,8 +113,9 @@ Simulation::Simulation(const Scenario& scenario, Terrain terrain, const ProcessT
       views_(state_, pipeline_) {}
 
 void Simulation::step() {
-  if (steps() >= max_steps)
-    throw StateError(std::to_string(max_steps) + " steps are done, which is as far as the clock counts");
+  if (steps() >= max_simulation_steps)
+    throw StateError(std::to_string(max_simulation_steps) +
+                     " steps are done, which is as far as the clock counts");
   commands_.apply_timeline();
   pipeline_.step();
 }

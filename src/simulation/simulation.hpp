@@ -26,7 +26,7 @@ void require_reach(const Scenario& scenario);
 void require_sea(const Scenario& scenario, const HeightScale& scale, const std::string& what);
 
 /// Most steps of a simulation: a double counts so far, which the simulated time is a multiple of.
-constexpr std::uint64_t max_steps = 1ULL << 53;
+constexpr std::uint64_t max_simulation_steps = 1ULL << 53;
 
 class Simulation {
  public:
@@ -36,7 +36,7 @@ class Simulation {
   /// A terrain without material, for a checkpoint to fill.
   Simulation(const Scenario& scenario, Terrain terrain, const ProcessTable& table = process_table());
 
-  /// One step of `run.time_step` seconds. Throws StateError after max_steps.
+  /// One step of `run.time_step` seconds. Throws StateError after max_simulation_steps.
   void step();
   /// Applies a command between steps; throws ConfigError and changes nothing if it is refused. Reset and
   /// LoadCheckpoint are the Session's business.

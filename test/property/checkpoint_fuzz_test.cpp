@@ -156,7 +156,7 @@ TEST(CheckpointFuzz, MutatedCheckpointsAreRefusedOrRunAndAreSavedAgain) {
     try {
       test::run(*loaded, 2);
     } catch (const StateError& e) {
-      if (loaded->steps() < max_steps) FAIL() << e.what();
+      if (loaded->steps() < max_simulation_steps) FAIL() << e.what();
     }
     test::expect_sound(*loaded, "two steps later");
     ASSERT_FALSE(HasFailure());
