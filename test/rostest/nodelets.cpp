@@ -3,10 +3,7 @@
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SimulationStatus.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
-#include <fcntl.h>
 #include <nodelet/loader.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -14,6 +11,7 @@
 #include <new>
 
 #include "rostest/service_tests.hpp"
+#include "support/full_disk.hpp"
 #include "support/temporary_folder.hpp"
 
 // ---- who allocates large memory, in this process ----------------------------------------------------------
@@ -176,12 +174,8 @@ TEST_F(Nodelets, RefusedInputIsNoEndOfTheManager) {
 
 TEST_F(Nodelets, AFailureStopsItAloneAndIsTold) {
   const desert_sim::test::TemporaryFolder folder;
-  const std::string pipe = folder.path("journal");
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
-  ASSERT_GE(reader, 0);
   XmlRpc::XmlRpcValue with_journal;
-  with_journal["journal"] = pipe;
+  with_journal["journal"] = folder.path("journal");
   ASSERT_TRUE(load(with_journal));
   EXPECT_TRUE(call<SetWind>("set_wind").success);
   std::string diagnosed;
@@ -193,8 +187,10 @@ TEST_F(Nodelets, AFailureStopsItAloneAndIsTold) {
           if (status.level == diagnostic_msgs::DiagnosticStatus::ERROR)
             diagnosed = status.name + " " + status.message;
       }));
-  close(reader);  // from here on, the journal cannot be written
-  EXPECT_FALSE(call<SetWind>("set_wind").success);
+  {
+    const desert_sim::test::FullDisk disk(1);
+    EXPECT_FALSE(call<SetWind>("set_wind").success);
+  }
   Listener<SimulationStatus> late("status");
   EXPECT_EQ(late.last().state, "error");
   EXPECT_NE(late.last().message.find("the journal cannot be written"), std::string::npos)
