@@ -103,6 +103,7 @@ class GdalRasterFile final : public RasterFile {
     check_raster_shape(path, dataset_->GetRasterXSize(), dataset_->GetRasterYSize(),
                        dataset_->GetRasterCount(), options.band);
     band_ = dataset_->GetRasterBand(options.band);
+    is_text_ = dataset_->GetDriver() && std::string(dataset_->GetDriver()->GetDescription()) == "AAIGrid";
     if (GDALDataTypeIsComplex(band_->GetRasterDataType()))
       throw_raster_error(path,
                          concatenate("band ", options.band, " has complex numbers (",
@@ -159,12 +160,25 @@ class GdalRasterFile final : public RasterFile {
 
   void read_row(int row, int x, int width, double* raw, unsigned char* valid) override {
     const int line = south_up_ ? row : header_.height - 1 - row;
+    if (is_text_) pass_lines_before(line);
     CPLErr status = band_->RasterIO(GF_Read, x, line, width, 1, raw, width, 1, GDT_Float64, 0, 0, nullptr);
     if (status == CE_None && mask_)
       status = mask_->RasterIO(GF_Read, x, line, width, 1, valid, width, 1, GDT_Byte, 0, 0, nullptr);
     if (status != CE_None || messages_.failed())
       throw_raster_error(
           path(), concatenate("cannot be read at line ", line + 1, " of ", header_.height, ": ", reason()));
+  }
+
+  /// Reads the lines of a text before `line` in turn. GDAL itself calls itself for each of them, and again for each
+  /// that is broken, which takes for ever.
+  void pass_lines_before(int line) {
+    double ignored = 0;
+    for (; lines_passed_ < line; ++lines_passed_)
+      if (band_->RasterIO(GF_Read, 0, lines_passed_, 1, 1, &ignored, 1, 1, GDT_Float64, 0, 0, nullptr) !=
+              CE_None ||
+          messages_.failed())
+        throw_raster_error(path(), concatenate("cannot be read at line ", lines_passed_ + 1, " of ",
+                                               header_.height, ": ", reason()));
   }
 
   /// What GDAL says, with the raster's path for its name in GDAL's file system.
@@ -187,6 +201,8 @@ class GdalRasterFile final : public RasterFile {
   GDALDatasetUniquePtr dataset_;
   GDALRasterBand *band_ = nullptr, *mask_ = nullptr;
   bool south_up_ = false;
+  bool is_text_ = false;  ///< ESRI ASCII, whose lines can only be found one after the other
+  int lines_passed_ = 0;
 };
 
 void check_values(const std::string& path, const Raster& raster, const RasterWindow& window) {

@@ -142,6 +142,11 @@ TEST_P(JournalOf, WithABrokenLineNamesTheLine) {
   }
 }
 
+TEST_P(JournalOf, WithAPatchThatIsNotAsciiIsRefused) {
+  EXPECT_THROW(read_journal(DESERT_SOURCE_DIR "/test/fuzz/corpus/journal/patch_that_is_not_ascii"),
+               ConfigError);
+}
+
 TEST_P(JournalOf, KeepsTheCheckpointsThatItLoads) {
   const std::string first = folder_.path("first.ck"), second = folder_.path("second.ck");
   std::uint64_t hash = 0;

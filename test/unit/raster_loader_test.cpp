@@ -185,5 +185,12 @@ TEST_F(Dem, DegreesAreRefusedWithTheCommandThatProjects) {
               {("'" + path("my dem'\\''s.tif") + "'").c_str()});
 }
 
+// GDAL alone reads the lines before a broken one again and again.
+TEST_F(Dem, ATextWithBrokenLinesIsRefusedSoon) {
+  const std::string message =
+      load_refusal(request(DESERT_SOURCE_DIR "/test/fuzz/corpus/raster/text_with_broken_lines", 9, 7, 2));
+  EXPECT_NE(message.find("cannot be read at line"), std::string::npos) << message;
+}
+
 }  // namespace
 }  // namespace desert_sim

@@ -1,5 +1,6 @@
 /// The processes of sand: saltation with abrasion, angles of repose, reptation, avalanches.
 #include <optional>
+#include <string>
 
 #include "kernels/avalanching/avalanching.hpp"
 #include "kernels/avalanching/soil_and_bedrock.hpp"
@@ -220,9 +221,8 @@ FusedProcesses fused_wind_shadow_and_saltation() {
   f.second = "saltation";
   f.applies = [](const SimulationState& state) {
     constexpr int max_cells = 1 << 19;
-    const bool rows =
-        with_backend(state.exec(), [](auto& e) { return vectorises_rows<std::decay_t<decltype(e)>>; });
-    return !rows && state.terrain.grid().cells() <= max_cells && !state.scenario.wind_shadow.curved &&
+    const bool on_gpu = std::string(state.exec().backend()) == "cuda";  // nor where memory is only planned
+    return on_gpu && state.terrain.grid().cells() <= max_cells && !state.scenario.wind_shadow.curved &&
            !state.scenario.echo_dunes.enabled;
   };
   f.step = [](StepContext& c, ProcessWorkspace* shadow, ProcessWorkspace*) {
