@@ -169,8 +169,8 @@ class GdalRasterFile final : public RasterFile {
           path(), concatenate("cannot be read at line ", line + 1, " of ", header_.height, ": ", reason()));
   }
 
-  /// Reads the lines of a text before `line` in turn. GDAL itself calls itself for each of them, and again for each
-  /// that is broken, which takes for ever.
+  /// Reads the lines of a text before `line` in turn. GDAL itself calls itself for each of them, and again
+  /// for each that is broken, which takes for ever.
   void pass_lines_before(int line) {
     double ignored = 0;
     for (; lines_passed_ < line; ++lines_passed_)

@@ -49,8 +49,12 @@ void stretch_to_grid(Raster& r, const RasterRequest& q) {
 /// Gives cells whose centre lies outside the source raster the value of the nearest cell inside it.
 void extrapolate_edges(Raster& r, const Raster& source) {
   const auto reached = [](double origin, double cell, double from, double to, int n, int& first, int& last) {
-    first = std::clamp(static_cast<int>(std::ceil((from - origin) / cell - 0.5 + 1e-6)), 0, n - 1);
-    last = std::clamp(static_cast<int>(std::floor((to - origin) / cell - 0.5 - 1e-6)), first, n - 1);
+    const auto clamped = [n](double column,
+                             int lowest) {  // before it is cut to an int, which may be too small
+      return static_cast<int>(std::clamp<double>(column, lowest, n - 1));
+    };
+    first = clamped(std::ceil((from - origin) / cell - 0.5 + 1e-6), 0);
+    last = clamped(std::floor((to - origin) / cell - 0.5 - 1e-6), first);
   };
   int x0, x1, y0, y1;
   reached(r.origin_x, r.cell_size, source.origin_x, source.origin_x + source.width * source.cell_size,

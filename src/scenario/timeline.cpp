@@ -34,6 +34,7 @@ double read_time(const YAML::Node& node, const std::string& key, ValidationError
 TimelineEntry read_entry(const YAML::Node& node, const std::string& key, ValidationErrors& errors) {
   TimelineEntry entry;
   yaml::reject_unknown_keys(node, key + ".", {"time", "ramp", "set"}, errors);
+  if (node.IsNull()) errors.add(key, "nothing is given where keys and values are expected");
   if (!node.IsMap()) return entry;
   if (!node["time"]) errors.add(key + ".time", "is missing");
   entry.time = read_time(node["time"], key + ".time", errors);

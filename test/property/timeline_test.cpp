@@ -88,6 +88,7 @@ TEST(TimelineFaults, AreAllNamed) {
            {"5", "run.timeline: 5 is given where a list is expected"},
            {"[{ramp: 3, set: {rain.rate: 0}}]", "run.timeline.0.time: is missing"},
            {"[{time: -1, set: {rain.rate: 0}}]", "run.timeline.0.time: -1 is not a time"},
+           {"[~]", "run.timeline.0: nothing is given where keys and values are expected"},
            {"[{time: 1}]", "run.timeline.0.set: must name parameters"},
            {"[{time: 1, set: {rain.rate: 0}, at: 5}]", "run.timeline.0.at: unknown key"},
            {"[{time: 5, set: {rain.rate: 0}}, {time: 4, set: {rain.rate: 0}}]",
