@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "src/core/error.hpp"
+#include "src/core/input_file.hpp"
 #include "src/core/quoted.hpp"
 
 namespace desert_sim {
@@ -48,10 +49,6 @@ fs::path checked_path(const std::string& name) {
     throw_error("lies " + std::to_string(folders) + " folders deep, at most " + std::to_string(most_folders) +
                 " are allowed");
   return path;
-}
-
-bool is_below(const fs::path& folder, const fs::path& path) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
 /// `path` with its links followed. Throws if that is not below `root`. The last part of the path need not

@@ -27,10 +27,6 @@ constexpr int reading = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
       (error == ENOENT ? "no such file exists" : std::string("cannot be opened: ") + std::strerror(error)));
 }
 
-bool is_below(const fs::path& folder, const fs::path& path) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
-}
-
 /// Opens a file below `folder`, whose own path is trusted.
 int open_below(const std::string& folder, const std::string& path) {
   std::error_code error;
@@ -58,6 +54,10 @@ int open_below(const std::string& folder, const std::string& path) {
 }
 
 }  // namespace
+
+bool is_below(const fs::path& folder, const fs::path& path) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
 
 InputFile::InputFile(const std::string& path, const std::string& folder)
     : path_(path), file_(folder.empty() ? open(path.c_str(), reading) : open_below(folder, path)) {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -15,12 +14,14 @@
 #include "src/core/error.hpp"
 #include "src/core/temporary_file.hpp"
 #include "support/full_disk.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace desert_sim {
 namespace {
 
 namespace fs = std::filesystem;
+using test::refusal;
 
 class Files : public ::testing::Test {
  protected:
@@ -31,15 +32,6 @@ class Files : public ::testing::Test {
     for (const auto& entry : fs::directory_iterator(path("."))) names.push_back(entry.path().filename());
     std::sort(names.begin(), names.end());
     return names;
-  }
-  static std::string refusal(const std::function<void()>& action) {
-    try {
-      action();
-    } catch (const ConfigError& e) {
-      return e.what();
-    }
-    ADD_FAILURE() << "was not refused";
-    return "";
   }
 
   const test::TemporaryFolder folder_;

@@ -15,23 +15,14 @@
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/scenario/scenario.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace desert_sim {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class Action>
-std::string refusal(const Action& action) {
-  try {
-    action();
-  } catch (const ConfigError& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "was not refused";
-  return "";
-}
+using test::refusal;
 
 void expect_says(const std::string& message, const std::string& part) {
   EXPECT_NE(message.find(part), std::string::npos) << part << " in: " << message;

@@ -21,7 +21,7 @@ constexpr unsigned shutdown_time = 5;  // [s]
 
 void give_up(int) {
   constexpr char text[] = "desert_sim_node: a step took longer than the shutdown may, and was given up.\n";
-  if (write(STDERR_FILENO, text, sizeof text - 1) < 0) _exit(exit_given_up);
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
   _exit(exit_given_up);
 }
 
