@@ -41,14 +41,18 @@ DESERT_HD float random_unit(std::uint64_t seed, Purpose purpose, std::uint32_t a
   return static_cast<float>(random_words(seed, purpose, a, b, c).word[0] >> 8) * (1.0f / 16777216.0f);
 }
 
+/// The lattice point below a coordinate; far out, the outermost one that an integer can count.
+DESERT_HD int lattice_floor(float coordinate) {
+  return static_cast<int>(fminf(fmaxf(floorf(coordinate), -2147483648.0f), 2147483520.0f));
+}
+
 /// Smooth value noise in [−1, 1]: random values on the integer lattice, interpolated with continuous second
 /// derivatives. With `period_x` or `period_y` > 0 it repeats after so many lattice cells.
 DESERT_HD float value_noise(std::uint64_t seed, Purpose purpose, float x, float y, float z, int period_x = 0,
                             int period_y = 0) {
-  const int x0 = static_cast<int>(floorf(x)), y0 = static_cast<int>(floorf(y)),
-            z0 = static_cast<int>(floorf(z));
+  const int x0 = lattice_floor(x), y0 = lattice_floor(y), z0 = lattice_floor(z);
   const auto fade = [](float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); };
-  const float fx = fade(x - x0), fy = fade(y - y0), fz = fade(z - z0);
+  const float fx = fade(x - floorf(x)), fy = fade(y - floorf(y)), fz = fade(z - floorf(z));
   const auto cycled = [](int i, int period) { return period > 0 ? ((i % period) + period) % period : i; };
   float sum = 0.0f;
   for (int n = 0; n < 8; ++n) {

@@ -1,11 +1,11 @@
 #include "src/core/data_folder.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 
-#include "src/core/error.hpp"
-#include "src/core/input_file.hpp"
+#include "src/core/folder.hpp"
 #include "src/core/quoted.hpp"
 
 namespace desert_sim {
@@ -51,15 +51,10 @@ fs::path checked_path(const std::string& name) {
   return path;
 }
 
-/// `path` with its links followed. Throws if that is not below `root`. The last part of the path need not
-/// exist, unless it is a link.
-fs::path resolve_links(const fs::path& root, const fs::path& path, const std::string& name) {
-  const fs::path real = fs::is_symlink(fs::symlink_status(path))
-                            ? fs::canonical(path)
-                            : fs::canonical(path.parent_path()) / path.filename();
-  if (!is_below(root, real))
+/// `path` is `root / name` with its links followed.
+void require_below(const fs::path& root, const fs::path& path, const std::string& name) {
+  if (!is_below(root, path))
     throw ConfigError(quoted(name) + ": a symbolic link points outside the folder " + root.string());
-  return real;
 }
 
 }  // namespace
@@ -70,7 +65,8 @@ std::string DataFolder::for_reading(const std::string& name) const {
   const fs::path relative = checked_path(name);
   try {
     const fs::path root = fs::canonical(path_);
-    const fs::path file = resolve_links(root, root / relative, name);
+    const fs::path file = fs::weakly_canonical(root / relative);
+    require_below(root, file, name);
     if (!fs::exists(file)) throw ConfigError(quoted(name) + ": no such file exists in " + root.string());
     if (!fs::is_regular_file(file)) throw ConfigError(quoted(name) + ": is not a file");
     return file.string();
@@ -80,23 +76,47 @@ std::string DataFolder::for_reading(const std::string& name) const {
   }
 }
 
-std::string DataFolder::for_writing(const std::string& name) const {
+WritableFile DataFolder::for_writing(const std::string& name) const {
   const fs::path relative = checked_path(name);
   try {
     fs::create_directories(path_);
-    fs::path folder = fs::canonical(path_);
-    const fs::path root = folder;
-    for (const fs::path& part : relative.parent_path()) {
-      folder = resolve_links(root, folder / part, name);
-      fs::create_directory(folder);
-    }
-    const fs::path file = resolve_links(root, folder / relative.filename(), name);
+    const fs::path root = fs::canonical(path_);
+    const fs::path file = fs::weakly_canonical(root / relative);
+    require_below(root, file, name);
+    if (fs::is_symlink(file))  // all others have been followed
+      throw ConfigError(quoted(name) + ": is a symbolic link that leads nowhere");
+    const fs::path folder = file.parent_path();
+    auto opened = std::make_shared<const Descriptor>(
+        open_folder_below(root, folder.lexically_relative(root), MissingFolders::create));
+    if (opened->number() < 0)
+      throw fs::filesystem_error("", folder, std::error_code(errno, std::generic_category()));
     if (fs::exists(file) && !fs::is_regular_file(file)) throw ConfigError(quoted(name) + ": is not a file");
-    return file.string();
+    return {file.string(), std::move(opened)};
   } catch (const fs::filesystem_error& e) {
     throw ConfigError(quoted(name) + ": the file system reports \"" + e.code().message() + "\" (in " + path_ +
                       ")");
   }
+}
+
+// ---- WritableFile.
+
+WritableFile::WritableFile(std::string path, std::shared_ptr<const Descriptor> folder)
+    : path_(std::move(path)), folder_(std::move(folder)) {}
+
+/// Opening this link of the kernel opens the folder itself, whatever has got its name in the meantime.
+std::string WritableFile::folder_link() const {
+  return "/proc/self/fd/" + std::to_string(folder_->number());
+}
+
+std::string WritableFile::path_through_folder() const {
+  return folder_link() + path_.substr(path_.rfind('/'));
+}
+
+std::string WritableFile::with_known_path(std::string message) const {
+  const std::string link = folder_link(), known = path_.substr(0, path_.rfind('/'));
+  for (std::size_t at = message.find(link); at != std::string::npos; at = message.find(link, at + known.size()))
+    message.replace(at, link.size(), known);
+  return message;
 }
 
 }  // namespace desert_sim

@@ -4,12 +4,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 
 #include "src/core/error.hpp"
+#include "src/core/folder.hpp"
 #include "src/core/quoted.hpp"
 
 namespace desert_sim {
@@ -45,19 +45,12 @@ int open_below(const std::string& folder, const std::string& path) {
     if (opened < 0) throw_error(path, errno);
     return opened;
   };
-  Descriptor at(open(root.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
-  if (at.number() < 0) throw_error(folder, errno);
   const fs::path relative = file.lexically_relative(root);
-  for (const fs::path& part : relative.parent_path())
-    at.reset(check_opened(openat(at.number(), part.c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)));
-  return check_opened(openat(at.number(), relative.filename().c_str(), reading | O_NOFOLLOW));
+  const Descriptor parent(check_opened(open_folder_below(root, relative.parent_path())));
+  return check_opened(openat(parent.number(), relative.filename().c_str(), reading | O_NOFOLLOW));
 }
 
 }  // namespace
-
-bool is_below(const fs::path& folder, const fs::path& path) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
-}
 
 InputFile::InputFile(const std::string& path, const std::string& folder)
     : path_(path), file_(folder.empty() ? open(path.c_str(), reading) : open_below(folder, path)) {

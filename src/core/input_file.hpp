@@ -2,15 +2,11 @@
 /// Files that are open for reading.
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 #include "src/core/descriptor.hpp"
 
 namespace desert_sim {
-
-/// Whether `path` is `folder` or lies below it, by their names alone: links are not followed.
-bool is_below(const std::filesystem::path& folder, const std::filesystem::path& path);
 
 /// A regular file that is open for reading. What is read comes from the file that was opened, whatever
 /// becomes of its name.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "src/core/error.hpp"
+#include "src/core/files.hpp"
 
 namespace desert_sim {
 
@@ -77,12 +78,14 @@ std::string NumberedFiles::next_name() const {
   return prefix_ + successor(all.empty() ? std::string(min_digits, '0') : all.front()) + suffix_;
 }
 
-void NumberedFiles::keep_newest(std::size_t count) const {
+void NumberedFiles::keep_newest(std::size_t count, const std::vector<std::string>& needed) const {
   std::vector<std::string> old = paths();
   old.erase(old.begin(), old.begin() + static_cast<std::ptrdiff_t>(std::min(count, old.size())));
   for (const std::string& name : names())
     if (has_ends(name, "." + prefix_, ".part")) old.push_back(folder_ + "/" + name);
   for (const std::string& path : old) {
+    const auto is_path = [&path](const std::string& other) { return same_file(path, other); };
+    if (std::any_of(needed.begin(), needed.end(), is_path)) continue;
     std::error_code error;
     fs::remove(path, error);
     if (error) throw ConfigError(path + ": cannot be removed: " + error.message());

@@ -17,8 +17,9 @@ class NumberedFiles {
   std::vector<std::string> paths() const;
   /// The name for a file that is newer than all.
   std::string next_name() const;
-  /// Removes all files but the newest `count`, and what writers that were killed have left.
-  void keep_newest(std::size_t count) const;
+  /// Removes all files but the newest `count` and those in `needed` (paths), and what writers that were
+  /// killed have left.
+  void keep_newest(std::size_t count, const std::vector<std::string>& needed = {}) const;
 
  private:
   std::vector<std::string> names() const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 
 #include "src/io/gdal_messages.hpp"
 #include "src/io/raster_geometry.hpp"
@@ -33,14 +34,20 @@ std::string shell_word(const std::string& text) {
   return word + "'";
 }
 
-}  // namespace
-
-bool is_geographic(const std::string& wkt) {
-  if (wkt.empty()) return false;
-  GdalMessages quiet;
-  OGRSpatialReference crs;
-  return crs.importFromWkt(wkt.c_str()) == OGRERR_NONE && crs.IsGeographic();
+/// Longitude and latitude [deg] of a point of the projection; (0, 0) if they cannot be known.
+void to_degrees(const OGRSpatialReference& crs, double& x, double& y) {
+  OGRSpatialReference geographic;
+  geographic.CopyGeogCSFrom(&crs);
+  geographic.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  OGRSpatialReference projected(crs);
+  projected.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  const std::unique_ptr<OGRCoordinateTransformation> transformation(
+      OGRCreateCoordinateTransformation(&projected, &geographic));
+  if (!transformation || !transformation->Transform(1, &x, &y) || !std::isfinite(x) || !std::isfinite(y))
+    x = y = 0;
 }
+
+}  // namespace
 
 std::string projecting_command(const std::string& path, double longitude, double latitude) {
   const std::string code = std::to_string(metric_epsg(longitude, latitude));
@@ -49,10 +56,20 @@ std::string projecting_command(const std::string& path, double longitude, double
   return "gdalwarp -t_srs EPSG:" + code + " -r bilinear " + shell_word(path) + " " + shell_word(projected);
 }
 
-void refuse_degrees(const std::string& path, const std::string& wkt, double longitude, double latitude) {
-  if (is_geographic(wkt))
-    throw_raster_error(path, "its coordinates are in degrees, metres are needed; project it first: " +
-                                 projecting_command(path, longitude, latitude));
+void require_metres(const std::string& path, const std::string& wkt, double x, double y) {
+  if (wkt.empty()) return;
+  const GdalMessages quiet;
+  OGRSpatialReference crs;
+  if (crs.importFromWkt(wkt.c_str()) != OGRERR_NONE) return;
+  std::string unit = "degrees";
+  if (!crs.IsGeographic()) {
+    const char* name = nullptr;
+    if (std::abs(crs.GetLinearUnits(&name) - 1) < 1e-9 || crs.IsLocal()) return;
+    unit = name ? std::string("the unit ") + name : "another unit";
+    to_degrees(crs, x, y);
+  }
+  throw_raster_error(path, "its coordinates are in " + unit + ", metres are needed; project it first: " +
+                               projecting_command(path, x, y));
 }
 
 }  // namespace desert_sim

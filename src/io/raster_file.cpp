@@ -51,7 +51,7 @@ void check_geotransform(const std::string& path, GDALDataset& dataset, const Geo
                                          ", the width must be > 0 and the height not 0"));
   if (std::abs(g[1] - std::abs(g[5])) <= square_tolerance * g[1]) return;
   const char* wkt = dataset.GetProjectionRef();
-  refuse_degrees(path, wkt ? wkt : "", g[0] + 0.5 * g[1] * dataset.GetRasterXSize(),
+  require_metres(path, wkt ? wkt : "", g[0] + 0.5 * g[1] * dataset.GetRasterXSize(),
                  g[3] + 0.5 * g[5] * dataset.GetRasterYSize());
   throw_raster_error(path, concatenate("cells are not square: ", g[1], " x ", std::abs(g[5]),
                                        ", at most 0.1 % of difference allowed"));
@@ -156,6 +156,7 @@ class GdalRasterFile final : public RasterFile {
     header_.height = dataset_->GetRasterYSize();
     set_geotransform(header_, north_up_geotransform(path(), *dataset_, south_up_));
     if (const char* wkt = dataset_->GetProjectionRef()) header_.projection = wkt;
+    if (const char* unit = band_->GetUnitType()) value_unit_ = unit;
   }
 
   void read_row(int row, int x, int width, double* raw, unsigned char* valid) override {
@@ -230,6 +231,11 @@ void reverse_rows(Raster& raster) {
   }
 }
 
+bool is_foot(std::string unit) {
+  std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return std::tolower(c); });
+  return unit.find("ft") == 0 || unit.find("feet") != std::string::npos || unit.find("foot") != std::string::npos;
+}
+
 bool is_exr(const std::string& path) {
   std::string extension = fs::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -277,6 +283,9 @@ Raster RasterFile::read(const RasterWindow& window) {
   }
   reverse_rows(raster);
   warn_of_undeclared_nodata(cells, path_);
+  if (options_.scale == 1 && is_foot(value_unit_))
+    log_warning("raster '" + path_ + "': its values are in the unit '" + value_unit_ +
+                "', and are taken as metres; for heights give scale: 0.3048");
   check_values(path_, raster, window);
   return raster;
 }

@@ -20,7 +20,7 @@ class RasterFile {
   /// The raster without its values.
   const Raster& header() const { return header_; }
   /// Reads the cells of a window, which must lie in the raster, and logs a warning for numbers that seem to
-  /// stand for missing data. Throws ConfigError for what is wrong with them (see read_raster()), and before
+  /// stand for missing data, and for values in feet that no scale converts. Throws ConfigError for what is wrong with them (see read_raster()), and before
   /// any is read if the memory does not hold them.
   Raster read(const RasterWindow& window);
   Raster read() { return read({0, 0, header_.width, header_.height}); }
@@ -35,13 +35,14 @@ class RasterFile {
 
   const RasterOptions options_;
   Raster header_;
+  std::string value_unit_;  ///< as the file says; empty if it does not
 
  private:
   const std::string path_;
 };
 
-/// Opens a raster and checks its header. Throws ConfigError as read_raster() does; for coordinates in degrees
-/// whose cells are not square, it says how to project the raster.
+/// Opens a raster and checks its header. Throws ConfigError as read_raster() does; for coordinates that are
+/// not in metres and whose cells are not square, it says how to project the raster.
 std::unique_ptr<RasterFile> open_raster(const std::string& path, const RasterOptions& options = {},
                                         const RasterAccess& access = {});
 

@@ -112,8 +112,8 @@ RasterWindow needed_window(const Raster& header, const RasterRequest& q) {
   return window;
 }
 
-void refuse_raster_in_degrees(const Raster& header, const std::string& path) {
-  refuse_degrees(path, header.projection, header.origin_x + 0.5 * header.width * header.cell_size,
+void require_raster_in_metres(const Raster& header, const std::string& path) {
+  require_metres(path, header.projection, header.origin_x + 0.5 * header.width * header.cell_size,
                  header.origin_y + 0.5 * header.height * header.cell_size);
 }
 
@@ -158,7 +158,7 @@ RasterField resample_to_request(Raster r, const RasterRequest& q) {
 RasterLoader gdal_raster_loader(const RasterAccess& access) {
   return [access](const RasterRequest& q) {
     const std::unique_ptr<RasterFile> file = open_raster(q.path, raster_options(q), access);
-    refuse_raster_in_degrees(file->header(), q.path);
+    require_raster_in_metres(file->header(), q.path);
     return q.width == 0 ? field_of(file->header())
                         : resample_to_request(file->read(needed_window(file->header(), q)), q);
   };

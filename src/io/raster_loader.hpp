@@ -17,7 +17,7 @@ RasterField resample_to_request(Raster raster, const RasterRequest& request);
 /// range of the cells around. Cells beyond the raster get the value of the nearest cell on its edge. A raster
 /// without georeference is stretched over the grid. Only the cells that the grid covers are read, and none
 /// before the header has been checked. The loader throws ConfigError that names the file and the reason; for
-/// coordinates in degrees, it says how to project the raster.
+/// coordinates in degrees or feet, it says how to project the raster.
 RasterLoader gdal_raster_loader(const RasterAccess& access = {});
 
 }  // namespace desert_sim

@@ -110,22 +110,36 @@ CommandResult Session::execute(const command::LoadScenario& load, bool, Command&
   return {};
 }
 
+namespace {
+
+/// The file that a command loads; null if it loads none.
+const std::string* loaded_file(const Command& command) {
+  if (const auto* load = std::get_if<command::LoadCheckpoint>(&command)) return &load->path;
+  if (const auto* load = std::get_if<command::LoadScenario>(&command)) return &load->path;
+  return nullptr;
+}
+
+}  // namespace
+
 CommandResult Session::apply(const Command& command, bool with_change) {
   Command journalled = command;
   const CommandResult result =
       std::visit([&](const auto& c) { return execute(c, with_change, journalled); }, command);
   if (!journal_) return result;
   journal_->write(ticks_, journalled);
-  if (const auto* load = std::get_if<command::LoadCheckpoint>(&journalled))
-    journal_files_.push_back(load->path);
+  if (const std::string* loaded = loaded_file(journalled)) journal_files_.push_back(*loaded);
   return result;
 }
 
-void Session::save_checkpoint(const std::string& path) {
+void Session::require_not_of_journal(const std::string& path) const {
   for (const std::string& needed : journal_files_)
     if (same_file(path, needed))
       throw ConfigError(path + ": cannot be saved: the journal " + journal_files_.front() +
                         " needs this file to be replayed (allowed: another name)");
+}
+
+void Session::save_checkpoint(const std::string& path) {
+  require_not_of_journal(path);
   desert_sim::save_checkpoint(path, *simulation_);
 }
 

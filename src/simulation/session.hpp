@@ -41,8 +41,12 @@ class Session {
   /// Steps done in this session, through resets and loads; what the journal counts in.
   std::uint64_t ticks() const { return ticks_; }
 
-  /// Writes a checkpoint by write_file(). Throws ConfigError also if `path` is the session's journal or a
-  /// checkpoint that it refers to, which could not be replayed afterwards.
+  /// The journal, and the checkpoints, scenarios and terrains that it loads; none without a journal.
+  const std::vector<std::string>& journal_files() const { return journal_files_; }
+  /// Throws ConfigError if `path` is one of journal_files(): the journal could not be replayed if another
+  /// file took its place.
+  void require_not_of_journal(const std::string& path) const;
+  /// Writes a checkpoint by write_file(). Throws ConfigError also as require_not_of_journal() does.
   void save_checkpoint(const std::string& path);
 
  private:
@@ -68,7 +72,7 @@ class Session {
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<JournalWriter> journal_;
-  std::vector<std::string> journal_files_;  ///< the journal and the checkpoints that it loads
+  std::vector<std::string> journal_files_;
   std::uint64_t ticks_ = 0;
 };
 

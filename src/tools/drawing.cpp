@@ -2,11 +2,13 @@
 
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
 
 #include "src/core/error.hpp"
+#include "src/core/temporary_file.hpp"
 
 extern char** environ;
 
@@ -29,7 +31,10 @@ std::string script_path(const std::string& option, const std::string& script) {
 
 void run_plot_script(const std::string& option, const std::string& script, const std::string& picture,
                      const std::vector<std::string>& results) {
-  std::vector<std::string> words{"python3", script_path(option, script), picture};
+  TemporaryFile file(picture);
+  // The script writes into the file that is open here, whatever lies under the picture's name by then.
+  const std::string place = "/proc/" + std::to_string(getpid()) + file.library_path().substr(std::strlen("/proc/self"));
+  std::vector<std::string> words{"python3", script_path(option, script), place};
   words.insert(words.end(), results.begin(), results.end());
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
@@ -42,6 +47,7 @@ void run_plot_script(const std::string& option, const std::string& script, const
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
     throw ConfigError(option + " " + picture + ": " + words[1] + " failed");
+  file.publish();
 }
 
 }  // namespace desert_sim

@@ -46,7 +46,8 @@ def main(picture, paths):
     water.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
     areas.set_title(runs[0]["scenario"])
     figure.tight_layout()
-    figure.savefig(picture, dpi=110)
+    with open(picture, "wb") as file:  # desert_run gives a name without an extension
+        figure.savefig(file, format="png", dpi=110)
 
 
 if __name__ == "__main__":

@@ -99,7 +99,8 @@ def main(picture, paths):
     bottom = 0.75 / figure.get_figheight()
     figure.tight_layout(rect=(0, bottom, 1, 1))
     legend(figure, grid.flat[0], colours, markers, Line2D)
-    figure.savefig(picture, dpi=110)
+    with open(picture, "wb") as file:  # desert_bench gives a name without an extension
+        figure.savefig(file, format="png", dpi=110)
 
 
 if __name__ == "__main__":

@@ -183,6 +183,16 @@ TEST_P(JournalOf, KeepsTheCheckpointsThatItLoads) {
   without->save_checkpoint(first);
 }
 
+TEST_P(JournalOf, KeepsTheTerrainsThatItLoads) {
+  const std::string terrain = folder_.write("terrain.yaml", "grid: {width: 9, height: 8}\n");
+  auto s = session(folder_.path("j"));
+  EXPECT_NO_THROW(s->require_not_of_journal(terrain));
+  s->apply(command::LoadScenario{terrain, true, 0, false});
+  EXPECT_THROW(s->require_not_of_journal(terrain), ConfigError);
+  EXPECT_THROW(s->save_checkpoint(terrain), ConfigError);
+  EXPECT_EQ(s->journal_files(), (std::vector<std::string>{folder_.path("j"), terrain}));
+}
+
 /// As a node does that is started again and again: the journal before the present one stays replayable.
 TEST_P(JournalOf, BeginsWithACheckpointThatThePreviousOneDoesNotNeed) {
   const std::string path = folder_.path("j");

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "src/core/log.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
@@ -73,6 +74,23 @@ TEST_P(Timeline, SetParametersRampsTooAndStopsWhatRampedBefore) {
   EXPECT_THROW(s->apply(command::SetParameters{{"saltation.lift=0.5"}, -1}), ConfigError);
   EXPECT_THROW(s->apply(command::SetParameters{{"saltation.lift=-0.5"}, 10}), ConfigError);
   EXPECT_EQ(s->describe_changes(), "");
+}
+
+/// Each ramp ends at values that go together, but on the way full_deg falls below start_deg for a while.
+TEST_P(Timeline, RampsThatMeetAConditionBetweenParametersGoOn) {
+  std::vector<std::string> messages;
+  const LogSink before =
+      set_log_sink([&](Severity, const std::string& message) { messages.push_back(message); });
+  auto s = simulation(world + "wind_shadow: {start_deg: 10, full_deg: 15}\n"
+                      "run: {timeline: [{time: 1, ramp: 80, set: {wind_shadow.full_deg: 25}},\n"
+                      "                 {time: 1, ramp: 20, set: {wind_shadow.start_deg: 20}}]}\n");
+  test::run(*s, 100);
+  set_log_sink(before);
+  EXPECT_FLOAT_EQ(s->scenario().wind_shadow.start_deg, 20);
+  EXPECT_FLOAT_EQ(s->scenario().wind_shadow.full_deg, 25);
+  EXPECT_EQ(s->describe_changes(), "");
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_NE(messages.front().find("must not be below start_deg"), std::string::npos) << messages.front();
 }
 
 TEST(TimelineFaults, AreAllNamed) {

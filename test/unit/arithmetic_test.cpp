@@ -230,6 +230,14 @@ TEST(RandomUnit, IsUniformAndDependsOnEveryCounter) {
   EXPECT_NE(r, random_unit(7, Purpose::reptation, 1, 2, 4));
 }
 
+TEST(ValueNoise, IsFiniteWhereIntegersEnd) {
+  for (const float far : {2147483520.0f, 2147483648.0f, 1e12f, 1e30f})
+    for (const float z : {far, -far}) {
+      const float v = value_noise(1, Purpose::turbulence, 0.3f, z, z);
+      EXPECT_LE(std::abs(v), 1.0f) << z;
+    }
+}
+
 TEST(ValueNoise, IsSmoothBoundedAndPeriodic) {
   for (float x = -3; x < 9; x += 0.37f)
     for (float y = -2; y < 5; y += 0.41f) {

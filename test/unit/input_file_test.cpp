@@ -126,12 +126,40 @@ TEST_F(InputFiles, AScenarioHasALargestSize) {
   expect_says(refusal([&] { load_scenario(path); }), "16777217 bytes (allowed: at most 16777216)");
 }
 
+TEST_F(InputFiles, AFolderThatIsReplacedByALinkDoesNotLeadWritersElsewhere) {
+  const DataFolder files(data());
+  fs::create_directory(folder_.path("elsewhere"));
+  const WritableFile file = files.for_writing("saved/a/b.txt");
+  EXPECT_EQ(file.path(), fs::canonical(data()).string() + "/saved/a/b.txt");
+  fs::rename(folder_.path("data/saved"), folder_.path("data/moved"));
+  fs::create_directory(folder_.path("elsewhere/a"));
+  fs::create_directory_symlink(folder_.path("elsewhere"), folder_.path("data/saved"));
+  file.write([](const std::string& path) { write_file(path, "bytes"); });
+  EXPECT_EQ(test::file_bytes(folder_.path("data/moved/a/b.txt")), "bytes");
+  EXPECT_TRUE(fs::is_empty(folder_.path("elsewhere/a")));
+  expect_says(refusal([&] { files.for_writing("saved/a/b.txt"); }), "points outside the folder");
+  expect_says(refusal([&] { files.for_writing("saved/new/b.txt"); }), "points outside the folder");
+  EXPECT_FALSE(fs::exists(folder_.path("elsewhere/new")));
+}
+
+TEST_F(InputFiles, WhatCannotBeWrittenIsToldByItsKnownPath) {
+  const DataFolder files(data());
+  const WritableFile file = files.for_writing("saved/b.txt");
+  fs::create_directory(folder_.path("data/saved/b.txt"));
+  const std::string reason =
+      refusal([&] { file.write([](const std::string& path) { write_file(path, "bytes"); }); });
+  expect_says(reason, fs::canonical(data()).string() + "/saved/b.txt: cannot be written: is a folder");
+  EXPECT_EQ(reason.find("/proc"), std::string::npos) << reason;
+  fs::create_symlink(folder_.path("gone"), folder_.path("data/saved/c.txt"));
+  expect_says(refusal([&] { files.for_writing("saved/c.txt"); }), "is a symbolic link that leads nowhere");
+}
+
 TEST_F(InputFiles, NamesAreCheckedBeforeTheDiskIsAsked) {
   const DataFolder files(data());
   folder_.write("data/a", "inside");
   EXPECT_EQ(files.for_reading("a"), fs::canonical(folder_.path("data/a")).string());
   const std::string deep = "1/2/3/4/5/6/7/8/9/10/11/12/13/14/15/16/a", deeper = "0/" + deep;
-  EXPECT_NE(files.for_writing(deep), "");
+  EXPECT_NE(files.for_writing(deep).path(), "");
   for (const auto& [name, reason] : std::vector<std::pair<std::string, std::string>>{
            {"", "is empty"},
            {"/etc/passwd", "is absolute"},

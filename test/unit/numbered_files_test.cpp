@@ -42,6 +42,15 @@ TEST_F(Numbered, AreNewestFirstAndTheNewestAreKept) {
   EXPECT_TRUE(fs::exists(saved[0]) && fs::exists(saved[1]));
 }
 
+TEST_F(Numbered, NeededOnesAreKept) {
+  std::vector<std::string> saved;
+  for (int n = 0; n < 4; ++n) saved.push_back(save());
+  fs::create_directory_symlink(folder_.path("."), folder_.path("link"));
+  files_.keep_newest(1, {saved[1], path("link/") + fs::path(saved[2]).filename().string(), path("gone")});
+  EXPECT_FALSE(fs::exists(saved[0]));
+  for (int n = 1; n < 4; ++n) EXPECT_TRUE(fs::exists(saved[static_cast<std::size_t>(n)])) << n;
+}
+
 TEST_F(Numbered, AChosenNameDoesNotWinOverWhatIsSavedLater) {
   for (const char* chosen : {"9999999999", "99999999999999999999999", "zzz", "", "00000000000000099", "-1",
                              "18446744073709551615", "1e99", "99999999999999999999999.ckpt"}) {

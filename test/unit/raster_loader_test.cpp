@@ -185,6 +185,25 @@ TEST_F(Dem, DegreesAreRefusedWithTheCommandThatProjects) {
               {("'" + path("my dem'\\''s.tif") + "'").c_str()});
 }
 
+TEST_F(Dem, FeetAreRefusedWithTheCommandThatProjects) {
+  RasterRequest q;  // around Pittsburgh, in Pennsylvania's southern zone
+  q.path = make("feet.tif", "GTiff", 4, 4, GDT_Float32, std::vector<float>(16, 1), {1340000, 10, 0, 410000, 0, -10},
+                "EPSG:2272");
+  expect_says(load_refusal(q), {"US survey foot", "gdalwarp -t_srs EPSG:32617 "});
+}
+
+TEST_F(Dem, HeightsInFeetAreWarnedOfUnlessTheyAreScaled) {
+  const std::string file = grid({100, 101, 102, 103}, 2, "ft.tif");
+  EXPECT_TRUE(warnings_of(file).empty());
+  const GDALDatasetUniquePtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_UPDATE));
+  dataset->GetRasterBand(1)->SetUnitType("US survey foot");
+  dataset->FlushCache();
+  const std::vector<std::string> warnings = warnings_of(file);
+  ASSERT_EQ(warnings.size(), 1u);
+  expect_says(warnings[0], {"ft.tif", "US survey foot", "scale: 0.3048"});
+  EXPECT_TRUE(warnings_of(file, {1, 0.3048}).empty());
+}
+
 // GDAL alone reads the lines before a broken one again and again.
 TEST_F(Dem, ATextWithBrokenLinesIsRefusedSoon) {
   const std::string message =

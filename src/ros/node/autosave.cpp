@@ -34,14 +34,18 @@ AutosaveFiles::AutosaveFiles(const DataFolder& folder, const std::string& node, 
     : folder_(&folder),
       files_(folder.path() + "/" + subfolder, file_prefix(node, scenario), file_extension) {}
 
-std::string AutosaveFiles::next_path() const {
+WritableFile AutosaveFiles::next() const {
   return folder_->for_writing(std::string(subfolder) + "/" + files_.next_name());
 }
 
 // ---- Saving.
 
-Autosave::Autosave(AutosaveFiles files, double period, SimulationThread& simulation)
-    : files_(std::move(files)), period_(period), simulation_(simulation) {
+Autosave::Autosave(AutosaveFiles files, double period, SimulationThread& simulation,
+                   const std::string& journal)
+    : files_(std::move(files)),
+      period_(period),
+      simulation_(simulation),
+      previously_loaded_(checkpoints_of_previous(journal)) {
   state_.period = period;
   thread_ = std::thread([this] { run_thread(); });
 }
@@ -98,11 +102,13 @@ void Autosave::save() {
   const AutosaveFiles files = files_;
   lock.unlock();
   const CheckpointCopy copy = simulation_.checkpoint().get();
-  const std::string path = files.next_path();
-  write_file(path, copy.bytes);
-  files.keep_newest(max_files);
+  const WritableFile file = files.next();
+  file.write([&](const std::string& path) { write_file(path, copy.bytes); });
+  std::vector<std::string> needed = copy.journal_files;
+  needed.insert(needed.end(), previously_loaded_.begin(), previously_loaded_.end());
+  files.keep_newest(max_files, needed);
   lock.lock();
-  state_.path = path;
+  state_.path = file.path();
   state_.step = copy.moment.step;
 }
 

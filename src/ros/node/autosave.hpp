@@ -23,10 +23,12 @@ class AutosaveFiles {
   AutosaveFiles(const DataFolder& folder, const std::string& node, const Scenario& scenario);
   /// The paths of the files there are, newest first.
   std::vector<std::string> paths() const { return files_.paths(); }
-  /// The path for a file that is newer than all.
-  std::string next_path() const;
-  /// Removes all files but the newest `count`.
-  void keep_newest(std::size_t count) const { files_.keep_newest(count); }
+  /// A file that is newer than all.
+  WritableFile next() const;
+  /// Removes all files but the newest `count`, and but those in `needed`.
+  void keep_newest(std::size_t count, const std::vector<std::string>& needed) const {
+    files_.keep_newest(count, needed);
+  }
 
  private:
   const DataFolder* folder_;
@@ -34,7 +36,7 @@ class AutosaveFiles {
 };
 
 /// Writes a checkpoint every `period` seconds of wall time, if something has changed, and keeps the last two
-/// files. The copy is made between two steps; the file is written on a thread of its own. If a file cannot be
+/// files, and those that a journal loads. The copy is made between two steps; the file is written on a thread of its own. If a file cannot be
 /// written, the log and /diagnostics have an error, and it is tried again a period later.
 class Autosave {
  public:
@@ -46,7 +48,8 @@ class Autosave {
     std::string error;       ///< why the last file could not be written; empty if it was
   };
 
-  Autosave(AutosaveFiles files, double period, SimulationThread& simulation);
+  /// `journal`: file, or empty. What the journal before it loads is kept too, until there is another one.
+  Autosave(AutosaveFiles files, double period, SimulationThread& simulation, const std::string& journal);
   /// Waits for the file that is being written.
   ~Autosave();
   State state() const;
@@ -61,6 +64,7 @@ class Autosave {
   AutosaveFiles files_;  ///< guarded by mutex_
   const double period_;
   SimulationThread& simulation_;
+  const std::vector<std::string> previously_loaded_;  ///< checkpoints that the previous journal loads
   std::uint64_t saved_change_ = 0;
   mutable std::mutex mutex_;  ///< guards all that is not const, except thread_
   std::condition_variable stopped_;

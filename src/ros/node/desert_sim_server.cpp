@@ -19,7 +19,7 @@ constexpr std::uint32_t threads = 4, step_threads = 2;
 void keep_previous_journal(const std::string& path) {
   std::error_code error;
   if (path.empty() || !std::filesystem::is_regular_file(path, error)) return;
-  std::filesystem::rename(path, path + ".previous", error);
+  std::filesystem::rename(path, previous_journal(path), error);
   if (error)
     throw ConfigError(path + ": the previous journal cannot be renamed to *.previous: " + error.message());
 }
@@ -105,7 +105,7 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
     services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *publisher_, *frames_, *files_,
                                            p.answer_timeout);
     if (p.autosave_period > 0)
-      autosave_ = std::make_unique<Autosave>(autosaves, p.autosave_period, *simulation_);
+      autosave_ = std::make_unique<Autosave>(autosaves, p.autosave_period, *simulation_, p.journal);
     diagnostics_ =
         std::make_unique<Diagnostics>(node_, p.diagnostic_period, *simulation_, *publisher_, autosave_.get());
     cmd_wind_ = std::make_unique<CmdWindSubscriber>(node_, *simulation_, *frames_);

@@ -76,7 +76,9 @@ class SimulationThread {
   /// continues while the copy is under way: the thread that calls get() waits for it.
   std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {},
                                     const StateQuery& query = {});
-  std::future<TerrainToSave> terrain_to_save();
+  /// For a scenario file at `path`. Refused if the journal needs the file that is there: see
+  /// Session::require_not_of_journal().
+  std::future<TerrainToSave> terrain_to_save(const std::string& path);
   /// The scenario with the present parameters and the present wind regime.
   std::future<Scenario> scenario();
   /// `measure`: processes are timed for a while from now on, which costs some speed.

@@ -144,14 +144,15 @@ std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& la
       [](const PendingState& state) { return state.get(); });
 }
 
-std::future<TerrainToSave> SimulationThread::terrain_to_save() {
+std::future<TerrainToSave> SimulationThread::terrain_to_save(const std::string& path) {
   struct PendingCopy {
     PendingState state;
     Scenario scenario;
     std::uint64_t hash;
   };
   return wait_for_copy<TerrainToSave>(
-      submit<PendingCopy>([this] {
+      submit<PendingCopy>([this, path] {
+        session_->require_not_of_journal(path);
         const Simulation& s = session_->simulation();
         std::vector<Layer> layers = persistent_layers(s);
         layers.push_back(Layer::elevation);
@@ -173,7 +174,7 @@ std::future<ReachedState> SimulationThread::save_checkpoint(const std::string& p
 std::future<CheckpointCopy> SimulationThread::checkpoint() {
   return submit<CheckpointCopy>([this] {
     wait_for_steps();
-    return CheckpointCopy{moment(), checkpoint_bytes(session_->simulation())};
+    return CheckpointCopy{moment(), checkpoint_bytes(session_->simulation()), session_->journal_files()};
   });
 }
 

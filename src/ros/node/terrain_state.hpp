@@ -68,6 +68,7 @@ struct ReachedState {
 struct CheckpointCopy {
   Moment moment;
   std::string bytes;
+  std::vector<std::string> journal_files;  ///< see Session::journal_files()
 };
 
 enum class RunState { running, paused, waiting };

@@ -180,8 +180,10 @@ constexpr const char* terrain_file = "terrain.yaml";  // in the folder of a save
 }  // namespace
 
 void Services::save_checkpoint(const SaveCheckpointRequest& request, SaveCheckpointResponse& response) {
-  response.path = files_.for_writing(request.name);
-  const ReachedState reached = simulation_.save_checkpoint(response.path).get();
+  const WritableFile file = files_.for_writing(request.name);
+  const ReachedState reached =
+      file.write([&](const std::string& path) { return simulation_.save_checkpoint(path).get(); });
+  response.path = file.path();
   response.step = reached.moment.step;
   response.state_hash = hash_text(reached.hash);
   ROS_INFO("The checkpoint of step %lu was saved to %s.", static_cast<unsigned long>(response.step),
@@ -216,12 +218,15 @@ void Services::save_terrain(const SaveTerrainRequest& request, SaveTerrainRespon
     throw ConfigError(
         "name: " + quoted(request.name) +
         " has the extension .bag, which load_terrain reads as a file (allowed: the name of a folder)");
-  response.path = files_.for_writing(request.name + "/" + terrain_file);
-  const TerrainToSave terrain = simulation_.terrain_to_save().get();
+  const WritableFile file = files_.for_writing(request.name + "/" + terrain_file);
+  const TerrainToSave terrain = simulation_.terrain_to_save(file.path()).get();
   const LayerWriter writer =
       layer_writer(format, terrain, frames_.terrain_frame(), node_.resolveName("grid_map"));
-  desert_sim::save_terrain(response.path, terrain.scenario, *terrain.state.snapshot, writer,
-                           hash_text(terrain.hash));
+  file.write([&](const std::string& path) {
+    desert_sim::save_terrain(path, terrain.scenario, *terrain.state.snapshot, writer,
+                             hash_text(terrain.hash));
+  });
+  response.path = file.path();
   response.step = terrain.state.moment.step;
   ROS_INFO("The terrain of step %lu was saved to %s.", static_cast<unsigned long>(response.step),
            response.path.c_str());

@@ -23,19 +23,22 @@ class Commands {
   CommandResult apply(const command::EditPlants& command);
   CommandResult apply(const command::SetParameters& command);
 
-  /// Changes the parameters that the timeline and ramps change now. Throws StateError if they are refused.
+  /// Changes the parameters that the timeline and ramps change now. What is refused keeps its value, and is an
+  /// error in the log; a ramp tries again.
   void apply_timeline();
   /// What the timeline and ramps are changing, and what comes next; empty if nothing.
   std::string describe_changes() const;
 
  private:
   void set_parameters(const std::vector<std::string>& settings);
+  std::vector<std::string> set_what_can_be_set(std::vector<std::string> due);
   /// Of `settings`, numbers become ramps where there is a duration [s]; former ramps of the same parameters
   /// stop.
   void begin_ramps(std::vector<std::string>& settings, double duration);
 
   SimulationState& state_;
   Pipeline& pipeline_;
+  std::vector<std::string> refused_parameters_;  ///< at the last step; the log has told why
 };
 
 }  // namespace desert_sim

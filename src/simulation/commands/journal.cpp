@@ -129,15 +129,20 @@ Journal read_journal(const std::string& path) {
   return journal;
 }
 
-std::string checkpoint_beside(const std::string& path) {
-  const std::string previous = path + ".previous", usual = path + ".checkpoint";
-  if (!std::filesystem::exists(previous)) return usual;
+std::vector<std::string> checkpoints_of_previous(const std::string& path) {
+  if (path.empty() || !std::filesystem::exists(previous_journal(path))) return {};
   try {
-    for (const std::string& needed : checkpoints_of(read_journal(previous)))
-      if (same_file(needed, usual)) return usual + ".2";
+    return checkpoints_of(read_journal(previous_journal(path)));
   } catch (const ConfigError& e) {
-    log_error(std::string("the checkpoint of the previous journal is not kept: ") + e.what());
+    log_error(std::string("what the previous journal loads is not kept: ") + e.what());
   }
+  return {};
+}
+
+std::string checkpoint_beside(const std::string& path) {
+  const std::string usual = path + ".checkpoint";
+  for (const std::string& needed : checkpoints_of_previous(path))
+    if (same_file(needed, usual)) return usual + ".2";
   return usual;
 }
 

@@ -42,11 +42,17 @@ struct Journal {
 /// The paths of the checkpoints that the journal loads.
 std::vector<std::string> checkpoints_of(const Journal& journal);
 
+/// The path of the journal that was at `path` before: a node gives it this name.
+inline std::string previous_journal(const std::string& path) { return path + ".previous"; }
+/// The paths of the checkpoints that the journal before the one at `path` loads; none if `path` is empty or
+/// there is no such journal. One that cannot be read is an error in the log.
+std::vector<std::string> checkpoints_of_previous(const std::string& path);
+
 /// Throws ConfigError with file and line.
 Journal read_journal(const std::string& path);
 
 /// The path for a copy of the checkpoint that a new journal at `path` begins with: `path`.checkpoint, or
-/// `path`.checkpoint.2 if the journal that was there before, which is `path`.previous now, loads the former.
+/// `path`.checkpoint.2 if the previous journal loads the former.
 std::string checkpoint_beside(const std::string& path);
 
 }  // namespace desert_sim

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "src/core/error.hpp"
+#include "src/core/log.hpp"
 #include "src/simulation/commands/commands.hpp"
 
 namespace desert_sim {
@@ -28,6 +29,38 @@ void Commands::begin_ramps(std::vector<std::string>& settings, double duration) 
     state_.ramps.push_back(std::move(ramp));
 }
 
+/// Ramps and entries that were accepted one by one can meet a condition between parameters on their way. A
+/// run goes on then: what is refused keeps its value. Returns the paths of these parameters.
+std::vector<std::string> Commands::set_what_can_be_set(std::vector<std::string> due) {
+  if (due.empty()) return {};
+  try {
+    set_parameters(due);
+    due.clear();
+  } catch (const ConfigError&) {  // NOLINT(bugprone-empty-catch): told below, setting by setting
+  }
+  std::string reasons;
+  for (std::size_t before = due.size() + 1; due.size() < before;) {
+    before = due.size();
+    reasons.clear();
+    std::vector<std::string> refused;
+    for (const std::string& setting : due) {
+      try {
+        set_parameters({setting});
+      } catch (const ConfigError& e) {
+        refused.push_back(setting);
+        reasons += "; " + setting + " is refused: " + e.what();
+      }
+    }
+    due = std::move(refused);
+  }
+  std::transform(due.begin(), due.end(), due.begin(), path_of);
+  if (!due.empty() && due != refused_parameters_)
+    log_error("run.timeline and ramps: at " + text_of(state_.time()) + " s parameters keep their values" +
+              reasons);
+  refused_parameters_ = due;
+  return due;
+}
+
 void Commands::apply_timeline() {
   const std::vector<TimelineEntry>& timeline = state_.scenario.timeline;
   std::vector<std::string> due;
@@ -44,12 +77,10 @@ void Commands::apply_timeline() {
     ramp.step_index = step_index;
     due.push_back(ramp.path + "=" + text_of(ramp.value()));
   }
-  if (due.empty()) return;
-  try {
-    set_parameters(due);
-  } catch (const ConfigError& e) {
-    throw StateError("run.timeline at " + text_of(state_.time()) + " s: " + e.what());
-  }
+  const std::vector<std::string> refused = set_what_can_be_set(std::move(due));
+  for (Ramp& ramp : state_.ramps)  // one that has been refused at its end tries again at each step
+    if (ramp.step_index == Ramp::step_count && std::count(refused.begin(), refused.end(), ramp.path) > 0)
+      --ramp.step_index;
   state_.ramps.erase(std::remove_if(state_.ramps.begin(), state_.ramps.end(),
                                     [](const Ramp& r) { return r.step_index == Ramp::step_count; }),
                      state_.ramps.end());
