@@ -22,7 +22,7 @@ fuzz_seeds() { # NAME FOLDER
         "$(built_program desert_run)" "$DESERT_ROOT/config/scenarios/$name.yaml" --set grid.width=12 \
           --set grid.height=10 --backend cpu --steps 3 --quiet --checkpoint "$2/$name.ck" >/dev/null
       done ;;
-    message | elevation) # random bytes: each is some messages
+    message | elevation | bag) # random bytes: each is some messages
       for name in {1..20}; do
         LC_ALL=C awk -v seed="$name" 'BEGIN { srand(seed); for (n = 0; n < 100 * seed; ++n) printf "%c", 256 * rand() }' \
           >"$2/random_$name"

@@ -20,68 +20,22 @@
 namespace desert_sim {
 namespace {
 
-const std::vector<std::string> words{"",
-                                     "map",
-                                     "rover",
-                                     "/rover",
-                                     "tilted",
-                                     "far",
-                                     "nowhere",
-                                     "sand",
-                                     "bedrock",
-                                     "soil",
-                                     "water",
-                                     "circle",
-                                     "ellipse",
-                                     "rectangle",
-                                     "capsule",
-                                     "polygon",
-                                     "patch",
-                                     "add",
-                                     "sub",
-                                     "replace",
-                                     "min",
-                                     "max",
-                                     "avg",
-                                     "smooth",
-                                     "heights",
-                                     "mask",
-                                     "mono8",
-                                     "mono16",
-                                     "32FC1",
-                                     "plant",
-                                     "clear",
-                                     "bush",
-                                     "tree",
-                                     "change",
-                                     "remove",
-                                     "vortex",
-                                     "jet",
-                                     "turbulence",
-                                     "timeline",
-                                     "rose",
-                                     "rain_rate",
-                                     "rain_share",
-                                     "evaporation",
-                                     "ground_evaporation",
-                                     "sea",
-                                     "sea_level",
-                                     "wave_strength",
-                                     "wave_period",
-                                     "springs",
-                                     "none",
-                                     "border",
-                                     "everywhere",
-                                     "elevation",
-                                     "slope",
-                                     "traversability",
-                                     "plants",
-                                     "wind_x",
-                                     "wind__speed",
-                                     "grid_map_layers",
-                                     "[1, 2]",
-                                     "true",
-                                     "x: [\n# {"};
+using Words = std::vector<std::string>;
+const Words frame_words{"", "map", "rover", "/rover", "tilted", "far", "nowhere", "", "map"};
+const Words terrain_words{"",       "rover",   "tilted",    "sand",    "bedrock", "soil",   "water",
+                          "circle", "ellipse", "rectangle", "capsule", "polygon", "patch",  "add",
+                          "sub",    "replace", "min",       "max",     "avg",     "smooth", "heights",
+                          "mask",   "mono8",   "mono16",    "32FC1"};
+const Words plant_words{"",       "rover",   "plant",     "clear",   "bush",   "tree",
+                        "circle", "ellipse", "rectangle", "capsule", "polygon"};
+const Words wind_words{"", "rover", "add", "change", "remove", "clear", "vortex", "jet", "turbulence"};
+const Words schedule_words{"timeline", "rose"};
+const Words weather_words{"rain_rate", "rain_share", "evaporation",   "ground_evaporation",
+                          "sea",       "sea_level",  "wave_strength", "wave_period",
+                          "springs",   "none",       "border",        "everywhere"};
+const Words layer_words{"", "rover", "elevation", "slope", "traversability", "plants", "wind_x", "roughness"};
+const Words reconfigure_words{"wind__speed", "grid_map_layers", "[1, 2]", "true",
+                              "x: [\n# {",   "border",          "sweeps", "fast"};
 
 geometry_msgs::TransformStamped static_frame(const char* name, double x, double roll_sine,
                                              double roll_cosine) {
@@ -113,25 +67,26 @@ class Node {
   void take(FuzzedDataProvider& data) {
     switch (data.ConsumeIntegralInRange(0, 11)) {
       case 0:
-        return apply(wind_command(message<SetWindRequest>(data)));
+        return apply(wind_command(fuzz::next_message<SetWindRequest>(data, frame_words)));
       case 1:
-        return apply(wind_schedule_command(message<SetWindScheduleRequest>(data)));
+        return apply(wind_schedule_command(fuzz::next_message<SetWindScheduleRequest>(data, schedule_words)));
       case 2:
-        return apply(wind_edit_command(message<EditWindRequest>(data), frames_));
+        return apply(wind_edit_command(fuzz::next_message<EditWindRequest>(data, wind_words), frames_));
       case 3:
-        return apply(weather_command(message<SetWeatherRequest>(data)));
+        return apply(weather_command(fuzz::next_message<SetWeatherRequest>(data, weather_words)));
       case 4:
-        return apply(cmd_wind_command(message<geometry_msgs::Vector3Stamped>(data), frames_));
+        return apply(
+            cmd_wind_command(fuzz::next_message<geometry_msgs::Vector3Stamped>(data, frame_words), frames_));
       case 5:
-        return apply(plants_command(message<EditPlantsRequest>(data), frames_));
+        return apply(plants_command(fuzz::next_message<EditPlantsRequest>(data, plant_words), frames_));
       case 6:
         return reconfigure(data);
       case 7:
-        return query(message<QueryTerrainRequest>(data));
+        return query(fuzz::next_message<QueryTerrainRequest>(data, frame_words));
       case 8:
-        return cut(message<GetSubmapRequest>(data));
+        return cut(fuzz::next_message<GetSubmapRequest>(data, layer_words));
       case 9:
-        return hear(message<tf2_msgs::TFMessage>(data));
+        return hear(fuzz::next_message<tf2_msgs::TFMessage>(data, frame_words));
       case 10:
         return step();
       default:
@@ -162,11 +117,6 @@ class Node {
   }
 
  private:
-  template <class M>
-  M message(FuzzedDataProvider& data) const {
-    return fuzz::next_message<M>(data, words);
-  }
-
   void apply(const Command& command) {
     std::visit([this](const auto& c) { session_.apply(c); }, command);
     YAML::Emitter entry;
@@ -181,7 +131,7 @@ class Node {
   }
 
   void edit_terrain(FuzzedDataProvider& data) {
-    auto request = message<EditTerrainRequest>(data);
+    auto request = fuzz::next_message<EditTerrainRequest>(data, terrain_words);
     if (data.ConsumeBool()) {  // the image's fields fit together
       request.image.step = request.image.width * (request.image.encoding == "32FC1" ? 4 : 2);
       if (std::uint64_t{request.image.step} * request.image.height > 4096) return;
@@ -193,7 +143,7 @@ class Node {
 
   void reconfigure(FuzzedDataProvider& data) {
     LiveParameters present{session_.simulation().present_scenario(), publishers_, 0};
-    auto request = message<dynamic_reconfigure::Config>(data);
+    auto request = fuzz::next_message<dynamic_reconfigure::Config>(data, reconfigure_words);
     if (data.ConsumeBool()) rename(request.bools, reconfigure_values(present).bools, data);
     if (data.ConsumeBool()) rename(request.ints, reconfigure_values(present).ints, data);
     if (data.ConsumeBool()) rename(request.strs, reconfigure_values(present).strs, data);
