@@ -2,6 +2,8 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
+
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/core/log.hpp"
@@ -25,7 +27,7 @@ Session::Session(const Scenario& scenario, const RasterLoader& load_raster, cons
   simulation_ = std::make_unique<Simulation>(*exec_, resolved, load_raster_);
   if (journal_path.empty()) return;
   journal_ = std::make_unique<JournalWriter>(journal_path, scenario_hash(resolved), exec_->backend());
-  journal_files_.push_back(journal_path);
+  journal_path_ = journal_path;
 }
 
 Session::Session(const RasterLoader& load_raster, const std::string& backend, int threads)
@@ -117,15 +119,16 @@ CommandResult Session::apply(const Command& command, bool with_change) {
   if (!journal_) return result;
   journal_->write(ticks_, journalled);
   if (const auto* load = std::get_if<command::LoadCheckpoint>(&journalled))
-    journal_files_.push_back(load->path);
+    journal_checkpoints_.insert(load->path);
   return result;
 }
 
 void Session::save_checkpoint(const std::string& path) {
-  for (const std::string& needed : journal_files_)
-    if (same_file(path, needed))
-      throw ConfigError(path + ": cannot be saved: the journal " + journal_files_.front() +
-                        " needs this file to be replayed (allowed: another name)");
+  const auto is_needed = [&path](const std::string& needed) { return same_file(path, needed); };
+  if (journal_ && (is_needed(journal_path_) ||
+                   std::any_of(journal_checkpoints_.begin(), journal_checkpoints_.end(), is_needed)))
+    throw ConfigError(path + ": cannot be saved: the journal " + journal_path_ +
+                      " needs this file to be replayed (allowed: another name)");
   desert_sim::save_checkpoint(path, *simulation_);
 }
 

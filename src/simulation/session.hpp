@@ -3,8 +3,8 @@
 /// desert_run both drive. One thread at a time.
 
 #include <memory>
+#include <set>
 #include <string>
-#include <vector>
 
 #include "src/simulation/commands/journal.hpp"
 #include "src/simulation/simulation.hpp"
@@ -68,7 +68,8 @@ class Session {
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<JournalWriter> journal_;
-  std::vector<std::string> journal_files_;  ///< the journal and the checkpoints that it loads
+  std::string journal_path_;
+  std::set<std::string> journal_checkpoints_;  ///< that the journal loads
   std::uint64_t ticks_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Bags with a GridMap: raw bytes; or a bag of a map whose fields are filled from the input, with numbers changed in its
-// records, and perhaps its chunk compressed after that.
+// Bags with a GridMap: raw bytes; or a bag of a map whose fields are filled from the input, with numbers
+// changed in its records, and perhaps its chunk compressed after that.
 #include <roslz4/lz4s.h>
 
 #include <cstring>

@@ -1,5 +1,5 @@
-// Messages that a TerrainClient takes, as a sequence from one input: each is refused or becomes a map that can be asked
-// anywhere.
+// Messages that a TerrainClient takes, as a sequence from one input: each is refused or becomes a map
+// that can be asked anywhere.
 #include <boost/make_shared.hpp>
 #include <cmath>
 

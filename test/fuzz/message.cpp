@@ -1,5 +1,5 @@
-// Messages and requests that the node takes, as a sequence from one input: each is refused, or applied to a small
-// simulation. What was applied can be saved, loaded, and replayed from its form in the journal.
+// Messages and requests that the node takes, as a sequence from one input: each is refused, or applied to a
+// small simulation. What was applied can be saved, loaded, and replayed from its form in the journal.
 #include <console_bridge/console.h>
 #include <tf2_msgs/TFMessage.h>
 #include <yaml-cpp/yaml.h>

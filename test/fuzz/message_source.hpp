@@ -1,6 +1,6 @@
 #pragma once
-/// Messages from the bytes of a fuzzer: deserialized from raw bytes, or filled field by field with values that are
-/// plausible, extreme or wrong.
+/// Messages from the bytes of a fuzzer: deserialized from raw bytes, or filled field by field with values
+/// that are plausible, extreme or wrong.
 
 #include <fuzzer/FuzzedDataProvider.h>
 
@@ -79,8 +79,8 @@ class FilledStream {
 
 /// A message of type M. Throws StreamOverrunException for raw bytes that are too few.
 ///
-/// Raw bytes are read by BoundedInputStream: that of roscpp allocates as many elements as a length says before it
-/// looks how many bytes there are, which is not this project's to mend.
+/// Raw bytes are read by BoundedInputStream: that of roscpp allocates as many elements as a length says
+/// before it looks how many bytes there are, which is not this project's to mend.
 template <class M>
 M next_message(FuzzedDataProvider& data, const std::vector<std::string>& words) {
   M message;

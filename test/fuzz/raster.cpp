@@ -1,5 +1,5 @@
-// Rasters of the formats that services read, with the options of a raster step, resampled to a small grid: raw bytes, or
-// an ESRI ASCII grid, an ENVI file or a TIFF whose header is filled from the input.
+// Rasters of the formats that services read, with the options of a raster step, resampled to a small
+// grid: raw bytes, or an ESRI ASCII grid, an ENVI file or a TIFF whose header is filled from the input.
 #include <fuzzer/FuzzedDataProvider.h>
 #include <unistd.h>
 
@@ -57,8 +57,8 @@ std::string envi_header(FuzzedDataProvider& data) {
 std::string tiff(FuzzedDataProvider& data) {
   std::string file("II*\0\x08\0\0\0", 8);
   const auto add = [&file](auto value) { file.append(reinterpret_cast<const char*>(&value), sizeof value); };
-  // Size, bits, compression, photometric interpretation, strips, samples, planes, predictor, tiles, sample format,
-  // pixel scale, tie points, transformation, keys, nodata.
+  // Size, bits, compression, photometric interpretation, strips, samples, planes, predictor, tiles,
+  // sample format, pixel scale, tie points, transformation, keys, nodata.
   const std::uint16_t tags[] = {256, 257, 258, 259, 262, 273,   277,   278,   279,   284,  317,
                                 322, 323, 324, 325, 339, 33550, 33922, 34264, 34735, 42113};
   const std::uint32_t usual[] = {4,  3,  32,  1,    1, 300, 1,   3,   48,  1,  1,

@@ -1,5 +1,5 @@
-// Bags whose records are well formed but lie: about what a chunk unpacks to, about where things are, or that ask for
-// more than reading. The rosbag library believes them.
+// Bags whose records are well formed but lie: about what a chunk unpacks to, about where things are, or
+// that ask for more than reading. The rosbag library believes them.
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>

@@ -30,7 +30,8 @@ command::SetWind wind_command(const SetWindRequest& request) {
   return command;
 }
 
-command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message, const TerrainTransforms& frames) {
+command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message,
+                                  const TerrainTransforms& frames) {
   constexpr double largest_slope = 1e-6;  // the rounding of a rotation leaves less
   require_finite(message.vector.x, "vector.x");
   require_finite(message.vector.y, "vector.y");
