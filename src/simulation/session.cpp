@@ -2,6 +2,7 @@
 
 #include <xxhash.h>
 
+
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/core/log.hpp"
@@ -25,7 +26,7 @@ Session::Session(const Scenario& scenario, const RasterLoader& load_raster, cons
   simulation_ = std::make_unique<Simulation>(*exec_, resolved, load_raster_);
   if (journal_path.empty()) return;
   journal_ = std::make_unique<JournalWriter>(journal_path, scenario_hash(resolved), exec_->backend());
-  journal_files_.push_back(journal_path);
+  journal_path_ = journal_path;
 }
 
 Session::Session(const RasterLoader& load_raster, const std::string& backend, int threads)
@@ -127,14 +128,21 @@ CommandResult Session::apply(const Command& command, bool with_change) {
       std::visit([&](const auto& c) { return execute(c, with_change, journalled); }, command);
   if (!journal_) return result;
   journal_->write(ticks_, journalled);
-  if (const std::string* loaded = loaded_file(journalled)) journal_files_.push_back(*loaded);
+  if (const std::string* loaded = loaded_file(journalled)) loaded_files_.insert(*loaded);
   return result;
 }
 
+std::vector<std::string> Session::journal_files() const {
+  if (!journal_) return {};
+  std::vector<std::string> files{journal_path_};
+  files.insert(files.end(), loaded_files_.begin(), loaded_files_.end());
+  return files;
+}
+
 void Session::require_not_of_journal(const std::string& path) const {
-  for (const std::string& needed : journal_files_)
+  for (const std::string& needed : journal_files())
     if (same_file(path, needed))
-      throw ConfigError(path + ": cannot be saved: the journal " + journal_files_.front() +
+      throw ConfigError(path + ": cannot be saved: the journal " + journal_path_ +
                         " needs this file to be replayed (allowed: another name)");
 }
 

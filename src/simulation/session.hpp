@@ -3,8 +3,8 @@
 /// desert_run both drive. One thread at a time.
 
 #include <memory>
+#include <set>
 #include <string>
-#include <vector>
 
 #include "src/simulation/commands/journal.hpp"
 #include "src/simulation/simulation.hpp"
@@ -42,7 +42,7 @@ class Session {
   std::uint64_t ticks() const { return ticks_; }
 
   /// The journal, and the checkpoints, scenarios and terrains that it loads; none without a journal.
-  const std::vector<std::string>& journal_files() const { return journal_files_; }
+  std::vector<std::string> journal_files() const;
   /// Throws ConfigError if `path` is one of journal_files(): the journal could not be replayed if another
   /// file took its place.
   void require_not_of_journal(const std::string& path) const;
@@ -72,7 +72,8 @@ class Session {
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<JournalWriter> journal_;
-  std::vector<std::string> journal_files_;
+  std::string journal_path_;
+  std::set<std::string> loaded_files_;  ///< that the journal loads
   std::uint64_t ticks_ = 0;
 };
 

@@ -6,34 +6,23 @@
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/session.hpp"
 #include "support/fuzz_rounds.hpp"
+#include "support/small_scenarios.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {
 namespace {
 
-const char* const desert =
-    "grid: {width: 16, height: 12}\n"
-    "terrain: [noise: {layer: bedrock, low: 0, high: 2, scale: 6}, noise: {layer: sand, low: 0, high: 2}]\n"
-    "wind: {features: [{x: 5, y: 5, radius: 3, id: 3}]}\n";
-const char* const oasis =
-    "grid: {width: 14, height: 11, boundary: open}\n"
-    "terrain: [uniform: {layer: soil, value: 2}, noise: {layer: sand, low: 0, high: 1},\n"
-    "          uniform: {layer: moisture, value: 0.1}]\n"
-    "rain: {rate: 1.0e-5}\n"
-    "vegetation: {enabled: true}\n"
-    "species: [{preset: bush, spawn: 100, moisture_lowest: 0, light_highest: 2}, {preset: tree}]\n";
-
 TEST(RandomCommands, ThatAreAcceptedCanBeSavedLoadedAndReplayed) {
   const test::TemporaryFolder folder;
-  const std::vector<std::string> scenarios{folder.write("desert.yaml", desert),
-                                           folder.write("oasis.yaml", oasis)};
+  const std::vector<std::string> scenarios{folder.write("desert.yaml", test::small_desert),
+                                           folder.write("oasis.yaml", test::small_oasis)};
   int accepted = 0, refused = 0;
   const int rounds = test::fuzz_rounds(60);
   for (int round = 0; round < rounds; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
     test::RandomCommands random(static_cast<unsigned>(round));
-    const Scenario scenario = test::scenario_of(round % 2 ? desert : oasis);
+    const Scenario scenario = test::scenario_of(round % 2 ? test::small_desert : test::small_oasis);
     std::vector<std::string> checkpoints;
     std::uint64_t hash = 0;
     {

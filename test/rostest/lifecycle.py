@@ -25,7 +25,7 @@ from sensor_msgs.msg import Image
 from std_srvs.srv import Trigger
 
 PACKAGE = rospkg.RosPack().get_path("desert_sim")
-CORNER = os.path.join(PACKAGE, "test", "rostest", "scenarios", "corner.yaml")
+CORNER, OASIS = (os.path.join(PACKAGE, "test", "rostest", "scenarios", name) for name in ("corner.yaml", "oasis.yaml"))
 
 
 def program(name):
@@ -110,7 +110,7 @@ class Scenarios(unittest.TestCase):
         """The state hash that desert_run ends with."""
         out = self.path("out")
         subprocess.run([program("desert_run"), *arguments, "--backend", "cpu", "--threads", "1", "--quiet", "--out", out],
-                       check=True, timeout=60)
+                       check=True, timeout=600)
         with open(os.path.join(out, "summary.json")) as file:
             return json.load(file)["state_hash"]
 

@@ -13,8 +13,9 @@ import rospy
 import rostest
 import yaml
 from desert_sim.msg import SimulationStatus
-from desert_sim.srv import LoadScenario, SetWind, Step
-from lifecycle import CORNER, PATIENCE, Scenarios, Trigger, wait_until
+from desert_sim.srv import EditPlants, EditTerrain, LoadScenario, SetWind, Step
+from geometry_msgs.msg import Point
+from lifecycle import CORNER, OASIS, PATIENCE, Scenarios, Trigger, wait_until
 
 KILLS = int(os.environ.get("DESERT_KILLS", "4"))
 AUTOSAVED = {"scenario": CORNER, "autosave_period": 0.1, "resume": True}
@@ -50,20 +51,24 @@ def number(path):
 
 
 class Respawned:
-    """The node of resume.test."""
+    """A node of resume.test."""
 
-    def __init__(self):
-        self.folder = rospy.get_param("/desert_sim/data_dir")
+    def __init__(self, name):
+        self.name = name
+        self.folder, self.journal = (rospy.get_param("/%s/%s" % (name, key)) for key in ("data_dir", "journal"))
+
+    def call(self, service, kind, *arguments, **fields):
+        return rospy.ServiceProxy("/%s/%s" % (self.name, service), kind)(*arguments, **fields)
 
     def pid(self):
         try:
-            uri = rospy.get_master().lookupNode("/desert_sim")[2]
+            uri = rospy.get_master().lookupNode("/" + self.name)[2]
             return xmlrpc.client.ServerProxy(uri).getPid("/resume")[2]
         except (OSError, xmlrpc.client.Error):
             return 0
 
     def step(self):
-        return rospy.wait_for_message("/desert_sim/status", SimulationStatus, 20 * PATIENCE).step
+        return rospy.wait_for_message("/%s/status" % self.name, SimulationStatus, 20 * PATIENCE).step
 
     def wait_for_saved(self):
         """A step that is in an autosave from here on."""
@@ -86,20 +91,45 @@ class Resume(Scenarios):
         node = self.start(name, dict(AUTOSAVED, data_dir=self.folder, **more))
         return node, node.latest("status", SimulationStatus).step
 
+    def kill(self, node):
+        """Kills it at a random moment, and waits for the next one. The newest autosave of the one that was killed."""
+        saved, killed = node.wait_for_saved(), node.pid()
+        time.sleep(random.uniform(0, 0.2))
+        os.kill(killed, signal.SIGKILL)
+        newest = shutil.copy(max(autosaves(node.folder), key=number), self.path("newest.ckpt"))
+        wait_until(lambda: node.pid() not in (0, killed), "it was not started anew")
+        self.assertGreaterEqual(node.step(), saved, "it went on where it was")
+        self.assertLessEqual(len(autosaves(node.folder)), 4,
+                             "the last two, the one that the journal began with, and one that was not tidied up yet")
+        return newest
+
     def test_killed_again_and_again(self):
-        node = Respawned()
+        node = Respawned("desert_sim")
         self.addCleanup(shutil.rmtree, node.folder, ignore_errors=True)
-        for _ in range(KILLS):
-            saved, killed = node.wait_for_saved(), node.pid()
-            time.sleep(random.uniform(0, 0.2))
-            os.kill(killed, signal.SIGKILL)
-            wait_until(lambda: node.pid() not in (0, killed), "it was not started anew")
-            self.assertGreaterEqual(node.step(), saved, "it went on where it was")
-            self.assertLessEqual(len(autosaves(node.folder)), 3, "the last two, and one that was not tidied up yet")
-        rospy.ServiceProxy("/desert_sim/pause", Trigger)()
-        reached = rospy.ServiceProxy("/desert_sim/step", Step)(0)
+        for _ in range((KILLS + 1) // 2):
+            self.kill(node)
+        node.call("pause", Trigger)
+        reached = node.call("step", Step, 0)
         self.assertEqual(reached.state_hash, self.run_without_ros(CORNER, "--steps", str(reached.step)),
                          "nothing was lost or done twice")
+
+    def test_the_journal_of_a_killed_node_leads_to_its_autosave(self):
+        node = Respawned("oasis")
+        self.addCleanup(shutil.rmtree, node.folder, ignore_errors=True)
+        self.addCleanup(lambda: [os.remove(path) for path in glob.glob(node.journal + "*")])
+        for n in range((KILLS + 1) // 2):
+            brush = {"shape": "circle", "center": Point(random.uniform(0, 30), random.uniform(10, 35), 0), "radius": 4}
+            self.assertTrue(node.call("edit_plants", EditPlants, operation="plant", species="bush", density=0.1, size=0.2,
+                                      seed=n, **brush).success)
+            self.assertTrue(node.call("edit_terrain", EditTerrain, layer="water", merge="max", value=0.5, **brush).success)
+            newest = self.kill(node)
+            reached = self.path("reached.ckpt")
+            self.run_without_ros(OASIS, "--replay", node.journal + ".previous", "--checkpoint", reached)
+            self.assertLessEqual(step_of(reached), step_of(newest), "the journal ends with its last command")
+            steps = str(step_of(newest))
+            self.assertEqual(self.run_without_ros("--resume", reached, "--steps", steps),
+                             self.run_without_ros("--resume", newest, "--steps", steps))
+        node.call("pause", Trigger)  # a node that runs would write into the folder that is removed
 
     def test_a_torn_file_is_skipped(self):
         self.saved("torn", 5)

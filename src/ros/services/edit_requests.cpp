@@ -124,7 +124,7 @@ void set_patch(const EditTerrainRequest& request, command::EditTerrain& command)
 
 }  // namespace
 
-command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames) {
+command::EditTerrain edit_command(const EditTerrainRequest& request, const TerrainTransforms& frames) {
   command::EditTerrain command;
   command.layer = request.layer;
   command.shape = choice_named<BrushShape>(brush_shapes, request.shape, "shape");
@@ -150,7 +150,7 @@ command::EditTerrain edit_command(const EditTerrainRequest& request, const Frame
   return command;
 }
 
-command::EditPlants plants_command(const EditPlantsRequest& request, const Frames& frames) {
+command::EditPlants plants_command(const EditPlantsRequest& request, const TerrainTransforms& frames) {
   command::EditPlants command;
   command.operation = choice_named<PlantEdit>(plant_edits, request.operation, "operation");
   command.species = request.species;

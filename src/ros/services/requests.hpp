@@ -10,18 +10,19 @@
 #include <desert_sim/SetWindSchedule.h>
 #include <geometry_msgs/Vector3Stamped.h>
 
-#include "src/ros/node/frames.hpp"
+#include "src/ros/conversion/terrain_transforms.hpp"
 #include "src/simulation/commands/command.hpp"
 
 namespace desert_sim {
 
 command::SetWind wind_command(const SetWindRequest& request);
 command::SetWindSchedule wind_schedule_command(const SetWindScheduleRequest& request);
-command::EditWind wind_edit_command(const EditWindRequest& request, const Frames& frames);
+command::EditWind wind_edit_command(const EditWindRequest& request, const TerrainTransforms& frames);
 command::SetParameters weather_command(const SetWeatherRequest& request);
 /// A message on ~cmd_wind.
-command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message, const Frames& frames);
-command::EditPlants plants_command(const EditPlantsRequest& request, const Frames& frames);
-command::EditTerrain edit_command(const EditTerrainRequest& request, const Frames& frames);
+command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message,
+                                  const TerrainTransforms& frames);
+command::EditPlants plants_command(const EditPlantsRequest& request, const TerrainTransforms& frames);
+command::EditTerrain edit_command(const EditTerrainRequest& request, const TerrainTransforms& frames);
 
 }  // namespace desert_sim

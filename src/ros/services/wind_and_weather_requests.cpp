@@ -30,7 +30,8 @@ command::SetWind wind_command(const SetWindRequest& request) {
   return command;
 }
 
-command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message, const Frames& frames) {
+command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message,
+                                  const TerrainTransforms& frames) {
   constexpr double largest_slope = 1e-6;  // the rounding of a rotation leaves less
   require_finite(message.vector.x, "vector.x");
   require_finite(message.vector.y, "vector.y");
@@ -75,7 +76,7 @@ command::SetWindSchedule wind_schedule_command(const SetWindScheduleRequest& req
   return command;
 }
 
-command::EditWind wind_edit_command(const EditWindRequest& request, const Frames& frames) {
+command::EditWind wind_edit_command(const EditWindRequest& request, const TerrainTransforms& frames) {
   command::EditWind command;
   WindFeature& feature = command.feature;
   command.operation = choice_named<WindEdit>(wind_edits, request.operation, "operation");
