@@ -121,7 +121,7 @@ TEST_F(CmdWind, RefusesWithAWarning) {
 /// The reasons are read from the function that the node calls for each message, because warnings of the node
 /// are two seconds apart.
 TEST_F(CmdWind, MalformedWindsAreRefusedWithTheirReasons) {
-  const Frames frames("terrain");
+  const TerrainTransforms frames("terrain");
   const auto expect_refused = [&](const geometry_msgs::Vector3Stamped& message, const std::string& text) {
     try {
       cmd_wind_command(message, frames);
