@@ -26,6 +26,9 @@ from lifecycle import OASIS, Scenarios, Trigger
 SECONDS = float(os.environ.get("DESERT_FLOOD_SECONDS", "8"))
 CLIENTS, SUBSCRIBERS = 4, 30
 CHECKPOINT = "start.ckpt"
+# glibc keeps what was freed of 10 MB requests in up to eight arenas per processor, for a long time at random. Then their
+# memory tells nothing of leaks; with a fixed threshold it is returned at once.
+RETURNS_LARGE_BUFFERS = {"MALLOC_MMAP_THRESHOLD_": str(1 << 20), "MALLOC_TRIM_THRESHOLD_": str(1 << 20)}
 BAD_NUMBERS = [math.nan, math.inf, -math.inf, 1e300, -1e300]
 BAD_NAMES = ["", "../../etc/passwd", "/etc/passwd", "a/../../b", "\n", "x" * 10_000_000]
 
@@ -183,8 +186,8 @@ class Flood(Scenarios):
         return memory
 
     def expect_flat(self, memory, before):
-        """From the second minute to the last, or (in short runs) bounded by what the allocator keeps of 10 MB requests."""
-        self.assertLess(memory[-1] - before, 500e6)
+        """From the second minute to the last, or (in short runs) bounded by the 10 MB requests that are being served."""
+        self.assertLess(memory[-1] - before, 250e6)
         if len(memory) < 3 * 600:
             return
         second, last = statistics.median(memory[600:1200]), statistics.median(memory[-600:])
@@ -193,7 +196,7 @@ class Flood(Scenarios):
     def test_a_flood_of_calls(self):
         journal = self.path("journal")
         node = self.start("flooded", {"scenario": OASIS, "paused": False, "step_rate": 50, "journal": journal,
-                                      "data_dir": self.path("data")})
+                                      "data_dir": self.path("data")}, environment=RETURNS_LARGE_BUFFERS)
         node.call("step", Step, 1)
         self.assertTrue(node.call("save_checkpoint", SaveCheckpoint, CHECKPOINT).success)
         grid = node.latest("elevation", ElevationGrid)
