@@ -42,14 +42,14 @@ def wait_until(happened, what, seconds=20):
 
 
 class Node:
-    """A desert_sim_node of its own; `private` are its private parameters."""
+    """A desert_sim_node of its own; `private` are its private parameters, `environment` is added to the test's."""
 
-    def __init__(self, name, private, preexec=None):
+    def __init__(self, name, private, preexec=None, environment=None):
         self.name = name
         rospy.set_param("/" + name, private)  # all there was before is gone
         self.process = subprocess.Popen(
             [program("desert_sim_node"), "__name:=" + name], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            text=True, preexec_fn=preexec)
+            text=True, preexec_fn=preexec, env=dict(os.environ, **(environment or {})))
         self.output = ""
         self.reader = threading.Thread(target=self.read)
         self.reader.start()

@@ -58,6 +58,7 @@ class Respawned:
         self.folder, self.journal = (rospy.get_param("/%s/%s" % (name, key)) for key in ("data_dir", "journal"))
 
     def call(self, service, kind, *arguments, **fields):
+        rospy.wait_for_service("/%s/%s" % (self.name, service), 20 * PATIENCE)  # topics come before services
         return rospy.ServiceProxy("/%s/%s" % (self.name, service), kind)(*arguments, **fields)
 
     def pid(self):
