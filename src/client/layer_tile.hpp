@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels/view/elevation_step.hpp"
+#include "kernels/view/quantised_steps.hpp"
 
 namespace desert_sim {
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <initializer_list>
 
 #include "src/core/error.hpp"
 #include "src/terrain/map_layers.hpp"
@@ -34,8 +35,9 @@ TerrainClient::Options checked(TerrainClient::Options options) {
   if (options.elevation_topic.empty()) options.elevation_topic = options.node + "/elevation";
   if (options.updates_topic.empty()) options.updates_topic = options.node + "/elevation_updates";
   if (options.request_topic.empty()) options.request_topic = options.node + "/request_keyframe";
-  for (const std::string* name :
-       {&options.node, &options.elevation_topic, &options.updates_topic, &options.request_topic}) {
+  const std::string layers = options.node + "/layers";
+  for (const std::string* name : std::initializer_list<const std::string*>{
+           &options.elevation_topic, &options.updates_topic, &options.request_topic, &layers}) {
     std::string why;
     if (!ros::names::validate(*name, why))
       throw ConfigError("TerrainClient: '" + *name + "' is not a valid topic name: " + why);
@@ -146,7 +148,8 @@ Result TerrainClient::read(const std::string& name, Result without, const Read& 
 }
 
 std::shared_ptr<const LayerMap> TerrainClient::layer_map(const std::string& name) const {
-  return read(name, std::shared_ptr<const LayerMap>(), [](const LayerStream& stream) { return stream.map(); });
+  return read(name, std::shared_ptr<const LayerMap>(),
+              [](const LayerStream& stream) { return stream.map(); });
 }
 
 std::optional<double> TerrainClient::value(const std::string& name, double x, double y) const {
