@@ -20,8 +20,8 @@ constexpr std::int8_t unchanged_step = -128;
 
 constexpr float unchanged_value = -HUGE_VALF;
 
-/// How far what is held may be off, in the layer's unit. A cell changed if it is off by more; a change from or
-/// to NaN always counts.
+/// How far what is held may be off, in the layer's unit. A cell changed if it is off by more; a change from
+/// or to NaN always counts.
 struct Tolerance {
   float threshold = 0;           ///< at least 0
   bool zero_is_special = false;  ///< a change from or to 0 always counts, too

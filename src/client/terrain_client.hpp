@@ -42,9 +42,9 @@ class TerrainClient {
     /// The layers to subscribe to from the start: names of known_layers(). Another list than the default
     /// may leave the elevation out.
     std::vector<std::string> layers = {"elevation"};
-    std::string elevation_topic;      ///< topic of keyframes; empty: <node>/elevation
-    std::string updates_topic;        ///< topic of updates; empty: <node>/elevation_updates
-    std::string request_topic;        ///< topic of requests; empty: <node>/request_keyframe
+    std::string elevation_topic;  ///< topic of keyframes; empty: <node>/elevation
+    std::string updates_topic;    ///< topic of updates; empty: <node>/elevation_updates
+    std::string request_topic;    ///< topic of requests; empty: <node>/request_keyframe
     /// Whether the client processes messages on its own thread. Otherwise they are processed by the callback
     /// queue of the given node handle (ros::spin(), a spinner, a nodelet's threads).
     bool own_thread = true;

@@ -59,6 +59,31 @@ TEST_F(Overlap, SnapshotsAndChangesAreThoseOfTheCpu) {
   }
 }
 
+TEST_F(Overlap, ChangesOfLayersAreThoseOfTheCpu) {
+  auto a = test::simulate(cpu(), test::grid_yaml(150, 131, "open") + dunes);
+  auto b = test::simulate(cuda(), test::grid_yaml(150, 131, "open") + dunes);
+  HeldQueries queries;
+  for (Layer layer : {Layer::sand, Layer::bedrock, Layer::wind_x, Layer::wind_shadow, Layer::slope,
+                      Layer::traversability, Layer::water_surface, Layer::moisture})
+    queries[layer].hold = HeldQuery::Hold::present;
+  for (Simulation* s : {a.get(), b.get()}) EXPECT_TRUE(s->begin_changes(queries).empty());
+  std::map<Layer, std::size_t> tiles;
+  for (int round = 0; round < 6; ++round) {
+    for (auto& [layer, query] : queries)
+      query = {true, {0.002f * static_cast<float>(round), layer == Layer::traversability}, 32};
+    for (Simulation* s : {a.get(), b.get()}) test::run(*s, 2);
+    const PendingChanges x = a->begin_changes(queries), y = b->begin_changes(queries);
+    ASSERT_EQ(x.size(), queries.size());
+    for (const auto& [layer, pending] : x) {
+      SCOPED_TRACE(testing::Message() << info(layer).name << ", round " << round);
+      test::expect_same(y.at(layer).get()->tiles, pending.get()->tiles);
+      tiles[layer] += pending.get()->tiles.size();
+    }
+  }
+  for (Layer layer : {Layer::sand, Layer::wind_x, Layer::slope, Layer::traversability})
+    EXPECT_GT(tiles[layer], 10u) << info(layer).name;
+}
+
 /// Steps are replayed as CUDA graphs meanwhile.
 TEST_F(Overlap, LookingLeavesNoTraceInTheSimulation) {
   auto alone = test::simulate(cuda(), test::grid_yaml(200, 160, "periodic") + dunes);

@@ -8,8 +8,8 @@
 
 namespace desert_sim::test {
 
-/// Values that a test chooses: of the elevation, between 0 and 300 m, which is that of bare rock; or of another
-/// layer.
+/// Values that a test chooses: of the elevation, between 0 and 300 m, which is that of bare rock; or of
+/// another layer.
 class HeldTerrain {
  public:
   HeldTerrain(Exec& exec, int width, int height, Layer layer = Layer::elevation);

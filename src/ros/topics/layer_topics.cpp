@@ -1,6 +1,6 @@
-/// ~elevation and ~elevation_updates, ~layers/<name> and ~layers/<name>_updates: a layer as a whole (keyframes),
-/// and the cells that changed since. The simulation keeps the values that subscribers hold, and forgets them
-/// when its terrain is replaced.
+/// ~elevation and ~elevation_updates, ~layers/<name> and ~layers/<name>_updates: a layer as a whole
+/// (keyframes), and the cells that changed since. The simulation keeps the values that subscribers hold, and
+/// forgets them when its terrain is replaced.
 
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
