@@ -87,6 +87,7 @@ TerrainClient::~TerrainClient() {
 const std::vector<std::string>& TerrainClient::known_layers() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
+    all.reserve(map_layers.size());
     for (const MapLayer& layer : map_layers) all.emplace_back(layer.name);
     return all;
   }();
