@@ -353,12 +353,18 @@ TEST_F(Layers, WithoutSubscribersNothingIsCopied) {
   const std::uint64_t before = statuses.last().step;
   EXPECT_EQ(copied(statuses), 0u);
   EXPECT_GT(statuses.last().step, before) << "it runs meanwhile";
+  std::uint32_t keyframe = 0;
   {
     const Listener<LayerUpdate> updates("layers/slope_updates");
     EXPECT_TRUE(updates.wait_for_count(3)) << "updates flow without a subscriber to keyframes";
     EXPECT_GT(copied(statuses), 0u);
+    keyframe = updates.last().keyframe;
+    EXPECT_EQ(updates.all().front().keyframe, keyframe);
   }
   EXPECT_TRUE(wait_until([&] { return copied(statuses) == 0; }));
+  ros::Duration(2).sleep();  // the node notices within a second that nobody takes updates any more
+  const Listener<LayerUpdate> anew("layers/slope_updates");
+  EXPECT_EQ(anew.last().keyframe, keyframe + 1) << "what subscribers held was forgotten";
   EXPECT_TRUE(call<std_srvs::Trigger>("pause").success);
 }
 
