@@ -79,6 +79,8 @@ class SimulationThread {
   /// For a scenario file at `path`. Refused if the journal needs the file that is there: see
   /// Session::require_not_of_journal().
   std::future<TerrainToSave> terrain_to_save(const std::string& path);
+  /// Gives back what is kept of a layer for subscribers.
+  std::future<void> forget(Layer layer);
   /// The scenario with the present parameters and the present wind regime.
   std::future<Scenario> scenario();
   /// `measure`: processes are timed for a while from now on, which costs some speed.
@@ -124,13 +126,14 @@ class SimulationThread {
   struct PendingState {
     Moment moment;
     PendingSnapshot snapshot;
-    Pending<ElevationChanges> changes;
+    PendingChanges changes;
     PendingCosts costs;
     PendingPlants plants;
     TerrainState get() const;
   };
   PendingState begin_state_copy(const std::vector<Layer>& layers, const RowBand& band,
                                 const StateQuery& query);
+  void note_request(Layer layer);
   Moment moment();
   ReachedState reached(bool with_hash);
   std::uint64_t state_hash();

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "client/messages.hpp"
-#include "src/client/elevation_map.hpp"
-#include "src/ros/topics/elevation_topic.hpp"
+#include "src/client/layer_map.hpp"
+#include "src/ros/topics/layer_tile_message.hpp"
 #include "src/ros/topics/topic.hpp"
 #include "support/held_terrain.hpp"
 
@@ -30,18 +30,18 @@ class Stream {
     terrain_.set(elevation);
     terrain_.hold();
     ElevationGrid grid = keyframe(1, 1, width, height);
-    grid.elevation = terrain_.elevation();
+    grid.elevation = terrain_.values();
     ElevationMap::Rectangle changed;
     map_ = std::make_shared<const ElevationMap>(boost::make_shared<ElevationGrid>(grid), nullptr, changed);
   }
   /// The tiles of the update to `elevation`, which the client takes.
-  std::vector<ElevationTile> update(const std::vector<float>& elevation) {
+  std::vector<LayerTile> update(const std::vector<float>& elevation) {
     terrain_.set(elevation);
     ElevationUpdate update;
     update.header.frame_id = "terrain";
     update.keyframe = 1;
     update.sequence = map_->info().sequence + 1;
-    for (const TileChange& change : terrain_.take(threshold_, tile_))
+    for (const TileChange& change : terrain_.take({threshold_}, tile_))
       update.tiles.push_back(tile_message(change));
     EXPECT_EQ(validation_error(update), "");
     EXPECT_EQ(validation_error(update, map_->info()), "");
@@ -51,7 +51,7 @@ class Stream {
   }
   /// How far the client is off.
   double largest_error() const {
-    const std::vector<float> client = map_->elevations(), now = terrain_.elevation();
+    const std::vector<float> client = map_->elevations(), now = terrain_.values();
     double largest = 0;
     for (std::size_t i = 0; i < now.size(); ++i)
       largest = std::max(largest, std::abs(static_cast<double>(client[i]) - now[i]));
@@ -89,7 +89,7 @@ TEST(HeldElevation, OnlyCellsThatChangedAreSent) {
   elevation[12 * width + 33] += 0.5f;
   elevation[14 * width + 36] -= 0.1f;
   elevation[20 * width + 2] += 0.009f;
-  const std::vector<ElevationTile> tiles = stream.update(elevation);
+  const std::vector<LayerTile> tiles = stream.update(elevation);
   ASSERT_EQ(tiles.size(), 1u);
   EXPECT_EQ(std::make_pair(tiles[0].x, tiles[0].y), std::make_pair(33u, 12u));
   EXPECT_EQ(std::make_pair(tiles[0].width, tiles[0].height), std::make_pair(4u, 3u));
@@ -103,7 +103,7 @@ TEST(HeldElevation, WhatEightBitsCannotTellIsSentAsElevations) {
   std::vector<float> elevation = flat(1);
   Stream stream(elevation, 0.01f, 32);
   elevation[0] = 4.5f;
-  const std::vector<ElevationTile> tiles = stream.update(elevation);
+  const std::vector<LayerTile> tiles = stream.update(elevation);
   ASSERT_EQ(tiles.size(), 1u);
   EXPECT_TRUE(tiles[0].changes.empty());
   EXPECT_EQ(tiles[0].data[0], 4.5f);
@@ -129,7 +129,7 @@ TEST(HeldElevation, ADuneStepTakesAFractionOfAKeyframe) {
     for (int x = 10; x < 40; ++x)
       elevation[static_cast<std::size_t>(y * width + x)] += 0.02f + 0.01f * (x % 7);
   std::size_t bytes = 0;
-  for (const ElevationTile& tile : stream.update(elevation)) {
+  for (const LayerTile& tile : stream.update(elevation)) {
     EXPECT_EQ(tile.bits, 4) << "nothing moved by more than seven steps of two thresholds";
     bytes += ros::serialization::serializationLength(tile);
   }
