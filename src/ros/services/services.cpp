@@ -111,7 +111,7 @@ namespace {
 /// What an edit that was asked for with its change has changed.
 TerrainDiffPtr diff_message(const ReachedState& edit, const std::string& frame) {
   const CellRectangle& touched = edit.result.changed_cells;
-  const LayerChange& change = edit.result.change;
+  const LayerChange& change = edit.result.changes.at(0);
   TerrainDiffPtr message = boost::make_shared<TerrainDiff>();
   message->header = header_of(edit.moment, frame);
   message->step = edit.moment.step;

@@ -7,12 +7,14 @@
 #include "src/simulation/commands/command.hpp"
 #include "src/simulation/pipeline/pipeline.hpp"
 #include "src/simulation/state.hpp"
+#include "src/simulation/undo/edit_history.hpp"
 
 namespace desert_sim {
 
 class Commands {
  public:
-  Commands(SimulationState& state, Pipeline& pipeline) : state_(state), pipeline_(pipeline) {}
+  Commands(SimulationState& state, Pipeline& pipeline)
+      : state_(state), pipeline_(pipeline), history_(state, pipeline) {}
 
   /// Each is applied whole, or throws ConfigError and changes nothing.
   CommandResult apply(const command::SetWind& command);
@@ -21,7 +23,15 @@ class Commands {
   /// `with_change`: the result tells what changed, cell by cell.
   CommandResult apply(const command::EditTerrain& command, bool with_change = false);
   CommandResult apply(const command::EditPlants& command);
+  CommandResult apply(const command::Undo& command, bool with_change = false) {
+    return history_.undo(command.stroke, with_change);
+  }
+  CommandResult apply(const command::Redo& command, bool with_change = false) {
+    return history_.redo(command.stroke, with_change);
+  }
   CommandResult apply(const command::SetParameters& command);
+
+  EditHistory& history() { return history_; }
 
   /// Changes the parameters that the timeline and ramps change now. Throws StateError if they are refused.
   void apply_timeline();
@@ -36,6 +46,7 @@ class Commands {
 
   SimulationState& state_;
   Pipeline& pipeline_;
+  EditHistory history_;
 };
 
 }  // namespace desert_sim
