@@ -28,6 +28,7 @@ class SimulationThread {
     double step_rate = 10;  ///< [steps/s]; 0: as fast as it can
     bool paused = false;
     std::string journal;  ///< file, or empty
+    std::size_t undo_memory = default_undo_memory;  ///< see Session [bytes]
     /// It starts from the first of these checkpoints that is complete, if there is one.
     std::vector<std::string> resume_from;
     std::string data_folder;  ///< that commands read files below; see Session::confine_commands()

@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "src/simulation/commands/command.hpp"
+#include "src/simulation/undo/edit_history.hpp"
 
 namespace desert_sim {
-
-/// Memory for what undo can bring back [bytes], unless somebody says how much.
-constexpr std::size_t default_undo_memory = std::size_t{64} << 20;
 
 class JournalWriter {
  public:

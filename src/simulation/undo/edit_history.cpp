@@ -62,7 +62,8 @@ Stroke& EditHistory::stroke_to_paint(const std::string& name) {
 
 void EditHistory::paint(const std::string& name, const LayerEdit& edit, bool new_layer) {
   if (!remembers()) return;
-  if (!stroke_to_paint(name).has_room(edit.layer, edit.cells)) close(stroke_to_paint(name));
+  const auto open = open_.find(name);
+  if (open != open_.end() && !open->second->has_room(edit.layer, edit.cells)) open_.erase(open);
   Stroke& stroke = stroke_to_paint(name);
   const std::size_t before = stroke.bytes();
   stroke.last_action = ++actions_;

@@ -14,6 +14,9 @@
 
 namespace desert_sim {
 
+/// Memory for the history [bytes], unless somebody says how much.
+constexpr std::size_t default_undo_memory = 64'000'000;
+
 /// Throws ConfigError, in the name of `what`, unless the name of a stroke has at most 255 bytes, all of them
 /// printable ASCII.
 void check_stroke_name(const std::string& name, const std::string& what);
