@@ -34,8 +34,8 @@ struct Brush {
   BrushMerge merge;
   double value;  ///< quanta (above the datum for bedrock)
   double quanta_per_metre;
-  bool depth;                ///< a depth of material: a ring of it has what there is
-  Quanta lowest, highest;    ///< what a cell may become
+  bool depth;              ///< a depth of material: a ring of it has what there is
+  Quanta lowest, highest;  ///< what a cell may become
   Material material;
   Quanta* layer;
   const Quanta* other_layers[3];  ///< other layers of the column, or null

@@ -24,13 +24,16 @@ Session::Session(const Scenario& scenario, const RasterLoader& load_raster, cons
   exec_ = make_exec(backend, threads, &backend_choice_);
   replace_simulation(std::make_unique<Simulation>(*exec_, resolved, load_raster_));
   if (journal_path.empty()) return;
-  journal_ = std::make_unique<JournalWriter>(journal_path, scenario_hash(resolved), exec_->backend(), undo_memory);
+  journal_ =
+      std::make_unique<JournalWriter>(journal_path, scenario_hash(resolved), exec_->backend(), undo_memory);
   journal_files_.push_back(journal_path);
 }
 
 Session::Session(const RasterLoader& load_raster, const std::string& backend, int threads,
                  std::size_t undo_memory)
-    : load_raster_(load_raster), undo_memory_(undo_memory), exec_(make_exec(backend, threads, &backend_choice_)) {}
+    : load_raster_(load_raster),
+      undo_memory_(undo_memory),
+      exec_(make_exec(backend, threads, &backend_choice_)) {}
 
 std::unique_ptr<Session> Session::from_checkpoint(const std::string& checkpoint,
                                                   const RasterLoader& load_raster, const std::string& backend,

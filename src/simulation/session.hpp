@@ -24,8 +24,7 @@ class Session {
   /// Begins with a checkpoint, and with the scenario in it.
   static std::unique_ptr<Session> from_checkpoint(const std::string& checkpoint,
                                                   const RasterLoader& load_raster, const std::string& backend,
-                                                  int threads,
-                                                  std::size_t undo_memory = default_undo_memory);
+                                                  int threads, std::size_t undo_memory = default_undo_memory);
   /// Throws ConfigError if the journal was written for another scenario; `path` names it in the message.
   void require_journal_of_this_scenario(const Journal& journal, const std::string& path) const;
 
@@ -73,7 +72,7 @@ class Session {
   std::uint64_t load_scenario(const command::LoadScenario& command);
 
   RasterLoader load_raster_;
-  std::string folder_;  ///< that commands read files below; empty: they read any file
+  std::string folder_;       ///< that commands read files below; empty: they read any file
   std::size_t undo_memory_;  ///< [bytes]
   std::string backend_choice_;
   std::unique_ptr<Exec> exec_;

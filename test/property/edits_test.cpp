@@ -102,7 +102,8 @@ TEST_P(Edits, ThatConserveKeepTheSumOfTheLayer) {
       const auto after = test::quanta(*s, layer_of(e));
       EXPECT_EQ(sum(after), sum(before));
       EXPECT_EQ(r.volume_m3, 0);
-      EXPECT_NEAR(std::accumulate(r.changes.at(0).values.begin(), r.changes.at(0).values.end(), 0.0), 0, 1e-4);
+      EXPECT_NEAR(std::accumulate(r.changes.at(0).values.begin(), r.changes.at(0).values.end(), 0.0), 0,
+                  1e-4);
       double rise = 0;
       for (float c : r.changes.at(0).values) rise += std::abs(c) * 0.25;
       if (before != after) ++made;

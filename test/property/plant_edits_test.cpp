@@ -158,7 +158,8 @@ TEST_P(PlantEdits, ThatWouldDrawTooManyPlacesAreRefusedAtOnce) {
   for (int n = 0; n < 500; ++n)
     polygon.points.push_back({30000 + 20000 * std::cos(0.0125 * n), 25000 + 20000 * std::sin(0.0125 * n)});
   EXPECT_NE(refusal(*s, polygon).find("at most 2e+06"), std::string::npos);
-  EXPECT_GT(s->apply(planting("bush", 30500, 25500, 300, 1e-3)).plants, 200) << "a small region is no trouble";
+  EXPECT_GT(s->apply(planting("bush", 30500, 25500, 300, 1e-3)).plants, 200)
+      << "a small region is no trouble";
 }
 
 TEST_P(PlantEdits, AreReplayedFromTheJournal) {

@@ -25,15 +25,16 @@ bool accepted(Session& session, const Command& command) {
 bool is_complete(const CommandResult& result) {
   const auto& materials = result.returned.materials;
   return result.returned.missing_plants == 0 &&
-         std::all_of(materials.begin(), materials.end(), [](const auto& m) { return !m || m->missing_m3 == 0; });
+         std::all_of(materials.begin(), materials.end(),
+                     [](const auto& m) { return !m || m->missing_m3 == 0; });
 }
 
 class UndoIn : public test::OnBackend {
  protected:
   std::unique_ptr<Session> session(const std::string& world, const std::string& journal = "",
                                    std::size_t memory = default_undo_memory) {
-    return std::make_unique<Session>(test::scenario_of(test::undo_world(world)), no_raster_loader, GetParam(), 1,
-                                     journal, memory);
+    return std::make_unique<Session>(test::scenario_of(test::undo_world(world)), no_raster_loader, GetParam(),
+                                     1, journal, memory);
   }
   static void steps(Session& s, int n) {
     for (; n > 0; --n) s.step();
@@ -98,7 +99,8 @@ TEST_P(UndoIn, AnyOrderBringsTheStartBackIfNothingWasMissing) {
           accepted(*s, random.next(random.below(3) ? name : ""));
         test::expect_sound(s->simulation(), world);
       }
-      for (int n = 0; n < 60; ++n) turn(command::Undo{std::string(1, static_cast<char>('a' + random.below(6)))});
+      for (int n = 0; n < 60; ++n)
+        turn(command::Undo{std::string(1, static_cast<char>('a' + random.below(6)))});
       while (accepted(*s, command::Undo{})) {
       }
       test::expect_sound(s->simulation(), world);
@@ -126,7 +128,8 @@ TEST_P(UndoIn, AWorldThatMovesTakesWhatIsThereAndTellsIt) {
     auto s = session(world);
     Simulation& simulation = s->simulation();
     test::RandomStrokes random(simulation, 5);
-    const double cell = simulation.scenario().grid.cell_size, quantum = simulation.terrain().scale().quantum();
+    const double cell = simulation.scenario().grid.cell_size,
+                 quantum = simulation.terrain().scale().quantum();
     int missing = 0;
     for (int n = 0; n < 120; ++n) {
       SCOPED_TRACE(std::string(world) + ", " + std::to_string(n));
@@ -239,7 +242,8 @@ TEST_P(UndoIn, WhatIsNotThereIsRefused) {
   edit.stroke = std::string(255, '~');
   s->apply(edit);
   s->apply(command::Undo{edit.stroke});
-  for (const Command& command : {Command(command::Reset{}), Command(command::LoadCheckpoint{folder_.path("c"), 0})}) {
+  for (const Command& command :
+       {Command(command::Reset{}), Command(command::LoadCheckpoint{folder_.path("c"), 0})}) {
     s->apply(edit);
     s->save_checkpoint(folder_.path("c"));
     s->apply(command);
@@ -267,7 +271,8 @@ TEST_P(UndoIn, MemoryIsBoundedAndTheOldestGoFirst) {
   auto s = session("dunes", "", memory);
   command::EditTerrain edit = test::edit_at(5, 5, BrushShape::rectangle);
   edit.radius = edit.radius_y = 5;
-  for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"}) edit.stroke = name, s->apply(edit);
+  for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"})
+    edit.stroke = name, s->apply(edit);
   EXPECT_NE(refusal(*s, command::Undo{"a"}).find("'a'"), std::string::npos);
   EXPECT_EQ(s->apply(command::Undo{}).returned.name, "j");
 }

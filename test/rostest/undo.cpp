@@ -1,5 +1,5 @@
-/// ~undo and ~redo on a paused node with the scenario corner.yaml (64 × 48 cells of 2 m, corner at (10, −20), half
-/// a metre of sand, open edges).
+/// ~undo and ~redo on a paused node with the scenario corner.yaml (64 × 48 cells of 2 m, corner at (10, −20),
+/// half a metre of sand, open edges).
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
@@ -81,7 +81,7 @@ TEST_F(UndoServices, ObstaclesArePaintedAndTakenAway) {
   region.layers = {"obstacle"};
   const auto there = call<GetSubmap>("get_submap", region);
   ASSERT_TRUE(there.success) << there.message;
-  for (float value : there.map.layers.at(0).values) EXPECT_EQ(value, 1);
+  for (float value : there.map.layers.at(0).data) EXPECT_EQ(value, 1);
   const std::string with = hash();
   EXPECT_NE(with, before);
   turn("undo");
@@ -137,47 +137,71 @@ TEST_F(UndoServices, IsToldToWhoeverListens) {
   EXPECT_TRUE(updates.wait_for_count(sent + 1)) << "what came back is an update of the elevation";
 }
 
+/// Somebody with connections of his own to the services.
+class Operator {
+ public:
+  explicit Operator(int number)
+      : number_(std::to_string(number)),
+        edit_(ros::NodeHandle().serviceClient<EditTerrain>("/desert_sim/edit_terrain", true)),
+        undo_(ros::NodeHandle().serviceClient<Undo>("/desert_sim/undo", true)),
+        redo_(ros::NodeHandle().serviceClient<Undo>("/desert_sim/redo", true)) {}
+
+  /// A stroke of two calls.
+  bool paint(int n) {
+    EditTerrain exchange;
+    exchange.request =
+        brush(30 + n % 40, 10 + n % 30, number_ + "/" + std::to_string(n), n % 3 ? "sand" : "bedrock");
+    exchange.request.value = 0.01 * (1 + n % 5);
+    for (int part = 0; part < 2; ++part)
+      if (!edit_.call(exchange) || !exchange.response.success) return false;
+    return true;
+  }
+  /// Of whoever painted last, who may be in the middle of his stroke.
+  bool undo() { return turn(undo_); }
+  bool redo() { return turn(redo_); }
+  bool missed_something() const { return missed_; }
+
+ private:
+  bool turn(ros::ServiceClient& client) {
+    Undo exchange;
+    EXPECT_TRUE(client.call(exchange)) << client.getService();
+    for (const auto& material : exchange.response.materials) missed_ = missed_ || material.missing > 0;
+    return exchange.response.success != 0;
+  }
+
+  std::string number_;
+  ros::ServiceClient edit_, undo_, redo_;
+  bool missed_ = false;
+};
+
 /// Two operators paint and undo at the same time: in the end all is as it was.
 TEST_F(UndoServices, AThousandStrokesOfTwoOperatorsAreUndone) {
   constexpr int strokes = 500;
   const std::string before = hash();
-  std::atomic<int> failed{0}, missing{0};
-  const auto both = [](const std::function<void(int)>& work) {
-    std::thread other([&] { work(1); });
-    work(0);
+  Operator first(0), second(1);
+  const auto both = [&](const std::function<void(Operator&)>& work) {
+    std::thread other([&] { work(second); });
+    work(first);
     other.join();
   };
-  const auto paint = [&](int who, int n) {
-    auto request = brush(30 + n % 40, 10 + n % 30, std::to_string(who) + "/" + std::to_string(n));
-    request.layer = n % 3 ? "sand" : "bedrock";
-    request.value = 0.01 * (1 + n % 5);
-    for (int part = 0; part < 2; ++part) failed += !call<EditTerrain>("edit_terrain", request).success;
-  };
-  const auto undo = [&] {
-    const auto response = call<Undo>("undo");
-    for (const auto& material : response.materials) missing += material.missing > 0;
-    return response.success != 0;
-  };
-  both([&](int who) {
+  std::atomic<int> failed{0}, undone{0};
+  both([&](Operator& who) {
     for (int n = 0; n < strokes; ++n) {
-      paint(who, n);
-      if (n % 10 != 9) continue;
-      failed += !undo();  // of whoever painted last, which may be in the middle of a stroke
-      failed += !call<Undo>("redo").success;
+      failed += !who.paint(n);
+      if (n % 10 == 9) failed += !who.undo() + !who.redo();
     }
   });
   EXPECT_NE(hash(), before);
   const auto begin = ros::WallTime::now();
-  std::atomic<int> undone{0};
-  both([&](int) {
-    while (undo()) ++undone;
+  both([&](Operator& who) {
+    while (who.undo()) ++undone;
   });
   const double milliseconds = (ros::WallTime::now() - begin).toSec() * 1000 / undone;
-  EXPECT_GE(undone, 2 * strokes);
-  RecordProperty("milliseconds_an_undo", std::to_string(milliseconds));
+  std::printf("  measured: %.2f ms an undo, of %d\n", milliseconds, undone.load());
   EXPECT_LT(milliseconds, 50 * patience());
+  EXPECT_GE(undone, 2 * strokes);
   EXPECT_EQ(failed, 0);
-  EXPECT_EQ(missing, 0);
+  EXPECT_FALSE(first.missed_something() || second.missed_something());
   expect_refused<Undo>("undo", {}, "no stroke", "undone");
   EXPECT_EQ(hash(), before);
 }

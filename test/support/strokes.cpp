@@ -5,12 +5,15 @@ namespace desert_sim::test {
 std::string undo_world(const std::string& name) {
   if (name == "dunes")
     return "grid: {width: 40, height: 30, cell_size: 0.5, origin_x: 100, origin_y: -50}\n"
-           "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 6}, noise: {layer: sand, low: 0, high: 2}]\n"
+           "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 6}, noise: {layer: sand, low: 0, high: "
+           "2}]\n"
            "wind: {speed: 7, direction_deg: 20}\nabrasion: {rate: 0.01}\n";
   if (name == "valley")
     return "grid: {width: 40, height: 30, boundary: open}\n"
-           "terrain: [noise: {layer: bedrock, low: 0, high: 5, scale: 9}, noise: {layer: soil, low: 0, high: 1},\n"
-           "  noise: {layer: sand, low: 0, high: 1, seed: 3}, noise: {layer: water, low: 0, high: 0.5, seed: 4},\n"
+           "terrain: [noise: {layer: bedrock, low: 0, high: 5, scale: 9}, noise: {layer: soil, low: 0, high: "
+           "1},\n"
+           "  noise: {layer: sand, low: 0, high: 1, seed: 3}, noise: {layer: water, low: 0, high: 0.5, seed: "
+           "4},\n"
            "  obstacle: {x: 20, y: 15, size_x: 4, size_y: 4, height: 2}]\n"
            "wind: {speed: 6}\nrain: {rate: 1.0e-4}\n";
   return "grid: {width: 48, height: 40}\n"

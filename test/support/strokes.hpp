@@ -20,7 +20,9 @@ class RandomStrokes {
   RandomStrokes(const Simulation& simulation, unsigned seed) : simulation_(simulation), random_(seed) {}
   Command next(const std::string& stroke);
   std::size_t below(std::size_t n) { return random_() % n; }
-  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  double between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
 
  private:
   template <class Edit>

@@ -74,9 +74,10 @@ constexpr auto parameter_table(const NodeParameters*) {
           "answer_timeout", &P::answer_timeout, 0, 1e6, "s",
           "Of wall time: a service whose request has waited so long for a step or another request to end "
           "refuses it, and changes nothing. 0: it waits. ~step waits for its steps."),
-      parameter("undo_memory", &P::undo_memory, 0, 1e6, "MB",
-                "Of 10^6 bytes, for what ~undo and ~redo can bring back; the oldest strokes are forgotten first. "
-                "0: nothing is kept."));
+      parameter(
+          "undo_memory", &P::undo_memory, 0, 1e6, "MB",
+          "Of 10^6 bytes, for what ~undo and ~redo can bring back; the oldest strokes are forgotten first. "
+          "0: nothing is kept."));
 }
 static_assert(table_is_complete<NodeParameters>());
 

@@ -95,7 +95,8 @@ constexpr auto parameter_table(const EditParameters*) {
           "Share of the radius (of a rectangle, of half its sides) within which the brush has full weight."),
       parameter("falloff", &P::falloff, 0, 1e6, "m",
                 "Of a polygon or patch: how far inside its edge the brush has full weight."),
-      parameter("value", &P::value, -1e5, 1e5, "m", "Height or depth of the brush; see merge. Of obstacle [1]."),
+      parameter("value", &P::value, -1e5, 1e5, "m",
+                "Height or depth of the brush; see merge. Of obstacle [1]."),
       parameter("patch_use", &P::patch_use, patch_uses,
                 "Whether a patch holds heights that are added to value, or weights."),
       parameter("smooth_radius", &P::smooth_radius, 1e-3, 1e6, "m",
@@ -120,13 +121,13 @@ struct Patch {
   std::vector<float> values;
 };
 
-/// A brush on `layer`: sand, bedrock, obstacle, or soil and water where the terrain has some. The weight of the shape
-/// and what a merge does with it are in kernels/edit/brush_shape.hpp and brush.hpp. For sand, soil and water
-/// `value` is a depth [m]; for bedrock an elevation [m], or with add and sub a change. With `conserve`, the
-/// material comes from, or goes to, the cells within `ring_width` of the shape: what is taken in proportion
-/// to what they have, of bedrock and what is given in equal parts. The sum of all changes is then 0, to the
-/// quantum. An obstacle is no material: its `value` is 0 … 1, it cannot be conserved, and it is kept in steps of
-/// 2⁻²⁰.
+/// A brush on `layer`: sand, bedrock, obstacle, or soil and water where the terrain has some. The weight of
+/// the shape and what a merge does with it are in kernels/edit/brush_shape.hpp and brush.hpp. For sand, soil
+/// and water `value` is a depth [m]; for bedrock an elevation [m], or with add and sub a change. With
+/// `conserve`, the material comes from, or goes to, the cells within `ring_width` of the shape: what is taken
+/// in proportion to what they have, of bedrock and what is given in equal parts. The sum of all changes is
+/// then 0, to the quantum. An obstacle is no material: its `value` is 0 … 1, it cannot be conserved, and it
+/// is kept in steps of 2⁻²⁰.
 struct EditTerrain : EditParameters {
   static constexpr std::size_t max_points = 512;
   std::vector<Point> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
@@ -172,8 +173,8 @@ struct EditPlants : EditPlantsParameters {
   std::vector<Point> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
 };
 
-/// Takes back what a stroke of EditTerrain and EditPlants commands changed: of the stroke of that name, or, if
-/// it is empty, of the one that was painted or redone last. See EditHistory.
+/// Takes back what a stroke of EditTerrain and EditPlants commands changed: of the stroke of that name, or,
+/// if it is empty, of the one that was painted or redone last. See EditHistory.
 struct Undo {
   std::string stroke;
 };
@@ -229,10 +230,10 @@ bool replaces_terrain(const Command& command) {
 
 }  // namespace command
 
-using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditWind,
-                             command::EditTerrain, command::EditPlants, command::Undo,
-                             command::Redo, command::SetParameters,
-                             command::Reset, command::LoadCheckpoint, command::LoadScenario>;
+using Command =
+    std::variant<command::SetWind, command::SetWindSchedule, command::EditWind, command::EditTerrain,
+                 command::EditPlants, command::Undo, command::Redo, command::SetParameters, command::Reset,
+                 command::LoadCheckpoint, command::LoadScenario>;
 
 /// Cells that a command changed: x0 ≤ x < x1, y0 ≤ y < y1 (empty if x1 ≤ x0).
 struct CellRectangle {

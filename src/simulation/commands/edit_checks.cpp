@@ -98,7 +98,7 @@ void check_patch(const EditTerrain& edit, ValidationErrors& errors) {
     }
 }
 
-/// Obstacles are 0 … 1, and so is what a brush says of them; what it adds or takes may be negative in a patch.
+/// Obstacles are 0 … 1, and so is what a brush says of them; what a patch adds or takes may be negative.
 void check_obstacle(const EditTerrain& edit, ValidationErrors& errors) {
   if (edit.conserve) errors.add("conserve", "obstacle is no material that a ring could give or take");
   if (edit.merge == BrushMerge::smooth) return;

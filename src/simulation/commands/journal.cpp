@@ -116,7 +116,8 @@ Journal read_journal(const std::string& path) {
                           "; this program reads version 1");
       journal.scenario_hash = number("scenario_hash");
       journal.backend = node["backend"] ? node["backend"].Scalar() : "";
-      if (node["undo_memory"]) journal.undo_memory = number("undo_memory");  // none in journals of version 0.1
+      if (node["undo_memory"])  // journals of version 0.1 have none
+        journal.undo_memory = number("undo_memory");
       continue;
     }
     const std::uint64_t tick = number("tick");

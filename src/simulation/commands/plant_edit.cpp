@@ -57,7 +57,7 @@ class Region {
   bool covers(float x, float y) const {
     return shape_.covers({lookup_.difference_x(x, x_), lookup_.difference_y(y, y_)}, 0.0f);
   }
-  /// Whether a place of the cell can lie in the rectangle around the region; `reach`: half of the cell's side.
+  /// Whether a place of the cell can lie in the rectangle around the region; `reach`: half the cell's side.
   bool may_reach(float x, float y, float reach) const {
     return std::abs(lookup_.difference_x(x, x_)) <= half_x_ + reach &&
            std::abs(lookup_.difference_y(y, y_)) <= half_y_ + reach;

@@ -1,6 +1,7 @@
 #include "src/simulation/undo/edit_history.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "src/core/error.hpp"
 #include "src/core/quoted.hpp"
@@ -13,8 +14,8 @@ namespace desert_sim {
 void check_stroke_name(const std::string& name, const std::string& what) {
   constexpr std::size_t longest = 255;
   if (name.size() > longest)
-    throw ConfigError(what + ": stroke: has " + std::to_string(name.size()) +
-                      " bytes (allowed: at most " + std::to_string(longest) + ")");
+    throw ConfigError(what + ": stroke: has " + std::to_string(name.size()) + " bytes (allowed: at most " +
+                      std::to_string(longest) + ")");
   if (!std::all_of(name.begin(), name.end(), [](char c) { return c >= ' ' && c <= '~'; }))
     throw ConfigError(what + ": stroke: has a byte that is not a printable character of ASCII");
 }
@@ -106,9 +107,9 @@ Stroke& EditHistory::find(const std::string& name, bool undone, const std::strin
   const std::string verb = undone ? "redone" : "undone";
   if (!remembers()) throw ConfigError(what + ": no stroke is kept, because undo_memory is 0");
   if (!newest) throw ConfigError(what + ": there is no stroke that can be " + verb);
-  throw ConfigError(what + ": stroke: " + quoted(name) + " is not the name of a stroke that can be " + verb +
-                    (newest->name.empty() ? " (the newest has no name)"
-                                          : " (the newest is " + quoted(newest->name) + ")"));
+  throw ConfigError(
+      what + ": stroke: " + quoted(name) + " is not the name of a stroke that can be " + verb +
+      (newest->name.empty() ? " (the newest has no name)" : " (the newest is " + quoted(newest->name) + ")"));
 }
 
 CommandResult EditHistory::undo(const std::string& name, bool with_change) {
@@ -118,6 +119,16 @@ CommandResult EditHistory::undo(const std::string& name, bool with_change) {
 CommandResult EditHistory::redo(const std::string& name, bool with_change) {
   return turn(find(name, true, "redo"), with_change);
 }
+
+namespace {
+
+std::vector<int> cells_of(const std::vector<ObstacleCell>& obstacles) {
+  std::vector<int> cells;
+  for (const ObstacleCell& c : obstacles) cells.push_back(c.cell);
+  return cells;
+}
+
+}  // namespace
 
 /// Brings the memory into use that the stroke needs. Throws ConfigError, and has changed nothing, if there is
 /// none.
@@ -153,25 +164,38 @@ void EditHistory::release_obstacles() {
 }
 
 CommandResult EditHistory::turn(Stroke& stroke, bool with_change) {
+  // Whatever needs memory comes first, so that nothing is half done if there is none.
   prepare(stroke);
-  pipeline_.ground_changed();
   const std::size_t before = stroke.bytes();
-  const MaterialReturns moved = return_materials(stroke.materials, state_);
+  std::optional<MaterialTurn> materials;
+  std::optional<CellList> obstacles;
+  CommandResult result;
+  try {
+    materials.emplace(stroke.materials, state_);
+    obstacles.emplace(state_.exec(), cells_of(stroke.obstacles));
+    result.returned.missing_plants = population_.turn_back(stroke.plants);
+  } catch (...) {
+    release_obstacles();
+    throw;
+  }
+  pipeline_.ground_changed();
+  const MaterialReturns moved = materials->commit();
   ChangedCells cells(state_);
   for (const MaterialChange& change : stroke.materials) cells.add(change);
   if (!stroke.obstacles.empty())
-    cells.add(stroke.obstacles, turn_obstacles(strokes_, stroke, stroke.obstacles, state_.terrain));
-  CommandResult result;
-  result.returned.missing_plants = population_.turn_back(stroke.plants);
+    cells.add(stroke.obstacles,
+              turn_obstacles(strokes_, stroke, stroke.obstacles, *obstacles, state_.terrain));
   cells.add(stroke.plants);
   result.plants = static_cast<long long>(stroke.plants.added.size()) -
                   static_cast<long long>(stroke.plants.removed.size());
   bool complete = true;
   for (const MaterialChange& change : stroke.materials) {
     const auto m = static_cast<std::size_t>(material_of(change.layer));
-    const double cell = state_.scenario.grid.cell_size, quantum = state_.terrain.scale().quantum() * cell * cell;
+    const double cell = state_.scenario.grid.cell_size,
+                 quantum = state_.terrain.scale().quantum() * cell * cell;
     const auto volume = [&](long long quanta) { return static_cast<double>(quanta) * quantum; };
-    result.returned.materials[m] = {volume(moved[m].added), volume(moved[m].removed), volume(moved[m].missing)};
+    result.returned.materials[m] = {volume(moved[m].added), volume(moved[m].removed),
+                                    volume(moved[m].missing)};
     complete = complete && moved[m].missing == 0;
   }
   loose_.returned(stroke, complete, stroke.loose);

@@ -1,6 +1,6 @@
 #pragma once
-/// The history of edits: what undo and redo bring back. doc/undo.md says what they mean in a world that moves.
-/// It belongs to a simulation and ends with it; checkpoints do not have it.
+/// The history of edits: what undo and redo bring back. doc/undo.md says what they mean in a world that
+/// moves. It belongs to a simulation and ends with it; checkpoints do not have it.
 
 #include <deque>
 #include <string>
@@ -32,8 +32,8 @@ class EditHistory {
   bool remembers() const { return memory_ > 0; }
   std::size_t bytes() const;
 
-  // ---- Painting. A name that is not empty and belongs to a stroke which nobody has undone or redone continues
-  // that stroke.
+  // ---- Painting. A name that is not empty and belongs to a stroke which nobody has undone or redone
+  // continues that stroke.
 
   /// Before an edit changes the ground.
   void begin_ground() { loose_.begin(); }
@@ -62,10 +62,10 @@ class EditHistory {
   Pipeline& pipeline_;
   LooseGround loose_;
   Population population_;
-  std::deque<Stroke> strokes_;                      ///< the oldest first
+  std::deque<Stroke> strokes_;                     ///< the oldest first
   std::unordered_map<std::string, Stroke*> open_;  ///< those that further edits belong to
-  std::uint64_t actions_ = 0;                       ///< edits, undos and redos so far
-  bool obstacles_are_new_ = false;                  ///< the layer is in use because of these strokes alone
+  std::uint64_t actions_ = 0;                      ///< edits, undos and redos so far
+  bool obstacles_are_new_ = false;                 ///< the layer is in use because of these strokes alone
   std::size_t memory_ = 0, stroke_bytes_ = 0;
 };
 

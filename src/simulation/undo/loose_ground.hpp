@@ -31,7 +31,7 @@ class LooseGround {
 
   SimulationState& state_;
   std::uint64_t epoch_ = 0, marks_ = 0;
-  std::uint64_t steps_ = 0;  ///< of the epoch
+  std::uint64_t steps_ = 0;              ///< of the epoch
   std::array<bool, 2> at_rest_flags_{};  ///< bedrock_loose and soil_loose where the sums are 0
   std::array<std::uint64_t, 2> sums_{};  ///< of bedrock, of soil
 };

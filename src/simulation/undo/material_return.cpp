@@ -102,6 +102,7 @@ class LayerReturn {
     }
   }
 
+  Layer layer() const { return change_.layer; }
   /// Writes the layer and makes the change what was done. Books it in the accounts.
   MaterialReturn commit(std::vector<long long>& accounts) {
     MaterialReturn told;
@@ -171,21 +172,33 @@ class LayerReturn {
 
 }  // namespace
 
-MaterialReturns return_materials(std::vector<MaterialChange>& changes, SimulationState& state) {
-  MaterialReturns told;
-  if (changes.empty()) return told;
-  const std::vector<int> cells = cells_of(changes);
-  Columns columns(cells, state.terrain);
+struct MaterialTurn::Work {
+  SimulationState& state;
+  std::vector<int> cells;
+  Columns columns;
   std::vector<LayerReturn> layers;
-  layers.reserve(changes.size());
-  for (MaterialChange& change : changes) layers.emplace_back(change, columns);
-  // First all that is taken, so that columns never rise above what they were.
-  for (LayerReturn& layer : layers) layer.take();
-  for (LayerReturn& layer : layers) layer.give();
-  std::vector<long long> accounts = state.read_ledger();
-  for (std::size_t n = 0; n < changes.size(); ++n)
-    told[static_cast<std::size_t>(material_of(changes[n].layer))] = layers[n].commit(accounts);
-  state.write_ledger(accounts);
+
+  Work(std::vector<MaterialChange>& changes, SimulationState& of)
+      : state(of), cells(cells_of(changes)), columns(cells, of.terrain) {
+    layers.reserve(changes.size());
+    for (MaterialChange& change : changes) layers.emplace_back(change, columns);
+    // First all that is taken, so that columns never rise above what they were.
+    for (LayerReturn& layer : layers) layer.take();
+    for (LayerReturn& layer : layers) layer.give();
+  }
+};
+
+MaterialTurn::MaterialTurn(std::vector<MaterialChange>& changes, SimulationState& state)
+    : work_(changes.empty() ? nullptr : std::make_unique<Work>(changes, state)) {}
+MaterialTurn::~MaterialTurn() = default;
+
+MaterialReturns MaterialTurn::commit() {
+  MaterialReturns told;
+  if (!work_) return told;
+  std::vector<long long> accounts = work_->state.read_ledger();
+  for (LayerReturn& layer : work_->layers)
+    told[static_cast<std::size_t>(material_of(layer.layer()))] = layer.commit(accounts);
+  work_->state.write_ledger(accounts);
   return told;
 }
 

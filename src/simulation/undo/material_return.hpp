@@ -2,6 +2,8 @@
 /// Takes back what a stroke changed in the layers of material, as far as it is there.
 
 #include <array>
+#include <memory>
+#include <vector>
 
 #include "src/simulation/state.hpp"
 #include "src/simulation/undo/stroke.hpp"
@@ -18,9 +20,23 @@ using MaterialReturns = std::array<MaterialReturn, material_count>;
 /// Each cell loses what the stroke gave it, and gets what the stroke took. No depth falls below 0, no rock
 /// below the lowest height, and no column rises above the highest; what a cell lacks, or has no room for, is
 /// missing. Where all edits of a layer conserved its material, so does this: cells get only as much as others
-/// could give, in proportion. The accounts of material are turned back as well, so that they close. `changes`
-/// becomes what was changed now, which undoes this in its turn. Throws ConfigError, and has changed nothing,
-/// if there is no memory.
-MaterialReturns return_materials(std::vector<MaterialChange>& changes, SimulationState& state);
+/// could give, in proportion.
+class MaterialTurn {
+ public:
+  /// Works out what `changes` (of a stroke) come to. Throws ConfigError, and has changed nothing, if there is
+  /// no memory.
+  MaterialTurn(std::vector<MaterialChange>& changes, SimulationState& state);
+  ~MaterialTurn();
+  MaterialTurn(const MaterialTurn&) = delete;
+  MaterialTurn& operator=(const MaterialTurn&) = delete;
+
+  /// Makes the change, and turns the accounts of material back, so that they close. `changes` become what was
+  /// changed now, which undoes this in its turn.
+  MaterialReturns commit();
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;  ///< null if there are no changes
+};
 
 }  // namespace desert_sim

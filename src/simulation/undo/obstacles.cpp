@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "kernels/field/math.hpp"
-#include "src/simulation/undo/cell_list.hpp"
 
 namespace desert_sim {
 
@@ -58,11 +57,8 @@ void paint_obstacles(std::deque<Stroke>& strokes, Stroke& stroke, const std::vec
 }
 
 std::vector<float> turn_obstacles(std::deque<Stroke>& strokes, const Stroke& stroke,
-                                  std::vector<ObstacleCell>& cells, Terrain& terrain) {
+                                  std::vector<ObstacleCell>& cells, const CellList& list, Terrain& terrain) {
   const std::vector<ObstacleCell*> above = newer(strokes, stroke, cells);
-  std::vector<int> indices;
-  for (const ObstacleCell& c : cells) indices.push_back(c.cell);
-  const CellList list(terrain.exec(), indices);
   std::vector<std::uint32_t> words = list.read(terrain.data(Layer::obstacle));
   std::vector<float> changes(cells.size(), 0.0f);
   for (std::size_t n = 0; n < cells.size(); ++n) {

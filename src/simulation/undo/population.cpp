@@ -63,10 +63,11 @@ PlantChange Population::paint(const Edit& edit, bool remembers) {
     change.added.push_back({plant, next_rank_, mark_of_coming(next_rank_)});
     ++next_rank_;
   }
-  replace(edit.removed, change.added);
   std::vector<ChangedPlant> changed = change.removed;
   changed.insert(changed.end(), change.added.begin(), change.added.end());
-  update_cover(changed, false, remembers);
+  CoverUpdate cover = begin_cover(changed);
+  replace(edit.removed, change.added);
+  update_cover(cover, false, remembers);
   if (!remembers) forget();
   return change;
 }
@@ -87,11 +88,13 @@ long long Population::turn_back(PlantChange& change) {
   }
   for (const ChangedPlant& plant : change.passed)
     if (is_current(plant)) now.passed.push_back({plant.words, plant.rank, std::uint64_t{0} - plant.mark});
-  replace(taken.places, now.added);
   now.removed = std::move(taken.plants);
   std::vector<ChangedPlant> changed = now.removed;
-  for (const auto* list : {&now.added, &now.passed}) changed.insert(changed.end(), list->begin(), list->end());
-  update_cover(changed, true, true);
+  for (const auto* list : {&now.added, &now.passed})
+    changed.insert(changed.end(), list->begin(), list->end());
+  CoverUpdate cover = begin_cover(changed);
+  replace(taken.places, now.added);
+  update_cover(cover, true, true);
   const std::size_t wanted = change.added.size() + change.removed.size();
   const auto missing = static_cast<long long>(wanted - now.added.size() - now.removed.size());
   change = std::move(now);
@@ -164,9 +167,7 @@ void Population::replace(const std::vector<std::uint32_t>& removed, const std::v
     int key;
     std::uint64_t rank;
     std::size_t place;  ///< of those that stay, or count() + number in `added`
-    bool operator<(const Item& other) const {
-      return key != other.key ? key < other.key : rank < other.rank;
-    }
+    bool operator<(const Item& other) const { return key != other.key ? key < other.key : rank < other.rank; }
   };
   const auto key = [this](const PlantWords& plant) {
     return state_.plants.lookup.key(float_from_bits(word(plant, Column::x)),

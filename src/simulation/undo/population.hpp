@@ -8,8 +8,8 @@
 ///
 /// Plants also leave their trace in vegetation and humus, which a step computes from the plants as they are
 /// in the middle of it, so that they cannot be computed anew afterwards. Therefore what each block of 8 × 8
-/// cells had is kept for every set of plants around it that there was since the last step. A set is known by a
-/// sum of numbers (marks): one for each plant that was put or taken away.
+/// cells had is kept for every set of plants around it that there was since the last step. A set is known by
+/// a sum of numbers (marks): one for each plant that was put or taken away.
 
 #include <array>
 #include <cstdint>
@@ -65,9 +65,17 @@ class Population {
 
   void begin();
   Found find(const std::vector<ChangedPlant>& wanted) const;
+  /// What an update of vegetation and humus needs, made before the plants are changed.
+  struct CoverUpdate {
+    std::vector<int> blocks;           ///< that a changed plant reaches
+    std::vector<std::uint64_t> marks;  ///< of all blocks: the sum over the changed plants that reach it
+    CellList cells;                    ///< of `blocks`, one after the other
+    Buffer<std::uint32_t> vegetation, humus;
+  };
   void replace(const std::vector<std::uint32_t>& removed, const std::vector<ChangedPlant>& added);
-  void update_cover(const std::vector<ChangedPlant>& changed, bool recall, bool remembers);
-  Cover compute_cover(const CellList& list);
+  CoverUpdate begin_cover(const std::vector<ChangedPlant>& changed) const;
+  void update_cover(CoverUpdate& update, bool recall, bool remembers);
+  Cover compute_cover(CoverUpdate& update);
   void keep_cover(Block& block, std::uint64_t marks, std::pair<std::size_t, std::size_t> cells,
                   const Cover& before, Cover& now, bool recall);
   std::vector<std::uint64_t> marks_of_blocks(const std::vector<ChangedPlant>& changed,
@@ -80,7 +88,7 @@ class Population {
   SimulationState& state_;
   Pipeline& pipeline_;
   bool begun_ = false;
-  std::uint64_t steps_ = 0;                      ///< to which the ranks belong
+  std::uint64_t steps_ = 0;                       ///< to which the ranks belong
   std::uint64_t first_rank_ = 0, next_rank_ = 0;  ///< of those since the last step; of the next plant
   std::vector<std::uint32_t> words_;              ///< of all plants, column by column; only within a call
   std::vector<std::uint64_t> ranks_;              ///< of all plants, in their order

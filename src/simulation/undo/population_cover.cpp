@@ -22,7 +22,8 @@ float value(const ChangedPlant& plant, Column c) {
 /// The cells along an axis from low to high [cells], in parts that lie within one block; wrapped or cut off.
 template <class Visit>
 void visit_blocks(double low, double high, int cells, bool periodic, const Visit& visit) {
-  auto first = static_cast<long long>(std::floor(low)) - 1, last = static_cast<long long>(std::floor(high)) + 1;
+  auto first = static_cast<long long>(std::floor(low)) - 1,
+       last = static_cast<long long>(std::floor(high)) + 1;
   if (!periodic) first = std::max(first, 0LL), last = std::min(last, cells - 1LL);
   if (last - first >= cells) first = 0, last = cells - 1;
   while (first <= last) {
@@ -34,9 +35,7 @@ void visit_blocks(double low, double high, int cells, bool periodic, const Visit
 
 }  // namespace
 
-int Population::block_columns() const {
-  return (state_.terrain.grid().width + block_side - 1) / block_side;
-}
+int Population::block_columns() const { return (state_.terrain.grid().width + block_side - 1) / block_side; }
 
 std::vector<int> Population::cells_of(int block) const {
   const Grid& grid = state_.terrain.grid();
@@ -70,57 +69,66 @@ std::vector<std::uint64_t> Population::marks_of_blocks(const std::vector<Changed
   return marks;
 }
 
-/// The present plants' vegetation and humus in a list of cells.
-Population::Cover Population::compute_cover(const CellList& list) {
+Population::CoverUpdate Population::begin_cover(const std::vector<ChangedPlant>& changed) const {
+  std::vector<int> blocks, cells;
+  std::vector<std::uint64_t> marks = marks_of_blocks(changed, blocks);
+  for (const int block : blocks) {
+    const std::vector<int> of_block = cells_of(block);
+    cells.insert(cells.end(), of_block.begin(), of_block.end());
+  }
+  Exec& exec = state_.exec();
+  CoverUpdate update{std::move(blocks), std::move(marks), CellList(exec, cells), {}, {}};
+  if (cells.empty()) return update;
+  update.vegetation = Buffer<std::uint32_t>(exec, static_cast<std::size_t>(state_.terrain.grid().cells()));
+  update.humus = Buffer<std::uint32_t>(exec, update.vegetation.size());
+  return update;
+}
+
+/// What vegetation and humus come to with the present plants.
+Population::Cover Population::compute_cover(CoverUpdate& update) {
   const Terrain& terrain = state_.terrain;
-  Buffer<std::uint32_t> vegetation(state_.exec(), static_cast<std::size_t>(terrain.grid().cells())),
-      humus(state_.exec(), vegetation.size());
-  state_.exec().copy(humus.data(), terrain.data(Layer::humus), humus.bytes());
+  state_.exec().copy(update.humus.data(), terrain.data(Layer::humus), update.humus.bytes());
   with_backend(state_.exec(), [&](auto& e) {
     surface::Heights& heights = pipeline_.fields().heights;
     surface::compute_heights(e, terrain.view(), heights);
     TerrainView view = terrain.view();
-    view.layers[static_cast<int>(Layer::vegetation)] = vegetation.data();
-    view.layers[static_cast<int>(Layer::humus)] = humus.data();
+    view.layers[static_cast<int>(Layer::vegetation)] = update.vegetation.data();
+    view.layers[static_cast<int>(Layer::humus)] = update.humus.data();
     plants::cover(e, view, state_.scenario.vegetation, 0.0f, heights, true, state_.plants);
   });
   pipeline_.derived_changed();
-  return {0, list.read(vegetation.data()), list.read(humus.data())};
+  return {0, update.cells.read(update.vegetation.data()), update.cells.read(update.humus.data())};
 }
 
 /// Brings vegetation and humus up to date in the blocks that the changed plants reach, so that who looks
 /// before the next step sees them. `recall`: where a block has had this set of plants before, it gets what it
 /// had then.
-void Population::update_cover(const std::vector<ChangedPlant>& changed, bool recall, bool remembers) {
-  if (changed.empty()) return;
-  std::vector<int> touched, cells;
-  const std::vector<std::uint64_t> marks = marks_of_blocks(changed, touched);
-  for (const int block : touched) {
-    const std::vector<int> of_block = cells_of(block);
-    cells.insert(cells.end(), of_block.begin(), of_block.end());
-  }
+void Population::update_cover(CoverUpdate& update, bool recall, bool remembers) {
+  if (update.blocks.empty()) return;
   const Terrain& terrain = state_.terrain;
-  const CellList list(state_.exec(), cells);
-  Cover cover = compute_cover(list);
+  const CellList& cells = update.cells;
+  Cover cover = compute_cover(update);
   if (remembers) {
-    const Cover before{0, list.read(terrain.data(Layer::vegetation)), list.read(terrain.data(Layer::humus))};
+    const Cover before{0, cells.read(terrain.data(Layer::vegetation)),
+                       cells.read(terrain.data(Layer::humus))};
     std::size_t first = 0;
-    for (const int block : touched) {
+    for (const int block : update.blocks) {
       const std::size_t size = cells_of(block).size();
-      keep_cover(blocks_[block], marks[static_cast<std::size_t>(block)], {first, first + size}, before, cover,
-                 recall);
+      keep_cover(blocks_[block], update.marks[static_cast<std::size_t>(block)], {first, first + size}, before,
+                 cover, recall);
       first += size;
     }
   }
-  list.write(terrain.data(Layer::vegetation), cover.vegetation);
-  list.write(terrain.data(Layer::humus), cover.humus);
+  cells.write(terrain.data(Layer::vegetation), cover.vegetation);
+  cells.write(terrain.data(Layer::humus), cover.humus);
 }
 
 /// Keeps the part `cells` of `now` for the block, whose plants have changed by `marks`, or, with `recall`,
 /// replaces it by what is kept for this set of plants.
 void Population::keep_cover(Block& block, std::uint64_t marks, std::pair<std::size_t, std::size_t> cells,
                             const Cover& before, Cover& now, bool recall) {
-  const auto begin = static_cast<std::ptrdiff_t>(cells.first), end = static_cast<std::ptrdiff_t>(cells.second);
+  const auto begin = static_cast<std::ptrdiff_t>(cells.first),
+             end = static_cast<std::ptrdiff_t>(cells.second);
   const auto part = [&](const Cover& from, std::uint64_t of) {
     return Cover{of,
                  {from.vegetation.begin() + begin, from.vegetation.begin() + end},
