@@ -124,6 +124,7 @@ namespace {
 
 std::vector<int> cells_of(const std::vector<ObstacleCell>& obstacles) {
   std::vector<int> cells;
+  cells.reserve(obstacles.size());
   for (const ObstacleCell& c : obstacles) cells.push_back(c.cell);
   return cells;
 }
