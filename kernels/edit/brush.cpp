@@ -68,6 +68,28 @@ struct CommitChange {
   }
 };
 
+struct ReadObstacles {
+  Grid grid;
+  const float* obstacle;
+  Quanta* steps;
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    steps[i] = static_cast<Quanta>(rintf(value_or_zero(obstacle, i) * static_cast<float>(obstacle_steps)));
+  }
+};
+
+struct CommitObstacles {
+  Brush b;
+  const Quanta* change;
+  float* obstacle;
+  DESERT_HD void operator()(int x, int y) const {
+    const Quanta c = change[y * b.columns + x];
+    if (c == 0) return;
+    const int i = b.cell(x, y);
+    obstacle[i] = static_cast<float>(b.layer[i] + c) * static_cast<float>(1 / obstacle_steps);
+  }
+};
+
 template <class E>
 void merge(E& exec, const Brush& b, Quanta* change) {
   for_each_cell(exec, b.area(), MergeChange{b, change});
@@ -93,10 +115,22 @@ void commit_change(E& exec, const Brush& b, const Quanta* change, bool moved) {
   for_each_cell(exec, b.area(), CommitChange{b, change, moved});
 }
 
+template <class E>
+void read_obstacles(E& exec, const Grid& grid, const float* obstacle, Quanta* steps) {
+  for_each_cell(exec, grid, ReadObstacles{grid, obstacle, steps});
+}
+
+template <class E>
+void commit_obstacles(E& exec, const Brush& b, const Quanta* change, float* obstacle) {
+  for_each_cell(exec, b.area(), CommitObstacles{b, change, obstacle});
+}
+
 template void merge(Backend&, const Brush&, Quanta*);
 template void ring_stock(Backend&, const Brush&, Quanta*);
 template long long cells_beyond_limit(Backend&, const Brush&, const Quanta*);
 template long long total(Backend&, const Brush&, const Quanta*);
+template void read_obstacles(Backend&, const Grid&, const float*, Quanta*);
+template void commit_obstacles(Backend&, const Brush&, const Quanta*, float*);
 template void commit_change(Backend&, const Brush&, const Quanta*, bool);
 
 }  // namespace desert_sim::brush

@@ -9,6 +9,9 @@
 ///
 /// An edit is computed as the change of each cell in the brush's rectangle, checked, and then applied. Depths
 /// do not fall below 0. The ledger records what is added or removed as inflow or outflow of the material.
+///
+/// Obstacles are real numbers 0 … 1. A brush edits them as integers that count 2⁻²⁰, which floats represent
+/// exactly; cells that it does not change keep their bits.
 
 #include "kernels/edit/brush_shape.hpp"
 #include "kernels/field/layers.hpp"
@@ -31,7 +34,8 @@ struct Brush {
   BrushMerge merge;
   double value;  ///< quanta (above the datum for bedrock)
   double quanta_per_metre;
-  bool depth;  ///< cannot fall below 0
+  bool depth;              ///< a depth of material: a ring of it has what there is
+  Quanta lowest, highest;  ///< what a cell may become
   Material material;
   Quanta* layer;
   const Quanta* other_layers[3];  ///< other layers of the column, or null
@@ -52,7 +56,6 @@ struct Brush {
     if (merge == BrushMerge::add) result = v + w * brush_value;
     if (merge == BrushMerge::sub) result = v - w * brush_value;
     result = rint(result);
-    const double lowest = depth ? 0.0 : 1.0 - wall_height, highest = wall_height - 1.0;
     return static_cast<Quanta>(result < lowest ? lowest : (result > highest ? highest : result));
   }
 };
@@ -70,6 +73,16 @@ long long cells_beyond_limit(E& exec, const Brush& b, const Quanta* change);
 
 template <class E>
 long long total(E& exec, const Brush& b, const Quanta* change);
+
+constexpr double obstacle_steps = 1 << 20;  ///< from 0 to 1
+
+/// Obstacles as a brush edits them, of all cells of the grid; `obstacle` may be null, which is 0 everywhere.
+template <class E>
+void read_obstacles(E& exec, const Grid& grid, const float* obstacle, Quanta* steps);
+
+/// Applies the change to obstacles; `b.layer` is what read_obstacles() gave.
+template <class E>
+void commit_obstacles(E& exec, const Brush& b, const Quanta* change, float* obstacle);
 
 /// Applies the change. `moved`: it sums to 0, because material only moves from cell to cell.
 template <class E>

@@ -18,26 +18,35 @@ std::uint64_t scenario_hash(const Scenario& scenario) {
 }
 
 Session::Session(const Scenario& scenario, const RasterLoader& load_raster, const std::string& backend,
-                 int threads, const std::string& journal_path)
-    : load_raster_(load_raster) {
+                 int threads, const std::string& journal_path, std::size_t undo_memory)
+    : load_raster_(load_raster), undo_memory_(undo_memory) {
   Scenario resolved = scenario;
   resolve_grid(resolved, load_raster_);
   exec_ = make_exec(backend, threads, &backend_choice_);
-  simulation_ = std::make_unique<Simulation>(*exec_, resolved, load_raster_);
+  replace_simulation(std::make_unique<Simulation>(*exec_, resolved, load_raster_));
   if (journal_path.empty()) return;
-  journal_ = std::make_unique<JournalWriter>(journal_path, scenario_hash(resolved), exec_->backend());
   journal_path_ = journal_path;
+  journal_ =
+      std::make_unique<JournalWriter>(journal_path, scenario_hash(resolved), exec_->backend(), undo_memory);
 }
 
-Session::Session(const RasterLoader& load_raster, const std::string& backend, int threads)
-    : load_raster_(load_raster), exec_(make_exec(backend, threads, &backend_choice_)) {}
+Session::Session(const RasterLoader& load_raster, const std::string& backend, int threads,
+                 std::size_t undo_memory)
+    : load_raster_(load_raster),
+      undo_memory_(undo_memory),
+      exec_(make_exec(backend, threads, &backend_choice_)) {}
 
 std::unique_ptr<Session> Session::from_checkpoint(const std::string& checkpoint,
                                                   const RasterLoader& load_raster, const std::string& backend,
-                                                  int threads) {
-  std::unique_ptr<Session> session(new Session(load_raster, backend, threads));
-  session->simulation_ = load_checkpoint(checkpoint, *session->exec_);
+                                                  int threads, std::size_t undo_memory) {
+  std::unique_ptr<Session> session(new Session(load_raster, backend, threads, undo_memory));
+  session->replace_simulation(load_checkpoint(checkpoint, *session->exec_));
   return session;
+}
+
+void Session::replace_simulation(std::unique_ptr<Simulation> simulation) {
+  simulation->history().set_memory(undo_memory_);
+  simulation_ = std::move(simulation);
 }
 
 void Session::require_journal_of_this_scenario(const Journal& journal, const std::string& path) const {
@@ -86,12 +95,12 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
   if (command.hash != 0 && command.hash != hash)
     throw ConfigError(command.path +
                       ": is not the scenario that the journal recorded (its state hash differs)");
-  simulation_ = std::move(simulation);
+  replace_simulation(std::move(simulation));
   return hash;
 }
 
 CommandResult Session::execute(const command::Reset&, bool, Command&) {
-  simulation_ = std::make_unique<Simulation>(*exec_, simulation_->start(), load_raster_);
+  replace_simulation(std::make_unique<Simulation>(*exec_, simulation_->start(), load_raster_));
   return {};
 }
 
@@ -101,7 +110,7 @@ CommandResult Session::execute(const command::LoadCheckpoint& load, bool, Comman
   if (load.hash != 0 && load.hash != hash)
     throw ConfigError(load.path +
                       ": is not the checkpoint that the journal recorded (its state hash differs)");
-  simulation_ = std::move(loaded);
+  replace_simulation(std::move(loaded));
   journalled = command::LoadCheckpoint{load.path, hash};
   return {};
 }

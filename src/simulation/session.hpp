@@ -16,14 +16,15 @@ std::uint64_t scenario_hash(const Scenario& scenario);
 
 class Session {
  public:
-  /// `journal_path` may be empty. `backend`: auto, cpu, cuda. Throws ConfigError.
+  /// `journal_path` may be empty. `backend`: auto, cpu, cuda. `undo_memory`: for what undo can bring back
+  /// [bytes]; see EditHistory. A replay must have that of its journal. Throws ConfigError.
   Session(const Scenario& scenario, const RasterLoader& load_raster, const std::string& backend, int threads,
-          const std::string& journal_path = "");
+          const std::string& journal_path = "", std::size_t undo_memory = default_undo_memory);
   ~Session();
   /// Begins with a checkpoint, and with the scenario in it.
   static std::unique_ptr<Session> from_checkpoint(const std::string& checkpoint,
                                                   const RasterLoader& load_raster, const std::string& backend,
-                                                  int threads);
+                                                  int threads, std::size_t undo_memory = default_undo_memory);
   /// Throws ConfigError if the journal was written for another scenario; `path` names it in the message.
   void require_journal_of_this_scenario(const Journal& journal, const std::string& path) const;
 
@@ -36,7 +37,7 @@ class Session {
 
   void step();
   /// Applies a command and journals it. A refused command throws ConfigError and changes nothing.
-  /// `with_change`: the result of an edit tells it cell by cell.
+  /// `with_change`: the result of an edit, undo or redo tells it cell by cell.
   CommandResult apply(const Command& command, bool with_change = false);
   /// Steps done in this session, through resets and loads; what the journal counts in.
   std::uint64_t ticks() const { return ticks_; }
@@ -50,12 +51,20 @@ class Session {
   void save_checkpoint(const std::string& path);
 
  private:
-  Session(const RasterLoader& load_raster, const std::string& backend, int threads);
+  Session(const RasterLoader& load_raster, const std::string& backend, int threads, std::size_t undo_memory);
+  /// The history ends with the simulation that it belongs to.
+  void replace_simulation(std::unique_ptr<Simulation> simulation);
   /// Each replaces what the journal will have by what a replay needs to find the same again.
   CommandResult execute(const command::Reset& command, bool with_change, Command& journalled);
   CommandResult execute(const command::LoadCheckpoint& command, bool with_change, Command& journalled);
   CommandResult execute(const command::LoadScenario& command, bool with_change, Command& journalled);
   CommandResult execute(const command::EditTerrain& command, bool with_change, Command&) {
+    return simulation_->apply(command, with_change);
+  }
+  CommandResult execute(const command::Undo& command, bool with_change, Command&) {
+    return simulation_->apply(command, with_change);
+  }
+  CommandResult execute(const command::Redo& command, bool with_change, Command&) {
     return simulation_->apply(command, with_change);
   }
   template <class Other>
@@ -67,7 +76,8 @@ class Session {
   std::uint64_t load_scenario(const command::LoadScenario& command);
 
   RasterLoader load_raster_;
-  std::string folder_;  ///< that commands read files below; empty: they read any file
+  std::string folder_;       ///< that commands read files below; empty: they read any file
+  std::size_t undo_memory_;  ///< [bytes]
   std::string backend_choice_;
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<Simulation> simulation_;

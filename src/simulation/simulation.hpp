@@ -44,10 +44,13 @@ class Simulation {
   CommandResult apply(const Command& command) {
     return commands_.apply(command);
   }
-  /// Likewise; `with_change`: the result tells what changed, cell by cell.
-  CommandResult apply(const command::EditTerrain& command, bool with_change) {
+  /// Likewise for EditTerrain, Undo and Redo; `with_change`: the result tells what changed, cell by cell.
+  template <class Command>
+  CommandResult apply(const Command& command, bool with_change) {
     return commands_.apply(command, with_change);
   }
+  /// What undo can bring back.
+  EditHistory& history() { return commands_.history(); }
 
   SimulationState& state() { return state_; }
   const SimulationState& state() const { return state_; }

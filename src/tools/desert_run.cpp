@@ -94,7 +94,7 @@ std::unique_ptr<Session> begin_session(const Options& o, const Journal& journal,
   if (o.positional().empty()) throw ConfigError("no scenario given (--help shows the usage)");
   const Scenario scenario = load_scenario(o.positional()[0], settings_of(o));
   auto session = std::make_unique<Session>(scenario, raster_loader(o.has("all-raster-formats")),
-                                           o.text("backend", "auto"), threads);
+                                           o.text("backend", "auto"), threads, "", journal.undo_memory);
   if (o.has("replay")) session->require_journal_of_this_scenario(journal, o.text("replay", ""));
   return session;
 }
@@ -105,7 +105,7 @@ std::unique_ptr<Session> resume_session(const Options& o, const Journal& journal
   std::unique_ptr<Session> session;
   if (o.positional().empty()) {
     session = Session::from_checkpoint(checkpoint, raster_loader(o.has("all-raster-formats")),
-                                       o.text("backend", "auto"), threads);
+                                       o.text("backend", "auto"), threads, journal.undo_memory);
   } else {
     session = begin_session(o, journal, threads);
     session->apply(command::LoadCheckpoint{checkpoint, 0});

@@ -154,7 +154,7 @@ TEST_F(Parity, OfEveryShapeMergeAndRing) {
       const CommandResult x = a->apply(edit, true), y = b->apply(edit, true);
       EXPECT_EQ(x.volume_m3, y.volume_m3);
       EXPECT_EQ(x.moved_m3, y.moved_m3);
-      EXPECT_EQ(x.change.values, y.change.values);
+      EXPECT_EQ(x.changes.at(0).values, y.changes.at(0).values);
       expect_same_layers(*a, *b, false);
     }
 }

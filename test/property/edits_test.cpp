@@ -71,16 +71,16 @@ TEST_P(Edits, AreBookedToTheQuantumAndToldCellByCell) {
       EXPECT_EQ(r.moved_m3, 0);
       const int width = r.changed_cells.x1 - r.changed_cells.x0,
                 height = r.changed_cells.y1 - r.changed_cells.y0;
-      EXPECT_EQ(r.change.layer, e.layer);
-      EXPECT_DOUBLE_EQ(r.change.x, 100 + 0.5 * r.changed_cells.x0);
-      EXPECT_DOUBLE_EQ(r.change.y, -50 + 0.5 * r.changed_cells.y0);
-      ASSERT_EQ(r.change.values.size(), static_cast<std::size_t>(width * height));
+      EXPECT_EQ(r.changes.at(0).layer, e.layer);
+      EXPECT_DOUBLE_EQ(r.changes.at(0).x, 100 + 0.5 * r.changed_cells.x0);
+      EXPECT_DOUBLE_EQ(r.changes.at(0).y, -50 + 0.5 * r.changed_cells.y0);
+      ASSERT_EQ(r.changes.at(0).values.size(), static_cast<std::size_t>(width * height));
       for (int y = 0; y < 16; ++y)
         for (int x = 0; x < 20; ++x) {
           const int u = x - r.changed_cells.x0, v = y - r.changed_cells.y0;
           const bool touched = u >= 0 && v >= 0 && u < width && v < height;
           const auto i = static_cast<std::size_t>(y * 20 + x);
-          const float told = touched ? r.change.values[static_cast<std::size_t>(v * width + u)] : 0;
+          const float told = touched ? r.changes.at(0).values[static_cast<std::size_t>(v * width + u)] : 0;
           ASSERT_EQ(told, static_cast<float>((after[i] - before[i]) * quantum)) << x << ", " << y;
         }
       test::expect_sound(*s, name_of(e));
@@ -102,9 +102,10 @@ TEST_P(Edits, ThatConserveKeepTheSumOfTheLayer) {
       const auto after = test::quanta(*s, layer_of(e));
       EXPECT_EQ(sum(after), sum(before));
       EXPECT_EQ(r.volume_m3, 0);
-      EXPECT_NEAR(std::accumulate(r.change.values.begin(), r.change.values.end(), 0.0), 0, 1e-4);
+      EXPECT_NEAR(std::accumulate(r.changes.at(0).values.begin(), r.changes.at(0).values.end(), 0.0), 0,
+                  1e-4);
       double rise = 0;
-      for (float c : r.change.values) rise += std::abs(c) * 0.25;
+      for (float c : r.changes.at(0).values) rise += std::abs(c) * 0.25;
       if (before != after) ++made;
       EXPECT_LE(std::abs(r.moved_m3), rise + 1e-6);
       for (std::size_t m = 0; m < books.size(); ++m) {

@@ -20,7 +20,7 @@ class JournalOf : public test::OnBackend {
     return std::make_unique<Session>(test::scenario_of(world), no_raster_loader, GetParam(), 1, journal);
   }
 
-  static constexpr int commands = 9;
+  static constexpr int commands = 11;
   /// Steps and commands of every kind.
   std::uint64_t live(const std::string& path) {
     auto s = session(path);
@@ -43,7 +43,10 @@ class JournalOf : public test::OnBackend {
     edit.layer = "bedrock";
     edit.merge = BrushMerge::replace;
     edit.value = 30;
+    edit.stroke = "a 'stroke': {1}";
     s->apply(edit);
+    s->apply(command::Undo{edit.stroke});
+    s->apply(command::Redo{});
     steps(1);
     command::EditWind whirl;
     whirl.feature.id = 3;

@@ -145,6 +145,23 @@ TEST_P(PlantEdits, AreRefusedWhole) {
   EXPECT_NE(refusal(*bare, planting("grass", 0, 0, 1, 1)).find("vegetation.enabled"), std::string::npos);
 }
 
+/// On cells of a kilometre, a density that is allowed would draw a thousand million places a cell.
+TEST_P(PlantEdits, ThatWouldDrawTooManyPlacesAreRefusedAtOnce) {
+  auto s = simulation(
+      "grid: {width: 60, height: 50, cell_size: 1000}\nterrain: [uniform: {layer: soil, value: 4}]\n"
+      "vegetation: {enabled: true}\nspecies: [{preset: bush}]\n");
+  const std::string all = refusal(*s, planting("bush", 30000, 25000, 1e6, 1000));
+  for (const char* text : {"density: = 1000", "3e+12 places", "at most 1e+07", "0.00333333 1/m^2"})
+    EXPECT_NE(all.find(text), std::string::npos) << "no '" << text << "' in: " << all;
+  command::EditPlants polygon = planting("bush", 0, 0, 1, 1);
+  polygon.shape = BrushShape::polygon;
+  for (int n = 0; n < 500; ++n)
+    polygon.points.push_back({30000 + 20000 * std::cos(0.0125 * n), 25000 + 20000 * std::sin(0.0125 * n)});
+  EXPECT_NE(refusal(*s, polygon).find("at most 2e+06"), std::string::npos);
+  EXPECT_GT(s->apply(planting("bush", 30500, 25500, 300, 1e-3)).plants, 200)
+      << "a small region is no trouble";
+}
+
 TEST_P(PlantEdits, AreReplayedFromTheJournal) {
   const test::TemporaryFolder folder;
   const auto session = [&](const std::string& journal) {

@@ -98,14 +98,21 @@ command::EditWind RandomCommands::wind_edit(const Simulation& simulation) {
   return edit;
 }
 
+/// One of a few names, none, or rarely one that is refused.
+std::string RandomCommands::stroke() {
+  const char* names[] = {"", "", "a", "b", "~", "null", "'\" : \\ #,{"};
+  return one_in(60) ? "a\xff\n" : (one_in(60) ? std::string(256, 'x') : names[below(std::size(names))]);
+}
+
 command::EditTerrain RandomCommands::terrain_edit(const Simulation& simulation) {
   command::EditTerrain edit;
   randomise(static_cast<command::EditParameters&>(edit));
-  const char* layers[] = {"sand", "bedrock", "soil", "water"};
-  edit.layer = one_in(40) ? "du\xffst\n" : layers[below(4)];
+  const char* layers[] = {"sand", "bedrock", "soil", "water", "obstacle"};
+  edit.layer = one_in(40) ? "du\xffst\n" : layers[below(5)];
+  edit.stroke = stroke();
   place(edit, simulation);
   add_points(edit);
-  if (!one_in(4)) edit.value = between(0, 3);
+  if (!one_in(4)) edit.value = between(0, edit.layer == "obstacle" ? 1.2 : 3);
   if (edit.shape != BrushShape::patch) return edit;
   edit.patch.columns = static_cast<int>(1 + below(9));
   edit.patch.rows = static_cast<int>(1 + below(9));
@@ -121,6 +128,7 @@ command::EditPlants RandomCommands::plant_edit(const Simulation& simulation) {
   randomise(static_cast<command::EditPlantsParameters&>(edit));
   const std::vector<Species>& species = simulation.scenario().species;
   if (!species.empty() && !one_in(5)) edit.species = species[below(species.size())].name;
+  edit.stroke = stroke();
   place(edit, simulation);
   add_points(edit);
   if (!one_in(4)) edit.density = between(0, 0.5);
@@ -165,7 +173,7 @@ command::SetParameters RandomCommands::settings(const Simulation& simulation) {
 
 Command RandomCommands::next(const Simulation& simulation, const std::vector<std::string>& checkpoints,
                              const std::vector<std::string>& scenarios) {
-  switch (below(16)) {
+  switch (below(20)) {
     case 0: {
       command::SetWind wind;
       randomise(wind);
@@ -193,6 +201,11 @@ Command RandomCommands::next(const Simulation& simulation, const std::vector<std
       if (!scenarios.empty() && one_in(2))
         return command::LoadScenario{scenarios[below(scenarios.size())], one_in(2), 0, one_in(2)};
       break;
+    case 13:
+    case 14:
+      return command::Undo{stroke()};
+    case 15:
+      return command::Redo{stroke()};
     default:
       break;
   }

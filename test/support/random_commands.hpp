@@ -33,6 +33,7 @@ class RandomCommands {
   command::EditWind wind_edit(const Simulation& simulation);
   command::EditTerrain terrain_edit(const Simulation& simulation);
   command::EditPlants plant_edit(const Simulation& simulation);
+  std::string stroke();
   command::SetParameters settings(const Simulation& simulation);
   template <class Edit>
   void place(Edit& edit, const Simulation& simulation);

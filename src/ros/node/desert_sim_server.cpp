@@ -32,6 +32,7 @@ SimulationThread::Options options_of(const NodeParameters& p) {
   options.step_rate = p.step_rate;
   options.paused = p.paused;
   options.journal = p.journal;
+  options.undo_memory = static_cast<std::size_t>(p.undo_memory * 1e6);
   return options;
 }
 

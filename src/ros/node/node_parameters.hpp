@@ -8,6 +8,7 @@
 #include "src/core/parameters.hpp"
 #include "src/ros/topics/publisher_parameters.hpp"
 #include "src/scenario/scenario.hpp"
+#include "src/simulation/undo/edit_history.hpp"
 
 namespace desert_sim {
 
@@ -32,6 +33,7 @@ struct NodeParameters {
   bool publish_clock = false;
   double diagnostic_period = 1;
   double answer_timeout = 1;
+  double undo_memory = default_undo_memory / 1e6;
 };
 constexpr auto parameter_table(const NodeParameters*) {
   using P = NodeParameters;
@@ -71,7 +73,11 @@ constexpr auto parameter_table(const NodeParameters*) {
       parameter(
           "answer_timeout", &P::answer_timeout, 0, 1e6, "s",
           "Of wall time: a service whose request has waited so long for a step or another request to end "
-          "refuses it, and changes nothing. 0: it waits. ~step waits for its steps."));
+          "refuses it, and changes nothing. 0: it waits. ~step waits for its steps."),
+      parameter(
+          "undo_memory", &P::undo_memory, 0, 1e6, "MB",
+          "Of 10^6 bytes, for what ~undo and ~redo can bring back; the oldest strokes are forgotten first. "
+          "0: nothing is kept."));
 }
 static_assert(table_is_complete<NodeParameters>());
 

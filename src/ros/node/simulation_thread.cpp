@@ -75,7 +75,7 @@ void SimulationThread::run_thread(const Scenario& scenario, const RasterLoader& 
   set_name_and_niceness("simulation", options_.niceness);
   try {
     session_ = std::make_unique<Session>(scenario, load_raster, options_.backend, options_.threads,
-                                         options_.journal);
+                                         options_.journal, options_.undo_memory);
     backend_choice_ = session_->backend_choice();
     if (!options_.resume_from.empty())
       load_newest(*session_, options_.resume_from, options_.data_folder, options_.journal);

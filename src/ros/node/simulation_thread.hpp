@@ -27,7 +27,8 @@ class SimulationThread {
     int niceness = 0;       ///< of the simulation's threads
     double step_rate = 10;  ///< [steps/s]; 0: as fast as it can
     bool paused = false;
-    std::string journal;  ///< file, or empty
+    std::string journal;                            ///< file, or empty
+    std::size_t undo_memory = default_undo_memory;  ///< see Session [bytes]
     /// It starts from the first of these checkpoints that is complete, if there is one.
     std::vector<std::string> resume_from;
     std::string data_folder;  ///< that commands read files below; see Session::confine_commands()

@@ -147,6 +147,7 @@ command::EditTerrain edit_command(const EditTerrainRequest& request, const Terra
   }
   command.conserve = request.conserve;
   if (command.conserve) command.ring_width = request.ring_width;
+  command.stroke = request.stroke;
   return command;
 }
 
@@ -169,6 +170,7 @@ command::EditPlants plants_command(const EditPlantsRequest& request, const Terra
     command.size = request.size;
     command.seed = request.seed;
   }
+  command.stroke = request.stroke;
   return command;
 }
 

@@ -49,6 +49,8 @@ void Services::advertise_all(ros::CallbackQueue& step_queue) {
   advertise<desert_sim::EditWind>("edit_wind", &Services::edit_wind);
   advertise<desert_sim::EditPlants>("edit_plants", &Services::edit_plants);
   advertise<desert_sim::EditTerrain>("edit_terrain", &Services::edit_terrain);
+  advertise<desert_sim::Undo>("undo", &Services::undo);
+  advertise<desert_sim::Undo>("redo", &Services::redo);
   advertise<desert_sim::QueryTerrain>("query_terrain", &Services::query_terrain);
   advertise<desert_sim::GetSubmap>("get_submap", &Services::get_submap);
   advertise_get_grid_map();  // "get_grid_map", &Services::get_grid_map; GetGridMap has no field `success`
@@ -104,14 +106,21 @@ void Services::edit_plants(const EditPlantsRequest& request, EditPlantsResponse&
   publisher_.status_changed();
 }
 
-// ---- Edits of the terrain, and ~terrain_diff.
+// ---- Edits of the terrain, undo, and ~terrain_diff.
 
 namespace {
 
-/// What an edit that was asked for with its change has changed.
-TerrainDiffPtr diff_message(const ReachedState& edit, const std::string& frame) {
+template <class Message>
+void set_rectangle(const CellRectangle& cells, Message& message) {
+  message.x = static_cast<std::uint32_t>(cells.x0);
+  message.y = static_cast<std::uint32_t>(cells.y0);
+  message.width = static_cast<std::uint32_t>(cells.x1 - cells.x0);
+  message.height = static_cast<std::uint32_t>(cells.y1 - cells.y0);
+}
+
+/// What a command that was asked for with its change has changed in one layer.
+TerrainDiffPtr diff_message(const ReachedState& edit, const LayerChange& change, const std::string& frame) {
   const CellRectangle& touched = edit.result.changed_cells;
-  const LayerChange& change = edit.result.change;
   TerrainDiffPtr message = boost::make_shared<TerrainDiff>();
   message->header = header_of(edit.moment, frame);
   message->step = edit.moment.step;
@@ -120,29 +129,61 @@ TerrainDiffPtr diff_message(const ReachedState& edit, const std::string& frame) 
   message->origin.position.x = change.x;
   message->origin.position.y = change.y;
   message->origin.orientation.w = 1;
-  message->x = static_cast<std::uint32_t>(touched.x0);
-  message->y = static_cast<std::uint32_t>(touched.y0);
-  message->width = static_cast<std::uint32_t>(touched.x1 - touched.x0);
-  message->height = static_cast<std::uint32_t>(touched.y1 - touched.y0);
   message->change = change.values;
+  set_rectangle(touched, *message);
   return message;
 }
 
 }  // namespace
 
-void Services::edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response) {
+ReachedState Services::apply_and_tell(const Command& command) {
   const bool diff = terrain_diff_.getNumSubscribers() > 0;
-  const ReachedState reached = simulation_.apply(edit_command(request, frames_), false, diff).get();
-  if (diff) terrain_diff_.publish(diff_message(reached, frames_.terrain_frame()));
-  const CellRectangle& touched = reached.result.changed_cells;
+  ReachedState reached = simulation_.apply(command, false, diff).get();
+  for (const LayerChange& change : reached.result.changes)
+    terrain_diff_.publish(diff_message(reached, change, frames_.terrain_frame()));
+  publisher_.status_changed();
+  return reached;
+}
+
+void Services::edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response) {
+  const ReachedState reached = apply_and_tell(edit_command(request, frames_));
   response.volume = reached.result.volume_m3;
   response.moved = reached.result.moved_m3;
-  response.x = static_cast<std::uint32_t>(touched.x0);
-  response.y = static_cast<std::uint32_t>(touched.y0);
-  response.width = static_cast<std::uint32_t>(touched.x1 - touched.x0);
-  response.height = static_cast<std::uint32_t>(touched.y1 - touched.y0);
+  set_rectangle(reached.result.changed_cells, response);
   response.step = reached.moment.step;
-  publisher_.status_changed();
+}
+
+namespace {
+
+void answer(const ReachedState& reached, UndoResponse& response) {
+  const CommandResult& result = reached.result;
+  response.stroke = result.returned.name;
+  for (std::size_t m = 0; m < result.returned.materials.size(); ++m) {
+    const auto& volumes = result.returned.materials[m];
+    if (!volumes) continue;
+    ReturnedMaterial material;
+    material.material = material_names[m];
+    material.added = volumes->added_m3;
+    material.removed = volumes->removed_m3;
+    material.missing = volumes->missing_m3;
+    response.materials.push_back(material);
+  }
+  response.plants = result.plants;
+  response.missing_plants = result.returned.missing_plants;
+  set_rectangle(result.changed_cells, response);
+  response.step = reached.moment.step;
+  response.undoable = static_cast<std::uint32_t>(result.undoable);
+  response.redoable = static_cast<std::uint32_t>(result.redoable);
+}
+
+}  // namespace
+
+void Services::undo(const UndoRequest& request, UndoResponse& response) {
+  answer(apply_and_tell(command::Undo{request.stroke}), response);
+}
+
+void Services::redo(const UndoRequest& request, UndoResponse& response) {
+  answer(apply_and_tell(command::Redo{request.stroke}), response);
 }
 
 // ---- Running.

@@ -17,6 +17,7 @@
 #include <desert_sim/SetWindSchedule.h>
 #include <desert_sim/Step.h>
 #include <desert_sim/TerrainDiff.h>
+#include <desert_sim/Undo.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <std_srvs/Trigger.h>
@@ -57,6 +58,10 @@ class Services {
   void edit_wind(const EditWindRequest& request, EditWindResponse& response);
   void edit_plants(const EditPlantsRequest& request, EditPlantsResponse& response);
   void edit_terrain(const EditTerrainRequest& request, EditTerrainResponse& response);
+  void undo(const UndoRequest& request, UndoResponse& response);
+  void redo(const UndoRequest& request, UndoResponse& response);
+  /// Applies a command that changes cells, and tells the subscribers of ~terrain_diff.
+  ReachedState apply_and_tell(const Command& command);
   void query_terrain(const QueryTerrainRequest& request, QueryTerrainResponse& response);
   void get_submap(const GetSubmapRequest& request, GetSubmapResponse& response);
   GridMap get_grid_map(const GetGridMapRequest& request) const;
@@ -88,7 +93,7 @@ class Services {
   Frames& frames_;
   const DataFolder& files_;
   const double answer_timeout_;   ///< [s]
-  ros::Publisher terrain_diff_;   ///< ~terrain_diff: what each edit of the terrain changed
+  ros::Publisher terrain_diff_;   ///< ~terrain_diff: what each edit, undo and redo changed
   std::mutex move_center_mutex_;  ///< held while terrain_replaced() moves the frame
   std::mutex recent_mutex_;       ///< guards the next two
   TerrainState recent_;

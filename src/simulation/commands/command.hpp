@@ -2,12 +2,15 @@
 /// Commands: what changes a running simulation from outside. They are applied between steps, refused whole or
 /// applied whole, and journalled. Positions are in the terrain's frame [m].
 
+#include <array>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "kernels/edit/brush.hpp"
 #include "kernels/field/layers.hpp"
+#include "kernels/field/ledger.hpp"
 #include "kernels/wind/wind_features.hpp"
 #include "src/scenario/wind_regime.hpp"
 
@@ -71,11 +74,12 @@ struct EditParameters {
   int smooth_passes = 1;
   bool conserve = false;
   double ring_width = 1;
+  std::string stroke;
 };
 constexpr auto parameter_table(const EditParameters*) {
   using P = EditParameters;
   return std::make_tuple(
-      parameter("layer", &P::layer, "sand, soil, bedrock or water."),
+      parameter("layer", &P::layer, "sand, soil, bedrock, water or obstacle."),
       parameter("shape", &P::shape, brush_shapes, "Shape of the brush."),
       parameter("merge", &P::merge, brush_merges, "How the brush meets what is there."),
       parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
@@ -91,7 +95,8 @@ constexpr auto parameter_table(const EditParameters*) {
           "Share of the radius (of a rectangle, of half its sides) within which the brush has full weight."),
       parameter("falloff", &P::falloff, 0, 1e6, "m",
                 "Of a polygon or patch: how far inside its edge the brush has full weight."),
-      parameter("value", &P::value, -1e5, 1e5, "m", "Height or depth of the brush; see merge."),
+      parameter("value", &P::value, -1e5, 1e5, "m",
+                "Height or depth of the brush; see merge. Of obstacle [1]."),
       parameter("patch_use", &P::patch_use, patch_uses,
                 "Whether a patch holds heights that are added to value, or weights."),
       parameter("smooth_radius", &P::smooth_radius, 1e-3, 1e6, "m",
@@ -99,7 +104,8 @@ constexpr auto parameter_table(const EditParameters*) {
       parameter("smooth_passes", &P::smooth_passes, 1, 16, "1", "How often smooth takes means."),
       parameter("conserve", &P::conserve,
                 "Take from, or give to, a ring around the shape what the edit adds or removes."),
-      parameter("ring_width", &P::ring_width, 1e-3, 1e6, "m", "Width of that ring."));
+      parameter("ring_width", &P::ring_width, 1e-3, 1e6, "m", "Width of that ring."),
+      parameter("stroke", &P::stroke, "Edits of one name are undone together; empty: this one alone."));
 }
 static_assert(table_is_complete<EditParameters>());
 
@@ -115,12 +121,13 @@ struct Patch {
   std::vector<float> values;
 };
 
-/// A brush on `layer`: sand, bedrock, or soil and water where the terrain has some. The weight of the shape
-/// and what a merge does with it are in kernels/edit/brush_shape.hpp and brush.hpp. For sand, soil and water
-/// `value` is a depth [m]; for bedrock an elevation [m], or with add and sub a change. With `conserve`, the
-/// material comes from, or goes to, the cells within `ring_width` of the shape: what is taken in proportion
-/// to what they have, of bedrock and what is given in equal parts. The sum of all changes is then 0, to the
-/// quantum.
+/// A brush on `layer`: sand, bedrock, obstacle, or soil and water where the terrain has some. The weight of
+/// the shape and what a merge does with it are in kernels/edit/brush_shape.hpp and brush.hpp. For sand, soil
+/// and water `value` is a depth [m]; for bedrock an elevation [m], or with add and sub a change. With
+/// `conserve`, the material comes from, or goes to, the cells within `ring_width` of the shape: what is taken
+/// in proportion to what they have, of bedrock and what is given in equal parts. The sum of all changes is
+/// then 0, to the quantum. An obstacle is no material: its `value` is 0 … 1, it cannot be conserved, and it
+/// is kept in steps of 2⁻²⁰.
 struct EditTerrain : EditParameters {
   static constexpr std::size_t max_points = 512;
   std::vector<Point> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
@@ -138,6 +145,7 @@ struct EditPlantsParameters {
   double density = 0.1;
   double size = 0.05;
   std::uint64_t seed = 0;
+  std::string stroke;
 };
 constexpr auto parameter_table(const EditPlantsParameters*) {
   using P = EditPlantsParameters;
@@ -154,7 +162,8 @@ constexpr auto parameter_table(const EditPlantsParameters*) {
       parameter("density", &P::density, 0, 1000, "1/m^2", "Plants that are put on a square metre."),
       parameter("size", &P::size, 1e-3, 1, "1",
                 "Their radius as a share of the widest that there is room for."),
-      parameter("seed", &P::seed, 0, highest_uint64, "1", "Of their places; added to the scenario's."));
+      parameter("seed", &P::seed, 0, highest_uint64, "1", "Of their places; added to the scenario's."),
+      parameter("stroke", &P::stroke, "As of edit_terrain."));
 }
 static_assert(table_is_complete<EditPlantsParameters>());
 
@@ -163,6 +172,25 @@ static_assert(table_is_complete<EditPlantsParameters>());
 struct EditPlants : EditPlantsParameters {
   std::vector<Point> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
 };
+
+/// Takes back what a stroke of EditTerrain and EditPlants commands changed: of the stroke of that name, or,
+/// if it is empty, of the one that was painted or redone last. See EditHistory.
+struct Undo {
+  std::string stroke;
+};
+constexpr auto parameter_table(const Undo*) {
+  return std::make_tuple(parameter("stroke", &Undo::stroke, "Name; empty: the newest."));
+}
+static_assert(table_is_complete<Undo>());
+
+/// Takes back an undo: of the stroke of that name, or, if it is empty, of the one that was undone last.
+struct Redo {
+  std::string stroke;
+};
+constexpr auto parameter_table(const Redo*) {
+  return std::make_tuple(parameter("stroke", &Redo::stroke, "Name; empty: the one undone last."));
+}
+static_assert(table_is_complete<Redo>());
 
 /// Parameters that can change while a simulation runs (live_parameters.hpp), each "path=value"; all or none.
 /// Over `ramp` seconds numbers go to their values (see Ramp); all else changes at once.
@@ -202,9 +230,10 @@ bool replaces_terrain(const Command& command) {
 
 }  // namespace command
 
-using Command = std::variant<command::SetWind, command::SetWindSchedule, command::EditWind,
-                             command::EditTerrain, command::EditPlants, command::SetParameters,
-                             command::Reset, command::LoadCheckpoint, command::LoadScenario>;
+using Command =
+    std::variant<command::SetWind, command::SetWindSchedule, command::EditWind, command::EditTerrain,
+                 command::EditPlants, command::Undo, command::Redo, command::SetParameters, command::Reset,
+                 command::LoadCheckpoint, command::LoadScenario>;
 
 /// Cells that a command changed: x0 ≤ x < x1, y0 ≤ y < y1 (empty if x1 ≤ x0).
 struct CellRectangle {
@@ -215,7 +244,18 @@ struct CellRectangle {
 struct LayerChange {
   std::string layer;
   double x = 0, y = 0, cell_size = 0;  ///< lower left corner and cells of the rectangle [m]
-  std::vector<float> values;           ///< new − old [m], row-major; empty if nobody asked
+  std::vector<float> values;           ///< new − old [m, or 1 of obstacle], row-major
+};
+
+/// What an undo or redo did.
+struct ReturnedStroke {
+  struct Volumes {
+    double added_m3 = 0, removed_m3 = 0;  ///< over the cells that got some, and those that lost some
+    double missing_m3 = 0;                ///< what cells did not have any more, or had no room for
+  };
+  std::string name;
+  std::array<std::optional<Volumes>, material_count> materials;  ///< of those that the stroke had changed
+  long long missing_plants = 0;  ///< that have died or were cleared since, or for which there was no room
 };
 
 struct CommandResult {
@@ -224,7 +264,9 @@ struct CommandResult {
       0;  ///< instead of it, of an edit that conserves: from the ring into the shape (+), or back
   long long plants = 0;  ///< put (+) or taken away (−)
   CellRectangle changed_cells;
-  LayerChange change;  ///< in `touched`
+  std::vector<LayerChange> changes;  ///< in `changed_cells`; of an undo one a layer; empty if nobody asked
+  ReturnedStroke returned;           ///< of an undo or redo
+  int undoable = 0, redoable = 0;    ///< of an undo or redo: strokes that can be undone, and redone, after it
 };
 
 }  // namespace desert_sim

@@ -181,6 +181,12 @@ void emit_command(YAML::Emitter& out, const Command& command) {
     name("edit_plants");
     yaml::emit_parameters(out, static_cast<const command::EditPlantsParameters&>(*plants));
     emit_points(out, plants->points);
+  } else if (const auto* undo = std::get_if<command::Undo>(&command)) {
+    name("undo");
+    yaml::emit_parameters(out, *undo);
+  } else if (const auto* redo = std::get_if<command::Redo>(&command)) {
+    name("redo");
+    yaml::emit_parameters(out, *redo);
   } else if (const auto* parameters = std::get_if<command::SetParameters>(&command)) {
     name("set_parameters");
     out << YAML::Key << "settings" << YAML::Value << YAML::Flow << YAML::BeginSeq;
@@ -211,6 +217,8 @@ Command read_command(const YAML::Node& node, const std::string& source) {
   if (name == "edit_plants")
     return command::EditPlants{read_all<command::EditPlantsParameters>(node, source),
                                read_points(node, source)};
+  if (name == "undo") return read_all<command::Undo>(node, source);
+  if (name == "redo") return read_all<command::Redo>(node, source);
   if (name == "set_parameters") return read_settings(node, source);
   if (name == "reset") return command::Reset{};
   if (name == "load_checkpoint")

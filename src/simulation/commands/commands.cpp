@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "kernels/field/surface.hpp"
-#include "kernels/plants/cover.hpp"
 #include "src/core/error.hpp"
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/range_checks.hpp"
@@ -132,15 +130,21 @@ CommandResult Commands::apply(const command::EditWind& command) {
 }
 
 CommandResult Commands::apply(const command::EditTerrain& command, bool with_change) {
+  check_stroke_name(command.stroke, "edit_terrain");
   pipeline_.ground_changed();
   TerrainEdit edit(command, state_.terrain, state_.scenario.grid, state_.ledger());
-  const bool bedrock = edit.material() == Material::bedrock, soil = edit.material() == Material::soil;
+  const bool bedrock = edit.layer() == Layer::bedrock, soil = edit.layer() == Layer::soil;
+  const bool had_obstacles = state_.terrain.has(Layer::obstacle);
   const bool bedrock_was_loose = state_.bedrock_loose, soil_was_loose = state_.soil_loose;
+  history_.begin_ground();
   state_.bedrock_loose = bedrock_was_loose || bedrock;
   state_.soil_loose = soil_was_loose || soil || (bedrock && state_.terrain.has(Layer::soil));
   try {
     pipeline_.adapt();  // avalanches of soil and bedrock need memory
-    return edit.commit(with_change);
+    const LayerEdit change = history_.remembers() ? edit.change() : LayerEdit{};
+    const CommandResult result = edit.commit(with_change);
+    history_.paint(command.stroke, change, !had_obstacles && state_.terrain.has(Layer::obstacle));
+    return result;
   } catch (...) {
     state_.bedrock_loose = bedrock_was_loose;
     state_.soil_loose = soil_was_loose;
@@ -149,18 +153,12 @@ CommandResult Commands::apply(const command::EditTerrain& command, bool with_cha
 }
 
 CommandResult Commands::apply(const command::EditPlants& command) {
+  check_stroke_name(command.stroke, "edit_plants");
   check_plant_edit(command, state_.scenario);
   const int before = state_.plants.count;
-  state_.set_plants(edited_plants(command, state_.scenario, state_.terrain, state_.steps,
-                                  state_.plants.capacity, plants::words(state_.plants)));
-  // Who looks before the next step sees them.
-  with_backend(state_.exec(), [this](auto& e) {
-    const TerrainView view = state_.terrain.view();
-    surface::Heights& heights = pipeline_.fields().heights;
-    surface::compute_heights(e, view, heights);
-    plants::cover(e, view, state_.scenario.vegetation, 0.0f, heights, true, state_.plants);
-  });
-  pipeline_.derived_changed();
+  const Population::Edit edit = plant_edit(command, state_.scenario, state_.terrain, state_.steps,
+                                           state_.plants.capacity, plants::words(state_.plants));
+  history_.paint(command.stroke, edit);
   CommandResult result;
   result.plants = state_.plants.count - before;
   return result;

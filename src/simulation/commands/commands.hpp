@@ -7,12 +7,14 @@
 #include "src/simulation/commands/command.hpp"
 #include "src/simulation/pipeline/pipeline.hpp"
 #include "src/simulation/state.hpp"
+#include "src/simulation/undo/edit_history.hpp"
 
 namespace desert_sim {
 
 class Commands {
  public:
-  Commands(SimulationState& state, Pipeline& pipeline) : state_(state), pipeline_(pipeline) {}
+  Commands(SimulationState& state, Pipeline& pipeline)
+      : state_(state), pipeline_(pipeline), history_(state, pipeline) {}
 
   /// Each is applied whole, or throws ConfigError and changes nothing.
   CommandResult apply(const command::SetWind& command);
@@ -21,7 +23,15 @@ class Commands {
   /// `with_change`: the result tells what changed, cell by cell.
   CommandResult apply(const command::EditTerrain& command, bool with_change = false);
   CommandResult apply(const command::EditPlants& command);
+  CommandResult apply(const command::Undo& command, bool with_change = false) {
+    return history_.undo(command.stroke, with_change);
+  }
+  CommandResult apply(const command::Redo& command, bool with_change = false) {
+    return history_.redo(command.stroke, with_change);
+  }
   CommandResult apply(const command::SetParameters& command);
+
+  EditHistory& history() { return history_; }
 
   /// Changes the parameters that the timeline and ramps change now. What is refused keeps its value, and is an
   /// error in the log; a ramp tries again.
@@ -39,6 +49,7 @@ class Commands {
   SimulationState& state_;
   Pipeline& pipeline_;
   std::vector<std::string> refused_parameters_;  ///< at the last step; the log has told why
+  EditHistory history_;
 };
 
 }  // namespace desert_sim

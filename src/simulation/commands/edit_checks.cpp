@@ -19,8 +19,9 @@ constexpr double max_coordinate = 1e7;   // [m], as of a centre
 constexpr double max_pixel_value = 1e5;  // [m], as of a value
 
 void check_layer(const EditTerrain& edit, const Terrain& terrain, ValidationErrors& errors) {
-  if (edit.layer != "sand" && edit.layer != "soil" && edit.layer != "bedrock" && edit.layer != "water")
-    errors.add("layer", quoted(edit.layer) + " is not one of: sand, bedrock, soil, water");
+  if (edit.layer != "sand" && edit.layer != "soil" && edit.layer != "bedrock" && edit.layer != "water" &&
+      edit.layer != "obstacle")
+    errors.add("layer", quoted(edit.layer) + " is not one of: sand, bedrock, soil, water, obstacle");
   if (edit.layer == "water" && !terrain.has(Layer::water))
     errors.add("layer",
                "water: this terrain has no layer water (a scenario with rain, springs, a sea or a step that "
@@ -97,6 +98,25 @@ void check_patch(const EditTerrain& edit, ValidationErrors& errors) {
     }
 }
 
+/// Obstacles are 0 … 1, and so is what a brush says of them; what a patch adds or takes may be negative.
+void check_obstacle(const EditTerrain& edit, ValidationErrors& errors) {
+  if (edit.conserve) errors.add("conserve", "obstacle is no material that a ring could give or take");
+  if (edit.merge == BrushMerge::smooth) return;
+  const bool heights = edit.shape == BrushShape::patch && edit.patch_use == PatchUse::heights;
+  const bool shift = heights && (edit.merge == BrushMerge::add || edit.merge == BrushMerge::sub);
+  double lowest = edit.value, highest = edit.value;
+  if (heights && !edit.patch.values.empty()) {
+    const auto [low, high] = std::minmax_element(edit.patch.values.begin(), edit.patch.values.end());
+    lowest += *low, highest += *high;
+  }
+  const double least = shift ? -1 : 0;
+  if (lowest >= least && highest <= 1) return;
+  std::ostringstream text;
+  text << "= " << (highest > 1 ? highest : lowest) << (heights ? " with the patch's values" : "")
+       << " is not a value of obstacle (allowed: [" << least << ", 1])";
+  errors.add("value", text.str());
+}
+
 /// Depths are not negative. The heights of a patch may be with add and sub: they take what add gives.
 void check_depth(const EditTerrain& edit, ValidationErrors& errors) {
   if (edit.layer == "bedrock" || edit.merge == BrushMerge::smooth) return;
@@ -120,7 +140,10 @@ void check_edit(const EditTerrain& edit, const Terrain& terrain) {
   check_points(edit.shape, edit.points, errors);
   check_patch(edit, errors);
   errors.throw_if_any();
-  check_depth(edit, errors);
+  if (edit.layer == "obstacle")
+    check_obstacle(edit, errors);
+  else
+    check_depth(edit, errors);
   errors.throw_if_any();
 }
 

@@ -52,7 +52,8 @@ class Line {
 
 }  // namespace
 
-JournalWriter::JournalWriter(const std::string& path, std::uint64_t scenario_hash, const std::string& backend)
+JournalWriter::JournalWriter(const std::string& path, std::uint64_t scenario_hash, const std::string& backend,
+                             std::size_t undo_memory)
     : path_(path) {
   require_writable_file(path);
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -62,6 +63,7 @@ JournalWriter::JournalWriter(const std::string& path, std::uint64_t scenario_has
            .entry("journal", journal_version)
            .entry("scenario_hash", scenario_hash)
            .entry("backend", backend)
+           .entry("undo_memory", undo_memory)
            .text());
 }
 
@@ -114,6 +116,8 @@ Journal read_journal(const std::string& path) {
                           "; this program reads version 1");
       journal.scenario_hash = number("scenario_hash");
       journal.backend = node["backend"] ? node["backend"].Scalar() : "";
+      if (node["undo_memory"])  // journals of version 0.1 have none
+        journal.undo_memory = number("undo_memory");
       continue;
     }
     const std::uint64_t tick = number("tick");

@@ -9,13 +9,16 @@
 #include <vector>
 
 #include "src/simulation/commands/command.hpp"
+#include "src/simulation/undo/edit_history.hpp"
 
 namespace desert_sim {
 
 class JournalWriter {
  public:
-  /// Starts a new file with a header that names the scenario's hash and the backend. Throws ConfigError.
-  JournalWriter(const std::string& path, std::uint64_t scenario_hash, const std::string& backend);
+  /// Starts a new file with a header that names the scenario's hash, the backend, and the memory for undo
+  /// [bytes]. Throws ConfigError.
+  JournalWriter(const std::string& path, std::uint64_t scenario_hash, const std::string& backend,
+                std::size_t undo_memory = default_undo_memory);
   ~JournalWriter();
   void write(std::uint64_t tick, const Command& command);
   /// How many ticks the session made; written when it ends.
@@ -34,6 +37,7 @@ struct Journal {
   };
   std::uint64_t scenario_hash = 0;
   std::string backend;
+  std::size_t undo_memory = default_undo_memory;  ///< of the session [bytes]; on it depends what undo finds
   std::vector<Entry> entries;
   bool ended = false;
   std::uint64_t ticks = 0;  ///< if it ended: all ticks of the session; else the last entry's

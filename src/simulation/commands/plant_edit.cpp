@@ -1,9 +1,8 @@
 #include "src/simulation/commands/plant_edit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
+#include <sstream>
 
 #include "kernels/field/random.hpp"
 #include "kernels/plants/lookup.hpp"
@@ -53,14 +52,47 @@ class Region {
               static_cast<int>(vertices_.size()),
               {},
               {}};
+    set_reach(edit);
   }
   bool covers(float x, float y) const {
     return shape_.covers({lookup_.difference_x(x, x_), lookup_.difference_y(y, y_)}, 0.0f);
   }
+  /// Whether a place of the cell can lie in the rectangle around the region; `reach`: half the cell's side.
+  bool may_reach(float x, float y, float reach) const {
+    return std::abs(lookup_.difference_x(x, x_)) <= half_x_ + reach &&
+           std::abs(lookup_.difference_y(y, y_)) <= half_y_ + reach;
+  }
+  /// Most places that may be drawn for it.
+  double most_places() const {
+    return shape_.count > 2 ? std::min(max_drawn_places, max_drawn_edges / shape_.count) : max_drawn_places;
+  }
 
  private:
+  /// Half the sides of the rectangle, with some slack for rounding.
+  void set_reach(const command::EditPlants& edit) {
+    double x = shape_.a, y = shape_.a;
+    if (edit.shape == BrushShape::ellipse || edit.shape == BrushShape::rectangle) {
+      const double along = std::abs(shape_.cos), across = std::abs(shape_.sin);
+      x = shape_.a * along + shape_.b * across;
+      y = shape_.a * across + shape_.b * along;
+    } else if (!vertices_.empty()) {
+      const bool capsule = edit.shape == BrushShape::capsule;
+      x = y = capsule ? shape_.a : 0.0;
+      double widest = 0, highest = 0;
+      for (const brush::Point& p : vertices_) {
+        widest = std::max(widest, std::abs(static_cast<double>(p.x)));
+        highest = std::max(highest, std::abs(static_cast<double>(p.y)));
+      }
+      x += widest, y += highest;
+    }
+    constexpr double rounding = 1e-5;
+    half_x_ = static_cast<float>(x * (1 + rounding) + rounding * lookup_.width);
+    half_y_ = static_cast<float>(y * (1 + rounding) + rounding * lookup_.height);
+  }
+
   plants::Lookup lookup_;
   float x_ = 0, y_ = 0;
+  float half_x_ = 0, half_y_ = 0;
   std::vector<brush::Point> vertices_;
   brush::Shape shape_;
 };
@@ -76,35 +108,54 @@ class Edit {
         max_plants_(most),
         region_(edit, scenario) {}
 
-  std::vector<std::uint32_t> clear(const std::vector<std::uint32_t>& words) {
+  Population::Edit clear(const std::vector<std::uint32_t>& words) {
     const std::size_t count = words.size() / plants::column_count;
     const int kind = species_index(edit_, s_);
     const auto at = [&](Column c, std::size_t n) { return words[static_cast<std::size_t>(c) * count + n]; };
     for (std::size_t n = 0; n < count; ++n) {
       const bool selected = kind < 0 || static_cast<int>(at(Column::species, n)) == kind;
       if (selected && region_.covers(float_from_bits(at(Column::x, n)), float_from_bits(at(Column::y, n))))
-        continue;
-      for (std::size_t c = 0; c < plants::column_count; ++c) columns_[c].push_back(words[c * count + n]);
+        result_.removed.push_back(static_cast<std::uint32_t>(n));
     }
-    return concatenated();
+    return std::move(result_);
   }
 
-  std::vector<std::uint32_t> plant(const std::vector<std::uint32_t>& words, const Terrain& terrain) {
-    const std::size_t count = words.size() / plants::column_count;
-    for (std::size_t c = 0; c < plants::column_count; ++c)
-      columns_[c].assign(words.begin() + static_cast<std::ptrdiff_t>(c * count),
-                         words.begin() + static_cast<std::ptrdiff_t>((c + 1) * count));
+  Population::Edit plant(std::size_t count, const Terrain& terrain) {
+    room_ = max_plants_ - static_cast<std::ptrdiff_t>(count);
+    const std::vector<int> cells = cells_to_plant(terrain);
+    const double expected = static_cast<double>(cells.size()) * expected_per_cell(),
+                 most = region_.most_places();
+    if (expected > most) {
+      std::ostringstream text;
+      text << "edit_plants: density: = " << edit_.density << " 1/m^2 would draw about " << expected
+           << " places in the rectangle around the region (allowed: at most " << most << ", which is "
+           << edit_.density * most / expected << " 1/m^2 there)";
+      throw ConfigError(text.str());
+    }
     for (Layer layer : {Layer::bedrock, Layer::soil, Layer::sand})
       if (terrain.has(layer)) ground_.push_back(terrain.raw_words(layer));
-    const std::vector<float> obstacle = terrain.values(Layer::obstacle);
-    for (int y = 0; y < grid_.height; ++y)
-      for (int x = 0; x < grid_.width; ++x)
-        if (obstacle[static_cast<std::size_t>(grid_.index(x, y))] == 0)
-          plant_cell(x, y, terrain.scale().quantum());
-    return concatenated();
+    for (const int i : cells) plant_cell(i % grid_.width, i / grid_.width, terrain.scale().quantum());
+    return std::move(result_);
   }
 
  private:
+  double expected_per_cell() const { return edit_.density * grid_.cell_size * grid_.cell_size; }
+
+  /// Those near the region that have no obstacle.
+  std::vector<int> cells_to_plant(const Terrain& terrain) const {
+    const std::vector<float> obstacle = terrain.values(Layer::obstacle);
+    const float l = grid_.cell_size;
+    std::vector<int> cells;
+    for (int y = 0; y < grid_.height; ++y)
+      for (int x = 0; x < grid_.width; ++x) {
+        const int i = grid_.index(x, y);
+        const bool near = region_.may_reach((static_cast<float>(x) + 0.5f) * l,
+                                            (static_cast<float>(y) + 0.5f) * l, 0.5f * l);
+        if (near && obstacle[static_cast<std::size_t>(i)] == 0) cells.push_back(i);
+      }
+    return cells;
+  }
+
   void plant_cell(int x, int y, double quantum) {
     const int i = grid_.index(x, y);
     const SpeciesTraits& traits = s_.species[static_cast<std::size_t>(species_index(edit_, s_))].traits;
@@ -114,7 +165,7 @@ class Edit {
     const float loose = static_cast<float>((surface - bedrock) * quantum);
     const float radius = static_cast<float>(edit_.size) * std::min(loose / traits.root, traits.max_radius);
     if (!(radius > 0)) return;
-    const double expected = edit_.density * grid_.cell_size * grid_.cell_size;
+    const double expected = expected_per_cell();
     const auto draw = [&](std::uint32_t which) {
       return random_words(s_.seed + edit_.seed, Purpose::planting, static_cast<std::uint32_t>(i),
                           static_cast<std::uint32_t>(step_), which);
@@ -132,26 +183,20 @@ class Edit {
   }
 
   void add_plant(float x, float y, Quanta z, float radius) {
-    if (columns_[0].size() >= static_cast<std::size_t>(max_plants_))
+    if (static_cast<std::ptrdiff_t>(result_.added.size()) >= room_)
       throw ConfigError("edit_plants: density: there would be more than " + std::to_string(max_plants_) +
                         " plants, which is the capacity (vegetation.max_plants sets it)");
-    const auto to = [&](Column c) -> std::vector<std::uint32_t>& {
-      return columns_[static_cast<std::size_t>(c)];
-    };
-    to(Column::x).push_back(bits_of(x));
-    to(Column::y).push_back(bits_of(y));
-    to(Column::z).push_back(static_cast<std::uint32_t>(z));
-    to(Column::radius).push_back(bits_of(radius));
-    to(Column::health).push_back(bits_of(1.0f));
-    to(Column::water).push_back(bits_of(0.0f));
-    to(Column::age).push_back(bits_of(0.0f));
-    to(Column::species).push_back(static_cast<std::uint32_t>(species_index(edit_, s_)));
-  }
-
-  std::vector<std::uint32_t> concatenated() const {
-    std::vector<std::uint32_t> all;
-    for (const auto& column : columns_) all.insert(all.end(), column.begin(), column.end());
-    return all;
+    PlantWords plant{};
+    const auto set = [&](Column c, std::uint32_t word) { plant[static_cast<std::size_t>(c)] = word; };
+    set(Column::x, bits_of(x));
+    set(Column::y, bits_of(y));
+    set(Column::z, static_cast<std::uint32_t>(z));
+    set(Column::radius, bits_of(radius));
+    set(Column::health, bits_of(1.0f));
+    set(Column::water, bits_of(0.0f));
+    set(Column::age, bits_of(0.0f));
+    set(Column::species, static_cast<std::uint32_t>(species_index(edit_, s_)));
+    result_.added.push_back(plant);
   }
 
   const command::EditPlants& edit_;
@@ -161,7 +206,8 @@ class Edit {
   int max_plants_;
   Region region_;
   std::vector<std::vector<std::uint32_t>> ground_;  ///< bedrock first
-  std::array<std::vector<std::uint32_t>, plants::column_count> columns_;
+  std::ptrdiff_t room_ = 0;                         ///< for more plants
+  Population::Edit result_;
 };
 
 }  // namespace
@@ -184,11 +230,11 @@ void check_plant_edit(const command::EditPlants& edit, const Scenario& s) {
   errors.throw_if_any();
 }
 
-std::vector<std::uint32_t> edited_plants(const command::EditPlants& edit, const Scenario& scenario,
-                                         const Terrain& terrain, std::uint64_t step, int most,
-                                         const std::vector<std::uint32_t>& words) {
+Population::Edit plant_edit(const command::EditPlants& edit, const Scenario& scenario, const Terrain& terrain,
+                            std::uint64_t step, int most, const std::vector<std::uint32_t>& words) {
   Edit work(edit, scenario, terrain, step, most);
-  return edit.operation == PlantEdit::clear ? work.clear(words) : work.plant(words, terrain);
+  return edit.operation == PlantEdit::clear ? work.clear(words)
+                                            : work.plant(words.size() / plants::column_count, terrain);
 }
 
 }  // namespace desert_sim

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/field/math.hpp"
 #include "src/core/error.hpp"
 #include "src/simulation/commands/edit_checks.hpp"
 #include "src/simulation/commands/ring.hpp"
+#include "src/simulation/undo/cell_list.hpp"
 
 namespace desert_sim {
 
@@ -37,10 +39,11 @@ void span(double centre, double reach, int n, bool periodic, int& first, int& co
 
 }  // namespace
 
-TerrainEdit::TerrainEdit(const command::EditTerrain& command, const Terrain& terrain,
-                         const GridParameters& grid, LedgerView ledger)
+TerrainEdit::TerrainEdit(const command::EditTerrain& command, Terrain& terrain, const GridParameters& grid,
+                         LedgerView ledger)
     : command_(command), terrain_(terrain), grid_(grid) {
   check_edit(command, terrain);
+  layer_ = layer_by_name(command.layer);
   brush_.grid = terrain.grid();
   brush_.ledger = ledger;
   choose_layer();
@@ -60,24 +63,37 @@ TerrainEdit::TerrainEdit(const command::EditTerrain& command, const Terrain& ter
 }
 
 void TerrainEdit::choose_layer() {
-  const TerrainView view = terrain_.view();
-  const Layer layers[] = {Layer::bedrock, Layer::soil, Layer::sand, Layer::water};
-  const Material materials[] = {Material::bedrock, Material::soil, Material::sand, Material::water};
-  int other_count = 0;
-  for (int n = 0; n < 4; ++n) {
-    if (command_.layer == info(layers[n]).name) {
-      brush_.layer = view.quanta(layers[n]);
-      brush_.material = materials[n];
-    } else {
-      brush_.other_layers[other_count++] = view.quanta(layers[n]);
-    }
-  }
-  brush_.depth = brush_.material != Material::bedrock;
   brush_.merge = command_.merge;
-  brush_.quanta_per_metre = 1.0 / terrain_.scale().quantum();
+  brush_.quanta_per_metre = 1.0 / step_size();
+  if (of_obstacles()) {
+    obstacles_ = Buffer<Quanta>(terrain_.exec(), static_cast<std::size_t>(brush_.grid.cells()));
+    with_backend(terrain_.exec(), [&](auto& e) {
+      brush::read_obstacles(e, brush_.grid, terrain_.view().real(Layer::obstacle), obstacles_.data());
+    });
+    brush_.layer = obstacles_.data();
+    brush_.depth = true;
+    brush_.lowest = 0;
+    brush_.highest = static_cast<Quanta>(brush::obstacle_steps);
+    brush_.value = command_.value * brush::obstacle_steps;
+    return;
+  }
+  const TerrainView view = terrain_.view();
+  int other_count = 0;
+  for (const Layer layer : {Layer::bedrock, Layer::soil, Layer::sand, Layer::water})
+    if (layer != layer_) brush_.other_layers[other_count++] = view.quanta(layer);
+  brush_.layer = view.quanta(layer_);
+  brush_.material = material_of(layer_);
+  brush_.depth = layer_ != Layer::bedrock;
+  brush_.lowest = brush_.depth ? 0 : 1 - wall_height;
+  brush_.highest = wall_height - 1;
   const bool shift = command_.merge == BrushMerge::add || command_.merge == BrushMerge::sub;
   const double above = brush_.depth || shift ? 0.0 : terrain_.scale().datum;
   brush_.value = (command_.value - above) * brush_.quanta_per_metre;
+}
+
+/// What an integer of the brush counts [m, or 1 of obstacles].
+double TerrainEdit::step_size() const {
+  return of_obstacles() ? 1 / brush::obstacle_steps : terrain_.scale().quantum();
 }
 
 /// The shape in cells, and the rectangle of cells that bounds it.
@@ -214,6 +230,7 @@ void TerrainEdit::conserve() {
 }
 
 void TerrainEdit::require_heights() const {
+  if (of_obstacles()) return;
   const long long beyond = with_backend(
       terrain_.exec(), [&](auto& e) { return brush::cells_beyond_limit(e, brush_, change_.data()); });
   if (beyond == 0) return;
@@ -225,32 +242,65 @@ void TerrainEdit::require_heights() const {
 }
 
 CommandResult TerrainEdit::commit(bool with_change) {
-  with_backend(terrain_.exec(),
-               [&](auto& e) { brush::commit_change(e, brush_, change_.data(), command_.conserve); });
   CommandResult result;
-  const double volume =
-      static_cast<double>(total_) * terrain_.scale().quantum() * grid_.cell_size * grid_.cell_size;
-  (command_.conserve ? result.moved_m3 : result.volume_m3) = volume;
+  if (of_obstacles()) {
+    const LayerEdit edit = change();
+    if (!edit.obstacles.empty()) terrain_.allocate(Layer::obstacle);
+    with_backend(terrain_.exec(), [&](auto& e) {
+      brush::commit_obstacles(e, brush_, change_.data(), terrain_.view().real(Layer::obstacle));
+    });
+  } else {
+    with_backend(terrain_.exec(),
+                 [&](auto& e) { brush::commit_change(e, brush_, change_.data(), command_.conserve); });
+    const double volume =
+        static_cast<double>(total_) * terrain_.scale().quantum() * grid_.cell_size * grid_.cell_size;
+    (command_.conserve ? result.moved_m3 : result.volume_m3) = volume;
+  }
   result.changed_cells = changed_cells_;
   if (with_change)
-    result.change = {command_.layer, grid_.origin_x + changed_cells_.x0 * grid_.cell_size,
-                     grid_.origin_y + changed_cells_.y0 * grid_.cell_size, grid_.cell_size,
-                     change_of_rectangle()};
+    result.changes.push_back({command_.layer, grid_.origin_x + changed_cells_.x0 * grid_.cell_size,
+                              grid_.origin_y + changed_cells_.y0 * grid_.cell_size, grid_.cell_size,
+                              change_of_rectangle()});
   return result;
+}
+
+LayerEdit TerrainEdit::change() const {
+  LayerEdit edit{layer_, command_.conserve, {}, {}};
+  const std::vector<Quanta> change = change_.download();
+  std::size_t k = 0;
+  for (int y = 0; y < brush_.rows; ++y)
+    for (int x = 0; x < brush_.columns; ++x, ++k)
+      if (change[k] != 0) edit.cells.push_back({brush_.cell(x, y), change[k]});
+  std::sort(edit.cells.begin(), edit.cells.end(),
+            [](const CellAmount& a, const CellAmount& b) { return a.cell < b.cell; });
+  if (!of_obstacles() || edit.cells.empty()) return edit;
+  std::vector<int> cells;
+  for (const CellAmount& c : edit.cells) cells.push_back(c.cell);
+  const CellList list(terrain_.exec(), cells);
+  std::vector<std::uint32_t> before(cells.size(), 0);
+  if (terrain_.has(Layer::obstacle)) before = list.read(terrain_.data(Layer::obstacle));
+  const std::vector<std::uint32_t> steps =
+      list.read(reinterpret_cast<const std::uint32_t*>(obstacles_.data()));
+  for (std::size_t n = 0; n < cells.size(); ++n)
+    edit.obstacles.push_back({cells[n], float_from_bits(before[n]),
+                              static_cast<float>(static_cast<Quanta>(steps[n]) + edit.cells[n].amount) *
+                                  static_cast<float>(1 / brush::obstacle_steps),
+                              0});
+  edit.cells.clear();
+  return edit;
 }
 
 std::vector<float> TerrainEdit::change_of_rectangle() const {
   const std::vector<Quanta> change = change_.download();
   const auto width = static_cast<std::size_t>(changed_cells_.x1 - changed_cells_.x0);
   std::vector<float> metres(width * static_cast<std::size_t>(changed_cells_.y1 - changed_cells_.y0), 0.0f);
-  const double quantum = terrain_.scale().quantum();
   std::size_t k = 0;
   for (int y = 0; y < brush_.rows; ++y)
     for (int x = 0; x < brush_.columns; ++x, ++k) {
       const int cell = brush_.cell(x, y);
       const auto column = static_cast<std::size_t>(cell % brush_.grid.width - changed_cells_.x0),
                  row = static_cast<std::size_t>(cell / brush_.grid.width - changed_cells_.y0);
-      metres[row * width + column] = static_cast<float>(change[k] * quantum);
+      metres[row * width + column] = static_cast<float>(change[k] * step_size());
     }
   return metres;
 }

@@ -6,6 +6,7 @@
 #include "kernels/edit/brush_smooth.hpp"
 #include "src/scenario/scenario.hpp"
 #include "src/simulation/commands/command.hpp"
+#include "src/simulation/undo/stroke.hpp"
 #include "src/terrain/terrain.hpp"
 
 namespace desert_sim {
@@ -15,11 +16,14 @@ class TerrainEdit {
   /// Works out what the edit changes. Throws ConfigError, and has changed nothing, if it is refused: see
   /// check_edit(); shapes that touch no cell or reach around a periodic terrain; heights out of the terrain's
   /// scale; a ring that cannot give or take what it should.
-  TerrainEdit(const command::EditTerrain& command, const Terrain& terrain, const GridParameters& grid,
+  TerrainEdit(const command::EditTerrain& command, Terrain& terrain, const GridParameters& grid,
               LedgerView ledger);
 
-  Material material() const { return brush_.material; }
-  /// Makes the change. `with_change`: the result tells it cell by cell.
+  Layer layer() const { return layer_; }
+  /// What it changes, as the history keeps it.
+  LayerEdit change() const;
+  /// Makes the change. `with_change`: the result tells it cell by cell. Throws ConfigError if there is no
+  /// memory for a layer obstacle.
   CommandResult commit(bool with_change);
 
  private:
@@ -30,12 +34,16 @@ class TerrainEdit {
   void smooth();
   void conserve();
   void require_heights() const;
+  bool of_obstacles() const { return layer_ == Layer::obstacle; }
+  double step_size() const;
   std::vector<float> change_of_rectangle() const;
 
   const command::EditTerrain& command_;
-  const Terrain& terrain_;
+  Terrain& terrain_;
   const GridParameters& grid_;
+  Layer layer_;
   brush::Brush brush_{};
+  Buffer<Quanta> obstacles_;  ///< as the brush edits them; empty for other layers
   Buffer<brush::Point> vertices_;
   Buffer<float> patch_;
   Buffer<Quanta> change_;

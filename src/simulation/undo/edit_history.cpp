@@ -1,0 +1,216 @@
+#include "src/simulation/undo/edit_history.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "src/core/error.hpp"
+#include "src/core/quoted.hpp"
+#include "src/simulation/undo/changed_cells.hpp"
+#include "src/simulation/undo/material_return.hpp"
+#include "src/simulation/undo/obstacles.hpp"
+
+namespace desert_sim {
+
+void check_stroke_name(const std::string& name, const std::string& what) {
+  constexpr std::size_t longest = 255;
+  if (name.size() > longest)
+    throw ConfigError(what + ": stroke: has " + std::to_string(name.size()) + " bytes (allowed: at most " +
+                      std::to_string(longest) + ")");
+  if (!std::all_of(name.begin(), name.end(), [](char c) { return c >= ' ' && c <= '~'; }))
+    throw ConfigError(what + ": stroke: has a byte that is not a printable character of ASCII");
+}
+
+EditHistory::EditHistory(SimulationState& state, Pipeline& pipeline)
+    : state_(state), pipeline_(pipeline), loose_(state), population_(state, pipeline) {}
+
+// ---- memory
+
+std::size_t EditHistory::bytes() const { return stroke_bytes_ + population_.bytes(); }
+
+void EditHistory::set_memory(std::size_t bytes) {
+  memory_ = bytes;
+  keep_to_memory();
+}
+
+void EditHistory::keep_to_memory() {
+  while (bytes() > memory_ && !strokes_.empty()) {
+    Stroke& oldest = strokes_.front();
+    close(oldest);
+    if (!oldest.undone && !oldest.obstacles.empty()) obstacles_are_new_ = false;  // they stay for ever
+    stroke_bytes_ -= oldest.bytes();
+    strokes_.pop_front();
+  }
+  if (strokes_.empty()) population_.forget();
+}
+
+/// Further edits of its name begin another stroke.
+void EditHistory::close(const Stroke& stroke) {
+  const auto at = open_.find(stroke.name);
+  if (at != open_.end() && at->second == &stroke) open_.erase(at);
+}
+
+// ---- painting
+
+Stroke& EditHistory::stroke_to_paint(const std::string& name) {
+  const auto at = open_.find(name);
+  if (!name.empty() && at != open_.end()) return *at->second;
+  Stroke& stroke = strokes_.emplace_back();
+  stroke.name = name;
+  stroke_bytes_ += stroke.bytes();
+  if (!name.empty()) open_[name] = &stroke;
+  return stroke;
+}
+
+void EditHistory::paint(const std::string& name, const LayerEdit& edit, bool new_layer) {
+  if (!remembers()) return;
+  const auto open = open_.find(name);
+  if (open != open_.end() && !open->second->has_room(edit.layer, edit.cells)) open_.erase(open);
+  Stroke& stroke = stroke_to_paint(name);
+  const std::size_t before = stroke.bytes();
+  stroke.last_action = ++actions_;
+  if (edit.layer == Layer::obstacle) {
+    obstacles_are_new_ = obstacles_are_new_ || new_layer;
+    std::vector<ObstacleCell> cells = edit.obstacles;
+    for (ObstacleCell& c : cells) c.order = actions_;
+    paint_obstacles(strokes_, stroke, cells);
+  } else {
+    stroke.add(edit.layer, edit.cells, edit.conserve);
+    loose_.painted(edit.layer, stroke.loose);
+  }
+  recount(stroke, before);
+  keep_to_memory();
+}
+
+void EditHistory::paint(const std::string& name, const Population::Edit& plants) {
+  PlantChange change = population_.paint(plants, remembers());
+  if (!remembers()) return;
+  Stroke& stroke = stroke_to_paint(name);
+  const std::size_t before = stroke.bytes();
+  stroke.last_action = ++actions_;
+  population_.merge(stroke.plants, std::move(change));
+  recount(stroke, before);
+  keep_to_memory();
+}
+
+// ---- undo and redo
+
+Stroke& EditHistory::find(const std::string& name, bool undone, const std::string& what) {
+  check_stroke_name(name, what);
+  Stroke *found = nullptr, *newest = nullptr;
+  for (Stroke& stroke : strokes_) {
+    if (stroke.undone != undone) continue;
+    if (!newest || stroke.last_action > newest->last_action) newest = &stroke;
+    const bool named = name.empty() || stroke.name == name;
+    if (named && (!found || stroke.last_action > found->last_action)) found = &stroke;
+  }
+  if (found) return *found;
+  const std::string verb = undone ? "redone" : "undone";
+  if (!remembers()) throw ConfigError(what + ": no stroke is kept, because undo_memory is 0");
+  if (!newest) throw ConfigError(what + ": there is no stroke that can be " + verb);
+  throw ConfigError(
+      what + ": stroke: " + quoted(name) + " is not the name of a stroke that can be " + verb +
+      (newest->name.empty() ? " (the newest has no name)" : " (the newest is " + quoted(newest->name) + ")"));
+}
+
+CommandResult EditHistory::undo(const std::string& name, bool with_change) {
+  return turn(find(name, false, "undo"), with_change);
+}
+
+CommandResult EditHistory::redo(const std::string& name, bool with_change) {
+  return turn(find(name, true, "redo"), with_change);
+}
+
+namespace {
+
+std::vector<int> cells_of(const std::vector<ObstacleCell>& obstacles) {
+  std::vector<int> cells;
+  cells.reserve(obstacles.size());
+  for (const ObstacleCell& c : obstacles) cells.push_back(c.cell);
+  return cells;
+}
+
+}  // namespace
+
+/// Brings the memory into use that the stroke needs. Throws ConfigError, and has changed nothing, if there is
+/// none.
+void EditHistory::prepare(const Stroke& stroke) {
+  loose_.begin();
+  if (!stroke.obstacles.empty() && !state_.terrain.has(Layer::obstacle)) {
+    state_.terrain.allocate(Layer::obstacle);
+    obstacles_are_new_ = true;
+  }
+  const bool bedrock = state_.bedrock_loose, soil = state_.soil_loose;
+  state_.bedrock_loose = bedrock || stroke.changed(Layer::bedrock);
+  state_.soil_loose = soil || stroke.changed(Layer::bedrock) || stroke.changed(Layer::soil);
+  try {
+    pipeline_.adapt();  // avalanches of soil and bedrock need memory
+  } catch (...) {
+    state_.bedrock_loose = bedrock;
+    state_.soil_loose = soil;
+    release_obstacles();
+    throw;
+  }
+  state_.bedrock_loose = bedrock;
+  state_.soil_loose = soil;
+}
+
+/// A terrain that had no obstacles before its strokes has none when all of them are undone.
+void EditHistory::release_obstacles() {
+  const bool painted = std::any_of(strokes_.begin(), strokes_.end(),
+                                   [](const Stroke& s) { return !s.undone && !s.obstacles.empty(); });
+  if (!obstacles_are_new_ || painted) return;
+  state_.exec().synchronise();  // steps in flight work with it
+  state_.terrain.set_allocated(Layer::obstacle, false);
+  obstacles_are_new_ = false;
+}
+
+CommandResult EditHistory::turn(Stroke& stroke, bool with_change) {
+  // Whatever needs memory comes first, so that nothing is half done if there is none.
+  prepare(stroke);
+  const std::size_t before = stroke.bytes();
+  std::optional<MaterialTurn> materials;
+  std::optional<CellList> obstacles;
+  CommandResult result;
+  try {
+    materials.emplace(stroke.materials, state_);
+    obstacles.emplace(state_.exec(), cells_of(stroke.obstacles));
+    result.returned.missing_plants = population_.turn_back(stroke.plants);
+  } catch (...) {
+    release_obstacles();
+    throw;
+  }
+  pipeline_.ground_changed();
+  const MaterialReturns moved = materials->commit();
+  ChangedCells cells(state_);
+  for (const MaterialChange& change : stroke.materials) cells.add(change);
+  if (!stroke.obstacles.empty())
+    cells.add(stroke.obstacles,
+              turn_obstacles(strokes_, stroke, stroke.obstacles, *obstacles, state_.terrain));
+  cells.add(stroke.plants);
+  result.plants = static_cast<long long>(stroke.plants.added.size()) -
+                  static_cast<long long>(stroke.plants.removed.size());
+  bool complete = true;
+  for (const MaterialChange& change : stroke.materials) {
+    const auto m = static_cast<std::size_t>(material_of(change.layer));
+    const double cell = state_.scenario.grid.cell_size,
+                 quantum = state_.terrain.scale().quantum() * cell * cell;
+    const auto volume = [&](long long quanta) { return static_cast<double>(quanta) * quantum; };
+    result.returned.materials[m] = {volume(moved[m].added), volume(moved[m].removed),
+                                    volume(moved[m].missing)};
+    complete = complete && moved[m].missing == 0;
+  }
+  loose_.returned(stroke, complete, stroke.loose);
+  stroke.undone = !stroke.undone;
+  stroke.last_action = ++actions_;
+  result.returned.name = stroke.name;
+  result.changed_cells = cells.rectangle();
+  if (with_change) result.changes = cells.changes();
+  close(stroke);
+  release_obstacles();
+  recount(stroke, before);
+  keep_to_memory();
+  for (const Stroke& s : strokes_) ++(s.undone ? result.redoable : result.undoable);
+  return result;
+}
+
+}  // namespace desert_sim

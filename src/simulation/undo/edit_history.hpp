@@ -1,0 +1,72 @@
+#pragma once
+/// The history of edits: what undo and redo bring back. doc/undo.md says what they mean in a world that
+/// moves. It belongs to a simulation and ends with it; checkpoints do not have it.
+
+#include <deque>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "src/simulation/commands/command.hpp"
+#include "src/simulation/undo/loose_ground.hpp"
+#include "src/simulation/undo/population.hpp"
+#include "src/simulation/undo/stroke.hpp"
+
+namespace desert_sim {
+
+/// Memory for the history [bytes], unless somebody says how much.
+constexpr std::size_t default_undo_memory = 64'000'000;
+
+/// Throws ConfigError, in the name of `what`, unless the name of a stroke has at most 255 bytes, all of them
+/// printable ASCII.
+void check_stroke_name(const std::string& name, const std::string& what);
+
+class EditHistory {
+ public:
+  EditHistory(SimulationState& state, Pipeline& pipeline);
+  EditHistory(const EditHistory&) = delete;
+  EditHistory& operator=(const EditHistory&) = delete;
+
+  /// What strokes may take [bytes]; the oldest are forgotten first. 0: none is kept.
+  void set_memory(std::size_t bytes);
+  bool remembers() const { return memory_ > 0; }
+  std::size_t bytes() const;
+
+  // ---- Painting. A name that is not empty and belongs to a stroke which nobody has undone or redone
+  // continues that stroke.
+
+  /// Before an edit changes the ground.
+  void begin_ground() { loose_.begin(); }
+  /// `new_layer`: the edit has brought the layer obstacle into use.
+  void paint(const std::string& stroke, const LayerEdit& edit, bool new_layer);
+  void paint(const std::string& stroke, const Population::Edit& plants);
+
+  /// Of the stroke of that name, or, if it is empty, of the one that was painted or redone (undone) last.
+  /// Throws ConfigError if there is none. `with_change`: the result tells what changed, cell by cell.
+  CommandResult undo(const std::string& stroke, bool with_change);
+  CommandResult redo(const std::string& stroke, bool with_change);
+
+ private:
+  Stroke& find(const std::string& name, bool undone, const std::string& what);
+  CommandResult turn(Stroke& stroke, bool with_change);
+  Stroke& stroke_to_paint(const std::string& name);
+  void prepare(const Stroke& stroke);
+  void release_obstacles();
+  void close(const Stroke& stroke);
+  void forget_oldest();
+  void keep_to_memory();
+  /// The sizes of strokes are counted again after each change.
+  void recount(const Stroke& stroke, std::size_t before) { stroke_bytes_ += stroke.bytes() - before; }
+
+  SimulationState& state_;
+  Pipeline& pipeline_;
+  LooseGround loose_;
+  Population population_;
+  std::deque<Stroke> strokes_;                     ///< the oldest first
+  std::unordered_map<std::string, Stroke*> open_;  ///< those that further edits belong to
+  std::uint64_t actions_ = 0;                      ///< edits, undos and redos so far
+  bool obstacles_are_new_ = false;                 ///< the layer is in use because of these strokes alone
+  std::size_t memory_ = 0, stroke_bytes_ = 0;
+};
+
+}  // namespace desert_sim

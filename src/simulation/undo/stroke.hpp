@@ -1,0 +1,89 @@
+#pragma once
+/// A stroke: what the edits of one name changed, cell by cell, as undo and redo need it. It holds the changes
+/// that were really made: by painting, or by the undo or redo that came last.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kernels/field/layers.hpp"
+#include "kernels/field/ledger.hpp"
+#include "kernels/plants/population.hpp"
+
+namespace desert_sim {
+
+struct CellAmount {
+  int cell;
+  Quanta amount;  ///< not 0 [quanta]
+};
+
+/// The change of one layer of material.
+struct MaterialChange {
+  Layer layer;
+  std::vector<CellAmount> cells;  ///< in the order of cells
+  long long in = 0, out = 0;      ///< what was booked as entered and left [quanta]; their difference is the
+                                  ///< sum of the amounts
+  bool conserving = true;         ///< all edits moved the material within the layer
+};
+
+/// Material::… of a layer that brushes edit.
+Material material_of(Layer layer);
+
+/// A cell of the layer obstacle. Of all strokes that are not undone, the one with the greatest `order` says
+/// what the cell is, and its `before` is what it would be without that stroke.
+struct ObstacleCell {
+  int cell;
+  float before, after;
+  std::uint64_t order;  ///< grows with each edit
+};
+
+/// What one edit changed in its layer.
+struct LayerEdit {
+  Layer layer = Layer::sand;
+  bool conserve = false;
+  std::vector<CellAmount> cells;        ///< of a layer of material, in the order of cells
+  std::vector<ObstacleCell> obstacles;  ///< of the layer obstacle, in the order of cells; without `order`
+};
+
+using PlantWords = std::array<std::uint32_t, plants::column_count>;
+
+/// A plant that was put or taken away. See Population for its rank and mark.
+struct ChangedPlant {
+  PlantWords words;
+  std::uint64_t rank, mark;
+};
+
+struct PlantChange {
+  std::vector<ChangedPlant> added, removed;
+  std::vector<ChangedPlant> passed;  ///< came and went within the stroke; both of its changes
+  bool empty() const { return added.empty() && removed.empty() && passed.empty(); }
+};
+
+/// What ground the stroke has made loose; see LooseGround.
+struct LooseMark {
+  std::uint64_t epoch = 0;
+  std::array<std::uint64_t, 2> marks{};  ///< of bedrock, of soil
+  bool older = false;                    ///< it also changed ground before that epoch
+};
+
+struct Stroke {
+  std::string name;  ///< empty: one call
+  bool undone = false;
+  std::uint64_t last_action = 0;  ///< grows with each edit, undo and redo
+  std::vector<MaterialChange> materials;
+  std::vector<ObstacleCell> obstacles;  ///< in the order of cells
+  PlantChange plants;
+  LooseMark loose;
+
+  /// Adds what an edit changed in a layer of material.
+  void add(Layer layer, const std::vector<CellAmount>& cells, bool conserve);
+  /// Whether they can be added: what a cell got or lost in all stays within the range of its integer.
+  bool has_room(Layer layer, const std::vector<CellAmount>& cells) const;
+  bool changed(Layer layer) const;
+  /// What it counts for in the memory of the history. It depends on nothing but what it holds, because a
+  /// replay has to forget the same strokes.
+  std::size_t bytes() const;
+};
+
+}  // namespace desert_sim

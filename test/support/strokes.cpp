@@ -1,0 +1,78 @@
+#include "support/strokes.hpp"
+
+namespace desert_sim::test {
+
+std::string undo_world(const std::string& name) {
+  if (name == "dunes")
+    return "grid: {width: 40, height: 30, cell_size: 0.5, origin_x: 100, origin_y: -50}\n"
+           "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 6}, noise: {layer: sand, low: 0, high: "
+           "2}]\n"
+           "wind: {speed: 7, direction_deg: 20}\nabrasion: {rate: 0.01}\n";
+  if (name == "valley")
+    return "grid: {width: 40, height: 30, boundary: open}\n"
+           "terrain: [noise: {layer: bedrock, low: 0, high: 5, scale: 9}, noise: {layer: soil, low: 0, high: "
+           "1},\n"
+           "  noise: {layer: sand, low: 0, high: 1, seed: 3}, noise: {layer: water, low: 0, high: 0.5, seed: "
+           "4},\n"
+           "  obstacle: {x: 20, y: 15, size_x: 4, size_y: 4, height: 2}]\n"
+           "wind: {speed: 6}\nrain: {rate: 1.0e-4}\n";
+  return "grid: {width: 48, height: 40}\n"
+         "terrain: [noise: {layer: bedrock, low: 0, high: 1, scale: 8}, uniform: {layer: soil, value: 2},\n"
+         "  noise: {layer: sand, low: 0, high: 1}, uniform: {layer: moisture, value: 0.1}]\n"
+         "wind: {speed: 6}\nrun: {time_step: 0.5}\nvegetation: {enabled: true}\n"
+         "species: [{preset: bush, spawn: 100, moisture_lowest: 0, light_highest: 2},\n"
+         "  {preset: tree, moisture_lowest: 0, light_highest: 2}]\n";
+}
+
+template <class Edit>
+void RandomStrokes::place(Edit& edit) {
+  const GridParameters& grid = simulation_.scenario().grid;
+  const double l = grid.cell_size;
+  edit.x = grid.origin_x + between(0, 1) * grid.width * l;
+  edit.y = grid.origin_y + between(0, 1) * grid.height * l;
+  edit.radius = between(0.5, 7) * l;
+  edit.radius_y = between(0.5, 7) * l;
+  edit.angle_deg = between(0, 90);
+  const auto near = [&] { return command::Point{edit.x + between(-5, 5) * l, edit.y + between(-5, 5) * l}; };
+  if (edit.shape == BrushShape::polygon) edit.points = {near(), near(), near(), near()};
+  if (edit.shape == BrushShape::capsule) edit.points = {near(), near()};
+}
+
+Command RandomStrokes::next(const std::string& stroke) {
+  const Scenario& scenario = simulation_.scenario();
+  if (!scenario.species.empty() && below(2) == 0) {
+    command::EditPlants edit;
+    edit.operation = below(3) == 0 ? PlantEdit::clear : PlantEdit::plant;
+    edit.species = edit.operation == PlantEdit::plant || below(2) ? scenario.species[below(2)].name : "";
+    edit.shape = static_cast<BrushShape>(below(5));
+    edit.density = between(0, 1);
+    edit.size = between(0.05, 1);
+    edit.seed = below(3);
+    edit.stroke = stroke;
+    place(edit);
+    return edit;
+  }
+  command::EditTerrain edit;
+  std::vector<std::string> layers{"sand", "bedrock", "obstacle"};
+  for (Layer layer : {Layer::soil, Layer::water})
+    if (simulation_.terrain().has(layer)) layers.emplace_back(info(layer).name);
+  edit.layer = layers[below(layers.size())];
+  edit.shape = static_cast<BrushShape>(below(6));
+  edit.merge = static_cast<BrushMerge>(below(7));
+  edit.inner = between(0, 1);
+  edit.falloff = between(0, 2);
+  edit.value = between(0, edit.layer == "obstacle" ? 1 : 2);
+  edit.smooth_radius = 2 * scenario.grid.cell_size;
+  edit.conserve = edit.layer != "obstacle" && below(3) == 0;
+  edit.ring_width = 3 * scenario.grid.cell_size;
+  edit.stroke = stroke;
+  place(edit);
+  if (edit.shape == BrushShape::patch) {
+    edit.patch = {3, 2, {}};
+    edit.patch_use = PatchUse::mask;
+    for (int n = 0; n < 6; ++n) edit.patch.values.push_back(static_cast<float>(between(0, 1)));
+  }
+  return edit;
+}
+
+}  // namespace desert_sim::test
