@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-#include "src/client/elevation_assembler.hpp"
+#include "src/client/layer_assembler.hpp"
 
 namespace desert_sim {
 

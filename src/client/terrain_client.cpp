@@ -1,15 +1,14 @@
 #include "src/client/terrain_client.hpp"
 
-#include <ros/console.h>
 #include <ros/init.h>
 #include <ros/master.h>
 #include <ros/names.h>
-#include <std_msgs/Empty.h>
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 
 #include "src/core/error.hpp"
+#include "src/terrain/map_layers.hpp"
 
 namespace desert_sim {
 
@@ -24,16 +23,24 @@ Clock::duration duration_of(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
+/// Throws ConfigError.
+void check_layer(const std::string& name) {
+  if (!find_map_layer(name))
+    throw ConfigError("TerrainClient: layer '" + name + "' is not one of: " + map_layer_names());
+}
+
 /// Checks the options and fills in empty topic names. Throws ConfigError.
 TerrainClient::Options checked(TerrainClient::Options options) {
   if (options.elevation_topic.empty()) options.elevation_topic = options.node + "/elevation";
   if (options.updates_topic.empty()) options.updates_topic = options.node + "/elevation_updates";
   if (options.request_topic.empty()) options.request_topic = options.node + "/request_keyframe";
-  for (const std::string* name : {&options.elevation_topic, &options.updates_topic, &options.request_topic}) {
+  for (const std::string* name :
+       {&options.node, &options.elevation_topic, &options.updates_topic, &options.request_topic}) {
     std::string why;
     if (!ros::names::validate(*name, why))
       throw ConfigError("TerrainClient: '" + *name + "' is not a valid topic name: " + why);
   }
+  for (const std::string& layer : options.layers) check_layer(layer);
   if (options.update_queue == 0) throw ConfigError("TerrainClient: update_queue is 0 (allowed: at least 1)");
   if (!(options.shortest_pause > 0 && options.longest_pause >= options.shortest_pause &&
         options.longest_pause <= 3600))
@@ -49,178 +56,189 @@ TerrainClient::Options checked(TerrainClient::Options options) {
 TerrainClient::TerrainClient(const ros::NodeHandle& node) : TerrainClient(node, Options()) {}
 
 TerrainClient::TerrainClient(const ros::NodeHandle& node, Options options)
-    : options_(checked(std::move(options))),
-      node_(node),
-      requests_(duration_of(options_.shortest_pause), duration_of(options_.longest_pause)) {
-  if (options_.own_thread) node_.setCallbackQueue(&queue_);
-  request_publisher_ = node_.advertise<std_msgs::Empty>(options_.request_topic, 1);
-  subscribe_to_keyframes();
-  updates_ = node_.subscribe<ElevationUpdate>(
-      options_.updates_topic, options_.update_queue,
-      [this](const ElevationUpdate::ConstPtr& update) { process(update); }, ros::VoidConstPtr(),
-      ros::TransportHints().tcpNoDelay());
+    : options_(checked(std::move(options))) {
+  context_.node = node;
+  if (options_.own_thread) context_.node.setCallbackQueue(&queue_);
+  context_.update_queue = options_.update_queue;
+  context_.shortest_pause = duration_of(options_.shortest_pause);
+  context_.longest_pause = duration_of(options_.longest_pause);
+  context_.on_change = options_.on_change;
+  for (const std::string& layer : options_.layers) subscribe_layer(layer);
+  for (const std::shared_ptr<LayerStream>& stream : streams()) stream->start();
   thread_ = std::thread([this] { run_thread(); });
 }
 
 TerrainClient::~TerrainClient() {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::lock_guard<std::mutex> lock(context_.mutex);
     stopping_ = true;
-    changed_.notify_all();
+    context_.changed.notify_all();
   }
   queue_.disable();  // wakes its thread
   thread_.join();
-  updates_.shutdown();  // on a queue of the caller, this waits for a running callback
-  keyframes_.shutdown();
+  for (const std::shared_ptr<LayerStream>& stream : retired_) stream->stop();
+  for (const auto& entry : streams_) entry.second->stop();  // waits for a callback on a queue of the caller
+}
+
+// ---- layers ----
+
+const std::vector<std::string>& TerrainClient::known_layers() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const MapLayer& layer : map_layers) all.emplace_back(layer.name);
+    return all;
+  }();
+  return names;
+}
+
+std::shared_ptr<LayerStream> TerrainClient::make_stream(const std::string& name) {
+  LayerStream::Topics topics{options_.elevation_topic, options_.updates_topic, options_.request_topic};
+  const std::string folder = options_.node + "/layers/";
+  if (name != "elevation") topics = {folder + name, folder + name + "_updates", folder + "request_keyframe"};
+  return std::make_shared<LayerStream>(context_, name, topics);
+}
+
+void TerrainClient::subscribe_layer(const std::string& name) {
+  check_layer(name);
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  std::shared_ptr<LayerStream>& stream = streams_[name];
+  if (stream) return;
+  stream = make_stream(name);
+  streams_changed_ = true;
+  context_.changed.notify_all();
+}
+
+void TerrainClient::unsubscribe_layer(const std::string& name) {
+  check_layer(name);
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  const auto found = streams_.find(name);
+  if (found == streams_.end()) return;
+  found->second->close();
+  retired_.push_back(found->second);
+  streams_.erase(found);
+  streams_changed_ = true;
+  context_.changed.notify_all();
+}
+
+std::vector<std::shared_ptr<LayerStream>> TerrainClient::streams() const {
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  std::vector<std::shared_ptr<LayerStream>> all;
+  for (const auto& entry : streams_) all.push_back(entry.second);
+  return all;
+}
+
+std::vector<std::string> TerrainClient::layers() const {
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  std::vector<std::string> names;
+  for (const auto& entry : streams_) names.push_back(entry.first);
+  return names;
 }
 
 // ---- queries ----
 
-std::shared_ptr<const ElevationMap> TerrainClient::map() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return map_;
+/// What `read` finds in the stream of a layer; `without` if there is none.
+template <class Result, class Read>
+Result TerrainClient::read(const std::string& name, Result without, const Read& read) const {
+  check_layer(name);
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  const auto found = streams_.find(name);
+  return found == streams_.end() ? without : read(*found->second);
 }
 
-std::optional<double> TerrainClient::elevation(double x, double y) const {
-  const std::shared_ptr<const ElevationMap> now = map();
-  return now ? now->elevation(x, y) : std::nullopt;
+std::shared_ptr<const LayerMap> TerrainClient::layer_map(const std::string& name) const {
+  return read(name, std::shared_ptr<const LayerMap>(), [](const LayerStream& stream) { return stream.map(); });
+}
+
+std::optional<double> TerrainClient::value(const std::string& name, double x, double y) const {
+  const std::shared_ptr<const LayerMap> now = layer_map(name);
+  return now ? now->value(x, y) : std::nullopt;
 }
 
 std::optional<geometry_msgs::Vector3> TerrainClient::normal(double x, double y) const {
-  const std::shared_ptr<const ElevationMap> now = map();
+  const std::shared_ptr<const LayerMap> now = map();
   return now ? now->normal(x, y) : std::nullopt;
 }
 
 std::optional<double> TerrainClient::slope(double x, double y) const {
-  const std::shared_ptr<const ElevationMap> now = map();
+  const std::shared_ptr<const LayerMap> now = map();
   return now ? now->slope(x, y) : std::nullopt;
 }
 
+bool TerrainClient::up_to_date(const std::string& layer) const {
+  return read(layer, false, [](const LayerStream& stream) { return stream.up_to_date(); });
+}
+
+TerrainClient::Statistics TerrainClient::statistics(const std::string& layer) const {
+  return read(layer, Statistics(), [](const LayerStream& stream) { return stream.statistics(); });
+}
+
+bool TerrainClient::all_streams(const std::function<bool(const LayerStream&)>& condition) const {
+  return std::all_of(streams_.begin(), streams_.end(),
+                     [&](const auto& entry) { return condition(*entry.second); });
+}
+
 bool TerrainClient::up_to_date() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return up_to_date_;
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  return all_streams([](const LayerStream& stream) { return stream.up_to_date(); });
 }
 
 bool TerrainClient::connected() const {
-  ros::Subscriber keyframes;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    keyframes = keyframes_;
-  }
-  return keyframes.getNumPublishers() > 0;
-}
-
-TerrainClient::Statistics TerrainClient::statistics() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return statistics_;
+  const std::vector<std::shared_ptr<LayerStream>> all = streams();
+  return std::all_of(all.begin(), all.end(), [](const auto& stream) { return stream->connected(); });
 }
 
 bool TerrainClient::wait_for_terrain(double timeout) const {
-  return wait([this] { return map_ != nullptr; }, timeout);
+  return wait([](const LayerStream& stream) { return stream.map() != nullptr; }, timeout);
 }
 
 bool TerrainClient::wait_for_step(std::uint64_t step, double timeout) const {
-  return wait([this, step] { return map_ && map_->info().step >= step; }, timeout);
+  return wait([step](const LayerStream& stream) { return stream.map() && stream.map()->info().step >= step; },
+              timeout);
 }
 
-bool TerrainClient::wait(const std::function<bool()>& condition, double timeout) const {
+bool TerrainClient::wait(const std::function<bool(const LayerStream&)>& condition, double timeout) const {
   const Clock::time_point end = Clock::now() + duration_of(std::clamp(timeout, 0.0, 1e8));
-  std::unique_lock<std::mutex> lock(mutex_);
-  while (!condition()) {
+  std::unique_lock<std::mutex> lock(context_.mutex);
+  while (!all_streams(condition)) {
     if (!ros::ok() || Clock::now() >= end) return false;
-    changed_.wait_until(lock, std::min(end, Clock::now() + poll_period));
+    context_.changed.wait_until(lock, std::min(end, Clock::now() + poll_period));
   }
   return true;
 }
 
-// ---- messages ----
-
-void TerrainClient::process(const ElevationGrid::ConstPtr& keyframe) {
-  const std::lock_guard<std::mutex> one_at_a_time(processing_mutex_);
-  publish_change(assembler_.process(keyframe), nullptr);
-}
-
-void TerrainClient::process(const ElevationUpdate::ConstPtr& update) {
-  const std::lock_guard<std::mutex> one_at_a_time(processing_mutex_);
-  publish_change(assembler_.process(update), &update->header.stamp);
-}
-
-void TerrainClient::publish_change(const MapChange& change, const ros::Time* update_stamp) {
-  const StreamCounts& counts = assembler_.counts();
-  std::string refusal, gap;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (counts.refused != statistics_.refused) refusal = counts.last_refusal;
-    if (counts.gaps != statistics_.gaps) gap = counts.last_gap;
-    static_cast<StreamCounts&>(statistics_) = counts;
-    up_to_date_ = assembler_.map() && assembler_.need() != KeyframeNeed::lost;
-    if (change.map) map_ = change.map;
-    if (change.map && update_stamp) {
-      statistics_.latency = (ros::Time::now() - *update_stamp).toSec();
-      statistics_.mean_latency += (statistics_.latency - statistics_.mean_latency) / ++latency_count_;
-      statistics_.largest_latency = std::max(statistics_.largest_latency, statistics_.latency);
-    }
-    changed_.notify_all();
-  }
-  if (!refusal.empty()) ROS_WARN_THROTTLE(5, "The terrain client rejected a message: %s", refusal.c_str());
-  if (!gap.empty()) ROS_WARN_THROTTLE(5, "The terrain client needs a new keyframe: %s", gap.c_str());
-  if (change.map && options_.on_change && (change.replaced || !change.cells.empty()))
-    options_.on_change(change);
-}
-
-// ---- keyframes ----
+// ---- the client's thread ----
 
 void TerrainClient::run_thread() {
   for (;;) {
     if (options_.own_thread)
       queue_.callAvailable(ros::WallDuration(std::chrono::duration<double>(poll_period).count()));
     {
-      std::unique_lock<std::mutex> lock(mutex_);
-      if (!options_.own_thread) changed_.wait_for(lock, poll_period, [this] { return stopping_; });
+      std::unique_lock<std::mutex> lock(context_.mutex);
+      if (!options_.own_thread) context_.changed.wait_for(lock, poll_period, [this] { return stopping_; });
       if (stopping_) return;
     }
-    if (keyframe_is_due()) request_keyframe();
+    start_and_stop_streams();
+    for (const std::shared_ptr<LayerStream>& stream : streams()) stream->request_keyframe_if_due();
   }
 }
 
-bool TerrainClient::keyframe_is_due() {
-  // Without a publisher there is nobody to ask, and a new publisher sends a keyframe anyway.
-  if (!ros::ok() || !connected()) return false;
-  const std::unique_lock<std::mutex> one_at_a_time(processing_mutex_, std::try_to_lock);
-  if (!one_at_a_time) return false;  // a message is being processed, which may be the keyframe
-  if (!requests_.due(assembler_.need(), Clock::now())) return false;
-  assembler_.keyframe_overdue();
-  publish_change({}, nullptr);
-  return true;
-}
-
-void TerrainClient::request_keyframe() {
-  bool by_message = request_publisher_.getNumSubscribers() > 0;
+/// Unsubscribing waits for a callback that runs, which may be the one that asked for it: so only this thread
+/// does it, and holds no lock.
+void TerrainClient::start_and_stop_streams() {
+  std::vector<std::shared_ptr<LayerStream>> retired;
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    by_message = by_message && statistics_.requests % 2 == 0;
-    ++statistics_.requests;
+    const std::lock_guard<std::mutex> lock(context_.mutex);
+    if (!streams_changed_) return;
   }
-  if (by_message) {
-    request_publisher_.publish(std_msgs::Empty());
-  } else if (ros::master::check()) {  // subscribing without a master would block
-    subscribe_to_keyframes();
-  }
-}
-
-void TerrainClient::subscribe_to_keyframes() {
-  ros::Subscriber before;
+  if (!ros::master::check()) return;  // subscribing without a master would block
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    before = keyframes_;
+    const std::lock_guard<std::mutex> lock(context_.mutex);
+    retired.swap(retired_);
+    streams_changed_ = false;
   }
-  // shutdown() waits for running callbacks, so no lock may be held here.
-  before.shutdown();
-  const ros::Subscriber anew = node_.subscribe<ElevationGrid>(
-      options_.elevation_topic, 1, [this](const ElevationGrid::ConstPtr& keyframe) { process(keyframe); },
-      ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
-  const std::lock_guard<std::mutex> lock(mutex_);
-  keyframes_ = anew;
+  for (const std::shared_ptr<LayerStream>& stream : retired) stream->stop();
+  for (const std::shared_ptr<LayerStream>& stream : streams())
+    if (!stream->started()) stream->start();
 }
 
 }  // namespace desert_sim

@@ -1,35 +1,37 @@
 #pragma once
-/// The live terrain of a desert_sim node, for other programs. The client subscribes to keyframes and updates,
-/// keeps an elevation map up to date, and answers queries on it from any thread.
+/// The live terrain of a desert_sim node, for other programs. The client subscribes to keyframes and updates
+/// of the elevation and of other layers, keeps a map of each up to date, and answers queries from any thread.
 ///
 ///     ros::init(argc, argv, "my_planner");
-///     desert_sim::TerrainClient terrain;
+///     desert_sim::TerrainClient::Options options;
+///     options.layers.push_back("traversability");               // besides the elevation
+///     desert_sim::TerrainClient terrain(ros::NodeHandle(), options);
 ///     if (!terrain.wait_for_terrain(10.0)) ...;                 // there is no node
 ///     // Elevation [m] in the frame terrain.map()->info().frame:
 ///     std::optional<double> z = terrain.elevation(12.0, 34.0);
+///     std::optional<double> free = terrain.value("traversability", 12.0, 34.0);
 ///     // An immutable map of one moment:
-///     std::shared_ptr<const desert_sim::ElevationMap> map = terrain.map();
+///     std::shared_ptr<const desert_sim::LayerMap> map = terrain.map();
 ///
 /// The client detects lost messages and requests a new keyframe; until it arrives, the last valid map stays.
-/// It uses two kinds of request in turn: a message on the node's topic ~request_keyframe, and a new
-/// subscription to the keyframes, since publishers send the present state to new subscribers. (roscpp makes
-/// no new connection while another subscriber in the process uses the same topic, so the second kind alone is
-/// not enough.)
+/// It uses two kinds of request in turn: a message on the node's topic ~request_keyframe (for layers
+/// ~layers/request_keyframe), and a new subscription to the keyframes, since publishers send the present
+/// state to new subscribers. (roscpp makes no new connection while another subscriber in the process uses the
+/// same topic, so the second kind alone is not enough.)
 
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 
-#include <condition_variable>
 #include <functional>
+#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
-#include "src/client/elevation_assembler.hpp"
-#include "src/client/elevation_map.hpp"
-#include "src/client/keyframe_requests.hpp"
+#include "src/client/layer_map.hpp"
+#include "src/client/layer_stream.hpp"
 
 namespace desert_sim {
 
@@ -37,6 +39,9 @@ class TerrainClient {
  public:
   struct Options {
     std::string node = "desert_sim";  ///< name of the simulator's node, whose namespace has the topics
+    /// The layers to subscribe to from the start: names of known_layers(). Another list than the default
+    /// may leave the elevation out.
+    std::vector<std::string> layers = {"elevation"};
     std::string elevation_topic;      ///< topic of keyframes; empty: <node>/elevation
     std::string updates_topic;        ///< topic of updates; empty: <node>/elevation_updates
     std::string request_topic;        ///< topic of requests; empty: <node>/request_keyframe
@@ -46,18 +51,13 @@ class TerrainClient {
     std::uint32_t update_queue = 200;  ///< size of the subscriber queue of updates; an overflow is a gap
     double shortest_pause = 0.5;       ///< shortest pause between keyframe requests [s], > 0
     double longest_pause = 10;         ///< limit of the pause, which doubles while requests do not help [s]
-    /// Called after each change of cells, in order and never concurrently, on the thread that processes
-    /// messages. The function may use the client, but must not destroy it and must not throw. No message is
-    /// processed while it runs.
+    /// Called after each change of cells of any layer, which map->info().layer names; in order and never
+    /// concurrently, on the thread that processes messages. The function may use the client, but must not
+    /// destroy it and must not throw. No message is processed while it runs.
     std::function<void(const MapChange&)> on_change;
   };
 
-  struct Statistics : StreamCounts {
-    std::uint64_t requests = 0;  ///< number of keyframe requests
-    /// Latency of updates [s of ROS time], from the stamp of a state to the map that contains it: last, mean
-    /// and largest; 0 before the first update. An offset between the clocks of two machines adds to it.
-    double latency = 0, mean_latency = 0, largest_latency = 0;
-  };
+  using Statistics = StreamStatistics;
 
   /// Subscribes. Waits for the ROS master if there is none, but not for the node. Throws ConfigError for
   /// invalid options.
@@ -68,52 +68,68 @@ class TerrainClient {
   TerrainClient(const TerrainClient&) = delete;
   TerrainClient& operator=(const TerrainClient&) = delete;
 
+  // ---- The elevation.
+
   /// The newest map; null before the first keyframe. It is immutable, so that several queries on it agree.
-  std::shared_ptr<const ElevationMap> map() const;
+  std::shared_ptr<const ElevationMap> map() const { return layer_map("elevation"); }
   /// The query of the same name on the newest map; empty if there is no map.
-  std::optional<double> elevation(double x, double y) const;
+  std::optional<double> elevation(double x, double y) const { return value("elevation", x, y); }
   std::optional<geometry_msgs::Vector3> normal(double x, double y) const;
   std::optional<double> slope(double x, double y) const;
 
+  // ---- Layers. All throw ConfigError for a name that is not known.
+
+  /// The names of all layers, which every node of this version has: elevation, sand_depth, traversability, …
+  /// A layer that the terrain does not have is 0 everywhere.
+  static const std::vector<std::string>& known_layers();
+  /// Subscribes to a layer; nothing happens if it is subscribed to already. From any thread, also in
+  /// on_change. Its map comes later.
+  void subscribe_layer(const std::string& name);
+  /// Gives a layer and its map up; nothing happens if it is not subscribed to. From any thread, also in
+  /// on_change. Maps that somebody has stay valid.
+  void unsubscribe_layer(const std::string& name);
+  /// The names of the layers that are subscribed to.
+  std::vector<std::string> layers() const;
+  /// The newest map of a layer; null before its first keyframe, and if the layer is not subscribed to.
+  std::shared_ptr<const LayerMap> layer_map(const std::string& name) const;
+  /// LayerMap::value() on that map, in the layer's unit; empty if there is no map.
+  std::optional<double> value(const std::string& name, double x, double y) const;
+
+  // ---- The state of all layers that are subscribed to, or of one.
+
   /// Whether no message is known to be missing: false before the first keyframe, and from a gap to the next
-  /// keyframe.
+  /// keyframe. Of one layer false, too, if it is not subscribed to.
   bool up_to_date() const;
-  /// Whether keyframes have a publisher.
+  bool up_to_date(const std::string& layer) const;
+  /// Whether keyframes of all of them have a publisher.
   bool connected() const;
-  /// Waits for the first map, at most `timeout` seconds of wall time. False if there is no map by then, or if
-  /// ROS shuts down. Messages must be processed by another thread meanwhile.
+  /// Waits until each layer that is subscribed to has a map, at most `timeout` seconds of wall time. False if
+  /// one has none by then, or if ROS shuts down. Messages must be processed by another thread meanwhile.
   bool wait_for_terrain(double timeout) const;
-  /// Waits in the same way for a map of this step or a later one.
+  /// Waits in the same way for maps of this step or a later one.
   bool wait_for_step(std::uint64_t step, double timeout) const;
-  Statistics statistics() const;
+  /// Counts of one layer; all 0 if it is not subscribed to.
+  Statistics statistics(const std::string& layer = "elevation") const;
 
  private:
-  void subscribe_to_keyframes();
-  void request_keyframe();
-  void process(const ElevationGrid::ConstPtr& keyframe);
-  void process(const ElevationUpdate::ConstPtr& update);
-  void publish_change(const MapChange& change, const ros::Time* update_stamp);
-  bool wait(const std::function<bool()>& condition, double timeout) const;
+  std::shared_ptr<LayerStream> make_stream(const std::string& name);
+  std::vector<std::shared_ptr<LayerStream>> streams() const;
+  template <class Result, class Read>
+  Result read(const std::string& name, Result without, const Read& read) const;
+  bool all_streams(const std::function<bool(const LayerStream&)>& condition) const;
+  bool wait(const std::function<bool(const LayerStream&)>& condition, double timeout) const;
   void run_thread();
-  bool keyframe_is_due();
+  void start_and_stop_streams();
 
   Options options_;
   ros::CallbackQueue queue_;
-  ros::NodeHandle node_;
-  ros::Publisher request_publisher_;
-  ros::Subscriber updates_;
+  mutable StreamContext context_;
 
-  std::mutex processing_mutex_;  ///< held while a message is processed; queries do not wait for it
-  ElevationAssembler assembler_;
-  KeyframeRequests requests_;
+  // Guarded by context_.mutex:
+  std::map<std::string, std::shared_ptr<LayerStream>> streams_;  ///< by layer
+  std::vector<std::shared_ptr<LayerStream>> retired_;            ///< of which the client's thread takes leave
+  bool stopping_ = false, streams_changed_ = false;
 
-  mutable std::mutex mutex_;  ///< protects the members below; held only briefly
-  mutable std::condition_variable changed_;
-  std::shared_ptr<const ElevationMap> map_;
-  Statistics statistics_;
-  std::uint64_t latency_count_ = 0;  ///< number of updates in the mean latency
-  bool up_to_date_ = false, stopping_ = false;
-  ros::Subscriber keyframes_;
   std::thread thread_;
 };
 

@@ -1,5 +1,5 @@
 /// What a client makes of a stream of keyframes and updates that is whole, reordered, torn or broken.
-#include "src/client/elevation_assembler.hpp"
+#include "src/client/layer_assembler.hpp"
 
 #include <gtest/gtest.h>
 
@@ -286,8 +286,8 @@ struct BadKeyframe {
 
 TEST_F(Assembler, RefusesBadKeyframesAndSaysWhy) {
   const BadKeyframe bad[] = {
-      {"9099 elevations for 130 x 70", [](ElevationGrid& k) { k.elevation.pop_back(); }},
-      {"0 elevations for 0 x 70", [](ElevationGrid& k) { k.width = 0, k.elevation.clear(); }},
+      {"9099 values for 130 x 70", [](ElevationGrid& k) { k.elevation.pop_back(); }},
+      {"0 values for 0 x 70", [](ElevationGrid& k) { k.width = 0, k.elevation.clear(); }},
       {"4294967295", [](ElevationGrid& k) { k.width = k.height = 4294967295u; }},
       {"cell_size is 0", [](ElevationGrid& k) { k.cell_size = 0; }},
       {"cell_size is nan", [](ElevationGrid& k) { k.cell_size = std::numeric_limits<double>::quiet_NaN(); }},
@@ -295,7 +295,7 @@ TEST_F(Assembler, RefusesBadKeyframesAndSaysWhy) {
       {"z = 0", [](ElevationGrid& k) { k.origin.position.z = 1; }},
       {"orientation", [](ElevationGrid& k) { k.origin.orientation.w = 0, k.origin.orientation.z = 1; }},
       {"sim_time", [](ElevationGrid& k) { k.sim_time = infinity; }},
-      {"elevation 17 is -inf", [](ElevationGrid& k) { k.elevation[17] = -infinity; }},
+      {"value 17 is -inf", [](ElevationGrid& k) { k.elevation[17] = -infinity; }},
   };
   std::uint64_t refused = 0;
   for (const BadKeyframe& b : bad) {
@@ -318,10 +318,10 @@ TEST_F(Assembler, RefusesBadUpdatesWhollyAndNeedsAKeyframeThen) {
   const BadUpdate bad[] = {
       {"sequence", [](ElevationUpdate& u) { u.sequence = 0; }},
       {"sim_time", [](ElevationUpdate& u) { u.sim_time = infinity; }},
-      {"tile 1: 5 elevations for 2 x 3", [](ElevationUpdate& u) { u.tiles[1].data.pop_back(); }},
-      {"tile 1: 0 elevations for 2 x 0",
+      {"tile 1: 5 values for 2 x 3", [](ElevationUpdate& u) { u.tiles[1].data.pop_back(); }},
+      {"tile 1: 0 values for 2 x 0",
        [](ElevationUpdate& u) { u.tiles[1].height = 0, u.tiles[1].data.clear(); }},
-      {"tile 1: elevation 2 is inf", [](ElevationUpdate& u) { u.tiles[1].data[2] = infinity; }},
+      {"tile 1: value 2 is inf", [](ElevationUpdate& u) { u.tiles[1].data[2] = infinity; }},
       {"tile 1: 1 values for 2 cells that changed",
        [](ElevationUpdate& u) { u.tiles[1].changed = {0b10000100}, u.tiles[1].data.resize(1); }},
       {"tile 1: 0 values for 0 cells that changed",
@@ -331,7 +331,7 @@ TEST_F(Assembler, RefusesBadUpdatesWhollyAndNeedsAKeyframeThen) {
          u.tiles[1].changed = {0xfc, 0};
        }},
       {"tile 1: bit 6 of its mask is set", [](ElevationUpdate& u) { u.tiles[1].changed = {0xfe}; }},
-      {"tile 1: has changes and elevations", [](ElevationUpdate& u) { u.tiles[1].changes.resize(6); }},
+      {"tile 1: has changes and absolute values", [](ElevationUpdate& u) { u.tiles[1].changes.resize(6); }},
       {"tile 1: resolution is 0.0",
        [](ElevationUpdate& u) {
          u.tiles[1].data.clear(), u.tiles[1].changes.resize(6), u.tiles[1].bits = 8;

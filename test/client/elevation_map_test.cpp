@@ -1,5 +1,5 @@
 /// What a client answers about the surface it holds.
-#include "src/client/elevation_map.hpp"
+#include "src/client/layer_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ TEST(ElevationMap, AnUpdateMakesANewMapAndLeavesTheOldOne) {
 TEST(ElevationMap, AMaskSaysWhichCellsOfATileChangeAndStepsByHowMuch) {
   ElevationGrid grid = keyframe_of([](double x, double y) { return 1000 * y + x; });
   const auto u = update(1, 1, 2);
-  ElevationTile steps, elevations;
+  LayerTile steps, elevations;
   steps.x = 63, steps.y = 60, steps.width = 3, steps.height = 5;  // over the corner of four blocks
   steps.changed = {0b10000001, 0b00000010};                       // numbers 0, 7 and 14
   steps.changes = {-128, 3, 127};
@@ -93,7 +93,7 @@ TEST(ElevationMap, ChangesOfFourBitsLieTwoInAByte) {
   ElevationGrid grid = keyframe_of([](double x, double y) { return 1000 * y + x; });
   const auto before = map_of(grid);
   const auto message = update(1, 1, 2);
-  ElevationTile tile;
+  LayerTile tile;
   tile.x = 10, tile.y = 20, tile.width = 5, tile.height = 1;
   tile.changed = {0b11101000};                            // four of them, then one without
   tile.changes = {0x7f, static_cast<std::int8_t>(0x83)};  // 7, -1; -8, 3

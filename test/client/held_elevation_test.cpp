@@ -6,7 +6,7 @@
 #include <random>
 
 #include "client/messages.hpp"
-#include "src/client/elevation_map.hpp"
+#include "src/client/layer_map.hpp"
 #include "src/ros/topics/elevation_topic.hpp"
 #include "src/ros/topics/topic.hpp"
 #include "support/held_terrain.hpp"
@@ -35,7 +35,7 @@ class Stream {
     map_ = std::make_shared<const ElevationMap>(boost::make_shared<ElevationGrid>(grid), nullptr, changed);
   }
   /// The tiles of the update to `elevation`, which the client takes.
-  std::vector<ElevationTile> update(const std::vector<float>& elevation) {
+  std::vector<LayerTile> update(const std::vector<float>& elevation) {
     terrain_.set(elevation);
     ElevationUpdate update;
     update.header.frame_id = "terrain";
@@ -89,7 +89,7 @@ TEST(HeldElevation, OnlyCellsThatChangedAreSent) {
   elevation[12 * width + 33] += 0.5f;
   elevation[14 * width + 36] -= 0.1f;
   elevation[20 * width + 2] += 0.009f;
-  const std::vector<ElevationTile> tiles = stream.update(elevation);
+  const std::vector<LayerTile> tiles = stream.update(elevation);
   ASSERT_EQ(tiles.size(), 1u);
   EXPECT_EQ(std::make_pair(tiles[0].x, tiles[0].y), std::make_pair(33u, 12u));
   EXPECT_EQ(std::make_pair(tiles[0].width, tiles[0].height), std::make_pair(4u, 3u));
@@ -103,7 +103,7 @@ TEST(HeldElevation, WhatEightBitsCannotTellIsSentAsElevations) {
   std::vector<float> elevation = flat(1);
   Stream stream(elevation, 0.01f, 32);
   elevation[0] = 4.5f;
-  const std::vector<ElevationTile> tiles = stream.update(elevation);
+  const std::vector<LayerTile> tiles = stream.update(elevation);
   ASSERT_EQ(tiles.size(), 1u);
   EXPECT_TRUE(tiles[0].changes.empty());
   EXPECT_EQ(tiles[0].data[0], 4.5f);
@@ -129,7 +129,7 @@ TEST(HeldElevation, ADuneStepTakesAFractionOfAKeyframe) {
     for (int x = 10; x < 40; ++x)
       elevation[static_cast<std::size_t>(y * width + x)] += 0.02f + 0.01f * (x % 7);
   std::size_t bytes = 0;
-  for (const ElevationTile& tile : stream.update(elevation)) {
+  for (const LayerTile& tile : stream.update(elevation)) {
     EXPECT_EQ(tile.bits, 4) << "nothing moved by more than seven steps of two thresholds";
     bytes += ros::serialization::serializationLength(tile);
   }

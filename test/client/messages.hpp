@@ -10,7 +10,7 @@
 namespace client_test {
 
 using desert_sim::ElevationGrid;
-using desert_sim::ElevationTile;
+using desert_sim::LayerTile;
 using desert_sim::ElevationUpdate;
 
 /// At second `step` of ROS time; cells of 2 m, corner at (10, -20).
@@ -42,9 +42,9 @@ inline ElevationGrid keyframe_of(const std::function<double(double, double)>& el
   return grid;
 }
 
-inline ElevationTile tile(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height,
+inline LayerTile tile(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height,
                           float elevation) {
-  ElevationTile t;
+  LayerTile t;
   t.x = x;
   t.y = y;
   t.width = width;

@@ -123,7 +123,7 @@ TEST(Faults, ABrokenUpdateIsRefusedAndHealed) {
   ASSERT_TRUE(wait_until([&] { return sender.heard() && client.map(); }));
   sender.broken_update();
   ASSERT_TRUE(wait_until([&] { return client.statistics().refused == 1; }));
-  EXPECT_NE(client.statistics().last_refusal.find("5 elevations for 2 x 3 cells"), std::string::npos)
+  EXPECT_NE(client.statistics().last_refusal.find("5 values for 2 x 3 cells"), std::string::npos)
       << client.statistics().last_refusal;
   expect_in_step(client, sender);
 }

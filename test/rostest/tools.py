@@ -108,7 +108,7 @@ class Tools(unittest.TestCase):
     # ---- definitions, nodes, parameters, frames
 
     def test_rosmsg_and_rossrv(self):
-        self.assertIn("desert_sim/ElevationTile[] tiles", run("rosmsg", "show", "desert_sim/ElevationUpdate"))
+        self.assertIn("desert_sim/LayerTile[] tiles", run("rosmsg", "show", "desert_sim/ElevationUpdate"))
         self.assertIn("desert_sim/ElevationGrid", run("rosmsg", "package", "desert_sim"))
         self.assertIn("string state_hash", run("rossrv", "show", "desert_sim/Step"))
 

@@ -19,7 +19,7 @@
 #include <set>
 
 #include "rostest/client.hpp"
-#include "src/client/elevation_assembler.hpp"
+#include "src/client/layer_assembler.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
 #pragma once
 /// Public header: keyframes and updates of a running node put together, without a subscription.
 
-#include "src/client/elevation_assembler.hpp"
+#include "src/client/layer_assembler.hpp"

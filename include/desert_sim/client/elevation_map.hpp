@@ -1,4 +1,4 @@
 #pragma once
 /// Public header: the elevation at one moment.
 
-#include "src/client/elevation_map.hpp"
+#include "src/client/layer_map.hpp"

@@ -13,12 +13,6 @@ namespace desert_sim {
 
 // ---- Layers.
 
-std::string map_layer_names() {
-  std::string names;
-  for (const MapLayer& layer : map_layers) names += (names.empty() ? "" : ", ") + std::string(layer.name);
-  return names;
-}
-
 std::vector<MapLayer> map_layers_named(const std::vector<std::string>& names, const std::string& key) {
   if (names.size() > map_layers.size())
     throw ConfigError(key + ": " + std::to_string(names.size()) + " names are given, but only " +
@@ -26,8 +20,8 @@ std::vector<MapLayer> map_layers_named(const std::vector<std::string>& names, co
   std::vector<MapLayer> chosen;
   for (const std::string& name : names) {
     const auto same = [&](const MapLayer& layer) { return name == layer.name; };
-    const auto found = std::find_if(map_layers.begin(), map_layers.end(), same);
-    if (found == map_layers.end())
+    const MapLayer* const found = find_map_layer(name);
+    if (!found)
       throw ConfigError(key + ": " + quoted(name) + " is not one of: " + map_layer_names());
     if (std::any_of(chosen.begin(), chosen.end(), same))
       throw ConfigError(key + ": " + quoted(name) + " is given twice");

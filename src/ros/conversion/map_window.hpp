@@ -2,61 +2,18 @@
 /// Maps of the terrain: which layers they can have, which cells they show, and the values of those cells. The
 /// topics ~grid_map and ~local_map, and the services ~get_submap and ~get_grid_map, are made of these.
 
-#include <array>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "kernels/field/layers.hpp"
 #include "src/ros/node/terrain_state.hpp"
+#include "src/terrain/map_layers.hpp"
 
 namespace desert_sim {
 
 class SimulationThread;
 
-// ---- Layers, by the names that users know.
-
-/// The value of a block of cells that are merged into one: the mean, the lowest, or that of the cell in the
-/// middle.
-enum class Aggregation { mean, min, center };
-
-struct MapLayer {
-  const char* name;
-  Layer layer;
-  Aggregation aggregation = Aggregation::mean;
-};
-
-constexpr std::array<MapLayer, 26> map_layers{{
-    {"elevation", Layer::elevation},
-    {"bedrock", Layer::bedrock},
-    {"water_surface", Layer::water_surface},
-    {"sand_depth", Layer::sand},
-    {"water_depth", Layer::water},
-    {"soil_depth", Layer::soil},
-    {"vegetation", Layer::vegetation},
-    {"plants", Layer::plants, Aggregation::center},
-    {"canopy_height", Layer::canopy_height},
-    {"illumination", Layer::illumination},
-    {"humus", Layer::humus},
-    {"moisture", Layer::moisture},
-    {"suspended_sediment", Layer::suspended_sediment},
-    {"water_velocity_x", Layer::water_velocity_x},
-    {"water_velocity_y", Layer::water_velocity_y},
-    {"obstacle", Layer::obstacle},
-    {"wind_x", Layer::wind_x},
-    {"wind_y", Layer::wind_y},
-    {"wind_shadow", Layer::wind_shadow},
-    {"slope", Layer::slope},
-    {"roughness", Layer::roughness},
-    {"step_height", Layer::step_height},
-    {"traversability", Layer::traversability, Aggregation::min},
-    {"normal_x", Layer::normal_x},
-    {"normal_y", Layer::normal_y},
-    {"normal_z", Layer::normal_z},
-}};
-
-/// The names of all map layers, with ", " between them.
-std::string map_layer_names();
+// ---- Layers: the table is map_layers.
 
 /// The layers of these names, in their order. Throws ConfigError, naming the parameter or field `key`, for a
 /// name that is unknown (with the known ones) or occurs twice.

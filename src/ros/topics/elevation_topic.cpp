@@ -10,7 +10,7 @@
 #include <boost/make_shared.hpp>
 
 #include "kernels/field/cell_box.hpp"
-#include "src/client/elevation_tile.hpp"
+#include "src/client/layer_tile.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/topics/topic_list.hpp"
 
@@ -75,9 +75,9 @@ std::vector<std::int8_t> packed_nibbles(std::vector<std::int8_t> changes) {
 
 }  // namespace
 
-ElevationTile tile_message(const TileChange& change) {
+LayerTile tile_message(const TileChange& change) {
   const CellBox box = changed_cells(change);
-  ElevationTile tile;
+  LayerTile tile;
   tile.x = static_cast<std::uint32_t>(change.x + box.x0);
   tile.y = static_cast<std::uint32_t>(change.y + box.y0);
   tile.width = static_cast<std::uint32_t>(box.width());

@@ -1,13 +1,13 @@
 #pragma once
 /// The tiles of ~elevation_updates.
 
-#include <desert_sim/ElevationTile.h>
+#include <desert_sim/LayerTile.h>
 
 #include "src/simulation/views/elevation_changes.hpp"
 
 namespace desert_sim {
 
 /// The cells of `change` that changed, of which there is at least one, in the smallest box that has them all.
-ElevationTile tile_message(const TileChange& change);
+LayerTile tile_message(const TileChange& change);
 
 }  // namespace desert_sim

@@ -9,15 +9,15 @@
 #include <string>
 #include <utility>
 
-#include "src/client/elevation_map.hpp"
+#include "src/client/layer_map.hpp"
 
 namespace desert_sim {
 
 /// The effect of a message on the map.
 struct MapChange {
-  std::shared_ptr<const ElevationMap> map;  ///< the new map; null if the message changed nothing
+  std::shared_ptr<const LayerMap> map;  ///< the new map; null if the message changed nothing
   /// The cells that may differ from the previous map; empty if only the map's time changed.
-  ElevationMap::Rectangle cells;
+  LayerMap::Rectangle cells;
   bool replaced = false;  ///< the previous map had another frame, size or place, or none existed
 };
 
@@ -41,47 +41,53 @@ enum class KeyframeNeed {
   lost       ///< messages are missing: the map cannot be continued without a keyframe
 };
 
-class ElevationAssembler {
+class LayerAssembler {
  public:
   /// Takes a keyframe. The map keeps the message, which must not be modified afterwards.
   MapChange process(const ElevationGrid::ConstPtr& keyframe);
+  MapChange process(const LayerGrid::ConstPtr& keyframe);
   /// Takes an update. It is kept until its keyframe arrives if that is not here yet.
   MapChange process(const ElevationUpdate::ConstPtr& update);
+  MapChange process(const LayerUpdate::ConstPtr& update);
   /// Reports that the expected keyframe did not arrive in time. If there is a map, that counts as a gap.
   void keyframe_overdue();
 
   /// The last valid map, which stays after a gap; null before the first keyframe.
-  const std::shared_ptr<const ElevationMap>& map() const { return map_; }
+  const std::shared_ptr<const LayerMap>& map() const { return map_; }
   KeyframeNeed need() const;
   const StreamCounts& counts() const { return counts_; }
 
  private:
   using UpdateId = std::pair<std::uint32_t, std::uint32_t>;  ///< an update's keyframe number and sequence
 
-  bool is_repeated_keyframe(const ElevationGrid& keyframe) const;
+  MapChange take_keyframe(MapKeyframe keyframe);
+  MapChange take_update(const MapUpdate& update);
+  bool is_repeated_keyframe(const MapInfo& keyframe) const;
   MapChange replace_map(MapChange change);
-  bool is_late(const ElevationUpdate& update) const;
-  bool is_next_update(const ElevationUpdate& update) const;
-  MapChange apply_in_order(const ElevationUpdate::ConstPtr& update);
-  MapChange handle_restart(const ElevationUpdate::ConstPtr& update, const UpdateId& from);
+  bool is_late(const MapUpdate& update) const;
+  bool is_next_update(const MapUpdate& update) const;
+  MapChange apply_in_order(const MapUpdate& update);
+  MapChange handle_restart(const MapUpdate& update, const UpdateId& from);
   MapChange refuse(const std::string& why);
   void record_gap(const std::string& why);
-  void enqueue(const ElevationUpdate::ConstPtr& update);
+  void enqueue(const MapUpdate& update);
   void drop_oldest_queued();
-  MapChange apply_update(const ElevationUpdate& update);
+  MapChange apply_update(const MapUpdate& update);
   void apply_queued(MapChange& change);
 
-  std::shared_ptr<const ElevationMap> map_;
+  std::shared_ptr<const LayerMap> map_;
   ros::Time keyframe_stamp_;       ///< stamp of the keyframe on which map_ is built
   bool complete_ = true;           ///< no update is missing after those in map_
   bool sender_restarted_ = false;  ///< the sender restarted; its keyframe is missing
   UpdateId last_received_{0, 0};   ///< number of the last update, whether used or not
   /// A map of the repeated keyframe, if the one on which map_ is built was sent again.
-  std::shared_ptr<const ElevationMap> repeated_keyframe_map_;
-  std::deque<ElevationUpdate::ConstPtr>
-      queued_updates_;            ///< updates without their keyframe, in order of arrival
-  std::size_t queued_cells_ = 0;  ///< cells of all tiles in queued_updates_
+  std::shared_ptr<const LayerMap> repeated_keyframe_map_;
+  std::deque<MapUpdate> queued_updates_;  ///< updates without their keyframe, in order of arrival
+  std::size_t queued_cells_ = 0;          ///< cells of all tiles in queued_updates_
   StreamCounts counts_;
 };
+
+/// That of the elevation.
+using ElevationAssembler = LayerAssembler;
 
 }  // namespace desert_sim

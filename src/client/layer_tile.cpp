@@ -1,4 +1,4 @@
-#include "src/client/elevation_tile.hpp"
+#include "src/client/layer_tile.hpp"
 
 #include <algorithm>
 #include <array>
@@ -56,7 +56,7 @@ void expand_changes(const std::int8_t* changes, const std::vector<std::uint8_t>&
 
 }  // namespace
 
-void TileDecoder::begin(const ElevationTile& tile) {
+void TileDecoder::begin(const LayerTile& tile) {
   tile_ = &tile;
   cell_ = value_ = 0;
   if (tile.changes.empty()) return;

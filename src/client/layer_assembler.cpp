@@ -1,4 +1,4 @@
-#include "src/client/elevation_assembler.hpp"
+#include "src/client/layer_assembler.hpp"
 
 namespace desert_sim {
 
@@ -7,9 +7,9 @@ namespace {
 // Limits of the updates that are kept until their keyframe arrives. Beyond them a new keyframe costs less.
 constexpr std::size_t max_queued_updates = 256, max_queued_cells = std::size_t{1} << 24;
 
-std::size_t cells_of(const ElevationUpdate& update) {
+std::size_t cells_of(const MapUpdate& update) {
   std::size_t cells = 0;
-  for (const ElevationTile& tile : update.tiles)
+  for (const LayerTile& tile : *update.tiles)
     cells += tile.data.size() + tile.changes.size() * (tile.bits == 4 ? 2 : 1);
   return cells;
 }
@@ -20,14 +20,14 @@ std::string name_of(const std::pair<std::uint32_t, std::uint32_t>& number) {
 
 }  // namespace
 
-KeyframeNeed ElevationAssembler::need() const {
+KeyframeNeed LayerAssembler::need() const {
   if (!complete_) return KeyframeNeed::lost;
   return map_ && queued_updates_.empty() ? KeyframeNeed::none : KeyframeNeed::expected;
 }
 
-void ElevationAssembler::keyframe_overdue() {
+void LayerAssembler::keyframe_overdue() {
   if (map_ && !queued_updates_.empty())
-    record_gap("keyframe " + std::to_string(queued_updates_.back()->keyframe) +
+    record_gap("keyframe " + std::to_string(queued_updates_.back().keyframe) +
                ", on which received updates are based, has not arrived");
 }
 
@@ -35,27 +35,38 @@ void ElevationAssembler::keyframe_overdue() {
 
 /// Whether this is the keyframe of the map once more: a latching publisher repeats its last message on every
 /// new connection.
-bool ElevationAssembler::is_repeated_keyframe(const ElevationGrid& keyframe) const {
+bool LayerAssembler::is_repeated_keyframe(const MapInfo& keyframe) const {
   if (!map_ || sender_restarted_) return false;
-  const ElevationMap::Info& held = map_->info();
-  return keyframe.keyframe == held.keyframe && keyframe.step <= held.step &&
-         !keyframe.header.stamp.isZero() && keyframe.header.stamp == keyframe_stamp_;
+  const MapInfo& held = map_->info();
+  return keyframe.keyframe == held.keyframe && keyframe.step <= held.step && !keyframe.stamp.isZero() &&
+         keyframe.stamp == keyframe_stamp_;
 }
 
-MapChange ElevationAssembler::process(const ElevationGrid::ConstPtr& keyframe) {
-  if (const std::string error = validation_error(*keyframe); !error.empty()) return refuse(error);
+MapChange LayerAssembler::process(const ElevationGrid::ConstPtr& keyframe) {
+  const std::string error = validation_error(*keyframe);
+  return error.empty() ? take_keyframe(MapKeyframe(keyframe)) : refuse(error);
+}
+
+MapChange LayerAssembler::process(const LayerGrid::ConstPtr& keyframe) {
+  const std::string error = validation_error(*keyframe);
+  return error.empty() ? take_keyframe(MapKeyframe(keyframe)) : refuse(error);
+}
+
+MapChange LayerAssembler::take_keyframe(MapKeyframe keyframe) {
+  const ros::Time stamp = keyframe.info.stamp;
+  const bool repeated = is_repeated_keyframe(keyframe.info);
   MapChange change;
-  change.map = std::make_shared<const ElevationMap>(keyframe, map_.get(), change.cells);
-  if (is_repeated_keyframe(*keyframe)) {
+  change.map = std::make_shared<const LayerMap>(std::move(keyframe), map_.get(), change.cells);
+  if (repeated) {
     repeated_keyframe_map_ = change.map;
     ++counts_.late;
     return {};
   }
-  keyframe_stamp_ = keyframe->header.stamp;
+  keyframe_stamp_ = stamp;
   return replace_map(change);
 }
 
-MapChange ElevationAssembler::replace_map(MapChange change) {
+MapChange LayerAssembler::replace_map(MapChange change) {
   if (map_ && change.map->info().keyframe <= map_->info().keyframe) ++counts_.restarts;
   change.replaced = !map_ || !change.map->same_geometry(*map_);
   map_ = change.map;
@@ -69,13 +80,13 @@ MapChange ElevationAssembler::replace_map(MapChange change) {
 
 /// Writes the waiting updates that build on the keyframe just taken. Updates of a later keyframe keep
 /// waiting.
-void ElevationAssembler::apply_queued(MapChange& change) {
-  std::deque<ElevationUpdate::ConstPtr> waiting;
+void LayerAssembler::apply_queued(MapChange& change) {
+  std::deque<MapUpdate> waiting;
   waiting.swap(queued_updates_);
   queued_cells_ = 0;
-  for (const ElevationUpdate::ConstPtr& update : waiting) {
-    const bool of_a_node_before = update->header.stamp < keyframe_stamp_;
-    if (of_a_node_before || update->keyframe < map_->info().keyframe) {
+  for (const MapUpdate& update : waiting) {
+    const bool of_a_node_before = update.stamp < keyframe_stamp_;
+    if (of_a_node_before || update.keyframe < map_->info().keyframe) {
       ++counts_.unusable;
       continue;
     }
@@ -89,99 +100,108 @@ void ElevationAssembler::apply_queued(MapChange& change) {
 // ---- updates ----
 
 /// Whether an update is older than the map. A restarted node also counts from 1, but its stamps are later.
-bool ElevationAssembler::is_late(const ElevationUpdate& update) const {
-  const ElevationMap::Info& held = map_->info();
+bool LayerAssembler::is_late(const MapUpdate& update) const {
+  const MapInfo& held = map_->info();
   const bool before = update.keyframe < held.keyframe ||
                       (update.keyframe == held.keyframe && update.sequence <= held.sequence);
-  return before && update.header.stamp <= held.stamp;
+  return before && update.stamp <= held.stamp;
 }
 
 /// Whether an update is the next one in sequence.
-bool ElevationAssembler::is_next_update(const ElevationUpdate& update) const {
-  const ElevationMap::Info& held = map_->info();
+bool LayerAssembler::is_next_update(const MapUpdate& update) const {
+  const MapInfo& held = map_->info();
   return complete_ && update.keyframe == held.keyframe && update.sequence == held.sequence + 1 &&
          update.step >= held.step;
 }
 
-MapChange ElevationAssembler::process(const ElevationUpdate::ConstPtr& update) {
-  if (const std::string error = validation_error(*update); !error.empty()) return refuse(error);
+MapChange LayerAssembler::process(const ElevationUpdate::ConstPtr& update) {
+  const std::string error = validation_error(*update);
+  return error.empty() ? take_update(MapUpdate(update)) : refuse(error);
+}
+
+MapChange LayerAssembler::process(const LayerUpdate::ConstPtr& update) {
+  const std::string error = validation_error(*update);
+  return error.empty() ? take_update(MapUpdate(update)) : refuse(error);
+}
+
+MapChange LayerAssembler::take_update(const MapUpdate& update) {
   const UpdateId before = last_received_;
-  last_received_ = {update->keyframe, update->sequence};
+  last_received_ = {update.keyframe, update.sequence};
   if (!map_) {
     enqueue(update);
     return {};
   }
-  const ElevationMap::Info& held = map_->info();
+  const MapInfo& held = map_->info();
   const bool of_another_run =
-      !sender_restarted_ && update->keyframe == held.keyframe && update->step < held.step;
+      !sender_restarted_ && update.keyframe == held.keyframe && update.step < held.step;
   if (last_received_ > before && !of_another_run) return apply_in_order(update);
   while (!queued_updates_.empty()) drop_oldest_queued();
-  return is_next_update(*update) ? apply_update(*update) : handle_restart(update, before);
+  return is_next_update(update) ? apply_update(update) : handle_restart(update, before);
 }
 
-MapChange ElevationAssembler::apply_in_order(const ElevationUpdate::ConstPtr& update) {
+MapChange LayerAssembler::apply_in_order(const MapUpdate& update) {
   if (sender_restarted_) {
     enqueue(update);
     return {};
   }
-  if (is_late(*update)) {
+  if (is_late(update)) {
     ++counts_.late;
     return {};
   }
-  const ElevationMap::Info& held = map_->info();
-  if (update->keyframe > held.keyframe) {
+  const MapInfo& held = map_->info();
+  if (update.keyframe > held.keyframe) {
     enqueue(update);
     return {};
   }
-  if (update->keyframe < held.keyframe || update->sequence <= held.sequence)
+  if (update.keyframe < held.keyframe || update.sequence <= held.sequence)
     return handle_restart(update, {held.keyframe, held.sequence});
-  if (update->sequence != held.sequence + 1)
+  if (update.sequence != held.sequence + 1)
     record_gap(name_of({held.keyframe, held.sequence + 1}) + " is missing: update " +
-               std::to_string(update->sequence) + " arrived instead");
+               std::to_string(update.sequence) + " arrived instead");
   if (!complete_) {
     ++counts_.unusable;
     return {};
   }
-  return apply_update(*update);
+  return apply_update(update);
 }
 
 /// Handles an update whose number is not above the previous one. A connection preserves the order of its
 /// messages, so the sender has restarted or replays a recording. If its keyframe arrived before this update
 /// and was taken for a repetition, the map begins again with that keyframe; otherwise its keyframe is
 /// missing.
-MapChange ElevationAssembler::handle_restart(const ElevationUpdate::ConstPtr& update, const UpdateId& from) {
+MapChange LayerAssembler::handle_restart(const MapUpdate& update, const UpdateId& from) {
   enqueue(update);
-  if (repeated_keyframe_map_ && repeated_keyframe_map_->info().keyframe == update->keyframe) {
-    const ElevationMap::Info& info = repeated_keyframe_map_->info();
+  if (repeated_keyframe_map_ && repeated_keyframe_map_->info().keyframe == update.keyframe) {
+    const MapInfo& info = repeated_keyframe_map_->info();
     return replace_map({repeated_keyframe_map_, {0, 0, info.width, info.height}, false});
   }
-  record_gap(name_of({update->keyframe, update->sequence}) + " arrived after " + name_of(from) +
+  record_gap(name_of({update.keyframe, update.sequence}) + " arrived after " + name_of(from) +
              ": the sender has restarted");
   sender_restarted_ = true;
   return {};
 }
 
-MapChange ElevationAssembler::apply_update(const ElevationUpdate& update) {
+MapChange LayerAssembler::apply_update(const MapUpdate& update) {
   if (const std::string error = validation_error(update, map_->info()); !error.empty()) return refuse(error);
   MapChange change;
   change.map = map_ = map_->with_update(update);
   repeated_keyframe_map_.reset();  // it was only a repetition
-  for (const ElevationTile& tile : update.tiles)
+  for (const LayerTile& tile : *update.tiles)
     change.cells.include({tile.x, tile.y, tile.width, tile.height});
   ++counts_.updates;
   return change;
 }
 
-void ElevationAssembler::enqueue(const ElevationUpdate::ConstPtr& update) {
+void LayerAssembler::enqueue(const MapUpdate& update) {
   queued_updates_.push_back(update);
-  queued_cells_ += cells_of(*update);
+  queued_cells_ += cells_of(update);
   while (queued_updates_.size() > max_queued_updates ||
          (queued_updates_.size() > 1 && queued_cells_ > max_queued_cells))
     drop_oldest_queued();
 }
 
-void ElevationAssembler::drop_oldest_queued() {
-  queued_cells_ -= cells_of(*queued_updates_.front());
+void LayerAssembler::drop_oldest_queued() {
+  queued_cells_ -= cells_of(queued_updates_.front());
   queued_updates_.pop_front();
   ++counts_.unusable;
 }
@@ -189,14 +209,14 @@ void ElevationAssembler::drop_oldest_queued() {
 // ---- errors ----
 
 /// A refused message leaves a gap: the map may lack the changes that it contained.
-MapChange ElevationAssembler::refuse(const std::string& why) {
+MapChange LayerAssembler::refuse(const std::string& why) {
   ++counts_.refused;
   counts_.last_refusal = why;
   record_gap("a message was rejected: " + why);
   return {};
 }
 
-void ElevationAssembler::record_gap(const std::string& why) {
+void LayerAssembler::record_gap(const std::string& why) {
   if (!map_ || !complete_) return;
   complete_ = false;
   ++counts_.gaps;

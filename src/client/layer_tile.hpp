@@ -1,8 +1,8 @@
 #pragma once
-/// Decodes the tiles of an update; ElevationTile.msg describes their format. The node encodes tiles with the
+/// Decodes the tiles of an update; LayerTile.msg describes their format. The node encodes tiles with the
 /// same arithmetic, so that it knows exactly which elevations its subscribers have.
 
-#include <desert_sim/ElevationTile.h>
+#include <desert_sim/LayerTile.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -28,12 +28,12 @@ inline bool mask_bit(const std::vector<std::uint8_t>& mask, std::size_t cell) {
 class TileDecoder {
  public:
   /// Starts with the first cell of a tile, which must outlive the calls of apply_next().
-  void begin(const ElevationTile& tile);
+  void begin(const LayerTile& tile);
   /// Applies the next `cells` cells of the tile to `elevations`; cells that did not change stay.
   void apply_next(float* elevations, std::size_t cells);
 
  private:
-  const ElevationTile* tile_ = nullptr;
+  const LayerTile* tile_ = nullptr;
   std::size_t cell_ = 0, value_ = 0;
   std::vector<std::int8_t> changes_;     ///< unpacked changes of the selected cells
   std::vector<float> expanded_changes_;  ///< changes of all cells, 0 if not selected

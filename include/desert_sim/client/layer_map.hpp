@@ -1,0 +1,4 @@
+#pragma once
+/// Public header: the map of a layer at one moment.
+
+#include "src/client/layer_map.hpp"

@@ -1,0 +1,155 @@
+#include "src/client/layer_stream.hpp"
+
+#include <ros/console.h>
+#include <ros/init.h>
+#include <ros/master.h>
+#include <std_msgs/Empty.h>
+#include <std_msgs/String.h>
+
+#include <algorithm>
+#include <type_traits>
+
+namespace desert_sim {
+
+LayerStream::LayerStream(StreamContext& context, std::string layer, Topics topics)
+    : context_(context),
+      layer_(std::move(layer)),
+      topics_(std::move(topics)),
+      requests_(context.shortest_pause, context.longest_pause) {}
+
+bool LayerStream::is_elevation() const { return layer_ == "elevation"; }
+
+// ---- messages ----
+
+/// The time that an update shows; null for a keyframe, whose way takes longer and does not count.
+template <class Message>
+const ros::Time* update_stamp(const Message& message) {
+  const bool is_update = std::is_same_v<Message, ElevationUpdate> || std::is_same_v<Message, LayerUpdate>;
+  return is_update ? &message.header.stamp : nullptr;
+}
+
+template <class Message>
+void LayerStream::process(const boost::shared_ptr<const Message>& message) {
+  const std::lock_guard<std::mutex> one_at_a_time(context_.processing);
+  publish_change(assembler_.process(message), update_stamp(*message));
+}
+
+void LayerStream::publish_change(const MapChange& change, const ros::Time* update_stamp) {
+  const StreamCounts& counts = assembler_.counts();
+  std::string refusal, gap;
+  {
+    const std::lock_guard<std::mutex> lock(context_.mutex);
+    if (closed_) return;
+    if (counts.refused != statistics_.refused) refusal = counts.last_refusal;
+    if (counts.gaps != statistics_.gaps) gap = counts.last_gap;
+    static_cast<StreamCounts&>(statistics_) = counts;
+    up_to_date_ = assembler_.map() && assembler_.need() != KeyframeNeed::lost;
+    if (change.map) map_ = change.map;
+    if (change.map && update_stamp) note_latency((ros::Time::now() - *update_stamp).toSec());
+    context_.changed.notify_all();
+  }
+  if (!refusal.empty())
+    ROS_WARN_THROTTLE(5, "The terrain client rejected a message of the layer %s: %s", layer_.c_str(),
+                      refusal.c_str());
+  if (!gap.empty())
+    ROS_WARN_THROTTLE(5, "The terrain client needs a new keyframe of the layer %s: %s", layer_.c_str(),
+                      gap.c_str());
+  if (change.map && context_.on_change && (change.replaced || !change.cells.empty()))
+    context_.on_change(change);
+}
+
+/// The caller holds the context's mutex.
+void LayerStream::note_latency(double latency) {
+  statistics_.latency = latency;
+  statistics_.mean_latency += (latency - statistics_.mean_latency) / static_cast<double>(++latency_count_);
+  statistics_.largest_latency = std::max(statistics_.largest_latency, latency);
+}
+
+// ---- subscriptions ----
+
+template <class Message>
+ros::Subscriber LayerStream::subscribe(const std::string& topic, std::uint32_t queue) {
+  // A callback may run while the client forgets the stream.
+  const auto process_message = [stream = weak_from_this()](const boost::shared_ptr<const Message>& message) {
+    if (const std::shared_ptr<LayerStream> alive = stream.lock()) alive->process(message);
+  };
+  return context_.node.subscribe<Message>(topic, queue, process_message, ros::VoidConstPtr(),
+                                          ros::TransportHints().tcpNoDelay());
+}
+
+template <class Keyframe>
+void LayerStream::subscribe_to_keyframes() {
+  // shutdown() waits for running callbacks, so no lock may be held here.
+  keyframe_subscriber().shutdown();
+  const ros::Subscriber anew = subscribe<Keyframe>(topics_.keyframes, 1);
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  keyframes_ = anew;
+}
+
+void LayerStream::start() {
+  if (is_elevation()) {
+    request_publisher_ = context_.node.advertise<std_msgs::Empty>(topics_.requests, 1);
+    subscribe_to_keyframes<ElevationGrid>();
+    updates_ = subscribe<ElevationUpdate>(topics_.updates, context_.update_queue);
+  } else {
+    request_publisher_ = context_.node.advertise<std_msgs::String>(topics_.requests, 10);
+    subscribe_to_keyframes<LayerGrid>();
+    updates_ = subscribe<LayerUpdate>(topics_.updates, context_.update_queue);
+  }
+}
+
+void LayerStream::stop() {
+  updates_.shutdown();
+  keyframe_subscriber().shutdown();
+  request_publisher_.shutdown();
+}
+
+ros::Subscriber LayerStream::keyframe_subscriber() const {
+  const std::lock_guard<std::mutex> lock(context_.mutex);
+  return keyframes_;
+}
+
+bool LayerStream::connected() const { return keyframe_subscriber().getNumPublishers() > 0; }
+
+// ---- keyframes ----
+
+void LayerStream::request_keyframe_if_due() {
+  if (!keyframe_is_due()) return;
+  bool by_message = request_publisher_.getNumSubscribers() > 0;
+  {
+    const std::lock_guard<std::mutex> lock(context_.mutex);
+    by_message = by_message && statistics_.requests % 2 == 0;
+    ++statistics_.requests;
+  }
+  if (by_message) {
+    request_by_message();
+  } else if (ros::master::check()) {  // subscribing without a master would block
+    if (is_elevation())
+      subscribe_to_keyframes<ElevationGrid>();
+    else
+      subscribe_to_keyframes<LayerGrid>();
+  }
+}
+
+bool LayerStream::keyframe_is_due() {
+  // Without a publisher there is nobody to ask, and a new publisher sends a keyframe anyway.
+  if (!ros::ok() || !connected()) return false;
+  const std::unique_lock<std::mutex> one_at_a_time(context_.processing, std::try_to_lock);
+  if (!one_at_a_time) return false;  // a message is being processed, which may be the keyframe
+  if (!requests_.due(assembler_.need(), KeyframeRequests::Clock::now())) return false;
+  assembler_.keyframe_overdue();
+  publish_change({}, nullptr);
+  return true;
+}
+
+void LayerStream::request_by_message() {
+  if (is_elevation()) {
+    request_publisher_.publish(std_msgs::Empty());
+    return;
+  }
+  std_msgs::String request;
+  request.data = layer_;
+  request_publisher_.publish(request);
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,70 @@
+#pragma once
+/// The layers that others can see, by the names that users know: in maps, in the answers of services, as
+/// topics, and in clients.
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "kernels/field/layers.hpp"
+
+namespace desert_sim {
+
+/// The value of a block of cells that are merged into one: the mean, the lowest, or that of the cell in the
+/// middle.
+enum class Aggregation { mean, min, center };
+
+struct MapLayer {
+  const char* name;
+  Layer layer;
+  /// Change of a value, in the layer's unit, that is worth sending to subscribers of updates.
+  double threshold = 0;
+  Aggregation aggregation = Aggregation::mean;
+  /// Whether a change from or to 0 is always worth it, and 0 is sent exactly.
+  bool zero_is_special = false;
+};
+
+constexpr std::array<MapLayer, 26> map_layers{{
+    {"elevation", Layer::elevation, 0.005},
+    {"bedrock", Layer::bedrock, 0.005},
+    {"water_surface", Layer::water_surface, 0.005},
+    {"sand_depth", Layer::sand, 0.005},
+    {"water_depth", Layer::water, 0.005},
+    {"soil_depth", Layer::soil, 0.005},
+    {"vegetation", Layer::vegetation, 0.01},
+    {"plants", Layer::plants, 0, Aggregation::center},
+    {"canopy_height", Layer::canopy_height, 0.02},
+    {"illumination", Layer::illumination, 0.01},
+    {"humus", Layer::humus, 0.001},
+    {"moisture", Layer::moisture, 0.001},
+    {"suspended_sediment", Layer::suspended_sediment, 0.0005},
+    {"water_velocity_x", Layer::water_velocity_x, 0.02},
+    {"water_velocity_y", Layer::water_velocity_y, 0.02},
+    {"obstacle", Layer::obstacle, 0},
+    {"wind_x", Layer::wind_x, 0.05},
+    {"wind_y", Layer::wind_y, 0.05},
+    {"wind_shadow", Layer::wind_shadow, 0.01},
+    {"slope", Layer::slope, 0.01},
+    {"roughness", Layer::roughness, 0.005},
+    {"step_height", Layer::step_height, 0.005},
+    {"traversability", Layer::traversability, 0.01, Aggregation::min, true},
+    {"normal_x", Layer::normal_x, 0.01},
+    {"normal_y", Layer::normal_y, 0.01},
+    {"normal_z", Layer::normal_z, 0.01},
+}};
+
+/// The names of all map layers, with ", " between them.
+inline std::string map_layer_names() {
+  std::string names;
+  for (const MapLayer& layer : map_layers) names += (names.empty() ? "" : ", ") + std::string(layer.name);
+  return names;
+}
+
+/// The layer of this name; null if there is none.
+inline const MapLayer* find_map_layer(const std::string& name) {
+  const auto found = std::find_if(map_layers.begin(), map_layers.end(),
+                                  [&](const MapLayer& layer) { return name == layer.name; });
+  return found == map_layers.end() ? nullptr : &*found;
+}
+
+}  // namespace desert_sim
