@@ -146,7 +146,8 @@ Result TerrainClient::read(const std::string& name, Result without, const Read& 
 }
 
 std::shared_ptr<const LayerMap> TerrainClient::layer_map(const std::string& name) const {
-  return read(name, std::shared_ptr<const LayerMap>(), [](const LayerStream& stream) { return stream.map(); });
+  return read(name, std::shared_ptr<const LayerMap>(),
+              [](const LayerStream& stream) { return stream.map(); });
 }
 
 std::optional<double> TerrainClient::value(const std::string& name, double x, double y) const {
@@ -185,6 +186,17 @@ bool TerrainClient::up_to_date() const {
 bool TerrainClient::connected() const {
   const std::vector<std::shared_ptr<LayerStream>> all = streams();
   return std::all_of(all.begin(), all.end(), [](const auto& stream) { return stream->connected(); });
+}
+
+bool TerrainClient::connected(const std::string& layer) const {
+  check_layer(layer);
+  std::shared_ptr<LayerStream> stream;
+  {
+    const std::lock_guard<std::mutex> lock(context_.mutex);
+    const auto found = streams_.find(layer);
+    if (found != streams_.end()) stream = found->second;
+  }
+  return stream && stream->connected();
 }
 
 bool TerrainClient::wait_for_terrain(double timeout) const {

@@ -42,9 +42,9 @@ class TerrainClient {
     /// The layers to subscribe to from the start: names of known_layers(). Another list than the default
     /// may leave the elevation out.
     std::vector<std::string> layers = {"elevation"};
-    std::string elevation_topic;      ///< topic of keyframes; empty: <node>/elevation
-    std::string updates_topic;        ///< topic of updates; empty: <node>/elevation_updates
-    std::string request_topic;        ///< topic of requests; empty: <node>/request_keyframe
+    std::string elevation_topic;  ///< topic of keyframes; empty: <node>/elevation
+    std::string updates_topic;    ///< topic of updates; empty: <node>/elevation_updates
+    std::string request_topic;    ///< topic of requests; empty: <node>/request_keyframe
     /// Whether the client processes messages on its own thread. Otherwise they are processed by the callback
     /// queue of the given node handle (ros::spin(), a spinner, a nodelet's threads).
     bool own_thread = true;
@@ -103,6 +103,8 @@ class TerrainClient {
   bool up_to_date(const std::string& layer) const;
   /// Whether keyframes of all of them have a publisher.
   bool connected() const;
+  /// Whether keyframes of this one have a publisher; false if it is not subscribed to.
+  bool connected(const std::string& layer) const;
   /// Waits until each layer that is subscribed to has a map, at most `timeout` seconds of wall time. False if
   /// one has none by then, or if ROS shuts down. Messages must be processed by another thread meanwhile.
   bool wait_for_terrain(double timeout) const;

@@ -29,6 +29,19 @@ struct CellRectangle {
   CellRectangle grown(int margin) const {
     return {x - margin, y - margin, width + 2 * margin, height + 2 * margin};
   }
+  /// Enlarges the rectangle so that it contains `other`.
+  void include(const CellRectangle& other) {
+    if (other.empty()) return;
+    if (empty()) {
+      *this = other;
+      return;
+    }
+    const int east = std::max(right(), other.right()), north = std::max(top(), other.top());
+    x = std::min(x, other.x);
+    y = std::min(y, other.y);
+    width = east - x;
+    height = north - y;
+  }
   bool operator==(const CellRectangle& o) const {
     return x == o.x && y == o.y && width == o.width && height == o.height;
   }
@@ -44,6 +57,7 @@ class CellWindow {
 
   bool empty() const { return values_.empty(); }
   const CellRectangle& cells() const { return cells_; }
+  const std::vector<float>& values() const { return values_; }
   /// The value of a cell; NaN outside the rectangle.
   float at(int x, int y) const {
     if (!cells_.contains(x, y)) return std::numeric_limits<float>::quiet_NaN();

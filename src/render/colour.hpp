@@ -2,6 +2,7 @@
 /// Colours for drawing.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace desert_sim::render {
@@ -18,6 +19,17 @@ inline PackedColour pack(const Colour& c, float alpha = 1) {
     return static_cast<PackedColour>(255.0f * std::min(1.0f, std::max(0.0f, v)) + 0.5f);
   };
   return byte(c.r) | byte(c.g) << 8 | byte(c.b) << 16 | byte(alpha) << 24;
+}
+
+/// The colour of a plant's crown by its hue [deg]: each channel is bright within 60 degrees of its own hue and dull
+/// beyond 120 degrees.
+inline Colour crown_colour(float hue) {
+  constexpr float dull = 0.13f, bright = 0.52f;
+  const auto channel = [&](float peak) {
+    const float away = std::abs(std::remainder(hue - peak, 360.0f));
+    return dull + (bright - dull) * std::clamp(2.0f - away / 60.0f, 0.0f, 1.0f);
+  };
+  return {channel(0), channel(120), channel(240)};
 }
 
 inline Colour mix(const Colour& a, const Colour& b, float share) {

@@ -20,6 +20,7 @@ struct MaterialWindows {
         vegetation(window("vegetation", cells)),
         obstacle(window("obstacle", cells)),
         resistance(window("erosion_resistance", cells)) {}
+  MaterialWindows() = default;
 
   Colour at(int x, int y) const {
     SurfaceMaterials m;
@@ -36,14 +37,24 @@ struct MaterialWindows {
   }
 };
 
+/// The light on a surface of true heights that is seen with exaggerated ones.
+float light_on(float normal_x, float normal_y, float normal_z, float exaggeration) {
+  const float x = normal_x * exaggeration, y = normal_y * exaggeration,
+              length = std::sqrt(x * x + y * y + normal_z * normal_z);
+  return sun_light(x / length, y / length, normal_z / length);
+}
+
 }  // namespace
 
 std::vector<std::string> layers_for(const TerrainLook& look) {
-  std::vector<std::string> layers{"sand_depth", "soil_depth", "moisture",
-                                  "vegetation", "obstacle",   "erosion_resistance"};
+  std::vector<std::string> layers{"elevation"};
+  if (look.materials)
+    layers.insert(layers.end(),
+                  {"sand_depth", "soil_depth", "moisture", "vegetation", "obstacle", "erosion_resistance"});
   if (look.water) layers.emplace_back("water_depth");
   const std::string& shown = look.overlay.layer;
-  if (look.overlay.active() && shown != slope_layer && shown != change_layer && shown != "elevation")
+  const bool computed = shown == slope_layer || shown == change_layer;
+  if (look.overlay.active() && !computed && std::find(layers.begin(), layers.end(), shown) == layers.end())
     layers.push_back(shown);
   return layers;
 }
@@ -53,24 +64,26 @@ TerrainBlock build_terrain_block(const BlockLayout& layout, int block, int level
   TerrainBlock result;
   const CellRectangle cells = layout.needed_cells(block, level), vertices = layout.vertices(block);
   const CellWindow elevation = window("elevation", cells);
-  const MaterialWindows materials(window, vertices);
+  const MaterialWindows materials = look.materials ? MaterialWindows(window, vertices) : MaterialWindows();
   const bool slope = look.overlay.layer == slope_layer;
   const CellWindow overlay =
       look.overlay.active() && !slope ? window(look.overlay.layer, vertices) : CellWindow();
-  result.ground = build_block(
-      layout, block, level, cell_size, elevation, [&](int x, int y, float, float, float normal_z) {
-        const Colour ground = materials.at(x, y);
-        if (slope) return pack(look.overlay.on(ground, std::acos(std::min(1.0f, normal_z))));
-        return pack(overlay.empty() ? ground : look.overlay.on(ground, overlay.at(x, y)));
-      });
+  const auto exaggeration = static_cast<float>(look.vertical_exaggeration);
+  result.ground = build_block(layout, block, level, cell_size, elevation,
+                              [&](int x, int y, float nx, float ny, float nz) {
+                                Colour colour = materials.at(x, y);
+                                if (slope) colour = look.overlay.on(colour, std::acos(std::min(1.0f, nz)));
+                                if (!overlay.empty()) colour = look.overlay.on(colour, overlay.at(x, y));
+                                return pack(lit(colour, light_on(nx, ny, nz, exaggeration)));
+                              });
   result.contours = contour_lines(result.ground, look.contour_interval);
   if (!look.water) return result;
   const CellWindow depth = window("water_depth", cells);
   if (depth.empty()) return result;
   result.water = build_block(layout, block, level, cell_size, water_surface(elevation, depth, level),
-                             [&](int x, int y, float, float, float) {
-                               const float d = depth.at(x, y);
-                               return pack(water_colour(d), water_opacity(d));
+                             [&](int x, int y, float nx, float ny, float nz) {
+                               const float d = depth.at(x, y), light = light_on(nx, ny, nz, exaggeration);
+                               return pack(lit(water_colour(d), 0.75f + 0.25f * light), water_opacity(d));
                              });
   return result;
 }

@@ -15,7 +15,10 @@ using LayerWindow = std::function<CellWindow(const std::string& layer, const Cel
 
 struct TerrainLook {
   Overlay overlay;
+  bool materials = true;  ///< else all ground has the colour of sand
   bool water = true;
+  double vertical_exaggeration =
+      1;  ///< of what is seen; the meshes have true heights, but the light is that of these
   double contour_interval = 0;  ///< [m]; 0: no contour lines
 };
 

@@ -26,6 +26,15 @@ Colour water_colour(float depth);
 /// How much of the ground water of this depth [m] hides: 0 … 0.92.
 float water_opacity(float depth);
 
+/// The factor by which the sun brightens or darkens a surface with this upward unit normal: 1 on level ground, 0.3 in
+/// shade, at most 1.3. The sun stands low in the west-north-west, so that slip faces under a west wind are in shade.
+float sun_light(float normal_x, float normal_y, float normal_z);
+Colour lit(const Colour& colour, float light);
+
+/// The colour of the wind: blue up to half the speed high above the ground, near white at that speed, red from one and a
+/// half times on. `relative`: the speed divided by the one high above.
+Colour wind_colour(float relative);
+
 /// Unknown ground in pictures.
 constexpr Colour unknown_colour{0.84f, 0.84f, 0.84f};
 

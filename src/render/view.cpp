@@ -14,13 +14,6 @@ Matrix4 multiply(const Matrix4& a, const Matrix4& b) {
   return product;
 }
 
-namespace {
-
-/// The scale of a matrix of rotation and uniform scale.
-double scale_of(const Matrix4& m) { return std::hypot(m[2][0], m[2][1], m[2][2]); }
-
-}  // namespace
-
 View::View(const Matrix4& projection, const Matrix4& camera_from_terrain, int height)
     : orthographic_(projection[3][2] == 0) {
   const Matrix4 clip = multiply(projection, camera_from_terrain);
@@ -30,13 +23,12 @@ View::View(const Matrix4& projection, const Matrix4& camera_from_terrain, int he
   }
   // The camera is at the origin of its own frame: the terrain's point that is mapped there.
   const Matrix4& m = camera_from_terrain;
-  const double scale = scale_of(m), squared = scale * scale;
   const auto eye = [&](std::size_t k) {
-    return -(m[0][k] * m[0][3] + m[1][k] * m[1][3] + m[2][k] * m[2][3]) / squared;
+    return -(m[0][k] * m[0][3] + m[1][k] * m[1][3] + m[2][k] * m[2][3]);
   };
   eye_ = {eye(0), eye(1), eye(2)};
-  ahead_ = {-m[2][0] / scale, -m[2][1] / scale, -m[2][2] / scale};
-  pixels_ = 0.5 * height * std::abs(projection[1][1]) * (orthographic_ ? scale : 1);
+  ahead_ = {-m[2][0], -m[2][1], -m[2][2]};
+  pixels_ = 0.5 * height * std::abs(projection[1][1]);
 }
 
 bool View::sees(const Box& box) const {

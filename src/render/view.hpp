@@ -22,7 +22,7 @@ Matrix4 multiply(const Matrix4& a, const Matrix4& b);
 class View {
  public:
   /// `projection` maps coordinates of the camera (which looks along -z) to OpenGL's clip coordinates, and
-  /// `camera_from_terrain` those of the terrain to the camera's. `height` is that of the viewport [pixels].
+  /// `camera_from_terrain` those of the terrain to the camera's, by a rotation and a translation. `height` is that of the viewport [pixels].
   View(const Matrix4& projection, const Matrix4& camera_from_terrain, int height);
 
   bool orthographic() const { return orthographic_; }

@@ -18,47 +18,27 @@ Ogre::MaterialPtr material(const char* name, const SetUp& set_up) {
   Ogre::MaterialPtr made = all.create(name, group());
   made->setReceiveShadows(false);
   Ogre::Pass* const pass = made->getTechnique(0)->getPass(0);
+  pass->setLightingEnabled(false);
   pass->setCullingMode(Ogre::CULL_NONE);
   set_up(*pass);
   return made;
 }
 
-void light(Ogre::Pass& pass) {
-  pass.setLightingEnabled(true);
-  pass.setVertexColourTracking(Ogre::TVC_AMBIENT | Ogre::TVC_DIFFUSE);
-  pass.setSpecular(0, 0, 0, 0);
-}
-
-void blend(Ogre::Pass& pass) {
-  pass.setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
-  pass.setDepthWriteEnabled(false);
-}
-
 }  // namespace
 
 Ogre::MaterialPtr ground() {
-  return material("desert_sim/ground", [](Ogre::Pass& pass) {
-    light(pass);
-    pass.setDepthBias(-2, -1);
-  });
+  return material("desert_sim/ground", [](Ogre::Pass& pass) { pass.setDepthBias(-2, -1); });
 }
 
-Ogre::MaterialPtr water() {
-  return material("desert_sim/water", [](Ogre::Pass& pass) {
-    light(pass);
-    blend(pass);
-  });
-}
-
-Ogre::MaterialPtr lines() {
-  return material("desert_sim/lines", [](Ogre::Pass& pass) {
-    pass.setLightingEnabled(false);
-    blend(pass);
+Ogre::MaterialPtr translucent() {
+  return material("desert_sim/translucent", [](Ogre::Pass& pass) {
+    pass.setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
+    pass.setDepthWriteEnabled(false);
   });
 }
 
 Ogre::MaterialPtr shapes() {
-  return material("desert_sim/shapes", [](Ogre::Pass& pass) { light(pass); });
+  return material("desert_sim/shapes", [](Ogre::Pass&) {});
 }
 
 }  // namespace desert_sim::materials

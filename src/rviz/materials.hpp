@@ -1,18 +1,16 @@
 #pragma once
-/// OGRE materials of the plugins. Their light is computed for each vertex and without shaders, which is what software
-/// rasterisers are fast at.
+/// OGRE materials of the plugins. Vertices have their colours with the light of the sun in them (src/render), so that no
+/// shader and no light of the scene is needed: that is what software rasterisers are fast at.
 
 #include <OgreMaterial.h>
 
 namespace desert_sim::materials {
 
-/// Lit, in the colours of the vertices. Lies a little behind its place, so that lines on it are seen.
+/// Opaque. Lies a little behind its place, so that lines on it are seen.
 Ogre::MaterialPtr ground();
-/// Lit and translucent by the alpha of the vertices.
-Ogre::MaterialPtr water();
-/// Unlit and translucent by the alpha of the vertices.
-Ogre::MaterialPtr lines();
-/// Lit, in the colours of the vertices.
+/// Translucent by the alpha of the vertices.
+Ogre::MaterialPtr translucent();
+/// Opaque.
 Ogre::MaterialPtr shapes();
 
 }  // namespace desert_sim::materials

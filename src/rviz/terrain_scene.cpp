@@ -35,7 +35,8 @@ render::Box rough_box(const render::CellRectangle& cells, double cell_size,
 
 }  // namespace
 
-TerrainScene::TerrainScene(Ogre::SceneNode* parent) : node_(parent->createChildSceneNode()) {}
+TerrainScene::TerrainScene(Ogre::SceneNode* parent)
+    : parent_(parent), node_(parent->createChildSceneNode()) {}
 
 TerrainScene::~TerrainScene() {
   blocks_.clear();
@@ -56,29 +57,26 @@ void TerrainScene::set_grid(int width, int height, double cell_size, const rende
 
 void TerrainScene::set_look(const render::TerrainLook& look) {
   look_ = look;
+  node_->setScale(1, 1, static_cast<Ogre::Real>(look.vertical_exaggeration));
   queue_.touch_all();
 }
 
-void TerrainScene::set_vertical_exaggeration(double factor) {
-  node_->setScale(1, 1, static_cast<Ogre::Real>(factor));
-}
-
-void TerrainScene::set_pose(const Ogre::Vector3& position, const Ogre::Quaternion& orientation) {
-  node_->setPosition(position);
-  node_->setOrientation(orientation);
-}
-
 render::View TerrainScene::view_of(const Ogre::Camera& camera, int viewport_height) const {
-  const Ogre::Affine3& terrain = node_->_getFullTransform();
+  const Ogre::Matrix4 terrain(parent_->_getFullTransform());
   return {to_matrix(camera.getProjectionMatrix()),
-          to_matrix(Ogre::Matrix4(camera.getViewMatrix(true)) * Ogre::Matrix4(terrain)), viewport_height};
+          to_matrix(Ogre::Matrix4(camera.getViewMatrix(true)) * terrain), viewport_height};
 }
 
 void TerrainScene::update(const Ogre::Camera& camera, int viewport_height, double seconds) {
   if (layout_.count() == 0) return;
   const render::View view = view_of(camera, viewport_height);
-  queue_.set_levels(render::choose_levels(layout_, cell_size_, view, boxes_, queue_.levels(), limits_));
-  queue_.run(view, boxes_, seconds, [this](int block, int level) { build(block, level); });
+  std::vector<render::Box> boxes = boxes_;
+  for (render::Box& box : boxes) {
+    box.low.z *= look_.vertical_exaggeration;
+    box.high.z *= look_.vertical_exaggeration;
+  }
+  queue_.set_levels(render::choose_levels(layout_, cell_size_, view, boxes, queue_.levels(), limits_));
+  queue_.run(view, boxes, seconds, [this](int block, int level) { build(block, level); });
 }
 
 void TerrainScene::build(int number, int level) {
@@ -96,8 +94,8 @@ void TerrainScene::build(int number, int level) {
     object->set_mesh(mesh);
   };
   show(block.ground, meshes.ground, materials::ground(), RenderOperation::OT_TRIANGLE_LIST);
-  show(block.water, meshes.water, materials::water(), RenderOperation::OT_TRIANGLE_LIST);
-  show(block.contours, meshes.contours, materials::lines(), RenderOperation::OT_LINE_LIST);
+  show(block.water, meshes.water, materials::translucent(), RenderOperation::OT_TRIANGLE_LIST);
+  show(block.contours, meshes.contours, materials::translucent(), RenderOperation::OT_LINE_LIST);
   block.triangles = static_cast<std::int64_t>(meshes.ground.indices.size() / 3);
   if (!meshes.ground.empty()) boxes_[static_cast<std::size_t>(number)] = render::bounding_box(meshes.ground);
   ++built_;

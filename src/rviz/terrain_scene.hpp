@@ -29,15 +29,10 @@ class TerrainScene {
   /// Blocks are built with these values from now on.
   void set_window(const render::LayerWindow& window) { window_ = window; }
   void touch(const render::CellRectangle& cells) { queue_.touch(cells); }
-  /// All blocks are built anew.
+  /// All blocks are built anew. Exaggeration of heights is a scale of node(); blocks have true heights.
   void set_look(const render::TerrainLook& look);
   const render::TerrainLook& look() const { return look_; }
-  /// Heights are multiplied by this when they are drawn; no block is built anew.
-  void set_vertical_exaggeration(double factor);
   void set_limits(const render::DetailLimits& limits) { limits_ = limits; }
-
-  /// Where the grid's corner lies in the fixed frame.
-  void set_pose(const Ogre::Vector3& position, const Ogre::Quaternion& orientation);
 
   /// Builds waiting blocks for at most `seconds`; at least one.
   void update(const Ogre::Camera& camera, int viewport_height, double seconds);
@@ -60,14 +55,14 @@ class TerrainScene {
   render::View view_of(const Ogre::Camera& camera, int viewport_height) const;
   void build(int block, int level);
 
-  Ogre::SceneNode* const node_;
+  Ogre::SceneNode *const parent_, *const node_;
   render::BlockLayout layout_;
   double cell_size_ = 1;
   render::LayerWindow window_;
   render::TerrainLook look_;
   render::DetailLimits limits_;
   render::RebuildQueue queue_;
-  std::vector<render::Box> boxes_;
+  std::vector<render::Box> boxes_;  ///< with true heights
   std::vector<Block> blocks_;
   std::uint64_t built_ = 0;
 };

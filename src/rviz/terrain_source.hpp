@@ -2,6 +2,7 @@
 /// The terrain of a node for a display: receives on the client's own thread, and hands over immutable maps with the
 /// cells that changed since the last call, however many messages came in between. Nothing waits for the other side.
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -12,41 +13,48 @@
 
 namespace desert_sim {
 
-/// What changed between two calls of PendingChanges::take().
-struct TerrainChange {
-  std::shared_ptr<const ElevationMap> map;     ///< null: nothing has changed
+/// What changed in one layer between two calls of PendingChanges::take().
+struct LayerChange {
+  std::shared_ptr<const LayerMap> map;
   bool replaced = false;                       ///< the frame, size or place is another one; all cells are new
-  std::vector<render::CellRectangle> changed;  ///< tiles of up to 64 × 64 cells in which a cell changed
+  std::vector<render::CellRectangle> changed;  ///< where cells changed, at most one in each tile
   int messages = 0;                            ///< how many messages are in this change
 };
 
-/// Collects changes until somebody takes them. Its memory is bounded by the size of one map, whatever the rate of
-/// messages. add() is for one thread, take() for another one.
+/// Collects changes until somebody takes them. Its memory is bounded by the size of one map for each layer, whatever the
+/// rate of messages. add() and forget() are for one thread at a time, take() for another one.
 class PendingChanges {
  public:
   static constexpr int tile_side = 64;  ///< [cells]
 
-  /// The maps are compared, so that only tiles with different values count as changed.
+  /// The maps are compared, so that only cells with different values count as changed.
   void add(const MapChange& change);
-  TerrainChange take();
+  /// What changed since the last call, at most once for each layer, the elevation first.
+  std::vector<LayerChange> take();
 
  private:
-  std::shared_ptr<const ElevationMap> last_;  ///< the last map of add()
-  std::mutex mutex_;                          ///< protects the members below; held only briefly
-  TerrainChange pending_;
-  std::vector<char> tiles_;  ///< which tiles of pending_.map changed, row-major
+  struct Pending {
+    LayerChange change;
+    std::vector<render::CellRectangle> tiles;  ///< what changed in each tile, row-major
+  };
+
+  std::map<std::string, std::shared_ptr<const LayerMap>> last_;  ///< the last map of each layer in add()
+  std::mutex mutex_;                                             ///< protects pending_; held only briefly
+  std::map<std::string, Pending> pending_;                       ///< by layer
 };
 
 class TerrainSource {
  public:
   /// `elevation_topic`: the topic of keyframes, such as /desert_sim/elevation; others of its node are beside it. Throws
-  /// ConfigError for an invalid name.
+  /// ConfigError for an invalid name. Nothing is received before set_layers().
   explicit TerrainSource(const std::string& elevation_topic);
 
-  TerrainChange take() { return changes_.take(); }
-  bool connected() const { return client_->connected(); }
-  bool up_to_date() const { return client_->up_to_date(); }
-  TerrainClient::Statistics statistics() const { return client_->statistics(); }
+  /// Subscribes to these layers and to no others. Unknown names are ignored; see is_known().
+  void set_layers(const std::vector<std::string>& layers);
+  static bool is_known(const std::string& layer);
+
+  std::vector<LayerChange> take() { return changes_.take(); }
+  const TerrainClient& client() const { return *client_; }
 
  private:
   PendingChanges changes_;
