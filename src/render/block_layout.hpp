@@ -1,6 +1,6 @@
 #pragma once
-/// Divides a grid of cells into blocks that are drawn, and built anew, one by one. Vertices of a mesh are centres of
-/// cells, and neighbouring blocks share the vertices of their common edge.
+/// Divides a grid of cells into blocks that are drawn, and built anew, one by one. Vertices of a mesh are
+/// centres of cells, and neighbouring blocks share the vertices of their common edge.
 
 #include <vector>
 
@@ -13,8 +13,8 @@ class BlockLayout {
   static constexpr int max_level = 5;  ///< At level L, every 2^L-th vertex of a block is drawn.
 
   BlockLayout() = default;
-  /// Blocks have 64 cells on a side, or 128 where that would be more than 256 blocks: fewer draw calls count for more
-  /// than fewer cells in a block that changed.
+  /// Blocks have 64 cells on a side, or 128 where that would be more than 256 blocks: fewer draw calls count
+  /// for more than fewer cells in a block that changed.
   BlockLayout(int width, int height);
 
   int width() const { return width_; }
@@ -27,7 +27,8 @@ class BlockLayout {
 
   /// The cells whose centres are vertices of a block at level 0, its edges included.
   CellRectangle vertices(int block) const;
-  /// The cells that a block's mesh at this level depends on: vertices, and what the normals at its edges need.
+  /// The cells that a block's mesh at this level depends on: vertices, and what the normals at its edges
+  /// need.
   CellRectangle needed_cells(int block, int level) const;
   /// Whether the neighbours in the west, east, south and north exist.
   struct Neighbours {

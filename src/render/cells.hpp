@@ -1,6 +1,6 @@
 #pragma once
-/// Rectangles of cells and the values in them, for drawing. Cell (0, 0) is the south-west cell of a grid; values are
-/// row-major, x fastest, and NaN where unknown.
+/// Rectangles of cells and the values in them, for drawing. Cell (0, 0) is the south-west cell of a grid;
+/// values are row-major, x fastest, and NaN where unknown.
 
 #include <algorithm>
 #include <cstddef>

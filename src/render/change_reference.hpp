@@ -8,7 +8,8 @@
 
 namespace desert_sim::render {
 
-/// `Map`: any immutable map. Times are simulated [s]. Keeps at most `samples` + 2 maps, however many there are.
+/// `Map`: any immutable map. Times are simulated [s]. Keeps at most `samples` + 2 maps, however many there
+/// are.
 template <class Map>
 class ChangeReference {
  public:
@@ -17,8 +18,8 @@ class ChangeReference {
 
   /// Forgets all maps.
   void clear() { *this = ChangeReference(seconds_); }
-  /// Compare with the map of so many seconds before the newest one; 0: with that of the last call of mark(), or with the
-  /// first one.
+  /// Compare with the map of so many seconds before the newest one; 0: with that of the last call of mark(),
+  /// or with the first one.
   explicit ChangeReference(double seconds = 0) : seconds_(seconds) {}
   void set_seconds(double seconds) {
     seconds_ = seconds;

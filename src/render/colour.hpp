@@ -21,8 +21,8 @@ inline PackedColour pack(const Colour& c, float alpha = 1) {
   return byte(c.r) | byte(c.g) << 8 | byte(c.b) << 16 | byte(alpha) << 24;
 }
 
-/// The colour of a plant's crown by its hue [deg]: each channel is bright within 60 degrees of its own hue and dull
-/// beyond 120 degrees.
+/// The colour of a plant's crown by its hue [deg]: each channel is bright within 60 degrees of its own hue
+/// and dull beyond 120 degrees.
 inline Colour crown_colour(float hue) {
   constexpr float dull = 0.13f, bright = 0.52f;
   const auto channel = [&](float peak) {

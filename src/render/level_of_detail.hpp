@@ -1,6 +1,6 @@
 #pragma once
-/// Chooses at which level each block is drawn: as coarse as its distance allows, and with no more triangles in the
-/// picture than wanted.
+/// Chooses at which level each block is drawn: as coarse as its distance allows, and with no more triangles
+/// in the picture than wanted.
 
 #include <vector>
 
@@ -15,8 +15,9 @@ struct DetailLimits {
       100000;  ///< At most so many in the picture; where needed, quads become larger than `pixels`.
 };
 
-/// One level for each block. `boxes` are the blocks' bounding boxes, `present` the levels they are drawn at now (-1: not
-/// yet): a block keeps its level until another one fits clearly better, so that levels do not change back and forth.
+/// One level for each block. `boxes` are the blocks' bounding boxes, `present` the levels they are drawn at
+/// now (-1: not yet): a block keeps its level until another one fits clearly better, so that levels do not
+/// change back and forth.
 std::vector<int> choose_levels(const BlockLayout& layout, double cell_size, const View& view,
                                const std::vector<Box>& boxes, const std::vector<int>& present,
                                const DetailLimits& limits);

@@ -17,11 +17,12 @@ struct Plant {
   double height() const { return radius * stem * (0.5 + 0.5 * health); }
 };
 
-/// Adds the corners of the triangles of a plant, three for each, counter-clockwise as seen from outside. Detailed: a
-/// trunk, and a crown of two cones with six sides. Else: a pyramid.
+/// Adds the corners of the triangles of a plant, three for each, counter-clockwise as seen from outside.
+/// Detailed: a trunk, and a crown of two cones with six sides. Else: a pyramid.
 void add_plant(const Plant& plant, bool detailed, std::vector<Point>& corners);
 
-/// The indices of the `count` widest plants, in ascending order; among plants of equal width the first ones count.
+/// The indices of the `count` widest plants, in ascending order; among plants of equal width the first ones
+/// count.
 std::vector<std::size_t> widest_plants(const std::vector<float>& radii, std::size_t count);
 
 struct PlantLook {
@@ -29,7 +30,8 @@ struct PlantLook {
   double vertical_exaggeration = 1;  ///< of the feet; plants keep their shape
 };
 
-/// One mesh of all these plants, with flat light; the widest tenth is detailed. `species` has one number for each.
+/// One mesh of all these plants, with flat light; the widest tenth is detailed. `species` has one number for
+/// each.
 Mesh plants_mesh(const std::vector<Plant>& plants, const std::vector<std::uint8_t>& species,
                  const PlantLook& look);
 

@@ -1,8 +1,8 @@
 #pragma once
-/// The blocks that wait to be built anew, because their cells changed or another level of detail fits better, and the
-/// order in which they are: what is in the picture first, what has no mesh yet before the rest, the near before the far.
-/// A block that waits comes closer with each frame, so that near ones that change all the time do not keep it waiting
-/// for ever.
+/// The blocks that wait to be built anew, because their cells changed or another level of detail fits better,
+/// and the order in which they are: what is in the picture first, what has no mesh yet before the rest, the
+/// near before the far. A block that waits comes closer with each frame, so that near ones that change all
+/// the time do not keep it waiting for ever.
 
 #include <chrono>
 #include <functional>
@@ -32,9 +32,9 @@ class RebuildQueue {
   const std::vector<int>& levels() const { return built_levels_; }
   const std::vector<int>& wanted_levels() const { return wanted_levels_; }
 
-  /// Calls build(block, level) for the waiting blocks in their order, until `seconds` are spent. It stops before a block
-  /// that would go beyond the time, if it takes as long as the slowest one of late. At least one block is built in each
-  /// call. Returns the number of blocks that were built.
+  /// Calls build(block, level) for the waiting blocks in their order, until `seconds` are spent. It stops
+  /// before a block that would go beyond the time, if it takes as long as the slowest one of late. At least
+  /// one block is built in each call. Returns the number of blocks that were built.
   int run(const View& view, const std::vector<Box>& boxes, double seconds,
           const std::function<void(int block, int level)>& build, const Clock& clock = steady_seconds);
 

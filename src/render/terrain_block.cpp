@@ -9,7 +9,8 @@ namespace desert_sim::render {
 
 namespace {
 
-/// The layers that make the colour of the ground. A terrain of which only the elevation is known is drawn as sand.
+/// The layers that make the colour of the ground. A terrain of which only the elevation is known is drawn as
+/// sand.
 struct MaterialWindows {
   CellWindow sand, soil, moisture, vegetation, obstacle, resistance;
 

@@ -9,8 +9,8 @@
 
 namespace desert_sim::render {
 
-/// The values of a layer in a rectangle of cells; an empty window if there is no such layer. Layers have the names of
-/// config/node_parameters.md, "Layers of maps".
+/// The values of a layer in a rectangle of cells; an empty window if there is no such layer. Layers have the
+/// names of config/node_parameters.md, "Layers of maps".
 using LayerWindow = std::function<CellWindow(const std::string& layer, const CellRectangle& cells)>;
 
 struct TerrainLook {

@@ -1,6 +1,6 @@
 #pragma once
-/// OGRE materials of the plugins. Vertices have their colours with the light of the sun in them (src/render), so that no
-/// shader and no light of the scene is needed: that is what software rasterisers are fast at.
+/// OGRE materials of the plugins. Vertices have their colours with the light of the sun in them (src/render),
+/// so that no shader and no light of the scene is needed: that is what software rasterisers are fast at.
 
 #include <OgreMaterial.h>
 

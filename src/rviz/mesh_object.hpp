@@ -18,8 +18,8 @@ class MeshObject : public Ogre::SimpleRenderable {
   MeshObject(const MeshObject&) = delete;
   MeshObject& operator=(const MeshObject&) = delete;
 
-  /// Copies the mesh to OGRE's buffers, which stay the same while their sizes fit. An empty mesh hides the object and
-  /// frees them.
+  /// Copies the mesh to OGRE's buffers, which stay the same while their sizes fit. An empty mesh hides the
+  /// object and frees them.
   void set_mesh(const render::Mesh& mesh);
 
   Ogre::Real getBoundingRadius() const override;

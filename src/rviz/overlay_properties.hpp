@@ -31,8 +31,8 @@ class OverlayProperties : public QObject {
   /// Such as "wind_shadow" or "change since step 100 [m]".
   std::string title() const;
 
-  /// Takes note of the newest map of a layer: it decides the automatic range when it is the first one of the chosen
-  /// layer, and whether the change of the elevation is compared with another map from now on.
+  /// Takes note of the newest map of a layer: it decides the automatic range when it is the first one of the
+  /// chosen layer, and whether the change of the elevation is compared with another map from now on.
   void see(const LayerMap& map);
   void see_elevation(const std::shared_ptr<const LayerMap>& map);
   /// Forgets the maps that changes are compared with.

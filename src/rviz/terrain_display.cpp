@@ -88,7 +88,7 @@ TerrainDisplay::TerrainDisplay() {
       SLOT(update_limits()));
   quad_pixels_->setMin(1);
   quad_pixels_->setMax(64);
-  triangles_ = new rviz::IntProperty("Most Triangles", 100000,
+  triangles_ = new rviz::IntProperty("Most Triangles", 60000,
                                      "At most so many triangles of ground are in the picture.", this,
                                      SLOT(update_limits()));
   triangles_->setMin(1000);
@@ -245,8 +245,8 @@ void TerrainDisplay::take_elevation(const LayerChange& change_of_elevation) {
   overlay_->see_elevation(change_of_elevation.map);
 }
 
-/// Maps are immutable and live as long as the function does. Those of another grid than the elevation's, for a moment
-/// after a terrain was loaded, do not count.
+/// Maps are immutable and live as long as the function does. Those of another grid than the elevation's, for
+/// a moment after a terrain was loaded, do not count.
 render::LayerWindow TerrainDisplay::window() const {
   return [maps = maps_, reference = overlay_->reference()](const std::string& layer,
                                                            const render::CellRectangle& cells) {

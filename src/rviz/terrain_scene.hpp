@@ -1,6 +1,6 @@
 #pragma once
-/// The blocks of a terrain in OGRE's scene: builds those that changed, or whose distance asks for another level of
-/// detail, within a time for each frame.
+/// The blocks of a terrain in OGRE's scene: builds those that changed, or whose distance asks for another
+/// level of detail, within a time for each frame.
 
 #include <OgreCamera.h>
 #include <OgreSceneManager.h>

@@ -15,8 +15,8 @@ std::vector<float> values(const LayerMap& map, const CellRectangle& r) {
                      static_cast<std::uint32_t>(r.width), static_cast<std::uint32_t>(r.height)});
 }
 
-/// The smallest rectangle of these cells that has all differences between two maps, compared bit by bit, so that NaN
-/// equals NaN.
+/// The smallest rectangle of these cells that has all differences between two maps, compared bit by bit, so
+/// that NaN equals NaN.
 CellRectangle difference(const LayerMap& a, const LayerMap& b, const CellRectangle& cells) {
   const std::vector<float> before = values(a, cells), after = values(b, cells);
   const auto same = [&](int x, int y) {

@@ -1,6 +1,7 @@
 #pragma once
-/// The terrain of a node for a display: receives on the client's own thread, and hands over immutable maps with the
-/// cells that changed since the last call, however many messages came in between. Nothing waits for the other side.
+/// The terrain of a node for a display: receives on the client's own thread, and hands over immutable maps
+/// with the cells that changed since the last call, however many messages came in between. Nothing waits for
+/// the other side.
 
 #include <map>
 #include <memory>
@@ -21,8 +22,8 @@ struct LayerChange {
   int messages = 0;                            ///< how many messages are in this change
 };
 
-/// Collects changes until somebody takes them. Its memory is bounded by the size of one map for each layer, whatever the
-/// rate of messages. add() and forget() are for one thread at a time, take() for another one.
+/// Collects changes until somebody takes them. Its memory is bounded by the size of one map for each layer,
+/// whatever the rate of messages. add() is for one thread, take() for another one.
 class PendingChanges {
  public:
   static constexpr int tile_side = 64;  ///< [cells]
@@ -45,8 +46,8 @@ class PendingChanges {
 
 class TerrainSource {
  public:
-  /// `elevation_topic`: the topic of keyframes, such as /desert_sim/elevation; others of its node are beside it. Throws
-  /// ConfigError for an invalid name. Nothing is received before set_layers().
+  /// `elevation_topic`: the topic of keyframes, such as /desert_sim/elevation; others of its node are beside
+  /// it. Throws ConfigError for an invalid name. Nothing is received before set_layers().
   explicit TerrainSource(const std::string& elevation_topic);
 
   /// Subscribes to these layers and to no others. Unknown names are ignored; see is_known().

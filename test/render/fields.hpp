@@ -32,8 +32,8 @@ inline Mesh block_of(const BlockLayout& layout, int block, int level, const Heig
                      });
 }
 
-/// The product of a rotation and a translation of a camera that is at (x, y, z), looks down (pitch -90°) or to the
-/// horizon in the north (0°).
+/// The product of a rotation and a translation of a camera that is at (x, y, z), looks down (pitch -90°) or
+/// to the horizon in the north (0°).
 inline Matrix4 camera_at(double x, double y, double z, double pitch_deg) {
   const double pitch = pitch_deg * 3.14159265358979 / 180, c = std::cos(pitch), s = std::sin(pitch);
   // Rows: right (east), up, backwards.

@@ -12,8 +12,8 @@ namespace {
 
 using namespace render_test;
 
-/// A queue on a grid of 512 × 512 cells, all of whose blocks are built at a level; each block takes `cost` seconds of
-/// the clock.
+/// A queue on a grid of 512 × 512 cells, all of whose blocks are built at a level; each block takes `cost`
+/// seconds of the clock.
 struct Queue {
   BlockLayout layout{512, 512};
   std::vector<Box> boxes = flat_boxes(layout, 1);

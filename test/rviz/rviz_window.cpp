@@ -3,6 +3,7 @@
 #include <OgreRenderWindow.h>
 #include <fcntl.h>
 #include <rviz/display_group.h>
+#include <rviz/ogre_helpers/render_system.h>
 #include <rviz/properties/status_list.h>
 #include <rviz/properties/status_property.h>
 #include <rviz/view_controller.h>
@@ -74,7 +75,9 @@ Screen::~Screen() {
 
 // ---- Window ----
 
-Window::Window(int width, int height) : panel_(new rviz::RenderPanel) {
+Window::Window(int width, int height) {
+  rviz::RenderSystem::disableAntiAliasing();  // in software it takes more than all the rest
+  panel_ = std::make_unique<rviz::RenderPanel>();
   panel_->resize(width, height);
   panel_->show();
   manager_ = std::make_unique<rviz::VisualizationManager>(panel_.get());

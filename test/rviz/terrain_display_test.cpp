@@ -1,5 +1,5 @@
-// The display desert_sim/Terrain in rviz, on a screen of Xvfb: what people complain of in comparable plugins, by number
-// (test/rviz/README.md), and what can go wrong around it.
+// The display desert_sim/Terrain in rviz, on a screen of Xvfb: what people complain of in comparable plugins,
+// by number (test/rviz/README.md), and what can go wrong around it.
 
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
@@ -113,7 +113,7 @@ TEST_F(TerrainDisplay, Complaint1ALargeKeyframeTakesNoFrameMoreThan20Millisecond
   std::printf("longest frame: %.1f ms of our work, of %zu\n",
               *std::max_element(milliseconds.begin(), milliseconds.end()), milliseconds.size());
   EXPECT_LE(*std::max_element(milliseconds.begin(), milliseconds.end()), 20);
-  EXPECT_LE(number(display, "triangles"), 200000) << "of which 100000 are in the picture";
+  EXPECT_LE(number(display, "triangles"), 200000) << "of which 60000 are in the picture";
 }
 
 // (2) One frame a second unless built for release.

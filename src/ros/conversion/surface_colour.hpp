@@ -12,8 +12,8 @@ class SurfaceColour {
  public:
   /// Keeps a reference to the snapshot. Slopes are central differences over 2 · `reach` cells.
   SurfaceColour(const Snapshot& snapshot, int reach);
-  /// The colour at cell (x, y), of what src/render/terrain_colours.hpp says: of the ground with the plants of their
-  /// species, and the water on it; all are shaded.
+  /// The colour at cell (x, y), of what src/render/terrain_colours.hpp says: of the ground with the plants of
+  /// their species, and the water on it; all are shaded.
   render::Colour at(int x, int y) const;
 
  private:
