@@ -1,6 +1,8 @@
 /// Law and step of layer_values.hpp; compiled once for each backend.
 #include "kernels/view/layer_values.hpp"
 
+#include <type_traits>
+
 #include "kernels/backend/loops.hpp"
 #include "kernels/view/layer_values_laws.hpp"
 
@@ -23,11 +25,10 @@ void step(E& exec, const TerrainView& t, Layer layer, const QuantaToMetres& metr
           float* to) {
   Grid band = t.grid;
   band.height = rows;
-  if (layer == Layer::elevation)
-    return for_each_cell(exec, band, Convert<Surface>{t.grid, {surface::SolidHeight(t), metres}, first, to});
-  const bool counted = info(layer).storage == Storage::quanta;
-  const StoredLayer stored{counted ? t.quanta(layer) : nullptr, counted ? nullptr : t.real(layer), metres};
-  for_each_cell(exec, band, Convert<StoredLayer>{t.grid, stored, first, to});
+  with_values(t, layer, metres, [&](const auto& values) {
+    using Values = std::decay_t<decltype(values)>;
+    for_each_cell(exec, band, Convert<Values>{t.grid, values, first, to});
+  });
 }
 
 template void step(Backend&, const TerrainView&, Layer, const QuantaToMetres&, int, int, float*);

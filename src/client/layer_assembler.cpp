@@ -186,8 +186,7 @@ MapChange LayerAssembler::apply_update(const MapUpdate& update) {
   MapChange change;
   change.map = map_ = map_->with_update(update);
   repeated_keyframe_map_.reset();  // it was only a repetition
-  for (const LayerTile& tile : *update.tiles)
-    change.cells.include({tile.x, tile.y, tile.width, tile.height});
+  for (const LayerTile& tile : *update.tiles) change.cells.include({tile.x, tile.y, tile.width, tile.height});
   ++counts_.updates;
   return change;
 }

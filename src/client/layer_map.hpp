@@ -3,12 +3,7 @@
 /// creates a new map, which shares with the previous one all blocks of cells that the update does not change,
 /// and with the keyframe message all blocks that no update has changed since.
 
-#include <desert_sim/ElevationGrid.h>
-#include <desert_sim/ElevationUpdate.h>
-#include <desert_sim/LayerGrid.h>
-#include <desert_sim/LayerUpdate.h>
 #include <geometry_msgs/Vector3.h>
-#include <ros/time.h>
 
 #include <algorithm>
 #include <array>
@@ -18,52 +13,11 @@
 #include <string>
 #include <vector>
 
+#include "src/client/layer_messages.hpp"
+
 namespace desert_sim {
 
 class TileDecoder;
-
-/// What a map shows, and of which moment.
-struct MapInfo {
-  std::string layer;           ///< name of the layer: elevation, sand_depth, ...
-  std::string unit;            ///< of the values: m, m/s, rad; 1 for a number without a unit
-  std::string frame;           ///< name of the frame: x east, y north, z up
-  ros::Time stamp;             ///< when this state was reached
-  std::uint64_t step = 0;      ///< steps since the scenario's start
-  double sim_time = 0;         ///< simulated time [s]
-  std::uint32_t keyframe = 0;  ///< number of the keyframe on which the map is built
-  std::uint32_t sequence = 0;  ///< sequence of the last update in the map; 0: none
-  std::uint32_t width = 0;     ///< cells from west to east
-  std::uint32_t height = 0;    ///< cells from south to north
-  double cell_size = 0;        ///< [m]
-  double origin_x = 0;         ///< lower-left corner of cell (0, 0) in the frame [m]
-  double origin_y = 0;         ///< [m]
-};
-
-/// A keyframe, of either kind of message, whose values it shares: the message must not be modified afterwards.
-struct MapKeyframe {
-  explicit MapKeyframe(const ElevationGrid::ConstPtr& message);
-  explicit MapKeyframe(const LayerGrid::ConstPtr& message);
-
-  MapInfo info;
-  std::shared_ptr<const std::vector<float>> values;
-};
-
-/// An update, of either kind of message, whose tiles it shares.
-struct MapUpdate {
-  explicit MapUpdate(const ElevationUpdate::ConstPtr& message);
-  explicit MapUpdate(const LayerUpdate::ConstPtr& message);
-
-  std::string layer, frame;
-  ros::Time stamp;
-  std::uint64_t step;
-  double sim_time;
-  std::uint32_t keyframe, sequence;
-  std::shared_ptr<const std::vector<LayerTile>> tiles;
-
- private:
-  template <class Message>
-  MapUpdate(const Message& message, std::shared_ptr<const std::vector<LayerTile>> its_tiles);
-};
 
 class LayerMap {
  public:
@@ -116,7 +70,9 @@ class LayerMap {
 
   /// The map after an update, which must be valid for this map (see validation_error()).
   std::shared_ptr<const LayerMap> with_update(const MapUpdate& update) const;
-  std::shared_ptr<const LayerMap> with_update(const ElevationUpdate& update) const;
+  std::shared_ptr<const LayerMap> with_update(const ElevationUpdate& update) const {
+    return with_update(MapUpdate(update));
+  }
 
  private:
   static constexpr std::uint32_t block_side = 64;  ///< side of a block [cells]
@@ -146,20 +102,10 @@ class LayerMap {
 
   Info info_;
   std::shared_ptr<const std::vector<float>> keyframe_;  ///< its values
-  std::vector<std::shared_ptr<const Block>> blocks_;  ///< row-major; null if unchanged since the keyframe
+  std::vector<std::shared_ptr<const Block>> blocks_;    ///< row-major; null if unchanged since the keyframe
 };
 
 /// The map of the elevation.
 using ElevationMap = LayerMap;
-
-/// Why a keyframe is invalid, with the offending value; empty if it is valid.
-std::string validation_error(const ElevationGrid& keyframe);
-std::string validation_error(const LayerGrid& keyframe);
-/// Why an update is invalid for any map; empty if it is valid.
-std::string validation_error(const ElevationUpdate& update);
-std::string validation_error(const LayerUpdate& update);
-/// Why an update cannot be applied to this map; empty if it can.
-std::string validation_error(const MapUpdate& update, const MapInfo& map);
-std::string validation_error(const ElevationUpdate& update, const MapInfo& map);
 
 }  // namespace desert_sim

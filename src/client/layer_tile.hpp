@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels/view/elevation_step.hpp"
+#include "kernels/view/quantised_steps.hpp"
 
 namespace desert_sim {
 
@@ -24,7 +24,7 @@ inline bool mask_bit(const std::vector<std::uint8_t>& mask, std::size_t cell) {
 }
 
 /// Decodes tiles cell by cell, in the order of the tile. A tile must be valid: see validation_error() in
-/// elevation_map.hpp.
+/// layer_messages.hpp.
 class TileDecoder {
  public:
   /// Starts with the first cell of a tile, which must outlive the calls of apply_next().

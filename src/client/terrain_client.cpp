@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <initializer_list>
 
 #include "src/core/error.hpp"
 #include "src/terrain/map_layers.hpp"
@@ -34,8 +35,9 @@ TerrainClient::Options checked(TerrainClient::Options options) {
   if (options.elevation_topic.empty()) options.elevation_topic = options.node + "/elevation";
   if (options.updates_topic.empty()) options.updates_topic = options.node + "/elevation_updates";
   if (options.request_topic.empty()) options.request_topic = options.node + "/request_keyframe";
-  for (const std::string* name :
-       {&options.node, &options.elevation_topic, &options.updates_topic, &options.request_topic}) {
+  const std::string layers = options.node + "/layers";
+  for (const std::string* name : std::initializer_list<const std::string*>{
+           &options.elevation_topic, &options.updates_topic, &options.request_topic, &layers}) {
     std::string why;
     if (!ros::names::validate(*name, why))
       throw ConfigError("TerrainClient: '" + *name + "' is not a valid topic name: " + why);
@@ -85,6 +87,7 @@ TerrainClient::~TerrainClient() {
 const std::vector<std::string>& TerrainClient::known_layers() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
+    all.reserve(map_layers.size());
     for (const MapLayer& layer : map_layers) all.emplace_back(layer.name);
     return all;
   }();

@@ -38,7 +38,7 @@ Colour lit(const Colour& colour, float light);
 Colour wind_colour(float relative);
 
 /// Unknown ground in pictures.
-constexpr Colour unknown_colour{0.84f, 0.84f, 0.84f};
+constexpr Colour unknown_colour{215 / 255.0f, 215 / 255.0f, 215 / 255.0f};
 
 /// 0 up to `from`, 1 from `to` on, with a smooth curve between.
 float smooth_step(float from, float to, float value);

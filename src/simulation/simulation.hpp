@@ -79,12 +79,9 @@ class Simulation {
   PendingPlants begin_plants() { return views_.begin_plants(); }
   bool shows(Layer layer) const { return views_.shows(layer); }
   void release_requested_layers() { views_.release_requested_layers(); }
-  void hold_elevation() { views_.hold_elevation(); }
-  void forget_elevation() { views_.forget_elevation(); }
-  bool holds_elevation() const { return views_.holds_elevation(); }
-  Pending<ElevationChanges> begin_elevation_changes(double threshold, int tile) {
-    return views_.begin_elevation_changes(threshold, tile);
-  }
+  PendingChanges begin_changes(const HeldQueries& queries) { return views_.begin_changes(queries); }
+  void forget(Layer layer) { views_.forget(layer); }
+  bool holds(Layer layer) const { return views_.holds(layer); }
   PendingCosts begin_costs(const CostQuery& query) { return views_.begin_costs(query); }
   void forget_costs() { views_.forget_costs(); }
   Staging& staging() { return views_.staging(); }

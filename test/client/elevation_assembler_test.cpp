@@ -1,11 +1,10 @@
 /// What a client makes of a stream of keyframes and updates that is whole, reordered, torn or broken.
-#include "src/client/layer_assembler.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "client/messages.hpp"
+#include "src/client/layer_assembler.hpp"
 
 namespace {
 

@@ -10,8 +10,8 @@
 namespace client_test {
 
 using desert_sim::ElevationGrid;
-using desert_sim::LayerTile;
 using desert_sim::ElevationUpdate;
+using desert_sim::LayerTile;
 
 /// At second `step` of ROS time; cells of 2 m, corner at (10, -20).
 inline ElevationGrid keyframe(std::uint32_t number, std::uint32_t step, std::uint32_t width = 130,
@@ -43,7 +43,7 @@ inline ElevationGrid keyframe_of(const std::function<double(double, double)>& el
 }
 
 inline LayerTile tile(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height,
-                          float elevation) {
+                      float elevation) {
   LayerTile t;
   t.x = x;
   t.y = y;

@@ -24,7 +24,7 @@ TEST_F(Overlap, SnapshotsAndChangesAreThoseOfTheCpu) {
   for (const char* boundary : {"periodic", "open"}) {
     auto a = test::simulate(cpu(), test::grid_yaml(150, 131, boundary) + dunes);
     auto b = test::simulate(cuda(), test::grid_yaml(150, 131, boundary) + dunes);
-    for (Simulation* s : {a.get(), b.get()}) s->hold_elevation();
+    for (Simulation* s : {a.get(), b.get()}) test::hold(*s);
     for (int round = 0; round < 8; ++round) {
       const float threshold = round % 3 == 2 ? 0.0f : 0.003f * static_cast<float>(round + 1);
       for (Simulation* s : {a.get(), b.get()}) {
@@ -32,7 +32,7 @@ TEST_F(Overlap, SnapshotsAndChangesAreThoseOfTheCpu) {
         test::run(*s, 2);
       }
       const auto x = a->begin_snapshot(a->layers_in_use()), y = b->begin_snapshot(b->layers_in_use());
-      const auto c = a->begin_elevation_changes(threshold, 32), d = b->begin_elevation_changes(threshold, 32);
+      const auto c = test::begin_changes(*a, threshold, 32), d = test::begin_changes(*b, threshold, 32);
       test::run(*a, 1);
       test::run(*b, 1);
       EXPECT_TRUE(x.get()->layers == y.get()->layers) << "round " << round;
@@ -59,17 +59,42 @@ TEST_F(Overlap, SnapshotsAndChangesAreThoseOfTheCpu) {
   }
 }
 
+TEST_F(Overlap, ChangesOfLayersAreThoseOfTheCpu) {
+  auto a = test::simulate(cpu(), test::grid_yaml(150, 131, "open") + dunes);
+  auto b = test::simulate(cuda(), test::grid_yaml(150, 131, "open") + dunes);
+  HeldQueries queries;
+  for (Layer layer : {Layer::sand, Layer::bedrock, Layer::wind_x, Layer::wind_shadow, Layer::slope,
+                      Layer::traversability, Layer::water_surface, Layer::moisture})
+    queries[layer].hold = HeldQuery::Hold::present;
+  for (Simulation* s : {a.get(), b.get()}) EXPECT_TRUE(s->begin_changes(queries).empty());
+  std::map<Layer, std::size_t> tiles;
+  for (int round = 0; round < 6; ++round) {
+    for (auto& [layer, query] : queries)
+      query = {true, {0.002f * static_cast<float>(round), layer == Layer::traversability}, 32};
+    for (Simulation* s : {a.get(), b.get()}) test::run(*s, 2);
+    const PendingChanges x = a->begin_changes(queries), y = b->begin_changes(queries);
+    ASSERT_EQ(x.size(), queries.size());
+    for (const auto& [layer, pending] : x) {
+      SCOPED_TRACE(testing::Message() << info(layer).name << ", round " << round);
+      test::expect_same(y.at(layer).get()->tiles, pending.get()->tiles);
+      tiles[layer] += pending.get()->tiles.size();
+    }
+  }
+  for (Layer layer : {Layer::sand, Layer::wind_x, Layer::slope, Layer::traversability})
+    EXPECT_GT(tiles[layer], 10u) << info(layer).name;
+}
+
 /// Steps are replayed as CUDA graphs meanwhile.
 TEST_F(Overlap, LookingLeavesNoTraceInTheSimulation) {
   auto alone = test::simulate(cuda(), test::grid_yaml(200, 160, "periodic") + dunes);
   auto watched = test::simulate(cuda(), test::grid_yaml(200, 160, "periodic") + dunes);
-  watched->hold_elevation();
+  test::hold(*watched);
   std::vector<PendingSnapshot> pending;
   for (int n = 0; n < 60; ++n) {
     alone->step();
     watched->step();
     pending.push_back(watched->begin_snapshot({Layer::elevation, Layer::sand, Layer::wind_x}));
-    if (n % 3 == 0) watched->begin_elevation_changes(0.01, 32);  // and nobody waits for it
+    if (n % 3 == 0) test::begin_changes(*watched, 0.01f, 32);  // and nobody waits for it
     if (n == 30) watched->staging().release();
   }
   EXPECT_EQ(alone->state_hash(), watched->state_hash());
@@ -136,7 +161,7 @@ TEST_F(OverlapTime, AnUpdateOfAFewTilesTakesLessThanTheWholeSurface) {
   const auto s = large(cuda());
   for (int n = 0; n < 4; ++n) s->snapshot({Layer::elevation});
   const double whole = best_milliseconds([&] { s->snapshot({Layer::elevation}); });
-  s->hold_elevation();
+  test::hold(*s);
   std::size_t tiles = 0;
   int n = 0;
   const auto update = [&] {
@@ -147,7 +172,7 @@ TEST_F(OverlapTime, AnUpdateOfAFewTilesTakesLessThanTheWholeSurface) {
     edit.radius = 20;
     edit.value = 1;
     s->apply(edit);
-    tiles = s->begin_elevation_changes(0.01, 32).get()->tiles.size();
+    tiles = test::begin_changes(*s, 0.01f, 32).get()->tiles.size();
   };
   update();
   const double changed = best_milliseconds(update);

@@ -35,10 +35,17 @@ def table(first_column):
     for row in rows.group(1).splitlines():
         names, kind = row.split("|")[1:3]
         for name in re.findall("`(.+?)`", names):
-            name = name.replace("~", NODE + "/")
-            assert name not in found, "%s stands twice" % name
-            found[name] = kind.strip().strip("`")
+            for each in of_each_layer(name.replace("~", NODE + "/")):
+                assert each not in found, "%s stands twice" % each
+                found[each] = kind.strip().strip("`")
     return found
+
+
+def of_each_layer(name):
+    """All topics that `~layers/<name>` stands for."""
+    page = text_of("config", "node_parameters.md")
+    layers = re.findall(r"^\| `(\w+)` \| \S+ \| [\d.]+ \|", page[page.index("## Layers of maps"):], re.M)
+    return [name.replace("<name>", layer) for layer in layers] if "<name>" in name else [name]
 
 
 def is_plugins(name):
@@ -94,7 +101,7 @@ class Interface(unittest.TestCase):
         topics = page[page.index("## Topics"):page.index("## Layers of maps")]
         documented = {name: yaml.safe_load(default.strip("`"))
                       for name, default in re.findall(r"^\| `(\w+)` \| (.*?) \|", topics, re.M)}
-        for name, default in re.findall(r"`(\w+_layers)` \(default `(.*?)`\)", page):
+        for name, default in re.findall(r"`(\w+_(?:layers|thresholds))` \(default `(.*?)`\)", page):
             documented[name] = yaml.safe_load(default)
         self.assertEqual(documented, yaml.safe_load(text_of("config", "publishers.yaml")))
 

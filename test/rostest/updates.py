@@ -5,16 +5,17 @@ import time
 import numpy
 import rospy
 import rostest
-from desert_sim.msg import ElevationGrid, ElevationUpdate
+from desert_sim.msg import ElevationGrid, ElevationUpdate, LayerGrid, LayerUpdate
 from desert_sim.srv import EditTerrain, EditTerrainRequest, Step
 from map_client import Listener, MapTest, call
-from std_msgs.msg import Empty
+from std_msgs.msg import Empty, String
 
 THRESHOLD = 0.01
 
 
 def cells_of(keyframe):
-    return numpy.array(keyframe.elevation, numpy.float32).reshape(keyframe.height, keyframe.width)
+    values = keyframe.data if hasattr(keyframe, "layer") else keyframe.elevation
+    return numpy.array(values, numpy.float32).reshape(keyframe.height, keyframe.width)
 
 
 def write(update, held):
@@ -35,10 +36,17 @@ def write(update, held):
 
 
 class Updates(MapTest):
-    def test_python_puts_them_together(self):
+    def test_python_puts_those_of_the_elevation_together(self):
         asks = rospy.Publisher("/desert_sim/request_keyframe", Empty, queue_size=1)
-        with Listener("/desert_sim/elevation", ElevationGrid) as keyframes, \
-                Listener("/desert_sim/elevation_updates", ElevationUpdate) as updates:
+        self.expect_same("elevation", ElevationGrid, ElevationUpdate, asks.publish)
+
+    def test_python_puts_those_of_a_layer_together(self):
+        asks = rospy.Publisher("/desert_sim/layers/request_keyframe", String, queue_size=1)
+        self.expect_same("layers/sand_depth", LayerGrid, LayerUpdate, lambda: asks.publish("sand_depth"))
+
+    def expect_same(self, topic, grid, update_type, request_keyframe):
+        with Listener("/desert_sim/" + topic, grid) as keyframes, \
+                Listener("/desert_sim/" + topic + "_updates", update_type) as updates:
             keyframes.first()
             time.sleep(1)  # both are subscribed: the last keyframe is the one that updates build on
             base = keyframes.messages[-1]
@@ -56,7 +64,7 @@ class Updates(MapTest):
                 write(update, held)
             tiles = [tile for update in mine for tile in update.tiles]
             self.assertTrue(any(tile.changes for tile in tiles) and any(tile.data for tile in tiles), "both ways are used")
-            asks.publish()
+            request_keyframe()
             now = keyframes.wait_for(lambda k: k.keyframe > base.keyframe, "a keyframe, because it was asked for")
         self.assertEqual(now.step, step)
         self.assertLessEqual(abs(cells_of(now).astype(float) - held).max(), THRESHOLD + 1e-6)

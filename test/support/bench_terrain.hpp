@@ -20,7 +20,7 @@
 #include "kernels/soil/moisture.hpp"
 #include "kernels/soil/soil.hpp"
 #include "kernels/view/held_costs.hpp"
-#include "kernels/view/held_elevation.hpp"
+#include "kernels/view/held_layer.hpp"
 #include "kernels/view/layer_values.hpp"
 #include "kernels/water/hydraulic_erosion.hpp"
 #include "kernels/water/rain.hpp"

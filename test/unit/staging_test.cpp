@@ -4,6 +4,7 @@
 
 #include "src/core/error.hpp"
 #include "src/simulation/pipeline/memory.hpp"
+#include "support/held_terrain.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {
@@ -124,11 +125,11 @@ TEST_P(Staged, MemoryIsCountedAndGivenBack) {
   test::run(*s, 1);
   const std::size_t before = exec().bytes_held(), parts = total_bytes(s->memory());
   s->snapshot({Layer::sand});
-  s->hold_elevation();
+  test::hold(*s);
   EXPECT_EQ(exec().bytes_held(), before + 2 * 4 * 40 * 30) << "a slot and what is held";
   EXPECT_EQ(total_bytes(s->memory()), parts + 2 * 4 * 40 * 30);
   s->staging().release();
-  s->forget_elevation();
+  s->forget(Layer::elevation);
   EXPECT_EQ(exec().bytes_held(), before);
   EXPECT_EQ(total_bytes(s->memory()), parts);
 }

@@ -132,8 +132,10 @@ void Diagnostics::check_topics(Status& status) {
   const std::string failure = publisher_.failure();
   std::string slow;
   for (const TopicRate& topic : publisher_.rates()) {
-    status.addf(topic.name, "%.2f of %.2f Hz, %u subscribers", topic.achieved, topic.wanted,
-                topic.subscribers);
+    // The many topics of layers that nobody listens to would hide the others.
+    if (topic.subscribers > 0 || topic.name.find("/layers/") == std::string::npos)
+      status.addf(topic.name, "%.2f of %.2f Hz, %u subscribers", topic.achieved, topic.wanted,
+                  topic.subscribers);
     // A state that has not changed is not published again.
     const bool runs = report_ && report_->state == RunState::running && topic.subscribers > 0;
     const double expected = runs ? std::min(topic.wanted, report_->steps_per_second) : 0;

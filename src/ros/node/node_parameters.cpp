@@ -154,17 +154,30 @@ Scenario read_scenario(const std::string& source, const NodeParameters& node, co
 // ---- The page.
 
 void write_map_layers(std::ostream& out) {
-  const MapSetup defaults;
+  const PublisherSetup defaults;
   out << "\n## Layers of maps\n\n"
          "`grid_map_layers` (default `"
-      << yaml_list(defaults.grid_map_layers) << "`) and `local_map_layers` (default `"
-      << yaml_list(defaults.local_map_layers)
-      << "`) are lists of these; `~get_submap` and `~get_grid_map` know the same. A layer that nobody asks "
-         "for is "
-         "not computed; one that the terrain does not have is 0.\n\n| layer | unit | what |\n|---|---|---|\n";
+      << yaml_list(defaults.maps.grid_map_layers) << "`) and `local_map_layers` (default `"
+      << yaml_list(defaults.maps.local_map_layers)
+      << "`) are lists of these; `~get_submap` and `~get_grid_map` know the same. Each but the elevation, "
+         "which "
+         "has `~elevation`, is also a topic `~layers/<name>` with its `~layers/<name>_updates`. An update "
+         "has "
+         "the cells that changed by more than the threshold since what subscribers hold; `layer_thresholds` "
+         "(default `"
+      << yaml_map(defaults.layer_thresholds)
+      << "`) gives layers other thresholds: `{sand_depth: 0.01, wind_x: 0.1}`. A layer that nobody asks for "
+         "is "
+         "not computed; one that the terrain does not have is 0.\n\n"
+         "| layer | unit | threshold | what |\n|---|---|---|---|\n";
   for (const MapLayer& layer : map_layers) {
     const LayerInfo& about = info(layer.layer);
-    out << "| `" << layer.name << "` | " << about.unit << " | " << about.doc << " |\n";
+    out << "| `" << layer.name << "` | " << about.unit << " | ";
+    if (layer.layer == Layer::elevation)
+      out << "`update_threshold`";
+    else
+      out << layer.threshold;
+    out << " | " << about.doc << " |\n";
   }
 }
 

@@ -35,6 +35,7 @@ std::vector<std::string> texts(const NodeParameters& node) {
 std::vector<std::string> texts(const PublisherSetup& setup) {
   Texts texts;
   for_each_publisher_parameter(setup, texts);
+  texts.all.push_back("layer_thresholds=" + yaml_map(setup.layer_thresholds));
   texts.all.push_back("grid_map_layers=" + yaml_list(setup.maps.grid_map_layers));
   texts.all.push_back("local_map_layers=" + yaml_list(setup.maps.local_map_layers));
   return texts.all;
@@ -69,6 +70,7 @@ PublisherSetup with_differences(const PublisherSetup& before, const PublisherSet
                                 PublisherSetup present) {
   copy_differences(before.topics, now.topics, present.topics);
   copy_differences(before.maps.parameters, now.maps.parameters, present.maps.parameters);
+  if (before.layer_thresholds != now.layer_thresholds) present.layer_thresholds = now.layer_thresholds;
   if (yaml_list(before.maps.grid_map_layers) != yaml_list(now.maps.grid_map_layers))
     present.maps.grid_map_layers = now.maps.grid_map_layers;
   if (yaml_list(before.maps.local_map_layers) != yaml_list(now.maps.local_map_layers))

@@ -76,6 +76,8 @@ class SimulationThread {
   /// continues while the copy is under way: the thread that calls get() waits for it.
   std::future<TerrainState> terrain(const std::vector<Layer>& layers, const RowBand& band = {},
                                     const StateQuery& query = {});
+  /// Gives back what is kept of a layer for subscribers.
+  std::future<void> forget(Layer layer);
   std::future<TerrainToSave> terrain_to_save();
   /// The scenario with the present parameters and the present wind regime.
   std::future<Scenario> scenario();
@@ -122,13 +124,14 @@ class SimulationThread {
   struct PendingState {
     Moment moment;
     PendingSnapshot snapshot;
-    Pending<ElevationChanges> changes;
+    PendingChanges changes;
     PendingCosts costs;
     PendingPlants plants;
     TerrainState get() const;
   };
   PendingState begin_state_copy(const std::vector<Layer>& layers, const RowBand& band,
                                 const StateQuery& query);
+  void note_request(Layer layer);
   Moment moment();
   ReachedState reached(bool with_hash);
   std::uint64_t state_hash();

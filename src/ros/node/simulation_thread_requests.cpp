@@ -115,7 +115,7 @@ SimulationThread::PendingState SimulationThread::begin_state_copy(const std::vec
   wait_for_steps();  // the stamp must be that of the state that is copied
   std::vector<Layer> in_use;
   for (Layer layer : layers) {
-    if (info(layer).lifetime == Lifetime::on_request) layers_requested_ = steady_now();
+    note_request(layer);
     if (session_->simulation().shows(layer)) in_use.push_back(layer);
   }
   snapshot_requested_ = steady_now();
@@ -124,17 +124,23 @@ SimulationThread::PendingState SimulationThread::begin_state_copy(const std::vec
   PendingState state{moment(), s.begin_snapshot(in_use, band), {}, s.begin_costs(query.costs), {}};
   if (query.plants) state.plants = s.begin_plants();
   if (query.costs.update || query.costs.whole) costs_requested_ = steady_now();
-  if (query.elevation_changes && s.holds_elevation())
-    state.changes = s.begin_elevation_changes(query.elevation_threshold, query.elevation_tile);
-  const bool none = !s.holds_elevation();
-  if (query.hold == StateQuery::Hold::present || (query.hold == StateQuery::Hold::present_if_none && none))
-    s.hold_elevation();
-  if (query.hold == StateQuery::Hold::none) s.forget_elevation();
+  for (const auto& entry : query.held) note_request(entry.first);
+  state.changes = s.begin_changes(query.held);
   return state;
 }
 
+void SimulationThread::note_request(Layer layer) {
+  if (info(layer).lifetime == Lifetime::on_request) layers_requested_ = steady_now();
+}
+
 TerrainState SimulationThread::PendingState::get() const {
-  return {moment, snapshot.get(), changes.get(), costs.update.get(), costs.whole.get(), plants.get()};
+  TerrainState state{moment, snapshot.get(), {}, costs.update.get(), costs.whole.get(), plants.get()};
+  for (const auto& [layer, pending] : changes) state.changes[layer] = pending.get();
+  return state;
+}
+
+std::future<void> SimulationThread::forget(Layer layer) {
+  return submit<void>([this, layer] { session_->simulation().forget(layer); });
 }
 
 std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band,

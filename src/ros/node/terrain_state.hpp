@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,18 +24,10 @@ struct Moment {
   std::uint64_t terrain = 0;  ///< grows when the terrain is replaced: by a reset or a checkpoint
 };
 
-/// What is asked for besides layers. The simulation keeps what the subscribers of updates hold of the
-/// elevation and of costs, so that it can answer with what they lack.
+/// What is asked for besides layers. The simulation keeps what the subscribers of updates hold of layers and
+/// of costs, so that it can answer with what they lack.
 struct StateQuery {
-  /// Which elevation the simulation is to keep, after its answer, as the one that subscribers hold: the same
-  /// as before (with the changes of this answer), the present one, the present one if it keeps none, or none.
-  enum class Hold { as_before, present, present_if_none, none };
-
-  /// Whether the cells are asked for that differ from what subscribers hold by more than the threshold.
-  bool elevation_changes = false;
-  double elevation_threshold = 0;  ///< [m]
-  int elevation_tile = 1;          ///< largest width and height of a rectangle of changes [cells]
-  Hold hold = Hold::as_before;
+  HeldQueries held;
   CostQuery costs;
   bool plants = false;  ///< all plants, one by one
 };
@@ -43,9 +36,10 @@ struct StateQuery {
 struct TerrainState {
   Moment moment;
   std::shared_ptr<const Snapshot> snapshot;  ///< layers that are not in use are absent, and count as 0
-  // What follows is null unless it was asked for:
-  std::shared_ptr<const ElevationChanges> changes;  ///< also null if subscribers held no elevation
-  std::shared_ptr<const CostChanges> cost_update;   ///< also null if they held no costs: then see whole_costs
+  // What follows is empty or null unless it was asked for:
+  /// Of layers that subscribers held.
+  std::map<Layer, std::shared_ptr<const LayerChanges>> changes;
+  std::shared_ptr<const CostChanges> cost_update;  ///< also null if they held no costs: then see whole_costs
   std::shared_ptr<const CostChanges> whole_costs;
   std::shared_ptr<const PlantList> plants;
 };

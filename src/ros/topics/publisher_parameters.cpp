@@ -1,5 +1,8 @@
 #include "src/ros/topics/publisher_parameters.hpp"
 
+#include <sstream>
+
+#include "src/core/quoted.hpp"
 #include "src/ros/node/frames.hpp"
 
 namespace desert_sim {
@@ -23,6 +26,28 @@ void read_layers(const YAML::Node& node, const std::string& key, ValidationError
   }
 }
 
+/// Reads a map from names of layers to thresholds; a missing one leaves `thresholds`.
+void read_thresholds(const YAML::Node& node, ValidationErrors& errors, LayerThresholds& thresholds) {
+  const std::string key = "layer_thresholds";
+  if (!node.IsDefined()) return;
+  if (!node.IsMap())
+    return errors.add(key, yaml::node_text(node) + " where a map from layers to thresholds is expected");
+  thresholds.clear();
+  for (const auto& entry : node) {
+    const std::string name = entry.first.Scalar();
+    double threshold = -1;
+    if (name == "elevation")
+      errors.add(key + ".elevation", "has a parameter of its own: update_threshold");
+    else if (!find_map_layer(name))
+      errors.add(key, quoted(name) + " is not one of: " + map_layer_names());
+    else if (!YAML::convert<double>::decode(entry.second, threshold) ||
+             !(threshold >= 0 && threshold <= 1000))
+      errors.add(key + "." + name, yaml::node_text(entry.second) + " is not a number from 0 to 1000");
+    else
+      thresholds[name] = threshold;
+  }
+}
+
 void read_map_setup(const YAML::Node& root, ValidationErrors& errors, MapSetup& maps,
                     std::set<std::string>& known) {
   yaml::read_parameters(root, "", errors, maps.parameters, known);
@@ -36,9 +61,18 @@ void read_map_setup(const YAML::Node& root, ValidationErrors& errors, MapSetup& 
 
 }  // namespace
 
+std::string yaml_map(const LayerThresholds& thresholds) {
+  std::ostringstream text;
+  for (const auto& [name, threshold] : thresholds)
+    text << (text.tellp() > 0 ? ", " : "") << name << ": " << threshold;
+  return "{" + text.str() + "}";
+}
+
 void read_publisher_setup(const YAML::Node& root, ValidationErrors& errors, PublisherSetup& setup,
                           std::set<std::string>& known) {
   yaml::read_parameters(root, "", errors, setup.topics, known);
+  known.insert("layer_thresholds");
+  read_thresholds(root["layer_thresholds"], errors, setup.layer_thresholds);
   read_map_setup(root, errors, setup.maps, known);
   check_frame(setup.maps.parameters.robot_frame, "robot_frame", errors);
 }

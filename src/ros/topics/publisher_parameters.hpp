@@ -5,6 +5,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@ struct PublisherParameters {
   double update_rate = 10;
   double update_threshold = 0.005;
   int update_tile = 32;
+  double layer_keyframe_rate = 1;
+  double layer_update_rate = 10;
   double wind_rate = 2;
   int wind_decimation = 1;
   double wind_markers_rate = 2;
@@ -43,6 +46,9 @@ constexpr auto parameter_table(const PublisherParameters*) {
                 "Change of a cell, since what subscribers hold, that is sent; so far one may be off there."),
       parameter("update_tile", &P::update_tile, 1, 65536, "cells",
                 "Largest width of a rectangle of cells that is sent as one."),
+      parameter("layer_keyframe_rate", &P::layer_keyframe_rate, 0, 1000, "Hz",
+                "~layers/<name>, while a node takes keyframes of the layer but no updates."),
+      parameter("layer_update_rate", &P::layer_update_rate, 0, 1000, "Hz", "~layers/<name>_updates."),
       parameter("wind_rate", &P::wind_rate, 0, 1000, "Hz", "~wind."),
       parameter("wind_decimation", &P::wind_decimation, 1, 65536, "cells",
                 "Cells of the terrain in a row that are averaged into one of ~wind."),
@@ -114,9 +120,16 @@ struct MapSetup {
   std::vector<MapLayer> local_map_layers = map_layers_named({"elevation", "traversability"}, "");
 };
 
+/// By name, thresholds of layers that differ from those of map_layers, in the layer's unit.
+using LayerThresholds = std::map<std::string, double>;
+
+/// As in YAML: {sand_depth: 0.01, wind_x: 0.1}.
+std::string yaml_map(const LayerThresholds& thresholds);
+
 /// The parameters of all topics.
 struct PublisherSetup {
   PublisherParameters topics;
+  LayerThresholds layer_thresholds;
   MapSetup maps;
 };
 

@@ -50,7 +50,9 @@ void Topic::subscriber_left(const std::string& subscriber) {
   names_.remove(subscriber);
 }
 
-TopicRate Topic::measured_rate() const { return {name_, rate(), meter_.rate(steady_now()), subscribers()}; }
+TopicRate Topic::measured_rate() const {
+  return {name_, follows_rate() ? rate() : 0, meter_.rate(steady_now()), subscribers()};
+}
 
 // ---- On the publishing thread.
 

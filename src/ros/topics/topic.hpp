@@ -83,6 +83,10 @@ class Topic {
   virtual bool ready() { return true; }
   /// Whether it is published at its rate only after the state has changed.
   virtual bool only_after_change() const { return true; }
+  /// Whether its rate also serves nodes that learn all changes from its updates (see set_updates()).
+  virtual bool repeats_for_updated_nodes() const { return true; }
+  /// Gives back what the simulation keeps for subscribers. Called, perhaps often, while there are none.
+  virtual void release() {}
   /// Publishes the state. False if there was no message to send.
   virtual bool publish(const TerrainState& state) = 0;
 
@@ -105,6 +109,8 @@ class Topic {
   void drop_request() { requested_ = false; }
   /// Whether the state has changed since it was published here, and no updates tell all subscribers so.
   bool has_unpublished_change() const { return changed() && !is_covered(); }
+  /// Whether it is published at its rate.
+  bool follows_rate() const { return rate() > 0 && (repeats_for_updated_nodes() || !is_covered()); }
   /// Whether it must be published now: for a new subscriber, for another terrain, or at its rate.
   bool is_due() const { return due_immediately() || due_by_rate(); }
   TopicRate measured_rate() const;
@@ -141,7 +147,7 @@ class Topic {
   bool changed() const { return published_change_ != context_.simulation.changes(); }
   bool due_immediately() const { return requested_ || published_terrain_ != context_.simulation.terrains(); }
   bool due_by_rate() const {
-    return rate() > 0 && SteadyClock::now() >= due_ && (!only_after_change() || changed());
+    return follows_rate() && SteadyClock::now() >= due_ && (!only_after_change() || changed());
   }
   bool is_covered() const { return updates_ && names_.is_subset_of(updates_->names_); }
 

@@ -132,10 +132,11 @@ bool TopicPublisher::any_topic_is_due(SteadyClock::time_point& next, bool& liste
   for (const auto& topic : topics_) {
     if (!topic->has_subscribers()) {
       topic->drop_request();
+      topic->release();
       continue;
     }
     if (topic->is_due()) return true;
-    if (topic->rate() == 0) continue;
+    if (!topic->follows_rate()) continue;
     if (topic->due_time() > SteadyClock::now())
       next = std::min(next, topic->due_time());
     else

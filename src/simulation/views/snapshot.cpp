@@ -58,8 +58,7 @@ std::shared_ptr<Snapshot> Views::make_empty_snapshot(const std::vector<Layer>& l
 PendingSnapshot Views::begin_snapshot(const std::vector<Layer>& layers, const RowBand& band) {
   const RowBand rows = clamp_band(band, state_.terrain.grid());
   const std::shared_ptr<Snapshot> snapshot = make_empty_snapshot(layers, rows);
-  pipeline_.refresh_derived();
-  if (std::any_of(layers.begin(), layers.end(), on_request)) compute_requested_layers(layers, rows);
+  update_layers(layers, rows);
   auto readback = std::make_shared<Readback>();
   if (layers.empty()) return {snapshot, readback};
   const std::size_t row_bytes =
@@ -128,9 +127,17 @@ PendingPlants Views::begin_plants() {
   return {list, readback};
 }
 
-void Views::compute_requested_layers(const std::vector<Layer>& layers, const RowBand& rows) {
+void Views::update_layers(const std::vector<Layer>& layers, const RowBand& rows) {
+  pipeline_.refresh_derived();
+  std::vector<Layer> requested;
   for (Layer layer : layers)
-    if (on_request(layer)) state_.terrain.allocate(layer);
+    if (on_request(layer) && shows(layer)) requested.push_back(layer);
+  if (!requested.empty()) compute_requested_layers(requested, rows);
+}
+
+/// All of `layers` exist on request.
+void Views::compute_requested_layers(const std::vector<Layer>& layers, const RowBand& rows) {
+  for (Layer layer : layers) state_.terrain.allocate(layer);
   TerrainView view = state_.terrain.view();
   for (const LayerInfo& row : layer_table)
     if (on_request(row.layer) && std::count(layers.begin(), layers.end(), row.layer) == 0)
@@ -157,7 +164,9 @@ std::vector<MemoryPart> Views::memory() const {
   const auto add = [&parts](const char* name, std::size_t bytes) {
     if (bytes > 0) parts.push_back({name, bytes});
   };
-  add("elevation that subscribers hold", held_elevation_.bytes());
+  std::size_t held = 0;
+  for (const auto& entry : held_) held += entry.second.bytes();
+  add("layers that subscribers hold", held);
   add("costs that subscribers hold", costs_.bytes());
   add("staging memory", staging_.bytes());
   return parts;

@@ -1,14 +1,15 @@
 #pragma once
-/// What others see of a simulation: snapshots of layers, plants, and what subscribers lack of the elevation
+/// What others see of a simulation: snapshots of layers, plants, and what subscribers lack of layers
 /// and of the costs. Copies to the host go on beside the next steps.
 
+#include <map>
 #include <memory>
 #include <vector>
 
 #include "src/simulation/pipeline/pipeline.hpp"
 #include "src/simulation/state.hpp"
 #include "src/simulation/views/cost_changes.hpp"
-#include "src/simulation/views/elevation_changes.hpp"
+#include "src/simulation/views/layer_changes.hpp"
 #include "src/simulation/views/snapshot.hpp"
 
 namespace desert_sim {
@@ -30,14 +31,13 @@ class Views {
   /// Gives back the memory of layers that exist on request, until one is asked for again.
   void release_requested_layers();
 
-  /// Notes the present elevation as what subscribers hold, or that they hold none.
-  void hold_elevation();
-  void forget_elevation() { held_elevation_ = {}; }
-  bool holds_elevation() const { return static_cast<bool>(held_elevation_); }
-  /// Starts a copy of the cells whose elevation differs by more than `threshold` [m] from what is held, which
-  /// then is held: whoever drops the answer lacks them from then on. `tile`: cells on a side of a tile.
-  /// Throws StateError if nothing is held.
-  Pending<ElevationChanges> begin_elevation_changes(double threshold, int tile);
+  /// Starts copies of the cells of layers that changed since what subscribers hold, which then is held:
+  /// whoever drops the answer lacks them from then on. Layers are brought up to date and computed as for a
+  /// snapshot. The answer has no entry for a layer of which nothing is held.
+  PendingChanges begin_changes(const HeldQueries& queries);
+  /// Gives back the memory of what subscribers hold of a layer.
+  void forget(Layer layer) { held_.erase(layer); }
+  bool holds(Layer layer) const { return held_.count(layer) > 0; }
 
   /// Starts a copy of what subscribers lack of the costs of the terrain, for the rover of the scenario's
   /// section `traversability`; it is held then: whoever drops the answer lacks it from then on.
@@ -51,17 +51,22 @@ class Views {
  private:
   /// A snapshot whose layers are there and empty.
   std::shared_ptr<Snapshot> make_empty_snapshot(const std::vector<Layer>& layers, const RowBand& rows) const;
-  /// Computes those of `layers` that exist on request, in a band that lies on the terrain.
+  /// Brings layers that others see up to date: those that steps derive, and those of `layers` that exist on
+  /// request, in a band that lies on the terrain.
+  void update_layers(const std::vector<Layer>& layers, const RowBand& rows);
   void compute_requested_layers(const std::vector<Layer>& layers, const RowBand& rows);
   /// Starts the copy of some rows of the snapshot's layers, which are appended to what it has.
   void send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowBand& rows,
                  const std::shared_ptr<Readback>& readback);
 
+  void hold(Layer layer);
+  Pending<LayerChanges> send_changes(Layer layer, const HeldQuery& query);
+
   SimulationState& state_;
   Pipeline& pipeline_;
   Staging staging_{state_.exec()};
-  Buffer<float> held_elevation_;  ///< [m]; empty while subscribers hold none
-  HeldCosts costs_;               ///< likewise
+  std::map<Layer, Buffer<float>> held_;  ///< what subscribers hold of layers, in the layer's unit
+  HeldCosts costs_;                      ///< empty while subscribers hold none
 };
 
 }  // namespace desert_sim

@@ -1,37 +1,38 @@
-/// Laws and functions of held_elevation.hpp; compiled once for each backend.
-#include "kernels/view/held_elevation.hpp"
+/// Laws and functions of held_layer.hpp; compiled once for each backend.
+#include "kernels/view/held_layer.hpp"
 
 #include <cstdint>
+#include <type_traits>
 
 #include "kernels/backend/loops.hpp"
 #include "kernels/field/math.hpp"
-#include "kernels/view/elevation_step.hpp"
 #include "kernels/view/layer_values_laws.hpp"
 #include "kernels/view/packed_tiles.hpp"
+#include "kernels/view/quantised_steps.hpp"
 
-namespace desert_sim::held_elevation {
+namespace desert_sim::held_layer {
 
 using packed_tiles::TileHeader;
 
 using packed_tiles::TileOfGrid;
 
-using layer_values::Surface;
-
+template <class Values>
 struct SetHeld {
   Grid grid;
-  Surface now;
+  Values now;
   float* held;
   DESERT_HD void operator()(int x, int y) const { held[grid.index(x, y)] = now(grid.index(x, y)); }
 };
 
-/// If a cell of a tile is off by more than the threshold, packs all such cells of the tile and updates what
-/// is held of them. They are packed as steps, whose error is within the threshold, or as elevations, where
-/// steps of eight bits would be too coarse.
+/// If a cell of a tile changed, packs all such cells of the tile and updates what is held of them. They are
+/// packed as steps, whose error is within the threshold, or as values, where steps of eight bits would be too
+/// coarse, and where a change is one from or to NaN or a special 0, which counts as infinitely large.
+template <class Values>
 struct PackChanges {
   Tiling tiles;
-  Surface now;
+  Values now;
   float* held;
-  float threshold;
+  Tolerance tolerance;
   char* pack;
 
   template <class Team>
@@ -41,7 +42,7 @@ struct PackChanges {
   /// less than the threshold, so that rounding does not exceed it.
   DESERT_HD bool step_is_fine_enough(int bits, float largest) const {
     const float step = largest / static_cast<float>(max_steps(bits));
-    return step > 0.0f && step <= 1.99f * threshold;
+    return step > 0.0f && step <= 1.99f * tolerance.threshold;
   }
 
   template <class Team>
@@ -49,8 +50,9 @@ struct PackChanges {
     const HeldTile tile{*this, {tiles, column, tiles.first_row + row_of_band}};
     // Floats that are not negative compare like their bits. This is minus the bits of the largest change.
     const int least = team.min_of(tile.width, tile.height, [tile](int x, int y) DESERT_INLINE {
-      const float change = fabsf(tile.change(tile.index(x, y)));
-      return change > tile.threshold ? -static_cast<int>(bits_of(change)) : 0;
+      const int i = tile.index(x, y);
+      const float size = tile.size_of_change(tile.held[i], tile.now(i));
+      return size > tile.tolerance.threshold ? -static_cast<int>(bits_of(size)) : 0;
     });
     if (least == 0) return;
     TileHeader head;
@@ -61,7 +63,7 @@ struct PackChanges {
     const std::size_t bytes = tile.cells() * (head.bits == 0 ? sizeof(float) : 1);
     char* const cells = packed_tiles::reserve_tile(team, pack, head, bytes);
     if (head.bits == 0)
-      write_elevations(team, tile, reinterpret_cast<float*>(cells));
+      write_values(team, tile, reinterpret_cast<float*>(cells));
     else
       write_steps(team, tile, head, reinterpret_cast<std::int8_t*>(cells));
   }
@@ -70,23 +72,34 @@ struct PackChanges {
   /// A tile and what its cells need, by value, so that the compiler knows that writing cells does not change
   /// it. The loops over it have no branches either, so that they vectorise.
   struct HeldTile : TileOfGrid {
-    Surface now;
+    Values now;
     float* held;
-    float threshold;
+    Tolerance tolerance;
 
     DESERT_HD HeldTile(const PackChanges& law, const TileOfGrid& tile)
-        : TileOfGrid(tile), now(law.now), held(law.held), threshold(law.threshold) {}
-    DESERT_HD float change(int i) const { return now(i) - held[i]; }
+        : TileOfGrid(tile), now(law.now), held(law.held), tolerance(law.tolerance) {}
+    /// How much a change counts; 0 from NaN to NaN.
+    DESERT_HD float size_of_change(float before, float after) const {
+      const float size = fabsf(after - before);
+      if constexpr (!Values::may_be_nan) return size;
+      const bool from_or_to_nan = (before == before) != (after == after);
+      const bool from_or_to_zero = tolerance.zero_is_special && (before == 0.0f) != (after == 0.0f);
+      if (from_or_to_nan || from_or_to_zero) return HUGE_VALF;
+      return size == size ? size : 0.0f;
+    }
+    DESERT_HD bool changed(float before, float after) const {
+      return size_of_change(before, after) > tolerance.threshold;
+    }
   };
 
   template <class Team>
-  DESERT_HD void write_elevations(const Team& team, const HeldTile& tile, float* to) const {
+  DESERT_HD void write_values(const Team& team, const HeldTile& tile, float* to) const {
     team.for_each(tile.width, tile.height, [tile, to](int x, int y) DESERT_INLINE {
       const int i = tile.index(x, y);
       const float before = tile.held[i], after = tile.now(i);
-      const bool changed = fabsf(after - before) > tile.threshold;
+      const bool changed = tile.changed(before, after);
       tile.held[i] = changed ? after : before;
-      to[y * tile.width + x] = changed ? after : float{unchanged_elevation};
+      to[y * tile.width + x] = changed ? after : float{unchanged_value};
     });
   }
 
@@ -97,31 +110,35 @@ struct PackChanges {
     const float resolution = head.resolution;
     team.for_each(tile.width, tile.height, [tile, most, resolution, to](int x, int y) DESERT_INLINE {
       const int i = tile.index(x, y);
-      const float before = tile.held[i], change = tile.change(i);
-      const bool changed = fabsf(change) > tile.threshold;
+      const float before = tile.held[i], after = tile.now(i);
+      const bool changed = tile.changed(before, after);
+      const float change = Values::may_be_nan && !changed ? 0.0f : after - before;
       const int steps = round_to_int(change / resolution), low = steps < -most ? -most : steps;
       const auto step = static_cast<std::int8_t>(low > most ? most : low);
-      const float after = apply_steps(before, step, resolution);
-      tile.held[i] = changed ? after : before;
+      tile.held[i] = changed ? apply_steps(before, step, resolution) : before;
       to[y * tile.width + x] = changed ? step : std::int8_t{unchanged_step};
     });
   }
 };
 
 template <class E>
-void set_held(E& exec, const TerrainView& t, const QuantaToMetres& metres, float* held) {
-  for_each_cell(exec, t.grid, SetHeld{t.grid, {surface::SolidHeight(t), metres}, held});
+void set_held(E& exec, const TerrainView& t, Layer layer, const QuantaToMetres& metres, float* held) {
+  layer_values::with_values(t, layer, metres, [&](const auto& now) {
+    for_each_cell(exec, t.grid, SetHeld<std::decay_t<decltype(now)>>{t.grid, now, held});
+  });
 }
 
 template <class E>
-void pack_changes(E& exec, const TerrainView& t, const QuantaToMetres& metres, const Tiling& tiles,
-                  float threshold, float* held, char* pack) {
+void pack_changes(E& exec, const TerrainView& t, Layer layer, const QuantaToMetres& metres,
+                  const Tiling& tiles, const Tolerance& tolerance, float* held, char* pack) {
   exec.set_zero(pack, sizeof(packed_tiles::PackHeader));
-  for_each_tile(exec, tiles, PackChanges{tiles, {surface::SolidHeight(t), metres}, held, threshold, pack});
+  layer_values::with_values(t, layer, metres, [&](const auto& now) {
+    for_each_tile(exec, tiles, PackChanges<std::decay_t<decltype(now)>>{tiles, now, held, tolerance, pack});
+  });
 }
 
-template void set_held(Backend&, const TerrainView&, const QuantaToMetres&, float*);
-template void pack_changes(Backend&, const TerrainView&, const QuantaToMetres&, const Tiling&, float, float*,
-                           char*);
+template void set_held(Backend&, const TerrainView&, Layer, const QuantaToMetres&, float*);
+template void pack_changes(Backend&, const TerrainView&, Layer, const QuantaToMetres&, const Tiling&,
+                           const Tolerance&, float*, char*);
 
-}  // namespace desert_sim::held_elevation
+}  // namespace desert_sim::held_layer

@@ -1,9 +1,9 @@
 #pragma once
-/// The tiles of ~elevation_updates.
+/// The tiles of ~elevation_updates and of the updates of layers.
 
 #include <desert_sim/LayerTile.h>
 
-#include "src/simulation/views/elevation_changes.hpp"
+#include "src/simulation/views/layer_changes.hpp"
 
 namespace desert_sim {
 

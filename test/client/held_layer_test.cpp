@@ -7,7 +7,7 @@
 
 #include "client/messages.hpp"
 #include "src/client/layer_map.hpp"
-#include "src/ros/topics/elevation_topic.hpp"
+#include "src/ros/topics/layer_tile_message.hpp"
 #include "src/ros/topics/topic.hpp"
 #include "support/held_terrain.hpp"
 
@@ -30,7 +30,7 @@ class Stream {
     terrain_.set(elevation);
     terrain_.hold();
     ElevationGrid grid = keyframe(1, 1, width, height);
-    grid.elevation = terrain_.elevation();
+    grid.elevation = terrain_.values();
     ElevationMap::Rectangle changed;
     map_ = std::make_shared<const ElevationMap>(boost::make_shared<ElevationGrid>(grid), nullptr, changed);
   }
@@ -41,7 +41,7 @@ class Stream {
     update.header.frame_id = "terrain";
     update.keyframe = 1;
     update.sequence = map_->info().sequence + 1;
-    for (const TileChange& change : terrain_.take(threshold_, tile_))
+    for (const TileChange& change : terrain_.take({threshold_}, tile_))
       update.tiles.push_back(tile_message(change));
     EXPECT_EQ(validation_error(update), "");
     EXPECT_EQ(validation_error(update, map_->info()), "");
@@ -51,7 +51,7 @@ class Stream {
   }
   /// How far the client is off.
   double largest_error() const {
-    const std::vector<float> client = map_->elevations(), now = terrain_.elevation();
+    const std::vector<float> client = map_->elevations(), now = terrain_.values();
     double largest = 0;
     for (std::size_t i = 0; i < now.size(); ++i)
       largest = std::max(largest, std::abs(static_cast<double>(client[i]) - now[i]));

@@ -1,12 +1,12 @@
 #pragma once
-/// Incremental updates of an elevation in quantised steps. Sender and receiver compute the same bits.
+/// Incremental updates of a value in quantised steps. Sender and receiver compute the same bits.
 
 #include "kernels/backend/macros.hpp"
 
 namespace desert_sim {
 
-/// New elevation [m] of a cell that held `held`, after `change` steps of `resolution` [m]; `change` is a
-/// whole number, −128 … 127.
+/// New value of a cell that held `held`, after `change` steps of `resolution`; `change` is a whole number,
+/// −128 … 127.
 DESERT_HD float apply_steps(float held, float change, float resolution) {
   return static_cast<float>(static_cast<double>(held) +
                             static_cast<double>(change) * static_cast<double>(resolution));
