@@ -165,13 +165,13 @@ TEST_F(TerrainDisplay, Complaint5ASmallUpdateBuildsOnlyItsBlocks) {
   rviz::Display* const display = show(node, "/small", 512);
   window_->run(0.3);
   const double before = number(display, "built_blocks");
-  node.update(90, 90, 16, 16, [](int, int) { return 20.0f; });
+  node.update(90, 90, 16, 16, [](int x, int y) { return dunes(x, y) + 0.5f; });
   EXPECT_TRUE(window_->run_until([&] { return number(display, "built_blocks") > before; }));
   window_->run(0.3);
   EXPECT_EQ(number(display, "built_blocks"), before + 1);
   // The same elevations in a new keyframe.
   node.keyframe(512, 512,
-                [](int x, int y) { return x >= 90 && x < 106 && y >= 90 && y < 106 ? 20.0f : dunes(x, y); });
+                [](int x, int y) { return x >= 90 && x < 106 && y >= 90 && y < 106 ? dunes(x, y) + 0.5f : dunes(x, y); });
   window_->run(1);
   EXPECT_EQ(number(display, "built_blocks"), before + 1);
 }
