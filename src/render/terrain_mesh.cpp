@@ -37,13 +37,12 @@ class BlockBuilder {
     if (mesh_.empty()) return std::move(mesh_);
     const std::size_t last_column = columns_.size() - 1, last_row = rows_.size() - 1;
     // Along each edge in the direction that has the block on its left.
-    if (neighbours.south)
-      add_skirt(columns_.size(), [](std::size_t n) { return std::pair(n, std::size_t{0}); });
-    if (neighbours.east) add_skirt(rows_.size(), [&](std::size_t n) { return std::pair(last_column, n); });
+    if (neighbours.south) add_skirt(true, [](std::size_t n) { return std::pair(n, std::size_t{0}); });
+    if (neighbours.east) add_skirt(false, [&](std::size_t n) { return std::pair(last_column, n); });
     if (neighbours.north)
-      add_skirt(columns_.size(), [&](std::size_t n) { return std::pair(last_column - n, last_row); });
+      add_skirt(true, [&](std::size_t n) { return std::pair(last_column - n, last_row); });
     if (neighbours.west)
-      add_skirt(rows_.size(), [&](std::size_t n) { return std::pair(std::size_t{0}, last_row - n); });
+      add_skirt(false, [&](std::size_t n) { return std::pair(std::size_t{0}, last_row - n); });
     return std::move(mesh_);
   }
 
@@ -99,13 +98,10 @@ class BlockBuilder {
       }
   }
 
-  /// `at(n)` is the column and row of the n-th of `count` vertices along an edge.
+  /// `at(n)` is the column and row of the n-th vertex along an edge.
   template <class At>
-  void add_skirt(std::size_t count, const At& at) {
-    const auto [first_column, first_row] = at(0);
-    const auto [last_column, last_row] = at(count - 1);
-    const float bottom =
-        lowest(columns_[first_column], rows_[first_row], columns_[last_column], rows_[last_row]);
+  void add_skirt(bool along_x, const At& at) {
+    const std::size_t count = along_x ? columns_.size() : rows_.size();
     std::uint32_t top_before = no_vertex, bottom_before = no_vertex;
     for (std::size_t n = 0; n < count; ++n) {
       const auto [column, row] = at(n);
@@ -114,7 +110,7 @@ class BlockBuilder {
       if (top != no_vertex) {
         below = static_cast<std::uint32_t>(mesh_.vertices.size());
         mesh_.vertices.push_back(mesh_.vertices[top]);
-        mesh_.vertices.back().z = bottom;
+        mesh_.vertices.back().z = lowest_near(columns_[column], rows_[row], along_x);
       }
       if (top != no_vertex && top_before != no_vertex) {
         add_triangle(bottom_before, below, top);
@@ -125,11 +121,18 @@ class BlockBuilder {
     }
   }
 
-  /// The lowest known cell of a row or column of cells, both ends included.
-  float lowest(int x0, int y0, int x1, int y1) const {
+  /// The lowest known cell of the block's edge in the quads of the coarsest level that have this cell.
+  /// Vertices of all levels lie on the ends of these, so that what any level draws of the edge there is no
+  /// lower.
+  float lowest_near(int x, int y, bool along_x) const {
+    constexpr int longest = 1 << BlockLayout::max_level;
+    const int begin = along_x ? cells_.x : cells_.y, end = (along_x ? cells_.right() : cells_.top()) - 1;
+    const int place = (along_x ? x : y) - begin;
+    const int first = begin + std::max(0, (place - 1) / longest * longest);
+    const int last = std::min(end, begin + (place / longest + 1) * longest);
     float z = std::numeric_limits<float>::infinity();
-    for (int y = std::min(y0, y1); y <= std::max(y0, y1); ++y)
-      for (int x = std::min(x0, x1); x <= std::max(x0, x1); ++x) z = std::fmin(z, surface_.at(x, y));
+    for (int cell = first; cell <= last; ++cell)
+      z = std::fmin(z, along_x ? surface_.at(cell, y) : surface_.at(x, cell));
     return z;
   }
 

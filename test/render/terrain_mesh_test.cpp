@@ -63,6 +63,14 @@ TEST(TerrainMesh, SkirtsCoverTheCracksBetweenLevels) {
     }
 }
 
+TEST(TerrainMesh, SkirtsAreNoDeeperThanTheGroundNearby) {
+  const BlockLayout layout(200, 130);
+  const auto valley = [](int, int y) { return y < 10 ? -100.0f : 0.0f; };
+  const Edge west(block_of(layout, 0, 0, valley), 64.5f);
+  EXPECT_EQ(west.bottom_at(20.5f), -100);
+  EXPECT_EQ(west.bottom_at(40.5f), 0);
+}
+
 TEST(TerrainMesh, TheOuterEdgeHasNoSkirt) {
   const BlockLayout layout(65, 65);
   ASSERT_EQ(layout.count(), 1);

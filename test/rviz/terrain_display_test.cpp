@@ -170,8 +170,9 @@ TEST_F(TerrainDisplay, Complaint5ASmallUpdateBuildsOnlyItsBlocks) {
   window_->run(0.3);
   EXPECT_EQ(number(display, "built_blocks"), before + 1);
   // The same elevations in a new keyframe.
-  node.keyframe(512, 512,
-                [](int x, int y) { return x >= 90 && x < 106 && y >= 90 && y < 106 ? dunes(x, y) + 0.5f : dunes(x, y); });
+  node.keyframe(512, 512, [](int x, int y) {
+    return x >= 90 && x < 106 && y >= 90 && y < 106 ? dunes(x, y) + 0.5f : dunes(x, y);
+  });
   window_->run(1);
   EXPECT_EQ(number(display, "built_blocks"), before + 1);
 }
