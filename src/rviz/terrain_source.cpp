@@ -1,6 +1,7 @@
 #include "src/rviz/terrain_source.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <iterator>
 
@@ -15,14 +16,13 @@ std::vector<float> values(const LayerMap& map, const CellRectangle& r) {
                      static_cast<std::uint32_t>(r.width), static_cast<std::uint32_t>(r.height)});
 }
 
-/// The smallest rectangle of these cells that has all differences between two maps, compared bit by bit, so
-/// that NaN equals NaN.
+/// The smallest rectangle of these cells that has all differences between two maps; NaN equals NaN.
 CellRectangle difference(const LayerMap& a, const LayerMap& b, const CellRectangle& cells) {
   const std::vector<float> before = values(a, cells), after = values(b, cells);
   const auto same = [&](int x, int y) {
     const auto n =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(cells.width) + static_cast<std::size_t>(x);
-    return std::memcmp(&before[n], &after[n], sizeof(float)) == 0;
+    return before[n] == after[n] || (std::isnan(before[n]) && std::isnan(after[n]));
   };
   CellRectangle changed;
   if (std::memcmp(before.data(), after.data(), before.size() * sizeof(float)) == 0) return changed;

@@ -7,6 +7,7 @@
 #include <ros/ros.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -37,7 +38,7 @@ double number(rviz::Display* display, const char* name) { return display->proper
 void measure_updates(Window& window, rviz::Display* display, MadeUpNode& node, int side, int part,
                      double seconds) {
   Figures all, with_update;
-  bool stop = false;
+  std::atomic<bool> stop{false};
   std::thread sender([&] {
     for (int n = 0; !stop; ++n) {
       const int range = std::max(1, side - part);
