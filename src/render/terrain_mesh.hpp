@@ -4,9 +4,9 @@
 /// corner of the grid, where floating-point numbers are fine enough.
 ///
 /// Between blocks of different levels there would be cracks, because the finer one has vertices on the common
-/// edge that the coarser one leaves out. Each block has skirts there: vertical strips from the edge down to its
-/// lowest cell nearby. On both sides the drawn edge lies between the lowest and the highest cell there, so that
-/// what is between the two is covered by the skirt of the one that is higher.
+/// edge that the coarser one leaves out. Each block has skirts there: vertical strips from the edge down to
+/// its lowest cell nearby. On both sides the drawn edge lies between the lowest and the highest cell there,
+/// so that what is between the two is covered by the skirt of the one that is higher.
 
 #include <functional>
 
