@@ -1,6 +1,6 @@
-# Parts that a build may lack: CUDA, IO (GDAL, OpenCV), ROS. Each has DESERT_WITH_<part> = AUTO (there if its needs
+# Parts that a build may lack: CUDA, IO (GDAL, OpenCV), ROS, RVIZ (plugins). Each has DESERT_WITH_<part> = AUTO (there if its needs
 # are, looked for anew by each configuration), ON (an error without them) or OFF.
-foreach(part IN ITEMS CUDA IO ROS)
+foreach(part IN ITEMS CUDA IO ROS RVIZ)
   set(DESERT_WITH_${part} AUTO CACHE STRING "AUTO, ON or OFF")
   set_property(CACHE DESERT_WITH_${part} PROPERTY STRINGS AUTO ON OFF)
 endforeach()

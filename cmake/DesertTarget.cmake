@@ -129,7 +129,7 @@ endfunction()
 
 # One line: what this build has, and why it lacks the rest; another one for tests that need more than is here.
 function(desert_summary)
-  foreach(part IN ITEMS CUDA IO ROS)
+  foreach(part IN ITEMS CUDA IO ROS RVIZ)
     if(DESERT_WITH_${part})
       list(APPEND parts "${part} on (${DESERT_${part}_ABOUT})")
     else()

@@ -191,6 +191,17 @@ bool TerrainClient::connected() const {
   return std::all_of(all.begin(), all.end(), [](const auto& stream) { return stream->connected(); });
 }
 
+bool TerrainClient::connected(const std::string& layer) const {
+  check_layer(layer);
+  std::shared_ptr<LayerStream> stream;
+  {
+    const std::lock_guard<std::mutex> lock(context_.mutex);
+    const auto found = streams_.find(layer);
+    if (found != streams_.end()) stream = found->second;
+  }
+  return stream && stream->connected();
+}
+
 bool TerrainClient::wait_for_terrain(double timeout) const {
   return wait([](const LayerStream& stream) { return stream.map() != nullptr; }, timeout);
 }

@@ -103,6 +103,8 @@ class TerrainClient {
   bool up_to_date(const std::string& layer) const;
   /// Whether keyframes of all of them have a publisher.
   bool connected() const;
+  /// Whether keyframes of this one have a publisher; false if it is not subscribed to.
+  bool connected(const std::string& layer) const;
   /// Waits until each layer that is subscribed to has a map, at most `timeout` seconds of wall time. False if
   /// one has none by then, or if ROS shuts down. Messages must be processed by another thread meanwhile.
   bool wait_for_terrain(double timeout) const;

@@ -12,6 +12,7 @@
 
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/render/terrain_colours.hpp"
 
 namespace desert_sim {
 namespace {
@@ -20,8 +21,8 @@ constexpr int kMinLongSide = 512, kMaxLongSide = 2048;  // long side of a hillsh
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 using Colour = cv::Vec3f;  // B, G, R in 0..255, OpenCV's order
 
-const Colour kRock{100, 112, 124}, kSoil{58, 82, 108}, kSand{118, 180, 218}, kVegetation{52, 122, 70},
-    kObstacle{88, 30, 64}, kShallow{205, 165, 95}, kDeep{120, 55, 20}, kUnknownGround{215, 215, 215};
+/// A colour of the renderer in OpenCV's order.
+Colour to_bgr(const render::Colour& c) { return Colour(c.b, c.g, c.r) * 255.0F; }
 
 void check_input(int width, int height, double cell_size, const char* missing) {
   std::ostringstream text;
@@ -161,11 +162,6 @@ float value_at(const cv::Mat& layer, int row, int column) {
   return layer.empty() ? 0.0F : layer.at<float>(row, column);
 }
 
-float smooth_step(float from, float to, float value) {
-  const float t = std::clamp((value - from) / (to - from), 0.0F, 1.0F);
-  return t * t * (3 - 2 * t);
-}
-
 Colour mix(const Colour& a, const Colour& b, float share) { return a * (1 - share) + b * share; }
 
 /// The colour multiplied by `shade`. Where that exceeds the largest channel value, white is mixed in instead,
@@ -180,25 +176,24 @@ struct Materials {
   cv::Mat sand, vegetation, plants, obstacle, water, soil, wind_shadow;  // empty if not in use
   const std::vector<std::array<float, 3>>& crown_colours;
 
-  Colour plant_colour(int row, int column) const {
-    const auto species = static_cast<std::size_t>(value_at(plants, row, column));
-    if (species == 0 || species > crown_colours.size()) return kVegetation;
-    const auto& [r, g, b] = crown_colours[species - 1];
-    return Colour(b, g, r) * 255.0F;
-  }
-
   /// Colour of the ground lit with `shade`, and of the water on it.
   Colour colour(int row, int column, float shade) const {
-    Colour ground = mix(kRock, kSoil, smooth_step(0.02F, 0.12F, value_at(soil, row, column)));
-    ground = mix(ground, kSand, smooth_step(0.02F, 0.12F, value_at(sand, row, column)));
-    ground = mix(ground, plant_colour(row, column),
-                 0.9F * smooth_step(0, 0.8F, value_at(vegetation, row, column)));
-    ground = mix(ground, kObstacle, smooth_step(0.25F, 0.75F, value_at(obstacle, row, column)));
+    render::SurfaceMaterials m;
+    m.sand = value_at(sand, row, column);
+    m.soil = value_at(soil, row, column);
+    m.vegetation = value_at(vegetation, row, column);
+    m.obstacle = value_at(obstacle, row, column);
+    const auto species = static_cast<std::size_t>(value_at(plants, row, column));
+    if (species > 0 && species <= crown_colours.size()) {
+      const auto& [r, g, b] = crown_colours[species - 1];
+      m.plants = {r, g, b};
+    }
+    Colour ground = to_bgr(ground_colour(m));
     ground = apply_shading(ground,
                            shade * (1 - 0.12F * std::clamp(value_at(wind_shadow, row, column), 0.0F, 1.0F)));
     const float depth = std::max(value_at(water, row, column), 0.0F);
-    const Colour water_colour = mix(kShallow, kDeep, 1 - std::exp(-depth / 2)) * (0.75F + 0.25F * shade);
-    return mix(ground, water_colour, 0.92F * smooth_step(0.001F, 0.2F, depth));
+    const Colour water_colour = to_bgr(render::water_colour(depth)) * (0.75F + 0.25F * shade);
+    return mix(ground, water_colour, render::water_opacity(depth));
   }
 };
 
@@ -260,7 +255,8 @@ void shade_lightly(cv::Mat& picture, const cv::Mat& elevation, double pixel_size
     for (int column = 0; column < picture.cols; ++column) {
       auto& pixel = picture.at<cv::Vec3b>(row, column);
       const bool known = !std::isnan(elevation.at<float>(row, column));
-      pixel = known ? Colour(pixel) * (0.55F + 0.45F * shade.at<float>(row, column)) : kUnknownGround;
+      pixel = known ? Colour(pixel) * (0.55F + 0.45F * shade.at<float>(row, column))
+                    : to_bgr(render::unknown_colour);
     }
 }
 
@@ -290,7 +286,7 @@ cv::Mat hillshade_picture(const PictureInput& input) {
   for (int row = 0; row < picture.rows; ++row)
     for (int column = 0; column < picture.cols; ++column) {
       const float z = elevation.at<float>(row, column);
-      Colour colour = kUnknownGround;
+      Colour colour = to_bgr(render::unknown_colour);
       if (!std::isnan(z)) {
         const float tint =
             highest > lowest ? static_cast<float>(0.16 * ((z - lowest) / (highest - lowest) - 0.5)) : 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "src/render/colour.hpp"
 #include "src/scenario/presets.hpp"
 #include "src/scenario/scenario.hpp"
 #include "src/scenario/yaml_parameters.hpp"
@@ -85,13 +86,8 @@ Species species_preset(const std::string& name) {
 }
 
 std::array<float, 3> crown_colour(const SpeciesAppearance& appearance) {
-  constexpr float dull = 0.13f, bright = 0.52f;
-  const auto channel = [&](float peak) {
-    // The channel is bright within 60 degrees of its own hue and dull beyond 120 degrees.
-    const float away = std::abs(std::remainder(appearance.hue - peak, 360.0f));
-    return dull + (bright - dull) * std::clamp(2.0f - away / 60.0f, 0.0f, 1.0f);
-  };
-  return {channel(0), channel(120), channel(240)};
+  const render::Colour colour = render::crown_colour(appearance.hue);
+  return {colour.r, colour.g, colour.b};
 }
 
 void read_species(const YAML::Node& root, ValidationErrors& errors, Scenario& s) {

@@ -7,8 +7,8 @@
 #include <array>
 #include <boost/make_shared.hpp>
 #include <cmath>
-#include <numeric>
 
+#include "src/render/plant_shapes.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/topics/topic_list.hpp"
 
@@ -19,74 +19,27 @@ namespace {
 using plants::PlantRecord;
 using visualization_msgs::Marker;
 
-/// The indices of the `count` widest plants, in ascending order; among plants of equal width the first ones
-/// count.
-std::vector<std::size_t> widest_plants(const std::vector<PlantRecord>& plants, std::size_t count) {
-  std::vector<std::size_t> numbers(plants.size());
-  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
-  if (count >= numbers.size()) return numbers;
-  const auto wider = [&](std::size_t a, std::size_t b) {
-    return plants[a].radius != plants[b].radius ? plants[a].radius > plants[b].radius : a < b;
-  };
-  std::nth_element(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(count), numbers.end(),
-                   wider);
-  numbers.resize(count);
-  std::sort(numbers.begin(), numbers.end());
-  return numbers;
+std::vector<std::size_t> widest_plants(const std::vector<PlantRecord>& plants, int count) {
+  std::vector<float> radii;
+  radii.reserve(plants.size());
+  for (const PlantRecord& plant : plants) radii.push_back(plant.radius);
+  return render::widest_plants(radii, static_cast<std::size_t>(count));
 }
 
-geometry_msgs::Point point(double x, double y, double z) {
-  geometry_msgs::Point p;
-  p.x = x;
-  p.y = y;
-  p.z = z;
-  return p;
+/// Adds the triangles of a plant to a marker.
+void draw(const PlantRecord& plant, const PlantList& list, bool detailed, Marker& marker) {
+  std::vector<render::Point> corners;
+  render::add_plant({list.origin_x + plant.x, list.origin_y + plant.y, plant.z, plant.radius,
+                     list.species[plant.species].traits.stem, plant.health / 255.0},
+                    detailed, corners);
+  for (const render::Point& corner : corners) {
+    geometry_msgs::Point p;
+    p.x = corner.x;
+    p.y = corner.y;
+    p.z = corner.z;
+    marker.points.push_back(p);
+  }
 }
-
-/// Adds triangles to a marker. The corners of a triangle run counter-clockwise as seen from outside.
-class Mesh {
- public:
-  explicit Mesh(std::vector<geometry_msgs::Point>& corners) : corners_(corners) {}
-
-  /// A cone of `sides` triangles: from a ring around (x, y) at height `ring_z` up, or down, to its tip.
-  void cone(int sides, double x, double y, double ring_z, double radius, double tip_z) {
-    const geometry_msgs::Point tip = point(x, y, tip_z);
-    for (int n = 0; n < sides; ++n) {
-      const geometry_msgs::Point a = ring_corner(sides, n, x, y, ring_z, radius),
-                                 b = ring_corner(sides, n + 1, x, y, ring_z, radius);
-      const bool up = tip_z > ring_z;
-      for (const geometry_msgs::Point& corner : {up ? a : b, up ? b : a, tip}) corners_.push_back(corner);
-    }
-  }
-
- private:
-  static geometry_msgs::Point ring_corner(int sides, int n, double x, double y, double z, double radius) {
-    const double angle = 2 * 3.14159265358979 * n / sides;
-    return point(x + radius * std::cos(angle), y + radius * std::sin(angle), z);
-  }
-  std::vector<geometry_msgs::Point>& corners_;
-};
-
-/// A plant in the terrain's frame [m]. In bad health it is drawn lower.
-struct PlantShape {
-  double x, y, foot, top, radius;
-
-  PlantShape(const PlantRecord& plant, const PlantList& list)
-      : x(list.origin_x + plant.x), y(list.origin_y + plant.y), foot(plant.z), radius(plant.radius) {
-    const double health = plant.health / 255.0, stem = list.species[plant.species].traits.stem;
-    top = foot + radius * stem * (0.5 + 0.5 * health);
-  }
-  double height_at(double share) const { return foot + share * (top - foot); }
-
-  /// A trunk, and a crown of two cones with six sides.
-  void draw_detailed(Mesh mesh) const {
-    mesh.cone(3, x, y, foot, 0.12 * radius, height_at(0.7));
-    mesh.cone(6, x, y, height_at(0.55), 0.9 * radius, top);
-    mesh.cone(6, x, y, height_at(0.55), 0.9 * radius, height_at(0.3));
-  }
-  /// A pyramid.
-  void draw_simple(Mesh mesh) const { mesh.cone(4, x, y, foot, 0.8 * radius, top); }
-};
 
 Marker base_marker(const TerrainState& state, const std::string& frame, const std::string& species, int id) {
   Marker m;
@@ -132,7 +85,7 @@ PlantsPtr plants_message(const TerrainState& state, const std::string& frame, in
     message->species.push_back(row);
   }
   message->total = list.plants.size();
-  const std::vector<std::size_t> numbers = widest_plants(list.plants, static_cast<std::size_t>(count));
+  const std::vector<std::size_t> numbers = widest_plants(list.plants, count);
   for (auto* column : {&message->x, &message->y, &message->z, &message->radius})
     column->reserve(numbers.size());
   for (auto* column : {&message->species_index, &message->health}) column->reserve(numbers.size());
@@ -197,15 +150,12 @@ visualization_msgs::MarkerArrayPtr PlantMarkersTopic::markers(const TerrainState
         {base_marker(state, frame(), species.name, 0), base_marker(state, frame(), species.name, 1)});
     for (Marker& marker : levels.back()) marker.color = crown_colour_of(species);
   }
-  const std::vector<std::size_t> drawn = widest_plants(list.plants, static_cast<std::size_t>(count)),
-                                 full =
-                                     widest_plants(list.plants, (static_cast<std::size_t>(count) + 9) / 10);
+  const std::vector<std::size_t> drawn = widest_plants(list.plants, count),
+                                 full = widest_plants(list.plants, (count + 9) / 10);
   for (std::size_t n : drawn) {
     const PlantRecord& plant = list.plants[n];
     const bool detailed = std::binary_search(full.begin(), full.end(), n);
-    Mesh mesh(levels[plant.species][detailed ? 0 : 1].points);
-    const PlantShape shape(plant, list);
-    detailed ? shape.draw_detailed(mesh) : shape.draw_simple(mesh);
+    draw(plant, list, detailed, levels[plant.species][detailed ? 0 : 1]);
   }
   for (auto& of_species : levels)
     for (Marker& marker : of_species) {

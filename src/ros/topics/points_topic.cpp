@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "src/render/terrain_colours.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/conversion/surface_colour.hpp"
 #include "src/ros/topics/topic_list.hpp"
@@ -53,7 +54,7 @@ void fill_cloud(sensor_msgs::PointCloud2& cloud, int columns, int rows, const st
   if (!points.empty()) std::memcpy(cloud.data.data(), points.data(), cloud.data.size());
 }
 
-std::uint32_t packed_rgb(const Colour& c) {
+std::uint32_t packed_rgb(const render::Colour& c) {
   const auto byte = [](float v) { return static_cast<std::uint32_t>(std::lround(255.0f * v)); };
   return byte(c.r) << 16 | byte(c.g) << 8 | byte(c.b);
 }
@@ -89,7 +90,8 @@ struct Sampling {
   }
 };
 
-Point point_at(const Snapshot& s, int x, int y, double z, const Colour& colour, float fifth, float sixth) {
+Point point_at(const Snapshot& s, int x, int y, double z, const render::Colour& colour, float fifth,
+               float sixth) {
   return {static_cast<float>(s.origin_x + (x + 0.5) * s.cell_size),
           static_cast<float>(s.origin_y + (y + 0.5) * s.cell_size),
           static_cast<float>(z),
@@ -130,7 +132,7 @@ sensor_msgs::PointCloud2Ptr water_cloud(const TerrainState& state, const std::st
     Sampling(s, count).for_each(s, [&](int x, int y, std::size_t i) {
       const float depth = (*water)[i];
       if (depth <= min_depth) return;
-      points.push_back(point_at(s, x, y, elevation[i] + depth, water_colour(depth), depth,
+      points.push_back(point_at(s, x, y, elevation[i] + depth, render::water_colour(depth), depth,
                                 std::hypot(value(u, i), value(v, i))));
     });
   const auto cloud = empty_cloud(state, frame, "depth", "speed");

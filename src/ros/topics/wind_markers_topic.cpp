@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "src/render/terrain_colours.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/topics/topic_list.hpp"
 
@@ -18,18 +19,12 @@ namespace {
 
 using visualization_msgs::Marker;
 
-/// `relative`: the speed divided by that of the high-altitude wind.
 std_msgs::ColorRGBA speed_colour(double relative) {
-  // Blue up to half the high-altitude speed, near white at that speed, red from one and a half times on.
-  constexpr float stops[3][3] = {{0.10f, 0.25f, 0.85f}, {0.92f, 0.97f, 1.0f}, {0.95f, 0.15f, 0.10f}};
-  const double position = std::clamp(2 * (relative - 0.5), 0.0, 2.0);
-  const int n = position < 1 ? 0 : 1;
-  const float f = static_cast<float>(position - n);
-  const auto channel = [&](int c) { return stops[n][c] + f * (stops[n + 1][c] - stops[n][c]); };
+  const render::Colour c = render::wind_colour(static_cast<float>(relative));
   std_msgs::ColorRGBA colour;
-  colour.r = channel(0);
-  colour.g = channel(1);
-  colour.b = channel(2);
+  colour.r = c.r;
+  colour.g = c.g;
+  colour.b = c.b;
   colour.a = 1;
   return colour;
 }

@@ -1,0 +1,35 @@
+#pragma once
+/// All meshes of one block of terrain, from its layers and the way in which it is to look.
+
+#include <functional>
+#include <string>
+
+#include "src/render/overlay.hpp"
+#include "src/render/terrain_mesh.hpp"
+
+namespace desert_sim::render {
+
+/// The values of a layer in a rectangle of cells; an empty window if there is no such layer. Layers have the
+/// names of config/node_parameters.md, "Layers of maps".
+using LayerWindow = std::function<CellWindow(const std::string& layer, const CellRectangle& cells)>;
+
+struct TerrainLook {
+  Overlay overlay;
+  bool materials = true;  ///< else all ground has the colour of sand
+  bool water = true;
+  double vertical_exaggeration =
+      1;  ///< of what is seen; the meshes have true heights, but the light is that of these
+  double contour_interval = 0;  ///< [m]; 0: no contour lines
+};
+
+struct TerrainBlock {
+  Mesh ground, water, contours;
+};
+
+/// The layers that a look needs beside the elevation, the overlay's included, if they are there.
+std::vector<std::string> layers_for(const TerrainLook& look);
+
+TerrainBlock build_terrain_block(const BlockLayout& layout, int block, int level, double cell_size,
+                                 const LayerWindow& window, const TerrainLook& look);
+
+}  // namespace desert_sim::render

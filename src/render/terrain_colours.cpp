@@ -1,0 +1,60 @@
+#include "src/render/terrain_colours.hpp"
+
+#include <cmath>
+
+namespace desert_sim::render {
+
+namespace {
+
+constexpr Colour sand_colour{0.855f, 0.706f, 0.463f}, soil_colour{0.424f, 0.322f, 0.227f},
+    weak_rock{0.565f, 0.510f, 0.447f}, hard_rock{0.408f, 0.369f, 0.337f},
+    obstacle_colour{0.251f, 0.118f, 0.345f}, shallow_colour{0.373f, 0.647f, 0.804f},
+    deep_colour{0.078f, 0.216f, 0.471f};
+constexpr float hidden = 0.02f, covering = 0.12f;  // depths of sand or soil: none and all of it is seen [m]
+constexpr float wet = 0.05f;                       // moisture of ground that looks fully wet [m]
+constexpr float wet_brightness = 0.62f;
+
+constexpr float sun_x = -0.760f, sun_y = 0.276f, sun_z = 0.588f;
+constexpr float ambient = 0.30f, brightest = 1.30f;
+
+float known(float value) { return std::isnan(value) ? 0.0f : value; }
+
+}  // namespace
+
+float smooth_step(float from, float to, float value) {
+  const float t = std::clamp((value - from) / (to - from), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
+
+Colour ground_colour(const SurfaceMaterials& m) {
+  Colour colour = mix(weak_rock, hard_rock, std::clamp(known(m.resistance), 0.0f, 1.0f));
+  colour = mix(colour, soil_colour, smooth_step(hidden, covering, known(m.soil)));
+  colour = mix(colour, sand_colour, smooth_step(hidden, covering, known(m.sand)));
+  const float brightness = 1 + (wet_brightness - 1) * smooth_step(0, wet, known(m.moisture));
+  colour = {colour.r * brightness, colour.g * brightness, colour.b * brightness};
+  colour = mix(colour, m.plants, 0.9f * smooth_step(0, 0.8f, known(m.vegetation)));
+  return mix(colour, obstacle_colour, smooth_step(0.25f, 0.75f, known(m.obstacle)));
+}
+
+Colour water_colour(float depth) {
+  return mix(shallow_colour, deep_colour, 1 - std::exp(-std::max(0.0f, known(depth)) / 2));
+}
+
+float water_opacity(float depth) { return 0.92f * smooth_step(0.001f, 0.2f, known(depth)); }
+
+float sun_light(float normal_x, float normal_y, float normal_z) {
+  const float towards_sun = normal_x * sun_x + normal_y * sun_y + normal_z * sun_z;
+  return std::min(brightest, ambient + (1 - ambient) * std::max(0.0f, towards_sun) / sun_z);
+}
+
+Colour lit(const Colour& c, float light) {
+  return {std::min(1.0f, c.r * light), std::min(1.0f, c.g * light), std::min(1.0f, c.b * light)};
+}
+
+Colour wind_colour(float relative) {
+  constexpr Colour slow{0.10f, 0.25f, 0.85f}, equal{0.92f, 0.97f, 1.0f}, fast{0.95f, 0.15f, 0.10f};
+  const float position = std::clamp(2 * (relative - 0.5f), 0.0f, 2.0f);
+  return position < 1 ? mix(slow, equal, position) : mix(equal, fast, position - 1);
+}
+
+}  // namespace desert_sim::render

@@ -1,0 +1,46 @@
+#pragma once
+/// The colours of the ground by its materials, of water by its depth, and the light of the sun: the same in
+/// rviz, in point clouds and in pictures.
+
+#include "src/render/colour.hpp"
+
+namespace desert_sim::render {
+
+/// What lies at one cell. What a terrain does not have, or what is unknown to the caller, is as below.
+struct SurfaceMaterials {
+  float sand = 0;                      ///< depth [m]
+  float soil = 0;                      ///< depth, below the sand [m]
+  float resistance = 0.5f;             ///< of the rock to erosion, 0…1
+  float moisture = 0;                  ///< water in the ground, as a depth [m]
+  float vegetation = 0;                ///< density of plants, 0…1
+  float obstacle = 0;                  ///< 1 where there is one
+  Colour plants{0.27f, 0.48f, 0.20f};  ///< colour of the species that grows here
+};
+
+/// The colour of the ground without light. Thin sand and soil (under 2 cm) show what is below, thick ones
+/// (over 12 cm) hide it. Rock is the darker and redder the more it resists, and moist ground is darker. NaN
+/// counts as 0.
+Colour ground_colour(const SurfaceMaterials& materials);
+
+/// The colour of water of this depth [m], without light.
+Colour water_colour(float depth);
+/// How much of the ground water of this depth [m] hides: 0 … 0.92.
+float water_opacity(float depth);
+
+/// The factor by which the sun brightens or darkens a surface with this upward unit normal: 1 on level
+/// ground, 0.3 in shade, at most 1.3. The sun stands low in the west-north-west, so that slip faces under a
+/// west wind are in shade.
+float sun_light(float normal_x, float normal_y, float normal_z);
+Colour lit(const Colour& colour, float light);
+
+/// The colour of the wind: blue up to half the speed high above the ground, near white at that speed, red
+/// from one and a half times on. `relative`: the speed divided by the one high above.
+Colour wind_colour(float relative);
+
+/// Unknown ground in pictures.
+constexpr Colour unknown_colour{215 / 255.0f, 215 / 255.0f, 215 / 255.0f};
+
+/// 0 up to `from`, 1 from `to` on, with a smooth curve between.
+float smooth_step(float from, float to, float value);
+
+}  // namespace desert_sim::render

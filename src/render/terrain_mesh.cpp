@@ -1,0 +1,191 @@
+#include "src/render/terrain_mesh.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace desert_sim::render {
+
+namespace {
+
+constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
+constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+
+/// The cells from `first` to `last` that are vertices: every stride-th, and the last one.
+std::vector<int> vertex_cells(int first, int last, int stride) {
+  std::vector<int> cells;
+  for (int cell = first; cell < last; cell += stride) cells.push_back(cell);
+  cells.push_back(last);
+  return cells;
+}
+
+class BlockBuilder {
+ public:
+  BlockBuilder(const BlockLayout& layout, int block, int level, double cell_size, const CellWindow& surface,
+               const CellColour& colour)
+      : surface_(surface),
+        colour_(colour),
+        cell_size_(static_cast<float>(cell_size)),
+        stride_(1 << level),
+        cells_(layout.vertices(block)),
+        columns_(vertex_cells(cells_.x, cells_.right() - 1, stride_)),
+        rows_(vertex_cells(cells_.y, cells_.top() - 1, stride_)) {}
+
+  Mesh build(const BlockLayout::Neighbours& neighbours) {
+    add_vertices();
+    add_surface();
+    mesh_.surface_indices = mesh_.indices.size();
+    if (mesh_.empty()) return std::move(mesh_);
+    const std::size_t last_column = columns_.size() - 1, last_row = rows_.size() - 1;
+    // Along each edge in the direction that has the block on its left.
+    if (neighbours.south) add_skirt(true, [](std::size_t n) { return std::pair(n, std::size_t{0}); });
+    if (neighbours.east) add_skirt(false, [&](std::size_t n) { return std::pair(last_column, n); });
+    if (neighbours.north)
+      add_skirt(true, [&](std::size_t n) { return std::pair(last_column - n, last_row); });
+    if (neighbours.west)
+      add_skirt(false, [&](std::size_t n) { return std::pair(std::size_t{0}, last_row - n); });
+    return std::move(mesh_);
+  }
+
+ private:
+  float difference(int x, int y, int step_x, int step_y) const {
+    const float here = surface_.at(x, y), before = surface_.at(x - step_x, y - step_y),
+                after = surface_.at(x + step_x, y + step_y);
+    const float step = cell_size_ * static_cast<float>(step_x + step_y);
+    if (std::isnan(before)) return std::isnan(after) ? 0.0f : (after - here) / step;
+    return std::isnan(after) ? (here - before) / step : (after - before) / (2 * step);
+  }
+
+  void add_vertices() {
+    numbers_.reserve(columns_.size() * rows_.size());
+    mesh_.vertices.reserve(columns_.size() * rows_.size());
+    for (const int y : rows_)
+      for (const int x : columns_) {
+        const float z = surface_.at(x, y);
+        if (std::isnan(z)) {
+          numbers_.push_back(no_vertex);
+          continue;
+        }
+        const float dz_dx = difference(x, y, stride_, 0), dz_dy = difference(x, y, 0, stride_);
+        const float up = 1 / std::sqrt(1 + dz_dx * dz_dx + dz_dy * dz_dy);
+        numbers_.push_back(static_cast<std::uint32_t>(mesh_.vertices.size()));
+        mesh_.vertices.push_back({(static_cast<float>(x) + 0.5f) * cell_size_,
+                                  (static_cast<float>(y) + 0.5f) * cell_size_, z, -dz_dx * up, -dz_dy * up,
+                                  up, colour_(x, y, -dz_dx * up, -dz_dy * up, up)});
+      }
+  }
+
+  std::uint32_t number(std::size_t column, std::size_t row) const {
+    return numbers_[row * columns_.size() + column];
+  }
+
+  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    for (const std::uint32_t corner : {a, b, c}) mesh_.indices.push_back(corner);
+  }
+
+  /// Two triangles for each quad of known vertices, one where a single vertex is unknown.
+  void add_surface() {
+    mesh_.indices.reserve(6 * columns_.size() * rows_.size());
+    for (std::size_t row = 0; row + 1 < rows_.size(); ++row)
+      for (std::size_t column = 0; column + 1 < columns_.size(); ++column) {
+        const std::uint32_t ring[4] = {number(column, row), number(column + 1, row),
+                                       number(column + 1, row + 1), number(column, row + 1)};
+        std::uint32_t known[4];
+        std::size_t count = 0;
+        for (const std::uint32_t corner : ring)
+          if (corner != no_vertex) known[count++] = corner;
+        if (count >= 3) add_triangle(known[0], known[1], known[2]);
+        if (count == 4) add_triangle(known[0], known[2], known[3]);
+      }
+  }
+
+  /// `at(n)` is the column and row of the n-th vertex along an edge.
+  template <class At>
+  void add_skirt(bool along_x, const At& at) {
+    const std::size_t count = along_x ? columns_.size() : rows_.size();
+    std::uint32_t top_before = no_vertex, bottom_before = no_vertex;
+    for (std::size_t n = 0; n < count; ++n) {
+      const auto [column, row] = at(n);
+      const std::uint32_t top = number(column, row);
+      std::uint32_t below = no_vertex;
+      if (top != no_vertex) {
+        below = static_cast<std::uint32_t>(mesh_.vertices.size());
+        mesh_.vertices.push_back(mesh_.vertices[top]);
+        mesh_.vertices.back().z = lowest_near(columns_[column], rows_[row], along_x);
+      }
+      if (top != no_vertex && top_before != no_vertex) {
+        add_triangle(bottom_before, below, top);
+        add_triangle(bottom_before, top, top_before);
+      }
+      top_before = top;
+      bottom_before = below;
+    }
+  }
+
+  /// The lowest known cell of the block's edge in the quads of the coarsest level that have this cell.
+  /// Vertices of all levels lie on the ends of these, so that what any level draws of the edge there is no
+  /// lower.
+  float lowest_near(int x, int y, bool along_x) const {
+    constexpr int longest = 1 << BlockLayout::max_level;
+    const int begin = along_x ? cells_.x : cells_.y, end = (along_x ? cells_.right() : cells_.top()) - 1;
+    const int place = (along_x ? x : y) - begin;
+    const int first = begin + std::max(0, (place - 1) / longest * longest);
+    const int last = std::min(end, begin + (place / longest + 1) * longest);
+    float z = std::numeric_limits<float>::infinity();
+    for (int cell = first; cell <= last; ++cell)
+      z = std::fmin(z, along_x ? surface_.at(cell, y) : surface_.at(x, cell));
+    return z;
+  }
+
+  const CellWindow& surface_;
+  const CellColour& colour_;
+  const float cell_size_;
+  const int stride_;
+  const CellRectangle cells_;
+  const std::vector<int> columns_, rows_;
+  std::vector<std::uint32_t> numbers_;  ///< of the vertices, row by row
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Mesh build_block(const BlockLayout& layout, int block, int level, double cell_size, const CellWindow& surface,
+                 const CellColour& colour) {
+  return BlockBuilder(layout, block, level, cell_size, surface, colour).build(layout.neighbours(block));
+}
+
+CellWindow water_surface(const CellWindow& ground, const CellWindow& depth, int level) {
+  const CellRectangle& cells = ground.cells();
+  const int stride = 1 << level;
+  const auto level_at = [&](int x, int y) {
+    const float d = depth.at(x, y);
+    return d > least_water_depth ? ground.at(x, y) + d : unknown;
+  };
+  std::vector<float> surface;
+  surface.reserve(static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height));
+  for (int y = cells.y; y < cells.top(); ++y)
+    for (int x = cells.x; x < cells.right(); ++x) {
+      float z = level_at(x, y);
+      if (std::isnan(z)) {
+        for (int dy = -stride; dy <= stride; dy += stride)
+          for (int dx = -stride; dx <= stride; dx += stride) z = std::fmin(z, level_at(x + dx, y + dy));
+        if (!std::isnan(z)) z = std::fmin(z, ground.at(x, y));
+      }
+      surface.push_back(z);
+    }
+  return {cells, std::move(surface)};
+}
+
+Box bounding_box(const Mesh& mesh) {
+  if (mesh.vertices.empty()) return {};
+  const Vertex& first = mesh.vertices.front();
+  Box box{{first.x, first.y, first.z}, {first.x, first.y, first.z}};
+  for (const Vertex& v : mesh.vertices) {
+    box.low = {std::min<double>(box.low.x, v.x), std::min<double>(box.low.y, v.y),
+               std::min<double>(box.low.z, v.z)};
+    box.high = {std::max<double>(box.high.x, v.x), std::max<double>(box.high.y, v.y),
+                std::max<double>(box.high.z, v.z)};
+  }
+  return box;
+}
+
+}  // namespace desert_sim::render

@@ -1,0 +1,47 @@
+#pragma once
+/// A camera's view of the terrain: what it sees, and how many pixels a metre takes. All places are in the
+/// terrain's frame [m]. Both follow from the matrices with which the camera projects, so that perspective and
+/// orthographic cameras need no cases of their own.
+
+#include <array>
+
+namespace desert_sim::render {
+
+struct Point {
+  double x = 0, y = 0, z = 0;
+};
+
+struct Box {
+  Point low, high;
+};
+
+using Matrix4 = std::array<std::array<double, 4>, 4>;  ///< [row][column], for column vectors
+
+Matrix4 multiply(const Matrix4& a, const Matrix4& b);
+
+class View {
+ public:
+  /// `projection` maps coordinates of the camera (which looks along -z) to OpenGL's clip coordinates, and
+  /// `camera_from_terrain` those of the terrain to the camera's, by a rotation and a translation. `height` is
+  /// that of the viewport [pixels].
+  View(const Matrix4& projection, const Matrix4& camera_from_terrain, int height);
+
+  bool orthographic() const { return orthographic_; }
+  /// Whether any part of the box can be in the picture. May be true for a box just outside.
+  bool sees(const Box& box) const;
+  /// The camera's distance from a box; 0 inside [m]. For an orthographic camera: from the line of sight
+  /// through the middle of the picture.
+  double distance(const Box& box) const;
+  /// The pixels that a metre takes at most anywhere in the box, seen at a right angle. Infinite if the camera
+  /// is inside.
+  double pixels_per_metre(const Box& box) const;
+
+ private:
+  std::array<std::array<double, 4>, 6> planes_;  ///< of the frustum; inside is positive
+  Point eye_;
+  Point ahead_;  ///< unit vector of the line of sight
+  bool orthographic_;
+  double pixels_;  ///< a metre, in orthographic views; else a metre at a distance of one
+};
+
+}  // namespace desert_sim::render

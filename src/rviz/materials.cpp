@@ -1,0 +1,44 @@
+#include "src/rviz/materials.hpp"
+
+#include <OgreMaterialManager.h>
+#include <OgreResourceGroupManager.h>
+#include <OgreTechnique.h>
+
+namespace desert_sim::materials {
+
+namespace {
+
+const Ogre::String& group() { return Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME; }
+
+/// The material of this name, which is made when it is asked for the first time, and lives as long as rviz.
+template <class SetUp>
+Ogre::MaterialPtr material(const char* name, const SetUp& set_up) {
+  Ogre::MaterialManager& all = Ogre::MaterialManager::getSingleton();
+  if (const Ogre::MaterialPtr there = all.getByName(name, group())) return there;
+  Ogre::MaterialPtr made = all.create(name, group());
+  made->setReceiveShadows(false);
+  Ogre::Pass* const pass = made->getTechnique(0)->getPass(0);
+  pass->setLightingEnabled(false);
+  pass->setCullingMode(Ogre::CULL_NONE);
+  set_up(*pass);
+  return made;
+}
+
+}  // namespace
+
+Ogre::MaterialPtr ground() {
+  return material("desert_sim/ground", [](Ogre::Pass& pass) { pass.setDepthBias(-2, -1); });
+}
+
+Ogre::MaterialPtr translucent() {
+  return material("desert_sim/translucent", [](Ogre::Pass& pass) {
+    pass.setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
+    pass.setDepthWriteEnabled(false);
+  });
+}
+
+Ogre::MaterialPtr shapes() {
+  return material("desert_sim/shapes", [](Ogre::Pass&) {});
+}
+
+}  // namespace desert_sim::materials

@@ -1,0 +1,16 @@
+#pragma once
+/// OGRE materials of the plugins. Vertices have their colours with the light of the sun in them (src/render),
+/// so that no shader and no light of the scene is needed: that is what software rasterisers are fast at.
+
+#include <OgreMaterial.h>
+
+namespace desert_sim::materials {
+
+/// Opaque. Lies a little behind its place, so that lines on it are seen.
+Ogre::MaterialPtr ground();
+/// Translucent by the alpha of the vertices.
+Ogre::MaterialPtr translucent();
+/// Opaque.
+Ogre::MaterialPtr shapes();
+
+}  // namespace desert_sim::materials

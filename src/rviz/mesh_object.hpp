@@ -1,0 +1,36 @@
+#pragma once
+/// A mesh as OGRE draws it.
+
+#include <OgreHardwareIndexBuffer.h>
+#include <OgreHardwareVertexBuffer.h>
+#include <OgreSimpleRenderable.h>
+
+#include "src/render/mesh.hpp"
+
+namespace desert_sim {
+
+class MeshObject : public Ogre::SimpleRenderable {
+ public:
+  /// Attaches itself to `parent`, which must outlive it.
+  MeshObject(Ogre::SceneNode* parent, const Ogre::MaterialPtr& material,
+             Ogre::RenderOperation::OperationType type);
+  ~MeshObject() override;
+  MeshObject(const MeshObject&) = delete;
+  MeshObject& operator=(const MeshObject&) = delete;
+
+  /// Copies the mesh to OGRE's buffers, which stay the same while their sizes fit. An empty mesh hides the
+  /// object and frees them.
+  void set_mesh(const render::Mesh& mesh);
+
+  Ogre::Real getBoundingRadius() const override;
+  Ogre::Real getSquaredViewDepth(const Ogre::Camera* camera) const override;
+
+ private:
+  void reserve(std::size_t vertices, std::size_t indices);
+
+  Ogre::SceneNode* const parent_;
+  Ogre::HardwareVertexBufferSharedPtr vertices_;
+  Ogre::HardwareIndexBufferSharedPtr indices_;
+};
+
+}  // namespace desert_sim

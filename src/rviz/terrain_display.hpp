@@ -1,0 +1,91 @@
+#pragma once
+/// The display desert_sim/Terrain of rviz.
+
+#include <rviz/display.h>
+
+#include <memory>
+
+#include "src/rviz/legend.hpp"
+#include "src/rviz/overlay_properties.hpp"
+#include "src/rviz/plants_view.hpp"
+#include "src/rviz/terrain_scene.hpp"
+#include "src/rviz/terrain_source.hpp"
+#include "src/rviz/wind_view.hpp"
+
+namespace rviz {
+class BoolProperty;
+class FloatProperty;
+class IntProperty;
+class RosTopicProperty;
+}  // namespace rviz
+
+namespace desert_sim {
+
+class TerrainDisplay : public rviz::Display {
+  Q_OBJECT
+  // What the last call of update() did, for tests and benchmarks, which know a plugin only as a QObject.
+  Q_PROPERTY(double frame_milliseconds READ frame_milliseconds)  ///< of this thread's processor time
+  Q_PROPERTY(int frame_messages READ frame_messages)             ///< keyframes and updates that it took over
+  Q_PROPERTY(int blocks READ blocks)
+  Q_PROPERTY(int waiting_blocks READ waiting_blocks)
+  Q_PROPERTY(qulonglong built_blocks READ built_blocks)  ///< since the start
+  Q_PROPERTY(qlonglong triangles READ triangles)         ///< of the ground
+
+ public:
+  TerrainDisplay();
+  ~TerrainDisplay() override;
+
+  void update(float wall_dt, float ros_dt) override;
+  void reset() override;
+  void setTopic(const QString& topic, const QString& datatype) override;
+
+  double frame_milliseconds() const { return frame_milliseconds_; }
+  int frame_messages() const { return frame_messages_; }
+  int blocks() const { return counts_.blocks; }
+  int waiting_blocks() const { return counts_.waiting; }
+  qulonglong built_blocks() const { return counts_.built; }
+  qlonglong triangles() const { return counts_.triangles; }
+
+ protected:
+  void onInitialize() override;
+  void onEnable() override;
+  void onDisable() override;
+
+ private Q_SLOTS:
+  void subscribe();
+  void subscribe_views();
+  void update_look();
+  void update_limits();
+
+ private:
+  void unsubscribe();
+  void take_changes();
+  void take_elevation(const LayerChange& change);
+  render::LayerWindow window() const;
+  bool place();
+  void update_views();
+  void report();
+  void report_topic();
+  void report_overlay();
+  void set_status(rviz::StatusProperty::Level level, const char* name, const std::string& text);
+
+  rviz::RosTopicProperty* topic_;
+  rviz::FloatProperty *exaggeration_, *contours_, *budget_, *quad_pixels_;
+  rviz::IntProperty *triangles_, *most_plants_, *most_arrows_;
+  rviz::BoolProperty *materials_, *water_, *plants_, *wind_;
+  std::unique_ptr<OverlayProperties> overlay_;
+
+  std::unique_ptr<TerrainScene> scene_;
+  Ogre::SceneNode* level_node_ = nullptr;  ///< at the grid's corner, without exaggeration
+  std::unique_ptr<PlantsView> plants_view_;
+  std::unique_ptr<WindView> wind_view_;
+  std::unique_ptr<Legend> legend_;
+  std::unique_ptr<TerrainSource> source_;
+  std::map<std::string, std::shared_ptr<const LayerMap>> maps_;  ///< by layer; the elevation decides the grid
+  double frame_milliseconds_ = 0;
+  int frame_messages_ = 0;
+  TerrainScene::Counts counts_;
+  std::map<std::string, std::string> statuses_;  ///< the texts that are shown
+};
+
+}  // namespace desert_sim

@@ -1,0 +1,70 @@
+#pragma once
+/// Grids of heights, and cameras that look at them, for tests of src/render.
+
+#include <cmath>
+#include <functional>
+
+#include "src/render/terrain_block.hpp"
+
+namespace render_test {
+
+using namespace desert_sim::render;
+
+using Height = std::function<float(int x, int y)>;
+
+inline CellWindow window_of(const CellRectangle& cells, const Height& height) {
+  std::vector<float> values;
+  for (int y = cells.y; y < cells.top(); ++y)
+    for (int x = cells.x; x < cells.right(); ++x) values.push_back(height(x, y));
+  return {cells, values};
+}
+
+/// Dunes that no level of detail draws exactly.
+inline float dunes(int x, int y) {
+  return 5 * std::sin(0.31f * static_cast<float>(x)) + 3 * std::cos(0.23f * static_cast<float>(y));
+}
+
+inline Mesh block_of(const BlockLayout& layout, int block, int level, const Height& height,
+                     double cell_size = 1) {
+  return build_block(layout, block, level, cell_size, window_of(layout.needed_cells(block, level), height),
+                     [](int, int, float, float, float) {
+                       return pack({1, 1, 1});
+                     });
+}
+
+/// The product of a rotation and a translation of a camera that is at (x, y, z), looks down (pitch -90°) or
+/// to the horizon in the north (0°).
+inline Matrix4 camera_at(double x, double y, double z, double pitch_deg) {
+  const double pitch = pitch_deg * 3.14159265358979 / 180, c = std::cos(pitch), s = std::sin(pitch);
+  // Rows: right (east), up, backwards.
+  const Matrix4 turn{{{1, 0, 0, 0}, {0, -s, c, 0}, {0, -c, -s, 0}, {0, 0, 0, 1}}};
+  const Matrix4 move{{{1, 0, 0, -x}, {0, 1, 0, -y}, {0, 0, 1, -z}, {0, 0, 0, 1}}};
+  return multiply(turn, move);
+}
+
+/// A field of view of 90° upwards and sideways.
+inline Matrix4 perspective(double near = 0.1, double far = 1e5) {
+  return {{{1, 0, 0, 0},
+           {0, 1, 0, 0},
+           {0, 0, -(far + near) / (far - near), -2 * far * near / (far - near)},
+           {0, 0, -1, 0}}};
+}
+
+/// So many metres from the lower to the upper edge of the picture.
+inline Matrix4 orthographic(double metres, double near = -1e5, double far = 1e5) {
+  return {{{2 / metres, 0, 0, 0},
+           {0, 2 / metres, 0, 0},
+           {0, 0, -2 / (far - near), -(far + near) / (far - near)},
+           {0, 0, 0, 1}}};
+}
+
+inline std::vector<Box> flat_boxes(const BlockLayout& layout, double cell_size) {
+  std::vector<Box> boxes;
+  for (int block = 0; block < layout.count(); ++block) {
+    const CellRectangle r = layout.vertices(block);
+    boxes.push_back({{r.x * cell_size, r.y * cell_size, 0}, {r.right() * cell_size, r.top() * cell_size, 1}});
+  }
+  return boxes;
+}
+
+}  // namespace render_test
