@@ -131,7 +131,8 @@ class GdalRasterFile final : public RasterFile {
                                      "other formats with --all-raster-formats or "
                                      "~all_raster_formats): ",
                                      reason()));
-    check_raw_file(path(), *dataset_, input_->file().size());
+    file_bytes_ = input_->file().size();
+    check_raw_file(path(), *dataset_, file_bytes_);
     if (!input_->unread_metadata().empty())
       log_warning("raster '" + path() + "': " + input_->unread_metadata() +
                   " beside it is read with --all-raster-formats or ~all_raster_formats only");
@@ -252,7 +253,23 @@ void require_host_memory(const std::string& path, double bytes, const std::strin
                                          " GiB of memory; available: ", available / 1073741824.0, " GiB"));
 }
 
+namespace {
+
+/// A few bytes can declare billions of cells (a sparse GeoTIFF), which would fill the memory with nothing. Deflate
+/// packs at most some 258 cells of four bytes into one.
+void refuse_sparse(const std::string& path, const RasterWindow& window, std::uint64_t file_bytes) {
+  constexpr std::uint64_t harmless_cells = 1u << 24, cells_per_byte = 1024;
+  const std::uint64_t cells = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
+  if (file_bytes > 0 && cells > harmless_cells && cells / cells_per_byte > file_bytes)
+    throw_raster_error(path, concatenate(window.width, " x ", window.height, " cells are needed, which a file of ",
+                                         file_bytes, " bytes cannot have (allowed: up to ", cells_per_byte,
+                                         " cells for each byte)"));
+}
+
+}  // namespace
+
 Raster RasterFile::read(const RasterWindow& window) {
+  refuse_sparse(path_, window, file_bytes_);
   require_host_memory(path_,
                       static_cast<double>(window.width) * window.height * sizeof(float) + bytes_besides(),
                       concatenate("reading ", window.width, " x ", window.height, " cells"));

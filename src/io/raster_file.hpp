@@ -21,7 +21,7 @@ class RasterFile {
   const Raster& header() const { return header_; }
   /// Reads the cells of a window, which must lie in the raster, and logs a warning for numbers that seem to
   /// stand for missing data, and for values in feet that no scale converts. Throws ConfigError for what is wrong with them (see read_raster()), and before
-  /// any is read if the memory does not hold them.
+  /// any is read if the memory does not hold them, or if they are far more than the file can have.
   Raster read(const RasterWindow& window);
   Raster read() { return read({0, 0, header_.width, header_.height}); }
 
@@ -35,7 +35,8 @@ class RasterFile {
 
   const RasterOptions options_;
   Raster header_;
-  std::string value_unit_;  ///< as the file says; empty if it does not
+  std::string value_unit_;        ///< as the file says; empty if it does not
+  std::uint64_t file_bytes_ = 0;  ///< 0 if they are not all in one file
 
  private:
   const std::string path_;

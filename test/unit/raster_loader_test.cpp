@@ -204,6 +204,18 @@ TEST_F(Dem, HeightsInFeetAreWarnedOfUnlessTheyAreScaled) {
   EXPECT_TRUE(warnings_of(file, {1, 0.3048}).empty());
 }
 
+TEST_F(Dem, MoreCellsThanTheFileCanHaveAreRefusedBeforeTheyAreRead) {
+  const char* const options[] = {"SPARSE_OK=TRUE", "TILED=YES", "BLOCKXSIZE=4096", "BLOCKYSIZE=4096", nullptr};
+  const GDALDatasetUniquePtr sparse(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      path("sparse.tif").c_str(), 40000, 40000, 1, GDT_Byte, const_cast<char**>(options)));
+  ASSERT_TRUE(sparse);
+  sparse->FlushCache();
+  RasterRequest q = request(path("sparse.tif"), 12, 12, 1);
+  EXPECT_EQ(gdal_raster_loader()(q).values[0], 0) << "few cells are needed";
+  q.stretch = true;
+  expect_says(load_refusal(q), {"sparse.tif", "40000 x 40000 cells are needed", "bytes cannot have"});
+}
+
 // GDAL alone reads the lines before a broken one again and again.
 TEST_F(Dem, ATextWithBrokenLinesIsRefusedSoon) {
   const std::string message =
