@@ -104,9 +104,7 @@ WritableFile::WritableFile(std::string path, std::shared_ptr<const Descriptor> f
     : path_(std::move(path)), folder_(std::move(folder)) {}
 
 /// Opening this link of the kernel opens the folder itself, whatever has got its name in the meantime.
-std::string WritableFile::folder_link() const {
-  return "/proc/self/fd/" + std::to_string(folder_->number());
-}
+std::string WritableFile::folder_link() const { return "/proc/self/fd/" + std::to_string(folder_->number()); }
 
 std::string WritableFile::path_through_folder() const {
   return folder_link() + path_.substr(path_.rfind('/'));
@@ -114,7 +112,8 @@ std::string WritableFile::path_through_folder() const {
 
 std::string WritableFile::with_known_path(std::string message) const {
   const std::string link = folder_link(), known = path_.substr(0, path_.rfind('/'));
-  for (std::size_t at = message.find(link); at != std::string::npos; at = message.find(link, at + known.size()))
+  for (std::size_t at = message.find(link); at != std::string::npos;
+       at = message.find(link, at + known.size()))
     message.replace(at, link.size(), known);
   return message;
 }

@@ -68,8 +68,8 @@ void require_metres(const std::string& path, const std::string& wkt, double x, d
     unit = name ? std::string("the unit ") + name : "another unit";
     to_degrees(crs, x, y);
   }
-  throw_raster_error(path, "its coordinates are in " + unit + ", metres are needed; project it first: " +
-                               projecting_command(path, x, y));
+  throw_raster_error(path, "its coordinates are in " + unit +
+                               ", metres are needed; project it first: " + projecting_command(path, x, y));
 }
 
 }  // namespace desert_sim

@@ -234,7 +234,8 @@ void reverse_rows(Raster& raster) {
 
 bool is_foot(std::string unit) {
   std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return std::tolower(c); });
-  return unit.find("ft") == 0 || unit.find("feet") != std::string::npos || unit.find("foot") != std::string::npos;
+  return unit.find("ft") == 0 || unit.find("feet") != std::string::npos ||
+         unit.find("foot") != std::string::npos;
 }
 
 bool is_exr(const std::string& path) {
@@ -259,11 +260,13 @@ namespace {
 /// packs at most some 258 cells of four bytes into one.
 void refuse_sparse(const std::string& path, const RasterWindow& window, std::uint64_t file_bytes) {
   constexpr std::uint64_t harmless_cells = 1u << 24, cells_per_byte = 1024;
-  const std::uint64_t cells = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
+  const std::uint64_t cells =
+      static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
   if (file_bytes > 0 && cells > harmless_cells && cells / cells_per_byte > file_bytes)
-    throw_raster_error(path, concatenate(window.width, " x ", window.height, " cells are needed, which a file of ",
-                                         file_bytes, " bytes cannot have (allowed: up to ", cells_per_byte,
-                                         " cells for each byte)"));
+    throw_raster_error(
+        path,
+        concatenate(window.width, " x ", window.height, " cells are needed, which a file of ", file_bytes,
+                    " bytes cannot have (allowed: up to ", cells_per_byte, " cells for each byte)"));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <xxhash.h>
 
-
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/core/log.hpp"

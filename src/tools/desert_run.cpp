@@ -11,6 +11,7 @@
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/session.hpp"
 #include "src/tools/drawing.hpp"
+#include "src/tools/film.hpp"
 #include "src/tools/options.hpp"
 #include "src/tools/outputs.hpp"
 #include "src/tools/program.hpp"
@@ -36,6 +37,12 @@ const char usage[] =
     "  --every N             also write them every N steps, to DIR/step_NNNNNNNN\n"
     "  --plot FILE           draw a PNG of areas by material and plants by species over these steps (needs\n"
     "                        python3 with matplotlib)\n"
+    "  --film FILE           film the run from above: an .mp4 (needs ffmpeg), a folder of pictures, or one "
+    ".png of\n"
+    "                        the end\n"
+    "  --film-every N        steps from picture to picture (default: such that there are about 250)\n"
+    "  --view KEY=VALUE      where the camera stands and what it shows; may be repeated; --describe-view "
+    "lists them\n"
     "  --checkpoint FILE     save the state to FILE at the end\n"
     "  --checkpoint-every N  also save it every N steps\n"
     "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be omitted), with what "
@@ -43,6 +50,7 @@ const char usage[] =
     "                        sets of the parameters that can change while a simulation runs\n"
     "  --replay JOURNAL      apply the commands of a journal; without --steps, run as many steps as it has\n"
     "  --describe            print all parameters as markdown\n"
+    "  --describe-view       print the keys of --view as markdown\n"
     "  --describe-processes  print the table of processes as markdown\n"
     "  --pipeline            print the processes of a step of the scenario in order, with layers and memory\n"
     "  --quiet               print no progress\n"
@@ -65,10 +73,12 @@ struct RunPlan {
   std::string out, checkpoint;
   std::vector<std::string> summaries;  ///< paths of the summaries written during the run
   std::uint64_t every = 0, checkpoint_every = 0;
+  std::unique_ptr<Film> film;
+  std::uint64_t film_every = 0;
 };
 
 RunPlan plan_of(Options options) {
-  RunPlan plan{std::move(options), "", "", {}, 0, 0};
+  RunPlan plan{std::move(options), "", "", {}, 0, 0, nullptr, 0};
   const Options& o = plan.options;
   plan.out = o.text("out", "");
   plan.checkpoint = o.text("checkpoint", "");
@@ -80,6 +90,9 @@ RunPlan plan_of(Options options) {
   if (o.has("plot") && !plan.every) throw ConfigError("--plot: --out and --every are required too");
   if (plan.checkpoint_every && plan.checkpoint.empty())
     throw ConfigError("--checkpoint-every: --checkpoint is required too");
+  for (const char* option : {"film-every", "view"})
+    if (o.has(option) && !o.has("film"))
+      throw ConfigError("--" + std::string(option) + ": --film is required too");
   return plan;
 }
 
@@ -132,13 +145,23 @@ void require_no_input_replaced(const RunPlan& plan, const Journal& journal) {
     require_other(checkpoint, "a checkpoint that the journal loads");
 }
 
-/// Before the first step: refuses files that could not be written at the end. Creates the folder of --out.
-void prepare_outputs(const RunPlan& plan, const Journal& journal) {
+/// About 250 pictures, ten seconds of a film.
+std::uint64_t usual_film_every(std::uint64_t steps) { return std::max<std::uint64_t>(1, steps / 250); }
+
+/// Before the first step: refuses files that could not be written at the end. Creates the folders of --out and
+/// --film. `steps`: how many there will be.
+void prepare_outputs(RunPlan& plan, const Journal& journal, std::uint64_t steps) {
   if (!plan.checkpoint.empty()) require_no_input_replaced(plan, journal);
   const std::string created = plan.out.empty() ? "" : create_output_folder(plan.out);
   try {
     if (!plan.checkpoint.empty()) require_writable_file(plan.checkpoint);
     if (plan.options.has("plot")) require_writable_file(plan.options.text("plot", ""));
+    if (plan.options.has("film")) {
+      plan.film =
+          std::make_unique<Film>(plan.options.text("film", ""), view_parameters(plan.options.values("view")));
+      const auto usual = static_cast<long long>(usual_film_every(steps));
+      plan.film_every = static_cast<std::uint64_t>(plan.options.number("film-every", usual, 1, 1LL << 40));
+    }
   } catch (...) {
     if (!created.empty()) remove_empty_folders(created, plan.out);
     throw;
@@ -169,6 +192,7 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
   Progress progress(session.ticks(), last, plan.options.has("quiet"));
   Clock::duration stepping{};
   replay();
+  if (plan.film) plan.film->add(session.simulation());
   while (session.ticks() < last && !interrupted) {
     const auto start = Clock::now();
     const bool timed = report.steps_run % timed_every == 0;
@@ -187,6 +211,8 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
       write_outputs(plan.out + name, session.simulation(), report);
       plan.summaries.push_back(plan.out + name + "/summary.json");
     }
+    if (plan.film && (session.ticks() % plan.film_every == 0 || session.ticks() == last))
+      plan.film->add(session.simulation());
     if (plan.checkpoint_every && step % plan.checkpoint_every == 0) session.save_checkpoint(plan.checkpoint);
     progress.at(session.ticks());
   }
@@ -197,11 +223,13 @@ int run_program(int argc, char** argv) {
   RunPlan plan =
       plan_of(Options(argc, argv,
                       {"steps", "backend", "threads", "set", "seed", "out", "every", "plot", "checkpoint",
-                       "checkpoint-every", "resume", "replay"},
-                      {"all-raster-formats", "describe", "describe-processes", "pipeline", "quiet", "help"}));
+                       "checkpoint-every", "resume", "replay", "film", "film-every", "view"},
+                      {"all-raster-formats", "describe", "describe-processes", "describe-view", "pipeline",
+                       "quiet", "help"}));
   const Options& o = plan.options;
   if (o.has("help")) return std::fputs(usage, stdout), 0;
   if (o.has("describe")) return std::cout << describe_parameters(), 0;
+  if (o.has("describe-view")) return std::cout << describe_view(), 0;
   if (o.has("describe-processes")) return std::cout << describe_processes(process_table()), 0;
   const auto steps = static_cast<std::uint64_t>(o.number("steps", 0, 0, 1LL << 40));
   const int threads = static_cast<int>(o.number("threads", 0, 1, 4096));
@@ -213,13 +241,13 @@ int run_program(int argc, char** argv) {
       o.has("resume") ? resume_session(o, journal, threads) : begin_session(o, journal, threads);
   Simulation& simulation = session->simulation();
   if (o.has("pipeline")) return std::cout << describe_pipeline(simulation.pipeline()), 0;
-  prepare_outputs(plan, journal);
   const std::uint64_t scenario_steps =
       o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps);
   const std::uint64_t asked = o.has("steps") ? steps : scenario_steps;
   // A resumed run continues until the requested step.
   const std::uint64_t last =
       o.has("resume") ? (asked > simulation.steps() ? asked - simulation.steps() : 0) : asked;
+  prepare_outputs(plan, journal, last);
   if (!o.has("quiet"))
     std::fprintf(stderr, "backend: %s; %s\n", session->backend_choice().c_str(),
                  simulation.exec().device().c_str());
@@ -233,6 +261,7 @@ int run_program(int argc, char** argv) {
   if (!plan.out.empty()) write_outputs(plan.out, session->simulation(), report);
   if (o.has("plot") && !plan.summaries.empty())
     run_plot_script("--plot", "plot_run.py", o.text("plot", ""), plan.summaries);
+  if (plan.film) plan.film->finish();
   if (!plan.checkpoint.empty()) session->save_checkpoint(plan.checkpoint);
   if (plan.out.empty() && !o.has("quiet")) std::cout << summary(session->simulation(), report);
   const std::string missing = conservation_error(session->simulation().balance());

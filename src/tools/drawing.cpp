@@ -1,16 +1,10 @@
 #include "src/tools/drawing.hpp"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cstring>
 #include <filesystem>
 
 #include "src/core/error.hpp"
 #include "src/core/temporary_file.hpp"
-
-extern char** environ;
+#include "src/tools/child_process.hpp"
 
 namespace desert_sim {
 
@@ -33,20 +27,10 @@ void run_plot_script(const std::string& option, const std::string& script, const
                      const std::vector<std::string>& results) {
   TemporaryFile file(picture);
   // The script writes into the file that is open here, whatever lies under the picture's name by then.
-  const std::string place = "/proc/" + std::to_string(getpid()) + file.library_path().substr(std::strlen("/proc/self"));
-  std::vector<std::string> words{"python3", script_path(option, script), place};
+  std::vector<std::string> words{"python3", script_path(option, script),
+                                 path_for_children(file.library_path())};
   words.insert(words.end(), results.begin(), results.end());
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  const int failure = posix_spawnp(&child, "python3", nullptr, nullptr, arguments.data(), environ);
-  if (failure != 0) throw ConfigError(option + ": python3: " + std::strerror(failure));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw ConfigError(option + " " + picture + ": " + words[1] + " failed");
+  ChildProcess(option + " " + picture + ": " + words[1], words).finish();
   file.publish();
 }
 

@@ -60,7 +60,8 @@ Areas ground_areas(Simulation& simulation) {
 
 }  // namespace
 
-std::string create_output_folder(const std::string& folder) {
+std::string create_output_folder(const std::string& folder, const std::string& option,
+                                 const std::string& file) {
   namespace fs = std::filesystem;
   std::error_code error;
   std::string created;
@@ -71,14 +72,14 @@ std::string create_output_folder(const std::string& folder) {
   if (error) {
     const std::string reason = error.message();
     if (!created.empty()) remove_empty_folders(created, folder);
-    throw ConfigError("--out " + folder + ": cannot be created: " + reason);
+    throw ConfigError(option + " " + folder + ": cannot be created: " + reason);
   }
-  if (!fs::is_directory(folder, error)) throw ConfigError("--out " + folder + ": is not a folder");
+  if (!fs::is_directory(folder, error)) throw ConfigError(option + " " + folder + ": is not a folder");
   try {
-    require_writable_file(folder + "/summary.json");
+    require_writable_file(folder + "/" + file);
   } catch (const Error& e) {
     if (!created.empty()) remove_empty_folders(created, folder);
-    throw ConfigError(std::string("--out ") + e.what());
+    throw ConfigError(option + " " + e.what());
   }
   return created;
 }

@@ -17,7 +17,7 @@ from geometry_msgs.msg import Point, Vector3Stamped
 from lifecycle import CORNER, OASIS, Scenarios, Trigger, wait_until
 from map_client import GetGridMap
 from random_messages import RandomMessages
-from std_msgs.msg import Empty
+from std_msgs.msg import Empty, String
 from tf2_msgs.msg import TFMessage
 
 ROUNDS = int(os.environ.get("DESERT_ROUNDS", "30"))
@@ -25,8 +25,9 @@ ROUNDS_OF_A_NODE = 100
 NODE = "random"
 SCENARIOS = {"oasis.yaml": OASIS, "corner.yaml": CORNER, "garden.yaml": os.path.join(os.path.dirname(OASIS), "garden.yaml")}
 TOPICS = {"/%s/cmd_wind" % NODE: Vector3Stamped, "/%s/request_keyframe" % NODE: Empty, "/tf": TFMessage,
-          "/tf_static": TFMessage}
-WEIGHTS = {"edit_terrain": 6, "edit_plants": 5, "edit_wind": 3, "set_weather": 3, "set_parameters": 4, "step": 4}  # others: 1
+          "/tf_static": TFMessage, "/%s/layers/request_keyframe" % NODE: String}
+WEIGHTS = {"edit_terrain": 6, "edit_plants": 5, "edit_wind": 3, "set_weather": 3, "set_parameters": 4, "step": 4,
+           "undo": 3, "redo": 2}  # others: 1
 OF_EVERY_NODE = {"get_loggers", "set_logger_level"}
 
 

@@ -187,8 +187,8 @@ TEST_F(Dem, DegreesAreRefusedWithTheCommandThatProjects) {
 
 TEST_F(Dem, FeetAreRefusedWithTheCommandThatProjects) {
   RasterRequest q;  // around Pittsburgh, in Pennsylvania's southern zone
-  q.path = make("feet.tif", "GTiff", 4, 4, GDT_Float32, std::vector<float>(16, 1), {1340000, 10, 0, 410000, 0, -10},
-                "EPSG:2272");
+  q.path = make("feet.tif", "GTiff", 4, 4, GDT_Float32, std::vector<float>(16, 1),
+                {1340000, 10, 0, 410000, 0, -10}, "EPSG:2272");
   expect_says(load_refusal(q), {"US survey foot", "gdalwarp -t_srs EPSG:32617 "});
 }
 
@@ -205,7 +205,8 @@ TEST_F(Dem, HeightsInFeetAreWarnedOfUnlessTheyAreScaled) {
 }
 
 TEST_F(Dem, MoreCellsThanTheFileCanHaveAreRefusedBeforeTheyAreRead) {
-  const char* const options[] = {"SPARSE_OK=TRUE", "TILED=YES", "BLOCKXSIZE=4096", "BLOCKYSIZE=4096", nullptr};
+  const char* const options[] = {"SPARSE_OK=TRUE", "TILED=YES", "BLOCKXSIZE=4096", "BLOCKYSIZE=4096",
+                                 nullptr};
   const GDALDatasetUniquePtr sparse(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
       path("sparse.tif").c_str(), 40000, 40000, 1, GDT_Byte, const_cast<char**>(options)));
   ASSERT_TRUE(sparse);

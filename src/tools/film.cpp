@@ -1,0 +1,108 @@
+#include "src/tools/film.hpp"
+
+#include <cstdio>
+
+#include "src/core/error.hpp"
+#include "src/core/files.hpp"
+#include "src/tools/outputs.hpp"
+#if DESERT_WITH_IO
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "src/io/picture.hpp"
+#endif
+
+namespace desert_sim {
+
+namespace {
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+std::string frame_name(int number) {
+  char name[32];
+  std::snprintf(name, sizeof name, "frame_%06d.png", number);
+  return name;
+}
+
+#if DESERT_WITH_IO
+constexpr bool has_pictures = true;
+
+void write_picture(const std::string& path, const render::Picture& picture) {
+  // Red lies in the lowest byte of a colour, and OpenCV writes blue first.
+  const cv::Mat rgba(picture.height, picture.width, CV_8UC4,
+                     const_cast<render::PackedColour*>(picture.pixels.data()));
+  cv::Mat bgr;
+  cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
+  write_png(path, bgr);
+}
+#else
+constexpr bool has_pictures = false;
+
+void write_picture(const std::string&, const render::Picture&) {}
+#endif
+
+}  // namespace
+
+Film::Film(const std::string& path, const ViewParameters& view)
+    : path_(path),
+      kind_(ends_with(path, ".mp4") ? Kind::film : (ends_with(path, ".png") ? Kind::picture : Kind::folder)),
+      view_(view) {
+  if (!has_pictures && kind_ != Kind::film)
+    throw ConfigError("--film " + path +
+                      ": this build writes no pictures: it was made without OpenCV (allowed: .mp4)");
+  if (kind_ == Kind::picture) require_writable_file(path);
+  if (kind_ == Kind::folder) create_output_folder(path, "--film", frame_name(0));
+  if (kind_ == Kind::film) start_encoder(view);
+}
+
+void Film::start_encoder(const ViewParameters& view) {
+  if (view.width % 2 != 0 || view.height % 2 != 0)
+    throw ConfigError("--view: a film of " + std::to_string(view.width) + " x " +
+                      std::to_string(view.height) + " pixels cannot be made (allowed: even numbers)");
+  file_ = std::make_unique<TemporaryFile>(path_);
+  const std::string size = std::to_string(view.width) + "x" + std::to_string(view.height);
+  encoder_ =
+      std::make_unique<ChildProcess>("--film " + path_,
+                                     std::vector<std::string>{"ffmpeg",
+                                                              "-loglevel",
+                                                              "error",
+                                                              "-y",
+                                                              "-f",
+                                                              "rawvideo",
+                                                              "-pixel_format",
+                                                              "rgba",
+                                                              "-video_size",
+                                                              size,
+                                                              "-framerate",
+                                                              std::to_string(view.fps),
+                                                              "-i",
+                                                              "-",
+                                                              "-pix_fmt",
+                                                              "yuv420p",
+                                                              "-movflags",
+                                                              "+faststart",
+                                                              "-f",
+                                                              "mp4",
+                                                              path_for_children(file_->library_path())},
+                                     ChildProcess::Input::piped);
+}
+
+void Film::add(Simulation& simulation) {
+  last_ = view_.draw(simulation);
+  if (kind_ == Kind::film) encoder_->write(last_.pixels.data(), 4 * last_.pixels.size());
+  if (kind_ == Kind::folder) {
+    write_picture(path_ + "/" + frame_name(frames_), last_);
+  }
+  ++frames_;
+}
+
+void Film::finish() {
+  if (kind_ == Kind::picture) write_picture(path_, last_);
+  if (kind_ != Kind::film) return;
+  encoder_->finish();
+  file_->publish();
+}
+
+}  // namespace desert_sim

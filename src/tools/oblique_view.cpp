@@ -1,0 +1,215 @@
+#include "src/tools/oblique_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "src/core/parameter_page.hpp"
+#include "src/render/level_of_detail.hpp"
+#include "src/render/plant_shapes.hpp"
+#include "src/render/terrain_block.hpp"
+#include "src/render/terrain_colours.hpp"
+#include "src/scenario/yaml_parameters.hpp"
+#include "src/terrain/map_layers.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+using render::Mesh;
+using render::Point;
+using render::Vertex;
+
+constexpr int samples = 2;                  // a side of a pixel
+constexpr int drawn_triangles = 4'000'000;  // at most, of the ground
+constexpr render::Colour sky_top{0.47f, 0.61f, 0.78f}, sky_bottom{0.90f, 0.90f, 0.88f};
+constexpr render::Colour cut{0.42f, 0.36f, 0.31f};  // where the terrain ends, as in a block diagram
+constexpr double wall_share = 0.04;  // of the longer side of the terrain: walls below its lowest cell
+
+render::Overlay overlay_of(const ViewParameters& p) {
+  render::Overlay overlay;
+  if (p.overlay.empty()) return overlay;
+  const render::LayerStyle style = render::layer_style(p.overlay);
+  const bool usual = p.overlay_low == p.overlay_high;
+  overlay.layer = p.overlay;
+  overlay.low = usual ? style.low : static_cast<float>(p.overlay_low);
+  overlay.high = usual ? style.high : static_cast<float>(p.overlay_high);
+  overlay.map = style.map;
+  return overlay;
+}
+
+/// The values of a snapshot in rectangles of cells. It must outlive what is returned.
+render::LayerWindow windows_of(const Snapshot& s) {
+  return [&s](const std::string& name, const render::CellRectangle& wanted) {
+    const MapLayer* const layer = find_map_layer(name);
+    const std::vector<float>* const values = layer ? s.find(layer->layer) : nullptr;
+    if (!values) return render::CellWindow();
+    const render::CellRectangle cells = wanted.clipped({0, 0, s.width, s.height});
+    std::vector<float> part;
+    part.reserve(static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height));
+    for (int y = cells.y; y < cells.top(); ++y) {
+      const auto row = values->begin() + static_cast<std::ptrdiff_t>(y) * s.width;
+      part.insert(part.end(), row + cells.x, row + cells.right());
+    }
+    return render::CellWindow(cells, std::move(part));
+  };
+}
+
+/// Relief becomes visible, but a mountain stays a mountain: heights span at least a twelfth of the terrain's length.
+double chosen_exaggeration(const Snapshot& s, double relief) {
+  const double length = s.cell_size * std::max(s.width, s.height);
+  return relief > 0 ? std::clamp(length / 12 / relief, 1.0, 20.0) : 1.0;
+}
+
+/// Vertical walls around the terrain, from its outermost cells down to `bottom` [m].
+Mesh walls(const Snapshot& s, double bottom) {
+  const std::vector<float>& elevation = *s.find(Layer::elevation);
+  Mesh mesh;
+  const auto side = [&](int x0, int y0, int dx, int dy, int count, float normal_x, float normal_y) {
+    const render::PackedColour colour =
+        render::pack(render::lit(cut, 0.6f + 0.4f * render::sun_light(normal_x, normal_y, 0)));
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (int n = 0; n < count; ++n) {
+      const int x = x0 + n * dx, y = y0 + n * dy;
+      const auto place_x = static_cast<float>((x + 0.5) * s.cell_size),
+                 place_y = static_cast<float>((y + 0.5) * s.cell_size);
+      const float z = elevation[static_cast<std::size_t>(y) * static_cast<std::size_t>(s.width) +
+                                static_cast<std::size_t>(x)];
+      mesh.vertices.push_back({place_x, place_y, z, normal_x, normal_y, 0, colour});
+      mesh.vertices.push_back({place_x, place_y, static_cast<float>(bottom), normal_x, normal_y, 0, colour});
+    }
+    for (int n = 0; n + 1 < count; ++n) {
+      const std::uint32_t at = first + 2 * static_cast<std::uint32_t>(n);
+      mesh.indices.insert(mesh.indices.end(), {at, at + 1, at + 2, at + 2, at + 1, at + 3});
+    }
+  };
+  side(0, 0, 1, 0, s.width, 0, -1);
+  side(0, s.height - 1, 1, 0, s.width, 0, 1);
+  side(0, 0, 0, 1, s.height, -1, 0);
+  side(s.width - 1, 0, 0, 1, s.height, 1, 0);
+  mesh.surface_indices = mesh.indices.size();
+  return mesh;
+}
+
+Mesh plants_of(const PlantList& list, double exaggeration) {
+  std::vector<render::Plant> shapes;
+  std::vector<std::uint8_t> species;
+  for (const plants::PlantRecord& plant : list.plants) {
+    shapes.push_back({static_cast<double>(plant.x), static_cast<double>(plant.y),
+                      static_cast<double>(plant.z), static_cast<double>(plant.radius),
+                      static_cast<double>(list.species[plant.species].traits.stem), plant.health / 255.0});
+    species.push_back(plant.species);
+  }
+  render::PlantLook look;
+  look.vertical_exaggeration = exaggeration;
+  for (const Species& kind : list.species) look.colours.push_back(render::crown_colour(kind.appearance.hue));
+  return render::plants_mesh(shapes, species, look);
+}
+
+std::vector<Layer> layers_of(const render::TerrainLook& look) {
+  std::vector<Layer> layers;
+  for (const std::string& name : render::layers_for(look))
+    if (const MapLayer* layer = find_map_layer(name)) layers.push_back(layer->layer);
+  return layers;
+}
+
+/// All cells of the ground lie in this box of a block, with true heights.
+std::vector<render::Box> boxes_of(const render::BlockLayout& layout, double cell_size, double lowest,
+                                  double highest) {
+  std::vector<render::Box> boxes;
+  for (int block = 0; block < layout.count(); ++block) {
+    const render::CellRectangle cells = layout.vertices(block);
+    boxes.push_back({{cells.x * cell_size, cells.y * cell_size, lowest},
+                     {cells.right() * cell_size, cells.top() * cell_size, highest}});
+  }
+  return boxes;
+}
+
+std::vector<render::TerrainBlock> blocks_of(const Snapshot& s, const std::vector<int>& levels,
+                                            const render::BlockLayout& layout,
+                                            const render::TerrainLook& look) {
+  const render::LayerWindow windows = windows_of(s);
+  std::vector<render::TerrainBlock> blocks(levels.size());
+#pragma omp parallel for schedule(dynamic)
+  for (int block = 0; block < layout.count(); ++block)
+    blocks[static_cast<std::size_t>(block)] = render::build_terrain_block(
+        layout, block, levels[static_cast<std::size_t>(block)], s.cell_size, windows, look);
+  return blocks;
+}
+
+render::TerrainLook look_of(const ViewParameters& p) {
+  render::TerrainLook look;
+  look.overlay = overlay_of(p);
+  look.water = p.water;
+  look.contour_interval = p.contour_interval;
+  return look;
+}
+
+}  // namespace
+
+ViewParameters view_parameters(const std::vector<std::string>& settings) {
+  YAML::Node given(YAML::NodeType::Map);
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos) throw ConfigError("--view " + quoted(setting) + ": is not KEY=VALUE");
+    given[setting.substr(0, equals)] = setting.substr(equals + 1);
+  }
+  ViewParameters p;
+  ValidationErrors errors("--view");
+  std::set<std::string> known;
+  yaml::read_parameters(given, "", errors, p, known);
+  yaml::reject_unknown_keys(given, "", known, errors);
+  if (!p.overlay.empty() && !find_map_layer(p.overlay))
+    errors.add("overlay", quoted(p.overlay) + " is not one of: " + map_layer_names());
+  errors.throw_if_any();
+  return p;
+}
+
+std::string describe_view() {
+  std::ostringstream out;
+  write_parameter_table(out, ViewParameters{});
+  return out.str();
+}
+
+ObliqueView::ObliqueView(const ViewParameters& parameters)
+    : parameters_(parameters), rasteriser_(parameters.width, parameters.height, samples) {}
+
+void ObliqueView::choose_bounds(const Snapshot& s, double lowest, double highest) {
+  exaggeration_ =
+      parameters_.exaggeration > 0 ? parameters_.exaggeration : chosen_exaggeration(s, highest - lowest);
+  const double width = s.width * s.cell_size, height = s.height * s.cell_size;
+  bounds_ = {{0, 0, lowest * exaggeration_ - wall_share * std::max(width, height)},
+             {width, height, highest * exaggeration_}};
+}
+
+render::Picture ObliqueView::draw(Simulation& simulation) {
+  render::TerrainLook look = look_of(parameters_);
+  const auto snapshot = simulation.snapshot(layers_of(look));
+  const Snapshot& s = *snapshot;
+  const std::vector<float>& elevation = *s.find(Layer::elevation);
+  const auto range = std::minmax_element(elevation.begin(), elevation.end());
+  const auto lowest = static_cast<double>(*range.first), highest = static_cast<double>(*range.second);
+  if (exaggeration_ == 0) choose_bounds(s, lowest, highest);
+  look.vertical_exaggeration = exaggeration_;
+
+  const render::Projection projection({parameters_.azimuth_deg, parameters_.elevation_deg, parameters_.zoom},
+                                      bounds_, rasteriser_.width(), rasteriser_.height());
+  const render::BlockLayout layout(s.width, s.height);
+  const std::vector<render::Box> boxes = boxes_of(layout, s.cell_size, lowest, highest);
+  const std::vector<int> levels =
+      render::choose_levels(layout, s.cell_size, projection.view(exaggeration_), boxes,
+                            std::vector<int>(boxes.size(), -1), {samples, drawn_triangles});
+  const std::vector<render::TerrainBlock> blocks = blocks_of(s, levels, layout, look);
+
+  rasteriser_.clear(sky_top, sky_bottom);
+  for (const render::TerrainBlock& block : blocks) rasteriser_.draw(block.ground, projection, exaggeration_);
+  rasteriser_.draw(walls(s, bounds_.low.z / exaggeration_), projection, exaggeration_);
+  for (const render::TerrainBlock& block : blocks)
+    rasteriser_.draw_lines(block.contours, projection, exaggeration_);
+  if (parameters_.plants)  // their feet are exaggerated already
+    rasteriser_.draw(plants_of(*simulation.begin_plants().get(), exaggeration_), projection, 1);
+  for (const render::TerrainBlock& block : blocks) rasteriser_.blend(block.water, projection, exaggeration_);
+  return rasteriser_.picture();
+}
+
+}  // namespace desert_sim
