@@ -183,8 +183,8 @@ class RandomCalls(Scenarios):
     def without_generator(self, caller):
         """Services whose requests would be filled with words that mean nothing."""
         known = {"edit_plants", "edit_terrain", "edit_wind", "get_grid_map", "get_submap", "load_checkpoint", "load_scenario",
-                 "load_terrain", "pause", "query_terrain", "reload_parameters", "reset", "resume", "save_checkpoint",
-                 "save_terrain", "set_parameters", "set_weather", "set_wind", "set_wind_schedule", "step"}
+                 "load_terrain", "pause", "query_terrain", "redo", "reload_parameters", "reset", "resume", "save_checkpoint",
+                 "save_terrain", "set_parameters", "set_weather", "set_wind", "set_wind_schedule", "step", "undo"}
         return known.symmetric_difference(caller.services)
 
     def test_what_is_accepted_can_be_repeated(self):

@@ -79,6 +79,6 @@ class RandomMessages:
     def fit(self, image):
         """Makes step and data of an image fit its size."""
         bytes_per_pixel = {"mono8": 1, "mono16": 2}.get(image.encoding, 4)
-        image.step = image.width * bytes_per_pixel
+        image.step = min(image.width * bytes_per_pixel, 2**32 - 1)
         if image.step * image.height < 10000:
             image.data = bytes(self.draw.randrange(60) for _ in range(image.step * image.height))
