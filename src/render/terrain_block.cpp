@@ -34,6 +34,8 @@ struct MaterialWindows {
     set(vegetation, m.vegetation);
     set(obstacle, m.obstacle);
     set(resistance, m.resistance);
+    if (!(m.resistance > 0))
+      m.resistance = SurfaceMaterials().resistance;  // the terrain does not have the layer
     return ground_colour(m);
   }
 };

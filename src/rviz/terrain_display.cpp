@@ -18,6 +18,7 @@
 
 #include "kernels/view/held_costs.hpp"
 #include "src/core/error.hpp"
+#include "src/rviz/placement.hpp"
 
 namespace desert_sim {
 
@@ -97,6 +98,9 @@ TerrainDisplay::TerrainDisplay() {
       "At most so many milliseconds of each frame go into building blocks that changed.", this);
   budget_->setMin(1);
   budget_->setMax(1000);
+  fit_view_ = new rviz::BoolProperty(
+      "Fit View", false,
+      "Show the whole of each terrain that comes, if the view has a focal point and a distance.", this);
 }
 
 TerrainDisplay::~TerrainDisplay() {
@@ -141,6 +145,8 @@ void TerrainDisplay::update(float, float) {
   rviz::ViewManager* const views = context_->getViewManager();
   if (maps_.count("elevation") && place() && views->getCurrent()) {
     update_views();
+    if (fit_pending_ && fit_view_->getBool()) fit_view();
+    fit_pending_ = false;
     const Ogre::Camera* const camera = views->getCurrent()->getCamera();
     const Ogre::Viewport* const viewport = camera ? camera->getViewport() : nullptr;
     const double spent = render::RebuildQueue::steady_seconds() - begin;
@@ -239,6 +245,7 @@ void TerrainDisplay::take_elevation(const LayerChange& change_of_elevation) {
   const LayerMap::Info& info = change_of_elevation.map->info();
   if (change_of_elevation.replaced) {
     overlay_->clear();
+    fit_pending_ = true;
     scene_->set_grid(static_cast<int>(info.width), static_cast<int>(info.height), info.cell_size, window());
   }
   for (const render::CellRectangle& cells : change_of_elevation.changed) scene_->touch(cells);
@@ -270,10 +277,8 @@ render::LayerWindow TerrainDisplay::window() const {
 /// Moves the terrain to where tf says that its frame is; false and a status if tf does not know.
 bool TerrainDisplay::place() {
   const LayerMap::Info& info = maps_.at("elevation")->info();
-  Ogre::Vector3 position;
-  Ogre::Quaternion orientation;
-  const bool known =
-      context_->getFrameManager()->getTransform(info.frame, ros::Time(), position, orientation);
+  tf2::Transform fixed_from_terrain;
+  const bool known = transform_to_fixed_frame(*context_, info.frame, fixed_from_terrain);
   scene_node_->setVisible(known);
   if (!known) {
     set_status(StatusProperty::Error, "Transform",
@@ -283,11 +288,21 @@ bool TerrainDisplay::place() {
     return false;
   }
   set_status(StatusProperty::Ok, "Transform", "[" + info.frame + "]");
-  const Ogre::Vector3 corner(static_cast<Ogre::Real>(info.origin_x), static_cast<Ogre::Real>(info.origin_y),
-                             0);
-  scene_node_->setPosition(position + orientation * corner);
-  scene_node_->setOrientation(orientation);
+  const tf2::Vector3 corner = fixed_from_terrain * tf2::Vector3(info.origin_x, info.origin_y, 0);
+  scene_node_->setPosition(to_ogre(corner));
+  scene_node_->setOrientation(to_ogre(fixed_from_terrain.getRotation()));
   return true;
+}
+
+void TerrainDisplay::fit_view() {
+  const LayerMap& elevation = *maps_.at("elevation");
+  const LayerMap::Info& info = elevation.info();
+  const double width = info.width * info.cell_size, height = info.height * info.cell_size;
+  const float middle = elevation.cell_value(info.width / 2, info.height / 2);
+  const Ogre::Vector3 from_corner(static_cast<Ogre::Real>(width / 2), static_cast<Ogre::Real>(height / 2),
+                                  std::isnan(middle) ? 0 : middle * exaggeration_->getFloat());
+  show_in_view(*context_, scene_node_->getPosition() + scene_node_->getOrientation() * from_corner,
+               std::hypot(width, height));
 }
 
 void TerrainDisplay::update_views() {

@@ -63,6 +63,7 @@ class TerrainDisplay : public rviz::Display {
   void take_elevation(const LayerChange& change);
   render::LayerWindow window() const;
   bool place();
+  void fit_view();
   void update_views();
   void report();
   void report_topic();
@@ -72,7 +73,8 @@ class TerrainDisplay : public rviz::Display {
   rviz::RosTopicProperty* topic_;
   rviz::FloatProperty *exaggeration_, *contours_, *budget_, *quad_pixels_;
   rviz::IntProperty *triangles_, *most_plants_, *most_arrows_;
-  rviz::BoolProperty *materials_, *water_, *plants_, *wind_;
+  rviz::BoolProperty *materials_, *water_, *plants_, *wind_, *fit_view_;
+  bool fit_pending_ = false;  ///< there is another terrain, which the view was not fitted to
   std::unique_ptr<OverlayProperties> overlay_;
 
   std::unique_ptr<TerrainScene> scene_;

@@ -24,7 +24,7 @@ struct MapLayer {
   bool zero_is_special = false;
 };
 
-constexpr std::array<MapLayer, 26> map_layers{{
+constexpr std::array<MapLayer, 28> map_layers{{
     {"elevation", Layer::elevation, 0.005},
     {"bedrock", Layer::bedrock, 0.005},
     {"water_surface", Layer::water_surface, 0.005},
@@ -40,10 +40,12 @@ constexpr std::array<MapLayer, 26> map_layers{{
     {"suspended_sediment", Layer::suspended_sediment, 0.0005},
     {"water_velocity_x", Layer::water_velocity_x, 0.02},
     {"water_velocity_y", Layer::water_velocity_y, 0.02},
+    {"erosion_resistance", Layer::erosion_resistance, 0.01},
     {"obstacle", Layer::obstacle, 0},
     {"wind_x", Layer::wind_x, 0.05},
     {"wind_y", Layer::wind_y, 0.05},
     {"wind_shadow", Layer::wind_shadow, 0.01},
+    {"echo", Layer::echo, 0.01},
     {"slope", Layer::slope, 0.01},
     {"roughness", Layer::roughness, 0.005},
     {"step_height", Layer::step_height, 0.005},

@@ -35,8 +35,8 @@ class Maps(MapTest):
                 self.assertAlmostEqual(layers["sand_depth"][at], elevation(x, y) - 1, 4)
                 self.assertAlmostEqual(layers["bedrock"][at], 1, 4)
                 self.assertEqual(layers["water_surface"][at], layers["elevation"][at], "dry")
-                for absent in ("water_depth", "soil_depth", "vegetation", "moisture", "obstacle", "plants", "canopy_height",
-                               "illumination", "humus", "suspended_sediment", "water_velocity_x", "water_velocity_y"):
+                for absent in ("water_depth", "soil_depth", "vegetation", "moisture", "obstacle", "plants", "canopy_height", "echo",
+                               "erosion_resistance", "illumination", "humus", "suspended_sediment", "water_velocity_x", "water_velocity_y"):
                     self.assertEqual(layers[absent][at], 0, absent)
                 self.assertGreater(layers["wind_x"][at], 1)
         self.check_derived(layers)
@@ -193,7 +193,7 @@ class Maps(MapTest):
         self.assertEqual([layer.name for layer in self.submap(100, 20, 4, 4, []).map.layers],
                          ["elevation", "bedrock", "water_surface", "sand_depth", "water_depth", "soil_depth", "vegetation",
                           "plants", "canopy_height", "illumination", "humus", "moisture", "suspended_sediment",
-                          "water_velocity_x", "water_velocity_y", "obstacle", "wind_x", "wind_y", "wind_shadow", "slope",
+                          "water_velocity_x", "water_velocity_y", "erosion_resistance", "obstacle", "wind_x", "wind_y", "wind_shadow", "echo", "slope",
                           "roughness", "step_height", "traversability", "normal_x", "normal_y", "normal_z"], "all")
 
     def test_get_submap_refuses(self):

@@ -62,8 +62,10 @@ void log_start(const Scenario& scenario, const std::string& backend) {
   const double farthest = std::max(std::abs(grid.origin_x), std::abs(grid.origin_y));
   if (farthest > 1e5)
     ROS_WARN(
-        "The terrain extends to %.0f m from the origin of its frame: float32 coordinates (~points, rviz) "
-        "have a resolution of only %.2f m there.",
+        "The terrain extends to %.0f m from the origin of its frame: float32 coordinates (~points, markers) "
+        "have a resolution of only %.2f m there. The display desert_sim/Terrain is exact under the Fixed "
+        "Frame of "
+        "~center_frame.",
         farthest, farthest * 6e-8);
 }
 
