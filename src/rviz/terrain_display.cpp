@@ -298,7 +298,7 @@ void TerrainDisplay::fit_view() {
   const LayerMap& elevation = *maps_.at("elevation");
   const LayerMap::Info& info = elevation.info();
   const double width = info.width * info.cell_size, height = info.height * info.cell_size;
-  const float middle = elevation.cell_value(info.width / 2, info.height / 2);
+  const float middle = elevation.at(info.width / 2, info.height / 2);
   const Ogre::Vector3 from_corner(static_cast<Ogre::Real>(width / 2), static_cast<Ogre::Real>(height / 2),
                                   std::isnan(middle) ? 0 : middle * exaggeration_->getFloat());
   show_in_view(*context_, scene_node_->getPosition() + scene_node_->getOrientation() * from_corner,

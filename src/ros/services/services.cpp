@@ -198,7 +198,7 @@ void Services::step(const StepRequest& request, StepResponse& response) {
 
 void Services::pause(const std_srvs::TriggerRequest&, std_srvs::TriggerResponse&) {
   simulation_.pause().get();
-  publisher_.publish_now();
+  publisher_.publish_now(answer_timeout_);
 }
 
 void Services::resume(const std_srvs::TriggerRequest&, std_srvs::TriggerResponse&) {
@@ -209,7 +209,7 @@ void Services::resume(const std_srvs::TriggerRequest&, std_srvs::TriggerResponse
 void Services::reset(const std_srvs::TriggerRequest&, std_srvs::TriggerResponse&) {
   simulation_.apply(command::Reset{}).get();
   ROS_INFO("The simulation was reset to the start of the scenario.");
-  publisher_.publish_now();
+  publisher_.publish_now(answer_timeout_);
 }
 
 // ---- Checkpoints, terrains and scenarios in files.
@@ -250,7 +250,7 @@ void Services::terrain_replaced() {
     const std::lock_guard<std::mutex> lock(move_center_mutex_);
     frames_.move_center(*simulation_.terrain({Layer::elevation}).get().snapshot);
   }
-  publisher_.publish_now();
+  publisher_.publish_now(answer_timeout_);
 }
 
 void Services::save_terrain(const SaveTerrainRequest& request, SaveTerrainResponse& response) {

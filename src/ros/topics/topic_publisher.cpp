@@ -25,11 +25,15 @@ void TopicPublisher::notify() {
   wake_up_.notify_all();
 }
 
-void TopicPublisher::publish_now() {
+void TopicPublisher::publish_now(double patience) {
   std::unique_lock<std::mutex> lock(mutex_);
   const std::uint64_t mine = ++requests_;
   wake_up_.notify_all();
-  served_changed_.wait(lock, [&] { return served_ >= mine || stopping_ || !failure_.empty(); });
+  const auto served = [&] { return served_ >= mine || stopping_ || !failure_.empty(); };
+  if (patience > 0)
+    served_changed_.wait_for(lock, std::chrono::duration<double>(patience), served);
+  else
+    served_changed_.wait(lock, served);
 }
 
 void TopicPublisher::set_parameters(const PublisherSetup& parameters) {
