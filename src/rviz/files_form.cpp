@@ -9,6 +9,7 @@
 #include <QComboBox>
 #include <QGroupBox>
 #include <QHBoxLayout>
+#include <QLineEdit>
 #include <QVBoxLayout>
 
 #include "src/rviz/fields.hpp"
@@ -23,6 +24,7 @@ QComboBox* name_field(const QString& name, const QString& tip) {
   field->setObjectName(name);
   field->setToolTip(tip);
   field->setEditable(true);
+  field->lineEdit()->setPlaceholderText("choose or write a name");
   field->setInsertPolicy(QComboBox::NoInsert);
   field->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   field->setMinimumContentsLength(12);

@@ -80,6 +80,7 @@ QWidget* RunControls::make_rate_row() {
   auto* const row = new QWidget;
   auto* const layout = new QHBoxLayout(row);
   layout->setContentsMargins(0, 0, 0, 0);
+  rate_->setMaximumWidth(QWIDGETSIZE_MAX);
   layout->addWidget(new QLabel("rate"));
   layout->addWidget(rate_, 1);
   layout->addWidget(undo_);

@@ -36,6 +36,7 @@ WeatherForm::WeatherForm(NodeLink& link, QWidget* parent) : QWidget(parent), lin
   sea_ = new QComboBox;
   sea_->setObjectName("sea");
   sea_->addItems({"none", "border", "everywhere"});
+  sea_->setMaximumWidth(rain_->maximumWidth());
   sea_->setToolTip("Where the water surface is at least at the sea level");
   sea_level_ = number_field("sea_level", -1e6, 1e6, 0, 2, " m", "In the frame of the terrain");
   wave_strength_ =

@@ -10,9 +10,11 @@ namespace desert_sim {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double shortest_scale = 15, fastest = 100;  // [m/s]; ~set_wind takes no more than the latter
+constexpr double shortest_scale = 10, fastest = 100;  // [m/s]; ~set_wind takes no more than the latter
 constexpr int margin = 16;                            // for the letters of the compass [pixels]
-constexpr int rings = 3;
+
+/// Between two rings [m/s]; the scale is a multiple of it.
+double ring_step(double scale) { return scale > 30 ? 20 : 5; }
 
 void draw_needle(QPainter& painter, const QPointF& from, const QPointF& to, const QColor& colour,
                  double width) {
@@ -64,8 +66,9 @@ void WindDial::set_present(const DialWind& wind) {
 
 void WindDial::fit_scale() {
   if (dragging_) return;  // the pointer would mean another speed
-  const double speed = std::max(wanted_.speed, present_.speed);
-  scale_ = std::min(fastest, std::max(shortest_scale, 5 * std::ceil(1.2 * speed / 5)));
+  const double needed = 1.2 * std::max(wanted_.speed, present_.speed);
+  const double step = ring_step(needed);
+  scale_ = std::min(fastest, std::max(shortest_scale, step * std::ceil(needed / step)));
 }
 
 void WindDial::drag_to(const QPointF& point) {
@@ -103,6 +106,7 @@ void WindDial::paintEvent(QPaintEvent*) {
   QColor faint = text;
   faint.setAlpha(60);
   painter.setBrush(palette().color(QPalette::Base));
+  const int rings = static_cast<int>(std::lround(scale_ / ring_step(scale_)));
   for (int n = rings; n > 0; --n) {
     painter.setPen(QPen(faint, 1));
     painter.drawEllipse(centre, radius() * n / rings, radius() * n / rings);

@@ -48,7 +48,7 @@ class WindDial : public QWidget {
   void fit_scale();
 
   DialWind wanted_, present_;
-  double scale_ = 15;
+  double scale_ = 10;
   bool dragging_ = false;
 };
 

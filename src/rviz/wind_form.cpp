@@ -58,6 +58,10 @@ QWidget* WindForm::make_constant() {
   fields->addRow("to", direction_);
   fields->addRow("speed", speed_);
   fields->addRow("ramp", ramp_);
+  present_ = new QLabel;
+  present_->setObjectName("present_wind");
+  present_->setToolTip("The present wind high above the ground: the grey needle");
+  fields->addRow("now", present_);
   auto* const row = new QHBoxLayout;
   row->addWidget(dial_, 1);
   row->addLayout(fields);
@@ -164,6 +168,8 @@ void WindForm::apply_schedule() {
 void WindForm::show_status(const SimulationStatus& status) {
   const DialWind present{degrees_of(status.wind_above), std::hypot(status.wind_above.x, status.wind_above.y)};
   dial_->set_present(present);
+  present_->setText(
+      QStringLiteral("%1 m/s to %2 °").arg(present.speed, 0, 'f', 1).arg(present.direction_deg, 0, 'f', 0));
   if (seen_ || dial_->dragging()) return;
   seen_ = true;
   const QSignalBlocker no_direction(direction_), no_speed(speed_);

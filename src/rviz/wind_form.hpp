@@ -37,6 +37,7 @@ class WindForm : public QWidget {
 
   NodeLink& link_;
   WindDial* dial_;
+  QLabel* present_;
   QDoubleSpinBox *direction_, *speed_, *ramp_;
   ErrorLine *wind_error_, *schedule_error_;
   QComboBox* kind_;
