@@ -73,7 +73,6 @@ void NodeWatch::loop() {
   std::string node;
   unsigned generation = 0;
   Clock::time_point heard, looked;
-  bool subscribed = false;
   while (true) {
     {
       std::unique_lock<std::mutex> lock(mutex_);
@@ -82,26 +81,24 @@ void NodeWatch::loop() {
       if (generation_ != generation) {
         generation = generation_;
         node = wanted_;
-        subscribed = false;
+        subscriber = ros::Subscriber();
         heard = looked = Clock::time_point();
       }
     }
-    if (!subscribed) subscriber = ros::Subscriber();
     queue.callAvailable();
     const auto now = Clock::now();
     const bool silent = now - heard >= longest_silence || subscriber.getNumPublishers() == 0;
     if (node.empty() || !silent || now - looked < between_looks) continue;
     looked = now;
     const Presence presence = look(node);
-    // To subscribe waits for the master, and is therefore done when it answers only.
-    if (!subscribed && presence != Presence::no_master) {
+    // A new subscription also finds a node that was started anew under a new master, and is sent the status at once.
+    subscriber = ros::Subscriber();
+    if (presence == Presence::alive)
       subscriber = node_handle.subscribe<SimulationStatus>(
           node + "/status", 1, [this, &heard, generation](const SimulationStatusConstPtr& status) {
             heard = Clock::now();
             tell(Presence::alive, status, generation);
           });
-      subscribed = true;
-    }
     tell(presence, nullptr, generation);
   }
 }
