@@ -1,6 +1,6 @@
 #pragma once
-/// The node that a panel works with: its name, its status, and calls of its services that tell an ErrorLine what
-/// became of them.
+/// The node that a panel works with: its name, its status, and calls of its services that tell an ErrorLine
+/// what became of them.
 
 #include <QObject>
 #include <QPointer>
@@ -27,8 +27,8 @@ class NodeLink : public QObject {
   const NodeWatch& watch() const { return watch_; }
   ServiceCaller& caller() { return caller_; }
 
-  /// Calls a service of the node by its name, such as "pause". `line` shows that it is under way, and why it was
-  /// refused. `done` is called after success.
+  /// Calls a service of the node by its name, such as "pause". `line` shows that it is under way, and why it
+  /// was refused. `done` is called after success.
   template <class Service>
   void call(ErrorLine* line, const std::string& service, const typename Service::Request& request = {},
             std::function<void(const typename Service::Response&)> done = nullptr) {

@@ -91,7 +91,8 @@ void NodeWatch::loop() {
     if (node.empty() || !silent || now - looked < between_looks) continue;
     looked = now;
     const Presence presence = look(node);
-    // A new subscription also finds a node that was started anew under a new master, and is sent the status at once.
+    // A new subscription also finds a node that was started anew under a new master, and is sent the status
+    // at once.
     subscriber = ros::Subscriber();
     if (presence == Presence::alive)
       subscriber = node_handle.subscribe<SimulationStatus>(

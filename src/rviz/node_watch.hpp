@@ -26,8 +26,8 @@ class NodeWatch : public QObject {
   explicit NodeWatch(QObject* parent = nullptr);
   ~NodeWatch() override;
 
-  /// Watches the node of this name, such as /desert_sim, from now on. It begins with searching. An empty name:
-  /// none.
+  /// Watches the node of this name, such as /desert_sim, from now on. It begins with searching. An empty
+  /// name: none.
   void watch(const std::string& node);
   Presence presence() const { return presence_; }
 

@@ -13,8 +13,8 @@ struct SceneLists {
   QStringList checkpoints;  ///< there, with the extension .ckpt
 };
 
-/// Asks rospack, the parameter server and the disk; may take a while. What lies on another machine than this one
-/// is not listed.
+/// Asks rospack, the parameter server and the disk; may take a while. What lies on another machine than this
+/// one is not listed.
 SceneLists list_scenes(const std::string& node);
 
 /// The lists of one ~data_dir, without `installed`.

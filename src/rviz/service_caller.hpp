@@ -28,8 +28,8 @@ class ServiceCaller : public QObject {
   /// Waits for no service: a call under way is given up.
   ~ServiceCaller() override;
 
-  /// Calls a service whose response has `success` and `message`, after all calls before. `done` is called in the
-  /// thread of this object, unless the call is cancelled or the object is gone.
+  /// Calls a service whose response has `success` and `message`, after all calls before. `done` is called in
+  /// the thread of this object, unless the call is cancelled or the object is gone.
   template <class Service>
   void call(const std::string& service, const typename Service::Request& request,
             std::function<void(const CallOutcome&, const typename Service::Response&)> done) {
@@ -56,8 +56,8 @@ class ServiceCaller : public QObject {
       return [done, outcome] { done(outcome); };
     });
   }
-  /// Does `job` on the thread of this caller, after all calls before; what it returns is called in the thread of
-  /// this object.
+  /// Does `job` on the thread of this caller, after all calls before; what it returns is called in the thread
+  /// of this object.
   void work(std::function<std::function<void()>()> job);
 
   /// Gives up the call under way and those that wait; none of them is answered.

@@ -1,4 +1,5 @@
-// The panel desert_sim/Panel when its ROS master ends and another one is started. The master is this program's own.
+// The panel desert_sim/Panel when its ROS master ends and another one is started. The master is this
+// program's own.
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The panel desert_sim/Panel on a screen of Xvfb, with a node of its own: what is clicked and typed reaches the node, and
-// what the node refuses, or that it has gone, is shown.
+// The panel desert_sim/Panel on a screen of Xvfb, with a node of its own: what is clicked and typed reaches
+// the node, and what the node refuses, or that it has gone, is shown.
 
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/SimulationStatus.h>

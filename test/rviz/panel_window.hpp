@@ -1,5 +1,6 @@
 #pragma once
-/// The panel desert_sim/Panel in the test's own process, loaded as rviz does, with a hand that clicks and types.
+/// The panel desert_sim/Panel in the test's own process, loaded as rviz does, with a hand that clicks and
+/// types.
 
 #include <rviz/panel.h>
 
