@@ -4,8 +4,8 @@
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
 #include <desert_sim/GetSubmap.h>
-#include <desert_sim/TerrainDiff.h>
 #include <desert_sim/SimulationStatus.h>
+#include <desert_sim/TerrainDiff.h>
 #include <desert_sim/Undo.h>
 
 #include <atomic>

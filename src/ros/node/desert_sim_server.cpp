@@ -56,7 +56,8 @@ RasterLoader node_raster_loader(const NodeSetup& setup, const DataFolder& files)
           load_own = raster_loader_with_bags({"", setup.node.all_raster_formats}),
           load_other = raster_loader_with_bags({files.path(), false})](const RasterRequest& request) {
     if (std::count(own.begin(), own.end(), request.path) > 0) return load_own(request);
-    if (const std::string& installed = installed_scenario_folder(); begins_with_folder(request.path, installed))
+    if (const std::string& installed = installed_scenario_folder();
+        begins_with_folder(request.path, installed))
       return raster_loader_with_bags({installed, false})(request);
     return load_other(request);
   };
