@@ -6,7 +6,7 @@ if(DESERT_WITH_RVIZ)
     if(NOT rviz_FOUND)
       string(APPEND rviz_missing " rviz (librviz-dev or ros-noetic-rviz)")
     else()
-      find_package(Qt5 QUIET COMPONENTS Widgets)
+      find_package(Qt5 QUIET COMPONENTS Widgets Test) # Test: for tests of the panel
       if(NOT Qt5_FOUND)
         string(APPEND rviz_missing " Qt5 Widgets (qtbase5-dev)")
       endif()

@@ -72,7 +72,7 @@ void Session::step() {
 Scenario Session::read_scenario(const command::LoadScenario& command) const {
   return command.terrain_only && is_bag(command.path)
              ? scenario_from_bands(command.path, load_raster_, command.fill_nodata)
-             : desert_sim::load_scenario(command.path, {}, folder_);
+             : desert_sim::load_scenario(command.path, {}, command.folder.empty() ? folder_ : command.folder);
 }
 
 std::uint64_t Session::load_scenario(const command::LoadScenario& command) {

@@ -49,6 +49,7 @@ class ChildProcess {
     kill(pid_, with_signal);
     return wait();
   }
+  int signal(int number) const { return kill(pid_, number); }
 
  private:
   pid_t pid_;
@@ -63,6 +64,8 @@ class NodeProcess {
       : name_(name), process_({DESERT_NODE_BINARY, parameters(name, more)}) {}
 
   int end(int with_signal) { return process_.end(with_signal); }
+  /// As kill(2).
+  int signal(int number) const { return process_.signal(number); }
 
   /// A call over a new connection; a test failure if there is no answer, or a refusal.
   template <class Service>

@@ -3,6 +3,8 @@
 #include <desert_sim/LoadScenario.h>
 #include <desert_sim/LoadTerrain.h>
 #include <desert_sim/SaveTerrain.h>
+#include <desert_sim/SimulationStatus.h>
+#include <std_srvs/Trigger.h>
 #include <sys/stat.h>
 
 #include <cmath>
@@ -108,6 +110,26 @@ TEST_F(TerrainFiles, ReadNoRasterOutsideTheDataFolder) {
   expect_refused<LoadScenario>("load_scenario", beginning("up.yaml"), outside.filename().string(),
                                "is not below");
   fs::remove(outside);
+}
+
+TEST_F(TerrainFiles, InstalledScenariosHaveNames) {
+  Listener<SimulationStatus> statuses("status");
+  const auto is_shown = [&](const std::string& scenario) {
+    return wait_until([&] { return statuses.last().scenario == scenario; });
+  };
+  for (const char* name : {"dem", "nebkha"}) {  // the former has a raster beside it
+    const auto loaded = call<LoadScenario>("load_scenario", beginning(name));
+    ASSERT_TRUE(loaded.success) << loaded.message;
+    EXPECT_TRUE(is_shown(name));
+    EXPECT_EQ(loaded.state_hash, hash());
+    step(1);
+    EXPECT_TRUE(call<std_srvs::Trigger>("reset").success) << "its rasters are read again";
+    EXPECT_EQ(loaded.state_hash, hash());
+  }
+  for (const char* name : {"venturi2", "../scenarios/dem", "dem.yaml", "./dem", "dem_example"})
+    expect_refused<LoadScenario>("load_scenario", beginning(name), "'" + std::string(name) + "'", "");
+  write("mine", "grid: {width: 9, height: 7}\n");
+  EXPECT_TRUE(call<LoadScenario>("load_scenario", beginning("mine")).success) << "a file below ~data_dir";
 }
 
 TEST_F(TerrainFiles, ReadNoFormatThatNamesOtherFiles) {

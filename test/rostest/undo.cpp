@@ -4,6 +4,7 @@
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
 #include <desert_sim/GetSubmap.h>
+#include <desert_sim/SimulationStatus.h>
 #include <desert_sim/TerrainDiff.h>
 #include <desert_sim/Undo.h>
 
@@ -48,6 +49,13 @@ Undo::Response turn(const std::string& service, const std::string& stroke = "") 
 
 TEST_F(UndoServices, AStrokeComesBackWithItsVolumeAndItsCells) {
   const std::string before = hash();
+  Listener<SimulationStatus> statuses("status");
+  const auto status_has = [&](std::uint32_t undoable, std::uint32_t redoable) {
+    return wait_until([&] {
+      const SimulationStatus status = statuses.last();
+      return status.undoable == undoable && status.redoable == redoable;
+    });
+  };
   const auto first = edit(brush(50, 30, "a"));
   edit(brush(90, 30, "b"));
   const auto second = edit(brush(58, 30, "a"));
@@ -63,7 +71,9 @@ TEST_F(UndoServices, AStrokeComesBackWithItsVolumeAndItsCells) {
   EXPECT_LE(undone.x + undone.width, second.x + second.width);
   EXPECT_EQ(undone.undoable, 1u);
   EXPECT_EQ(undone.redoable, 1u);
+  EXPECT_TRUE(status_has(1, 1));
   EXPECT_EQ(turn("redo").stroke, "a");
+  EXPECT_TRUE(status_has(2, 0));
   EXPECT_EQ(hash(), painted);
   turn("undo");
   EXPECT_EQ(turn("undo").undoable, 0u);

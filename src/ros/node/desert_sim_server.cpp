@@ -8,6 +8,7 @@
 
 #include "src/core/log.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
+#include "src/ros/node/scenario_file.hpp"
 
 namespace desert_sim {
 
@@ -43,14 +44,22 @@ void log_to_ros(Severity severity, const std::string& message) {
     ROS_ERROR("%s", message.c_str());
 }
 
-/// Reads the rasters of the node's own scenario wherever they lie, and all others below the data folder, in
-/// the allowed formats, only.
+/// Whether the path begins with the folder; a path that leads out of it again is for InputFile to refuse.
+bool begins_with_folder(const std::string& path, const std::string& folder) {
+  return !folder.empty() && path.compare(0, folder.size() + 1, folder + "/") == 0;
+}
+
+/// Reads the rasters of the node's own scenario wherever they lie, and all others below the data folder or
+/// beside the installed scenarios, in the allowed formats, only.
 RasterLoader node_raster_loader(const NodeSetup& setup, const DataFolder& files) {
   return [own = raster_paths(setup.scenario),
           load_own = raster_loader_with_bags({"", setup.node.all_raster_formats}),
           load_other = raster_loader_with_bags({files.path(), false})](const RasterRequest& request) {
-    const bool is_own = std::count(own.begin(), own.end(), request.path) > 0;
-    return is_own ? load_own(request) : load_other(request);
+    if (std::count(own.begin(), own.end(), request.path) > 0) return load_own(request);
+    if (const std::string& installed = installed_scenario_folder();
+        begins_with_folder(request.path, installed))
+      return raster_loader_with_bags({installed, false})(request);
+    return load_other(request);
   };
 }
 

@@ -65,23 +65,43 @@ std::string package_folder() {
 
 }  // namespace
 
+const std::string& installed_scenario_folder() {
+  static const std::string folder = [] {
+    const std::string package = package_folder();
+    std::error_code error;
+    const fs::path found =
+        package.empty() ? fs::path() : fs::canonical(fs::path(package) / "config" / "scenarios", error);
+    return error ? std::string() : found.string();
+  }();
+  return folder;
+}
+
+std::vector<std::string> installed_scenarios() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator entry(installed_scenario_folder(), error), end; !error && entry != end;
+       entry.increment(error))
+    if (entry->path().extension() == ".yaml") names.push_back(entry->path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string installed_scenario_file(const std::string& name) {
+  const std::vector<std::string> names = installed_scenarios();
+  if (!std::binary_search(names.begin(), names.end(), name)) return "";
+  return (fs::path(installed_scenario_folder()) / (name + ".yaml")).string();
+}
+
 std::string scenario_file(const std::string& name) {
   if (name.find('/') != std::string::npos || ends_with(name, ".yaml") || ends_with(name, ".yml")) return name;
-  const std::string package = package_folder();
-  if (package.empty())
+  if (const std::string file = installed_scenario_file(name); !file.empty()) return file;
+  if (installed_scenario_folder().empty())
     throw ConfigError("~scenario: '" + name +
                       "' is not a path, and the package desert_sim is not in ROS_PACKAGE_PATH");
-  const fs::path folder = fs::path(package) / "config" / "scenarios";
-  std::error_code error;
-  if (fs::exists(folder / (name + ".yaml"), error)) return (folder / (name + ".yaml")).string();
-  std::vector<std::string> known;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (entry->path().extension() == ".yaml") known.push_back(entry->path().stem().string());
-  std::sort(known.begin(), known.end());
   std::string all;
-  for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
-  throw ConfigError("~scenario: no scenario '" + name + "' exists in " + folder.string() + " (known: " + all +
-                    ")");
+  for (const std::string& one : installed_scenarios()) all += (all.empty() ? "" : ", ") + one;
+  throw ConfigError("~scenario: no scenario '" + name + "' exists in " + installed_scenario_folder() +
+                    " (known: " + all + ")");
 }
 
 }  // namespace desert_sim

@@ -212,6 +212,8 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     r.balance = s.balance();
     r.changes = s.describe_changes();
     r.wind_above = s.wind_above();
+    r.undoable = s.history().undoable();
+    r.redoable = s.history().redoable();
     r.snapshots = snapshots_;
     if (paused_ && step_requests_.empty()) {
       r.hashed = true;

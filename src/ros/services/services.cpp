@@ -6,6 +6,7 @@
 
 #include "src/core/quoted.hpp"
 #include "src/ros/conversion/messages.hpp"
+#include "src/ros/node/scenario_file.hpp"
 #include "src/ros/services/requests.hpp"
 #include "src/ros/services/terrain_formats.hpp"
 #include "src/scenario/band_terrain.hpp"
@@ -279,7 +280,13 @@ void Services::load_terrain(const LoadTerrainRequest& request, LoadTerrainRespon
 }
 
 void Services::load_scenario(const LoadScenarioRequest& request, LoadScenarioResponse& response) {
-  response.state_hash = load({files_.for_reading(request.name), false, 0, false});
+  command::LoadScenario command;
+  command.path = installed_scenario_file(request.name);
+  if (command.path.empty())
+    command.path = files_.for_reading(request.name);
+  else
+    command.folder = installed_scenario_folder();
+  response.state_hash = load(command);
 }
 
 std::string Services::load(const command::LoadScenario& command) {

@@ -58,6 +58,8 @@ SimulationStatusPtr status_message(const StatusReport& report, const std::string
   message->changes = report.changes;
   message->wind_above = vector_of(report.wind_above);
   if (report.hashed) message->state_hash = hash_text(report.hash);
+  message->undoable = static_cast<std::uint32_t>(report.undoable);
+  message->redoable = static_cast<std::uint32_t>(report.redoable);
   message->snapshots = report.snapshots;
   return message;
 }

@@ -219,6 +219,9 @@ struct LoadScenario {
   bool terrain_only = false;
   std::uint64_t hash = 0;
   bool fill_nodata = false;
+  /// The file lies below this folder instead of the one that Session::confine_commands() was told; empty: it
+  /// does not. A journal does not have it, because a replay is not confined.
+  std::string folder{};
 };
 
 /// Whether the terrain is another one after the command, perhaps of another shape.

@@ -209,8 +209,14 @@ CommandResult EditHistory::turn(Stroke& stroke, bool with_change) {
   release_obstacles();
   recount(stroke, before);
   keep_to_memory();
-  for (const Stroke& s : strokes_) ++(s.undone ? result.redoable : result.undoable);
+  result.undoable = undoable();
+  result.redoable = redoable();
   return result;
+}
+
+int EditHistory::redoable() const {
+  return static_cast<int>(
+      std::count_if(strokes_.begin(), strokes_.end(), [](const Stroke& s) { return s.undone; }));
 }
 
 }  // namespace desert_sim

@@ -31,6 +31,9 @@ class EditHistory {
   void set_memory(std::size_t bytes);
   bool remembers() const { return memory_ > 0; }
   std::size_t bytes() const;
+  /// How many strokes can be undone, and redone, now.
+  int undoable() const { return static_cast<int>(strokes_.size()) - redoable(); }
+  int redoable() const;
 
   // ---- Painting. A name that is not empty and belongs to a stroke which nobody has undone or redone
   // continues that stroke.

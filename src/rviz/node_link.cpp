@@ -1,0 +1,46 @@
+#include "src/rviz/node_link.hpp"
+
+#include <dynamic_reconfigure/Reconfigure.h>
+#include <ros/names.h>
+
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+NodeLink::NodeLink(QObject* parent) : QObject(parent) {
+  connect(&watch_, &NodeWatch::presence_changed, this, &NodeLink::presence_changed);
+  connect(&watch_, &NodeWatch::status_came, this, &NodeLink::status_came);
+}
+
+void NodeLink::set_node(const std::string& name) {
+  std::string problem;
+  if (name.empty() || !ros::names::validate(name, problem))
+    throw ConfigError("'" + name + "' is not the name of a node" + (problem.empty() ? "" : ": " + problem));
+  const std::string resolved = ros::names::resolve(name);
+  caller_.cancel();
+  slow_caller_.cancel();
+  node_ = resolved;
+  watch_.watch(node_);
+  Q_EMIT node_changed();
+}
+
+void NodeLink::set_step_rate(ErrorLine* line, double rate) {
+  dynamic_reconfigure::ReconfigureRequest request;
+  request.config.doubles.resize(1);
+  request.config.doubles[0].name = "step_rate";
+  request.config.doubles[0].value = rate;
+  line->show_note("set_parameters ...");
+  caller_.call_plain<dynamic_reconfigure::Reconfigure>(
+      node_ + "/set_parameters", request, [line = QPointer<ErrorLine>(line)](const CallOutcome& outcome) {
+        if (line) show(*line, outcome);
+      });
+}
+
+void NodeLink::show(ErrorLine& line, const CallOutcome& outcome) {
+  if (outcome.success)
+    line.show_nothing();
+  else
+    line.show_error(outcome.message.empty() ? "refused without a reason" : outcome.message);
+}
+
+}  // namespace desert_sim

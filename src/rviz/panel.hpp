@@ -1,0 +1,44 @@
+#pragma once
+/// The panel desert_sim/Panel of rviz: steers a node through its public services, and shows its status.
+
+#include <rviz/panel.h>
+
+#include "src/rviz/node_link.hpp"
+
+class QLineEdit;
+
+namespace desert_sim {
+
+class FilesForm;
+class RunControls;
+class StatusView;
+class WindForm;
+
+class DesertPanel : public rviz::Panel {
+  Q_OBJECT
+
+ public:
+  explicit DesertPanel(QWidget* parent = nullptr);
+
+  void load(const rviz::Config& config) override;
+  void save(rviz::Config config) const override;
+
+ private Q_SLOTS:
+  void choose_node();
+  void show_presence();
+  void show_status(const desert_sim::SimulationStatusConstPtr& status);
+
+ private:
+  QWidget* make_controls();
+
+  NodeLink link_;  ///< before the forms, which use it
+  QLineEdit* node_;
+  ErrorLine* node_error_;
+  StatusView* status_;
+  RunControls* run_;
+  WindForm* wind_;
+  FilesForm* files_;
+  QWidget* controls_;  ///< all that needs a node
+};
+
+}  // namespace desert_sim

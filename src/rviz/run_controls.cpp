@@ -1,0 +1,117 @@
+#include "src/rviz/run_controls.hpp"
+
+#include <desert_sim/Step.h>
+#include <desert_sim/Undo.h>
+#include <std_srvs/Trigger.h>
+
+#include <QHBoxLayout>
+#include <QSpinBox>
+#include <QVBoxLayout>
+#include <cstdio>
+
+#include "src/rviz/fields.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+/// What an undo or redo could not bring back; empty if it was exact.
+std::string missing(const UndoResponse& answer) {
+  std::string text;
+  for (const ReturnedMaterial& material : answer.materials) {
+    if (material.missing <= 0) continue;
+    char volume[64];
+    std::snprintf(volume, sizeof volume, "%.3g m³ of ", material.missing);
+    text += (text.empty() ? "" : ", ") + (volume + material.material);
+  }
+  if (answer.missing_plants > 0)
+    text += (text.empty() ? "" : ", ") + std::to_string(answer.missing_plants) + " plants";
+  return text.empty() ? "" : "missing, because they have moved on: " + text;
+}
+
+}  // namespace
+
+RunControls::RunControls(NodeLink& link, QWidget* parent) : QWidget(parent), link_(link) {
+  error_ = new ErrorLine("run_error");
+  step_error_ = new ErrorLine("step_error");
+  undo_error_ = new ErrorLine("undo_error");
+  auto* const all = new QVBoxLayout(this);
+  all->setContentsMargins(0, 0, 0, 0);
+  all->setSpacing(4);
+  all->addWidget(make_run_row());
+  all->addWidget(step_error_);
+  all->addWidget(make_rate_row());
+  all->addWidget(error_);
+  all->addWidget(undo_error_);
+}
+
+QWidget* RunControls::make_run_row() {
+  run_ = button("run", "Run", "Make steps at the rate below");
+  pause_ = button("pause", "Pause", "Stop between two steps");
+  step_ = button("step", "Step", "Make exactly so many steps, also while it runs");
+  steps_ = new QSpinBox;
+  steps_->setObjectName("steps");
+  steps_->setRange(1, 1000000000);
+  steps_->setMaximumWidth(90);
+  reset_ = button("reset", "Reset", "Back to the start of the scenario");
+  auto* const row = new QWidget;
+  auto* const layout = new QHBoxLayout(row);
+  layout->setContentsMargins(0, 0, 0, 0);
+  for (QWidget* const widget : std::initializer_list<QWidget*>{run_, pause_, step_, steps_, reset_})
+    layout->addWidget(widget);
+  for (QPushButton* const narrow : {run_, pause_, step_, reset_}) narrow->setMinimumWidth(50);
+  connect(run_, &QPushButton::clicked, this, [this] { link_.call<std_srvs::Trigger>(error_, "resume"); });
+  connect(pause_, &QPushButton::clicked, this, [this] { link_.call<std_srvs::Trigger>(error_, "pause"); });
+  connect(reset_, &QPushButton::clicked, this, [this] { link_.call<std_srvs::Trigger>(error_, "reset"); });
+  connect(step_, &QPushButton::clicked, this, [this] {
+    StepRequest request;
+    request.steps = static_cast<std::uint32_t>(steps_->value());
+    link_.call_apart<Step>(step_error_, "step", request);
+  });
+  return row;
+}
+
+QWidget* RunControls::make_rate_row() {
+  rate_ =
+      number_field("rate", 0, 1e6, 10, 1, " steps/s", "Steps a second of wall time; 0: as fast as it can");
+  rate_->setSpecialValueText("as fast as it can");
+  undo_ = button("undo", "Undo", "Take back the stroke that was painted last");
+  redo_ = button("redo", "Redo", "Give back what was undone last");
+  auto* const row = new QWidget;
+  auto* const layout = new QHBoxLayout(row);
+  layout->setContentsMargins(0, 0, 0, 0);
+  rate_->setMaximumWidth(QWIDGETSIZE_MAX);
+  layout->addWidget(new QLabel("rate"));
+  layout->addWidget(rate_, 1);
+  layout->addWidget(undo_);
+  layout->addWidget(redo_);
+  connect(rate_, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
+          [this](double rate) { link_.set_step_rate(error_, rate); });
+  connect(undo_, &QPushButton::clicked, this, [this] { turn("undo"); });
+  connect(redo_, &QPushButton::clicked, this, [this] { turn("redo"); });
+  return row;
+}
+
+void RunControls::turn(const char* service) {
+  link_.call<Undo>(undo_error_, service, {}, [this](const UndoResponse& answer) {
+    if (const std::string text = missing(answer); !text.empty()) undo_error_->show_note(text);
+  });
+}
+
+void RunControls::show_status(const SimulationStatus& status) {
+  const bool paused = status.state == SimulationStatus::PAUSED;
+  run_->setEnabled(paused);
+  pause_->setEnabled(!paused);
+  undo_->setText(QStringLiteral("Undo (%1)").arg(status.undoable));
+  undo_->setEnabled(status.undoable > 0);
+  redo_->setText(QStringLiteral("Redo (%1)").arg(status.redoable));
+  redo_->setEnabled(status.redoable > 0);
+  if (rate_->hasFocus()) return;  // somebody types
+  const QSignalBlocker silent(rate_);
+  rate_->setValue(status.step_rate);
+}
+
+int RunControls::steps() const { return steps_->value(); }
+void RunControls::set_steps(int steps) { steps_->setValue(steps); }
+
+}  // namespace desert_sim

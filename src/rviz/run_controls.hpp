@@ -1,0 +1,39 @@
+#pragma once
+/// Running, stepping, the rate, and undo of a node.
+
+#include <desert_sim/SimulationStatus.h>
+
+#include <QWidget>
+
+#include "src/rviz/node_link.hpp"
+
+class QDoubleSpinBox;
+class QPushButton;
+class QSpinBox;
+
+namespace desert_sim {
+
+class RunControls : public QWidget {
+  Q_OBJECT
+
+ public:
+  /// `link` must live longer.
+  explicit RunControls(NodeLink& link, QWidget* parent = nullptr);
+
+  void show_status(const SimulationStatus& status);
+  int steps() const;
+  void set_steps(int steps);
+
+ private:
+  QWidget* make_run_row();
+  QWidget* make_rate_row();
+  void turn(const char* service);  ///< undo or redo
+
+  NodeLink& link_;
+  QPushButton *run_, *pause_, *step_, *reset_, *undo_, *redo_;
+  QSpinBox* steps_;
+  QDoubleSpinBox* rate_;
+  ErrorLine *error_, *step_error_, *undo_error_;
+};
+
+}  // namespace desert_sim

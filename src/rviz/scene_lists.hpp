@@ -1,0 +1,23 @@
+#pragma once
+/// What can be loaded by name.
+
+#include <QStringList>
+#include <string>
+
+namespace desert_sim {
+
+struct SceneLists {
+  QStringList installed;    ///< names of config/scenarios, which every node takes
+  QStringList scenarios;    ///< YAML files below the node's ~data_dir
+  QStringList terrains;     ///< folders and bags there, for ~load_terrain
+  QStringList checkpoints;  ///< there, with the extension .ckpt
+};
+
+/// Asks rospack, the parameter server and the disk; may take a while. What lies on another machine than this
+/// one is not listed.
+SceneLists list_scenes(const std::string& node);
+
+/// The lists of one ~data_dir, without `installed`.
+SceneLists list_folder(const std::string& data_dir);
+
+}  // namespace desert_sim

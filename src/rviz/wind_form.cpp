@@ -1,0 +1,183 @@
+#include "src/rviz/wind_form.hpp"
+
+#include <desert_sim/SetWind.h>
+#include <desert_sim/SetWindSchedule.h>
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QFormLayout>
+#include <QGroupBox>
+#include <QHBoxLayout>
+#include <QSpinBox>
+#include <QVBoxLayout>
+#include <cmath>
+
+#include "src/rviz/fields.hpp"
+#include "src/rviz/number_table.hpp"
+#include "src/rviz/wind_dial.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+enum Column { direction, speed, duration, segment_ramp, weight };
+
+std::vector<NumberTable::Column> segment_columns() {
+  return {{"to [°]", "Where the wind blows to, counter-clockwise from east", -360, 360, 0, 1},
+          {"m/s", "Speed high above the ground", 0, 100, 6, 1},
+          {"for [s]", "Simulated time, including the ramp", 0.001, 1e12, 60, 1},
+          {"ramp [s]", "Simulated time of the change to this wind", 0, 1e12, 0, 1},
+          {"weight", "How often this wind is drawn, compared with the others", 0, 1e6, 1, 2}};
+}
+
+double degrees_of(const geometry_msgs::Vector3& wind) {
+  const double angle = std::atan2(wind.y, wind.x) * 180 / 3.14159265358979323846;
+  return angle < 0 ? angle + 360 : angle;
+}
+
+}  // namespace
+
+WindForm::WindForm(NodeLink& link, QWidget* parent) : QWidget(parent), link_(link) {
+  auto* const all = new QVBoxLayout(this);
+  all->addWidget(make_constant());
+  all->addWidget(make_schedule());
+  all->addStretch();
+}
+
+QWidget* WindForm::make_constant() {
+  dial_ = new WindDial;
+  dial_->setObjectName("wind_dial");
+  direction_ = number_field("wind_direction", 0, 360, 0, 0, " °",
+                            "Where the wind is to blow to, counter-clockwise from east");
+  direction_->setWrapping(true);
+  speed_ = number_field("wind_speed", 0, 100, 0, 1, " m/s", "Speed high above the ground");
+  ramp_ = number_field("wind_ramp", 0, 1e12, 0, 1, " s",
+                       "Simulated time over which the wind changes; 0: at once");
+  wind_error_ = new ErrorLine("wind_error");
+  auto* const fields = new QFormLayout;
+  fields->addRow("to", direction_);
+  fields->addRow("speed", speed_);
+  fields->addRow("ramp", ramp_);
+  present_ = new QLabel;
+  present_->setObjectName("present_wind");
+  present_->setToolTip("The present wind high above the ground: the grey needle");
+  fields->addRow("now", present_);
+  auto* const row = new QHBoxLayout;
+  row->addWidget(dial_, 1);
+  row->addLayout(fields);
+  auto* const group = new QGroupBox("Constant wind");
+  auto* const rows = new QVBoxLayout(group);
+  rows->addLayout(row);
+  rows->addWidget(wind_error_);
+
+  connect(dial_, &WindDial::dragged, this, [this] {
+    const QSignalBlocker no_direction(direction_), no_speed(speed_);
+    direction_->setValue(dial_->wanted().direction_deg);
+    speed_->setValue(dial_->wanted().speed);
+  });
+  connect(dial_, &WindDial::released, this, &WindForm::apply_wind);
+  const auto from_fields = [this] {
+    dial_->set_wanted({direction_->value(), speed_->value()});
+    apply_wind();
+  };
+  connect(direction_, qOverload<double>(&QDoubleSpinBox::valueChanged), this, from_fields);
+  connect(speed_, qOverload<double>(&QDoubleSpinBox::valueChanged), this, from_fields);
+  return group;
+}
+
+QWidget* WindForm::make_schedule() {
+  kind_ = new QComboBox;
+  kind_->setObjectName("schedule_kind");
+  kind_->addItem("Timeline: one after the other", QString::fromStdString(SetWindScheduleRequest::TIMELINE));
+  kind_->addItem("Rose: drawn by weight", QString::fromStdString(SetWindScheduleRequest::ROSE));
+  segments_ = new NumberTable("segments", segment_columns());
+  segments_->set_rows({{0, 7, 60, 10, 1}, {90, 7, 60, 10, 1}});
+  repeat_ = new QCheckBox("start again at the end");
+  repeat_->setObjectName("schedule_repeat");
+  repeat_->setChecked(true);
+  hold_time_ =
+      number_field("schedule_hold_time", 0.001, 1e12, 30, 1, " s", "Simulated time between two draws");
+  seed_ = new QSpinBox;
+  seed_->setObjectName("schedule_seed");
+  seed_->setMaximum(1000000);
+  seed_->setToolTip("Seed of the draws");
+  auto* const apply = button("apply_schedule", "Set schedule", "Let the wind follow this table from now on");
+  schedule_error_ = new ErrorLine("schedule_error");
+
+  auto* const rose = new QWidget;
+  auto* const rose_row = new QHBoxLayout(rose);
+  rose_row->setContentsMargins(0, 0, 0, 0);
+  rose_row->addWidget(new QLabel("draw every"));
+  rose_row->addWidget(hold_time_);
+  rose_row->addWidget(new QLabel("seed"));
+  rose_row->addWidget(seed_);
+  rose_row->addStretch();
+  auto* const group = new QGroupBox("Wind schedule");
+  auto* const rows = new QVBoxLayout(group);
+  rows->addWidget(kind_);
+  rows->addWidget(segments_);
+  rows->addWidget(repeat_);
+  rows->addWidget(rose);
+  rows->addWidget(apply);
+  rows->addWidget(schedule_error_);
+
+  connect(apply, &QPushButton::clicked, this, &WindForm::apply_schedule);
+  const auto choose = [this, rose] {
+    choose_kind();
+    rose->setVisible(kind_->currentIndex() != 0);
+  };
+  connect(kind_, qOverload<int>(&QComboBox::currentIndexChanged), this, choose);
+  choose();
+  return group;
+}
+
+void WindForm::choose_kind() {
+  const bool timeline = kind_->currentIndex() == 0;
+  segments_->show_column(duration, timeline);
+  segments_->show_column(segment_ramp, timeline);
+  segments_->show_column(weight, !timeline);
+  repeat_->setVisible(timeline);
+}
+
+void WindForm::apply_wind() {
+  SetWindRequest request;
+  request.direction_deg = direction_->value();
+  request.speed = speed_->value();
+  request.ramp = ramp_->value();
+  link_.call<SetWind>(wind_error_, "set_wind", request);
+}
+
+void WindForm::apply_schedule() {
+  SetWindScheduleRequest request;
+  request.kind = kind_->currentData().toString().toStdString();
+  request.repeat = repeat_->isChecked();
+  request.hold_time = hold_time_->value();
+  request.seed = static_cast<std::uint64_t>(seed_->value());
+  for (const std::vector<double>& row : segments_->rows()) {
+    WindScheduleSegment segment;
+    segment.direction_deg = row[direction];
+    segment.speed = row[speed];
+    segment.duration = row[duration];
+    segment.ramp = row[segment_ramp];
+    segment.probability = row[weight];
+    request.segments.push_back(segment);
+  }
+  link_.call<SetWindSchedule>(schedule_error_, "set_wind_schedule", request);
+}
+
+void WindForm::show_status(const SimulationStatus& status) {
+  const DialWind present{degrees_of(status.wind_above), std::hypot(status.wind_above.x, status.wind_above.y)};
+  dial_->set_present(present);
+  present_->setText(
+      QStringLiteral("%1 m/s to %2 °").arg(present.speed, 0, 'f', 1).arg(present.direction_deg, 0, 'f', 0));
+  if (seen_ || dial_->dragging()) return;
+  seen_ = true;
+  const QSignalBlocker no_direction(direction_), no_speed(speed_);
+  direction_->setValue(present.direction_deg);
+  speed_->setValue(present.speed);
+  dial_->set_wanted(present);
+}
+
+void WindForm::forget() { seen_ = false; }
+
+}  // namespace desert_sim
