@@ -5,7 +5,7 @@
 
 #include "fuzz/fuzz.hpp"
 #include "fuzz/message_source.hpp"
-#include "src/client/elevation_assembler.hpp"
+#include "src/client/layer_assembler.hpp"
 
 namespace desert_sim {
 namespace {
@@ -29,7 +29,7 @@ ElevationGrid::ConstPtr keyframe(FuzzedDataProvider& data) {
 }
 
 /// Makes the lengths of a tile's arrays right.
-void fit(ElevationTile& tile, FuzzedDataProvider& data) {
+void fit(LayerTile& tile, FuzzedDataProvider& data) {
   tile.width = data.ConsumeIntegralInRange(1u, 80u);
   tile.height = data.ConsumeIntegralInRange(1u, 80u);
   const std::size_t cells = std::size_t{tile.width} * tile.height;
@@ -52,7 +52,7 @@ void fit(ElevationTile& tile, FuzzedDataProvider& data) {
 
 ElevationUpdate::ConstPtr update(FuzzedDataProvider& data, const ElevationMap* map) {
   auto message = boost::make_shared<ElevationUpdate>(fuzz::next_message<ElevationUpdate>(data, words));
-  for (ElevationTile& tile : message->tiles)
+  for (LayerTile& tile : message->tiles)
     if (data.ConsumeBool()) fit(tile, data);
   if (map && data.ConsumeBool()) {  // the next one
     message->header.frame_id = map->info().frame;
