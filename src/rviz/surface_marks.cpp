@@ -34,7 +34,7 @@ SurfaceMarks::SurfaceMarks(Ogre::SceneManager& scene)
       node_(scene.getRootSceneNode()->createChildSceneNode()),
       text_node_(node_->createChildSceneNode()),
       lines_(std::make_unique<MeshObject>(node_, materials::marks(), Ogre::RenderOperation::OT_LINE_LIST)),
-      text_(std::make_unique<rviz::MovableText>(" ", "Liberation Sans", text_pixels)) {
+      text_(std::make_unique<rviz::MovableText>("x", "Liberation Sans", text_pixels)) {
   lines_->setRenderQueueGroup(Ogre::RENDER_QUEUE_OVERLAY - 1);
   text_->setTextAlignment(rviz::MovableText::H_LEFT, rviz::MovableText::V_ABOVE);
   text_->showOnTop();
