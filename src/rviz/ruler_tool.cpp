@@ -102,7 +102,10 @@ void RulerTool::draw() {
   if (first_ && end && !terrain_->field().empty()) {
     lines.push_back({drape(terrain_->field(), {{first_->x, first_->y}, {end->x, end->y}}), colour});
     text_ = text_of(measure(lines.back().points));
-    marks_->show_text(*terrain_, text_, lines.back().points.back(), *viewport_);
+    const std::vector<render::Point>& points = lines.back().points;
+    render::Point middle = points[points.size() / 2];
+    if (std::isnan(middle.z)) middle = points.back();
+    marks_->show_text(*terrain_, text_, middle, *viewport_);
   } else {
     text_.clear();
     marks_->show_text(*terrain_, "", {}, *viewport_);

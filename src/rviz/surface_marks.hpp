@@ -34,7 +34,7 @@ class SurfaceMarks {
   };
   /// Draws these lines and no others.
   void show(const TerrainPicker& terrain, const std::vector<Line>& lines);
-  /// Shows a text over a point; an empty text shows none.
+  /// Shows a text over a point, with long lines broken; an empty text shows none.
   void show_text(const TerrainPicker& terrain, const std::string& text, const render::Point& at,
                  const Ogre::Viewport& viewport);
   void hide();
@@ -43,7 +43,7 @@ class SurfaceMarks {
   Ogre::SceneManager& scene_;
   Ogre::SceneNode *const node_, *const text_node_;
   std::unique_ptr<MeshObject> lines_;
-  std::unique_ptr<rviz::MovableText> text_;
+  std::unique_ptr<rviz::MovableText> text_, shadow_;
 };
 
 }  // namespace desert_sim
