@@ -41,4 +41,13 @@ Ogre::MaterialPtr shapes() {
   return material("desert_sim/shapes", [](Ogre::Pass&) {});
 }
 
+Ogre::MaterialPtr marks() {
+  return material("desert_sim/marks", [](Ogre::Pass& pass) {
+    pass.setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
+    pass.setDepthCheckEnabled(false);
+    pass.setDepthWriteEnabled(false);
+    pass.setLineWidth(2);
+  });
+}
+
 }  // namespace desert_sim::materials

@@ -12,5 +12,7 @@ Ogre::MaterialPtr ground();
 Ogre::MaterialPtr translucent();
 /// Opaque.
 Ogre::MaterialPtr shapes();
+/// Translucent by the alpha of the vertices, and seen through everything: what tools draw.
+Ogre::MaterialPtr marks();
 
 }  // namespace desert_sim::materials

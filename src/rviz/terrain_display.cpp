@@ -161,6 +161,12 @@ void TerrainDisplay::update(float, float) {
 
 // ---- properties ----
 
+std::string TerrainDisplay::elevation_topic() const { return topic_->getTopicStd(); }
+
+double TerrainDisplay::vertical_exaggeration() const {
+  return static_cast<double>(exaggeration_->getFloat());
+}
+
 void TerrainDisplay::subscribe() {
   if (!initialized() || !isEnabled()) return;
   unsubscribe();

@@ -39,6 +39,10 @@ class TerrainDisplay : public rviz::Display {
   void reset() override;
   void setTopic(const QString& topic, const QString& datatype) override;
 
+  /// What tools need to know to draw on the terrain that is shown.
+  std::string elevation_topic() const;
+  double vertical_exaggeration() const;
+
   double frame_milliseconds() const { return frame_milliseconds_; }
   int frame_messages() const { return frame_messages_; }
   int blocks() const { return counts_.blocks; }

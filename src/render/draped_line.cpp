@@ -1,0 +1,72 @@
+#include "src/render/draped_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace desert_sim::render {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double most_places = 4096;
+
+}  // namespace
+
+std::vector<Place> circle(const Place& centre, double radius) {
+  constexpr int sides = 96;
+  std::vector<Place> places;
+  for (int n = 0; n <= sides; ++n) {
+    const double angle = 2 * pi * (n % sides) / sides;
+    places.push_back({centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)});
+  }
+  return places;
+}
+
+std::vector<Point> drape(const HeightField& field, const std::vector<Place>& line) {
+  std::vector<Point> points;
+  const auto put = [&](const Place& p) { points.push_back({p.x, p.y, field.height_at(p)}); };
+  double length = 0;
+  for (std::size_t n = 1; n < line.size(); ++n) length += distance(line[n - 1], line[n]);
+  const double room = std::max(1.0, most_places - static_cast<double>(line.size()) - 1);
+  const double spacing = std::max(field.cell_size, length / room);
+  for (std::size_t n = 0; n + 1 < line.size(); ++n) {
+    const Place &a = line[n], &b = line[n + 1];
+    const int parts = std::max(1, static_cast<int>(std::ceil(distance(a, b) / spacing)));
+    for (int part = 0; part < parts; ++part) {
+      const double share = static_cast<double>(part) / parts;
+      put({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
+    }
+  }
+  if (!line.empty()) put(line.back());
+  return points;
+}
+
+Measurement measure(const std::vector<Point>& line) {
+  Measurement result;
+  if (line.empty()) return result;
+  const Point &a = line.front(), &b = line.back();
+  result.horizontal = distance({a.x, a.y}, {b.x, b.y});
+  for (std::size_t n = 1; n < line.size(); ++n) {
+    const double step = distance({line[n - 1].x, line[n - 1].y}, {line[n].x, line[n].y});
+    result.along_surface += std::hypot(step, line[n].z - line[n - 1].z);
+  }
+  result.height_difference = b.z - a.z;
+  result.slope = std::atan2(result.height_difference, result.horizontal);
+  return result;
+}
+
+void append_line(Mesh& mesh, const std::vector<Point>& line, double exaggeration, PackedColour colour) {
+  for (std::size_t n = 0; n < line.size(); ++n) {
+    const Point& p = line[n];
+    const auto index = static_cast<std::uint32_t>(mesh.vertices.size());
+    if (std::isnan(p.z)) continue;
+    mesh.vertices.push_back({static_cast<float>(p.x), static_cast<float>(p.y),
+                             static_cast<float>(exaggeration * p.z), 0, 0, 1, colour});
+    if (n == 0 || std::isnan(line[n - 1].z)) continue;
+    mesh.indices.push_back(index - 1);
+    mesh.indices.push_back(index);
+  }
+  mesh.surface_indices = mesh.indices.size();
+}
+
+}  // namespace desert_sim::render

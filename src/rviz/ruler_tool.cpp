@@ -1,0 +1,127 @@
+#include "src/rviz/ruler_tool.hpp"
+
+#include <rviz/display_context.h>
+#include <rviz/properties/string_property.h>
+#include <rviz/tool_manager.h>
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
+#include <rviz/viewport_mouse_event.h>
+
+#include <cmath>
+#include <cstdio>
+#include <pluginlib/class_list_macros.hpp>
+
+namespace desert_sim {
+
+namespace {
+
+std::string text_of(const render::Measurement& m) {
+  constexpr double degrees = 180 / 3.14159265358979323846;
+  char text[160];
+  std::snprintf(text, sizeof text, "%.2f m, along the ground %.2f m\nheight %+.2f m, slope %.1f deg", m.horizontal,
+                m.along_surface, m.height_difference, degrees * m.slope);
+  return text;
+}
+
+}  // namespace
+
+RulerTool::RulerTool() {
+  shortcut_key_ = 'r';
+  node_ = new rviz::StringProperty("Node", "/desert_sim", "The simulator's node whose terrain is measured.",
+                                   getPropertyContainer(), SLOT(choose_node()), this);
+}
+
+RulerTool::~RulerTool() = default;
+
+void RulerTool::onInitialize() {
+  terrain_ = std::make_unique<TerrainPicker>(*context_);
+  marks_ = std::make_unique<SurfaceMarks>(*scene_manager_);
+}
+
+void RulerTool::choose_node() {
+  if (!terrain_ || context_->getToolManager()->getCurrentTool() != this) return;
+  deactivate();
+  activate();
+}
+
+void RulerTool::activate() { terrain_->follow(node_->getStdString()); }
+
+void RulerTool::deactivate() {
+  hovered_.reset();
+  first_.reset();
+  second_.reset();
+  text_.clear();
+  marks_->hide();
+  terrain_->follow("");
+}
+
+int RulerTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
+  viewport_ = event.viewport;
+  const bool ruler = !event.alt() && (event.left() || event.leftUp());
+  const bool hover = event.type == QEvent::MouseMove && event.buttons_down == Qt::NoButton;
+  if (!ruler && !hover) {
+    if (rviz::ViewController* const view = context_->getViewManager()->getCurrent()) view->handleMouseEvent(event);
+  }
+  if (event.type == QEvent::Leave || !terrain_->update())
+    hovered_.reset();
+  else
+    hovered_ = terrain_->pick(event);
+  if (event.leftDown() && !event.alt()) click();
+  draw();
+  return Render;
+}
+
+/// The first click begins, the second one ends, a third one begins anew.
+void RulerTool::click() {
+  if (!hovered_) return;
+  if (!first_ || second_) {
+    first_ = hovered_;
+    second_.reset();
+  } else {
+    second_ = hovered_;
+  }
+}
+
+void RulerTool::update(float, float) {
+  if (viewport_ && terrain_->update()) draw();
+}
+
+void RulerTool::draw() {
+  const std::optional<render::Point> end = second_ ? second_ : hovered_;
+  std::vector<SurfaceMarks::Line> lines;
+  const render::PackedColour colour = render::pack({1, 0.95f, 0.2f});
+  const auto cross = [&](const render::Point& p) {
+    const double arm = 0.75 * terrain_->field().cell_size;
+    lines.push_back({drape(terrain_->field(), {{p.x - arm, p.y}, {p.x + arm, p.y}}), colour});
+    lines.push_back({drape(terrain_->field(), {{p.x, p.y - arm}, {p.x, p.y + arm}}), colour});
+  };
+  if (!terrain_->field().empty()) {
+    if (first_) cross(*first_);
+    if (end) cross(*end);
+  }
+  if (first_ && end && !terrain_->field().empty()) {
+    lines.push_back({drape(terrain_->field(), {{first_->x, first_->y}, {end->x, end->y}}), colour});
+    text_ = text_of(measure(lines.back().points));
+    const std::vector<render::Point>& points = lines.back().points;
+    render::Point middle = points[points.size() / 2];
+    if (std::isnan(middle.z)) middle = points.back();
+    marks_->show_text(*terrain_, text_, middle, *viewport_);
+  } else {
+    text_.clear();
+    marks_->show_text(*terrain_, "", {}, *viewport_);
+  }
+  marks_->show(*terrain_, lines);
+  show_status();
+}
+
+void RulerTool::show_status() {
+  std::string text = terrain_->problem().empty() ? text_ : terrain_->problem();
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  setStatus(QString::fromStdString((text.empty() ? "" : "<b>" + text + "</b> ") +
+                                   "<b>Left:</b> begin and end of the line. <b>Middle, Right, Alt+Left:</b> camera."));
+}
+
+}  // namespace desert_sim
+
+PLUGINLIB_EXPORT_CLASS(desert_sim::RulerTool, rviz::Tool)

@@ -1,0 +1,100 @@
+#include "src/rviz/terrain_picker.hpp"
+
+#include <OgreCamera.h>
+#include <OgreViewport.h>
+#include <rviz/display_context.h>
+#include <rviz/display_group.h>
+#include <rviz/frame_manager.h>
+#include <rviz/viewport_mouse_event.h>
+
+#include "src/core/error.hpp"
+#include "src/rviz/terrain_display.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+render::Point to_point(const Ogre::Vector3& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+}  // namespace
+
+void TerrainPicker::follow(const std::string& node) {
+  map_.reset();
+  field_ = {};
+  client_.reset();
+  node_ = node;
+  if (node.empty()) return;
+  TerrainClient::Options options;
+  options.node = node;
+  try {
+    client_ = std::make_unique<TerrainClient>(ros::NodeHandle(), options);
+  } catch (const ConfigError& error) {
+    problem_ = error.what();
+  }
+}
+
+bool TerrainPicker::update() {
+  if (!client_) return false;
+  const std::shared_ptr<const ElevationMap> newest = client_->map();
+  if (!newest) {
+    problem_ = "There is no terrain of " + node_ + " yet: start the node, or change the tool's Node.";
+    return false;
+  }
+  const LayerMap::Info& info = newest->info();
+  Ogre::Vector3 position;
+  Ogre::Quaternion orientation;
+  if (!context_.getFrameManager()->getTransform(info.frame, ros::Time(), position, orientation)) {
+    problem_ = "No transform from the terrain's frame [" + info.frame + "] to the fixed frame.";
+    return false;
+  }
+  orientation_ = orientation;
+  position_ = position + orientation * Ogre::Vector3(static_cast<Ogre::Real>(info.origin_x),
+                                                     static_cast<Ogre::Real>(info.origin_y), 0);
+  exaggeration_ = exaggeration_of_display(context_.getRootDisplayGroup());
+  if (newest != map_) {
+    map_ = newest;
+    field_.width = static_cast<int>(info.width);
+    field_.height = static_cast<int>(info.height);
+    field_.cell_size = info.cell_size;
+    field_.at = [map = map_.get()](int x, int y) {
+      return map->at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+    };
+  }
+  problem_.clear();
+  return true;
+}
+
+std::optional<render::Point> TerrainPicker::pick(const rviz::ViewportMouseEvent& event) const {
+  const Ogre::Viewport& viewport = *event.viewport;
+  const auto part = [](int position, int size) {
+    return static_cast<Ogre::Real>(position) / static_cast<Ogre::Real>(size);
+  };
+  const Ogre::Ray seen = viewport.getCamera()->getCameraToViewportRay(
+      part(event.x, viewport.getActualWidth()), part(event.y, viewport.getActualHeight()));
+  const Ogre::Quaternion turn = orientation_.Inverse();
+  render::Ray ray{to_point(turn * (seen.getOrigin() - position_)), to_point(turn * seen.getDirection())};
+  ray.origin.z /= exaggeration_;
+  ray.direction.z /= exaggeration_;
+  return render::first_hit(field_, ray);
+}
+
+render::Place TerrainPicker::in_terrain_frame(const render::Point& point) const {
+  return {point.x + map_->info().origin_x, point.y + map_->info().origin_y};
+}
+
+/// 1 if no display in the group shows this terrain.
+double TerrainPicker::exaggeration_of_display(rviz::DisplayGroup* group) const {
+  for (int n = 0; group && n < group->numDisplays(); ++n) {
+    rviz::Display* const display = group->getDisplayAt(n);
+    if (!display->isEnabled()) continue;
+    const auto* const terrain = dynamic_cast<TerrainDisplay*>(display);
+    if (terrain && node_of_topic(terrain->elevation_topic()) == node_) return terrain->vertical_exaggeration();
+    const double inside = exaggeration_of_display(dynamic_cast<rviz::DisplayGroup*>(display));
+    if (inside != 1) return inside;
+  }
+  return 1;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,62 @@
+#pragma once
+/// What the mouse points at on a node's terrain. Tools use it; it needs no display, but where a display
+/// desert_sim/Terrain shows the same terrain, the mouse points at what is drawn, with the heights exaggerated.
+
+#include <OgreNode.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "src/client/terrain_client.hpp"
+#include "src/render/ray_cast.hpp"
+
+namespace rviz {
+class DisplayContext;
+class DisplayGroup;
+class ViewportMouseEvent;
+}  // namespace rviz
+
+namespace desert_sim {
+
+class TerrainPicker {
+ public:
+  /// `context` must outlive the picker.
+  explicit TerrainPicker(rviz::DisplayContext& context) : context_(context) {}
+
+  /// Follows the terrain of this node, such as /desert_sim; an empty name follows none.
+  void follow(const std::string& node);
+
+  /// Takes over the newest map and the transforms of now. False if there is none of them; problem() says which. A map
+  /// stays the same until the next call.
+  bool update();
+  /// Why update() was false.
+  const std::string& problem() const { return problem_; }
+
+  // ---- After update() was true. Places and points are relative to the south-west corner of the grid, with true
+  //      heights.
+
+  /// The terrain under the mouse; empty beside it.
+  std::optional<render::Point> pick(const rviz::ViewportMouseEvent& event) const;
+  const render::HeightField& field() const { return field_; }
+  /// The same place in the terrain's frame.
+  render::Place in_terrain_frame(const render::Point& point) const;
+  double exaggeration() const { return exaggeration_; }
+  /// Where the corner of the grid is drawn in the fixed frame.
+  const Ogre::Vector3& position() const { return position_; }
+  const Ogre::Quaternion& orientation() const { return orientation_; }
+
+ private:
+  double exaggeration_of_display(rviz::DisplayGroup* group) const;
+
+  rviz::DisplayContext& context_;
+  std::string node_, problem_;
+  std::unique_ptr<TerrainClient> client_;
+  std::shared_ptr<const ElevationMap> map_;
+  render::HeightField field_;
+  double exaggeration_ = 1;
+  Ogre::Vector3 position_ = Ogre::Vector3::ZERO;
+  Ogre::Quaternion orientation_ = Ogre::Quaternion::IDENTITY;
+};
+
+}  // namespace desert_sim
