@@ -1,6 +1,6 @@
 #pragma once
-/// The weather of a node: what ~set_weather offers. Only what is ticked is changed; the rest shows the present
-/// values.
+/// The weather of a node: what ~set_weather offers. Only what is ticked is changed; the rest shows the
+/// present values.
 
 #include <desert_sim/SetWeather.h>
 #include <dynamic_reconfigure/Config.h>
