@@ -10,6 +10,7 @@ namespace desert_sim {
 NodeLink::NodeLink(QObject* parent) : QObject(parent) {
   connect(&watch_, &NodeWatch::presence_changed, this, &NodeLink::presence_changed);
   connect(&watch_, &NodeWatch::status_came, this, &NodeLink::status_came);
+  connect(&watch_, &NodeWatch::parameters_came, this, &NodeLink::parameters_came);
 }
 
 void NodeLink::set_node(const std::string& name) {
@@ -21,7 +22,6 @@ void NodeLink::set_node(const std::string& name) {
   slow_caller_.cancel();
   node_ = resolved;
   watch_.watch(node_);
-  Q_EMIT node_changed();
 }
 
 void NodeLink::set_step_rate(ErrorLine* line, double rate) {

@@ -46,8 +46,7 @@ class NodeLink : public QObject {
  Q_SIGNALS:
   void presence_changed();
   void status_came(const desert_sim::SimulationStatusConstPtr& status);
-  /// Another node, for whose services nothing has been asked yet.
-  void node_changed();
+  void parameters_came(const dynamic_reconfigure::ConfigConstPtr& parameters);
 
  private:
   template <class Service>

@@ -49,27 +49,30 @@ NodeWatch::Presence NodeWatch::look(const std::string& node) const {
   return ros::master::check() ? Presence::no_node : Presence::no_master;
 }
 
-void NodeWatch::tell(Presence presence, const SimulationStatusConstPtr& status, unsigned generation) {
+void NodeWatch::tell(unsigned generation, std::function<void()> news) {
   QMetaObject::invokeMethod(
       this,
-      [=] {
+      [this, generation, news = std::move(news)] {
         {
           const std::lock_guard<std::mutex> lock(mutex_);
           if (generation != generation_) return;
         }
-        const bool changed = presence != presence_;
-        presence_ = presence;
-        if (changed) Q_EMIT presence_changed();
-        if (status) Q_EMIT status_came(status);
+        news();
       },
       Qt::QueuedConnection);
+}
+
+void NodeWatch::set_presence(Presence presence) {
+  if (presence == presence_) return;
+  presence_ = presence;
+  Q_EMIT presence_changed();
 }
 
 void NodeWatch::loop() {
   ros::CallbackQueue queue;
   ros::NodeHandle node_handle;
   node_handle.setCallbackQueue(&queue);
-  ros::Subscriber subscriber;
+  ros::Subscriber subscriber, parameter_subscriber;
   std::string node;
   unsigned generation = 0;
   Clock::time_point heard, looked;
@@ -81,7 +84,7 @@ void NodeWatch::loop() {
       if (generation_ != generation) {
         generation = generation_;
         node = wanted_;
-        subscriber = ros::Subscriber();
+        subscriber = parameter_subscriber = ros::Subscriber();
         heard = looked = Clock::time_point();
       }
     }
@@ -93,14 +96,23 @@ void NodeWatch::loop() {
     const Presence presence = look(node);
     // A new subscription also finds a node that was started anew under a new master, and is sent the status
     // at once.
-    subscriber = ros::Subscriber();
-    if (presence == Presence::alive)
+    subscriber = parameter_subscriber = ros::Subscriber();
+    if (presence == Presence::alive) {
       subscriber = node_handle.subscribe<SimulationStatus>(
           node + "/status", 1, [this, &heard, generation](const SimulationStatusConstPtr& status) {
             heard = Clock::now();
-            tell(Presence::alive, status, generation);
+            tell(generation, [this, status] {
+              set_presence(Presence::alive);
+              Q_EMIT status_came(status);
+            });
           });
-    tell(presence, nullptr, generation);
+      parameter_subscriber = node_handle.subscribe<dynamic_reconfigure::Config>(
+          node + "/parameter_updates", 1,
+          [this, generation](const dynamic_reconfigure::ConfigConstPtr& parameters) {
+            tell(generation, [this, parameters] { Q_EMIT parameters_came(parameters); });
+          });
+    }
+    tell(generation, [this, presence] { set_presence(presence); });
   }
 }
 

@@ -2,10 +2,12 @@
 /// Watches the status of a node on a thread of its own, and tells the thread of Qt what is there.
 
 #include <desert_sim/SimulationStatus.h>
+#include <dynamic_reconfigure/Config.h>
 #include <ros/callback_queue.h>
 
 #include <QObject>
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -35,13 +37,16 @@ class NodeWatch : public QObject {
   void presence_changed();
   /// `status` is shared with nobody who changes it.
   void status_came(const desert_sim::SimulationStatusConstPtr& status);
+  /// The node's live parameters, at the beginning and after each change.
+  void parameters_came(const dynamic_reconfigure::ConfigConstPtr& parameters);
 
  private:
   void loop();
   /// What is found out without a message.
   Presence look(const std::string& node) const;
-  /// Tells the thread of Qt, unless another node is watched by then.
-  void tell(Presence presence, const SimulationStatusConstPtr& status, unsigned generation);
+  /// Calls `news` in the thread of Qt, unless another node is watched by then.
+  void tell(unsigned generation, std::function<void()> news);
+  void set_presence(Presence presence);
 
   Presence presence_ = Presence::searching;  ///< in the thread of Qt
 

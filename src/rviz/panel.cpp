@@ -64,7 +64,12 @@ QWidget* DesertPanel::make_controls() {
   auto* const tabs = new QTabWidget;
   tabs->setObjectName("tabs");
   tabs->addTab(scrolled(wind_), "Wind");
-  tabs->addTab(scrolled(new WeatherForm(link_)), "Weather");
+  auto* const weather = new WeatherForm(link_);
+  connect(&link_, &NodeLink::parameters_came, weather,
+          [weather](const dynamic_reconfigure::ConfigConstPtr& parameters) {
+            weather->show_parameters(*parameters);
+          });
+  tabs->addTab(scrolled(weather), "Weather");
   tabs->addTab(scrolled(files_), "Scenes");
   auto* const rows = new QVBoxLayout(controls_);
   rows->setContentsMargins(0, 0, 0, 0);

@@ -76,12 +76,14 @@ std::string duration_text(double seconds) {
 std::string hint(Presence presence, const SimulationStatus* status, const std::string& node) {
   if (presence == Presence::no_master)
     return "Start roscore or a launch file, and see that ROS_MASTER_URI is that of the node.";
+  const bool failed = status && status->state == SimulationStatus::ERROR;
+  if (failed && (presence == Presence::no_node || presence == Presence::alive))
+    return node + " has failed: " + status->message;
   if (presence == Presence::no_node)
     return "Start it (roslaunch desert_sim desert_sim.launch), or write another name above. Names of nodes: "
            "rosnode "
            "list.";
   if (presence != Presence::alive || !status) return "";
-  if (status->state == SimulationStatus::ERROR) return node + " has failed: " + status->message;
   if (worst_residual(*status) != 0)
     return "Material was lost or gained, which must never happen: save a checkpoint and report it.";
   if (status->state == SimulationStatus::WAITING)
@@ -139,7 +141,7 @@ void StatusView::refresh() {
   const bool failed = s && s->state == SimulationStatus::ERROR;
   set(state_, state_text(presence_, s, node_),
       failed || presence_ == Presence::no_node || presence_ == Presence::no_master ? bad : nullptr);
-  set(hint_, hint(presence_, s, node_), neutral);
+  set(hint_, hint(presence_, status_.get(), node_), neutral);
   if (!s) {
     for (QLabel* const label : {progress_, rate_, balance_}) set(label, "");
     return;

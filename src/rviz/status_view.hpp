@@ -13,7 +13,7 @@ class QLabel;
 
 namespace desert_sim {
 
-/// What to do about the state that a node is in; `status` is null without one.
+/// What to do about the state that a node is in; `status` is the last one of it, null without one.
 std::string hint(NodeWatch::Presence presence, const SimulationStatus* status, const std::string& node);
 
 /// The residual that is farthest from 0.

@@ -1,7 +1,5 @@
 #include "src/rviz/weather_form.hpp"
 
-#include <desert_sim/SetWeather.h>
-
 #include <QCheckBox>
 #include <QComboBox>
 #include <QFormLayout>
@@ -27,37 +25,22 @@ std::vector<NumberTable::Column> spring_columns() {
 }  // namespace
 
 WeatherForm::WeatherForm(NodeLink& link, QWidget* parent) : QWidget(parent), link_(link) {
-  rain_ = number_field("rain_rate", 0, 3.6e6, 10, 1, " mm/h", "Depth of rain an hour, where it rains");
-  share_ = number_field("rain_share", 0, 100, 100, 0, " %", "Share of the area on which it rains");
-  evaporation_ =
-      number_field("evaporation", 0, 10, 0.001, 5, " 1/s", "Share of standing water that evaporates");
-  ground_ = number_field("ground_evaporation", 0, 100, 0.1, 3, "",
-                         "How fast bare ground dries, compared with how fast it fills");
   sea_ = new QComboBox;
   sea_->setObjectName("sea");
   sea_->addItems({"none", "border", "everywhere"});
-  sea_->setMaximumWidth(rain_->maximumWidth());
   sea_->setToolTip("Where the water surface is at least at the sea level");
-  sea_level_ = number_field("sea_level", -1e6, 1e6, 0, 2, " m", "In the frame of the terrain");
-  wave_strength_ =
-      number_field("wave_strength", 0, 10, 0.05, 3, " 1/s", "Acceleration of deep water by a wind of 1 m/s");
-  wave_period_ = number_field("wave_period", 0.01, 1e6, 8, 2, " s", "Period of the waves");
   springs_ = new NumberTable("springs", spring_columns());
   ramp_ = number_field("weather_ramp", 0, 1e12, 0, 1, " s",
                        "Simulated time over which numbers change; 0: at once");
+  sea_->setMaximumWidth(ramp_->maximumWidth());
   error_ = new ErrorLine("weather_error");
   auto* const send = button("apply_weather", "Set weather", "Change what is ticked, and nothing else");
 
   auto* const form = new QFormLayout;
-  add_row(*form, "rain_rate", "rain", rain_);
-  add_row(*form, "rain_share", "rain falls on", share_);
-  add_row(*form, "evaporation", "evaporation", evaporation_);
-  add_row(*form, "ground_evaporation", "drying of ground", ground_);
-  add_row(*form, "sea", "sea", sea_);
-  add_row(*form, "sea_level", "sea level", sea_level_);
-  add_row(*form, "wave_strength", "wave strength", wave_strength_);
-  add_row(*form, "wave_period", "wave period", wave_period_);
-  form->addRow(add_row(*form, "springs", "springs (replace all)", nullptr));
+  add_numbers(*form);
+  change_sea_ = add_row(*form, "sea", "sea", sea_);
+  auto* const change_springs = add_row(*form, "springs", "springs (replace all)", nullptr);
+  form->addRow(change_springs);
   form->addRow(springs_);
   form->addRow("ramp", ramp_);
   auto* const all = new QVBoxLayout(this);
@@ -66,8 +49,38 @@ WeatherForm::WeatherForm(NodeLink& link, QWidget* parent) : QWidget(parent), lin
   all->addWidget(error_);
   all->addStretch();
   springs_->setVisible(false);
-  connect(changes_.back(), &QCheckBox::toggled, springs_, &QWidget::setVisible);
+  connect(change_springs, &QCheckBox::toggled, springs_, &QWidget::setVisible);
   connect(send, &QPushButton::clicked, this, &WeatherForm::apply);
+}
+
+void WeatherForm::add_numbers(QFormLayout& form) {
+  using R = SetWeatherRequest;
+  const auto add = [&](const char* field, const char* label, QDoubleSpinBox* value, double R::*member,
+                       const char* parameter, double unit) {
+    numbers_.push_back({add_row(form, field, label, value), value, member, parameter, unit});
+  };
+  add("rain_rate", "rain",
+      number_field("rain_rate", 0, 3.6e6, 0, 1, " mm/h", "Depth of rain an hour, where it rains"),
+      &R::rain_rate, "rain__rate", mm_per_hour);
+  add("rain_share", "rain falls on",
+      number_field("rain_share", 0, 100, 100, 0, " %",
+                   "Share of the area on which it rains, at any elevation"),
+      &R::rain_share, "rain__share_high", percent);
+  add("evaporation", "evaporation",
+      number_field("evaporation", 0, 10, 0, 5, " 1/s", "Share of standing water that evaporates"),
+      &R::evaporation, "water__evaporation", 1);
+  add("ground_evaporation", "drying of ground",
+      number_field("ground_evaporation", 0, 100, 0, 3, "",
+                   "How fast bare ground dries, relative to how it fills"),
+      &R::ground_evaporation, "moisture__evaporation", 1);
+  add("sea_level", "sea level",
+      number_field("sea_level", -1e6, 1e6, 0, 2, " m", "In the frame of the terrain"), &R::sea_level,
+      "water__sea_level", 1);
+  add("wave_strength", "wave strength",
+      number_field("wave_strength", 0, 10, 0, 3, " 1/s", "Acceleration of deep water by a wind of 1 m/s"),
+      &R::wave_strength, "water__wave_strength", 1);
+  add("wave_period", "wave period", number_field("wave_period", 0.01, 1e6, 10, 2, " s", "From wave to wave"),
+      &R::wave_period, "water__wave_period", 1);
 }
 
 QCheckBox* WeatherForm::add_row(QFormLayout& form, const QString& field, const QString& label,
@@ -82,19 +95,23 @@ QCheckBox* WeatherForm::add_row(QFormLayout& form, const QString& field, const Q
   return change;
 }
 
+void WeatherForm::show_parameters(const dynamic_reconfigure::Config& parameters) {
+  for (const Number& number : numbers_)
+    for (const auto& entry : parameters.doubles)
+      if (entry.name == number.parameter && !number.change->isChecked())
+        number.value->setValue(entry.value / number.unit);
+  for (const auto& entry : parameters.strs)
+    if (entry.name == "water__sea" && !change_sea_->isChecked())
+      sea_->setCurrentText(QString::fromStdString(entry.value));
+}
+
 void WeatherForm::apply() {
   SetWeatherRequest request;
   for (const QCheckBox* change : changes_)
     if (change->isChecked()) request.change.push_back(change->objectName().mid(7).toStdString());
   request.ramp = ramp_->value();
-  request.rain_rate = rain_->value() * mm_per_hour;
-  request.rain_share = share_->value() * percent;
-  request.evaporation = evaporation_->value();
-  request.ground_evaporation = ground_->value();
+  for (const Number& number : numbers_) request.*number.field = number.value->value() * number.unit;
   request.sea = sea_->currentText().toStdString();
-  request.sea_level = sea_level_->value();
-  request.wave_strength = wave_strength_->value();
-  request.wave_period = wave_period_->value();
   for (const std::vector<double>& row : springs_->rows()) {
     WaterSpring spring;
     spring.x = row[0];

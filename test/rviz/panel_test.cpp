@@ -2,6 +2,7 @@
 // the node, and what the node refuses, or that it has gone, is shown.
 
 #include <desert_sim/EditTerrain.h>
+#include <desert_sim/SetWeather.h>
 #include <desert_sim/SimulationStatus.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
@@ -176,6 +177,14 @@ TEST_F(Panel, ChangesTheWeatherThatIsTicked) {
       if (volume.material == "water" && volume.entered > 0) return true;
     return false;
   }));
+
+  desert_sim::SetWeather::Request others;
+  others.change = {"evaporation", "rain_rate"};
+  others.evaporation = 0.5;
+  node_->call<desert_sim::SetWeather>("set_weather", others);
+  const auto value = [&](const char* name) { return window_->find<QDoubleSpinBox>(name)->value(); };
+  EXPECT_TRUE(window_->run_until([&] { return value("evaporation") == 0.5; })) << "what others set is shown";
+  EXPECT_EQ(value("rain_rate"), 36000) << "but what is ticked stays as it was typed";
 }
 
 TEST_F(Panel, LoadsScenariosByName) {
