@@ -11,8 +11,8 @@ namespace desert_sim::render {
 /// A circle of 96 sides; the first place is the last, too.
 std::vector<Place> circle(const Place& centre, double radius);
 
-/// The line with further places on it, so that none is further than a cell from the next one, and at most 4096 in
-/// all, each at the height of the surface; z is NaN where that is unknown, and outside the grid.
+/// The line with further places on it, so that none is further than a cell from the next one, and at most
+/// 4096 in all, each at the height of the surface; z is NaN where that is unknown, and outside the grid.
 std::vector<Point> drape(const HeightField& field, const std::vector<Place>& line);
 
 /// What is between the ends of a line on the terrain.
@@ -24,7 +24,8 @@ struct Measurement {
 };
 Measurement measure(const std::vector<Point>& line);
 
-/// The line as one mesh of lines; heights are multiplied by `exaggeration`. Places of unknown height are gaps.
+/// The line as one mesh of lines; heights are multiplied by `exaggeration`. Places of unknown height are
+/// gaps.
 void append_line(Mesh& mesh, const std::vector<Point>& line, double exaggeration, PackedColour colour);
 
 }  // namespace desert_sim::render

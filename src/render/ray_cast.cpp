@@ -47,8 +47,8 @@ struct Walk {
   const HeightField& field;
   double u, v, z, du, dv, dz;  ///< origin and direction; a parameter of 1 is a metre
 
-  /// The parameter at which the ray meets the surface between the centres of the cells (i, j) and
-  /// (i + 1, j + 1), from `begin` to `end`; infinite if it does not. Beyond the grid, the outermost cells count.
+  /// The parameter at which the ray meets the surface between the centres of the cells (i, j) and (i + 1, j
+  /// + 1), from `begin` to `end`; infinite if it does not. Beyond the grid, the outermost cells count.
   double hit(int i, int j, double begin, double end) const {
     const auto height = [&](int x, int y) {
       return static_cast<double>(
@@ -74,8 +74,13 @@ std::optional<Point> first_hit(const HeightField& field, const Ray& ray) {
   const double length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
   if (field.empty() || !(length > 0)) return std::nullopt;
   const double per_metre = 1 / (field.cell_size * length);
-  const Walk walk{field,           o.x / field.cell_size - 0.5, o.y / field.cell_size - 0.5, o.z, d.x * per_metre,
-                  d.y * per_metre, d.z / length};
+  const Walk walk{field,
+                  o.x / field.cell_size - 0.5,
+                  o.y / field.cell_size - 0.5,
+                  o.z,
+                  d.x * per_metre,
+                  d.y * per_metre,
+                  d.z / length};
   Interval inside;
   inside.clip(walk.u, walk.du, -0.5, field.width - 0.5);
   inside.clip(walk.v, walk.dv, -0.5, field.height - 0.5);

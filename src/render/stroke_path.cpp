@@ -14,8 +14,8 @@ double distance_to_segment(const Place& p, const Capsule& axis) {
   return distance(p, {axis.from.x + along * dx, axis.from.y + along * dy});
 }
 
-/// A capsule joins at most so many places, since the time to find it grows with their square. A mouse needs two seconds
-/// for them.
+/// A capsule joins at most so many places, since the time to find it grows with their square. A mouse needs
+/// two seconds for them.
 constexpr std::size_t most_places = 256;
 
 /// The last place to which one capsule can go from the first one; at least the second.

@@ -1,7 +1,8 @@
 #pragma once
-/// The path of a brush from press to release, and the capsules that paint it. A capsule is what a circle covers that
-/// moves along a line segment. However fast the path grows and however slowly capsules are taken, nothing of it is
-/// lost, and each capsule is as long as the path's shape allows: a straight path needs one.
+/// The path of a brush from press to release, and the capsules that paint it. A capsule is what a circle
+/// covers that moves along a line segment. However fast the path grows and however slowly capsules are
+/// taken, nothing of it is lost, and each capsule is as long as the path's shape allows: a straight path
+/// needs one.
 
 #include <deque>
 #include <optional>
@@ -17,10 +18,10 @@ struct Capsule {
   double length() const { return distance(from, to); }
 };
 
-/// The part of a brush's strength that one capsule of a path has to give [1], so that a pass of the brush along a
-/// straight path gives its strength on the axis, in the mean, however the path is cut: for lengths L the capsules
-/// overlap 1 + r (1 + inner) / L times, where the weight is 1 up to `inner` r and falls to 0 at the radius r [m].
-/// 1 for a circle.
+/// The part of a brush's strength that one capsule of a path has to give [1], so that a pass of the brush
+/// along a straight path gives its strength on the axis, in the mean, however the path is cut: for lengths
+/// L the capsules overlap 1 + r (1 + inner) / L times, where the weight is 1 up to `inner` r and falls to 0
+/// at the radius r [m]. 1 for a circle.
 double share_of_depth(const Capsule& capsule, double radius, double inner);
 /// The same for what is spread evenly over the capsule's area.
 double share_of_area(const Capsule& capsule, double radius);
@@ -37,8 +38,8 @@ class StrokePath {
   /// Nothing more will be added.
   void end();
 
-  /// The next capsule, which begins where the last one of the line ended. Empty if there is none, or if more of the
-  /// path has to come first. A line of one place is a circle.
+  /// The next capsule, which begins where the last one of the line ended. Empty if there is none, or if
+  /// more of the path has to come first. A line of one place is a circle.
   std::optional<Capsule> take();
   /// Whether the path has ended and all its capsules are taken.
   bool finished() const { return ended_ && lines_.empty(); }

@@ -41,8 +41,8 @@ std::string problem_of(const Brush& brush) {
   return "";
 }
 
-EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& capsule, const std::string& stroke,
-                                     double level) {
+EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& capsule,
+                                     const std::string& stroke, double level) {
   EditTerrain::Request request;
   request.layer = layer_of(brush.material);
   request.stroke = stroke;
@@ -74,8 +74,8 @@ EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& 
   return request;
 }
 
-EditPlants::Request plants_request(const Brush& brush, const render::Capsule& capsule, const std::string& stroke,
-                                   std::uint64_t seed) {
+EditPlants::Request plants_request(const Brush& brush, const render::Capsule& capsule,
+                                   const std::string& stroke, std::uint64_t seed) {
   EditPlants::Request request;
   const bool adds = brush.operation == Operation::add;
   request.operation = adds ? EditPlants::Request::PLANT : EditPlants::Request::CLEAR;

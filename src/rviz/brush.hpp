@@ -21,7 +21,7 @@ struct Brush {
   double inner = 0.5;     ///< fraction of the radius with full weight, 0 … 1
   std::string species;    ///< plants: what is planted; what is removed, empty for all
   double density = 0.1;   ///< plants that a pass puts on each square metre [1/m²]
-  double size = 0.5;      ///< plants: their radius relative to the largest for which there is room, 0.001 … 1
+  double size = 0.5;  ///< plants: their radius relative to the largest for which there is room, 0.001 … 1
 };
 
 /// The name of a material in ~edit_terrain; "plants" for plants.
@@ -29,10 +29,11 @@ const char* layer_of(Brush::Material material);
 /// Why there is no such brush, such as one that smooths plants; empty if there is.
 std::string problem_of(const Brush& brush);
 
-/// For all materials but plants. `level` is what `flatten` makes of the layer: the value where the stroke began [m].
-EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& capsule, const std::string& stroke,
-                                     double level);
-EditPlants::Request plants_request(const Brush& brush, const render::Capsule& capsule, const std::string& stroke,
-                                   std::uint64_t seed);
+/// For all materials but plants. `level` is what `flatten` makes of the layer: the value where the stroke
+/// began [m].
+EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& capsule,
+                                     const std::string& stroke, double level);
+EditPlants::Request plants_request(const Brush& brush, const render::Capsule& capsule,
+                                   const std::string& stroke, std::uint64_t seed);
 
 }  // namespace desert_sim

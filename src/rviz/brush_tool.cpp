@@ -41,14 +41,15 @@ render::PackedColour colour_of(Brush::Operation operation) {
 BrushTool::BrushTool() {
   shortcut_key_ = 'b';
   rviz::Property* const parent = getPropertyContainer();
-  node_ = new rviz::StringProperty("Node", "/desert_sim", "The simulator's node whose terrain is painted.", parent,
-                                   SLOT(choose_node()), this);
+  node_ = new rviz::StringProperty("Node", "/desert_sim", "The simulator's node whose terrain is painted.",
+                                   parent, SLOT(choose_node()), this);
   material_ = new rviz::EnumProperty("Material", "Sand", "What is painted.", parent);
   int option = 0;
   for (const char* const name : {"Sand", "Rock", "Soil", "Water", "Plants", "Obstacle"})
     material_->addOption(name, option++);
   operation_ = new rviz::EnumProperty(
-      "Operation", "Add", "Flatten makes the layer as deep (rock: as high) as where the stroke began.", parent);
+      "Operation", "Add", "Flatten makes the layer as deep (rock: as high) as where the stroke began.",
+      parent);
   option = 0;
   for (const char* const name : {"Add", "Remove", "Flatten", "Smooth"}) operation_->addOption(name, option++);
   radius_ = number("Radius", 5, 0.01f, 1e4f, "Radius of the brush [m]; the wheel changes it.", parent);
@@ -62,8 +63,8 @@ BrushTool::BrushTool() {
       "Species", "", "Of plants: what is planted, or removed (empty: all). A name in the scenario.", parent);
   density_ = number("Plant Density", 0.1f, 1e-4f, 1000,
                     "Plants that one pass puts on a square metre; Ctrl and the wheel change it.", parent);
-  size_ = number("Plant Size", 0.5f, 0.001f, 1, "Their radius relative to the largest for which there is room.",
-                 parent);
+  size_ = number("Plant Size", 0.5f, 0.001f, 1,
+                 "Their radius relative to the largest for which there is room.", parent);
 }
 
 BrushTool::~BrushTool() = default;
@@ -93,7 +94,8 @@ void BrushTool::deactivate() {
 Brush BrushTool::brush(bool shift) const {
   Brush result;
   result.material = static_cast<Brush::Material>(material_->getOptionInt());
-  result.operation = shift ? Brush::Operation::remove : static_cast<Brush::Operation>(operation_->getOptionInt());
+  result.operation =
+      shift ? Brush::Operation::remove : static_cast<Brush::Operation>(operation_->getOptionInt());
   result.radius = static_cast<double>(radius_->getFloat());
   result.strength = static_cast<double>(strength_->getFloat());
   result.inner = static_cast<double>(inner_->getFloat());
@@ -108,10 +110,11 @@ Brush BrushTool::brush(bool shift) const {
 int BrushTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
   viewport_ = event.viewport;
   shift_ = event.shift();
-  const bool camera = !painting_ && (event.alt() || event.middle() || event.right() || event.middleUp() ||
-                                     event.rightUp());
+  const bool camera =
+      !painting_ && (event.alt() || event.middle() || event.right() || event.middleUp() || event.rightUp());
   if (camera) {
-    if (rviz::ViewController* const view = context_->getViewManager()->getCurrent()) view->handleMouseEvent(event);
+    if (rviz::ViewController* const view = context_->getViewManager()->getCurrent())
+      view->handleMouseEvent(event);
   } else if (event.wheel_delta != 0) {
     turn_wheel(event);
   }
@@ -134,7 +137,8 @@ int BrushTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
 
 void BrushTool::turn_wheel(rviz::ViewportMouseEvent& event) {
   rviz::FloatProperty* property = radius_;
-  if (event.control()) property = material_->getOptionInt() == static_cast<int>(Brush::Material::plants) ? density_ : strength_;
+  if (event.control())
+    property = material_->getOptionInt() == static_cast<int>(Brush::Material::plants) ? density_ : strength_;
   const float notches = static_cast<float>(event.wheel_delta) / 120;
   property->setFloat(property->getFloat() * std::pow(1.1f, notches));
 }
@@ -155,7 +159,8 @@ void BrushTool::release() {
 }
 
 int BrushTool::processKeyEvent(QKeyEvent* event, rviz::RenderPanel*) {
-  const bool control = event->modifiers() & Qt::ControlModifier, shift = event->modifiers() & Qt::ShiftModifier;
+  const bool control = event->modifiers() & Qt::ControlModifier,
+             shift = event->modifiers() & Qt::ShiftModifier;
   const bool redo = control && (event->key() == Qt::Key_Y || (event->key() == Qt::Key_Z && shift));
   const bool undo = event->key() == Qt::Key_Z && !shift;
   if (!redo && !undo) return 0;
@@ -201,10 +206,10 @@ void BrushTool::draw() {
 void BrushTool::show_status() {
   const std::string& problem = terrain_->problem();
   const std::string text = !problem.empty() ? problem : report_;
-  setStatus(QString::fromStdString(
-      (text.empty() ? "" : "<b>" + text + "</b> ") +
-      "<b>Left:</b> paint. <b>Shift:</b> remove. <b>Wheel:</b> radius. <b>Ctrl+Wheel:</b> strength. <b>Z:</b> undo. "
-      "<b>Ctrl+Y:</b> redo. <b>Middle, Right, Alt+Left:</b> camera."));
+  setStatus(QString::fromStdString((text.empty() ? "" : "<b>" + text + "</b> ") +
+                                   "<b>Left:</b> paint. <b>Shift:</b> remove. <b>Wheel:</b> radius. "
+                                   "<b>Ctrl+Wheel:</b> strength. <b>Z:</b> undo. "
+                                   "<b>Ctrl+Y:</b> redo. <b>Middle, Right, Alt+Left:</b> camera."));
 }
 
 }  // namespace desert_sim

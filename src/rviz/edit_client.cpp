@@ -29,8 +29,8 @@ std::string number(double value) {
 /// No other stroke of any program has this name.
 std::string unique_name(std::uint64_t count) {
   std::ostringstream text;
-  text << ros::this_node::getName() << ' ' << std::fixed << std::setprecision(3) << ros::WallTime::now().toSec()
-       << ' ' << count;
+  text << ros::this_node::getName() << ' ' << std::fixed << std::setprecision(3)
+       << ros::WallTime::now().toSec() << ' ' << count;
   return text.str();
 }
 
@@ -54,7 +54,8 @@ void EditClient::begin(const Brush& brush) {
   end();
   const std::lock_guard<std::mutex> lock(mutex_);
   Job job;
-  job.stroke.emplace(Stroke{brush, {least_piece * brush.radius, tolerance * brush.radius}, unique_name(++strokes_)});
+  job.stroke.emplace(
+      Stroke{brush, {least_piece * brush.radius, tolerance * brush.radius}, unique_name(++strokes_)});
   jobs_.push_back(std::move(job));
 }
 
@@ -150,7 +151,8 @@ template <class Service>
 typename Service::Response EditClient::call(const char* name, const typename Service::Request& request) {
   const std::string service = node_ + "/" + name;
   ros::NodeHandle node;
-  ros::ServiceClient client = node.serviceClient<Service>(service, true);  // one that can be shut down while it waits
+  ros::ServiceClient client =
+      node.serviceClient<Service>(service, true);  // one that can be shut down while it waits
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (stopping_) throw ConfigError("rviz is closing");
@@ -161,7 +163,8 @@ typename Service::Response EditClient::call(const char* name, const typename Ser
     throw ConfigError("There is no service " + service + ": start the node, or change the tool's Node.");
   Service exchange;
   exchange.request = request;
-  if (!client.call(exchange)) throw ConfigError("The node ended before it answered a call of " + service + ".");
+  if (!client.call(exchange))
+    throw ConfigError("The node ended before it answered a call of " + service + ".");
   if (!exchange.response.success) throw ConfigError(exchange.response.message);
   return exchange.response;
 }
@@ -195,16 +198,20 @@ void EditClient::paint(Stroke& stroke, const render::Capsule& capsule) {
       stroke.level = level_at(stroke, capsule.from);
     if (brush.material == Brush::Material::plants) {
       const std::uint64_t seed = std::hash<std::string>()(stroke.name) + calls();
-      stroke.plants += call<EditPlants>("edit_plants", plants_request(brush, capsule, stroke.name, seed)).plants;
+      stroke.plants +=
+          call<EditPlants>("edit_plants", plants_request(brush, capsule, stroke.name, seed)).plants;
     } else {
-      const EditTerrain::Request request = terrain_request(brush, capsule, stroke.name, stroke.level.value_or(0));
+      const EditTerrain::Request request =
+          terrain_request(brush, capsule, stroke.name, stroke.level.value_or(0));
       stroke.volume += call<EditTerrain>("edit_terrain", request).volume;
     }
     if (stroke.failed) return;
     if (brush.material == Brush::Material::plants)
       report(true, number(static_cast<double>(stroke.plants)) + " plants");
     else
-      report(true, layer + (brush.material == Brush::Material::obstacle ? "" : " " + number(stroke.volume) + " m³"));
+      report(
+          true,
+          layer + (brush.material == Brush::Material::obstacle ? "" : " " + number(stroke.volume) + " m³"));
   } catch (const ConfigError& error) {
     if (!stroke.failed) report(false, error.what());
     stroke.failed = true;

@@ -1,7 +1,7 @@
 #pragma once
-/// Sends edits to a node on a thread of its own, so that nobody waits for the node. One call is under way at a time, and
-/// at most so many a second; what is painted meanwhile grows the path of its stroke, of which the next call takes
-/// as much as one capsule can be (render::StrokePath).
+/// Sends edits to a node on a thread of its own, so that nobody waits for the node. One call is under way
+/// at a time, and at most so many a second; what is painted meanwhile grows the path of its stroke, of
+/// which the next call takes as much as one capsule can be (render::StrokePath).
 
 #include <ros/service_client.h>
 
@@ -46,7 +46,8 @@ class EditClient {
     bool success = false;
     std::string text;  ///< what was done, or why not; one line
   };
-  /// The newest report since the last call. The first failure of a stroke stands until the next stroke succeeds.
+  /// The newest report since the last call. The first failure of a stroke stands until the next stroke
+  /// succeeds.
   std::optional<Report> take_report();
   /// Whether everything is done.
   bool idle() const;
@@ -59,7 +60,7 @@ class EditClient {
     render::StrokePath path;
     std::string name;
     bool failed = false;
-    double volume = 0;     ///< [m³] so far
+    double volume = 0;  ///< [m³] so far
     std::int64_t plants = 0;
     std::optional<double> level = std::nullopt;  ///< for flatten: known from the first call on
   };
@@ -82,7 +83,7 @@ class EditClient {
 
   mutable std::mutex mutex_;  ///< protects all that follows; held only briefly
   std::condition_variable changed_;
-  std::deque<Job> jobs_;     ///< the thread works on the first one; strokes stay until their path is finished
+  std::deque<Job> jobs_;  ///< the thread works on the first one; strokes stay until their path is finished
   ros::ServiceClient under_way_;
   std::optional<Report> report_;
   std::uint64_t calls_ = 0;

@@ -78,6 +78,10 @@ void MeshObject::set_mesh(const render::Mesh& mesh) {
   parent_->needUpdate();
 }
 
+void MeshObject::_updateRenderQueue(Ogre::RenderQueue* queue) {
+  if (indices_) Ogre::SimpleRenderable::_updateRenderQueue(queue);
+}
+
 Ogre::Real MeshObject::getBoundingRadius() const {
   return std::max(mBox.getMinimum().length(), mBox.getMaximum().length());
 }

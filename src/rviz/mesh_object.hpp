@@ -22,6 +22,8 @@ class MeshObject : public Ogre::SimpleRenderable {
   /// object and frees them.
   void set_mesh(const render::Mesh& mesh);
 
+  /// An empty mesh is not drawn, even if somebody makes all objects of its node visible.
+  void _updateRenderQueue(Ogre::RenderQueue* queue) override;
   Ogre::Real getBoundingRadius() const override;
   Ogre::Real getSquaredViewDepth(const Ogre::Camera* camera) const override;
 

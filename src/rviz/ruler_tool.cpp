@@ -18,8 +18,8 @@ namespace {
 std::string text_of(const render::Measurement& m) {
   constexpr double degrees = 180 / 3.14159265358979323846;
   char text[160];
-  std::snprintf(text, sizeof text, "%.2f m, along the ground %.2f m\nheight %+.2f m, slope %.1f deg", m.horizontal,
-                m.along_surface, m.height_difference, degrees * m.slope);
+  std::snprintf(text, sizeof text, "%.2f m, along the ground %.2f m\nheight %+.2f m, slope %.1f deg",
+                m.horizontal, m.along_surface, m.height_difference, degrees * m.slope);
   return text;
 }
 
@@ -60,7 +60,8 @@ int RulerTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
   const bool ruler = !event.alt() && (event.left() || event.leftUp());
   const bool hover = event.type == QEvent::MouseMove && event.buttons_down == Qt::NoButton;
   if (!ruler && !hover) {
-    if (rviz::ViewController* const view = context_->getViewManager()->getCurrent()) view->handleMouseEvent(event);
+    if (rviz::ViewController* const view = context_->getViewManager()->getCurrent())
+      view->handleMouseEvent(event);
   }
   if (event.type == QEvent::Leave || !terrain_->update())
     hovered_.reset();
@@ -118,8 +119,9 @@ void RulerTool::show_status() {
   std::string text = terrain_->problem().empty() ? text_ : terrain_->problem();
   for (char& c : text)
     if (c == '\n') c = ' ';
-  setStatus(QString::fromStdString((text.empty() ? "" : "<b>" + text + "</b> ") +
-                                   "<b>Left:</b> begin and end of the line. <b>Middle, Right, Alt+Left:</b> camera."));
+  setStatus(QString::fromStdString(
+      (text.empty() ? "" : "<b>" + text + "</b> ") +
+      "<b>Left:</b> begin and end of the line. <b>Middle, Right, Alt+Left:</b> camera."));
 }
 
 }  // namespace desert_sim

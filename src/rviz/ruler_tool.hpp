@@ -45,7 +45,7 @@ class RulerTool : public rviz::Tool {
   rviz::StringProperty* node_;
   std::unique_ptr<TerrainPicker> terrain_;
   std::unique_ptr<SurfaceMarks> marks_;
-  Ogre::Viewport* viewport_ = nullptr;                   ///< in which the mouse was last
+  Ogre::Viewport* viewport_ = nullptr;                     ///< in which the mouse was last
   std::optional<render::Point> hovered_, first_, second_;  ///< what the mouse points at, and the clicks
   std::string text_;
 };

@@ -26,7 +26,8 @@ std::unique_ptr<rviz::MovableText> make_text(Ogre::SceneNode* node, const Ogre::
   text->setTextAlignment(rviz::MovableText::H_CENTER, rviz::MovableText::V_ABOVE);
   text->showOnTop();
   text->setRenderQueueGroup(queue);
-  node->createChildSceneNode()->attachObject(text.get());  // two of them in one node are refused: none has a name
+  node->createChildSceneNode()->attachObject(
+      text.get());  // two of them in one node are refused: none has a name
   return text;
 }
 

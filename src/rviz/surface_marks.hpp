@@ -1,6 +1,6 @@
 #pragma once
-/// What a tool draws on the terrain: lines, and a text that has the same size at any distance. Both are seen through
-/// the ground.
+/// What a tool draws on the terrain: lines, and a text that has the same size at any distance. Both are
+/// seen through the ground.
 
 #include <memory>
 #include <string>

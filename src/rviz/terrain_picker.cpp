@@ -90,7 +90,8 @@ double TerrainPicker::exaggeration_of_display(rviz::DisplayGroup* group) const {
     rviz::Display* const display = group->getDisplayAt(n);
     if (!display->isEnabled()) continue;
     const auto* const terrain = dynamic_cast<TerrainDisplay*>(display);
-    if (terrain && node_of_topic(terrain->elevation_topic()) == node_) return terrain->vertical_exaggeration();
+    if (terrain && node_of_topic(terrain->elevation_topic()) == node_)
+      return terrain->vertical_exaggeration();
     const double inside = exaggeration_of_display(dynamic_cast<rviz::DisplayGroup*>(display));
     if (inside != 1) return inside;
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// What the mouse points at on a node's terrain. Tools use it; it needs no display, but where a display
-/// desert_sim/Terrain shows the same terrain, the mouse points at what is drawn, with the heights exaggerated.
+/// desert_sim/Terrain shows the same terrain, the mouse points at what is drawn, with the heights
+/// exaggerated.
 
 #include <OgreNode.h>
 
@@ -27,14 +28,14 @@ class TerrainPicker {
   /// Follows the terrain of this node, such as /desert_sim; an empty name follows none.
   void follow(const std::string& node);
 
-  /// Takes over the newest map and the transforms of now. False if there is none of them; problem() says which. A map
-  /// stays the same until the next call.
+  /// Takes over the newest map and the transforms of now. False if there is none of them; problem() says
+  /// which. A map stays the same until the next call.
   bool update();
   /// Why update() was false.
   const std::string& problem() const { return problem_; }
 
-  // ---- After update() was true. Places and points are relative to the south-west corner of the grid, with true
-  //      heights.
+  // ---- After update() was true. Places and points are relative to the south-west corner of the grid, with
+  //      true heights.
 
   /// The terrain under the mouse; empty beside it.
   std::optional<render::Point> pick(const rviz::ViewportMouseEvent& event) const;

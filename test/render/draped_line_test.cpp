@@ -23,7 +23,8 @@ TEST(DrapedLine, MeasuresASlope) {
 }
 
 TEST(DrapedLine, IsLongerOverARidge) {
-  const HeightField ridge{100, 10, 1, [](int x, int) { return 50.0f - std::abs(static_cast<float>(x) - 50); }};
+  const HeightField ridge{100, 10, 1,
+                          [](int x, int) { return 50.0f - std::abs(static_cast<float>(x) - 50); }};
   const Measurement m = measure(drape(ridge, {{30.5, 5}, {70.5, 5}}));
   EXPECT_NEAR(m.height_difference, 0, 1e-6);
   EXPECT_NEAR(m.slope, 0, 1e-9);

@@ -24,7 +24,8 @@ Point along(const Ray& ray, double t) {
           ray.origin.z + t * ray.direction.z};
 }
 
-/// The first change of side in steps of `step`; grazing rays whose way below the surface is shorter are missed.
+/// The first change of side in steps of `step`; grazing rays whose way below the surface is shorter are
+/// missed.
 std::optional<Point> by_steps(const HeightField& field, const Ray& ray, double step, double end) {
   const auto above = [&](double t) {
     const Point p = along(ray, t);
@@ -35,7 +36,8 @@ std::optional<Point> by_steps(const HeightField& field, const Ray& ray, double s
     const double now = above(t);
     if ((before > 0 && now <= 0) || (before < 0 && now >= 0)) {
       double low = t - step, high = t;
-      for (int n = 0; n < 60; ++n) ((above(0.5 * (low + high)) > 0) == (before > 0) ? low : high) = 0.5 * (low + high);
+      for (int n = 0; n < 60; ++n)
+        ((above(0.5 * (low + high)) > 0) == (before > 0) ? low : high) = 0.5 * (low + high);
       return along(ray, high);
     }
     before = now;
@@ -64,7 +66,8 @@ TEST(RayCast, AgreesWithTinySteps) {
     }
     const auto away = [&](const Point& p) { return std::hypot(p.x - from.x, p.y - from.y, p.z - from.z); };
     // A ray that touches a crest, or the edge of a hole, is found by the exact equation only.
-    if (expected.has_value() != found.has_value() || (found && std::abs(away(*found) - away(*expected)) > 1e-3)) {
+    if (expected.has_value() != found.has_value() ||
+        (found && std::abs(away(*found) - away(*expected)) > 1e-3)) {
       ++differences;
       ASSERT_TRUE(found) << "ray " << n << ": the exact equation misses nothing";
       EXPECT_LT(away(*found), expected ? away(*expected) : 1e9) << "ray " << n;

@@ -31,7 +31,8 @@ Place spiral(int n) {
 }
 
 /// Whether the capsules follow one another, from the first place to the last one, and leave no place out.
-void expect_complete(const std::vector<Capsule>& capsules, const std::vector<Place>& places, double tolerance) {
+void expect_complete(const std::vector<Capsule>& capsules, const std::vector<Place>& places,
+                     double tolerance) {
   ASSERT_FALSE(capsules.empty());
   EXPECT_EQ(distance(capsules.front().from, places.front()), 0);
   EXPECT_EQ(distance(capsules.back().to, places.back()), 0);

@@ -20,8 +20,8 @@ TEST_F(RvizTools, TheRulerMeasures) {
   }));
   double horizontal = 0, along = 0, height = 0, slope = 0;
   const auto read = [&] {
-    return std::sscanf(measured().c_str(), "%lf m, along the ground %lf m\nheight %lf m, slope %lf", &horizontal,
-                       &along, &height, &slope);
+    return std::sscanf(measured().c_str(), "%lf m, along the ground %lf m\nheight %lf m, slope %lf",
+                       &horizontal, &along, &height, &slope);
   };
   ASSERT_EQ(read(), 4) << measured();
   EXPECT_NEAR(horizontal, 50, 0.3);

@@ -8,6 +8,7 @@
 #include <rviz/properties/status_property.h>
 #include <rviz/view_controller.h>
 #include <rviz/view_manager.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -38,6 +39,7 @@ Screen::Screen() {
   pid_ = fork();
   if (pid_ == 0) {
     close(ends[0]);
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // a test that crashes leaves no screen behind
     dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
     const std::string number = std::to_string(ends[1]);
     execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1280x900x24", "+extension", "GLX",

@@ -11,7 +11,8 @@ namespace rviz_test {
 
 double distance_to_segment(const At& p, const At& a, const At& b) {
   const double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
-  const double s = square > 0 ? std::min(1.0, std::max(0.0, ((p.x - a.x) * dx + (p.y - a.y) * dy) / square)) : 0;
+  const double s =
+      square > 0 ? std::min(1.0, std::max(0.0, ((p.x - a.x) * dx + (p.y - a.y) * dy) / square)) : 0;
   return std::hypot(p.x - a.x - s * dx, p.y - a.y - s * dy);
 }
 
@@ -94,14 +95,15 @@ rviz::Tool* RvizTools::use_brush() {
 
 QPoint RvizTools::pixel(const At& at, double z) {
   Ogre::Camera* const camera = window_->manager().getRenderPanel()->getCamera();
-  const Ogre::Vector3 p = camera->getProjectionMatrix() * (camera->getViewMatrix() * Ogre::Vector3(float(at.x), float(at.y), float(z)));
+  const Ogre::Vector3 p = camera->getProjectionMatrix() *
+                          (camera->getViewMatrix() * Ogre::Vector3(float(at.x), float(at.y), float(z)));
   rviz::RenderPanel& panel = *window_->manager().getRenderPanel();
   return {static_cast<int>(std::lround((0.5 + 0.5 * double(p.x)) * panel.width())),
           static_cast<int>(std::lround((0.5 - 0.5 * double(p.y)) * panel.height()))};
 }
 
-void RvizTools::mouse(QEvent::Type type, const At& at, Qt::MouseButtons down,
-                  Qt::KeyboardModifiers modifiers, double z) {
+void RvizTools::mouse(QEvent::Type type, const At& at, Qt::MouseButtons down, Qt::KeyboardModifiers modifiers,
+                      double z) {
   const Qt::MouseButton acting = type == QEvent::MouseMove ? Qt::NoButton : Qt::LeftButton;
   QMouseEvent event(type, pixel(at, z), acting, down, modifiers);
   QApplication::sendEvent(window_->manager().getRenderPanel(), &event);
@@ -109,8 +111,8 @@ void RvizTools::mouse(QEvent::Type type, const At& at, Qt::MouseButtons down,
 
 void RvizTools::wheel(const At& at, int notches, Qt::KeyboardModifiers modifiers) {
   const QPoint place = pixel(at);
-  QWheelEvent event(place, window_->manager().getRenderPanel()->mapToGlobal(place), QPoint(), QPoint(0, 120 * notches),
-                    Qt::NoButton, modifiers, Qt::NoScrollPhase, false);
+  QWheelEvent event(place, window_->manager().getRenderPanel()->mapToGlobal(place), QPoint(),
+                    QPoint(0, 120 * notches), Qt::NoButton, modifiers, Qt::NoScrollPhase, false);
   QApplication::sendEvent(window_->manager().getRenderPanel(), &event);
 }
 
@@ -120,13 +122,13 @@ void RvizTools::key(int code, Qt::KeyboardModifiers modifiers) {
 }
 
 void RvizTools::drag(const At& from, const At& to, int moves, double pause, Qt::KeyboardModifiers modifiers,
-                 double z) {
+                     double z) {
   mouse(QEvent::MouseMove, from, Qt::NoButton, modifiers, z);
   mouse(QEvent::MouseButtonPress, from, Qt::LeftButton, modifiers, z);
   for (int n = 1; n <= moves; ++n) {
     const double share = static_cast<double>(n) / moves;
-    mouse(QEvent::MouseMove, {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)}, Qt::LeftButton,
-          modifiers, z);
+    mouse(QEvent::MouseMove, {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)},
+          Qt::LeftButton, modifiers, z);
     if (pause > 0) window_->run(pause);
   }
   mouse(QEvent::MouseButtonRelease, to, Qt::NoButton, modifiers, z);
@@ -151,8 +153,8 @@ std::string RvizTools::text(rviz::Tool* tool, const char* name) {
   return tool->property(name).toString().toStdString();
 }
 
-void RvizTools::expect_changed(const std::vector<float>& before, const std::vector<float>& after, const At& from,
-                           const At& to, double radius, double slack) {
+void RvizTools::expect_changed(const std::vector<float>& before, const std::vector<float>& after,
+                               const At& from, const At& to, double radius, double slack) {
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; ++x) {
       const double away = distance_to_segment(centre(x, y), from, to);
@@ -168,7 +170,8 @@ void RvizTools::click(const At& at) {
 }
 
 void RvizTools::save(const std::string& name) {
-  if (const char* folder = std::getenv("DESERT_PICTURES")) window_->save(std::string(folder) + "/" + name + ".png");
+  if (const char* folder = std::getenv("DESERT_PICTURES"))
+    window_->save(std::string(folder) + "/" + name + ".png");
 }
 
 }  // namespace rviz_test

@@ -1,7 +1,7 @@
 #pragma once
-/// Tools of rviz on a screen of Xvfb, with a mouse of Qt events. The terrain is that of a real, paused node,
-/// /desert_sim, with the scenario corner.yaml: 64 × 48 cells of 2 m, corner at (10, −20), half a metre of sand on
-/// rock at 1 m, so that its surface is at 1.5 m.
+/// Tools of rviz on a screen of Xvfb, with a mouse of Qt events. The terrain is that of a real, paused
+/// node, /desert_sim, with the scenario corner.yaml: 64 × 48 cells of 2 m, corner at (10, −20), half a
+/// metre of sand on rock at 1 m, so that its surface is at 1.5 m.
 
 #include <gtest/gtest.h>
 #include <rviz/tool.h>
@@ -69,8 +69,8 @@ class RvizTools : public testing::Test {
   static void save(const std::string& name);
 
   /// Exactly the cells within `radius` of the line have changed; `slack` for the size of a pixel.
-  static void expect_changed(const std::vector<float>& before, const std::vector<float>& after, const At& from,
-                             const At& to, double radius, double slack = 0.5);
+  static void expect_changed(const std::vector<float>& before, const std::vector<float>& after,
+                             const At& from, const At& to, double radius, double slack = 0.5);
 
   static Screen* screen_;
   static Window* window_;
