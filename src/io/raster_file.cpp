@@ -256,8 +256,8 @@ void require_host_memory(const std::string& path, double bytes, const std::strin
 
 namespace {
 
-/// A few bytes can declare billions of cells (a sparse GeoTIFF), which would fill the memory with nothing. Deflate
-/// packs at most some 258 cells of four bytes into one.
+/// A few bytes can declare billions of cells (a sparse GeoTIFF), which would fill the memory with nothing.
+/// Deflate packs at most some 258 cells of four bytes into one.
 void refuse_sparse(const std::string& path, const RasterWindow& window, std::uint64_t file_bytes) {
   constexpr std::uint64_t harmless_cells = 1u << 24, cells_per_byte = 1024;
   const std::uint64_t cells =

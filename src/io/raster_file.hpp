@@ -20,8 +20,9 @@ class RasterFile {
   /// The raster without its values.
   const Raster& header() const { return header_; }
   /// Reads the cells of a window, which must lie in the raster, and logs a warning for numbers that seem to
-  /// stand for missing data, and for values in feet that no scale converts. Throws ConfigError for what is wrong with them (see read_raster()), and before
-  /// any is read if the memory does not hold them, or if they are far more than the file can have.
+  /// stand for missing data, and for values in feet that no scale converts. Throws ConfigError for what is
+  /// wrong with them (see read_raster()), and before any is read if the memory does not hold them, or if they
+  /// are far more than the file can have.
   Raster read(const RasterWindow& window);
   Raster read() { return read({0, 0, header_.width, header_.height}); }
 

@@ -54,8 +54,8 @@ Projection::Projection(const Camera& camera, const Box& box, int width, int heig
   fill_picture(box, camera.zoom);
 }
 
-/// What is near is larger: the subject is not in the middle of the picture, and leaves a part of it empty. Shifts and
-/// scales the picture, as a shift lens does.
+/// What is near is larger: the subject is not in the middle of the picture, and leaves a part of it empty.
+/// Shifts and scales the picture, as a shift lens does.
 void Projection::fill_picture(const Box& box, double zoom) {
   constexpr double filled = 0.95;
   clip_ = multiply(projection_, camera_from_terrain_);

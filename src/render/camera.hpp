@@ -6,16 +6,16 @@
 namespace desert_sim::render {
 
 struct Camera {
-  /// Where it stands, seen from the middle of what it looks at: counter-clockwise from +x (east), and above the
-  /// horizon [deg].
+  /// Where it stands, seen from the middle of what it looks at: counter-clockwise from +x (east), and above
+  /// the horizon [deg].
   double azimuth_deg = -60, elevation_deg = 32;
   /// 1: all of it fits into the picture; 2: half of its length and height.
   double zoom = 1;
   double field_of_view_deg = 30;  ///< of the shorter side of the picture
 };
 
-/// Places in a picture: column and row of pixels from the upper left corner, and a depth that is smaller in front: the
-/// negative reciprocal of the distance [1/m], which is linear in the picture.
+/// Places in a picture: column and row of pixels from the upper left corner, and a depth that is smaller in
+/// front: the negative reciprocal of the distance [1/m], which is linear in the picture.
 struct PicturePoint {
   double column, row, depth;
   bool in_front;  ///< else the point lies behind the camera, and the rest means nothing

@@ -57,8 +57,8 @@ std::vector<Rasteriser::Corner> Rasteriser::corners_of(const Mesh& mesh, const P
   return corners;
 }
 
-/// Calls paint(pixel, depth, channels) for each point in the triangle that nothing hides. Colours are linear in the
-/// picture: triangles of a terrain are too small for the perspective within one to be seen.
+/// Calls paint(pixel, depth, channels) for each point in the triangle that nothing hides. Colours are linear
+/// in the picture: triangles of a terrain are too small for the perspective within one to be seen.
 template <class Paint>
 void Rasteriser::fill(const Corner& a, const Corner& b, const Corner& c, const Paint& paint) {
   if (!(a.in_front && b.in_front && c.in_front)) return;

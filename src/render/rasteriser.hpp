@@ -24,8 +24,8 @@ class Rasteriser {
 
   /// Fills the picture, at any depth, with colours from the top to the bottom.
   void clear(const Colour& top, const Colour& bottom);
-  /// Triangles whose colours hide what is behind. Heights are multiplied by `exaggeration`. Triangles with a corner
-  /// behind the camera are left out.
+  /// Triangles whose colours hide what is behind. Heights are multiplied by `exaggeration`. Triangles with a
+  /// corner behind the camera are left out.
   void draw(const Mesh& mesh, const Projection& projection, double exaggeration);
   /// Triangles whose colours cover what is behind them by their alpha, and that hide nothing.
   void blend(const Mesh& mesh, const Projection& projection, double exaggeration);

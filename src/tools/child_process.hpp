@@ -10,13 +10,14 @@
 
 namespace desert_sim {
 
-/// A program that runs until finish(). It finds the file FILE that this process has open under open_file_path(FILE).
+/// A program that runs until finish(). It finds the file FILE that this process has open under
+/// open_file_path(FILE).
 class ChildProcess {
  public:
   enum class Input { inherited, piped };
 
-  /// `words`: the program, which is searched for in $PATH, and its arguments. Throws ConfigError that begins with `what`
-  /// if it cannot be started.
+  /// `words`: the program, which is searched for in $PATH, and its arguments. Throws ConfigError that begins
+  /// with `what` if it cannot be started.
   ChildProcess(const std::string& what, std::vector<std::string> words, Input input = Input::inherited);
   /// Ends the program's input and waits for it, whatever its status.
   ~ChildProcess();

@@ -148,8 +148,8 @@ void require_no_input_replaced(const RunPlan& plan, const Journal& journal) {
 /// About 250 pictures, ten seconds of a film.
 std::uint64_t usual_film_every(std::uint64_t steps) { return std::max<std::uint64_t>(1, steps / 250); }
 
-/// Before the first step: refuses files that could not be written at the end. Creates the folders of --out and
-/// --film. `steps`: how many there will be.
+/// Before the first step: refuses files that could not be written at the end. Creates the folders of --out
+/// and --film. `steps`: how many there will be.
 void prepare_outputs(RunPlan& plan, const Journal& journal, std::uint64_t steps) {
   if (!plan.checkpoint.empty()) require_no_input_replaced(plan, journal);
   const std::string created = plan.out.empty() ? "" : create_output_folder(plan.out);

@@ -10,8 +10,8 @@
 
 namespace desert_sim {
 
-/// `path` names a film (.mp4, which takes ffmpeg), one picture (.png: that of the last state), or a folder, which gets
-/// frame_000000.png, frame_000001.png …
+/// `path` names a film (.mp4, which takes ffmpeg), one picture (.png: that of the last state), or a folder,
+/// which gets frame_000000.png, frame_000001.png …
 class Film {
  public:
   /// Throws ConfigError if that cannot be written, or if ffmpeg is needed and missing.

@@ -55,7 +55,8 @@ render::LayerWindow windows_of(const Snapshot& s) {
   };
 }
 
-/// Relief becomes visible, but a mountain stays a mountain: heights span at least a twelfth of the terrain's length.
+/// Relief becomes visible, but a mountain stays a mountain: heights span at least a twelfth of the terrain's
+/// length.
 double chosen_exaggeration(const Snapshot& s, double relief) {
   const double length = s.cell_size * std::max(s.width, s.height);
   return relief > 0 ? std::clamp(length / 12 / relief, 1.0, 20.0) : 1.0;

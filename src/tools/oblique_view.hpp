@@ -1,6 +1,6 @@
 #pragma once
-/// An oblique, lit picture of a terrain, drawn without a screen or a graphics card, in the colours of the display in
-/// rviz.
+/// An oblique, lit picture of a terrain, drawn without a screen or a graphics card, in the colours of the
+/// display in rviz.
 
 #include <string>
 #include <vector>
@@ -49,8 +49,8 @@ constexpr auto parameter_table(const ViewParameters*) {
       parameter("fps", &P::fps, 1, 120, "1/s", "Pictures in a second of a film."));
 }
 
-/// The parameters with these settings, each "KEY=VALUE". Throws ConfigError that names all that are wrong, also an
-/// unknown layer.
+/// The parameters with these settings, each "KEY=VALUE". Throws ConfigError that names all that are wrong,
+/// also an unknown layer.
 ViewParameters view_parameters(const std::vector<std::string>& settings);
 /// Their table as text, for --help.
 std::string describe_view();

@@ -17,9 +17,9 @@ struct RunReport {
   std::uint64_t timed_steps = 0;      ///< steps in which they were timed
 };
 
-/// Creates the folder and its missing parents, and checks that `file` can be written in it. Returns the topmost
-/// folder that was created; empty if the folder existed. Throws ConfigError that begins with the option;
-/// nothing is then left.
+/// Creates the folder and its missing parents, and checks that `file` can be written in it. Returns the
+/// topmost folder that was created; empty if the folder existed. Throws ConfigError that begins with the
+/// option; nothing is then left.
 std::string create_output_folder(const std::string& folder, const std::string& option = "--out",
                                  const std::string& file = "summary.json");
 /// Removes `folder` and its parents up to `topmost` as long as they are empty.

@@ -81,7 +81,8 @@ TEST_P(Timeline, RampsThatMeetAConditionBetweenParametersGoOn) {
   std::vector<std::string> messages;
   const LogSink before =
       set_log_sink([&](Severity, const std::string& message) { messages.push_back(message); });
-  auto s = simulation(world + "wind_shadow: {start_deg: 10, full_deg: 15}\n"
+  auto s = simulation(world +
+                      "wind_shadow: {start_deg: 10, full_deg: 15}\n"
                       "run: {timeline: [{time: 1, ramp: 80, set: {wind_shadow.full_deg: 25}},\n"
                       "                 {time: 1, ramp: 20, set: {wind_shadow.start_deg: 20}}]}\n");
   test::run(*s, 100);

@@ -36,8 +36,9 @@ class AutosaveFiles {
 };
 
 /// Writes a checkpoint every `period` seconds of wall time, if something has changed, and keeps the last two
-/// files, and those that a journal loads. The copy is made between two steps; the file is written on a thread of its own. If a file cannot be
-/// written, the log and /diagnostics have an error, and it is tried again a period later.
+/// files, and those that a journal loads. The copy is made between two steps; the file is written on a thread
+/// of its own. If a file cannot be written, the log and /diagnostics have an error, and it is tried again a
+/// period later.
 class Autosave {
  public:
   struct State {

@@ -35,9 +35,9 @@ class TopicPublisher {
   void notify();
   /// Says that something that ~status shows has changed, and not by a step: ~status is due.
   void status_changed() { status_.request(); }
-  /// Returns when all changes so far have been published, or after `patience` seconds if that is above 0: they are
-  /// published then as soon as that is possible. Subscribers who learn changes from updates are sent those, and no
-  /// keyframe.
+  /// Returns when all changes so far have been published, or after `patience` seconds if that is above 0:
+  /// they are published then as soon as that is possible. Subscribers who learn changes from updates are sent
+  /// those, and no keyframe.
   void publish_now(double patience = 0);
   /// The parameters from now on.
   void set_parameters(const PublisherSetup& parameters);

@@ -33,8 +33,8 @@ class Commands {
 
   EditHistory& history() { return history_; }
 
-  /// Changes the parameters that the timeline and ramps change now. What is refused keeps its value, and is an
-  /// error in the log; a ramp tries again.
+  /// Changes the parameters that the timeline and ramps change now. What is refused keeps its value, and is
+  /// an error in the log; a ramp tries again.
   void apply_timeline();
   /// What the timeline and ramps are changing, and what comes next; empty if nothing.
   std::string describe_changes() const;
