@@ -26,7 +26,7 @@ class Maps(MapTest):
         self.expect_header(grid_map.info.header)
         self.assertEqual(grid_map.basic_layers, ["elevation"])
         self.assertEqual((grid_map.info.resolution, grid_map.info.length_x, grid_map.info.length_y), (2, 128, 96))
-        self.assertEqual(len(grid_map.layers), 26)
+        self.assertEqual(len(grid_map.layers), 28)
         layers = {name: cells(grid_map, name) for name in grid_map.layers}
         for x in range(64):
             for y in range(48):
