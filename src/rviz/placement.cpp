@@ -46,7 +46,7 @@ Ogre::Quaternion to_ogre(const tf2::Quaternion& q) {
 }
 
 void show_in_view(rviz::DisplayContext& context, const Ogre::Vector3& point, double diagonal) {
-  constexpr double distances = 0.9;  // of the diagonal: rviz's cameras see 45 degrees
+  constexpr double distances = 1.0;  // of the diagonal: rviz's cameras see 45 degrees
   const rviz::ViewController* const view = context.getViewManager()->getCurrent();
   if (!view) return;
   rviz::Property* const distance = child_named(*view, "Distance");
