@@ -34,8 +34,8 @@ std::string shell_word(const std::string& text) {
   return word + "'";
 }
 
-/// Longitude and latitude [deg] of a point of the projection; (0, 0) if they cannot be known.
-void to_degrees(const OGRSpatialReference& crs, double& x, double& y) {
+/// Turns a point of the projection into longitude and latitude [deg]; false if they cannot be known.
+bool to_degrees(const OGRSpatialReference& crs, double& x, double& y) {
   OGRSpatialReference geographic;
   geographic.CopyGeogCSFrom(&crs);
   geographic.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -43,8 +43,7 @@ void to_degrees(const OGRSpatialReference& crs, double& x, double& y) {
   projected.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   const std::unique_ptr<OGRCoordinateTransformation> transformation(
       OGRCreateCoordinateTransformation(&projected, &geographic));
-  if (!transformation || !transformation->Transform(1, &x, &y) || !std::isfinite(x) || !std::isfinite(y))
-    x = y = 0;
+  return transformation && transformation->Transform(1, &x, &y) && std::isfinite(x) && std::isfinite(y);
 }
 
 }  // namespace
@@ -62,14 +61,16 @@ void require_metres(const std::string& path, const std::string& wkt, double x, d
   OGRSpatialReference crs;
   if (crs.importFromWkt(wkt.c_str()) != OGRERR_NONE) return;
   std::string unit = "degrees";
+  bool located = true;
   if (!crs.IsGeographic()) {
     const char* name = nullptr;
-    if (std::abs(crs.GetLinearUnits(&name) - 1) < 1e-9 || crs.IsLocal()) return;
+    if (std::abs(crs.GetLinearUnits(&name) - 1) < 1e-9) return;
     unit = name ? std::string("the unit ") + name : "another unit";
-    to_degrees(crs, x, y);
+    located = to_degrees(crs, x, y);
   }
-  throw_raster_error(path, "its coordinates are in " + unit +
-                               ", metres are needed; project it first: " + projecting_command(path, x, y));
+  throw_raster_error(path, "its coordinates are in " + unit + ", metres are needed; project it first" +
+                               (located ? ": " + projecting_command(path, x, y)
+                                        : " with gdalwarp -t_srs to a projection in metres"));
 }
 
 }  // namespace desert_sim

@@ -22,27 +22,32 @@ rviz::Property* child_named(const rviz::Property& parent, const QString& name) {
 
 }  // namespace
 
-bool transform_to_fixed_frame(const rviz::DisplayContext& context, const std::string& frame,
-                              tf2::Transform& transform) {
-  transform.setIdentity();
+std::optional<Placement> corner_of(const LayerMap::Info& map, const rviz::DisplayContext& context) {
+  tf2::Transform fixed_from_map;
+  fixed_from_map.setIdentity();
   const std::string fixed = context.getFixedFrame().toStdString();
-  if (fixed == frame) return true;
   try {
-    const auto buffer = context.getFrameManager()->getTF2BufferPtr();
-    tf2::fromMsg(buffer->lookupTransform(fixed, frame, ros::Time(0)).transform, transform);
-    return true;
+    if (fixed != map.frame)
+      tf2::fromMsg(context.getFrameManager()
+                       ->getTF2BufferPtr()
+                       ->lookupTransform(fixed, map.frame, ros::Time(0))
+                       .transform,
+                   fixed_from_map);
   } catch (const tf2::TransformException&) {
-    return false;  // the caller's status says what to do
+    return std::nullopt;
   }
+  const tf2::Vector3 corner = fixed_from_map * tf2::Vector3(map.origin_x, map.origin_y, 0);
+  const tf2::Quaternion turned = fixed_from_map.getRotation();
+  return Placement{{static_cast<Ogre::Real>(corner.x()), static_cast<Ogre::Real>(corner.y()),
+                    static_cast<Ogre::Real>(corner.z())},
+                   {static_cast<Ogre::Real>(turned.w()), static_cast<Ogre::Real>(turned.x()),
+                    static_cast<Ogre::Real>(turned.y()), static_cast<Ogre::Real>(turned.z())}};
 }
 
-Ogre::Vector3 to_ogre(const tf2::Vector3& v) {
-  return {static_cast<Ogre::Real>(v.x()), static_cast<Ogre::Real>(v.y()), static_cast<Ogre::Real>(v.z())};
-}
-
-Ogre::Quaternion to_ogre(const tf2::Quaternion& q) {
-  return {static_cast<Ogre::Real>(q.w()), static_cast<Ogre::Real>(q.x()), static_cast<Ogre::Real>(q.y()),
-          static_cast<Ogre::Real>(q.z())};
+std::string missing_transform(const LayerMap::Info& map, const rviz::DisplayContext& context) {
+  return "No transform from the terrain's frame [" + map.frame + "] to the fixed frame [" +
+         context.getFixedFrame().toStdString() + "]: choose [" + map.frame +
+         "] as Fixed Frame, or let a node publish the transform.";
 }
 
 void show_in_view(rviz::DisplayContext& context, const Ogre::Vector3& point, double diagonal) {

@@ -3,9 +3,11 @@
 
 #include <OgreQuaternion.h>
 #include <OgreVector3.h>
-#include <tf2/LinearMath/Transform.h>
 
+#include <optional>
 #include <string>
+
+#include "src/client/layer_map.hpp"
 
 namespace rviz {
 class DisplayContext;
@@ -13,13 +15,17 @@ class DisplayContext;
 
 namespace desert_sim {
 
-/// The latest transform from `frame` to the fixed frame, in double precision, which rviz's own transforms do
-/// not have: coordinates of a map projection have millions of metres. False if tf does not know it.
-bool transform_to_fixed_frame(const rviz::DisplayContext& context, const std::string& frame,
-                              tf2::Transform& transform);
+/// Where something is in the fixed frame.
+struct Placement {
+  Ogre::Vector3 position = Ogre::Vector3::ZERO;
+  Ogre::Quaternion orientation = Ogre::Quaternion::IDENTITY;
+};
 
-Ogre::Vector3 to_ogre(const tf2::Vector3& v);
-Ogre::Quaternion to_ogre(const tf2::Quaternion& q);
+/// The south-west corner of a map's grid, by the latest transform of its frame. It is worked out in double
+/// precision, which rviz's own transforms do not have: coordinates of a map projection have millions of
+/// metres. Empty if tf does not know the transform; missing_transform() says what to do.
+std::optional<Placement> corner_of(const LayerMap::Info& map, const rviz::DisplayContext& context);
+std::string missing_transform(const LayerMap::Info& map, const rviz::DisplayContext& context);
 
 /// Turns the present view to a point of the fixed frame, from where a terrain of this diagonal is seen whole.
 /// A view without focal point and distance stays as it is.

@@ -84,8 +84,8 @@ SurfaceMarks::~SurfaceMarks() {
 }
 
 void SurfaceMarks::show(const TerrainPicker& terrain, const std::vector<Line>& lines) {
-  node_->setPosition(terrain.position());
-  node_->setOrientation(terrain.orientation());
+  node_->setPosition(terrain.corner().position);
+  node_->setOrientation(terrain.corner().orientation);
   render::Mesh mesh;
   for (const Line& line : lines) append_line(mesh, line.points, terrain.exaggeration(), line.colour);
   lines_->set_mesh(mesh);
@@ -98,7 +98,8 @@ void SurfaceMarks::show_text(const TerrainPicker& terrain, const std::string& te
   const Ogre::Vector3 place(static_cast<float>(at.x), static_cast<float>(at.y),
                             static_cast<float>(terrain.exaggeration() * at.z));
   text_node_->setPosition(place);
-  const float pixel = metres_per_pixel(viewport, terrain.position() + terrain.orientation() * place);
+  const float pixel =
+      metres_per_pixel(viewport, terrain.corner().position + terrain.corner().orientation * place);
   for (rviz::MovableText* const one : {text_.get(), shadow_.get()}) {
     one->setCharacterHeight(text_pixels * pixel);
     one->setSpaceWidth(0.3f * text_pixels * pixel);

@@ -3,7 +3,6 @@
 #include <OgreSceneNode.h>
 #include <OgreViewport.h>
 #include <rviz/display_context.h>
-#include <rviz/frame_manager.h>
 #include <rviz/properties/bool_property.h>
 #include <rviz/properties/float_property.h>
 #include <rviz/properties/int_property.h>
@@ -16,7 +15,6 @@
 #include <ctime>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "kernels/view/held_costs.hpp"
 #include "src/core/error.hpp"
 #include "src/rviz/placement.hpp"
 
@@ -26,32 +24,11 @@ using rviz::StatusProperty;
 
 namespace {
 
-constexpr const char* cost_layer = "cost";  // computed from traversability as ~costmap is
-
 /// The processor time of this thread: what a frame costs also where others keep the machine busy.
 double processor_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-render::CellWindow copy(const LayerMap& map, const render::CellRectangle& r) {
-  return {r, map.values({static_cast<std::uint32_t>(r.x), static_cast<std::uint32_t>(r.y),
-                         static_cast<std::uint32_t>(r.width), static_cast<std::uint32_t>(r.height)})};
-}
-
-render::CellWindow costs(const LayerMap& traversability, const render::CellRectangle& r) {
-  std::vector<float> values = copy(traversability, r).values();
-  for (float& value : values)
-    if (!std::isnan(value)) value = held_costs::cost_of(value);
-  return {r, std::move(values)};
-}
-
-render::CellWindow change(const LayerMap& now, const LayerMap& before, const render::CellRectangle& r) {
-  std::vector<float> values = copy(now, r).values();
-  const std::vector<float> others = copy(before, r).values();
-  for (std::size_t n = 0; n < values.size(); ++n) values[n] -= others[n];
-  return {r, std::move(values)};
 }
 
 }  // namespace
@@ -175,8 +152,8 @@ void TerrainDisplay::subscribe() {
   try {
     source_ = std::make_unique<TerrainSource>(topic_->getTopicStd());
   } catch (const ConfigError& error) {
-    set_status(StatusProperty::Error, "Topic",
-               std::string(error.what()) + ". Choose another Elevation Topic.");
+    set_status(
+        {StatusProperty::Error, "Topic", std::string(error.what()) + ". Choose another Elevation Topic."});
     return;
   }
   update_look();
@@ -211,13 +188,10 @@ void TerrainDisplay::update_look() {
   scene_->set_look(look);
   if (!source_) return;
   std::vector<std::string> layers = layers_for(look);
-  if (look.overlay.layer == cost_layer) layers.emplace_back("traversability");
+  std::replace(layers.begin(), layers.end(), std::string(cost_layer), source_of_layer(cost_layer));
   source_->set_layers(layers);
-  for (auto map = maps_.begin();
-       map != maps_.end();)  // a layer that is chosen again later begins with a new keyframe
-    map = std::find(layers.begin(), layers.end(), map->first) == layers.end() ? maps_.erase(map)
-                                                                              : std::next(map);
-  scene_->set_window(window());
+  keep_layers(layers, maps_);
+  scene_->set_window(windows_of(maps_, overlay_->reference()));
   if (look.overlay.active() && overlay_->legend())
     legend_->show(overlay_->title(), look.overlay);
   else
@@ -232,8 +206,8 @@ void TerrainDisplay::update_limits() {
 
 void TerrainDisplay::take_changes() {
   if (!source_) return;
-  const std::vector<LayerChange> changes = source_->take();
-  for (const LayerChange& one : changes) {
+  const std::vector<CollectedChange> changes = source_->take();
+  for (const CollectedChange& one : changes) {
     const std::string& layer = one.map->info().layer;
     frame_messages_ += one.messages;
     maps_[layer] = one.map;
@@ -244,59 +218,33 @@ void TerrainDisplay::take_changes() {
       for (const render::CellRectangle& cells : one.changed) scene_->touch(cells);
     }
   }
-  if (!changes.empty()) scene_->set_window(window());
+  if (!changes.empty()) scene_->set_window(windows_of(maps_, overlay_->reference()));
 }
 
-void TerrainDisplay::take_elevation(const LayerChange& change_of_elevation) {
+void TerrainDisplay::take_elevation(const CollectedChange& change_of_elevation) {
   const LayerMap::Info& info = change_of_elevation.map->info();
   if (change_of_elevation.replaced) {
     overlay_->clear();
     fit_pending_ = true;
-    scene_->set_grid(static_cast<int>(info.width), static_cast<int>(info.height), info.cell_size, window());
+    scene_->set_grid(static_cast<int>(info.width), static_cast<int>(info.height), info.cell_size,
+                     windows_of(maps_, overlay_->reference()));
   }
   for (const render::CellRectangle& cells : change_of_elevation.changed) scene_->touch(cells);
   overlay_->see_elevation(change_of_elevation.map);
 }
 
-/// Maps are immutable and live as long as the function does. Those of another grid than the elevation's, for
-/// a moment after a terrain was loaded, do not count.
-render::LayerWindow TerrainDisplay::window() const {
-  return [maps = maps_, reference = overlay_->reference()](const std::string& layer,
-                                                           const render::CellRectangle& cells) {
-    const auto elevation = maps.find("elevation");
-    const auto find = [&](const std::string& name) -> const LayerMap* {
-      const auto found = maps.find(name);
-      const bool fits =
-          found != maps.end() && elevation != maps.end() && found->second->same_geometry(*elevation->second);
-      return fits ? found->second.get() : nullptr;
-    };
-    if (layer == render::change_layer) {
-      const bool fits = reference && find("elevation") && reference->same_geometry(*elevation->second);
-      return fits ? change(*elevation->second, *reference, cells) : render::CellWindow();
-    }
-    const LayerMap* const map = find(layer == cost_layer ? "traversability" : layer);
-    if (!map) return render::CellWindow();
-    return layer == cost_layer ? costs(*map, cells) : copy(*map, cells);
-  };
-}
-
 /// Moves the terrain to where tf says that its frame is; false and a status if tf does not know.
 bool TerrainDisplay::place() {
   const LayerMap::Info& info = maps_.at("elevation")->info();
-  tf2::Transform fixed_from_terrain;
-  const bool known = transform_to_fixed_frame(*context_, info.frame, fixed_from_terrain);
-  scene_node_->setVisible(known);
-  if (!known) {
-    set_status(StatusProperty::Error, "Transform",
-               "No transform from the terrain's frame [" + info.frame + "] to the fixed frame [" +
-                   fixed_frame_.toStdString() + "]: choose [" + info.frame +
-                   "] as Fixed Frame, or let a node publish the transform.");
+  const std::optional<Placement> corner = corner_of(info, *context_);
+  scene_node_->setVisible(corner.has_value());
+  if (!corner) {
+    set_status({StatusProperty::Error, "Transform", missing_transform(info, *context_)});
     return false;
   }
-  set_status(StatusProperty::Ok, "Transform", "[" + info.frame + "]");
-  const tf2::Vector3 corner = fixed_from_terrain * tf2::Vector3(info.origin_x, info.origin_y, 0);
-  scene_node_->setPosition(to_ogre(corner));
-  scene_node_->setOrientation(to_ogre(fixed_from_terrain.getRotation()));
+  set_status({StatusProperty::Ok, "Transform", "[" + info.frame + "]"});
+  scene_node_->setPosition(corner->position);
+  scene_node_->setOrientation(corner->orientation);
   return true;
 }
 
@@ -323,77 +271,26 @@ void TerrainDisplay::update_views() {
 
 void TerrainDisplay::report() {
 #ifndef __OPTIMIZE__
-  set_status(StatusProperty::Warn, "Build",
-             "The plugin was built without optimisation and is slow: build with -DCMAKE_BUILD_TYPE=Release.");
+  set_status({StatusProperty::Warn, "Build",
+              "The plugin was built without optimisation and is slow: build with "
+              "-DCMAKE_BUILD_TYPE=Release."});
 #endif
   if (!source_) return;
-  report_topic();
-  report_overlay();
+  const std::string& layer = scene_->look().overlay.layer;
+  set_status(status_of_topic(topic_->getTopicStd(), source_->client(), maps_));
+  set_status(status_of_overlay(layer, overlay_->title(), maps_));
   const auto elevation = maps_.find("elevation");
   if (elevation == maps_.end()) return;
-  const LayerMap::Info& info = elevation->second->info();
-  const std::string size = std::to_string(info.width) + " x " + std::to_string(info.height) + " cells";
-  if (counts_.blocks == 0)
-    set_status(StatusProperty::Error, "Terrain",
-               "A terrain of " + size + " has no surface to draw: at least 2 x 2 cells are needed.");
-  else
-    set_status(StatusProperty::Ok, "Terrain", size + ", step " + std::to_string(info.step));
-  set_status(StatusProperty::Ok, "Blocks",
-             std::to_string(counts_.waiting) + " of " + std::to_string(counts_.blocks) + " wait, " +
-                 std::to_string(counts_.triangles) + " triangles");
-}
-
-void TerrainDisplay::report_topic() {
-  const std::string topic = topic_->getTopicStd();
-  const auto elevation = maps_.find("elevation");
-  const TerrainClient& client = source_->client();
-  const TerrainClient::Statistics statistics = client.statistics();
-  const bool up_to_date = client.up_to_date("elevation");
-  if (!client.connected("elevation") && elevation == maps_.end())
-    set_status(
-        StatusProperty::Error, "Topic",
-        "Nobody publishes " + topic +
-            ": start the node (roslaunch desert_sim desert_sim.launch), or choose another Elevation Topic.");
-  else if (!client.connected("elevation"))
-    set_status(StatusProperty::Warn, "Topic",
-               "Nobody publishes " + topic +
-                   " any more: the node has ended. What is shown is its last terrain, of step " +
-                   std::to_string(elevation->second->info().step) + "; start the node again to go on.");
-  else if (elevation == maps_.end())
-    set_status(StatusProperty::Warn, "Topic", "Waiting for the first keyframe of " + topic + ".");
-  else if (!up_to_date)
-    set_status(StatusProperty::Warn, "Topic",
-               "Messages were lost (" + statistics.last_gap + "); waiting for a keyframe of " + topic + ".");
-  else
-    set_status(StatusProperty::Ok, "Topic",
-               std::to_string(statistics.keyframes) + " keyframes, " + std::to_string(statistics.updates) +
-                   " updates");
-}
-
-void TerrainDisplay::report_overlay() {
-  const std::string layer = scene_->look().overlay.layer;
-  const std::string needed = layer == cost_layer ? "traversability" : layer;
-  const bool computed = layer == render::slope_layer || layer == render::change_layer;
-  if (layer.empty())
-    set_status(StatusProperty::Ok, "Overlay", "none");
-  else if (!computed && !TerrainSource::is_known(needed)) {
-    std::string known;
-    for (const std::string& name : TerrainClient::known_layers()) known += (known.empty() ? "" : ", ") + name;
-    set_status(StatusProperty::Error, "Overlay",
-               "There is no layer '" + layer + "': choose change, cost, or one of " + known + ".");
-  } else if (!computed && !maps_.count(needed))
-    set_status(StatusProperty::Warn, "Overlay",
-               "Waiting for the layer '" + needed + "': the node sends it when it has computed it.");
-  else
-    set_status(StatusProperty::Ok, "Overlay", overlay_->title());
+  set_status(status_of_terrain(elevation->second->info(), counts_));
+  set_status(status_of_blocks(counts_));
 }
 
 /// Qt's model of the statuses is told only what has changed.
-void TerrainDisplay::set_status(StatusProperty::Level level, const char* name, const std::string& text) {
-  std::string& shown = statuses_[name];
-  if (shown == text) return;
-  shown = text;
-  setStatus(level, name, QString::fromStdString(text));
+void TerrainDisplay::set_status(const DisplayStatus& status) {
+  std::string& shown = statuses_[status.name];
+  if (shown == status.text) return;
+  shown = status.text;
+  setStatus(status.level, status.name, QString::fromStdString(status.text));
 }
 
 }  // namespace desert_sim

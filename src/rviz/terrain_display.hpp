@@ -6,10 +6,12 @@
 #include <memory>
 
 #include "src/rviz/legend.hpp"
+#include "src/rviz/map_windows.hpp"
 #include "src/rviz/overlay_properties.hpp"
 #include "src/rviz/plants_view.hpp"
 #include "src/rviz/terrain_scene.hpp"
 #include "src/rviz/terrain_source.hpp"
+#include "src/rviz/terrain_status.hpp"
 #include "src/rviz/wind_view.hpp"
 
 namespace rviz {
@@ -64,15 +66,12 @@ class TerrainDisplay : public rviz::Display {
  private:
   void unsubscribe();
   void take_changes();
-  void take_elevation(const LayerChange& change);
-  render::LayerWindow window() const;
+  void take_elevation(const CollectedChange& change);
   bool place();
   void fit_view();
   void update_views();
   void report();
-  void report_topic();
-  void report_overlay();
-  void set_status(rviz::StatusProperty::Level level, const char* name, const std::string& text);
+  void set_status(const DisplayStatus& status);
 
   rviz::RosTopicProperty* topic_;
   rviz::FloatProperty *exaggeration_, *contours_, *budget_, *quad_pixels_;
@@ -87,7 +86,7 @@ class TerrainDisplay : public rviz::Display {
   std::unique_ptr<WindView> wind_view_;
   std::unique_ptr<Legend> legend_;
   std::unique_ptr<TerrainSource> source_;
-  std::map<std::string, std::shared_ptr<const LayerMap>> maps_;  ///< by layer; the elevation decides the grid
+  LayerMaps maps_;  ///< the elevation decides the grid
   double frame_milliseconds_ = 0;
   int frame_messages_ = 0;
   TerrainScene::Counts counts_;

@@ -4,7 +4,6 @@
 #include <OgreViewport.h>
 #include <rviz/display_context.h>
 #include <rviz/display_group.h>
-#include <rviz/frame_manager.h>
 #include <rviz/viewport_mouse_event.h>
 
 #include "src/core/error.hpp"
@@ -43,15 +42,12 @@ bool TerrainPicker::update() {
     return false;
   }
   const LayerMap::Info& info = newest->info();
-  Ogre::Vector3 position;
-  Ogre::Quaternion orientation;
-  if (!context_.getFrameManager()->getTransform(info.frame, ros::Time(), position, orientation)) {
-    problem_ = "No transform from the terrain's frame [" + info.frame + "] to the fixed frame.";
+  const std::optional<Placement> corner = corner_of(info, context_);
+  if (!corner) {
+    problem_ = missing_transform(info, context_);
     return false;
   }
-  orientation_ = orientation;
-  position_ = position + orientation * Ogre::Vector3(static_cast<Ogre::Real>(info.origin_x),
-                                                     static_cast<Ogre::Real>(info.origin_y), 0);
+  corner_ = *corner;
   exaggeration_ = exaggeration_of_display(context_.getRootDisplayGroup());
   if (newest != map_) {
     map_ = newest;
@@ -73,8 +69,9 @@ std::optional<render::Point> TerrainPicker::pick(const rviz::ViewportMouseEvent&
   };
   const Ogre::Ray seen = viewport.getCamera()->getCameraToViewportRay(
       part(event.x, viewport.getActualWidth()), part(event.y, viewport.getActualHeight()));
-  const Ogre::Quaternion turn = orientation_.Inverse();
-  render::Ray ray{to_point(turn * (seen.getOrigin() - position_)), to_point(turn * seen.getDirection())};
+  const Ogre::Quaternion turn = corner_.orientation.Inverse();
+  render::Ray ray{to_point(turn * (seen.getOrigin() - corner_.position)),
+                  to_point(turn * seen.getDirection())};
   ray.origin.z /= exaggeration_;
   ray.direction.z /= exaggeration_;
   return render::first_hit(field_, ray);

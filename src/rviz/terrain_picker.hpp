@@ -3,14 +3,13 @@
 /// desert_sim/Terrain shows the same terrain, the mouse points at what is drawn, with the heights
 /// exaggerated.
 
-#include <OgreNode.h>
-
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "src/client/terrain_client.hpp"
 #include "src/render/ray_cast.hpp"
+#include "src/rviz/placement.hpp"
 
 namespace rviz {
 class DisplayContext;
@@ -44,8 +43,7 @@ class TerrainPicker {
   render::Place in_terrain_frame(const render::Point& point) const;
   double exaggeration() const { return exaggeration_; }
   /// Where the corner of the grid is drawn in the fixed frame.
-  const Ogre::Vector3& position() const { return position_; }
-  const Ogre::Quaternion& orientation() const { return orientation_; }
+  const Placement& corner() const { return corner_; }
 
  private:
   double exaggeration_of_display(rviz::DisplayGroup* group) const;
@@ -56,8 +54,7 @@ class TerrainPicker {
   std::shared_ptr<const ElevationMap> map_;
   render::HeightField field_;
   double exaggeration_ = 1;
-  Ogre::Vector3 position_ = Ogre::Vector3::ZERO;
-  Ogre::Quaternion orientation_ = Ogre::Quaternion::IDENTITY;
+  Placement corner_;
 };
 
 }  // namespace desert_sim

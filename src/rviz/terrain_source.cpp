@@ -5,20 +5,17 @@
 #include <cstring>
 #include <iterator>
 
+#include "src/rviz/map_windows.hpp"
+
 namespace desert_sim {
 
 namespace {
 
 using render::CellRectangle;
 
-std::vector<float> values(const LayerMap& map, const CellRectangle& r) {
-  return map.values({static_cast<std::uint32_t>(r.x), static_cast<std::uint32_t>(r.y),
-                     static_cast<std::uint32_t>(r.width), static_cast<std::uint32_t>(r.height)});
-}
-
 /// The smallest rectangle of these cells that has all differences between two maps; NaN equals NaN.
 CellRectangle difference(const LayerMap& a, const LayerMap& b, const CellRectangle& cells) {
-  const std::vector<float> before = values(a, cells), after = values(b, cells);
+  const std::vector<float> before = values_in(a, cells), after = values_in(b, cells);
   const auto same = [&](int x, int y) {
     const auto n =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(cells.width) + static_cast<std::size_t>(x);
@@ -78,15 +75,15 @@ void PendingChanges::add(const MapChange& change) {
   for (std::size_t n = 0; n < changed.size(); ++n) pending.tiles[n].include(changed[n]);
 }
 
-std::vector<LayerChange> PendingChanges::take() {
+std::vector<CollectedChange> PendingChanges::take() {
   std::map<std::string, Pending> taken;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     std::swap(taken, pending_);
   }
-  std::vector<LayerChange> changes;
+  std::vector<CollectedChange> changes;
   for (auto& [layer, pending] : taken) {
-    LayerChange& change = pending.change;
+    CollectedChange& change = pending.change;
     const Tiles tiles(change.map->info());
     std::copy_if(pending.tiles.begin(), pending.tiles.end(), std::back_inserter(change.changed),
                  [](const CellRectangle& cells) { return !cells.empty(); });

@@ -15,7 +15,7 @@
 namespace desert_sim {
 
 /// What changed in one layer between two calls of PendingChanges::take().
-struct LayerChange {
+struct CollectedChange {
   std::shared_ptr<const LayerMap> map;
   bool replaced = false;                       ///< the frame, size or place is another one; all cells are new
   std::vector<render::CellRectangle> changed;  ///< where cells changed, at most one in each tile
@@ -31,11 +31,11 @@ class PendingChanges {
   /// The maps are compared, so that only cells with different values count as changed.
   void add(const MapChange& change);
   /// What changed since the last call, at most once for each layer, the elevation first.
-  std::vector<LayerChange> take();
+  std::vector<CollectedChange> take();
 
  private:
   struct Pending {
-    LayerChange change;
+    CollectedChange change;
     std::vector<render::CellRectangle> tiles;  ///< what changed in each tile, row-major
   };
 
@@ -54,7 +54,7 @@ class TerrainSource {
   void set_layers(const std::vector<std::string>& layers);
   static bool is_known(const std::string& layer);
 
-  std::vector<LayerChange> take() { return changes_.take(); }
+  std::vector<CollectedChange> take() { return changes_.take(); }
   const TerrainClient& client() const { return *client_; }
 
  private:

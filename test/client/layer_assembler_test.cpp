@@ -13,16 +13,8 @@ using namespace desert_sim;
 using client_test::tile;
 
 LayerGrid::Ptr keyframe(std::uint32_t number, std::uint32_t step, std::vector<float> data) {
-  auto grid = boost::make_shared<LayerGrid>();
-  const ElevationGrid like = client_test::keyframe(number, step, static_cast<std::uint32_t>(data.size()), 1);
-  grid->header = like.header;
-  grid->keyframe = number;
-  grid->step = step;
-  grid->sim_time = like.sim_time;
-  grid->width = like.width;
-  grid->height = like.height;
-  grid->cell_size = like.cell_size;
-  grid->origin = like.origin;
+  const auto width = static_cast<std::uint32_t>(data.size());
+  auto grid = boost::make_shared<LayerGrid>(client_test::empty_keyframe<LayerGrid>(number, step, width, 1));
   grid->layer = "wind_x";
   grid->unit = "m/s";
   grid->data = std::move(data);
@@ -31,15 +23,8 @@ LayerGrid::Ptr keyframe(std::uint32_t number, std::uint32_t step, std::vector<fl
 
 LayerUpdate::Ptr update(std::uint32_t keyframe, std::uint32_t sequence, std::uint32_t step,
                         const LayerTile& changed) {
-  auto u = boost::make_shared<LayerUpdate>();
-  u->header.frame_id = "terrain";
-  u->header.stamp = ros::Time(step, 0);
-  u->keyframe = keyframe;
-  u->sequence = sequence;
-  u->step = step;
-  u->sim_time = step;
+  auto u = client_test::update_of<LayerUpdate>(keyframe, sequence, step, changed);
   u->layer = "wind_x";
-  u->tiles = {changed};
   return u;
 }
 

@@ -13,10 +13,10 @@ using desert_sim::ElevationGrid;
 using desert_sim::ElevationUpdate;
 using desert_sim::LayerTile;
 
-/// At second `step` of ROS time; cells of 2 m, corner at (10, -20).
-inline ElevationGrid keyframe(std::uint32_t number, std::uint32_t step, std::uint32_t width = 130,
-                              std::uint32_t height = 70, float elevation = 0) {
-  ElevationGrid grid;
+/// A keyframe of any stream without its values: at second `step` of ROS time; cells of 2 m, corner at (10, -20).
+template <class Keyframe>
+Keyframe empty_keyframe(std::uint32_t number, std::uint32_t step, std::uint32_t width, std::uint32_t height) {
+  Keyframe grid;
   grid.header.frame_id = "terrain";
   grid.header.stamp = ros::Time(step, 0);
   grid.keyframe = number;
@@ -28,6 +28,27 @@ inline ElevationGrid keyframe(std::uint32_t number, std::uint32_t step, std::uin
   grid.origin.position.x = 10;
   grid.origin.position.y = -20;
   grid.origin.orientation.w = 1;
+  return grid;
+}
+
+/// An update of any stream, of one tile.
+template <class Update>
+boost::shared_ptr<Update> update_of(std::uint32_t keyframe, std::uint32_t sequence, std::uint32_t step,
+                                    const LayerTile& changed) {
+  auto u = boost::make_shared<Update>();
+  u->header.frame_id = "terrain";
+  u->header.stamp = ros::Time(step, 0);
+  u->keyframe = keyframe;
+  u->sequence = sequence;
+  u->step = step;
+  u->sim_time = step;
+  u->tiles = {changed};
+  return u;
+}
+
+inline ElevationGrid keyframe(std::uint32_t number, std::uint32_t step, std::uint32_t width = 130,
+                              std::uint32_t height = 70, float elevation = 0) {
+  auto grid = empty_keyframe<ElevationGrid>(number, step, width, height);
   grid.elevation.assign(std::size_t{width} * height, elevation);
   return grid;
 }
@@ -56,15 +77,7 @@ inline LayerTile tile(std::uint32_t x, std::uint32_t y, std::uint32_t width, std
 /// Writes `elevation` on cells (0…1, 0…2).
 inline ElevationUpdate::Ptr update(std::uint32_t keyframe, std::uint32_t sequence, std::uint32_t step,
                                    float elevation = 1) {
-  auto u = boost::make_shared<ElevationUpdate>();
-  u->header.frame_id = "terrain";
-  u->header.stamp = ros::Time(step, 0);
-  u->keyframe = keyframe;
-  u->sequence = sequence;
-  u->step = step;
-  u->sim_time = step;
-  u->tiles = {tile(0, 0, 2, 3, elevation)};
-  return u;
+  return update_of<ElevationUpdate>(keyframe, sequence, step, tile(0, 0, 2, 3, elevation));
 }
 
 }  // namespace client_test

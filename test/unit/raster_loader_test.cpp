@@ -192,6 +192,16 @@ TEST_F(Dem, FeetAreRefusedWithTheCommandThatProjects) {
   expect_says(load_refusal(q), {"US survey foot", "gdalwarp -t_srs EPSG:32617 "});
 }
 
+/// Of a local system it cannot be known where on Earth it lies, thus not which projection fits.
+TEST_F(Dem, LocalFeetAreRefusedWithoutNamingAProjection) {
+  RasterRequest q;
+  q.path = make("local.tif", "GTiff", 4, 4, GDT_Float32, std::vector<float>(16, 1), {0, 10, 0, 0, 0, -10},
+                R"(LOCAL_CS["site",UNIT["foot",0.3048],AXIS["x",EAST],AXIS["y",NORTH]])");
+  const std::string refusal = load_refusal(q);
+  expect_says(refusal, {"local.tif", "foot", "metres are needed"});
+  EXPECT_EQ(refusal.find("EPSG"), std::string::npos) << refusal;
+}
+
 TEST_F(Dem, HeightsInFeetAreWarnedOfUnlessTheyAreScaled) {
   const std::string file = grid({100, 101, 102, 103}, 2, "ft.tif");
   EXPECT_TRUE(warnings_of(file).empty());
