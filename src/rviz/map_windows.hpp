@@ -24,9 +24,9 @@ void keep_layers(const std::vector<std::string>& layers, LayerMaps& maps);
 /// A copy of the cells of a rectangle, which must lie in the grid.
 std::vector<float> values_in(const LayerMap& map, const render::CellRectangle& cells);
 
-/// The layers of these maps, and those that are computed from them: costs, and the change of the elevation since
-/// `reference` (may be null). Maps are immutable and live as long as the function does. Those of another grid than
-/// the elevation's, for a moment after a terrain was loaded, do not count.
+/// The layers of these maps, and those that are computed from them: costs, and the change of the elevation
+/// since `reference` (may be null). Maps are immutable and live as long as the function does. Those of
+/// another grid than the elevation's, for a moment after a terrain was loaded, do not count.
 render::LayerWindow windows_of(const LayerMaps& maps, const std::shared_ptr<const LayerMap>& reference);
 
 }  // namespace desert_sim

@@ -13,7 +13,8 @@ using desert_sim::ElevationGrid;
 using desert_sim::ElevationUpdate;
 using desert_sim::LayerTile;
 
-/// A keyframe of any stream without its values: at second `step` of ROS time; cells of 2 m, corner at (10, -20).
+/// A keyframe of any stream without its values: at second `step` of ROS time; cells of 2 m, corner at (10,
+/// -20).
 template <class Keyframe>
 Keyframe empty_keyframe(std::uint32_t number, std::uint32_t step, std::uint32_t width, std::uint32_t height) {
   Keyframe grid;
