@@ -19,7 +19,8 @@ struct Mesh {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t>
       indices;  ///< three for each triangle, counter-clockwise as seen from outside; two for each line
-  std::size_t surface_indices = 0;  ///< The first so many belong to the surface, the others to skirts.
+  std::size_t surface_indices =
+      0;  ///< The first so many belong to the surface, the others to skirts and walls.
 
   bool empty() const { return indices.empty(); }
 };

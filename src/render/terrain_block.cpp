@@ -1,6 +1,8 @@
 #include "src/render/terrain_block.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "src/render/contour_lines.hpp"
 #include "src/render/terrain_colours.hpp"
@@ -49,6 +51,20 @@ float light_on(float normal_x, float normal_y, float normal_z, float exaggeratio
 
 }  // namespace
 
+float base_of_walls(const BlockLayout& layout, double cell_size, const LayerWindow& window) {
+  const int width = layout.width(), height = layout.height();
+  if (width == 0 || height == 0) return std::numeric_limits<float>::quiet_NaN();
+  float lowest = std::numeric_limits<float>::infinity();
+  for (const CellRectangle& edge : {CellRectangle{0, 0, width, 1}, CellRectangle{0, height - 1, width, 1},
+                                    CellRectangle{0, 0, 1, height}, CellRectangle{width - 1, 0, 1, height}}) {
+    const CellWindow cells = window("elevation", edge);
+    for (int y = edge.y; y < edge.top(); ++y)
+      for (int x = edge.x; x < edge.right(); ++x) lowest = std::fmin(lowest, cells.at(x, y));
+  }
+  return std::isinf(lowest) ? std::numeric_limits<float>::quiet_NaN()
+                            : lowest - static_cast<float>(wall_share * cell_size * std::max(width, height));
+}
+
 std::vector<std::string> layers_for(const TerrainLook& look) {
   std::vector<std::string> layers{"elevation"};
   if (look.materials)
@@ -63,7 +79,7 @@ std::vector<std::string> layers_for(const TerrainLook& look) {
 }
 
 TerrainBlock build_terrain_block(const BlockLayout& layout, int block, int level, double cell_size,
-                                 const LayerWindow& window, const TerrainLook& look) {
+                                 const LayerWindow& window, const TerrainLook& look, float base) {
   TerrainBlock result;
   const CellRectangle cells = layout.needed_cells(block, level), vertices = layout.vertices(block);
   const CellWindow elevation = window("elevation", cells);
@@ -72,13 +88,15 @@ TerrainBlock build_terrain_block(const BlockLayout& layout, int block, int level
   const CellWindow overlay =
       look.overlay.active() && !slope ? window(look.overlay.layer, vertices) : CellWindow();
   const auto exaggeration = static_cast<float>(look.vertical_exaggeration);
-  result.ground = build_block(layout, block, level, cell_size, elevation,
-                              [&](int x, int y, float nx, float ny, float nz) {
-                                Colour colour = materials.at(x, y);
-                                if (slope) colour = look.overlay.on(colour, std::acos(std::min(1.0f, nz)));
-                                if (!overlay.empty()) colour = look.overlay.on(colour, overlay.at(x, y));
-                                return pack(lit(colour, light_on(nx, ny, nz, exaggeration)));
-                              });
+  result.ground = build_block(
+      layout, block, level, cell_size, elevation,
+      [&](int x, int y, float nx, float ny, float nz) {
+        Colour colour = materials.at(x, y);
+        if (slope) colour = look.overlay.on(colour, std::acos(std::min(1.0f, nz)));
+        if (!overlay.empty()) colour = look.overlay.on(colour, overlay.at(x, y));
+        return pack(lit(colour, light_on(nx, ny, nz, exaggeration)));
+      },
+      base);
   result.contours = contour_lines(result.ground, look.contour_interval);
   if (!look.water) return result;
   const CellWindow depth = window("water_depth", cells);

@@ -26,10 +26,16 @@ struct TerrainBlock {
   Mesh ground, water, contours;
 };
 
+/// How far walls at the edges reach below the lowest cell, over the longer side of the terrain.
+constexpr double wall_share = 0.04;
+/// The height [m] at which the walls at the edges of a terrain end: below its lowest cell there. It is chosen
+/// once for a terrain, so that blocks need not be built anew when the ground moves. NaN if no cell is known.
+float base_of_walls(const BlockLayout& layout, double cell_size, const LayerWindow& window);
+
 /// The layers that a look needs beside the elevation, the overlay's included, if they are there.
 std::vector<std::string> layers_for(const TerrainLook& look);
 
 TerrainBlock build_terrain_block(const BlockLayout& layout, int block, int level, double cell_size,
-                                 const LayerWindow& window, const TerrainLook& look);
+                                 const LayerWindow& window, const TerrainLook& look, float base);
 
 }  // namespace desert_sim::render

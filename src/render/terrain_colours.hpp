@@ -37,6 +37,8 @@ Colour lit(const Colour& colour, float light);
 /// from one and a half times on. `relative`: the speed divided by the one high above.
 Colour wind_colour(float relative);
 
+/// The walls where a terrain ends, as those of a block diagram.
+constexpr Colour cut_colour{0.42f, 0.36f, 0.31f};
 /// Unknown ground in pictures.
 constexpr Colour unknown_colour{215 / 255.0f, 215 / 255.0f, 215 / 255.0f};
 

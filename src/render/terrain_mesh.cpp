@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "src/render/terrain_colours.hpp"
+
 namespace desert_sim::render {
 
 namespace {
@@ -21,10 +23,11 @@ std::vector<int> vertex_cells(int first, int last, int stride) {
 class BlockBuilder {
  public:
   BlockBuilder(const BlockLayout& layout, int block, int level, double cell_size, const CellWindow& surface,
-               const CellColour& colour)
+               const CellColour& colour, float base)
       : surface_(surface),
         colour_(colour),
         cell_size_(static_cast<float>(cell_size)),
+        base_(base),
         stride_(1 << level),
         cells_(layout.vertices(block)),
         columns_(vertex_cells(cells_.x, cells_.right() - 1, stride_)),
@@ -37,12 +40,12 @@ class BlockBuilder {
     if (mesh_.empty()) return std::move(mesh_);
     const std::size_t last_column = columns_.size() - 1, last_row = rows_.size() - 1;
     // Along each edge in the direction that has the block on its left.
-    if (neighbours.south) add_skirt(true, [](std::size_t n) { return std::pair(n, std::size_t{0}); });
-    if (neighbours.east) add_skirt(false, [&](std::size_t n) { return std::pair(last_column, n); });
-    if (neighbours.north)
-      add_skirt(true, [&](std::size_t n) { return std::pair(last_column - n, last_row); });
-    if (neighbours.west)
-      add_skirt(false, [&](std::size_t n) { return std::pair(std::size_t{0}, last_row - n); });
+    add_edge(neighbours.south, true, 0, -1, [](std::size_t n) { return std::pair(n, std::size_t{0}); });
+    add_edge(neighbours.east, false, 1, 0, [&](std::size_t n) { return std::pair(last_column, n); });
+    add_edge(neighbours.north, true, 0, 1,
+             [&](std::size_t n) { return std::pair(last_column - n, last_row); });
+    add_edge(neighbours.west, false, -1, 0,
+             [&](std::size_t n) { return std::pair(std::size_t{0}, last_row - n); });
     return std::move(mesh_);
   }
 
@@ -98,26 +101,48 @@ class BlockBuilder {
       }
   }
 
-  /// `at(n)` is the column and row of the n-th vertex along an edge.
+  /// A skirt where there is a neighbour, else a wall, which looks to (normal_x, normal_y). `at(n)` is the
+  /// column and row of the n-th vertex along the edge.
   template <class At>
-  void add_skirt(bool along_x, const At& at) {
+  void add_edge(bool has_neighbour, bool along_x, float normal_x, float normal_y, const At& at) {
     const std::size_t count = along_x ? columns_.size() : rows_.size();
-    std::uint32_t top_before = no_vertex, bottom_before = no_vertex;
+    if (has_neighbour)
+      add_strip(count, at, [&](Vertex v, int x, int y) {
+        Vertex below = v;
+        below.z = lowest_near(x, y, along_x);
+        return std::pair(v, below);
+      });
+    else if (!std::isnan(base_))
+      add_strip(count, at, [&](Vertex v, int, int) {
+        v.normal_x = normal_x;
+        v.normal_y = normal_y;
+        v.normal_z = 0;
+        v.colour = pack(lit(cut_colour, 0.6f + 0.4f * sun_light(normal_x, normal_y, 0)));
+        Vertex below = v;
+        below.z = std::fmin(v.z, base_);
+        return std::pair(v, below);
+      });
+  }
+
+  /// A vertical strip from an edge downwards. `ends(vertex, x, y)` are its upper and lower vertex below one
+  /// of the surface, of cell (x, y).
+  template <class At, class Ends>
+  void add_strip(std::size_t count, const At& at, const Ends& ends) {
+    std::uint32_t top_before = no_vertex;
     for (std::size_t n = 0; n < count; ++n) {
       const auto [column, row] = at(n);
-      const std::uint32_t top = number(column, row);
-      std::uint32_t below = no_vertex;
-      if (top != no_vertex) {
-        below = static_cast<std::uint32_t>(mesh_.vertices.size());
-        mesh_.vertices.push_back(mesh_.vertices[top]);
-        mesh_.vertices.back().z = lowest_near(columns_[column], rows_[row], along_x);
-      }
-      if (top != no_vertex && top_before != no_vertex) {
-        add_triangle(bottom_before, below, top);
-        add_triangle(bottom_before, top, top_before);
+      std::uint32_t top = no_vertex;
+      if (number(column, row) != no_vertex) {
+        top = static_cast<std::uint32_t>(mesh_.vertices.size());
+        const auto [upper, lower] = ends(mesh_.vertices[number(column, row)], columns_[column], rows_[row]);
+        mesh_.vertices.push_back(upper);
+        mesh_.vertices.push_back(lower);
+        if (top_before != no_vertex) {
+          add_triangle(top_before + 1, top + 1, top);
+          add_triangle(top_before + 1, top, top_before);
+        }
       }
       top_before = top;
-      bottom_before = below;
     }
   }
 
@@ -138,7 +163,7 @@ class BlockBuilder {
 
   const CellWindow& surface_;
   const CellColour& colour_;
-  const float cell_size_;
+  const float cell_size_, base_;
   const int stride_;
   const CellRectangle cells_;
   const std::vector<int> columns_, rows_;
@@ -149,8 +174,8 @@ class BlockBuilder {
 }  // namespace
 
 Mesh build_block(const BlockLayout& layout, int block, int level, double cell_size, const CellWindow& surface,
-                 const CellColour& colour) {
-  return BlockBuilder(layout, block, level, cell_size, surface, colour).build(layout.neighbours(block));
+                 const CellColour& colour, float base) {
+  return BlockBuilder(layout, block, level, cell_size, surface, colour, base).build(layout.neighbours(block));
 }
 
 CellWindow water_surface(const CellWindow& ground, const CellWindow& depth, int level) {

@@ -6,9 +6,11 @@
 /// Between blocks of different levels there would be cracks, because the finer one has vertices on the common
 /// edge that the coarser one leaves out. Each block has skirts there: vertical strips from the edge down to
 /// its lowest cell nearby. On both sides the drawn edge lies between the lowest and the highest cell there,
-/// so that what is between the two is covered by the skirt of the one that is higher.
+/// so that what is between the two is covered by the skirt of the one that is higher. Where the grid ends,
+/// walls go down to a common base, as those of a block diagram, and hide the ends of skirts.
 
 #include <functional>
+#include <limits>
 
 #include "src/render/block_layout.hpp"
 #include "src/render/mesh.hpp"
@@ -20,9 +22,10 @@ using CellColour = std::function<PackedColour(int x, int y, float normal_x, floa
 
 /// `surface` has the heights [m] of layout.needed_cells(block, level) at least. Unknown cells (NaN) are
 /// holes: there is no triangle at them. Normals follow from central differences over 2^level cells on either
-/// side, across the edges of blocks, and one-sided beside unknown cells and at the edge of the grid.
+/// side, across the edges of blocks, and one-sided beside unknown cells and at the edge of the grid. The
+/// walls end at the height `base` [m]; NaN: there are none.
 Mesh build_block(const BlockLayout& layout, int block, int level, double cell_size, const CellWindow& surface,
-                 const CellColour& colour);
+                 const CellColour& colour, float base = std::numeric_limits<float>::quiet_NaN());
 
 /// The surface of water of this depth [m] above the ground, for build_block(): unknown where it is dry,
 /// except beside water, where it continues level into the ground, so that the shore is where both surfaces

@@ -47,6 +47,7 @@ void TerrainScene::set_grid(int width, int height, double cell_size, const rende
   layout_ = render::BlockLayout(width, height);
   cell_size_ = cell_size;
   window_ = window;
+  base_ = render::base_of_walls(layout_, cell_size_, window_);
   queue_.reset(layout_);
   blocks_.clear();
   blocks_.resize(static_cast<std::size_t>(layout_.count()));
@@ -82,7 +83,7 @@ void TerrainScene::update(const Ogre::Camera& camera, int viewport_height, doubl
 void TerrainScene::build(int number, int level) {
   using Ogre::RenderOperation;
   const render::TerrainBlock meshes =
-      render::build_terrain_block(layout_, number, level, cell_size_, window_, look_);
+      render::build_terrain_block(layout_, number, level, cell_size_, window_, look_, base_);
   Block& block = blocks_[static_cast<std::size_t>(number)];
   const auto show = [this](std::unique_ptr<MeshObject>& object, const render::Mesh& mesh,
                            const Ogre::MaterialPtr& material, RenderOperation::OperationType type) {

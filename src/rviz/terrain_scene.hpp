@@ -58,6 +58,7 @@ class TerrainScene {
   Ogre::SceneNode *const parent_, *const node_;
   render::BlockLayout layout_;
   double cell_size_ = 1;
+  float base_ = 0;  ///< where the walls at the edges end [m]
   render::LayerWindow window_;
   render::TerrainLook look_;
   render::DetailLimits limits_;

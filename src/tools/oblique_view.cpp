@@ -17,14 +17,10 @@ namespace desert_sim {
 namespace {
 
 using render::Mesh;
-using render::Point;
-using render::Vertex;
 
 constexpr int samples = 2;                  // a side of a pixel
 constexpr int drawn_triangles = 4'000'000;  // at most, of the ground
 constexpr render::Colour sky_top{0.47f, 0.61f, 0.78f}, sky_bottom{0.90f, 0.90f, 0.88f};
-constexpr render::Colour cut{0.42f, 0.36f, 0.31f};  // where the terrain ends, as in a block diagram
-constexpr double wall_share = 0.04;  // of the longer side of the terrain: walls below its lowest cell
 
 render::Overlay overlay_of(const ViewParameters& p) {
   render::Overlay overlay;
@@ -60,36 +56,6 @@ render::LayerWindow windows_of(const Snapshot& s) {
 double chosen_exaggeration(const Snapshot& s, double relief) {
   const double length = s.cell_size * std::max(s.width, s.height);
   return relief > 0 ? std::clamp(length / 12 / relief, 1.0, 20.0) : 1.0;
-}
-
-/// Vertical walls around the terrain, from its outermost cells down to `bottom` [m].
-Mesh walls(const Snapshot& s, double bottom) {
-  const std::vector<float>& elevation = *s.find(Layer::elevation);
-  Mesh mesh;
-  const auto side = [&](int x0, int y0, int dx, int dy, int count, float normal_x, float normal_y) {
-    const render::PackedColour colour =
-        render::pack(render::lit(cut, 0.6f + 0.4f * render::sun_light(normal_x, normal_y, 0)));
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (int n = 0; n < count; ++n) {
-      const int x = x0 + n * dx, y = y0 + n * dy;
-      const auto place_x = static_cast<float>((x + 0.5) * s.cell_size),
-                 place_y = static_cast<float>((y + 0.5) * s.cell_size);
-      const float z = elevation[static_cast<std::size_t>(y) * static_cast<std::size_t>(s.width) +
-                                static_cast<std::size_t>(x)];
-      mesh.vertices.push_back({place_x, place_y, z, normal_x, normal_y, 0, colour});
-      mesh.vertices.push_back({place_x, place_y, static_cast<float>(bottom), normal_x, normal_y, 0, colour});
-    }
-    for (int n = 0; n + 1 < count; ++n) {
-      const std::uint32_t at = first + 2 * static_cast<std::uint32_t>(n);
-      mesh.indices.insert(mesh.indices.end(), {at, at + 1, at + 2, at + 2, at + 1, at + 3});
-    }
-  };
-  side(0, 0, 1, 0, s.width, 0, -1);
-  side(0, s.height - 1, 1, 0, s.width, 0, 1);
-  side(0, 0, 0, 1, s.height, -1, 0);
-  side(s.width - 1, 0, 0, 1, s.height, 1, 0);
-  mesh.surface_indices = mesh.indices.size();
-  return mesh;
 }
 
 Mesh plants_of(const PlantList& list, double exaggeration) {
@@ -128,13 +94,13 @@ std::vector<render::Box> boxes_of(const render::BlockLayout& layout, double cell
 
 std::vector<render::TerrainBlock> blocks_of(const Snapshot& s, const std::vector<int>& levels,
                                             const render::BlockLayout& layout,
-                                            const render::TerrainLook& look) {
+                                            const render::TerrainLook& look, float base) {
   const render::LayerWindow windows = windows_of(s);
   std::vector<render::TerrainBlock> blocks(levels.size());
 #pragma omp parallel for schedule(dynamic)
   for (int block = 0; block < layout.count(); ++block)
     blocks[static_cast<std::size_t>(block)] = render::build_terrain_block(
-        layout, block, levels[static_cast<std::size_t>(block)], s.cell_size, windows, look);
+        layout, block, levels[static_cast<std::size_t>(block)], s.cell_size, windows, look, base);
   return blocks;
 }
 
@@ -179,7 +145,7 @@ void ObliqueView::choose_bounds(const Snapshot& s, double lowest, double highest
   exaggeration_ =
       parameters_.exaggeration > 0 ? parameters_.exaggeration : chosen_exaggeration(s, highest - lowest);
   const double width = s.width * s.cell_size, height = s.height * s.cell_size;
-  bounds_ = {{0, 0, lowest * exaggeration_ - wall_share * std::max(width, height)},
+  bounds_ = {{0, 0, lowest * exaggeration_ - render::wall_share * std::max(width, height)},
              {width, height, highest * exaggeration_}};
 }
 
@@ -200,11 +166,11 @@ render::Picture ObliqueView::draw(Simulation& simulation) {
   const std::vector<int> levels =
       render::choose_levels(layout, s.cell_size, projection.view(exaggeration_), boxes,
                             std::vector<int>(boxes.size(), -1), {samples, drawn_triangles});
-  const std::vector<render::TerrainBlock> blocks = blocks_of(s, levels, layout, look);
+  const auto base = static_cast<float>(bounds_.low.z / exaggeration_);
+  const std::vector<render::TerrainBlock> blocks = blocks_of(s, levels, layout, look, base);
 
   rasteriser_.clear(sky_top, sky_bottom);
   for (const render::TerrainBlock& block : blocks) rasteriser_.draw(block.ground, projection, exaggeration_);
-  rasteriser_.draw(walls(s, bounds_.low.z / exaggeration_), projection, exaggeration_);
   for (const render::TerrainBlock& block : blocks)
     rasteriser_.draw_lines(block.contours, projection, exaggeration_);
   if (parameters_.plants)  // their feet are exaggerated already

@@ -62,7 +62,7 @@ TerrainBlock block_with(const std::map<std::string, Height>& layers, const Terra
         const auto found = layers.find(name);
         return found == layers.end() ? CellWindow() : window_of(cells, found->second);
       },
-      look);
+      look, std::numeric_limits<float>::quiet_NaN());
 }
 
 // Complaint 3: a crash on a missing layer.

@@ -79,6 +79,32 @@ TEST(TerrainMesh, TheOuterEdgeHasNoSkirt) {
   EXPECT_EQ(mesh.indices.size(), 6u * 64 * 64);
 }
 
+/// From outside, the ends of skirts must not be seen below the terrain.
+TEST(TerrainMesh, WallsGoDownToTheBaseWhereTheGridEnds) {
+  const BlockLayout layout(129, 65);
+  const CellWindow heights = window_of(layout.needed_cells(0, 0), dunes);
+  const auto white = [](int, int, float, float, float) { return pack({1, 1, 1}); };
+  const Mesh mesh = build_block(layout, 0, 0, 1, heights, white, -50);
+  int wall_triangles = 0;
+  for (std::size_t n = mesh.surface_indices; n < mesh.indices.size(); n += 3) {
+    const Vertex &a = mesh.vertices[mesh.indices[n]], &b = mesh.vertices[mesh.indices[n + 1]],
+                 &c = mesh.vertices[mesh.indices[n + 2]];
+    if (std::min({a.z, b.z, c.z}) != -50) continue;
+    ++wall_triangles;
+    EXPECT_EQ(a.normal_z, 0);
+    // Its outer side is the one that is seen: the normal by the order of its corners is that of its light.
+    const float cross_x = (b.y - a.y) * (c.z - a.z) - (b.z - a.z) * (c.y - a.y);
+    const float cross_y = (b.z - a.z) * (c.x - a.x) - (b.x - a.x) * (c.z - a.z);
+    EXPECT_GT(cross_x * a.normal_x + cross_y * a.normal_y, 0);
+  }
+  EXPECT_EQ(wall_triangles, 3 * 64 * 2) << "west, south and north; in the east there is another block";
+  const Edge seam(mesh, 64.5f);
+  EXPECT_EQ(seam.bottom_at(0.5f), -50);
+  EXPECT_GT(seam.bottom_at(1.5f), -9);
+  EXPECT_EQ(build_block(layout, 0, 0, 1, heights, white).indices.size(), mesh.surface_indices + 64u * 6)
+      << "without a base there is the skirt in the east alone";
+}
+
 TEST(TerrainMesh, TrianglesAreCounterClockwiseFromAbove) {
   const BlockLayout layout(40, 50);
   const Mesh mesh = block_of(layout, 0, 2, dunes);
