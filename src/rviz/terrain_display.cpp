@@ -31,6 +31,20 @@ double processor_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+/// The mean of known cells here and there, which a hill in the middle hardly raises; 0 if there are none.
+float usual_height(const LayerMap& elevation) {
+  constexpr std::uint32_t count = 8;
+  float sum = 0, known = 0;
+  for (std::uint32_t n = 0; n < count * count; ++n) {
+    const float height = elevation.at((2 * (n % count) + 1) * elevation.info().width / (2 * count),
+                                      (2 * (n / count) + 1) * elevation.info().height / (2 * count));
+    if (std::isnan(height)) continue;
+    sum += height;
+    ++known;
+  }
+  return known > 0 ? sum / known : 0;
+}
+
 }  // namespace
 
 TerrainDisplay::TerrainDisplay() {
@@ -252,9 +266,8 @@ void TerrainDisplay::fit_view() {
   const LayerMap& elevation = *maps_.at("elevation");
   const LayerMap::Info& info = elevation.info();
   const double width = info.width * info.cell_size, height = info.height * info.cell_size;
-  const float middle = elevation.at(info.width / 2, info.height / 2);
   const Ogre::Vector3 from_corner(static_cast<Ogre::Real>(width / 2), static_cast<Ogre::Real>(height / 2),
-                                  std::isnan(middle) ? 0 : middle * exaggeration_->getFloat());
+                                  usual_height(elevation) * exaggeration_->getFloat());
   show_in_view(*context_, scene_node_->getPosition() + scene_node_->getOrientation() * from_corner,
                std::hypot(width, height));
 }
