@@ -266,10 +266,13 @@ void TerrainDisplay::fit_view() {
   const LayerMap& elevation = *maps_.at("elevation");
   const LayerMap::Info& info = elevation.info();
   const double width = info.width * info.cell_size, height = info.height * info.cell_size;
+  const double diagonal = std::hypot(width, height);
+  constexpr double below = 0.06;  // Perspective makes the near corner large: it reaches the lower edge first.
+  const double focus =
+      static_cast<double>(usual_height(elevation) * exaggeration_->getFloat()) - below * diagonal;
   const Ogre::Vector3 from_corner(static_cast<Ogre::Real>(width / 2), static_cast<Ogre::Real>(height / 2),
-                                  usual_height(elevation) * exaggeration_->getFloat());
-  show_in_view(*context_, scene_node_->getPosition() + scene_node_->getOrientation() * from_corner,
-               std::hypot(width, height));
+                                  static_cast<Ogre::Real>(focus));
+  show_in_view(*context_, scene_node_->getPosition() + scene_node_->getOrientation() * from_corner, diagonal);
 }
 
 void TerrainDisplay::update_views() {
