@@ -194,6 +194,30 @@ TEST_P(Water, UniformChannelCarriesWhatTheBedsDragAllows) {
   }
 }
 
+/// A channel between the sea in the west and a wall in the east: what flows through its mouth in 20 s is the
+/// same in steps of 2 s as in steps of 0.1 s. From a sea that was filled once a step it got 0.11 of that in steps
+/// of 2 s, and 0.86 of it in steps of 0.1 s.
+TEST_P(Water, TheSeaGivesAndTakesTheSameWhateverTheTimeStep) {
+  const int cells = 100;
+  const double time = 20, level = 3;
+  const auto flowed = [&](double before, double step) {
+    test::BenchTerrain t(exec(), cells, 3, 1, false);
+    t.set(Layer::bedrock, [&](int x, int y) { return y != 1 || x == cells - 1 ? 50 : 0; });
+    t.set(Layer::water, [&](int x, int y) { return y != 1 || x == cells - 1 ? 0 : before; });
+    WaterParameters p = free_of_friction();
+    p.sea = Sea::border;
+    const auto total = static_cast<double>(t.total(Layer::water));
+    for (int n = 0; n < static_cast<int>(std::lround(time / step)); ++n)
+      t.flow(p, static_cast<float>(step), n * step, static_cast<Quanta>(level * (1 << 20)));
+    return (static_cast<double>(t.total(Layer::water)) - total) / (1 << 20);
+  };
+  for (const double before : {1.0, 5.0}) {
+    const double finely = flowed(before, 0.1), coarsely = flowed(before, 2);
+    EXPECT_GT(std::abs(finely), 30) << "depth before " << before;
+    EXPECT_NEAR(coarsely / finely, 1, 0.05) << "depth before " << before;
+  }
+}
+
 TEST_P(Water, RainFillsHollowsToTheirRimsAndPondsAreLevel) {
   const int cells = 40;
   test::BenchTerrain t(exec(), cells, cells, 1, false);

@@ -174,7 +174,7 @@ TEST_P(WaterLaws, OpenEdgesDrainToTheSeaAndNoFurther) {
   for (int n = 0; n < 300; ++n) t.flow(p, 1, n, 2 << 20);
   for (Quanta w : t.quanta(Layer::water)) {
     ASSERT_LE(w * quantum, 2.005);
-    ASSERT_GE(w * quantum, 1.9);  // what swings out does not come back: that is what fill_sea() is for
+    ASSERT_GE(w * quantum, 1.995);  // what swings out comes back; else it fell to 1.9
   }
 }
 
