@@ -222,6 +222,27 @@ TEST_P(WindField, CoarseTransformsAreCloseToFullResolution) {
   }
 }
 
+/// Between coarse cells whose winds differ in direction, linear interpolation gives a shorter vector. The mean
+/// tolerances above let pass a wind that nobody stretches again.
+TEST_P(WindField, CoarseWindKeepsItsSpeedWhereItTurns) {
+  constexpr int n = 128;
+  test::BenchTerrain t(exec(), n, n);
+  t.set(Layer::bedrock, [](int x, int y) { return hills(x, y, n, n); });
+  WindParameters p = with(true, false, 4);
+  p.speedup = 0;
+  p.gradient_scale = 0.6f;
+  p.radii = ShortList{{16, 8, 0, 0}, 2};
+  t.blow(p, {5, 2});
+  const std::vector<float> u = t.terrain.values(Layer::wind_x), v = t.terrain.values(Layer::wind_y);
+  double turned = 0, worst = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    turned = std::max(turned, std::abs(std::atan2(v[i], u[i]) - std::atan2(2.0, 5.0)));
+    worst = std::max(worst, std::abs(std::hypot(u[i], v[i]) / std::hypot(5.0, 2.0) - 1));
+  }
+  EXPECT_GT(turned, 0.5) << "the wind goes straight on";
+  EXPECT_LT(worst, 0.001);
+}
+
 TEST_P(WindField, OppositeEdgesOfAnOpenGridDoNotFeelEachOther) {
   constexpr int n = 512;
   const auto hill_at_the_west = [](int x, int y) {
