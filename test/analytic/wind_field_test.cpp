@@ -192,8 +192,8 @@ TEST_P(WindField, TransferUndoesTheCoarsening) {
       left += value * std::polar(2.0 / cells, -k * (x + 0.5));
     }
     const double transfer = work.along_x[0].download()[mode].smooth * static_cast<double>(coarse);
-    // The transfer function takes the interpolation for a continuous one, which costs 1.2 % at this wavelength
-    // of 12 cells; without undoing anything 12 % are missing at a coarsening of 2, and 43 % at 4.
+    // The transfer function takes the interpolation for a continuous one, which costs 1.2 % at this
+    // wavelength of 12 cells; without undoing anything 12 % are missing at a coarsening of 2, and 43 % at 4.
     EXPECT_NEAR(left.real() * transfer / std::exp(-0.5 * sigma * sigma * k * k), 1, 0.015) << coarsening;
   }
 }
@@ -222,8 +222,8 @@ TEST_P(WindField, CoarseTransformsAreCloseToFullResolution) {
   }
 }
 
-/// Between coarse cells whose winds differ in direction, linear interpolation gives a shorter vector. The mean
-/// tolerances above let pass a wind that nobody stretches again.
+/// Between coarse cells whose winds differ in direction, linear interpolation gives a shorter vector. The
+/// tolerances above let a wind pass that is not stretched again.
 TEST_P(WindField, CoarseWindKeepsItsSpeedWhereItTurns) {
   constexpr int n = 128;
   test::BenchTerrain t(exec(), n, n);

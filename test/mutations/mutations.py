@@ -110,7 +110,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "impacts do not lower the angle in wind shadow", "unit *Reptation.Adaptive*"),
     ("repose_of_half_wet_sand", "kernels/sand/repose.hpp",
      "1.5f + 0.5f * m : 1.5f - 1.35f * m", "1.5f + 0.5f * m : 1.5f - 1.0f * m",
-     "saturated ground is nearly flat", "unit MoistureFactor*"),
+     "saturated ground is nearly flat", "unit *Reptation.Tangent*"),
 
     # ---- avalanches
     ("avalanche_diagonal", "kernels/avalanching/laws.hpp",
@@ -149,7 +149,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "waves fade in shallow water", "unit *WaterLaws.Waves*"),
     ("friction_dropped", "kernels/water/virtual_pipes.cpp",
      "maximum(1.0f - p.friction * part, 0.0f)", "1.0f",
-     "friction slows the flow", "analytic Water.UniformChannel*:*Water.UniformChannel*"),
+     "friction slows the flow", "analytic *Water.UniformChannel*"),
     ("drag_dropped", "kernels/water/virtual_pipes.cpp",
      "(drag / (face * face)) * fabsf(undamped_flux)", "drag * fabsf(undamped_flux)",
      "the drag of the bed holds shallow water most", "analytic *Water.UniformChannel*"),
