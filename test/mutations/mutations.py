@@ -164,7 +164,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "the sea keeps its level in each sub-step", "analytic *Water.TheSea*"),
     ("sea_drains_to_the_bed", "kernels/water/pipe_flow.hpp",
      "const Quanta above = sea ? bed(i) + water[i] - sea_level : water[i];", "const Quanta above = water[i];",
-     "water leaves down to the level of the sea", "unit *WaterLaws.OpenEdges*"),
+     "water leaves down to the level of the sea", "unit *WaterLaws.ASeaAtRest*"),
     ("outlet_sill_doubled", "kernels/water/pipe_flow.hpp",
      "const float sill = grid.cell_size * depth * sqrtf(gravity * depth);",
      "const float sill = 2.0f * grid.cell_size * depth * sqrtf(gravity * depth);",

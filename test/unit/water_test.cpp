@@ -190,6 +190,17 @@ TEST_P(WaterLaws, OpenEdgesDrainToTheSeaAndNoFurther) {
 
 /// Waves go with the wind along both axes; the test knew the wind along x only, so that waves which went
 /// against the wind along y passed.
+/// A sea at rest neither gives nor takes; refilled, it hides what leaves from all but the ledger.
+TEST_P(WaterLaws, ASeaAtRestIsNotBooked) {
+  test::BenchTerrain t(exec(), 12, 12, 1, false);
+  t.set(Layer::water, 2);
+  WaterParameters p;
+  p.sea = Sea::border;
+  for (int n = 0; n < 5; ++n) t.flow(p, 1, n, 2 << 20);
+  EXPECT_EQ(t.booked(Material::water, 0), 0);
+  EXPECT_EQ(t.booked(Material::water, 1), 0);
+}
+
 TEST_P(WaterLaws, WavesPushDeepWaterDownwindAndShallowWaterHardly) {
   const auto velocity = [&](double depth, double wind_x, double wind_y) {
     test::BenchTerrain t(exec(), 16, 16);
