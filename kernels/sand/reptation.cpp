@@ -84,7 +84,6 @@ struct Diffusivity {
 
 struct SteepestEvent {
   Surface s;
-  const float* vegetation;
   std::uint64_t seed, tick;
   float slab, quanta_per_metre;
   Quanta* change;
@@ -96,8 +95,7 @@ struct SteepestEvent {
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = s.grid.index(x, y);
-    const float probability =
-        (1.0f - value_or_zero(vegetation, i)) * (1.0f - exp_negative(s.reptation_strength[i]));
+    const float probability = 1.0f - exp_negative(s.reptation_strength[i]);
     if (s.sand[i] <= 0 || s.solid(i) || chance(i) >= probability) return;
     int first = -1, second = -1;
     float first_slope = 0.0f, second_slope = 0.0f;
@@ -164,8 +162,7 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, float tim
   } else {
     exec.set_zero(change, sizeof(Quanta) * t.grid.cells());
     for_each_cell(exec, t.grid,
-                  SteepestEvent{surface, t.real(Layer::vegetation), seed, tick, p.slab * time_step,
-                                t.quanta_per_metre, change});
+                  SteepestEvent{surface, seed, tick, p.slab * time_step, t.quanta_per_metre, change});
     for_each_cell(exec, t.grid, apply);
   }
 }

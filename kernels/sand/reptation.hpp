@@ -6,20 +6,21 @@
 ///
 ///   adaptive_repose   tan θ = lerp(tan θ_sand · exp(−k_r r |w| (1 − r_s)), tan θ_vegetated, v) · f(m)
 ///   smoothing         q_ij  = ⅛ min(k_r Δt |h_i − h_j|/(l d) · ½(r_i + r_j) · ½(|w_i| + |w_j|), s_donor)
-///   steepest          P     = (1 − v)(1 − e^(−r)),   amount = min(`slab` Δt, half the steepest drop, s)
+///   steepest          P     = 1 − e^(−r),   amount = min(`slab` Δt, half the steepest drop, s)
 ///
 /// with the factors of repose.hpp, d = 1 or √2. `adaptive_repose` lowers the donor's angle of repose θ in the
 /// avalanche that follows; without `use_shadow` its r_s is 0. `smoothing` moves q_ij [m] from the higher to
 /// the lower of two neighbours, in as many sub-steps as its diffusion number needs. `steepest` is a random
 /// event of probability P in each cell, which divides the amount among the two steepest neighbours in
-/// proportion to their slopes.
+/// proportion to their slopes. Of the impacts of a metre of sand each starts the event with probability
+/// 1 − v (Paris' β_R), which r contains: P is the probability that at least one of them does.
 ///
 /// The deposition pass of saltation sets the angles of repose for every method (see Impacts), and
 /// set_angles() does so where saltation is off; r lowers them with adaptive_repose only.
 ///
 /// set_angles() reads soil, sand, moisture, vegetation, wind_x, wind_y, wind_shadow; it writes the tangents
-/// of repose, which are scratch. step() reads bedrock, soil, sand, obstacle, wind_x, wind_y and, for
-/// `steepest`, vegetation; it writes sand.
+/// of repose, which are scratch. step() reads bedrock, soil, sand, obstacle, wind_x, wind_y; it writes
+/// sand.
 
 #include <cstdint>
 

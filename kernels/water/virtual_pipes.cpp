@@ -131,6 +131,8 @@ inline int substeps(const WaterParameters& p, const Grid& grid, float time_step,
 template <class E>
 void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_step, double time,
           Quanta sea_level, LedgerView ledger, Quanta* carried, Workspace& work) {
+  const auto fill_sea = [&] { water_sources::fill_sea(exec, t, p.sea, sea_level, ledger); };
+  fill_sea();
   const double deepest =
       static_cast<double>(max_cells(exec, t.grid, Depth{t.grid, t.quanta(Layer::water)})) * t.quantum;
   const int parts = substeps(p, t.grid, time_step, deepest);
@@ -165,6 +167,7 @@ void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_st
     for_each_pipe<LimitOutflow>(exec, flow);
     if (flow.sediment) for_each_pipe<CarrySediment>(exec, flow, ledger);
     for_each_pipe<MoveWater>(exec, flow, velocity_x, velocity_y, ledger);
+    fill_sea();
   }
   for_each_pipe<ApplyLimits>(exec, flow);
 }

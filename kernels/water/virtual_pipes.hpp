@@ -20,6 +20,9 @@
 /// on deeper water are slower than they should be. Over open edges water leaves as over a sill, at the speed
 /// √(g w) or as fast as it flows through the cell, down to the level of the sea where there is one.
 ///
+/// Each sub-step begins and ends with the sea at its level (water_sources.hpp): filled once a step, it would
+/// give less the longer the step is.
+///
 /// A pass cannot change the fluxes of a neighbour, so the limit by a cell's supply (`supply_share`) is
 /// applied to its fluxes when they are next used.
 ///

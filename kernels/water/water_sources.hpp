@@ -6,7 +6,8 @@
 ///   evaporation   w ← w e^(−φ Δt)                  and at least one quantum less
 ///
 /// The ledger records what is added as inflow, and what evaporates as outflow. add_spring() and evaporate()
-/// read and write water; fill_sea() reads bedrock, soil, sand, water and writes water.
+/// read and write water; fill_sea() reads bedrock, soil, sand, water and writes water, in each sub-step of
+/// the flow (virtual_pipes.hpp).
 
 #include <cstdint>
 

@@ -77,7 +77,7 @@ class BenchTerrain {
   int avalanche(const AvalanchingParameters& p, std::uint64_t tick = 0);
   void avalanche_soil(const AvalanchingParameters& p = {}, const ReposeParameters& r = {});
   void avalanche_bedrock(const AvalanchingParameters& p = {}, const ReposeParameters& r = {});
-  /// Water flows for `time_step` from `time` on; brings what it needs into use. Without sea.
+  /// Water flows for `time_step` from `time` on; brings what it needs into use.
   void flow(const WaterParameters& p, float time_step, double time = 0, Quanta sea_level = 0);
   void erode(const HydraulicErosionParameters& p, float time_step = 1);
   void soak(const MoistureParameters& p, float capacity = 0.3f, float time_step = 1);

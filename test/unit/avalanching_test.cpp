@@ -176,6 +176,22 @@ TEST_P(Avalanching, OfSoilIsAtItsOwnAngleAndSteeperUnderVegetation) {
   EXPECT_TRUE(slid(2.48, 1));
 }
 
+/// tan 45° times 1.5 where the soil is half saturated, times 0.15 where it is saturated. Tests had dry soil
+/// only: slides that did not look at moisture passed.
+TEST_P(Avalanching, OfSoilIsSteepestHalfWetAndFlatWhereItIsSaturated) {
+  const auto slid = [&](double height, double moisture) {
+    test::BenchTerrain t(exec(), 3, 1, 1, false);
+    t.set(Layer::soil, [&](int x, int) { return x == 1 ? height : 0; });
+    t.set(Layer::moisture, [&](int x, int) { return x == 1 ? moisture : 0; });
+    t.avalanche_soil();
+    return t.at(Layer::soil, 0, 0) > 0;
+  };
+  EXPECT_FALSE(slid(1.49, 0.15));  // ground deeper than a metre holds 0.3 m
+  EXPECT_TRUE(slid(1.51, 0.15));
+  EXPECT_FALSE(slid(0.14, 0.3));
+  EXPECT_TRUE(slid(0.16, 0.3));
+}
+
 TEST_P(Avalanching, OfBedrockFallsAsSandAndIsBooked) {
   for (bool to_sand : {true, false}) {
     test::BenchTerrain t(exec(), 3, 1, 1, false);

@@ -41,6 +41,23 @@ TEST_P(EchoDunes, ScalesWithTheHeightUpToItsLimitAndInMetres) {
   }
 }
 
+/// A cliff of five steps of 2 m, which rises from x = 39 to x = 44, is 10 m high at its top. Walls of a
+/// single step hid a height that was that of the last step, 2 m: then sand sticks up to 4 m from the top
+/// instead of 20 m.
+TEST_P(EchoDunes, HeightOfACliffIsThatOfAllItsSteps) {
+  test::BenchTerrain t(exec(), 64, 3, 1, false);
+  t.set(Layer::bedrock, [](int x, int) { return x < 50 ? 2 * std::clamp(x - 39, 0, 5) : 0; });
+  t.set(Layer::wind_x, 5);
+  t.echo({});
+  const int top = 44;
+  for (int x = 0; x < 36; ++x) {  // nearer cells stand before the lower parts of the slope, too
+    const int d = top - x;
+    const double expected = d <= 20 ? std::clamp(1.1 - (d - 4) / 16.0, 0.0, 1.0) : 0;
+    EXPECT_NEAR(t.at(Layer::echo, x, 1), expected, 1e-5) << d << " m before the top";
+  }
+  EXPECT_EQ(t.at(Layer::echo, 40, 1), -1) << "the lane reaches 4 m from the top, over the slope";
+}
+
 TEST_P(EchoDunes, NeedsACliffThatFacesTheWind) {
   test::BenchTerrain t(exec(), 64, 3);
   t.set(Layer::wind_x, 5);

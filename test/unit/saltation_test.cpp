@@ -180,6 +180,21 @@ TEST_P(SaltationLaw, InfluxIsPerMetreOfEdgeAndSecondWhateverHopCellAndTimeStep) 
       }
 }
 
+/// Of an oblique wind each edge lets in its part, |u|/|w| and |v|/|w|: tests had winds along an axis, which
+/// let in the same without these factors.
+TEST_P(SaltationLaw, InfluxOfAnObliqueWindIsThroughTheEdgesCrossSection) {
+  for (const auto& [u, v] : {std::pair{3.0, 4.0}, {-1.5, 0.8}, {2.5, -2.5}}) {
+    SaltationParameters p;
+    p.lift = 0;
+    p.influx = 0.125f;
+    test::BenchTerrain t(exec(), 16, 9, 1, false);
+    t.set(Layer::wind_x, u).set(Layer::wind_y, v);
+    t.saltation(p);
+    const double across = (9 * std::abs(u) + 16 * std::abs(v)) / std::hypot(u, v);
+    EXPECT_NEAR(t.booked(Material::sand, 0) * quantum, 0.125 * across, 16 * 9 * quantum) << u << ", " << v;
+  }
+}
+
 TEST_P(SaltationLaw, InfluxEntersOnlyWindwardAndNotOnATorus) {
   SaltationParameters p;
   p.lift = 0;

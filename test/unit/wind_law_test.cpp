@@ -35,6 +35,13 @@ TEST_P(WindLaw, SpeedsUpByHeightAboveTheReferenceWithinItsLimits) {
 
 /// Uniform gradient: a ramp, read in the middle of an open grid far from its edges.
 struct Ramp {
+  static WindParameters one_radius() {
+    WindParameters p;
+    p.radii = ShortList{{8, 0, 0, 0}, 1};
+    p.weights = ShortList{{1, 0, 0, 0}, 1};
+    p.deflections = ShortList{{5, 0, 0, 0}, 1};
+    return p;
+  }
   std::unique_ptr<test::BenchTerrain> t;
   Ramp(Exec& exec, double slope_x, double slope_y, WindParameters p, wind::Vector above) {
     t = std::make_unique<test::BenchTerrain>(exec, 96, 96, 1, false);
@@ -43,9 +50,6 @@ struct Ramp {
     p.projection = false;
     p.warping = true;
     p.coarsening = 1;
-    p.radii = ShortList{{8, 0, 0, 0}, 1};
-    p.weights = ShortList{{1, 0, 0, 0}, 1};
-    p.deflections = ShortList{{5, 0, 0, 0}, 1};
     t->blow(p, above);
   }
   double x() const { return t->at(Layer::wind_x, 48, 48); }
@@ -55,7 +59,7 @@ struct Ramp {
 TEST_P(WindLaw, DeflectsTowardsTheContourOnItsOwnSideAndKeepsItsSpeed) {
   // g = (0.3, 0): g⊥ = (0, 0.3), with the sign that u·g⊥ ≥ 0; f = lerp(u, 5 g⊥, 0.3).
   for (double v : {1.0, -1.0}) {
-    const Ramp ramp(exec(), 0.3, 0, {}, {4, static_cast<float>(v)});
+    const Ramp ramp(exec(), 0.3, 0, Ramp::one_radius(), {4, static_cast<float>(v)});
     const double fx = 0.7 * 4, fy = 0.7 * v + 0.3 * 5 * 0.3 * (v > 0 ? 1 : -1);
     const double speed = std::hypot(4, v), length = std::hypot(fx, fy);
     EXPECT_NEAR(ramp.x(), fx / length * speed, 2e-3) << v;
@@ -65,7 +69,7 @@ TEST_P(WindLaw, DeflectsTowardsTheContourOnItsOwnSideAndKeepsItsSpeed) {
 }
 
 TEST_P(WindLaw, FollowsTheContourWhereTheSlopeIsOneOrMore) {
-  const Ramp ramp(exec(), 1.0, 1.0, {}, {3, 1});
+  const Ramp ramp(exec(), 1.0, 1.0, Ramp::one_radius(), {3, 1});
   EXPECT_NEAR(ramp.x(), std::sqrt(5.0), 2e-3);
   EXPECT_NEAR(ramp.y(), -std::sqrt(5.0), 2e-3);
 }
@@ -82,8 +86,21 @@ TEST_P(WindLaw, DeflectionNeverTurnsTheWindBack) {
       EXPECT_GE(t.at(Layer::wind_x, x, y) * 4 + t.at(Layer::wind_y, x, y) * 2, -1e-3);
 }
 
-TEST_P(WindLaw, GradientScaleZeroDeflectsNothing) {
+/// Each radius has its own weight and deflection. Tests had one radius, or hills without a closed form:
+/// with the weights of two radii swapped they passed.
+TEST_P(WindLaw, DeflectionIsTheMeanOfTheRadiiByTheirWeights) {
   WindParameters p;
+  p.radii = ShortList{{12, 6, 0, 0}, 2};
+  p.weights = ShortList{{0.75f, 0.25f, 0, 0}, 2};
+  p.deflections = ShortList{{30, 5, 0, 0}, 2};
+  const Ramp ramp(exec(), 0.2, 0, p, {4, 1});
+  const double fx = 0.8 * 4, fy = 0.8 * 1 + 0.2 * 0.2 * (0.75 * 30 + 0.25 * 5);
+  EXPECT_NEAR(ramp.x(), fx / std::hypot(fx, fy) * std::sqrt(17.0), 2e-3);
+  EXPECT_NEAR(ramp.y(), fy / std::hypot(fx, fy) * std::sqrt(17.0), 2e-3);
+}
+
+TEST_P(WindLaw, GradientScaleZeroDeflectsNothing) {
+  WindParameters p = Ramp::one_radius();
   p.gradient_scale = 0;
   const Ramp ramp(exec(), 0.5, 0.2, p, {4, 1});
   EXPECT_EQ(ramp.x(), 4);

@@ -176,7 +176,7 @@ Process reptation_process() {
   p.source = "Nilles 2024 §3.7, Paris 2019 §5.1";
   p.header = "kernels/sand/reptation.hpp";
   p.active = [](const Scenario& s) { return reptation::moves_sand(s.reptation); };
-  p.reads = {Layer::bedrock, Layer::soil, Layer::wind_x, Layer::wind_y, Layer::vegetation, Layer::obstacle};
+  p.reads = {Layer::bedrock, Layer::soil, Layer::wind_x, Layer::wind_y, Layer::obstacle};
   p.writes = {Layer::sand};
   p.step = creep;
   // The number of sub-steps is read back, and events are drawn by the step.

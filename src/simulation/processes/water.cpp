@@ -35,7 +35,6 @@ void add_water(StepContext& c, ProcessWorkspace*) {
     for (const Spring& spring : s.springs)
       water_sources::add_spring(e, c.terrain, spring, spring.x - s.grid.origin_x, spring.y - s.grid.origin_y,
                                 c.time_step(), state.steps, state.ledger());
-    water_sources::fill_sea(e, c.terrain, s.water.sea, sea_level(state), state.ledger());
   });
 }
 

@@ -1,0 +1,213 @@
+#!/usr/bin/env python3
+"""Changes one law at a time and shows which test notices; a change that none notices is a gap in the tests.
+
+    test/mutations/run.py [--only NAME...] [--scratch DIR] [--jobs N]    writes test/mutations/table.md
+    test/mutations/run.py --list
+    test/mutations/run.py --check      each text of the table is found exactly once in the tree; nothing is built
+
+mutations.py has the table. Each mutation is applied to a copy of the tree, which is built for the CPU without ROS. The
+tests that are expected to notice run first, then all of the programs in PROGRAMS, up to the first failure. Tests have
+to pass without any mutation first. --only runs the named ones in that order, and leaves the other rows of table.md as
+they are. --scratch keeps the copy and its build for the next call. A mutation that is noticed as expected takes half a
+minute, one that survives many.
+Exit status: 0; 1 if a mutation survives; 2 for a table that does not fit the tree, or a tree that does not build or
+whose tests fail without a mutation.
+"""
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from mutations import MUTATIONS
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+TABLE = HERE / "table.md"
+PROGRAMS = ("unit", "analytic", "property")  # in this order: the quickest first
+SURVIVED = "**SURVIVED**"
+NOT_RUN = "not run"
+LIMIT = 900  # s for a test program: a mutation may make a loop endless
+
+
+class Failure(Exception):
+    """What ends the run: the table or the tree is at fault, not a test."""
+
+
+def faults_of_the_table():
+    faults = []
+    names = [m.name for m in MUTATIONS]
+    faults += ["%s: two mutations have this name" % n for n in sorted(set(names)) if names.count(n) > 1]
+    for m in MUTATIONS:
+        path = ROOT / m.file
+        found = path.read_text().count(m.before) if path.is_file() else None
+        if found is None:
+            faults.append("%s: there is no file %s" % (m.name, m.file))
+        elif found != 1:
+            faults.append("%s: its text is found %d times in %s, not once: %s" % (m.name, found, m.file, m.before))
+        if m.before == m.after:
+            faults.append("%s: it changes nothing" % m.name)
+        if not re.fullmatch("(%s) [^ ]+" % "|".join(PROGRAMS), m.killer):
+            faults.append("%s: its killer is not 'PROGRAM FILTER': %s" % (m.name, m.killer))
+    return faults
+
+
+class Copy:
+    """A copy of the tree and its build."""
+
+    def __init__(self, scratch, jobs):
+        self.tree, self.build, self.jobs = scratch / "tree", scratch / "build", jobs
+
+    def configure(self):
+        listed = subprocess.run(["git", "-C", ROOT, "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+                                check=True, stdout=subprocess.PIPE).stdout
+        files = {os.fsdecode(f) for f in listed.split(b"\0") if f and (ROOT / os.fsdecode(f)).is_file()}
+        for name in files:
+            self.restore(name)
+        for old in self.tree.rglob("*"):
+            if old.is_file() and str(old.relative_to(self.tree)) not in files:
+                old.unlink()
+        launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+        # Mutations leave variables unused. A library that is built anew does not link again what uses it, because its
+        # interface is the same.
+        self.run_tool(["cmake", "-S", self.tree, "-B", self.build, "-DDESERT_WITH_ROS=OFF", "-DDESERT_WITH_CUDA=OFF",
+                       "-DCMAKE_BUILD_TYPE=Release", "-DDESERT_WERROR=OFF", "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON"] +
+                      launcher)
+
+    def restore(self, name):
+        """Copies a file of the tree; one that is as it was keeps its time, so that make leaves it alone."""
+        source, target = ROOT / name, self.tree / name
+        if target.is_file() and target.read_bytes() == source.read_bytes():
+            return
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, target)
+        shutil.copymode(source, target)
+
+    def apply(self, mutation):
+        path = self.tree / mutation.file
+        path.write_text(path.read_text().replace(mutation.before, mutation.after))
+
+    def make(self, target):
+        self.run_tool(["cmake", "--build", self.build, "-j", str(self.jobs), "--target", target])
+
+    @staticmethod
+    def run_tool(command):
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, encoding="utf-8",
+                              errors="replace")
+        if done.returncode != 0:
+            errors = [line for line in done.stdout.splitlines() if "error" in line.lower()]
+            raise Failure("%s failed:\n%s" % (" ".join(map(str, command)), "\n".join(errors[:5] or [done.stdout])))
+
+    def failing_test(self, program, test_filter):
+        """The first test that fails, or None."""
+        command = [self.build / "bin" / (program + "_tests"), "--gtest_filter=%s-*/cuda" % test_filter]
+        try:
+            done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, encoding="utf-8",
+                                  errors="replace", timeout=LIMIT, env=dict(os.environ, GTEST_FAIL_FAST="1"))
+            text, status = done.stdout, done.returncode
+        except subprocess.TimeoutExpired as expired:
+            text, status = (expired.stdout or b"").decode("utf-8", "replace"), "no end"
+        begun = re.findall(r"^\[ RUN      \] (\S+)", text, re.M)
+        if not begun:
+            raise Failure("%s_tests has no test %s" % (program, test_filter))
+        if status == 0:
+            return None
+        failed = re.findall(r"^\[  FAILED  \] ([^\s,]+)", text, re.M)
+        name = failed[0] if failed else "%s (status %s)" % (begun[-1], status)
+        return "%s.%s" % (program, re.sub(r"^On/|/cpu\b", "", name))
+
+
+def killer_of(copy, mutation):
+    """The test that notices a mutation that is applied, or None."""
+    expected = mutation.killer.split(" ")
+    # Most laws are compiled into the library only. What notices the change there needs no other program anew.
+    copy.make("desert_physics")
+    failing = copy.failing_test(*expected)
+    for program, tests in [expected] + [(program, "*") for program in PROGRAMS]:
+        if failing:
+            break
+        copy.make(program + "_tests")
+        failing = copy.failing_test(program, tests)
+    return failing
+
+
+def require_passing_tests(copy, mutations):
+    for program in PROGRAMS:
+        copy.make(program + "_tests")
+        failing = copy.failing_test(program, "*")
+        if failing:
+            raise Failure("without any mutation, %s fails" % failing)
+    for mutation in mutations:
+        copy.failing_test(*mutation.killer.split(" "))  # fails where there is no such test
+
+
+def rows_of_table():
+    if not TABLE.is_file():
+        return {}
+    rows = re.findall(r"^\| `(\w+)` \|.* \| ([^|]+) \|$", TABLE.read_text(), re.M)
+    return dict(rows)
+
+
+def write_table(killers):
+    lines = ["# Mutations", "",
+             "Written by `test/mutations/run.py`: each row changes one law, and names the first test that failed then.",
+             "", "| mutation | file | what it breaks | noticed by |", "|---|---|---|---|"]
+    for m in MUTATIONS:
+        lines.append("| `%s` | %s | %s | %s |" % (m.name, m.file, m.law, killers.get(m.name, NOT_RUN)))
+    TABLE.write_text("\n".join(lines) + "\n")
+
+
+def run(mutations, scratch, jobs):
+    copy = Copy(scratch, jobs)
+    copy.configure()
+    require_passing_tests(copy, mutations)
+    killers = rows_of_table()
+    for mutation in mutations:
+        copy.apply(mutation)
+        try:
+            killer = killer_of(copy, mutation)
+        except Failure as failure:
+            raise Failure("%s: %s" % (mutation.name, failure))
+        finally:
+            copy.restore(mutation.file)
+        killers[mutation.name] = "`%s`" % killer if killer else SURVIVED
+        print("%-32s %s" % (mutation.name, killer or "SURVIVED"), flush=True)
+        write_table(killers)
+    return 1 if any(killers[m.name] == SURVIVED for m in mutations) else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", nargs="+", metavar="NAME", default=[])
+    parser.add_argument("--list", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--scratch", type=pathlib.Path, metavar="DIR")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    options = parser.parse_args()
+    if options.list:
+        for m in MUTATIONS:
+            print("%-32s %s\n%34s%s" % (m.name, m.file, "", m.law))
+        return 0
+    faults = faults_of_the_table()
+    by_name = {m.name: m for m in MUTATIONS}
+    faults += ["--only: there is no mutation %s" % name for name in options.only if name not in by_name]
+    if faults:
+        raise Failure("\n".join(faults))
+    if options.check:
+        return 0
+    mutations = [by_name[name] for name in options.only] or MUTATIONS
+    if options.scratch:
+        return run(mutations, options.scratch.resolve(), options.jobs)
+    with tempfile.TemporaryDirectory(prefix="desert_mutations_") as scratch:
+        return run(mutations, pathlib.Path(scratch), options.jobs)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except Failure as failure:
+        print(failure, file=sys.stderr)
+        sys.exit(2)
