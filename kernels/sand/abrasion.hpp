@@ -10,6 +10,7 @@
 /// than `cover` and a > 0. It is part of saltation's deposition pass. Reads bedrock, soil, sand,
 /// erosion_resistance and what that pass reads; writes bedrock, soil, sand.
 
+#include "kernels/field/dice.hpp"
 #include "kernels/field/ledger.hpp"
 #include "kernels/sand/repose.hpp"
 
@@ -37,8 +38,12 @@ struct Abrade {
   float quantum, quanta_per_metre;
   Quanta *bedrock, *soil, *sand;
   const float* resistance;
+  Die die;
   LedgerView ledger;
 
+  DESERT_HD Quanta whole(float metres, Quanta available, int i) const {
+    return die.whole_at_most(metres * quanta_per_metre, available, i);
+  }
   /// `sand_before_deposit`: sand of cell i before the deposit; `bouncing`: sand that stays airborne over it;
   /// `speed`: of the wind [m/s]; v: vegetation; m: relative moisture; p: deposited share.
   DESERT_HD void operator()(int i, Quanta sand_before_deposit, Quanta bouncing, float speed, float v, float m,
@@ -46,16 +51,14 @@ struct Abrade {
     if (rate <= 0.0f || bouncing <= 0 || sand_before_deposit >= cover) return;
     const float strength = rate * speed * (1.0f - v) * (1.0f - p) * minimum(bouncing * quantum, 1.0f);
     if (soil && soil[i] > 0) {
-      const Quanta worn =
-          to_quanta_at_most(strength * maximum(1.0f - 2.0f * m, 0.0f), quanta_per_metre, soil[i]);
+      const Quanta worn = whole(strength * maximum(1.0f - 2.0f * m, 0.0f), soil[i], i);
       soil[i] -= worn;
       sand[i] += worn;
       ledger.convert(Material::soil, Material::sand, i, worn);
       return;
     }
     const Quanta room = bedrock[i] > -wall_height ? bedrock[i] + wall_height : 0;
-    const Quanta worn =
-        to_quanta_at_most(strength * (1.0f - value_or_zero(resistance, i)), quanta_per_metre, room);
+    const Quanta worn = whole(strength * (1.0f - value_or_zero(resistance, i)), room, i);
     bedrock[i] -= worn;
     sand[i] += worn;
     ledger.convert(Material::bedrock, Material::sand, i, worn);

@@ -15,6 +15,7 @@
 /// erosion_resistance, obstacle; writes bedrock, soil, sand, suspended_sediment.
 
 #include "kernels/backend/buffer.hpp"
+#include "kernels/field/dice.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
 #include "src/core/parameters.hpp"
@@ -58,7 +59,7 @@ struct Workspace {
 
 template <class E>
 void step(E& exec, const TerrainView& t, const HydraulicErosionParameters& p, float time_step,
-          LedgerView ledger, Workspace& work);
+          const Dice& dice, LedgerView ledger, Workspace& work);
 
 }  // namespace hydraulic_erosion
 }  // namespace desert_sim

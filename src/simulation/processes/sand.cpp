@@ -28,7 +28,7 @@ reptation::Angle angle_of_repose(const StepContext& c) {
 template <class E>
 void lift_and_deposit(E& e, StepContext& c, const wind_shadow::Shadow* shadow_law) {
   const Scenario& s = c.scenario();
-  saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.state.ledger(),
+  saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.dice(), c.state.ledger(),
                   c.fields.landed.data(), {angle_of_repose(c), c.fields.impact_strength.data()}, shadow_law);
 }
 
@@ -47,7 +47,7 @@ void set_angles(StepContext& c, ProcessWorkspace*) {
 void creep(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
-    reptation::step(e, c.terrain, s.reptation, c.time_step(), s.seed, c.state.steps,
+    reptation::step(e, c.terrain, s.reptation, c.time_step(), s.seed, c.state.steps, c.dice(),
                     c.fields.impact_strength.data(), c.fields.landed.data());
   });
 }
