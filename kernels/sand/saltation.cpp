@@ -36,6 +36,7 @@ void step(E& exec, const TerrainView& t, const SaltationParameters& p, const Abr
           const ReposeParameters& repose, float time_step, const Dice& dice, LedgerView ledger,
           Quanta* landed, const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law) {
   const abrasion::Abrade abrade{a.rate * time_step,
+                                a.rate_of_soil() * time_step,
                                 to_quanta_at_most(a.cover, t.quanta_per_metre, wall_height),
                                 t.quantum,
                                 t.quanta_per_metre,

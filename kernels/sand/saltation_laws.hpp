@@ -157,7 +157,7 @@ struct Deposit {
     const DepositResult o = split_landed(i, landed[i], cover, value_or_zero(in.wind_shadow, i), speed, v, m);
     sand[i] = cover + o.stays;
     airborne[i] = o.bounces;
-    if (!bare) abrade(i, cover, o.bounces, speed, v, m, o.deposited_share);
+    if (!bare && !in.solid(i) && !in.flooded(i)) abrade(i, cover, o.bounces, speed, v, m, o.deposited_share);
     impacts.set(i, o.strength, o.lowered_tangent, v, in.moisture(i));
   }
 };

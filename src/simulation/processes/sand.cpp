@@ -13,7 +13,7 @@
 namespace desert_sim {
 
 bool wears_ground(const Scenario& s) {
-  return s.abrasion.rate > 0 || s.hydraulic_erosion.enabled || s.soil.enabled;
+  return s.abrasion.wears_ground() || s.hydraulic_erosion.enabled || s.soil.enabled;
 }
 
 namespace {
