@@ -80,12 +80,13 @@ struct Exchange {
     const int i = grid.index(x, y);
     const Quanta carried = sediment[i];
     const float capacity_deficit = capacity[i] - carried * quantum;
-    if (value_or_zero(obstacle, i) > 0.0f) return;
     const bool dry = !(water[i] * quantum > wet_depth);
     if (capacity_deficit < 0.0f || dry) {
       sediment[i] = carried - deposit_sediment(i, carried, -capacity_deficit, dry);
     } else if (sand[i] > 0) {
       sediment[i] = carried + dissolve(i, Material::sand, sand, sand[i], p.sand, capacity_deficit);
+    } else if (value_or_zero(obstacle, i) > 0.0f) {
+      return;
     } else if (soil && soil[i] > 0) {
       sediment[i] = carried + dissolve(i, Material::soil, soil, soil[i], p.soil, capacity_deficit);
     } else {

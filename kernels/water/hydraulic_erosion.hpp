@@ -9,7 +9,8 @@
 ///   transport   S moves with the water: sediment_transport.hpp
 ///
 /// C and S (suspended_sediment) are depths of sediment [m], α is the slope angle of the solid surface, U the
-/// water's velocity, w its depth, v vegetation, ρ erosion_resistance. Cells with an obstacle do not change.
+/// water's velocity, w its depth, v vegetation, ρ erosion_resistance. An obstacle itself does not
+/// dissolve; sand that settles on it does.
 ///
 /// Reads bedrock, soil, sand, water, water_velocity_x, water_velocity_y, suspended_sediment, vegetation,
 /// erosion_resistance, obstacle; writes bedrock, soil, sand, suspended_sediment.
