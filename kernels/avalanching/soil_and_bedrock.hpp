@@ -1,6 +1,6 @@
 #pragma once
-/// Avalanching of soil and of bedrock: one synchronous sweep a step, while something wears the ground or it
-/// still slides. Equations in avalanching.hpp.
+/// Avalanching of soil and of bedrock: one synchronous sweep a step, while something wears the ground, or
+/// changes the soil's angle of repose, or it still slides. Equations in avalanching.hpp.
 ///
 ///   soil      tan θ = lerp(tan θ_bare, tan θ_vegetated, v) · M
 ///   bedrock   tan θ = tan θ_bedrock

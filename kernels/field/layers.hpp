@@ -83,7 +83,7 @@ constexpr std::array<LayerInfo, 32> layer_table{{
      "Humus in the soil, as a depth."},
     {Layer::vegetation, "vegetation", "1", Storage::real, Lifetime::persistent, 0, 1, "Density of plants."},
     {Layer::erosion_resistance, "erosion_resistance", "1", Storage::real, Lifetime::persistent, 0, 1,
-     "Resistance of the rock to abrasion; 1 never wears."},
+     "Resistance of rock and soil to wear; 1 never wears."},
     {Layer::obstacle, "obstacle", "1", Storage::real, Lifetime::persistent, 0, 1,
      "1 where a solid object stands, that neither gives nor takes sand."},
     {Layer::water_flux_x, "water_flux_x", "m^3/s", Storage::real, Lifetime::persistent, -any_height,

@@ -91,6 +91,11 @@ DESERT_HD float exp_negative(float x) {
   return x >= end ? 0.0f : p;
 }
 
+/// 1 − e^(−x) for x ≥ 0, also where x is so small that e^(−x) rounds to 1.
+DESERT_HD float lost_share(float x) {
+  return x < 0.01f ? x * (1.0f - x * (0.5f - x * (1.0f / 6.0f))) : 1.0f - exp_negative(x);
+}
+
 /// arctan(x) for 0 ≤ x < 1e18, with a relative error below 1e-6. The angle is halved three times,
 ///
 ///   arctan x = 2 arctan(x / (1 + √(1 + x²)))

@@ -18,6 +18,7 @@ enum class Purpose : std::uint32_t {
   wind_rose,
   turbulence,
   rain,
+  rounding,
   plants = 32,
   planting,
 };

@@ -17,6 +17,7 @@ struct Cover {
   int species_count;
   const float *heights, *wind_x, *wind_y;  ///< heights [quanta]
   float quantum, quanta_per_metre, time_step;
+  Die humus_die;
   Quanta humus_limit;
   float *vegetation, *canopy_height;  ///< vegetation: null if it and humus are not to be written
   Quanta* humus;
@@ -66,7 +67,7 @@ struct Cover {
     const Quanta room = humus_limit > present ? humus_limit - present : 0;
     humus[i] = present > humus_limit
                    ? humus_limit
-                   : present + to_quanta_at_most(time_step * sums.humus, quanta_per_metre, room);
+                   : present + humus_die.whole_at_most(time_step * sums.humus * quanta_per_metre, room, i);
   }
 };
 
@@ -91,22 +92,22 @@ struct ComputeCanopyTops {
 };
 
 template <class E>
-void cover(E& exec, const TerrainView& t, const VegetationParameters& p, float time_step,
+void cover(E& exec, const TerrainView& t, const VegetationParameters& p, float time_step, const Dice& dice,
            const surface::Heights& heights, bool makes_state, Workspace& work) {
-  for_each_cell(
-      exec, t.grid,
-      Cover{t.grid, work.neighbourhood(), work.plants(), work.species.data(), work.species_count,
-            heights.cell_heights.data(), t.real(Layer::wind_x), t.real(Layer::wind_y), t.quantum,
-            t.quanta_per_metre, time_step, to_quanta_at_most(p.humus_limit, t.quanta_per_metre, load_limit),
-            makes_state ? t.real(Layer::vegetation) : nullptr, t.real(Layer::canopy_height),
-            t.quanta(Layer::humus), work.density.data(), work.downwind.data()});
+  for_each_cell(exec, t.grid,
+                Cover{t.grid, work.neighbourhood(), work.plants(), work.species.data(), work.species_count,
+                      heights.cell_heights.data(), t.real(Layer::wind_x), t.real(Layer::wind_y), t.quantum,
+                      t.quanta_per_metre, time_step, dice[Roll::humus],
+                      to_quanta_at_most(p.humus_limit, t.quanta_per_metre, load_limit),
+                      makes_state ? t.real(Layer::vegetation) : nullptr, t.real(Layer::canopy_height),
+                      t.quanta(Layer::humus), work.density.data(), work.downwind.data()});
   for_each_cell(
       exec, work.tops.blocks,
       ComputeCanopyTops{t.grid, work.tops.blocks, heights.cell_heights.data(), t.real(Layer::canopy_height),
                         t.quanta_per_metre, work.tops.cell_heights.data(), work.tops.highest.data()});
 }
 
-template void cover(Backend&, const TerrainView&, const VegetationParameters&, float, const surface::Heights&,
-                    bool, Workspace&);
+template void cover(Backend&, const TerrainView&, const VegetationParameters&, float, const Dice&,
+                    const surface::Heights&, bool, Workspace&);
 
 }  // namespace desert_sim::plants

@@ -16,6 +16,7 @@
 /// canopy_height and humus, and in the workspace the densities of the species and `tops`: the surface of the
 /// canopy (of the ground where nothing grows), for wind shadow and illumination.
 
+#include "kernels/field/dice.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/plants/workspace.hpp"
 
@@ -24,7 +25,7 @@ namespace desert_sim::plants {
 /// `makes_state`: whether to write vegetation and humus as well, which are state; recomputing the derived
 /// layers for a snapshot must not change them.
 template <class E>
-void cover(E& exec, const TerrainView& t, const VegetationParameters& p, float time_step,
+void cover(E& exec, const TerrainView& t, const VegetationParameters& p, float time_step, const Dice& dice,
            const surface::Heights& heights, bool makes_state, Workspace& work);
 
 }  // namespace desert_sim::plants

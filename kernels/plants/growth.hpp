@@ -91,6 +91,7 @@ struct Grow {
   const long long* water_requests;
   const float *canopy_height, *illumination, *illumination_canopy;
   float time_step, litter;
+  Die height_die;
   Quanta *granted_water, *humus;
   int* deaths;
 
@@ -130,7 +131,7 @@ struct Grow {
   /// Water uptake and its effects; returns the water stored afterwards.
   DESERT_HD float take_up_water(const SpeciesTraits& s, int n, int cell, Response& r) const {
     const float stored = plants.water[n];
-    const WaterDemand t = water_uptake.water_demand(s, plants.radius[n], stored, cell);
+    const WaterDemand t = water_uptake.water_demand(s, n, plants.radius[n], stored, cell);
     granted_water[n] = water_uptake.granted(t.request, water_requests[cell], cell);
     const float share =
         t.request > 0 ? static_cast<float>(granted_water[n]) / static_cast<float>(t.request) : 1.0f;
@@ -153,9 +154,9 @@ struct Grow {
     return minimum(radius + time_step * s.growth * r.growth(), r.largest_radius);
   }
 
-  DESERT_HD Quanta follow_ground(const SpeciesTraits& s, Quanta z, int cell) const {
+  DESERT_HD Quanta follow_ground(const SpeciesTraits& s, int n, Quanta z, int cell) const {
     const Quanta max_shift =
-        to_quanta_at_most(s.position_adjust * time_step, site().quanta_per_metre, load_limit);
+        height_die.whole_at_most(s.position_adjust * time_step * site().quanta_per_metre, load_limit, n);
     const Quanta distance = site().surface(cell) - z;
     return z + (distance > max_shift ? max_shift : (distance < -max_shift ? -max_shift : distance));
   }
@@ -175,7 +176,7 @@ struct Grow {
     if (due && !is_mature(s, grown)) health = 0.0f;
     next_state.x[n] = plants.x[n];
     next_state.y[n] = plants.y[n];
-    next_state.z[n] = follow_ground(s, plants.z[n], cell);
+    next_state.z[n] = follow_ground(s, n, plants.z[n], cell);
     next_state.radius[n] = grown;
     next_state.health[n] = health;
     next_state.water[n] = stored;

@@ -76,8 +76,9 @@ void spawn(E& exec, const Site& site, std::uint64_t seed, std::uint64_t step, fl
 template <class E>
 void grow_and_spawn(E& exec, const TerrainView& t, const VegetationParameters& p,
                     const ReposeParameters& repose, const surface::Heights& heights, float time_step,
-                    std::uint64_t seed, std::uint64_t step, LedgerView ledger, Workspace& work) {
-  const WaterUptake water_uptake(t, repose, p, heights.cell_heights.data(), time_step);
+                    std::uint64_t seed, std::uint64_t step, const Dice& dice, LedgerView ledger,
+                    Workspace& work) {
+  const WaterUptake water_uptake(t, repose, p, heights.cell_heights.data(), time_step, dice);
   work.event_counts.set_zero();
   work.water_requests.set_zero();
   for_each_item(exec, work.count,
@@ -87,8 +88,8 @@ void grow_and_spawn(E& exec, const TerrainView& t, const VegetationParameters& p
   for_each_item(exec, work.count,
                 Grow{water_uptake, competition, work.plants(), work.next_state(), work.species.data(),
                      work.water_requests.data(), t.real(Layer::canopy_height), t.real(Layer::illumination),
-                     t.real(Layer::illumination_canopy), time_step, p.litter, work.granted_water.data(),
-                     t.quanta(Layer::humus), work.event_counts.data()});
+                     t.real(Layer::illumination_canopy), time_step, p.litter, dice[Roll::plant_height],
+                     work.granted_water.data(), t.quanta(Layer::humus), work.event_counts.data()});
   spawn(exec, water_uptake.site, seed, step, time_step, work);
   if (t.quanta(Layer::moisture))
     for_each_item(exec, work.count,
@@ -103,6 +104,6 @@ void grow_and_spawn(E& exec, const TerrainView& t, const VegetationParameters& p
 template void sort_plants(Backend&, int, int, Workspace&);
 template void grow_and_spawn(Backend&, const TerrainView&, const VegetationParameters&,
                              const ReposeParameters&, const surface::Heights&, float, std::uint64_t,
-                             std::uint64_t, LedgerView, Workspace&);
+                             std::uint64_t, const Dice&, LedgerView, Workspace&);
 
 }  // namespace desert_sim::plants

@@ -9,6 +9,7 @@
 /// and the densities of the species that cover() wrote to the workspace. Writes moisture, humus and the
 /// plants.
 
+#include "kernels/field/dice.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
 #include "kernels/plants/workspace.hpp"
@@ -24,6 +25,7 @@ void sort_plants(E& exec, int all, int dead, Workspace& work);
 template <class E>
 void grow_and_spawn(E& exec, const TerrainView& t, const VegetationParameters& p,
                     const ReposeParameters& repose, const surface::Heights& heights, float time_step,
-                    std::uint64_t seed, std::uint64_t step, LedgerView ledger, Workspace& work);
+                    std::uint64_t seed, std::uint64_t step, const Dice& dice, LedgerView ledger,
+                    Workspace& work);
 
 }  // namespace desert_sim::plants

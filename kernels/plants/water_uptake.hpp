@@ -8,8 +8,8 @@
 ///   uptake      W = min(W_avail, W_req + max(W_cap − stored, 0))
 ///   debit       `draw` · min(π r²/l², 1) · moisture · W/(M V_root)   from the cell's moisture
 ///
-/// Volumes of water [m³] are counted as volumes of saturated ground. The debit is in whole quanta, at least
-/// one, and the ledger records it as outflow. Where the plants of a cell request more than there is, each
+/// Volumes of water [m³] are counted as volumes of saturated ground. The debit is in whole quanta
+/// (dice.hpp), and the ledger records it as outflow. Where the plants of a cell request more than there is, each
 /// gets a part in proportion to its request, rounded down; the requests are summed as integers, so that their
 /// order does not matter.
 ///
@@ -18,6 +18,7 @@
 /// moist. Reads and writes moisture.
 
 #include "kernels/backend/for_each.hpp"
+#include "kernels/field/dice.hpp"
 #include "kernels/field/ledger.hpp"
 #include "kernels/plants/population.hpp"
 #include "kernels/plants/site.hpp"
@@ -36,16 +37,20 @@ struct WaterUptake {
   Site site;
   const Quanta* moisture;
   float capacity, time_step, draw;
+  Die die;
 
   WaterUptake(const TerrainView& t, const ReposeParameters& repose, const VegetationParameters& p,
-              const float* heights, float dt)
+              const float* heights, float dt, const Dice& dice)
       : site(t, repose, heights),
         moisture(t.quanta(Layer::moisture)),
         capacity(repose.moisture_capacity),
         time_step(dt),
-        draw(p.draw) {}
+        draw(p.draw),
+        die(dice[Roll::water_uptake]) {}
 
-  DESERT_HD WaterDemand water_demand(const SpeciesTraits& s, float radius, float stored, int cell) const {
+  /// Of plant n.
+  DESERT_HD WaterDemand water_demand(const SpeciesTraits& s, int n, float radius, float stored,
+                                     int cell) const {
     const float volume = 2.0943951f * radius * radius * radius;
     const float roots = volume * s.root, stem = volume * s.stem;
     const float moisture_depth = static_cast<float>(value_or_zero(moisture, cell)) * site.quantum;
@@ -60,8 +65,7 @@ struct WaterUptake {
     const float covered =
         minimum(static_cast<float>(pi) * radius * radius / (site.grid.cell_size * site.grid.cell_size), 1.0f);
     const float depth = draw * covered * moisture_depth * (t.wanted_water / (saturation * roots));
-    t.request = to_quanta_at_most(depth, site.quanta_per_metre, moisture[cell]);
-    if (t.request == 0) t.request = 1;  // a request that rounds to 0 would be free water
+    t.request = die.whole_at_most(depth * site.quanta_per_metre, moisture[cell], n);
     return t;
   }
   /// What a plant gets [quanta] of its `request`; `water_requests`: sum over all plants of the cell.
@@ -81,7 +85,7 @@ struct SumRequests {
   DESERT_HD void operator()(int n) const {
     const int cell = water_uptake.site.cell(plants.x[n], plants.y[n]);
     const WaterDemand t =
-        water_uptake.water_demand(species[plants.species[n]], plants.radius[n], plants.water[n], cell);
+        water_uptake.water_demand(species[plants.species[n]], n, plants.radius[n], plants.water[n], cell);
     if (t.request > 0) atomic_add(&water_requests[cell], static_cast<long long>(t.request));
   }
 };

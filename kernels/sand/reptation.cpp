@@ -46,18 +46,19 @@ struct Surface {
 
 struct SmoothingFlux {
   Surface s;
-  float strength;  ///< k_r Δt / (sub-steps · l)
+  float strength;                        ///< k_r Δt / (sub-steps · l)
+  Die pair_dice[Neighbours::count / 2];  ///< of directions k and k + 1, k even
   Quanta* change;
 
-  /// Sand that i gives to its neighbour j [quanta], negative if it receives. The magnitude is the same
-  /// whichever of the two cells computes it.
+  /// Sand that i gives to its neighbour j in direction k [quanta], negative if it receives. The magnitude is
+  /// the same whichever of the two cells computes it, because both roll the die of the same one.
   DESERT_HD Quanta flux(int i, int j, int k) const {
     const Quanta drop = s.height(i) - s.height(j);
     const float steep = strength * static_cast<float>(drop < 0 ? -drop : drop) / Neighbours::distance(k) *
                         0.5f * (s.reptation_strength[i] + s.reptation_strength[j]) * 0.5f *
                         (s.speed(i) + s.speed(j));
-    const Quanta available = s.sand[drop > 0 ? i : j];
-    const Quanta moved = (steep < static_cast<float>(available) ? static_cast<Quanta>(steep) : available) / 8;
+    const Quanta moved =
+        pair_dice[k / 2].whole_at_most(0.125f * steep, s.sand[drop > 0 ? i : j] / 8, k % 2 == 0 ? i : j);
     return drop > 0 ? moved : -moved;
   }
 
@@ -85,7 +86,8 @@ struct Diffusivity {
 struct SteepestEvent {
   Surface s;
   std::uint64_t seed, tick;
-  float slab, quanta_per_metre;
+  float slab;  ///< [quanta]
+  Die die, share_die;
   Quanta* change;
 
   DESERT_HD float chance(int cell) const {
@@ -115,11 +117,9 @@ struct SteepestEvent {
     }
     if (first < 0) return;
     // At most half the steepest drop moves, so that an event does not overshoot.
-    const float level = 0.5f * first_slope;
-    const Quanta moved =
-        to_quanta_at_most(minimum(slab, level / quanta_per_metre), quanta_per_metre, s.sand[i]);
-    const Quanta to_second =
-        second < 0 ? 0 : static_cast<Quanta>(moved * (second_slope / (first_slope + second_slope)));
+    const Quanta moved = die.whole_at_most(minimum(slab, 0.5f * first_slope), s.sand[i], i);
+    const float second_part = second < 0 ? 0.0f : second_slope / (first_slope + second_slope);
+    const Quanta to_second = share_die.whole_at_most(static_cast<float>(moved) * second_part, moved, i);
     atomic_add(&change[i], -moved);
     atomic_add(&change[first], moved - to_second);
     if (second >= 0) atomic_add(&change[second], to_second);
@@ -138,7 +138,7 @@ struct ApplyChange {
 
 template <class E>
 void step(E& exec, const TerrainView& t, const ReptationParameters& p, float time_step, std::uint64_t seed,
-          std::uint64_t tick, const float* reptation_strength, Quanta* change) {
+          std::uint64_t tick, const Dice& dice, const float* reptation_strength, Quanta* change) {
   if (!moves_sand(p)) return;
   const Surface surface{t.grid,
                         t.quanta(Layer::bedrock),
@@ -156,19 +156,27 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, float tim
     const float diffusivity = max_cells(exec, t.grid, Diffusivity{surface});
     const int substeps = static_cast<int>(clamp(ceilf(strength * diffusivity / 0.5f), 1.0f, 1000.0f));
     for (int n = 0; n < substeps; ++n) {
-      for_each_cell(exec, t.grid, SmoothingFlux{surface, strength / substeps, change});
+      for_each_cell(
+          exec, t.grid,
+          SmoothingFlux{
+              surface,
+              strength / substeps,
+              {dice[Roll::reptation_east].of_part(n), dice[Roll::reptation_north].of_part(n),
+               dice[Roll::reptation_north_east].of_part(n), dice[Roll::reptation_north_west].of_part(n)},
+              change});
       for_each_cell(exec, t.grid, apply);
     }
   } else {
     exec.set_zero(change, sizeof(Quanta) * t.grid.cells());
     for_each_cell(exec, t.grid,
-                  SteepestEvent{surface, seed, tick, p.slab * time_step, t.quanta_per_metre, change});
+                  SteepestEvent{surface, seed, tick, p.slab * time_step * t.quanta_per_metre,
+                                dice[Roll::reptation], dice[Roll::reptation_second], change});
     for_each_cell(exec, t.grid, apply);
   }
 }
 
 template void set_angles(Backend&, const TerrainView&, const Angle&, const ReposeParameters&, const float*);
 template void step(Backend&, const TerrainView&, const ReptationParameters&, float, std::uint64_t,
-                   std::uint64_t, const float*, Quanta*);
+                   std::uint64_t, const Dice&, const float*, Quanta*);
 
 }  // namespace desert_sim::reptation

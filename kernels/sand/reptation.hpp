@@ -25,6 +25,7 @@
 #include <cstdint>
 
 #include "kernels/backend/exec.hpp"
+#include "kernels/field/dice.hpp"
 #include "kernels/sand/repose.hpp"
 
 namespace desert_sim {
@@ -102,7 +103,7 @@ inline bool moves_sand(const ReptationParameters& p) {
 /// (steps done) are key and counter of the random numbers of `steepest`.
 template <class E>
 void step(E& exec, const TerrainView& t, const ReptationParameters& p, float time_step, std::uint64_t seed,
-          std::uint64_t tick, const float* reptation_strength, Quanta* change);
+          std::uint64_t tick, const Dice& dice, const float* reptation_strength, Quanta* change);
 
 }  // namespace reptation
 }  // namespace desert_sim

@@ -17,7 +17,8 @@
 ///
 /// Symbols: s sand, a airborne_sand, w wind, r_s wind_shadow, r_e echo, v vegetation, m relative moisture.
 /// Nothing is lifted in still air or below `threshold_speed`. Under water the last factor of p is 0.01. The
-/// scatter adds integers, so that its result does not depend on the order of threads.
+/// scatter adds integers, so that its result does not depend on the order of threads. Amounts below 256 quanta
+/// are rounded by dice (dice.hpp), and so few land in one of the four cells, drawn by the shares.
 ///
 /// Sand that the wind carries over an open edge is recorded in the ledger as outflow; `influx` enters where
 /// the wind blows in, spread over the length of a hop.
@@ -74,8 +75,8 @@ namespace saltation {
 /// pass of the lift, or null where the layer is up to date.
 template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
-          const ReposeParameters& repose, float time_step, LedgerView ledger, Quanta* landed,
-          const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law);
+          const ReposeParameters& repose, float time_step, const Dice& dice, LedgerView ledger,
+          Quanta* landed, const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law);
 
 }  // namespace saltation
 }  // namespace desert_sim

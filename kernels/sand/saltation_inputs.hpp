@@ -49,7 +49,7 @@ struct Inputs {
 };
 
 inline bool is_bare(const TerrainView& t, const AbrasionParameters& a) {
-  if (a.rate > 0.0f) return false;
+  if (a.wears_ground()) return false;
   for (Layer layer : {Layer::echo, Layer::vegetation, Layer::obstacle})
     if (t.real(layer)) return false;
   for (Layer layer : {Layer::water, Layer::soil, Layer::moisture})

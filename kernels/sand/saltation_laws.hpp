@@ -3,6 +3,7 @@
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/backend/vec4.hpp"
+#include "kernels/field/dice.hpp"
 #include "kernels/field/ledger.hpp"
 #include "kernels/sand/abrasion.hpp"
 #include "kernels/sand/carried.hpp"
@@ -21,6 +22,7 @@ struct LiftAndAdvect {
   Inputs<bare> in;
   SaltationParameters p;
   float hop_per_speed;  ///< length of a hop over wind speed, Δt / l [cells s/m]
+  Die lift_die, hop_die;
   Quanta* sand;
   const Quanta* airborne;
   LedgerView ledger;
@@ -41,7 +43,7 @@ struct LiftAndAdvect {
   DESERT_HD Cell read(int x, int y) const {
     return read(x, y, value_or_zero(in.wind_shadow, in.grid.index(x, y)));
   }
-  DESERT_HD Quanta lifted(const Cell& c) const {
+  DESERT_HD Quanta lifted(int i, const Cell& c) const {
     const float speed_squared = c.u * c.u + c.v * c.v;
     if (c.lying <= 0 || !(speed_squared > 0.0f)) return 0;
     if (speed_squared < p.threshold_speed * p.threshold_speed) return 0;
@@ -49,15 +51,19 @@ struct LiftAndAdvect {
     const float metres =
         in.time_step * (p.lift * (1.0f - c.shadow) * (1.0f - c.plants) * (c.echo > 0.0f ? 0.5f : 1.0f) * wet +
                         (c.echo < 0.0f ? -c.echo : 0.0f));
-    return to_quanta_at_most(metres, in.quanta_per_metre, c.lying);
+    return lift_die.whole_at_most(metres * in.quanta_per_metre, c.lying, i);
   }
 
   template <int count>
   DESERT_HD void prepare(int x, int y, const Cell& c, BilinearParcels<count>& parcels, int n) const {
-    const Quanta lift = lifted(c);
-    sand[in.grid.index(x, y)] = c.lying - lift;
-    parcels.set(n, x, y, to_fixed_point(c.u * hop_per_speed), to_fixed_point(c.v * hop_per_speed),
-                c.carried + lift);
+    const int i = in.grid.index(x, y);
+    const Quanta lift = lifted(i, c), carried = c.carried + lift;
+    sand[i] = c.lying - lift;
+    // Where the four shares are so small that rounding would falsify them, all lands in one of the cells.
+    const std::uint32_t die = hop_die.word(i);
+    const bool few = static_cast<float>(carried) < Die::small;
+    const int dx = to_fixed_point(c.u * hop_per_speed), dy = to_fixed_point(c.v * hop_per_speed);
+    parcels.set(n, x, y, Die::whole_cells_if(few, dx, die), Die::whole_cells_if(few, dy, die >> 16), carried);
   }
   template <int count>
   DESERT_HD void prepare(int x, int y, BilinearParcels<count>& parcels, int n) const {
@@ -75,6 +81,7 @@ template <bool bare>
 struct Influx {
   Inputs<bare> in;
   float influx;
+  Die die;
   Quanta* landed;
   LedgerView ledger;
 
@@ -95,7 +102,7 @@ struct Influx {
     float depth = 0.0f;
     if (!g.periodic_x) depth += over_edge(u > 0.0f ? x : g.width - 1 - x, fabsf(u)) * fabsf(u) / speed;
     if (!g.periodic_y) depth += over_edge(v > 0.0f ? y : g.height - 1 - y, fabsf(v)) * fabsf(v) / speed;
-    const Quanta amount = to_quanta_at_most(depth, in.quanta_per_metre, wall_height);
+    const Quanta amount = die.whole_at_most(depth * in.quanta_per_metre, wall_height, i);
     landed[i] += amount;
     ledger.book_in(Material::sand, i, amount);
   }
@@ -108,6 +115,7 @@ struct Deposit {
   Inputs<bare> in;
   SaltationParameters p;
   abrasion::Abrade abrade;
+  Die die;
   const Quanta* landed;
   Quanta *sand, *airborne;
   reptation::Impacts impacts;
@@ -136,7 +144,7 @@ struct Deposit {
   DESERT_HD DepositResult split_landed(int i, Quanta arriving, Quanta cover, float shadow, float speed,
                                        float v, float m) const {
     const float deposited_share = share(i, cover, shadow, v, m), depth = arriving * in.quantum;
-    const Quanta stays = to_quanta_at_most(deposited_share * depth, in.quanta_per_metre, arriving);
+    const Quanta stays = die.whole_at_most(deposited_share * static_cast<float>(arriving), arriving, i);
     const float strength = depth * (1.0f - v);
     return {deposited_share, stays, arriving - stays, strength,
             impacts.angle.lowered_tangent(strength, speed, shadow)};
@@ -149,7 +157,7 @@ struct Deposit {
     const DepositResult o = split_landed(i, landed[i], cover, value_or_zero(in.wind_shadow, i), speed, v, m);
     sand[i] = cover + o.stays;
     airborne[i] = o.bounces;
-    if (!bare) abrade(i, cover, o.bounces, speed, v, m, o.deposited_share);
+    if (!bare && !in.solid(i) && !in.flooded(i)) abrade(i, cover, o.bounces, speed, v, m, o.deposited_share);
     impacts.set(i, o.strength, o.lowered_tangent, v, in.moisture(i));
   }
 };

@@ -26,19 +26,13 @@ struct Ground {
   }
 };
 
-/// The share `part` of `from` [quanta], but at least one quantum where there is any.
-DESERT_HD Quanta at_least_one_of(Quanta from, float part) {
-  if (from <= 0 || !(part > 0.0f)) return 0;
-  const Quanta taken = static_cast<Quanta>(rintf(part * static_cast<float>(from)));
-  return taken < 1 ? 1 : (taken > from ? from : taken);
-}
-
 /// Moves water into the ground, or out of it above its capacity; then evaporates moisture where no water
 /// stands.
 struct SeepAndDry {
   Grid grid;
   Ground ground;
   float time_step;
+  Die seepage_die, evaporation_die;
   const float* vegetation;
   Quanta *water, *moisture;
   LedgerView ledger;
@@ -51,7 +45,7 @@ struct SeepAndDry {
     if (in > 0) {
       const float part = rate * time_step *
                          (2 * static_cast<long long>(moisture_before) > capacity ? ground.p.when_wet : 1.0f);
-      const Quanta wanted = at_least_one_of(in, minimum(part, 1.0f));
+      const Quanta wanted = seepage_die.whole_at_most(part * static_cast<float>(in), in, i);
       in = wanted < standing ? wanted : standing;
       ledger.convert(Material::water, Material::moisture, i, in);
     } else {
@@ -62,7 +56,7 @@ struct SeepAndDry {
     Quanta dried = 0;
     if (!((standing - in) * ground.quantum > wet_depth)) {
       const float speed = ground.p.evaporation * rate * (1.0f - 0.75f * value_or_zero(vegetation, i));
-      dried = at_least_one_of(wet, 1.0f - exp_negative(speed * time_step));
+      dried = evaporation_die.whole_at_most(lost_share(speed * time_step) * static_cast<float>(wet), wet, i);
       ledger.book_out(Material::moisture, i, dried);
     }
     moisture[i] = wet - dried;
@@ -74,26 +68,35 @@ struct DiffuseMoisture {
   Grid grid;
   Ground ground;
   float number;  ///< D Δt/l² ≤ ¼
+  Die east_die, north_die;
   const Quanta* moisture;
   Quanta* gain;
 
-  DESERT_HD Quanta gain_from(Quanta capacity, float wet, int x, int y) const {
+  /// What cell i gains through a face to the cell at (x, y), negative if it loses. `ahead`: to the
+  /// east or north; the die is that of the western or southern cell, so that both cells count the same.
+  DESERT_HD Quanta gain_from(int i, Quanta capacity, float wet, int x, int y, const Die& die,
+                             bool ahead) const {
     const int j = neighbour_index(grid, x, y);
     if (j < 0) return 0;
     const Quanta neighbour_capacity = ground.capacity_quanta(j);
     if (neighbour_capacity <= 0 || capacity <= 0) return 0;
     const float other = static_cast<float>(moisture[j]) / static_cast<float>(neighbour_capacity);
-    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // four quarters are rounded
-    return static_cast<Quanta>(
-        number * guard * static_cast<float>(capacity < neighbour_capacity ? capacity : neighbour_capacity) *
-        (other - wet));
+    const float amount = number *
+                         static_cast<float>(capacity < neighbour_capacity ? capacity : neighbour_capacity) *
+                         fabsf(other - wet);
+    const bool gains = other > wet;
+    // At most a quarter of what the donor has, so that its four faces never take more than there is.
+    const Quanta moved = die.whole_at_most(amount, moisture[gains ? j : i] / 4, ahead ? i : j);
+    return gains ? moved : -moved;
   }
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     const Quanta capacity = ground.capacity_quanta(i);
     const float wet = capacity > 0 ? static_cast<float>(moisture[i]) / static_cast<float>(capacity) : 0.0f;
-    gain[i] = (gain_from(capacity, wet, x + 1, y) + gain_from(capacity, wet, x - 1, y)) +
-              (gain_from(capacity, wet, x, y + 1) + gain_from(capacity, wet, x, y - 1));
+    gain[i] = gain_from(i, capacity, wet, x + 1, y, east_die, true) +
+              gain_from(i, capacity, wet, x - 1, y, east_die, false) +
+              gain_from(i, capacity, wet, x, y + 1, north_die, true) +
+              gain_from(i, capacity, wet, x, y - 1, north_die, false);
   }
 };
 
@@ -106,23 +109,26 @@ struct ApplyDiffusion {
 
 template <class E>
 void step(E& exec, const TerrainView& t, const MoistureParameters& p, float capacity, float time_step,
-          LedgerView ledger, Quanta* gain) {
+          const Dice& dice, LedgerView ledger, Quanta* gain) {
   const Ground ground{
       t.quanta(Layer::soil), t.quanta(Layer::sand), capacity, t.quantum, t.quanta_per_metre, p};
   Quanta *water = t.quanta(Layer::water), *moisture = t.quanta(Layer::moisture);
   for_each_cell(exec, t.grid,
-                SeepAndDry{t.grid, ground, time_step, t.real(Layer::vegetation), water, moisture, ledger});
+                SeepAndDry{t.grid, ground, time_step, dice[Roll::seepage], dice[Roll::ground_evaporation],
+                           t.real(Layer::vegetation), water, moisture, ledger});
   const float number = p.diffusion * time_step / (t.grid.cell_size * t.grid.cell_size);
   if (!(number > 0.0f)) return;
   const int parts = static_cast<int>(std::ceil(number * 4.0f));
   for (int n = 0; n < parts; ++n) {
     for_each_cell(exec, t.grid,
-                  DiffuseMoisture{t.grid, ground, number / static_cast<float>(parts), moisture, gain});
+                  DiffuseMoisture{t.grid, ground, number / static_cast<float>(parts),
+                                  dice[Roll::moisture_east].of_part(n), dice[Roll::moisture_north].of_part(n),
+                                  moisture, gain});
     for_each_cell(exec, t.grid, ApplyDiffusion{t.grid, gain, moisture});
   }
 }
 
-template void step(Backend&, const TerrainView&, const MoistureParameters&, float, float, LedgerView,
-                   Quanta*);
+template void step(Backend&, const TerrainView&, const MoistureParameters&, float, float, const Dice&,
+                   LedgerView, Quanta*);
 
 }  // namespace desert_sim::moisture

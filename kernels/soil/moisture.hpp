@@ -8,13 +8,13 @@
 ///   evaporation   M ← M e^(−φ r (1 − ¾ v) Δt)   where there is no surface water
 ///   diffusion     M_i −= Σ_j D Δt/l² min(C_i, C_j)(m_i − m_j),   m = M/C
 ///
-/// M is moisture, w water, e soil, s sand [m], v vegetation. Seepage and evaporation move at least one
-/// quantum. The published method diffuses M itself, which would move water into ground without capacity for
+/// M is moisture, w water, e soil, s sand [m], v vegetation. The published method diffuses M itself, which would move water into ground without capacity for
 /// it; on ground of equal depth the two are the same. Diffusion has as many sub-steps as keep D Δt/l² ≤ ¼.
 /// The ledger records evaporation as outflow.
 ///
 /// Reads soil, sand, water, moisture, vegetation; writes water, moisture.
 
+#include "kernels/field/dice.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
 #include "src/core/parameters.hpp"
@@ -51,7 +51,7 @@ namespace moisture {
 /// `capacity`: c_M; `gain`: scratch, one value a cell.
 template <class E>
 void step(E& exec, const TerrainView& t, const MoistureParameters& p, float capacity, float time_step,
-          LedgerView ledger, Quanta* gain);
+          const Dice& dice, LedgerView ledger, Quanta* gain);
 
 }  // namespace moisture
 }  // namespace desert_sim

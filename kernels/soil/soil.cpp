@@ -13,6 +13,7 @@ struct ConvertSoilAndSand {
   Grid grid;
   SoilParameters p;
   float time_step, quantum, quanta_per_metre;
+  Die drying_die, forming_die;
   repose::RelativeMoisture relative_moisture;
   const float* vegetation;
   Quanta *soil, *sand, *humus;
@@ -25,10 +26,11 @@ struct ConvertSoilAndSand {
     const int i = grid.index(x, y);
     const float m = relative_moisture(i), v = value_or_zero(vegetation, i), s = sand[i] * quantum;
     const float drying_factor = maximum(1.0f - m / p.dry, 0.0f) * exp_negative(10.0f * maximum(s, 0.0f));
-    const Quanta dried =
-        to_quanta_at_most(p.drying * time_step * (1.0f - v) * drying_factor, quanta_per_metre, soil[i]);
+    const Quanta dried = drying_die.whole_at_most(
+        p.drying * time_step * (1.0f - v) * drying_factor * quanta_per_metre, soil[i], i);
     const Quanta fertile = humus ? (humus[i] < sand[i] ? humus[i] : sand[i]) : 0;
-    const Quanta formed = to_quanta_at_most(p.forming * time_step * v * m, quanta_per_metre, fertile);
+    const Quanta formed =
+        forming_die.whole_at_most(p.forming * time_step * v * m * quanta_per_metre, fertile, i);
     soil[i] += formed - dried;
     sand[i] += dried - formed;
     lose_humus(i, dried + formed);
@@ -39,15 +41,15 @@ struct ConvertSoilAndSand {
 
 template <class E>
 void step(E& exec, const TerrainView& t, const SoilParameters& p, const ReposeParameters& repose,
-          float time_step, LedgerView ledger) {
-  for_each_cell(
-      exec, t.grid,
-      ConvertSoilAndSand{t.grid, p, time_step, t.quantum, t.quanta_per_metre,
-                         repose::RelativeMoisture(t, repose), t.real(Layer::vegetation),
-                         t.quanta(Layer::soil), t.quanta(Layer::sand), t.quanta(Layer::humus), ledger});
+          float time_step, const Dice& dice, LedgerView ledger) {
+  for_each_cell(exec, t.grid,
+                ConvertSoilAndSand{
+                    t.grid, p, time_step, t.quantum, t.quanta_per_metre, dice[Roll::soil_drying],
+                    dice[Roll::soil_forming], repose::RelativeMoisture(t, repose), t.real(Layer::vegetation),
+                    t.quanta(Layer::soil), t.quanta(Layer::sand), t.quanta(Layer::humus), ledger});
 }
 
 template void step(Backend&, const TerrainView&, const SoilParameters&, const ReposeParameters&, float,
-                   LedgerView);
+                   const Dice&, LedgerView);
 
 }  // namespace desert_sim::soil

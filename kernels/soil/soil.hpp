@@ -10,6 +10,7 @@
 ///
 /// Reads soil, sand, humus, moisture, vegetation; writes soil, sand, humus.
 
+#include "kernels/field/dice.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
 #include "kernels/sand/repose.hpp"
@@ -40,7 +41,7 @@ namespace soil {
 
 template <class E>
 void step(E& exec, const TerrainView& t, const SoilParameters& p, const ReposeParameters& repose,
-          float time_step, LedgerView ledger);
+          float time_step, const Dice& dice, LedgerView ledger);
 
 }  // namespace soil
 }  // namespace desert_sim

@@ -50,27 +50,27 @@ struct Exchange {
   Grid grid;
   HydraulicErosionParameters p;
   float time_step, quantum, quanta_per_metre;
+  Die dissolving_die, settling_die;
   const float *capacity, *vegetation, *resistance, *obstacle;
   const Quanta* water;
   Quanta *bedrock, *soil, *sand, *sediment;
   LedgerView ledger;
 
-  DESERT_HD float exchanged_depth(float rate, float metres) const {
-    return minimum(rate * time_step, 1.0f) * metres;
+  /// The share rate · Δt of `metres`, at most `available` quanta.
+  DESERT_HD Quanta exchanged(float rate, float metres, Quanta available, const Die& die, int i) const {
+    return die.whole_at_most(minimum(rate * time_step, 1.0f) * metres * quanta_per_metre, available, i);
   }
-
-  /// Dissolves the share rate · Δt of `metres` from a layer of ground, at most `available` quanta of it.
+  /// Dissolves from a layer of ground, at most `available` quanta of it.
   DESERT_HD Quanta dissolve(int i, Material from, Quanta* layer, Quanta available, float rate,
                             float metres) const {
-    const Quanta worn = to_quanta_at_most(exchanged_depth(rate, metres), quanta_per_metre, available);
+    const Quanta worn = exchanged(rate, metres, available, dissolving_die, i);
     layer[i] -= worn;
     ledger.convert(from, Material::sediment, i, worn);
     return worn;
   }
   DESERT_HD Quanta deposit_sediment(int i, Quanta carried, float metres, bool dry) const {
     const float rate = p.deposit * (1.0f + value_or_zero(vegetation, i));
-    const Quanta fallen =
-        dry ? carried : to_quanta_at_most(exchanged_depth(rate, metres), quanta_per_metre, carried);
+    const Quanta fallen = dry ? carried : exchanged(rate, metres, carried, settling_die, i);
     sand[i] += fallen;
     ledger.convert(Material::sediment, Material::sand, i, fallen);
     return fallen;
@@ -80,12 +80,13 @@ struct Exchange {
     const int i = grid.index(x, y);
     const Quanta carried = sediment[i];
     const float capacity_deficit = capacity[i] - carried * quantum;
-    if (value_or_zero(obstacle, i) > 0.0f) return;
     const bool dry = !(water[i] * quantum > wet_depth);
     if (capacity_deficit < 0.0f || dry) {
       sediment[i] = carried - deposit_sediment(i, carried, -capacity_deficit, dry);
     } else if (sand[i] > 0) {
       sediment[i] = carried + dissolve(i, Material::sand, sand, sand[i], p.sand, capacity_deficit);
+    } else if (value_or_zero(obstacle, i) > 0.0f) {
+      return;
     } else if (soil && soil[i] > 0) {
       sediment[i] = carried + dissolve(i, Material::soil, soil, soil[i], p.soil, capacity_deficit);
     } else {
@@ -98,7 +99,7 @@ struct Exchange {
 
 template <class E>
 void step(E& exec, const TerrainView& t, const HydraulicErosionParameters& p, float time_step,
-          LedgerView ledger, Workspace& work) {
+          const Dice& dice, LedgerView ledger, Workspace& work) {
   Quanta *bedrock = t.quanta(Layer::bedrock), *soil = t.quanta(Layer::soil), *sand = t.quanta(Layer::sand);
   const Quanta* water = t.quanta(Layer::water);
   const float* vegetation = t.real(Layer::vegetation);
@@ -106,12 +107,13 @@ void step(E& exec, const TerrainView& t, const HydraulicErosionParameters& p, fl
                 Capacity{t.grid, p, t.quantum, bedrock, soil, sand, water, t.real(Layer::water_velocity_x),
                          t.real(Layer::water_velocity_y), vegetation, work.capacity.data()});
   for_each_cell(exec, t.grid,
-                Exchange{t.grid, p, time_step, t.quantum, t.quanta_per_metre, work.capacity.data(),
-                         vegetation, t.real(Layer::erosion_resistance), t.real(Layer::obstacle), water,
-                         bedrock, soil, sand, t.quanta(Layer::suspended_sediment), ledger});
+                Exchange{t.grid, p, time_step, t.quantum, t.quanta_per_metre, dice[Roll::dissolving],
+                         dice[Roll::settling], work.capacity.data(), vegetation,
+                         t.real(Layer::erosion_resistance), t.real(Layer::obstacle), water, bedrock, soil,
+                         sand, t.quanta(Layer::suspended_sediment), ledger});
 }
 
-template void step(Backend&, const TerrainView&, const HydraulicErosionParameters&, float, LedgerView,
-                   Workspace&);
+template void step(Backend&, const TerrainView&, const HydraulicErosionParameters&, float, const Dice&,
+                   LedgerView, Workspace&);
 
 }  // namespace desert_sim::hydraulic_erosion

@@ -9,12 +9,14 @@
 ///   transport   S moves with the water: sediment_transport.hpp
 ///
 /// C and S (suspended_sediment) are depths of sediment [m], α is the slope angle of the solid surface, U the
-/// water's velocity, w its depth, v vegetation, ρ erosion_resistance. Cells with an obstacle do not change.
+/// water's velocity, w its depth, v vegetation, ρ erosion_resistance. An obstacle itself does not
+/// dissolve; sand that settles on it does.
 ///
 /// Reads bedrock, soil, sand, water, water_velocity_x, water_velocity_y, suspended_sediment, vegetation,
 /// erosion_resistance, obstacle; writes bedrock, soil, sand, suspended_sediment.
 
 #include "kernels/backend/buffer.hpp"
+#include "kernels/field/dice.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
 #include "src/core/parameters.hpp"
@@ -58,7 +60,7 @@ struct Workspace {
 
 template <class E>
 void step(E& exec, const TerrainView& t, const HydraulicErosionParameters& p, float time_step,
-          LedgerView ledger, Workspace& work);
+          const Dice& dice, LedgerView ledger, Workspace& work);
 
 }  // namespace hydraulic_erosion
 }  // namespace desert_sim

@@ -102,29 +102,31 @@ void fill_sea(E& exec, const TerrainView& t, Sea sea, Quanta level, LedgerView l
 struct Evaporate {
   Grid grid;
   float lost;  ///< 1 − e^(−φ Δt)
+  Die die;
   Quanta* water;
   LedgerView ledger;
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     const Quanta w = water[i];
-    if (w <= 0) return;
-    Quanta part = static_cast<Quanta>(rintf(lost * static_cast<float>(w)));
-    part = part < 1 ? 1 : (part > w ? w : part);
+    const Quanta part = die.whole_at_most(lost * static_cast<float>(w), w, i);
     water[i] = w - part;
     ledger.book_out(Material::water, i, part);
   }
 };
 
 template <class E>
-void evaporate(E& exec, const TerrainView& t, float rate, float time_step, LedgerView ledger) {
+void evaporate(E& exec, const TerrainView& t, float rate, float time_step, const Dice& dice,
+               LedgerView ledger) {
   if (!(rate > 0.0f)) return;
   const double lost = -std::expm1(-static_cast<double>(rate) * time_step);
-  for_each_cell(exec, t.grid, Evaporate{t.grid, static_cast<float>(lost), t.quanta(Layer::water), ledger});
+  for_each_cell(
+      exec, t.grid,
+      Evaporate{t.grid, static_cast<float>(lost), dice[Roll::evaporation], t.quanta(Layer::water), ledger});
 }
 
 template void add_spring(Backend&, const TerrainView&, const Spring&, double, double, float, std::uint64_t,
                          LedgerView);
 template void fill_sea(Backend&, const TerrainView&, Sea, Quanta, LedgerView);
-template void evaporate(Backend&, const TerrainView&, float, float, LedgerView);
+template void evaporate(Backend&, const TerrainView&, float, float, const Dice&, LedgerView);
 
 }  // namespace desert_sim::water_sources

@@ -3,7 +3,7 @@
 ///
 ///   springs       w += Q Δt/(n l²)                 on the n cells of a disc, with the discharge Q [m³/s]
 ///   sea           w ← max(w, level − elevation)    on the border or everywhere
-///   evaporation   w ← w e^(−φ Δt)                  and at least one quantum less
+///   evaporation   w ← w e^(−φ Δt)
 ///
 /// The ledger records what is added as inflow, and what evaporates as outflow. add_spring() and evaporate()
 /// read and write water; fill_sea() reads bedrock, soil, sand, water and writes water, in each sub-step of
@@ -11,6 +11,7 @@
 
 #include <cstdint>
 
+#include "kernels/field/dice.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
 #include "kernels/water/water_parameters.hpp"
@@ -28,7 +29,8 @@ template <class E>
 void fill_sea(E& exec, const TerrainView& t, Sea sea, Quanta level, LedgerView ledger);
 
 template <class E>
-void evaporate(E& exec, const TerrainView& t, float rate, float time_step, LedgerView ledger);
+void evaporate(E& exec, const TerrainView& t, float rate, float time_step, const Dice& dice,
+               LedgerView ledger);
 
 }  // namespace water_sources
 }  // namespace desert_sim

@@ -253,22 +253,20 @@ TEST_P(Water, EvaporatesExponentiallyWhateverTheTimeStep) {
     test::BenchTerrain t(exec(), 5, 4);
     t.set(Layer::water, 2.5);
     const int steps = static_cast<int>(100 / dt);
-    with_backend(exec(), [&](auto& e) {
-      for (int n = 0; n < steps; ++n)
-        water_sources::evaporate(e, t.terrain.view(), 0.01f, static_cast<float>(dt), t.ledger());
-    });
+    for (int n = 0; n < steps; ++n) t.evaporate(0.01f, static_cast<float>(dt));
     const double expected = 2.5 * std::exp(-1.0);
     EXPECT_NEAR(t.at(Layer::water, 2, 2), expected, 1e-6 * steps) << "time step " << dt;
     EXPECT_EQ(t.booked(Material::water, 1), 20 * Quanta{5 << 19} - t.total(Layer::water));
   }
 }
 
-TEST_P(Water, TheLastQuantumEvaporatesToo) {
-  test::BenchTerrain t(exec(), 3, 3);
+/// In the time that its rate says: at least one quantum a step would leave nothing after three steps.
+TEST_P(Water, TheLastQuantaEvaporateAtTheirRateToo) {
+  test::BenchTerrain t(exec(), 64, 64);
   t.set_quanta(Layer::water, [](int, int) { return 3; });
-  with_backend(exec(), [&](auto& e) {
-    for (int n = 0; n < 3; ++n) water_sources::evaporate(e, t.terrain.view(), 1e-4f, 1, t.ledger());
-  });
+  for (int n = 0; n < 100; ++n) t.evaporate(0.01f);
+  EXPECT_NEAR(static_cast<double>(t.total(Layer::water)), 64 * 64 * 3 * std::exp(-1.0), 300);
+  for (int n = 0; n < 2000; ++n) t.evaporate(0.01f);
   EXPECT_EQ(t.total(Layer::water), 0);
 }
 

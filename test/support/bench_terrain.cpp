@@ -11,10 +11,15 @@ BenchTerrain::BenchTerrain(Exec& exec, int width, int height, double cell_size, 
       strength(exec, cells()),
       repose(exec, cells()),
       cliff(exec, cells()),
-      heights(surface::make_heights(exec, grid())) {
+      heights(surface::make_heights(exec, grid())),
+      dice_keys_(exec, static_cast<std::size_t>(Roll::count)) {
   ledger_words.set_zero();
   for (Buffer<float>* buffer : {&strength, &repose, &cliff}) buffer->set_zero();
   for (Layer layer : {Layer::wind_shadow, Layer::echo}) terrain.allocate(layer);
+}
+
+Dice BenchTerrain::roll_dice() {
+  return with_backend(exec(), [&](auto& e) { return dice::roll(e, 1, rolls_++, dice_keys_.data()); });
 }
 
 BenchTerrain& BenchTerrain::set(Layer layer, const std::function<double(int, int)>& f) {
@@ -107,8 +112,8 @@ void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParamet
                              const ReposeParameters& r, float time_step) {
   with_backend(exec(), [&](auto& e) {
     const reptation::Angle angle({}, r, repose.data());
-    saltation::step(e, terrain.view(), p, a, r, time_step, ledger(), landed.data(), {angle, strength.data()},
-                    nullptr);
+    saltation::step(e, terrain.view(), p, a, r, time_step, roll_dice(), ledger(), landed.data(),
+                    {angle, strength.data()}, nullptr);
   });
 }
 
@@ -116,7 +121,7 @@ void BenchTerrain::reptation(const ReptationParameters& p, const ReposeParameter
                              std::uint64_t tick) {
   with_backend(exec(), [&](auto& e) {
     reptation::set_angles(e, terrain.view(), reptation::Angle(p, r, repose.data()), r, strength.data());
-    reptation::step(e, terrain.view(), p, time_step, 1, tick, strength.data(), landed.data());
+    reptation::step(e, terrain.view(), p, time_step, 1, tick, roll_dice(), strength.data(), landed.data());
   });
 }
 
@@ -160,21 +165,23 @@ void BenchTerrain::erode(const HydraulicErosionParameters& p, float time_step) {
        {Layer::water, Layer::suspended_sediment, Layer::water_velocity_x, Layer::water_velocity_y})
     terrain.allocate(layer);
   hydraulic_erosion::Workspace work{Buffer<float>(exec(), cells())};
-  with_backend(exec(),
-               [&](auto& e) { hydraulic_erosion::step(e, terrain.view(), p, time_step, ledger(), work); });
+  with_backend(exec(), [&](auto& e) {
+    hydraulic_erosion::step(e, terrain.view(), p, time_step, roll_dice(), ledger(), work);
+  });
   exec().synchronise();
 }
 
 void BenchTerrain::soak(const MoistureParameters& p, float capacity, float time_step) {
   for (Layer layer : {Layer::water, Layer::moisture}) terrain.allocate(layer);
   with_backend(exec(), [&](auto& e) {
-    moisture::step(e, terrain.view(), p, capacity, time_step, ledger(), landed.data());
+    moisture::step(e, terrain.view(), p, capacity, time_step, roll_dice(), ledger(), landed.data());
   });
 }
 
 void BenchTerrain::develop_soil(const SoilParameters& p, const ReposeParameters& r, float time_step) {
   terrain.allocate(Layer::soil);
-  with_backend(exec(), [&](auto& e) { soil::step(e, terrain.view(), p, r, time_step, ledger()); });
+  with_backend(exec(),
+               [&](auto& e) { soil::step(e, terrain.view(), p, r, time_step, roll_dice(), ledger()); });
 }
 
 void BenchTerrain::blow(const WindParameters& p, wind::Vector above, Quanta reference) {
@@ -184,6 +191,12 @@ void BenchTerrain::blow(const WindParameters& p, wind::Vector above, Quanta refe
     wind::step(e, terrain.view(), p, above, heights, reference, nullptr, nullptr, work);
   });
   exec().synchronise();
+}
+
+void BenchTerrain::evaporate(float rate, float time_step) {
+  with_backend(exec(), [&](auto& e) {
+    water_sources::evaporate(e, terrain.view(), rate, time_step, roll_dice(), ledger());
+  });
 }
 
 }  // namespace desert_sim::test

@@ -48,6 +48,8 @@ class BenchTerrain {
   const Grid& grid() const { return terrain.grid(); }
   std::size_t cells() const { return static_cast<std::size_t>(grid().cells()); }
   LedgerView ledger() const { return {ledger_words.data()}; }
+  /// New dice at each call, as a simulation has in each step.
+  Dice roll_dice();
 
   /// Sets a layer from f(x, y), in its unit.
   BenchTerrain& set(Layer layer, const std::function<double(int, int)>& f);
@@ -83,6 +85,11 @@ class BenchTerrain {
   void soak(const MoistureParameters& p, float capacity = 0.3f, float time_step = 1);
   void develop_soil(const SoilParameters& p, const ReposeParameters& r = {}, float time_step = 1);
   void blow(const WindParameters& p, wind::Vector above, Quanta reference = 0);
+  void evaporate(float rate, float time_step = 1);
+
+ private:
+  Buffer<std::uint32_t> dice_keys_;
+  std::uint64_t rolls_ = 0;
 };
 
 }  // namespace desert_sim::test

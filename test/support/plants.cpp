@@ -80,7 +80,8 @@ std::vector<Plant> PlantBench::plants() const {
 void PlantBench::cover(float time_step, bool makes_state) {
   terrain.surface();
   with_backend(terrain.exec(), [&](auto& e) {
-    plants::cover(e, terrain.terrain.view(), parameters, time_step, terrain.heights, makes_state, work);
+    plants::cover(e, terrain.terrain.view(), parameters, time_step, terrain.roll_dice(), terrain.heights,
+                  makes_state, work);
   });
   terrain.exec().synchronise();
 }
@@ -97,7 +98,7 @@ void PlantBench::live(float time_step, std::uint64_t step, std::uint64_t seed, b
   if (lit) terrain.set(Layer::illumination, 1).set(Layer::illumination_canopy, 1);
   with_backend(terrain.exec(), [&](auto& e) {
     plants::grow_and_spawn(e, terrain.terrain.view(), parameters, repose, terrain.heights, time_step, seed,
-                           step, terrain.ledger(), work);
+                           step, terrain.roll_dice(), terrain.ledger(), work);
   });
   terrain.exec().synchronise();
 }

@@ -11,7 +11,7 @@ constexpr double quantum = 1.0 / 1048576;
 class AbrasionLaw : public test::OnBackend {
  protected:
   std::unique_ptr<test::BenchTerrain> worn(const std::function<void(test::BenchTerrain&)>& change,
-                                           float rate = 0.01f, float dt = 1) {
+                                           float rate = 0.01f, float dt = 1, float soil_rate = -1) {
     auto t = std::make_unique<test::BenchTerrain>(exec(), 1, 1);
     t->set(Layer::airborne_sand, 0.5).set(Layer::wind_x, 2 / dt).set(Layer::bedrock, 100);
     change(*t);
@@ -20,6 +20,7 @@ class AbrasionLaw : public test::OnBackend {
     p.bounce_on_rock = p.bounce_on_soil = p.bounce_on_sand = 0.98f;
     AbrasionParameters a;
     a.rate = rate;
+    a.soil_rate = soil_rate;
     t->saltation(p, a, {}, dt);
     return t;
   }
@@ -103,6 +104,45 @@ TEST_P(AbrasionLaw, OfSoilFadesToNothingAtHalfMoisture) {
   EXPECT_EQ(wear(0.15), 0);
   EXPECT_EQ(wear(0.3), 0);
   EXPECT_GT(wear(0.14), 0);
+}
+
+/// Soil of resistance 1 wore like any other.
+TEST_P(AbrasionLaw, OfSoilScalesWithResistance) {
+  const auto wear = [&](double resistance) {
+    return worn([&](test::BenchTerrain& t) {
+             t.set(Layer::soil, 1).set(Layer::erosion_resistance, resistance);
+           })
+        ->booked(Material::soil, 1);
+  };
+  EXPECT_GT(wear(0), 1000);
+  EXPECT_NEAR(wear(0.5), 0.5 * wear(0), 2);
+  EXPECT_EQ(wear(1), 0);
+}
+
+/// Without a rate of its own, soil wears by that of rock.
+TEST_P(AbrasionLaw, OfSoilHasItsOwnRate) {
+  const auto soil = [](test::BenchTerrain& t) { t.set(Layer::soil, 1); };
+  const auto usual = worn(soil)->booked(Material::soil, 1);
+  EXPECT_EQ(worn(soil, 0.5f, 1, 0.01f)->booked(Material::soil, 1), usual);
+  EXPECT_NEAR(worn(soil, 0, 1, 0.005f)->booked(Material::soil, 1), usual / 2, 2);
+  EXPECT_EQ(worn(soil, 0.01f, 1, 0)->booked(Material::soil, 1), 0);
+  const auto rock = worn([](test::BenchTerrain&) {}, 0.01f, 1, 0.5f);
+  EXPECT_EQ(rock->booked(Material::bedrock, 1),
+            worn([](test::BenchTerrain&) {})->booked(Material::bedrock, 1));
+}
+
+/// An obstacle wore more than rock, because nothing is deposited on it (10486 quanta), and so did rock under
+/// water (10422).
+TEST_P(AbrasionLaw, IsNothingOnObstaclesAndUnderWater) {
+  const auto total = [](const test::BenchTerrain& t) {
+    return t.booked(Material::bedrock, 1) + t.booked(Material::soil, 1);
+  };
+  for (double soil : {0.0, 1.0}) {
+    EXPECT_EQ(total(*worn([=](test::BenchTerrain& t) { t.set(Layer::obstacle, 1).set(Layer::soil, soil); })),
+              0);
+    EXPECT_EQ(total(*worn([=](test::BenchTerrain& t) { t.set(Layer::water, 0.1).set(Layer::soil, soil); })),
+              0);
+  }
 }
 
 DESERT_ON_EACH_BACKEND(AbrasionLaw);

@@ -262,14 +262,24 @@ TEST_P(PlantThirst, ManyInACellNeverTakeMoreThanThereIs) {
   EXPECT_EQ(bench.terrain.booked(Material::moisture, 1), 60001 - left);
 }
 
-TEST_P(PlantThirst, ADropIsNotFree) {
+/// Less than a quantum a step is taken on average: seedlings took a whole quantum each step, 100 times what
+/// they need.
+TEST_P(PlantThirst, ADropIsNeitherFreeNorAQuantum) {
   SpeciesTraits s = thirsty();
-  s.water_use = 1e-9f;
+  s.growth = 0;
+  s.water_use = 0.01f;
   PlantBench bench(exec(), 8, 8, {s});
-  bench.terrain.set(Layer::moisture, 0.1);
-  bench.put({{4.5f, 4.5f, 0, 0.01f}});
-  bench.live();
-  EXPECT_EQ(bench.terrain.booked(Material::moisture, 1), 1);
+  bench.terrain.set(Layer::moisture, 0.15);
+  std::vector<Plant> seedlings;
+  for (int n = 0; n < 64; ++n)
+    seedlings.push_back({static_cast<float>(n % 8) + 0.5f, static_cast<float>(n / 8) + 0.5f, 0, 0.01f});
+  bench.put(seedlings);
+  constexpr int steps = 500;
+  for (int n = 0; n < steps; ++n) bench.live();
+  const double needed = 0.01 * s.stem / (0.5 * s.root);  // as a share of what the roots can reach
+  const double expected = steps * 64 * bench.parameters.draw * 3.14159e-4 * 0.15 * 1048576 * needed;
+  EXPECT_GT(expected, 100);
+  EXPECT_NEAR(static_cast<double>(bench.terrain.booked(Material::moisture, 1)) / expected, 1, 0.3);
 }
 
 DESERT_ON_EACH_BACKEND(PlantGrowth);

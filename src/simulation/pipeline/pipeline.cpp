@@ -110,6 +110,7 @@ StepContext Pipeline::context() {
 
 void Pipeline::step() {
   StepContext c = context();
+  fields_.roll_dice(state_.exec(), state_.scenario.seed, state_.steps);
   const bool observed = timing_ || checks_layers();
   if (observed) {
     for (const Launch& launch : unfused_launches_) run_observed(launch, c);
@@ -167,6 +168,7 @@ void Pipeline::step_alone(const std::string& process) {
   Stage* stage = find(process);
   if (!stage) throw Error("the process " + process + " is not active");
   StepContext c = context();
+  fields_.roll_dice(state_.exec(), state_.scenario.seed, state_.steps);
   stage->process->step(c, stage->workspace.get());
   state_.exec().synchronise();
 }
@@ -243,6 +245,7 @@ std::vector<MemoryPart> Pipeline::memory() const {
   add("tangents of repose", fields_.repose.bytes());
   add("strength of impacts", fields_.impact_strength.bytes());
   add("landed sand", fields_.landed.bytes());
+  add("dice", fields_.dice_keys.bytes());
   return parts;
 }
 

@@ -28,6 +28,7 @@ struct StepContext {
   Exec& exec() const { return state.exec(); }
   const Scenario& scenario() const { return state.scenario; }
   float time_step() const { return state.scenario.run.time_step; }
+  const Dice& dice() const { return fields.dice; }
 };
 
 /// The data that a process keeps between steps: memory on the device, transforms, tables.

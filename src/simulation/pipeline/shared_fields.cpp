@@ -7,7 +7,8 @@ namespace desert_sim {
 SharedFields::SharedFields(Exec& exec, const Grid& grid)
     : heights(surface::make_heights(exec, grid)),
       repose(exec, static_cast<std::size_t>(grid.cells())),
-      landed(exec, static_cast<std::size_t>(grid.cells())) {
+      landed(exec, static_cast<std::size_t>(grid.cells())),
+      dice_keys(exec, static_cast<std::size_t>(Roll::count)) {
   repose.set_zero();
 }
 
@@ -16,6 +17,10 @@ void SharedFields::prepare(Exec& exec, const Grid& grid, const Scenario& scenari
   if (!reptation::moves_sand(scenario.reptation)) return;
   impact_strength = Buffer<float>(exec, static_cast<std::size_t>(grid.cells()));
   impact_strength.set_zero();  // without saltation there are no impacts
+}
+
+void SharedFields::roll_dice(Exec& exec, std::uint64_t seed, std::uint64_t step) {
+  with_backend(exec, [&](auto& e) { dice = dice::roll(e, seed, step, dice_keys.data()); });
 }
 
 }  // namespace desert_sim

@@ -11,8 +11,8 @@ namespace {
 /// `makes_state`: also vegetation and humus, which a look at the terrain must leave alone.
 void cover_ground(StepContext& c, bool makes_state) {
   with_backend(c.exec(), [&](auto& e) {
-    plants::cover(e, c.terrain, c.scenario().vegetation, makes_state ? c.time_step() : 0.0f, c.fields.heights,
-                  makes_state, c.state.plants);
+    plants::cover(e, c.terrain, c.scenario().vegetation, makes_state ? c.time_step() : 0.0f, c.dice(),
+                  c.fields.heights, makes_state, c.state.plants);
   });
 }
 
@@ -26,7 +26,7 @@ void update_plants(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
     plants::grow_and_spawn(e, c.terrain, s.vegetation, s.repose, c.fields.heights, c.time_step(), s.seed,
-                           c.state.steps, c.state.ledger(), c.state.plants);
+                           c.state.steps, c.dice(), c.state.ledger(), c.state.plants);
   });
 }
 

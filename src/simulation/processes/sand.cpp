@@ -13,10 +13,13 @@
 namespace desert_sim {
 
 bool wears_ground(const Scenario& s) {
-  return s.abrasion.rate > 0 || s.hydraulic_erosion.enabled || s.soil.enabled;
+  return s.abrasion.wears_ground() || s.hydraulic_erosion.enabled || s.soil.enabled;
 }
 
 namespace {
+
+/// Whether soil may come to stand too steep: where it is worn, and where it becomes wetter or loses plants.
+bool loosens_soil(const Scenario& s) { return wears_ground(s) || s.moisture.enabled || s.vegetation.enabled; }
 
 // ---- saltation
 
@@ -28,7 +31,7 @@ reptation::Angle angle_of_repose(const StepContext& c) {
 template <class E>
 void lift_and_deposit(E& e, StepContext& c, const wind_shadow::Shadow* shadow_law) {
   const Scenario& s = c.scenario();
-  saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.state.ledger(),
+  saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.dice(), c.state.ledger(),
                   c.fields.landed.data(), {angle_of_repose(c), c.fields.impact_strength.data()}, shadow_law);
 }
 
@@ -47,7 +50,7 @@ void set_angles(StepContext& c, ProcessWorkspace*) {
 void creep(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
-    reptation::step(e, c.terrain, s.reptation, c.time_step(), s.seed, c.state.steps,
+    reptation::step(e, c.terrain, s.reptation, c.time_step(), s.seed, c.state.steps, c.dice(),
                     c.fields.impact_strength.data(), c.fields.landed.data());
   });
 }
@@ -63,7 +66,7 @@ struct AvalancheWork {
   /// Only terrains whose rock or soil changes need memory for it.
   void prepare_ground(const SimulationState& state) {
     const AvalanchingParameters& p = state.scenario.avalanching;
-    const bool changes = wears_ground(state.scenario) || state.bedrock_loose || state.soil_loose;
+    const bool changes = loosens_soil(state.scenario) || state.bedrock_loose || state.soil_loose;
     if (!ground.received && changes && (p.soil || p.bedrock))
       ground = avalanching::make_ground_workspace(state.exec(), state.terrain.grid());
   }
@@ -76,17 +79,18 @@ AvalancheWork make_avalanche_work(const SimulationState& state) {
   return work;
 }
 
-/// Soil and bedrock slide only where something changes them: abrasion, water, or an edit, until all has come
-/// to rest.
+/// Soil and bedrock slide only where something changes them or their angles of repose: abrasion, water,
+/// moisture, plants, or an edit, until all has come to rest.
 template <class E>
 void slide_ground(E& e, StepContext& c, AvalancheWork& work) {
   SimulationState& state = c.state;
   const AvalanchingParameters& p = state.scenario.avalanching;
   const ReposeParameters& repose = state.scenario.repose;
   Quanta* const given = c.fields.landed.data();
-  const bool wearing = wears_ground(state.scenario), has_soil = state.terrain.has(Layer::soil);
+  const bool wearing = wears_ground(state.scenario), loosening = loosens_soil(state.scenario);
+  const bool has_soil = state.terrain.has(Layer::soil);
   const auto moved = [&] { return statistics::sum(e, c.terrain.grid, given) != 0; };
-  if (p.soil && (wearing || state.soil_loose) && has_soil) {
+  if (p.soil && (loosening || state.soil_loose) && has_soil) {
     avalanching::step_soil(e, c.terrain, p, repose, given, work.ground);
     if (state.soil_loose) state.soil_loose = moved();
   }

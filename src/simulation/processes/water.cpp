@@ -56,28 +56,30 @@ hydraulic_erosion::Workspace make_capacity(const SimulationState& state) {
 
 void erode(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
-    hydraulic_erosion::step(e, c.terrain, c.scenario().hydraulic_erosion, c.time_step(), c.state.ledger(),
-                            workspace_as<hydraulic_erosion::Workspace>(workspace));
+    hydraulic_erosion::step(e, c.terrain, c.scenario().hydraulic_erosion, c.time_step(), c.dice(),
+                            c.state.ledger(), workspace_as<hydraulic_erosion::Workspace>(workspace));
   });
 }
 
 void update_moisture(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
-    moisture::step(e, c.terrain, s.moisture, s.repose.moisture_capacity, c.time_step(), c.state.ledger(),
-                   c.fields.landed.data());
+    moisture::step(e, c.terrain, s.moisture, s.repose.moisture_capacity, c.time_step(), c.dice(),
+                   c.state.ledger(), c.fields.landed.data());
   });
 }
 
 void evaporate(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
-    water_sources::evaporate(e, c.terrain, c.scenario().water.evaporation, c.time_step(), c.state.ledger());
+    water_sources::evaporate(e, c.terrain, c.scenario().water.evaporation, c.time_step(), c.dice(),
+                             c.state.ledger());
   });
 }
 
 void update_soil(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
-    soil::step(e, c.terrain, c.scenario().soil, c.scenario().repose, c.time_step(), c.state.ledger());
+    soil::step(e, c.terrain, c.scenario().soil, c.scenario().repose, c.time_step(), c.dice(),
+               c.state.ledger());
   });
 }
 

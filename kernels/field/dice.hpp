@@ -1,0 +1,112 @@
+#pragma once
+/// Amounts are rounded to whole quanta by dice where they are small:
+///
+///   quanta = ⌊amount + u⌋            amount < 256 quanta, u uniform in [0, 1)
+///   quanta = ⌊amount + ½⌋            else
+///
+/// Rounding to nearest would stop every process that moves less than half a quantum a step, and a least
+/// amount of one quantum would speed it up; with dice the expected sum over steps and cells is that of the
+/// amounts, however slow the process and however short the step. Whole numbers stay as they are, so that
+/// nothing flickers. From 256 quanta on, where the nearest is off by less than 0.2 %, no dice are rolled:
+/// the motions of dunes stay exactly symmetric, and hardly any cell of a large one pays for a hash.
+///
+/// u depends on (seed, step, roll, cell) only: a key of (seed, step, roll) by Philox, mixed with the cell's
+/// number by the finaliser of MurmurHash3. A GPU reads the keys of a step from its memory, because a recorded
+/// step is replayed with the same arguments; a CPU has them by value, which lets it vectorise the loops.
+
+#include <cstdint>
+
+#include "kernels/backend/macros.hpp"
+#include "kernels/field/math.hpp"
+#include "kernels/field/quanta.hpp"
+
+namespace desert_sim {
+
+/// What a cell rolls dice for. Rolls of the same cell and step are independent of each other.
+enum class Roll : int {
+  lift,
+  hop,
+  influx,
+  deposit,
+  abrasion,
+  reptation,
+  reptation_second,
+  reptation_east,
+  reptation_north,
+  reptation_north_east,
+  reptation_north_west,
+  evaporation,
+  seepage,
+  ground_evaporation,
+  moisture_east,
+  moisture_north,
+  soil_drying,
+  soil_forming,
+  dissolving,
+  settling,
+  humus,
+  water_uptake,
+  plant_height,
+  count
+};
+
+/// A bijection in which each bit of the word depends on each of the argument (MurmurHash3's finaliser).
+DESERT_HD std::uint32_t scrambled(std::uint32_t h) {
+  h = (h ^ (h >> 16)) * 0x85ebca6bu;
+  h = (h ^ (h >> 13)) * 0xc2b2ae35u;
+  return h ^ (h >> 16);
+}
+
+/// The die of one Roll in a step.
+struct Die {
+  static constexpr float small = 256.0f;  ///< amounts below are rounded by dice [quanta]
+
+  std::uint32_t key;                ///< on a CPU
+  const std::uint32_t* device_key;  ///< on a GPU
+  std::uint32_t part = 0;           ///< of a process that has several sub-steps a step
+
+  Die of_part(int n) const { return {key, device_key, static_cast<std::uint32_t>(n) * 0x9e3779b9u}; }
+
+  DESERT_HD std::uint32_t word(int cell) const {
+#if defined(__CUDA_ARCH__)
+    return scrambled((static_cast<std::uint32_t>(cell) + part) ^ *device_key);
+#else
+    return scrambled((static_cast<std::uint32_t>(cell) + part) ^ key);
+#endif
+  }
+  /// An amount [quanta] in whole quanta, not less than 0 and not more than `available`.
+  DESERT_HD Quanta whole_at_most(float amount, Quanta available, int cell) const {
+    // Without branches, so that compilers vectorise the loops around. Small amounts are 8.22 fixed point.
+    const float most = static_cast<float>(available), held = minimum(maximum(amount, 0.0f), most);
+    const bool few = held < small;
+    const auto fixed_point = static_cast<std::int32_t>((few ? held : 0.0f) * 4194304.0f);
+    const Quanta by_die = (fixed_point + static_cast<std::int32_t>(word(cell) >> 10)) >> 22;
+    const Quanta rounded = few ? by_die : static_cast<Quanta>(rintf(held));
+    return amount >= most ? available : rounded;
+  }
+  /// A displacement [cells, 16.16 fixed point]; if `few`, in whole cells, by a die of 16 bits.
+  DESERT_HD static int whole_cells_if(bool few, int displacement, std::uint32_t die) {
+    const int fraction = few ? 65535 : 0;
+    return (displacement + static_cast<int>(die & static_cast<std::uint32_t>(fraction))) & ~fraction;
+  }
+};
+
+/// All dice of a step.
+struct Dice {
+  std::uint32_t keys[static_cast<int>(Roll::count)] = {};
+  const std::uint32_t* device_keys = nullptr;
+
+  Die operator[](Roll roll) const {
+    const int n = static_cast<int>(roll);
+    return {keys[n], device_keys + n};
+  }
+};
+
+namespace dice {
+
+/// Rolls the dice of a step. `device_keys`: memory for the keys on the device.
+template <class E>
+Dice roll(E& exec, std::uint64_t seed, std::uint64_t step, std::uint32_t* device_keys);
+
+}  // namespace dice
+}  // namespace desert_sim
