@@ -15,6 +15,7 @@ class WindLaw : public test::OnBackend {
   static WindParameters plain() {
     WindParameters p;
     p.warping = p.projection = false;
+    p.speedup_law = SpeedUpLaw::venturi;
     return p;
   }
 };
@@ -39,6 +40,7 @@ struct Ramp {
   Ramp(Exec& exec, double slope_x, double slope_y, WindParameters p, wind::Vector above) {
     t = std::make_unique<test::BenchTerrain>(exec, 96, 96, 1, false);
     t->set(Layer::bedrock, [&](int x, int y) { return slope_x * (x - 48) + slope_y * (y - 48); });
+    p.speedup_law = SpeedUpLaw::venturi;
     p.speedup = 0;
     p.projection = false;
     p.warping = true;
