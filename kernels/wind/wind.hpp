@@ -8,7 +8,7 @@
 ///                w   has the direction of Σ weight_R f_R / Σ weight_R and the speed |w_a|
 ///   speed-up     f   = clamp(1 + a |k| ĥ, …) (jackson_hunt)   or   clamp(1 + k_W (h − h_ref), …) (venturi)
 ///   projection   F   = P[w/f] + c (jackson_hunt)   or   P[w f] (venturi),   P[û] = û − k (k·û)/|k|²
-///   wind         u   = f F (jackson_hunt)   or   F (venturi);   without projection f w
+///   wind         u   = f F (jackson_hunt)   or   F (venturi);   without projection f w, with f of venturi
 ///   features     + the divergence-free perturbation of wind_features.hpp
 ///
 /// jackson_hunt: air that crosses a crest passes in a thinner layer, of thickness D = 1/f. What is free of

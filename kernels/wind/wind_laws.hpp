@@ -30,14 +30,13 @@ struct CoarseLaws {
   bool projected;
 };
 
-/// Whether the speed-up is a response of the terrain's transform.
+/// Whether the speed-up is a response of the terrain's transform: that of jackson_hunt lives in the projected
+/// flux.
 inline bool has_response(const WindParameters& p) {
-  return p.speedup_law == SpeedUpLaw::jackson_hunt && p.speedup_response > 0.0f;
+  return p.speedup_law == SpeedUpLaw::jackson_hunt && p.projection && p.speedup_response > 0.0f;
 }
 /// Whether anything is computed on the coarse grid.
-inline bool has_coarse_fields(const WindParameters& p) {
-  return p.warping || p.projection || has_response(p);
-}
+inline bool has_coarse_fields(const WindParameters& p) { return p.warping || p.projection; }
 /// Fields of the terrain's response.
 inline int response_fields(const WindParameters& p) {
   return (p.warping ? p.radii.count : 0) + (has_response(p) ? 1 : 0);
@@ -45,7 +44,8 @@ inline int response_fields(const WindParameters& p) {
 /// The bounds of the speed-up, and how it grows with height, if it does.
 inline SpeedUp speed_up(const WindParameters& p) {
   if (has_response(p)) return {0, p.response_lowest, p.speedup_highest};
-  return {p.speedup_law == SpeedUpLaw::venturi ? p.speedup : 0.0f, p.speedup_lowest, p.speedup_highest};
+  const bool by_height = p.speedup_law == SpeedUpLaw::venturi || !p.projection;
+  return {by_height ? p.speedup : 0.0f, p.speedup_lowest, p.speedup_highest};
 }
 
 inline CoarseLaws coarse_laws(const TerrainView& t, const WindParameters& p, Vector above, float speed_above,
@@ -80,7 +80,7 @@ inline CoarseLaws coarse_laws(const TerrainView& t, const WindParameters& p, Vec
   laws.project = {coarse, spectrum, 1.0f / static_cast<float>(coarse.values()),
                   flow_x, flow_y,   work.flux.data()};
   laws.mean = {coarse, work.factors.data(), work.warped.data(), work.flux.data(),
-               p.projection && by_response ? work.mean_sums.data() : nullptr};
+               by_response ? work.mean_sums.data() : nullptr};
   laws.projected = p.projection;
   return laws;
 }
