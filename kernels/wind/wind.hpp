@@ -25,7 +25,8 @@
 /// The Gaussians are tens of metres wide, so the smoothed terrain, the speed-up, the warped wind and the flux
 /// are computed on a grid coarsened to about a quarter of the smallest σ. The spectral transfer function undoes
 /// the attenuation of the box filter that coarsens and of the linear interpolation back. The terrain of
-/// jackson_hunt is smoothed with σ = half a coarse cell (at least one cell of the terrain), the flux with σ = a
+/// jackson_hunt is smoothed with σ = half a coarse cell of the default width, or of the width in use if that is
+/// more (at least one cell of the terrain), the flux with σ = a
 /// coarse cell, because linear interpolation would bring back divergence at shorter waves. At most 5 % of the
 /// divergence of f w is left in D u (of w f in u with venturi) at default settings, over dunes as over rough
 /// hills; at full resolution nothing but rounding. Open axes are extended evenly (mirrored) before the

@@ -11,6 +11,13 @@ namespace {
 /// Least length of a coarse axis: shorter ones would save no time, and show in the result.
 constexpr int min_coarse_cells = 64;
 
+/// The width of a coarse cell that is chosen by default [m]: a quarter of the smallest σ of the radii.
+float default_coarse_cell(const WindParameters& p) {
+  float smallest = 1e9f;
+  for (int r = 0; r < p.radii.count; ++r) smallest = std::min(smallest, p.radii.values[r]);
+  return 0.5f * smallest / 4.0f;
+}
+
 /// The next number whose only prime factors are 2, 3 and 5: transforms of such lengths are fast.
 int smooth_length(int n) {
   while (!has_small_factors(n)) ++n;
@@ -45,11 +52,12 @@ struct ModesOfAxis {
     }
     return table;
   }
-  /// The terrain's with the normalisation 1/n. At full resolution the flux is not smoothed: there it is not
+  /// The terrain's with the normalisation 1/n, and a σ of at least `least_sigma` cells, so that small terrains,
+  /// which are not coarsened as much, have the same speed-up. At full resolution the flux is not smoothed: there it is not
   /// interpolated.
-  std::vector<FlowTransfer> flow_transfer() const {
+  std::vector<FlowTransfer> flow_transfer(double least_sigma) const {
     std::vector<FlowTransfer> table(static_cast<std::size_t>(n), FlowTransfer{0, 0});
-    const double of_terrain = std::max(1.0, 0.5 * ratio), of_flux = std::sqrt(ratio * ratio - 1);
+    const double of_terrain = std::max({1.0, 0.5 * ratio, least_sigma}), of_flux = std::sqrt(ratio * ratio - 1);
     for (int i = 0; i < n; ++i)
       if (!nyquist(i))
         table[static_cast<std::size_t>(i)] = {static_cast<float>(gaussian(i, of_terrain) / (kept(i) * n)),
@@ -68,11 +76,7 @@ Buffer<Value> on_device(Exec& exec, const std::vector<Value>& table) {
 
 CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p) {
   float ratio = static_cast<float>(p.coarsening);
-  if (p.coarsening == 0) {
-    float smallest = 1e9f;
-    for (int r = 0; r < p.radii.count; ++r) smallest = std::min(smallest, p.radii.values[r]);
-    ratio = std::max(1.0f, std::floor(0.5f * smallest / 4.0f / fine.cell_size));
-  }
+  if (p.coarsening == 0) ratio = std::max(1.0f, std::floor(default_coarse_cell(p) / fine.cell_size));
   const auto cells = [&](int n) {
     const int coarse = std::max(1, static_cast<int>(std::lround(n / ratio)));
     if (p.coarsening != 0) return coarse;
@@ -105,8 +109,9 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
     *buffer = Buffer<Complex>(exec, values);
   work.mean_sums = Buffer<long long>(exec, 3);
   const ModesOfAxis along_x{c.width, c.ratio_x}, along_y{c.height, c.ratio_y};
-  work.flow_x = on_device(exec, along_x.flow_transfer());
-  work.flow_y = on_device(exec, along_y.flow_transfer());
+  const double least_sigma = p.radii.count > 0 ? 0.5 * default_coarse_cell(p) / fine.cell_size : 0;
+  work.flow_x = on_device(exec, along_x.flow_transfer(least_sigma));
+  work.flow_y = on_device(exec, along_y.flow_transfer(least_sigma));
   const int fields = response_fields(p), radius_count = p.warping ? p.radii.count : 0;
   work.by_lines = LineTransform::supports_length(c.width) && LineTransform::supports_length(c.height) &&
                   bytes_for_lines(c, fields) <= exec.memory_for_lines();
