@@ -21,7 +21,7 @@ void transform_by_library(E& exec, const CoarseLaws& laws, Workspace& work) {
   if (!laws.projected) return;
   work.fft_one_field->forward(work.spectrum.data());
   for_each_cell(exec, grid, laws.project);
-  work.fft_one_field->inverse(work.flux.data());
+  work.fft_one_field->inverse(work.responses.data());
   if (!laws.mean.sums) return;
   work.mean_sums.set_zero();
   for_each_cell(exec, laws.mean.grid(), laws.mean);
@@ -45,7 +45,7 @@ void coarse_wind(E& exec, const CoarseLaws& laws, const surface::Heights& height
   if (!done) transform_by_library(exec, laws, work);
   if (laws.mean.sums)
     for_each_cell(exec, work.coarse.transformed(),
-                  RestoreMean{work.coarse, laws.mean.sums, work.flux.data()});
+                  RestoreMean{work.coarse, laws.mean.sums, work.responses.data()});
 }
 
 template <class E>
@@ -65,9 +65,9 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
     law.per_speed_squared = speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f;
     law.speed_up = speed_up(p);
     if (p.projection) law.speed_up.per_metre = 0;  // the projected wind includes the speed-up by height
-    law.deviation = p.projection ? work.flux.data() : p.warping ? work.warped.data() : nullptr;
+    law.deviation = p.projection ? work.responses.data() : p.warping ? work.warped.data() : nullptr;
     law.keeps_speed = !p.projection;
-    law.factors = has_response(p) ? work.factors.data() : nullptr;
+    law.factors = has_response(p) ? work.rise.data() : nullptr;
     law.perturbation_x = perturbation_x;
     law.perturbation_y = perturbation_y;
     law.wind_x = t.real(Layer::wind_x);

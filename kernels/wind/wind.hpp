@@ -12,25 +12,25 @@
 ///   features     + the divergence-free perturbation of wind_features.hpp
 ///
 /// jackson_hunt: air that crosses a crest passes in a thinner layer, of thickness D = 1/f. What is free of
-/// divergence is therefore the flux D u of the layer, not u: a wind that is free of divergence by itself cannot
-/// be faster over a long crest across it. To first order in the slope, D u without divergence is potential flow
-/// for a = 1, whose speed-up along the wind is (k_x²/|k|) ĥ; the inner layer of Jackson & Hunt multiplies it by
-/// a = `speedup_response`. With a = 2.13 the wind at the crest of a Gaussian ridge H high, with the half length
-/// L at half its height, is faster by 2 H/L, at that of a round hill by 1.6 H/L; across an oblique ridge only
-/// the component across it is. The bounds of f are response_lowest and speedup_highest, because the law is one
-/// for slopes up to 0.3, and the wind shadow slows the air in hollows. c makes the mean wind that of f w.
+/// divergence is therefore the flux D u of the layer, not u: a wind that is free of divergence by itself
+/// cannot be faster over a long crest across it. To first order in the slope, D u without divergence is
+/// potential flow for a = 1, whose speed-up along the wind is (k_x²/|k|) ĥ; the inner layer of Jackson &
+/// Hunt multiplies it by a = `speedup_response`. With a = 2.13 the wind at the crest of a Gaussian ridge H
+/// high, with the half length L at half its height, is faster by 2 H/L, at that of a round hill by 1.6 H/L;
+/// across an oblique ridge only the component across it is. The bounds of f are response_lowest and
+/// speedup_highest, because the law is one for slopes up to 0.3, and the wind shadow slows the air in
+/// hollows. c makes the mean wind that of f w.
 /// venturi, as published: F is free of divergence itself, and h_ref is the 1st percentile of the surface at
 /// load: the height of the low ground, which a pit or an error of a few cells does not change.
 ///
-/// The Gaussians are tens of metres wide, so the smoothed terrain, the speed-up, the warped wind and the flux
-/// are computed on a grid coarsened to about a quarter of the smallest σ. The spectral transfer function undoes
-/// the attenuation of the box filter that coarsens and of the linear interpolation back. The terrain of
-/// jackson_hunt is smoothed with σ = half a coarse cell of the default width, or of the width in use if that is
-/// more (at least one cell of the terrain), the flux with σ = a
-/// coarse cell, because linear interpolation would bring back divergence at shorter waves. At most 5 % of the
-/// divergence of f w is left in D u (of w f in u with venturi) at default settings, over dunes as over rough
-/// hills; at full resolution nothing but rounding. Open axes are extended evenly (mirrored) before the
-/// transform.
+/// The Gaussians are tens of metres wide, so the smoothed terrain, the speed-up, the warped wind and the
+/// flux are computed on a grid coarsened to about a quarter of the smallest σ. The spectral transfer
+/// function undoes the attenuation of the box filter that coarsens and of the linear interpolation back.
+/// The terrain of jackson_hunt is smoothed with σ = half a coarse cell of the default width, or of the
+/// width in use if that is more (at least one cell of the terrain), the flux with σ = a coarse cell,
+/// because linear interpolation would bring back divergence at shorter waves. At most 5 % of the divergence
+/// of f w is left in D u (of w f in u with venturi) at default settings, over dunes as over rough hills; at
+/// full resolution nothing but rounding. Open axes are extended evenly (mirrored) before the transform.
 ///
 /// Reads bedrock, soil and sand through `heights`, and the perturbation; writes wind_x, wind_y.
 
@@ -56,8 +56,10 @@ struct Workspace {
   bool by_lines = false;  ///< use transform_by_lines() instead of transform_by_library()
   LineTransform lines_along_x, lines_along_y;
   Buffer<Complex> roots_x, roots_y;  ///< their roots of unity
-  Buffer<float> row_means, rise, factors;
-  Buffer<Complex> spectrum, warped, flux, responses;
+  Buffer<float> row_means;
+  Buffer<float> rise;  ///< height above the reference [m]; then the factors of the speed-up
+  Buffer<Complex> spectrum, warped;
+  Buffer<Complex> responses;  ///< of the terrain, field by field; then the flux, in the place of the first
   Buffer<long long> mean_sums;
   Buffer<Transfer> along_x[ShortList::capacity], along_y[ShortList::capacity];  ///< of each radius
   Buffer<FlowTransfer> flow_x, flow_y;

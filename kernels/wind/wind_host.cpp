@@ -57,7 +57,8 @@ struct ModesOfAxis {
   /// interpolated.
   std::vector<FlowTransfer> flow_transfer(double least_sigma) const {
     std::vector<FlowTransfer> table(static_cast<std::size_t>(n), FlowTransfer{0, 0});
-    const double of_terrain = std::max({1.0, 0.5 * ratio, least_sigma}), of_flux = std::sqrt(ratio * ratio - 1);
+    const double of_terrain = std::max({1.0, 0.5 * ratio, least_sigma}),
+                 of_flux = std::sqrt(ratio * ratio - 1);
     for (int i = 0; i < n; ++i)
       if (!nyquist(i))
         table[static_cast<std::size_t>(i)] = {static_cast<float>(gaussian(i, of_terrain) / (kept(i) * n)),
@@ -104,15 +105,15 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   const CoarseGrid& c = work.coarse;
   const auto values = static_cast<std::size_t>(c.values());
   work.row_means = Buffer<float>(exec, static_cast<std::size_t>(c.columns) * fine.height);
-  for (Buffer<float>* buffer : {&work.rise, &work.factors}) *buffer = Buffer<float>(exec, values);
-  for (Buffer<Complex>* buffer : {&work.spectrum, &work.warped, &work.flux})
-    *buffer = Buffer<Complex>(exec, values);
+  const int fields = response_fields(p), radius_count = p.warping ? p.radii.count : 0;
+  work.rise = Buffer<float>(exec, values);
+  for (Buffer<Complex>* buffer : {&work.spectrum, &work.warped}) *buffer = Buffer<Complex>(exec, values);
+  work.responses = Buffer<Complex>(exec, values * static_cast<std::size_t>(std::max(1, fields)));
   work.mean_sums = Buffer<long long>(exec, 3);
   const ModesOfAxis along_x{c.width, c.ratio_x}, along_y{c.height, c.ratio_y};
   const double least_sigma = p.radii.count > 0 ? 0.5 * default_coarse_cell(p) / fine.cell_size : 0;
   work.flow_x = on_device(exec, along_x.flow_transfer(least_sigma));
   work.flow_y = on_device(exec, along_y.flow_transfer(least_sigma));
-  const int fields = response_fields(p), radius_count = p.warping ? p.radii.count : 0;
   work.by_lines = LineTransform::supports_length(c.width) && LineTransform::supports_length(c.height) &&
                   bytes_for_lines(c, fields) <= exec.memory_for_lines();
   if (work.by_lines) {
@@ -125,7 +126,6 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   }
   if (fields == 0) return work;
   if (!work.by_lines) work.fft_all_responses = exec.make_fft(c.width, c.height, fields);
-  work.responses = Buffer<Complex>(exec, values * static_cast<std::size_t>(fields));
   for (int r = 0; r < radius_count; ++r) {
     const double sigma = 0.5 * p.radii.values[r] / fine.cell_size;
     work.along_x[r] = on_device(exec, along_x.transfer(sigma, fine.cell_size));
@@ -135,8 +135,8 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
 }
 
 std::size_t Workspace::bytes() const {
-  std::size_t total = row_means.bytes() + rise.bytes() + factors.bytes() + spectrum.bytes() + warped.bytes() +
-                      flux.bytes() + responses.bytes() + mean_sums.bytes() + flow_x.bytes() + flow_y.bytes() +
+  std::size_t total = row_means.bytes() + rise.bytes() + spectrum.bytes() + warped.bytes() +
+                      responses.bytes() + mean_sums.bytes() + flow_x.bytes() + flow_y.bytes() +
                       roots_x.bytes() + roots_y.bytes();
   for (const std::unique_ptr<Fft>* transform : {&fft_one_field, &fft_all_responses})
     total += *transform ? (*transform)->bytes() : 0;

@@ -69,7 +69,7 @@ inline CoarseLaws coarse_laws(const TerrainView& t, const WindParameters& p, Vec
   laws.warp.gradient_scale = p.gradient_scale;
   laws.warp.responses = work.responses.data();
   laws.warp.warped = work.warped.data();
-  laws.warp.factors = work.factors.data();
+  laws.warp.factors = work.rise.data();
   laws.warp.unprojected = spectrum;
   for (int r = 0; r < radius_count; ++r) {
     laws.response.along_x[r] = work.along_x[r].data();
@@ -78,8 +78,8 @@ inline CoarseLaws coarse_laws(const TerrainView& t, const WindParameters& p, Vec
     laws.warp.deflections[r] = p.deflections.values[r];
   }
   laws.project = {coarse, spectrum, 1.0f / static_cast<float>(coarse.values()),
-                  flow_x, flow_y,   work.flux.data()};
-  laws.mean = {coarse, work.factors.data(), work.warped.data(), work.flux.data(),
+                  flow_x, flow_y,   work.responses.data()};
+  laws.mean = {coarse, work.rise.data(), work.warped.data(), work.responses.data(),
                by_response ? work.mean_sums.data() : nullptr};
   laws.projected = p.projection;
   return laws;

@@ -28,8 +28,9 @@ struct WindParameters {
 constexpr auto parameter_table(const WindParameters*) {
   using P = WindParameters;
   return std::make_tuple(
-      parameter("speedup_law", &P::speedup_law, speedup_law_names,
-                "jackson_hunt: crests speed the wind up by their curvature; venturi: by their height."),
+      parameter(
+          "speedup_law", &P::speedup_law, speedup_law_names,
+          "jackson_hunt: crests are faster by 2 H/L; venturi, and always without projection: by height."),
       parameter("speedup_response", &P::speedup_response, 0, 4, "1",
                 "Speed-up of jackson_hunt over that of potential flow; 2.13 gives 2 H/L at a ridge's crest."),
       parameter("response_lowest", &P::response_lowest, 0.05, 1, "1",

@@ -278,7 +278,7 @@ struct Blown {
     });
     t.exec().synchronise();
     const std::vector<float> x = t.terrain.values(Layer::wind_x), y = t.terrain.values(Layer::wind_y),
-                             factors = work.factors.download();
+                             factors = work.rise.download();
     u.assign(x.begin(), x.end());
     v.assign(y.begin(), y.end());
     for (int j = 0; j < grid.height; ++j)

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Orientation of crests under two winds, against the bedform instability. Needs numpy; desert_run from PATH or --program.
+"""Orientation of crests under two winds, against the bedform instability. Needs numpy; desert_run from PATH or
+--program.
 
     test/bench/two_winds.py [--angles 45 60 ...] [--seeds N] [--steps N] [--size CELLS] [--jobs N] [--set path=value]...
 
-The first wind blows to the east twice as long as the second, which blows to THETA, both in turn; there is plenty of sand.
-Directions of crests are counter-clockwise from the first wind, from the structure tensor of the elevation smoothed by 4 m.
-Expected is the direction of fastest growth: the maximum of sum Q_i (|s_i| + 1.6 s_i^2), s_i = sin(theta_i - crest), by
-Rubin & Hunter 1987, Courrech du Pont 2014 and Gao 2015. Prints a row for each angle (the mean of all seeds, the worst
-seed, and the coherence: 1 if all slopes are parallel) and the rms of the rows. The exit status is 1 if a row is more than
-10 degrees off, or the rms more than 5 degrees.
+The first wind blows to the east twice as long as the second, which blows to THETA, both in turn; there is plenty of
+sand. Directions of crests are counter-clockwise from the first wind, from the structure tensor of the elevation
+smoothed by 4 m. Expected is the direction of fastest growth: the maximum of sum Q_i (|s_i| + 1.6 s_i^2),
+s_i = sin(theta_i - crest), by Rubin & Hunter 1987, Courrech du Pont 2014 and Gao 2015. Prints a row for each angle
+(the mean of all seeds, the worst seed, and the coherence: 1 if all slopes are parallel) and the rms of the rows. The
+exit status is 1 if a row is more than 10 degrees off, or the rms more than 5 degrees.
 """
 import argparse
 import concurrent.futures
