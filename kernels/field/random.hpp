@@ -48,12 +48,13 @@ DESERT_HD int lattice_floor(float coordinate) {
 }
 
 /// Smooth value noise in [−1, 1]: random values on the integer lattice, interpolated with continuous second
-/// derivatives. With `period_x` or `period_y` > 0 it repeats after so many lattice cells.
-DESERT_HD float value_noise(std::uint64_t seed, Purpose purpose, float x, float y, float z, int period_x = 0,
-                            int period_y = 0) {
-  const int x0 = lattice_floor(x), y0 = lattice_floor(y), z0 = lattice_floor(z);
+/// derivatives. The third coordinate is z0 + share, with 0 ≤ share ≤ 1. With `period_x` or `period_y` > 0 the
+/// noise repeats after so many lattice cells.
+DESERT_HD float value_noise(std::uint64_t seed, Purpose purpose, float x, float y, std::uint32_t z0,
+                            float share, int period_x, int period_y) {
+  const int x0 = lattice_floor(x), y0 = lattice_floor(y);
   const auto fade = [](float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); };
-  const float fx = fade(x - floorf(x)), fy = fade(y - floorf(y)), fz = fade(z - floorf(z));
+  const float fx = fade(x - floorf(x)), fy = fade(y - floorf(y)), fz = fade(share);
   const auto cycled = [](int i, int period) { return period > 0 ? ((i % period) + period) % period : i; };
   float sum = 0.0f;
   for (int n = 0; n < 8; ++n) {
@@ -61,10 +62,15 @@ DESERT_HD float value_noise(std::uint64_t seed, Purpose purpose, float x, float 
     const float weight = (dx ? fx : 1.0f - fx) * (dy ? fy : 1.0f - fy) * (dz ? fz : 1.0f - fz);
     const float value = random_unit(seed, purpose, static_cast<std::uint32_t>(cycled(x0 + dx, period_x)),
                                     static_cast<std::uint32_t>(cycled(y0 + dy, period_y)),
-                                    static_cast<std::uint32_t>(z0 + dz));
+                                    z0 + static_cast<std::uint32_t>(dz));
     sum += weight * (2.0f * value - 1.0f);
   }
   return sum;
+}
+DESERT_HD float value_noise(std::uint64_t seed, Purpose purpose, float x, float y, float z, int period_x = 0,
+                            int period_y = 0) {
+  return value_noise(seed, purpose, x, y, static_cast<std::uint32_t>(lattice_floor(z)), z - floorf(z),
+                     period_x, period_y);
 }
 
 }  // namespace desert_sim

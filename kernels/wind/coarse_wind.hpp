@@ -107,29 +107,31 @@ struct AxisInterpolation {
 DESERT_HD AxisInterpolation CoarseGrid::interpolation_x(int x) const { return {x, width, share_x}; }
 DESERT_HD AxisInterpolation CoarseGrid::interpolation_y(int y) const { return {y, height, share_y}; }
 
+using desert_sim::lerp;
+DESERT_HD Complex lerp(Complex a, Complex b, float t) { return {lerp(a.re, b.re, t), lerp(a.im, b.im, t)}; }
+
 /// A coarse field, interpolated bilinearly along a column of fine cells. Consecutive cells of the column lie
 /// between the same two coarse rows, whose values are loaded once.
+template <class Value>
 struct CoarseColumn {
-  const Complex* field;
+  const Value* field;
   AxisInterpolation interpolation_x;
   int width;
-  Complex south{0, 0}, north{0, 0};
+  Value south{}, north{};
 
-  DESERT_HD CoarseColumn(const Complex* values, const AxisInterpolation& along_x, int row_width)
+  DESERT_HD CoarseColumn(const Value* values, const AxisInterpolation& along_x, int row_width)
       : field(values), interpolation_x(along_x), width(row_width) {}
   DESERT_HD void move_to(const AxisInterpolation& along_y) {
     south = in_row(along_y.first);
     north = in_row(along_y.second);
   }
-  DESERT_HD Complex at(float share) const {
-    return {lerp(south.re, north.re, share), lerp(south.im, north.im, share)};
-  }
+  DESERT_HD Value at(float share) const { return lerp(south, north, share); }
 
  private:
-  DESERT_HD Complex in_row(int row) const {
-    const Complex a = field[row * width + interpolation_x.first],
-                  b = field[row * width + interpolation_x.second];
-    return {lerp(a.re, b.re, interpolation_x.share), lerp(a.im, b.im, interpolation_x.share)};
+  DESERT_HD Value in_row(int row) const {
+    const Value a = field[row * width + interpolation_x.first],
+                b = field[row * width + interpolation_x.second];
+    return lerp(a, b, interpolation_x.share);
   }
 };
 
@@ -152,6 +154,12 @@ struct Mode {
 /// of the central difference. The function is separable, so two short tables, made once on the host, hold it.
 struct Transfer {
   float smooth, derive;
+};
+
+/// Spectral transfer functions of the air flow along one axis: of the terrain that speeds it up, and of its
+/// flux. Both are Gaussians; the first is divided by the same attenuation as Transfer::smooth.
+struct FlowTransfer {
+  float terrain, flux;
 };
 
 }  // namespace desert_sim::wind

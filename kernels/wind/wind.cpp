@@ -7,21 +7,24 @@
 
 namespace desert_sim::wind {
 
-/// Warped wind and correction of the projection from the row means of the terrain, with the FFT library.
+/// Speed-up, warped wind and projected flux from the row means of the terrain, with the FFT library.
 template <class E>
 void transform_by_library(E& exec, const CoarseLaws& laws, Workspace& work) {
   const Grid grid = work.coarse.transformed();
   for_each_cell(exec, grid, laws.columns);
-  if (laws.gradients.radius_count > 0) {
+  if (laws.response.fields() > 0) {
     work.fft_one_field->forward(work.spectrum.data());
-    for_each_cell(exec, laws.gradients.grid(), laws.gradients);
-    work.fft_all_radii->inverse(work.gradients.data());
+    for_each_cell(exec, laws.response.grid(), laws.response);
+    work.fft_all_responses->inverse(work.responses.data());
   }
   for_each_cell(exec, grid, laws.warp);
   if (!laws.projected) return;
   work.fft_one_field->forward(work.spectrum.data());
-  for_each_cell(exec, grid, laws.correct);
-  work.fft_one_field->inverse(work.correction.data());
+  for_each_cell(exec, grid, laws.project);
+  work.fft_one_field->inverse(work.responses.data());
+  if (!laws.mean.sums) return;
+  work.mean_sums.set_zero();
+  for_each_cell(exec, laws.mean.grid(), laws.mean);
 }
 
 template <class E>
@@ -34,32 +37,37 @@ void coarse_wind(E& exec, const CoarseLaws& laws, const surface::Heights& height
                  Workspace& work) {
   const CoarsenRows rows{work.coarse, heights.cell_heights.data(), reference, work.row_means.data()};
   coarsen_rows(exec, rows);
-  if (!laws.projected) work.correction.set_zero();
-  if constexpr (!vectorises_rows<E>)
-    if (work.by_lines) return transform_by_lines(exec, laws, work);
-  transform_by_library(exec, laws, work);
+  bool done = false;
+  if constexpr (!vectorises_rows<E>) {
+    if (work.by_lines) transform_by_lines(exec, laws, work);
+    done = work.by_lines;
+  }
+  if (!done) transform_by_library(exec, laws, work);
+  if (laws.mean.sums)
+    for_each_cell(exec, work.coarse.transformed(),
+                  RestoreMean{work.coarse, laws.mean.sums, work.responses.data()});
 }
 
 template <class E>
 void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
           const surface::Heights& heights, Quanta reference, const float* perturbation_x,
           const float* perturbation_y, Workspace& work) {
-  const float speed_above = hypotenuse(above.x, above.y), lowest = static_cast<float>(reference);
-  const SpeedUp speed_up{p.speedup, p.speedup_lowest, p.speedup_highest};
-  const bool coarse_fields = p.warping || p.projection;
-  if (coarse_fields)
-    coarse_wind(exec, coarse_laws(t, p, above, speed_above, speed_up, work), heights, lowest, work);
+  const float speed_above = hypotenuse(above.x, above.y), ground = static_cast<float>(reference);
+  if (has_coarse_fields(p))
+    coarse_wind(exec, coarse_laws(t, p, above, speed_above, work), heights, ground, work);
   const auto run = [&](auto strip, auto is_perturbed) {
     SurfaceWind<strip, is_perturbed> law{};
     law.coarse = work.coarse;
     law.heights = heights.cell_heights.data();
-    law.reference = lowest;
+    law.reference = ground;
     law.quantum = t.quantum;
     law.above = above;
     law.per_speed_squared = speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f;
-    law.speed_up = speed_up;
-    law.warped_wind = coarse_fields ? work.warped_wind.data() : nullptr;
-    law.correction = coarse_fields ? work.correction.data() : nullptr;
+    law.speed_up = speed_up(p);
+    if (p.projection) law.speed_up.per_metre = 0;  // the projected wind includes the speed-up by height
+    law.deviation = p.projection ? work.responses.data() : p.warping ? work.warped.data() : nullptr;
+    law.keeps_speed = !p.projection;
+    law.factors = has_response(p) ? work.rise.data() : nullptr;
     law.perturbation_x = perturbation_x;
     law.perturbation_y = perturbation_y;
     law.wind_x = t.real(Layer::wind_x);

@@ -1,20 +1,36 @@
 #pragma once
-/// Wind at the surface from the high-altitude wind w_a. Paris 2019 §4 and Nilles 2024 §3.3, eq. 1–3, for
-/// speed-up and warping; Stam 1999 for the projection.
+/// Wind at the surface from the high-altitude wind w_a. Jackson & Hunt 1975 for the speed-up over hills,
+/// Paris 2019 §4 and Nilles 2024 §3.3, eq. 1–3, for Venturi's and for warping; Stam 1999 for the projection.
 ///
-///   speed-up     u   = w_a · clamp(1 + k_W (h − h_ref), low, high)
 ///   warping      g   = k_g ∇(h ⊗ Gauss(σ = R/2)),   α = min(|g|, 1)
-///                g⊥  = ±(−g_y, g_x),   with the sign that makes u·g⊥ ≥ 0
+///                g⊥  = ±(−g_y, g_x),   with the sign that makes u·g⊥ ≥ 0,   u = f w_a
 ///                f_R = lerp(u, k_R g⊥, α)
-///                direction of Σ weight_R f_R / Σ weight_R, speed |u|
-///   projection   û ← û − k (k·û)/|k|²   (Helmholtz: divergence-free, with the mean kept)
+///                w   has the direction of Σ weight_R f_R / Σ weight_R and the speed |w_a|
+///   speed-up     f   = clamp(1 + a |k| ĥ, …) (jackson_hunt)   or   clamp(1 + k_W (h − h_ref), …) (venturi)
+///   projection   F   = P[w/f] + c (jackson_hunt)   or   P[w f] (venturi),   P[û] = û − k (k·û)/|k|²
+///   wind         u   = f F (jackson_hunt)   or   F (venturi);   without projection f w, with f of venturi
 ///   features     + the divergence-free perturbation of wind_features.hpp
 ///
-/// The Gaussians are tens of metres wide, so the smoothed terrain, the warped wind and the projection are
-/// computed on a grid coarsened to about a quarter of the smallest σ. The spectral transfer function undoes
-/// the attenuation of the box filter that coarsens and of the linear interpolation back. Each terrain cell
-/// then has its own speed-up, the interpolated direction of the coarse wind and the interpolated correction
-/// of the projection. Open axes are extended evenly (mirrored) before the transform.
+/// jackson_hunt: air that crosses a crest passes in a thinner layer, of thickness D = 1/f. What is free of
+/// divergence is therefore the flux D u of the layer, not u: a wind that is free of divergence by itself
+/// cannot be faster over a long crest across it. To first order in the slope, D u without divergence is
+/// potential flow for a = 1, whose speed-up along the wind is (k_x²/|k|) ĥ; the inner layer of Jackson &
+/// Hunt multiplies it by a = `speedup_response`. With a = 2.13 the wind at the crest of a Gaussian ridge H
+/// high, with the half length L at half its height, is faster by 2 H/L, at that of a round hill by 1.6 H/L;
+/// across an oblique ridge only the component across it is. The bounds of f are response_lowest and
+/// speedup_highest, because the law is one for slopes up to 0.3, and the wind shadow slows the air in
+/// hollows. c makes the mean wind that of f w.
+/// venturi, as published: F is free of divergence itself, and h_ref is the 1st percentile of the surface at
+/// load: the height of the low ground, which a pit or an error of a few cells does not change.
+///
+/// The Gaussians are tens of metres wide, so the smoothed terrain, the speed-up, the warped wind and the
+/// flux are computed on a grid coarsened to about a quarter of the smallest σ. The spectral transfer
+/// function undoes the attenuation of the box filter that coarsens and of the linear interpolation back.
+/// The terrain of jackson_hunt is smoothed with σ = half a coarse cell of the default width, or of the
+/// width in use if that is more (at least one cell of the terrain), the flux with σ = a coarse cell,
+/// because linear interpolation would bring back divergence at shorter waves. At most 5 % of the divergence
+/// of f w is left in D u (of w f in u with venturi) at default settings, over dunes as over rough hills; at
+/// full resolution nothing but rounding. Open axes are extended evenly (mirrored) before the transform.
 ///
 /// Reads bedrock, soil and sand through `heights`, and the perturbation; writes wind_x, wind_y.
 
@@ -33,16 +49,20 @@ namespace desert_sim {
 
 namespace wind {
 
-/// Buffers and transforms of the coarse grid; empty if neither warping nor projection needs them.
+/// Buffers and transforms of the coarse grid; empty if nothing is computed on it.
 struct Workspace {
   CoarseGrid coarse;
-  std::unique_ptr<Fft> fft_one_field, fft_all_radii;  ///< null if `by_lines`
+  std::unique_ptr<Fft> fft_one_field, fft_all_responses;  ///< null if `by_lines`
   bool by_lines = false;  ///< use transform_by_lines() instead of transform_by_library()
   LineTransform lines_along_x, lines_along_y;
   Buffer<Complex> roots_x, roots_y;  ///< their roots of unity
-  Buffer<float> row_means, rise;
-  Buffer<Complex> spectrum, warped_wind, correction, gradients;
+  Buffer<float> row_means;
+  Buffer<float> rise;  ///< height above the reference [m]; then the factors of the speed-up
+  Buffer<Complex> spectrum, warped;
+  Buffer<Complex> responses;  ///< of the terrain, field by field; then the flux, in the place of the first
+  Buffer<long long> mean_sums;
   Buffer<Transfer> along_x[ShortList::capacity], along_y[ShortList::capacity];  ///< of each radius
+  Buffer<FlowTransfer> flow_x, flow_y;
 
   std::size_t bytes() const;
 };
@@ -51,7 +71,7 @@ CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p);
 
 Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p);
 
-/// `above`: w_a; `reference`: h_ref, the lowest solid surface of the terrain at load [quanta];
+/// `above`: w_a; `reference`: h_ref, the reference of venturi [quanta];
 /// `perturbation_x`, `perturbation_y`: of wind_features.hpp [m/s], or null.
 template <class E>
 void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,

@@ -3,22 +3,38 @@
 /// 2007).
 ///
 ///   vortex       ψ = speed R exp(½ (1 − r²/R²))
-///   jet          ψ = speed η exp(−½ (ξ²/length² + η²/R²))
-///   turbulence   ψ = ¾ speed scale noise(ξ/scale, η/scale, t/life_time) (1 − r²/R²)²   where r < R
+///   jet          ψ = speed η exp(−½ (ξ²/length² + η²/R²)) / max(1, R / (e length))
+///   turbulence   ψ = 0.925 speed scale noise(X/scale, Y/scale, t/life_time) (1 − r²/R²)²   where r < R
 ///
 ///   u =  ∂ψ/∂y
 ///   v = −∂ψ/∂x
 ///
-/// ξ and η are the distances from the feature's centre along and across its direction, r² = ξ² + η², R its
-/// radius. A vortex is fastest at r = R, with `speed`; it turns counter-clockwise, or clockwise if `speed` is
-/// negative. A jet blows with `speed` along `direction_deg` in its middle, with return flow beside it.
+/// X and Y are the distances from the feature's centre, ξ and η those along and across its direction,
+/// r² = X² + Y², R its radius. Along a periodic axis of length E a distance d enters the stream function as
+///
+///   d   →  E/2π [(1 + β/2) sin θ − 3β/10 sin 2θ + β/30 sin 3θ],   θ = 2π d/E
+///   d²  →  twice its integral
+///
+/// which are d and d² near the centre and smooth on the torus, so that radius and length may be as large as
+/// the terrain, or larger. β is 1 for features small against the terrain, for which the terms up to d⁶ are
+/// those of d, and falls to 0 for large ones, which would exceed their speed at the seam. The lattice of the
+/// noise is stretched to a whole number of cells, at least two.
+///
+/// A vortex is fastest at r = R, with `speed`; it turns counter-clockwise, or clockwise if `speed` is
+/// negative. A jet blows with `speed` along `direction_deg` in its middle, with return flow beside it; one
+/// that is wider than e times its length is fastest in that return flow. No vortex or jet exceeds its speed.
+/// The factor 0.925 makes `speed` the root mean square in the middle of turbulence. Its time is counted in
+/// whole life times and a share of one, in double precision, so that it never freezes.
+///
 /// Derivatives are central differences, for which the discrete divergence is 0. Reads no layer, and writes
 /// the perturbation only.
 
+#include <cstdint>
 #include <vector>
 
 #include "kernels/backend/buffer.hpp"
 #include "kernels/field/grid.hpp"
+#include "kernels/wind/vector.hpp"
 #include "src/core/parameters.hpp"
 
 namespace desert_sim {
@@ -28,7 +44,7 @@ constexpr const char* wind_feature_kinds[] = {"vortex", "jet", "turbulence"};
 
 struct WindFeature {
   WindFeatureKind kind = WindFeatureKind::vortex;
-  float x = 0, y = 0;
+  double x = 0, y = 0;
   float radius = 50;
   float speed = 3;
   float direction_deg = 0;
@@ -43,11 +59,11 @@ constexpr auto parameter_table(const WindFeature*) {
   using P = WindFeature;
   return std::make_tuple(
       parameter("kind", &P::kind, wind_feature_kinds, "What the feature is."),
-      parameter("x", &P::x, -1e6, 1e6, "m", "Centre, in the terrain's frame."),
-      parameter("y", &P::y, -1e6, 1e6, "m", "Centre, in the terrain's frame."),
+      parameter("x", &P::x, -1e9, 1e9, "m", "Centre, in the terrain's frame."),
+      parameter("y", &P::y, -1e9, 1e9, "m", "Centre, in the terrain's frame."),
       parameter("radius", &P::radius, 0.1, 1e5, "m", "Radius of a vortex or patch; half width of a jet."),
       parameter("speed", &P::speed, -100, 100, "m/s",
-                "Greatest speed it adds; of turbulence about the root mean square."),
+                "Greatest speed it adds; of turbulence the root mean square in its middle."),
       parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
                 "Where a jet blows to, counter-clockwise from +x."),
       parameter("length", &P::length, 0.1, 1e5, "m", "Half length of a jet."),
@@ -60,18 +76,35 @@ static_assert(table_is_complete<WindFeature>());
 
 namespace wind_features {
 
-/// A feature prepared on the host: its position relative to the grid's south-west corner, its direction as a
-/// unit vector.
-struct Prepared {
-  WindFeature feature;
-  float cos = 1, sin = 0;
+/// An axis: cells of the noise per metre, and after how many cells it repeats (0: never).
+struct FeatureAxis {
+  float per_metre = 1;
+  int period = 0;
+  float fidelity = 1;  ///< β
 };
 
-/// `perturbation_x`, `perturbation_y` [m/s] and the scratch `stream` [m²/s]: one float a cell. `time`:
-/// simulated time [s], which drives turbulence.
+/// A feature prepared on the host.
+struct Prepared {
+  WindFeature feature;
+  float x = 0, y = 0;            ///< centre, from the grid's south-west corner [m]
+  wind::Vector direction{1, 0};  ///< unit vector
+  float amplitude = 0;           ///< of the stream function without its lengths [m/s]
+  FeatureAxis axis_x, axis_y;
+  std::uint32_t life = 0;   ///< whole life times since the start, modulo 2³²
+  float share_of_life = 0;  ///< and the rest, 0 … 1
+};
+
+/// `origin_x`, `origin_y`: the grid's south-west corner in the terrain's frame [m]; `direction`: unit vector
+/// of direction_deg; `time`: simulated time [s].
+Prepared prepare(const WindFeature& feature, wind::Vector direction, const Grid& grid, double origin_x,
+                 double origin_y, double time);
+/// Goes on to another time.
+void set_time(Prepared& feature, double time);
+
+/// `perturbation_x`, `perturbation_y` [m/s] and the scratch `stream` [m²/s]: one float a cell.
 template <class E>
-void step(E& exec, const Grid& grid, const Buffer<Prepared>& features, float time, float* stream,
-          float* perturbation_x, float* perturbation_y);
+void step(E& exec, const Grid& grid, const Buffer<Prepared>& features, float* stream, float* perturbation_x,
+          float* perturbation_y);
 
 }  // namespace wind_features
 }  // namespace desert_sim

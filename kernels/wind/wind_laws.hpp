@@ -19,53 +19,80 @@
 
 namespace desert_sim::wind {
 
-/// Laws of the coarse grid in the order in which they run: box filter, FFT, gradients, inverse FFT, warped
-/// wind, FFT, correction of the projection, inverse FFT.
+/// Laws of the coarse grid in the order in which they run: box filter, FFT, response of the terrain, inverse
+/// FFT, warped wind, FFT, projection, inverse FFT, mean.
 struct CoarseLaws {
   CoarsenColumns columns;
-  SmoothedGradients gradients;  ///< without warping for no radius
+  TerrainResponse response;  ///< without warping for no radius
   WarpWind warp;
-  ProjectionCorrection correct;
+  Projection project;
+  MeanWind mean;
   bool projected;
 };
 
+/// Whether the speed-up is a response of the terrain's transform: that of jackson_hunt lives in the projected
+/// flux.
+inline bool has_response(const WindParameters& p) {
+  return p.speedup_law == SpeedUpLaw::jackson_hunt && p.projection && p.speedup_response > 0.0f;
+}
+/// Whether anything is computed on the coarse grid.
+inline bool has_coarse_fields(const WindParameters& p) { return p.warping || p.projection; }
+/// Fields of the terrain's response.
+inline int response_fields(const WindParameters& p) {
+  return (p.warping ? p.radii.count : 0) + (has_response(p) ? 1 : 0);
+}
+/// The bounds of the speed-up, and how it grows with height, if it does.
+inline SpeedUp speed_up(const WindParameters& p) {
+  if (has_response(p)) return {0, p.response_lowest, p.speedup_highest};
+  const bool by_height = p.speedup_law == SpeedUpLaw::venturi || !p.projection;
+  return {by_height ? p.speedup : 0.0f, p.speedup_lowest, p.speedup_highest};
+}
+
 inline CoarseLaws coarse_laws(const TerrainView& t, const WindParameters& p, Vector above, float speed_above,
-                              const SpeedUp& speed_up, const Workspace& work) {
+                              const Workspace& work) {
   const CoarseGrid& coarse = work.coarse;
   Complex* const spectrum = work.spectrum.data();
+  const FlowTransfer *const flow_x = work.flow_x.data(), *const flow_y = work.flow_y.data();
   const int radius_count = p.warping ? p.radii.count : 0;
-  CoarseLaws laws{{coarse, work.row_means.data(), t.quantum, work.rise.data(), spectrum},
-                  {coarse, radius_count, spectrum, {}, {}, work.gradients.data()},
-                  {coarse,
-                   work.rise.data(),
-                   above,
-                   speed_above,
-                   speed_up,
-                   radius_count,
-                   {},
-                   {},
-                   p.gradient_scale,
-                   work.gradients.data(),
-                   work.warped_wind.data(),
-                   spectrum},
-                  {coarse, spectrum, 1.0f / static_cast<float>(coarse.values()), work.correction.data()},
-                  p.projection};
+  const bool by_response = has_response(p);
+  CoarseLaws laws{};
+  laws.columns = {coarse, work.row_means.data(), t.quantum, work.rise.data(), spectrum};
+  laws.response = {coarse, radius_count, 0.0f, spectrum, {}, {}, flow_x, flow_y, work.responses.data()};
+  if (by_response) laws.response.response = p.speedup_response / coarse.fine.cell_size;
+  laws.warp.coarse = coarse;
+  laws.warp.rise = work.rise.data();
+  laws.warp.above = above;
+  laws.warp.speed_above = speed_above;
+  laws.warp.speed_up = speed_up(p);
+  laws.warp.by_response = by_response;
+  laws.warp.radius_count = radius_count;
+  laws.warp.gradient_scale = p.gradient_scale;
+  laws.warp.responses = work.responses.data();
+  laws.warp.warped = work.warped.data();
+  laws.warp.factors = work.rise.data();
+  laws.warp.unprojected = spectrum;
   for (int r = 0; r < radius_count; ++r) {
-    laws.gradients.along_x[r] = work.along_x[r].data();
-    laws.gradients.along_y[r] = work.along_y[r].data();
+    laws.response.along_x[r] = work.along_x[r].data();
+    laws.response.along_y[r] = work.along_y[r].data();
     laws.warp.weights[r] = p.weights.values[r];
     laws.warp.deflections[r] = p.deflections.values[r];
   }
+  laws.project = {coarse, spectrum, 1.0f / static_cast<float>(coarse.values()),
+                  flow_x, flow_y,   work.responses.data()};
+  laws.mean = {coarse, work.rise.data(), work.warped.data(), work.responses.data(),
+               by_response ? work.mean_sums.data() : nullptr};
+  laws.projected = p.projection;
   return laws;
 }
 
 /// Lines that a thread block of transform_by_lines() transforms at a time.
 constexpr int lines_per_block = 2;
 
-/// Shared memory of such a block [bytes]: two buffers for each line of each radius, between which the
+/// Shared memory of such a block [bytes]: two buffers for each line of each response, between which the
 /// transform alternates, and the roots of unity of both axes.
-inline std::size_t bytes_for_lines(const CoarseGrid& c, int radius_count) {
-  const int longest = c.width > c.height ? c.width : c.height, fields = radius_count > 1 ? radius_count : 1;
+inline std::size_t bytes_for_lines(const CoarseGrid& c, int response_fields) {
+  const int longest = c.width > c.height ? c.width : c.height,
+            fields = response_fields > 1 ? response_fields : 1;
   return sizeof(Complex) *
          static_cast<std::size_t>(2 * longest * lines_per_block * fields + c.width + c.height);
 }

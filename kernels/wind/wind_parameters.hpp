@@ -5,7 +5,14 @@
 
 namespace desert_sim {
 
+/// How the terrain speeds up the wind.
+enum class SpeedUpLaw : int { jackson_hunt, venturi };
+constexpr const char* speedup_law_names[] = {"jackson_hunt", "venturi"};
+
 struct WindParameters {
+  SpeedUpLaw speedup_law = SpeedUpLaw::jackson_hunt;
+  float speedup_response = 2.13f;
+  float response_lowest = 0.8f;
   float speedup = 0.005f;
   float speedup_lowest = 0.5f;
   float speedup_highest = 3.0f;
@@ -21,9 +28,16 @@ struct WindParameters {
 constexpr auto parameter_table(const WindParameters*) {
   using P = WindParameters;
   return std::make_tuple(
+      parameter(
+          "speedup_law", &P::speedup_law, speedup_law_names,
+          "jackson_hunt: crests are faster by 2 H/L; venturi, and always without projection: by height."),
+      parameter("speedup_response", &P::speedup_response, 0, 4, "1",
+                "Speed-up of jackson_hunt over that of potential flow; 2.13 gives 2 H/L at a ridge's crest."),
+      parameter("response_lowest", &P::response_lowest, 0.05, 1, "1",
+                "Least factor of jackson_hunt; in hollows slower air is left to the wind shadow."),
       parameter("speedup", &P::speedup, 0, 1, "1/m",
-                "Speed-up of the wind per metre above the lowest ground (Venturi)."),
-      parameter("speedup_lowest", &P::speedup_lowest, 0, 1, "1", "Least factor of the speed-up."),
+                "Speed-up of venturi per metre above the low ground (the 1st percentile at load)."),
+      parameter("speedup_lowest", &P::speedup_lowest, 0, 1, "1", "Least factor of venturi."),
       parameter("speedup_highest", &P::speedup_highest, 1, 10, "1", "Greatest factor of the speed-up."),
       parameter("warping", &P::warping, "Whether the terrain deflects the wind."),
       parameter("radii", &P::radii, 1, 5000, "m",
@@ -32,7 +46,8 @@ constexpr auto parameter_table(const WindParameters*) {
       parameter("deflections", &P::deflections, 0, 1000, "1", "Strength of deflection of each radius."),
       parameter("gradient_scale", &P::gradient_scale, 0, 10, "1",
                 "Scale of the smoothed terrains' gradients; small values let wind reach obstacles."),
-      parameter("projection", &P::projection, "Whether the wind is made free of divergence."),
+      parameter("projection", &P::projection,
+                "Whether the flux of air over the ground is made free of divergence."),
       parameter("coarsening", &P::coarsening, 0, 64, "cells",
                 "Cells of the terrain per cell of the FFT grid; 0 chooses a quarter of the smallest sigma."));
 }

@@ -62,6 +62,20 @@ void check_wind_segments(WindRegimeKind kind, const std::vector<WindSegment>& se
     errors.add(key, "the probabilities of a rose must not all be 0");
 }
 
+WindRegime WindRegime::with(const WindRegimeParameters& changed, double time) const {
+  WindRegime next = *this;
+  static_cast<WindRegimeParameters&>(next) = changed;
+  const bool constant = changed.regime == WindRegimeKind::constant;
+  const bool turns = changed.direction_deg != direction_deg || changed.speed != speed || changed.ramp != ramp;
+  if (changed.regime != regime || (constant && turns)) {
+    next.initial_wind = at(time);
+    next.start_time = time;
+  } else if (changed.hold_time != hold_time) {
+    next.start_time = time - (time - start_time) / hold_time * changed.hold_time;
+  }
+  return next;
+}
+
 wind::Vector WindRegime::at(double time) const {
   const double elapsed = std::max(0.0, time - start_time);
   if (regime == WindRegimeKind::constant)

@@ -77,11 +77,15 @@ void check_wind_segments(WindRegimeKind kind, const std::vector<WindSegment>& se
 /// A wind regime with its segments and the state from which it began.
 struct WindRegime : WindRegimeParameters {
   std::vector<WindSegment> segments{};  ///< segments of a timeline, or directions of a rose
-  double start_time = 0;                ///< simulated time at which it began [s]
-  wind::Vector initial_wind{};          ///< wind at start_time, from which the first ramp starts
+  double start_time = 0;        ///< simulated time at which it began, or would have with its hold_time [s]
+  wind::Vector initial_wind{};  ///< wind at start_time, from which the first ramp starts
 
   /// The wind at simulated time `time` [s]. A timeline that does not repeat holds its last segment.
   wind::Vector at(double time) const;
+  /// The regime with other parameters from `time` [s] on. A timeline or rose stays where it is in its course;
+  /// its parameters may change at every step. A constant wind turns from the present one if its direction,
+  /// speed or ramp has changed.
+  WindRegime with(const WindRegimeParameters& changed, double time) const;
 };
 
 /// Unit vector of a direction, exact for multiples of 90 degrees.

@@ -142,9 +142,9 @@ WindRegime read_wind(const CheckpointHeader& header, const YAML::Node& node, con
   const WindRegime wind = read_regime(node, path + ": wind");
   ValidationErrors errors(path + ": wind");
   const double time = static_cast<double>(header.numbers.steps) * header.scenario.run.time_step;
-  if (!(wind.start_time >= 0 && wind.start_time <= time))
-    errors.add("start_time",
-               "= " + std::to_string(wind.start_time) + " is not in [0, " + std::to_string(time) + "] s");
+  if (!(wind.start_time >= -1e30 && wind.start_time <= time))
+    errors.add("start_time", "= " + std::to_string(wind.start_time) + " is not in [-1e+30, " +
+                                 std::to_string(time) + "] s");
   constexpr float fastest = 101;  // a speed of 100 m/s, with what rounding may add
   for (const float v : {wind.initial_wind.x, wind.initial_wind.y})
     if (!(std::abs(v) <= fastest))

@@ -55,9 +55,11 @@ void SimulationState::set_plants(const std::vector<std::uint32_t>& words) {
 
 void SimulationState::begin_balance() {
   with_backend(exec(), [this](auto& e) { surface::fill_elevation(e, terrain.view()); });
-  wind_reference = wall_height;
-  for (std::uint32_t word : terrain.raw_words(Layer::elevation))
-    wind_reference = std::min(wind_reference, static_cast<Quanta>(word));
+  std::vector<Quanta> surface;
+  for (std::uint32_t word : terrain.raw_words(Layer::elevation)) surface.push_back(static_cast<Quanta>(word));
+  const auto percentile = surface.begin() + static_cast<std::ptrdiff_t>((surface.size() - 1) / 100);
+  std::nth_element(surface.begin(), percentile, surface.end());
+  wind_reference = *percentile;
   for (int m = 0; m < material_count; ++m)
     initial[static_cast<std::size_t>(m)] = material_now(static_cast<Material>(m));
 }

@@ -56,8 +56,8 @@ struct SimulationState {
   /// more than there is room for.
   void set_plants(const std::vector<std::uint32_t>& words);
 
-  /// Takes the material that the terrain holds now as what it began with, and its lowest surface as the
-  /// reference of the wind's speed-up.
+  /// Takes the material that the terrain holds now as what it began with, and the 1st percentile of its
+  /// surface as the reference of the wind's speed-up.
   void begin_balance();
   /// What is booked in and out of each material [quanta]: [2 · material] in, [2 · material + 1] out.
   std::vector<long long> read_ledger() const;
@@ -74,7 +74,7 @@ struct SimulationState {
   plants::Workspace plants;  ///< empty where vegetation is off
   WindRegime wind_regime;
   std::uint64_t steps = 0;
-  Quanta wind_reference = 0;               ///< lowest solid surface at load
+  Quanta wind_reference = 0;               ///< 1st percentile of the solid surface at load
   bool bedrock_loose = false;              ///< bedrock was edited and has not come to rest since
   bool soil_loose = false;                 ///< soil, or bedrock below it, was edited and has not come to rest
   std::size_t next_timeline_entry = 0;     ///< of scenario.timeline

@@ -15,6 +15,7 @@ class WindLaw : public test::OnBackend {
   static WindParameters plain() {
     WindParameters p;
     p.warping = p.projection = false;
+    p.speedup_law = SpeedUpLaw::venturi;
     return p;
   }
 };
@@ -33,6 +34,21 @@ TEST_P(WindLaw, SpeedsUpByHeightAboveTheReferenceWithinItsLimits) {
   EXPECT_NEAR(t.at(Layer::wind_x, 3, 0), 3 * 1.5, 1e-5);
 }
 
+/// The reference of the speed-up is the 1st percentile of the surface: one pit of 50 m made the wind over the
+/// plain around it faster by a quarter when it was the lowest cell.
+TEST_P(WindLaw, OnePitDoesNotMoveTheReferenceOfTheSpeedUp) {
+  for (const char* pit : {"",
+                          ", column: {layer: bedrock, merge: add, x: 7, y: 9, size_x: 1, size_y: 1, "
+                          "height: -50}"}) {
+    auto s =
+        simulation(std::string("grid: {width: 40, height: 30}\n"
+                               "terrain: [uniform: {layer: bedrock, value: 60}") +
+                   pit + "]\nwind: {speed: 4, speedup_law: venturi, warping: false, projection: false}\n");
+    test::run(*s, 1);
+    EXPECT_EQ(s->terrain().values(Layer::wind_x)[0], 4) << pit;
+  }
+}
+
 /// Uniform gradient: a ramp, read in the middle of an open grid far from its edges.
 struct Ramp {
   static WindParameters one_radius() {
@@ -46,6 +62,7 @@ struct Ramp {
   Ramp(Exec& exec, double slope_x, double slope_y, WindParameters p, wind::Vector above) {
     t = std::make_unique<test::BenchTerrain>(exec, 96, 96, 1, false);
     t->set(Layer::bedrock, [&](int x, int y) { return slope_x * (x - 48) + slope_y * (y - 48); });
+    p.speedup_law = SpeedUpLaw::venturi;
     p.speedup = 0;
     p.projection = false;
     p.warping = true;

@@ -121,5 +121,45 @@ TEST(WindRegime, RoseHoldsADirectionAndDependsOnItsSeed) {
   EXPECT_GT(different, 20);
 }
 
+/// hold_time changes in fifty stairs, as a ramp does it. A rose began anew at every stair and so kept its first
+/// direction until the ramp was over.
+TEST(WindRegime, RoseAndTimelineGoOnWhileTheirParametersChange) {
+  WindRegime r = rose(3);
+  WindRegimeParameters p = r;
+  int draws = 0;
+  for (double time = 0; time < 200; time += 4) {
+    p.hold_time = static_cast<float>(5 + time / 100);
+    const wind::Vector before = r.at(time);
+    r = r.with(p, time);
+    EXPECT_EQ(r.at(time).x, before.x) << time;
+    EXPECT_EQ(r.at(time).y, before.y) << time;
+    draws += r.at(time + 4).x != before.x || r.at(time + 4).y != before.y;
+  }
+  EXPECT_GT(draws, 12) << "the wind of a rose";
+
+  WindRegime t = timeline(true);
+  for (double time = 0; time < 100; time += 1.5) {
+    WindRegimeParameters changed = t;
+    changed.speed = static_cast<float>(time);  // of a constant wind, which this is not
+    t = t.with(changed, time);
+    const wind::Vector expected = timeline(true).at(time), now = t.at(time);
+    expect_wind(now, static_cast<double>(expected.x), static_cast<double>(expected.y));
+  }
+}
+
+TEST(WindRegime, ConstantWindTurnsFromThePresentOneOnlyIfItChanges) {
+  WindRegime r;
+  r.ramp = 10;
+  r.speed = 6;
+  WindRegimeParameters p = r;
+  p.repeat = false;
+  r = r.with(p, 5);
+  expect_wind(r.at(10), 6, 0);
+  p.speed = 2;
+  r = r.with(p, 5);
+  expect_wind(r.at(5), 3, 0);
+  expect_wind(r.at(15), 2, 0);
+}
+
 }  // namespace
 }  // namespace desert_sim

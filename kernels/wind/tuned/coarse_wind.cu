@@ -8,13 +8,13 @@
 // clang-format off
 ///      lines                       from memory        in shared memory, → is a transform        to memory
 ///   1  columns x, x + 1            means of rows      rise →                                    spectrum
-///   2  rows j, j + 1               spectrum           → gradients of each radius →              gradients
-///   3  columns x, x + 1            gradients          → warped wind, its deviation →            spectrum
-///   4  rows j, −j                  spectrum           → projection →                            correction
-///   5  columns x, x + 1            correction         →                                         correction
+///   2  rows j, j + 1               spectrum           → responses of the terrain →              responses
+///   3  columns x, x + 1            responses          → warped wind, its flux →                 spectrum
+///   4  rows j, −j                  spectrum           → projection →                            flux
+///   5  columns x, x + 1            flux               →                                         flux, sums
 // clang-format on
 ///
-/// Without warping stages 1 and 2 are skipped, and stage 3 reads the means of rows. In inverse transforms
+/// Without responses stages 1 and 2 are skipped, and stage 3 reads the means of rows. In inverse transforms
 /// real and imaginary parts of the values are exchanged (LineTransform).
 
 #include <cooperative_groups.h>
@@ -47,9 +47,9 @@ struct Arguments {
   Axis x, y;
 
   __host__ __device__ int longest() const { return max(laws.warp.coarse.width, laws.warp.coarse.height); }
-  __host__ __device__ int radii() const { return laws.gradients.radius_count; }
-  /// Lines that a thread block holds in shared memory: those of every radius, if there are any.
-  __host__ __device__ int lines() const { return lines_per_block * max(1, radii()); }
+  __host__ __device__ int responses() const { return laws.response.fields(); }
+  /// Lines that a thread block holds in shared memory: those of every response, if there are any.
+  __host__ __device__ int lines() const { return lines_per_block * max(1, responses()); }
 };
 
 /// Two buffers for each line of a block, between which its transform alternates, followed by the roots of
@@ -112,7 +112,7 @@ struct Block {
 };
 
 /// The stages of the table above.
-enum Stage { rises, slopes, warping, projecting, correction, stage_count };
+enum Stage { rises, slopes, warping, projecting, fluxes, stage_count };
 
 /// The other line that a block processes together with line n of a stage, or −1.
 __device__ int other_line(const Block& b, int stage, int n) {
@@ -129,14 +129,14 @@ __device__ void load_lines(Block& b, int stage, int n, int other) {
   if (stage == rises) {
     b.columns(n, [&](int c, int x, int y) { b.current_value(c, y) = {laws.columns.rise_at(x, y), 0.0f}; });
   } else if (stage == warping) {
-    for (int r = 0; r < b.s.radii(); ++r)
+    for (int r = 0; r < b.s.responses(); ++r)
       b.columns(n, [&](int c, int x, int y) {
         b.current_value(lines_per_block * r + c, y) =
-            laws.gradients.out[r * values + y * width + b.coarse.mirrored_column(x)];
+            laws.response.out[r * values + y * width + b.coarse.mirrored_column(x)];
       });
-    if (b.s.radii() == 0) b.columns(n, [&](int, int x, int y) { laws.columns.rise_at(x, y); });
-  } else if (stage == correction) {
-    b.columns(n, [&](int c, int x, int y) { b.current_value(c, y) = laws.correct.out[y * width + x]; });
+    if (b.s.responses() == 0) b.columns(n, [&](int, int x, int y) { laws.columns.rise_at(x, y); });
+  } else if (stage == fluxes) {
+    b.columns(n, [&](int c, int x, int y) { b.current_value(c, y) = laws.project.out[y * width + x]; });
   } else {
     b.rows(n, other, [&](int c, int i, int row) { b.current_value(c, i) = spectrum[row * width + i]; });
   }
@@ -145,12 +145,12 @@ __device__ void load_lines(Block& b, int stage, int n, int other) {
 /// Applies the law of a stage to its transformed lines, before these are transformed once more.
 __device__ void apply_law(Block& b, int stage, int n, int other) {
   const CoarseLaws& laws = b.s.laws;
-  const int width = b.width, radii = b.s.radii();
+  const int width = b.width, responses = b.s.responses();
   if (stage == slopes) {
     b.rows(n, other, [&](int c, int i, int row) {
       const Complex h = b.current_value(c, i);
-      for (int r = 0; r < radii; ++r)
-        b.other_buffer_value(lines_per_block * r + c, i) = swap_re_im(laws.gradients.of_mode(r, i, row, h));
+      for (int r = 0; r < responses; ++r)
+        b.other_buffer_value(lines_per_block * r + c, i) = swap_re_im(laws.response.of_mode(r, i, row, h));
     });
   } else if (stage == warping) {
     b.columns(n, [&](int c, int x, int y) {
@@ -161,25 +161,43 @@ __device__ void apply_law(Block& b, int stage, int n, int other) {
   } else {
     b.rows(n, other, [&](int c, int i, int row) {
       const Complex mirror = b.current_value(n > 0 ? 1 - c : c, i == 0 ? 0 : width - i);
-      b.other_buffer_value(c, i) = swap_re_im(laws.correct.of_mode(i, row, b.current_value(c, i), mirror));
+      b.other_buffer_value(c, i) = swap_re_im(laws.project.of_mode(i, row, b.current_value(c, i), mirror));
     });
   }
   b.buffer_index = 1 - b.buffer_index;
 }
 
+/// Stores two columns of the flux, and books what they add to the sums of the mean.
+__device__ void store_flux(const Block& b, int n) {
+  const MeanWind& mean = b.s.laws.mean;
+  MeanWind::Sums sums;
+  b.columns(n, [&](int c, int x, int y) {
+    const Complex flux = swap_re_im(b.current_value(c, y));
+    b.s.laws.project.out[y * b.width + x] = flux;
+    if (mean.sums && x < b.coarse.columns && y < b.coarse.rows) mean.add(sums, y * b.width + x, flux);
+  });
+  if (!mean.sums) return;
+  for (int lanes = 16; lanes > 0; lanes /= 2) {
+    sums.x += __shfl_down_sync(0xffffffffu, sums.x, lanes);
+    sums.y += __shfl_down_sync(0xffffffffu, sums.y, lanes);
+    sums.factor += __shfl_down_sync(0xffffffffu, sums.factor, lanes);
+  }
+  if (threadIdx.x % 32 == 0) mean.book(sums);
+}
+
 __device__ void store(const Block& b, int stage, int n, int other) {
   const CoarseLaws& laws = b.s.laws;
-  Complex *const spectrum = laws.columns.spectrum, *const out = laws.correct.out;
+  Complex *const spectrum = laws.columns.spectrum, *const out = laws.project.out;
   const int width = b.width, values = b.coarse.values();
   if (stage == slopes) {
-    for (int r = 0; r < b.s.radii(); ++r)
+    for (int r = 0; r < b.s.responses(); ++r)
       b.rows(n, other, [&](int c, int i, int row) {
-        laws.gradients.out[r * values + row * width + i] = b.current_value(lines_per_block * r + c, i);
+        laws.response.out[r * values + row * width + i] = b.current_value(lines_per_block * r + c, i);
       });
   } else if (stage == projecting) {
     b.rows(n, other, [&](int c, int i, int row) { out[row * width + i] = b.current_value(c, i); });
-  } else if (stage == correction) {
-    b.columns(n, [&](int c, int x, int y) { out[y * width + x] = swap_re_im(b.current_value(c, y)); });
+  } else if (stage == fluxes) {
+    store_flux(b, n);
   } else {
     b.columns(n, [&](int c, int x, int y) { spectrum[y * width + x] = b.current_value(c, y); });
   }
@@ -193,10 +211,11 @@ __device__ void store(const Block& b, int stage, int n, int other) {
 
 __global__ void __launch_bounds__(threads, 1) coarse_wind_kernel(DESERT_GRID_CONSTANT const Arguments s) {
   Block b(s);
-  const bool has_warping = s.radii() > 0, has_projection = s.laws.projected;
-  for (int stage = has_warping ? rises : warping; stage < (has_projection ? stage_count : projecting);
+  const bool has_responses = s.responses() > 0, has_projection = s.laws.projected;
+  if (s.laws.mean.sums && blockIdx.x == 0 && threadIdx.x < 3) s.laws.mean.sums[threadIdx.x] = 0;
+  for (int stage = has_responses ? rises : warping; stage < (has_projection ? stage_count : projecting);
        ++stage) {
-    const bool along_y = stage == rises || stage == warping || stage == correction;
+    const bool along_y = stage == rises || stage == warping || stage == fluxes;
     const int lines = along_y ? b.width : stage == slopes ? b.height : b.height / 2 + 1;
     // In the stage of the projection each pair of a row and its mirror is visited once.
     const int step = along_y || stage == slopes ? lines_per_block : 1;
@@ -205,15 +224,15 @@ __global__ void __launch_bounds__(threads, 1) coarse_wind_kernel(DESERT_GRID_CON
       if (stage == projecting && other == n) continue;  // it is processed together with row 0
       __syncthreads();
       load_lines(b, stage, n, other);
-      const int from_memory = stage == warping ? s.radii() : 1;
-      const bool twice = stage != rises && stage != correction;
+      const int from_memory = stage == warping ? s.responses() : 1;
+      const bool twice = stage != rises && stage != fluxes;
       for (int time = from_memory > 0 ? 0 : 1; time < (twice ? 2 : 1); ++time) {
         if (time == 1) {
           __syncthreads();
           apply_law(b, stage, n, other);
           if (stage == warping && !has_projection) break;
         }
-        const int of_each = time == 0 ? from_memory : stage == slopes ? s.radii() : 1;
+        const int of_each = time == 0 ? from_memory : stage == slopes ? s.responses() : 1;
         b.transform(along_y ? s.y : s.x, along_y ? b.width : 0, lines_per_block * of_each);
       }
       if (stage != warping || has_projection) store(b, stage, n, other);
@@ -230,7 +249,7 @@ void transform_by_lines(CudaExec& exec, const CoarseLaws& laws, Workspace& work)
   const CoarseGrid& coarse = work.coarse;
   Arguments kernel_arguments{
       laws, {work.lines_along_x, work.roots_x.data()}, {work.lines_along_y, work.roots_y.data()}};
-  const std::size_t bytes = bytes_for_lines(coarse, laws.gradients.radius_count);
+  const std::size_t bytes = bytes_for_lines(coarse, laws.response.fields());
   check_cuda(cudaFuncSetAttribute(coarse_wind_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
                                   static_cast<int>(bytes)),
              "asking for shared memory");

@@ -86,8 +86,8 @@ command::EditWind wind_edit_command(const EditWindRequest& request, const Terrai
   require_finite(request.center, "center");
   const tf2::Transform transform = frames.to_terrain(request.header);
   const tf2::Vector3 center = transform * tf2::Vector3(request.center.x, request.center.y, request.center.z);
-  feature.x = to_float(center.x());
-  feature.y = to_float(center.y());
+  feature.x = center.x();
+  feature.y = center.y();
   feature.radius = to_float(request.radius);
   feature.speed = to_float(request.speed);
   // Fields that do not belong to the kind keep their defaults, whatever the request says.

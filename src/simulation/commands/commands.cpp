@@ -5,7 +5,6 @@
 #include "src/core/error.hpp"
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/range_checks.hpp"
-#include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/commands/plant_edit.hpp"
 #include "src/simulation/commands/terrain_edit.hpp"
 #include "src/simulation/pipeline/memory.hpp"
@@ -49,15 +48,7 @@ void Commands::set_parameters(const std::vector<std::string>& settings) {
     pipeline_.prepare();
     throw;
   }
-  const auto regime = [](const Scenario& s) {
-    YAML::Emitter out;
-    yaml::set_full_precision(out);
-    out << YAML::BeginMap;
-    yaml::emit_parameters(out, s.wind_regime);
-    return std::string(out.c_str());
-  };
-  if (regime(changed) != regime(present))
-    state_.set_wind_regime({changed.wind_regime, changed.wind_segments});
+  state_.wind_regime = state_.wind_regime.with(changed.wind_regime, state_.time());
 }
 
 CommandResult Commands::apply(const command::SetWind& command) {

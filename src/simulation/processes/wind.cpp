@@ -18,7 +18,8 @@ namespace {
 /// The wind's coarse grid, and its local features on the device.
 struct WindWork {
   wind::Workspace coarse;
-  Buffer<wind_features::Prepared> features;
+  std::vector<wind_features::Prepared> prepared;
+  Buffer<wind_features::Prepared> features;      ///< `prepared` on the device
   Buffer<float> perturbation_x, perturbation_y;  ///< of the features [m/s]; empty where there are none
 
   std::size_t bytes() const {
@@ -27,28 +28,31 @@ struct WindWork {
 
   void set_features(const SimulationState& state) {
     const Scenario& s = state.scenario;
+    prepared.clear();
     if (s.wind_features.empty()) {
       features = {};
       for (Buffer<float>* buffer : {&perturbation_x, &perturbation_y}) *buffer = {};
       return;
     }
-    std::vector<wind_features::Prepared> prepared;
-    for (const WindFeature& feature : s.wind_features) {
-      const wind::Vector direction = unit_vector(feature.direction_deg);
-      prepared.push_back({feature, direction.x, direction.y});
-      prepared.back().feature.x -= static_cast<float>(s.grid.origin_x);
-      prepared.back().feature.y -= static_cast<float>(s.grid.origin_y);
-    }
+    for (const WindFeature& feature : s.wind_features)
+      prepared.push_back(wind_features::prepare(feature, unit_vector(feature.direction_deg),
+                                                state.terrain.grid(), s.grid.origin_x, s.grid.origin_y,
+                                                state.time()));
     features = Buffer<wind_features::Prepared>(state.exec(), prepared.size());
     features.upload(prepared);
     if (perturbation_x) return;
     for (Buffer<float>* buffer : {&perturbation_x, &perturbation_y})
       *buffer = Buffer<float>(state.exec(), static_cast<std::size_t>(state.terrain.grid().cells()));
   }
+  void set_time(double time) {
+    for (wind_features::Prepared& feature : prepared) wind_features::set_time(feature, time);
+    features.upload(prepared);
+  }
 };
 
 WindWork make_wind_work(const SimulationState& state) {
-  WindWork work{wind::make_workspace(state.exec(), state.terrain.grid(), state.scenario.wind), {}, {}, {}};
+  WindWork work{
+      wind::make_workspace(state.exec(), state.terrain.grid(), state.scenario.wind), {}, {}, {}, {}};
   work.set_features(state);
   return work;
 }
@@ -56,11 +60,12 @@ WindWork make_wind_work(const SimulationState& state) {
 void update_wind(StepContext& c, ProcessWorkspace* workspace) {
   WindWork& work = workspace_as<WindWork>(workspace);
   const SimulationState& s = c.state;
+  if (work.features) work.set_time(s.time());
   with_backend(c.exec(), [&](auto& e) {
     if (c.fields.heights_stale) surface::compute_heights(e, c.terrain, c.fields.heights);
     if (work.features)
-      wind_features::step(e, c.terrain.grid, work.features, static_cast<float>(s.time()),
-                          c.fields.repose.data(), work.perturbation_x.data(), work.perturbation_y.data());
+      wind_features::step(e, c.terrain.grid, work.features, c.fields.repose.data(),
+                          work.perturbation_x.data(), work.perturbation_y.data());
     wind::step(e, c.terrain, s.scenario.wind, s.wind_above(), c.fields.heights, s.wind_reference,
                work.perturbation_x.data(), work.perturbation_y.data(), work.coarse);
   });
