@@ -44,41 +44,38 @@ struct Surface {
   DESERT_HD bool solid(int i) const { return value_or_zero(obstacle, i) > 0.0f; }
 };
 
-struct SmoothingFlux {
+/// `inside`: for cells that have all their neighbours.
+template <bool inside>
+struct Smooth {
   Surface s;
-  float strength;  ///< k_r Δt / (sub-steps · l)
+  float strength;  ///< k Δt / l
   Quanta* change;
 
-  /// Sand that i gives to its neighbour j [quanta], negative if it receives. The magnitude is the same
-  /// whichever of the two cells computes it.
-  DESERT_HD Quanta flux(int i, int j, int k) const {
-    const Quanta drop = s.height(i) - s.height(j);
-    const float steep = strength * static_cast<float>(drop < 0 ? -drop : drop) / Neighbours::distance(k) *
-                        0.5f * (s.reptation_strength[i] + s.reptation_strength[j]) * 0.5f *
-                        (s.speed(i) + s.speed(j));
-    const Quanta available = s.sand[drop > 0 ? i : j];
-    const Quanta moved = (steep < static_cast<float>(available) ? static_cast<Quanta>(steep) : available) / 8;
+  DESERT_HD int neighbour(int x, int y) const {
+    return inside ? s.grid.index(x, y) : neighbour_index(s.grid, x, y);
+  }
+  /// Sand that cell i gives to its neighbour j at `distance` cells [quanta], negative if it receives. The
+  /// magnitude is the same whichever of the two cells computes it. `height`, r and `speed` are those of i.
+  DESERT_HD Quanta flux(int i, Quanta height, float r, float speed, int j, float distance) const {
+    const Quanta drop = height - s.height(j), donor = s.sand[drop > 0 ? i : j];
+    const float steep = fabsf(static_cast<float>(drop));
+    const float wanted =
+        strength * steep / distance * 0.5f * (r + s.reptation_strength[j]) * 0.5f * (speed + s.speed(j));
+    const Quanta moved =
+        static_cast<Quanta>(minimum(minimum(wanted, 0.5f * steep), static_cast<float>(donor)) * 0.125f);
     return drop > 0 ? moved : -moved;
   }
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = s.grid.index(x, y);
+    const Quanta height = s.height(i);
+    const float r = s.reptation_strength[i], speed = s.speed(i);
     Quanta given = 0;
-    if (!s.solid(i))
-      for (int k = 0; k < Neighbours::count; ++k) {
-        const int j = neighbour_index(s.grid, x + Neighbours::dx(k), y + Neighbours::dy(k));
-        if (j >= 0 && !s.solid(j)) given += flux(i, j, k);
-      }
-    change[i] = -given;
-  }
-};
-
-/// Diffusivity r |w|, whose maximum sets the number of sub-steps.
-struct Diffusivity {
-  Surface s;
-  DESERT_HD float operator()(int x, int y) const {
-    const int i = s.grid.index(x, y);
-    return s.reptation_strength[i] * s.speed(i);
+    unrolled<Neighbours::count>([&](auto k) DESERT_INLINE {
+      const int j = neighbour(x + Neighbours::dx(k), y + Neighbours::dy(k));
+      if (j >= 0 && !s.solid(j)) given += flux(i, height, r, speed, j, Neighbours::distance(k));
+    });
+    change[i] = s.solid(i) ? 0 : -given;
   }
 };
 
@@ -151,17 +148,14 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, float tim
                         t.real(Layer::wind_y),
                         t.real(Layer::obstacle)};
   const ApplyChange apply{t.grid, change, t.quanta(Layer::sand)};
-  if (p.method == ReptationMethod::smoothing) {
-    // The explicit scheme is stable while k_r Δt/l · r |w| ≤ ½: then a cell gives less than half of what
-    // would level it with its eight neighbours.
-    const float strength = p.strength * time_step / t.grid.cell_size;
-    const float diffusivity = max_cells(exec, t.grid, Diffusivity{surface});
-    const int substeps = static_cast<int>(clamp(ceilf(strength * diffusivity / 0.5f), 1.0f, 1000.0f));
-    for (int n = 0; n < substeps; ++n) {
-      for_each_cell(exec, t.grid, SmoothingFlux{surface, strength / substeps, change});
-      for_each_cell(exec, t.grid, apply);
-    }
-  } else {
+  if (const float k = smoothing_strength(p); k > 0.0f) {
+    const float strength = k * time_step / t.grid.cell_size;
+    for_each_cell(exec, t.grid,
+                  Bordered<Smooth<true>, Smooth<false>>{
+                      t.grid, 1, {surface, strength, change}, {surface, strength, change}});
+    for_each_cell(exec, t.grid, apply);
+  }
+  if (p.method == ReptationMethod::steepest) {
     exec.set_zero(change, sizeof(Quanta) * t.grid.cells());
     for_each_cell(exec, t.grid,
                   SteepestEvent{surface, t.real(Layer::vegetation), seed, tick, p.slab * time_step,
