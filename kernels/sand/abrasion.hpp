@@ -5,7 +5,7 @@
 ///   bedrock   ε = k_a Δt |w| (1 − v)(1 − p) min(a, 1 m) · (1 − ρ)
 ///   soil      ε = k_a Δt |w| (1 − v)(1 − p) min(a, 1 m) · max(1 − m/0.5, 0)
 ///
-/// w is the wind, v vegetation, p the share of sand that was deposited, a the sand that bounces [m],
+/// w is the wind, v vegetation, p the share of sand that was deposited, a the sand that bounces in a hop [m],
 /// ρ erosion_resistance, m relative moisture. Abrasion acts where the sand before the deposit is shallower
 /// than `cover` and a > 0. It is part of saltation's deposition pass. Reads bedrock, soil, sand,
 /// erosion_resistance and what that pass reads; writes bedrock, soil, sand.
@@ -39,11 +39,12 @@ struct Abrade {
   const float* resistance;
   LedgerView ledger;
 
-  /// `sand_before_deposit`: sand of cell i before the deposit; `bouncing`: sand that stays airborne over it;
+  /// `sand_before_deposit`: sand of cell i before the deposit; `bouncing`: sand that bounces there in the time
+  /// of a hop [quanta];
   /// `speed`: of the wind [m/s]; v: vegetation; m: relative moisture; p: deposited share.
-  DESERT_HD void operator()(int i, Quanta sand_before_deposit, Quanta bouncing, float speed, float v, float m,
+  DESERT_HD void operator()(int i, Quanta sand_before_deposit, float bouncing, float speed, float v, float m,
                             float p) const {
-    if (rate <= 0.0f || bouncing <= 0 || sand_before_deposit >= cover) return;
+    if (rate <= 0.0f || bouncing <= 0.0f || sand_before_deposit >= cover) return;
     const float strength = rate * speed * (1.0f - v) * (1.0f - p) * minimum(bouncing * quantum, 1.0f);
     if (soil && soil[i] > 0) {
       const Quanta worn =

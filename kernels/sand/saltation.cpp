@@ -7,20 +7,22 @@
 
 namespace desert_sim::saltation {
 
+/// One part of a step; see Hops.
 template <bool bare, class E>
-void step_where(E& exec, const TerrainView& t, const SaltationParameters& p, const ReposeParameters& repose,
-                float time_step, LedgerView ledger, Quanta* landed, const abrasion::Abrade& abrade,
-                const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law) {
-  const Inputs<bare> in(t, repose, time_step);
+void hop(E& exec, const TerrainView& t, const SaltationParameters& p, const ReposeParameters& repose,
+         float hop_share, LedgerView ledger, Quanta* landed, const abrasion::Abrade& abrade,
+         const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law) {
+  const Inputs<bare> in(t, repose, p.hop_time, hop_share);
+  const Lift<bare> lift{in, p};
   Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand);
-  const LiftAndAdvect<bare> lift{in, p, time_step / t.grid.cell_size, sand, airborne, ledger};
+  const LiftAndAdvect<bare> advect{in, lift, p.hop_time / t.grid.cell_size, sand, airborne, ledger};
   if (shadow_law)
-    for_each_cell_scatter(exec, t.grid, landed, ShadowAndLift<bare>{*shadow_law, lift});
+    for_each_cell_scatter(exec, t.grid, landed, ShadowAndLift<bare>{*shadow_law, advect});
   else
-    for_each_cell_scatter(exec, t.grid, landed, lift);
+    for_each_cell_scatter(exec, t.grid, landed, advect);
   if (!t.grid.periodic() && p.influx > 0.0f)
     for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, landed, ledger});
-  const Deposit<bare> deposit{in, p, abrade, landed, sand, airborne, impacts};
+  const Deposit<bare> deposit{in, lift, abrade, landed, sand, airborne, impacts};
   if constexpr (bare && !vectorises_rows<E>)
     if (t.grid.width % 4 == 0) {
       const DepositOfFour four{deposit};
@@ -33,7 +35,8 @@ template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
           const ReposeParameters& repose, float time_step, LedgerView ledger, Quanta* landed,
           const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law) {
-  const abrasion::Abrade abrade{a.rate * time_step,
+  const Hops hops(p, time_step);
+  const abrasion::Abrade abrade{a.rate * time_step / static_cast<float>(hops.parts),
                                 to_quanta_at_most(a.cover, t.quanta_per_metre, wall_height),
                                 t.quantum,
                                 t.quanta_per_metre,
@@ -42,10 +45,13 @@ void step(E& exec, const TerrainView& t, const SaltationParameters& p, const Abr
                                 t.quanta(Layer::sand),
                                 t.real(Layer::erosion_resistance),
                                 ledger};
-  if (is_bare(t, a))
-    step_where<true>(exec, t, p, repose, time_step, ledger, landed, abrade, impacts, shadow_law);
-  else
-    step_where<false>(exec, t, p, repose, time_step, ledger, landed, abrade, impacts, shadow_law);
+  for (int part = 0; part < hops.parts; ++part) {
+    if (is_bare(t, a))
+      hop<true>(exec, t, p, repose, hops.share, ledger, landed, abrade, impacts, shadow_law);
+    else
+      hop<false>(exec, t, p, repose, hops.share, ledger, landed, abrade, impacts, shadow_law);
+    shadow_law = nullptr;  // the first part has left it in the layer
+  }
 }
 
 template void step(Backend&, const TerrainView&, const SaltationParameters&, const AbrasionParameters&,

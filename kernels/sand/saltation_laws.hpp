@@ -13,16 +13,35 @@
 
 namespace desert_sim::saltation {
 
-/// Lifts sand, and scatters the airborne sand of a cell to the four cells around its landing point.
+/// How much sand the wind can lift from a cell in the time of a hop.
+template <bool bare>
+struct Lift {
+  Inputs<bare> in;
+  SaltationParameters p;
+
+  /// No more than `lying`. u, v: wind [m/s].
+  DESERT_HD Quanta operator()(float u, float v, float shadow, float echo, float plants, float moisture,
+                              bool flooded, Quanta lying) const {
+    const float speed_squared = u * u + v * v;
+    if (lying <= 0 || !(speed_squared > 0.0f)) return 0;
+    if (speed_squared < p.threshold_speed * p.threshold_speed) return 0;
+    const float wet = flooded ? 0.0f : dryness(moisture);
+    const float metres =
+        in.hop_time * (p.lift * (1.0f - shadow) * (1.0f - plants) * (echo > 0.0f ? 0.5f : 1.0f) * wet +
+                       (echo < 0.0f ? -echo : 0.0f));
+    return to_quanta_at_most(metres, in.quanta_per_metre, lying);
+  }
+};
+
+/// Lifts sand, and scatters what hops to the four cells around its landing point.
 template <bool bare>
 struct LiftAndAdvect {
   template <int count>
   using Parcels = BilinearParcels<count>;
   Inputs<bare> in;
-  SaltationParameters p;
-  float hop_per_speed;  ///< length of a hop over wind speed, Δt / l [cells s/m]
-  Quanta* sand;
-  const Quanta* airborne;
+  Lift<bare> lift;
+  float hop_per_speed;  ///< length of a hop over wind speed, T / l [cells s/m]
+  Quanta *sand, *airborne;
   LedgerView ledger;
 
   /// Values on which a cell's lift depends. All are loaded before the first branch, so that a GPU waits for
@@ -41,23 +60,17 @@ struct LiftAndAdvect {
   DESERT_HD Cell read(int x, int y) const {
     return read(x, y, value_or_zero(in.wind_shadow, in.grid.index(x, y)));
   }
-  DESERT_HD Quanta lifted(const Cell& c) const {
-    const float speed_squared = c.u * c.u + c.v * c.v;
-    if (c.lying <= 0 || !(speed_squared > 0.0f)) return 0;
-    if (speed_squared < p.threshold_speed * p.threshold_speed) return 0;
-    const float wet = c.flooded ? 0.0f : dryness(c.moisture);
-    const float metres =
-        in.time_step * (p.lift * (1.0f - c.shadow) * (1.0f - c.plants) * (c.echo > 0.0f ? 0.5f : 1.0f) * wet +
-                        (c.echo < 0.0f ? -c.echo : 0.0f));
-    return to_quanta_at_most(metres, in.quanta_per_metre, c.lying);
-  }
 
   template <int count>
   DESERT_HD void prepare(int x, int y, const Cell& c, BilinearParcels<count>& parcels, int n) const {
-    const Quanta lift = lifted(c);
-    sand[in.grid.index(x, y)] = c.lying - lift;
+    const Quanta lifted =
+        in.hopping(lift(c.u, c.v, c.shadow, c.echo, c.plants, c.moisture, c.flooded, c.lying));
+    const Quanta carried = in.hopping(c.carried);
+    const int i = in.grid.index(x, y);
+    sand[i] = c.lying - lifted;
+    if (in.hop_share < 1.0f) airborne[i] = c.carried - carried;
     parcels.set(n, x, y, to_fixed_point(c.u * hop_per_speed), to_fixed_point(c.v * hop_per_speed),
-                c.carried + lift);
+                carried + lifted);
   }
   template <int count>
   DESERT_HD void prepare(int x, int y, BilinearParcels<count>& parcels, int n) const {
@@ -81,9 +94,9 @@ struct Influx {
   /// Depth [m] that one edge brings to the cell which lies `cell` cells from it; `speed`: of the wind into
   /// the grid [m/s].
   DESERT_HD float over_edge(int cell, float speed) const {
-    const float l = in.grid.cell_size, hop = speed * in.time_step;
+    const float l = in.grid.cell_size, hop = speed * in.hop_time;
     if (!(hop > 0.0f)) return 0.0f;
-    return influx * in.time_step / hop * clamp((hop - cell * l) / l, 0.0f, 1.0f);
+    return influx * (in.hop_share * in.hop_time) / hop * clamp((hop - cell * l) / l, 0.0f, 1.0f);
   }
 
   DESERT_HD void operator()(int x, int y) const {
@@ -106,7 +119,7 @@ struct Influx {
 template <bool bare>
 struct Deposit {
   Inputs<bare> in;
-  SaltationParameters p;
+  Lift<bare> lift;
   abrasion::Abrade abrade;
   const Quanta* landed;
   Quanta *sand, *airborne;
@@ -117,12 +130,23 @@ struct Deposit {
   DESERT_HD float share(int i, Quanta cover, float shadow, float v, float m) const {
     const float r_e = in.echo_value(i);
     if (r_e < 0.0f || in.solid(i)) return 0.0f;
-    const bool sandy = cover > 0 && cover * in.quantum >= p.bare_depth;
-    const float bounce = sandy ? p.bounce_on_sand
-                               : (in.value_if_present(in.soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
+    const bool sandy = cover > 0 && cover * in.quantum >= lift.p.bare_depth;
+    const float bounce =
+        sandy ? lift.p.bounce_on_sand
+              : (in.value_if_present(in.soil, i) > 0 ? lift.p.bounce_on_soil : lift.p.bounce_on_rock);
     const float deposited_share = maximum((1.0f - bounce) + v * bounce, maximum(shadow, r_e));
     const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
     return clamp(deposited_share, 0.0f, 1.0f) * wet;
+  }
+
+  /// Sand of a cell that the lift leaves on the ground. `lying`: its sand after the lift, which took a share.
+  DESERT_HD Quanta covering(int i, Quanta lying, float u, float v, float shadow, float plants,
+                            float moisture) const {
+    if (in.hop_share >= 1.0f) return lying;
+    const Quanta liftable =
+        lift(u, v, shadow, in.echo_value(i), plants, moisture, in.flooded(i), wall_height);
+    const Quanta rest = lying - (liftable - in.hopping(liftable));
+    return rest > 0 ? rest : 0;
   }
 
   /// What a cell does with the sand that lands. split_landed() computes it without writing, so that all loads
@@ -137,19 +161,21 @@ struct Deposit {
                                        float v, float m) const {
     const float deposited_share = share(i, cover, shadow, v, m), depth = arriving * in.quantum;
     const Quanta stays = to_quanta_at_most(deposited_share * depth, in.quanta_per_metre, arriving);
-    const float strength = depth * (1.0f - v);
+    const float strength = depth * (1.0f - v) / in.hop_share;
     return {deposited_share, stays, arriving - stays, strength,
             impacts.angle.lowered_tangent(strength, speed, shadow)};
   }
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = in.grid.index(x, y);
-    const Quanta cover = sand[i];
-    const float v = in.plants(i), m = in.moisture(i), speed = hypotenuse(in.wind_x[i], in.wind_y[i]);
-    const DepositResult o = split_landed(i, landed[i], cover, value_or_zero(in.wind_shadow, i), speed, v, m);
-    sand[i] = cover + o.stays;
-    airborne[i] = o.bounces;
-    if (!bare) abrade(i, cover, o.bounces, speed, v, m, o.deposited_share);
+    const Quanta lying = sand[i], waiting = in.hop_share < 1.0f ? airborne[i] : 0;
+    const float v = in.plants(i), m = in.moisture(i), w_x = in.wind_x[i], w_y = in.wind_y[i];
+    const float speed = hypotenuse(w_x, w_y), shadow = value_or_zero(in.wind_shadow, i);
+    const Quanta cover = covering(i, lying, w_x, w_y, shadow, v, m);
+    const DepositResult o = split_landed(i, landed[i], cover, shadow, speed, v, m);
+    sand[i] = lying + o.stays;
+    airborne[i] = waiting + o.bounces;
+    if (!bare) abrade(i, cover, o.bounces / in.hop_share, speed, v, m, o.deposited_share);
     impacts.set(i, o.strength, o.lowered_tangent, v, in.moisture(i));
   }
 };
