@@ -83,6 +83,7 @@ struct SteepestEvent {
   Surface s;
   const float* vegetation;
   std::uint64_t seed, tick;
+  float share;  ///< of the events of 1 s that happen in a step
   float slab, quanta_per_metre;
   Quanta* change;
 
@@ -95,7 +96,7 @@ struct SteepestEvent {
     const int i = s.grid.index(x, y);
     const float probability =
         (1.0f - value_or_zero(vegetation, i)) * (1.0f - exp_negative(s.reptation_strength[i]));
-    if (s.sand[i] <= 0 || s.solid(i) || chance(i) >= probability) return;
+    if (s.sand[i] <= 0 || s.solid(i) || chance(i) >= share * probability) return;
     int first = -1, second = -1;
     float first_slope = 0.0f, second_slope = 0.0f;
     for (int k = 0; k < Neighbours::count; ++k) {
@@ -158,8 +159,8 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, float tim
   if (p.method == ReptationMethod::steepest) {
     exec.set_zero(change, sizeof(Quanta) * t.grid.cells());
     for_each_cell(exec, t.grid,
-                  SteepestEvent{surface, t.real(Layer::vegetation), seed, tick, p.slab * time_step,
-                                t.quanta_per_metre, change});
+                  SteepestEvent{surface, t.real(Layer::vegetation), seed, tick, minimum(time_step, 1.0f),
+                                p.slab * maximum(time_step, 1.0f), t.quanta_per_metre, change});
     for_each_cell(exec, t.grid, apply);
   }
 }

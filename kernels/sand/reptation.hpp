@@ -7,14 +7,14 @@
 ///   adaptive_repose   tan θ = lerp(tan θ_sand · exp(−k_r r |w| (1 − r_s)), tan θ_vegetated, v) · f(m)
 ///   smoothing         q_ij  = ⅛ min(k Δt |h_i − h_j|/(l d) · ½(r_i + r_j) · ½(|w_i| + |w_j|),
 ///                                   ½ |h_i − h_j|, s_donor)
-///   steepest          P     = (1 − v)(1 − e^(−r)),   amount = min(`slab` Δt, half the steepest drop, s)
+///   steepest          P     = (1 − v)(1 − e^(−r)),   amount = min(`slab`, half the steepest drop, s)
 ///
 /// with the factors of repose.hpp, d = 1 or √2, k_r = `strength`. `adaptive_repose` lowers the donor's angle
 /// of repose θ in the avalanche that follows; without `use_shadow` its r_s is 0. `smoothing` moves q_ij [m]
 /// from the higher to the lower of two neighbours. Its first bound keeps the explicit scheme stable however
 /// large k is: a cell gives at most half of what would level it with its eight neighbours. `steepest` is a
-/// random event of probability P in each cell, which divides the amount among the two steepest neighbours in
-/// proportion to their slopes.
+/// random event in each cell, of probability P Δt in a step of Δt ≤ 1 s (in a longer one P, with Δt times the
+/// `slab`), which divides the amount among the two steepest neighbours in proportion to their slopes.
 ///
 /// As published, `adaptive_repose` shapes dunes while a weak `smoothing` keeps sand from oscillating from
 /// cell to cell: k = `smoothing_strength` beside the other methods, and k = k_r + `smoothing_strength` with
@@ -54,7 +54,7 @@ constexpr auto parameter_table(const ReptationParameters*) {
                 "Strength of the smoothing that acts beside any method; 0 is none."),
       parameter("use_shadow", &P::use_shadow,
                 "Whether adaptive_repose spares what lies in the wind's shadow."),
-      parameter("slab", &P::slab, 0, 10, "m", "Sand that one event of `steepest` moves in 1 s."));
+      parameter("slab", &P::slab, 0, 10, "m", "Sand that one event of `steepest` moves."));
 }
 static_assert(table_is_complete<ReptationParameters>());
 

@@ -188,6 +188,27 @@ TEST_P(Reptation, SteepestHappensAsOftenAsItShould) {
   EXPECT_NEAR(static_cast<double>(moved), expected, 4 * std::sqrt(expected));
 }
 
+/// Rarer events, not smaller ones, in a shorter step: half the drop, which bounds an event, is then the same.
+/// Before, a tenth of the slab moved in each event of a step of 0.1 s.
+TEST_P(Reptation, SteepestMovesWholeSlabsAtShortSteps) {
+  ReptationParameters p = method(ReptationMethod::steepest);
+  p.slab = 0.1f;
+  long long moved = 0;
+  for (std::uint64_t tick = 0; tick < 10; ++tick) {
+    test::BenchTerrain t(exec(), 100, 2, 1, false);
+    t.set(Layer::bedrock, [](int, int y) { return y ? 0 : 5; });
+    t.set(Layer::sand, [](int, int y) { return y ? 0 : 1; });
+    t.set_strength([](int, int) { return 100; });
+    t.reptation(p, {}, 0.1f, tick);
+    for (int x = 0; x < 100; ++x) {
+      const double left = t.at(Layer::sand, x, 0);
+      EXPECT_TRUE(left == 1 || std::abs(left - 0.9) < 1e-5) << left;
+      moved += left < 1 ? 1 : 0;
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(moved), 100, 40);  // a tenth of 1000
+}
+
 DESERT_ON_EACH_BACKEND(Reptation);
 
 }  // namespace
