@@ -26,6 +26,7 @@ namespace desert_sim {
 enum class Roll : int {
   lift,
   hop,
+  hop_share,
   influx,
   deposit,
   abrasion,

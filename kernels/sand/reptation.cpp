@@ -44,49 +44,57 @@ struct Surface {
   DESERT_HD bool solid(int i) const { return value_or_zero(obstacle, i) > 0.0f; }
 };
 
-struct SmoothingFlux {
+/// `inside`: for cells that have all their neighbours.
+template <bool inside>
+struct Smooth {
   Surface s;
-  float strength;                        ///< k_r Δt / (sub-steps · l)
+  float strength;                        ///< k Δt / l
   Die pair_dice[Neighbours::count / 2];  ///< of directions k and k + 1, k even
   Quanta* change;
 
-  /// Sand that i gives to its neighbour j in direction k [quanta], negative if it receives. The magnitude is
-  /// the same whichever of the two cells computes it, because both roll the die of the same one.
-  DESERT_HD Quanta flux(int i, int j, int k) const {
-    const Quanta drop = s.height(i) - s.height(j);
-    const float steep = strength * static_cast<float>(drop < 0 ? -drop : drop) / Neighbours::distance(k) *
-                        0.5f * (s.reptation_strength[i] + s.reptation_strength[j]) * 0.5f *
-                        (s.speed(i) + s.speed(j));
+  DESERT_HD int neighbour(int x, int y) const {
+    return inside ? s.grid.index(x, y) : neighbour_index(s.grid, x, y);
+  }
+  /// Sand that cell i gives to its neighbour j in direction k [quanta], negative if it receives. The magnitude
+  /// is the same whichever of the two cells computes it, because both roll the die of the same one. `height`,
+  /// r and `speed` are those of i.
+  DESERT_HD Quanta flux(int i, Quanta height, float r, float speed, int j, int k) const {
+    const Quanta drop = height - s.height(j), donor = s.sand[drop > 0 ? i : j];
+    const float steep = fabsf(static_cast<float>(drop));
+    const float wanted = strength * steep / Neighbours::distance(k) * 0.5f * (r + s.reptation_strength[j]) *
+                         0.5f * (speed + s.speed(j));
     const Quanta moved =
-        pair_dice[k / 2].whole_at_most(0.125f * steep, s.sand[drop > 0 ? i : j] / 8, k % 2 == 0 ? i : j);
+        pair_dice[k / 2].whole_at_most(0.125f * minimum(wanted, 0.5f * steep), donor / 8, k % 2 == 0 ? i : j);
     return drop > 0 ? moved : -moved;
   }
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = s.grid.index(x, y);
+    const Quanta height = s.height(i);
+    const float r = s.reptation_strength[i], speed = s.speed(i);
     Quanta given = 0;
-    if (!s.solid(i))
-      for (int k = 0; k < Neighbours::count; ++k) {
-        const int j = neighbour_index(s.grid, x + Neighbours::dx(k), y + Neighbours::dy(k));
-        if (j >= 0 && !s.solid(j)) given += flux(i, j, k);
-      }
-    change[i] = -given;
+    unrolled<Neighbours::count>([&](auto k) DESERT_INLINE {
+      const int j = neighbour(x + Neighbours::dx(k), y + Neighbours::dy(k));
+      if (j >= 0 && !s.solid(j)) given += flux(i, height, r, speed, j, k);
+    });
+    change[i] = s.solid(i) ? 0 : -given;
   }
 };
 
-/// Diffusivity r |w|, whose maximum sets the number of sub-steps.
-struct Diffusivity {
-  Surface s;
-  DESERT_HD float operator()(int x, int y) const {
-    const int i = s.grid.index(x, y);
-    return s.reptation_strength[i] * s.speed(i);
-  }
-};
+template <bool inside>
+Smooth<inside> smooth(const Surface& s, float strength, const Dice& dice, Quanta* change) {
+  return {s,
+          strength,
+          {dice[Roll::reptation_east], dice[Roll::reptation_north], dice[Roll::reptation_north_east],
+           dice[Roll::reptation_north_west]},
+          change};
+}
 
 struct SteepestEvent {
   Surface s;
   std::uint64_t seed, tick;
-  float slab;  ///< [quanta]
+  float share;  ///< of the events of 1 s that happen in a step
+  float slab;   ///< [quanta]
   Die die, share_die;
   Quanta* change;
 
@@ -98,7 +106,7 @@ struct SteepestEvent {
   DESERT_HD void operator()(int x, int y) const {
     const int i = s.grid.index(x, y);
     const float probability = 1.0f - exp_negative(s.reptation_strength[i]);
-    if (s.sand[i] <= 0 || s.solid(i) || chance(i) >= probability) return;
+    if (s.sand[i] <= 0 || s.solid(i) || chance(i) >= share * probability) return;
     int first = -1, second = -1;
     float first_slope = 0.0f, second_slope = 0.0f;
     for (int k = 0; k < Neighbours::count; ++k) {
@@ -149,28 +157,20 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, float tim
                         t.real(Layer::wind_y),
                         t.real(Layer::obstacle)};
   const ApplyChange apply{t.grid, change, t.quanta(Layer::sand)};
-  if (p.method == ReptationMethod::smoothing) {
-    // The explicit scheme is stable while k_r Δt/l · r |w| ≤ ½: then a cell gives less than half of what
-    // would level it with its eight neighbours.
-    const float strength = p.strength * time_step / t.grid.cell_size;
-    const float diffusivity = max_cells(exec, t.grid, Diffusivity{surface});
-    const int substeps = static_cast<int>(clamp(ceilf(strength * diffusivity / 0.5f), 1.0f, 1000.0f));
-    for (int n = 0; n < substeps; ++n) {
-      for_each_cell(
-          exec, t.grid,
-          SmoothingFlux{
-              surface,
-              strength / substeps,
-              {dice[Roll::reptation_east].of_part(n), dice[Roll::reptation_north].of_part(n),
-               dice[Roll::reptation_north_east].of_part(n), dice[Roll::reptation_north_west].of_part(n)},
-              change});
-      for_each_cell(exec, t.grid, apply);
-    }
-  } else {
+  if (const float k = smoothing_strength(p); k > 0.0f) {
+    const float strength = k * time_step / t.grid.cell_size;
+    for_each_cell(
+        exec, t.grid,
+        Bordered<Smooth<true>, Smooth<false>>{t.grid, 1, smooth<true>(surface, strength, dice, change),
+                                              smooth<false>(surface, strength, dice, change)});
+    for_each_cell(exec, t.grid, apply);
+  }
+  if (p.method == ReptationMethod::steepest) {
     exec.set_zero(change, sizeof(Quanta) * t.grid.cells());
     for_each_cell(exec, t.grid,
-                  SteepestEvent{surface, seed, tick, p.slab * time_step * t.quanta_per_metre,
-                                dice[Roll::reptation], dice[Roll::reptation_second], change});
+                  SteepestEvent{surface, seed, tick, minimum(time_step, 1.0f),
+                                p.slab * maximum(time_step, 1.0f) * t.quanta_per_metre, dice[Roll::reptation],
+                                dice[Roll::reptation_second], change});
     for_each_cell(exec, t.grid, apply);
   }
 }

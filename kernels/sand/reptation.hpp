@@ -2,18 +2,25 @@
 /// Reptation (creep): the impacts of saltating grains move sand down the slope. Nilles 2024 §3.7, eq. 6–8
 /// (smoothing); Nilles and Günther 2024 (adaptive_repose); Paris 2019 §5.1 (steepest).
 ///
-/// Saltation gives each cell an impact strength r = (deposited + bounced)(1 − v) [m]. The methods are
+/// Saltation gives each cell an impact strength r = (deposited + bounced)(1 − v) [m per hop]. The methods are
 ///
 ///   adaptive_repose   tan θ = lerp(tan θ_sand · exp(−k_r r |w| (1 − r_s)), tan θ_vegetated, v) · f(m)
-///   smoothing         q_ij  = ⅛ min(k_r Δt |h_i − h_j|/(l d) · ½(r_i + r_j) · ½(|w_i| + |w_j|), s_donor)
-///   steepest          P     = 1 − e^(−r),   amount = min(`slab` Δt, half the steepest drop, s)
+///   smoothing         q_ij  = ⅛ min(k Δt |h_i − h_j|/(l d) · ½(r_i + r_j) · ½(|w_i| + |w_j|),
+///                                   ½ |h_i − h_j|, s_donor)
+///   steepest          P     = 1 − e^(−r),   amount = min(`slab`, half the steepest drop, s)
 ///
-/// with the factors of repose.hpp, d = 1 or √2. `adaptive_repose` lowers the donor's angle of repose θ in the
-/// avalanche that follows; without `use_shadow` its r_s is 0. `smoothing` moves q_ij [m] from the higher to
-/// the lower of two neighbours, in as many sub-steps as its diffusion number needs. `steepest` is a random
-/// event of probability P in each cell, which divides the amount among the two steepest neighbours in
-/// proportion to their slopes. Of the impacts of a metre of sand each starts the event with probability
-/// 1 − v (Paris' β_R), which r contains: P is the probability that at least one of them does.
+/// with the factors of repose.hpp, d = 1 or √2, k_r = `strength`. `adaptive_repose` lowers the donor's angle
+/// of repose θ in the avalanche that follows; without `use_shadow` its r_s is 0. `smoothing` moves q_ij [m]
+/// from the higher to the lower of two neighbours. Its first bound keeps the explicit scheme stable however
+/// large k is: a cell gives at most half of what would level it with its eight neighbours. `steepest` is a
+/// random event in each cell, of probability P Δt in a step of Δt ≤ 1 s (in a longer one P, with Δt times the
+/// `slab`), which divides the amount among the two steepest neighbours in proportion to their slopes. Of the
+/// impacts of a metre of sand each starts the event with probability 1 − v (Paris' β_R), which r contains: P
+/// is the probability that at least one of them does.
+///
+/// As published, `adaptive_repose` shapes dunes while a weak `smoothing` keeps sand from oscillating from
+/// cell to cell: k = `smoothing_strength` beside the other methods, and k = k_r + `smoothing_strength` with
+/// the method `smoothing`.
 ///
 /// The deposition pass of saltation sets the angles of repose for every method (see Impacts), and
 /// set_angles() does so where saltation is off; r lowers them with adaptive_repose only.
@@ -36,6 +43,7 @@ constexpr const char* reptation_methods[] = {"off", "adaptive_repose", "smoothin
 struct ReptationParameters {
   ReptationMethod method = ReptationMethod::adaptive_repose;
   float strength = 0.1f;
+  float smoothing_strength = 0.0f;
   bool use_shadow = true;
   float slab = 0.1f;
 };
@@ -45,9 +53,11 @@ constexpr auto parameter_table(const ReptationParameters*) {
   return std::make_tuple(
       parameter("method", &P::method, reptation_methods, "How saltation's impacts move sand down the slope."),
       parameter("strength", &P::strength, 0, 10, "s/m^2", "Strength of adaptive_repose and smoothing (k_r)."),
+      parameter("smoothing_strength", &P::smoothing_strength, 0, 10, "s/m^2",
+                "Strength of the smoothing that acts beside any method; 0 is none."),
       parameter("use_shadow", &P::use_shadow,
                 "Whether adaptive_repose spares what lies in the wind's shadow."),
-      parameter("slab", &P::slab, 0, 10, "m", "Sand that one event of `steepest` moves in 1 s."));
+      parameter("slab", &P::slab, 0, 10, "m", "Sand that one event of `steepest` moves."));
 }
 static_assert(table_is_complete<ReptationParameters>());
 
@@ -93,13 +103,18 @@ template <class E>
 void set_angles(E& exec, const TerrainView& t, const Angle& angle, const ReposeParameters& p,
                 const float* strength);
 
-/// Whether step() moves sand; adaptive_repose acts through the angles of repose alone.
-inline bool moves_sand(const ReptationParameters& p) {
-  return p.method == ReptationMethod::steepest ||
-         (p.method == ReptationMethod::smoothing && p.strength > 0.0f);
+/// Strength k of the smoothing.
+inline float smoothing_strength(const ReptationParameters& p) {
+  if (p.method == ReptationMethod::off) return 0.0f;
+  return p.smoothing_strength + (p.method == ReptationMethod::smoothing ? p.strength : 0.0f);
 }
 
-/// Moves sand by `smoothing` or `steepest`. `change`: scratch, one value a cell [quanta]. `seed` and `tick`
+/// Whether step() moves sand; adaptive_repose acts through the angles of repose alone.
+inline bool moves_sand(const ReptationParameters& p) {
+  return p.method == ReptationMethod::steepest || smoothing_strength(p) > 0.0f;
+}
+
+/// Moves sand by smoothing and `steepest`. `change`: scratch, one value a cell [quanta]. `seed` and `tick`
 /// (steps done) are key and counter of the random numbers of `steepest`.
 template <class E>
 void step(E& exec, const TerrainView& t, const ReptationParameters& p, float time_step, std::uint64_t seed,

@@ -7,22 +7,35 @@
 
 namespace desert_sim::saltation {
 
+struct SaltationDice {
+  Die lift, wait, landing, influx, deposit;
+
+  SaltationDice(const Dice& dice, int part)
+      : lift(dice[Roll::lift].of_part(part)),
+        wait(dice[Roll::hop_share].of_part(part)),
+        landing(dice[Roll::hop].of_part(part)),
+        influx(dice[Roll::influx].of_part(part)),
+        deposit(dice[Roll::deposit].of_part(part)) {}
+};
+
+/// One part of a step; see Hops.
 template <bool bare, class E>
-void step_where(E& exec, const TerrainView& t, const SaltationParameters& p, const ReposeParameters& repose,
-                float time_step, const Dice& dice, LedgerView ledger, Quanta* landed,
-                const abrasion::Abrade& abrade, const reptation::Impacts& impacts,
-                const wind_shadow::Shadow* shadow_law) {
-  const Inputs<bare> in(t, repose, time_step);
+void hop(E& exec, const TerrainView& t, const SaltationParameters& p, const ReposeParameters& repose,
+         float hop_share, const SaltationDice& dice, LedgerView ledger, Quanta* landed,
+         const abrasion::Abrade& abrade, const reptation::Impacts& impacts,
+         const wind_shadow::Shadow* shadow_law) {
+  const Inputs<bare> in(t, repose, p.hop_time, hop_share);
+  const Lift<bare> lift{in, p};
   Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand);
-  const LiftAndAdvect<bare> lift{
-      in, p, time_step / t.grid.cell_size, dice[Roll::lift], dice[Roll::hop], sand, airborne, ledger};
+  const LiftAndAdvect<bare> advect{
+      in, lift, p.hop_time / t.grid.cell_size, dice.lift, dice.wait, dice.landing, sand, airborne, ledger};
   if (shadow_law)
-    for_each_cell_scatter(exec, t.grid, landed, ShadowAndLift<bare>{*shadow_law, lift});
+    for_each_cell_scatter(exec, t.grid, landed, ShadowAndLift<bare>{*shadow_law, advect});
   else
-    for_each_cell_scatter(exec, t.grid, landed, lift);
+    for_each_cell_scatter(exec, t.grid, landed, advect);
   if (!t.grid.periodic() && p.influx > 0.0f)
-    for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, dice[Roll::influx], landed, ledger});
-  const Deposit<bare> deposit{in, p, abrade, dice[Roll::deposit], landed, sand, airborne, impacts};
+    for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, dice.influx, landed, ledger});
+  const Deposit<bare> deposit{in, lift, abrade, dice.deposit, landed, sand, airborne, impacts};
   if constexpr (bare && !vectorises_rows<E>)
     if (t.grid.width % 4 == 0) {
       const DepositOfFour four{deposit};
@@ -35,21 +48,28 @@ template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
           const ReposeParameters& repose, float time_step, const Dice& dice, LedgerView ledger,
           Quanta* landed, const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law) {
-  const abrasion::Abrade abrade{a.rate * time_step,
-                                a.rate_of_soil() * time_step,
-                                to_quanta_at_most(a.cover, t.quanta_per_metre, wall_height),
-                                t.quantum,
-                                t.quanta_per_metre,
-                                t.quanta(Layer::bedrock),
-                                t.quanta(Layer::soil),
-                                t.quanta(Layer::sand),
-                                t.real(Layer::erosion_resistance),
-                                dice[Roll::abrasion],
-                                ledger};
-  if (is_bare(t, a))
-    step_where<true>(exec, t, p, repose, time_step, dice, ledger, landed, abrade, impacts, shadow_law);
-  else
-    step_where<false>(exec, t, p, repose, time_step, dice, ledger, landed, abrade, impacts, shadow_law);
+  const Hops hops(p, time_step);
+  const float part_of_step = time_step / static_cast<float>(hops.parts);
+  abrasion::Abrade abrade{a.rate * part_of_step,
+                          a.rate_of_soil() * part_of_step,
+                          to_quanta_at_most(a.cover, t.quanta_per_metre, wall_height),
+                          t.quantum,
+                          t.quanta_per_metre,
+                          t.quanta(Layer::bedrock),
+                          t.quanta(Layer::soil),
+                          t.quanta(Layer::sand),
+                          t.real(Layer::erosion_resistance),
+                          dice[Roll::abrasion],
+                          ledger};
+  for (int part = 0; part < hops.parts; ++part) {
+    const SaltationDice of_part(dice, part);
+    abrade.die = dice[Roll::abrasion].of_part(part);
+    if (is_bare(t, a))
+      hop<true>(exec, t, p, repose, hops.share, of_part, ledger, landed, abrade, impacts, shadow_law);
+    else
+      hop<false>(exec, t, p, repose, hops.share, of_part, ledger, landed, abrade, impacts, shadow_law);
+    shadow_law = nullptr;  // the first part has left it in the layer
+  }
 }
 
 template void step(Backend&, const TerrainView&, const SaltationParameters&, const AbrasionParameters&,

@@ -3,17 +3,22 @@
 /// bounces on. Expected values replace random events. Nilles 2024 §3.6, eq. 5; Nilles 2025 §3.3.2 for soil,
 /// moisture and water.
 ///
-///   lift      L = min(s, Δt (ε_s (1 − r_s)(1 − v)(r_e > 0 ? ½ : 1) M + (r_e < 0 ? k_e : 0)))
+///   lift      L = min(s, T (ε_s (1 − r_s)(1 − v)(r_e > 0 ? ½ : 1) M + (r_e < 0 ? k_e : 0)))
 ///             M = clamp(1 − 10 m, 0, 1), and 0 under water
-///             s ← s − L
-///             a ← a + L
-///   advect    a moves by w Δt / l cells and is scattered bilinearly to the four cells around
+///             s ← s − φ L
+///             c = s − (1 − φ) L, the sand that L leaves on the ground
+///   advect    φ (a + L) moves by w T / l cells and is scattered bilinearly to the four cells around; the rest
+///             of a waits
 ///   deposit   p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1) · clamp(1 − 10 m, 0.01, 1)
 ///             p = 0 on obstacles and where r_e < 0
-///             f = 0.4 on sand, 0.5 on soil, 0.6 on rock
-///             s ← s + p a
-///   bounce    a ← (1 − p) a
-///   impacts   r = (deposited + bounced)(1 − v), the strength of reptation
+///             f = 0.4 on sand, 0.5 on soil, 0.6 on rock, by c
+///             s ← s + p · landed
+///   bounce    a ← waiting + (1 − p) · landed
+///   impacts   r = (deposited + bounced)(1 − v)/φ, the strength of reptation
+///
+/// A hop takes the time T = `hop_time`. In a step of Δt ≤ T the share φ = Δt/T of the sand completes what all
+/// of it does in T, so that flux and airborne sand of a steady state do not depend on Δt: over a flat bed the
+/// flux is ε_s T |w|/p, and a = ε_s T (1 − p)/p. A step with Δt > T consists of ⌈Δt/T⌉ equal parts.
 ///
 /// Symbols: s sand, a airborne_sand, w wind, r_s wind_shadow, r_e echo, v vegetation, m relative moisture.
 /// Nothing is lifted in still air or below `threshold_speed`. Under water the last factor of p is 0.01. The
@@ -21,12 +26,14 @@
 /// are rounded by dice (dice.hpp), and so few land in one of the four cells, drawn by the shares.
 ///
 /// Sand that the wind carries over an open edge is recorded in the ledger as outflow; `influx` enters where
-/// the wind blows in, spread over the length of a hop.
+/// the wind blows in, spread over the length of a hop w T.
 ///
 /// Reads sand, airborne_sand, soil, water, moisture, vegetation, obstacle, wind_x, wind_y, wind_shadow, echo,
 /// and for abrasion bedrock and erosion_resistance. Writes sand, airborne_sand, the tangents of repose and
 /// the impact strength (scratch), with abrasion also bedrock and soil, and wind_shadow where it computes that
 /// in the same pass.
+
+#include <cmath>
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
@@ -38,6 +45,7 @@ namespace desert_sim {
 struct SaltationParameters {
   bool enabled = true;
   float lift = 1.0f;
+  float hop_time = 1.0f;
   float threshold_speed = 0.0f;
   float bounce_on_sand = 0.4f;
   float bounce_on_soil = 0.5f;
@@ -50,7 +58,8 @@ constexpr auto parameter_table(const SaltationParameters*) {
   using P = SaltationParameters;
   return std::make_tuple(
       parameter("enabled", &P::enabled, "Whether the wind carries sand."),
-      parameter("lift", &P::lift, 0, 10, "m", "Sand lifted from an open cell a step of 1 s (epsilon_s)."),
+      parameter("lift", &P::lift, 0, 10, "m/s", "Sand lifted from an open cell a second (epsilon_s)."),
+      parameter("hop_time", &P::hop_time, 0.001, 100, "s", "Time that a hop takes (T)."),
       parameter("threshold_speed", &P::threshold_speed, 0, 100, "m/s", "Wind below which nothing is lifted."),
       parameter("bounce_on_sand", &P::bounce_on_sand, 0, 1, "1",
                 "Share of landing sand that bounces on sand (f)."),
@@ -70,6 +79,15 @@ struct Shadow;
 }
 
 namespace saltation {
+
+/// How a step is divided: into `parts`, in each of which the share φ of the sand hops.
+struct Hops {
+  int parts;
+  float share;
+
+  Hops(const SaltationParameters& p, float time_step)
+      : parts(static_cast<int>(std::ceil(time_step / p.hop_time))), share(time_step / (parts * p.hop_time)) {}
+};
 
 /// `landed`: scratch, one value a cell [quanta]. `shadow_law`: the law that computes the wind shadow in the
 /// pass of the lift, or null where the layer is up to date.

@@ -17,16 +17,19 @@ DESERT_HD float dryness(float relative_moisture) {
 template <bool bare>
 struct Inputs {
   Grid grid;
-  float quantum, quanta_per_metre, time_step;
+  float quantum, quanta_per_metre;
+  float hop_time;   ///< T [s]
+  float hop_share;  ///< φ, at most 1
   const float *wind_x, *wind_y, *wind_shadow, *echo, *vegetation, *obstacle;
   const Quanta *water, *soil;
   repose::RelativeMoisture relative_moisture;
 
-  Inputs(const TerrainView& t, const ReposeParameters& repose, float dt)
+  Inputs(const TerrainView& t, const ReposeParameters& repose, float time, float share)
       : grid(t.grid),
         quantum(t.quantum),
         quanta_per_metre(t.quanta_per_metre),
-        time_step(dt),
+        hop_time(time),
+        hop_share(share),
         wind_x(t.real(Layer::wind_x)),
         wind_y(t.real(Layer::wind_y)),
         wind_shadow(t.real(Layer::wind_shadow)),

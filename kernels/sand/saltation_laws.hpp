@@ -14,17 +14,36 @@
 
 namespace desert_sim::saltation {
 
-/// Lifts sand, and scatters the airborne sand of a cell to the four cells around its landing point.
+/// How much sand the wind can lift from a cell in the time of a hop.
+template <bool bare>
+struct Lift {
+  Inputs<bare> in;
+  SaltationParameters p;
+
+  /// [quanta], no more than `lying`. u, v: wind [m/s].
+  DESERT_HD float operator()(float u, float v, float shadow, float echo, float plants, float moisture,
+                             bool flooded, Quanta lying) const {
+    const float speed_squared = u * u + v * v;
+    if (lying <= 0 || !(speed_squared > 0.0f)) return 0.0f;
+    if (speed_squared < p.threshold_speed * p.threshold_speed) return 0.0f;
+    const float wet = flooded ? 0.0f : dryness(moisture);
+    const float metres =
+        in.hop_time * (p.lift * (1.0f - shadow) * (1.0f - plants) * (echo > 0.0f ? 0.5f : 1.0f) * wet +
+                       (echo < 0.0f ? -echo : 0.0f));
+    return minimum(metres * in.quanta_per_metre, static_cast<float>(lying));
+  }
+};
+
+/// Lifts sand, and scatters what hops to the four cells around its landing point.
 template <bool bare>
 struct LiftAndAdvect {
   template <int count>
   using Parcels = BilinearParcels<count>;
   Inputs<bare> in;
-  SaltationParameters p;
-  float hop_per_speed;  ///< length of a hop over wind speed, Δt / l [cells s/m]
-  Die lift_die, hop_die;
-  Quanta* sand;
-  const Quanta* airborne;
+  Lift<bare> lift;
+  float hop_per_speed;  ///< length of a hop over wind speed, T / l [cells s/m]
+  Die lift_die, wait_die, landing_die;
+  Quanta *sand, *airborne;
   LedgerView ledger;
 
   /// Values on which a cell's lift depends. All are loaded before the first branch, so that a GPU waits for
@@ -43,24 +62,21 @@ struct LiftAndAdvect {
   DESERT_HD Cell read(int x, int y) const {
     return read(x, y, value_or_zero(in.wind_shadow, in.grid.index(x, y)));
   }
-  DESERT_HD Quanta lifted(int i, const Cell& c) const {
-    const float speed_squared = c.u * c.u + c.v * c.v;
-    if (c.lying <= 0 || !(speed_squared > 0.0f)) return 0;
-    if (speed_squared < p.threshold_speed * p.threshold_speed) return 0;
-    const float wet = c.flooded ? 0.0f : dryness(c.moisture);
-    const float metres =
-        in.time_step * (p.lift * (1.0f - c.shadow) * (1.0f - c.plants) * (c.echo > 0.0f ? 0.5f : 1.0f) * wet +
-                        (c.echo < 0.0f ? -c.echo : 0.0f));
-    return lift_die.whole_at_most(metres * in.quanta_per_metre, c.lying, i);
-  }
 
   template <int count>
   DESERT_HD void prepare(int x, int y, const Cell& c, BilinearParcels<count>& parcels, int n) const {
     const int i = in.grid.index(x, y);
-    const Quanta lift = lifted(i, c), carried = c.carried + lift;
-    sand[i] = c.lying - lift;
+    const float liftable = lift(c.u, c.v, c.shadow, c.echo, c.plants, c.moisture, c.flooded, c.lying);
+    const Quanta lifted = lift_die.whole_at_most(in.hop_share * liftable, c.lying, i);
+    Quanta carried = c.carried;
+    if (in.hop_share < 1.0f) {
+      carried = wait_die.whole_at_most(in.hop_share * static_cast<float>(c.carried), c.carried, i);
+      airborne[i] = c.carried - carried;
+    }
+    carried += lifted;
+    sand[i] = c.lying - lifted;
     // Where the four shares are so small that rounding would falsify them, all lands in one of the cells.
-    const std::uint32_t die = hop_die.word(i);
+    const std::uint32_t die = landing_die.word(i);
     const bool few = static_cast<float>(carried) < Die::small;
     const int dx = to_fixed_point(c.u * hop_per_speed), dy = to_fixed_point(c.v * hop_per_speed);
     parcels.set(n, x, y, Die::whole_cells_if(few, dx, die), Die::whole_cells_if(few, dy, die >> 16), carried);
@@ -88,9 +104,9 @@ struct Influx {
   /// Depth [m] that one edge brings to the cell which lies `cell` cells from it; `speed`: of the wind into
   /// the grid [m/s].
   DESERT_HD float over_edge(int cell, float speed) const {
-    const float l = in.grid.cell_size, hop = speed * in.time_step;
+    const float l = in.grid.cell_size, hop = speed * in.hop_time;
     if (!(hop > 0.0f)) return 0.0f;
-    return influx * in.time_step / hop * clamp((hop - cell * l) / l, 0.0f, 1.0f);
+    return influx * (in.hop_share * in.hop_time) / hop * clamp((hop - cell * l) / l, 0.0f, 1.0f);
   }
 
   DESERT_HD void operator()(int x, int y) const {
@@ -113,7 +129,7 @@ struct Influx {
 template <bool bare>
 struct Deposit {
   Inputs<bare> in;
-  SaltationParameters p;
+  Lift<bare> lift;
   abrasion::Abrade abrade;
   Die die;
   const Quanta* landed;
@@ -125,12 +141,22 @@ struct Deposit {
   DESERT_HD float share(int i, Quanta cover, float shadow, float v, float m) const {
     const float r_e = in.echo_value(i);
     if (r_e < 0.0f || in.solid(i)) return 0.0f;
-    const bool sandy = cover > 0 && cover * in.quantum >= p.bare_depth;
-    const float bounce = sandy ? p.bounce_on_sand
-                               : (in.value_if_present(in.soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
+    const bool sandy = cover > 0 && cover * in.quantum >= lift.p.bare_depth;
+    const float bounce =
+        sandy ? lift.p.bounce_on_sand
+              : (in.value_if_present(in.soil, i) > 0 ? lift.p.bounce_on_soil : lift.p.bounce_on_rock);
     const float deposited_share = maximum((1.0f - bounce) + v * bounce, maximum(shadow, r_e));
     const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
     return clamp(deposited_share, 0.0f, 1.0f) * wet;
+  }
+
+  /// Sand of a cell that the lift leaves on the ground. `lying`: its sand after the lift, which took a share.
+  DESERT_HD Quanta covering(int i, Quanta lying, float u, float v, float shadow, float plants,
+                            float moisture) const {
+    if (in.hop_share >= 1.0f) return lying;
+    const float liftable = lift(u, v, shadow, in.echo_value(i), plants, moisture, in.flooded(i), wall_height);
+    const Quanta rest = lying - static_cast<Quanta>((1.0f - in.hop_share) * liftable);
+    return rest > 0 ? rest : 0;
   }
 
   /// What a cell does with the sand that lands. split_landed() computes it without writing, so that all loads
@@ -145,19 +171,22 @@ struct Deposit {
                                        float v, float m) const {
     const float deposited_share = share(i, cover, shadow, v, m), depth = arriving * in.quantum;
     const Quanta stays = die.whole_at_most(deposited_share * static_cast<float>(arriving), arriving, i);
-    const float strength = depth * (1.0f - v);
+    const float strength = depth * (1.0f - v) / in.hop_share;
     return {deposited_share, stays, arriving - stays, strength,
             impacts.angle.lowered_tangent(strength, speed, shadow)};
   }
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = in.grid.index(x, y);
-    const Quanta cover = sand[i];
-    const float v = in.plants(i), m = in.moisture(i), speed = hypotenuse(in.wind_x[i], in.wind_y[i]);
-    const DepositResult o = split_landed(i, landed[i], cover, value_or_zero(in.wind_shadow, i), speed, v, m);
-    sand[i] = cover + o.stays;
-    airborne[i] = o.bounces;
-    if (!bare && !in.solid(i) && !in.flooded(i)) abrade(i, cover, o.bounces, speed, v, m, o.deposited_share);
+    const Quanta lying = sand[i], waiting = in.hop_share < 1.0f ? airborne[i] : 0;
+    const float v = in.plants(i), m = in.moisture(i), w_x = in.wind_x[i], w_y = in.wind_y[i];
+    const float speed = hypotenuse(w_x, w_y), shadow = value_or_zero(in.wind_shadow, i);
+    const Quanta cover = covering(i, lying, w_x, w_y, shadow, v, m);
+    const DepositResult o = split_landed(i, landed[i], cover, shadow, speed, v, m);
+    sand[i] = lying + o.stays;
+    airborne[i] = waiting + o.bounces;
+    if (!bare && !in.solid(i) && !in.flooded(i))
+      abrade(i, cover, o.bounces / in.hop_share, speed, v, m, o.deposited_share);
     impacts.set(i, o.strength, o.lowered_tangent, v, in.moisture(i));
   }
 };

@@ -64,9 +64,8 @@ void require_bounded_cost(const Scenario& s) {
   if (s.moisture.enabled)
     check("moisture.diffusion", s.moisture.diffusion, "m^2/s",
           4 * s.moisture.diffusion * step / (cell * cell), 64);
-  if (s.reptation.method == ReptationMethod::smoothing)  // the shelter is at most 1
-    check("reptation.strength", s.reptation.strength, "s/m^2",
-          2 * s.reptation.strength * step / cell * fastest_wind(s), 256);
+  if (s.saltation.enabled)
+    check("run.time_step", step, "s", step / static_cast<double>(s.saltation.hop_time), 256);
   errors.throw_if_any();
 }
 
@@ -87,7 +86,7 @@ void require_reach(const Scenario& s) {
   const double steepness = std::tan(s.echo_dunes.cliff_deg * pi / 180.0);
   if (s.echo_dunes.enabled)  // from the top of a cliff to its foot
     check("echo_dunes.highest", s.echo_dunes.highest / steepness);
-  check("run.time_step", fastest_wind(s) * s.run.time_step);
+  check("saltation.hop_time", fastest_wind(s) * s.saltation.hop_time);
   errors.throw_if_any();
 }
 

@@ -36,16 +36,19 @@ struct DepositOfFour {
   DESERT_HD Grid fours() const { return {deposit.in.grid.width / 4, deposit.in.grid.height, 1}; }
   DESERT_HD void operator()(int x, int y) const {
     const int first = deposit.in.grid.index(4 * x, y);
-    const auto arriving = load_vec4(deposit.landed + first), cover = load_vec4(deposit.sand + first);
+    const auto arriving = load_vec4(deposit.landed + first), lying = load_vec4(deposit.sand + first);
     const auto u = load_vec4(deposit.in.wind_x + first), v = load_vec4(deposit.in.wind_y + first);
     Vec4<float> shadow{}, angle;
     if (deposit.in.wind_shadow) shadow = load_vec4(deposit.in.wind_shadow + first);
-    Vec4<Quanta> sand, airborne;
+    Vec4<Quanta> waiting{}, sand, airborne;
+    if (deposit.in.hop_share < 1.0f) waiting = load_vec4(deposit.airborne + first);
     for (int n = 0; n < 4; ++n) {
-      const auto o = deposit.split_landed(first + n, arriving.values[n], cover.values[n], shadow.values[n],
+      const Quanta cover = deposit.covering(first + n, lying.values[n], u.values[n], v.values[n],
+                                            shadow.values[n], 0.0f, 0.0f);
+      const auto o = deposit.split_landed(first + n, arriving.values[n], cover, shadow.values[n],
                                           hypotenuse(u.values[n], v.values[n]), 0.0f, 0.0f);
-      sand.values[n] = cover.values[n] + o.stays;
-      airborne.values[n] = o.bounces;
+      sand.values[n] = lying.values[n] + o.stays;
+      airborne.values[n] = waiting.values[n] + o.bounces;
       angle.values[n] = deposit.impacts.angle.tangent_at(o.lowered_tangent, 0.0f, 0.0f);
       if (deposit.impacts.strength) deposit.impacts.strength[first + n] = o.strength;
     }

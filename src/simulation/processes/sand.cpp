@@ -183,8 +183,10 @@ Process reptation_process() {
   p.reads = {Layer::bedrock, Layer::soil, Layer::wind_x, Layer::wind_y, Layer::obstacle};
   p.writes = {Layer::sand};
   p.step = creep;
-  // The number of sub-steps is read back, and events are drawn by the step.
-  p.can_be_recorded = [](const SimulationState&) { return false; };
+  // Events of `steepest` are drawn by the number of the step.
+  p.can_be_recorded = [](const SimulationState& state) {
+    return state.scenario.reptation.method != ReptationMethod::steepest;
+  };
   return p;
 }
 

@@ -1,0 +1,60 @@
+// The same desert after the same time, whatever the time step.
+
+#include <algorithm>
+
+#include "support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+/// A heap, from its elevation and the sand in the air.
+struct Heap {
+  double moved, spread, height;  ///< mean and standard deviation of the sand along the wind, top [m]
+};
+
+Heap blown_heap(Simulation& s, double x, int steps) {
+  test::run(s, steps);
+  const auto sand = s.terrain().values(Layer::sand), air = s.terrain().values(Layer::airborne_sand);
+  const int width = s.terrain().grid().width;
+  double sum = 0, first = 0, second = 0;
+  for (std::size_t i = 0; i < sand.size(); ++i) {
+    const double depth = sand[i] + air[i],
+                 along = static_cast<double>(i % static_cast<std::size_t>(width)) + 0.5 - x;
+    sum += depth;
+    first += depth * along;
+    second += depth * along * along;
+  }
+  const double moved = first / sum;
+  return {moved, std::sqrt(second / sum - moved * moved), *std::max_element(sand.begin(), sand.end())};
+}
+
+class TimeStep : public test::OnBackend {};
+
+/// When hops took a whole step, the heap moved by Δt times as far: at Δt = 0.1 s a tenth of what it moves at
+/// 1 s, and at 2 s twice as far.
+TEST_P(TimeStep, AHeapMovesAsFarAndKeepsItsShape) {
+  constexpr double seconds = 80, x = 30;
+  const auto heap_at = [&](double dt) {
+    auto s = simulation(
+        "grid: {width: 384, height: 40}\nterrain: [cone: {layer: sand, shape: dome, x: 30, y: 20, radius: "
+        "16, "
+        "height: 8}]\nwind: {speed: 3, projection: false}\nsaltation: {lift: 0.02}\nrun: {time_step: " +
+        std::to_string(dt) + "}\n");
+    const Heap heap = blown_heap(*s, x, static_cast<int>(std::lround(seconds / dt)));
+    test::expect_sound(*s, "at the end");
+    return heap;
+  };
+  const Heap whole = heap_at(1);
+  EXPECT_GT(whole.moved, 0.5);
+  for (const double dt : {2.0, 0.5, 0.25, 0.1}) {
+    const Heap h = heap_at(dt);
+    EXPECT_NEAR(h.moved, whole.moved, 0.05 * whole.moved) << "dt " << dt;
+    EXPECT_NEAR(h.spread, whole.spread, 0.05 * whole.spread) << "dt " << dt;
+    EXPECT_NEAR(h.height, whole.height, 0.05 * whole.height) << "dt " << dt;
+  }
+}
+
+DESERT_ON_EACH_BACKEND(TimeStep);
+
+}  // namespace
+}  // namespace desert_sim
