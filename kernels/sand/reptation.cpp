@@ -81,14 +81,33 @@ struct Smooth {
   }
 };
 
-template <bool inside>
-Smooth<inside> smooth(const Surface& s, float strength, const Dice& dice, Quanta* change) {
-  return {s,
-          strength,
-          {dice[Roll::reptation_east], dice[Roll::reptation_north], dice[Roll::reptation_north_east],
-           dice[Roll::reptation_north_west]},
-          change};
-}
+/// The law of one sub-step.
+struct Smoothing {
+  Surface s;
+  float strength;
+  const Dice& dice;
+  int part;
+  Quanta* change;
+
+  template <bool inside>
+  Smooth<inside> law() const {
+    const auto die = [this](Roll roll) { return dice[roll].of_part(part); };
+    return {s,
+            strength,
+            {die(Roll::reptation_east), die(Roll::reptation_north), die(Roll::reptation_north_east),
+             die(Roll::reptation_north_west)},
+            change};
+  }
+};
+
+/// Diffusivity r |w|, whose maximum sets the number of sub-steps.
+struct Diffusivity {
+  Surface s;
+  DESERT_HD float operator()(int x, int y) const {
+    const int i = s.grid.index(x, y);
+    return s.reptation_strength[i] * s.speed(i);
+  }
+};
 
 struct SteepestEvent {
   Surface s;
@@ -159,11 +178,17 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, float tim
   const ApplyChange apply{t.grid, change, t.quanta(Layer::sand)};
   if (const float k = smoothing_strength(p); k > 0.0f) {
     const float strength = k * time_step / t.grid.cell_size;
-    for_each_cell(
-        exec, t.grid,
-        Bordered<Smooth<true>, Smooth<false>>{t.grid, 1, smooth<true>(surface, strength, dice, change),
-                                              smooth<false>(surface, strength, dice, change)});
-    for_each_cell(exec, t.grid, apply);
+    int parts = 1;
+    if (p.method == ReptationMethod::smoothing)
+      parts = static_cast<int>(
+          clamp(ceilf(strength * max_cells(exec, t.grid, Diffusivity{surface}) / 0.5f), 1.0f, 1000.0f));
+    for (int part = 0; part < parts; ++part) {
+      const Smoothing smoothing{surface, strength / static_cast<float>(parts), dice, part, change};
+      for_each_cell(
+          exec, t.grid,
+          Bordered<Smooth<true>, Smooth<false>>{t.grid, 1, smoothing.law<true>(), smoothing.law<false>()});
+      for_each_cell(exec, t.grid, apply);
+    }
   }
   if (p.method == ReptationMethod::steepest) {
     exec.set_zero(change, sizeof(Quanta) * t.grid.cells());

@@ -11,8 +11,10 @@
 ///
 /// with the factors of repose.hpp, d = 1 or √2, k_r = `strength`. `adaptive_repose` lowers the donor's angle
 /// of repose θ in the avalanche that follows; without `use_shadow` its r_s is 0. `smoothing` moves q_ij [m]
-/// from the higher to the lower of two neighbours. Its first bound keeps the explicit scheme stable however
-/// large k is: a cell gives at most half of what would level it with its eight neighbours. `steepest` is a
+/// from the higher to the lower of two neighbours, the method `smoothing` in as many sub-steps as its
+/// diffusion number needs. Beside another method there is one sub-step, which needs no maximum to be read
+/// back; the first bound keeps it stable however large k is: a cell gives at most half of what would level it
+/// with its eight neighbours. `steepest` is a
 /// random event in each cell, of probability P Δt in a step of Δt ≤ 1 s (in a longer one P, with Δt times the
 /// `slab`), which divides the amount among the two steepest neighbours in proportion to their slopes. Of the
 /// impacts of a metre of sand each starts the event with probability 1 − v (Paris' β_R), which r contains: P

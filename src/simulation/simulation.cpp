@@ -64,6 +64,9 @@ void require_bounded_cost(const Scenario& s) {
   if (s.moisture.enabled)
     check("moisture.diffusion", s.moisture.diffusion, "m^2/s",
           4 * s.moisture.diffusion * step / (cell * cell), 64);
+  if (s.reptation.method == ReptationMethod::smoothing)  // the shelter is at most 1
+    check("reptation.strength", s.reptation.strength, "s/m^2",
+          2 * (s.reptation.strength + s.reptation.smoothing_strength) * step / cell * fastest_wind(s), 256);
   if (s.saltation.enabled)
     check("run.time_step", step, "s", step / static_cast<double>(s.saltation.hop_time), 256);
   errors.throw_if_any();

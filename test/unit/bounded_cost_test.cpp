@@ -50,6 +50,12 @@ TEST_F(BoundedCost, AlsoALiveChangeAndTheEndOfARamp) {
   EXPECT_NO_THROW(test::run(*s, 4));
 }
 
+TEST_F(BoundedCost, SmoothingOfTooManySubstepsIsRefused) {
+  const std::string yaml = "wind: {speed: 10}\nreptation: {method: smoothing, strength: ";
+  EXPECT_NE(refusal([&] { simulation(yaml + "10}\n"); }).find("reptation.strength"), std::string::npos);
+  EXPECT_NO_THROW(simulation(yaml + "0.1}\n"));
+}
+
 TEST_F(BoundedCost, TooManyHopsAStepAreRefused) {
   const std::string yaml = "run: {time_step: 2}\nsaltation: {hop_time: ";
   EXPECT_NE(refusal([&] { simulation(yaml + "0.005}\n"); }).find("run.time_step"), std::string::npos);

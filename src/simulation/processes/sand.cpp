@@ -183,9 +183,10 @@ Process reptation_process() {
   p.reads = {Layer::bedrock, Layer::soil, Layer::wind_x, Layer::wind_y, Layer::obstacle};
   p.writes = {Layer::sand};
   p.step = creep;
-  // Events of `steepest` are drawn by the number of the step.
+  // The number of sub-steps of `smoothing` is read back, and events of `steepest` are drawn by the step.
   p.can_be_recorded = [](const SimulationState& state) {
-    return state.scenario.reptation.method != ReptationMethod::steepest;
+    const ReptationMethod method = state.scenario.reptation.method;
+    return method != ReptationMethod::smoothing && method != ReptationMethod::steepest;
   };
   return p;
 }
