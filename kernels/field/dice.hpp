@@ -62,15 +62,15 @@ DESERT_HD std::uint32_t scrambled(std::uint32_t h) {
 struct Die {
   static constexpr float small = 256.0f;  ///< amounts below are rounded by dice [quanta]
 
-  std::uint32_t key;                ///< on a CPU
-  const std::uint32_t* device_key;  ///< on a GPU
+  std::uint32_t key;                ///< on a CPU, and outside of steps
+  const std::uint32_t* device_key;  ///< on a GPU; null outside of steps
   std::uint32_t part = 0;           ///< of a process that has several sub-steps a step
 
   Die of_part(int n) const { return {key, device_key, static_cast<std::uint32_t>(n) * 0x9e3779b9u}; }
 
   DESERT_HD std::uint32_t word(int cell) const {
 #if defined(__CUDA_ARCH__)
-    return scrambled((static_cast<std::uint32_t>(cell) + part) ^ *device_key);
+    return scrambled((static_cast<std::uint32_t>(cell) + part) ^ (device_key ? *device_key : key));
 #else
     return scrambled((static_cast<std::uint32_t>(cell) + part) ^ key);
 #endif
@@ -99,7 +99,7 @@ struct Dice {
 
   Die operator[](Roll roll) const {
     const int n = static_cast<int>(roll);
-    return {keys[n], device_keys + n};
+    return {keys[n], device_keys ? device_keys + n : nullptr};
   }
 };
 
