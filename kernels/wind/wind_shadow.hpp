@@ -1,15 +1,10 @@
 #pragma once
 /// Wind shadow: how far a cell lies in the lee of higher ground. Nilles 2024 §3.4, eq. 4.
 ///
-///   tan α = max over k of (min(h_k, h_k+1) − h_0) / (k l)
+///   tan α = max over samples of (h(sample) − h(here)) / distance to the sample
 ///   r_s   = clamp((tan α − tan `start_deg`) / (tan `full_deg` − tan `start_deg`), 0, 1)
 ///
-/// h_k is the height at the kth sample of a march upwind up to `distance`, l the distance of two samples.
-/// The lower of two successive samples counts: what shelters is wider than a cell, like a slip face, a wall or
-/// a crest, for which tan α is that of the paper. With the higher one, the bump of a single cell would shelter
-/// the next cell, which then grows and shelters the next but one: thin sand would oscillate from cell to cell.
-///
-/// The cells of a block of 4 × 4 march in one
+/// Samples are those of a march upwind up to `distance`. The cells of a block of 4 × 4 march in one
 /// direction, that of the wind in the block's middle: the wind turns over many blocks, and adjacent cells
 /// then share their samples. A step goes to the next column of cells, or to the next row where the line
 /// crosses rows faster, and interpolates linearly between two cells there. With `curved` each cell marches

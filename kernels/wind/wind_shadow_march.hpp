@@ -12,9 +12,6 @@
 ///   |  |  |  | 0|            | 0| 1| 2| 3|
 ///   +--+--+--+--+            +--+--+--+--+
 ///
-/// A step's sample shelters no more than the sample of the step before it does, so that ground must be high
-/// over two steps to cast a shadow; a march begins with the sample of its first step.
-///
 /// A march is divided into pieces of four steps. A long march skips a piece if the highest ground around it
 /// is too low to matter: if it rises no more steeply than what was found nearer, or than where shadow begins.
 /// That changes no bit of the result.
@@ -173,29 +170,19 @@ struct Shadow {
     }
   };
 
-  /// The heights of the samples of step j [quanta].
+  /// Updates the steepest rises with the samples of step j [quanta per step].
   template <bool inside, MarchAxis axis, int count>
-  DESERT_HD void sample(const CellGroup<axis, count>& cells, int j, float (&samples)[count]) const {
+  DESERT_HD void sample_step(const CellGroup<axis, count>& cells, int j, float (&steepest)[count]) const {
     const int place = j * cells.line.drift, drifted = place >> 16;
-    const float farther_weight = fraction(place), nearer_weight = 1.0f - farther_weight;
+    const float per_step = load_read_only(reciprocals + j), one_and = one_plus_fraction(place);
+    const float nearer_weight = fused(-one_and, per_step, 2.0f * per_step),
+                farther_weight = fused(one_and, per_step, -per_step);
     float h[count + 1];
     for (int k = 0; k <= count; ++k)
       h[k] = inside ? cells.height(k, j, drifted) : height(cells, k, j, drifted);
-    for (int k = 0; k < count; ++k) samples[k] = h[k] * nearer_weight + h[k + 1] * farther_weight;
-  }
-
-  /// Updates the steepest rises with what shelters over step j − 1 and step j [quanta per step].
-  /// `nearer`: the samples of step j − 1, which become those of step j.
-  template <bool inside, MarchAxis axis, int count>
-  DESERT_HD void sample_step(const CellGroup<axis, count>& cells, int j, float (&nearer)[count],
-                             float (&steepest)[count]) const {
-    const float per_step = load_read_only(reciprocals + j - 1);
-    float samples[count];
-    sample<inside>(cells, j, samples);
-    for (int k = 0; k < count; ++k) {
-      steepest[k] = fast_max(steepest[k], (fast_min(nearer[k], samples[k]) - cells.base[k]) * per_step);
-      nearer[k] = samples[k];
-    }
+    for (int k = 0; k < count; ++k)
+      steepest[k] = fast_max(
+          steepest[k], fused(-per_step, cells.base[k], h[k] * nearer_weight + h[k + 1] * farther_weight));
   }
 
   /// Finds the steepest rises within `end` steps [quanta per step]; `inside`: the whole march is on the grid.
@@ -207,21 +194,14 @@ struct Shadow {
     float rounding = 0.0f;
     for (float base : cells.base) rounding = fast_max(rounding, HighestNearby::rounding(base));
     for (float& s : steepest) s = 0.0f;
-    if (end == 0) return;
-    float nearer[count];
-    sample<inside>(cells, 1, nearer);
-    for (int first = 2; first <= end + 1 && min_of(steepest) < full_rise; first += piece_steps) {
-      if (highest_nearby &&
-          !can_change_shadow<inside>(cells, first, end + 1, start_rise, rounding, steepest)) {
-        for (int k = 0; k < count; ++k) nearer[k] = cells.base[k];  // too low to shelter
+    for (int first = 1; first <= end && min_of(steepest) < full_rise; first += piece_steps) {
+      if (highest_nearby && !can_change_shadow<inside>(cells, first, end, start_rise, rounding, steepest))
         continue;
-      }
-      if (inside && first + piece_steps <= end + 2) {
-        for (int n = 0; n < piece_steps; ++n) sample_step<inside>(cells, first + n, nearer, steepest);
+      if (inside && first + piece_steps <= end + 1) {
+        for (int n = 0; n < piece_steps; ++n) sample_step<inside>(cells, first + n, steepest);
       } else {
         DESERT_NO_UNROLL
-        for (int j = first; j <= end + 1 && j < first + piece_steps; ++j)
-          sample_step<inside>(cells, j, nearer, steepest);
+        for (int j = first; j <= end && j < first + piece_steps; ++j) sample_step<inside>(cells, j, steepest);
       }
     }
   }
@@ -231,7 +211,7 @@ struct Shadow {
   DESERT_HD float compute_shadow(const MarchDirection& c, int x, int y) const {
     const Grid& g = grid();
     const CellGroup<axis, count> cells(*this, c.line(), x, y);
-    const int end = steps_of(c), end_x = x + cells.line.dx(end + 1), end_y = y + cells.line.dy(end + 1);
+    const int end = steps_of(c), end_x = x + cells.line.dx(end), end_y = y + cells.line.dy(end);
     // Offset of the last cell that the samples of a step read.
     const int east = cells.along_x() ? 0 : count, north = cells.along_x() ? count : 0;
     float steepest[count];
@@ -267,7 +247,7 @@ struct Shadow {
   /// Whether the piece from step `first` on, up to step `end` at most, can change a cell's shadow. The
   /// samples of each march lie to the east and north of the cell (x, y) computed below, within the block of
   /// that cell and the three blocks that `highest_nearby` adds to it. `rounding`: upper bound of the rounding
-  /// error of the cells' heights. The sample of step j counts at the distance of step j − 1.
+  /// error of the cells' heights.
   template <bool inside, MarchAxis axis, int count>
   DESERT_HD bool can_change_shadow(const CellGroup<axis, count>& cells, int first, int end, float start_rise,
                                    float rounding, const float (&steepest)[count]) const {
@@ -283,7 +263,7 @@ struct Shadow {
           top, cells.along_x() ? highest_at<inside>(x, y + count - 1) : highest_at<inside>(x + count - 1, y));
     float to_exceed[count];
     for (int k = 0; k < count; ++k)
-      to_exceed[k] = fused(fast_max(steepest[k], start_rise), static_cast<float>(first - 1), cells.base[k]);
+      to_exceed[k] = fused(fast_max(steepest[k], start_rise), static_cast<float>(first), cells.base[k]);
     return top + rounding > min_of(to_exceed);
   }
 
@@ -314,15 +294,14 @@ struct CurvedShadow {
     float u = wind_x[i], v = wind_y[i];
     float steepest = 0.0f;  // [quanta per cell]
     int dx = 0, dy = 0;
-    float nearer = heights[i];
-    for (int j = 1; j <= steps + 1; ++j) {
+    for (int j = 1; j <= steps; ++j) {
       const float speed = hypotenuse(u, v);
       if (!(speed > calm)) break;
       dx -= to_fixed_point(u / speed);
       dy -= to_fixed_point(v / speed);
-      const float sample = marching::height_at(grid, heights, marching::SamplePosition(x, y, dx, dy));
-      if (j > 1) steepest = maximum(steepest, (minimum(nearer, sample) - heights[i]) * reciprocals[j - 1]);
-      nearer = sample;
+      const float rise =
+          marching::height_at(grid, heights, marching::SamplePosition(x, y, dx, dy)) - heights[i];
+      steepest = maximum(steepest, rise * reciprocals[j]);
       const int there = sample_index(grid, x + nearest_cell(dx), y + nearest_cell(dy));
       u = wind_x[there];
       v = wind_y[there];

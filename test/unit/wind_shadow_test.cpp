@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdint>
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -79,56 +77,9 @@ TEST(ShortShadow, IsThatOfMarchesOneByOne) {
               << width << " x " << height << ", " << cells << " cells, " << i;
           shaded += shadow[i] > 0.0f ? 1 : 0;
         }
-        EXPECT_GT(shaded, static_cast<int>(t.cells()) / 6);
+        EXPECT_GT(shaded, static_cast<int>(t.cells()) / 5);
         EXPECT_LT(shaded, static_cast<int>(t.cells()) * 19 / 20 + 1);
       }
-    }
-}
-
-/// Wind shadow under a west wind, along a bed of one row with heights h(x) [m] on cells of 1 m, by the march
-/// that is skipped in pieces, by short marches, or by curved ones.
-std::vector<float> shadow_of(const std::function<double(int)>& h, double distance, bool curved) {
-  CpuExec exec(1);
-  test::BenchTerrain t(exec, 64, 16);
-  t.set(Layer::sand, [&](int x, int) { return h(x); });
-  t.set(Layer::wind_x, 3);
-  WindShadowParameters p;
-  p.distance = static_cast<float>(distance);
-  p.curved = curved;
-  t.shadow(p);
-  const float* shadow = t.terrain.view().real(Layer::wind_shadow);
-  return {shadow, shadow + 64};
-}
-
-/// Before, the lee of a bump was in full shadow, and so was every second cell of an alternating bed.
-TEST(WindShadow, IsNotCastByWhatIsOneCellWide) {
-  for (bool curved : {false, true})
-    for (double distance : {5.0, 10.0, 20.0}) {
-      for (float r : shadow_of([](int x) { return x == 20 ? 2 : 1; }, distance, curved)) EXPECT_EQ(r, 0);
-      for (float r : shadow_of([](int x) { return x % 2 ? 2 : 1; }, distance, curved)) EXPECT_EQ(r, 0);
-    }
-}
-
-/// A wall of two cells, and a slip face below a gentle stoss side: as before.
-TEST(WindShadow, IsCastByWallsAndSlipFaces) {
-  for (bool curved : {false, true})
-    for (double distance : {5.0, 10.0, 20.0}) {
-      const auto wall = shadow_of([](int x) { return x == 20 || x == 21 ? 3 : 1; }, distance, curved);
-      for (int x = 0; x < 64; ++x) {
-        const double tangent = 2.0 / (x - 21);
-        const double shade =
-            (tangent - std::tan(10 * pi / 180)) / (std::tan(15 * pi / 180) - std::tan(10 * pi / 180));
-        const bool lee = x > 21 && x <= 21 + distance;
-        EXPECT_NEAR(wall[static_cast<std::size_t>(x)], lee ? clamp(static_cast<float>(shade), 0, 1) : 0, 1e-4)
-            << x << ", " << distance;
-      }
-      const double fall = std::tan(33 * pi / 180), rise = std::tan(8 * pi / 180);
-      const auto dune =
-          shadow_of([&](int x) { return 1 + std::max(0.0, std::min(rise * (x - 10), fall * (40 - x))); },
-                    distance, curved);
-      // The crest lies at 34.7; the foot of the slip face is at 40.
-      for (int x = 0; x <= 34; ++x) EXPECT_EQ(dune[static_cast<std::size_t>(x)], 0) << x;
-      for (int x = 37; x <= 42; ++x) EXPECT_EQ(dune[static_cast<std::size_t>(x)], 1) << x;
     }
 }
 

@@ -40,18 +40,17 @@ struct ShadowOfFour {
 /// that a CPU vectorises them over cells (SIMD).
 template <int longest>
 struct ShortShadow {
-  static constexpr int margin = longest + 2;
+  static constexpr int margin = longest + 1;
   Shadow shadow;  ///< its march_directions must not be null
 
   DESERT_HD void operator()(int x, int y) const {
     const MarchDirection c = shadow.march_directions[y / side * shadow.blocks.width + x / side];
     const int end = shadow.steps_of(c);
     const Shadow::CellGroup<MarchAxis::either, 1> cell(shadow, c.line(), x, y);
-    float steepest[1] = {0.0f}, nearer[1];
-    shadow.sample<true>(cell, 1, nearer);
+    float steepest[1] = {0.0f};
     unrolled<longest>([&](auto n) DESERT_INLINE {
       float found[1] = {steepest[0]};
-      shadow.sample_step<true>(cell, n + 2, nearer, found);
+      shadow.sample_step<true>(cell, n + 1, found);
       steepest[0] = n + 1 <= end ? found[0] : steepest[0];
     });
     shadow.wind_shadow[cell.first] = shadow.shadow_from_slope(steepest[0] * c.steps_per_cell);
