@@ -10,7 +10,7 @@ enum class SpeedUpLaw : int { jackson_hunt, venturi };
 constexpr const char* speedup_law_names[] = {"jackson_hunt", "venturi"};
 
 struct WindParameters {
-  SpeedUpLaw speedup_law = SpeedUpLaw::jackson_hunt;
+  SpeedUpLaw speedup_law = SpeedUpLaw::venturi;
   float speedup_response = 2.13f;
   float response_lowest = 0.8f;
   float speedup = 0.005f;
