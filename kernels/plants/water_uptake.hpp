@@ -9,9 +9,9 @@
 ///   debit       `draw` · min(π r²/l², 1) · moisture · W/(M V_root)   from the cell's moisture
 ///
 /// Volumes of water [m³] are counted as volumes of saturated ground. The debit is in whole quanta
-/// (dice.hpp), and the ledger records it as outflow. Where the plants of a cell request more than there is, each
-/// gets a part in proportion to its request, rounded down; the requests are summed as integers, so that their
-/// order does not matter.
+/// (dice.hpp), and the ledger records it as outflow. Where the plants of a cell request more than there is,
+/// each gets a part in proportion to its request, rounded down; the requests are summed as integers, so that
+/// their order does not matter.
 ///
 /// Plants live faster than in nature, and take up water as much faster: at a `draw` of 1/100 a closed cover
 /// of bushes still takes up a rain of some 2 m an hour; at 1/10 no rain of the climates kept the ground

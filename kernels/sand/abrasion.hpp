@@ -6,10 +6,10 @@
 ///   soil      ε = k_s Δt |w| (1 − v)(1 − p) min(a, 1 m) · (1 − ρ) max(1 − m/0.5, 0)
 ///
 /// k_a is `rate`, k_s `soil_rate`, w the wind, v vegetation, p the share of sand that was deposited, a the
-/// sand that bounces in the time of a hop [m], ρ erosion_resistance, m relative moisture. Abrasion acts where the sand before the
-/// deposit is shallower than `cover` and a > 0, but neither on obstacles nor under water. It is part of
-/// saltation's deposition pass. Reads bedrock, soil, sand, erosion_resistance and what that pass reads;
-/// writes bedrock, soil, sand.
+/// sand that bounces in the time of a hop [m], ρ erosion_resistance, m relative moisture. Abrasion acts where
+/// the sand before the deposit is shallower than `cover` and a > 0, but neither on obstacles nor under water.
+/// It is part of saltation's deposition pass. Reads bedrock, soil, sand, erosion_resistance and what that
+/// pass reads; writes bedrock, soil, sand.
 
 #include "kernels/field/dice.hpp"
 #include "kernels/field/ledger.hpp"
@@ -52,9 +52,9 @@ struct Abrade {
   DESERT_HD Quanta whole(float metres, Quanta available, int i) const {
     return die.whole_at_most(metres * quanta_per_metre, available, i);
   }
-  /// `sand_before_deposit`: sand of cell i before the deposit; `bouncing`: sand that bounces there in the time
-  /// of a hop [quanta];
-  /// `speed`: of the wind [m/s]; v: vegetation; m: relative moisture; p: deposited share.
+  /// `sand_before_deposit`: sand of cell i before the deposit; `bouncing`: sand that bounces there in the
+  /// time of a hop [quanta]; `speed`: of the wind [m/s]; v: vegetation; m: relative moisture; p: deposited
+  /// share.
   DESERT_HD void operator()(int i, Quanta sand_before_deposit, float bouncing, float speed, float v, float m,
                             float p) const {
     if (bouncing <= 0.0f || sand_before_deposit >= cover) return;

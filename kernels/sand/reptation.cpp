@@ -55,9 +55,9 @@ struct Smooth {
   DESERT_HD int neighbour(int x, int y) const {
     return inside ? s.grid.index(x, y) : neighbour_index(s.grid, x, y);
   }
-  /// Sand that cell i gives to its neighbour j in direction k [quanta], negative if it receives. The magnitude
-  /// is the same whichever of the two cells computes it, because both roll the die of the same one. `height`,
-  /// r and `speed` are those of i.
+  /// Sand that cell i gives to its neighbour j in direction k [quanta], negative if it receives. The
+  /// magnitude is the same whichever of the two cells computes it, because both roll the die of the same one.
+  /// `height`, r and `speed` are those of i.
   DESERT_HD Quanta flux(int i, Quanta height, float r, float speed, int j, int k) const {
     const Quanta drop = height - s.height(j), donor = s.sand[drop > 0 ? i : j];
     const float steep = fabsf(static_cast<float>(drop));

@@ -7,14 +7,11 @@
 ///             M = clamp(1 − 10 m, 0, 1), and 0 under water
 ///             s ← s − φ L
 ///             c = s − (1 − φ) L, the sand that L leaves on the ground
-///   advect    φ (a + L) moves by w T / l cells and is scattered bilinearly to the four cells around; the rest
-///             of a waits
-///   deposit   p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1) · clamp(1 − 10 m, 0.01, 1)
-///             p = 0 on obstacles and where r_e < 0
-///             f = 0.4 on sand, 0.5 on soil, 0.6 on rock, by c
-///             s ← s + p · landed
-///   bounce    a ← waiting + (1 − p) · landed
-///   impacts   r = (deposited + bounced)(1 − v)/φ, the strength of reptation
+///   advect    φ (a + L) moves by w T / l cells and is scattered bilinearly to the four cells around; the
+/// rest             of a waits   deposit   p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1) · clamp(1 − 10 m,
+/// 0.01, 1)             p = 0 on obstacles and where r_e < 0             f = 0.4 on sand, 0.5 on soil, 0.6 on
+/// rock, by c             s ← s + p · landed   bounce    a ← waiting + (1 − p) · landed   impacts   r =
+/// (deposited + bounced)(1 − v)/φ, the strength of reptation
 ///
 /// A hop takes the time T = `hop_time`. In a step of Δt ≤ T the share φ = Δt/T of the sand completes what all
 /// of it does in T, so that flux and airborne sand of a steady state do not depend on Δt: over a flat bed the
@@ -22,8 +19,8 @@
 ///
 /// Symbols: s sand, a airborne_sand, w wind, r_s wind_shadow, r_e echo, v vegetation, m relative moisture.
 /// Nothing is lifted in still air or below `threshold_speed`. Under water the last factor of p is 0.01. The
-/// scatter adds integers, so that its result does not depend on the order of threads. Amounts below 256 quanta
-/// are rounded by dice (dice.hpp), and so few land in one of the four cells, drawn by the shares.
+/// scatter adds integers, so that its result does not depend on the order of threads. Amounts below 256
+/// quanta are rounded by dice (dice.hpp), and so few land in one of the four cells, drawn by the shares.
 ///
 /// Sand that the wind carries over an open edge is recorded in the ledger as outflow; `influx` enters where
 /// the wind blows in, spread over the length of a hop w T.

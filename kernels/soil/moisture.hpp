@@ -8,9 +8,9 @@
 ///   evaporation   M ← M e^(−φ r (1 − ¾ v) Δt)   where there is no surface water
 ///   diffusion     M_i −= Σ_j D Δt/l² min(C_i, C_j)(m_i − m_j),   m = M/C
 ///
-/// M is moisture, w water, e soil, s sand [m], v vegetation. The published method diffuses M itself, which would move water into ground without capacity for
-/// it; on ground of equal depth the two are the same. Diffusion has as many sub-steps as keep D Δt/l² ≤ ¼.
-/// The ledger records evaporation as outflow.
+/// M is moisture, w water, e soil, s sand [m], v vegetation. The published method diffuses M itself, which
+/// would move water into ground without capacity for it; on ground of equal depth the two are the same.
+/// Diffusion has as many sub-steps as keep D Δt/l² ≤ ¼. The ledger records evaporation as outflow.
 ///
 /// Reads soil, sand, water, moisture, vegetation; writes water, moisture.
 

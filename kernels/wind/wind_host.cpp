@@ -52,9 +52,9 @@ struct ModesOfAxis {
     }
     return table;
   }
-  /// The terrain's with the normalisation 1/n, and a σ of at least `least_sigma` cells, so that small terrains,
-  /// which are not coarsened as much, have the same speed-up. At full resolution the flux is not smoothed: there it is not
-  /// interpolated.
+  /// The terrain's with the normalisation 1/n, and a σ of at least `least_sigma` cells, so that small
+  /// terrains, which are not coarsened as much, have the same speed-up. At full resolution the flux is not
+  /// smoothed: there it is not interpolated.
   std::vector<FlowTransfer> flow_transfer(double least_sigma) const {
     std::vector<FlowTransfer> table(static_cast<std::size_t>(n), FlowTransfer{0, 0});
     const double of_terrain = std::max({1.0, 0.5 * ratio, least_sigma}),

@@ -32,8 +32,8 @@ TEST_P(FlatBed, FallsByTheGeometricSeriesAndFillsTheAir) {
   }
 }
 
-/// Flux over the lee edge of an open bed, per metre of edge and second, whatever the time step. When hops took
-/// a whole step it was proportional to the step: 20 times too small at 0.05 s.
+/// Flux over the lee edge of an open bed, per metre of edge and second, whatever the time step. When hops
+/// took a whole step it was proportional to the step: 20 times too small at 0.05 s.
 TEST_P(FlatBed, FluxIsLiftTimesWindOverTheShareThatStays) {
   for (const double dt : {2.0, 1.0, 0.5, 0.25, 0.05}) {
     auto s = simulation(

@@ -371,8 +371,8 @@ double waves(double x, double y, double length, int size, std::uint32_t seed) {
   return sum / std::sqrt(12.0);
 }
 
-/// 0.84 of the divergence of the unprojected wind was left over dunes and 0.30 over hills, with venturi, and of
-/// the standard deviation of its speed over dunes 0.18.
+/// 0.84 of the divergence of the unprojected wind was left over dunes and 0.30 over hills, with venturi, and
+/// of the standard deviation of its speed over dunes 0.18.
 TEST_P(WindField, RemovesDivergenceAndKeepsCrestsFast) {
   for (const bool dunes : {true, false})
     for (const int n : {256, 384}) {
@@ -386,7 +386,8 @@ TEST_P(WindField, RemovesDivergenceAndKeepsCrestsFast) {
                                              static_cast<std::uint32_t>(y));
       });
       const wind::Vector above{3, 0};
-      const Blown wind(t, jackson_hunt(), above);  // unprojected it is, but for warping, `above` times the factor
+      // unprojected it is, but for warping, `above` times the factor
+      const Blown wind(t, jackson_hunt(), above);
       std::vector<double> before = wind.factor;
       for (double& u : before) u *= 3;
       const std::vector<double> still(before.size(), 0.0);

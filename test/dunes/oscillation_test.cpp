@@ -28,8 +28,8 @@ struct Case {
 
 class Scenarios : public ::testing::TestWithParam<Case> {};
 
-/// At most 3 % of the thin cells by more than 2 cm, and 3 cm root mean square. Before: nebkha 54 % and 0.28 m,
-/// star 16 % and 0.07 m, climbing_dune 4.5 % and 0.014 m, echo_dune 3.1 % and 0.05 m.
+/// At most 3 % of the thin cells by more than 2 cm, and 3 cm root mean square. Before: nebkha 54 % and 0.28
+/// m, star 16 % and 0.07 m, climbing_dune 4.5 % and 0.014 m, echo_dune 3.1 % and 0.05 m.
 TEST_P(Scenarios, DoNotOscillate) {
   Running scene(shipped(GetParam().scenario));
   scene.run(GetParam().steps);

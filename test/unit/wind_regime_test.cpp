@@ -121,8 +121,8 @@ TEST(WindRegime, RoseHoldsADirectionAndDependsOnItsSeed) {
   EXPECT_GT(different, 20);
 }
 
-/// hold_time changes in fifty stairs, as a ramp does it. A rose began anew at every stair and so kept its first
-/// direction until the ramp was over.
+/// hold_time changes in fifty stairs, as a ramp does it. A rose began anew at every stair and so kept its
+/// first direction until the ramp was over.
 TEST(WindRegime, RoseAndTimelineGoOnWhileTheirParametersChange) {
   WindRegime r = rose(3);
   WindRegimeParameters p = r;
