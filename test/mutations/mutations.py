@@ -42,7 +42,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "perturbation_y[i] = (stream[sample_index(grid, x + 1, y)] - stream[sample_index(grid, x - 1, y)]) * scale;",
      "features are the curl of their stream function", "analytic *WindField.*Feature*:*WindField.Vortex*"),
     ("wind_feature_seam", "kernels/wind/wind_features.cpp",
-     "turns = ratio - rintf(ratio);", "turns = ratio;",
+     "if (!periodic) return;", "if (!periodic || extent > 0.0f) return;",
      "features reach over the seam of a torus", "analytic *WindField*"),
     ("turbulence_amplitude", "kernels/wind/wind_features.cpp",
      "return p.amplitude * f.scale * window *", "return 2.0f * p.amplitude * f.scale * window *",
