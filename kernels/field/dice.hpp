@@ -7,8 +7,8 @@
 /// Rounding to nearest would stop every process that moves less than half a quantum a step, and a least
 /// amount of one quantum would speed it up; with dice the expected sum over steps and cells is that of the
 /// amounts, however slow the process and however short the step. Whole numbers stay as they are, so that
-/// nothing flickers. From 256 quanta on, where the nearest is off by less than 0.2 %, no dice are rolled:
-/// the motions of dunes stay exactly symmetric, and hardly any cell of a large one pays for a hash.
+/// nothing flickers. From 256 quanta on, where the nearest is off by less than 0.2 %, it is taken, so that
+/// the motions of dunes stay exactly symmetric.
 ///
 /// u depends on (seed, step, roll, cell) only: a key of (seed, step, roll) by Philox, mixed with the cell's
 /// number by the finaliser of MurmurHash3. A GPU reads the keys of a step from its memory, because a recorded

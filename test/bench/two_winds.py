@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Orientation of crests under two winds, against the bedform instability. Needs numpy; desert_run from PATH or
---program.
+"""Orientation of crests under two winds, against the bedform instability. Needs numpy and OpenCV; desert_run from
+PATH or --program.
 
     test/bench/two_winds.py [--angles 45 60 ...] [--seeds N] [--steps N] [--size CELLS] [--jobs N] [--set path=value]...
 
@@ -15,12 +15,11 @@ import argparse
 import concurrent.futures
 import json
 import os
-import struct
 import subprocess
 import sys
 import tempfile
-import zlib
 
+import cv2
 import numpy as np
 
 SCENARIO = """
@@ -37,31 +36,6 @@ run: {{steps: {steps}}}
 """
 GAMMA = 1.6
 SIGMA = 4.0  # of the smoothing [m]
-
-
-def read_elevation(path):
-    """A single-band float32 GeoTIFF as desert_run writes it: strips, deflate, floating-point predictor."""
-    with open(path, "rb") as file:
-        data = file.read()
-    if data[:4] != b"II*\0":
-        raise ValueError("%s is not a little-endian TIFF" % path)
-    start, = struct.unpack_from("<I", data, 4)
-    tags = {}
-    for n in range(struct.unpack_from("<H", data, start)[0]):
-        tag, kind, count = struct.unpack_from("<HHI", data, start + 2 + 12 * n)
-        size, code = {3: (2, "H"), 4: (4, "I")}.get(kind, (0, ""))
-        if not code:
-            continue
-        at = start + 10 + 12 * n
-        if size * count > 4:
-            at, = struct.unpack_from("<I", data, at)
-        tags[tag] = struct.unpack_from("<%d%s" % (count, code), data, at)
-    width, height = tags[256][0], tags[257][0]
-    if (tags[258][0], tags[259][0], tags.get(317, (1,))[0]) != (32, 8, 3) or 273 not in tags:
-        raise ValueError("%s is not what desert_run writes" % path)
-    raw = b"".join(zlib.decompress(data[at:at + size]) for at, size in zip(tags[273], tags[279]))
-    planes = np.cumsum(np.frombuffer(raw, np.uint8).reshape(height, 4 * width), axis=1, dtype=np.uint8)
-    return planes.reshape(height, 4, width).transpose(0, 2, 1).copy().view(">f4")[::-1, :, 0].astype(float)
 
 
 def crest_orientation(elevation):
@@ -100,7 +74,8 @@ def run(options, theta, seed):
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
         if done.returncode != 0:
             raise ValueError("desert_run: " + done.stdout.strip())
-        return crest_orientation(read_elevation(os.path.join(out, "elevation.tif")))
+        elevation = cv2.imread(os.path.join(out, "elevation.tif"), cv2.IMREAD_UNCHANGED)
+        return crest_orientation(elevation[::-1].astype(np.float64))  # row 0 is the south
 
 
 def main():
