@@ -35,13 +35,16 @@ void hop(E& exec, const TerrainView& t, const SaltationParameters& p, const Repo
     for_each_cell_scatter(exec, t.grid, landed, advect);
   if (!t.grid.periodic() && p.influx > 0.0f)
     for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, dice.influx, landed, ledger});
-  const Deposit<bare> deposit{in, lift, abrade, dice.deposit, landed, sand, airborne, impacts};
+  const Deposit<bare> deposit{in,   lift,     abrade, dice.deposit, Landing(t.grid, landed, p.hop_spread),
+                              sand, airborne, impacts};
   if constexpr (bare && !vectorises_rows<E>)
     if (t.grid.width % 4 == 0) {
       const DepositOfFour four{deposit};
       return for_each_cell(exec, four.fours(), four);
     }
-  for_each_cell(exec, t.grid, deposit);
+  for_each_cell(
+      exec, t.grid,
+      Bordered<DepositOfOne<bare, true>, DepositOfOne<bare, false>>{t.grid, 1, {deposit}, {deposit}});
 }
 
 template <class E>

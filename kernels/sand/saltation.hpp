@@ -8,10 +8,14 @@
 ///             s ← s − φ L
 ///             c = s − (1 − φ) L, the sand that L leaves on the ground
 ///   advect    φ (a + L) moves by w T / l cells and is scattered bilinearly to the four cells around; the
-/// rest             of a waits   deposit   p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1) · clamp(1 − 10 m,
-/// 0.01, 1)             p = 0 on obstacles and where r_e < 0             f = 0.4 on sand, 0.5 on soil, 0.6 on
-/// rock, by c             s ← s + p · landed   bounce    a ← waiting + (1 − p) · landed   impacts   r =
-/// (deposited + bounced)(1 − v)/φ, the strength of reptation
+///             rest of a waits. Of what lands in a cell, a binomial kernel of the standard deviation
+///             `hop_spread`, at most 0.7 l, takes shares to its eight neighbours: hops differ in length.
+///   deposit   p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1) · clamp(1 − 10 m, 0.01, 1)
+///             p = 0 on obstacles and where r_e < 0
+///             f = 0.4 on sand, 0.5 on soil, 0.6 on rock, by c
+///             s ← s + p · landed
+///   bounce    a ← waiting + (1 − p) · landed
+///   impacts   r = (deposited + bounced)(1 − v)/φ, the strength of reptation
 ///
 /// A hop takes the time T = `hop_time`. In a step of Δt ≤ T the share φ = Δt/T of the sand completes what all
 /// of it does in T, so that flux and airborne sand of a steady state do not depend on Δt: over a flat bed the
@@ -43,6 +47,7 @@ struct SaltationParameters {
   bool enabled = true;
   float lift = 1.0f;
   float hop_time = 1.0f;
+  float hop_spread = 0.6f;
   float threshold_speed = 0.0f;
   float bounce_on_sand = 0.4f;
   float bounce_on_soil = 0.5f;
@@ -57,6 +62,9 @@ constexpr auto parameter_table(const SaltationParameters*) {
       parameter("enabled", &P::enabled, "Whether the wind carries sand."),
       parameter("lift", &P::lift, 0, 10, "m/s", "Sand lifted from an open cell a second (epsilon_s)."),
       parameter("hop_time", &P::hop_time, 0.001, 100, "s", "Time that a hop takes (T)."),
+      parameter(
+          "hop_spread", &P::hop_spread, 0, 100, "m",
+          "Standard deviation of landing points about the mean hop, along each axis; 0.7 cells at most."),
       parameter("threshold_speed", &P::threshold_speed, 0, 100, "m/s", "Wind below which nothing is lifted."),
       parameter("bounce_on_sand", &P::bounce_on_sand, 0, 1, "1",
                 "Share of landing sand that bounces on sand (f)."),

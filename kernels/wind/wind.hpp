@@ -18,8 +18,8 @@
 /// Hunt multiplies it by a = `speedup_response`. With a = 2.13 the wind at the crest of a Gaussian ridge H
 /// high, with the half length L at half its height, is faster by 2 H/L, at that of a round hill by 1.6 H/L;
 /// across an oblique ridge only the component across it is. The bounds of f are response_lowest and
-/// speedup_highest, because the law is one for slopes up to 0.3, and the wind shadow slows the air in
-/// hollows. c makes the mean wind that of f w.
+/// response_highest, because the law is one for small slopes: over dunes as steep as they get it would say
+/// twice the wind, and the wind shadow slows the air in hollows. c makes the mean wind that of f w.
 /// venturi, as published: F is free of divergence itself, and h_ref is the 1st percentile of the surface at
 /// load: the height of the low ground, which a pit or an error of a few cells does not change.
 ///

@@ -43,7 +43,7 @@ inline int response_fields(const WindParameters& p) {
 }
 /// The bounds of the speed-up, and how it grows with height, if it does.
 inline SpeedUp speed_up(const WindParameters& p) {
-  if (has_response(p)) return {0, p.response_lowest, p.speedup_highest};
+  if (has_response(p)) return {0, p.response_lowest, p.response_highest};
   const bool by_height = p.speedup_law == SpeedUpLaw::venturi || !p.projection;
   return {by_height ? p.speedup : 0.0f, p.speedup_lowest, p.speedup_highest};
 }

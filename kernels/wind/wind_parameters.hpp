@@ -10,9 +10,10 @@ enum class SpeedUpLaw : int { jackson_hunt, venturi };
 constexpr const char* speedup_law_names[] = {"jackson_hunt", "venturi"};
 
 struct WindParameters {
-  SpeedUpLaw speedup_law = SpeedUpLaw::venturi;
+  SpeedUpLaw speedup_law = SpeedUpLaw::jackson_hunt;
   float speedup_response = 2.13f;
-  float response_lowest = 0.8f;
+  float response_lowest = 1.0f;
+  float response_highest = 1.2f;
   float speedup = 0.005f;
   float speedup_lowest = 0.5f;
   float speedup_highest = 3.0f;
@@ -35,10 +36,12 @@ constexpr auto parameter_table(const WindParameters*) {
                 "Speed-up of jackson_hunt over that of potential flow; 2.13 gives 2 H/L at a ridge's crest."),
       parameter("response_lowest", &P::response_lowest, 0.05, 1, "1",
                 "Least factor of jackson_hunt; in hollows slower air is left to the wind shadow."),
+      parameter("response_highest", &P::response_highest, 1, 10, "1",
+                "Greatest factor of jackson_hunt, whose law is one for small slopes."),
       parameter("speedup", &P::speedup, 0, 1, "1/m",
                 "Speed-up of venturi per metre above the low ground (the 1st percentile at load)."),
       parameter("speedup_lowest", &P::speedup_lowest, 0, 1, "1", "Least factor of venturi."),
-      parameter("speedup_highest", &P::speedup_highest, 1, 10, "1", "Greatest factor of the speed-up."),
+      parameter("speedup_highest", &P::speedup_highest, 1, 10, "1", "Greatest factor of venturi."),
       parameter("warping", &P::warping, "Whether the terrain deflects the wind."),
       parameter("radii", &P::radii, 1, 5000, "m",
                 "Radii of the smoothed terrains that deflect the wind; sigma is half of each."),

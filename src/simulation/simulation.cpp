@@ -44,7 +44,7 @@ double fastest_wind(const Scenario& s) {
   double fastest = s.wind_regime.speed;
   for (const WindSegment& segment : s.wind_segments)
     fastest = std::max(fastest, static_cast<double>(segment.speed));
-  return fastest * s.wind.speedup_highest;
+  return fastest * static_cast<double>(std::max(s.wind.speedup_highest, s.wind.response_highest));
 }
 
 /// Sub-steps that follow from other parameters are bounded, so that a step cannot take for ever.

@@ -247,7 +247,7 @@ struct Hierarchy {
   }
   static void fill(const avalanching::LevelView& from, const avalanching::LevelBuffers& first,
                    const avalanching::LevelBuffers& second) {
-    const avalanching::Restrict law{from, first, second};
+    const avalanching::Restrict law{from, first, second, 1.0f};
     for (int y = 0; y < law.blocks().height; ++y)
       for (int x = 0; x < law.blocks().width; ++x) law(x, y);
   }
