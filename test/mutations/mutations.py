@@ -162,7 +162,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "? 0.5f * flow.grid.cell_size /", "? flow.grid.cell_size /",
      "velocity is the mean of two faces", "analytic *Water.UniformChannel*"),
     ("outflow_unlimited", "kernels/water/virtual_pipes.cpp",
-     "out + 4.0f <= available * guard ? 1.0f :", "out + 4.0f <= 4.0f * available ? 1.0f :",
+     "minimum(spare(available) / (out", "minimum(spare(4.0f * available) / (out",
      "a cell gives no more water than it has", "unit *WaterLaws.ACellGives*"),
     ("sea_filled_once_a_step", "kernels/water/virtual_pipes.cpp",
      "    fill_sea();\n", "",

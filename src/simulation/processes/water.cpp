@@ -44,8 +44,8 @@ virtual_pipes::Workspace make_pipes(const SimulationState& state) {
 
 void move_water(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
-    virtual_pipes::step(e, c.terrain, c.scenario().water, c.time_step(), c.state.time(), sea_level(c.state),
-                        c.state.ledger(), c.fields.landed.data(),
+    virtual_pipes::step(e, c.terrain, c.scenario().water, c.time_step(), c.state.time(), c.scenario().seed,
+                        c.state.steps, sea_level(c.state), c.state.ledger(), c.fields.landed.data(),
                         workspace_as<virtual_pipes::Workspace>(workspace));
   });
 }
