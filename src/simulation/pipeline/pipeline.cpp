@@ -108,9 +108,23 @@ StepContext Pipeline::context() {
   return {state_, fields_, state_.terrain.view(), avalanching_measures_heights_};
 }
 
+int Pipeline::parts() const {
+  constexpr float most = 256;  // what is longer is left to the processes' own sub-steps
+  float longest = std::numeric_limits<float>::infinity();
+  for (const Stage& stage : stages_) longest = std::min(longest, stage.process->longest_step);
+  return static_cast<int>(std::clamp(std::ceil(state_.scenario.run.time_step / longest), 1.0f, most));
+}
+
 void Pipeline::step() {
   StepContext c = context();
-  fields_.roll_dice(state_.exec(), state_.scenario.seed, state_.steps);
+  c.parts = parts();
+  for (; c.part < c.parts; ++c.part) run_part(c);
+  ++state_.steps;
+  derived_ready_ = true;
+}
+
+void Pipeline::run_part(StepContext& c) {
+  fields_.roll_dice(state_.exec(), state_.scenario.seed, c.tick());
   const bool observed = timing_ || checks_layers();
   if (observed) {
     for (const Launch& launch : unfused_launches_) run_observed(launch, c);
@@ -120,17 +134,15 @@ void Pipeline::step() {
       for (std::size_t n = 0; n < recorded; ++n) run(fused_launches_[n], c);
     };
     if (recorded > 0)
-      recordings_.run(state_.exec(),
-                      {state_.wind_above(), state_.steps % avalanching::seam_period, fields_.heights_stale,
-                       recorded, c.terrain},
-                      start);
+      recordings_.run(
+          state_.exec(),
+          {c.wind_above(), c.tick() % avalanching::seam_period, fields_.heights_stale, recorded, c.terrain},
+          start);
     for (std::size_t n = recorded; n < fused_launches_.size(); ++n) run(fused_launches_[n], c);
   }
   fields_.heights_stale = !avalanching_measures_heights_;
   for (Stage& stage : stages_)
     if (stage.process->after_step) stage.process->after_step(c, stage.workspace.get());
-  ++state_.steps;
-  derived_ready_ = true;
 }
 
 std::size_t Pipeline::recordable_stages() const {
