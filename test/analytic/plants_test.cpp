@@ -130,13 +130,13 @@ TEST_P(PlantTheory, AsManyPlantsComeUpWhateverTheTimeStep) {
     for (double dt : {2.5, 2.0, 1.0, 0.5, 0.1, 0.01}) {
       SpeciesTraits s = undemanding();
       s.growth = 0;
-      s.spawn = static_cast<float>(q * 48 * 48);
+      s.spawn = static_cast<float>(q * 20 * 20);
       s.spawn_density = s.spawn_wind = 0;
       s.separation = 10;
-      PlantBench bench(exec(), 48, 48, {s}, 1, true, 1 << 14);
-      const int steps = static_cast<int>(std::lround(5 / dt));
+      PlantBench bench(exec(), 20, 20, {s}, 1, true, 1 << 13);
+      const int steps = static_cast<int>(std::lround(10 / dt));
       for (int n = 0; n < steps; ++n) bench.live(static_cast<float>(dt), static_cast<std::uint64_t>(n));
-      const double expected = q * 48 * 48 * 5;
+      const double expected = q * 20 * 20 * 10;
       EXPECT_NEAR(bench.work.count, expected, 4 * std::sqrt(expected))
           << q << " a second, steps of " << dt << " s";
     }

@@ -8,6 +8,17 @@ import collections
 Mutation = collections.namedtuple("Mutation", "name file before after law killer")
 
 MUTATIONS = [Mutation(*row) for row in (
+    # ---- time steps
+    ("shelter_forgotten", "src/simulation/checkpoint.cpp",
+     "state.shelter_known = true;", "state.shelter_known = false;",
+     "the wind's shadow of the present second is part of the state", "property *Checkpoint.ContinuesToTheBit*"),
+    ("shelter_of_every_step", "src/simulation/pipeline/process.hpp",
+     "std::floor(seconds) > std::floor(seconds - step)", "step > 0",
+     "the wind's shadow is held for a second", "analytic *TimeStep.*"),
+    ("long_steps_at_once", "src/simulation/processes/sand.cpp",
+     "p.longest_step = 1;", "p.longest_step = 100;",
+     "the wind's shadow and avalanches follow in a long step", "analytic *TimeStep.*"),
+
     # ---- wind
     ("wind_correction_dropped", "kernels/wind/surface_wind.hpp",
      "const Vector wind{above.x + d.re, above.y + d.im};", "const Vector wind{above.x, above.y + d.im};",

@@ -60,7 +60,7 @@ void Pipeline::allocate_layers() {
     for (Layer layer : process.writes) {
       if (process.active(state_.scenario))
         state_.terrain.allocate(layer);
-      else if (info(layer).lifetime == Lifetime::derived)
+      else if (info(layer).lifetime == Lifetime::derived || info(layer).lifetime == Lifetime::held)
         unused.push_back(layer);
     }
   for (Layer layer : unused) {
@@ -69,6 +69,7 @@ void Pipeline::allocate_layers() {
     });
     if (!used) state_.terrain.set_allocated(layer, false);
   }
+  state_.shelter_known = state_.shelter_known && state_.terrain.has(Layer::wind_shadow);
 }
 
 void Pipeline::make_launches() {
@@ -134,12 +135,13 @@ void Pipeline::run_part(StepContext& c) {
       for (std::size_t n = 0; n < recorded; ++n) run(fused_launches_[n], c);
     };
     if (recorded > 0)
-      recordings_.run(
-          state_.exec(),
-          {c.wind_above(), c.tick() % avalanching::seam_period, fields_.heights_stale, recorded, c.terrain},
-          start);
+      recordings_.run(state_.exec(),
+                      {c.wind_above(), c.tick() % avalanching::seam_period, fields_.heights_stale,
+                       c.renews_shelter(), recorded, c.terrain},
+                      start);
     for (std::size_t n = recorded; n < fused_launches_.size(); ++n) run(fused_launches_[n], c);
   }
+  if (c.renews_shelter()) state_.shelter_known = state_.terrain.has(Layer::wind_shadow);
   fields_.heights_stale = !avalanching_measures_heights_;
   for (Stage& stage : stages_)
     if (stage.process->after_step) stage.process->after_step(c, stage.workspace.get());

@@ -5,6 +5,7 @@
 /// the times, the check for broken values, what is recomputed before somebody looks, what of a step can be
 /// recorded, the cost model, the contract test, and the page config/processes.md.
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -36,6 +37,12 @@ struct StepContext {
     return state.steps * static_cast<std::uint64_t>(parts) + static_cast<std::uint64_t>(part);
   }
   double time() const { return static_cast<double>(tick()) * state.scenario.run.time_step / parts; }
+  /// Whether a second begins, for which the wind's shadow is held, or there is none yet.
+  bool renews_shelter() const {
+    const double seconds = time() / wind_shadow::held_for, step = time_step() / wind_shadow::held_for;
+    return !state.shelter_known || step >= 1 || parts > 1 || tick() == 0 ||
+           std::floor(seconds) > std::floor(seconds - step);
+  }
   wind::Vector wind_above() const { return state.wind_regime.at(time()); }
   const Dice& dice() const { return fields.dice; }
 };

@@ -220,8 +220,8 @@ Process avalanching_process() {
   return p;
 }
 
-/// Where starting passes is what takes time, and nothing but saltation asks for the wind's shadow before sand
-/// is lifted, the pass that lifts sand finds it.
+/// Where starting passes is what takes time, each step finds the wind's shadow, and nothing but saltation asks
+/// for it before sand is lifted, the pass that lifts sand finds it.
 FusedProcesses fused_wind_shadow_and_saltation() {
   FusedProcesses f;
   f.name = "shadow found in passing";
@@ -230,7 +230,8 @@ FusedProcesses fused_wind_shadow_and_saltation() {
   f.applies = [](const SimulationState& state) {
     constexpr int max_cells = 1 << 19;
     const bool on_gpu = std::string(state.exec().backend()) == "cuda";  // nor where memory is only planned
-    return on_gpu && state.terrain.grid().cells() <= max_cells && !state.scenario.wind_shadow.curved &&
+    return on_gpu && state.scenario.run.time_step >= wind_shadow::held_for &&
+           state.terrain.grid().cells() <= max_cells && !state.scenario.wind_shadow.curved &&
            !state.scenario.echo_dunes.enabled;
   };
   f.step = [](StepContext& c, ProcessWorkspace* shadow, ProcessWorkspace*) {

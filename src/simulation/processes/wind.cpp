@@ -72,6 +72,7 @@ void update_wind(StepContext& c, ProcessWorkspace* workspace) {
 }
 
 void update_wind_shadow(StepContext& c, ProcessWorkspace* workspace) {
+  if (!c.renews_shelter()) return;
   with_backend(c.exec(), [&](auto& e) {
     wind_shadow::step(e, c.terrain, c.scenario().wind_shadow, obstructing_heights(c),
                       workspace_as<wind_shadow::Workspace>(workspace));
