@@ -91,6 +91,15 @@ struct Die {
     const Quanta rounded = few ? by_die : static_cast<Quanta>(rintf(held));
     return amount >= most ? available : rounded;
   }
+  /// An amount [quanta] in whole quanta, with its sign; |amount| < 2³⁰. Nothing is there that could bound it.
+  DESERT_HD Quanta whole(float amount, int cell) const {
+    const float size = fabsf(amount);
+    const bool few = size < small;
+    const auto fixed_point = static_cast<std::int32_t>((few ? size : 0.0f) * 4194304.0f);
+    const Quanta by_die = (fixed_point + static_cast<std::int32_t>(word(cell) >> 10)) >> 22;
+    const Quanta rounded = few ? by_die : static_cast<Quanta>(rintf(size));
+    return amount < 0.0f ? -rounded : rounded;
+  }
   /// A displacement [cells, 16.16 fixed point]; if `few`, in whole cells, by a die of 16 bits.
   DESERT_HD static int whole_cells_if(bool few, int displacement, std::uint32_t die) {
     const int fraction = few ? 65535 : 0;

@@ -23,7 +23,7 @@ struct FlowFields {
   float *flux_x, *flux_y;            ///< through the east and the north face [m³/s]
   float* supply_share;               ///< share of its outflow that a cell has water for
   Quanta *sediment, *sediment_next;  ///< null without sediment; sediment after this sub-step
-  float* concentration;              ///< sediment that leaves a cell with a quantum of its water
+  float* sediment_share;             ///< sediment that leaves a cell with a quantum of its unlimited outflow
   Die die_x, die_y;                  ///< of the faces towards the east and the north
 };
 
@@ -95,25 +95,19 @@ struct Flow : FlowFields {
   /// Whether what passes the face between i and j (−1: an open edge) comes from i.
   DESERT_HD static bool leaves(int j, float out) { return out > 0.0f || (!inside && j < 0); }
 
-  /// Amount [quanta] that leaves i through the face to j, negative if it enters; `out`: the same before it is
-  /// limited to what the donor has.
-  DESERT_HD float limited(int i, int j, float out) const {
-    return out * supply_share[leaves(j, out) ? i : j];
-  }
-  /// Likewise of all faces.
-  DESERT_HD Faces limited_faces(int x, int y) const {
+  /// The outflow through each face, where with each quantum so much leaves as the donor's value in `share`.
+  DESERT_HD Faces shared(int x, int y, const float* share) const {
     const int i = grid.index(x, y);
     Faces f = faces(x, y);
-    f.to_east = limited(i, f.east, f.to_east);
-    f.to_west = limited(i, f.west, f.to_west);
-    f.to_north = limited(i, f.north, f.to_north);
-    f.to_south = limited(i, f.south, f.to_south);
+    // All are loaded whichever is taken, so that compilers vectorise the loop.
+    const auto of = [&](int j) { return share[inside || j >= 0 ? j : i]; };
+    const float here = share[i], east = of(f.east), west = of(f.west), north = of(f.north),
+                south = of(f.south);
+    f.to_east *= leaves(f.east, f.to_east) ? here : east;
+    f.to_west *= leaves(f.west, f.to_west) ? here : west;
+    f.to_north *= leaves(f.north, f.to_north) ? here : north;
+    f.to_south *= leaves(f.south, f.to_south) ? here : south;
     return f;
-  }
-  /// An amount in whole quanta. `face`: the cell whose die both sides of the face roll.
-  DESERT_HD static Quanta whole(const Die& die, float amount, int face) {
-    const Quanta quanta = die.whole_at_most(fabsf(amount), wall_height, face);
-    return amount < 0.0f ? -quanta : quanta;
   }
   /// The number of the face between cell i and its western or southern neighbour j.
   DESERT_HD static int face_to(int i, int j) { return inside || j >= 0 ? j : -1 - i; }

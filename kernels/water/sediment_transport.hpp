@@ -21,17 +21,11 @@ struct CarrySediment {
 
   Die die_x, die_y;
 
-  /// Sediment [quanta] that cell i loses with the water that leaves it to j, negative if it gains.
-  DESERT_HD Quanta loss(const Die& die, int i, int j, float out, int face) const {
-    return Flow<inside>::whole(die, out * flow.concentration[Flow<inside>::leaves(j, out) ? i : j], face);
-  }
   DESERT_HD void operator()(int x, int y) const {
     const int i = flow.grid.index(x, y);
-    const typename Flow<inside>::Faces f = flow.limited_faces(x, y);
-    const Quanta e = loss(die_x, i, f.east, f.to_east, i),
-                 w = loss(die_x, i, f.west, f.to_west, flow.face_to(i, f.west));
-    const Quanta n = loss(die_y, i, f.north, f.to_north, i),
-                 s = loss(die_y, i, f.south, f.to_south, flow.face_to(i, f.south));
+    const typename Flow<inside>::Faces f = flow.shared(x, y, flow.sediment_share);
+    const Quanta e = die_x.whole(f.to_east, i), w = die_x.whole(f.to_west, flow.face_to(i, f.west));
+    const Quanta n = die_y.whole(f.to_north, i), s = die_y.whole(f.to_south, flow.face_to(i, f.south));
     flow.sediment_next[i] = flow.sediment[i] - ((e + w) + (n + s));
     if (inside) return;
     const Quanta over =

@@ -69,7 +69,7 @@ struct LimitOutflow {
     flow.supply_share[i] = share;
     if (!flow.sediment) return;
     const float carried = static_cast<float>(flow.sediment[i]);
-    flow.concentration[i] = minimum(carried / (available + 1e-20f), spare(carried) / (out * share + 1e-20f));
+    flow.sediment_share[i] = minimum(carried * share / (available + 1e-20f), spare(carried) / (out + 1e-20f));
   }
   /// What may leave of so many quanta, so that whole quanta through four faces do not exceed them.
   DESERT_HD static float spare(float quanta) {
@@ -87,11 +87,10 @@ struct MoveWater {
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = flow.grid.index(x, y);
-    const typename Flow<inside>::Faces f = flow.limited_faces(x, y);
-    const Quanta e = flow.whole(flow.die_x, f.to_east, i),
-                 w = flow.whole(flow.die_x, f.to_west, flow.face_to(i, f.west));
-    const Quanta n = flow.whole(flow.die_y, f.to_north, i),
-                 s = flow.whole(flow.die_y, f.to_south, flow.face_to(i, f.south));
+    const typename Flow<inside>::Faces f = flow.shared(x, y, flow.supply_share);
+    const Quanta e = flow.die_x.whole(f.to_east, i), w = flow.die_x.whole(f.to_west, flow.face_to(i, f.west));
+    const Quanta n = flow.die_y.whole(f.to_north, i),
+                 s = flow.die_y.whole(f.to_south, flow.face_to(i, f.south));
     const Quanta before = flow.water[i], after = before - ((e + w) + (n + s));
     flow.water[i] = after;
     if (flow.sediment) flow.sediment[i] = flow.sediment_next[i];
@@ -169,7 +168,7 @@ void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_st
   flow.sediment = t.quanta(Layer::suspended_sediment);
   flow.sediment_next = carried;
   float *velocity_x = t.real(Layer::water_velocity_x), *velocity_y = t.real(Layer::water_velocity_y);
-  flow.concentration = velocity_x;  // it has no other use until the water has moved
+  flow.sediment_share = velocity_x;  // it has no other use until the water has moved
   const float friction_factor = maximum(1.0f - p.friction * part, 0.0f);
   for (int n = 0; n < parts; ++n) {
     const double phase = 2 * pi * (time + (n + 0.5) * part) / p.wave_period;
