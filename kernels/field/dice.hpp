@@ -19,6 +19,7 @@
 #include "kernels/backend/macros.hpp"
 #include "kernels/field/math.hpp"
 #include "kernels/field/quanta.hpp"
+#include "kernels/field/random.hpp"
 
 namespace desert_sim {
 
@@ -48,6 +49,10 @@ enum class Roll : int {
   humus,
   water_uptake,
   plant_height,
+  pipe_x,
+  pipe_y,
+  sediment_x,
+  sediment_y,
   count
 };
 
@@ -65,14 +70,15 @@ struct Die {
   std::uint32_t key;                ///< on a CPU, and outside of steps
   const std::uint32_t* device_key;  ///< on a GPU; null outside of steps
   std::uint32_t part = 0;           ///< of a process that has several sub-steps a step
+  std::uint32_t turn = 0;           ///< added to the word; see regular_die()
 
   Die of_part(int n) const { return {key, device_key, static_cast<std::uint32_t>(n) * 0x9e3779b9u}; }
 
   DESERT_HD std::uint32_t word(int cell) const {
 #if defined(__CUDA_ARCH__)
-    return scrambled((static_cast<std::uint32_t>(cell) + part) ^ (device_key ? *device_key : key));
+    return scrambled((static_cast<std::uint32_t>(cell) + part) ^ (device_key ? *device_key : key)) + turn;
 #else
-    return scrambled((static_cast<std::uint32_t>(cell) + part) ^ key);
+    return scrambled((static_cast<std::uint32_t>(cell) + part) ^ key) + turn;
 #endif
   }
   /// An amount [quanta] in whole quanta, not less than 0 and not more than `available`.
@@ -84,6 +90,15 @@ struct Die {
     const Quanta by_die = (fixed_point + static_cast<std::int32_t>(word(cell) >> 10)) >> 22;
     const Quanta rounded = few ? by_die : static_cast<Quanta>(rintf(held));
     return amount >= most ? available : rounded;
+  }
+  /// An amount [quanta] in whole quanta, with its sign; |amount| < 2³⁰. Nothing is there that could bound it.
+  DESERT_HD Quanta whole(float amount, int cell) const {
+    const float size = fabsf(amount);
+    const bool few = size < small;
+    const auto fixed_point = static_cast<std::int32_t>((few ? size : 0.0f) * 4194304.0f);
+    const Quanta by_die = (fixed_point + static_cast<std::int32_t>(word(cell) >> 10)) >> 22;
+    const Quanta rounded = few ? by_die : static_cast<Quanta>(rintf(size));
+    return amount < 0.0f ? -rounded : rounded;
   }
   /// A displacement [cells, 16.16 fixed point]; if `few`, in whole cells, by a die of 16 bits.
   DESERT_HD static int whole_cells_if(bool few, int displacement, std::uint32_t die) {
@@ -104,6 +119,15 @@ struct Dice {
 };
 
 namespace dice {
+
+/// A die that turns on by the golden ratio instead of being rolled: over successive `turns` the u of a cell are
+/// spread evenly, so that an amount that hardly changes adds up to its sum within a quantum or two, not within
+/// the root of their number. What carries momentum needs this, because it would answer to the noise of rolls.
+inline Die regular(std::uint64_t seed, Roll roll, std::uint64_t turns) {
+  const std::uint32_t key =
+      random_words(seed, Purpose::rounding, static_cast<std::uint32_t>(roll), 0, 0).word[0];
+  return {key, nullptr, 0, static_cast<std::uint32_t>(turns) * 0x9e3779b9u};
+}
 
 /// Rolls the dice of a step. `device_keys`: memory for the keys on the device.
 template <class E>

@@ -48,6 +48,7 @@ enum class Layer : int {
 enum class Storage { quanta, real };  ///< fixed-point metres, or float32; both four bytes
 enum class Lifetime {
   persistent,  ///< part of the state
+  held,        ///< likewise where a step is shorter than what it is held for, else derived
   derived,     ///< computed from the state for the processes of a step
   on_request   ///< computed from the state only when a snapshot needs it
 };
@@ -100,7 +101,7 @@ constexpr std::array<LayerInfo, 32> layer_table{{
      "Wind at the surface, eastward part."},
     {Layer::wind_y, "wind_y", "m/s", Storage::real, Lifetime::derived, 0, 0,
      "Wind at the surface, northward part."},
-    {Layer::wind_shadow, "wind_shadow", "1", Storage::real, Lifetime::derived, 0, 1,
+    {Layer::wind_shadow, "wind_shadow", "1", Storage::real, Lifetime::held, 0, 1,
      "0 in the open … 1 fully in the lee."},
     {Layer::echo, "echo", "1", Storage::real, Lifetime::derived, -1, 1,
      "In front of cliffs: < 0 erosion, > 0 sticky."},

@@ -2,8 +2,11 @@
 /// Spawning of plants. Nilles 2025 §3.2.2, eq. 13–15.
 ///
 ///   weight   p_j = p_b (1 + k_density min(ρ_j, 1) + k_wind min(ρ_wj, 1)),   0 where the place does not suit
-///   event    P   = 1 − (1 − min(Σ_j p_j/N_cells, 1))^Δt
+///   events   n   = ⌊min(Σ_j p_j/N_cells, 1) Δt + u⌋,   u uniform in [0, 1)
 ///   radius   5 % of min((soil + sand)/h_r, r_max)
+///
+/// The published P = 1 − (1 − min(Σ_j p_j/N_cells, 1))^Δt is the same for Δt = 1 s, but in shorter steps more
+/// plants come up, one a step where the sum is 1, and fewer in longer ones.
 ///
 /// ρ_j and ρ_wj are the densities of species j that cover.hpp finds. An event creates one plant in a cell,
 /// its species drawn by weight, with health 1, age 0 and no stored water. A place suits a species if there is
@@ -26,8 +29,10 @@ DESERT_HD float weight_of(const SpeciesTraits& s, float density, float downwind)
   return s.spawn * (1.0f + s.spawn_density * minimum(density, 1.0f) + s.spawn_wind * minimum(downwind, 1.0f));
 }
 
-/// 1 − (1 − q)^dt for q in 0 … 1.
-DESERT_HD double event_probability(double q, double dt) { return q >= 1.0 ? 1.0 : -expm1(dt * log1p(-q)); }
+/// Number of events in a step of dt [s] at a rate of q a second; `u` is uniform in 0 … 1.
+DESERT_HD int number_of_events(double q, double dt, double u) {
+  return q > 0.0 ? static_cast<int>(q * dt + u) : 0;
+}
 
 /// Radius of a new plant [m]; `loose_depth`: soil + sand [m].
 DESERT_HD float seedling_radius(const SpeciesTraits& s, float loose_depth) {
@@ -62,15 +67,22 @@ struct SpawningLaw {
     return ground_quality(s, site.ground(i, site.surface(i), in_quanta * s.stem, in_quanta * s.root)) > 0.0f;
   }
 
-  /// Random words of a cell in this step; `which` is 0 for event and species, 1 for the position.
-  DESERT_HD RandomWords draw(int i, std::uint32_t which) const {
+  /// Random words of a cell in this step; `which` is 2n for the species of its nth plant and, of the first,
+  /// for the number of events, and 2n + 1 for its position.
+  DESERT_HD RandomWords draw(int i, int which) const {
+    constexpr int bits = 16;  // more plants than a step has seconds do not come up
     return random_words(seed, Purpose::plants, static_cast<std::uint32_t>(i),
                         static_cast<std::uint32_t>(step),
-                        static_cast<std::uint32_t>(step >> 32) << 1 | which);
+                        static_cast<std::uint32_t>(step >> 32) << bits | static_cast<std::uint32_t>(which));
   }
 
-  /// The species that spawns in a cell, or −1.
-  DESERT_HD int species_of(int i) const {
+  /// The plants that spawn in a cell: how many, and the weight of each species among them.
+  struct Seeds {
+    int count = 0;
+    float weights[max_species], all = 0.0f;
+  };
+  DESERT_HD Seeds seeds(int i) const {
+    Seeds found;
     const auto share = [&](float weights) {
       const double q = static_cast<double>(weights) / site.grid.cells();
       return q < 1.0 ? q : 1.0;
@@ -78,33 +90,36 @@ struct SpawningLaw {
     float likely = 0.0f;
     for (int k = 0; k < species_count; ++k) likely += weight(k, i);
     const RandomWords words = draw(i, 0);
-    const double chance = (words.word[0] + words.word[1] * 0x1p-32) * 0x1p-32;
-    // Most cells return here: the bound is not below P even if the place suits all species.
-    if (chance >= share(likely) * (time_step > 1.0f ? time_step : 1.0f)) return -1;
-    float weights[max_species], all = 0.0f;
+    const double u = (words.word[0] + words.word[1] * 0x1p-32) * 0x1p-32;
+    // Most cells return here: none comes up even if the place suits all species.
+    if (number_of_events(share(likely), time_step, 1.0 - u) == 0) return found;
     const float slope = site.slope(i);
     for (int k = 0; k < species_count; ++k)
-      all += weights[k] = is_suitable(k, i, slope) ? weight(k, i) : 0.0f;
-    if (!(chance < event_probability(share(all), time_step))) return -1;
-    float left = static_cast<float>(words.word[2] >> 8) * (1.0f / 16777216.0f) * all;
-    int last = -1;
+      found.all += found.weights[k] = is_suitable(k, i, slope) ? weight(k, i) : 0.0f;
+    found.count = number_of_events(share(found.all), time_step, 1.0 - u);
+    return found;
+  }
+  /// The species of the nth plant that spawns in a cell.
+  DESERT_HD int species_of(int i, const Seeds& among, int n) const {
+    float left = static_cast<float>(draw(i, 2 * n).word[2] >> 8) * (1.0f / 16777216.0f) * among.all;
+    int last = 0;
     for (int k = 0; k < species_count; ++k) {
-      if (!(weights[k] > 0.0f)) continue;
+      if (!(among.weights[k] > 0.0f)) continue;
       last = k;
-      if (left < weights[k]) return k;
-      left -= weights[k];
+      if (left < among.weights[k]) return k;
+      left -= among.weights[k];
     }
     return last;
   }
 };
 
-/// Writes 1 where a plant spawns, else 0.
+/// Writes how many plants spawn.
 struct MarkSpawningCells {
   SpawningLaw spawning;
   int* seeds;
   DESERT_HD void operator()(int x, int y) const {
     const int i = spawning.site.grid.index(x, y);
-    seeds[i] = spawning.species_of(i) >= 0 ? 1 : 0;
+    seeds[i] = spawning.seeds(i).count;
   }
 };
 
@@ -127,10 +142,17 @@ struct CreatePlants {
     const Site& site = spawning.site;
     const int i = site.grid.index(x, y);
     if (seeds[i] == 0) return;
-    const int place = index_of_new_plant(seed_offsets[i], seed_offsets[site.grid.cells()], capacity - count);
-    if (place < 0) return;
-    const int n = count + place, kind = spawning.species_of(i);
-    const RandomWords words = spawning.draw(i, 1);
+    const SpawningLaw::Seeds among = spawning.seeds(i);
+    for (int k = 0; k < seeds[i]; ++k) {
+      const int place =
+          index_of_new_plant(seed_offsets[i] + k, seed_offsets[site.grid.cells()], capacity - count);
+      if (place >= 0) create(x, y, i, k, spawning.species_of(i, among, k), count + place);
+    }
+  }
+  /// The kth plant of cell i, as the nth of all.
+  DESERT_HD void create(int x, int y, int i, int k, int kind, int n) const {
+    const Site& site = spawning.site;
+    const RandomWords words = spawning.draw(i, 2 * k + 1);
     const auto within = [&](int cell, std::uint32_t word) {
       return (static_cast<float>(cell) + static_cast<float>(word >> 8) * (1.0f / 16777216.0f)) *
              site.grid.cell_size;

@@ -3,6 +3,7 @@
 /// runs the laws.
 
 #include "kernels/backend/for_each.hpp"
+#include "kernels/field/dice.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/math.hpp"
 
@@ -22,7 +23,12 @@ struct FlowFields {
   float *flux_x, *flux_y;            ///< through the east and the north face [m³/s]
   float* supply_share;               ///< share of its outflow that a cell has water for
   Quanta *sediment, *sediment_next;  ///< null without sediment; sediment after this sub-step
+  float* sediment_share;             ///< sediment that leaves a cell with a quantum of its unlimited outflow
+  Die die_x, die_y;                  ///< of the faces towards the east and the north
 };
+
+/// What four faces may move more than the sum of their amounts, each being rounded to a whole quantum.
+constexpr float rounding_of_faces = 3.0f;
 
 /// State of the flow. `inside` is for cells that are not at an edge: their neighbours' indices need no test,
 /// so that rows of cells vectorise (SIMD).
@@ -86,16 +92,25 @@ struct Flow : FlowFields {
     return f;
   }
 
-  /// Whole quanta of an amount from a donor that has water for `share` of it: rounded to nearest if that is
-  /// 1, else rounded down.
-  DESERT_HD static Quanta round_to_quanta(float amount, float share) {
-    return static_cast<Quanta>(share < 1.0f ? amount * share : rintf(amount));
+  /// Whether what passes the face between i and j (−1: an open edge) comes from i.
+  DESERT_HD static bool leaves(int j, float out) { return out > 0.0f || (!inside && j < 0); }
+
+  /// The outflow through each face, where with each quantum so much leaves as the donor's value in `share`.
+  DESERT_HD Faces shared(int x, int y, const float* share) const {
+    const int i = grid.index(x, y);
+    Faces f = faces(x, y);
+    // All are loaded whichever is taken, so that compilers vectorise the loop.
+    const auto of = [&](int j) { return share[inside || j >= 0 ? j : i]; };
+    const float here = share[i], east = of(f.east), west = of(f.west), north = of(f.north),
+                south = of(f.south);
+    f.to_east *= leaves(f.east, f.to_east) ? here : east;
+    f.to_west *= leaves(f.west, f.to_west) ? here : west;
+    f.to_north *= leaves(f.north, f.to_north) ? here : north;
+    f.to_south *= leaves(f.south, f.to_south) ? here : south;
+    return f;
   }
-  /// Amount [quanta] that leaves i through the face to j (−1: an open edge), negative if it enters; `out`:
-  /// the same before the limit.
-  DESERT_HD Quanta through(int i, int j, float out) const {
-    return round_to_quanta(out, out > 0.0f || (!inside && j < 0) ? supply_share[i] : supply_share[j]);
-  }
+  /// The number of the face between cell i and its western or southern neighbour j.
+  DESERT_HD static int face_to(int i, int j) { return inside || j >= 0 ? j : -1 - i; }
 };
 
 /// Runs a law for all cells.

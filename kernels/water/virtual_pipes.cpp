@@ -34,14 +34,16 @@ struct Accelerate {
     const Quanta bed = bed_i > bed_j ? bed_i : bed_j, top = top_i > top_j ? top_i : top_j;
     if (top <= bed) return 0.0f;
     const float face = minimum(static_cast<float>(top - bed), flow.highest_face) * flow.quantum;
-    const float slope = static_cast<float>(top_i - top_j) * flow.quantum / flow.grid.cell_size;
-    float pull = gravity * slope;
+    const Quanta drop = top_i - top_j;
+    const bool level = drop <= 1 && drop >= -1;
+    float pull = level ? 0.0f : gravity * (static_cast<float>(drop) * flow.quantum / flow.grid.cell_size);
     if (waves.strength > 0.0f) {
       const float both = static_cast<float>(flow.water[i] + flow.water[j]) * flow.quantum;
       pull += waves.strength * (1.0f - exp_negative(0.005f * both * both)) * 0.5f * (wind[i] + wind[j]);
     }
     const float limited_flux =
         first ? flux : flux * (flux > 0.0f ? flow.supply_share[i] : flow.supply_share[j]);
+    if (level && pull == 0.0f && flow.amount(fabsf(limited_flux)) < 0.5f) return 0.0f;
     const float undamped_flux =
         friction_factor * limited_flux + flow.time_step * (flow.grid.cell_size * face) * pull;
     return 2.0f * undamped_flux / (1.0f + sqrtf(1.0f + 4.0f * (drag / (face * face)) * fabsf(undamped_flux)));
@@ -63,10 +65,16 @@ struct LimitOutflow {
     const float out = (maximum(f.to_east, 0.0f) + maximum(f.to_west, 0.0f)) +
                       (maximum(f.to_north, 0.0f) + maximum(f.to_south, 0.0f));
     const float available = static_cast<float>(flow.water[i]);
-    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // the sum is rounded
-    // Four amounts that are each rounded to nearest may exceed their sum by two quanta.
-    flow.supply_share[i] =
-        out + 4.0f <= available * guard ? 1.0f : minimum(available / (out + 1e-20f), 1.0f) * guard;
+    const float share = minimum(spare(available) / (out + 1e-20f), 1.0f);
+    flow.supply_share[i] = share;
+    if (!flow.sediment) return;
+    const float carried = static_cast<float>(flow.sediment[i]);
+    flow.sediment_share[i] = minimum(carried * share / (available + 1e-20f), spare(carried) / (out + 1e-20f));
+  }
+  /// What may leave of so many quanta, so that whole quanta through four faces do not exceed them.
+  DESERT_HD static float spare(float quanta) {
+    constexpr float guard = 1.0f - 1.0f / 1048576.0f;  // sums are rounded
+    return maximum(quanta * guard - rounding_of_faces, 0.0f);
   }
 };
 
@@ -79,9 +87,10 @@ struct MoveWater {
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = flow.grid.index(x, y);
-    const typename Flow<inside>::Faces f = flow.faces(x, y);
-    const Quanta e = flow.through(i, f.east, f.to_east), w = flow.through(i, f.west, f.to_west);
-    const Quanta n = flow.through(i, f.north, f.to_north), s = flow.through(i, f.south, f.to_south);
+    const typename Flow<inside>::Faces f = flow.shared(x, y, flow.supply_share);
+    const Quanta e = flow.die_x.whole(f.to_east, i), w = flow.die_x.whole(f.to_west, flow.face_to(i, f.west));
+    const Quanta n = flow.die_y.whole(f.to_north, i),
+                 s = flow.die_y.whole(f.to_south, flow.face_to(i, f.south));
     const Quanta before = flow.water[i], after = before - ((e + w) + (n + s));
     flow.water[i] = after;
     if (flow.sediment) flow.sediment[i] = flow.sediment_next[i];
@@ -95,8 +104,8 @@ struct MoveWater {
     const float per = depth * flow.quantum > film
                           ? 0.5f * flow.grid.cell_size / (static_cast<float>(depth) * flow.time_step)
                           : 0.0f;
-    velocity_x[i] = static_cast<float>(e - w) * per;
-    velocity_y[i] = static_cast<float>(n - s) * per;
+    velocity_x[i] = (f.to_east - f.to_west) * per;
+    velocity_y[i] = (f.to_north - f.to_south) * per;
   }
   static constexpr float film = 1e-4f;  ///< depth up to which water is a film [m]
 };
@@ -130,7 +139,8 @@ inline int substeps(const WaterParameters& p, const Grid& grid, float time_step,
 
 template <class E>
 void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_step, double time,
-          Quanta sea_level, LedgerView ledger, Quanta* carried, Workspace& work) {
+          std::uint64_t seed, std::uint64_t tick, Quanta sea_level, LedgerView ledger, Quanta* carried,
+          Workspace& work) {
   const auto fill_sea = [&] { water_sources::fill_sea(exec, t, p.sea, sea_level, ledger); };
   fill_sea();
   const double deepest =
@@ -158,21 +168,27 @@ void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_st
   flow.sediment = t.quanta(Layer::suspended_sediment);
   flow.sediment_next = carried;
   float *velocity_x = t.real(Layer::water_velocity_x), *velocity_y = t.real(Layer::water_velocity_y);
+  flow.sediment_share = velocity_x;  // it has no other use until the water has moved
   const float friction_factor = maximum(1.0f - p.friction * part, 0.0f);
   for (int n = 0; n < parts; ++n) {
     const double phase = 2 * pi * (time + (n + 0.5) * part) / p.wave_period;
     const float swell = p.wave_strength * static_cast<float>(std::fmax(std::sin(phase), 0.0));
     const Waves waves{swell, t.real(Layer::wind_x), t.real(Layer::wind_y)};
+    const std::uint64_t turn = tick * static_cast<std::uint64_t>(parts) + static_cast<std::uint64_t>(n);
+    flow.die_x = dice::regular(seed, Roll::pipe_x, turn);
+    flow.die_y = dice::regular(seed, Roll::pipe_y, turn);
     for_each_pipe<Accelerate>(exec, flow, waves, friction_factor, p.drag * part / l, n == 0);
     for_each_pipe<LimitOutflow>(exec, flow);
-    if (flow.sediment) for_each_pipe<CarrySediment>(exec, flow, ledger);
+    if (flow.sediment)
+      for_each_pipe<CarrySediment>(exec, flow, ledger, dice::regular(seed, Roll::sediment_x, turn),
+                                   dice::regular(seed, Roll::sediment_y, turn));
     for_each_pipe<MoveWater>(exec, flow, velocity_x, velocity_y, ledger);
     fill_sea();
   }
   for_each_pipe<ApplyLimits>(exec, flow);
 }
 
-template void step(Backend&, const TerrainView&, const WaterParameters&, float, double, Quanta, LedgerView,
-                   Quanta*, Workspace&);
+template void step(Backend&, const TerrainView&, const WaterParameters&, float, double, std::uint64_t,
+                   std::uint64_t, Quanta, LedgerView, Quanta*, Workspace&);
 
 }  // namespace desert_sim::virtual_pipes

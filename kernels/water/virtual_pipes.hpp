@@ -10,10 +10,13 @@
 ///
 /// H is the solid surface, w the depth of water, W = H + w, u the wind's component along the pipe; in the
 /// velocity w is the mean depth of the sub-step, and films have none. Each face has one signed flux; a cell
-/// stores those of its east and its north face. Amounts are rounded to quanta once a face, alike from both
-/// sides, so that none is lost. The published method has two outflow fluxes per pair of cells, which makes
-/// waves √2 too fast once the flow reverses, and a constant pipe section, with which the speed of waves does
-/// not depend on depth.
+/// stores those of its east and its north face. Amounts are rounded to quanta by dice that turn regularly
+/// (dice.hpp), alike from both sides of a face, so that none is lost and no flow is too small for a short
+/// step; up to three quanta of a cell wait for more, because four faces may round as much up. Surfaces that
+/// differ by one quantum are level: they do not pull, and less than half a quantum a sub-step stops between
+/// them, because what rounding leaves would keep a lake moving. The published method has two outflow fluxes
+/// per pair of cells, which makes waves √2 too fast once the flow reverses, and a constant pipe section, with
+/// which the speed of waves does not depend on depth.
 ///
 /// A step is divided into sub-steps with Δt < l/√(2 g w) for the deepest water, with a margin for it to
 /// become deeper. Where that takes more than `most_substeps`, h_face is limited to what is stable, and waves
@@ -42,10 +45,11 @@ struct Workspace {
   std::size_t bytes() const { return supply_share.bytes(); }
 };
 
-/// `time`: time of the waves [s]; `carried`: scratch, one value a cell. Copies the greatest depth to the
-/// host.
+/// `time`: time of the waves [s]; `seed` and `tick` (steps done): key and counter of the dice; `carried`:
+/// scratch, one value a cell. Copies the greatest depth to the host.
 template <class E>
 void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_step, double time,
-          Quanta sea_level, LedgerView ledger, Quanta* carried, Workspace& work);
+          std::uint64_t seed, std::uint64_t tick, Quanta sea_level, LedgerView ledger, Quanta* carried,
+          Workspace& work);
 
 }  // namespace desert_sim::virtual_pipes

@@ -128,8 +128,10 @@ std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec,
   check_words(header, words, path);
   std::unique_ptr<Simulation> simulation = simulation_of(header, exec);
   SimulationState& state = simulation->state();
-  for (std::size_t n = 0; n < header.layers.size(); ++n)
+  for (std::size_t n = 0; n < header.layers.size(); ++n) {
     state.terrain.set_raw_words(header.layers[n], words.layers[n].copy());
+    if (header.layers[n] == Layer::wind_shadow) state.shelter_known = true;
+  }
   if (state.plants) state.set_plants(words.plants.copy());
   require_balance(state, path);
   return simulation;

@@ -58,7 +58,7 @@ CheckpointHeader header_of(const Simulation& simulation) {
   header.ledger = s.read_ledger();
   header.wind = s.wind_regime;
   for (const LayerInfo& row : layer_table)
-    if (row.lifetime == Lifetime::persistent && s.terrain.has(row.layer)) header.layers.push_back(row.layer);
+    if (s.is_part(row.layer)) header.layers.push_back(row.layer);
   return header;
 }
 
@@ -171,7 +171,10 @@ void read_layers(const YAML::Node& list, ValidationErrors& errors, CheckpointHea
     const auto row = std::find_if(layer_table.begin(), layer_table.end(),
                                   [&](const LayerInfo& layer) { return name == layer.name; });
     const std::string key = "layers." + std::to_string(n);
-    if (row == layer_table.end() || row->lifetime != Lifetime::persistent)
+    const bool held = row != layer_table.end() && row->lifetime == Lifetime::held &&
+                      header.scenario.wind_shadow.enabled &&
+                      header.scenario.run.time_step < wind_shadow::held_for;
+    if (row == layer_table.end() || (row->lifetime != Lifetime::persistent && !held))
       return errors.add(key, quoted(name) + " is not a layer that checkpoints hold");
     const auto place = static_cast<std::size_t>(row - layer_table.begin());
     if (place < next) return errors.add(key, quoted(name) + " is given twice, or not in the order of layers");

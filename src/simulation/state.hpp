@@ -42,6 +42,16 @@ struct SimulationState {
   SimulationState& operator=(const SimulationState&) = delete;
 
   Exec& exec() const { return terrain.exec(); }
+  /// Whether the layer wind_shadow is that of the present second; see kernels/wind/wind_shadow.hpp.
+  bool shelter_known = false;
+  /// Whether a layer is in use and part of the state; what is held is, where steps to come need it.
+  bool is_part(Layer layer) const {
+    const Lifetime lifetime = info(layer).lifetime;
+    const bool held =
+        lifetime == Lifetime::held && shelter_known && scenario.run.time_step < wind_shadow::held_for;
+    return terrain.has(layer) && (lifetime == Lifetime::persistent || held);
+  }
+
   double time() const { return static_cast<double>(steps) * scenario.run.time_step; }  ///< simulated [s]
   wind::Vector wind_above() const { return wind_regime.at(time()); }  ///< the high-altitude wind [m/s]
   LedgerView ledger() const { return {ledger_words.data()}; }

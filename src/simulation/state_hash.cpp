@@ -14,7 +14,7 @@ std::uint64_t SimulationState::hash() const {
   if (!sum) throw Error("the memory for the state hash cannot be allocated");
   XXH3_64bits_reset(sum);
   for (const LayerInfo& row : layer_table) {
-    if (row.lifetime != Lifetime::persistent || !terrain.has(row.layer)) continue;
+    if (!is_part(row.layer)) continue;
     const std::vector<std::uint32_t> words = terrain.raw_words(row.layer);
     XXH3_64bits_update(sum, row.name, std::char_traits<char>::length(row.name));
     XXH3_64bits_update(sum, words.data(), words.size() * sizeof(std::uint32_t));

@@ -39,6 +39,35 @@ TEST_P(Water, LakeStaysAtRestAroundDryIslands) {
   }
 }
 
+/// Rounding must neither hold a lake's surface where it is not level nor keep it moving. When amounts were
+/// rounded to nearest, it stood still 2.6 mm out of level with steps of 0.1 s, and 3 mm with 0.02 s.
+TEST_P(Water, ALakeComesToRestAndIsLevel) {
+  for (const double step : {1.0, 0.1, 0.02}) {
+    test::BenchTerrain t(exec(), 32, 24);
+    t.set(Layer::bedrock, [](int x, int y) { return 0.5 * std::sin(0.4 * x) * std::cos(0.5 * y); });
+    t.set(Layer::water, [](int x, int y) { return 0.4 + 0.05 * std::sin(2 * pi * (x + 0.5 * y) / 16); });
+    WaterParameters p;
+    p.friction = 0.2f;
+    const auto flow = [&](double seconds) {
+      for (double time = 0; time < seconds; time += step) t.flow(p, static_cast<float>(step), time);
+    };
+    flow(200);
+    Quanta lowest = wall_height, highest = 0;
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 32; ++x)
+        if (const Quanta depth = t.quanta_at(Layer::water, x, y); depth > 10) {
+          const Quanta top = depth + t.quanta_at(Layer::bedrock, x, y);
+          lowest = std::min(lowest, top), highest = std::max(highest, top);
+        }
+    EXPECT_LT(highest - lowest, 50) << "steps of " << step << " s";
+    const std::vector<Quanta> before = t.quanta(Layer::water);
+    flow(5);
+    if (step < 1) {  // in parts that are hardly stable, the surface goes on to tremble by a few quanta
+      EXPECT_EQ(t.quanta(Layer::water), before) << "steps of " << step << " s";
+    }
+  }
+}
+
 /// Time of `crossings` half periods of a signal that starts at its greatest, interpolated between samples.
 class Oscillation {
  public:

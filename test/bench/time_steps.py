@@ -114,8 +114,9 @@ def main():
     arguments = parser.parse_args()
     lines = ["# Time steps", "",
              "What a process does in the same time at several time steps, relative to steps of 1 s. Written by",
-             "`test/bench/time_steps.py --page doc/time_steps.md`, which has the worlds. What is more than 5 % off is bold:",
-             "the shadow of the wind and avalanches follow the sand once a step, so a step must not move much of a dune.", "",
+             "`test/bench/time_steps.py --page doc/time_steps.md`, which has the worlds. What is more than 5 % off is bold.",
+             "Steps longer than a second are divided into parts where sand or plants move, and shorter ones keep to the",
+             "wind's shadow of a second; avalanches follow the sand in every step.", "",
              "| process | quantity | at 1 s | " + " | ".join(f"{step} s" for step in STEPS) + " |",
              "|" + "---|" * (3 + len(STEPS))]
     print("\n".join(lines[-2:]))

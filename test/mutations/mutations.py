@@ -8,6 +8,17 @@ import collections
 Mutation = collections.namedtuple("Mutation", "name file before after law killer")
 
 MUTATIONS = [Mutation(*row) for row in (
+    # ---- time steps
+    ("shelter_forgotten", "src/simulation/checkpoint.cpp",
+     "state.shelter_known = true;", "state.shelter_known = false;",
+     "the wind's shadow of the present second is part of the state", "property *Checkpoint.ContinuesToTheBit*"),
+    ("shelter_of_every_step", "src/simulation/pipeline/process.hpp",
+     "std::floor(seconds) > std::floor(seconds - step)", "step > 0",
+     "the wind's shadow is held for a second", "analytic *TimeStep.*"),
+    ("long_steps_at_once", "src/simulation/processes/sand.cpp",
+     "p.longest_step = 1;", "p.longest_step = 100;",
+     "the wind's shadow and avalanches follow in a long step", "analytic *TimeStep.*"),
+
     # ---- wind
     ("wind_correction_dropped", "kernels/wind/surface_wind.hpp",
      "const Vector wind{above.x + d.re, above.y + d.im};", "const Vector wind{above.x, above.y + d.im};",
@@ -162,7 +173,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "? 0.5f * flow.grid.cell_size /", "? flow.grid.cell_size /",
      "velocity is the mean of two faces", "analytic *Water.UniformChannel*"),
     ("outflow_unlimited", "kernels/water/virtual_pipes.cpp",
-     "out + 4.0f <= available * guard ? 1.0f :", "out + 4.0f <= 4.0f * available ? 1.0f :",
+     "minimum(spare(available) / (out", "minimum(spare(4.0f * available) / (out",
      "a cell gives no more water than it has", "unit *WaterLaws.ACellGives*"),
     ("sea_filled_once_a_step", "kernels/water/virtual_pipes.cpp",
      "    fill_sea();\n", "",
@@ -232,9 +243,9 @@ MUTATIONS = [Mutation(*row) for row in (
     ("plant_seam", "kernels/plants/lookup.hpp",
      "return d > 0.5f * length ? d - length : (d < -0.5f * length ? d + length : d);", "return d;",
      "plants see each other over the seam of a torus", "unit *Plant*"),
-    ("spawning_linear_in_time", "kernels/plants/spawning.hpp",
-     "return q >= 1.0 ? 1.0 : -expm1(dt * log1p(-q));", "return q >= 1.0 ? 1.0 : (q * dt < 1.0 ? q * dt : 1.0);",
-     "the probability of spawning composes over steps", "analytic PlantTheoryOf*"),
+    ("one_seed_a_step", "kernels/plants/spawning.hpp",
+     "return q > 0.0 ? static_cast<int>(q * dt + u) : 0;", "return q > 0.0 && q * dt + u >= 1.0 ? 1 : 0;",
+     "as many plants come up in long steps", "analytic *PlantTheory*"),
     ("plants_drink_for_nothing", "kernels/plants/water_uptake.hpp",
      "atomic_add(&moisture[cell], -granted_water[n]);", "",
      "what plants drink leaves the ground", "unit *PlantThirst*"),

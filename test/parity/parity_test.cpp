@@ -20,7 +20,9 @@ class Parity : public test::OnBoth {
   /// Number of words that differ, by layer; fails with its name and the first cell.
   static void expect_same_layers(const Simulation& a, const Simulation& b, bool derived) {
     for (const LayerInfo& row : layer_table) {
-      if ((row.lifetime == Lifetime::derived && !derived) || !a.terrain().has(row.layer)) continue;
+      if ((row.lifetime != Lifetime::persistent && row.lifetime != Lifetime::on_request && !derived) ||
+          !a.terrain().has(row.layer))
+        continue;
       const auto x = a.terrain().raw_words(row.layer), y = b.terrain().raw_words(row.layer);
       long different = 0;
       std::size_t first = 0;

@@ -55,6 +55,23 @@ TEST_P(Checkpoint, ContinuesToTheBitAfterSaltationWasSwitchedOff) {
   EXPECT_EQ(s->state_hash(), loaded->state_hash()) << "impacts went on without grains";
 }
 
+/// In the middle of a second, the wind's shadow of its beginning is part of the state.
+TEST_P(Checkpoint, ContinuesToTheBitInTheMiddleOfASecond) {
+  for (const char* shadow : {"", "wind_shadow: {enabled: false}\n"}) {
+    auto s = simulation(
+        "grid: {width: 40, height: 24}\nterrain: [noise: {layer: sand, low: 0, high: 5, scale: 6}]\n"
+        "wind: {speed: 4}\nsaltation: {lift: 0.5}\nrun: {time_step: 0.25}\n" +
+        std::string(shadow));
+    test::run(*s, 6);
+    save_checkpoint(folder_.path("a.ck"), *s);
+    const auto loaded = load_checkpoint(folder_.path("a.ck"), exec());
+    EXPECT_EQ(s->state_hash(), loaded->state_hash()) << shadow;
+    test::run(*s, 1);
+    test::run(*loaded, 1);
+    EXPECT_EQ(s->state_hash(), loaded->state_hash()) << shadow;
+  }
+}
+
 TEST_P(Checkpoint, CutAnywhereIsRefused) {
   const std::string bytes = test::file_bytes(saved());
   for (std::size_t n = 0; n < 16; ++n) {

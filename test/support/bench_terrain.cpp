@@ -155,7 +155,8 @@ void BenchTerrain::flow(const WaterParameters& p, float time_step, double time, 
     terrain.allocate(layer);
   virtual_pipes::Workspace work{Buffer<float>(exec(), cells())};
   with_backend(exec(), [&](auto& e) {
-    virtual_pipes::step(e, terrain.view(), p, time_step, time, sea_level, ledger(), landed.data(), work);
+    virtual_pipes::step(e, terrain.view(), p, time_step, time, 7, rolls_++, sea_level, ledger(),
+                        landed.data(), work);
   });
   exec().synchronise();
 }

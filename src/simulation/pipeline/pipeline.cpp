@@ -60,7 +60,7 @@ void Pipeline::allocate_layers() {
     for (Layer layer : process.writes) {
       if (process.active(state_.scenario))
         state_.terrain.allocate(layer);
-      else if (info(layer).lifetime == Lifetime::derived)
+      else if (info(layer).lifetime == Lifetime::derived || info(layer).lifetime == Lifetime::held)
         unused.push_back(layer);
     }
   for (Layer layer : unused) {
@@ -69,6 +69,7 @@ void Pipeline::allocate_layers() {
     });
     if (!used) state_.terrain.set_allocated(layer, false);
   }
+  state_.shelter_known = state_.shelter_known && state_.terrain.has(Layer::wind_shadow);
 }
 
 void Pipeline::make_launches() {
@@ -108,9 +109,23 @@ StepContext Pipeline::context() {
   return {state_, fields_, state_.terrain.view(), avalanching_measures_heights_};
 }
 
+int Pipeline::parts() const {
+  constexpr float most = 256;  // what is longer is left to the processes' own sub-steps
+  float longest = std::numeric_limits<float>::infinity();
+  for (const Stage& stage : stages_) longest = std::min(longest, stage.process->longest_step);
+  return static_cast<int>(std::clamp(std::ceil(state_.scenario.run.time_step / longest), 1.0f, most));
+}
+
 void Pipeline::step() {
   StepContext c = context();
-  fields_.roll_dice(state_.exec(), state_.scenario.seed, state_.steps);
+  c.parts = parts();
+  for (; c.part < c.parts; ++c.part) run_part(c);
+  ++state_.steps;
+  derived_ready_ = true;
+}
+
+void Pipeline::run_part(StepContext& c) {
+  fields_.roll_dice(state_.exec(), state_.scenario.seed, c.tick());
   const bool observed = timing_ || checks_layers();
   if (observed) {
     for (const Launch& launch : unfused_launches_) run_observed(launch, c);
@@ -121,16 +136,15 @@ void Pipeline::step() {
     };
     if (recorded > 0)
       recordings_.run(state_.exec(),
-                      {state_.wind_above(), state_.steps % avalanching::seam_period, fields_.heights_stale,
-                       recorded, c.terrain},
+                      {c.wind_above(), c.tick() % avalanching::seam_period, fields_.heights_stale,
+                       c.renews_shelter(), recorded, c.terrain},
                       start);
     for (std::size_t n = recorded; n < fused_launches_.size(); ++n) run(fused_launches_[n], c);
   }
+  if (c.renews_shelter()) state_.shelter_known = state_.terrain.has(Layer::wind_shadow);
   fields_.heights_stale = !avalanching_measures_heights_;
   for (Stage& stage : stages_)
     if (stage.process->after_step) stage.process->after_step(c, stage.workspace.get());
-  ++state_.steps;
-  derived_ready_ = true;
 }
 
 std::size_t Pipeline::recordable_stages() const {

@@ -78,6 +78,9 @@ class Pipeline {
     const FusedProcesses* fused = nullptr;
   };
   StepContext context();
+  /// Number of parts of a step.
+  int parts() const;
+  void run_part(StepContext& context);
   void make_launches();
   void allocate_layers();
   void run(const Launch& launch, StepContext& context);

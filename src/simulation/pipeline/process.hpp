@@ -5,7 +5,10 @@
 /// the times, the check for broken values, what is recomputed before somebody looks, what of a step can be
 /// recorded, the cost model, the contract test, and the page config/processes.md.
 
+#include <cmath>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,10 +27,23 @@ struct StepContext {
   /// No process after avalanching moves ground or water: it is to leave the heights measured for the next
   /// step.
   bool avalanching_measures_heights = false;
+  int part = 0, parts = 1;  ///< of the step; see Process::longest_step
 
   Exec& exec() const { return state.exec(); }
   const Scenario& scenario() const { return state.scenario; }
-  float time_step() const { return state.scenario.run.time_step; }
+  float time_step() const { return state.scenario.run.time_step / static_cast<float>(parts); }
+  /// Number of steps, or parts of steps, before this one.
+  std::uint64_t tick() const {
+    return state.steps * static_cast<std::uint64_t>(parts) + static_cast<std::uint64_t>(part);
+  }
+  double time() const { return static_cast<double>(tick()) * state.scenario.run.time_step / parts; }
+  /// Whether a second begins, for which the wind's shadow is held, or there is none yet.
+  bool renews_shelter() const {
+    const double seconds = time() / wind_shadow::held_for, step = time_step() / wind_shadow::held_for;
+    return !state.shelter_known || step >= 1 || parts > 1 || tick() == 0 ||
+           std::floor(seconds) > std::floor(seconds - step);
+  }
+  wind::Vector wind_above() const { return state.wind_regime.at(time()); }
   const Dice& dice() const { return fields.dice; }
 };
 
@@ -59,6 +75,9 @@ struct Process {
   /// Makes its workspace; null if it needs none. Throws ConfigError if there is no memory.
   std::function<std::unique_ptr<ProcessWorkspace>(const SimulationState&)> make_workspace;
   std::function<void(StepContext&, ProcessWorkspace*)> step;
+  /// Longest step that it takes at once [s]. A longer one is divided into equal parts, in each of which all
+  /// processes do their step, because what it changes acts back on it through them.
+  float longest_step = std::numeric_limits<float>::infinity();
   /// Recomputes, before somebody looks, what it derives from the state, which a loaded checkpoint does not
   /// have and changed parameters make stale; it changes no persistent layer. Null if it derives nothing.
   std::function<void(StepContext&, ProcessWorkspace*)> refresh;

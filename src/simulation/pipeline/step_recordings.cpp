@@ -5,13 +5,15 @@
 namespace desert_sim {
 
 namespace {
-/// Eight places of the avalanches' seams, for each of two winds that take turns.
-constexpr std::size_t most_recordings = 16;
+/// Eight places of the avalanches' seams, with and without the wind's shadow, for each of two winds that take
+/// turns.
+constexpr std::size_t most_recordings = 32;
 }  // namespace
 
 bool StepKey::operator==(const StepKey& other) const {
   return wind_above.x == other.wind_above.x && wind_above.y == other.wind_above.y &&
-         seam_phase == other.seam_phase && heights_stale == other.heights_stale && stages == other.stages &&
+         seam_phase == other.seam_phase && heights_stale == other.heights_stale &&
+         renews_shelter == other.renews_shelter && stages == other.stages &&
          std::equal(std::begin(view.layers), std::end(view.layers), std::begin(other.view.layers));
 }
 

@@ -20,6 +20,7 @@ struct StepKey {
   wind::Vector wind_above;
   std::uint64_t seam_phase = 0;  ///< of the avalanches' seams
   bool heights_stale = false;    ///< whether the step measures heights first
+  bool renews_shelter = true;    ///< whether it finds the wind's shadow
   std::size_t stages = 0;        ///< how many, from the first on, are in the recording
   TerrainView view;
   bool operator==(const StepKey& other) const;

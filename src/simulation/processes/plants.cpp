@@ -26,7 +26,7 @@ void update_plants(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
     plants::grow_and_spawn(e, c.terrain, s.vegetation, s.repose, c.fields.heights, c.time_step(), s.seed,
-                           c.state.steps, c.dice(), c.state.ledger(), c.state.plants);
+                           c.tick(), c.dice(), c.state.ledger(), c.state.plants);
   });
 }
 
@@ -73,6 +73,7 @@ Process vegetation_process() {
   p.writes = {Layer::humus};
   p.writes_if_in_use = {Layer::moisture};
   p.step = update_plants;
+  p.longest_step = 1;  // plants grow into each other's way and light within seconds
   // New plants come up by dice that depend on the step, and their number is read back.
   p.can_be_recorded = [](const SimulationState&) { return false; };
   return p;

@@ -50,7 +50,7 @@ void set_angles(StepContext& c, ProcessWorkspace*) {
 void creep(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
-    reptation::step(e, c.terrain, s.reptation, c.time_step(), s.seed, c.state.steps, c.dice(),
+    reptation::step(e, c.terrain, s.reptation, c.time_step(), s.seed, c.tick(), c.dice(),
                     c.fields.impact_strength.data(), c.fields.landed.data());
   });
 }
@@ -105,7 +105,7 @@ void slide(StepContext& c, ProcessWorkspace* workspace) {
   AvalancheWork& work = workspace_as<AvalancheWork>(workspace);
   with_backend(c.exec(), [&](auto& e) {
     slide_ground(e, c, work);
-    avalanching::step(e, c.terrain, c.scenario().avalanching, c.state.steps, c.fields.repose.data(),
+    avalanching::step(e, c.terrain, c.scenario().avalanching, c.tick(), c.fields.repose.data(),
                       c.avalanching_measures_heights ? &c.fields.heights : nullptr, work.sand);
   });
 }
@@ -151,6 +151,7 @@ Process saltation_process() {
   p.writes = {Layer::sand, Layer::airborne_sand};
   p.writes_if_in_use = {Layer::bedrock, Layer::soil};
   p.step = saltate;
+  p.longest_step = 1;      // the wind's shadow and avalanches follow what it moves
   p.refresh = set_angles;  // the angles of repose that a step sets with the deposit
   p.traffic = [](const Scenario&, const Grid&) {
     return MemoryTraffic{13 * 4, "sand, airborne, wind (2), shadow; landed, sand, shadow",
@@ -219,8 +220,8 @@ Process avalanching_process() {
   return p;
 }
 
-/// Where starting passes is what takes time, and nothing but saltation asks for the wind's shadow before sand
-/// is lifted, the pass that lifts sand finds it.
+/// Where starting passes is what takes time, each step finds the wind's shadow, and nothing but saltation asks
+/// for it before sand is lifted, the pass that lifts sand finds it.
 FusedProcesses fused_wind_shadow_and_saltation() {
   FusedProcesses f;
   f.name = "shadow found in passing";
@@ -229,7 +230,8 @@ FusedProcesses fused_wind_shadow_and_saltation() {
   f.applies = [](const SimulationState& state) {
     constexpr int max_cells = 1 << 19;
     const bool on_gpu = std::string(state.exec().backend()) == "cuda";  // nor where memory is only planned
-    return on_gpu && state.terrain.grid().cells() <= max_cells && !state.scenario.wind_shadow.curved &&
+    return on_gpu && state.scenario.run.time_step >= wind_shadow::held_for &&
+           state.terrain.grid().cells() <= max_cells && !state.scenario.wind_shadow.curved &&
            !state.scenario.echo_dunes.enabled;
   };
   f.step = [](StepContext& c, ProcessWorkspace* shadow, ProcessWorkspace*) {

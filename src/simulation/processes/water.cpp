@@ -30,11 +30,11 @@ void add_water(StepContext& c, ProcessWorkspace*) {
   const SimulationState& state = c.state;
   const Scenario& s = state.scenario;
   with_backend(c.exec(), [&](auto& e) {
-    rain::step(e, c.terrain, s.rain, c.time_step(), s.seed, state.steps, state.terrain.scale().datum,
+    rain::step(e, c.terrain, s.rain, c.time_step(), s.seed, c.tick(), state.terrain.scale().datum,
                state.ledger());
     for (const Spring& spring : s.springs)
       water_sources::add_spring(e, c.terrain, spring, spring.x - s.grid.origin_x, spring.y - s.grid.origin_y,
-                                c.time_step(), state.steps, state.ledger());
+                                c.time_step(), c.tick(), state.ledger());
   });
 }
 
@@ -44,8 +44,8 @@ virtual_pipes::Workspace make_pipes(const SimulationState& state) {
 
 void move_water(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
-    virtual_pipes::step(e, c.terrain, c.scenario().water, c.time_step(), c.state.time(), sea_level(c.state),
-                        c.state.ledger(), c.fields.landed.data(),
+    virtual_pipes::step(e, c.terrain, c.scenario().water, c.time_step(), c.time(), c.scenario().seed,
+                        c.tick(), sea_level(c.state), c.state.ledger(), c.fields.landed.data(),
                         workspace_as<virtual_pipes::Workspace>(workspace));
   });
 }

@@ -60,18 +60,19 @@ WindWork make_wind_work(const SimulationState& state) {
 void update_wind(StepContext& c, ProcessWorkspace* workspace) {
   WindWork& work = workspace_as<WindWork>(workspace);
   const SimulationState& s = c.state;
-  if (work.features) work.set_time(s.time());
+  if (work.features) work.set_time(c.time());
   with_backend(c.exec(), [&](auto& e) {
     if (c.fields.heights_stale) surface::compute_heights(e, c.terrain, c.fields.heights);
     if (work.features)
       wind_features::step(e, c.terrain.grid, work.features, c.fields.repose.data(),
                           work.perturbation_x.data(), work.perturbation_y.data());
-    wind::step(e, c.terrain, s.scenario.wind, s.wind_above(), c.fields.heights, s.wind_reference,
+    wind::step(e, c.terrain, s.scenario.wind, c.wind_above(), c.fields.heights, s.wind_reference,
                work.perturbation_x.data(), work.perturbation_y.data(), work.coarse);
   });
 }
 
 void update_wind_shadow(StepContext& c, ProcessWorkspace* workspace) {
+  if (!c.renews_shelter()) return;
   with_backend(c.exec(), [&](auto& e) {
     wind_shadow::step(e, c.terrain, c.scenario().wind_shadow, obstructing_heights(c),
                       workspace_as<wind_shadow::Workspace>(workspace));
