@@ -91,47 +91,58 @@ struct CoarsenColumns {
   }
 };
 
-/// Position of a fine cell along an axis between two coarse cells, for linear interpolation.
+/// Position of a fine cell along an axis among the three nearest coarse cells, for interpolation by quadratic
+/// B-splines. Their slopes are continuous: with linear interpolation dunes have the kinks of the coarse grid.
 struct AxisInterpolation {
-  int first, second;
-  float share;  ///< weight of the second
+  int before, nearest, after;
+  float of_before, of_after;  ///< weights; the nearest has the rest
 
   DESERT_HD AxisInterpolation(int cell, int coarse_cells, float coarse_per_cell) {
-    const float position = (cell + 0.5f) * coarse_per_cell - 0.5f, before = floorf(position);
-    share = position - before;  // 0 at full resolution: the value itself
-    first = wrap_once(static_cast<int>(before), coarse_cells);
-    second = wrap_once(static_cast<int>(before) + 1, coarse_cells);
+    const float position = (cell + 0.5f) * coarse_per_cell - 0.5f, middle = floorf(position + 0.5f);
+    const float to_before = 0.5f - (position - middle), to_after = 0.5f + (position - middle);
+    nearest = wrap_once(static_cast<int>(middle), coarse_cells);
+    before = wrap_once(static_cast<int>(middle) - 1, coarse_cells);
+    after = wrap_once(static_cast<int>(middle) + 1, coarse_cells);
+    const bool full_resolution = coarse_per_cell >= 1.0f;  // then the value itself
+    of_before = full_resolution ? 0.0f : 0.5f * to_before * to_before;
+    of_after = full_resolution ? 0.0f : 0.5f * to_after * to_after;
+  }
+
+  /// Equal values give exactly that value.
+  DESERT_HD float operator()(float first, float middle, float last) const {
+    return middle + (of_before * (first - middle) + of_after * (last - middle));
+  }
+  DESERT_HD Complex operator()(Complex first, Complex middle, Complex last) const {
+    return {(*this)(first.re, middle.re, last.re), (*this)(first.im, middle.im, last.im)};
   }
 };
 
 DESERT_HD AxisInterpolation CoarseGrid::interpolation_x(int x) const { return {x, width, share_x}; }
 DESERT_HD AxisInterpolation CoarseGrid::interpolation_y(int y) const { return {y, height, share_y}; }
 
-using desert_sim::lerp;
-DESERT_HD Complex lerp(Complex a, Complex b, float t) { return {lerp(a.re, b.re, t), lerp(a.im, b.im, t)}; }
-
-/// A coarse field, interpolated bilinearly along a column of fine cells. Consecutive cells of the column lie
-/// between the same two coarse rows, whose values are loaded once.
+/// A coarse field, interpolated along a column of fine cells. Consecutive cells of the column lie among the
+/// same three coarse rows, whose values are loaded once.
 template <class Value>
 struct CoarseColumn {
   const Value* field;
   AxisInterpolation interpolation_x;
   int width;
-  Value south{}, north{};
+  Value south{}, middle{}, north{};
 
   DESERT_HD CoarseColumn(const Value* values, const AxisInterpolation& along_x, int row_width)
       : field(values), interpolation_x(along_x), width(row_width) {}
   DESERT_HD void move_to(const AxisInterpolation& along_y) {
-    south = in_row(along_y.first);
-    north = in_row(along_y.second);
+    south = in_row(along_y.before);
+    middle = in_row(along_y.nearest);
+    north = in_row(along_y.after);
   }
-  DESERT_HD Value at(float share) const { return lerp(south, north, share); }
+  DESERT_HD Value at(const AxisInterpolation& along_y) const { return along_y(south, middle, north); }
 
  private:
   DESERT_HD Value in_row(int row) const {
-    const Value a = field[row * width + interpolation_x.first],
-                b = field[row * width + interpolation_x.second];
-    return lerp(a, b, interpolation_x.share);
+    const Value* of_row = field + row * width;
+    return interpolation_x(of_row[interpolation_x.before], of_row[interpolation_x.nearest],
+                           of_row[interpolation_x.after]);
   }
 };
 
@@ -150,7 +161,7 @@ struct Mode {
 };
 
 /// Spectral transfer function of one radius along one axis, one pair a mode. `smooth` is the Gaussian divided
-/// by the attenuation of the box filter and of the linear interpolation back; `derive` is that times sin(k)/l
+/// by the attenuation of the box filter and of the interpolation back; `derive` is that times sin(k)/l
 /// of the central difference. The function is separable, so two short tables, made once on the host, hold it.
 struct Transfer {
   float smooth, derive;

@@ -12,6 +12,11 @@ namespace desert_sim::wind {
 struct SpeedUp {
   float per_metre, lowest, highest;
   DESERT_HD float bounded(float factor) const { return fast_min(fast_max(factor, lowest), highest); }
+  /// Of a response s: 1 + s for small ones, and never beyond the bounds, which it approaches smoothly.
+  DESERT_HD float of_response(float s) const {
+    const float most = s > 0.0f ? highest - 1.0f : 1.0f - lowest;
+    return most > 0.0f ? 1.0f + s * most / sqrtf(most * most + s * s) : 1.0f;
+  }
   /// By height, at `rise` metres above the reference.
   DESERT_HD float operator()(float rise) const { return bounded(fused(per_metre, rise, 1.0f)); }
 };
@@ -37,7 +42,7 @@ struct SurfaceWind {
     return Grid{coarse.fine.width, (coarse.fine.height + strip - 1) / strip, 1};
   }
 
-  /// Linear interpolation between vectors of different direction shortens them. The series restores the speed
+  /// Interpolation between vectors of different direction shortens them. The series restores the speed
   /// to within 0.1 % where directions differ by up to 60 degrees.
   DESERT_HD Vector restore_speed(Vector w) const {
     const float missing = fused(-(w.x * w.x + w.y * w.y), per_speed_squared, 1.0f);
@@ -45,9 +50,9 @@ struct SurfaceWind {
     const float scale = w.x == above.x && w.y == above.y ? 1.0f : series;
     return {w.x * scale, w.y * scale};
   }
-  DESERT_HD Vector wind_at(const CoarseColumn<Complex>& deviations, float share) const {
+  DESERT_HD Vector wind_at(const CoarseColumn<Complex>& deviations, const AxisInterpolation& along_y) const {
     if (!deviation) return above;
-    const Complex d = deviations.at(share);
+    const Complex d = deviations.at(along_y);
     const Vector wind{above.x + d.re, above.y + d.im};
     return keeps_speed ? restore_speed(wind) : wind;
   }
@@ -65,13 +70,13 @@ struct SurfaceWind {
     unrolled<strip>([&](auto k) DESERT_INLINE {
       if (strip > 1 && k >= rows) return;
       const AxisInterpolation along_y = coarse.interpolation_y(first + k);
-      if (strip == 1 || along_y.first != row) {
+      if (strip == 1 || along_y.nearest != row) {
         if (deviation) deviations.move_to(along_y);
         if (factors) speed_ups.move_to(along_y);
-        row = along_y.first;
+        row = along_y.nearest;
       }
-      const float factor = factors ? speed_ups.at(along_y.share) : speed_up((h[k] - reference) * quantum);
-      const Vector wind = wind_at(deviations, along_y.share);
+      const float factor = factors ? speed_ups.at(along_y) : speed_up((h[k] - reference) * quantum);
+      const Vector wind = wind_at(deviations, along_y);
       const int i = coarse.fine.index(x, first + k);
       const Vector local = perturbed ? Vector{perturbation_x[i], perturbation_y[i]} : Vector{};
       wind_x[i] = fused(wind.x, factor, local.x);

@@ -6,7 +6,7 @@
 ///                g⊥  = ±(−g_y, g_x),   with the sign that makes u·g⊥ ≥ 0,   u = f w_a
 ///                f_R = lerp(u, k_R g⊥, α)
 ///                w   has the direction of Σ weight_R f_R / Σ weight_R and the speed |w_a|
-///   speed-up     f   = clamp(1 + a |k| ĥ, …) (jackson_hunt)   or   clamp(1 + k_W (h − h_ref), …) (venturi)
+///   speed-up     f   = 1 + s/√(1 + (s/s_max)²), ŝ = a |k| ĥ (jackson_hunt)   or   clamp(1 + k_W (h − h_ref), …) (venturi)
 ///   projection   F   = P[w/f] + c (jackson_hunt)   or   P[w f] (venturi),   P[û] = û − k (k·û)/|k|²
 ///   wind         u   = f F (jackson_hunt)   or   F (venturi);   without projection f w, with f of venturi
 ///   features     + the divergence-free perturbation of wind_features.hpp
@@ -17,18 +17,19 @@
 /// potential flow for a = 1, whose speed-up along the wind is (k_x²/|k|) ĥ; the inner layer of Jackson &
 /// Hunt multiplies it by a = `speedup_response`. With a = 2.13 the wind at the crest of a Gaussian ridge H
 /// high, with the half length L at half its height, is faster by 2 H/L, at that of a round hill by 1.6 H/L;
-/// across an oblique ridge only the component across it is. The bounds of f are response_lowest and
-/// response_highest, because the law is one for small slopes: over dunes as steep as they get it would say
-/// twice the wind, and the wind shadow slows the air in hollows. c makes the mean wind that of f w.
+/// across an oblique ridge only the component across it is. f tends to response_lowest and response_highest,
+/// 1 ± s_max, because the law is one for small slopes: over dunes as steep as they get it would say twice the
+/// wind, and the wind shadow slows the air in hollows. c makes the mean wind that of f w.
 /// venturi, as published: F is free of divergence itself, and h_ref is the 1st percentile of the surface at
 /// load: the height of the low ground, which a pit or an error of a few cells does not change.
 ///
 /// The Gaussians are tens of metres wide, so the smoothed terrain, the speed-up, the warped wind and the
 /// flux are computed on a grid coarsened to about a quarter of the smallest σ. The spectral transfer
-/// function undoes the attenuation of the box filter that coarsens and of the linear interpolation back.
+/// function undoes the attenuation of the box filter that coarsens and of the interpolation back, which is by
+/// quadratic B-splines.
 /// The terrain of jackson_hunt is smoothed with σ = half a coarse cell of the default width, or of the
 /// width in use if that is more (at least one cell of the terrain), the flux with σ = a coarse cell,
-/// because linear interpolation would bring back divergence at shorter waves. At most 5 % of the divergence
+/// because interpolation would bring back divergence at shorter waves. At most 5 % of the divergence
 /// of f w is left in D u (of w f in u with venturi) at default settings, over dunes as over rough hills; at
 /// full resolution nothing but rounding. Open axes are extended evenly (mirrored) before the transform.
 ///

@@ -31,11 +31,11 @@ struct ModesOfAxis {
 
   bool nyquist(int i) const { return 2 * i == n; }
   double wavenumber(int i) const { return 2 * pi * (2 * i > n ? i - n : i) / (n * ratio); }  ///< [rad/cell]
-  /// What the box filter and the linear interpolation back leave of a mode.
+  /// What the box filter and the interpolation back by quadratic B-splines leave of a mode.
   double kept(int i) const {
     if (ratio <= 1 || i == 0) return 1;
-    const double half = 0.5 * wavenumber(i), linear = std::sin(half * ratio) / (half * ratio);
-    return std::sin(half * ratio) / (ratio * std::sin(half)) * linear * linear;
+    const double half = 0.5 * wavenumber(i), box = std::sin(half * ratio) / (half * ratio);
+    return std::sin(half * ratio) / (ratio * std::sin(half)) * box * box * box;
   }
   double gaussian(int i, double sigma) const {
     return std::exp(-0.5 * sigma * sigma * wavenumber(i) * wavenumber(i));

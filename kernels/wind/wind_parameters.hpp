@@ -13,7 +13,7 @@ struct WindParameters {
   SpeedUpLaw speedup_law = SpeedUpLaw::jackson_hunt;
   float speedup_response = 2.13f;
   float response_lowest = 1.0f;
-  float response_highest = 1.2f;
+  float response_highest = 1.25f;
   float speedup = 0.005f;
   float speedup_lowest = 0.5f;
   float speedup_highest = 3.0f;
@@ -35,9 +35,9 @@ constexpr auto parameter_table(const WindParameters*) {
       parameter("speedup_response", &P::speedup_response, 0, 4, "1",
                 "Speed-up of jackson_hunt over that of potential flow; 2.13 gives 2 H/L at a ridge's crest."),
       parameter("response_lowest", &P::response_lowest, 0.05, 1, "1",
-                "Least factor of jackson_hunt; in hollows slower air is left to the wind shadow."),
+                "Factor that jackson_hunt approaches in hollows; 1 leaves slow air to the wind shadow."),
       parameter("response_highest", &P::response_highest, 1, 10, "1",
-                "Greatest factor of jackson_hunt, whose law is one for small slopes."),
+                "Factor that jackson_hunt approaches over steep crests; 2 H/L is a law for small slopes."),
       parameter("speedup", &P::speedup, 0, 1, "1/m",
                 "Speed-up of venturi per metre above the low ground (the 1st percentile at load)."),
       parameter("speedup_lowest", &P::speedup_lowest, 0, 1, "1", "Least factor of venturi."),

@@ -70,8 +70,7 @@ struct WarpWind {
   template <class Response>
   DESERT_HD Complex warp_wind(int x, int y, const Response& response_of) const {
     const int n = y * coarse.width + x;
-    const float factor =
-        by_response ? speed_up.bounded(1.0f + response_of(radius_count).re) : speed_up(rise[n]);
+    const float factor = by_response ? speed_up.of_response(response_of(radius_count).re) : speed_up(rise[n]);
     const float ux = above.x * factor, uy = above.y * factor;
     // Only the deviation from u is summed: where the ground is flat it is exactly 0, and the wind exactly u.
     float dx = 0, dy = 0, weight_sum = 0;

@@ -28,8 +28,8 @@ terrain: [noise: {{layer: sand, low: 3, high: 5}}]
 wind:
   regime: timeline
   segments:
-    - {{direction_deg: 0, speed: 3, duration: 4}}
-    - {{direction_deg: {theta}, speed: 3, duration: 2}}
+    - {{direction_deg: 0, speed: 3, duration: 6}}
+    - {{direction_deg: {theta}, speed: 3, duration: 3}}
 reptation: {{strength: 0.1}}
 seed: {seed}
 run: {{steps: {steps}}}
