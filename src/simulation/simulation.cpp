@@ -67,8 +67,15 @@ void require_bounded_cost(const Scenario& s) {
   if (s.reptation.method == ReptationMethod::smoothing)  // the shelter is at most 1
     check("reptation.strength", s.reptation.strength, "s/m^2",
           2 * (s.reptation.strength + s.reptation.smoothing_strength) * step / cell * fastest_wind(s), 256);
-  if (s.saltation.enabled)
-    check("run.time_step", step, "s", step / static_cast<double>(s.saltation.hop_time), 256);
+  const double hop = s.saltation.hop_time;
+  constexpr int most_hops = 256;
+  if (s.saltation.enabled && step > most_hops * hop) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "= %g s is %g times saltation.hop_time = %g s (allowed: at most %d times, %g s)", step,
+                  step / hop, hop, most_hops, most_hops * hop);
+    errors.add("run.time_step", text);
+  }
   errors.throw_if_any();
 }
 

@@ -27,11 +27,11 @@ inline Scenario shipped(const std::string& name, const Settings& settings = {}) 
   return load_scenario(source_folder() + "/config/scenarios/" + name + ".yaml", settings);
 }
 
-/// A running scenario on the CPU. One thread: tests share the machine.
+/// A running scenario on the CPU. One thread by default: tests share the machine.
 class Running {
  public:
-  explicit Running(const Scenario& scenario)
-      : session_(std::make_unique<Session>(scenario, rasters(), "cpu", 1)) {}
+  explicit Running(const Scenario& scenario, int threads = 1)
+      : session_(std::make_unique<Session>(scenario, rasters(), "cpu", threads)) {}
 
   Running& run(int steps) {
     for (int n = 0; n < steps; ++n) session_->step();

@@ -14,7 +14,7 @@ struct Oscillation {
   std::size_t thin_cells = 0;
 };
 
-/// The worse of rows and columns. test/bench/grid_oscillation.py measures the same of files.
+/// The worse of rows and columns. test/bench/grid_oscillation.cpp measures scenarios by it.
 Oscillation oscillation(const Field& elevation, const Field& sand);
 
 }  // namespace desert_sim

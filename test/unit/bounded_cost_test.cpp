@@ -58,8 +58,15 @@ TEST_F(BoundedCost, SmoothingOfTooManySubstepsIsRefused) {
 
 TEST_F(BoundedCost, TooManyHopsAStepAreRefused) {
   const std::string yaml = "run: {time_step: 2}\nsaltation: {hop_time: ";
-  EXPECT_NE(refusal([&] { simulation(yaml + "0.005}\n"); }).find("run.time_step"), std::string::npos);
-  EXPECT_NO_THROW(simulation(yaml + "0.01}\n"));
+  const std::string message = refusal([&] { simulation(yaml + "0.005}\n"); });
+  EXPECT_NE(
+      message.find("run.time_step: = 2 s is 400 times saltation.hop_time = 0.005 s (allowed: at most 256 "
+                   "times, 1.28 s)"),
+      std::string::npos)
+      << message;
+  EXPECT_EQ(message.find("cells"), std::string::npos) << message;
+  EXPECT_NO_THROW(simulation(yaml + "0.0078125}\n"));
+  EXPECT_NO_THROW(simulation(yaml + "0.005, enabled: false}\n"));
 }
 
 }  // namespace
