@@ -252,7 +252,7 @@ TEST_P(Checkpoint, SnapshotsAfterLoadingShowWindAndElevation) {
 TEST_P(Checkpoint, ReportsAResidualLikeTheOneBefore) {
   auto s = simulation(
       "grid: {width: 32, height: 32}\nreptation: {method: \"off\"}\n"
-      "terrain: [noise: {layer: sand, low: 0, high: 5, scale: 12}]\n");
+      "terrain: [noise: {layer: sand, low: 0, high: 8, scale: 8}]\n");
   test::run(*s, 3);
   save_checkpoint(folder_.path("d.ck"), *s);
   auto t = load_checkpoint(folder_.path("d.ck"), exec());

@@ -19,8 +19,10 @@ Oscillation oscillation(const Field& elevation, const Field& sand) {
       for (int x = 0; x < sand.width; ++x) {
         if (!thin(x, y)) continue;
         ++cells;
-        const double d = deviation(x, y);
-        if (d * deviation(x - dx, y - dy) >= 0 || d * deviation(x + dx, y + dy) >= 0) continue;
+        const double d = deviation(x, y), before = deviation(x - dx, y - dy),
+                     after = deviation(x + dx, y + dy);
+        if (d * before >= 0 || d * after >= 0) continue;
+        if (std::max({std::abs(before), std::abs(d), std::abs(after)}) > 1) continue;  // a wall
         oscillating += std::abs(d) > 0.02 ? 1 : 0;
         squares += d * d;
       }

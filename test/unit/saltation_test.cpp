@@ -132,6 +132,7 @@ TEST_P(SaltationLaw, DepositGrowsWithVegetationAndShrinksWithWetness) {
 
 TEST_P(SaltationLaw, SharesAHopBilinearlyAmongFourCells) {
   SaltationParameters p;
+  p.hop_spread = 0;
   p.lift = 0;
   p.bounce_on_rock = 1;  // all stays in the air, where it can be seen
   for (const auto& [u, v] : {std::pair{2.25, 1.5}, {-2.25, 1.5}, {-0.25, -3.75}, {1.0, 0.0}}) {
@@ -150,8 +151,39 @@ TEST_P(SaltationLaw, SharesAHopBilinearlyAmongFourCells) {
   }
 }
 
+/// All hops were of one length, so that a pattern in thin sand ran on for ever.
+TEST_P(SaltationLaw, LandingPointsSpreadByTheirStandardDeviation) {
+  for (const auto& [spread, variance] : {std::pair{0.5, 0.25}, {0.25, 0.0625}, {100.0, 0.5}}) {
+    SaltationParameters p;
+    p.lift = 0;
+    p.bounce_on_rock = 1;
+    p.hop_spread = static_cast<float>(spread);
+    for (const int x0 : {4, 7}) {  // inside, and across the border
+      test::BenchTerrain t(exec(), 8, 8);
+      t.set_quanta(Layer::airborne_sand, [x0](int x, int y) { return x == x0 && y == 4 ? 1 << 20 : 0; });
+      t.set(Layer::wind_x, 1);
+      t.saltation(p);
+      EXPECT_EQ(t.total(Layer::airborne_sand), 1 << 20);
+      double along = 0, across = 0;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const auto at = [&](int x, int y) {
+            return t.quanta_at(Layer::airborne_sand, wrap(x0 + 1 + x, 8), 4 + y);
+          };
+          EXPECT_EQ(at(dx, dy), at(-dx, dy));
+          EXPECT_EQ(at(dx, dy), at(dy, dx));
+          along += at(dx, dy) * dx * dx / 1048576.0;
+          across += at(dx, dy) * dy * dy / 1048576.0;
+        }
+      EXPECT_NEAR(along, variance, 1e-5) << spread;
+      EXPECT_NEAR(across, variance, 1e-5) << spread;
+    }
+  }
+}
+
 TEST_P(SaltationLaw, WindAcrossAPeriodicBorderComesBackOnTheOtherSide) {
   SaltationParameters p;
+  p.hop_spread = 0;
   p.lift = 0;
   p.bounce_on_rock = 1;
   test::BenchTerrain t(exec(), 5, 3);
@@ -212,6 +244,7 @@ TEST_P(SaltationLaw, InfluxOfAnObliqueWindIsThroughTheEdgesCrossSection) {
 
 TEST_P(SaltationLaw, InfluxEntersOnlyWindwardAndNotOnATorus) {
   SaltationParameters p;
+  p.hop_spread = 0;
   p.lift = 0;
   p.influx = 1;
   test::BenchTerrain t(exec(), 8, 8, 1, false), torus(exec(), 8, 8);
