@@ -58,19 +58,13 @@ inline void view_levels(std::vector<Level>& coarse, LevelView* views) {
   }
 }
 
-/// Coarse levels move only what is steeper than repose by this factor of the tangent. Their changes come to
-/// the fine grid in squares of equal amount, whose edges are uneven from cell to cell: they are for slopes
-/// that the fine grid would be slow to relax, and leave it what is little too steep.
-constexpr float coarse_repose_factor = 1.25f;
-
 /// The law that restricts the level `below` to coarse[n] and, if there is one, to coarse[n + 1].
 inline Restrict make_restriction(std::vector<Level>& coarse, std::size_t n, const LevelView& below) {
   const auto out = [](Level& level) {
     return LevelBuffers{level.grid, level.ground.data(), level.sand.data(), level.sand_before.data(),
                         level.repose.data()};
   };
-  return {below, out(coarse[n]), n + 1 < coarse.size() ? out(coarse[n + 1]) : LevelBuffers{},
-          n == 0 ? coarse_repose_factor : 1.0f};
+  return {below, out(coarse[n]), n + 1 < coarse.size() ? out(coarse[n + 1]) : LevelBuffers{}};
 }
 
 /// One multigrid cycle: relaxes the fine grid, restricts it to the coarse levels, relaxes these from the

@@ -102,8 +102,8 @@ struct Schedule {
 };
 
 constexpr Schedule preset(AvalancheQuality quality) {
-  if (quality == AvalancheQuality::fast) return {4, 8, 4, 2, 2, 0.3f, 0.7f, 0.6f, 0.6f};
-  if (quality == AvalancheQuality::good) return {5, 8, 4, 3, 2, 0.25f, 0.7f, 0.7f, 0.45f};
+  if (quality == AvalancheQuality::fast) return {4, 8, 4, 1, 2, 0.3f, 0.7f, 0.6f, 0.6f};
+  if (quality == AvalancheQuality::good) return {5, 8, 3, 3, 2, 0.25f, 0.7f, 0.7f, 0.45f};
   return {6, 8, 3, 1, 2, 0.3f, 0.6f, 0.6f, 1.0f};
 }
 

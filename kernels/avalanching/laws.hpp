@@ -64,8 +64,8 @@ struct LevelCell {
 
 /// Restricts four children to one coarse cell: the means of their ground and sand, and the steepest of their
 /// angles of repose, because the lower angle at the brink of a slip face must not make the face below it
-/// slide; its tangent is multiplied by `repose_factor`. If one child is a wall, the coarse cell is a wall.
-DESERT_HD LevelCell coarse_cell(const LevelCell (&child)[4], float repose_factor) {
+/// slide. If one child is a wall, the coarse cell is a wall.
+DESERT_HD LevelCell coarse_cell(const LevelCell (&child)[4]) {
   long long ground = 0, sand = 0;
   bool wall = false;
   float steepest = 0.0f;
@@ -75,8 +75,7 @@ DESERT_HD LevelCell coarse_cell(const LevelCell (&child)[4], float repose_factor
     sand += child[n].sand;
     steepest = maximum(steepest, child[n].repose);
   }
-  return {wall ? wall_height : static_cast<Quanta>(ground >> 2), static_cast<Quanta>(sand >> 2),
-          repose_factor * steepest};
+  return {wall ? wall_height : static_cast<Quanta>(ground >> 2), static_cast<Quanta>(sand >> 2), steepest};
 }
 
 /// The buffers of a coarse level that is to be filled.
@@ -107,7 +106,6 @@ struct LevelBuffers {
 struct Restrict {
   LevelView fine;
   LevelBuffers first, second;  ///< second: its grid is empty if there is none
-  float repose_factor;         ///< of the first level's angles of repose over those of the fine one
 
   /// One call fills two by two cells of the first level; blocks at the far edges may be incomplete.
   DESERT_HD Grid blocks() const { return {(first.grid.width + 1) / 2, (first.grid.height + 1) / 2, 1}; }
@@ -136,10 +134,10 @@ struct Restrict {
       if (!first.grid.inside(fx, fy)) continue;
       const int i = fine.grid.index(2 * fx, 2 * fy), north = i + fine.grid.width;
       const LevelCell children[4] = {fine_cell(i), fine_cell(i + 1), fine_cell(north), fine_cell(north + 1)};
-      filled[n] = coarse_cell(children, repose_factor);
+      filled[n] = coarse_cell(children);
       first.store(fx, fy, filled[n]);
     }
-    if (second.grid.inside(x, y)) second.store(x, y, coarse_cell(filled, 1.0f));
+    if (second.grid.inside(x, y)) second.store(x, y, coarse_cell(filled));
   }
 
   /// Fills a block whose cells all exist, on a grid whose rows begin at multiples of 16 bytes. row_of(n)
@@ -159,11 +157,11 @@ struct Restrict {
           children[k] = {row[k / 2].ground.values[from], row[k / 2].sand.values[from],
                          repose[k / 2].values[from]};
         }
-        filled[2 * half + n] = coarse_cell(children, repose_factor);
+        filled[2 * half + n] = coarse_cell(children);
       }
       first.store_two(2 * x, 2 * y + half, filled[2 * half], filled[2 * half + 1]);
     });
-    if (second.grid.width > 0) second.store(x, y, coarse_cell(filled, 1.0f));
+    if (second.grid.width > 0) second.store(x, y, coarse_cell(filled));
   }
 };
 

@@ -42,6 +42,7 @@ struct LiftAndAdvect {
   Inputs<bare> in;
   Lift<bare> lift;
   float hop_per_speed;  ///< length of a hop over wind speed, T / l [cells s/m]
+  HopOffset offset;
   Die lift_die, wait_die, landing_die;
   Quanta *sand, *airborne;
   LedgerView ledger;
@@ -78,7 +79,9 @@ struct LiftAndAdvect {
     // Where the four shares are so small that rounding would falsify them, all lands in one of the cells.
     const std::uint32_t die = landing_die.word(i);
     const bool few = static_cast<float>(carried) < Die::small;
-    const int dx = to_fixed_point(c.u * hop_per_speed), dy = to_fixed_point(c.v * hop_per_speed);
+    const bool still = c.u == 0.0f && c.v == 0.0f;
+    const int dx = to_fixed_point(c.u * hop_per_speed + (still ? 0.0f : offset.x)),
+              dy = to_fixed_point(c.v * hop_per_speed + (still ? 0.0f : offset.y));
     parcels.set(n, x, y, Die::whole_cells_if(few, dx, die), Die::whole_cells_if(few, dy, die >> 16), carried);
   }
   template <int count>
@@ -124,39 +127,6 @@ struct Influx {
   }
 };
 
-/// Sand that comes down in a cell: grains of one hop land around its mean, with the standard deviation
-/// `hop_spread` along each axis. Of what landed in a cell, the shares of a binomial kernel go to its eight
-/// neighbours; both cells of a pair compute the same amounts, so that none is lost.
-struct Landing {
-  Grid grid;
-  const Quanta* landed;
-  float to_side, to_corner;  ///< shares of a cell's sand that each of its neighbours gets
-
-  Landing(const Grid& g, const Quanta* landed_sand, float spread) : grid(g), landed(landed_sand) {
-    const float cells = spread / g.cell_size, wing = minimum(0.5f * cells * cells, 0.25f);
-    to_side = wing * (1.0f - 2.0f * wing);
-    to_corner = wing * wing;
-  }
-  /// [quanta]. `inside`: for cells that have all their neighbours.
-  template <bool inside>
-  DESERT_HD Quanta at(int x, int y) const {
-    const Quanta here = landed[grid.index(x, y)], side = part(here, to_side), corner = part(here, to_corner);
-    Quanta sum = here;
-    unrolled<Neighbours::count>([&](auto k) DESERT_INLINE {
-      const int to_x = x + Neighbours::dx(k), to_y = y + Neighbours::dy(k);
-      const int j = inside ? grid.index(to_x, to_y) : neighbour_index(grid, to_x, to_y);
-      const bool straight = Neighbours::dx(k) == 0 || Neighbours::dy(k) == 0;
-      if (j >= 0) sum += straight ? part(landed[j], to_side) - side : part(landed[j], to_corner) - corner;
-    });
-    return sum;
-  }
-
- private:
-  DESERT_HD static Quanta part(Quanta of, float share) {
-    return static_cast<Quanta>(share * static_cast<float>(of));
-  }
-};
-
 /// Deposits a share of the sand that landed and lets the rest bounce; abrades the ground and sets the
 /// impacts.
 template <bool bare>
@@ -165,7 +135,7 @@ struct Deposit {
   Lift<bare> lift;
   abrasion::Abrade abrade;
   Die die;
-  Landing landing;
+  const Quanta* landed;
   Quanta *sand, *airborne;
   reptation::Impacts impacts;
 
@@ -209,8 +179,9 @@ struct Deposit {
             impacts.angle.lowered_tangent(strength, speed, shadow)};
   }
 
-  DESERT_HD void deposit(int x, int y, Quanta arriving) const {
+  DESERT_HD void operator()(int x, int y) const {
     const int i = in.grid.index(x, y);
+    const Quanta arriving = landed[i];
     const Quanta lying = sand[i], waiting = in.hop_share < 1.0f ? airborne[i] : 0;
     const float v = in.plants(i), m = in.moisture(i), w_x = in.wind_x[i], w_y = in.wind_y[i];
     const float speed = hypotenuse(w_x, w_y), shadow = value_or_zero(in.wind_shadow, i);
@@ -222,13 +193,6 @@ struct Deposit {
       abrade(i, cover, o.bounces / in.hop_share, speed, v, m, o.deposited_share);
     impacts.set(i, o.strength, o.lowered_tangent, v, in.moisture(i));
   }
-};
-
-/// Deposit of one cell; `inside`: for cells that have all their neighbours.
-template <bool bare, bool inside>
-struct DepositOfOne {
-  Deposit<bare> law;
-  DESERT_HD void operator()(int x, int y) const { law.deposit(x, y, law.landing.template at<inside>(x, y)); }
 };
 
 }  // namespace desert_sim::saltation

@@ -137,13 +137,29 @@ struct CoarseColumn {
     north = in_row(along_y.after);
   }
   DESERT_HD Value at(const AxisInterpolation& along_y) const { return along_y(south, middle, north); }
-
- private:
+  /// Interpolated along x in one coarse row.
   DESERT_HD Value in_row(int row) const {
     const Value* of_row = field + row * width;
     return interpolation_x(of_row[interpolation_x.before], of_row[interpolation_x.nearest],
                            of_row[interpolation_x.after]);
   }
+};
+
+/// The same from rows that were interpolated along x before (InterpolateRows).
+template <class Value>
+struct InterpolatedColumn {
+  const Value* column;
+  int width;
+  Value south{}, middle{}, north{};
+
+  DESERT_HD InterpolatedColumn(const Value* rows, int x, int row_width)
+      : column(rows ? rows + x : nullptr), width(row_width) {}
+  DESERT_HD void move_to(const AxisInterpolation& along_y) {
+    south = column[along_y.before * width];
+    middle = column[along_y.nearest * width];
+    north = column[along_y.after * width];
+  }
+  DESERT_HD Value at(const AxisInterpolation& along_y) const { return along_y(south, middle, north); }
 };
 
 /// Wavenumbers of a Fourier mode [rad per fine cell]; `nyquist`: whether one of them is the Nyquist

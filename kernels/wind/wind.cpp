@@ -43,50 +43,74 @@ void coarse_wind(E& exec, const CoarseLaws& laws, const surface::Heights& height
     done = work.by_lines;
   }
   if (!done) transform_by_library(exec, laws, work);
-  if (laws.mean.sums)
-    for_each_cell(exec, work.coarse.transformed(),
-                  RestoreMean{work.coarse, laws.mean.sums, work.responses.data()});
+}
+
+inline SurfaceWindInputs surface_wind_inputs(const TerrainView& t, const WindParameters& p, Vector above,
+                                             const surface::Heights& heights, float reference,
+                                             const Workspace& work) {
+  const float speed_above = hypotenuse(above.x, above.y);
+  SurfaceWindInputs in{};
+  in.coarse = work.coarse;
+  in.heights = heights.cell_heights.data();
+  in.reference = reference;
+  in.quantum = t.quantum;
+  in.above = above;
+  in.per_speed_squared = speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f;
+  in.speed_up = speed_up(p);
+  if (p.projection) in.speed_up.per_metre = 0;  // the projected wind includes the speed-up by height
+  in.deviation = p.projection ? work.responses.data() : p.warping ? work.warped.data() : nullptr;
+  in.mean = {p.projection && has_response(p) ? work.mean_sums.data() : nullptr, {}};
+  in.keeps_speed = !p.projection;
+  in.factors = has_response(p) ? work.rise.data() : nullptr;
+  in.wind_x = t.real(Layer::wind_x);
+  in.wind_y = t.real(Layer::wind_y);
+  return in;
+}
+
+template <int strip, bool interpolated, class E>
+void blow(E& exec, const SurfaceWindInputs& in) {
+  const auto run = [&](const auto& law) { for_each_cell(exec, law.strips(), law); };
+  if (in.perturbation_x)
+    run(SurfaceWind<strip, true, interpolated>{in});
+  else
+    run(SurfaceWind<strip, false, interpolated>{in});
+}
+
+/// On a CPU: interpolates along x first, if the rows of all fields fit into `scratch`.
+template <class E>
+void blow_by_rows(E& exec, SurfaceWindInputs in, float* scratch) {
+  const long long values = InterpolateRows::values(in.coarse);
+  if ((!in.deviation && !in.factors) || 3 * values > in.coarse.fine.cells()) return blow<1, false>(exec, in);
+  const InterpolateRows rows{in.coarse, in.deviation, in.factors, reinterpret_cast<Complex*>(scratch),
+                             scratch + 2 * values};
+  for_each_cell(exec, rows.grid(), rows);
+  if (in.deviation) in.deviation = rows.deviation_rows;
+  if (in.factors) in.factors = rows.factor_rows;
+  blow<1, true>(exec, in);
 }
 
 template <class E>
 void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
           const surface::Heights& heights, Quanta reference, const float* perturbation_x,
-          const float* perturbation_y, Workspace& work) {
+          const float* perturbation_y, float* scratch, Workspace& work) {
   const float speed_above = hypotenuse(above.x, above.y), ground = static_cast<float>(reference);
   if (has_coarse_fields(p))
     coarse_wind(exec, coarse_laws(t, p, above, speed_above, work), heights, ground, work);
-  const auto run = [&](auto strip, auto is_perturbed) {
-    SurfaceWind<strip, is_perturbed> law{};
-    law.coarse = work.coarse;
-    law.heights = heights.cell_heights.data();
-    law.reference = ground;
-    law.quantum = t.quantum;
-    law.above = above;
-    law.per_speed_squared = speed_above > 0.0f ? 1.0f / (speed_above * speed_above) : 0.0f;
-    law.speed_up = speed_up(p);
-    if (p.projection) law.speed_up.per_metre = 0;  // the projected wind includes the speed-up by height
-    law.deviation = p.projection ? work.responses.data() : p.warping ? work.warped.data() : nullptr;
-    law.keeps_speed = !p.projection;
-    law.factors = has_response(p) ? work.rise.data() : nullptr;
-    law.perturbation_x = perturbation_x;
-    law.perturbation_y = perturbation_y;
-    law.wind_x = t.real(Layer::wind_x);
-    law.wind_y = t.real(Layer::wind_y);
-    for_each_cell(exec, law.strips(), law);
-  };
-  const auto run_strips = [&](auto strip) {
-    perturbation_x ? run(strip, std::true_type()) : run(strip, std::false_type());
-  };
+  SurfaceWindInputs in = surface_wind_inputs(t, p, above, heights, ground, work);
+  in.perturbation_x = perturbation_x;
+  in.perturbation_y = perturbation_y;
   constexpr int many_cells = 1 << 22;  // these fill a GPU even in long strips
-  if constexpr (vectorises_rows<E>)
-    run_strips(std::integral_constant<int, 1>());
-  else if (t.grid.cells() >= many_cells)
-    run_strips(std::integral_constant<int, 8>());
-  else
-    run_strips(std::integral_constant<int, 4>());
+  if constexpr (vectorises_rows<E>) {
+    in.mean = {nullptr, in.mean()};
+    blow_by_rows(exec, in, scratch);
+  } else if (t.grid.cells() >= many_cells) {
+    blow<8, false>(exec, in);
+  } else {
+    blow<4, false>(exec, in);
+  }
 }
 
 template void step(Backend&, const TerrainView&, const WindParameters&, Vector, const surface::Heights&,
-                   Quanta, const float*, const float*, Workspace&);
+                   Quanta, const float*, const float*, float*, Workspace&);
 
 }  // namespace desert_sim::wind

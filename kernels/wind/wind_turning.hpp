@@ -156,18 +156,4 @@ struct MeanWind {
   }
 };
 
-/// Adds the uniform flux that restores the mean wind.
-struct RestoreMean {
-  CoarseGrid coarse;
-  const long long* sums;
-  Complex* flux;
-
-  DESERT_HD void operator()(int x, int y) const {
-    Complex& value = flux[y * coarse.width + x];
-    const double factor = static_cast<double>(sums[2]);
-    value.re += static_cast<float>(static_cast<double>(sums[0]) / factor);
-    value.im += static_cast<float>(static_cast<double>(sums[1]) / factor);
-  }
-};
-
 }  // namespace desert_sim::wind

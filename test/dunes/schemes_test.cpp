@@ -109,10 +109,10 @@ constexpr Avalanches quick_avalanches[] = {
      avalanching::preset(AvalancheQuality::good).last_passes},
     {"converged", AvalancheScheme::multilevel, AvalancheQuality::converged, 0}};
 constexpr std::size_t slope_bins = 6;  // of 6 degrees: what sand can lie at
-/// Few sweeps leave stoss slopes a little steeper than the reference: from 24 degrees up there is 0.03 to 0.05
-/// more of 0.18, from 18 degrees up as much less, and of the steepest 0.01 to 0.02 of 0.31 less. That is 3.6
-/// times the scatter of single seeds for `good`, and 4.8 times for `fast`.
-constexpr double shares_may_scatter = 4, shares_may_scatter_if_fast = 5;
+/// The steepest share is 0.02 of 0.31 too small (coarse levels slide a little too far, and slides end below
+/// the angle of repose), that from 12 degrees up to 0.014 of 0.05, that from 18 degrees up to 0.03 of 0.2 too
+/// large: 3.6 times the scatter of single seeds at most.
+constexpr double shares_may_scatter = 4;
 
 /// Roughness, wavelength, orientation, and the share of cells at each slope that sand can lie at.
 TEST(Schemes, SameDunesAsTheReference) {
@@ -129,8 +129,7 @@ TEST(Schemes, SameDunesAsTheReference) {
     for (std::size_t bin = 0; bin < slope_bins; ++bin)
       same(
           "share of slopes from " + std::to_string(6 * bin) + " degrees",
-          [bin](const Statistics& s) { return s.histogram[bin]; },
-          avalanches.quality == AvalancheQuality::fast ? shares_may_scatter_if_fast : shares_may_scatter);
+          [bin](const Statistics& s) { return s.histogram[bin]; }, shares_may_scatter);
   }
 }
 

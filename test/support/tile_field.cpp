@@ -117,7 +117,7 @@ std::vector<std::uint32_t> TileField::relaxed_and_restricted(Exec& exec, int off
   Coarse first(exec, half), second(exec, quarter);
   with_backend(exec, [&](auto& e) {
     avalanching::relax_tiles(e, four_sweeps(device, offset),
-                             avalanching::Restrict{device.level, first.out, second.out, 1.25f});
+                             avalanching::Restrict{device.level, first.out, second.out});
   });
   std::vector<std::uint32_t> bits;
   append(bits, device.sand);

@@ -247,7 +247,7 @@ struct Hierarchy {
   }
   static void fill(const avalanching::LevelView& from, const avalanching::LevelBuffers& first,
                    const avalanching::LevelBuffers& second) {
-    const avalanching::Restrict law{from, first, second, 1.0f};
+    const avalanching::Restrict law{from, first, second};
     for (int y = 0; y < law.blocks().height; ++y)
       for (int x = 0; x < law.blocks().width; ++x) law(x, y);
   }
@@ -360,23 +360,6 @@ TEST(Restrict, FillsTwoLevelsAtOnceAsOneAfterTheOther) {
     EXPECT_TRUE(first == first_at_once) << width << " x " << height;
     EXPECT_TRUE(second == second_at_once) << width << " x " << height;
   }
-}
-
-/// The factor is that of the first level over the fine grid: the second has the angles of the first.
-TEST(Restrict, CoarseAnglesOfReposeAreSteeperByTheFactorOnce) {
-  const avalanching::LevelCell flat[4] = {{0, 8, 0.5f}, {0, 8, 0.6f}, {0, 8, 0.4f}, {0, 8, 0.5f}};
-  EXPECT_FLOAT_EQ(avalanching::coarse_cell(flat, 1.25f).repose, 1.25f * 0.6f);
-  std::vector<Quanta> ground(16, 0), sand(16, 8), c1(4), s1(4), b1(4), c2(1), s2(1), b2(1);
-  std::vector<float> repose(16, 0.6f), r1(4), r2(1);
-  const avalanching::LevelView fine{
-      Grid{4, 4, 1, true, true}, ground.data(), nullptr, nullptr, sand.data(), repose.data(), 1e6f};
-  const avalanching::Restrict law{fine,
-                                  {Grid{2, 2, 2, true, true}, c1.data(), s1.data(), b1.data(), r1.data()},
-                                  {Grid{1, 1, 4, true, true}, c2.data(), s2.data(), b2.data(), r2.data()},
-                                  1.25f};
-  law(0, 0);
-  EXPECT_EQ(r1, std::vector<float>(4, 1.25f * 0.6f));
-  EXPECT_FLOAT_EQ(r2[0], 1.25f * 0.6f);
 }
 
 TEST(Restrict, AWallAmongTheChildrenIsAWall) {

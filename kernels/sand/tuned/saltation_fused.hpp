@@ -36,20 +36,17 @@ struct DepositOfFour {
   DESERT_HD Grid fours() const { return {deposit.in.grid.width / 4, deposit.in.grid.height, 1}; }
   DESERT_HD void operator()(int x, int y) const {
     const int first = deposit.in.grid.index(4 * x, y);
+    const auto arriving = load_vec4(deposit.landed + first);
     const auto lying = load_vec4(deposit.sand + first);
     const auto u = load_vec4(deposit.in.wind_x + first), v = load_vec4(deposit.in.wind_y + first);
     Vec4<float> shadow{}, angle;
     if (deposit.in.wind_shadow) shadow = load_vec4(deposit.in.wind_shadow + first);
     Vec4<Quanta> waiting{}, sand, airborne;
     if (deposit.in.hop_share < 1.0f) waiting = load_vec4(deposit.airborne + first);
-    Quanta arriving[4];
-    const bool inside = x > 0 && x + 1 < fours().width && y > 0 && y + 1 < fours().height;
-    for (int n = 0; n < 4; ++n)
-      arriving[n] = inside ? deposit.landing.at<true>(4 * x + n, y) : deposit.landing.at<false>(4 * x + n, y);
     for (int n = 0; n < 4; ++n) {
       const Quanta cover = deposit.covering(first + n, lying.values[n], u.values[n], v.values[n],
                                             shadow.values[n], 0.0f, 0.0f);
-      const auto o = deposit.split_landed(first + n, arriving[n], cover, shadow.values[n],
+      const auto o = deposit.split_landed(first + n, arriving.values[n], cover, shadow.values[n],
                                           hypotenuse(u.values[n], v.values[n]), 0.0f, 0.0f);
       sand.values[n] = lying.values[n] + o.stays;
       airborne.values[n] = waiting.values[n] + o.bounces;

@@ -31,8 +31,9 @@ reptation::Angle angle_of_repose(const StepContext& c) {
 template <class E>
 void lift_and_deposit(E& e, StepContext& c, const wind_shadow::Shadow* shadow_law) {
   const Scenario& s = c.scenario();
-  saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.dice(), c.state.ledger(),
-                  c.fields.landed.data(), {angle_of_repose(c), c.fields.impact_strength.data()}, shadow_law);
+  saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.tick(), c.dice(),
+                  c.state.ledger(), c.fields.landed.data(),
+                  {angle_of_repose(c), c.fields.impact_strength.data()}, shadow_law);
 }
 
 void saltate(StepContext& c, ProcessWorkspace*) {

@@ -67,7 +67,8 @@ void update_wind(StepContext& c, ProcessWorkspace* workspace) {
       wind_features::step(e, c.terrain.grid, work.features, c.fields.repose.data(),
                           work.perturbation_x.data(), work.perturbation_y.data());
     wind::step(e, c.terrain, s.scenario.wind, c.wind_above(), c.fields.heights, s.wind_reference,
-               work.perturbation_x.data(), work.perturbation_y.data(), work.coarse);
+               work.perturbation_x.data(), work.perturbation_y.data(),
+               reinterpret_cast<float*>(c.fields.landed.data()), work.coarse);
   });
 }
 
