@@ -120,9 +120,10 @@ struct Dice {
 
 namespace dice {
 
-/// A die that turns on by the golden ratio instead of being rolled: over successive `turns` the u of a cell are
-/// spread evenly, so that an amount that hardly changes adds up to its sum within a quantum or two, not within
-/// the root of their number. What carries momentum needs this, because it would answer to the noise of rolls.
+/// A die that turns on by the golden ratio instead of being rolled: over successive `turns` the u of a cell
+/// are spread evenly, so that an amount that hardly changes adds up to its sum within a quantum or two, not
+/// within the root of their number. What carries momentum needs this, because it would answer to the noise of
+/// rolls.
 inline Die regular(std::uint64_t seed, Roll roll, std::uint64_t turns) {
   const std::uint32_t key =
       random_words(seed, Purpose::rounding, static_cast<std::uint32_t>(roll), 0, 0).word[0];

@@ -8,8 +8,8 @@
 ///             s ← s − φ L
 ///             c = s − (1 − φ) L, the sand that L leaves on the ground
 ///   advect    φ (a + L) moves by (w T + d)/l cells and is scattered bilinearly to the four cells around; the
-///             rest of a waits. d is 0 in still air, else the displacement of this hop (HopOffset): hops differ,
-///             or a pattern in thin sand would run on unchanged.
+///             rest of a waits. d is 0 in still air, else the displacement of this hop (HopOffset): hops
+///             differ, or a pattern in thin sand would run on unchanged.
 ///   deposit   p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1) · clamp(1 − 10 m, 0.01, 1)
 ///             p = 0 on obstacles and where r_e < 0
 ///             f = 0.4 on sand, 0.5 on soil, 0.6 on rock, by c
@@ -94,10 +94,10 @@ struct Hops {
       : parts(static_cast<int>(std::ceil(time_step / p.hop_time))), share(time_step / (parts * p.hop_time)) {}
 };
 
-/// Displacement of the landing points of all sand that hops at once [cells]. Eight hops in turn land around the
-/// points to which the wind takes them, on a circle whose radius is √2 times the standard deviation `spread`
-/// along each axis [cells]. Their mean is zero, so that sand moves as far as with hops of one length. A recorded
-/// step has the displacement of its number by eight, as avalanches have their seams.
+/// Displacement of the landing points of all sand that hops at once [cells]. Eight hops in turn land around
+/// the points to which the wind takes them, on a circle whose radius is √2 times the standard deviation
+/// `spread` along each axis [cells]. Their mean is zero, so that sand moves as far as with hops of one
+/// length. A recorded step has the displacement of its number by eight, as avalanches have their seams.
 struct HopOffset {
   static constexpr std::uint64_t period = 8;
   float x, y;
@@ -110,8 +110,9 @@ struct HopOffset {
   }
 };
 
-/// `tick`: number of steps, or of parts of steps, before this one. `landed`: scratch, one value a cell [quanta]. `shadow_law`: the law that computes the wind shadow in the
-/// pass of the lift, or null where the layer is up to date.
+/// `tick`: number of steps, or of parts of steps, before this one. `landed`: scratch, one value a cell
+/// [quanta]. `shadow_law`: the law that computes the wind shadow in the pass of the lift, or null where the
+/// layer is up to date.
 template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
           const ReposeParameters& repose, float time_step, std::uint64_t tick, const Dice& dice,

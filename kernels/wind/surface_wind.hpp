@@ -55,8 +55,8 @@ struct MeanFlux {
   }
 };
 
-/// What the wind of the cells is made from: the deflected wind or projected flux of the coarse grid, times the
-/// speed-up and, if there is one, plus the perturbation of local features.
+/// What the wind of the cells is made from: the deflected wind or projected flux of the coarse grid, times
+/// the speed-up and, if there is one, plus the perturbation of local features.
 struct SurfaceWindInputs {
   CoarseGrid coarse;
   const float* heights;

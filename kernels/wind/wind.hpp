@@ -6,7 +6,8 @@
 ///                g⊥  = ±(−g_y, g_x),   with the sign that makes u·g⊥ ≥ 0,   u = f w_a
 ///                f_R = lerp(u, k_R g⊥, α)
 ///                w   has the direction of Σ weight_R f_R / Σ weight_R and the speed |w_a|
-///   speed-up     f   = 1 + s/√(1 + (s/s_max)²), ŝ = a |k| ĥ (jackson_hunt)   or   clamp(1 + k_W (h − h_ref), …) (venturi)
+///   speed-up     f   = 1 + s/√(1 + (s/s_max)²), ŝ = a |k| ĥ (jackson_hunt)
+///                or clamp(1 + k_W (h − h_ref), …) (venturi)
 ///   projection   F   = P[w/f] + c (jackson_hunt)   or   P[w f] (venturi),   P[û] = û − k (k·û)/|k|²
 ///   wind         u   = f F (jackson_hunt)   or   F (venturi);   without projection f w, with f of venturi
 ///   features     + the divergence-free perturbation of wind_features.hpp

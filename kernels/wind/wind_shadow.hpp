@@ -13,7 +13,8 @@
 ///
 /// Steps shorter than 1 s share the shadow of the second's first one. Dunes depend on this delay as on a
 /// constant of nature: what the wind lifts in a second makes cells that shelter those behind them, from which
-/// dunes grow; where the shadow follows the sand at once, the barchans of config/scenarios run out into streaks.
+/// dunes grow; where the shadow follows the sand at once, the barchans of config/scenarios run out into
+/// streaks.
 ///
 /// Reads bedrock, soil, sand and, with plants, canopy_height through `heights`, wind_x, wind_y; writes
 /// wind_shadow. The laws are in wind_shadow_march.hpp.

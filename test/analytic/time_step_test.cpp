@@ -81,8 +81,9 @@ TEST_P(TimeStep, TheWindsShadowIsHeldForASecond) {
   }
 }
 
-/// Sand and plants take long steps in parts, with the wind's shadow, avalanches and light of each part; a step of
-/// 2 s, which had them once, moved much lifted sand 0.82 times as far as two of 1 s, and made 1.07 times the cover.
+/// Sand and plants take long steps in parts, with the wind's shadow, avalanches and light of each part; a
+/// step of 2 s, which had them once, moved much lifted sand 0.82 times as far as two of 1 s, and made 1.07
+/// times the cover.
 TEST_P(TimeStep, LongStepsOfSandAndPlantsAreThoseOfASecond) {
   const auto layers_at = [&](double dt) {
     auto s = simulation(

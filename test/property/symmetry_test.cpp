@@ -154,8 +154,8 @@ class Symmetry : public test::OnBackend {
  protected:
   static constexpr int steps = 20, seeds = 8;
 
-  /// Noise is the same whatever the seed, which is that of the dice. Hops do not spread, because only eight of
-  /// them together do so symmetrically.
+  /// Noise is the same whatever the seed, which is that of the dice. Hops do not spread, because only eight
+  /// of them together do so symmetrically.
   static std::string yaml(std::string world, const char* boundary, double direction, int seed) {
     const std::string noise = "noise: {";
     int layers = 0;

@@ -151,7 +151,8 @@ TEST_P(SaltationLaw, SharesAHopBilinearlyAmongFourCells) {
   }
 }
 
-/// Eight hops in turn: on average sand lands where the wind takes it, with the standard deviation along each axis.
+/// Eight hops in turn: on average sand lands where the wind takes it, with the standard deviation along each
+/// axis.
 TEST_P(SaltationLaw, HopsSpreadByTheirStandardDeviation) {
   SaltationParameters p;
   p.lift = 0;
