@@ -21,35 +21,36 @@ struct SaltationDice {
 /// One part of a step; see Hops.
 template <bool bare, class E>
 void hop(E& exec, const TerrainView& t, const SaltationParameters& p, const ReposeParameters& repose,
-         float hop_share, const HopOffset& offset, const SaltationDice& dice, LedgerView ledger,
-         Quanta* landed, const abrasion::Abrade& abrade, const reptation::Impacts& impacts,
+         float hop_share, const SaltationDice& dice, LedgerView ledger, Quanta* landed,
+         const abrasion::Abrade& abrade, const reptation::Impacts& impacts,
          const wind_shadow::Shadow* shadow_law) {
   const Inputs<bare> in(t, repose, p.hop_time, hop_share);
   const Lift<bare> lift{in, p};
   Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand);
   const LiftAndAdvect<bare> advect{
-      in,       lift,  p.hop_time / t.grid.cell_size, offset, dice.lift, dice.wait, dice.landing, sand,
-      airborne, ledger};
+      in, lift, p.hop_time / t.grid.cell_size, dice.lift, dice.wait, dice.landing, sand, airborne, ledger};
   if (shadow_law)
     for_each_cell_scatter(exec, t.grid, landed, ShadowAndLift<bare>{*shadow_law, advect});
   else
     for_each_cell_scatter(exec, t.grid, landed, advect);
   if (!t.grid.periodic() && p.influx > 0.0f)
     for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, dice.influx, landed, ledger});
-  const Deposit<bare> deposit{in, lift, abrade, dice.deposit, landed, sand, airborne, impacts};
+  const Deposit<bare> deposit{in,   lift,     abrade, dice.deposit, Landing(t.grid, landed, p.hop_spread),
+                              sand, airborne, impacts};
   if constexpr (bare && !vectorises_rows<E>)
     if (t.grid.width % 4 == 0) {
       const DepositOfFour four{deposit};
       return for_each_cell(exec, four.fours(), four);
     }
-  for_each_cell(exec, t.grid, deposit);
+  for_each_cell(
+      exec, t.grid,
+      Bordered<DepositOfOne<bare, true>, DepositOfOne<bare, false>>{t.grid, 1, {deposit}, {deposit}});
 }
 
 template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
-          const ReposeParameters& repose, float time_step, std::uint64_t tick, const Dice& dice,
-          LedgerView ledger, Quanta* landed, const reptation::Impacts& impacts,
-          const wind_shadow::Shadow* shadow_law) {
+          const ReposeParameters& repose, float time_step, const Dice& dice, LedgerView ledger,
+          Quanta* landed, const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law) {
   const Hops hops(p, time_step);
   const float part_of_step = time_step / static_cast<float>(hops.parts);
   abrasion::Abrade abrade{a.rate * part_of_step,
@@ -66,19 +67,16 @@ void step(E& exec, const TerrainView& t, const SaltationParameters& p, const Abr
   for (int part = 0; part < hops.parts; ++part) {
     const SaltationDice of_part(dice, part);
     abrade.die = dice[Roll::abrasion].of_part(part);
-    const HopOffset offset(p.hop_spread / t.grid.cell_size,
-                           tick * static_cast<std::uint64_t>(hops.parts) + static_cast<std::uint64_t>(part));
     if (is_bare(t, a))
-      hop<true>(exec, t, p, repose, hops.share, offset, of_part, ledger, landed, abrade, impacts, shadow_law);
+      hop<true>(exec, t, p, repose, hops.share, of_part, ledger, landed, abrade, impacts, shadow_law);
     else
-      hop<false>(exec, t, p, repose, hops.share, offset, of_part, ledger, landed, abrade, impacts,
-                 shadow_law);
+      hop<false>(exec, t, p, repose, hops.share, of_part, ledger, landed, abrade, impacts, shadow_law);
     shadow_law = nullptr;  // the first part has left it in the layer
   }
 }
 
 template void step(Backend&, const TerrainView&, const SaltationParameters&, const AbrasionParameters&,
-                   const ReposeParameters&, float, std::uint64_t, const Dice&, LedgerView, Quanta*,
+                   const ReposeParameters&, float, const Dice&, LedgerView, Quanta*,
                    const reptation::Impacts&, const wind_shadow::Shadow*);
 
 }  // namespace desert_sim::saltation

@@ -7,9 +7,9 @@
 ///             M = clamp(1 − 10 m, 0, 1), and 0 under water
 ///             s ← s − φ L
 ///             c = s − (1 − φ) L, the sand that L leaves on the ground
-///   advect    φ (a + L) moves by (w T + d)/l cells and is scattered bilinearly to the four cells around; the
-///             rest of a waits. d is 0 in still air, else the displacement of this hop (HopOffset): hops
-///             differ, or a pattern in thin sand would run on unchanged.
+///   advect    φ (a + L) moves by w T / l cells and is scattered bilinearly to the four cells around; the
+///             rest of a waits. Of what lands in a cell, a binomial kernel of the standard deviation
+///             `hop_spread`, at most 0.7 l, takes shares to its eight neighbours: hops differ in length.
 ///   deposit   p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1) · clamp(1 − 10 m, 0.01, 1)
 ///             p = 0 on obstacles and where r_e < 0
 ///             f = 0.4 on sand, 0.5 on soil, 0.6 on rock, by c
@@ -40,7 +40,6 @@
 #include "kernels/field/ledger.hpp"
 #include "kernels/sand/abrasion.hpp"
 #include "kernels/sand/reptation.hpp"
-#include "src/core/constants.hpp"
 
 namespace desert_sim {
 
@@ -63,8 +62,9 @@ constexpr auto parameter_table(const SaltationParameters*) {
       parameter("enabled", &P::enabled, "Whether the wind carries sand."),
       parameter("lift", &P::lift, 0, 10, "m/s", "Sand lifted from an open cell a second (epsilon_s)."),
       parameter("hop_time", &P::hop_time, 0.001, 100, "s", "Time that a hop takes (T)."),
-      parameter("hop_spread", &P::hop_spread, 0, 100, "m",
-                "Standard deviation of landing points about the mean hop, along each axis."),
+      parameter(
+          "hop_spread", &P::hop_spread, 0, 100, "m",
+          "Standard deviation of landing points about the mean hop, along each axis; 0.7 cells at most."),
       parameter("threshold_speed", &P::threshold_speed, 0, 100, "m/s", "Wind below which nothing is lifted."),
       parameter("bounce_on_sand", &P::bounce_on_sand, 0, 1, "1",
                 "Share of landing sand that bounces on sand (f)."),
@@ -94,30 +94,12 @@ struct Hops {
       : parts(static_cast<int>(std::ceil(time_step / p.hop_time))), share(time_step / (parts * p.hop_time)) {}
 };
 
-/// Displacement of the landing points of all sand that hops at once [cells]. Eight hops in turn land around
-/// the points to which the wind takes them, on a circle whose radius is √2 times the standard deviation
-/// `spread` along each axis [cells]. Their mean is zero, so that sand moves as far as with hops of one
-/// length. A recorded step has the displacement of its number by eight, as avalanches have their seams.
-struct HopOffset {
-  static constexpr std::uint64_t period = 8;
-  float x, y;
-
-  HopOffset(float spread, std::uint64_t hop) {
-    const double turn = 2 * pi / static_cast<double>(period);
-    const double angle = turn * (static_cast<double>(3 * hop % period) + 0.5);
-    x = static_cast<float>(std::sqrt(2.0) * static_cast<double>(spread) * std::cos(angle));
-    y = static_cast<float>(std::sqrt(2.0) * static_cast<double>(spread) * std::sin(angle));
-  }
-};
-
-/// `tick`: number of steps, or of parts of steps, before this one. `landed`: scratch, one value a cell
-/// [quanta]. `shadow_law`: the law that computes the wind shadow in the pass of the lift, or null where the
-/// layer is up to date.
+/// `landed`: scratch, one value a cell [quanta]. `shadow_law`: the law that computes the wind shadow in the
+/// pass of the lift, or null where the layer is up to date.
 template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
-          const ReposeParameters& repose, float time_step, std::uint64_t tick, const Dice& dice,
-          LedgerView ledger, Quanta* landed, const reptation::Impacts& impacts,
-          const wind_shadow::Shadow* shadow_law);
+          const ReposeParameters& repose, float time_step, const Dice& dice, LedgerView ledger,
+          Quanta* landed, const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law);
 
 }  // namespace saltation
 }  // namespace desert_sim

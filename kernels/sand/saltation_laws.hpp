@@ -42,7 +42,6 @@ struct LiftAndAdvect {
   Inputs<bare> in;
   Lift<bare> lift;
   float hop_per_speed;  ///< length of a hop over wind speed, T / l [cells s/m]
-  HopOffset offset;
   Die lift_die, wait_die, landing_die;
   Quanta *sand, *airborne;
   LedgerView ledger;
@@ -79,9 +78,7 @@ struct LiftAndAdvect {
     // Where the four shares are so small that rounding would falsify them, all lands in one of the cells.
     const std::uint32_t die = landing_die.word(i);
     const bool few = static_cast<float>(carried) < Die::small;
-    const bool still = c.u == 0.0f && c.v == 0.0f;
-    const int dx = to_fixed_point(c.u * hop_per_speed + (still ? 0.0f : offset.x)),
-              dy = to_fixed_point(c.v * hop_per_speed + (still ? 0.0f : offset.y));
+    const int dx = to_fixed_point(c.u * hop_per_speed), dy = to_fixed_point(c.v * hop_per_speed);
     parcels.set(n, x, y, Die::whole_cells_if(few, dx, die), Die::whole_cells_if(few, dy, die >> 16), carried);
   }
   template <int count>
@@ -127,6 +124,38 @@ struct Influx {
   }
 };
 
+/// Sand that comes down in a cell: grains of one hop land around its mean, with the standard deviation
+/// `hop_spread` along each axis. Of what landed in a cell, the shares of a binomial kernel go to its eight
+/// neighbours; both cells of a pair compute the same amounts, so that none is lost.
+struct Landing {
+  Grid grid;
+  const Quanta* landed;
+  std::int32_t to_side, to_corner;  ///< shares of a cell's sand that each of its neighbours gets [2⁻³¹]
+
+  Landing(const Grid& g, const Quanta* landed_sand, float spread) : grid(g), landed(landed_sand) {
+    const double cells = static_cast<double>(spread) / static_cast<double>(g.cell_size);
+    const double wing = cells < 0.7 ? 0.5 * cells * cells : 0.25;
+    to_side = static_cast<std::int32_t>(wing * (1 - 2 * wing) * 2147483648.0);
+    to_corner = static_cast<std::int32_t>(wing * wing * 2147483648.0);
+  }
+  /// [quanta]. `inside`: for cells that have all their neighbours.
+  template <bool inside>
+  DESERT_HD Quanta at(int x, int y) const {
+    const Quanta here = landed[grid.index(x, y)], side = part(here, to_side), corner = part(here, to_corner);
+    Quanta sum = here;
+    unrolled<Neighbours::count>([&](auto k) DESERT_INLINE {
+      const int to_x = x + Neighbours::dx(k), to_y = y + Neighbours::dy(k);
+      const int j = inside ? grid.index(to_x, to_y) : neighbour_index(grid, to_x, to_y);
+      const bool straight = Neighbours::dx(k) == 0 || Neighbours::dy(k) == 0;
+      if (j >= 0) sum += straight ? part(landed[j], to_side) - side : part(landed[j], to_corner) - corner;
+    });
+    return sum;
+  }
+  DESERT_HD static Quanta part(Quanta of, std::int32_t share) {
+    return static_cast<Quanta>((static_cast<std::int64_t>(of) * share) >> 31);
+  }
+};
+
 /// Deposits a share of the sand that landed and lets the rest bounce; abrades the ground and sets the
 /// impacts.
 template <bool bare>
@@ -135,7 +164,7 @@ struct Deposit {
   Lift<bare> lift;
   abrasion::Abrade abrade;
   Die die;
-  const Quanta* landed;
+  Landing landing;
   Quanta *sand, *airborne;
   reptation::Impacts impacts;
 
@@ -179,9 +208,8 @@ struct Deposit {
             impacts.angle.lowered_tangent(strength, speed, shadow)};
   }
 
-  DESERT_HD void operator()(int x, int y) const {
+  DESERT_HD void deposit(int x, int y, Quanta arriving) const {
     const int i = in.grid.index(x, y);
-    const Quanta arriving = landed[i];
     const Quanta lying = sand[i], waiting = in.hop_share < 1.0f ? airborne[i] : 0;
     const float v = in.plants(i), m = in.moisture(i), w_x = in.wind_x[i], w_y = in.wind_y[i];
     const float speed = hypotenuse(w_x, w_y), shadow = value_or_zero(in.wind_shadow, i);
@@ -193,6 +221,13 @@ struct Deposit {
       abrade(i, cover, o.bounces / in.hop_share, speed, v, m, o.deposited_share);
     impacts.set(i, o.strength, o.lowered_tangent, v, in.moisture(i));
   }
+};
+
+/// Deposit of one cell; `inside`: for cells that have all their neighbours.
+template <bool bare, bool inside>
+struct DepositOfOne {
+  Deposit<bare> law;
+  DESERT_HD void operator()(int x, int y) const { law.deposit(x, y, law.landing.template at<inside>(x, y)); }
 };
 
 }  // namespace desert_sim::saltation

@@ -21,6 +21,11 @@ struct SpeedUp {
   DESERT_HD float operator()(float rise) const { return bounded(fused(per_metre, rise, 1.0f)); }
 };
 
+/// Memory for the rows of InterpolateRows: one value a cell of the terrain each.
+struct RowScratch {
+  float *deviation, *factors;
+};
+
 /// Interpolates the fields of SurfaceWind along x, for all columns of the terrain in each coarse row. Along y
 /// a CPU then finds the values of neighbouring cells beside each other, and interpolates whole vectors.
 struct InterpolateRows {

@@ -76,13 +76,13 @@ void blow(E& exec, const SurfaceWindInputs& in) {
     run(SurfaceWind<strip, false, interpolated>{in});
 }
 
-/// On a CPU: interpolates along x first, if the rows of all fields fit into `scratch`.
+/// On a CPU: interpolates along x first, if the rows fit into `scratch`.
 template <class E>
-void blow_by_rows(E& exec, SurfaceWindInputs in, float* scratch) {
-  const long long values = InterpolateRows::values(in.coarse);
-  if ((!in.deviation && !in.factors) || 3 * values > in.coarse.fine.cells()) return blow<1, false>(exec, in);
-  const InterpolateRows rows{in.coarse, in.deviation, in.factors, reinterpret_cast<Complex*>(scratch),
-                             scratch + 2 * values};
+void blow_by_rows(E& exec, SurfaceWindInputs in, const RowScratch& scratch) {
+  const bool fit = 2 * InterpolateRows::values(in.coarse) <= in.coarse.fine.cells();
+  if ((!in.deviation && !in.factors) || !fit) return blow<1, false>(exec, in);
+  const InterpolateRows rows{in.coarse, in.deviation, in.factors,
+                             reinterpret_cast<Complex*>(scratch.deviation), scratch.factors};
   for_each_cell(exec, rows.grid(), rows);
   if (in.deviation) in.deviation = rows.deviation_rows;
   if (in.factors) in.factors = rows.factor_rows;
@@ -92,7 +92,7 @@ void blow_by_rows(E& exec, SurfaceWindInputs in, float* scratch) {
 template <class E>
 void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
           const surface::Heights& heights, Quanta reference, const float* perturbation_x,
-          const float* perturbation_y, float* scratch, Workspace& work) {
+          const float* perturbation_y, const RowScratch& scratch, Workspace& work) {
   const float speed_above = hypotenuse(above.x, above.y), ground = static_cast<float>(reference);
   if (has_coarse_fields(p))
     coarse_wind(exec, coarse_laws(t, p, above, speed_above, work), heights, ground, work);
@@ -111,6 +111,6 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
 }
 
 template void step(Backend&, const TerrainView&, const WindParameters&, Vector, const surface::Heights&,
-                   Quanta, const float*, const float*, float*, Workspace&);
+                   Quanta, const float*, const float*, const RowScratch&, Workspace&);
 
 }  // namespace desert_sim::wind

@@ -74,11 +74,11 @@ CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p);
 Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p);
 
 /// `above`: w_a; `reference`: h_ref, the reference of venturi [quanta];
-/// `perturbation_x`, `perturbation_y`: of wind_features.hpp [m/s], or null; `scratch`: one value a cell.
+/// `perturbation_x`, `perturbation_y`: of wind_features.hpp [m/s], or null.
 template <class E>
 void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
           const surface::Heights& heights, Quanta reference, const float* perturbation_x,
-          const float* perturbation_y, float* scratch, Workspace& work);
+          const float* perturbation_y, const RowScratch& scratch, Workspace& work);
 
 }  // namespace wind
 }  // namespace desert_sim

@@ -96,9 +96,7 @@ void require_reach(const Scenario& s) {
   const double steepness = std::tan(s.echo_dunes.cliff_deg * pi / 180.0);
   if (s.echo_dunes.enabled)  // from the top of a cliff to its foot
     check("echo_dunes.highest", s.echo_dunes.highest / steepness);
-  const double spread = std::sqrt(2.0) * s.saltation.hop_spread;
-  check("saltation.hop_spread", spread);
-  check("saltation.hop_time", fastest_wind(s) * s.saltation.hop_time + spread);
+  check("saltation.hop_time", fastest_wind(s) * s.saltation.hop_time);
   errors.throw_if_any();
 }
 

@@ -37,9 +37,11 @@ struct Blown {
   Blown(test::BenchTerrain& t, const WindParameters& p, wind::Vector above) : grid(t.grid()) {
     t.surface();
     wind::Workspace work = wind::make_workspace(t.exec(), grid, p);
-    Buffer<float> scratch(t.exec(), static_cast<std::size_t>(grid.cells()));
+    const auto cells = static_cast<std::size_t>(grid.cells());
+    Buffer<float> scratch(t.exec(), 2 * cells);
     with_backend(t.exec(), [&](auto& e) {
-      wind::step(e, t.terrain.view(), p, above, t.heights, 0, nullptr, nullptr, scratch.data(), work);
+      wind::step(e, t.terrain.view(), p, above, t.heights, 0, nullptr, nullptr,
+                 {scratch.data(), scratch.data() + cells}, work);
     });
     t.exec().synchronise();
     const std::vector<float> x = t.terrain.values(Layer::wind_x), y = t.terrain.values(Layer::wind_y),

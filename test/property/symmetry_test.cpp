@@ -154,14 +154,12 @@ class Symmetry : public test::OnBackend {
  protected:
   static constexpr int steps = 20, seeds = 8;
 
-  /// Noise is the same whatever the seed, which is that of the dice. Hops do not spread, because only eight
-  /// of them together do so symmetrically.
+  /// Noise is the same whatever the seed, which is that of the dice.
   static std::string yaml(std::string world, const char* boundary, double direction, int seed) {
     const std::string noise = "noise: {";
     int layers = 0;
     for (auto at = world.find(noise); at != std::string::npos; at = world.find(noise, at + 1))
       world.insert(at + noise.size(), "seed: " + std::to_string(100 + layers++ - seed) + ", ");
-    if (world.find("saltation:") == std::string::npos) world += "saltation: {hop_spread: 0}\n";
     return "grid: {width: 40, height: 40, boundary: " + std::string(boundary) + "}\n" + world +
            "seed: " + std::to_string(seed) +
            "\nwind: {warping: false, projection: false, speed: 5, direction_deg: " +
@@ -321,7 +319,7 @@ TEST_P(Symmetry, OfEchoDunesAtSixtyDegrees) {
   expect_same_on_average(patchy + cliff + sweeps, "periodic", 60);
 }
 TEST_P(Symmetry, OfOpenEdgesWithInflux) {
-  const std::string influx = "saltation: {influx: 0.3, hop_spread: 0}\n";
+  const std::string influx = "saltation: {influx: 0.3}\n";
   expect_equivariant(deep + faint + sweeps + influx, "open");
   expect_same_on_average(patchy + sweeps + influx, "open");
 }

@@ -109,10 +109,10 @@ void BenchTerrain::echo(const EchoDuneParameters& p) {
 }
 
 void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParameters& a,
-                             const ReposeParameters& r, float time_step, std::uint64_t tick) {
+                             const ReposeParameters& r, float time_step) {
   with_backend(exec(), [&](auto& e) {
     const reptation::Angle angle({}, r, repose.data());
-    saltation::step(e, terrain.view(), p, a, r, time_step, tick, roll_dice(), ledger(), landed.data(),
+    saltation::step(e, terrain.view(), p, a, r, time_step, roll_dice(), ledger(), landed.data(),
                     {angle, strength.data()}, nullptr);
   });
 }
@@ -188,9 +188,11 @@ void BenchTerrain::develop_soil(const SoilParameters& p, const ReposeParameters&
 void BenchTerrain::blow(const WindParameters& p, wind::Vector above, Quanta reference) {
   surface();
   wind::Workspace work = wind::make_workspace(exec(), grid(), p);
-  Buffer<float> scratch(exec(), static_cast<std::size_t>(grid().cells()));
+  const auto cells = static_cast<std::size_t>(grid().cells());
+  Buffer<float> scratch(exec(), 2 * cells);
   with_backend(exec(), [&](auto& e) {
-    wind::step(e, terrain.view(), p, above, heights, reference, nullptr, nullptr, scratch.data(), work);
+    wind::step(e, terrain.view(), p, above, heights, reference, nullptr, nullptr,
+               {scratch.data(), scratch.data() + cells}, work);
   });
   exec().synchronise();
 }

@@ -72,7 +72,7 @@ class BenchTerrain {
   void judge(const TraversabilityParameters& p = {});
   void echo(const EchoDuneParameters& p);
   void saltation(const SaltationParameters& p = {}, const AbrasionParameters& a = {},
-                 const ReposeParameters& r = {}, float time_step = 1, std::uint64_t tick = 0);
+                 const ReposeParameters& r = {}, float time_step = 1);
   void reptation(const ReptationParameters& p = {}, const ReposeParameters& r = {}, float time_step = 1,
                  std::uint64_t tick = 0);
   /// With the tangents in `repose`; returns the sweeps it took.

@@ -29,6 +29,27 @@ struct ShadowAndLift {
   }
 };
 
+/// Landing::at() of four adjacent cells of a row, which have all their neighbours. The cells share their loads
+/// and their shares.
+DESERT_HD Vec4<Quanta> land_on_four(const Landing& landing, int x, int y) {
+  Quanta row[3][6];
+  for (int r = 0; r < 3; ++r) {
+    const int first = landing.grid.index(x, y + r - 1);
+    const auto four = load_vec4(landing.landed + first);
+    row[r][0] = landing.landed[first - 1];
+    for (int n = 0; n < 4; ++n) row[r][n + 1] = four.values[n];
+    row[r][5] = landing.landed[first + 4];
+  }
+  const auto side = [&](int r, int n) { return Landing::part(row[r][n], landing.to_side); };
+  const auto corner = [&](int r, int n) { return Landing::part(row[r][n], landing.to_corner); };
+  Vec4<Quanta> arriving;
+  for (int n = 1; n < 5; ++n)
+    arriving.values[n - 1] = row[1][n] - 4 * (side(1, n) + corner(1, n)) + side(0, n) + side(2, n) +
+                             side(1, n - 1) + side(1, n + 1) + corner(0, n - 1) + corner(0, n + 1) +
+                             corner(2, n - 1) + corner(2, n + 1);
+  return arriving;
+}
+
 /// Deposit of four adjacent cells of a row in a bare desert; the grid's width must be a multiple of four.
 struct DepositOfFour {
   Deposit<true> deposit;
@@ -36,13 +57,17 @@ struct DepositOfFour {
   DESERT_HD Grid fours() const { return {deposit.in.grid.width / 4, deposit.in.grid.height, 1}; }
   DESERT_HD void operator()(int x, int y) const {
     const int first = deposit.in.grid.index(4 * x, y);
-    const auto arriving = load_vec4(deposit.landed + first);
     const auto lying = load_vec4(deposit.sand + first);
     const auto u = load_vec4(deposit.in.wind_x + first), v = load_vec4(deposit.in.wind_y + first);
     Vec4<float> shadow{}, angle;
     if (deposit.in.wind_shadow) shadow = load_vec4(deposit.in.wind_shadow + first);
     Vec4<Quanta> waiting{}, sand, airborne;
     if (deposit.in.hop_share < 1.0f) waiting = load_vec4(deposit.airborne + first);
+    Vec4<Quanta> arriving;
+    if (x > 0 && x + 1 < fours().width && y > 0 && y + 1 < fours().height)
+      arriving = land_on_four(deposit.landing, 4 * x, y);
+    else
+      for (int n = 0; n < 4; ++n) arriving.values[n] = deposit.landing.at<false>(4 * x + n, y);
     for (int n = 0; n < 4; ++n) {
       const Quanta cover = deposit.covering(first + n, lying.values[n], u.values[n], v.values[n],
                                             shadow.values[n], 0.0f, 0.0f);

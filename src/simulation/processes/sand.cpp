@@ -31,9 +31,8 @@ reptation::Angle angle_of_repose(const StepContext& c) {
 template <class E>
 void lift_and_deposit(E& e, StepContext& c, const wind_shadow::Shadow* shadow_law) {
   const Scenario& s = c.scenario();
-  saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.tick(), c.dice(),
-                  c.state.ledger(), c.fields.landed.data(),
-                  {angle_of_repose(c), c.fields.impact_strength.data()}, shadow_law);
+  saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.dice(), c.state.ledger(),
+                  c.fields.landed.data(), {angle_of_repose(c), c.fields.impact_strength.data()}, shadow_law);
 }
 
 void saltate(StepContext& c, ProcessWorkspace*) {
@@ -221,8 +220,8 @@ Process avalanching_process() {
   return p;
 }
 
-/// Where starting passes is what takes time, each step finds the wind's shadow, and nothing but saltation
-/// asks for it before sand is lifted, the pass that lifts sand finds it.
+/// Where starting passes is what takes time, each step finds the wind's shadow, and nothing but saltation asks
+/// for it before sand is lifted, the pass that lifts sand finds it.
 FusedProcesses fused_wind_shadow_and_saltation() {
   FusedProcesses f;
   f.name = "shadow found in passing";

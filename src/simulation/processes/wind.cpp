@@ -68,7 +68,7 @@ void update_wind(StepContext& c, ProcessWorkspace* workspace) {
                           work.perturbation_x.data(), work.perturbation_y.data());
     wind::step(e, c.terrain, s.scenario.wind, c.wind_above(), c.fields.heights, s.wind_reference,
                work.perturbation_x.data(), work.perturbation_y.data(),
-               reinterpret_cast<float*>(c.fields.landed.data()), work.coarse);
+               {reinterpret_cast<float*>(c.fields.landed.data()), c.fields.repose.data()}, work.coarse);
   });
 }
 
