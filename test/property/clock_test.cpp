@@ -193,7 +193,7 @@ TEST_P(DesertClock, WhatCannotBeIsRefusedAndChangesNothing) {
        "10000 steps per second)"},
       {{"run.acceleration=1e-9"},
        "run.acceleration: = 1e-09 needs 1e-09 steps of 1 s per second (allowed: 0, or 1e-06"},
-      {{"run.acceleration=-1"}, "run.acceleration: = -1 is not in [0, 1e+06] 1"},
+      {{"run.acceleration=-1"}, "run.acceleration: = -1 is not in [0, 1e+06]"},
       {{"run.time_step=0"}, "run.time_step: = 0 is not in [0.0001, 1000] s"},
       {{"run.time_step=.nan"}, "run.time_step"},
       {{"saltation.hop_time=0.01", "run.time_step=100"},
