@@ -91,7 +91,8 @@ constexpr auto parameter_table(const RunParameters*) {
 }
 static_assert(table_is_complete<RunParameters>());
 
-/// Limits of run.acceleration where it is not 0, so that neither steps nor seconds of ROS time become countless.
+/// Limits of run.acceleration where it is not 0, so that neither steps nor seconds of ROS time become
+/// countless.
 constexpr double max_accelerated_rate = 10000;  // [steps/s]
 constexpr double min_acceleration = 1e-6;
 

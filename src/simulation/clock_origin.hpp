@@ -1,6 +1,6 @@
 #pragma once
-/// What the clock of a simulation counts from. It counts steps, each of `run.time_step` seconds, and where that
-/// has changed while the simulation ran, it goes on from the time that it showed then.
+/// What the clock of a simulation counts from. It counts steps, each of `run.time_step` seconds, and where
+/// that has changed while the simulation ran, it goes on from the time that it showed then.
 
 #include <cstdint>
 

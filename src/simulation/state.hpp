@@ -57,14 +57,14 @@ struct SimulationState {
   double time() const {
     return clock_origin.time + static_cast<double>(steps - clock_origin.step) * scenario.run.time_step;
   }
-  /// The time of a clock on which `run.acceleration` simulated seconds pass in a second [s]; where that is 0, as
-  /// many as there are.
+  /// The time of a clock on which `run.acceleration` simulated seconds pass in a second [s]; where that is
+  /// 0, as many as there are.
   double paced_time() const {
     const double acceleration = scenario.run.acceleration > 0 ? scenario.run.acceleration : 1.0;
     return clock_origin.paced_time + (time() - clock_origin.accelerated_at) / acceleration;
   }
-  /// Lets both clocks go on from the times that they show, before `run` takes the place of scenario.run. `parts`:
-  /// of a step until now; see Process::longest_step.
+  /// Lets both clocks go on from the times that they show, before `run` takes the place of scenario.run.
+  /// `parts`: of a step until now; see Process::longest_step.
   void keep_time(const RunParameters& run, int parts);
   wind::Vector wind_above() const { return wind_regime.at(time()); }  ///< the high-altitude wind [m/s]
   LedgerView ledger() const { return {ledger_words.data()}; }

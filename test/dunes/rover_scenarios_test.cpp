@@ -8,8 +8,8 @@
 namespace desert_sim {
 namespace {
 
-/// Where the easternmost slip face of each row ends: there sand is two metres deep, and less east of it [m]. Rows without
-/// have a negative number.
+/// Where the easternmost slip face of each row ends: there sand is two metres deep, and less east of it [m].
+/// Rows without have a negative number.
 std::vector<double> fronts(const Field& sand) {
   constexpr double depth = 2;
   std::vector<double> found(static_cast<std::size_t>(sand.height), -1);

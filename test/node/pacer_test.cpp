@@ -1,4 +1,5 @@
-// The schedule of steps on made-up clocks: even, exact through changes of the rate, and told where it is late.
+// The schedule of steps on made-up clocks: even, exact through changes of the rate, and told where it is
+// late.
 
 #include "src/ros/node/pacer.hpp"
 

@@ -1,4 +1,5 @@
-// The desert's clock: run.time_step and run.acceleration change while a simulation runs, and nothing is lost by it.
+// The desert's clock: run.time_step and run.acceleration change while a simulation runs, and nothing is lost
+// by it.
 
 #include <cmath>
 #include <set>

@@ -30,8 +30,8 @@ class Pacer {
   /// A step that was due has been done. From the time at which it was due the rate is `rate`.
   void stepped(double rate);
   void stepped() { stepped(rate_); }
-  /// From time `now` on the rate is another: of the time to the next step the share that is left stays the same,
-  /// and steps that are late need not be caught up.
+  /// From time `now` on the rate is another: of the time to the next step the share that is left stays the
+  /// same, and steps that are late need not be caught up.
   void change_rate(double rate, double now);
   /// Time until the next step is due [s]; 0 if it is.
   double until_due(double now) const;
