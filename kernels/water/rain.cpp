@@ -51,15 +51,15 @@ struct RainOnCell {
 };
 
 template <class E>
-void step(E& exec, const TerrainView& t, const RainParameters& p, float time_step, std::uint64_t seed,
-          std::uint64_t tick, double datum, LedgerView ledger) {
+void step(E& exec, const TerrainView& t, const RainParameters& p, float time_step, double time,
+          std::uint64_t seed, std::uint64_t tick, double datum, LedgerView ledger) {
   const Quanta amount = quanta_of_step(static_cast<double>(p.rate) * time_step * t.quanta_per_metre, tick);
   if (amount <= 0) return;
   const auto repeat = [&](int cells, bool periodic) {
     const float showers = static_cast<float>(cells) * t.grid.cell_size / p.scale;
     return periodic ? (showers > 1.0f ? static_cast<int>(showers) : 1) : 0;
   };
-  const double phase = static_cast<double>(tick) * time_step * p.frequency;
+  const double phase = time * p.frequency;
   // At a large phase a float could not resolve single steps, so the phase wraps; there the showers jump.
   constexpr double cycle = 65536.0;
   for_each_cell(exec, t.grid,
@@ -69,7 +69,7 @@ void step(E& exec, const TerrainView& t, const RainParameters& p, float time_ste
                            t.quanta(Layer::soil), t.quanta(Layer::sand), t.quanta(Layer::water), ledger});
 }
 
-template void step(Backend&, const TerrainView&, const RainParameters&, float, std::uint64_t, std::uint64_t,
-                   double, LedgerView);
+template void step(Backend&, const TerrainView&, const RainParameters&, float, double, std::uint64_t,
+                   std::uint64_t, double, LedgerView);
 
 }  // namespace desert_sim::rain

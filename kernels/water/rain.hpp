@@ -51,10 +51,10 @@ inline Quanta quanta_of_step(double quanta, std::uint64_t n) {
   return static_cast<Quanta>(std::floor(quanta * (before + 1.0)) - std::floor(quanta * before));
 }
 
-/// `tick`: steps done; `datum`: elevation of quantum 0 [m].
+/// `time`: simulated [s]; `tick`: steps done; `datum`: elevation of quantum 0 [m].
 template <class E>
-void step(E& exec, const TerrainView& t, const RainParameters& p, float time_step, std::uint64_t seed,
-          std::uint64_t tick, double datum, LedgerView ledger);
+void step(E& exec, const TerrainView& t, const RainParameters& p, float time_step, double time,
+          std::uint64_t seed, std::uint64_t tick, double datum, LedgerView ledger);
 
 }  // namespace rain
 }  // namespace desert_sim

@@ -24,11 +24,11 @@ void NodeLink::set_node(const std::string& name) {
   watch_.watch(node_);
 }
 
-void NodeLink::set_step_rate(ErrorLine* line, double rate) {
+void NodeLink::set_number(ErrorLine* line, const std::string& name, double value) {
   dynamic_reconfigure::ReconfigureRequest request;
   request.config.doubles.resize(1);
-  request.config.doubles[0].name = "step_rate";
-  request.config.doubles[0].value = rate;
+  request.config.doubles[0].name = name;
+  request.config.doubles[0].value = value;
   line->show_note("set_parameters ...");
   caller_.call_plain<dynamic_reconfigure::Reconfigure>(
       node_ + "/set_parameters", request, [line = QPointer<ErrorLine>(line)](const CallOutcome& outcome) {

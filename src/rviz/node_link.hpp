@@ -40,8 +40,8 @@ class NodeLink : public QObject {
                   std::function<void(const typename Service::Response&)> done = nullptr) {
     call_by<Service>(slow_caller_, line, service, request, std::move(done));
   }
-  /// Sets the wanted rate [steps/s] through ~set_parameters.
-  void set_step_rate(ErrorLine* line, double rate);
+  /// Sets a floating-point parameter, such as "step_rate" or "run__acceleration", through ~set_parameters.
+  void set_number(ErrorLine* line, const std::string& name, double value);
 
  Q_SIGNALS:
   void presence_changed();

@@ -8,6 +8,7 @@
 #include <QSpinBox>
 #include <QVBoxLayout>
 #include <cstdio>
+#include <utility>
 
 #include "src/rviz/fields.hpp"
 
@@ -42,6 +43,7 @@ RunControls::RunControls(NodeLink& link, QWidget* parent) : QWidget(parent), lin
   all->addWidget(step_error_);
   all->addWidget(make_rate_row());
   all->addWidget(error_);
+  all->addWidget(make_undo_row());
   all->addWidget(undo_error_);
 }
 
@@ -75,18 +77,33 @@ QWidget* RunControls::make_rate_row() {
   rate_ =
       number_field("rate", 0, 1e6, 10, 1, " steps/s", "Steps a second of wall time; 0: as fast as it can");
   rate_->setSpecialValueText("as fast as it can");
-  undo_ = button("undo", "Undo", "Take back the stroke that was painted last");
-  redo_ = button("redo", "Redo", "Give back what was undone last");
+  acceleration_ = number_field("acceleration", 0, 1e6, 0, 4, " s/s",
+                               "Seconds of the desert's time per second; above 0 it sets the rate");
+  acceleration_->setSpecialValueText("not tied");
+  acceleration_->setMaximumWidth(QWIDGETSIZE_MAX);
   auto* const row = new QWidget;
   auto* const layout = new QHBoxLayout(row);
   layout->setContentsMargins(0, 0, 0, 0);
   rate_->setMaximumWidth(QWIDGETSIZE_MAX);
   layout->addWidget(new QLabel("rate"));
   layout->addWidget(rate_, 1);
+  layout->addWidget(new QLabel("acceleration"));
+  layout->addWidget(acceleration_, 1);
+  connect(rate_, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
+          [this](double rate) { link_.set_number(error_, "step_rate", rate); });
+  connect(acceleration_, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
+          [this](double value) { link_.set_number(error_, "run__acceleration", value); });
+  return row;
+}
+
+QWidget* RunControls::make_undo_row() {
+  undo_ = button("undo", "Undo", "Take back the stroke that was painted last");
+  redo_ = button("redo", "Redo", "Give back what was undone last");
+  auto* const row = new QWidget;
+  auto* const layout = new QHBoxLayout(row);
+  layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(undo_);
   layout->addWidget(redo_);
-  connect(rate_, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
-          [this](double rate) { link_.set_step_rate(error_, rate); });
   connect(undo_, &QPushButton::clicked, this, [this] { turn("undo"); });
   connect(redo_, &QPushButton::clicked, this, [this] { turn("redo"); });
   return row;
@@ -106,9 +123,13 @@ void RunControls::show_status(const SimulationStatus& status) {
   undo_->setEnabled(status.undoable > 0);
   redo_->setText(QStringLiteral("Redo (%1)").arg(status.redoable));
   redo_->setEnabled(status.redoable > 0);
-  if (rate_->hasFocus()) return;  // somebody types
-  const QSignalBlocker silent(rate_);
-  rate_->setValue(status.step_rate);
+  rate_->setEnabled(!(status.acceleration > 0));
+  for (const auto& [field, value] :
+       {std::pair(rate_, status.step_rate), std::pair(acceleration_, status.acceleration)}) {
+    if (field->hasFocus()) continue;  // somebody types
+    const QSignalBlocker silent(field);
+    field->setValue(value);
+  }
 }
 
 int RunControls::steps() const { return steps_->value(); }

@@ -1,5 +1,5 @@
 #pragma once
-/// Running, stepping, the rate, and undo of a node.
+/// Running, stepping, the rate or the acceleration, and undo of a node.
 
 #include <desert_sim/SimulationStatus.h>
 
@@ -27,12 +27,13 @@ class RunControls : public QWidget {
  private:
   QWidget* make_run_row();
   QWidget* make_rate_row();
+  QWidget* make_undo_row();
   void turn(const char* service);  ///< undo or redo
 
   NodeLink& link_;
   QPushButton *run_, *pause_, *step_, *reset_, *undo_, *redo_;
   QSpinBox* steps_;
-  QDoubleSpinBox* rate_;
+  QDoubleSpinBox *rate_, *acceleration_;
   ErrorLine *error_, *step_error_, *undo_error_;
 };
 

@@ -154,7 +154,9 @@ void StatusView::refresh() {
                      age);
   progress_->setToolTip(QString::fromStdString(s->device + ": " + s->message));
   const std::string wanted = s->step_rate > 0 ? format(" of %g", s->step_rate) : "";
-  set(rate_, format("%.1f%s steps/s, lag %.1f s", s->steps_per_second, wanted.c_str(), s->lag),
+  const std::string pace = s->acceleration > 0 ? format(", %.3g s simulated a second", s->acceleration) : "";
+  set(rate_,
+      format("%.1f%s steps/s%s, lag %.1f s", s->steps_per_second, wanted.c_str(), pace.c_str(), s->lag),
       s->lag > long_lag ? bad : nullptr);
   const double residual = worst_residual(*s);
   set(balance_, residual == 0 ? "mass residual 0" : format("mass residual %g", residual),

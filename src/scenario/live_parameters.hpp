@@ -22,7 +22,6 @@ constexpr FixedParameter fixed_parameters[] = {
     {"species", "existing plants refer to them"},
     {"competition", "it belongs to the list of species"},
     {"run.steps", "it is the length of a headless run"},
-    {"run.time_step", "simulated time is counted in it"},
     {"run.timeline", "it begins at the start of a simulation"},
     {"wind.segments", "set_wind_schedule changes them together"},
     {"wind.features", "edit_wind adds, changes and removes them"},

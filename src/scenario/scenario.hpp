@@ -75,6 +75,7 @@ static_assert(table_is_complete<GridParameters>());
 struct RunParameters {
   int steps = 1000;
   float time_step = 1.0f;
+  float acceleration = 0.0f;
   int check_every = 100;
 };
 
@@ -82,10 +83,18 @@ constexpr auto parameter_table(const RunParameters*) {
   using P = RunParameters;
   return std::make_tuple(parameter("steps", &P::steps, 0, 2147483647, "1", "Steps of a headless run."),
                          parameter("time_step", &P::time_step, 1e-4, 1e3, "s", "Simulated time of one step."),
+                         parameter("acceleration", &P::acceleration, 0, 1e6, "1",
+                                   "Simulated seconds per second of ROS time: the node makes acceleration / "
+                                   "time_step steps per second; 0: its parameter step_rate says how many."),
                          parameter("check_every", &P::check_every, 0, 1000000, "steps",
                                    "How often the state is searched for NaN and negative depths; 0 never."));
 }
 static_assert(table_is_complete<RunParameters>());
+
+/// Limits of run.acceleration where it is not 0, so that neither steps nor seconds of ROS time become
+/// countless.
+constexpr double max_accelerated_rate = 10000;  // [steps/s]
+constexpr double min_acceleration = 1e-6;
 
 constexpr std::size_t max_wind_features = 64;
 

@@ -63,6 +63,7 @@ std::unique_ptr<Simulation> simulation_of(const CheckpointHeader& header, Exec& 
   SimulationState& s = simulation->state();
   s.start = header.start;
   s.steps = header.numbers.steps;
+  s.clock_origin = header.clock;
   s.wind_reference = header.numbers.wind_reference;
   s.bedrock_loose = header.numbers.bedrock_loose;
   s.soil_loose = header.numbers.soil_loose;

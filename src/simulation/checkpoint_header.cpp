@@ -53,6 +53,7 @@ CheckpointHeader header_of(const Simulation& simulation) {
                     simulation.pipeline().avalanche_iterations(),
                     static_cast<std::uint64_t>(s.plants.count),
                     s.next_timeline_entry};
+  header.clock = s.clock_origin;
   header.ramps = s.ramps;
   header.initial = s.initial;
   header.ledger = s.read_ledger();
@@ -72,6 +73,11 @@ std::string header_text(const CheckpointHeader& header) {
   entry(out, "start", dump_scenario(header.start));
   entry(out, "scenario", dump_scenario(header.scenario));
   yaml::emit_parameters(out, header.numbers);
+  if (!(header.clock == ClockOrigin())) {
+    out << YAML::Key << "clock" << YAML::Value << YAML::BeginMap;
+    yaml::emit_parameters(out, header.clock);
+    out << YAML::EndMap;
+  }
   emit_ramps(out, header.ramps);
   emit_quanta(out, "initial", header.initial);
   emit_quanta(out, "ledger", header.ledger);
@@ -126,9 +132,25 @@ void read_quanta(const YAML::Node& header, const char* key, long long limit, Val
   }
 }
 
+/// Checkpoints have it if run.time_step or run.acceleration has changed.
+void read_clock(const YAML::Node& node, ValidationErrors& errors, CheckpointHeader& header) {
+  ClockOrigin clock;
+  yaml::read_section(node, "clock", errors, clock);
+  if (clock.step > header.numbers.steps) {
+    errors.add("clock.step", "= " + std::to_string(clock.step) + " is not in [0, " +
+                                 std::to_string(header.numbers.steps) + "]");
+    return;
+  }
+  header.clock = clock;
+  if (!(clock.accelerated_at <= header.time()))
+    errors.add("clock.accelerated_at", "= " + std::to_string(clock.accelerated_at) +
+                                           " s is later than the present time, " +
+                                           std::to_string(header.time()) + " s");
+}
+
 void read_ramps(const YAML::Node& list, ValidationErrors& errors, CheckpointHeader& header) {
   if (!list.IsSequence()) return errors.add("ramps", yaml::node_text(list) + " is not a list");
-  const double time = static_cast<double>(header.numbers.steps) * header.scenario.run.time_step;
+  const double time = header.time();
   for (std::size_t n = 0; n < list.size(); ++n) {
     const std::string key = "ramps." + std::to_string(n);
     Ramp ramp;
@@ -141,7 +163,7 @@ void read_ramps(const YAML::Node& list, ValidationErrors& errors, CheckpointHead
 WindRegime read_wind(const CheckpointHeader& header, const YAML::Node& node, const std::string& path) {
   const WindRegime wind = read_regime(node, path + ": wind");
   ValidationErrors errors(path + ": wind");
-  const double time = static_cast<double>(header.numbers.steps) * header.scenario.run.time_step;
+  const double time = header.time();
   if (!(wind.start_time >= -1e30 && wind.start_time <= time))
     errors.add("start_time", "= " + std::to_string(wind.start_time) + " is not in [-1e+30, " +
                                  std::to_string(time) + "] s");
@@ -212,7 +234,9 @@ CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
   std::set<std::string> known{"name",  "folder",  "projection", "start", "scenario",
                               "ramps", "initial", "ledger",     "wind",  "layers"};
   yaml::read_parameters(node, "", errors, header.numbers, known);
-  yaml::reject_unknown_keys(node, "", known, errors);
+  std::set<std::string> allowed = known;
+  allowed.insert("clock");
+  yaml::reject_unknown_keys(node, "", allowed, errors);
   if (node.IsMap())
     for (const std::string& key : known)
       if (!node[key]) errors.add(key, "is missing");
@@ -220,6 +244,7 @@ CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
   header.start = read_scenario(node, "start", path);
   header.scenario = read_scenario(node, "scenario", path);
   check_together(header, errors);
+  if (node["clock"]) read_clock(node["clock"], errors, header);
   read_ramps(node["ramps"], errors, header);
   // No sum of all that is booked overflows.
   read_quanta(node, "initial", 1LL << 61, errors, header.initial);

@@ -41,12 +41,17 @@ static_assert(table_is_complete<CheckpointNumbers>());
 struct CheckpointHeader {
   Scenario start, scenario;
   CheckpointNumbers numbers;
+  ClockOrigin clock;
   std::vector<Ramp> ramps;
   std::array<long long, material_count> initial{};
   std::vector<long long> ledger;  ///< as of SimulationState::read_ledger()
   WindRegime wind;
   std::vector<Layer> layers;  ///< persistent ones, in the order of the table
 
+  /// Simulated time [s].
+  double time() const {
+    return clock.time + static_cast<double>(numbers.steps - clock.step) * scenario.run.time_step;
+  }
   HeightScale scale() const { return {numbers.datum, numbers.exponent}; }
 };
 

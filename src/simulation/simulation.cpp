@@ -76,6 +76,15 @@ void require_bounded_cost(const Scenario& s) {
                   step / hop, hop, most_hops, most_hops * hop);
     errors.add("run.time_step", text);
   }
+  const double acceleration = s.run.acceleration, rate = acceleration / step;
+  if (acceleration > 0 && (rate > max_accelerated_rate || acceleration < min_acceleration)) {
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "= %g needs %g steps of %g s per second (allowed: 0, or %g to %g, which is %g steps per second)",
+        acceleration, rate, step, min_acceleration, max_accelerated_rate * step, max_accelerated_rate);
+    errors.add("run.acceleration", text);
+  }
   errors.throw_if_any();
 }
 

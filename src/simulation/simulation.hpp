@@ -61,6 +61,7 @@ class Simulation {
 
   std::uint64_t steps() const { return state_.steps; }
   double time() const { return state_.time(); }
+  double paced_time() const { return state_.paced_time(); }
   const Scenario& scenario() const { return state_.scenario; }
   const Scenario& start() const { return state_.start; }
   Scenario present_scenario() const { return state_.present_scenario(); }

@@ -30,6 +30,25 @@ Scenario SimulationState::present_scenario() const {
   return present;
 }
 
+void SimulationState::keep_time(const RunParameters& run, int parts) {
+  const double now = time(), paced = paced_time();
+  if (run.acceleration != scenario.run.acceleration) {
+    clock_origin.accelerated_at = now;
+    clock_origin.paced_time = paced;
+  }
+  if (run.time_step == scenario.run.time_step) return;
+  const std::uint64_t done = steps - clock_origin.step;
+  if (done > 0) {  // a second that has begun since the last step needs a shadow of its own
+    const double last = clock_origin.time + static_cast<double>(done - 1) * scenario.run.time_step;
+    const bool same_second =
+        std::floor(now / wind_shadow::held_for) == std::floor(last / wind_shadow::held_for);
+    shelter_known = shelter_known && same_second;
+  }
+  clock_origin.tick += done * static_cast<std::uint64_t>(parts);
+  clock_origin.step = steps;
+  clock_origin.time = now;
+}
+
 std::vector<Layer> SimulationState::layers_in_use() const {
   std::vector<Layer> layers;
   for (const LayerInfo& row : layer_table)

@@ -10,6 +10,7 @@
 #include "kernels/field/ledger.hpp"
 #include "kernels/plants/workspace.hpp"
 #include "src/scenario/scenario.hpp"
+#include "src/simulation/clock_origin.hpp"
 #include "src/terrain/terrain.hpp"
 
 namespace desert_sim {
@@ -52,7 +53,19 @@ struct SimulationState {
     return terrain.has(layer) && (lifetime == Lifetime::persistent || held);
   }
 
-  double time() const { return static_cast<double>(steps) * scenario.run.time_step; }  ///< simulated [s]
+  /// Simulated time [s].
+  double time() const {
+    return clock_origin.time + static_cast<double>(steps - clock_origin.step) * scenario.run.time_step;
+  }
+  /// The time of a clock on which `run.acceleration` simulated seconds pass in a second [s]; where that is
+  /// 0, as many as there are.
+  double paced_time() const {
+    const double acceleration = scenario.run.acceleration > 0 ? scenario.run.acceleration : 1.0;
+    return clock_origin.paced_time + (time() - clock_origin.accelerated_at) / acceleration;
+  }
+  /// Lets both clocks go on from the times that they show, before `run` takes the place of scenario.run.
+  /// `parts`: of a step until now; see Process::longest_step.
+  void keep_time(const RunParameters& run, int parts);
   wind::Vector wind_above() const { return wind_regime.at(time()); }  ///< the high-altitude wind [m/s]
   LedgerView ledger() const { return {ledger_words.data()}; }
   /// The scenario with the wind regime that blows now, which commands may have replaced.
@@ -84,6 +97,7 @@ struct SimulationState {
   plants::Workspace plants;  ///< empty where vegetation is off
   WindRegime wind_regime;
   std::uint64_t steps = 0;
+  ClockOrigin clock_origin;
   Quanta wind_reference = 0;               ///< 1st percentile of the solid surface at load
   bool bedrock_loose = false;              ///< bedrock was edited and has not come to rest since
   bool soil_loose = false;                 ///< soil, or bedrock below it, was edited and has not come to rest

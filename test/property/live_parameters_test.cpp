@@ -147,7 +147,7 @@ TEST_P(LiveParameters, RefusedChangesChangeNothing) {
   expect_refused({""}, "unknown parameter");
   expect_refused({"wind.speed"}, "must be path=value");
   expect_refused({"wind.regime=rose"}, "wind.segments");
-  expect_refused({"grid.width=30", "run.time_step=2"}, "run.time_step: cannot change");
+  expect_refused({"grid.width=30", "run.steps=2"}, "run.steps: cannot change");
   expect_refused({"terrain.0.noise.high=9"}, "terrain.0.noise.high: cannot change");
   expect_refused({"wind.segments=[]"}, "wind.segments: cannot change");
   expect_refused({"echo_dunes.sticky_reach=20", "echo_dunes.highest=500", "wind_shadow.distance=1000",

@@ -93,6 +93,8 @@ class Caller:
             value = self.draw.choice([low, high, low + self.draw.random() * (high - low), low + self.draw.random() * min(1, high - low)])
             if lowest[n].name == "step_rate":
                 value = 20
+            if lowest[n].name == "run__time_step":  # a step of many minutes takes as long as its parts do
+                value = self.draw.choice([low, 0.3, 2])
             values.append(kind(lowest[n].name, int(value) if kind is IntParameter else value))
         if self.draw.random() < 0.3:
             config.bools.append(BoolParameter(self.draw.choice(self.description.dflt.bools).name, self.draw.random() < 0.5))

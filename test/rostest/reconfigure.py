@@ -61,7 +61,7 @@ class Reconfigure(Scenarios):
         self.assertEqual(choices, ["fast", "good", "converged"])
         self.assertEqual(found["wind_shadow__enabled"]["type"], "bool")
         self.assertEqual(found["avalanching__sweeps"]["type"], "int")
-        for fixed in ("grid__width", "run__time_step", "seed"):
+        for fixed in ("grid__width", "run__steps", "seed"):
             self.assertNotIn(fixed, found)
         groups = client.get_group_descriptions()["groups"]
         self.assertIn("wind", groups)

@@ -1,5 +1,4 @@
-/// Steps by service and by schedule: exact numbers, equal hashes, several clients at once; and the schedule
-/// itself.
+/// Steps by service and by schedule: exact numbers, equal hashes, several clients at once.
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
@@ -14,7 +13,6 @@
 
 #include "rostest/client.hpp"
 #include "src/ros/conversion/messages.hpp"
-#include "src/ros/node/pacer.hpp"
 #include "src/simulation/session.hpp"
 
 namespace {
@@ -182,77 +180,6 @@ TEST_F(Stepping, StepsWhileRunningAreAddedToTheSchedule) {
   Listener<SimulationStatus> statuses("status");
   EXPECT_TRUE(statuses.wait_for(
       [&](const SimulationStatus& s) { return s.step > response.step + 5 && s.lag < 0.5; }));
-}
-
-// ---- the schedule itself ----
-
-TEST(Pacer, KeepsItsRate) {
-  desert_sim::Pacer pacer(10);
-  int steps = 0;
-  for (double now = 100; now < 110; now += 0.013)
-    if (pacer.due(now)) pacer.stepped(), ++steps;
-  EXPECT_NEAR(steps, 100, 1);
-  EXPECT_LT(pacer.lag(110), 0.1);
-}
-
-TEST(Pacer, CatchesUpWhatIsShortAndGivesUpWhatIsLong) {
-  desert_sim::Pacer pacer(10);
-  ASSERT_TRUE(pacer.due(0));
-  pacer.stepped();
-  int caught_up = 0;
-  for (; pacer.due(0.55); ++caught_up) pacer.stepped();
-  EXPECT_EQ(caught_up, 5);
-  int after_long = 0;
-  for (; pacer.due(60); ++after_long) pacer.stepped();
-  EXPECT_LE(after_long, 11) << "a second's worth";
-  EXPECT_NEAR(pacer.lag(60), 58.4, 0.2);
-  pacer.restart();
-  EXPECT_TRUE(pacer.due(61));
-  EXPECT_EQ(pacer.lag(61), 0);
-}
-
-TEST(Pacer, ForgivesWhatIsBehindAndKeepsWhatIsAhead) {
-  desert_sim::Pacer pacer(10);
-  ASSERT_TRUE(pacer.due(0));
-  pacer.stepped();
-  pacer.drop_backlog(0.05);
-  EXPECT_FALSE(pacer.due(0.09));
-  EXPECT_TRUE(pacer.due(0.1));
-  pacer.drop_backlog(50);
-  EXPECT_TRUE(pacer.due(50));
-  pacer.stepped();
-  EXPECT_FALSE(pacer.due(50.05));
-  EXPECT_EQ(pacer.lag(50.05), 0);
-}
-
-TEST(Pacer, SurvivesAClockThatJumpsBack) {
-  desert_sim::Pacer pacer(10);
-  ASSERT_TRUE(pacer.due(1000));
-  pacer.stepped();
-  ASSERT_TRUE(pacer.due(5));
-  EXPECT_TRUE(pacer.jumped_back());
-  EXPECT_FALSE(pacer.jumped_back()) << "told once";
-  pacer.stepped();
-  EXPECT_FALSE(pacer.due(5.05));
-  EXPECT_TRUE(pacer.due(5.1));
-}
-
-TEST(Pacer, AsFastAsItCanIsAlwaysDue) {
-  desert_sim::Pacer pacer(0);
-  EXPECT_TRUE(pacer.due(0));
-  pacer.stepped();
-  EXPECT_TRUE(pacer.due(0));
-  EXPECT_EQ(pacer.lag(100), 0);
-}
-
-TEST(RateMeter, MeasuresAndForgets) {
-  desert_sim::RateMeter meter;
-  double now = 0;
-  for (; now < 5; now += 0.001) meter.count(now);
-  EXPECT_NEAR(meter.rate(now), 1000, 10);
-  for (; now < 10; now += 0.5) meter.count(now);
-  EXPECT_NEAR(meter.rate(now), 2, 0.2);
-  EXPECT_LT(meter.rate(now + 60), 0.2) << "no steps any more";
 }
 
 }  // namespace

@@ -86,6 +86,12 @@ TEST_F(Panel, RunsPausesStepsAndResets) {
   EXPECT_TRUE(window_->shows("balance", "mass residual 0"));
   window_->type("rate", "40");
   EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.step_rate == 40; }));
+  window_->type("acceleration", "0.5");
+  EXPECT_TRUE(
+      node_has([](const SimulationStatus& s) { return s.acceleration == 0.5 && s.step_rate == 0.5; }));
+  EXPECT_TRUE(window_->run_until([&] { return !window_->enabled("rate"); })) << "the acceleration sets it";
+  window_->type("acceleration", "0");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.acceleration == 0 && s.step_rate == 40; }));
   EXPECT_FALSE(window_->enabled("pause")) << "it is paused";
   window_->click("run");
   EXPECT_TRUE(

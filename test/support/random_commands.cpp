@@ -161,7 +161,7 @@ command::SetParameters RandomCommands::settings(const Simulation& simulation) {
       else if constexpr (std::is_integral_v<T>)
         text << static_cast<long long>(between(row.lowest, std::min(row.highest, 60.0)));
       else if constexpr (std::is_arithmetic_v<T>)
-        text << number(row.lowest, row.highest);
+        text << (std::string(row.name) == "time_step" ? between(-0.01, 3) : number(row.lowest, row.highest));
       command.settings.push_back(text.str());
     });
   }

@@ -39,11 +39,11 @@ std::string other_publisher() {
 
 }  // namespace
 
-ros::Time clock_time(double simulated) {
-  if (!(simulated >= 0 && simulated < std::numeric_limits<std::uint32_t>::max()))
-    throw Error("publish_clock: " + std::to_string(simulated) +
-                " s of simulated time exceed the range of ROS time (allowed: [0, 4294967295) s)");
-  return std::max(ros::Time(simulated), ros::Time(0, 1));
+ros::Time clock_time(double seconds) {
+  if (!(seconds >= 0 && seconds < std::numeric_limits<std::uint32_t>::max()))
+    throw Error("publish_clock: " + std::to_string(seconds) +
+                " s exceed the range of ROS time (allowed: [0, 4294967295) s)");
+  return std::max(ros::Time(seconds), ros::Time(0, 1));
 }
 
 ClockPublisher::ClockPublisher() {
@@ -56,9 +56,9 @@ ClockPublisher::ClockPublisher() {
   publisher_ = ros::NodeHandle().advertise<rosgraph_msgs::Clock>(topic, 100, true);
 }
 
-void ClockPublisher::publish(double simulated) const {
+void ClockPublisher::publish(double seconds) const {
   const auto message = boost::make_shared<rosgraph_msgs::Clock>();
-  message->clock = clock_time(simulated);
+  message->clock = clock_time(seconds);
   if (publisher_) publisher_.publish(message);  // there is none if the node was told to end while it started
 }
 

@@ -1,21 +1,22 @@
 #pragma once
-/// /clock: simulated time as the ROS time of all nodes.
+/// /clock: the time of the simulation as the ROS time of all nodes. See SimulationState::paced_time(): a step
+/// advances it by run.time_step / run.acceleration, and by run.time_step where the acceleration is 0.
 
 #include <ros/publisher.h>
 #include <ros/time.h>
 
 namespace desert_sim {
 
-/// Simulated time [s] as ROS time. For ROS, 0 means "no time yet": the start becomes one nanosecond.
+/// Such a time [s] as ROS time. For ROS, 0 means "no time yet": the start becomes one nanosecond.
 /// Throws Error beyond what ROS time can hold (136 years).
-ros::Time clock_time(double simulated);
+ros::Time clock_time(double seconds);
 
 class ClockPublisher {
  public:
   /// Throws ConfigError if another node publishes /clock: with two clocks, time would jump back and forth.
   ClockPublisher();
   /// The message is latched, so that a node that starts while the simulation is paused has a time.
-  void publish(double simulated) const;
+  void publish(double seconds) const;
 
  private:
   ros::Publisher publisher_;

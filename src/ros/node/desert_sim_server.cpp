@@ -68,6 +68,11 @@ void log_start(const Scenario& scenario, const std::string& backend) {
   const GridParameters& grid = scenario.grid;
   ROS_INFO("The scenario %s was loaded: %d x %d cells of %g m. Backend: %s.", scenario.name.c_str(),
            grid.width, grid.height, grid.cell_size, backend.c_str());
+  const RunParameters& run = scenario.run;
+  if (run.acceleration > 0)
+    ROS_INFO(
+        "run.acceleration: %g simulated seconds per second, in %g steps of %g s. step_rate has no effect.",
+        run.acceleration, run.acceleration / run.time_step, run.time_step);
   const double farthest = std::max(std::abs(grid.origin_x), std::abs(grid.origin_y));
   if (farthest > 1e5)
     ROS_WARN(
@@ -96,7 +101,7 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
     clock_ = std::make_unique<ClockPublisher>();
     if (!ros::Time::isSimTime())
       ROS_WARN("publish_clock is true, but use_sim_time is not: no node follows /clock.");
-    options.publish_clock = [this](double simulated) { clock_->publish(simulated); };
+    options.publish_clock = [this](double seconds) { clock_->publish(seconds); };
   }
   const AutosaveFiles autosaves(*files_, node_.getNamespace(), setup.scenario);
   if (p.resume) options.resume_from = autosaves.paths();

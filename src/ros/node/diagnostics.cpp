@@ -89,6 +89,8 @@ void Diagnostics::check_simulation(Status& status) const {
   status.add("device", r.device);
   status.add("step", r.moment.step);
   status.add("simulated time [s]", r.moment.time);
+  status.add("time step [s]", r.time_step);
+  status.add("acceleration", r.acceleration);
   status.add("steps a second wanted", r.step_rate);
   status.add("steps a second", r.steps_per_second);
   status.add("lag [s]", r.lag);

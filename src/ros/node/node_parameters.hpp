@@ -55,7 +55,9 @@ constexpr auto parameter_table(const NodeParameters*) {
                 "Of the simulation's threads, as in nice(1): on a busy machine publishing and subscribers "
                 "come first."),
       parameter("step_rate", &P::step_rate, 0, 1e6, "steps/s",
-                "In wall time, or ROS time under use_sim_time; 0: as fast as it can."),
+                "In wall time, or ROS time under use_sim_time; 0: as fast as it can. Of no effect while the "
+                "scenario's "
+                "run.acceleration is above 0."),
       parameter("paused", &P::paused, "Whether it starts paused."),
       parameter(
           "data_dir", &P::data_dir,
@@ -66,8 +68,10 @@ constexpr auto parameter_table(const NodeParameters*) {
       parameter("autosave_period", &P::autosave_period, 0, 1e9, "s",
                 "Of wall time, from one checkpoint in ~data_dir/autosave to the next; 0: none."),
       parameter("resume", &P::resume, "Whether it starts with its newest autosave that is whole."),
-      parameter("publish_clock", &P::publish_clock,
-                "Whether it publishes simulated time on /clock; it then follows wall time itself."),
+      parameter(
+          "publish_clock", &P::publish_clock,
+          "Whether it publishes /clock: simulated time, divided by run.acceleration where that is above 0; "
+          "it then follows wall time itself."),
       parameter("diagnostic_period", &P::diagnostic_period, 0.01, 1e6, "s",
                 "Of wall time, from one message on /diagnostics to the next."),
       parameter(

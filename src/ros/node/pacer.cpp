@@ -36,9 +36,24 @@ void Pacer::drop_backlog(double now) {
   if (rate_ > 0 && running_) start_ += std::max(0.0, now - due_time());
 }
 
-void Pacer::stepped() {
-  if (rate_ <= 0) return;
-  ++done_;
+void Pacer::stepped(double rate) {
+  if (rate_ > 0) ++done_;
+  if (rate != rate_) begin(rate, due_time() - 1 / rate_ + 1 / rate);
+}
+
+void Pacer::change_rate(double rate, double now) {
+  if (rate == rate_) return;
+  const double share_left = std::clamp((due_time() - now) * rate_, 0.0, 1.0);
+  begin(rate, now + share_left / rate);
+  dropped_time_ = 0;
+}
+
+/// Starts again from the first due time, or, where one of the rates is none, from the next call of due().
+void Pacer::begin(double rate, double first_due) {
+  running_ = running_ && rate_ > 0 && rate > 0;
+  rate_ = rate;
+  start_ = first_due;
+  done_ = 0;
 }
 
 double Pacer::until_due(double now) const {

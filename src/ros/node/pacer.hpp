@@ -27,8 +27,12 @@ class Pacer {
   void drop_backlog(double now);
   /// Whether a step is due at time `now`. A clock that went back restarts the schedule (see jumped_back()).
   bool due(double now);
-  /// A step that was due has been done.
-  void stepped();
+  /// A step that was due has been done. From the time at which it was due the rate is `rate`.
+  void stepped(double rate);
+  void stepped() { stepped(rate_); }
+  /// From time `now` on the rate is another: of the time to the next step the share that is left stays the
+  /// same, and steps that are late need not be caught up.
+  void change_rate(double rate, double now);
   /// Time until the next step is due [s]; 0 if it is.
   double until_due(double now) const;
   /// How far the steps are behind the schedule since it started [s], including the time that was given up.
@@ -38,6 +42,7 @@ class Pacer {
 
  private:
   double due_time() const;
+  void begin(double rate, double first_due);
   double rate_;
   bool running_ = false, jumped_back_ = false;
   double start_ = 0, last_ = 0, dropped_time_ = 0;

@@ -193,6 +193,15 @@ dynamic_reconfigure::ConfigDescription reconfigure_description(const LiveParamet
   return description;
 }
 
+std::string ineffective_rate(double step_rate, const RunParameters& run) {
+  if (!(run.acceleration > 0)) return "";
+  std::ostringstream text;
+  text << "= " << step_rate << " steps/s has no effect while run.acceleration = " << run.acceleration
+       << " and run.time_step = " << run.time_step << " s make " << run.acceleration / run.time_step
+       << " steps/s (allowed: any rate once run.acceleration is 0)";
+  return text.str();
+}
+
 LiveChange reconfigure_change(const Config& request, const LiveParameters& present) {
   const std::map<std::string, std::string> now = texts(reconfigure_values(present));
   ValidationErrors errors("set_parameters");
@@ -222,6 +231,12 @@ LiveChange reconfigure_change(const Config& request, const LiveParameters& prese
   change.publishers = present.publishers;
   read_publisher_setup(others, errors, change.publishers, known);
   errors.throw_if_any();
+  if (change.step_rate != present.step_rate) {
+    const Scenario wanted = with_live_settings(present.scenario, change.settings);
+    if (const std::string reason = ineffective_rate(change.step_rate, wanted.run); !reason.empty())
+      errors.add(step_rate_name, reason);
+    errors.throw_if_any();
+  }
   check_map_sizes(change.publishers.maps, present.scenario.grid);
   return change;
 }

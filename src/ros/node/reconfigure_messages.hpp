@@ -27,9 +27,12 @@ struct LiveChange {
 
 /// The units, ranges, choices and docs of the parameter tables; `defaults` gives the default values.
 dynamic_reconfigure::ConfigDescription reconfigure_description(const LiveParameters& defaults);
+/// Why `step_rate` has no effect under these parameters; empty if it has.
+std::string ineffective_rate(double step_rate, const RunParameters& run);
 dynamic_reconfigure::Config reconfigure_values(const LiveParameters& present);
-/// Throws ConfigError for a name that is unknown, and for a value that is refused. The values of the scenario
-/// are only checked when the command SetParameters is applied.
+/// Throws ConfigError for a name that is unknown, and for a value that is refused, such as a step_rate
+/// beside a run.acceleration that makes it ineffective. The values of the scenario are only checked when the
+/// command SetParameters is applied.
 LiveChange reconfigure_change(const dynamic_reconfigure::Config& request, const LiveParameters& present);
 
 }  // namespace desert_sim

@@ -3,6 +3,7 @@
 #include <ros/console.h>
 
 #include "src/grid_map/grid_map_bag.hpp"
+#include "src/ros/node/reconfigure_messages.hpp"
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -106,7 +107,10 @@ std::string ParameterReload::reload() {
     }
   }
   const double rate = setup.node.step_rate;
-  if (rate != last_.node.step_rate) add(applied, "step_rate=" + number_text(rate));
+  if (rate != last_.node.step_rate) {
+    const std::string reason = ineffective_rate(rate, setup.scenario.run);
+    add(applied, "step_rate=" + number_text(rate) + (reason.empty() ? "" : " (" + reason + ")"));
+  }
   NodeParameters others = setup.node;  // those that take effect at the start only
   others.step_rate = last_.node.step_rate;
   add_differences(last_.node, others, fixed);

@@ -80,8 +80,9 @@ void SimulationThread::run_thread(const Scenario& scenario, const RasterLoader& 
     if (!options_.resume_from.empty())
       load_newest(*session_, options_.resume_from, options_.data_folder, options_.journal);
     session_->confine_commands(options_.data_folder);  // not before: a journal's checkpoint may lie elsewhere
+    pacer_ = Pacer(wanted_rate());
     stamp_ = stamp_now();
-    if (options_.publish_clock) options_.publish_clock(session_->simulation().time());
+    if (options_.publish_clock) options_.publish_clock(session_->simulation().paced_time());
   } catch (...) {
     session_.reset();
     started.set_exception(std::current_exception());
@@ -110,7 +111,7 @@ void SimulationThread::loop() {
       serve_step_request();
     } else if (!paused_ && step_is_due()) {
       step();
-      pacer_.stepped();
+      pacer_.stepped(wanted_rate());
     } else {
       wait_for_steps();
       jobs_.wait_for(std::chrono::duration<double>(idle_time()));
@@ -141,6 +142,7 @@ void SimulationThread::serve_step_request() {
   }
   if (request.done < request.requested) return;
   ++commands_;
+  follow_rate();                     // the timeline may have changed it
   pacer_.drop_backlog(clock_now());  // the time that these steps took is not to be caught up
   request.answer.set_value(reached(true));
   step_requests_.pop_front();
@@ -160,12 +162,25 @@ bool SimulationThread::follows_ros_time() const { return ros::Time::isSimTime() 
 /// The stamp of the present state. A simulation that is the clock takes its own time: under use_sim_time, ROS
 /// time only reaches it later.
 ros::Time SimulationThread::stamp_now() const {
-  return options_.publish_clock && ros::Time::isSimTime() ? clock_time(session_->simulation().time())
+  return options_.publish_clock && ros::Time::isSimTime() ? clock_time(session_->simulation().paced_time())
                                                           : ros::Time::now();
 }
 
 double SimulationThread::clock_now() const {
   return follows_ros_time() ? ros::Time::now().toSec() : steady_now();
+}
+
+/// How many steps a second of ROS time is to have [steps/s]; 0: as many as can be.
+double SimulationThread::wanted_rate() const {
+  const RunParameters& run = session_->simulation().scenario().run;
+  return run.acceleration > 0 ? static_cast<double>(run.acceleration) / run.time_step : step_rate_.load();
+}
+
+void SimulationThread::follow_rate() {
+  const double rate = wanted_rate();
+  if (rate == pacer_.rate()) return;
+  pacer_.change_rate(rate, clock_now());
+  meter_.clear();
 }
 
 bool SimulationThread::step_is_due() {
@@ -225,7 +240,7 @@ void SimulationThread::release_unused_memory() {
 
 void SimulationThread::note_change() {
   ++changes_;
-  if (options_.publish_clock) options_.publish_clock(session_->simulation().time());
+  if (options_.publish_clock) options_.publish_clock(session_->simulation().paced_time());
   on_change_();
 }
 

@@ -24,16 +24,17 @@ class SimulationThread {
   struct Options {
     std::string backend = "auto";
     int threads = 0;
-    int niceness = 0;       ///< of the simulation's threads
-    double step_rate = 10;  ///< [steps/s]; 0: as fast as it can
+    int niceness = 0;  ///< of the simulation's threads
+    double step_rate =
+        10;  ///< [steps/s]; 0: as fast as it can; of no effect while run.acceleration is above 0
     bool paused = false;
     std::string journal;                            ///< file, or empty
     std::size_t undo_memory = default_undo_memory;  ///< see Session [bytes]
     /// It starts from the first of these checkpoints that is complete, if there is one.
     std::vector<std::string> resume_from;
     std::string data_folder;  ///< that commands read files below; see Session::confine_commands()
-    /// If set, the simulation is the clock of all nodes: this is called on the simulation thread with the
-    /// simulated time [s], at the start and after each step, and steps follow wall time, whatever
+    /// If set, the simulation is the clock of all nodes: this is called on the simulation thread with
+    /// Simulation::paced_time() [s], at the start and after each step, and steps follow wall time, whatever
     /// use_sim_time says.
     std::function<void(double)> publish_clock;
   };
@@ -70,8 +71,8 @@ class SimulationThread {
   std::future<ReachedState> step(std::uint32_t steps);
   std::future<void> pause();
   std::future<void> resume();
-  /// Sets the rate [steps/s]; 0: as fast as possible. The schedule starts again. The journal does not have
-  /// this: it has no effect on the terrain.
+  /// Sets the rate [steps/s]; 0: as fast as possible. It has no effect while run.acceleration is above 0. The
+  /// journal does not have this: it has no effect on the terrain.
   std::future<void> set_step_rate(double rate);
   /// A copy of layers (of a band of rows, if it has any), and of what `query` asks for. The simulation
   /// continues while the copy is under way: the thread that calls get() waits for it.
@@ -93,7 +94,7 @@ class SimulationThread {
   std::uint64_t changes() const { return changes_; }
   std::uint64_t commands() const { return commands_; }
   std::uint64_t terrains() const { return terrains_; }
-  double step_rate() const { return step_rate_; }  ///< wanted [steps/s]
+  double step_rate() const { return step_rate_; }  ///< as set, also while run.acceleration rules [steps/s]
   const std::string& backend_choice() const { return backend_choice_; }
 
   /// What ended the simulation; empty while it lives.
@@ -118,6 +119,8 @@ class SimulationThread {
   void serve_step_request();
   void end_step_requests(const std::string& by);
   bool step_is_due();
+  double wanted_rate() const;
+  void follow_rate();
   void step();
   void wait_for_steps();
   /// Releases memory that holds what has not been asked for in a while.

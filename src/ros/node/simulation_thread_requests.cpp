@@ -63,6 +63,7 @@ std::future<ReachedState> SimulationThread::apply(const Command& command, bool w
       timed_steps_ = 0;
       pacer_.restart();
     }
+    follow_rate();
     note_change();
     ReachedState r = reached(with_hash);
     r.result = result;
@@ -102,9 +103,8 @@ std::future<void> SimulationThread::resume() {
 
 std::future<void> SimulationThread::set_step_rate(double rate) {
   return submit<void>([this, rate] {
-    pacer_ = Pacer(rate);
     step_rate_ = rate;
-    meter_.clear();
+    follow_rate();
     waiting_for_clock_ = false;
   });
 }
@@ -199,7 +199,9 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     r.backend = s.exec().backend();
     r.backend_choice = backend_choice_;
     r.device = s.exec().device();
-    r.step_rate = step_rate_;
+    r.time_step = s.scenario().run.time_step;
+    r.acceleration = s.scenario().run.acceleration;
+    r.step_rate = pacer_.rate();
     r.steps_per_second = meter_.rate(steady_now());
     r.lag = pacer_.lag(clock_now());
     if (timed_steps_ > 0) {

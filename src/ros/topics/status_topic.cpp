@@ -34,6 +34,8 @@ SimulationStatusPtr status_message(const StatusReport& report, const std::string
   message->device = report.device;
   message->step = report.moment.step;
   message->sim_time = report.moment.time;
+  message->time_step = report.time_step;
+  message->acceleration = report.acceleration;
   message->step_rate = report.step_rate;
   message->steps_per_second = report.steps_per_second;
   message->lag = report.lag;

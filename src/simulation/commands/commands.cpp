@@ -40,11 +40,16 @@ void Commands::set_parameters(const std::vector<std::string>& settings) {
   require_sea(changed, state_.terrain.scale(), "set_parameters");
   require_more_memory(state_, changed);
   state_.exec().synchronise();  // memory that steps in flight work with is given back
+  const ClockOrigin clock_before = state_.clock_origin;
+  const bool shelter_was_known = state_.shelter_known;
+  state_.keep_time(changed.run, pipeline_.parts());
   state_.scenario = changed;
   try {
     pipeline_.prepare();
   } catch (...) {
     state_.scenario = before;
+    state_.clock_origin = clock_before;
+    state_.shelter_known = shelter_was_known;
     pipeline_.prepare();
     throw;
   }

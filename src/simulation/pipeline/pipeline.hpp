@@ -42,6 +42,8 @@ class Pipeline {
 
   /// One step of all active processes. Throws StateError if a process breaks a layer.
   void step();
+  /// Number of equal parts in which a step is done; see Process::longest_step.
+  int parts() const;
   /// The step of one active process alone, for tests.
   void step_alone(const std::string& process);
   /// Brings derived layers and the angles of repose up to date, where no step has.
@@ -78,8 +80,6 @@ class Pipeline {
     const FusedProcesses* fused = nullptr;
   };
   StepContext context();
-  /// Number of parts of a step.
-  int parts() const;
   void run_part(StepContext& context);
   void make_launches();
   void allocate_layers();

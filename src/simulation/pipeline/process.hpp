@@ -34,14 +34,22 @@ struct StepContext {
   float time_step() const { return state.scenario.run.time_step / static_cast<float>(parts); }
   /// Number of steps, or parts of steps, before this one.
   std::uint64_t tick() const {
-    return state.steps * static_cast<std::uint64_t>(parts) + static_cast<std::uint64_t>(part);
+    return state.clock_origin.tick +
+           (state.steps - state.clock_origin.step) * static_cast<std::uint64_t>(parts) +
+           static_cast<std::uint64_t>(part);
   }
-  double time() const { return static_cast<double>(tick()) * state.scenario.run.time_step / parts; }
+  double time() const { return time_of(tick()); }
+  /// Of a tick since run.time_step last changed.
+  double time_of(std::uint64_t tick) const {
+    return state.clock_origin.time +
+           static_cast<double>(tick - state.clock_origin.tick) * state.scenario.run.time_step / parts;
+  }
   /// Whether a second begins, for which the wind's shadow is held, or there is none yet.
   bool renews_shelter() const {
-    const double seconds = time() / wind_shadow::held_for, step = time_step() / wind_shadow::held_for;
-    return !state.shelter_known || step >= 1 || parts > 1 || tick() == 0 ||
-           std::floor(seconds) > std::floor(seconds - step);
+    constexpr double second = wind_shadow::held_for;
+    if (!state.shelter_known || time_step() >= wind_shadow::held_for || parts > 1) return true;
+    return state.steps > state.clock_origin.step &&
+           std::floor(time() / second) > std::floor(time_of(tick() - 1) / second);
   }
   wind::Vector wind_above() const { return state.wind_regime.at(time()); }
   const Dice& dice() const { return fields.dice; }

@@ -30,7 +30,7 @@ void add_water(StepContext& c, ProcessWorkspace*) {
   const SimulationState& state = c.state;
   const Scenario& s = state.scenario;
   with_backend(c.exec(), [&](auto& e) {
-    rain::step(e, c.terrain, s.rain, c.time_step(), s.seed, c.tick(), state.terrain.scale().datum,
+    rain::step(e, c.terrain, s.rain, c.time_step(), c.time(), s.seed, c.tick(), state.terrain.scale().datum,
                state.ledger());
     for (const Spring& spring : s.springs)
       water_sources::add_spring(e, c.terrain, spring, spring.x - s.grid.origin_x, spring.y - s.grid.origin_y,
