@@ -1,14 +1,14 @@
 #pragma once
 /// Slip and sinkage of a wheel, by the ground under it. Two laws (`traversability.wheel_law`):
 ///
-/// `bekker`, the terramechanics of Bekker (pressure), Reece and Wong (shear): a wheel of radius r, width b and
-/// load W stands in ground of the constants c, φ, k_c, k_φ, n, K
+/// `bekker`, the terramechanics of Bekker (pressure), Reece and Wong (shear): a wheel of radius r, width b
+/// and load W stands in ground of the constants c, φ, k_c, k_φ, n, K
 ///
 ///   static sinkage        z₀ = (3 W / (b (3 − n)(k_c/b + k_φ) √(2r)))^(2/(2n+1)),  at most r
 ///   length of contact     L  = √(z₀ (2r − z₀))
 ///   rolling resistance    R  = b (k_c/b + k_φ) z₀^(n+1)/(n + 1)
 ///   thrust at slip s      H  = (c b L + W tan φ)(1 − (1 − e^(−x))/x),   x = s L/K
-///   steady slip           H  = R + W tan α,  by bisection; 1 where no slip is enough
+///   steady slip           H  = R + W tan α,  by Newton's method; 1 where no slip is enough
 ///   sinkage               z  = z₀ (1 + |s|)/(1 − |s|/2)          (Lyasko's slip sinkage)
 ///   sideways              H(tan β) = W |tan α_across|,  β the slip angle
 ///
@@ -23,15 +23,16 @@
 ///
 ///   ℓ = looseness · max(1 − 2 m, 0) · min(depth of sand/r, 1)
 ///
-/// because damp sand holds together (m relative moisture), and thin sand lets the wheel down on what is below.
-/// Moisture multiplies shear strength by f(m) of repose.hpp, which grows to half-wet ground and falls to mud,
-/// and there the moduli of pressure, too. `light` is multiplied by lerp(`light_packed`, 1, ℓ)/min(f, 1).
+/// because damp sand holds together (m relative moisture), and thin sand lets the wheel down on what is
+/// below. Moisture multiplies shear strength by f(m) of repose.hpp, which grows to half-wet ground and
+/// falls to mud, and there the moduli of pressure, too. `light` is multiplied by lerp(`light_packed`, 1,
+/// ℓ)/min(f, 1).
 ///
-/// A wheel sinks no deeper than its diameter, nor than there is sand: rock and soil carry it, with the shear
-/// strength of packed ground. The laws are those of all wheels that turn alike on a rigid frame: their slip is one, and follows from the *mean* of
-/// their slopes and ground. A rover therefore calls longitudinal_slip() once, with the means under its wheels,
-/// and sinkage() for each wheel. Tracks of wheels ahead are not considered; whoever packs the layer looseness
-/// under its wheels has them.
+/// A wheel sinks no deeper than its diameter, nor than there is sand: rock and soil carry it, with the
+/// shear strength of packed ground. Wheels on one frame that turn alike have one slip, which follows from
+/// the *mean* of their slopes and of their ground. A rover therefore calls longitudinal_slip() once, with
+/// the means under its wheels, and sinkage() for each wheel. Tracks of wheels ahead are not considered;
+/// whoever packs the layer looseness under its wheels has them.
 
 #include "kernels/field/math.hpp"
 #include "kernels/rover/rover_parameters.hpp"
@@ -65,8 +66,8 @@ struct WheelGround {
   // ---- what a rover needs
 
   /// Steady slip s = 1 − v/(ω r) of a rover that drives at `speed` [m/s] where the ground rises by `slope`
-  /// [rad] along its way. 1: the wheels turn on the spot. Negative: downhill it slides ahead of its wheels; −1
-  /// at least.
+  /// [rad] along its way. 1: the wheels turn on the spot. Negative: downhill it slides ahead of its wheels;
+  /// −1 at least.
   DESERT_HD float longitudinal_slip(float slope, float speed, const Ground& ground) const {
     if (law == WheelLaw::light) return light_slip(slope, speed, ground);
     const Support support = support_of(1.0f, ground);
@@ -102,8 +103,8 @@ struct WheelGround {
     return clamp(depth, 0.0f, minimum(maximum(ground.sand_depth, 0.0f), 2.0f * radius));
   }
 
-  /// The sinkage of a wheel that stood `depth` [m] deep, after its rim has turned over `rim_way` = ω r Δt [m] at
-  /// this slip: it digs itself in, and out, as
+  /// The sinkage of a wheel that stood `depth` [m] deep, after its rim has turned over `rim_way` = ω r Δt
+  /// [m] at this slip: it digs itself in, and out, as
   ///
   ///   dz/d(rim way) = (z(s) − z)/L,   L the length of its contact at z(s), a tenth of r at least,
   ///
@@ -164,17 +165,21 @@ struct WheelGround {
   /// Share of the strength that shear over the contact mobilises at x = s L/K: 1 − (1 − e^(−x))/x.
   DESERT_HD static float mobilised(float x) { return x > 0.0f ? 1.0f - lost_share(x) / x : 0.0f; }
 
-  /// The slip, 0 … 1, whose thrust over load is `needed` ≥ 0; 1 where none is enough.
+  /// Its derivative, (1 − e^(−x)(1 + x))/x².
+  DESERT_HD static float mobilised_slope(float x) {
+    if (x < 0.05f) return 0.5f - x * (1.0f / 3.0f - 0.125f * x);
+    return (1.0f - exp_negative(x) * (1.0f + x)) / (x * x);
+  }
+
+  /// The slip, 0 … 1, whose thrust over load is `needed` ≥ 0; 1 where none is enough. Newton's method from
+  /// below: mobilised() is concave and begins as x/2 − x²/6, so that each step comes nearer and none goes
+  /// too far.
   DESERT_HD static float slip_for(float needed, const Support& support) {
-    if (needed >= support.strength * mobilised(support.stretch)) return 1.0f;
-    float low = 0.0f, high = 1.0f;
-    for (int n = 0; n < bisections; ++n) {
-      const float middle = 0.5f * (low + high);
-      const bool enough = support.strength * mobilised(middle * support.stretch) >= needed;
-      high = enough ? middle : high;
-      low = enough ? low : middle;
-    }
-    return 0.5f * (low + high);
+    const float share = needed / support.strength;
+    if (share >= mobilised(support.stretch)) return 1.0f;
+    float x = share * (2.0f + share * (4.0f / 3.0f));
+    for (int n = 0; n < newton_steps; ++n) x += (share - mobilised(x)) / mobilised_slope(x);
+    return clamp(x / support.stretch, 0.0f, 1.0f);
   }
 
   DESERT_HD float light_share(const Ground& ground) const {
@@ -188,7 +193,7 @@ struct WheelGround {
     return clamp(s * light_share(ground), -1.0f, 1.0f);
   }
 
-  static constexpr int bisections = 20;  ///< to a slip of 1e-6
+  static constexpr int newton_steps = 6;
   static constexpr float degrees_per_radian = 57.29578f, light_slope_factor = 0.00105f;
 
   DESERT_HD static float tangent(float angle) {
