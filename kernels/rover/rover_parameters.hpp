@@ -74,8 +74,8 @@ static_assert(table_is_complete<TraversabilityParameters>());
 
 /// Soil constants at both ends of looseness, the same for all rovers.
 ///
-///   loose    c, φ, k_c, k_φ, n as measured in one set of loose sand (single-wheel tests for planetary
-///            rovers); K of loose sand, 0.025 m: Wong, Theory of Ground Vehicles, ch. 2
+///   loose    c, φ, k_c, k_φ, n: one measured set of soft sand; K of loose sand, 0.025 m: Wong, Theory of
+///            Ground Vehicles
 ///   packed   c, φ of crusty to cloddy ground, 1.1 kPa and 34.5°: Moore et al. 1987 (Viking landing sites);
 ///            k_c, k_φ, n of dry sand and K of firm sand, 0.01 m: Wong
 struct WheelGroundParameters {
