@@ -68,25 +68,38 @@ struct CommitChange {
   }
 };
 
-struct ReadObstacles {
+struct ReadShares {
   Grid grid;
-  const float* obstacle;
+  const float* shares;
   Quanta* steps;
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    steps[i] = static_cast<Quanta>(rintf(value_or_zero(obstacle, i) * static_cast<float>(obstacle_steps)));
+    steps[i] = static_cast<Quanta>(rintf(value_or_zero(shares, i) * static_cast<float>(share_steps)));
   }
 };
 
-struct CommitObstacles {
+struct CommitShares {
   Brush b;
   const Quanta* change;
-  float* obstacle;
+  float* shares;
   DESERT_HD void operator()(int x, int y) const {
     const Quanta c = change[y * b.columns + x];
     if (c == 0) return;
     const int i = b.cell(x, y);
-    obstacle[i] = static_cast<float>(b.layer[i] + c) * static_cast<float>(1 / obstacle_steps);
+    shares[i] = static_cast<float>(b.layer[i] + c) * static_cast<float>(1 / share_steps);
+  }
+};
+
+struct Loosen {
+  Brush b;
+  const Quanta* change;
+  float fresh_depths;  ///< one quantum of sand, over that which loosens
+  float* looseness;
+  DESERT_HD void operator()(int x, int y) const {
+    const Quanta c = change[y * b.columns + x];
+    if (c <= 0) return;
+    const int i = b.cell(x, y);
+    looseness[i] = looseness::loosened(looseness[i], static_cast<float>(c) * fresh_depths);
   }
 };
 
@@ -116,21 +129,28 @@ void commit_change(E& exec, const Brush& b, const Quanta* change, bool moved) {
 }
 
 template <class E>
-void read_obstacles(E& exec, const Grid& grid, const float* obstacle, Quanta* steps) {
-  for_each_cell(exec, grid, ReadObstacles{grid, obstacle, steps});
+void read_shares(E& exec, const Grid& grid, const float* shares, Quanta* steps) {
+  for_each_cell(exec, grid, ReadShares{grid, shares, steps});
 }
 
 template <class E>
-void commit_obstacles(E& exec, const Brush& b, const Quanta* change, float* obstacle) {
-  for_each_cell(exec, b.area(), CommitObstacles{b, change, obstacle});
+void commit_shares(E& exec, const Brush& b, const Quanta* change, float* shares) {
+  for_each_cell(exec, b.area(), CommitShares{b, change, shares});
 }
 
+template <class E>
+void loosen(E& exec, const Brush& b, const Quanta* change, const LoosenessParameters& p, float metres,
+            float* looseness) {
+  for_each_cell(exec, b.area(), Loosen{b, change, metres / p.fresh_depth, looseness});
+}
+
+template void loosen(Backend&, const Brush&, const Quanta*, const LoosenessParameters&, float, float*);
 template void merge(Backend&, const Brush&, Quanta*);
 template void ring_stock(Backend&, const Brush&, Quanta*);
 template long long cells_beyond_limit(Backend&, const Brush&, const Quanta*);
 template long long total(Backend&, const Brush&, const Quanta*);
-template void read_obstacles(Backend&, const Grid&, const float*, Quanta*);
-template void commit_obstacles(Backend&, const Brush&, const Quanta*, float*);
+template void read_shares(Backend&, const Grid&, const float*, Quanta*);
+template void commit_shares(Backend&, const Brush&, const Quanta*, float*);
 template void commit_change(Backend&, const Brush&, const Quanta*, bool);
 
 }  // namespace desert_sim::brush

@@ -10,12 +10,13 @@
 /// An edit is computed as the change of each cell in the brush's rectangle, checked, and then applied. Depths
 /// do not fall below 0. The ledger records what is added or removed as inflow or outflow of the material.
 ///
-/// Obstacles are real numbers 0 … 1. A brush edits them as integers that count 2⁻²⁰, which floats represent
-/// exactly; cells that it does not change keep their bits.
+/// Obstacles and looseness are real numbers 0 … 1, shares. A brush edits them as integers that count 2⁻²⁰,
+/// which floats represent exactly; cells that it does not change keep their bits.
 
 #include "kernels/edit/brush_shape.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
+#include "kernels/sand/looseness.hpp"
 
 namespace desert_sim {
 
@@ -74,15 +75,21 @@ long long cells_beyond_limit(E& exec, const Brush& b, const Quanta* change);
 template <class E>
 long long total(E& exec, const Brush& b, const Quanta* change);
 
-constexpr double obstacle_steps = 1 << 20;  ///< from 0 to 1
+constexpr double share_steps = 1 << 20;  ///< from 0 to 1
 
-/// Obstacles as a brush edits them, of all cells of the grid; `obstacle` may be null, which is 0 everywhere.
+/// A layer of shares as a brush edits it, of all cells of the grid; `shares` may be null, which is 0
+/// everywhere.
 template <class E>
-void read_obstacles(E& exec, const Grid& grid, const float* obstacle, Quanta* steps);
+void read_shares(E& exec, const Grid& grid, const float* shares, Quanta* steps);
 
-/// Applies the change to obstacles; `b.layer` is what read_obstacles() gave.
+/// Applies the change to the shares; `b.layer` is what read_shares() gave.
 template <class E>
-void commit_obstacles(E& exec, const Brush& b, const Quanta* change, float* obstacle);
+void commit_shares(E& exec, const Brush& b, const Quanta* change, float* shares);
+
+/// Loosens the ground where the change adds sand; see looseness.hpp. `metres`: a quantum.
+template <class E>
+void loosen(E& exec, const Brush& b, const Quanta* change, const LoosenessParameters& p, float metres,
+            float* looseness);
 
 /// Applies the change. `moved`: it sums to 0, because material only moves from cell to cell.
 template <class E>

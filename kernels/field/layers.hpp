@@ -22,6 +22,7 @@ enum class Layer : int {
   vegetation,
   erosion_resistance,
   obstacle,
+  looseness,
   water_flux_x,
   water_flux_y,
   elevation,
@@ -40,6 +41,10 @@ enum class Layer : int {
   normal_z,
   roughness,
   step_height,
+  slip,
+  slip_downhill,
+  slip_across,
+  sinkage,
   traversability,
   water_surface,
   plants,
@@ -65,7 +70,7 @@ struct LayerInfo {
 
 constexpr double any_height = 1e6;
 
-constexpr std::array<LayerInfo, 32> layer_table{{
+constexpr std::array<LayerInfo, 37> layer_table{{
     {Layer::bedrock, "bedrock", "m", Storage::quanta, Lifetime::persistent, -any_height, any_height,
      "Top of the rock, absolute."},
     {Layer::soil, "soil", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
@@ -87,6 +92,8 @@ constexpr std::array<LayerInfo, 32> layer_table{{
      "Resistance of rock and soil to wear; 1 never wears."},
     {Layer::obstacle, "obstacle", "1", Storage::real, Lifetime::persistent, 0, 1,
      "1 where a solid object stands, that neither gives nor takes sand."},
+    {Layer::looseness, "looseness", "1", Storage::real, Lifetime::persistent, 0, 1,
+     "How loose the ground's surface is: 0 packed … 1 fresh."},
     {Layer::water_flux_x, "water_flux_x", "m^3/s", Storage::real, Lifetime::persistent, -any_height,
      any_height, "Water that flows through a cell's east face."},
     {Layer::water_flux_y, "water_flux_y", "m^3/s", Storage::real, Lifetime::persistent, -any_height,
@@ -123,6 +130,14 @@ constexpr std::array<LayerInfo, 32> layer_table{{
      "Rms deviation from the plane that fits the surroundings best."},
     {Layer::step_height, "step_height", "m", Storage::real, Lifetime::on_request, 0, any_height,
      "Largest rise or drop nearby that is no slope a rover could drive."},
+    {Layer::slip, "slip", "1", Storage::real, Lifetime::on_request, -1, 1,
+     "Slip of the rover of the section traversability that drives up the steepest way; 1: it is stuck."},
+    {Layer::slip_downhill, "slip_downhill", "1", Storage::real, Lifetime::on_request, -1, 1,
+     "Its slip down that way; < 0: it slides ahead of its wheels."},
+    {Layer::slip_across, "slip_across", "1", Storage::real, Lifetime::on_request, 0, 1,
+     "Its drift downhill over the way made across the slope, as the tangent of the slip angle."},
+    {Layer::sinkage, "sinkage", "m", Storage::real, Lifetime::on_request, 0, any_height,
+     "How deep its wheels stand in the ground as it drives up."},
     {Layer::traversability, "traversability", "1", Storage::real, Lifetime::on_request, 0, 1,
      "1 free ground … 0 no way for the rover of the section traversability."},
     {Layer::water_surface, "water_surface", "m", Storage::quanta, Lifetime::on_request, -any_height,

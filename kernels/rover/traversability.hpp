@@ -8,63 +8,37 @@
 ///   roughness        √(mean of (h_j − p_j)²) over the window, p the plane that fits it best (least squares)
 ///   step height      max |h_j − h − g·d_j|   where |h_j − h| > |d_j| l tan `slope_deg`
 ///   traversability   max(1 − c, 0), and 0 on obstacles
-///                    c = max(θ/θ_max, step_height/limit, roughness/limit, water/limit, vegetation/limit,
-///                            mud, `sand_cost` σ)
-///                    σ = min(sand/`sand_depth`, 1)
+///                    c = max(going, step_height/limit, roughness/limit, water/limit, vegetation/limit, mud)
+///
+///                    where the layer looseness is in use
+///                    going = max(θ/`slope_deg`, s/`slip`, z/(`sinkage` r))
+///                    with the uphill slip s and the sinkage z of wheel_layers.hpp, r the radius of a wheel
+///
+///                    elsewhere
+///                    going = max(θ/θ_max, `sand_cost` σ)
 ///                    θ_max = lerp(`slope_deg`, `sand_slope_deg`, σ)
+///                    σ = min(sand/`sand_depth`, 1)
+///
 ///                    mud = max(m − ½, 0)/(`mud` − ½) · min((sand + soil)/`sand_depth`, 1)
 ///
-/// j runs over the cells of the window, at offsets d_j [cells]. g is, for each axis, the flatter (minmod) of
-/// the two one-sided differences, and 0 if these have opposite signs (minmod), so that an edge beside flat
-/// ground counts with its full height. The slope limit θ_max is lower on loose sand, because wheels slip
-/// there. m is relative moisture (repose.hpp). The window is the square of cells up to `window` away along x
-/// and y, 1 to 16 cells; at open edges the part of it that is on the grid. `limit` is the parameter that
-/// belongs to each quantity.
+/// j runs over the cells of the window, at offsets d_j [cells]. g is, for each axis, the flatter (minmod)
+/// of the two one-sided differences, and 0 if these have opposite signs (minmod), so that an edge beside
+/// flat ground counts with its full height. Where nobody follows how loose sand is, the slope limit θ_max
+/// is lower on deep sand, because wheels slip there; where it is known, slip and sinkage say so themselves,
+/// and `slope_deg` is the limit of tipping over. m is relative moisture (repose.hpp). The window is the
+/// square of cells up to `window` away along x and y, 1 to 16 cells; at open edges the part of it that is
+/// on the grid. `limit` is the parameter that belongs to each quantity.
 ///
-/// Reads elevation, sand, soil, moisture, water, vegetation, obstacle; writes those of slope, normal_x,
-/// normal_y, normal_z, roughness, step_height and traversability that are present in the view.
+/// Reads elevation, sand, soil, moisture, water, vegetation, obstacle, looseness; writes those of slope,
+/// normal_x, normal_y, normal_z, roughness, step_height, slip, slip_downhill, slip_across, sinkage and
+/// traversability that are present in the view.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/math.hpp"
+#include "kernels/rover/rover_parameters.hpp"
 #include "kernels/sand/repose.hpp"
-#include "src/core/parameters.hpp"
 
 namespace desert_sim {
-
-/// The defaults describe a wheeled rover about a metre long.
-struct TraversabilityParameters {
-  float slope_deg = 25.0f;
-  float sand_slope_deg = 16.0f;
-  float sand_depth = 0.3f;
-  float sand_cost = 0.2f;
-  float step_height = 0.3f;
-  float roughness = 0.15f;
-  float water_depth = 0.3f;
-  float mud = 0.9f;
-  float vegetation = 0.8f;
-  float window = 0.5f;
-};
-
-constexpr auto parameter_table(const TraversabilityParameters*) {
-  using P = TraversabilityParameters;
-  return std::make_tuple(
-      parameter("slope_deg", &P::slope_deg, 0.1, 89, "deg", "Slope of firm ground that stops the rover."),
-      parameter("sand_slope_deg", &P::sand_slope_deg, 0.1, 89, "deg",
-                "Slope of deep loose sand on which its wheels slip through."),
-      parameter("sand_depth", &P::sand_depth, 1e-3, 1000, "m", "Depth from which sand is deep."),
-      parameter("sand_cost", &P::sand_cost, 0, 1, "1", "What deep sand takes off the traversability of 1."),
-      parameter("step_height", &P::step_height, 1e-3, 1000, "m", "Step that stops the rover."),
-      parameter("roughness", &P::roughness, 1e-3, 1000, "m", "Roughness that stops the rover."),
-      parameter("water_depth", &P::water_depth, 1e-3, 1000, "m", "Water that stops the rover."),
-      parameter("mud", &P::mud, 0.501, 1000, "1",
-                "Relative moisture of deep sand or soil that stops the rover; half-wet ground is firm, above "
-                "1 none does."),
-      parameter("vegetation", &P::vegetation, 1e-3, 1000, "1",
-                "Density of plants that stops the rover; above 1 none does."),
-      parameter("window", &P::window, 0, 1000, "m",
-                "How far around a cell roughness and steps are looked for; at least one cell, at most 16."));
-}
-static_assert(table_is_complete<TraversabilityParameters>());
 
 namespace traversability {
 
@@ -74,11 +48,17 @@ inline int window_cells(const TraversabilityParameters& p, float cell_size) {
   return static_cast<int>(clamp(p.window / cell_size, 1.0f, static_cast<float>(max_window)));
 }
 
+/// What the laws are made from.
+struct Rover {
+  TraversabilityParameters limits;
+  WheelGroundParameters ground;
+  ReposeParameters repose;
+};
+
 /// Computes `rows` rows from row `first` on, which continue over the north edge. `elevation` must be up to
 /// date everywhere.
 template <class E>
-void step(E& exec, const TerrainView& t, const TraversabilityParameters& p, const ReposeParameters& repose,
-          int first, int rows);
+void step(E& exec, const TerrainView& t, const Rover& rover, int first, int rows);
 
 }  // namespace traversability
 }  // namespace desert_sim

@@ -4,49 +4,14 @@
 #include "kernels/backend/for_each.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/math.hpp"
+#include "kernels/rover/surface_differences.hpp"
 #include "kernels/rover/traversability.hpp"
+#include "kernels/rover/wheel_layers.hpp"
 #include "kernels/sand/repose.hpp"
 #include "src/core/constants.hpp"
 #include "src/core/parameters.hpp"
 
 namespace desert_sim::traversability {
-
-/// Differences of heights [quanta]. They are exact integers, whose sums do not depend on the order, so that
-/// mirrored or rotated terrain gives the same bits.
-struct Surface {
-  Grid grid;
-  const Quanta* elevation;
-  float quantum;
-
-  /// Height of the neighbour (x, y) above cell i; returns false where the grid ends.
-  DESERT_HD bool rise(int i, int x, int y, Quanta& quanta) const {
-    const int j = neighbour_index(grid, x, y);
-    if (j < 0) return false;
-    quanta = elevation[j] - elevation[i];
-    return true;
-  }
-  /// Central difference [m per cell], one-sided where the grid ends; 0 on an axis of a single cell.
-  DESERT_HD float central(int x, int y, int dx, int dy) const {
-    const int i = grid.index(x, y);
-    Quanta ahead = 0, behind = 0;
-    const int sides = rise(i, x + dx, y + dy, ahead) + rise(i, x - dx, y - dy, behind);
-    return sides == 0 ? 0.0f : (static_cast<float>(ahead) - static_cast<float>(behind)) * quantum / sides;
-  }
-  /// The flatter of the two one-sided differences [m per cell], 0 where their signs differ (minmod).
-  DESERT_HD float minmod_difference(int x, int y, int dx, int dy) const {
-    const int i = grid.index(x, y);
-    Quanta ahead = 0, back = 0;
-    const bool has_ahead = rise(i, x + dx, y + dy, ahead), has_back = rise(i, x - dx, y - dy, back);
-    const float a = ahead * quantum, b = -(back * quantum);
-    if (!has_ahead || !has_back) return has_ahead ? a : (has_back ? b : 0.0f);
-    if (a > 0.0f && b > 0.0f) return minimum(a, b);
-    return a < 0.0f && b < 0.0f ? maximum(a, b) : 0.0f;
-  }
-  /// Tangent of the slope.
-  DESERT_HD float steepness(int x, int y) const {
-    return hypotenuse(central(x, y, 1, 0), central(x, y, 0, 1)) / grid.cell_size;
-  }
-};
 
 /// Slope and normal; outputs that are null are not written.
 struct Orientation {
@@ -126,6 +91,7 @@ struct StepHeight {
 struct Traversability {
   Roughness roughness;
   StepHeight step_height;
+  WheelsAt wheels;
   float slope, sand_slope;  ///< limits [rad]
   TraversabilityParameters limits;
   const Quanta *sand, *soil, *water;
@@ -141,18 +107,33 @@ struct Traversability {
     return excess * minimum(depth / limits.sand_depth, 1.0f);
   }
 
+  /// What the slope takes off; where looseness is not known, deep sand as well.
+  DESERT_HD float steepness(int x, int y) const {
+    const Surface& surface = roughness.surface;
+    const float angle = arctangent(surface.steepness(x, y));
+    if (wheels.looseness) return angle / slope;
+    const float depth = value_or_zero(sand, surface.grid.index(x, y)) * surface.quantum;
+    const float sand_share = minimum(depth / limits.sand_depth, 1.0f);
+    return maximum(angle / lerp(slope, sand_slope, sand_share), limits.sand_cost * sand_share);
+  }
+  /// What loose ground takes off.
+  DESERT_HD float slip_and_sinkage(int x, int y) const {
+    const WheelsAt::State state = wheels(x, y);
+    const float slip = wheels.uphill_slip(state);
+    return maximum(slip / limits.slip, wheels.sinkage(state, slip) / (limits.sinkage * limits.wheel_radius));
+  }
+
   DESERT_HD float at(int x, int y) const {
     const Surface& surface = roughness.surface;
     const int i = surface.grid.index(x, y);
     if (value_or_zero(obstacle, i) > 0.0f) return 0.0f;
-    const float sand_share = minimum(value_or_zero(sand, i) * surface.quantum / limits.sand_depth, 1.0f);
-    float worst = arctangent(surface.steepness(x, y)) / lerp(slope, sand_slope, sand_share);
-    worst = maximum(worst, limits.sand_cost * sand_share);
+    float worst = steepness(x, y);
     worst = maximum(worst, value_or_zero(water, i) * surface.quantum / limits.water_depth);
     worst = maximum(worst, mud(i));
     worst = maximum(worst, value_or_zero(vegetation, i) / limits.vegetation);
     if (worst < 1.0f) worst = maximum(worst, step_height.at(x, y) / limits.step_height);
     if (worst < 1.0f) worst = maximum(worst, roughness.at(x, y) / limits.roughness);
+    if (worst < 1.0f && wheels.looseness) worst = maximum(worst, slip_and_sinkage(x, y));
     return clamp(1.0f - worst, 0.0f, 1.0f);
   }
   DESERT_HD void operator()(int x, int y) const {
@@ -161,20 +142,21 @@ struct Traversability {
 };
 
 /// The law for this rover; it writes those layers that are present in the view.
-inline Traversability make_law(const TerrainView& t, const TraversabilityParameters& p,
-                               const ReposeParameters& repose) {
+inline Traversability make_law(const TerrainView& t, const Rover& rover) {
+  const TraversabilityParameters& p = rover.limits;
   const float degree = static_cast<float>(pi) / 180.0f;
   const int reach = window_cells(p, t.grid.cell_size);
   const Surface surface{t.grid, t.quanta(Layer::elevation), t.quantum};
   return {{surface, reach, t.real(Layer::roughness)},
           {surface, reach, tanf(p.slope_deg * degree), t.real(Layer::step_height)},
+          make_wheels_at(t, surface, rover),
           p.slope_deg * degree,
           p.sand_slope_deg * degree,
           p,
           t.quanta(Layer::sand),
           t.quanta(Layer::soil),
           t.quanta(Layer::water),
-          repose::RelativeMoisture(t, repose),
+          repose::RelativeMoisture(t, rover.repose),
           t.real(Layer::vegetation),
           t.real(Layer::obstacle),
           t.real(Layer::traversability)};

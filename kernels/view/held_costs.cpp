@@ -107,9 +107,8 @@ struct CopyRegion {
 };
 
 template <class E>
-void compute_costs(E& exec, const TerrainView& t, const TraversabilityParameters& p,
-                   const ReposeParameters& repose, std::int8_t* now) {
-  for_each_cell(exec, t.grid, ComputeCosts{traversability::make_law(t, p, repose), now});
+void compute_costs(E& exec, const TerrainView& t, const traversability::Rover& rover, std::int8_t* now) {
+  for_each_cell(exec, t.grid, ComputeCosts{traversability::make_law(t, rover), now});
 }
 
 template <class E>
@@ -126,8 +125,7 @@ void copy_region(E& exec, const Tiling& tiles, const std::int8_t* now, std::int8
   for_each_tile(exec, tiles, CopyRegion{tiles, now, held, changed, recent, pack});
 }
 
-template void compute_costs(Backend&, const TerrainView&, const TraversabilityParameters&,
-                            const ReposeParameters&, std::int8_t*);
+template void compute_costs(Backend&, const TerrainView&, const traversability::Rover&, std::int8_t*);
 template void find_changed_box(Backend&, const Tiling&, const std::int8_t*, const std::int8_t*, int,
                                BoundingBox*);
 template void copy_region(Backend&, const Tiling&, const std::int8_t*, std::int8_t*, const BoundingBox*,

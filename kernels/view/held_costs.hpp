@@ -41,8 +41,7 @@ struct BoundingBox {
 
 /// Computes the current costs of all cells. `elevation` must be up to date.
 template <class E>
-void compute_costs(E& exec, const TerrainView& t, const TraversabilityParameters& p,
-                   const ReposeParameters& repose, std::int8_t* now);
+void compute_costs(E& exec, const TerrainView& t, const traversability::Rover& rover, std::int8_t* now);
 
 /// Writes the bounding box of the cells that changed to `box`.
 template <class E>

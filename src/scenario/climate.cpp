@@ -12,18 +12,6 @@ constexpr Presets::Row preset_rows[] = {
 };
 constexpr Presets presets(preset_rows);
 
-/// Adds the climate's values that the scenario does not set. Maps are merged recursively; any other value of
-/// the scenario stays.
-void merge_missing(YAML::Node scenario, const YAML::Node& climate) {
-  for (const auto& entry : climate) {
-    const std::string key = entry.first.Scalar();
-    if (!scenario[key])
-      scenario[key] = entry.second;
-    else if (scenario[key].IsMap() && entry.second.IsMap())
-      merge_missing(scenario[key], entry.second);
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> climates() { return presets.names(); }
@@ -50,7 +38,7 @@ YAML::Node apply_climate(const YAML::Node& root, ValidationErrors& errors) {
     if (own_species && (key == "species" || key == "competition")) continue;
     YAML::Node one(YAML::NodeType::Map);
     one[key] = entry.second;
-    merge_missing(whole, one);
+    yaml::merge_missing(whole, one);
   }
   return whole;
 }

@@ -5,6 +5,7 @@
 #include "src/core/parameter_page.hpp"
 #include "src/scenario/climate.hpp"
 #include "src/scenario/live_parameters.hpp"
+#include "src/scenario/rover_class.hpp"
 #include "src/scenario/wind_regime.hpp"
 
 namespace desert_sim {
@@ -34,6 +35,10 @@ std::string describe_parameters() {
          "of them "
          "overrides it (config/climates):\n\n";
   for (const std::string& name : climates()) out << "- `" << name << "`: " << climate_doc(name) << "\n";
+  out << "\n`rover`, if given, sets the section `traversability`; what the scenario says of it overrides it "
+         "(config/rovers):\n\n";
+  for (const std::string& name : rover_classes())
+    out << "- `" << name << "`: " << rover_class_doc(name) << "\n";
   Scenario defaults;
   for_each_section(defaults, [&](const char* section, const auto& parameters) {
     out << "\n## `" << section << "`\n\n";

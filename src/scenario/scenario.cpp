@@ -9,6 +9,7 @@
 #include "src/core/input_file.hpp"
 #include "src/scenario/climate.hpp"
 #include "src/scenario/range_checks.hpp"
+#include "src/scenario/rover_class.hpp"
 #include "src/scenario/sections.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -216,8 +217,9 @@ Scenario parse_scenario(const YAML::Node& given, const std::string& name, const 
                yaml::node_text(given) + " is given where the sections of a scenario are expected");
     errors.throw_if_any();
   }
-  const YAML::Node root = apply_climate(given, errors);
-  std::set<std::string> known{"climate", "terrain", "wind", "water", "run", "species", "competition"};
+  const YAML::Node root = apply_rover(apply_climate(given, errors), errors);
+  std::set<std::string> known{"climate", "rover", "terrain", "wind",
+                              "water",   "run",   "species", "competition"};
   for_each_section(s, [&](const char* section, auto& parameters) {
     known.insert(section);
     yaml::read_section(root[section], section, errors, parameters);

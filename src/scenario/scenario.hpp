@@ -12,6 +12,7 @@
 
 #include "kernels/avalanching/parameters.hpp"
 #include "kernels/rover/traversability.hpp"
+#include "kernels/sand/looseness.hpp"
 #include "kernels/sand/reptation.hpp"
 #include "kernels/sand/saltation.hpp"
 #include "kernels/soil/moisture.hpp"
@@ -113,6 +114,7 @@ struct Scenario {
   SaltationParameters saltation;
   AbrasionParameters abrasion;
   ReptationParameters reptation;
+  LoosenessParameters looseness;
   ReposeParameters repose;
   AvalanchingParameters avalanching;
   RainParameters rain;
@@ -125,12 +127,15 @@ struct Scenario {
   std::vector<Species> species;   ///< at most max_species
   CompetitionMatrix competition;  ///< as many rows and columns as there are species
   TraversabilityParameters traversability;
+  WheelGroundParameters wheel_ground;
   ProcessSections process_sections;  ///< of processes whose parameters are no member here
   RunParameters run;
   std::vector<TimelineEntry> timeline;  ///< in order of time
   std::string projection;               ///< WKT of the raster that gave the grid; kept for what is written
 
   Grid make_grid() const;
+  /// The rover of the section traversability on the ground of wheel_ground.
+  traversability::Rover rover() const { return {traversability, wheel_ground, repose}; }
   /// Whether water is simulated: it is enabled, or rain, springs, hydraulic erosion or moisture need it.
   bool has_water() const;
 };

@@ -24,6 +24,7 @@ void for_each_section(S& scenario, Visit&& visit) {
   visit("saltation", scenario.saltation);
   visit("abrasion", scenario.abrasion);
   visit("reptation", scenario.reptation);
+  visit("looseness", scenario.looseness);
   visit("repose", scenario.repose);
   visit("avalanching", scenario.avalanching);
   visit("rain", scenario.rain);
@@ -32,6 +33,7 @@ void for_each_section(S& scenario, Visit&& visit) {
   visit("soil", scenario.soil);
   visit("vegetation", scenario.vegetation);
   visit("traversability", scenario.traversability);
+  visit("wheel_ground", scenario.wheel_ground);
 }
 
 /// The path of `file` in the scenario's folder if it exists there; otherwise `file` itself.

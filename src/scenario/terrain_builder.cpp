@@ -206,6 +206,19 @@ class Builder {
     }
   }
 
+  void run(const RipplesStep& p) {
+    const double l = s_.grid.cell_size, cos = std::cos(p.direction_deg * degree),
+                 sin = std::sin(p.direction_deg * degree);
+    const double x0 = p.relative ? p.x * s_.grid.width * l : p.x - s_.grid.origin_x,
+                 y0 = p.relative ? p.y * s_.grid.height * l : p.y - s_.grid.origin_y;
+    fill(p.layer, p.merge, [&](int x, int y) {
+      const double waves = (((x + 0.5) * l - x0) * cos + ((y + 0.5) * l - y0) * sin) / p.wavelength;
+      const double number = std::floor(waves), phase = waves - number;
+      if (p.count > 0 && (number < 0 || number >= p.count)) return 0.0;
+      return p.height * (phase < p.windward ? phase / p.windward : (1 - phase) / (1 - p.windward));
+    });
+  }
+
   void run(const RasterStep& p) {
     RasterRequest request;
     request.path = raster_file(p);

@@ -193,6 +193,39 @@ constexpr auto parameter_table(const ObstacleStep*) {
 }
 static_assert(table_is_complete<ObstacleStep>());
 
+/// Straight ripples across a wind: ridges with plane flanks and sharp crests. The windward flank rises over
+/// the share `windward` of the wavelength, the lee flank falls over the rest. On a periodic axis they fit
+/// together where a whole number of wavelengths fits the grid.
+struct RipplesStep {
+  std::string layer = "sand";
+  Merge merge = Merge::add;
+  double wavelength = 2;
+  double height = 0.2;
+  double windward = 0.5;
+  double direction_deg = 0;
+  bool relative = false;
+  double x = 0;
+  double y = 0;
+  int count = 0;
+};
+constexpr auto parameter_table(const RipplesStep*) {
+  using P = RipplesStep;
+  return std::make_tuple(
+      parameter("layer", &P::layer, "Layer to change."),
+      parameter("merge", &P::merge, merge_names, "How the step's value is combined with the present one."),
+      parameter("wavelength", &P::wavelength, 1e-3, 1e6, "m", "Distance from crest to crest."),
+      parameter("height", &P::height, -1e5, 1e5, "layer's", "Height of the crests above the troughs."),
+      parameter("windward", &P::windward, 0.01, 0.99, "1",
+                "Share of the wavelength that rises with the wind."),
+      parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
+                "Where the wind moves to, counter-clockwise from +x."),
+      parameter("relative", &P::relative, "Whether x and y are shares of the grid's extent."),
+      parameter("x", &P::x, -1e8, 1e8, "m", "A point in the trough before the first ripple."),
+      parameter("y", &P::y, -1e8, 1e8, "m", "A point in the trough before the first ripple."),
+      parameter("count", &P::count, 0, 1000000, "1", "Number of ripples from there on; 0: everywhere."));
+}
+static_assert(table_is_complete<RipplesStep>());
+
 /// Fills a layer from a raster: value = raw · scale + offset.
 struct RasterStep {
   std::string layer = "bedrock";
@@ -228,9 +261,9 @@ constexpr auto parameter_table(const RasterStep*) {
 }
 static_assert(table_is_complete<RasterStep>());
 
-using TerrainStep =
-    std::variant<UniformStep, NoiseStep, RampStep, ConeStep, ColumnStep, DiscsStep, ObstacleStep, RasterStep>;
-constexpr const char* terrain_step_names[] = {"uniform", "noise", "ramp",     "cone",
-                                              "column",  "discs", "obstacle", "raster"};
+using TerrainStep = std::variant<UniformStep, NoiseStep, RampStep, ConeStep, ColumnStep, DiscsStep,
+                                 RipplesStep, ObstacleStep, RasterStep>;
+constexpr const char* terrain_step_names[] = {"uniform", "noise",   "ramp",     "cone",  "column",
+                                              "discs",   "ripples", "obstacle", "raster"};
 
 }  // namespace desert_sim

@@ -49,6 +49,18 @@ inline std::string node_text(const YAML::Node& node) {
   return node.IsNull() ? "nothing" : (node.IsMap() ? "a map" : "a list");
 }
 
+/// Adds the values of a preset that the scenario does not set. Maps are merged recursively; any other value
+/// of the scenario stays.
+inline void merge_missing(YAML::Node scenario, const YAML::Node& preset) {
+  for (const auto& entry : preset) {
+    const std::string key = entry.first.Scalar();
+    if (!scenario[key])
+      scenario[key] = entry.second;
+    else if (scenario[key].IsMap() && entry.second.IsMap())
+      merge_missing(scenario[key], entry.second);
+  }
+}
+
 /// `T`: the type of the row's parameter.
 template <class T, class Row>
 std::string allowed_range(const Row& row) {

@@ -24,7 +24,7 @@ struct MapLayer {
   bool zero_is_special = false;
 };
 
-constexpr std::array<MapLayer, 28> map_layers{{
+constexpr std::array<MapLayer, 33> map_layers{{
     {"elevation", Layer::elevation, 0.005},
     {"bedrock", Layer::bedrock, 0.005},
     {"water_surface", Layer::water_surface, 0.005},
@@ -42,6 +42,7 @@ constexpr std::array<MapLayer, 28> map_layers{{
     {"water_velocity_y", Layer::water_velocity_y, 0.02},
     {"erosion_resistance", Layer::erosion_resistance, 0.01},
     {"obstacle", Layer::obstacle, 0},
+    {"looseness", Layer::looseness, 0.01},
     {"wind_x", Layer::wind_x, 0.05},
     {"wind_y", Layer::wind_y, 0.05},
     {"wind_shadow", Layer::wind_shadow, 0.01},
@@ -49,6 +50,10 @@ constexpr std::array<MapLayer, 28> map_layers{{
     {"slope", Layer::slope, 0.01},
     {"roughness", Layer::roughness, 0.005},
     {"step_height", Layer::step_height, 0.005},
+    {"slip", Layer::slip, 0.01},
+    {"slip_downhill", Layer::slip_downhill, 0.01},
+    {"slip_across", Layer::slip_across, 0.01},
+    {"sinkage", Layer::sinkage, 0.002},
     {"traversability", Layer::traversability, 0.01, Aggregation::min, true},
     {"normal_x", Layer::normal_x, 0.01},
     {"normal_y", Layer::normal_y, 0.01},

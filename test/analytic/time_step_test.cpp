@@ -1,6 +1,7 @@
 // The same desert after the same time, whatever the time step.
 
 #include <algorithm>
+#include <array>
 
 #include "support/world.hpp"
 
@@ -105,6 +106,41 @@ TEST_P(TimeStep, LongStepsOfSandAndPlantsAreThoseOfASecond) {
   };
   const auto whole = layers_at(1);
   for (const double dt : {2.0, 3.0, 4.0}) EXPECT_TRUE(layers_at(dt) == whole) << "dt " << dt;
+}
+
+/// The mean looseness of a dune's slip face and of its windward side, and of all its sand.
+TEST_P(TimeStep, TheGroundIsAsLoose) {
+  const auto looseness_at = [&](double dt) {
+    auto s = simulation(
+        "grid: {width: 160, height: 40}\nterrain: [cone: {layer: sand, shape: dome, x: 40, y: 20, radius: "
+        "18, "
+        "height: 7}]\nwind: {speed: 3, projection: false}\nsaltation: {lift: 0.1}\n"
+        "looseness: {enabled: true, initial: 0.5}\nrun: {time_step: " +
+        std::to_string(dt) + "}\n");
+    test::run(*s, static_cast<int>(std::lround(40 / dt)));
+    const auto sand = s->terrain().values(Layer::sand), loose = s->terrain().values(Layer::looseness),
+               shadow = s->terrain().values(Layer::wind_shadow);
+    struct Mean {
+      double sum = 0, cells = 0;
+      void add(double v) { sum += v, ++cells; }
+      double value() const { return sum / cells; }
+    } all, sheltered, open;
+    for (std::size_t i = 0; i < sand.size(); ++i) {
+      if (sand[i] < 1) continue;
+      all.add(loose[i]);
+      if (shadow[i] > 0.9f) sheltered.add(loose[i]);
+      if (shadow[i] == 0) open.add(loose[i]);
+    }
+    EXPECT_GT(sheltered.cells, 20);
+    EXPECT_GT(open.cells, 20);
+    return std::array<double, 3>{all.value(), sheltered.value(), open.value()};
+  };
+  const auto whole = looseness_at(1);
+  for (const double dt : {2.0, 0.5, 0.25, 0.1, 0.02}) {
+    const auto parts = looseness_at(dt);
+    for (std::size_t n = 0; n < whole.size(); ++n)
+      EXPECT_NEAR(parts[n], whole[n], 0.05) << "dt " << dt << ", mean " << n;
+  }
 }
 
 DESERT_ON_EACH_BACKEND(TimeStep);

@@ -35,6 +35,7 @@ const std::map<std::string, std::string> worlds{
      "scale: 5},\n"
      "  noise: {layer: sand, low: 0, high: 20, scale: 3}]\n"
      "wind: {speed: 6}\nabrasion: {rate: 0.01}\nreptation: {method: steepest}\nsoil: {enabled: true}\n"
+     "looseness: {enabled: true}\n"
      "avalanching: {bedrock_to_sand: false}\n"},
     {"still",
      "grid: {width: 40, height: 36}\nterrain: [noise: {layer: sand, low: 0, high: 9, scale: 3}]\n"

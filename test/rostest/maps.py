@@ -26,7 +26,7 @@ class Maps(MapTest):
         self.expect_header(grid_map.info.header)
         self.assertEqual(grid_map.basic_layers, ["elevation"])
         self.assertEqual((grid_map.info.resolution, grid_map.info.length_x, grid_map.info.length_y), (2, 128, 96))
-        self.assertEqual(len(grid_map.layers), 28)
+        self.assertEqual(len(grid_map.layers), 33)
         layers = {name: cells(grid_map, name) for name in grid_map.layers}
         for x in range(64):
             for y in range(48):
@@ -36,7 +36,7 @@ class Maps(MapTest):
                 self.assertAlmostEqual(layers["bedrock"][at], 1, 4)
                 self.assertEqual(layers["water_surface"][at], layers["elevation"][at], "dry")
                 for absent in ("water_depth", "soil_depth", "vegetation", "moisture", "obstacle", "plants", "canopy_height", "echo",
-                               "erosion_resistance", "illumination", "humus", "suspended_sediment", "water_velocity_x", "water_velocity_y"):
+                               "erosion_resistance", "looseness", "illumination", "humus", "suspended_sediment", "water_velocity_x", "water_velocity_y"):
                     self.assertEqual(layers[absent][at], 0, absent)
                 self.assertGreater(layers["wind_x"][at], 1)
         self.check_derived(layers)
@@ -64,6 +64,12 @@ class Maps(MapTest):
         self.assertEqual(layers["normal_x"][south], 0)
         self.assertEqual([layers[n][far] for n in ("slope", "roughness", "step_height")], [0, 0, 0])
         self.assertAlmostEqual(layers["traversability"][far], 0.8, 5, "deep sand")
+        self.assertGreater(layers["slip"][far], 0)
+        self.assertEqual(layers["slip_downhill"][far], layers["slip"][far], "flat ground")
+        self.assertEqual(layers["slip_across"][far], 0)
+        self.assertTrue(0.01 < layers["sinkage"][far] < 0.1, "the rover stands in sand")
+        self.assertGreater(layers["slip"][west], layers["slip"][far])
+        self.assertGreater(layers["slip_across"][west], 0)
         self.assertGreater(layers["wind_shadow"][center(60, 5)], 0.5, "in the lee")
         self.assertEqual(layers["wind_shadow"][center(54, 5)], 0)
 
@@ -193,8 +199,9 @@ class Maps(MapTest):
         self.assertEqual([layer.name for layer in self.submap(100, 20, 4, 4, []).map.layers],
                          ["elevation", "bedrock", "water_surface", "sand_depth", "water_depth", "soil_depth", "vegetation",
                           "plants", "canopy_height", "illumination", "humus", "moisture", "suspended_sediment",
-                          "water_velocity_x", "water_velocity_y", "erosion_resistance", "obstacle", "wind_x", "wind_y", "wind_shadow", "echo", "slope",
-                          "roughness", "step_height", "traversability", "normal_x", "normal_y", "normal_z"], "all")
+                          "water_velocity_x", "water_velocity_y", "erosion_resistance", "obstacle", "looseness", "wind_x", "wind_y", "wind_shadow", "echo", "slope",
+                          "roughness", "step_height", "slip", "slip_downhill", "slip_across", "sinkage",
+                          "traversability", "normal_x", "normal_y", "normal_z"], "all")
 
     def test_get_submap_refuses(self):
         nan, inf = float("nan"), float("inf")

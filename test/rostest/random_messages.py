@@ -9,7 +9,7 @@ EXTREMES = [math.nan, math.inf, -math.inf, 1e300, -1e300, 1e39, 0.0, -1.0, 5e-32
 LIMITS = {"int8": (-2**7, 2**7 - 1), "uint8": (0, 2**8 - 1), "int16": (-2**15, 2**15 - 1), "uint16": (0, 2**16 - 1),
           "int32": (-2**31, 2**31 - 1), "uint32": (0, 2**32 - 1), "int64": (-2**63, 2**63 - 1), "uint64": (0, 2**64 - 1)}
 WORDS = {
-    "layer": ["sand", "soil", "bedrock", "water", "obstacle"], "stroke": ["", "a", "b"], "data": ["sand_depth", "no_such_layer"], "layers": ["elevation", "slope", "plants", "moisture", "traversability"],
+    "layer": ["sand", "soil", "bedrock", "water", "obstacle", "looseness"], "stroke": ["", "a", "b"], "data": ["sand_depth", "no_such_layer"], "layers": ["elevation", "slope", "plants", "moisture", "traversability"],
     "shape": ["circle", "ellipse", "rectangle", "capsule", "polygon", "patch"], "species": ["tree", "bush"],
     "merge": ["add", "sub", "replace", "min", "max", "avg", "smooth"], "image_use": ["", "heights", "mask"],
     "encoding": ["mono8", "mono16", "32FC1"], "sea": ["none", "border", "everywhere"], "format": ["geotiff", "png16", "rosbag"],

@@ -101,7 +101,9 @@ void BenchTerrain::shadow(const WindShadowParameters& p, bool whole_marches) {
 void BenchTerrain::judge(const TraversabilityParameters& p) {
   for (const LayerInfo& row : layer_table)
     if (row.lifetime == Lifetime::on_request) terrain.allocate(row.layer);
-  with_backend(exec(), [&](auto& e) { traversability::step(e, terrain.view(), p, {}, 0, grid().height); });
+  with_backend(exec(), [&](auto& e) {
+    traversability::step(e, terrain.view(), {p, {}, {}}, 0, grid().height);
+  });
 }
 void BenchTerrain::echo(const EchoDuneParameters& p) {
   surface();

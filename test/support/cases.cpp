@@ -110,6 +110,11 @@ std::vector<Case> process_cases(bool transforms) {
   add("plants", life + "vegetation: {enabled: true, draw: 1}\nrun: {check_every: 2}\n");
   add("plants, more than there is room for",
       life + "vegetation: {enabled: true, max_plants: 40, light_deg: 30}\nrun: {time_step: 0.3}\n");
+  add("looseness",
+      terrain +
+          "  - noise: {layer: soil, low: 0, high: 2, scale: 8, threshold: 0.5, seed: 3}\n"
+          "  - noise: {layer: moisture, low: 0, high: 0.3, scale: 10, threshold: 0.6, seed: 6}\n" +
+          wind + "looseness: {enabled: true}\n");
   add("everything",
       terrain +
           "  - noise: {layer: soil, low: 0, high: 2, scale: 8, threshold: 0.5, seed: 3}\n"

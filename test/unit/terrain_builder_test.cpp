@@ -101,6 +101,20 @@ TEST(TerrainSteps, ObstaclesRaiseTheRockAndAreMarked) {
   EXPECT_EQ(b.at(Layer::obstacle, 2, 10), 0);
 }
 
+TEST(TerrainSteps, RipplesHaveTheirFlanks) {
+  // Cells of 0.5 m: centres at 0.25, 0.75, ... of the wavelength 4 m, of which 3 m rise.
+  const Built b = build("ripples: {wavelength: 4, height: 1.2, windward: 0.75, x: 10, y: -4}");
+  for (int x = 0; x < 32; ++x) {
+    const double at = std::fmod(0.5 * x + 0.25, 4.0);
+    EXPECT_NEAR(b.at(Layer::sand, x, 7), 1.2 * (at < 3 ? at / 3 : 4 - at), 1e-9) << x;
+  }
+  const Built north = build("ripples: {wavelength: 4, height: 1, direction_deg: 90, x: 10, y: -2, count: 1}");
+  for (int y = 0; y < 20; ++y) {
+    const double at = 0.5 * y + 0.25 - 2;
+    EXPECT_NEAR(north.at(Layer::sand, 3, y), at < 0 || at > 4 ? 0 : 1 - std::abs(at - 2) / 2, 1e-9) << y;
+  }
+}
+
 TEST(TerrainSteps, DiscsCoverTheShareThatIsAskedFor) {
   for (double coverage : {0.1, 0.5, 0.9}) {
     const Built b =

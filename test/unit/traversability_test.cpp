@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "kernels/rover/wheel_ground.hpp"
 #include "support/bench_terrain.hpp"
 #include "support/cases.hpp"
 #include "support/world.hpp"
@@ -13,8 +14,10 @@ namespace {
 using test::BenchTerrain;
 
 constexpr double degree = 3.14159265358979 / 180;
-const std::vector<Layer> judged{Layer::slope,     Layer::normal_x,    Layer::normal_y,      Layer::normal_z,
-                                Layer::roughness, Layer::step_height, Layer::traversability};
+const std::vector<Layer> judged{Layer::slope,          Layer::normal_x,  Layer::normal_y,
+                                Layer::normal_z,       Layer::roughness, Layer::step_height,
+                                Layer::traversability, Layer::slip,      Layer::slip_downhill,
+                                Layer::slip_across,    Layer::sinkage};
 
 class TraversabilityLaw : public test::OnBackend {
  protected:
@@ -168,6 +171,91 @@ TEST_P(TraversabilityLaw, LooseSandStopsARoverOnSlopesThatFirmGroundDoesNot) {
   EXPECT_EQ(incline(26, 0), 0);
 }
 
+/// On a plane all wheels stand alike: the layers are the laws of wheel_ground.hpp.
+TEST_P(TraversabilityLaw, SlipAndSinkageOfAPlaneAreThoseOfItsSlopeAndGround) {
+  const wheels::WheelGround law =
+      wheels::make_wheel_ground(TraversabilityParameters{}, WheelGroundParameters{});
+  const auto expect = [&](double deg, const BenchTerrain& t, const wheels::Ground& g) {
+    const float slope = static_cast<float>(deg * degree), slip = law.longitudinal_slip(slope, 0.1f, g);
+    EXPECT_NEAR(t.at(Layer::slip, 2, 2), slip, 1e-4);
+    EXPECT_NEAR(t.at(Layer::slip_downhill, 2, 2), law.longitudinal_slip(-slope, 0.1f, g), 1e-4);
+    EXPECT_NEAR(t.at(Layer::slip_across, 2, 2), law.lateral_slip(slope, g), 1e-4);
+    EXPECT_NEAR(t.at(Layer::sinkage, 2, 2), law.sinkage(slip, 1, g), 1e-5);
+    return slip;
+  };
+  for (const double deg : {0.0, 6.0, 12.0}) {
+    SCOPED_TRACE(deg);
+    const auto plane = [&](const std::function<void(BenchTerrain&)>& more) {
+      return rock(
+          5, 5, 0.3, [=](int x, int) { return 0.3 * x * std::tan(deg * degree); }, {}, false,
+          [&](BenchTerrain& t) {
+            t.set(Layer::sand, 1);
+            more(t);
+          });
+    };
+    expect(deg, *plane([](BenchTerrain&) {}), {0.3f, 1, 0});  // as loose as is assumed
+    for (const double looseness : {0.0, 0.4}) {
+      const auto t =
+          plane([&](BenchTerrain& b) { b.set(Layer::looseness, looseness).set(Layer::moisture, 0.03); });
+      const float slip = expect(deg, *t, {static_cast<float>(looseness), 1, 0.1f});
+      const double going = std::max({deg / 25, slip / 0.4, t->at(Layer::sinkage, 2, 2) / (0.6 * 0.15)});
+      EXPECT_NEAR(worth(*t, 2, 2), std::max(1 - going, 0.0), 1e-3);
+    }
+  }
+}
+
+/// Half a wheelbase of 3 cells ahead and behind: of ripples of 6 cells the three axles climb +, −, + by a
+/// third in all, of ridges of 24 cells they climb together.
+TEST_P(TraversabilityLaw, RipplesShorterThanTheRoverCountLess) {
+  TraversabilityParameters p;
+  p.wheelbase = 6;
+  const auto slip_on = [&](double wavelength) {
+    const auto t = rock(
+        48, 9, 1, [=](int x, int) { return 0.1 * std::abs(std::remainder(x, wavelength)); }, p, true,
+        [](BenchTerrain& b) { b.set(Layer::sand, 1).set(Layer::looseness, 0.2); });
+    double worst = 0;
+    for (int x = 0; x < 48; ++x) worst = std::max(worst, t->at(Layer::slip, x, 4));
+    return worst;
+  };
+  const wheels::WheelGround law = wheels::make_wheel_ground(p, {});
+  const auto at = [&](double tangent) {
+    return law.longitudinal_slip(static_cast<float>(std::atan(tangent)), 0.1f, {0.2f, 1, 0});
+  };
+  EXPECT_NEAR(slip_on(6), at(0.1 / 3), 1e-4);
+  EXPECT_NEAR(slip_on(24), at(0.1), 1e-4);
+}
+
+TEST_P(TraversabilityLaw, GroundIsTheMeanUnderTheRover) {
+  TraversabilityParameters p;
+  p.wheelbase = 4;  // two cells along x and y, one along the diagonals
+  const auto slip_with = [&](const std::function<double(int, int)>& looseness) {
+    return rock(
+               9, 9, 1, [](int, int) { return 0; }, p, false,
+               [&](BenchTerrain& b) { b.set(Layer::sand, 1).set(Layer::looseness, looseness); })
+        ->at(Layer::slip, 4, 4);
+  };
+  const double mean = slip_with([](int, int) { return 1.0 / 3; });
+  EXPECT_NEAR(slip_with([](int x, int y) { return x == y && x >= 3 && x <= 5 ? 1 : 0; }), mean, 1e-5);
+  EXPECT_NEAR(slip_with([](int x, int y) { return y == 4 && (x == 2 || x == 4 || x == 6) ? 1 : 0; }), mean,
+              1e-5);
+  EXPECT_EQ(slip_with([](int x, int y) { return x == 3 && y == 4 ? 1 : 0; }),
+            slip_with([](int, int) { return 0; }))
+      << "no wheel stands there";
+}
+
+TEST_P(TraversabilityLaw, WithLoosenessFirmSandIsFreeAndSlopeIsTheLimitOfTipping) {
+  const auto incline = [&](double deg, double looseness) {
+    return worth(*rock(
+                     5, 5, 1, [=](int x, int) { return x * std::tan(deg * degree); }, {}, false,
+                     [=](BenchTerrain& t) { t.set(Layer::sand, 3).set(Layer::looseness, looseness); }),
+                 2, 2);
+  };
+  EXPECT_GT(incline(16, 0), 0.1) << "is lethal by sand_slope_deg where nobody knows how firm it is";
+  EXPECT_GT(incline(0, 0), 0.75);
+  EXPECT_EQ(incline(12, 1), 0);
+  EXPECT_EQ(incline(26, 0), 0);
+}
+
 TEST_P(TraversabilityLaw, ArctangentIsGoodToAMillionth) {
   for (double degrees : {0.001, 0.1, 5.0, 30.0, 45.0, 60.0, 80.0, 89.0, 89.99}) {
     const double found = arctangent(static_cast<float>(std::tan(degrees * degree)));
@@ -222,6 +310,7 @@ TEST_P(TraversabilityLaw, MovesWithTheTerrainToTheBit) {
   const auto sand = [](int x, int y) { return static_cast<Quanta>((x * 31 + y * 17) % 13 * 40000); };
   TraversabilityParameters p;
   p.window = 3;
+  p.wheelbase = 5;
   for (const Motion& m : motions)
     for (bool periodic : {true, false}) {
       if (!periodic && std::string(m.name) == "shifted") continue;

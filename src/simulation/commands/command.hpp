@@ -79,7 +79,7 @@ struct EditParameters {
 constexpr auto parameter_table(const EditParameters*) {
   using P = EditParameters;
   return std::make_tuple(
-      parameter("layer", &P::layer, "sand, soil, bedrock, water or obstacle."),
+      parameter("layer", &P::layer, "sand, soil, bedrock, water, obstacle or looseness."),
       parameter("shape", &P::shape, brush_shapes, "Shape of the brush."),
       parameter("merge", &P::merge, brush_merges, "How the brush meets what is there."),
       parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
@@ -96,7 +96,7 @@ constexpr auto parameter_table(const EditParameters*) {
       parameter("falloff", &P::falloff, 0, 1e6, "m",
                 "Of a polygon or patch: how far inside its edge the brush has full weight."),
       parameter("value", &P::value, -1e5, 1e5, "m",
-                "Height or depth of the brush; see merge. Of obstacle [1]."),
+                "Height or depth of the brush; see merge. Of obstacle and looseness [1]."),
       parameter("patch_use", &P::patch_use, patch_uses,
                 "Whether a patch holds heights that are added to value, or weights."),
       parameter("smooth_radius", &P::smooth_radius, 1e-3, 1e6, "m",
@@ -127,7 +127,8 @@ struct Patch {
 /// `conserve`, the material comes from, or goes to, the cells within `ring_width` of the shape: what is taken
 /// in proportion to what they have, of bedrock and what is given in equal parts. The sum of all changes is
 /// then 0, to the quantum. An obstacle is no material: its `value` is 0 … 1, it cannot be conserved, and it
-/// is kept in steps of 2⁻²⁰.
+/// is kept in steps of 2⁻²⁰. So is looseness, where the terrain has that layer; its edits are no strokes that
+/// undo knows, because the sand that moves changes it besides.
 struct EditTerrain : EditParameters {
   static constexpr std::size_t max_points = 512;
   std::vector<Point> points;  ///< of a polygon its corners, of a capsule the two ends of its axis

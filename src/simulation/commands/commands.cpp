@@ -137,9 +137,13 @@ CommandResult Commands::apply(const command::EditTerrain& command, bool with_cha
   state_.soil_loose = soil_was_loose || soil || (bedrock && state_.terrain.has(Layer::soil));
   try {
     pipeline_.adapt();  // avalanches of soil and bedrock need memory
-    const LayerEdit change = history_.remembers() ? edit.change() : LayerEdit{};
+    // Looseness comes and goes with the sand that moves, so that there is nothing to give back.
+    const bool undoable = edit.layer() != Layer::looseness;
+    const LayerEdit change = undoable && history_.remembers() ? edit.change() : LayerEdit{};
     const CommandResult result = edit.commit(with_change);
-    history_.paint(command.stroke, change, !had_obstacles && state_.terrain.has(Layer::obstacle));
+    edit.loosen(state_.scenario.looseness);
+    if (undoable)
+      history_.paint(command.stroke, change, !had_obstacles && state_.terrain.has(Layer::obstacle));
     return result;
   } catch (...) {
     state_.bedrock_loose = bedrock_was_loose;

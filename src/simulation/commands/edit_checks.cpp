@@ -18,10 +18,17 @@ using command::Point;
 constexpr double max_coordinate = 1e7;   // [m], as of a centre
 constexpr double max_pixel_value = 1e5;  // [m], as of a value
 
+bool of_shares(const EditTerrain& edit) { return edit.layer == "obstacle" || edit.layer == "looseness"; }
+
 void check_layer(const EditTerrain& edit, const Terrain& terrain, ValidationErrors& errors) {
   if (edit.layer != "sand" && edit.layer != "soil" && edit.layer != "bedrock" && edit.layer != "water" &&
-      edit.layer != "obstacle")
-    errors.add("layer", quoted(edit.layer) + " is not one of: sand, bedrock, soil, water, obstacle");
+      !of_shares(edit))
+    errors.add("layer",
+               quoted(edit.layer) + " is not one of: sand, bedrock, soil, water, obstacle, looseness");
+  if (edit.layer == "looseness" && !terrain.has(Layer::looseness))
+    errors.add("layer",
+               "looseness: this terrain has no layer looseness (a scenario with looseness.enabled or a step "
+               "that fills looseness has)");
   if (edit.layer == "water" && !terrain.has(Layer::water))
     errors.add("layer",
                "water: this terrain has no layer water (a scenario with rain, springs, a sea or a step that "
@@ -98,9 +105,10 @@ void check_patch(const EditTerrain& edit, ValidationErrors& errors) {
     }
 }
 
-/// Obstacles are 0 … 1, and so is what a brush says of them; what a patch adds or takes may be negative.
-void check_obstacle(const EditTerrain& edit, ValidationErrors& errors) {
-  if (edit.conserve) errors.add("conserve", "obstacle is no material that a ring could give or take");
+/// Obstacles and looseness are 0 … 1, and so is what a brush says of them; what a patch adds or takes may be
+/// negative.
+void check_shares(const EditTerrain& edit, ValidationErrors& errors) {
+  if (edit.conserve) errors.add("conserve", edit.layer + " is no material that a ring could give or take");
   if (edit.merge == BrushMerge::smooth) return;
   const bool heights = edit.shape == BrushShape::patch && edit.patch_use == PatchUse::heights;
   const bool shift = heights && (edit.merge == BrushMerge::add || edit.merge == BrushMerge::sub);
@@ -113,7 +121,7 @@ void check_obstacle(const EditTerrain& edit, ValidationErrors& errors) {
   if (lowest >= least && highest <= 1) return;
   std::ostringstream text;
   text << "= " << (highest > 1 ? highest : lowest) << (heights ? " with the patch's values" : "")
-       << " is not a value of obstacle (allowed: [" << least << ", 1])";
+       << " is not a value of " << edit.layer << " (allowed: [" << least << ", 1])";
   errors.add("value", text.str());
 }
 
@@ -140,8 +148,8 @@ void check_edit(const EditTerrain& edit, const Terrain& terrain) {
   check_points(edit.shape, edit.points, errors);
   check_patch(edit, errors);
   errors.throw_if_any();
-  if (edit.layer == "obstacle")
-    check_obstacle(edit, errors);
+  if (of_shares(edit))
+    check_shares(edit, errors);
   else
     check_depth(edit, errors);
   errors.throw_if_any();

@@ -65,16 +65,16 @@ TerrainEdit::TerrainEdit(const command::EditTerrain& command, Terrain& terrain, 
 void TerrainEdit::choose_layer() {
   brush_.merge = command_.merge;
   brush_.quanta_per_metre = 1.0 / step_size();
-  if (of_obstacles()) {
-    obstacles_ = Buffer<Quanta>(terrain_.exec(), static_cast<std::size_t>(brush_.grid.cells()));
+  if (of_shares()) {
+    shares_ = Buffer<Quanta>(terrain_.exec(), static_cast<std::size_t>(brush_.grid.cells()));
     with_backend(terrain_.exec(), [&](auto& e) {
-      brush::read_obstacles(e, brush_.grid, terrain_.view().real(Layer::obstacle), obstacles_.data());
+      brush::read_shares(e, brush_.grid, terrain_.view().real(layer_), shares_.data());
     });
-    brush_.layer = obstacles_.data();
+    brush_.layer = shares_.data();
     brush_.depth = true;
     brush_.lowest = 0;
-    brush_.highest = static_cast<Quanta>(brush::obstacle_steps);
-    brush_.value = command_.value * brush::obstacle_steps;
+    brush_.highest = static_cast<Quanta>(brush::share_steps);
+    brush_.value = command_.value * brush::share_steps;
     return;
   }
   const TerrainView view = terrain_.view();
@@ -91,9 +91,9 @@ void TerrainEdit::choose_layer() {
   brush_.value = (command_.value - above) * brush_.quanta_per_metre;
 }
 
-/// What an integer of the brush counts [m, or 1 of obstacles].
+/// What an integer of the brush counts [m, or 1 of obstacles and looseness].
 double TerrainEdit::step_size() const {
-  return of_obstacles() ? 1 / brush::obstacle_steps : terrain_.scale().quantum();
+  return of_shares() ? 1 / brush::share_steps : terrain_.scale().quantum();
 }
 
 /// The shape in cells, and the rectangle of cells that bounds it.
@@ -230,7 +230,7 @@ void TerrainEdit::conserve() {
 }
 
 void TerrainEdit::require_heights() const {
-  if (of_obstacles()) return;
+  if (of_shares()) return;
   const long long beyond = with_backend(
       terrain_.exec(), [&](auto& e) { return brush::cells_beyond_limit(e, brush_, change_.data()); });
   if (beyond == 0) return;
@@ -243,11 +243,10 @@ void TerrainEdit::require_heights() const {
 
 CommandResult TerrainEdit::commit(bool with_change) {
   CommandResult result;
-  if (of_obstacles()) {
-    const LayerEdit edit = change();
-    if (!edit.obstacles.empty()) terrain_.allocate(Layer::obstacle);
+  if (of_shares()) {
+    if (layer_ == Layer::obstacle && !change().obstacles.empty()) terrain_.allocate(Layer::obstacle);
     with_backend(terrain_.exec(), [&](auto& e) {
-      brush::commit_obstacles(e, brush_, change_.data(), terrain_.view().real(Layer::obstacle));
+      brush::commit_shares(e, brush_, change_.data(), terrain_.view().real(layer_));
     });
   } else {
     with_backend(terrain_.exec(),
@@ -264,6 +263,14 @@ CommandResult TerrainEdit::commit(bool with_change) {
   return result;
 }
 
+void TerrainEdit::loosen(const LoosenessParameters& p) {
+  if (layer_ != Layer::sand || !terrain_.has(Layer::looseness)) return;
+  with_backend(terrain_.exec(), [&](auto& e) {
+    brush::loosen(e, brush_, change_.data(), p, static_cast<float>(terrain_.scale().quantum()),
+                  terrain_.view().real(Layer::looseness));
+  });
+}
+
 LayerEdit TerrainEdit::change() const {
   LayerEdit edit{layer_, command_.conserve, {}, {}};
   const std::vector<Quanta> change = change_.download();
@@ -273,18 +280,17 @@ LayerEdit TerrainEdit::change() const {
       if (change[k] != 0) edit.cells.push_back({brush_.cell(x, y), change[k]});
   std::sort(edit.cells.begin(), edit.cells.end(),
             [](const CellAmount& a, const CellAmount& b) { return a.cell < b.cell; });
-  if (!of_obstacles() || edit.cells.empty()) return edit;
+  if (layer_ != Layer::obstacle || edit.cells.empty()) return edit;
   std::vector<int> cells;
   for (const CellAmount& c : edit.cells) cells.push_back(c.cell);
   const CellList list(terrain_.exec(), cells);
   std::vector<std::uint32_t> before(cells.size(), 0);
   if (terrain_.has(Layer::obstacle)) before = list.read(terrain_.data(Layer::obstacle));
-  const std::vector<std::uint32_t> steps =
-      list.read(reinterpret_cast<const std::uint32_t*>(obstacles_.data()));
+  const std::vector<std::uint32_t> steps = list.read(reinterpret_cast<const std::uint32_t*>(shares_.data()));
   for (std::size_t n = 0; n < cells.size(); ++n)
     edit.obstacles.push_back({cells[n], float_from_bits(before[n]),
                               static_cast<float>(static_cast<Quanta>(steps[n]) + edit.cells[n].amount) *
-                                  static_cast<float>(1 / brush::obstacle_steps),
+                                  static_cast<float>(1 / brush::share_steps),
                               0});
   edit.cells.clear();
   return edit;

@@ -25,6 +25,8 @@ class TerrainEdit {
   /// Makes the change. `with_change`: the result tells it cell by cell. Throws ConfigError if there is no
   /// memory for a layer obstacle.
   CommandResult commit(bool with_change);
+  /// Sand that it has added lies loosely, where the layer looseness is in use; see looseness.hpp.
+  void loosen(const LoosenessParameters& p);
 
  private:
   void set_shape();
@@ -34,7 +36,8 @@ class TerrainEdit {
   void smooth();
   void conserve();
   void require_heights() const;
-  bool of_obstacles() const { return layer_ == Layer::obstacle; }
+  /// Of numbers 0 … 1, which are no material.
+  bool of_shares() const { return layer_ == Layer::obstacle || layer_ == Layer::looseness; }
   double step_size() const;
   std::vector<float> change_of_rectangle() const;
 
@@ -43,7 +46,7 @@ class TerrainEdit {
   const GridParameters& grid_;
   Layer layer_;
   brush::Brush brush_{};
-  Buffer<Quanta> obstacles_;  ///< as the brush edits them; empty for other layers
+  Buffer<Quanta> shares_;  ///< obstacles or looseness as the brush edits them; empty for other layers
   Buffer<brush::Point> vertices_;
   Buffer<float> patch_;
   Buffer<Quanta> change_;

@@ -59,7 +59,7 @@ void Pipeline::allocate_layers() {
   for (const Process& process : table_.processes)
     for (Layer layer : process.writes) {
       if (process.active(state_.scenario))
-        state_.terrain.allocate(layer);
+        bring_into_use(process, layer);
       else if (info(layer).lifetime == Lifetime::derived || info(layer).lifetime == Lifetime::held)
         unused.push_back(layer);
     }
@@ -70,6 +70,13 @@ void Pipeline::allocate_layers() {
     if (!used) state_.terrain.set_allocated(layer, false);
   }
   state_.shelter_known = state_.shelter_known && state_.terrain.has(Layer::wind_shadow);
+}
+
+void Pipeline::bring_into_use(const Process& process, Layer layer) {
+  const bool planned = std::string(state_.exec().backend()) == "none";  // memory that nothing may touch
+  const bool fresh = !state_.terrain.has(layer);
+  state_.terrain.allocate(layer);
+  if (fresh && process.begin && !planned) process.begin(state_, layer);
 }
 
 void Pipeline::make_launches() {
@@ -259,6 +266,7 @@ std::vector<MemoryPart> Pipeline::memory() const {
   add("tangents of repose", fields_.repose.bytes());
   add("strength of impacts", fields_.impact_strength.bytes());
   add("landed sand", fields_.landed.bytes());
+  add("sand before it moves", fields_.sand_before.bytes());
   add("dice", fields_.dice_keys.bytes());
   return parts;
 }

@@ -83,6 +83,7 @@ class Pipeline {
   void run_part(StepContext& context);
   void make_launches();
   void allocate_layers();
+  void bring_into_use(const Process& process, Layer layer);
   void run(const Launch& launch, StepContext& context);
   void run_observed(const Launch& launch, StepContext& context);
   void check(const Process& process, Layer layer) const;

@@ -79,6 +79,9 @@ struct Process {
   std::vector<Layer> reads;   ///< where they are in use; those that it writes need not be repeated
   std::vector<Layer> writes;  ///< brought into use while it is active
   std::vector<Layer> writes_if_in_use;
+  /// Fills a layer of `writes` that has just come into use, and is 0, with what it begins with. Null if that
+  /// is 0.
+  std::function<void(SimulationState&, Layer)> begin;
 
   /// Makes its workspace; null if it needs none. Throws ConfigError if there is no memory.
   std::function<std::unique_ptr<ProcessWorkspace>(const SimulationState&)> make_workspace;

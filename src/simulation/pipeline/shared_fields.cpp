@@ -13,9 +13,13 @@ SharedFields::SharedFields(Exec& exec, const Grid& grid)
 }
 
 void SharedFields::prepare(Exec& exec, const Grid& grid, const Scenario& scenario) {
+  const auto cells = static_cast<std::size_t>(grid.cells());
+  const bool loosens = scenario.looseness.enabled;
   impact_strength = {};
-  if (!reptation::moves_sand(scenario.reptation)) return;
-  impact_strength = Buffer<float>(exec, static_cast<std::size_t>(grid.cells()));
+  sand_before = {};
+  if (loosens) sand_before = Buffer<Quanta>(exec, cells);
+  if (!loosens && !reptation::moves_sand(scenario.reptation)) return;
+  impact_strength = Buffer<float>(exec, cells);
   impact_strength.set_zero();  // without saltation there are no impacts
 }
 

@@ -19,9 +19,11 @@ struct SharedFields {
   surface::Heights heights;   ///< of the ground's surface
   bool heights_stale = true;  ///< the ground has moved since they were measured
   Buffer<float> repose;  ///< tangent of each cell's angle of repose; before saltation sets it, scratch memory
-  Buffer<float> impact_strength;  ///< of saltation, for reptation that moves sand [m]; else empty
-  Buffer<Quanta> landed;          ///< sand that comes down in saltation; after it, scratch memory
-  Dice dice;                      ///< of the present step; its keys on the device are the next buffer
+  Buffer<float>
+      impact_strength;         ///< of saltation, for reptation that moves sand and looseness [m]; else empty
+  Buffer<Quanta> sand_before;  ///< depth before what looseness follows; empty without it
+  Buffer<Quanta> landed;       ///< sand that comes down in saltation; after it, scratch memory
+  Dice dice;                   ///< of the present step; its keys on the device are the next buffer
   Buffer<std::uint32_t> dice_keys;
 };
 

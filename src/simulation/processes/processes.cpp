@@ -12,10 +12,13 @@ const ProcessTable& process_table() {
                                       illumination_process(),
                                       wind_shadow_process(),
                                       echo_dune_process(),
+                                      sand_record_process(),
                                       saltation_process(),
                                       repose_process(),
                                       reptation_process(),
+                                      looseness_process(),
                                       avalanching_process(),
+                                      slide_looseness_process(),
                                       // Water.
                                       rain_process(),
                                       virtual_pipes_process(),

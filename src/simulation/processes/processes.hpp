@@ -16,6 +16,10 @@ Process reptation_process();
 Process avalanching_process();
 FusedProcesses fused_wind_shadow_and_saltation();
 
+Process sand_record_process();  // looseness.cpp
+Process looseness_process();
+Process slide_looseness_process();
+
 Process rain_process();  // water.cpp
 Process virtual_pipes_process();
 Process hydraulic_erosion_process();

@@ -91,8 +91,7 @@ PendingCosts Views::begin_costs(const CostQuery& query) {
   if (!costs_) costs_ = HeldCosts(state_.exec(), state_.terrain.grid());
   with_backend(state_.exec(), [&](auto& e) {
     surface::fill_elevation(e, state_.terrain.view());
-    held_costs::compute_costs(e, state_.terrain.view(), state_.scenario.traversability,
-                              state_.scenario.repose, costs_.now());
+    held_costs::compute_costs(e, state_.terrain.view(), state_.scenario.rover(), costs_.now());
   });
   return costs_.begin_copy(state_.exec(), staging_, query);
 }

@@ -144,8 +144,7 @@ void Views::compute_requested_layers(const std::vector<Layer>& layers, const Row
       view.layers[static_cast<int>(row.layer)] = nullptr;
   with_backend(state_.exec(), [&](auto& e) {
     surface::fill_elevation(e, view);
-    traversability::step(e, view, state_.scenario.traversability, state_.scenario.repose, rows.first,
-                         rows.count);
+    traversability::step(e, view, state_.scenario.rover(), rows.first, rows.count);
     if (view.quanta(Layer::water_surface)) surface::fill_water_surface(e, view, rows.first, rows.count);
     if (state_.plants && view.real(Layer::plants))
       plants::find_dominant_species(e, view, rows.first, rows.count, state_.plants.neighbourhood(),

@@ -1,0 +1,44 @@
+#include "src/scenario/rover_class.hpp"
+
+#include "src/scenario/presets.hpp"
+#include "src/scenario/yaml_parameters.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr Presets::Row class_rows[] = {
+#include "desert_sim/rovers_presets.inc"
+};
+constexpr Presets classes(class_rows);
+
+}  // namespace
+
+std::vector<std::string> rover_classes() { return classes.names(); }
+
+std::string rover_class_text(const std::string& name) {
+  const char* const text = classes.text(name);
+  if (!text) throw ConfigError("rover: '" + name + "' is not one of: " + classes.joined_names());
+  return text;
+}
+
+std::string rover_class_doc(const std::string& name) {
+  const std::string text = rover_class_text(name);
+  return text.substr(2, text.find('\n') - 2);  // skips the leading "# "
+}
+
+YAML::Node apply_rover(const YAML::Node& root, ValidationErrors& errors) {
+  const YAML::Node given = root["rover"];
+  if (!given.IsDefined() || given.IsNull()) return root;
+  const char* const text = given.IsScalar() ? classes.text(given.Scalar()) : nullptr;
+  if (!text) {
+    errors.add("rover", "'" + yaml::node_text(given) + "' is not one of: " + classes.joined_names());
+    return root;
+  }
+  YAML::Node whole = YAML::Clone(root), section(YAML::NodeType::Map);
+  section["traversability"] = YAML::Load(text)["traversability"];
+  yaml::merge_missing(whole, section);
+  return whole;
+}
+
+}  // namespace desert_sim
