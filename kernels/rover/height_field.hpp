@@ -10,14 +10,14 @@
 ///   tops        max over a block of 4ᵏ × 4ᵏ patches, k = 1, 2, …, of elevation + height of the plants, at all
 ///               corners of its patches: a beam that is higher over the block does not meet anything in it
 ///               (Tevs, Ihrke, Seidel 2008, Maximum mipmaps)
-///   dust        mean of the airborne sand over a block of 4 × 4 cells [m], and of the elevation there [m]
+///   dust        mean of the airborne sand over a block of 8 × 8 cells [m], and of the elevation there [m]
 
 #include "kernels/field/grid.hpp"
 
 namespace desert_sim::height_field {
 
 constexpr int levels_at_most = 8;  ///< of tops; side of a block of the last: 4⁸ = 65536 patches
-constexpr int dust_side = 4;       ///< [cells]
+constexpr int dust_side = 8;       ///< [cells]
 
 /// Cells x … x + width − 1, y … y + height − 1.
 struct Rectangle {

@@ -156,6 +156,8 @@ struct Canopy {
   /// depth is used up, or `never`.
   DESERT_HD float pass(const height_field::View& f, const Corners& corners, const Ray& r, float begin,
                        float end, float a, float b, float height_begin, float height_end) {
+    if (f.canopy[corners.sw] + f.canopy[corners.se] + f.canopy[corners.nw] + f.canopy[corners.ne] == 0.0f)
+      return never;
     const float length = end - begin;
     const Bilinear canopy = corners.of(f.canopy, 0.0f);
     const float over_begin = height_begin - canopy.at(a, b),

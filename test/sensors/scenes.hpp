@@ -121,6 +121,34 @@ inline int returns_of(const RangeImage& image) {
       std::count_if(image.distances.begin(), image.distances.end(), [](float d) { return !std::isnan(d); }));
 }
 
+inline float rough_ground(int x, int y) {
+  return 4 * std::sin(0.21f * static_cast<float>(x)) + static_cast<float>((x * 7 + y * 13) % 11) * 0.2f;
+}
+
+/// Rough ground with plants and airborne sand.
+inline void fill_with_all(HeightFieldScene& scene, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> unit(0, 1);
+  const SceneGeometry& g = scene.geometry();
+  const auto some = [&](float share, float most) {
+    return values_of(g, [&](int, int) { return unit(random) < share ? most * unit(random) : 0.0f; });
+  };
+  scene.update(SceneLayer::elevation, values_of(g, rough_ground));
+  scene.update(SceneLayer::canopy_height, some(0.3f, 1));
+  scene.update(SceneLayer::vegetation, some(0.5f, 1));
+  scene.update(SceneLayer::airborne_sand, some(1, 0.2f));
+}
+
+/// A lidar of more beams than one thread is left with.
+inline LidarParameters noisy_lidar() {
+  LidarParameters p;
+  p.rings = 48;
+  p.columns = 400;
+  p.noise_per_metre = 0.001f;
+  p.dropout = 0.01f;
+  return p;
+}
+
 /// The same bits, with NaN equal to NaN.
 inline bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](float x, float y) {
