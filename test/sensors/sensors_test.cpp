@@ -106,7 +106,7 @@ TEST_F(Sensors, MountingIsAPoseInTheRoversFrame) {
   LidarParameters p;
   p.x = 0.2, p.y = -0.1, p.z = 1.5;
   p.pitch_deg = 90;
-  const SensorPose pose = compose(pose_from_angles(10, 20, 5, 0, 0, 90), Lidar(exec_, p).mounting());
+  const SensorPose pose = compose(pose_from_angles(10, 20, 5, 0, 0, 90), mounting_of(p));
   EXPECT_NEAR(pose.x, 10.1, 1e-12);
   EXPECT_NEAR(pose.y, 20.2, 1e-12);
   EXPECT_NEAR(pose.z, 6.5, 1e-12);

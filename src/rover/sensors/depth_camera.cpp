@@ -44,8 +44,7 @@ DepthCamera::DepthCamera(Exec& exec, const DepthCameraParameters& parameters,
 
 double DepthCamera::focal_length() const { return focal_length_of(parameters_); }
 
-SensorPose DepthCamera::mounting() const {
-  const DepthCameraParameters& p = parameters_;
+SensorPose mounting_of(const DepthCameraParameters& p) {
   return pose_from_angles(p.x, p.y, p.z, p.roll_deg, p.pitch_deg, p.yaw_deg);
 }
 

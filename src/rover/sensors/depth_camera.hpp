@@ -7,6 +7,9 @@
 
 namespace desert_sim {
 
+/// The place of the camera's body in the rover's frame.
+SensorPose mounting_of(const DepthCameraParameters& parameters);
+
 /// Row 0 of a picture is the upper one, column 0 the left one. A distance is the depth [m], the coordinate
 /// along the camera's axis: pixel (u, v) with the depth d is at ((u − cx) d/f, (v − cy) d/f, d) in the
 /// optical frame (x right, y down, z forward). Poses are those of the camera's body (x forward, y left, z up).
@@ -16,8 +19,6 @@ class DepthCamera {
   DepthCamera(Exec& exec, const DepthCameraParameters& parameters, const SensorMediaParameters& media = {});
 
   const DepthCameraParameters& parameters() const { return parameters_; }
-  /// The place of its body in the rover's frame.
-  SensorPose mounting() const;
   /// The orientation of the optical frame in that of the body.
   static SensorPose optical_frame() { return {0, 0, 0, -0.5, 0.5, -0.5, 0.5}; }
   double focal_length() const;                                       ///< [pixels]

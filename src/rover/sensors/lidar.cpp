@@ -63,8 +63,7 @@ Lidar::Lidar(Exec& exec, const LidarParameters& parameters, const SensorMediaPar
            media,
            parameters_.seed}) {}
 
-SensorPose Lidar::mounting() const {
-  const LidarParameters& p = parameters_;
+SensorPose mounting_of(const LidarParameters& p) {
   return pose_from_angles(p.x, p.y, p.z, p.roll_deg, p.pitch_deg, p.yaw_deg);
 }
 

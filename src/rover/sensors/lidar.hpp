@@ -7,6 +7,9 @@
 
 namespace desert_sim {
 
+/// The lidar's place in the rover's frame.
+SensorPose mounting_of(const LidarParameters& parameters);
+
 /// Row r of a scan is ring r, from the lowest one upwards; column c is the azimuth c, counter-clockwise from
 /// the right edge of the sector. A point is at distance · direction in the lidar's frame (x forward, y left,
 /// z up), in which directions have length 1.
@@ -19,8 +22,6 @@ class Lidar {
         const std::vector<double>& ring_angles_deg = {});
 
   const LidarParameters& parameters() const { return parameters_; }
-  /// Its place in the rover's frame.
-  SensorPose mounting() const;
   const std::vector<beams::Vec3>& directions() const { return sensor_.directions(); }
   /// A scan from the lidar's pose in the scene's frame: see RangeSensor::scan().
   const RangeImage& scan(const HeightFieldScene& scene, const SensorPose& pose, std::uint64_t number) {
