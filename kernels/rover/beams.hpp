@@ -1,6 +1,6 @@
 #pragma once
 /// Beams of a range sensor: what a lidar or a depth camera measures of a height field (height_field.hpp).
-/// ray_march.hpp says where a beam ends.
+/// ray_march.hpp and airborne_dust.hpp say where a beam ends.
 ///
 ///   distance    t + σ(t) N,  σ(t) = `noise` + `noise_per_metre` t + `noise_per_square_metre` t²
 ///   intensity   ground: ρ |cos(angle between beam and normal)|; plants and airborne sand: ρ
@@ -15,6 +15,7 @@
 
 #include <cstdint>
 
+#include "kernels/rover/airborne_dust.hpp"
 #include "kernels/rover/height_field.hpp"
 #include "kernels/rover/ray_march.hpp"
 
@@ -52,8 +53,8 @@ struct Scan {
   std::uint64_t seed, number;
 };
 
-/// Casts rows × columns beams, row-major. `directions`, in the sensor's frame, are of length 1 where distances
-/// are to be along the beam; a distance is otherwise a multiple of the direction's length.
+/// Casts rows × columns beams, row-major. `directions`, in the sensor's frame, are of length 1 where
+/// distances are to be along the beam; a distance is otherwise a multiple of the direction's length.
 template <class E>
 void cast(E& exec, const Scan& scan, int columns, int rows, const Vec3* directions, float* distances,
           float* intensities);

@@ -7,9 +7,9 @@
 /// clamped, so that the surface is constant beyond the outermost centres: it is that of LayerMap::value(). A
 /// grid of W × H cells has (W + 1) × (H + 1) patches.
 ///
-///   tops        max over a block of 4ᵏ × 4ᵏ patches, k = 1, 2, …, of elevation + height of the plants, at all
-///               corners of its patches: a beam that is higher over the block does not meet anything in it
-///               (Tevs, Ihrke, Seidel 2008, Maximum mipmaps)
+///   tops        max over a block of 4ᵏ × 4ᵏ patches, k = 1, 2, …, of elevation + height of the plants, at
+///               all corners of its patches: a beam that is higher over the block does not meet anything in
+///               it (Tevs, Ihrke, Seidel 2008, Maximum mipmaps)
 ///   dust        mean of the airborne sand over a block of 8 × 8 cells [m], and of the elevation there [m]
 
 #include "kernels/field/grid.hpp"

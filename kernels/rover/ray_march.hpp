@@ -1,11 +1,5 @@
 #pragma once
-/// Where a ray meets the height field (height_field.hpp), and how far it gets through plants and airborne
-/// sand.
-///
-/// Coordinates are those of patches, in units of the cell size, relative to the patch in which the ray
-/// begins: however far away the origin of the grid and however large the grid is, rounding is that of
-/// distances along the ray. Along the ray a place is origin + t · direction, and t is what "distance" means
-/// here.
+/// Where a ray meets the height field (height_field.hpp), and how far it gets through plants.
 ///
 /// Over a patch with the heights h_sw, h_se, h_nw, h_ne at its corners the ground is
 ///
@@ -19,31 +13,21 @@
 /// Plants are a medium that begins at the ground and ends at the height of the canopy above it. Its
 /// extinction is k D, with the density D of the plants [0 … 1]. Canopy and density are interpolated like the
 /// ground. In each patch the height of the ray over the canopy is taken to be linear, and D to be that in
-/// the middle of the ray's way through it. Airborne sand is a medium with the extinction K a, with a the mean
-/// airborne sand of a block [m], from the mean ground of the block up to a given height.
+/// the middle of the ray's way through it.
 ///
-/// The ray ends in a medium where its optical depth ∫ extinction ds exceeds a given one. For a draw from the
+/// The ray ends in plants where its optical depth ∫ extinction ds exceeds a given one. For a draw from the
 /// exponential distribution of mean 1 that is the law of Beer and Lambert: the share e^(−depth) gets through.
+///
+/// (src/render/ray_cast.hpp finds single points under a mouse, from below, too, on a host whose heights are
+/// somewhere else, cell by cell and in double precision. Here millions of rays meet a terrain on a device.)
 
 #include <cmath>
 
 #include "kernels/field/math.hpp"
 #include "kernels/rover/height_field.hpp"
+#include "kernels/rover/ray.hpp"
 
 namespace desert_sim::ray_march {
-
-constexpr float never = 3.0e38f;
-
-/// A ray in units of cells horizontally and metres vertically, for each unit of t.
-struct Ray {
-  float u, v;    ///< of the origin, relative to the south-west corner of patch (patch_x, patch_y)
-  float du, dv;  ///< neither is 0
-  float per_du, per_dv;
-  int patch_x, patch_y;
-  float z, z_rest;  ///< height of the origin [m] as a float, and what that leaves of it
-  float dz;         ///< [m]
-  float metres;     ///< length of the direction
-};
 
 enum class Target { none, ground, plants };
 
@@ -53,59 +37,12 @@ struct Hit {
   float slope_u = 0, slope_v = 0;  ///< of the ground there [m per cell]
 };
 
-/// The largest integer that is not above a number; |x| < 2³¹.
-DESERT_HD int floor_to_int(float x) {
-  const int n = static_cast<int>(x);
-  return n - (x < static_cast<float>(n) ? 1 : 0);
-}
-
-/// A division by 0 is avoided by a direction that is off by less than any rounding.
-DESERT_HD float not_zero(float x) { return fabsf(x) < 1e-30f ? 1e-30f : x; }
-
-/// The part of a ray that is over a grid of so many cells; empty if begin > end.
-struct Interval {
-  float begin, end;
-  DESERT_HD void clip(float at_low, float at_high) {
-    begin = maximum(begin, minimum(at_low, at_high));
-    end = minimum(end, maximum(at_low, at_high));
-  }
-};
-DESERT_HD Interval part_over_grid(const height_field::View& field, const Ray& r, float end) {
-  Interval part{0.0f, end};  // the grid begins and ends in the middle of the outermost patches
-  const float west = 0.5f - static_cast<float>(r.patch_x), south = 0.5f - static_cast<float>(r.patch_y);
-  part.clip((west - r.u) * r.per_du, (west + static_cast<float>(field.width) - r.u) * r.per_du);
-  part.clip((south - r.v) * r.per_dv, (south + static_cast<float>(field.height) - r.v) * r.per_dv);
-  return part;
-}
-
-/// Walks along an axis of a grid of blocks. Cells are counted from the one in which the ray begins.
-struct Axis {
-  float origin, direction, per_direction;
-  int begin;  ///< absolute index of the cell that is counted as 0
-
-  /// First cell of the block of 2^shift cells that has cell n.
-  DESERT_HD int first(int n, int shift) const { return ((n + begin) >> shift << shift) - begin; }
-  /// t at which the ray leaves that block.
-  DESERT_HD float exit(int n, int shift) const {
-    const int edge = first(n, shift) + (direction > 0.0f ? 1 << shift : 0);
-    return (static_cast<float>(edge) - origin) * per_direction;
-  }
-  /// The cell behind that block.
-  DESERT_HD int beyond(int n, int shift) const {
-    return direction > 0.0f ? first(n, shift) + (1 << shift) : first(n, shift) - 1;
-  }
-  /// The cell at t, which rounding does not put outside the block of n, nor behind n.
-  DESERT_HD int at(float t, int n, int shift) const {
-    const int place = floor_to_int(origin + t * direction), low = first(n, shift);
-    const int high = low + (1 << shift) - 1;
-    return direction > 0.0f ? (place < n ? n : (place > high ? high : place))
-                            : (place > n ? n : (place < low ? low : place));
-  }
-};
-
-DESERT_HD int start_cell(const Axis& axis, float t, int cells) {
-  const int n = floor_to_int(axis.origin + t * axis.direction) + axis.begin;
-  return clamp_index(n, cells) - axis.begin;
+/// t from which a rising ray is higher than everything; `never` for others.
+DESERT_HD float end_below_tops(const height_field::View& field, const Ray& r) {
+  const height_field::Level& last = field.levels[field.level_count - 1];
+  if (!(r.dz > 0.0f) || last.columns * last.rows > 1) return never;
+  constexpr float slack = 1e-3f;  // more than rounding comes to [m]
+  return (field.tops[last.offset] + slack - r.z - r.z_rest) / r.dz;
 }
 
 /// A bilinear function over a patch.
@@ -201,7 +138,8 @@ DESERT_HD Hit hit_in_patch(const height_field::View& f, const Ray& r, int p, int
 /// passes. Blocks of patches over which the ray is higher than all that stands there are passed at once.
 DESERT_HD Hit first_hit(const height_field::View& field, const Ray& r, float end, float extinction,
                         float optical_depth) {
-  const Interval part = part_over_grid(field, r, end);
+  Interval part = part_over_grid(field, r, end);
+  part.end = minimum(part.end, end_below_tops(field, r));
   if (!(part.begin <= part.end)) return {};
   Canopy canopy{extinction, optical_depth};
   const Axis x{r.u, r.du, r.per_du, r.patch_x}, y{r.v, r.dv, r.per_dv, r.patch_y};
@@ -241,52 +179,6 @@ DESERT_HD Hit first_hit(const height_field::View& field, const Ray& r, float end
       return {};
     const int changed = ((from_i ^ to_i) | (from_j ^ to_j)) >> (shift + 2);
     if (changed != 0 && level < field.level_count) ++level;
-  }
-}
-
-/// Airborne sand, as rays pass it.
-struct Dust {
-  float extinction;  ///< for each metre of airborne sand [1/m]
-  float height;      ///< above the ground up to which it fills the air [m]
-};
-
-/// t at which the optical depth of airborne sand that a ray has passed exceeds `optical_depth`; `never` if
-/// that is not up to t = `end`.
-DESERT_HD float end_in_dust(const height_field::View& field, const Ray& r, float end, const Dust& dust,
-                            float optical_depth) {
-  constexpr float per_side = 1.0f / height_field::dust_side;
-  const Interval part = part_over_grid(field, r, end);
-  if (!(part.begin <= part.end)) return never;
-  const int columns = height_field::blocks_along(field.width, height_field::dust_side),
-            rows = height_field::blocks_along(field.height, height_field::dust_side);
-  // Patch p begins half a cell before cell p, in the middle of cell p − 1.
-  const auto axis = [=](int patch, float place, float direction, float per_direction) {
-    const int block = patch / height_field::dust_side;
-    const float cell = static_cast<float>(patch - block * height_field::dust_side) - 0.5f + place;
-    return Axis{cell * per_side, direction * per_side, per_direction * height_field::dust_side, block};
-  };
-  const Axis x = axis(r.patch_x, r.u, r.du, r.per_du), y = axis(r.patch_y, r.v, r.dv, r.per_dv);
-  int i = start_cell(x, part.begin, columns), j = start_cell(y, part.begin, rows);
-  const float per_dz = 1.0f / not_zero(r.dz);
-  for (float t = part.begin;;) {
-    const float exit_x = x.exit(i, 0), exit_y = y.exit(j, 0);
-    const float exit = maximum(t, minimum(minimum(exit_x, exit_y), part.end));
-    const int block = (j + y.begin) * columns + i + x.begin;
-    // The ray crosses the top of the layer at `crossing`, upwards or downwards.
-    const float crossing = (field.dust_ground[block] + dust.height - r.z - r.z_rest) * per_dz;
-    const float first = per_dz < 0.0f ? maximum(t, crossing) : t,
-                last = per_dz < 0.0f ? exit : minimum(exit, crossing);
-    const float per_t = dust.extinction * field.dust[block] * r.metres, depth = per_t * (last - first);
-    if (depth > 0.0f) {  // not where the ground is unknown
-      if (depth >= optical_depth) return first + optical_depth / per_t;
-      optical_depth -= depth;
-    }
-    if (exit >= part.end) return never;
-    (exit_x <= exit_y ? i : j) = exit_x <= exit_y ? x.beyond(i, 0) : y.beyond(j, 0);
-    if (static_cast<unsigned>(i + x.begin) >= static_cast<unsigned>(columns) ||
-        static_cast<unsigned>(j + y.begin) >= static_cast<unsigned>(rows))
-      return never;
-    t = exit;
   }
 }
 

@@ -1,4 +1,4 @@
-// What beams meet besides the ground: plants, obstacles and airborne sand; and the noise of what they measure.
+// What beams meet besides the ground (plants, obstacles, airborne sand), and the noise of what they measure.
 
 #include "sensors/scenes.hpp"
 

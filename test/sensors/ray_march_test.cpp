@@ -1,6 +1,7 @@
 // Where the beams of sensors end on the ground: analytic surfaces, and tiny steps over random ones.
 
 #include "sensors/scenes.hpp"
+#include "src/render/ray_cast.hpp"
 
 namespace desert_sim {
 namespace {
@@ -115,6 +116,35 @@ TEST_F(RayMarch, AgreesWithTinySteps) {
   EXPECT_LE(differences, 20);
 }
 
+TEST_F(RayMarch, AgreesWithTheRaysOfTheMouse) {
+  // In double precision and cell by cell.
+  const KnownScene ground(exec_, {150, 90, 0.5, 0, 0}, rough);
+  const render::HeightField field{
+      150, 90, 0.5, [&](int x, int y) { return ground.heights[static_cast<std::size_t>(y * 150 + x)]; }};
+  LidarParameters p = test::exact_lidar(60, 300, -40, 20);
+  p.range_max = 1000;
+  Lidar lidar(exec_, p);
+  int hits = 0, different = 0;
+  for (const SensorPose& pose :
+       {pose_from_angles(30, 20, 12, 0, 0, 0), pose_from_angles(70, 40, 10, 3, 5, 70)}) {
+    const RangeImage& image = lidar.scan(ground.scene, pose, 0);
+    for (std::size_t n = 0; n < image.distances.size(); ++n) {
+      const Point ahead = test::point_at(pose, lidar.directions()[n], 1);
+      const render::Ray ray{{pose.x, pose.y, pose.z}, {ahead.x - pose.x, ahead.y - pose.y, ahead.z - pose.z}};
+      const auto expected = render::first_hit(field, ray);
+      const bool returns = !std::isnan(image.distances[n]);
+      hits += returns;
+      const Point p_found =
+          test::point_at(pose, lidar.directions()[n], static_cast<double>(image.distances[n]));
+      different += returns != expected.has_value() ||
+                   (returns && std::hypot(p_found.x - expected->x, p_found.y - expected->y,
+                                          p_found.z - expected->z) > 1e-3);
+    }
+  }
+  EXPECT_GT(hits, 10000);
+  EXPECT_LT(different, 10) << "crests that a ray touches";
+}
+
 TEST_F(RayMarch, KeepsPrecisionFarFromTheOrigin) {
   // UTM coordinates, at 2000 m above the sea.
   const double east = 712345.6, north = 3456789.1;
@@ -122,6 +152,10 @@ TEST_F(RayMarch, KeepsPrecisionFarFromTheOrigin) {
                        [](int x, int y) { return 2000 + 0.2f * rough(x, y); });
   Lidar lidar(exec_, test::exact_lidar(32, 512, -25, 5));
   expect_on_surface(far, lidar, pose_from_angles(east + 60.03, north + 70.08, 2003.217, 1, 2, 3), 8000);
+
+  const KnownScene high(exec_, {20, 20, 1, 0, 0}, [](int, int) { return 8000.0f; });
+  EXPECT_NEAR(static_cast<double>(range_of(high, pose_from_angles(9, 9, 8002.0002, 0, 90, 0))), 2.0002, 1e-5)
+      << "floats of 8000 are half a millimetre apart";
 
   const KnownScene near(exec_, {512, 512, 0.25, 0, 0}, [](int x, int y) { return 0.2f * rough(x, y); });
   Lidar other(exec_, test::exact_lidar(32, 512, -25, 5));

@@ -1,5 +1,8 @@
 // Lidar and depth camera: frames, orders, parameters, threads, and updates of what they see.
 
+#include <fstream>
+#include <iterator>
+
 #include "sensors/scenes.hpp"
 #include "support/refusal.hpp"
 
@@ -142,6 +145,14 @@ TEST_F(Sensors, ParametersAreRefusedByNameValueAndRange) {
   camera.fov_deg = 180;
   EXPECT_EQ(test::refusal([&] { DepthCamera(exec_, camera); }),
             "depth_camera: fov_deg: = 180 is not in [1, 170] deg");
+}
+
+TEST_F(Sensors, PageHasTheTablesOfTheParameters) {
+  std::ifstream file(std::string(DESERT_SOURCE_DIR) + "/doc/rover.md");
+  const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::string tables = describe_sensor_parameters();
+  EXPECT_NE(page.find(tables), std::string::npos) << "doc/rover.md is stale; its tables have to be:\n"
+                                                  << tables;
 }
 
 // ---- The depth camera.

@@ -16,9 +16,9 @@
 
 namespace desert_sim {
 
-/// An organised cloud in the lidar's frame: row r (height) is ring r, from the lowest one upwards, and column c
-/// (width) the azimuth c, counter-clockwise. Fields: x, y, z [m] and intensity [0 … 1], float32; ring, uint16.
-/// Points without a return are NaN (is_dense is false). `header` names the lidar's frame.
+/// An organised cloud in the lidar's frame: row r (height) is ring r, from the lowest one upwards, and column
+/// c (width) the azimuth c, counter-clockwise. Fields: x, y, z [m] and intensity [0 … 1], float32; ring,
+/// uint16. Points without a return are NaN (is_dense is false). `header` names the lidar's frame.
 sensor_msgs::PointCloud2Ptr lidar_cloud(const std_msgs::Header& header, const RangeImage& scan,
                                         const std::vector<beams::Vec3>& directions);
 

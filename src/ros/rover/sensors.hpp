@@ -1,6 +1,7 @@
 #pragma once
-/// The sensors of a rover as topics. Measuring has a thread of its own, so that a rover whose pose is computed
-/// elsewhere does not wait for it; and nothing is computed or copied for a topic without subscribers.
+/// The sensors of a rover as topics. Measuring has a thread of its own, so that a rover whose pose is
+/// computed elsewhere does not wait for it; and nothing is computed or copied for a topic without
+/// subscribers.
 ///
 ///   lidar/points               sensor_msgs/PointCloud2, see lidar_cloud()
 ///   depth_camera/image_rect    sensor_msgs/Image, see depth_image()

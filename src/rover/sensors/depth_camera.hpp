@@ -12,7 +12,8 @@ SensorPose mounting_of(const DepthCameraParameters& parameters);
 
 /// Row 0 of a picture is the upper one, column 0 the left one. A distance is the depth [m], the coordinate
 /// along the camera's axis: pixel (u, v) with the depth d is at ((u − cx) d/f, (v − cy) d/f, d) in the
-/// optical frame (x right, y down, z forward). Poses are those of the camera's body (x forward, y left, z up).
+/// optical frame (x right, y down, z forward). Poses are those of the camera's body (x forward, y left, z
+/// up).
 class DepthCamera {
  public:
   /// Throws ConfigError for parameters that check_parameters() refuses.

@@ -16,8 +16,8 @@ SensorPose mounting_of(const LidarParameters& parameters);
 class Lidar {
  public:
   /// `ring_angles_deg`: the elevations of the rings, for a lidar whose rings are not evenly spaced; they then
-  /// count instead of the parameters rings, lowest_deg and highest_deg. Throws ConfigError for parameters that
-  /// check_parameters() refuses, and for an angle beyond ±90°.
+  /// count instead of the parameters rings, lowest_deg and highest_deg. Throws ConfigError for parameters
+  /// that check_parameters() refuses, and for an angle beyond ±90°.
   Lidar(Exec& exec, const LidarParameters& parameters, const SensorMediaParameters& media = {},
         const std::vector<double>& ring_angles_deg = {});
 

@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "src/core/parameter_page.hpp"
 #include "src/scenario/range_checks.hpp"
 
 namespace desert_sim {
@@ -40,5 +41,16 @@ void check_parameters(const DepthCameraParameters& p) {
 }
 
 void check_parameters(const SensorMediaParameters& p) { check_ranges(p, "sensor_media"); }
+
+std::string describe_sensor_parameters() {
+  std::ostringstream page;
+  page << "#### lidar\n\n";
+  write_parameter_table(page, LidarParameters());
+  page << "\n#### depth_camera\n\n";
+  write_parameter_table(page, DepthCameraParameters());
+  page << "\n#### sensor_media\n\n";
+  write_parameter_table(page, SensorMediaParameters());
+  return page.str();
+}
 
 }  // namespace desert_sim

@@ -1,8 +1,9 @@
 #pragma once
-/// Parameters of the sensors of a rover, in three sections: `lidar`, `depth_camera`, and `sensor_media` for what
-/// beams of both meet. doc/rover.md, "Sensors", describes the model.
+/// Parameters of the sensors of a rover, in three sections: `lidar`, `depth_camera`, and `sensor_media` for
+/// what beams of both meet. doc/rover.md, "Sensors", describes the model.
 
 #include <cstdint>
+#include <string>
 
 #include "src/core/parameters.hpp"
 
@@ -139,5 +140,8 @@ static_assert(table_is_complete<SensorMediaParameters>());
 void check_parameters(const LidarParameters& parameters);
 void check_parameters(const DepthCameraParameters& parameters);
 void check_parameters(const SensorMediaParameters& parameters);
+
+/// The three sections in markdown, from their tables: a part of doc/rover.md.
+std::string describe_sensor_parameters();
 
 }  // namespace desert_sim
