@@ -147,6 +147,29 @@ TEST_F(Sensors, ParametersAreRefusedByNameValueAndRange) {
             "depth_camera: fov_deg: = 180 is not in [1, 170] deg");
 }
 
+TEST_F(Sensors, ParametersAreReadBySection) {
+  LidarParameters lidar;
+  DepthCameraParameters camera;
+  SensorMediaParameters media;
+  const auto read = [&](const char* text) {
+    ValidationErrors errors("rover.yaml");
+    std::set<std::string> known;
+    read_sensor_parameters(YAML::Load(text), errors, lidar, camera, media, known);
+    EXPECT_EQ(known, (std::set<std::string>{"lidar", "depth_camera", "sensor_media"}));
+    errors.throw_if_any();
+  };
+  read("{lidar: {rings: 16, seed: 18446744073709551615}, sensor_media: {dust_height: 5}, other: 1}");
+  EXPECT_EQ(lidar.rings, 16);
+  EXPECT_EQ(lidar.seed, 18446744073709551615u);
+  EXPECT_EQ(media.dust_height, 5);
+  EXPECT_EQ(camera.width, 320);
+  const std::string fault =
+      test::refusal([&] { read("{lidar: {range: 5, columns: 0}, depth_camera: {far: near}}"); });
+  EXPECT_NE(fault.find("lidar.range: unknown key"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("lidar.columns: = 0 is not in [1, 8192]"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("depth_camera.far: near is not a number"), std::string::npos) << fault;
+}
+
 TEST_F(Sensors, PageHasTheTablesOfTheParameters) {
   std::ifstream file(std::string(DESERT_SOURCE_DIR) + "/doc/rover.md");
   const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());

@@ -42,6 +42,18 @@ void check_parameters(const DepthCameraParameters& p) {
 
 void check_parameters(const SensorMediaParameters& p) { check_ranges(p, "sensor_media"); }
 
+void read_sensor_parameters(const YAML::Node& root, ValidationErrors& errors, LidarParameters& lidar,
+                            DepthCameraParameters& depth_camera, SensorMediaParameters& media,
+                            std::set<std::string>& known) {
+  const auto read = [&](const char* name, auto& parameters) {
+    yaml::read_section(root[name], name, errors, parameters);
+    known.insert(name);
+  };
+  read("lidar", lidar);
+  read("depth_camera", depth_camera);
+  read("sensor_media", media);
+}
+
 std::string describe_sensor_parameters() {
   std::ostringstream page;
   page << "#### lidar\n\n";

@@ -2,10 +2,14 @@
 /// Parameters of the sensors of a rover, in three sections: `lidar`, `depth_camera`, and `sensor_media` for
 /// what beams of both meet. doc/rover.md, "Sensors", describes the model.
 
+#include <yaml-cpp/yaml.h>
+
 #include <cstdint>
+#include <set>
 #include <string>
 
 #include "src/core/parameters.hpp"
+#include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 
@@ -140,6 +144,12 @@ static_assert(table_is_complete<SensorMediaParameters>());
 void check_parameters(const LidarParameters& parameters);
 void check_parameters(const DepthCameraParameters& parameters);
 void check_parameters(const SensorMediaParameters& parameters);
+
+/// Reads the sections `lidar`, `depth_camera` and `sensor_media` that `root` has, adds their names to
+/// `known`, and what is wrong with single values and keys to `errors`.
+void read_sensor_parameters(const YAML::Node& root, ValidationErrors& errors, LidarParameters& lidar,
+                            DepthCameraParameters& depth_camera, SensorMediaParameters& media,
+                            std::set<std::string>& known);
 
 /// The three sections in markdown, from their tables: a part of doc/rover.md.
 std::string describe_sensor_parameters();
