@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/make_shared.hpp>
 #include <cmath>
 #include <cstring>
 #include <limits>
+
+#include "client/messages.hpp"
+#include "src/client/layer_map.hpp"
 
 namespace {
 
@@ -60,6 +64,39 @@ TEST(SensorMessages, CloudIsOrganisedByRings) {
   EXPECT_EQ(value(4, 3), 0.5f);
   for (std::size_t n = 0; n < 6; ++n)
     EXPECT_EQ(read<std::uint16_t>(cloud->data, n * cloud->point_step + cloud->fields[4].offset), n / 3) << n;
+}
+
+/// The surface that a client of the terrain has is the one that beams meet.
+TEST(SensorMessages, PointsOfACloudAreOnTheMapOfTheClient) {
+  LayerMap::Rectangle changed;
+  const LayerMap map(boost::make_shared<const ElevationGrid>(client_test::keyframe_of(
+                         [](double x, double y) { return 3 * std::sin(0.4 * x) + 2 * std::cos(0.3 * y); })),
+                     nullptr, changed);
+  const LayerMap::Info& info = map.info();
+  CpuExec exec(1);
+  HeightFieldScene scene(exec, {static_cast<int>(info.width), static_cast<int>(info.height), info.cell_size,
+                                info.origin_x, info.origin_y});
+  scene.update(SceneLayer::elevation, map.values());
+  LidarParameters p;
+  p.noise = 0;
+  p.columns = 128;
+  Lidar lidar(exec, p);
+  const SensorPose pose = pose_from_angles(120, 50, 8, 5, 10, 30);
+  const auto cloud = lidar_cloud(header_in("lidar"), lidar.scan(scene, pose, 0), lidar.directions());
+  const RotationMatrix turn = rotation_of(pose);
+  int found = 0;
+  for (std::size_t place = 0; place < cloud->data.size(); place += cloud->point_step) {
+    const double x = static_cast<double>(read<float>(cloud->data, place)),
+                 y = static_cast<double>(read<float>(cloud->data, place + 4)),
+                 z = static_cast<double>(read<float>(cloud->data, place + 8));
+    if (std::isnan(x)) continue;
+    ++found;
+    const auto along = [&](std::size_t n) { return turn[n][0] * x + turn[n][1] * y + turn[n][2] * z; };
+    const auto height = map.value(pose.x + along(0), pose.y + along(1));
+    ASSERT_TRUE(height);
+    ASSERT_NEAR(pose.z + along(2), *height, 1e-3);
+  }
+  EXPECT_GT(found, 3000);
 }
 
 TEST(SensorMessages, DepthsAreFloatsByRows) {
