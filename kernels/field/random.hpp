@@ -21,6 +21,8 @@ enum class Purpose : std::uint32_t {
   rounding,
   plants = 32,
   planting,
+  range_noise = 64,
+  beam_path,
 };
 
 /// Four random words from three counters.

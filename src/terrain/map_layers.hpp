@@ -24,7 +24,7 @@ struct MapLayer {
   bool zero_is_special = false;
 };
 
-constexpr std::array<MapLayer, 33> map_layers{{
+constexpr std::array<MapLayer, 34> map_layers{{
     {"elevation", Layer::elevation, 0.005},
     {"bedrock", Layer::bedrock, 0.005},
     {"water_surface", Layer::water_surface, 0.005},
@@ -38,6 +38,7 @@ constexpr std::array<MapLayer, 33> map_layers{{
     {"humus", Layer::humus, 0.001},
     {"moisture", Layer::moisture, 0.001},
     {"suspended_sediment", Layer::suspended_sediment, 0.0005},
+    {"airborne_sand", Layer::airborne_sand, 0.01},
     {"water_velocity_x", Layer::water_velocity_x, 0.02},
     {"water_velocity_y", Layer::water_velocity_y, 0.02},
     {"erosion_resistance", Layer::erosion_resistance, 0.01},

@@ -26,7 +26,7 @@ class Maps(MapTest):
         self.expect_header(grid_map.info.header)
         self.assertEqual(grid_map.basic_layers, ["elevation"])
         self.assertEqual((grid_map.info.resolution, grid_map.info.length_x, grid_map.info.length_y), (2, 128, 96))
-        self.assertEqual(len(grid_map.layers), 33)
+        self.assertEqual(len(grid_map.layers), 34)
         layers = {name: cells(grid_map, name) for name in grid_map.layers}
         for x in range(64):
             for y in range(48):
@@ -199,9 +199,9 @@ class Maps(MapTest):
         self.assertEqual([layer.name for layer in self.submap(100, 20, 4, 4, []).map.layers],
                          ["elevation", "bedrock", "water_surface", "sand_depth", "water_depth", "soil_depth", "vegetation",
                           "plants", "canopy_height", "illumination", "humus", "moisture", "suspended_sediment",
-                          "water_velocity_x", "water_velocity_y", "erosion_resistance", "obstacle", "looseness", "wind_x", "wind_y", "wind_shadow", "echo", "slope",
-                          "roughness", "step_height", "slip", "slip_downhill", "slip_across", "sinkage",
-                          "traversability", "normal_x", "normal_y", "normal_z"], "all")
+                          "airborne_sand", "water_velocity_x", "water_velocity_y", "erosion_resistance", "obstacle", "looseness",
+                          "wind_x", "wind_y", "wind_shadow", "echo", "slope", "roughness", "step_height", "slip",
+                          "slip_downhill", "slip_across", "sinkage", "traversability", "normal_x", "normal_y", "normal_z"], "all")
 
     def test_get_submap_refuses(self):
         nan, inf = float("nan"), float("inf")

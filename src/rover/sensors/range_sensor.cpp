@@ -1,0 +1,81 @@
+#include "src/rover/sensors/range_sensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+/// The patch in which a coordinate lies, and how far from where it begins [cells]. Outside the grid it is the
+/// outermost patch.
+struct Place {
+  int patch;
+  float rest;
+
+  Place(double metres, double cell_size, int cells) {
+    const double patches = metres / cell_size + 0.5;
+    const double whole = std::clamp(std::floor(patches), 0.0, static_cast<double>(cells));
+    patch = static_cast<int>(whole);
+    rest = static_cast<float>(patches - whole);
+  }
+};
+
+ray_march::Ray origin_of(const SceneGeometry& g, const SensorPose& pose) {
+  const Place x(pose.x - g.origin_x, g.cell_size, g.width), y(pose.y - g.origin_y, g.cell_size, g.height);
+  ray_march::Ray ray{};
+  ray.u = x.rest, ray.v = y.rest;
+  ray.patch_x = x.patch, ray.patch_y = y.patch;
+  ray.z = static_cast<float>(pose.z);
+  ray.z_rest = static_cast<float>(pose.z - static_cast<double>(ray.z));
+  return ray;
+}
+
+}  // namespace
+
+RangeSensor::RangeSensor(Exec& exec, int columns, int rows, std::vector<beams::Vec3> directions,
+                         const Settings& settings)
+    : exec_(exec),
+      settings_(settings),
+      directions_(std::move(directions)),
+      device_directions_(exec, directions_.size()),
+      distances_(exec, directions_.size()),
+      intensities_(exec, directions_.size()) {
+  device_directions_.upload(directions_);
+  image_.columns = columns;
+  image_.rows = rows;
+  image_.distances.resize(directions_.size());
+  image_.intensities.resize(directions_.size());
+}
+
+const RangeImage& RangeSensor::scan(const HeightFieldScene& scene, const SensorPose& pose,
+                                    std::uint64_t number) {
+  if (&scene.exec() != &exec_) throw Error("a sensor and the terrain that it scans have different backends");
+  const RotationMatrix turn = rotation_of(pose);
+  const SensorMediaParameters& media = settings_.media;
+  beams::Scan scan{scene.view(),
+                   origin_of(scene.geometry(), pose),
+                   static_cast<float>(scene.geometry().cell_size),
+                   {},
+                   settings_.nearest,
+                   settings_.farthest,
+                   settings_.noise,
+                   {media.canopy_extinction, {media.dust_extinction, media.dust_height}, media.dust_returns},
+                   {media.ground_reflectivity, media.plant_reflectivity, media.dust_reflectivity},
+                   settings_.seed,
+                   number};
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t column = 0; column < 3; ++column)
+      scan.turn[row][column] = static_cast<float>(turn[row][column]);
+  with_backend(exec_, [&](auto& exec) {
+    beams::cast(exec, scan, image_.columns, image_.rows, device_directions_.data(), distances_.data(),
+                intensities_.data());
+  });
+  distances_.download(0, image_.distances.size(), image_.distances.data());
+  intensities_.download(0, image_.intensities.size(), image_.intensities.data());
+  return image_;
+}
+
+}  // namespace desert_sim

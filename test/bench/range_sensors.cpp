@@ -1,0 +1,196 @@
+/// Times of a lidar's scans by the number of its beams and the size of the terrain's grid: doc/performance.md
+/// has results.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "src/core/error.hpp"
+#include "src/core/files.hpp"
+#include "src/rover/sensors/lidar.hpp"
+#include "src/tools/json_text.hpp"
+#include "src/tools/options.hpp"
+#include "src/tools/program.hpp"
+
+using namespace desert_sim;
+
+namespace {
+
+const char usage[] =
+    "usage: range_sensor_bench [options]\n"
+    "  --beams RxC    rings and columns; may be repeated (default 16x512, 32x1024, 64x1024, 128x2048)\n"
+    "  --size N       cells along each side of the grid; may be repeated (default 256, 512, 1024, 2048)\n"
+    "  --cell-size MM size of a cell [mm] (default 500)\n"
+    "  --backend B    cpu (default) or cuda\n"
+    "  --threads N    threads of the CPU backend (default 1)\n"
+    "  --scans N      scans of which the median counts (default 15)\n"
+    "  --media        with plants on a quarter of the ground and sand in the air\n"
+    "  --json FILE    write the results to FILE (-: print them instead of the table)\n"
+    "A lidar stands 1.5 m above dunes up to 12 m high, looks 100 m far, 22.5 deg down to 22.5 deg up, each "
+    "time\n"
+    "from another place. A row has the median time of a scan with its copy to the host, on the wall and of "
+    "all\n"
+    "threads on processors, that of an update of 64 x 64 cells, and the share of the beams that return.\n"
+    "Exit status: 0; 2 for invalid input; 3 for a failure at run time.\n";
+
+using Clock = std::chrono::steady_clock;
+
+/// Time that all threads of this process have had a processor [ms]: unlike that on the wall, it does not
+/// count what other programs take.
+double processor_time() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+struct Row {
+  int rings, columns, size;
+  double scan_ms, cpu_ms, update_ms, share;
+};
+
+float dune_height(double x, double y) {
+  const double crest = x + 12 * std::sin(y / 31), phase = crest / 45 - std::floor(crest / 45);
+  const double shape = phase < 0.75 ? phase / 0.75 : (1 - phase) / 0.25;
+  return static_cast<float>((9 + 3 * std::sin(y / 53 + x / 71)) * shape * shape * (3 - 2 * shape));
+}
+
+class Bench {
+ public:
+  explicit Bench(const Options& o)
+      : exec_(make_exec(o.text("backend", "cpu"), static_cast<int>(o.number("threads", 1, 1, 4096)))),
+        cell_size_(1e-3 * static_cast<double>(o.number("cell-size", 500, 1, 100000))),
+        scans_(static_cast<int>(o.number("scans", 15, 1, 100000))),
+        media_(o.has("media")) {}
+
+  Exec& exec() { return *exec_; }
+
+  Row row(int rings, int columns, int size) {
+    HeightFieldScene scene(*exec_, {size, size, cell_size_, 0, 0});
+    fill(scene, size);
+    LidarParameters p;
+    p.rings = rings;
+    p.columns = columns;
+    Lidar lidar(*exec_, p);
+    std::vector<double> times, cpu_times;
+    long long returns = 0;
+    const double side = size * cell_size_;
+    for (int n = -1; n < scans_; ++n) {  // the first scan is not timed
+      const double x = side * (0.5 + 0.3 * std::sin(n * 2.4)), y = side * (0.5 + 0.3 * std::cos(n * 2.4));
+      const SensorPose pose{x, y, static_cast<double>(dune_height(x, y)) + 1.5};
+      const double cpu_begin = processor_time();
+      const auto begin = Clock::now();
+      const RangeImage& image = lidar.scan(scene, pose, static_cast<std::uint64_t>(n + 1));
+      if (n < 0) continue;
+      times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+      cpu_times.push_back(processor_time() - cpu_begin);
+      returns += std::count_if(image.distances.begin(), image.distances.end(),
+                               [](float d) { return !std::isnan(d); });
+    }
+    return {rings,
+            columns,
+            size,
+            median(times),
+            median(cpu_times),
+            update_time(scene),
+            static_cast<double>(returns) / scans_ / rings / columns};
+  }
+
+ private:
+  void fill(HeightFieldScene& scene, int size) const {
+    std::vector<float> heights, canopy, density, air;
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) {
+        heights.push_back(dune_height((x + 0.5) * cell_size_, (y + 0.5) * cell_size_));
+        const bool plants = (x / 8 + y / 8) % 4 == 0;
+        canopy.push_back(plants ? 0.6f : 0.0f);
+        density.push_back(plants ? 0.5f : 0.0f);
+        air.push_back(0.1f);
+      }
+    scene.update(SceneLayer::elevation, heights);
+    if (!media_) return;
+    scene.update(SceneLayer::canopy_height, canopy);
+    scene.update(SceneLayer::vegetation, density);
+    scene.update(SceneLayer::airborne_sand, air);
+  }
+  double update_time(HeightFieldScene& scene) const {
+    std::vector<double> times;
+    const std::vector<float> values(64 * 64, 1.0f);
+    for (int n = 0; n < 5; ++n) {
+      exec_->synchronise();
+      const auto begin = Clock::now();
+      scene.update(SceneLayer::elevation, {17, 33, 64, 64}, values);
+      exec_->synchronise();
+      times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+    }
+    return median(times);
+  }
+  static double median(std::vector<double> times) {
+    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
+                     times.end());
+    return times[times.size() / 2];
+  }
+
+  std::unique_ptr<Exec> exec_;
+  double cell_size_;
+  int scans_;
+  bool media_;
+};
+
+std::string json_of(const std::vector<Row>& rows, const Exec& exec) {
+  std::string text = "{\"format\": \"range_sensor_bench 1\", \"backend\": " + json_string(exec.backend()) +
+                     ", \"device\": " + json_string(exec.device()) + ", \"rows\": [";
+  for (const Row& r : rows)
+    text += std::string(&r == &rows.front() ? "\n" : ",\n") + "  {\"rings\": " + std::to_string(r.rings) +
+            ", \"columns\": " + std::to_string(r.columns) + ", \"size\": " + std::to_string(r.size) +
+            ", \"scan_ms\": " + json_number(r.scan_ms) + ", \"cpu_ms\": " + json_number(r.cpu_ms) +
+            ", \"update_ms\": " + json_number(r.update_ms) + ", \"returns\": " + json_number(r.share) + "}";
+  return text + "\n]}\n";
+}
+
+std::string table_of(const std::vector<Row>& rows, const Exec& exec) {
+  std::ostringstream out;
+  out << exec.backend() << ", " << exec.device()
+      << "\nbeams       grid    scan ms     cpu ms  update ms  returns\n";
+  char line[100];
+  for (const Row& r : rows) {
+    std::snprintf(line, sizeof line, "%3d x %-5d %5d %10.2f %10.2f %10.3f %7.1f %%\n", r.rings, r.columns,
+                  r.size, r.scan_ms, r.cpu_ms, r.update_ms, 100 * r.share);
+    out << line;
+  }
+  return out.str();
+}
+
+int run(int argc, char** argv) {
+  const Options o(argc, argv, {"beams", "size", "cell-size", "backend", "threads", "scans", "json"},
+                  {"media", "help"});
+  if (o.has("help")) {
+    std::fputs(usage, stdout);
+    return 0;
+  }
+  std::vector<std::string> beams = o.values("beams"), sizes = o.values("size");
+  if (beams.empty()) beams = {"16x512", "32x1024", "64x1024", "128x2048"};
+  if (sizes.empty()) sizes = {"256", "512", "1024", "2048"};
+  Bench bench(o);
+  std::vector<Row> rows;
+  for (const std::string& shape : beams)
+    for (const std::string& size : sizes) {
+      int rings = 0, columns = 0, side = 0, read = 0;
+      if (std::sscanf(shape.c_str(), "%dx%d%n", &rings, &columns, &read) != 2 ||
+          read != static_cast<int>(shape.size()))
+        throw ConfigError("--beams " + shape + ": is not of the form 64x1024");
+      if (std::sscanf(size.c_str(), "%d%n", &side, &read) != 1 || read != static_cast<int>(size.size()) ||
+          side < 128 || side > 16384)
+        throw ConfigError("--size " + size + ": is not a whole number in [128, 16384]");
+      rows.push_back(bench.row(rings, columns, side));
+    }
+  const std::string json = o.text("json", "");
+  std::fputs((json == "-" ? json_of(rows, bench.exec()) : table_of(rows, bench.exec())).c_str(), stdout);
+  if (!json.empty() && json != "-") write_file(json, json_of(rows, bench.exec()));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return run_main("range_sensor_bench", argv, [&] { return run(argc, argv); });
+}
