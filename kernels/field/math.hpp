@@ -96,6 +96,27 @@ DESERT_HD float lost_share(float x) {
   return x < 0.01f ? x * (1.0f - x * (0.5f - x * (1.0f / 6.0f))) : 1.0f - exp_negative(x);
 }
 
+/// ln(x) for normal x > 0, with an error below 2e-7 (absolute near 1, else relative):
+///
+///   ln(2^e m) = e ln 2 + 2 artanh((m − 1)/(m + 1)),   √½ ≤ m < √2
+DESERT_HD float logarithm(float x) {
+  const std::uint32_t bits = bits_of(x) - 0x3f3504f3u;  // √½
+  const float exponent = static_cast<float>(static_cast<std::int32_t>(bits) >> 23);
+  const float m = float_from_bits((bits & 0x007fffffu) + 0x3f3504f3u);
+  const float t = (m - 1.0f) / (m + 1.0f), q = t * t;
+  float p = fused(q, 1.0f / 9.0f, 1.0f / 7.0f);
+  p = fused(p, q, 0.2f);
+  p = fused(p, q, 1.0f / 3.0f);
+  return fused(exponent, 0.693359375f, 2.0f * fused(t * q, p, t)) - exponent * 2.12194440e-4f;
+}
+
+/// x^y for x ≥ 0 and a result from e^(−87) to e^(87), with a relative error below 1e-6 · (1 + |y ln x|).
+DESERT_HD float power(float x, float y) {
+  if (!(x > 1e-37f)) return 0.0f;
+  const float exponent = y * logarithm(x);
+  return exponent <= 0.0f ? exp_negative(-exponent) : 1.0f / exp_negative(exponent);
+}
+
 /// sin(π x) for |x| ≤ ½, with an error below 2e-7: its Taylor polynomial of degree 11.
 DESERT_HD float sine_of_half_turns(float x) {
   const float a = 3.14159265f * x, q = a * a;

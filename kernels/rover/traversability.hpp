@@ -26,45 +26,10 @@
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/math.hpp"
+#include "kernels/rover/rover_parameters.hpp"
 #include "kernels/sand/repose.hpp"
-#include "src/core/parameters.hpp"
 
 namespace desert_sim {
-
-/// The defaults describe a wheeled rover about a metre long.
-struct TraversabilityParameters {
-  float slope_deg = 25.0f;
-  float sand_slope_deg = 16.0f;
-  float sand_depth = 0.3f;
-  float sand_cost = 0.2f;
-  float step_height = 0.3f;
-  float roughness = 0.15f;
-  float water_depth = 0.3f;
-  float mud = 0.9f;
-  float vegetation = 0.8f;
-  float window = 0.5f;
-};
-
-constexpr auto parameter_table(const TraversabilityParameters*) {
-  using P = TraversabilityParameters;
-  return std::make_tuple(
-      parameter("slope_deg", &P::slope_deg, 0.1, 89, "deg", "Slope of firm ground that stops the rover."),
-      parameter("sand_slope_deg", &P::sand_slope_deg, 0.1, 89, "deg",
-                "Slope of deep loose sand on which its wheels slip through."),
-      parameter("sand_depth", &P::sand_depth, 1e-3, 1000, "m", "Depth from which sand is deep."),
-      parameter("sand_cost", &P::sand_cost, 0, 1, "1", "What deep sand takes off the traversability of 1."),
-      parameter("step_height", &P::step_height, 1e-3, 1000, "m", "Step that stops the rover."),
-      parameter("roughness", &P::roughness, 1e-3, 1000, "m", "Roughness that stops the rover."),
-      parameter("water_depth", &P::water_depth, 1e-3, 1000, "m", "Water that stops the rover."),
-      parameter("mud", &P::mud, 0.501, 1000, "1",
-                "Relative moisture of deep sand or soil that stops the rover; half-wet ground is firm, above "
-                "1 none does."),
-      parameter("vegetation", &P::vegetation, 1e-3, 1000, "1",
-                "Density of plants that stops the rover; above 1 none does."),
-      parameter("window", &P::window, 0, 1000, "m",
-                "How far around a cell roughness and steps are looked for; at least one cell, at most 16."));
-}
-static_assert(table_is_complete<TraversabilityParameters>());
 
 namespace traversability {
 
