@@ -39,7 +39,7 @@ struct RoverParameters {
   double mass_height = 0.25;
   double mass = 30;
   double gravity = 9.81;
-  WheelLaw wheel_law = WheelLaw::bekker;
+  WheelLaw wheel_law = WheelLaw::light;
   double assumed_looseness = 0.3;
   double max_speed = 0.3;
   double max_yaw_rate = 0.6;

@@ -1,6 +1,7 @@
 // Wheels on the ground: pose and joints by hand, and how well they follow ground that moves.
 
 #include "rover/field.hpp"
+#include "src/core/error.hpp"
 
 namespace desert_sim {
 namespace {
@@ -40,8 +41,8 @@ TEST_P(Poses, OnAPlaneItHasThePlanesSlope) {
     EXPECT_NEAR(r.state().pose.roll, 0, 1e-6);
     r.place(0, 0, pi, ground);  // downhill
     EXPECT_NEAR(r.state().pose.pitch, angle * degree, 1e-6);
-    r.place(0, 0, pi / 2, ground);  // uphill to the right
-    EXPECT_NEAR(r.state().pose.roll, -(-angle * degree), 2e-2);
+    r.place(0, 0, pi / 2, ground);  // uphill to the right: the right side is up
+    EXPECT_NEAR(r.state().pose.roll, -angle * degree, 1e-6);
     EXPECT_NEAR(r.state().pose.pitch, 0, 1e-6);
     EXPECT_NEAR(r.state().rocker, 0, 1e-6);
     EXPECT_LT(r.state().contact_error, 1e-6);
@@ -92,8 +93,8 @@ TEST_P(Poses, AStepOfTheGroundIsFollowedInOneStep) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Poses, testing::Values(SuspensionKind::rocker, SuspensionKind::rocker_bogie),
-                         [](const auto& info) {
-                           return std::string(suspension_kinds[static_cast<int>(info.param)]);
+                         [](const auto& kind) {
+                           return std::string(suspension_kinds[static_cast<int>(kind.param)]);
                          });
 
 TEST(Ground, CellsAreInterpolatedAndWrapWhereTheTerrainDoes) {

@@ -25,7 +25,7 @@ class LivingGround {
   const GroundSource& at(std::uint64_t step) {
     while (simulation_->state().steps < step) simulation_->step();
     if (!ground_ || step_ != step) {
-      ground_ = std::make_unique<GridGround>(simulation_->snapshot(GridGround::layers_of_snapshot()), 0.1);
+      ground_ = std::make_unique<GridGround>(*simulation_->snapshot(GridGround::layers_of_snapshot()), 0.1);
       step_ = step;
     }
     return *ground_;

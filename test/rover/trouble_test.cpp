@@ -8,6 +8,13 @@ namespace {
 
 using namespace test;
 
+/// By the strength of the ground, in which 30 kg on small wheels sink deep.
+RoverParameters heavy() {
+  RoverParameters p;
+  p.wheel_law = WheelLaw::bekker;
+  return p;
+}
+
 /// Until `done`, at most `seconds`; whether it was.
 bool drive_until(Rover& rover, const DriveCommand& command, const GroundSource& ground,
                  const std::function<bool()>& done, double seconds = 60) {
@@ -21,14 +28,14 @@ bool drive_until(Rover& rover, const DriveCommand& command, const GroundSource& 
 
 TEST(RoverTrouble, OnASteepLooseSlopeItGetsStuckAndBacksOut) {
   // Flat, then a slope of loose sand that no slip is enough for.
-  const SmoothGround ground([](double x, double) { return x > 0 ? 0.45 * x : 0.0; }, 3, 1);
-  Rover r = rover_of();
+  const SmoothGround ground([](double x, double) { return x > 0 ? 0.45 * x : 0.0; }, 3, 0.5);
+  Rover r = rover_of(heavy());
   r.place(-2, 0, 0, ground);
   const auto is = [&](RoverCondition condition) {
     return [&r, condition] { return r.state().condition == condition; };
   };
   ASSERT_TRUE(drive_until(r, {0.2, 0, 0}, ground, is(RoverCondition::stuck)));
-  EXPECT_NE(r.state().reason.find("slip 1"), std::string::npos) << r.state().reason;
+  EXPECT_NE(r.state().reason.find("make no way: slip "), std::string::npos) << r.state().reason;
   EXPECT_GT(r.state().slip, 0.9);
   const double x = r.state().pose.x, depth = deepest(r);
   EXPECT_GT(depth, 0.03);
@@ -49,8 +56,8 @@ TEST(RoverTrouble, OnASteepLooseSlopeItGetsStuckAndBacksOut) {
 TEST(RoverTrouble, AWheelThatHasDugItselfInNeedsLessSlopeToStayStuck) {
   // Hysteresis: a slope that it can climb holds it while its wheels stand in their holes.
   double angle = 30;
-  SmoothGround ground([&](double x, double) { return std::tan(angle * degree) * x; }, 3, 1);
-  Rover dug = rover_of(), fresh = rover_of();
+  SmoothGround ground([&](double x, double) { return std::tan(angle * degree) * x; }, 3, 0.3);
+  Rover dug = rover_of(heavy()), fresh = rover_of(heavy());
   dug.place(0, 0, 0, ground);
   ASSERT_TRUE(
       drive_until(dug, {0.2, 0, 0}, ground, [&] { return dug.state().condition == RoverCondition::stuck; }));
@@ -172,7 +179,7 @@ TEST(RoverTrouble, UnknownGroundIsToldAndStopsIt) {
   Rover r = rover_of();
   r.advance(0.1, &ground);
   EXPECT_EQ(r.state().condition, RoverCondition::no_terrain);
-  EXPECT_NE(refusal([&] { r.place(1.5, 0, 0, ground); }).find("unknown"), std::string::npos);
+  EXPECT_NE(refusal([&] { r.place(1.25, 0, 0, ground); }).find("unknown"), std::string::npos);
   EXPECT_NE(refusal([&] { r.place(20, 0, 0, ground); }).find("off the terrain"), std::string::npos);
   EXPECT_FALSE(r.state().placed);
   r.place(0, 0, 0, ground);
