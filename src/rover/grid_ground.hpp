@@ -20,7 +20,7 @@ class GridGround : public GroundSource {
   /// known); NaN in `elevation` is unknown ground.
   struct Layers {
     std::vector<float> elevation, sand_depth, soil_depth, looseness, moisture, obstacle, water;
-    double moisture_capacity = 0.1;  ///< of a metre of ground [m]
+    double moisture_capacity = 0.3;  ///< of a metre of ground [m]
   };
 
   /// Throws ConfigError for an array of the wrong size.

@@ -4,13 +4,13 @@
 
 namespace desert_sim {
 
-namespace {
-
 std::string wheel_name(int wheel, int wheels) {
   const int row = wheel / 2;
   const std::string place = row == 0 ? "front" : row == wheels / 2 - 1 ? "rear" : "middle";
   return place + (wheel % 2 == 0 ? "_left" : "_right");
 }
+
+namespace {
 
 std::string side_name(int side) { return side == 0 ? "_left" : "_right"; }
 
