@@ -7,6 +7,7 @@
 #include <ros/console.h>
 #include <ros/init.h>
 
+#include <csignal>
 #include <iostream>
 #include <string>
 
@@ -17,6 +18,9 @@
 namespace {
 
 constexpr int exit_invalid_input = 2, exit_failure = 3;
+
+/// Handles SIGTERM and SIGINT; only calls what a signal handler may.
+void shut_down(int) { ros::requestShutdown(); }
 
 int print_model(const char* file) {
   try {
@@ -53,6 +57,8 @@ int main(int argc, char** argv) {
   }
   if (first == "--urdf" && argc <= 3) return print_model(argc == 3 ? argv[2] : nullptr);
   ros::init(argc, argv, "desert_rover");
+  std::signal(SIGINT, shut_down);
+  std::signal(SIGTERM, shut_down);
   ros::start();  // the log ends with ROS, and must outlive the server
   int status = exit_failure;
   try {

@@ -94,9 +94,15 @@ void RoverServer::set_pose(const SetRoverPoseRequest& request, SetRoverPoseRespo
 }
 
 void RoverServer::reset(const std_srvs::TriggerRequest&, std_srvs::TriggerResponse& response) {
+  {
+    // A state that was loaded may belong to another step than the terrain's, which no longer matters.
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const MapInfo& info = known_ground().maps().info();
+    waits_for_loaded_step_ = false;
+    apply(rover_event::Advance{0, info.step, info.sim_time});
+  }
   catch_up();
   const std::lock_guard<std::mutex> lock(mutex_);
-  waits_for_loaded_step_ = false;
   start_where_it_begins(known_ground());
   if (!start_problem_.empty()) throw ConfigError(start_problem_);
   response.message = "the rover is at its start";
