@@ -1,6 +1,6 @@
 #pragma once
-/// Wheels and body against the ground: where a wheel, a rigid disc along the heading, touches it, how steep it is there,
-/// and what is in the way.
+/// Wheels and body against the ground: where a wheel, a rigid disc along the heading, touches it, how steep
+/// it is there, and what is in the way.
 
 #include <optional>
 #include <string>

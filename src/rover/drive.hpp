@@ -20,7 +20,8 @@ class Drive {
   Drive(const RoverParameters& rover, Suspension suspension)
       : rover_(rover), suspension_(std::move(suspension)) {}
 
-  /// The command within the limits of speed, yaw rate and steering. Its direction stays where the steering allows.
+  /// The command within the limits of speed, yaw rate and steering. Its direction stays where the steering
+  /// allows.
   DriveCommand limited(const DriveCommand& command) const;
   /// `now`, changed towards `wanted` by at most what the accelerations allow in `time` [s].
   DriveCommand approached(const DriveCommand& now, const DriveCommand& wanted, double time) const;

@@ -16,8 +16,8 @@ class GridGround : public GroundSource {
     double origin_x = 0, origin_y = 0;  ///< of the lower-left corner [m]
     bool periodic_x = false, periodic_y = false;
   };
-  /// Values of cells, row-major, x fastest, row 0 in the south. Arrays that are empty stand for 0 (looseness: not
-  /// known); NaN in `elevation` is unknown ground.
+  /// Values of cells, row-major, x fastest, row 0 in the south. Arrays that are empty stand for 0
+  /// (looseness: not known); NaN in `elevation` is unknown ground.
   struct Layers {
     std::vector<float> elevation, sand_depth, soil_depth, looseness, moisture, obstacle, water;
     double moisture_capacity = 0.3;  ///< of a metre of ground [m]

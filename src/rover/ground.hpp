@@ -20,14 +20,15 @@ class GroundSource {
   virtual ~GroundSource() = default;
   /// Whether a point is on the terrain, known or not.
   virtual bool contains(double x, double y) const = 0;
-  /// Elevation of the surface [m], bilinear between cell centres; none where it is unknown or off the terrain.
+  /// Elevation of the surface [m], bilinear between cell centres; none where it is unknown or off the
+  /// terrain.
   virtual std::optional<double> elevation(double x, double y) const = 0;
   /// The rest; what is unknown has its default.
   virtual GroundPoint at(double x, double y) const = 0;
 };
 
-/// Moisture over what the ground can hold, as in kernels/sand/repose.hpp: `moisture` [m] in `depth` [m] of sand and
-/// soil, `capacity` the moisture of a metre of it.
+/// Moisture over what the ground can hold, as in kernels/sand/repose.hpp: `moisture` [m] in `depth` [m] of
+/// sand and soil, `capacity` the moisture of a metre of it.
 inline double relative_moisture(double moisture, double depth, double capacity) {
   if (!(moisture > 0)) return 0;
   const double held = capacity * (depth < 1 ? (depth > 1e-3 ? depth : 1e-3) : 1);

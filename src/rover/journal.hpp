@@ -1,11 +1,11 @@
 #pragma once
-/// What a rover was told, and which ground it had, so that a run can be repeated to the bit: one YAML document a line, the
-/// first with the rover's parameters, each other one with what happened next.
+/// What a rover was told, and which ground it had, so that a run can be repeated to the bit: one YAML
+/// document a line, the first with the rover's parameters, each other one with what happened next.
 ///
 ///   {rover_journal: 1, rover: "<rover_text()>"}
 ///   {reset: [x, y, yaw], terrain: 0}      {place: [x, y, yaw], terrain: 12}      {state: !!binary …}
 ///   {drive: [forward, sideways, yaw_rate], seconds: 2}
-///   {advance: 0.02, terrain: 13, time: 13}      the ground is that of this step of the terrain; without: none is known
+///   {advance: 0.02, terrain: 13, time: 13}      on the ground of this step; without: none is known
 
 #include <cstdint>
 #include <cstdio>

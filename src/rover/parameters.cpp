@@ -24,8 +24,13 @@ void check_rover(const RoverParameters& r, const std::string& source) {
   const double half = r.wheelbase / 2;
   if (!(std::abs(r.pivot_x) < half))
     errors.add("pivot_x", with_value(r.pivot_x, "between the axles, which is less than wheelbase/2 from 0"));
-  if (r.suspension == SuspensionKind::rocker_bogie && !(r.bogie_x < 0 && r.bogie_x > -half))
-    errors.add("bogie_x", with_value(r.bogie_x, "between middle and rear wheels, -wheelbase/2 ... 0"));
+  if (r.suspension == SuspensionKind::rocker_bogie) {
+    if (!(std::abs(r.middle_x) < half))
+      errors.add("middle_x", with_value(r.middle_x, "between the other axles"));
+    if (!(r.bogie_x < r.middle_x && r.bogie_x > -half))
+      errors.add("bogie_x",
+                 with_value(r.bogie_x, "between middle and rear wheels, -wheelbase/2 ... middle_x"));
+  }
   const double wheels_in_a_row = r.suspension == SuspensionKind::rocker ? 1 : 2;
   if (r.wheelbase < 2 * r.wheel_radius * wheels_in_a_row)
     errors.add("wheelbase", with_value(r.wheelbase, "wheels that do not touch each other"));

@@ -1,6 +1,7 @@
 #pragma once
-/// Parameters of a rover with wheels on rockers: dimensions, limits, and what it takes to stop it. Lengths are those
-/// of the rover on a level plane. Body frame: origin between the wheel hubs, x ahead, y to the left, z up.
+/// Parameters of a rover with wheels on rockers: dimensions, limits, and what it takes to stop it. Lengths
+/// are those of the rover on a level plane. Body frame: origin between the wheel hubs, x ahead, y to the
+/// left, z up.
 
 #include <cstdint>
 #include <string>
@@ -11,13 +12,13 @@
 
 namespace desert_sim {
 
-/// rocker: four wheels, one rocker a side. rocker_bogie: six wheels, whose middle and rear ones are on a bogie behind
-/// the rocker. A differential turns the rockers of both sides by opposite angles.
+/// rocker: four wheels, one rocker a side. rocker_bogie: six wheels, whose middle and rear ones are on a
+/// bogie behind the rocker. A differential turns the rockers of both sides by opposite angles.
 enum class SuspensionKind : int { rocker, rocker_bogie };
 constexpr const char* suspension_kinds[] = {"rocker", "rocker_bogie"};
 
-/// skid: no wheel steers. ackermann: front and rear wheels steer about a centre on the y axis. per_wheel: every wheel
-/// steers, up to a quarter turn, so that the rover turns on the spot and drives sideways.
+/// skid: no wheel steers. ackermann: front and rear wheels steer about a centre on the y axis. per_wheel:
+/// every wheel steers, up to a quarter turn, so that the rover turns on the spot and drives sideways.
 enum class Steering : int { skid, ackermann, per_wheel };
 constexpr const char* steering_kinds[] = {"skid", "ackermann", "per_wheel"};
 
@@ -31,7 +32,9 @@ struct RoverParameters {
   double wheel_width = 0.1;
   double pivot_x = 0;
   double pivot_height = 0.1;
+  double middle_x = 0;
   double bogie_x = -0.15;
+  double bogie_height = 0;
   double body_length = 0.6;
   double body_width = 0.4;
   double body_height = 0.2;
@@ -77,9 +80,11 @@ constexpr auto parameter_table(const RoverParameters*) {
       parameter("wheel_width", &P::wheel_width, 0.005, 5, "m", "Of each wheel."),
       parameter("pivot_x", &P::pivot_x, -10, 10, "m", "Of the rockers' pivot, ahead of the middle."),
       parameter("pivot_height", &P::pivot_height, 0, 10, "m", "Of the rockers' pivot above the hubs."),
-      parameter(
-          "bogie_x", &P::bogie_x, -10, 10, "m",
-          "Of the bogies' pivot, at the height of the hubs, between middle and rear wheels (rocker_bogie)."),
+      parameter("middle_x", &P::middle_x, -10, 10, "m",
+                "Of the middle wheels, ahead of the middle (rocker_bogie)."),
+      parameter("bogie_x", &P::bogie_x, -10, 10, "m",
+                "Of the bogies' pivot, between middle and rear wheels (rocker_bogie)."),
+      parameter("bogie_height", &P::bogie_height, 0, 10, "m", "Of the bogies' pivot above the hubs."),
       parameter("body_length", &P::body_length, 0.01, 20, "m", "Of the body."),
       parameter("body_width", &P::body_width, 0.01, 20, "m", "Of the body."),
       parameter("body_height", &P::body_height, 0.01, 20, "m", "From the body's underside to its top."),

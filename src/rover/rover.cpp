@@ -152,7 +152,8 @@ void Rover::halt(RoverCondition condition, const std::string& reason) {
   for (WheelState& each : state_.wheels) each.rim_speed = each.slip = 0;
 }
 
-/// Sand that comes buries a wheel that stands in sand, and what goes uncovers it before it lets it down. Rock lifts it.
+/// Sand that comes buries a wheel that stands in sand, and what goes uncovers it before it lets it down.
+/// Rock lifts it.
 void Rover::follow_ground(const GroundSource& ground) {
   for (int n = 0; n < suspension_.wheels(); ++n) {
     const Point3 hub = suspension_.hub(n, state_);
@@ -361,8 +362,8 @@ void Rover::dead_reckon() {
   o.yaw = angle_between_turns(o.yaw + turn / 2);
 }
 
-/// Velocity, specific force and angular velocity from what has happened to the body. Ground has edges, which springs and
-/// tyres soften: a filter of first order stands for them.
+/// Velocity, specific force and angular velocity from what has happened to the body. Ground has edges,
+/// which springs and tyres soften: a filter of first order stands for them.
 void Rover::feel(const Pose& before) {
   const double share = internal_step / (rover_.imu_filter + internal_step);
   const Pose& now = state_.pose;

@@ -1,15 +1,17 @@
 #pragma once
-/// A rover on living ground: kinematic, with slip and sinkage by the laws of kernels/rover/wheel_ground.hpp. Each
-/// internal step of 0.02 s
+/// A rover on living ground: kinematic, with slip and sinkage by the laws of
+/// kernels/rover/wheel_ground.hpp. Each internal step of 0.02 s
 ///
-///   1. lets sand come and go under the wheels: what falls on a wheel that stands buries it, what blows away lets it down,
+///   1. lets sand come and go under the wheels: what falls on a wheel that stands buries it, what blows away
+///      lets it down,
 ///   2. turns the rims as the command and the limits say,
-///   3. moves the body by (1 − s) of that, s the slip by slope and ground under the wheels, and drifts it downhill,
-///      unless something is in the way,
+///   3. moves the body by (1 − s) of that, s the slip by slope and ground under the wheels, and drifts it
+///      downhill, unless something is in the way,
 ///   4. digs each wheel in (sinkage_after()), and settles the body on the wheels.
 ///
-/// A wheel that stands deeper than its slip explains has to climb out of its hole: this adds (excess depth)/(diameter) to
-/// the slope, but not on the way back along its own track. That is why a rover that is stuck can get out backwards.
+/// A wheel that stands deeper than its slip explains has to climb out of its hole: this adds (excess
+/// depth)/(diameter) to the slope, but not on the way back along its own track. That is why a rover that is
+/// stuck can get out backwards.
 ///
 /// Everything is a function of parameters, commands and ground: the same give the same bits.
 
@@ -48,15 +50,16 @@ class Rover {
   /// For a state of a rover with the same text.
   void set_state(const RoverState& state) { state_ = state; }
 
-  /// Puts it down at rest. Odometry and ways stay, since wheels do not notice. Throws ConfigError where there is no known
-  /// ground; nothing is changed then.
+  /// Puts it down at rest. Odometry and ways stay, since wheels do not notice. Throws ConfigError where
+  /// there is no known ground; nothing is changed then.
   void place(double x, double y, double yaw, const GroundSource& ground);
   /// Begins anew: place(), with odometry, ways, noise and joints as at the start.
   void reset(double x, double y, double yaw, const GroundSource& ground);
-  /// Obeys this command for `seconds`; longer than a year is for ever. Throws ConfigError for numbers that are not finite.
+  /// Obeys this command for `seconds`; longer than a year is for ever. Throws ConfigError for numbers that
+  /// are not finite.
   void drive(const DriveCommand& command, double seconds);
-  /// Lets `seconds` pass, 0 … longest_advance, on this ground (null: none is known), in whole internal steps; what is left
-  /// waits for the next call. Throws ConfigError for other times.
+  /// Lets `seconds` pass, 0 … longest_advance, on this ground (null: none is known), in whole internal
+  /// steps; what is left waits for the next call. Throws ConfigError for other times.
   void advance(double seconds, const GroundSource* ground);
   /// Notes which state of the terrain the rover has driven on.
   void note_terrain(std::uint64_t step, double time) {

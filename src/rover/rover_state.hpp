@@ -21,8 +21,8 @@ struct DriveCommand {
   double yaw_rate = 0;  ///< counter-clockwise [rad/s]
 };
 
-/// Position of the origin of the body's frame and attitude: yaw about z, then pitch about y (nose down), then roll
-/// about x (left side up) [m, rad].
+/// Position of the origin of the body's frame and attitude: yaw about z, then pitch about y (nose down),
+/// then roll about x (left side up) [m, rad].
 struct Pose {
   double x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0;
 };
@@ -65,7 +65,8 @@ struct RoverState {
   std::array<WheelState, most_wheels> wheels{};
 };
 
-/// Calls visit(name, value) for every number of the state but condition, reason and placed, in a fixed order.
+/// Calls visit(name, value) for every number of the state but condition, reason and placed, in a fixed
+/// order.
 template <class State, class Visit>
 void for_each_number(State& s, Visit&& visit) {
   const auto pose = [&](const char* name, auto& p) {

@@ -35,14 +35,16 @@ Point3 rotated_back(const Rotation& r, const Point3& p) {
 
 Suspension::Suspension(const RoverParameters& rover) : rover_(rover), wheels_(wheel_count(rover.suspension)) {
   for (int n = 0; n < wheels_; ++n) {
-    const int row = n / 2, rows = wheels_ / 2;
-    rest_[static_cast<std::size_t>(n)] = {rover.wheelbase * (0.5 - static_cast<double>(row) / (rows - 1)),
-                                          (is_left(n) ? 0.5 : -0.5) * rover.track, 0};
+    const int row = n / 2;
+    const bool last = row == wheels_ / 2 - 1;
+    const double x = row == 0 ? rover.wheelbase / 2 : last ? -rover.wheelbase / 2 : rover.middle_x;
+    rest_[static_cast<std::size_t>(n)] = {x, (is_left(n) ? 0.5 : -0.5) * rover.track, 0};
   }
   invert_level_matrix();
 }
 
-/// Gauss–Jordan elimination with pivots. The matrix is regular, because check_rover() wants the pivots between wheels.
+/// Gauss–Jordan elimination with pivots. The matrix is regular, because check_rover() wants the pivots
+/// between wheels.
 void Suspension::invert_level_matrix() {
   Matrix a{};
   const auto n = static_cast<std::size_t>(wheels_);
@@ -78,8 +80,10 @@ Point3 Suspension::hub_in_body(int wheel, double rocker, const std::array<double
   Point3 hub = hub_at_rest(wheel);
   if (on_bogie(wheel)) {
     hub.x -= rover_.bogie_x;
+    hub.z -= rover_.bogie_height;
     hub = turned_down(hub, bogie[is_left(wheel) ? 0 : 1]);
     hub.x += rover_.bogie_x;
+    hub.z += rover_.bogie_height;
   }
   hub.x -= rover_.pivot_x;
   hub.z -= rover_.pivot_height;

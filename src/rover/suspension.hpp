@@ -1,11 +1,11 @@
 #pragma once
-/// Rockers and bogies: where the wheels are at given joint angles, and the pose and joint angles at which all wheels
-/// stand on the ground.
+/// Rockers and bogies: where the wheels are at given joint angles, and the pose and joint angles at which
+/// all wheels stand on the ground.
 ///
-/// With ψ, θ, φ yaw, pitch and roll, hub i is at p + R_z(ψ) R_y(θ) R_x(φ) h_i(q), where h_i turns about the rocker's
-/// pivot by ±q (left +, right −: the differential) and, behind it, about the bogie's pivot. Unknown are z, θ, φ, q, and
-/// the angles of two bogies: as many as there are wheels. A fixed number of Newton steps, with the matrix of level
-/// ground, solves
+/// With ψ, θ, φ yaw, pitch and roll, hub i is at p + R_z(ψ) R_y(θ) R_x(φ) h_i(q), where h_i turns about the
+/// rocker's pivot by ±q (left +, right −: the differential) and, behind it, about the bogie's pivot.
+/// Unknown are z, θ, φ, q, and the angles of two bogies: as many as there are wheels. A fixed number of
+/// Newton steps, with the matrix of level ground, solves
 ///
 ///   z_i(z, θ, φ, q, …) = support(x_i, y_i)     for every wheel i
 
@@ -42,8 +42,8 @@ class Suspension {
 
   /// Height at which the ground holds the hub of this wheel over (x, y) [m].
   using Support = std::function<double(int wheel, double x, double y)>;
-  /// Sets z, roll, pitch and joint angles of the state, beginning with those that it has; x, y and yaw stay. Sets
-  /// contact_error, too.
+  /// Sets z, roll, pitch and joint angles of the state, beginning with those that it has; x, y and yaw
+  /// stay. Sets contact_error, too.
   void settle(RoverState& state, const Support& support, int iterations) const;
 
  private:

@@ -93,9 +93,9 @@ class Model {
           {rover_.pivot_x, side_y(side), rover_.pivot_height}, "0 1 0");
     if (!has_bogies()) return;
     const std::string bogie = "bogie" + side_name(side);
-    link(bogie, arm(-rover_.bogie_x, -half - rover_.bogie_x, 0, t));
+    link(bogie, arm(rover_.middle_x - rover_.bogie_x, -half - rover_.bogie_x, -rover_.bogie_height / 2, t));
     joint(bogie + "_joint", "continuous", name, bogie,
-          {rover_.bogie_x - rover_.pivot_x, 0, -rover_.pivot_height}, "0 1 0");
+          {rover_.bogie_x - rover_.pivot_x, 0, rover_.bogie_height - rover_.pivot_height}, "0 1 0");
   }
 
   void wheel(int n) {
@@ -105,7 +105,7 @@ class Model {
     const bool on_bogie = has_bogies() && n >= 2;
     const std::string parent = (on_bogie ? "bogie" : "rocker") + side_name(side);
     const Point3 at{hub.x - (on_bogie ? rover_.bogie_x : rover_.pivot_x), hub.y - side_y(side),
-                    on_bogie ? 0 : -rover_.pivot_height};
+                    on_bogie ? -rover_.bogie_height : -rover_.pivot_height};
     std::string carrier = parent;
     Point3 place = at;
     if (rover_.steering != Steering::skid) {

@@ -1,5 +1,5 @@
-/// A rover in lockstep: the same commands between the same steps give the same path to the bit, again, after a checkpoint,
-/// from the journal beside a simulation without ROS, and after kill -9.
+/// A rover in lockstep: the same commands between the same steps give the same path to the bit, again,
+/// after a checkpoint, from the journal beside a simulation without ROS, and after kill -9.
 #include <desert_sim/LoadCheckpoint.h>
 #include <desert_sim/SaveCheckpoint.h>
 

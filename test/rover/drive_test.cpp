@@ -1,7 +1,9 @@
-// Driving: limits, slip by the law, odometry that believes in the wheels, and what the inertial sensors feel.
+// Driving: limits, slip by the law, odometry that believes in the wheels, and what the inertial sensors
+// feel.
 
 #include "kernels/rover/wheel_ground.hpp"
 #include "rover/field.hpp"
+#include "src/rover/rover_class.hpp"
 #include "support/refusal.hpp"
 
 namespace desert_sim {
@@ -217,6 +219,35 @@ TEST(RoverParameters, ThatDoNotGoTogetherAreRefusedAllAtOnce) {
   const std::string reason = refusal([&] { Rover(p, {}, "file"); });
   for (const char* name : {"file: bogie_x: = 0.1", "pivot_x: = 5", "free_slip: = 0.95", "wheelbase: = 0.3"})
     EXPECT_NE(reason.find(name), std::string::npos) << reason;
+}
+
+TEST(RoverClass, GivesARoverItsDimensions) {
+  const std::string text =
+      "traversability: {wheel_law: bekker, mass: 185, gravity: 3.71, wheels: 6, wheel_radius: 0.13, "
+      "wheel_width: 0.16}\n"
+      "rover_dimensions: {axles: [0.71, 0.0, -0.70], track: 1.06, rocker_pivot: [0.15, 0.3], bogie_pivot: "
+      "[-0.35, 0.1],"
+      " bogie: rear, clearance: 0.29, body: [1.0, 0.8, 0.4], steered_axles: [0, 2], max_speed: 0.05}\n";
+  const RoverParameters p = rover_of_class(YAML::Load(text), "mer");
+  EXPECT_EQ(p.suspension, SuspensionKind::rocker_bogie);
+  EXPECT_EQ(p.steering, Steering::ackermann);
+  EXPECT_NEAR(p.wheelbase, 1.41, 1e-12);
+  EXPECT_NEAR(p.middle_x, -0.005, 1e-12);
+  EXPECT_NEAR(p.bogie_x, -0.355, 1e-12);
+  EXPECT_NEAR(p.mass, 185, 1e-4);
+  const auto refused = [&](const std::string& from, const std::string& to, const std::string& word) {
+    std::string bad = text;
+    bad.replace(bad.find(from), from.size(), to);
+    const std::string reason = refusal([&] { rover_of_class(YAML::Load(bad), "mer"); });
+    EXPECT_NE(reason.find(word), std::string::npos) << reason;
+  };
+  refused("[0.71, 0.0, -0.70]", "[1]", "axles");
+  refused("bogie: rear", "bogie: front", "rover_dimensions.bogie: 'front'");
+  refused("[1.0, 0.8, 0.4]", "[1, wide]", "rover_dimensions.body");
+  refused("mass: 185", "mass: -1", "traversability.mass: = -1");
+  refused("track: 1.06, ", "", "rover_dimensions.track: is missing");
+  EXPECT_NE(refusal([] { rover_of_class(YAML::Load("[]"), "list"); }).find("list: is not a class"),
+            std::string::npos);
 }
 
 }  // namespace

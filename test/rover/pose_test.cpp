@@ -50,7 +50,8 @@ TEST_P(Poses, OnAPlaneItHasThePlanesSlope) {
 }
 
 TEST_P(Poses, ADifferentialSharesTheRiseOfOneSide) {
-  // The left wheels' ground is twisted: the pitch is the mean of both sides, the rockers take the difference.
+  // The left wheels' ground is twisted: the pitch is the mean of both sides, the rockers take the
+  // difference.
   const double twist = 0.2;
   Rover r = rover();
   r.place(0, 0, 0, SmoothGround([&](double x, double y) { return y > 0 ? twist * x : 0; }));

@@ -57,7 +57,8 @@ std::vector<RoverEvent> course() {
   return events;
 }
 
-/// The hash of the states after each event; a rover that went through the first `begin` events is handed over.
+/// The hash of the states after each event; a rover that went through the first `begin` events is handed
+/// over.
 std::vector<std::uint64_t> path(Rover& rover, const std::vector<RoverEvent>& events, std::size_t begin,
                                 std::size_t end) {
   LivingGround ground;

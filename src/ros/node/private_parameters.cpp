@@ -13,8 +13,8 @@ namespace desert_sim {
 
 namespace {
 
-/// A number with all its bits. One that is not finite gets YAML's name for it, which the loader shows when it
-/// refuses the number.
+/// A number with all its bits. One that is not finite gets YAML's name for it, which the loader shows when
+/// it refuses the number.
 std::string number_text(double value) {
   if (std::isnan(value)) return ".nan";
   if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";

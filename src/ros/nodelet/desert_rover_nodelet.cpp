@@ -10,8 +10,8 @@
 
 namespace desert_sim {
 
-/// Input that is refused makes loading fail. A failure at run time is in the log and on /diagnostics; the manager and its
-/// other nodelets continue.
+/// Input that is refused makes loading fail. A failure at run time is in the log and on /diagnostics; the
+/// manager and its other nodelets continue.
 class DesertRoverNodelet : public nodelet::Nodelet {
  private:
   void onInit() override {

@@ -1,7 +1,7 @@
 /// desert_rover_node: a rover as a ROS node. Without ROS:
 ///
 ///   desert_rover_node --describe            prints the page of its parameters
-///   desert_rover_node --urdf [FILE.yaml]    prints the model of the rover with these parameters (default: the defaults)
+///   desert_rover_node --urdf [FILE.yaml]    prints the model of a rover with these parameters
 ///
 /// Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time.
 #include <ros/console.h>

@@ -9,11 +9,29 @@
 #include "src/core/parameter_page.hpp"
 #include "src/ros/node/frames.hpp"
 #include "src/ros/node/private_parameters.hpp"
+#include "src/ros/node/scenario_file.hpp"
+#include "src/rover/rover_class.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
 
 namespace {
+
+YAML::Node yaml_of_file(const std::string& path) {
+  try {
+    return YAML::Load(read_file(path));
+  } catch (const YAML::Exception& e) {
+    throw ConfigError(path + ": " + e.what());
+  }
+}
+
+/// The file that the name of a class stands for.
+std::string class_file(const std::string& name) {
+  if (name.find('/') != std::string::npos) return name;
+  const std::string scenarios = installed_scenario_folder();
+  if (scenarios.empty()) throw ConfigError("rover_class: the package desert_sim is not in ROS_PACKAGE_PATH");
+  return scenarios.substr(0, scenarios.rfind('/')) + "/rovers/" + name + ".yaml";
+}
 
 RoverSetup setup_of(const YAML::Node& root, const std::string& source) {
   ValidationErrors errors(source);
@@ -21,6 +39,10 @@ RoverSetup setup_of(const YAML::Node& root, const std::string& source) {
   std::set<std::string> known{"rover", "wheel_ground"};
   yaml::read_parameters(root, "", errors, setup.node, known);
   yaml::reject_unknown_keys(root, "", known, errors);
+  if (!setup.node.rover_class.empty()) {
+    const std::string file = class_file(setup.node.rover_class);
+    setup.rover = rover_of_class(yaml_of_file(file), file);
+  }
   if (root.IsMap()) {
     yaml::read_section(root["rover"], "rover", errors, setup.rover);
     yaml::read_section(root["wheel_ground"], "wheel_ground", errors, setup.wheel_ground);
@@ -43,13 +65,7 @@ RoverSetup read_rover_setup(const ros::NodeHandle& private_node) {
   return setup_of(private_parameters(name), "parameters of " + name);
 }
 
-RoverSetup read_rover_file(const std::string& path) {
-  try {
-    return setup_of(YAML::Load(read_file(path)), path);
-  } catch (const YAML::Exception& e) {
-    throw ConfigError(path + ": " + e.what());
-  }
-}
+RoverSetup read_rover_file(const std::string& path) { return setup_of(yaml_of_file(path), path); }
 
 std::string describe_rover_parameters() {
   std::ostringstream out;

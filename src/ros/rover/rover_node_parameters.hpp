@@ -11,7 +11,8 @@
 
 namespace desert_sim {
 
-/// ros: the rover drives as ROS time passes. lockstep: it drives when the terrain's state moves on, as far as that did.
+/// ros: the rover drives as ROS time passes. lockstep: it drives when the terrain's state moves on, as far
+/// as that did.
 enum class RoverClock : int { ros, lockstep };
 constexpr const char* rover_clocks[] = {"ros", "lockstep"};
 
@@ -21,6 +22,7 @@ constexpr const char* looseness_sources[] = {"auto", "layer", "assumed"};
 
 struct RoverNodeParameters {
   std::string terrain_node = "/desert_sim";
+  std::string rover_class;
   RoverClock clock = RoverClock::ros;
   double seconds_per_sim_second = 1;
   double rate = 50;
@@ -47,6 +49,10 @@ constexpr auto parameter_table(const RoverNodeParameters*) {
   using P = RoverNodeParameters;
   return std::make_tuple(
       parameter("terrain_node", &P::terrain_node, "Name of the simulation's node."),
+      parameter("rover_class", &P::rover_class,
+                "A file of a class of rovers, or the bare name of one in the package's config/rovers, whose "
+                "values the "
+                "section rover overrides; empty: the defaults of that section."),
       parameter("clock", &P::clock, rover_clocks,
                 "ros: it drives as ROS time passes; lockstep: as the terrain's simulated time does, by whole "
                 "states."),
@@ -106,13 +112,14 @@ struct RoverSetup {
   }
 };
 
-/// Reads all private parameters: those of the table, and the sections `rover` and `wheel_ground`. Throws ConfigError that
-/// lists all errors; an unknown parameter is one.
+/// Reads all private parameters: those of the table, and the sections `rover` and `wheel_ground`. Throws
+/// ConfigError that lists all errors; an unknown parameter is one.
 RoverSetup read_rover_setup(const ros::NodeHandle& private_node);
 /// The same from a YAML file.
 RoverSetup read_rover_file(const std::string& path);
 
-/// The page in markdown: what `desert_rover_node --describe` prints, and what config/rover_parameters.md holds.
+/// The page in markdown: what `desert_rover_node --describe` prints, and what config/rover_parameters.md
+/// holds.
 std::string describe_rover_parameters();
 
 }  // namespace desert_sim

@@ -19,8 +19,8 @@ class RoverPublisher {
 
   /// `terrain_frame` is empty before there is a terrain.
   void publish_pose(const Rover& rover, const ros::Time& stamp, const std::string& terrain_frame);
-  /// If the state has changed since the last one, or that was a while ago. The message lacks what RoverPublisher does not
-  /// know: `status` has it.
+  /// If the state has changed since the last one, or that was a while ago. The message lacks what
+  /// RoverPublisher does not know: `status` has it.
   void publish_status(const RoverStatus& status);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-/// A rover as a node, for the program desert_rover_node and for the nodelet: parameters, terrain, clock, topics and
-/// services, on threads of its own.
+/// A rover as a node, for the program desert_rover_node and for the nodelet: parameters, terrain, clock,
+/// topics and services, on threads of its own.
 
 #include <desert_sim/DriveRover.h>
 #include <desert_sim/LoadRover.h>
@@ -31,7 +31,8 @@ namespace desert_sim {
 
 class RoverServer {
  public:
-  /// Topics are below `node`, parameters and services below `private_node`. Throws ConfigError for input that is refused.
+  /// Topics are below `node`, parameters and services below `private_node`. Throws ConfigError for input
+  /// that is refused.
   RoverServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   /// Ends after the present advance.
   ~RoverServer();
@@ -62,7 +63,8 @@ class RoverServer {
   void reset(const std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response);
   void save_state(const SaveRoverRequest& request, SaveRoverResponse& response);
   void load_state(const LoadRoverRequest& request, LoadRoverResponse& response);
-  /// In lockstep waits until the rover has driven up to the terrain's present step. Throws ConfigError if it does not.
+  /// In lockstep waits until the rover has driven up to the terrain's present step. Throws ConfigError if
+  /// it does not.
   void catch_up();
   const MapGround& known_ground() const;
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);

@@ -1,6 +1,6 @@
 #pragma once
-/// The terrain that a rover drives on, as a TerrainClient has it: the newest maps, or state after state with all layers of
-/// one step.
+/// The terrain that a rover drives on, as a TerrainClient has it: the newest maps, or state after state
+/// with all layers of one step.
 
 #include <ros/node_handle.h>
 
@@ -26,8 +26,8 @@ class RoverTerrain {
 
   /// The newest map of each layer, perhaps of different steps; null before there is one of each.
   std::shared_ptr<const MapGround> newest();
-  /// The next state of which all layers are of one step, in the order of steps. Waits for it up to `patience`, and is
-  /// null if none came. States that nobody takes are kept, up to 1000.
+  /// The next state of which all layers are of one step, in the order of steps. Waits for it up to
+  /// `patience`, and is null if none came. States that nobody takes are kept, up to 1000.
   std::shared_ptr<const MapGround> next(std::chrono::milliseconds patience);
   /// Whether the simulation's topics have a publisher.
   bool connected() const { return client_->connected(); }

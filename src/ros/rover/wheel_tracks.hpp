@@ -1,9 +1,10 @@
 #pragma once
-/// Tracks: each wheel presses the sand that it rolls over to its sinkage, and displaces it to both sides, by strokes of
-/// the simulation's brush that conserve the sand. Where the terrain has the layer looseness, the track is packed.
+/// Tracks: each wheel presses the sand that it rolls over to its sinkage, and displaces it to both sides,
+/// by strokes of the simulation's brush that conserve the sand. Where the terrain has the layer looseness,
+/// the track is packed.
 ///
-/// A cell is mostly wider than a wheel. The stroke is as wide as the brush needs to meet cells, and as much shallower, so
-/// that it displaces the volume of the wheel's track.
+/// A cell is mostly wider than a wheel. The stroke is as wide as the brush needs to meet cells, and as much
+/// shallower, so that it displaces the volume of the wheel's track.
 
 #include <desert_sim/EditTerrain.h>
 #include <ros/node_handle.h>
@@ -29,8 +30,9 @@ class WheelTracks {
   WheelTracks(const WheelTracks&) = delete;
   WheelTracks& operator=(const WheelTracks&) = delete;
 
-  /// Notes where the wheels are; a way of ~track_spacing becomes a stroke. In lockstep returns when the terrain has taken
-  /// the strokes; otherwise a thread brings them, one at a time, and those that wait too long are left out.
+  /// Notes where the wheels are; a way of ~track_spacing becomes a stroke. In lockstep returns when the
+  /// terrain has taken the strokes; otherwise a thread brings them, one at a time, and those that wait too
+  /// long are left out.
   void follow(const Rover& rover, double cell_size);
   /// Strokes that the terrain has taken.
   std::uint64_t taken() const { return taken_; }

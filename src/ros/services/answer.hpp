@@ -9,8 +9,9 @@
 
 namespace desert_sim {
 
-/// Calls `serve`. What it refuses (ConfigError), or any other failure, becomes the answer success = false with the
-/// reason. Always true, which callbacks return so that the answer, with its reason, reaches who asked.
+/// Calls `serve`. What it refuses (ConfigError), or any other failure, becomes the answer success = false
+/// with the reason. Always true, which callbacks return so that the answer, with its reason, reaches who
+/// asked.
 template <class Response, class Serve>
 bool answer(const std::string& service, Response& response, const Serve& serve) {
   try {
