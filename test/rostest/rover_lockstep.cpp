@@ -6,9 +6,8 @@
 #include "rostest/child_process.hpp"
 #include "rostest/rover_tests.hpp"
 #include "src/ros/conversion/messages.hpp"
-#include "src/rover/grid_ground.hpp"
 #include "src/rover/journal.hpp"
-#include "src/simulation/session.hpp"
+#include "src/rover/simulated_ground.hpp"
 
 namespace {
 
@@ -99,15 +98,11 @@ TEST(RoverLockstep, TheJournalLeadsToTheSameStateWithoutRos) {
     if (const auto* place = std::get_if<desert_sim::rover_event::Place>(&*event); place && place->reset)
       first = event;
   journal.events.erase(journal.events.begin(), first);
-  desert_sim::Session session(
-      desert_sim::load_scenario(DESERT_SOURCE_DIR "/test/rostest/scenarios/drifting.yaml"),
-      desert_sim::no_raster_loader, "cpu", 1);
-  std::unique_ptr<desert_sim::GridGround> ground;
-  const auto at_step = [&](std::uint64_t wanted) -> const desert_sim::GroundSource& {
-    while (session.simulation().state().steps < wanted) session.step();
-    const auto layers = desert_sim::GridGround::layers_of_snapshot();
-    ground = std::make_unique<desert_sim::GridGround>(*session.simulation().snapshot(layers), 0.3);
-    return *ground;
+  desert_sim::Scenario scenario =
+      desert_sim::load_scenario(DESERT_SOURCE_DIR "/test/rostest/scenarios/drifting.yaml");
+  desert_sim::SimulatedGround ground(scenario, desert_sim::no_raster_loader, "cpu", 1);
+  const auto at_step = [&ground](std::uint64_t wanted) -> const desert_sim::GroundSource& {
+    return ground.at(wanted);
   };
   EXPECT_EQ(desert_sim::hash_text(desert_sim::hash_of(desert_sim::replay(journal, at_step))), end);
 }

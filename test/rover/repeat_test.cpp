@@ -2,6 +2,7 @@
 
 #include "rover/field.hpp"
 #include "src/rover/journal.hpp"
+#include "src/rover/simulated_ground.hpp"
 #include "src/rover/state_file.hpp"
 #include "src/rover/urdf.hpp"
 #include "support/refusal.hpp"
@@ -18,25 +19,7 @@ const char* const dunes =
     "direction_deg: 20},"
     " terrain: [noise: {layer: sand, low: 0.2, high: 1.5, scale: 6}]}";
 
-/// A living terrain, which goes on to the steps that are asked for.
-class LivingGround {
- public:
-  LivingGround() : exec_(make_exec("cpu", 1)), simulation_(simulate(*exec_, dunes)) {}
-  const GroundSource& at(std::uint64_t step) {
-    while (simulation_->state().steps < step) simulation_->step();
-    if (!ground_ || step_ != step) {
-      ground_ = std::make_unique<GridGround>(*simulation_->snapshot(GridGround::layers_of_snapshot()), 0.1);
-      step_ = step;
-    }
-    return *ground_;
-  }
-
- private:
-  std::unique_ptr<Exec> exec_;
-  std::unique_ptr<Simulation> simulation_;
-  std::unique_ptr<GridGround> ground_;
-  std::uint64_t step_ = 0;
-};
+SimulatedGround living_ground() { return SimulatedGround(scenario_of(dunes), no_raster_loader, "cpu", 1); }
 
 RoverParameters noisy() {
   RoverParameters p;
@@ -61,7 +44,7 @@ std::vector<RoverEvent> course() {
 /// over.
 std::vector<std::uint64_t> path(Rover& rover, const std::vector<RoverEvent>& events, std::size_t begin,
                                 std::size_t end) {
-  LivingGround ground;
+  SimulatedGround ground = living_ground();
   std::vector<std::uint64_t> hashes;
   for (std::size_t n = begin; n < end; ++n) {
     apply(rover, events[n], [&](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
@@ -109,7 +92,7 @@ TEST(RoverRepeat, TheJournalLeadsToTheSameState) {
     journal.write(rover_event::SetState{rover_state_bytes(other)});
     journal.write(rover_event::SetState{rover_state_bytes(rover)});
   }
-  LivingGround ground;
+  SimulatedGround ground = living_ground();
   const RoverState end = replay(read_rover_journal(folder.path("journal")),
                                 [&](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
   EXPECT_EQ(hash_of(end), hash_of(rover.state()));

@@ -1,6 +1,8 @@
 /// desert_rover_node: a rover as a ROS node. Without ROS:
 ///
 ///   desert_rover_node --describe            prints the page of its parameters
+///   desert_rover_node --replay JOURNAL SCENARIO     drives again what the journal has, beside a simulation of the
+///                                           scenario (a name or a file), and prints where that ends
 ///   desert_rover_node --urdf [FILE.yaml]    prints the model of a rover with these parameters
 ///
 /// Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time.
@@ -8,11 +10,16 @@
 #include <ros/init.h>
 
 #include <csignal>
+#include <cstdio>
 #include <iostream>
 #include <string>
 
 #include "src/core/error.hpp"
+#include "src/grid_map/grid_map_bag.hpp"
+#include "src/ros/conversion/messages.hpp"
+#include "src/ros/node/scenario_file.hpp"
 #include "src/ros/rover/rover_server.hpp"
+#include "src/rover/simulated_ground.hpp"
 #include "src/rover/urdf.hpp"
 
 namespace {
@@ -30,6 +37,25 @@ int print_model(const char* file) {
                                      setup.node.tf_prefix.empty() ? "" : setup.node.tf_prefix + "/");
     return 0;
   } catch (const desert_sim::ConfigError& e) {
+    std::cerr << e.what() << "\n";
+    return exit_invalid_input;
+  }
+}
+
+int replay(const std::string& journal, const std::string& name) {
+  try {
+    using namespace desert_sim;
+    SimulatedGround ground(load_scenario(scenario_file(name)), raster_loader_with_bags({"", false}), "cpu",
+                           0);
+    const RoverState end =
+        desert_sim::replay(read_rover_journal(journal),
+                           [&ground](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
+    std::printf("step %lu of the terrain, x %.6f, y %.6f, z %.6f, yaw %.6f, %s, state_hash %s\n",
+                static_cast<unsigned long>(end.terrain_step), end.pose.x, end.pose.y, end.pose.z,
+                end.pose.yaw, rover_conditions[static_cast<int>(end.condition)],
+                hash_text(hash_of(end)).c_str());
+    return 0;
+  } catch (const desert_sim::Error& e) {
     std::cerr << e.what() << "\n";
     return exit_invalid_input;
   }
@@ -56,6 +82,11 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (first == "--urdf" && argc <= 3) return print_model(argc == 3 ? argv[2] : nullptr);
+  if (first == "--replay" && argc == 4) return replay(argv[2], argv[3]);
+  if (first.rfind("--", 0) == 0) {
+    std::cerr << "desert_rover_node: not one of --describe, --urdf [FILE.yaml], --replay JOURNAL SCENARIO\n";
+    return exit_invalid_input;
+  }
   ros::init(argc, argv, "desert_rover");
   std::signal(SIGINT, shut_down);
   std::signal(SIGTERM, shut_down);
