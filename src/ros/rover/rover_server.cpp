@@ -105,21 +105,26 @@ void RoverServer::run_as_ros_time_passes() {
     due = std::max(due + period, std::chrono::steady_clock::now());
     std::this_thread::sleep_until(due);
     const ros::Time now = ros::Time::now();
-    if (now.isZero()) continue;  // use_sim_time, and nobody has told the time yet
-    // The clock may begin, stand still, or jump.
+    if (now.isZero() || now == last) {  // nobody has told the time yet, or it stands still
+      tell_status();
+      continue;
+    }
     const double seconds = last.isZero() ? 0 : std::clamp((now - last).toSec(), 0.0, longest_pause);
-    if (now == last && !last.isZero()) continue;
     last = now;
     advance(seconds, terrain_.newest(), now);
   }
+}
+
+void RoverServer::tell_status() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  publisher_.publish_status(status());
 }
 
 void RoverServer::run_in_lockstep() {
   while (!stopping_ && ros::ok()) {
     const std::shared_ptr<const MapGround> ground = terrain_.next(patience);
     if (!ground) {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      publisher_.publish_status(status());
+      tell_status();
       continue;
     }
     const double seconds = seconds_to(*ground);

@@ -45,6 +45,7 @@ class RoverServer {
   void run();
   void run_as_ros_time_passes();
   void run_in_lockstep();
+  void tell_status();
   /// Lets the rover drive on this ground (null: none is known), and publishes.
   void advance(double seconds, const std::shared_ptr<const MapGround>& ground, const ros::Time& stamp);
   /// By how much the rover's time goes on with this state of the terrain.
