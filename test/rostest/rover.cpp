@@ -1,5 +1,6 @@
 /// Two rovers in one master: what they publish belongs together, what they are told is obeyed or refused.
 #include <desert_sim/EditTerrain.h>
+#include <desert_sim/SimulationStatus.h>
 #include <geometry_msgs/Twist.h>
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/JointState.h>
@@ -103,6 +104,12 @@ TEST_F(TwoRovers, TheOtherTurnsOnTheSpotAndDrivesSideways) {
   ASSERT_TRUE(ask<desert_sim::DriveRover>(second + "/drive", sideways).success);
   EXPECT_TRUE(wait_until([&] { return truth.last().pose.pose.position.x < 79.6; }));
   EXPECT_NEAR(truth.last().pose.pose.position.y, 40, 0.01);
+  // Its tracks move sand, and neither make nor lose any.
+  Listener<RoverStatus> told(second + "/status");
+  EXPECT_TRUE(told.wait_for([](const RoverStatus& s) { return s.tracks > 0; }));
+  Listener<desert_sim::SimulationStatus> terrain("status");
+  for (const desert_sim::MaterialVolume& material : terrain.last().volumes)
+    if (material.material == "sand") EXPECT_EQ(material.residual, 0);
 }
 
 TEST_F(TwoRovers, RefuseWhatIsNoCommandAndSaySo) {

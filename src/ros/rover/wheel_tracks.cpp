@@ -14,7 +14,7 @@ namespace desert_sim {
 namespace {
 
 constexpr std::size_t most_waiting = 64;
-constexpr double shallowest = 1e-4;  ///< [m]
+constexpr double shallowest = 4e-6;  ///< a few quanta of the terrain [m]
 constexpr double packed = 0.1;       ///< looseness under a wheel
 
 geometry_msgs::Point point(double x, double y) {
