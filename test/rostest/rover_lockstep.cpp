@@ -49,7 +49,8 @@ TEST(RoverLockstep, TheSameCallsGiveTheSamePath) {
   EXPECT_EQ(path(0, steps), once);
   EXPECT_NE(once.front(), once.back());
   node_test::Listener<desert_sim::RoverStatus> status(rover + "/status");
-  EXPECT_GT(status.last().way_made, 2) << status.last().reason;
+  EXPECT_TRUE(status.wait_for([](const desert_sim::RoverStatus& s) { return s.way_made > 2; }))
+      << status.last().way_made << " m, " << status.last().state << " " << status.last().reason;
 }
 
 TEST(RoverLockstep, ACheckpointOfBothGoesOnTheSameWay) {

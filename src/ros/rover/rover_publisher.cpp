@@ -2,12 +2,19 @@
 
 namespace desert_sim {
 
+namespace {
+
+/// Poses come with steps then, and who subscribes between two steps is to have the last one.
+bool is_lockstep(const RoverSetup& setup) { return setup.node.clock == RoverClock::lockstep; }
+
+}  // namespace
+
 RoverPublisher::RoverPublisher(ros::NodeHandle node, ros::NodeHandle private_node, const RoverSetup& setup)
     : setup_(setup),
-      odom_(node.advertise<nav_msgs::Odometry>("odom", 10)),
-      ground_truth_(node.advertise<nav_msgs::Odometry>("ground_truth", 10)),
-      joint_states_(node.advertise<sensor_msgs::JointState>("joint_states", 10)),
-      imu_(node.advertise<sensor_msgs::Imu>("imu", 10)),
+      odom_(node.advertise<nav_msgs::Odometry>("odom", 10, is_lockstep(setup))),
+      ground_truth_(node.advertise<nav_msgs::Odometry>("ground_truth", 10, is_lockstep(setup))),
+      joint_states_(node.advertise<sensor_msgs::JointState>("joint_states", 10, is_lockstep(setup))),
+      imu_(node.advertise<sensor_msgs::Imu>("imu", 10, is_lockstep(setup))),
       status_(private_node.advertise<RoverStatus>("status", 10, true)) {}
 
 void RoverPublisher::publish_pose(const Rover& rover, const ros::Time& stamp,
