@@ -1,9 +1,9 @@
 /// desert_rover_node: a rover as a ROS node. Without ROS:
 ///
-///   desert_rover_node --describe            prints the page of its parameters
-///   desert_rover_node --replay JOURNAL SCENARIO     drives again what the journal has, beside a simulation of the
-///                                           scenario (a name or a file), and prints where that ends
-///   desert_rover_node --urdf [FILE.yaml]    prints the model of a rover with these parameters
+///   --describe                           prints the page of its parameters
+///   --urdf [FILE.yaml] [KEY:=VALUE]...   prints the model of a rover with these parameters
+///   --replay JOURNAL SCENARIO            drives again what the journal has, beside a simulation of the
+///                                        scenario (a name or a file), and prints where that ends
 ///
 /// Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time.
 #include <ros/console.h>
@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "src/core/error.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
@@ -29,12 +30,10 @@ constexpr int exit_invalid_input = 2, exit_failure = 3;
 /// Handles SIGTERM and SIGINT; only calls what a signal handler may.
 void shut_down(int) { ros::requestShutdown(); }
 
-int print_model(const char* file) {
+int print_model(const std::vector<std::string>& words) {
   try {
-    desert_sim::RoverSetup setup;
-    if (file) setup = desert_sim::read_rover_file(file);
-    std::cout << desert_sim::urdf_of(setup.rover,
-                                     setup.node.tf_prefix.empty() ? "" : setup.node.tf_prefix + "/");
+    const desert_sim::RoverSetup setup = desert_sim::read_rover_words(words);
+    std::cout << desert_sim::urdf_of(setup.rover, setup.frame(""));
     return 0;
   } catch (const desert_sim::ConfigError& e) {
     std::cerr << e.what() << "\n";
@@ -81,10 +80,11 @@ int main(int argc, char** argv) {
     std::cout << desert_sim::describe_rover_parameters();
     return 0;
   }
-  if (first == "--urdf" && argc <= 3) return print_model(argc == 3 ? argv[2] : nullptr);
+  if (first == "--urdf") return print_model({argv + 2, argv + argc});
   if (first == "--replay" && argc == 4) return replay(argv[2], argv[3]);
   if (first.rfind("--", 0) == 0) {
-    std::cerr << "desert_rover_node: not one of --describe, --urdf [FILE.yaml], --replay JOURNAL SCENARIO\n";
+    std::cerr << "desert_rover_node: not one of --describe, --urdf [FILE.yaml] [KEY:=VALUE]..., --replay "
+                 "JOURNAL SCENARIO\n";
     return exit_invalid_input;
   }
   ros::init(argc, argv, "desert_rover");

@@ -4,6 +4,7 @@
 
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "src/core/files.hpp"
 #include "src/core/parameter_page.hpp"
@@ -65,7 +66,21 @@ RoverSetup read_rover_setup(const ros::NodeHandle& private_node) {
   return setup_of(private_parameters(name), "parameters of " + name);
 }
 
-RoverSetup read_rover_file(const std::string& path) { return setup_of(yaml_of_file(path), path); }
+RoverSetup read_rover_words(const std::vector<std::string>& words) {
+  YAML::Node root(YAML::NodeType::Map);
+  std::string source = "command line";
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const std::string& word : words) {
+    const std::size_t at = word.find(":=");
+    if (at == std::string::npos)
+      root = yaml_of_file(source = word);
+    else if (at + 2 < word.size())
+      values.emplace_back(word.substr(0, at), word.substr(at + 2));
+  }
+  if (!root.IsMap()) throw ConfigError(source + ": has no keys and values");
+  for (const auto& [key, value] : values) root[key] = value;
+  return setup_of(root, source);
+}
 
 std::string describe_rover_parameters() {
   std::ostringstream out;

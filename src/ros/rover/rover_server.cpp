@@ -48,8 +48,8 @@ RoverServer::RoverServer(const ros::NodeHandle& node, const ros::NodeHandle& pri
   node_.setCallbackQueue(&queue_);
   private_node_.setCallbackQueue(&queue_);
   if (setup_.node.tracks) tracks_ = std::make_unique<WheelTracks>(setup_);
-  const std::string prefix = setup_.node.tf_prefix.empty() ? "" : setup_.node.tf_prefix + "/";
-  if (setup_.node.publish_description) node_.setParam("robot_description", urdf_of(setup_.rover, prefix));
+  if (setup_.node.publish_description)
+    node_.setParam("robot_description", urdf_of(setup_.rover, setup_.frame("")));
   const boost::function<void(const geometry_msgs::TwistConstPtr&)> receive =
       [this](const geometry_msgs::TwistConstPtr& command) { receive_command(*command); };
   commands_ = node_.subscribe<geometry_msgs::Twist>("cmd_vel", 1, receive);

@@ -97,9 +97,11 @@ void RoverServer::reset(const std_srvs::TriggerRequest&, std_srvs::TriggerRespon
   {
     // A state that was loaded may belong to another step than the terrain's, which no longer matters.
     const std::lock_guard<std::mutex> lock(mutex_);
-    const MapInfo& info = known_ground().maps().info();
     waits_for_loaded_step_ = false;
-    apply(rover_event::Advance{0, info.step, info.sim_time});
+    if (ground_) {
+      const MapInfo& info = ground_->maps().info();
+      apply(rover_event::Advance{0, info.step, info.sim_time});
+    }
   }
   catch_up();
   const std::lock_guard<std::mutex> lock(mutex_);
