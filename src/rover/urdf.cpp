@@ -27,7 +27,6 @@ class Model {
          {std::pair("body", "0.85 0.82 0.75"), std::pair("frame", "0.35 0.35 0.38"),
           std::pair("wheel", "0.15 0.15 0.16")})
       out_ << "  <material name=\"" << name << "\"><color rgba=\"" << colour << " 1\"/></material>\n";
-    link("base_footprint", "");
     body();
     for (int side = 0; side < 2; ++side) rocker(side);
     for (int wheel = 0; wheel < suspension_.wheels(); ++wheel) this->wheel(wheel);
@@ -69,10 +68,9 @@ class Model {
              << m * (x + y) / 12 << "\"/></inertial>";
     const std::string mast =
         box({size.x * 0.35, 0, low + size.z * 1.25}, {size.x * 0.08, size.y * 0.15, size.z * 0.5}, "frame");
-    // The pose between both is of two axes: tf has it, and the URDF a link of its own.
+    // The root of a model should have no mass, for KDL.
     link("base_link", box(at, size, "body") + mast);
     link("base_inertia", inertial.str());
-    joint("base_joint", "floating", "base_footprint", "base_link", {0, 0, rover_.wheel_radius});
     joint("base_inertia_joint", "fixed", "base_link", "base_inertia", {});
   }
   /// From `ahead` to `behind`, in the frame of the arm's pivot.

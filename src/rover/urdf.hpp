@@ -8,8 +8,7 @@
 
 namespace desert_sim {
 
-/// The URDF: base_footprint, base_link, rockers, bogies and wheels, the names of links with `prefix` before
-/// them.
+/// The URDF: base_link, rockers, bogies and wheels, the names of links with `prefix` before them.
 std::string urdf_of(const RoverParameters& rover, const std::string& prefix);
 
 /// front_left, …: its wheel's joint is <name>_wheel_joint.
