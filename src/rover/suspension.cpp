@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/core/constants.hpp"
+
 namespace desert_sim {
 
 namespace {
@@ -14,6 +16,8 @@ Point3 turned_down(const Point3& p, double angle) {
 }
 
 }  // namespace
+
+double angle_between_turns(double angle) { return angle - 2 * pi * std::round(angle / (2 * pi)); }
 
 Rotation rotation_of(const Pose& pose) {
   const double cr = std::cos(pose.roll), sr = std::sin(pose.roll), cp = std::cos(pose.pitch),

@@ -21,6 +21,9 @@ struct Point3 {
   double x = 0, y = 0, z = 0;
 };
 
+/// The angle without whole turns, −π … π.
+double angle_between_turns(double angle);
+
 /// R_z(yaw) R_y(pitch) R_x(roll), row by row.
 using Rotation = std::array<std::array<double, 3>, 3>;
 Rotation rotation_of(const Pose& pose);
