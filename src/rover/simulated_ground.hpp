@@ -14,8 +14,8 @@ class SimulatedGround {
  public:
   SimulatedGround(Scenario scenario, RasterLoader load_raster, const std::string& backend, int threads);
 
-  /// The ground at this step since the scenario's start. An earlier step than the last one begins anew. It stays
-  /// valid until the next call.
+  /// The ground at this step since the scenario's start. An earlier step than the last one begins anew. What
+  /// it returns stays valid until the next call.
   const GroundSource& at(std::uint64_t step);
 
  private:

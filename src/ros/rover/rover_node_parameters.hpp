@@ -116,8 +116,8 @@ struct RoverSetup {
 /// Reads all private parameters: those of the table, and the sections `rover` and `wheel_ground`. Throws
 /// ConfigError that lists all errors; an unknown parameter is one.
 RoverSetup read_rover_setup(const ros::NodeHandle& private_node);
-/// The same from words of a command line: a YAML file, and key:=value, which override its keys; what has no value
-/// is left out.
+/// The same from words of a command line: a YAML file, and key:=value, which override its keys; what has no
+/// value is left out.
 RoverSetup read_rover_words(const std::vector<std::string>& words);
 
 /// The page in markdown: what `desert_rover_node --describe` prints, and what config/rover_parameters.md
