@@ -19,6 +19,8 @@ enum class Purpose : std::uint32_t {
   turbulence,
   rain,
   rounding,
+  rover_odometry,
+  rover_imu,
   plants = 32,
   planting,
   range_noise = 64,

@@ -54,7 +54,8 @@ void LayerStream::publish_change(const MapChange& change, const ros::Time* updat
   if (!gap.empty())
     ROS_WARN_THROTTLE(5, "The terrain client needs a new keyframe of the layer %s: %s", layer_.c_str(),
                       gap.c_str());
-  if (change.map && context_.on_change && (change.replaced || !change.cells.empty()))
+  if (change.map && context_.on_change &&
+      (context_.tell_each_step || change.replaced || !change.cells.empty()))
     context_.on_change(change);
 }
 

@@ -28,6 +28,7 @@ struct StreamContext {
   std::uint32_t update_queue;
   KeyframeRequests::Clock::duration shortest_pause, longest_pause;
   std::function<void(const MapChange&)> on_change;  ///< may be empty
+  bool tell_each_step = false;                      ///< also maps of which only the time has changed
 
   std::mutex processing;              ///< held while a message is processed; queries do not wait for it
   mutable std::mutex mutex;           ///< guards what all streams tell; held only briefly

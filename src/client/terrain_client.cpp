@@ -65,6 +65,7 @@ TerrainClient::TerrainClient(const ros::NodeHandle& node, Options options)
   context_.shortest_pause = duration_of(options_.shortest_pause);
   context_.longest_pause = duration_of(options_.longest_pause);
   context_.on_change = options_.on_change;
+  context_.tell_each_step = options_.tell_each_step;
   for (const std::string& layer : options_.layers) subscribe_layer(layer);
   for (const std::shared_ptr<LayerStream>& stream : streams()) stream->start();
   thread_ = std::thread([this] { run_thread(); });

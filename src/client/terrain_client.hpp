@@ -55,6 +55,8 @@ class TerrainClient {
     /// concurrently, on the thread that processes messages. The function may use the client, but must not
     /// destroy it and must not throw. No message is processed while it runs.
     std::function<void(const MapChange&)> on_change;
+    /// Whether on_change is also called when a message says that a map is still valid at a later step.
+    bool tell_each_step = false;
   };
 
   using Statistics = StreamStatistics;

@@ -355,4 +355,21 @@ MUTATIONS = [Mutation(*row) for row in (
     ("step_height_beside_a_slope", "kernels/rover/surface_differences.hpp",
      "if (a > 0.0f && b > 0.0f) return minimum(a, b);", "if (a > 0.0f && b > 0.0f) return maximum(a, b);",
      "a step counts in full on both sides", "unit *TraversabilityLaw.*Step*"),
+
+    # ---- rovers
+    ("rover_dug_in_both_ways", "src/rover/rover.cpp",
+     "if (w.dug * motion.rim_speed[static_cast<std::size_t>(n)] < 0) continue;", "",
+     "back along its own track a wheel does not climb", "rover RoverTrouble.AWheelThatHasDugItselfIn*"),
+    ("rover_lifted_by_sand", "src/rover/rover.cpp",
+     "w.sunk += rise;", "w.sunk += 0 * rise;",
+     "sand that falls on a wheel buries it", "rover RoverTrouble.SandThatComes*"),
+    ("rover_drifts_uphill", "src/rover/rover.cpp",
+     "right_y = -body.forward / speed;", "right_y = body.forward / speed;",
+     "across a slope a rover drifts downhill", "rover RoverDrive.AcrossASlope*"),
+    ("rover_rockers_alike", "src/rover/suspension.cpp",
+     "hub = turned_down(hub, is_left(wheel) ? rocker : -rocker);", "hub = turned_down(hub, rocker);",
+     "the differential turns the rockers by opposite angles", "rover *Poses.ADifferential*"),
+    ("rover_forgets_its_rest", "src/rover/rover.cpp",
+     "state_.rest = std::max(state_.rest - whole * internal_step, 0.0);", "state_.rest = 0;",
+     "time that is no whole step waits", "rover RoverDrive.TimeThat*"),
 )]

@@ -7,6 +7,7 @@
 #include "src/core/quoted.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/node/scenario_file.hpp"
+#include "src/ros/services/answer.hpp"
 #include "src/ros/services/requests.hpp"
 #include "src/ros/services/terrain_formats.hpp"
 #include "src/scenario/band_terrain.hpp"
@@ -23,18 +24,7 @@ void Services::advertise(const std::string& name,
   const boost::function<bool(Request&, Response&)> callback = [this, name, serve](Request& request,
                                                                                   Response& response) {
     const SimulationThread::Patience patience(answer_timeout_);
-    try {
-      (this->*serve)(request, response);
-      response.success = true;
-    } catch (const ConfigError& e) {
-      response.success = false;
-      response.message = e.what();
-    } catch (const std::exception& e) {
-      ROS_ERROR("The service %s failed: %s", name.c_str(), e.what());
-      response.success = false;
-      response.message = limited_message(e.what());
-    }
-    return true;  // the answer, with its reason, is to reach who asked
+    return answer(name, response, [&] { (this->*serve)(request, response); });
   };
   auto options = ros::AdvertiseServiceOptions::create<Service>(name, callback, ros::VoidConstPtr(), queue);
   servers_.push_back(node_.advertiseService(options));

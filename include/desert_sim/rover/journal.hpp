@@ -1,0 +1,4 @@
+#pragma once
+/// Public header: what a rover was told, and its repetition.
+
+#include "src/rover/journal.hpp"

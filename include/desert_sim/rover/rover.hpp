@@ -1,0 +1,4 @@
+#pragma once
+/// Public header: a rover on living ground.
+
+#include "src/rover/rover.hpp"

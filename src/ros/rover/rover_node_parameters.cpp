@@ -1,0 +1,99 @@
+#include "src/ros/rover/rover_node_parameters.hpp"
+
+#include <ros/names.h>
+
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "src/core/files.hpp"
+#include "src/core/parameter_page.hpp"
+#include "src/ros/node/frames.hpp"
+#include "src/ros/node/private_parameters.hpp"
+#include "src/ros/node/scenario_file.hpp"
+#include "src/rover/rover_class.hpp"
+#include "src/scenario/yaml_parameters.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+YAML::Node yaml_of_file(const std::string& path) {
+  try {
+    return YAML::Load(read_file(path));
+  } catch (const YAML::Exception& e) {
+    throw ConfigError(path + ": " + e.what());
+  }
+}
+
+/// The file that the name of a class stands for.
+std::string class_file(const std::string& name) {
+  if (name.find('/') != std::string::npos) return name;
+  const std::string scenarios = installed_scenario_folder();
+  if (scenarios.empty()) throw ConfigError("rover_class: the package desert_sim is not in ROS_PACKAGE_PATH");
+  return scenarios.substr(0, scenarios.rfind('/')) + "/rovers/" + name + ".yaml";
+}
+
+RoverSetup setup_of(const YAML::Node& root, const std::string& source) {
+  ValidationErrors errors(source);
+  RoverSetup setup;
+  std::set<std::string> known{"rover", "wheel_ground"};
+  yaml::read_parameters(root, "", errors, setup.node, known);
+  yaml::reject_unknown_keys(root, "", known, errors);
+  if (!setup.node.rover_class.empty()) {
+    const std::string file = class_file(setup.node.rover_class);
+    setup.rover = rover_of_class(yaml_of_file(file), file);
+  }
+  if (root.IsMap()) {
+    yaml::read_section(root["rover"], "rover", errors, setup.rover);
+    yaml::read_section(root["wheel_ground"], "wheel_ground", errors, setup.wheel_ground);
+  }
+  std::string why;
+  if (setup.node.terrain_node.empty() || !ros::names::validate(setup.node.terrain_node, why))
+    errors.add("terrain_node", "'" + setup.node.terrain_node + "' is not the name of a node: " + why);
+  if (!setup.node.tf_prefix.empty()) check_frame(setup.node.tf_prefix, "tf_prefix", errors);
+  if (setup.node.x.has_value() != setup.node.y.has_value())
+    errors.add(setup.node.x ? "y" : "x", "is left out, while the other coordinate is given");
+  errors.throw_if_any();
+  check_rover(setup.rover, source + ": rover");
+  return setup;
+}
+
+}  // namespace
+
+RoverSetup read_rover_setup(const ros::NodeHandle& private_node) {
+  const std::string name = private_node.getNamespace();
+  return setup_of(private_parameters(name), "parameters of " + name);
+}
+
+RoverSetup read_rover_words(const std::vector<std::string>& words) {
+  YAML::Node root(YAML::NodeType::Map);
+  std::string source = "command line";
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const std::string& word : words) {
+    const std::size_t at = word.find(":=");
+    if (at == std::string::npos)
+      root = yaml_of_file(source = word);
+    else if (at + 2 < word.size())
+      values.emplace_back(word.substr(0, at), word.substr(at + 2));
+  }
+  if (!root.IsMap()) throw ConfigError(source + ": has no keys and values");
+  for (const auto& [key, value] : values) root[key] = value;
+  return setup_of(root, source);
+}
+
+std::string describe_rover_parameters() {
+  std::ostringstream out;
+  out << "# Parameters of rovers\n\n"
+         "Written by `desert_rover_node --describe`; a test fails when it is stale. All are private to the "
+         "node.\n\n"
+         "## Node\n\n";
+  write_parameter_table(out, RoverNodeParameters());
+  out << "\n## rover\n\n";
+  write_parameter_table(out, RoverParameters());
+  out << "\n## wheel_ground\n\n";
+  write_parameter_table(out, WheelGroundParameters());
+  return out.str();
+}
+
+}  // namespace desert_sim

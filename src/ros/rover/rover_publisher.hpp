@@ -1,0 +1,35 @@
+#pragma once
+/// The topics of a rover and its transforms.
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <chrono>
+#include <string>
+
+#include "src/ros/rover/rover_messages.hpp"
+
+namespace desert_sim {
+
+class RoverPublisher {
+ public:
+  /// odom, ground_truth, joint_states, imu below `node`; ~status below `private_node`.
+  RoverPublisher(ros::NodeHandle node, ros::NodeHandle private_node, const RoverSetup& setup);
+
+  /// `terrain_frame` is empty before there is a terrain.
+  void publish_pose(const Rover& rover, const ros::Time& stamp, const std::string& terrain_frame);
+  /// If the state has changed since the last one, or that was a while ago. The message lacks what
+  /// RoverPublisher does not know: `status` has it.
+  void publish_status(const RoverStatus& status);
+
+ private:
+  const RoverSetup setup_;
+  ros::Publisher odom_, ground_truth_, joint_states_, imu_, status_;
+  tf2_ros::TransformBroadcaster broadcaster_;
+  ros::Time last_stamp_;
+  std::string last_state_, last_refusal_;
+  std::chrono::steady_clock::time_point last_status_;
+};
+
+}  // namespace desert_sim

@@ -1,0 +1,255 @@
+#include "src/ros/rover/rover_server.hpp"
+
+#include <ros/console.h>
+#include <ros/init.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "src/core/constants.hpp"
+#include "src/ros/rover/rover_messages.hpp"
+#include "src/rover/state_file.hpp"
+#include "src/rover/urdf.hpp"
+#include "src/simulation/commands/journal.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr std::uint32_t callback_threads = 2;
+constexpr auto patience = std::chrono::milliseconds(50);
+constexpr double longest_pause = 1;  // [s] of ROS time between two poses; what is more is left out
+
+/// Renames an old journal, which can explain why a run failed.
+std::unique_ptr<RoverJournalWriter> start_journal(const std::string& path, const Rover& rover) {
+  if (path.empty()) return nullptr;
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error)) {
+    std::filesystem::rename(path, previous_journal(path), error);
+    if (error)
+      throw ConfigError(path + ": the previous journal cannot be renamed to *.previous: " + error.message());
+  }
+  return std::make_unique<RoverJournalWriter>(path, rover);
+}
+
+}  // namespace
+
+RoverServer::RoverServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+    : node_(node),
+      private_node_(private_node),
+      setup_(read_rover_setup(private_node)),
+      files_(setup_.node.data_dir),
+      rover_(setup_.rover, setup_.wheel_ground, "parameters of " + private_node.getNamespace() + ": rover"),
+      journal_(start_journal(setup_.node.journal, rover_)),
+      terrain_(setup_.node),
+      publisher_(node, private_node, setup_),
+      updater_(private_node, private_node, private_node.getNamespace()),
+      spinner_(callback_threads, &queue_) {
+  node_.setCallbackQueue(&queue_);
+  private_node_.setCallbackQueue(&queue_);
+  if (setup_.node.tracks) tracks_ = std::make_unique<WheelTracks>(setup_);
+  if (setup_.node.publish_description)
+    node_.setParam("robot_description", urdf_of(setup_.rover, setup_.frame("")));
+  const boost::function<void(const geometry_msgs::TwistConstPtr&)> receive =
+      [this](const geometry_msgs::TwistConstPtr& command) { receive_command(*command); };
+  commands_ = node_.subscribe<geometry_msgs::Twist>("cmd_vel", 1, receive);
+  advertise<DriveRover>("drive", &RoverServer::drive);
+  advertise<SetRoverPose>("set_pose", &RoverServer::set_pose);
+  advertise<std_srvs::Trigger>("reset", &RoverServer::reset);
+  advertise<SaveRover>("save_state", &RoverServer::save_state);
+  advertise<LoadRover>("load_state", &RoverServer::load_state);
+  updater_.setHardwareID("desert_rover");
+  updater_.add("rover", [this](auto& status) { diagnose(status); });
+  updater_.add("terrain", [this](auto& status) { diagnose_terrain(status); });
+  diagnostic_timer_ =
+      private_node_.createWallTimer(ros::WallDuration(setup_.node.diagnostic_period),
+                                    [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+  publisher_.publish_status(status());
+  spinner_.start();
+  thread_ = std::thread([this] { run(); });
+}
+
+RoverServer::~RoverServer() {
+  stopping_ = true;
+  thread_.join();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    advanced_.notify_all();
+  }
+  spinner_.stop();
+}
+
+std::string RoverServer::failure() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return failure_;
+}
+
+// ---- the thread that drives
+
+void RoverServer::run() {
+  try {
+    setup_.node.clock == RoverClock::ros ? run_as_ros_time_passes() : run_in_lockstep();
+  } catch (const std::exception& e) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    failure_ = limited_message(e.what());
+    advanced_.notify_all();
+  }
+}
+
+void RoverServer::run_as_ros_time_passes() {
+  ros::Time last = ros::Time::now();
+  auto due = std::chrono::steady_clock::now();
+  const auto period = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(1 / setup_.node.rate));
+  while (!stopping_ && ros::ok()) {
+    due = std::max(due + period, std::chrono::steady_clock::now());
+    std::this_thread::sleep_until(due);
+    const ros::Time now = ros::Time::now();
+    if (now.isZero() || now == last) {  // nobody has told the time yet, or it stands still
+      tell_status();
+      continue;
+    }
+    const double seconds = last.isZero() ? 0 : std::clamp((now - last).toSec(), 0.0, longest_pause);
+    last = now;
+    advance(seconds, terrain_.newest(), now);
+  }
+}
+
+void RoverServer::tell_status() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  publisher_.publish_status(status());
+}
+
+void RoverServer::run_in_lockstep() {
+  while (!stopping_ && ros::ok()) {
+    const std::shared_ptr<const MapGround> ground = terrain_.next(patience);
+    if (!ground) {
+      tell_status();
+      continue;
+    }
+    const double seconds = seconds_to(*ground);
+    if (seconds >= 0) advance(seconds, ground, ground->maps().info().stamp);
+  }
+}
+
+double RoverServer::seconds_to(const MapGround& ground) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const RoverState& state = rover_.state();
+  const MapInfo& info = ground.maps().info();
+  const double passed = info.sim_time - state.terrain_time;
+  if (waits_for_loaded_step_ && (passed < 0 || info.step < state.terrain_step)) return -1;
+  waits_for_loaded_step_ = false;
+  if (!ground_ || passed < 0) return 0;
+  const double seconds = passed * setup_.node.seconds_per_sim_second;
+  if (seconds <= Rover::longest_advance) return seconds;
+  ROS_WARN("The terrain's time jumped by %g s, which would be %g s of driving: the rover stays where it is.",
+           passed, seconds);
+  return 0;
+}
+
+void RoverServer::advance(double seconds, const std::shared_ptr<const MapGround>& ground,
+                          const ros::Time& stamp) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  ground_ = ground;
+  if (ground && !rover_.state().placed) start_where_it_begins(*ground);
+  rover_event::Advance event{seconds, std::nullopt, 0};
+  std::string frame;
+  if (ground) {
+    const MapInfo& info = ground->maps().info();
+    event.terrain = info.step;
+    event.time = info.sim_time;
+    frame = info.frame;
+  }
+  apply(event);
+  publisher_.publish_pose(rover_, stamp, frame);
+  publisher_.publish_status(status());
+  if (tracks_ && ground) {
+    const Rover rover = rover_;
+    const bool lockstep = setup_.node.clock == RoverClock::lockstep;
+    if (!lockstep) lock.unlock();
+    tracks_->follow(rover, ground->maps().info().cell_size);
+  }
+  advanced_.notify_all();
+}
+
+void RoverServer::start_where_it_begins(const MapGround& ground) {
+  const MapInfo& info = ground.maps().info();
+  const double x = setup_.node.x.value_or(info.origin_x + info.width * info.cell_size / 2),
+               y = setup_.node.y.value_or(info.origin_y + info.height * info.cell_size / 2);
+  try {
+    apply(rover_event::Place{x, y, setup_.node.yaw_deg * pi / 180, true, info.step});
+    start_problem_.clear();
+  } catch (const ConfigError& e) {
+    if (start_problem_ != e.what()) ROS_ERROR("%s", e.what());
+    start_problem_ = e.what();
+  }
+}
+
+void RoverServer::apply(const RoverEvent& event) {
+  desert_sim::apply(rover_, event, [this](std::uint64_t) -> const GroundSource& { return *ground_; });
+  if (journal_) journal_->write(event);
+}
+
+// ---- commands
+
+void RoverServer::receive_command(const geometry_msgs::Twist& m) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  try {
+    apply(rover_event::Drive{{m.linear.x, m.linear.y, m.angular.z}, setup_.node.cmd_vel_timeout});
+    refusal_.clear();
+  } catch (const ConfigError& e) {
+    ROS_WARN_THROTTLE(5, "cmd_vel: a message was refused: %s", e.what());
+    refusal_ = "cmd_vel: " + std::string(e.what());
+  }
+}
+
+// ---- what is told
+
+RoverStatus RoverServer::status() const {
+  RoverStatus m = status_message(rover_);
+  m.header.stamp = ros::Time::now();
+  m.refusal = refusal_;
+  m.terrain_connected = terrain_.connected();
+  if (tracks_) m.tracks = tracks_->taken();
+  if (ground_) {
+    m.header.frame_id = ground_->maps().info().frame;
+    m.terrain_stamp = ground_->maps().info().stamp;
+  }
+  if (!rover_.state().placed && !start_problem_.empty()) m.reason = start_problem_;
+  return m;
+}
+
+void RoverServer::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using Level = diagnostic_msgs::DiagnosticStatus;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const RoverState& s = rover_.state();
+  const char* const name = rover_conditions[static_cast<int>(s.condition)];
+  const bool well = s.condition == RoverCondition::idle || s.condition == RoverCondition::driving;
+  if (!failure_.empty())
+    status.summary(Level::ERROR, failure_);
+  else
+    status.summary(well ? Level::OK : Level::WARN, well ? name : std::string(name) + ": " + s.reason);
+  status.add("state", name);
+  status.add("slip", s.slip);
+  status.add("way commanded [m]", s.way_commanded);
+  status.add("way made [m]", s.way_made);
+  status.add("contact error [m]", s.contact_error);
+}
+
+void RoverServer::diagnose_terrain(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using Level = diagnostic_msgs::DiagnosticStatus;
+  const bool connected = terrain_.connected();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!connected)
+    status.summary(Level::WARN, "nobody publishes " + setup_.node.terrain_node + "/elevation");
+  else if (!ground_)
+    status.summary(Level::WARN, "no terrain has arrived yet");
+  else
+    status.summary(Level::OK, "the terrain is known");
+  status.add("step", rover_.state().terrain_step);
+  status.add("simulated time [s]", rover_.state().terrain_time);
+  if (waits_for_loaded_step_)
+    status.mergeSummary(Level::WARN, "the rover waits for the step of the state that was loaded");
+}
+
+}  // namespace desert_sim

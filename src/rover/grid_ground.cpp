@@ -1,0 +1,118 @@
+#include "src/rover/grid_ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+std::vector<float> layer_of(const Snapshot& snapshot, Layer layer) {
+  const std::vector<float>* const values = snapshot.find(layer);
+  return values ? *values : std::vector<float>();
+}
+
+GridGround::Layers layers_of(const Snapshot& s, double moisture_capacity) {
+  return {layer_of(s, Layer::elevation), layer_of(s, Layer::sand),
+          layer_of(s, Layer::soil),      {},
+          layer_of(s, Layer::moisture),  layer_of(s, Layer::obstacle),
+          layer_of(s, Layer::water),     moisture_capacity};
+}
+
+}  // namespace
+
+GridGround::GridGround(const Geometry& geometry, Layers layers) : g_(geometry), layers_(std::move(layers)) {
+  const std::size_t cells = static_cast<std::size_t>(g_.width) * static_cast<std::size_t>(g_.height);
+  const auto check = [cells](const std::vector<float>& layer, const char* name, bool may_be_empty) {
+    if (layer.size() != cells && !(may_be_empty && layer.empty()))
+      throw ConfigError("GridGround: " + std::string(name) + " has " + std::to_string(layer.size()) +
+                        " values (allowed: one for each of " + std::to_string(cells) + " cells)");
+  };
+  check(layers_.elevation, "elevation", false);
+  check(layers_.sand_depth, "sand_depth", true);
+  check(layers_.soil_depth, "soil_depth", true);
+  check(layers_.looseness, "looseness", true);
+  check(layers_.moisture, "moisture", true);
+  check(layers_.obstacle, "obstacle", true);
+  check(layers_.water, "water", true);
+}
+
+GridGround::GridGround(const Snapshot& s, double moisture_capacity)
+    : GridGround({s.width, s.height, s.cell_size, s.origin_x, s.origin_y, s.periodic_x, s.periodic_y},
+                 layers_of(s, moisture_capacity)) {}
+
+std::vector<Layer> GridGround::layers_of_snapshot() {
+  return {Layer::elevation, Layer::sand, Layer::soil, Layer::moisture, Layer::obstacle, Layer::water};
+}
+
+bool GridGround::contains(double x, double y) const {
+  const double east = (x - g_.origin_x) / g_.cell_size, north = (y - g_.origin_y) / g_.cell_size;
+  return (g_.periodic_x ? std::isfinite(east) : east >= 0 && east <= g_.width) &&
+         (g_.periodic_y ? std::isfinite(north) : north >= 0 && north <= g_.height);
+}
+
+GridGround::Axis GridGround::axis(double cells, int count, bool periodic) {
+  if (periodic) {
+    const double centre = cells - 0.5, whole = std::floor(centre),
+                 wrapped = whole - count * std::floor(whole / count);
+    const int first = std::min(static_cast<int>(wrapped), count - 1);
+    return {first, (first + 1) % count, centre - whole};
+  }
+  const double centre = std::clamp(cells - 0.5, 0.0, count - 1.0);
+  const int first = std::min(static_cast<int>(centre), count > 1 ? count - 2 : 0);
+  return {first, std::min(first + 1, count - 1), centre - first};
+}
+
+double GridGround::value(const std::vector<float>& layer, double x, double y) const {
+  const Axis a = axis((x - g_.origin_x) / g_.cell_size, g_.width, g_.periodic_x),
+             b = axis((y - g_.origin_y) / g_.cell_size, g_.height, g_.periodic_y);
+  // A cell of weight 0 may be unknown (NaN).
+  const auto part = [&](double weight, int i, int j) {
+    return weight > 0 ? weight * layer[static_cast<std::size_t>(j) * static_cast<std::size_t>(g_.width) +
+                                       static_cast<std::size_t>(i)]
+                      : 0.0;
+  };
+  return part((1 - a.share) * (1 - b.share), a.first, b.first) +
+         part(a.share * (1 - b.share), a.second, b.first) + part((1 - a.share) * b.share, a.first, b.second) +
+         part(a.share * b.share, a.second, b.second);
+}
+
+double GridGround::cell_value(const std::vector<float>& layer, double x, double y) const {
+  if (layer.empty()) return 0;
+  const auto cell = [](double cells, int count, bool periodic) {
+    const double whole = std::floor(cells);
+    return static_cast<std::size_t>(
+        std::clamp(periodic ? whole - count * std::floor(whole / count) : whole, 0.0, count - 1.0));
+  };
+  return layer[cell((y - g_.origin_y) / g_.cell_size, g_.height, g_.periodic_y) *
+                   static_cast<std::size_t>(g_.width) +
+               cell((x - g_.origin_x) / g_.cell_size, g_.width, g_.periodic_x)];
+}
+
+std::optional<double> GridGround::elevation(double x, double y) const {
+  if (!contains(x, y)) return std::nullopt;
+  const double z = value(layers_.elevation, x, y);
+  if (std::isnan(z)) return std::nullopt;
+  return z;
+}
+
+GroundPoint GridGround::at(double x, double y) const {
+  GroundPoint point;
+  if (!contains(x, y)) return point;
+  const auto known = [&](const std::vector<float>& layer) {
+    const double v = layer.empty() ? 0 : value(layer, x, y);
+    return std::isnan(v) ? 0 : v;
+  };
+  point.sand_depth = known(layers_.sand_depth);
+  if (!layers_.looseness.empty()) point.looseness = known(layers_.looseness);
+  point.moisture = relative_moisture(known(layers_.moisture), point.sand_depth + known(layers_.soil_depth),
+                                     layers_.moisture_capacity);
+  point.obstacle = cell_value(layers_.obstacle, x, y);
+  point.water = known(layers_.water);
+  return point;
+}
+
+}  // namespace desert_sim

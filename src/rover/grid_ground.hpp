@@ -1,0 +1,51 @@
+#pragma once
+/// Ground from arrays, for tests and for rovers beside a simulation in the same program.
+
+#include <vector>
+
+#include "src/rover/ground.hpp"
+#include "src/simulation/views/snapshot.hpp"
+
+namespace desert_sim {
+
+class GridGround : public GroundSource {
+ public:
+  struct Geometry {
+    int width = 1, height = 1;          ///< [cells]
+    double cell_size = 1;               ///< [m]
+    double origin_x = 0, origin_y = 0;  ///< of the lower-left corner [m]
+    bool periodic_x = false, periodic_y = false;
+  };
+  /// Values of cells, row-major, x fastest, row 0 in the south. Arrays that are empty stand for 0
+  /// (looseness: not known); NaN in `elevation` is unknown ground.
+  struct Layers {
+    std::vector<float> elevation, sand_depth, soil_depth, looseness, moisture, obstacle, water;
+    double moisture_capacity = 0.3;  ///< of a metre of ground [m]
+  };
+
+  /// Throws ConfigError for an array of the wrong size.
+  GridGround(const Geometry& geometry, Layers layers);
+  /// Of a snapshot, as far as it has the layers. It must have the elevation.
+  GridGround(const Snapshot& snapshot, double moisture_capacity);
+  /// The layers that a snapshot for a rover needs.
+  static std::vector<Layer> layers_of_snapshot();
+
+  bool contains(double x, double y) const override;
+  std::optional<double> elevation(double x, double y) const override;
+  GroundPoint at(double x, double y) const override;
+
+ private:
+  struct Axis {
+    int first, second;  ///< cells between whose centres a point lies
+    double share;       ///< 0 at the first … 1 at the second
+  };
+  static Axis axis(double cells, int count, bool periodic);
+  double value(const std::vector<float>& layer, double x, double y) const;
+  /// Of the cell in which the point lies.
+  double cell_value(const std::vector<float>& layer, double x, double y) const;
+
+  Geometry g_;
+  Layers layers_;
+};
+
+}  // namespace desert_sim

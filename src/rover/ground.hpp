@@ -1,0 +1,38 @@
+#pragma once
+/// The ground that a rover stands on, wherever it comes from.
+
+#include <optional>
+
+namespace desert_sim {
+
+/// What is under a wheel.
+struct GroundPoint {
+  double sand_depth = 0;            ///< [m]
+  std::optional<double> looseness;  ///< 0 packed … 1 fresh; none where the terrain does not know it
+  double moisture = 0;              ///< relative, 0 … 1
+  double obstacle = 0;              ///< above 0 a solid object stands there
+  double water = 0;                 ///< depth of water [m]
+};
+
+/// Coordinates are those of the terrain's frame [m].
+class GroundSource {
+ public:
+  virtual ~GroundSource() = default;
+  /// Whether a point is on the terrain, known or not.
+  virtual bool contains(double x, double y) const = 0;
+  /// Elevation of the surface [m], bilinear between cell centres; none where it is unknown or off the
+  /// terrain.
+  virtual std::optional<double> elevation(double x, double y) const = 0;
+  /// The rest; what is unknown has its default.
+  virtual GroundPoint at(double x, double y) const = 0;
+};
+
+/// Moisture over what the ground can hold, as in kernels/sand/repose.hpp: `moisture` [m] in `depth` [m] of
+/// sand and soil, `capacity` the moisture of a metre of it.
+inline double relative_moisture(double moisture, double depth, double capacity) {
+  if (!(moisture > 0)) return 0;
+  const double held = capacity * (depth < 1 ? (depth > 1e-3 ? depth : 1e-3) : 1);
+  return moisture < held ? moisture / held : 1;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,165 @@
+/// A rover in lockstep: the same commands between the same steps give the same path to the bit, again,
+/// after a checkpoint, from the journal beside a simulation without ROS, and after kill -9.
+#include <desert_sim/LoadCheckpoint.h>
+#include <desert_sim/SaveCheckpoint.h>
+
+#include "rostest/child_process.hpp"
+#include "rostest/rover_tests.hpp"
+#include "src/ros/conversion/messages.hpp"
+#include "src/rover/journal.hpp"
+#include "src/rover/simulated_ground.hpp"
+
+namespace {
+
+using node_test::ask;
+using node_test::call;
+using node_test::drive;
+using node_test::step;
+
+const std::string rover = "/desert_rover";
+constexpr int steps = 12;
+
+double forward(int n) { return n % 5 == 4 ? -0.1 : 0.25; }
+double turn(int n) { return 0.1 * (n % 3 - 1); }
+
+/// The states before the commands from step `begin` on, and after the last step.
+std::vector<std::string> path(int begin, int end) {
+  std::vector<std::string> hashes;
+  for (int n = begin; n < end; ++n) {
+    const auto answer = drive(rover, forward(n), turn(n));
+    EXPECT_TRUE(answer.success) << answer.message;
+    EXPECT_EQ(answer.terrain_step, static_cast<std::uint64_t>(n));
+    hashes.push_back(answer.state_hash);
+    EXPECT_TRUE(step(1).success);
+  }
+  hashes.push_back(drive(rover, 0, 0).state_hash);
+  return hashes;
+}
+
+void begin_anew() {
+  ASSERT_TRUE(call<std_srvs::Trigger>("reset").success);
+  const auto answer = ask<std_srvs::Trigger>(rover + "/reset");
+  ASSERT_TRUE(answer.success) << answer.message;
+}
+
+TEST(RoverLockstep, TheSameCallsGiveTheSamePath) {
+  begin_anew();
+  const std::vector<std::string> once = path(0, steps);
+  begin_anew();
+  EXPECT_EQ(path(0, steps), once);
+  EXPECT_NE(once.front(), once.back());
+  node_test::Listener<desert_sim::RoverStatus> status(rover + "/status");
+  EXPECT_TRUE(status.wait_for([](const desert_sim::RoverStatus& s) { return s.way_made > 2; }))
+      << status.last().way_made << " m, " << status.last().state << " " << status.last().reason;
+}
+
+TEST(RoverLockstep, ACheckpointOfBothGoesOnTheSameWay) {
+  begin_anew();
+  std::vector<std::string> whole = path(0, 6);
+  desert_sim::SaveCheckpoint::Request terrain;
+  terrain.name = "terrain";
+  ASSERT_TRUE(call<desert_sim::SaveCheckpoint>("save_checkpoint", terrain).success);
+  desert_sim::SaveRover::Request state;
+  state.name = "rover";
+  const auto saved = ask<desert_sim::SaveRover>(rover + "/save_state", state);
+  ASSERT_TRUE(saved.success) << saved.message;
+  EXPECT_EQ(saved.terrain_step, 6u);
+  whole = path(6, steps);
+
+  for (const bool terrain_first : {true, false}) {
+    begin_anew();
+    path(0, 2);
+    desert_sim::LoadCheckpoint::Request load;
+    load.name = "terrain";
+    desert_sim::LoadRover::Request load_rover;
+    load_rover.name = "rover";
+    if (terrain_first) {
+      ASSERT_TRUE(call<desert_sim::LoadCheckpoint>("load_checkpoint", load).success);
+    }
+    const auto loaded = ask<desert_sim::LoadRover>(rover + "/load_state", load_rover);
+    ASSERT_TRUE(loaded.success) << loaded.message;
+    EXPECT_EQ(loaded.state_hash, saved.state_hash);
+    if (!terrain_first) {
+      ASSERT_TRUE(call<desert_sim::LoadCheckpoint>("load_checkpoint", load).success);
+    }
+    EXPECT_EQ(path(6, steps), whole) << terrain_first;
+  }
+}
+
+TEST(RoverLockstep, TheJournalLeadsToTheSameStateWithoutRos) {
+  begin_anew();
+  path(0, steps);
+  const std::string end = drive(rover, 0, 0).state_hash;
+  std::string file;
+  ASSERT_TRUE(ros::param::get("/rover_lockstep/journal", file));
+  desert_sim::RoverJournal journal = desert_sim::read_rover_journal(file);
+  // What came before the last reset had terrains of its own.
+  auto first = journal.events.begin();
+  for (auto event = journal.events.begin(); event != journal.events.end(); ++event)
+    if (const auto* place = std::get_if<desert_sim::rover_event::Place>(&*event); place && place->reset)
+      first = event;
+  journal.events.erase(journal.events.begin(), first);
+  desert_sim::Scenario scenario =
+      desert_sim::load_scenario(DESERT_SOURCE_DIR "/test/rostest/scenarios/drifting.yaml");
+  desert_sim::SimulatedGround ground(scenario, desert_sim::no_raster_loader, "cpu", 1);
+  const auto at_step = [&ground](std::uint64_t wanted) -> const desert_sim::GroundSource& {
+    return ground.at(wanted);
+  };
+  EXPECT_EQ(desert_sim::hash_text(desert_sim::hash_of(desert_sim::replay(journal, at_step))), end);
+}
+
+TEST(RoverLockstep, ANodeThatIsKilledStartsSanely) {
+  begin_anew();
+  const std::string name = "/killed";
+  ros::param::set(name + "/clock", std::string("lockstep"));
+  ros::param::set(name + "/publish_tf", false);
+  ros::param::set(name + "/x", 10.0);
+  ros::param::set(name + "/y", 14.0);
+  std::string folder;
+  ASSERT_TRUE(ros::param::get("/desert_rover/data_dir", folder));
+  ros::param::set(name + "/data_dir", folder);
+  const auto start = [&] {
+    return std::make_unique<node_test::ChildProcess>(
+        std::vector<std::string>{DESERT_ROVER_BINARY, "__name:=killed", "odom:=/killed/odom",
+                                 "imu:=/killed/imu", "joint_states:=/killed/joint_states",
+                                 "ground_truth:=/killed/ground_truth", "cmd_vel:=/killed/cmd_vel"});
+  };
+  const auto wait_for_answer = [&] {
+    return node_test::wait_until(
+        [&] { return ros::service::exists(name + "/drive", false) && drive(name, 0.2, 0.1).success; }, 20);
+  };
+  auto process = start();
+  ASSERT_TRUE(wait_for_answer());
+  ASSERT_TRUE(step(1).success);
+  desert_sim::SaveRover::Request save;
+  save.name = "killed";
+  const auto saved = ask<desert_sim::SaveRover>(name + "/save_state", save);
+  ASSERT_TRUE(saved.success) << saved.message;
+  ASSERT_TRUE(step(1).success);
+  EXPECT_EQ(process->end(SIGKILL), 128 + SIGKILL);
+  ASSERT_TRUE(step(1).success);
+  process = start();
+  ASSERT_TRUE(wait_for_answer());
+  node_test::Listener<nav_msgs::Odometry> truth("/killed/ground_truth");
+  EXPECT_NEAR(truth.last().pose.pose.position.x, 10, 1e-6);
+  desert_sim::LoadRover::Request load;
+  load.name = "killed";
+  const auto loaded = ask<desert_sim::LoadRover>(name + "/load_state", load);
+  EXPECT_TRUE(loaded.success) << loaded.message;
+  EXPECT_EQ(loaded.state_hash, saved.state_hash);
+  EXPECT_EQ(process->end(SIGTERM), 0);
+}
+
+TEST(RoverLockstep, BadParametersEndANodeWithTheirNames) {
+  const std::string name = "/bad";
+  ros::param::del(name);
+  ros::param::set(name + "/rate", 1e9);
+  ros::param::set(name + "/rover/wheel_radius", -1.0);
+  ros::param::set(name + "/speed", 3);
+  node_test::ChildProcess process({DESERT_ROVER_BINARY, "__name:=bad"});
+  EXPECT_EQ(process.wait(), 2);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return node_test::run_tests(argc, argv, "rover_lockstep_test"); }
