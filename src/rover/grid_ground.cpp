@@ -15,9 +15,16 @@ std::vector<float> layer_of(const Snapshot& snapshot, Layer layer) {
   return values ? *values : std::vector<float>();
 }
 
+/// Empty, as what is not known, where no cell is loose.
+std::vector<float> looseness_of(const Snapshot& snapshot) {
+  const std::vector<float> values = layer_of(snapshot, Layer::looseness);
+  return std::any_of(values.begin(), values.end(), [](float v) { return v > 0; }) ? values
+                                                                                    : std::vector<float>();
+}
+
 GridGround::Layers layers_of(const Snapshot& s, double moisture_capacity) {
   return {layer_of(s, Layer::elevation), layer_of(s, Layer::sand),
-          layer_of(s, Layer::soil),      {},
+          layer_of(s, Layer::soil),      looseness_of(s),
           layer_of(s, Layer::moisture),  layer_of(s, Layer::obstacle),
           layer_of(s, Layer::water),     moisture_capacity};
 }
@@ -45,7 +52,8 @@ GridGround::GridGround(const Snapshot& s, double moisture_capacity)
                  layers_of(s, moisture_capacity)) {}
 
 std::vector<Layer> GridGround::layers_of_snapshot() {
-  return {Layer::elevation, Layer::sand, Layer::soil, Layer::moisture, Layer::obstacle, Layer::water};
+  return {Layer::elevation, Layer::sand,     Layer::soil, Layer::looseness,
+          Layer::moisture,  Layer::obstacle, Layer::water};
 }
 
 bool GridGround::contains(double x, double y) const {

@@ -25,7 +25,8 @@ class GridGround : public GroundSource {
 
   /// Throws ConfigError for an array of the wrong size.
   GridGround(const Geometry& geometry, Layers layers);
-  /// Of a snapshot, as far as it has the layers. It must have the elevation.
+  /// Of a snapshot, as far as it has the layers. It must have the elevation. Looseness is not known where it
+  /// is 0 everywhere.
   GridGround(const Snapshot& snapshot, double moisture_capacity);
   /// The layers that a snapshot for a rover needs.
   static std::vector<Layer> layers_of_snapshot();

@@ -1,6 +1,9 @@
 #include "src/rover/urdf.hpp"
 
+#include <limits>
 #include <sstream>
+
+#include "src/core/constants.hpp"
 
 namespace desert_sim {
 
@@ -20,7 +23,7 @@ class Model {
   Model(const RoverParameters& rover, std::string prefix)
       : rover_(rover), suspension_(rover), prefix_(std::move(prefix)) {}
 
-  std::string text() {
+  std::string text(const LidarParameters& lidar, const DepthCameraParameters& depth_camera) {
     out_ << "<?xml version=\"1.0\"?>\n<!-- Written by desert_rover_node. Lengths in metres. -->\n"
             "<robot name=\"rover\">\n";
     for (const auto& [name, colour] :
@@ -30,6 +33,15 @@ class Model {
     body();
     for (int side = 0; side < 2; ++side) rocker(side);
     for (int wheel = 0; wheel < suspension_.wheels(); ++wheel) this->wheel(wheel);
+    if (lidar.rate > 0)
+      sensor("lidar", lidar,
+             "<visual><geometry><cylinder radius=\"0.04\" length=\"0.08\"/></geometry><material "
+             "name=\"wheel\"/></visual>");
+    if (depth_camera.rate > 0) {
+      sensor("depth_camera", depth_camera, box({-0.01, 0, 0}, {0.02, 0.09, 0.025}, "wheel"));
+      link("depth_camera_optical", "");
+      fixed_joint("depth_camera_optical", "depth_camera", {}, {-pi / 2, 0, -pi / 2});
+    }
     out_ << "</robot>\n";
     return out_.str();
   }
@@ -37,6 +49,7 @@ class Model {
  private:
   static std::string xyz(const Point3& p) {
     std::ostringstream text;
+    text.precision(std::numeric_limits<double>::digits10);  // for who compares with the node's transforms
     text << p.x << " " << p.y << " " << p.z;
     return text.str();
   }
@@ -50,6 +63,19 @@ class Model {
          << "\" rpy=\"0 0 0\"/>";
     if (axis) out_ << "<axis xyz=\"" << axis << "\"/>";
     out_ << "</joint>\n";
+  }
+  void fixed_joint(const std::string& child, const std::string& parent, const Point3& at,
+                   const Point3& angles) {
+    out_ << "  <joint name=\"" << child << "_joint\" type=\"fixed\"><parent link=\"" << prefix_ << parent
+         << "\"/><child link=\"" << prefix_ << child << "\"/><origin xyz=\"" << xyz(at) << "\" rpy=\""
+         << xyz(angles) << "\"/></joint>\n";
+  }
+  template <class Sensor>
+  void sensor(const std::string& name, const Sensor& s, const std::string& shape) {
+    constexpr double degree = pi / 180;
+    link(name, shape);
+    fixed_joint(name, "base_link", {s.x, s.y, s.z},
+                {s.roll_deg * degree, s.pitch_deg * degree, s.yaw_deg * degree});
   }
   static std::string box(const Point3& at, const Point3& size, const char* material) {
     return "<visual><origin xyz=\"" + xyz(at) + "\"/><geometry><box size=\"" + xyz(size) +
@@ -130,8 +156,9 @@ class Model {
 
 }  // namespace
 
-std::string urdf_of(const RoverParameters& rover, const std::string& prefix) {
-  return Model(rover, prefix).text();
+std::string urdf_of(const RoverParameters& rover, const LidarParameters& lidar,
+                    const DepthCameraParameters& depth_camera, const std::string& prefix) {
+  return Model(rover, prefix).text(lidar, depth_camera);
 }
 
 std::vector<JointValue> joint_values(const RoverParameters& rover, const RoverState& state) {

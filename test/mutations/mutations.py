@@ -13,7 +13,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "state.shelter_known = true;", "state.shelter_known = false;",
      "the wind's shadow of the present second is part of the state", "property *Checkpoint.ContinuesToTheBit*"),
     ("shelter_of_every_step", "src/simulation/pipeline/process.hpp",
-     "std::floor(seconds) > std::floor(seconds - step)", "step > 0",
+     "std::floor(time() / second) > std::floor(time_of(tick() - 1) / second);", "second > 0;",
      "the wind's shadow is held for a second", "analytic *TimeStep.*"),
     ("long_steps_at_once", "src/simulation/processes/sand.cpp",
      "p.longest_step = 1;", "p.longest_step = 100;",

@@ -164,7 +164,7 @@ TEST(RoverModel, HasEveryJointOnce) {
       RoverParameters p;
       p.suspension = suspension;
       p.steering = steering;
-      const std::string urdf = urdf_of(p, "r1/");
+      const std::string urdf = urdf_of(p, LidarParameters(), DepthCameraParameters(), "r1/");
       const auto joints = joint_values(p, RoverState());
       const std::size_t wheels = static_cast<std::size_t>(wheel_count(suspension));
       EXPECT_EQ(joints.size(), (wheels == 6 ? 4 : 2) + wheels * (steering == Steering::skid ? 1 : 2));
@@ -176,6 +176,34 @@ TEST(RoverModel, HasEveryJointOnce) {
       }
       EXPECT_NE(urdf.find("link=\"r1/base_link\""), std::string::npos);
     }
+}
+
+TEST(RoverModel, HasTheSensorsThatMeasure) {
+  LidarParameters lidar;
+  DepthCameraParameters camera;
+  const auto has = [&](const char* link) {
+    return urdf_of(RoverParameters(), lidar, camera, "r1/").find("<link name=\"r1/" + std::string(link) +
+                                                                 "\"") != std::string::npos;
+  };
+  EXPECT_TRUE(has("lidar") && has("depth_camera") && has("depth_camera_optical"));
+  lidar.rate = 0;
+  EXPECT_TRUE(!has("lidar") && has("depth_camera_optical"));
+  camera.rate = 0;
+  EXPECT_FALSE(has("depth_camera") || has("depth_camera_optical"));
+}
+
+TEST(RoverGround, KnowsLoosenessWhereSomethingIsLoose) {
+  const auto looseness_at_start = [](const char* looseness) {
+    SimulatedGround ground(scenario_of(std::string("{grid: {width: 16, height: 16}, terrain: [uniform: "
+                                                   "{layer: sand, value: 1}]") +
+                                       looseness + "}"),
+                           no_raster_loader, "cpu", 1);
+    return ground.at(0).at(5, 5).looseness;
+  };
+  EXPECT_FALSE(looseness_at_start("").has_value());
+  const std::optional<double> loose = looseness_at_start(", looseness: {enabled: true}");
+  ASSERT_TRUE(loose.has_value());
+  EXPECT_GT(*loose, 0);
 }
 
 }  // namespace

@@ -118,9 +118,13 @@ SensorPose to_sensor_pose(const geometry_msgs::Pose& pose) {
 std::vector<geometry_msgs::TransformStamped> sensor_transforms(const SensorFrames& frames,
                                                                const LidarParameters& lidar,
                                                                const DepthCameraParameters& camera) {
-  return {transform_of(frames.base, frames.lidar, mounting_of(lidar)),
-          transform_of(frames.base, frames.camera, mounting_of(camera)),
-          transform_of(frames.camera, frames.camera_optical, DepthCamera::optical_frame())};
+  std::vector<geometry_msgs::TransformStamped> all;
+  if (lidar.rate > 0) all.push_back(transform_of(frames.base, frames.lidar, mounting_of(lidar)));
+  if (camera.rate > 0) {
+    all.push_back(transform_of(frames.base, frames.camera, mounting_of(camera)));
+    all.push_back(transform_of(frames.camera, frames.camera_optical, DepthCamera::optical_frame()));
+  }
+  return all;
 }
 
 }  // namespace desert_sim

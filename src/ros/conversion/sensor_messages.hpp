@@ -40,7 +40,7 @@ struct SensorFrames {
 };
 
 /// The static transforms from the base to the lidar, to the camera's body, and from there to its optical
-/// frame.
+/// frame; none for a sensor whose rate is 0.
 std::vector<geometry_msgs::TransformStamped> sensor_transforms(const SensorFrames& frames,
                                                                const LidarParameters& lidar,
                                                                const DepthCameraParameters& camera);

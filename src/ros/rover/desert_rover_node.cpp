@@ -33,7 +33,7 @@ void shut_down(int) { ros::requestShutdown(); }
 int print_model(const std::vector<std::string>& words) {
   try {
     const desert_sim::RoverSetup setup = desert_sim::read_rover_words(words);
-    std::cout << desert_sim::urdf_of(setup.rover, setup.frame(""));
+    std::cout << desert_sim::urdf_of(setup.rover, setup.lidar, setup.depth_camera, setup.frame(""));
     return 0;
   } catch (const desert_sim::ConfigError& e) {
     std::cerr << e.what() << "\n";

@@ -2,25 +2,36 @@
 
 #include <algorithm>
 
-#include "src/terrain/map_layers.hpp"
-
 namespace desert_sim {
 
-std::vector<std::string> TerrainMaps::known_names() {
-  std::vector<std::string> known;
-  for (const char* name : names)
-    if (find_map_layer(name)) known.emplace_back(name);
-  return known;
+namespace {
+
+/// Looks at row after row, because a loose cell is mostly found in the first ones.
+bool any_above_0(const LayerMap& map, const LayerMap::Rectangle& cells) {
+  for (std::uint32_t y = cells.y; y < cells.y + cells.height; ++y) {
+    const std::vector<float> row = map.values({cells.x, y, cells.width, 1});
+    if (std::any_of(row.begin(), row.end(), [](float v) { return v > 0; })) return true;
+  }
+  return false;
 }
+
+}  // namespace
 
 std::size_t TerrainMaps::index(const std::string& name) {
   return static_cast<std::size_t>(std::find(std::begin(names), std::end(names), name) - std::begin(names));
 }
 
-bool TerrainMaps::complete() const {
-  for (std::size_t n = 0; n < count; ++n)
-    if (!maps[n] && find_map_layer(names[n])) return false;
-  return true;
+bool TerrainMaps::complete(bool with_sensors) const {
+  return std::all_of(maps.begin(), maps.begin() + (with_sensors ? count : ground_count),
+                     [](const auto& map) { return map != nullptr; });
+}
+
+void TerrainMaps::set(std::size_t which, const MapChange& change) {
+  const MapInfo& info = change.map->info();
+  if (which == looseness && !change.cells.empty())
+    loose = loose ? any_above_0(*change.map, {0, 0, info.width, info.height})
+                  : any_above_0(*change.map, change.cells);
+  maps[which] = change.map;
 }
 
 bool MapGround::contains(double x, double y) const {

@@ -39,6 +39,8 @@ RoverSetup setup_of(const YAML::Node& root, const std::string& source) {
   RoverSetup setup;
   std::set<std::string> known{"rover", "wheel_ground"};
   yaml::read_parameters(root, "", errors, setup.node, known);
+  if (root.IsMap())
+    read_sensor_parameters(root, errors, setup.lidar, setup.depth_camera, setup.sensor_media, known);
   yaml::reject_unknown_keys(root, "", known, errors);
   if (!setup.node.rover_class.empty()) {
     const std::string file = class_file(setup.node.rover_class);
@@ -56,6 +58,9 @@ RoverSetup setup_of(const YAML::Node& root, const std::string& source) {
     errors.add(setup.node.x ? "y" : "x", "is left out, while the other coordinate is given");
   errors.throw_if_any();
   check_rover(setup.rover, source + ": rover");
+  check_parameters(setup.lidar);
+  check_parameters(setup.depth_camera);
+  check_parameters(setup.sensor_media);
   return setup;
 }
 
@@ -78,7 +83,17 @@ RoverSetup read_rover_words(const std::vector<std::string>& words) {
       values.emplace_back(word.substr(0, at), word.substr(at + 2));
   }
   if (!root.IsMap()) throw ConfigError(source + ": has no keys and values");
-  for (const auto& [key, value] : values) root[key] = value;
+  for (const auto& [key, value] : values) {
+    const std::size_t at = key.find('/');
+    if (at == std::string::npos) {
+      root[key] = value;
+      continue;
+    }
+    YAML::Node section = root[key.substr(0, at)];
+    if (section.IsDefined() && !section.IsMap())
+      throw ConfigError(source + ": " + key.substr(0, at) + " has no keys and values");
+    section[key.substr(at + 1)] = value;
+  }
   return setup_of(root, source);
 }
 
@@ -93,6 +108,12 @@ std::string describe_rover_parameters() {
   write_parameter_table(out, RoverParameters());
   out << "\n## wheel_ground\n\n";
   write_parameter_table(out, WheelGroundParameters());
+  out << "\n## lidar\n\n";
+  write_parameter_table(out, LidarParameters());
+  out << "\n## depth_camera\n\n";
+  write_parameter_table(out, DepthCameraParameters());
+  out << "\n## sensor_media\n\n";
+  write_parameter_table(out, SensorMediaParameters());
   return out.str();
 }
 

@@ -9,6 +9,7 @@
 
 #include "src/core/parameters.hpp"
 #include "src/rover/parameters.hpp"
+#include "src/rover/sensors/sensor_parameters.hpp"
 
 namespace desert_sim {
 
@@ -41,6 +42,8 @@ struct RoverNodeParameters {
   bool tracks = false;
   double track_spacing = 0.25;
   double track_rate = 10;
+  std::string sensor_backend = "cpu";
+  int sensor_threads = 1;
   double status_rate = 1;
   double diagnostic_period = 1;
   double answer_timeout = 5;
@@ -94,6 +97,9 @@ constexpr auto parameter_table(const RoverNodeParameters*) {
       parameter("track_spacing", &P::track_spacing, 0.01, 100, "m", "Way of a wheel that is one stroke."),
       parameter("track_rate", &P::track_rate, 0.1, 1000, "Hz",
                 "With clock ros: at most so many strokes a second."),
+      parameter("sensor_backend", &P::sensor_backend,
+                "Where beams of the sensors are cast: cpu, cuda, or auto, a GPU if there is one."),
+      parameter("sensor_threads", &P::sensor_threads, 0, 1024, "1", "Of that CPU; 0: one a processor."),
       parameter("status_rate", &P::status_rate, 0.01, 1000, "Hz",
                 "~status, of wall time; it is also sent on change."),
       parameter("diagnostic_period", &P::diagnostic_period, 0.01, 1e6, "s", "Of /diagnostics, in wall time."),
@@ -107,17 +113,21 @@ struct RoverSetup {
   RoverNodeParameters node;
   RoverParameters rover;
   WheelGroundParameters wheel_ground;
+  LidarParameters lidar;
+  DepthCameraParameters depth_camera;
+  SensorMediaParameters sensor_media;
 
+  bool has_sensors() const { return lidar.rate > 0 || depth_camera.rate > 0; }
   std::string frame(const std::string& name) const {
     return node.tf_prefix.empty() ? name : node.tf_prefix + "/" + name;
   }
 };
 
-/// Reads all private parameters: those of the table, and the sections `rover` and `wheel_ground`. Throws
-/// ConfigError that lists all errors; an unknown parameter is one.
+/// Reads all private parameters: those of the table, and the sections `rover`, `wheel_ground`, `lidar`,
+/// `depth_camera` and `sensor_media`. Throws ConfigError that lists all errors; an unknown parameter is one.
 RoverSetup read_rover_setup(const ros::NodeHandle& private_node);
-/// The same from words of a command line: a YAML file, and key:=value, which override its keys; what has no
-/// value is left out.
+/// The same from words of a command line: a YAML file, and key:=value or section/key:=value, which override
+/// its keys; what has no value is left out.
 RoverSetup read_rover_words(const std::vector<std::string>& words);
 
 /// The page in markdown: what `desert_rover_node --describe` prints, and what config/rover_parameters.md

@@ -32,6 +32,24 @@ std::unique_ptr<RoverJournalWriter> start_journal(const std::string& path, const
   return std::make_unique<RoverJournalWriter>(path, rover);
 }
 
+SensorFrames sensor_frames(const RoverSetup& setup) {
+  const SensorFrames names;
+  return {setup.frame(names.base), setup.frame(names.lidar), setup.frame(names.camera),
+          setup.frame(names.camera_optical)};
+}
+
+std::unique_ptr<SensorPublisher> make_sensors(const ros::NodeHandle& node, const RoverSetup& setup) {
+  if (!setup.has_sensors()) return nullptr;
+  SensorSetup sensors;
+  sensors.lidar = setup.lidar;
+  sensors.depth_camera = setup.depth_camera;
+  sensors.media = setup.sensor_media;
+  sensors.backend = setup.node.sensor_backend;
+  sensors.threads = setup.node.sensor_threads;
+  sensors.lockstep = setup.node.clock == RoverClock::lockstep;
+  return std::make_unique<SensorPublisher>(node, sensors, sensor_frames(setup));
+}
+
 }  // namespace
 
 RoverServer::RoverServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
@@ -41,7 +59,13 @@ RoverServer::RoverServer(const ros::NodeHandle& node, const ros::NodeHandle& pri
       files_(setup_.node.data_dir),
       rover_(setup_.rover, setup_.wheel_ground, "parameters of " + private_node.getNamespace() + ": rover"),
       journal_(start_journal(setup_.node.journal, rover_)),
-      terrain_(setup_.node),
+      sensors_(make_sensors(node, setup_)),
+      terrain_(setup_.node, setup_.has_sensors(),
+               [this](const MapChange& change) {
+                 // In lockstep sensors see the state that the rover drives on, which measure() gives them.
+                 if (sensors_ && setup_.node.clock == RoverClock::ros)
+                   sensors_->on_terrain(change.map, change.cells);
+               }),
       publisher_(node, private_node, setup_),
       updater_(private_node, private_node, private_node.getNamespace()),
       spinner_(callback_threads, &queue_) {
@@ -49,7 +73,12 @@ RoverServer::RoverServer(const ros::NodeHandle& node, const ros::NodeHandle& pri
   private_node_.setCallbackQueue(&queue_);
   if (setup_.node.tracks) tracks_ = std::make_unique<WheelTracks>(setup_);
   if (setup_.node.publish_description)
-    node_.setParam("robot_description", urdf_of(setup_.rover, setup_.frame("")));
+    node_.setParam("robot_description", urdf_of(setup_.rover, setup_.lidar, setup_.depth_camera, setup_.frame("")));
+  if (sensors_ && setup_.node.publish_tf) {
+    std::vector<geometry_msgs::TransformStamped> mountings =
+        sensor_transforms(sensor_frames(setup_), setup_.lidar, setup_.depth_camera);
+    static_broadcaster_.sendTransform(mountings);
+  }
   const boost::function<void(const geometry_msgs::TwistConstPtr&)> receive =
       [this](const geometry_msgs::TwistConstPtr& command) { receive_command(*command); };
   commands_ = node_.subscribe<geometry_msgs::Twist>("cmd_vel", 1, receive);
@@ -162,6 +191,7 @@ void RoverServer::advance(double seconds, const std::shared_ptr<const MapGround>
   }
   apply(event);
   publisher_.publish_pose(rover_, stamp, frame);
+  if (sensors_ && ground && rover_.state().placed) measure(*ground, stamp);
   publisher_.publish_status(status());
   if (tracks_ && ground) {
     const Rover rover = rover_;
@@ -170,6 +200,21 @@ void RoverServer::advance(double seconds, const std::shared_ptr<const MapGround>
     tracks_->follow(rover, ground->maps().info().cell_size);
   }
   advanced_.notify_all();
+}
+
+void RoverServer::measure(const MapGround& ground, const ros::Time& stamp) {
+  const RoverState& state = rover_.state();
+  const geometry_msgs::Pose pose = pose_message(state.pose);
+  if (setup_.node.clock == RoverClock::ros) {
+    terrain_.want_sensor_layers(sensors_->has_subscribers());
+    sensors_->on_pose(stamp, pose);
+    return;
+  }
+  const MapInfo& info = ground.maps().info();
+  for (const std::shared_ptr<const LayerMap>& map : ground.maps().maps)
+    sensors_->on_terrain(map, {0, 0, info.width, info.height});
+  // By the rover's own time, which begins anew with it, whatever the time of day is.
+  sensors_->on_pose(stamp, static_cast<double>(state.ticks) * Rover::internal_step, pose);
 }
 
 void RoverServer::start_where_it_begins(const MapGround& ground) {

@@ -12,6 +12,7 @@
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
 #include <std_srvs/Trigger.h>
+#include <tf2_ros/static_transform_broadcaster.h>
 
 #include <atomic>
 #include <condition_variable>
@@ -24,6 +25,7 @@
 #include "src/core/data_folder.hpp"
 #include "src/ros/rover/rover_publisher.hpp"
 #include "src/ros/rover/rover_terrain.hpp"
+#include "src/ros/rover/sensors.hpp"
 #include "src/ros/rover/wheel_tracks.hpp"
 #include "src/rover/journal.hpp"
 
@@ -48,6 +50,8 @@ class RoverServer {
   void tell_status();
   /// Lets the rover drive on this ground (null: none is known), and publishes.
   void advance(double seconds, const std::shared_ptr<const MapGround>& ground, const ros::Time& stamp);
+  /// Lets the sensors measure from the rover's pose, if they are due. The caller holds the mutex.
+  void measure(const MapGround& ground, const ros::Time& stamp);
   /// By how much the rover's time goes on with this state of the terrain.
   double seconds_to(const MapGround& ground);
   void start_where_it_begins(const MapGround& ground);
@@ -84,9 +88,11 @@ class RoverServer {
   bool waits_for_loaded_step_ = false;       ///< a state was loaded, and the terrain is not yet at its step
   std::string refusal_, failure_, start_problem_;
   // By threads of their own, which are ended first:
+  std::unique_ptr<SensorPublisher> sensors_;  ///< null without sensors; terrain_ calls it
   RoverTerrain terrain_;
   std::unique_ptr<WheelTracks> tracks_;
   RoverPublisher publisher_;
+  tf2_ros::StaticTransformBroadcaster static_broadcaster_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer diagnostic_timer_;
   ros::Subscriber commands_;

@@ -2,36 +2,49 @@
 
 #include <ros/console.h>
 
-#include <algorithm>
+#include <utility>
 
 namespace desert_sim {
 
-RoverTerrain::RoverTerrain(const RoverNodeParameters& parameters) : parameters_(parameters) {
+RoverTerrain::RoverTerrain(const RoverNodeParameters& parameters, bool sensors,
+                           std::function<void(const MapChange&)> on_change)
+    : parameters_(parameters),
+      lockstep_(parameters.clock == RoverClock::lockstep),
+      sensors_in_states_(sensors && lockstep_),
+      on_change_(std::move(on_change)),
+      sensor_layers_(sensors_in_states_) {
   TerrainClient::Options options;
   options.node = parameters.terrain_node;
-  options.layers = TerrainMaps::known_names();
+  options.layers = TerrainMaps::ground_names();
+  if (sensor_layers_)
+    for (const std::string& name : TerrainMaps::sensor_names()) options.layers.push_back(name);
   options.tell_each_step = true;
   options.on_change = [this](const MapChange& change) { receive(change); };
   client_ = std::make_unique<TerrainClient>(ros::NodeHandle(), options);
 }
 
+void RoverTerrain::want_sensor_layers(bool wanted) {
+  if (lockstep_ || wanted == sensor_layers_) return;
+  sensor_layers_ = wanted;
+  for (const std::string& name : TerrainMaps::sensor_names())
+    wanted ? client_->subscribe_layer(name) : client_->unsubscribe_layer(name);
+}
+
 void RoverTerrain::receive(const MapChange& change) {
+  if (on_change_) on_change_(change);
   const std::size_t which = TerrainMaps::index(change.map->info().layer);
   if (which == TerrainMaps::count) return;
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (which == TerrainMaps::looseness && !loose_ && !change.cells.empty()) {
-    const std::vector<float> values = change.map->values(change.cells);
-    loose_ = std::any_of(values.begin(), values.end(), [](float v) { return v > 0; });
-  }
-  newest_maps_.maps[which] = change.map;
+  newest_maps_.set(which, change);
   newest_.reset();
-  if (parameters_.clock == RoverClock::ros) return;
+  if (!lockstep_) return;
   const std::uint64_t step = change.map->info().step;
   // After a reset, steps that were on their way will not be completed.
   if (step < last_step_) incomplete_.erase(incomplete_.upper_bound(step), incomplete_.end());
   TerrainMaps& state = incomplete_[step];
   state.maps[which] = change.map;
-  if (state.complete()) {
+  if (which == TerrainMaps::looseness) state.loose = newest_maps_.loose;
+  if (state.complete(sensors_in_states_)) {
     complete_.push_back(state);
     last_step_ = step;
     if (complete_.size() > most_states) {
@@ -48,13 +61,13 @@ void RoverTerrain::receive(const MapChange& change) {
 
 std::shared_ptr<const MapGround> RoverTerrain::ground_of(const TerrainMaps& maps) const {
   const bool use = parameters_.looseness == LoosenessSource::layer ||
-                   (parameters_.looseness == LoosenessSource::automatic && loose_);
+                   (parameters_.looseness == LoosenessSource::automatic && maps.loose);
   return std::make_shared<const MapGround>(maps, parameters_.moisture_capacity, use);
 }
 
 std::shared_ptr<const MapGround> RoverTerrain::newest() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!newest_ && newest_maps_.complete()) newest_ = ground_of(newest_maps_);
+  if (!newest_ && newest_maps_.complete(false)) newest_ = ground_of(newest_maps_);
   return newest_;
 }
 

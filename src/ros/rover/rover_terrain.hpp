@@ -22,15 +22,22 @@ namespace desert_sim {
 
 class RoverTerrain {
  public:
-  explicit RoverTerrain(const RoverNodeParameters& parameters);
+  /// `on_change` (may be empty) is called after each change of any layer, on the client's thread. `sensors`:
+  /// whether the rover has some; their layers are then parts of the states that next() gives, and of
+  /// newest() while want_sensor_layers(true).
+  RoverTerrain(const RoverNodeParameters& parameters, bool sensors,
+               std::function<void(const MapChange&)> on_change);
 
   /// The newest map of each layer, perhaps of different steps; null before there is one of each.
   std::shared_ptr<const MapGround> newest();
   /// The next state of which all layers are of one step, in the order of steps. Waits for it up to
   /// `patience`, and is null if none came. States that nobody takes are kept, up to 1000.
   std::shared_ptr<const MapGround> next(std::chrono::milliseconds patience);
-  /// Whether the simulation's topics have a publisher.
-  bool connected() const { return client_->connected(); }
+  /// Subscribes to the layers that only sensors see, or gives them up. Of no effect in lockstep, where
+  /// states must not depend on who listens. From one thread at a time.
+  void want_sensor_layers(bool wanted);
+  /// Whether the elevation has a publisher.
+  bool connected() const { return client_->connected("elevation"); }
 
  private:
   void receive(const MapChange& change);
@@ -38,6 +45,9 @@ class RoverTerrain {
 
   static constexpr std::size_t most_states = 1000, most_incomplete = 64;
   const RoverNodeParameters parameters_;
+  const bool lockstep_, sensors_in_states_;
+  const std::function<void(const MapChange&)> on_change_;
+  bool sensor_layers_ = false;  ///< whether they are subscribed to
   std::mutex mutex_;
   std::condition_variable arrived_;
   TerrainMaps newest_maps_;
@@ -45,7 +55,6 @@ class RoverTerrain {
   std::map<std::uint64_t, TerrainMaps> incomplete_;  ///< by step
   std::deque<TerrainMaps> complete_;
   std::uint64_t last_step_ = 0;            ///< of the last one that became complete
-  bool loose_ = false;                     ///< whether the layer looseness has had a cell that is not 0
   std::unique_ptr<TerrainClient> client_;  ///< last: it calls receive()
 };
 

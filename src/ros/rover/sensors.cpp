@@ -18,8 +18,8 @@ SceneGeometry geometry_of(const LayerMap& map) {
 
 /// The number of the interval of 1/rate in which a time lies; one that is meant to be on its boundary may be
 /// off by rounding.
-std::uint64_t interval_of(const ros::Time& time, double rate) {
-  return static_cast<std::uint64_t>(std::floor(static_cast<double>(time.toNSec()) * 1e-9 * rate + 1e-6));
+std::uint64_t interval_of(double time, double rate) {
+  return static_cast<std::uint64_t>(std::floor(time * rate + 1e-6));
 }
 
 double milliseconds_since(const std::chrono::steady_clock::time_point& begin) {
@@ -42,9 +42,11 @@ SensorPublisher::SensorPublisher(ros::NodeHandle node, const SensorSetup& setup,
       lidar_(*exec_, setup.lidar, setup.media),
       camera_(*exec_, setup.depth_camera, setup.media) {
   const std::uint32_t queue = setup_.lockstep ? 100 : 2;  // in lockstep a lost message is missed
-  points_ = node.advertise<sensor_msgs::PointCloud2>("lidar/points", queue);
-  image_ = node.advertise<sensor_msgs::Image>("depth_camera/image_rect", queue);
-  info_ = node.advertise<sensor_msgs::CameraInfo>("depth_camera/camera_info", queue);
+  if (setup_.lidar.rate > 0) points_ = node.advertise<sensor_msgs::PointCloud2>("lidar/points", queue);
+  if (setup_.depth_camera.rate > 0) {
+    image_ = node.advertise<sensor_msgs::Image>("depth_camera/image_rect", queue);
+    info_ = node.advertise<sensor_msgs::CameraInfo>("depth_camera/camera_info", queue);
+  }
   if (!setup_.lockstep) thread_ = std::thread([this] { work(); });
 }
 
@@ -75,12 +77,16 @@ void SensorPublisher::on_terrain(std::shared_ptr<const LayerMap> map, const Laye
   }
 }
 
-SensorPublisher::Job SensorPublisher::due(const ros::Time& stamp, const SensorPose& base) {
+bool SensorPublisher::has_subscribers() const {
+  return points_.getNumSubscribers() + image_.getNumSubscribers() + info_.getNumSubscribers() > 0;
+}
+
+SensorPublisher::Job SensorPublisher::due(const ros::Time& stamp, double time, const SensorPose& base) {
   Job job{stamp, base, {}, {}};
   const auto next = [&](double rate, std::optional<std::uint64_t>& last, std::uint32_t subscribers) {
     std::optional<std::uint64_t> number;
     if (rate <= 0) return number;
-    const std::uint64_t now = interval_of(stamp, rate);
+    const std::uint64_t now = interval_of(time, rate);
     if (subscribers > 0 && last != now) number = now;
     if (subscribers > 0) last = now;
     return number;
@@ -91,10 +97,11 @@ SensorPublisher::Job SensorPublisher::due(const ros::Time& stamp, const SensorPo
   return job;
 }
 
-void SensorPublisher::on_pose(const ros::Time& stamp, const geometry_msgs::Pose& base_in_terrain) {
+void SensorPublisher::on_pose(const ros::Time& stamp, double time,
+                              const geometry_msgs::Pose& base_in_terrain) {
   const SensorPose base = to_sensor_pose(base_in_terrain);
   rotation_of(base);  // refuses what is no pose
-  Job job = due(stamp, base);
+  Job job = due(stamp, time, base);
   if (setup_.lockstep) {
     if (job.scan || job.picture) perform(job);
     return;

@@ -7,9 +7,9 @@
 ///   depth_camera/image_rect    sensor_msgs/Image, see depth_image()
 ///   depth_camera/camera_info   sensor_msgs/CameraInfo, with each image
 ///
-/// Times come from the stamps of poses only: a sensor of r Hz measures from the first pose in each interval
-/// [n/r, (n + 1)/r) of ROS time, and n is the number of the scan, on which its noise depends. So the same
-/// poses over the same terrain give the same messages to the bit, at any speed.
+/// Times come with the poses only: a sensor of r Hz measures from the first pose in each interval
+/// [n/r, (n + 1)/r), and n is the number of the scan, on which its noise depends. So the same poses over the
+/// same terrain give the same messages to the bit, at any speed.
 
 #include <geometry_msgs/Pose.h>
 #include <ros/node_handle.h>
@@ -48,7 +48,7 @@ struct SensorSetup {
 
 class SensorPublisher {
  public:
-  /// Advertises the topics below `node`. Throws ConfigError for parameters that the sensors refuse.
+  /// Advertises the topics of the sensors whose rate is not 0, below `node`. Throws ConfigError for parameters that the sensors refuse.
   SensorPublisher(ros::NodeHandle node, const SensorSetup& setup, const SensorFrames& frames);
   /// Waits for the scan that is being made.
   ~SensorPublisher();
@@ -62,10 +62,16 @@ class SensorPublisher {
   /// TerrainClient's on_change. Maps of other layers are ignored. Returns at once, from any thread.
   void on_terrain(std::shared_ptr<const LayerMap> map, const LayerMap::Rectangle& changed);
 
+  /// Whether anybody listens.
+  bool has_subscribers() const;
+
   /// Takes the pose of the frame in which the sensors are mounted, in the terrain's frame, and measures if
-  /// that is due. A pose that comes while the one before is still waiting takes its place. From one thread at
+  /// that is due by `time` [s], which is not below 0; messages have `stamp`. A pose that comes while the one before is still waiting takes its place. From one thread at
   /// a time. Throws ConfigError for a pose that is none, and what measuring has thrown.
-  void on_pose(const ros::Time& stamp, const geometry_msgs::Pose& base_in_terrain);
+  void on_pose(const ros::Time& stamp, double time, const geometry_msgs::Pose& base_in_terrain);
+  void on_pose(const ros::Time& stamp, const geometry_msgs::Pose& base_in_terrain) {
+    on_pose(stamp, static_cast<double>(stamp.toNSec()) * 1e-9, base_in_terrain);
+  }
 
   struct Statistics {
     std::uint64_t scans = 0, pictures = 0;
@@ -88,7 +94,7 @@ class SensorPublisher {
     std::optional<std::uint64_t> scan, picture;  ///< their numbers, if they are due
   };
 
-  Job due(const ros::Time& stamp, const SensorPose& base);
+  Job due(const ros::Time& stamp, double time, const SensorPose& base);
   void work();
   void perform(const Job& job);
   bool update_scene();
