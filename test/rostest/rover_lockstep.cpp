@@ -1,10 +1,19 @@
 /// A rover in lockstep: the same commands between the same steps give the same path to the bit, again,
-/// after a checkpoint, from the journal beside a simulation without ROS, and after kill -9.
+/// after a checkpoint, from the journal beside a simulation without ROS, and after kill -9; and the same
+/// clouds of the lidar.
 #include <desert_sim/LoadCheckpoint.h>
 #include <desert_sim/SaveCheckpoint.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <sensor_msgs/point_cloud2_iterator.h>
+#include <tf2/LinearMath/Transform.h>
+#include <tf2_geometry_msgs/tf2_geometry_msgs.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <cmath>
 
 #include "rostest/child_process.hpp"
 #include "rostest/rover_tests.hpp"
+#include "src/client/terrain_client.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/rover/journal.hpp"
 #include "src/rover/simulated_ground.hpp"
@@ -106,6 +115,52 @@ TEST(RoverLockstep, TheJournalLeadsToTheSameStateWithoutRos) {
     return ground.at(wanted);
   };
   EXPECT_EQ(desert_sim::hash_text(desert_sim::hash_of(desert_sim::replay(journal, at_step))), end);
+}
+
+TEST(RoverLockstep, CloudsLieOnTheTerrainAndRepeatToTheBit) {
+  constexpr int scans = 5;
+  desert_sim::TerrainClient terrain;
+  tf2_ros::Buffer buffer;
+  tf2_ros::TransformListener listener(buffer);
+  node_test::Listener<sensor_msgs::PointCloud2> clouds("/lidar/points");
+  begin_anew();
+  ASSERT_TRUE(node_test::wait_until([&] { return step(1).success && clouds.count() > 0; }))
+      << "each state has a scan once the lidar knows its subscriber";
+  const auto last_clouds = [&] {
+    begin_anew();
+    path(0, scans);                 // its answers say that the scans are published
+    ros::WallDuration(0.5).sleep();  // on their way
+    const std::vector<sensor_msgs::PointCloud2> all = clouds.all();
+    return std::vector<sensor_msgs::PointCloud2>(all.end() - std::min<long>(scans, all.end() - all.begin()),
+                                                 all.end());
+  };
+  const std::vector<sensor_msgs::PointCloud2> once = last_clouds(), again = last_clouds();
+  ASSERT_EQ(once.size(), static_cast<std::size_t>(scans));
+  for (std::size_t n = 0; n < once.size(); ++n) EXPECT_EQ(once[n].data, again[n].data) << n;
+  EXPECT_NE(once.front().data, once.back().data);
+
+  const sensor_msgs::PointCloud2& cloud = again.back();
+  EXPECT_EQ(cloud.header.frame_id, "lidar");
+  ASSERT_TRUE(terrain.wait_for_step(scans, 10));
+  ASSERT_EQ(terrain.map()->info().step, static_cast<std::uint64_t>(scans));
+  tf2::Transform to_terrain;
+  tf2::fromMsg(buffer.lookupTransform("terrain", "lidar", cloud.header.stamp, ros::Duration(5)).transform,
+               to_terrain);
+  int points = 0, lost = 0;
+  sensor_msgs::PointCloud2ConstIterator<float> p(cloud, "x");
+  for (; p != p.end(); ++p) {
+    if (std::isnan(p[0])) {
+      ++lost;
+      continue;
+    }
+    const tf2::Vector3 at = to_terrain * tf2::Vector3(p[0], p[1], p[2]);
+    const std::optional<double> ground = terrain.elevation(at.x(), at.y());
+    if (!ground) continue;  // noise has moved a point at the edge over it
+    ++points;
+    EXPECT_NEAR(at.z(), *ground, 0.01) << at.x() << " " << at.y();
+  }
+  EXPECT_GT(points, 400);
+  EXPECT_GT(lost, 30) << "a tenth is dropped";
 }
 
 TEST(RoverLockstep, ANodeThatIsKilledStartsSanely) {
