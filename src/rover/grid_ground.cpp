@@ -19,7 +19,7 @@ std::vector<float> layer_of(const Snapshot& snapshot, Layer layer) {
 std::vector<float> looseness_of(const Snapshot& snapshot) {
   const std::vector<float> values = layer_of(snapshot, Layer::looseness);
   return std::any_of(values.begin(), values.end(), [](float v) { return v > 0; }) ? values
-                                                                                    : std::vector<float>();
+                                                                                  : std::vector<float>();
 }
 
 GridGround::Layers layers_of(const Snapshot& s, double moisture_capacity) {

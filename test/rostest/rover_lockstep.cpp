@@ -128,7 +128,7 @@ TEST(RoverLockstep, CloudsLieOnTheTerrainAndRepeatToTheBit) {
       << "each state has a scan once the lidar knows its subscriber";
   const auto last_clouds = [&] {
     begin_anew();
-    path(0, scans);                 // its answers say that the scans are published
+    path(0, scans);                  // its answers say that the scans are published
     ros::WallDuration(0.5).sleep();  // on their way
     const std::vector<sensor_msgs::PointCloud2> all = clouds.all();
     return std::vector<sensor_msgs::PointCloud2>(all.end() - std::min<long>(scans, all.end() - all.begin()),

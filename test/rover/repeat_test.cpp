@@ -182,8 +182,8 @@ TEST(RoverModel, HasTheSensorsThatMeasure) {
   LidarParameters lidar;
   DepthCameraParameters camera;
   const auto has = [&](const char* link) {
-    return urdf_of(RoverParameters(), lidar, camera, "r1/").find("<link name=\"r1/" + std::string(link) +
-                                                                 "\"") != std::string::npos;
+    return urdf_of(RoverParameters(), lidar, camera, "r1/")
+               .find("<link name=\"r1/" + std::string(link) + "\"") != std::string::npos;
   };
   EXPECT_TRUE(has("lidar") && has("depth_camera") && has("depth_camera_optical"));
   lidar.rate = 0;

@@ -29,8 +29,8 @@ struct ShadowAndLift {
   }
 };
 
-/// Landing::at() of four adjacent cells of a row, which have all their neighbours. The cells share their loads
-/// and their shares.
+/// Landing::at() of four adjacent cells of a row, which have all their neighbours. The cells share
+/// their loads and their shares.
 DESERT_HD Vec4<Quanta> land_on_four(const Landing& landing, int x, int y) {
   Quanta row[3][6];
   for (int r = 0; r < 3; ++r) {

@@ -29,9 +29,9 @@ struct TerrainMaps {
     airborne_sand,
     count
   };
-  static constexpr const char* names[count] = {
-      "elevation",   "sand_depth", "soil_depth",    "moisture",   "obstacle",
-      "water_depth", "looseness",  "canopy_height", "vegetation", "airborne_sand"};
+  static constexpr const char* names[count] = {"elevation",  "sand_depth",   "soil_depth", "moisture",
+                                               "obstacle",   "water_depth",  "looseness",  "canopy_height",
+                                               "vegetation", "airborne_sand"};
   std::array<std::shared_ptr<const LayerMap>, count> maps;
   bool loose = false;  ///< whether a cell of the looseness is not 0
 

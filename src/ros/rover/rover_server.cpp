@@ -73,7 +73,8 @@ RoverServer::RoverServer(const ros::NodeHandle& node, const ros::NodeHandle& pri
   private_node_.setCallbackQueue(&queue_);
   if (setup_.node.tracks) tracks_ = std::make_unique<WheelTracks>(setup_);
   if (setup_.node.publish_description)
-    node_.setParam("robot_description", urdf_of(setup_.rover, setup_.lidar, setup_.depth_camera, setup_.frame("")));
+    node_.setParam("robot_description",
+                   urdf_of(setup_.rover, setup_.lidar, setup_.depth_camera, setup_.frame("")));
   if (sensors_ && setup_.node.publish_tf) {
     std::vector<geometry_msgs::TransformStamped> mountings =
         sensor_transforms(sensor_frames(setup_), setup_.lidar, setup_.depth_camera);

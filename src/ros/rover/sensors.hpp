@@ -48,7 +48,8 @@ struct SensorSetup {
 
 class SensorPublisher {
  public:
-  /// Advertises the topics of the sensors whose rate is not 0, below `node`. Throws ConfigError for parameters that the sensors refuse.
+  /// Advertises the topics of the sensors whose rate is not 0, below `node`. Throws ConfigError for parameters
+  /// that the sensors refuse.
   SensorPublisher(ros::NodeHandle node, const SensorSetup& setup, const SensorFrames& frames);
   /// Waits for the scan that is being made.
   ~SensorPublisher();
@@ -66,9 +67,11 @@ class SensorPublisher {
   bool has_subscribers() const;
 
   /// Takes the pose of the frame in which the sensors are mounted, in the terrain's frame, and measures if
-  /// that is due by `time` [s], which is not below 0; messages have `stamp`. A pose that comes while the one before is still waiting takes its place. From one thread at
-  /// a time. Throws ConfigError for a pose that is none, and what measuring has thrown.
+  /// that is due by `time` [s], which is not below 0; messages have `stamp`. A pose that comes while the one
+  /// before is still waiting takes its place. From one thread at a time. Throws ConfigError for a pose that is
+  /// none, and what measuring has thrown.
   void on_pose(const ros::Time& stamp, double time, const geometry_msgs::Pose& base_in_terrain);
+  /// The same by the time of the stamp.
   void on_pose(const ros::Time& stamp, const geometry_msgs::Pose& base_in_terrain) {
     on_pose(stamp, static_cast<double>(stamp.toNSec()) * 1e-9, base_in_terrain);
   }

@@ -220,8 +220,8 @@ Process avalanching_process() {
   return p;
 }
 
-/// Where starting passes is what takes time, each step finds the wind's shadow, and nothing but saltation asks
-/// for it before sand is lifted, the pass that lifts sand finds it.
+/// Where starting passes is what takes time, each step finds the wind's shadow, and nothing but saltation
+/// asks for it before sand is lifted, the pass that lifts sand finds it.
 FusedProcesses fused_wind_shadow_and_saltation() {
   FusedProcesses f;
   f.name = "shadow found in passing";
