@@ -138,6 +138,8 @@ TEST(RoverLockstep, CloudsLieOnTheTerrainAndRepeatToTheBit) {
   ASSERT_EQ(once.size(), static_cast<std::size_t>(scans));
   for (std::size_t n = 0; n < once.size(); ++n) EXPECT_EQ(once[n].data, again[n].data) << n;
   EXPECT_NE(once.front().data, once.back().data);
+  for (std::size_t n = 1; n < again.size(); ++n) EXPECT_GT(again[n].header.stamp, again[n - 1].header.stamp);
+  EXPECT_GT(again.front().header.stamp, once.back().header.stamp) << "each state has a scan of its own";
 
   const sensor_msgs::PointCloud2& cloud = again.back();
   EXPECT_EQ(cloud.header.frame_id, "lidar");

@@ -182,6 +182,7 @@ void RoverServer::advance(double seconds, const std::shared_ptr<const MapGround>
   std::unique_lock<std::mutex> lock(mutex_);
   ground_ = ground;
   if (ground && !rover_.state().placed) start_where_it_begins(*ground);
+  const std::uint64_t ticks = rover_.state().ticks;
   rover_event::Advance event{seconds, std::nullopt, 0};
   std::string frame;
   if (ground) {
@@ -192,7 +193,7 @@ void RoverServer::advance(double seconds, const std::shared_ptr<const MapGround>
   }
   apply(event);
   publisher_.publish_pose(rover_, stamp, frame);
-  if (sensors_ && ground && rover_.state().placed) measure(*ground, stamp);
+  if (sensors_ && ground && rover_.state().placed) measure(*ground, stamp, ticks);
   publisher_.publish_status(status());
   if (tracks_ && ground) {
     const Rover rover = rover_;
@@ -203,7 +204,7 @@ void RoverServer::advance(double seconds, const std::shared_ptr<const MapGround>
   advanced_.notify_all();
 }
 
-void RoverServer::measure(const MapGround& ground, const ros::Time& stamp) {
+void RoverServer::measure(const MapGround& ground, const ros::Time& stamp, std::uint64_t ticks) {
   const RoverState& state = rover_.state();
   const geometry_msgs::Pose pose = pose_message(state.pose);
   if (setup_.node.clock == RoverClock::ros) {
@@ -214,8 +215,9 @@ void RoverServer::measure(const MapGround& ground, const ros::Time& stamp) {
   const MapInfo& info = ground.maps().info();
   for (const std::shared_ptr<const LayerMap>& map : ground.maps().maps)
     sensors_->on_terrain(map, {0, 0, info.width, info.height});
-  // By the rover's own time, which begins anew with it, whatever the time of day is.
-  sensors_->on_pose(stamp, static_cast<double>(state.ticks) * Rover::internal_step, pose);
+  // By the rover's own time, which is part of its state, whatever the time of day is.
+  const auto time = [](std::uint64_t n) { return static_cast<double>(n) * Rover::internal_step; };
+  sensors_->on_pose(stamp, pose, SensorPublisher::TimeSpan{time(ticks), time(state.ticks)});
 }
 
 void RoverServer::start_where_it_begins(const MapGround& ground) {

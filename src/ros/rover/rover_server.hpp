@@ -50,8 +50,9 @@ class RoverServer {
   void tell_status();
   /// Lets the rover drive on this ground (null: none is known), and publishes.
   void advance(double seconds, const std::shared_ptr<const MapGround>& ground, const ros::Time& stamp);
-  /// Lets the sensors measure from the rover's pose, if they are due. The caller holds the mutex.
-  void measure(const MapGround& ground, const ros::Time& stamp);
+  /// Lets the sensors measure from the rover's pose, if they are due; the last advance began at `ticks`. The
+  /// caller holds the mutex.
+  void measure(const MapGround& ground, const ros::Time& stamp, std::uint64_t ticks);
   /// By how much the rover's time goes on with this state of the terrain.
   double seconds_to(const MapGround& ground);
   void start_where_it_begins(const MapGround& ground);

@@ -81,12 +81,15 @@ bool SensorPublisher::has_subscribers() const {
   return points_.getNumSubscribers() + image_.getNumSubscribers() + info_.getNumSubscribers() > 0;
 }
 
-SensorPublisher::Job SensorPublisher::due(const ros::Time& stamp, double time, const SensorPose& base) {
+SensorPublisher::Job SensorPublisher::due(const ros::Time& stamp, const SensorPose& base,
+                                          const std::optional<TimeSpan>& passed) {
   Job job{stamp, base, {}, {}};
+  const double time = passed ? passed->end : static_cast<double>(stamp.toNSec()) * 1e-9;
   const auto next = [&](double rate, std::optional<std::uint64_t>& last, std::uint32_t subscribers) {
     std::optional<std::uint64_t> number;
     if (rate <= 0) return number;
     const std::uint64_t now = interval_of(time, rate);
+    if (passed) last = interval_of(passed->begin, rate);
     if (subscribers > 0 && last != now) number = now;
     if (subscribers > 0) last = now;
     return number;
@@ -97,11 +100,11 @@ SensorPublisher::Job SensorPublisher::due(const ros::Time& stamp, double time, c
   return job;
 }
 
-void SensorPublisher::on_pose(const ros::Time& stamp, double time,
-                              const geometry_msgs::Pose& base_in_terrain) {
+void SensorPublisher::on_pose(const ros::Time& stamp, const geometry_msgs::Pose& base_in_terrain,
+                              const std::optional<TimeSpan>& passed) {
   const SensorPose base = to_sensor_pose(base_in_terrain);
   rotation_of(base);  // refuses what is no pose
-  Job job = due(stamp, time, base);
+  Job job = due(stamp, base, passed);
   if (setup_.lockstep) {
     if (job.scan || job.picture) perform(job);
     return;

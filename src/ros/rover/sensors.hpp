@@ -8,8 +8,9 @@
 ///   depth_camera/camera_info   sensor_msgs/CameraInfo, with each image
 ///
 /// Times come with the poses only: a sensor of r Hz measures from the first pose in each interval
-/// [n/r, (n + 1)/r), and n is the number of the scan, on which its noise depends. So the same poses over the
-/// same terrain give the same messages to the bit, at any speed.
+/// [n/r, (n + 1)/r) of ROS time, or of another time that is given with them, and n is the number of the scan,
+/// on which its noise depends. So the same poses over the same terrain give the same messages to the bit, at
+/// any speed.
 
 #include <geometry_msgs/Pose.h>
 #include <ros/node_handle.h>
@@ -48,8 +49,8 @@ struct SensorSetup {
 
 class SensorPublisher {
  public:
-  /// Advertises the topics of the sensors whose rate is not 0, below `node`. Throws ConfigError for parameters
-  /// that the sensors refuse.
+  /// Advertises the topics of the sensors whose rate is not 0, below `node`. Throws ConfigError for
+  /// parameters that the sensors refuse.
   SensorPublisher(ros::NodeHandle node, const SensorSetup& setup, const SensorFrames& frames);
   /// Waits for the scan that is being made.
   ~SensorPublisher();
@@ -66,15 +67,16 @@ class SensorPublisher {
   /// Whether anybody listens.
   bool has_subscribers() const;
 
+  /// Some time of a clock that is not that of stamps [s], from 0 on.
+  struct TimeSpan {
+    double begin, end;
+  };
   /// Takes the pose of the frame in which the sensors are mounted, in the terrain's frame, and measures if
-  /// that is due by `time` [s], which is not below 0; messages have `stamp`. A pose that comes while the one
-  /// before is still waiting takes its place. From one thread at a time. Throws ConfigError for a pose that is
-  /// none, and what measuring has thrown.
-  void on_pose(const ros::Time& stamp, double time, const geometry_msgs::Pose& base_in_terrain);
-  /// The same by the time of the stamp.
-  void on_pose(const ros::Time& stamp, const geometry_msgs::Pose& base_in_terrain) {
-    on_pose(stamp, static_cast<double>(stamp.toNSec()) * 1e-9, base_in_terrain);
-  }
+  /// that is due. A pose that comes while the one before is still waiting takes its place. From one thread at
+  /// a time. Throws ConfigError for a pose that is none, and what measuring has thrown. With `passed`, the time
+  /// since the pose before, intervals and numbers are those of that time, and depend on nothing else.
+  void on_pose(const ros::Time& stamp, const geometry_msgs::Pose& base_in_terrain,
+               const std::optional<TimeSpan>& passed = {});
 
   struct Statistics {
     std::uint64_t scans = 0, pictures = 0;
@@ -97,7 +99,7 @@ class SensorPublisher {
     std::optional<std::uint64_t> scan, picture;  ///< their numbers, if they are due
   };
 
-  Job due(const ros::Time& stamp, double time, const SensorPose& base);
+  Job due(const ros::Time& stamp, const SensorPose& base, const std::optional<TimeSpan>& passed);
   void work();
   void perform(const Job& job);
   bool update_scene();
