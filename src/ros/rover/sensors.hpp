@@ -73,8 +73,8 @@ class SensorPublisher {
   };
   /// Takes the pose of the frame in which the sensors are mounted, in the terrain's frame, and measures if
   /// that is due. A pose that comes while the one before is still waiting takes its place. From one thread at
-  /// a time. Throws ConfigError for a pose that is none, and what measuring has thrown. With `passed`, the time
-  /// since the pose before, intervals and numbers are those of that time, and depend on nothing else.
+  /// a time. Throws ConfigError for a pose that is none, and what measuring has thrown. With `passed`, the
+  /// time since the pose before, intervals and numbers are those of that time, and depend on nothing else.
   void on_pose(const ros::Time& stamp, const geometry_msgs::Pose& base_in_terrain,
                const std::optional<TimeSpan>& passed = {});
 
