@@ -116,7 +116,9 @@ def main():
              "What a process does in the same time at several time steps, relative to steps of 1 s. Written by",
              "`test/bench/time_steps.py --page doc/time_steps.md`, which has the worlds. What is more than 5 % off is bold.",
              "Steps longer than a second are divided into parts where sand or plants move, and shorter ones keep to the",
-             "wind's shadow of a second; avalanches follow the sand in every step.", "",
+             "wind's shadow of a second; avalanches follow the sand in every step. Hops and avalanches take turns, which is of",
+             "first order in the step: where half a metre is lifted a second, and a heap moves by its length in 20 s, steps of",
+             "1 s are 6 % from short ones. Without avalanches these are the same within 0.1 %.", "",
              "| process | quantity | at 1 s | " + " | ".join(f"{step} s" for step in STEPS) + " |",
              "|" + "---|" * (3 + len(STEPS))]
     print("\n".join(lines[-2:]))

@@ -1,5 +1,6 @@
 // Lift, scatter, deposit, bounce, influx and outflux, by hand.
 
+#include "kernels/sand/tuned/saltation_fused.hpp"
 #include "support/bench_terrain.hpp"
 #include "support/world.hpp"
 
@@ -178,6 +179,30 @@ TEST_P(SaltationLaw, LandingPointsSpreadByTheirStandardDeviation) {
       EXPECT_NEAR(along, variance, 1e-5) << spread;
       EXPECT_NEAR(across, variance, 1e-5) << spread;
     }
+  }
+}
+
+/// The form for GPUs, which computes four cells at a time, runs on a host as well.
+TEST(Landing, OfFourCellsIsThatOfEach) {
+  const Grid grid{32, 12, 1, true, true};
+  std::vector<Quanta> landed;
+  for (int i = 0; i < grid.cells(); ++i)
+    landed.push_back(static_cast<Quanta>(scrambled(static_cast<std::uint32_t>(i)) >> (i % 3 ? 10 : 5)));
+  for (const float spread : {0.0f, 0.3f, 0.6f, 5.0f}) {
+    const saltation::Landing landing(grid, landed.data(), spread);
+    for (int y = 1; y + 1 < grid.height; ++y)
+      for (int x = 4; x + 4 < grid.width; x += 4) {
+        const Vec4<Quanta> four = saltation::land_on_four(landing, x, y);
+        for (int n = 0; n < 4; ++n)
+          EXPECT_EQ(four.values[n], landing.at<true>(x + n, y)) << spread << ": " << x + n << ", " << y;
+      }
+    long long before = 0, after = 0;
+    for (int y = 0; y < grid.height; ++y)
+      for (int x = 0; x < grid.width; ++x) {
+        before += landed[static_cast<std::size_t>(grid.index(x, y))];
+        after += landing.at<false>(x, y);
+      }
+    EXPECT_EQ(after, before) << spread;
   }
 }
 
