@@ -164,6 +164,8 @@ std::string urdf_of(const RoverParameters& rover, const LidarParameters& lidar,
 std::vector<JointValue> joint_values(const RoverParameters& rover, const RoverState& state) {
   std::vector<JointValue> joints;
   const int wheels = wheel_count(rover.suspension);
+  constexpr std::size_t rockers_and_bogies = 4;
+  joints.reserve(rockers_and_bogies + 2 * static_cast<std::size_t>(wheels));
   for (int side = 0; side < 2; ++side)
     joints.push_back({"rocker" + side_name(side) + "_joint", side == 0 ? state.rocker : -state.rocker, 0});
   for (int side = 0; side < 2 && wheels == 6; ++side)

@@ -13,6 +13,7 @@ namespace {
 std::vector<double> even_angles(const LidarParameters& p) {
   const double lowest = static_cast<double>(p.lowest_deg), highest = static_cast<double>(p.highest_deg);
   std::vector<double> angles;
+  angles.reserve(static_cast<std::size_t>(p.rings));
   for (int ring = 0; ring < p.rings; ++ring)
     angles.push_back(p.rings == 1 ? 0.5 * (lowest + highest)
                                   : lowest + (highest - lowest) * ring / (p.rings - 1));
