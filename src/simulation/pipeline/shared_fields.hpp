@@ -22,7 +22,7 @@ struct SharedFields {
   Buffer<float>
       impact_strength;         ///< of saltation, for reptation that moves sand and looseness [m]; else empty
   Buffer<Quanta> sand_before;  ///< depth before what looseness follows; empty without it
-  Buffer<Quanta> landed;       ///< sand that comes down in saltation; after it, scratch memory
+  Buffer<Quanta> landed;       ///< sand that comes down in saltation; before and after it, scratch memory
   Dice dice;                   ///< of the present step; its keys on the device are the next buffer
   Buffer<std::uint32_t> dice_keys;
 };
