@@ -95,7 +95,8 @@ class Scenarios(unittest.TestCase):
         shutil.rmtree(self.folder)
 
     def start(self, name, private, **options):
-        node = Node(name, dict({"backend": "cpu", "threads": 1, "paused": True}, **private), **options)
+        usual = {"backend": "cpu", "threads": 1, "paused": True, "answer_timeout": 20}
+        node = Node(name, dict(usual, **private), **options)
         self.nodes.append(node)
         return node
 
