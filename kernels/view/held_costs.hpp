@@ -7,11 +7,9 @@
 ///          unknown                where t is NaN
 ///
 /// A cell has changed if its cost differs from the held one by more than a threshold; a change to or from
-/// lethal and unknown always counts. The smallest box that contains all changed cells is brought up to date:
-/// those of its tiles that differ at all from what is held are packed. Reads what traversability reads;
-/// writes the current and the held costs.
+/// lethal and unknown always counts. Each tile that has a changed cell is brought up to date as a whole, and
+/// packed. Reads what traversability reads; writes the current and the held costs.
 
-#include "kernels/field/cell_box.hpp"
 #include "kernels/rover/traversability.hpp"
 #include "kernels/view/packed_tiles.hpp"
 
@@ -30,27 +28,13 @@ DESERT_HD std::int8_t cost_of(float traversability) {
   return static_cast<std::int8_t>(round_to_int(99.0f * (1.0f - minimum(traversability, 1.0f))));
 }
 
-/// A bounding box, stored as four numbers that only increase as cells are added, so that atomic maxima can
-/// grow it; all 0 while it is empty.
-struct BoundingBox {
-  int west = 0, south = 0, east = 0, north = 0;  ///< width − x0, height − y0, x1, y1
-  DESERT_HD CellBox cells(const Grid& grid) const {
-    return {grid.width - west, grid.height - south, east, north};
-  }
-};
-
 /// Computes the current costs of all cells. `elevation` must be up to date.
 template <class E>
 void compute_costs(E& exec, const TerrainView& t, const traversability::Rover& rover, std::int8_t* now);
 
-/// Writes the bounding box of the cells that changed to `box`.
+/// Brings held costs up to date, see CopyTiles. `pack` must have room for max_packed_bytes().
 template <class E>
-void find_changed_box(E& exec, const Tiling& tiles, const std::int8_t* now, const std::int8_t* held,
-                      int threshold, BoundingBox* box);
-
-/// Brings a box of held costs up to date, see CopyRegion. `pack` must have room for max_packed_bytes().
-template <class E>
-void copy_region(E& exec, const Tiling& tiles, const std::int8_t* now, std::int8_t* held,
-                 const BoundingBox* changed, const CellBox& recent, char* pack);
+void copy_tiles(E& exec, const Tiling& tiles, const std::int8_t* now, std::int8_t* held, int threshold,
+                char* pack);
 
 }  // namespace desert_sim::held_costs

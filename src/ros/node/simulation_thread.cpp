@@ -239,6 +239,7 @@ void SimulationThread::release_unused_memory() {
 }
 
 void SimulationThread::note_change() {
+  change_time_ = std::chrono::steady_clock::now();
   ++changes_;
   if (options_.publish_clock) options_.publish_clock(session_->simulation().paced_time());
   on_change_();

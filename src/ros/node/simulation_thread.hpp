@@ -3,6 +3,7 @@
 /// them between two steps. It holds no mutex during a step, a copy of the terrain, or an answer.
 
 #include <atomic>
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <future>
@@ -92,6 +93,8 @@ class SimulationThread {
 
   /// The present counters of Moment: they tell whether a copy is still up to date.
   std::uint64_t changes() const { return changes_; }
+  /// When the last of these changes was made.
+  std::chrono::steady_clock::time_point change_time() const { return change_time_; }
   std::uint64_t commands() const { return commands_; }
   std::uint64_t terrains() const { return terrains_; }
   double step_rate() const { return step_rate_; }  ///< as set, also while run.acceleration rules [steps/s]
@@ -151,6 +154,7 @@ class SimulationThread {
   const std::function<void()> on_change_;
   JobQueue jobs_;
   std::atomic<std::uint64_t> changes_{1}, commands_{0}, terrains_{0};
+  std::atomic<std::chrono::steady_clock::time_point> change_time_{};
   std::string backend_choice_;
   std::atomic<double> step_rate_;
   std::atomic<bool> failed_{false};

@@ -1,13 +1,15 @@
 /// ~costmap and ~costmap_updates: the costs of the terrain for a rover, as costmap_2d's static layer takes
-/// them: whole maps (keyframes), and one rectangle for each update.
+/// them: whole maps (keyframes), and rectangles of what has changed since.
 
 #include <map_msgs/OccupancyGridUpdate.h>
 #include <nav_msgs/OccupancyGrid.h>
 
+#include <algorithm>
 #include <boost/make_shared.hpp>
 #include <deque>
 
 #include "src/ros/conversion/messages.hpp"
+#include "src/ros/topics/covering_boxes.hpp"
 #include "src/ros/topics/topic_list.hpp"
 
 namespace desert_sim {
@@ -15,8 +17,8 @@ namespace desert_sim {
 namespace {
 
 /// The costs that subscribers hold, and which of them were sent lately. The simulation keeps the same costs
-/// and answers what subscribers lack, tile by tile; they are kept here too, because the rectangle of an
-/// update has to have all its cells.
+/// and answers what subscribers lack, tile by tile; they are kept here too, because rectangles have to have
+/// all their cells.
 class SubscriberCosts {
  public:
   /// Row-major from the south-west, of the size of the terrain.
@@ -29,8 +31,10 @@ class SubscriberCosts {
     return !costs_.empty() && terrain_ == state.moment.terrain && width_ == state.snapshot->width &&
            height_ == state.snapshot->height;
   }
+  /// Takes them in. What changes of a terrain that subscribers know waits to be sent.
   void apply(const CostChanges& changes, const TerrainState& state) {
-    if (!match_terrain(state)) {
+    const bool known = match_terrain(state);
+    if (!known) {
       if (!costs_.empty()) replaced_ = SteadyClock::now();
       terrain_ = state.moment.terrain;
       width_ = state.snapshot->width;
@@ -38,11 +42,20 @@ class SubscriberCosts {
       costs_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_),
                     held_costs::unknown_cost);
       sent_.clear();
+      waiting_.clear();
     }
-    changes.write_to(costs_, width_);
+    const std::vector<CellBox> changed = changes.write_to(costs_, width_);
+    if (known) waiting_.insert(waiting_.end(), changed.begin(), changed.end());
   }
 
-  void note_sent(const CellBox& cells) { sent_.push_back({SteadyClock::now(), cells}); }
+  /// Boxes that have changed and were not sent since, the oldest first.
+  const std::vector<CellBox>& waiting() const { return waiting_; }
+  void note_sent(const CellBox& cells) {
+    sent_.push_back({SteadyClock::now(), cells});
+    waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(),
+                                  [&](const CellBox& box) { return cells.contains(box); }),
+                   waiting_.end());
+  }
   /// A box with all cells that were noted as sent less than `time` ago.
   CellBox sent_within(std::chrono::duration<double> time) {
     while (!sent_.empty() && SteadyClock::now() - sent_.front().time > time) sent_.pop_front();
@@ -63,6 +76,7 @@ class SubscriberCosts {
   int width_ = 0, height_ = 0;
   std::vector<std::int8_t> costs_;
   std::uint64_t terrain_ = 0;         ///< counter of Moment
+  std::vector<CellBox> waiting_;
   std::deque<Sent> sent_;             ///< of the last time, without cells that were only sent again
   SteadyClock::time_point replaced_;  ///< when costs of another terrain took the place of the old ones
 };
@@ -108,6 +122,7 @@ class CostmapTopic : public MessageTopic<nav_msgs::OccupancyGrid> {
   CostmapTopic(const TopicContext& context, ros::Publisher latched)
       : MessageTopic(context, costmap), latched_(latched) {}
   SubscriberCosts& held() { return held_; }
+  const SubscriberCosts& held() const { return held_; }
 
   double rate() const override { return parameters().maps.parameters.costmap_keyframe_rate; }
   void add_to(StateQuery& query) override { query.costs.whole = true; }
@@ -135,38 +150,60 @@ class CostmapUpdatesTopic : public MessageTopic<map_msgs::OccupancyGridUpdate> {
   }
 
   double rate() const override { return parameters().maps.parameters.costmap_update_rate; }
+  double pace() const override {
+    return has_backlog() ? std::max(rate(), 1 / parameters().maps.parameters.costmap_update_spacing) : rate();
+  }
+  bool only_after_change() const override { return !has_backlog(); }
+  bool may_be_early() const override { return false; }  // a costmap_2d wants them apart
   void add_to(StateQuery& query) override {
     query.costs.update = true;
     query.costs.threshold = parameters().maps.parameters.costmap_update_threshold;
-    query.costs.recent = query.costs.recent.united_with(keyframes_.held().sent_within(repeat_time()));
   }
-  /// Publishes the smallest rectangle with all cells whose costs differ from what subscribers hold by more
-  /// than the threshold, and with those that were sent a moment ago. Publishes nothing if no cell does, or if
-  /// a whole map is due first, because subscribers hold none, or one of another terrain. Soon after the
-  /// terrain was replaced, a whole map goes out instead: a message on one topic may overtake one on another,
-  /// and costmap_2d writes an update that does not fit its map past the end of that map.
+  /// Publishes a rectangle with costs that differ from what subscribers hold; if they are far apart, with
+  /// those that have waited longest, and the others follow after `costmap_update_spacing`.
   bool publish(const TerrainState& state) override {
+    return publish_rectangle(state, parameters().maps.parameters.costmap_update_rectangles);
+  }
+  bool publish_all(const TerrainState& state) override { return publish_rectangle(state, 1); }
+
+ private:
+  /// One of at most `most` rectangles that have all cells which wait. Publishes nothing if none does, or if a
+  /// whole map is due first, because subscribers hold none, or one of another terrain. Soon after the terrain
+  /// was replaced, a whole map goes out instead: a message on one topic may overtake one on another, and
+  /// costmap_2d writes an update that does not fit its map past the end of that map.
+  bool publish_rectangle(const TerrainState& state, int most) {
     SubscriberCosts& held = keyframes_.held();
     // There is no update if the simulation keeps no costs: it forgets them when nobody has asked for long.
     const CostChanges& changes = state.cost_update ? *state.cost_update : *state.whole_costs;
     // Updates start from these costs if there were none of this terrain, even if nobody gets a whole map.
     const bool continues = held.match_terrain(state);
     held.apply(changes, state);
-    if (!continues || changes.box.empty()) return false;
+    if (!continues || held.waiting().empty()) return false;
     if (held.terrain_replaced_within(repeat_time()) && keyframes_.has_subscribers()) {
       keyframes_.publish_held(state);
       return true;
     }
-    held.note_sent(changes.changed);
-    publisher_.publish(update_message(held, changes.box, state, frame()));
+    const CellBox oldest = held.waiting().front();
+    CellBox changed;
+    for (const CellBox& rectangle : covering_boxes(held.waiting(), most, worth_a_message))
+      if (changed.empty() && rectangle.contains(oldest)) changed = rectangle;
+    const CellBox box = changed.united_with(held.sent_within(repeat_time()));
+    held.note_sent(changed);
+    publisher_.publish(update_message(held, box, state, frame()));
     return true;
   }
 
- private:
+  static constexpr long worth_a_message = 1024;  // cells, the bytes of half a packet
+
+  /// Whether rectangles wait, even if the state has not changed since.
+  bool has_backlog() const { return !keyframes_.held().waiting().empty(); }
   /// A costmap_2d that receives two messages between two of its own cycles looks at the cells of the second
-  /// one only. So what was sent less than one and a half periods ago is part of the next rectangle too.
+  /// one only. So what was sent less than one and a half periods ago is part of the next rectangle too, where
+  /// a subscriber's cycle may be as long as the period of updates. Rectangles in turn rely on their spacing.
   std::chrono::duration<double> repeat_time() const {
-    return std::chrono::duration<double>(1.5 / (rate() > 0 ? rate() : 1));
+    const MapParameters& p = parameters().maps.parameters;
+    return std::chrono::duration<double>(p.costmap_update_rectangles > 1 ? p.costmap_update_spacing
+                                         : 1.5 / (p.costmap_update_rate > 0 ? p.costmap_update_rate : 1));
   }
 
   CostmapTopic& keyframes_;

@@ -25,9 +25,9 @@ class StatusTopic {
   bool consume_request();
 
   // For the publishing thread alone:
-  bool is_due_by_rate() const { return rate() > 0 && SteadyClock::now() >= due_; }
+  bool is_due_by_rate() const { return rate() > 0 && SteadyClock::now() >= due_.time(); }
   /// When it is due by its rate, which must be above 0.
-  SteadyClock::time_point due_time() const { return due_; }
+  SteadyClock::time_point due_time() const { return due_.time(); }
   double rate() const { return context_.parameters.topics.status_rate; }
   /// The rate may have changed: it is due a period from now at the latest.
   void rate_changed();
@@ -39,7 +39,7 @@ class StatusTopic {
  private:
   const TopicContext& context_;
   ros::Publisher publisher_;
-  SteadyClock::time_point due_;
+  DueTime due_;
   SimulationStatus last_;
   bool requested_ = false;  ///< guarded by the mutex of the context
 };

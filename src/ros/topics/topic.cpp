@@ -11,12 +11,6 @@ SteadyClock::duration period_of(double rate) {
                   : SteadyClock::duration::zero();
 }
 
-void advance_due_time(SteadyClock::time_point& due, SteadyClock::duration period) {
-  const SteadyClock::time_point now = SteadyClock::now();
-  due += period;
-  if (due <= now) due = now + period;
-}
-
 void SubscriberNames::remove(const std::string& name) {
   const auto found = count_.find(name);
   if (found != count_.end() && --found->second == 0) count_.erase(found);
@@ -64,12 +58,11 @@ void Topic::count_message() {
 void Topic::mark_published(std::uint64_t change, std::uint64_t terrain) {
   published_change_ = change;
   published_terrain_ = terrain;
-  // A message that came early, for a new subscriber or a finished ~step, does not put off the next one that
-  // is due: many of them would put it off for long.
-  if (SteadyClock::now() >= due_) advance_due_time(due_, period_of(rate()));
+  const SteadyClock::time_point now = SteadyClock::now();
+  due_.published(now, may_be_early() ? context_.simulation.change_time() : now, period());
 }
 
-void Topic::rate_changed() { due_ = std::min(due_, SteadyClock::now() + period_of(rate())); }
+void Topic::rate_changed() { due_.period_changed(SteadyClock::now(), period()); }
 
 void Topic::set_problem(const std::string& problem) {
   if (!problem.empty()) ROS_WARN_THROTTLE(30, "%s: %s", short_name_.c_str(), problem.c_str());

@@ -18,16 +18,15 @@
 #include "src/ros/node/frames.hpp"
 #include "src/ros/node/pacer.hpp"
 #include "src/ros/node/simulation_thread.hpp"
+#include "src/ros/topics/due_time.hpp"
 #include "src/ros/topics/publisher_parameters.hpp"
 
 namespace desert_sim {
 
-using SteadyClock = std::chrono::steady_clock;
+using SteadyClock = DueTime::Clock;
 
 /// 1 / rate; 0 for a rate of 0.
 SteadyClock::duration period_of(double rate);
-/// Moves `due` on by a period, or to a period from now if that time has passed already.
-void advance_due_time(SteadyClock::time_point& due, SteadyClock::duration period);
 
 /// The names of the nodes that subscribe to a topic. A node that reconnects may be counted twice for a while.
 class SubscriberNames {
@@ -75,6 +74,8 @@ class Topic {
   /// subscribers, before ~step answers, and after a reset or a load.
   virtual double rate() const = 0;
   virtual std::uint32_t subscribers() const = 0;
+  /// How often it is published at present, if that is not its rate.
+  virtual double pace() const { return rate(); }
   /// The layers that publish() reads from the snapshot of the state.
   virtual std::vector<Layer> layers() const { return {}; }
   /// Adds to `query` what publish() reads besides layers.
@@ -83,12 +84,16 @@ class Topic {
   virtual bool ready() { return true; }
   /// Whether it is published at its rate only after the state has changed.
   virtual bool only_after_change() const { return true; }
+  /// Whether it may be published up to half a period early, right after a step; see DueTime.
+  virtual bool may_be_early() const { return true; }
   /// Whether its rate also serves nodes that learn all changes from its updates (see set_updates()).
   virtual bool repeats_for_updated_nodes() const { return true; }
   /// Gives back what the simulation keeps for subscribers. Called, perhaps often, while there are none.
   virtual void release() {}
   /// Publishes the state. False if there was no message to send.
   virtual bool publish(const TerrainState& state) = 0;
+  /// Publishes the state, and leaves nothing of it for later: before ~step answers.
+  virtual bool publish_all(const TerrainState& state) { return publish(state); }
 
   // ---- What the publisher asks of all topics.
 
@@ -118,8 +123,12 @@ class Topic {
   const std::string& problem() const { return problem_; }
 
   // For the publishing thread alone:
-  /// When it is due by its rate.
-  SteadyClock::time_point due_time() const { return due_; }
+  /// When to look again whether it is due by its rate; a time that has passed: after the next change.
+  SteadyClock::time_point wake_time() const {
+    return SteadyClock::now() < early_time() ? early_time() : due_.time();
+  }
+  /// Whether a change that comes now makes it due.
+  bool listens() const { return SteadyClock::now() >= early_time(); }
   /// Notes which state subscribers have been shown (counters of Moment); the next one is due a period later.
   void mark_published(std::uint64_t change, std::uint64_t terrain);
   /// The rate may have changed: the topic is due a period from now at the latest.
@@ -147,7 +156,15 @@ class Topic {
   bool changed() const { return published_change_ != context_.simulation.changes(); }
   bool due_immediately() const { return requested_ || published_terrain_ != context_.simulation.terrains(); }
   bool due_by_rate() const {
-    return follows_rate() && SteadyClock::now() >= due_ && (!only_after_change() || changed());
+    if (!follows_rate()) return false;
+    const SteadyClock::time_point now = SteadyClock::now();
+    if (!only_after_change()) return now >= due_.time();
+    return changed() &&
+           (may_be_early() ? due_.reached(now, context_.simulation.change_time(), period()) : now >= due_.time());
+  }
+  SteadyClock::duration period() const { return period_of(pace()); }
+  SteadyClock::time_point early_time() const {
+    return only_after_change() && may_be_early() ? due_.earliest(period()) : due_.time();
   }
   bool is_covered() const { return updates_ && names_.is_subset_of(updates_->names_); }
 
@@ -156,7 +173,7 @@ class Topic {
   const Topic* updates_ = nullptr;
 
   // Used by the publishing thread alone:
-  SteadyClock::time_point due_;
+  DueTime due_;
   std::uint64_t published_change_ = 0,
                 published_terrain_ = 0;  ///< counters of the Moment that was shown last
 

@@ -96,7 +96,7 @@ void TopicPublisher::run_thread() {
 void TopicPublisher::publish_until_stopped() {
   while (const std::optional<Work> work = wait_for_work()) {
     const std::vector<Topic*> due = ready_topics(due_topics(work->all_changes));
-    if (!due.empty()) publish_topics(due);
+    if (!due.empty()) publish_topics(due, work->all_changes);
     publish_status_if_due(*work);
     const std::lock_guard<std::mutex> lock(mutex_);
     served_ = work->request;
@@ -141,10 +141,9 @@ bool TopicPublisher::any_topic_is_due(SteadyClock::time_point& next, bool& liste
     }
     if (topic->is_due()) return true;
     if (!topic->follows_rate()) continue;
-    if (topic->due_time() > SteadyClock::now())
-      next = std::min(next, topic->due_time());
-    else
-      listen = true;
+    listen = listen || topic->listens();
+    const SteadyClock::time_point wake = topic->wake_time();
+    if (wake > SteadyClock::now()) next = std::min(next, wake);
   }
   if (status_.rate() > 0 && status_.has_subscribers()) {
     if (status_.is_due_by_rate()) return true;
@@ -178,7 +177,7 @@ std::vector<Topic*> TopicPublisher::ready_topics(const std::vector<Topic*>& due)
 }
 
 /// Publishes one state, which has what all of these need.
-void TopicPublisher::publish_topics(const std::vector<Topic*>& due) {
+void TopicPublisher::publish_topics(const std::vector<Topic*>& due, bool all_changes) {
   std::vector<Layer> layers;
   StateQuery query;
   for (Topic* topic : due) {
@@ -188,7 +187,7 @@ void TopicPublisher::publish_topics(const std::vector<Topic*>& due) {
   }
   const TerrainState state = simulation_.terrain(layers, {}, query).get();
   for (Topic* topic : due) {
-    if (topic->publish(state)) {
+    if (all_changes ? topic->publish_all(state) : topic->publish(state)) {
       ++publications_;
       topic->count_message();
     }

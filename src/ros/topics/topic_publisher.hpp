@@ -70,7 +70,7 @@ class TopicPublisher {
   void apply_new_parameters();
   std::vector<Topic*> due_topics(bool all_changes);
   std::vector<Topic*> ready_topics(const std::vector<Topic*>& due);
-  void publish_topics(const std::vector<Topic*>& due);
+  void publish_topics(const std::vector<Topic*>& due, bool all_changes);
   void publish_status_if_due(const Work& work);
   void repeat_failure_status(const std::string& failure);
 

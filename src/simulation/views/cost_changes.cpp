@@ -8,79 +8,58 @@
 
 namespace desert_sim {
 
-using held_costs::BoundingBox;
 using packed_tiles::Tiling;
 
-namespace {
-
 constexpr int tile_side = 32;
-static_assert(sizeof(BoundingBox) % packed_tiles::pack_unit == 0, "it stands before the tiles");
 
-/// Adds what has arrived.
-void unpack(CostChanges& changes, Staging::Slot& slot, const Tiling& rows, const CellBox& recent,
-            bool whole) {
-  const auto* found = reinterpret_cast<const BoundingBox*>(slot.host(sizeof(BoundingBox)));
-  changes.changed = whole ? recent : found->cells(rows.grid);
-  changes.box = changes.changed.empty() ? CellBox{} : changes.changed.united_with(recent);
-  for (const PackedTile& tile : packed_tiles_in(slot, rows, sizeof(BoundingBox))) {
-    const packed_tiles::TileOfGrid& at = tile.place;
-    const auto* costs = reinterpret_cast<const std::int8_t*>(tile.cells);
-    changes.tiles.push_back(
-        {{at.x0, at.y0, at.x0 + at.width, at.y0 + at.height}, {costs, costs + at.cells()}});
-  }
-}
-
-}  // namespace
-
-void CostChanges::write_to(std::vector<std::int8_t>& held, int width) const {
+std::vector<CellBox> CostChanges::write_to(std::vector<std::int8_t>& held, int width) const {
+  std::vector<CellBox> changed;
   for (const Tile& tile : tiles) {
+    CellBox differs;
     auto from = tile.costs.begin();
-    for (int y = tile.cells.y0; y < tile.cells.y1; ++y, from += tile.cells.width())
-      std::copy_n(from, tile.cells.width(),
-                  held.begin() + static_cast<std::ptrdiff_t>(y) * width + tile.cells.x0);
+    for (int y = tile.cells.y0; y < tile.cells.y1; ++y)
+      for (int x = tile.cells.x0; x < tile.cells.x1; ++x, ++from) {
+        std::int8_t& to = held[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                               static_cast<std::size_t>(x)];
+        if (to != *from) differs = differs.united_with({x, y, x + 1, y + 1});
+        to = *from;
+      }
+    if (!differs.empty()) changed.push_back(differs);
   }
+  return changed;
 }
 
 HeldCosts::HeldCosts(Exec& exec, const Grid& grid)
-    : grid_(grid),
-      now_(exec, static_cast<std::size_t>(grid.cells())),
-      held_(exec, now_.size()),
-      changed_(exec, 1) {
+    : grid_(grid), now_(exec, static_cast<std::size_t>(grid.cells())), held_(exec, now_.size()) {
   held_.upload(std::vector<std::int8_t>(held_.size(), held_costs::no_cost));
 }
 
 PendingCosts HeldCosts::begin_copy(Exec& exec, Staging& staging, const CostQuery& query) {
   PendingCosts pending;
-  if (query.update && complete_) {
-    with_backend(exec, [&](auto& e) {
-      held_costs::find_changed_box(e, packed_tiles::tiling(grid_, tile_side), now_.data(), held_.data(),
-                                   query.threshold, changed_.data());
-    });
-    pending.update = copy_region(exec, staging, changed_.data(), query.recent);
-  }
-  if (query.whole || !complete_)
-    pending.whole = copy_region(exec, staging, nullptr, {0, 0, grid_.width, grid_.height});
+  if (query.update && complete_) pending.update = copy_tiles(exec, staging, query.threshold);
+  if (query.whole || !complete_) pending.whole = copy_tiles(exec, staging, 0);
   complete_ = true;
   return pending;
 }
 
-/// What changed, with `recent`; `recent` alone if `changed` is null.
-Pending<CostChanges> HeldCosts::copy_region(Exec& exec, Staging& staging, const BoundingBox* changed,
-                                            const CellBox& recent) {
+Pending<CostChanges> HeldCosts::copy_tiles(Exec& exec, Staging& staging, int threshold) {
   auto changes = std::make_shared<CostChanges>();
   auto readback = std::make_shared<Readback>();
   TileTransfer transfer;
   transfer.tiles = packed_tiles::tiling(grid_, tile_side);
-  transfer.before = sizeof(BoundingBox);
   transfer.pack = [&](const Tiling& rows, char* to) {
-    if (changed) exec.copy(to, changed, sizeof *changed);
-    with_backend(exec, [&](auto& e) {
-      held_costs::copy_region(e, rows, now_.data(), held_.data(), changed, recent, to + sizeof(BoundingBox));
-    });
+    with_backend(exec,
+                 [&](auto& e) { held_costs::copy_tiles(e, rows, now_.data(), held_.data(), threshold, to); });
   };
-  transfer.unpack = [waited = std::weak_ptr<CostChanges>(changes), recent, whole = !changed](
-                        Staging::Slot& arrived, const Tiling& rows) {
-    if (const std::shared_ptr<CostChanges> all = waited.lock()) unpack(*all, arrived, rows, recent, whole);
+  transfer.unpack = [waited = std::weak_ptr<CostChanges>(changes)](Staging::Slot& arrived, const Tiling& rows) {
+    const std::shared_ptr<CostChanges> all = waited.lock();
+    if (!all) return;
+    for (const PackedTile& tile : packed_tiles_in(arrived, rows)) {
+      const packed_tiles::TileOfGrid& at = tile.place;
+      const auto* costs = reinterpret_cast<const std::int8_t*>(tile.cells);
+      all->tiles.push_back(
+          {{at.x0, at.y0, at.x0 + at.width, at.y0 + at.height}, {costs, costs + at.cells()}});
+    }
   };
   send_tiles(staging, transfer, readback);
   return {changes, readback};

@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "kernels/backend/buffer.hpp"
+#include "kernels/field/cell_box.hpp"
 #include "kernels/view/held_costs.hpp"
 #include "src/simulation/views/staging.hpp"
 
 namespace desert_sim {
 
 struct CostQuery {
-  bool update = false;  ///< the smallest box with all cells that are off by more than `threshold`
+  bool update = false;  ///< each tile with a cell that is off by more than `threshold`, as a whole
   int threshold = 0;    ///< 0 … 99; lethal and unknown cells are never off
-  CellBox recent;       ///< if there is such a cell, the box is to have these as well
   bool whole = false;   ///< all cells, after the update
 };
 
@@ -23,12 +23,11 @@ struct CostChanges {
     CellBox cells;
     std::vector<std::int8_t> costs;
   };
-  CellBox changed;  ///< has all cells that were off by more than the threshold
-  CellBox box;      ///< that is up to date now
   std::vector<Tile> tiles;
 
-  /// Over what is held, row-major; of the size of the terrain.
-  void write_to(std::vector<std::int8_t>& held, int width) const;
+  /// Writes them over what is held, row-major, of the size of the terrain. For each tile that differs from
+  /// it, the smallest box that has all cells which do.
+  std::vector<CellBox> write_to(std::vector<std::int8_t>& held, int width) const;
 };
 
 /// Null what was not asked for. An update where nothing is held is a whole map.
@@ -44,18 +43,16 @@ class HeldCosts {
   explicit operator bool() const { return static_cast<bool>(now_); }
   /// What laws write the costs of now to, row-major.
   std::int8_t* now() const { return now_.data(); }
-  std::size_t bytes() const { return now_.bytes() + held_.bytes() + changed_.bytes(); }
+  std::size_t bytes() const { return now_.bytes() + held_.bytes(); }
   /// Of the costs of now; see Simulation::begin_costs().
   PendingCosts begin_copy(Exec& exec, Staging& staging, const CostQuery& query);
 
  private:
-  Pending<CostChanges> copy_region(Exec& exec, Staging& staging, const held_costs::BoundingBox* changed,
-                                   const CellBox& recent);
+  Pending<CostChanges> copy_tiles(Exec& exec, Staging& staging, int threshold);
 
   Grid grid_;
   bool complete_ = false;  ///< whether others hold all cells
   Buffer<std::int8_t> now_, held_;
-  Buffer<held_costs::BoundingBox> changed_;
 };
 
 }  // namespace desert_sim

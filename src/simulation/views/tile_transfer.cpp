@@ -27,8 +27,7 @@ std::size_t bytes_of(const TileTransfer& transfer, const Tiling& rows) {
   const long long north =
       std::min<long long>(rows.grid.height, south + static_cast<long long>(rows.row_count) * rows.side);
   const auto cells = static_cast<std::size_t>(rows.grid.width) * static_cast<std::size_t>(north - south);
-  return transfer.before +
-         max_packed_bytes(static_cast<std::size_t>(rows.count()), cells, transfer.bytes_of_cell);
+  return max_packed_bytes(static_cast<std::size_t>(rows.count()), cells, transfer.bytes_of_cell);
 }
 
 }  // namespace
@@ -47,9 +46,9 @@ void send_tiles(Staging& staging, const TileTransfer& transfer, const std::share
   }
 }
 
-std::vector<PackedTile> packed_tiles_in(Staging::Slot& slot, const Tiling& tiles, std::size_t before) {
-  const std::size_t start = before + sizeof(PackHeader);
-  const auto packed = read<PackHeader>(slot.host(start) + before);
+std::vector<PackedTile> packed_tiles_in(Staging::Slot& slot, const Tiling& tiles) {
+  constexpr std::size_t start = sizeof(PackHeader);
+  const auto packed = read<PackHeader>(slot.host(start));
   const char* at = slot.host(start + packed.bytes) + start;
   std::vector<PackedTile> found;
   for (const char* const end = at + packed.bytes; at < end;) {

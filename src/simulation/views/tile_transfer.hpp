@@ -14,8 +14,6 @@ namespace desert_sim {
 struct TileTransfer {
   packed_tiles::Tiling tiles;     ///< of the whole grid
   std::size_t bytes_of_cell = 1;  ///< at most
-  std::size_t before = 0;  ///< bytes that pack() writes before the PackHeader; packed_tiles::pack_unit's
-                           ///< multiple
   /// Starts laws that pack some rows of the tiles.
   std::function<void(const packed_tiles::Tiling& rows, char* to)> pack;
   /// Once they have arrived, in the order of rows; by whoever waits for them.
@@ -30,8 +28,7 @@ struct PackedTile {
   packed_tiles::TileOfGrid place;
   const char* cells;
 };
-/// What lies packed in a slot behind `before` bytes, ordered by the tiles' numbers; only that is copied.
-std::vector<PackedTile> packed_tiles_in(Staging::Slot& slot, const packed_tiles::Tiling& tiles,
-                                        std::size_t before = 0);
+/// What lies packed in a slot, ordered by the tiles' numbers; only that is copied.
+std::vector<PackedTile> packed_tiles_in(Staging::Slot& slot, const packed_tiles::Tiling& tiles);
 
 }  // namespace desert_sim
