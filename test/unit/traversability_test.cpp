@@ -101,6 +101,20 @@ TEST_P(TraversabilityLaw, AStepCountsInFullOnBothSides) {
               2, 1e-5);
 }
 
+/// The slope beside a step is the flatter difference, and does not count: up or down, along x or y.
+TEST_P(TraversabilityLaw, AStepOnASlopeIsAsHighAsOnFlatGround) {
+  for (const double sign : {1.0, -1.0}) {
+    const auto along = [=](int n) { return sign * (0.1 * n + (n >= 4 ? 0.6 : 0)); };
+    const auto in_x = rock(8, 5, 1, [&](int x, int) { return along(x); }),
+               in_y = rock(5, 8, 1, [&](int, int y) { return along(y); });
+    for (int n = 1; n < 7; ++n) {
+      const double step = n == 3 || n == 4 ? 0.6 : 0;
+      EXPECT_NEAR(in_x->at(Layer::step_height, n, 2), step, 1e-5) << sign << ", x = " << n;
+      EXPECT_NEAR(in_y->at(Layer::step_height, 2, n), step, 1e-5) << sign << ", y = " << n;
+    }
+  }
+}
+
 TEST_P(TraversabilityLaw, ABreakOfASlopeThatARoverDrivesIsNoStep) {
   const double tangent = std::tan(20 * degree);
   const auto t = rock(9, 3, 10, [&](int x, int) { return 10 * tangent * (x < 4 ? x : 8 - x); });
