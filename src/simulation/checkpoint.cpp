@@ -32,8 +32,9 @@ T read_value(const std::string& from, std::size_t& at, const std::string& path) 
   return value;
 }
 
-/// The bytes of a checkpoint. What is no checkpoint, or does not fit, is refused before it is read.
-std::string read_checked(const std::string& path, const std::string& folder) {
+/// The bytes of a file that begins as a checkpoint does. What does not, or does not fit, is refused before it
+/// is read.
+std::string read_checkpoint(const std::string& path, const std::string& folder) {
   const InputFile file(path, folder);
   std::string start(magic.size(), '\0');
   if (file.read(0, start.data(), start.size()) < start.size() || start != magic)
@@ -41,7 +42,11 @@ std::string read_checked(const std::string& path, const std::string& folder) {
   if (file.size() > host_memory_available())
     throw ConfigError(path + ": has " + std::to_string(file.size()) +
                       " bytes; memory that is available: " + std::to_string(host_memory_available()));
-  std::string bytes = file.read_all();
+  return file.read_all();
+}
+
+/// Throws ConfigError unless the bytes are those of a whole checkpoint, as far as its checksum tells.
+void check_bytes(const std::string& bytes, const std::string& path) {
   std::size_t at = magic.size();
   const auto found = read_value<std::uint32_t>(bytes, at, path);
   if (found != version)
@@ -52,7 +57,6 @@ std::string read_checked(const std::string& path, const std::string& folder) {
   const std::size_t body = end;
   if (read_value<std::uint64_t>(bytes, end, path) != XXH3_64bits(bytes.data(), body))
     throw ConfigError(path + ": is truncated or corrupt (its checksum does not match)");
-  return bytes;
 }
 
 /// A simulation with all of the header's state.
@@ -118,7 +122,12 @@ void save_checkpoint(const std::string& path, const Simulation& simulation) {
 }
 
 std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec, const std::string& folder) {
-  const std::string bytes = read_checked(path, folder);
+  return simulation_from_bytes(read_checkpoint(path, folder), exec, path);
+}
+
+std::unique_ptr<Simulation> simulation_from_bytes(const std::string& bytes, Exec& exec,
+                                                  const std::string& path) {
+  check_bytes(bytes, path);
   std::size_t at = magic.size() + sizeof version;
   const auto length = read_value<std::uint64_t>(bytes, at, path);
   const std::size_t end = bytes.size() - sizeof(std::uint64_t);

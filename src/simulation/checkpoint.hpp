@@ -23,5 +23,9 @@ void save_checkpoint(const std::string& path, const Simulation& simulation);
 /// close. No layer is allocated for what is longer than the file.
 std::unique_ptr<Simulation> load_checkpoint(const std::string& path, Exec& exec,
                                             const std::string& folder = "");
+/// The simulation of checkpoint_bytes(), which `name` names in messages. Throws ConfigError as
+/// load_checkpoint() does.
+std::unique_ptr<Simulation> simulation_from_bytes(const std::string& bytes, Exec& exec,
+                                                  const std::string& name);
 
 }  // namespace desert_sim

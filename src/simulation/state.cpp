@@ -57,7 +57,7 @@ std::vector<Layer> SimulationState::layers_in_use() const {
 }
 
 void SimulationState::set_wind_regime(WindRegime regime) {
-  regime.initial_wind = wind_above();
+  regime.initial_wind = wind_regime.at(time());
   regime.start_time = time();
   wind_regime = std::move(regime);
 }

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "kernels/field/ledger.hpp"
 #include "kernels/plants/workspace.hpp"
+#include "src/scenario/gusts.hpp"
 #include "src/scenario/scenario.hpp"
 #include "src/simulation/clock_origin.hpp"
 #include "src/terrain/terrain.hpp"
@@ -66,7 +68,12 @@ struct SimulationState {
   /// Lets both clocks go on from the times that they show, before `run` takes the place of scenario.run.
   /// `parts`: of a step until now; see Process::longest_step.
   void keep_time(const RunParameters& run, int parts);
-  wind::Vector wind_above() const { return wind_regime.at(time()); }  ///< the high-altitude wind [m/s]
+  /// The high-altitude wind at a time [m/s]: of the regime, and of the gusts if there are any.
+  wind::Vector wind_above_at(double when) const {
+    const wind::Vector regime = wind_regime.at(when);
+    return gusts ? gusts->around(regime, when) : regime;
+  }
+  wind::Vector wind_above() const { return wind_above_at(time()); }  ///< now
   LedgerView ledger() const { return {ledger_words.data()}; }
   /// The scenario with the wind regime that blows now, which commands may have replaced.
   Scenario present_scenario() const;
@@ -96,6 +103,7 @@ struct SimulationState {
   Terrain terrain;
   plants::Workspace plants;  ///< empty where vegetation is off
   WindRegime wind_regime;
+  std::optional<Gusts> gusts;  ///< of a member of an ensemble; a checkpoint does not have them
   std::uint64_t steps = 0;
   ClockOrigin clock_origin;
   Quanta wind_reference = 0;               ///< 1st percentile of the solid surface at load

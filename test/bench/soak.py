@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A node at full speed on two cores with three subscribers, and services called all the time, for ten minutes: memory and
-latency must not grow, nothing may be lost, the books must close. After `. build/devel/setup.bash`:
+"""A node at full speed on two cores with three subscribers, services called and forecasts begun all the time, for ten
+minutes: memory and latency must not grow, nothing may be lost, the books must close. After `. build/devel/setup.bash`:
 
     test/bench/soak.py [--minutes 10] [--size 512]
 
@@ -23,9 +23,12 @@ import tempfile
 import time
 
 import rospy
+from actionlib import SimpleActionClient
+from desert_sim.msg import ForecastTerrainAction, ForecastTerrainGoal
 from desert_sim.srv import EditTerrain, EditTerrainRequest, GetSubmap, QueryTerrain, SetWind, Step
 from geometry_msgs.msg import Point
 from live_node import LiveNode, median, quantile
+from std_srvs.srv import TriggerResponse
 
 JUDGED = 2  # minutes
 PARTS = 10
@@ -39,7 +42,9 @@ class Calls:
         proxies = {name: rospy.ServiceProxy("/desert_sim/" + name, kind, persistent=True) for name, kind in (
             ("set_wind", SetWind), ("edit_terrain", EditTerrain), ("query_terrain", QueryTerrain), ("step", Step),
             ("get_submap", GetSubmap))}
+        self.forecasts = SimpleActionClient("/desert_sim/forecast", ForecastTerrainAction)
         self.call = [
+            self.forecast,
             lambda: proxies["set_wind"](speed=3 + next(self.turn) % 3, direction_deg=0),
             lambda: proxies["edit_terrain"](self.brush("add")),
             lambda: proxies["query_terrain"](points=[Point(self.center, self.center, 0)] * 100),
@@ -49,6 +54,11 @@ class Calls:
             lambda: proxies["step"](2)]
         self.order = itertools.cycle(range(len(self.call)))
 
+    def forecast(self):
+        """Begins one, which preempts the one before."""
+        self.forecasts.send_goal(ForecastTerrainGoal(horizon=1000, moments=5))
+        return TriggerResponse(success=True)
+
     def brush(self, merge):
         request = EditTerrainRequest(layer="sand", shape="circle", merge=merge, radius=6, inner=0.5, value=0.5)
         request.center.x = request.center.y = self.center
@@ -57,7 +67,7 @@ class Calls:
     def next(self):
         """What went wrong, if anything."""
         n = next(self.order)
-        self.commands += n in (0, 1, 3)
+        self.commands += n in (1, 2, 4)
         answer = self.call[n]()
         return "" if answer.success else answer.message
 

@@ -59,6 +59,7 @@ TEST_F(Diagnostics, ANodeThatIsWell) {
   EXPECT_TRUE(says("desert_sim: mass balance", DiagnosticStatus::OK, "mass is conserved"));
   EXPECT_TRUE(says("desert_sim: memory", DiagnosticStatus::OK, "the available memory is sufficient"));
   EXPECT_TRUE(says("desert_sim: topics", DiagnosticStatus::OK, "all topics reach their rates"));
+  EXPECT_TRUE(says("desert_sim: forecast", DiagnosticStatus::OK, "there was no forecast yet"));
   EXPECT_TRUE(says("desert_sim: autosave", DiagnosticStatus::OK, "the last autosave succeeded"));
   EXPECT_FALSE(latest("desert_sim: simulation").hardware_id.empty());
   EXPECT_NEAR(std::stod(value("desert_sim: simulation", "steps a second wanted")), 20, 1e-9);

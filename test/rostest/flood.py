@@ -15,7 +15,8 @@ import xmlrpc.client
 import rosgraph
 import rospy
 import rostest
-from desert_sim.msg import ElevationGrid, WindScheduleSegment
+from actionlib import GoalStatus, SimpleActionClient
+from desert_sim.msg import ElevationGrid, ForecastTerrainAction, ForecastTerrainGoal, WindScheduleSegment
 from desert_sim.srv import EditPlants, EditPlantsRequest, EditTerrain, EditTerrainRequest, EditWind, EditWindRequest
 from desert_sim.srv import GetSubmap, GetSubmapRequest, LoadCheckpoint, LoadCheckpointRequest, LoadTerrain, LoadTerrainRequest
 from desert_sim.srv import QueryTerrain, QueryTerrainRequest, SaveCheckpoint, SaveCheckpointRequest
@@ -128,6 +129,31 @@ class Client(threading.Thread):
             proxy.close()
 
 
+class Forecaster(threading.Thread):
+    """Asks for forecasts, and cancels most of them; keeps what went wrong."""
+
+    def __init__(self, node, seed, until):
+        super().__init__()
+        self.draw, self.until = random.Random(seed), until
+        self.client = SimpleActionClient("/%s/forecast" % node, ForecastTerrainAction)
+        self.faults, self.ends = [], {}
+
+    def run(self):
+        while time.monotonic() < self.until and len(self.faults) < 5:
+            wrong = self.draw.random() < 0.2
+            self.client.send_goal(ForecastTerrainGoal(
+                horizon=self.draw.choice(BAD_NUMBERS) if wrong else self.draw.uniform(1, 20), moments=self.draw.randrange(1, 9),
+                members=self.draw.randrange(3), gust_speed=0.2, gust_time=5))
+            if not self.client.wait_for_result(rospy.Duration(self.draw.uniform(0, 2))):
+                self.client.cancel_goal()
+            if not self.client.wait_for_result(rospy.Duration(60)):
+                self.faults.append("a forecast has no end")
+            state = self.client.get_state()
+            self.ends[state] = self.ends.get(state, 0) + 1
+            if wrong != (state == GoalStatus.REJECTED) and state not in (GoalStatus.RECALLED, GoalStatus.ABORTED):
+                self.faults.append("forecast: wrong %s, state %d, %s" % (wrong, state, self.client.get_goal_status_text()[:200]))
+
+
 class Subscriber(threading.Thread):
     """Subscribes to one topic after another for a while, over connections of its own, as a process of its own would: rospy
     has one connection for all subscribers in a process. A fifth of them do not read what they are sent."""
@@ -198,7 +224,7 @@ class Flood(Scenarios):
     def test_a_flood_of_calls(self):
         journal = self.path("journal")
         node = self.start("flooded", {"scenario": OASIS, "paused": False, "step_rate": 50, "journal": journal,
-                                      "data_dir": self.path("data")}, environment=RETURNS_LARGE_BUFFERS)
+                                      "data_dir": self.path("data"), "forecast_rate": 2, "forecast_horizon": 5}, environment=RETURNS_LARGE_BUFFERS)
         node.call("step", Step, 1)
         self.assertTrue(node.call("save_checkpoint", SaveCheckpoint, CHECKPOINT).success)
         grid = node.latest("elevation", ElevationGrid)
@@ -208,15 +234,17 @@ class Flood(Scenarios):
         until = time.monotonic() + SECONDS
         clients = [Client("flooded", grid, seed, until) for seed in range(CLIENTS)]
         subscribers = [Subscriber(uri, topics, seed, until) for seed in range(SUBSCRIBERS)]
+        forecaster = Forecaster("flooded", SUBSCRIBERS, until)
         before = self.memory(node)
-        for thread in clients + subscribers:
+        for thread in [*clients, *subscribers, forecaster]:
             thread.start()
-        memory = self.watch(node, clients + subscribers, until)
+        memory = self.watch(node, [*clients, *subscribers, forecaster], until)
         taken, refused = sum(c.taken for c in clients), sum(c.refused for c in clients)
         print("%.0f calls a second: %d taken, %d refused; %d subscriptions of %d topics, %.1f MB; memory grew by %.1f MB" % (
             (taken + refused) / SECONDS, taken, refused, sum(s.connections for s in subscribers), len(topics),
             sum(s.bytes for s in subscribers) / 1e6, (memory[-1] - before) / 1e6))
-        self.assertEqual([fault for thread in clients + subscribers for fault in thread.faults], [])
+        print("forecasts by the status that they ended with: %s" % forecaster.ends)
+        self.assertEqual([fault for thread in [*clients, *subscribers, forecaster] for fault in thread.faults], [])
         self.assertGreater(refused, 0.1 * (taken + refused))
         connections, resets = (sum(getattr(s, name) for s in subscribers) for name in ("connections", "resets"))
         self.assertGreater(connections, SUBSCRIBERS)

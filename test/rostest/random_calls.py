@@ -13,6 +13,8 @@ import rosgraph
 import rospy
 import rosservice
 import rostest
+from actionlib_msgs.msg import GoalID
+from desert_sim.msg import ForecastTerrainActionGoal
 from desert_sim.srv import LoadCheckpoint, LoadTerrain, SaveCheckpoint, SaveTerrain, Step
 from dynamic_reconfigure.msg import BoolParameter, ConfigDescription, DoubleParameter, IntParameter, StrParameter
 from geometry_msgs.msg import Point, Vector3Stamped
@@ -27,7 +29,8 @@ ROUNDS_OF_A_NODE = 100
 NODE = "random"
 SCENARIOS = {"oasis.yaml": OASIS, "corner.yaml": CORNER, "garden.yaml": os.path.join(os.path.dirname(OASIS), "garden.yaml")}
 TOPICS = {"/%s/cmd_wind" % NODE: Vector3Stamped, "/%s/request_keyframe" % NODE: Empty, "/tf": TFMessage,
-          "/tf_static": TFMessage, "/%s/layers/request_keyframe" % NODE: String}
+          "/tf_static": TFMessage, "/%s/layers/request_keyframe" % NODE: String, "/%s/forecast/goal" % NODE: ForecastTerrainActionGoal,
+          "/%s/forecast/cancel" % NODE: GoalID}
 WEIGHTS = {"edit_terrain": 6, "edit_plants": 5, "edit_wind": 3, "set_weather": 3, "set_parameters": 4, "step": 4,
            "undo": 3, "redo": 2}  # others: 1
 OF_EVERY_NODE = {"get_loggers", "set_logger_level"}
@@ -107,6 +110,9 @@ class Caller:
     def publish(self):
         topic = self.draw.choice(sorted(TOPICS))
         message = self.random.filled(TOPICS[topic]())
+        if isinstance(message, ForecastTerrainActionGoal):
+            message.goal_id.id = "goal %d" % len(self.log)  # actionlib overhears one that it knows
+            message.goal.parameters = self.config(message.goal.parameters)
         self.log.append("%s %s" % (topic, str(message)[:300]))
         self.publishers[topic].publish(message)
         self.on_their_way = True

@@ -6,7 +6,9 @@
 #include <cstdio>
 
 #include "src/simulation/checkpoint.hpp"
+#include "src/simulation/forecast/forecast.hpp"
 #include "src/tools/bench_scenes.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/world.hpp"
 
@@ -166,6 +168,32 @@ TEST(MemoryRefusal, OfACheckpointThatDoesNotFit) {
   save_checkpoint(folder.path("small"), Simulation(enough, bench_scenario("A", 32, {}), no_raster_loader));
   TightExec tight("cuda", 1000);
   EXPECT_THROW(load_checkpoint(folder.path("small"), tight), ConfigError);
+}
+
+TEST_P(Memory, OfAForecastIsASecondTerrainItsCheckpointAndItsMaps) {
+  const auto s = simulation(all_kinds[0]);
+  const double cells = 96 * 64;
+  const ForecastMemory one = memory_for_forecast(*s, {60, 1, 1}), ten = memory_for_forecast(*s, {60, 10, 1}),
+                       ensemble = memory_for_forecast(*s, {60, 10, 2});
+  EXPECT_GT(one.on_device, static_cast<double>(total_bytes(s->memory())));
+  EXPECT_EQ(ten.on_device, one.on_device);
+  EXPECT_GE(one.on_host, static_cast<double>(s->terrain().bytes()) + 3 * (4 + 1 + 4 + 4) * cells);
+  EXPECT_EQ(ten.on_host - one.on_host, 3 * 9 * (4 + 1) * cells) << "elevation and costs";
+  EXPECT_EQ(ensemble.on_host - ten.on_host, 3 * 10 * 4 * cells) << "shares";
+  EXPECT_NO_THROW(require_memory_for_forecast(*s, {60, 100, 64}));
+}
+
+TEST(MemoryRefusal, OfAForecastTellsWhatIsNeededAndWhatThereIs) {
+  const Scenario scenario = bench_scenario("A", 64, {});
+  TightExec exec("cuda", 999);
+  const std::string device = test::refusal([&] { require_bytes(exec, scenario, 1000, 1, "for a forecast"); });
+  for (const char* text :
+       {"64 x 64", "1000 bytes", "available: 999 bytes", "on the cuda backend for a forecast"})
+    EXPECT_NE(device.find(text), std::string::npos) << "no '" << text << "' in: " << device;
+  const std::string host = test::refusal([&] { require_bytes(exec, scenario, 1, 1e18, "for a forecast"); });
+  for (const char* text : {"1000000000000000000 bytes", "on the host for a forecast; available: "})
+    EXPECT_NE(host.find(text), std::string::npos) << "no '" << text << "' in: " << host;
+  EXPECT_NO_THROW(require_bytes(exec, scenario, 999, 1, "for a forecast"));
 }
 
 DESERT_ON_EACH_BACKEND(Memory);

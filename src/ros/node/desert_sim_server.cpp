@@ -123,8 +123,10 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
                                            p.answer_timeout);
     if (p.autosave_period > 0)
       autosave_ = std::make_unique<Autosave>(autosaves, p.autosave_period, *simulation_, p.journal);
-    diagnostics_ =
-        std::make_unique<Diagnostics>(node_, p.diagnostic_period, *simulation_, *publisher_, autosave_.get());
+    forecast_ = std::make_unique<ForecastServer>(node_, *simulation_, *publisher_, *frames_,
+                                                 p.forecast_threads, p.answer_timeout);
+    diagnostics_ = std::make_unique<Diagnostics>(node_, p.diagnostic_period, *simulation_, *publisher_,
+                                                 *forecast_, autosave_.get());
     cmd_wind_ = std::make_unique<CmdWindSubscriber>(node_, *simulation_, *frames_);
     reconfigure_ = std::make_unique<Reconfigure>(node_, *simulation_, *publisher_, p.answer_timeout);
     reload_ = std::make_unique<ParameterReload>(
@@ -143,12 +145,14 @@ DesertSimServer::~DesertSimServer() {
   // First what others wait for, so that they get their answers; then what waited.
   simulation_->stop();
   publisher_->stop();
+  forecast_->stop();
   spinner_.stop();
   step_spinner_.stop();
   reload_.reset();
   reconfigure_.reset();
   cmd_wind_.reset();
   diagnostics_.reset();
+  forecast_.reset();
   autosave_.reset();
   services_.reset();
   publisher_.reset();

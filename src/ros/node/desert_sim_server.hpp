@@ -11,6 +11,7 @@
 #include <string>
 
 #include "src/core/data_folder.hpp"
+#include "src/ros/forecast/forecast_server.hpp"
 #include "src/ros/node/autosave.hpp"
 #include "src/ros/node/clock.hpp"
 #include "src/ros/node/diagnostics.hpp"
@@ -48,6 +49,7 @@ class DesertSimServer {
   std::unique_ptr<TopicPublisher> publisher_;
   std::unique_ptr<Services> services_;
   std::unique_ptr<Autosave> autosave_;
+  std::unique_ptr<ForecastServer> forecast_;
   std::unique_ptr<Diagnostics> diagnostics_;
   std::unique_ptr<CmdWindSubscriber> cmd_wind_;
   std::unique_ptr<Reconfigure> reconfigure_;

@@ -37,9 +37,11 @@ double peak_bytes() {
 }  // namespace
 
 Diagnostics::Diagnostics(ros::NodeHandle node, double period, SimulationThread& simulation,
-                         const TopicPublisher& publisher, const Autosave* autosave)
+                         const TopicPublisher& publisher, const ForecastServer& forecast,
+                         const Autosave* autosave)
     : simulation_(simulation),
       publisher_(publisher),
+      forecast_(forecast),
       autosave_(autosave),
       updater_(node, node, node.getNamespace()) {
   diagnostics_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1);
@@ -48,6 +50,7 @@ Diagnostics::Diagnostics(ros::NodeHandle node, double period, SimulationThread& 
   updater_.add("mass balance", [this](Status& status) { check_mass(status); });
   updater_.add("memory", [this](Status& status) { check_memory(status); });
   updater_.add("topics", [this](Status& status) { check_topics(status); });
+  updater_.add("forecast", [this](Status& status) { check_forecast(status); });
   updater_.add("autosave", [this](Status& status) { check_autosave(status); });
   updater_.add("master", [this](Status& status) { check_master(status); });
   timer_ = node.createWallTimer(ros::WallDuration(period), [this](const ros::WallTimerEvent&) { update(); });
@@ -151,6 +154,21 @@ void Diagnostics::check_topics(Status& status) {
     status.mergeSummary(DiagnosticStatus::WARN, "less than half of the target rate: " + slow);
   for (const auto& [topic, problem] : publisher_.problems())
     status.mergeSummary(DiagnosticStatus::WARN, topic + ": " + problem);
+}
+
+void Diagnostics::check_forecast(Status& status) const {
+  const ForecastReport r = forecast_.report();
+  status.add("forecasts", r.done);
+  status.addf("the last one took [s]", "%.2f", r.seconds);
+  status.addf("rate of its topics", "%.3f of %.3f Hz", r.achieved_rate, r.wanted_rate);
+  if (!r.error.empty())
+    status.summary(DiagnosticStatus::ERROR, r.error);
+  else if (r.wanted_rate > 0 && r.seconds * r.wanted_rate > 2)
+    status.summaryf(DiagnosticStatus::WARN, "a forecast takes %.1f s, and %.3f Hz are wanted", r.seconds,
+                    r.wanted_rate);
+  else
+    status.summary(DiagnosticStatus::OK,
+                   r.done == 0 ? "there was no forecast yet" : "the last forecast succeeded");
 }
 
 void Diagnostics::check_autosave(Status& status) const {

@@ -7,6 +7,7 @@
 ///   memory        WARN: too little is left for a reset or a load
 ///   topics        WARN: one had less than half its rate for 3 periods, or cannot be published, for want of a
 ///                 transform, say. ERROR: publishing has failed
+///   forecast      WARN: its topics have less than half their rate. ERROR: the last one failed
 ///   autosave      WARN: there was none for two periods. ERROR: the last one could not be written
 ///   master        WARN: the ROS master does not answer. ERROR: it does not know the node, because it was
 /// started
@@ -23,6 +24,7 @@
 #include <optional>
 #include <string>
 
+#include "src/ros/forecast/forecast_server.hpp"
 #include "src/ros/node/autosave.hpp"
 #include "src/ros/node/simulation_thread.hpp"
 #include "src/ros/topics/topic_publisher.hpp"
@@ -34,7 +36,7 @@ class Diagnostics {
   /// Publishes every `period` seconds of wall time, on the callback queue of `node`; without subscribers it
   /// only asks the master, for the log. `autosave` may be null.
   Diagnostics(ros::NodeHandle node, double period, SimulationThread& simulation,
-              const TopicPublisher& publisher, const Autosave* autosave);
+              const TopicPublisher& publisher, const ForecastServer& forecast, const Autosave* autosave);
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
@@ -43,12 +45,14 @@ class Diagnostics {
   void check_mass(Status& status) const;
   void check_memory(Status& status) const;
   void check_topics(Status& status);
+  void check_forecast(Status& status) const;
   void check_autosave(Status& status) const;
   void check_master(Status& status) const;
   void ask_master();
 
   SimulationThread& simulation_;
   const TopicPublisher& publisher_;
+  const ForecastServer& forecast_;
   const Autosave* autosave_;
   diagnostic_updater::Updater updater_;
   ros::Publisher diagnostics_;          ///< a second publisher of /diagnostics, to ask for its subscribers

@@ -34,6 +34,7 @@ struct NodeParameters {
   double diagnostic_period = 1;
   double answer_timeout = 1;
   double undo_memory = default_undo_memory / 1e6;
+  int forecast_threads = 0;
 };
 constexpr auto parameter_table(const NodeParameters*) {
   using P = NodeParameters;
@@ -81,7 +82,11 @@ constexpr auto parameter_table(const NodeParameters*) {
       parameter(
           "undo_memory", &P::undo_memory, 0, 1e6, "MB",
           "Of 10^6 bytes, for what ~undo and ~redo can bring back; the oldest strokes are forgotten first. "
-          "0: nothing is kept."));
+          "0: nothing is kept."),
+      parameter(
+          "forecast_threads", &P::forecast_threads, 0, 4096, "1",
+          "Threads of the CPU backend that make forecasts, in time that no other thread wants; 0: one a "
+          "processor."));
 }
 static_assert(table_is_complete<NodeParameters>());
 

@@ -1,18 +1,13 @@
 #include "src/ros/node/simulation_thread.hpp"
 
-#include <pthread.h>
 #include <ros/console.h>
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 
 #include "src/ros/node/autosave.hpp"
 #include "src/ros/node/clock.hpp"
+#include "src/ros/node/thread_priority.hpp"
 
 namespace desert_sim {
 
@@ -22,19 +17,6 @@ constexpr int max_steps_in_flight = 8;  // that a GPU may be behind before the t
 constexpr int timed_every = 16;         // steps from one that is timed to the next
 constexpr double unused_memory_timeout =
     60;  // [s] for layers on request, costs and snapshots that nobody asks for
-
-/// Sets the name (for top -H) and the niceness of the calling thread. The threads of the backend are started
-/// by it and inherit both.
-void set_name_and_niceness(const char* name, int niceness) {
-  pthread_setname_np(pthread_self(), name);
-  const auto thread = static_cast<id_t>(syscall(SYS_gettid));  // Linux has a niceness for each thread
-  errno = 0;
-  const int now = getpriority(PRIO_PROCESS, thread);
-  if (errno == 0 && now >= niceness) return;
-  if (setpriority(PRIO_PROCESS, thread, niceness) != 0)
-    ROS_WARN("The niceness of the simulation threads cannot be set to %d: %s", niceness,
-             std::strerror(errno));
-}
 
 }  // namespace
 

@@ -90,6 +90,8 @@ class SimulationThread {
   std::future<StatusReport> report(bool measure = true);
   std::future<ReachedState> save_checkpoint(const std::string& path);
   std::future<CheckpointCopy> checkpoint();
+  /// Refused if there is no memory for such a forecast.
+  std::future<ForecastStart> forecast_start(const ForecastParameters& options);
 
   /// The present counters of Moment: they tell whether a copy is still up to date.
   std::uint64_t changes() const { return changes_; }
@@ -98,6 +100,11 @@ class SimulationThread {
   std::uint64_t commands() const { return commands_; }
   std::uint64_t terrains() const { return terrains_; }
   double step_rate() const { return step_rate_; }  ///< as set, also while run.acceleration rules [steps/s]
+  /// What ties a forecast to ROS time, see ForecastOptions [steps/s]. A simulation that is the clock of all
+  /// nodes is not tied by its rate.
+  double forecast_step_rate() const {
+    return options_.publish_clock && ros::Time::isSimTime() ? 0 : step_rate_.load();
+  }
   const std::string& backend_choice() const { return backend_choice_; }
 
   /// What ended the simulation; empty while it lives.

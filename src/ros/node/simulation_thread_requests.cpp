@@ -184,6 +184,15 @@ std::future<CheckpointCopy> SimulationThread::checkpoint() {
   });
 }
 
+std::future<ForecastStart> SimulationThread::forecast_start(const ForecastParameters& options) {
+  return submit<ForecastStart>([this, options] {
+    wait_for_steps();
+    const Simulation& s = session_->simulation();
+    require_memory_for_forecast(s, options);
+    return ForecastStart{moment(), checkpoint_bytes(s), s.exec().backend()};
+  });
+}
+
 std::future<Scenario> SimulationThread::scenario() {
   return submit<Scenario>([this] { return session_->simulation().present_scenario(); });
 }

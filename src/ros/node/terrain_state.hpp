@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "src/simulation/forecast/forecast.hpp"
 #include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
@@ -63,6 +64,13 @@ struct CheckpointCopy {
   Moment moment;
   std::string bytes;
   std::vector<std::string> journal_files;  ///< see Session::journal_files()
+};
+
+/// The state that a forecast begins with.
+struct ForecastStart {
+  Moment moment;
+  std::string checkpoint;  ///< as checkpoint_bytes() makes it
+  std::string backend;     ///< of the simulation
 };
 
 enum class RunState { running, paused, waiting };

@@ -35,6 +35,9 @@ struct PublisherParameters {
   int plants_count = 200000;
   double plant_markers_rate = 1;
   int plant_markers_count = 10000;
+  double forecast_rate = 0;
+  double forecast_horizon = 60;
+  int forecast_moments = 6;
   double status_rate = 1;
 };
 constexpr auto parameter_table(const PublisherParameters*) {
@@ -65,6 +68,12 @@ constexpr auto parameter_table(const PublisherParameters*) {
       parameter("plant_markers_rate", &P::plant_markers_rate, 0, 1000, "Hz", "~plant_markers."),
       parameter("plant_markers_count", &P::plant_markers_count, 1, 1000000, "1",
                 "At most so many plants, the widest; a tenth of them with trunk and crown."),
+      parameter("forecast_rate", &P::forecast_rate, 0, 1000, "Hz",
+                "~forecast/maps and ~forecast/costmap, as far as forecasts are as fast; 0: none."),
+      parameter("forecast_horizon", &P::forecast_horizon, 1e-6, 1e12, "s",
+                "Of ~forecast/maps: how far ahead, in ROS time; at most 10^6 steps."),
+      parameter("forecast_moments", &P::forecast_moments, 1, 100, "1",
+                "Of ~forecast/maps: states to tell, evenly spaced, the last at the horizon."),
       parameter("status_rate", &P::status_rate, 0, 1000, "Hz", "~status; it is also sent on change."));
 }
 static_assert(table_is_complete<PublisherParameters>());

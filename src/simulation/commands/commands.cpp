@@ -66,16 +66,19 @@ CommandResult Commands::apply(const command::SetWind& command) {
   return {};
 }
 
-CommandResult Commands::apply(const command::SetWindSchedule& command) {
-  const WindRegime& r = command.regime;
-  check_ranges(static_cast<const WindRegimeParameters&>(r), "set_wind_schedule");
-  ValidationErrors errors("set_wind_schedule");
+void check_wind_schedule(const WindRegime& r, const std::string& what) {
+  check_ranges(static_cast<const WindRegimeParameters&>(r), what);
+  ValidationErrors errors(what);
   if (r.regime == WindRegimeKind::constant) errors.add("kind", "must be timeline or rose");
   check_wind_segments(r.regime, r.segments, "segments", errors);
   errors.throw_if_any();
   for (std::size_t n = 0; n < r.segments.size(); ++n)
-    check_ranges(r.segments[n], "set_wind_schedule: segments." + std::to_string(n));
-  state_.set_wind_regime(r);
+    check_ranges(r.segments[n], what + ": segments." + std::to_string(n));
+}
+
+CommandResult Commands::apply(const command::SetWindSchedule& command) {
+  check_wind_schedule(command.regime, "set_wind_schedule");
+  state_.set_wind_regime(command.regime);
   return {};
 }
 

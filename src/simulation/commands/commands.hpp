@@ -11,6 +11,10 @@
 
 namespace desert_sim {
 
+/// Throws ConfigError, in the name of `what`, unless it is a timeline or a rose whose numbers are in their
+/// ranges.
+void check_wind_schedule(const WindRegime& regime, const std::string& what);
+
 class Commands {
  public:
   Commands(SimulationState& state, Pipeline& pipeline)

@@ -134,11 +134,16 @@ double bytes_to_build(const Scenario& scenario) {
 void require_memory(const Exec& exec, const Scenario& scenario, double host_bytes) {
   require_cells(scenario);
   const double on_device = static_cast<double>(total_bytes(planned_memory(scenario)));
+  require_bytes(exec, scenario, on_device, host_bytes * scenario.make_grid().cells(),
+                "while the terrain is built");
+}
+
+void require_bytes(const Exec& exec, const Scenario& scenario, double on_device, double on_host,
+                   const std::string& what) {
   const std::string backend = exec.backend();
-  check_available(scenario, on_device, exec.memory_available(), "on the " + backend + " backend");
+  check_available(scenario, on_device, exec.memory_available(), "on the " + backend + " backend " + what);
   const double besides = backend == "cpu" ? on_device : 0.0;
-  check_available(scenario, host_bytes * scenario.make_grid().cells() + besides, host_memory_available(),
-                  "on the host while the terrain is built");
+  check_available(scenario, on_host + besides, host_memory_available(), "on the host " + what);
 }
 
 void require_more_memory(const SimulationState& state, const Scenario& scenario) {

@@ -23,6 +23,9 @@ double bytes_to_build(const Scenario& scenario);
 /// `exec`, or on the host, which holds `host_bytes` a cell besides while the terrain is made. The message has
 /// what is needed, what there is, bytes a cell, and the grid.
 void require_memory(const Exec& exec, const Scenario& scenario, double host_bytes);
+/// Likewise for the bytes that something besides needs on the device, and on the host; `what` says what.
+void require_bytes(const Exec& exec, const Scenario& scenario, double on_device, double on_host,
+                   const std::string& what);
 /// Throws ConfigError if what `scenario` needs more than the present one of `state` is not there.
 void require_more_memory(const SimulationState& state, const Scenario& scenario);
 

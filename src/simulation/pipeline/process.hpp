@@ -51,7 +51,7 @@ struct StepContext {
     return state.steps > state.clock_origin.step &&
            std::floor(time() / second) > std::floor(time_of(tick() - 1) / second);
   }
-  wind::Vector wind_above() const { return state.wind_regime.at(time()); }
+  wind::Vector wind_above() const { return state.wind_above_at(time()); }
   const Dice& dice() const { return fields.dice; }
 };
 

@@ -1,0 +1,86 @@
+#include "src/ros/forecast/forecast_request.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "src/ros/services/request_fields.hpp"
+#include "src/ros/services/requests.hpp"
+#include "src/scenario/live_parameters.hpp"
+#include "src/scenario/range_checks.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+int to_int(std::uint32_t number) {
+  return static_cast<int>(std::min<std::uint32_t>(number, std::numeric_limits<int>::max()));
+}
+
+/// A forecast shows the desert: parameters of topics would have no effect.
+template <class Entries>
+void require_parameters_of_the_desert(const Entries& entries) {
+  for (const auto& entry : entries)
+    if (entry.name.find("__") == std::string::npos && entry.name != "step_rate")
+      throw ConfigError("parameters: " + quoted(entry.name) +
+                        " is no parameter of the desert (allowed: SECTION__KEY of the scenario, step_rate)");
+}
+
+void add_wind(const ForecastTerrainGoal& goal, std::vector<ForecastCommand>& commands) {
+  if (goal.wind.empty()) {
+    if (!goal.wind_kind.empty())
+      throw ConfigError("wind: has no segments for the wind_kind " + quoted(goal.wind_kind) +
+                        " (allowed: none of both, or both)");
+    return;
+  }
+  if (goal.wind_kind == "constant") {
+    if (goal.wind.size() != 1)
+      throw ConfigError("wind: " + std::to_string(goal.wind.size()) +
+                        " segments are given for a constant wind (allowed: 1)");
+    const WindScheduleSegment& segment = goal.wind.front();
+    const command::SetWind wind{to_float(segment.direction_deg), to_float(segment.speed),
+                                to_float(segment.ramp)};
+    check_ranges(wind, "wind");
+    commands.push_back(wind);
+    return;
+  }
+  if (goal.wind_kind != "timeline" && goal.wind_kind != "rose")
+    throw ConfigError("wind_kind: " + quoted(goal.wind_kind) + " is not one of: timeline, rose, constant");
+  SetWindScheduleRequest request;
+  request.kind = goal.wind_kind;
+  request.segments = goal.wind;
+  request.repeat = goal.wind_repeat;
+  request.hold_time = goal.wind_hold_time;
+  request.seed = goal.wind_seed;
+  const command::SetWindSchedule schedule = wind_schedule_command(request);
+  check_wind_schedule(schedule.regime, "wind");
+  commands.push_back(schedule);
+}
+
+}  // namespace
+
+ForecastOptions forecast_options(const ForecastTerrainGoal& goal, const LiveParameters& present,
+                                 double step_rate) {
+  ForecastOptions options;
+  options.horizon = goal.horizon;
+  options.moments = to_int(goal.moments);
+  options.members = std::max(1, to_int(goal.members));
+  check_ranges(static_cast<const ForecastParameters&>(options), "forecast");
+  if (options.members > 1) {
+    options.gusts = {goal.gust_speed, goal.gust_direction_deg, goal.gust_time, goal.seed};
+    check_ranges(options.gusts, "forecast");
+  }
+  require_parameters_of_the_desert(goal.parameters.bools);
+  require_parameters_of_the_desert(goal.parameters.ints);
+  require_parameters_of_the_desert(goal.parameters.strs);
+  require_parameters_of_the_desert(goal.parameters.doubles);
+  const LiveChange change = reconfigure_change(goal.parameters, present);
+  options.step_rate = change.step_rate == present.step_rate ? step_rate : change.step_rate;
+  if (!change.settings.empty()) {
+    require_reach(with_live_settings(present.scenario, change.settings));
+    options.commands.push_back(command::SetParameters{change.settings});
+  }
+  add_wind(goal, options.commands);
+  return options;
+}
+
+}  // namespace desert_sim
