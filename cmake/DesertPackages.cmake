@@ -1,4 +1,4 @@
-# Third-party libraries of every build: OpenMP, threads, FFTW3 (single precision), yaml-cpp, xxHash, Random123.
+# Third-party libraries of every build: OpenMP, threads, FFTW3 (single precision), yaml-cpp, xxHash, Random123, OMPL.
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(Threads REQUIRED)
 find_package(yaml-cpp QUIET)
@@ -35,6 +35,20 @@ mark_as_advanced(DESERT_fftw3f_threads)
 if(DESERT_fftw3f_threads)
   set_property(TARGET desert::fftw3f PROPERTY INTERFACE_LINK_LIBRARIES ${DESERT_fftw3f_threads} ${DESERT_fftw3f_LIBRARY})
 endif()
+
+# Not ${OMPL_LIBRARIES}, which on Debian name a library that is not installed with it; not /usr/include as a system's
+# folder of its own, which would hide that of the compiler.
+find_package(ompl QUIET)
+find_library(DESERT_ompl_LIBRARY ompl HINTS ${OMPL_LIBRARY_DIRS})
+mark_as_advanced(DESERT_ompl_LIBRARY)
+if(NOT ompl_FOUND OR NOT DESERT_ompl_LIBRARY)
+  message(FATAL_ERROR "desert_sim needs OMPL: install libompl-dev (the whole list is in scripts/dependencies.txt)")
+endif()
+list(REMOVE_ITEM OMPL_INCLUDE_DIRS /usr/include)
+add_library(desert::ompl INTERFACE IMPORTED GLOBAL)
+set_target_properties(desert::ompl PROPERTIES
+  INTERFACE_INCLUDE_DIRECTORIES "${OMPL_INCLUDE_DIRS}"
+  INTERFACE_LINK_LIBRARIES ${DESERT_ompl_LIBRARY})
 
 if(NOT yaml-cpp_FOUND)
   message(FATAL_ERROR "desert_sim needs yaml-cpp: install libyaml-cpp-dev (the whole list is in scripts/dependencies.txt)")

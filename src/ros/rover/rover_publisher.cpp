@@ -15,7 +15,7 @@ RoverPublisher::RoverPublisher(ros::NodeHandle node, ros::NodeHandle private_nod
       ground_truth_(node.advertise<nav_msgs::Odometry>("ground_truth", 10, is_lockstep(setup))),
       joint_states_(node.advertise<sensor_msgs::JointState>("joint_states", 10, is_lockstep(setup))),
       imu_(node.advertise<sensor_msgs::Imu>("imu", 10, is_lockstep(setup))),
-      status_(private_node.advertise<RoverStatus>("status", 10, true)) {}
+      status_(private_node.advertise<RoverStatus>("status", 100, true)) {}
 
 void RoverPublisher::publish_pose(const Rover& rover, const ros::Time& stamp,
                                   const std::string& terrain_frame) {
@@ -33,9 +33,11 @@ void RoverPublisher::publish_pose(const Rover& rover, const ros::Time& stamp,
 void RoverPublisher::publish_status(const RoverStatus& status) {
   const auto now = std::chrono::steady_clock::now();
   const std::chrono::duration<double> age = now - last_status_;
-  if (status.state == last_state_ && status.refusal == last_refusal_ &&
+  const bool new_step = is_lockstep(setup_) && status.terrain_stamp != last_terrain_stamp_;
+  if (!new_step && status.state == last_state_ && status.refusal == last_refusal_ &&
       age.count() < 1 / setup_.node.status_rate)
     return;
+  last_terrain_stamp_ = status.terrain_stamp;
   last_state_ = status.state;
   last_refusal_ = status.refusal;
   last_status_ = now;

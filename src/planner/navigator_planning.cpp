@@ -1,0 +1,194 @@
+/// Where a navigator's paths come from, and when another is needed.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "src/core/error.hpp"
+#include "src/planner/navigator.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+std::string text(double number) {
+  std::ostringstream out;
+  out.precision(3);
+  out << number;
+  return out.str();
+}
+
+}  // namespace
+
+std::string Navigator::places(Place& start, Place& goal) const {
+  const auto near = [&](double x, double y, double distance) {
+    return grid_->nearest_passable({x, y}, std::max(distance, grid_->frame().cell_size / 2));
+  };
+  const auto why = [&](double x, double y) {
+    const auto cell = grid_->cell_at({x, y});
+    if (!cell) return std::string("it is off the terrain");
+    return std::string(grid_->itself_lethal(*cell)
+                           ? "the ground there is too steep, loose, wet or blocked"
+                           : "it is too near to ground that is not passable, or to the edge");
+  };
+  const auto s = near(pose_.x, pose_.y, parameters_.escape);
+  if (!s)
+    return "the start (" + text(pose_.x) + ", " + text(pose_.y) +
+           ") is not passable, nor is any cell within " + text(parameters_.escape) +
+           " m: " + why(pose_.x, pose_.y);
+  const auto g = near(goal_->x, goal_->y, parameters_.goal_tolerance);
+  if (!g)
+    return "the goal (" + text(goal_->x) + ", " + text(goal_->y) +
+           ") is not passable: " + why(goal_->x, goal_->y);
+  start = {grid_->centre(*s), *s};
+  goal = {grid_->centre(*g), *g};
+  return "";
+}
+
+std::string Navigator::need_of_path() {
+  const bool changed = ground_changed_;
+  ground_changed_ = false;
+  if (pursuit_.path().empty()) {
+    if (no_path_since_ && last_attempt_ && now_ - *last_attempt_ < parameters_.replan_pause) return "";
+    return status_.plans == 0 ? "a new goal" : "there was no path";
+  }
+  if (pursuit_.off_path() > parameters_.off_path)
+    return "the rover is " + text(pursuit_.off_path()) + " m off the path";
+  if (parameters_.planner == PlannerKind::forecast && new_forecast_) return "a new forecast";
+  if (!changed) return "";
+  const auto cost = path_cost(*grid_, pursuit_.remaining(), free_start());
+  if (!cost) {
+    // What is blocked now may be free when the rover comes there.
+    if (schedule_.empty()) return "the path is blocked";
+    GridPath near;
+    for (const GridPoint& p : pursuit_.remaining()) {
+      near.push_back(p);
+      if (path_length(near) > 5) break;
+    }
+    return path_cost(*grid_, near, free_start()) ? "" : "the path is blocked";
+  }
+  status_.cost = *cost;
+  if (!schedule_.empty()) return "";
+  // What this way cost when it was planned: between two points as much as at the one before.
+  const GridPath& path = pursuit_.path();
+  double way = 0, planned = cost_left_.front();
+  for (std::size_t n = 1; n < path.size(); ++n) {
+    const double length = std::hypot(path[n].x - path[n - 1].x, path[n].y - path[n - 1].y);
+    if (way + length >= pursuit_.done()) {
+      const double share = length > 0 ? (pursuit_.done() - way) / length : 0;
+      planned = cost_left_[n - 1] + (cost_left_[n] - cost_left_[n - 1]) * share;
+      break;
+    }
+    way += length;
+  }
+  const double margin =
+      1;  // [m of the best ground], so that the last metres are not planned anew for nothing
+  if (*cost > planned * (1 + parameters_.replan_rise) + margin)
+    return "the cost of the path has risen from " + text(planned) + " to " + text(*cost) + " m";
+  if (parameters_.planner != PlannerKind::field) return "";
+  Place start, goal;
+  if (!places(start, goal).empty()) return "";
+  prepare_field(start, goal);
+  const double best = field_->value(start.cell) / FieldPlanner::cost_of_metre(*grid_);
+  if (best < *cost * (1 - parameters_.replan_gain) - margin)
+    return "another path costs " + text(best) + " m instead of " + text(*cost) + " m";
+  return "";
+}
+
+void Navigator::prepare_field(const Place& start, const Place& goal) {
+  if (!field_) {
+    field_ = std::make_unique<FieldPlanner>(*grid_);
+    changed_.clear();
+  }
+  if (field_->goal() != goal.cell) {
+    field_->compute(goal.cell);
+  } else {
+    field_->note(changed_);
+    field_->repair(start.cell);
+    const auto every = static_cast<std::uint64_t>(parameters_.check_every);
+    if (every > 0 && field_->statistics().repairs % every == 0) {
+      if (!reference_) reference_ = std::make_unique<FieldPlanner>(*grid_);
+      const std::size_t wrong = field_->differences(*reference_);
+      status_.field_differences += wrong;
+      if (wrong > 0) field_->compute(goal.cell);
+    }
+  }
+  changed_.clear();
+}
+
+std::string Navigator::plan() {
+  last_attempt_ = now_;
+  new_forecast_ = false;
+  schedule_.clear();
+  Place start, goal;
+  std::string problem = places(start, goal);
+  if (!problem.empty()) return problem;
+  GridPath path;
+  switch (parameters_.planner) {
+    case PlannerKind::field:
+      problem = plan_by_field(start, goal, path);
+      break;
+    case PlannerKind::ompl:
+      problem = plan_by_ompl(start, goal, path);
+      break;
+    case PlannerKind::forecast:
+      problem = plan_by_forecast(start, goal, path);
+      break;
+  }
+  if (!problem.empty()) return problem;
+  take(std::move(path), goal);
+  return "";
+}
+
+std::string Navigator::plan_by_field(const Place& start, const Place& goal, GridPath& path) {
+  prepare_field(start, goal);
+  path = shortened(*grid_, field_->path_from(start.cell));
+  return path.empty() ? "no way leads from the start to the goal over ground that is passable now" : "";
+}
+
+std::string Navigator::plan_by_ompl(const Place& start, const Place& goal, GridPath& path) {
+  GridPath known;
+  const std::string problem = plan_by_field(start, goal, known);
+  if (!problem.empty()) return problem;
+  const HeadingCosts costs(std::make_shared<const CostGrid>(*grid_),
+                           layer_source_ ? layer_source_(grid_->frame()) : HeadingLayers(),
+                           parameters_.heading_weights());
+  OmplResult result = plan_with_ompl(costs, start.point, goal.point, known, parameters_.ompl());
+  path = std::move(result.path);
+  return result.problem;
+}
+
+TimedCosts Navigator::timed_costs() {
+  TimedCosts costs{{now_}, {std::make_shared<const CostGrid>(*grid_)}};
+  status_.forecast_age = -1;
+  if (forecast_.empty() || now_ - forecast_made_ > parameters_.forecast_age) return costs;
+  status_.forecast_age = now_ - forecast_made_;
+  for (const auto& [time, grid] : forecast_)
+    if (time > now_) {
+      costs.times.push_back(time);
+      costs.grids.push_back(grid);
+    }
+  return costs;
+}
+
+std::string Navigator::plan_by_forecast(const Place& start, const Place& goal, GridPath& path) {
+  TimedPlanner planner(timed_costs(), {parameters_.forecast_speed, parameters_.forecast_slowing});
+  schedule_ = planner.plan(start.cell, goal.cell);
+  for (const TimedPoint& p : schedule_) path.push_back(p.point);
+  return path.empty()
+             ? "no way leads from the start to the goal, even with waiting, over the ground that the "
+               "forecast tells"
+             : "";
+}
+
+void Navigator::take(GridPath path, const Place& goal) {
+  if (grid_->cell_at({goal_->x, goal_->y}) == goal.cell) path.back() = {goal_->x, goal_->y};
+  cost_left_.assign(path.size(), 0);
+  for (std::size_t n = path.size() - 1; n > 0; --n)
+    cost_left_[n - 1] = cost_left_[n] + line_cost(*grid_, path[n - 1], path[n], free_start()).value_or(0);
+  status_.cost = cost_left_.front();
+  pursuit_.follow(std::move(path));
+  pursuit_.locate(pose_);
+  ++path_number_;
+}
+
+}  // namespace desert_sim

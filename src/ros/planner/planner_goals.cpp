@@ -1,0 +1,142 @@
+/// What a PlannerServer is told: goals, the rover's state, forecasts.
+#include <ros/console.h>
+#include <tf2_geometry_msgs/tf2_geometry_msgs.h>
+
+#include "src/core/error.hpp"
+#include "src/ros/planner/planner_server.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr std::size_t most_waiting = 1000;
+
+}  // namespace
+
+void PlannerServer::receive_rover_status(const RoverStatusConstPtr& status) {
+  if (!lockstep_) {
+    rover_ = status;
+    return;
+  }
+  // Of the states of one step the last one counts. After a reset the steps begin again.
+  if (status->header.frame_id.empty()) return;
+  statuses_.erase(statuses_.upper_bound(status->terrain_step), statuses_.end());
+  if (rover_ && rover_->terrain_step == status->terrain_step &&
+      rover_->terrain_stamp == status->terrain_stamp)
+    return;
+  statuses_[status->terrain_step] = status;
+  if (statuses_.size() > most_waiting) statuses_.erase(statuses_.begin());
+}
+
+void PlannerServer::receive_truth(const nav_msgs::OdometryConstPtr& truth) {
+  truths_[truth->header.stamp] = truth;
+  if (truths_.size() > most_waiting) truths_.erase(truths_.begin());
+}
+
+void PlannerServer::set_goal(const geometry_msgs::PoseStamped& goal) {
+  geometry_msgs::PoseStamped in_terrain = goal;
+  const std::string terrain = terrain_.frame();
+  const double yaw_given = yaw_of(goal.pose.orientation, "the goal's orientation");
+  PlanarPose pose{goal.pose.position.x, goal.pose.position.y, yaw_given};
+  if (!terrain.empty() && !goal.header.frame_id.empty() && goal.header.frame_id != terrain) {
+    try {
+      // The latest transform: a goal is a place, whenever it was said.
+      const auto t =
+          transforms_.lookupTransform(terrain, goal.header.frame_id, ros::Time(0), ros::Duration(0));
+      tf2::doTransform(goal, in_terrain, t);
+    } catch (const tf2::TransformException& e) {
+      throw ConfigError("the goal's frame '" + goal.header.frame_id + "' has no transform to '" + terrain +
+                        "': " + e.what());
+    }
+    pose = {in_terrain.pose.position.x, in_terrain.pose.position.y,
+            yaw_of(in_terrain.pose.orientation, "the goal's orientation")};
+  }
+  take_terrain({});
+  navigator_.set_goal(pose, time_now());
+  in_terrain.header.frame_id = terrain;
+  goal_ = in_terrain;
+  refusal_.clear();
+  asked_for_forecast_.reset();
+}
+
+void PlannerServer::receive_goal(const geometry_msgs::PoseStampedConstPtr& goal) {
+  try {
+    set_goal(*goal);
+    if (action_->isActive()) action_->setPreempted({}, "another goal came by topic");
+  } catch (const ConfigError& e) {
+    ROS_WARN("move_base_simple/goal: a goal was refused: %s", e.what());
+    refusal_ = "move_base_simple/goal: " + std::string(e.what());
+  }
+  publish_status(false);
+}
+
+void PlannerServer::receive_action_goal() {
+  const geometry_msgs::PoseStamped goal = action_->acceptNewGoal()->target_pose;
+  try {
+    set_goal(goal);
+  } catch (const ConfigError& e) {
+    ROS_WARN("move_base: a goal was refused: %s", e.what());
+    refusal_ = "move_base: " + std::string(e.what());
+    navigator_.cancel("another goal came, and was refused");
+    action_->setAborted({}, std::string("refused: ") + e.what());
+  }
+  publish_status(false);
+}
+
+void PlannerServer::receive_preemption() {
+  if (action_->isNewGoalAvailable()) return;  // the new goal takes its place
+  navigator_.cancel("the client of move_base has cancelled the goal");
+  send({});
+  end_action();
+  publish_path();
+  publish_status(false);
+}
+
+bool PlannerServer::cancel(std_srvs::TriggerRequest&, std_srvs::TriggerResponse& response) {
+  response.success = navigator_.active();
+  response.message = response.success ? "cancelled" : "there is no goal to cancel";
+  navigator_.cancel("~cancel was called");
+  send({});
+  end_action();
+  publish_path();
+  publish_status(false);
+  return true;
+}
+
+// ---- forecasts
+
+void PlannerServer::receive_forecast(const ForecastConstPtr& forecast) {
+  try {
+    const double begin =
+        lockstep_ ? forecast->sim_time * setup_.node.seconds_per_sim_second : forecast->header.stamp.toSec();
+    ForecastCosts costs = forecast_costs(*forecast, begin, setup_.node.forecast_probability);
+    if (lockstep_ && forecast->seconds_per_sim_second > 0)
+      for (double& time : costs.times)
+        time *= setup_.node.seconds_per_sim_second / forecast->seconds_per_sim_second;
+    take_terrain({});
+    navigator_.set_forecast(costs);
+  } catch (const ConfigError& e) {
+    ROS_WARN("a forecast was refused: %s", e.what());
+    refusal_ = "forecast: " + std::string(e.what());
+  }
+}
+
+void PlannerServer::ask_for_forecast(double time) {
+  if (!forecast_client_ || !forecast_client_->isServerConnected()) return;
+  if (asked_for_forecast_ && time - *asked_for_forecast_ < setup_.node.forecast_period) return;
+  asked_for_forecast_ = time;
+  ForecastTerrainGoal goal;
+  goal.horizon = setup_.node.forecast_horizon;
+  goal.moments = static_cast<std::uint32_t>(setup_.node.forecast_moments);
+  forecast_client_->sendGoal(goal, [this](const actionlib::SimpleClientGoalState& state,
+                                          const ForecastTerrainResultConstPtr& result) {
+    if (state == actionlib::SimpleClientGoalState::SUCCEEDED ||
+        state == actionlib::SimpleClientGoalState::PREEMPTED)
+      return;
+    refusal_ = "forecast: " + state.toString() + ": " +
+               (result && !result->message.empty() ? result->message : state.getText());
+    ROS_WARN("%s", refusal_.c_str());
+  });
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,133 @@
+#include "src/ros/planner/planner_messages.hpp"
+
+#include <tf2/LinearMath/Matrix3x3.h>
+#include <tf2/LinearMath/Quaternion.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "src/core/error.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+geometry_msgs::Quaternion quaternion(double pitch, double yaw) {
+  tf2::Quaternion q;
+  q.setRPY(0, pitch, yaw);
+  geometry_msgs::Quaternion m;
+  m.x = q.x();
+  m.y = q.y();
+  m.z = q.z();
+  m.w = q.w();
+  return m;
+}
+
+GridFrame grid_frame_of(const nav_msgs::MapMetaData& info) {
+  return {static_cast<int>(info.width), static_cast<int>(info.height), info.resolution,
+          info.origin.position.x, info.origin.position.y};
+}
+
+/// 0 … 99 is a cost, 100 lethal, all else unknown.
+float traversability_of(std::int8_t cost) {
+  if (cost < 0 || cost > 100) return std::numeric_limits<float>::quiet_NaN();
+  return cost == 100 ? 0.0F : std::max(1.0F - static_cast<float>(cost) / 99.0F, 0.001F);
+}
+
+}  // namespace
+
+geometry_msgs::Quaternion yaw_quaternion(double yaw) { return quaternion(0, yaw); }
+
+double yaw_of(const geometry_msgs::Quaternion& q, const std::string& what) {
+  const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!(std::abs(norm - 1) < 0.01))
+    throw ConfigError(what + ": the length of the quaternion is " + std::to_string(norm) + " (allowed: 1)");
+  return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
+}
+
+GridFrame grid_frame_of(const MapInfo& info) {
+  return {static_cast<int>(info.width), static_cast<int>(info.height), info.cell_size, info.origin_x,
+          info.origin_y};
+}
+
+nav_msgs::Path path_message(const GridPath& path, const std::vector<TimedPoint>& schedule,
+                            const LayerMap* elevation, const std::string& frame, const ros::Time& stamp) {
+  nav_msgs::Path message;
+  message.header.frame_id = frame;
+  message.header.stamp = stamp;
+  const GridPath points = elevation && schedule.empty() ? resampled(path, elevation->info().cell_size) : path;
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    geometry_msgs::PoseStamped pose;
+    pose.header = message.header;
+    if (!schedule.empty()) pose.header.stamp = ros::Time(std::max(schedule[n].arrival, 0.0));
+    pose.pose.position.x = points[n].x;
+    pose.pose.position.y = points[n].y;
+    if (elevation) pose.pose.position.z = elevation->value(points[n].x, points[n].y).value_or(0);
+    message.poses.push_back(pose);
+  }
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const std::size_t a = n + 1 < points.size() || n == 0 ? n : n - 1, b = std::min(a + 1, points.size() - 1);
+    const auto &p = message.poses[a].pose.position, &q = message.poses[b].pose.position;
+    const double run = std::hypot(q.x - p.x, q.y - p.y);
+    message.poses[n].pose.orientation =
+        run > 0 ? quaternion(-std::atan2(q.z - p.z, run), std::atan2(q.y - p.y, q.x - p.x))
+                : quaternion(0, 0);
+  }
+  return message;
+}
+
+PlannerStatus planner_status_message(const NavigatorStatus& s) {
+  PlannerStatus m;
+  m.state = navigator_states[static_cast<int>(s.state)];
+  m.reason = s.reason;
+  m.distance = s.distance;
+  m.remaining = s.remaining;
+  m.cost = s.cost;
+  m.elapsed = s.elapsed;
+  m.plans = static_cast<std::uint32_t>(s.plans);
+  m.replans = static_cast<std::uint32_t>(s.replans);
+  m.last_replan = s.last_replan;
+  m.recoveries = static_cast<std::uint32_t>(s.recoveries);
+  m.forecast_age = s.forecast_age;
+  m.field_differences = s.field_differences;
+  return m;
+}
+
+ForecastCosts forecast_costs(const Forecast& forecast, double begin, double probability) {
+  const std::size_t moments = forecast.times.size();
+  if (moments == 0 || forecast.costs.size() != moments)
+    throw ConfigError("forecast: " + std::to_string(forecast.costs.size()) + " maps of costs for " +
+                      std::to_string(moments) + " moments");
+  const bool ensemble = forecast.members > 1;
+  if (ensemble && forecast.probability.size() != moments)
+    throw ConfigError("forecast: " + std::to_string(forecast.probability.size()) +
+                      " maps of probability for " + std::to_string(moments) + " moments");
+  ForecastCosts costs;
+  costs.made = begin;
+  costs.times = forecast.times;
+  costs.frame = grid_frame_of(forecast.costs.front().info);
+  for (std::size_t n = 0; n < moments; ++n) {
+    const nav_msgs::OccupancyGrid& map = forecast.costs[n];
+    if (!(grid_frame_of(map.info) == costs.frame) ||
+        map.data.size() != static_cast<std::size_t>(map.info.width) * map.info.height)
+      throw ConfigError("forecast: the map of costs of moment " + std::to_string(n) +
+                        " has another size or place");
+    if (!std::isfinite(forecast.times[n]) || (n > 0 && !(forecast.times[n] > forecast.times[n - 1])))
+      throw ConfigError("forecast: the times do not rise");
+    std::vector<float> values(map.data.size());
+    std::transform(map.data.begin(), map.data.end(), values.begin(), traversability_of);
+    if (ensemble) {
+      const std::vector<float>& share = forecast.probability[n].data;
+      if (share.size() != values.size())
+        throw ConfigError("forecast: the map of probability of moment " + std::to_string(n) +
+                          " has another size");
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (!(share[i] >= probability)) values[i] = 0;
+    }
+    costs.traversability.push_back(std::move(values));
+  }
+  return costs;
+}
+
+}  // namespace desert_sim
