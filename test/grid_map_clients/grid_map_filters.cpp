@@ -16,18 +16,25 @@ grid_map::GridMap whole_map() {
   return map;
 }
 
-/// `map` after the filter of that type, with what the parameter says.
-grid_map::GridMap filtered(const grid_map::GridMap& map, const std::string& type,
-                           const std::string& parameter) {
-  static pluginlib::ClassLoader<Filter> loader("filters", "filters::FilterBase<grid_map::GridMap>");
-  const auto filter = loader.createUniqueInstance(type);
-  grid_map::GridMap result;
-  EXPECT_TRUE(filter->configure(parameter));
-  EXPECT_TRUE(filter->update(map, result));
-  return result;
-}
+class GridMapFilters : public testing::Test {
+ protected:
+  /// `map` after the filter of that type, with what the parameter says.
+  grid_map::GridMap filtered(const grid_map::GridMap& map, const std::string& type,
+                             const std::string& parameter) {
+    const auto filter = loader_.createUniqueInstance(type);
+    grid_map::GridMap result;
+    EXPECT_TRUE(filter->configure(parameter));
+    EXPECT_TRUE(filter->update(map, result));
+    return result;
+  }
 
-TEST(GridMapFilters, ItsNormalsAreOurs) {
+ private:
+  /// Not static: class_loader keeps lists of its own, made when the first library is loaded, which exit() would
+  /// destroy before a loader that is older than they are.
+  pluginlib::ClassLoader<Filter> loader_{"filters", "filters::FilterBase<grid_map::GridMap>"};
+};
+
+TEST_F(GridMapFilters, ItsNormalsAreOurs) {
   const grid_map::GridMap map = filtered(whole_map(), "gridMapFilters/NormalVectorsFilter", "/normals");
   std::size_t compared = 0, leaning = 0;
   for (grid_map::GridMapIterator at(map); !at.isPastEnd(); ++at) {
@@ -42,7 +49,7 @@ TEST(GridMapFilters, ItsNormalsAreOurs) {
   EXPECT_EQ(leaning, 14u + 10u) << "the cells at the marker's feet and its own rim";
 }
 
-TEST(GridMapFilters, AThresholdChangesJustWhatIsBelow) {
+TEST_F(GridMapFilters, AThresholdChangesJustWhatIsBelow) {
   const grid_map::GridMap before = whole_map();
   const grid_map::GridMap after = filtered(before, "gridMapFilters/ThresholdFilter", "/threshold");
   std::size_t below = 0;
