@@ -1,7 +1,7 @@
 #pragma once
-/// A queue of cells by integer keys: a ring of buckets for the keys near the present one, and a list for those
-/// further ahead, of which the nearest are moved into the ring when it is empty. Within a bucket the last one
-/// comes first.
+/// A queue of cells by integer keys: a ring of buckets for the keys near the present one, and a list for
+/// those further ahead, of which the nearest are moved into the ring when it is empty. Within a bucket the
+/// last one comes first.
 
 #include <algorithm>
 #include <cstdint>

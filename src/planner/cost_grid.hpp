@@ -5,8 +5,8 @@
 ///   bucket  b = min(floor((1 − t) n), n − 1)                t the traversability, n the number of buckets
 ///   cost    c = round(4 (1 + weight ((b + ½)/n)²))           4 … 255; 0: lethal
 ///
-/// A cell is lethal where t ≤ `lethal_below` or t is unknown, or if such a cell, or one off the grid, is within
-/// the radius of the rover, one cell at least: then no path squeezes diagonally between two of them.
+/// A cell is lethal where t ≤ `lethal_below` or t is unknown, or if such a cell, or one off the grid, is
+/// within the radius of the rover, one cell at least: then no path squeezes diagonally between two of them.
 ///
 /// The arrays have a border of one lethal cell around the grid, so that every cell has eight neighbours.
 

@@ -5,17 +5,17 @@
 ///   w(v → u) = 5 c(v) straight, 7 c(v) diagonally
 ///   g(v)     = min over the neighbours u of w(v → u) + g(u),   g(goal) = 0
 ///
-/// What a cell costs counts when it is left, so that a changed cost changes the equation of that cell alone. A
-/// cell is *consistent* where its value g fulfils the equation with those of its neighbours; `r` is what the
-/// equation gives. compute() is Dijkstra's algorithm with a ring of buckets. repair() brings inconsistent cells in
-/// order, by the key
+/// What a cell costs counts when it is left, so that a changed cost changes the equation of that cell alone.
+/// A cell is *consistent* where its value g fulfils the equation with those of its neighbours; `r` is what
+/// the equation gives. compute() is Dijkstra's algorithm with a ring of buckets. repair() brings inconsistent
+/// cells in order, by the key
 ///
 ///   k(v) = min(g(v), r(v)) + h(v)
 ///
-/// h ≥ 0 is what it costs at least from the rover to v, so that only what may matter to the rover's path is brought
-/// in order; the others stay listed until they matter. Without a rover h = 0, and all are brought in order.
-/// Values are integers and have no other solution: after a repair all cells (without a rover), or those with
-/// k(v) ≤ g(rover), have those of compute() to the bit.
+/// h ≥ 0 is what it costs at least from the rover to v, so that only what may matter to the rover's path is
+/// brought in order; the others stay listed until they matter. Without a rover h = 0, and all are brought in
+/// order. Values are integers and have no other solution: after a repair all cells (without a rover), or
+/// those with k(v) ≤ g(rover), have those of compute() to the bit.
 
 #include <cstdint>
 #include <optional>
@@ -52,8 +52,8 @@ class FieldPlanner {
   std::optional<CellIndex> goal() const { return goal_; }
   /// Notes that the costs of these cells have changed.
   void note(const std::vector<CellIndex>& changed);
-  /// Brings the field in order after changes, as far as paths from `rover` need it, or all of it. There must be
-  /// a goal.
+  /// Brings the field in order after changes, as far as paths from `rover` need it, or all of it. There must
+  /// be a goal.
   void repair(std::optional<CellIndex> rover);
 
   /// Exact for the rover of the last repair and for its path to the goal.
@@ -63,7 +63,8 @@ class FieldPlanner {
   std::size_t pending() const { return pending_.size(); }
   const Statistics& statistics() const { return statistics_; }
 
-  /// Computes the whole field in `reference`, and counts the cells that differ from it of those that must not.
+  /// Computes the whole field in `reference`, and counts the cells that differ from it of those that must
+  /// not.
   std::size_t differences(FieldPlanner& reference) const;
 
   /// From a cell to the goal by the steps that cost least; empty where there is no path. Steps that cost the

@@ -1,15 +1,16 @@
 #pragma once
-/// What a straight way costs by what a rover feels on it: slope, slip and sinkage as it heads, water and wind.
+/// What a straight way costs by what a rover feels on it: slope, slip and sinkage as it heads, water and
+/// wind.
 ///
 ///   a metre costs 1 + w_slip max(s, 0) + w_cross tan β + w_sinkage z + w_water d + w_wind max(−u·e, 0)
 ///
-/// with the slip s and the drift tan β for the heading e, from the layers slip (up the steepest line), slip_downhill and
-/// slip_across, and f the cosine of the angle between the heading and uphill:
+/// with the slip s and the drift tan β for the heading e, from the layers slip (up the steepest line),
+/// slip_downhill and slip_across, and f the cosine of the angle between the heading and uphill:
 ///
 ///   s(f) = (s_up + s_down)/2 + f |f| (s_up − s_down)/2,   tan β = (1 − f²) slip_across
 ///
-/// which is exact for the law `light` of wheel_ground.hpp. z is the sinkage [m], d the depth of water [m], u the wind
-/// [m/s]. What CostGrid calls lethal has no cost.
+/// which is exact for the law `light` of wheel_ground.hpp. z is the sinkage [m], d the depth of water [m], u
+/// the wind [m/s]. What CostGrid calls lethal has no cost.
 
 #include <memory>
 #include <optional>
@@ -38,7 +39,8 @@ class HeadingCosts {
   HeadingCosts(std::shared_ptr<const CostGrid> grid, HeadingLayers layers, const HeadingWeights& weights);
 
   const CostGrid& grid() const { return *grid_; }
-  /// What a way costs, at least its length [m]; none if it meets a lethal cell. Samples are a cell apart at most.
+  /// What a way costs, at least its length [m]; none if it meets a lethal cell. Samples are a cell apart at
+  /// most.
   std::optional<double> line(const GridPoint& from, const GridPoint& to) const;
   std::optional<double> path(const GridPath& path) const;
   /// What a metre costs at a point for a heading of unit length; none where it is lethal.

@@ -1,10 +1,10 @@
 #pragma once
-/// Leads a rover to goals over changing ground: plans, follows, watches what remains of the path, gets free where the
-/// rover is stuck, and says why it ends. Without ROS and without a clock of its own: who calls act() tells the time.
-/// The same calls give the same commands.
+/// Leads a rover to goals over changing ground: plans, follows, watches what remains of the path, gets free
+/// where the rover is stuck, and says why it ends. Without ROS and without a clock of its own: who calls
+/// act() tells the time. The same calls give the same commands.
 ///
-/// Of the rover's conditions (rover_state.hpp) it heeds stuck and blocked (backs out, then goes ahead, in turns, and
-/// avoids the place), buried (waits for the wind), tipped, off_grid and no_terrain.
+/// Of the rover's conditions (rover_state.hpp) it heeds stuck and blocked (backs out, then goes ahead, in
+/// turns, and avoids the place), buried (waits for the wind), tipped, off_grid and no_terrain.
 
 #include <functional>
 #include <memory>
@@ -19,7 +19,8 @@
 
 namespace desert_sim {
 
-/// idle: no goal; driving, waiting and recovering: on the way; the others are ends, which last until the next goal.
+/// idle: no goal; driving, waiting and recovering: on the way; the others are ends, which last until the next
+/// goal.
 enum class NavigatorState : int {
   idle,
   driving,
@@ -72,7 +73,8 @@ class Navigator {
   void update(const GridFrame& frame, const CostGrid::Box& box, const float* traversability);
   const CostGrid* grid() const { return grid_.get(); }
   void set_forecast(const ForecastCosts& forecast);
-  /// Whom it asks for the layers of costs by heading (planner ompl), when it plans: of the grid's size, or empty.
+  /// Whom it asks for the layers of costs by heading (planner ompl), when it plans: of the grid's size, or
+  /// empty.
   using LayerSource = std::function<HeadingLayers(const GridFrame&)>;
   void set_layer_source(LayerSource source) { layer_source_ = std::move(source); }
 

@@ -143,8 +143,10 @@ OmplResult plan_with_ompl(const HeadingCosts& costs, const GridPoint& start, con
   to[1] = goal.y;
   setup.setStartAndGoalStates(from, to);
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(parameters.time_limit);
+  // Once an informed tree cannot find anything better it computes no more costs: its rounds count, too.
+  int rounds = 0;
   const ob::PlannerTerminationCondition enough([&] {
-    return objective->count() >= parameters.evaluations || std::chrono::steady_clock::now() >= end;
+    return objective->count() + ++rounds >= parameters.evaluations || std::chrono::steady_clock::now() >= end;
   });
   setup.solve(enough);
 

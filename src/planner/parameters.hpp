@@ -10,8 +10,8 @@
 
 namespace desert_sim {
 
-/// field: the cost to the goal from every cell, repaired as costs change; ompl: a free path by OMPL, with costs by
-/// heading; forecast: the earliest arrival over ground that changes as forecasts say.
+/// field: the cost to the goal from every cell, repaired as costs change; ompl: a free path by OMPL, with
+/// costs by heading; forecast: the earliest arrival over ground that changes as forecasts say.
 enum class PlannerKind : int { field, ompl, forecast };
 constexpr const char* planner_kinds[] = {"field", "ompl", "forecast"};
 
@@ -136,7 +136,7 @@ constexpr auto parameter_table(const PlannerParameters*) {
                 "How long it waits, buried, for the wind to uncover it."),
       parameter("ompl_method", &P::ompl_method, ompl_methods, "Which planner of OMPL."),
       parameter("ompl_evaluations", &P::ompl_evaluations, 100, 1e8, "1",
-                "Lines whose cost is computed for a path; the same number gives the same path."),
+                "Lines whose cost is computed for a path, and rounds of the method, at which it ends."),
       parameter("ompl_time", &P::ompl_time, 0.001, 1e6, "s", "Of wall time for a path at most."),
       parameter("ompl_seed", &P::ompl_seed, 1, 1e9, "1", "Of OMPL's random numbers."),
       parameter("slip_weight", &P::slip_weight, 0, 1000, "1", "ompl: cost of a metre by its slip."),

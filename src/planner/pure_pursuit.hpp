@@ -1,6 +1,6 @@
 #pragma once
-/// Follows a path by pure pursuit (Coulter 1992): the rover drives on the arc through the point of the path that is
-/// a lookahead L ahead. With that point at (x, y) in the rover's frame the arc's curvature is
+/// Follows a path by pure pursuit (Coulter 1992): the rover drives on the arc through the point of the path
+/// that is a lookahead L ahead. With that point at (x, y) in the rover's frame the arc's curvature is
 ///
 ///   κ = 2 y/(x² + y²)
 ///

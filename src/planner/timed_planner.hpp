@@ -2,15 +2,16 @@
 /// The earliest arrival at a goal over ground that changes as a forecast says: safe interval path planning
 /// (Phillips and Likhachev 2011) with durations that depend on time.
 ///
-/// The ground is known at moments. Between two of them a cell has the larger cost of both, and is lethal if it is in
-/// either; after the last one nothing changes any more. What is known of the ground now is the first moment. A step
-/// from a cell takes
+/// The ground is known at moments. Between two of them a cell has the larger cost of both, and is lethal if
+/// it is in either; after the last one nothing changes any more. What is known of the ground now is the first
+/// moment. A step from a cell takes
 ///
 ///   (1 or √2) cell size / speed · (1 + slowing · (c − 4)/(worst c − 4)),   c the cost of the cell
 ///
-/// and the rest of it goes on at the new cost where the cost changes on the way. So who departs later never arrives
-/// earlier, and the earliest arrival in each safe interval of a cell (in which it is passable without a break) is all
-/// that has to be known. A rover may wait anywhere for as long as the ground under it is passable.
+/// and the rest of it goes on at the new cost where the cost changes on the way. So who departs later never
+/// arrives earlier, and the earliest arrival in each safe interval of a cell (in which it is passable without
+/// a break) is all that has to be known. A rover may wait anywhere for as long as the ground under it is
+/// passable.
 
 #include <memory>
 #include <optional>
@@ -41,9 +42,9 @@ class TimedPlanner {
   /// Throws ConfigError for parameters out of range, and for costs whose frames or times do not fit together.
   TimedPlanner(TimedCosts costs, const TimedParameters& parameters);
 
-  /// From a cell, at the first moment, to another; empty where there is no way even with waiting. Ground about the
-  /// start that is passable now and lethal at the next moment counts as the worst passable one till then, so that a
-  /// rover can flee.
+  /// From a cell, at the first moment, to another; empty where there is no way even with waiting. Ground
+  /// about the start that is passable now and lethal at the next moment counts as the worst passable one till
+  /// then, so that a rover can flee.
   std::vector<TimedPoint> plan(CellIndex start, CellIndex goal);
   /// Cells and intervals that the last plan() has looked at.
   std::size_t expanded() const { return expanded_; }

@@ -1,4 +1,5 @@
-// The field of costs to a goal: against an independent Dijkstra, and repaired against computed anew, to the bit.
+// The field of costs to a goal: against an independent Dijkstra, and repaired against computed anew, to the
+// bit.
 #include "src/planner/field_planner.hpp"
 
 #include <queue>

@@ -101,6 +101,12 @@ class Interface(unittest.TestCase):
         self.assertEqual(page, text_of("config", "rover_parameters.md"),
                          "stale: desert_rover_node --describe > config/rover_parameters.md")
 
+    def test_page_of_parameters_of_planners(self):
+        page = subprocess.run([find_node("desert_sim", "desert_planner_node")[0], "--describe"], stdout=subprocess.PIPE,
+                              check=True, text=True).stdout
+        self.assertEqual(page, text_of("config", "planner_parameters.md"),
+                         "stale: desert_planner_node --describe > config/planner_parameters.md")
+
     def test_publishers_yaml_has_the_defaults(self):
         """It shows what the topics' parameters are: all of them, as they are without it."""
         page = text_of("config", "node_parameters.md")

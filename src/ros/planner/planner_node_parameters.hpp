@@ -74,7 +74,8 @@ struct PlannerSetup {
 /// Reads all private parameters. Throws ConfigError that lists all errors; an unknown parameter is one.
 PlannerSetup read_planner_setup(const ros::NodeHandle& private_node);
 
-/// The page in markdown: what `desert_planner_node --describe` prints, and config/planner_parameters.md holds.
+/// The page in markdown: what `desert_planner_node --describe` prints, and config/planner_parameters.md
+/// holds.
 std::string describe_planner_parameters();
 
 }  // namespace desert_sim

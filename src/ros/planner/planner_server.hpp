@@ -1,6 +1,6 @@
 #pragma once
-/// A planner as a node: goals by topic and action, path, status and commands. Everything but the reception of terrain
-/// and transforms happens on one thread.
+/// A planner as a node: goals by topic and action, path, status and commands. Everything but the reception of
+/// terrain and transforms happens on one thread.
 
 #include <actionlib/client/simple_action_client.h>
 #include <actionlib/server/simple_action_server.h>
@@ -31,8 +31,8 @@ namespace desert_sim {
 
 class PlannerServer {
  public:
-  /// Topics are below `node`, parameters, path and status below `private_node`. Throws ConfigError for input that is
-  /// refused.
+  /// Topics are below `node`, parameters, path and status below `private_node`. Throws ConfigError for input
+  /// that is refused.
   PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   ~PlannerServer();
 

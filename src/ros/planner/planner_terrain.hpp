@@ -1,6 +1,6 @@
 #pragma once
-/// The terrain that a planner plans on, as a TerrainClient has it: changes of traversability in order, and the newest
-/// maps of other layers.
+/// The terrain that a planner plans on, as a TerrainClient has it: changes of traversability in order, and
+/// the newest maps of other layers.
 
 #include <deque>
 #include <memory>
@@ -25,7 +25,8 @@ class PlannerTerrain {
   /// Frame of the terrain; empty before there is one.
   std::string frame() const;
   std::shared_ptr<const LayerMap> elevation() const { return client_->layer_map("elevation"); }
-  /// The newest maps for costs by heading; those that have not come or have another size than `frame` are empty.
+  /// The newest maps for costs by heading; those that have not come or have another size than `frame` are
+  /// empty.
   HeadingLayers layers(const GridFrame& frame) const;
 
  private:

@@ -1,0 +1,4 @@
+#pragma once
+/// Public header: paths of rovers over living terrain.
+
+#include "src/planner/field_planner.hpp"
