@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include "src/scenario/scenario_file.hpp"
+
 namespace desert_sim {
 
 bool is_bench_scene(const std::string& name) {
@@ -17,7 +19,7 @@ Scenario bench_scenario(const std::string& scene, int size, const Settings& sett
     Settings all = settings;
     all.push_back("grid.width=" + std::to_string(size));
     all.push_back("grid.height=" + std::to_string(size));
-    return load_scenario(scene, all);
+    return load_scenario(scenario_argument(scene), all);
   }
   const bool thick = scene == "B";
   std::ostringstream text;

@@ -8,6 +8,7 @@
 
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/scenario/scenario_file.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/session.hpp"
 #include "src/tools/drawing.hpp"
@@ -23,7 +24,8 @@ using namespace desert_sim;
 namespace {
 
 const char usage[] =
-    "usage: desert_run SCENARIO.yaml [options]\n"
+    "usage: desert_run SCENARIO [options]\n"
+    "  SCENARIO              a YAML file, or the name of an installed scenario, such as barchan\n"
     "  --steps N             steps to run (default: the scenario's run.steps); with --resume: the last step\n"
     "  --backend B           auto (default), cpu or cuda\n"
     "  --threads N           threads of the CPU backend\n"
@@ -105,7 +107,7 @@ Settings settings_of(const Options& o) {
 /// A session at the start of the scenario.
 std::unique_ptr<Session> begin_session(const Options& o, const Journal& journal, int threads) {
   if (o.positional().empty()) throw ConfigError("no scenario given (--help shows the usage)");
-  const Scenario scenario = load_scenario(o.positional()[0], settings_of(o));
+  const Scenario scenario = load_scenario(scenario_argument(o.positional()[0]), settings_of(o));
   auto session = std::make_unique<Session>(scenario, raster_loader(o.has("all-raster-formats")),
                                            o.text("backend", "auto"), threads, "", journal.undo_memory);
   if (o.has("replay")) session->require_journal_of_this_scenario(journal, o.text("replay", ""));
@@ -137,7 +139,8 @@ void require_no_input_replaced(const RunPlan& plan, const Journal& journal) {
       throw ConfigError("--checkpoint " + plan.checkpoint + ": would replace " + what + " (" + input +
                         "; allowed: another file)");
   };
-  for (const std::string& scenario : o.positional()) require_other(scenario, "the scenario");
+  for (const std::string& scenario : o.positional())
+    require_other(scenario_argument(scenario), "the scenario");
   if (!o.has("replay")) return;
   require_other(o.text("replay", ""), "the journal");
   if (o.has("resume")) require_other(o.text("resume", ""), "the checkpoint that the replay begins with");

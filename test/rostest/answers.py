@@ -7,12 +7,12 @@ import time
 import rospy
 import rostest
 from desert_sim.srv import EditTerrain, QueryTerrain
+from desert_sim.testing import PATIENCE
 from dynamic_reconfigure.msg import DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure, ReconfigureRequest
 from geometry_msgs.msg import Point
 from lifecycle import CORNER, Scenarios, wait_until
 from nav_msgs.msg import OccupancyGrid
-from patience import PATIENCE
 from std_srvs.srv import Trigger
 
 # A step of this takes many seconds on any machine: a thousand sweeps of four million cells.

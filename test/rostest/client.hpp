@@ -15,7 +15,7 @@
 
 namespace node_test {
 
-/// As in patience.py.
+/// As in desert_sim.testing of Python.
 inline double patience() {
   const char* factor = std::getenv("DESERT_PATIENCE");
   return factor ? std::strtod(factor, nullptr) : 1;

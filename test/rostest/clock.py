@@ -8,8 +8,8 @@ import rospy
 import rostest
 from desert_sim.msg import ElevationGrid, SimulationStatus
 from desert_sim.srv import QueryTerrain, Step
+from desert_sim.testing import PATIENCE
 from geometry_msgs.msg import Point, TransformStamped
-from patience import PATIENCE
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage

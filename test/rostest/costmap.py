@@ -6,11 +6,11 @@ import rospy
 import rostest
 from desert_sim.msg import SimulationStatus
 from desert_sim.srv import EditTerrain, EditTerrainRequest, Step
+from desert_sim.testing import PATIENCE
 from dynamic_reconfigure.client import Client
 from map_client import Listener, MapTest, Trigger, call
 from map_msgs.msg import OccupancyGridUpdate
 from nav_msgs.msg import OccupancyGrid
-from patience import PATIENCE
 from sensor_msgs.msg import Image
 
 

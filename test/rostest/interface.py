@@ -12,9 +12,8 @@ import rosservice
 import rostest
 import yaml
 from desert_sim.srv import GetSubmap
+from desert_sim.testing import PATIENCE, program
 from geometry_msgs.msg import Point
-from patience import PATIENCE
-from roslib.packages import find_node
 
 PACKAGE = rospkg.RosPack().get_path("desert_sim")
 NODE = "/desert_sim"
@@ -90,13 +89,13 @@ class Interface(unittest.TestCase):
         self.assertEqual(documented, {layer.name: layer.unit for layer in answer.map.layers})
 
     def test_page_of_parameters(self):
-        page = subprocess.run([find_node("desert_sim", "desert_sim_node")[0], "--describe"], stdout=subprocess.PIPE,
+        page = subprocess.run([program("desert_sim_node"), "--describe"], stdout=subprocess.PIPE,
                               check=True, text=True).stdout
         self.assertEqual(page, text_of("config", "node_parameters.md"),
                          "stale: desert_sim_node --describe > config/node_parameters.md")
 
     def test_page_of_parameters_of_rovers(self):
-        page = subprocess.run([find_node("desert_sim", "desert_rover_node")[0], "--describe"], stdout=subprocess.PIPE,
+        page = subprocess.run([program("desert_rover_node"), "--describe"], stdout=subprocess.PIPE,
                               check=True, text=True).stdout
         self.assertEqual(page, text_of("config", "rover_parameters.md"),
                          "stale: desert_rover_node --describe > config/rover_parameters.md")

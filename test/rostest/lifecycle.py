@@ -17,67 +17,14 @@ import rostest
 from desert_sim.msg import ElevationGrid, SimulationStatus, WindScheduleSegment
 from desert_sim.srv import EditTerrain, EditTerrainRequest, LoadCheckpoint, SaveCheckpoint
 from desert_sim.srv import SetWind, SetWindSchedule, SetWindScheduleRequest, Step
+from desert_sim.testing import PATIENCE, Node, program, wait_until
 from geometry_msgs.msg import Point
-from patience import PATIENCE
-from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image
 from std_srvs.srv import Trigger
 
 PACKAGE = rospkg.RosPack().get_path("desert_sim")
 CORNER, OASIS = (os.path.join(PACKAGE, "test", "rostest", "scenarios", name) for name in ("corner.yaml", "oasis.yaml"))
-
-
-def program(name):
-    found = find_node("desert_sim", name)
-    assert found, "no program %s" % name
-    return found[0]
-
-
-def wait_until(happened, what, seconds=20):
-    end = time.monotonic() + seconds * PATIENCE
-    while not happened():
-        assert time.monotonic() < end, what
-        time.sleep(0.01)
-
-
-class Node:
-    """A desert_sim_node of its own; `private` are its private parameters, `environment` is added to the test's."""
-
-    def __init__(self, name, private, preexec=None, environment=None):
-        self.name = name
-        rospy.set_param("/" + name, private)  # all there was before is gone
-        self.process = subprocess.Popen(
-            [program("desert_sim_node"), "__name:=" + name], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            text=True, preexec_fn=preexec, env=dict(os.environ, **(environment or {})))
-        self.output = ""
-        self.reader = threading.Thread(target=self.read)
-        self.reader.start()
-
-    def read(self):
-        for line in self.process.stdout:
-            self.output += line
-
-    def call(self, service, kind, *arguments, **fields):
-        rospy.wait_for_service("/%s/%s" % (self.name, service), 20 * PATIENCE)
-        return rospy.ServiceProxy("/%s/%s" % (self.name, service), kind)(*arguments, **fields)
-
-    def latest(self, topic, kind, timeout=10):
-        return rospy.wait_for_message("/%s/%s" % (self.name, topic), kind, timeout * PATIENCE)
-
-    def wait(self, timeout=20):
-        """Exit status and all output."""
-        status = self.process.wait(timeout * PATIENCE)
-        self.reader.join()
-        self.process.stdout.close()
-        return status, self.output
-
-    def end(self, with_signal=signal.SIGINT):
-        """Ends it; exit status and the seconds it took."""
-        start = time.monotonic()
-        self.process.send_signal(with_signal)
-        status, _ = self.wait()
-        return status, time.monotonic() - start
 
 
 class Scenarios(unittest.TestCase):
@@ -89,7 +36,7 @@ class Scenarios(unittest.TestCase):
 
     def tearDown(self):
         for node in self.nodes:
-            if node.process.poll() is None:
+            if node.running:
                 node.process.kill()
                 node.wait()
         shutil.rmtree(self.folder)

@@ -7,8 +7,8 @@ import unittest
 
 import genpy.dynamic
 import rospy
+from desert_sim.testing import PATIENCE
 from geometry_msgs.msg import Pose
-from patience import PATIENCE
 from std_msgs.msg import Float32MultiArray, Header
 from std_srvs.srv import Trigger
 

@@ -1,18 +1,13 @@
 #!/usr/bin/env python3
 """A master that dies and comes back, while a node runs. The master is this test's own, not rostest's."""
-import contextlib
-import os
-import random
 import signal
-import socket
-import subprocess
 import time
 
-import rosgraph
 import rospy
 import rostest
 from desert_sim.msg import ElevationUpdate, SimulationStatus
 from desert_sim.srv import QueryTerrain, Step
+from desert_sim.testing import Master as OwnMaster
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Point
 from lifecycle import CORNER, Scenarios, wait_until
@@ -20,30 +15,6 @@ from resume import autosaves
 from std_srvs.srv import Trigger
 
 SHUTDOWN = 5  # [s]; what it took is printed: under one on a machine that does nothing else
-
-
-def free_port():
-    """A port below those that the kernel gives to connections of others, which could take it while the master is away."""
-    for port in random.sample(range(20000, 30000), 100):
-        with contextlib.closing(socket.socket()) as probe, contextlib.suppress(OSError):
-            probe.bind(("localhost", port))
-            return port
-    raise OSError("none of 100 ports is free")
-
-
-class OwnMaster:
-    def __init__(self, port):
-        self.port = port
-        self.start()
-
-    def start(self):
-        self.process = subprocess.Popen(["rosmaster", "--core", "-p", str(self.port)], stdout=subprocess.DEVNULL,
-                                        stderr=subprocess.DEVNULL)
-        wait_until(rosgraph.is_master_online, "no master")
-
-    def kill(self):
-        self.process.kill()
-        self.process.wait()
 
 
 class Master(Scenarios):
@@ -143,11 +114,9 @@ class Master(Scenarios):
 
 
 if __name__ == "__main__":
-    os.environ["ROS_MASTER_URI"] = "http://localhost:%d" % free_port()
-    MASTER = OwnMaster(int(os.environ["ROS_MASTER_URI"].rpartition(":")[2]))
+    MASTER = OwnMaster()
     try:
         rospy.init_node("master_test", disable_signals=True)
         rostest.rosrun("desert_sim", "master", Master)
     finally:
-        MASTER.process.kill()
-        MASTER.process.wait()
+        MASTER.kill()

@@ -12,7 +12,7 @@ import unittest
 import rospy
 import rostest
 import yaml
-from patience import PATIENCE
+from desert_sim.testing import PATIENCE
 
 TIMEOUT = 30 * PATIENCE  # [s] a command; most take one
 ENVIRONMENT = dict(os.environ, PYTHONUNBUFFERED="1")

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Keyframes and updates, put together as doc/ros_interface.md shows for Python."""
+"""Keyframes and updates as the node sends them, put together by desert_sim.layer_assembler without a client."""
 import time
 
-import numpy
 import rospy
 import rostest
+from desert_sim.layer_assembler import NONE, LayerAssembler
+from desert_sim.layer_messages import map_of
 from desert_sim.msg import ElevationGrid, ElevationUpdate, LayerGrid, LayerUpdate
 from desert_sim.srv import EditTerrain, EditTerrainRequest, Step
 from map_client import Listener, MapTest, call
@@ -13,34 +14,12 @@ from std_msgs.msg import Empty, String
 THRESHOLD = 0.01
 
 
-def cells_of(keyframe):
-    values = keyframe.data if hasattr(keyframe, "layer") else keyframe.elevation
-    return numpy.array(values, numpy.float32).reshape(keyframe.height, keyframe.width)
-
-
-def write(update, held):
-    """Over `held`, the cells of the keyframe and of all updates since: float32, height x width."""
-    for tile in update.tiles:
-        cells = held[tile.y:tile.y + tile.height, tile.x:tile.x + tile.width]
-        mask = numpy.ones(cells.shape, bool)
-        if tile.changed:
-            mask = numpy.unpackbits(numpy.frombuffer(tile.changed, numpy.uint8), count=cells.size)
-            mask = mask.astype(bool).reshape(cells.shape)
-        if tile.changes:
-            changes = numpy.array(tile.changes, numpy.int8)
-            if tile.bits == 4:
-                changes = numpy.stack((changes >> 4, (changes << 4) >> 4), 1).reshape(-1)[:mask.sum()]
-            cells[mask] = cells[mask].astype(float) + changes * float(tile.resolution)
-        else:
-            cells[mask] = tile.data
-
-
 class Updates(MapTest):
-    def test_python_puts_those_of_the_elevation_together(self):
+    def test_those_of_the_elevation_add_up(self):
         asks = rospy.Publisher("/desert_sim/request_keyframe", Empty, queue_size=1)
         self.expect_same("elevation", ElevationGrid, ElevationUpdate, asks.publish)
 
-    def test_python_puts_those_of_a_layer_together(self):
+    def test_those_of_a_layer_add_up(self):
         asks = rospy.Publisher("/desert_sim/layers/request_keyframe", String, queue_size=1)
         self.expect_same("layers/sand_depth", LayerGrid, LayerUpdate, lambda: asks.publish("sand_depth"))
 
@@ -50,7 +29,6 @@ class Updates(MapTest):
             keyframes.first()
             time.sleep(1)  # both are subscribed: the last keyframe is the one that updates build on
             base = keyframes.messages[-1]
-            held = cells_of(base)
             for turn in range(4):
                 brush = EditTerrainRequest(layer="sand", shape="circle", merge="add", radius=9, value=0.02 + 2 * turn)
                 brush.center.x, brush.center.y = 40 + 20 * turn, 20
@@ -60,15 +38,18 @@ class Updates(MapTest):
             self.assertEqual(last.keyframe, base.keyframe, "steps send no keyframe to those who take updates")
             mine = [u for u in updates.messages if u.keyframe == base.keyframe]
             self.assertEqual([u.sequence for u in mine], list(range(1, len(mine) + 1)))
+            assembler = LayerAssembler()
+            assembler.take_keyframe(base)
             for update in mine:
-                write(update, held)
+                assembler.take_update(update)
+            self.assertEqual((assembler.need(), assembler.counts.updates), (NONE, len(mine)))
             tiles = [tile for update in mine for tile in update.tiles]
             self.assertTrue(any(tile.changes for tile in tiles) and any(tile.data for tile in tiles), "both ways are used")
             request_keyframe()
-            now = keyframes.wait_for(lambda k: k.keyframe > base.keyframe, "a keyframe, because it was asked for")
+            now = map_of(keyframes.wait_for(lambda k: k.keyframe > base.keyframe, "a keyframe, because it was asked for"))
         self.assertEqual(now.step, step)
-        self.assertLessEqual(abs(cells_of(now).astype(float) - held).max(), THRESHOLD + 1e-6)
-        self.assertGreater(abs(cells_of(now).astype(float) - cells_of(base)).max(), 1, "much has changed")
+        self.assertLessEqual(abs(now.values.astype(float) - assembler.map.values).max(), THRESHOLD + 1e-6)
+        self.assertGreater(abs(now.values.astype(float) - map_of(base).values).max(), 1, "much has changed")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@
 
 #include "src/core/log.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
-#include "src/ros/node/scenario_file.hpp"
+#include "src/scenario/scenario_file.hpp"
 
 namespace desert_sim {
 

@@ -8,7 +8,7 @@
 #include "src/core/parameter_page.hpp"
 #include "src/ros/node/frames.hpp"
 #include "src/ros/node/private_parameters.hpp"
-#include "src/ros/node/scenario_file.hpp"
+#include "src/scenario/scenario_file.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -44,10 +44,19 @@ YAML::Node extract_sections(const YAML::Node& root, const std::set<std::string>&
   return scenario;
 }
 
-Settings read_settings(const YAML::Node& node, ValidationErrors& errors) {
+/// Takes a list, one setting, or a list as text, as command lines give it: _settings:='[wind.speed=7,
+/// seed=3]'.
+Settings read_settings(const YAML::Node& given, ValidationErrors& errors) {
+  if (!given.IsDefined() || given.IsNull() || (given.IsScalar() && given.Scalar().empty())) return {};
+  if (given.IsScalar() && given.Scalar().front() != '[') return {given.Scalar()};
+  YAML::Node node = given;
   Settings settings;
-  if (!node.IsDefined() || node.IsNull() || (node.IsScalar() && node.Scalar().empty())) return settings;
-  if (node.IsScalar()) return {node.Scalar()};
+  try {
+    if (given.IsScalar()) node.reset(YAML::Load(given.Scalar()));
+  } catch (const YAML::Exception& e) {
+    errors.add("settings", yaml::node_text(given) + " is not a list: " + e.msg);
+    return settings;
+  }
   if (!node.IsSequence())
     errors.add("settings", yaml::node_text(node) + " is given where a list of path=value is expected");
   for (std::size_t n = 0; node.IsSequence() && n < node.size(); ++n) {

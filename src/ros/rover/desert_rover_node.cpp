@@ -18,10 +18,10 @@
 #include "src/core/error.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
 #include "src/ros/conversion/messages.hpp"
-#include "src/ros/node/scenario_file.hpp"
 #include "src/ros/rover/rover_server.hpp"
 #include "src/rover/simulated_ground.hpp"
 #include "src/rover/urdf.hpp"
+#include "src/scenario/scenario_file.hpp"
 
 namespace {
 

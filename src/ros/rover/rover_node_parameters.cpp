@@ -10,8 +10,8 @@
 #include "src/core/parameter_page.hpp"
 #include "src/ros/node/frames.hpp"
 #include "src/ros/node/private_parameters.hpp"
-#include "src/ros/node/scenario_file.hpp"
 #include "src/rover/rover_class.hpp"
+#include "src/scenario/scenario_file.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {

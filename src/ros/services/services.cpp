@@ -6,11 +6,11 @@
 
 #include "src/core/quoted.hpp"
 #include "src/ros/conversion/messages.hpp"
-#include "src/ros/node/scenario_file.hpp"
 #include "src/ros/services/answer.hpp"
 #include "src/ros/services/requests.hpp"
 #include "src/ros/services/terrain_formats.hpp"
 #include "src/scenario/band_terrain.hpp"
+#include "src/scenario/scenario_file.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "src/ros/node/scenario_file.hpp"
+#include "src/scenario/scenario_file.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -54,7 +54,7 @@ bool ends_with(const std::string& text, const std::string& ending) {
 
 /// The folder of desert_sim among the packages of ROS_PACKAGE_PATH, found as rospack does: entries in turn,
 /// the folders below them, but not those inside packages. Empty if it is not there.
-std::string package_folder() {
+std::string find_in_package_path() {
   const char* path = std::getenv("ROS_PACKAGE_PATH");
   std::stringstream entries(path ? path : "");
   for (std::string entry; std::getline(entries, entry, ':');)
@@ -63,11 +63,31 @@ std::string package_folder() {
   return "";
 }
 
+/// share/desert_sim of the prefix in which this program is installed, as bin/NAME or lib/desert_sim/NAME;
+/// empty if it is not installed.
+std::string find_beside_program() {
+  std::error_code error;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const fs::path& prefix : {folder.parent_path(), folder.parent_path().parent_path()}) {
+    const fs::path share = prefix / "share" / "desert_sim";
+    if (!error && fs::is_directory(share / "config" / "scenarios", error)) return share.string();
+  }
+  return "";
+}
+
 }  // namespace
+
+const std::string& package_folder() {
+  static const std::string folder = [] {
+    const std::string found = find_in_package_path();
+    return found.empty() ? find_beside_program() : found;
+  }();
+  return folder;
+}
 
 const std::string& installed_scenario_folder() {
   static const std::string folder = [] {
-    const std::string package = package_folder();
+    const std::string& package = package_folder();
     std::error_code error;
     const fs::path found =
         package.empty() ? fs::path() : fs::canonical(fs::path(package) / "config" / "scenarios", error);
@@ -96,12 +116,19 @@ std::string scenario_file(const std::string& name) {
   if (name.find('/') != std::string::npos || ends_with(name, ".yaml") || ends_with(name, ".yml")) return name;
   if (const std::string file = installed_scenario_file(name); !file.empty()) return file;
   if (installed_scenario_folder().empty())
-    throw ConfigError("~scenario: '" + name +
-                      "' is not a path, and the package desert_sim is not in ROS_PACKAGE_PATH");
+    throw ConfigError(
+        "scenario '" + name +
+        "' is not a path, and the package desert_sim is not in ROS_PACKAGE_PATH (setup.bash of its "
+        "workspace puts it there)");
   std::string all;
   for (const std::string& one : installed_scenarios()) all += (all.empty() ? "" : ", ") + one;
-  throw ConfigError("~scenario: no scenario '" + name + "' exists in " + installed_scenario_folder() +
+  throw ConfigError("no scenario '" + name + "' exists in " + installed_scenario_folder() +
                     " (known: " + all + ")");
+}
+
+std::string scenario_argument(const std::string& argument) {
+  std::error_code error;
+  return fs::is_regular_file(argument, error) ? argument : scenario_file(argument);
 }
 
 }  // namespace desert_sim

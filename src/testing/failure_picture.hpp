@@ -1,0 +1,26 @@
+#pragma once
+/// A picture of what a test has found.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/client/layer_map.hpp"
+#include "src/testing/paths.hpp"
+
+namespace desert_sim::test {
+
+struct FailurePicture {
+  std::shared_ptr<const LayerMap> elevation;
+  std::vector<std::int8_t> costs;         ///< of each cell, as in ~costmap: lethal ones are tinted red
+  std::vector<Point> way;                 ///< of the rover, in white
+  std::vector<std::vector<Point>> paths;  ///< in blue
+  std::optional<Pose> rover;              ///< a red arrow
+  std::optional<Point> goal;              ///< a green cross
+};
+
+/// Writes it as a PNG file, north up. Throws ConfigError or WriteError that names the file.
+void write_failure_picture(const std::string& path, const FailurePicture& picture);
+
+}  // namespace desert_sim::test

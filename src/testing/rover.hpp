@@ -1,0 +1,46 @@
+#pragma once
+/// A rover of desert_rover_node that a test commands and watches.
+
+#include <desert_sim/RoverStatus.h>
+#include <geometry_msgs/Twist.h>
+#include <nav_msgs/Odometry.h>
+
+#include <string>
+
+#include "src/testing/inbox.hpp"
+#include "src/testing/paths.hpp"
+
+namespace desert_sim::test {
+
+class Rover {
+ public:
+  /// `name`: namespace of the rover's topics.
+  Rover(ros::NodeHandle& node, const std::string& name);
+
+  /// Publishes one command on cmd_vel: ahead [m/s], and counter-clockwise [rad/s]. It holds for half a second
+  /// of the rover's time.
+  void drive(double forward, double yaw_rate = 0);
+  /// The last true pose. Throws Error if there is none within 20 s.
+  Pose pose() const;
+  /// In the plane [m].
+  double distance_to(const Point& p) const;
+  /// The last one. Throws Error if there is none within 20 s.
+  RoverStatus status() const;
+  /// Waits for a pose of this ROS time or a later one; whether it came. In lockstep poses have the stamps of
+  /// the terrain's states.
+  bool wait_for_stamp(const ros::Time& stamp, double seconds) const;
+
+  /// Name of its node.
+  const std::string& node() const { return node_; }
+  /// The commands that it was given, by whom ever.
+  const Inbox<geometry_msgs::Twist>& commands() const { return commands_; }
+
+ private:
+  std::string name_, node_;
+  ros::Publisher publisher_;
+  Inbox<geometry_msgs::Twist> commands_;
+  Inbox<nav_msgs::Odometry> ground_truth_;
+  Inbox<RoverStatus> status_;
+};
+
+}  // namespace desert_sim::test
