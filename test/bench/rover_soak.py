@@ -178,7 +178,7 @@ class Soak:
                 median([rover.memory[-1] for rover in self.rovers]) / 2**20, 100 * median(cpu[1:]),
                 (sum(rover.poses for rover in self.rovers) - poses) / took / self.count), flush=True)
             self.rovers[part % max(1, self.count // 2)].kill()  # half of them live through all
-            time.sleep(5)
+            time.sleep(min(5, 6 * self.minutes))
         after = live.status()
         seconds = (after.header.stamp - before.header.stamp).to_sec()
         print("%d steps, %.2f a second (wanted: %.2f)" % (after.step - before.step, (after.step - before.step) / seconds,

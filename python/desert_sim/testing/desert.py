@@ -250,8 +250,16 @@ class Desert:
 
     # ---- pictures
 
+    def show_path(self, topic):
+        """From now on pictures show the last nav_msgs/Path of this topic, too."""
+        self._inbox(topic)
+
     def write_picture(self, path, goal=None, lines=()):
-        """The terrain as it is now with costs, the rover's way, and the last paths that were expected, as a picture file."""
+        """picture() as a file."""
+        self.picture(goal, lines).write(path)
+
+    def picture(self, goal=None, lines=()):
+        """A Picture of the terrain as it is now with costs, the rover's way, and the last paths that were expected."""
         ground = self.terrain.map
         west, east, south, north = ground.extent
         try:
@@ -270,7 +278,7 @@ class Desert:
         if self._way:
             picture.arrow(self._way[-1].x, self._way[-1].y, self._way[-1].yaw, RED)
         picture.text(["step %d" % ground.step, *lines])
-        picture.write(path)
+        return picture
 
     def _write_picture(self, what, goal=None, lines=()):
         os.makedirs(self._pictures, exist_ok=True)

@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""A rover crosses a desert whose dunes march over its way.
+
+Without --live: desert, rover and planner without a window, in lockstep, faster than time passes. Prints a line every 20 s
+of the rover's time, and in the end what came of it; leaves a picture and a film. Exit status 1, with the reason, if the
+rover did not arrive.
+--live: sets goals to the planner of a desert that runs (launch/demo_rover.launch), back and forth.
+"""
+import argparse
+import math
+import random
+import subprocess
+import sys
+import threading
+
+import rospy
+from desert_sim.msg import PlannerStatus
+from desert_sim.testing import Desert, Node
+from geometry_msgs.msg import PoseStamped
+
+SCENARIO = "rover_barchans"
+STEP = 0.2  # of the rover's time [s]
+FRAMES = 10  # of the film a second, each STEPS_A_FRAME steps
+STEPS_A_FRAME = 10
+ENDS = (PlannerStatus.ARRIVED, PlannerStatus.NO_PATH, PlannerStatus.STUCK, PlannerStatus.BURIED, PlannerStatus.TIPPED,
+        PlannerStatus.TIMED_OUT, PlannerStatus.CANCELLED)
+
+
+def course(seed):
+    """Start and goal [m]: from one side of the biggest barchan to the other, over the ground that it moves to."""
+    draw = random.Random(seed)
+    return (draw.uniform(88, 98), 44.0), (draw.uniform(88, 98), 116.0)
+
+
+class Planner:
+    """The planner's last status, and the way of the goal."""
+
+    def __init__(self, name):
+        self.name, self.changed, self.status = name, threading.Condition(), None
+        self.goals = rospy.Publisher("/move_base_simple/goal", PoseStamped, queue_size=1, latch=True)
+        rospy.Subscriber(name + "/status", PlannerStatus, self.take, queue_size=100, tcp_nodelay=True)
+
+    def take(self, status):
+        with self.changed:
+            self.status = status
+            self.changed.notify_all()
+
+    def wait(self, happened, what, seconds=60):
+        with self.changed:
+            if not self.changed.wait_for(lambda: self.status is not None and happened(self.status), seconds):
+                sys.exit("demo: the planner does not answer: %s" % what)
+
+    def set_goal(self, frame, x, y):
+        goal = PoseStamped()
+        goal.header.frame_id = frame
+        goal.pose.position.x, goal.pose.position.y, goal.pose.orientation.w = x, y, 1
+        self.goals.publish(goal)
+        self.wait(lambda s: math.hypot(s.goal.pose.position.x - x, s.goal.pose.position.y - y) < 1e-3 or s.refusal,
+                  "no goal is set")
+        if self.status.refusal:
+            sys.exit("demo: the goal was refused: " + self.status.refusal)
+
+
+class Film:
+    """Pictures of one size to an .mp4, by ffmpeg."""
+
+    def __init__(self, path):
+        self.path, self.process = path, None
+
+    def add(self, image):
+        image = image[:image.shape[0] // 2 * 2, :image.shape[1] // 2 * 2]
+        if self.process is None:
+            self.process = subprocess.Popen(
+                ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "bgr24", "-s",
+                 "%dx%d" % (image.shape[1], image.shape[0]), "-r", str(FRAMES), "-i", "-", "-pix_fmt", "yuv420p", self.path],
+                stdin=subprocess.PIPE)
+        self.process.stdin.write(image.tobytes())
+
+    def close(self):
+        if self.process is not None:
+            self.process.stdin.close()
+            if self.process.wait() != 0:
+                sys.exit("demo: ffmpeg could not write " + self.path)
+
+
+class Trip:
+    """One rover from start to goal, step by step."""
+
+    def __init__(self, options, desert, planner, goal):
+        self.options, self.desert, self.planner, self.goal = options, desert, planner, goal
+        self.time, self.slips, self.length = 0.0, [], 0.0
+        desert.show_path(planner.name + "/path")
+
+    def step(self):
+        before = self.desert.rover.pose()
+        reached = self.desert.step().step
+        self.planner.wait(lambda s: s.terrain_step >= reached, "it does not act on step %d" % reached)
+        self.time += STEP
+        now = self.desert.rover.pose()
+        self.length += math.hypot(now.x - before.x, now.y - before.y)
+        status = self.desert.rover.status()
+        if status.state == "driving":
+            self.slips.append(status.mean_slip)
+
+    def line(self):
+        now, status = self.desert.rover.pose(), self.planner.status
+        return "%5.0f s  (%6.2f, %6.2f) m  %-10s %5.1f m to go  %d replans%s" % (
+            self.time, now.x, now.y, status.state, status.remaining, status.replans,
+            ": " + status.last_replan if status.replans else "")
+
+    def picture(self):
+        status = self.planner.status
+        return self.desert.picture(self.goal, ["%.0f s: %s, %.0f m made, %d replans" % (
+            self.time, status.state, self.length, status.replans)])
+
+    def run(self, film):
+        steps = int(self.options.seconds / STEP)
+        for n in range(steps):
+            self.step()
+            if n % STEPS_A_FRAME == 0:
+                film.add(self.picture().image)
+            if n % int(20 / STEP) == 0:
+                print(self.line(), flush=True)
+            if self.planner.status.state in ENDS:
+                break
+        film.add(self.picture().image)
+
+    def report(self):
+        """Exit status."""
+        status, rover = self.planner.status, self.desert.rover.status()
+        print("%s after %.0f s: %.1f m made, %d replans%s, %d recoveries, mean slip %.2f; rover %s%s" % (
+            status.state, self.time, self.length, status.replans,
+            " (the last one: %s)" % status.last_replan if status.replans else "", status.recoveries,
+            sum(self.slips) / max(1, len(self.slips)), rover.state, ": " + rover.reason if rover.reason else ""))
+        if status.state == PlannerStatus.ARRIVED:
+            return 0
+        print("demo: the rover did not arrive: %s" % (status.reason or "its time is over"), file=sys.stderr)
+        return 1
+
+
+def run_headless(options):
+    start, goal = course(options.seed)
+    settings = ["run.time_step=%g" % (STEP * 0.045)]
+    parameters = {"backend": options.backend, "threads": 0, "frame_id": "map"}
+    with Desert(SCENARIO, rover=(*start, 90.0), settings=settings, seconds_per_step=STEP, parameters=parameters,
+                rover_parameters={"rover": {"seed": options.seed}}) as desert:
+        planner = Planner("/rover/desert_planner")
+        node = Node(planner.name, {
+            "clock": "lockstep", "seconds_per_sim_second": 1 / 0.045, "planner": options.planner, "tf_prefix": "rover",
+            "terrain_node": "/desert_sim", "rover_node": "desert_rover"},
+            executable="desert_planner_node", arguments=["move_base_simple/goal:=/move_base_simple/goal"])
+        film = Film(options.film)
+        try:
+            planner.wait(lambda s: s.header.frame_id, "it has no terrain")
+            planner.set_goal("map", *goal)
+            trip = Trip(options, desert, planner, goal)
+            trip.run(film)
+            status = trip.report()
+            trip.picture().write(options.picture)
+            print("picture: %s, film: %s" % (options.picture, options.film))
+        finally:
+            film.close()
+            node.close()
+    return status
+
+
+def run_live(options):
+    rospy.init_node("demo_rover", disable_signals=True)
+    planner = Planner("/rover/desert_planner")
+    planner.wait(lambda s: s.header.frame_id, "it has no terrain", 120)
+    ends = course(options.seed)
+    n = 1
+    while not rospy.is_shutdown():
+        planner.set_goal(planner.status.header.frame_id, *ends[n % 2])
+        planner.wait(lambda s: s.state not in ENDS, "it does not start")
+        while planner.status.state not in ENDS and not rospy.is_shutdown():
+            rospy.sleep(2)
+            s = planner.status
+            print("%-10s %5.1f m to go  %d replans  %s" % (s.state, s.remaining, s.replans, s.reason), flush=True)
+        rospy.sleep(3)
+        n += 1
+    return 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--live", action="store_true")
+    parser.add_argument("--seed", type=int, default=1, help="of the course and the rover's noise")
+    parser.add_argument("--seconds", type=float, default=900, help="of the rover's time, at most")
+    parser.add_argument("--planner", choices=("field", "ompl", "forecast"), default="field")
+    parser.add_argument("--backend", choices=("auto", "cpu", "cuda"), default="auto")
+    parser.add_argument("--picture", default="desert_demo.png")
+    parser.add_argument("--film", default="desert_demo.mp4")
+    options = parser.parse_args(rospy.myargv()[1:])
+    return run_live(options) if options.live else run_headless(options)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)
