@@ -1,6 +1,7 @@
 #include "src/scenario/gusts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "kernels/field/draws.hpp"
 #include "kernels/field/random.hpp"
@@ -15,12 +16,15 @@ wind::Vector Gusts::around(wind::Vector regime, double time) const {
   // Roses draw with the same purpose, and with 0 where a member has its number.
   const RandomWords draw = random_words(seed, Purpose::wind_rose, static_cast<std::uint32_t>(gust),
                                         static_cast<std::uint32_t>(gust >> 32), member);
-  double speed = 0, direction_deg = 0;
-  speed_and_direction(regime, speed, direction_deg);
-  const double gusty =
-                   speed * (1 + gust_speed * static_cast<double>(normal_draw(draw.word[0], draw.word[1]))),
-               turned = gust_direction_deg * static_cast<double>(normal_draw(draw.word[2], draw.word[3]));
-  return wind_vector(direction_deg + turned, std::clamp(gusty, 0.0, std::max(speed, highest_speed)));
+  const double speed = std::hypot(static_cast<double>(regime.x), static_cast<double>(regime.y)),
+               most = std::max(1.0, highest_speed / speed),
+               share = std::clamp(
+                   1 + gust_speed * static_cast<double>(normal_draw(draw.word[0], draw.word[1])), 0.0, most);
+  // A rotation, because directions as angles would round.
+  const wind::Vector turn =
+      unit_vector(gust_direction_deg * static_cast<double>(normal_draw(draw.word[2], draw.word[3])));
+  return {static_cast<float>(share * (regime.x * turn.x - regime.y * turn.y)),
+          static_cast<float>(share * (regime.x * turn.y + regime.y * turn.x))};
 }
 
 }  // namespace desert_sim

@@ -28,7 +28,8 @@ static_assert(table_is_complete<GustParameters>());
 
 /// While the n-th gust lasts, the wind has the speed v (1 + s Z₁), between 0 and the highest speed that a
 /// regime may have (or v, if that is higher), and the direction d + σ Z₂. v and d are those of the regime, s
-/// and σ the deviations of the table, and Z₁ and Z₂ normal draws of (seed, member, n) alone.
+/// and σ the deviations of the table, and Z₁ and Z₂ normal draws of (seed, member, n) alone. Without
+/// deviations it is the regime's wind, to the bit.
 struct Gusts : GustParameters {
   std::uint32_t member = 1;  ///< of the ensemble, from 1 on
   double start_time = 0;     ///< simulated time at which the first gust begins [s]

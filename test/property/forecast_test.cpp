@@ -52,6 +52,7 @@ class Forecasts : public test::OnBackend {
   static std::vector<std::int8_t> costs(Simulation& s) {
     CostQuery query;
     query.whole = true;
+    s.forget_costs();  // as a new subscriber
     std::vector<std::int8_t> all(static_cast<std::size_t>(s.terrain().grid().cells()));
     s.begin_costs(query).whole.get()->write_to(all, s.terrain().grid().width);
     return all;
@@ -71,14 +72,14 @@ TEST_P(Forecasts, AreWhatTheLiveRunComesTo) {
 }
 
 TEST_P(Forecasts, GoOnInTheMiddleOfASecondOfARampAndOfATimeline) {
-  const auto live = simulation(dunes +
-                               "run: {time_step: 0.3, acceleration: 0.6, timeline: [{time: 3, set: "
-                               "[run.time_step=0.07]}, {time: 4, set: "
-                               "[wind.speed=9, run.acceleration=1.4], ramp: 2}]}\n");
+  const auto live = simulation(
+      dunes +
+      "run: {time_step: 0.3, acceleration: 0.6, timeline: [{time: 3, set: {run.time_step: 0.07}}, {time: 4, "
+      "set: {wind.speed: 9, run.acceleration: 1.4}, ramp: 2}]}\n");
   live->apply(command::SetWind{70, 8, 5});
   test::run(*live, 7);
   const ForecastMaps f = forecast(*live, options(6, 4, 0));
-  EXPECT_DOUBLE_EQ(f.seconds_per_sim_second, 1 / 0.6F);
+  EXPECT_DOUBLE_EQ(f.seconds_per_sim_second, 1 / static_cast<double>(0.6F));
   EXPECT_GT(f.moments.back().step, live->steps() + 30) << "steps become shorter";
   expect_of_live_run(f, *live, "timeline");
 }

@@ -33,9 +33,12 @@ Gusts gusts(double speed, double direction_deg, std::uint32_t member = 1) {
 }
 
 TEST(Gusts, WithoutDeviationsAreTheRegime) {
-  const Polar p = polar(gusts(0, 0).around(wind_vector(30, 5), 123));
-  EXPECT_NEAR(p.speed, 5, 1e-5);
-  EXPECT_NEAR(p.direction_deg, 30, 1e-4);
+  const wind::Vector regime = wind_vector(30, 5), gusty = gusts(0, 0).around(regime, 123);
+  EXPECT_EQ(gusty.x, regime.x);
+  EXPECT_EQ(gusty.y, regime.y);
+  const wind::Vector calm = gusts(1, 90).around({0, 0}, 123);
+  EXPECT_EQ(calm.x, 0);
+  EXPECT_EQ(calm.y, 0);
 }
 
 TEST(Gusts, HaveTheMeansAndDeviationsThatAreAskedFor) {

@@ -75,6 +75,7 @@ std::vector<std::int8_t> ForecastRun::costs() {
   const Grid& grid = simulation_->terrain().grid();
   CostQuery query;
   query.whole = true;
+  simulation_->forget_costs();  // or only tiles would come that changed since they were asked for last
   std::vector<std::int8_t> costs(static_cast<std::size_t>(grid.cells()), held_costs::unknown_cost);
   simulation_->begin_costs(query).whole.get()->write_to(costs, grid.width);
   return costs;
