@@ -14,7 +14,7 @@ import rospy
 from desert_sim.msg import SimulationStatus
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "rostest"))
-from lifecycle import Node, Trigger, program  # noqa: E402, F401
+from lifecycle import PACKAGE, Node, Trigger, program  # noqa: E402, F401
 
 CORES = 2
 TICKS = os.sysconf("SC_CLK_TCK")
