@@ -239,7 +239,9 @@ bool ForecastServer::topics_are_due() const {
 
 void ForecastServer::publish_topics() {
   const PublisherParameters topics = publisher_.parameters().topics;
-  advance_due_time(due_, period_of(topics.forecast_rate));
+  const Clock::duration period = period_of(topics.forecast_rate);
+  due_ += period;
+  if (due_ <= Clock::now()) due_ = Clock::now() + period;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     new_subscriber_ = false;
