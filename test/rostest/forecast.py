@@ -37,8 +37,8 @@ class Forecasts(Scenarios):
         self.assertEqual(bool(result.message), status != GoalStatus.SUCCEEDED)
         return result
 
-    def ask(self, node, status=GoalStatus.SUCCEEDED, **fields):
-        client = self.client(node)
+    def ask(self, node, status=GoalStatus.SUCCEEDED, client=None, **fields):
+        client = client or self.client(node)
         client.send_goal(ForecastTerrainGoal(**fields))
         return self.result(client, status)
 
@@ -125,6 +125,7 @@ class Forecasts(Scenarios):
 
     def test_what_is_refused_says_why_and_ends_no_forecast(self):
         node = self.start("refusing", {"scenario": OASIS, "step_rate": 10})
+        client = self.client(node)  # connected well before the first answer, which comes at once
         first, _ = self.running(node)
         segment = WindScheduleSegment(speed=5, duration=1)
         for fields, texts in (
@@ -144,12 +145,12 @@ class Forecasts(Scenarios):
                 (dict(parameters=Config(doubles=[DoubleParameter("wind_rate", 1)])), ["wind_rate", "no parameter of the desert"]),
                 (dict(parameters=Config(bools=[BoolParameter("vegetation__enabled", False)])), ["vegetation.enabled", "cannot change"]),
                 (dict(parameters=Config(strs=[StrParameter("water__sea", "lava")])), ["water.sea", "lava"])):
-            message = self.ask(node, GoalStatus.REJECTED, **dict({"horizon": 1, "moments": 1}, **fields)).message
+            message = self.ask(node, GoalStatus.REJECTED, client, **dict({"horizon": 1, "moments": 1}, **fields)).message
             for text in texts:
                 self.assertIn(text, message)
         self.assertEqual(first.get_state(), GoalStatus.ACTIVE, first.get_goal_status_text())
         for fields, text in ((dict(horizon=0.05), "1 to 1000000 steps"), (dict(horizon=2e5), "1 to 1000000 steps")):
-            self.assertIn(text, self.ask(node, GoalStatus.REJECTED, **dict({"moments": 1}, **fields)).message)
+            self.assertIn(text, self.ask(node, GoalStatus.REJECTED, client, **dict({"moments": 1}, **fields)).message)
 
     def test_cancelled_and_preempted_goals(self):
         node = self.start("busy", {"scenario": OASIS, "step_rate": 10})
@@ -236,7 +237,8 @@ class Forecasts(Scenarios):
             time.sleep(draw.choice([0, draw.uniform(0, 0.1)]))
             client.cancel_goal()
             self.assertTrue(client.wait_for_result(rospy.Duration(20 * PATIENCE)), "no result")
-            self.assertIn(client.get_state(), (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
+            # LOST: the client of actionlib forgets a goal that it cancels before the server has said that it knows it.
+            self.assertIn(client.get_state(), (GoalStatus.PREEMPTED, GoalStatus.RECALLED, GoalStatus.LOST))
             memory.append(self.memory(node))
         print("steps a second: %s alone, %s beside forecasts; memory: %.1f MB after ten, %.1f MB after %d" % (
             *(["%.1f" % rate for rate in rates[beside]] for beside in (False, True)), memory[9] / 1e6, memory[-1] / 1e6, FORECASTS))
