@@ -34,6 +34,10 @@ class HostCopy {
   virtual void fetch(void* to, const void* from, std::size_t bytes) = 0;
 };
 
+/// Whose work goes first where several Execs share a GPU. (On the CPU the operating system decides, by the
+/// priority of threads.)
+enum class Precedence { first, last };
+
 class Exec {
  public:
   virtual ~Exec() = default;
@@ -143,7 +147,7 @@ class CpuExec final : public Exec {
 class CudaExec final : public Exec {
  public:
   /// Uses the current device; throws CudaError if there is none.
-  CudaExec();
+  explicit CudaExec(Precedence precedence = Precedence::first);
   ~CudaExec() override;
   /// The stream (a cudaStream_t) of all work except the copies of start_download(). While a loop is being
   /// recorded, it is the stream of the loop's body.
@@ -177,6 +181,9 @@ class CudaExec final : public Exec {
   void free_memory(void* memory) noexcept override;
 
  private:
+  void* make_stream() const;
+
+  const Precedence precedence_;
   void* stream_ = nullptr;
   void* copy_stream_ = nullptr;
   void* before_copy_ = nullptr;  ///< a cudaEvent_t behind the work that a copy waits for
@@ -203,6 +210,7 @@ CudaStatus cuda_status();
 
 /// Makes the Exec for `backend` = "auto", "cpu" or "cuda". "auto" uses CUDA where possible; "cuda" without a
 /// usable device throws ConfigError. `why`, if given, receives the reason for the choice.
-std::unique_ptr<Exec> make_exec(const std::string& backend, int threads = 0, std::string* why = nullptr);
+std::unique_ptr<Exec> make_exec(const std::string& backend, int threads = 0, std::string* why = nullptr,
+                                Precedence precedence = Precedence::first);
 
 }  // namespace desert_sim

@@ -176,7 +176,8 @@ std::unique_ptr<Recording> Exec::record(const std::function<void()>&) {
   throw Error(std::string("backend ") + backend() + " records nothing");
 }
 
-std::unique_ptr<Exec> make_exec(const std::string& backend, int threads, std::string* why) {
+std::unique_ptr<Exec> make_exec(const std::string& backend, int threads, std::string* why,
+                                [[maybe_unused]] Precedence precedence) {
   const auto say = [&](const std::string& reason) {
     if (why) *why = reason;
   };
@@ -190,7 +191,7 @@ std::unique_ptr<Exec> make_exec(const std::string& backend, int threads, std::st
 #if DESERT_WITH_CUDA
   if (cuda.usable) {
     say(backend == "auto" ? "cuda, because there is a device" : "cuda, as asked");
-    return std::make_unique<CudaExec>();
+    return std::make_unique<CudaExec>(precedence);
   }
 #endif
   if (backend == "cuda") throw ConfigError("backend cuda: " + cuda.reason);

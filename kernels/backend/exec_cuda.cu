@@ -170,12 +170,20 @@ CudaStatus cuda_status() {
   return {true, ""};
 }
 
-CudaExec::CudaExec() {
+/// A stream whose kernels go before those of streams of a lower precedence.
+void* CudaExec::make_stream() const {
+  int lowest = 0, highest = 0;
+  check_cuda(cudaDeviceGetStreamPriorityRange(&lowest, &highest), "asking for the priorities of streams");
   cudaStream_t stream = nullptr;
-  check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream");
-  stream_ = stream;
-  check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream for copies");
-  copy_stream_ = stream;
+  check_cuda(cudaStreamCreateWithPriority(&stream, cudaStreamNonBlocking,
+                                          precedence_ == Precedence::first ? highest : lowest),
+             "making a stream");
+  return stream;
+}
+
+CudaExec::CudaExec(Precedence precedence) : precedence_(precedence) {
+  stream_ = make_stream();
+  copy_stream_ = make_stream();
   cudaEvent_t event = nullptr;
   check_cuda(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "making an event");
   before_copy_ = event;
@@ -280,8 +288,7 @@ void CudaExec::repeat_while(const long long* go_on, const std::function<void()>&
   cudaStreamCaptureStatus status;
   check_cuda(cudaStreamIsCapturing(as_stream(stream_), &status), "asking whether work is recorded");
   if (status == cudaStreamCaptureStatusActive) {
-    cudaStream_t inner = nullptr;  // each nested loop needs another one
-    check_cuda(cudaStreamCreateWithFlags(&inner, cudaStreamNonBlocking), "making a stream");
+    cudaStream_t inner = as_stream(make_stream());  // each nested loop needs another one
     void* const outer = std::exchange(stream_, inner);
     try {
       add_while_node(as_stream(outer), inner, go_on, body);

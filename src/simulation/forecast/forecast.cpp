@@ -13,7 +13,9 @@ namespace desert_sim {
 
 ForecastRun::ForecastRun(std::string checkpoint, const ForecastOptions& options, const std::string& backend,
                          int threads)
-    : options_(options), checkpoint_(std::move(checkpoint)), exec_(make_exec(backend, threads)) {
+    : options_(options),
+      checkpoint_(std::move(checkpoint)),
+      exec_(make_exec(backend, threads, nullptr, Precedence::last)) {
   check_ranges(static_cast<const ForecastParameters&>(options_), "forecast");
   check_ranges(options_.gusts, "forecast");
   simulation_ = member(0);
