@@ -105,6 +105,20 @@ bool LayerMap::same_geometry(const LayerMap& other) const {
          a.origin_x == b.origin_x && a.origin_y == b.origin_y;
 }
 
+std::optional<LayerMap::Cell> LayerMap::cell_of(double x, double y) const {
+  const double east = (x - info_.origin_x) / info_.cell_size, north = (y - info_.origin_y) / info_.cell_size;
+  if (!(east >= 0 && east <= info_.width && north >= 0 && north <= info_.height)) return std::nullopt;
+  return Cell{std::min(static_cast<std::uint32_t>(east), info_.width - 1),
+              std::min(static_cast<std::uint32_t>(north), info_.height - 1)};
+}
+
+geometry_msgs::Point LayerMap::center_of(const Cell& cell) const {
+  geometry_msgs::Point center;
+  center.x = info_.origin_x + (cell.x + 0.5) * info_.cell_size;
+  center.y = info_.origin_y + (cell.y + 0.5) * info_.cell_size;
+  return center;
+}
+
 float LayerMap::at(std::uint32_t x, std::uint32_t y) const {
   if (x >= info_.width || y >= info_.height)
     throw std::out_of_range("LayerMap: cell (" + std::to_string(x) + ", " + std::to_string(y) + ") of " +
@@ -143,12 +157,9 @@ std::optional<double> LayerMap::value(double x, double y) const {
 }
 
 std::optional<double> LayerMap::cell_value(double x, double y) const {
-  const double east = (x - info_.origin_x) / info_.cell_size, north = (y - info_.origin_y) / info_.cell_size;
-  if (!(east >= 0 && east <= info_.width && north >= 0 && north <= info_.height)) return std::nullopt;
-  const float v = cell(std::min(static_cast<std::uint32_t>(east), info_.width - 1),
-                       std::min(static_cast<std::uint32_t>(north), info_.height - 1));
-  if (std::isnan(v)) return std::nullopt;
-  return v;
+  const std::optional<Cell> c = cell_of(x, y);
+  if (!c || std::isnan(cell(c->x, c->y))) return std::nullopt;
+  return cell(c->x, c->y);
 }
 
 std::optional<LayerMap::Gradient> LayerMap::gradient(double x, double y) const {

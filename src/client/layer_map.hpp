@@ -3,6 +3,7 @@
 /// creates a new map, which shares with the previous one all blocks of cells that the update does not change,
 /// and with the keyframe message all blocks that no update has changed since.
 
+#include <geometry_msgs/Point.h>
 #include <geometry_msgs/Vector3.h>
 
 #include <algorithm>
@@ -29,6 +30,11 @@ class LayerMap {
     void include(const Rectangle& other);
   };
 
+  /// A cell of the grid; (0, 0) is the south-west one.
+  struct Cell {
+    std::uint32_t x = 0, y = 0;
+  };
+
   using Info = MapInfo;
 
   /// The map of a keyframe, which must be valid (see validation_error()). Sets `changed` to the smallest
@@ -42,6 +48,12 @@ class LayerMap {
   /// Whether both maps have the same frame, size, origin and cell size, so that cell (x, y) covers the same
   /// ground.
   bool same_geometry(const LayerMap& other) const;
+
+  /// The cell in which a point (x, y) of the map's frame lies; empty if it is outside the grid, whose outer
+  /// edges belong to it.
+  std::optional<Cell> cell_of(double x, double y) const;
+  /// Centre of a cell in the map's frame; z is 0.
+  geometry_msgs::Point center_of(const Cell& cell) const;
 
   /// Value of a cell in the map's unit, NaN if unknown. Throws std::out_of_range for a cell outside the grid.
   float at(std::uint32_t x, std::uint32_t y) const;

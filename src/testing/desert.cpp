@@ -169,13 +169,12 @@ std::vector<std::int8_t> Desert::costs(const Point& center, double length_x, dou
 }
 
 int Desert::cost(const Point& p) const {
-  const MapInfo& grid = terrain_->map()->info();
-  const double east = (p.x - grid.origin_x) / grid.cell_size, north = (p.y - grid.origin_y) / grid.cell_size;
-  if (!(east >= 0 && east < grid.width && north >= 0 && north < grid.height))
+  const std::shared_ptr<const ElevationMap> map = terrain_->map();
+  const std::optional<LayerMap::Cell> cell = map->cell_of(p.x, p.y);
+  if (!cell)
     throw Error("the point (" + std::to_string(p.x) + ", " + std::to_string(p.y) + ") is off the grid");
-  const Point center{grid.origin_x + (std::floor(east) + 0.5) * grid.cell_size,
-                     grid.origin_y + (std::floor(north) + 0.5) * grid.cell_size};
-  return costs(center, grid.cell_size, grid.cell_size).at(0);
+  const geometry_msgs::Point center = map->center_of(*cell);
+  return costs({center.x, center.y}, map->info().cell_size, map->info().cell_size).at(0);
 }
 
 const Inbox<nav_msgs::Path>& Desert::inbox(const std::string& topic) {

@@ -50,6 +50,26 @@ TEST(ElevationMap, RefusesCellsOffTheGrid) {
   EXPECT_THROW(map->elevations({4294967295u, 0, 2, 1}), std::out_of_range);
 }
 
+TEST(ElevationMap, FindsTheCellOfAPointAndItsCentre) {
+  const auto map = map_of(keyframe(1, 1));  // 130 x 70 cells of 2 m, corner at (10, -20)
+  const auto expect_cell = [&map](double x, double y, std::uint32_t cell_x, std::uint32_t cell_y) {
+    const std::optional<ElevationMap::Cell> cell = map->cell_of(x, y);
+    ASSERT_TRUE(cell) << x << ", " << y;
+    EXPECT_EQ(cell->x, cell_x);
+    EXPECT_EQ(cell->y, cell_y);
+  };
+  expect_cell(10, -20, 0, 0);
+  expect_cell(11.9, -18.1, 0, 0);
+  expect_cell(12, -18, 1, 1);
+  expect_cell(270, 120, 129, 69);  // the outer edges belong to the grid
+  EXPECT_FALSE(map->cell_of(9.99, 0));
+  EXPECT_FALSE(map->cell_of(20, 120.1));
+  EXPECT_FALSE(map->cell_of(unknown, 0));
+  EXPECT_EQ(map->center_of({3, 69}).x, 17);
+  EXPECT_EQ(map->center_of({3, 69}).y, 119);
+  EXPECT_EQ(map->center_of({3, 69}).z, 0);
+}
+
 TEST(ElevationMap, AnUpdateMakesANewMapAndLeavesTheOldOne) {
   ElevationGrid grid = keyframe_of([](double x, double y) { return 1000 * y + x; });
   const auto before = map_of(grid);
