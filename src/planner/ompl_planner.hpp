@@ -17,10 +17,9 @@ constexpr const char* ompl_methods[] = {"rrt_star", "bit_star", "abit_star"};
 
 struct OmplParameters {
   OmplMethod method = OmplMethod::bit_star;
-  int evaluations =
-      20000;  ///< lines whose cost is computed, and rounds of the method, at which it ends
-  double time_limit = 2;   ///< [s] of wall time, whatever comes first
-  std::uint32_t seed = 1;  ///< of the process: what the first planner says holds
+  int evaluations = 20000;  ///< lines whose cost is computed, and rounds of the method, at which it ends
+  double time_limit = 2;    ///< [s] of wall time, whatever comes first
+  std::uint32_t seed = 1;   ///< of the process: what the first planner says holds
 };
 
 struct OmplResult {

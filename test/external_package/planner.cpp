@@ -1,4 +1,5 @@
-/// Plans over the live traversability by Dijkstra's algorithm, and drives the plan. Parameters: ~goal_x, ~goal_y.
+/// Plans over the live traversability by Dijkstra's algorithm, and drives the plan. Parameters: ~goal_x,
+/// ~goal_y.
 #include <geometry_msgs/Twist.h>
 #include <nav_msgs/Odometry.h>
 #include <nav_msgs/Path.h>

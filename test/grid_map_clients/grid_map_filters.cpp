@@ -29,8 +29,8 @@ class GridMapFilters : public testing::Test {
   }
 
  private:
-  /// Not static: class_loader keeps lists of its own, made when the first library is loaded, which exit() would
-  /// destroy before a loader that is older than they are.
+  /// Not static: class_loader keeps lists of its own, made when the first library is loaded, which exit()
+  /// would destroy before a loader that is older than they are.
   pluginlib::ClassLoader<Filter> loader_{"filters", "filters::FilterBase<grid_map::GridMap>"};
 };
 

@@ -101,7 +101,7 @@ class Interface(unittest.TestCase):
                          "stale: desert_rover_node --describe > config/rover_parameters.md")
 
     def test_page_of_parameters_of_planners(self):
-        page = subprocess.run([find_node("desert_sim", "desert_planner_node")[0], "--describe"], stdout=subprocess.PIPE,
+        page = subprocess.run([program("desert_planner_node"), "--describe"], stdout=subprocess.PIPE,
                               check=True, text=True).stdout
         self.assertEqual(page, text_of("config", "planner_parameters.md"),
                          "stale: desert_planner_node --describe > config/planner_parameters.md")

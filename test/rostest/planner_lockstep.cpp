@@ -15,7 +15,8 @@ using node_test::wait_until;
 
 constexpr int steps = 20;
 
-/// Resets all, sets a goal and makes steps, each after the planner has acted on the one before. The rover's states.
+/// Resets all, sets a goal and makes steps, each after the planner has acted on the one before. The rover's
+/// states.
 std::vector<std::string> path() {
   ask<std_srvs::Trigger>("/desert_planner/cancel");
   EXPECT_TRUE(call<std_srvs::Trigger>("reset").success);

@@ -75,7 +75,7 @@ class SubscriberCosts {
 
   int width_ = 0, height_ = 0;
   std::vector<std::int8_t> costs_;
-  std::uint64_t terrain_ = 0;         ///< counter of Moment
+  std::uint64_t terrain_ = 0;  ///< counter of Moment
   std::vector<CellBox> waiting_;
   std::deque<Sent> sent_;             ///< of the last time, without cells that were only sent again
   SteadyClock::time_point replaced_;  ///< when costs of another terrain took the place of the old ones
@@ -202,8 +202,9 @@ class CostmapUpdatesTopic : public MessageTopic<map_msgs::OccupancyGridUpdate> {
   /// a subscriber's cycle may be as long as the period of updates. Rectangles in turn rely on their spacing.
   std::chrono::duration<double> repeat_time() const {
     const MapParameters& p = parameters().maps.parameters;
-    return std::chrono::duration<double>(p.costmap_update_rectangles > 1 ? p.costmap_update_spacing
-                                         : 1.5 / (p.costmap_update_rate > 0 ? p.costmap_update_rate : 1));
+    return std::chrono::duration<double>(p.costmap_update_rectangles > 1
+                                             ? p.costmap_update_spacing
+                                             : 1.5 / (p.costmap_update_rate > 0 ? p.costmap_update_rate : 1));
   }
 
   CostmapTopic& keyframes_;

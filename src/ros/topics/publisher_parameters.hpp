@@ -119,12 +119,14 @@ constexpr auto parameter_table(const MapParameters*) {
       parameter(
           "costmap_update_threshold", &P::costmap_update_threshold, 0, 98, "1",
           "Change of a cost, since what subscribers hold, that sends it; lethal and unknown always do."),
-      parameter("costmap_update_rectangles", &P::costmap_update_rectangles, 1, 64, "1",
-                "An update is divided into at most so many messages of one rectangle each, where changes are far "
-                "apart; 1: each has all changes, and those of the last one and a half periods again."),
-      parameter("costmap_update_spacing", &P::costmap_update_spacing, 0.001, 1000, "s",
-                "From one of these to the next; above 1 / update_frequency of a costmap_2d that listens, which "
-                "looks at the last one in each of its cycles only."),
+      parameter(
+          "costmap_update_rectangles", &P::costmap_update_rectangles, 1, 64, "1",
+          "An update is divided into at most so many messages of one rectangle each, where changes are far "
+          "apart; 1: each has all changes, and those of the last one and a half periods again."),
+      parameter(
+          "costmap_update_spacing", &P::costmap_update_spacing, 0.001, 1000, "s",
+          "From one of these to the next; above 1 / update_frequency of a costmap_2d that listens, which "
+          "looks at the last one in each of its cycles only."),
       parameter("image_rate", &P::image_rate, 0, 1000, "Hz", "~image."));
 }
 static_assert(table_is_complete<MapParameters>());

@@ -159,8 +159,8 @@ class Topic {
     if (!follows_rate()) return false;
     const SteadyClock::time_point now = SteadyClock::now();
     if (!only_after_change()) return now >= due_.time();
-    return changed() &&
-           (may_be_early() ? due_.reached(now, context_.simulation.change_time(), period()) : now >= due_.time());
+    return changed() && (may_be_early() ? due_.reached(now, context_.simulation.change_time(), period())
+                                        : now >= due_.time());
   }
   SteadyClock::duration period() const { return period_of(pace()); }
   SteadyClock::time_point early_time() const {

@@ -19,8 +19,8 @@ std::vector<CellBox> CostChanges::write_to(std::vector<std::int8_t>& held, int w
     auto from = tile.costs.begin();
     for (int y = tile.cells.y0; y < tile.cells.y1; ++y)
       for (int x = tile.cells.x0; x < tile.cells.x1; ++x, ++from) {
-        std::int8_t& to = held[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                               static_cast<std::size_t>(x)];
+        std::int8_t& to =
+            held[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
         if (to != *from) differs = differs.united_with({x, y, x + 1, y + 1});
         to = *from;
       }
@@ -51,7 +51,8 @@ Pending<CostChanges> HeldCosts::copy_tiles(Exec& exec, Staging& staging, int thr
     with_backend(exec,
                  [&](auto& e) { held_costs::copy_tiles(e, rows, now_.data(), held_.data(), threshold, to); });
   };
-  transfer.unpack = [waited = std::weak_ptr<CostChanges>(changes)](Staging::Slot& arrived, const Tiling& rows) {
+  transfer.unpack = [waited = std::weak_ptr<CostChanges>(changes)](Staging::Slot& arrived,
+                                                                   const Tiling& rows) {
     const std::shared_ptr<CostChanges> all = waited.lock();
     if (!all) return;
     for (const PackedTile& tile : packed_tiles_in(arrived, rows)) {
