@@ -21,6 +21,9 @@ std::vector<std::string> path() {
   EXPECT_TRUE(call<std_srvs::Trigger>("reset").success);
   EXPECT_TRUE(ask<std_srvs::Trigger>("/desert_rover/reset").success);
   Listener<PlannerStatus> planner("/desert_planner/status");
+  EXPECT_TRUE(planner.wait_for([](const PlannerStatus& s) {
+    return s.terrain_step == 0 && !s.header.frame_id.empty();
+  })) << "it has not seen the start";
   ros::Publisher goals = ros::NodeHandle().advertise<geometry_msgs::PoseStamped>("/move_base_simple/goal", 1);
   EXPECT_TRUE(wait_until([&] { return goals.getNumSubscribers() > 0; }));
   geometry_msgs::PoseStamped goal;
