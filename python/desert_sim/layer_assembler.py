@@ -53,7 +53,10 @@ class LayerAssembler:
         self._complete = True           # no update is missing after those in the map
         self._sender_restarted = False  # and its keyframe is missing
         self._last_received = (0, 0)    # number of the last update, whether used or not
+        self._last_stamp = None         # and its stamp
+        self._time_went_back = False    # the last update is older than the one before
         self._repeated = None           # a map of the keyframe on which the map is built, if that was sent again
+        self._base = None               # a map of that keyframe, if updates that waited for it are in the map
         self._queue = collections.deque()  # updates without their keyframe, in order of arrival
         self._queued_values = 0
 
@@ -99,7 +102,9 @@ class LayerAssembler:
         self._repeated = None
         self._complete, self._sender_restarted = True, False
         self.counts.keyframes += 1
+        waited = bool(self._queue)
         cells = cells.union(self._apply_queued())
+        self._base = new if waited else None
         return MapChange(self.map, cells, replaced)
 
     def _apply_queued(self):
@@ -125,6 +130,8 @@ class LayerAssembler:
         except ValueError as error:
             return self._refuse(error)
         before, self._last_received = self._last_received, (update.keyframe, update.sequence)
+        self._time_went_back = self._last_stamp is not None and update.header.stamp < self._last_stamp
+        self._last_stamp = update.header.stamp
         if self.map is None:
             self._enqueue(update)
             return NOTHING
@@ -168,9 +175,12 @@ class LayerAssembler:
     def _handle_restart(self, update, before):
         """Handles an update whose number is not above the previous one. A connection preserves the order of its messages,
         so the sender has restarted or replays a recording. If its keyframe arrived before this update and was taken for a
-        repetition, the map begins again with that keyframe; otherwise its keyframe is missing."""
+        repetition, the map begins again with that keyframe; so it does if time went back, because updates of the recording's
+        turn before had waited for its keyframe. Otherwise its keyframe is missing."""
         self._enqueue(update)
         again = self._repeated
+        if again is None and self._time_went_back:
+            again = self._base
         if again and again.keyframe == update.keyframe:
             return self._replace_map(again, Rectangle(0, 0, again.width, again.height))
         self._record_gap("%s arrived after %s: the sender has restarted" % (
@@ -184,7 +194,7 @@ class LayerAssembler:
         except ValueError as error:
             return self._refuse(error)
         self.map = with_update(self.map, update)
-        self._repeated = None  # it was only a repetition
+        self._repeated = self._base = None  # it was only a repetition, and what waited belongs to it
         self.counts.updates += 1
         return MapChange(self.map, changed_cells(update))
 

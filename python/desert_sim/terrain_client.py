@@ -81,7 +81,7 @@ class _Stream:
 
     def _process(self, take, message, stamp):
         client = self._client
-        with client.processing:
+        with client._processing:
             change = take(message)
             told = self._publish(change, stamp)
             if told and client.on_change:
@@ -89,7 +89,7 @@ class _Stream:
 
     def _publish(self, change, stamp):
         """Lets queries see a change; whether on_change is to be told of it."""
-        with self._client.changed:
+        with self._client._changed:
             if self.closed:
                 return False
             statistics, counts = self.statistics, self._assembler.counts
@@ -100,7 +100,7 @@ class _Stream:
                 statistics.latency = (rospy.Time.now() - stamp).to_sec()
                 statistics.largest_latency = max(statistics.largest_latency, statistics.latency)
             self.map, self.need = change.map or self.map, self._assembler.need()
-            self._client.changed.notify_all()
+            self._client._changed.notify_all()
         if refused:
             rospy.logwarn_throttle(5, "The terrain client rejected a message of the layer %s: %s" % (
                 self._layer, counts.last_refusal))
@@ -110,7 +110,7 @@ class _Stream:
         return change.map is not None and (change.replaced or not change.cells.empty or self._client.tell_each_step)
 
     def request_keyframe_if_due(self):
-        if not self._client.processing.acquire(blocking=False):
+        if not self._client._processing.acquire(blocking=False):
             return  # a message is being processed, which may be the keyframe
         try:
             # Without a publisher there is nobody to ask, and a new publisher sends a keyframe anyway.
@@ -119,12 +119,12 @@ class _Stream:
                 self._publish(NOTHING, None)
                 self._request_keyframe()
         finally:
-            self._client.processing.release()
+            self._client._processing.release()
 
     def _request_keyframe(self):
         """By a message and by a new subscription in turn: rospy makes no new connection while another subscriber in the
         process uses the same topic, and a bag that is played takes no requests."""
-        with self._client.changed:
+        with self._client._changed:
             by_message = self._request_publisher.get_num_connections() > 0 and self.statistics.requests % 2 == 0
             self.statistics.requests += 1
         if by_message:
@@ -139,8 +139,8 @@ class _Stream:
         return impl is not None and impl.get_num_connections() > 0
 
     def close(self):
-        """By a thread that holds the client's `processing`."""
-        with self._client.changed:
+        """By a thread that holds the client's `_processing`."""
+        with self._client._changed:
             self.closed = True
         for end in (self._updates, self._keyframes, self._request_publisher):
             end.unregister()
@@ -180,12 +180,13 @@ class TerrainClient:
                              "<= longest_pause <= 3600 s)" % (shortest_pause, longest_pause))
         if isinstance(layers, str):
             raise ValueError("TerrainClient: layers is the text '%s' (allowed: a list of names)" % layers)
+        layers = tuple(layers)
         for layer in layers:
             _check_layer(layer)
         self.node = rospy.resolve_name(node)
         self.on_change, self.tell_each_step = on_change, tell_each_step
-        self.processing = threading.RLock()    # held while a message is processed; queries do not wait for it
-        self.changed = threading.Condition()   # guards what queries see; held only briefly
+        self._processing = threading.RLock()   # held while a message is processed; queries do not wait for it
+        self._changed = threading.Condition()  # guards what queries see; held only briefly
         self._options = {"queue": update_queue, "shortest": shortest_pause, "longest": longest_pause}
         self._streams = {}
         for layer in layers:
@@ -206,7 +207,7 @@ class TerrainClient:
 
         Raises ValueError for a name that is not known."""
         _check_layer(layer)
-        with self.changed:
+        with self._changed:
             return self._streams[layer].map if layer in self._streams else None
 
     def __getitem__(self, layer):
@@ -239,7 +240,7 @@ class TerrainClient:
     @property
     def layers(self):
         """Names of the layers that are subscribed to."""
-        with self.changed:
+        with self._changed:
             return sorted(self._streams)
 
     @property
@@ -251,7 +252,7 @@ class TerrainClient:
     @property
     def connected(self):
         """Whether keyframes of all layers have a publisher."""
-        with self.changed:
+        with self._changed:
             streams = list(self._streams.values())
         return all(stream.connected for stream in streams)
 
@@ -259,7 +260,7 @@ class TerrainClient:
         """Statistics of a layer: numbers of keyframes, updates, gaps, refused messages, requests; reasons; latency. All 0 if
         it is not subscribed to."""
         _check_layer(layer)
-        with self.changed:
+        with self._changed:
             return dataclasses.replace(self._streams[layer].statistics) if layer in self._streams else Statistics()
 
     def wait_for_terrain(self, timeout):
@@ -275,18 +276,18 @@ class TerrainClient:
     def subscribe_layer(self, layer):
         """Subscribes to a layer; nothing happens if it is subscribed to already. Its map comes later."""
         _check_layer(layer)
-        with self.processing:
+        with self._processing:
             if layer in self._streams:
                 return
             stream = _Stream(self, layer, self._options)
-            with self.changed:
+            with self._changed:
                 self._streams[layer] = stream
 
     def unsubscribe_layer(self, layer):
         """Gives a layer up; nothing happens if it is not subscribed to. Maps that somebody has stay valid."""
         _check_layer(layer)
-        with self.processing:
-            with self.changed:
+        with self._processing:
+            with self._changed:
                 stream = self._streams.pop(layer, None)
             if stream:
                 stream.close()
@@ -305,22 +306,22 @@ class TerrainClient:
         self.close()
 
     def _all(self, condition):
-        with self.changed:
+        with self._changed:
             return all(condition(stream) for stream in self._streams.values())
 
     def _wait(self, condition, timeout):
         end = time.monotonic() + timeout
-        with self.changed:
+        with self._changed:
             while not all(condition(stream) for stream in self._streams.values()):
                 left = end - time.monotonic()
                 if left <= 0 or rospy.is_shutdown():
                     return False
-                self.changed.wait(min(left, _POLL_PERIOD))
+                self._changed.wait(min(left, _POLL_PERIOD))
             return True
 
     def _watch(self):
         while not self._closing.wait(_POLL_PERIOD) and not rospy.is_shutdown():
-            with self.changed:
+            with self._changed:
                 streams = list(self._streams.values())
             for stream in streams:
                 stream.request_keyframe_if_due()

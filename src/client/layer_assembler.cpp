@@ -74,7 +74,9 @@ MapChange LayerAssembler::replace_map(MapChange change) {
   complete_ = true;
   sender_restarted_ = false;
   ++counts_.keyframes;
+  const std::shared_ptr<const LayerMap> base = queued_updates_.empty() ? nullptr : map_;
   apply_queued(change);
+  base_map_ = base;
   return change;
 }
 
@@ -127,6 +129,8 @@ MapChange LayerAssembler::process(const LayerUpdate::ConstPtr& update) {
 MapChange LayerAssembler::take_update(const MapUpdate& update) {
   const UpdateId before = last_received_;
   last_received_ = {update.keyframe, update.sequence};
+  time_went_back_ = update.stamp < last_stamp_;
+  last_stamp_ = update.stamp;
   if (!map_) {
     enqueue(update);
     return {};
@@ -167,14 +171,15 @@ MapChange LayerAssembler::apply_in_order(const MapUpdate& update) {
 
 /// Handles an update whose number is not above the previous one. A connection preserves the order of its
 /// messages, so the sender has restarted or replays a recording. If its keyframe arrived before this update
-/// and was taken for a repetition, the map begins again with that keyframe; otherwise its keyframe is
+/// and was taken for a repetition, the map begins again with that keyframe; so it does if time went back,
+/// because updates of the recording's turn before had waited for its keyframe. Otherwise its keyframe is
 /// missing.
 MapChange LayerAssembler::handle_restart(const MapUpdate& update, const UpdateId& from) {
   enqueue(update);
-  if (repeated_keyframe_map_ && repeated_keyframe_map_->info().keyframe == update.keyframe) {
-    const MapInfo& info = repeated_keyframe_map_->info();
-    return replace_map({repeated_keyframe_map_, {0, 0, info.width, info.height}, false});
-  }
+  const std::shared_ptr<const LayerMap> again =
+      repeated_keyframe_map_ || !time_went_back_ ? repeated_keyframe_map_ : base_map_;
+  if (again && again->info().keyframe == update.keyframe)
+    return replace_map({again, {0, 0, again->info().width, again->info().height}, false});
   record_gap(name_of({update.keyframe, update.sequence}) + " arrived after " + name_of(from) +
              ": the sender has restarted");
   sender_restarted_ = true;
@@ -186,6 +191,7 @@ MapChange LayerAssembler::apply_update(const MapUpdate& update) {
   MapChange change;
   change.map = map_ = map_->with_update(update);
   repeated_keyframe_map_.reset();  // it was only a repetition
+  base_map_.reset();               // what waited belongs to it
   for (const LayerTile& tile : *update.tiles) change.cells.include({tile.x, tile.y, tile.width, tile.height});
   ++counts_.updates;
   return change;

@@ -80,8 +80,12 @@ class LayerAssembler {
   bool complete_ = true;           ///< no update is missing after those in map_
   bool sender_restarted_ = false;  ///< the sender restarted; its keyframe is missing
   UpdateId last_received_{0, 0};   ///< number of the last update, whether used or not
+  ros::Time last_stamp_;           ///< and its stamp
+  bool time_went_back_ = false;    ///< the last update is older than the one before
   /// A map of the repeated keyframe, if the one on which map_ is built was sent again.
   std::shared_ptr<const LayerMap> repeated_keyframe_map_;
+  /// A map of the keyframe on which map_ is built, if updates had waited for it.
+  std::shared_ptr<const LayerMap> base_map_;
   std::deque<MapUpdate> queued_updates_;  ///< updates without their keyframe, in order of arrival
   std::size_t queued_cells_ = 0;          ///< cells of all tiles in queued_updates_
   StreamCounts counts_;

@@ -254,6 +254,30 @@ TEST_F(Played, OfSeveralKeyframesInAnyOrderOfTheTwoConnections) {
   EXPECT_EQ(counts().gaps, 1u);
 }
 
+TEST_F(Played, InALoopByWhoJoinedLate) {
+  for (const std::uint32_t joined : {1u, 3u, 8u}) {  // before which update of the second keyframe
+    assembler_ = desert_sim::ElevationAssembler();
+    for (std::uint32_t n = joined; n <= 9; ++n)
+      assembler_.process(update(2, n, 20 + n, static_cast<float>(20 + n)));
+    for (int turn = 0; turn < 3; ++turn) {
+      play_keyframe(1, 10);
+      play_keyframe(2, 20);
+      for (std::uint32_t n = 1; n <= 9; ++n) {
+        assembler_.process(update(2, n, 20 + n, static_cast<float>(20 + n)));
+        expect_at(20 + n);
+      }
+    }
+  }
+}
+
+TEST_F(Assembler, ARestartAfterUpdatesThatWaitedIsNoRecording) {
+  assembler_.process(update(1, 1, 11, 5));
+  take(keyframe(1, 10, 130, 70, 4));
+  assembler_.process(update(1, 1, 101, 6));
+  expect_gap("has restarted");
+  EXPECT_EQ(corner(), 5);
+}
+
 TEST_F(Assembler, AStepBackOfTheScenarioIsNotARestart) {
   take(keyframe(1, 100));
   ElevationGrid reset = keyframe(2, 101);

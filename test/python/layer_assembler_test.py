@@ -217,6 +217,22 @@ class Played(Assembler):
         self.assertEqual(self.counts.gaps, 1)
 
 
+    def test_in_a_loop_by_who_joined_late(self):
+        for joined in (1, 3, 8):  # before which update of the second keyframe
+            self.assembler = LayerAssembler()
+            self.take(*self.updates(2, 20, 9)[joined - 1:])
+            for _ in range(3):
+                self.take(keyframe(1, 10, elevation=10), keyframe(2, 20, elevation=20))
+                for n, message in enumerate(self.updates(2, 20, 9), 1):
+                    self.take(message)
+                    self.expect_at(20 + n)
+
+    def test_a_restart_after_updates_that_waited_is_no_recording(self):
+        self.take(update(1, 1, 11, 5), keyframe(1, 10, elevation=4), update(1, 1, 101, 6))
+        self.expect_gap("has restarted")
+        self.assertEqual(self.corner(), 5)
+
+
 class Tiles(Assembler):
     """The forms of a tile: z = float32(float64(z) + change * resolution)."""
 

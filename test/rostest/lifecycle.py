@@ -119,6 +119,16 @@ class Lifecycle(Scenarios):
         self.assertEqual((grid.width, grid.height), (48, 32))
         self.assertEqual(node.latest("status", SimulationStatus).scenario, "barchan")
 
+    def test_settings_are_a_list_or_its_text(self):
+        for settings in (["grid.width=48", "grid.height=32"], "[grid.width=48, grid.height=32]"):
+            grid = self.start("set", {"scenario": "barchan", "settings": settings}).latest("elevation", ElevationGrid)
+            self.assertEqual((grid.width, grid.height), (48, 32))
+            self.nodes[-1].end()
+        node = self.start("set_by_hand", {"scenario": "barchan"}, arguments=["_settings:=[grid.width=40]"])
+        self.assertEqual(node.latest("elevation", ElevationGrid).width, 40)
+        self.expect_refused({"scenario": "barchan", "settings": "[grid.width=48, "}, "settings", "[grid.width=48", "is not a list")
+        self.expect_refused({"scenario": "barchan", "settings": "[[grid.width=48]]"}, "settings.0", "a list")
+
     def test_scenario_of_parameters(self):
         node = self.start("in_parameters", {
             "grid": {"width": 40, "height": 24, "cell_size": 0.5},

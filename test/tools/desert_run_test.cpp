@@ -293,6 +293,42 @@ TEST_F(Run, KeepsTheNameOfItsProcess) {
   EXPECT_EQ(r.out, std::filesystem::path(program_).filename().string() + "\n") << r.err;
 }
 
+TEST_F(Run, TakesInstalledScenariosByName) {
+  const std::string in_path = "ROS_PACKAGE_PATH=" DESERT_SOURCE_DIR, nowhere = "ROS_PACKAGE_PATH=";
+  const auto named = [this](const std::string& program, const std::string& packages,
+                            const std::string& name) {
+    return test::run_program(
+        "/usr/bin/env",
+        {packages, "-C", path("."), program, name, "--steps", "1", "--set", "grid.width=32", "--set",
+         "grid.height=24", "--backend", "cpu", "--threads", "1", "--quiet", "--out", path("named")});
+  };
+  run_cpu({DESERT_SOURCE_DIR "/config/scenarios/barchan.yaml", "--steps", "1", "--set", "grid.width=32",
+           "--set", "grid.height=24", "--out", path("whole")});
+  EXPECT_EQ(named(program_, in_path, "barchan").status, 0);
+  EXPECT_EQ(hash("named"), hash("whole"));
+
+  const test::ProgramRun unknown = named(program_, in_path, "barchans");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("no scenario 'barchans'"), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("beach, "), std::string::npos) << unknown.err;
+  const test::ProgramRun lost = named(program_, nowhere, "barchan");
+  EXPECT_EQ(lost.status, 2);
+  EXPECT_NE(lost.err.find("ROS_PACKAGE_PATH"), std::string::npos) << lost.err;
+
+  // Where the program is installed, its scenarios are found beside it.
+  std::filesystem::create_directories(path("lib/desert_sim"));
+  std::filesystem::create_directories(path("share/desert_sim/config"));
+  std::filesystem::create_directory_symlink(DESERT_SOURCE_DIR "/config/scenarios",
+                                            path("share/desert_sim/config/scenarios"));
+  std::filesystem::copy_file(program_, path("lib/desert_sim/desert_run"));
+  EXPECT_EQ(named(path("lib/desert_sim/desert_run"), nowhere, "barchan").status, 0);
+  EXPECT_EQ(hash("named"), hash("whole"));
+
+  folder_.write("barchan", "grid: {width: 9}\nseed: 77\n");
+  EXPECT_EQ(named(program_, in_path, "barchan").status, 0);
+  EXPECT_EQ(json(summary("named"), "seed"), "77") << "a file of exactly this name comes first";
+}
+
 TEST_F(Run, OfZeroStepsWritesTheStart) {
   run_cpu({scenario_, "--steps", "0", "--out", path("out")});
   EXPECT_EQ(json(summary("out"), "steps"), "0");
