@@ -104,8 +104,9 @@ class Trip:
 
     def line(self):
         now, status = self.desert.rover.pose(), self.planner.status
-        return "%5.0f s  (%6.2f, %6.2f) m  %-10s %5.1f m to go  %d replans%s" % (
-            self.time, now.x, now.y, status.state, status.remaining, status.replans,
+        return "%5.0f s  (%6.2f, %6.2f) m  %-10s %5.1f m to go  %s  %d replans%s" % (
+            self.time, now.x, now.y, status.state, status.remaining,
+            "forecast of %.0f s ago" % status.forecast_age if status.forecast_age >= 0 else "no forecast", status.replans,
             ": " + status.last_replan if status.replans else "")
 
     def picture(self):
