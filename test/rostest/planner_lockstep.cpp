@@ -29,12 +29,12 @@ std::vector<std::string> path() {
   EXPECT_TRUE(wait_until([&] { return goals.getNumSubscribers() > 0; }));
   geometry_msgs::PoseStamped goal;
   goal.header.frame_id = "terrain";
-  goal.pose.position.x = 25;
+  goal.pose.position.x = 20;
   goal.pose.position.y = 18;
   goal.pose.orientation.w = 1;
   goals.publish(goal);
   EXPECT_TRUE(planner.wait_for([](const PlannerStatus& s) {
-    return s.goal.pose.position.x == 25 && s.state == PlannerStatus::WAITING;
+    return s.goal.pose.position.x == 20 && s.state == PlannerStatus::WAITING;
   })) << planner.last().state
       << " " << planner.last().refusal;
   std::vector<std::string> states;

@@ -299,7 +299,7 @@ TEST_F(Run, TakesInstalledScenariosByName) {
                             const std::string& name) {
     return test::run_program(
         "/usr/bin/env",
-        {packages, "-C", path("."), program, name, "--steps", "1", "--set", "grid.width=32", "--set",
+        {"-C", path("."), packages, program, name, "--steps", "1", "--set", "grid.width=32", "--set",
          "grid.height=24", "--backend", "cpu", "--threads", "1", "--quiet", "--out", path("named")});
   };
   run_cpu({DESERT_SOURCE_DIR "/config/scenarios/barchan.yaml", "--steps", "1", "--set", "grid.width=32",

@@ -150,8 +150,12 @@ class CostmapUpdatesTopic : public MessageTopic<map_msgs::OccupancyGridUpdate> {
   }
 
   double rate() const override { return parameters().maps.parameters.costmap_update_rate; }
+  /// Rectangles in turn are never nearer in time than their spacing.
   double pace() const override {
-    return has_backlog() ? std::max(rate(), 1 / parameters().maps.parameters.costmap_update_spacing) : rate();
+    const MapParameters& p = parameters().maps.parameters;
+    if (p.costmap_update_rectangles == 1) return rate();
+    const double fastest = 1 / p.costmap_update_spacing;
+    return has_backlog() ? fastest : std::min(rate(), fastest);
   }
   bool only_after_change() const override { return !has_backlog(); }
   bool may_be_early() const override { return false; }  // a costmap_2d wants them apart

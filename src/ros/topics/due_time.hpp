@@ -3,8 +3,8 @@
 ///
 /// Due times lie a period apart. A change in the last half of a period is shown at once instead of waiting
 /// for the due time; the due times stay, so that on average there is no more than one message a period, and
-/// two are at least half a period apart. A change that came before that waits for the due time, and then the
-/// next due times move to where changes come, so that steps at the same rate do not wait again and again.
+/// two are at least half a period apart. A change that came before that waits for the due time. If the next
+/// one does so, too, the due times move to where changes come: steps at the same rate do not wait for ever.
 
 #include <chrono>
 
@@ -26,10 +26,12 @@ class DueTime {
   /// the due time, for a new subscriber, does not put it off: many of them would put it off for long.
   void published(Clock::time_point now, Clock::time_point change, Clock::duration period) {
     if (now < earliest(period)) return;
-    const bool waited = change < earliest(period) && now >= due_;
+    const bool waits = change < earliest(period) && now >= due_;
+    const bool again = waits && waited_;
+    waited_ = waits && !again;
     due_ += period;
     if (due_ <= now) due_ = now + period;
-    if (!waited || period <= Clock::duration::zero()) return;
+    if (!again || period <= Clock::duration::zero()) return;
     const auto periods = (now + period / 2 - change + period - Clock::duration(1)) / period;
     due_ = change + periods * period;
   }
@@ -40,6 +42,7 @@ class DueTime {
 
  private:
   Clock::time_point due_;
+  bool waited_ = false;  ///< whether the last change had to
 };
 
 }  // namespace desert_sim
