@@ -31,7 +31,8 @@ def host_commands(build):
         if " -x cu " in entry["command"] or "/cmake_pch" in entry["file"] or not os.path.exists(source):
             continue
         # clang refuses headers that GCC has precompiled; each source includes what it needs.
-        entry["command"] = re.sub(r" --param[= ]\S+| -Winvalid-pch| -include \S+/cmake_pch\.hxx", "", entry["command"])
+        entry["command"] = re.sub(
+            r" --param[= ]\S+| -Winvalid-pch| -Wno-maybe-uninitialized| -include \S+/cmake_pch\.hxx", "", entry["command"])
         # Names of one source can hide those of another in a batch.
         entry["command"] = entry["command"].replace(" -Wshadow", "")
         commands[source] = entry

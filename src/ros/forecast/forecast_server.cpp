@@ -46,7 +46,7 @@ ForecastServer::ForecastServer(const ros::NodeHandle& node, SimulationThread& si
       threads_(threads),
       answer_timeout_(answer_timeout),
       server_(
-          node, "forecast", [this](GoalHandle goal) { take_goal(std::move(goal)); },
+          node, "forecast", [this](const GoalHandle& goal) { take_goal(goal); },
           [](const GoalHandle&) {},  // the thread sees it in the goal's status
           false) {
   ros::NodeHandle topics(node, "forecast");
