@@ -68,9 +68,10 @@ std::string find_in_package_path() {
 std::string find_beside_program() {
   std::error_code error;
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  if (error) return "";
   for (const fs::path& prefix : {folder.parent_path(), folder.parent_path().parent_path()}) {
     const fs::path share = prefix / "share" / "desert_sim";
-    if (!error && fs::is_directory(share / "config" / "scenarios", error)) return share.string();
+    if (fs::is_directory(share / "config" / "scenarios", error)) return share.string();
   }
   return "";
 }

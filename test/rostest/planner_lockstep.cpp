@@ -13,7 +13,7 @@ using node_test::Listener;
 using node_test::step;
 using node_test::wait_until;
 
-constexpr int steps = 20;
+constexpr int steps = 12;
 
 /// Resets all, sets a goal and makes steps, each after the planner has acted on the one before. The rover's
 /// states.
