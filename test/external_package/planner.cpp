@@ -1,5 +1,4 @@
-/// Plans over the live traversability by Dijkstra's algorithm, and drives the plan. Parameters: ~goal_x,
-/// ~goal_y.
+/// Plans over the live traversability by Dijkstra's algorithm, and drives it. Parameters: ~goal_x, ~goal_y.
 #include <geometry_msgs/Twist.h>
 #include <nav_msgs/Odometry.h>
 #include <nav_msgs/Path.h>
