@@ -53,7 +53,7 @@ std::string Navigator::need_of_path() {
   }
   if (pursuit_.off_path() > parameters_.off_path)
     return "the rover is " + text(pursuit_.off_path()) + " m off the path";
-  if (parameters_.planner == PlannerKind::forecast && new_forecast_) return "a new forecast";
+  if (parameters_.planner == PlannerKind::forecast && new_forecast_) return renew_schedule();
   if (!changed) return "";
   const auto cost = path_cost(*grid_, pursuit_.remaining(), free_start());
   if (!cost) {
@@ -178,6 +178,39 @@ std::string Navigator::plan_by_forecast(const Place& start, const Place& goal, G
              ? "no way leads from the start to the goal, even with waiting, over the ground that the "
                "forecast tells"
              : "";
+}
+
+std::vector<bool> Navigator::cells_of_path() const {
+  std::vector<bool> cells(grid_->size(), false);
+  for (const GridPoint& p : pursuit_.remaining())
+    if (const auto cell = grid_->cell_at(p)) cells[*cell] = true;
+  const int reach = static_cast<int>(std::ceil(parameters_.escape / grid_->frame().cell_size));
+  const GridFrame& f = grid_->frame();
+  if (const auto rover = grid_->cell_at({pose_.x, pose_.y})) {
+    const int cx = grid_->x_of(*rover), cy = grid_->y_of(*rover);
+    for (int y = std::max(cy - reach, 0); y <= std::min(cy + reach, f.height - 1); ++y)
+      for (int x = std::max(cx - reach, 0); x <= std::min(cx + reach, f.width - 1); ++x)
+        cells[grid_->cell(x, y)] = true;
+  }
+  return cells;
+}
+
+std::string Navigator::renew_schedule() {
+  new_forecast_ = false;
+  Place start, goal;
+  if (!places(start, goal).empty()) return "the start or the goal is not passable any more";
+  TimedPlanner planner(timed_costs(), {parameters_.forecast_speed, parameters_.forecast_slowing});
+  const std::vector<TimedPoint> kept = planner.plan(start.cell, goal.cell, cells_of_path()),
+                                best = planner.plan(start.cell, goal.cell);
+  if (kept.empty()) return "the path is blocked by what the forecast tells";
+  const double gained = kept.back().arrival - best.back().arrival;
+  if (gained > parameters_.replan_gain * (kept.back().arrival - now_) + 5)
+    return "another path arrives " + text(gained) + " s earlier, as the forecast tells";
+  schedule_ = kept;
+  GridPath path;
+  for (const TimedPoint& p : kept) path.push_back(p.point);
+  take(std::move(path), goal);
+  return "";
 }
 
 void Navigator::take(GridPath path, const Place& goal) {
