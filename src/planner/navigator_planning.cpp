@@ -1,23 +1,12 @@
 /// Where a navigator's paths come from, and when another is needed.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "src/core/error.hpp"
+#include "src/core/number_text.hpp"
 #include "src/planner/navigator.hpp"
 
 namespace desert_sim {
-
-namespace {
-
-std::string text(double number) {
-  std::ostringstream out;
-  out.precision(3);
-  out << number;
-  return out.str();
-}
-
-}  // namespace
 
 std::string Navigator::places(Place& start, Place& goal) const {
   const auto near = [&](double x, double y, double distance) {
@@ -32,12 +21,12 @@ std::string Navigator::places(Place& start, Place& goal) const {
   };
   const auto s = near(pose_.x, pose_.y, parameters_.escape);
   if (!s)
-    return "the start (" + text(pose_.x) + ", " + text(pose_.y) +
-           ") is not passable, nor is any cell within " + text(parameters_.escape) +
+    return "the start (" + number_text(pose_.x) + ", " + number_text(pose_.y) +
+           ") is not passable, nor is any cell within " + number_text(parameters_.escape) +
            " m: " + why(pose_.x, pose_.y);
   const auto g = near(goal_->x, goal_->y, parameters_.goal_tolerance);
   if (!g)
-    return "the goal (" + text(goal_->x) + ", " + text(goal_->y) +
+    return "the goal (" + number_text(goal_->x) + ", " + number_text(goal_->y) +
            ") is not passable: " + why(goal_->x, goal_->y);
   start = {grid_->centre(*s), *s};
   goal = {grid_->centre(*g), *g};
@@ -52,7 +41,7 @@ std::string Navigator::need_of_path() {
     return status_.plans == 0 ? "a new goal" : "there was no path";
   }
   if (pursuit_.off_path() > parameters_.off_path)
-    return "the rover is " + text(pursuit_.off_path()) + " m off the path";
+    return "the rover is " + number_text(pursuit_.off_path()) + " m off the path";
   if (parameters_.planner == PlannerKind::forecast && new_forecast_) return renew_schedule();
   if (!changed) return "";
   const auto cost = path_cost(*grid_, pursuit_.remaining(), free_start());
@@ -83,14 +72,14 @@ std::string Navigator::need_of_path() {
   const double margin =
       1;  // [m of the best ground], so that the last metres are not planned anew for nothing
   if (*cost > planned * (1 + parameters_.replan_rise) + margin)
-    return "the cost of the path has risen from " + text(planned) + " to " + text(*cost) + " m";
+    return "the cost of the path has risen from " + number_text(planned) + " to " + number_text(*cost) + " m";
   if (parameters_.planner != PlannerKind::field) return "";
   Place start, goal;
   if (!places(start, goal).empty()) return "";
   prepare_field(start, goal);
   const double best = field_->value(start.cell) / FieldPlanner::cost_of_metre(*grid_);
   if (best < *cost * (1 - parameters_.replan_gain) - margin)
-    return "another path costs " + text(best) + " m instead of " + text(*cost) + " m";
+    return "another path costs " + number_text(best) + " m instead of " + number_text(*cost) + " m";
   return "";
 }
 
@@ -205,7 +194,7 @@ std::string Navigator::renew_schedule() {
   if (kept.empty()) return "the path is blocked by what the forecast tells";
   const double gained = kept.back().arrival - best.back().arrival;
   if (gained > parameters_.replan_gain * (kept.back().arrival - now_) + 5)
-    return "another path arrives " + text(gained) + " s earlier, as the forecast tells";
+    return "another path arrives " + number_text(gained) + " s earlier, as the forecast tells";
   schedule_ = kept;
   GridPath path;
   for (const TimedPoint& p : kept) path.push_back(p.point);

@@ -41,7 +41,7 @@ class MoveBaseRover:
         self.name, self.changed, self.pose, self.way = name, threading.Condition(), None, []
         self.plans = Listener("/%s/move_base/NavfnROS/plan" % name, Path)
         self.status = Listener("/%s/move_base/status" % name, GoalStatusArray)
-        self.goals = rospy.Publisher("/%s/move_base_simple/goal" % name, PoseStamped, queue_size=1)
+        self.goals = rospy.Publisher("/move_base_simple/goal", PoseStamped, queue_size=1)
         rospy.Subscriber("/%s/ground_truth" % name, Odometry, self.take_pose, queue_size=100)
         rospy.wait_for_service("/%s/move_base/make_plan" % name, 60 * PATIENCE)
         self.status.first("move_base")
