@@ -16,9 +16,9 @@ constexpr int exit_invalid_input = 2, exit_failure = 3;
 inline void shut_down_on_signal(int) { ros::requestShutdown(); }
 
 /// Runs the server that `make` returns a pointer to, until ROS shuts down, its failure() is not empty, or
-/// SIGINT or SIGTERM comes; `on_signal` handles these. The exit status: 0 after a shutdown; exit_invalid_input
-/// for ConfigError of `make`; exit_failure for a failure at run time, after `last_words` seconds in which what
-/// the server has published last is sent.
+/// SIGINT or SIGTERM comes; `on_signal` handles these. The exit status: 0 after a shutdown;
+/// exit_invalid_input for ConfigError of `make`; exit_failure for a failure at run time, after `last_words`
+/// seconds in which what the server has published last is sent.
 template <class Make>
 int run_node(int& argc, char** argv, const char* name, const Make& make,
              void (*on_signal)(int) = shut_down_on_signal, double last_words = 0) {
