@@ -41,14 +41,17 @@ endif()
 find_package(ompl QUIET)
 find_library(DESERT_ompl_LIBRARY ompl HINTS ${OMPL_LIBRARY_DIRS})
 mark_as_advanced(DESERT_ompl_LIBRARY)
-if(NOT ompl_FOUND OR NOT DESERT_ompl_LIBRARY)
+if(ompl_FOUND AND DESERT_ompl_LIBRARY)
+  list(REMOVE_ITEM OMPL_INCLUDE_DIRS /usr/include)
+  add_library(desert::ompl INTERFACE IMPORTED GLOBAL)
+  set_target_properties(desert::ompl PROPERTIES
+    INTERFACE_INCLUDE_DIRECTORIES "${OMPL_INCLUDE_DIRS}"
+    INTERFACE_LINK_LIBRARIES ${DESERT_ompl_LIBRARY})
+elseif(DESERT_WITH_ROS)
   message(FATAL_ERROR "desert_sim needs OMPL: install libompl-dev (the whole list is in scripts/dependencies.txt)")
+else() # a bare server with a GPU needs no planner
+  desert_leave_out(desert_planner "no OMPL")
 endif()
-list(REMOVE_ITEM OMPL_INCLUDE_DIRS /usr/include)
-add_library(desert::ompl INTERFACE IMPORTED GLOBAL)
-set_target_properties(desert::ompl PROPERTIES
-  INTERFACE_INCLUDE_DIRECTORIES "${OMPL_INCLUDE_DIRS}"
-  INTERFACE_LINK_LIBRARIES ${DESERT_ompl_LIBRARY})
 
 if(NOT yaml-cpp_FOUND)
   message(FATAL_ERROR "desert_sim needs yaml-cpp: install libyaml-cpp-dev (the whole list is in scripts/dependencies.txt)")

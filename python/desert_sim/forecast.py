@@ -14,7 +14,8 @@ from .services import SimulationError
 
 @dataclasses.dataclass(frozen=True)
 class Forecast:
-    """What the terrain will be like at m moments: msg/Forecast.msg as arrays. Times are of ROS, in seconds after `stamp`.
+    """What the terrain will be like at m moments: msg/Forecast.msg as arrays. Times are of ROS, in seconds after `stamp`, as
+    the live run is paced.
 
     Arrays of cells are [height, width], row 0 in the south; `elevation[n]` says where they lie (origin_x, origin_y,
     cell_size, frame).
@@ -23,7 +24,7 @@ class Forecast:
     step: int                      # of that state
     sim_time: float                # the desert's own time of that state [s]
     seconds_per_sim_second: float  # seconds of ROS time for a second of the desert's own time
-    members: int                   # runs with dice of their own; 1: only that of the live run
+    members: int                   # runs with a wind of their own; 1: only that of the live run
     times: numpy.ndarray           # [m] of the moments, rising [s]
     steps: numpy.ndarray           # [m] of the moments
     state_hashes: list             # [m] texts of 16 hexadecimal digits

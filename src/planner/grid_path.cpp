@@ -54,7 +54,8 @@ std::optional<double> line_cost(const CostGrid& grid, const GridPoint& from, con
     if (walk.x() < 0 || walk.x() >= f.width || walk.y() < 0 || walk.y() >= f.height) return std::nullopt;
     const std::uint8_t cost = grid.cost(grid.cell(walk.x(), walk.y()));
     const double end = walk.end();
-    if (cost == CostGrid::lethal && end > at && at * length >= free_start) return std::nullopt;
+    const bool touched = (end - at) * length < 1e-6 * f.cell_size;  // at a corner
+    if (cost == CostGrid::lethal && !touched && at * length >= free_start) return std::nullopt;
     sum += (end - at) * (cost == CostGrid::lethal ? 255 : cost);
     if (end >= 1) return sum * length / CostGrid::cheapest;
     at = end;

@@ -48,13 +48,14 @@ std::optional<double> HeadingCosts::line(const GridPoint& from, const GridPoint&
   if (!line_cost(*grid_, from, to)) return std::nullopt;
   if (!(length > 0)) return 0;
   const int samples = std::max(1, static_cast<int>(std::ceil(length / grid_->frame().cell_size)));
-  double sum = 0;
+  double sum = 0, last = 1;
   for (int n = 0; n < samples; ++n) {
     const double share = (n + 0.5) / samples;
-    const auto cost = metre({from.x + (to.x - from.x) * share, from.y + (to.y - from.y) * share},
-                            (to.x - from.x) / length, (to.y - from.y) / length);
-    if (!cost) return std::nullopt;
-    sum += *cost;
+    // A sample on the corner of a lethal cell, which the line only touches, costs as much as the one before.
+    last = metre({from.x + (to.x - from.x) * share, from.y + (to.y - from.y) * share},
+                 (to.x - from.x) / length, (to.y - from.y) / length)
+               .value_or(last);
+    sum += last;
   }
   return sum * length / samples;
 }

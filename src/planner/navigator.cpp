@@ -2,23 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "src/core/constants.hpp"
 #include "src/core/error.hpp"
+#include "src/core/number_text.hpp"
 
 namespace desert_sim {
 
 namespace {
 
 double distance(const PlanarPose& a, const PlanarPose& b) { return std::hypot(a.x - b.x, a.y - b.y); }
-
-std::string text(double number) {
-  std::ostringstream out;
-  out.precision(3);
-  out << number;
-  return out.str();
-}
 
 }  // namespace
 
@@ -80,10 +73,10 @@ void Navigator::set_goal(const PlanarPose& goal, double time) {
   if (grid_) {
     const GridFrame& f = grid_->frame();
     if (!grid_->cell_at({goal.x, goal.y}))
-      throw ConfigError("the goal (" + text(goal.x) + ", " + text(goal.y) +
-                        ") is off the terrain, which is x " + text(f.origin_x) + " ... " +
-                        text(f.origin_x + f.width * f.cell_size) + ", y " + text(f.origin_y) + " ... " +
-                        text(f.origin_y + f.height * f.cell_size));
+      throw ConfigError("the goal (" + number_text(goal.x) + ", " + number_text(goal.y) +
+                        ") is off the terrain, which is x " + number_text(f.origin_x) + " ... " +
+                        number_text(f.origin_x + f.width * f.cell_size) + ", y " + number_text(f.origin_y) +
+                        " ... " + number_text(f.origin_y + f.height * f.cell_size));
     for (const GridPoint& p : avoided_) grid_->mark(p, parameters_.avoid_radius, false, changed_);
   }
   avoided_.clear();
@@ -163,8 +156,8 @@ DriveCommand Navigator::act(double time, const PlanarPose& pose, RoverCondition 
 std::optional<DriveCommand> Navigator::mind_limits() {
   if (parameters_.time_limit > 0 && status_.elapsed >= parameters_.time_limit)
     return finish(NavigatorState::timed_out, "the goal was not reached within " +
-                                                 text(parameters_.time_limit) + " s; " +
-                                                 text(status_.distance) + " m were left");
+                                                 number_text(parameters_.time_limit) + " s; " +
+                                                 number_text(status_.distance) + " m were left");
   if (!grid_) return wait("the terrain is not known yet");
   if (!grid_->cell_at({goal_->x, goal_->y}))
     return finish(NavigatorState::no_path, "the goal is off the terrain");
@@ -243,7 +236,7 @@ DriveCommand Navigator::follow() {
                           schedule_[n].point.y - schedule_[n - 1].point.y);
       if (way < pursuit_.done() - 1e-9) continue;
       if (schedule_[n].departure > now_ + 1e-9 && schedule_[n].departure > schedule_[n].arrival + 1)
-        return wait("until the ground ahead is free, " + text(schedule_[n].departure - now_) + " s");
+        return wait("until the ground ahead is free, " + number_text(schedule_[n].departure - now_) + " s");
       break;
     }
   }

@@ -119,6 +119,10 @@ class Navigator {
   std::string plan_by_field(const Place& start, const Place& goal, GridPath& path);
   std::string plan_by_ompl(const Place& start, const Place& goal, GridPath& path);
   std::string plan_by_forecast(const Place& start, const Place& goal, GridPath& path);
+  /// Times what remains of the path by the newest forecast. Why it is given up; empty if it is kept.
+  std::string renew_schedule();
+  /// The cells of what remains of the path, and those around the rover.
+  std::vector<bool> cells_of_path() const;
   /// Where the path begins and ends; why there is none otherwise.
   std::string places(Place& start, Place& goal) const;
   void prepare_field(const Place& start, const Place& goal);

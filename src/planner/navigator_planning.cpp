@@ -1,23 +1,12 @@
 /// Where a navigator's paths come from, and when another is needed.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "src/core/error.hpp"
+#include "src/core/number_text.hpp"
 #include "src/planner/navigator.hpp"
 
 namespace desert_sim {
-
-namespace {
-
-std::string text(double number) {
-  std::ostringstream out;
-  out.precision(3);
-  out << number;
-  return out.str();
-}
-
-}  // namespace
 
 std::string Navigator::places(Place& start, Place& goal) const {
   const auto near = [&](double x, double y, double distance) {
@@ -32,12 +21,12 @@ std::string Navigator::places(Place& start, Place& goal) const {
   };
   const auto s = near(pose_.x, pose_.y, parameters_.escape);
   if (!s)
-    return "the start (" + text(pose_.x) + ", " + text(pose_.y) +
-           ") is not passable, nor is any cell within " + text(parameters_.escape) +
+    return "the start (" + number_text(pose_.x) + ", " + number_text(pose_.y) +
+           ") is not passable, nor is any cell within " + number_text(parameters_.escape) +
            " m: " + why(pose_.x, pose_.y);
   const auto g = near(goal_->x, goal_->y, parameters_.goal_tolerance);
   if (!g)
-    return "the goal (" + text(goal_->x) + ", " + text(goal_->y) +
+    return "the goal (" + number_text(goal_->x) + ", " + number_text(goal_->y) +
            ") is not passable: " + why(goal_->x, goal_->y);
   start = {grid_->centre(*s), *s};
   goal = {grid_->centre(*g), *g};
@@ -52,8 +41,8 @@ std::string Navigator::need_of_path() {
     return status_.plans == 0 ? "a new goal" : "there was no path";
   }
   if (pursuit_.off_path() > parameters_.off_path)
-    return "the rover is " + text(pursuit_.off_path()) + " m off the path";
-  if (parameters_.planner == PlannerKind::forecast && new_forecast_) return "a new forecast";
+    return "the rover is " + number_text(pursuit_.off_path()) + " m off the path";
+  if (parameters_.planner == PlannerKind::forecast && new_forecast_) return renew_schedule();
   if (!changed) return "";
   const auto cost = path_cost(*grid_, pursuit_.remaining(), free_start());
   if (!cost) {
@@ -83,14 +72,14 @@ std::string Navigator::need_of_path() {
   const double margin =
       1;  // [m of the best ground], so that the last metres are not planned anew for nothing
   if (*cost > planned * (1 + parameters_.replan_rise) + margin)
-    return "the cost of the path has risen from " + text(planned) + " to " + text(*cost) + " m";
+    return "the cost of the path has risen from " + number_text(planned) + " to " + number_text(*cost) + " m";
   if (parameters_.planner != PlannerKind::field) return "";
   Place start, goal;
   if (!places(start, goal).empty()) return "";
   prepare_field(start, goal);
   const double best = field_->value(start.cell) / FieldPlanner::cost_of_metre(*grid_);
   if (best < *cost * (1 - parameters_.replan_gain) - margin)
-    return "another path costs " + text(best) + " m instead of " + text(*cost) + " m";
+    return "another path costs " + number_text(best) + " m instead of " + number_text(*cost) + " m";
   return "";
 }
 
@@ -178,6 +167,39 @@ std::string Navigator::plan_by_forecast(const Place& start, const Place& goal, G
              ? "no way leads from the start to the goal, even with waiting, over the ground that the "
                "forecast tells"
              : "";
+}
+
+std::vector<bool> Navigator::cells_of_path() const {
+  std::vector<bool> cells(grid_->size(), false);
+  for (const GridPoint& p : pursuit_.remaining())
+    if (const auto cell = grid_->cell_at(p)) cells[*cell] = true;
+  const int reach = static_cast<int>(std::ceil(parameters_.escape / grid_->frame().cell_size));
+  const GridFrame& f = grid_->frame();
+  if (const auto rover = grid_->cell_at({pose_.x, pose_.y})) {
+    const int cx = grid_->x_of(*rover), cy = grid_->y_of(*rover);
+    for (int y = std::max(cy - reach, 0); y <= std::min(cy + reach, f.height - 1); ++y)
+      for (int x = std::max(cx - reach, 0); x <= std::min(cx + reach, f.width - 1); ++x)
+        cells[grid_->cell(x, y)] = true;
+  }
+  return cells;
+}
+
+std::string Navigator::renew_schedule() {
+  new_forecast_ = false;
+  Place start, goal;
+  if (!places(start, goal).empty()) return "the start or the goal is not passable any more";
+  TimedPlanner planner(timed_costs(), {parameters_.forecast_speed, parameters_.forecast_slowing});
+  const std::vector<TimedPoint> kept = planner.plan(start.cell, goal.cell, cells_of_path()),
+                                best = planner.plan(start.cell, goal.cell);
+  if (kept.empty()) return "the path is blocked by what the forecast tells";
+  const double gained = kept.back().arrival - best.back().arrival;
+  if (gained > parameters_.replan_gain * (kept.back().arrival - now_) + 5)
+    return "another path arrives " + number_text(gained) + " s earlier, as the forecast tells";
+  schedule_ = kept;
+  GridPath path;
+  for (const TimedPoint& p : kept) path.push_back(p.point);
+  take(std::move(path), goal);
+  return "";
 }
 
 void Navigator::take(GridPath path, const Place& goal) {

@@ -6,12 +6,11 @@
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/geometric/PathGeometric.h>
 #include <ompl/geometric/SimpleSetup.h>
-#include <ompl/geometric/planners/informedtrees/ABITstar.h>
-#include <ompl/geometric/planners/informedtrees/BITstar.h>
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -73,18 +72,6 @@ class PassableMotions : public ob::MotionValidator {
   const CostGrid& grid_;
 };
 
-ob::PlannerPtr planner_of(OmplMethod method, const ob::SpaceInformationPtr& space) {
-  switch (method) {
-    case OmplMethod::rrt_star:
-      return std::make_shared<og::RRTstar>(space);
-    case OmplMethod::bit_star:
-      return std::make_shared<og::BITstar>(space);
-    case OmplMethod::abit_star:
-      return std::make_shared<og::ABITstar>(space);
-  }
-  return nullptr;
-}
-
 /// Leaves points out between which the straight line costs less, until none is left.
 GridPath straightened(const HeadingCosts& costs, GridPath path) {
   for (std::size_t n = 1; n + 1 < path.size();) {
@@ -100,14 +87,26 @@ GridPath straightened(const HeadingCosts& costs, GridPath path) {
   return path;
 }
 
-og::SimpleSetup setup_of(const HeadingCosts& costs) {
-  const GridFrame& f = costs.grid().frame();
-  auto plane = std::make_shared<ob::RealVectorStateSpace>(2);
+/// Where a path can lie that costs less than `most`: the box of the ellipse about start and goal whose points
+/// are as far from both together, since a metre costs 1 at least; on the terrain.
+ob::RealVectorBounds bounds_of(const GridFrame& f, const GridPoint& start, const GridPoint& goal,
+                               double most) {
+  const double dx = goal.x - start.x, dy = goal.y - start.y, apart = std::hypot(dx, dy);
+  const double a = most / 2, b = std::sqrt(std::max(a * a - apart * apart / 4, 0.0));
+  const double c = apart > 0 ? dx / apart : 1, s = apart > 0 ? dy / apart : 0;
+  const double half_x = std::hypot(a * c, b * s) + f.cell_size,
+               half_y = std::hypot(a * s, b * c) + f.cell_size;
+  const double x = (start.x + goal.x) / 2, y = (start.y + goal.y) / 2;
   ob::RealVectorBounds bounds(2);
-  bounds.setLow(0, f.origin_x);
-  bounds.setLow(1, f.origin_y);
-  bounds.setHigh(0, f.origin_x + f.width * f.cell_size);
-  bounds.setHigh(1, f.origin_y + f.height * f.cell_size);
+  bounds.setLow(0, std::max(f.origin_x, x - half_x));
+  bounds.setLow(1, std::max(f.origin_y, y - half_y));
+  bounds.setHigh(0, std::min(f.origin_x + f.width * f.cell_size, x + half_x));
+  bounds.setHigh(1, std::min(f.origin_y + f.height * f.cell_size, y + half_y));
+  return bounds;
+}
+
+og::SimpleSetup setup_of(const HeadingCosts& costs, const ob::RealVectorBounds& bounds) {
+  auto plane = std::make_shared<ob::RealVectorStateSpace>(2);
   plane->setBounds(bounds);
   og::SimpleSetup setup(plane);
   setup.setStateValidityChecker([&costs](const ob::State* state) {
@@ -132,10 +131,12 @@ void prepare_ompl(std::uint32_t seed) {
 OmplResult plan_with_ompl(const HeadingCosts& costs, const GridPoint& start, const GridPoint& goal,
                           const GridPath& known, const OmplParameters& parameters) {
   prepare_ompl(parameters.seed);
-  og::SimpleSetup setup = setup_of(costs);
+  const double endless = 1e9;
+  const double most = known.empty() ? endless : costs.path(known).value_or(endless);
+  og::SimpleSetup setup = setup_of(costs, bounds_of(costs.grid().frame(), start, goal, most));
   const auto objective = std::make_shared<MotionCosts>(setup.getSpaceInformation(), costs);
   setup.setOptimizationObjective(objective);
-  setup.setPlanner(planner_of(parameters.method, setup.getSpaceInformation()));
+  setup.setPlanner(std::make_shared<og::RRTstar>(setup.getSpaceInformation()));
   ob::ScopedState<ob::RealVectorStateSpace> from(setup.getStateSpace()), to(setup.getStateSpace());
   from[0] = start.x;
   from[1] = start.y;
@@ -143,10 +144,8 @@ OmplResult plan_with_ompl(const HeadingCosts& costs, const GridPoint& start, con
   to[1] = goal.y;
   setup.setStartAndGoalStates(from, to);
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(parameters.time_limit);
-  // Once an informed tree cannot find anything better it computes no more costs: its rounds count, too.
-  int rounds = 0;
   const ob::PlannerTerminationCondition enough([&] {
-    return objective->count() + ++rounds >= parameters.evaluations || std::chrono::steady_clock::now() >= end;
+    return objective->count() >= parameters.evaluations || std::chrono::steady_clock::now() >= end;
   });
   setup.solve(enough);
 

@@ -1,7 +1,7 @@
 #pragma once
-/// A free path by OMPL over HeadingCosts: positions in the plane, and a motion costs what the straight line
-/// between them does in its direction. A path of the field, where it is given, is refined: OMPL's best path
-/// is returned only if it costs less.
+/// A free path by OMPL's RRT* over HeadingCosts: positions in the plane, and a motion costs what the straight
+/// line between them does in its direction. A path of the field, where it is given, is refined: OMPL's best
+/// path is returned only if it costs less.
 
 #include <cstdint>
 #include <string>
@@ -10,16 +10,11 @@
 
 namespace desert_sim {
 
-/// rrt_star: RRT*, whose costs may depend on the direction; bit_star, abit_star: informed trees, which find
-/// good paths sooner on large terrains.
-enum class OmplMethod : int { rrt_star, bit_star, abit_star };
-constexpr const char* ompl_methods[] = {"rrt_star", "bit_star", "abit_star"};
-
 struct OmplParameters {
-  OmplMethod method = OmplMethod::bit_star;
-  int evaluations = 20000;  ///< lines whose cost is computed, and rounds of the method, at which it ends
-  double time_limit = 2;    ///< [s] of wall time, whatever comes first
-  std::uint32_t seed = 1;   ///< of the process: what the first planner says holds
+  int evaluations =
+      20000;  ///< after so many lines whose cost was computed it ends; the same number, the same path
+  double time_limit = 2;   ///< [s] of wall time, whatever comes first
+  std::uint32_t seed = 1;  ///< of the process: what the first planner says holds
 };
 
 struct OmplResult {

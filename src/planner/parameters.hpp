@@ -53,7 +53,6 @@ struct PlannerParameters {
   double avoid_radius = 1;
   double buried_patience = 120;
   // ---- OMPL
-  OmplMethod ompl_method = OmplMethod::bit_star;
   int ompl_evaluations = 20000;
   double ompl_time = 2;
   int ompl_seed = 1;
@@ -67,9 +66,7 @@ struct PlannerParameters {
   PursuitParameters pursuit() const {
     return {speed, yaw_rate, lookahead, turn_angle_deg, turns_on_the_spot, narrowest_arc};
   }
-  OmplParameters ompl() const {
-    return {ompl_method, ompl_evaluations, ompl_time, static_cast<std::uint32_t>(ompl_seed)};
-  }
+  OmplParameters ompl() const { return {ompl_evaluations, ompl_time, static_cast<std::uint32_t>(ompl_seed)}; }
   HeadingWeights heading_weights() const {
     return {slip_weight, drift_weight, sinkage_weight, water_weight, wind_weight};
   }
@@ -134,9 +131,8 @@ constexpr auto parameter_table(const PlannerParameters*) {
                 "Around where it was stuck or blocked, ground that counts as lethal until the next goal."),
       parameter("buried_patience", &P::buried_patience, 0, 1e9, "s",
                 "How long it waits, buried, for the wind to uncover it."),
-      parameter("ompl_method", &P::ompl_method, ompl_methods, "Which planner of OMPL."),
       parameter("ompl_evaluations", &P::ompl_evaluations, 100, 1e8, "1",
-                "Lines whose cost is computed for a path, and rounds of the method, at which it ends."),
+                "Lines whose cost is computed for a path; the same number gives the same path."),
       parameter("ompl_time", &P::ompl_time, 0.001, 1e6, "s", "Of wall time for a path at most."),
       parameter("ompl_seed", &P::ompl_seed, 1, 1e9, "1", "Of OMPL's random numbers."),
       parameter("slip_weight", &P::slip_weight, 0, 1000, "1", "ompl: cost of a metre by its slip."),

@@ -46,10 +46,11 @@ struct TimedPlanner::Search {
     std::uint32_t before = 0;              ///< number of that cell's interval
     bool closed = false;
   };
-  std::size_t slots = 0;
-  CellIndex goal = 0;
-  std::vector<Reached> reached;  ///< by cell, and first slot of the interval
-  std::priority_queue<Label> open;
+  std::size_t slots;
+  CellIndex goal;
+  const std::vector<bool>& within;
+  std::vector<Reached> reached = {};  ///< by cell, and first slot of the interval
+  std::priority_queue<Label> open = {};
 };
 
 TimedPlanner::TimedPlanner(TimedCosts costs, const TimedParameters& parameters)
@@ -107,6 +108,7 @@ void TimedPlanner::expand(Search& search, const Label& label) const {
     for (int dx = -1; dx <= 1; ++dx) {
       if (dx == 0 && dy == 0) continue;
       const auto to = static_cast<CellIndex>(static_cast<int>(label.cell) + dy * frame_.stride() + dx);
+      if (!search.within.empty() && !search.within[to]) continue;
       const double length = (dx != 0 && dy != 0 ? std::sqrt(2.0) : 1.0) * cell_size;
       for (std::size_t slot = slot_at(label.arrival); slot <= last; ++slot) {
         if (cost(to, slot) == CostGrid::lethal) continue;
@@ -137,13 +139,11 @@ void TimedPlanner::let_flee(CellIndex start) {
     }
 }
 
-std::vector<TimedPoint> TimedPlanner::plan(CellIndex start, CellIndex goal) {
+std::vector<TimedPoint> TimedPlanner::plan(CellIndex start, CellIndex goal, const std::vector<bool>& within) {
   expanded_ = 0;
   if (cost(start, 0) == CostGrid::lethal) let_flee(start);
   if (cost(start, 0) == CostGrid::lethal) return {};
-  Search search;
-  search.slots = slots_.size();
-  search.goal = goal;
+  Search search{slots_.size(), goal, within};
   search.reached.resize(frame_.size() * search.slots);
   const double now = costs_.times.front();
   search.reached[start * search.slots].arrival = now;

@@ -45,7 +45,8 @@ class TimedPlanner {
   /// From a cell, at the first moment, to another; empty where there is no way even with waiting. Ground
   /// about the start that is passable now and lethal at the next moment counts as the worst passable one till
   /// then, so that a rover can flee.
-  std::vector<TimedPoint> plan(CellIndex start, CellIndex goal);
+  /// `within`, if it is not empty, holds for each cell of the grid whether the path may cross it.
+  std::vector<TimedPoint> plan(CellIndex start, CellIndex goal, const std::vector<bool>& within = {});
   /// Cells and intervals that the last plan() has looked at.
   std::size_t expanded() const { return expanded_; }
 

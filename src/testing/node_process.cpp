@@ -5,7 +5,6 @@
 #include <ros/init.h>
 #include <ros/master.h>
 #include <ros/param.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -20,8 +19,7 @@
 #include <thread>
 
 #include "src/core/error.hpp"
-
-extern char** environ;
+#include "src/core/spawn.hpp"
 
 namespace desert_sim::test {
 
@@ -85,20 +83,15 @@ bool wait_until(const std::function<bool()>& happened, double seconds) {
 
 // ---- processes
 
-Process::Process(std::vector<std::string> words, bool quiet) {
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+Process::Process(const std::vector<std::string>& words, bool quiet) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   if (quiet)
     for (const int output : {STDOUT_FILENO, STDERR_FILENO})
       posix_spawn_file_actions_addopen(&actions, output, "/dev/null", O_WRONLY, 0);
-  const int failure = posix_spawnp(&pid_, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) throw Error(words.front() + ": " + std::strerror(failure));
+  if (const int failure = spawn_program(pid_, words, actions))
+    throw Error(words.front() + ": " + std::strerror(failure));
 }
 
 bool Process::running() {

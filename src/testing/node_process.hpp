@@ -28,7 +28,7 @@ class Process {
  public:
   /// `words`: the program, which is searched for in $PATH, and its arguments; `quiet`: what it prints is
   /// lost. Throws Error if it cannot be started.
-  explicit Process(std::vector<std::string> words, bool quiet = false);
+  explicit Process(const std::vector<std::string>& words, bool quiet = false);
   /// SIGINT, and SIGKILL if it still runs after ten seconds.
   ~Process();
   Process(const Process&) = delete;

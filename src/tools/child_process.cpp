@@ -1,7 +1,6 @@
 #include "src/tools/child_process.hpp"
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,17 +10,12 @@
 #include <utility>
 
 #include "src/core/error.hpp"
-
-extern char** environ;
+#include "src/core/spawn.hpp"
 
 namespace desert_sim {
 
 ChildProcess::ChildProcess(const std::string& what, std::vector<std::string> words, Input input)
     : what_(what), program_(words.at(0)) {
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   Descriptor read_end(-1);
@@ -33,9 +27,7 @@ ChildProcess::ChildProcess(const std::string& what, std::vector<std::string> wor
     posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
     std::signal(SIGPIPE, SIG_IGN);  // a program that ends early is told by write()
   }
-  const int failure = posix_spawnp(&child_, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) {
+  if (const int failure = spawn_program(child_, std::move(words), actions)) {
     child_ = -1;
     throw ConfigError(what_ + ": " + program_ + ": " + std::strerror(failure));
   }

@@ -2,9 +2,10 @@
 """How long a forecast takes beside a live run, and what it costs the live run, on two cores. After `. build/devel/setup.bash`:
 
     test/bench/forecast.py [--scenario rover_barchans] [--size 256] [--horizon 600] [--moments 10] [--rate 10] [--repeat 3]
-                           [--at-most SECONDS]
+                           [--time-step SECONDS] [--at-most SECONDS]
 
-The node runs the scenario at `rate` steps a second (those with a run.acceleration: as that says). It fails (exit status 1)
+The node runs the scenario at `rate` steps a second (those with a run.acceleration: as that says). With `time-step` the
+forecast makes steps of so many seconds of the desert's time, fewer of them under a run.acceleration. It fails (exit status 1)
 if the fastest of the forecasts takes longer than `at-most`, or the result is no forecast.
 """
 import argparse
@@ -14,6 +15,7 @@ import time
 import rospy
 from actionlib import GoalStatus, SimpleActionClient
 from desert_sim.msg import ForecastTerrainAction, ForecastTerrainGoal
+from dynamic_reconfigure.msg import Config, DoubleParameter
 from live_node import LiveNode, median
 
 
@@ -31,11 +33,14 @@ def main():
     parser.add_argument("--settings", nargs="*", default=[])
     for name, default in (("size", 256), ("moments", 10), ("repeat", 3), ("threads", 0)):
         parser.add_argument("--" + name, type=int, default=default)
-    for name, default in (("horizon", 600), ("rate", 10), ("at-most", float("inf"))):
+    for name, default in (("horizon", 600), ("rate", 10), ("time-step", None), ("at-most", float("inf"))):
         parser.add_argument("--" + name, type=float, default=default)
     a = parser.parse_args()
     private = {"scenario": a.scenario, "paused": False, "step_rate": a.rate, "status_rate": 20, "forecast_threads": a.threads,
                "settings": ["grid.width=%d" % a.size, "grid.height=%d" % a.size, *a.settings]}
+    goal = ForecastTerrainGoal(horizon=a.horizon, moments=a.moments)
+    if a.time_step:
+        goal.parameters = Config(doubles=[DoubleParameter("run__time_step", a.time_step)])
     seconds, failed = [], False
     with LiveNode(private, subscribers=0) as live:
         client = SimpleActionClient("/desert_sim/forecast", ForecastTerrainAction)
@@ -43,7 +48,7 @@ def main():
         alone, beside = rate(live, 2), []
         for _ in range(a.repeat):
             start = time.monotonic()
-            client.send_goal(ForecastTerrainGoal(horizon=a.horizon, moments=a.moments))
+            client.send_goal(goal)
             beside.append(rate(live, 2))
             client.wait_for_result(rospy.Duration(3600))
             seconds.append(time.monotonic() - start)

@@ -23,6 +23,8 @@ using namespace desert_sim;
 
 namespace {
 
+constexpr int moments = 10;  // of a forecast
+
 const char usage[] =
     "usage: planner_trials SCENARIO.yaml [options]\n"
     "  --set KEY=VALUE   of the scenario; may be repeated\n"
@@ -32,11 +34,12 @@ const char usage[] =
     "  --seconds N       of ROS time, that a rover has (default 900)\n"
     "  --distance N      from start to goal, at least [m] (default 60)\n"
     "  --goals WHERE     rock (default): any passable ground; lee: close behind dunes, where they will be\n"
-    "  --horizon N       of forecasts [s] (default 300), of which there is one every 30 s with 10 moments\n"
+    "  --horizon N       of forecasts [s] (default 300), of which there is one every tenth of it, with 10 "
+    "moments\n"
     "  --threads N       of the simulation (default 1)\n"
     "All rovers drive at the same time on one desert, and do not meet each other. Forecasts are runs of the "
     "same desert\n"
-    "ahead, and therefore right. A line for each rover that did not arrive, and a table.\n"
+    "ahead, and therefore right. A line for each rover, and sums.\n"
     "Exit status: 0; 2 for invalid input; 3 for a failure at run time.\n";
 
 struct Place {
@@ -101,7 +104,7 @@ class Future {
     return frames_[std::min(n, frames_.size() - 1)];
   }
   /// What a forecast tells that begins at `time`.
-  ForecastCosts forecast(double time, double horizon, int moments) const {
+  ForecastCosts forecast(double time, double horizon) const {
     ForecastCosts f;
     f.made = time;
     f.frame = frame_;
@@ -176,6 +179,11 @@ class Trial {
       const RoverState& s = rover_.state();
       const DriveCommand command =
           navigator_.act(time + t, {s.pose.x, s.pose.y, s.pose.yaw}, s.condition, s.reason);
+      if (navigator_.status().replans > replans_) {
+        replans_ = navigator_.status().replans;
+        const std::string why = navigator_.status().last_replan.substr(0, 24);
+        ++reasons_[why.substr(0, why.find_first_of("0123456789"))];
+      }
       rover_.drive(command, 0.5);
       const RoverCondition before = s.condition;
       rover_.advance(0.1, &desert.ground());
@@ -186,6 +194,8 @@ class Trial {
     }
   }
   const NavigatorStatus& status() const { return navigator_.status(); }
+  /// Replans by the first words of their reason.
+  const std::map<std::string, int>& reasons() const { return reasons_; }
   int stuck() const { return stuck_; }
   int blocked() const { return blocked_; }
   int buried() const { return buried_; }
@@ -206,13 +216,15 @@ class Trial {
   Course course_;
   Navigator navigator_;
   Rover rover_;
-  int stuck_ = 0, blocked_ = 0, buried_ = 0;
+  int stuck_ = 0, blocked_ = 0, buried_ = 0, replans_ = 0;
+  std::map<std::string, int> reasons_;
 };
 
 struct Sum {
   int arrived = 0, replans = 0, stuck = 0, blocked = 0, buried = 0, recoveries = 0, troubled = 0;
   double time = 0;
   std::size_t differences = 0;
+  std::map<std::string, int> reasons;
 };
 
 PlannerParameters parameters_of(const std::string& planner, double seconds) {
@@ -242,8 +254,10 @@ void print(const std::string& planner, const std::vector<std::unique_ptr<Trial>>
     sum.recoveries += s.recoveries;
     sum.troubled += t.stuck() > 0 || t.buried() > 0;
     sum.differences += s.field_differences;
+    for (const auto& [why, count] : t.reasons()) sum.reasons[why] += count;
     t.print();
   }
+  for (const auto& [why, count] : sum.reasons) std::printf("  %d replans: %s...\n", count, why.c_str());
   std::printf(
       "%s: %d of %zu arrived, in %.0f s on average; %d replans, %d times stuck, %d blocked, %d buried (%d "
       "rovers stuck "
@@ -268,7 +282,7 @@ int run(int argc, char** argv) {
              horizon = static_cast<double>(o.number("horizon", 300, 10, 100000));
   std::vector<std::string> planners = o.values("planner");
   if (planners.empty()) planners = {"field"};
-  constexpr double every = 30;
+  const double every = horizon / moments;
   const Future future(scenario, threads, every, seconds + horizon);
   Desert desert(scenario, threads);
   std::vector<std::vector<std::unique_ptr<Trial>>> trials(planners.size());
@@ -285,7 +299,7 @@ int run(int argc, char** argv) {
     const bool forecast_due = time >= next_forecast - 1e-6;
     for (std::size_t k = 0; k < planners.size(); ++k) {
       ForecastCosts forecast;
-      if (forecast_due && planners[k] == "forecast") forecast = future.forecast(next_forecast, horizon, 10);
+      if (forecast_due && planners[k] == "forecast") forecast = future.forecast(next_forecast, horizon);
       for (const std::unique_ptr<Trial>& t : trials[k]) {
         if (!t->active()) continue;
         t->take(desert);

@@ -112,32 +112,58 @@ TEST(HeadingCosts, WindAndWaterCost) {
   EXPECT_NEAR(*costs.metre({10, 10}, 1, 0), 1 + 10 * 0.02 + 20 * 0.01, 1e-6);
 }
 
-class Ompl : public testing::TestWithParam<OmplMethod> {};
-
-TEST_P(Ompl, FindsAWayRoundAWallThatCostsLessThanTheKnownOne) {
+TEST(OmplPlanner, FindsAWayRoundAWallThatCostsLessThanTheKnownOne) {
   auto grid = std::make_shared<CostGrid>(frame, CostParameters{});
   test::fill(*grid, [](int x, int y) { return x == 30 && y < 45 ? 0.0F : 1.0F; });
   const HeadingCosts costs(grid, {}, {});
   const GridPoint start{5, 5}, goal{25, 5};
   const GridPath around{{5, 5}, {5, 28}, {25, 28}, {25, 5}};
-  const OmplResult result = plan_with_ompl(costs, start, goal, around, {GetParam(), 20000, 20, 1});
-  ASSERT_TRUE(result.problem.empty()) << result.problem;
-  ASSERT_TRUE(path_cost(*grid, result.path));
   const double shortest = std::hypot(10, 18) * 2;  // over the wall's end, about
-  EXPECT_LT(result.cost, 1.2 * shortest);
-  EXPECT_GT(result.cost, 0.95 * shortest);
-  EXPECT_EQ(result.path.front().x, start.x);
-  EXPECT_EQ(result.path.back().x, goal.x);
+  for (const GridPath& known : {around, GridPath()}) {
+    const OmplResult result = plan_with_ompl(costs, start, goal, known, {20000, 20, 1});
+    ASSERT_TRUE(result.problem.empty()) << result.problem;
+    ASSERT_TRUE(path_cost(*grid, result.path));
+    EXPECT_LT(result.cost, 1.15 * shortest);
+    EXPECT_GT(result.cost, 0.95 * shortest);
+    EXPECT_EQ(result.path.front().x, start.x);
+    EXPECT_EQ(result.path.back().x, goal.x);
+  }
 }
-INSTANTIATE_TEST_SUITE_P(Methods, Ompl,
-                         testing::Values(OmplMethod::rrt_star, OmplMethod::bit_star, OmplMethod::abit_star),
-                         [](const auto& each) { return ompl_methods[static_cast<int>(each.param)]; });
+
+/// On any ground it is no worse than what is known, and finds a way or says that it did not.
+TEST(OmplPlanner, RefinesKnownPathsOnAnyGround) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    std::mt19937 dice(seed);
+    auto grid = std::make_shared<CostGrid>(frame, CostParameters{});
+    std::vector<CellIndex> changed;
+    grid->update({0, 0, frame.width, frame.height}, test::random_ground(frame, dice, 25).data(), changed);
+    const auto any = [&] {
+      return *grid->nearest_passable({static_cast<double>(dice() % 30), static_cast<double>(dice() % 30)},
+                                     20);
+    };
+    const CellIndex start = any(), goal = seed % 5 == 0 ? start : any();
+    FieldPlanner field(*grid);
+    field.compute(goal);
+    const GridPath known = shortened(*grid, field.path_from(start));
+    const HeadingCosts costs(grid, {}, {});
+    const OmplResult result =
+        plan_with_ompl(costs, grid->centre(start), grid->centre(goal), known, {1000, 20, 1});
+    if (known.empty()) {
+      EXPECT_TRUE(result.path.empty());
+      EXPECT_FALSE(result.problem.empty());
+      continue;
+    }
+    ASSERT_FALSE(result.path.empty());
+    EXPECT_LE(result.cost, *costs.path(known) + 1e-9);
+    EXPECT_TRUE(path_cost(*grid, result.path)) << "seed " << seed;
+  }
+}
 
 TEST(OmplPlanner, SaysWhereThereIsNoWay) {
   auto grid = std::make_shared<CostGrid>(frame, CostParameters{});
   test::fill(*grid, [](int x, int) { return x == 30 ? 0.0F : 1.0F; });
   const HeadingCosts costs(grid, {}, {});
-  const OmplResult result = plan_with_ompl(costs, {5, 5}, {25, 5}, {}, {OmplMethod::bit_star, 2000, 5, 1});
+  const OmplResult result = plan_with_ompl(costs, {5, 5}, {25, 5}, {}, {2000, 5, 1});
   EXPECT_TRUE(result.path.empty());
   EXPECT_NE(result.problem.find("no path"), std::string::npos);
 }

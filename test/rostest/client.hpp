@@ -5,29 +5,20 @@
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
-#include <chrono>
-#include <cstdlib>
 #include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "src/testing/node_process.hpp"
+
 namespace node_test {
 
-/// As in desert_sim.testing of Python.
-inline double patience() {
-  const char* factor = std::getenv("DESERT_PATIENCE");
-  return factor ? std::strtod(factor, nullptr) : 1;
-}
+using desert_sim::test::patience;
 
 inline bool wait_until(const std::function<bool()>& happened, double seconds = 10) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds * patience());
-  while (!happened()) {
-    if (std::chrono::steady_clock::now() > end || !ros::ok()) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return true;
+  return desert_sim::test::wait_until(happened, seconds);
 }
 
 /// The service's answer; a test failure if there is none.

@@ -261,6 +261,22 @@ class Calls(Client):
         self.assertGreater(found.wind[1, 0], 1)
         self.assertEqual(self.desert.query([]).elevation.shape, (0,))
 
+    def test_forecast(self):
+        """The action of the node itself; Forecasts has a server that is made up."""
+        start = self.desert.step(2)
+        forecast = self.desert.forecast(1.0, moments=2, timeout=60 * PATIENCE)
+        self.assertEqual((forecast.step, forecast.times.tolist()), (start.step, [0.5, 1.0]))
+        self.assertEqual((forecast.costs.shape, forecast.probability.shape), ((2, 48, 64), (0, 48, 64)))
+        self.assertEqual((forecast.passable_until.unit, forecast.passable_from.unit), ("s", "s"))
+        with self.assertRaisesRegex(desert_sim.SimulationError, "/desert_sim/forecast: .*horizon: = -1 is not in"):
+            self.desert.forecast(-1)
+        client = self.client()
+        for step, state_hash, ground in zip(forecast.steps, forecast.state_hashes, forecast.elevation):
+            answer = self.desert.step(step - self.desert.step(0).step)
+            self.assertEqual((answer.step, answer.state_hash), (step, state_hash), "the live run comes to the same")
+            self.assertTrue(client.wait_for_step(step, 20 * PATIENCE) and ground.same_geometry(client.map))
+            numpy.testing.assert_array_equal(ground.values, self.whole("elevation").values)
+
     def test_files(self):
         start = self.desert.step(2)
         self.assertEqual(self.desert.save_checkpoint("a.ckpt").state_hash, start.state_hash)

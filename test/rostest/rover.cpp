@@ -4,10 +4,13 @@
 #include <geometry_msgs/Twist.h>
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/JointState.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <sensor_msgs/point_cloud2_iterator.h>
 #include <tf2/LinearMath/Transform.h>
 #include <tf2_geometry_msgs/tf2_geometry_msgs.h>
 #include <tf2_ros/transform_listener.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -18,6 +21,7 @@ namespace {
 using desert_sim::RoverStatus;
 using nav_msgs::Odometry;
 using node_test::ask;
+using node_test::call;
 using node_test::drive;
 using node_test::Listener;
 using node_test::set_pose;
@@ -179,7 +183,7 @@ TEST_F(TwoRovers, TellWhatStopsThem) {
   rock.radius = rock.radius_y = 1;
   rock.inner = 1;
   rock.value = 1;
-  ASSERT_TRUE(node_test::call<desert_sim::EditTerrain>("edit_terrain", rock).success);
+  ASSERT_TRUE(call<desert_sim::EditTerrain>("edit_terrain", rock).success);
   ASSERT_TRUE(drive(first, 0.3, 0).success);
   EXPECT_TRUE(is(RoverStatus::BLOCKED)) << status_.last().reason;
   EXPECT_NE(status_.last().reason.find("obstacle"), std::string::npos) << status_.last().reason;
@@ -195,13 +199,32 @@ TEST_F(TwoRovers, TellWhatStopsThem) {
   heap.radius = 6;
   heap.inner = 1;
   heap.value = 0.6;
-  ASSERT_TRUE(node_test::call<desert_sim::EditTerrain>("edit_terrain", heap).success);
+  ASSERT_TRUE(call<desert_sim::EditTerrain>("edit_terrain", heap).success);
   EXPECT_TRUE(is(RoverStatus::BURIED)) << status_.last().reason;
   EXPECT_NE(status_.last().reason.find("sand came on its wheels"), std::string::npos)
       << status_.last().reason;
   heap.merge = "sub";
-  ASSERT_TRUE(node_test::call<desert_sim::EditTerrain>("edit_terrain", heap).success);
+  ASSERT_TRUE(call<desert_sim::EditTerrain>("edit_terrain", heap).success);
   EXPECT_TRUE(is(RoverStatus::IDLE)) << status_.last().reason;
+}
+
+/// Returns of the first cloud that a new subscriber gets.
+std::size_t returns_of_first_cloud() {
+  Listener<sensor_msgs::PointCloud2> clouds("/first/lidar/points");
+  clouds.last();
+  const sensor_msgs::PointCloud2 cloud = clouds.all().front();
+  std::size_t returns = 0;
+  for (sensor_msgs::PointCloud2ConstIterator<float> x(cloud, "x"); x != x.end(); ++x)
+    returns += std::isfinite(*x);
+  return returns;
+}
+
+TEST_F(TwoRovers, SeeInTheirFirstScanWhatOnlySensorsSee) {
+  ASSERT_TRUE(call<std_srvs::Trigger>("reset").success);
+  const std::size_t clear = returns_of_first_cloud();
+  EXPECT_GT(clear, 1000u);
+  ASSERT_TRUE(node_test::step(5).success);  // sand is in the air from now on
+  for (int n = 0; n < 3; ++n) EXPECT_LT(returns_of_first_cloud(), clear / 2) << n;
 }
 
 }  // namespace

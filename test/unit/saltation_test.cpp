@@ -184,25 +184,30 @@ TEST_P(SaltationLaw, LandingPointsSpreadByTheirStandardDeviation) {
 
 /// The form for GPUs, which computes four cells at a time, runs on a host as well.
 TEST(Landing, OfFourCellsIsThatOfEach) {
-  const Grid grid{32, 12, 1, true, true};
-  std::vector<Quanta> landed;
-  for (int i = 0; i < grid.cells(); ++i)
-    landed.push_back(static_cast<Quanta>(scrambled(static_cast<std::uint32_t>(i)) >> (i % 3 ? 10 : 5)));
-  for (const float spread : {0.0f, 0.3f, 0.6f, 5.0f}) {
-    const saltation::Landing landing(grid, landed.data(), spread);
-    for (int y = 1; y + 1 < grid.height; ++y)
-      for (int x = 4; x + 4 < grid.width; x += 4) {
-        const Vec4<Quanta> four = saltation::land_on_four(landing, x, y);
-        for (int n = 0; n < 4; ++n)
-          EXPECT_EQ(four.values[n], landing.at<true>(x + n, y)) << spread << ": " << x + n << ", " << y;
-      }
-    long long before = 0, after = 0;
-    for (int y = 0; y < grid.height; ++y)
-      for (int x = 0; x < grid.width; ++x) {
-        before += landed[static_cast<std::size_t>(grid.index(x, y))];
-        after += landing.at<false>(x, y);
-      }
-    EXPECT_EQ(after, before) << spread;
+  for (const Grid& grid :
+       {Grid{32, 12, 1, true, true}, Grid{32, 12, 1, false, false}, Grid{8, 5, 1, false, true},
+        Grid{8, 5, 1, true, false}, Grid{4, 2, 1, true, true}, Grid{4, 1, 1, false, false}}) {
+    std::vector<Quanta> landed;
+    for (int i = 0; i < grid.cells(); ++i)
+      landed.push_back(static_cast<Quanta>(scrambled(static_cast<std::uint32_t>(i)) >> (i % 3 ? 10 : 5)));
+    for (const float spread : {0.0f, 0.3f, 0.6f, 5.0f}) {
+      const saltation::Landing landing(grid, landed.data(), spread);
+      long long before = 0, after = 0;
+      for (int y = 0; y < grid.height; ++y)
+        for (int x = 0; x < grid.width; x += 4) {
+          const Vec4<Quanta> four = saltation::land_on_four(landing, x, y);
+          for (int n = 0; n < 4; ++n) {
+            const Quanta one = landing.at<false>(x + n, y);
+            EXPECT_EQ(four.values[n], one) << grid.width << ", " << spread << ": " << x + n << ", " << y;
+            if (grid.inside(x + n - 1, y - 1) && grid.inside(x + n + 1, y + 1)) {
+              EXPECT_EQ(landing.at<true>(x + n, y), one);
+            }
+            before += landed[static_cast<std::size_t>(grid.index(x + n, y))];
+            after += one;
+          }
+        }
+      EXPECT_EQ(after, before) << spread;
+    }
   }
 }
 

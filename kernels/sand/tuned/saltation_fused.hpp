@@ -29,24 +29,33 @@ struct ShadowAndLift {
   }
 };
 
-/// Landing::at() of four adjacent cells of a row, which have all their neighbours. The cells share
-/// their loads and their shares.
+/// Landing::at() of four adjacent cells of a row; the grid's width and the first x must be multiples of four.
+/// The cells share their loads and their shares. Edges take no way of their own: on small grids it would be
+/// every other warp's.
 DESERT_HD Vec4<Quanta> land_on_four(const Landing& landing, int x, int y) {
-  Quanta row[3][6];
+  const Grid& g = landing.grid;
+  const bool west = g.periodic_x || x > 0, east = g.periodic_x || x + 4 < g.width;
+  const bool there[3] = {g.periodic_y || y > 0, true, g.periodic_y || y + 1 < g.height};
+  const int before = wrap_once(x - 1, g.width), behind = wrap_once(x + 4, g.width);
+  Quanta row[3][6];  // 0 beyond an open edge
   for (int r = 0; r < 3; ++r) {
-    const int first = landing.grid.index(x, y + r - 1);
-    const auto four = load_vec4(landing.landed + first);
-    row[r][0] = landing.landed[first - 1];
+    const int to_y = wrap_once(y + r - 1, g.height);
+    Vec4<Quanta> four{};
+    if (there[r]) four = load_vec4(landing.landed + g.index(x, to_y));
+    row[r][0] = there[r] && west ? landing.landed[g.index(before, to_y)] : 0;
     for (int n = 0; n < 4; ++n) row[r][n + 1] = four.values[n];
-    row[r][5] = landing.landed[first + 4];
+    row[r][5] = there[r] && east ? landing.landed[g.index(behind, to_y)] : 0;
   }
   const auto side = [&](int r, int n) { return Landing::part(row[r][n], landing.to_side); };
   const auto corner = [&](int r, int n) { return Landing::part(row[r][n], landing.to_corner); };
+  const int rows = there[0] + there[2];  // beside the cells' own
   Vec4<Quanta> arriving;
-  for (int n = 1; n < 5; ++n)
-    arriving.values[n - 1] = row[1][n] - 4 * (side(1, n) + corner(1, n)) + side(0, n) + side(2, n) +
-                             side(1, n - 1) + side(1, n + 1) + corner(0, n - 1) + corner(0, n + 1) +
-                             corner(2, n - 1) + corner(2, n + 1);
+  for (int n = 1; n < 5; ++n) {
+    const int columns = (n > 1 || west) + (n < 4 || east);
+    arriving.values[n - 1] = row[1][n] - (rows + columns) * side(1, n) - rows * columns * corner(1, n) +
+                             side(0, n) + side(2, n) + side(1, n - 1) + side(1, n + 1) + corner(0, n - 1) +
+                             corner(0, n + 1) + corner(2, n - 1) + corner(2, n + 1);
+  }
   return arriving;
 }
 
@@ -63,11 +72,7 @@ struct DepositOfFour {
     if (deposit.in.wind_shadow) shadow = load_vec4(deposit.in.wind_shadow + first);
     Vec4<Quanta> waiting{}, sand, airborne;
     if (deposit.in.hop_share < 1.0f) waiting = load_vec4(deposit.airborne + first);
-    Vec4<Quanta> arriving;
-    if (x > 0 && x + 1 < fours().width && y > 0 && y + 1 < fours().height)
-      arriving = land_on_four(deposit.landing, 4 * x, y);
-    else
-      for (int n = 0; n < 4; ++n) arriving.values[n] = deposit.landing.at<false>(4 * x + n, y);
+    const Vec4<Quanta> arriving = land_on_four(deposit.landing, 4 * x, y);
     for (int n = 0; n < 4; ++n) {
       const Quanta cover = deposit.covering(first + n, lying.values[n], u.values[n], v.values[n],
                                             shadow.values[n], 0.0f, 0.0f);

@@ -234,14 +234,13 @@ bool ForecastServer::topics_are_due() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (new_subscriber_) return true;
   }
-  return Clock::now() >= due_ && simulation_.changes() != shown_change_;
+  return Clock::now() >= due_.time() && simulation_.changes() != shown_change_;
 }
 
 void ForecastServer::publish_topics() {
   const PublisherParameters topics = publisher_.parameters().topics;
-  const Clock::duration period = period_of(topics.forecast_rate);
-  due_ += period;
-  if (due_ <= Clock::now()) due_ = Clock::now() + period;
+  const Clock::time_point begun = Clock::now();
+  due_.published(begun, begun, period_of(topics.forecast_rate));
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     new_subscriber_ = false;
@@ -253,7 +252,7 @@ void ForecastServer::publish_topics() {
   try {
     const Outcome outcome = make_forecast(options, nullptr);
     if (!outcome.forecast) {
-      due_ = Clock::now();  // what has ended it goes first
+      due_.period_changed(Clock::now(), {});  // at once, after what has ended it
       shown_change_ = 0;
       return;
     }

@@ -90,8 +90,9 @@ class ForecastServer {
   ForecastReport report_;
 
   // Of the thread alone:
-  Clock::time_point due_, last_published_;  ///< of the topics
-  std::uint64_t shown_change_ = 0;          ///< that the topics begin with
+  DueTime due_;  ///< of the topics
+  Clock::time_point last_published_;
+  std::uint64_t shown_change_ = 0;  ///< that the topics begin with
 
   ros::Publisher maps_, costmap_;
   ActionServer server_;

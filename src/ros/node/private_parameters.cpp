@@ -15,7 +15,7 @@ namespace {
 
 /// A number with all its bits. One that is not finite gets YAML's name for it, which the loader shows when
 /// it refuses the number.
-std::string number_text(double value) {
+std::string yaml_number(double value) {
   if (std::isnan(value)) return ".nan";
   if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
   char text[32];
@@ -33,7 +33,7 @@ YAML::Node yaml_from_xmlrpc(XmlRpc::XmlRpcValue value, const std::string& key) {
     case Value::TypeInt:
       return YAML::Node(static_cast<int>(value));
     case Value::TypeDouble:
-      return YAML::Node(number_text(static_cast<double>(value)));
+      return YAML::Node(yaml_number(static_cast<double>(value)));
     case Value::TypeString:
       return YAML::Node(static_cast<std::string>(value));
     case Value::TypeArray: {

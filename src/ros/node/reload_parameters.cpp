@@ -2,6 +2,7 @@
 
 #include <ros/console.h>
 
+#include "src/core/number_text.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
 #include "src/ros/node/reconfigure_messages.hpp"
 #include "src/scenario/live_parameters.hpp"
@@ -40,12 +41,6 @@ std::vector<std::string> texts(const PublisherSetup& setup) {
   texts.all.push_back("grid_map_layers=" + yaml_list(setup.maps.grid_map_layers));
   texts.all.push_back("local_map_layers=" + yaml_list(setup.maps.local_map_layers));
   return texts.all;
-}
-
-std::string number_text(double number) {
-  std::ostringstream text;
-  text << number;
-  return text.str();
 }
 
 void add(std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; }
@@ -109,7 +104,7 @@ std::string ParameterReload::reload() {
   const double rate = setup.node.step_rate;
   if (rate != last_.node.step_rate) {
     const std::string reason = ineffective_rate(rate, setup.scenario.run);
-    add(applied, "step_rate=" + number_text(rate) + (reason.empty() ? "" : " (" + reason + ")"));
+    add(applied, "step_rate=" + number_text(rate, 6) + (reason.empty() ? "" : " (" + reason + ")"));
   }
   NodeParameters others = setup.node;  // those that take effect at the start only
   others.step_rate = last_.node.step_rate;

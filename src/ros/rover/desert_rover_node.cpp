@@ -6,18 +6,16 @@
 ///                                        scenario (a name or a file), and prints where that ends
 ///
 /// Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time.
-#include <ros/console.h>
-#include <ros/init.h>
-
-#include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "src/core/error.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
 #include "src/ros/conversion/messages.hpp"
+#include "src/ros/node/node_program.hpp"
 #include "src/ros/rover/rover_server.hpp"
 #include "src/rover/simulated_ground.hpp"
 #include "src/rover/urdf.hpp"
@@ -25,10 +23,7 @@
 
 namespace {
 
-constexpr int exit_invalid_input = 2, exit_failure = 3;
-
-/// Handles SIGTERM and SIGINT; only calls what a signal handler may.
-void shut_down(int) { ros::requestShutdown(); }
+using desert_sim::exit_invalid_input;
 
 int print_model(const std::vector<std::string>& words) {
   try {
@@ -60,18 +55,6 @@ int replay(const std::string& journal, const std::string& name) {
   }
 }
 
-int run() {
-  const desert_sim::RoverServer server(ros::NodeHandle(), ros::NodeHandle("~"));
-  std::string failure;
-  while (ros::ok() && failure.empty()) {
-    ros::WallDuration(0.05).sleep();
-    failure = server.failure();
-  }
-  if (failure.empty()) return 0;
-  ROS_FATAL("%s", failure.c_str());
-  return exit_failure;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -87,19 +70,7 @@ int main(int argc, char** argv) {
                  "JOURNAL SCENARIO\n";
     return exit_invalid_input;
   }
-  ros::init(argc, argv, "desert_rover");
-  std::signal(SIGINT, shut_down);
-  std::signal(SIGTERM, shut_down);
-  ros::start();  // the log ends with ROS, and must outlive the server
-  int status = exit_failure;
-  try {
-    status = run();
-  } catch (const desert_sim::ConfigError& e) {
-    ROS_FATAL("%s", e.what());
-    status = exit_invalid_input;
-  } catch (const std::exception& e) {
-    ROS_FATAL("%s", e.what());
-  }
-  ros::shutdown();
-  return status;
+  return desert_sim::run_node(argc, argv, "desert_rover", [] {
+    return std::make_unique<const desert_sim::RoverServer>(ros::NodeHandle(), ros::NodeHandle("~"));
+  });
 }

@@ -1,6 +1,7 @@
 #pragma once
 /// Ground from the maps of a TerrainClient.
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -42,6 +43,7 @@ struct TerrainMaps {
   static std::size_t index(const std::string& name);
   /// Whether there is a map of each layer for the ground, and for sensors if they are asked for.
   bool complete(bool with_sensors) const;
+  void forget_sensor_layers() { std::fill(maps.begin() + ground_count, maps.end(), nullptr); }
   /// Takes a new map, of which these cells differ from the one before.
   void set(std::size_t which, const MapChange& change);
   const MapInfo& info() const { return maps[elevation]->info(); }

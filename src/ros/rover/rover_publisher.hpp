@@ -20,8 +20,7 @@ class RoverPublisher {
   /// `terrain_frame` is empty before there is a terrain.
   void publish_pose(const Rover& rover, const ros::Time& stamp, const std::string& terrain_frame);
   /// If the state has changed since the last one, or that was a while ago; in lockstep for each state of the
-  /// terrain. The message lacks what
-  /// RoverPublisher does not know: `status` has it.
+  /// terrain. The message lacks what RoverPublisher does not know: `status` has it.
   void publish_status(const RoverStatus& status);
 
  private:

@@ -208,8 +208,7 @@ void RoverServer::measure(const MapGround& ground, const ros::Time& stamp, std::
   const RoverState& state = rover_.state();
   const geometry_msgs::Pose pose = pose_message(state.pose);
   if (setup_.node.clock == RoverClock::ros) {
-    terrain_.want_sensor_layers(sensors_->has_subscribers());
-    sensors_->on_pose(stamp, pose);
+    if (terrain_.want_sensor_layers(sensors_->has_subscribers())) sensors_->on_pose(stamp, pose);
     return;
   }
   const MapInfo& info = ground.maps().info();

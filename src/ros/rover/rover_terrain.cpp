@@ -23,11 +23,20 @@ RoverTerrain::RoverTerrain(const RoverNodeParameters& parameters, bool sensors,
   client_ = std::make_unique<TerrainClient>(ros::NodeHandle(), options);
 }
 
-void RoverTerrain::want_sensor_layers(bool wanted) {
-  if (lockstep_ || wanted == sensor_layers_) return;
-  sensor_layers_ = wanted;
-  for (const std::string& name : TerrainMaps::sensor_names())
-    wanted ? client_->subscribe_layer(name) : client_->unsubscribe_layer(name);
+bool RoverTerrain::want_sensor_layers(bool wanted) {
+  if (lockstep_) return true;
+  if (wanted != sensor_layers_) {
+    sensor_layers_ = wanted;
+    if (wanted) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      newest_maps_.forget_sensor_layers();
+    }
+    for (const std::string& name : TerrainMaps::sensor_names())
+      wanted ? client_->subscribe_layer(name) : client_->unsubscribe_layer(name);
+  }
+  if (!wanted) return true;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return newest_maps_.complete(true);
 }
 
 void RoverTerrain::receive(const MapChange& change) {

@@ -33,9 +33,11 @@ class RoverTerrain {
   /// The next state of which all layers are of one step, in the order of steps. Waits for it up to
   /// `patience`, and is null if none came. States that nobody takes are kept, up to 1000.
   std::shared_ptr<const MapGround> next(std::chrono::milliseconds patience);
-  /// Subscribes to the layers that only sensors see, or gives them up. Of no effect in lockstep, where
-  /// states must not depend on who listens. From one thread at a time.
-  void want_sensor_layers(bool wanted);
+  /// Subscribes to the layers that only sensors see, or gives them up, and returns whether all that are
+  /// wanted have come since: a scan without them would show a desert without plants. In lockstep, where
+  /// states must not depend on who listens, it subscribes to nothing and returns true. From one thread at a
+  /// time.
+  bool want_sensor_layers(bool wanted);
   /// Whether the elevation has a publisher.
   bool connected() const { return client_->connected("elevation"); }
 

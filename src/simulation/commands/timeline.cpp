@@ -1,20 +1,16 @@
 /// Parameters that change by themselves: a scenario's timeline, and ramps.
 #include <algorithm>
-#include <cstdio>
 
 #include "src/core/error.hpp"
 #include "src/core/log.hpp"
+#include "src/core/number_text.hpp"
 #include "src/simulation/commands/commands.hpp"
 
 namespace desert_sim {
 
 namespace {
 
-std::string text_of(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
+std::string text_of(double value) { return number_text(value, 9); }
 
 std::string path_of(const std::string& setting) { return setting.substr(0, setting.find('=')); }
 

@@ -73,14 +73,13 @@ std::vector<float> ForecastRun::elevation() {
   return simulation_->snapshot({Layer::elevation})->layers.at(Layer::elevation);
 }
 
-std::vector<std::int8_t> ForecastRun::costs() {
+const std::vector<std::int8_t>& ForecastRun::costs() {
   const Grid& grid = simulation_->terrain().grid();
   CostQuery query;
-  query.whole = true;
-  simulation_->forget_costs();  // or only tiles would come that changed since they were asked for last
-  std::vector<std::int8_t> costs(static_cast<std::size_t>(grid.cells()), held_costs::unknown_cost);
-  simulation_->begin_costs(query).whole.get()->write_to(costs, grid.width);
-  return costs;
+  query.whole = true;  // that is, each tile in which a cost has changed since the last query
+  costs_.resize(static_cast<std::size_t>(grid.cells()), held_costs::unknown_cost);
+  simulation_->begin_costs(query).whole.get()->write_to(costs_, grid.width);
+  return costs_;
 }
 
 std::optional<ForecastMaps> ForecastRun::run(const Progress& progress) {

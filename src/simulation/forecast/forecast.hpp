@@ -86,12 +86,13 @@ class ForecastRun {
   void require_steps() const;
   bool step_to_horizon(int number, const Progress& progress, const Visit& visit);
   std::vector<float> elevation();
-  std::vector<std::int8_t> costs();
+  const std::vector<std::int8_t>& costs();
 
   const ForecastOptions options_;
   std::string checkpoint_;  ///< kept for members to come
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<Simulation> simulation_;
+  std::vector<std::int8_t> costs_;  ///< of the last query
 };
 
 /// What a forecast of the simulation takes [bytes]: a second terrain, its checkpoint, and all maps, as they

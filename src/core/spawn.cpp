@@ -1,0 +1,19 @@
+#include "src/core/spawn.hpp"
+
+#include <unistd.h>
+
+extern char** environ;
+
+namespace desert_sim {
+
+int spawn_program(pid_t& child, std::vector<std::string> words, posix_spawn_file_actions_t& files) {
+  std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const int failure = posix_spawnp(&child, arguments[0], &files, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  return failure;
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,16 @@
+#pragma once
+/// Programs as child processes.
+
+#include <spawn.h>
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+namespace desert_sim {
+
+/// Starts a program, which is searched for in $PATH, with its arguments and with these files, which are
+/// destroyed. Returns 0 and sets `child`, or the error of posix_spawnp(3).
+int spawn_program(pid_t& child, std::vector<std::string> words, posix_spawn_file_actions_t& files);
+
+}  // namespace desert_sim
