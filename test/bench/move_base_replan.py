@@ -30,6 +30,7 @@ SPEED = 0.3  # m/s
 class Trials:
     def __init__(self):
         self.rover = MoveBaseRover()
+        self.rover.keyframes(0)
         self.move_base = Client("/rover/move_base", timeout=60)
         self.failed = 0
 
@@ -56,13 +57,11 @@ class Trials:
         self.begin(START, GOAL)
         self.rover.wait_for_plan(lambda plan: DUNE.meets(plan), "straight on", 30)
         assert self.rover.wait_until_x(START[0] + 3 + np.random.uniform(0, 0.6), 60), self.rover.pose
-        self.rover.keyframes(0)
         DUNE.pour()
         poured = time.monotonic()
         self.rover.wait_for_plan(lambda plan: not DUNE.meets(plan), "a plan round the dune", 200)
         seconds = time.monotonic() - poured
         away = DUNE.x - self.rover.pose[0]
-        self.rover.keyframes(1)
         how = self.end(GOAL, distance(START, GOAL))
         print("%.1f Hz: new plan after %5.2f s, %4.1f m before the dune; %s%s" % (
             frequency, seconds, away, how, "; it met the dune" if DUNE.meets(np.array(self.rover.way)) else ""), flush=True)

@@ -6,11 +6,11 @@ import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from desert_sim.srv import EditTerrain, EditTerrainRequest, SetRoverPose
+from desert_sim.testing import PATIENCE, wait_until
 from dynamic_reconfigure.client import Client
 from geometry_msgs.msg import Point, Pose2D, PoseStamped
 from map_client import Listener, call
 from nav_msgs.msg import Odometry, Path
-from patience import PATIENCE
 
 ENDED = (GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.REJECTED, GoalStatus.PREEMPTED)
 
@@ -45,9 +45,7 @@ class MoveBaseRover:
         rospy.Subscriber("/%s/ground_truth" % name, Odometry, self.take_pose, queue_size=100)
         rospy.wait_for_service("/%s/move_base/make_plan" % name, 60 * PATIENCE)
         self.status.first("move_base")
-        end = rospy.get_time() + 20 * PATIENCE
-        while not self.goals.get_num_connections() and rospy.get_time() < end:
-            rospy.sleep(0.05)
+        wait_until(self.goals.get_num_connections, "a connection for goals", 20)
         self.terrain = Client("/desert_sim", timeout=20 * PATIENCE)
 
     def take_pose(self, odometry):
@@ -64,11 +62,11 @@ class MoveBaseRover:
     def put_down(self, x, y, yaw=0):
         answer = rospy.ServiceProxy("/%s/desert_rover/set_pose" % self.name, SetRoverPose)(Pose2D(x, y, yaw))
         assert answer.success, answer.message
-        with self.changed:
-            self.way = []
 
     def send_goal(self, x, y):
-        """Eastwards there. Returns when move_base has it."""
+        """Eastwards there; its way begins here. Returns when move_base has it."""
+        with self.changed:
+            self.way = []
         earlier = {status.goal_id.id for status in self.status.first().status_list}
         goal = PoseStamped()
         goal.header.frame_id, goal.pose.orientation.w = "map", 1

@@ -59,8 +59,9 @@ class FieldGlobalPlanner : public nav_core::BaseGlobalPlanner {
     take_costs();
     const auto from = near(start, escape_), to = near(goal, tolerance_);
     if (!from || !to) {
-      ROS_WARN("FieldGlobalPlanner: the %s (%.2f, %.2f) is not passable", from ? "goal" : "start",
-               (from ? goal : start).pose.position.x, (from ? goal : start).pose.position.y);
+      // move_base asks again and again while it has no plan.
+      ROS_WARN_THROTTLE(1, "FieldGlobalPlanner: the %s (%.2f, %.2f) is not passable", from ? "goal" : "start",
+                        (from ? goal : start).pose.position.x, (from ? goal : start).pose.position.y);
       return false;
     }
     if (field_->goal() != *to) {
@@ -75,6 +76,10 @@ class FieldGlobalPlanner : public nav_core::BaseGlobalPlanner {
     plan = path.poses;
     if (!plan.empty()) plan.back().pose.orientation = goal.pose.orientation;
     path_.publish(path);
+    if (plan.empty())
+      ROS_WARN_THROTTLE(1, "FieldGlobalPlanner: no passable way leads from (%.2f, %.2f) to (%.2f, %.2f)",
+                        start.pose.position.x, start.pose.position.y, goal.pose.position.x,
+                        goal.pose.position.y);
     return !plan.empty();
   }
 

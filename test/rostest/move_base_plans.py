@@ -41,7 +41,7 @@ def in_costmap_2d(cost):
 SHOWN = np.array([in_costmap_2d(cost) for cost in range(-1, 101)])
 
 
-class Planner(unittest.TestCase):
+class MoveBasePlans(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.keyframes = Listener("/desert_sim/costmap", OccupancyGrid)
@@ -176,5 +176,5 @@ class Planner(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("planner_test", disable_signals=True)
-    rostest.rosrun("desert_sim", "planner", Planner)
+    rospy.init_node("move_base_plans_test", disable_signals=True)
+    rostest.rosrun("desert_sim", "move_base_plans", MoveBasePlans)
