@@ -279,7 +279,7 @@ struct RelaxTile {
       h[n] = wall ? Units::wall : units.height(height);
       ground[n] = wall ? Units::wall : units.ground(height, sand);
       drop[n] = wall ? Units::wall : units.drop(from.repose[i], from.quanta_per_cell);
-      base[n] = sand - units.of_height(h[n]);
+      base[n] = difference_modulo(sand, units.of_height(h[n]));
     });
     team.for_each(cells, [=](int n) DESERT_INLINE { h[n] = ground[n] == Units::wall ? Units::wall : h[n]; });
     // Copies of the first cells of each row at its end.
@@ -295,7 +295,7 @@ struct RelaxTile {
                        const Quanta* base) const {
     Quanta* sand = level.sand;
     for_each_cell_of_tile(team, column, row,
-                          [=](int i, int n) DESERT_INLINE { sand[i] = base[n] + units.of_height(h[n]); });
+                          [=](int i, int n) DESERT_INLINE { sand[i] = sum_modulo(base[n], units.of_height(h[n])); });
   }
 };
 

@@ -51,7 +51,7 @@ struct Units {
     return fast_min(repose * (quanta_per_cell * scale), floor);
   }
   /// The quanta that a height stands for. A cell's sand minus this value does not change while sand slides.
-  /// It is computed modulo 2³², as all sums of Quanta are here.
+  /// It is computed modulo 2³², and as large as that for a wall.
   DESERT_HD Quanta of_height(float height) const { return static_cast<Quanta>(bits_of(height) << shift); }
 };
 

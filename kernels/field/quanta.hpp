@@ -19,6 +19,14 @@ constexpr Quanta wall_height = Quanta{1} << 30;
 /// Terrain is loaded and edited within ±2²⁹ quanta of the datum, so that moving sand has room to pile up.
 constexpr Quanta load_limit = Quanta{1} << 29;
 
+/// Sums modulo 2³², for parts of an amount that are too large by themselves.
+DESERT_HD Quanta sum_modulo(Quanta a, Quanta b) {
+  return static_cast<Quanta>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+}
+DESERT_HD Quanta difference_modulo(Quanta a, Quanta b) {
+  return static_cast<Quanta>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
+}
+
 /// `metres` in quanta, rounded to nearest, not less than 0 and not more than `available`.
 DESERT_HD Quanta to_quanta_at_most(float metres, float quanta_per_metre, Quanta available) {
   const float wanted = rintf(metres * quanta_per_metre);

@@ -38,6 +38,7 @@ void Navigator::update(const GridFrame& frame, const CostGrid::Box& box, const f
   const std::size_t before = changed_.size();
   grid_->update(box, traversability, changed_);
   ground_changed_ = ground_changed_ || changed_.size() > before;
+  if (changed_.size() > grid_->size()) field_.reset();  // it has not been asked for long
   if (!field_) changed_.clear();
 }
 

@@ -163,10 +163,10 @@ std::string Navigator::plan_by_forecast(const Place& start, const Place& goal, G
   TimedPlanner planner(timed_costs(), {parameters_.forecast_speed, parameters_.forecast_slowing});
   schedule_ = planner.plan(start.cell, goal.cell);
   for (const TimedPoint& p : schedule_) path.push_back(p.point);
-  return path.empty()
-             ? "no way leads from the start to the goal, even with waiting, over the ground that the "
-               "forecast tells"
-             : "";
+  if (!path.empty()) return "";
+  // Who waits for a forecast that knows a way may be buried where it stands.
+  const std::string problem = plan_by_field(start, goal, path);
+  return problem.empty() ? "" : problem + ", and none with waiting as the forecast tells";
 }
 
 std::vector<bool> Navigator::cells_of_path() const {

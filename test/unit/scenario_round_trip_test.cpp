@@ -31,6 +31,8 @@ void set_all(P& parameters, const std::function<double()>& share) {
     } else if constexpr (is_optional_number<T>) {
       const double s = share();  // the range itself may be wider than the largest number
       value = row.lowest * (1 - s) + row.highest * s;
+    } else if constexpr (std::is_same_v<T, std::uint64_t>) {
+      value = number < 0x1p64 ? static_cast<T>(number) : ~T{0};  // the highest is not a double
     } else {
       value = static_cast<T>(number);
     }
