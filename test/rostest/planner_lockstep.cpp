@@ -19,9 +19,10 @@ constexpr int steps = 12;
 /// states.
 std::vector<std::string> path() {
   ask<std_srvs::Trigger>("/desert_planner/cancel");
+  ask<std_srvs::Trigger>("/beside/forecast_planner/cancel");
   EXPECT_TRUE(call<std_srvs::Trigger>("reset").success);
   EXPECT_TRUE(ask<std_srvs::Trigger>("/desert_rover/reset").success);
-  Listener<PlannerStatus> planner("/desert_planner/status");
+  Listener<PlannerStatus> planner("/desert_planner/status"), forecaster("/beside/forecast_planner/status");
   EXPECT_TRUE(planner.wait_for([](const PlannerStatus& s) {
     return s.terrain_step == 0 && !s.header.frame_id.empty();
   })) << "it has not seen the start";
@@ -44,12 +45,18 @@ std::vector<std::string> path() {
       return s.terrain_step == static_cast<std::uint64_t>(n) && s.plans > 0;
     })) << "step "
         << n << ": " << planner.last().state << " " << planner.last().reason;
+    EXPECT_TRUE(forecaster.wait_for([n](const PlannerStatus& s) {
+      return s.terrain_step == static_cast<std::uint64_t>(n) && s.plans > 0;
+    })) << "step "
+        << n << ": " << forecaster.last().state << " " << forecaster.last().reason;
     states.push_back(node_test::hash() + " ");
     Listener<desert_sim::RoverStatus> rover("/desert_rover/status");
     EXPECT_TRUE(rover.wait_for(
         [n](const desert_sim::RoverStatus& s) { return s.terrain_step == static_cast<std::uint64_t>(n); }));
     states.back() += rover.last().state_hash;
   }
+  EXPECT_GE(forecaster.last().forecast_age, 0) << "it has waited for the forecast that it asked for";
+  EXPECT_EQ(forecaster.last().refusal, "");
   EXPECT_EQ(planner.last().field_differences, 0U);
   EXPECT_EQ(planner.last().state, PlannerStatus::DRIVING) << planner.last().reason;
   return states;

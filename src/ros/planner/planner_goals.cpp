@@ -105,14 +105,14 @@ bool PlannerServer::cancel(std_srvs::TriggerRequest&, std_srvs::TriggerResponse&
 
 // ---- forecasts
 
-void PlannerServer::receive_forecast(const ForecastConstPtr& forecast) {
+void PlannerServer::take_forecast(const Forecast& forecast) {
   try {
     const double begin =
-        lockstep_ ? forecast->sim_time * setup_.node.seconds_per_sim_second : forecast->header.stamp.toSec();
-    ForecastCosts costs = forecast_costs(*forecast, begin, setup_.node.forecast_probability);
-    if (lockstep_ && forecast->seconds_per_sim_second > 0)
+        lockstep_ ? forecast.sim_time * setup_.node.seconds_per_sim_second : forecast.header.stamp.toSec();
+    ForecastCosts costs = forecast_costs(forecast, begin, setup_.node.forecast_probability);
+    if (lockstep_ && forecast.seconds_per_sim_second > 0)
       for (double& time : costs.times)
-        time *= setup_.node.seconds_per_sim_second / forecast->seconds_per_sim_second;
+        time *= setup_.node.seconds_per_sim_second / forecast.seconds_per_sim_second;
     take_terrain({});
     navigator_.set_forecast(costs);
   } catch (const ConfigError& e) {
@@ -125,18 +125,23 @@ void PlannerServer::ask_for_forecast(double time) {
   if (!forecast_client_ || !forecast_client_->isServerConnected()) return;
   if (asked_for_forecast_ && time - *asked_for_forecast_ < setup_.node.forecast_period) return;
   asked_for_forecast_ = time;
+  waits_for_forecast_ = true;
   ForecastTerrainGoal goal;
   goal.horizon = setup_.node.forecast_horizon;
   goal.moments = static_cast<std::uint32_t>(setup_.node.forecast_moments);
   forecast_client_->sendGoal(goal, [this](const actionlib::SimpleClientGoalState& state,
                                           const ForecastTerrainResultConstPtr& result) {
-    if (state == actionlib::SimpleClientGoalState::SUCCEEDED ||
-        state == actionlib::SimpleClientGoalState::PREEMPTED)
-      return;
+    waits_for_forecast_ = false;
+    if (state == actionlib::SimpleClientGoalState::SUCCEEDED && result)
+      return take_forecast(result->forecast);
+    if (state == actionlib::SimpleClientGoalState::PREEMPTED) return;
     refusal_ = "forecast: " + state.toString() + ": " +
                (result && !result->message.empty() ? result->message : state.getText());
     ROS_WARN("%s", refusal_.c_str());
   });
+  // In lockstep the same calls give the same path, however long a forecast takes.
+  while (lockstep_ && waits_for_forecast_ && !stopping_ && ros::ok() && forecast_client_->isServerConnected())
+    queue_.callAvailable(ros::WallDuration(patience));
 }
 
 }  // namespace desert_sim

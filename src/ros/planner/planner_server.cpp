@@ -16,7 +16,6 @@ namespace desert_sim {
 
 namespace {
 
-constexpr double patience = 0.05;           // [s] of wall time until it looks whether it has to end
 constexpr std::size_t most_waiting = 1000;  // messages in lockstep
 
 RoverCondition condition_of(const RoverStatusConstPtr& status) {
@@ -61,7 +60,8 @@ PlannerServer::PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle&
   }
   if (setup_.planner.planner == PlannerKind::forecast) {
     const std::string name = setup_.node.terrain_node + "/forecast";
-    forecast_subscriber_ = node_.subscribe(name + "/maps", 2, &PlannerServer::receive_forecast, this);
+    forecast_subscriber_ = node_.subscribe<Forecast>(
+        name + "/maps", 2, [this](const ForecastConstPtr& forecast) { take_forecast(*forecast); });
     if (setup_.node.forecast_period > 0)
       forecast_client_ = std::make_unique<ForecastClient>(node_, name, false);
   }
@@ -176,12 +176,12 @@ bool PlannerServer::pose_by_tf(PlanarPose& pose, std::string& problem) {
 
 void PlannerServer::act(double time, const PlanarPose& pose, std::optional<std::uint64_t> step) {
   take_terrain(step);
+  if (navigator_.active()) ask_for_forecast(time);
   const int plans = navigator_.status().plans;
   const auto begin = std::chrono::steady_clock::now();
   const DriveCommand command = navigator_.act(time, pose, condition_of(rover_), rover_ ? rover_->reason : "");
   if (navigator_.status().plans != plans)
     plan_time_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (navigator_.active()) ask_for_forecast(time);
   send(command);
   publish_path();
   if (action_->isActive()) {

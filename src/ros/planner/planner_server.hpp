@@ -42,6 +42,7 @@ class PlannerServer {
  private:
   using MoveBaseServer = actionlib::SimpleActionServer<move_base_msgs::MoveBaseAction>;
   using ForecastClient = actionlib::SimpleActionClient<ForecastTerrainAction>;
+  static constexpr double patience = 0.05;  ///< [s] of wall time until it looks whether it has to end
 
   // ---- when it acts
   void run();
@@ -58,7 +59,7 @@ class PlannerServer {
   void receive_goal(const geometry_msgs::PoseStampedConstPtr& goal);
   void receive_action_goal();
   void receive_preemption();
-  void receive_forecast(const ForecastConstPtr& forecast);
+  void take_forecast(const Forecast& forecast);
   bool cancel(std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response);
   /// Throws ConfigError for a goal that is refused.
   void set_goal(const geometry_msgs::PoseStamped& goal);
@@ -89,6 +90,7 @@ class PlannerServer {
   double lockstep_time_ = 0, sim_time_ = 0;
   std::uint64_t terrain_step_ = 0, published_path_ = 0;
   std::optional<double> asked_for_forecast_;
+  bool waits_for_forecast_ = false;  ///< which was asked for
   std::chrono::steady_clock::time_point last_status_;
 
   ros::Publisher path_publisher_, status_publisher_, command_publisher_;
