@@ -294,8 +294,9 @@ struct RelaxTile {
   DESERT_HD void store(const Team& team, int column, int row, const Units& units, const float* h,
                        const Quanta* base) const {
     Quanta* sand = level.sand;
-    for_each_cell_of_tile(team, column, row,
-                          [=](int i, int n) DESERT_INLINE { sand[i] = sum_modulo(base[n], units.of_height(h[n])); });
+    for_each_cell_of_tile(team, column, row, [=](int i, int n) DESERT_INLINE {
+      sand[i] = sum_modulo(base[n], units.of_height(h[n]));
+    });
   }
 };
 

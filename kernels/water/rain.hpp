@@ -45,8 +45,8 @@ static_assert(table_is_complete<RainParameters>());
 
 namespace rain {
 
-/// Whole quanta of step n of a source of `quanta` a step; sums over steps are rounded down only once. Not more
-/// than a wall is high: a torrent that would fill it in a step does not fit into the layer.
+/// Whole quanta of step n of a source of `quanta` a step; sums over steps are rounded down only once. Not
+/// more than a wall is high: a torrent that would fill it in a step does not fit into the layer.
 inline Quanta quanta_of_step(double quanta, std::uint64_t n) {
   const double before = static_cast<double>(n),
                amount = std::floor(quanta * (before + 1.0)) - std::floor(quanta * before);

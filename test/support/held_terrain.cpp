@@ -116,7 +116,8 @@ std::vector<TileChange> expected_changes(const std::vector<float>& now, std::vec
 }
 
 bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
 }
 
 void expect_same(const std::vector<TileChange>& found, const std::vector<TileChange>& expected) {
