@@ -94,7 +94,8 @@ class Trip:
     def step(self):
         before = self.desert.rover.pose()
         reached = self.desert.step().step
-        self.planner.wait(lambda s: s.terrain_step >= reached, "it does not act on step %d" % reached)
+        # It may wait for a forecast, which only has the time that nobody else wants.
+        self.planner.wait(lambda s: s.terrain_step >= reached, "it does not act on step %d" % reached, 600)
         self.time += STEP
         now = self.desert.rover.pose()
         self.length += math.hypot(now.x - before.x, now.y - before.y)
@@ -142,7 +143,7 @@ class Trip:
 def run_headless(options):
     start, goal = course(options.seed)
     settings = ["run.time_step=%g" % (STEP * 0.045)]
-    parameters = {"backend": options.backend, "threads": 0, "frame_id": "map"}
+    parameters = {"backend": options.backend, "threads": 0, "frame_id": "map", "step_rate": 1 / STEP}  # of forecasts
     with Desert(SCENARIO, rover=(*start, 90.0), settings=settings, seconds_per_step=STEP, parameters=parameters,
                 rover_parameters={"rover": {"seed": options.seed}}) as desert:
         planner = Planner("/rover/desert_planner")
