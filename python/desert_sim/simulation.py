@@ -253,8 +253,9 @@ class Simulation:
         timeout      seconds of wall time to wait for it; None: as long as it takes. A forecast that is late is cancelled
         on_progress  None, or a function that is called with the share that is done, 0 ... 1
         fields       wind=[segments as in set_wind_schedule()], wind_kind (constant, timeline, rose), wind_repeat,
-                     wind_hold_time, wind_seed; parameters={"rain.rate": ...}; members, gust_speed, gust_direction_deg,
-                     gust_time, seed, for an ensemble: action/ForecastTerrain.action says what they mean
+                     wind_hold_time, wind_seed; parameters={"rain.rate": ...}; stride, for fewer and longer steps; members,
+                     gust_speed, gust_direction_deg, gust_time, seed, for an ensemble: action/ForecastTerrain.action says what
+                     they mean
         """
         if "parameters" in fields:
             fields["parameters"] = config_of(fields["parameters"])

@@ -2,11 +2,11 @@
 """How long a forecast takes beside a live run, and what it costs the live run, on two cores. After `. build/devel/setup.bash`:
 
     test/bench/forecast.py [--scenario rover_barchans] [--size 256] [--horizon 600] [--moments 10] [--rate 10] [--repeat 3]
-                           [--time-step SECONDS] [--at-most SECONDS]
+                           [--stride 1] [--at-most SECONDS]
 
-The node runs the scenario at `rate` steps a second (those with a run.acceleration: as that says). With `time-step` the
-forecast makes steps of so many seconds of the desert's time, fewer of them under a run.acceleration. It fails (exit status 1)
-if the fastest of the forecasts takes longer than `at-most`, or the result is no forecast.
+The node runs the scenario at `rate` steps a second (those with a run.acceleration: as that says). With `stride` a step of the
+forecast stands for so many of the live run. It fails (exit status 1) if the fastest of the forecasts takes longer than
+`at-most`, or the result is no forecast.
 """
 import argparse
 import sys
@@ -15,7 +15,6 @@ import time
 import rospy
 from actionlib import GoalStatus, SimpleActionClient
 from desert_sim.msg import ForecastTerrainAction, ForecastTerrainGoal
-from dynamic_reconfigure.msg import Config, DoubleParameter
 from live_node import LiveNode, median
 
 
@@ -31,16 +30,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenario", default="rover_barchans")
     parser.add_argument("--settings", nargs="*", default=[])
-    for name, default in (("size", 256), ("moments", 10), ("repeat", 3), ("threads", 0)):
+    for name, default in (("size", 256), ("moments", 10), ("repeat", 3), ("threads", 0), ("stride", 1)):
         parser.add_argument("--" + name, type=int, default=default)
-    for name, default in (("horizon", 600), ("rate", 10), ("time-step", None), ("at-most", float("inf"))):
+    for name, default in (("horizon", 600), ("rate", 10), ("at-most", float("inf"))):
         parser.add_argument("--" + name, type=float, default=default)
     a = parser.parse_args()
     private = {"scenario": a.scenario, "paused": False, "step_rate": a.rate, "status_rate": 20, "forecast_threads": a.threads,
                "settings": ["grid.width=%d" % a.size, "grid.height=%d" % a.size, *a.settings]}
-    goal = ForecastTerrainGoal(horizon=a.horizon, moments=a.moments)
-    if a.time_step:
-        goal.parameters = Config(doubles=[DoubleParameter("run__time_step", a.time_step)])
+    goal = ForecastTerrainGoal(horizon=a.horizon, moments=a.moments, stride=a.stride)
     seconds, failed = [], False
     with LiveNode(private, subscribers=0) as live:
         client = SimpleActionClient("/desert_sim/forecast", ForecastTerrainAction)

@@ -100,6 +100,29 @@ TEST_P(Forecasts, TellTheStatesThatTheLiveRunShowsThen) {
   EXPECT_EQ(steps, (std::vector<std::uint64_t>{0, 1, 1, 2})) << "an acceleration rules";
 }
 
+TEST_P(Forecasts, OfLongerStepsAreRunsWithThatTimeStep) {
+  const auto live = simulation(
+      dunes + "run: {time_step: 0.02, acceleration: 0.2, timeline: [{time: 0.6, set: {run.time_step: 0.01}}]}\n");
+  ForecastOptions o = options(6, 3, 0);
+  o.stride = 5;
+  const ForecastMaps f = forecast(*live, o);
+  std::vector<std::uint64_t> steps;
+  for (const ForecastMoment& moment : f.moments) steps.push_back(moment.step);
+  EXPECT_EQ(steps, (std::vector<std::uint64_t>{4, 10, 18})) << "of 0.1 s of the desert, and of 0.05 s from 0.6 s on";
+  EXPECT_NEAR(f.moments.back().sim_time, 1.2, 1e-6);
+  EXPECT_DOUBLE_EQ(f.seconds_per_sim_second, 1 / static_cast<double>(0.2F));
+  live->apply(command::SetParameters{{"run.time_step=0.1"}});
+  while (live->steps() < 4) live->step();
+  EXPECT_EQ(f.moments[0].hash, live->state_hash());
+
+  const auto paced = simulation(dunes + "run: {time_step: 0.02}\n");
+  o.stride = 4;
+  o.step_rate = 10;
+  EXPECT_EQ(forecast(*paced, o).moments.back().step, 15) << "instead of 60 steps at ten a second";
+  o.stride = 0;
+  EXPECT_NE(test::refusal([&] { forecast(*paced, o); }).find("stride"), std::string::npos);
+}
+
 TEST_P(Forecasts, ApplyTheirCommandsToTheCopyAlone) {
   const auto live = simulation(dunes);
   test::run(*live, 2);

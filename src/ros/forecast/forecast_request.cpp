@@ -64,6 +64,7 @@ ForecastOptions forecast_options(const ForecastTerrainGoal& goal, const LivePara
   options.horizon = goal.horizon;
   options.moments = to_int(goal.moments);
   options.members = std::max(1, to_int(goal.members));
+  options.stride = std::max(1, to_int(goal.stride));
   check_ranges(static_cast<const ForecastParameters&>(options), "forecast");
   if (options.members > 1) {
     options.gusts = {goal.gust_speed, goal.gust_direction_deg, goal.gust_time, goal.seed};

@@ -248,6 +248,7 @@ void ForecastServer::publish_topics() {
   ForecastOptions options;
   options.horizon = topics.forecast_horizon;
   options.moments = topics.forecast_moments;
+  options.stride = topics.forecast_stride;
   options.step_rate = simulation_.forecast_step_rate();
   try {
     const Outcome outcome = make_forecast(options, nullptr);

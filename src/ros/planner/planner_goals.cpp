@@ -129,6 +129,7 @@ void PlannerServer::ask_for_forecast(double time) {
   ForecastTerrainGoal goal;
   goal.horizon = setup_.node.forecast_horizon;
   goal.moments = static_cast<std::uint32_t>(setup_.node.forecast_moments);
+  goal.stride = static_cast<std::uint32_t>(setup_.node.forecast_stride);
   forecast_client_->sendGoal(goal, [this](const actionlib::SimpleClientGoalState& state,
                                           const ForecastTerrainResultConstPtr& result) {
     waits_for_forecast_ = false;

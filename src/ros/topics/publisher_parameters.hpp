@@ -38,6 +38,7 @@ struct PublisherParameters {
   double forecast_rate = 0;
   double forecast_horizon = 60;
   int forecast_moments = 6;
+  int forecast_stride = 1;
   double status_rate = 1;
 };
 constexpr auto parameter_table(const PublisherParameters*) {
@@ -74,6 +75,9 @@ constexpr auto parameter_table(const PublisherParameters*) {
                 "Of ~forecast/maps: how far ahead, in ROS time; at most 10^6 steps."),
       parameter("forecast_moments", &P::forecast_moments, 1, 100, "1",
                 "Of ~forecast/maps: states to tell, evenly spaced, the last at the horizon."),
+      parameter("forecast_stride", &P::forecast_stride, 1, 1000, "1",
+                "Of ~forecast/maps: steps of the live run that one step stands for; 1: the live run's states to the bit, "
+                "more: as much faster, and coarser in time."),
       parameter("status_rate", &P::status_rate, 0, 1000, "Hz", "~status; it is also sent on change."));
 }
 static_assert(table_is_complete<PublisherParameters>());

@@ -27,6 +27,7 @@ std::unique_ptr<Simulation> ForecastRun::member(int number) const {
   std::unique_ptr<Simulation> simulation = simulation_from_bytes(checkpoint_, *exec_, "forecast");
   for (const ForecastCommand& command : options_.commands)
     std::visit([&](const auto& c) { simulation->apply(c); }, command);
+  lengthen_steps(*simulation);
   if (number == 0) return simulation;
   Gusts gusts{options_.gusts};
   gusts.member = static_cast<std::uint32_t>(number);
@@ -35,9 +36,18 @@ std::unique_ptr<Simulation> ForecastRun::member(int number) const {
   return simulation;
 }
 
+/// Makes the present time step that of `stride` steps.
+void ForecastRun::lengthen_steps(Simulation& simulation) const {
+  if (options_.stride == 1) return;
+  char setting[60];
+  std::snprintf(setting, sizeof setting, "run.time_step=%.9g",
+                static_cast<double>(simulation.scenario().run.time_step) * options_.stride);
+  simulation.apply(command::SetParameters{{setting}});
+}
+
 /// Throws ConfigError if the horizon has too many steps, or none.
 void ForecastRun::require_steps() const {
-  const double interval = ForecastClock(options_.step_rate).interval(simulation_->scenario().run),
+  const double interval = ForecastClock(step_rate()).interval(simulation_->scenario().run),
                most = static_cast<double>(ForecastOptions::most_steps) * interval;
   if (options_.horizon >= interval && options_.horizon <= most) return;
   char text[200];
@@ -51,8 +61,9 @@ void ForecastRun::require_steps() const {
 
 /// False if `progress` ended it.
 bool ForecastRun::step_to_horizon(int number, const Progress& progress, const Visit& visit) {
-  ForecastClock clock(options_.step_rate);
+  ForecastClock clock(step_rate());
   const RunParameters& run = simulation_->scenario().run;
+  float time_step = run.time_step;
   std::uint64_t steps = 0;
   for (int n = 1; n <= options_.moments; ++n) {
     const double time = options_.horizon * n / options_.moments;
@@ -63,6 +74,9 @@ bool ForecastRun::step_to_horizon(int number, const Progress& progress, const Vi
                           std::to_string(ForecastOptions::most_steps) + " steps up to it");
       clock.step(run);
       simulation_->step();
+      if (run.time_step == time_step) continue;
+      lengthen_steps(*simulation_);  // a timeline has set another one
+      time_step = run.time_step;
     }
     visit(static_cast<std::size_t>(n - 1), time);
   }
@@ -88,7 +102,7 @@ std::optional<ForecastMaps> ForecastRun::run(const Progress& progress) {
   ForecastMaps forecast;
   forecast.step = simulation_->steps();
   forecast.sim_time = simulation_->time();
-  forecast.seconds_per_sim_second = ForecastClock(options_.step_rate).interval(run) / run.time_step;
+  forecast.seconds_per_sim_second = ForecastClock(step_rate()).interval(run) / run.time_step;
   forecast.members = options_.members;
   forecast.width = grid.width;
   forecast.height = grid.height;

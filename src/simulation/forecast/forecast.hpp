@@ -20,6 +20,7 @@ struct ForecastParameters {
   double horizon = 60;
   int moments = 6;
   int members = 1;
+  int stride = 1;
 };
 constexpr auto parameter_table(const ForecastParameters*) {
   using P = ForecastParameters;
@@ -27,7 +28,10 @@ constexpr auto parameter_table(const ForecastParameters*) {
       parameter("horizon", &P::horizon, 1e-6, 1e12, "s", "How far ahead, in ROS time."),
       parameter("moments", &P::moments, 1, 100, "1",
                 "States to tell, evenly spaced, the last at the horizon."),
-      parameter("members", &P::members, 1, 64, "1", "Runs, of which all but the first have gusts."));
+      parameter("members", &P::members, 1, 64, "1", "Runs, of which all but the first have gusts."),
+      parameter("stride", &P::stride, 1, 1000, "1",
+                "Steps of the live run that one step stands for: 1 gives its states to the bit, more is as much "
+                "faster, with a time step as much longer."));
 }
 static_assert(table_is_complete<ForecastParameters>());
 
@@ -79,10 +83,14 @@ class ForecastRun {
   /// None if `progress` ended it. Throws ConfigError after ForecastOptions::most_steps. Call it once.
   std::optional<ForecastMaps> run(const Progress& progress);
 
+  /// Of the forecast's own steps [1/s]; 0 as in ForecastOptions.
+  double step_rate() const { return options_.step_rate / options_.stride; }
+
  private:
   /// What is looked at when a moment is reached.
   using Visit = std::function<void(std::size_t moment, double time)>;
   std::unique_ptr<Simulation> member(int number) const;
+  void lengthen_steps(Simulation& simulation) const;
   void require_steps() const;
   bool step_to_horizon(int number, const Progress& progress, const Visit& visit);
   std::vector<float> elevation();
