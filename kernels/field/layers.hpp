@@ -32,6 +32,8 @@ enum class Layer : int {
   wind_y,
   wind_shadow,
   echo,
+  flux_x,
+  flux_y,
   illumination,
   illumination_canopy,
   canopy_height,
@@ -70,7 +72,7 @@ struct LayerInfo {
 
 constexpr double any_height = 1e6;
 
-constexpr std::array<LayerInfo, 37> layer_table{{
+constexpr std::array<LayerInfo, 39> layer_table{{
     {Layer::bedrock, "bedrock", "m", Storage::quanta, Lifetime::persistent, -any_height, any_height,
      "Top of the rock, absolute."},
     {Layer::soil, "soil", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
@@ -112,6 +114,10 @@ constexpr std::array<LayerInfo, 37> layer_table{{
      "0 in the open … 1 fully in the lee."},
     {Layer::echo, "echo", "1", Storage::real, Lifetime::derived, -1, 1,
      "In front of cliffs: < 0 erosion, > 0 sticky."},
+    {Layer::flux_x, "flux_x", "m^2/s", Storage::real, Lifetime::derived, -any_height, any_height,
+     "Sand that the wind carried through a metre of width in the last step, eastward part."},
+    {Layer::flux_y, "flux_y", "m^2/s", Storage::real, Lifetime::derived, -any_height, any_height,
+     "Likewise, northward part."},
     {Layer::illumination, "illumination", "1", Storage::real, Lifetime::derived, 0, 1,
      "Light on the ground over the day; 1 in the open."},
     {Layer::illumination_canopy, "illumination_canopy", "1", Storage::real, Lifetime::derived, 0, 1,

@@ -23,12 +23,16 @@ template <bool bare, class E>
 void hop(E& exec, const TerrainView& t, const SaltationParameters& p, const ReposeParameters& repose,
          float hop_share, const SaltationDice& dice, LedgerView ledger, Quanta* landed,
          const abrasion::Abrade& abrade, const reptation::Impacts& impacts,
-         const wind_shadow::Shadow* shadow_law) {
+         const wind_shadow::Shadow* shadow_law, float flux_time) {
   const Inputs<bare> in(t, repose, p.hop_time, hop_share);
   const Lift<bare> lift{in, p};
   Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand);
   const LiftAndAdvect<bare> advect{
       in, lift, p.hop_time / t.grid.cell_size, dice.lift, dice.wait, dice.landing, sand, airborne, ledger};
+  if (t.real(Layer::flux_x))
+    for_each_cell(exec, t.grid,
+                  AddFlux<bare>{advect, t.quantum * p.hop_time / flux_time, t.real(Layer::flux_x),
+                                t.real(Layer::flux_y)});
   if (shadow_law)
     for_each_cell_scatter(exec, t.grid, landed, ShadowAndLift<bare>{*shadow_law, advect});
   else
@@ -50,7 +54,8 @@ void hop(E& exec, const TerrainView& t, const SaltationParameters& p, const Repo
 template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
           const ReposeParameters& repose, float time_step, const Dice& dice, LedgerView ledger,
-          Quanta* landed, const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law) {
+          Quanta* landed, const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law,
+          float flux_time) {
   const Hops hops(p, time_step);
   const float part_of_step = time_step / static_cast<float>(hops.parts);
   abrasion::Abrade abrade{a.rate * part_of_step,
@@ -68,15 +73,33 @@ void step(E& exec, const TerrainView& t, const SaltationParameters& p, const Abr
     const SaltationDice of_part(dice, part);
     abrade.die = dice[Roll::abrasion].of_part(part);
     if (is_bare(t, a))
-      hop<true>(exec, t, p, repose, hops.share, of_part, ledger, landed, abrade, impacts, shadow_law);
+      hop<true>(exec, t, p, repose, hops.share, of_part, ledger, landed, abrade, impacts, shadow_law,
+                flux_time);
     else
-      hop<false>(exec, t, p, repose, hops.share, of_part, ledger, landed, abrade, impacts, shadow_law);
+      hop<false>(exec, t, p, repose, hops.share, of_part, ledger, landed, abrade, impacts, shadow_law,
+                 flux_time);
     shadow_law = nullptr;  // the first part has left it in the layer
   }
 }
 
 template void step(Backend&, const TerrainView&, const SaltationParameters&, const AbrasionParameters&,
                    const ReposeParameters&, float, const Dice&, LedgerView, Quanta*,
-                   const reptation::Impacts&, const wind_shadow::Shadow*);
+                   const reptation::Impacts&, const wind_shadow::Shadow*, float);
+
+struct Clear {
+  Grid grid;
+  float *x_part, *y_part;
+  DESERT_HD void operator()(int x, int y) const {
+    x_part[grid.index(x, y)] = 0.0f;
+    y_part[grid.index(x, y)] = 0.0f;
+  }
+};
+
+template <class E>
+void clear_flux(E& exec, const TerrainView& t) {
+  for_each_cell(exec, t.grid, Clear{t.grid, t.real(Layer::flux_x), t.real(Layer::flux_y)});
+}
+
+template void clear_flux(Backend&, const TerrainView&);
 
 }  // namespace desert_sim::saltation

@@ -29,10 +29,18 @@
 /// Sand that the wind carries over an open edge is recorded in the ledger as outflow; `influx` enters where
 /// the wind blows in, spread over the length of a hop w T.
 ///
+/// Where the layers flux_x and flux_y are in use, each hop adds to its cell's flux
+///
+///   q += φ (a + L) w T / Δt    [m²/s]
+///
+/// from the counted quanta of the hop, Δt being the whole step: after the step they are the mean volume of
+/// sand that went through a metre of width in a second. Reptation, avalanches and `influx` are not part of
+/// it.
+///
 /// Reads sand, airborne_sand, soil, water, moisture, vegetation, obstacle, wind_x, wind_y, wind_shadow, echo,
 /// and for abrasion bedrock and erosion_resistance. Writes sand, airborne_sand, the tangents of repose and
 /// the impact strength (scratch), with abrasion also bedrock and soil, and wind_shadow where it computes that
-/// in the same pass.
+/// in the same pass. Adds to flux_x and flux_y where they are in use.
 
 #include <cmath>
 
@@ -54,6 +62,7 @@ struct SaltationParameters {
   float bounce_on_rock = 0.6f;
   float bare_depth = 0.001f;
   float influx = 0.0f;
+  bool flux = false;
 };
 
 constexpr auto parameter_table(const SaltationParameters*) {
@@ -75,7 +84,8 @@ constexpr auto parameter_table(const SaltationParameters*) {
       parameter("bare_depth", &P::bare_depth, 0, 1, "m",
                 "Depth of sand below which the ground counts as bare."),
       parameter("influx", &P::influx, 0, 100, "m^2/s",
-                "Sand that enters an open windward edge, per metre of edge."));
+                "Sand that enters an open windward edge, per metre of edge."),
+      parameter("flux", &P::flux, "Whether the layers flux_x and flux_y tell what the wind carries."));
 }
 static_assert(table_is_complete<SaltationParameters>());
 
@@ -95,11 +105,17 @@ struct Hops {
 };
 
 /// `landed`: scratch, one value a cell [quanta]. `shadow_law`: the law that computes the wind shadow in the
-/// pass of the lift, or null where the layer is up to date.
+/// pass of the lift, or null where the layer is up to date; null where flux_x and flux_y are in use.
+/// `flux_time`: over which the flux is a mean [s].
 template <class E>
 void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
           const ReposeParameters& repose, float time_step, const Dice& dice, LedgerView ledger,
-          Quanta* landed, const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law);
+          Quanta* landed, const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law,
+          float flux_time);
+
+/// Sets the layers flux_x and flux_y, which are in use, to 0.
+template <class E>
+void clear_flux(E& exec, const TerrainView& t);
 
 }  // namespace saltation
 }  // namespace desert_sim

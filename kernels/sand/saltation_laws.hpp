@@ -63,18 +63,23 @@ struct LiftAndAdvect {
     return read(x, y, value_or_zero(in.wind_shadow, in.grid.index(x, y)));
   }
 
+  /// What leaves the ground of cell i, and what of the sand in the air hops with it.
+  DESERT_HD Quanta lifted(const Cell& c, int i) const {
+    const float liftable = lift(c.u, c.v, c.shadow, c.echo, c.plants, c.moisture, c.flooded, c.lying);
+    return lift_die.whole_at_most(in.hop_share * liftable, c.lying, i);
+  }
+  DESERT_HD Quanta bouncing(const Cell& c, int i) const {
+    if (in.hop_share >= 1.0f) return c.carried;
+    return wait_die.whole_at_most(in.hop_share * static_cast<float>(c.carried), c.carried, i);
+  }
+
   template <int count>
   DESERT_HD void prepare(int x, int y, const Cell& c, BilinearParcels<count>& parcels, int n) const {
     const int i = in.grid.index(x, y);
-    const float liftable = lift(c.u, c.v, c.shadow, c.echo, c.plants, c.moisture, c.flooded, c.lying);
-    const Quanta lifted = lift_die.whole_at_most(in.hop_share * liftable, c.lying, i);
-    Quanta carried = c.carried;
-    if (in.hop_share < 1.0f) {
-      carried = wait_die.whole_at_most(in.hop_share * static_cast<float>(c.carried), c.carried, i);
-      airborne[i] = c.carried - carried;
-    }
-    carried += lifted;
-    sand[i] = c.lying - lifted;
+    const Quanta from_ground = lifted(c, i), from_air = bouncing(c, i);
+    if (in.hop_share < 1.0f) airborne[i] = c.carried - from_air;
+    const Quanta carried = from_ground + from_air;
+    sand[i] = c.lying - from_ground;
     // Where the four shares are so small that rounding would falsify them, all lands in one of the cells.
     const std::uint32_t die = landing_die.word(i);
     const bool few = static_cast<float>(carried) < Die::small;
@@ -89,6 +94,22 @@ struct LiftAndAdvect {
   template <int count, class Add>
   DESERT_HD void deliver(int x, int y, const BilinearParcels<count>& parcels, int n, const Add& add) const {
     ParcelDelivery{in.grid, Material::sand, ledger}.deliver(x, y, parcels, n, add);
+  }
+};
+
+/// Adds the flux of a hop, of the very quanta that LiftAndAdvect moves after it.
+template <bool bare>
+struct AddFlux {
+  LiftAndAdvect<bare> advect;
+  float per_quantum;  ///< depth of a quantum, times T/Δt [m]
+  float *flux_x, *flux_y;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = advect.in.grid.index(x, y);
+    const auto c = advect.read(x, y);
+    const float moved = static_cast<float>(advect.lifted(c, i) + advect.bouncing(c, i)) * per_quantum;
+    flux_x[i] += moved * c.u;
+    flux_y[i] += moved * c.v;
   }
 };
 

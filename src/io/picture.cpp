@@ -302,7 +302,7 @@ cv::Mat hillshade_picture(const PictureInput& input) {
 }
 
 cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_x, const float* wind_y,
-                     const float* elevation) {
+                     const float* elevation, const VectorCaption& caption) {
   check_input(width, height, cell_size, !wind_x ? "wind_x" : !wind_y ? "wind_y" : nullptr);
   const cv::Mat u = layer_image(wind_x, width, height), v = layer_image(wind_y, width, height);
   cv::Mat speed, level, picture;
@@ -317,7 +317,8 @@ cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_
     shade_lightly(picture, elevation_image(elevation, width, height), cell_size * width / picture.cols);
   picture = enlarged(picture, 2 * kMinLongSide);
   draw_arrows(picture, u, v, static_cast<float>(fastest));
-  write_caption(picture, "wind " + number(slowest) + " to " + number(fastest) + " m/s, dark to bright");
+  write_caption(picture, caption.name + (" " + number(slowest)) + " to " + number(fastest) + " " +
+                             caption.unit + ", dark to bright");
   return picture;
 }
 

@@ -38,12 +38,18 @@ double picture_exaggeration(const PictureInput& input);
 /// empty grid, a cell_size that is not > 0, or a missing elevation.
 cv::Mat hillshade_picture(const PictureInput& input);
 
+/// What a picture of vectors shows.
+struct VectorCaption {
+  const char *name = "wind", *unit = "m/s";
+};
+
 /// Wind speed as colour, lightly shaded by the elevation (which may be null), with about 32 arrows along the
 /// long side that point to where the air moves, and a caption with the range of speeds. 8UC3 in BGR, north
 /// up; sized like hillshade_picture(), but enlarged to 1024 or more pixels so that the arrows have room.
-/// wind_x, wind_y: [m/s], row 0 = south. Throws ConfigError like hillshade_picture().
+/// wind_x, wind_y: [m/s], row 0 = south; or other vectors, as the caption says. Throws ConfigError like
+/// hillshade_picture().
 cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_x, const float* wind_y,
-                     const float* elevation);
+                     const float* elevation, const VectorCaption& caption = {});
 
 /// Writes a PNG file by write_file(). Throws ConfigError that names the file if the path cannot be written
 /// or the picture is empty, WriteError if the disk is full or broken; an existing file of that name is then

@@ -28,7 +28,9 @@ std::string describe_parameters() {
   out << "# Parameters of a scenario\n\n"
          "Written by `desert_run --describe`; a test fails when it is stale. The same keys are read from "
          "scenario files, from `--set path=value`, and from ROS parameters; those of the node itself are in "
-         "[node_parameters.md](node_parameters.md). 0 in `grid` stands for \"not given\".\n\n"
+         "[node_parameters.md](node_parameters.md). 0 in `grid` stands for \"not given\". A parameter in s "
+         "may be "
+         "given with a unit: `1 h` (ms, s, min, h, d, or a, which is 365.25 d).\n\n"
          "## top level\n\n";
   write_parameter_table(out, SeedParameter());
   out << "\n`climate`, if given, sets rain, evaporation, soil and species together; what the scenario says "

@@ -66,6 +66,7 @@ Scenario with_live_settings(const Scenario& scenario, const Settings& settings) 
   changed.name = scenario.name;
   changed.folder = scenario.folder;
   changed.projection = scenario.projection;
+  changed.wind_series = scenario.wind_series;
   return changed;
 }
 

@@ -22,7 +22,12 @@ constexpr FixedParameter fixed_parameters[] = {
     {"species", "existing plants refer to them"},
     {"competition", "it belongs to the list of species"},
     {"run.steps", "it is the length of a headless run"},
+    {"run.duration", "it is the length of a headless run"},
     {"run.timeline", "it begins at the start of a simulation"},
+    {"wind.series_file", "it is read at the start of a simulation"},
+    {"wind.series_direction", "it belongs to wind.series_file"},
+    {"wind.series_angle", "it belongs to wind.series_file"},
+    {"wind.series_start", "it belongs to wind.series_file"},
     {"wind.segments", "set_wind_schedule changes them together"},
     {"wind.features", "edit_wind adds, changes and removes them"},
 };

@@ -114,6 +114,8 @@ void check_dependencies(const Scenario& s, ValidationErrors& errors) {
   for (int n = 0; n < s.wind.weights.count; ++n) weight += s.wind.weights.values[n];
   if (!(weight > 0)) errors.add("wind.weights", "must not all be 0");
   check_wind_segments(s.wind_regime.regime, s.wind_segments, "wind.segments", errors);
+  if (s.wind_regime.regime == WindRegimeKind::series && s.wind_regime.series_file.empty())
+    errors.add("wind.series_file", "is missing, which the regime 'series' needs");
   std::set<int> ids;
   for (std::size_t n = 0; n < s.wind_features.size(); ++n)
     if (const int id = s.wind_features[n].id; id != 0 && !ids.insert(id).second)

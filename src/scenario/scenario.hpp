@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -75,6 +76,7 @@ static_assert(table_is_complete<GridParameters>());
 
 struct RunParameters {
   int steps = 1000;
+  double duration = 0;
   float time_step = 1.0f;
   float acceleration = 0.0f;
   int check_every = 100;
@@ -83,7 +85,10 @@ struct RunParameters {
 constexpr auto parameter_table(const RunParameters*) {
   using P = RunParameters;
   return std::make_tuple(parameter("steps", &P::steps, 0, 2147483647, "1", "Steps of a headless run."),
-                         parameter("time_step", &P::time_step, 1e-4, 1e3, "s", "Simulated time of one step."),
+                         parameter("duration", &P::duration, 0, 1e12, "s",
+                                   "Simulated time of a headless run, which then takes as many steps as it "
+                                   "needs; 0: run.steps counts."),
+                         parameter("time_step", &P::time_step, 1e-4, 1e5, "s", "Simulated time of one step."),
                          parameter("acceleration", &P::acceleration, 0, 1e6, "1",
                                    "Simulated seconds per second of ROS time: the node makes acceleration / "
                                    "time_step steps per second; 0: its parameter step_rate says how many."),
@@ -107,7 +112,8 @@ struct Scenario {
   std::vector<TerrainStep> terrain;
   WindRegimeParameters wind_regime;
   std::vector<WindSegment> wind_segments;
-  std::vector<WindFeature> wind_features;  ///< at most max_wind_features
+  std::shared_ptr<const WindSeries> wind_series;  ///< what wind.series_file has; see read_wind_series()
+  std::vector<WindFeature> wind_features;         ///< at most max_wind_features
   WindParameters wind;
   WindShadowParameters wind_shadow;
   EchoDuneParameters echo_dunes;

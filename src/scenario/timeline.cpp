@@ -25,9 +25,9 @@ std::string flow_text(const YAML::Node& node) {
 
 double read_time(const YAML::Node& node, const std::string& key, ValidationErrors& errors) {
   double value = 0;
-  if (node.IsDefined() &&
-      (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !(value >= 0) || !(value <= 1e12)))
-    errors.add(key, yaml::node_text(node) + " is not a time (allowed: [0, 1e+12] s)");
+  if (node.IsDefined() && !(yaml::decode_number(node, "s", value) && value >= 0 && value <= 1e12))
+    errors.add(key, yaml::node_text(node) +
+                        " is not a time (allowed: [0, 1e+12] s, or with a unit: " + time_units + ")");
   return value;
 }
 
@@ -49,17 +49,18 @@ TimelineEntry read_entry(const YAML::Node& node, const std::string& key, Validat
   return entry;
 }
 
-/// Sets `found` to the value of a floating-point parameter that can change; false if `path` is none.
-bool find_number(const Scenario& scenario, const std::string& path, double& found) {
-  bool there = false;
+/// Sets `found` to the value of a floating-point parameter that can change, and returns its unit; null if
+/// `path` is none.
+const char* find_number(const Scenario& scenario, const std::string& path, double& found) {
+  const char* unit = nullptr;
   for_each_live_parameter(scenario, [&](const char* section, const auto& row, const auto& value) {
     if constexpr (std::is_floating_point_v<std::decay_t<decltype(value)>>)
       if (path == std::string(section) + "." + row.name) {
         found = static_cast<double>(value);
-        there = true;
+        unit = row.unit;
       }
   });
-  return there;
+  return unit;
 }
 
 }  // namespace
@@ -77,8 +78,8 @@ std::vector<Ramp> extract_ramps(const Scenario& scenario, std::vector<std::strin
   for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
     Ramp ramp{setting.substr(0, equals), 0, 0, time, duration, 0};
-    if (find_number(scenario, ramp.path, ramp.from) &&
-        YAML::convert<double>::decode(YAML::Load(setting.substr(equals + 1)), ramp.to))
+    const char* const unit = find_number(scenario, ramp.path, ramp.from);
+    if (unit && yaml::decode_number(YAML::Load(setting.substr(equals + 1)), unit, ramp.to))
       ramps.push_back(ramp);
     else
       immediate.push_back(setting);

@@ -49,7 +49,8 @@ void check_wind_segments(WindRegimeKind kind, const std::vector<WindSegment>& se
   if (segments.size() > max_wind_segments)
     errors.add(key, std::to_string(segments.size()) + " entries are given (allowed: at most " +
                         std::to_string(max_wind_segments) + ")");
-  if (kind != WindRegimeKind::constant && segments.empty())
+  const bool needs_segments = kind == WindRegimeKind::timeline || kind == WindRegimeKind::rose;
+  if (needs_segments && segments.empty())
     errors.add(key, std::string("a ") + wind_regime_kind_names[static_cast<int>(kind)] +
                         " needs at least one segment");
   float probability = 0;
@@ -67,7 +68,9 @@ WindRegime WindRegime::with(const WindRegimeParameters& changed, double time) co
   static_cast<WindRegimeParameters&>(next) = changed;
   const bool constant = changed.regime == WindRegimeKind::constant;
   const bool turns = changed.direction_deg != direction_deg || changed.speed != speed || changed.ramp != ramp;
-  if (changed.regime != regime || (constant && turns)) {
+  if (changed.regime == WindRegimeKind::series) {
+    next.start_time = 0;  // its times are those of the simulation
+  } else if (changed.regime != regime || (constant && turns)) {
     next.initial_wind = at(time);
     next.start_time = time;
   } else if (changed.hold_time != hold_time) {
@@ -92,6 +95,7 @@ wind::Vector WindRegime::at(double time) const {
     }
     return segment_wind(segments.back());
   }
+  if (regime == WindRegimeKind::series) return series ? series->at(elapsed, repeat) : initial_wind;
   double length = 0;
   for (const WindSegment& s : segments) length += s.duration;
   double t = elapsed;

@@ -1,20 +1,23 @@
 #pragma once
-/// The wind high above the ground as a function of time: constant (after a ramp), a timeline of segments, or
-/// a wind rose. A direction is the one towards which the air moves, counter-clockwise from +x (east).
+/// The wind high above the ground as a function of time: constant (after a ramp), a timeline of segments, a
+/// wind rose, or a measured series. A direction is the one towards which the air moves, counter-clockwise
+/// from +x (east).
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "kernels/wind/vector.hpp"
 #include "src/core/parameters.hpp"
+#include "src/scenario/wind_series.hpp"
 
 namespace desert_sim {
 
 class ValidationErrors;
 
-enum class WindRegimeKind : int { constant, timeline, rose };
-constexpr const char* wind_regime_kind_names[] = {"constant", "timeline", "rose"};
+enum class WindRegimeKind : int { constant, timeline, rose, series };
+constexpr const char* wind_regime_kind_names[] = {"constant", "timeline", "rose", "series"};
 
 /// One entry of a timeline, or one direction of a rose.
 struct WindSegment {
@@ -48,22 +51,38 @@ struct WindRegimeParameters {
   bool repeat = true;
   float hold_time = 50;
   std::uint64_t rose_seed = 1;
+  std::string series_file{};
+  SeriesDirection series_direction = SeriesDirection::to;
+  SeriesAngle series_angle = SeriesAngle::mathematical;
+  std::string series_start{};
 };
 
 constexpr auto parameter_table(const WindRegimeParameters*) {
   using P = WindRegimeParameters;
   return std::make_tuple(
-      parameter("regime", &P::regime, wind_regime_kind_names,
-                "constant; timeline: `segments` in turn; rose: one of `segments` drawn every hold_time."),
+      parameter(
+          "regime", &P::regime, wind_regime_kind_names,
+          "constant; timeline: `segments` in turn; rose: one of `segments` drawn every hold_time; series: "
+          "the rows of series_file, each until the next one's time."),
       parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
                 "Where the constant wind blows to, counter-clockwise from +x."),
       parameter("speed", &P::speed, 0, 100, "m/s", "Speed of the constant wind high above the ground."),
       parameter("ramp", &P::ramp, 0, 1e12, "s",
                 "Time in which the constant wind rises, or turns from the one before."),
       parameter("repeat", &P::repeat,
-                "Whether a timeline starts again at its end; otherwise its last segment stays."),
+                "Whether a timeline or series starts again at its end; otherwise its last entry stays."),
       parameter("hold_time", &P::hold_time, 1e-3, 1e12, "s", "How long a rose keeps a direction."),
-      parameter("rose_seed", &P::rose_seed, 0, highest_uint64, "1", "Seed of the random draws of a rose."));
+      parameter("rose_seed", &P::rose_seed, 0, highest_uint64, "1", "Seed of the random draws of a rose."),
+      parameter("series_file", &P::series_file,
+                "CSV file with the columns time (seconds, or dates such as 2001-03-04T15:00 in UTC), speed "
+                "[m/s] and direction [deg] of a regime `series`."),
+      parameter("series_direction", &P::series_direction, series_direction_names,
+                "Whether its directions say where the wind blows to, or from where."),
+      parameter("series_angle", &P::series_angle, series_angle_names,
+                "mathematical: counter-clockwise from +x; compass: clockwise from +y (north)."),
+      parameter("series_start", &P::series_start,
+                "Time or date of the series at which the simulation starts; if not given, that of its first "
+                "row."));
 }
 static_assert(table_is_complete<WindRegimeParameters>());
 
@@ -76,7 +95,8 @@ void check_wind_segments(WindRegimeKind kind, const std::vector<WindSegment>& se
 
 /// A wind regime with its segments and the state from which it began.
 struct WindRegime : WindRegimeParameters {
-  std::vector<WindSegment> segments{};  ///< segments of a timeline, or directions of a rose
+  std::vector<WindSegment> segments{};         ///< segments of a timeline, or directions of a rose
+  std::shared_ptr<const WindSeries> series{};  ///< of a regime `series`
   double start_time = 0;        ///< simulated time at which it began, or would have with its hold_time [s]
   wind::Vector initial_wind{};  ///< wind at start_time, from which the first ramp starts
 

@@ -13,6 +13,7 @@
 #include "src/core/error.hpp"
 #include "src/core/parameters.hpp"
 #include "src/core/quoted.hpp"
+#include "src/core/time_units.hpp"
 
 namespace desert_sim {
 
@@ -79,13 +80,23 @@ bool in_range(double number, const Row& row) {
     return number >= row.lowest && number <= row.highest;
 }
 
+/// Whether `node` is a number of a parameter with this unit. Times may be written with a unit of their own.
+inline bool decode_number(const YAML::Node& node, const std::string& unit, double& number) {
+  if (!node.IsScalar()) return false;
+  if (unit == "s" && read_time_with_unit(node.Scalar(), number)) return true;
+  return node.Tag() != "!" && YAML::convert<double>::decode(node, number);
+}
+
 /// Reads a number and adds an error if it is not in the row's range. NaN and infinities (.nan, .inf) are
 /// parsed too, so that the error names them.
 template <class T, class Row>
 bool read_number(const YAML::Node& node, const Row& row, const std::string& key, ValidationErrors& errors,
                  double& number) {
-  if (!node.IsScalar() || node.Tag() == "!" || !YAML::convert<double>::decode(node, number)) {
-    errors.add(key, node_text(node) + " is not a number (allowed: " + allowed_range<T>(row) + ")");
+  if (!decode_number(node, row.unit, number)) {
+    const bool time = std::string(row.unit) == "s";
+    errors.add(key, node_text(node) + " is not a " + (time ? "time" : "number") +
+                        " (allowed: " + allowed_range<T>(row) +
+                        (time ? std::string(", or with a unit: ") + time_units : "") + ")");
     return false;
   }
   if (!in_range<T>(number, row)) {

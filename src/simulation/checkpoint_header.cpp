@@ -83,7 +83,9 @@ std::string header_text(const CheckpointHeader& header) {
   emit_quanta(out, "ledger", header.ledger);
   out << YAML::Key << "wind" << YAML::Value << YAML::BeginMap;
   emit_regime(out, header.wind);
-  out << YAML::EndMap << YAML::Key << "layers" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  out << YAML::EndMap;
+  if (header.scenario.wind_series) entry(out, "wind_series", header.scenario.wind_series->text());
+  out << YAML::Key << "layers" << YAML::Value << YAML::Flow << YAML::BeginSeq;
   for (Layer layer : header.layers) out << info(layer).name;
   out << YAML::EndSeq << YAML::EndMap;
   return out.c_str();
@@ -175,6 +177,21 @@ WindRegime read_wind(const CheckpointHeader& header, const YAML::Node& node, con
   return wind;
 }
 
+/// Checkpoints have it if their scenario names a file with it.
+void read_series(const YAML::Node& node, const std::string& path, CheckpointHeader& header) {
+  const std::string& file = header.scenario.wind_regime.series_file;
+  const bool needed = header.wind.regime == WindRegimeKind::series ||
+                      header.scenario.wind_regime.regime == WindRegimeKind::series ||
+                      header.start.wind_regime.regime == WindRegimeKind::series;
+  if (!node["wind_series"]) {
+    if (needed) throw ConfigError(path + ": wind_series: is missing, which has the rows of " + quoted(file));
+    return;
+  }
+  header.wind.series = header.scenario.wind_series = header.start.wind_series =
+      std::make_shared<const WindSeries>(
+          WindSeries::from_text(text_at(node, "wind_series", path), path + ": wind_series"));
+}
+
 /// Layers that a simulation of the scenario has from its start.
 std::vector<Layer> needed_layers(const Scenario& scenario) {
   std::vector<Layer> needed{Layer::bedrock, Layer::sand, Layer::airborne_sand};
@@ -235,7 +252,7 @@ CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
                               "ramps", "initial", "ledger",     "wind",  "layers"};
   yaml::read_parameters(node, "", errors, header.numbers, known);
   std::set<std::string> allowed = known;
-  allowed.insert("clock");
+  allowed.insert({"clock", "wind_series"});
   yaml::reject_unknown_keys(node, "", allowed, errors);
   if (node.IsMap())
     for (const std::string& key : known)
@@ -253,6 +270,7 @@ CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
   read_layers(node["layers"], errors, header);
   errors.throw_if_any();
   header.wind = read_wind(header, node["wind"], path);
+  read_series(node, path, header);
   require_reach(header.scenario);
   if (header.scenario.has_water()) require_sea(header.scenario, header.scale(), path + ": scenario");
   return header;

@@ -12,7 +12,8 @@
 namespace desert_sim {
 
 std::uint64_t scenario_hash(const Scenario& scenario) {
-  const std::string text = dump_scenario(scenario);
+  std::string text = dump_scenario(scenario);
+  if (scenario.wind_series) text += scenario.wind_series->text();
   return XXH3_64bits(text.data(), text.size());
 }
 
@@ -21,6 +22,7 @@ Session::Session(const Scenario& scenario, const RasterLoader& load_raster, cons
     : load_raster_(load_raster), undo_memory_(undo_memory) {
   Scenario resolved = scenario;
   resolve_grid(resolved, load_raster_);
+  read_wind_series(resolved);
   exec_ = make_exec(backend, threads, &backend_choice_);
   replace_simulation(std::make_unique<Simulation>(*exec_, resolved, load_raster_));
   if (journal_path.empty()) return;
@@ -89,6 +91,7 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
     next = std::move(merged);
   }
   resolve_grid(next, load_raster_);
+  read_wind_series(next, command.folder.empty() ? folder_ : command.folder);
   auto simulation = std::make_unique<Simulation>(*exec_, next, load_raster_);
   const std::uint64_t hash = simulation->state_hash();
   if (command.hash != 0 && command.hash != hash)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "kernels/field/statistics.hpp"
 #include "src/core/constants.hpp"
@@ -32,6 +33,8 @@ HeightScale scale_for(const HostLayers& layers, const Scenario& scenario) {
 
 Terrain build(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster) {
   require_reach(scenario);
+  if (scenario.wind_regime.regime == WindRegimeKind::series && !scenario.wind_series)
+    throw ConfigError(scenario.name + ": wind.series_file: has not been read");
   require_memory(exec, scenario, bytes_to_build(scenario));
   const HostLayers layers = build_terrain(scenario, load_raster);
   Terrain terrain(exec, scenario.make_grid(), scale_for(layers, scenario));
@@ -44,6 +47,7 @@ double fastest_wind(const Scenario& s) {
   double fastest = s.wind_regime.speed;
   for (const WindSegment& segment : s.wind_segments)
     fastest = std::max(fastest, static_cast<double>(segment.speed));
+  if (s.wind_series) fastest = std::max(fastest, s.wind_series->fastest());
   return fastest * static_cast<double>(std::max(s.wind.speedup_highest, s.wind.response_highest));
 }
 
@@ -74,6 +78,16 @@ void require_bounded_cost(const Scenario& s) {
     std::snprintf(text, sizeof text,
                   "= %g s is %g times saltation.hop_time = %g s (allowed: at most %d times, %g s)", step,
                   step / hop, hop, most_hops, most_hops * hop);
+    errors.add("run.time_step", text);
+  }
+  const double shortest =
+      s.wind_series ? s.wind_series->shortest_interval() : std::numeric_limits<double>::infinity();
+  if (step > max_parts_of_step * shortest) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "= %g s is %g times the shortest time between rows of wind.series_file, %g s (allowed: at "
+                  "most %d times, %g s)",
+                  step, step / shortest, shortest, max_parts_of_step, max_parts_of_step * shortest);
     errors.add("run.time_step", text);
   }
   const double acceleration = s.run.acceleration, rate = acceleration / step;
@@ -120,7 +134,7 @@ void require_sea(const Scenario& s, const HeightScale& scale, const std::string&
 Simulation::Simulation(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster,
                        const ProcessTable& table)
     : Simulation(scenario, build(exec, scenario, load_raster), table) {
-  state_.wind_regime = WindRegime{scenario.wind_regime, scenario.wind_segments};
+  state_.wind_regime = WindRegime{scenario.wind_regime, scenario.wind_segments, scenario.wind_series};
   state_.begin_balance();
 }
 

@@ -58,6 +58,7 @@ std::vector<Layer> SimulationState::layers_in_use() const {
 
 void SimulationState::set_wind_regime(WindRegime regime) {
   regime.initial_wind = wind_regime.at(time());
+  regime.series = scenario.wind_series;
   regime.start_time = time();
   wind_regime = std::move(regime);
 }

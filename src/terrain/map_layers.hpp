@@ -24,7 +24,7 @@ struct MapLayer {
   bool zero_is_special = false;
 };
 
-constexpr std::array<MapLayer, 34> map_layers{{
+constexpr std::array<MapLayer, 36> map_layers{{
     {"elevation", Layer::elevation, 0.005},
     {"bedrock", Layer::bedrock, 0.005},
     {"water_surface", Layer::water_surface, 0.005},
@@ -48,6 +48,8 @@ constexpr std::array<MapLayer, 34> map_layers{{
     {"wind_y", Layer::wind_y, 0.05},
     {"wind_shadow", Layer::wind_shadow, 0.01},
     {"echo", Layer::echo, 0.01},
+    {"flux_x", Layer::flux_x, 0.01},
+    {"flux_y", Layer::flux_y, 0.01},
     {"slope", Layer::slope, 0.01},
     {"roughness", Layer::roughness, 0.005},
     {"step_height", Layer::step_height, 0.005},

@@ -18,6 +18,8 @@
 #include "src/tools/program.hpp"
 #include "src/tools/progress.hpp"
 #include "src/tools/rasters.hpp"
+#include "src/tools/run_length.hpp"
+#include "src/tools/terrain_series.hpp"
 
 using namespace desert_sim;
 
@@ -27,6 +29,9 @@ const char usage[] =
     "usage: desert_run SCENARIO [options]\n"
     "  SCENARIO              a YAML file, or the name of an installed scenario, such as barchan\n"
     "  --steps N             steps to run (default: the scenario's run.steps); with --resume: the last step\n"
+    "  --duration T          in place of --steps: simulated time until the end, in s or with a unit, such as "
+    "24a\n"
+    "                        (ms, s, min, h, d, a)\n"
     "  --backend B           auto (default), cpu or cuda\n"
     "  --threads N           threads of the CPU backend\n"
     "  --set PATH=VALUE      override a key of the scenario; may be repeated\n"
@@ -37,6 +42,10 @@ const char usage[] =
     "DEM\n"
     "  --out DIR             write rasters, pictures and summary.json to DIR, which is created if needed\n"
     "  --every N             also write them every N steps, to DIR/step_NNNNNNNN\n"
+    "  --format F            geotiff (default): a raster a layer in DIR and in each DIR/step_NNNNNNNN; "
+    "netcdf: "
+    "all\n"
+    "                        layers at the start, every N steps and at the end in one file, DIR/terrain.nc\n"
     "  --plot FILE           draw a PNG of areas by material and plants by species over these steps (needs\n"
     "                        python3 with matplotlib)\n"
     "  --film FILE           film the run from above: an .mp4 (needs ffmpeg), a folder of pictures, or one "
@@ -45,6 +54,12 @@ const char usage[] =
     "  --film-every N        steps from picture to picture (default: such that there are about 250)\n"
     "  --view KEY=VALUE      where the camera stands and what it shows; may be repeated; --describe-view "
     "lists them\n"
+    "  --cross-section NAME=X1,Y1,X2,Y2\n"
+    "                        add up the sand that the wind carries across this line, to the left of its "
+    "way, in\n"
+    "                        summary.json; may be repeated\n"
+    "  --probe X,Y           write a time series of this point to DIR/probes.csv; may be repeated\n"
+    "  --probe-every N       steps from line to line (default 1)\n"
     "  --checkpoint FILE     save the state to FILE at the end\n"
     "  --checkpoint-every N  also save it every N steps\n"
     "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be omitted), with what "
@@ -77,10 +92,12 @@ struct RunPlan {
   std::uint64_t every = 0, checkpoint_every = 0;
   std::unique_ptr<Film> film;
   std::uint64_t film_every = 0;
+  Measurements measurements;
+  std::unique_ptr<TerrainSeries> series;  ///< of --format netcdf
 };
 
 RunPlan plan_of(Options options) {
-  RunPlan plan{std::move(options), "", "", {}, 0, 0, nullptr, 0};
+  RunPlan plan{std::move(options), "", "", {}, 0, 0, nullptr, 0, {}, nullptr};
   const Options& o = plan.options;
   plan.out = o.text("out", "");
   plan.checkpoint = o.text("checkpoint", "");
@@ -88,10 +105,20 @@ RunPlan plan_of(Options options) {
   plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
   if (o.positional().size() > 1)
     throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
+  const std::string format = o.text("format", "geotiff");
+  if (format != "geotiff" && format != "netcdf")
+    throw ConfigError("--format " + format + ": is not one of: geotiff, netcdf");
+  if (o.has("format") && plan.out.empty()) throw ConfigError("--format: --out is required too");
+  if (o.has("plot") && format == "netcdf")
+    throw ConfigError("--plot: needs the summaries of --format geotiff");
   if (plan.every && plan.out.empty()) throw ConfigError("--every: --out is required too");
+  o.number("probe-every", 1, 1, 1LL << 40);
+  if (o.has("probe") && plan.out.empty()) throw ConfigError("--probe: --out is required too");
+  if (o.has("probe-every") && !o.has("probe")) throw ConfigError("--probe-every: --probe is required too");
   if (o.has("plot") && !plan.every) throw ConfigError("--plot: --out and --every are required too");
   if (plan.checkpoint_every && plan.checkpoint.empty())
     throw ConfigError("--checkpoint-every: --checkpoint is required too");
+  check_run_length(o);
   for (const char* option : {"film-every", "view"})
     if (o.has(option) && !o.has("film"))
       throw ConfigError("--" + std::string(option) + ": --film is required too");
@@ -153,11 +180,13 @@ std::uint64_t usual_film_every(std::uint64_t steps) { return std::max<std::uint6
 
 /// Before the first step: refuses files that could not be written at the end. Creates the folders of --out
 /// and --film. `steps`: how many there will be.
-void prepare_outputs(RunPlan& plan, const Journal& journal, std::uint64_t steps) {
+void prepare_outputs(RunPlan& plan, const Journal& journal, std::uint64_t steps, Simulation& simulation) {
   if (!plan.checkpoint.empty()) require_no_input_replaced(plan, journal);
   const std::string created = plan.out.empty() ? "" : create_output_folder(plan.out);
   try {
     if (!plan.checkpoint.empty()) require_writable_file(plan.checkpoint);
+    if (plan.options.text("format", "") == "netcdf")
+      plan.series = std::make_unique<TerrainSeries>(plan.out + "/terrain.nc", simulation);
     if (plan.options.has("plot")) require_writable_file(plan.options.text("plot", ""));
     if (plan.options.has("film")) {
       plan.film =
@@ -200,14 +229,19 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
     const auto start = Clock::now();
     const bool timed = report.steps_run % timed_every == 0;
     time_processes(session.simulation(), timed, report);
+    plan.measurements.keep_flux(session);
+    const double before = session.simulation().time();
     session.step();
     if (session.ticks() == last || session.ticks() % 64 == 0) session.simulation().exec().synchronise();
     stepping += Clock::now() - start;
     ++report.steps_run;
+    plan.measurements.add(session.simulation(), session.simulation().time() - before);
     report.milliseconds = std::chrono::duration<double, std::milli>(stepping).count();
     replay();
     const std::uint64_t step = session.simulation().steps();
-    if (plan.every && step % plan.every == 0) {
+    if (plan.every && step % plan.every == 0 && plan.series) {
+      plan.series->add(session.simulation());
+    } else if (plan.every && step % plan.every == 0) {
       char name[32];
       std::snprintf(name, sizeof name, "/step_%08llu", static_cast<unsigned long long>(step));
       create_output_folder(plan.out + name);
@@ -223,18 +257,18 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
 }
 
 int run_program(int argc, char** argv) {
-  RunPlan plan =
-      plan_of(Options(argc, argv,
-                      {"steps", "backend", "threads", "set", "seed", "out", "every", "plot", "checkpoint",
-                       "checkpoint-every", "resume", "replay", "film", "film-every", "view"},
-                      {"all-raster-formats", "describe", "describe-processes", "describe-view", "pipeline",
-                       "quiet", "help"}));
+  RunPlan plan = plan_of(Options(
+      argc, argv,
+      {"steps",         "duration",   "backend",          "threads", "set",    "seed", "out",        "every",
+       "plot",          "checkpoint", "checkpoint-every", "resume",  "replay", "film", "film-every", "view",
+       "cross-section", "probe",      "probe-every",      "format"},
+      {"all-raster-formats", "describe", "describe-processes", "describe-view", "pipeline", "quiet",
+       "help"}));
   const Options& o = plan.options;
   if (o.has("help")) return std::fputs(usage, stdout), 0;
   if (o.has("describe")) return std::cout << describe_parameters(), 0;
   if (o.has("describe-view")) return std::cout << describe_view(), 0;
   if (o.has("describe-processes")) return std::cout << describe_processes(process_table()), 0;
-  const auto steps = static_cast<std::uint64_t>(o.number("steps", 0, 0, 1LL << 40));
   const int threads = static_cast<int>(o.number("threads", 0, 1, 4096));
   if (threads > 0) omp_set_num_threads(threads);
 
@@ -244,24 +278,27 @@ int run_program(int argc, char** argv) {
       o.has("resume") ? resume_session(o, journal, threads) : begin_session(o, journal, threads);
   Simulation& simulation = session->simulation();
   if (o.has("pipeline")) return std::cout << describe_pipeline(simulation.pipeline()), 0;
-  const std::uint64_t scenario_steps =
-      o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps);
-  const std::uint64_t asked = o.has("steps") ? steps : scenario_steps;
-  // A resumed run continues until the requested step.
-  const std::uint64_t last =
-      o.has("resume") ? (asked > simulation.steps() ? asked - simulation.steps() : 0) : asked;
-  prepare_outputs(plan, journal, last);
+  const std::uint64_t last = steps_to_run(
+      o, simulation,
+      o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps));
+  plan.measurements = Measurements(o.values("cross-section"), o.values("probe"),
+                                   static_cast<std::uint64_t>(o.number("probe-every", 1, 1, 1LL << 40)),
+                                   simulation.scenario());
+  prepare_outputs(plan, journal, last, simulation);
   if (!o.has("quiet"))
     std::fprintf(stderr, "backend: %s; %s\n", session->backend_choice().c_str(),
                  simulation.exec().device().c_str());
 
   catch_signals();
   RunReport report;
+  report.measurements = &plan.measurements;
   report.backend = simulation.exec().backend();
   report.device = simulation.exec().device();
   if (const auto* cpu = dynamic_cast<CpuExec*>(&simulation.exec())) report.threads = cpu->threads();
   run(*session, plan, journal, last, report);
-  if (!plan.out.empty()) write_outputs(plan.out, session->simulation(), report);
+  if (plan.series) plan.series->add(session->simulation());
+  if (!plan.out.empty()) write_outputs(plan.out, session->simulation(), report, !plan.series);
+  if (o.has("probe")) write_file(plan.out + "/probes.csv", plan.measurements.probes().csv());
   if (o.has("plot") && !plan.summaries.empty())
     run_plot_script("--plot", "plot_run.py", o.text("plot", ""), plan.summaries);
   if (plan.film) plan.film->finish();

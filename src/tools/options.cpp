@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <locale>
+#include <sstream>
 
 #include "src/core/error.hpp"
+#include "src/core/number_text.hpp"
 
 namespace desert_sim {
 
@@ -55,6 +58,19 @@ long long Options::number(const std::string& name, long long default_value, long
   if (*end || errno || number < lowest || number > highest)
     throw ConfigError("--" + name + " " + value + ": must be a whole number from " + std::to_string(lowest) +
                       " to " + std::to_string(highest));
+  return number;
+}
+
+double Options::real(const std::string& name, double default_value, double lowest, double highest) const {
+  const std::string value = text(name, "");
+  if (value.empty()) return default_value;
+  std::istringstream in(value);
+  in.imbue(std::locale::classic());
+  double number = 0;
+  std::string more;
+  if (!(in >> number) || (in >> more) || !(number >= lowest && number <= highest))
+    throw ConfigError("--" + name + " " + value + ": must be a number from " + number_text(lowest) + " to " +
+                      number_text(highest));
   return number;
 }
 

@@ -24,6 +24,8 @@ class Options {
   /// Throws ConfigError.
   long long number(const std::string& name, long long default_value, long long lowest,
                    long long highest) const;
+  /// Likewise as a number.
+  double real(const std::string& name, double default_value, double lowest, double highest) const;
 
  private:
   std::map<std::string, std::vector<std::string>> values_;

@@ -33,6 +33,10 @@ void write_pictures(const std::string& folder, const Snapshot& s) {
   write_png(folder + "/elevation.png", hillshade_picture(picture));
   write_png(folder + "/wind.png", wind_picture(s.width, s.height, s.cell_size, values(Layer::wind_x),
                                                values(Layer::wind_y), picture.elevation));
+  if (s.find(Layer::flux_x))
+    write_png(folder + "/flux.png",
+              wind_picture(s.width, s.height, s.cell_size, values(Layer::flux_x), values(Layer::flux_y),
+                           picture.elevation, {"flux", "m^2/s"}));
 }
 #endif
 
@@ -56,6 +60,21 @@ Areas ground_areas(Simulation& simulation) {
   for (std::size_t i = 0; i < values(Layer::sand).size(); ++i)
     areas.square_metres[ground_kind(i)] += s->cell_size * s->cell_size;
   return areas;
+}
+
+/// Goes on after an open object, and leaves one open.
+void write_cross_sections(std::ostream& out, const std::vector<CrossSection>& sections) {
+  out << "},\n  \"cross_sections\": {";
+  for (std::size_t n = 0; n < sections.size(); ++n) {
+    const CrossSection& c = sections[n];
+    out << (n ? ",\n    " : "\n    ") << json_string(c.name()) << ": {\"from\": [" << json_number(c.from().x)
+        << ", " << json_number(c.from().y) << "], \"to\": [" << json_number(c.to().x) << ", "
+        << json_number(c.to().y) << "], \"length_m\": " << json_number(c.length())
+        << ", \"time_s\": " << json_number(c.duration())
+        << ", \"volume_to_the_left_m3\": " << json_number(c.volume())
+        << ", \"m2_per_year\": " << json_number(c.per_metre_and_year()) << "}";
+  }
+  out << "\n  ";
 }
 
 }  // namespace
@@ -109,6 +128,7 @@ std::string summary(Simulation& s, const RunReport& report) {
   out << "{\n  \"scenario\": " << json_string(s.scenario().name) << ",\n  \"steps\": " << s.steps()
       << ",\n  \"sim_time_s\": " << json_number(s.time()) << ",\n  \"width\": " << g.width
       << ",\n  \"height\": " << g.height << ",\n  \"cell_size_m\": " << json_number(g.cell_size)
+      << ",\n  \"boundary\": " << json_string(boundary_names[static_cast<int>(g.boundary)])
       << ",\n  \"backend\": " << json_string(report.backend)
       << ",\n  \"device\": " << json_string(report.device) << ",\n  \"threads\": " << report.threads
       << ",\n  \"seed\": " << s.scenario().seed << ",\n  \"ms_per_step\": {\"total\": "
@@ -138,6 +158,8 @@ std::string summary(Simulation& s, const RunReport& report) {
   for (std::size_t n = 0; n < plants.size(); ++n)
     out << (n ? ", " : "") << json_string(plants[n].species) << ": {\"plants\": " << plants[n].plants
         << ", \"mature\": " << plants[n].mature << "}";
+  if (report.measurements && !report.measurements->cross_sections().empty())
+    write_cross_sections(out, report.measurements->cross_sections());
   const Residual r = s.residual();
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
@@ -154,12 +176,13 @@ std::string summary(Simulation& s, const RunReport& report) {
   return out.str();
 }
 
-void write_outputs(const std::string& folder, Simulation& simulation, const RunReport& report) {
+void write_outputs(const std::string& folder, Simulation& simulation, const RunReport& report,
+                   [[maybe_unused]] bool rasters) {
 #if DESERT_WITH_IO
   std::vector<Layer> layers = simulation.layers_in_use();
   if (simulation.shows(Layer::plants)) layers.push_back(Layer::plants);
   const auto snapshot = simulation.snapshot(layers);
-  write_rasters(folder, *snapshot, simulation.scenario().projection);
+  if (rasters) write_rasters(folder, *snapshot, simulation.scenario().projection);
   write_pictures(folder, *snapshot);
 #endif
   write_file(folder + "/summary.json", summary(simulation, report));

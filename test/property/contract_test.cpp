@@ -21,7 +21,7 @@ const std::map<std::string, std::string> worlds{
      "  uniform: {layer: erosion_resistance, value: 0.2}, uniform: {layer: moisture, value: 0.02},\n"
      "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
      "wind: {speed: 6, direction_deg: 20, features: [{kind: vortex, x: 10, y: 10, radius: 5}]}\n"
-     "echo_dunes: {enabled: true}\nabrasion: {rate: 0.05, cover: 3}\nsaltation: {influx: 0.3}\n"
+     "echo_dunes: {enabled: true}\nabrasion: {rate: 0.05, cover: 3}\nsaltation: {influx: 0.3, flux: true}\n"
      "reptation: {method: smoothing}\nrain: {rate: 1.0e-4}\n"
      "water: {evaporation: 0.05, wave_strength: 0.1, sea: border, sea_level: 1,\n"
      "  springs: [{x: 12, y: 20, radius: 3, discharge: 2}]}\n"

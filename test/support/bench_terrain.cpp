@@ -115,7 +115,7 @@ void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParamet
   with_backend(exec(), [&](auto& e) {
     const reptation::Angle angle({}, r, repose.data());
     saltation::step(e, terrain.view(), p, a, r, time_step, roll_dice(), ledger(), landed.data(),
-                    {angle, strength.data()}, nullptr);
+                    {angle, strength.data()}, nullptr, time_step);
   });
 }
 

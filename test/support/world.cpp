@@ -13,6 +13,7 @@ Scenario parsed(const std::string& yaml) { return parse_scenario(YAML::Load(yaml
 Scenario scenario_of(const std::string& yaml) {
   Scenario scenario = parsed(yaml);
   resolve_grid(scenario, no_raster_loader);
+  read_wind_series(scenario);
   return scenario;
 }
 

@@ -97,6 +97,32 @@ TEST_F(Run, ResumedGivesTheSameHashWithAndWithoutItsScenario) {
   EXPECT_EQ(hash("whole"), hash("b"));
 }
 
+TEST_F(Run, TakesAsManyStepsAsItsDurationNeeds) {
+  run_cpu({scenario_, "--out", path("a"), "--set", "run.time_step=0.7", "--duration", "7"});
+  EXPECT_EQ(json(summary("a"), "steps"), "10");
+  run_cpu({scenario_, "--out", path("b"), "--duration", "0.15 min", "--checkpoint", path("half.ck")});
+  EXPECT_EQ(json(summary("b"), "steps"), "9");
+  run_cpu({"--out", path("c"), "--duration", "11500 ms", "--resume", path("half.ck")});
+  EXPECT_EQ(json(summary("c"), "steps"), "12");
+  run_cpu({scenario_, "--out", path("d"), "--set", "run.duration=5 s"});
+  EXPECT_EQ(json(summary("d"), "steps"), "5");
+  run_cpu({scenario_, "--out", path("e"), "--set", "run.duration=5 s", "--steps", "3"});
+  EXPECT_EQ(json(summary("e"), "steps"), "3");
+}
+
+TEST_F(Run, RefusesDurationsThatAreNone) {
+  for (const char* duration : {"5 weeks", "-1", "nan", "1e30 a"}) {
+    const auto r = run({scenario_, "--duration", duration});
+    EXPECT_EQ(r.status, 2) << duration;
+    EXPECT_NE(r.err.find("--duration"), std::string::npos) << r.err;
+  }
+  EXPECT_EQ(run({scenario_, "--duration", "5", "--steps", "5"}).status, 2);
+  const auto r =
+      run({scenario_, "--duration", "5", "--set", "run.timeline=[{time: 1, set: {run.time_step: 2}}]"});
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(r.err.find("run.time_step"), std::string::npos) << r.err;
+}
+
 TEST_F(Run, ResumedAtItsEndWritesOutputsAndMakesNoStep) {
   run_cpu({scenario_, "--steps", "10", "--checkpoint", path("half.ck"), "--out", path("a")});
   run_cpu({"--out", path("b"), "--steps", "10", "--resume", path("half.ck")});

@@ -53,6 +53,31 @@ TEST(Loader, NamesTextWhereANumberIsExpected) {
   expect_refused("wind: {speed: {v: 5}}", {"wind.speed", "map"});
 }
 
+TEST(Loader, ReadsTimesWithUnits) {
+  const auto step = [](const std::string& time) {
+    return static_cast<double>(test::scenario_of("run: {time_step: " + time + "}").run.time_step);
+  };
+  EXPECT_FLOAT_EQ(step("500 ms"), 0.5);
+  EXPECT_FLOAT_EQ(step("2s"), 2);
+  EXPECT_FLOAT_EQ(step("0.25 min"), 15);
+  EXPECT_FLOAT_EQ(step("'1e-2 h'"), 36);
+  EXPECT_FLOAT_EQ(step("7"), 7);
+  EXPECT_EQ(test::scenario_of("run: {duration: 24 a}").run.duration, 24 * 365.25 * 86400);
+  EXPECT_EQ(test::scenario_of("run: {duration: 2 d}").run.duration, 172800);
+  const std::string timeline = "run: {timeline: [{time: 1 h, ramp: 1 min, set: {wind.hold_time: 2 h}}]}";
+  EXPECT_EQ(test::scenario_of(timeline).timeline.at(0).time, 3600);
+  EXPECT_EQ(test::scenario_of(timeline).timeline.at(0).ramp, 60);
+}
+
+TEST(Loader, NamesTimesThatAreNone) {
+  for (const char* time : {"5 weeks", "1 h 5", "h", "1 H", "5 m"})
+    expect_refused("run: {time_step: " + std::string(time) + "}",
+                   {"run.time_step", time, "not a time", "[0.0001, ", "ms, s, min, h, d, a"});
+  expect_refused("run: {time_step: 1 a}", {"run.time_step", "= 1 a is not in [0.0001, "});
+  expect_refused("wind: {speed: 5 s}", {"wind.speed", "5 s", "not a number"});
+  expect_refused("run: {timeline: [{time: 1 week, set: {wind.speed: 5}}]}", {"run.timeline.0.time", "min"});
+}
+
 TEST(Loader, NamesNumbersThatAreNoneOrInfinite) {
   for (const char* number : {".nan", ".NaN", "nan", ".inf", "-.inf", "inf", "1e999"})
     expect_refused("saltation: {lift: " + std::string(number) + "}", {"saltation.lift", number, "[0, 10]"});

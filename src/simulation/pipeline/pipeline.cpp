@@ -117,8 +117,12 @@ StepContext Pipeline::context() {
 }
 
 int Pipeline::parts() const {
-  constexpr float most = 256;  // what is longer is left to the processes' own sub-steps
+  // What is longer is left to the processes' own sub-steps.
+  constexpr auto most = static_cast<float>(max_parts_of_step);
   float longest = std::numeric_limits<float>::infinity();
+  // No row of a wind series is passed over: each is the wind at the start of a part at least once.
+  if (const auto& series = state_.scenario.wind_series)
+    longest = static_cast<float>(series->shortest_interval());
   for (const Stage& stage : stages_) longest = std::min(longest, stage.process->longest_step);
   return static_cast<int>(std::clamp(std::ceil(state_.scenario.run.time_step / longest), 1.0f, most));
 }

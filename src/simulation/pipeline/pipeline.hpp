@@ -24,6 +24,9 @@ struct ProcessTime {
   double milliseconds = 0;
 };
 
+/// Most equal parts in which a step is done; see Pipeline::parts().
+constexpr int max_parts_of_step = 256;
+
 class Pipeline {
  public:
   /// For the present scenario of `state`. Throws ConfigError if there is no memory.
@@ -42,7 +45,8 @@ class Pipeline {
 
   /// One step of all active processes. Throws StateError if a process breaks a layer.
   void step();
-  /// Number of equal parts in which a step is done; see Process::longest_step.
+  /// Number of equal parts in which a step is done: none is longer than Process::longest_step, or than the
+  /// shortest time between rows of a wind series.
   int parts() const;
   /// The step of one active process alone, for tests.
   void step_alone(const std::string& process);

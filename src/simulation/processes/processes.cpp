@@ -13,6 +13,7 @@ const ProcessTable& process_table() {
                                       wind_shadow_process(),
                                       echo_dune_process(),
                                       sand_record_process(),
+                                      sand_flux_process(),
                                       saltation_process(),
                                       repose_process(),
                                       reptation_process(),

@@ -10,7 +10,8 @@ Process wind_process();  // wind.cpp
 Process wind_shadow_process();
 Process echo_dune_process();
 
-Process saltation_process();  // sand.cpp
+Process sand_flux_process();  // sand.cpp
+Process saltation_process();
 Process repose_process();
 Process reptation_process();
 Process avalanching_process();

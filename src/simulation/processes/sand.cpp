@@ -32,7 +32,8 @@ template <class E>
 void lift_and_deposit(E& e, StepContext& c, const wind_shadow::Shadow* shadow_law) {
   const Scenario& s = c.scenario();
   saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.dice(), c.state.ledger(),
-                  c.fields.landed.data(), {angle_of_repose(c), c.fields.impact_strength.data()}, shadow_law);
+                  c.fields.landed.data(), {angle_of_repose(c), c.fields.impact_strength.data()}, shadow_law,
+                  c.scenario().run.time_step);
 }
 
 void saltate(StepContext& c, ProcessWorkspace*) {
@@ -138,6 +139,22 @@ MemoryTraffic avalanche_traffic(const Scenario& s, const Grid& grid) {
 
 }  // namespace
 
+/// Begins the flux that the hops of a step add to.
+Process sand_flux_process() {
+  Process p;
+  p.name = "sand_flux";
+  p.parameters = {"saltation"};
+  p.source = "Paris 2019 §5.2";
+  p.header = "kernels/sand/saltation.hpp";
+  p.active = [](const Scenario& s) { return s.saltation.enabled && s.saltation.flux; };
+  p.writes = {Layer::flux_x, Layer::flux_y};
+  p.step = [](StepContext& c, ProcessWorkspace*) {
+    if (c.part == 0) with_backend(c.exec(), [&](auto& e) { saltation::clear_flux(e, c.terrain); });
+  };
+  p.can_be_recorded = [](const SimulationState&) { return false; };  // parts of a step differ
+  return p;
+}
+
 Process saltation_process() {
   Process p;
   p.name = "saltation";
@@ -149,7 +166,7 @@ Process saltation_process() {
              Layer::echo,     Layer::vegetation, Layer::obstacle,
              Layer::moisture, Layer::water,      Layer::erosion_resistance};
   p.writes = {Layer::sand, Layer::airborne_sand};
-  p.writes_if_in_use = {Layer::bedrock, Layer::soil};
+  p.writes_if_in_use = {Layer::bedrock, Layer::soil, Layer::flux_x, Layer::flux_y};
   p.step = saltate;
   p.longest_step = 1;      // the wind's shadow and avalanches follow what it moves
   p.refresh = set_angles;  // the angles of repose that a step sets with the deposit
@@ -232,7 +249,7 @@ FusedProcesses fused_wind_shadow_and_saltation() {
     const bool on_gpu = std::string(state.exec().backend()) == "cuda";  // nor where memory is only planned
     return on_gpu && state.scenario.run.time_step >= wind_shadow::held_for &&
            state.terrain.grid().cells() <= max_cells && !state.scenario.wind_shadow.curved &&
-           !state.scenario.echo_dunes.enabled;
+           !state.scenario.echo_dunes.enabled && !state.scenario.saltation.flux;
   };
   f.step = [](StepContext& c, ProcessWorkspace* shadow, ProcessWorkspace*) {
     with_backend(c.exec(), [&](auto& e) {

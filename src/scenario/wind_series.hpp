@@ -1,0 +1,67 @@
+#pragma once
+/// A measured series of the wind: read from a CSV file once, when a session begins with its scenario. After
+/// that it belongs to the scenario and to checkpoints, which need the file no longer.
+///
+/// The file has a first line with the names of its columns, separated by commas, of which `time`, `speed`
+/// [m/s] and `direction` [deg] count. Times rise from row to row; they are seconds, or dates such as
+/// 2001-03-04T15:00 or 2001-03-04 15:00:30 (UTC). Empty lines and what follows a # are skipped.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kernels/wind/vector.hpp"
+
+namespace desert_sim {
+
+struct Scenario;
+
+/// Whether a series says where the wind blows to, or where it comes from, as meteorologists do.
+enum class SeriesDirection : int { to, from };
+constexpr const char* series_direction_names[] = {"to", "from"};
+
+/// Counter-clockwise from +x (east), or clockwise from +y (north).
+enum class SeriesAngle : int { mathematical, compass };
+constexpr const char* series_angle_names[] = {"mathematical", "compass"};
+
+constexpr std::size_t max_series_rows = std::size_t{1} << 20;
+
+struct WindSeries {
+  struct Row {
+    double time;  ///< since the simulation's start [s]; may be negative
+    wind::Vector wind;
+  };
+  std::vector<Row> rows;       ///< at least one, in order of time
+  std::optional<double> date;  ///< of the simulation's start, in seconds since 1970-01-01 UTC, where known
+
+  /// The wind of the last row that is not later than `time` [s since the start]. Before the first row it is
+  /// the first one's. After the last row has held for as long as the one before it, the series starts again
+  /// at its first row, or, without `repeat`, the last row holds on.
+  wind::Vector at(double time, bool repeat) const;
+  double shortest_interval() const;  ///< between rows [s]; infinite if there is only one
+  double fastest() const;            ///< [m/s]
+
+  /// All of it as text, to the bit, and back. from_text() throws ConfigError in the name of `source`.
+  std::string text() const;
+  static WindSeries from_text(const std::string& text, const std::string& source);
+};
+
+/// Seconds since 1970-01-01 UTC of a date, with or without a time of day; empty if `text` is none.
+std::optional<double> read_date(const std::string& text);
+/// "2001-03-04 15:00:00".
+std::string date_text(double date);
+
+struct SeriesFormat {
+  SeriesDirection direction;
+  SeriesAngle angle;
+  std::string start;  ///< time or date of the file at which the simulation starts; empty: the first row's
+};
+
+/// Reads a file's text. Throws ConfigError that lists faults with `source`, line, column and value.
+WindSeries parse_wind_series(const std::string& text, const std::string& source, const SeriesFormat& format);
+
+/// Reads the series that the scenario names, unless it has it already; with a `folder`, only from below it.
+void read_wind_series(Scenario& scenario, const std::string& folder = "");
+
+}  // namespace desert_sim

@@ -1,0 +1,21 @@
+#pragma once
+/// How many steps a run takes.
+
+#include <cstdint>
+
+#include "src/simulation/simulation.hpp"
+#include "src/tools/options.hpp"
+
+namespace desert_sim {
+
+/// Steps from now until the simulated time `until` [s]. Throws ConfigError if they are countless, or not to
+/// be known because the timeline changes the time step.
+std::uint64_t steps_until(const Simulation& simulation, double until);
+
+/// Throws ConfigError unless --steps and --duration are well-formed and not both given.
+void check_run_length(const Options& options);
+
+/// Steps from now on: of --steps (of which those that are done count), --duration, run.duration or `usual`.
+std::uint64_t steps_to_run(const Options& options, const Simulation& simulation, std::uint64_t usual);
+
+}  // namespace desert_sim
