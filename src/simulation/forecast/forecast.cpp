@@ -75,7 +75,7 @@ bool ForecastRun::step_to_horizon(int number, const Progress& progress, const Vi
       clock.step(run);
       simulation_->step();
       if (run.time_step == time_step) continue;
-      lengthen_steps(*simulation_);  // a timeline has set another one
+      lengthen_steps(*simulation_);  // a timeline has set another one in this step
       time_step = run.time_step;
     }
     visit(static_cast<std::size_t>(n - 1), time);
