@@ -102,7 +102,8 @@ TEST_P(Forecasts, TellTheStatesThatTheLiveRunShowsThen) {
 
 TEST_P(Forecasts, OfLongerStepsAreRunsWithThatTimeStep) {
   const auto live = simulation(
-      dunes + "run: {time_step: 0.02, acceleration: 0.2, timeline: [{time: 0.6, set: {run.time_step: 0.01}}]}\n");
+      dunes +
+      "run: {time_step: 0.02, acceleration: 0.2, timeline: [{time: 0.6, set: {run.time_step: 0.01}}]}\n");
   ForecastOptions o = options(6, 3, 0);
   o.stride = 5;
   const ForecastMaps f = forecast(*live, o);

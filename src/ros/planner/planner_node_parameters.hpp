@@ -55,7 +55,8 @@ constexpr auto parameter_table(const PlannerNodeParameters*) {
       parameter("forecast_horizon", &P::forecast_horizon, 0.1, 1e9, "s", "How far ahead it asks."),
       parameter("forecast_moments", &P::forecast_moments, 1, 100, "1", "For how many moments."),
       parameter("forecast_stride", &P::forecast_stride, 1, 1000, "1",
-                "Steps of the live run that one step of the forecast stands for: as much faster, and coarser in time."),
+                "Steps of the live run that one step of the forecast stands for: as much faster, and coarser "
+                "in time."),
       parameter("forecast_probability", &P::forecast_probability, 0, 1, "1",
                 "Of an ensemble: a cell counts as lethal if a smaller share of its members can pass."),
       parameter("status_rate", &P::status_rate, 0.01, 1000, "Hz",

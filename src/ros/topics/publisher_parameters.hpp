@@ -76,7 +76,8 @@ constexpr auto parameter_table(const PublisherParameters*) {
       parameter("forecast_moments", &P::forecast_moments, 1, 100, "1",
                 "Of ~forecast/maps: states to tell, evenly spaced, the last at the horizon."),
       parameter("forecast_stride", &P::forecast_stride, 1, 1000, "1",
-                "Of ~forecast/maps: steps of the live run that one step stands for; 1: the live run's states to the bit, "
+                "Of ~forecast/maps: steps of the live run that one step stands for; 1: the live run's states "
+                "to the bit, "
                 "more: as much faster, and coarser in time."),
       parameter("status_rate", &P::status_rate, 0, 1000, "Hz", "~status; it is also sent on change."));
 }

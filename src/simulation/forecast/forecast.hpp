@@ -29,9 +29,10 @@ constexpr auto parameter_table(const ForecastParameters*) {
       parameter("moments", &P::moments, 1, 100, "1",
                 "States to tell, evenly spaced, the last at the horizon."),
       parameter("members", &P::members, 1, 64, "1", "Runs, of which all but the first have gusts."),
-      parameter("stride", &P::stride, 1, 1000, "1",
-                "Steps of the live run that one step stands for: 1 gives its states to the bit, more is as much "
-                "faster, with a time step as much longer."));
+      parameter(
+          "stride", &P::stride, 1, 1000, "1",
+          "Steps of the live run that one step stands for: 1 gives its states to the bit, more is as much "
+          "faster, with a time step as much longer."));
 }
 static_assert(table_is_complete<ForecastParameters>());
 
