@@ -9,7 +9,7 @@
 namespace desert_sim {
 namespace {
 
-constexpr SeriesFormat usual{SeriesDirection::to, SeriesAngle::mathematical, ""};
+const SeriesFormat usual{SeriesDirection::to, SeriesAngle::mathematical, ""};
 
 WindSeries parse(const std::string& text, const SeriesFormat& format = usual) {
   return parse_wind_series(text, "wind.csv", format);
