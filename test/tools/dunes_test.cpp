@@ -143,7 +143,7 @@ TEST_F(DunesOf, ARunAreTheSameFromRastersAndFromNetcdf) {
       folder_.write("heap.yaml",
                     "grid: {width: 80, height: 60, cell_size: 1}\n"
                     "terrain: [cone: {layer: sand, shape: gaussian, x: 25, y: 30, height: 4, radius: 6}]\n"
-                    "wind: {speed: 5}\nrun: {steps: 40}\n");
+                    "wind: {speed: 5}\nsaltation: {lift: 0.05}\nrun: {steps: 40}\n");
   const std::string program = test::program_path("DESERT_DUNES_BINARY", DESERT_DUNES_BINARY);
   run_cpu({heap, "--out", path("a"), "--every", "10", "--format", "netcdf"});
   run_cpu({heap, "--out", path("b"), "--every", "10"});

@@ -122,8 +122,8 @@ TEST_F(Netcdf, IsReadByGdal) {
 TEST_F(Netcdf, RefusesWhatItCannotWriteOrRead) {
   EXPECT_EQ(run({scenario_, "--out", path("out"), "--format", "hdf"}).status, 2);
   EXPECT_EQ(run({scenario_, "--format", "netcdf"}).status, 2);
-  EXPECT_FALSE(test::refusal([&] { NetcdfReader{scenario_}; }).empty());
-  EXPECT_FALSE(test::refusal([&] { NetcdfReader{path("none.nc")}; }).empty());
+  EXPECT_FALSE(test::refusal([&] { NetcdfReader file(scenario_); }).empty());
+  EXPECT_FALSE(test::refusal([&] { NetcdfReader file(path("none.nc")); }).empty());
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ Scenario scenario_at(const std::function<double()>& share) {
   for_each_section(s, [&](const char*, auto& parameters) { set_all(parameters, share); });
   set_all(s.wind, share);
   set_all(s.wind_regime, share);
+  s.wind_regime.series_file = "wind.csv";  // which the last of the regimes needs
   s.wind_segments.resize(2);
   for (WindSegment& segment : s.wind_segments) set_all(segment, share);
   s.wind_features.resize(2);
