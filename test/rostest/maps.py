@@ -200,7 +200,7 @@ class Maps(MapTest):
                          ["elevation", "bedrock", "water_surface", "sand_depth", "water_depth", "soil_depth", "vegetation",
                           "plants", "canopy_height", "illumination", "humus", "moisture", "suspended_sediment",
                           "airborne_sand", "water_velocity_x", "water_velocity_y", "erosion_resistance", "obstacle", "looseness",
-                          "wind_x", "wind_y", "wind_shadow", "echo", "slope", "roughness", "step_height", "slip",
+                          "wind_x", "wind_y", "wind_shadow", "echo", "flux_x", "flux_y", "slope", "roughness", "step_height", "slip",
                           "slip_downhill", "slip_across", "sinkage", "traversability", "normal_x", "normal_y", "normal_z"], "all")
 
     def test_get_submap_refuses(self):
