@@ -69,7 +69,8 @@ CommandResult Commands::apply(const command::SetWind& command) {
 void check_wind_schedule(const WindRegime& r, const std::string& what) {
   check_ranges(static_cast<const WindRegimeParameters&>(r), what);
   ValidationErrors errors(what);
-  if (r.regime == WindRegimeKind::constant) errors.add("kind", "must be timeline or rose");
+  if (r.regime != WindRegimeKind::timeline && r.regime != WindRegimeKind::rose)
+    errors.add("kind", "must be timeline or rose");
   check_wind_segments(r.regime, r.segments, "segments", errors);
   errors.throw_if_any();
   for (std::size_t n = 0; n < r.segments.size(); ++n)
