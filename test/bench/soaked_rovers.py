@@ -208,7 +208,8 @@ class PlannedRover(Rover):
                 self.wrong.append("%s: a malformed goal was not refused" % self.name)
             idle, status = self.asked is None, self.status
             waits = self.malformed is not None
-        if status is None or self.planner_status is None or waits or now < self.new_goal:
+        connected = self.planner_status is not None and self.goals.get_num_connections() > 0
+        if status is None or not connected or waits or now < self.new_goal:
             return
         if self.draw.random() < MALFORMED:
             with self.lock:
