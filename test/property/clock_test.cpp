@@ -200,9 +200,9 @@ TEST_P(DesertClock, WhatCannotBeIsRefusedAndChangesNothing) {
       {{"saltation.hop_time=0.01", "run.time_step=100"},
        "run.time_step: = 100 s is 10000 times saltation.hop_time"},
   };
-  for (const auto& [settings, words] : refusals) {
-    const std::string reason = test::refusal([&] { set(*s, settings); });
-    EXPECT_NE(reason.find(words), std::string::npos) << settings[0] << ": " << reason;
+  for (const auto& refused : refusals) {
+    const std::string reason = test::refusal([&] { set(*s, refused.first); });
+    EXPECT_NE(reason.find(refused.second), std::string::npos) << refused.first[0] << ": " << reason;
   }
   EXPECT_EQ(dump_scenario(s->present_scenario()), before);
   EXPECT_TRUE(s->state().clock_origin == ClockOrigin());
