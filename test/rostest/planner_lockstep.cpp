@@ -27,17 +27,19 @@ std::vector<std::string> path() {
     return s.terrain_step == 0 && !s.header.frame_id.empty();
   })) << "it has not seen the start";
   ros::Publisher goals = ros::NodeHandle().advertise<geometry_msgs::PoseStamped>("/move_base_simple/goal", 1);
-  EXPECT_TRUE(wait_until([&] { return goals.getNumSubscribers() > 0; }));
+  EXPECT_TRUE(wait_until([&] { return goals.getNumSubscribers() == 2; })) << "both planners listen for goals";
   geometry_msgs::PoseStamped goal;
   goal.header.frame_id = "terrain";
   goal.pose.position.x = 20;
   goal.pose.position.y = 18;
   goal.pose.orientation.w = 1;
   goals.publish(goal);
-  EXPECT_TRUE(planner.wait_for([](const PlannerStatus& s) {
-    return s.goal.pose.position.x == 20 && s.state == PlannerStatus::WAITING;
-  })) << planner.last().state
-      << " " << planner.last().refusal;
+  for (Listener<PlannerStatus>* listener : {&planner, &forecaster}) {
+    EXPECT_TRUE(listener->wait_for([](const PlannerStatus& s) {
+      return s.goal.pose.position.x == 20 && s.state == PlannerStatus::WAITING;
+    })) << listener->last().state
+        << " " << listener->last().refusal;
+  }
   std::vector<std::string> states;
   for (int n = 1; n <= steps; ++n) {
     EXPECT_TRUE(step(1).success);
