@@ -8,6 +8,7 @@
 ///     for_each_item(exec, count, law);             // law(n) for n = 0 … count − 1
 ///     for_each_cell_of_rows(exec, grid, first, rows, law);  // law(x, y) in `rows` rows from `first` on,
 ///                                                           // wrapped over the north edge
+///     for_each_line_in_turn(exec, first, end, length, law); // lines first … end − 1, each after the one before
 ///     sum_cells(exec, grid, law) -> long long      // Σ law(x, y), exact
 ///     max_cells(exec, grid, law) -> float          // maximum of 0 and all law(x, y)
 ///
@@ -18,6 +19,11 @@
 /// of Law::Parcels<count>, a structure of arrays, and law.deliver(x, y, parcels, n, add) sends it with
 /// add(cell, amount), or with add.square(…) to a square of 2 × 2 cells. A CPU prepares several cells at once.
 /// Neither part may read `sums`.
+///
+/// A law of for_each_line_in_turn() hands a value of type Law::Carried from each of the `length` places of a
+/// line to the next line. law.load(line, place) reads what does not depend on the line before, ahead of its
+/// turn; law.pass(line, place, loaded, before) returns what the place carries, where before[n] is what place n
+/// of the line before did; law.before_first(place) is what the first line finds there.
 ///
 /// The loops are implemented in for_each_cpu.hpp and for_each_cuda.cuh; sources of processes include
 /// loops.hpp.

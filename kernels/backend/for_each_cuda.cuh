@@ -179,6 +179,40 @@ __global__ void items_kernel(int count, Law law) {
   if (n < count) law(n);
 }
 
+/// One block passes over all lines; each thread has the places threadIdx.x + k · blockDim.x of a line. What a
+/// line carries lies in shared memory, and the loads for the next line are on their way while one is passed.
+template <int places, class Law>
+__global__ void lines_kernel(int first, int end, int length, Law law) {
+  extern __shared__ __align__(16) char scratch[];
+  using Carried = typename Law::Carried;
+  Carried *before = reinterpret_cast<Carried*>(scratch), *after = before + length;
+  typename Law::Loaded next[places];
+  const auto for_each_place = [&](auto body) {
+#pragma unroll
+    for (int k = 0; k < places; ++k) {
+      const int m = threadIdx.x + k * blockDim.x;
+      if (m < length) body(k, m);
+    }
+  };
+  for_each_place([&](int k, int m) {
+    before[m] = law.before_first(m);
+    next[k] = law.load(first, m);
+  });
+  __syncthreads();
+  for (int n = first; n < end; ++n) {
+    typename Law::Loaded loaded[places];
+    for_each_place([&](int k, int m) {
+      loaded[k] = next[k];
+      if (n + 1 < end) next[k] = law.load(n + 1, m);
+    });
+    for_each_place([&](int k, int m) { after[m] = law.pass(n, m, loaded[k], before); });
+    __syncthreads();
+    Carried* const passed = after;
+    after = before;
+    before = passed;
+  }
+}
+
 template <class Law>
 __global__ void sum_kernel(Grid grid, Law law, long long* total) {
   long long mine = 0;
@@ -231,6 +265,27 @@ void for_each_tile(CudaExec& exec, const Tiling& tiles, const Law& law) {
       "asking for shared memory");
   cuda::tiles_kernel<<<dim3(tiles.columns(), tiles.rows()), cuda::block(), bytes, cuda::stream(exec)>>>(law);
   check_cuda(cudaGetLastError(), "launch over tiles");
+}
+
+namespace cuda {
+template <int places, class Law>
+void launch_lines(CudaExec& exec, int first, int end, int length, const Law& law) {
+  const int bytes = 2 * length * static_cast<int>(sizeof(typename Law::Carried));
+  const int threads = ((length + places - 1) / places + 31) / 32 * 32;
+  check_cuda(cudaFuncSetAttribute(lines_kernel<places, Law>, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes),
+             "asking for shared memory for the lines of a sweep");
+  lines_kernel<places><<<1, threads, bytes, stream(exec)>>>(first, end, length, law);
+  check_cuda(cudaGetLastError(), "launch over lines");
+}
+}  // namespace cuda
+
+/// Lines of at most 8192 places (longest_line): what they carry has to fit into the shared memory of a block.
+template <class Law>
+void for_each_line_in_turn(CudaExec& exec, int first, int end, int length, const Law& law) {
+  if (length <= 1024) return cuda::launch_lines<1>(exec, first, end, length, law);
+  if (length <= 2048) return cuda::launch_lines<2>(exec, first, end, length, law);
+  if (length <= 4096) return cuda::launch_lines<4>(exec, first, end, length, law);
+  cuda::launch_lines<8>(exec, first, end, length, law);
 }
 
 template <class Law>

@@ -24,9 +24,19 @@ struct SetAngles {
   }
 };
 
+/// The same where there are neither impacts nor plants nor moisture.
+struct SetDryAngles {
+  Grid grid;
+  float tangent;
+  float* repose;
+  DESERT_HD void operator()(int x, int y) const { repose[grid.index(x, y)] = tangent; }
+};
+
 template <class E>
 void set_angles(E& exec, const TerrainView& t, const Angle& angle, const ReposeParameters& p,
                 const float* strength) {
+  if (!strength && !t.real(Layer::vegetation) && !t.quanta(Layer::moisture))
+    return for_each_cell(exec, t.grid, SetDryAngles{t.grid, angle.tangent_at(angle.tangents.sand, 0, 0), angle.repose});
   for_each_cell(
       exec, t.grid,
       SetAngles{t.grid, angle, strength, t.real(Layer::wind_x), t.real(Layer::wind_y),

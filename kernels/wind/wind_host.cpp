@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "kernels/wind/coarse_modes.hpp"
 #include "kernels/wind/wind_laws.hpp"
 #include "src/core/constants.hpp"
 
@@ -24,23 +25,8 @@ int smooth_length(int n) {
   return n;
 }
 
-/// An axis of n modes of the transform, with `ratio` fine cells per coarse cell.
-struct ModesOfAxis {
-  int n;
-  double ratio;
-
-  bool nyquist(int i) const { return 2 * i == n; }
-  double wavenumber(int i) const { return 2 * pi * (2 * i > n ? i - n : i) / (n * ratio); }  ///< [rad/cell]
-  /// What the box filter and the interpolation back by quadratic B-splines leave of a mode.
-  double kept(int i) const {
-    if (ratio <= 1 || i == 0) return 1;
-    const double half = 0.5 * wavenumber(i), box = std::sin(half * ratio) / (half * ratio);
-    return std::sin(half * ratio) / (ratio * std::sin(half)) * box * box * box;
-  }
-  double gaussian(int i, double sigma) const {
-    return std::exp(-0.5 * sigma * sigma * wavenumber(i) * wavenumber(i));
-  }
-
+/// The transfer functions of the wind along an axis.
+struct WindModes : ModesOfAxis {
   /// Of a Gaussian of `sigma` fine cells, with the derivative's 1/l and the normalisation 1/n.
   std::vector<Transfer> transfer(double sigma, double cell_size) const {
     std::vector<Transfer> table(static_cast<std::size_t>(n), Transfer{0, 0});
@@ -67,12 +53,6 @@ struct ModesOfAxis {
   }
 };
 
-template <class Value>
-Buffer<Value> on_device(Exec& exec, const std::vector<Value>& table) {
-  Buffer<Value> buffer(exec, table.size());
-  buffer.upload(table);
-  return buffer;
-}
 }  // namespace
 
 CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p) {
@@ -83,19 +63,7 @@ CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p) {
     if (p.coarsening != 0) return coarse;
     return std::min(n, smooth_length(std::max(coarse, min_coarse_cells)));
   };
-  CoarseGrid c;
-  c.fine = fine;
-  c.columns = cells(fine.width);
-  c.rows = cells(fine.height);
-  c.width = fine.periodic_x ? c.columns : 2 * c.columns;
-  c.height = fine.periodic_y ? c.rows : 2 * c.rows;
-  c.ratio_x = static_cast<float>(fine.width) / c.columns;
-  c.ratio_y = static_cast<float>(fine.height) / c.rows;
-  c.share_x = 1.0f / c.ratio_x;
-  c.share_y = 1.0f / c.ratio_y;
-  c.wavenumber_x = 2.0f * static_cast<float>(pi) / (c.width * c.ratio_x);
-  c.wavenumber_y = 2.0f * static_cast<float>(pi) / (c.height * c.ratio_y);
-  return c;
+  return coarse_grid_of(fine, cells(fine.width), cells(fine.height));
 }
 
 Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) {
@@ -110,7 +78,7 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   for (Buffer<Complex>* buffer : {&work.spectrum, &work.warped}) *buffer = Buffer<Complex>(exec, values);
   work.responses = Buffer<Complex>(exec, values * static_cast<std::size_t>(std::max(1, fields)));
   work.mean_sums = Buffer<long long>(exec, 3);
-  const ModesOfAxis along_x{c.width, c.ratio_x}, along_y{c.height, c.ratio_y};
+  const WindModes along_x{{c.width, c.ratio_x}}, along_y{{c.height, c.ratio_y}};
   const double least_sigma = p.radii.count > 0 ? 0.5 * default_coarse_cell(p) / fine.cell_size : 0;
   work.flow_x = on_device(exec, along_x.flow_transfer(least_sigma));
   work.flow_y = on_device(exec, along_y.flow_transfer(least_sigma));

@@ -16,12 +16,14 @@
 #include "kernels/sand/looseness.hpp"
 #include "kernels/sand/reptation.hpp"
 #include "kernels/sand/saltation.hpp"
+#include "kernels/sand/saturated_flux.hpp"
 #include "kernels/soil/moisture.hpp"
 #include "kernels/soil/soil.hpp"
 #include "kernels/water/hydraulic_erosion.hpp"
 #include "kernels/water/rain.hpp"
 #include "kernels/water/water_parameters.hpp"
 #include "kernels/wind/echo_dunes.hpp"
+#include "kernels/wind/shear_stress_parameters.hpp"
 #include "kernels/wind/wind_features.hpp"
 #include "kernels/wind/wind_parameters.hpp"
 #include "kernels/wind/wind_shadow_parameters.hpp"
@@ -118,6 +120,8 @@ struct Scenario {
   WindShadowParameters wind_shadow;
   EchoDuneParameters echo_dunes;
   SaltationParameters saltation;
+  ShearStressParameters shear_stress;
+  ContinuumParameters continuum;
   AbrasionParameters abrasion;
   ReptationParameters reptation;
   LoosenessParameters looseness;
@@ -144,6 +148,10 @@ struct Scenario {
   traversability::Rover rover() const { return {traversability, wheel_ground, repose}; }
   /// Whether water is simulated: it is enabled, or rain, springs, hydraulic erosion or moisture need it.
   bool has_water() const;
+  /// Whether saltation is on, as continuum transport.
+  bool has_continuum_transport() const {
+    return saltation.enabled && saltation.model == SaltationModel::continuum;
+  }
 };
 
 /// `path=value` settings that override keys, as given to --set: "grid.width=128",

@@ -22,6 +22,8 @@ void for_each_section(S& scenario, Visit&& visit) {
   visit("wind_shadow", scenario.wind_shadow);
   visit("echo_dunes", scenario.echo_dunes);
   visit("saltation", scenario.saltation);
+  visit("shear_stress", scenario.shear_stress);
+  visit("continuum", scenario.continuum);
   visit("abrasion", scenario.abrasion);
   visit("reptation", scenario.reptation);
   visit("looseness", scenario.looseness);

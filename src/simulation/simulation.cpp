@@ -73,7 +73,8 @@ void require_bounded_cost(const Scenario& s) {
           2 * (s.reptation.strength + s.reptation.smoothing_strength) * step / cell * fastest_wind(s), 256);
   const double hop = s.saltation.hop_time;
   constexpr int most_hops = 256;
-  if (s.saltation.enabled && step > most_hops * hop) {
+  const bool hops = s.saltation.enabled && !s.has_continuum_transport();
+  if (hops && step > most_hops * hop) {
     char text[200];
     std::snprintf(text, sizeof text,
                   "= %g s is %g times saltation.hop_time = %g s (allowed: at most %d times, %g s)", step,

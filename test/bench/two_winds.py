@@ -2,7 +2,8 @@
 """Orientation of crests under two winds, against the bedform instability. Needs numpy and OpenCV; desert_run from
 PATH or --program.
 
-    test/bench/two_winds.py [--angles 45 60 ...] [--seeds N] [--steps N] [--size CELLS] [--jobs N] [--set path=value]...
+    test/bench/two_winds.py [--angles 45 60 ...] [--seeds N] [--steps N] [--size CELLS] [--jobs N]
+                            [--model hops|continuum] [--set path=value]...
 
 The first wind blows to the east twice as long as the second, which blows to THETA, both in turn; there is plenty of
 sand. Directions of crests are counter-clockwise from the first wind, from the structure tensor of the elevation
@@ -22,7 +23,7 @@ import tempfile
 import cv2
 import numpy as np
 
-SCENARIO = """
+HOPS = """
 grid: {{width: {size}, height: {size}, cell_size: 1}}
 terrain: [noise: {{layer: sand, low: 3, high: 5}}]
 wind:
@@ -33,6 +34,18 @@ wind:
 reptation: {{strength: 0.1}}
 seed: {seed}
 run: {{steps: {steps}}}
+"""
+CONTINUUM = """
+grid: {{width: {size}, height: {size}, cell_size: 1}}
+terrain: [noise: {{layer: sand, low: 4.9, high: 5.1, scale: 4}}]
+wind:
+  regime: timeline
+  segments:
+    - {{direction_deg: 0, speed: 9, duration: 2 d}}
+    - {{direction_deg: {theta}, speed: 9, duration: 1 d}}
+saltation: {{model: continuum}}
+seed: {seed}
+run: {{time_step: 1 h, steps: {steps}}}
 """
 GAMMA = 1.6
 SIGMA = 4.0  # of the smoothing [m]
@@ -67,7 +80,7 @@ def run(options, theta, seed):
     with tempfile.TemporaryDirectory() as folder:
         scenario, out = os.path.join(folder, "two_winds.yaml"), os.path.join(folder, "out")
         with open(scenario, "w") as file:
-            file.write(SCENARIO.format(size=options.size, theta=theta, seed=seed, steps=options.steps))
+            file.write((CONTINUUM if options.model == "continuum" else HOPS).format(size=options.size, theta=theta, seed=seed, steps=options.steps))
         command = [options.program, scenario, "--backend", "cpu", "--threads", "1", "--quiet", "--out", out]
         for setting in options.set:
             command += ["--set", setting]
@@ -84,6 +97,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--steps", type=int, default=1000)
     parser.add_argument("--size", type=int, default=256)
+    parser.add_argument("--model", choices=("hops", "continuum"), default="hops")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--set", action="append", default=[], help="a setting of the scenario, path=value")
     parser.add_argument("--program", default="desert_run")

@@ -123,7 +123,7 @@ int Pipeline::parts() const {
   // No row of a wind series is passed over: each is the wind at the start of a part at least once.
   if (const auto& series = state_.scenario.wind_series)
     longest = static_cast<float>(series->shortest_interval());
-  for (const Stage& stage : stages_) longest = std::min(longest, stage.process->longest_step);
+  for (const Stage& stage : stages_) longest = std::min(longest, stage.process->longest_step(state_));
   return static_cast<int>(std::clamp(std::ceil(state_.scenario.run.time_step / longest), 1.0f, most));
 }
 

@@ -88,7 +88,9 @@ struct Process {
   std::function<void(StepContext&, ProcessWorkspace*)> step;
   /// Longest step that it takes at once [s]. A longer one is divided into equal parts, in each of which all
   /// processes do their step, because what it changes acts back on it through them.
-  float longest_step = std::numeric_limits<float>::infinity();
+  std::function<float(const SimulationState&)> longest_step = [](const SimulationState&) {
+    return std::numeric_limits<float>::infinity();
+  };
   /// Recomputes, before somebody looks, what it derives from the state, which a loaded checkpoint does not
   /// have and changed parameters make stale; it changes no persistent layer. Null if it derives nothing.
   std::function<void(StepContext&, ProcessWorkspace*)> refresh;

@@ -73,7 +73,8 @@ Process vegetation_process() {
   p.writes = {Layer::humus};
   p.writes_if_in_use = {Layer::moisture};
   p.step = update_plants;
-  p.longest_step = 1;  // plants grow into each other's way and light within seconds
+  // Plants grow into each other's way and light within seconds.
+  p.longest_step = [](const SimulationState&) { return 1.0f; };
   // New plants come up by dice that depend on the step, and their number is read back.
   p.can_be_recorded = [](const SimulationState&) { return false; };
   return p;

@@ -8,6 +8,7 @@ const ProcessTable& process_table() {
   static const ProcessTable table{{
                                       // The wind over the terrain, and what it carries.
                                       wind_process(),
+                                      shear_stress_process(),
                                       plant_cover_process(),
                                       illumination_process(),
                                       wind_shadow_process(),
@@ -15,6 +16,7 @@ const ProcessTable& process_table() {
                                       sand_record_process(),
                                       sand_flux_process(),
                                       saltation_process(),
+                                      continuum_process(),
                                       repose_process(),
                                       reptation_process(),
                                       looseness_process(),

@@ -7,6 +7,7 @@
 namespace desert_sim {
 
 Process wind_process();  // wind.cpp
+Process shear_stress_process();
 Process wind_shadow_process();
 Process echo_dune_process();
 
@@ -16,6 +17,8 @@ Process repose_process();
 Process reptation_process();
 Process avalanching_process();
 FusedProcesses fused_wind_shadow_and_saltation();
+
+Process continuum_process();  // continuum.cpp
 
 Process sand_record_process();  // looseness.cpp
 Process looseness_process();

@@ -161,14 +161,14 @@ Process saltation_process() {
   p.parameters = {"saltation", "abrasion", "reptation", "repose"};
   p.source = "Nilles 2024 §3.6, Paris 2019 §5.2";
   p.header = "kernels/sand/saltation.hpp";
-  p.active = [](const Scenario& s) { return s.saltation.enabled; };
+  p.active = [](const Scenario& s) { return s.saltation.enabled && !s.has_continuum_transport(); };
   p.reads = {Layer::wind_x,   Layer::wind_y,     Layer::wind_shadow,
              Layer::echo,     Layer::vegetation, Layer::obstacle,
              Layer::moisture, Layer::water,      Layer::erosion_resistance};
   p.writes = {Layer::sand, Layer::airborne_sand};
   p.writes_if_in_use = {Layer::bedrock, Layer::soil, Layer::flux_x, Layer::flux_y};
   p.step = saltate;
-  p.longest_step = 1;      // the wind's shadow and avalanches follow what it moves
+  p.longest_step = [](const SimulationState&) { return 1.0f; };  // the wind's shadow and avalanches follow what it moves
   p.refresh = set_angles;  // the angles of repose that a step sets with the deposit
   p.traffic = [](const Scenario&, const Grid&) {
     return MemoryTraffic{13 * 4, "sand, airborne, wind (2), shadow; landed, sand, shadow",
@@ -183,8 +183,8 @@ Process repose_process() {
   p.parameters = {"repose", "reptation"};
   p.source = "Nilles 2024 §3.7";
   p.header = "kernels/sand/repose.hpp";
-  // Saltation's deposit sets the angles in its own pass.
-  p.active = [](const Scenario& s) { return !s.saltation.enabled; };
+  // The deposit after hops sets the angles in its own pass.
+  p.active = [](const Scenario& s) { return !s.saltation.enabled || s.has_continuum_transport(); };
   p.reads = {Layer::wind_x,   Layer::wind_y, Layer::wind_shadow, Layer::vegetation,
              Layer::moisture, Layer::soil,   Layer::sand};
   p.step = p.refresh = set_angles;

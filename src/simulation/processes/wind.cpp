@@ -1,7 +1,9 @@
-/// The processes of the wind: the wind at the surface, its shadow in the lee, and the eddies before cliffs.
+/// The processes of the wind: the wind at the surface, or its shear stress, its shadow in the lee, and the
+/// eddies before cliffs.
 #include "kernels/wind/wind.hpp"
 
 #include "kernels/wind/echo_dunes.hpp"
+#include "kernels/wind/shear_stress.hpp"
 #include "kernels/wind/wind_features.hpp"
 #include "kernels/wind/wind_shadow.hpp"
 #include "src/simulation/processes/processes.hpp"
@@ -15,16 +17,13 @@ const surface::Heights& obstructing_heights(const StepContext& c) {
 
 namespace {
 
-/// The wind's coarse grid, and its local features on the device.
-struct WindWork {
-  wind::Workspace coarse;
+/// The local features of the wind on the device.
+struct LocalWind {
   std::vector<wind_features::Prepared> prepared;
   Buffer<wind_features::Prepared> features;      ///< `prepared` on the device
   Buffer<float> perturbation_x, perturbation_y;  ///< of the features [m/s]; empty where there are none
 
-  std::size_t bytes() const {
-    return coarse.bytes() + features.bytes() + perturbation_x.bytes() + perturbation_y.bytes();
-  }
+  std::size_t bytes() const { return features.bytes() + perturbation_x.bytes() + perturbation_y.bytes(); }
 
   void set_features(const SimulationState& state) {
     const Scenario& s = state.scenario;
@@ -44,32 +43,74 @@ struct WindWork {
     for (Buffer<float>* buffer : {&perturbation_x, &perturbation_y})
       *buffer = Buffer<float>(state.exec(), static_cast<std::size_t>(state.terrain.grid().cells()));
   }
-  void set_time(double time) {
-    for (wind_features::Prepared& feature : prepared) wind_features::set_time(feature, time);
+  /// The perturbation at the time of a step.
+  void update(StepContext& c) {
+    if (!features) return;
+    for (wind_features::Prepared& feature : prepared) wind_features::set_time(feature, c.time());
     features.upload(prepared);
+    with_backend(c.exec(), [&](auto& e) {
+      wind_features::step(e, c.terrain.grid, features, c.fields.repose.data(), perturbation_x.data(),
+                          perturbation_y.data());
+    });
   }
 };
 
-WindWork make_wind_work(const SimulationState& state) {
-  WindWork work{
-      wind::make_workspace(state.exec(), state.terrain.grid(), state.scenario.wind), {}, {}, {}, {}};
-  work.set_features(state);
+/// What finds the wind over the ground (Flow: wind::Workspace or shear_stress::Workspace), and its local
+/// features.
+template <class Flow>
+struct WindWork {
+  Flow flow;
+  LocalWind local;
+
+  std::size_t bytes() const { return flow.bytes() + local.bytes(); }
+};
+using TurnedWindWork = WindWork<wind::Workspace>;
+using ShearStressWork = WindWork<shear_stress::Workspace>;
+
+template <class Flow>
+WindWork<Flow> with_features(const SimulationState& state, Flow flow) {
+  WindWork<Flow> work{std::move(flow), {}};
+  work.local.set_features(state);
   return work;
 }
 
+void measure_heights(StepContext& c) {
+  if (!c.fields.heights_stale) return;
+  with_backend(c.exec(), [&](auto& e) { surface::compute_heights(e, c.terrain, c.fields.heights); });
+}
+
 void update_wind(StepContext& c, ProcessWorkspace* workspace) {
-  WindWork& work = workspace_as<WindWork>(workspace);
-  const SimulationState& s = c.state;
-  if (work.features) work.set_time(c.time());
+  auto& work = workspace_as<TurnedWindWork>(workspace);
+  measure_heights(c);
+  work.local.update(c);
   with_backend(c.exec(), [&](auto& e) {
-    if (c.fields.heights_stale) surface::compute_heights(e, c.terrain, c.fields.heights);
-    if (work.features)
-      wind_features::step(e, c.terrain.grid, work.features, c.fields.repose.data(),
-                          work.perturbation_x.data(), work.perturbation_y.data());
-    wind::step(e, c.terrain, s.scenario.wind, c.wind_above(), c.fields.heights, s.wind_reference,
-               work.perturbation_x.data(), work.perturbation_y.data(),
-               {reinterpret_cast<float*>(c.fields.landed.data()), c.fields.repose.data()}, work.coarse);
+    wind::step(e, c.terrain, c.scenario().wind, c.wind_above(), c.fields.heights, c.state.wind_reference,
+               work.local.perturbation_x.data(), work.local.perturbation_y.data(),
+               {reinterpret_cast<float*>(c.fields.landed.data()), c.fields.repose.data()}, work.flow);
   });
+}
+
+void update_shear_stress(StepContext& c, ProcessWorkspace* workspace) {
+  auto& work = workspace_as<ShearStressWork>(workspace);
+  measure_heights(c);
+  work.local.update(c);
+  with_backend(c.exec(), [&](auto& e) {
+    shear_stress::step(e, c.terrain, c.scenario().shear_stress, c.wind_above(), c.fields.heights,
+                       c.state.wind_reference, work.local.perturbation_x.data(), work.local.perturbation_y.data(),
+                       work.flow);
+  });
+}
+
+/// What the wind over the ground depends on, whichever way it is found.
+Process surface_wind_row(const char* name) {
+  Process p;
+  p.name = name;
+  p.parameters = {name};
+  p.reads = {Layer::bedrock, Layer::soil, Layer::sand};
+  p.writes = {Layer::wind_x, Layer::wind_y};
+  // The perturbation by local features depends on the time.
+  p.can_be_recorded = [](const SimulationState& state) { return state.scenario.wind_features.empty(); };
+  return p;
 }
 
 void update_wind_shadow(StepContext& c, ProcessWorkspace* workspace) {
@@ -89,23 +130,35 @@ void update_echo(StepContext& c, ProcessWorkspace*) {
 }  // namespace
 
 Process wind_process() {
-  Process p;
-  p.name = "wind";
-  p.parameters = {"wind"};
+  Process p = surface_wind_row("wind");
   p.source = "Paris 2019 §4, Nilles 2024 §3.3";
   p.header = "kernels/wind/wind.hpp";
-  p.active = [](const Scenario&) { return true; };
-  p.reads = {Layer::bedrock, Layer::soil, Layer::sand};
-  p.writes = {Layer::wind_x, Layer::wind_y};
-  set_workspace<WindWork>(p, make_wind_work);
+  p.active = [](const Scenario& s) { return !s.has_continuum_transport(); };
+  set_workspace<TurnedWindWork>(p, [](const SimulationState& state) {
+    return with_features(state, wind::make_workspace(state.exec(), state.terrain.grid(), state.scenario.wind));
+  });
   p.step = p.refresh = update_wind;
   p.adapt = [](const SimulationState& state, ProcessWorkspace* workspace) {
-    workspace_as<WindWork>(workspace).set_features(state);
+    workspace_as<TurnedWindWork>(workspace).local.set_features(state);
   };
-  // The perturbation by local features depends on the time.
-  p.can_be_recorded = [](const SimulationState& state) { return state.scenario.wind_features.empty(); };
   p.traffic = [](const Scenario&, const Grid&) {
     return MemoryTraffic{4 * 4, "heights; heights", "wind (2)"};
+  };
+  return p;
+}
+
+Process shear_stress_process() {
+  Process p = surface_wind_row("shear_stress");
+  p.source = "Kroy et al. 2002, Durán & Moore 2013";
+  p.header = "kernels/wind/shear_stress.hpp";
+  p.active = [](const Scenario& s) { return s.has_continuum_transport(); };
+  set_workspace<ShearStressWork>(p, [](const SimulationState& state) {
+    return with_features(
+        state, shear_stress::make_workspace(state.exec(), state.terrain.grid(), state.scenario.shear_stress));
+  });
+  p.step = p.refresh = update_shear_stress;
+  p.adapt = [](const SimulationState& state, ProcessWorkspace* workspace) {
+    workspace_as<ShearStressWork>(workspace).local.set_features(state);
   };
   return p;
 }
@@ -116,7 +169,8 @@ Process wind_shadow_process() {
   p.parameters = {"wind_shadow"};
   p.source = "Nilles 2024 eq. 4";
   p.header = "kernels/wind/wind_shadow.hpp";
-  p.active = [](const Scenario& s) { return s.wind_shadow.enabled; };
+  // Continuum transport has the bubbles of its shear stress.
+  p.active = [](const Scenario& s) { return s.wind_shadow.enabled && !s.has_continuum_transport(); };
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::canopy_height, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::wind_shadow};
   set_workspace<wind_shadow::Workspace>(p, [](const SimulationState& state) {

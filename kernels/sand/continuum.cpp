@@ -1,0 +1,69 @@
+/// The step of continuum.hpp; compiled once for each backend.
+#include "kernels/sand/continuum.hpp"
+
+#include "kernels/backend/loops.hpp"
+#include "kernels/sand/continuum_laws.hpp"
+
+namespace desert_sim::continuum {
+
+inline Prepare prepare(const TerrainView& t, const StepInputs& in, const Downwind& order, const Dice& dice,
+                       LedgerView ledger, const Workspace& work) {
+  const ContinuumParameters& p = in.continuum;
+  const float l = t.grid.cell_size;
+  return {saltation::Inputs<false>(t, in.repose, 1.0f, 1.0f),
+          order,
+          SaturatedFlux(p, shear_stress::shear_velocity_per_wind(in.stress)),
+          p.plant_drag,
+          1.0f / p.slope_friction,
+          l / static_cast<float>(saturation_length(p)),
+          in.time_step / l * t.quanta_per_metre,
+          in.time_step * t.quanta_per_metre,
+          t.quantum / l,
+          in.influx,
+          dice[Roll::influx],
+          ledger,
+          in.heights,
+          t.quanta(Layer::sand),
+          t.quanta(Layer::airborne_sand),
+          SweepFields(work)};
+}
+
+inline Settle settle(const TerrainView& t, const StepInputs& in, const Downwind& order, const Dice& dice,
+                     LedgerView ledger, const Workspace& work) {
+  const AbrasionParameters& a = in.abrasion;
+  const abrasion::Abrade abrade{a.rate * in.time_step,
+                                a.rate_of_soil() * in.time_step,
+                                to_quanta_at_most(a.cover, t.quanta_per_metre, wall_height),
+                                t.quantum,
+                                t.quanta_per_metre,
+                                t.quanta(Layer::bedrock),
+                                t.quanta(Layer::soil),
+                                t.quanta(Layer::sand),
+                                t.real(Layer::erosion_resistance),
+                                dice[Roll::abrasion],
+                                ledger};
+  return {saltation::Inputs<false>(t, in.repose, 1.0f, 1.0f),
+          order,
+          SweepFields(work),
+          abrade,
+          ledger,
+          t.quanta(Layer::sand),
+          t.quanta(Layer::airborne_sand),
+          t.quantum * t.grid.cell_size / in.time_step,
+          in.time_step / in.flux_time,
+          t.real(Layer::flux_x),
+          t.real(Layer::flux_y),
+          in.impact_strength};
+}
+
+template <class E>
+void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger, Workspace& work) {
+  const Downwind order(t.grid, in.above);
+  for_each_cell(exec, t.grid, prepare(t, in, order, dice, ledger, work));
+  for_each_line_in_turn(exec, 0, order.lines(), order.length(), PassSand{order, dice[Roll::lift], SweepFields(work)});
+  for_each_cell(exec, t.grid, settle(t, in, order, dice, ledger, work));
+}
+
+template void step(Backend&, const TerrainView&, const StepInputs&, const Dice&, LedgerView, Workspace&);
+
+}  // namespace desert_sim::continuum

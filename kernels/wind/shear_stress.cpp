@@ -1,0 +1,206 @@
+/// The step of shear_stress.hpp; compiled once for each backend.
+#include "kernels/wind/shear_stress.hpp"
+
+#include "kernels/backend/loops.hpp"
+#include "kernels/wind/downwind.hpp"
+#include "kernels/wind/surface_wind.hpp"
+#include "src/core/constants.hpp"
+
+namespace desert_sim::shear_stress {
+
+using wind::Downwind;
+
+/// Ground that falls less steeply from a cell on is not in its lee.
+constexpr float lee_slope = 1.0f / 6.0f;
+/// The separated flow has bent down to its steepest after this many times its height above the lee, of which
+/// FindLee sees three quarters behind a slip face.
+constexpr float bend_length = 4.0f;
+
+/// Two places of the line before, between which the air comes to a place of a line.
+struct Upwind {
+  int near, far;
+  float of_far;
+
+  DESERT_HD Upwind(const Downwind& order, int place, int shift) : of_far(fraction(shift)) {
+    const int from = place - (shift >> 16), length = order.length();
+    near = order.periodic_across() ? wrap(from, length) : clamp_index(from, length);
+    far = order.periodic_across() ? wrap(from - 1, length) : clamp_index(from - 1, length);
+  }
+};
+
+/// How low the ground lies in the lee of each cell, seen against the wind: the lowest of all heights downwind to
+/// which it falls more steeply than `rise` a line.
+struct FindLee {
+  using Carried = float;
+  using Loaded = float;
+  Downwind order;  ///< against the wind
+  int shift;
+  float rise;  ///< [quanta]
+  const float* heights;
+  float* lee;
+
+  DESERT_HD int cell(int line, int place) const { return order.cell(wrap(line, order.lines()), place); }
+  DESERT_HD float before_first(int) const { return 2.0f * static_cast<float>(wall_height); }
+  DESERT_HD float load(int line, int place) const { return heights[cell(line, place)]; }
+  DESERT_HD float pass(int line, int place, float height, const float* before) const {
+    const Upwind from(order, place, shift);
+    const float low = minimum(height, lerp(before[from.near], before[from.far], from.of_far) + rise);
+    lee[cell(line, place)] = low;
+    return low;
+  }
+};
+
+/// The surface with separation bubbles, line after line downwind.
+struct FillBubbles {
+  /// The flow along the ground or above it.
+  struct Carried {
+    float height, slope, bend;  ///< [quanta], and of a line [quanta]: its rise, and how fast that falls
+  };
+  struct Loaded {
+    float height, lee;
+  };
+  Downwind order;
+  int shift;      ///< of the undisturbed wind [cells a line, 16.16 fixed point]
+  float steepest; ///< fall of the separated flow from a line to the next [quanta]
+  float lines_a_quantum;  ///< over which the flow bends, of the height above the lee
+  const float *heights, *lee;
+  float* filled;
+
+  DESERT_HD int cell(int line, int place) const { return order.cell(wrap(line, order.lines()), place); }
+  DESERT_HD Carried before_first(int) const { return {-2.0f * static_cast<float>(wall_height), 0.0f, 0.0f}; }
+  DESERT_HD Loaded load(int line, int place) const {
+    const int i = cell(line, place);
+    return {heights[i], lee[i]};
+  }
+  DESERT_HD Carried pass(int line, int place, const Loaded& ground, const Carried* before) const {
+    const Upwind from(order, place, shift);
+    const Carried &near = before[from.near], &far = before[from.far];
+    const float height = lerp(near.height, far.height, from.of_far), bend = lerp(near.bend, far.bend, from.of_far);
+    const float slope = maximum(lerp(near.slope, far.slope, from.of_far) - bend, -steepest);
+    const float flow = height + slope;
+    const bool attached = ground.height >= flow;
+    const float along_ground = clamp(ground.height - height, -steepest, 0.0f);
+    const float bending = steepest / maximum((ground.height - ground.lee) * lines_a_quantum, 1.0f);
+    const float surface = attached ? ground.height : flow;
+    filled[cell(line, place)] = surface;
+    return {surface, attached ? along_ground : slope, attached ? bending : bend};
+  }
+};
+
+/// Multiplies the spectrum of the surface by the response: real parts become τ_∥/τ_0, imaginary parts τ_⊥/τ_0.
+struct Respond {
+  wind::CoarseGrid coarse;
+  wind::Vector along;  ///< unit vector of the wind
+  float a, b, cells_per_metre;
+  const float *transfer_x, *transfer_y;
+  Complex* spectrum;
+
+  DESERT_HD void operator()(int i, int j) const {
+    Complex& value = spectrum[j * coarse.width + i];
+    const wind::Mode mode(coarse, i, j);
+    const float size = hypotenuse(mode.kx, mode.ky);
+    if (mode.nyquist || !(size > 0.0f)) {
+      value = {0.0f, 0.0f};
+      return;
+    }
+    const float k_along = mode.kx * along.x + mode.ky * along.y, k_across = mode.ky * along.x - mode.kx * along.y;
+    const float scale = transfer_x[i] * transfer_y[j] * cells_per_metre / size;
+    const float even = a * k_along, odd = b * fabsf(k_along);
+    const Complex parallel = response(value, scale * k_along * even, scale * k_along * odd);
+    const Complex across = response(value, 0.5f * scale * k_across * even, 0.5f * scale * k_across * odd);
+    value = {parallel.re - across.im, parallel.im + across.re};  // parallel + i across
+  }
+  DESERT_HD static Complex response(Complex h, float real, float imaginary) {
+    return {h.re * real - h.im * imaginary, h.re * imaginary + h.im * real};
+  }
+};
+
+/// The layers wind_x and wind_y from the response and the bubbles.
+struct BlowOverGround {
+  wind::CoarseGrid coarse;
+  wind::Vector above, along;
+  const Complex* rows;  ///< null: no response
+  const float *heights, *filled;
+  float per_fall;  ///< 1 over what the separated flow falls in a cell [1/quanta]
+  const float *perturbation_x, *perturbation_y;
+  float *wind_x, *wind_y;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = coarse.fine.index(x, y);
+    const float u = above.x + value_or_zero(perturbation_x, i), v = above.y + value_or_zero(perturbation_y, i);
+    Complex response{0.0f, 0.0f};
+    if (rows) {
+      wind::InterpolatedColumn<Complex> column(rows, x, coarse.fine.width);
+      const wind::AxisInterpolation along_y = coarse.interpolation_y(y);
+      column.move_to(along_y);
+      response = column.at(along_y);
+    }
+    const float open = 1.0f - clamp((filled[i] - heights[i]) * per_fall, 0.0f, 1.0f);
+    const float parallel = maximum(1.0f + response.re, 0.0f) * open, across = response.im * open;
+    const float size = sqrtf(hypotenuse(parallel, across));
+    const float scale = size > 0.0f ? 1.0f / size : 0.0f;
+    wind_x[i] = (u * parallel - v * across) * scale;
+    wind_y[i] = (v * parallel + u * across) * scale;
+  }
+};
+
+/// Where the axis is periodic, the sweeps begin this far before the first line: longer bubbles are cut [m].
+constexpr float longest_bubble = 200.0f;
+
+template <class E>
+void fill_bubbles(E& exec, const TerrainView& t, wind::Vector along, float tangent,
+                  const surface::Heights& heights, Workspace& work) {
+  const Downwind order(t.grid, along), against(t.grid, {-along.x, -along.y});
+  const float shift = order.shift(along.x, along.y), l = t.grid.cell_size;
+  const float line = l * std::sqrt(1.0f + shift * shift);  // from a line to the next [m]
+  const int lines = order.lines(), before = static_cast<int>(std::ceil(longest_bubble / l));
+  const int first = order.periodic_along() ? -std::min(lines, before) : 0;
+  const float *ground = heights.cell_heights.data(), *lee = work.lee.data();
+  for_each_line_in_turn(exec, first, lines, order.length(),
+                        FindLee{against, to_fixed_point(against.shift(-along.x, -along.y)),
+                                lee_slope * line * t.quanta_per_metre, ground, work.lee.data()});
+  for_each_line_in_turn(exec, first, lines, order.length(),
+                        FillBubbles{order, to_fixed_point(shift), tangent * line * t.quanta_per_metre,
+                                    bend_length / (line * t.quanta_per_metre), ground, lee, work.filled.data()});
+}
+
+template <class E>
+void respond(E& exec, const TerrainView& t, const ShearStressParameters& p, wind::Vector along, float reference,
+             Workspace& work) {
+  const wind::CoarseGrid& coarse = work.coarse;
+  const wind::CoarsenRows rows{coarse, work.filled.data(), reference, work.row_means.data()};
+  for_each_cell(exec, rows.grid(), rows);
+  const Grid grid = coarse.transformed();
+  for_each_cell(exec, grid, wind::CoarsenColumns{coarse, work.row_means.data(), t.quantum, work.rise.data(),
+                                                 work.spectrum.data()});
+  work.fft->forward(work.spectrum.data());
+  for_each_cell(exec, grid,
+                Respond{coarse, along, p.in_phase, p.in_quadrature, 1.0f / t.grid.cell_size,
+                        work.transfer_x.data(), work.transfer_y.data(), work.spectrum.data()});
+  work.fft->inverse(work.spectrum.data());
+  const wind::InterpolateRows interpolate{coarse, work.spectrum.data(), nullptr, work.rows.data(), nullptr};
+  for_each_cell(exec, interpolate.grid(), interpolate);
+}
+
+template <class E>
+void step(E& exec, const TerrainView& t, const ShearStressParameters& p, wind::Vector above,
+          const surface::Heights& heights, Quanta reference, const float* perturbation_x,
+          const float* perturbation_y, Workspace& work) {
+  const float speed = hypotenuse(above.x, above.y);
+  // In still air, the wind of local features alone has no direction in which the ground could shelter it.
+  const wind::Vector along = speed > 0.0f ? wind::Vector{above.x / speed, above.y / speed} : wind::Vector{1, 0};
+  const auto tangent = static_cast<float>(std::tan(p.separation_deg * pi / 180.0));
+  const bool responds = speed > 0.0f && (p.in_phase > 0.0f || p.in_quadrature > 0.0f);
+  fill_bubbles(exec, t, along, tangent, heights, work);
+  if (responds) respond(exec, t, p, along, static_cast<float>(reference), work);
+  for_each_cell(exec, t.grid,
+                BlowOverGround{work.coarse, above, along, responds ? work.rows.data() : nullptr,
+                               heights.cell_heights.data(), work.filled.data(),
+                               1.0f / (tangent * t.grid.cell_size * t.quanta_per_metre), perturbation_x,
+                               perturbation_y, t.real(Layer::wind_x), t.real(Layer::wind_y)});
+}
+
+template void step(Backend&, const TerrainView&, const ShearStressParameters&, wind::Vector,
+                   const surface::Heights&, Quanta, const float*, const float*, Workspace&);
+
+}  // namespace desert_sim::shear_stress
