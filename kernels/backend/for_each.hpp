@@ -20,10 +20,10 @@
 /// add(cell, amount), or with add.square(…) to a square of 2 × 2 cells. A CPU prepares several cells at once.
 /// Neither part may read `sums`.
 ///
-/// A law of for_each_line_in_turn() hands a value of type Law::Carried from each of the `length` places of a
-/// line to the next line. law.load(line, place) reads what does not depend on the line before, ahead of its
-/// turn; law.pass(line, place, loaded, before) returns what the place carries, where before[n] is what place n
-/// of the line before did; law.before_first(place) is what the first line finds there.
+/// A law of for_each_line_in_turn() hands Law::words values of type Law::Word from each of the `length` places
+/// of a line to the next line. law.load(line, place) reads what does not depend on the line before, ahead of its
+/// turn; law.pass(line, place, loaded, before, after) finds in before(w, n) word w of place n of the line before,
+/// and sets after(w, place); law.before_first(w, place) is what the first line finds.
 ///
 /// The loops are implemented in for_each_cpu.hpp and for_each_cuda.cuh; sources of processes include
 /// loops.hpp.
@@ -67,6 +67,14 @@ void for_each_cell_of_rows(E& exec, const Grid& grid, int first, int rows, const
   band.height = rows;
   for_each_cell(exec, band, RowBandLaw<Law>{law, first, grid.height});
 }
+
+/// What the places of a line hand on: word after word, so that neighbouring places lie beside each other.
+template <class Word>
+struct LineWords {
+  Word* first;
+  int length;
+  DESERT_HD Word& operator()(int word, int place) const { return first[word * length + place]; }
+};
 
 /// Calls body(n) for n = 0 … count − 1 as compile-time constants. Loops over cells vectorise only around
 /// straight-line code.

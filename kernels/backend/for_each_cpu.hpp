@@ -316,33 +316,31 @@ constexpr int min_parallel_line = 2048;
 
 /// The places first … end − 1 of a line.
 template <class Law>
-void pass_line(const Law& law, int line, int first, int end, const typename Law::Carried* before,
-               typename Law::Carried* after) {
+void pass_line(const Law& law, int line, int first, int end, const LineWords<typename Law::Word>& before,
+               const LineWords<typename Law::Word>& after) {
   with_wide_instructions([&]() DESERT_INLINE {
     const Law own = law;
-    const typename Law::Carried* const from = before;
-    typename Law::Carried* const to = after;
+    const LineWords<typename Law::Word> from = before, to = after;
     const int n = line, begin = first, last = end;
 #pragma omp simd
-    for (int m = begin; m < last; ++m) to[m] = own.pass(n, m, own.load(n, m), from);
+    for (int m = begin; m < last; ++m) own.pass(n, m, own.load(n, m), from, to);
   });
 }
 
 template <class Law>
 void for_each_line_in_turn(CpuExec& exec, int first, int end, int length, const Law& law) {
-  using Carried = typename Law::Carried;
-  const auto places = static_cast<std::size_t>(length);
-  std::vector<Carried> memory(2 * places);
-  for (int m = 0; m < length; ++m) memory[static_cast<std::size_t>(m)] = law.before_first(m);
+  const std::size_t words = static_cast<std::size_t>(length) * Law::words;
+  std::vector<typename Law::Word> memory(2 * words);
+  const LineWords<typename Law::Word> lines[] = {{memory.data(), length}, {memory.data() + words, length}};
+  for (int w = 0; w < Law::words; ++w)
+    for (int m = 0; m < length; ++m) lines[0](w, m) = law.before_first(w, m);
 #pragma omp parallel num_threads(exec.threads()) if (length >= min_parallel_line)
   {
     const long long thread = omp_get_thread_num(), threads = omp_get_num_threads();
     const int from = static_cast<int>(length * thread / threads);
     const int to = static_cast<int>(length * (thread + 1) / threads);
-    Carried *before = memory.data(), *after = memory.data() + places;
     for (int n = first; n < end; ++n) {
-      pass_line(law, n, from, to, before, after);
-      std::swap(before, after);
+      pass_line(law, n, from, to, lines[(n - first) % 2], lines[(n - first + 1) % 2]);
 #pragma omp barrier
     }
   }

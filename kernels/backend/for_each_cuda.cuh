@@ -179,14 +179,18 @@ __global__ void items_kernel(int count, Law law) {
   if (n < count) law(n);
 }
 
+constexpr int longest_block = 1024;
+
 /// One block passes over all lines; each thread has the places threadIdx.x + k · blockDim.x of a line. What a
-/// line carries lies in shared memory, and the loads for the next line are on their way while one is passed.
-template <int places, class Law>
-__global__ void lines_kernel(int first, int end, int length, Law law) {
+/// line hands on lies in shared memory, and the loads of the next `ahead` lines are under way while one is passed:
+/// they take several times as long as that.
+template <int places, int ahead, class Law>
+__global__ void __launch_bounds__(longest_block) lines_kernel(int first, int end, int length, Law law) {
   extern __shared__ __align__(16) char scratch[];
-  using Carried = typename Law::Carried;
-  Carried *before = reinterpret_cast<Carried*>(scratch), *after = before + length;
-  typename Law::Loaded next[places];
+  using Words = LineWords<typename Law::Word>;
+  auto* const memory = reinterpret_cast<typename Law::Word*>(scratch);
+  const Words lines[2] = {Words{memory, length}, Words{memory + Law::words * length, length}};
+  typename Law::Loaded loaded[ahead][places];
   const auto for_each_place = [&](auto body) {
 #pragma unroll
     for (int k = 0; k < places; ++k) {
@@ -194,22 +198,27 @@ __global__ void lines_kernel(int first, int end, int length, Law law) {
       if (m < length) body(k, m);
     }
   };
-  for_each_place([&](int k, int m) {
-    before[m] = law.before_first(m);
-    next[k] = law.load(first, m);
+  for_each_place([&](int, int m) {
+    for (int w = 0; w < Law::words; ++w) lines[0](w, m) = law.before_first(w, m);
   });
-  __syncthreads();
-  for (int n = first; n < end; ++n) {
-    typename Law::Loaded loaded[places];
+#pragma unroll
+  for (int d = 0; d < ahead; ++d)
     for_each_place([&](int k, int m) {
-      loaded[k] = next[k];
-      if (n + 1 < end) next[k] = law.load(n + 1, m);
+      if (first + d < end) loaded[d][k] = law.load(first + d, m);
     });
-    for_each_place([&](int k, int m) { after[m] = law.pass(n, m, loaded[k], before); });
-    __syncthreads();
-    Carried* const passed = after;
-    after = before;
-    before = passed;
+  __syncthreads();
+  for (int n = first; n < end; n += ahead) {
+#pragma unroll
+    for (int d = 0; d < ahead; ++d) {
+      if (n + d >= end) return;
+      const Words before = lines[(n + d - first) & 1], after = lines[(n + d - first + 1) & 1];
+      for_each_place([&](int k, int m) {
+        const typename Law::Loaded present = loaded[d][k];
+        if (n + d + ahead < end) loaded[d][k] = law.load(n + d + ahead, m);
+        law.pass(n + d, m, present, before, after);
+      });
+      __syncthreads();
+    }
   }
 }
 
@@ -268,24 +277,24 @@ void for_each_tile(CudaExec& exec, const Tiling& tiles, const Law& law) {
 }
 
 namespace cuda {
-template <int places, class Law>
+template <int places, int ahead, class Law>
 void launch_lines(CudaExec& exec, int first, int end, int length, const Law& law) {
-  const int bytes = 2 * length * static_cast<int>(sizeof(typename Law::Carried));
+  const int bytes = 2 * Law::words * length * static_cast<int>(sizeof(typename Law::Word));
   const int threads = ((length + places - 1) / places + 31) / 32 * 32;
-  check_cuda(cudaFuncSetAttribute(lines_kernel<places, Law>, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes),
+  check_cuda(cudaFuncSetAttribute(lines_kernel<places, ahead, Law>, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes),
              "asking for shared memory for the lines of a sweep");
-  lines_kernel<places><<<1, threads, bytes, stream(exec)>>>(first, end, length, law);
+  lines_kernel<places, ahead><<<1, threads, bytes, stream(exec)>>>(first, end, length, law);
   check_cuda(cudaGetLastError(), "launch over lines");
 }
 }  // namespace cuda
 
-/// Lines of at most 8192 places (longest_line): what they carry has to fit into the shared memory of a block.
+/// Lines of at most 8192 places, whose words fit into the shared memory of a block.
 template <class Law>
 void for_each_line_in_turn(CudaExec& exec, int first, int end, int length, const Law& law) {
-  if (length <= 1024) return cuda::launch_lines<1>(exec, first, end, length, law);
-  if (length <= 2048) return cuda::launch_lines<2>(exec, first, end, length, law);
-  if (length <= 4096) return cuda::launch_lines<4>(exec, first, end, length, law);
-  cuda::launch_lines<8>(exec, first, end, length, law);
+  if (length <= 1024) return cuda::launch_lines<1, 4>(exec, first, end, length, law);
+  if (length <= 2048) return cuda::launch_lines<2, 2>(exec, first, end, length, law);
+  if (length <= 4096) return cuda::launch_lines<4, 1>(exec, first, end, length, law);
+  cuda::launch_lines<8, 1>(exec, first, end, length, law);
 }
 
 template <class Law>

@@ -27,7 +27,7 @@ float longest_step(const ContinuumParameters& p, const ShearStressParameters& st
 /// A GPU keeps what a line hands on in the memory that a block of threads shares.
 void require_lines_that_fit(const Exec& exec, const Grid& grid) {
   if (std::string(exec.backend()) != "cuda") return;
-  constexpr std::size_t bytes_a_place = 16, most_places = 8192, every_gpu_has = 48 * 1024;
+  constexpr std::size_t bytes_a_place = 2 * 4 * 5, most_places = 8192, every_gpu_has = 48 * 1024;
   const std::size_t memory = std::max(every_gpu_has, exec.memory_for_lines());
   const std::size_t longest = std::min(most_places, memory / bytes_a_place);
   for (const auto& [key, cells] : {std::pair{"grid.width", grid.width}, std::pair{"grid.height", grid.height}})

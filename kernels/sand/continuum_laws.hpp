@@ -118,42 +118,48 @@ struct Prepare {
   }
 };
 
-/// What a cell hands on to the next line, and to which of its places.
-struct Carried {
+/// What a cell hands on to the next line: from place + shift − 1 on, the amounts for four places.
+struct HandedOn {
   /// Cells of the line before that can reach a place: from this many to the one side to as many to the other.
   static constexpr int reach = 3;
-  Quanta amount;
-  int shift;
-  std::uint32_t sides;
+  static constexpr int places = 4;
+  int first;  ///< of the places, from the cell's own
+  Quanta amount[places];
 
-  /// The part of it that comes to the place `to` of the next line, from place `from`.
-  DESERT_HD Quanta share_for(int from, int to) const {
-    const int off = to - from - (shift >> 16), beyond = shift & 65535;
-    const Quanta left = share(amount, static_cast<int>(sides >> 16)),
-                 right = share(amount, static_cast<int>(sides & 65535u)), middle = amount - left - right;
+  DESERT_HD HandedOn(Quanta all, int shift, std::uint32_t sides) : first((shift >> 16) - 1) {
+    const int beyond = shift & 65535;
+    const Quanta left = share(all, static_cast<int>(sides >> 16)),
+                 right = share(all, static_cast<int>(sides & 65535u)), middle = all - left - right;
     const Quanta left_beyond = share(left, beyond), middle_beyond = share(middle, beyond),
                  right_beyond = share(right, beyond);
-    return (off == -1 ? left - left_beyond : 0) + (off == 0 ? left_beyond + middle - middle_beyond : 0) +
-           (off == 1 ? middle_beyond + right - right_beyond : 0) + (off == 2 ? right_beyond : 0);
+    amount[0] = left - left_beyond;
+    amount[1] = left_beyond + middle - middle_beyond;
+    amount[2] = middle_beyond + right - right_beyond;
+    amount[3] = right_beyond;
   }
   DESERT_HD static Quanta share(Quanta of, int parts) {
     return static_cast<Quanta>((static_cast<std::int64_t>(of) * parts) >> 16);
   }
 };
 
-/// The sum of what a line hands on to a place of the next one. `carried(place)` tells what a place hands on.
-template <class Read>
-DESERT_HD Quanta received(const Downwind& order, int place, const Read& carried) {
+/// The sum of what a line hands on to a place of the next one. `word(w, place)` is HandedOn::first of a place of
+/// that line for w = 0, and then its amounts.
+template <class Word>
+DESERT_HD Quanta received(const Downwind& order, int place, const Word& word) {
   Quanta sum = 0;
-  unrolled<2 * Carried::reach + 1>([&](auto k) DESERT_INLINE {
-    const int unwrapped = place + k - Carried::reach, from = order.place_within(unwrapped);
-    if (from >= 0) sum += carried(from).share_for(unwrapped, place);
+  unrolled<2 * HandedOn::reach + 1>([&](auto k) DESERT_INLINE {
+    constexpr int back = HandedOn::reach - k;
+    const int from = order.place_within(place - back);
+    const int there = from >= 0 ? from : place;
+    const int nth = from >= 0 ? back - word(0, there) : -1;
+    unrolled<HandedOn::places>([&](auto part) DESERT_INLINE { sum += nth == part ? word(1 + part, there) : 0; });
   });
   return sum;
 }
 
 struct PassSand {
-  using Carried = continuum::Carried;
+  static constexpr int words = 1 + HandedOn::places;
+  using Word = int;
   struct Loaded {
     float decay, gain;
     int shift;
@@ -164,19 +170,22 @@ struct PassSand {
   Die die;
   SweepFields fields;
 
-  DESERT_HD Carried before_first(int) const { return {0, 0, 0}; }
+  DESERT_HD int before_first(int, int) const { return 0; }
   DESERT_HD Loaded load(int line, int place) const {
     const int n = line * order.length() + place;
     return {fields.decay[n], fields.gain[n], fields.shift[n], fields.sides[n], fields.lying[n], fields.entering[n]};
   }
-  DESERT_HD Carried pass(int line, int place, const Loaded& cell, const Carried* before) const {
+  DESERT_HD void pass(int line, int place, const Loaded& cell, const LineWords<int>& before,
+                      const LineWords<int>& after) const {
     const int n = line * order.length() + place;
-    const Quanta in = cell.entering + received(order, place, [before](int from) { return before[from]; });
+    const Quanta in = cell.entering + received(order, place, before);
     const float wanted = static_cast<float>(in) * cell.decay + cell.gain;
     const Quanta out = die.whole_at_most(wanted, in + cell.lying, n);
     fields.change[n] = in - out;
     fields.out[n] = out;
-    return {out, cell.shift, cell.sides};
+    const HandedOn handed(out, cell.shift, cell.sides);
+    after(0, place) = handed.first;
+    unrolled<HandedOn::places>([&](auto part) DESERT_INLINE { after(1 + part, place) = handed.amount[part]; });
   }
 };
 
@@ -199,7 +208,7 @@ struct Settle {
     const int shift = from.shift[n];
     sand[i] = before + change;
     if (order.line_of(x, y) == 0 && order.periodic_along()) airborne[i] = over_seam(place);
-    ledger.book_out(Material::sand, i, lost(carried(n), order.line_of(x, y), place));
+    ledger.book_out(Material::sand, i, lost(n, order.line_of(x, y), place));
 
     const float across = static_cast<float>(shift) / 65536.0f + turned(from.sides[n]);
     const float along = (static_cast<float>(out) + 0.5f * static_cast<float>(change)) * flux_per_quantum;
@@ -217,21 +226,24 @@ struct Settle {
     flux_y[i] += parts.y;
   }
 
-  DESERT_HD Carried carried(int n) const { return {from.out[n], from.shift[n], from.sides[n]}; }
+  DESERT_HD HandedOn handed_on(int n) const { return {from.out[n], from.shift[n], from.sides[n]}; }
   /// What the last line hands on to a place of the first.
   DESERT_HD Quanta over_seam(int place) const {
     const int last = (order.lines() - 1) * order.length();
-    return received(order, place, [&](int other) { return carried(last + other); });
+    return received(order, place, [&](int word, int other) {
+      const HandedOn handed = handed_on(last + other);
+      return word == 0 ? handed.first : handed.amount[word - 1];
+    });
   }
   /// What a cell hands on over an open edge.
-  DESERT_HD Quanta lost(const Carried& carried, int line, int place) const {
-    if (line == order.lines() - 1 && !order.periodic_along()) return carried.amount;
+  DESERT_HD Quanta lost(int n, int line, int place) const {
+    if (line == order.lines() - 1 && !order.periodic_along()) return from.out[n];
     if (order.periodic_across()) return 0;
-    Quanta kept = 0;
-    const int nearer = place + (carried.shift >> 16);
-    for (int to = nearer - 1; to <= nearer + 2; ++to)
-      if (order.place_within(to) >= 0) kept += carried.share_for(place, to);
-    return carried.amount - kept;
+    const HandedOn handed = handed_on(n);
+    Quanta sum = 0;
+    for (int part = 0; part < HandedOn::places; ++part)
+      sum += order.place_within(place + handed.first + part) < 0 ? handed.amount[part] : 0;
+    return sum;
   }
 };
 

@@ -26,12 +26,16 @@ struct Upwind {
     near = order.periodic_across() ? wrap(from, length) : clamp_index(from, length);
     far = order.periodic_across() ? wrap(from - 1, length) : clamp_index(from - 1, length);
   }
+  DESERT_HD float interpolated(const LineWords<float>& before, int word) const {
+    return lerp(before(word, near), before(word, far), of_far);
+  }
 };
 
 /// How low the ground lies in the lee of each cell, seen against the wind: the lowest of all heights downwind to
 /// which it falls more steeply than `rise` a line.
 struct FindLee {
-  using Carried = float;
+  static constexpr int words = 1;
+  using Word = float;
   using Loaded = float;
   Downwind order;  ///< against the wind
   int shift;
@@ -40,50 +44,53 @@ struct FindLee {
   float* lee;
 
   DESERT_HD int cell(int line, int place) const { return order.cell(wrap(line, order.lines()), place); }
-  DESERT_HD float before_first(int) const { return 2.0f * static_cast<float>(wall_height); }
+  DESERT_HD float before_first(int, int) const { return 2.0f * static_cast<float>(wall_height); }
   DESERT_HD float load(int line, int place) const { return heights[cell(line, place)]; }
-  DESERT_HD float pass(int line, int place, float height, const float* before) const {
+  DESERT_HD void pass(int line, int place, float height, const LineWords<float>& before,
+                      const LineWords<float>& after) const {
     const Upwind from(order, place, shift);
-    const float low = minimum(height, lerp(before[from.near], before[from.far], from.of_far) + rise);
+    const float low = minimum(height, from.interpolated(before, 0) + rise);
     lee[cell(line, place)] = low;
-    return low;
+    after(0, place) = low;
   }
 };
 
 /// The surface with separation bubbles, line after line downwind.
 struct FillBubbles {
-  /// The flow along the ground or above it.
-  struct Carried {
-    float height, slope, bend;  ///< [quanta], and of a line [quanta]: its rise, and how fast that falls
-  };
+  /// Of the flow along the ground or above it: its height [quanta], and of a line its rise and by how much that
+  /// falls [quanta].
+  enum Words { height, slope, bend, words };
+  using Word = float;
   struct Loaded {
     float height, lee;
   };
   Downwind order;
-  int shift;      ///< of the undisturbed wind [cells a line, 16.16 fixed point]
-  float steepest; ///< fall of the separated flow from a line to the next [quanta]
+  int shift;              ///< of the undisturbed wind [cells a line, 16.16 fixed point]
+  float steepest;         ///< fall of the separated flow from a line to the next [quanta]
   float lines_a_quantum;  ///< over which the flow bends, of the height above the lee
   const float *heights, *lee;
   float* filled;
 
   DESERT_HD int cell(int line, int place) const { return order.cell(wrap(line, order.lines()), place); }
-  DESERT_HD Carried before_first(int) const { return {-2.0f * static_cast<float>(wall_height), 0.0f, 0.0f}; }
+  DESERT_HD float before_first(int word, int) const {
+    return word == height ? -2.0f * static_cast<float>(wall_height) : 0.0f;
+  }
   DESERT_HD Loaded load(int line, int place) const {
     const int i = cell(line, place);
     return {heights[i], lee[i]};
   }
-  DESERT_HD Carried pass(int line, int place, const Loaded& ground, const Carried* before) const {
+  DESERT_HD void pass(int line, int place, const Loaded& ground, const LineWords<float>& before,
+                      const LineWords<float>& after) const {
     const Upwind from(order, place, shift);
-    const Carried &near = before[from.near], &far = before[from.far];
-    const float height = lerp(near.height, far.height, from.of_far), bend = lerp(near.bend, far.bend, from.of_far);
-    const float slope = maximum(lerp(near.slope, far.slope, from.of_far) - bend, -steepest);
-    const float flow = height + slope;
+    const float upwind = from.interpolated(before, height), bends = from.interpolated(before, bend);
+    const float falls = maximum(from.interpolated(before, slope) - bends, -steepest), flow = upwind + falls;
     const bool attached = ground.height >= flow;
-    const float along_ground = clamp(ground.height - height, -steepest, 0.0f);
-    const float bending = steepest / maximum((ground.height - ground.lee) * lines_a_quantum, 1.0f);
-    const float surface = attached ? ground.height : flow;
-    filled[cell(line, place)] = surface;
-    return {surface, attached ? along_ground : slope, attached ? bending : bend};
+    const float along_ground = clamp(ground.height - upwind, -steepest, 0.0f);
+    const float bends_here = steepest / maximum((ground.height - ground.lee) * lines_a_quantum, 1.0f);
+    after(height, place) = attached ? ground.height : flow;
+    after(slope, place) = attached ? along_ground : falls;
+    after(bend, place) = attached ? bends_here : bends;
+    filled[cell(line, place)] = attached ? ground.height : flow;
   }
 };
 
@@ -145,7 +152,7 @@ struct BlowOverGround {
 };
 
 /// Where the axis is periodic, the sweeps begin this far before the first line: longer bubbles are cut [m].
-constexpr float longest_bubble = 200.0f;
+constexpr float longest_bubble = 120.0f;
 
 template <class E>
 void fill_bubbles(E& exec, const TerrainView& t, wind::Vector along, float tangent,
