@@ -8,7 +8,7 @@
 ///     for_each_item(exec, count, law);             // law(n) for n = 0 … count − 1
 ///     for_each_cell_of_rows(exec, grid, first, rows, law);  // law(x, y) in `rows` rows from `first` on,
 ///                                                           // wrapped over the north edge
-///     for_each_line_in_turn(exec, first, end, length, law); // lines first … end − 1, each after the one before
+///     for_each_line_in_turn(exec, first, end, length, law); // lines first … end − 1, one after the other
 ///     sum_cells(exec, grid, law) -> long long      // Σ law(x, y), exact
 ///     max_cells(exec, grid, law) -> float          // maximum of 0 and all law(x, y)
 ///
@@ -20,10 +20,10 @@
 /// add(cell, amount), or with add.square(…) to a square of 2 × 2 cells. A CPU prepares several cells at once.
 /// Neither part may read `sums`.
 ///
-/// A law of for_each_line_in_turn() hands Law::words values of type Law::Word from each of the `length` places
-/// of a line to the next line. law.load(line, place) reads what does not depend on the line before, ahead of its
-/// turn; law.pass(line, place, loaded, before, after) finds in before(w, n) word w of place n of the line before,
-/// and sets after(w, place); law.before_first(w, place) is what the first line finds.
+/// A law of for_each_line_in_turn() hands Law::words values of type Law::Word from each of the `length`
+/// places of a line to the next line. law.load(line, place) reads what does not depend on the line before,
+/// ahead of its turn; law.pass(line, place, loaded, before, after) finds in before(w, n) word w of place n of
+/// the line before, and sets after(w, place); law.before_first(w, place) is what the first line finds.
 ///
 /// The loops are implemented in for_each_cpu.hpp and for_each_cuda.cuh; sources of processes include
 /// loops.hpp.

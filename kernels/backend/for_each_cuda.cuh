@@ -182,8 +182,8 @@ __global__ void items_kernel(int count, Law law) {
 constexpr int longest_block = 1024;
 
 /// One block passes over all lines; each thread has the places threadIdx.x + k · blockDim.x of a line. What a
-/// line hands on lies in shared memory, and the loads of the next `ahead` lines are under way while one is passed:
-/// they take several times as long as that.
+/// line hands on lies in shared memory, and the loads of the next `ahead` lines are under way while one is
+/// passed: they take several times as long as that.
 template <int places, int ahead, class Law>
 __global__ void __launch_bounds__(longest_block) lines_kernel(int first, int end, int length, Law law) {
   extern __shared__ __align__(16) char scratch[];
@@ -281,7 +281,8 @@ template <int places, int ahead, class Law>
 void launch_lines(CudaExec& exec, int first, int end, int length, const Law& law) {
   const int bytes = 2 * Law::words * length * static_cast<int>(sizeof(typename Law::Word));
   const int threads = ((length + places - 1) / places + 31) / 32 * 32;
-  check_cuda(cudaFuncSetAttribute(lines_kernel<places, ahead, Law>, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes),
+  check_cuda(cudaFuncSetAttribute(lines_kernel<places, ahead, Law>,
+                                  cudaFuncAttributeMaxDynamicSharedMemorySize, bytes),
              "asking for shared memory for the lines of a sweep");
   lines_kernel<places, ahead><<<1, threads, bytes, stream(exec)>>>(first, end, length, law);
   check_cuda(cudaGetLastError(), "launch over lines");

@@ -16,15 +16,16 @@
 /// with γ the angle between e and the axis of the sweep, which solves the equation for a q_s that is constant
 /// in the cell. The amounts are whole quanta, and what a cell hands on is exactly what the next line gets: no
 /// sand is lost. It goes where τ leads, but for the shares √(Θ_t/Θ) s/μ that go a cell to either side, by how
-/// steeply the ground falls to that side: a ridge one cell wide loses sand to both. Sand that leaves over a periodic edge lies in the layer airborne_sand until the next step
-/// takes it in on the other side; over an open edge it is booked as outflow.
+/// steeply the ground falls to that side: a ridge one cell wide loses sand to both. Sand that leaves over a
+/// periodic edge lies in the layer airborne_sand until the next step takes it in on the other side; over an
+/// open edge it is booked as outflow.
 ///
 /// Plants take the share of the stress 1 − 1/(1 + Γ v), Γ = `plant_drag`. Moisture divides the threshold by
 /// the dryness of saltation_inputs.hpp; nothing is taken up under water. An obstacle hands on what comes. In
-/// the eddies before cliffs (echo_dunes.hpp), sand is lifted at −r_e m/s and none settles where r_e < 0; where
-/// r_e > 0 the share r_e more settles and half as much is taken up. Abrasion acts on ground that is covered by
-/// less than its `cover`, with q for the product of wind and bouncing sand of abrasion.hpp. The strength of
-/// impacts is q/|w|, the sand over a metre.
+/// the eddies before cliffs (echo_dunes.hpp), sand is lifted at −r_e m/s and none settles where r_e < 0;
+/// where r_e > 0 the share r_e more settles and half as much is taken up. Abrasion acts on ground that is
+/// covered by less than its `cover`, with q for the product of wind and bouncing sand of abrasion.hpp. The
+/// strength of impacts is q/|w|, the sand over a metre.
 ///
 /// Where the layers flux_x and flux_y are in use, they get q e, from the counted quanta: the mean of what
 /// enters and leaves a cell.
@@ -44,24 +45,25 @@
 
 namespace desert_sim::continuum {
 
-/// Longest step that is stable and accurate [s]: the bed's fastest change, which is that of its shortest waves,
+/// Longest step that is stable and accurate [s]: the bed's fastest change, which is that of its shortest
+/// waves,
 ///
 ///   |λ| = Q k² √(A² + B² + 1/(μ r²)²) / √(1 + k² L_sat²),   k = π / `stress_cell`
 ///
-/// in which Q is the flux of twice the undisturbed stress (that of crests), and the width of a cell stands for a
-/// `stress_cell` of 0, goes on for at most 1.5/|λ|; an explicit step is unstable from 2/|λ| on. Infinity where the
-/// wind carries nothing.
+/// in which Q is the flux of twice the undisturbed stress (that of crests), and the width of a cell stands
+/// for a `stress_cell` of 0, goes on for at most 1.5/|λ|; an explicit step is unstable from 2/|λ| on.
+/// Infinity where the wind carries nothing.
 float longest_step(const ContinuumParameters& p, const ShearStressParameters& stress, const Grid& grid,
                    float wind_speed);
 
 /// Fields of a sweep, in its order of cells.
 struct Workspace {
-  Buffer<float> decay, gain;   ///< e^(−λ) [1], and what the second term hands on [quanta]
-  Buffer<int> shift;           ///< of τ [cells a line; 16.16 fixed point]
-  Buffer<std::uint32_t> sides; ///< shares that go downhill to the one side and the other [16.16 bits]
-  Buffer<Quanta> lying;        ///< sand that can be taken up
-  Buffer<Quanta> entering;     ///< sand that comes over the edge of the grid
-  Buffer<Quanta> change, out;  ///< F_in − F_out and F_out
+  Buffer<float> decay, gain;    ///< e^(−λ) [1], and what the second term hands on [quanta]
+  Buffer<int> shift;            ///< of τ [cells a line; 16.16 fixed point]
+  Buffer<std::uint32_t> sides;  ///< shares that go downhill to the one side and the other [16.16 bits]
+  Buffer<Quanta> lying;         ///< sand that can be taken up
+  Buffer<Quanta> entering;      ///< sand that comes over the edge of the grid
+  Buffer<Quanta> change, out;   ///< F_in − F_out and F_out
 
   std::size_t bytes() const;
 };
@@ -73,15 +75,16 @@ struct StepInputs {
   ShearStressParameters stress;
   AbrasionParameters abrasion;
   ReposeParameters repose;
-  float influx;           ///< [m²/s] over an open windward edge
-  float time_step;        ///< [s]
-  float flux_time;        ///< over which flux_x and flux_y are a mean [s]
-  wind::Vector above;     ///< undisturbed wind: its direction orders the sweep
-  const float* heights;   ///< of the ground [quanta]
-  float* impact_strength; ///< [m], or null
+  float influx;            ///< [m²/s] over an open windward edge
+  float time_step;         ///< [s]
+  float flux_time;         ///< over which flux_x and flux_y are a mean [s]
+  wind::Vector above;      ///< undisturbed wind: its direction orders the sweep
+  const float* heights;    ///< of the ground [quanta]
+  float* impact_strength;  ///< [m], or null
 };
 
 template <class E>
-void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger, Workspace& work);
+void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger,
+          Workspace& work);
 
 }  // namespace desert_sim::continuum

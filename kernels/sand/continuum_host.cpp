@@ -30,7 +30,8 @@ void require_lines_that_fit(const Exec& exec, const Grid& grid) {
   constexpr std::size_t bytes_a_place = 2 * 4 * 5, most_places = 8192, every_gpu_has = 48 * 1024;
   const std::size_t memory = std::max(every_gpu_has, exec.memory_for_lines());
   const std::size_t longest = std::min(most_places, memory / bytes_a_place);
-  for (const auto& [key, cells] : {std::pair{"grid.width", grid.width}, std::pair{"grid.height", grid.height}})
+  for (const auto& [key, cells] :
+       {std::pair{"grid.width", grid.width}, std::pair{"grid.height", grid.height}})
     if (static_cast<std::size_t>(cells) > longest)
       throw ConfigError("saltation.model: continuum on this GPU: " + std::string(key) + ": = " +
                         std::to_string(cells) + " (allowed: at most " + std::to_string(longest) + ")");
@@ -48,7 +49,8 @@ Workspace make_workspace(Exec& exec, const Grid& grid) {
 }
 
 std::size_t Workspace::bytes() const {
-  return decay.bytes() + gain.bytes() + shift.bytes() + sides.bytes() + lying.bytes() + entering.bytes() + change.bytes() + out.bytes();
+  return decay.bytes() + gain.bytes() + shift.bytes() + sides.bytes() + lying.bytes() + entering.bytes() +
+         change.bytes() + out.bytes();
 }
 
 }  // namespace desert_sim::continuum

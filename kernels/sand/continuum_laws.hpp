@@ -40,12 +40,12 @@ struct Prepare {
   Layers in;
   Downwind order;
   SaturatedFlux flux;
-  float plant_drag, per_friction;     ///< Γ, 1/μ
-  float cells_per_length;             ///< l/L_sat
-  float depth_per_flux;               ///< Δt/l in quanta [quanta s/m²]
-  float time_in_quanta;               ///< Δt [quanta s/m]
-  float slope_per_quantum;            ///< of a difference of two neighbours' heights [1]
-  float influx;                       ///< [m²/s]
+  float plant_drag, per_friction;  ///< Γ, 1/μ
+  float cells_per_length;          ///< l/L_sat
+  float depth_per_flux;            ///< Δt/l in quanta [quanta s/m²]
+  float time_in_quanta;            ///< Δt [quanta s/m]
+  float slope_per_quantum;         ///< of a difference of two neighbours' heights [1]
+  float influx;                    ///< [m²/s]
   Die influx_die;
   LedgerView ledger;
   const float* heights;
@@ -85,7 +85,8 @@ struct Prepare {
     const float shift = order.shift(u, v), turn = sqrtf(flux.threshold / shields) * per_friction;
     const std::uint32_t sides =
         shields > flux.threshold ? downhill(x, y, shift, turn * sqrtf(1.0f + shift * shift)) : 0u;
-    const float across = shift + turned(sides), path = sqrtf(1.0f + across * across);  // through the cell [cells]
+    const float across = shift + turned(sides),
+                path = sqrtf(1.0f + across * across);  // through the cell [cells]
     const float decay = exp_negative(cells_per_length * path);
     set(i, n, decay, q * depth_per_flux * (1.0f - decay) / path, shift);
     to.sides[n] = sides;
@@ -142,8 +143,8 @@ struct HandedOn {
   }
 };
 
-/// The sum of what a line hands on to a place of the next one. `word(w, place)` is HandedOn::first of a place of
-/// that line for w = 0, and then its amounts.
+/// The sum of what a line hands on to a place of the next one. `word(w, place)` is HandedOn::first of a place
+/// of that line for w = 0, and then its amounts.
 template <class Word>
 DESERT_HD Quanta received(const Downwind& order, int place, const Word& word) {
   Quanta sum = 0;
@@ -152,7 +153,8 @@ DESERT_HD Quanta received(const Downwind& order, int place, const Word& word) {
     const int from = order.place_within(place - back);
     const int there = from >= 0 ? from : place;
     const int nth = from >= 0 ? back - word(0, there) : -1;
-    unrolled<HandedOn::places>([&](auto part) DESERT_INLINE { sum += nth == part ? word(1 + part, there) : 0; });
+    unrolled<HandedOn::places>([&](auto part)
+                                   DESERT_INLINE { sum += nth == part ? word(1 + part, there) : 0; });
   });
   return sum;
 }
@@ -173,7 +175,8 @@ struct PassSand {
   DESERT_HD int before_first(int, int) const { return 0; }
   DESERT_HD Loaded load(int line, int place) const {
     const int n = line * order.length() + place;
-    return {fields.decay[n], fields.gain[n], fields.shift[n], fields.sides[n], fields.lying[n], fields.entering[n]};
+    return {fields.decay[n], fields.gain[n],  fields.shift[n],
+            fields.sides[n], fields.lying[n], fields.entering[n]};
   }
   DESERT_HD void pass(int line, int place, const Loaded& cell, const LineWords<int>& before,
                       const LineWords<int>& after) const {
@@ -185,7 +188,8 @@ struct PassSand {
     fields.out[n] = out;
     const HandedOn handed(out, cell.shift, cell.sides);
     after(0, place) = handed.first;
-    unrolled<HandedOn::places>([&](auto part) DESERT_INLINE { after(1 + part, place) = handed.amount[part]; });
+    unrolled<HandedOn::places>([&](auto part)
+                                   DESERT_INLINE { after(1 + part, place) = handed.amount[part]; });
   }
 };
 

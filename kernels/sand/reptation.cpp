@@ -36,7 +36,8 @@ template <class E>
 void set_angles(E& exec, const TerrainView& t, const Angle& angle, const ReposeParameters& p,
                 const float* strength) {
   if (!strength && !t.real(Layer::vegetation) && !t.quanta(Layer::moisture))
-    return for_each_cell(exec, t.grid, SetDryAngles{t.grid, angle.tangent_at(angle.tangents.sand, 0, 0), angle.repose});
+    return for_each_cell(exec, t.grid,
+                         SetDryAngles{t.grid, angle.tangent_at(angle.tangents.sand, 0, 0), angle.repose});
   for_each_cell(
       exec, t.grid,
       SetAngles{t.grid, angle, strength, t.real(Layer::wind_x), t.real(Layer::wind_y),

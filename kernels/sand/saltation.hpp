@@ -75,9 +75,10 @@ constexpr auto parameter_table(const SaltationParameters*) {
   using P = SaltationParameters;
   return std::make_tuple(
       parameter("enabled", &P::enabled, "Whether the wind carries sand."),
-      parameter("model", &P::model, saltation_model_names,
-                "hops: a share of the sand a second, in hops; continuum: in real units (sections shear_stress, "
-                "continuum), with influx and flux alone of this section."),
+      parameter(
+          "model", &P::model, saltation_model_names,
+          "hops: a share of the sand a second, in hops; continuum: in real units (sections shear_stress, "
+          "continuum), with influx and flux alone of this section."),
       parameter("lift", &P::lift, 0, 10, "m/s", "Sand lifted from an open cell a second (epsilon_s)."),
       parameter("hop_time", &P::hop_time, 0.001, 100, "s", "Time that a hop takes (T)."),
       parameter(

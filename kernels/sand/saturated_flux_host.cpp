@@ -13,7 +13,8 @@ SaturatedFlux::SaturatedFlux(const ContinuumParameters& p, double shear_velocity
   constexpr double reference_diameter = 0.00025, of_source[] = {7.8, 1.8, 2.78, 4.2};
   const double d = p.grain_diameter, ratio = static_cast<double>(p.grain_density) / p.air_density;
   const double velocity_squared = (ratio - 1) * p.gravity * d;  // u_*² at Θ = 1
-  const double c = p.flux_coefficient > 0 ? static_cast<double>(p.flux_coefficient) : of_source[static_cast<int>(law)];
+  const double c =
+      p.flux_coefficient > 0 ? static_cast<double>(p.flux_coefficient) : of_source[static_cast<int>(law)];
   shields_per_wind_squared =
       static_cast<float>(shear_velocity_per_wind * shear_velocity_per_wind / velocity_squared);
   threshold = p.threshold * p.threshold;

@@ -1,6 +1,6 @@
 #pragma once
-/// The Fourier modes of a coarse grid along one of its axes, and how much of them averaging onto that grid and
-/// interpolating back leaves. On the host: transfer functions are tabulated once.
+/// The Fourier modes of a coarse grid along one of its axes, and how much of them averaging onto that grid
+/// and interpolating back leaves. On the host: transfer functions are tabulated once.
 
 #include <cmath>
 #include <vector>

@@ -22,11 +22,20 @@ struct Downwind {
 
   Grid grid;
   bool along_x, backward;
+  int first_cell, line_stride,
+      place_stride;  ///< cell = first_cell + line · line_stride + place · place_stride
 
   Downwind(const Grid& g, Vector wind)
       : grid(g),
         along_x(std::fabs(wind.x) >= std::fabs(wind.y)),
-        backward(along_x ? wind.x < 0 : wind.y < 0) {}
+        backward(along_x ? wind.x < 0 : wind.y < 0),
+        first_cell(0),
+        line_stride(along_x ? 1 : g.width),
+        place_stride(along_x ? g.width : 1) {
+    if (!backward) return;
+    first_cell = (lines() - 1) * line_stride;
+    line_stride = -line_stride;
+  }
 
   DESERT_HD int lines() const { return along_x ? grid.width : grid.height; }
   DESERT_HD int length() const { return along_x ? grid.height : grid.width; }
@@ -41,22 +50,23 @@ struct Downwind {
   DESERT_HD int slot(int x, int y) const { return line_of(x, y) * length() + place_of(x, y); }
   /// The cell at a place of a line.
   DESERT_HD int cell(int line, int place) const {
-    const int along = backward ? lines() - 1 - line : line;
-    return along_x ? grid.index(along, place) : grid.index(place, along);
+    return first_cell + line * line_stride + place * place_stride;
   }
-  /// A place of the line that lies within the grid: wrapped, or −1 beyond an open edge; at most three cells beyond
-  /// the edges. Without division, so that compilers vectorise the loops around, also for lines of one cell.
+  /// A place of the line that lies within the grid: wrapped, or −1 beyond an open edge; at most three cells
+  /// beyond the edges.
   DESERT_HD int place_within(int place) const {
     const int n = length();
-    if (periodic_across()) return wrap_once(wrap_once(wrap_once(place, n), n), n);
-    return place >= 0 && place < n ? place : -1;
+    if (static_cast<unsigned>(place) < static_cast<unsigned>(n)) return place;
+    // Without division, so that compilers vectorise the loops around, also for lines of one cell.
+    return periodic_across() ? wrap_once(wrap_once(wrap_once(place, n), n), n) : -1;
   }
 
   /// How far a direction leads to the side from one line to the next [cells].
   DESERT_HD float shift(float x, float y) const {
     const float along = (along_x ? x : y) * (backward ? -1.0f : 1.0f), across = along_x ? y : x;
     const float size = fabsf(across);
-    if (!(along * largest_shift > size)) return across > 0.0f ? largest_shift : across < 0.0f ? -largest_shift : 0.0f;
+    if (!(along * largest_shift > size))
+      return across > 0.0f ? largest_shift : across < 0.0f ? -largest_shift : 0.0f;
     return across / along;
   }
   /// A flux of 1 along the axis and of `across` across it, as parts along x and y.

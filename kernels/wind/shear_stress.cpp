@@ -31,8 +31,8 @@ struct Upwind {
   }
 };
 
-/// How low the ground lies in the lee of each cell, seen against the wind: the lowest of all heights downwind to
-/// which it falls more steeply than `rise` a line.
+/// How low the ground lies in the lee of each cell, seen against the wind: the lowest of all heights downwind
+/// to which it falls more steeply than `rise` a line.
 struct FindLee {
   static constexpr int words = 1;
   using Word = float;
@@ -43,7 +43,9 @@ struct FindLee {
   const float* heights;
   float* lee;
 
-  DESERT_HD int cell(int line, int place) const { return order.cell(wrap(line, order.lines()), place); }
+  DESERT_HD int cell(int line, int place) const {
+    return order.cell(line < 0 ? line + order.lines() : line, place);
+  }
   DESERT_HD float before_first(int, int) const { return 2.0f * static_cast<float>(wall_height); }
   DESERT_HD float load(int line, int place) const { return heights[cell(line, place)]; }
   DESERT_HD void pass(int line, int place, float height, const LineWords<float>& before,
@@ -57,8 +59,8 @@ struct FindLee {
 
 /// The surface with separation bubbles, line after line downwind.
 struct FillBubbles {
-  /// Of the flow along the ground or above it: its height [quanta], and of a line its rise and by how much that
-  /// falls [quanta].
+  /// Of the flow along the ground or above it: its height [quanta], and of a line its rise and by how much
+  /// that falls [quanta].
   enum Words { height, slope, bend, words };
   using Word = float;
   struct Loaded {
@@ -71,7 +73,9 @@ struct FillBubbles {
   const float *heights, *lee;
   float* filled;
 
-  DESERT_HD int cell(int line, int place) const { return order.cell(wrap(line, order.lines()), place); }
+  DESERT_HD int cell(int line, int place) const {
+    return order.cell(line < 0 ? line + order.lines() : line, place);
+  }
   DESERT_HD float before_first(int word, int) const {
     return word == height ? -2.0f * static_cast<float>(wall_height) : 0.0f;
   }
@@ -94,7 +98,8 @@ struct FillBubbles {
   }
 };
 
-/// Multiplies the spectrum of the surface by the response: real parts become τ_∥/τ_0, imaginary parts τ_⊥/τ_0.
+/// Multiplies the spectrum of the surface by the response: real parts become τ_∥/τ_0, imaginary parts
+/// τ_⊥/τ_0.
 struct Respond {
   wind::CoarseGrid coarse;
   wind::Vector along;  ///< unit vector of the wind
@@ -110,7 +115,8 @@ struct Respond {
       value = {0.0f, 0.0f};
       return;
     }
-    const float k_along = mode.kx * along.x + mode.ky * along.y, k_across = mode.ky * along.x - mode.kx * along.y;
+    const float k_along = mode.kx * along.x + mode.ky * along.y,
+                k_across = mode.ky * along.x - mode.kx * along.y;
     const float scale = transfer_x[i] * transfer_y[j] * cells_per_metre / size;
     const float even = a * k_along, odd = b * fabsf(k_along);
     const Complex parallel = response(value, scale * k_along * even, scale * k_along * odd);
@@ -134,7 +140,8 @@ struct BlowOverGround {
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = coarse.fine.index(x, y);
-    const float u = above.x + value_or_zero(perturbation_x, i), v = above.y + value_or_zero(perturbation_y, i);
+    const float u = above.x + value_or_zero(perturbation_x, i),
+                v = above.y + value_or_zero(perturbation_y, i);
     Complex response{0.0f, 0.0f};
     if (rows) {
       wind::InterpolatedColumn<Complex> column(rows, x, coarse.fine.width);
@@ -166,20 +173,22 @@ void fill_bubbles(E& exec, const TerrainView& t, wind::Vector along, float tange
   for_each_line_in_turn(exec, first, lines, order.length(),
                         FindLee{against, to_fixed_point(against.shift(-along.x, -along.y)),
                                 lee_slope * line * t.quanta_per_metre, ground, work.lee.data()});
-  for_each_line_in_turn(exec, first, lines, order.length(),
-                        FillBubbles{order, to_fixed_point(shift), tangent * line * t.quanta_per_metre,
-                                    bend_length / (line * t.quanta_per_metre), ground, lee, work.filled.data()});
+  for_each_line_in_turn(
+      exec, first, lines, order.length(),
+      FillBubbles{order, to_fixed_point(shift), tangent * line * t.quanta_per_metre,
+                  bend_length / (line * t.quanta_per_metre), ground, lee, work.filled.data()});
 }
 
 template <class E>
-void respond(E& exec, const TerrainView& t, const ShearStressParameters& p, wind::Vector along, float reference,
-             Workspace& work) {
+void respond(E& exec, const TerrainView& t, const ShearStressParameters& p, wind::Vector along,
+             float reference, Workspace& work) {
   const wind::CoarseGrid& coarse = work.coarse;
   const wind::CoarsenRows rows{coarse, work.filled.data(), reference, work.row_means.data()};
   for_each_cell(exec, rows.grid(), rows);
   const Grid grid = coarse.transformed();
-  for_each_cell(exec, grid, wind::CoarsenColumns{coarse, work.row_means.data(), t.quantum, work.rise.data(),
-                                                 work.spectrum.data()});
+  for_each_cell(
+      exec, grid,
+      wind::CoarsenColumns{coarse, work.row_means.data(), t.quantum, work.rise.data(), work.spectrum.data()});
   work.fft->forward(work.spectrum.data());
   for_each_cell(exec, grid,
                 Respond{coarse, along, p.in_phase, p.in_quadrature, 1.0f / t.grid.cell_size,
@@ -195,7 +204,8 @@ void step(E& exec, const TerrainView& t, const ShearStressParameters& p, wind::V
           const float* perturbation_y, Workspace& work) {
   const float speed = hypotenuse(above.x, above.y);
   // In still air, the wind of local features alone has no direction in which the ground could shelter it.
-  const wind::Vector along = speed > 0.0f ? wind::Vector{above.x / speed, above.y / speed} : wind::Vector{1, 0};
+  const wind::Vector along =
+      speed > 0.0f ? wind::Vector{above.x / speed, above.y / speed} : wind::Vector{1, 0};
   const auto tangent = static_cast<float>(std::tan(p.separation_deg * pi / 180.0));
   const bool responds = speed > 0.0f && (p.in_phase > 0.0f || p.in_quadrature > 0.0f);
   fill_bubbles(exec, t, along, tangent, heights, work);

@@ -8,14 +8,15 @@
 ///                 τ̂_⊥ = ½ τ_0 (A + i B sgn k_∥) |k| (k_∥ k_⊥/|k|²) ĥ
 ///   stress        τ   = (τ_0 + τ_∥, τ_⊥) (1 − shelter),   with τ_0 + τ_∥ not below 0
 ///
-/// ∥ and ⊥ are along and across the undisturbed wind. B > 0 sets the largest stress before the crest.
-/// h is the surface with the separation bubbles filled in. Where the lee is steeper than β = `separation_deg`, the
-/// air leaves the ground at the brink with the slope of the brink, which bends down to −tan β over three times the
-/// height H of the brink above its lee, and comes down to the ground with that slope,
+/// ∥ and ⊥ are along and across the undisturbed wind. B > 0 sets the largest stress before the crest. h is
+/// the surface with the separation bubbles filled in. Where the lee is steeper than β = `separation_deg`, the
+/// air leaves the ground at the brink with the slope of the brink, which bends down to −tan β over three
+/// times the height H of the brink above its lee, and comes down to the ground with that slope,
 ///
 ///   e(s) = max(h(s), e(s − Δs) + e′ Δs),   e″ = −tan β/(3 H),   −tan β ≤ e′ ≤ 0
 ///
-/// some 5.5 H behind the brink. The stress is 0 under it (shelter rises to 1 over the depth to which the line falls in one cell).
+/// some 5.5 H behind the brink. The stress is 0 under it (shelter rises to 1 over the depth to which the line
+/// falls in one cell).
 ///
 /// The layers wind_x and wind_y are the wind at `wind_height` over flat ground that has this stress: their
 /// square is proportional to τ, and their direction is that of τ. Local features of the wind turn and scale

@@ -14,9 +14,9 @@ double shear_velocity_per_wind(const ShearStressParameters& p) {
 
 namespace {
 
-/// The number of coarse cells along n cells: n itself unless a coarse cell is wider than one and a half, because
-/// even a slight smoothing of the stress makes dunes of a few saturation lengths wider and lower; else about
-/// n/ratio, with no prime factors but 2, 3 and 5, because transforms of such lengths are fast.
+/// The number of coarse cells along n cells: n itself unless a coarse cell is wider than one and a half,
+/// because even a slight smoothing of the stress makes dunes of a few saturation lengths wider and lower;
+/// else about n/ratio, with no prime factors but 2, 3 and 5, because transforms of such lengths are fast.
 int coarse_cells(int n, double ratio) {
   if (ratio <= 1.5) return n;
   int coarse = std::clamp(static_cast<int>(std::lround(n / ratio)), 1, n);
@@ -31,7 +31,8 @@ std::vector<float> transfer(const wind::ModesOfAxis& modes) {
   std::vector<float> table(static_cast<std::size_t>(modes.n));
   for (int i = 0; i < modes.n; ++i)
     if (!modes.nyquist(i))
-      table[static_cast<std::size_t>(i)] = static_cast<float>(modes.gaussian(i, sigma) / (modes.kept(i) * modes.n));
+      table[static_cast<std::size_t>(i)] =
+          static_cast<float>(modes.gaussian(i, sigma) / (modes.kept(i) * modes.n));
   return table;
 }
 
@@ -56,8 +57,8 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const ShearStressParamete
 }
 
 std::size_t Workspace::bytes() const {
-  return fft->bytes() + lee.bytes() + filled.bytes() + row_means.bytes() + rise.bytes() + spectrum.bytes() + rows.bytes() +
-         transfer_x.bytes() + transfer_y.bytes();
+  return fft->bytes() + lee.bytes() + filled.bytes() + row_means.bytes() + rise.bytes() + spectrum.bytes() +
+         rows.bytes() + transfer_x.bytes() + transfer_y.bytes();
 }
 
 }  // namespace desert_sim::shear_stress

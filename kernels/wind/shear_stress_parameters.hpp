@@ -26,9 +26,10 @@ constexpr auto parameter_table(const ShearStressParameters*) {
                 "Response of the stress that leads the surface by a quarter wave (B)."),
       parameter("separation_deg", &P::separation_deg, 5, 60, "deg",
                 "Slope of the lee from which on the flow separates, and of the bubble's end (beta)."),
-      parameter("stress_cell", &P::stress_cell, 0, 1000, "m",
-                "Width of the cells on which the response is computed, if more than that of the terrain's; wider "
-                "ones are faster, but from about half the saturation length on dunes become wider, too."));
+      parameter(
+          "stress_cell", &P::stress_cell, 0, 1000, "m",
+          "Width of the cells on which the response is computed, if more than that of the terrain's; wider "
+          "ones are faster, but from about half the saturation length on dunes become wider, too."));
 }
 static_assert(table_is_complete<ShearStressParameters>());
 

@@ -21,7 +21,8 @@ std::pair<double, double> place_and_height(const Simulation& s) {
     const std::vector<Quanta> sand = test::quanta(s, layer);
     for (std::size_t i = 0; i < sand.size(); ++i) {
       all += sand[i];
-      moment += static_cast<double>(sand[i]) * static_cast<double>(i % static_cast<std::size_t>(s.terrain().grid().width));
+      moment += static_cast<double>(sand[i]) *
+                static_cast<double>(i % static_cast<std::size_t>(s.terrain().grid().width));
       top = std::max(top, static_cast<double>(sand[i]) * s.terrain().scale().quantum());
     }
   }
@@ -38,8 +39,8 @@ class ContinuumDunes : public test::OnBackend {
   }
 };
 
-/// The order of the scheme is one: steps from ten minutes to four hours, which are divided by themselves, lead a
-/// dune as far within 5 %.
+/// The order of the scheme is one: steps from ten minutes to four hours, which are divided by themselves,
+/// lead a dune as far within 5 %.
 TEST_P(ContinuumDunes, MoveAsFarAtAnyTimeStep) {
   constexpr double days = 6, day = 86400;
   const auto reference = place_and_height(*after(heap, 600, days * day));
@@ -66,10 +67,11 @@ TEST_P(ContinuumDunes, DivideStepsThatAreTooLongForTheWind) {
 /// What blows out over open edges, and in as influx, is booked; the ledger has no residual.
 TEST_P(ContinuumDunes, OverOpenEdgesNothingIsLost) {
   for (const double degrees : {0.0, 40.0, 135.0, 250.0}) {
-    auto s = after("grid: {width: 40, height: 32, boundary: open}\nterrain: [uniform: {layer: sand, value: 1}]\n"
-                   "wind: {speed: 10, direction_deg: " + std::to_string(degrees) +
-                       "}\nsaltation: {model: continuum, influx: 5.0e-6}\n",
-                   1800, 30 * 1800);
+    auto s = after(
+        "grid: {width: 40, height: 32, boundary: open}\nterrain: [uniform: {layer: sand, value: 1}]\n"
+        "wind: {speed: 10, direction_deg: " +
+            std::to_string(degrees) + "}\nsaltation: {model: continuum, influx: 5.0e-6}\n",
+        1800, 30 * 1800);
     const MaterialBalance sand = s->balance()[static_cast<std::size_t>(Material::sand)];
     EXPECT_GT(sand.in, 0);
     EXPECT_GT(sand.out, sand.in) << "the edges are worn";
@@ -95,8 +97,9 @@ TEST_P(ContinuumDunes, TheFlowSeparatesBehindAStep) {
 
 /// The largest stress is before the crest, and a ridge across the wind speeds it up.
 TEST_P(ContinuumDunes, TheStressIsLargestBeforeTheCrest) {
-  auto s = test::with_sand(exec(), "grid: {width: 96, height: 8, cell_size: 1}\nwind: {speed: 9}\nsaltation: {model: continuum}\n",
-                           [](int x, int) { return 2 + std::cos(2 * pi * (x + 0.5) / 48); });
+  auto s = test::with_sand(
+      exec(), "grid: {width: 96, height: 8, cell_size: 1}\nwind: {speed: 9}\nsaltation: {model: continuum}\n",
+      [](int x, int) { return 2 + std::cos(2 * pi * (x + 0.5) / 48); });
   s->pipeline().refresh_derived();
   const std::vector<float> wind = test::real(*s, Layer::wind_x);
   const auto highest = std::max_element(wind.begin() + 24, wind.begin() + 72);
@@ -107,15 +110,19 @@ TEST_P(ContinuumDunes, TheStressIsLargestBeforeTheCrest) {
 
 /// Sand that is wet, overgrown, under water or under an obstacle stays; between plants it gathers.
 TEST_P(ContinuumDunes, SparesWhatHoldsTheSand) {
-  const std::string bed = "grid: {width: 48, height: 24}\nwind: {speed: 9}\nsaltation: {model: continuum, flux: true}\n"
-                          "shear_stress: {in_phase: 0, in_quadrature: 0}\n"
-                          "terrain: [uniform: {layer: sand, value: 2}";
-  for (const char* held : {", uniform: {layer: moisture, value: 0.2}]\n", ", uniform: {layer: vegetation, value: 0.9}]\n",
-                           ", uniform: {layer: water, value: 0.5}]\n"}) {
+  const std::string bed =
+      "grid: {width: 48, height: 24}\nwind: {speed: 9}\nsaltation: {model: continuum, flux: true}\n"
+      "shear_stress: {in_phase: 0, in_quadrature: 0}\n"
+      "terrain: [uniform: {layer: sand, value: 2}";
+  for (const char* held :
+       {", uniform: {layer: moisture, value: 0.2}]\n", ", uniform: {layer: vegetation, value: 0.9}]\n",
+        ", uniform: {layer: water, value: 0.5}]\n"}) {
     auto s = after(bed + held, 600, 12000);
     EXPECT_EQ(test::mean(test::real(*s, Layer::flux_x)), 0) << held;
   }
-  auto plants = after(bed + ", column: {layer: vegetation, merge: replace, x: 24, y: 12, size_x: 6, size_y: 100, height: 0.5}]\n",
+  auto plants = after(bed +
+                          ", column: {layer: vegetation, merge: replace, x: 24, y: 12, size_x: 6, size_y: "
+                          "100, height: 0.5}]\n",
                       600, 60000);
   const std::vector<float> sand = plants->terrain().values(Layer::sand);
   const auto at = [&](int x) { return sand[static_cast<std::size_t>(12 * 48 + x)]; };
@@ -125,11 +132,13 @@ TEST_P(ContinuumDunes, SparesWhatHoldsTheSand) {
 
 /// An obstacle neither takes nor gives: what comes goes on, and lies behind it.
 TEST_P(ContinuumDunes, SandPassesObstacles) {
-  auto s = after("grid: {width: 48, height: 24}\nterrain: [uniform: {layer: sand, value: 2}, "
-                 "obstacle: {shape: box, x: 24, y: 12, size_x: 4, size_y: 4, height: 0.0}]\n"
-                 "wind: {speed: 9}\nsaltation: {model: continuum}\nshear_stress: {in_phase: 0, in_quadrature: 0}\n",
-                 600, 6000);
-  const std::vector<float> sand = s->terrain().values(Layer::sand), obstacle = s->terrain().values(Layer::obstacle);
+  auto s = after(
+      "grid: {width: 48, height: 24}\nterrain: [uniform: {layer: sand, value: 2}, "
+      "obstacle: {shape: box, x: 24, y: 12, size_x: 4, size_y: 4, height: 0.0}]\n"
+      "wind: {speed: 9}\nsaltation: {model: continuum}\nshear_stress: {in_phase: 0, in_quadrature: 0}\n",
+      600, 6000);
+  const std::vector<float> sand = s->terrain().values(Layer::sand),
+                           obstacle = s->terrain().values(Layer::obstacle);
   int solid = 0;
   for (std::size_t i = 0; i < sand.size(); ++i)
     if (obstacle[i] > 0) {
@@ -142,10 +151,13 @@ TEST_P(ContinuumDunes, SandPassesObstacles) {
 /// Sand that passes over rock wears it, in proportion to the flux and to the time.
 TEST_P(ContinuumDunes, SandThatPassesWearsRock) {
   const auto worn = [&](double influx, double seconds) {
-    auto s = after("grid: {width: 24, height: 24, boundary: open}\nwind: {speed: 9}\nabrasion: {rate: 0.001}\n"
-                   "saltation: {model: continuum, influx: " + std::to_string(influx) + "}\n"
-                   "shear_stress: {in_phase: 0, in_quadrature: 0}\nterrain: [uniform: {layer: bedrock, value: 5}]\n",
-                   60, seconds);
+    auto s = after(
+        "grid: {width: 24, height: 24, boundary: open}\nwind: {speed: 9}\nabrasion: {rate: 0.001}\n"
+        "saltation: {model: continuum, influx: " +
+            std::to_string(influx) +
+            "}\n"
+            "shear_stress: {in_phase: 0, in_quadrature: 0}\nterrain: [uniform: {layer: bedrock, value: 5}]\n",
+        60, seconds);
     return static_cast<double>(s->balance()[static_cast<std::size_t>(Material::bedrock)].out);
   };
   const double once = worn(2e-6, 6000);

@@ -12,10 +12,11 @@ namespace desert_sim::test {
 
 using std::string;
 
-/// A world whose sand has the depth depth(x, y) [m] at (x, y) [cells]. `level`: its surface is at 0, on bedrock
-/// that lies as deep as that.
+/// A world whose sand has the depth depth(x, y) [m] at (x, y) [cells]. `level`: its surface is at 0, on
+/// bedrock that lies as deep as that.
 inline std::unique_ptr<Simulation> with_sand(Exec& exec, const string& yaml,
-                                             const std::function<double(int, int)>& depth, bool level = false) {
+                                             const std::function<double(int, int)>& depth,
+                                             bool level = false) {
   const Scenario scenario = parsed(yaml + "terrain: [raster: {layer: sand, file: sand}" +
                                    (level ? ", raster: {layer: bedrock, file: bedrock}]\n" : "]\n"));
   const RasterLoader loader = [&](const RasterRequest& request) {

@@ -40,7 +40,8 @@ const std::map<std::string, std::string> worlds{
     {"continuum",
      "grid: {width: 40, height: 36, boundary: open}\n"
      "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
-     "  noise: {layer: sand, low: 0, high: 2, scale: 5, threshold: 0.4}, uniform: {layer: moisture, value: 0.002},\n"
+     "  noise: {layer: sand, low: 0, high: 2, scale: 5, threshold: 0.4}, uniform: {layer: moisture, value: "
+     "0.002},\n"
      "  noise: {layer: vegetation, low: 0, high: 1, scale: 6, threshold: 0.5, seed: 4},\n"
      "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
      "wind: {speed: 12, direction_deg: 20, features: [{kind: vortex, x: 10, y: 10, radius: 5}]}\n"

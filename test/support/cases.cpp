@@ -83,8 +83,9 @@ std::vector<Case> process_cases(bool transforms) {
           "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.4, seed: 5}\n"
           "  - noise: {layer: moisture, low: 0, high: 0.05, scale: 10, threshold: 0.5, seed: 6}\n"
           "  - noise: {layer: water, low: 0, high: 1, scale: 10, threshold: 0.7, seed: 7}\n" +
-          real + "abrasion: {rate: 1.0e-4, cover: 0.5}\necho_dunes: {enabled: true}\n"
-                 "reptation: {method: smoothing, strength: 1.0e-4}\n");
+          real +
+          "abrasion: {rate: 1.0e-4, cover: 0.5}\necho_dunes: {enabled: true}\n"
+          "reptation: {method: smoothing, strength: 1.0e-4}\n");
   const std::string wet =
       "rain: {rate: 2.0e-4, share_low: 0.3, share_high: 0.7, height: 8, scale: 12, frequency: 0.1}\n"
       "hydraulic_erosion: {enabled: true, capacity: 1}\nmoisture: {enabled: true}\n";

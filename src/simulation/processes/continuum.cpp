@@ -22,7 +22,8 @@ void transport(StepContext& c, ProcessWorkspace* workspace) {
                                  c.fields.heights.cell_heights.data(),
                                  c.fields.impact_strength.data()};
   with_backend(c.exec(), [&](auto& e) {
-    continuum::step(e, c.terrain, in, c.dice(), c.state.ledger(), workspace_as<continuum::Workspace>(workspace));
+    continuum::step(e, c.terrain, in, c.dice(), c.state.ledger(),
+                    workspace_as<continuum::Workspace>(workspace));
   });
 }
 

@@ -96,8 +96,8 @@ void update_shear_stress(StepContext& c, ProcessWorkspace* workspace) {
   work.local.update(c);
   with_backend(c.exec(), [&](auto& e) {
     shear_stress::step(e, c.terrain, c.scenario().shear_stress, c.wind_above(), c.fields.heights,
-                       c.state.wind_reference, work.local.perturbation_x.data(), work.local.perturbation_y.data(),
-                       work.flow);
+                       c.state.wind_reference, work.local.perturbation_x.data(),
+                       work.local.perturbation_y.data(), work.flow);
   });
 }
 
@@ -135,7 +135,8 @@ Process wind_process() {
   p.header = "kernels/wind/wind.hpp";
   p.active = [](const Scenario& s) { return !s.has_continuum_transport(); };
   set_workspace<TurnedWindWork>(p, [](const SimulationState& state) {
-    return with_features(state, wind::make_workspace(state.exec(), state.terrain.grid(), state.scenario.wind));
+    return with_features(state,
+                         wind::make_workspace(state.exec(), state.terrain.grid(), state.scenario.wind));
   });
   p.step = p.refresh = update_wind;
   p.adapt = [](const SimulationState& state, ProcessWorkspace* workspace) {
