@@ -111,13 +111,16 @@ struct Respond {
     Complex& value = spectrum[j * coarse.width + i];
     const wind::Mode mode(coarse, i, j);
     const float size = hypotenuse(mode.kx, mode.ky);
-    if (mode.nyquist || !(size > 0.0f)) {
-      value = {0.0f, 0.0f};
+    const float scale = transfer_x[i] * transfer_y[j] * cells_per_metre / maximum(size, 1e-20f);
+    if (mode.nyquist) {
+      // The sign of such a wavenumber is undefined; the mean over both is the part that smooths the bed. Without it
+      // nothing would damp waves of two cells.
+      const float mean_square = mode.kx * along.x * mode.kx * along.x + mode.ky * along.y * mode.ky * along.y;
+      value = response(value, scale * a * mean_square, 0.0f);
       return;
     }
     const float k_along = mode.kx * along.x + mode.ky * along.y,
                 k_across = mode.ky * along.x - mode.kx * along.y;
-    const float scale = transfer_x[i] * transfer_y[j] * cells_per_metre / size;
     const float even = a * k_along, odd = b * fabsf(k_along);
     const Complex parallel = response(value, scale * k_along * even, scale * k_along * odd);
     const Complex across = response(value, 0.5f * scale * k_across * even, 0.5f * scale * k_across * odd);

@@ -30,7 +30,7 @@ std::vector<float> transfer(const wind::ModesOfAxis& modes) {
   const double sigma = modes.ratio > 1 ? 0.5 * modes.ratio : 0.0;
   std::vector<float> table(static_cast<std::size_t>(modes.n));
   for (int i = 0; i < modes.n; ++i)
-    if (!modes.nyquist(i))
+    if (modes.ratio <= 1 || !modes.nyquist(i))
       table[static_cast<std::size_t>(i)] =
           static_cast<float>(modes.gaussian(i, sigma) / (modes.kept(i) * modes.n));
   return table;

@@ -209,6 +209,7 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     r.backend_choice = backend_choice_;
     r.device = s.exec().device();
     r.time_step = s.scenario().run.time_step;
+    r.parts = s.pipeline().parts();
     r.acceleration = s.scenario().run.acceleration;
     r.step_rate = pacer_.rate();
     r.steps_per_second = meter_.rate(steady_now());

@@ -81,6 +81,7 @@ struct StatusReport {
   RunState state = RunState::paused;
   std::string scenario, backend, backend_choice, device;
   double time_step = 0;     ///< [s]
+  int parts = 1;            ///< in which the next step is done
   double acceleration = 0;  ///< simulated seconds per second of ROS time; 0: not tied to it
   double step_rate = 0, steps_per_second = 0;  ///< wanted and measured [steps/s]
   double lag = 0;                              ///< [s]

@@ -35,6 +35,7 @@ SimulationStatusPtr status_message(const StatusReport& report, const std::string
   message->step = report.moment.step;
   message->sim_time = report.moment.time;
   message->time_step = report.time_step;
+  message->parts = static_cast<std::uint32_t>(report.parts);
   message->acceleration = report.acceleration;
   message->step_rate = report.step_rate;
   message->steps_per_second = report.steps_per_second;
