@@ -113,8 +113,8 @@ struct Respond {
     const float size = hypotenuse(mode.kx, mode.ky);
     const float scale = transfer_x[i] * transfer_y[j] * cells_per_metre / maximum(size, 1e-20f);
     if (mode.nyquist) {
-      // The sign of such a wavenumber is undefined; the mean over both is the part that smooths the bed. Without it
-      // nothing would damp waves of two cells.
+      // The sign of such a wavenumber is undefined; the mean over both is the part that smooths the bed.
+      // Without it nothing would damp waves of two cells.
       const float mean_square = mode.kx * along.x * mode.kx * along.x + mode.ky * along.y * mode.ky * along.y;
       value = response(value, scale * a * mean_square, 0.0f);
       return;
