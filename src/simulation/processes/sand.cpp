@@ -168,9 +168,8 @@ Process saltation_process() {
   p.writes = {Layer::sand, Layer::airborne_sand};
   p.writes_if_in_use = {Layer::bedrock, Layer::soil, Layer::flux_x, Layer::flux_y};
   p.step = saltate;
-  p.longest_step = [](const SimulationState&) {
-    return 1.0f;
-  };                       // the wind's shadow and avalanches follow what it moves
+  // The wind's shadow and avalanches follow what it moves.
+  p.longest_step = [](const SimulationState&) { return 1.0f; };
   p.refresh = set_angles;  // the angles of repose that a step sets with the deposit
   p.traffic = [](const Scenario&, const Grid&) {
     return MemoryTraffic{13 * 4, "sand, airborne, wind (2), shadow; landed, sand, shadow",
