@@ -130,7 +130,7 @@ void PlannerServer::act_in_lockstep() {
     while (!statuses_.empty()) {
       const auto [step, status] = *statuses_.begin();
       const auto truth = truths_.find(status->terrain_stamp);
-      if (truth == truths_.end() || terrain_.newest_step() < step) break;
+      if (truth == truths_.end() || !terrain_.has(step, status->terrain_stamp)) break;
       rover_ = status;
       const auto& p = truth->second->pose.pose;
       const PlanarPose pose{p.position.x, p.position.y, yaw_of(p.orientation, "ground_truth")};

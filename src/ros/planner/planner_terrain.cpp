@@ -42,9 +42,11 @@ std::deque<MapChange> PlannerTerrain::take(std::optional<std::uint64_t> step) {
   return taken;
 }
 
-std::uint64_t PlannerTerrain::newest_step() const {
+bool PlannerTerrain::has(std::uint64_t step, const ros::Time& stamp) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return newest_ ? newest_->info().step : 0;
+  if (!newest_) return step == 0;
+  const MapInfo& newest = newest_->info();
+  return newest.step == step || (newest.step > step && newest.stamp >= stamp);
 }
 
 std::string PlannerTerrain::frame() const {

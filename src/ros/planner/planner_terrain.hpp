@@ -20,8 +20,9 @@ class PlannerTerrain {
 
   /// The changes of traversability since the last call, up to and with this step; all without one.
   std::deque<MapChange> take(std::optional<std::uint64_t> step = {});
-  /// Of the last change that arrived; 0 before there is one.
-  std::uint64_t newest_step() const;
+  /// Whether the maps of a state have arrived: those of its step, or of a later one. After a reset, what has
+  /// arrived before it is of later steps, but older than `stamp`, when the simulation reached the state.
+  bool has(std::uint64_t step, const ros::Time& stamp) const;
   /// Frame of the terrain; empty before there is one.
   std::string frame() const;
   std::shared_ptr<const LayerMap> elevation() const { return client_->layer_map("elevation"); }
