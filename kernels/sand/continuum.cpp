@@ -30,18 +30,8 @@ inline Prepare prepare(const TerrainView& t, const StepInputs& in, const Downwin
 
 inline Settle settle(const TerrainView& t, const StepInputs& in, const Downwind& order, const Dice& dice,
                      LedgerView ledger, const Workspace& work) {
-  const AbrasionParameters& a = in.abrasion;
-  const abrasion::Abrade abrade{a.rate * in.time_step,
-                                a.rate_of_soil() * in.time_step,
-                                to_quanta_at_most(a.cover, t.quanta_per_metre, wall_height),
-                                t.quantum,
-                                t.quanta_per_metre,
-                                t.quanta(Layer::bedrock),
-                                t.quanta(Layer::soil),
-                                t.quanta(Layer::sand),
-                                t.real(Layer::erosion_resistance),
-                                dice[Roll::abrasion],
-                                ledger};
+  const abrasion::Abrade abrade =
+      saltation::abrade_for(t, in.abrasion, in.time_step, dice[Roll::abrasion], ledger);
   return {saltation::Inputs<false>(t, in.repose, 1.0f, 1.0f),
           order,
           SweepFields(work),

@@ -58,17 +58,7 @@ void step(E& exec, const TerrainView& t, const SaltationParameters& p, const Abr
           float flux_time) {
   const Hops hops(p, time_step);
   const float part_of_step = time_step / static_cast<float>(hops.parts);
-  abrasion::Abrade abrade{a.rate * part_of_step,
-                          a.rate_of_soil() * part_of_step,
-                          to_quanta_at_most(a.cover, t.quanta_per_metre, wall_height),
-                          t.quantum,
-                          t.quanta_per_metre,
-                          t.quanta(Layer::bedrock),
-                          t.quanta(Layer::soil),
-                          t.quanta(Layer::sand),
-                          t.real(Layer::erosion_resistance),
-                          dice[Roll::abrasion],
-                          ledger};
+  abrasion::Abrade abrade = abrade_for(t, a, part_of_step, dice[Roll::abrasion], ledger);
   for (int part = 0; part < hops.parts; ++part) {
     const SaltationDice of_part(dice, part);
     abrade.die = dice[Roll::abrasion].of_part(part);

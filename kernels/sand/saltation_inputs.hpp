@@ -60,4 +60,20 @@ inline bool is_bare(const TerrainView& t, const AbrasionParameters& a) {
   return true;
 }
 
+/// Abrasion by what the wind carries in `time` [s].
+inline abrasion::Abrade abrade_for(const TerrainView& t, const AbrasionParameters& a, float time, Die die,
+                                   LedgerView ledger) {
+  return {a.rate * time,
+          a.rate_of_soil() * time,
+          to_quanta_at_most(a.cover, t.quanta_per_metre, wall_height),
+          t.quantum,
+          t.quanta_per_metre,
+          t.quanta(Layer::bedrock),
+          t.quanta(Layer::soil),
+          t.quanta(Layer::sand),
+          t.real(Layer::erosion_resistance),
+          die,
+          ledger};
+}
+
 }  // namespace desert_sim::saltation

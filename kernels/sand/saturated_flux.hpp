@@ -4,7 +4,7 @@
 ///   Θ   = τ / ((ρ_s − ρ_a) g d)                  Shields number of the stress τ
 ///   Θ_t = a² · (1 + (∂h/∂s)/μ)₊ / dryness        its threshold, ∂h/∂s the slope along the stress
 ///
-///   quadratic   q = C √a² (Θ − Θ_t) d √((ρ_s/ρ_a − 1) g d) / φ          Durán, Claudin & Andreotti 2011
+///   quadratic   q = C a (Θ − Θ_t) d √((ρ_s/ρ_a − 1) g d) / φ            Durán, Claudin & Andreotti 2011
 ///   bagnold     q = C √(d/D) (ρ_a/g) u_*³ / (ρ_s φ),  Θ > Θ_t            Bagnold 1941
 ///   kawamura    q = C (ρ_a/g) (u_* − u_*t)(u_* + u_*t)² / (ρ_s φ)        Kawamura 1951
 ///   lettau      q = C √(d/D) (ρ_a/g) u_*² (u_* − u_*t) / (ρ_s φ)         Lettau & Lettau 1978
