@@ -27,6 +27,7 @@
 #include <string>
 #include <vector>
 
+#include "src/client/service_call.hpp"
 #include "src/client/terrain_client.hpp"
 #include "src/core/error.hpp"
 #include "src/testing/expectation.hpp"
@@ -134,8 +135,7 @@ typename Service::Response Desert::call(const std::string& service,
   Service exchange;
   exchange.request = request;
   // Not by waitForService(): its time stands still where the node is the clock and is paused.
-  if (!wait_until([&] { return ros::service::exists(name, false); }, 20) ||
-      !ros::service::call(name, exchange))
+  if (!wait_until([&] { return ros::service::exists(name, false); }, 20) || !call_service(name, exchange))
     throw Error(name + " does not answer");
   if (!exchange.response.success) throw Error(name + ": " + exchange.response.message);
   return exchange.response;

@@ -75,7 +75,7 @@ class NodeProcess {
     EXPECT_TRUE(wait_until([&] { return ros::service::exists(path, false); })) << path;
     Service exchange;
     exchange.request = request;
-    EXPECT_TRUE(ros::service::call(path, exchange)) << path;
+    EXPECT_TRUE(desert_sim::call_service(path, exchange)) << path;
     EXPECT_TRUE(exchange.response.success) << exchange.response.message;
     return exchange.response;
   }

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "src/client/service_call.hpp"
 #include "src/testing/node_process.hpp"
 
 namespace node_test {
@@ -28,7 +29,7 @@ typename Service::Response call(const std::string& name, const typename Service:
   EXPECT_TRUE(ros::service::waitForService(service, ros::Duration(10))) << service;
   Service exchange;
   exchange.request = request;
-  EXPECT_TRUE(ros::service::call(service, exchange)) << service;
+  EXPECT_TRUE(desert_sim::call_service(service, exchange)) << service;
   return exchange.response;
 }
 

@@ -21,7 +21,7 @@ typename Service::Response ask(const std::string& service, const typename Servic
   EXPECT_TRUE(ros::service::waitForService(service, ros::Duration(20))) << service;
   Service exchange;
   exchange.request = request;
-  EXPECT_TRUE(ros::service::call(service, exchange)) << service;
+  EXPECT_TRUE(desert_sim::call_service(service, exchange)) << service;
   return exchange.response;
 }
 

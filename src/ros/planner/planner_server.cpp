@@ -10,6 +10,7 @@
 
 #include <algorithm>
 
+#include "src/client/service_call.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -56,7 +57,7 @@ PlannerServer::PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle&
       node_.subscribe(setup_.node.rover_node + "/status", queue, &PlannerServer::receive_rover_status, this);
   if (lockstep_) {
     truth_subscriber_ = node_.subscribe("ground_truth", queue, &PlannerServer::receive_truth, this);
-    drive_client_ = node_.serviceClient<DriveRover>(setup_.node.rover_node + "/drive");
+    drive_service_ = node_.resolveName(setup_.node.rover_node + "/drive");
   }
   if (setup_.planner.planner == PlannerKind::forecast) {
     const std::string name = setup_.node.terrain_node + "/forecast";
@@ -209,9 +210,8 @@ void PlannerServer::send(const DriveCommand& command) {
   }
   DriveRover drive;
   drive.request.twist = twist_of(command);
-  if (!drive_client_.call(drive))
-    ROS_WARN_THROTTLE(5, "%s does not answer: the rover does not get its command",
-                      drive_client_.getService().c_str());
+  if (!call_service(drive_service_, drive))
+    ROS_WARN_THROTTLE(5, "%s does not answer: the rover does not get its command", drive_service_.c_str());
   else if (!drive.response.success)
     ROS_WARN_THROTTLE(5, "the rover refuses its command: %s", drive.response.message.c_str());
 }

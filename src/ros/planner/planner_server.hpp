@@ -96,7 +96,7 @@ class PlannerServer {
   ros::Publisher path_publisher_, status_publisher_, command_publisher_;
   ros::Subscriber goal_subscriber_, status_subscriber_, truth_subscriber_, forecast_subscriber_;
   ros::ServiceServer cancel_server_;
-  ros::ServiceClient drive_client_;
+  std::string drive_service_;  ///< in lockstep
   std::unique_ptr<MoveBaseServer> action_;
   std::unique_ptr<ForecastClient> forecast_client_;
   PlannerTerrain terrain_;

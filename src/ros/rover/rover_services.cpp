@@ -1,10 +1,10 @@
 /// The services of RoverServer.
 #include <desert_sim/Step.h>
 #include <ros/console.h>
-#include <ros/service.h>
 
 #include <chrono>
 
+#include "src/client/service_call.hpp"
 #include "src/core/files.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/rover/rover_messages.hpp"
@@ -47,7 +47,7 @@ void RoverServer::catch_up() {
   const std::string service = setup_.node.terrain_node + "/step";
   Step now;
   now.request.steps = 0;
-  if (!ros::service::call(service, now))
+  if (!call_service(service, now))
     throw ConfigError("the terrain is not there: " + service + " does not answer");
   if (!now.response.success) throw ConfigError("the terrain does not tell its step: " + now.response.message);
   const auto end =

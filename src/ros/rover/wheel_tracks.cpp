@@ -1,11 +1,11 @@
 #include "src/ros/rover/wheel_tracks.hpp"
 
 #include <ros/console.h>
-#include <ros/service.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "src/client/service_call.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/terrain/map_layers.hpp"
 
@@ -86,7 +86,7 @@ EditTerrainRequest WheelTracks::stroke(const Mark& from, const Mark& to, double 
 void WheelTracks::send(const EditTerrainRequest& request) {
   EditTerrain exchange;
   exchange.request = request;
-  if (!ros::service::call(service_, exchange)) {
+  if (!call_service(service_, exchange)) {
     ROS_WARN_THROTTLE(5, "The tracks of the wheels are left out: %s does not answer.", service_.c_str());
     return;
   }
@@ -100,7 +100,7 @@ void WheelTracks::send(const EditTerrainRequest& request) {
   exchange.request.merge = "min";
   exchange.request.value = packed;
   exchange.request.conserve = false;
-  if (ros::service::call(service_, exchange) && !exchange.response.success)
+  if (call_service(service_, exchange) && !exchange.response.success)
     ROS_WARN_THROTTLE(60, "The tracks of the wheels are not packed: %s", exchange.response.message.c_str());
 }
 
