@@ -15,13 +15,14 @@ import xmlrpc.client
 import rosgraph
 import rospy
 import rostest
-from actionlib import GoalStatus, SimpleActionClient
-from desert_sim.msg import ElevationGrid, ForecastTerrainAction, ForecastTerrainGoal, WindScheduleSegment
+from actionlib import GoalStatus
+from desert_sim.msg import ElevationGrid, ForecastTerrainGoal, WindScheduleSegment
 from desert_sim.srv import EditPlants, EditPlantsRequest, EditTerrain, EditTerrainRequest, EditWind, EditWindRequest
 from desert_sim.srv import GetSubmap, GetSubmapRequest, LoadCheckpoint, LoadCheckpointRequest, LoadTerrain, LoadTerrainRequest
 from desert_sim.srv import QueryTerrain, QueryTerrainRequest, SaveCheckpoint, SaveCheckpointRequest
 from desert_sim.srv import SetWeather, SetWeatherRequest, SetWind, SetWindRequest, SetWindSchedule, SetWindScheduleRequest, Step
 from geometry_msgs.msg import Point
+from forecast_client import ForecastClient
 from lifecycle import OASIS, Scenarios, Trigger
 
 SECONDS = float(os.environ.get("DESERT_FLOOD_SECONDS", "8"))
@@ -135,7 +136,7 @@ class Forecaster(threading.Thread):
     def __init__(self, node, seed, until):
         super().__init__()
         self.draw, self.until = random.Random(seed), until
-        self.client = SimpleActionClient("/%s/forecast" % node, ForecastTerrainAction)
+        self.client = ForecastClient("/" + node)
         self.faults, self.ends = [], {}
 
     def run(self):

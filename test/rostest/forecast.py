@@ -10,12 +10,13 @@ import time
 import numpy
 import rospy
 import rostest
-from actionlib import GoalStatus, SimpleActionClient
-from desert_sim.msg import ElevationGrid, Forecast, ForecastTerrainAction, ForecastTerrainGoal, SimulationStatus
+from actionlib import GoalStatus
+from desert_sim.msg import ElevationGrid, Forecast, ForecastTerrainGoal, SimulationStatus
 from desert_sim.msg import WindScheduleSegment
 from desert_sim.srv import SetWindSchedule, SetWindScheduleRequest, Step
 from dynamic_reconfigure.msg import BoolParameter, Config, DoubleParameter, StrParameter
 from dynamic_reconfigure.srv import Reconfigure
+from forecast_client import ForecastClient
 from lifecycle import CORNER, OASIS, PATIENCE, Scenarios, Trigger, wait_until
 from nav_msgs.msg import OccupancyGrid
 
@@ -26,7 +27,7 @@ FORECASTS = 100
 
 class Forecasts(Scenarios):
     def client(self, node):
-        client = SimpleActionClient("/%s/forecast" % node.name, ForecastTerrainAction)
+        client = ForecastClient("/" + node.name)
         self.assertTrue(client.wait_for_server(rospy.Duration(20 * PATIENCE)))
         return client
 
