@@ -8,7 +8,7 @@
 ///     for_each_item(exec, count, law);             // law(n) for n = 0 … count − 1
 ///     for_each_cell_of_rows(exec, grid, first, rows, law);  // law(x, y) in `rows` rows from `first` on,
 ///                                                           // wrapped over the north edge
-///     for_each_line_in_turn(exec, first, end, length, law); // lines first … end − 1, one after the other
+///     for_each_line_in_turn(exec, first, end, length, words, law); // lines first … end − 1, one after the other
 ///     sum_cells(exec, grid, law) -> long long      // Σ law(x, y), exact
 ///     max_cells(exec, grid, law) -> float          // maximum of 0 and all law(x, y)
 ///
@@ -21,9 +21,17 @@
 /// Neither part may read `sums`.
 ///
 /// A law of for_each_line_in_turn() hands Law::words values of type Law::Word from each of the `length`
-/// places of a line to the next line. law.load(line, place) reads what does not depend on the line before,
-/// ahead of its turn; law.pass(line, place, loaded, before, after) finds in before(w, n) word w of place n of
-/// the line before, and sets after(w, place); law.before_first(w, place) is what the first line finds.
+/// places of a line to the next line, to places at most Law::reach cells to the side.
+///
+///     law.load(line, place)             what does not depend on the line before; read ahead of its turn
+///     law.pass(loaded, before, after)   finds in before(w, k) word w of the line before, k places further on,
+///                                       and sets after(w) for all w; what it returns goes to law.store()
+///     law.store(line, place, result)    is called once for each cell
+///     law.before_first(w, place)        what the first line finds
+///     law.around()                      whether a line is a ring; if not,
+///     law.beyond(w, nearest)            is what is found beyond its ends, where `nearest` is word w of the end
+///
+/// `words` is memory for words_for_lines(Law::words, Law::reach, length) words. A pass may be repeated, with the same result.
 ///
 /// The loops are implemented in for_each_cpu.hpp and for_each_cuda.cuh; sources of processes include
 /// loops.hpp.
@@ -68,13 +76,34 @@ void for_each_cell_of_rows(E& exec, const Grid& grid, int first, int rows, const
   for_each_cell(exec, band, RowBandLaw<Law>{law, first, grid.height});
 }
 
-/// What the places of a line hand on: word after word, so that neighbouring places lie beside each other.
+/// What the places of a line hand on: word after word, so that neighbouring places lie beside each other, with
+/// `reach` more places at either end.
 template <class Word>
 struct LineWords {
-  Word* first;
-  int length;
-  DESERT_HD Word& operator()(int word, int place) const { return first[word * length + place]; }
+  Word* first;  ///< of place 0
+  int pitch;    ///< from a word of a place to its next word
+
+  LineWords() = default;
+  DESERT_HD LineWords(Word* memory, int length, int reach)
+      : first(memory + reach), pitch(length + 2 * reach) {}
+  DESERT_HD Word& operator()(int word, int place) const { return first[word * pitch + place]; }
+  /// As seen from a place.
+  struct From {
+    Word* here;
+    int pitch;
+    DESERT_HD Word& operator()(int word, int further = 0) const { return here[word * pitch + further]; }
+  };
+  DESERT_HD From from(int place) const { return {first + place, pitch}; }
 };
+
+/// Words of a line, with those beyond its ends.
+constexpr std::size_t words_of_line(int words, int reach, int length) {
+  return static_cast<std::size_t>(words) * static_cast<std::size_t>(length + 2 * reach);
+}
+/// Words of the memory of for_each_line_in_turn().
+constexpr std::size_t words_for_lines(int words, int reach, int length) {
+  return 2 * words_of_line(words, reach, length);
+}
 
 /// Calls body(n) for n = 0 … count − 1 as compile-time constants. Loops over cells vectorise only around
 /// straight-line code.

@@ -320,27 +320,44 @@ void pass_line(const Law& law, int line, int first, int end, const LineWords<typ
                const LineWords<typename Law::Word>& after) {
   with_wide_instructions([&]() DESERT_INLINE {
     const Law own = law;
-    const LineWords<typename Law::Word> from = before, to = after;
+    const LineWords<typename Law::Word> old_words = before, new_words = after;
     const int n = line, begin = first, last = end;
 #pragma omp simd
-    for (int m = begin; m < last; ++m) own.pass(n, m, own.load(n, m), from, to);
+    for (int m = begin; m < last; ++m)
+      own.store(n, m, own.pass(own.load(n, m), old_words.from(m), new_words.from(m)));
   });
 }
 
+/// Fills the places beyond the ends of a line that follow from its places first … end − 1.
 template <class Law>
-void for_each_line_in_turn(CpuExec& exec, int first, int end, int length, const Law& law) {
-  const std::size_t words = static_cast<std::size_t>(length) * Law::words;
-  std::vector<typename Law::Word> memory(2 * words);
-  const LineWords<typename Law::Word> lines[] = {{memory.data(), length}, {memory.data() + words, length}};
+void fill_beyond(const Law& law, int length, int first, int end, const LineWords<typename Law::Word>& line) {
+  for (int n = 0; n < 2 * Law::reach; ++n) {
+    const int place = n < Law::reach ? n - Law::reach : length + n - Law::reach;
+    const int from = law.around() ? wrap(place, length) : clamp_index(place, length);
+    if (from < first || from >= end) continue;
+    for (int w = 0; w < Law::words; ++w)
+      line(w, place) = law.around() ? line(w, from) : law.beyond(w, line(w, from));
+  }
+}
+
+template <class Law>
+void for_each_line_in_turn(CpuExec& exec, int first, int end, int length, typename Law::Word* words,
+                           const Law& law) {
+  using Words = LineWords<typename Law::Word>;
+  const Words lines[] = {{words, length, Law::reach},
+                         {words + words_of_line(Law::words, Law::reach, length), length, Law::reach}};
   for (int w = 0; w < Law::words; ++w)
     for (int m = 0; m < length; ++m) lines[0](w, m) = law.before_first(w, m);
+  fill_beyond(law, length, 0, length, lines[0]);
 #pragma omp parallel num_threads(exec.threads()) if (length >= min_parallel_line)
   {
     const long long thread = omp_get_thread_num(), threads = omp_get_num_threads();
     const int from = static_cast<int>(length * thread / threads);
     const int to = static_cast<int>(length * (thread + 1) / threads);
     for (int n = first; n < end; ++n) {
-      pass_line(law, n, from, to, lines[(n - first) % 2], lines[(n - first + 1) % 2]);
+      const Words &before = lines[(n - first) % 2], &after = lines[(n - first + 1) % 2];
+      pass_line(law, n, from, to, before, after);
+      fill_beyond(law, length, from, to, after);
 #pragma omp barrier
     }
   }

@@ -3,7 +3,9 @@
 
 #include <cuda_runtime.h>
 
+#include <algorithm>
 #include <type_traits>
+#include <utility>
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/field/quanta.hpp"
@@ -179,47 +181,87 @@ __global__ void items_kernel(int count, Law law) {
   if (n < count) law(n);
 }
 
-constexpr int longest_block = 1024;
+/// Where a block of threads passes over lines: its own places and, where a line has several blocks, `margin` more
+/// at either side, so that it knows without the other blocks what reaches its own.
+struct LineBlock {
+  int first, end, length;  ///< of the lines, and of a line
+  int own, margin;
+  bool around;
 
-/// One block passes over all lines; each thread has the places threadIdx.x + k · blockDim.x of a line. What a
-/// line hands on lies in shared memory, and the loads of the next `ahead` lines are under way while one is
-/// passed: they take several times as long as that.
-template <int places, int ahead, class Law>
-__global__ void __launch_bounds__(longest_block) lines_kernel(int first, int end, int length, Law law) {
+  /// The place of a thread, which on a ring may lie a round before or behind.
+  DESERT_HD int place(int block, int thread) const { return block * own - margin + thread; }
+  DESERT_HD bool is_own(int block, int place) const {
+    return place >= block * own && place < (block + 1) * own && place < length;
+  }
+};
+
+/// Each thread has a place of a line. What a line hands on lies in shared memory, and the loads of the next
+/// `ahead` lines are under way while one is passed: they take several times as long as that. The first line of
+/// the block finds `from`, or what the law says if it begins the sweep; `to` gets what the last one hands on.
+template <class Law>
+__global__ void __launch_bounds__(1024)
+    lines_kernel(LineBlock block, bool begins, LineWords<typename Law::Word> from,
+                 LineWords<typename Law::Word> to, Law law) {
+  using Word = typename Law::Word;
+  constexpr int ahead = 4, words = Law::words, reach = Law::reach;
   extern __shared__ __align__(16) char scratch[];
-  using Words = LineWords<typename Law::Word>;
-  auto* const memory = reinterpret_cast<typename Law::Word*>(scratch);
-  const Words lines[2] = {Words{memory, length}, Words{memory + Law::words * length, length}};
-  typename Law::Loaded loaded[ahead][places];
-  const auto for_each_place = [&](auto body) {
-#pragma unroll
-    for (int k = 0; k < places; ++k) {
-      const int m = threadIdx.x + k * blockDim.x;
-      if (m < length) body(k, m);
+  auto* const memory = reinterpret_cast<Word*>(scratch);
+  const int width = block.own + 2 * block.margin, pitch = width + 2 * reach, thread = threadIdx.x;
+  const LineWords<Word> lines[2] = {{memory, width, reach}, {memory + words * pitch, width, reach}};
+  const int unwrapped = block.place(blockIdx.x, thread), length = block.length;
+  const bool works = thread < width && (block.around || (unwrapped >= 0 && unwrapped < length));
+  const bool own = works && block.is_own(blockIdx.x, unwrapped), whole = gridDim.x == 1;
+  const int place = block.around ? wrap(unwrapped, length) : unwrapped;
+
+  // The places beyond the ends of a line: those of a ring lie in the block itself, or in its margins.
+  const auto fill_beyond = [&](const LineWords<Word>& line) {
+    if (block.around) {
+      if (!whole) return;
+      for (int other = thread - length; other >= -reach; other -= length)
+        for (int w = 0; w < words; ++w) line(w, other) = line(w, thread);
+      for (int other = thread + length; other < length + reach; other += length)
+        for (int w = 0; w < words; ++w) line(w, other) = line(w, thread);
+      return;
     }
+    for (int n = 1; n <= reach; ++n)
+      for (int w = 0; w < words; ++w) {
+        if (place == 0) line(w, thread - n) = law.beyond(w, line(w, thread));
+        if (place == length - 1) line(w, thread + n) = law.beyond(w, line(w, thread));
+      }
   };
-  for_each_place([&](int, int m) {
-    for (int w = 0; w < Law::words; ++w) lines[0](w, m) = law.before_first(w, m);
-  });
-#pragma unroll
-  for (int d = 0; d < ahead; ++d)
-    for_each_place([&](int k, int m) {
-      if (first + d < end) loaded[d][k] = law.load(first + d, m);
-    });
+
+  for (int n = thread; n < 2 * words * pitch; n += blockDim.x) memory[n] = Word{};
   __syncthreads();
-  for (int n = first; n < end; n += ahead) {
+  typename Law::Loaded loaded[ahead];
+  if (works) {
+    for (int w = 0; w < words; ++w)
+      lines[0](w, thread) = begins ? law.before_first(w, place) : from(w, place);
+    fill_beyond(lines[0]);
+#pragma unroll
+    for (int d = 0; d < ahead; ++d)
+      if (block.first + d < block.end) loaded[d] = law.load(block.first + d, place);
+  }
+  __syncthreads();
+  for (int first = block.first; first < block.end; first += ahead) {
 #pragma unroll
     for (int d = 0; d < ahead; ++d) {
-      if (n + d >= end) return;
-      const Words before = lines[(n + d - first) & 1], after = lines[(n + d - first + 1) & 1];
-      for_each_place([&](int k, int m) {
-        const typename Law::Loaded present = loaded[d][k];
-        if (n + d + ahead < end) loaded[d][k] = law.load(n + d + ahead, m);
-        law.pass(n + d, m, present, before, after);
-      });
+      const int line = first + d;
+      if (line >= block.end) break;
+      if (works) {
+        const LineWords<Word>&before = lines[(line - block.first) & 1],
+              &after = lines[(line - block.first + 1) & 1];
+        const typename Law::Loaded present = loaded[d];
+        if (line + ahead < block.end) loaded[d] = law.load(line + ahead, place);
+        const auto result = law.pass(present, before.from(thread), after.from(thread));
+        if (own) law.store(line, place, result);
+        fill_beyond(after);
+      }
       __syncthreads();
     }
   }
+  if (!own) return;
+  const LineWords<Word>& last = lines[(block.end - block.first) & 1];
+  for (int w = 0; w < words; ++w) to(w, place) = last(w, thread);
 }
 
 template <class Law>
@@ -276,26 +318,31 @@ void for_each_tile(CudaExec& exec, const Tiling& tiles, const Law& law) {
   check_cuda(cudaGetLastError(), "launch over tiles");
 }
 
-namespace cuda {
-template <int places, int ahead, class Law>
-void launch_lines(CudaExec& exec, int first, int end, int length, const Law& law) {
-  const int bytes = 2 * Law::words * length * static_cast<int>(sizeof(typename Law::Word));
-  const int threads = ((length + places - 1) / places + 31) / 32 * 32;
-  check_cuda(cudaFuncSetAttribute(lines_kernel<places, ahead, Law>,
-                                  cudaFuncAttributeMaxDynamicSharedMemorySize, bytes),
-             "asking for shared memory for the lines of a sweep");
-  lines_kernel<places, ahead><<<1, threads, bytes, stream(exec)>>>(first, end, length, law);
-  check_cuda(cudaGetLastError(), "launch over lines");
-}
-}  // namespace cuda
-
-/// Lines of at most 8192 places, whose words fit into the shared memory of a block.
+/// A short line is passed by a single block. The blocks of a longer one pass as many lines as their margins allow
+/// without waiting for each other.
 template <class Law>
-void for_each_line_in_turn(CudaExec& exec, int first, int end, int length, const Law& law) {
-  if (length <= 1024) return cuda::launch_lines<1, 4>(exec, first, end, length, law);
-  if (length <= 2048) return cuda::launch_lines<2, 2>(exec, first, end, length, law);
-  if (length <= 4096) return cuda::launch_lines<4, 1>(exec, first, end, length, law);
-  cuda::launch_lines<8, 1>(exec, first, end, length, law);
+void for_each_line_in_turn(CudaExec& exec, int first, int end, int length, typename Law::Word* words,
+                           const Law& law) {
+  using Words = LineWords<typename Law::Word>;
+  constexpr int longest_block = 512, lines_at_once = 32, margin = Law::reach * lines_at_once;
+  const bool whole = length <= longest_block;
+  cuda::LineBlock block{first, end, length, length, 0, law.around()};
+  if (!whole) {
+    block.margin = margin;
+    block.own = longest_block - 2 * margin;
+  }
+  const int blocks = (length + block.own - 1) / block.own;
+  const int width = block.own + 2 * block.margin, threads = (width + 31) / 32 * 32;
+  const std::size_t bytes = words_for_lines(Law::words, Law::reach, width) * sizeof(typename Law::Word);
+  Words from{words, length, Law::reach},
+      to{words + words_of_line(Law::words, Law::reach, length), length, Law::reach};
+  for (int line = first; line < end; line = block.end) {
+    block.first = line;
+    block.end = whole ? end : std::min(line + lines_at_once, end);
+    cuda::lines_kernel<<<blocks, threads, bytes, cuda::stream(exec)>>>(block, line == first, from, to, law);
+    check_cuda(cudaGetLastError(), "launch over lines");
+    std::swap(from, to);
+  }
 }
 
 template <class Law>

@@ -83,11 +83,15 @@ struct Die {
   }
   /// An amount [quanta] in whole quanta, not less than 0 and not more than `available`.
   DESERT_HD Quanta whole_at_most(float amount, Quanta available, int cell) const {
+    return whole_at_most(amount, available, word(cell));
+  }
+  /// With a word() that was read before.
+  DESERT_HD static Quanta whole_at_most(float amount, Quanta available, std::uint32_t word) {
     // Without branches, so that compilers vectorise the loops around. Small amounts are 8.22 fixed point.
     const float most = static_cast<float>(available), held = minimum(maximum(amount, 0.0f), most);
     const bool few = held < small;
     const auto fixed_point = static_cast<std::int32_t>((few ? held : 0.0f) * 4194304.0f);
-    const Quanta by_die = (fixed_point + static_cast<std::int32_t>(word(cell) >> 10)) >> 22;
+    const Quanta by_die = (fixed_point + static_cast<std::int32_t>(word >> 10)) >> 22;
     const Quanta rounded = few ? by_die : static_cast<Quanta>(rintf(held));
     return amount >= most ? available : rounded;
   }

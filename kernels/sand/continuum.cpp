@@ -51,7 +51,7 @@ void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice,
           Workspace& work) {
   const Downwind order(t.grid, in.above);
   for_each_cell(exec, t.grid, prepare(t, in, order, dice, ledger, work));
-  for_each_line_in_turn(exec, 0, order.lines(), order.length(),
+  for_each_line_in_turn(exec, 0, order.lines(), order.length(), work.lines.data(),
                         PassSand{order, dice[Roll::lift], SweepFields(work)});
   for_each_cell(exec, t.grid, settle(t, in, order, dice, ledger, work));
 }

@@ -64,6 +64,7 @@ struct Workspace {
   Buffer<Quanta> lying;         ///< sand that can be taken up
   Buffer<Quanta> entering;      ///< sand that comes over the edge of the grid
   Buffer<Quanta> change, out;   ///< F_in − F_out and F_out
+  Buffer<Quanta> lines;         ///< what lines hand on
 
   std::size_t bytes() const;
 };

@@ -1,12 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
-#include <utility>
 
 #include "kernels/sand/continuum.hpp"
+#include "kernels/sand/continuum_laws.hpp"
 #include "src/core/constants.hpp"
-#include "src/core/error.hpp"
 
 namespace desert_sim::continuum {
 
@@ -24,33 +22,21 @@ float longest_step(const ContinuumParameters& p, const ShearStressParameters& st
   return static_cast<float>(part * std::hypot(1.0, length) / (q * k * k * response));
 }
 
-/// A GPU keeps what a line hands on in the memory that a block of threads shares.
-void require_lines_that_fit(const Exec& exec, const Grid& grid) {
-  if (std::string(exec.backend()) != "cuda") return;
-  constexpr std::size_t bytes_a_place = 2 * 4 * 5, most_places = 8192, every_gpu_has = 48 * 1024;
-  const std::size_t memory = std::max(every_gpu_has, exec.memory_for_lines());
-  const std::size_t longest = std::min(most_places, memory / bytes_a_place);
-  for (const auto& [key, cells] :
-       {std::pair{"grid.width", grid.width}, std::pair{"grid.height", grid.height}})
-    if (static_cast<std::size_t>(cells) > longest)
-      throw ConfigError("saltation.model: continuum on this GPU: " + std::string(key) + ": = " +
-                        std::to_string(cells) + " (allowed: at most " + std::to_string(longest) + ")");
-}
-
 Workspace make_workspace(Exec& exec, const Grid& grid) {
-  require_lines_that_fit(exec, grid);
   const auto cells = static_cast<std::size_t>(grid.cells());
   Workspace work;
   for (Buffer<float>* buffer : {&work.decay, &work.gain}) *buffer = Buffer<float>(exec, cells);
   for (Buffer<Quanta>* buffer : {&work.shift, &work.lying, &work.entering, &work.change, &work.out})
     *buffer = Buffer<Quanta>(exec, cells);
   work.sides = Buffer<std::uint32_t>(exec, cells);
+  work.lines = Buffer<Quanta>(
+      exec, words_for_lines(HandedOn::places, HandedOn::reach, std::max(grid.width, grid.height)));
   return work;
 }
 
 std::size_t Workspace::bytes() const {
   return decay.bytes() + gain.bytes() + shift.bytes() + sides.bytes() + lying.bytes() + entering.bytes() +
-         change.bytes() + out.bytes();
+         change.bytes() + out.bytes() + lines.bytes();
 }
 
 }  // namespace desert_sim::continuum

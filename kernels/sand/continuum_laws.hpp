@@ -119,77 +119,78 @@ struct Prepare {
   }
 };
 
-/// What a cell hands on to the next line: from place + shift − 1 on, the amounts for four places.
+/// What a cell hands on to the next line: amounts for the places from `reach` to the one side of its own to as
+/// many to the other. Where the stress leads lies between two of them, and so do the places beside it to which
+/// sand is turned.
 struct HandedOn {
-  /// Cells of the line before that can reach a place: from this many to the one side to as many to the other.
-  static constexpr int reach = 3;
-  static constexpr int places = 4;
-  int first;  ///< of the places, from the cell's own
+  static constexpr int reach = 3, places = 2 * reach + 1;
   Quanta amount[places];
 
-  DESERT_HD HandedOn(Quanta all, int shift, std::uint32_t sides) : first((shift >> 16) - 1) {
-    const int beyond = shift & 65535;
-    const Quanta left = share(all, static_cast<int>(sides >> 16)),
-                 right = share(all, static_cast<int>(sides & 65535u)), middle = all - left - right;
+  DESERT_HD HandedOn(Quanta all, int shift, std::uint32_t sides) {
+    const std::uint32_t beyond = static_cast<std::uint32_t>(shift) << 16;
+    const Quanta left = share(all, sides & 0xffff0000u), right = share(all, sides << 16),
+                 middle = all - left - right;
     const Quanta left_beyond = share(left, beyond), middle_beyond = share(middle, beyond),
                  right_beyond = share(right, beyond);
-    amount[0] = left - left_beyond;
-    amount[1] = left_beyond + middle - middle_beyond;
-    amount[2] = middle_beyond + right - right_beyond;
-    amount[3] = right_beyond;
+    const Quanta parts[] = {left - left_beyond, left_beyond + middle - middle_beyond,
+                            middle_beyond + right - right_beyond, right_beyond, 0};
+    // The first part goes to place (shift >> 16) − 1, which is −3 … 0 places from the cell's own.
+    const int first = (shift >> 16) + reach - 1;
+    const bool by_one = first & 1, by_two = first & 2;
+    Quanta moved[places];
+    for (int k = 0; k < places; ++k) {
+      const Quanta as_it_is = k < 5 ? parts[k] : 0, from_before = k > 0 && k < 6 ? parts[k - 1] : 0;
+      moved[k] = by_one ? from_before : as_it_is;
+    }
+    for (int k = 0; k < places; ++k) {
+      const Quanta from_before = k > 1 ? moved[k - 2] : 0;
+      amount[k] = by_two ? from_before : moved[k];
+    }
   }
-  DESERT_HD static Quanta share(Quanta of, int parts) {
-    return static_cast<Quanta>((static_cast<std::int64_t>(of) * parts) >> 16);
+  /// parts/2³² of an amount that is not negative, rounded down.
+  DESERT_HD static Quanta share(Quanta of, std::uint32_t parts) {
+    return static_cast<Quanta>(multiply_high(static_cast<std::uint32_t>(of), parts));
   }
 };
 
-/// The sum of what a line hands on to a place of the next one. `word(w, place)` is HandedOn::first of a place
-/// of that line for w = 0, and then its amounts.
-template <class Word>
-DESERT_HD Quanta received(const Downwind& order, int place, const Word& word) {
-  Quanta sum = 0;
-  unrolled<2 * HandedOn::reach + 1>([&](auto k) DESERT_INLINE {
-    constexpr int back = HandedOn::reach - k;
-    const int from = order.place_within(place - back);
-    const int there = from >= 0 ? from : place;
-    const int nth = from >= 0 ? back - word(0, there) : -1;
-    unrolled<HandedOn::places>([&](auto part)
-                                   DESERT_INLINE { sum += nth == part ? word(1 + part, there) : 0; });
-  });
-  return sum;
-}
-
 struct PassSand {
-  static constexpr int words = 1 + HandedOn::places;
-  using Word = int;
+  static constexpr int words = HandedOn::places, reach = HandedOn::reach;
+  using Word = Quanta;
   struct Loaded {
     float decay, gain;
     int shift;
-    std::uint32_t sides;
+    std::uint32_t sides, die;
     Quanta lying, entering;
+  };
+  struct Result {
+    Quanta change, out;
   };
   Downwind order;
   Die die;
   SweepFields fields;
 
-  DESERT_HD int before_first(int, int) const { return 0; }
+  DESERT_HD bool around() const { return order.periodic_across(); }
+  DESERT_HD Quanta beyond(int, Quanta) const { return 0; }
+  DESERT_HD Quanta before_first(int, int) const { return 0; }
   DESERT_HD Loaded load(int line, int place) const {
     const int n = line * order.length() + place;
-    return {fields.decay[n], fields.gain[n],  fields.shift[n],
-            fields.sides[n], fields.lying[n], fields.entering[n]};
+    return {fields.decay[n], fields.gain[n],  fields.shift[n],   fields.sides[n],
+            die.word(n),     fields.lying[n], fields.entering[n]};
   }
-  DESERT_HD void pass(int line, int place, const Loaded& cell, const LineWords<int>& before,
-                      const LineWords<int>& after) const {
-    const int n = line * order.length() + place;
-    const Quanta in = cell.entering + received(order, place, before);
+  template <class Words>
+  DESERT_HD Result pass(const Loaded& cell, const Words& before, const Words& after) const {
+    Quanta in = cell.entering;
+    unrolled<words>([&](auto w) DESERT_INLINE { in += before(w, reach - w); });
     const float wanted = static_cast<float>(in) * cell.decay + cell.gain;
-    const Quanta out = die.whole_at_most(wanted, in + cell.lying, n);
-    fields.change[n] = in - out;
-    fields.out[n] = out;
+    const Quanta out = Die::whole_at_most(wanted, in + cell.lying, cell.die);
     const HandedOn handed(out, cell.shift, cell.sides);
-    after(0, place) = handed.first;
-    unrolled<HandedOn::places>([&](auto part)
-                                   DESERT_INLINE { after(1 + part, place) = handed.amount[part]; });
+    unrolled<words>([&](auto w) DESERT_INLINE { after(w) = handed.amount[w]; });
+    return {in - out, out};
+  }
+  DESERT_HD void store(int line, int place, const Result& result) const {
+    const int n = line * order.length() + place;
+    fields.change[n] = result.change;
+    fields.out[n] = result.out;
   }
 };
 
@@ -234,10 +235,12 @@ struct Settle {
   /// What the last line hands on to a place of the first.
   DESERT_HD Quanta over_seam(int place) const {
     const int last = (order.lines() - 1) * order.length();
-    return received(order, place, [&](int word, int other) {
-      const HandedOn handed = handed_on(last + other);
-      return word == 0 ? handed.first : handed.amount[word - 1];
+    Quanta sum = 0;
+    unrolled<HandedOn::places>([&](auto k) DESERT_INLINE {
+      const int other = order.place_within(place + HandedOn::reach - k);
+      if (other >= 0) sum += handed_on(last + other).amount[k];
     });
+    return sum;
   }
   /// What a cell hands on over an open edge.
   DESERT_HD Quanta lost(int n, int line, int place) const {
@@ -245,8 +248,8 @@ struct Settle {
     if (order.periodic_across()) return 0;
     const HandedOn handed = handed_on(n);
     Quanta sum = 0;
-    for (int part = 0; part < HandedOn::places; ++part)
-      sum += order.place_within(place + handed.first + part) < 0 ? handed.amount[part] : 0;
+    for (int k = 0; k < HandedOn::places; ++k)
+      sum += order.place_within(place + k - HandedOn::reach) < 0 ? handed.amount[k] : 0;
     return sum;
   }
 };

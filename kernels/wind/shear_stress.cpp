@@ -16,86 +16,101 @@ constexpr float lee_slope = 1.0f / 6.0f;
 /// FindLee sees three quarters behind a slip face.
 constexpr float bend_length = 4.0f;
 
-/// Two places of the line before, between which the air comes to a place of a line.
+/// Where the air comes from to a place of a line: between two places of the line before.
 struct Upwind {
-  int near, far;
+  static constexpr int reach = 2;
+  int near;  ///< the other one is a place before it
   float of_far;
 
-  DESERT_HD Upwind(const Downwind& order, int place, int shift) : of_far(fraction(shift)) {
-    const int from = place - (shift >> 16), length = order.length();
-    near = order.periodic_across() ? wrap(from, length) : clamp_index(from, length);
-    far = order.periodic_across() ? wrap(from - 1, length) : clamp_index(from - 1, length);
-  }
-  DESERT_HD float interpolated(const LineWords<float>& before, int word) const {
-    return lerp(before(word, near), before(word, far), of_far);
+  explicit Upwind(int shift) : near(-(shift >> 16)), of_far(fraction(shift)) {}
+  template <class Words>
+  DESERT_HD float interpolated(const Words& before, int word) const {
+    return lerp(before(word, near), before(word, near - 1), of_far);
   }
 };
 
-/// How low the ground lies in the lee of each cell, seen against the wind: the lowest of all heights downwind
-/// to which it falls more steeply than `rise` a line.
-struct FindLee {
-  static constexpr int words = 1;
+/// A sweep over the terrain; where that is periodic along it, it may begin before its first line.
+struct Sweep {
+  static constexpr int reach = Upwind::reach;
+  static_assert(reach == reach_of_words);
   using Word = float;
-  using Loaded = float;
-  Downwind order;  ///< against the wind
-  int shift;
-  float rise;  ///< [quanta]
-  const float* heights;
-  float* lee;
+  Downwind order;
+  Upwind upwind;
 
   DESERT_HD int cell(int line, int place) const {
     return order.cell(line < 0 ? line + order.lines() : line, place);
   }
+  DESERT_HD bool around() const { return order.periodic_across(); }
+  DESERT_HD float beyond(int, float nearest) const { return nearest; }
+};
+
+/// How low the ground lies in the lee of each cell, seen against the wind: the lowest of all heights downwind
+/// to which it falls more steeply than `rise` a line.
+struct FindLee : Sweep {
+  static constexpr int words = 1;
+  using Loaded = float;
+  float rise;  ///< [quanta]
+  const float* heights;
+  float* lee;
+
+  FindLee(const Sweep& against, float per_line, const float* ground, float* to)
+      : Sweep(against), rise(per_line), heights(ground), lee(to) {}
+
   DESERT_HD float before_first(int, int) const { return 2.0f * static_cast<float>(wall_height); }
   DESERT_HD float load(int line, int place) const { return heights[cell(line, place)]; }
-  DESERT_HD void pass(int line, int place, float height, const LineWords<float>& before,
-                      const LineWords<float>& after) const {
-    const Upwind from(order, place, shift);
-    const float low = minimum(height, from.interpolated(before, 0) + rise);
-    lee[cell(line, place)] = low;
-    after(0, place) = low;
+  template <class Words>
+  DESERT_HD float pass(float height, const Words& before, const Words& after) const {
+    const float low = minimum(height, upwind.interpolated(before, 0) + rise);
+    after(0) = low;
+    return low;
   }
+  DESERT_HD void store(int line, int place, float low) const { lee[cell(line, place)] = low; }
 };
 
 /// The surface with separation bubbles, line after line downwind.
-struct FillBubbles {
+struct FillBubbles : Sweep {
   /// Of the flow along the ground or above it: its height [quanta], and of a line its rise and by how much
   /// that falls [quanta].
   enum Words { height, slope, bend, words };
-  using Word = float;
+  static_assert(words == words_handed_on);
   struct Loaded {
-    float height, lee;
+    float height, bend;
   };
-  Downwind order;
-  int shift;              ///< of the undisturbed wind [cells a line, 16.16 fixed point]
   float steepest;         ///< fall of the separated flow from a line to the next [quanta]
   float lines_a_quantum;  ///< over which the flow bends, of the height above the lee
   const float *heights, *lee;
   float* filled;
 
-  DESERT_HD int cell(int line, int place) const {
-    return order.cell(line < 0 ? line + order.lines() : line, place);
-  }
+  FillBubbles(const Sweep& with, float steepest_fall, float lines_per_quantum, const float* ground,
+              const float* low, float* to)
+      : Sweep(with),
+        steepest(steepest_fall),
+        lines_a_quantum(lines_per_quantum),
+        heights(ground),
+        lee(low),
+        filled(to) {}
+
   DESERT_HD float before_first(int word, int) const {
     return word == height ? -2.0f * static_cast<float>(wall_height) : 0.0f;
   }
   DESERT_HD Loaded load(int line, int place) const {
     const int i = cell(line, place);
-    return {heights[i], lee[i]};
+    const float ground = heights[i];
+    return {ground, steepest / maximum((ground - lee[i]) * lines_a_quantum, 1.0f)};
   }
-  DESERT_HD void pass(int line, int place, const Loaded& ground, const LineWords<float>& before,
-                      const LineWords<float>& after) const {
-    const Upwind from(order, place, shift);
-    const float upwind = from.interpolated(before, height), bends = from.interpolated(before, bend);
-    const float falls = maximum(from.interpolated(before, slope) - bends, -steepest), flow = upwind + falls;
+  template <class Words>
+  DESERT_HD float pass(const Loaded& ground, const Words& before, const Words& after) const {
+    const float below = upwind.interpolated(before, height), bends = upwind.interpolated(before, bend);
+    const float falls = maximum(upwind.interpolated(before, slope) - bends, -steepest), flow = below + falls;
     const bool attached = ground.height >= flow;
-    const float along_ground = clamp(ground.height - upwind, -steepest, 0.0f);
-    const float bends_here = steepest / maximum((ground.height - ground.lee) * lines_a_quantum, 1.0f);
-    after(height, place) = attached ? ground.height : flow;
-    after(slope, place) = attached ? along_ground : falls;
-    after(bend, place) = attached ? bends_here : bends;
-    filled[cell(line, place)] = attached ? ground.height : flow;
+    const float along_ground = clamp(ground.height - below, -steepest, 0.0f);
+    const float surface = attached ? ground.height : flow;
+    after(height) = surface;
+    after(slope) = attached ? along_ground : falls;
+    after(bend) = attached ? ground.bend : bends;
+    return surface;
   }
+  DESERT_HD void store(int line, int place, float surface) const { filled[cell(line, place)] = surface; }
 };
 
 /// Multiplies the spectrum of the surface by the response: real parts become τ_∥/τ_0, imaginary parts
@@ -173,13 +188,14 @@ void fill_bubbles(E& exec, const TerrainView& t, wind::Vector along, float tange
   const int lines = order.lines(), before = static_cast<int>(std::ceil(longest_bubble / l));
   const int first = order.periodic_along() ? -std::min(lines, before) : 0;
   const float *ground = heights.cell_heights.data(), *lee = work.lee.data();
-  for_each_line_in_turn(exec, first, lines, order.length(),
-                        FindLee{against, to_fixed_point(against.shift(-along.x, -along.y)),
-                                lee_slope * line * t.quanta_per_metre, ground, work.lee.data()});
+  const Sweep windward{against, Upwind(to_fixed_point(against.shift(-along.x, -along.y)))},
+      leeward{order, Upwind(to_fixed_point(shift))};
+  for_each_line_in_turn(exec, first, lines, order.length(), work.lines.data(),
+                        FindLee(windward, lee_slope * line * t.quanta_per_metre, ground, work.lee.data()));
   for_each_line_in_turn(
-      exec, first, lines, order.length(),
-      FillBubbles{order, to_fixed_point(shift), tangent * line * t.quanta_per_metre,
-                  bend_length / (line * t.quanta_per_metre), ground, lee, work.filled.data()});
+      exec, first, lines, order.length(), work.lines.data(),
+      FillBubbles(leeward, tangent * line * t.quanta_per_metre, bend_length / (line * t.quanta_per_metre),
+                  ground, lee, work.filled.data()));
 }
 
 template <class E>

@@ -47,11 +47,15 @@ constexpr double von_karman = 0.41;
 /// Shear velocity u_* over flat ground of a wind of 1 m/s at `wind_height` [1].
 double shear_velocity_per_wind(const ShearStressParameters& p);
 
+/// Words that a place of the sweeps hands on, and how many places to the side these are found.
+constexpr int words_handed_on = 3, reach_of_words = 2;
+
 struct Workspace {
   wind::CoarseGrid coarse;
   std::unique_ptr<Fft> fft;
   Buffer<float> lee;        ///< how low the ground lies downwind of each cell [quanta]
   Buffer<float> filled;     ///< the surface with the bubbles [quanta]
+  Buffer<float> lines;      ///< what lines of the sweeps hand on
   Buffer<float> row_means;  ///< of `filled` [quanta]
   Buffer<float> rise;       ///< of the coarse cells [m]
   Buffer<Complex> spectrum;

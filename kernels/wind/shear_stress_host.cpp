@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/backend/for_each.hpp"
 #include "kernels/wind/coarse_modes.hpp"
 #include "kernels/wind/shear_stress.hpp"
 #include "kernels/wind/surface_wind.hpp"
@@ -47,6 +48,8 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const ShearStressParamete
   work.fft = exec.make_fft(c.width, c.height);
   work.lee = Buffer<float>(exec, static_cast<std::size_t>(grid.cells()));
   work.filled = Buffer<float>(exec, static_cast<std::size_t>(grid.cells()));
+  work.lines = Buffer<float>(
+      exec, words_for_lines(words_handed_on, reach_of_words, std::max(grid.width, grid.height)));
   work.row_means = Buffer<float>(exec, static_cast<std::size_t>(c.columns) * grid.height);
   work.rise = Buffer<float>(exec, values);
   work.spectrum = Buffer<Complex>(exec, values);
@@ -57,8 +60,8 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const ShearStressParamete
 }
 
 std::size_t Workspace::bytes() const {
-  return fft->bytes() + lee.bytes() + filled.bytes() + row_means.bytes() + rise.bytes() + spectrum.bytes() +
-         rows.bytes() + transfer_x.bytes() + transfer_y.bytes();
+  return fft->bytes() + lee.bytes() + filled.bytes() + lines.bytes() + row_means.bytes() + rise.bytes() +
+         spectrum.bytes() + rows.bytes() + transfer_x.bytes() + transfer_y.bytes();
 }
 
 }  // namespace desert_sim::shear_stress

@@ -59,6 +59,24 @@ TEST_P(ParityOf, CaseIsBitForBitOverFiftySteps) {
   expect_bit_for_bit(test::grid_yaml(37, 41, "open") + c.yaml, 20);
 }
 
+/// A GPU divides long lines among blocks that repeat each other's work where they meet.
+TEST_F(Parity, SweepsOverLongLinesAreBitForBit) {
+  const std::vector<test::Case> cases = test::process_cases(false);
+  const auto continuum =
+      std::find_if(cases.begin(), cases.end(), [](const test::Case& c) { return c.name == "continuum"; });
+  ASSERT_NE(continuum, cases.end());
+  for (const char* boundary : {"periodic", "open"})
+    for (const auto& [width, height] : {std::pair{1100, 45}, std::pair{70, 513}})
+      for (const int degrees : {20, 95, 230}) {
+        SCOPED_TRACE(testing::Message() << width << " x " << height << ", " << boundary << ", " << degrees);
+        std::string yaml = test::grid_yaml(width, height, boundary) + continuum->yaml;
+        const std::string wind = "direction_deg: 127";
+        ASSERT_NE(yaml.find(wind), std::string::npos);
+        yaml.replace(yaml.find(wind), wind.size(), "direction_deg: " + std::to_string(degrees));
+        expect_bit_for_bit(yaml, 3);
+      }
+}
+
 std::string case_name(const ::testing::TestParamInfo<int>& info) {
   std::string name = test::process_cases(false)[static_cast<std::size_t>(info.param)].name;
   for (char& c : name)
