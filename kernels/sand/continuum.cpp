@@ -6,12 +6,13 @@
 
 namespace desert_sim::continuum {
 
-inline Prepare prepare(const TerrainView& t, const StepInputs& in, const Downwind& order, const Dice& dice,
-                       LedgerView ledger, const Workspace& work) {
+inline Prepare prepare(const TerrainView& t, const StepInputs& in, const Downwind& order, const Drift& drift,
+                       const Dice& dice, LedgerView ledger, const Workspace& work) {
   const ContinuumParameters& p = in.continuum;
   const float l = t.grid.cell_size;
   return {saltation::Inputs<false>(t, in.repose, 1.0f, 1.0f),
           order,
+          drift,
           SaturatedFlux(p, shear_stress::shear_velocity_per_wind(in.stress)),
           p.plant_drag,
           1.0f / p.slope_friction,
@@ -28,12 +29,13 @@ inline Prepare prepare(const TerrainView& t, const StepInputs& in, const Downwin
           SweepFields(work)};
 }
 
-inline Settle settle(const TerrainView& t, const StepInputs& in, const Downwind& order, const Dice& dice,
-                     LedgerView ledger, const Workspace& work) {
+inline Settle settle(const TerrainView& t, const StepInputs& in, const Downwind& order, const Drift& drift,
+                     const Dice& dice, LedgerView ledger, const Workspace& work) {
   const abrasion::Abrade abrade =
       saltation::abrade_for(t, in.abrasion, in.time_step, dice[Roll::abrasion], ledger);
   return {saltation::Inputs<false>(t, in.repose, 1.0f, 1.0f),
           order,
+          drift,
           SweepFields(work),
           abrade,
           ledger,
@@ -50,10 +52,13 @@ template <class E>
 void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger,
           Workspace& work) {
   const Downwind order(t.grid, in.above);
-  for_each_cell(exec, t.grid, prepare(t, in, order, dice, ledger, work));
+  const Drift drift(order, in.above);
+  for_each_cell(exec, t.grid,
+                Lead{t.grid, order, drift, t.real(Layer::wind_x), t.real(Layer::wind_y), work.lead.data()});
+  for_each_cell(exec, t.grid, prepare(t, in, order, drift, dice, ledger, work));
   for_each_line_in_turn(exec, 0, order.lines(), order.length(), work.lines.data(),
-                        PassSand{order, dice[Roll::lift], SweepFields(work)});
-  for_each_cell(exec, t.grid, settle(t, in, order, dice, ledger, work));
+                        PassSand{order, drift, dice[Roll::lift], SweepFields(work)});
+  for_each_cell(exec, t.grid, settle(t, in, order, drift, dice, ledger, work));
 }
 
 template void step(Backend&, const TerrainView&, const StepInputs&, const Dice&, LedgerView, Workspace&);

@@ -15,10 +15,10 @@
 ///
 /// with γ the angle between e and the axis of the sweep, which solves the equation for a q_s that is constant
 /// in the cell. The amounts are whole quanta, and what a cell hands on is exactly what the next line gets: no
-/// sand is lost. It goes where τ leads, but for the shares √(Θ_t/Θ) s/μ that go a cell to either side, by how
-/// steeply the ground falls to that side: a ridge one cell wide loses sand to both. Sand that leaves over a
-/// periodic edge lies in the layer airborne_sand until the next step takes it in on the other side; over an
-/// open edge it is booked as outflow.
+/// sand is lost. The undisturbed wind carries it from line to line; where e points to the side of that, by at
+/// most a cell a line, shares of what comes go to the neighbours in the line, and a ridge one cell wide loses
+/// sand to both. Sand that leaves over a periodic edge lies in the layer airborne_sand until the next step takes
+/// it in on the other side; over an open edge it is booked as outflow.
 ///
 /// Plants take the share of the stress 1 − 1/(1 + Γ v), Γ = `plant_drag`. Moisture divides the threshold by
 /// the dryness of saltation_inputs.hpp; nothing is taken up under water. An obstacle hands on what comes. In
@@ -56,15 +56,19 @@ namespace desert_sim::continuum {
 float longest_step(const ContinuumParameters& p, const ShearStressParameters& stress, const Grid& grid,
                    float wind_speed);
 
+/// Words that a place of the sweep hands on, and how many places to the side these are found.
+constexpr int words_handed_on = 1, reach_of_words = 3;
+
 /// Fields of a sweep, in its order of cells.
 struct Workspace {
-  Buffer<float> decay, gain;    ///< e^(−λ) [1], and what the second term hands on [quanta]
-  Buffer<int> shift;            ///< of τ [cells a line; 16.16 fixed point]
-  Buffer<std::uint32_t> sides;  ///< shares that go downhill to the one side and the other [16.16 bits]
-  Buffer<Quanta> lying;         ///< sand that can be taken up
-  Buffer<Quanta> entering;      ///< sand that comes over the edge of the grid
-  Buffer<Quanta> change, out;   ///< F_in − F_out and F_out
-  Buffer<Quanta> lines;         ///< what lines hand on
+  Buffer<float> lead;          ///< of τ, from a line to the next [cells]
+  Buffer<float> decay, gain;   ///< e^(−λ) [1], and what the second term hands on [quanta]
+  Buffer<std::uint32_t> turn;  ///< off the way of the undisturbed wind, as Turn
+  Buffer<Quanta> lying;        ///< sand that can be taken up
+  Buffer<Quanta> entering;     ///< sand that comes over the edge of the grid
+  Buffer<Quanta> change, out;  ///< F_in − F_out and F_out
+  Buffer<Quanta> over_ends;    ///< what is turned to beyond the ends of lines
+  Buffer<Quanta> lines;        ///< what lines hand on
 
   std::size_t bytes() const;
 };

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/backend/for_each.hpp"
 #include "kernels/sand/continuum.hpp"
-#include "kernels/sand/continuum_laws.hpp"
 #include "src/core/constants.hpp"
 
 namespace desert_sim::continuum {
@@ -25,18 +25,19 @@ float longest_step(const ContinuumParameters& p, const ShearStressParameters& st
 Workspace make_workspace(Exec& exec, const Grid& grid) {
   const auto cells = static_cast<std::size_t>(grid.cells());
   Workspace work;
-  for (Buffer<float>* buffer : {&work.decay, &work.gain}) *buffer = Buffer<float>(exec, cells);
-  for (Buffer<Quanta>* buffer : {&work.shift, &work.lying, &work.entering, &work.change, &work.out})
+  for (Buffer<float>* buffer : {&work.lead, &work.decay, &work.gain}) *buffer = Buffer<float>(exec, cells);
+  for (Buffer<Quanta>* buffer : {&work.lying, &work.entering, &work.change, &work.out})
     *buffer = Buffer<Quanta>(exec, cells);
-  work.sides = Buffer<std::uint32_t>(exec, cells);
+  work.turn = Buffer<std::uint32_t>(exec, cells);
+  work.over_ends = Buffer<Quanta>(exec, 2 * static_cast<std::size_t>(std::max(grid.width, grid.height)));
   work.lines = Buffer<Quanta>(
-      exec, words_for_lines(HandedOn::places, HandedOn::reach, std::max(grid.width, grid.height)));
+      exec, words_for_lines(words_handed_on, reach_of_words, std::max(grid.width, grid.height)));
   return work;
 }
 
 std::size_t Workspace::bytes() const {
-  return decay.bytes() + gain.bytes() + shift.bytes() + sides.bytes() + lying.bytes() + entering.bytes() +
-         change.bytes() + out.bytes() + lines.bytes();
+  return lead.bytes() + decay.bytes() + gain.bytes() + turn.bytes() + lying.bytes() + entering.bytes() +
+         change.bytes() + out.bytes() + over_ends.bytes() + lines.bytes();
 }
 
 }  // namespace desert_sim::continuum

@@ -11,34 +11,85 @@ namespace desert_sim::continuum {
 
 using wind::Downwind;
 
+/// parts/2³² of an amount that is not negative, rounded down.
+DESERT_HD Quanta share(Quanta of, std::uint32_t parts) {
+  return static_cast<Quanta>(multiply_high(static_cast<std::uint32_t>(of), parts));
+}
+
+/// Shares of what comes to a place that are turned to its neighbours in the line: to the one after it, to the one
+/// before it, or, from a ridge, to both.
+struct Turn {
+  std::uint32_t both;  ///< before << 16 | after [2⁻¹⁶]
+
+  /// Of negative ones nothing is turned.
+  DESERT_HD static Turn of(float after, float before) {
+    constexpr float most = 65535.0f / 65536.0f;
+    const float to_after = clamp(after, 0.0f, most), to_before = clamp(before, 0.0f, most - to_after);
+    return {static_cast<std::uint32_t>(to_before * 65536.0f) << 16 |
+            static_cast<std::uint32_t>(to_after * 65536.0f)};
+  }
+  /// [cells]
+  DESERT_HD float mean() const {
+    return (static_cast<float>(both & 65535u) - static_cast<float>(both >> 16)) / 65536.0f;
+  }
+  DESERT_HD Quanta after(Quanta all) const { return share(all, both << 16); }
+  DESERT_HD Quanta before(Quanta all) const { return share(all, both & 0xffff0000u); }
+};
+
 /// Fields of the workspace, as laws take them.
 struct SweepFields {
-  float *decay, *gain;
-  int* shift;
-  std::uint32_t* sides;
-  Quanta *lying, *entering, *change, *out;
+  float *lead, *decay, *gain;
+  std::uint32_t* turn;
+  Quanta *lying, *entering, *change, *out, *over_ends;
 
   explicit SweepFields(const Workspace& work)
-      : decay(work.decay.data()),
+      : lead(work.lead.data()),
+        decay(work.decay.data()),
         gain(work.gain.data()),
-        shift(work.shift.data()),
-        sides(work.sides.data()),
+        turn(work.turn.data()),
         lying(work.lying.data()),
         entering(work.entering.data()),
         change(work.change.data()),
-        out(work.out.data()) {}
+        out(work.out.data()),
+        over_ends(work.over_ends.data()) {}
 };
 
-/// Cells a line by which the fall of the ground turns the flux.
-DESERT_HD float turned(std::uint32_t sides) {
-  return (static_cast<float>(sides & 65535u) - static_cast<float>(sides >> 16)) / 65536.0f;
-}
+/// The way of the undisturbed wind from a line to the next: to a place and the one after it.
+struct Drift {
+  int cells;             ///< to the first of the two, from the cell's own place
+  std::uint32_t beyond;  ///< share of the second one [2⁻³²]
+  float share_beyond;    ///< [1]
+  float shift;           ///< [cells a line], at most 1
+
+  Drift(const Downwind& order, wind::Vector above) : shift(order.shift(above.x, above.y)) {
+    const int fixed_point = to_fixed_point(shift);
+    cells = fixed_point >> 16;
+    beyond = static_cast<std::uint32_t>(fixed_point) << 16;
+    share_beyond = fraction(fixed_point);
+  }
+};
+
+/// Where the stress leads from a cell to the next line [cells]; where there is none, where the wind does.
+struct Lead {
+  Grid grid;
+  Downwind order;
+  Drift drift;
+  const float *wind_x, *wind_y;
+  float* lead;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = grid.index(x, y);
+    const float u = wind_x[i], v = wind_y[i];
+    lead[order.slot(x, y)] = u != 0.0f || v != 0.0f ? order.shift(u, v) : drift.shift;
+  }
+};
 
 /// What a cell would do with the sand that comes: everything about it that does not depend on its inflow.
 struct Prepare {
   using Layers = saltation::Inputs<false>;
   Layers in;
   Downwind order;
+  Drift drift;
   SaturatedFlux flux;
   float plant_drag, per_friction;  ///< Γ, 1/μ
   float cells_per_length;          ///< l/L_sat
@@ -58,17 +109,44 @@ struct Prepare {
   DESERT_HD float slope(int from_x, int from_y, int to_x, int to_y) const {
     return 0.5f * (height(to_x, to_y) - height(from_x, from_y)) * slope_per_quantum;
   }
-  /// Shares that go to the two sides of where the stress leads, in proportion to the fall to each across the
-  /// stress. Differences along the line are one-sided: a ridge of one cell would have no slope otherwise.
-  DESERT_HD std::uint32_t downhill(int x, int y, float shift, float turn) const {
+  /// Where the flux leads if it leads to `shift` on level ground and the ground rises by `rise` a cell across
+  /// the stress, times √(Θ_t/Θ)/μ [cells a line].
+  DESERT_HD static float downhill(float shift, float rise) {
+    return (shift - rise) / maximum(1.0f + rise * shift, 0.1f);
+  }
+  /// Where the stress leads at the face to the place after (side = 1) or before (−1) of a cell, which it leads to
+  /// `here`. It is a mean over what comes to the face and what is there: that of the cells alone would lie half
+  /// a line too far downwind.
+  DESERT_HD float at_face(int x, int y, float here, int side) const {
+    const int line = order.line_of(x, y), place = order.place_of(x, y);
+    const int upwind = line > 0 ? line - 1 : order.periodic_along() ? order.lines() - 1 : 0;
+    const auto from_upwind = [&](int n) DESERT_INLINE {
+      return lerp(lead(upwind, n - drift.cells), lead(upwind, n - drift.cells - 1), drift.share_beyond);
+    };
+    return 0.25f * (here + lead(line, place + side) + from_upwind(place) + from_upwind(place + side));
+  }
+  DESERT_HD float lead(int line, int place) const {
+    const int there = order.place_within(place);
+    return to.lead[line * order.length() + (there < 0 ? clamp_index(place, order.length()) : there)];
+  }
+  /// What turns off the way of the undisturbed wind, by the stress and, `per_rise` = √(Θ_t/Θ)/μ, by the fall of
+  /// the ground across it. It is taken at the faces between places, and, towards the side to which the stress
+  /// leads, with the slope along the stress from the line before: of all choices, these alone smooth every
+  /// wave of a few cells, wherever the wind blows (linear stability of the whole step).
+  DESERT_HD Turn turn(int x, int y, float shift, float per_rise) const {
     const int d_x = order.along_x ? 0 : 1, d_y = 1 - d_x, forward = order.backward ? -1 : 1;
     const int a_x = d_y * forward, a_y = d_x * forward;
-    const float here = height(x, y), along = slope(x - a_x, y - a_y, x + a_x, y + a_y);
-    const float to_right = (height(x + d_x, y + d_y) - here) * slope_per_quantum,
-                to_left = (here - height(x - d_x, y - d_y)) * slope_per_quantum;
-    const float right = clamp(-turn * (to_right - shift * along), 0.0f, 0.5f);
-    const float left = clamp(turn * (to_left - shift * along), 0.0f, 0.5f);
-    return static_cast<std::uint32_t>(left * 65536.0f) << 16 | static_cast<std::uint32_t>(right * 65536.0f);
+    const float here = height(x, y), before_here = height(x - a_x, y - a_y);
+    const float along = shift * (here - before_here) * slope_per_quantum,
+                along_both = shift * slope(x - a_x, y - a_y, x + a_x, y + a_y);
+    const float rise_after = (height(x + d_x, y + d_y) - here) * slope_per_quantum -
+                             (shift > 0.0f ? along : along_both),
+                rise_before = (here - height(x - d_x, y - d_y)) * slope_per_quantum -
+                              (shift < 0.0f ? along : along_both);
+    const float across = per_rise / sqrtf(1.0f + shift * shift);
+    const float after = at_face(x, y, shift, 1), before = at_face(x, y, shift, -1);
+    return Turn::of(downhill(after, across * rise_after) - drift.shift,
+                    drift.shift - downhill(before, across * rise_before));
   }
 
   DESERT_HD void operator()(int x, int y) const {
@@ -82,32 +160,31 @@ struct Prepare {
     const float at_threshold = flux.threshold * maximum(1.0f + rising * per_friction, 0.0f);
     const float q = dry > 0.0f ? flux(shields, at_threshold / dry) : 0.0f;
 
-    const float shift = order.shift(u, v), turn = sqrtf(flux.threshold / shields) * per_friction;
-    const std::uint32_t sides =
-        shields > flux.threshold ? downhill(x, y, shift, turn * sqrtf(1.0f + shift * shift)) : 0u;
-    const float across = shift + turned(sides),
+    const float shift = to.lead[n], per_rise = sqrtf(flux.threshold / shields) * per_friction;
+    const Turn turned = turn(x, y, shift, shields > flux.threshold ? per_rise : 0.0f);
+    const float across = drift.shift + turned.mean(),
                 path = sqrtf(1.0f + across * across);  // through the cell [cells]
     const float decay = exp_negative(cells_per_length * path);
-    set(i, n, decay, q * depth_per_flux * (1.0f - decay) / path, shift);
-    to.sides[n] = sides;
-    to.entering[n] = airborne[i] + over_edge(x, y, i, shift, sqrtf(1.0f + shift * shift));
+    set(i, n, decay, q * depth_per_flux * (1.0f - decay) / path);
+    to.turn[n] = turned.both;
+    to.entering[n] = airborne[i] + over_edge(x, y, i);
     airborne[i] = 0;
   }
 
-  DESERT_HD void set(int i, int n, float decay, float gain, float shift) const {
+  DESERT_HD void set(int i, int n, float decay, float gain) const {
     const float echo = in.echo_value(i);
     const bool solid = in.solid(i);
     const bool eddy = echo < 0.0f;
     to.decay[n] = solid || eddy ? 1.0f : decay * (1.0f - maximum(echo, 0.0f));
     to.gain[n] = solid ? 0.0f : eddy ? -echo * time_in_quanta : (echo > 0.0f ? 0.5f : 1.0f) * gain;
-    to.shift[n] = to_fixed_point(shift);
     to.lying[n] = solid ? 0 : sand[i];
   }
 
   /// What the influx over open edges brings to a cell [quanta]: to the first line, and to the cells at a side
   /// from which the wind blows in.
-  DESERT_HD Quanta over_edge(int x, int y, int i, float shift, float path) const {
+  DESERT_HD Quanta over_edge(int x, int y, int i) const {
     if (!(influx > 0.0f)) return 0;
+    const float shift = drift.shift, path = sqrtf(1.0f + shift * shift);
     float share = !order.periodic_along() && order.line_of(x, y) == 0 ? 1.0f : 0.0f;
     if (!order.periodic_across()) {
       const int place = order.place_of(x, y), from_side = shift > 0.0f ? place : order.length() - 1 - place;
@@ -119,53 +196,32 @@ struct Prepare {
   }
 };
 
-/// What a cell hands on to the next line: amounts for the places from `reach` to the one side of its own to as
-/// many to the other. Where the stress leads lies between two of them, and so do the places beside it to which
-/// sand is turned.
-struct HandedOn {
-  static constexpr int reach = 3, places = 2 * reach + 1;
-  Quanta amount[places];
+/// What comes to a place from the line before, which `out(k)` left k places after it.
+template <class Out>
+DESERT_HD Quanta landing(const Drift& drift, const Out& out) {
+  const Quanta near = out(-drift.cells), far = out(-drift.cells - 1);
+  return near - share(near, drift.beyond) + share(far, drift.beyond);
+}
 
-  DESERT_HD HandedOn(Quanta all, int shift, std::uint32_t sides) {
-    const std::uint32_t beyond = static_cast<std::uint32_t>(shift) << 16;
-    const Quanta left = share(all, sides & 0xffff0000u), right = share(all, sides << 16),
-                 middle = all - left - right;
-    const Quanta left_beyond = share(left, beyond), middle_beyond = share(middle, beyond),
-                 right_beyond = share(right, beyond);
-    const Quanta parts[] = {left - left_beyond, left_beyond + middle - middle_beyond,
-                            middle_beyond + right - right_beyond, right_beyond, 0};
-    // The first part goes to place (shift >> 16) − 1, which is −3 … 0 places from the cell's own.
-    const int first = (shift >> 16) + reach - 1;
-    const bool by_one = first & 1, by_two = first & 2;
-    Quanta moved[places];
-    for (int k = 0; k < places; ++k) {
-      const Quanta as_it_is = k < 5 ? parts[k] : 0, from_before = k > 0 && k < 6 ? parts[k - 1] : 0;
-      moved[k] = by_one ? from_before : as_it_is;
-    }
-    for (int k = 0; k < places; ++k) {
-      const Quanta from_before = k > 1 ? moved[k - 2] : 0;
-      amount[k] = by_two ? from_before : moved[k];
-    }
-  }
-  /// parts/2³² of an amount that is not negative, rounded down.
-  DESERT_HD static Quanta share(Quanta of, std::uint32_t parts) {
-    return static_cast<Quanta>(multiply_high(static_cast<std::uint32_t>(of), parts));
-  }
-};
-
+/// A line of the sweep. First the undisturbed wind carries what the cells of the line before hand on; then each
+/// place gives some of what comes to its neighbours. The turn is taken where the sand arrives, because the
+/// ground there is what it shapes: taken where it leaves, a line before, it would raise waves of four lines and
+/// less instead of smoothing them.
 struct PassSand {
-  static constexpr int words = HandedOn::places, reach = HandedOn::reach;
+  static constexpr int words = words_handed_on, reach = reach_of_words;
   using Word = Quanta;
   struct Loaded {
     float decay, gain;
-    int shift;
-    std::uint32_t sides, die;
-    Quanta lying, entering;
+    std::uint32_t die;
+    Quanta lying;
+    Quanta entering[3];  ///< of the place before, of this one, of the one after
+    Turn turn[3];
   };
   struct Result {
-    Quanta change, out;
+    Quanta change, out, to_before, to_after;
   };
   Downwind order;
+  Drift drift;
   Die die;
   SweepFields fields;
 
@@ -173,24 +229,43 @@ struct PassSand {
   DESERT_HD Quanta beyond(int, Quanta) const { return 0; }
   DESERT_HD Quanta before_first(int, int) const { return 0; }
   DESERT_HD Loaded load(int line, int place) const {
-    const int n = line * order.length() + place;
-    return {fields.decay[n], fields.gain[n],  fields.shift[n],   fields.sides[n],
-            die.word(n),     fields.lying[n], fields.entering[n]};
+    const int first = line * order.length(), n = first + place;
+    Loaded cell;
+    cell.decay = fields.decay[n];
+    cell.gain = fields.gain[n];
+    cell.die = die.word(n);
+    cell.lying = fields.lying[n];
+    unrolled<3>([&](auto k) DESERT_INLINE {
+      const int place_there = order.place_within(place + k - 1),
+                there = first + (place_there < 0 ? 0 : place_there);
+      cell.entering[k] = place_there < 0 ? 0 : fields.entering[there];
+      cell.turn[k].both = place_there < 0 ? 0u : fields.turn[there];
+    });
+    return cell;
   }
   template <class Words>
   DESERT_HD Result pass(const Loaded& cell, const Words& before, const Words& after) const {
-    Quanta in = cell.entering;
-    unrolled<words>([&](auto w) DESERT_INLINE { in += before(w, reach - w); });
+    Quanta come[3];  // to the place before, to this one, to the one after
+    Quanta beyond_before = share(before(0, -drift.cells - 2), drift.beyond);
+    unrolled<3>([&](auto k) DESERT_INLINE {
+      const Quanta out = before(0, k - 1 - drift.cells), beyond = share(out, drift.beyond);
+      come[k] = cell.entering[k] + out - beyond + beyond_before;
+      beyond_before = beyond;
+    });
+    const Quanta to_before = cell.turn[1].before(come[1]), to_after = cell.turn[1].after(come[1]);
+    const Quanta in =
+        come[1] - to_before - to_after + cell.turn[0].after(come[0]) + cell.turn[2].before(come[2]);
     const float wanted = static_cast<float>(in) * cell.decay + cell.gain;
     const Quanta out = Die::whole_at_most(wanted, in + cell.lying, cell.die);
-    const HandedOn handed(out, cell.shift, cell.sides);
-    unrolled<words>([&](auto w) DESERT_INLINE { after(w) = handed.amount[w]; });
-    return {in - out, out};
+    after(0) = out;
+    return {in - out, out, to_before, to_after};
   }
   DESERT_HD void store(int line, int place, const Result& result) const {
     const int n = line * order.length() + place;
     fields.change[n] = result.change;
     fields.out[n] = result.out;
+    if (place == 0) fields.over_ends[2 * line] = result.to_before;
+    if (place == order.length() - 1) fields.over_ends[2 * line + 1] = result.to_after;
   }
 };
 
@@ -199,6 +274,7 @@ struct Settle {
   using Layers = saltation::Inputs<false>;
   Layers in;
   Downwind order;
+  Drift drift;
   SweepFields from;
   abrasion::Abrade abrade;
   LedgerView ledger;
@@ -210,12 +286,11 @@ struct Settle {
   DESERT_HD void operator()(int x, int y) const {
     const int i = in.grid.index(x, y), n = order.slot(x, y), place = order.place_of(x, y);
     const Quanta change = from.change[n], out = from.out[n], before = sand[i];
-    const int shift = from.shift[n];
     sand[i] = before + change;
     if (order.line_of(x, y) == 0 && order.periodic_along()) airborne[i] = over_seam(place);
     ledger.book_out(Material::sand, i, lost(n, order.line_of(x, y), place));
 
-    const float across = static_cast<float>(shift) / 65536.0f + turned(from.sides[n]);
+    const float across = drift.shift + Turn{from.turn[n]}.mean();
     const float along = (static_cast<float>(out) + 0.5f * static_cast<float>(change)) * flux_per_quantum;
     const float q = along * sqrtf(1.0f + across * across);
     const float speed = hypotenuse(in.wind_x[i], in.wind_y[i]), plants = in.plants(i);
@@ -231,25 +306,26 @@ struct Settle {
     flux_y[i] += parts.y;
   }
 
-  DESERT_HD HandedOn handed_on(int n) const { return {from.out[n], from.shift[n], from.sides[n]}; }
   /// What the last line hands on to a place of the first.
   DESERT_HD Quanta over_seam(int place) const {
     const int last = (order.lines() - 1) * order.length();
-    Quanta sum = 0;
-    unrolled<HandedOn::places>([&](auto k) DESERT_INLINE {
-      const int other = order.place_within(place + HandedOn::reach - k);
-      if (other >= 0) sum += handed_on(last + other).amount[k];
+    return landing(drift, [&](int k) DESERT_INLINE {
+      const int other = order.place_within(place + k);
+      return other < 0 ? 0 : from.out[last + other];
     });
-    return sum;
   }
-  /// What a cell hands on over an open edge.
+  /// What goes over an open edge: with the wind from the cell to the next line, and to the side within its line.
   DESERT_HD Quanta lost(int n, int line, int place) const {
-    if (line == order.lines() - 1 && !order.periodic_along()) return from.out[n];
-    if (order.periodic_across()) return 0;
-    const HandedOn handed = handed_on(n);
-    Quanta sum = 0;
-    for (int k = 0; k < HandedOn::places; ++k)
-      sum += order.place_within(place + k - HandedOn::reach) < 0 ? handed.amount[k] : 0;
+    const Quanta out = from.out[n];
+    Quanta sum = line == order.lines() - 1 && !order.periodic_along() ? out : 0;
+    if (order.periodic_across()) return sum;
+    const Quanta far = share(out, drift.beyond);
+    if (sum == 0) {
+      sum += order.place_within(place + drift.cells) < 0 ? out - far : 0;
+      sum += order.place_within(place + drift.cells + 1) < 0 ? far : 0;
+    }
+    sum += place == 0 ? from.over_ends[2 * line] : 0;
+    sum += place == order.length() - 1 ? from.over_ends[2 * line + 1] : 0;
     return sum;
   }
 };

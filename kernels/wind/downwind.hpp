@@ -17,8 +17,8 @@
 namespace desert_sim::wind {
 
 struct Downwind {
-  /// Winds that point further off the axis are taken as if they pointed by this much [cells a line]: 62°.
-  static constexpr float largest_shift = 1.875f;
+  /// Winds that point further off the axis are taken as if they pointed by this much [cells a line]: 72°.
+  static constexpr float largest_shift = 3.0f;
 
   Grid grid;
   bool along_x, backward;
