@@ -6,8 +6,9 @@
 
 namespace desert_sim::continuum {
 
-inline Prepare prepare(const TerrainView& t, const StepInputs& in, const Downwind& order, const Drift& drift,
-                       const Dice& dice, LedgerView ledger, const Workspace& work) {
+template <bool inside>
+Prepare<inside> prepare(const TerrainView& t, const StepInputs& in, const Downwind& order, const Drift& drift,
+                        const Dice& dice, LedgerView ledger, const Workspace& work) {
   const ContinuumParameters& p = in.continuum;
   const float l = t.grid.cell_size;
   return {saltation::Inputs<false>(t, in.repose, 1.0f, 1.0f),
@@ -55,7 +56,10 @@ void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice,
   const Drift drift(order, in.above);
   for_each_cell(exec, t.grid,
                 Lead{t.grid, order, drift, t.real(Layer::wind_x), t.real(Layer::wind_y), work.lead.data()});
-  for_each_cell(exec, t.grid, prepare(t, in, order, drift, dice, ledger, work));
+  for_each_cell(exec, t.grid,
+                Bordered<Prepare<true>, Prepare<false>>{
+                    t.grid, Prepare<true>::margin, prepare<true>(t, in, order, drift, dice, ledger, work),
+                    prepare<false>(t, in, order, drift, dice, ledger, work)});
   for_each_line_in_turn(exec, 0, order.lines(), order.length(), work.lines.data(),
                         PassSand{order, drift, dice[Roll::lift], SweepFields(work)});
   for_each_cell(exec, t.grid, settle(t, in, order, drift, dice, ledger, work));

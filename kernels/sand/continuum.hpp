@@ -61,7 +61,7 @@ constexpr int words_handed_on = 1, reach_of_words = 3;
 
 /// Fields of a sweep, in its order of cells.
 struct Workspace {
-  Buffer<float> lead;          ///< of τ, from a line to the next [cells]
+  Buffer<float> lead;          ///< of τ, from a line to the next [cells]; in the order of the terrain
   Buffer<float> decay, gain;   ///< e^(−λ) [1], and what the second term hands on [quanta]
   Buffer<std::uint32_t> turn;  ///< off the way of the undisturbed wind, as Turn
   Buffer<Quanta> lying;        ///< sand that can be taken up

@@ -80,12 +80,15 @@ struct Lead {
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     const float u = wind_x[i], v = wind_y[i];
-    lead[order.slot(x, y)] = u != 0.0f || v != 0.0f ? order.shift(u, v) : drift.shift;
+    lead[i] = u != 0.0f || v != 0.0f ? order.shift(u, v) : drift.shift;
   }
 };
 
 /// What a cell would do with the sand that comes: everything about it that does not depend on its inflow.
+/// `inside`: the cell lies at least `margin` cells from every edge.
+template <bool inside>
 struct Prepare {
+  static constexpr int margin = 3;
   using Layers = saltation::Inputs<false>;
   Layers in;
   Downwind order;
@@ -104,7 +107,10 @@ struct Prepare {
   Quanta* airborne;
   SweepFields to;
 
-  DESERT_HD float height(int x, int y) const { return heights[sample_index(in.grid, x, y)]; }
+  DESERT_HD int sample(int x, int y) const {
+    return inside ? in.grid.index(x, y) : sample_index(in.grid, x, y);
+  }
+  DESERT_HD float height(int x, int y) const { return heights[sample(x, y)]; }
   /// Mean slope from one cell to another, two cells further along an axis.
   DESERT_HD float slope(int from_x, int from_y, int to_x, int to_y) const {
     return 0.5f * (height(to_x, to_y) - height(from_x, from_y)) * slope_per_quantum;
@@ -118,16 +124,15 @@ struct Prepare {
   /// `here`. It is a mean over what comes to the face and what is there: that of the cells alone would lie half
   /// a line too far downwind.
   DESERT_HD float at_face(int x, int y, float here, int side) const {
-    const int line = order.line_of(x, y), place = order.place_of(x, y);
-    const int upwind = line > 0 ? line - 1 : order.periodic_along() ? order.lines() - 1 : 0;
+    const int d_x = order.along_x ? 0 : 1, d_y = 1 - d_x, forward = order.backward ? -1 : 1;
+    const int up_x = x - d_y * forward, up_y = y - d_x * forward;
     const auto from_upwind = [&](int n) DESERT_INLINE {
-      return lerp(lead(upwind, n - drift.cells), lead(upwind, n - drift.cells - 1), drift.share_beyond);
+      const int near = n - drift.cells, far = near - 1;
+      return lerp(to.lead[sample(up_x + near * d_x, up_y + near * d_y)],
+                  to.lead[sample(up_x + far * d_x, up_y + far * d_y)], drift.share_beyond);
     };
-    return 0.25f * (here + lead(line, place + side) + from_upwind(place) + from_upwind(place + side));
-  }
-  DESERT_HD float lead(int line, int place) const {
-    const int there = order.place_within(place);
-    return to.lead[line * order.length() + (there < 0 ? clamp_index(place, order.length()) : there)];
+    const float beside = to.lead[sample(x + side * d_x, y + side * d_y)];
+    return 0.25f * (here + beside + from_upwind(0) + from_upwind(side));
   }
   /// What turns off the way of the undisturbed wind, by the stress and, `per_rise` = √(Θ_t/Θ)/μ, by the fall of
   /// the ground across it. It is taken at the faces between places, and, towards the side to which the stress
@@ -160,7 +165,7 @@ struct Prepare {
     const float at_threshold = flux.threshold * maximum(1.0f + rising * per_friction, 0.0f);
     const float q = dry > 0.0f ? flux(shields, at_threshold / dry) : 0.0f;
 
-    const float shift = to.lead[n], per_rise = sqrtf(flux.threshold / shields) * per_friction;
+    const float shift = to.lead[i], per_rise = sqrtf(flux.threshold / shields) * per_friction;
     const Turn turned = turn(x, y, shift, shields > flux.threshold ? per_rise : 0.0f);
     const float across = drift.shift + turned.mean(),
                 path = sqrtf(1.0f + across * across);  // through the cell [cells]
