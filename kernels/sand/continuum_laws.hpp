@@ -135,19 +135,13 @@ struct Prepare {
     return 0.25f * (here + beside + from_upwind(0) + from_upwind(side));
   }
   /// What turns off the way of the undisturbed wind, by the stress and, `per_rise` = √(Θ_t/Θ)/μ, by the fall of
-  /// the ground across it. It is taken at the faces between places, and, towards the side to which the stress
-  /// leads, with the slope along the stress from the line before: of all choices, these alone smooth every
-  /// wave of a few cells, wherever the wind blows (linear stability of the whole step).
+  /// the ground across it, both at the faces between places: a ridge of one cell would have no slope otherwise.
   DESERT_HD Turn turn(int x, int y, float shift, float per_rise) const {
     const int d_x = order.along_x ? 0 : 1, d_y = 1 - d_x, forward = order.backward ? -1 : 1;
     const int a_x = d_y * forward, a_y = d_x * forward;
-    const float here = height(x, y), before_here = height(x - a_x, y - a_y);
-    const float along = shift * (here - before_here) * slope_per_quantum,
-                along_both = shift * slope(x - a_x, y - a_y, x + a_x, y + a_y);
-    const float rise_after = (height(x + d_x, y + d_y) - here) * slope_per_quantum -
-                             (shift > 0.0f ? along : along_both),
-                rise_before = (here - height(x - d_x, y - d_y)) * slope_per_quantum -
-                              (shift < 0.0f ? along : along_both);
+    const float here = height(x, y), along = shift * slope(x - a_x, y - a_y, x + a_x, y + a_y);
+    const float rise_after = (height(x + d_x, y + d_y) - here) * slope_per_quantum - along,
+                rise_before = (here - height(x - d_x, y - d_y)) * slope_per_quantum - along;
     const float across = per_rise / sqrtf(1.0f + shift * shift);
     const float after = at_face(x, y, shift, 1), before = at_face(x, y, shift, -1);
     return Turn::of(downhill(after, across * rise_after) - drift.shift,
