@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Two things that happen to a barchan of continuum transport: the wind turns, and it is starved.
 
-    test/bench/barchan_life.py [--program desert_run] [--heap 7] [--turns 45,90] [--starved 4] [--cell 0.5] [--out DIR]
+    test/bench/barchan_life.py [--program desert_run] [--heap 7] [--turns 45,90] [--starved 3] [--cell 0.25]
 
 Turned: a heap becomes a barchan in a steady wind of 9 m/s for 80 days. Then the wind turns. The table has the direction in
 which its slip face looks, beside that of the wind, every quarter of its turnover time T = length/speed. Expected is that
 it is aligned after T: at most 10 degrees off.
 
-Starved: a heap gets no sand, and shrinks. The smallest barchan is the last state with a slip face (10 cells that fall by
-28 degrees or more). Expected is a height of 0.5 to 2 m: barchans of the field are not smaller (Sauermann et al. 2000,
-Kroy et al. 2002), because the air needs the saturation length to load itself.
+Starved: a heap gets no sand, and shrinks. The smallest barchan is the last state with a steep lee (a square metre that
+falls by 28 degrees or more). Expected is a height of 0.5 to 2 m: barchans of the field are not smaller (Sauermann et al.
+2000, Kroy et al. 2002), because the air needs the saturation length to load itself.
 
 The exit status is 1 if one of these is not so. Needs python3 with numpy and OpenCV.
 """
@@ -24,8 +24,7 @@ import numpy as np
 from barchans import saturated_flux, measure, sand_of
 
 DAY, WIND = 86400.0, 9.0
-SLIP_FACE = np.tan(np.radians(28))
-LEAST_CELLS = 10
+STEEP = np.tan(np.radians(28))
 
 
 def heap(cells, cell, height, at, wind, influx):
@@ -49,11 +48,12 @@ def states(program, yaml, folder, days, every):
 
 
 def slip_face(folder, cell):
-    """Cells that are as steep as a slip face, and the direction in which they look [deg]."""
-    sand = sand_of(folder, cell)
-    fall_y, fall_x = (-slope for slope in np.gradient(sand, cell))
-    steep = np.hypot(fall_x, fall_y) > SLIP_FACE
-    return np.count_nonzero(steep), np.degrees(np.arctan2(fall_y[steep].sum(), fall_x[steep].sum()))
+    """Area that is as steep as a slip face [m^2], the direction in which it looks [deg], and the steepest slope [deg]."""
+    fall_y, fall_x = (-slope for slope in np.gradient(sand_of(folder, cell), cell))
+    fall = np.hypot(fall_x, fall_y)
+    steep = fall > STEEP
+    return (np.count_nonzero(steep) * cell**2, np.degrees(np.arctan2(fall_y[steep].sum(), fall_x[steep].sum())),
+            np.degrees(np.arctan(fall.max())))
 
 
 def turned(angle, options, folder):
@@ -77,19 +77,20 @@ def turned(angle, options, folder):
 
 
 def starved(options, folder):
-    """Height of the last state with a slip face [m]."""
-    cells = (int(200 / options.cell), int((12 * options.starved + 20) / options.cell))
+    """Height of the last state with a steep lee [m]."""
+    cells = (int(110 / options.cell), int((12 * options.starved + 16) / options.cell))
     yaml = heap(cells, options.cell, options.starved, (3 * options.starved + 10, cells[1] * options.cell / 2),
                 f"{{speed: {WIND}}}", 0.0)
     rows, smallest = [], None
-    for n, state in enumerate(states(options.program, yaml, folder, 120, 4)):
-        dune, (cells_steep, _) = measure(state, options.cell), slip_face(state, options.cell)
+    for n, state in enumerate(states(options.program, yaml, folder, 48, 4)):
+        dune, (area, _, steepest) = measure(state, options.cell), slip_face(state, options.cell)
         if dune is None or dune["height"] < 0.2:
             break
-        rows.append(f"| {4 * (n + 1)} d | {dune['height']:.2f} m | {dune['width']:.1f} m | {dune['length']:.1f} m | {cells_steep} |")
-        if cells_steep >= LEAST_CELLS:
+        rows.append(f"| {4 * (n + 1)} d | {dune['height']:.2f} m | {dune['width']:.1f} m | {dune['length']:.1f} m | "
+                    f"{area:.1f} m2 | {steepest:.0f} deg |")
+        if area >= 1:
             smallest = dune["height"]
-    print("\n| starved for | H | W | L | cells of the slip face |\n|---|---|---|---|---|\n" + "\n".join(rows))
+    print("\n| starved for | H | W | L | steep lee | steepest |\n|---|---|---|---|---|---|\n" + "\n".join(rows))
     return smallest
 
 
@@ -98,8 +99,8 @@ def main():
     parser.add_argument("--program", default="desert_run")
     parser.add_argument("--heap", type=float, default=7.0, help="height of the heap that is turned [m]")
     parser.add_argument("--turns", default="45,90", help="by which the wind turns [deg]")
-    parser.add_argument("--starved", type=float, default=4.0, help="height of the heap that is starved [m]")
-    parser.add_argument("--cell", type=float, default=0.5, help="width of its cells [m]")
+    parser.add_argument("--starved", type=float, default=3.0, help="height of the heap that is starved [m]")
+    parser.add_argument("--cell", type=float, default=0.25, help="width of its cells [m]")
     options = parser.parse_args()
     passed = True
     print("| wind turns by | T | off at 0 | T/4 | T/2 | 3T/4 | T | 5T/4 | H |\n|---|---|---|---|---|---|---|---|---|")
