@@ -16,8 +16,8 @@ class ObliqueWinds : public test::OnBackend {
            ", cell_size: 1}\nsaltation: {model: continuum}\nwind: {speed: " + std::to_string(speed) +
            ", direction_deg: " + std::to_string(degrees) + "}\nrun: {time_step: 600}\n";
   }
-  /// Rms of what differs from the mean over 3 × 3 cells: of waves of less than five cells, hardly of others [m]. Of cells
-  /// that lie `margin` cells from the edges.
+  /// Rms of what differs from the mean over 3 × 3 cells: of waves of less than five cells, hardly of others
+  /// [m]. Of cells that lie `margin` cells from the edges.
   static double roughness(const Simulation& s, int margin = 0) {
     const std::vector<float> sand = s.terrain().values(Layer::sand);
     const Grid& g = s.terrain().grid();
@@ -35,8 +35,8 @@ class ObliqueWinds : public test::OnBackend {
   }
 };
 
-/// A bed that is rough by 2 mm from cell to cell. (Were the flux turned where it leaves and not where it lands,
-/// it would be rougher in the end than before, in diagonal winds.)
+/// A bed that is rough by 2 mm from cell to cell. (Were the flux turned where it leaves and not where it
+/// lands, it would be rougher in the end than before, in diagonal winds.)
 TEST_P(ObliqueWinds, SmoothWhatIsRoughFromCellToCell) {
   for (const double speed : {6.5, 9.0, 16.0})
     for (const int degrees : {0, 14, 27, 45, 63, 90, 117, 135, 225, 300, 315}) {
@@ -78,8 +78,8 @@ TEST_P(ObliqueWinds, SmoothASlopeAcrossThem) {
     }
 }
 
-/// The heap is symmetric about the wind's axis, and so is the dune that becomes of it: nearly, because the sweep goes along
-/// x in this wind.
+/// The heap is symmetric about the wind's axis, and so is the dune that becomes of it: nearly, because the
+/// sweep goes along x in this wind.
 TEST_P(ObliqueWinds, LeadADuneAsStraightAsAnyOther) {
   constexpr int cells = 90;
   auto s = test::with_sand(exec(), world(cells, 45, 9), [](int x, int y) {

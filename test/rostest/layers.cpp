@@ -58,8 +58,8 @@ void expect_as_asked(const TerrainClient& client, const std::string& layer) {
   EXPECT_LE(largest_difference(map->values(), ask(layer, map->info())), threshold_of(layer) + 1e-6) << layer;
 }
 
-/// Steps until updates of all layers of the client come: the node sends keyframes alone at first, at their rate,
-/// until it has noticed that somebody takes updates.
+/// Steps until updates of all layers of the client come: the node sends keyframes alone at first, at their
+/// rate, until it has noticed that somebody takes updates.
 void step_until_updated(const TerrainClient& client) {
   ASSERT_TRUE(wait_until([&] {
     EXPECT_TRUE(client.wait_for_step(step(1).step, timeout));
