@@ -181,6 +181,9 @@ __global__ void items_kernel(int count, Law law) {
   if (n < count) law(n);
 }
 
+/// Threads of a block that passes over lines.
+constexpr int longest_line_block = 512;
+
 /// Where a block of threads passes over lines: its own places and, where a line has several blocks, `margin` more
 /// at either side, so that it knows without the other blocks what reaches its own.
 struct LineBlock {
@@ -199,7 +202,7 @@ struct LineBlock {
 /// `ahead` lines are under way while one is passed: they take several times as long as that. The first line of
 /// the block finds `from`, or what the law says if it begins the sweep; `to` gets what the last one hands on.
 template <class Law>
-__global__ void __launch_bounds__(1024)
+__global__ void __launch_bounds__(longest_line_block)
     lines_kernel(LineBlock block, bool begins, LineWords<typename Law::Word> from,
                  LineWords<typename Law::Word> to, Law law) {
   using Word = typename Law::Word;
@@ -324,12 +327,12 @@ template <class Law>
 void for_each_line_in_turn(CudaExec& exec, int first, int end, int length, typename Law::Word* words,
                            const Law& law) {
   using Words = LineWords<typename Law::Word>;
-  constexpr int longest_block = 512, lines_at_once = 32, margin = Law::reach * lines_at_once;
-  const bool whole = length <= longest_block;
+  constexpr int lines_at_once = 32, margin = Law::reach * lines_at_once;
+  const bool whole = length <= cuda::longest_line_block;
   cuda::LineBlock block{first, end, length, length, 0, law.around()};
   if (!whole) {
     block.margin = margin;
-    block.own = longest_block - 2 * margin;
+    block.own = cuda::longest_line_block - 2 * margin;
   }
   const int blocks = (length + block.own - 1) / block.own;
   const int width = block.own + 2 * block.margin, threads = (width + 31) / 32 * 32;
