@@ -8,7 +8,7 @@
 ///     for_each_item(exec, count, law);             // law(n) for n = 0 … count − 1
 ///     for_each_cell_of_rows(exec, grid, first, rows, law);  // law(x, y) in `rows` rows from `first` on,
 ///                                                           // wrapped over the north edge
-///     for_each_line_in_turn(exec, first, end, length, words, law); // lines first … end − 1, one after the other
+///     for_each_line_in_turn(exec, first, end, length, words, law); // lines first … end − 1 in turn
 ///     sum_cells(exec, grid, law) -> long long      // Σ law(x, y), exact
 ///     max_cells(exec, grid, law) -> float          // maximum of 0 and all law(x, y)
 ///
@@ -24,14 +24,15 @@
 /// places of a line to the next line, to places at most Law::reach cells to the side.
 ///
 ///     law.load(line, place)             what does not depend on the line before; read ahead of its turn
-///     law.pass(loaded, before, after)   finds in before(w, k) word w of the line before, k places further on,
-///                                       and sets after(w) for all w; what it returns goes to law.store()
+///     law.pass(loaded, before, after)   finds in before(w, k) word w of the line before, k places further
+///                                       on, and sets after(w) for all w; the result goes to law.store()
 ///     law.store(line, place, result)    is called once for each cell
 ///     law.before_first(w, place)        what the first line finds
 ///     law.around()                      whether a line is a ring; if not,
-///     law.beyond(w, nearest)            is what is found beyond its ends, where `nearest` is word w of the end
+///     law.beyond(w, nearest)            is what is found beyond its ends; `nearest`: word w of the end
 ///
-/// `words` is memory for words_for_lines(Law::words, Law::reach, length) words. A pass may be repeated, with the same result.
+/// `words` is memory for words_for_lines(Law::words, Law::reach, length) words. A pass may be repeated, with
+/// the same result.
 ///
 /// The loops are implemented in for_each_cpu.hpp and for_each_cuda.cuh; sources of processes include
 /// loops.hpp.
@@ -76,8 +77,8 @@ void for_each_cell_of_rows(E& exec, const Grid& grid, int first, int rows, const
   for_each_cell(exec, band, RowBandLaw<Law>{law, first, grid.height});
 }
 
-/// What the places of a line hand on: word after word, so that neighbouring places lie beside each other, with
-/// `reach` more places at either end.
+/// What the places of a line hand on: word after word, so that neighbouring places lie beside each other,
+/// with `reach` more places at either end.
 template <class Word>
 struct LineWords {
   Word* first;  ///< of place 0

@@ -184,8 +184,8 @@ __global__ void items_kernel(int count, Law law) {
 /// Threads of a block that passes over lines.
 constexpr int longest_line_block = 512;
 
-/// Where a block of threads passes over lines: its own places and, where a line has several blocks, `margin` more
-/// at either side, so that it knows without the other blocks what reaches its own.
+/// Where a block of threads passes over lines: its own places and, where a line has several blocks, `margin`
+/// more at either side, so that it knows without the other blocks what reaches its own.
 struct LineBlock {
   int first, end, length;  ///< of the lines, and of a line
   int own, margin;
@@ -199,8 +199,9 @@ struct LineBlock {
 };
 
 /// Each thread has a place of a line. What a line hands on lies in shared memory, and the loads of the next
-/// `ahead` lines are under way while one is passed: they take several times as long as that. The first line of
-/// the block finds `from`, or what the law says if it begins the sweep; `to` gets what the last one hands on.
+/// `ahead` lines are under way while one is passed: they take several times as long as that. The first line
+/// of the block finds `from`, or what the law says if it begins the sweep; `to` gets what the last one hands
+/// on.
 template <class Law>
 __global__ void __launch_bounds__(longest_line_block)
     lines_kernel(LineBlock block, bool begins, LineWords<typename Law::Word> from,
@@ -321,8 +322,8 @@ void for_each_tile(CudaExec& exec, const Tiling& tiles, const Law& law) {
   check_cuda(cudaGetLastError(), "launch over tiles");
 }
 
-/// A short line is passed by a single block. The blocks of a longer one pass as many lines as their margins allow
-/// without waiting for each other.
+/// A short line is passed by a single block. The blocks of a longer one pass as many lines as their margins
+/// allow without waiting for each other.
 template <class Law>
 void for_each_line_in_turn(CudaExec& exec, int first, int end, int length, typename Law::Word* words,
                            const Law& law) {

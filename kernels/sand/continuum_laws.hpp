@@ -16,8 +16,8 @@ DESERT_HD Quanta share(Quanta of, std::uint32_t parts) {
   return static_cast<Quanta>(multiply_high(static_cast<std::uint32_t>(of), parts));
 }
 
-/// Shares of what comes to a place that are turned to its neighbours in the line: to the one after it, to the one
-/// before it, or, from a ridge, to both.
+/// Shares of what comes to a place that are turned to its neighbours in the line: to the one after it, to the
+/// one before it, or, from a ridge, to both.
 struct Turn {
   std::uint32_t both;  ///< before << 16 | after [2⁻¹⁶]
 
@@ -120,9 +120,9 @@ struct Prepare {
   DESERT_HD static float downhill(float shift, float rise) {
     return (shift - rise) / maximum(1.0f + rise * shift, 0.1f);
   }
-  /// Where the stress leads at the face to the place after (side = 1) or before (−1) of a cell, which it leads to
-  /// `here`. It is a mean over what comes to the face and what is there: that of the cells alone would lie half
-  /// a line too far downwind.
+  /// Where the stress leads at the face to the place after (side = 1) or before (−1) of a cell, which it
+  /// leads to `here`. It is a mean over what comes to the face and what is there: that of the cells alone
+  /// would lie half a line too far downwind.
   DESERT_HD float at_face(int x, int y, float here, int side) const {
     const int d_x = order.along_x ? 0 : 1, d_y = 1 - d_x, forward = order.backward ? -1 : 1;
     const int up_x = x - d_y * forward, up_y = y - d_x * forward;
@@ -134,8 +134,9 @@ struct Prepare {
     const float beside = to.lead[sample(x + side * d_x, y + side * d_y)];
     return 0.25f * (here + beside + from_upwind(0) + from_upwind(side));
   }
-  /// What turns off the way of the undisturbed wind, by the stress and, `per_rise` = √(Θ_t/Θ)/μ, by the fall of
-  /// the ground across it, both at the faces between places: a ridge of one cell would have no slope otherwise.
+  /// What turns off the way of the undisturbed wind, by the stress and, `per_rise` = √(Θ_t/Θ)/μ, by the fall
+  /// of the ground across it, both at the faces between places: a ridge of one cell would have no slope
+  /// otherwise.
   DESERT_HD Turn turn(int x, int y, float shift, float per_rise) const {
     const int d_x = order.along_x ? 0 : 1, d_y = 1 - d_x, forward = order.backward ? -1 : 1;
     const int a_x = d_y * forward, a_y = d_x * forward;
@@ -202,10 +203,10 @@ DESERT_HD Quanta landing(const Drift& drift, const Out& out) {
   return near - share(near, drift.beyond) + share(far, drift.beyond);
 }
 
-/// A line of the sweep. First the undisturbed wind carries what the cells of the line before hand on; then each
-/// place gives some of what comes to its neighbours. The turn is taken where the sand arrives, because the
-/// ground there is what it shapes: taken where it leaves, a line before, it would raise waves of four lines and
-/// less instead of smoothing them.
+/// A line of the sweep. First the undisturbed wind carries what the cells of the line before hand on; then
+/// each place gives some of what comes to its neighbours. The turn is taken where the sand arrives, because
+/// the ground there is what it shapes: taken where it leaves, a line before, it would raise waves of four
+/// lines and less instead of smoothing them.
 struct PassSand {
   static constexpr int words = words_handed_on, reach = reach_of_words;
   using Word = Quanta;
@@ -313,7 +314,8 @@ struct Settle {
       return other < 0 ? 0 : from.out[last + other];
     });
   }
-  /// What goes over an open edge: with the wind from the cell to the next line, and to the side within its line.
+  /// What goes over an open edge: with the wind from the cell to the next line, and to the side within its
+  /// line.
   DESERT_HD Quanta lost(int n, int line, int place) const {
     const Quanta out = from.out[n];
     Quanta sum = line == order.lines() - 1 && !order.periodic_along() ? out : 0;

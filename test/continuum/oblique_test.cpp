@@ -1,4 +1,5 @@
-// Winds off the axes of the grid: they raise no waves of a few cells, and lead dunes as straight as winds along an axis.
+// Winds off the axes of the grid: they raise no waves of a few cells, and lead dunes as straight as winds
+// along an axis.
 
 #include <algorithm>
 #include <cmath>
