@@ -124,8 +124,8 @@ struct Prepare {
   /// leads to `here`. It is a mean over what comes to the face and what is there: that of the cells alone
   /// would lie half a line too far downwind.
   DESERT_HD float at_face(int x, int y, float here, int side) const {
-    const int d_x = order.along_x ? 0 : 1, d_y = 1 - d_x, forward = order.backward ? -1 : 1;
-    const int up_x = x - d_y * forward, up_y = y - d_x * forward;
+    const int d_x = order.across_x(), d_y = order.across_y();
+    const int up_x = x - order.forward_x(), up_y = y - order.forward_y();
     const auto from_upwind = [&](int n) DESERT_INLINE {
       const int near = n - drift.cells, far = near - 1;
       return lerp(to.lead[sample(up_x + near * d_x, up_y + near * d_y)],
@@ -138,8 +138,8 @@ struct Prepare {
   /// of the ground across it, both at the faces between places: a ridge of one cell would have no slope
   /// otherwise.
   DESERT_HD Turn turn(int x, int y, float shift, float per_rise) const {
-    const int d_x = order.along_x ? 0 : 1, d_y = 1 - d_x, forward = order.backward ? -1 : 1;
-    const int a_x = d_y * forward, a_y = d_x * forward;
+    const int d_x = order.across_x(), d_y = order.across_y();
+    const int a_x = order.forward_x(), a_y = order.forward_y();
     const float here = height(x, y), along = shift * slope(x - a_x, y - a_y, x + a_x, y + a_y);
     const float rise_after = (height(x + d_x, y + d_y) - here) * slope_per_quantum - along,
                 rise_before = (here - height(x - d_x, y - d_y)) * slope_per_quantum - along;
@@ -246,11 +246,8 @@ struct PassSand {
   template <class Words>
   DESERT_HD Result pass(const Loaded& cell, const Words& before, const Words& after) const {
     Quanta come[3];  // to the place before, to this one, to the one after
-    Quanta beyond_before = share(before(0, -drift.cells - 2), drift.beyond);
     unrolled<3>([&](auto k) DESERT_INLINE {
-      const Quanta out = before(0, k - 1 - drift.cells), beyond = share(out, drift.beyond);
-      come[k] = cell.entering[k] + out - beyond + beyond_before;
-      beyond_before = beyond;
+      come[k] = cell.entering[k] + landing(drift, [&](int j) DESERT_INLINE { return before(0, k - 1 + j); });
     });
     const Quanta to_before = cell.turn[1].before(come[1]), to_after = cell.turn[1].after(come[1]);
     const Quanta in =
@@ -318,10 +315,11 @@ struct Settle {
   /// line.
   DESERT_HD Quanta lost(int n, int line, int place) const {
     const Quanta out = from.out[n];
-    Quanta sum = line == order.lines() - 1 && !order.periodic_along() ? out : 0;
+    const bool no_next_line = line == order.lines() - 1 && !order.periodic_along();
+    Quanta sum = no_next_line ? out : 0;
     if (order.periodic_across()) return sum;
     const Quanta far = share(out, drift.beyond);
-    if (sum == 0) {
+    if (!no_next_line) {
       sum += order.place_within(place + drift.cells) < 0 ? out - far : 0;
       sum += order.place_within(place + drift.cells + 1) < 0 ? far : 0;
     }

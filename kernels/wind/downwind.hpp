@@ -42,6 +42,12 @@ struct Downwind {
   DESERT_HD bool periodic_along() const { return along_x ? grid.periodic_x : grid.periodic_y; }
   DESERT_HD bool periodic_across() const { return along_x ? grid.periodic_y : grid.periodic_x; }
 
+  /// From a cell to the one at the next place of its line, and to the one at its place of the next line.
+  DESERT_HD int across_x() const { return along_x ? 0 : 1; }
+  DESERT_HD int across_y() const { return along_x ? 1 : 0; }
+  DESERT_HD int forward_x() const { return along_x ? (backward ? -1 : 1) : 0; }
+  DESERT_HD int forward_y() const { return along_x ? 0 : (backward ? -1 : 1); }
+
   DESERT_HD int line_of(int x, int y) const {
     const int along = along_x ? x : y;
     return backward ? lines() - 1 - along : along;

@@ -23,7 +23,7 @@ import numpy as np
 
 from barchans import saturated_flux, measure, sand_of
 
-DAY, WIND = 86400.0, 9.0
+WIND = 9.0
 STEEP = np.tan(np.radians(28))
 
 

@@ -21,8 +21,8 @@ from desert_sim.srv import EditPlants, EditPlantsRequest, EditTerrain, EditTerra
 from desert_sim.srv import GetSubmap, GetSubmapRequest, LoadCheckpoint, LoadCheckpointRequest, LoadTerrain, LoadTerrainRequest
 from desert_sim.srv import QueryTerrain, QueryTerrainRequest, SaveCheckpoint, SaveCheckpointRequest
 from desert_sim.srv import SetWeather, SetWeatherRequest, SetWind, SetWindRequest, SetWindSchedule, SetWindScheduleRequest, Step
-from geometry_msgs.msg import Point
 from forecast_client import ForecastClient
+from geometry_msgs.msg import Point
 from lifecycle import OASIS, Scenarios, Trigger
 
 SECONDS = float(os.environ.get("DESERT_FLOOD_SECONDS", "8"))
