@@ -198,74 +198,85 @@ struct LineBlock {
   }
 };
 
+/// What a thread of such a block finds in the line before. The places that can be seen do not change from
+/// line to line, so that a compiler finds them once.
+template <class Law, bool ring>
+struct LineBefore {
+  const Law& law;
+  const typename Law::Word* words;
+  int pitch, thread;
+  int length;       ///< of a ring
+  int first, last;  ///< threads at the ends of a line that is not one, or of the block
+
+  DESERT_HD typename Law::Word operator()(int word, int further = 0) const {
+    static_assert(Law::reach <= 3, "a ring of one place is passed three times");
+    const int wanted = thread + further;
+    if (ring) {
+      const int there = wrap_once(wrap_once(wrap_once(wanted, length), length), length);
+      return words[word * pitch + there];
+    }
+    const int there = wanted < first ? first : wanted > last ? last : wanted;
+    const typename Law::Word value = words[word * pitch + there];
+    return there == wanted ? value : law.beyond(word, value);
+  }
+};
+
+/// What a thread hands on.
+template <class Word>
+struct LineAfter {
+  Word* words;
+  int pitch;
+
+  DESERT_HD Word& operator()(int word) const { return words[word * pitch]; }
+};
+
 /// Each thread has a place of a line. What a line hands on lies in shared memory, and the loads of the next
 /// `ahead` lines are under way while one is passed: they take several times as long as that. The first line
 /// of the block finds `from`, or what the law says if it begins the sweep; `to` gets what the last one hands
-/// on.
-template <class Law>
+/// on. `ring`: the block passes the whole of lines that are rings. Threads that have no place of their own
+/// repeat one, and store nothing.
+template <class Law, bool ring>
 __global__ void __launch_bounds__(longest_line_block)
     lines_kernel(LineBlock block, bool begins, LineWords<typename Law::Word> from,
                  LineWords<typename Law::Word> to, Law law) {
   using Word = typename Law::Word;
-  constexpr int ahead = 4, words = Law::words, reach = Law::reach;
+  constexpr int ahead = 4, words = Law::words;
   extern __shared__ __align__(16) char scratch[];
   auto* const memory = reinterpret_cast<Word*>(scratch);
-  const int width = block.own + 2 * block.margin, pitch = width + 2 * reach, thread = threadIdx.x;
-  const LineWords<Word> lines[2] = {{memory, width, reach}, {memory + words * pitch, width, reach}};
-  const int unwrapped = block.place(blockIdx.x, thread), length = block.length;
-  const bool works = thread < width && (block.around || (unwrapped >= 0 && unwrapped < length));
-  const bool own = works && block.is_own(blockIdx.x, unwrapped), whole = gridDim.x == 1;
-  const int place = block.around ? wrap(unwrapped, length) : unwrapped;
+  const int thread = threadIdx.x, pitch = blockDim.x, length = block.length;
+  const int of_first = block.place(blockIdx.x, 0), width = block.own + 2 * block.margin;
+  const int unwrapped = of_first + thread;
+  const int place = block.around ? wrap(unwrapped, length) : clamp_index(unwrapped, length);
+  const bool own = thread < width && block.is_own(blockIdx.x, unwrapped);
+  const int first_thread = block.around ? 0 : max(0, -of_first),
+            last_thread = block.around ? width - 1 : min(width, length - of_first) - 1;
 
-  // The places beyond the ends of a line: those of a ring lie in the block itself, or in its margins.
-  const auto fill_beyond = [&](const LineWords<Word>& line) {
-    if (block.around) {
-      if (!whole) return;
-      for (int other = thread - length; other >= -reach; other -= length)
-        for (int w = 0; w < words; ++w) line(w, other) = line(w, thread);
-      for (int other = thread + length; other < length + reach; other += length)
-        for (int w = 0; w < words; ++w) line(w, other) = line(w, thread);
-      return;
-    }
-    for (int n = 1; n <= reach; ++n)
-      for (int w = 0; w < words; ++w) {
-        if (place == 0) line(w, thread - n) = law.beyond(w, line(w, thread));
-        if (place == length - 1) line(w, thread + n) = law.beyond(w, line(w, thread));
-      }
-  };
-
-  for (int n = thread; n < 2 * words * pitch; n += blockDim.x) memory[n] = Word{};
-  __syncthreads();
+  for (int w = 0; w < words; ++w)
+    memory[w * pitch + thread] = begins ? law.before_first(w, place) : from(w, place);
   typename Law::Loaded loaded[ahead];
-  if (works) {
-    for (int w = 0; w < words; ++w)
-      lines[0](w, thread) = begins ? law.before_first(w, place) : from(w, place);
-    fill_beyond(lines[0]);
+  const auto load = [&](int line) { return law.load(min(line, block.end - 1), place); };
 #pragma unroll
-    for (int d = 0; d < ahead; ++d)
-      if (block.first + d < block.end) loaded[d] = law.load(block.first + d, place);
-  }
+  for (int d = 0; d < ahead; ++d) loaded[d] = load(block.first + d);
   __syncthreads();
   for (int first = block.first; first < block.end; first += ahead) {
 #pragma unroll
     for (int d = 0; d < ahead; ++d) {
       const int line = first + d;
       if (line >= block.end) break;
-      if (works) {
-        const LineWords<Word>&before = lines[(line - block.first) & 1],
-              &after = lines[(line - block.first + 1) & 1];
-        const typename Law::Loaded present = loaded[d];
-        if (line + ahead < block.end) loaded[d] = law.load(line + ahead, place);
-        const auto result = law.pass(present, before.from(thread), after.from(thread));
-        if (own) law.store(line, place, result);
-        fill_beyond(after);
-      }
+      static_assert(ahead % 2 == 0, "lines take turns with two parts of the memory");
+      const LineBefore<Law, ring> before{
+          law, memory + d % 2 * words * pitch, pitch, thread, length, first_thread, last_thread};
+      const auto result =
+          law.pass(loaded[d], before,
+                   LineAfter<Word>{memory + (1 - d % 2) * words * pitch + thread, pitch});
       __syncthreads();
+      loaded[d] = load(line + ahead);
+      if (own) law.store(line, place, result);
     }
   }
   if (!own) return;
-  const LineWords<Word>& last = lines[(block.end - block.first) & 1];
-  for (int w = 0; w < words; ++w) to(w, place) = last(w, thread);
+  const int last_part = (block.end - block.first) % 2 * words * pitch;
+  for (int w = 0; w < words; ++w) to(w, place) = memory[last_part + w * pitch + thread];
 }
 
 template <class Law>
@@ -336,14 +347,16 @@ void for_each_line_in_turn(CudaExec& exec, int first, int end, int length, typen
     block.own = cuda::longest_line_block - 2 * margin;
   }
   const int blocks = (length + block.own - 1) / block.own;
-  const int width = block.own + 2 * block.margin, threads = (width + 31) / 32 * 32;
-  const std::size_t bytes = words_for_lines(Law::words, Law::reach, width) * sizeof(typename Law::Word);
+  const int threads = (block.own + 2 * block.margin + 31) / 32 * 32;
+  const auto bytes = static_cast<std::size_t>(2 * Law::words * threads) * sizeof(typename Law::Word);
   Words from{words, length, Law::reach},
       to{words + words_of_line(Law::words, Law::reach, length), length, Law::reach};
+  const auto kernel =
+      whole && block.around ? cuda::lines_kernel<Law, true> : cuda::lines_kernel<Law, false>;
   for (int line = first; line < end; line = block.end) {
     block.first = line;
     block.end = whole ? end : std::min(line + lines_at_once, end);
-    cuda::lines_kernel<<<blocks, threads, bytes, cuda::stream(exec)>>>(block, line == first, from, to, law);
+    kernel<<<blocks, threads, bytes, cuda::stream(exec)>>>(block, line == first, from, to, law);
     check_cuda(cudaGetLastError(), "launch over lines");
     std::swap(from, to);
   }

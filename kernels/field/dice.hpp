@@ -76,7 +76,9 @@ struct Die {
 
   DESERT_HD std::uint32_t word(int cell) const {
 #if defined(__CUDA_ARCH__)
-    return scrambled((static_cast<std::uint32_t>(cell) + part) ^ (device_key ? *device_key : key)) + turn;
+    // No kernel changes the keys that it reads, so that loops may read them once.
+    const std::uint32_t own_key = device_key ? __ldg(device_key) : key;
+    return scrambled((static_cast<std::uint32_t>(cell) + part) ^ own_key) + turn;
 #else
     return scrambled((static_cast<std::uint32_t>(cell) + part) ^ key) + turn;
 #endif

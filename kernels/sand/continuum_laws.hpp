@@ -243,8 +243,8 @@ struct PassSand {
     });
     return cell;
   }
-  template <class Words>
-  DESERT_HD Result pass(const Loaded& cell, const Words& before, const Words& after) const {
+  template <class Before, class After>
+  DESERT_HD Result pass(const Loaded& cell, const Before& before, const After& after) const {
     Quanta come[3];  // to the place before, to this one, to the one after
     unrolled<3>([&](auto k) DESERT_INLINE {
       come[k] = cell.entering[k] + landing(drift, [&](int j) DESERT_INLINE { return before(0, k - 1 + j); });

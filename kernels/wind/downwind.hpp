@@ -22,20 +22,15 @@ struct Downwind {
 
   Grid grid;
   bool along_x, backward;
-  int first_cell, line_stride,
-      place_stride;  ///< cell = first_cell + line · line_stride + place · place_stride
+  int first_slot, slot_x, slot_y;  ///< slot = first_slot + x · slot_x + y · slot_y
 
   Downwind(const Grid& g, Vector wind)
       : grid(g),
         along_x(std::fabs(wind.x) >= std::fabs(wind.y)),
         backward(along_x ? wind.x < 0 : wind.y < 0),
-        first_cell(0),
-        line_stride(along_x ? 1 : g.width),
-        place_stride(along_x ? g.width : 1) {
-    if (!backward) return;
-    first_cell = (lines() - 1) * line_stride;
-    line_stride = -line_stride;
-  }
+        first_slot(backward ? (lines() - 1) * length() : 0),
+        slot_x(along_x ? (backward ? -length() : length()) : 1),
+        slot_y(along_x ? 1 : (backward ? -length() : length())) {}
 
   DESERT_HD int lines() const { return along_x ? grid.width : grid.height; }
   DESERT_HD int length() const { return along_x ? grid.height : grid.width; }
@@ -53,11 +48,7 @@ struct Downwind {
     return backward ? lines() - 1 - along : along;
   }
   DESERT_HD int place_of(int x, int y) const { return along_x ? y : x; }
-  DESERT_HD int slot(int x, int y) const { return line_of(x, y) * length() + place_of(x, y); }
-  /// The cell at a place of a line.
-  DESERT_HD int cell(int line, int place) const {
-    return first_cell + line * line_stride + place * place_stride;
-  }
+  DESERT_HD int slot(int x, int y) const { return first_slot + x * slot_x + y * slot_y; }
   /// A place of the line that lies within the grid: wrapped, or −1 beyond an open edge; at most three cells
   /// beyond the edges.
   DESERT_HD int place_within(int place) const {

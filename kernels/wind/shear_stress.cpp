@@ -29,16 +29,30 @@ struct Upwind {
   }
 };
 
-/// A sweep over the terrain; where that is periodic along it, it may begin before its first line.
+/// The heights of the ground in the order of the sweeps.
+struct TakeGround {
+  Downwind order;
+  const float* heights;
+  float* ground;
+
+  DESERT_HD void operator()(int x, int y) const {
+    ground[order.slot(x, y)] = heights[order.grid.index(x, y)];
+  }
+};
+
+/// A sweep with or against the wind over fields in the order of the former; where the terrain is periodic
+/// along it, it may begin before its first line.
 struct Sweep {
   static constexpr int reach = Upwind::reach;
   static_assert(reach == reach_of_words);
   using Word = float;
   Downwind order;
+  bool against;
   Upwind upwind;
 
-  DESERT_HD int cell(int line, int place) const {
-    return order.cell(line < 0 ? line + order.lines() : line, place);
+  DESERT_HD int slot(int line, int place) const {
+    const int lines = order.lines(), visited = line < 0 ? line + lines : line;
+    return (against ? lines - 1 - visited : visited) * order.length() + place;
   }
   DESERT_HD bool around() const { return order.periodic_across(); }
   DESERT_HD float beyond(int, float nearest) const { return nearest; }
@@ -50,21 +64,21 @@ struct FindLee : Sweep {
   static constexpr int words = 1;
   using Loaded = float;
   float rise;  ///< [quanta]
-  const float* heights;
+  const float* ground;
   float* lee;
 
-  FindLee(const Sweep& against, float per_line, const float* ground, float* to)
-      : Sweep(against), rise(per_line), heights(ground), lee(to) {}
+  FindLee(const Sweep& windward, float per_line, const float* heights, float* to)
+      : Sweep(windward), rise(per_line), ground(heights), lee(to) {}
 
   DESERT_HD float before_first(int, int) const { return 2.0f * static_cast<float>(wall_height); }
-  DESERT_HD float load(int line, int place) const { return heights[cell(line, place)]; }
-  template <class Words>
-  DESERT_HD float pass(float height, const Words& before, const Words& after) const {
+  DESERT_HD float load(int line, int place) const { return ground[slot(line, place)]; }
+  template <class Before, class After>
+  DESERT_HD float pass(float height, const Before& before, const After& after) const {
     const float low = minimum(height, upwind.interpolated(before, 0) + rise);
     after(0) = low;
     return low;
   }
-  DESERT_HD void store(int line, int place, float low) const { lee[cell(line, place)] = low; }
+  DESERT_HD void store(int line, int place, float low) const { lee[slot(line, place)] = low; }
 };
 
 /// The surface with separation bubbles, line after line downwind.
@@ -78,15 +92,15 @@ struct FillBubbles : Sweep {
   };
   float steepest;         ///< fall of the separated flow from a line to the next [quanta]
   float lines_a_quantum;  ///< over which the flow bends, of the height above the lee
-  const float *heights, *lee;
+  const float *ground, *lee;
   float* filled;
 
-  FillBubbles(const Sweep& with, float steepest_fall, float lines_per_quantum, const float* ground,
+  FillBubbles(const Sweep& leeward, float steepest_fall, float lines_per_quantum, const float* heights,
               const float* low, float* to)
-      : Sweep(with),
+      : Sweep(leeward),
         steepest(steepest_fall),
         lines_a_quantum(lines_per_quantum),
-        heights(ground),
+        ground(heights),
         lee(low),
         filled(to) {}
 
@@ -94,23 +108,35 @@ struct FillBubbles : Sweep {
     return word == height ? -2.0f * static_cast<float>(wall_height) : 0.0f;
   }
   DESERT_HD Loaded load(int line, int place) const {
-    const int i = cell(line, place);
-    const float ground = heights[i];
-    return {ground, steepest / maximum((ground - lee[i]) * lines_a_quantum, 1.0f)};
+    const int n = slot(line, place);
+    const float here = ground[n];
+    return {here, steepest / maximum((here - lee[n]) * lines_a_quantum, 1.0f)};
   }
-  template <class Words>
-  DESERT_HD float pass(const Loaded& ground, const Words& before, const Words& after) const {
+  template <class Before, class After>
+  DESERT_HD float pass(const Loaded& here, const Before& before, const After& after) const {
     const float below = upwind.interpolated(before, height), bends = upwind.interpolated(before, bend);
     const float falls = maximum(upwind.interpolated(before, slope) - bends, -steepest), flow = below + falls;
-    const bool attached = ground.height >= flow;
-    const float along_ground = clamp(ground.height - below, -steepest, 0.0f);
-    const float surface = attached ? ground.height : flow;
+    const bool attached = here.height >= flow;
+    const float along_ground = clamp(here.height - below, -steepest, 0.0f);
+    const float surface = attached ? here.height : flow;
     after(height) = surface;
     after(slope) = attached ? along_ground : falls;
-    after(bend) = attached ? ground.bend : bends;
+    after(bend) = attached ? here.bend : bends;
     return surface;
   }
-  DESERT_HD void store(int line, int place, float surface) const { filled[cell(line, place)] = surface; }
+  DESERT_HD void store(int line, int place, float surface) const { filled[slot(line, place)] = surface; }
+};
+
+/// Means of the surface with its bubbles along the rows of the terrain.
+struct CoarsenFilled {
+  wind::CoarsenRows rows;  ///< of heights in the order of the sweep
+  Downwind order;
+
+  DESERT_HD void operator()(int column, int y) const {
+    const float* const filled = rows.heights;
+    const Downwind slots = order;
+    rows.store_mean(column, y, [filled, slots, y](int x) { return filled[slots.slot(x, y)]; });
+  }
 };
 
 /// Multiplies the spectrum of the surface by the response: real parts become τ_∥/τ_0, imaginary parts
@@ -151,7 +177,8 @@ struct BlowOverGround {
   wind::CoarseGrid coarse;
   wind::Vector above, along;
   const Complex* rows;  ///< null: no response
-  const float *heights, *filled;
+  Downwind order;
+  const float *heights, *filled;  ///< in the order of the terrain, and in that of the sweep
   float per_fall;  ///< 1 over what the separated flow falls in a cell [1/quanta]
   const float *perturbation_x, *perturbation_y;
   float *wind_x, *wind_y;
@@ -167,7 +194,7 @@ struct BlowOverGround {
       column.move_to(along_y);
       response = column.at(along_y);
     }
-    const float open = 1.0f - clamp((filled[i] - heights[i]) * per_fall, 0.0f, 1.0f);
+    const float open = 1.0f - clamp((filled[order.slot(x, y)] - heights[i]) * per_fall, 0.0f, 1.0f);
     const float parallel = maximum(1.0f + response.re, 0.0f) * open, across = response.im * open;
     const float size = sqrtf(hypotenuse(parallel, across));
     const float scale = size > 0.0f ? 1.0f / size : 0.0f;
@@ -180,30 +207,32 @@ struct BlowOverGround {
 constexpr float longest_bubble = 120.0f;
 
 template <class E>
-void fill_bubbles(E& exec, const TerrainView& t, wind::Vector along, float tangent,
+void fill_bubbles(E& exec, const TerrainView& t, const Downwind& order, wind::Vector along, float tangent,
                   const surface::Heights& heights, Workspace& work) {
-  const Downwind order(t.grid, along), against(t.grid, {-along.x, -along.y});
   const float shift = order.shift(along.x, along.y), l = t.grid.cell_size;
   const float line = l * std::sqrt(1.0f + shift * shift);  // from a line to the next [m]
   const int lines = order.lines(), before = static_cast<int>(std::ceil(longest_bubble / l));
   const int first = order.periodic_along() ? -std::min(lines, before) : 0;
-  const float *ground = heights.cell_heights.data(), *lee = work.lee.data();
-  const Sweep windward{against, Upwind(to_fixed_point(against.shift(-along.x, -along.y)))},
-      leeward{order, Upwind(to_fixed_point(shift))};
-  for_each_line_in_turn(exec, first, lines, order.length(), work.lines.data(),
-                        FindLee(windward, lee_slope * line * t.quanta_per_metre, ground, work.lee.data()));
+  const float *ground = work.ground.data(), *lee = work.lee.data();
+  for_each_cell(exec, t.grid, TakeGround{order, heights.cell_heights.data(), work.ground.data()});
+  const auto sweep = [&](bool against) {
+    return Sweep{order, against, Upwind(to_fixed_point(against ? -shift : shift))};
+  };
   for_each_line_in_turn(
       exec, first, lines, order.length(), work.lines.data(),
-      FillBubbles(leeward, tangent * line * t.quanta_per_metre, bend_length / (line * t.quanta_per_metre),
+      FindLee(sweep(true), lee_slope * line * t.quanta_per_metre, ground, work.lee.data()));
+  for_each_line_in_turn(
+      exec, first, lines, order.length(), work.lines.data(),
+      FillBubbles(sweep(false), tangent * line * t.quanta_per_metre, bend_length / (line * t.quanta_per_metre),
                   ground, lee, work.filled.data()));
 }
 
 template <class E>
-void respond(E& exec, const TerrainView& t, const ShearStressParameters& p, wind::Vector along,
-             float reference, Workspace& work) {
+void respond(E& exec, const TerrainView& t, const ShearStressParameters& p, const Downwind& order,
+             wind::Vector along, float reference, Workspace& work) {
   const wind::CoarseGrid& coarse = work.coarse;
   const wind::CoarsenRows rows{coarse, work.filled.data(), reference, work.row_means.data()};
-  for_each_cell(exec, rows.grid(), rows);
+  for_each_cell(exec, rows.grid(), CoarsenFilled{rows, order});
   const Grid grid = coarse.transformed();
   for_each_cell(
       exec, grid,
@@ -227,10 +256,11 @@ void step(E& exec, const TerrainView& t, const ShearStressParameters& p, wind::V
       speed > 0.0f ? wind::Vector{above.x / speed, above.y / speed} : wind::Vector{1, 0};
   const auto tangent = static_cast<float>(std::tan(p.separation_deg * pi / 180.0));
   const bool responds = speed > 0.0f && (p.in_phase > 0.0f || p.in_quadrature > 0.0f);
-  fill_bubbles(exec, t, along, tangent, heights, work);
-  if (responds) respond(exec, t, p, along, static_cast<float>(reference), work);
+  const Downwind order(t.grid, along);
+  fill_bubbles(exec, t, order, along, tangent, heights, work);
+  if (responds) respond(exec, t, p, order, along, static_cast<float>(reference), work);
   for_each_cell(exec, t.grid,
-                BlowOverGround{work.coarse, above, along, responds ? work.rows.data() : nullptr,
+                BlowOverGround{work.coarse, above, along, responds ? work.rows.data() : nullptr, order,
                                heights.cell_heights.data(), work.filled.data(),
                                1.0f / (tangent * t.grid.cell_size * t.quanta_per_metre), perturbation_x,
                                perturbation_y, t.real(Layer::wind_x), t.real(Layer::wind_y)});

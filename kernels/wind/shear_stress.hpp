@@ -53,6 +53,7 @@ constexpr int words_handed_on = 3, reach_of_words = 2;
 struct Workspace {
   wind::CoarseGrid coarse;
   std::unique_ptr<Fft> fft;
+  Buffer<float> ground;     ///< heights in the order of the sweep, as `lee` and `filled` [quanta]
   Buffer<float> lee;        ///< how low the ground lies downwind of each cell [quanta]
   Buffer<float> filled;     ///< the surface with the bubbles [quanta]
   Buffer<float> lines;      ///< what lines of the sweeps hand on

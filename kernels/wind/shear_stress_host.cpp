@@ -46,8 +46,8 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const ShearStressParamete
   const wind::CoarseGrid& c = work.coarse;
   const auto values = static_cast<std::size_t>(c.values());
   work.fft = exec.make_fft(c.width, c.height);
-  work.lee = Buffer<float>(exec, static_cast<std::size_t>(grid.cells()));
-  work.filled = Buffer<float>(exec, static_cast<std::size_t>(grid.cells()));
+  for (Buffer<float>* buffer : {&work.ground, &work.lee, &work.filled})
+    *buffer = Buffer<float>(exec, static_cast<std::size_t>(grid.cells()));
   work.lines = Buffer<float>(
       exec, words_for_lines(words_handed_on, reach_of_words, std::max(grid.width, grid.height)));
   work.row_means = Buffer<float>(exec, static_cast<std::size_t>(c.columns) * grid.height);
@@ -60,7 +60,7 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const ShearStressParamete
 }
 
 std::size_t Workspace::bytes() const {
-  return fft->bytes() + lee.bytes() + filled.bytes() + lines.bytes() + row_means.bytes() + rise.bytes() +
+  return fft->bytes() + ground.bytes() + lee.bytes() + filled.bytes() + lines.bytes() + row_means.bytes() + rise.bytes() +
          spectrum.bytes() + rows.bytes() + transfer_x.bytes() + transfer_y.bytes();
 }
 

@@ -25,8 +25,8 @@ struct Mixing {
   Number beyond(int word, Number nearest) const { return word == 0 ? 0 : nearest; }
   Number before_first(int word, int place) const { return static_cast<Number>(place * 7 + word + 1); }
   Number load(int line, int place) const { return static_cast<Number>(line * 1000003 + place * 31); }
-  template <class Words>
-  Number pass(Number loaded, const Words& before, const Words& after) const {
+  template <class Before, class After>
+  Number pass(Number loaded, const Before& before, const After& after) const {
     Number sum = loaded;
     for (int k = -reach; k <= reach; ++k) sum = sum * 3 + before(0, k) + 5 * before(1, -k);
     after(0) = sum;
