@@ -88,7 +88,7 @@ struct FillBubbles : Sweep {
   enum Words { height, slope, bend, words };
   static_assert(words == words_handed_on);
   struct Loaded {
-    float height, bend;
+    float height, lee;
   };
   float steepest;         ///< fall of the separated flow from a line to the next [quanta]
   float lines_a_quantum;  ///< over which the flow bends, of the height above the lee
@@ -109,8 +109,7 @@ struct FillBubbles : Sweep {
   }
   DESERT_HD Loaded load(int line, int place) const {
     const int n = slot(line, place);
-    const float here = ground[n];
-    return {here, steepest / maximum((here - lee[n]) * lines_a_quantum, 1.0f)};
+    return {ground[n], lee[n]};
   }
   template <class Before, class After>
   DESERT_HD float pass(const Loaded& here, const Before& before, const After& after) const {
@@ -121,8 +120,11 @@ struct FillBubbles : Sweep {
     const float surface = attached ? here.height : flow;
     after(height) = surface;
     after(slope) = attached ? along_ground : falls;
-    after(bend) = attached ? here.bend : bends;
+    after(bend) = attached ? bend_from(here) : bends;
     return surface;
+  }
+  DESERT_HD float bend_from(const Loaded& brink) const {
+    return steepest / maximum((brink.height - brink.lee) * lines_a_quantum, 1.0f);
   }
   DESERT_HD void store(int line, int place, float surface) const { filled[slot(line, place)] = surface; }
 };
