@@ -111,9 +111,10 @@ TEST_F(Layers, AllStayWithinTheirThresholdsOverManyUpdates) {
   const TerrainClient client(node_, with(TerrainClient::known_layers()));
   ASSERT_TRUE(client.wait_for_terrain(timeout));
   ASSERT_EQ(client.layers().size(), map_layers.size());
-  step_until_updated(client);
+  // Before the steps that it takes until updates come, in which the marker of sand may come to rest.
   std::map<std::string, std::vector<float>> start;
   for (const std::string& layer : client.layers()) start[layer] = client.layer_map(layer)->values();
+  step_until_updated(client);
   for (int round = 0; round < 20; ++round) {
     if (round % 5 == 4) add_sand(round % 2 ? 0.3 : 4);
     ASSERT_TRUE(client.wait_for_step(step(4).step, timeout)) << round;
