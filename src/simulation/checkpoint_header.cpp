@@ -196,7 +196,7 @@ void read_series(const YAML::Node& node, const std::string& path, CheckpointHead
 std::vector<Layer> needed_layers(const Scenario& scenario) {
   std::vector<Layer> needed{Layer::bedrock, Layer::sand, Layer::airborne_sand};
   for (const Process& process : process_table().processes)
-    if (process.active(scenario))
+    if (process_table().is_active(process, scenario))
       for (Layer layer : process.writes)
         if (info(layer).lifetime == Lifetime::persistent) needed.push_back(layer);
   return needed;

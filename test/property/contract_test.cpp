@@ -47,6 +47,24 @@ const std::map<std::string, std::string> worlds{
      "wind: {speed: 12, direction_deg: 20, features: [{kind: vortex, x: 10, y: 10, radius: 5}]}\n"
      "saltation: {model: continuum, influx: 1.0e-5, flux: true}\nabrasion: {rate: 0.05, cover: 3}\n"
      "echo_dunes: {enabled: true}\nlooseness: {enabled: true}\nrun: {time_step: 600}\n"},
+    {"werner",
+     "grid: {width: 40, height: 36, boundary: open}\n"
+     "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
+     "  noise: {layer: sand, low: 0, high: 4, scale: 5, threshold: 0.4},\n"
+     "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
+     "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nslab_model: {kind: werner}\n"},
+    {"momiji",
+     "grid: {width: 40, height: 36, boundary: open}\n"
+     "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
+     "  noise: {layer: sand, low: 0, high: 4, scale: 5, threshold: 0.4},\n"
+     "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
+     "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nslab_model: {kind: momiji}\n"},
+    {"bishop",
+     "grid: {width: 40, height: 36, boundary: open}\n"
+     "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
+     "  noise: {layer: sand, low: 0, high: 4, scale: 5, threshold: 0.4},\n"
+     "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
+     "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nslab_model: {kind: bishop}\n"},
     {"still",
      "grid: {width: 40, height: 36}\nterrain: [noise: {layer: sand, low: 0, high: 9, scale: 3}]\n"
      "saltation: {enabled: false}\navalanching: {scheme: sweeps, sweeps: 3}\nwind_shadow: {curved: true}\n"},

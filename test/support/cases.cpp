@@ -86,6 +86,14 @@ std::vector<Case> process_cases(bool transforms) {
           real +
           "abrasion: {rate: 1.0e-4, cover: 0.5}\necho_dunes: {enabled: true}\n"
           "reptation: {method: smoothing, strength: 1.0e-4}\n");
+  const std::string blown = "wind: {speed: 5, direction_deg: 27}\n";
+  add("werner", terrain + blown + "slab_model: {kind: werner}\n");
+  add("momiji over rock",
+      terrain + obstacles + "  - noise: {layer: soil, low: 0, high: 3, scale: 8, threshold: 0.5, seed: 3}\n" +
+          blown +
+          "saltation: {influx: 0.5}\n"
+          "slab_model: {kind: momiji, polling: non_repeated, poll_time: 0.7}\n");
+  add("bishop", terrain + blown + "slab_model: {kind: bishop, hop_time: 0.6}\n");
   const std::string wet =
       "rain: {rate: 2.0e-4, share_low: 0.3, share_high: 0.7, height: 8, scale: 12, frequency: 0.1}\n"
       "hydraulic_erosion: {enabled: true, capacity: 1}\nmoisture: {enabled: true}\n";

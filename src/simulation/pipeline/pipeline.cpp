@@ -17,6 +17,14 @@ bool Process::may_write(Layer layer) const {
   return has(writes) || has(writes_if_in_use);
 }
 
+bool ProcessTable::is_active(const Process& process, const Scenario& scenario) const {
+  return process.active(scenario) &&
+         std::none_of(processes.begin(), processes.end(), [&](const Process& other) {
+           return std::count(other.replaces.begin(), other.replaces.end(), process.name) > 0 &&
+                  other.active(scenario);
+         });
+}
+
 Pipeline::Pipeline(SimulationState& state, ProcessTable table)
     : state_(state), table_(std::move(table)), fields_(state.exec(), state.terrain.grid()) {
   prepare();
@@ -35,7 +43,7 @@ void Pipeline::prepare() {
   fused_launches_.clear();
   stages_.reserve(table_.processes.size());
   for (const Process& process : table_.processes) {
-    if (!process.active(state_.scenario)) continue;
+    if (!table_.is_active(process, state_.scenario)) continue;
     Stage stage{&process, process.make_workspace ? process.make_workspace(state_) : nullptr};
     // What the process kept before goes once its successor is there, not with all others': less memory at a
     // time.
@@ -58,14 +66,14 @@ void Pipeline::allocate_layers() {
   std::vector<Layer> unused;
   for (const Process& process : table_.processes)
     for (Layer layer : process.writes) {
-      if (process.active(state_.scenario))
+      if (table_.is_active(process, state_.scenario))
         bring_into_use(process, layer);
       else if (info(layer).lifetime == Lifetime::derived || info(layer).lifetime == Lifetime::held)
         unused.push_back(layer);
     }
   for (Layer layer : unused) {
     const bool used = std::any_of(table_.processes.begin(), table_.processes.end(), [&](const Process& p) {
-      return p.active(state_.scenario) && std::count(p.writes.begin(), p.writes.end(), layer) > 0;
+      return table_.is_active(p, state_.scenario) && std::count(p.writes.begin(), p.writes.end(), layer) > 0;
     });
     if (!used) state_.terrain.set_allocated(layer, false);
   }

@@ -16,6 +16,9 @@ namespace desert_sim {
 struct ProcessTable {
   std::vector<Process> processes;
   std::vector<FusedProcesses> fused;
+
+  /// Whether a scenario has it: it is active there, and none that is active replaces it.
+  bool is_active(const Process& process, const Scenario& scenario) const;
 };
 
 /// Milliseconds of one process since the times were cleared.

@@ -75,6 +75,7 @@ struct Process {
   std::string source;                   ///< of its equations
   std::string header;                   ///< where they stand in this repository
   std::function<bool(const Scenario&)> active;
+  std::vector<std::string> replaces;  ///< processes that are not active while it is
 
   std::vector<Layer> reads;   ///< where they are in use; those that it writes need not be repeated
   std::vector<Layer> writes;  ///< brought into use while it is active

@@ -20,6 +20,10 @@ FusedProcesses fused_wind_shadow_and_saltation();
 
 Process continuum_process();  // continuum.cpp
 
+Process werner_process();  // slabs.cpp
+Process momiji_process();
+Process bishop_process();
+
 Process sand_record_process();  // looseness.cpp
 Process looseness_process();
 Process slide_looseness_process();
