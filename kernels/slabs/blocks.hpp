@@ -55,6 +55,9 @@ struct Block {
   int line, place, lines, places;
 
   DESERT_HD int cells() const { return lines * places; }
+  /// The row of the nth cell, without a division: n / places = n · row_factor() / 2¹⁶ for so few cells.
+  DESERT_HD int row_factor() const { return 65536 / places + 1; }
+  DESERT_HD int row(int n, int factor) const { return (n * factor) >> 16; }
   /// How far a cell lies outside, along either axis.
   DESERT_HD int beyond(int l, int p) const {
     const int before_lines = line - l, after_lines = l - (line + lines - 1);
@@ -86,8 +89,8 @@ struct Blocks {
   }
 };
 
-/// Polls of a block of so many cells, of which each is polled `per_cell` times [2⁻²⁰], are hardly ever more: by
-/// a permutation of the next power of two, or at random (mean and six standard deviations).
+/// Polls of a block of so many cells, of which each is polled `per_cell` times [2⁻²⁰], are hardly ever more:
+/// by a permutation of the next power of two, or at random (mean and six standard deviations).
 inline int most_polls(int cells, std::uint32_t per_cell) {
   double numbers = 1;
   while (numbers < cells) numbers *= 2;

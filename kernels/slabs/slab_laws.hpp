@@ -142,22 +142,30 @@ DESERT_HD void with_rolling(const Lattice& lattice, const Block& block, const Wo
     work(Rolling<false>{lattice, block});
 }
 
-/// Slabs that have come to a block are put down, and holes go on.
+/// Slabs that have come to a block are put down, and holes go on. On a GPU, whose threads have a block each,
+/// all look for their next slab first, and then roll it at the same time.
 template <class Rolling>
 DESERT_HD void settle(const Rolling& rolling) {
   const Lattice& lattice = rolling.lattice;
   const Block& block = rolling.block;
-  for (int row = 0; row < block.lines; ++row) {
-    const int line = block.line + row, first = rolling.cell(line, block.place).slot;
-    for (int column = 0; column < block.places; ++column) {
-      const int n = rolling.is_inside ? first + column : lattice.slot(line, block.place + column);
-      const std::uint32_t come = lattice.arriving[n];
-      if (come == 0) continue;
-      lattice.arriving[n] = 0;
-      const typename Rolling::Cell at{line, block.place + column, n};
-      for (std::uint32_t k = 0; k < come / Lattice::one_hole; ++k) rolling.fill(at);
-      for (std::uint32_t k = 0; k < come % Lattice::one_hole; ++k) rolling.put(at);
+  typename Rolling::Cell at{block.line, block.place - 1, -1};
+  std::uint32_t come = 0;
+  for (;;) {
+    while (come == 0) {
+      if (++at.place == block.place + block.places) {
+        at.place = block.place;
+        if (++at.line == block.line + block.lines) return;
+      }
+      at.slot = rolling.cell(at.line, at.place).slot;
+      come = lattice.arriving[at.slot];
     }
+    const bool hole = come >= Lattice::one_hole;
+    come -= hole ? Lattice::one_hole : Lattice::one_slab;
+    if (come == 0) lattice.arriving[at.slot] = 0;
+    if (hole)
+      rolling.fill(at);
+    else
+      rolling.put(at);
   }
 }
 
@@ -273,8 +281,8 @@ struct FindShade {
   }
 };
 
-/// How often the cells of a block are polled in a round. Polls at random follow each other by Poisson's law: an
-/// equal number for all blocks would make the bed smoother than it is where each poll may be anywhere.
+/// How often the cells of a block are polled in a round. Polls at random follow each other by Poisson's law:
+/// an equal number for all blocks would make the bed smoother than it is where each poll may be anywhere.
 struct Polls {
   SlabPolling polling;
   std::uint32_t per_round;  ///< polls of a cell [2⁻²⁰]
@@ -342,14 +350,14 @@ struct TakeTurn {
     const bool each_once = polls.polling == SlabPolling::non_repeated;
     const int numbers = each_once ? 1 << bits : cells;
     const typename Polls::Range range = polls.of(round, numbers, key);
-    const int row_of = 65536 / block.places + 1;  // cell / places = cell · row_of / 2¹⁶ for so few cells
+    const int row_of = block.row_factor();
     for (int poll = range.begin; poll < range.end; ++poll) {
       const int cell =
           each_once ? permuted(poll & (numbers - 1), bits, key + static_cast<std::uint32_t>(poll >> bits))
                     : static_cast<int>(
                           multiply_high(scrambled(key + static_cast<std::uint32_t>(poll) * 0x9e3779b9u),
                                         static_cast<std::uint32_t>(cells)));
-      const int row = (cell * row_of) >> 16, column = cell - row * block.places;
+      const int row = block.row(cell, row_of), column = cell - row * block.places;
       to[poll - range.begin] =
           cell < cells ? take(rolling, rolling.cell(block.line + row, block.place + column)) : -1;
     }

@@ -10,8 +10,6 @@
 
 namespace desert_sim::slabs {
 
-namespace {
-
 struct SurfaceSum {
   Lattice lattice;
   DESERT_HD long long operator()(int x, int y) const { return lattice.height[lattice.order.slot(x, y)]; }
@@ -36,12 +34,12 @@ float reference_height(E& exec, const Grid& grid, const Lattice& lattice, SlabKi
   return static_cast<float>(mean - 0.5 * static_cast<double>(sum) / cells);
 }
 
-std::uint32_t probability(float p) {
+inline std::uint32_t probability(float p) {
   return static_cast<std::uint32_t>(std::min(4294967295.0, static_cast<double>(p) * 4294967296.0));
 }
 
-Lattice make_lattice(const TerrainView& t, const SlabModelParameters& p, wind::Vector above,
-                     const Workspace& work) {
+inline Lattice make_lattice(const TerrainView& t, const SlabModelParameters& p, wind::Vector above,
+                            const Workspace& work) {
   const Downwind order(t.grid, above);
   const auto quanta = [&](double metres) {
     return static_cast<Quanta>(std::lround(metres * static_cast<double>(t.quanta_per_metre)));
@@ -55,8 +53,6 @@ Lattice make_lattice(const TerrainView& t, const SlabModelParameters& p, wind::V
           work.shade.data(),
           work.arriving.data()};
 }
-
-}  // namespace
 
 template <class E>
 void blow(E& exec, const TerrainView& t, wind::Vector above) {
@@ -76,8 +72,8 @@ struct Round {
   float entering;      ///< slabs that the wind brings to a place of an open edge in a round
 };
 
-Round make_round(const TerrainView& t, const StepInputs& in, const Lattice& lattice, float reference,
-                 const Dice& dice, LedgerView ledger, const Workspace& work) {
+inline Round make_round(const TerrainView& t, const StepInputs& in, const Lattice& lattice, float reference,
+                        const Dice& dice, LedgerView ledger, const Workspace& work) {
   const SlabModelParameters& p = in.model;
   const Downwind& order = lattice.order;
   const double cell = static_cast<double>(t.grid.cell_size),

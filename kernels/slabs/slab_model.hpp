@@ -2,7 +2,7 @@
 /// Slab models of dunes: sand in slabs of equal height, stacked on the cells, of which one at a time is blown
 /// a hop downwind. They take the place of saltation, reptation and avalanching.
 ///
-///   poll       a cell that has a slab gives it to the wind; on average each cell is polled once in `poll_time`
+/// poll       a cell that has a slab gives it to the wind; on average each cell is polled once in `poll_time`
 ///   hop        L cells downwind, again and again until the slab stays
 ///   stay       in the wind's shadow always, else with probability p_s where there is a slab, p_ns where not
 ///   shadow     cells below a line that falls by the angle `shadow_deg` from a cell upwind
@@ -22,10 +22,10 @@
 /// Sequential models in parallel: the terrain is divided into blocks of at least 8 × 8 cells, anew in each
 /// step, and the blocks have four colours like a chessboard of two. Those of one colour lie at least 8 cells
 /// apart. One thread polls a block's cells in turn, and rolls slabs at most four cells out of it; from there
-/// the block they have come to goes on. Then all slabs that were taken fly over resting ground and are counted
-/// where they land, and come to rest when that block's turn comes. Each colour has its turn 16 times in a
-/// `poll_time`, and the shadow is found four times. Order and dice follow from the seed: neither threads nor
-/// backends change a bit.
+/// the block they have come to goes on. Then all slabs that were taken fly over resting ground and are
+/// counted where they land, and come to rest when that block's turn comes. Each colour has its turn 16 times
+/// in a `poll_time`, and the shadow is found four times. Order and dice follow from the seed: neither threads
+/// nor backends change a bit.
 ///
 /// Wind may blow in any direction: hops and shadows go along lines of cells (downwind.hpp) to the nearest
 /// cell, each cell in exactly one line. A slab that flies against rock steeper than repose falls down before

@@ -181,7 +181,7 @@ struct BlowOverGround {
   const Complex* rows;  ///< null: no response
   Downwind order;
   const float *heights, *filled;  ///< in the order of the terrain, and in that of the sweep
-  float per_fall;  ///< 1 over what the separated flow falls in a cell [1/quanta]
+  float per_fall;                 ///< 1 over what the separated flow falls in a cell [1/quanta]
   const float *perturbation_x, *perturbation_y;
   float *wind_x, *wind_y;
 
@@ -220,13 +220,12 @@ void fill_bubbles(E& exec, const TerrainView& t, const Downwind& order, wind::Ve
   const auto sweep = [&](bool against) {
     return Sweep{order, against, Upwind(to_fixed_point(against ? -shift : shift))};
   };
+  for_each_line_in_turn(exec, first, lines, order.length(), work.lines.data(),
+                        FindLee(sweep(true), lee_slope * line * t.quanta_per_metre, ground, work.lee.data()));
   for_each_line_in_turn(
       exec, first, lines, order.length(), work.lines.data(),
-      FindLee(sweep(true), lee_slope * line * t.quanta_per_metre, ground, work.lee.data()));
-  for_each_line_in_turn(
-      exec, first, lines, order.length(), work.lines.data(),
-      FillBubbles(sweep(false), tangent * line * t.quanta_per_metre, bend_length / (line * t.quanta_per_metre),
-                  ground, lee, work.filled.data()));
+      FillBubbles(sweep(false), tangent * line * t.quanta_per_metre,
+                  bend_length / (line * t.quanta_per_metre), ground, lee, work.filled.data()));
 }
 
 template <class E>

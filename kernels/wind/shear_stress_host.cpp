@@ -60,8 +60,8 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const ShearStressParamete
 }
 
 std::size_t Workspace::bytes() const {
-  return fft->bytes() + ground.bytes() + lee.bytes() + filled.bytes() + lines.bytes() + row_means.bytes() + rise.bytes() +
-         spectrum.bytes() + rows.bytes() + transfer_x.bytes() + transfer_y.bytes();
+  return fft->bytes() + ground.bytes() + lee.bytes() + filled.bytes() + lines.bytes() + row_means.bytes() +
+         rise.bytes() + spectrum.bytes() + rows.bytes() + transfer_x.bytes() + transfer_y.bytes();
 }
 
 }  // namespace desert_sim::shear_stress

@@ -60,8 +60,8 @@ double welch(const std::vector<double>& a, const std::vector<double>& b) {
   return (mean_a - mean_b) / std::sqrt(of_mean_a + of_mean_b + 1e-12);
 }
 
-/// |t| over 3.6 comes by chance in 2 of 1000 (18 degrees of freedom): with four statistics and three tests, one
-/// of them fails by chance with 2.5 %. The seeds are fixed.
+/// |t| over 3.6 comes by chance in 2 of 1000 (18 degrees of freedom): with four statistics and three tests,
+/// one of them fails by chance with 2.5 %. The seeds are fixed.
 void expect_alike(const std::vector<Pattern>& a, const std::vector<Pattern>& b) {
   const std::pair<const char*, double Pattern::*> statistics[] = {{"highest stack", &Pattern::highest},
                                                                   {"roughness", &Pattern::roughness},
