@@ -2,7 +2,7 @@
 /// Slab models of dunes: sand in slabs of equal height, stacked on the cells, of which one at a time is blown
 /// a hop downwind. They take the place of saltation, reptation and avalanching.
 ///
-/// poll       a cell that has a slab gives it to the wind; on average each cell is polled once in `poll_time`
+///   poll       a cell that has a slab gives it to the wind; on average each is polled once in `poll_time`
 ///   hop        L cells downwind, again and again until the slab stays
 ///   stay       in the wind's shadow always, else with probability p_s where there is a slab, p_ns where not
 ///   shadow     cells below a line that falls by the angle `shadow_deg` from a cell upwind
