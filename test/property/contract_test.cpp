@@ -192,6 +192,30 @@ TEST(ProcessTable, RowsAreComplete) {
     EXPECT_TRUE(names.count(f.first) && names.count(f.second)) << f.name;
 }
 
+TEST(ProcessTable, OneThatIsActiveReplacesThoseThatItsRowNames) {
+  const ProcessTable& table = process_table();
+  const auto active_in = [&](const std::string& text) {
+    const Scenario s = parse_scenario_text(text, "replaces");
+    std::set<std::string> active;
+    for (const Process& p : table.processes)
+      if (table.is_active(p, s)) active.insert(p.name);
+    return active;
+  };
+  const std::set<std::string> without = active_in("grid: {width: 16, height: 16}\n");
+  EXPECT_TRUE(without.count("wind") && without.count("saltation") && without.count("avalanching"));
+  EXPECT_FALSE(without.count("werner"));
+  for (const Process& p : table.processes)
+    for (const std::string& replaced : p.replaces) {
+      SCOPED_TRACE(p.name + " and " + replaced);
+      EXPECT_TRUE(std::any_of(table.processes.begin(), table.processes.end(),
+                              [&](const Process& other) { return other.name == replaced; }));
+      const std::set<std::string> with =
+          active_in("grid: {width: 16, height: 16}\nslab_model: {kind: " + p.name + "}\n");
+      EXPECT_TRUE(with.count(p.name));
+      EXPECT_FALSE(with.count(replaced));
+    }
+}
+
 /// If this fails: desert_run --describe-processes > config/processes.md
 TEST(ProcessTable, PageIsUpToDate) {
   const std::string page = test::file_bytes(std::string(DESERT_SOURCE_DIR) + "/config/processes.md");
