@@ -351,8 +351,8 @@ void for_each_line_in_turn(CpuExec& exec, int first, int end, int length, typena
   fill_beyond(law, length, 0, length, lines[0]);
   // Lines whose places are independent of each other do not make threads wait.
   constexpr bool independent = Law::reach == 0;
-  const bool parallel =
-      independent ? length * (end - first) >= min_parallel_cells : length >= min_parallel_line;
+  const bool parallel = independent ? static_cast<long long>(length) * (end - first) >= min_parallel_cells
+                                    : length >= min_parallel_line;
 #pragma omp parallel num_threads(exec.threads()) if (parallel)
   {
     const long long thread = omp_get_thread_num(), threads = omp_get_num_threads();
