@@ -8,6 +8,7 @@
 #include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/time_units.hpp"
+#include "src/metrics/field.hpp"
 
 namespace desert_sim {
 
@@ -17,8 +18,6 @@ namespace {
 struct Cell {
   int x, y, index;
 };
-
-int wrapped(int i, int n) { return ((i % n) + n) % n; }
 
 /// Index of a cell, wrapped; −1 beyond an open border.
 int index_of(const DuneField& f, int x, int y) {
@@ -45,12 +44,6 @@ std::vector<Cell> collect_cells(const DuneField& f, double threshold, int x, int
         cells.push_back({at.x + dx, at.y + dy, index});
       }
   return cells;
-}
-
-/// Where a parabola through three values, a cell apart, has its top, from the middle one [cells].
-double top_of(double before, double middle, double after) {
-  const double bend = before - 2 * middle + after;
-  return bend < 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0;
 }
 
 /// The middle of a cell whose coordinates may have gone on over borders, brought back onto the terrain.
@@ -86,8 +79,8 @@ Dune measure(const DuneField& f, const std::vector<Cell>& cells, double directio
     return height_at(f, index < 0 ? top->index : index);
   };
   dune.height = beside(0, 0);
-  dune.crest = place(f, top->x + top_of(beside(-1, 0), dune.height, beside(1, 0)),
-                     top->y + top_of(beside(0, -1), dune.height, beside(0, 1)));
+  dune.crest = place(f, top->x + parabola_top(beside(-1, 0), dune.height, beside(1, 0)),
+                     top->y + parabola_top(beside(0, -1), dune.height, beside(0, 1)));
   dune.centre = place(f, sum_x / sum, sum_y / sum);
   dune.volume = sum * f.cell_size * f.cell_size;
   dune.length = (along[1] - along[0] + 1) * f.cell_size;

@@ -7,8 +7,10 @@
 #include <memory>
 #include <string>
 
+#include "src/metrics/correlation.hpp"
+#include "src/metrics/crest_orientation.hpp"
+#include "src/metrics/slip_faces.hpp"
 #include "src/simulation/session.hpp"
-#include "support/crest_pattern.hpp"
 #include "support/dune_shape.hpp"
 #if DESERT_WITH_IO
 #include "src/io/raster_loader.hpp"

@@ -176,9 +176,9 @@ TEST(Dunes, Barchan) {
 /// Crests within 20 degrees of perpendicular to the wind; the distance between them grows.
 TEST(Dunes, Transverse) {
   Running scene(shipped("transverse", small));
-  const double early = wavelength(scene.run(40).field(Layer::elevation), 0);
+  const double early = wavelength(scene.run(40).field(Layer::elevation), 0).value();
   const Field elevation = scene.run(560).field(Layer::elevation);
-  const double late = wavelength(elevation, 0);
+  const double late = wavelength(elevation, 0).value();
   const Orientation o = crest_orientation(elevation, 2);
   DESERT_REPORT("crests at %.1f degrees (coherence %.2f), wavelength %.1f then %.1f m", o.crest_deg,
                 o.coherence, early, late);

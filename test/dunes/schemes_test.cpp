@@ -11,6 +11,7 @@
 
 #include "dunes/running.hpp"
 #include "kernels/avalanching/avalanching.hpp"
+#include "support/imprint.hpp"
 
 namespace desert_sim {
 namespace {
@@ -47,7 +48,7 @@ struct Statistics {
 };
 
 Statistics measure(const Field& elevation) {
-  return {roughness(elevation), wavelength(elevation, 0), crest_orientation(elevation, 2).crest_deg,
+  return {roughness(elevation), wavelength(elevation, 0).value(), crest_orientation(elevation, 2).crest_deg,
           slope_histogram(elevation, 6)};
 }
 

@@ -153,38 +153,6 @@ std::vector<Dune> find_dunes(const Field& elevation, const Field& sand, double w
   return dunes;
 }
 
-std::vector<double> slip_face_directions(const Field& f, double least_share) {
-  constexpr int bins = 72, reach = 3;  // of 5 degrees; ±15 degrees are 7 bins
-  std::vector<double> count(bins, 0.0), around(bins, 0.0);
-  const Slopes s = slopes(f);
-  double total = 0;
-  for (std::size_t i = 0; i < s.slope_deg.size(); ++i) {
-    if (s.slope_deg[i] < slip_face_from_deg) continue;
-    count[static_cast<std::size_t>(wrapped(static_cast<int>(std::floor(s.direction_deg[i] / 5)), bins))] += 1;
-    total += 1;
-  }
-  std::vector<double> directions;
-  if (total == 0) return directions;
-  for (int b = 0; b < bins; ++b)
-    for (int d = -reach; d <= reach; ++d)
-      around[static_cast<std::size_t>(b)] += count[static_cast<std::size_t>(wrapped(b + d, bins))] / total;
-  std::vector<int> order(bins);
-  for (int b = 0; b < bins; ++b) order[static_cast<std::size_t>(b)] = b;
-  const auto share = [&](int b) { return around[static_cast<std::size_t>(wrapped(b, bins))]; };
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share(a) > share(b); });
-  for (int b : order) {
-    double turn = 0;  // from the bin's middle to the mean direction within reach
-    for (int d = -reach; d <= reach; ++d)
-      turn += 5.0 * d * count[static_cast<std::size_t>(wrapped(b + d, bins))] / total;
-    const double direction = std::fmod(5.0 * b + 2.5 + (share(b) > 0 ? turn / share(b) : 0.0) + 360.0, 360.0);
-    const bool peak = share(b) >= share(b - 1) && share(b) >= share(b + 1);
-    const bool apart = std::all_of(directions.begin(), directions.end(),
-                                   [&](double other) { return angle_between_deg(direction, other) >= 45.0; });
-    if (share(b) >= least_share && peak && apart) directions.push_back(direction);
-  }
-  return directions;
-}
-
 WallFront wall_front(const Field& sand, const Field& wall, int y0, int y1, double threshold, double reach) {
   WallFront mean;
   const double l = sand.cell_size;

@@ -1,8 +1,8 @@
 #pragma once
-/// Measures single dunes, slip faces, and what lies in front of walls, from their definitions. Winds name
-/// where the air moves to.
+/// Measures single dunes, and what lies in front of walls, from their definitions. Winds name where the air
+/// moves to.
 
-#include "support/field.hpp"
+#include "src/metrics/field.hpp"
 
 namespace desert_sim {
 
@@ -32,11 +32,6 @@ struct Dune {
 /// Dunes of at least `least_cells`, largest volume first. `elevation` is ground + sand.
 std::vector<Dune> find_dunes(const Field& elevation, const Field& sand, double wind_deg,
                              double threshold = 0.3, std::size_t least_cells = 30);
-
-/// Directions that slip faces (cells from 28 degrees) fall to: maxima of their distribution within ±15
-/// degrees that hold at least `least_share` of the slip faces and lie 45 degrees or more apart; most frequent
-/// first.
-std::vector<double> slip_face_directions(const Field& elevation, double least_share = 0.08);
 
 /// What lies upwind of a wall along one row of cells of an eastward wind.
 struct WallFront {

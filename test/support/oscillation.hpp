@@ -1,7 +1,7 @@
 #pragma once
 /// Whether thin sand oscillates from cell to cell.
 
-#include "support/field.hpp"
+#include "src/metrics/field.hpp"
 
 namespace desert_sim {
 

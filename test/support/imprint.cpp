@@ -1,52 +1,9 @@
-#include "support/crest_pattern.hpp"
+#include "support/imprint.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace desert_sim {
-
-Orientation crest_orientation(const Field& elevation, double sigma) {
-  const Field f = smoothed(elevation, sigma);
-  double xx = 0, xy = 0, yy = 0;
-  for (int y = 0; y < f.height; ++y)
-    for (int x = 0; x < f.width; ++x) {
-      const double gx = f.at(x + 1, y) - f.at(x - 1, y), gy = f.at(x, y + 1) - f.at(x, y - 1);
-      xx += gx * gx;
-      xy += gx * gy;
-      yy += gy * gy;
-    }
-  Orientation o;
-  const double steepest = 0.5 * std::atan2(2 * xy, xx - yy) / degree;
-  o.crest_deg = std::fmod(steepest + 90.0 + 360.0, 180.0);
-  if (xx + yy > 0) o.coherence = std::hypot(xx - yy, 2 * xy) / (xx + yy);
-  return o;
-}
-
-double wavelength(const Field& f, double direction_deg) {
-  const double c = std::cos(direction_deg * degree), s = std::sin(direction_deg * degree);
-  double mean = 0;
-  for (float v : f.values) mean += v / static_cast<double>(f.values.size());
-  const auto correlation = [&](int d) {
-    double sum = 0;
-    for (int y = 0; y < f.height; ++y)
-      for (int x = 0; x < f.width; ++x) sum += (f.at(x, y) - mean) * (f.sample(x + d * c, y + d * s) - mean);
-    return sum;
-  };
-  const int most = std::min(f.width, f.height) / 2;
-  bool crossed = false;
-  double before = correlation(0), here = before;
-  for (int d = 1; d <= most; ++d) {
-    const double next = correlation(d);
-    if (crossed && here > 0 && here >= before && here > next) {
-      const double bend = before - 2 * here + next;
-      return (d - 1 + (bend < 0 ? 0.5 * (before - next) / bend : 0.0)) * f.cell_size;
-    }
-    crossed = crossed || next < 0;
-    before = here;
-    here = next;
-  }
-  return 0;
-}
 
 namespace {
 

@@ -30,6 +30,10 @@ struct Field {
   double sample(double x, double y) const;
 };
 
+/// Where a parabola through three values, a cell apart, has its top, from the middle one [cells]; within half
+/// a cell.
+double parabola_top(double before, double middle, double after);
+
 /// Gaussian smoothing with `sigma` metres.
 Field smoothed(const Field& field, double sigma);
 

@@ -1,4 +1,4 @@
-#include "support/field.hpp"
+#include "src/metrics/field.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +28,11 @@ double quantile(std::vector<double> values, double share) {
   const auto n = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n), values.end());
   return values[n];
+}
+
+double parabola_top(double before, double middle, double after) {
+  const double bend = before - 2 * middle + after;
+  return bend < 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0;
 }
 
 Field smoothed(const Field& f, double sigma) {
