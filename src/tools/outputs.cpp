@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "kernels/field/statistics.hpp"
+#include "kernels/slabs/slab_parameters.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/tools/json_text.hpp"
@@ -131,7 +132,11 @@ std::string summary(Simulation& s, const RunReport& report) {
       << ",\n  \"boundary\": " << json_string(boundary_names[static_cast<int>(g.boundary)])
       << ",\n  \"backend\": " << json_string(report.backend)
       << ",\n  \"device\": " << json_string(report.device) << ",\n  \"threads\": " << report.threads
-      << ",\n  \"seed\": " << s.scenario().seed << ",\n  \"ms_per_step\": {\"total\": "
+      << ",\n  \"seed\": " << s.scenario().seed;
+  const auto& slabs = s.scenario().process_sections.get<SlabModelParameters>("slab_model");
+  if (slabs.kind != SlabKind::none)
+    out << ",\n  \"slab_height_m\": " << json_number(static_cast<double>(slabs.slab_height));
+  out << ",\n  \"ms_per_step\": {\"total\": "
       << json_number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
   for (const ProcessTime& t : s.process_times())
     out << ", " << json_string(t.process) << ": "

@@ -24,6 +24,7 @@ class NetcdfHistory final : public RunHistory {
  public:
   explicit NetcdfHistory(const std::string& path) : file_(path) {}
   const std::vector<double>& times() const override { return file_.times(); }
+  bool has(const std::string& layer, std::size_t) const override { return file_.has(layer); }
   LayerField read(const std::string& layer, std::size_t time) const override {
     return {file_.width(),    file_.height(),   file_.cell_size(),      file_.origin_x(),
             file_.origin_y(), file_.periodic(), file_.read(layer, time)};
@@ -52,6 +53,10 @@ class RasterHistory final : public RunHistory {
       throw ConfigError(path + ": is no --out folder of desert_run: it has no summary.json, nor a step_*");
   }
   const std::vector<double>& times() const override { return times_; }
+  bool has(const std::string& layer, std::size_t time) const override {
+    std::error_code none;
+    return fs::is_regular_file(folders_[time] + "/" + layer + ".tif", none);
+  }
   LayerField read(const std::string& layer, std::size_t time) const override {
     const Raster r = read_raster(folders_[time] + "/" + layer + ".tif");
     return {r.width, r.height, r.cell_size, r.origin_x, r.origin_y, periodic_, r.values};

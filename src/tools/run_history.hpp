@@ -19,6 +19,8 @@ class RunHistory {
  public:
   virtual ~RunHistory() = default;
   virtual const std::vector<double>& times() const = 0;  ///< rising [s]
+  /// Whether the run has written this layer at this time.
+  virtual bool has(const std::string& layer, std::size_t time) const = 0;
   /// Throws ConfigError if the run has not written this layer.
   virtual LayerField read(const std::string& layer, std::size_t time) const = 0;
 };
