@@ -42,6 +42,9 @@ const char usage[] =
     "DEM\n"
     "  --out DIR             write rasters, pictures and summary.json to DIR, which is created if needed\n"
     "  --every N             also write them every N steps, to DIR/step_NNNNNNNN\n"
+    "  --snapshots N         in place of --every: write them about N times at even distances, the last time "
+    "at "
+    "the end\n"
     "  --format F            geotiff (default): a raster a layer in DIR and in each DIR/step_NNNNNNNN; "
     "netcdf: "
     "all\n"
@@ -102,6 +105,8 @@ RunPlan plan_of(Options options) {
   plan.out = o.text("out", "");
   plan.checkpoint = o.text("checkpoint", "");
   plan.every = static_cast<std::uint64_t>(o.number("every", 0, 1, 1LL << 40));
+  o.number("snapshots", 0, 1, 1LL << 40);
+  if (o.has("snapshots") && o.has("every")) throw ConfigError("--snapshots: --every is given, too");
   plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
   if (o.positional().size() > 1)
     throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
@@ -111,11 +116,14 @@ RunPlan plan_of(Options options) {
   if (o.has("format") && plan.out.empty()) throw ConfigError("--format: --out is required too");
   if (o.has("plot") && format == "netcdf")
     throw ConfigError("--plot: needs the summaries of --format geotiff");
-  if (plan.every && plan.out.empty()) throw ConfigError("--every: --out is required too");
+  for (const char* option : {"every", "snapshots"})
+    if (o.has(option) && plan.out.empty())
+      throw ConfigError("--" + std::string(option) + ": --out is required too");
   o.number("probe-every", 1, 1, 1LL << 40);
   if (o.has("probe") && plan.out.empty()) throw ConfigError("--probe: --out is required too");
   if (o.has("probe-every") && !o.has("probe")) throw ConfigError("--probe-every: --probe is required too");
-  if (o.has("plot") && !plan.every) throw ConfigError("--plot: --out and --every are required too");
+  if (o.has("plot") && !plan.every && !o.has("snapshots"))
+    throw ConfigError("--plot: --out and --every are required too");
   if (plan.checkpoint_every && plan.checkpoint.empty())
     throw ConfigError("--checkpoint-every: --checkpoint is required too");
   check_run_length(o);
@@ -177,6 +185,12 @@ void require_no_input_replaced(const RunPlan& plan, const Journal& journal) {
 
 /// About 250 pictures, ten seconds of a film.
 std::uint64_t usual_film_every(std::uint64_t steps) { return std::max<std::uint64_t>(1, steps / 250); }
+
+/// Steps from one snapshot to the next, if there are `steps` in all.
+std::uint64_t distance_of_snapshots(const Options& o, std::uint64_t steps) {
+  const auto count = static_cast<std::uint64_t>(o.number("snapshots", 1, 1, 1LL << 40));
+  return std::max<std::uint64_t>(1, (steps + count - 1) / count);
+}
 
 /// Before the first step: refuses files that could not be written at the end. Creates the folders of --out
 /// and --film. `steps`: how many there will be.
@@ -259,9 +273,9 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
 int run_program(int argc, char** argv) {
   RunPlan plan = plan_of(Options(
       argc, argv,
-      {"steps",         "duration",   "backend",          "threads", "set",    "seed", "out",        "every",
-       "plot",          "checkpoint", "checkpoint-every", "resume",  "replay", "film", "film-every", "view",
-       "cross-section", "probe",      "probe-every",      "format"},
+      {"steps", "duration",      "snapshots",  "backend",          "threads", "set",    "seed", "out",
+       "every", "plot",          "checkpoint", "checkpoint-every", "resume",  "replay", "film", "film-every",
+       "view",  "cross-section", "probe",      "probe-every",      "format"},
       {"all-raster-formats", "describe", "describe-processes", "describe-view", "pipeline", "quiet",
        "help"}));
   const Options& o = plan.options;
@@ -281,6 +295,7 @@ int run_program(int argc, char** argv) {
   const std::uint64_t last = steps_to_run(
       o, simulation,
       o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps));
+  if (o.has("snapshots")) plan.every = distance_of_snapshots(o, last);
   plan.measurements = Measurements(o.values("cross-section"), o.values("probe"),
                                    static_cast<std::uint64_t>(o.number("probe-every", 1, 1, 1LL << 40)),
                                    simulation.scenario());
