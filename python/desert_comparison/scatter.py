@@ -1,0 +1,51 @@
+"""Means and standard deviations over seeds."""
+import math
+
+
+def linear(values):
+    """Mean, and standard deviation of the sample (n - 1; None of one value)."""
+    n = len(values)
+    mean = math.fsum(values) / n
+    return mean, math.sqrt(math.fsum((v - mean) ** 2 for v in values) / (n - 1)) if n > 1 else None
+
+
+def circular(values, turn=360.0):
+    """Of directions [deg] that repeat after `turn`: that of the mean vector, and sqrt(-2 ln R) of its length R.
+
+    Mardia & Jupp, Directional Statistics (2000), section 2.3. The mean is in [0, turn); it is None where the
+    directions cancel.
+    """
+    scale = 2 * math.pi / turn
+    x = math.fsum(math.cos(v * scale) for v in values) / len(values)
+    y = math.fsum(math.sin(v * scale) for v in values) / len(values)
+    length = min(1.0, math.hypot(x, y))
+    if length < 1e-9:
+        return None, None
+    mean = math.atan2(y, x) / scale % turn
+    return mean, math.sqrt(max(0.0, -2 * math.log(length))) / scale if len(values) > 1 else None
+
+
+def axial(values):
+    """Of undirected lines, which repeat after 180 degrees."""
+    return circular(values, 180.0)
+
+
+def digits_of(mean, deviation):
+    """Decimals to show: two digits of the deviation, or three of the mean."""
+    base, digits = (deviation, 2) if deviation else (mean, 3)
+    if not base:
+        return 2
+    return max(0, min(9, digits - 1 - math.floor(math.log10(abs(base)))))
+
+
+def text(values, kind=linear):
+    """'12.3 ± 0.4' of the values that are known, '–' of none; says how many are known if some are not."""
+    known = [v for v in values if v is not None]
+    mean, deviation = kind(known) if known else (None, None)
+    if mean is None:
+        return "–"
+    decimals = digits_of(mean, deviation)
+    shown = "%.*f" % (decimals, mean)
+    if deviation is not None:
+        shown += " ± %.*f" % (decimals, deviation)
+    return shown + (" (%d of %d runs)" % (len(known), len(values)) if len(known) < len(values) else "")
