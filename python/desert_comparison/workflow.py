@@ -116,6 +116,7 @@ class Workflow:
         words += ["--profile", self.profile] if self.profile else []
         words += ["--cores", str(self.cores)] if self.cores else []
         for key in pending:
+            os.makedirs(self.folder(key), exist_ok=True)  # a cluster writes its logs there
             if os.path.exists(os.path.join(self.folder(key), "log.txt")):
                 os.remove(os.path.join(self.folder(key), "log.txt"))  # of an attempt that a kill has ended
         log = os.path.join(self.plan["work"], "snakemake.log")

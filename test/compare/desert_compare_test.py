@@ -16,6 +16,7 @@ import tempfile
 import time
 import unittest
 
+PROGRAM = ""  # path of desert_compare
 PATIENCE = int(os.environ.get("DESERT_PATIENCE", "1"))
 RIDGES = """# Ridges of plenty of sand.
 grid: {width: 64, height: 64, cell_size: 1, boundary: periodic}
@@ -62,7 +63,9 @@ class Page(html.parser.HTMLParser):
             self._table[-1][-1] += data
 
 
-class DesertCompare(unittest.TestCase):
+class DesertCompareCase(unittest.TestCase):
+    """Two scenarios in a folder, and how desert_compare is called."""
+
     def setUp(self):
         temporary = tempfile.TemporaryDirectory(prefix="desert_compare_")
         self.addCleanup(temporary.cleanup)
@@ -99,6 +102,8 @@ class DesertCompare(unittest.TestCase):
     def results(self, out):
         return sorted(glob.glob(os.path.join(self.path(out), "runs", "*", "result.json")))
 
+
+class DesertCompare(DesertCompareCase):
     def test_page_has_pictures_and_the_same_table_with_one_worker_or_two(self):
         self.compare("one.html", "--cores", "1")
         self.compare("two.html", "--cores", "2")
