@@ -42,9 +42,10 @@ const char usage[] =
     "DEM\n"
     "  --out DIR             write rasters, pictures and summary.json to DIR, which is created if needed\n"
     "  --every N             also write them every N steps, to DIR/step_NNNNNNNN\n"
-    "  --snapshots N         in place of --every: write them about N times at even distances, the last time "
-    "at "
-    "the end\n"
+    "  --snapshots N         in place of --every: write them about N times at even distances and at the end, "
+    "and\n"
+    "                        once a quarter of a distance before the end, so that the speed of dunes can be "
+    "told\n"
     "  --format F            geotiff (default): a raster a layer in DIR and in each DIR/step_NNNNNNNN; "
     "netcdf: "
     "all\n"
@@ -93,6 +94,7 @@ struct RunPlan {
   std::string out, checkpoint;
   std::vector<std::string> summaries;  ///< paths of the summaries written during the run
   std::uint64_t every = 0, checkpoint_every = 0;
+  std::uint64_t before_end = 0;  ///< tick of the snapshot before that of the end; 0: none
   std::unique_ptr<Film> film;
   std::uint64_t film_every = 0;
   Measurements measurements;
@@ -100,7 +102,7 @@ struct RunPlan {
 };
 
 RunPlan plan_of(Options options) {
-  RunPlan plan{std::move(options), "", "", {}, 0, 0, nullptr, 0, {}, nullptr};
+  RunPlan plan{std::move(options), "", "", {}, 0, 0, 0, nullptr, 0, {}, nullptr};
   const Options& o = plan.options;
   plan.out = o.text("out", "");
   plan.checkpoint = o.text("checkpoint", "");
@@ -186,10 +188,11 @@ void require_no_input_replaced(const RunPlan& plan, const Journal& journal) {
 /// About 250 pictures, ten seconds of a film.
 std::uint64_t usual_film_every(std::uint64_t steps) { return std::max<std::uint64_t>(1, steps / 250); }
 
-/// Steps from one snapshot to the next, if there are `steps` in all.
-std::uint64_t distance_of_snapshots(const Options& o, std::uint64_t steps) {
-  const auto count = static_cast<std::uint64_t>(o.number("snapshots", 1, 1, 1LL << 40));
-  return std::max<std::uint64_t>(1, (steps + count - 1) / count);
+/// When --snapshots writes, if there are `steps` in all.
+void plan_snapshots(RunPlan& plan, std::uint64_t steps) {
+  const auto count = static_cast<std::uint64_t>(plan.options.number("snapshots", 1, 1, 1LL << 40));
+  plan.every = std::max<std::uint64_t>(1, (steps + count - 1) / count);
+  if (plan.every > 1) plan.before_end = steps - std::max<std::uint64_t>(1, plan.every / 4);
 }
 
 /// Before the first step: refuses files that could not be written at the end. Creates the folders of --out
@@ -253,9 +256,10 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
     report.milliseconds = std::chrono::duration<double, std::milli>(stepping).count();
     replay();
     const std::uint64_t step = session.simulation().steps();
-    if (plan.every && step % plan.every == 0 && plan.series) {
+    const bool due = (plan.every && step % plan.every == 0) || session.ticks() == plan.before_end;
+    if (due && plan.series) {
       plan.series->add(session.simulation());
-    } else if (plan.every && step % plan.every == 0) {
+    } else if (due) {
       char name[32];
       std::snprintf(name, sizeof name, "/step_%08llu", static_cast<unsigned long long>(step));
       create_output_folder(plan.out + name);
@@ -295,7 +299,7 @@ int run_program(int argc, char** argv) {
   const std::uint64_t last = steps_to_run(
       o, simulation,
       o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps));
-  if (o.has("snapshots")) plan.every = distance_of_snapshots(o, last);
+  if (o.has("snapshots")) plan_snapshots(plan, last);
   plan.measurements = Measurements(o.values("cross-section"), o.values("probe"),
                                    static_cast<std::uint64_t>(o.number("probe-every", 1, 1, 1LL << 40)),
                                    simulation.scenario());
