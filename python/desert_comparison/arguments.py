@@ -41,7 +41,7 @@ def parse(arguments):
                    help="a YAML file, or the name of an installed scenario, such as barchan")
     p.add_argument("--out", required=True, metavar="PAGE.html", help="the page")
     p.add_argument("--seeds", type=whole(1, 1000), default=3, metavar="N", help="runs of each scenario (default 3)")
-    p.add_argument("--first-seed", type=whole(0, 2 ** 31), default=1, metavar="S", help="run k has seed S + k (default 1)")
+    p.add_argument("--first-seed", type=whole(0, 2 ** 31), default=1, metavar="S", help="the first of the seeds S, S + 1, ... (default 1)")
     length = p.add_mutually_exclusive_group()
     length.add_argument("--steps", type=whole(1, 2 ** 40), metavar="N", help="steps of each run (default: the scenario's)")
     length.add_argument("--duration", metavar="T", help="in their place: simulated time, such as 24a")
@@ -49,7 +49,7 @@ def parse(arguments):
                    help="override a key of every scenario; may be repeated")
     p.add_argument("--same-start", action="store_true", help="all scenarios begin with the terrain of the first one")
     p.add_argument("--snapshots", type=whole(2, 10000), default=20, metavar="N",
-                   help="times at which a run is measured (default 20)")
+                   help="times at which a run is measured (default 20); the speed of dunes is that of a quarter of their distance")
     p.add_argument("--layer", choices=["sand", "elevation"], default="sand",
                    help="dunes are measured on the depth of sand (default), or on the elevation")
     p.add_argument("--film", action="store_true", help="film the first seed of each scenario (needs ffmpeg)")

@@ -4,13 +4,11 @@
 
 Everything is made in a folder of its own; result.json, with summary and metrics, gets its name at last.
 """
-import glob
 import json
 import os
 import shutil
 import subprocess
 import sys
-import tempfile
 
 import processes  # beside this file, which is a program of its own
 
@@ -29,7 +27,7 @@ def move(folder, name, to):
 
 def make(plan, run, home):
     desert_run, desert_metrics = plan["programs"]
-    folder = tempfile.mkdtemp(prefix="attempt-", dir=home)
+    folder = processes.begin_attempt(home)
     with open(os.path.join(home, "log.txt"), "w") as log:
         words = [desert_run] + run["arguments"] + ["--format", "netcdf", "--out", folder]
         if run["film"] is not None:
@@ -60,9 +58,13 @@ def main(plan_path, key):
         plan = json.load(file)
     home = os.path.join(plan["work"], "runs", key)
     os.makedirs(home, exist_ok=True)
-    for left_by_a_kill in glob.glob(os.path.join(glob.escape(home), "attempt-*")):
-        shutil.rmtree(left_by_a_kill)
-    make(plan, plan["runs"][key], home)
+    processes.remove_attempts(home)
+    try:
+        make(plan, plan["runs"][key], home)
+    except BaseException as error:  # desert_compare shows the last line of the log
+        with open(os.path.join(home, "log.txt"), "a") as log:
+            log.write("\n%s: %s\n" % (type(error).__name__, error))
+        raise
 
 
 if __name__ == "__main__":

@@ -30,12 +30,10 @@ def axial(values):
     return circular(values, 180.0)
 
 
-def digits_of(mean, deviation):
-    """Decimals to show: two digits of the deviation, or three of the mean."""
-    base, digits = (deviation, 2) if deviation else (mean, 3)
-    if not base:
-        return 2
-    return max(0, min(9, digits - 1 - math.floor(math.log10(abs(base)))))
+def decimals_of(mean, deviation):
+    """To show: two digits of the deviation, or three of the mean if there is none."""
+    value, digits = (deviation, 2) if deviation else (mean, 3)
+    return max(0, digits - 1 - math.floor(math.log10(abs(value)))) if value else 2
 
 
 def text(values, kind=linear):
@@ -44,8 +42,10 @@ def text(values, kind=linear):
     mean, deviation = kind(known) if known else (None, None)
     if mean is None:
         return "–"
-    decimals = digits_of(mean, deviation)
-    shown = "%.*f" % (decimals, mean)
+    # Tenths of a degree are enough, and 359.97 degrees are 0.
+    decimals = decimals_of(mean, deviation) if kind is linear else 1
+    turn = {circular: 360.0, axial: 180.0}.get(kind)
+    shown = "%.*f" % (decimals, round(mean, decimals) % turn if turn else mean)
     if deviation is not None:
         shown += " ± %.*f" % (decimals, deviation)
     return shown + (" (%d of %d runs)" % (len(known), len(values)) if len(known) < len(values) else "")

@@ -10,7 +10,7 @@ import sys
 import time
 
 from . import ComparisonError, RunError
-from .processes import end_with_parent
+from .processes import end_with_parent, remove_attempts
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 STEP = re.compile(r"step (\d+) of (\d+)")
@@ -103,6 +103,8 @@ class Workflow:
     def run(self):
         """Returns the results by key. Raises RunError with the reasons if runs failed, Interrupted after a signal."""
         pending = [key for key in self.plan["runs"] if not self.done(key)]
+        for key in set(self.plan["runs"]) - set(pending):
+            remove_attempts(self.folder(key))
         if pending:
             self.make(pending)
         return {key: read_json(self.result(key)) for key in self.plan["runs"]}

@@ -6,7 +6,6 @@
 import base64
 import glob
 import html.parser
-import json
 import os
 import re
 import signal
@@ -90,9 +89,12 @@ class DesertCompareCase(unittest.TestCase):
         self.assertEqual(done.returncode, status, done.stderr)
         return done.stderr
 
-    def page(self, out):
+    def text(self, out):
         with open(self.path(out), encoding="utf-8") as file:
-            return Page(file.read())
+            return file.read()
+
+    def page(self, out):
+        return Page(self.text(out))
 
     def refusal(self, *options, scenarios=None):
         reason = self.compare("refused.html", *options, status=2, scenarios=scenarios)
@@ -107,16 +109,15 @@ class DesertCompare(DesertCompareCase):
     def test_page_has_pictures_and_the_same_table_with_one_worker_or_two(self):
         self.compare("one.html", "--cores", "1")
         self.compare("two.html", "--cores", "2")
-        one, two = self.page("one.html"), self.page("two.html")
+        self.assertEqual(*[re.sub(r'<table id="speed">.*?</table>', "", self.text(name), flags=re.DOTALL)
+                           for name in ("one.html", "two.html")])
+        one = self.page("one.html")
         self.assertEqual(set(one.tables), {"metrics", "balance", "speed", "runs"})
-        for name in ("metrics", "balance", "runs"):
-            self.assertEqual(one.tables[name], two.tables[name])
         # Two starts, two ends of the first seed, two of the second.
         self.assertEqual(len(one.pictures), 6)
         for picture in one.pictures:
             self.assertEqual(base64.b64decode(picture.split(",", 1)[1])[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(len(set(one.pictures[:3])), 3)
-        self.assertEqual(one.pictures, two.pictures)
         self.assertEqual(one.links, [], "the page needs no other file")
         self.check_tables(one.tables)
 
@@ -192,21 +193,30 @@ class DesertCompare(DesertCompareCase):
         self.assertEqual(self.processes_in(self.path("ended.runs")), [])
         self.assertEqual(self.results("ended.runs"), [])
 
-    def test_only_changed_runs_are_made_anew(self):
+    def test_only_changed_runs_are_made_anew_and_one_that_fails_is_named(self):
         self.compare("again.html")
         before = {path: os.stat(path).st_mtime_ns for path in self.results("again.runs")}
-        self.write("heaps.yaml", HEAPS.replace("height: 4", "height: 5"))
-        self.compare("again.html")
-        after = {path: os.stat(path).st_mtime_ns for path in self.results("again.runs")}
         self.assertEqual(len(before), 4)
-        self.assertEqual(len(after), 6)
-        self.assertEqual({path: after[path] for path in before}, before)
+        self.write("heaps.yaml", HEAPS.replace("height: 4", "height: 5"))
+        broken = os.path.dirname(next(path for path in before if "ridges-2" in path))
+        os.remove(os.path.join(broken, "result.json"))
+        os.remove(os.path.join(broken, "end.png"))
+        os.mkdir(os.path.join(broken, "end.png"))  # is in the way of the picture
+        page = self.text("again.html")
+        told = self.compare("again.html", status=3)
+        self.assertIn("1 of 4 runs failed", told)
+        self.assertRegex(told, "%s: IsADirectoryError: .*end.png" % os.path.basename(broken))
+        after = {path: os.stat(path).st_mtime_ns for path in self.results("again.runs")}
+        kept = {path: time for path, time in before.items() if broken not in path}
+        self.assertEqual(len(after), 5, "three are kept, and those of the changed scenario are new")
+        self.assertEqual({path: after[path] for path in kept}, kept)
+        self.assertEqual(self.text("again.html"), page, "a page is written of whole comparisons only")
 
     def test_same_start(self):
-        self.compare("same.html", "--same-start")
+        self.compare("same.html", "--same-start", "--seeds", "1")
         pictures = self.page("same.html").pictures
-        self.assertEqual(pictures[0], pictures[3], "both begin alike")
-        self.assertNotEqual(pictures[1], pictures[4], "and end differently")
+        self.assertEqual(pictures[0], pictures[2], "both begin alike")
+        self.assertNotEqual(pictures[1], pictures[3], "and end differently")
         coarse = self.write("coarse.yaml", HEAPS.replace("cell_size: 1", "cell_size: 2"))
         reason = self.refusal("--same-start", scenarios=[self.ridges, coarse])
         for words in ("coarse.yaml", "cells of 2 m", "cells of 1 m", "allowed"):
@@ -223,23 +233,6 @@ class DesertCompare(DesertCompareCase):
         self.assertIn("no: unknown key", self.refusal("--set", "no.such.key=1"))
         self.assertIn("from 1 to 1000", self.refusal("--seeds", "0"))
         self.assertEqual(self.results("refused.runs"), [])
-
-    def test_a_run_that_fails_is_named_and_the_others_are_kept(self):
-        """A folder is in the way of its outputs."""
-        bad = self.write("bad.yaml", HEAPS)
-        self.compare("failing.html", scenarios=[self.ridges, bad])
-        for path in self.results("failing.runs"):
-            with open(path) as file:
-                key = json.load(file)["key"]
-            os.remove(path)
-        os.makedirs(os.path.join(self.path("failing.runs"), "runs", key, "end.png.d"))
-        os.remove(os.path.join(self.path("failing.runs"), "runs", key, "end.png"))
-        os.rename(os.path.join(self.path("failing.runs"), "runs", key, "end.png.d"),
-                  os.path.join(self.path("failing.runs"), "runs", key, "end.png"))
-        told = self.compare("failing.html", status=3, scenarios=[self.ridges, bad])
-        self.assertIn("1 of 4 runs failed", told)
-        self.assertIn(key, told)
-        self.assertEqual(len(self.results("failing.runs")), 3)
 
 
 if __name__ == "__main__":

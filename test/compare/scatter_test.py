@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""Means and deviations over seeds, of numbers whose answers are known."""
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../python"))
+
+from desert_comparison import scatter  # noqa: E402
+
+
+class Scatter(unittest.TestCase):
+    def test_numbers(self):
+        mean, deviation = scatter.linear([2, 4, 4, 4, 5, 5, 7, 9])
+        self.assertEqual(mean, 5)
+        self.assertAlmostEqual(deviation, (32 / 7) ** 0.5)
+        self.assertEqual(scatter.linear([3]), (3, None))
+
+    def test_directions_go_on_over_north_and_east(self):
+        mean, deviation = scatter.circular([350, 10])
+        self.assertAlmostEqual((mean + 180) % 360, 180)
+        self.assertAlmostEqual(deviation, 10.03, delta=0.01)  # sqrt(-2 ln cos 10 deg)
+        self.assertAlmostEqual(scatter.circular([180, 270])[0], 225)
+        self.assertEqual(scatter.circular([0, 180]), (None, None))
+
+    def test_crests_have_no_ends(self):
+        mean, deviation = scatter.axial([175, 5])
+        self.assertAlmostEqual((mean + 90) % 180, 90)
+        self.assertAlmostEqual(deviation, 5.01, delta=0.01)
+        self.assertAlmostEqual(scatter.axial([80, 100])[0], 90)
+
+    def test_text(self):
+        self.assertEqual(scatter.text([1.0, 2.0]), "1.50 ± 0.71")
+        self.assertEqual(scatter.text([120.0, 180.0]), "150 ± 42")
+        self.assertEqual(scatter.text([1.23456]), "1.23")
+        self.assertEqual(scatter.text([5.0, 5.0]), "5.00 ± 0.00")
+        self.assertEqual(scatter.text([0.0, 0.0]), "0.00 ± 0.00")
+        self.assertEqual(scatter.text([None, None]), "–")
+        self.assertEqual(scatter.text([1.0, None, 2.0]), "1.50 ± 0.71 (2 of 3 runs)")
+        self.assertEqual(scatter.text([12345.6, 12345.7]), "12345.650 ± 0.071")
+        self.assertEqual(scatter.text([359.96, 0.02], scatter.circular), "0.0 ± 0.0")
+        self.assertEqual(scatter.text([84.0, 96.0], scatter.axial), "90.0 ± 6.0")
+
+
+if __name__ == "__main__":
+    unittest.main()
