@@ -93,8 +93,8 @@ struct RunPlan {
   Options options;
   std::string out, checkpoint;
   std::vector<std::string> summaries;  ///< paths of the summaries written during the run
-  std::uint64_t every = 0, checkpoint_every = 0;
-  std::uint64_t before_end = 0;  ///< tick of the snapshot before that of the end; 0: none
+  SnapshotPlan snapshots;
+  std::uint64_t checkpoint_every = 0;
   std::unique_ptr<Film> film;
   std::uint64_t film_every = 0;
   Measurements measurements;
@@ -102,13 +102,10 @@ struct RunPlan {
 };
 
 RunPlan plan_of(Options options) {
-  RunPlan plan{std::move(options), "", "", {}, 0, 0, 0, nullptr, 0, {}, nullptr};
+  RunPlan plan{std::move(options), "", "", {}, {}, 0, nullptr, 0, {}, nullptr};
   const Options& o = plan.options;
   plan.out = o.text("out", "");
   plan.checkpoint = o.text("checkpoint", "");
-  plan.every = static_cast<std::uint64_t>(o.number("every", 0, 1, 1LL << 40));
-  o.number("snapshots", 0, 1, 1LL << 40);
-  if (o.has("snapshots") && o.has("every")) throw ConfigError("--snapshots: --every is given, too");
   plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
   if (o.positional().size() > 1)
     throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
@@ -118,14 +115,11 @@ RunPlan plan_of(Options options) {
   if (o.has("format") && plan.out.empty()) throw ConfigError("--format: --out is required too");
   if (o.has("plot") && format == "netcdf")
     throw ConfigError("--plot: needs the summaries of --format geotiff");
-  for (const char* option : {"every", "snapshots"})
-    if (o.has(option) && plan.out.empty())
-      throw ConfigError("--" + std::string(option) + ": --out is required too");
+  plan.snapshots = snapshots_of(o, 0);
   o.number("probe-every", 1, 1, 1LL << 40);
   if (o.has("probe") && plan.out.empty()) throw ConfigError("--probe: --out is required too");
   if (o.has("probe-every") && !o.has("probe")) throw ConfigError("--probe-every: --probe is required too");
-  if (o.has("plot") && !plan.every && !o.has("snapshots"))
-    throw ConfigError("--plot: --out and --every are required too");
+  if (o.has("plot") && !plan.snapshots.every) throw ConfigError("--plot: --out and --every are required too");
   if (plan.checkpoint_every && plan.checkpoint.empty())
     throw ConfigError("--checkpoint-every: --checkpoint is required too");
   check_run_length(o);
@@ -188,13 +182,6 @@ void require_no_input_replaced(const RunPlan& plan, const Journal& journal) {
 /// About 250 pictures, ten seconds of a film.
 std::uint64_t usual_film_every(std::uint64_t steps) { return std::max<std::uint64_t>(1, steps / 250); }
 
-/// When --snapshots writes, if there are `steps` in all.
-void plan_snapshots(RunPlan& plan, std::uint64_t steps) {
-  const auto count = static_cast<std::uint64_t>(plan.options.number("snapshots", 1, 1, 1LL << 40));
-  plan.every = std::max<std::uint64_t>(1, (steps + count - 1) / count);
-  if (plan.every > 1) plan.before_end = steps - std::max<std::uint64_t>(1, plan.every / 4);
-}
-
 /// Before the first step: refuses files that could not be written at the end. Creates the folders of --out
 /// and --film. `steps`: how many there will be.
 void prepare_outputs(RunPlan& plan, const Journal& journal, std::uint64_t steps, Simulation& simulation) {
@@ -256,7 +243,7 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
     report.milliseconds = std::chrono::duration<double, std::milli>(stepping).count();
     replay();
     const std::uint64_t step = session.simulation().steps();
-    const bool due = (plan.every && step % plan.every == 0) || session.ticks() == plan.before_end;
+    const bool due = plan.snapshots.due(step, session.ticks());
     if (due && plan.series) {
       plan.series->add(session.simulation());
     } else if (due) {
@@ -299,7 +286,7 @@ int run_program(int argc, char** argv) {
   const std::uint64_t last = steps_to_run(
       o, simulation,
       o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps));
-  if (o.has("snapshots")) plan_snapshots(plan, last);
+  plan.snapshots = snapshots_of(o, last);
   plan.measurements = Measurements(o.values("cross-section"), o.values("probe"),
                                    static_cast<std::uint64_t>(o.number("probe-every", 1, 1, 1LL << 40)),
                                    simulation.scenario());
