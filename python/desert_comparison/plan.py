@@ -78,6 +78,7 @@ class Planner:
                 raise ComparisonError("%s and %s: both are called %s (allowed: files of different names)"
                                       % (o.scenarios[labels.index(label)], o.scenarios[n], label))
         if o.same_start:
+            self.start(scenarios[0])  # refuses one whose terrain is malformed
             self.take_terrain_of(scenarios[0])
         for s in scenarios:
             s["start"] = self.start(s)
@@ -93,12 +94,8 @@ class Planner:
         path = argument if os.path.isfile(argument) else self.shipped(argument)
         with open(path, encoding="utf-8", errors="replace") as file:
             text = file.read()
-        try:
-            document = yaml.safe_load(text) or {}
-        except yaml.YAMLError:
-            document = {}  # desert_run says what is wrong with it
         return {"label": os.path.splitext(os.path.basename(path))[0], "path": os.path.abspath(path), "text": text,
-                "comment": leading_comment(text), "document": document}
+                "comment": leading_comment(text), "document": yaml_value(text, path) or {}}
 
     def shipped(self, name):
         """The file of an installed scenario, in the source tree or in the installed package."""
@@ -118,11 +115,15 @@ class Planner:
         if not isinstance(document, dict) or "terrain" not in document:
             raise ComparisonError("--same-start: %s has no section `terrain`" % first["path"])
         terrain = with_absolute_files(document["terrain"], folder)
+        raster = (document.get("grid") or {}).get("from_raster")
+        for step in terrain:
+            if raster and "raster" in step:  # without a file, a step reads the raster of the grid
+                step["raster"].setdefault("file", os.path.abspath(os.path.join(folder, raster)))
         self.settings.insert(0, "terrain=" + yaml.safe_dump(terrain, default_flow_style=True, width=10 ** 9).strip())
 
     def files_of(self, scenario):
         """All files that the scenario and --set name, from the scenario's folder or the present one."""
-        values = [scenario["document"]] + [yaml.safe_load(setting.partition("=")[2]) for setting in self.settings]
+        values = [scenario["document"]] + [yaml_value(s.partition("=")[2], "--set " + s) for s in self.settings]
         return {path for folder in (os.path.dirname(scenario["path"]), os.getcwd())
                 for value in values for path in named_files(value, folder)}
 
@@ -161,6 +162,13 @@ class Planner:
         digest = hashlib.sha256(json.dumps(made_of).encode()).hexdigest()[:12]
         return {"key": "%s-%d-%s" % (scenario["label"], seed, digest), "label": scenario["label"], "seed": seed,
                 "arguments": words, "film": film}
+
+
+def yaml_value(text, where):
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise ComparisonError("%s: is not YAML: %s" % (where, " ".join(str(error).split())))
 
 
 def leading_comment(text):

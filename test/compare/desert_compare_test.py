@@ -6,6 +6,7 @@
 import base64
 import glob
 import html.parser
+import json
 import os
 import re
 import signal
@@ -120,6 +121,15 @@ class DesertCompare(DesertCompareCase):
         self.assertEqual(len(set(one.pictures[:3])), 3)
         self.assertEqual(one.links, [], "the page needs no other file")
         self.check_tables(one.tables)
+        self.check_definitions()
+
+    def check_definitions(self):
+        """doc/comparing.md has each member of what desert_metrics prints."""
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../doc/comparing.md")) as file:
+            defined = set(re.findall(r"`(\w+)`", file.read()))
+        with open(self.results("one.runs")[0]) as file:
+            members = set(json.load(file)["metrics"]["snapshots"][0])
+        self.assertEqual(members - defined, set())
 
     def check_tables(self, tables):
         head, *rows = tables["metrics"]
