@@ -48,6 +48,11 @@ RATES = {"migration_speed_m_s": ("m/s", "m/a"), "flux_m2_s": ("m²/s", "m²/a")}
 YEARS_FROM = 0.1 * EARTH_YEAR  # simulated time [s]
 
 
+def time_unit(longest_time):
+    """Name and length [s] of the unit that suits runs of so many seconds."""
+    return ("a", EARTH_YEAR) if longest_time >= YEARS_FROM else ("s", 1)
+
+
 def metrics_for(longest_time):
     """The metrics with units that suit runs of so many seconds."""
     years = longest_time >= YEARS_FROM

@@ -10,8 +10,9 @@ COLOURS = ["#b5541c", "#1f6f8b", "#5b7f2b", "#7a4b94", "#c08a00", "#444444"]
 CHARTED = ("mean_height_m", "wavelength_m", "rms_relief_m", "terminations_per_m")
 
 
-def chart(plan, results, metric):
+def chart(plan, results, metric, time_unit):
     """A line for each seed of each scenario, and a thick one for their mean."""
+    unit, seconds = time_unit
     figure = Figure(figsize=(5.2, 2.7))
     FigureCanvasSVG(figure)
     axes = figure.add_axes((0.13, 0.17, 0.84, 0.76))
@@ -20,12 +21,12 @@ def chart(plan, results, metric):
         for key, run in plan["runs"].items():
             if run["label"] == scenario["label"]:
                 snapshots = results[key]["metrics"]["snapshots"]
-                courses.append([(s["time_s"], s[metric.key]) for s in snapshots])
+                courses.append([(s["time_s"] / seconds, s[metric.key]) for s in snapshots])
                 draw(axes, courses[-1], metric.scale, color=colour, linewidth=0.6, alpha=0.45)
         means = [(times[0][0], sum(v for _, v in times) / len(times)) for times in zip(*courses)
                  if all(v is not None for _, v in times)]
         draw(axes, means, metric.scale, color=colour, linewidth=2, label=scenario["label"])
-    axes.set_xlabel("simulated time [s]")
+    axes.set_xlabel("simulated time [%s]" % unit)
     axes.set_ylabel("[%s]" % metric.unit if metric.unit else "")
     axes.set_ylim(bottom=0)
     axes.grid(alpha=0.25)

@@ -8,7 +8,7 @@ import jinja2
 from PIL import Image
 
 from . import scatter
-from .catalogue import metrics_for
+from .catalogue import metrics_for, time_unit
 from .charts import CHARTED, COLOURS, chart
 
 MOST_PIXELS = {"large": 640, "small": 220}  # of the long side of pictures
@@ -46,7 +46,8 @@ def length_of_time(seconds):
 class Page:
     def __init__(self, plan, results):
         self.plan, self.results = plan, results
-        self.metrics = metrics_for(max(r["summary"]["sim_time_s"] for r in results.values()))
+        longest = max(r["summary"]["sim_time_s"] for r in results.values())
+        self.metrics, self.time_unit = metrics_for(longest), time_unit(longest)
 
     def runs(self, scenario):
         """The results of a scenario by seed."""
@@ -108,7 +109,7 @@ class Page:
         return rows
 
     def charts(self):
-        return [(m, chart(self.plan, self.results, m)) for m in self.metrics
+        return [(m, chart(self.plan, self.results, m, self.time_unit)) for m in self.metrics
                 if m.key in CHARTED and any(s[m.key] is not None for r in self.results.values()
                                             for s in r["metrics"]["snapshots"])]
 

@@ -130,6 +130,9 @@ class DesertCompare(DesertCompareCase):
         with open(self.results("one.runs")[0]) as file:
             members = set(json.load(file)["metrics"]["snapshots"][0])
         self.assertEqual(members - defined, set())
+        sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../python"))
+        from desert_comparison.catalogue import METRICS
+        self.assertEqual({metric.key for metric in METRICS} - members, set())
 
     def check_tables(self, tables):
         head, *rows = tables["metrics"]

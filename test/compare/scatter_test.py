@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Means and deviations over seeds, of numbers whose answers are known."""
+"""Means and deviations over seeds, of numbers whose answers are known, and units."""
 import os
 import sys
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../python"))
 
-from desert_comparison import scatter  # noqa: E402
+from desert_comparison import catalogue, scatter  # noqa: E402
 
 
 class Scatter(unittest.TestCase):
@@ -40,6 +40,14 @@ class Scatter(unittest.TestCase):
         self.assertEqual(scatter.text([12345.6, 12345.7]), "12345.650 ± 0.071")
         self.assertEqual(scatter.text([359.96, 0.02], scatter.circular), "0.0 ± 0.0")
         self.assertEqual(scatter.text([84.0, 96.0], scatter.axial), "90.0 ± 6.0")
+
+    def test_years_of_dunes_are_in_metres_a_year(self):
+        def units(time):
+            return {m.key: (m.unit, m.scale) for m in catalogue.metrics_for(time)}
+        self.assertEqual(units(900)["migration_speed_m_s"], ("m/s", 1))
+        self.assertEqual(units(24 * 31557600)["migration_speed_m_s"], ("m/a", 31557600))
+        self.assertEqual(units(24 * 31557600)["wavelength_m"], units(900)["wavelength_m"])
+        self.assertEqual(catalogue.time_unit(900), ("s", 1))
 
 
 if __name__ == "__main__":
