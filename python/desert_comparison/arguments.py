@@ -48,8 +48,8 @@ def parse(arguments):
     p.add_argument("--set", action="append", default=[], metavar="PATH=VALUE",
                    help="override a key of every scenario; may be repeated")
     p.add_argument("--same-start", action="store_true", help="all scenarios begin with the terrain of the first one")
-    p.add_argument("--snapshots", type=whole(2, 10000), default=20, metavar="N",
-                   help="times at which a run is measured (default 20); the speed of dunes is that of a quarter of their distance")
+    p.add_argument("--snapshots", type=whole(2, 10000), default=40, metavar="N",
+                   help="times at which a run is measured (default 40)")
     p.add_argument("--layer", choices=["sand", "elevation"], default="sand",
                    help="dunes are measured on the depth of sand (default), or on the elevation")
     p.add_argument("--film", action="store_true", help="film the first seed of each scenario (needs ffmpeg)")

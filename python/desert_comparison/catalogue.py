@@ -1,5 +1,6 @@
 """The metrics of the table, in order: doc/comparing.md says the same at length."""
 import collections
+import math
 
 from . import scatter
 
@@ -34,14 +35,18 @@ METRICS = [
     Metric("terminations_per_m", "Defects", "per km of crest", 1000, scatter.linear,
            "Ends of crest lines: tips of dunes, and places where a crest ends between others or joins one."),
     Metric("migration_speed_m_s", "Migration", "", 1, scatter.linear,
-           "Speed of the whole pattern between the last two snapshots; none where it changed too much to be followed."),
+           "Mean velocity of the whole pattern over the last half of the run; none where it changes too much to be followed."),
     Metric("migration_direction_deg", "Direction of migration", "°", 1, scatter.circular,
            "Where the pattern moves to: 0° east, 90° north."),
     Metric("flux_m2_s", "Sand flux", "", 1, scatter.linear,
-           "What the wind carries through a metre of width, mean over the terrain; slab models do not count it."),
+           "What the wind carries through a metre of width: mean over the terrain and the snapshots of the last half of "
+           "the run; slab models do not count it."),
     Metric("flux_direction_deg", "Direction of the flux", "°", 1, scatter.circular, "Where it is carried to."),
     Metric("bare_share", "Bare ground", "% of area", 100, scatter.linear, "Ground with less than 2 cm of sand."),
 ]
+
+# Amount and direction of what is not that of the end, but a mean over the last half of a run: winds come and go.
+MOTIONS = (("migration_speed_m_s", "migration_direction_deg"), ("flux_m2_s", "flux_direction_deg"))
 
 # Of rates, by how long a run lasts: per second for hops and slabs, per year for sand in real units.
 RATES = {"migration_speed_m_s": ("m/s", "m/a"), "flux_m2_s": ("m²/s", "m²/a")}
@@ -58,3 +63,27 @@ def metrics_for(longest_time):
     years = longest_time >= YEARS_FROM
     return [m._replace(unit=RATES[m.key][years], scale=EARTH_YEAR if years else 1) if m.key in RATES else m
             for m in METRICS]
+
+
+def mean_motion(snapshots, amount, direction):
+    """Amount and direction of the mean vector over the last half of the time; None if less than half of it is known.
+
+    A snapshot stands for the time since the one before.
+    """
+    half = 0.5 * snapshots[-1]["time_s"]
+    spans = [(b["time_s"] - a["time_s"], b) for a, b in zip(snapshots, snapshots[1:]) if b["time_s"] > half]
+    known = [(time, s) for time, s in spans if s[amount] is not None]
+    total = sum(time for time, _ in known)
+    if not known or total < 0.5 * sum(time for time, _ in spans):
+        return None
+    x, y = (sum(time * s[amount] * f(math.radians(s[direction])) for time, s in known) / total for f in (math.cos, math.sin))
+    return math.hypot(x, y), math.degrees(math.atan2(y, x))
+
+
+def value_of(snapshots, key):
+    """Of a metric, for a run."""
+    for pair in MOTIONS:
+        if key in pair:
+            mean = mean_motion(snapshots, *pair)
+            return mean and mean[pair.index(key)]
+    return snapshots[-1][key]

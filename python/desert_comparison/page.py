@@ -8,7 +8,7 @@ import jinja2
 from PIL import Image
 
 from . import scatter
-from .catalogue import metrics_for, time_unit
+from .catalogue import metrics_for, time_unit, value_of
 from .charts import CHARTED, COLOURS, chart
 
 MOST_PIXELS = {"large": 640, "small": 220}  # of the long side of pictures
@@ -75,7 +75,7 @@ class Page:
         for m in self.metrics:
             cells = []
             for s in self.plan["scenarios"]:
-                last = [r["metrics"]["snapshots"][-1][m.key] for r in self.runs(s)]
+                last = [value_of(r["metrics"]["snapshots"], m.key) for r in self.runs(s)]
                 cells.append([None if v is None else v * m.scale for v in last])
             if any(v is not None for cell in cells for v in cell):
                 rows.append((m, [scatter.text(cell, m.kind) for cell in cells]))

@@ -31,9 +31,13 @@ def axial(values):
 
 
 def decimals_of(mean, deviation):
-    """To show: two digits of the deviation, or three of the mean if there is none."""
-    value, digits = (deviation, 2) if deviation else (mean, 3)
-    return max(0, digits - 1 - math.floor(math.log10(abs(value)))) if value else 2
+    """To show: two digits of the deviation, but no more than four of the mean; three of it without a deviation."""
+    def decimals(value, digits):
+        return digits - 1 - math.floor(math.log10(abs(value)))
+    if not deviation:
+        return max(0, decimals(mean, 3)) if mean else 2
+    wanted = decimals(deviation, 2)
+    return max(0, min(wanted, decimals(mean, 4)) if abs(mean) > deviation else wanted)
 
 
 def text(values, kind=linear):

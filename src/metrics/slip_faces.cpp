@@ -57,7 +57,7 @@ SlipFaces slip_faces(const Field& elevation, const Field& sand, const Field& win
                         std::to_string(elevation.values.size()) + ")");
   const Slopes s = slopes(elevation);
   std::vector<double> steep;
-  std::size_t lee = 0;
+  std::size_t in_wind = 0, lee = 0;
   double sum_x = 0, sum_y = 0;
   for (std::size_t i = 0; i < s.slope_deg.size(); ++i) {
     if (!(static_cast<double>(s.slope_deg[i]) > steeper_than_deg &&
@@ -68,13 +68,15 @@ SlipFaces slip_faces(const Field& elevation, const Field& sand, const Field& win
     steep.push_back(direction);
     sum_x += x;
     sum_y += y;
-    lee += x * static_cast<double>(wind_x.values[i]) + y * static_cast<double>(wind_y.values[i]) > 0 ? 1 : 0;
+    const double u = static_cast<double>(wind_x.values[i]), v = static_cast<double>(wind_y.values[i]);
+    in_wind += u != 0 || v != 0 ? 1 : 0;
+    lee += x * u + y * v > 0 ? 1 : 0;
   }
   SlipFaces faces;
   if (steep.empty()) return faces;
   const double count = static_cast<double>(steep.size());
   faces.share = count / static_cast<double>(s.slope_deg.size());
-  faces.lee_share = static_cast<double>(lee) / count;
+  if (in_wind > 0) faces.lee_share = static_cast<double>(lee) / static_cast<double>(in_wind);
   faces.direction_deg = direction_of(sum_x, sum_y);
   faces.direction_coherence = std::hypot(sum_x, sum_y) / count;
   faces.directions_deg = modal_directions(steep, 0.08);

@@ -1,6 +1,7 @@
 #pragma once
 /// Slip faces: sand that is steeper than wind alone makes it.
 
+#include <optional>
 #include <vector>
 
 #include "src/metrics/field.hpp"
@@ -15,14 +16,15 @@ std::vector<double> slip_face_directions(const Field& elevation, double least_sl
 
 /// Cells that are steeper than `steeper_than_deg` and have at least `least_depth` metres of sand.
 struct SlipFaces {
-  double share = 0;                    ///< of all cells
-  double lee_share = 0;                ///< of the slip faces, those that fall within 90 degrees of the wind
+  double share = 0;  ///< of all cells
+  /// Of the slip faces that the wind blows over, those that fall within 90 degrees of it; empty in still air.
+  std::optional<double> lee_share;
   double direction_deg = 0;            ///< mean of the directions they fall to
   double direction_coherence = 0;      ///< length of the mean of the unit vectors: 1 if all are parallel
   std::vector<double> directions_deg;  ///< slip_face_directions() of these cells
 };
 
-/// `wind_x`, `wind_y`: at the surface [m/s]; slip faces in still air are not counted as lee.
+/// `wind_x`, `wind_y`: at the surface [m/s].
 SlipFaces slip_faces(const Field& elevation, const Field& sand, const Field& wind_x, const Field& wind_y,
                      double steeper_than_deg = 30, double least_depth = 0.1);
 

@@ -95,7 +95,7 @@ std::string json_of(const DuneMetrics& m, const std::optional<Migration>& moved)
       {"deepest_sand_m", json_number(m.deepest_sand)},
       {"highest_stack_slabs", number_or_null(m.highest_stack)},
       {"slip_face_share", json_number(slip.share)},
-      {"slip_face_lee_share", of(slip.share > 0, slip.lee_share)},
+      {"slip_face_lee_share", number_or_null(slip.lee_share)},
       {"slip_face_direction_deg", of(slip.share > 0, slip.direction_deg)},
       {"slip_face_coherence", of(slip.share > 0, slip.direction_coherence)},
       {"slip_face_directions", std::to_string(slip.directions_deg.size())},

@@ -42,10 +42,8 @@ const char usage[] =
     "DEM\n"
     "  --out DIR             write rasters, pictures and summary.json to DIR, which is created if needed\n"
     "  --every N             also write them every N steps, to DIR/step_NNNNNNNN\n"
-    "  --snapshots N         in place of --every: write them about N times at even distances and at the end, "
-    "and\n"
-    "                        once a quarter of a distance before the end, so that the speed of dunes can be "
-    "told\n"
+    "  --snapshots N         in place of --every: write them about N times, at even distances and at the "
+    "end\n"
     "  --format F            geotiff (default): a raster a layer in DIR and in each DIR/step_NNNNNNNN; "
     "netcdf: "
     "all\n"
@@ -93,8 +91,7 @@ struct RunPlan {
   Options options;
   std::string out, checkpoint;
   std::vector<std::string> summaries;  ///< paths of the summaries written during the run
-  SnapshotPlan snapshots;
-  std::uint64_t checkpoint_every = 0;
+  std::uint64_t every = 0, checkpoint_every = 0;
   std::unique_ptr<Film> film;
   std::uint64_t film_every = 0;
   Measurements measurements;
@@ -102,7 +99,7 @@ struct RunPlan {
 };
 
 RunPlan plan_of(Options options) {
-  RunPlan plan{std::move(options), "", "", {}, {}, 0, nullptr, 0, {}, nullptr};
+  RunPlan plan{std::move(options), "", "", {}, 0, 0, nullptr, 0, {}, nullptr};
   const Options& o = plan.options;
   plan.out = o.text("out", "");
   plan.checkpoint = o.text("checkpoint", "");
@@ -115,11 +112,11 @@ RunPlan plan_of(Options options) {
   if (o.has("format") && plan.out.empty()) throw ConfigError("--format: --out is required too");
   if (o.has("plot") && format == "netcdf")
     throw ConfigError("--plot: needs the summaries of --format geotiff");
-  plan.snapshots = snapshots_of(o, 0);
+  plan.every = snapshot_distance(o, 0);
   o.number("probe-every", 1, 1, 1LL << 40);
   if (o.has("probe") && plan.out.empty()) throw ConfigError("--probe: --out is required too");
   if (o.has("probe-every") && !o.has("probe")) throw ConfigError("--probe-every: --probe is required too");
-  if (o.has("plot") && !plan.snapshots.every) throw ConfigError("--plot: --out and --every are required too");
+  if (o.has("plot") && !plan.every) throw ConfigError("--plot: --out and --every are required too");
   if (plan.checkpoint_every && plan.checkpoint.empty())
     throw ConfigError("--checkpoint-every: --checkpoint is required too");
   check_run_length(o);
@@ -243,10 +240,9 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
     report.milliseconds = std::chrono::duration<double, std::milli>(stepping).count();
     replay();
     const std::uint64_t step = session.simulation().steps();
-    const bool due = plan.snapshots.due(step, session.ticks());
-    if (due && plan.series) {
+    if (plan.every && step % plan.every == 0 && plan.series) {
       plan.series->add(session.simulation());
-    } else if (due) {
+    } else if (plan.every && step % plan.every == 0) {
       char name[32];
       std::snprintf(name, sizeof name, "/step_%08llu", static_cast<unsigned long long>(step));
       create_output_folder(plan.out + name);
@@ -286,7 +282,7 @@ int run_program(int argc, char** argv) {
   const std::uint64_t last = steps_to_run(
       o, simulation,
       o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps));
-  plan.snapshots = snapshots_of(o, last);
+  plan.every = snapshot_distance(o, last);
   plan.measurements = Measurements(o.values("cross-section"), o.values("probe"),
                                    static_cast<std::uint64_t>(o.number("probe-every", 1, 1, 1LL << 40)),
                                    simulation.scenario());

@@ -45,17 +45,14 @@ std::uint64_t steps_to_run(const Options& o, const Simulation& simulation, std::
   return asked > simulation.steps() ? asked - simulation.steps() : 0;
 }
 
-SnapshotPlan snapshots_of(const Options& o, std::uint64_t steps) {
+std::uint64_t snapshot_distance(const Options& o, std::uint64_t steps) {
   for (const char* option : {"every", "snapshots"})
     if (o.has(option) && !o.has("out"))
       throw ConfigError("--" + std::string(option) + ": --out is required too");
   if (o.has("snapshots") && o.has("every")) throw ConfigError("--snapshots: --every is given, too");
-  SnapshotPlan plan{static_cast<std::uint64_t>(o.number("every", 0, 1, most_steps)), 0};
-  const auto count = static_cast<std::uint64_t>(o.number("snapshots", 0, 1, most_steps));
-  if (count == 0) return plan;
-  plan.every = std::max<std::uint64_t>(1, (steps + count - 1) / count);
-  if (plan.every > 1) plan.before_end = steps - std::max<std::uint64_t>(1, plan.every / 4);
-  return plan;
+  const auto every = static_cast<std::uint64_t>(o.number("every", 0, 1, most_steps)),
+             count = static_cast<std::uint64_t>(o.number("snapshots", 0, 1, most_steps));
+  return count == 0 ? every : std::max<std::uint64_t>(1, (steps + count - 1) / count);
 }
 
 }  // namespace desert_sim

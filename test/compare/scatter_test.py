@@ -37,9 +37,21 @@ class Scatter(unittest.TestCase):
         self.assertEqual(scatter.text([0.0, 0.0]), "0.00 ± 0.00")
         self.assertEqual(scatter.text([None, None]), "–")
         self.assertEqual(scatter.text([1.0, None, 2.0]), "1.50 ± 0.71 (2 of 3 runs)")
-        self.assertEqual(scatter.text([12345.6, 12345.7]), "12345.650 ± 0.071")
+        self.assertEqual(scatter.text([0.2202840, 0.2202841]), "0.2203 ± 0.0000")
+        self.assertEqual(scatter.text([12340.0, 12352.0]), "12346 ± 8")
         self.assertEqual(scatter.text([359.96, 0.02], scatter.circular), "0.0 ± 0.0")
         self.assertEqual(scatter.text([84.0, 96.0], scatter.axial), "90.0 ± 6.0")
+
+    def test_motion_is_the_mean_of_the_last_half(self):
+        def snapshots(*values):
+            return [{"time_s": t, "flux_m2_s": a, "flux_direction_deg": d} for t, a, d in values]
+        start, early = (0, None, None), (10, 99, 180)
+        for key, value in (("flux_m2_s", 5), ("flux_direction_deg", 53.13)):
+            self.assertAlmostEqual(catalogue.value_of(snapshots(start, early, (15, 6, 0), (20, 8, 90)), key), value, 2)
+        # Three quarters of the time count three times as much.
+        self.assertAlmostEqual(catalogue.value_of(snapshots(start, early, (12.5, 4, 0), (20, 8, 0)), "flux_m2_s"), 7)
+        self.assertEqual(catalogue.value_of(snapshots(start, early, (15, None, None), (20, 8, 90)), "flux_m2_s"), 8)
+        self.assertIsNone(catalogue.value_of(snapshots(start, early, (16, None, None), (20, 8, 90)), "flux_m2_s"))
 
     def test_years_of_dunes_are_in_metres_a_year(self):
         def units(time):
