@@ -50,17 +50,19 @@ MOTIONS = (("migration_speed_m_s", "migration_direction_deg"), ("flux_m2_s", "fl
 
 # Of rates, by how long a run lasts: per second for hops and slabs, per year for sand in real units.
 RATES = {"migration_speed_m_s": ("m/s", "m/a"), "flux_m2_s": ("m²/s", "m²/a")}
-YEARS_FROM = 0.1 * EARTH_YEAR  # simulated time [s]
+DAY = 86400.0  # [s]; runs of real sand last longer, those of hops and slabs do not
 
 
 def time_unit(longest_time):
     """Name and length [s] of the unit that suits runs of so many seconds."""
-    return ("a", EARTH_YEAR) if longest_time >= YEARS_FROM else ("s", 1)
+    if longest_time >= 2 * EARTH_YEAR:
+        return "a", EARTH_YEAR
+    return ("d", DAY) if longest_time >= 2 * DAY else ("s", 1)
 
 
 def metrics_for(longest_time):
     """The metrics with units that suit runs of so many seconds."""
-    years = longest_time >= YEARS_FROM
+    years = longest_time >= 2 * DAY
     return [m._replace(unit=RATES[m.key][years], scale=EARTH_YEAR if years else 1) if m.key in RATES else m
             for m in METRICS]
 

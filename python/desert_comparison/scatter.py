@@ -49,7 +49,8 @@ def text(values, kind=linear):
     # Tenths of a degree are enough, and 359.97 degrees are 0.
     decimals = decimals_of(mean, deviation) if kind is linear else 1
     turn = {circular: 360.0, axial: 180.0}.get(kind)
-    shown = "%.*f" % (decimals, round(mean, decimals) % turn if turn else mean)
+    form = "%.2e" if kind is linear and 0 < abs(mean) < 1e-4 else "%%.%df" % decimals
+    shown = form % (round(mean, decimals) % turn if turn else mean)
     if deviation is not None:
-        shown += " ± %.*f" % (decimals, deviation)
+        shown += " ± " + form % deviation
     return shown + (" (%d of %d runs)" % (len(known), len(values)) if len(known) < len(values) else "")

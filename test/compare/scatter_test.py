@@ -39,6 +39,7 @@ class Scatter(unittest.TestCase):
         self.assertEqual(scatter.text([1.0, None, 2.0]), "1.50 ± 0.71 (2 of 3 runs)")
         self.assertEqual(scatter.text([0.2202840, 0.2202841]), "0.2203 ± 0.0000")
         self.assertEqual(scatter.text([12340.0, 12352.0]), "12346 ± 8")
+        self.assertEqual(scatter.text([1e-6, 2e-6]), "1.50e-06 ± 7.07e-07")
         self.assertEqual(scatter.text([359.96, 0.02], scatter.circular), "0.0 ± 0.0")
         self.assertEqual(scatter.text([84.0, 96.0], scatter.axial), "90.0 ± 6.0")
 
@@ -59,7 +60,7 @@ class Scatter(unittest.TestCase):
         self.assertEqual(units(900)["migration_speed_m_s"], ("m/s", 1))
         self.assertEqual(units(24 * 31557600)["migration_speed_m_s"], ("m/a", 31557600))
         self.assertEqual(units(24 * 31557600)["wavelength_m"], units(900)["wavelength_m"])
-        self.assertEqual(catalogue.time_unit(900), ("s", 1))
+        self.assertEqual([catalogue.time_unit(days * 86400)[0] for days in (0.01, 60, 2000)], ["s", "d", "a"])
 
 
 if __name__ == "__main__":
