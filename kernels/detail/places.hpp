@@ -3,6 +3,7 @@
 /// from the terrain's south-west corner, in double precision, rounded to 2⁻²⁰ m first: a place is then the
 /// same to the bit whatever window it is a point of.
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/field/grid.hpp"

@@ -14,8 +14,8 @@
 /// Phases are those at the centres, so that all of it is continuous where winds change, and the patterns move
 /// downwind by one wavelength as N grows by 1. Where patches are out of step, crests fork and end, as those
 /// of ripples do. The asymmetry a makes the lee side steeper; it is that of the parameters times |w̄|/ū.
-/// Where that is small, no direction prevails, and ripples fade: from |w̄|/ū = 0.3 down to 0, where their direction
-/// may jump.
+/// Where that is small, no direction prevails, and ripples fade: from |w̄|/ū = 0.3 down to 0, where their
+/// direction may jump.
 ///
 /// The wind at a place is w̄ turned and stretched as the terrain now turns and stretches the wind high above.
 
