@@ -41,6 +41,8 @@ class SurfaceDetail {
   /// What the detail adds at a point of the terrain's frame to the surface that is bilinear between cells
   /// [m]; 0 where the ground is unknown, and beyond open edges.
   double offset(double x, double y) const;
+  /// The law, with pointers into this.
+  const surface_detail::Relief& relief() const { return relief_; }
   /// Elevations of a window [m]; NaN where the ground is unknown, and beyond open edges.
   std::vector<float> elevations(const DetailWindow& window) const;
 
