@@ -99,6 +99,11 @@ std::optional<double> GridGround::elevation(double x, double y) const {
   return detail_ ? z + detail_->offset(x, y) : z;
 }
 
+double GridGround::finest_feature() const {
+  constexpr double crest = 0.01;  // of ripples 5 cm long
+  return detail_ ? crest : GroundSource::finest_feature();
+}
+
 GroundPoint GridGround::at(double x, double y) const {
   GroundPoint point;
   if (!contains(x, y)) return point;

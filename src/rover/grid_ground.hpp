@@ -37,6 +37,7 @@ class GridGround : public GroundSource {
   bool contains(double x, double y) const override;
   std::optional<double> elevation(double x, double y) const override;
   GroundPoint at(double x, double y) const override;
+  double finest_feature() const override;
 
  private:
   double value(const std::vector<float>& layer, double x, double y) const;
