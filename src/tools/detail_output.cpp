@@ -32,7 +32,7 @@ DetailWindow window_of(const std::string& option, const GridParameters& grid) {
     throw ConfigError(what + ": (x2, y2) must lie to the north-east of (x1, y1)");
   if (!(resolution[0] >= finest_detail && resolution[0] <= coarsest))
     throw ConfigError(what + ": resolution = " + number_text(resolution[0]) + " m is not in [" +
-                      number_text(finest_detail) + ", " + number_text(coarsest) + "] m");
+                      number_text(finest_detail, 10) + ", " + number_text(coarsest, 10) + "] m");
   const double columns = std::max(1.0, std::round(length_x / resolution[0])),
                rows = std::max(1.0, std::round(length_y / resolution[0]));
   if (columns * rows > most_points)
