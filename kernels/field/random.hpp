@@ -21,6 +21,8 @@ enum class Purpose : std::uint32_t {
   rounding,
   rover_odometry,
   rover_imu,
+  ripples,
+  sand_bumps,
   plants = 32,
   planting,
   range_noise = 64,

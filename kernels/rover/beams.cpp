@@ -9,8 +9,10 @@ namespace desert_sim::beams {
 
 namespace {
 
+template <class Surface>
 struct Beam {
   Scan scan;
+  Surface surface;
   int columns;
   const Vec3* directions;
   float *distances, *intensities;
@@ -53,7 +55,7 @@ struct Beam {
         dust_end = ray_march::end_in_dust(scan.field, r, scan.farthest, scan.media.dust,
                                           exponential_draw(draws.word[1]));
     }
-    const ray_march::Hit hit = ray_march::first_hit(scan.field, r, minimum(scan.farthest, dust_end),
+    const ray_march::Hit hit = ray_march::first_hit(scan.field, surface, r, minimum(scan.farthest, dust_end),
                                                     scan.media.canopy_extinction, plants_depth);
     if (hit.target == ray_march::Target::ground) return {hit.t, scan.reflectivity.ground * incidence(r, hit)};
     if (hit.target == ray_march::Target::plants) return {hit.t, scan.reflectivity.plants};
@@ -81,13 +83,16 @@ struct Beam {
 
 }  // namespace
 
-template <class E>
-void cast(E& exec, const Scan& scan, int columns, int rows, const Vec3* directions, float* distances,
-          float* intensities) {
+template <class E, class Surface>
+void cast(E& exec, const Scan& scan, const Surface& surface, int columns, int rows, const Vec3* directions,
+          float* distances, float* intensities) {
   for_each_cell(exec, Grid{columns, rows, 1.0f, false, false},
-                Beam{scan, columns, directions, distances, intensities});
+                Beam<Surface>{scan, surface, columns, directions, distances, intensities});
 }
 
-template void cast(Backend&, const Scan&, int, int, const Vec3*, float*, float*);
+template void cast(Backend&, const Scan&, const ray_march::PlainGround&, int, int, const Vec3*, float*,
+                   float*);
+template void cast(Backend&, const Scan&, const ray_march::DetailedGround&, int, int, const Vec3*, float*,
+                   float*);
 
 }  // namespace desert_sim::beams

@@ -26,6 +26,7 @@
 #include "kernels/field/math.hpp"
 #include "kernels/rover/height_field.hpp"
 #include "kernels/rover/ray.hpp"
+#include "kernels/rover/ray_detail.hpp"
 
 namespace desert_sim::ray_march {
 
@@ -37,12 +38,12 @@ struct Hit {
   float slope_u = 0, slope_v = 0;  ///< of the ground there [m per cell]
 };
 
-/// t from which a rising ray is higher than everything; `never` for others.
-DESERT_HD float end_below_tops(const height_field::View& field, const Ray& r) {
+/// t from which a rising ray is `high` [m] above all tops; `never` for others.
+DESERT_HD float end_below_tops(const height_field::View& field, const Ray& r, float high) {
   const height_field::Level& last = field.levels[field.level_count - 1];
   if (!(r.dz > 0.0f) || last.columns * last.rows > 1) return never;
   constexpr float slack = 1e-3f;  // more than rounding comes to [m]
-  return (field.tops[last.offset] + slack - r.z - r.z_rest) / r.dz;
+  return (field.tops[last.offset] + (slack + high) - r.z - r.z_rest) / r.dz;
 }
 
 /// A bilinear function over a patch.
@@ -70,18 +71,6 @@ struct Corners {
     return {layer[sw] - less, layer[se] - less, layer[nw] - less, layer[ne] - less};
   }
 };
-
-/// The smallest s in [0, end] at which c0 + c1 s + c2 s² is not above 0; `never` if there is none, and if a
-/// coefficient is NaN.
-DESERT_HD float first_below_zero(float c0, float c1, float c2, float end) {
-  if (c0 <= 0.0f) return 0.0f;
-  const float discriminant = c1 * c1 - 4.0f * c2 * c0;
-  if (!(discriminant >= 0.0f) || (c1 >= 0.0f && c2 >= 0.0f)) return never;
-  // These forms lose no digits where c2 is small; with c2 = 0 the first is the root of the linear equation.
-  const float root = sqrtf(discriminant);
-  const float s = c1 < 0.0f ? 2.0f * c0 / (root - c1) : (c1 + root) / (-2.0f * c2);
-  return s <= end ? s : never;
-}
 
 /// The plants in a patch, as the ray passes them.
 struct Canopy {
@@ -113,8 +102,9 @@ struct Canopy {
 };
 
 /// What the ray meets in a patch between `begin` and `end`.
-DESERT_HD Hit hit_in_patch(const height_field::View& f, const Ray& r, int p, int q, float begin, float end,
-                           Canopy& canopy) {
+template <class Surface>
+DESERT_HD Hit hit_in_patch(const height_field::View& f, const Surface& surface, const Ray& r, int p, int q,
+                           float begin, float end, Canopy& canopy) {
   const Corners corners(f, p, q);
   const Bilinear ground = corners.of(f.elevation, r.z);
   const float a = r.u + begin * r.du - static_cast<float>(p - r.patch_x),
@@ -122,7 +112,7 @@ DESERT_HD Hit hit_in_patch(const height_field::View& f, const Ray& r, int p, int
   const float slope_u = ground.x + ground.xy * b, slope_v = ground.y + ground.xy * a;
   const float c0 = r.z_rest + begin * r.dz - ground.at(a, b), c1 = r.dz - (slope_u * r.du + slope_v * r.dv),
               c2 = -(ground.xy * r.du * r.dv);
-  const float s = first_below_zero(c0, c1, c2, end - begin);
+  const float s = surface.first_below({p, q, a, b, r.du, r.dv, c0, c1, c2, r.metres}, end - begin);
   const bool meets_ground = s < never;
   if (f.canopy) {
     const float way = meets_ground ? s : end - begin;
@@ -131,15 +121,23 @@ DESERT_HD Hit hit_in_patch(const height_field::View& f, const Ray& r, int p, int
     if (plants < never) return {Target::plants, plants, 0.0f, 0.0f};
   }
   if (!meets_ground) return {};
-  return {Target::ground, begin + s, slope_u + ground.xy * s * r.dv, slope_v + ground.xy * s * r.du};
+  Hit hit{Target::ground, begin + s, slope_u + ground.xy * s * r.dv, slope_v + ground.xy * s * r.du};
+  if constexpr (Surface::has_detail) {
+    const auto detail = surface.slope(p, q, a + s * r.du, b + s * r.dv);
+    hit.slope_u += detail.u;
+    hit.slope_v += detail.v;
+  }
+  return hit;
 }
 
 /// The first ground or plants that a ray meets up to t = `end`. `optical_depth`: how much of plants it
 /// passes. Blocks of patches over which the ray is higher than all that stands there are passed at once.
-DESERT_HD Hit first_hit(const height_field::View& field, const Ray& r, float end, float extinction,
-                        float optical_depth) {
+/// `surface`: PlainGround or DetailedGround.
+template <class Surface>
+DESERT_HD Hit first_hit(const height_field::View& field, const Surface& surface, const Ray& r, float end,
+                        float extinction, float optical_depth) {
   Interval part = part_over_grid(field, r, end);
-  part.end = minimum(part.end, end_below_tops(field, r));
+  part.end = minimum(part.end, end_below_tops(field, r, surface.high));
   if (!(part.begin <= part.end)) return {};
   Canopy canopy{extinction, optical_depth};
   const Axis x{r.u, r.du, r.per_du, r.patch_x}, y{r.v, r.dv, r.per_dv, r.patch_y};
@@ -155,12 +153,12 @@ DESERT_HD Hit first_hit(const height_field::View& field, const Ray& r, float end
       const float top =
           field
               .tops[blocks.offset + ((j + r.patch_y) >> shift) * blocks.columns + ((i + r.patch_x) >> shift)];
-      if (r.z_rest + (r.dz < 0.0f ? exit : t) * r.dz <= top - r.z) {
+      if (r.z_rest + (r.dz < 0.0f ? exit : t) * r.dz <= top - r.z + surface.high) {
         --level;
         continue;
       }
     } else {
-      const Hit hit = hit_in_patch(field, r, i + r.patch_x, j + r.patch_y, t, exit, canopy);
+      const Hit hit = hit_in_patch(field, surface, r, i + r.patch_x, j + r.patch_y, t, exit, canopy);
       if (hit.target != Target::none) return hit;
     }
     if (exit >= part.end) return {};

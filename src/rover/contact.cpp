@@ -43,8 +43,11 @@ Hindrance Contact::missing_ground(const RoverState& state, const GroundSource& g
 }
 
 double Contact::surface(double x, double y, double yaw, const GroundSource& ground) const {
-  constexpr int half = 6;  // points of the rim to either side: 0.4 % of the radius off at most on a plane
+  constexpr int fewest = 6;  // points of the rim to either side: 0.4 % of the radius off at most on a plane
+  constexpr int most = 200;
   const double r = rover_.wheel_radius, c = std::cos(yaw), s = std::sin(yaw);
+  const int half =
+      static_cast<int>(std::clamp(std::ceil(1.5 * r / ground.finest_feature()), 1.0 * fewest, 1.0 * most));
   double highest = -std::numeric_limits<double>::infinity();
   for (int n = -half; n <= half; ++n) {
     // The points are even in angle, so that they are dense where steep ground touches the rim.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "src/core/error.hpp"
+#include "src/terrain/bilinear.hpp"
 
 namespace desert_sim {
 
@@ -51,9 +52,17 @@ GridGround::GridGround(const Snapshot& s, double moisture_capacity)
     : GridGround({s.width, s.height, s.cell_size, s.origin_x, s.origin_y, s.periodic_x, s.periodic_y},
                  layers_of(s, moisture_capacity)) {}
 
-std::vector<Layer> GridGround::layers_of_snapshot() {
-  return {Layer::elevation, Layer::sand,     Layer::soil, Layer::looseness,
-          Layer::moisture,  Layer::obstacle, Layer::water};
+std::unique_ptr<GridGround> GridGround::with_detail(const Snapshot& s, double moisture_capacity) {
+  auto ground = std::make_unique<GridGround>(s, moisture_capacity);
+  ground->detail_ = std::make_unique<SurfaceDetail>(s);
+  return ground;
+}
+
+std::vector<Layer> GridGround::layers_of_snapshot(bool detail) {
+  std::vector<Layer> layers{Layer::elevation, Layer::sand,     Layer::soil, Layer::looseness,
+                            Layer::moisture,  Layer::obstacle, Layer::water};
+  if (detail) layers.insert(layers.end(), SurfaceDetail::layers().begin(), SurfaceDetail::layers().end());
+  return layers;
 }
 
 bool GridGround::contains(double x, double y) const {
@@ -62,30 +71,13 @@ bool GridGround::contains(double x, double y) const {
          (g_.periodic_y ? std::isfinite(north) : north >= 0 && north <= g_.height);
 }
 
-GridGround::Axis GridGround::axis(double cells, int count, bool periodic) {
-  if (periodic) {
-    const double centre = cells - 0.5, whole = std::floor(centre),
-                 wrapped = whole - count * std::floor(whole / count);
-    const int first = std::min(static_cast<int>(wrapped), count - 1);
-    return {first, (first + 1) % count, centre - whole};
-  }
-  const double centre = std::clamp(cells - 0.5, 0.0, count - 1.0);
-  const int first = std::min(static_cast<int>(centre), count > 1 ? count - 2 : 0);
-  return {first, std::min(first + 1, count - 1), centre - first};
-}
-
 double GridGround::value(const std::vector<float>& layer, double x, double y) const {
-  const Axis a = axis((x - g_.origin_x) / g_.cell_size, g_.width, g_.periodic_x),
-             b = axis((y - g_.origin_y) / g_.cell_size, g_.height, g_.periodic_y);
-  // A cell of weight 0 may be unknown (NaN).
-  const auto part = [&](double weight, int i, int j) {
-    return weight > 0 ? weight * layer[static_cast<std::size_t>(j) * static_cast<std::size_t>(g_.width) +
-                                       static_cast<std::size_t>(i)]
-                      : 0.0;
-  };
-  return part((1 - a.share) * (1 - b.share), a.first, b.first) +
-         part(a.share * (1 - b.share), a.second, b.first) + part((1 - a.share) * b.share, a.first, b.second) +
-         part(a.share * b.share, a.second, b.second);
+  return bilinear(bilinear_axis((x - g_.origin_x) / g_.cell_size, g_.width, g_.periodic_x),
+                  bilinear_axis((y - g_.origin_y) / g_.cell_size, g_.height, g_.periodic_y),
+                  [&](int i, int j) {
+                    return layer[static_cast<std::size_t>(j) * static_cast<std::size_t>(g_.width) +
+                                 static_cast<std::size_t>(i)];
+                  });
 }
 
 double GridGround::cell_value(const std::vector<float>& layer, double x, double y) const {
@@ -104,7 +96,12 @@ std::optional<double> GridGround::elevation(double x, double y) const {
   if (!contains(x, y)) return std::nullopt;
   const double z = value(layers_.elevation, x, y);
   if (std::isnan(z)) return std::nullopt;
-  return z;
+  return detail_ ? z + detail_->offset(x, y) : z;
+}
+
+double GridGround::finest_feature() const {
+  constexpr double crest = 0.01;  // of ripples 5 cm long
+  return detail_ ? crest : GroundSource::finest_feature();
 }
 
 GroundPoint GridGround::at(double x, double y) const {

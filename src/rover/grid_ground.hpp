@@ -1,10 +1,11 @@
 #pragma once
 /// Ground from arrays, for tests and for rovers beside a simulation in the same program.
 
+#include <memory>
 #include <vector>
 
 #include "src/rover/ground.hpp"
-#include "src/simulation/views/snapshot.hpp"
+#include "src/simulation/views/surface_detail.hpp"
 
 namespace desert_sim {
 
@@ -28,25 +29,24 @@ class GridGround : public GroundSource {
   /// Of a snapshot, as far as it has the layers. It must have the elevation. Looseness is not known where it
   /// is 0 everywhere.
   GridGround(const Snapshot& snapshot, double moisture_capacity);
-  /// The layers that a snapshot for a rover needs.
-  static std::vector<Layer> layers_of_snapshot();
+  /// Likewise, with ripples and bumps on the elevation; the snapshot must be of all rows.
+  static std::unique_ptr<GridGround> with_detail(const Snapshot& snapshot, double moisture_capacity);
+  /// The layers that a snapshot for a rover needs, whether its ground has detail or not.
+  static std::vector<Layer> layers_of_snapshot(bool detail = false);
 
   bool contains(double x, double y) const override;
   std::optional<double> elevation(double x, double y) const override;
   GroundPoint at(double x, double y) const override;
+  double finest_feature() const override;
 
  private:
-  struct Axis {
-    int first, second;  ///< cells between whose centres a point lies
-    double share;       ///< 0 at the first … 1 at the second
-  };
-  static Axis axis(double cells, int count, bool periodic);
   double value(const std::vector<float>& layer, double x, double y) const;
   /// Of the cell in which the point lies.
   double cell_value(const std::vector<float>& layer, double x, double y) const;
 
   Geometry g_;
   Layers layers_;
+  std::unique_ptr<const SurfaceDetail> detail_;  ///< null: none
 };
 
 }  // namespace desert_sim

@@ -1,6 +1,7 @@
 #pragma once
 /// The ground that a rover stands on, wherever it comes from.
 
+#include <limits>
 #include <optional>
 
 namespace desert_sim {
@@ -23,6 +24,9 @@ class GroundSource {
   /// Elevation of the surface [m], bilinear between cell centres; none where it is unknown or off the
   /// terrain.
   virtual std::optional<double> elevation(double x, double y) const = 0;
+  /// Size of the smallest features of the elevation that wheels have to find [m]; infinity: the ground has
+  /// none that are small against wheels.
+  virtual double finest_feature() const { return std::numeric_limits<double>::infinity(); }
   /// The rest; what is unknown has its default.
   virtual GroundPoint at(double x, double y) const = 0;
 };

@@ -77,6 +77,7 @@ std::unique_ptr<Simulation> simulation_of(const CheckpointHeader& header, Exec& 
   s.initial = header.initial;
   s.write_ledger(header.ledger);
   s.wind_regime = header.wind;
+  s.ripple_wind = header.ripple_wind.value_or(RippleWind::settled(s.wind_above()));
   simulation->pipeline().adapt();  // ground that is loose needs memory
   return simulation;
 }

@@ -58,6 +58,7 @@ CheckpointHeader header_of(const Simulation& simulation) {
   header.initial = s.initial;
   header.ledger = s.read_ledger();
   header.wind = s.wind_regime;
+  header.ripple_wind = s.ripple_wind;
   for (const LayerInfo& row : layer_table)
     if (s.is_part(row.layer)) header.layers.push_back(row.layer);
   return header;
@@ -84,6 +85,11 @@ std::string header_text(const CheckpointHeader& header) {
   out << YAML::Key << "wind" << YAML::Value << YAML::BeginMap;
   emit_regime(out, header.wind);
   out << YAML::EndMap;
+  if (header.ripple_wind) {
+    out << YAML::Key << "ripple_wind" << YAML::Value << YAML::BeginMap;
+    yaml::emit_parameters(out, *header.ripple_wind);
+    out << YAML::EndMap;
+  }
   if (header.scenario.wind_series) entry(out, "wind_series", header.scenario.wind_series->text());
   out << YAML::Key << "layers" << YAML::Value << YAML::Flow << YAML::BeginSeq;
   for (Layer layer : header.layers) out << info(layer).name;
@@ -252,7 +258,7 @@ CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
                               "ramps", "initial", "ledger",     "wind",  "layers"};
   yaml::read_parameters(node, "", errors, header.numbers, known);
   std::set<std::string> allowed = known;
-  allowed.insert({"clock", "wind_series"});
+  allowed.insert({"clock", "ripple_wind", "wind_series"});
   yaml::reject_unknown_keys(node, "", allowed, errors);
   if (node.IsMap())
     for (const std::string& key : known)
@@ -262,6 +268,8 @@ CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
   header.scenario = read_scenario(node, "scenario", path);
   check_together(header, errors);
   if (node["clock"]) read_clock(node["clock"], errors, header);
+  if (node["ripple_wind"])
+    yaml::read_section(node["ripple_wind"], "ripple_wind", errors, header.ripple_wind.emplace());
   read_ramps(node["ramps"], errors, header);
   // No sum of all that is booked overflows.
   read_quanta(node, "initial", 1LL << 61, errors, header.initial);

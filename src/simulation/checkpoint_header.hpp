@@ -2,6 +2,7 @@
 /// The header of a checkpoint: all of the state but the words of layers and plants.
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,8 @@ struct CheckpointHeader {
   std::array<long long, material_count> initial{};
   std::vector<long long> ledger;  ///< as of SimulationState::read_ledger()
   WindRegime wind;
-  std::vector<Layer> layers;  ///< persistent ones, in the order of the table
+  std::optional<RippleWind> ripple_wind;  ///< checkpoints of older versions lack it
+  std::vector<Layer> layers;              ///< persistent ones, in the order of the table
 
   /// Simulated time [s].
   double time() const {

@@ -9,6 +9,7 @@
 #include "src/core/constants.hpp"
 #include "src/core/error.hpp"
 #include "src/scenario/yaml_parameters.hpp"
+#include "src/simulation/detail_section.hpp"
 #include "src/simulation/pipeline/memory.hpp"
 
 namespace desert_sim {
@@ -136,6 +137,7 @@ Simulation::Simulation(Exec& exec, const Scenario& scenario, const RasterLoader&
                        const ProcessTable& table)
     : Simulation(scenario, build(exec, scenario, load_raster), table) {
   state_.wind_regime = WindRegime{scenario.wind_regime, scenario.wind_segments, scenario.wind_series};
+  state_.ripple_wind = RippleWind::settled(state_.wind_above());
   state_.begin_balance();
 }
 
@@ -150,7 +152,10 @@ void Simulation::step() {
     throw StateError(std::to_string(max_simulation_steps) +
                      " steps are done, which is as far as the clock counts");
   commands_.apply_timeline();
+  const double before = time();
+  const wind::Vector wind = wind_above();
   pipeline_.step();
+  state_.ripple_wind.advance(wind, time() - before, detail_parameters(scenario()));
 }
 
 std::vector<MemoryPart> Simulation::memory() const {

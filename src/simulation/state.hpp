@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/detail/ripple_size.hpp"
 #include "kernels/field/ledger.hpp"
 #include "kernels/plants/workspace.hpp"
 #include "src/scenario/gusts.hpp"
@@ -103,6 +104,7 @@ struct SimulationState {
   Terrain terrain;
   plants::Workspace plants;  ///< empty where vegetation is off
   WindRegime wind_regime;
+  RippleWind ripple_wind;      ///< follows from the winds so far; no step depends on it
   std::optional<Gusts> gusts;  ///< of a member of an ensemble; a checkpoint does not have them
   std::uint64_t steps = 0;
   ClockOrigin clock_origin;

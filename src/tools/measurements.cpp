@@ -2,39 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <locale>
-#include <sstream>
 
 #include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/time_units.hpp"
+#include "src/tools/points.hpp"
 
 namespace desert_sim {
 
 namespace {
-
-/// As many numbers as `count`, with commas between them; empty if `text` is something else.
-std::vector<double> numbers_of(const std::string& text, std::size_t count) {
-  std::istringstream in(text);
-  in.imbue(std::locale::classic());
-  std::vector<double> numbers(count);
-  for (std::size_t n = 0; n < count; ++n) {
-    char comma = ',';
-    if ((n > 0 && !(in >> comma)) || comma != ',' || !(in >> numbers[n])) return {};
-  }
-  char more = 0;
-  return in >> more ? std::vector<double>() : numbers;
-}
-
-/// Throws ConfigError, in the name of `what`, unless the point lies on the grid.
-void require_on_grid(Point p, const GridParameters& g, const std::string& what) {
-  const double east = g.origin_x + g.width * g.cell_size, north = g.origin_y + g.height * g.cell_size;
-  if (p.x >= g.origin_x && p.x <= east && p.y >= g.origin_y && p.y <= north) return;
-  throw ConfigError(what + ": (" + number_text(p.x, 10) + ", " + number_text(p.y, 10) +
-                    ") does not lie on the terrain (allowed: x in [" + number_text(g.origin_x, 10) + ", " +
-                    number_text(east, 10) + "] m, y in [" + number_text(g.origin_y, 10) + ", " +
-                    number_text(north, 10) + "] m)");
-}
 
 int cell_of(double coordinate, double origin, double cell, int count) {
   return std::clamp(static_cast<int>(std::floor((coordinate - origin) / cell)), 0, count - 1);
@@ -64,7 +40,7 @@ CrossSection::CrossSection(const std::string& text, const GridParameters& grid) 
   name_ = text.substr(0, equals);
   from_ = {ends[0], ends[1]};
   to_ = {ends[2], ends[3]};
-  for (Point p : {from_, to_}) require_on_grid(p, grid, what);
+  for (Point p : {from_, to_}) require_on_grid(p.x, p.y, grid, what);
   if (!(length() > 0)) throw ConfigError(what + ": both of its ends are the same point");
   origin_y_ = grid.origin_y;
   std::vector<double> shares{0, 1};
@@ -108,7 +84,7 @@ Probes::Probes(const std::vector<std::string>& points, const GridParameters& gri
   for (const std::string& text : points) {
     const std::vector<double> at = numbers_of(text, 2);
     if (at.empty()) throw ConfigError("--probe " + text + ": must be x,y");
-    require_on_grid({at[0], at[1]}, grid, "--probe " + text);
+    require_on_grid(at[0], at[1], grid, "--probe " + text);
     points_.push_back({{at[0], at[1]},
                        cell_of(at[0], grid.origin_x, grid.cell_size, grid.width),
                        cell_of(at[1], grid.origin_y, grid.cell_size, grid.height)});

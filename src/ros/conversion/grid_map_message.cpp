@@ -1,6 +1,7 @@
 #include "src/ros/conversion/grid_map_message.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "src/ros/conversion/messages.hpp"
 
@@ -16,6 +17,35 @@ std_msgs::MultiArrayDimension dimension(const char* label, std::uint32_t size, s
   return d;
 }
 
+/// A map without layers, with its south-west corner at (west, south).
+GridMap empty_map(const TerrainState& state, const std::string& frame, double resolution, int along_x,
+                  int along_y, double west, double south) {
+  GridMap map;
+  map.info.header = header_of(state.moment, frame);
+  map.info.resolution = resolution;
+  map.info.length_x = along_x * resolution;
+  map.info.length_y = along_y * resolution;
+  map.info.pose.position.x = west + 0.5 * map.info.length_x;
+  map.info.pose.position.y = south + 0.5 * map.info.length_y;
+  map.info.pose.orientation.w = 1;
+  return map;
+}
+
+/// `values`: row-major from the south-west, `along_x` in a row.
+void add_layer(GridMap& map, const MapLayer& layer, std::vector<float> values, int along_x) {
+  const auto rows = static_cast<std::uint32_t>(along_x),
+             columns = static_cast<std::uint32_t>(values.size()) / rows;
+  map.layers.emplace_back(layer.name);
+  if (layer.layer == Layer::elevation) map.basic_layers.emplace_back(layer.name);
+  map.data.emplace_back();
+  map.data.back().layout.dim = {dimension("column_index", columns, rows * columns),
+                                dimension("row_index", rows, rows)};
+  // A GridMap counts rows from the largest x and columns from the largest y, with rows as the inner index:
+  // this is the order of a snapshot, reversed.
+  std::reverse(values.begin(), values.end());
+  map.data.back().data = std::move(values);
+}
+
 }  // namespace
 
 GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
@@ -23,26 +53,21 @@ GridMap grid_map(const TerrainState& state, const std::string& frame, const std:
   const Snapshot& s = *state.snapshot;
   const int along_x = (window.width + decimation - 1) / decimation,
             along_y = (window.height + decimation - 1) / decimation;
-  GridMap map;
-  map.info.header = header_of(state.moment, frame);
-  map.info.resolution = s.cell_size * decimation;
-  map.info.length_x = along_x * map.info.resolution;
-  map.info.length_y = along_y * map.info.resolution;
-  map.info.pose.position.x = s.origin_x + window.x0 * s.cell_size + 0.5 * map.info.length_x;
-  map.info.pose.position.y = s.origin_y + window.y0 * s.cell_size + 0.5 * map.info.length_y;
-  map.info.pose.orientation.w = 1;
-  const auto rows = static_cast<std::uint32_t>(along_x), columns = static_cast<std::uint32_t>(along_y);
-  for (const MapLayer& layer : layers) {
-    map.layers.emplace_back(layer.name);
-    if (layer.layer == Layer::elevation) map.basic_layers.emplace_back(layer.name);
-    map.data.emplace_back();
-    map.data.back().layout.dim = {dimension("column_index", columns, rows * columns),
-                                  dimension("row_index", rows, rows)};
-    // A GridMap counts rows from the largest x and columns from the largest y, with rows as the inner index:
-    // this is the order of a snapshot, reversed.
-    map.data.back().data = window_values(s, layer, window, decimation);
-    std::reverse(map.data.back().data.begin(), map.data.back().data.end());
-  }
+  GridMap map = empty_map(state, frame, s.cell_size * decimation, along_x, along_y,
+                          s.origin_x + window.x0 * s.cell_size, s.origin_y + window.y0 * s.cell_size);
+  for (const MapLayer& layer : layers)
+    add_layer(map, layer, window_values(s, layer, window, decimation), along_x);
+  return map;
+}
+
+GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
+                 const DetailWindow& window) {
+  GridMap map = empty_map(state, frame, window.resolution, window.columns, window.rows, window.x0, window.y0);
+  for (const MapLayer& layer : layers)
+    add_layer(map, layer,
+              layer.layer == Layer::elevation ? SurfaceDetail(*state.snapshot).elevations(window)
+                                              : nearest_values(*state.snapshot, layer, window),
+              window.columns);
   return map;
 }
 

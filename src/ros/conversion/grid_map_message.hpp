@@ -18,6 +18,10 @@ namespace desert_sim {
 GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
                  const MapWindow& window, int decimation = 1);
 
+/// The elevation with its detail, and of other layers the values of the cells in which the points lie.
+GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
+                 const DetailWindow& window);
+
 TerrainSubmap terrain_submap(const TerrainState& state, const std::string& frame,
                              const std::vector<MapLayer>& layers, const MapWindow& window);
 

@@ -158,6 +158,30 @@ std::vector<float> window_values(const Snapshot& s, const MapLayer& layer, const
   return result;
 }
 
+std::vector<float> nearest_values(const Snapshot& s, const MapLayer& layer, const DetailWindow& w) {
+  const auto cells = [&w](double corner, double origin, double cell, int count, int n, bool periodic) {
+    std::vector<int> all(static_cast<std::size_t>(count));
+    for (int k = 0; k < count; ++k) {
+      const double place = std::floor((corner + (k + 0.5) * w.resolution - origin) / cell),
+                   i = periodic ? place - n * std::floor(place / n) : place;
+      all[static_cast<std::size_t>(k)] = i >= 0 && i < n ? static_cast<int>(i) : -1;
+    }
+    return all;
+  };
+  // A band of a periodic terrain begins in one period and the window perhaps in another.
+  const double period = s.detail.periodic_y ? s.detail.grid_height * s.cell_size : 0;
+  const double south = period > 0 ? w.y0 - period * std::floor((w.y0 - s.origin_y) / period) : w.y0;
+  const std::vector<float>* values = s.find(layer.layer);
+  const WindowReader reader{values ? values->data() : nullptr, static_cast<std::size_t>(s.width),
+                            cells(w.x0, s.origin_x, s.cell_size, w.columns, s.width, s.periodic_x),
+                            cells(south, s.origin_y, s.cell_size, w.rows, s.height, s.periodic_y)};
+  std::vector<float> result;
+  result.reserve(w.points());
+  for (std::size_t y = 0; y < reader.rows.size(); ++y)
+    for (std::size_t x = 0; x < reader.columns.size(); ++x) result.push_back(reader.cell(x, y));
+  return result;
+}
+
 // ---- Cuts.
 
 MapCut cut_terrain(SimulationThread& simulation, const std::vector<MapLayer>& layers, const std::string& what,
@@ -172,6 +196,24 @@ MapCut cut_terrain(SimulationThread& simulation, const std::vector<MapLayer>& la
     const double south = cut.state.snapshot->origin_y - whole.snapshot->origin_y;
     cut.window.y0 -= static_cast<int>(std::lround(south / whole.snapshot->cell_size));
     return cut;
+  }
+}
+
+DetailCut cut_detail(SimulationThread& simulation, const std::vector<MapLayer>& layers,
+                     const std::string& what, const MapRegion& region, double resolution) {
+  std::vector<Layer> needed = layers_of(layers);
+  if (std::count(needed.begin(), needed.end(), Layer::elevation) > 0)
+    needed.insert(needed.end(), SurfaceDetail::layers().begin(), SurfaceDetail::layers().end());
+  while (true) {
+    const TerrainState whole = simulation.terrain({}).get();
+    Snapshot squares = *whole.snapshot;
+    squares.cell_size = resolution;
+    const MapWindow w = window_of(region, squares);
+    require_map_size(w, layers.size(), what);
+    const DetailWindow window{squares.origin_x + w.x0 * resolution, squares.origin_y + w.y0 * resolution,
+                              w.width, w.height, resolution};
+    DetailCut cut{simulation.terrain(needed, SurfaceDetail::band(window, *whole.snapshot)).get(), window};
+    if (cut.state.moment.terrain == whole.moment.terrain) return cut;  // else it was replaced in between
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "src/ros/node/terrain_state.hpp"
+#include "src/simulation/views/surface_detail.hpp"
 #include "src/terrain/map_layers.hpp"
 
 namespace desert_sim {
@@ -57,6 +58,10 @@ void require_map_size(const MapWindow& window, std::size_t layers, const std::st
 std::vector<float> window_values(const Snapshot& snapshot, const MapLayer& layer, const MapWindow& window,
                                  int decimation = 1);
 
+/// The values of the cells in which the points of a finer window lie, in the same order.
+std::vector<float> nearest_values(const Snapshot& snapshot, const MapLayer& layer,
+                                  const DetailWindow& window);
+
 // ---- Cuts: only the rows of the window are computed and copied.
 
 struct MapCut {
@@ -69,5 +74,14 @@ struct MapCut {
 /// simulation thread.
 MapCut cut_terrain(SimulationThread& simulation, const std::vector<MapLayer>& layers, const std::string& what,
                    const std::function<MapWindow(const Snapshot&)>& choose);
+
+/// A part of the present terrain in squares of `resolution` metres that lie on a lattice from the terrain's
+/// origin on. Throws and waits as cut_terrain() does.
+struct DetailCut {
+  TerrainState state;  ///< of the rows that the window's elevation depends on
+  DetailWindow window;
+};
+DetailCut cut_detail(SimulationThread& simulation, const std::vector<MapLayer>& layers,
+                     const std::string& what, const MapRegion& region, double resolution);
 
 }  // namespace desert_sim

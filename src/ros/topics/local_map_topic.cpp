@@ -26,9 +26,15 @@ class LocalMapTopic : public MessageTopic<GridMap> {
   bool publish(const TerrainState&) override {
     return publish_or_set_problem([this] {
       const std::vector<MapLayer>& layers = parameters().maps.local_map_layers;
+      if (map().local_map_resolution > 0) {
+        const DetailCut cut = cut_detail(context().simulation, layers, short_name(), region_around_robot(),
+                                         map().local_map_resolution);
+        return publisher_.publish(
+            boost::make_shared<GridMap>(grid_map(cut.state, frame(), layers, cut.window)));
+      }
       const MapCut cut =
           cut_terrain(context().simulation, layers, short_name(),
-                      [this](const Snapshot& terrain) { return window_around_robot(terrain); });
+                      [this](const Snapshot& terrain) { return window_of(region_around_robot(), terrain); });
       publisher_.publish(boost::make_shared<GridMap>(grid_map(cut.state, frame(), layers, cut.window)));
     });
   }
@@ -36,13 +42,11 @@ class LocalMapTopic : public MessageTopic<GridMap> {
  private:
   const MapParameters& map() const { return parameters().maps.parameters; }
 
-  MapWindow window_around_robot(const Snapshot& terrain) const {
+  MapRegion region_around_robot() const {
     tf2::Transform robot;
     std::string reason;
     if (!context().frames.latest_to_terrain(map().robot_frame, robot, reason)) throw ConfigError(reason);
-    return window_of(
-        {robot.getOrigin().x(), robot.getOrigin().y(), map().local_map_length_x, map().local_map_length_y},
-        terrain);
+    return {robot.getOrigin().x(), robot.getOrigin().y(), map().local_map_length_x, map().local_map_length_y};
   }
 };
 

@@ -57,6 +57,10 @@ void read_map_setup(const YAML::Node& root, ValidationErrors& errors, MapSetup& 
   const MapParameters& p = maps.parameters;
   if ((p.grid_map_length_x == 0) != (p.grid_map_length_y == 0))
     errors.add("grid_map_length_x", "and grid_map_length_y must both be 0 or both be above it");
+  if (p.local_map_resolution > 0 && p.local_map_resolution < finest_detail)
+    errors.add("local_map_resolution", "= " + std::to_string(p.local_map_resolution) +
+                                           " is neither 0 nor in [" + std::to_string(finest_detail) +
+                                           ", 1000] m");
 }
 
 }  // namespace
@@ -89,6 +93,7 @@ void check_map_sizes(const MapSetup& maps, const GridParameters& grid) {
   if (p.grid_map_length_x > 0)
     require_map_size(window_of({p.grid_map_x, p.grid_map_y, p.grid_map_length_x, p.grid_map_length_y}, s),
                      maps.grid_map_layers.size(), "grid_map_length_x and grid_map_length_y");
+  if (p.local_map_resolution > 0) s.cell_size = p.local_map_resolution;
   require_map_size(window_of({grid.origin_x, grid.origin_y, p.local_map_length_x, p.local_map_length_y}, s),
                    maps.local_map_layers.size(), "local_map_length_x and local_map_length_y");
 }

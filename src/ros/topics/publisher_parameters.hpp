@@ -94,6 +94,7 @@ struct MapParameters {
   double local_map_rate = 5;
   double local_map_length_x = 20;
   double local_map_length_y = 20;
+  double local_map_resolution = 0;
   std::string robot_frame = "base_link";
   double costmap_update_rate = 1;
   double costmap_keyframe_rate = 0.1;
@@ -117,6 +118,9 @@ constexpr auto parameter_table(const MapParameters*) {
       parameter("local_map_rate", &P::local_map_rate, 0, 1000, "Hz", "~local_map."),
       parameter("local_map_length_x", &P::local_map_length_x, 1e-3, 1e9, "m", "Length of ~local_map."),
       parameter("local_map_length_y", &P::local_map_length_y, 1e-3, 1e9, "m", "Length of ~local_map."),
+      parameter("local_map_resolution", &P::local_map_resolution, 0, 1000, "m",
+                "Side of a cell of ~local_map, whose elevation then has ripples and bumps (section detail); "
+                "0.001 m at least; 0: the terrain's cells, without."),
       parameter("robot_frame", &P::robot_frame, "Frame whose origin ~local_map follows."),
       parameter("costmap_update_rate", &P::costmap_update_rate, 0, 1000, "Hz",
                 "~costmap_updates; not above the update_frequency of a costmap_2d that listens."),

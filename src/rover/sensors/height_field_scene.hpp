@@ -2,11 +2,13 @@
 /// The terrain as range sensors see it: a height field with plants and airborne sand in the memory of a
 /// backend, which is kept up to date by rectangles of cells that have changed.
 
+#include <optional>
 #include <vector>
 
 #include "kernels/backend/buffer.hpp"
 #include "kernels/backend/exec.hpp"
 #include "kernels/rover/height_field.hpp"
+#include "src/simulation/views/surface_detail.hpp"
 
 namespace desert_sim {
 
@@ -42,6 +44,13 @@ class HeightFieldScene {
   /// The same for the whole grid.
   void update(SceneLayer layer, const std::vector<float>& values);
 
+  /// Puts ripples and bumps on the ground until the next call: those of a snapshot of all rows with
+  /// SurfaceDetail::layers(). The elevation that beams meet is still that of update(). Throws ConfigError if
+  /// the snapshot has another grid.
+  void set_detail(const Snapshot& snapshot);
+  void clear_detail() { detail_.reset(); }
+  const std::optional<surface_detail::Relief>& detail() const { return detail_; }
+
  private:
   void check(const Rectangle& cells, std::size_t values) const;
   Buffer<float>& buffer_of(SceneLayer layer);
@@ -56,7 +65,9 @@ class HeightFieldScene {
   Buffer<float> elevation_, tops_;
   Buffer<float> canopy_, density_;                    ///< empty while there are no plants
   Buffer<float> airborne_sand_, dust_, dust_ground_;  ///< empty while no sand is in the air
-  Buffer<float> staging_;                             ///< values on their way to the device
+  std::vector<Buffer<float>> detail_cells_;           ///< what detail_ points to
+  std::optional<surface_detail::Relief> detail_;
+  Buffer<float> staging_;  ///< values on their way to the device
 };
 
 }  // namespace desert_sim

@@ -70,8 +70,14 @@ const RangeImage& RangeSensor::scan(const HeightFieldScene& scene, const SensorP
     for (std::size_t column = 0; column < 3; ++column)
       scan.turn[row][column] = static_cast<float>(turn[row][column]);
   with_backend(exec_, [&](auto& exec) {
-    beams::cast(exec, scan, image_.columns, image_.rows, device_directions_.data(), distances_.data(),
-                intensities_.data());
+    const auto cast = [&](const auto& surface) {
+      beams::cast(exec, scan, surface, image_.columns, image_.rows, device_directions_.data(),
+                  distances_.data(), intensities_.data());
+    };
+    if (const std::optional<surface_detail::Relief>& detail = scene.detail())
+      cast(ray_march::DetailedGround(*detail, scene.geometry().cell_size));
+    else
+      cast(ray_march::PlainGround());
   });
   distances_.download(0, image_.distances.size(), image_.distances.data());
   intensities_.download(0, image_.intensities.size(), image_.intensities.data());

@@ -6,6 +6,7 @@
 #include "kernels/plants/marking.hpp"
 #include "kernels/rover/traversability.hpp"
 #include "kernels/view/layer_values.hpp"
+#include "src/simulation/detail_section.hpp"
 #include "src/simulation/views/views.hpp"
 
 namespace desert_sim {
@@ -49,6 +50,15 @@ std::shared_ptr<Snapshot> Views::make_empty_snapshot(const std::vector<Layer>& l
   s->step = state_.steps;
   s->time = state_.time();
   s->wind_above = state_.wind_above();
+  s->detail = {detail_parameters(state_.scenario),
+               state_.scenario.seed,
+               state_.ripple_wind,
+               repose::Tangents::tangent(state_.scenario.repose.sand_deg),
+               state_.scenario.repose.moisture_capacity,
+               g.height,
+               rows.first,
+               g.origin_y,
+               grid.periodic_y};
   for (const Species& species : state_.scenario.species)
     s->crown_colours.push_back(crown_colour(species.appearance));
   for (Layer layer : layers) s->layers[layer];

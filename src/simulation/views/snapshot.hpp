@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "kernels/detail/ripple_size.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/plants/marking.hpp"
 #include "kernels/wind/wind.hpp"
@@ -20,6 +21,19 @@ struct RowBand {
   int first = 0, count = 0;
 };
 
+/// What the detail of the surface (surface_detail.hpp) depends on, besides layers.
+struct DetailSettings {
+  DetailParameters parameters;
+  std::uint64_t seed = 1;
+  RippleWind wind;
+  float repose_tangent = 1;     ///< of bare sand
+  float moisture_capacity = 1;  ///< of a metre of ground [m]
+  // Of the whole terrain, of which a snapshot may have a band of rows only:
+  int grid_height = 0, first_row = 0;  ///< [cells]; the snapshot's row 0 is that row
+  double origin_y = 0;                 ///< [m]
+  bool periodic_y = true;
+};
+
 /// Layers at one moment, converted to floats in the layer's unit. Immutable once made; outlives the
 /// simulation.
 struct Snapshot {
@@ -29,6 +43,7 @@ struct Snapshot {
   std::uint64_t step = 0;
   double time = 0;  ///< simulated [s]
   wind::Vector wind_above;
+  DetailSettings detail;
   std::vector<std::array<float, 3>> crown_colours;  ///< by species: of 1 in the layer plants, of 2 …
   std::map<Layer, std::vector<float>> layers;
   const std::vector<float>* find(Layer layer) const;  ///< null if it was not asked for
