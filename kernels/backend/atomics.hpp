@@ -22,6 +22,18 @@ DESERT_HD Integer atomic_add(Integer* to, Integer amount) {
 #endif
 }
 
+/// Adds to a value that only cells of one row of for_each_cell() write to, and returns what it was before. A
+/// CPU works on a row with one thread.
+DESERT_HD int add_in_row(int* to, int amount) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(to, amount);
+#else
+  const int before = *to;
+  *to = before + amount;
+  return before;
+#endif
+}
+
 /// Raises a value to at least `value`, atomically.
 template <class Integer>
 DESERT_HD void atomic_max(Integer* to, Integer value) {

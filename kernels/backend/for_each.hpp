@@ -21,8 +21,7 @@
 /// Neither part may read `sums`.
 ///
 /// A law of for_each_line_in_turn() hands Law::words values of type Law::Word from each of the `length`
-/// places of a line to the next line, to places at most Law::reach cells to the side; if that is 0, places
-/// are passed independently of each other.
+/// places of a line to the next line, to places at most Law::reach cells to the side.
 ///
 ///     law.load(line, place)             what does not depend on the line before; read ahead of its turn
 ///     law.pass(loaded, before, after)   finds in before(w, k) word w of the line before, k places further

@@ -349,11 +349,7 @@ void for_each_line_in_turn(CpuExec& exec, int first, int end, int length, typena
   for (int w = 0; w < Law::words; ++w)
     for (int m = 0; m < length; ++m) lines[0](w, m) = law.before_first(w, m);
   fill_beyond(law, length, 0, length, lines[0]);
-  // Lines whose places are independent of each other do not make threads wait.
-  constexpr bool independent = Law::reach == 0;
-  const bool parallel = independent ? static_cast<long long>(length) * (end - first) >= min_parallel_cells
-                                    : length >= min_parallel_line;
-#pragma omp parallel num_threads(exec.threads()) if (parallel)
+#pragma omp parallel num_threads(exec.threads()) if (length >= min_parallel_line)
   {
     const long long thread = omp_get_thread_num(), threads = omp_get_num_threads();
     const int from = static_cast<int>(length * thread / threads);
@@ -361,10 +357,8 @@ void for_each_line_in_turn(CpuExec& exec, int first, int end, int length, typena
     for (int n = first; n < end; ++n) {
       const Words &before = lines[(n - first) % 2], &after = lines[(n - first + 1) % 2];
       pass_line(law, n, from, to, before, after);
-      if constexpr (!independent) {
-        fill_beyond(law, length, from, to, after);
+      fill_beyond(law, length, from, to, after);
 #pragma omp barrier
-      }
     }
   }
 }

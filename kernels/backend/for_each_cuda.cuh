@@ -182,7 +182,7 @@ __global__ void items_kernel(int count, Law law) {
 }
 
 /// Threads of a block that passes over lines.
-constexpr int longest_line_block = 512, independent_line_block = 64;
+constexpr int longest_line_block = 512;
 
 /// Where a block of threads passes over lines: its own places and, where a line has several blocks, `margin`
 /// more at either side, so that it knows without the other blocks what reaches its own.
@@ -240,7 +240,7 @@ __global__ void __launch_bounds__(longest_line_block)
     lines_kernel(LineBlock block, bool begins, LineWords<typename Law::Word> from,
                  LineWords<typename Law::Word> to, Law law) {
   using Word = typename Law::Word;
-  constexpr int ahead = Law::reach == 0 ? 8 : 4, words = Law::words;
+  constexpr int ahead = 4, words = Law::words;
   extern __shared__ __align__(16) char scratch[];
   auto* const memory = reinterpret_cast<Word*>(scratch);
   const int thread = threadIdx.x, pitch = blockDim.x, length = block.length;
@@ -333,18 +333,15 @@ void for_each_tile(CudaExec& exec, const Tiling& tiles, const Law& law) {
 }
 
 /// A short line is passed by a single block. The blocks of a longer one pass as many lines as their margins
-/// allow without waiting for each other; where places are independent of each other, small blocks pass all.
+/// allow without waiting for each other.
 template <class Law>
 void for_each_line_in_turn(CudaExec& exec, int first, int end, int length, typename Law::Word* words,
                            const Law& law) {
   using Words = LineWords<typename Law::Word>;
   constexpr int lines_at_once = 32, margin = Law::reach * lines_at_once;
-  constexpr bool independent = Law::reach == 0;
-  const bool whole = independent || length <= cuda::longest_line_block;
+  const bool whole = length <= cuda::longest_line_block;
   cuda::LineBlock block{first, end, length, length, 0, law.around()};
-  if (independent) {
-    block.own = std::min(length, cuda::independent_line_block);
-  } else if (!whole) {
+  if (!whole) {
     block.margin = margin;
     block.own = cuda::longest_line_block - 2 * margin;
   }
@@ -353,8 +350,7 @@ void for_each_line_in_turn(CudaExec& exec, int first, int end, int length, typen
   const auto bytes = static_cast<std::size_t>(2 * Law::words * threads) * sizeof(typename Law::Word);
   Words from{words, length, Law::reach},
       to{words + words_of_line(Law::words, Law::reach, length), length, Law::reach};
-  const auto kernel =
-      whole && block.around && !independent ? cuda::lines_kernel<Law, true> : cuda::lines_kernel<Law, false>;
+  const auto kernel = whole && block.around ? cuda::lines_kernel<Law, true> : cuda::lines_kernel<Law, false>;
   for (int line = first; line < end; line = block.end) {
     block.first = line;
     block.end = whole ? end : std::min(line + lines_at_once, end);

@@ -53,7 +53,6 @@ enum class Roll : int {
   pipe_y,
   sediment_x,
   sediment_y,
-  slab_blocks,
   slab_polls,
   slab_hops,
   count

@@ -67,6 +67,15 @@ DESERT_HD std::uint32_t multiply_high(std::uint32_t a, std::uint32_t b) {
 #endif
 }
 
+/// Number of the lowest bit that is set, of a word that is not 0.
+DESERT_HD int lowest_bit(std::uint32_t word) {
+#if defined(__CUDA_ARCH__)
+  return __ffs(static_cast<int>(word)) - 1;
+#else
+  return __builtin_ctz(word);
+#endif
+}
+
 /// The share wx·wy (each 0 … 2¹⁶ for 0 … 1) of an amount that is not negative, rounded down, so that the four
 /// shares of a bilinear split never exceed the amount.
 DESERT_HD Quanta bilinear_share(Quanta amount, int wx, int wy) {

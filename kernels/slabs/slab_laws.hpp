@@ -1,5 +1,5 @@
 #pragma once
-/// The laws of slab_model.hpp: turns of blocks, flights, the shadow. How slabs roll is in rolling.hpp.
+/// The laws of slab_model.hpp: polls, flights, the shadow. How slabs roll is in rolling.hpp.
 
 #include "kernels/slabs/rolling.hpp"
 #include "kernels/slabs/slab_model.hpp"
@@ -11,7 +11,7 @@ struct TakeStacks {
   Lattice lattice;
   const Quanta *bedrock, *soil, *sand;
   const float* obstacle;
-  Quanta* cliffs;
+  Quanta *base, *cliffs;
 
   /// Of what slabs cannot be taken from: rock, soil, and obstacles with what lies on them.
   DESERT_HD Quanta ground(int i) const {
@@ -20,11 +20,11 @@ struct TakeStacks {
   }
   DESERT_HD void operator()(int x, int y) const {
     const Grid& grid = lattice.order.grid;
-    const int i = grid.index(x, y), n = lattice.order.slot(x, y);
-    const Quanta here = ground(i), loose = value_or_zero(obstacle, i) > 0.0f ? 0 : sand[i];
+    const int i = grid.index(x, y), n = lattice.slot_of(x, y);
+    const Quanta here = ground(i);
     lattice.height[n] = bedrock[i] + value_or_zero(soil, i) + sand[i];
-    lattice.sand[n] = loose;
-    lattice.arriving[n] = 0;
+    base[n] = here;
+    lattice.pending[n] = 0;
     Quanta most = 0;
     unrolled<4>([&](auto k) DESERT_INLINE {  // east, north, and the diagonals to the north
       const int x_there = k == 0 || k == 2 ? x + 1 : k == 3 ? x - 1 : x, y_there = k == 0 ? y : y + 1;
@@ -45,10 +45,12 @@ struct PutSand {
   Quanta* sand;
 
   DESERT_HD void operator()(int x, int y) const {
-    const int i = lattice.order.grid.index(x, y), n = lattice.order.slot(x, y);
+    const int i = lattice.order.grid.index(x, y), n = lattice.slot_of(x, y);
     const Quanta left = value_or_zero(obstacle, i) > 0.0f ? sand[i] : 0;
-    const auto rolling = static_cast<Quanta>(lattice.arriving[n] & (Lattice::one_hole - 1u));
-    sand[i] = left + lattice.sand[n] + rolling * lattice.slab;
+    const std::uint32_t pending = lattice.pending[n];
+    const auto rolling = static_cast<Quanta>(pending & (Lattice::one_hole - 1u)) -
+                         static_cast<Quanta>(pending / Lattice::one_hole);
+    sand[i] = left + lattice.height[n] - lattice.base[n] + rolling * lattice.slab;
   }
 };
 
@@ -65,142 +67,160 @@ struct Blow {
 };
 
 /// The shadow over each cell: from a line to the next, along the wind's ways, it falls by `fall`, or begins
-/// anew at a higher cell.
+/// anew at a higher cell. The lines are divided among threads, each of which begins `lead` lines before its
+/// own: shadows are at least as long. The ways of a line are numbered as the places of line 0 lie in memory.
 struct FindShade {
-  static constexpr int words = 1, reach = 0;
-  using Word = Quanta;
-  struct Loaded {
+  Lattice lattice;
+  Quanta fall;  ///< [quanta a line]
+  int lead;
+
+  static constexpr Quanta none = -wall_height;
+  static constexpr int lines_of_a_thread = 256;
+  /// A CPU follows many ways at once, as vectors; a GPU loads cells ahead of their turn.
+#if defined(__CUDACC__)
+  static constexpr int at_once = 1, ahead = 8;
+#else
+  static constexpr int at_once = 64, ahead = 1;
+#endif
+  struct Cell {
     Quanta height;
     bool begins;  ///< the way comes in over an open edge
     int slot;
   };
-  struct Result {
-    Quanta shade;
-    int slot;
-  };
-  Lattice lattice;
-  Quanta fall;  ///< [quanta a line]
-  static constexpr Quanta none = -wall_height;
 
-  DESERT_HD bool around() const { return false; }
-  DESERT_HD Quanta beyond(int, Quanta nearest) const { return nearest; }
-  DESERT_HD Quanta before_first(int, int) const { return none; }
-  DESERT_HD Loaded load(int line, int way) const {
-    const Downwind& order = lattice.order;
-    const int length = order.length(), offset = lattice.offset(line),
-              step = offset - lattice.offset(line - 1);
-    const int unwrapped = way + wrap(offset, length);
-    const int place = unwrapped - (unwrapped >= length ? length : 0), before = place - step;
-    const bool begins = !order.periodic_across() && (before < 0 || before >= length);
-    const int slot = (line < 0 ? line + order.lines() : line) * length + place;
-    return {lattice.height[slot], begins, slot};
-  }
-  template <class Before, class After>
-  DESERT_HD Result pass(const Loaded& here, const Before& before, const After& after) const {
-    const Quanta fallen = before(0) - fall, shade = here.begins || fallen < none ? none : fallen;
-    after(0) = here.height > shade ? here.height : shade;
-    return {shade, here.slot};
-  }
-  DESERT_HD void store(int line, int, const Result& result) const {
-    if (line >= 0) lattice.shade[result.slot] = result.shade;
-  }
-};
-
-/// How often the cells of a block are polled in a round. Polls at random follow each other by Poisson's law:
-/// an equal number for all blocks would make the bed smoother than it is where each poll may be anywhere.
-struct Polls {
-  SlabPolling polling;
-  std::uint32_t per_round;  ///< polls of a cell [2⁻²⁰]
-  int most;                 ///< of a block
-  Die die;
-
-  struct Range {
-    int begin, end;
-  };
-  /// Polls of a block of so many cells, numbered through the step.
-  DESERT_HD Range of(int round, int cells, std::uint32_t word) const {
-    if (polling == SlabPolling::repeated) {
-      const float mean = static_cast<float>(cells) * static_cast<float>(per_round) * (1.0f / 1048576.0f);
-      return {round * most,
-              round * most + poisson(mean, scrambled(word + static_cast<std::uint32_t>(round)))};
+  DESERT_HD void operator()(int column, int part) const {
+    const int own = part * lines_of_a_thread, lines = lattice.order.lines(),
+              begin = lattice.order.periodic_along() || own > lead ? own - lead : 0,
+              end = own + lines_of_a_thread < lines ? own + lines_of_a_thread : lines;
+    const int first_way = column * at_once, left = lattice.pitch - first_way,
+              ways = left < at_once ? left : at_once;
+    Quanta shade[at_once];
+    for (int n = 0; n < ways; ++n) shade[n] = none;
+    Cell cells[ahead];
+    for (int first = begin; first < end; first += ahead) {
+      if (at_once > 1) {
+        pass_line(first, first_way, ways, first >= own, shade);
+      } else {
+        unrolled<ahead>(
+            [&](auto n) DESERT_INLINE { cells[n] = load(first + n < end ? first + n : end - 1, first_way); });
+        unrolled<ahead>([&](auto n) DESERT_INLINE {
+          if (first + n < end) pass(cells[n], first + n >= own, shade[0]);
+        });
+      }
     }
-    return {before(round, cells, word), before(round + 1, cells, word)};
   }
 
  private:
-  /// Polls of a permutation of n numbers before a round: they add up, whatever the share is.
-  DESERT_HD int before(int round, int n, std::uint32_t word) const {
-    const std::uint64_t polls = static_cast<std::uint64_t>(round) * per_round * static_cast<std::uint64_t>(n);
-    return static_cast<int>((polls + (word >> 12)) >> 20);
+  DESERT_HD void pass_line(int line, int first_way, int ways, bool is_own, Quanta* shade) const {
+#if !defined(__CUDACC__)
+#pragma omp simd
+#endif
+    for (int n = 0; n < ways; ++n) pass(load(line, first_way + n), is_own, shade[n]);
   }
-  DESERT_HD int poisson(float mean, std::uint32_t word) const {
-    const float u = static_cast<float>(word >> 8) * (1.0f / 16777216.0f);
-    float term = exp_negative(mean), sum = term;
-    int n = 0;
-    while (u >= sum && n < most) {
-      ++n;
-      term *= mean / static_cast<float>(n);
-      sum += term;
-    }
-    return n;
+  DESERT_HD Cell load(int line, int way) const {
+    const Downwind& order = lattice.order;
+    const int length = order.length(), offset = lattice.offset(line),
+              step = offset - lattice.offset(line - 1), l = line < 0 ? line + order.lines() : line;
+    const int first = lattice.place_of_slot(way), unwrapped = first + wrap(offset, length);
+    const int place = unwrapped - (unwrapped >= length ? length : 0), before = place - step;
+    const bool begins = !order.periodic_across() && (before < 0 || before >= length);
+    const int slot = first < length ? lattice.slot(l, place) : l * lattice.pitch + way;  // unused words
+    return {lattice.height[slot], begins, slot};
+  }
+  DESERT_HD void pass(const Cell& here, bool is_own, Quanta& shade) const {
+    const Quanta fallen = shade - fall, found = here.begins || fallen < none ? none : fallen;
+    shade = here.height > found ? here.height : found;
+    if (!is_own) return;
+    lattice.shade[here.slot] = found;
+    lattice.set_state(here.slot, here.height, found);
   }
 };
 
-/// The turn of a block: what has come settles, then its cells are polled.
+/// Which cells of a run are polled in a turn. At random, their number follows Poisson's law.
+struct Polls {
+  static constexpr int most = 8;  ///< in a run and turn; more would come once in a million
+
+  SlabPolling polling;
+  std::uint32_t more_than[most];  ///< probability of more than n polls in a run [2⁻³²]
+  std::uint64_t begin;            ///< of the turn in the step [poll times; 2⁻³²]
+  std::uint32_t last;             ///< of the turn in that poll time, which it does not leave [2⁻³²]
+  Die die;                        ///< of the step
+  std::uint32_t turn;
+
+  /// Calls poll(n) for cells of a run, which begins at slot `first`.
+  template <class Poll>
+  DESERT_HD void of(const Run& run, int first, const Poll& poll) const {
+    if (polling == SlabPolling::non_repeated) return each_once(run, first, poll);
+    const std::uint32_t word = scrambled(die.word(first) + turn * 0x9e3779b9u);
+    int count = 0;
+    unrolled<most>([&](auto n) DESERT_INLINE { count += word < more_than[n]; });
+    std::uint32_t cells = scrambled(word + 0x9e3779b9u);
+    static_assert(Colours::longest_run == 16 && most == 8, "four bits a poll");
+    for (; count > 0; --count, cells >>= 4)
+      if (static_cast<int>(cells & 15u) < run.count) poll(static_cast<int>(cells & 15u));
+  }
+
+ private:
+  /// A cell has its turn at a time of its own in each poll time.
+  template <class Poll>
+  DESERT_HD void each_once(const Run& run, int first, const Poll& poll) const {
+    const auto time = static_cast<std::uint32_t>(begin >> 32);
+    for (int n = 0; n < run.count; ++n) {
+      const std::uint32_t own = scrambled(die.word(first + n) + time * 0x9e3779b9u);
+      if (own >= static_cast<std::uint32_t>(begin) && own <= last) poll(n);
+    }
+  }
+};
+
+/// Slabs that were taken in a turn: their cells, line by line. Threads never share a line.
+struct Taken {
+  std::uint32_t* cells;  ///< numbers in the line · 16 + number of the slab in its run
+  int* counts;           ///< of a line
+  int capacity;          ///< of a line
+
+  static int capacity_of(int length) {
+    const int runs = (Lattice::quarter_of(length) + Colours::longest_run - 1) / Colours::longest_run;
+    return Colours::longest_run * (4 * runs + 3);
+  }
+  DESERT_HD void append(int line, std::uint32_t cell, std::uint32_t number) const {
+    cells[of_line(line) + static_cast<std::size_t>(add_in_row(&counts[line], 1))] =
+        cell * 16u + (number & 15u);
+  }
+  DESERT_HD std::size_t of_line(int line) const {
+    return static_cast<std::size_t>(line) * static_cast<std::size_t>(capacity);
+  }
+};
+
+/// The turn of a colour: what is pending settles, then cells are polled.
 struct TakeTurn {
   Lattice lattice;
-  Blocks blocks;
+  Colours colours;
+  int colour;
   Polls polls;
   bool shadow_protects;
-  int round, turn;
-  int* taken;  ///< `most` polls of each block of a colour, block after block
+  Taken taken;
 
-  DESERT_HD void operator()(int item) const {
-    const Block block = blocks.block(turn, item);
-    int* const to = taken + item * polls.most;
-    int done = 0;
-    if (block.cells() > 0)
-      with_rolling(lattice, block, [&](const auto& rolling) DESERT_INLINE {
-        settle(rolling);
-        done = poll(rolling, block, to);
+  DESERT_HD void operator()(int column, int row) const {
+    const Run run = colours.run(colour, column, row);
+    if (run.count <= 0) return;
+    with_rolling(lattice, run, [&](const auto& rolling) DESERT_INLINE {
+      rolling.settle();
+      std::uint32_t number = 0;
+      polls.of(run, rolling.first, [&](int n) DESERT_INLINE {
+        const int at = rolling.first + n;
+        if (!lattice.can_give(at) || (shadow_protects && lattice.is_shaded(at))) return;
+        rolling.make_hole(n);
+        taken.append(run.line, static_cast<std::uint32_t>(at - run.line * lattice.pitch), number++);
       });
-    for (; done < polls.most; ++done) to[done] = -1;
-  }
-  template <class Rolling>
-  DESERT_HD int poll(const Rolling& rolling, const Block& block, int* to) const {
-    const int cells = block.cells();
-    int bits = 0;
-    while ((1 << bits) < cells) ++bits;
-    const std::uint32_t key = polls.die.word(lattice.slot(block.line, block.place));
-    const bool each_once = polls.polling == SlabPolling::non_repeated;
-    const int numbers = each_once ? 1 << bits : cells;
-    const typename Polls::Range range = polls.of(round, numbers, key);
-    const int row_of = block.row_factor();
-    for (int poll = range.begin; poll < range.end; ++poll) {
-      const int cell =
-          each_once ? permuted(poll & (numbers - 1), bits, key + static_cast<std::uint32_t>(poll >> bits))
-                    : static_cast<int>(
-                          multiply_high(scrambled(key + static_cast<std::uint32_t>(poll) * 0x9e3779b9u),
-                                        static_cast<std::uint32_t>(cells)));
-      const int row = block.row(cell, row_of), column = cell - row * block.places;
-      to[poll - range.begin] =
-          cell < cells ? take(rolling, rolling.cell(block.line + row, block.place + column)) : -1;
-    }
-    return range.end - range.begin;
-  }
-  template <class Rolling, class Cell>
-  DESERT_HD int take(const Rolling& rolling, Cell from) const {
-    const int n = from.slot;
-    if (!lattice.has_slab(n) || (shadow_protects && lattice.height[n] < lattice.shade[n])) return -1;
-    rolling.take(from);
-    return n;
+    });
   }
 };
 
 /// A slab that was taken flies until it stays.
 struct Fly {
   Lattice lattice;
-  const int* taken;
+  Taken taken;
+  int columns;                                 ///< threads that share the slabs of a line
   float hop;                                   ///< L_0 [lines]
   float linear, square;                        ///< C_1, C_2 [lines/quantum, lines/quantum²]
   float reference;                             ///< h_ref [quanta]
@@ -209,13 +229,78 @@ struct Fly {
   Die die;                                     ///< of the turn
   LedgerView ledger;
 
+  struct Flight {
+    int line, place;
+    Quanta height;       ///< from which it takes its next hop
+    std::uint32_t word;  ///< random
+  };
   static constexpr int most_hops = 4096;
+  /// What a hop returns if the slab flies on, or has left the grid.
+  static constexpr int on = -1, out = -2;
+  /// A CPU lets many slabs hop in turn, so that none waits for the memory that another needs, nor for a guess
+  /// of how many hops there are.
+#if defined(__CUDACC__)
+  static constexpr int at_once = 1;
+#else
+  static constexpr int at_once = 64;
+#endif
 
-  DESERT_HD void operator()(int item) const {
-    const int from = taken[item];
-    if (from < 0) return;
-    const int length = lattice.order.length(), line = from / length;
-    fly(line, from - line * length, from, item);
+  DESERT_HD void operator()(int column, int line) const {
+    const int count = taken.counts[line];
+    Flight flights[at_once];
+    for (int first = column * at_once; first < count; first += columns * at_once) {
+      const int slabs = count - first < at_once ? count - first : at_once;
+      for (int n = 0; n < slabs; ++n)
+        flights[n] = start(line, taken.cells[taken.of_line(line) + static_cast<std::size_t>(first + n)]);
+      fly(flights, slabs, line);
+    }
+  }
+  DESERT_HD Flight start(int line, std::uint32_t cell) const {
+    const int from = static_cast<int>(cell / 16u), at = line * lattice.pitch + from;
+    return {line, lattice.place_of_slot(from), lattice.height[at],
+            die.word(at + static_cast<int>((cell & 15u) * 0x9e3779b9u))};
+  }
+  /// `number`: of the account for what leaves the grid.
+  DESERT_HD void fly(Flight* flights, int slabs, int number) const {
+    int stayed[at_once], gone = 0;
+    for (int hops = 0; slabs > 0; ++hops) {
+      int flying = 0, staying = 0;
+      for (int n = 0; n < slabs; ++n) {
+        Flight flight = flights[n];
+        const int to = do_hop(flight, hops == most_hops);
+        flights[flying] = flight;
+        stayed[staying] = to;
+        flying += to == on;
+        staying += to >= 0;
+        gone += to == out;
+      }
+      for (int n = 0; n < staying; ++n) atomic_add(&lattice.pending[stayed[n]], Lattice::one_slab);
+      slabs = flying;
+    }
+    if (gone > 0) ledger.book_out(Material::sand, number, gone * lattice.slab);
+  }
+  /// The cell where the slab stays, `on` or `out`.
+  DESERT_HD int do_hop(Flight& flight, bool is_last) const {
+    const Downwind& order = lattice.order;
+    flight.word = scrambled(flight.word + 0x9e3779b9u);
+    const int lines = lines_of_hop(flight.height, flight.word);
+    int before = -1;
+    if (*cliffs != 0 && hits_rock(flight.line, flight.place, lines, before)) return before;
+    const int offset = lattice.offset(flight.line + lines) - lattice.offset(flight.line);
+    flight.line += lines;
+    flight.place += offset;
+    if (order.periodic_along()) flight.line = wrap(flight.line, order.lines());
+    if (order.periodic_across()) flight.place = wrap(flight.place, order.length());
+    if (static_cast<unsigned>(flight.line) >= static_cast<unsigned>(order.lines()) ||
+        static_cast<unsigned>(flight.place) >= static_cast<unsigned>(order.length()))
+      return out;
+    const int n = lattice.slot(flight.line, flight.place);
+    if (linear != 0.0f || square != 0.0f) flight.height = lattice.height[n];
+    flight.word = scrambled(flight.word + 0x9e3779b9u);
+    const std::uint8_t state = lattice.state[n];
+    const std::uint32_t chance = (state & Lattice::has_slab_bit) != 0 ? stays_on_sand : stays_on_rock;
+    const bool stays = ((state & Lattice::shaded_bit) != 0) | (flight.word < chance) | is_last;
+    return stays ? n : on;
   }
   DESERT_HD int lines_of_hop(Quanta height, std::uint32_t word) const {
     const float above = static_cast<float>(height) - reference;
@@ -224,34 +309,11 @@ struct Fly {
                                        static_cast<float>(word >> 8) * (1.0f / 16777216.0f));
     return whole > 1 ? whole : 1;
   }
-  DESERT_HD void fly(int line, int place, int from, int number) const {
-    Quanta height = from < 0 ? static_cast<Quanta>(reference) : lattice.height[from];
-    std::uint32_t word = die.word(number);
-    const bool has_cliffs = *cliffs != 0;
-    for (int hops = 0; hops < most_hops; ++hops) {
-      word = scrambled(word + 0x9e3779b9u);
-      const int lines = lines_of_hop(height, word);
-      int landed = -1;
-      if (has_cliffs && hits_rock(line, place, lines, landed)) return stay(landed);
-      place += lattice.offset(line + lines) - lattice.offset(line);
-      line += lines;
-      const int n = lattice.slot(line, place);
-      if (n < 0) return ledger.book_out(Material::sand, number, lattice.slab);
-      if (lattice.order.periodic_along()) line = wrap(line, lattice.order.lines());
-      if (lattice.order.periodic_across()) place = wrap(place, lattice.order.length());
-      height = lattice.height[n];
-      word = scrambled(word + 0x9e3779b9u);
-      if (height < lattice.shade[n] || word < (lattice.has_slab(n) ? stays_on_sand : stays_on_rock))
-        return stay(n);
-      if (hops + 1 == most_hops) stay(n);
-    }
-  }
-  DESERT_HD void stay(int n) const { atomic_add(&lattice.arriving[n], Lattice::one_slab); }
   /// Whether rock that is steeper than repose rises before the end of a hop; `before`: the cell before it.
   DESERT_HD bool hits_rock(int line, int place, int lines, int& before) const {
-    int last = lattice.slot(line, place);
+    int last = lattice.slot_within(line, place);
     for (int d = 1; d <= lines; ++d) {
-      const int n = lattice.slot(line + d, place + lattice.offset(line + d) - lattice.offset(line));
+      const int n = lattice.slot_within(line + d, place + lattice.offset(line + d) - lattice.offset(line));
       if (n < 0) return false;
       if (last >= 0 && !lattice.has_slab(n) && lattice.height[n] - lattice.height[last] > lattice.repose) {
         before = last;
@@ -273,7 +335,9 @@ struct Enter {
     const Quanta count = die.whole_at_most(slabs, 65535, place);
     for (Quanta n = 0; n < count; ++n) {
       fly.ledger.book_in(Material::sand, place, fly.lattice.slab);
-      fly.fly(-1, place, -1, -1 - place - n * fly.lattice.order.length());
+      Fly::Flight flight{-1, place, static_cast<Quanta>(fly.reference),
+                         fly.die.word(-1 - place - n * fly.lattice.order.length())};
+      fly.fly(&flight, 1, place);
     }
   }
 };

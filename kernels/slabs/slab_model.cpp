@@ -12,13 +12,13 @@ namespace desert_sim::slabs {
 
 struct SurfaceSum {
   Lattice lattice;
-  DESERT_HD long long operator()(int x, int y) const { return lattice.height[lattice.order.slot(x, y)]; }
+  DESERT_HD long long operator()(int x, int y) const { return lattice.height[lattice.slot_of(x, y)]; }
 };
 struct DeviationSum {
   Lattice lattice;
   Quanta mean;
   DESERT_HD long long operator()(int x, int y) const {
-    const Quanta above = lattice.height[lattice.order.slot(x, y)] - mean;
+    const Quanta above = lattice.height[lattice.slot_of(x, y)] - mean;
     return above < 0 ? -above : above;
   }
 };
@@ -34,6 +34,8 @@ float reference_height(E& exec, const Grid& grid, const Lattice& lattice, SlabKi
   return static_cast<float>(mean - 0.5 * static_cast<double>(sum) / cells);
 }
 
+/// How many parts of at most `size` a count has.
+inline int parts(int count, int size) { return (count + size - 1) / size; }
 inline std::uint32_t probability(float p) {
   return static_cast<std::uint32_t>(std::min(4294967295.0, static_cast<double>(p) * 4294967296.0));
 }
@@ -49,9 +51,12 @@ inline Lattice make_lattice(const TerrainView& t, const SlabModelParameters& p, 
           std::max(quanta(static_cast<double>(p.slab_height)), Quanta{1}),
           quanta(std::tan(p.repose_deg * pi / 180.0) * static_cast<double>(t.grid.cell_size)),
           work.height.data(),
-          work.sand.data(),
+          work.base.data(),
           work.shade.data(),
-          work.arriving.data()};
+          work.state.data(),
+          work.pending.data(),
+          Lattice::quarter_of(order.length()),
+          4 * Lattice::quarter_of(order.length())};
 }
 
 template <class E>
@@ -59,20 +64,49 @@ void blow(E& exec, const TerrainView& t, wind::Vector above) {
   for_each_cell(exec, t.grid, Blow{t.grid, above, t.real(Layer::wind_x), t.real(Layer::wind_y)});
 }
 
-/// Everything of a step that its rounds share.
-struct Round {
+/// Polls of the turn with this number, of a step of so many poll times. No turn lasts from one poll time into
+/// the next.
+inline Polls polls_of_turn(SlabPolling polling, int turn, double poll_times, Die die) {
+  const double whole = std::floor(poll_times);
+  const bool is_whole = turn < whole * turns_a_poll;
+  const double rest = poll_times - whole, rest_turns = std::ceil(rest * turns_a_poll - 1e-6);
+  const double length = is_whole ? 1.0 / turns_a_poll : rest / rest_turns;
+  const double begin = is_whole ? turn * length : whole + (turn - whole * turns_a_poll) * length;
+  Polls polls{polling, {}, 0, 0, die, static_cast<std::uint32_t>(turn)};
+  const double mean = length * Colours::longest_run;
+  double term = std::exp(-mean), up_to = term;
+  for (int n = 0; n < Polls::most; ++n) {
+    polls.more_than[n] = static_cast<std::uint32_t>((1.0 - up_to) * 4294967296.0);
+    term *= mean / (n + 1);
+    up_to += term;
+  }
+  const auto fixed_point = [](double t) {
+    return static_cast<std::uint64_t>(std::llround(t * 4294967296.0));
+  };
+  polls.begin = fixed_point(begin);
+  polls.last = static_cast<std::uint32_t>(fixed_point(begin + length) - 1);
+  return polls;
+}
+inline int turns_of(double poll_times) {
+  const double whole = std::floor(poll_times), rest = poll_times - whole;
+  return static_cast<int>(whole * turns_a_poll + std::ceil(rest * turns_a_poll - 1e-6));
+}
+
+/// Everything of a step that its turns share.
+struct Turns {
   Lattice lattice;
-  Blocks blocks;
+  Colours colours;
   FindShade find_shade;
-  Polls polls;
+  SlabPolling polling;
+  Taken taken;
   Fly fly;
-  int count;           ///< rounds of the step
-  int shaded_from;     ///< first line of the sweep for the shadow
+  double poll_times;   ///< of the step
+  int count;           ///< turns of the step
   bool spares_shadow;  ///< no slab is taken there
-  float entering;      ///< slabs that the wind brings to a place of an open edge in a round
+  float entering;      ///< slabs that the wind brings to a place of an open edge in a turn
 };
 
-inline Round make_round(const TerrainView& t, const StepInputs& in, const Lattice& lattice, float reference,
+inline Turns make_turns(const TerrainView& t, const StepInputs& in, const Lattice& lattice, float reference,
                         const Dice& dice, LedgerView ledger, const Workspace& work) {
   const SlabModelParameters& p = in.model;
   const Downwind& order = lattice.order;
@@ -81,15 +115,14 @@ inline Round make_round(const TerrainView& t, const StepInputs& in, const Lattic
   const double path =
       std::hypot(1.0, static_cast<double>(order.shift(in.above.x, in.above.y)));  // [cells a line]
   const auto lines = [&](double cells) { return static_cast<float>(cells / path); };
-  const double polls = static_cast<double>(in.time_step) / static_cast<double>(p.poll_time);
-  const int count = std::max(1, static_cast<int>(std::ceil(rounds_a_poll * polls)));
-  const auto per_round = static_cast<std::uint32_t>(std::lround(polls / count * 1048576.0));
-  const Blocks blocks{BlockAxis(order.lines(), order.periodic_along()),
-                      BlockAxis(order.length(), order.periodic_across()), dice[Roll::slab_blocks]};
+  const double poll_times = static_cast<double>(in.time_step) / static_cast<double>(p.poll_time);
+  const int count = turns_of(poll_times);
   const double speed = std::hypot(static_cast<double>(in.above.x), static_cast<double>(in.above.y));
   const bool speeds_up = p.kind != SlabKind::werner;
+  const Taken taken{work.taken_cells.data(), work.taken_counts.data(), Taken::capacity_of(order.length())};
   const Fly fly{lattice,
-                work.taken.data(),
+                taken,
+                parts(order.length(), 8 * Fly::at_once),
                 lines(speed * static_cast<double>(p.hop_time) / cell),
                 speeds_up ? lines(static_cast<double>(p.linear_speedup) / slab) : 0.0f,
                 speeds_up ? lines(static_cast<double>(p.square_speedup) / (slab * slab)) : 0.0f,
@@ -103,37 +136,57 @@ inline Round make_round(const TerrainView& t, const StepInputs& in, const Lattic
   const auto shaded_lines =
       static_cast<int>(std::ceil(static_cast<double>(p.longest_shadow) / (path * cell)));
   return {lattice,
-          blocks,
-          {lattice, static_cast<Quanta>(std::lround(fall))},
-          {p.polling, per_round, most_polls(blocks.most_cells(), per_round), dice[Roll::slab_polls]},
+          {{order.lines(), order.periodic_along()}, {order.length(), order.periodic_across()}},
+          {lattice, static_cast<Quanta>(std::lround(fall)), std::min(order.lines(), shaded_lines)},
+          p.polling,
+          taken,
           fly,
+          poll_times,
           count,
-          order.periodic_along() ? -std::min(order.lines(), shaded_lines) : 0,
           speeds_up,
           order.periodic_along() ? 0.0f
                                  : static_cast<float>(static_cast<double>(in.influx * in.time_step) / count /
                                                       cell * per_metre / slab)};
 }
 
+inline Grid columns_and_rows(int columns, int rows) {
+  Grid grid;
+  grid.width = columns;
+  grid.height = rows;
+  return grid;
+}
+/// Lets all runs of all colours have their turn: law_of(colour)(column, row).
+template <class E, class LawOf>
+void for_each_colour(E& exec, const Colours& colours, const LawOf& law_of) {
+  for (int colour = 0; colour < colours.count(); ++colour)
+    for_each_cell(exec, columns_and_rows(colours.columns(colour), colours.rows(colour)), law_of(colour));
+}
 template <class E>
-void do_round(E& exec, const Round& of, int round, const Dice& dice, Workspace& work) {
+void settle_all(E& exec, const Turns& of) {
+  for_each_colour(exec, of.colours, [&](int colour) { return Settle{of.lattice, of.colours, colour}; });
+}
+
+template <class E>
+void do_turn(E& exec, const Turns& of, int turn, const Dice& dice) {
   const Downwind& order = of.lattice.order;
-  const int at_once = of.blocks.most_of_a_colour();
+  if (turn % turns_a_shadow == 0)
+    for_each_cell(exec,
+                  columns_and_rows(parts(of.lattice.pitch, FindShade::at_once),
+                                   parts(order.lines(), FindShade::lines_of_a_thread)),
+                  of.find_shade);
   Fly fly = of.fly;
-  if (round % rounds_a_shadow == 0)
-    for_each_line_in_turn(exec, of.shaded_from, order.lines(), order.length(), work.lines.data(),
-                          of.find_shade);
   if (of.entering > 0.0f) {
-    fly.die = of.fly.die.of_part(-1 - round);
-    for_each_item(exec, order.length(), Enter{fly, of.entering, dice[Roll::influx].of_part(round)});
+    fly.die = of.fly.die.of_part(-1 - turn);
+    for_each_item(exec, order.length(), Enter{fly, of.entering, dice[Roll::influx].of_part(turn)});
   }
-  for (int turn = 0; turn < Blocks::colours; ++turn) {
-    for_each_item(
-        exec, at_once,
-        TakeTurn{of.lattice, of.blocks, of.polls, of.spares_shadow, round, turn, work.taken.data()});
-    fly.die = of.fly.die.of_part(round * Blocks::colours + turn);
-    for_each_item(exec, at_once * of.polls.most, fly);
-  }
+  const Polls polls = polls_of_turn(of.polling, turn, of.poll_times, dice[Roll::slab_polls]);
+  exec.set_zero(of.taken.counts, sizeof(int) * static_cast<std::size_t>(order.lines()));
+  for_each_colour(exec, of.colours, [&](int colour) {
+    return TakeTurn{of.lattice, of.colours, colour, polls, of.spares_shadow, of.taken};
+  });
+  fly.die = of.fly.die.of_part(turn);
+  for_each_cell(exec, columns_and_rows(fly.columns, order.lines()), fly);
+  settle_all(exec, of);
 }
 
 template <class E>
@@ -144,14 +197,13 @@ void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice,
   exec.set_zero(work.cliffs.data(), sizeof(Quanta));
   for_each_cell(exec, t.grid,
                 TakeStacks{lattice, t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
-                           obstacle, work.cliffs.data()});
-  const Round all =
-      make_round(t, in, lattice, reference_height(exec, t.grid, lattice, in.model.kind), dice, ledger, work);
+                           obstacle, work.base.data(), work.cliffs.data()});
+  const Turns all =
+      make_turns(t, in, lattice, reference_height(exec, t.grid, lattice, in.model.kind), dice, ledger, work);
   const bool windy = in.above.x != 0.0f || in.above.y != 0.0f;
-  for (int round = 0; windy && round < all.count; ++round) do_round(exec, all, round, dice, work);
-  constexpr int rounds_to_rest = 2;
-  for (int turn = 0; turn < rounds_to_rest * Blocks::colours; ++turn)
-    for_each_item(exec, all.blocks.most_of_a_colour(), Settle{lattice, all.blocks, turn % Blocks::colours});
+  for (int turn = 0; windy && turn < all.count; ++turn) do_turn(exec, all, turn, dice);
+  constexpr int turns_to_rest = 2;
+  for (int turn = 0; turn < turns_to_rest; ++turn) settle_all(exec, all);
   for_each_cell(exec, t.grid, PutSand{lattice, obstacle, t.quanta(Layer::sand)});
   blow(exec, t, in.above);
 }

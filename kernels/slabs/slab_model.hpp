@@ -19,13 +19,12 @@
 ///
 /// Slopes are those before the slab moves: seen after, no slope would be steep enough for a shadow.
 ///
-/// Sequential models in parallel: the terrain is divided into blocks of at least 8 × 8 cells, anew in each
-/// step, and the blocks have four colours like a chessboard of two. Those of one colour lie at least 8 cells
-/// apart. One thread polls a block's cells in turn, and rolls slabs at most four cells out of it; from there
-/// the block they have come to goes on. Then all slabs that were taken fly over resting ground and are
-/// counted where they land, and come to rest when that block's turn comes. Each colour has its turn 16 times
-/// in a `poll_time`, and the shadow is found four times. Order and dice follow from the seed: neither threads
-/// nor backends change a bit.
+/// Sequential models in parallel: 16 times in a `poll_time` all cells have their turn, colour by colour
+/// (colours.hpp), so that no two that are worked on at once see each other. In its turn a cell is polled, as
+/// often as Poisson's law has it. A slab or hole that rolls does so from cell to cell, in the turns of these.
+/// After all colours, all slabs that were taken fly over resting ground to where they stay, and what they set
+/// rolling has another turn. The shadow is found four times in a `poll_time`. Order and dice follow from the
+/// seed: neither threads nor backends change a bit.
 ///
 /// Wind may blow in any direction: hops and shadows go along lines of cells (downwind.hpp) to the nearest
 /// cell, each cell in exactly one line. A slab that flies against rock steeper than repose falls down before
@@ -42,23 +41,23 @@
 
 namespace desert_sim::slabs {
 
-/// Rounds of turns of all colours in the time in which each cell is polled once, and rounds for which the
-/// shadow is taken to be the same. With 8 rounds dunes grow visibly later than one poll after the other; with
-/// more than 16 no earlier.
-constexpr int rounds_a_poll = 16, rounds_a_shadow = 4;
+/// Turns in the time in which each cell is polled once, and turns for which the shadow is taken to be the same.
+/// With 8 turns momiji's dunes grow visibly sooner than one poll after the other, with more no better.
+constexpr int turns_a_poll = 16, turns_a_shadow = 4;
 
-/// Fields in the order of a sweep downwind.
+/// Fields in the order of Lattice.
 struct Workspace {
-  Buffer<Quanta> height, sand;     ///< of the surface, and of the sand in it [quanta]
-  Buffer<Quanta> shade;            ///< height of the shadow over a cell [quanta]
-  Buffer<std::uint32_t> arriving;  ///< slabs that come to rest here, and holes · 2¹⁶ that roll on from here
-  Buffer<int> taken;               ///< cells from which slabs were taken in a turn, or −1
-  Buffer<Quanta> lines;            ///< of the sweep
-  Buffer<Quanta> cliffs;           ///< whether there is any rock steeper than repose
+  Buffer<Quanta> height, base;        ///< of the surface, and of what slabs lie on [quanta]
+  Buffer<Quanta> shade;               ///< height of the shadow over a cell [quanta]
+  Buffer<std::uint8_t> state;         ///< whether a cell has a slab, and is in the shadow
+  Buffer<std::uint32_t> pending;      ///< slabs that have come and do not rest yet, and holes · 2¹⁶
+  Buffer<std::uint32_t> taken_cells;  ///< from which slabs were taken in a turn, line by line
+  Buffer<int> taken_counts;           ///< of a line
+  Buffer<Quanta> cliffs;              ///< whether there is any rock steeper than repose
 
   std::size_t bytes() const {
-    return height.bytes() + sand.bytes() + shade.bytes() + arriving.bytes() + taken.bytes() + lines.bytes() +
-           cliffs.bytes();
+    return height.bytes() + base.bytes() + shade.bytes() + state.bytes() + pending.bytes() +
+           taken_cells.bytes() + taken_counts.bytes() + cliffs.bytes();
   }
 };
 

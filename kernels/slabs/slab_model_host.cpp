@@ -1,22 +1,27 @@
 #include <algorithm>
 
 #include "kernels/backend/for_each.hpp"
-#include "kernels/slabs/blocks.hpp"
-#include "kernels/slabs/slab_model.hpp"
+#include "kernels/slabs/slab_laws.hpp"
 
 namespace desert_sim::slabs {
 
 Workspace make_workspace(Exec& exec, const Grid& grid) {
-  const auto cells = static_cast<std::size_t>(grid.cells());
+  // Lines lie along either axis, as the wind has it.
+  const auto most = [&](auto words) {
+    return std::max(words(grid.width, grid.height), words(grid.height, grid.width));
+  };
+  const std::size_t words = most(Lattice::words);
+  const std::size_t taken = most([](int lines, int length) {
+    return static_cast<std::size_t>(lines) * static_cast<std::size_t>(Taken::capacity_of(length));
+  });
+  const auto longest = static_cast<std::size_t>(std::max(grid.width, grid.height));
   Workspace work;
-  for (Buffer<Quanta>* buffer : {&work.height, &work.sand, &work.shade})
-    *buffer = Buffer<Quanta>(exec, cells);
-  work.arriving = Buffer<std::uint32_t>(exec, cells);
-  const BlockAxis x(grid.width, grid.periodic_x), y(grid.height, grid.periodic_y);
-  const auto at_once = static_cast<std::size_t>(x.most_of_a_colour()) * y.most_of_a_colour();
-  const int polls = most_polls(x.most_cells() * y.most_cells(), (1u << 20) / rounds_a_poll);
-  work.taken = Buffer<int>(exec, at_once * static_cast<std::size_t>(polls));
-  work.lines = Buffer<Quanta>(exec, words_for_lines(1, 0, std::max(grid.width, grid.height)));
+  for (Buffer<Quanta>* buffer : {&work.height, &work.base, &work.shade})
+    *buffer = Buffer<Quanta>(exec, words);
+  work.state = Buffer<std::uint8_t>(exec, words);
+  work.pending = Buffer<std::uint32_t>(exec, words);
+  work.taken_cells = Buffer<std::uint32_t>(exec, taken);
+  work.taken_counts = Buffer<int>(exec, longest);
   work.cliffs = Buffer<Quanta>(exec, 1);
   return work;
 }
