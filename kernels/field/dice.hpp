@@ -56,6 +56,11 @@ enum class Roll : int {
   slab_blocks,
   slab_polls,
   slab_hops,
+  particle_lift,
+  particle_flight,
+  particle_splash,
+  particle_hop,
+  particle_creep,
   count
 };
 
