@@ -10,10 +10,11 @@ constexpr const char* particle_kind_names[] = {"none", "wang"};
 
 /// Grain, air, lift-off and roughness are those of Wang & Hu 2012, but for the diameter, of which a later
 /// account says 15 mm: 0.15 mm is meant. Threshold and focus are Bagnold's (1941). The shelter ends six
-/// heights behind a crest, where a separated flow comes back to the ground. A bounce leaves up to half the
-/// speed (Rice et al. 1995 found 0.5 to 0.6). a_s is that of Kok & Renno 2009, and α twice their 0.15,
-/// because thrown grains have to cross cells of a centimetre. λ_c was chosen so that bumps of single cells
-/// vanish.
+/// heights behind a crest, where a separated flow comes back to the ground. ℓ is the longest distance of
+/// real ripples, and z_e lies in the middle of the layer in which most grains fly; it sets how high ripples
+/// become. A bounce leaves up to half the speed (Rice et al. 1995 found 0.5 to 0.6). a_s is that of Kok &
+/// Renno 2009, and α twice their 0.15, because thrown grains have to cross cells of a centimetre. λ_c was
+/// chosen so that bumps of single cells vanish.
 struct ParticleParameters {
   ParticleKind kind = ParticleKind::none;
   float grain_diameter = 0.00015f;
@@ -34,6 +35,8 @@ struct ParticleParameters {
   float tangential_restitution = 0.4f;
   int most_bounces = 12;
   float shelter_deg = 10.0f;
+  float upwind_length = 0.3f;
+  float exposed_height = 0.007f;
   float splash_number = 0.02f;
   float splash_momentum = 0.3f;
   float splash_deg = 50.0f;
@@ -72,6 +75,10 @@ constexpr auto parameter_table(const ParticleParameters*) {
       parameter("most_bounces", &P::most_bounces, 0, 100, "1", "Bounces after which a grain stays."),
       parameter("shelter_deg", &P::shelter_deg, 1, 80, "deg",
                 "Angle at which the shelter behind a crest comes down to the ground."),
+      parameter("upwind_length", &P::upwind_length, 0.01, 100, "m",
+                "Length (l) over which the ground upwind counts as the level from which crests stand out."),
+      parameter("exposed_height", &P::exposed_height, 0.001, 10, "m",
+                "Height (z_e) at which crests meet the wind above that level."),
       parameter("splash_number", &P::splash_number, 0, 1, "1",
                 "Grains that an impact throws up, for a speed of sqrt(g d) (a_s); 0: none."),
       parameter("splash_momentum", &P::splash_momentum, 0, 1, "1",

@@ -28,9 +28,11 @@ void find_shelter(E& exec, const TerrainView& t, const StepInputs& in, const Dow
       std::tan(in.particle.shelter_deg * pi / 180.0) * way * static_cast<double>(t.quanta_per_metre);
   const auto whole_fall =
       static_cast<Quanta>(std::lround(std::clamp(fall, 1.0, static_cast<double>(wall_height))));
+  const double renewal = -std::expm1(-way / static_cast<double>(in.particle.upwind_length));
+  const FindShelter find{order, to_fixed_point(shift), whole_fall, static_cast<float>(renewal),
+                         work.columns.data()};
   for_each_line_in_turn(exec, order.periodic_along() ? -order.lines() : 0, order.lines(), order.length(),
-                        work.lines.data(),
-                        FindShelter{order, to_fixed_point(shift), whole_fall, work.columns.data()});
+                        work.lines.data(), find);
 }
 
 inline Flights make_flights(const TerrainView& t, const StepInputs& in, const Downwind& order,
@@ -61,6 +63,7 @@ inline LiftOff make_lift_off(const TerrainView& t, const StepInputs& in, const F
           wind.threshold * wind.threshold,
           excess > 0.0f ? wind.lift_rate * quanta / excess : 0.0f,
           10.0f * in.particle.grain_diameter,
+          in.particle.exposed_height,
           wind.exposure,
           entering * std::fabs(wind.air.along_x),
           entering * std::fabs(wind.air.along_y),

@@ -12,8 +12,8 @@
 ///   rest       where the speed away from the bed would be less than √(2 g d), which lifts a grain by d, or
 ///              after `most_bounces`
 ///
-/// The model as published lets grains bounce for ever, and its ripples move against the wind. Four things put
-/// that right.
+/// The model as published lets grains bounce for ever, and its ripples move against the wind. Five things put
+/// that right, and end their growth.
 ///
 /// Shelter. The plane of zero wind z_d, which the model leaves at the ground, is raised in the lee of crests:
 /// it falls from each crest by the angle `shelter_deg` down to the ground. Grains that fly over a crest lose
@@ -40,11 +40,13 @@
 ///   E = ρ_a (u² − u_*t²)₊ / (φ ρ_s Δv) · (1 + cot α ∂h/∂s)₊    depth of bed in a second [m/s]
 ///   u_*t = a √((ρ_s/ρ_a − 1) g d)
 ///
-/// where u is the shear velocity at the cell, which the shelter lessens by the factor by which it lessens the
-/// wind ten grains above the bed. The last factor counts the impacts on a slope along the wind, because in
-/// steady transport a grain that comes to rest is replaced by one that impacts set free; Δv and the angle of
-/// impact α are means over level ground. Plants and moisture lessen E by the factors 1 − v and `dryness`, and
-/// the splash likewise; none is lifted under water.
+/// where u is the shear velocity at the cell. The shelter lessens it by the factor by which it lessens the
+/// wind ten grains above the bed. Crests stand in faster wind, which ends their growth (Bagnold 1941): it
+/// rises by the factor ln((z_e + h − h_u)/z_0)/ln(z_e/z_0) with h_u the mean ground upwind, weighted by
+/// exp(−distance/ℓ), z_e = `exposed_height`, ℓ = `upwind_length`. The last factor of E counts the impacts
+/// on a slope along the wind, because in steady transport a grain that comes to rest is replaced by one
+/// that impacts set free; Δv and the angle of impact α are means over level ground. Plants and moisture
+/// lessen E by the factors 1 − v and `dryness`, and the splash likewise; none is lifted under water.
 ///
 /// The undisturbed wind blows everywhere in the same direction. Grains come to rest on sand, soil or rock,
 /// but not on obstacles: what would rest there lies where it last was over other ground. Over an open edge
@@ -70,6 +72,7 @@ namespace desert_sim::particles {
 /// Heights at a cell [quanta].
 struct Column {
   Quanta surface, shelter;  ///< the shelter's is that of the surface where there is none
+  Quanta upwind;            ///< mean of the surface upwind, weighted by exp(−distance/ℓ)
 };
 
 struct Workspace {

@@ -128,7 +128,7 @@ Workspace make_workspace(Exec& exec, const Grid& grid) {
   const auto cells = static_cast<std::size_t>(grid.cells());
   Workspace work;
   work.columns = Buffer<Column>(exec, cells);
-  work.lines = Buffer<Quanta>(exec, words_for_lines(1, 0, std::max(grid.width, grid.height)));
+  work.lines = Buffer<Quanta>(exec, words_for_lines(2, 0, std::max(grid.width, grid.height)));
   for (Buffer<Quanta>* sums : {&work.impacts, &work.splash, &work.landed})
     *sums = Buffer<Quanta>(exec, cells);
   return work;

@@ -2,71 +2,12 @@
 /// The laws of wang.hpp.
 
 #include "kernels/backend/for_each.hpp"
+#include "kernels/particles/shelter.hpp"
 #include "kernels/particles/starts.hpp"
 #include "kernels/particles/wang.hpp"
 #include "kernels/sand/saltation_inputs.hpp"
-#include "kernels/wind/downwind.hpp"
 
 namespace desert_sim::particles {
-
-using wind::Downwind;
-
-struct MeasureSurface {
-  Downwind order;
-  const Quanta *bedrock, *soil, *sand;
-  Column* columns;
-
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = order.grid.index(x, y);
-    columns[order.slot(x, y)].surface = bedrock[i] + value_or_zero(soil, i) + sand[i];
-  }
-};
-
-/// The shelter over each cell: from a line to the next, along the wind's ways, it falls by `fall`, or begins
-/// anew at a higher cell.
-struct FindShelter {
-  static constexpr int words = 1, reach = 0;
-  using Word = Quanta;
-  struct Loaded {
-    Quanta surface;
-    bool begins;  ///< the way comes in over an open edge
-    int slot;
-  };
-  struct Result {
-    Quanta shelter;
-    int slot;
-  };
-  static constexpr Quanta none = -wall_height;
-  Downwind order;
-  int shift;    ///< of the wind [cells a line; 16.16 fixed point]
-  Quanta fall;  ///< [quanta a line]
-  Column* columns;
-
-  DESERT_HD bool around() const { return false; }
-  DESERT_HD Quanta beyond(int, Quanta nearest) const { return nearest; }
-  DESERT_HD Quanta before_first(int, int) const { return none; }
-  /// How far to the side the wind's way from line 0 has come at a line [cells].
-  DESERT_HD int offset(int line) const {
-    return static_cast<int>((static_cast<long long>(line) * shift + fixed_point_one / 2) >> 16);
-  }
-  DESERT_HD Loaded load(int line, int way) const {
-    const int length = order.length(), unwrapped = way + wrap(offset(line), length);
-    const int place = unwrapped - (unwrapped >= length ? length : 0);
-    const int before = place - (offset(line) - offset(line - 1));
-    const bool begins = !order.periodic_across() && (before < 0 || before >= length);
-    const int slot = (line < 0 ? line + order.lines() : line) * length + place;
-    return {columns[slot].surface, begins, slot};
-  }
-  template <class Before, class After>
-  DESERT_HD Result pass(const Loaded& here, const Before& before, const After& after) const {
-    const Quanta fallen = before(0) - fall, shelter = here.begins || fallen < none ? none : fallen;
-    after(0) = here.surface > shelter ? here.surface : shelter;
-    return {after(0), here.slot};
-  }
-  DESERT_HD void store(int line, int, const Result& result) const {
-    if (line >= 0) columns[result.slot].shelter = result.shelter;
-  }
-};
 
 /// The surface as a flight sees it that began in cell (x, y): bilinear between the centres of cells.
 struct Bed {
@@ -174,9 +115,10 @@ struct LiftOff {
   Flights flights;
   Loose loose;
   float shear_velocity, threshold_squared;
-  float per_excess;    ///< E Δt/(u_*² − u_*t²) [quanta s²/m²]
-  float shear_height;  ///< at which u is read [m]
-  float exposure;      ///< cot α [1]
+  float per_excess;      ///< E Δt/(u_*² − u_*t²) [quanta s²/m²]
+  float shear_height;    ///< at which u is read [m]
+  float exposed_height;  ///< z_e [m]
+  float exposure;        ///< cot α [1]
   float entering_x,
       entering_y;       ///< over a cell's side at the edge to the west or east, south or north [quanta]
   float splash_number;  ///< a_s/√(g d) [s/m]
@@ -194,9 +136,14 @@ struct LiftOff {
                         (rise(1, 0) * flights.air.along_x + rise(0, 1) * flights.air.along_y);
     return maximum(1.0f + exposure * slope, 0.0f);
   }
-  /// u under a shelter of some depth [m/s].
-  DESERT_HD float shear_velocity_at(float depth) const {
-    return shear_velocity * (flights.air.speed(shear_height, depth) / flights.air.speed(shear_height, 0.0f));
+  /// u at a cell [m/s]: less under a shelter, more on what stands out of the ground upwind.
+  DESERT_HD float shear_velocity_at(const Column& c) const {
+    const float quantum = flights.quantum, depth = static_cast<float>(c.shelter - c.surface) * quantum,
+                above = static_cast<float>(c.surface - c.upwind) * quantum;
+    const Air& air = flights.air;
+    const float sheltered = air.speed(shear_height, depth) / air.speed(shear_height, 0.0f);
+    const float ratio = maximum((exposed_height + above) * air.per_roughness, 1.0f);
+    return shear_velocity * sheltered * (logarithm(ratio) / logarithm(exposed_height * air.per_roughness));
   }
   DESERT_HD bool at_windward_edge(int n, int cells, bool periodic, float along) const {
     return !periodic && (along > 0.0f ? n == 0 : along < 0.0f && n == cells - 1);
@@ -216,7 +163,7 @@ struct LiftOff {
     const int y = i / grid.width, x = i - y * grid.width;
     if (flights.solid(i)) return;
     const Column& here = flights.columns[flights.order.slot(x, y)];
-    const float u = shear_velocity_at(static_cast<float>(here.shelter - here.surface) * flights.quantum);
+    const float u = shear_velocity_at(here);
     const float excess = maximum(u * u - threshold_squared, 0.0f) * exposure_at(flights.bed_at(x, y));
     const Quanta lifted = lift.whole_at_most(per_excess * excess * loose.share(i), loose.sand[i], i);
     loose.sand[i] -= lifted;
