@@ -55,6 +55,11 @@ enum class Roll : int {
   sediment_y,
   slab_polls,
   slab_hops,
+  particle_lift,
+  particle_flight,
+  particle_splash,
+  particle_hop,
+  particle_creep,
   count
 };
 

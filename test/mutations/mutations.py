@@ -20,6 +20,14 @@ MUTATIONS = [Mutation(*row) for row in (
      "p.longest_step = [](const SimulationState&) { return 100.0f; };",
      "the wind's shadow and avalanches follow in a long step", "analytic *TimeStep.*"),
 
+    # ---- particles
+    ("particles_see_no_shelter", "kernels/particles/flight.hpp",
+     "const float z = height - shelter,", "const float z = height - 0.0f * shelter,",
+     "the plane of zero wind is raised in the lee", "unit *ShelterRaises*"),
+    ("particles_dragged_twice", "kernels/particles/wang_host.cpp",
+     "static_cast<float>(0.75 * ", "static_cast<float>(1.5 * ",
+     "the drag of a sphere", "unit *IndependentIntegration*"),
+
     # ---- continuum transport
     ("stress_leads_the_wrong_way", "kernels/wind/shear_stress.cpp",
      "odd = b * fabsf(k_along);", "odd = -b * fabsf(k_along);",

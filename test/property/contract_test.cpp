@@ -65,6 +65,16 @@ const std::map<std::string, std::string> worlds{
      "  noise: {layer: sand, low: 0, high: 4, scale: 5, threshold: 0.4},\n"
      "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
      "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nslab_model: {kind: bishop}\n"},
+    {"wang",
+     "grid: {width: 40, height: 36, cell_size: 0.01, boundary: open}\n"
+     "terrain: [noise: {layer: bedrock, low: 0, high: 0.01, scale: 0.1}, uniform: {layer: soil, value: "
+     "0.01},\n"
+     "  noise: {layer: sand, low: 0, high: 0.02, scale: 0.05, threshold: 0.4},\n"
+     "  uniform: {layer: moisture, value: 0.0002},\n"
+     "  noise: {layer: vegetation, low: 0, high: 1, scale: 0.06, threshold: 0.5, seed: 4},\n"
+     "  obstacle: {shape: box, x: 0.2, y: 0.18, size_x: 0.04, size_y: 0.04, height: 0.09}]\n"
+     "wind: {speed: 12, direction_deg: 20}\nsaltation: {influx: 2.0e-6}\nparticle: {kind: wang}\n"
+     "looseness: {enabled: true}\n"},
     {"still",
      "grid: {width: 40, height: 36}\nterrain: [noise: {layer: sand, low: 0, high: 9, scale: 3}]\n"
      "saltation: {enabled: false}\navalanching: {scheme: sweeps, sweeps: 3}\nwind_shadow: {curved: true}\n"},
@@ -210,7 +220,7 @@ TEST(ProcessTable, OneThatIsActiveReplacesThoseThatItsRowNames) {
       EXPECT_TRUE(std::any_of(table.processes.begin(), table.processes.end(),
                               [&](const Process& other) { return other.name == replaced; }));
       const std::set<std::string> with =
-          active_in("grid: {width: 16, height: 16}\nslab_model: {kind: " + p.name + "}\n");
+          active_in("grid: {width: 16, height: 16}\n" + p.parameters.front() + ": {kind: " + p.name + "}\n");
       EXPECT_TRUE(with.count(p.name));
       EXPECT_FALSE(with.count(replaced));
     }

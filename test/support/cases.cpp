@@ -94,6 +94,10 @@ std::vector<Case> process_cases(bool transforms) {
           "saltation: {influx: 0.5}\n"
           "slab_model: {kind: momiji, polling: non_repeated, poll_time: 0.7}\n");
   add("bishop", terrain + blown + "slab_model: {kind: bishop, hop_time: 0.6}\n");
+  add("wang",
+      terrain + obstacles +
+          "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.5, seed: 5}\n" +
+          "wind: {speed: 30, direction_deg: 27}\nsaltation: {influx: 1.0e-5}\nparticle: {kind: wang}\n");
   const std::string wet =
       "rain: {rate: 2.0e-4, share_low: 0.3, share_high: 0.7, height: 8, scale: 12, frequency: 0.1}\n"
       "hydraulic_erosion: {enabled: true, capacity: 1}\nmoisture: {enabled: true}\n";

@@ -20,6 +20,7 @@ const ProcessTable& process_table() {
                                       werner_process(),
                                       momiji_process(),
                                       bishop_process(),
+                                      wang_process(),
                                       repose_process(),
                                       reptation_process(),
                                       looseness_process(),

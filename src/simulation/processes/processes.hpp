@@ -24,6 +24,10 @@ Process werner_process();  // slabs.cpp
 Process momiji_process();
 Process bishop_process();
 
+Process wang_process();  // particles.cpp
+/// Whether a particle model moves the sand.
+bool has_particles(const Scenario& scenario);
+
 Process sand_record_process();  // looseness.cpp
 Process looseness_process();
 Process slide_looseness_process();

@@ -184,8 +184,10 @@ Process repose_process() {
   p.parameters = {"repose", "reptation"};
   p.source = "Nilles 2024 §3.7";
   p.header = "kernels/sand/repose.hpp";
-  // The deposit after hops sets the angles in its own pass.
-  p.active = [](const Scenario& s) { return !s.saltation.enabled || s.has_continuum_transport(); };
+  // The deposit after the hops of saltation sets the angles in its own pass.
+  p.active = [](const Scenario& s) {
+    return !s.saltation.enabled || s.has_continuum_transport() || has_particles(s);
+  };
   p.reads = {Layer::wind_x,   Layer::wind_y, Layer::wind_shadow, Layer::vegetation,
              Layer::moisture, Layer::soil,   Layer::sand};
   p.step = p.refresh = set_angles;

@@ -1,0 +1,136 @@
+#pragma once
+/// Wind ripples of flying grains, on cells of about a centimetre: the particle model of Wang & Hu 2012. It
+/// takes the place of saltation and reptation; what is too steep afterwards slides (avalanching.hpp).
+///
+/// In each step every cell gives a packet of sand to the wind, which flies as a grain of diameter d:
+///
+///   lift-off   V_z = B u,  B in [0.8, 2] and the angle in [21°, 90°] by dice, along the wind's direction
+///   flight     dV/dt = ¾ C_d ρ_a/(ρ_s d) |U − V| (U − V) − g
+///   wind       U = u_*t/κ ln(z'/z_0)                           z' = z − z_d < z_f;  0 for z' < z_0 = d/30
+///              U = u_*t/κ ln(z_f/z_0) + u_*/κ ln(z'/z_f)       above
+///   bounce     V_2 = −e_n V_1n + e_t V_1t     normal and tangential part of the velocity V_1
+///   rest       where the speed away from the bed would be less than √(2 g d), which lifts a grain by d, or
+///              after `most_bounces`
+///
+/// The model as published lets grains bounce for ever, and its ripples move against the wind. Five things put
+/// that right, and end their growth.
+///
+/// Shelter. The plane of zero wind z_d, which the model leaves at the ground, is raised in the lee of crests:
+/// it falls from each crest by the angle `shelter_deg` down to the ground. Grains that fly over a crest lose
+/// their drive and come down behind it, and none is lifted there.
+///
+/// Slow wind near the ground. Below the focus z_f flying grains hold the wind at the threshold u_*t (Bagnold
+/// 1941, Owen 1964).
+///
+/// Rest by the normal speed. A grain that skims the ground keeps its speed, but each bounce takes the share
+/// 1 − e_n of the speed with which it rises: on level ground there are at most ln(V_z/√(2 g d))/ln(1/e_n).
+///
+/// Splash. Each impact at speed v throws up a_s v/√(g d) grains, at a speed with the mean
+///
+///   v_e = α √(g d)/a_s (1 − exp(−v/(40 √(g d))))    exponentially distributed, at most v
+///
+/// (Kok & Renno 2009; a_s = `splash_number`, α = `splash_momentum`), which hop once. On a slope that faces
+/// them more grains fall, and throw sand a hop further, to the crest. That lets ripples grow, and go with the
+/// wind (Anderson 1987). With a splash of the depth S sand creeps downhill,
+/// too: −λ_c S ∇h to the four neighbours, λ_c = `creep_length`.
+///
+/// The rate of lift-off is what keeps the flow of grains in balance with the wind (Owen 1964): grains that
+/// gain the speed Δv on the way from lift-off to rest take up the stress above the threshold,
+///
+///   E = ρ_a (u² − u_*t²)₊ / (φ ρ_s Δv) · (1 + cot α ∂h/∂s)₊    depth of bed in a second [m/s]
+///   u_*t = a √((ρ_s/ρ_a − 1) g d)
+///
+/// where u is the shear velocity at the cell. The shelter lessens it by the factor by which it lessens the
+/// wind ten grains above the bed. Crests stand in faster wind, which ends their growth (Bagnold 1941): it
+/// rises by the factor ln((z_e + h − h_u)/z_0)/ln(z_e/z_0) with h_u the mean ground upwind, weighted by
+/// exp(−distance/ℓ), z_e = `exposed_height`, ℓ = `upwind_length`. The last factor of E counts the impacts
+/// on a slope along the wind, because in steady transport a grain that comes to rest is replaced by one
+/// that impacts set free; Δv and the angle of impact α are means over level ground. Plants and moisture
+/// lessen E by the factors 1 − v and `dryness`, and the splash likewise; none is lifted under water.
+///
+/// The undisturbed wind blows everywhere in the same direction. Grains come to rest on sand, soil or rock,
+/// but not on obstacles: what would rest there lies where it last was over other ground. Over an open edge
+/// grains leave, and `saltation.influx` brings others.
+///
+/// Packets are whole quanta. Cells take them from their own sand and add them to that of others, so that
+/// neither threads nor backends change a bit.
+///
+/// Reads bedrock, soil, sand, obstacle, vegetation, moisture, water; writes sand, the undisturbed wind to
+/// wind_x and wind_y, and the impact strength, which is the depth of sand that came down.
+
+#include "kernels/backend/buffer.hpp"
+#include "kernels/field/dice.hpp"
+#include "kernels/field/layers.hpp"
+#include "kernels/field/ledger.hpp"
+#include "kernels/particles/flight.hpp"
+#include "kernels/particles/particle_parameters.hpp"
+#include "kernels/sand/repose.hpp"
+#include "kernels/wind/vector.hpp"
+
+namespace desert_sim::particles {
+
+/// Heights at a cell [quanta].
+struct Column {
+  Quanta surface, shelter;  ///< the shelter's is that of the surface where there is none
+  Quanta upwind;            ///< mean of the surface upwind, weighted by exp(−distance/ℓ)
+};
+
+struct Workspace {
+  Buffer<Column> columns;  ///< in the order of a sweep downwind
+  Buffer<Quanta> lines;    ///< of the sweep
+  Buffer<Quanta> impacts;  ///< what fell on a cell [quanta]
+  Buffer<Quanta> splash;   ///< what that throws up where there is enough sand [quanta]
+  Buffer<Quanta> landed;   ///< what came to rest [quanta]
+
+  std::size_t bytes() const {
+    return columns.bytes() + lines.bytes() + impacts.bytes() + splash.bytes() + landed.bytes();
+  }
+};
+
+Workspace make_workspace(Exec& exec, const Grid& grid);
+
+/// What the parameters and the wind say, on the host.
+struct Wind {
+  Air air;
+  float shear_velocity;  ///< u_* [m/s]
+  float threshold;       ///< u_*t [m/s]
+  float lift_rate;       ///< E of level ground [m/s]
+  float exposure;  ///< cot α: mean over impacts of the ratio of the speeds along and into the ground [1]
+
+  Wind(const ParticleParameters& p, wind::Vector above);
+};
+
+/// √(2 g d): the speed with which a grain rises by its own diameter [m/s].
+float least_rise(const ParticleParameters& p);
+
+/// The way of a grain over level ground, from lift-off to rest.
+struct LevelRun {
+  float first_hop;  ///< length [m]
+  float gain;       ///< Δv: what the wind adds to the speed along it on all hops [m/s]
+  float steepness;  ///< sum over the impacts of the ratio of the speeds along and into the ground
+  int bounces;
+};
+LevelRun level_run(const ParticleParameters& p, const Air& air, float up, float forward);
+
+/// Longest step [s], in which the wind lifts a hundredth of a cell's width off level ground. Infinity
+/// where the wind lifts nothing.
+float longest_step(const ParticleParameters& p, const Grid& grid, wind::Vector above);
+
+struct StepInputs {
+  ParticleParameters particle;
+  ReposeParameters repose;  ///< for the ground's capacity of moisture
+  float influx;             ///< [m²/s] over an open windward edge
+  float time_step;          ///< [s]
+  wind::Vector above;       ///< undisturbed wind [m/s]
+  float* impact_strength;   ///< [m], or null
+};
+
+/// Writes wind_x and wind_y.
+template <class E>
+void blow(E& exec, const TerrainView& t, wind::Vector above);
+
+template <class E>
+void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger,
+          Workspace& work);
+
+}  // namespace desert_sim::particles

@@ -1,0 +1,52 @@
+/// The particle model of wind ripples.
+#include "kernels/particles/wang.hpp"
+#include "src/simulation/processes/processes.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+const std::string section = register_section<ParticleParameters>("particle");
+
+const ParticleParameters& parameters_of(const Scenario& s) {
+  return s.process_sections.get<ParticleParameters>(section);
+}
+
+void fly(StepContext& c, ProcessWorkspace* workspace) {
+  const Scenario& s = c.scenario();
+  const particles::StepInputs in{parameters_of(s), s.repose,       s.saltation.influx,
+                                 c.time_step(),    c.wind_above(), c.fields.impact_strength.data()};
+  with_backend(c.exec(), [&](auto& e) {
+    particles::step(e, c.terrain, in, c.dice(), c.state.ledger(),
+                    workspace_as<particles::Workspace>(workspace));
+  });
+}
+
+}  // namespace
+
+bool has_particles(const Scenario& s) { return parameters_of(s).kind != ParticleKind::none; }
+
+Process wang_process() {
+  Process p;
+  p.name = particle_kind_names[static_cast<int>(ParticleKind::wang)];
+  p.parameters = {section, "saltation", "repose"};
+  p.source = "Wang & Hu 2012, Kok & Renno 2009, Owen 1964";
+  p.header = "kernels/particles/wang.hpp";
+  p.active = has_particles;
+  p.replaces = {"wind", "shear_stress", "wind_shadow", "sand_flux", "saltation", "continuum", "reptation"};
+  p.reads = {Layer::bedrock, Layer::soil, Layer::obstacle, Layer::vegetation, Layer::moisture, Layer::water};
+  p.writes = {Layer::sand, Layer::wind_x, Layer::wind_y};
+  set_workspace<particles::Workspace>(p, [](const SimulationState& state) {
+    return particles::make_workspace(state.exec(), state.terrain.grid());
+  });
+  p.step = fly;
+  p.refresh = [](StepContext& c, ProcessWorkspace*) {
+    with_backend(c.exec(), [&](auto& e) { particles::blow(e, c.terrain, c.wind_above()); });
+  };
+  p.longest_step = [](const SimulationState& state) {
+    return particles::longest_step(parameters_of(state.scenario), state.terrain.grid(), state.wind_above());
+  };
+  return p;
+}
+
+}  // namespace desert_sim
