@@ -2,15 +2,15 @@
 // which way they go.
 
 #include <cmath>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "dunes/running.hpp"
 
 namespace desert_sim {
 namespace {
 
-constexpr int side = 128;
+constexpr int side = 96;
 constexpr double pixel = 0.01;  ///< width of a cell [m]
 
 Scenario ripples(double speed, double direction_deg) {
@@ -25,23 +25,12 @@ Field surface(Running& scene) { return smoothed(scene.field(Layer::elevation), p
 /// Twice the amplitude of a sine with the same rms [m].
 double height(const Field& f) { return 2 * std::sqrt(2.0) * roughness(f); }
 
-/// Displacement along a direction that makes `later` most like `earlier`, within ± 4 cells [m].
-double displacement(const Field& earlier, const Field& later, double direction_deg) {
-  const double c = std::cos(direction_deg * degree), s = std::sin(direction_deg * degree);
-  double mean = 0, best = 0, found = 0;
-  for (float v : earlier.values) mean += v / static_cast<double>(earlier.values.size());
-  for (int quarter = -16; quarter <= 16; ++quarter) {
-    const double d = 0.25 * quarter;
-    double sum = 0;
-    for (int y = 0; y < later.height; ++y)
-      for (int x = 0; x < later.width; ++x)
-        sum += (earlier.at(x, y) - mean) * (later.sample(x + d * c, y + d * s) - mean);
-    if (sum > best) {
-      best = sum;
-      found = d;
-    }
-  }
-  return found * pixel;
+/// Displacement along a direction [m].
+double moved_along(const Field& earlier, const Field& later, double direction_deg) {
+  const std::optional<Displacement> found = displacement(earlier, later);
+  EXPECT_TRUE(found) << "the pattern is not the same";
+  if (!found) return 0;
+  return found->x * std::cos(direction_deg * degree) + found->y * std::sin(direction_deg * degree);
 }
 
 /// Mean wavelength along x of wavelengths from 4 cells to half the grid, weighted by their power, mean over
@@ -86,20 +75,19 @@ TEST(Ripples, AreInTheRangeOfRealOnesAndFurtherApartInAStrongerWind) {
 }
 
 TEST(Ripples, LieAcrossTheWindAndGoWithIt) {
-  for (double direction : {0.0, 50.0}) {
-    Running scene(ripples(12, direction));
-    const Field earlier = surface(scene.run(260));
-    const Field later = surface(scene.run(40));
-    scene.expect_balanced();
-    const Orientation o = crest_orientation(later, 2 * pixel);
-    const double moved = displacement(earlier, later, direction);
-    DESERT_REPORT("wind to %.0f degrees: crests at %.1f (coherence %.2f), moved by %.1f mm in 40 s",
-                  direction, o.crest_deg, o.coherence, 1000 * moved);
-    EXPECT_LT(line_angle_between_deg(o.crest_deg, direction + 90), 20);
-    EXPECT_GT(o.coherence, 0.2);
-    EXPECT_GT(moved, 0.5 * pixel);
-    EXPECT_LT(moved, 3.5 * pixel);
-  }
+  constexpr double direction = 50;
+  Running scene(ripples(12, direction));
+  const Field earlier = surface(scene.run(260));
+  const Field later = surface(scene.run(40));
+  scene.expect_balanced();
+  const Orientation o = crest_orientation(later, 2 * pixel);
+  const double moved = moved_along(earlier, later, direction);
+  DESERT_REPORT("crests at %.1f degrees (coherence %.2f), moved by %.1f mm in 40 s", o.crest_deg, o.coherence,
+                1000 * moved);
+  EXPECT_LT(line_angle_between_deg(o.crest_deg, direction + 90), 20);
+  EXPECT_GT(o.coherence, 0.2);
+  EXPECT_GT(moved, 0.5 * pixel);
+  EXPECT_LT(moved, 3.5 * pixel);
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ TEST(ParticleFlights, AreShiftedWithTheTerrain) {
         const Quanta surface = 2000 * ((7 * x + 5 * y) % 11);
         columns[static_cast<std::size_t>(
             order.slot(wrap(x + shift_x, grid.width), wrap(y + shift_y, grid.height)))] = {
-            surface, surface + 500 * (x % 3)};
+            surface, surface + 500 * (x % 3), surface - 300 * (y % 2)};
       }
     const int x = wrap(30 + shift_x, grid.width), y = wrap(20 + shift_y, grid.height);
     const float quantum = 1.0f / 1048576;
