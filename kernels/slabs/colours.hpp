@@ -1,6 +1,6 @@
 #pragma once
-/// A division of the lattice into colours, so that all cells of one colour can be worked on at once: no cell is
-/// a neighbour of two of them. There are eight on lines and places that are multiples of four,
+/// A division of the lattice into colours, so that all cells of one colour can be worked on at once: no cell
+/// is a neighbour of two of them. There are eight on lines and places that are multiples of four,
 ///
 ///   colour = 4 (line mod 2) + (place + 2 ⌊line/2⌋) mod 4
 ///

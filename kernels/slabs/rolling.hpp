@@ -82,8 +82,8 @@ struct Lattice {
   }
 };
 
-/// The cells of a run. `inside`: away from the edges of the grid, so that their neighbours lie equally far from
-/// all of them in memory.
+/// The cells of a run. `inside`: away from the edges of the grid, so that their neighbours lie equally far
+/// from all of them in memory.
 template <bool inside>
 struct Rolling {
   Lattice lattice;
@@ -110,8 +110,8 @@ struct Rolling {
     const int side = k == 1 ? 1 : k == 2 ? -1 : 0, along = k == 0 ? 1 : k == 3 ? -1 : 0;
     return lattice.slot_within(run.line + along, run.place + 4 * n + (odd ? -side : side));
   }
-  /// The neighbour to which the slope is steepest of those that are too steep: downhill, or uphill to one that
-  /// can give a slab. Of equal ones the first downwind, or uphill the first upwind. −1 if there is none.
+  /// The neighbour to which the slope is steepest of those that are too steep: downhill, or uphill to one
+  /// that can give a slab. Of equal ones the first downwind, or uphill the first upwind. −1 if there is none.
   template <bool uphill>
   DESERT_HD int steepest(int n) const {
     const int found = steepest_to<uphill>(n, [](int) DESERT_INLINE { return true; });

@@ -158,8 +158,10 @@ inline Grid columns_and_rows(int columns, int rows) {
 /// Lets all runs of all colours have their turn: law_of(colour)(column, row).
 template <class E, class LawOf>
 void for_each_colour(E& exec, const Colours& colours, const LawOf& law_of) {
-  for (int colour = 0; colour < colours.count(); ++colour)
-    for_each_cell(exec, columns_and_rows(colours.columns(colour), colours.rows(colour)), law_of(colour));
+  for (int colour = 0; colour < colours.count(); ++colour) {
+    const Grid runs = columns_and_rows(colours.columns(colour), colours.rows(colour));
+    if (runs.cells() > 0) for_each_cell(exec, runs, law_of(colour));  // narrow grids lack colours
+  }
 }
 template <class E>
 void settle_all(E& exec, const Turns& of) {

@@ -41,8 +41,8 @@
 
 namespace desert_sim::slabs {
 
-/// Turns in the time in which each cell is polled once, and turns for which the shadow is taken to be the same.
-/// With 8 turns momiji's dunes grow visibly sooner than one poll after the other, with more no better.
+/// Turns in the time in which each cell is polled once, and turns for which the shadow is taken to be the
+/// same. With 8 turns momiji's dunes grow visibly sooner than one poll after the other, with more no better.
 constexpr int turns_a_poll = 16, turns_a_shadow = 4;
 
 /// Fields in the order of Lattice.
