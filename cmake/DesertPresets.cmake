@@ -1,6 +1,6 @@
-# The files of config/species, config/climates and config/rovers become part of desert_core, which then needs to find no folder:
+# The files of config/species, climates, rovers and growth_curves become part of desert_core, which then needs to find no folder:
 # <folder>_presets.inc has a line {"<name>", R"(<text>)"}, for each.
-foreach(folder species climates rovers)
+foreach(folder species climates rovers growth_curves)
   file(GLOB presets CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/config/${folder}/*.yaml)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${presets})
   set(text "")

@@ -60,6 +60,7 @@ enum class Roll : int {
   particle_splash,
   particle_hop,
   particle_creep,
+  slab_erosion,
   count
 };
 

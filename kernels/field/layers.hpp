@@ -25,6 +25,11 @@ enum class Layer : int {
   looseness,
   water_flux_x,
   water_flux_y,
+  grass,
+  mesquite,
+  shrub,
+  burial,
+  snow_density,
   elevation,
   water_velocity_x,
   water_velocity_y,
@@ -72,7 +77,7 @@ struct LayerInfo {
 
 constexpr double any_height = 1e6;
 
-constexpr std::array<LayerInfo, 39> layer_table{{
+constexpr std::array<LayerInfo, 44> layer_table{{
     {Layer::bedrock, "bedrock", "m", Storage::quanta, Lifetime::persistent, -any_height, any_height,
      "Top of the rock, absolute."},
     {Layer::soil, "soil", "m", Storage::quanta, Lifetime::persistent, 0, any_height,
@@ -100,6 +105,15 @@ constexpr std::array<LayerInfo, 39> layer_table{{
      any_height, "Water that flows through a cell's east face."},
     {Layer::water_flux_y, "water_flux_y", "m^3/s", Storage::real, Lifetime::persistent, -any_height,
      any_height, "Water that flows through a cell's north face."},
+    {Layer::grass, "grass", "1", Storage::real, Lifetime::persistent, 0, 1,
+     "Effectiveness of grass against the transport of slabs (nield_baas)."},
+    {Layer::mesquite, "mesquite", "1", Storage::real, Lifetime::persistent, -1, 3,
+     "Likewise of mesquite; it may be short of water (< 0), or have growth in reserve (> 1)."},
+    {Layer::shrub, "shrub", "1", Storage::real, Lifetime::persistent, -0.5, 1.5, "Likewise of shrubs."},
+    {Layer::burial, "burial", "m", Storage::quanta, Lifetime::persistent, -any_height, any_height,
+     "Sand that slabs have brought since these plants last grew; < 0: taken."},
+    {Layer::snow_density, "snow_density", "kg/m^3", Storage::real, Lifetime::persistent, 0, 917,
+     "Density of the snow that the layer sand holds (slab model snow)."},
     {Layer::elevation, "elevation", "m", Storage::quanta, Lifetime::derived, -any_height, any_height,
      "Solid surface: bedrock + soil + sand."},
     {Layer::water_velocity_x, "water_velocity_x", "m/s", Storage::real, Lifetime::derived, 0, 0,

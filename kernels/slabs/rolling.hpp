@@ -17,11 +17,14 @@ struct Lattice {
   Quanta slab;    ///< [quanta]
   Quanta repose;  ///< steepest difference of neighbours at rest [quanta]
   Quanta* height;
-  const Quanta* base;      ///< what slabs lie on; none can be taken from below it
-  Quanta* shade;           ///< height of the shadow
-  std::uint8_t* state;     ///< has_slab_bit and shaded_bit, which follow from the three
-  std::uint32_t* pending;  ///< slabs that have come and do not rest yet, and holes · 2¹⁶ that do not yet
-  int quarter, pitch;      ///< from a place to the next but three, and from a line to the next [words]
+  const Quanta* base;       ///< what slabs lie on; none can be taken from below it
+  Quanta* shade;            ///< height of the shadow
+  std::uint8_t* state;      ///< has_slab_bit and shaded_bit, which follow from the three
+  std::uint32_t* pending;   ///< slabs that have come and do not rest yet, and holes · 2¹⁶ that do not yet
+  int quarter, pitch;       ///< from a place to the next but three, and from a line to the next [words]
+  const float* resistance;  ///< R of a cell to the wind, by plants or as packed snow; null: 0 everywhere
+  float held_from;          ///< R from which the slope may be steeper
+  Quanta held_repose;       ///< steepest difference there [quanta]
 
   static constexpr std::uint32_t one_slab = 1, one_hole = 1u << 16;
   static constexpr std::uint8_t has_slab_bit = 1, shaded_bit = 2;
@@ -56,6 +59,19 @@ struct Lattice {
   }
   DESERT_HD bool has_slab(int n) const { return (state[n] & has_slab_bit) != 0; }
   DESERT_HD bool is_shaded(int n) const { return (state[n] & shaded_bit) != 0; }
+  /// Steepest difference at rest to a lower neighbour of this cell, where there is resistance.
+  DESERT_HD Quanta repose_of(int n) const { return resistance[n] >= held_from ? held_repose : repose; }
+  /// Whether a slab that is polled stays, with probability 1 − p_e, p_e = 1 − R in [0, 1].
+  DESERT_HD bool withstands(int n, std::uint32_t word) const { return unit(word) < resistance[n]; }
+  /// Whether a slab that lands stays, with probability p_d = p + R (1 − p) in [0, 1]; p in 2⁻³².
+  DESERT_HD bool keeps(int n, std::uint32_t p, std::uint32_t word) const {
+    const float bare = static_cast<float>(p) * (1.0f / 4294967296.0f);
+    return unit(word) < bare + resistance[n] * (1.0f - bare);
+  }
+  /// Uniform in [0, 1).
+  DESERT_HD static float unit(std::uint32_t word) {
+    return static_cast<float>(word >> 8) * (1.0f / 16777216.0f);
+  }
   /// Whether there is a slab but those that holes will take.
   DESERT_HD bool can_give(int n) const {
     const std::uint32_t holes = pending[n] >> 16;
@@ -83,8 +99,8 @@ struct Lattice {
 };
 
 /// The cells of a run. `inside`: away from the edges of the grid, so that their neighbours lie equally far
-/// from all of them in memory.
-template <bool inside>
+/// from all of them in memory. `resisting`: there is resistance, so that the repose is that of a cell.
+template <bool inside, bool resisting>
 struct Rolling {
   Lattice lattice;
   Run run;
@@ -165,13 +181,14 @@ struct Rolling {
   template <bool uphill, class Counts>
   DESERT_HD int steepest_to(int n, const Counts& counts) const {
     const Quanta here = lattice.height[first + n];
-    Quanta most = lattice.repose;
+    Quanta most = resisting ? 0 : lattice.repose;
     int found = -1;
     unrolled<4>([&](auto k) DESERT_INLINE {
       const int there = beside(n, uphill ? 3 - k : k);
       if (!inside && there < 0) return;
       const Quanta other = lattice.height[there], slope = uphill ? other - here : here - other;
-      const bool is_steeper = slope > most && counts(there);
+      const bool is_loose = !resisting || slope > lattice.repose_of(uphill ? there : first + n);
+      const bool is_steeper = slope > most && is_loose && counts(there);
       most = is_steeper ? slope : most;
       found = is_steeper ? there : found;
     });
@@ -184,10 +201,16 @@ template <class Work>
 DESERT_HD void with_rolling(const Lattice& lattice, const Run& run, const Work& work) {
   const bool inside = run.line > 0 && run.place > 0 && run.line < lattice.order.lines() - 1 &&
                       run.place + 4 * (run.count - 1) < lattice.order.length() - 1;
-  if (inside)
-    work(Rolling<true>(lattice, run));
-  else
-    work(Rolling<false>(lattice, run));
+  if (lattice.resistance != nullptr) {
+    if (inside)
+      work(Rolling<true, true>(lattice, run));
+    else
+      work(Rolling<false, true>(lattice, run));
+  } else if (inside) {
+    work(Rolling<true, false>(lattice, run));
+  } else {
+    work(Rolling<false, false>(lattice, run));
+  }
 }
 
 /// What is pending at the cells of a colour.

@@ -1,70 +1,11 @@
 #pragma once
-/// The laws of slab_model.hpp: polls, flights, the shadow. How slabs roll is in rolling.hpp.
+/// The laws of slab_model.hpp: polls, flights, the shadow. How slabs roll is in rolling.hpp, how layers
+/// become stacks is in stacks.hpp.
 
 #include "kernels/slabs/rolling.hpp"
 #include "kernels/slabs/slab_model.hpp"
 
 namespace desert_sim::slabs {
-
-/// Stacks of the terrain, and whether there are cliffs of rock.
-struct TakeStacks {
-  Lattice lattice;
-  const Quanta *bedrock, *soil, *sand;
-  const float* obstacle;
-  Quanta *base, *cliffs;
-
-  /// Of what slabs cannot be taken from: rock, soil, and obstacles with what lies on them.
-  DESERT_HD Quanta ground(int i) const {
-    const bool solid = value_or_zero(obstacle, i) > 0.0f;
-    return bedrock[i] + value_or_zero(soil, i) + (solid ? sand[i] : 0);
-  }
-  DESERT_HD void operator()(int x, int y) const {
-    const Grid& grid = lattice.order.grid;
-    const int i = grid.index(x, y), n = lattice.slot_of(x, y);
-    const Quanta here = ground(i);
-    lattice.height[n] = bedrock[i] + value_or_zero(soil, i) + sand[i];
-    base[n] = here;
-    lattice.pending[n] = 0;
-    Quanta most = 0;
-    unrolled<4>([&](auto k) DESERT_INLINE {  // east, north, and the diagonals to the north
-      const int x_there = k == 0 || k == 2 ? x + 1 : k == 3 ? x - 1 : x, y_there = k == 0 ? y : y + 1;
-      const bool there_is = (grid.periodic_x || (x_there >= 0 && x_there < grid.width)) &&
-                            (grid.periodic_y || y_there < grid.height);
-      const int there = grid.index(wrap_once(x_there, grid.width), wrap_once(y_there, grid.height));
-      const Quanta rise = there_is ? ground(there) - here : 0, step = rise < 0 ? -rise : rise;
-      most = step > most ? step : most;
-    });
-    if (most > lattice.repose - lattice.slab && is_flag_clear(cliffs)) set_flag(cliffs);
-  }
-};
-
-/// The sand of the stacks, with slabs that still roll.
-struct PutSand {
-  Lattice lattice;
-  const float* obstacle;
-  Quanta* sand;
-
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = lattice.order.grid.index(x, y), n = lattice.slot_of(x, y);
-    const Quanta left = value_or_zero(obstacle, i) > 0.0f ? sand[i] : 0;
-    const std::uint32_t pending = lattice.pending[n];
-    const auto rolling = static_cast<Quanta>(pending & (Lattice::one_hole - 1u)) -
-                         static_cast<Quanta>(pending / Lattice::one_hole);
-    sand[i] = left + lattice.height[n] - lattice.base[n] + rolling * lattice.slab;
-  }
-};
-
-/// The layers of the wind: everywhere the undisturbed one.
-struct Blow {
-  Grid grid;
-  wind::Vector above;
-  float *wind_x, *wind_y;
-
-  DESERT_HD void operator()(int x, int y) const {
-    wind_x[grid.index(x, y)] = above.x;
-    wind_y[grid.index(x, y)] = above.y;
-  }
-};
 
 /// The shadow over each cell: from a line to the next, along the wind's ways, it falls by `fall`, or begins
 /// anew at a higher cell. The lines are divided among threads, each of which begins `lead` lines before its
@@ -198,6 +139,7 @@ struct TakeTurn {
   int colour;
   Polls polls;
   bool shadow_protects;
+  Die erosion;  ///< of the turn, where the wind does not take all slabs
   Taken taken;
 
   DESERT_HD void operator()(int column, int row) const {
@@ -205,10 +147,13 @@ struct TakeTurn {
     if (run.count <= 0) return;
     with_rolling(lattice, run, [&](const auto& rolling) DESERT_INLINE {
       rolling.settle();
-      std::uint32_t number = 0;
+      std::uint32_t number = 0, polled = 0;
       polls.of(run, rolling.first, [&](int n) DESERT_INLINE {
         const int at = rolling.first + n;
         if (!lattice.can_give(at) || (shadow_protects && lattice.is_shaded(at))) return;
+        if (lattice.resistance != nullptr &&
+            lattice.withstands(at, erosion.word(at + static_cast<int>(polled++ * 0x9e3779b9u))))
+          return;
         rolling.make_hole(n);
         taken.append(run.line, static_cast<std::uint32_t>(at - run.line * lattice.pitch), number++);
       });
@@ -299,7 +244,9 @@ struct Fly {
     flight.word = scrambled(flight.word + 0x9e3779b9u);
     const std::uint8_t state = lattice.state[n];
     const std::uint32_t chance = (state & Lattice::has_slab_bit) != 0 ? stays_on_sand : stays_on_rock;
-    const bool stays = ((state & Lattice::shaded_bit) != 0) | (flight.word < chance) | is_last;
+    const bool rests =
+        lattice.resistance == nullptr ? flight.word < chance : lattice.keeps(n, chance, flight.word);
+    const bool stays = ((state & Lattice::shaded_bit) != 0) | rests | is_last;
     return stays ? n : on;
   }
   DESERT_HD int lines_of_hop(Quanta height, std::uint32_t word) const {

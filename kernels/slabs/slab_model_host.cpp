@@ -1,11 +1,16 @@
 #include <algorithm>
+#include <cmath>
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/slabs/slab_laws.hpp"
 
 namespace desert_sim::slabs {
 
-Workspace make_workspace(Exec& exec, const Grid& grid) {
+float fresh_density(float temperature) {
+  return static_cast<float>(67.92 + 51.25 * std::exp(static_cast<double>(temperature) / 2.59));
+}
+
+Workspace make_workspace(Exec& exec, const Grid& grid, bool resists) {
   // Lines lie along either axis, as the wind has it.
   const auto most = [&](auto words) {
     return std::max(words(grid.width, grid.height), words(grid.height, grid.width));
@@ -23,6 +28,7 @@ Workspace make_workspace(Exec& exec, const Grid& grid) {
   work.taken_cells = Buffer<std::uint32_t>(exec, taken);
   work.taken_counts = Buffer<int>(exec, longest);
   work.cliffs = Buffer<Quanta>(exec, 1);
+  if (resists) work.resistance = Buffer<float>(exec, words);
   return work;
 }
 

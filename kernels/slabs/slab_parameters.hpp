@@ -5,8 +5,12 @@
 
 namespace desert_sim {
 
-enum class SlabKind : int { none, werner, momiji, bishop };
-constexpr const char* slab_kind_names[] = {"none", "werner", "momiji", "bishop"};
+enum class SlabKind : int { none, werner, momiji, bishop, nield_baas, snow };
+constexpr const char* slab_kind_names[] = {"none", "werner", "momiji", "bishop", "nield_baas", "snow"};
+constexpr bool speeds_up(SlabKind kind) { return kind == SlabKind::momiji || kind == SlabKind::bishop; }
+constexpr bool has_resistance(SlabKind kind) {
+  return kind == SlabKind::nield_baas || kind == SlabKind::snow;
+}
 
 enum class SlabPolling : int { repeated, non_repeated };
 constexpr const char* slab_polling_names[] = {"repeated", "non_repeated"};
@@ -24,6 +28,7 @@ struct SlabModelParameters {
   float longest_shadow = 120.0f;
   float linear_speedup = 0.4f;
   float square_speedup = 0.002f;
+  bool forced_erosion = false;
 };
 
 constexpr auto parameter_table(const SlabModelParameters*) {
@@ -48,8 +53,50 @@ constexpr auto parameter_table(const SlabModelParameters*) {
       parameter("linear_speedup", &P::linear_speedup, 0, 100, "cells/slab",
                 "C1: what a slab of height adds to a hop (momiji, bishop)."),
       parameter("square_speedup", &P::square_speedup, 0, 10, "cells/slab^2",
-                "C2: the same of its square, above the reference height."));
+                "C2: the same of its square, above the reference height."),
+      parameter("forced_erosion", &P::forced_erosion,
+                "Whether a poll that takes no slab is made again elsewhere, until one does."));
 }
 static_assert(table_is_complete<SlabModelParameters>());
+
+/// Plants of nield_baas.
+struct SlabPlantParameters {
+  float growth_time = 80.0f;
+  float held_from = 0.3f;
+  float held_repose_deg = 40.0f;
+};
+
+constexpr auto parameter_table(const SlabPlantParameters*) {
+  using P = SlabPlantParameters;
+  return std::make_tuple(
+      parameter("growth_time", &P::growth_time, 0.001, 1e12, "s",
+                "What counts as a year: plants grow at its end, by growth_curves."),
+      parameter("held_from", &P::held_from, 0, 10, "1",
+                "Effectiveness of all plants of a cell from which they hold steeper slopes."),
+      parameter("held_repose_deg", &P::held_repose_deg, 1, 80, "deg", "Angle of repose there."));
+}
+static_assert(table_is_complete<SlabPlantParameters>());
+
+/// Snow of the model snow. With the defaults snow at −20 °C packs in 98 days.
+struct SlabSnowParameters {
+  float temperature = -20.0f;
+  float fall_temperature = -20.0f;
+  float packed_density = 250.7f;
+  float settling_time = 86400.0f;
+};
+
+constexpr auto parameter_table(const SlabSnowParameters*) {
+  using P = SlabSnowParameters;
+  return std::make_tuple(
+      parameter("temperature", &P::temperature, -20, 0, "degC",
+                "Temperature of the snow; run.timeline can change it in the course of a run."),
+      parameter("fall_temperature", &P::fall_temperature, -20, 0, "degC",
+                "Temperature at which the snow fell, which gives its density when fresh."),
+      parameter("packed_density", &P::packed_density, 130, 917, "kg/m^3",
+                "Density from which the wind moves no more snow."),
+      parameter("settling_time", &P::settling_time, 60, 1e7, "s",
+                "Time after which the density is computed anew."));
+}
+static_assert(table_is_complete<SlabSnowParameters>());
 
 }  // namespace desert_sim

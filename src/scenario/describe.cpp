@@ -82,6 +82,12 @@ std::string describe_parameters() {
          "hinders the "
          "growth of each (row), 0 … "
       << max_competition << ". Without it all hinder each other, and themselves, with 1.\n";
+  out << "\n## `growth_curves`: a map of `grass`, `mesquite` and `shrub`\n\nHow the plants of the slab model "
+         "nield_baas grow: lists of 2 to "
+      << GrowthCurve::capacity
+      << " points `[burial in m a year, change of the effectiveness a year]` in ascending order of burial, "
+         "linear "
+         "in between, constant beyond. What is not given is that of config/growth_curves/nield_baas.yaml.\n";
   out << "\n## `terrain`: a list of steps, in order\n";
   terrain_steps(out);
   out << "\n## What cannot change while a simulation runs\n\n";

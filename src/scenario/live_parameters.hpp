@@ -21,6 +21,7 @@ constexpr FixedParameter fixed_parameters[] = {
     {"vegetation.max_plants", "the memory of the plants is allocated for this number"},
     {"species", "existing plants refer to them"},
     {"competition", "it belongs to the list of species"},
+    {"growth_curves", "plants grow by the same curves in every year of a run"},
     {"run.steps", "it is the length of a headless run"},
     {"run.duration", "it is the length of a headless run"},
     {"run.timeline", "it begins at the start of a simulation"},

@@ -8,6 +8,7 @@
 
 #include "src/core/input_file.hpp"
 #include "src/scenario/climate.hpp"
+#include "src/scenario/growth_curves.hpp"
 #include "src/scenario/range_checks.hpp"
 #include "src/scenario/rover_class.hpp"
 #include "src/scenario/sections.hpp"
@@ -220,8 +221,8 @@ Scenario parse_scenario(const YAML::Node& given, const std::string& name, const 
     errors.throw_if_any();
   }
   const YAML::Node root = apply_rover(apply_climate(given, errors), errors);
-  std::set<std::string> known{"climate", "rover", "terrain", "wind",
-                              "water",   "run",   "species", "competition"};
+  std::set<std::string> known{"climate", "rover",   "terrain",     "wind",         "water",
+                              "run",     "species", "competition", "growth_curves"};
   for_each_section(s, [&](const char* section, auto& parameters) {
     known.insert(section);
     yaml::read_section(root[section], section, errors, parameters);
@@ -239,6 +240,7 @@ Scenario parse_scenario(const YAML::Node& given, const std::string& name, const 
   read_water(root["water"], errors, s);
   read_run(root["run"], errors, s);
   read_species(root, errors, s);
+  s.growth_curves = read_growth_curves(root, errors);
   check_dependencies(s, errors);
   check_plants(s, errors);
   errors.throw_if_any();
@@ -291,6 +293,7 @@ std::string dump_scenario(const Scenario& s) {
   emit_timeline(out, s.timeline);
   out << YAML::EndMap;
   emit_species(out, s);
+  emit_growth_curves(out, s.growth_curves);
   out << YAML::EndMap;
   return out.c_str();
 }

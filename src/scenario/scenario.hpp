@@ -17,6 +17,7 @@
 #include "kernels/sand/reptation.hpp"
 #include "kernels/sand/saltation.hpp"
 #include "kernels/sand/saturated_flux.hpp"
+#include "kernels/slabs/growth_curves.hpp"
 #include "kernels/soil/moisture.hpp"
 #include "kernels/soil/soil.hpp"
 #include "kernels/water/hydraulic_erosion.hpp"
@@ -136,6 +137,7 @@ struct Scenario {
   VegetationParameters vegetation;
   std::vector<Species> species;   ///< at most max_species
   CompetitionMatrix competition;  ///< as many rows and columns as there are species
+  GrowthCurves growth_curves;     ///< of the slab model nield_baas
   TraversabilityParameters traversability;
   WheelGroundParameters wheel_ground;
   ProcessSections process_sections;  ///< of processes whose parameters are no member here

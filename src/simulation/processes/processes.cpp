@@ -20,6 +20,8 @@ const ProcessTable& process_table() {
                                       werner_process(),
                                       momiji_process(),
                                       bishop_process(),
+                                      nield_baas_process(),
+                                      snow_process(),
                                       wang_process(),
                                       repose_process(),
                                       reptation_process(),

@@ -23,6 +23,8 @@ Process continuum_process();  // continuum.cpp
 Process werner_process();  // slabs.cpp
 Process momiji_process();
 Process bishop_process();
+Process nield_baas_process();
+Process snow_process();
 
 Process wang_process();  // particles.cpp
 /// Whether a particle model moves the sand.

@@ -1,4 +1,6 @@
-/// The slab models of dunes. Each is a row; they share the section slab_model and the step.
+/// The slab models of dunes and of snow. Each is a row; they share the section slab_model and the step.
+#include <cmath>
+
 #include "kernels/slabs/slab_model.hpp"
 #include "src/simulation/processes/processes.hpp"
 
@@ -7,14 +9,36 @@ namespace desert_sim {
 namespace {
 
 const std::string section = register_section<SlabModelParameters>("slab_model");
+const std::string plant_section = register_section<SlabPlantParameters>("slab_plants");
+const std::string snow_section = register_section<SlabSnowParameters>("slab_snow");
 
 const SlabModelParameters& parameters_of(const Scenario& s) {
   return s.process_sections.get<SlabModelParameters>(section);
 }
 
+const SlabSnowParameters& snow_of(const Scenario& s) {
+  return s.process_sections.get<SlabSnowParameters>(snow_section);
+}
+
+/// Intervals of simulated time that end with the step.
+int ending_with_step(const StepContext& c, float interval) {
+  const auto ended = [&](double time) { return std::floor(time / static_cast<double>(interval)); };
+  return static_cast<int>(ended(c.time_of(c.tick() + 1)) - ended(c.time()));
+}
+
 void move_slabs(StepContext& c, ProcessWorkspace* workspace) {
   const Scenario& s = c.scenario();
-  const slabs::StepInputs in{parameters_of(s), s.saltation.influx, c.time_step(), c.wind_above()};
+  const auto& plants = s.process_sections.get<SlabPlantParameters>(plant_section);
+  const SlabSnowParameters& snow = snow_of(s);
+  const slabs::StepInputs in{parameters_of(s),
+                             plants,
+                             snow,
+                             s.growth_curves,
+                             s.saltation.influx,
+                             c.time_step(),
+                             c.wind_above(),
+                             ending_with_step(c, plants.growth_time),
+                             ending_with_step(c, snow.settling_time)};
   with_backend(c.exec(), [&](auto& e) {
     slabs::step(e, c.terrain, in, c.dice(), c.state.ledger(), workspace_as<slabs::Workspace>(workspace));
   });
@@ -31,8 +55,8 @@ Process slab_process(SlabKind kind, const std::string& source) {
                 "continuum", "repose",       "reptation",   "avalanching"};
   p.reads = {Layer::bedrock, Layer::soil, Layer::obstacle};
   p.writes = {Layer::sand, Layer::wind_x, Layer::wind_y};
-  set_workspace<slabs::Workspace>(p, [](const SimulationState& state) {
-    return slabs::make_workspace(state.exec(), state.terrain.grid());
+  set_workspace<slabs::Workspace>(p, [kind](const SimulationState& state) {
+    return slabs::make_workspace(state.exec(), state.terrain.grid(), has_resistance(kind));
   });
   p.step = move_slabs;
   p.refresh = [](StepContext& c, ProcessWorkspace*) {
@@ -41,19 +65,47 @@ Process slab_process(SlabKind kind, const std::string& source) {
   return p;
 }
 
+bool never_recorded(const SimulationState&) { return false; }
+
 }  // namespace
 
-Process werner_process() { return slab_process(SlabKind::werner, "Werner 1995"); }
+Process werner_process() {
+  Process p = slab_process(SlabKind::werner, "Werner 1995");
+  // Forced erosion reads back how many slabs were taken.
+  p.can_be_recorded = [](const SimulationState& s) { return !parameters_of(s.scenario).forced_erosion; };
+  return p;
+}
 
 Process momiji_process() {
   Process p = slab_process(SlabKind::momiji, "Momiji et al. 2000");
-  p.can_be_recorded = [](const SimulationState&) { return false; };  // the mean height is read back
+  p.can_be_recorded = never_recorded;  // the mean height is read back
   return p;
 }
 
 Process bishop_process() {
   Process p = slab_process(SlabKind::bishop, "Bishop et al. 2002");
-  p.can_be_recorded = [](const SimulationState&) { return false; };
+  p.can_be_recorded = never_recorded;
+  return p;
+}
+
+Process nield_baas_process() {
+  Process p = slab_process(SlabKind::nield_baas, "Nield & Baas 2008");
+  p.parameters.push_back(plant_section);
+  for (Layer layer : {Layer::grass, Layer::mesquite, Layer::shrub, Layer::burial}) p.writes.push_back(layer);
+  p.can_be_recorded = never_recorded;  // plants do not grow in every step
+  return p;
+}
+
+Process snow_process() {
+  Process p = slab_process(SlabKind::snow, "Werner 1995; Hedstrom & Pomeroy 1998; Anderson 1976");
+  p.parameters.push_back(snow_section);
+  p.writes.push_back(Layer::snow_density);
+  p.begin = [](SimulationState& state, Layer layer) {
+    if (layer != Layer::snow_density) return;
+    with_backend(state.exec(),
+                 [&](auto& e) { slabs::lay_fresh_snow(e, state.terrain.view(), snow_of(state.scenario)); });
+  };
+  p.can_be_recorded = never_recorded;  // it does not settle in every step
   return p;
 }
 
