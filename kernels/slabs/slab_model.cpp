@@ -52,10 +52,12 @@ inline Lattice make_lattice(const TerrainView& t, const StepInputs& in, const Wo
   const auto repose = [&](float degrees) {
     return quanta(std::tan(degrees * pi / 180.0) * static_cast<double>(t.grid.cell_size));
   };
+  // Rounded down, so that a bed of n slab heights, which is rounded to the nearest, has n slabs.
+  const auto slab = static_cast<Quanta>(std::floor(static_cast<double>(p.slab_height) * t.quanta_per_metre));
   const bool plants = p.kind == SlabKind::nield_baas;
   return {order,
           to_fixed_point(order.shift(in.above.x, in.above.y)),
-          std::max(quanta(static_cast<double>(p.slab_height)), Quanta{1}),
+          std::max(slab, Quanta{1}),
           repose(p.repose_deg),
           work.height.data(),
           work.base.data(),

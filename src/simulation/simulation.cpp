@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "kernels/field/statistics.hpp"
+#include "kernels/slabs/slab_parameters.hpp"
 #include "src/core/constants.hpp"
 #include "src/core/error.hpp"
 #include "src/scenario/yaml_parameters.hpp"
@@ -52,6 +53,13 @@ double fastest_wind(const Scenario& s) {
   return fastest * static_cast<double>(std::max(s.wind.speedup_highest, s.wind.response_highest));
 }
 
+/// Whether the process of this name is active, and no other takes its place.
+bool takes_part(const std::string& name, const Scenario& s) {
+  const ProcessTable& table = process_table();
+  return std::any_of(table.processes.begin(), table.processes.end(),
+                     [&](const Process& p) { return p.name == name && table.is_active(p, s); });
+}
+
 /// Sub-steps that follow from other parameters are bounded, so that a step cannot take for ever.
 void require_bounded_cost(const Scenario& s) {
   ValidationErrors errors(s.name);
@@ -69,19 +77,21 @@ void require_bounded_cost(const Scenario& s) {
   if (s.moisture.enabled)
     check("moisture.diffusion", s.moisture.diffusion, "m^2/s",
           4 * s.moisture.diffusion * step / (cell * cell), 64);
-  if (s.reptation.method == ReptationMethod::smoothing)  // the shelter is at most 1
+  if (s.reptation.method == ReptationMethod::smoothing &&
+      takes_part("reptation", s))  // the shelter is at most 1
     check("reptation.strength", s.reptation.strength, "s/m^2",
           2 * (s.reptation.strength + s.reptation.smoothing_strength) * step / cell * fastest_wind(s), 256);
-  const double hop = s.saltation.hop_time;
-  constexpr int most_hops = 256;
-  const bool hops = s.saltation.enabled && !s.has_continuum_transport();
-  if (hops && step > most_hops * hop) {
+  const auto check_step = [&](const char* key, double interval) {
+    constexpr int most = 256;
+    if (step <= most * interval) return;
     char text[200];
-    std::snprintf(text, sizeof text,
-                  "= %g s is %g times saltation.hop_time = %g s (allowed: at most %d times, %g s)", step,
-                  step / hop, hop, most_hops, most_hops * hop);
+    std::snprintf(text, sizeof text, "= %g s is %g times %s = %g s (allowed: at most %d times, %g s)", step,
+                  step / interval, key, interval, most, most * interval);
     errors.add("run.time_step", text);
-  }
+  };
+  if (takes_part("saltation", s)) check_step("saltation.hop_time", s.saltation.hop_time);
+  const auto& slabs = s.process_sections.get<SlabModelParameters>("slab_model");
+  if (slabs.kind != SlabKind::none) check_step("slab_model.poll_time", slabs.poll_time);
   const double shortest =
       s.wind_series ? s.wind_series->shortest_interval() : std::numeric_limits<double>::infinity();
   if (step > max_parts_of_step * shortest) {
