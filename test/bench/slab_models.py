@@ -3,8 +3,9 @@
 
     test/bench/slab_models.py [--run build/bin/desert_run] [--seeds 5] [--jobs 2] [--only NAME...]
 
-Runs the scenarios of the thesis' tables 6.1 to 6.3 and prints a row for each: the highest stack [slabs] of each seed,
-their mean, and what the two others have. Exit status 1 if a mean is off the nearer of them by more than 4 slabs.
+Runs the scenarios of the thesis' tables 6.1 to 6.6 and prints a row for each: the highest stack [slabs] of each seed,
+their mean, and what the two others have. Exit status 1 if a mean is off the nearer of them by more than 4 slabs. With
+plants the thesis' growth curves are not published in numbers: these rows only show what ours make of them.
 """
 import argparse
 import concurrent.futures
@@ -27,8 +28,11 @@ ROWS = {
     "bishop_barchan": ([], 28, 25.5),
     "werner_barchan, 200 s": (["run.duration=200"], None, 8.9),
     "werner_barchan, 200 s, each cell once": (["run.duration=200", "slab_model.polling=non_repeated"], None, 12.1),
+    "nield_nebkha": ([], 58, None),
+    "nield_parabolic": ([], 85, None),
+    "nield_blowouts": ([], 76, None),
+    "nield_islands": ([], 57, None),
 }
-SLAB = 1 / 3
 TOLERANCE = 4
 
 
@@ -41,7 +45,7 @@ def highest_stack(program, name, settings, seed):
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         summary = json.loads((pathlib.Path(out) / "summary.json").read_text())
         sand = cv2.imread(str(pathlib.Path(out) / "sand.tif"), cv2.IMREAD_UNCHANGED)
-        return sand.max() / SLAB, summary["mass_residual"]["sand"]
+        return sand.max() / summary["slab_height_m"], summary["mass_residual"]["sand"]
 
 
 def main():
@@ -63,10 +67,11 @@ def main():
             stacks = [future.result()[0] for future in futures]
             mean = sum(stacks) / len(stacks)
             known = [value for value in (thesis, independent) if value is not None]
-            failed |= min(abs(mean - value) for value in known) > TOLERANCE
+            if not name.startswith("nield_"):
+                failed |= min(abs(mean - value) for value in known) > TOLERANCE
             failed |= any(future.result()[1] for future in futures)
             each = ", ".join(f"{stack:.0f}" for stack in stacks)
-            print(f"| {name} | {each} | {mean:.1f} | {thesis or ''} | {independent} |", flush=True)
+            print(f"| {name} | {each} | {mean:.1f} | {thesis or ''} | {independent or ''} |", flush=True)
     return 1 if failed else 0
 
 

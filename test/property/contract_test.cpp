@@ -75,6 +75,21 @@ const std::map<std::string, std::string> worlds{
      "  obstacle: {shape: box, x: 0.2, y: 0.18, size_x: 0.04, size_y: 0.04, height: 0.09}]\n"
      "wind: {speed: 12, direction_deg: 20}\nsaltation: {influx: 2.0e-6}\nparticle: {kind: wang}\n"
      "looseness: {enabled: true}\n"},
+    {"nield_baas",
+     "grid: {width: 40, height: 36, boundary: open}\n"
+     "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
+     "  noise: {layer: sand, low: 0, high: 4, scale: 5, threshold: 0.4},\n"
+     "  noise: {layer: grass, low: 0, high: 1, scale: 5}, uniform: {layer: mesquite, value: -0.2},\n"
+     "  noise: {layer: shrub, low: -0.5, high: 0.5, scale: 9},\n"
+     "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
+     "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nslab_plants: {growth_time: 5}\n"
+     "slab_model: {kind: nield_baas, slab_height: 0.1, forced_erosion: true}\n"},
+    {"snow",
+     "grid: {width: 40, height: 36, cell_size: 0.25}\n"
+     "terrain: [noise: {layer: bedrock, low: 0, high: 0.5, scale: 3},\n"
+     "  noise: {layer: sand, low: 0, high: 0.4, scale: 2, threshold: 0.4}]\n"
+     "wind: {speed: 5, direction_deg: 20}\nrun: {time_step: 3600}\n"
+     "slab_model: {kind: snow, slab_height: 0.02, poll_time: 3600}\nslab_snow: {settling_time: 3600}\n"},
     {"still",
      "grid: {width: 40, height: 36}\nterrain: [noise: {layer: sand, low: 0, high: 9, scale: 3}]\n"
      "saltation: {enabled: false}\navalanching: {scheme: sweeps, sweeps: 3}\nwind_shadow: {curved: true}\n"},

@@ -98,6 +98,19 @@ std::vector<Case> process_cases(bool transforms) {
       terrain + obstacles +
           "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.5, seed: 5}\n" +
           "wind: {speed: 30, direction_deg: 27}\nsaltation: {influx: 1.0e-5}\nparticle: {kind: wang}\n");
+  add("werner, forced erosion",
+      terrain + blown +
+          "saltation: {influx: 0.5}\n"
+          "slab_model: {kind: werner, polling: non_repeated, poll_time: 0.7, forced_erosion: true}\n");
+  add("nield_baas",
+      terrain +
+          "  - noise: {layer: grass, low: 0, high: 1, scale: 8, seed: 3}\n"
+          "  - noise: {layer: mesquite, low: -1, high: 1, scale: 6, seed: 4}\n"
+          "  - noise: {layer: shrub, low: -0.5, high: 1, scale: 9, seed: 5}\n" +
+          blown + "slab_model: {kind: nield_baas, slab_height: 0.1}\nslab_plants: {growth_time: 3.5}\n");
+  add("snow", terrain + blown +
+                  "slab_model: {kind: snow, poll_time: 43200}\nrun: {time_step: 43200}\n"
+                  "slab_snow: {temperature: -8, settling_time: 86400}\n");
   const std::string wet =
       "rain: {rate: 2.0e-4, share_low: 0.3, share_high: 0.7, height: 8, scale: 12, frequency: 0.1}\n"
       "hydraulic_erosion: {enabled: true, capacity: 1}\nmoisture: {enabled: true}\n";
