@@ -108,5 +108,55 @@ TEST(SlabModels, MomijiIsAsOnePollAfterTheOther) {
       33.7);
 }
 
+/// Six years of nield_nebkha on a smaller grid: from bare ground, plants have caught sand in mounds.
+TEST(SlabModels, NebkhasHaveTheirSandWherePlantsAre) {
+  Running scene(shipped("nield_nebkha", {"grid.width=128", "grid.height=128"}));
+  scene.run(500).expect_balanced();
+  const Field sand = scene.field(Layer::sand), grass = scene.field(Layer::grass),
+              mesquite = scene.field(Layer::mesquite), shrub = scene.field(Layer::shrub);
+  double planted = 0, bare = 0, of_planted = 0, of_bare = 0, highest = 0, effective_at_top = 0;
+  for (std::size_t i = 0; i < sand.values.size(); ++i) {
+    const double depth = static_cast<double>(sand.values[i]) / 0.1;  // [slabs]
+    const double effect = static_cast<double>(grass.values[i] + mesquite.values[i] + shrub.values[i]);
+    (effect > 0.5 ? planted : bare) += depth;
+    (effect > 0.5 ? of_planted : of_bare) += 1;
+    if (depth > highest) {
+      highest = depth;
+      effective_at_top = effect;
+    }
+  }
+  ASSERT_GT(of_planted, 100);
+  DESERT_REPORT("highest %.0f slabs, effectiveness there %.2f; %.1f slabs on %.1f %% planted, %.1f on others",
+                highest, effective_at_top, planted / of_planted, 100 * of_planted / (of_planted + of_bare),
+                bare / of_bare);
+  EXPECT_GT(planted / of_planted, 4 * bare / of_bare);
+  EXPECT_GT(effective_at_top, 0.3);
+  EXPECT_GT(highest, 30) << "werner without plants reaches fewer";
+
+  Running without(shipped("nield_nebkha", {"grid.width=128", "grid.height=128", "slab_model.kind=werner"}));
+  without.run(500);
+  double highest_without = 0;
+  for (const float depth : without.field(Layer::sand).values)
+    highest_without = std::max(highest_without, static_cast<double>(depth) / 0.1);
+  DESERT_REPORT("highest without plants %.0f slabs", highest_without);
+  EXPECT_GT(highest, 1.3 * highest_without);
+}
+
+/// Bare patches of a planted sheet become hollows with walls of sand in their lee, which bury plants.
+TEST(SlabModels, BlowoutsGrowFromBarePatches) {
+  Running scene(shipped("nield_blowouts"));
+  const auto hollow = [&] {  // cells that have lost more than half of the sand
+    const std::vector<float> sand = scene.field(Layer::sand).values;
+    return std::count_if(sand.begin(), sand.end(), [](float depth) { return depth < 1.0f; });
+  };
+  scene.run(400);
+  const auto early = hollow();
+  scene.run(1200).expect_balanced();
+  const auto late = hollow();
+  DESERT_REPORT("hollows of %d and %d cells", static_cast<int>(early), static_cast<int>(late));
+  EXPECT_GT(early, 30);
+  EXPECT_GT(late, 2 * early);
+}
+
 }  // namespace
 }  // namespace desert_sim
