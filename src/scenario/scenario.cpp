@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 #include "src/core/input_file.hpp"
 #include "src/scenario/climate.hpp"
@@ -130,6 +131,16 @@ void check_dependencies(const Scenario& s, ValidationErrors& errors) {
     if (const auto* discs = std::get_if<DiscsStep>(&s.terrain[n]);
         discs && discs->radius_high < discs->radius_low)
       errors.add("terrain." + std::to_string(n) + ".discs.radius_high", "must not be below radius_low");
+  constexpr double most_influx = 100;  // [m a step]; a few hundred of them would leave the range of heights
+  const double influx = static_cast<double>(s.saltation.influx) * static_cast<double>(s.run.time_step) /
+                        static_cast<double>(s.grid.cell_size);
+  if (influx > most_influx) {
+    std::ostringstream text;
+    text << "= " << s.saltation.influx << " m^2/s brings " << influx
+         << " m of sand to a cell of the edge in a step of " << s.run.time_step << " s (allowed: at most "
+         << most_influx << " m)";
+    errors.add("saltation.influx", text.str());
+  }
 }
 
 void apply_setting(YAML::Node root, const std::string& setting) {

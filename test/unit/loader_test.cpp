@@ -148,6 +148,7 @@ TEST(Loader, NamesWhatDoesNotFitTogether) {
   expect_refused("wind_shadow: {start_deg: 20, full_deg: 10}", {"wind_shadow.full_deg"});
   expect_refused("echo_dunes: {erosion_reach: 3, sticky_reach: 2}", {"echo_dunes.sticky_reach"});
   expect_refused("terrain: [discs: {radius_low: 5, radius_high: 4}]", {"terrain.0.discs.radius_high"});
+  expect_refused("saltation: {influx: 1}\nrun: {time_step: 900}", {"saltation.influx", "900 m of sand"});
 }
 
 TEST(Loader, ListsAllFaultsAtOnceOneALine) {

@@ -76,6 +76,7 @@ Scenario scenario_at(const std::function<double()>& share) {
     segment.probability = std::max(segment.probability, 1e-30f);
   }
   s.wind.weights.values[0] = std::max(s.wind.weights.values[0], 1e-30f);
+  s.saltation.influx = std::min(s.saltation.influx, 99 * s.grid.cell_size / s.run.time_step);
   s.wind_features[1].id = std::max(s.wind_features[0].id - 1, 0);
   auto& discs = std::get<DiscsStep>(s.terrain[5]);
   discs.radius_low = std::min(discs.radius_low, discs.radius_high);

@@ -81,7 +81,10 @@ TEST(SlabColours, NeighboursAreFoundInMemory) {
                   nullptr,
                   nullptr,
                   Lattice::quarter_of(18),
-                  4 * Lattice::quarter_of(18)};
+                  4 * Lattice::quarter_of(18),
+                  nullptr,
+                  1,
+                  1};
   const Colours colours{{24, true}, {18, true}};
   std::vector<int> seen(Lattice::words(24, 18));
   for (int line = 0; line < 24; ++line)
