@@ -132,8 +132,8 @@ void check_dependencies(const Scenario& s, ValidationErrors& errors) {
         discs && discs->radius_high < discs->radius_low)
       errors.add("terrain." + std::to_string(n) + ".discs.radius_high", "must not be below radius_low");
   constexpr double most_influx = 100;  // [m a step]; a few hundred of them would leave the range of heights
-  const double influx = static_cast<double>(s.saltation.influx) * static_cast<double>(s.run.time_step) /
-                        static_cast<double>(s.grid.cell_size);
+  const double cell = s.grid.cell_size > 0 ? static_cast<double>(s.grid.cell_size) : 1.0;
+  const double influx = static_cast<double>(s.saltation.influx) * static_cast<double>(s.run.time_step) / cell;
   if (influx > most_influx) {
     std::ostringstream text;
     text << "= " << s.saltation.influx << " m^2/s brings " << influx

@@ -101,6 +101,9 @@ class Reconfigure(Scenarios):
         self.assertIn("applied: step_rate=15", node.call("reload_parameters", Trigger).message)
         self.assertEqual(node.latest("status", SimulationStatus).step_rate, 15)
         self.assertTrue(node.call("pause", Trigger).success)
+        end = time.monotonic() + 10 * PATIENCE  # the client hears of it by a message
+        while self.values(client)["step_rate"] != 15 and time.monotonic() < end:
+            time.sleep(0.05)
         self.refused(node, client, {"step_rate": -1.0, "wind__speed": 6.0}, "step_rate: = -1 is not in [0, 1e+06] steps/s")
 
     def test_publishers(self):

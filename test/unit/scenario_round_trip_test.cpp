@@ -76,7 +76,9 @@ Scenario scenario_at(const std::function<double()>& share) {
     segment.probability = std::max(segment.probability, 1e-30f);
   }
   s.wind.weights.values[0] = std::max(s.wind.weights.values[0], 1e-30f);
-  s.saltation.influx = std::min(s.saltation.influx, 99 * s.grid.cell_size / s.run.time_step);
+  const double most_influx =
+      99.0 * static_cast<double>(s.grid.cell_size) / static_cast<double>(s.run.time_step);
+  s.saltation.influx = std::min(s.saltation.influx, static_cast<float>(most_influx));
   s.wind_features[1].id = std::max(s.wind_features[0].id - 1, 0);
   auto& discs = std::get<DiscsStep>(s.terrain[5]);
   discs.radius_low = std::min(discs.radius_low, discs.radius_high);
