@@ -60,6 +60,7 @@ Scenario scenario_at(const std::function<double()>& share) {
     float &low = species.traits.light_lowest, &high = species.traits.light_highest;
     if (!(low < high)) low = -10, high = std::max(high, -9.5f);
   }
+  s.growth_curves = test::scenario_of("{}").growth_curves;
   for (int n = 0; n < 9; ++n) s.competition.push_back(static_cast<float>(share() * max_competition));
   const auto step = [&](auto one) {
     set_all(one, share);
