@@ -12,7 +12,7 @@ namespace desert_sim::particles {
 
 template <class E>
 void blow(E& exec, const TerrainView& t, wind::Vector above) {
-  for_each_cell(exec, t.grid, Blow{t.grid, above, t.real(Layer::wind_x), t.real(Layer::wind_y)});
+  for_each_cell(exec, t.grid, wind::Blow{t.grid, above, t.real(Layer::wind_x), t.real(Layer::wind_y)});
 }
 
 /// Measures the surface, and finds the shelter in one sweep downwind: over a periodic edge in two rounds.

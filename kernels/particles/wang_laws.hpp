@@ -6,6 +6,7 @@
 #include "kernels/particles/starts.hpp"
 #include "kernels/particles/wang.hpp"
 #include "kernels/sand/saltation_inputs.hpp"
+#include "kernels/wind/undisturbed_wind.hpp"
 
 namespace desert_sim::particles {
 
@@ -252,18 +253,6 @@ struct Settle {
     const int i = grid.index(x, y);
     sand[i] += landed[i];
     if (impact_strength) impact_strength[i] = static_cast<float>(landed[i]) * quantum;
-  }
-};
-
-/// The layers of the wind: everywhere the undisturbed one.
-struct Blow {
-  Grid grid;
-  wind::Vector above;
-  float *wind_x, *wind_y;
-
-  DESERT_HD void operator()(int x, int y) const {
-    wind_x[grid.index(x, y)] = above.x;
-    wind_y[grid.index(x, y)] = above.y;
   }
 };
 

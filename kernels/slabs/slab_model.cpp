@@ -73,7 +73,7 @@ inline Lattice make_lattice(const TerrainView& t, const StepInputs& in, const Wo
 
 template <class E>
 void blow(E& exec, const TerrainView& t, wind::Vector above) {
-  for_each_cell(exec, t.grid, Blow{t.grid, above, t.real(Layer::wind_x), t.real(Layer::wind_y)});
+  for_each_cell(exec, t.grid, wind::Blow{t.grid, above, t.real(Layer::wind_x), t.real(Layer::wind_y)});
 }
 
 /// When a turn begins, and how long it lasts [poll times since the step began]. No turn lasts from one poll

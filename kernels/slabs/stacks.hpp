@@ -3,7 +3,7 @@
 
 #include "kernels/field/layers.hpp"
 #include "kernels/slabs/rolling.hpp"
-#include "kernels/wind/vector.hpp"
+#include "kernels/wind/undisturbed_wind.hpp"
 
 namespace desert_sim::slabs {
 
@@ -55,18 +55,6 @@ struct PutSand {
     const Quanta now = left + lattice.height[n] - lattice.base[n] + rolling * lattice.slab;
     if (burial != nullptr) burial[i] += now - sand[i];
     sand[i] = now;
-  }
-};
-
-/// The layers of the wind: everywhere the undisturbed one.
-struct Blow {
-  Grid grid;
-  wind::Vector above;
-  float *wind_x, *wind_y;
-
-  DESERT_HD void operator()(int x, int y) const {
-    wind_x[grid.index(x, y)] = above.x;
-    wind_y[grid.index(x, y)] = above.y;
   }
 };
 
