@@ -67,6 +67,11 @@ const std::vector<LayerStyle>& layer_styles() {
                                               {"soil_depth", "m", 0, 1, ColourMap::sequential},
                                               {"water_depth", "m", 0, 3, ColourMap::sequential},
                                               {"vegetation", "1", 0, 1, ColourMap::sequential},
+                                              {"grass", "1", 0, 1, ColourMap::sequential},
+                                              {"mesquite", "1", 0, 1, ColourMap::sequential},
+                                              {"shrub", "1", 0, 1, ColourMap::sequential},
+                                              {"burial", "m", -0.5f, 0.5f, ColourMap::diverging},
+                                              {"snow_density", "kg/m^3", 0, 500, ColourMap::sequential},
                                               {"roughness", "m", 0, 0.5f, ColourMap::sequential},
                                               {"step_height", "m", 0, 0.5f, ColourMap::sequential}};
   return styles;

@@ -24,7 +24,7 @@ struct MapLayer {
   bool zero_is_special = false;
 };
 
-constexpr std::array<MapLayer, 36> map_layers{{
+constexpr std::array<MapLayer, 41> map_layers{{
     {"elevation", Layer::elevation, 0.005},
     {"bedrock", Layer::bedrock, 0.005},
     {"water_surface", Layer::water_surface, 0.005},
@@ -44,6 +44,11 @@ constexpr std::array<MapLayer, 36> map_layers{{
     {"erosion_resistance", Layer::erosion_resistance, 0.01},
     {"obstacle", Layer::obstacle, 0},
     {"looseness", Layer::looseness, 0.01},
+    {"grass", Layer::grass, 0.01},
+    {"mesquite", Layer::mesquite, 0.01},
+    {"shrub", Layer::shrub, 0.01},
+    {"burial", Layer::burial, 0.005},
+    {"snow_density", Layer::snow_density, 1},
     {"wind_x", Layer::wind_x, 0.05},
     {"wind_y", Layer::wind_y, 0.05},
     {"wind_shadow", Layer::wind_shadow, 0.01},

@@ -26,7 +26,7 @@ class Maps(MapTest):
         self.expect_header(grid_map.info.header)
         self.assertEqual(grid_map.basic_layers, ["elevation"])
         self.assertEqual((grid_map.info.resolution, grid_map.info.length_x, grid_map.info.length_y), (2, 128, 96))
-        self.assertEqual(len(grid_map.layers), 34)
+        self.assertEqual(len(grid_map.layers), 39)
         layers = {name: cells(grid_map, name) for name in grid_map.layers}
         for x in range(64):
             for y in range(48):
@@ -36,7 +36,7 @@ class Maps(MapTest):
                 self.assertAlmostEqual(layers["bedrock"][at], 1, 4)
                 self.assertEqual(layers["water_surface"][at], layers["elevation"][at], "dry")
                 for absent in ("water_depth", "soil_depth", "vegetation", "moisture", "obstacle", "plants", "canopy_height", "echo",
-                               "erosion_resistance", "looseness", "illumination", "humus", "suspended_sediment", "water_velocity_x", "water_velocity_y"):
+                               "erosion_resistance", "looseness", "grass", "mesquite", "shrub", "burial", "snow_density", "illumination", "humus", "suspended_sediment", "water_velocity_x", "water_velocity_y"):
                     self.assertEqual(layers[absent][at], 0, absent)
                 self.assertGreater(layers["wind_x"][at], 1)
         self.check_derived(layers)
@@ -200,6 +200,7 @@ class Maps(MapTest):
                          ["elevation", "bedrock", "water_surface", "sand_depth", "water_depth", "soil_depth", "vegetation",
                           "plants", "canopy_height", "illumination", "humus", "moisture", "suspended_sediment",
                           "airborne_sand", "water_velocity_x", "water_velocity_y", "erosion_resistance", "obstacle", "looseness",
+                          "grass", "mesquite", "shrub", "burial", "snow_density",
                           "wind_x", "wind_y", "wind_shadow", "echo", "flux_x", "flux_y", "slope", "roughness", "step_height", "slip",
                           "slip_downhill", "slip_across", "sinkage", "traversability", "normal_x", "normal_y", "normal_z"], "all")
 
