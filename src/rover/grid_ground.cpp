@@ -100,8 +100,7 @@ std::optional<double> GridGround::elevation(double x, double y) const {
 }
 
 double GridGround::finest_feature() const {
-  constexpr double crest = 0.01;  // of ripples 5 cm long
-  return detail_ ? crest : GroundSource::finest_feature();
+  return detail_ ? SurfaceDetail::crest_width : GroundSource::finest_feature();
 }
 
 GroundPoint GridGround::at(double x, double y) const {

@@ -1,5 +1,7 @@
 // The same commands, seed and ground give the same bits: again, after a save, and from the journal.
 
+#include <set>
+
 #include "rover/field.hpp"
 #include "src/rover/journal.hpp"
 #include "src/rover/simulated_ground.hpp"
@@ -19,7 +21,9 @@ const char* const dunes =
     "direction_deg: 20},"
     " terrain: [noise: {layer: sand, low: 0.2, high: 1.5, scale: 6}]}";
 
-SimulatedGround living_ground() { return SimulatedGround(scenario_of(dunes), no_raster_loader, "cpu", 1); }
+SimulatedGround living_ground(bool detail = false) {
+  return SimulatedGround(scenario_of(dunes), no_raster_loader, "cpu", 1, detail);
+}
 
 RoverParameters noisy() {
   RoverParameters p;
@@ -43,8 +47,8 @@ std::vector<RoverEvent> course() {
 /// The hash of the states after each event; a rover that went through the first `begin` events is handed
 /// over.
 std::vector<std::uint64_t> path(Rover& rover, const std::vector<RoverEvent>& events, std::size_t begin,
-                                std::size_t end) {
-  SimulatedGround ground = living_ground();
+                                std::size_t end, bool detail = false) {
+  SimulatedGround ground = living_ground(detail);
   std::vector<std::uint64_t> hashes;
   for (std::size_t n = begin; n < end; ++n) {
     apply(rover, events[n], [&](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
@@ -82,21 +86,37 @@ TEST(RoverRepeat, ASavedRoverGoesOnToTheBit) {
 TEST(RoverRepeat, TheJournalLeadsToTheSameState) {
   const TemporaryFolder folder;
   const std::vector<RoverEvent> events = course();
-  Rover rover(noisy(), {});
-  path(rover, events, 0, events.size());
-  {
-    RoverJournalWriter journal(folder.path("journal"), rover);
-    for (const RoverEvent& event : events) journal.write(event);
-    Rover other(noisy(), {});
-    path(other, events, 0, 9);
-    journal.write(rover_event::SetState{rover_state_bytes(other)});
-    journal.write(rover_event::SetState{rover_state_bytes(rover)});
+  std::set<std::uint64_t> ends;
+  for (const bool detail : {false, true}) {
+    Rover rover(noisy(), {});
+    path(rover, events, 0, events.size(), detail);
+    {
+      RoverJournalWriter journal(folder.path("journal"), rover, detail);
+      for (const RoverEvent& event : events) journal.write(event);
+      Rover other(noisy(), {});
+      path(other, events, 0, 9, detail);
+      journal.write(rover_event::SetState{rover_state_bytes(other)});
+      journal.write(rover_event::SetState{rover_state_bytes(rover)});
+    }
+    const RoverJournal journal = read_rover_journal(folder.path("journal"));
+    SimulatedGround ground = living_ground(journal.detail);
+    const RoverState end =
+        replay(journal, [&](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
+    EXPECT_EQ(hash_of(end), hash_of(rover.state()));
+    EXPECT_EQ(end.pose.x, rover.state().pose.x);
+    ends.insert(hash_of(end));
   }
-  SimulatedGround ground = living_ground();
-  const RoverState end = replay(read_rover_journal(folder.path("journal")),
-                                [&](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
-  EXPECT_EQ(hash_of(end), hash_of(rover.state()));
-  EXPECT_EQ(end.pose.x, rover.state().pose.x);
+  EXPECT_EQ(ends.size(), 2u) << "it drove over ripples, or over none";
+}
+
+TEST(RoverRepeat, AJournalOfAnOlderVersionHasNoDetail) {
+  const TemporaryFolder folder;
+  { RoverJournalWriter(folder.path("journal"), Rover(noisy(), {}), true); }
+  std::string text = file_bytes(folder.path("journal"));
+  EXPECT_TRUE(read_rover_journal(folder.path("journal")).detail);
+  text.replace(text.find("detail: true, "), std::string("detail: true, ").size(), "");
+  folder.write("older", text);
+  EXPECT_FALSE(read_rover_journal(folder.path("older")).detail);
 }
 
 TEST(RoverRepeat, AJournalThatWasCutOffIsReadUpToThere) {
@@ -104,7 +124,7 @@ TEST(RoverRepeat, AJournalThatWasCutOffIsReadUpToThere) {
   const std::string path = folder.path("journal");
   {
     const Rover rover(noisy(), {});
-    RoverJournalWriter journal(path, rover);
+    RoverJournalWriter journal(path, rover, false);
     for (const RoverEvent& event : course()) journal.write(event);
   }
   const std::string bytes = file_bytes(path);

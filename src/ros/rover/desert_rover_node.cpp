@@ -36,14 +36,14 @@ int print_model(const std::vector<std::string>& words) {
   }
 }
 
-int replay(const std::string& journal, const std::string& name) {
+int replay(const std::string& file, const std::string& name) {
   try {
     using namespace desert_sim;
-    SimulatedGround ground(load_scenario(scenario_file(name)), raster_loader_with_bags({"", false}), "cpu",
-                           0);
-    const RoverState end =
-        desert_sim::replay(read_rover_journal(journal),
-                           [&ground](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
+    const RoverJournal journal = read_rover_journal(file);
+    SimulatedGround ground(load_scenario(scenario_file(name)), raster_loader_with_bags({"", false}), "cpu", 0,
+                           journal.detail);
+    const RoverState end = desert_sim::replay(
+        journal, [&ground](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
     std::printf("step %lu of the terrain, x %.6f, y %.6f, z %.6f, yaw %.6f, %s, state_hash %s\n",
                 static_cast<unsigned long>(end.terrain_step), end.pose.x, end.pose.y, end.pose.z,
                 end.pose.yaw, rover_conditions[static_cast<int>(end.condition)],

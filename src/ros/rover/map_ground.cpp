@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "src/terrain/map_layers.hpp"
+
 namespace desert_sim {
 
 namespace {
@@ -18,12 +20,37 @@ bool any_above_0(const LayerMap& map, const LayerMap::Rectangle& cells) {
 }  // namespace
 
 std::size_t TerrainMaps::index(const std::string& name) {
-  return static_cast<std::size_t>(std::find(std::begin(names), std::end(names), name) - std::begin(names));
+  const auto* const found =
+      std::find_if(std::begin(rows), std::end(rows), [&name](const Row& row) { return name == row.name; });
+  return static_cast<std::size_t>(found - std::begin(rows));
 }
 
-bool TerrainMaps::complete(bool with_sensors) const {
-  return std::all_of(maps.begin(), maps.begin() + (with_sensors ? count : ground_count),
-                     [](const auto& map) { return map != nullptr; });
+std::vector<std::string> TerrainMaps::names(unsigned uses, unsigned without) {
+  std::vector<std::string> chosen;
+  for (const Row& row : rows)
+    if ((row.uses & uses) && !(row.uses & without)) chosen.emplace_back(row.name);
+  return chosen;
+}
+
+bool TerrainMaps::complete(unsigned uses) const {
+  for (std::size_t n = 0; n < count; ++n)
+    if ((rows[n].uses & uses) && !maps[n]) return false;
+  return !(uses & MapUse::detail) || detail_settings;
+}
+
+void TerrainMaps::forget(unsigned uses, unsigned without) {
+  for (const std::string& name : names(uses, without)) maps[index(name)] = nullptr;
+}
+
+std::shared_ptr<const MapDetail> TerrainMaps::detail() const {
+  if (!complete(MapUse::detail)) return nullptr;
+  MapDetail::Maps layers;
+  for (std::size_t n = 0; n < count; ++n) {
+    if (!(rows[n].uses & MapUse::detail)) continue;
+    if (!maps[n]->same_geometry(*maps[elevation])) return nullptr;
+    layers[find_map_layer(rows[n].name)->layer] = maps[n];
+  }
+  return std::make_shared<const MapDetail>(std::move(layers), *detail_settings);
 }
 
 void TerrainMaps::set(std::size_t which, const MapChange& change) {
@@ -41,7 +68,12 @@ bool MapGround::contains(double x, double y) const {
 }
 
 std::optional<double> MapGround::elevation(double x, double y) const {
-  return maps_.maps[TerrainMaps::elevation]->value(x, y);
+  const std::optional<double> z = maps_.maps[TerrainMaps::elevation]->value(x, y);
+  return z && detail_ ? *z + detail_->offset(x, y) : z;
+}
+
+double MapGround::finest_feature() const {
+  return detail_ ? SurfaceDetail::crest_width : GroundSource::finest_feature();
 }
 
 double MapGround::value(TerrainMaps::Which which, double x, double y) const {

@@ -9,12 +9,17 @@
 
 #include "src/client/layer_assembler.hpp"
 #include "src/client/layer_map.hpp"
+#include "src/ros/rover/map_detail.hpp"
 #include "src/rover/ground.hpp"
 
 namespace desert_sim {
 
-/// The layers of one state of the terrain that matter to a rover, and after them those that only its sensors
-/// see.
+/// The uses of maps, as bits.
+struct MapUse {
+  static constexpr unsigned ground = 1, sensors = 2, detail = 4;
+};
+
+/// What a rover knows of one state of the terrain.
 struct TerrainMaps {
   enum Which : std::size_t {
     elevation,
@@ -24,26 +29,46 @@ struct TerrainMaps {
     obstacle,
     water_depth,
     looseness,
-    ground_count,
-    canopy_height = ground_count,
+    canopy_height,
     vegetation,
     airborne_sand,
+    wind_x,
+    wind_y,
+    wind_shadow,
     count
   };
-  static constexpr const char* names[count] = {"elevation",  "sand_depth",   "soil_depth", "moisture",
-                                               "obstacle",   "water_depth",  "looseness",  "canopy_height",
-                                               "vegetation", "airborne_sand"};
+  struct Row {
+    const char* name;
+    unsigned uses;
+  };
+  /// In the order of Which. Those for detail are SurfaceDetail::layers().
+  static constexpr Row rows[count] = {{"elevation", MapUse::ground | MapUse::sensors | MapUse::detail},
+                                      {"sand_depth", MapUse::ground | MapUse::detail},
+                                      {"soil_depth", MapUse::ground | MapUse::detail},
+                                      {"moisture", MapUse::ground | MapUse::detail},
+                                      {"obstacle", MapUse::ground | MapUse::detail},
+                                      {"water_depth", MapUse::ground | MapUse::detail},
+                                      {"looseness", MapUse::ground},
+                                      {"canopy_height", MapUse::sensors},
+                                      {"vegetation", MapUse::sensors | MapUse::detail},
+                                      {"airborne_sand", MapUse::sensors},
+                                      {"wind_x", MapUse::detail},
+                                      {"wind_y", MapUse::detail},
+                                      {"wind_shadow", MapUse::detail}};
   std::array<std::shared_ptr<const LayerMap>, count> maps;
-  bool loose = false;  ///< whether a cell of the looseness is not 0
+  bool loose = false;                               ///< whether a cell of the looseness is not 0
+  std::shared_ptr<const Snapshot> detail_settings;  ///< snapshot_of() the message of ~detail
 
-  /// The names of the layers for the ground, or of those for sensors only.
-  static std::vector<std::string> ground_names() { return {names, names + ground_count}; }
-  static std::vector<std::string> sensor_names() { return {names + ground_count, names + count}; }
+  /// The names of the layers with one of these uses, and with none of those of `without`.
+  static std::vector<std::string> names(unsigned uses, unsigned without = 0);
   /// The number of a layer's name; count if it is none of them.
   static std::size_t index(const std::string& name);
-  /// Whether there is a map of each layer for the ground, and for sensors if they are asked for.
-  bool complete(bool with_sensors) const;
-  void forget_sensor_layers() { std::fill(maps.begin() + ground_count, maps.end(), nullptr); }
+  /// Whether all is there that these uses need.
+  bool complete(unsigned uses) const;
+  /// Gives up the maps that names() names.
+  void forget(unsigned uses, unsigned without);
+  /// Of these maps; null if something for it is missing, or if some maps are of another terrain.
+  std::shared_ptr<const MapDetail> detail() const;
   /// Takes a new map, of which these cells differ from the one before.
   void set(std::size_t which, const MapChange& change);
   const MapInfo& info() const { return maps[elevation]->info(); }
@@ -51,14 +76,20 @@ struct TerrainMaps {
 
 class MapGround : public GroundSource {
  public:
-  /// `maps` must be complete. `use_looseness`: whether the layer says how loose the ground is.
+  /// `maps` must be complete for the ground. `use_looseness`: whether the layer says how loose the ground
+  /// is. Where the maps have what detail needs, the elevation has ripples and bumps.
   MapGround(TerrainMaps maps, double moisture_capacity, bool use_looseness)
-      : maps_(std::move(maps)), moisture_capacity_(moisture_capacity), use_looseness_(use_looseness) {}
+      : maps_(std::move(maps)),
+        moisture_capacity_(moisture_capacity),
+        use_looseness_(use_looseness),
+        detail_(maps_.detail()) {}
   const TerrainMaps& maps() const { return maps_; }
+  const std::shared_ptr<const MapDetail>& detail() const { return detail_; }
 
   bool contains(double x, double y) const override;
   std::optional<double> elevation(double x, double y) const override;
   GroundPoint at(double x, double y) const override;
+  double finest_feature() const override;
 
  private:
   double value(TerrainMaps::Which which, double x, double y) const;
@@ -66,6 +97,7 @@ class MapGround : public GroundSource {
   TerrainMaps maps_;
   double moisture_capacity_;
   bool use_looseness_;
+  std::shared_ptr<const MapDetail> detail_;  ///< null: none
 };
 
 }  // namespace desert_sim

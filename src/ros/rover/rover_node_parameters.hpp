@@ -39,6 +39,7 @@ struct RoverNodeParameters {
   double moisture_capacity = 0.3;
   std::string data_dir;
   std::string journal;
+  bool detail = false;
   bool tracks = false;
   double track_spacing = 0.25;
   double track_rate = 10;
@@ -93,6 +94,9 @@ constexpr auto parameter_table(const RoverNodeParameters*) {
                 "File for the journal of all that the rover was told and drove on; one of that name gets the "
                 "ending "
                 ".previous. Empty: none."),
+      parameter(
+          "detail", &P::detail,
+          "Whether wheels and beams meet ripples and bumps (section detail of the terrain's scenario)."),
       parameter("tracks", &P::tracks, "Whether its wheels press and displace the terrain's sand."),
       parameter("track_spacing", &P::track_spacing, 0.01, 100, "m", "Way of a wheel that is one stroke."),
       parameter("track_rate", &P::track_rate, 0.1, 1000, "Hz",

@@ -21,7 +21,8 @@ constexpr auto patience = std::chrono::milliseconds(50);
 constexpr double longest_pause = 1;  // [s] of ROS time between two poses; what is more is left out
 
 /// Renames an old journal, which can explain why a run failed.
-std::unique_ptr<RoverJournalWriter> start_journal(const std::string& path, const Rover& rover) {
+std::unique_ptr<RoverJournalWriter> start_journal(const RoverNodeParameters& p, const Rover& rover) {
+  const std::string& path = p.journal;
   if (path.empty()) return nullptr;
   std::error_code error;
   if (std::filesystem::is_regular_file(path, error)) {
@@ -29,7 +30,7 @@ std::unique_ptr<RoverJournalWriter> start_journal(const std::string& path, const
     if (error)
       throw ConfigError(path + ": the previous journal cannot be renamed to *.previous: " + error.message());
   }
-  return std::make_unique<RoverJournalWriter>(path, rover);
+  return std::make_unique<RoverJournalWriter>(path, rover, p.detail);
 }
 
 SensorFrames sensor_frames(const RoverSetup& setup) {
@@ -58,7 +59,7 @@ RoverServer::RoverServer(const ros::NodeHandle& node, const ros::NodeHandle& pri
       setup_(read_rover_setup(private_node)),
       files_(setup_.node.data_dir),
       rover_(setup_.rover, setup_.wheel_ground, "parameters of " + private_node.getNamespace() + ": rover"),
-      journal_(start_journal(setup_.node.journal, rover_)),
+      journal_(start_journal(setup_.node, rover_)),
       sensors_(make_sensors(node, setup_)),
       terrain_(setup_.node, setup_.has_sensors(),
                [this](const MapChange& change) {
@@ -207,13 +208,14 @@ void RoverServer::advance(double seconds, const std::shared_ptr<const MapGround>
 void RoverServer::measure(const MapGround& ground, const ros::Time& stamp, std::uint64_t ticks) {
   const RoverState& state = rover_.state();
   const geometry_msgs::Pose pose = pose_message(state.pose);
+  sensors_->on_detail(ground.detail());
   if (setup_.node.clock == RoverClock::ros) {
     if (terrain_.want_sensor_layers(sensors_->has_subscribers())) sensors_->on_pose(stamp, pose);
     return;
   }
   const MapInfo& info = ground.maps().info();
   for (const std::shared_ptr<const LayerMap>& map : ground.maps().maps)
-    sensors_->on_terrain(map, {0, 0, info.width, info.height});
+    if (map) sensors_->on_terrain(map, {0, 0, info.width, info.height});
   // By the rover's own time, which is part of its state, whatever the time of day is.
   const auto time = [](std::uint64_t n) { return static_cast<double>(n) * Rover::internal_step; };
   sensors_->on_pose(stamp, pose, SensorPublisher::TimeSpan{time(ticks), time(state.ticks)});

@@ -4,23 +4,40 @@
 
 #include <utility>
 
+#include "src/core/error.hpp"
+#include "src/ros/conversion/detail_message.hpp"
+
 namespace desert_sim {
+
+namespace {
+
+unsigned uses_at_all_times(const RoverNodeParameters& p, bool sensors) {
+  return MapUse::ground | (p.detail ? MapUse::detail : 0) |
+         (sensors && p.clock == RoverClock::lockstep ? MapUse::sensors : 0);
+}
+
+}  // namespace
 
 RoverTerrain::RoverTerrain(const RoverNodeParameters& parameters, bool sensors,
                            std::function<void(const MapChange&)> on_change)
     : parameters_(parameters),
       lockstep_(parameters.clock == RoverClock::lockstep),
-      sensors_in_states_(sensors && lockstep_),
-      on_change_(std::move(on_change)),
-      sensor_layers_(sensors_in_states_) {
+      uses_(uses_at_all_times(parameters, sensors)),
+      on_change_(std::move(on_change)) {
   TerrainClient::Options options;
   options.node = parameters.terrain_node;
-  options.layers = TerrainMaps::ground_names();
-  if (sensor_layers_)
-    for (const std::string& name : TerrainMaps::sensor_names()) options.layers.push_back(name);
+  options.layers = TerrainMaps::names(uses_);
   options.tell_each_step = true;
   options.on_change = [this](const MapChange& change) { receive(change); };
   client_ = std::make_unique<TerrainClient>(ros::NodeHandle(), options);
+  if (!parameters.detail) return;
+  // A queue of its own: services of the rover wait for states that are complete with this message.
+  ros::NodeHandle node;
+  node.setCallbackQueue(&detail_queue_);
+  detail_subscriber_ =
+      node.subscribe(parameters.terrain_node + "/detail", most_states, &RoverTerrain::receive_detail, this);
+  detail_spinner_.emplace(1, &detail_queue_);
+  detail_spinner_->start();
 }
 
 bool RoverTerrain::want_sensor_layers(bool wanted) {
@@ -29,14 +46,14 @@ bool RoverTerrain::want_sensor_layers(bool wanted) {
     sensor_layers_ = wanted;
     if (wanted) {
       const std::lock_guard<std::mutex> lock(mutex_);
-      newest_maps_.forget_sensor_layers();
+      newest_maps_.forget(MapUse::sensors, uses_);
     }
-    for (const std::string& name : TerrainMaps::sensor_names())
+    for (const std::string& name : TerrainMaps::names(MapUse::sensors, uses_))
       wanted ? client_->subscribe_layer(name) : client_->unsubscribe_layer(name);
   }
   if (!wanted) return true;
   const std::lock_guard<std::mutex> lock(mutex_);
-  return newest_maps_.complete(true);
+  return newest_maps_.complete(uses_ | MapUse::sensors);
 }
 
 void RoverTerrain::receive(const MapChange& change) {
@@ -45,15 +62,33 @@ void RoverTerrain::receive(const MapChange& change) {
   if (which == TerrainMaps::count) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   newest_maps_.set(which, change);
+  collect(change.map->info().step, [&](TerrainMaps& state) {
+    state.maps[which] = change.map;
+    if (which == TerrainMaps::looseness) state.loose = newest_maps_.loose;
+  });
+}
+
+void RoverTerrain::receive_detail(const DetailState::ConstPtr& message) {
+  std::shared_ptr<const Snapshot> settings;
+  try {
+    settings = std::make_shared<const Snapshot>(snapshot_of(*message));
+  } catch (const ConfigError& e) {
+    ROS_WARN_THROTTLE(5, "%s/detail: a message was refused: %s", parameters_.terrain_node.c_str(), e.what());
+    return;
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  newest_maps_.detail_settings = settings;
+  collect(message->step, [&settings](TerrainMaps& state) { state.detail_settings = settings; });
+}
+
+void RoverTerrain::collect(std::uint64_t step, const std::function<void(TerrainMaps&)>& put) {
   newest_.reset();
   if (!lockstep_) return;
-  const std::uint64_t step = change.map->info().step;
   // After a reset, steps that were on their way will not be completed.
   if (step < last_step_) incomplete_.erase(incomplete_.upper_bound(step), incomplete_.end());
   TerrainMaps& state = incomplete_[step];
-  state.maps[which] = change.map;
-  if (which == TerrainMaps::looseness) state.loose = newest_maps_.loose;
-  if (state.complete(sensors_in_states_)) {
+  put(state);
+  if (state.complete(uses_)) {
     complete_.push_back(state);
     last_step_ = step;
     if (complete_.size() > most_states) {
@@ -76,7 +111,7 @@ std::shared_ptr<const MapGround> RoverTerrain::ground_of(const TerrainMaps& maps
 
 std::shared_ptr<const MapGround> RoverTerrain::newest() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!newest_ && newest_maps_.complete(false)) newest_ = ground_of(newest_maps_);
+  if (!newest_ && newest_maps_.complete(uses_)) newest_ = ground_of(newest_maps_);
   return newest_;
 }
 

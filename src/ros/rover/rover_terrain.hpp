@@ -2,7 +2,10 @@
 /// The terrain that a rover drives on, as a TerrainClient has it: the newest maps, or state after state
 /// with all layers of one step.
 
+#include <desert_sim/DetailState.h>
+#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
+#include <ros/spinner.h>
 
 #include <chrono>
 #include <condition_variable>
@@ -24,7 +27,8 @@ class RoverTerrain {
  public:
   /// `on_change` (may be empty) is called after each change of any layer, on the client's thread. `sensors`:
   /// whether the rover has some; their layers are then parts of the states that next() gives, and of
-  /// newest() while want_sensor_layers(true).
+  /// newest() while want_sensor_layers(true). With the parameter `detail`, the grounds have ripples and
+  /// bumps.
   RoverTerrain(const RoverNodeParameters& parameters, bool sensors,
                std::function<void(const MapChange&)> on_change);
 
@@ -43,11 +47,15 @@ class RoverTerrain {
 
  private:
   void receive(const MapChange& change);
+  void receive_detail(const DetailState::ConstPtr& message);
+  /// Puts into the state of a step what has come of it. The caller holds the mutex.
+  void collect(std::uint64_t step, const std::function<void(TerrainMaps&)>& put);
   std::shared_ptr<const MapGround> ground_of(const TerrainMaps& maps) const;
 
   static constexpr std::size_t most_states = 1000, most_incomplete = 64;
   const RoverNodeParameters parameters_;
-  const bool lockstep_, sensors_in_states_;
+  const bool lockstep_;
+  const unsigned uses_;  ///< of maps at all times, as bits of MapUse
   const std::function<void(const MapChange&)> on_change_;
   bool sensor_layers_ = false;  ///< whether they are subscribed to
   std::mutex mutex_;
@@ -56,8 +64,12 @@ class RoverTerrain {
   std::shared_ptr<const MapGround> newest_;          ///< of newest_maps_, if nothing came since
   std::map<std::uint64_t, TerrainMaps> incomplete_;  ///< by step
   std::deque<TerrainMaps> complete_;
-  std::uint64_t last_step_ = 0;            ///< of the last one that became complete
-  std::unique_ptr<TerrainClient> client_;  ///< last: it calls receive()
+  std::uint64_t last_step_ = 0;  ///< of the last one that became complete
+  // Last, because they call what receives:
+  std::unique_ptr<TerrainClient> client_;
+  ros::CallbackQueue detail_queue_;
+  ros::Subscriber detail_subscriber_;
+  std::optional<ros::AsyncSpinner> detail_spinner_;
 };
 
 }  // namespace desert_sim

@@ -30,6 +30,7 @@
 
 #include "src/client/layer_map.hpp"
 #include "src/ros/conversion/sensor_messages.hpp"
+#include "src/ros/rover/map_detail.hpp"
 #include "src/rover/sensors/depth_camera.hpp"
 #include "src/rover/sensors/height_field_scene.hpp"
 #include "src/rover/sensors/lidar.hpp"
@@ -63,6 +64,9 @@ class SensorPublisher {
   /// Takes a new map of a layer, and the cells in which it differs from the one before; the arguments of
   /// TerrainClient's on_change. Maps of other layers are ignored. Returns at once, from any thread.
   void on_terrain(std::shared_ptr<const LayerMap> map, const LayerMap::Rectangle& changed);
+
+  /// Takes the ripples and bumps that beams meet from now on; null: none. Returns at once, from any thread.
+  void on_detail(std::shared_ptr<const MapDetail> detail);
 
   /// Whether anybody listens.
   bool has_subscribers() const;
@@ -103,6 +107,7 @@ class SensorPublisher {
   void work();
   void perform(const Job& job);
   bool update_scene();
+  void update_detail(const std::shared_ptr<const MapDetail>& detail);
   void publish_scan(const Job& job);
   void publish_picture(const Job& job);
 
@@ -114,6 +119,7 @@ class SensorPublisher {
   // Of the thread that measures:
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<HeightFieldScene> scene_;
+  std::shared_ptr<const MapDetail> scene_detail_;  ///< what the scene has been given
   Lidar lidar_;
   DepthCamera camera_;
 
@@ -121,6 +127,7 @@ class SensorPublisher {
   std::condition_variable wake_;
   // Guarded by mutex_:
   Layers layers_;
+  std::shared_ptr<const MapDetail> detail_;
   std::optional<Job> job_;
   std::exception_ptr failure_;
   Statistics statistics_;

@@ -24,6 +24,7 @@ struct PublisherParameters {
   int update_tile = 32;
   double layer_keyframe_rate = 1;
   double layer_update_rate = 10;
+  double detail_rate = 10;
   double wind_rate = 2;
   int wind_decimation = 1;
   double wind_markers_rate = 2;
@@ -53,6 +54,7 @@ constexpr auto parameter_table(const PublisherParameters*) {
       parameter("layer_keyframe_rate", &P::layer_keyframe_rate, 0, 1000, "Hz",
                 "~layers/<name>, while a node takes keyframes of the layer but no updates."),
       parameter("layer_update_rate", &P::layer_update_rate, 0, 1000, "Hz", "~layers/<name>_updates."),
+      parameter("detail_rate", &P::detail_rate, 0, 1000, "Hz", "~detail."),
       parameter("wind_rate", &P::wind_rate, 0, 1000, "Hz", "~wind."),
       parameter("wind_decimation", &P::wind_decimation, 1, 65536, "cells",
                 "Cells of the terrain in a row that are averaged into one of ~wind."),

@@ -19,16 +19,16 @@ const std::vector<float>* Snapshot::find(Layer layer) const {
 namespace {
 
 /// What a band comes to on this grid.
-RowBand clamp_band(const RowBand& band, const Grid& grid) {
-  if (band.count <= 0 || (grid.periodic_y && band.count >= grid.height)) return {0, grid.height};
-  if (grid.periodic_y) return band;
-  const int first = clamp_index(band.first, grid.height);
-  return {first, std::max(1, std::min(band.first + band.count, grid.height) - first)};
-}
-
 bool on_request(Layer layer) { return info(layer).lifetime == Lifetime::on_request; }
 
 }  // namespace
+
+RowBand clamp_band(const RowBand& band, int height, bool periodic_y) {
+  if (band.count <= 0 || (periodic_y && band.count >= height)) return {0, height};
+  if (periodic_y) return band;
+  const int first = clamp_index(band.first, height);
+  return {first, std::max(1, std::min(band.first + band.count, height) - first)};
+}
 
 bool Views::shows(Layer layer) const {
   if (layer == Layer::plants) return static_cast<bool>(state_.plants);
@@ -66,7 +66,8 @@ std::shared_ptr<Snapshot> Views::make_empty_snapshot(const std::vector<Layer>& l
 }
 
 PendingSnapshot Views::begin_snapshot(const std::vector<Layer>& layers, const RowBand& band) {
-  const RowBand rows = clamp_band(band, state_.terrain.grid());
+  const Grid& grid = state_.terrain.grid();
+  const RowBand rows = clamp_band(band, grid.height, grid.periodic_y);
   const std::shared_ptr<Snapshot> snapshot = make_empty_snapshot(layers, rows);
   update_layers(layers, rows);
   auto readback = std::make_shared<Readback>();

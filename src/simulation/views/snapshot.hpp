@@ -20,6 +20,8 @@ namespace desert_sim {
 struct RowBand {
   int first = 0, count = 0;
 };
+/// The rows of a band that a terrain of `height` rows has.
+RowBand clamp_band(const RowBand& band, int height, bool periodic_y);
 
 /// What the detail of the surface (surface_detail.hpp) depends on, besides layers.
 struct DetailSettings {

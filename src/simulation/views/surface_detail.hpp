@@ -26,6 +26,9 @@ struct DetailWindow {
 
 class SurfaceDetail {
  public:
+  /// Width of the crests that wheels have to find [m]: of ripples 5 cm long.
+  static constexpr double crest_width = 0.01;
+
   /// The layers that a snapshot for it has. One that the terrain does not have may be missing.
   static const std::vector<Layer>& layers();
   /// Rows of cells beyond a band of the terrain on which heights in the band depend.

@@ -1,0 +1,41 @@
+#pragma once
+/// Ripples and bumps on the maps of a TerrainClient: SurfaceDetail of the layers and of what ~detail says.
+
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "src/client/layer_map.hpp"
+#include "src/rover/sensors/height_field_scene.hpp"
+#include "src/simulation/views/surface_detail.hpp"
+
+namespace desert_sim {
+
+class MapDetail {
+ public:
+  using Maps = std::map<Layer, std::shared_ptr<const LayerMap>>;
+
+  /// `maps` has the layers SurfaceDetail::layers(), of one geometry. `settings`: snapshot_of() a message.
+  MapDetail(Maps maps, Snapshot settings);
+
+  /// Of the whole terrain.
+  SceneGeometry geometry() const {
+    return {settings_.width, settings_.height, settings_.cell_size, settings_.origin_x, settings_.origin_y};
+  }
+  /// SurfaceDetail::offset() [m] at a point of the terrain's frame. Rows of cells are looked at as far as
+  /// points need them. From any thread.
+  double offset(double x, double y) const;
+  /// The snapshot of all rows that SurfaceDetail and HeightFieldScene take. From any thread.
+  Snapshot snapshot() const { return snapshot({}); }
+
+ private:
+  Snapshot snapshot(const RowBand& band) const;
+
+  const Maps maps_;
+  Snapshot settings_;  ///< with the whole grid, without layers
+  mutable std::mutex mutex_;
+  mutable std::unique_ptr<const SurfaceDetail> near_;  ///< of the rows around near_y_
+  mutable double near_y_ = 0;                          ///< [m]
+};
+
+}  // namespace desert_sim
