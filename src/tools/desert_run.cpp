@@ -130,6 +130,9 @@ RunPlan plan_of(Options options) {
   for (const char* option : {"film-every", "view"})
     if (o.has(option) && !o.has("film"))
       throw ConfigError("--" + std::string(option) + ": --film is required too");
+  if (o.has("film-every") && Film::is_picture(o.text("film", "")))
+    throw ConfigError("--film-every: --film " + o.text("film", "") +
+                      " is one picture, of the end (allowed with .mp4 or a folder)");
   return plan;
 }
 
@@ -313,7 +316,7 @@ int run_program(int argc, char** argv) {
   if (o.has("probe")) write_file(plan.out + "/probes.csv", plan.measurements.probes().csv());
   if (o.has("plot") && !plan.summaries.empty())
     run_plot_script("--plot", "plot_run.py", o.text("plot", ""), plan.summaries);
-  if (plan.film) plan.film->finish();
+  if (plan.film) plan.film->finish(session->simulation());
   if (!plan.checkpoint.empty()) session->save_checkpoint(plan.checkpoint);
   if (plan.out.empty() && !o.has("quiet")) std::cout << summary(session->simulation(), report);
   const std::string missing = conservation_error(session->simulation().balance());

@@ -45,9 +45,11 @@ void write_picture(const std::string&, const render::Picture&) {}
 
 }  // namespace
 
+bool Film::is_picture(const std::string& path) { return ends_with(path, ".png"); }
+
 Film::Film(const std::string& path, const ViewParameters& view)
     : path_(path),
-      kind_(ends_with(path, ".mp4") ? Kind::film : (ends_with(path, ".png") ? Kind::picture : Kind::folder)),
+      kind_(ends_with(path, ".mp4") ? Kind::film : (is_picture(path) ? Kind::picture : Kind::folder)),
       view_(view) {
   if (!has_pictures && kind_ != Kind::film)
     throw ConfigError("--film " + path +
@@ -90,16 +92,16 @@ void Film::start_encoder(const ViewParameters& view) {
 }
 
 void Film::add(Simulation& simulation) {
-  last_ = view_.draw(simulation);
-  if (kind_ == Kind::film) encoder_->write(last_.pixels.data(), 4 * last_.pixels.size());
-  if (kind_ == Kind::folder) {
-    write_picture(path_ + "/" + frame_name(frames_), last_);
-  }
+  // Where the camera stands and how much it exaggerates follows from the first state, for one picture, too.
+  if (kind_ == Kind::picture && frames_ > 0) return;
+  const render::Picture picture = view_.draw(simulation);
+  if (kind_ == Kind::film) encoder_->write(picture.pixels.data(), 4 * picture.pixels.size());
+  if (kind_ == Kind::folder) write_picture(path_ + "/" + frame_name(frames_), picture);
   ++frames_;
 }
 
-void Film::finish() {
-  if (kind_ == Kind::picture) write_picture(path_, last_);
+void Film::finish(Simulation& simulation) {
+  if (kind_ == Kind::picture) write_picture(path_, view_.draw(simulation));
   if (kind_ != Kind::film) return;
   encoder_->finish();
   file_->publish();

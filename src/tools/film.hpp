@@ -16,10 +16,13 @@ class Film {
  public:
   /// Throws ConfigError if that cannot be written, or if ffmpeg is needed and missing.
   Film(const std::string& path, const ViewParameters& view);
-  /// Adds the present state. Throws ConfigError or WriteError.
+  /// Whether a path names one picture.
+  static bool is_picture(const std::string& path);
+  /// Adds the present state, from the first one on. Throws ConfigError or WriteError.
   void add(Simulation& simulation);
-  /// Writes what is left to write: a film appears under its name when it is complete.
-  void finish();
+  /// Writes what is left to write: the picture of the last state; a film appears under its name when it is
+  /// complete.
+  void finish(Simulation& simulation);
 
  private:
   enum class Kind { film, picture, folder };
@@ -28,7 +31,6 @@ class Film {
   const std::string path_;
   const Kind kind_;
   ObliqueView view_;
-  render::Picture last_;
   int frames_ = 0;
   std::unique_ptr<TemporaryFile> file_;
   std::unique_ptr<ChildProcess> encoder_;

@@ -36,6 +36,20 @@ TEST_F(Film, IsAFolderOfPicturesOfTheAskedSize) {
   EXPECT_GT(difference(first, last), 1e-4) << "the sand has moved";
 }
 
+TEST_F(Film, OfAPngIsThePictureOfTheEnd) {
+  const auto film = [this](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> words{scenario_, "--steps",   "4",      "--film",    path(name),
+                                   "--view",  "width=160", "--view", "height=100"};
+    words.insert(words.end(), more.begin(), more.end());
+    run_cpu(words);
+  };
+  film("end.png", {});
+  film("all", {"--film-every", "1"});
+  const cv::Mat end = read(path("end.png"));
+  EXPECT_EQ(difference(end, read(path("all/frame_000004.png"))), 0);
+  EXPECT_GT(difference(end, read(path("all/frame_000000.png"))), 0);
+}
+
 TEST_F(Film, IsTheSameForTheSameRunAndAnotherFromElsewhere) {
   const auto picture = [&](const std::string& name, const std::vector<std::string>& more) {
     std::vector<std::string> words{scenario_, "--steps",   "3",      "--film",    path(name),
@@ -74,6 +88,7 @@ TEST_F(Film, RefusesWhatCannotBeMade) {
   refused({"--film", path("a.png"), "--view", "width=5"}, "is not in [16, 7680]");
   refused({"--film", path("a.png"), "--view", "overlay=gold"}, "is not one of: elevation");
   refused({"--view", "width=160"}, "--film is required too");
+  refused({"--film", path("a.png"), "--film-every", "2"}, "a.png is one picture, of the end");
   refused({"--film", path("no/such/a.png")}, "cannot be written");
   EXPECT_FALSE(fs::exists(path("a.mp4")));
   EXPECT_FALSE(fs::exists(path("a.png")));
