@@ -23,7 +23,7 @@ import tempfile
 import time
 
 import rospy
-from actionlib import SimpleActionClient
+from actionlib import ActionClient
 from desert_sim.msg import ForecastTerrainAction, ForecastTerrainGoal
 from desert_sim.srv import EditTerrain, EditTerrainRequest, GetSubmap, QueryTerrain, SetWind, Step
 from geometry_msgs.msg import Point
@@ -42,7 +42,8 @@ class Calls:
         proxies = {name: rospy.ServiceProxy("/desert_sim/" + name, kind, persistent=True) for name, kind in (
             ("set_wind", SetWind), ("edit_terrain", EditTerrain), ("query_terrain", QueryTerrain), ("step", Step),
             ("get_submap", GetSubmap))}
-        self.forecasts = SimpleActionClient("/desert_sim/forecast", ForecastTerrainAction)
+        # Not SimpleActionClient: an answer that comes before its send_goal() has returned is lost to it.
+        self.forecasts, self.goal = ActionClient("/desert_sim/forecast", ForecastTerrainAction), None
         self.call = [
             self.forecast,
             lambda: proxies["set_wind"](speed=3 + next(self.turn) % 3, direction_deg=0),
@@ -56,7 +57,7 @@ class Calls:
 
     def forecast(self):
         """Begins one, which preempts the one before."""
-        self.forecasts.send_goal(ForecastTerrainGoal(horizon=1000, moments=5))
+        self.goal = self.forecasts.send_goal(ForecastTerrainGoal(horizon=1000, moments=5))
         return TriggerResponse(success=True)
 
     def brush(self, merge):
