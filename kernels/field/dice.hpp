@@ -61,6 +61,7 @@ enum class Roll : int {
   particle_hop,
   particle_creep,
   slab_erosion,
+  creep_events,
   count
 };
 
@@ -70,6 +71,17 @@ DESERT_HD std::uint32_t scrambled(std::uint32_t h) {
   h = (h ^ (h >> 13)) * 0xc2b2ae35u;
   return h ^ (h >> 16);
 }
+
+/// Random words one after the other, from the first one.
+struct RandomSequence {
+  std::uint32_t word;
+
+  DESERT_HD std::uint32_t next() {
+    word = scrambled(word + 0x9e3779b9u);
+    return word;
+  }
+  DESERT_HD float unit() { return unit_from(next()); }  ///< uniform in [0, 1)
+};
 
 /// The die of one Roll in a step.
 struct Die {

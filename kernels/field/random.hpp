@@ -42,10 +42,13 @@ DESERT_HD RandomWords random_words(std::uint64_t seed, Purpose purpose, std::uin
   return {{words[0], words[1], words[2], words[3]}};
 }
 
-/// Uniform in [0, 1), 24 bits, from up to three counters.
+/// Uniform in [0, 1), 24 bits of a word.
+DESERT_HD float unit_from(std::uint32_t word) { return static_cast<float>(word >> 8) * (1.0f / 16777216.0f); }
+
+/// The same from up to three counters.
 DESERT_HD float random_unit(std::uint64_t seed, Purpose purpose, std::uint32_t a, std::uint32_t b = 0,
                             std::uint32_t c = 0) {
-  return static_cast<float>(random_words(seed, purpose, a, b, c).word[0] >> 8) * (1.0f / 16777216.0f);
+  return unit_from(random_words(seed, purpose, a, b, c).word[0]);
 }
 
 /// The lattice point below a coordinate; far out, the outermost one that an integer can count.

@@ -8,18 +8,6 @@
 
 namespace desert_sim::particles {
 
-/// Random words one after the other, from the first one.
-struct Words {
-  std::uint32_t word;
-
-  DESERT_HD std::uint32_t next() {
-    word = scrambled(word + 0x9e3779b9u);
-    return word;
-  }
-  /// Uniform in [0, 1), 24 bits.
-  DESERT_HD float unit() { return static_cast<float>(next() >> 8) * (1.0f / 16777216.0f); }
-};
-
 /// Sine and cosine of an angle within ±90° [half turns].
 struct Direction {
   float sine, cosine;
@@ -38,19 +26,20 @@ struct Starts {
   float per_impact_speed;             ///< 1/(40 √(g d)) [s/m]
 
   /// Sets the velocity of a grain with given parts upward and along the wind.
-  DESERT_HD void aim(const Air& air, float up, float forward, float spread, Words& words, Grain& g) const {
+  DESERT_HD void aim(const Air& air, float up, float forward, float spread, RandomSequence& words,
+                     Grain& g) const {
     const std::uint32_t radius = words.next();
     const Direction aside(clamp(spread * normal_draw(radius, words.next()), -0.5f, 0.5f));
     g.velocity_x = forward * (aside.cosine * air.along_x - aside.sine * air.along_y);
     g.velocity_y = forward * (aside.cosine * air.along_y + aside.sine * air.along_x);
     g.velocity_z = up;
   }
-  DESERT_HD void lift_off(const Air& air, float shear_velocity, Words& words, Grain& g) const {
+  DESERT_HD void lift_off(const Air& air, float shear_velocity, RandomSequence& words, Grain& g) const {
     const float up = lerp(lift_lowest, lift_highest, words.unit()) * shear_velocity;
     const Direction angle(lerp(angle_lowest, angle_highest, words.unit()));
     aim(air, up, up * angle.cosine / angle.sine, lift_spread, words, g);
   }
-  DESERT_HD void splash(const Air& air, float impact_speed, Words& words, Grain& g) const {
+  DESERT_HD void splash(const Air& air, float impact_speed, RandomSequence& words, Grain& g) const {
     const float mean = splash_speed * lost_share(impact_speed * per_impact_speed);
     const float speed = minimum(mean * exponential_draw(words.next()), impact_speed);
     aim(air, speed * splash_sine, speed * splash_cosine, splash_spread, words, g);

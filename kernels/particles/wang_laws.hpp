@@ -76,7 +76,7 @@ struct Flights {
             x,     y,       off_x,   off_y, columns[order.slot(x, y)].surface};
   }
   /// A bed for a flight from a place in the cell, by dice.
-  DESERT_HD Bed bed_from(int x, int y, Words& words) const {
+  DESERT_HD Bed bed_from(int x, int y, RandomSequence& words) const {
     const float off_x = words.unit() - 0.5f, off_y = words.unit() - 0.5f;
     return bed_at(x, y, off_x, off_y);
   }
@@ -172,7 +172,7 @@ struct LiftOff {
     if (packet > 0) fly(x, y, i, packet, lifted > 0 ? u : shear_velocity);
   }
   DESERT_HD void fly(int x, int y, int i, Quanta packet, float u) const {
-    Words words{flight.word(i)};
+    RandomSequence words{flight.word(i)};
     const Bed bed = flights.bed_from(x, y, words);
     Grain g{0.0f, 0.0f, bed.at(0.0f, 0.0f).height, 0.0f, 0.0f, 0.0f};
     flights.starts.lift_off(flights.air, u, words, g);
@@ -188,7 +188,7 @@ struct LiftOff {
     }
     atomic_add(&flights.landed[rest], packet);
   }
-  DESERT_HD void strike(int cell, Quanta packet, float speed, Words& words) const {
+  DESERT_HD void strike(int cell, Quanta packet, float speed, RandomSequence& words) const {
     atomic_add(&impacts[cell], packet);
     const float thrown = static_cast<float>(packet) * splash_number * speed;
     atomic_add(&splash[cell], Die::whole_at_most(thrown, load_limit, words.next()));
@@ -215,7 +215,7 @@ struct Splash {
     creep_down(x, y, i, thrown * share);
   }
   DESERT_HD void fly(int x, int y, int i, Quanta packet, float impact_speed) const {
-    Words words{hop.word(i)};
+    RandomSequence words{hop.word(i)};
     const Bed bed = flights.bed_from(x, y, words);
     Grain g{0.0f, 0.0f, bed.at(0.0f, 0.0f).height, 0.0f, 0.0f, 0.0f};
     flights.starts.splash(flights.air, impact_speed, words, g);
@@ -227,7 +227,7 @@ struct Splash {
   }
   DESERT_HD void creep_down(int x, int y, int i, float thrown) const {
     const Bed bed = flights.bed_at(x, y);
-    Words words{creep_amount.word(i)};
+    RandomSequence words{creep_amount.word(i)};
     for (int k = 0; k < 4; ++k) {
       const int dx = Neighbours::dx(k), dy = Neighbours::dy(k);
       const int to = neighbour_index(bed.order.grid, x + dx, y + dy);

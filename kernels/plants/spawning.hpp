@@ -101,7 +101,7 @@ struct SpawningLaw {
   }
   /// The species of the nth plant that spawns in a cell.
   DESERT_HD int species_of(int i, const Seeds& among, int n) const {
-    float left = static_cast<float>(draw(i, 2 * n).word[2] >> 8) * (1.0f / 16777216.0f) * among.all;
+    float left = unit_from(draw(i, 2 * n).word[2]) * among.all;
     int last = 0;
     for (int k = 0; k < species_count; ++k) {
       if (!(among.weights[k] > 0.0f)) continue;
@@ -154,8 +154,7 @@ struct CreatePlants {
     const Site& site = spawning.site;
     const RandomWords words = spawning.draw(i, 2 * k + 1);
     const auto within = [&](int cell, std::uint32_t word) {
-      return (static_cast<float>(cell) + static_cast<float>(word >> 8) * (1.0f / 16777216.0f)) *
-             site.grid.cell_size;
+      return (static_cast<float>(cell) + unit_from(word)) * site.grid.cell_size;
     };
     next_state.x[n] = within(x, words.word[0]);
     next_state.y[n] = within(y, words.word[1]);

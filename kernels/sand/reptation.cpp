@@ -4,6 +4,7 @@
 #include "kernels/backend/for_each.hpp"
 #include "kernels/backend/loops.hpp"
 #include "kernels/field/random.hpp"
+#include "kernels/sand/creep.hpp"
 #include "kernels/sand/repose.hpp"
 #include "src/core/parameters.hpp"
 
@@ -125,8 +126,7 @@ struct SteepestEvent {
   std::uint64_t seed, tick;
   float share;  ///< of the events of 1 s that happen in a step
   float slab;   ///< [quanta]
-  Die die, share_die;
-  Quanta* change;
+  CreepToSteepest creep;
 
   DESERT_HD float chance(int cell) const {
     return random_unit(seed, Purpose::reptation, static_cast<std::uint32_t>(cell),
@@ -137,40 +137,7 @@ struct SteepestEvent {
     const int i = s.grid.index(x, y);
     const float probability = 1.0f - exp_negative(s.reptation_strength[i]);
     if (s.sand[i] <= 0 || s.solid(i) || chance(i) >= share * probability) return;
-    int first = -1, second = -1;
-    float first_slope = 0.0f, second_slope = 0.0f;
-    for (int k = 0; k < Neighbours::count; ++k) {
-      const int j = neighbour_index(s.grid, x + Neighbours::dx(k), y + Neighbours::dy(k));
-      if (j < 0 || s.solid(j)) continue;
-      const float slope = static_cast<float>(s.height(i) - s.height(j)) / Neighbours::distance(k);
-      if (slope > first_slope) {
-        second = first;
-        second_slope = first_slope;
-        first = j;
-        first_slope = slope;
-      } else if (slope > second_slope) {
-        second = j;
-        second_slope = slope;
-      }
-    }
-    if (first < 0) return;
-    // At most half the steepest drop moves, so that an event does not overshoot.
-    const Quanta moved = die.whole_at_most(minimum(slab, 0.5f * first_slope), s.sand[i], i);
-    const float second_part = second < 0 ? 0.0f : second_slope / (first_slope + second_slope);
-    const Quanta to_second = share_die.whole_at_most(static_cast<float>(moved) * second_part, moved, i);
-    atomic_add(&change[i], -moved);
-    atomic_add(&change[first], moved - to_second);
-    if (second >= 0) atomic_add(&change[second], to_second);
-  }
-};
-
-struct ApplyChange {
-  Grid grid;
-  const Quanta* change;
-  Quanta* sand;
-  DESERT_HD void operator()(int x, int y) const {
-    const int i = grid.index(x, y);
-    sand[i] += change[i];
+    creep(x, y, slab);
   }
 };
 
@@ -205,8 +172,8 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, float tim
     exec.set_zero(change, sizeof(Quanta) * t.grid.cells());
     for_each_cell(exec, t.grid,
                   SteepestEvent{surface, seed, tick, minimum(time_step, 1.0f),
-                                p.slab * maximum(time_step, 1.0f) * t.quanta_per_metre, dice[Roll::reptation],
-                                dice[Roll::reptation_second], change});
+                                p.slab * maximum(time_step, 1.0f) * t.quanta_per_metre,
+                                creep_to_steepest(t, dice, change)});
     for_each_cell(exec, t.grid, apply);
   }
 }

@@ -130,16 +130,22 @@ struct Influx {
     return influx * (in.hop_share * in.hop_time) / hop * clamp((hop - cell * l) / l, 0.0f, 1.0f);
   }
 
-  DESERT_HD void operator()(int x, int y) const {
+  /// Depth [m] that all edges bring to a cell.
+  DESERT_HD float over_edges(int x, int y) const {
     const Grid& g = in.grid;
     const int i = g.index(x, y);
     const float u = in.wind_x[i], v = in.wind_y[i];
     const float speed = hypotenuse(u, v);
-    if (!(speed > 1e-6f)) return;
     float depth = 0.0f;
+    if (!(speed > 1e-6f)) return depth;
     if (!g.periodic_x) depth += over_edge(u > 0.0f ? x : g.width - 1 - x, fabsf(u)) * fabsf(u) / speed;
     if (!g.periodic_y) depth += over_edge(v > 0.0f ? y : g.height - 1 - y, fabsf(v)) * fabsf(v) / speed;
-    const Quanta amount = die.whole_at_most(depth * in.quanta_per_metre, wall_height, i);
+    return depth;
+  }
+
+  DESERT_HD void operator()(int x, int y) const {
+    const int i = in.grid.index(x, y);
+    const Quanta amount = die.whole_at_most(over_edges(x, y) * in.quanta_per_metre, wall_height, i);
     landed[i] += amount;
     ledger.book_in(Material::sand, i, amount);
   }
@@ -177,6 +183,26 @@ struct Landing {
   }
 };
 
+/// The deposited share of what lands on a cell.
+template <bool bare>
+struct DepositedShare {
+  Inputs<bare> in;
+  SaltationParameters p;
+
+  /// The deposited share p. `cover`: sand of the cell before the deposit [quanta]; v: vegetation; m: relative
+  /// moisture.
+  DESERT_HD float operator()(int i, Quanta cover, float shadow, float v, float m) const {
+    const float r_e = in.echo_value(i);
+    if (r_e < 0.0f || in.solid(i)) return 0.0f;
+    const bool sandy = cover > 0 && cover * in.quantum >= p.bare_depth;
+    const float bounce = sandy ? p.bounce_on_sand
+                               : (in.value_if_present(in.soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
+    const float deposited_share = maximum((1.0f - bounce) + v * bounce, maximum(shadow, r_e));
+    const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
+    return clamp(deposited_share, 0.0f, 1.0f) * wet;
+  }
+};
+
 /// Deposits a share of the sand that landed and lets the rest bounce; abrades the ground and sets the
 /// impacts.
 template <bool bare>
@@ -188,20 +214,6 @@ struct Deposit {
   Landing landing;
   Quanta *sand, *airborne;
   reptation::Impacts impacts;
-
-  /// The deposited share p. `cover`: sand of the cell before the deposit [quanta]; v: vegetation; m: relative
-  /// moisture.
-  DESERT_HD float share(int i, Quanta cover, float shadow, float v, float m) const {
-    const float r_e = in.echo_value(i);
-    if (r_e < 0.0f || in.solid(i)) return 0.0f;
-    const bool sandy = cover > 0 && cover * in.quantum >= lift.p.bare_depth;
-    const float bounce =
-        sandy ? lift.p.bounce_on_sand
-              : (in.value_if_present(in.soil, i) > 0 ? lift.p.bounce_on_soil : lift.p.bounce_on_rock);
-    const float deposited_share = maximum((1.0f - bounce) + v * bounce, maximum(shadow, r_e));
-    const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
-    return clamp(deposited_share, 0.0f, 1.0f) * wet;
-  }
 
   /// Sand of a cell that the lift leaves on the ground. `lying`: its sand after the lift, which took a share.
   DESERT_HD Quanta covering(int i, Quanta lying, float u, float v, float shadow, float plants,
@@ -222,7 +234,8 @@ struct Deposit {
   };
   DESERT_HD DepositResult split_landed(int i, Quanta arriving, Quanta cover, float shadow, float speed,
                                        float v, float m) const {
-    const float deposited_share = share(i, cover, shadow, v, m), depth = arriving * in.quantum;
+    const float deposited_share = DepositedShare<bare>{in, lift.p}(i, cover, shadow, v, m),
+                depth = arriving * in.quantum;
     const Quanta stays = die.whole_at_most(deposited_share * static_cast<float>(arriving), arriving, i);
     const float strength = depth * (1.0f - v) / in.hop_share;
     return {deposited_share, stays, arriving - stays, strength,

@@ -2,6 +2,7 @@
 /// The stacks of slab_model.hpp, and how slabs and holes roll over their slopes.
 
 #include "kernels/backend/for_each.hpp"
+#include "kernels/field/random.hpp"
 #include "kernels/slabs/colours.hpp"
 #include "kernels/wind/downwind.hpp"
 
@@ -69,9 +70,7 @@ struct Lattice {
     return unit(word) < bare + resistance[n] * (1.0f - bare);
   }
   /// Uniform in [0, 1).
-  DESERT_HD static float unit(std::uint32_t word) {
-    return static_cast<float>(word >> 8) * (1.0f / 16777216.0f);
-  }
+  DESERT_HD static float unit(std::uint32_t word) { return unit_from(word); }
   /// Whether there is a slab but those that holes will take.
   DESERT_HD bool can_give(int n) const {
     const std::uint32_t holes = pending[n] >> 16;

@@ -252,8 +252,8 @@ struct Fly {
   DESERT_HD int lines_of_hop(Quanta height, std::uint32_t word) const {
     const float above = static_cast<float>(height) - reference;
     const float lines = hop + above * (linear + maximum(above, 0.0f) * square);
-    const int whole = static_cast<int>(minimum(lines, static_cast<float>(max_displacement)) +
-                                       static_cast<float>(word >> 8) * (1.0f / 16777216.0f));
+    const int whole =
+        static_cast<int>(minimum(lines, static_cast<float>(max_displacement)) + unit_from(word));
     return whole > 1 ? whole : 1;
   }
   /// Whether rock that is steeper than repose rises before the end of a hop; `before`: the cell before it.

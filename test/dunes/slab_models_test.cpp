@@ -7,33 +7,15 @@
 #include <vector>
 
 #include "dunes/running.hpp"
+#include "support/patterns.hpp"
 #include "support/sequential_slabs.hpp"
 
 namespace desert_sim {
 namespace {
 
-constexpr int side = 96, seeds = 10;
+constexpr int side = 96;
 
-/// Of one field of heights [slabs].
-struct Pattern {
-  double highest, roughness, bare, slope;  ///< standard deviation; share of cells; rms between neighbours
-};
-
-Pattern pattern_of(const std::vector<double>& slabs) {
-  const double n = static_cast<double>(slabs.size());
-  double sum = 0, squares = 0, bare = 0, slopes = 0;
-  for (std::size_t i = 0; i < slabs.size(); ++i) {
-    const std::size_t x = i % side, east = i - x + (x + 1) % side;
-    sum += slabs[i];
-    squares += slabs[i] * slabs[i];
-    bare += slabs[i] < 0.5;
-    slopes += (slabs[east] - slabs[i]) * (slabs[east] - slabs[i]);
-  }
-  return {*std::max_element(slabs.begin(), slabs.end()), std::sqrt(squares / n - sum * sum / (n * n)),
-          bare / n, std::sqrt(slopes / n)};
-}
-
-Pattern in_parallel(const std::string& model, int slabs, int steps, int seed) {
+test::Pattern in_parallel(const std::string& model, int slabs, int steps, int seed) {
   const std::string size = std::to_string(side);
   Running scene(parse_scenario_text(
       "grid: {width: " + size + ", height: " + size +
@@ -44,52 +26,20 @@ Pattern in_parallel(const std::string& model, int slabs, int steps, int seed) {
   std::vector<double> heights;
   for (float metres : scene.field(Layer::sand).values)
     heights.push_back(std::round(3.0 * static_cast<double>(metres)));
-  return pattern_of(heights);
-}
-
-/// Welch's t of two samples.
-double welch(const std::vector<double>& a, const std::vector<double>& b) {
-  const auto moments = [](const std::vector<double>& v) {
-    double mean = 0, variance = 0;
-    for (double x : v) mean += x / static_cast<double>(v.size());
-    for (double x : v) variance += (x - mean) * (x - mean) / static_cast<double>(v.size() - 1);
-    return std::pair(mean, variance / static_cast<double>(v.size()));
-  };
-  const auto [mean_a, of_mean_a] = moments(a);
-  const auto [mean_b, of_mean_b] = moments(b);
-  return (mean_a - mean_b) / std::sqrt(of_mean_a + of_mean_b + 1e-12);
-}
-
-/// |t| over 3.6 comes by chance in 2 of 1000 (18 degrees of freedom): with four statistics and three tests,
-/// one of them fails by chance with 2.5 %. The seeds are fixed.
-void expect_alike(const std::vector<Pattern>& a, const std::vector<Pattern>& b) {
-  const std::pair<const char*, double Pattern::*> statistics[] = {{"highest stack", &Pattern::highest},
-                                                                  {"roughness", &Pattern::roughness},
-                                                                  {"bare", &Pattern::bare},
-                                                                  {"slope", &Pattern::slope}};
-  for (const auto& [name, member] : statistics) {
-    std::vector<double> of_a, of_b;
-    for (const Pattern& p : a) of_a.push_back(p.*member);
-    for (const Pattern& p : b) of_b.push_back(p.*member);
-    double mean_a = 0, mean_b = 0;
-    for (double v : of_a) mean_a += v / seeds;
-    for (double v : of_b) mean_b += v / seeds;
-    EXPECT_LT(std::abs(welch(of_a, of_b)), 3.6) << name << ": " << mean_a << " in parallel, " << mean_b;
-    ::testing::Test::RecordProperty(name, std::to_string(mean_a) + " " + std::to_string(mean_b));
-  }
+  return test::pattern_of(heights);
 }
 
 void compare(const std::string& model, int slabs, int steps,
              const std::function<void(test::SequentialSlabs&)>& set, double repose_deg) {
-  std::vector<Pattern> parallel, sequential;
-  for (int seed = 1; seed <= seeds; ++seed) {
+  std::vector<test::Pattern> parallel, sequential;
+  for (int seed = 1; seed <= test::seeds; ++seed) {
     parallel.push_back(in_parallel(model, slabs, steps, seed));
     test::SequentialSlabs reference(side, slabs, repose_deg, static_cast<unsigned>(seed));
     set(reference);
     reference.run(steps);
-    sequential.push_back(pattern_of({reference.height.begin(), reference.height.end()}));
+    sequential.push_back(test::pattern_of({reference.height.begin(), reference.height.end()}));
   }
-  expect_alike(parallel, sequential);
+  test::expect_alike(parallel, sequential);
 }
 
 TEST(SlabModels, WernerIsAsOnePollAfterTheOther) {

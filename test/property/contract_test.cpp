@@ -47,6 +47,16 @@ const std::map<std::string, std::string> worlds{
      "wind: {speed: 12, direction_deg: 20, features: [{kind: vortex, x: 10, y: 10, radius: 5}]}\n"
      "saltation: {model: continuum, influx: 1.0e-5, flux: true}\nabrasion: {rate: 0.05, cover: 3}\n"
      "echo_dunes: {enabled: true}\nlooseness: {enabled: true}\nrun: {time_step: 600}\n"},
+    {"desertscape_2019",
+     "grid: {width: 40, height: 36, boundary: open}\n"
+     "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
+     "  noise: {layer: sand, low: 0, high: 2, scale: 5, threshold: 0.4}, uniform: {layer: moisture, value: "
+     "0.002},\n"
+     "  uniform: {layer: airborne_sand, value: 0.2}, uniform: {layer: erosion_resistance, value: 0.2},\n"
+     "  noise: {layer: vegetation, low: 0, high: 1, scale: 6, threshold: 0.5, seed: 4},\n"
+     "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
+     "wind: {speed: 6, direction_deg: 20}\nsaltation: {model: desertscape_2019, influx: 0.5, flux: true}\n"
+     "abrasion: {rate: 0.05, cover: 3}\necho_dunes: {enabled: true}\n"},
     {"werner",
      "grid: {width: 40, height: 36, boundary: open}\n"
      "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 9}, uniform: {layer: soil, value: 0.4},\n"

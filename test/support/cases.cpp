@@ -86,6 +86,17 @@ std::vector<Case> process_cases(bool transforms) {
           real +
           "abrasion: {rate: 1.0e-4, cover: 0.5}\necho_dunes: {enabled: true}\n"
           "reptation: {method: smoothing, strength: 1.0e-4}\n");
+  add("desertscape_2019", terrain + wind + "saltation: {model: desertscape_2019}\n");
+  add("desertscape_2019 over all",
+      terrain + obstacles +
+          "  - noise: {layer: soil, low: 0, high: 3, scale: 8, threshold: 0.5, seed: 3}\n"
+          "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.4, seed: 5}\n"
+          "  - noise: {layer: moisture, low: 0, high: 0.05, scale: 10, threshold: 0.5, seed: 6}\n"
+          "  - noise: {layer: water, low: 0, high: 1, scale: 10, threshold: 0.7, seed: 7}\n"
+          "  - uniform: {layer: airborne_sand, value: 0.3}\n" +
+          wind +
+          "saltation: {model: desertscape_2019, lift: 0.4, influx: 0.5, flux: true}\n"
+          "abrasion: {rate: 0.01, cover: 0.5}\necho_dunes: {enabled: true}\n");
   const std::string blown = "wind: {speed: 5, direction_deg: 27}\n";
   add("werner", terrain + blown + "slab_model: {kind: werner}\n");
   add("momiji over rock",

@@ -33,7 +33,8 @@ Process wang_process() {
   p.source = "Wang & Hu 2012, Kok & Renno 2009, Owen 1964";
   p.header = "kernels/particles/wang.hpp";
   p.active = has_particles;
-  p.replaces = {"wind", "shear_stress", "wind_shadow", "sand_flux", "saltation", "continuum", "reptation"};
+  p.replaces = {"wind",      "shear_stress",     "wind_shadow", "sand_flux",
+                "saltation", "desertscape_2019", "continuum",   "reptation"};
   p.reads = {Layer::bedrock, Layer::soil, Layer::obstacle, Layer::vegetation, Layer::moisture, Layer::water};
   p.writes = {Layer::sand, Layer::wind_x, Layer::wind_y};
   set_workspace<particles::Workspace>(p, [](const SimulationState& state) {

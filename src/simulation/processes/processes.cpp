@@ -16,6 +16,7 @@ const ProcessTable& process_table() {
                                       sand_record_process(),
                                       sand_flux_process(),
                                       saltation_process(),
+                                      desertscape_process(),
                                       continuum_process(),
                                       werner_process(),
                                       momiji_process(),

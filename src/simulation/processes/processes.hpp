@@ -18,6 +18,8 @@ Process reptation_process();
 Process avalanching_process();
 FusedProcesses fused_wind_shadow_and_saltation();
 
+Process desertscape_process();  // desertscape.cpp
+
 Process continuum_process();  // continuum.cpp
 
 Process werner_process();  // slabs.cpp

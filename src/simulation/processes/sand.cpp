@@ -23,6 +23,10 @@ bool loosens_soil(const Scenario& s) { return wears_ground(s) || s.moisture.enab
 
 // ---- saltation
 
+bool has_expected_hops(const Scenario& s) {
+  return s.saltation.enabled && s.saltation.model == SaltationModel::hops;
+}
+
 reptation::Angle angle_of_repose(const StepContext& c) {
   return reptation::Angle(c.scenario().reptation, c.scenario().repose, c.fields.repose.data());
 }
@@ -161,7 +165,7 @@ Process saltation_process() {
   p.parameters = {"saltation", "abrasion", "reptation", "repose"};
   p.source = "Nilles 2024 §3.6, Paris 2019 §5.2";
   p.header = "kernels/sand/saltation.hpp";
-  p.active = [](const Scenario& s) { return s.saltation.enabled && !s.has_continuum_transport(); };
+  p.active = has_expected_hops;
   p.reads = {Layer::wind_x,   Layer::wind_y,     Layer::wind_shadow,
              Layer::echo,     Layer::vegetation, Layer::obstacle,
              Layer::moisture, Layer::water,      Layer::erosion_resistance};
@@ -185,9 +189,7 @@ Process repose_process() {
   p.source = "Nilles 2024 §3.7";
   p.header = "kernels/sand/repose.hpp";
   // The deposit after the hops of saltation sets the angles in its own pass.
-  p.active = [](const Scenario& s) {
-    return !s.saltation.enabled || s.has_continuum_transport() || has_particles(s);
-  };
+  p.active = [](const Scenario& s) { return !has_expected_hops(s) || has_particles(s); };
   p.reads = {Layer::wind_x,   Layer::wind_y, Layer::wind_shadow, Layer::vegetation,
              Layer::moisture, Layer::soil,   Layer::sand};
   p.step = p.refresh = set_angles;

@@ -51,7 +51,7 @@ Process slab_process(SlabKind kind, const std::string& source) {
   p.source = source;
   p.header = "kernels/slabs/slab_model.hpp";
   p.active = [kind](const Scenario& s) { return parameters_of(s).kind == kind; };
-  p.replaces = {"wind",      "shear_stress", "wind_shadow", "sand_flux",  "saltation",
+  p.replaces = {"wind",      "shear_stress", "wind_shadow", "sand_flux",  "saltation", "desertscape_2019",
                 "continuum", "repose",       "reptation",   "avalanching"};
   p.reads = {Layer::bedrock, Layer::soil, Layer::obstacle};
   p.writes = {Layer::sand, Layer::wind_x, Layer::wind_y};
