@@ -30,32 +30,21 @@ test::Pattern in_parallel(const std::string& model, int slabs, int steps, int se
 }
 
 void compare(const std::string& model, int slabs, int steps,
-             const std::function<void(test::SequentialSlabs&)>& set, double repose_deg) {
+             test::SequentialSlabs (*make)(int cells, int slabs, unsigned seed)) {
   std::vector<test::Pattern> parallel, sequential;
   for (int seed = 1; seed <= test::seeds; ++seed) {
     parallel.push_back(in_parallel(model, slabs, steps, seed));
-    test::SequentialSlabs reference(side, slabs, repose_deg, static_cast<unsigned>(seed));
-    set(reference);
+    test::SequentialSlabs reference = make(side, slabs, static_cast<unsigned>(seed));
     reference.run(steps);
     sequential.push_back(test::pattern_of({reference.height.begin(), reference.height.end()}));
   }
   test::expect_alike(parallel, sequential);
 }
 
-TEST(SlabModels, WernerIsAsOnePollAfterTheOther) {
-  compare(
-      "kind: werner", 3, 200, [](test::SequentialSlabs&) {}, 30);
-}
+TEST(SlabModels, WernerIsAsOnePollAfterTheOther) { compare("kind: werner", 3, 200, test::sequential_werner); }
 
 TEST(SlabModels, MomijiIsAsOnePollAfterTheOther) {
-  compare(
-      "kind: momiji, repose_deg: 33.7", 6, 120,
-      [](test::SequentialSlabs& s) {
-        s.shadow_protects = true;
-        s.linear = 0.4;
-        s.square = 0.002;
-      },
-      33.7);
+  compare("kind: momiji, repose_deg: 33.7", 6, 120, test::sequential_momiji);
 }
 
 /// Six years of nield_nebkha on a smaller grid: from bare ground, plants have caught sand in mounds.

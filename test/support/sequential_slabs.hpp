@@ -82,4 +82,17 @@ struct SequentialSlabs {
   }
 };
 
+/// With the numbers of Werner 1995.
+inline SequentialSlabs sequential_werner(int cells, int slabs, unsigned seed) {
+  return {cells, slabs, 30, seed};
+}
+/// With those of Momiji et al. 2000.
+inline SequentialSlabs sequential_momiji(int cells, int slabs, unsigned seed) {
+  SequentialSlabs s(cells, slabs, 33.7, seed);
+  s.shadow_protects = true;
+  s.linear = 0.4;
+  s.square = 0.002;
+  return s;
+}
+
 }  // namespace desert_sim::test
