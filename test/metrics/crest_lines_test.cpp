@@ -101,6 +101,17 @@ TEST(CrestLines, MeanAndHighest) {
   EXPECT_NEAR(c.highest, 3, 1e-3);
 }
 
+/// Lows of 0 m and 1 m in turns: ridges of 3 m are 2.5 m high whichever of them is to windward.
+TEST(CrestLines, StandOnTheMeanOfBothLows) {
+  const Field f = test::relief(128, 32, 1, true, [](int x, int) {
+    const double low = (x + 8) / 16 % 2;
+    return low + (3 - low) * std::pow(std::sin(180 * degree * (x % 16) / 16), 2);
+  });
+  const CrestLines c = crest_lines(f, 90, 0.5);
+  EXPECT_NEAR(c.mean_height, 2.5, 1e-3);
+  EXPECT_NEAR(c.highest, 2.5, 1e-3);
+}
+
 TEST(CrestLines, OfAPlaneAreNone) {
   const CrestLines c = crest_lines(test::relief(64, 64, 1, true, [](int, int) { return 4; }), 90, 2);
   EXPECT_EQ(c.dunes, 0u);

@@ -27,7 +27,7 @@ from mutations import MUTATIONS
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 TABLE = HERE / "table.md"
-PROGRAMS = ("unit", "sensor", "rover", "analytic", "continuum", "property")  # in this order: the quickest first
+PROGRAMS = ("unit", "metrics", "sensor", "rover", "analytic", "continuum", "property")  # in this order: the quickest first
 SURVIVED = "**SURVIVED**"
 NOT_RUN = "not run"
 LIMIT = 900  # s for a test program: a mutation may make a loop endless

@@ -247,6 +247,16 @@ TEST_P(DetailOfSurface, TheyFadeInHalfAShadowAndDoNotDigThroughThinSand) {
   }
 }
 
+TEST_P(DetailOfSurface, TheyAreLowUnderPlants) {
+  Snapshot s = flat(8);
+  s.detail.parameters.bumps = false;
+  const double full = largest_offset(s);
+  for (const float density : {0.5f, 1.0f}) {
+    std::fill(s.layers.at(Layer::vegetation).begin(), s.layers.at(Layer::vegetation).end(), density);
+    EXPECT_NEAR(largest_offset(s) / full, 1 - static_cast<double>(density), 1e-3);
+  }
+}
+
 TEST_P(DetailOfSurface, SlopesFromTheAngleOfReposeOnHaveNone) {
   for (const auto& [degrees, some] : {std::pair{20.0, true}, {33.1, false}, {50.0, false}}) {
     Snapshot s = snapshot(*simulation(flat_sand(8, 0, "open")));
