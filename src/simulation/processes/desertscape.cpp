@@ -37,7 +37,7 @@ void move_slabs(StepContext& c, ProcessWorkspace* workspace) {
 Process desertscape_process() {
   Process p;
   p.name = name;
-  p.parameters = {section, "saltation", "abrasion", "reptation"};
+  p.parameters = {"saltation", section, "abrasion", "reptation"};
   p.source = "Paris et al. 2019 §5";
   p.header = "kernels/sand/desertscape.hpp";
   p.active = [](const Scenario& s) { return s.saltation.enabled && s.saltation.model == model; };
