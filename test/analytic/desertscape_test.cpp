@@ -89,6 +89,35 @@ TEST_P(Desertscape, NothingRestsOnObstacles) {
   EXPECT_GT(obstacles, 40);
 }
 
+/// Slabs that come down start creep from a bump, of `slab` an impact, no more than half of the bump, and none
+/// under plants. The same dice without creep tell what came down.
+TEST_P(Desertscape, ImpactsLetABumpCreep) {
+  const auto bump = [&](const std::string& more) {
+    auto s = simulation(
+        "grid: {width: 24, height: 24}\nterrain:\n  - uniform: {layer: sand, value: 2}\n"
+        "  - column: {layer: sand, merge: add, shape: cylinder, x: 12.5, y: 12.5, size_x: 0.5, size_y: 0.5, "
+        "height: 0.4}\n"
+        "  - uniform: {layer: airborne_sand, value: 0.3}\n" +
+        more);
+    s->step();
+    test::expect_sound(*s, more);
+    return static_cast<double>(test::quanta(*s, Layer::sand)[12 * 24 + 12]) * s->terrain().scale().quantum();
+  };
+  const std::string falling =
+      "wind: {speed: 2, projection: false}\nsaltation: {model: desertscape_2019, lift: 0}\n";
+  const double without = bump(falling + "reptation: {method: off}\n");
+  ASSERT_GT(without, 2.45) << "slabs have come down on it";
+  const double by_little = without - bump(falling + "reptation: {slab: 0.01}\n"),
+               by_much = without - bump(falling + "reptation: {slab: 1}\n");
+  EXPECT_GE(by_little, 0.009);
+  EXPECT_LE(by_little, 0.1);
+  EXPECT_GT(by_much, 2 * by_little);
+  EXPECT_LT(by_much, 0.5 * (without - 2));
+  EXPECT_NEAR(bump("  - uniform: {layer: vegetation, value: 1}\n" + falling + "reptation: {slab: 0.01}\n"),
+              bump("  - uniform: {layer: vegetation, value: 1}\n" + falling + "reptation: {method: off}\n"),
+              1e-9);
+}
+
 /// Sand that another model left in the air comes down.
 TEST_P(Desertscape, SandInTheAirFliesOn) {
   auto s = simulation(
