@@ -15,6 +15,9 @@
 /// The calls of for_each_cell() must not depend on each other: a CPU processes several cells of a row at
 /// once, as SIMD vectors.
 ///
+/// A law whose calls take as long as many cells says so in `cells_of_a_call`: a CPU leaves small grids to one
+/// thread, because waking others costs more than it saves.
+///
 /// A law that sends amounts to other cells has two parts: law.prepare(x, y, parcels, n) fills the nth element
 /// of Law::Parcels<count>, a structure of arrays, and law.deliver(x, y, parcels, n, add) sends it with
 /// add(cell, amount), or with add.square(…) to a square of 2 × 2 cells. A CPU prepares several cells at once.
@@ -45,6 +48,12 @@
 #include "kernels/field/quanta.hpp"
 
 namespace desert_sim {
+
+/// Law::cells_of_a_call, or 1.
+template <class Law, class = void>
+constexpr int cells_of_a_call = 1;
+template <class Law>
+constexpr int cells_of_a_call<Law, std::void_t<decltype(Law::cells_of_a_call)>> = Law::cells_of_a_call;
 
 /// Combines a law for cells at least `margin` cells away from every edge of the grid with one for all others.
 template <class Inside, class Border>

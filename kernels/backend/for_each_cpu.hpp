@@ -156,6 +156,11 @@ struct CpuTeam {
 
 /// Grids with fewer cells are left to one thread, because waking others costs more than it saves.
 constexpr int min_parallel_cells = 16384;
+/// Whether a grid of calls of a law is worth several threads.
+template <class Law>
+bool is_parallel(const Grid& calls) {
+  return calls.cells() >= min_parallel_cells / cells_of_a_call<Law>;
+}
 
 /// Work items 0 … count − 1, shared by the threads of a team (work stealing). Each thread takes items of its
 /// own part, a few at a time, and then those that are left of other parts. Threads thus do not wait for one
@@ -211,7 +216,7 @@ void for_each_in_row(const Law& law, int first, int end, int y) {
 template <class Law>
 void for_each_cell(CpuExec& exec, const Grid& grid, const Law& law) {
   WorkStealingRange rows(exec.threads(), grid.height);
-#pragma omp parallel num_threads(exec.threads()) if (grid.cells() >= min_parallel_cells)
+#pragma omp parallel num_threads(exec.threads()) if (is_parallel <Law>(grid))
   rows.work([&](int y) { for_each_in_row(law, 0, grid.width, y); });
 }
 

@@ -214,6 +214,7 @@ DESERT_HD void with_rolling(const Lattice& lattice, const Run& run, const Work& 
 
 /// What is pending at the cells of a colour.
 struct Settle {
+  static constexpr int cells_of_a_call = Colours::longest_run;
   Lattice lattice;
   Colours colours;
   int colour;

@@ -23,6 +23,7 @@ struct FindShade {
 #else
   static constexpr int at_once = 64, ahead = 1;
 #endif
+  static constexpr int cells_of_a_call = at_once * lines_of_a_thread;
   struct Cell {
     Quanta height;
     bool begins;  ///< the way comes in over an open edge
@@ -134,6 +135,7 @@ struct Taken {
 
 /// The turn of a colour: what is pending settles, then cells are polled.
 struct TakeTurn {
+  static constexpr int cells_of_a_call = Colours::longest_run;
   Lattice lattice;
   Colours colours;
   int colour;
@@ -189,6 +191,7 @@ struct Fly {
 #else
   static constexpr int at_once = 64;
 #endif
+  static constexpr int cells_of_a_call = 8 * at_once;
 
   DESERT_HD void operator()(int column, int line) const {
     const int count = taken.counts[line];

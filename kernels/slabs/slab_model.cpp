@@ -139,7 +139,7 @@ inline Turns make_turns(const TerrainView& t, const StepInputs& in, const Lattic
   const Taken taken{work.taken_cells.data(), work.taken_counts.data(), Taken::capacity_of(order.length())};
   const Fly fly{lattice,
                 taken,
-                parts(order.length(), 8 * Fly::at_once),
+                parts(order.length(), Fly::cells_of_a_call),
                 lines(speed * static_cast<double>(p.hop_time) / cell),
                 speeding ? lines(static_cast<double>(p.linear_speedup) / slab) : 0.0f,
                 speeding ? lines(static_cast<double>(p.square_speedup) / (slab * slab)) : 0.0f,
