@@ -13,11 +13,13 @@ using saltation::Influx;
 using saltation::Inputs;
 using saltation::Lift;
 
-/// From Poisson's distribution, at most 64; u uniform in [0, 1).
+/// From Poisson's distribution; u uniform in [0, 1). Where many are expected, the mean in whole numbers.
 DESERT_HD int poisson_draw(float mean, float u) {
+  constexpr float many = 32.0f;
+  if (mean > many) return static_cast<int>(minimum(mean, 1.0e6f) + u);
   float probability = exp_negative(mean), sum = probability;
   int n = 0;
-  while (u >= sum && n < 64) {
+  while (u >= sum && n < 128) {  // rounding may keep the sum below u
     ++n;
     probability *= mean / static_cast<float>(n);
     sum += probability;
@@ -113,8 +115,8 @@ struct SlabInflux {
   DESERT_HD void operator()(int x, int y) const {
     const float slabs = flow.over_edges(x, y) * flow.in.quanta_per_metre / static_cast<float>(slab);
     if (!(slabs > 0.0f)) return;
-    const int i = flow.in.grid.index(x, y);
-    const Quanta amount = slab * poisson_draw(slabs, unit_from(flow.die.word(i)));
+    const int i = flow.in.grid.index(x, y), count = poisson_draw(slabs, unit_from(flow.die.word(i)));
+    const Quanta amount = count < wall_height / slab ? slab * count : wall_height;
     flow.landed[i] += amount;
     flow.ledger.book_in(Material::sand, i, amount);
   }

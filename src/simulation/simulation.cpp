@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "kernels/field/statistics.hpp"
+#include "kernels/sand/desertscape.hpp"
 #include "kernels/slabs/slab_parameters.hpp"
 #include "src/core/constants.hpp"
 #include "src/core/error.hpp"
@@ -92,6 +93,10 @@ void require_bounded_cost(const Scenario& s) {
   if (takes_part("saltation", s)) check_step("saltation.hop_time", s.saltation.hop_time);
   const auto& slabs = s.process_sections.get<SlabModelParameters>("slab_model");
   if (slabs.kind != SlabKind::none) check_step("slab_model.poll_time", slabs.poll_time);
+  const std::string events = saltation_model_names[static_cast<int>(SaltationModel::desertscape_2019)];
+  if (takes_part(events, s))
+    check_step("desertscape_2019.slab / (4 saltation.lift)",
+               desertscape::longest_step(s.process_sections.get<DesertscapeParameters>(events), s.saltation));
   const double shortest =
       s.wind_series ? s.wind_series->shortest_interval() : std::numeric_limits<double>::infinity();
   if (step > max_parts_of_step * shortest) {

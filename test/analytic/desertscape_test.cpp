@@ -1,5 +1,6 @@
 // Events of desertscape_2019 beside the expected values of saltation's hops.
 
+#include "src/core/error.hpp"
 #include "support/world.hpp"
 
 namespace desert_sim {
@@ -40,6 +41,34 @@ TEST_P(Desertscape, FluxOverADeepBedIsThatOfHops) {
     // The layer is the mean of a last step, of which short ones have few slabs.
     EXPECT_NEAR(mean, flux, (dt < 1 ? 0.15 : 0.06) * flux) << "slab " << slab << ", dt " << dt;
     test::expect_sound(*s, "at the end");
+  }
+}
+
+/// Sand enters as the parameter says, whether a cell of the edge gets one slab in many steps or many at once.
+TEST_P(Desertscape, InfluxIsThatOfTheParameter) {
+  for (const double influx : {0.2, 60.0}) {
+    auto s = simulation(
+        "grid: {width: 64, height: 48, boundary: open}\nterrain: [uniform: {layer: bedrock, "
+        "value: 0}]\n" +
+        even_wind + "saltation: {model: desertscape_2019, lift: 0.3, hop_spread: 0, influx: " +
+        std::to_string(influx) + "}\nreptation: {method: off}\n");
+    test::run(*s, 20);
+    const auto sand = s->balance()[static_cast<std::size_t>(Material::sand)];
+    EXPECT_NEAR(sand.cubic_metres(sand.in) / (48 * 20), influx, 0.06 * influx);
+    test::expect_sound(*s, "after 20 s");
+  }
+}
+
+/// A step is divided into at most 256 parts, in each of which a fourth of the cells gives a slab.
+TEST_P(Desertscape, LongerStepsAreRefused) {
+  try {
+    simulation("saltation: {model: desertscape_2019}\nrun: {time_step: 7}\n");
+    FAIL() << "no error";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("run.time_step: = 7 s is 280 times desertscape_2019.slab / (4 "
+                                         "saltation.lift) = 0.025 s (allowed: at most 256 times, 6.4 s)"),
+              std::string::npos)
+        << e.what();
   }
 }
 
