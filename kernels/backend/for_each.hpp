@@ -51,9 +51,13 @@ namespace desert_sim {
 
 /// Law::cells_of_a_call, or 1.
 template <class Law, class = void>
-constexpr int cells_of_a_call = 1;
+struct CellsOfACall {
+  static constexpr int value = 1;
+};
 template <class Law>
-constexpr int cells_of_a_call<Law, std::void_t<decltype(Law::cells_of_a_call)>> = Law::cells_of_a_call;
+struct CellsOfACall<Law, std::void_t<decltype(Law::cells_of_a_call)>> {
+  static constexpr int value = Law::cells_of_a_call;
+};
 
 /// Combines a law for cells at least `margin` cells away from every edge of the grid with one for all others.
 template <class Inside, class Border>

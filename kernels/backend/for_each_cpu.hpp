@@ -159,7 +159,7 @@ constexpr int min_parallel_cells = 16384;
 /// Whether a grid of calls of a law is worth several threads.
 template <class Law>
 bool is_parallel(const Grid& calls) {
-  return calls.cells() >= min_parallel_cells / cells_of_a_call<Law>;
+  return calls.cells() >= min_parallel_cells / CellsOfACall<Law>::value;
 }
 
 /// Work items 0 … count − 1, shared by the threads of a team (work stealing). Each thread takes items of its
