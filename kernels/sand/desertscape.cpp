@@ -1,6 +1,8 @@
 /// The step of desertscape.hpp; compiled once for each backend.
 #include "kernels/sand/desertscape.hpp"
 
+#include <algorithm>
+
 #include "kernels/backend/loops.hpp"
 #include "kernels/sand/desertscape_laws.hpp"
 

@@ -63,14 +63,12 @@ struct Lattice {
   /// Steepest difference at rest to a lower neighbour of this cell, where there is resistance.
   DESERT_HD Quanta repose_of(int n) const { return resistance[n] >= held_from ? held_repose : repose; }
   /// Whether a slab that is polled stays, with probability 1 − p_e, p_e = 1 − R in [0, 1].
-  DESERT_HD bool withstands(int n, std::uint32_t word) const { return unit(word) < resistance[n]; }
+  DESERT_HD bool withstands(int n, std::uint32_t word) const { return unit_from(word) < resistance[n]; }
   /// Whether a slab that lands stays, with probability p_d = p + R (1 − p) in [0, 1]; p in 2⁻³².
   DESERT_HD bool keeps(int n, std::uint32_t p, std::uint32_t word) const {
     const float bare = static_cast<float>(p) * (1.0f / 4294967296.0f);
-    return unit(word) < bare + resistance[n] * (1.0f - bare);
+    return unit_from(word) < bare + resistance[n] * (1.0f - bare);
   }
-  /// Uniform in [0, 1).
-  DESERT_HD static float unit(std::uint32_t word) { return unit_from(word); }
   /// Whether there is a slab but those that holes will take.
   DESERT_HD bool can_give(int n) const {
     const std::uint32_t holes = pending[n] >> 16;

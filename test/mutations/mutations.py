@@ -69,7 +69,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "the flow of grains takes up the stress above the threshold", "unit *ParticleLaws.LiftOff*"),
     # ---- slab models
     ("plants_hold_half_of_the_slabs", "kernels/slabs/rolling.hpp",
-     "return unit(word) < resistance[n];", "return unit(word) < 0.5f * resistance[n];",
+     "return unit_from(word) < resistance[n];", "return unit_from(word) < 0.5f * resistance[n];",
      "p_e = 1 - R", "unit *SlabResistance*"),
     ("plants_let_slabs_fly_on", "kernels/slabs/rolling.hpp",
      "bare + resistance[n] * (1.0f - bare)", "bare - resistance[n] * (1.0f - bare)",
