@@ -4,9 +4,9 @@
     test/lint/clang_tidy.py --build DIR [--tool clang-tidy-14] [--jobs N] [FILE]...
 
 Most of the time of a source goes into headers that its neighbours include too. Sources of a folder are therefore
-looked at in batches, one translation unit each, which is five times as quick. A batch that does not compile, because
-two of its sources use the same name, is halved until it does. Exit status 1 with findings, 77 if the build has no
-source of this repository.
+looked at in batches, one translation unit each, which is five times as quick. Sources that define the same name for
+themselves go into different batches; one that still does not compile is halved until it does. Exit status 1 with
+findings, 77 if the build has no source of this repository.
 """
 import argparse
 import collections
@@ -18,7 +18,7 @@ import re
 import subprocess
 import sys
 
-BATCH = 16  # sources, at most: enough batches for all processors, and few to repeat where two sources share a name
+BATCH = 20  # sources, at most: enough batches for all processors
 FOLDERS = ("kernels/", "src/")  # where all sources are looked at if none is named
 
 
@@ -39,15 +39,28 @@ def host_commands(build):
     return commands
 
 
+def own_names(source):
+    """What a source defines at the beginning of a line in namespaces without a name, and main."""
+    text = pathlib.Path(source).read_text()
+    parts = re.findall(r"^namespace \{$(.*?)^\}  // namespace$", text, re.M | re.S) + re.findall(r"^int main\(", text, re.M)
+    return {name for part in parts
+            for name in re.findall(r"^(?!return|namespace|template)\w[\w:<>,*& ]*?\b(\w+) ?[(=\[{;]", part, re.M)}
+
+
 def batches(sources, commands):
-    """Lists of sources that are in the same folder of the second level and have the same options."""
-    alike = collections.defaultdict(list)
+    """Lists of sources that are in the same folder of the second level, have the same options, and share no name."""
+    groups = collections.defaultdict(list)  # of (sources, their names)
     for source in sorted(sources):
         options = re.sub(r" -o \S+ -c \S+", "", commands[source]["command"])
-        alike["/".join(source.split("/")[:2]) if source.startswith("src/") else source.split("/")[0], options].append(source)
-    for group in alike.values():
-        parts = -(-len(group) // BATCH)
-        yield from (group[i * len(group) // parts:(i + 1) * len(group) // parts] for i in range(parts))
+        alike = groups["/".join(source.split("/")[:2]) if source.startswith("src/") else source.split("/")[0], options]
+        names = own_names(source)
+        batch = next((b for b in alike if len(b[0]) < BATCH and not names & b[1]), None)
+        if batch is None:
+            batch = ([], set())
+            alike.append(batch)
+        batch[0].append(source)
+        batch[1].update(names)
+    return [batch for alike in groups.values() for batch, _ in alike]
 
 
 def main():
@@ -85,7 +98,7 @@ def main():
         return name
 
     failed = False
-    todo = list(batches(sources, commands))
+    todo = batches(sources, commands)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         while todo:
             units = [unit(batch) for batch in todo]
