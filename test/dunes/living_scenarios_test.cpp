@@ -94,5 +94,30 @@ TEST(Climates, KeepTheirPlants) {
     }
 }
 
+/// After 80 days of an eastward wind the middle of the ridge has run on down the lane without plants, and
+/// both arms lie upwind of it, where plants are.
+TEST(Dunes, LivingParabolic) {
+  Running scene(shipped("parabolic"));
+  while (scene.simulation().time() < 80 * 86400.0) scene.run(1);
+  const Field sand = scene.field(Layer::sand);
+  struct Extent {
+    int west, east;  ///< of sand deeper than 0.3 m in these rows
+  };
+  const auto extent = [&](int first, int end) {
+    Extent e{sand.width, -1};
+    for (int y = first; y < end; ++y)
+      for (int x = 0; x < sand.width; ++x)
+        if (sand.at(x, y) > 0.3) e = {std::min(e.west, x), std::max(e.east, x)};
+    return e;
+  };
+  const Extent middle = extent(60, 101), south = extent(24, 48), north = extent(113, 137);
+  DESERT_REPORT("from west to east: middle %d to %d m, arms %d to %d and %d to %d m", middle.west,
+                middle.east, south.west, south.east, north.west, north.east);
+  for (const Extent& arm : {south, north}) {
+    EXPECT_LT(arm.west, middle.west - 20) << "arms trail upwind";
+    EXPECT_LT(arm.east, middle.east - 5) << "the nose leads";
+  }
+}
+
 }  // namespace
 }  // namespace desert_sim
