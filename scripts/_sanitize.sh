@@ -4,10 +4,10 @@
 # last one, shows them and fails if there is any.
 
 # Too slow with sanitizers, or nothing for them to see:
-#   tests labelled slow    thousands of steps for statistics of dunes: the code is that of the other tests
+#   tests of dunes         thousands of steps for statistics of dunes: the code is that of the other tests
 #   installed_package.*    an outsider's program, built without sanitizers, cannot link what is built with them
 # shellcheck disable=SC2034 # for scripts/test
-DESERT_SANITIZE_WITHOUT=(-LE slow -E '^installed_package\.')
+DESERT_SANITIZE_WITHOUT=(-LE '^(dunes|timing)$' -E '^installed_package\.')
 
 desert_sanitize() { # address,undefined or thread: sets BUILD, DESERT_SANITIZE_CONFIGURE and the environment
   local reports known=$DESERT_ROOT/test/sanitizers

@@ -42,13 +42,14 @@ source_noetic() {
 source_noetic || unset ROS_DISTRO
 
 # The names in one column of dependencies.txt: of what builds and runs, with ROS unless `core`, and with the part
-# `# Sanitizers` if so asked; or only those of the part `# Checks`.
-packages() { # column [core | sanitizers | checks]
+# `# Sanitizers` if so asked; or only those of the part `# Checks` or `# Flakes`.
+packages() { # column [core | sanitizers | checks | flakes]
   local parts
   case ${2:-} in
     core) parts='building' ;;
     sanitizers) parts='building|ROS|Sanitizers' ;;
     checks) parts='Checks' ;;
+    flakes) parts='Flakes' ;;
     *) parts='building|ROS' ;;
   esac
   awk -F'|' -v column="$1" -v parts="^# ($parts)" '
@@ -57,7 +58,7 @@ packages() { # column [core | sanitizers | checks]
   ' "$DESERT_ROOT/scripts/dependencies.txt"
 }
 
-missing_packages() { # column [core | sanitizers | checks]
+missing_packages() { # column [core | sanitizers | checks | flakes]
   local package
   for package in $(packages "$@"); do
     dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
@@ -66,7 +67,7 @@ missing_packages() { # column [core | sanitizers | checks]
 
 # Installs what is missing from dependencies.txt; with nothing missing it calls nothing.
 # shellcheck disable=SC2120 # arguments are optional
-desert_install() { # [core | sanitizers | checks]
+desert_install() { # [core | sanitizers | checks | flakes]
   local missing as_root=()
   if [[ $DESERT_SYSTEM == 0 ]]; then
     say "this is neither Debian 12 nor Ubuntu 20.04: nothing is installed. Needed, by their Debian names:"

@@ -123,15 +123,27 @@ class _Stream:
 
     def _request_keyframe(self):
         """By a message and by a new subscription in turn: rospy makes no new connection while another subscriber in the
-        process uses the same topic, and a bag that is played takes no requests."""
+        process uses the same topic, and a bag that is played takes no requests. Where nobody listens to requests, the
+        next one has a chance."""
         with self._client._changed:
             by_message = self._request_publisher.get_num_connections() > 0 and self.statistics.requests % 2 == 0
             self.statistics.requests += 1
         if by_message:
             self._request_publisher.publish(*([] if self._elevation else [self._layer]))
         elif rosgraph.is_master_online():  # subscribing without a master would block
+            if self._request_publisher.get_num_connections() == 0:
+                self._announce_requests()
             self._keyframes.unregister()
             self._keyframes = self._subscribe_to_keyframes()
+
+    def _announce_requests(self):
+        """Makes the master tell the node anew who publishes requests. A node connects once when it is told so; if that
+        fails, because publishers of this process had just come and gone, it is not told again by itself."""
+        topic = self._request_publisher.resolved_name
+        try:
+            rosgraph.Master(rospy.get_name()).registerPublisher(topic, self._request_publisher.type, rospy.get_node_uri())
+        except (rosgraph.MasterError, OSError) as fault:
+            rospy.logwarn_throttle(5, "The terrain client cannot tell the master that it publishes %s: %s" % (topic, fault))
 
     @property
     def connected(self):

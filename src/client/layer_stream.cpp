@@ -3,6 +3,8 @@
 #include <ros/console.h>
 #include <ros/init.h>
 #include <ros/master.h>
+#include <ros/this_node.h>
+#include <ros/xmlrpc_manager.h>
 #include <std_msgs/Empty.h>
 #include <std_msgs/String.h>
 
@@ -125,6 +127,7 @@ void LayerStream::request_keyframe_if_due() {
   if (by_message) {
     request_by_message();
   } else if (ros::master::check()) {  // subscribing without a master would block
+    if (request_publisher_.getNumSubscribers() == 0) announce_requests();
     if (is_elevation())
       subscribe_to_keyframes<ElevationGrid>();
     else
@@ -141,6 +144,20 @@ bool LayerStream::keyframe_is_due() {
   assembler_.keyframe_overdue();
   publish_change({}, nullptr);
   return true;
+}
+
+/// Makes the master tell the node anew who publishes requests. A node connects once when it is told so; if that
+/// fails, because publishers of this process had just come and gone, it is not told again by itself.
+void LayerStream::announce_requests() {
+  XmlRpc::XmlRpcValue arguments, result, payload;
+  arguments[0] = ros::this_node::getName();
+  arguments[1] = request_publisher_.getTopic();
+  arguments[2] = std::string(is_elevation() ? ros::message_traits::datatype<std_msgs::Empty>()
+                                            : ros::message_traits::datatype<std_msgs::String>());
+  arguments[3] = ros::XMLRPCManager::instance()->getServerURI();
+  if (!ros::master::execute("registerPublisher", arguments, result, payload, false))
+    ROS_WARN_THROTTLE(5, "The terrain client cannot tell the master that it publishes %s.",
+                      request_publisher_.getTopic().c_str());
 }
 
 void LayerStream::request_by_message() {

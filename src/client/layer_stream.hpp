@@ -79,6 +79,7 @@ class LayerStream : public std::enable_shared_from_this<LayerStream> {
   void note_latency(double latency);
   bool keyframe_is_due();
   void request_by_message();
+  void announce_requests();
   bool is_elevation() const;
 
   StreamContext& context_;

@@ -135,7 +135,7 @@ typename Service::Response Desert::call(const std::string& service,
   Service exchange;
   exchange.request = request;
   // Not by waitForService(): its time stands still where the node is the clock and is paused.
-  if (!wait_until([&] { return ros::service::exists(name, false); }, 20) || !call_service(name, exchange))
+  if (!wait_until([&] { return ros::service::exists(name, false); }, 60) || !call_service(name, exchange))
     throw Error(name + " does not answer");
   if (!exchange.response.success) throw Error(name + ": " + exchange.response.message);
   return exchange.response;

@@ -101,7 +101,7 @@ bool Process::running() {
 
 Process::~Process() {
   if (running()) kill(pid_, SIGINT);
-  if (wait_until([this] { return !running(); }, 10)) return;
+  if (wait_until([this] { return !running(); }, 60)) return;
   kill(pid_, SIGKILL);
   waitpid(pid_, nullptr, 0);
 }
@@ -131,8 +131,8 @@ void init(int& argc, char** argv, const std::string& name) {
   std::uint32_t options = 0;
   if (own) options |= ros::init_options::AnonymousName;
   ros::init(argc, argv, name, options);
-  if (!wait_until([] { return ros::master::check(); }, 20))
-    throw Error("no ROS master answers at " + ros::master::getURI() + " within 20 s");
+  if (!wait_until([] { return ros::master::check(); }, 60))
+    throw Error("no ROS master answers at " + ros::master::getURI() + " within 60 s");
   ros::start();
 }
 

@@ -29,7 +29,7 @@ class Process {
   /// `words`: the program, which is searched for in $PATH, and its arguments; `quiet`: what it prints is
   /// lost. Throws Error if it cannot be started.
   explicit Process(const std::vector<std::string>& words, bool quiet = false);
-  /// SIGINT, and SIGKILL if it still runs after ten seconds.
+  /// SIGINT, and SIGKILL if it still runs after a minute.
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;

@@ -14,7 +14,7 @@ std::string script_path(const std::string& option, const std::string& script) {
   namespace fs = std::filesystem;
   std::error_code ignored;  // a place that cannot be read counts as one without the script
   const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  const std::vector<fs::path> places{beside / script, fs::path(DESERT_BENCH_SCRIPTS) / script};
+  const std::vector<fs::path> places{beside / script, fs::path(DESERT_PLOT_SCRIPTS) / script};
   for (const fs::path& place : places)
     if (fs::is_regular_file(place, ignored)) return place.string();
   throw ConfigError(option + ": its script is missing: neither " + places[0].string() + " nor " +

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures of results, drawn by the Python scripts test/bench/roofline.py and test/bench/plot_run.py with
+/// Pictures of results, drawn by the Python scripts python/roofline.py and python/plot_run.py with
 /// matplotlib.
 
 #include <string>

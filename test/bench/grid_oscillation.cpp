@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "dunes/running.hpp"
 #include "src/core/error.hpp"
 #include "src/tools/options.hpp"
 #include "src/tools/program.hpp"
-#include "support/oscillation.hpp"
+#include "test/support/oscillation.hpp"
+#include "test/support/running.hpp"
 
 using namespace desert_sim;
 

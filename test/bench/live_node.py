@@ -13,8 +13,10 @@ import rosgraph
 import rospy
 from desert_sim.msg import SimulationStatus
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "rostest"))
-from lifecycle import PACKAGE, Node, Trigger, program  # noqa: E402, F401
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support", "ros"))
+from desert_sim.testing import Node, program  # noqa: E402, F401
+from node_tests import PACKAGE  # noqa: E402, F401
+from std_srvs.srv import Trigger  # noqa: E402, F401
 
 CORES = 2
 TICKS = os.sysconf("SC_CLK_TCK")

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "dunes/running.hpp"
 #include "src/core/error.hpp"
 #include "src/tools/options.hpp"
 #include "src/tools/program.hpp"
-#include "support/sequential_slabs.hpp"
+#include "test/support/running.hpp"
+#include "test/support/sequential_slabs.hpp"
 
 using namespace desert_sim;
 

@@ -4,10 +4,10 @@
 
 #include <cstring>
 
-#include "fuzz/fuzz.hpp"
-#include "fuzz/message_source.hpp"
 #include "src/grid_map/bag_bytes.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
+#include "test/fuzz/fuzz.hpp"
+#include "test/fuzz/message_source.hpp"
 
 namespace desert_sim {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "fuzz/fuzz.hpp"
+#include "test/fuzz/fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace desert_sim;

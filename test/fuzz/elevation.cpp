@@ -3,9 +3,9 @@
 #include <boost/make_shared.hpp>
 #include <cmath>
 
-#include "fuzz/fuzz.hpp"
-#include "fuzz/message_source.hpp"
 #include "src/client/layer_assembler.hpp"
+#include "test/fuzz/fuzz.hpp"
+#include "test/fuzz/message_source.hpp"
 
 namespace desert_sim {
 namespace {

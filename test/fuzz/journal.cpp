@@ -1,7 +1,7 @@
 // Journals.
 #include "src/simulation/commands/journal.hpp"
 
-#include "fuzz/fuzz.hpp"
+#include "test/fuzz/fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace desert_sim;

@@ -4,8 +4,6 @@
 #include <tf2_msgs/TFMessage.h>
 #include <yaml-cpp/yaml.h>
 
-#include "fuzz/fuzz.hpp"
-#include "fuzz/message_source.hpp"
 #include "src/core/log.hpp"
 #include "src/ros/conversion/grid_map_message.hpp"
 #include "src/ros/node/reconfigure_messages.hpp"
@@ -15,7 +13,9 @@
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/commands/command_yaml.hpp"
 #include "src/simulation/session.hpp"
-#include "support/small_scenarios.hpp"
+#include "test/fuzz/fuzz.hpp"
+#include "test/fuzz/message_source.hpp"
+#include "test/support/small_scenarios.hpp"
 
 namespace desert_sim {
 namespace {

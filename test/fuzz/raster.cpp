@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "fuzz/fuzz.hpp"
 #include "src/core/log.hpp"
 #include "src/io/raster_loader.hpp"
+#include "test/fuzz/fuzz.hpp"
 
 namespace desert_sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "support/bench_terrain.hpp"
+#include "test/support/bench_terrain.hpp"
 
 #include <cstring>
 

@@ -1,4 +1,4 @@
-#include "support/cases.hpp"
+#include "test/support/cases.hpp"
 
 namespace desert_sim::test {
 

@@ -1,4 +1,4 @@
-#include "support/checkpoint_parts.hpp"
+#include "test/support/checkpoint_parts.hpp"
 
 #include <xxhash.h>
 

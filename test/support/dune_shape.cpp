@@ -1,4 +1,4 @@
-#include "support/dune_shape.hpp"
+#include "test/support/dune_shape.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "support/edits.hpp"
+#include "test/support/edits.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "support/held_terrain.hpp"
+#include "test/support/held_terrain.hpp"
 
 #include <gtest/gtest.h>
 

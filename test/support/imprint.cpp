@@ -1,4 +1,4 @@
-#include "support/imprint.hpp"
+#include "test/support/imprint.hpp"
 
 #include <algorithm>
 #include <cmath>

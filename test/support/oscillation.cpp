@@ -1,4 +1,4 @@
-#include "support/oscillation.hpp"
+#include "test/support/oscillation.hpp"
 
 #include <algorithm>
 #include <cmath>

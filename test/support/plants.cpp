@@ -1,4 +1,4 @@
-#include "support/plants.hpp"
+#include "test/support/plants.hpp"
 
 #include <cmath>
 

@@ -10,7 +10,7 @@
 #include "kernels/plants/life.hpp"
 #include "kernels/plants/marking.hpp"
 #include "kernels/plants/spawning.hpp"
-#include "support/bench_terrain.hpp"
+#include "test/support/bench_terrain.hpp"
 
 namespace desert_sim::test {
 

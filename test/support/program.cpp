@@ -1,4 +1,4 @@
-#include "support/program.hpp"
+#include "test/support/program.hpp"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "support/temporary_folder.hpp"
+#include "test/support/temporary_folder.hpp"
 
 namespace desert_sim::test {
 

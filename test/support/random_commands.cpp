@@ -1,4 +1,4 @@
-#include "support/random_commands.hpp"
+#include "test/support/random_commands.hpp"
 
 #include <cmath>
 #include <limits>

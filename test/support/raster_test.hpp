@@ -11,7 +11,7 @@
 
 #include "src/core/error.hpp"
 #include "src/io/raster.hpp"
-#include "support/temporary_folder.hpp"
+#include "test/support/temporary_folder.hpp"
 
 namespace desert_sim {
 

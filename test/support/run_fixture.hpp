@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "support/program.hpp"
-#include "support/temporary_folder.hpp"
+#include "test/support/program.hpp"
+#include "test/support/temporary_folder.hpp"
 
 namespace desert_sim::test {
 

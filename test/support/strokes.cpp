@@ -1,4 +1,4 @@
-#include "support/strokes.hpp"
+#include "test/support/strokes.hpp"
 
 namespace desert_sim::test {
 

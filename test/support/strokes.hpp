@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "support/world.hpp"
+#include "test/support/world.hpp"
 
 namespace desert_sim::test {
 

@@ -1,4 +1,4 @@
-#include "support/tile_field.hpp"
+#include "test/support/tile_field.hpp"
 
 #include <cmath>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "support/world.hpp"
+#include "test/support/world.hpp"
 
 #include <yaml-cpp/yaml.h>
 

@@ -50,7 +50,7 @@ class Desert:
     """
 
     def __init__(self, scenario, seed=None, rover=None, settings=(), seconds_per_step=0.1, parameters=None,
-                 rover_parameters=None, reaction=1.0, timeout=20.0, node="desert_sim", name="rover", pictures=None):
+                 rover_parameters=None, reaction=1.0, timeout=60.0, node="desert_sim", name="rover", pictures=None):
         self._scenario, self._seed, self._start, self._settings = scenario, seed, rover, list(settings)
         self._seconds_per_step = seconds_per_step
         self._reaction, self._timeout = reaction * PATIENCE, timeout * PATIENCE

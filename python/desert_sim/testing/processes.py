@@ -17,7 +17,7 @@ from roslib.packages import find_node
 PATIENCE = float(os.environ.get("DESERT_PATIENCE", 1))
 
 
-def wait_until(happened, what, seconds=20):
+def wait_until(happened, what, seconds=60):
     """Waits until `happened()` is true, at most so long (times PATIENCE); else AssertionError says `what`."""
     end = time.monotonic() + seconds * PATIENCE
     while not happened():
@@ -122,11 +122,11 @@ class Node:
         rospy.wait_for_service(self.path + "/" + service, 20 * PATIENCE)
         return rospy.ServiceProxy(self.path + "/" + service, kind)(*arguments, **fields)
 
-    def latest(self, topic, kind, timeout=10):
+    def latest(self, topic, kind, timeout=60):
         """A message of one of its topics; of those that show the terrain the present one."""
         return rospy.wait_for_message(self.path + "/" + topic, kind, timeout * PATIENCE)
 
-    def wait(self, timeout=20):
+    def wait(self, timeout=60):
         """Waits for its end; exit status and all output."""
         status = self.process.wait(timeout * PATIENCE)
         self._reader.join()

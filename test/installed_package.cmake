@@ -1,0 +1,33 @@
+# What is installed, as packages outside find it.
+# desert_outside_package(<name> <folder>): builds the package and runs its tests.
+function(desert_outside_package name folder)
+  add_test(NAME installed_package.${name}
+    COMMAND ${CMAKE_CTEST_COMMAND}
+      --build-and-test ${folder} ${CMAKE_CURRENT_BINARY_DIR}/installed_package_${name}
+      --build-generator ${CMAKE_GENERATOR}
+      --build-options -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}
+        -DPYTHON_EXECUTABLE=${PYTHON_EXECUTABLE} -DEXPECTED_WITH_CUDA=$<BOOL:${DESERT_WITH_CUDA}>
+        "-DCMAKE_PREFIX_PATH=${prefixes}"
+      --test-command sh -c
+        "${CMAKE_COMMAND} --build . --target tests && ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error")
+  set_tests_properties(installed_package.${name} PROPERTIES TIMEOUT ${DESERT_TEST_TIMEOUT} COST 60)
+endfunction()
+
+# Not in the build folder: where that lies in the package, roslaunch would find each launch file twice.
+string(MD5 build_id ${PROJECT_BINARY_DIR})
+set(prefix /tmp/desert_sim_installed_${build_id})
+string(REPLACE ":" ";" prefixes "${prefix}:$ENV{CMAKE_PREFIX_PATH}")
+add_test(NAME installed_package.install COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${prefix})
+# The package that README.md shows.
+set(readme_package ${prefix}_readme)
+add_test(NAME installed_package.readme_files
+  COMMAND ${PYTHON_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/external_package/readme_package.py
+    ${PROJECT_SOURCE_DIR}/README.md ${readme_package})
+desert_outside_package(is_found ${CMAKE_CURRENT_SOURCE_DIR}/external_package)
+desert_outside_package(readme ${readme_package})
+add_test(NAME installed_package.removed COMMAND ${CMAKE_COMMAND} -E remove_directory ${prefix} ${readme_package})
+set_tests_properties(installed_package.install installed_package.readme_files PROPERTIES
+  FIXTURES_SETUP installed_package)
+set_tests_properties(installed_package.is_found installed_package.readme PROPERTIES
+  FIXTURES_REQUIRED installed_package)
+set_tests_properties(installed_package.removed PROPERTIES FIXTURES_CLEANUP installed_package)

@@ -1,0 +1,137 @@
+// A column of sand, 100 × 100 cells and 400 m high, slides to a cone (117.2 m) or an octagonal pyramid (121.4
+// m).
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <string>
+
+#include "test/support/bench_terrain.hpp"
+#include "test/support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+class Column : public test::OnBackend {};
+
+/// Distance from the middle at which the sand thins below `depth`, along direction (dx, dy).
+double radius(const std::vector<float>& sand, int n, double dx, double dy, double depth) {
+  const double length = std::hypot(dx, dy);
+  double r = 0;
+  for (double d = 1; d < 0.5 * n; d += 0.25) {
+    const int x = static_cast<int>(0.5 * n + d * dx / length),
+              y = static_cast<int>(0.5 * n + d * dy / length);
+    if (sand[static_cast<std::size_t>(y * n + x)] > depth) r = d;
+  }
+  return r;
+}
+
+TEST_P(Column, SlidesToAHeapAtReposeWithMultilevel) {
+  constexpr int n = 512;
+  test::BenchTerrain t(exec(), n, n, 1, true);
+  t.set(Layer::sand, [](int x, int y) { return x >= 206 && x < 306 && y >= 206 && y < 306 ? 400 : 0; });
+  const double tangent = std::tan(33 * 3.14159265358979 / 180);
+  t.set_repose([&](int, int) { return tangent; });
+  const long long volume = t.total(Layer::sand);
+  AvalanchingParameters p;
+  p.quality = AvalancheQuality::converged;
+  // Fine sweeps; a plain scheme is far from there after 12 500 (35.6 degrees).
+  p.max_iterations = 6000;
+  p.tolerance = 0.01f;
+  const int sweeps = t.avalanche(p);
+  EXPECT_LT(sweeps, p.max_iterations) << "did not converge";
+  EXPECT_EQ(t.total(Layer::sand), volume);
+
+  const std::vector<float> sand = t.terrain.values(Layer::sand);
+  const double height = *std::max_element(sand.begin(), sand.end());
+  EXPECT_GE(height, 115);
+  EXPECT_LE(height, 122);
+  double steepest = 0;
+  for (int y = 1; y + 1 < n; ++y)
+    for (int x = 1; x + 1 < n; ++x)
+      for (int k = 0; k < 8; ++k)
+        steepest = std::max(
+            steepest,
+            static_cast<double>(
+                sand[static_cast<std::size_t>(y * n + x)] -
+                sand[static_cast<std::size_t>((y + Neighbours::dy(k)) * n + x + Neighbours::dx(k))]) /
+                Neighbours::distance(k));
+  EXPECT_LE(std::atan(steepest) * 180 / 3.14159265358979, 34.0);
+
+  std::vector<double> radii;
+  for (int a = 0; a < 16; ++a)
+    radii.push_back(radius(sand, n, std::cos(a * 0.392699), std::sin(a * 0.392699), 2.0));
+  const auto [least, greatest] = std::minmax_element(radii.begin(), radii.end());
+  // About their mean; of an octagonal pyramid, which eight neighbours allow, they do by 4 %.
+  const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
+  EXPECT_LE(*greatest / mean, 1.04) << *least << " to " << *greatest << " m";
+  EXPECT_GE(*least / mean, 0.96) << *least << " to " << *greatest << " m";
+}
+
+/// A quarter of the size for the reference scheme, which takes many more sweeps. The coarse levels, of four
+/// cells across so small a column, take more off its top.
+TEST_P(Column, SlidesToTheSameHeapWithSweepsAndMultilevel) {
+  constexpr int n = 96;
+  std::vector<float> heaps[2];
+  for (int scheme = 0; scheme < 2; ++scheme) {
+    test::BenchTerrain t(exec(), n, n, 1, true);
+    t.set(Layer::sand, [](int x, int y) { return x >= 40 && x < 56 && y >= 40 && y < 56 ? 50 : 0; });
+    t.set_repose([](int, int) { return 0.65; });
+    AvalanchingParameters p;
+    p.scheme = scheme ? AvalancheScheme::sweeps : AvalancheScheme::multilevel;
+    p.quality = AvalancheQuality::converged;
+    p.tolerance = 0.002f;
+    const long long volume = t.total(Layer::sand);
+    EXPECT_LT(t.avalanche(p), p.max_iterations);
+    EXPECT_EQ(t.total(Layer::sand), volume);
+    heaps[scheme] = t.terrain.values(Layer::sand);
+  }
+  double square = 0, most = 0;
+  for (std::size_t i = 0; i < heaps[0].size(); ++i) {
+    square += (heaps[0][i] - heaps[1][i]) * (heaps[0][i] - heaps[1][i]) / heaps[0].size();
+    most = std::max(most, static_cast<double>(heaps[1][i]));
+  }
+  EXPECT_LT(std::sqrt(square), 0.02 * most);
+}
+
+/// Power along x at a wavenumber (in waves over the grid), summed over all rows.
+double power(const std::vector<float>& h, int n, int waves) {
+  double total = 0;
+  for (int y = 0; y < n; ++y) {
+    double re = 0, im = 0;
+    for (int x = 0; x < n; ++x) {
+      const double phase = 2 * 3.14159265358979 * waves * x / n;
+      re += h[static_cast<std::size_t>(y * n + x)] * std::cos(phase);
+      im += h[static_cast<std::size_t>(y * n + x)] * std::sin(phase);
+    }
+    total += re * re + im * im;
+  }
+  return total;
+}
+
+/// Closed tiles must not show: no peak in the spectrum at their width (32 cells) or its parts. One field's
+/// power at one wavenumber varies by a factor of two; four fields are added.
+TEST_P(Column, TilesLeaveNoPeakInTheSpectrumOfADuneField) {
+  constexpr int n = 256;
+  std::map<int, double> there, beside;
+  for (int seed = 1; seed <= 4; ++seed) {
+    auto s = simulation(
+        "grid: {width: 256, height: 256}\nterrain: [noise: {layer: sand, low: 3, high: 5}]\n"
+        "wind: {speed: 3, direction_deg: 25}\navalanching: {quality: fast}\nseed: " +
+        std::to_string(seed) + "\n");
+    test::run(*s, 40);
+    const std::vector<float> h = s->terrain().values(Layer::sand);
+    for (int period : {32, 16, 8}) {
+      const int waves = n / period;
+      there[period] += power(h, n, waves);
+      for (int other : {-2, -1, 1, 2}) beside[period] += 0.25 * power(h, n, waves + other);
+    }
+  }
+  for (const auto& [period, power_there] : there)
+    EXPECT_LT(power_there, 1.5 * beside[period]) << "period of " << period << " cells";
+}
+
+DESERT_ON_EACH_BACKEND(Column);
+
+}  // namespace
+}  // namespace desert_sim

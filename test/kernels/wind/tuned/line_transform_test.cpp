@@ -1,0 +1,81 @@
+// Transforms of lines against the sum that defines them, in double precision.
+
+#include "kernels/wind/tuned/line_transform.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "test/support/lines.hpp"
+
+namespace desert_sim {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+using test::Line;
+
+Line transformed(const Line& line, int threads) {
+  const LineTransform transform = LineTransform::for_length(static_cast<int>(line.size()));
+  return test::transformed(transform, transform.roots(), line, threads);
+}
+
+Line some_line(int n) {
+  Line line;
+  for (int j = 0; j < n; ++j)
+    line.push_back(
+        {static_cast<float>(std::sin(3.7 * j * j + n)), static_cast<float>(std::cos(1.3 * j * j * j))});
+  return line;
+}
+
+TEST(LineTransform, IsTheSumForEveryLengthThatSuits) {
+  int lengths = 0;
+  for (int n = 2; n <= LineTransform::longest; ++n) {
+    if (!LineTransform::supports_length(n)) continue;
+    ++lengths;
+    const Line line = some_line(n), modes = transformed(line, 16);
+    double error = 0, size = 0;
+    for (int k = 0; k < n; ++k) {
+      std::complex<double> sum = 0;
+      for (int j = 0; j < n; ++j)
+        sum += std::complex<double>(line[j].re, line[j].im) *
+               std::polar(1.0, -2 * pi * (static_cast<long>(j) * k % n) / n);
+      error += std::norm(sum - std::complex<double>(modes[k].re, modes[k].im));
+      size += std::norm(sum);
+    }
+    EXPECT_LT(std::sqrt(error / size), 2e-7 * std::log2(2.0 * n)) << n;
+  }
+  EXPECT_EQ(lengths, 67);  // 2^a 3^b 5^c from 2 to 512
+}
+
+TEST(LineTransform, BackAgainWithPartsExchanged) {
+  for (int n : {2, 45, 64, 180, 486, 512}) {
+    const Line line = some_line(n);
+    Line modes = transformed(line, 16);
+    for (Complex& mode : modes) mode = swap_re_im(mode);
+    const Line back = transformed(modes, 7);
+    for (int j = 0; j < n; ++j) {
+      EXPECT_NEAR(back[j].im / n, line[j].re, 1e-6) << n << ' ' << j;
+      EXPECT_NEAR(back[j].re / n, line[j].im, 1e-6) << n << ' ' << j;
+    }
+  }
+}
+
+TEST(LineTransform, UniformLinesHaveExactlyOneMode) {
+  for (int n = 2; n <= LineTransform::longest; ++n) {
+    if (!LineTransform::supports_length(n)) continue;
+    const Line modes = transformed(Line(static_cast<std::size_t>(n), Complex{1.7f, 0.0f}), 16);
+    for (int k = 1; k < n; ++k) {
+      ASSERT_EQ(modes[k].re, 0.0f) << n << ' ' << k;
+      ASSERT_EQ(modes[k].im, 0.0f) << n << ' ' << k;
+    }
+  }
+}
+
+TEST(LineTransform, LongLinesAndOtherPrimesDoNotSuit) {
+  for (int n : {0, 1, 7, 44, 182, 513, 540}) EXPECT_FALSE(LineTransform::supports_length(n)) << n;
+  for (int n : {2, 3, 5, 180, 512}) EXPECT_TRUE(LineTransform::supports_length(n)) << n;
+}
+
+}  // namespace
+}  // namespace desert_sim

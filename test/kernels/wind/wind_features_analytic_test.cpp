@@ -1,0 +1,132 @@
+// Features of the wind: their speed, sense and life time, smooth on the torus.
+
+#include "test/kernels/wind/wind_field.hpp"
+
+namespace desert_sim {
+namespace {
+
+struct Perturbation {
+  Grid grid;
+  std::vector<float> u, v;
+
+  Perturbation(Exec& exec, const Grid& of, const std::vector<WindFeature>& features, double time = 0)
+      : grid(of) {
+    std::vector<wind_features::Prepared> prepared;
+    for (const WindFeature& f : features)
+      prepared.push_back(
+          wind_features::prepare(f, unit_vector(f.direction_deg), grid, origin_x, origin_y, time));
+    const auto cells = static_cast<std::size_t>(grid.cells());
+    Buffer<wind_features::Prepared> buffer(exec, prepared.size());
+    buffer.upload(prepared);
+    Buffer<float> stream(exec, cells), px(exec, cells), py(exec, cells);
+    with_backend(exec,
+                 [&](auto& e) { wind_features::step(e, grid, buffer, stream.data(), px.data(), py.data()); });
+    u = px.download();
+    v = py.download();
+  }
+  static constexpr double origin_x = 420000, origin_y = 5280000;  // UTM
+
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>((y + grid.height) % grid.height * grid.width +
+                                    (x + grid.width) % grid.width);
+  }
+  wind::Vector at(int x, int y) const { return {u[index(x, y)], v[index(x, y)]}; }
+  double fastest() const {
+    double most = 0;
+    for (std::size_t n = 0; n < u.size(); ++n) most = std::max(most, std::hypot<double>(u[n], v[n]));
+    return most;
+  }
+  /// Central differences; an open grid is searched two cells from its edge and beyond.
+  double greatest_divergence() const {
+    double worst = 0;
+    const int margin = grid.periodic_x ? 0 : 2;
+    for (int y = margin; y < grid.height - margin; ++y)
+      for (int x = margin; x < grid.width - margin; ++x)
+        worst = std::max(worst, std::abs(static_cast<double>(at(x + 1, y).x) - at(x - 1, y).x +
+                                         at(x, y + 1).y - at(x, y - 1).y));
+    return worst;
+  }
+};
+
+WindFeature feature(WindFeatureKind kind, double x, double y, float radius, float speed) {
+  WindFeature f;
+  f.kind = kind;
+  f.x = Perturbation::origin_x + x;
+  f.y = Perturbation::origin_y + y;
+  f.radius = radius;
+  f.speed = speed;
+  return f;
+}
+
+/// Near the seams of the torus, with radii up to its extent: the stream function of a jet jumped there, which
+/// made 105 m/s of 3 m/s once its radius passed a sixth of the extent.
+TEST_P(WindField, FeaturesAreSmoothAcrossTheSeamAtAnyRadius) {
+  for (const bool periodic : {true, false})
+    for (const WindFeatureKind kind :
+         {WindFeatureKind::vortex, WindFeatureKind::jet, WindFeatureKind::turbulence})
+      for (const float radius : {10.0f, 40.0f, 90.0f, 180.0f, 1e4f})
+        for (const auto& [x, y] : {std::pair{90.0, 70.0}, {1.0, 139.0}, {179.0, 70.0}, {0.0, 0.0}}) {
+          SCOPED_TRACE(std::string(wind_feature_kinds[static_cast<int>(kind)]) + " of radius " +
+                       std::to_string(radius) + " at " + std::to_string(x) + ", " + std::to_string(y) +
+                       (periodic ? "" : ", open"));
+          WindFeature f = feature(kind, x, y, radius, 3);
+          for (const float direction : {0.0f, 30.0f, 90.0f, 225.0f}) {
+            f.direction_deg = direction;
+            const Perturbation wind(exec(), Grid{90, 70, 2, periodic, periodic}, {f}, 12.5);
+            EXPECT_LE(wind.fastest(), kind == WindFeatureKind::turbulence ? 4 * 3 : 1.01 * 3);
+            EXPECT_LE(wind.greatest_divergence(), radius > 1000 ? 3e-3 : 2e-4);
+          }
+        }
+}
+
+TEST_P(WindField, VortexAndJetHaveTheirSpeedAndSense) {
+  const Grid grid{200, 200, 1, true, true};
+  const auto wind = [&](const WindFeature& f, int x, int y) {
+    return Perturbation(exec(), grid, {f}).at(x, y);
+  };
+  WindFeature vortex = feature(WindFeatureKind::vortex, 100.5, 100.5, 30, 4);
+  EXPECT_NEAR(wind(vortex, 130, 100).y, 4, 0.03);  // counter-clockwise: north on its east side
+  EXPECT_NEAR(wind(vortex, 70, 100).y, -4, 0.03);
+  EXPECT_NEAR(wind(vortex, 100, 130).x, -4, 0.03);
+  EXPECT_NEAR(wind(vortex, 100, 100).x, 0, 1e-4);
+  vortex.speed = -4;
+  EXPECT_NEAR(wind(vortex, 130, 100).y, -4, 0.03);
+  WindFeature jet = feature(WindFeatureKind::jet, 100.5, 100.5, 20, 6);
+  jet.direction_deg = 90;
+  jet.length = 60;
+  EXPECT_NEAR(wind(jet, 100, 100).y, 6, 0.05);
+  EXPECT_NEAR(wind(jet, 100, 100).x, 0, 1e-4);
+  EXPECT_LT(wind(jet, 135, 100).y, 0) << "return flow beside it";
+}
+
+/// The speed of turbulence is its root mean square in the middle, whenever that is, and it renews itself in a
+/// life time: with the time in single precision it stood still from 1e9 s on.
+TEST_P(WindField, TurbulenceHasItsSpeedAndLifeTimeAtAnyTime) {
+  const Grid grid{240, 240, 1, true, true};
+  WindFeature f = feature(WindFeatureKind::turbulence, 120, 120, 1e4f, 2);
+  f.scale = 12;
+  f.life_time = 5;
+  for (const double start : {0.0, 1e5, 1e9, 1e12}) {
+    SCOPED_TRACE(start);
+    double square = 0, change_soon = 0, change_later = 0;
+    constexpr int looks = 10;
+    for (int look = 0; look < looks; ++look) {
+      const double time = start + 8.5 * look;
+      const Perturbation now(exec(), grid, {f}, time), soon(exec(), grid, {f}, time + 0.25),
+          later(exec(), grid, {f}, time + 10);
+      for (std::size_t n = 0; n < now.u.size(); ++n) {
+        const double share = 1.0 / (looks * static_cast<double>(now.u.size()));
+        square += share * (now.u[n] * now.u[n] + now.v[n] * now.v[n]);
+        change_soon += share * std::pow(std::hypot(soon.u[n] - now.u[n], soon.v[n] - now.v[n]), 2);
+        change_later += share * std::pow(std::hypot(later.u[n] - now.u[n], later.v[n] - now.v[n]), 2);
+      }
+    }
+    EXPECT_NEAR(std::sqrt(square), 2, 0.15);
+    EXPECT_GT(std::sqrt(change_soon), 0.05) << "it stands still";
+    EXPECT_LT(std::sqrt(change_soon), 0.5) << "it jumps";
+    EXPECT_NEAR(std::sqrt(change_later), 2 * std::sqrt(2.0), 0.3) << "another one after two life times";
+  }
+}
+
+}  // namespace
+}  // namespace desert_sim

@@ -1,0 +1,220 @@
+/// TerrainClient on senders that lose, break and die: a sender of this test, and nodes that it starts and
+/// kills.
+#include <desert_sim/QueryTerrain.h>
+#include <desert_sim/Step.h>
+#include <std_msgs/Empty.h>
+
+#include <cmath>
+
+#include "src/client/terrain_client.hpp"
+#include "test/support/messages.hpp"
+#include "test/support/ros/child_process.hpp"
+
+namespace {
+
+using namespace desert_sim;
+using node_test::NodeProcess;
+using node_test::wait_until;
+
+constexpr double timeout = 10;
+
+// ---- a sender whose messages can be lost ----
+
+/// Publishes as a node does: each new subscriber to keyframes gets a new one. Step n raises cell (0, 0) to n
+/// metres.
+class Sender {
+ public:
+  explicit Sender(const std::string& name) {
+    ros::NodeHandle node(name);
+    updates_ = node.advertise<ElevationUpdate>("elevation_updates", 100);
+    keyframes_ =
+        node.advertise<ElevationGrid>("elevation", 10, [this](const ros::SingleSubscriberPublisher&) {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          ++connections_;
+          publish_keyframe();
+        });
+  }
+  ~Sender() {
+    keyframes_.shutdown();  // no new subscriber finds a sender that is half gone
+    updates_.shutdown();
+  }
+  void keyframe() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    publish_keyframe();
+  }
+  /// `lose`: the update is numbered and goes nowhere.
+  void update(bool lose = false) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto message = next_update();
+    if (!lose) updates_.publish(message);
+  }
+  void broken_update() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto message = next_update();
+    message->tiles[0].data.pop_back();
+    updates_.publish(message);
+  }
+  int connections() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return connections_;
+  }
+  bool heard() const { return keyframes_.getNumSubscribers() > 0 && updates_.getNumSubscribers() > 0; }
+  std::uint32_t step() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return step_;
+  }
+
+ private:
+  ElevationUpdate::Ptr next_update() {
+    ++sequence_;
+    ++step_;
+    return client_test::update(keyframe_, sequence_, step_, static_cast<float>(step_));
+  }
+  void publish_keyframe() {
+    sequence_ = 0;
+    ElevationGrid grid = client_test::keyframe(++keyframe_, step_);
+    for (std::size_t cell : {0, 1, 130, 131, 260, 261}) grid.elevation[cell] = static_cast<float>(step_);
+    keyframes_.publish(grid);
+  }
+
+  mutable std::mutex mutex_;
+  std::uint32_t keyframe_ = 0, sequence_ = 0, step_ = 1;
+  int connections_ = 0;
+  ros::Publisher keyframes_, updates_;
+};
+
+/// Both ends stand, and the client has what the sender has.
+void expect_in_step(const TerrainClient& client, const Sender& sender) {
+  ASSERT_TRUE(client.wait_for_step(sender.step(), timeout)) << client.statistics().last_gap;
+  EXPECT_TRUE(wait_until([&] { return client.up_to_date(); }));
+  EXPECT_EQ(client.map()->at(0, 0), sender.step());
+}
+
+TerrainClient::Options options(const std::string& name) {
+  TerrainClient::Options o;
+  o.node = name;
+  return o;
+}
+
+TEST(Faults, ALostUpdateIsNoticedAndHealed) {
+  Sender sender("/losing");
+  const TerrainClient client(ros::NodeHandle(), options("/losing"));
+  ASSERT_TRUE(wait_until([&] { return sender.heard() && client.map(); }));
+  sender.update();
+  expect_in_step(client, sender);
+  const std::uint32_t good = sender.step();
+  sender.update(true);
+  sender.update();
+  ASSERT_TRUE(wait_until([&] { return client.statistics().gaps == 1; }));
+  EXPECT_NE(client.statistics().last_gap.find("is missing"), std::string::npos)
+      << client.statistics().last_gap;
+  EXPECT_GE(client.map()->at(0, 0), good) << "the last good map stays until the next keyframe";
+  expect_in_step(client, sender);
+  EXPECT_EQ(client.statistics().requests, 1u);
+  EXPECT_EQ(sender.connections(), 2);
+  for (int n = 0; n < 5; ++n) sender.update();
+  expect_in_step(client, sender);
+  EXPECT_EQ(client.statistics().requests, 1u) << "one was enough";
+}
+
+TEST(Faults, ABrokenUpdateIsRefusedAndHealed) {
+  Sender sender("/breaking");
+  const TerrainClient client(ros::NodeHandle(), options("/breaking"));
+  ASSERT_TRUE(wait_until([&] { return sender.heard() && client.map(); }));
+  sender.broken_update();
+  ASSERT_TRUE(wait_until([&] { return client.statistics().refused == 1; }));
+  EXPECT_NE(client.statistics().last_refusal.find("5 values for 2 x 3 cells"), std::string::npos)
+      << client.statistics().last_refusal;
+  expect_in_step(client, sender);
+}
+
+TEST(Faults, AStreamThatLosesAllTheTimeIsNotAskedAllTheTime) {
+  Sender sender("/leaking");
+  const TerrainClient client(ros::NodeHandle(), options("/leaking"));
+  ASSERT_TRUE(wait_until([&] { return sender.heard() && client.map(); }));
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(2500);
+  for (int n = 0; std::chrono::steady_clock::now() < end; ++n) {
+    sender.update(n % 3 == 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_GE(client.statistics().gaps, 2u);
+  EXPECT_GE(client.statistics().requests, 2u);
+  EXPECT_LE(client.statistics().requests, 3u) << "after 0, 0.5 and 1.5 s";
+  sender.keyframe();  // by its own rate
+  expect_in_step(client, sender);
+}
+
+TEST(Faults, SlowListenersMissNothingThatTheyAreNotToldOf) {
+  Sender sender("/flooding");
+  TerrainClient::Options o = options("/flooding");
+  o.update_queue = 5;
+  o.on_change = [](const MapChange&) { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
+  const TerrainClient client(ros::NodeHandle(), o);
+  ASSERT_TRUE(wait_until([&] { return sender.heard() && client.map(); }));
+  for (int n = 0; n < 200; ++n) {
+    sender.update();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  EXPECT_TRUE(wait_until([&] { return client.statistics().gaps > 0; })) << "the queue has overflowed";
+  expect_in_step(client, sender);
+}
+
+// ---- nodes that come late, and die ----
+
+std::map<std::string, XmlRpc::XmlRpcValue> of_width(int width) { return {{"grid/width", width}}; }
+
+std::uint64_t step(const NodeProcess& node, std::uint32_t steps) {
+  Step::Request request;
+  request.steps = steps;
+  return node.call<Step>("step", request).step;
+}
+
+double elevation(const NodeProcess& node, double x, double y) {
+  QueryTerrain::Request request;
+  request.points.resize(1);
+  request.points[0].x = x;
+  request.points[0].y = y;
+  const QueryTerrain::Response response = node.call<QueryTerrain>("query_terrain", request);
+  return response.samples.empty() ? std::nan("") : response.samples[0].elevation;
+}
+
+TEST(Lifecycle, AClientMayBeThereBeforeTheNode) {
+  const TerrainClient client(ros::NodeHandle(), options("/late"));
+  EXPECT_FALSE(client.wait_for_terrain(0.3));
+  EXPECT_FALSE(client.up_to_date());
+  EXPECT_FALSE(client.connected());
+  EXPECT_EQ(client.elevation(20, 0), std::nullopt);
+  EXPECT_EQ(client.map(), nullptr);
+  const NodeProcess node("/late", of_width(64));
+  ASSERT_TRUE(client.wait_for_terrain(timeout));
+  EXPECT_EQ(client.map()->info().width, 64u);
+  ASSERT_TRUE(client.wait_for_step(step(node, 4), timeout));
+}
+
+TEST(Lifecycle, AKilledNodeThatStartsAnewIsFollowed) {
+  auto node = std::make_unique<NodeProcess>("/killed", of_width(64));
+  const TerrainClient client(ros::NodeHandle(), options("/killed"));
+  ASSERT_TRUE(client.wait_for_terrain(timeout));
+  for (int n = 0; n < 10; ++n) ASSERT_TRUE(client.wait_for_step(step(*node, 2), timeout));
+  // The next node's numbers are seen to begin anew if this one's have come further than its first few.
+  ros::Publisher request = ros::NodeHandle().advertise<std_msgs::Empty>("/killed/request_keyframe", 1);
+  ASSERT_TRUE(wait_until([&] {
+    request.publish(std_msgs::Empty());
+    return client.map()->info().keyframe >= 10;
+  }));
+  node.reset();
+  EXPECT_TRUE(client.elevation(30, 10)) << "what it has, it has";
+
+  node = std::make_unique<NodeProcess>("/killed", of_width(40));
+  ASSERT_TRUE(wait_until([&] { return client.map()->info().width == 40; }));
+  const std::uint64_t reached = step(*node, 7);
+  ASSERT_TRUE(client.wait_for_step(reached, timeout));
+  EXPECT_TRUE(wait_until([&] { return client.up_to_date() && client.map()->info().step == reached; }));
+  EXPECT_NEAR(client.elevation(33.3, 12.1).value(), elevation(*node, 33.3, 12.1), 0.005 + 1e-6);
+  EXPECT_EQ(client.map()->elevation(100, 0), std::nullopt) << "east of 40 cells";
+  EXPECT_EQ(client.statistics().restarts, 1u);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return node_test::run_tests(argc, argv, "terrain_client_faults"); }

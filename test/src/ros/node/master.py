@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""A master that dies and comes back, while a node runs. The master is this test's own, not rostest's."""
+import signal
+import time
+
+from desert_sim.msg import ElevationUpdate, SimulationStatus
+from desert_sim.srv import QueryTerrain, Step
+from desert_sim.testing import Master as OwnMaster, wait_until
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import Point
+from node_tests import CORNER, Scenarios, autosaves
+import rospy
+import rostest
+from std_srvs.srv import Trigger
+
+SHUTDOWN = 5  # [s]; what it took is printed: under one on a machine that does nothing else
+
+
+class Master(Scenarios):
+    def setUp(self):
+        super().setUp()
+        if MASTER.process.poll() is not None:
+            MASTER.start()
+        self.journal = self.path("journal.yaml")
+        self.node = self.start("orphan", {"scenario": CORNER, "paused": False, "step_rate": 20, "status_rate": 20,
+                                          "journal": self.journal, "data_dir": self.folder, "autosave_period": 0.2})
+        self.updates, self.statuses, self.diagnostics = [], [], {}
+        self.subscribers = [rospy.Subscriber("/orphan/elevation_updates", ElevationUpdate, self.updates.append),
+                            rospy.Subscriber("/orphan/status", SimulationStatus, self.statuses.append),
+                            rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics)]
+        # A call over a new connection looks the service up at the master.
+        self.query = rospy.ServiceProxy("/orphan/query_terrain", QueryTerrain, persistent=True)
+        self.steps = rospy.ServiceProxy("/orphan/step", Step, persistent=True)
+        self.pause = rospy.ServiceProxy("/orphan/pause", Trigger, persistent=True)
+        self.reload = rospy.ServiceProxy("/orphan/reload_parameters", Trigger, persistent=True)
+        wait_until(self.started, "it does not start")
+        self.go_on()
+        wait_until(lambda: self.health("master") == DiagnosticStatus.OK, "diagnostics do not say that the master is there")
+
+    def tearDown(self):
+        for subscriber in self.subscribers:
+            subscriber.unregister()
+        for proxy in (self.query, self.steps, self.pause, self.reload):
+            proxy.close()
+        super().tearDown()
+
+    def started(self):
+        try:
+            return self.steps(0).success and self.reload().success and self.pause().success and \
+                self.node.call("resume", Trigger).success
+        except rospy.ServiceException:
+            return False
+
+    def on_diagnostics(self, message):
+        for status in message.status:
+            self.diagnostics[status.name] = status.level
+
+    def health(self, part):
+        return self.diagnostics.get("orphan: " + part)
+
+    def go_on(self):
+        """The node steps, and tells those who are connected."""
+        steps, updates = self.step(), len(self.updates)
+        wait_until(lambda: self.step() >= steps + 20, "it does not step")
+        wait_until(lambda: len(self.updates) >= updates + 5, "subscribers are not served")
+        self.assertEqual(self.statuses[-1].state, "running")
+        self.assertTrue(self.query(points=[Point(20, 20, 0)]).success)
+
+    def step(self):
+        return self.statuses[-1].step if self.statuses else 0
+
+    def rate(self, seconds=1):
+        """Steps a second of wall time."""
+        first, start = self.steps(0).step, time.monotonic()
+        time.sleep(seconds)
+        return (self.steps(0).step - first) / (time.monotonic() - start)
+
+    def test_dies_and_comes_back(self):
+        before = self.rate()
+        MASTER.kill()
+        self.go_on()
+        without = self.rate()
+        self.assertGreater(without, 0.5 * before)
+        answer = self.reload()
+        self.assertFalse(answer.success, "the parameters are gone with the master, which is no wish to change them")
+        self.assertIn("master", answer.message)
+        wait_until(lambda: self.health("master") == DiagnosticStatus.WARN, "diagnostics do not say that the master is gone")
+        MASTER.start()
+        self.go_on()
+        wait_until(lambda: self.health("master") == DiagnosticStatus.ERROR,
+                   "diagnostics do not say that the new master does not know the node")
+        print("steps a second: %.1f with a master, %.1f without" % (before, without))
+        self.assertEqual(self.node.end(signal.SIGTERM)[0], 0, self.node.output)
+
+    def expect_end(self, how):
+        saved = autosaves(self.folder)
+        MASTER.kill()
+        self.go_on()
+        wait_until(lambda: autosaves(self.folder) != saved, "no autosave without a master")
+        self.assertTrue(self.pause().success)
+        live = self.steps(0).state_hash
+        status, seconds = self.node.end(how)
+        print("%s: ended after %.2f s without a master" % (how.name, seconds))
+        self.assertEqual(status, 0, self.node.output)
+        self.assertLess(seconds, SHUTDOWN)
+        self.assertEqual(self.run_without_ros(CORNER, "--replay", self.journal), live)
+
+    def test_is_terminated_without_a_master(self):
+        self.expect_end(signal.SIGTERM)
+
+    def test_is_interrupted_without_a_master(self):
+        self.expect_end(signal.SIGINT)
+
+
+if __name__ == "__main__":
+    MASTER = OwnMaster()
+    try:
+        rospy.init_node("master_test", disable_signals=True)
+        rostest.rosrun("desert_sim", "master", Master)
+    finally:
+        MASTER.kill()

@@ -1,0 +1,229 @@
+/// A planner beside a rover: goals by topic and action, what comes into the way, and what it says when there
+/// is no way.
+#include <actionlib/client/simple_action_client.h>
+#include <desert_sim/EditTerrain.h>
+#include <desert_sim/Forecast.h>
+#include <desert_sim/PlannerStatus.h>
+#include <move_base_msgs/MoveBaseAction.h>
+#include <nav_msgs/OccupancyGrid.h>
+#include <nav_msgs/Path.h>
+
+#include "test/support/ros/child_process.hpp"
+#include "test/support/ros/rover_tests.hpp"
+
+namespace {
+
+using desert_sim::PlannerStatus;
+using node_test::ask;
+using node_test::call;
+using node_test::Listener;
+using node_test::wait_until;
+using MoveBase = actionlib::SimpleActionClient<move_base_msgs::MoveBaseAction>;
+
+const std::string rover = "/desert_rover", planner = "/desert_planner";
+
+geometry_msgs::PoseStamped pose_at(double x, double y) {
+  geometry_msgs::PoseStamped pose;
+  pose.header.frame_id = "terrain";
+  pose.pose.position.x = x;
+  pose.pose.position.y = y;
+  pose.pose.orientation.w = 1;
+  return pose;
+}
+
+move_base_msgs::MoveBaseGoal goal_at(double x, double y) {
+  move_base_msgs::MoveBaseGoal goal;
+  goal.target_pose = pose_at(x, y);
+  return goal;
+}
+
+/// A rectangle of obstacles, or of sand that is added or taken away.
+void edit(const std::string& layer, const std::string& merge, double value, double x, double y, double half_x,
+          double half_y) {
+  desert_sim::EditTerrain::Request request;
+  request.layer = layer;
+  request.shape = "rectangle";
+  request.merge = merge;
+  request.center.x = x;
+  request.center.y = y;
+  request.radius = half_x;
+  request.radius_y = half_y;
+  request.inner = 1;
+  request.value = value;
+  const auto answer = call<desert_sim::EditTerrain>("edit_terrain", request);
+  ASSERT_TRUE(answer.success) << answer.message;
+}
+
+class Planner : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(call<std_srvs::Trigger>("reset").success);
+    ask<std_srvs::Trigger>(planner + "/cancel");
+    ASSERT_TRUE(wait_until(
+        [this] { return rover_.count() > 0 && rover_.last().state != desert_sim::RoverStatus::NO_TERRAIN; },
+        30));
+    place(40, 0);
+  }
+  void place(double x, double y) {
+    const auto answer = node_test::set_pose(rover, x, y, 0);
+    ASSERT_TRUE(answer.success) << answer.message;
+    ASSERT_TRUE(wait_until([&] { return std::abs(truth_.last().pose.pose.position.x - x) < 1e-3; }));
+  }
+  void send(const std::string& topic, const geometry_msgs::PoseStamped& goal) {
+    publisher_ = ros::NodeHandle().advertise<geometry_msgs::PoseStamped>(topic, 1);
+    ASSERT_TRUE(wait_until([this] { return publisher_.getNumSubscribers() > 0; }));
+    publisher_.publish(goal);
+  }
+  bool is(const std::string& state, double seconds = 20) {
+    return wait_until([&] { return status_.last().state == state; }, seconds);
+  }
+  std::string told() const { return status_.last().state + ": " + status_.last().reason; }
+
+  Listener<desert_sim::RoverStatus> rover_{rover + "/status"};
+  Listener<nav_msgs::Odometry> truth_{"/ground_truth"};
+  Listener<PlannerStatus> status_{planner + "/status"};
+  MoveBase action_{"/move_base", false};
+  ros::Publisher publisher_;
+};
+
+TEST_F(Planner, DrivesToAGoalOfTheTopicOnAPathThatLiesOnTheTerrain) {
+  Listener<nav_msgs::Path> paths(planner + "/path");
+  send("/move_base_simple/goal", pose_at(52, 8));
+  ASSERT_TRUE(is(PlannerStatus::DRIVING)) << told();
+  ASSERT_TRUE(wait_until([&] { return !paths.last().poses.empty(); }));
+  const nav_msgs::Path path = paths.last();
+  EXPECT_EQ(path.header.frame_id, "terrain");
+  for (const geometry_msgs::PoseStamped& pose : path.poses) EXPECT_NEAR(pose.pose.position.z, 1.5, 0.01);
+  EXPECT_NEAR(path.poses.back().pose.position.x, 52, 1e-6);
+  ASSERT_TRUE(is(PlannerStatus::ARRIVED, 60)) << told();
+  const auto p = truth_.last().pose.pose.position;
+  EXPECT_NEAR(std::hypot(p.x - 52, p.y - 8), 0, 1.5);
+  EXPECT_EQ(status_.last().replans, 0U) << status_.last().last_replan;
+  EXPECT_TRUE(wait_until([&] { return paths.last().poses.empty(); })) << "no path is shown at the end";
+}
+
+TEST_F(Planner, ServesTheActionOfMoveBaseAndItsCancelling) {
+  ASSERT_TRUE(wait_until([this] { return action_.isServerConnected(); }));
+  action_.sendGoal(goal_at(48, 3));
+  ASSERT_TRUE(action_.waitForResult(ros::Duration(60)));
+  EXPECT_EQ(action_.getState(), actionlib::SimpleClientGoalState::SUCCEEDED) << told();
+  action_.sendGoal(goal_at(80, 3));
+  ASSERT_TRUE(is(PlannerStatus::DRIVING)) << told();
+  action_.cancelGoal();
+  ASSERT_TRUE(action_.waitForResult(ros::Duration(20)));
+  EXPECT_EQ(action_.getState(), actionlib::SimpleClientGoalState::PREEMPTED);
+  EXPECT_TRUE(is(PlannerStatus::CANCELLED)) << told();
+  EXPECT_TRUE(wait_until([this] { return rover_.last().state == desert_sim::RoverStatus::IDLE; }));
+}
+
+TEST_F(Planner, GoesRoundADuneThatComesIntoItsWay) {
+  send("/move_base_simple/goal", pose_at(64, 0));
+  ASSERT_TRUE(is(PlannerStatus::DRIVING)) << told();
+  edit("sand", "add", 8, 53, 0, 3, 9);
+  ASSERT_TRUE(wait_until([this] { return status_.last().replans > 0; }, 20)) << told();
+  EXPECT_NE(status_.last().last_replan.find("blocked"), std::string::npos) << status_.last().last_replan;
+  double furthest = 0;
+  ASSERT_TRUE(wait_until(
+      [&] {
+        furthest = std::max(furthest, std::abs(truth_.last().pose.pose.position.y));
+        return status_.last().state == PlannerStatus::ARRIVED;
+      },
+      90))
+      << told();
+  EXPECT_GT(furthest, 9);
+}
+
+TEST_F(Planner, SaysWhyThereIsNoPath) {
+  edit("obstacle", "replace", 1, 60, 10, 4, 4);
+  ASSERT_TRUE(wait_until([this] { return action_.isServerConnected(); }));
+  action_.sendGoal(goal_at(60, 10));
+  ASSERT_TRUE(action_.waitForResult(ros::Duration(30)));
+  EXPECT_EQ(action_.getState(), actionlib::SimpleClientGoalState::ABORTED);
+  EXPECT_NE(action_.getState().getText().find("the goal (60, 10) is not passable"), std::string::npos)
+      << action_.getState().getText();
+  // A wall all round the goal.
+  edit("obstacle", "replace", 0, 60, 10, 2, 2);
+  action_.sendGoal(goal_at(1000, 10));
+  ASSERT_TRUE(action_.waitForResult(ros::Duration(30)));
+  EXPECT_NE(action_.getState().getText().find("refused: the goal (1e+03, 10) is off the terrain"),
+            std::string::npos)
+      << action_.getState().getText();
+}
+
+TEST_F(Planner, RefusesGoalsThatAreNone) {
+  geometry_msgs::PoseStamped bad = pose_at(node_test::not_a_number, 0);
+  send("/move_base_simple/goal", bad);
+  EXPECT_TRUE(wait_until([this] { return status_.last().refusal.find("finite") != std::string::npos; }))
+      << status_.last().refusal;
+  bad = pose_at(50, 0);
+  bad.pose.orientation.w = 0;
+  send("/move_base_simple/goal", bad);
+  EXPECT_TRUE(wait_until([this] { return status_.last().refusal.find("quaternion") != std::string::npos; }))
+      << status_.last().refusal;
+  bad = pose_at(50, 0);
+  bad.header.frame_id = "nowhere";
+  send("/move_base_simple/goal", bad);
+  EXPECT_TRUE(wait_until([this] { return status_.last().refusal.find("'nowhere'") != std::string::npos; }))
+      << status_.last().refusal;
+  EXPECT_NE(status_.last().state, PlannerStatus::DRIVING);
+}
+
+TEST_F(Planner, WaitsWhileTheRoverIsBuried) {
+  send("/move_base_simple/goal", pose_at(70, 0));
+  ASSERT_TRUE(is(PlannerStatus::DRIVING)) << told();
+  const double x = truth_.last().pose.pose.position.x;
+  edit("sand", "add", 0.6, x, 0, 14, 10);
+  ASSERT_TRUE(wait_until([this] { return status_.last().reason.rfind("buried: ", 0) == 0; })) << told();
+  edit("sand", "sub", 0.6, x, 0, 14, 10);
+  EXPECT_TRUE(is(PlannerStatus::DRIVING)) << told();
+}
+
+TEST_F(Planner, PlansWithOmpl) {
+  Listener<nav_msgs::Path> paths("/ompl_planner/path");
+  send("/ompl_planner/goal", pose_at(70, 20));
+  ASSERT_TRUE(wait_until([&] { return !paths.last().poses.empty(); }, 40))
+      << Listener<PlannerStatus>("/ompl_planner/status").last().reason;
+  EXPECT_NEAR(paths.last().poses.back().pose.position.x, 70, 1e-6);
+}
+
+/// A wall ahead now, which the forecast says will be gone.
+TEST_F(Planner, PlansThroughAForecast) {
+  Listener<nav_msgs::OccupancyGrid> costs("costmap");
+  desert_sim::Forecast forecast;
+  forecast.header.frame_id = "terrain";
+  forecast.header.stamp = ros::Time::now();
+  forecast.members = 1;
+  forecast.times = {20, 40};
+  forecast.costs.assign(2, costs.last());
+  edit("obstacle", "replace", 1, 53, 4, 2.5, 24);
+  ros::Publisher maps =
+      ros::NodeHandle().advertise<desert_sim::Forecast>("/desert_sim/forecast/maps", 1, true);
+  maps.publish(forecast);
+  Listener<PlannerStatus> status("/forecast_planner/status");
+  Listener<nav_msgs::Path> paths("/forecast_planner/path");
+  send("/forecast_planner/goal", pose_at(62, 0));
+  ASSERT_TRUE(wait_until([&] { return status.last().forecast_age >= 0 && !paths.last().poses.empty(); }))
+      << status.last().state << " " << status.last().reason;
+  const auto poses = paths.last().poses;
+  double longest = 0;
+  for (std::size_t n = 1; n < poses.size(); ++n)
+    longest = std::max(longest, (poses[n].header.stamp - poses[n - 1].header.stamp).toSec());
+  EXPECT_GT(longest, 20) << "it waits before the wall";
+  forecast.costs.pop_back();
+  maps.publish(forecast);
+  EXPECT_TRUE(wait_until([&] {
+    return status.last().refusal.find("1 maps of costs for 2 moments") != std::string::npos;
+  })) << status.last().refusal;
+  ask<std_srvs::Trigger>("/forecast_planner/cancel");
+}
+
+TEST_F(Planner, BadParametersEndANodeWithTheirNames) {
+  ros::param::set("/bad_planner/speed", -1.0);
+  ros::param::set("/bad_planner/colour", "red");
+  node_test::ChildProcess process({DESERT_PLANNER_BINARY, "__name:=bad_planner"});
+  EXPECT_EQ(process.wait(), 2);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return node_test::run_tests(argc, argv, "planner_node_test"); }

@@ -1,0 +1,178 @@
+// Ripples and bumps that a rover's node makes of maps and of ~detail are those of the simulation, to the bit.
+
+#include "src/ros/rover/map_detail.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/make_shared.hpp>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "src/ros/conversion/detail_message.hpp"
+#include "src/ros/rover/map_ground.hpp"
+#include "src/rover/grid_ground.hpp"
+#include "src/terrain/map_layers.hpp"
+#include "test/support/refusal.hpp"
+#include "test/support/world.hpp"
+
+namespace desert_sim {
+namespace {
+
+constexpr double capacity = 0.3;
+
+/// Dunes with a pond, a block and plants, after winds of two directions.
+TerrainState dunes(const std::string& boundary) {
+  const std::unique_ptr<Exec> exec = make_exec("cpu", 1);
+  const auto world = test::simulate(
+      *exec,
+      "{seed: 9, grid: {width: 40, height: 56, cell_size: 0.75, origin_x: -12, origin_y: 5, boundary: " +
+          boundary +
+          "}, wind: {regime: timeline, segments: [{speed: 9, direction_deg: 20, duration: 3}, {speed: 11, "
+          "direction_deg: 70}]}, detail: {response_time: 5, crest_length: 0.7}, terrain: [noise: {layer: "
+          "sand, low: 0.2, high: 1.5, "
+          "scale: 6}, column: {layer: obstacle, x: 2, y: 20, size_x: 2, size_y: 2, height: 1}, column: "
+          "{layer: moisture, x: -6, y: 30, size_x: 6, size_y: 6, height: 0.05}, column: {layer: "
+          "vegetation, x: 6, y: 36, size_x: 8, size_y: 8, height: 0.8}]}");
+  test::run(*world, 8);
+  TerrainState state;
+  state.snapshot = world->snapshot(GridGround::layers_of_snapshot(true));
+  return state;
+}
+
+std::shared_ptr<const LayerMap> map_of(const Snapshot& s, const char* name) {
+  const auto grid = boost::make_shared<LayerGrid>();
+  grid->layer = name;
+  grid->keyframe = 1;
+  grid->width = static_cast<std::uint32_t>(s.width);
+  grid->height = static_cast<std::uint32_t>(s.height);
+  grid->cell_size = s.cell_size;
+  grid->origin.position.x = s.origin_x;
+  grid->origin.position.y = s.origin_y;
+  grid->origin.orientation.w = 1;
+  const std::vector<float>* const values = s.find(find_map_layer(name)->layer);
+  grid->data = values ? *values : std::vector<float>(grid->width * grid->height, 0.0f);
+  LayerMap::Rectangle changed;
+  return std::make_shared<const LayerMap>(MapKeyframe(LayerGrid::ConstPtr(grid)), nullptr, changed);
+}
+
+TerrainMaps maps_of(const TerrainState& state) {
+  TerrainMaps maps;
+  for (std::size_t n = 0; n < TerrainMaps::count; ++n)
+    maps.maps[n] = map_of(*state.snapshot, TerrainMaps::rows[n].name);
+  maps.detail_settings = std::make_shared<const Snapshot>(snapshot_of(*detail_message(state, "map")));
+  return maps;
+}
+
+TEST(MapDetail, TheLayersAreThoseOfTheSurfacesDetail) {
+  std::vector<Layer> layers;
+  for (const std::string& name : TerrainMaps::names(MapUse::detail))
+    layers.push_back(find_map_layer(name)->layer);
+  std::vector<Layer> expected = SurfaceDetail::layers();
+  std::sort(layers.begin(), layers.end());
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(layers, expected);
+}
+
+TEST(MapDetail, WheelsHaveTheSimulationsSurfaceToTheBit) {
+  for (const char* boundary : {"open", "periodic"}) {
+    const TerrainState state = dunes(boundary);
+    const Snapshot& s = *state.snapshot;
+    const MapGround ground(maps_of(state), capacity, false);
+    const auto expected = GridGround::with_detail(s, capacity);
+    const SurfaceDetail detail(s);
+    ASSERT_TRUE(ground.detail());
+    EXPECT_EQ(ground.finest_feature(), expected->finest_feature());
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> east(-12, -12 + 30), north(5, 5 + 42);
+    double largest = 0;
+    int smooth = 0;
+    for (int n = 0; n < 3000; ++n) {
+      const double x = east(random), y = north(random);
+      ASSERT_EQ(ground.detail()->offset(x, y), detail.offset(x, y)) << boundary << " " << x << " " << y;
+      largest = std::max(largest, std::abs(detail.offset(x, y)));
+      smooth += detail.offset(x, y) == 0;
+      // Maps do not know that a terrain goes on over its edges.
+      if (x > -11 && x < 17 && y > 6 && y < 46) {
+        ASSERT_EQ(ground.elevation(x, y), expected->elevation(x, y)) << boundary << " " << x << " " << y;
+      }
+    }
+    EXPECT_GT(largest, 0.004) << "there are ripples";
+    EXPECT_GT(smooth, 10) << "there are none on the block";
+  }
+}
+
+// Without lockstep, maps may be off by their thresholds. In thin sand and water that can be all of a ripple.
+TEST(MapDetail, MapsWithinTheirThresholdsGiveNearlyTheSameRipples) {
+  const TerrainState state = dunes("open");
+  Snapshot near = *state.snapshot;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> off(-1, 1);
+  for (const char* name : {"elevation", "wind_x", "wind_y", "wind_shadow"}) {
+    const MapLayer& layer = *find_map_layer(name);
+    for (float& v : near.layers.at(layer.layer)) v += static_cast<float>(layer.threshold) * off(random);
+  }
+  const SurfaceDetail exact(*state.snapshot), about(near);
+  double largest = 0;
+  for (double x = -12; x < 18; x += 0.13)
+    for (double y = 5; y < 47; y += 0.17)
+      largest = std::max(largest, std::abs(about.offset(x, y) - exact.offset(x, y)));
+  EXPECT_GT(largest, 1e-5);
+  EXPECT_LT(largest, 1.5e-3);
+}
+
+TEST(MapDetail, BeamsHaveThem) {
+  const TerrainState state = dunes("periodic");
+  const Snapshot &s = *state.snapshot, made = MapGround(maps_of(state), capacity, false).detail()->snapshot();
+  const SurfaceDetail expected(s), detail(made);
+  const DetailWindow window{-13, 4, 400, 600, 0.08};
+  EXPECT_EQ(0, std::memcmp(detail.elevations(window).data(), expected.elevations(window).data(),
+                           window.points() * sizeof(float)));
+  const std::unique_ptr<Exec> exec = make_exec("cpu", 1);
+  HeightFieldScene scene(*exec, {s.width, s.height, s.cell_size, s.origin_x, s.origin_y});
+  EXPECT_NO_THROW(scene.set_detail(made));
+}
+
+TEST(MapDetail, WithoutAllThatItNeedsTheGroundIsBilinear) {
+  const TerrainState state = dunes("open");
+  const GridGround bilinear(*state.snapshot, capacity);
+  std::vector<TerrainMaps> lacking(3, maps_of(state));
+  lacking[0].detail_settings = nullptr;
+  lacking[1].forget(MapUse::detail, MapUse::ground);
+  Snapshot smaller = *state.snapshot;
+  smaller.height -= 1;
+  smaller.layers.clear();
+  lacking[2].maps[TerrainMaps::wind_x] = map_of(smaller, "wind_x");
+  EXPECT_TRUE(maps_of(state).complete(MapUse::ground | MapUse::detail));
+  EXPECT_FALSE(lacking[0].complete(MapUse::detail) || lacking[1].complete(MapUse::detail));
+  for (const TerrainMaps& maps : lacking) {
+    EXPECT_TRUE(maps.complete(MapUse::ground));
+    const MapGround ground(maps, capacity, false);
+    EXPECT_FALSE(ground.detail());
+    EXPECT_EQ(ground.finest_feature(), bilinear.finest_feature());
+    EXPECT_EQ(ground.elevation(3.1, 8.2), bilinear.elevation(3.1, 8.2));
+  }
+}
+
+TEST(MapDetail, ABrokenMessageIsRefusedWithAllThatIsWrong) {
+  const DetailStatePtr good = detail_message(dunes("open"), "map");
+  EXPECT_NO_THROW(snapshot_of(*good));
+  DetailState m = *good;
+  m.parameters = "{longest: 7, colour: red}";
+  m.mean_speed = std::nan("");
+  m.ripples_passed = -1;
+  m.repose_tangent = 0;
+  m.wind_above.y = 1e30;
+  const std::string why = test::refusal([&] { snapshot_of(m); });
+  for (const char* part :
+       {"parameters.longest: = 7 is not in [0.1, 1] m", "parameters.colour: unknown key",
+        "speed: = nan is not in [0, 101]", "passed: = -1.0", "repose_tangent: = 0.0", "wind_above.y"})
+    EXPECT_NE(why.find(part), std::string::npos) << part << " in " << why;
+  m = *good;
+  m.parameters = "{longest: [";
+  EXPECT_NE(test::refusal([&] { snapshot_of(m); }).find("parameters: yaml-cpp"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace desert_sim

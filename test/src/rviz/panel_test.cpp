@@ -1,0 +1,325 @@
+// The panel desert_sim/Panel on a screen of Xvfb, with a node of its own: what is clicked and typed reaches
+// the node, and what the node refuses, or that it has gone, is shown.
+
+#include <desert_sim/EditTerrain.h>
+#include <desert_sim/SetWeather.h>
+#include <desert_sim/SimulationStatus.h>
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+
+#include <QApplication>
+#include <QTabWidget>
+#include <QTableWidget>
+#include <QTimer>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "test/src/rviz/panel_window.hpp"
+#include "test/src/rviz/rviz_window.hpp"
+#include "test/support/ros/child_process.hpp"
+
+namespace rviz_test {
+namespace {
+
+using desert_sim::SimulationStatus;
+using node_test::ChildProcess;
+using node_test::Listener;
+using node_test::NodeProcess;
+
+enum Tab { wind, weather, scenes };
+
+class Panel : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    screen_ = new Screen;
+    if (!screen_->problem().empty()) return;
+    static int argument_count = 1;
+    static char name[] = "panel_test";
+    static char* arguments[] = {name, nullptr};
+    new QApplication(argument_count, arguments);
+  }
+  static void TearDownTestSuite() {
+    delete qApp;
+    delete screen_;
+  }
+  void SetUp() override {
+    if (!qApp) GTEST_SKIP() << screen_->problem();
+    char folder[] = "/tmp/desert_panel_XXXXXX";
+    data_dir_ = mkdtemp(folder);
+    start();
+    window_ = std::make_unique<PanelWindow>(node_name);
+    ASSERT_TRUE(window_->shows("state", "corner: paused")) << window_->text("state");
+    statuses_ = std::make_unique<Listener<SimulationStatus>>(std::string(node_name) + "/status");
+  }
+  void TearDown() override {
+    window_.reset();
+    statuses_.reset();
+    node_.reset();
+    if (!data_dir_.empty()) std::filesystem::remove_all(data_dir_);
+  }
+  void start() {
+    node_ = std::make_unique<NodeProcess>(node_name, std::map<std::string, XmlRpc::XmlRpcValue>{
+                                                         {"data_dir", data_dir_}, {"status_rate", 10.0}});
+  }
+  /// Waits for a status of the node.
+  bool node_has(const std::function<bool(const SimulationStatus&)>& fits) {
+    return window_->run_until([&] { return statuses_->count() > 0 && fits(statuses_->last()); });
+  }
+
+  static constexpr const char* node_name = "/panel_node";
+  static Screen* screen_;
+  std::string data_dir_;
+  std::unique_ptr<NodeProcess> node_;
+  std::unique_ptr<PanelWindow> window_;
+  std::unique_ptr<Listener<SimulationStatus>> statuses_;
+};
+
+Screen* Panel::screen_ = nullptr;
+
+TEST_F(Panel, RunsPausesStepsAndResets) {
+  window_->type("steps", "7");
+  window_->click("step");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.step == 7; }));
+  EXPECT_TRUE(window_->shows("progress", "step 7,"));
+  EXPECT_TRUE(window_->shows("balance", "mass residual 0"));
+  window_->type("rate", "40");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.step_rate == 40; }));
+  window_->type("acceleration", "0.5");
+  EXPECT_TRUE(
+      node_has([](const SimulationStatus& s) { return s.acceleration == 0.5 && s.step_rate == 0.5; }));
+  EXPECT_TRUE(window_->run_until([&] { return !window_->enabled("rate"); })) << "the acceleration sets it";
+  window_->type("acceleration", "0");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.acceleration == 0 && s.step_rate == 40; }));
+  EXPECT_FALSE(window_->enabled("pause")) << "it is paused";
+  window_->click("run");
+  EXPECT_TRUE(
+      node_has([](const SimulationStatus& s) { return s.state == SimulationStatus::RUNNING && s.step > 9; }));
+  EXPECT_TRUE(window_->run_until([&] { return window_->enabled("pause") && !window_->enabled("run"); }));
+  window_->click("pause");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.state == SimulationStatus::PAUSED; }));
+  window_->click("reset");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.step == 0; }));
+}
+
+TEST_F(Panel, PauseDoesNotWaitForSteps) {
+  window_->type("steps", "100000000");
+  window_->click("step");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.step > 5; }));
+  EXPECT_TRUE(window_->shows("step_error", "step ..."));
+  window_->type("rate", "20");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.step_rate == 20; }));
+  window_->click("reset");
+  EXPECT_TRUE(window_->run_until([&] {
+    return window_->error("step_error").find("reset") != std::string::npos;
+  })) << "why the steps have ended: "
+      << window_->text("step_error");
+}
+
+TEST_F(Panel, DraggingTheNeedleSetsTheWind) {
+  auto* const dial = window_->find<QWidget>("wind_dial");
+  const QPoint centre = dial->rect().center();
+  QTest::mousePress(dial, Qt::LeftButton, {}, centre + QPoint(10, 0));
+  QTest::mouseMove(dial, centre + QPoint(0, -20));
+  QTest::mouseRelease(dial, Qt::LeftButton, {}, centre + QPoint(0, -30));
+  const double speed = window_->find<QDoubleSpinBox>("wind_speed")->value();
+  EXPECT_GT(speed, 1);
+  EXPECT_NEAR(window_->find<QDoubleSpinBox>("wind_direction")->value(), 90, 3) << "up is north";
+  EXPECT_TRUE(node_has([&](const SimulationStatus& s) {
+    return std::abs(s.wind_above.y - speed) < 0.05 * speed && std::abs(s.wind_above.x) < 0.06 * speed;
+  }));
+  window_->type("wind_speed", "9");
+  window_->type("wind_direction", "180");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) {
+    return std::abs(s.wind_above.x + 9) < 1e-6 && std::abs(s.wind_above.y) < 1e-6;
+  }));
+  EXPECT_EQ(window_->error("wind_error"), "");
+}
+
+TEST_F(Panel, SetsTimelinesAndRoses) {
+  auto* const table = window_->find<QTableWidget>("segments_table");
+  const auto cell = [&](int row, int column) {
+    return qobject_cast<QDoubleSpinBox*>(table->cellWidget(row, column));
+  };
+  cell(0, 0)->setValue(270);
+  cell(0, 1)->setValue(8);
+  cell(0, 3)->setValue(0);
+  window_->click("apply_schedule");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return std::abs(s.wind_above.y + 8) < 1e-6; }));
+  EXPECT_EQ(window_->error("schedule_error"), "");
+
+  cell(1, 2)->setValue(5);
+  cell(1, 3)->setValue(20);
+  window_->click("apply_schedule");
+  EXPECT_TRUE(window_->run_until([&] {
+    return window_->error("schedule_error").find("ramp") != std::string::npos;
+  })) << "a ramp longer than its segment: "
+      << window_->error("schedule_error");
+
+  window_->find<QComboBox>("schedule_kind")->setCurrentIndex(1);
+  EXPECT_TRUE(table->isColumnHidden(2)) << "a rose has no durations";
+  window_->click("segments_remove");
+  ASSERT_EQ(table->rowCount(), 1);
+  cell(0, 0)->setValue(0);
+  cell(0, 1)->setValue(5);
+  window_->click("apply_schedule");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return std::abs(s.wind_above.x - 5) < 1e-6; }));
+  EXPECT_EQ(window_->error("schedule_error"), "") << "what was refused before is not shown any more";
+}
+
+TEST_F(Panel, ChangesTheWeatherThatIsTicked) {
+  window_->show_tab(weather);
+  window_->click("apply_weather");
+  EXPECT_TRUE(window_->run_until([&] { return !window_->error("weather_error").empty(); }))
+      << "nothing is ticked";
+  window_->click("change_rain_rate");
+  window_->type("rain_rate", "36000");
+  window_->click("apply_weather");
+  EXPECT_TRUE(window_->run_until([&] { return window_->text("weather_error").empty(); }));
+  window_->click("step");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) {
+    for (const auto& volume : s.volumes)
+      if (volume.material == "water" && volume.entered > 0) return true;
+    return false;
+  }));
+
+  desert_sim::SetWeather::Request others;
+  others.change = {"evaporation", "rain_rate"};
+  others.evaporation = 0.5;
+  node_->call<desert_sim::SetWeather>("set_weather", others);
+  const auto value = [&](const char* name) { return window_->find<QDoubleSpinBox>(name)->value(); };
+  EXPECT_TRUE(window_->run_until([&] { return value("evaporation") == 0.5; })) << "what others set is shown";
+  EXPECT_EQ(value("rain_rate"), 36000) << "but what is ticked stays as it was typed";
+}
+
+TEST_F(Panel, LoadsScenariosByName) {
+  window_->show_tab(scenes);
+  auto* const list = window_->find<QComboBox>("scenario");
+  EXPECT_TRUE(window_->run_until([&] { return list->findText("nebkha") >= 0; }))
+      << "installed ones are listed";
+  std::ofstream(data_dir_ + "/mine.yaml") << "grid: {width: 9, height: 7}\n";
+  window_->click("refresh");
+  EXPECT_TRUE(window_->run_until([&] { return list->findText("mine.yaml") >= 0; }));
+  for (const char* name : {"mine.yaml", "nebkha"}) {
+    list->setCurrentIndex(list->findText(name));
+    window_->click("load_scenario");
+    EXPECT_TRUE(node_has([&](const SimulationStatus& s) {
+      return s.scenario == std::string(name).substr(0, s.scenario.size());
+    }));
+  }
+  list->setEditText("nowhere");
+  window_->click("load_scenario");
+  EXPECT_TRUE(window_->run_until(
+      [&] { return window_->error("scenario_error").find("nowhere") != std::string::npos; }));
+  EXPECT_EQ(statuses_->last().scenario, "nebkha");
+}
+
+TEST_F(Panel, SavesAndLoads) {
+  window_->show_tab(scenes);
+  window_->find<QComboBox>("checkpoint")->setEditText("at7.ckpt");
+  window_->find<QComboBox>("terrain")->setEditText("site");
+  window_->type("steps", "7");
+  window_->click("step");
+  ASSERT_TRUE(node_has([](const SimulationStatus& s) { return s.step == 7; }));
+  window_->click("save_checkpoint");
+  EXPECT_TRUE(window_->shows("checkpoint_error", data_dir_ + "/at7.ckpt"));
+  window_->click("save_terrain");
+  EXPECT_TRUE(window_->shows("terrain_error", data_dir_ + "/site/terrain.yaml"));
+  window_->click("load_terrain");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.step == 0; }));
+  window_->click("load_checkpoint");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.step == 7; }));
+  EXPECT_TRUE(window_->run_until([&] { return window_->find<QComboBox>("terrain")->findText("site") >= 0; }));
+  window_->find<QComboBox>("checkpoint")->setEditText("../outside.ckpt");
+  window_->click("save_checkpoint");
+  EXPECT_TRUE(window_->run_until(
+      [&] { return window_->error("checkpoint_error").find("~data_dir") != std::string::npos; }));
+}
+
+TEST_F(Panel, UndoesAndRedoes) {
+  EXPECT_FALSE(window_->enabled("undo"));
+  const std::string before = statuses_->last().state_hash;
+  desert_sim::EditTerrain::Request brush;
+  brush.layer = "sand";
+  brush.shape = "circle";
+  brush.merge = "add";
+  brush.center.x = brush.center.y = 20;
+  brush.radius = 5;
+  brush.value = 1;
+  node_->call<desert_sim::EditTerrain>("edit_terrain", brush);
+  const auto button = [&](const char* name) {
+    return window_->find<QAbstractButton>(name)->text().toStdString();
+  };
+  ASSERT_TRUE(window_->run_until([&] { return button("undo") == "Undo (1)"; })) << button("undo");
+  EXPECT_NE(statuses_->last().state_hash, before);
+  window_->click("undo");
+  EXPECT_TRUE(node_has([&](const SimulationStatus& s) { return s.state_hash == before; }));
+  ASSERT_TRUE(window_->run_until([&] { return button("redo") == "Redo (1)"; })) << button("redo");
+  window_->click("redo");
+  EXPECT_TRUE(node_has([&](const SimulationStatus& s) { return s.state_hash != before && s.undoable == 1; }));
+}
+
+TEST_F(Panel, ShowsThatTheNodeHasVanishedAndIsBack) {
+  node_->end(SIGKILL);
+  EXPECT_LT(window_->longest_stall([&] { return window_->text("state") == "/panel_node is not there"; }, 15),
+            0.5);
+  EXPECT_TRUE(window_->shows("state", "is not there"));
+  EXPECT_NE(window_->text("hint").find("roslaunch"), std::string::npos);
+  EXPECT_FALSE(window_->enabled("controls"));
+  start();
+  EXPECT_TRUE(window_->shows("state", "corner: paused", 20)) << window_->text("state");
+  EXPECT_TRUE(window_->enabled("controls"));
+}
+
+/// A node that is stopped, as by a debugger, answers nothing and holds its connections.
+TEST_F(Panel, NeverWaitsForANodeThatHangs) {
+  ASSERT_EQ(node_->signal(SIGSTOP), 0);
+  window_->click("step");
+  window_->click("reset");
+  bool later = false;
+  QTimer::singleShot(1500, [&] { later = true; });
+  EXPECT_LT(window_->longest_stall([&] { return later; }), 0.5);
+  EXPECT_EQ(window_->text("run_error"), "reset ...");
+  const ros::WallTime begin = ros::WallTime::now();
+  window_->type("node", "/other_node");
+  EXPECT_EQ(window_->text("run_error"), "");
+  EXPECT_TRUE(window_->shows("state", "/other_node is not there"));
+  window_->type("node", node_name);
+  window_->click("reset");
+  window_.reset();
+  EXPECT_LT((ros::WallTime::now() - begin).toSec(), 10) << "also at its end";
+  ASSERT_EQ(node_->signal(SIGCONT), 0);
+}
+
+TEST_F(Panel, IsSavedWithRviz) {
+  window_->type("steps", "25");
+  rviz::Config config;
+  window_->panel().save(config);
+  PanelWindow other("/other_node");
+  other.panel().load(config);
+  EXPECT_EQ(other.find<QLineEdit>("node")->text().toStdString(), node_name);
+  EXPECT_EQ(other.find<QSpinBox>("steps")->value(), 25);
+  EXPECT_TRUE(other.shows("state", "corner: paused"));
+}
+
+TEST_F(Panel, RefusesNamesThatAreNone) {
+  window_->type("node", "no such name");
+  EXPECT_NE(window_->error("node_error").find("'no such name'"), std::string::npos);
+  window_->type("node", node_name);
+  EXPECT_EQ(window_->error("node_error"), "");
+}
+
+}  // namespace
+}  // namespace rviz_test
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "panel_test", ros::init_options::NoSigintHandler);
+  ros::start();
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  const int result = RUN_ALL_TESTS();
+  ros::shutdown();
+  return result;
+}

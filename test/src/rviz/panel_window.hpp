@@ -1,0 +1,94 @@
+#pragma once
+/// The panel desert_sim/Panel in the test's own process, loaded as rviz does, with a hand that clicks and
+/// types.
+
+#include <rviz/panel.h>
+
+#include <QAbstractButton>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QLabel>
+#include <QLineEdit>
+#include <QTabWidget>
+#include <QTest>
+#include <functional>
+#include <memory>
+#include <pluginlib/class_loader.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "test/support/ros/client.hpp"
+
+namespace rviz_test {
+
+class PanelWindow {
+ public:
+  explicit PanelWindow(const std::string& node)
+      : loader_("rviz", "rviz::Panel"), panel_(loader_.createUnmanagedInstance("desert_sim/Panel")) {
+    panel_->resize(380, 800);
+    panel_->show();
+    type("node", node);
+  }
+  ~PanelWindow() { delete panel_; }
+  PanelWindow(const PanelWindow&) = delete;
+  PanelWindow& operator=(const PanelWindow&) = delete;
+
+  rviz::Panel& panel() { return *panel_; }
+
+  /// A widget by its object's name; an exception if there is none.
+  template <class Widget>
+  Widget* find(const std::string& name) const {
+    auto* const found = panel_->findChild<Widget*>(QString::fromStdString(name));
+    if (!found) throw std::runtime_error("the panel has no " + name);
+    return found;
+  }
+  std::string text(const std::string& label) const { return find<QLabel>(label)->text().toStdString(); }
+  bool enabled(const std::string& name) const { return find<QWidget>(name)->isEnabled(); }
+  /// What a line under a control says in red; empty if nothing was refused.
+  std::string error(const std::string& line) const {
+    auto* const label = find<QLabel>(line);
+    return label->isVisibleTo(label->window()) && label->property("refused").toBool()
+               ? label->text().toStdString()
+               : "";
+  }
+
+  void show_tab(int index) { find<QTabWidget>("tabs")->setCurrentIndex(index); }
+  void click(const std::string& button) { QTest::mouseClick(find<QAbstractButton>(button), Qt::LeftButton); }
+  void type(const std::string& field, const std::string& text) {
+    auto* const widget = find<QWidget>(field);
+    auto* const edit =
+        widget->inherits("QLineEdit") ? qobject_cast<QLineEdit*>(widget) : widget->findChild<QLineEdit*>();
+    if (!edit) throw std::runtime_error(field + " takes no text");
+    edit->setFocus();
+    edit->selectAll();
+    QTest::keyClicks(edit, QString::fromStdString(text));
+    QTest::keyClick(edit, Qt::Key_Return);
+  }
+
+  /// Serves Qt until the condition holds; false if it does not within the time.
+  bool run_until(const std::function<bool()>& condition, double seconds = 10) const {
+    return QTest::qWaitFor(condition, static_cast<int>(1000 * seconds * node_test::patience()));
+  }
+  bool shows(const std::string& label, const std::string& part, double seconds = 10) const {
+    return run_until([&] { return text(label).find(part) != std::string::npos; }, seconds);
+  }
+  /// The longest time that Qt was not served while the condition was waited for [s].
+  double longest_stall(const std::function<bool()>& condition, double seconds = 10) const {
+    double longest = 0;
+    ros::WallTime last = ros::WallTime::now();
+    run_until(
+        [&] {
+          longest = std::max(longest, (ros::WallTime::now() - last).toSec());
+          last = ros::WallTime::now();
+          return condition();
+        },
+        seconds);
+    return longest;
+  }
+
+ private:
+  pluginlib::ClassLoader<rviz::Panel> loader_;
+  rviz::Panel* panel_;
+};
+
+}  // namespace rviz_test

@@ -1,0 +1,115 @@
+// Frames per second and milliseconds per frame of the display desert_sim/Terrain under OpenGL in software,
+// while a keyframe comes in and while updates come at 10 Hz; for grids of several sizes. Needs a ROS master
+// and Xvfb:
+//
+//     roscore & rosrun desert_sim rviz_terrain_bench [SECONDS] [SIDE]...
+
+#include <ros/ros.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <thread>
+
+#include "test/src/rviz/made_up_node.hpp"
+#include "test/src/rviz/rviz_window.hpp"
+
+namespace rviz_test {
+namespace {
+
+struct Figures {
+  std::vector<double> milliseconds;
+
+  double most() const {
+    return milliseconds.empty() ? 0 : *std::max_element(milliseconds.begin(), milliseconds.end());
+  }
+  double mean() const {
+    double sum = 0;
+    for (const double one : milliseconds) sum += one;
+    return milliseconds.empty() ? 0 : sum / static_cast<double>(milliseconds.size());
+  }
+};
+
+double number(rviz::Display* display, const char* name) { return display->property(name).toDouble(); }
+
+/// Draws for some seconds, with an update of this part of the grid ten times a second.
+void measure_updates(Window& window, rviz::Display* display, MadeUpNode& node, int side, int part,
+                     double seconds) {
+  Figures all, with_update;
+  std::atomic<bool> stop{false};
+  std::thread sender([&] {
+    for (int n = 0; !stop; ++n) {
+      const int range = std::max(1, side - part);
+      node.update(part == side ? 0 : n * 61 % range, part == side ? 0 : n * 83 % range, part, part,
+                  [n](int x, int y) { return dunes(x, y) + 0.02f * static_cast<float>(n % 50); });
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+  });
+  const std::uint64_t frames = window.frames();
+  const std::clock_t begin_of_work = std::clock();
+  const double begin = ros::WallTime::now().toSec();
+  window.run(seconds, [&] {
+    all.milliseconds.push_back(number(display, "frame_milliseconds"));
+    if (number(display, "frame_messages") > 0) with_update.milliseconds.push_back(all.milliseconds.back());
+  });
+  const double elapsed = ros::WallTime::now().toSec() - begin;
+  const double drawn = static_cast<double>(window.frames() - frames);
+  const double work = 1e3 * static_cast<double>(std::clock() - begin_of_work) / CLOCKS_PER_SEC;
+  stop = true;
+  sender.join();
+  std::printf(
+      "%5d  updates of %4d x %-4d  %5.1f frames/s (%3.0f ms of processor time each, publisher included)  our "
+      "work: %5.2f "
+      "ms/frame, %5.2f ms with an update, at most %5.2f ms  %6.0f triangles\n",
+      side, part, part, drawn / elapsed, work / drawn, all.mean(), with_update.mean(), all.most(),
+      number(display, "triangles"));
+}
+
+void measure(Window& window, int side, double seconds) {
+  const std::string name = "/bench" + std::to_string(side);
+  MadeUpNode node(name);
+  rviz::Display* const display = window.add_terrain(name + "/elevation");
+  set(display, {"Plants"}, false);
+  window.look_at(side);
+  std::thread sender([&] { node.keyframe(side, side, dunes); });
+  Figures keyframe;
+  const double begin = ros::WallTime::now().toSec();
+  window.run_until(
+      [&] {
+        keyframe.milliseconds.push_back(number(display, "frame_milliseconds"));
+        return number(display, "triangles") > 0 && number(display, "waiting_blocks") == 0;
+      },
+      60);
+  sender.join();
+  std::printf("%5d  keyframe shown after %.2f s, our work at most %.2f ms in a frame\n", side,
+              ros::WallTime::now().toSec() - begin, keyframe.most());
+  window.run(0.5);
+  measure_updates(window, display, node, side, 64, seconds);
+  measure_updates(window, display, node, side, side, seconds);
+  window.remove(display);
+}
+
+}  // namespace
+}  // namespace rviz_test
+
+int main(int argc, char** argv) {
+  using namespace rviz_test;
+  ros::init(argc, argv, "rviz_terrain_bench");
+  ros::start();
+  const double seconds = argc > 1 ? std::atof(argv[1]) : 8;
+  std::vector<int> sides;
+  for (int n = 2; n < argc; ++n) sides.push_back(std::atoi(argv[n]));
+  if (sides.empty()) sides = {256, 512, 1024, 2048};
+  const Screen screen;
+  if (!screen.problem().empty()) {
+    std::fprintf(stderr, "%s\n", screen.problem().c_str());
+    return 2;
+  }
+  QApplication application(argc, argv);
+  Window window(1024, 768);
+  window.set_fixed_frame("map");
+  for (const int side : sides) measure(window, side, seconds);
+  return 0;
+}

@@ -1,0 +1,196 @@
+#include "test/src/rviz/rviz_window.hpp"
+
+#include <OgreRenderWindow.h>
+#include <fcntl.h>
+#include <rviz/display_group.h>
+#include <rviz/ogre_helpers/render_system.h>
+#include <rviz/properties/status_list.h>
+#include <rviz/properties/status_property.h>
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <QImage>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+namespace rviz_test {
+
+namespace {
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+// ---- Screen ----
+
+Screen::Screen() {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("no pipe for Xvfb");
+  pid_ = fork();
+  if (pid_ == 0) {
+    close(ends[0]);
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // a test that crashes leaves no screen behind
+    dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
+    const std::string number = std::to_string(ends[1]);
+    execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1280x900x24", "+extension", "GLX",
+           "-noreset", "-nolisten", "tcp", static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  close(ends[1]);
+  char text[16] = "";
+  ssize_t length = 0;
+  for (ssize_t n = 0; length < 15 && (n = read(ends[0], text + length, 1)) == 1 && text[length] != '\n';)
+    ++length;
+  close(ends[0]);
+  text[length] = 0;
+  if (length == 0) {
+    problem_ = "Xvfb does not start: install xvfb and libgl1-mesa-dri (scripts/dependencies.txt)";
+    return;
+  }
+  char folder[] = "/tmp/desert_rviz_XXXXXX";
+  runtime_folder_ = mkdtemp(folder);
+  setenv("XDG_RUNTIME_DIR", runtime_folder_.c_str(), 1);
+  setenv("DISPLAY", (std::string(":") + text).c_str(), 1);
+  setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+  setenv("GALLIUM_DRIVER", "llvmpipe", 1);
+  setenv("QT_X11_NO_MITSHM", "1", 1);
+  setenv("OGRE_RTT_MODE", "Copy", 1);
+}
+
+Screen::~Screen() {
+  if (pid_ <= 0) return;
+  kill(pid_, SIGTERM);
+  waitpid(pid_, nullptr, 0);
+  std::error_code ignored;  // a folder that stays harms nobody
+  if (!runtime_folder_.empty()) std::filesystem::remove_all(runtime_folder_, ignored);
+}
+
+// ---- Window ----
+
+Window::Window(int width, int height) {
+  rviz::RenderSystem::disableAntiAliasing();  // in software it takes more than all the rest
+  panel_ = std::make_unique<rviz::RenderPanel>();
+  panel_->resize(width, height);
+  panel_->show();
+  manager_ = std::make_unique<rviz::VisualizationManager>(panel_.get());
+  panel_->initialize(manager_->getSceneManager(), manager_.get());
+  manager_->initialize();
+  manager_->startUpdate();
+}
+
+Window::~Window() {
+  manager_->stopUpdate();
+  manager_->removeAllDisplays();
+  panel_.reset();
+  manager_.reset();
+}
+
+rviz::Display* Window::add_terrain(const std::string& topic) {
+  rviz::Display* const display = manager_->createDisplay("desert_sim/Terrain", "Terrain", false);
+  display->setTopic(QString::fromStdString(topic), "desert_sim/ElevationGrid");
+  display->setEnabled(true);
+  return display;
+}
+
+void Window::remove(rviz::Display* display) {
+  manager_->getRootDisplayGroup()->takeDisplay(display);
+  delete display;
+}
+
+void Window::look_at(double side) {
+  manager_->getViewManager()->setCurrentViewControllerType("rviz/Orbit");
+  rviz::ViewController* const view = manager_->getViewManager()->getCurrent();
+  view->subProp("Distance")->setValue(1.1 * side);
+  view->subProp("Yaw")->setValue(-1.9);
+  view->subProp("Pitch")->setValue(0.7);
+  rviz::Property* const focus = view->subProp("Focal Point");
+  focus->subProp("X")->setValue(0.5 * side);
+  focus->subProp("Y")->setValue(0.5 * side);
+  focus->subProp("Z")->setValue(0);
+}
+
+void Window::look_from_above(double x, double y, double pixels_per_metre) {
+  manager_->getViewManager()->setCurrentViewControllerType("rviz/TopDownOrtho");
+  rviz::ViewController* const view = manager_->getViewManager()->getCurrent();
+  view->subProp("Scale")->setValue(pixels_per_metre);
+  view->subProp("X")->setValue(x);
+  view->subProp("Y")->setValue(y);
+}
+
+void Window::run(double seconds, const std::function<void()>& each_frame) {
+  const double end = now() + seconds;
+  std::uint64_t frame = frames();
+  while (now() < end) {
+    QApplication::processEvents(QEventLoop::WaitForMoreEvents, 20);
+    if (frames() != frame && each_frame) each_frame();
+    frame = frames();
+  }
+}
+
+bool Window::run_until(const std::function<bool()>& condition, double seconds) {
+  const double end = now() + seconds;
+  while (!condition()) {
+    if (now() > end) return false;
+    run(0.02);
+  }
+  return true;
+}
+
+void Window::save(const std::string& path) { panel_->getRenderWindow()->writeContentsToFile(path); }
+
+std::size_t Window::colours() {
+  Ogre::RenderWindow* const window = panel_->getRenderWindow();
+  const int width = static_cast<int>(window->getWidth()), height = static_cast<int>(window->getHeight());
+  std::vector<std::uint32_t> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  const Ogre::Box all(0, 0, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height));
+  window->copyContentsToMemory(all, Ogre::PixelBox(all, Ogre::PF_A8R8G8B8, pixels.data()),
+                               Ogre::RenderTarget::FB_AUTO);
+  return std::set<std::uint32_t>(pixels.begin(), pixels.end()).size();
+}
+
+// ---- properties ----
+
+rviz::Property* property(rviz::Property* parent, const std::vector<std::string>& path) {
+  for (const std::string& name : path) {
+    rviz::Property* found = nullptr;
+    for (int n = 0; n < parent->numChildren(); ++n)
+      if (parent->childAt(n)->getNameStd() == name) found = parent->childAt(n);
+    if (!found) return nullptr;
+    parent = found;
+  }
+  return parent;
+}
+
+void set(rviz::Display* display, const std::vector<std::string>& path, const QVariant& value) {
+  rviz::Property* const found = property(display, path);
+  if (!found) throw std::runtime_error("the display has no property " + path.back());
+  found->setValue(value);
+}
+
+Status status(rviz::Display* display, const std::string& name) {
+  for (int n = 0; n < display->numChildren(); ++n) {
+    if (!dynamic_cast<rviz::StatusList*>(display->childAt(n))) continue;
+    if (auto* const found = dynamic_cast<rviz::StatusProperty*>(property(display->childAt(n), {name})))
+      return {found->getLevel(), found->getValue().toString().toStdString()};
+  }
+  return {};
+}
+
+double resident_megabytes() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0, resident = 0;
+  file >> pages >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+}  // namespace rviz_test

@@ -1,0 +1,341 @@
+// The display desert_sim/Terrain in rviz, on a screen of Xvfb: what people complain of in comparable plugins,
+// by number (test/src/rviz/README.md), and what can go wrong around it.
+
+#include <OgreSceneManager.h>
+#include <OgreSceneNode.h>
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+#include <rviz/properties/status_property.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <cstdlib>
+#include <limits>
+#include <thread>
+
+#include "test/src/rviz/made_up_node.hpp"
+#include "test/src/rviz/rviz_window.hpp"
+
+namespace rviz_test {
+namespace {
+
+using rviz::StatusProperty;
+
+constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+
+double number(rviz::Display* display, const char* name) { return display->property(name).toDouble(); }
+
+/// The box of everything that is drawn of the terrain, in the fixed frame.
+Ogre::AxisAlignedBox drawn(const Ogre::Node* node) {
+  Ogre::AxisAlignedBox box;
+  if (const auto* scene_node = dynamic_cast<const Ogre::SceneNode*>(node))
+    for (unsigned short n = 0; n < scene_node->numAttachedObjects(); ++n) {
+      Ogre::MovableObject* const object = const_cast<Ogre::SceneNode*>(scene_node)->getAttachedObject(n);
+      if (object->getMovableType() == "SimpleRenderable" && object->isVisible())
+        box.merge(object->getWorldBoundingBox(true));
+    }
+  for (unsigned short n = 0; n < node->numChildren(); ++n) box.merge(drawn(node->getChild(n)));
+  return box;
+}
+
+class TerrainDisplay : public testing::Test {
+ protected:
+  /// OGRE and rviz know one window in the life of a process.
+  static void SetUpTestSuite() {
+    screen_ = new Screen;
+    if (!screen_->problem().empty()) return;
+    static int argument_count = 1;
+    static char name[] = "terrain_display_test";
+    static char* arguments[] = {name, nullptr};
+    new QApplication(argument_count, arguments);
+    window_ = new Window(640, 480);
+  }
+  static void TearDownTestSuite() {
+    delete window_;
+    delete qApp;
+    delete screen_;
+  }
+  void SetUp() override {
+    if (!window_) GTEST_SKIP() << screen_->problem();
+    window_->set_fixed_frame("map");  // a terrain in that frame needs no transform
+  }
+  void TearDown() override {
+    if (window_) window_->manager().removeAllDisplays();
+  }
+
+  /// A display that shows all of a made-up terrain.
+  rviz::Display* show(MadeUpNode& node, const std::string& name, int side, const Height& height = dunes) {
+    rviz::Display* const display = window_->add_terrain(name + "/elevation");
+    set(display, {"Materials"}, false);
+    set(display, {"Water"}, false);
+    set(display, {"Plants"}, false);
+    window_->look_at(side);
+    node.keyframe(side, side, height);
+    EXPECT_TRUE(window_->run_until([&] { return is_ready(display); })) << status(display, "Topic").text;
+    return display;
+  }
+  static bool is_ready(rviz::Display* display) {
+    return number(display, "blocks") > 0 && number(display, "waiting_blocks") == 0 &&
+           number(display, "triangles") > 0;
+  }
+
+  static Screen* screen_;
+  static Window* window_;
+};
+
+Screen* TerrainDisplay::screen_ = nullptr;
+Window* TerrainDisplay::window_ = nullptr;
+
+TEST_F(TerrainDisplay, DrawsThePicture) {
+  MadeUpNode node("/drawn");
+  rviz::Display* const display = show(node, "/drawn", 256);
+  set(display, {"Contour Interval"}, 2);
+  window_->run(0.5);
+  EXPECT_GT(window_->colours(), 100u);
+  EXPECT_EQ(status(display, "Terrain").level, StatusProperty::Ok);
+  EXPECT_NE(status(display, "Terrain").text.find("256 x 256 cells"), std::string::npos);
+  EXPECT_NE(status(display, "Blocks").text.find("0 of 16 wait"), std::string::npos)
+      << status(display, "Blocks").text;
+}
+
+// (1) Big maps stall rviz.
+TEST_F(TerrainDisplay, Complaint1ALargeKeyframeTakesNoFrameMoreThan20Milliseconds) {
+  MadeUpNode node("/large");
+  rviz::Display* const display = show(node, "/large", 256);
+  std::vector<double> milliseconds;
+  std::thread sender([&] { node.keyframe(2048, 2048, dunes); });  // rviz goes on drawing meanwhile
+  window_->run_until([&] {
+    milliseconds.push_back(number(display, "frame_milliseconds"));
+    return number(display, "blocks") == 256 && is_ready(display);
+  });
+  sender.join();
+  EXPECT_TRUE(is_ready(display));
+  std::printf("longest frame: %.1f ms of our work, of %zu\n",
+              *std::max_element(milliseconds.begin(), milliseconds.end()), milliseconds.size());
+  EXPECT_LE(*std::max_element(milliseconds.begin(), milliseconds.end()), 20);
+  EXPECT_LE(number(display, "triangles"), 200000) << "of which 60000 are in the picture";
+}
+
+// (2) One frame a second unless built for release.
+TEST_F(TerrainDisplay, Complaint2WarnsWithoutOptimisation) {
+  MadeUpNode node("/build");
+  rviz::Display* const display = show(node, "/build", 64);
+#ifdef __OPTIMIZE__
+  EXPECT_EQ(status(display, "Build").level, -1) << "an optimised build does not warn";
+#else
+  EXPECT_EQ(status(display, "Build").level, StatusProperty::Warn);
+#endif
+}
+
+// (3) A crash on a missing layer.
+TEST_F(TerrainDisplay, Complaint3AMissingLayerIsAStatus) {
+  MadeUpNode node("/missing");
+  rviz::Display* const display = show(node, "/missing", 128);
+  set(display, {"Overlay"}, "no_such_layer");
+  EXPECT_TRUE(window_->run_until([&] { return status(display, "Overlay").level == StatusProperty::Error; }));
+  EXPECT_NE(status(display, "Overlay").text.find("traversability"), std::string::npos)
+      << "it says what there is";
+  set(display, {"Overlay"}, "wind_shadow");  // known, but this node does not send it
+  EXPECT_TRUE(window_->run_until([&] { return status(display, "Overlay").level == StatusProperty::Warn; }));
+  set(display, {"Overlay"}, "slope");
+  EXPECT_TRUE(window_->run_until([&] { return status(display, "Overlay").level == StatusProperty::Ok; }));
+  EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
+  EXPECT_GT(window_->colours(), 100u);
+}
+
+// (4) NaN crashes OGRE.
+TEST_F(TerrainDisplay, Complaint4UnknownCellsAreHoles) {
+  MadeUpNode node("/unknown");
+  rviz::Display* const display =
+      show(node, "/unknown", 128, [](int x, int y) { return x < 64 ? dunes(x, y) : unknown; });
+  EXPECT_LT(drawn(window_->manager().getSceneManager()->getRootSceneNode()).getMaximum().x, 66);
+  node.update(0, 0, 128, 128, [](int, int) { return unknown; });
+  EXPECT_TRUE(window_->run_until([&] { return number(display, "triangles") == 0; }));
+  window_->run(0.3);
+  node.update(0, 0, 128, 128, dunes);
+  EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
+  node.keyframe(1, 50, dunes);
+  EXPECT_TRUE(window_->run_until([&] { return status(display, "Terrain").level == StatusProperty::Error; }));
+  EXPECT_NE(status(display, "Terrain").text.find("at least 2 x 2"), std::string::npos);
+}
+
+// (5) The whole map is sent again for a small change.
+TEST_F(TerrainDisplay, Complaint5ASmallUpdateBuildsOnlyItsBlocks) {
+  MadeUpNode node("/small");
+  rviz::Display* const display = show(node, "/small", 512);
+  window_->run(0.3);
+  const double before = number(display, "built_blocks");
+  node.update(90, 90, 16, 16, [](int x, int y) { return dunes(x, y) + 0.5f; });
+  EXPECT_TRUE(window_->run_until([&] { return number(display, "built_blocks") > before; }));
+  window_->run(0.3);
+  EXPECT_EQ(number(display, "built_blocks"), before + 1);
+  // The same elevations in a new keyframe.
+  node.keyframe(512, 512, [](int x, int y) {
+    return x >= 90 && x < 106 && y >= 90 && y < 106 ? dunes(x, y) + 0.5f : dunes(x, y);
+  });
+  window_->run(1);
+  EXPECT_EQ(number(display, "built_blocks"), before + 1);
+}
+
+// (6) Memory that grows.
+TEST_F(TerrainDisplay, Complaint6MemoryIsFlatOverUpdatesAndResizes) {
+  MadeUpNode node("/memory");
+  rviz::Display* const display = show(node, "/memory", 256);
+  set(display, {"Contour Interval"}, 3);
+  set(display, {"Overlay"}, "change");
+  const auto updates = [&](int count) {
+    for (int n = 0; n < count; ++n) {
+      node.update(n * 7 % 192, n * 11 % 192, 64, 64, [n](int x, int y) { return dunes(x + n, y); });
+      if (n % 5 == 0) window_->run(0.01);
+    }
+  };
+  const auto resizes = [&](int count) {
+    for (int n = 0; n < count; ++n) {
+      node.keyframe(100 + 37 * (n % 10), 400 - 31 * (n % 10), dunes);
+      EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
+    }
+    node.keyframe(256, 256, dunes);
+    EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
+  };
+  updates(200);
+  resizes(10);  // what libraries keep once is there now
+  const double before = resident_megabytes();
+  updates(1000);
+  resizes(20);
+  std::printf("resident: %.1f MB before, %.1f MB after 1000 updates and 20 resizes\n", before,
+              resident_megabytes());
+  EXPECT_LT(resident_megabytes() - before, 15);
+}
+
+// (7) The wrong level of detail in the top-down view.
+TEST_F(TerrainDisplay, Complaint7TheTopDownViewHasDetailByItsScale) {
+  MadeUpNode node("/top_down");
+  rviz::Display* const display = show(node, "/top_down", 1024);
+  const auto triangles_at = [&](double pixels_per_metre) {
+    window_->look_from_above(512, 512, pixels_per_metre);
+    window_->run(0.3);
+    EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
+    window_->run(0.3);
+    return number(display, "triangles");
+  };
+  const double far = triangles_at(0.1), near = triangles_at(1), nearest = triangles_at(8);
+  EXPECT_LT(far, 0.1 * near);
+  EXPECT_GT(nearest, 2 * 1023 * 1023) << "all blocks in full detail";
+  EXPECT_EQ(triangles_at(0.1), far);
+}
+
+// (8) No throttle when messages come faster than frames.
+TEST_F(TerrainDisplay, Complaint8MessagesFasterThanFramesAreTakenTogether) {
+  MadeUpNode node("/fast");
+  rviz::Display* const display = show(node, "/fast", 256);
+  window_->run(0.5);
+  const double built = number(display, "built_blocks");
+  const std::uint64_t frames = window_->frames();
+  for (int n = 0; n < 150; ++n)  // fewer than the client's queue holds
+    node.update(0, 0, 64, 64, [n](int x, int y) { return dunes(x, y) + 0.01f * static_cast<float>(n); });
+  double messages = 0, most = 0;
+  window_->run(2, [&] {
+    messages += number(display, "frame_messages");
+    most = std::max(most, number(display, "frame_messages"));
+  });
+  EXPECT_EQ(messages, 150);
+  EXPECT_GT(most, 1);
+  EXPECT_LE(number(display, "built_blocks") - built, 4.0 * static_cast<double>(window_->frames() - frames));
+  EXPECT_EQ(status(display, "Topic").level, StatusProperty::Ok) << status(display, "Topic").text;
+}
+
+TEST_F(TerrainDisplay, SaysWhatToDoWithoutANodeAndWhenItEnds) {
+  rviz::Display* const display = window_->add_terrain("/nobody/elevation");
+  EXPECT_TRUE(window_->run_until([&] { return status(display, "Topic").level == StatusProperty::Error; }));
+  EXPECT_NE(status(display, "Topic").text.find("roslaunch desert_sim"), std::string::npos);
+  MadeUpNode node("/ending");
+  rviz::Display* const shown = show(node, "/ending", 64);
+  EXPECT_TRUE(window_->run_until([&] { return status(shown, "Topic").level == StatusProperty::Ok; }));
+  node.end();
+  EXPECT_TRUE(window_->run_until([&] { return status(shown, "Topic").level == StatusProperty::Warn; }));
+  EXPECT_NE(status(shown, "Topic").text.find("start the node again"), std::string::npos);
+  EXPECT_GT(number(shown, "triangles"), 0) << "the last terrain stays";
+  MadeUpNode again("/ending");
+  again.keyframe(100, 100, dunes);
+  EXPECT_TRUE(window_->run_until([&] {
+    return status(shown, "Terrain").text.find("100 x 100") != std::string::npos;
+  })) << status(shown, "Terrain").text;
+}
+
+TEST_F(TerrainDisplay, TwoDisplaysShowTwoNodes) {
+  MadeUpNode first("/first"), second("/second");
+  rviz::Display* const one = show(first, "/first", 128);
+  rviz::Display* const two = show(second, "/second", 64);
+  for (rviz::Display* display : {one, two}) set(display, {"Overlay"}, "slope");  // both have a legend
+  EXPECT_TRUE(window_->run_until([&] { return is_ready(one) && is_ready(two); }));
+  EXPECT_EQ(number(one, "blocks"), 4);
+  EXPECT_EQ(number(two, "blocks"), 1);
+  window_->remove(one);
+  window_->run(0.3);
+  second.update(0, 0, 10, 10, [](int, int) { return 9.0f; });
+  EXPECT_TRUE(window_->run_until([&] { return is_ready(two); }));
+  window_->remove(two);
+  window_->run(0.3);
+}
+
+TEST_F(TerrainDisplay, FollowsAMovingFixedFrame) {
+  MadeUpNode node("/moving", "terrain");
+  rviz::Display* const display = window_->add_terrain("/moving/elevation");
+  set(display, {"Materials"}, false);
+  node.keyframe(64, 64, dunes);
+  EXPECT_TRUE(
+      window_->run_until([&] { return status(display, "Transform").level == StatusProperty::Error; }));
+  EXPECT_NE(status(display, "Transform").text.find("choose [terrain] as Fixed Frame"), std::string::npos);
+  tf2_ros::TransformBroadcaster broadcaster;
+  const auto west_edge = [&](double x) {
+    geometry_msgs::TransformStamped t;
+    t.header.frame_id = "map";
+    t.child_frame_id = "terrain";
+    t.transform.rotation.w = 1;
+    t.transform.translation.x = x;
+    Ogre::Real edge = 0;
+    window_->run_until([&] {
+      t.header.stamp = ros::Time::now();
+      broadcaster.sendTransform(t);
+      window_->run(0.1);
+      edge = drawn(window_->manager().getSceneManager()->getRootSceneNode()).getMinimum().x;
+      return std::abs(static_cast<double>(edge) - (x + 0.5)) < 0.01;
+    });
+    return static_cast<double>(edge);
+  };
+  EXPECT_NEAR(west_edge(100), 100.5, 0.01);
+  EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
+  const double built = number(display, "built_blocks");
+  EXPECT_NEAR(west_edge(-30), -29.5, 0.01);
+  EXPECT_EQ(number(display, "built_blocks"), built) << "a move builds nothing anew";
+}
+
+TEST_F(TerrainDisplay, ExaggerationsAndDisablingWork) {
+  MadeUpNode node("/exaggerated");
+  rviz::Display* const display = show(node, "/exaggerated", 64);
+  const auto height = [&] {
+    return drawn(window_->manager().getSceneManager()->getRootSceneNode()).getSize().z;
+  };
+  const Ogre::Real before = height();
+  set(display, {"Vertical Exaggeration"}, 3);
+  window_->run(0.5);
+  EXPECT_NEAR(height(), 3 * before, 0.01F);
+  display->setEnabled(false);
+  window_->run(0.2);
+  EXPECT_EQ(number(display, "blocks"), 0);
+  display->setEnabled(true);
+  EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
+}
+
+}  // namespace
+}  // namespace rviz_test
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "terrain_display_test", ros::init_options::NoSigintHandler);
+  ros::start();
+  ros::AsyncSpinner spinner(1);
+  const int result = RUN_ALL_TESTS();
+  ros::shutdown();
+  return result;
+}
