@@ -148,7 +148,7 @@ std::optional<ForecastServer::Ended> ForecastServer::must_end(const Goal* goal, 
 }
 
 ForecastServer::Outcome ForecastServer::make_forecast(const ForecastOptions& options, Goal* goal) {
-  const Clock::time_point begun = Clock::now();
+  const Clock::time_point begun = simulation_.clock().now();
   ForecastStart start = simulation_.forecast_start(options).get();
   if (!goal) shown_change_ = start.moment.change;
   std::unique_ptr<ForecastRun> run =
@@ -180,8 +180,8 @@ ForecastServer::Outcome ForecastServer::make_forecast(const ForecastOptions& opt
       ended = *end;
       go_on = false;
     }
-    if (!goal || Clock::now() - told < feedback_period) continue;
-    told = Clock::now();
+    if (!goal || simulation_.clock().now() - told < feedback_period) continue;
+    told = simulation_.clock().now();
     ForecastTerrainFeedback feedback;
     feedback.member = static_cast<std::uint32_t>(member.load());
     feedback.time = time;
@@ -192,7 +192,7 @@ ForecastServer::Outcome ForecastServer::make_forecast(const ForecastOptions& opt
   run.reset();
   if (!made) return {nullptr, ended};
   ForecastPtr message = forecast_message(std::move(*made), start.moment, frames_.terrain_frame());
-  note_done(std::chrono::duration<double>(Clock::now() - begun).count(), "");
+  note_done(std::chrono::duration<double>(simulation_.clock().now() - begun).count(), "");
   return {message, {}};
 }
 
@@ -234,12 +234,12 @@ bool ForecastServer::topics_are_due() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (new_subscriber_) return true;
   }
-  return Clock::now() >= due_.time() && simulation_.changes() != shown_change_;
+  return simulation_.clock().now() >= due_.time() && simulation_.changes() != shown_change_;
 }
 
 void ForecastServer::publish_topics() {
   const PublisherParameters topics = publisher_.parameters().topics;
-  const Clock::time_point begun = Clock::now();
+  const Clock::time_point begun = simulation_.clock().now();
   due_.published(begun, begun, period_of(topics.forecast_rate));
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -253,11 +253,11 @@ void ForecastServer::publish_topics() {
   try {
     const Outcome outcome = make_forecast(options, nullptr);
     if (!outcome.forecast) {
-      due_.period_changed(Clock::now(), {});  // at once, after what has ended it
+      due_.period_changed(simulation_.clock().now(), {});  // at once, after what has ended it
       shown_change_ = 0;
       return;
     }
-    const Clock::time_point now = Clock::now();
+    const Clock::time_point now = simulation_.clock().now();
     costmap_.publish(boost::make_shared<nav_msgs::OccupancyGrid>(outcome.forecast->costs.back()));
     maps_.publish(outcome.forecast);
     const std::lock_guard<std::mutex> lock(mutex_);

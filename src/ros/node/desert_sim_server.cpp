@@ -85,7 +85,7 @@ void log_start(const Scenario& scenario, const std::string& backend) {
 
 }  // namespace
 
-DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
+DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node, const MonotonicClock& clock)
     : node_(private_node), spinner_(threads, &queue_), step_spinner_(step_threads, &step_queue_) {
   node_.setCallbackQueue(&queue_);
   set_log_sink(log_to_ros);
@@ -97,6 +97,7 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node)
   files_ = std::make_unique<DataFolder>(p.data_dir);
   frames_ = std::make_unique<Frames>(p.frame_id);
   SimulationThread::Options options = options_of(p);
+  options.clock = &clock;
   if (p.publish_clock) {
     clock_ = std::make_unique<ClockPublisher>();
     if (!ros::Time::isSimTime())

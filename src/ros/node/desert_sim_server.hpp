@@ -11,6 +11,7 @@
 #include <string>
 
 #include "src/core/data_folder.hpp"
+#include "src/core/monotonic_clock.hpp"
 #include "src/ros/forecast/forecast_server.hpp"
 #include "src/ros/node/autosave.hpp"
 #include "src/ros/node/clock.hpp"
@@ -27,9 +28,10 @@ namespace desert_sim {
 
 class DesertSimServer {
  public:
-  /// Reads the parameters below `private_node`, builds the terrain and starts. Throws ConfigError for input
-  /// that is refused.
-  explicit DesertSimServer(const ros::NodeHandle& private_node);
+  /// Reads the parameters below `private_node`, builds the terrain and starts. Schedules go by the clock, which
+  /// outlives the server. Throws ConfigError for input that is refused.
+  explicit DesertSimServer(const ros::NodeHandle& private_node,
+                           const MonotonicClock& clock = computer_clock());
   /// Ends after the present step. Calls of services that wait get success = false.
   ~DesertSimServer();
 

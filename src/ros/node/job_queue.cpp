@@ -37,9 +37,10 @@ bool JobQueue::pop(Job& job) {
   return true;
 }
 
-void JobQueue::wait_for(std::chrono::duration<double> time) {
+void JobQueue::wait_for(std::chrono::duration<double> time, const MonotonicClock& clock) {
+  const auto end = clock.now() + std::chrono::duration_cast<MonotonicClock::Duration>(time);
   std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait_for(lock, time, [this] { return closed_ || !jobs_.empty(); });
+  if (!closed_ && jobs_.empty()) clock.wait_until(changed_, lock, end);
 }
 
 void JobQueue::close(const std::string& reason) {

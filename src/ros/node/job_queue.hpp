@@ -12,6 +12,7 @@
 #include <string>
 
 #include "src/core/error.hpp"
+#include "src/core/monotonic_clock.hpp"
 
 namespace desert_sim {
 
@@ -59,8 +60,9 @@ class JobQueue {
   bool withdraw(std::uint64_t number);
   /// The next job, if there is one.
   bool pop(Job& job);
-  /// Sleeps until there is a job, the time [s] is over, or the queue is closed.
-  void wait_for(std::chrono::duration<double> time);
+  /// Sleeps until there is a job, the queue is closed, or the time [s] is over by the clock;
+  /// perhaps not so long.
+  void wait_for(std::chrono::duration<double> time, const MonotonicClock& clock);
   /// Refuses the jobs that wait and all that come. The first reason stays.
   void close(const std::string& reason);
   bool closed() const;

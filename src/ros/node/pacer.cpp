@@ -1,13 +1,8 @@
 #include "src/ros/node/pacer.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 namespace desert_sim {
-
-double steady_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 double Pacer::due_time() const { return start_ + static_cast<double>(done_) / rate_; }
 

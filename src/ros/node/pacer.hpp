@@ -6,9 +6,6 @@
 
 namespace desert_sim {
 
-/// Seconds of a clock that never jumps.
-double steady_now();
-
 /// Keeps a rate of steps on a clock that may be slow, stand still, or jump. Times are seconds of that clock.
 /// If steps are late, up to `backlog` seconds are caught up; what exceeds them is given up, and only shows in
 /// lag().

@@ -96,7 +96,7 @@ void SimulationThread::loop() {
       pacer_.stepped(wanted_rate());
     } else {
       wait_for_steps();
-      jobs_.wait_for(std::chrono::duration<double>(idle_time()));
+      jobs_.wait_for(std::chrono::duration<double>(idle_time()), clock());
     }
   }
 }
@@ -149,7 +149,7 @@ ros::Time SimulationThread::stamp_now() const {
 }
 
 double SimulationThread::clock_now() const {
-  return follows_ros_time() ? ros::Time::now().toSec() : steady_now();
+  return follows_ros_time() ? ros::Time::now().toSec() : clock().seconds();
 }
 
 /// How many steps a second of ROS time is to have [steps/s]; 0: as many as can be.
@@ -181,12 +181,12 @@ bool SimulationThread::step_is_due() {
     ROS_WARN_THROTTLE(
         30,
         "The simulation is %.0f s behind its schedule: it makes %.1f steps per second, the target is %.1f.",
-        lag, meter_.rate(steady_now()), pacer_.rate());
+        lag, meter_.rate(clock().seconds()), pacer_.rate());
   return due;
 }
 
 void SimulationThread::step() {
-  const double now = steady_now();
+  const double now = clock().seconds();
   const bool timed = now < measure_until_ && --steps_until_timed_ <= 0;
   if (timed) {
     wait_for_steps();
@@ -197,7 +197,7 @@ void SimulationThread::step() {
   session_->step();
   if (++steps_in_flight_ >= max_steps_in_flight || pacer_.rate() > 0) wait_for_steps();
   stamp_ = stamp_now();
-  meter_.count(steady_now());
+  meter_.count(clock().seconds());
   note_change();
 }
 
@@ -210,7 +210,7 @@ void SimulationThread::wait_for_steps() {
 }
 
 void SimulationThread::release_unused_memory() {
-  const auto unused = [now = steady_now()](double& requested) {
+  const auto unused = [now = clock().seconds()](double& requested) {
     if (requested == 0 || now - requested < unused_memory_timeout) return false;
     requested = 0;
     return true;
@@ -221,7 +221,7 @@ void SimulationThread::release_unused_memory() {
 }
 
 void SimulationThread::note_change() {
-  change_time_ = std::chrono::steady_clock::now();
+  change_time_ = clock().now();
   ++changes_;
   if (options_.publish_clock) options_.publish_clock(session_->simulation().paced_time());
   on_change_();

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "src/core/monotonic_clock.hpp"
 #include "src/ros/node/job_queue.hpp"
 #include "src/ros/node/pacer.hpp"
 #include "src/ros/node/terrain_state.hpp"
@@ -38,6 +39,8 @@ class SimulationThread {
     /// Simulation::paced_time() [s], at the start and after each step, and steps follow wall time, whatever
     /// use_sim_time says.
     std::function<void(double)> publish_clock;
+    /// What the schedule of steps goes by where it does not follow ROS time. It outlives the simulation.
+    const MonotonicClock* clock = &computer_clock();
   };
 
   /// While one of these lives, requests of its thread that the simulation has not begun to serve after
@@ -96,9 +99,10 @@ class SimulationThread {
   /// The present counters of Moment: they tell whether a copy is still up to date.
   std::uint64_t changes() const { return changes_; }
   /// When the last of these changes was made.
-  std::chrono::steady_clock::time_point change_time() const { return change_time_; }
+  MonotonicClock::TimePoint change_time() const { return change_time_; }
   std::uint64_t commands() const { return commands_; }
   std::uint64_t terrains() const { return terrains_; }
+  const MonotonicClock& clock() const { return *options_.clock; }
   double step_rate() const { return step_rate_; }  ///< as set, also while run.acceleration rules [steps/s]
   /// What ties a forecast to ROS time, see ForecastOptions [steps/s]. A simulation that is the clock of all
   /// nodes is not tied by its rate.
@@ -161,7 +165,7 @@ class SimulationThread {
   const std::function<void()> on_change_;
   JobQueue jobs_;
   std::atomic<std::uint64_t> changes_{1}, commands_{0}, terrains_{0};
-  std::atomic<std::chrono::steady_clock::time_point> change_time_{};
+  std::atomic<MonotonicClock::TimePoint> change_time_{};
   std::string backend_choice_;
   std::atomic<double> step_rate_;
   std::atomic<bool> failed_{false};

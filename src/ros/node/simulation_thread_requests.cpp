@@ -118,19 +118,19 @@ SimulationThread::PendingState SimulationThread::begin_state_copy(const std::vec
     note_request(layer);
     if (session_->simulation().shows(layer)) in_use.push_back(layer);
   }
-  snapshot_requested_ = steady_now();
+  snapshot_requested_ = clock().seconds();
   ++snapshots_;
   Simulation& s = session_->simulation();
   PendingState state{moment(), s.begin_snapshot(in_use, band), {}, s.begin_costs(query.costs), {}};
   if (query.plants) state.plants = s.begin_plants();
-  if (query.costs.update || query.costs.whole) costs_requested_ = steady_now();
+  if (query.costs.update || query.costs.whole) costs_requested_ = clock().seconds();
   for (const auto& entry : query.held) note_request(entry.first);
   state.changes = s.begin_changes(query.held);
   return state;
 }
 
 void SimulationThread::note_request(Layer layer) {
-  if (info(layer).lifetime == Lifetime::on_request) layers_requested_ = steady_now();
+  if (info(layer).lifetime == Lifetime::on_request) layers_requested_ = clock().seconds();
 }
 
 TerrainState SimulationThread::PendingState::get() const {
@@ -212,7 +212,7 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     r.parts = s.pipeline().parts();
     r.acceleration = s.scenario().run.acceleration;
     r.step_rate = pacer_.rate();
-    r.steps_per_second = meter_.rate(steady_now());
+    r.steps_per_second = meter_.rate(clock().seconds());
     r.lag = pacer_.lag(clock_now());
     if (timed_steps_ > 0) {
       process_times_ = s.process_times();
@@ -234,7 +234,7 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     r.layer_bytes = s.terrain().bytes();
     r.memory_available = s.exec().memory_available();
     r.memory_needed = static_cast<double>(total_bytes(s.memory()));
-    if (measure) measure_until_ = steady_now() + measure_duration;
+    if (measure) measure_until_ = clock().seconds() + measure_duration;
     return r;
   });
 }

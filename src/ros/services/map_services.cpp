@@ -31,13 +31,13 @@ TerrainState Services::recent_terrain() {
     const std::lock_guard<std::mutex> lock(recent_mutex_);
     const bool unchanged = recent_.moment.change == simulation_.changes();
     const bool uncommanded = recent_.moment.command == simulation_.commands();
-    const bool recent = std::chrono::steady_clock::now() - recent_time_ < max_snapshot_age;
+    const bool recent = simulation_.clock().now() - recent_time_ < max_snapshot_age;
     if (recent_.snapshot && (unchanged || (uncommanded && recent))) return recent_;
   }
   const TerrainState state = simulation_.terrain(sampled_layers()).get();
   const std::lock_guard<std::mutex> lock(recent_mutex_);
   recent_ = state;
-  recent_time_ = std::chrono::steady_clock::now();
+  recent_time_ = simulation_.clock().now();
   return state;
 }
 

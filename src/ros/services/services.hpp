@@ -97,7 +97,7 @@ class Services {
   std::mutex move_center_mutex_;  ///< held while terrain_replaced() moves the frame
   std::mutex recent_mutex_;       ///< guards the next two
   TerrainState recent_;
-  std::chrono::steady_clock::time_point recent_time_;
+  MonotonicClock::TimePoint recent_time_;
   std::vector<ros::ServiceServer> servers_;
 };
 

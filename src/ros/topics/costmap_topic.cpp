@@ -32,10 +32,10 @@ class SubscriberCosts {
            height_ == state.snapshot->height;
   }
   /// Takes them in. What changes of a terrain that subscribers know waits to be sent.
-  void apply(const CostChanges& changes, const TerrainState& state) {
+  void apply(const CostChanges& changes, const TerrainState& state, SteadyClock::time_point now) {
     const bool known = match_terrain(state);
     if (!known) {
-      if (!costs_.empty()) replaced_ = SteadyClock::now();
+      if (!costs_.empty()) replaced_ = now;
       terrain_ = state.moment.terrain;
       width_ = state.snapshot->width;
       height_ = state.snapshot->height;
@@ -50,21 +50,21 @@ class SubscriberCosts {
 
   /// Boxes that have changed and were not sent since, the oldest first.
   const std::vector<CellBox>& waiting() const { return waiting_; }
-  void note_sent(const CellBox& cells) {
-    sent_.push_back({SteadyClock::now(), cells});
+  void note_sent(const CellBox& cells, SteadyClock::time_point now) {
+    sent_.push_back({now, cells});
     waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(),
                                   [&](const CellBox& box) { return cells.contains(box); }),
                    waiting_.end());
   }
-  /// A box with all cells that were noted as sent less than `time` ago.
-  CellBox sent_within(std::chrono::duration<double> time) {
-    while (!sent_.empty() && SteadyClock::now() - sent_.front().time > time) sent_.pop_front();
+  /// A box with all cells that were noted as sent less than `time` before `now`.
+  CellBox sent_within(std::chrono::duration<double> time, SteadyClock::time_point now) {
+    while (!sent_.empty() && now - sent_.front().time > time) sent_.pop_front();
     CellBox cells;
     for (const Sent& sent : sent_) cells = cells.united_with(sent.cells);
     return cells;
   }
-  bool terrain_replaced_within(std::chrono::duration<double> time) const {
-    return SteadyClock::now() - replaced_ < time;
+  bool terrain_replaced_within(std::chrono::duration<double> time, SteadyClock::time_point now) const {
+    return now - replaced_ < time;
   }
 
  private:
@@ -127,13 +127,13 @@ class CostmapTopic : public MessageTopic<nav_msgs::OccupancyGrid> {
   double rate() const override { return parameters().maps.parameters.costmap_keyframe_rate; }
   void add_to(StateQuery& query) override { query.costs.whole = true; }
   bool publish(const TerrainState& state) override {
-    held_.apply(*state.whole_costs, state);
+    held_.apply(*state.whole_costs, state, now());
     publish_held(state);
     return true;
   }
   void publish_held(const TerrainState& state) {
+    held_.note_sent(held_.all_cells(), now());
     publisher_.publish(costmap_message(held_, state, frame()));
-    held_.note_sent(held_.all_cells());
   }
 
  private:
@@ -181,9 +181,10 @@ class CostmapUpdatesTopic : public MessageTopic<map_msgs::OccupancyGridUpdate> {
     const CostChanges& changes = state.cost_update ? *state.cost_update : *state.whole_costs;
     // Updates start from these costs if there were none of this terrain, even if nobody gets a whole map.
     const bool continues = held.match_terrain(state);
-    held.apply(changes, state);
+    const SteadyClock::time_point time = now();
+    held.apply(changes, state, time);
     if (!continues || held.waiting().empty()) return false;
-    if (held.terrain_replaced_within(repeat_time()) && keyframes_.has_subscribers()) {
+    if (held.terrain_replaced_within(repeat_time(), time) && keyframes_.has_subscribers()) {
       keyframes_.publish_held(state);
       return true;
     }
@@ -191,8 +192,8 @@ class CostmapUpdatesTopic : public MessageTopic<map_msgs::OccupancyGridUpdate> {
     CellBox changed;
     for (const CellBox& rectangle : covering_boxes(held.waiting(), most, worth_a_message))
       if (changed.empty() && rectangle.contains(oldest)) changed = rectangle;
-    const CellBox box = changed.united_with(held.sent_within(repeat_time()));
-    held.note_sent(changed);
+    const CellBox box = changed.united_with(held.sent_within(repeat_time(), time));
+    held.note_sent(changed, time);
     publisher_.publish(update_message(held, box, state, frame()));
     return true;
   }

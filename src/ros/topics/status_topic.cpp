@@ -83,15 +83,15 @@ void StatusTopic::request() {
 
 bool StatusTopic::consume_request() { return std::exchange(requested_, false); }
 
-void StatusTopic::rate_changed() { due_.period_changed(SteadyClock::now(), period_of(rate())); }
+void StatusTopic::rate_changed() { due_.period_changed(now(), period_of(rate())); }
 
 void StatusTopic::publish(const StatusReport& report, std::uint64_t publications) {
   const SimulationStatusPtr message = status_message(report, context_.frames.terrain_frame());
   message->publications = publications;
   last_ = *message;
+  const SteadyClock::time_point time = now();
+  due_.published(time, time, period_of(rate()));
   publisher_.publish(message);
-  const SteadyClock::time_point now = SteadyClock::now();
-  due_.published(now, now, period_of(rate()));
 }
 
 void StatusTopic::publish_failure(const std::string& reason) {

@@ -25,7 +25,7 @@ class StatusTopic {
   bool consume_request();
 
   // For the publishing thread alone:
-  bool is_due_by_rate() const { return rate() > 0 && SteadyClock::now() >= due_.time(); }
+  bool is_due_by_rate() const { return rate() > 0 && now() >= due_.time(); }
   /// When it is due by its rate, which must be above 0.
   SteadyClock::time_point due_time() const { return due_.time(); }
   double rate() const { return context_.parameters.topics.status_rate; }
@@ -37,6 +37,8 @@ class StatusTopic {
   void publish_failure(const std::string& reason);
 
  private:
+  SteadyClock::time_point now() const { return context_.simulation.clock().now(); }
+
   const TopicContext& context_;
   ros::Publisher publisher_;
   DueTime due_;

@@ -45,24 +45,24 @@ void Topic::subscriber_left(const std::string& subscriber) {
 }
 
 TopicRate Topic::measured_rate() const {
-  return {name_, follows_rate() ? rate() : 0, meter_.rate(steady_now()), subscribers()};
+  return {name_, follows_rate() ? rate() : 0, meter_.rate(context_.simulation.clock().seconds()),
+          subscribers()};
 }
 
 // ---- On the publishing thread.
 
 void Topic::count_message() {
   const std::lock_guard<std::mutex> lock(context_.mutex);
-  meter_.count(steady_now());
+  meter_.count(context_.simulation.clock().seconds());
 }
 
-void Topic::mark_published(std::uint64_t change, std::uint64_t terrain) {
+void Topic::mark_published(std::uint64_t change, std::uint64_t terrain, SteadyClock::time_point since) {
   published_change_ = change;
   published_terrain_ = terrain;
-  const SteadyClock::time_point now = SteadyClock::now();
-  due_.published(now, may_be_early() ? context_.simulation.change_time() : now, period());
+  due_.published(since, may_be_early() ? context_.simulation.change_time() : since, period());
 }
 
-void Topic::rate_changed() { due_.period_changed(SteadyClock::now(), period()); }
+void Topic::rate_changed() { due_.period_changed(now(), period()); }
 
 void Topic::set_problem(const std::string& problem) {
   if (!problem.empty()) ROS_WARN_THROTTLE(30, "%s: %s", short_name_.c_str(), problem.c_str());

@@ -49,8 +49,8 @@ struct TopicRate {
 
 /// What the publisher shares with its topics. It outlives them.
 struct TopicContext {
-  ros::NodeHandle node;  ///< private to the node; another thread serves its callback queue
-  SimulationThread& simulation;
+  ros::NodeHandle node;          ///< private to the node; another thread serves its callback queue
+  SimulationThread& simulation;  ///< whose clock is that of the schedules
   const Frames& frames;
   /// The present parameters. Only the publishing thread changes them, and only under `mutex`: that thread
   /// reads them without it, any other thread with it.
@@ -124,13 +124,12 @@ class Topic {
 
   // For the publishing thread alone:
   /// When to look again whether it is due by its rate; a time that has passed: after the next change.
-  SteadyClock::time_point wake_time() const {
-    return SteadyClock::now() < early_time() ? early_time() : due_.time();
-  }
+  SteadyClock::time_point wake_time() const { return now() < early_time() ? early_time() : due_.time(); }
   /// Whether a change that comes now makes it due.
-  bool listens() const { return SteadyClock::now() >= early_time(); }
-  /// Notes which state subscribers have been shown (counters of Moment); the next one is due a period later.
-  void mark_published(std::uint64_t change, std::uint64_t terrain);
+  bool listens() const { return now() >= early_time(); }
+  /// Notes which state subscribers have been shown (counters of Moment), and since when that was under way; the next
+  /// one is due a period later.
+  void mark_published(std::uint64_t change, std::uint64_t terrain, SteadyClock::time_point since);
   /// The rate may have changed: the topic is due a period from now at the latest.
   void rate_changed();
 
@@ -141,6 +140,7 @@ class Topic {
   const std::string& frame() const { return context_.frames.terrain_frame(); }
 
   const Topic* updates() const { return updates_; }
+  SteadyClock::time_point now() const { return context_.simulation.clock().now(); }
 
   // For callbacks of the publisher:
   /// Makes `due` due: this topic, or the one that a new subscriber needs first.
@@ -157,10 +157,10 @@ class Topic {
   bool due_immediately() const { return requested_ || published_terrain_ != context_.simulation.terrains(); }
   bool due_by_rate() const {
     if (!follows_rate()) return false;
-    const SteadyClock::time_point now = SteadyClock::now();
-    if (!only_after_change()) return now >= due_.time();
-    return changed() && (may_be_early() ? due_.reached(now, context_.simulation.change_time(), period())
-                                        : now >= due_.time());
+    const SteadyClock::time_point time = now();
+    if (!only_after_change()) return time >= due_.time();
+    return changed() && (may_be_early() ? due_.reached(time, context_.simulation.change_time(), period())
+                                        : time >= due_.time());
   }
   SteadyClock::duration period() const { return period_of(pace()); }
   SteadyClock::time_point early_time() const {

@@ -108,7 +108,8 @@ std::optional<TopicPublisher::Work> TopicPublisher::wait_for_work() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_ && !simulation_.failed()) {
     apply_new_parameters();
-    SteadyClock::time_point next = SteadyClock::now() + std::chrono::seconds(1);
+    const MonotonicClock& clock = simulation_.clock();
+    SteadyClock::time_point next = clock.now() + std::chrono::seconds(1);
     bool listen = false;
     listens_to_changes_ = true;  // before looking at what has changed, so that no change is missed
     if (requests_ != served_ || status_.is_requested() || any_topic_is_due(next, listen)) {
@@ -116,7 +117,7 @@ std::optional<TopicPublisher::Work> TopicPublisher::wait_for_work() {
       return Work{requests_ != served_, status_.consume_request(), requests_};
     }
     listens_to_changes_ = listen;
-    wake_up_.wait_until(lock, next);
+    clock.wait_until(wake_up_, lock, next);
   }
   return std::nullopt;
 }
@@ -143,7 +144,7 @@ bool TopicPublisher::any_topic_is_due(SteadyClock::time_point& next, bool& liste
     if (!topic->follows_rate()) continue;
     listen = listen || topic->listens();
     const SteadyClock::time_point wake = topic->wake_time();
-    if (wake > SteadyClock::now()) next = std::min(next, wake);
+    if (wake > simulation_.clock().now()) next = std::min(next, wake);
   }
   if (status_.rate() > 0 && status_.has_subscribers()) {
     if (status_.is_due_by_rate()) return true;
@@ -170,7 +171,7 @@ std::vector<Topic*> TopicPublisher::ready_topics(const std::vector<Topic*>& due)
     if (topic->ready()) {
       ready.push_back(topic);
     } else {
-      topic->mark_published(simulation_.changes(), simulation_.terrains());
+      topic->mark_published(simulation_.changes(), simulation_.terrains(), simulation_.clock().now());
     }
   }
   return ready;
@@ -178,6 +179,7 @@ std::vector<Topic*> TopicPublisher::ready_topics(const std::vector<Topic*>& due)
 
 /// Publishes one state, which has what all of these need.
 void TopicPublisher::publish_topics(const std::vector<Topic*>& due, bool all_changes) {
+  const SteadyClock::time_point begin = simulation_.clock().now();
   std::vector<Layer> layers;
   StateQuery query;
   for (Topic* topic : due) {
@@ -191,7 +193,7 @@ void TopicPublisher::publish_topics(const std::vector<Topic*>& due, bool all_cha
       ++publications_;
       topic->count_message();
     }
-    topic->mark_published(state.moment.change, state.moment.terrain);
+    topic->mark_published(state.moment.change, state.moment.terrain, begin);
   }
 }
 
