@@ -1,4 +1,5 @@
-# Node tests: launch files that rostest runs. Each has a ROS master, parameters and files of its own.
+# Node tests: launch files that rostest runs. Each has a ROS master, parameters and files of its own. What measures
+# rates or latencies has a name that ends in _timing, and the label `timing`.
 find_package(rostest REQUIRED)
 
 # desert_patient_launch(<out> <launch>): the launch file whose time limit is multiplied. A manager of nodelets, which is
@@ -30,9 +31,31 @@ function(desert_node_test launch)
   add_rostest(${patient} ${ARGN})
   get_property(added DIRECTORY PROPERTY TESTS)
   list(REMOVE_ITEM added ${before})
-  # The longest begin first (COST, in seconds).
-  set_tests_properties(${added} PROPERTIES LABELS ros COST 10)
+  if(launch MATCHES "_timing\\.test$")
+    set_tests_properties(${added} PROPERTIES LABELS timing RUN_SERIAL ON)
+  else()
+    set_tests_properties(${added} PROPERTIES LABELS ros COST 10) # the longest begin first (in seconds)
+  endif()
 endfunction()
+
+# desert_node_program(<target>): what a GoogleTest node is built with. All use the precompiled header of
+# desert_node_test_headers, which is therefore compiled as they are.
+function(desert_node_program target)
+  desert_test_target(${target})
+  desert_use_ros(${target})
+  desert_link(${target} PUBLIC desert_ros desert_client desert_testing)
+  target_compile_definitions(${target} PRIVATE
+    DESERT_NODE_BINARY="$<TARGET_FILE:desert_sim_node>" DESERT_ROVER_BINARY="$<TARGET_FILE:desert_rover_node>"
+    DESERT_PLANNER_BINARY="$<TARGET_FILE:desert_planner_node>")
+  # GCC 12 sees uninitialised memory in boost::function where that comes from a precompiled header.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  add_dependencies(${target} desert_sim_node desert_rover_node desert_planner_node)
+endfunction()
+add_library(desert_node_test_headers STATIC EXCLUDE_FROM_ALL support/ros/service_tests.cpp)
+desert_node_program(desert_node_test_headers)
+set_target_properties(desert_node_test_headers PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+target_compile_options(desert_node_test_headers PRIVATE -fPIE)
+target_precompile_headers(desert_node_test_headers PRIVATE support/ros/service_tests.hpp)
 
 file(GLOB_RECURSE launches RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS src/*.test python/*.test)
 list(FILTER launches EXCLUDE REGEX "grid_map_clients/|src/rviz/")
@@ -57,13 +80,8 @@ foreach(launch IN LISTS launches)
   set(node ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/${name}.cpp)
   if(node IN_LIST nodes)
     add_executable(${name} EXCLUDE_FROM_ALL ${node})
-    desert_test_target(${name})
-    desert_use_ros(${name})
-    desert_link(${name} PUBLIC desert_ros desert_client desert_testing)
-    target_compile_definitions(${name} PRIVATE
-      DESERT_NODE_BINARY="$<TARGET_FILE:desert_sim_node>" DESERT_ROVER_BINARY="$<TARGET_FILE:desert_rover_node>"
-      DESERT_PLANNER_BINARY="$<TARGET_FILE:desert_planner_node>")
-    add_dependencies(${name} desert_sim_node desert_rover_node desert_planner_node)
+    desert_node_program(${name})
+    target_precompile_headers(${name} REUSE_FROM desert_node_test_headers)
     add_dependencies(tests ${name})
     desert_node_test(${launch} DEPENDENCIES ${name})
   else()

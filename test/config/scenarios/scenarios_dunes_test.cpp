@@ -31,7 +31,7 @@ double mean_where(const Field& values, const std::vector<char>& mask) {
 
 // ---- barchans: one test a seed, and one of the barchans of all seeds ----
 
-constexpr std::uint64_t barchan_seeds = 24;
+constexpr std::uint64_t barchan_seeds = 12;
 
 /// The barchans of five looks at the shipped scenario, from 360 to 520 steps. The grid is narrower than the
 /// scenario's but longer along the wind, because dunes are steeper where the periodic border is near upwind:
@@ -142,10 +142,10 @@ INSTANTIATE_TEST_SUITE_P(Seeds, Barchans, ::testing::Range<std::uint64_t>(1, bar
                          [](const auto& test) { return std::to_string(test.param); });
 
 /// Published: height to width 0.06…0.15, stoss 8…15 degrees, slip face 31…35 degrees to within 20 degrees of
-/// downwind, horns downwind. The bounds are narrower, as far as the scatter between sets of 24 seeds allows:
-/// seeds 1 to 96 have a height to width of 0.121 (standard deviation of sets of 24, resampled: 0.008), stoss
-/// 13.1 (0.38), slip face 33.0 (0.01) to within 8.7 (1.1) of downwind, horns to within 3.4 (0.4), and both
-/// horns downwind in 73 % (4 %). Seeds 1 to 24 have 0.116, 12.8, 33.0, 11.4, 3.2 and 60 %.
+/// downwind, horns downwind. The bounds are narrower, as far as the scatter between sets of 12 seeds allows:
+/// seeds 1 to 96 have a height to width of 0.121 (standard deviation of sets of 12, resampled: 0.011), stoss
+/// 13.1 (0.54), slip face 33.0 (0.01) to within 8.7 (1.6) of downwind, horns to within 3.4 (0.6), and both
+/// horns downwind in 73 % (6 %). Seeds 1 to 12 have 0.141, 12.5, 33.3, 12, 2 and 69 %.
 TEST(Dunes, Barchan) {
   std::vector<Dune> dunes;
   std::vector<std::shared_future<std::vector<Dune>>> runs;
@@ -158,7 +158,7 @@ TEST(Dunes, Barchan) {
     for (const Dune& d : read_barchans(file)) dunes.push_back(d);
   }
   for (const auto& run : runs) dunes.insert(dunes.end(), run.get().begin(), run.get().end());
-  ASSERT_GE(dunes.size(), 150u);
+  ASSERT_GE(dunes.size(), 75u);
   const BarchanShape s = shape_of(dunes);
   EXPECT_GE(s.height_to_width, 0.09);
   EXPECT_LE(s.height_to_width, 0.15);

@@ -1,5 +1,5 @@
 // for_each_line_in_turn() on a CPU beside a plain loop, for lines shorter than its reach and longer than
-// those that are left to one thread. (On a GPU: test/parity.)
+// those that are left to one thread. (On a GPU: the tests of parity.)
 
 #include <gtest/gtest.h>
 

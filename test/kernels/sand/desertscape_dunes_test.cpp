@@ -11,7 +11,7 @@
 namespace desert_sim {
 namespace {
 
-constexpr int side = 64;
+constexpr int side = 48;
 
 /// A sheet of sand in which dunes grow.
 std::string sheet(double depth, double slab, double creeping, double speed, int seed) {

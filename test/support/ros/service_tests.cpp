@@ -1,0 +1,1 @@
+#include "test/support/ros/service_tests.hpp"
