@@ -91,8 +91,10 @@ desert_install() { # [core | sanitizers | checks | flakes]
   source_noetic || true
 }
 
+# A new build is one of Ninja, which keeps all processors busy to the end; one that exists stays what it is.
 # shellcheck disable=SC2120 # arguments are optional
 desert_configure() { # [-DNAME=VALUE]...
+  if command -v ninja >/dev/null; then export CMAKE_GENERATOR=${CMAKE_GENERATOR:-Ninja}; fi
   say "configuring $BUILD"
   cmake -S "$DESERT_ROOT" -B "$BUILD" "$@"
 }

@@ -1,8 +1,9 @@
 """One run of a comparison, a job of Snakemake: desert_run, then desert_metrics.
 
-  run_one.py PLAN.json KEY
+  run_one.py PLAN.json KEY PARENT
 
-Everything is made in a folder of its own; result.json, with summary and metrics, gets its name at last.
+PARENT is the number of the process that it ends with. Everything is made in a folder of its own; result.json, with
+summary and metrics, gets its name at last.
 """
 import json
 import os
@@ -16,7 +17,7 @@ LOST_MATERIAL = 1  # exit status of desert_run, which has then written all its o
 
 
 def call(words, log, cwd, allowed=(0,)):
-    status = subprocess.call(words, stdout=log, stderr=log, cwd=cwd, preexec_fn=processes.end_with_parent)
+    status = subprocess.call(words, stdout=log, stderr=log, cwd=cwd, preexec_fn=processes.ends_with_this())
     if status not in allowed:
         raise SystemExit("%s ended with status %d" % (os.path.basename(words[0]), status))
 
@@ -52,8 +53,8 @@ def make(plan, run, home):
     shutil.rmtree(folder)
 
 
-def main(plan_path, key):
-    processes.end_with_parent()
+def main(plan_path, key, parent):
+    processes.end_with(int(parent))
     with open(plan_path, encoding="utf-8") as file:
         plan = json.load(file)
     home = os.path.join(plan["work"], "runs", key)
@@ -68,4 +69,4 @@ def main(plan_path, key):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2])
+    main(*sys.argv[1:])

@@ -10,7 +10,7 @@ import sys
 import time
 
 from . import ComparisonError, RunError
-from .processes import end_with_parent, remove_attempts
+from .processes import ends_with_this, remove_attempts
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 STEP = re.compile(r"step (\d+) of (\d+)")
@@ -126,7 +126,7 @@ class Workflow:
         try:
             with open(log, "w") as file:
                 self.process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=file, stderr=file,
-                                                start_new_session=True, preexec_fn=end_with_parent)
+                                                start_new_session=True, preexec_fn=ends_with_this())
             self.wait()
         finally:
             self.end()

@@ -11,6 +11,8 @@ from .layer_messages import map_of
 from .msg import ForecastTerrainAction, ForecastTerrainGoal
 from .services import SimulationError
 
+_REPEAT_PERIOD = 1.0  # [s] of wall time, after which a goal that the server does not know may be lost
+
 
 @dataclasses.dataclass(frozen=True)
 class Forecast:
@@ -68,7 +70,7 @@ def request_forecast(action, server_timeout, timeout, on_progress, **goal):
             raise SimulationError(action, "there is no such action after %g s: does the node run?" % server_timeout)
         handle = client.send_goal(ForecastTerrainGoal(**goal),
                                   feedback_cb=on_progress and (lambda _, feedback: on_progress(feedback.progress)))
-        if not _wait(lambda: handle.get_comm_state() == actionlib.CommState.DONE, timeout):
+        if not _wait(_SentGoal(client, handle).has_ended, timeout):
             handle.cancel()
             raise SimulationError(action, "no forecast within %g s: it was cancelled" % timeout)
         result, state = handle.get_result(), handle.get_terminal_state()
@@ -78,6 +80,23 @@ def request_forecast(action, server_timeout, timeout, on_progress, **goal):
         return forecast_of(result.forecast)
     finally:
         client.stop()
+
+
+class _SentGoal:
+    """A goal on its way, which is sent again while the server says nothing of it: a server that has it takes no notice.
+
+    It is lost on a connection that the node is about to close: one that it had to an earlier client of this process, and has
+    made anew to this one because the master has not told it yet that the earlier one is gone."""
+
+    def __init__(self, client, handle):
+        self._client, self._handle, self._sent = client, handle, time.monotonic()
+
+    def has_ended(self):
+        state, now = self._handle.get_comm_state(), time.monotonic()
+        if state == actionlib.CommState.WAITING_FOR_GOAL_ACK and now - self._sent > _REPEAT_PERIOD:
+            self._sent = now
+            self._client.pub_goal.publish(self._handle.comm_state_machine.action_goal)
+        return state == actionlib.CommState.DONE
 
 
 def _wait(happened, timeout):

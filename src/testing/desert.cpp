@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double start_time = 20;  // [s], times patience(), in which a node has to come up
+constexpr double start_time = 60;  // [s], times patience(), in which a node has to come up
 
 std::string temporary_folder() {
   std::string path = (fs::temp_directory_path() / "desert_sim_test_XXXXXX").string();

@@ -11,8 +11,8 @@ namespace {
 
 template <class Message>
 boost::shared_ptr<const Message> newest(const Inbox<Message>& inbox, const std::string& topic) {
-  if (!inbox.wait_for_more_than(0, 20 * patience()))
-    throw Error("no message on " + topic + " within 20 s: does the rover run, and has it a terrain?");
+  if (!inbox.wait_for_more_than(0, 60 * patience()))
+    throw Error("no message on " + topic + " within a minute: does the rover run, and has it a terrain?");
   return inbox.last();
 }
 
@@ -27,6 +27,9 @@ Rover::Rover(ros::NodeHandle& node, const std::string& name)
       status_(node, node_ + "/status") {}
 
 void Rover::drive(double forward, double yaw_rate) {
+  // commands_ is the other one that listens.
+  if (!wait_until([this] { return publisher_.getNumSubscribers() > 1; }, 60))
+    throw Error("nobody listens to " + name_ + "/cmd_vel: does the rover run?");
   geometry_msgs::Twist command;
   command.linear.x = forward;
   command.angular.z = yaw_rate;

@@ -18,13 +18,13 @@ class Rover {
   Rover(ros::NodeHandle& node, const std::string& name);
 
   /// Publishes one command on cmd_vel: ahead [m/s], and counter-clockwise [rad/s]. It holds for half a second
-  /// of the rover's time.
+  /// of the rover's time. Throws Error if the rover does not listen within a minute.
   void drive(double forward, double yaw_rate = 0);
-  /// The last true pose. Throws Error if there is none within 20 s.
+  /// The last true pose. Throws Error if there is none within a minute.
   Pose pose() const;
   /// In the plane [m].
   double distance_to(const Point& p) const;
-  /// The last one. Throws Error if there is none within 20 s.
+  /// The last one. Throws Error if there is none within a minute.
   RoverStatus status() const;
   /// Waits for a pose of this ROS time or a later one; whether it came. In lockstep poses have the stamps of
   /// the terrain's states.

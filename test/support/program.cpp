@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <thread>
@@ -19,14 +20,13 @@ std::string program_path(const char* variable, const std::string& built) {
 }
 
 ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments,
-                       double signal_after) {
+                       const std::vector<Signal>& signals) {
   const TemporaryFolder folder;
   const std::string out = folder.path("out"), err = folder.path("err");
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
 
-  const auto start = std::chrono::steady_clock::now();
   const pid_t child = fork();
   if (child == 0) {
     dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
@@ -37,14 +37,15 @@ ProgramRun run_program(const std::string& program, const std::vector<std::string
   int status = 0;
   rusage usage{};
   bool ended = false;
-  for (double waited = 0; !ended && waited < signal_after; waited += 0.02) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  for (auto next = signals.begin(); next != signals.end() && !ended;) {
     ended = wait4(child, &status, WNOHANG, &usage) == child;
+    if (!ended && next->when(file_bytes(err)))
+      kill(child, next++->number);
+    else
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  if (!ended && signal_after > 0) kill(child, SIGINT);
   if (!ended) wait4(child, &status, 0, &usage);
   ProgramRun run;
-  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   run.resident_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
   run.out = file_bytes(out);

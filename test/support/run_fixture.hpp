@@ -25,8 +25,8 @@ class DesertRun : public ::testing::Test {
                               "  - noise: {layer: sand, low: 0.5, high: 3}\n"
                               "wind: {speed: 6, direction_deg: 30}\nrun: {steps: 12}\n");
   }
-  ProgramRun run(std::vector<std::string> arguments, double signal_after = 0) {
-    return run_program(program_, arguments, signal_after);
+  ProgramRun run(const std::vector<std::string>& arguments, const std::vector<Signal>& signals = {}) {
+    return run_program(program_, arguments, signals);
   }
   /// On the CPU, quietly, on one thread unless the arguments say else.
   ProgramRun run_cpu(std::vector<std::string> arguments) {

@@ -9,6 +9,7 @@ import html.parser
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -17,7 +18,7 @@ import time
 import unittest
 
 PROGRAM = ""  # path of desert_compare
-PATIENCE = int(os.environ.get("DESERT_PATIENCE", "1"))
+PATIENCE = float(os.environ.get("DESERT_PATIENCE", "1"))
 RIDGES = """# Ridges of plenty of sand.
 grid: {width: 64, height: 64, cell_size: 1, boundary: periodic}
 terrain: [noise: {layer: sand, low: 2, high: 4}]
@@ -30,6 +31,26 @@ terrain: [cone: {layer: sand, x: 20, y: 30, height: 4, radius: 12}]
 wind: {speed: 4, direction_deg: 30}
 run: {steps: 20}
 """
+# A module that Python imports as it starts: in the job of one run, desert_run has no end.
+ENDLESS = """
+import subprocess
+
+with open("/proc/self/cmdline") as file:
+    words = file.read().split("\\0")
+if "%s" in words and any(word.endswith("run_one.py") for word in words):
+    def call(words, *arguments, call=subprocess.call, **options):
+        return call(words + (["--steps", "%d"] if words[0].endswith("desert_run") else []), *arguments, **options)
+    subprocess.call = call
+"""
+STEPS_WITHOUT_END = 10 ** 12
+
+
+def wait_until(happened, what, seconds=100):
+    """At most so long (times PATIENCE)."""
+    end = time.monotonic() + seconds * PATIENCE
+    while not happened():
+        assert time.monotonic() < end, what
+        time.sleep(0.02)
 
 
 class Page(html.parser.HTMLParser):
@@ -64,30 +85,36 @@ class Page(html.parser.HTMLParser):
 
 
 class DesertCompareCase(unittest.TestCase):
-    """Two scenarios in a folder, and how desert_compare is called."""
+    """Two scenarios in a folder, what two workers make of them (two.html), and how desert_compare is called."""
 
-    def setUp(self):
+    @classmethod
+    def setUpClass(cls):
         temporary = tempfile.TemporaryDirectory(prefix="desert_compare_")
-        self.addCleanup(temporary.cleanup)
-        self.folder = temporary.name
-        self.ridges, self.heaps = self.write("ridges.yaml", RIDGES), self.write("heaps.yaml", HEAPS)
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = temporary.name
+        cls.ridges, cls.heaps = cls.write("ridges.yaml", RIDGES), cls.write("heaps.yaml", HEAPS)
+        cls.compare("two.html", "--cores", "2")
 
-    def path(self, name):
-        return os.path.join(self.folder, name)
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.folder, name)
 
-    def write(self, name, text):
-        with open(self.path(name), "w") as file:
+    @classmethod
+    def write(cls, name, text):
+        with open(cls.path(name), "w") as file:
             file.write(text)
-        return self.path(name)
+        return cls.path(name)
 
-    def command(self, out, *options, scenarios=None):
-        return [PROGRAM, *(scenarios or [self.ridges, self.heaps]), "--out", self.path(out), "--seeds", "2",
+    @classmethod
+    def command(cls, out, *options, scenarios=None):
+        return [PROGRAM, *(scenarios or [cls.ridges, cls.heaps]), "--out", cls.path(out), "--seeds", "2",
                 "--snapshots", "4", "--backend", "cpu", *options]
 
-    def compare(self, out, *options, status=0, scenarios=None):
-        done = subprocess.run(self.command(out, *options, scenarios=scenarios), stdout=subprocess.PIPE,
+    @classmethod
+    def compare(cls, out, *options, status=0, scenarios=None):
+        done = subprocess.run(cls.command(out, *options, scenarios=scenarios), stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, universal_newlines=True, timeout=200 * PATIENCE)
-        self.assertEqual(done.returncode, status, done.stderr)
+        assert done.returncode == status, "status %d: %s" % (done.returncode, done.stderr)
         return done.stderr
 
     def text(self, out):
@@ -105,11 +132,15 @@ class DesertCompareCase(unittest.TestCase):
     def results(self, out):
         return sorted(glob.glob(os.path.join(self.path(out), "runs", "*", "result.json")))
 
+    def attempts(self, out):
+        """Names of the runs of which there are halves."""
+        found = glob.glob(os.path.join(self.path(out), "runs", "*", "attempt-*"))
+        return [os.path.basename(os.path.dirname(path)) for path in found]
+
 
 class DesertCompare(DesertCompareCase):
     def test_page_has_pictures_and_the_same_table_with_one_worker_or_two(self):
         self.compare("one.html", "--cores", "1")
-        self.compare("two.html", "--cores", "2")
         self.assertEqual(*[re.sub(r'<table id="speed">.*?</table>', "", self.text(name), flags=re.DOTALL)
                            for name in ("one.html", "two.html")])
         one = self.page("one.html")
@@ -125,12 +156,12 @@ class DesertCompare(DesertCompareCase):
 
     def check_definitions(self):
         """doc/comparing.md has each member of what desert_metrics prints."""
-        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../doc/comparing.md")) as file:
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../doc/comparing.md")) as file:
             defined = set(re.findall(r"`(\w+)`", file.read()))
         with open(self.results("one.runs")[0]) as file:
             members = set(json.load(file)["metrics"]["snapshots"][0])
         self.assertEqual(members - defined, set())
-        sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../python"))
+        sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../python"))
         from desert_comparison.catalogue import METRICS
         self.assertEqual({metric.key for metric in METRICS} - members, set())
 
@@ -156,31 +187,30 @@ class DesertCompare(DesertCompareCase):
         self.assertNotEqual(hashes[0], hashes[1])
 
     def test_goes_on_after_a_kill_with_what_is_left(self):
-        """The first run is killed when one result is there; another run's folder holds half of one."""
-        options = ("--cores", "1", "--steps", "200")
-        process = subprocess.Popen(self.command("killed.html", *options), stderr=subprocess.DEVNULL)
-        deadline = time.monotonic() + 100 * PATIENCE
-        while not self.results("killed.runs") and time.monotonic() < deadline:
-            time.sleep(0.02)
+        """It is killed when all results but one are there; of the last run, its folder holds half."""
+        endless = os.path.basename(os.path.dirname(self.results("two.runs")[0]))
+        os.mkdir(self.path("modules"))
+        self.write("modules/sitecustomize.py", ENDLESS % (endless, STEPS_WITHOUT_END))
+        process = subprocess.Popen(self.command("killed.html", "--cores", "2"), stderr=subprocess.DEVNULL,
+                                   env={**os.environ, "PYTHONPATH": self.path("modules")})
+        wait_until(lambda: len(self.results("killed.runs")) == 3 and self.attempts("killed.runs") == [endless] and
+                   self.desert_runs_in("killed.runs"), "three results, and the run without an end")
         process.send_signal(signal.SIGKILL)
         process.wait()
-        time.sleep(1)  # what it started ends with it
+        wait_until(lambda: not self.processes_in("killed.runs"), "what it started ends with it")
         kept = self.results("killed.runs")
-        self.assertGreaterEqual(len(kept), 1)
-        self.assertLess(len(kept), 4)
+        self.assertEqual(len(kept), 3)
         before = {path: os.stat(path).st_mtime_ns for path in kept}
+        self.assertEqual(self.attempts("killed.runs"), [endless])
         self.assertFalse(os.path.exists(self.path("killed.html")))
-        self.assertEqual(self.processes_in(self.path("killed.runs")), [])
-        self.compare("killed.html", *options)
+        self.compare("killed.html", "--cores", "2")
         self.assertEqual({path: os.stat(path).st_mtime_ns for path in kept}, before, "finished runs are kept")
-        self.compare("whole.html", *options)
-        self.assertEqual(self.page("killed.html").tables["metrics"], self.page("whole.html").tables["metrics"])
-        self.assertEqual(glob.glob(os.path.join(self.path("killed.runs"), "runs", "*", "attempt-*")), [])
+        self.assertEqual(self.page("killed.html").tables["metrics"], self.page("two.html").tables["metrics"])
+        self.assertEqual(self.attempts("killed.runs"), [])
 
-    @staticmethod
-    def processes_in(folder):
+    def processes_in(self, name):
         """Command lines of processes that name the folder."""
-        found = []
+        found, folder = [], self.path(name)
         for path in glob.glob("/proc/[0-9]*/cmdline"):
             try:
                 with open(path, "rb") as file:
@@ -191,25 +221,27 @@ class DesertCompare(DesertCompareCase):
                 found.append(words)
         return found
 
+    def desert_runs_in(self, name):
+        """Those of runs, not of the pictures of starts."""
+        return self.processes_in(os.path.join(name, "runs"))
+
     def test_a_request_to_end_says_how_to_go_on(self):
-        process = subprocess.Popen(self.command("ended.html", "--steps", "100000"), stderr=subprocess.PIPE,
+        process = subprocess.Popen(self.command("ended.html", "--steps", str(STEPS_WITHOUT_END)), stderr=subprocess.PIPE,
                                    universal_newlines=True)
-        deadline = time.monotonic() + 60 * PATIENCE
-        logs = os.path.join(self.path("ended.runs"), "runs", "*", "log.txt")
-        while not glob.glob(logs) and time.monotonic() < deadline:
-            time.sleep(0.05)
+        wait_until(lambda: self.desert_runs_in("ended.runs"), "a run")
         process.terminate()
-        _, told = process.communicate(timeout=30 * PATIENCE)
+        _, told = process.communicate(timeout=100 * PATIENCE)
         self.assertEqual(process.returncode, 130, told)
         self.assertIn("goes on with what is left", told)
-        time.sleep(0.5)
-        self.assertEqual(self.processes_in(self.path("ended.runs")), [])
+        wait_until(lambda: not self.processes_in("ended.runs"), "what it started ends with it")
         self.assertEqual(self.results("ended.runs"), [])
 
     def test_only_changed_runs_are_made_anew_and_one_that_fails_is_named(self):
-        self.compare("again.html")
+        shutil.copy(self.path("two.html"), self.path("again.html"))
+        shutil.copytree(self.path("two.runs"), self.path("again.runs"))
         before = {path: os.stat(path).st_mtime_ns for path in self.results("again.runs")}
         self.assertEqual(len(before), 4)
+        self.addCleanup(self.write, "heaps.yaml", HEAPS)
         self.write("heaps.yaml", HEAPS.replace("height: 4", "height: 5"))
         broken = os.path.dirname(next(path for path in before if "ridges-2" in path))
         os.remove(os.path.join(broken, "result.json"))

@@ -86,12 +86,13 @@ class LoopbackSlurm:
                               universal_newlines=True).stdout
 
     def _wait(self, condition, name, patience):
-        deadline = time.monotonic() + 30 * patience
+        deadline = time.monotonic() + 100 * patience
         while not condition():
             ended = [p.args[0] for p in self.processes if p.poll() is not None]
             if ended or time.monotonic() > deadline:
                 with open(os.path.join(self.folder, name + ".out")) as log:
-                    raise RuntimeError("%s: %s\n%s" % (name, "%s has ended" % ended if ended else "does not get ready", log.read()))
+                    why = "%s has ended" % ended if ended else "does not get ready"
+                    raise RuntimeError("%s: %s\n%s" % (name, why, log.read()))
             time.sleep(0.1)
 
     def states(self):

@@ -216,7 +216,6 @@ class Played(Assembler):
         self.expect_at(12)
         self.assertEqual(self.counts.gaps, 1)
 
-
     def test_in_a_loop_by_who_joined_late(self):
         for joined in (1, 3, 8):  # before which update of the second keyframe
             self.assembler = LayerAssembler()

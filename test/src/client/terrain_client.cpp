@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <map>
 
 #include "src/core/error.hpp"
 #include "test/support/ros/service_tests.hpp"
@@ -18,7 +17,7 @@ using node_test::step;
 using node_test::wait_until;
 
 constexpr double threshold = 0.01;  // ~update_threshold
-constexpr double timeout = 10;
+const double timeout = 60 * node_test::patience();
 
 bool trigger(const std::string& name) { return call<std_srvs::Trigger>(name).success; }
 
@@ -69,20 +68,31 @@ class Client : public testing::Test {
     ASSERT_TRUE(trigger("pause"));
     ASSERT_TRUE(trigger("reset"));
   }
-  TerrainClient::Options options() const {
+  /// Of a client that asks once after a gap, and otherwise has patience.
+  static TerrainClient::Options options() {
     TerrainClient::Options o;
     o.node = "/desert_sim";
+    o.shortest_pause = o.longest_pause = 3600;
     return o;
   }
+  /// Steps until the client holds a map of which it has been sent some updates.
+  static void step_until_updated(const TerrainClient& client) {
+    ASSERT_TRUE(wait_until([&] {
+      EXPECT_TRUE(client.wait_for_step(step(1).step, timeout));
+      return client.map()->info().sequence > 10;
+    }));
+  }
   const ros::NodeHandle node_;
+  const ros::Time begin_ = ros::Time::now();
 };
 
 // ---- what it holds ----
 
 TEST_F(Client, GetsTheTerrainOfAPausedNodeAtOnce) {
   const TerrainClient client(node_);
-  EXPECT_EQ(client.elevation(20, 0), client.map() ? client.map()->elevation(20, 0) : std::nullopt);
   ASSERT_TRUE(client.wait_for_terrain(timeout));
+  EXPECT_TRUE(client.elevation(20, 0));
+  EXPECT_EQ(client.elevation(20, 0), client.map()->elevation(20, 0));
   EXPECT_TRUE(client.up_to_date());
   EXPECT_TRUE(client.connected());
   const ElevationMap::Info info = client.map()->info();
@@ -90,7 +100,8 @@ TEST_F(Client, GetsTheTerrainOfAPausedNodeAtOnce) {
   EXPECT_EQ(info.step, 0u);
   EXPECT_EQ(info.width, 64u);
   EXPECT_EQ(info.height, 48u);
-  EXPECT_NEAR((ros::Time::now() - info.stamp).toSec(), 0, 60);
+  EXPECT_GE(info.stamp, begin_) << "the time of the reset";
+  EXPECT_LE(info.stamp, ros::Time::now());
   // The marker on cells 56…59, 4…6 is in the south-east.
   EXPECT_NEAR(client.elevation(10 + 2 * 57.5, -20 + 2 * 5.5).value(), 7.5, 1e-5);
   EXPECT_NEAR(client.elevation(10 + 2 * 5.5, -20 + 2 * 42.5).value(), 1.5, 1e-5);
@@ -128,7 +139,7 @@ TEST_F(Client, AnswersAsTheNodeDoes) {
 }
 
 TEST_F(Client, StaysWithinTheThresholdOverManySteps) {
-  const TerrainClient client(node_);
+  const TerrainClient client(node_, options());
   ASSERT_TRUE(client.wait_for_terrain(timeout));
   const auto start = client.map();
   std::uint64_t reached = 0;
@@ -143,11 +154,11 @@ TEST_F(Client, StaysWithinTheThresholdOverManySteps) {
   EXPECT_EQ(statistics.gaps + statistics.refused + statistics.requests + statistics.restarts, 0u);
   EXPECT_GE(statistics.latency, 0);
   EXPECT_LE(statistics.mean_latency, statistics.largest_latency);
-  EXPECT_LT(statistics.largest_latency, 1);
+  EXPECT_LE(statistics.largest_latency, (ros::Time::now() - begin_).toSec());
 }
 
 TEST_F(Client, FollowsAReset) {
-  const TerrainClient client(node_);
+  const TerrainClient client(node_, options());
   ASSERT_TRUE(client.wait_for_terrain(timeout));
   ASSERT_TRUE(client.wait_for_step(step(30).step, timeout));
   ASSERT_TRUE(trigger("reset"));
@@ -191,11 +202,10 @@ TEST_F(Client, TellsOfEveryCellThatChanges) {
 // ---- threads ----
 
 TEST_F(Client, ReadersOfManyThreadsSeeWholeMaps) {
-  const TerrainClient client(node_);
+  const TerrainClient client(node_, options());
   ASSERT_TRUE(client.wait_for_terrain(timeout));
-  ASSERT_TRUE(trigger("resume"));
   std::atomic<bool> stop{false};
-  std::atomic<int> backwards{0}, changed{0}, unknown{0};
+  std::atomic<int> backwards{0}, changed{0}, unknown{0}, compared{0};
   std::vector<std::thread> readers;
   for (int n = 0; n < 4; ++n)
     readers.emplace_back([&, n] {
@@ -207,11 +217,14 @@ TEST_F(Client, ReadersOfManyThreadsSeeWholeMaps) {
         last = map->info().step;
         unknown += !client.elevation(20 + n, 10) || !client.slope(20, 10 + n) || !client.normal(30, 30);
         client.statistics();
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        EXPECT_TRUE(wait_until([&] { return stop || client.map() != map; }));
         changed += map->elevations() != first;
+        ++compared;
       }
     });
-  EXPECT_TRUE(wait_until([&] { return client.statistics().updates > 25; }));
+  EXPECT_TRUE(wait_until([&] {
+    return client.wait_for_step(step(1).step, timeout) && client.statistics().updates > 25 && compared > 25;
+  }));
   stop = true;
   for (std::thread& reader : readers) reader.join();
   EXPECT_EQ(backwards, 0);
@@ -221,30 +234,23 @@ TEST_F(Client, ReadersOfManyThreadsSeeWholeMaps) {
 }
 
 TEST_F(Client, UpdatesAloneKeepItWithinTheThreshold) {
-  const TerrainClient client(node_);
+  const TerrainClient client(node_, options());
   ASSERT_TRUE(client.wait_for_terrain(timeout));
-  ASSERT_TRUE(trigger("resume"));
-  ASSERT_TRUE(wait_until([&] { return client.map()->info().sequence > 10; }));
-  // Each step is published, and steps are rarer than these looks.
-  std::map<std::uint64_t, std::shared_ptr<const ElevationMap>> maps;  // by step
-  std::map<std::uint64_t, std::vector<double>> answers;
-  for (int n = 0; n < 60; ++n) {
-    std::uint64_t step = 0;
-    const std::vector<double> elevations = ask_for_all_cells(client.map()->info(), step);
-    answers[step] = elevations;
+  step_until_updated(client);
+  const auto first = client.map();
+  std::vector<double> elevations;
+  for (int n = 0; n < 20; ++n) {
+    const std::uint64_t reached = step(1).step;
+    ASSERT_TRUE(client.wait_for_step(reached, timeout));
+    std::uint64_t asked = 0;
     const auto map = client.map();
-    maps[map->info().step] = map;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    elevations = ask_for_all_cells(map->info(), asked);
+    EXPECT_EQ(asked, reached);
+    EXPECT_EQ(map->info().step, reached);
+    EXPECT_GT(map->info().sequence, 10u);
+    EXPECT_LE(largest_difference(*map, elevations), threshold + 1e-6) << "step " << reached;
   }
-  int compared = 0;
-  for (const auto& [step, elevations] : answers) {
-    if (maps.count(step) == 0) continue;
-    ++compared;
-    EXPECT_GT(maps[step]->info().sequence, 10u);
-    EXPECT_LE(largest_difference(*maps[step], elevations), threshold + 1e-6) << "step " << step;
-  }
-  EXPECT_GT(compared, 3) << "of " << answers.size() << " answers and " << maps.size() << " maps";
-  EXPECT_GT(largest_difference(*maps.begin()->second, answers.rbegin()->second), threshold) << "it moves";
+  EXPECT_GT(largest_difference(*first, elevations), threshold) << "it moves";
   EXPECT_EQ(client.statistics().gaps + client.statistics().refused + client.statistics().requests, 0u);
 }
 
@@ -254,9 +260,13 @@ TEST_F(Client, AQueueOfTheCallersTakesMessagesInWhenItIsServed) {
   node.setCallbackQueue(&queue);
   TerrainClient::Options o = options();
   o.own_thread = false;
+  o.shortest_pause = o.longest_pause = 1e-3;
   const TerrainClient client(node, o);
   ASSERT_TRUE(wait_until([&] { return !queue.isEmpty(); }));
-  EXPECT_FALSE(client.wait_for_terrain(0.2)) << "nobody serves the queue";
+  // Its thread goes on meanwhile, and asks for what nobody takes in.
+  const std::uint64_t requests = client.statistics().requests;
+  ASSERT_TRUE(wait_until([&] { return client.statistics().requests >= requests + 2; }));
+  EXPECT_FALSE(client.wait_for_terrain(0)) << "nobody serves the queue";
   ASSERT_TRUE(wait_until([&] {
     queue.callAvailable();
     return client.map() != nullptr;
@@ -266,33 +276,47 @@ TEST_F(Client, AQueueOfTheCallersTakesMessagesInWhenItIsServed) {
 
 // roscpp gives both one connection, so that the node does not see that the second has come.
 TEST_F(Client, TwoInOneProcessBothGetThePausedTerrain) {
-  const TerrainClient first(node_);
+  const TerrainClient first(node_, options());
   ASSERT_TRUE(first.wait_for_terrain(timeout));
   ASSERT_TRUE(first.wait_for_step(step(6).step, timeout));
-  const TerrainClient second(node_);
+  TerrainClient::Options o = options();
+  o.shortest_pause = o.longest_pause = 0.05;
+  const TerrainClient second(node_, o);
   ASSERT_TRUE(second.wait_for_terrain(timeout));
   EXPECT_EQ(second.map()->info().step, 6u);
-  EXPECT_LE(second.statistics().requests, 2u);
+  EXPECT_GE(second.statistics().requests, 1u) << "nothing comes by itself";
   ASSERT_TRUE(first.wait_for_step(step(5).step, timeout) && second.wait_for_step(11, timeout));
   EXPECT_LE(largest_difference(*first.map()), threshold + 1e-6);
   EXPECT_LE(largest_difference(*second.map()), threshold + 1e-6);
 }
 
 TEST_F(Client, EndsWhileMessagesCome) {
-  ASSERT_TRUE(trigger("resume"));
-  const auto start = std::chrono::steady_clock::now();
-  for (int n = 0; n < 20; ++n) {
+  // Over a connection that is there before: roscpp loses a call now and then when threads of one process open
+  // new ones at once.
+  ros::ServiceClient steps = ros::NodeHandle().serviceClient<Step>("/desert_sim/step", true);
+  ASSERT_TRUE(steps.isValid());
+  std::atomic<bool> stop{false};
+  std::thread stepper([&] {
+    while (!stop) {
+      Step exchange;
+      exchange.request.steps = 1;
+      EXPECT_TRUE(steps.call(exchange) && exchange.response.success) << exchange.response.message;
+    }
+  });
+  for (int n = 0; n < 12; ++n) {
     TerrainClient::Options o = options();
     o.own_thread = n % 2 == 0;  // else the spinner of main()
     const TerrainClient client(node_, o);
     EXPECT_TRUE(n % 4 > 1 || client.wait_for_terrain(timeout));
   }
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
+  stop = true;
+  stepper.join();
 }
 
 TEST_F(Client, RefusesOptionsThatCannotBe) {
   const auto refused = [&](const char* names, const std::function<void(TerrainClient::Options&)>& spoil) {
-    TerrainClient::Options o = options();
+    TerrainClient::Options o;
+    o.node = "/desert_sim";
     spoil(o);
     try {
       const TerrainClient client(node_, o);

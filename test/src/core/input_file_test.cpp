@@ -7,7 +7,6 @@
 #include <sys/stat.h>
 
 #include <atomic>
-#include <chrono>
 #include <filesystem>
 #include <thread>
 
@@ -60,7 +59,8 @@ TEST_F(InputFiles, FollowLinksInsideTheFolderAndNoneThatLeadOut) {
   expect_says(refusal([&] { read("deep/up/secret"); }), "is not below");
 }
 
-/// Swaps a file and a link that leads out as fast as it can while the file is opened again and again.
+/// Swaps a file and a link that leads out as fast as it can while the file is opened again and again, until it
+/// was read and refused often enough.
 TEST_F(InputFiles, ALinkThatIsSwappedInMeanwhileIsNotFollowed) {
   folder_.write("secret", "outside");
   const std::string name = folder_.path("data/deep/a"), file = folder_.path("data/file"),
@@ -76,18 +76,18 @@ TEST_F(InputFiles, ALinkThatIsSwappedInMeanwhileIsNotFollowed) {
       fs::rename(next, name);
     }
   });
-  int read_files = 0;
-  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
-  while (std::chrono::steady_clock::now() < end) {
+  constexpr int often = 1000;
+  int times_read = 0, times_refused = 0;
+  while (times_read < often || times_refused < often) {
     try {
       EXPECT_EQ(read("deep/a"), "inside");
-      ++read_files;
+      ++times_read;
     } catch (const ConfigError&) {  // the name was missing, or a link
+      ++times_refused;
     }
   }
   done = true;
   attacker.join();
-  EXPECT_GT(read_files, 0);
 }
 
 TEST_F(InputFiles, KeepWhatWasOpened) {
@@ -99,9 +99,9 @@ TEST_F(InputFiles, KeepWhatWasOpened) {
   EXPECT_EQ(test::file_bytes(file.descriptor_path()), "first");
 }
 
+/// Nobody writes to the FIFO, and /dev/zero does not end: reading either of them would take for ever.
 TEST_F(InputFiles, WhatIsNoRegularFileIsRefusedAtOnce) {
   ASSERT_EQ(mkfifo(folder_.path("data/fifo").c_str(), 0600), 0);
-  const auto start = std::chrono::steady_clock::now();
   for (const std::string& folder : {std::string(), data()}) {
     expect_says(refusal([&] { read_file(folder_.path("data/fifo"), folder); }), "is not a regular file");
     expect_says(refusal([&] { read_file(folder_.path("data/deep"), folder); }), "is not a regular file");
@@ -109,15 +109,13 @@ TEST_F(InputFiles, WhatIsNoRegularFileIsRefusedAtOnce) {
                 "is not a regular file");
   }
   expect_says(refusal([] { read_file("/dev/zero"); }), "is not a regular file");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(200));
 }
 
+/// Opening the FIFO would take for ever.
 TEST_F(InputFiles, AScenarioBesideAFifoLooksForItsRasterWithoutWaiting) {
   ASSERT_EQ(mkfifo(folder_.path("data/dem.tif").c_str(), 0600), 0);
   const Scenario s = load_scenario(folder_.write("data/s.yaml", "grid: {from_raster: dem.tif}\n"));
-  const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(raster_paths(s), std::vector<std::string>{folder_.path("data/dem.tif")});
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(200));
 }
 
 TEST_F(InputFiles, AScenarioHasALargestSize) {
@@ -182,9 +180,8 @@ TEST_F(InputFiles, NamesAreCheckedBeforeTheDiskIsAsked) {
   EXPECT_FALSE(fs::exists(folder_.path("data/0"))) << "nothing was made";
   std::string thousand;
   for (int n = 0; n < 1000; ++n) thousand += "d/";
-  const auto start = std::chrono::steady_clock::now();
-  refusal([&] { files.for_writing(thousand + "a"); });
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(50));
+  expect_says(refusal([&] { files.for_writing(thousand + "a"); }), "has 2001 characters");
+  EXPECT_FALSE(fs::exists(folder_.path("data/d"))) << "nothing was made";
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <chrono>
 #include <filesystem>
 
 #include "src/io/raster_loader.hpp"
@@ -153,8 +152,8 @@ TEST_F(RasterAccessTest, OtherFilesOutsideTheFolderAreRefused) {
   EXPECT_EQ(refusal(path("data/inside.asc"), {}, confined()), "");
 }
 
+/// Nobody writes to the FIFOs: opening one of them would take for ever.
 TEST_F(RasterAccessTest, AFifoIsRefusedAtOnce) {
-  const auto start = std::chrono::steady_clock::now();
   for (const char* name : {"a.tif", "a.exr", "a.asc"}) {
     ASSERT_EQ(mkfifo(path(std::string("data/") + name).c_str(), 0600), 0);
     const std::string file = path(std::string("data/") + name);
@@ -163,7 +162,6 @@ TEST_F(RasterAccessTest, AFifoIsRefusedAtOnce) {
     if (std::string(name) != "a.exr")
       expect_says(refusal(file, {}, {"", true}), {name, "is not a regular file"});
   }
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(500));
 }
 
 TEST_F(RasterAccessTest, ARasterLargerThanTheLargestGridIsRefusedByItsHeader) {

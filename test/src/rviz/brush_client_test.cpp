@@ -1,10 +1,11 @@
 // The tool desert_sim/Brush with nodes that are slow, that hang, and that have plants.
 
 #include <desert_sim/EditTerrain.h>
+#include <ros/callback_queue.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <condition_variable>
 #include <limits>
 #include <mutex>
 
@@ -16,64 +17,81 @@ namespace {
 
 using desert_sim::EditTerrain;
 
-/// A node with a flat terrain whose edits take so long [s], and that remembers them.
-class SlowNode {
+/// A node with a flat terrain that remembers the edits that it was asked for. While it is held, it answers none.
+class EditedNode {
  public:
-  SlowNode(const std::string& name, double seconds) : node_(name, "terrain"), seconds_(seconds) {
+  explicit EditedNode(const std::string& name, bool held = false) : node_(name, "terrain"), held_(held) {
     node_.keyframe(140, 80, [](int, int) { return static_cast<float>(surface); });
-    service_ = ros::NodeHandle().advertiseService(name + "/edit_terrain", &SlowNode::edit, this);
+    handle_.setCallbackQueue(&queue_);  // rviz serves the global one
+    service_ = handle_.advertiseService(name + "/edit_terrain", &EditedNode::edit, this);
+    spinner_.start();
   }
-  ~SlowNode() { released_ = true; }
+  /// Waits for edits that are being answered: roscpp does not.
+  ~EditedNode() {
+    release();
+    spinner_.stop();
+  }
+  EditedNode(const EditedNode&) = delete;
+  EditedNode& operator=(const EditedNode&) = delete;
 
+  void release() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    held_ = false;
+    released_.notify_all();
+  }
   std::vector<EditTerrain::Request> edits() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return edits_;
   }
-  int most_at_once() const { return most_at_once_; }
+  /// Edits that wait for their answers.
+  int waiting() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return waiting_;
+  }
+  int most_at_once() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return most_at_once_;
+  }
 
  private:
   bool edit(EditTerrain::Request& request, EditTerrain::Response& response) {
-    most_at_once_ = std::max<int>(most_at_once_, ++at_once_);
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      edits_.push_back(request);
-    }
-    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(seconds_);
-    while (!released_ && ros::WallTime::now() < end) ros::WallDuration(0.01).sleep();
-    --at_once_;
+    std::unique_lock<std::mutex> lock(mutex_);
+    most_at_once_ = std::max(most_at_once_, ++waiting_);
+    edits_.push_back(request);
+    released_.wait(lock, [this] { return !held_; });
+    --waiting_;
     response.success = true;
     return true;
   }
 
   MadeUpNode node_;
-  const double seconds_;
-  std::atomic<int> at_once_{0}, most_at_once_{0};
-  std::atomic<bool> released_{false};
-  mutable std::mutex mutex_;
+  mutable std::mutex mutex_;  ///< guards the following members
+  std::condition_variable released_;
+  bool held_;
+  int waiting_ = 0, most_at_once_ = 0;
   std::vector<EditTerrain::Request> edits_;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle handle_;
   ros::ServiceServer service_;
+  ros::AsyncSpinner spinner_{2, &queue_};  // two edits at once would be seen
 };
 
+/// If an event of the mouse waited for a call, this would not end: the node answers the first call after the stroke.
 TEST_F(RvizTools, ALaggingNodeLosesNothingAndHoldsNothingUp) {
-  SlowNode node("/slow", 0.4);
-  rviz::Tool* const brush = use_brush();
-  set_tool(brush, "Node", "/slow");
-  ASSERT_TRUE(window_->run_until([&] {
-    mouse(QEvent::MouseMove, {70, 30}, Qt::NoButton);
-    return brush->property("over_terrain").toBool();
-  }));
+  EditedNode node("/slow", true);
+  rviz::Tool* const brush = use_brush("/slow");
   std::vector<At> path;
   for (int n = 0; n <= 200; ++n) path.push_back({20 + 0.5 * n, 30 + 20 * std::sin(0.03 * n)});
   mouse(QEvent::MouseButtonPress, path.front(), Qt::LeftButton);
-  double longest = 0;
-  for (const At& place : path) {
-    const ros::WallTime begin = ros::WallTime::now();
-    mouse(QEvent::MouseMove, place, Qt::LeftButton);
-    longest = std::max(longest, (ros::WallTime::now() - begin).toSec());
-    window_->run(0.01);
+  for (std::size_t n = 0; n < path.size(); ++n) {
+    mouse(QEvent::MouseMove, path[n], Qt::LeftButton);
+    if (n == path.size() / 4) {
+      EXPECT_TRUE(window_->run_until([&] { return node.waiting() == 1; })) << "it does not wait for the end";
+    }
   }
   mouse(QEvent::MouseButtonRelease, path.back(), Qt::NoButton);
-  EXPECT_LT(longest, 0.2) << "no event of the mouse waits for a call";
+  EXPECT_EQ(node.waiting(), 1);
+  node.release();
   wait_for(brush);
 
   const std::vector<EditTerrain::Request> edits = node.edits();
@@ -98,32 +116,29 @@ TEST_F(RvizTools, ALaggingNodeLosesNothingAndHoldsNothingUp) {
   }
 }
 
+TEST_F(RvizTools, AStraightStrokeNeedsFewCallsHoweverManyEventsItHas) {
+  EditedNode node("/straight", true);
+  rviz::Tool* const brush = use_brush("/straight");
+  drag({30, 10}, {110, 60}, 200);
+  node.release();
+  wait_for(brush);
+  EXPECT_LE(node.edits().size(), 2u) << "what was painted until the first call was sent, and the rest";
+}
+
+/// It hangs as long as this test lasts.
 TEST_F(RvizTools, ANodeThatHangsDoesNotHoldUpRviz) {
-  SlowNode node("/hangs", 1000);
-  rviz::Tool* const brush = use_brush();
-  set_tool(brush, "Node", "/hangs");
-  ASSERT_TRUE(window_->run_until([&] {
-    mouse(QEvent::MouseMove, {70, 30}, Qt::NoButton);
-    return brush->property("over_terrain").toBool();
-  }));
-  drag({30, 20}, {60, 20}, 10, 0.01);
-  ASSERT_TRUE(window_->run_until([&] { return node.most_at_once() == 1; }));
-  const std::uint64_t frames = window_->frames();
-  window_->run(1);
-  EXPECT_GT(window_->frames(), frames + 5);
-  const ros::WallTime begin = ros::WallTime::now();
-  tools().removeAll();
-  EXPECT_LT((ros::WallTime::now() - begin).toSec(), 2) << "closing rviz does not wait for the node";
+  EditedNode node("/hangs", true);
+  use_brush("/hangs");
+  drag({30, 20}, {60, 20}, 10);
+  ASSERT_TRUE(window_->run_until([&] { return node.waiting() == 1; }));
+  window_->run_frames(10);
+  tools().removeAll();  // as when rviz is closed
+  EXPECT_EQ(node.waiting(), 1);
 }
 
 TEST_F(RvizTools, StrokesHaveTheirOwnNames) {
-  SlowNode node("/names", 0);
-  rviz::Tool* const brush = use_brush();
-  set_tool(brush, "Node", "/names");
-  ASSERT_TRUE(window_->run_until([&] {
-    mouse(QEvent::MouseMove, {70, 30}, Qt::NoButton);
-    return brush->property("over_terrain").toBool();
-  }));
+  EditedNode node("/names");
+  rviz::Tool* const brush = use_brush("/names");
   for (int n = 0; n < 3; ++n) click({30.0 + 10 * n, 20});
   wait_for(brush);
   const std::vector<EditTerrain::Request> edits = node.edits();
@@ -148,7 +163,7 @@ TEST_F(RvizTools, PlantsArePutAndCleared) {
   set_tool(brush, "Material", "Plants");
   set_tool(brush, "Species", "bush");
   set_tool(brush, "Plant Density", 0.3);
-  drag({15, 20}, {45, 28}, 20, 0.02, Qt::NoModifier, 4);
+  drag({15, 20}, {45, 28}, 20, Qt::NoModifier, 4);
   wait_for(brush);
   const std::string planted = hash();
   EXPECT_NE(planted, empty) << text(brush, "report");
@@ -156,7 +171,7 @@ TEST_F(RvizTools, PlantsArePutAndCleared) {
   ASSERT_EQ(std::sscanf(text(brush, "report").c_str(), "%d plants", &plants), 1) << text(brush, "report");
   EXPECT_GT(plants, 20);
   EXPECT_LT(plants, 1.5 * 0.3 * 2 * 5 * 31) << "a pass puts about the density on its width";
-  drag({15, 20}, {45, 28}, 20, 0.02, Qt::ShiftModifier, 4);
+  drag({15, 20}, {45, 28}, 20, Qt::ShiftModifier, 4);
   wait_for(brush);
   int cleared = 0;
   ASSERT_EQ(std::sscanf(text(brush, "report").c_str(), "%d plants", &cleared), 1) << text(brush, "report");

@@ -17,7 +17,7 @@ TEST_F(RvizTools, AStrokeChangesTheCellsUnderItAndUndoTakesItBack) {
   const std::string start = hash();
   const std::vector<float> before = layer("sand_depth");
   const At from{40, 10}, to{90, 40};
-  drag(from, to, 25, 0.02);
+  drag(from, to, 25);
   wait_for(brush);
   const std::string painted = hash();
   const std::vector<float> after = layer("sand_depth");
@@ -43,7 +43,7 @@ TEST_F(RvizTools, EveryStrokeIsUndoneByItself) {
   rviz::Tool* const brush = use_brush();
   std::vector<std::string> hashes = {hash()};
   for (const double y : {0.0, 15.0, 30.0}) {
-    drag({30, y}, {100, y + 10}, 20, 0.01, y == 15 ? Qt::ShiftModifier : Qt::NoModifier);
+    drag({30, y}, {100, y + 10}, 20, y == 15 ? Qt::ShiftModifier : Qt::NoModifier);
     wait_for(brush);
     hashes.push_back(hash());
     EXPECT_NE(hashes.back(), hashes[hashes.size() - 2]);
@@ -59,43 +59,45 @@ TEST_F(RvizTools, EveryStrokeIsUndoneByItself) {
   EXPECT_NE(text(brush, "report").find("no stroke"), std::string::npos) << text(brush, "report");
 }
 
-TEST_F(RvizTools, AFastStrokeIsCompleteAndNeedsFewCalls) {
+TEST_F(RvizTools, AFastStrokeIsComplete) {
   rviz::Tool* const brush = use_brush();
   const std::vector<float> before = layer("sand_depth");
-  const qulonglong start = calls(brush);
-  drag({30, 10}, {110, 60}, 200, 0);  // as fast as events come
+  drag({30, 10}, {110, 60}, 200);
   wait_for(brush);
   expect_changed(before, layer("sand_depth"), {30, 10}, {110, 60}, 5);
-  EXPECT_LE(calls(brush) - start, 4u);
 }
 
-TEST_F(RvizTools, APressIsSentAtASaneRate) {
+TEST_F(RvizTools, AStrokeIsSeenWhileItIsPainted) {
   rviz::Tool* const brush = use_brush();
-  const qulonglong start = calls(brush);
-  const ros::WallTime begin = ros::WallTime::now();
-  drag({20, 0}, {120, 0}, 200, 0.01);
+  mouse(QEvent::MouseMove, {20, 0}, Qt::NoButton);
+  mouse(QEvent::MouseButtonPress, {20, 0}, Qt::LeftButton);
+  for (double x = 40; x <= 120; x += 20) {
+    const qulonglong before = calls(brush);
+    const std::string state = hash();
+    mouse(QEvent::MouseMove, {x, 0}, Qt::LeftButton);
+    EXPECT_TRUE(window_->run_until([&] { return calls(brush) > before; })) << x;
+    EXPECT_TRUE(window_->run_until([&] { return hash() != state; })) << x;
+  }
+  mouse(QEvent::MouseButtonRelease, {120, 0}, Qt::NoButton);
   wait_for(brush);
-  const double seconds = (ros::WallTime::now() - begin).toSec();
-  EXPECT_LE(static_cast<double>(calls(brush) - start), 20 * seconds + 2);
-  EXPECT_GE(calls(brush) - start, 5u) << "the stroke is seen while it is painted";
 }
 
 TEST_F(RvizTools, ObstaclesRockAndRefusals) {
   rviz::Tool* const brush = use_brush();
   const std::string start = hash();
   set_tool(brush, "Material", "Obstacle");
-  drag({40, 10}, {60, 10}, 5, 0.01);
+  drag({40, 10}, {60, 10}, 5);
   wait_for(brush);
   EXPECT_EQ(at(layer("obstacle"), {51, 11}), 1.0f) << text(brush, "report");
-  drag({40, 10}, {60, 10}, 5, 0.01, Qt::ShiftModifier);
+  drag({40, 10}, {60, 10}, 5, Qt::ShiftModifier);
   wait_for(brush);
   EXPECT_EQ(layer("obstacle"), std::vector<float>(columns * rows, 0));
   set_tool(brush, "Material", "Rock");
-  drag({80, 40}, {80, 40}, 1, 0);
+  drag({80, 40}, {80, 40}, 1);
   wait_for(brush);
   EXPECT_NEAR(static_cast<double>(at(layer("bedrock"), {79, 39})), 1.5, 0.01) << "a click gives the strength";
   set_tool(brush, "Operation", "Flatten");
-  drag({79, 39}, {95, 39}, 8, 0.01);
+  drag({79, 39}, {95, 39}, 8);
   wait_for(brush);
   EXPECT_NEAR(static_cast<double>(at(layer("bedrock"), {91, 39})), 1.5, 0.02) << "as high as where it began";
   for (int n = 0; n < 4; ++n) key(Qt::Key_Z);
@@ -103,13 +105,13 @@ TEST_F(RvizTools, ObstaclesRockAndRefusals) {
   EXPECT_EQ(hash(), start);
 
   set_tool(brush, "Material", "Plants");
-  drag({40, 10}, {60, 10}, 5, 0.01);
+  drag({40, 10}, {60, 10}, 5);
   EXPECT_NE(text(brush, "report").find("Operation"), std::string::npos) << text(brush, "report");
   set_tool(brush, "Operation", "Add");
-  drag({40, 10}, {60, 10}, 5, 0.01);
+  drag({40, 10}, {60, 10}, 5);
   EXPECT_NE(text(brush, "report").find("Species"), std::string::npos) << text(brush, "report");
   set_tool(brush, "Material", "Water");
-  drag({40, 10}, {60, 10}, 5, 0.01);
+  drag({40, 10}, {60, 10}, 5);
   wait_for(brush);
   EXPECT_NE(text(brush, "report").find("no layer water"), std::string::npos) << "what the node says is shown";
   save("refused");
@@ -150,7 +152,7 @@ TEST_F(RvizTools, PaintsWhatIsSeenThoughExaggeratedAndTurned) {
     return brush->property("over_terrain").toBool();
   }));
   const std::vector<float> before = layer("sand_depth");
-  drag({-20, 50}, {-40, 60}, 10, 0.01, Qt::NoModifier, z);
+  drag({-20, 50}, {-40, 60}, 10, Qt::NoModifier, z);
   wait_for(brush);
   expect_changed(before, layer("sand_depth"), {50, 20}, {60, 40}, 5, 0.7);
   save("turned");
@@ -161,7 +163,7 @@ TEST_F(RvizTools, TheNodesAbsenceIsAMessage) {
   set_tool(brush, "Node", "/nobody");
   mouse(QEvent::MouseMove, {70, 30}, Qt::NoButton);
   EXPECT_FALSE(brush->property("over_terrain").toBool());
-  drag({40, 10}, {60, 10}, 5, 0.01);
+  drag({40, 10}, {60, 10}, 5);
   EXPECT_NE(text(brush, "report").find("/nobody"), std::string::npos) << text(brush, "report");
   key(Qt::Key_Z);
   wait_for(brush);
@@ -173,11 +175,11 @@ TEST_F(RvizTools, ShowsTheOutline) {
   window_->look_at(60);
   set_tool(brush, "Radius", 12);
   mouse(QEvent::MouseMove, {-200, 25}, Qt::NoButton);
-  window_->run(0.3);
+  window_->run_frames(2);
   EXPECT_FALSE(brush->property("over_terrain").toBool());
   const std::size_t without = window_->colours();
   mouse(QEvent::MouseMove, {50, 25}, Qt::NoButton);
-  window_->run(0.3);
+  window_->run_frames(2);
   EXPECT_GE(window_->colours(), without + 2) << "two rings";
   save("hover");
 }

@@ -40,9 +40,15 @@ std::unique_ptr<ChildProcess> start_master() {
   return std::make_unique<ChildProcess>(std::vector<std::string>{"rosmaster", "--core", "-p", port});
 }
 
+/// Its status comes often: a panel that hears nothing for a while looks for the node.
+std::unique_ptr<NodeProcess> start_node() {
+  return std::make_unique<NodeProcess>("/panel_node",
+                                       std::map<std::string, XmlRpc::XmlRpcValue>{{"status_rate", 20.0}});
+}
+
 TEST(Panel, GoesOnWithoutAndWithAnotherMaster) {
   auto master = start_master();
-  ASSERT_TRUE(node_test::wait_until([] { return ros::master::check(); }, 20)) << "rosmaster does not start";
+  ASSERT_TRUE(node_test::wait_until([] { return ros::master::check(); })) << "rosmaster does not start";
   ros::start();
   const Screen screen;
   if (!screen.problem().empty()) GTEST_SKIP() << screen.problem();
@@ -50,27 +56,26 @@ TEST(Panel, GoesOnWithoutAndWithAnotherMaster) {
   char name[] = "panel_master_test";
   char* arguments[] = {name, nullptr};
   const QApplication application(argument_count, arguments);
-  auto node = std::make_unique<NodeProcess>("/panel_node");
+  auto node = start_node();
   PanelWindow window("/panel_node");
-  ASSERT_TRUE(window.shows("state", "corner: paused", 20)) << window.text("state");
+  ASSERT_TRUE(window.shows("state", "corner: paused")) << window.text("state");
 
+  // Who waited for the master in Qt's thread would wait for ever: this test starts another one later.
   master->end(SIGKILL);
-  EXPECT_LT(window.longest_stall([&] {
+  EXPECT_TRUE(window.run_until([&] {
     if (window.text("run_error").empty()) window.click("reset");
     return !window.error("run_error").empty();
-  }),
-            0.5);
+  }));
   EXPECT_NE(window.error("run_error").find("master"), std::string::npos) << window.error("run_error");
   EXPECT_EQ(window.text("state"), "corner: paused") << "the status still comes";
   node->end(SIGKILL);
-  EXPECT_LT(window.longest_stall([&] { return window.text("state") == "no ROS master"; }, 15), 0.5);
-  EXPECT_TRUE(window.shows("state", "no ROS master"));
+  EXPECT_TRUE(window.shows("state", "no ROS master")) << window.text("state");
 
   master = start_master();
-  ASSERT_TRUE(window.run_until([] { return ros::master::check(); }, 20));
-  EXPECT_TRUE(window.shows("state", "/panel_node is not there"));
-  node = std::make_unique<NodeProcess>("/panel_node");
-  EXPECT_TRUE(window.shows("state", "corner: paused", 20)) << window.text("state");
+  ASSERT_TRUE(window.run_until([] { return ros::master::check(); }));
+  EXPECT_TRUE(window.shows("state", "/panel_node is not there")) << window.text("state");
+  node = start_node();
+  EXPECT_TRUE(window.shows("state", "corner: paused")) << window.text("state");
   window.click("step");
   EXPECT_TRUE(window.shows("progress", "step 1,"));
 }

@@ -65,25 +65,12 @@ class PanelWindow {
     QTest::keyClick(edit, Qt::Key_Return);
   }
 
-  /// Serves Qt until the condition holds; false if it does not within the time.
-  bool run_until(const std::function<bool()>& condition, double seconds = 10) const {
+  /// Serves Qt until the condition holds; false if it does not within the time [s], times patience().
+  bool run_until(const std::function<bool()>& condition, double seconds = 60) const {
     return QTest::qWaitFor(condition, static_cast<int>(1000 * seconds * node_test::patience()));
   }
-  bool shows(const std::string& label, const std::string& part, double seconds = 10) const {
-    return run_until([&] { return text(label).find(part) != std::string::npos; }, seconds);
-  }
-  /// The longest time that Qt was not served while the condition was waited for [s].
-  double longest_stall(const std::function<bool()>& condition, double seconds = 10) const {
-    double longest = 0;
-    ros::WallTime last = ros::WallTime::now();
-    run_until(
-        [&] {
-          longest = std::max(longest, (ros::WallTime::now() - last).toSec());
-          last = ros::WallTime::now();
-          return condition();
-        },
-        seconds);
-    return longest;
+  bool shows(const std::string& label, const std::string& part) const {
+    return run_until([&] { return text(label).find(part) != std::string::npos; });
   }
 
  private:

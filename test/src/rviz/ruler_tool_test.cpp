@@ -33,7 +33,7 @@ TEST_F(RvizTools, TheRulerMeasures) {
   EXPECT_NEAR(height, 5.5, 0.6);
   EXPECT_GT(along, horizontal);
   EXPECT_NEAR(slope, std::atan2(height, horizontal) * 180 / pi, 0.1);
-  window_->run(0.3);
+  window_->run_frames(1);
   save("ruler");
   click({126, -10});
   const std::string ended = measured();

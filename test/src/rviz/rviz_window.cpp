@@ -21,6 +21,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "src/testing/node_process.hpp"
+
 namespace rviz_test {
 
 namespace {
@@ -77,7 +79,7 @@ Screen::~Screen() {
 
 // ---- Window ----
 
-Window::Window(int width, int height) {
+Window::Window(int width, int height, int frame_rate) {
   rviz::RenderSystem::disableAntiAliasing();  // in software it takes more than all the rest
   panel_ = std::make_unique<rviz::RenderPanel>();
   panel_->resize(width, height);
@@ -85,6 +87,11 @@ Window::Window(int width, int height) {
   manager_ = std::make_unique<rviz::VisualizationManager>(panel_.get());
   panel_->initialize(manager_->getSceneManager(), manager_.get());
   manager_->initialize();
+  property(manager_->getRootDisplayGroup(), {"Global Options", "Frame Rate"})->setValue(frame_rate);
+  QObject::connect(manager_.get(), &rviz::VisualizationManager::preUpdate, [this] {
+    if (for_each_frame_ && frames() > told_frames_) for_each_frame_();
+    told_frames_ = frames();
+  });
   manager_->startUpdate();
 }
 
@@ -127,23 +134,27 @@ void Window::look_from_above(double x, double y, double pixels_per_metre) {
   view->subProp("Y")->setValue(y);
 }
 
-void Window::run(double seconds, const std::function<void()>& each_frame) {
-  const double end = now() + seconds;
-  std::uint64_t frame = frames();
-  while (now() < end) {
-    QApplication::processEvents(QEventLoop::WaitForMoreEvents, 20);
-    if (frames() != frame && each_frame) each_frame();
-    frame = frames();
+bool Window::run_until(const std::function<bool()>& condition, double seconds) {
+  const double end = now() + seconds * desert_sim::test::patience();
+  while (!condition()) {
+    if (now() > end) return false;
+    QApplication::processEvents(QEventLoop::WaitForMoreEvents);
+  }
+  return true;
+}
+
+void Window::run_frames(int count) {
+  // What has happened between two frames is in the next one; what is asked for in a frame is rendered by it.
+  for (int n = 0; n < count; ++n) {
+    manager_->queueRender();
+    const std::uint64_t before = frames();
+    while (frames() == before) QApplication::processEvents(QEventLoop::WaitForMoreEvents);
   }
 }
 
-bool Window::run_until(const std::function<bool()>& condition, double seconds) {
-  const double end = now() + seconds;
-  while (!condition()) {
-    if (now() > end) return false;
-    run(0.02);
-  }
-  return true;
+void Window::for_each_frame(const std::function<void()>& call) {
+  told_frames_ = frames();
+  for_each_frame_ = call;
 }
 
 void Window::save(const std::string& path) { panel_->getRenderWindow()->writeContentsToFile(path); }

@@ -27,11 +27,14 @@ class Screen {
   std::string problem_, runtime_folder_;
 };
 
-/// rviz's view, with displays of plugins. Frames are drawn while run() or run_until() waits.
+/// rviz's view, with displays of plugins. Frames are drawn while run_frames() or run_until() waits.
 class Window {
  public:
-  Window(int width, int height);
+  /// `frame_rate`: rviz's property; tests draw more than the 30 frames a second that users get.
+  Window(int width, int height, int frame_rate = 200);
   ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
 
   /// A display desert_sim/Terrain of this topic.
   rviz::Display* add_terrain(const std::string& topic);
@@ -43,10 +46,13 @@ class Window {
   /// Looks from above with this scale [pixels/m].
   void look_from_above(double x, double y, double pixels_per_metre);
 
-  /// Draws frames for so many seconds; `each_frame` is called after each.
-  void run(double seconds, const std::function<void()>& each_frame = nullptr);
-  /// Draws frames until the condition holds; false if it does not within the time.
-  bool run_until(const std::function<bool()>& condition, double seconds = 20);
+  /// Draws frames until the condition holds; false if it does not within the time [s], times patience().
+  bool run_until(const std::function<bool()>& condition, double seconds = 60);
+  /// Draws so many frames from beginning to end. What was there before is in all of them.
+  void run_frames(int count);
+  /// From the next frame on, `call` is called for each frame that was drawn, before the one after it begins; null:
+  /// nothing is.
+  void for_each_frame(const std::function<void()>& call);
   std::uint64_t frames() const { return manager_->getFrameCount(); }
   /// Distinct colours in the picture: more than a few if something was drawn.
   std::size_t colours();
@@ -56,6 +62,8 @@ class Window {
  private:
   std::unique_ptr<rviz::RenderPanel> panel_;
   std::unique_ptr<rviz::VisualizationManager> manager_;
+  std::function<void()> for_each_frame_;
+  std::uint64_t told_frames_ = 0;  ///< up to which for_each_frame_ was called
 };
 
 /// A property of a display by its path, such as {"Overlay", "Minimum"}; null if there is none.

@@ -3,18 +3,14 @@
 
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
-#include <gtest/gtest.h>
-#include <ros/ros.h>
 #include <rviz/properties/status_property.h>
-#include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include <cstdlib>
+#include <algorithm>
 #include <limits>
-#include <thread>
 
-#include "test/src/rviz/made_up_node.hpp"
-#include "test/src/rviz/rviz_window.hpp"
+#include "test/src/rviz/terrain_fixture.hpp"
+#include "test/support/ros/client.hpp"
 
 namespace rviz_test {
 namespace {
@@ -22,8 +18,6 @@ namespace {
 using rviz::StatusProperty;
 
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
-
-double number(rviz::Display* display, const char* name) { return display->property(name).toDouble(); }
 
 /// The box of everything that is drawn of the terrain, in the fixed frame.
 Ogre::AxisAlignedBox drawn(const Ogre::Node* node) {
@@ -38,59 +32,13 @@ Ogre::AxisAlignedBox drawn(const Ogre::Node* node) {
   return box;
 }
 
-class TerrainDisplay : public testing::Test {
- protected:
-  /// OGRE and rviz know one window in the life of a process.
-  static void SetUpTestSuite() {
-    screen_ = new Screen;
-    if (!screen_->problem().empty()) return;
-    static int argument_count = 1;
-    static char name[] = "terrain_display_test";
-    static char* arguments[] = {name, nullptr};
-    new QApplication(argument_count, arguments);
-    window_ = new Window(640, 480);
-  }
-  static void TearDownTestSuite() {
-    delete window_;
-    delete qApp;
-    delete screen_;
-  }
-  void SetUp() override {
-    if (!window_) GTEST_SKIP() << screen_->problem();
-    window_->set_fixed_frame("map");  // a terrain in that frame needs no transform
-  }
-  void TearDown() override {
-    if (window_) window_->manager().removeAllDisplays();
-  }
-
-  /// A display that shows all of a made-up terrain.
-  rviz::Display* show(MadeUpNode& node, const std::string& name, int side, const Height& height = dunes) {
-    rviz::Display* const display = window_->add_terrain(name + "/elevation");
-    set(display, {"Materials"}, false);
-    set(display, {"Water"}, false);
-    set(display, {"Plants"}, false);
-    window_->look_at(side);
-    node.keyframe(side, side, height);
-    EXPECT_TRUE(window_->run_until([&] { return is_ready(display); })) << status(display, "Topic").text;
-    return display;
-  }
-  static bool is_ready(rviz::Display* display) {
-    return number(display, "blocks") > 0 && number(display, "waiting_blocks") == 0 &&
-           number(display, "triangles") > 0;
-  }
-
-  static Screen* screen_;
-  static Window* window_;
-};
-
-Screen* TerrainDisplay::screen_ = nullptr;
-Window* TerrainDisplay::window_ = nullptr;
-
 TEST_F(TerrainDisplay, DrawsThePicture) {
   MadeUpNode node("/drawn");
   rviz::Display* const display = show(node, "/drawn", 256);
   set(display, {"Contour Interval"}, 2);
-  window_->run(0.5);
+  window_->run_frames(1);
+  EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
+  window_->run_frames(2);  // statuses are shown in the frame after
   EXPECT_GT(window_->colours(), 100u);
   EXPECT_EQ(status(display, "Terrain").level, StatusProperty::Ok);
   EXPECT_NE(status(display, "Terrain").text.find("256 x 256 cells"), std::string::npos);
@@ -98,21 +46,21 @@ TEST_F(TerrainDisplay, DrawsThePicture) {
       << status(display, "Blocks").text;
 }
 
-// (1) Big maps stall rviz.
-TEST_F(TerrainDisplay, Complaint1ALargeKeyframeTakesNoFrameMoreThan20Milliseconds) {
+// (1) Big maps stall rviz. terrain_display_timing_test.cpp measures how long frames take.
+TEST_F(TerrainDisplay, Complaint1ALargeKeyframeIsBuiltInManyFramesAndItsTrianglesAreBounded) {
   MadeUpNode node("/large");
   rviz::Display* const display = show(node, "/large", 256);
-  std::vector<double> milliseconds;
-  std::thread sender([&] { node.keyframe(2048, 2048, dunes); });  // rviz goes on drawing meanwhile
-  window_->run_until([&] {
-    milliseconds.push_back(number(display, "frame_milliseconds"));
-    return number(display, "blocks") == 256 && is_ready(display);
+  set(display, {"Time per Frame"}, 1);
+  double most_built = 0, built = number(display, "built_blocks");
+  window_->for_each_frame([&] {
+    most_built = std::max(most_built, number(display, "built_blocks") - built);
+    built = number(display, "built_blocks");
   });
-  sender.join();
-  EXPECT_TRUE(is_ready(display));
-  std::printf("longest frame: %.1f ms of our work, of %zu\n",
-              *std::max_element(milliseconds.begin(), milliseconds.end()), milliseconds.size());
-  EXPECT_LE(*std::max_element(milliseconds.begin(), milliseconds.end()), 20);
+  node.keyframe(2048, 2048, dunes);
+  EXPECT_TRUE(window_->run_until([&] { return number(display, "blocks") == 256 && is_ready(display); }));
+  window_->run_frames(1);
+  EXPECT_GE(most_built, 1);
+  EXPECT_LT(most_built, 256) << "they do not come all at once";
   EXPECT_LE(number(display, "triangles"), 200000) << "of which 60000 are in the picture";
 }
 
@@ -151,7 +99,7 @@ TEST_F(TerrainDisplay, Complaint4UnknownCellsAreHoles) {
   EXPECT_LT(drawn(window_->manager().getSceneManager()->getRootSceneNode()).getMaximum().x, 66);
   node.update(0, 0, 128, 128, [](int, int) { return unknown; });
   EXPECT_TRUE(window_->run_until([&] { return number(display, "triangles") == 0; }));
-  window_->run(0.3);
+  window_->run_frames(2);  // without a crash
   node.update(0, 0, 128, 128, dunes);
   EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
   node.keyframe(1, 50, dunes);
@@ -163,18 +111,22 @@ TEST_F(TerrainDisplay, Complaint4UnknownCellsAreHoles) {
 TEST_F(TerrainDisplay, Complaint5ASmallUpdateBuildsOnlyItsBlocks) {
   MadeUpNode node("/small");
   rviz::Display* const display = show(node, "/small", 512);
-  window_->run(0.3);
+  double messages = 0;
+  window_->for_each_frame([&] { messages += number(display, "frame_messages"); });
+  const auto built_after = [&](double of_messages) {
+    EXPECT_TRUE(window_->run_until([&] { return messages == of_messages && is_ready(display); }));
+    return number(display, "built_blocks");
+  };
+  window_->run_frames(1);
   const double before = number(display, "built_blocks");
   node.update(90, 90, 16, 16, [](int x, int y) { return dunes(x, y) + 0.5f; });
-  EXPECT_TRUE(window_->run_until([&] { return number(display, "built_blocks") > before; }));
-  window_->run(0.3);
-  EXPECT_EQ(number(display, "built_blocks"), before + 1);
-  // The same elevations in a new keyframe.
+  EXPECT_EQ(built_after(1), before + 1);
+  // The same elevations in a new keyframe, and then a small change of it, which the client takes after it.
   node.keyframe(512, 512, [](int x, int y) {
     return x >= 90 && x < 106 && y >= 90 && y < 106 ? dunes(x, y) + 0.5f : dunes(x, y);
   });
-  window_->run(1);
-  EXPECT_EQ(number(display, "built_blocks"), before + 1);
+  node.update(280, 280, 16, 16, [](int x, int y) { return dunes(x, y) + 0.5f; });
+  EXPECT_EQ(built_after(2), before + 2);
 }
 
 // (6) Memory that grows.
@@ -186,7 +138,7 @@ TEST_F(TerrainDisplay, Complaint6MemoryIsFlatOverUpdatesAndResizes) {
   const auto updates = [&](int count) {
     for (int n = 0; n < count; ++n) {
       node.update(n * 7 % 192, n * 11 % 192, 64, 64, [n](int x, int y) { return dunes(x + n, y); });
-      if (n % 5 == 0) window_->run(0.01);
+      if (n % 5 == 0) window_->run_frames(1);
     }
   };
   const auto resizes = [&](int count) {
@@ -213,9 +165,8 @@ TEST_F(TerrainDisplay, Complaint7TheTopDownViewHasDetailByItsScale) {
   rviz::Display* const display = show(node, "/top_down", 1024);
   const auto triangles_at = [&](double pixels_per_metre) {
     window_->look_from_above(512, 512, pixels_per_metre);
-    window_->run(0.3);
+    window_->run_frames(3);  // the camera moves at the end of one, and the display sees it in the next one
     EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
-    window_->run(0.3);
     return number(display, "triangles");
   };
   const double far = triangles_at(0.1), near = triangles_at(1), nearest = triangles_at(8);
@@ -228,18 +179,23 @@ TEST_F(TerrainDisplay, Complaint7TheTopDownViewHasDetailByItsScale) {
 TEST_F(TerrainDisplay, Complaint8MessagesFasterThanFramesAreTakenTogether) {
   MadeUpNode node("/fast");
   rviz::Display* const display = show(node, "/fast", 256);
-  window_->run(0.5);
-  const double built = number(display, "built_blocks");
-  const std::uint64_t frames = window_->frames();
-  for (int n = 0; n < 150; ++n)  // fewer than the client's queue holds
-    node.update(0, 0, 64, 64, [n](int x, int y) { return dunes(x, y) + 0.01f * static_cast<float>(n); });
-  double messages = 0, most = 0;
-  window_->run(2, [&] {
+  window_->run_frames(1);
+  double messages = 0, most = 0, sent = 0;
+  window_->for_each_frame([&] {
     messages += number(display, "frame_messages");
     most = std::max(most, number(display, "frame_messages"));
   });
-  EXPECT_EQ(messages, 150);
-  EXPECT_GT(most, 1);
+  const double built = number(display, "built_blocks");
+  const std::uint64_t frames = window_->frames();
+  // All of them are in the client's queue before a frame is drawn; the client can be slow to take them from there.
+  EXPECT_TRUE(node_test::wait_until([&] {
+    for (int n = 0; n < 150; ++n, ++sent)  // fewer than the client's queue holds
+      node.update(0, 0, 64, 64, [&](int x, int y) { return dunes(x, y) + 0.01f * static_cast<float>(sent); });
+    EXPECT_TRUE(window_->run_until([&] { return messages >= sent; }));
+    return most > 1;
+  }));
+  window_->run_frames(2);
+  EXPECT_EQ(messages, sent);
   EXPECT_LE(number(display, "built_blocks") - built, 4.0 * static_cast<double>(window_->frames() - frames));
   EXPECT_EQ(status(display, "Topic").level, StatusProperty::Ok) << status(display, "Topic").text;
 }
@@ -271,11 +227,12 @@ TEST_F(TerrainDisplay, TwoDisplaysShowTwoNodes) {
   EXPECT_EQ(number(one, "blocks"), 4);
   EXPECT_EQ(number(two, "blocks"), 1);
   window_->remove(one);
-  window_->run(0.3);
+  window_->run_frames(2);
+  const double built = number(two, "built_blocks");
   second.update(0, 0, 10, 10, [](int, int) { return 9.0f; });
-  EXPECT_TRUE(window_->run_until([&] { return is_ready(two); }));
+  EXPECT_TRUE(window_->run_until([&] { return number(two, "built_blocks") > built && is_ready(two); }));
   window_->remove(two);
-  window_->run(0.3);
+  window_->run_frames(2);
 }
 
 TEST_F(TerrainDisplay, FollowsAMovingFixedFrame) {
@@ -297,7 +254,7 @@ TEST_F(TerrainDisplay, FollowsAMovingFixedFrame) {
     window_->run_until([&] {
       t.header.stamp = ros::Time::now();
       broadcaster.sendTransform(t);
-      window_->run(0.1);
+      window_->run_frames(1);
       edge = drawn(window_->manager().getSceneManager()->getRootSceneNode()).getMinimum().x;
       return std::abs(static_cast<double>(edge) - (x + 0.5)) < 0.01;
     });
@@ -318,10 +275,11 @@ TEST_F(TerrainDisplay, ExaggerationsAndDisablingWork) {
   };
   const Ogre::Real before = height();
   set(display, {"Vertical Exaggeration"}, 3);
-  window_->run(0.5);
+  window_->run_frames(2);
+  EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
   EXPECT_NEAR(height(), 3 * before, 0.01F);
   display->setEnabled(false);
-  window_->run(0.2);
+  window_->run_frames(1);
   EXPECT_EQ(number(display, "blocks"), 0);
   display->setEnabled(true);
   EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
@@ -330,12 +288,4 @@ TEST_F(TerrainDisplay, ExaggerationsAndDisablingWork) {
 }  // namespace
 }  // namespace rviz_test
 
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "terrain_display_test", ros::init_options::NoSigintHandler);
-  ros::start();
-  ros::AsyncSpinner spinner(1);
-  const int result = RUN_ALL_TESTS();
-  ros::shutdown();
-  return result;
-}
+int main(int argc, char** argv) { return rviz_test::run_terrain_tests(argc, argv, "terrain_display_test"); }

@@ -84,8 +84,9 @@ rviz::Tool* RvizTools::use(const char* name) {
   return tool;
 }
 
-rviz::Tool* RvizTools::use_brush() {
+rviz::Tool* RvizTools::use_brush(const char* node) {
   rviz::Tool* const brush = use("desert_sim/Brush");
+  set_tool(brush, "Node", node);
   EXPECT_TRUE(window_->run_until([&] {
     mouse(QEvent::MouseMove, {70, 30}, Qt::NoButton);
     return brush->property("over_terrain").toBool();
@@ -121,22 +122,21 @@ void RvizTools::key(int code, Qt::KeyboardModifiers modifiers) {
   QApplication::sendEvent(window_->manager().getRenderPanel(), &event);
 }
 
-void RvizTools::drag(const At& from, const At& to, int moves, double pause, Qt::KeyboardModifiers modifiers,
-                     double z) {
+void RvizTools::drag(const At& from, const At& to, int moves, Qt::KeyboardModifiers modifiers, double z) {
   mouse(QEvent::MouseMove, from, Qt::NoButton, modifiers, z);
   mouse(QEvent::MouseButtonPress, from, Qt::LeftButton, modifiers, z);
   for (int n = 1; n <= moves; ++n) {
     const double share = static_cast<double>(n) / moves;
     mouse(QEvent::MouseMove, {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)},
           Qt::LeftButton, modifiers, z);
-    if (pause > 0) window_->run(pause);
+    QApplication::processEvents();
   }
   mouse(QEvent::MouseButtonRelease, to, Qt::NoButton, modifiers, z);
 }
 
 void RvizTools::wait_for(rviz::Tool* brush) {
   EXPECT_TRUE(window_->run_until([&] { return brush->property("idle").toBool(); }));
-  window_->run(0.05);  // the report is shown in the next frame
+  window_->run_frames(1);  // which shows the report
 }
 
 void RvizTools::set_tool(rviz::Tool* tool, const char* name, const QVariant& value) {

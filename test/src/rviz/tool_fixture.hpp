@@ -45,8 +45,8 @@ class RvizTools : public testing::Test {
   static rviz::ToolManager& tools() { return *window_->manager().getToolManager(); }
   /// A new tool, in use, when the terrain is shown.
   rviz::Tool* use(const char* name);
-  /// A brush that has found the terrain.
-  rviz::Tool* use_brush();
+  /// A brush that has found the terrain of this node.
+  rviz::Tool* use_brush(const char* node = "/desert_sim");
 
   /// The pixel that shows a point of the fixed frame; by default on the undisturbed surface.
   static QPoint pixel(const At& at, double z = surface);
@@ -54,9 +54,10 @@ class RvizTools : public testing::Test {
                     Qt::KeyboardModifiers modifiers = Qt::NoModifier, double z = surface);
   static void wheel(const At& at, int notches, Qt::KeyboardModifiers modifiers = Qt::NoModifier);
   static void key(int code, Qt::KeyboardModifiers modifiers = Qt::NoModifier);
-  /// Press, so many moves, release; `pause` between them [s].
-  static void drag(const At& from, const At& to, int moves, double pause,
-                   Qt::KeyboardModifiers modifiers = Qt::NoModifier, double z = surface);
+  /// Press, so many moves, release. rviz goes on drawing meanwhile if it can: what is painted while a call is
+  /// under way, and how many calls there are, depends on the machine.
+  static void drag(const At& from, const At& to, int moves, Qt::KeyboardModifiers modifiers = Qt::NoModifier,
+                   double z = surface);
   static void click(const At& at);
   /// Until the brush has nothing more to send.
   static void wait_for(rviz::Tool* brush);

@@ -150,16 +150,16 @@ TEST_F(Bench, RefusesWhatItDoesNotUnderstand) {
   refused({"--scene", "A", "--size", "65536", "--backend", "cpu"}, "65536 x 65536");
 }
 
-/// A run of this size would take minutes.
+/// A run of this size would take days.
 TEST_F(Bench, RefusesOutputsThatCannotBeWrittenBeforeItMeasures) {
   std::filesystem::create_directories(path("folder"));
   for (const char* option : {"--json", "--save-start", "--roofline"})
     for (const std::string& file : {path("no/such/file"), path("folder")}) {
       SCOPED_TRACE(option);
-      std::vector<std::string> arguments = {"--backend", "cpu",  "--size", "2048",
-                                            "--steps",   "1000", option,   file};
+      std::vector<std::string> arguments = {"--backend", "cpu",       "--size",  "2048", "--steps",
+                                            "1000000",   "--warm-up", "1000000", option, file};
       if (option == std::string("--roofline")) arguments.insert(arguments.end(), {"--json", path("a.json")});
-      EXPECT_LT(refused(arguments, file).seconds, 10);
+      refused(arguments, file);
     }
   EXPECT_FALSE(std::filesystem::exists(path("a.json")));
 }

@@ -233,10 +233,35 @@ TEST_F(Run, PlotsARunOverTimeOrSaysWhyNot) {
   EXPECT_NE(alone.err.find("--plot: --out and --every are required too"), std::string::npos) << alone.err;
 }
 
-TEST_F(Run, InterruptedFinishesItsStepWritesOutputsAndExits130) {
-  const test::ProgramRun r = run({scenario_, "--backend", "cpu", "--steps", "100000000", "--out", path("out"),
-                                  "--checkpoint", path("a.ck")},
-                                 1.5);
+/// A run that does not end by itself, and saves a checkpoint after each step.
+class EndlessRun : public Run {
+ protected:
+  void SetUp() override {
+    Run::SetUp();
+    if (HasFatalFailure()) return;
+    arguments_ = {scenario_, "--backend", "cpu",          "--steps",    "100000000",
+                  "--out",   path("out"), "--checkpoint", path("a.ck"), "--checkpoint-every",
+                  "1"};
+  }
+  /// It has made a step.
+  bool stepped() const { return std::filesystem::exists(path("a.ck")); }
+  /// It has made so many steps since this was called for the first time.
+  std::function<bool(const std::string&)> steps_on(int steps) const {
+    return [this, left = steps](const std::string&) mutable {
+      if (stepped() && left > 0) {
+        std::filesystem::remove(path("a.ck"));
+        --left;
+      }
+      return left == 0;
+    };
+  }
+
+  std::vector<std::string> arguments_;
+  const test::Signal hang_up_{SIGHUP, [this](const std::string&) { return stepped(); }};
+};
+
+TEST_F(EndlessRun, InterruptedFinishesItsStepWritesOutputsAndExits130) {
+  const test::ProgramRun r = run(arguments_, {{SIGINT, [this](const std::string&) { return stepped(); }}});
   EXPECT_EQ(r.status, 130) << r.err;
   const std::string text = summary("out");
   EXPECT_NE(text, "");
@@ -246,19 +271,17 @@ TEST_F(Run, InterruptedFinishesItsStepWritesOutputsAndExits130) {
   EXPECT_EQ(hash("again"), hash("out"));
 }
 
-TEST_F(Run, EndsAtTheLossOfItsTerminalAsAfterCtrlC) {
-  const std::vector<std::string> endless = {program_, scenario_, "--backend", "cpu", "--steps", "100000000"};
-  std::vector<std::string> hung_up = {"--preserve-status", "-s", "HUP", "2"};
-  hung_up.insert(hung_up.end(), endless.begin(), endless.end());
-  hung_up.insert(hung_up.end(), {"--out", path("out")});
-  const test::ProgramRun r = test::run_program("/usr/bin/timeout", hung_up);
+TEST_F(EndlessRun, EndsAtTheLossOfItsTerminalAsAfterCtrlC) {
+  const test::ProgramRun r = run(arguments_, {hang_up_});
   EXPECT_EQ(r.status, 130) << r.err;
   EXPECT_GT(std::stoll("0" + json(summary("out"), "steps")), 0);
-  // Not under nohup, which ignores the signal: the run goes on until it is killed.
-  std::vector<std::string> nohup = {"-s", "HUP", "-k", "1", "2", "/bin/sh", "-c", "trap '' HUP; exec \"$@\"",
-                                    "sh"};
-  nohup.insert(nohup.end(), endless.begin(), endless.end());
-  EXPECT_EQ(test::run_program("/usr/bin/timeout", nohup).status, 128 + SIGKILL);
+}
+
+/// nohup ignores the signal.
+TEST_F(EndlessRun, GoesOnUnderNohupUntilItIsKilled) {
+  std::vector<std::string> nohup = {"-c", "trap '' HUP; exec \"$@\"", "sh", program_};
+  nohup.insert(nohup.end(), arguments_.begin(), arguments_.end());
+  EXPECT_EQ(test::run_program("/bin/sh", nohup, {hang_up_, {SIGKILL, steps_on(10)}}).status, 128 + SIGKILL);
 }
 
 TEST_F(Run, WithAStandardOutputThatIsFullFails) {
@@ -310,12 +333,16 @@ TEST_F(Run, LetsThreadsWaitWithoutSpinningUnlessTheUserHasChosen) {
   EXPECT_EQ(spins({"GOMP_SPINCOUNT=5"}), "5");
 }
 
-TEST_F(Run, KeepsTheNameOfItsProcess) {
-  const test::ProgramRun r = test::run_program(
-      "/bin/sh",
-      {"-c",
-       "unset OMP_WAIT_POLICY GOMP_SPINCOUNT; \"$0\" \"$@\" & sleep 2; cat /proc/$!/comm; kill -KILL $!",
-       program_, scenario_, "--backend", "cpu", "--steps", "100000000", "--quiet"});
+/// The test is a shell's, which waits for the first step: the program has executed itself anew by then.
+TEST_F(EndlessRun, KeepsTheNameOfItsProcess) {
+  std::vector<std::string> named = {"-c",
+                                    "unset OMP_WAIT_POLICY GOMP_SPINCOUNT; file=$1; shift; \"$@\" & "
+                                    "while kill -0 $! && ! test -e \"$file\"; do sleep 0.01; done; "
+                                    "cat /proc/$!/comm; kill -KILL $!",
+                                    "sh", path("a.ck"), program_};
+  named.insert(named.end(), arguments_.begin(), arguments_.end());
+  named.push_back("--quiet");
+  const test::ProgramRun r = test::run_program("/bin/sh", named);
   EXPECT_EQ(r.out, std::filesystem::path(program_).filename().string() + "\n") << r.err;
 }
 

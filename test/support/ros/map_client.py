@@ -7,7 +7,7 @@ import unittest
 
 import genpy.dynamic
 import rospy
-from desert_sim.testing import PATIENCE
+from desert_sim.testing import PATIENCE, wait_until
 from geometry_msgs.msg import Pose
 from std_msgs.msg import Float32MultiArray, Header
 from std_srvs.srv import Trigger
@@ -89,6 +89,21 @@ class Listener:
 
     def __exit__(self, *_):
         self.close()
+
+
+def wait_until_known(keyframes, updates, change, publications):
+    """Waits until the node knows the subscribers of both topics of a stream, whole maps and updates, and has sent what it
+    sends to new ones. `change()` changes what the stream shows, and has it published by ~step; `publications()` is the
+    number of all messages so far. Rates are 0. To subscribers that the node knows a change comes as one update; before that
+    it comes as a whole map, or as both."""
+    def told_by_an_update_alone():
+        whole, parts, before = len(keyframes.messages), len(updates.messages), publications()
+        change()
+        once = publications() == before + 1
+        wait_until(lambda: len(keyframes.messages) > whole or len(updates.messages) > parts, "a change that is shown")
+        return once and len(updates.messages) > parts
+
+    wait_until(told_by_an_update_alone, "changes as updates alone")
 
 
 def cells(grid_map, layer):

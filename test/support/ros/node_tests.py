@@ -3,21 +3,30 @@ import glob
 import json
 import os
 import shutil
+import signal
 import struct
 import subprocess
 import tempfile
 import unittest
 
 import rospkg
+import rospy
 import yaml
 from desert_sim.testing import Node, program
+from rosgraph_msgs.msg import Clock
 
 PACKAGE = rospkg.RosPack().get_path("desert_sim")
 CORNER, OASIS = (os.path.join(PACKAGE, "test", "support", "ros", "scenarios", name) for name in ("corner.yaml", "oasis.yaml"))
 
 
+def without_alarm():
+    """For Node(preexec=...): a node that is told to end sets an alarm, which gives up a step that takes too long. Here the
+    alarm does not reach it, so that it ends by itself or never, however slow the machine is."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGALRM})
+
+
 class Scenarios(unittest.TestCase):
-    """Nodes and files that go when a test ends."""
+    """Nodes and files that go when a test ends. Nodes have no alarm, unless they are started with another `preexec`."""
 
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="desert_sim_")
@@ -32,6 +41,7 @@ class Scenarios(unittest.TestCase):
 
     def start(self, name, private, **options):
         usual = {"backend": "cpu", "threads": 1, "paused": True, "answer_timeout": 600}
+        options.setdefault("preexec", without_alarm)
         node = Node(name, dict(usual, **private), **options)
         self.nodes.append(node)
         return node
@@ -50,6 +60,23 @@ class Scenarios(unittest.TestCase):
                        check=True, timeout=600)
         with open(os.path.join(out, "summary.json")) as file:
             return json.load(file)["state_hash"]
+
+
+class ScriptedClock:
+    """/clock as a test moves it. Nodes that start later are shown the present time, too."""
+
+    def __init__(self):
+        self.now = None
+        self.publisher = rospy.Publisher("/clock", Clock, queue_size=1000, latch=True)
+
+    def show(self, seconds):
+        """It is so late."""
+        self.now = rospy.Time.from_sec(seconds)
+        self.publisher.publish(Clock(self.now))
+
+    def close(self):
+        """A node that is the clock refuses to be the second one."""
+        self.publisher.unregister()
 
 
 def autosaves(folder):

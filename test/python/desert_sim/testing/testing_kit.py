@@ -7,6 +7,8 @@ import shutil
 import tempfile
 import threading
 import unittest
+from concurrent.futures import ThreadPoolExecutor
+from unittest import mock
 
 import cv2
 import desert_sim.testing
@@ -14,6 +16,7 @@ import numpy
 import rospy
 import rostest
 from desert_sim.msg import RoverStatus
+from desert_sim.testing import PATIENCE, wait_until
 from desert_sim.testing.paths import deviation
 from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry, Path
@@ -23,6 +26,7 @@ WALLED = {"grid": {"width": 48, "height": 32, "cell_size": 0.5, "boundary": "ope
           "terrain": [{"uniform": {"layer": "bedrock", "value": 1}},
                       {"column": {"layer": "bedrock", "x": 12, "y": 6, "size_x": 1, "size_y": 12, "height": 3}}]}
 START, GOAL, GAP = (7, 10), (16, 10), (12, 14.5)
+ALWAYS = 600  # s, a reaction that what is under test never exceeds
 
 
 class Follower:
@@ -33,6 +37,8 @@ class Follower:
         self.paths = rospy.Publisher("/planner/plan", Path, queue_size=1, latch=True)
         self.commands = rospy.Publisher("/rover/cmd_vel", Twist, queue_size=1)
         self.publish()
+        # The node, and the Desert that waits for the first command before the first step.
+        wait_until(lambda: self.commands.get_num_connections() >= 2, "nobody takes commands")
         self.poses = rospy.Subscriber("/rover/ground_truth", Odometry, self.drive)
 
     def publish(self):
@@ -58,12 +64,36 @@ class Follower:
             end.unregister()
 
 
+class HopelessRover(desert_sim.Rover):
+    """Waits no longer for its pose once its status says why there is none."""
+
+    def pose(self):
+        wait_until(lambda: "off the terrain" in self.status().reason, "the rover does not say why it has no pose")
+        self.timeout = 0
+        return super().pose()
+
+
 class Kit(unittest.TestCase):
+    """Tests that need no desert of their own share one that runs, to which a Desert(None) is as to any other."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.walled = desert_sim.testing.Desert(WALLED, node="walled")
+        cls.walled.__enter__()
+        cls.walled.terrain.close()  # a client beside it would have to ask for its first keyframe, for rospy shares connections
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.walled.__exit__(None, None, None)
+
     def setUp(self):
+        self.walled.simulation.reset()
         self.pictures = tempfile.mkdtemp(prefix="desert_sim_pictures_")
         self.addCleanup(shutil.rmtree, self.pictures)
 
-    def desert(self, scenario=WALLED, **options):
+    def desert(self, scenario=None, **options):
+        if scenario is None:
+            options["node"] = "walled"
         return desert_sim.testing.Desert(scenario, pictures=self.pictures, **options)
 
     def planner(self, *way):
@@ -80,12 +110,15 @@ class Kit(unittest.TestCase):
         return image
 
     def test_a_seed_gives_the_same_bits(self):
-        def hash_of(seed):
-            with self.desert("barchan", seed=seed, settings=["grid.width=48", "grid.height=40"]) as desert:
+        def hash_of(node, seed):
+            with self.desert("barchan", seed=seed, settings=["grid.width=48", "grid.height=40"], node=node) as desert:
                 self.assertEqual(desert.terrain.map.values.shape, (40, 48))
                 return desert.step(3).state_hash
-        self.assertEqual(hash_of(5), hash_of(5))
-        self.assertNotEqual(hash_of(5), hash_of(6))
+
+        with ThreadPoolExecutor() as at_once:
+            one, same, other = at_once.map(hash_of, ("one", "same", "other"), (5, 5, 6))
+        self.assertEqual(one, same)
+        self.assertNotEqual(one, other)
 
     def test_costs_and_edits(self):
         with self.desert() as desert:
@@ -101,26 +134,26 @@ class Kit(unittest.TestCase):
             self.assertEqual(image.shape[1] / 48, image.shape[0] / 32)
 
     def test_a_rover_arrives_as_its_planner_wants(self):
-        with self.desert(rover=START) as desert:
+        with self.desert(rover=START, reaction=ALWAYS, seconds_per_step=0.2) as desert:
             self.planner(GAP, GOAL)
-            steps = desert.expect_rover_arrives(GOAL, within=700)
-            self.assertGreater(steps * 0.03, math.dist(START, GAP) + math.dist(GAP, GOAL) - 1, "0.3 m/s is its limit")
+            steps = desert.expect_rover_arrives(GOAL, within=350)
+            self.assertGreater(steps * 0.06, math.dist(START, GAP) + math.dist(GAP, GOAL) - 1, "0.3 m/s is its limit")
             self.assertLessEqual(desert.rover.distance_to(*GOAL), 0.5)
             self.assertEqual(desert.simulation.step(0).step, steps)
             self.assertEqual(desert.rover.status().state, RoverStatus.DRIVING)
 
     def test_a_rover_that_does_not_arrive_is_shown(self):
-        with self.desert(rover=START, reaction=0.2) as desert:
+        with self.desert(rover=START, reaction=ALWAYS, seconds_per_step=0.2) as desert:
             self.planner(GOAL)  # through the wall
-            with self.assertRaisesRegex(AssertionError, r"after 200 steps the rover is at \(1[01]\..* m from \(16, 10\) .*it is "
+            with self.assertRaisesRegex(AssertionError, r"after 100 steps the rover is at \(1[01]\..* m from \(16, 10\) .*it is "
                                                         r"blocked: .* commands; picture: ") as failed:
-                desert.expect_rover_arrives(GOAL, within=200)
+                desert.expect_rover_arrives(GOAL, within=100)
             image = self.expect_picture(failed.exception).astype(int)
             white = (image > 240).all(2)
             self.assertGreater(white[:, image.shape[1] * 15 // 48:image.shape[1] * 20 // 48].sum(), 50, "its way")
 
     def test_a_planner_that_plans_anew(self):
-        with self.desert(rover=START, reaction=0.3) as desert:
+        with self.desert(rover=START, reaction=ALWAYS) as desert:
             planner = self.planner(GOAL)
 
             def wall():
@@ -131,10 +164,11 @@ class Kit(unittest.TestCase):
                     planner.way[1:1] = [(9, 14)]
                     planner.publish()
 
-            with desert_sim.TerrainClient(layers=["traversability"], on_change=plan_anew) as terrain:
-                self.assertTrue(terrain.wait_for_terrain(10))
+            with desert_sim.TerrainClient("walled", layers=["traversability"], on_change=plan_anew) as terrain:
+                self.assertTrue(terrain.wait_for_terrain(60 * PATIENCE))
                 with desert.expect_replanned("/planner/plan", within=5):
                     wall()
+            desert._reaction = 0.05  # nobody reacts from here on
             with self.assertRaisesRegex(AssertionError, "/planner/plan has 0 paths since the change, .* after 3 steps; picture"):
                 with desert.expect_replanned("/planner/plan", within=3):
                     wall()
@@ -156,22 +190,25 @@ class Kit(unittest.TestCase):
                 desert.expect(lambda: desert.terrain.map.step >= 14, 3, "ten more")
 
     def test_lockstep_repeats_to_the_bit(self):
-        def path():
+        def path(node, rover):
             with self.desert("rover_barchans", seed=3, rover=(12, 20, 20), settings=["grid.width=64", "grid.height=64"],
-                             rover_parameters={"rover": {"odometry_noise": 0.02}}) as desert:
+                             rover_parameters={"rover": {"odometry_noise": 0.02}}, node=node, name=rover) as desert:
                 hashes = []
                 for n in range(6):
                     hashes.append(desert.rover.command(0.3, 0.1 * (n % 3 - 1)).state_hash)
                     desert.step()
                 return hashes, desert.rover.pose()
-        self.assertEqual(path(), path())
+
+        with ThreadPoolExecutor() as at_once:
+            one, same = at_once.map(path, ("one", "same"), ("one_rover", "same_rover"))
+        self.assertEqual(one, same)
 
     def test_a_node_that_refuses_says_why(self):
         with self.assertRaisesRegex(AssertionError, "/desert_sim has ended:(.|\n)*no_such_desert(.|\n)*barchan"):
             with self.desert("no_such_desert"):
                 self.fail("there is no such scenario")
         with self.assertRaisesRegex(desert_sim.SimulationError, "/rover/ground_truth: no message .* no_terrain: .*off the terrain"):
-            with self.desert(rover=(-3, 5), timeout=3):
+            with mock.patch("desert_sim.testing.desert.Rover", HopelessRover), self.desert(rover=(-3, 5)):
                 self.fail("there is no ground")
         with self.assertRaisesRegex(AssertionError, "/rover/desert_rover has ended:(.|\n)*wheel"):
             with self.desert(rover=START, rover_parameters={"rover": {"wheel_radius": -1}}):
@@ -179,9 +216,9 @@ class Kit(unittest.TestCase):
 
     def test_threads_of_a_desert_end_with_it(self):
         before = threading.active_count()
-        with self.desert(rover=START):
+        with self.desert(WALLED, rover=START):
             pass
-        desert_sim.testing.wait_until(lambda: threading.active_count() <= before + 2, "threads go on")
+        wait_until(lambda: threading.active_count() <= before + 2, "threads go on")
 
 
 class Deviation(unittest.TestCase):

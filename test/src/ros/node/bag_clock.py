@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 """A node that follows the clock of a bag: with no clock yet it answers and says that it waits; while the bag plays in a
-loop, so that time jumps back again and again, it keeps its rate in the time of the bag."""
+loop, so that time jumps back again and again, it goes on in the time of the bag. (How many steps there are in a time that
+jumps back is a matter of clock.py, which moves the clock itself.)"""
 import os
 import shutil
 import signal
 import subprocess
 import tempfile
-import threading
-import time
 import unittest
 
 from desert_sim.msg import ElevationUpdate, SimulationStatus
@@ -22,25 +21,19 @@ import rostest
 from std_msgs.msg import Empty
 from std_srvs.srv import Trigger
 
-STEP_RATE = 20  # as in bag_clock.test
-BEGIN, SECONDS = 1500000000, 1  # of the bag
+BEGIN, SECONDS = 1500000000, 0.5  # of the bag
 
 
 class BagClock:
-    """Time as /clock tells it: how far it went forward in all, and how often it went back."""
+    """How often time went back, as /clock tells it."""
 
     def __init__(self):
-        self.lock = threading.Lock()
-        self.now, self.forward, self.back = None, 0, 0
+        self.now, self.back = rospy.Time(), 0
         rospy.Subscriber("/clock", Clock, self.take)
 
     def take(self, message):
-        with self.lock:
-            now = message.clock.to_sec()
-            if self.now is not None:
-                self.forward += max(0, now - self.now)
-                self.back += now < self.now
-            self.now = now
+        self.back += message.clock < self.now
+        self.now = message.clock
 
 
 def call(service, kind, *arguments, **fields):
@@ -67,7 +60,7 @@ class FollowsABag(unittest.TestCase):
     def play(self):
         path = os.path.join(self.folder, "time.bag")
         with rosbag.Bag(path, "w") as bag:
-            for n in range(20 * SECONDS + 1):
+            for n in range(int(20 * SECONDS) + 1):
                 bag.write("/tick", Empty(), rospy.Time.from_sec(BEGIN + n / 20.0))
         player = subprocess.Popen(["rosrun", "rosbag", "play", "--quiet", "--clock", "--loop", path],
                                   stdin=subprocess.DEVNULL)
@@ -96,16 +89,12 @@ class FollowsABag(unittest.TestCase):
         clock = BagClock()
         self.play()
         wait_until(lambda: self.status.state == "running" and clock.back >= 1, "it does not run")
-        time.sleep(0.5)
-        first = call("step", Step, 0).step, clock.forward, clock.back
-        wait_until(lambda: clock.back >= first[2] + 4, "the bag does not loop", 60)
-        steps, forward = call("step", Step, 0).step - first[0], clock.forward - first[1]
-        print("%d steps in %.2f s of a clock that went back %d times: %.2f of the rate" % (
-            steps, forward, clock.back - first[2], steps / (forward * STEP_RATE)))
-        self.assertAlmostEqual(steps / (forward * STEP_RATE), 1, delta=0.25)
-        self.assertLess(self.status.lag, 1.5, "time that went back is no lag")
-        stamp = self.updates[-1].header.stamp.to_sec()
-        self.assertTrue(BEGIN <= stamp <= BEGIN + SECONDS + 1, stamp)
+        for _ in range(4):
+            back, step = clock.back, self.status.step
+            wait_until(lambda: clock.back > back and self.status.step > step, "it does not go on")  # noqa: B023
+            self.assertLess(self.status.lag, 1.5, "time that went back is no lag")
+        wait_until(lambda: self.updates[-1].header.stamp.to_sec() >= BEGIN, "updates are of the bag's time")
+        self.assertLessEqual(self.updates[-1].header.stamp.to_sec(), BEGIN + SECONDS + 1)
         self.assertTrue(call("query_terrain", QueryTerrain, points=[Point(20, 20, 0)]).success)
 
 

@@ -1,92 +1,82 @@
 #!/usr/bin/env python3
-"""Under use_sim_time the simulation follows ROS time: not there yet, running, standing still, jumping back."""
-import threading
-import time
+"""Under use_sim_time the simulation follows ROS time: not there yet, running, standing still, jumping."""
 import unittest
 
 import rospy
 import rostest
 from desert_sim.msg import ElevationGrid, SimulationStatus
-from desert_sim.srv import QueryTerrain, Step
-from desert_sim.testing import PATIENCE
+from desert_sim.srv import QueryTerrain
+from desert_sim.testing import wait_until
 from geometry_msgs.msg import Point, TransformStamped
-from rosgraph_msgs.msg import Clock
+from node_tests import ScriptedClock
 from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
+
+RATE = 512  # steps a second, as in clock.test
+TICK = 1 / 32
+LATE = 1e-4  # [s] of a tick, so that rounding does not put a step behind it
 
 
 class FollowsTheClock(unittest.TestCase):
     def setUp(self):
-        self.clock = rospy.Publisher("/clock", Clock, queue_size=10)
-        self.changed = threading.Condition()
-        self.status = None
-        rospy.Subscriber("/desert_sim/status", SimulationStatus, self.on_status)
+        self.clock = ScriptedClock()
+        self.statuses = []
+        rospy.Subscriber("/desert_sim/status", SimulationStatus, self.statuses.append)
+        wait_until(lambda: self.statuses, "no status")
+        self.steps = 0
 
-    def on_status(self, message):
-        with self.changed:
-            self.status = message
-            self.changed.notify_all()
+    def shows(self, seconds, steps, what):
+        """At this time the simulation makes so many steps more and then no other, as the next statuses say. The last one."""
+        self.clock.show(seconds)
+        self.steps += steps
+        wait_until(lambda: self.statuses[-1].step >= self.steps, what)
+        seen = len(self.statuses)
+        wait_until(lambda: len(self.statuses) >= seen + 2, "no status")
+        for status in self.statuses[seen:]:
+            self.assertEqual((status.step, status.state), (self.steps, "running"), what)
+        return self.statuses[-1]
 
-    def wait_for(self, fits, what, seconds=10):
-        with self.changed:
-            self.assertTrue(self.changed.wait_for(lambda: self.status and fits(self.status), seconds * PATIENCE), what)
-            return self.status
-
-    def tick(self, start, seconds, speed=2.0):
-        """Runs the clock from `start` for `seconds`, `speed` times as fast as the wall's."""
-        for n in range(int(seconds * 50) + 1):
-            self.clock.publish(Clock(rospy.Time.from_sec(start + n / 50.0)))
-            time.sleep(0.02 / speed)
-
-    def steps(self):
-        """Steps done, once there are no more to do for the time that the clock shows."""
-        last = None
-        while True:
-            now = rospy.ServiceProxy("/desert_sim/step", Step)(0).step
-            if now == last:
-                return now
-            last = now
-            time.sleep(0.3)
+    def ticks(self, start, seconds):
+        """Time goes on from `start`, which it shows already; the first step was made there."""
+        for n in range(1, int(seconds / TICK) + 1):
+            status = self.shows(start + n * TICK + LATE, TICK * RATE, "the steps of a tick")
+            self.assertEqual(status.header.stamp, self.clock.now)
+            self.assertEqual(status.lag, 0)
 
     def test_clock(self):
-        status = self.wait_for(lambda s: s.state == "waiting", "no clock yet")
-        self.assertEqual(status.step, 0)
-        deadline = time.monotonic() + 60 * PATIENCE
-        while self.status.state != "running" and time.monotonic() < deadline:  # until the node listens
-            self.tick(1000, 0)
-        self.wait_for(lambda s: s.state == "running", "the clock is there")
-        self.tick(1000, 2)
-        after_two_seconds = self.steps()
-        self.assertAlmostEqual(after_two_seconds, 21, delta=3)
+        wait_until(lambda: self.statuses[-1].state == "waiting", "no clock yet")
+        self.assertEqual(self.statuses[-1].step, 0)
+        self.clock.show(1000)
+        wait_until(lambda: self.statuses[-1].state == "running", "the clock is there")
+        self.shows(1000, 1, "the first step is due at once")
+        self.ticks(1000, 0.25)
 
-        time.sleep(0.3)
-        self.assertEqual(self.steps(), after_two_seconds, "the clock stands, so do the dunes")
-
-        self.tick(500, 1)
-        self.assertAlmostEqual(self.steps() - after_two_seconds, 11, delta=3, msg="goes on after a jump back")
+        for _ in range(4):  # as a bag does that is played in a loop
+            self.shows(500, 1, "a jump back begins the schedule anew")
+            self.ticks(500, 0.125)
         keyframe = rospy.wait_for_message("/desert_sim/elevation", ElevationGrid, None)
-        self.assertTrue(500 <= keyframe.header.stamp.to_sec() <= 501.1, "stamps are ROS time")
+        self.assertEqual((keyframe.step, keyframe.header.stamp), (self.steps, self.clock.now), "stamps are ROS time")
 
-        self.clock.publish(Clock(rospy.Time.from_sec(100000)))
-        self.assertLess(self.steps() - after_two_seconds, 30, "a jump ahead is not caught up")
-        self.wait_for(lambda s: s.lag > 1000, "but told as lag")
+        status = self.shows(100000, RATE + 1, "a jump ahead is caught up for a second")
+        self.assertAlmostEqual(status.lag, 100000 - 500 - 0.125 - 1, delta=0.01, msg="and the rest is told as lag")
         self.jump_by_a_century()
 
     def jump_by_a_century(self):
         """A difference of times that a ros::Duration cannot hold; transforms come all the while."""
         transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
-        for seconds in (4e9, 10, 4.2e9, 20):
-            for _ in range(10):
-                self.clock.publish(Clock(rospy.Time.from_sec(seconds)))
-                transform = TransformStamped()
-                transform.header.stamp = rospy.Time.from_sec(seconds)
-                transform.header.frame_id, transform.child_frame_id = "map", "rover"
-                transform.transform.rotation.w = 1
-                transforms.publish(TFMessage([transform]))
-                time.sleep(0.02)
-        header = Header(frame_id="rover")
-        answer = rospy.ServiceProxy("/desert_sim/query_terrain", QueryTerrain)(header, [Point(20, 20, 0)])
-        self.assertTrue(answer.success, answer.message)
+
+        def finds(frame):
+            transform = TransformStamped()
+            transform.header.stamp = self.clock.now
+            transform.header.frame_id, transform.child_frame_id = "map", frame
+            transform.transform.rotation.w = 1
+            transforms.publish(TFMessage([transform]))
+            query = rospy.ServiceProxy("/desert_sim/query_terrain", QueryTerrain)
+            return query(Header(frame_id=frame), [Point(20, 20, 0)]).success
+
+        for n, (seconds, steps) in enumerate(((4000000000, RATE + 1), (10, 1), (4200000000, RATE + 1), (20, 1))):
+            self.shows(seconds, steps, "a century")
+            wait_until(lambda: finds("rover_%d" % n), "it has no transform")  # noqa: B023
 
 
 if __name__ == "__main__":

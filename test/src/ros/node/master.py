@@ -1,19 +1,17 @@
 #!/usr/bin/env python3
-"""A master that dies and comes back, while a node runs. The master is this test's own, not rostest's."""
+"""A master that dies and comes back, while a node runs. The master is this test's own, not rostest's. (That the node is as
+fast without it is measured by master_timing.py.)"""
 import signal
-import time
 
 from desert_sim.msg import ElevationUpdate, SimulationStatus
 from desert_sim.srv import QueryTerrain, Step
-from desert_sim.testing import Master as OwnMaster, wait_until
+from desert_sim.testing import PATIENCE, Master as OwnMaster, wait_until
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Point
 from node_tests import CORNER, Scenarios, autosaves
 import rospy
 import rostest
 from std_srvs.srv import Trigger
-
-SHUTDOWN = 5  # [s]; what it took is printed: under one on a machine that does nothing else
 
 
 class Master(Scenarios):
@@ -22,8 +20,9 @@ class Master(Scenarios):
         if MASTER.process.poll() is not None:
             MASTER.start()
         self.journal = self.path("journal.yaml")
-        self.node = self.start("orphan", {"scenario": CORNER, "paused": False, "step_rate": 20, "status_rate": 20,
-                                          "journal": self.journal, "data_dir": self.folder, "autosave_period": 0.2})
+        self.node = self.start("orphan", {"scenario": CORNER, "paused": False, "step_rate": 200, "update_rate": 50,
+                                          "status_rate": 50, "diagnostic_period": 0.05, "journal": self.journal,
+                                          "data_dir": self.folder, "autosave_period": 0.1})
         self.updates, self.statuses, self.diagnostics = [], [], {}
         self.subscribers = [rospy.Subscriber("/orphan/elevation_updates", ElevationUpdate, self.updates.append),
                             rospy.Subscriber("/orphan/status", SimulationStatus, self.statuses.append),
@@ -33,9 +32,11 @@ class Master(Scenarios):
         self.steps = rospy.ServiceProxy("/orphan/step", Step, persistent=True)
         self.pause = rospy.ServiceProxy("/orphan/pause", Trigger, persistent=True)
         self.reload = rospy.ServiceProxy("/orphan/reload_parameters", Trigger, persistent=True)
-        wait_until(self.started, "it does not start")
+        rospy.wait_for_service("/orphan/reload_parameters", 60 * PATIENCE)  # the last to be advertised
+        for proxy in (self.steps, self.reload, self.pause):
+            self.assertTrue(proxy().success)
+        self.assertTrue(self.node.call("resume", Trigger).success)
         self.go_on()
-        wait_until(lambda: self.health("master") == DiagnosticStatus.OK, "diagnostics do not say that the master is there")
 
     def tearDown(self):
         for subscriber in self.subscribers:
@@ -43,13 +44,6 @@ class Master(Scenarios):
         for proxy in (self.query, self.steps, self.pause, self.reload):
             proxy.close()
         super().tearDown()
-
-    def started(self):
-        try:
-            return self.steps(0).success and self.reload().success and self.pause().success and \
-                self.node.call("resume", Trigger).success
-        except rospy.ServiceException:
-            return False
 
     def on_diagnostics(self, message):
         for status in message.status:
@@ -69,18 +63,10 @@ class Master(Scenarios):
     def step(self):
         return self.statuses[-1].step if self.statuses else 0
 
-    def rate(self, seconds=1):
-        """Steps a second of wall time."""
-        first, start = self.steps(0).step, time.monotonic()
-        time.sleep(seconds)
-        return (self.steps(0).step - first) / (time.monotonic() - start)
-
     def test_dies_and_comes_back(self):
-        before = self.rate()
+        wait_until(lambda: self.health("master") == DiagnosticStatus.OK, "diagnostics do not say that the master is there")
         MASTER.kill()
         self.go_on()
-        without = self.rate()
-        self.assertGreater(without, 0.5 * before)
         answer = self.reload()
         self.assertFalse(answer.success, "the parameters are gone with the master, which is no wish to change them")
         self.assertIn("master", answer.message)
@@ -89,20 +75,16 @@ class Master(Scenarios):
         self.go_on()
         wait_until(lambda: self.health("master") == DiagnosticStatus.ERROR,
                    "diagnostics do not say that the new master does not know the node")
-        print("steps a second: %.1f with a master, %.1f without" % (before, without))
         self.assertEqual(self.node.end(signal.SIGTERM)[0], 0, self.node.output)
 
     def expect_end(self, how):
-        saved = autosaves(self.folder)
         MASTER.kill()
+        saved = autosaves(self.folder)
         self.go_on()
         wait_until(lambda: autosaves(self.folder) != saved, "no autosave without a master")
         self.assertTrue(self.pause().success)
         live = self.steps(0).state_hash
-        status, seconds = self.node.end(how)
-        print("%s: ended after %.2f s without a master" % (how.name, seconds))
-        self.assertEqual(status, 0, self.node.output)
-        self.assertLess(seconds, SHUTDOWN)
+        self.assertEqual(self.node.end(how)[0], 0, self.node.output)
         self.assertEqual(self.run_without_ros(CORNER, "--replay", self.journal), live)
 
     def test_is_terminated_without_a_master(self):

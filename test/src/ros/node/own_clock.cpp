@@ -3,6 +3,8 @@
 #include <desert_sim/SimulationStatus.h>
 #include <rosgraph_msgs/Clock.h>
 
+#include <algorithm>
+
 #include "test/support/ros/service_tests.hpp"
 
 namespace {
@@ -34,11 +36,13 @@ class OwnClock : public testing::Test {
 };
 
 TEST_F(OwnClock, IsSimulatedTimeAndNeverZero) {
-  EXPECT_EQ(times().back(), ros::Time(0, 1));
+  // Times of the test before and the reset may still be on their way.
+  ASSERT_TRUE(wait_until([&] { return times().back() == ros::Time(0, 1); })) << times().back();
   step(3);
   ASSERT_TRUE(wait_until([&] { return times().back() == ros::Time(3); })) << times().back();
-  EXPECT_EQ(times(), (std::vector<ros::Time>{ros::Time(0, 1), ros::Time(1), ros::Time(2), ros::Time(3)}))
-      << "one message a step";
+  std::vector<ros::Time> run = times();
+  run.erase(run.begin(), std::find(run.rbegin(), run.rend(), ros::Time(0, 1)).base());
+  EXPECT_EQ(run, (std::vector<ros::Time>{ros::Time(1), ros::Time(2), ros::Time(3)})) << "one message a step";
   ASSERT_TRUE(call<std_srvs::Trigger>("reset").success);
   EXPECT_TRUE(wait_until([&] { return times().back() == ros::Time(0, 1); })) << times().back();
 }
@@ -48,19 +52,16 @@ TEST_F(OwnClock, StampsAreItsTime) {
   Listener<ElevationGrid> keyframes("elevation");
   EXPECT_EQ(keyframes.last().header.stamp, ros::Time(4));
   step(1);
-  EXPECT_TRUE(keyframes.wait_for([](const ElevationGrid& m) { return m.step == 5; }));
-  EXPECT_EQ(keyframes.last().header.stamp, ros::Time(5));
+  EXPECT_TRUE(keyframes.wait_for(
+      [](const ElevationGrid& m) { return m.step == 5 && m.header.stamp == ros::Time(5); }));
 }
 
+/// At which rate, simulation_thread_test.cpp says.
 TEST_F(OwnClock, DoesNotWaitForItself) {
   Listener<SimulationStatus> status("status");
   ASSERT_TRUE(call<std_srvs::Trigger>("resume").success);
-  const auto start = std::chrono::steady_clock::now();
-  EXPECT_TRUE(status.wait_for([](const SimulationStatus& m) { return m.step >= 30; }));
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  EXPECT_GT(taken.count(), 1.2) << "20 steps a second of wall time";
-  EXPECT_LT(taken.count(), 4);
-  EXPECT_EQ(status.last().state, "running");
+  EXPECT_TRUE(
+      status.wait_for([](const SimulationStatus& m) { return m.state == "running" && m.step >= 30; }));
 }
 
 }  // namespace

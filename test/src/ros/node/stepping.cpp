@@ -84,10 +84,14 @@ TEST_F(Stepping, ResetBeginsAnewWithAKeyframe) {
 }
 
 TEST_F(Stepping, TwoClientsAtOnceGetAllTheirSteps) {
-  // Over connections that stay: roscpp loses a call now and then when threads of one process open new ones at
-  // once.
-  const auto steps_of_a_client = [] {
-    ros::ServiceClient client = ros::NodeHandle().serviceClient<desert_sim::Step>("/desert_sim/step", true);
+  // Over connections that are there before: roscpp loses a call now and then when threads of one process open
+  // new ones at once.
+  const auto connected = [](ros::ServiceClient client) {
+    EXPECT_TRUE(client.isValid()) << client.getService();
+    return client;
+  };
+  ros::NodeHandle node;
+  const auto steps_of_a_client = [](ros::ServiceClient client) {
     std::uint64_t last = 0;
     for (int n = 0; n < 20; ++n) {
       desert_sim::Step exchange;
@@ -97,31 +101,32 @@ TEST_F(Stepping, TwoClientsAtOnceGetAllTheirSteps) {
       last = exchange.response.step;
     }
   };
-  const auto winds = [] {
-    ros::ServiceClient client =
-        ros::NodeHandle().serviceClient<desert_sim::SetWind>("/desert_sim/set_wind", true);
+  const auto winds = [](ros::ServiceClient client) {
     for (int n = 0; n < 40; ++n) {
       desert_sim::SetWind exchange;
       exchange.request.speed = 3 + n % 5;
       EXPECT_TRUE(client.call(exchange) && exchange.response.success) << exchange.response.message;
     }
   };
+  const ros::ServiceClient first = connected(node.serviceClient<desert_sim::Step>("/desert_sim/step", true));
+  const ros::ServiceClient second = connected(node.serviceClient<desert_sim::Step>("/desert_sim/step", true));
+  const ros::ServiceClient wind =
+      connected(node.serviceClient<desert_sim::SetWind>("/desert_sim/set_wind", true));
   std::vector<std::future<void>> clients;
-  clients.push_back(std::async(std::launch::async, steps_of_a_client));
-  clients.push_back(std::async(std::launch::async, steps_of_a_client));
-  clients.push_back(std::async(std::launch::async, winds));
+  clients.push_back(std::async(std::launch::async, steps_of_a_client, first));
+  clients.push_back(std::async(std::launch::async, steps_of_a_client, second));
+  clients.push_back(std::async(std::launch::async, winds, wind));
   for (auto& client : clients) client.get();
   EXPECT_EQ(step(0).step, 120u);
 }
 
 TEST_F(Stepping, APauseEndsALongRequest) {
-  auto request = std::async(std::launch::async, [] { return step(100000000); });
   Listener<SimulationStatus> statuses("status");
+  // More steps than there is time for.
+  auto request = std::async(std::launch::async, [] { return step(4000000000u); });
   ASSERT_TRUE(statuses.wait_for([](const SimulationStatus& s) { return s.step > 5; }));
-  const auto start = std::chrono::steady_clock::now();
   ASSERT_TRUE(trigger("pause"));
   const auto response = request.get();
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::duration<double>(node_test::patience()));
   EXPECT_FALSE(response.success);
   EXPECT_NE(response.message.find("ended by a pause after"), std::string::npos) << response.message;
 }
@@ -137,6 +142,8 @@ TEST_F(Stepping, ACheckpointOfAnotherSizeGivesAKeyframeOfThatSize) {
 
   Listener<ElevationGrid> keyframes("elevation");
   Listener<ElevationUpdate> updates("elevation_updates");
+  keyframes.last();
+  ASSERT_TRUE(wait_until([&] { return step(1).success && updates.count() > 0; })) << "the node knows both";
   desert_sim::LoadCheckpoint::Request request;
   request.name = "small.ckpt";
   const auto response = call<desert_sim::LoadCheckpoint>("load_checkpoint", request);
@@ -145,31 +152,27 @@ TEST_F(Stepping, ACheckpointOfAnotherSizeGivesAKeyframeOfThatSize) {
   ASSERT_TRUE(keyframes.wait_for(
       [](const ElevationGrid& k) { return k.width == 20 && k.height == 33 && k.step == 3; }));
   ASSERT_TRUE(step(2).success);
-  ASSERT_TRUE(updates.wait_for([](const ElevationUpdate& u) { return u.step == 5; }));
+  ASSERT_TRUE(wait_until([&] { return updates.last().step == 5; }));
   for (const auto& tile : updates.last().tiles) EXPECT_LE(tile.x + tile.width, 20u);
   // The checkpoint brought its scenario along: that one begins anew.
   ASSERT_TRUE(trigger("reset"));
   EXPECT_TRUE(wait_until([&] { return keyframes.last().width == 20 && keyframes.last().step == 0; }));
 }
 
-// ---- by schedule ----
+// ---- by schedule; at which rate, simulation_thread_test.cpp says ----
 
-TEST_F(Stepping, RunsAtItsRateAndPauses) {
+TEST_F(Stepping, RunsAndPauses) {
   Listener<SimulationStatus> statuses("status");
   ASSERT_TRUE(trigger("resume"));
-  ASSERT_TRUE(
-      statuses.wait_for([](const SimulationStatus& s) { return s.state == "running" && s.step > 70; }));
-  const SimulationStatus status = statuses.last();
-  EXPECT_NEAR(status.steps_per_second, 50, 10);
-  EXPECT_LT(status.lag, 1);
-  EXPECT_FALSE(status.process_times.empty());
-  for (const auto& time : status.process_times) EXPECT_GT(time.milliseconds, 0) << time.process;
+  ASSERT_TRUE(statuses.wait_for([](const SimulationStatus& s) {
+    return s.state == "running" && s.step > 20 && !s.process_times.empty();
+  }));
+  for (const auto& time : statuses.last().process_times) EXPECT_GT(time.milliseconds, 0) << time.process;
   ASSERT_TRUE(trigger("pause"));
   const std::uint64_t stopped = step(0).step;
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  EXPECT_EQ(step(0).step, stopped);
   ASSERT_TRUE(
       statuses.wait_for([&](const SimulationStatus& s) { return s.state == "paused" && s.step == stopped; }));
+  EXPECT_EQ(step(0).step, stopped);
 }
 
 TEST_F(Stepping, StepsWhileRunningAreAddedToTheSchedule) {
@@ -178,8 +181,7 @@ TEST_F(Stepping, StepsWhileRunningAreAddedToTheSchedule) {
   EXPECT_TRUE(response.success);
   EXPECT_GE(response.step, 40u);
   Listener<SimulationStatus> statuses("status");
-  EXPECT_TRUE(statuses.wait_for(
-      [&](const SimulationStatus& s) { return s.step > response.step + 5 && s.lag < 0.5; }));
+  EXPECT_TRUE(statuses.wait_for([&](const SimulationStatus& s) { return s.step > response.step + 5; }));
 }
 
 }  // namespace

@@ -15,8 +15,17 @@ using node_test::wait_until;
 
 constexpr int steps = 12;
 
-/// Resets all, sets a goal and makes steps, each after the planner has acted on the one before. The rover's
-/// states.
+/// The rover's state, with the command that it obeys.
+std::string rover_state() {
+  desert_sim::SaveRover::Request save;
+  save.name = "now";
+  const auto answer = ask<desert_sim::SaveRover>("/desert_rover/save_state", save);
+  EXPECT_TRUE(answer.success) << answer.message;
+  return answer.state_hash;
+}
+
+/// Resets all, sets a goal and makes steps, each after the planner has acted on the one before. The states of
+/// terrain and rover.
 std::vector<std::string> path() {
   ask<std_srvs::Trigger>("/desert_planner/cancel");
   ask<std_srvs::Trigger>("/beside/forecast_planner/cancel");
@@ -51,11 +60,7 @@ std::vector<std::string> path() {
       return s.terrain_step == static_cast<std::uint64_t>(n) && s.plans > 0;
     })) << "step "
         << n << ": " << forecaster.last().state << " " << forecaster.last().reason;
-    states.push_back(node_test::hash() + " ");
-    Listener<desert_sim::RoverStatus> rover("/desert_rover/status");
-    EXPECT_TRUE(rover.wait_for(
-        [n](const desert_sim::RoverStatus& s) { return s.terrain_step == static_cast<std::uint64_t>(n); }));
-    states.back() += rover.last().state_hash;
+    states.push_back(node_test::hash() + " " + rover_state());
   }
   EXPECT_GE(forecaster.last().forecast_age, 0) << "it has waited for the forecast that it asked for";
   EXPECT_EQ(forecaster.last().refusal, "");

@@ -79,11 +79,21 @@ TEST(RoverDetail, RoversInRosTimeStandOnThem) {
   EXPECT_NE(on_ripples.position.z, on_smooth_sand.position.z);
 }
 
-TEST(RoverDetail, TheWindOfRipplesIsThatOfTheState) {
-  node_test::Listener<desert_sim::DetailState> listener("/desert_sim/detail");
+/// What the desert tells of its last state after drive_both(); stamps are of this machine's time.
+desert_sim::DetailState last_state_of_drive(const node_test::Listener<desert_sim::DetailState>& states) {
+  const ros::Time begin = ros::Time::now();
   drive_both();
-  ASSERT_TRUE(listener.wait_for([](const desert_sim::DetailState& m) { return m.step == steps; }));
-  const desert_sim::DetailState m = listener.last();
+  desert_sim::DetailState last;
+  EXPECT_TRUE(states.wait_for([&](const desert_sim::DetailState& m) {
+    last = m;
+    return m.step == steps && m.header.stamp >= begin;
+  }));
+  return last;
+}
+
+TEST(RoverDetail, TheWindOfRipplesIsThatOfTheState) {
+  const node_test::Listener<desert_sim::DetailState> states("/desert_sim/detail");
+  const desert_sim::DetailState m = last_state_of_drive(states);
   EXPECT_EQ(m.header.frame_id, "terrain");
   EXPECT_EQ(m.seed, 3u);
   EXPECT_EQ(m.mean_speed, 15);
@@ -111,20 +121,21 @@ std::vector<double> distances(const sensor_msgs::PointCloud2& cloud, const tf2::
 TEST(RoverDetail, BeamsEndOnThem) {
   tf2_ros::Buffer buffer;
   tf2_ros::TransformListener transforms(buffer);
-  node_test::Listener<desert_sim::DetailState> states("/desert_sim/detail");
-  node_test::Listener<sensor_msgs::PointCloud2> clouds("/lidar/points");
-  ASSERT_TRUE(node_test::wait_until([&] { return step(1).success && clouds.count() > 0; }));
-  drive_both();
-  const auto last_state = [&states](const desert_sim::DetailState& m) { return m.step == steps; };
-  ASSERT_TRUE(states.wait_for(last_state));
-  const std::vector<desert_sim::DetailState> all = states.all();
-  const ros::Time stamp = std::find_if(all.rbegin(), all.rend(), last_state)->header.stamp;
-  const auto of_that_state = [&stamp](const sensor_msgs::PointCloud2& m) { return m.header.stamp == stamp; };
-  ASSERT_TRUE(clouds.wait_for(of_that_state));
-  const std::vector<sensor_msgs::PointCloud2> scans = clouds.all();
-  const sensor_msgs::PointCloud2 cloud = *std::find_if(scans.begin(), scans.end(), of_that_state);
+  const node_test::Listener<desert_sim::DetailState> states("/desert_sim/detail");
+  const node_test::Listener<sensor_msgs::PointCloud2> clouds("/lidar/points");
+  // Each state has a scan and transforms once the rover knows who listens to them.
+  ASSERT_TRUE(node_test::wait_until([&] {
+    return step(1).success && clouds.count() > 0 && buffer.canTransform("terrain", "lidar", ros::Time(0));
+  }));
+  const ros::Time stamp = last_state_of_drive(states).header.stamp;
+  sensor_msgs::PointCloud2 cloud;
+  ASSERT_TRUE(clouds.wait_for([&](const sensor_msgs::PointCloud2& m) {
+    cloud = m;
+    return m.header.stamp == stamp;
+  }));
+  ASSERT_TRUE(node_test::wait_until([&] { return buffer.canTransform("terrain", "lidar", stamp); }));
   tf2::Transform to_terrain;
-  tf2::fromMsg(buffer.lookupTransform("terrain", "lidar", stamp, ros::Duration(5)).transform, to_terrain);
+  tf2::fromMsg(buffer.lookupTransform("terrain", "lidar", stamp).transform, to_terrain);
   desert_sim::SimulatedGround with = ground_of_scenario(true), without = ground_of_scenario(false);
   const std::vector<double> close = distances(cloud, to_terrain, with.at(steps)),
                             far = distances(cloud, to_terrain, without.at(steps));

@@ -1,6 +1,7 @@
 /// A rover in lockstep: the same commands between the same steps give the same path to the bit, again,
 /// after a checkpoint, from the journal beside a simulation without ROS, and after kill -9; and the same
 /// clouds of the lidar.
+#include <desert_sim/EditTerrain.h>
 #include <desert_sim/LoadCheckpoint.h>
 #include <desert_sim/SaveCheckpoint.h>
 #include <sensor_msgs/PointCloud2.h>
@@ -9,6 +10,7 @@
 #include <tf2_geometry_msgs/tf2_geometry_msgs.h>
 #include <tf2_ros/transform_listener.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "src/client/terrain_client.hpp"
@@ -117,25 +119,60 @@ TEST(RoverLockstep, TheJournalLeadsToTheSameStateWithoutRos) {
   EXPECT_EQ(desert_sim::hash_text(desert_sim::hash_of(desert_sim::replay(journal, at_step))), end);
 }
 
+TEST(RoverLockstep, AnObstacleStopsIt) {
+  begin_anew();
+  const node_test::Listener<desert_sim::RoverStatus> status(rover + "/status");
+  ASSERT_TRUE(node_test::set_pose(rover, 8, 12, 0).success);
+  desert_sim::EditTerrain::Request rock;
+  rock.layer = "obstacle";
+  rock.shape = "rectangle";
+  rock.merge = "replace";
+  rock.center.x = 11;
+  rock.center.y = 12;
+  rock.radius = rock.radius_y = 1;
+  rock.inner = 1;
+  rock.value = 1;
+  ASSERT_TRUE(call<desert_sim::EditTerrain>("edit_terrain", rock).success);
+  ASSERT_TRUE(drive(rover, 0.3, 0).success);
+  desert_sim::RoverStatus told;
+  for (std::uint64_t n = 1; n <= 10 && told.state != desert_sim::RoverStatus::BLOCKED; ++n) {
+    ASSERT_TRUE(step(1).success);
+    ASSERT_TRUE(status.wait_for([&](const desert_sim::RoverStatus& s) {
+      told = s;
+      return s.terrain_step == n;
+    }));
+  }
+  EXPECT_EQ(told.state, desert_sim::RoverStatus::BLOCKED);
+  EXPECT_NE(told.reason.find("obstacle"), std::string::npos) << told.reason;
+}
+
 TEST(RoverLockstep, CloudsLieOnTheTerrainAndRepeatToTheBit) {
   constexpr int scans = 5;
   desert_sim::TerrainClient terrain;
   tf2_ros::Buffer buffer;
   tf2_ros::TransformListener listener(buffer);
-  node_test::Listener<sensor_msgs::PointCloud2> clouds("/lidar/points");
+  const node_test::Listener<sensor_msgs::PointCloud2> clouds("/lidar/points");
   begin_anew();
-  ASSERT_TRUE(node_test::wait_until([&] { return step(1).success && clouds.count() > 0; }))
-      << "each state has a scan once the lidar knows its subscriber";
+  ASSERT_TRUE(node_test::wait_until([&] {
+    return step(1).success && clouds.count() > 0 && buffer.canTransform("terrain", "lidar", ros::Time(0));
+  })) << "each state has a scan and transforms once the rover knows who listens to them";
   const auto last_clouds = [&] {
     begin_anew();
-    path(0, scans);                  // its answers say that the scans are published
-    ros::WallDuration(0.5).sleep();  // on their way
-    const std::vector<sensor_msgs::PointCloud2> all = clouds.all();
-    return std::vector<sensor_msgs::PointCloud2>(all.end() - std::min<long>(scans, all.end() - all.begin()),
-                                                 all.end());
+    const ros::Time begin = ros::Time::now();  // by the same clock as stamps
+    path(0, scans);
+    std::vector<sensor_msgs::PointCloud2> found;
+    EXPECT_TRUE(node_test::wait_until([&] {
+      found = clouds.all();
+      found.erase(std::remove_if(found.begin(), found.end(),
+                                 [&](const auto& cloud) { return cloud.header.stamp < begin; }),
+                  found.end());
+      return found.size() >= scans;
+    }));
+    return found;
   };
   const std::vector<sensor_msgs::PointCloud2> once = last_clouds(), again = last_clouds();
   ASSERT_EQ(once.size(), static_cast<std::size_t>(scans));
+  ASSERT_EQ(again.size(), static_cast<std::size_t>(scans));
   for (std::size_t n = 0; n < once.size(); ++n) EXPECT_EQ(once[n].data, again[n].data) << n;
   EXPECT_NE(once.front().data, once.back().data);
   for (std::size_t n = 1; n < again.size(); ++n) EXPECT_GT(again[n].header.stamp, again[n - 1].header.stamp);
@@ -143,11 +180,13 @@ TEST(RoverLockstep, CloudsLieOnTheTerrainAndRepeatToTheBit) {
 
   const sensor_msgs::PointCloud2& cloud = again.back();
   EXPECT_EQ(cloud.header.frame_id, "lidar");
-  ASSERT_TRUE(terrain.wait_for_step(scans, 10));
+  ASSERT_TRUE(node_test::wait_until(
+      [&] { return terrain.map() && terrain.map()->info().stamp == cloud.header.stamp; }));
   ASSERT_EQ(terrain.map()->info().step, static_cast<std::uint64_t>(scans));
+  ASSERT_TRUE(
+      node_test::wait_until([&] { return buffer.canTransform("terrain", "lidar", cloud.header.stamp); }));
   tf2::Transform to_terrain;
-  tf2::fromMsg(buffer.lookupTransform("terrain", "lidar", cloud.header.stamp, ros::Duration(5)).transform,
-               to_terrain);
+  tf2::fromMsg(buffer.lookupTransform("terrain", "lidar", cloud.header.stamp).transform, to_terrain);
   int points = 0, lost = 0;
   sensor_msgs::PointCloud2ConstIterator<float> p(cloud, "x");
   for (; p != p.end(); ++p) {
@@ -169,6 +208,7 @@ TEST(RoverLockstep, ANodeThatIsKilledStartsSanely) {
   begin_anew();
   const std::string name = "/killed";
   ros::param::set(name + "/clock", std::string("lockstep"));
+  ros::param::set(name + "/answer_timeout", 600.0);
   ros::param::set(name + "/publish_tf", false);
   ros::param::set(name + "/x", 10.0);
   ros::param::set(name + "/y", 14.0);
@@ -183,7 +223,7 @@ TEST(RoverLockstep, ANodeThatIsKilledStartsSanely) {
   };
   const auto wait_for_answer = [&] {
     return node_test::wait_until(
-        [&] { return ros::service::exists(name + "/drive", false) && drive(name, 0.2, 0.1).success; }, 20);
+        [&] { return ros::service::exists(name + "/drive", false) && drive(name, 0.2, 0.1).success; });
   };
   auto process = start();
   ASSERT_TRUE(wait_for_answer());

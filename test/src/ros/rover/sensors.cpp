@@ -11,20 +11,20 @@
 #include <functional>
 
 #include "src/core/error.hpp"
+#include "src/testing/node_process.hpp"
 #include "test/support/messages.hpp"
 
 namespace desert_sim {
 namespace {
 
-constexpr double patience = 10;  // [s]
-
-bool within_patience(const std::function<bool()>& condition) {
-  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(patience);
-  while (!condition() && ros::ok() && ros::WallTime::now() < end) {
-    ros::spinOnce();
-    ros::WallDuration(0.005).sleep();
-  }
-  return condition();
+/// Serves the subscribers until the condition holds.
+bool spin_until(const std::function<bool()>& condition) {
+  return test::wait_until(
+      [&] {
+        ros::spinOnce();
+        return condition();
+      },
+      60);
 }
 
 /// Cells of 2 m with the corner at (10, -20).
@@ -66,16 +66,14 @@ class SensorTopics : public ::testing::Test {
   void subscribe_points() {
     points_ = node_.subscribe<sensor_msgs::PointCloud2>(
         "lidar/points", 100, [this](const sensor_msgs::PointCloud2ConstPtr& m) { clouds_.push_back(m); });
-    ASSERT_TRUE(within_patience([this] { return points_.getNumPublishers() > 0; }));
-    // The publisher knows the subscriber a moment later.
-    ASSERT_TRUE(within_patience([this] { return send_pose(1e3 + ++probes_), !clouds_.empty(); }));
-    ros::WallDuration(0.3).sleep();  // for those that are still on their way
-    ros::spinOnce();
-    clouds_.clear();
+    ASSERT_TRUE(spin_until([this] { return sensors_->has_subscribers(); }));
   }
-  bool send_pose(double seconds, double z = 2) {
-    sensors_->on_pose(ros::Time(seconds), pose_at(100, 30, z));
-    return true;
+  void send_pose(double seconds, double z = 2) { sensors_->on_pose(ros::Time(seconds), pose_at(100, 30, z)); }
+  /// Sends a pose, and waits for its cloud, which comes after those of all poses before.
+  void send_pose_and_wait(double seconds) {
+    send_pose(seconds);
+    ASSERT_TRUE(
+        spin_until([&] { return !clouds_.empty() && clouds_.back()->header.stamp == ros::Time(seconds); }));
   }
   void tell_terrain(double height) {
     LayerMap::Rectangle changed;
@@ -93,18 +91,19 @@ class SensorTopics : public ::testing::Test {
   std::shared_ptr<const LayerMap> map_;
   ros::Subscriber points_, images_, infos_;
   std::vector<sensor_msgs::PointCloud2ConstPtr> clouds_;
-  int probes_ = 0;
 };
 
 TEST_F(SensorTopics, NothingIsDoneWithoutSubscribers) {
   make(false);
   tell_terrain(0);
   for (int n = 0; n < 100; ++n) send_pose(0.1 * n);
-  ros::WallDuration(0.3).sleep();
+  subscribe_points();
+  send_pose_and_wait(1000);
   const SensorPublisher::Statistics s = sensors_->statistics();
-  EXPECT_EQ(s.scans, 0u);
+  EXPECT_EQ(s.scans, 1u) << "of the last pose";
+  EXPECT_EQ(s.skipped, 0u);
   EXPECT_EQ(s.pictures, 0u);
-  EXPECT_EQ(s.uploads, 0u);
+  EXPECT_EQ(s.uploads, 1u);
 }
 
 TEST_F(SensorTopics, ScansComeAtTheirRateInLockstep) {
@@ -112,10 +111,8 @@ TEST_F(SensorTopics, ScansComeAtTheirRateInLockstep) {
   tell_terrain(0);
   subscribe_points();
   for (int n = 0; n < 100; ++n) send_pose(5000 + 0.02 * n);
-  ASSERT_TRUE(within_patience([this] { return clouds_.size() >= 10; }));
-  ros::WallDuration(0.1).sleep();
-  ros::spinOnce();
-  ASSERT_EQ(clouds_.size(), 10u) << "2 s at 5 Hz";
+  send_pose_and_wait(6000);
+  ASSERT_EQ(clouds_.size(), 11u) << "2 s at 5 Hz, and the last pose";
   for (std::size_t n = 0; n < 10; ++n) {
     EXPECT_NEAR(clouds_[n]->header.stamp.toSec(), 5000 + 0.2 * static_cast<double>(n), 1e-6);
     EXPECT_EQ(clouds_[n]->header.frame_id, "lidar");
@@ -128,15 +125,15 @@ TEST_F(SensorTopics, TerrainChangesAreSeen) {
   make(true);
   tell_terrain(0);
   subscribe_points();
+  send_pose_and_wait(5999);
+  EXPECT_NEAR(first_range(0), 3.5, 1e-4);
   const std::uint64_t before = sensors_->statistics().uploads;
   tell_terrain(1);
   tell_terrain(1.25);
-  send_pose(6000);
-  ASSERT_TRUE(within_patience([this] { return !clouds_.empty(); }));
-  EXPECT_NEAR(first_range(0), 2.25, 1e-4);
+  send_pose_and_wait(6000);
+  EXPECT_NEAR(first_range(1), 2.25, 1e-4);
   EXPECT_EQ(sensors_->statistics().uploads, before + 1) << "both changes in one";
-  send_pose(6001);
-  ASSERT_TRUE(within_patience([this] { return clouds_.size() > 1; }));
+  send_pose_and_wait(6001);
   EXPECT_EQ(sensors_->statistics().uploads, before + 1) << "nothing has changed";
 }
 
@@ -148,15 +145,12 @@ TEST_F(SensorTopics, AThreadOfTheirOwnMeasures) {
     const SensorPublisher::Statistics s = sensors_->statistics();
     return s.scans + s.skipped;
   };
-  const std::uint64_t before = made_or_skipped();
-  send_pose(7000);
-  ASSERT_TRUE(within_patience([this] { return clouds_.size() == 1; }));
+  send_pose_and_wait(7000);
+  EXPECT_EQ(clouds_.size(), 1u);
   EXPECT_NEAR(first_range(0), 3.5, 1e-4);
-  for (int n = 1; n <= 1000; ++n) send_pose(7000 + n);
-  ASSERT_TRUE(within_patience([this] { return clouds_.back()->header.stamp == ros::Time(8000); }))
-      << "the newest pose is never left out";
-  EXPECT_TRUE(within_patience([&] { return made_or_skipped() == before + 1001; }))
-      << made_or_skipped() - before;
+  for (int n = 1; n < 1000; ++n) send_pose(7000 + n);
+  send_pose_and_wait(8000);  // the newest pose is never left out
+  EXPECT_TRUE(spin_until([&] { return made_or_skipped() == 1001; })) << made_or_skipped();
 }
 
 TEST_F(SensorTopics, PicturesComeWithTheirCamera) {
@@ -168,8 +162,9 @@ TEST_F(SensorTopics, PicturesComeWithTheirCamera) {
                                                 [&](const sensor_msgs::ImageConstPtr& m) { image = m; });
   infos_ = node_.subscribe<sensor_msgs::CameraInfo>(
       "depth_camera/camera_info", 10, [&](const sensor_msgs::CameraInfoConstPtr& m) { info = m; });
-  ASSERT_TRUE(within_patience([&] {
-    send_pose(9000 + ++probes_);
+  double seconds = 9000;
+  ASSERT_TRUE(spin_until([&] {
+    send_pose(++seconds);  // the publisher knows both subscribers after a while
     return image && info && image->header.stamp == info->header.stamp;
   }));
   EXPECT_EQ(image->header.frame_id, "depth_camera_optical");

@@ -7,12 +7,11 @@ import os
 import random
 import re
 import shutil
-import time
 
 from actionlib_msgs.msg import GoalID
-from desert_sim.msg import ForecastTerrainActionGoal
+from desert_sim.msg import ForecastTerrainActionGoal, SimulationStatus
 from desert_sim.srv import LoadCheckpoint, LoadTerrain, SaveCheckpoint, SaveTerrain, Step
-from desert_sim.testing import PATIENCE, wait_until
+from desert_sim.testing import wait_until
 from dynamic_reconfigure.msg import BoolParameter, ConfigDescription, DoubleParameter, IntParameter, StrParameter
 from geometry_msgs.msg import Point, Vector3Stamped
 from map_client import GetGridMap
@@ -44,7 +43,8 @@ class Caller:
     def __init__(self, node, draw, folder):
         self.node, self.draw, self.random, self.folder = node, draw, RandomMessages(draw), folder
         self.checkpoints, self.terrains, self.saved = ["none.ckpt"], ["none"], 0
-        self.accepted, self.refused, self.log, self.on_their_way = {}, {}, [], False
+        self.accepted, self.refused, self.log = {}, {}, []
+        self.winds, self.on_its_way = 0, False
         self.publishers = {topic: rospy.Publisher(topic, kind, queue_size=10, latch=False) for topic, kind in TOPICS.items()}
         self.description = node.latest("parameter_descriptions", ConfigDescription)
         rospy.wait_for_service("/%s/reload_parameters" % NODE)  # the last to be advertised
@@ -117,7 +117,24 @@ class Caller:
             message.goal.parameters = self.config(message.goal.parameters)
         self.log.append("%s %s" % (topic, str(message)[:300]))
         self.publishers[topic].publish(message)
-        self.on_their_way = True
+        self.on_its_way = self.on_its_way or isinstance(message, Vector3Stamped)
+
+    def wait_for_winds(self):
+        """Messages are not answered. Those on ~cmd_wind, which alone change the state, have been heard when one that was
+        published after them blows."""
+        if not self.on_its_way:
+            return
+        self.winds += 1
+        last = Vector3Stamped()
+        last.vector.x, last.vector.y = 2 + 0.01 * self.winds, 1
+        self.publishers["/%s/cmd_wind" % NODE].publish(last)
+
+        def blows():
+            wind = self.node.latest("status", SimulationStatus).wind_above
+            return abs(wind.x - last.vector.x) < 1e-3 and abs(wind.y - last.vector.y) < 1e-3
+
+        wait_until(blows, "what was published at last on ~cmd_wind does not blow")
+        self.on_its_way = False
 
     def call(self):
         """One random call; it is answered, or fails with the reason."""
@@ -154,9 +171,7 @@ class RandomCalls(Scenarios):
         return answer
 
     def expect_repeatable(self, node, caller):
-        if caller.on_their_way:  # messages on topics are not answered, and must not arrive in between
-            time.sleep(0.2 * PATIENCE)
-            caller.on_their_way = False
+        caller.wait_for_winds()  # or they could arrive between the calls
         self.expect(node.call("pause", Trigger), caller)
         name = caller.new_name()
         saved = self.expect(node.call("save_checkpoint", SaveCheckpoint, name), caller)

@@ -182,11 +182,8 @@ TEST_F(Services, QueryTerrainRefuses) {
   expect_refused<QueryTerrain>("query_terrain", request, "points[1].y: = nan", "finite");
   request.points[1].y = 0;
   request.header.frame_id = "nowhere";
+  // An answer at all: this frame never comes. How long the node waits for it, services_timing.cpp says.
   expect_refused<QueryTerrain>("query_terrain", request, "'nowhere'", "'terrain'");
-  const auto start = std::chrono::steady_clock::now();
-  call<QueryTerrain>("query_terrain", request);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1))
-      << "a missing frame does not hang";
 }
 
 }  // namespace

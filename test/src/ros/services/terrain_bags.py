@@ -9,7 +9,6 @@ import subprocess
 
 from desert_sim.msg import ElevationGrid
 from desert_sim.srv import LoadScenario, LoadTerrain, SaveTerrain, Step
-from desert_sim.testing import wait_until
 import genpy.dynamic
 from map_client import GRID_MAP, GRID_MAP_MD5, Listener, MapTest, call, cells, center, elevation, parts
 import rosbag
@@ -122,8 +121,8 @@ class TerrainBags(MapTest):
         player = subprocess.Popen(["rosbag", "play", "--quiet", "--keep-alive", path, "/desert_sim/grid_map:=/played"])
         self.addCleanup(player.wait)
         self.addCleanup(player.terminate)
-        wait_until(lambda: "/played" in [topic for topic, _ in rospy.get_published_topics()], "nothing is played")
-        rospy.sleep(0.7)  # rosbag plays what is in the bag 0.2 s after it has advertised it
+        with Listener("/played") as early:
+            early.first("nothing is played")
         with Listener("/played") as late:
             message = late.first("the map")
             self.assertEqual(late.header["latching"], "1")

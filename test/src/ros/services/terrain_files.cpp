@@ -148,11 +148,10 @@ TEST_F(TerrainFiles, AreRegularFilesWithPlainNames) {
   ASSERT_EQ(mkfifo((folder_ + "/fifo.yaml").c_str(), 0600), 0);
   ASSERT_EQ(mkfifo((folder_ + "/fifo.tif").c_str(), 0600), 0);
   write("beside_fifo.yaml", "grid: {from_raster: fifo.tif}\n");
-  const ros::WallTime start = ros::WallTime::now();
+  // An answer at all: who opens one of them waits for a writer, and there is none.
   expect_refused<LoadScenario>("load_scenario", beginning("fifo.yaml"), "'fifo.yaml'", "is not a file");
   expect_refused<LoadScenario>("load_scenario", beginning("beside_fifo.yaml"), "fifo.tif",
                                "is not a regular file");
-  EXPECT_LT((ros::WallTime::now() - start).toSec(), 1);
   for (const std::string& name : {std::string("a\ngrid: {width: 3}"), std::string(300, 'a')}) {
     expect_refused<SaveTerrain>("save_terrain", saving(name, "geotiff"), "character", "~data_dir");
     expect_refused<LoadScenario>("load_scenario", beginning(name), "character", "~data_dir");

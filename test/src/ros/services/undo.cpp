@@ -127,8 +127,9 @@ TEST_F(UndoServices, IsToldToWhoeverListens) {
   keyframes.last();
   ASSERT_TRUE(wait_until([&] {
     edit(brush(50, 30, "a"));
-    return diffs.count() > 0;
-  }));
+    step(0);
+    return diffs.count() > 0 && updates.count() > 0;
+  })) << "the node knows them";
   edit(brush(50, 30, "b", "bedrock"));  // all messages before this one have come in when it has
   ASSERT_TRUE(diffs.wait_for([](const TerrainDiff& diff) { return diff.layer == "bedrock"; }));
   const std::size_t before = diffs.count();
@@ -142,9 +143,14 @@ TEST_F(UndoServices, IsToldToWhoeverListens) {
   double sum = 0;
   for (float change : diff.change) sum += change * 4.0;
   EXPECT_NEAR(sum, -undone.materials.at(0).removed, 1e-3);
-  const std::size_t sent = updates.count();
+  step(0);
   turn("redo");
-  EXPECT_TRUE(updates.wait_for_count(sent + 1)) << "what came back is an update of the elevation";
+  ASSERT_TRUE(diffs.wait_for_count(before + 2));
+  const ros::Time redone = diffs.all().at(before + 1).header.stamp;
+  step(0);
+  EXPECT_TRUE(updates.wait_for([&](const ElevationUpdate& u) {
+    return u.header.stamp == redone && !u.tiles.empty();
+  })) << "what came back is an update of the elevation";
 }
 
 /// Somebody with connections of his own to the services.
@@ -202,13 +208,9 @@ TEST_F(UndoServices, AThousandStrokesOfTwoOperatorsAreUndone) {
     }
   });
   EXPECT_NE(hash(), before);
-  const auto begin = ros::WallTime::now();
   both([&](Operator& who) {
     while (who.undo()) ++undone;
   });
-  const double milliseconds = (ros::WallTime::now() - begin).toSec() * 1000 / undone;
-  std::printf("  measured: %.2f ms an undo, of %d\n", milliseconds, undone.load());
-  EXPECT_LT(milliseconds, 50 * patience());
   EXPECT_GE(undone, 2 * strokes);
   EXPECT_EQ(failed, 0);
   EXPECT_FALSE(first.missed_something() || second.missed_something());

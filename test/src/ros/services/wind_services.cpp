@@ -6,6 +6,7 @@
 #include <desert_sim/WindField.h>
 
 #include <cmath>
+#include <memory>
 
 #include "test/support/ros/service_tests.hpp"
 
@@ -14,40 +15,96 @@ namespace {
 using namespace desert_sim;
 using namespace node_test;
 
-/// The wind high above, as the status has it after the change that `fits`.
-bool wind_becomes(double x, double y) {
-  Listener<SimulationStatus> statuses("status");
-  return statuses.wait_for(
-      [&](const SimulationStatus& s) { return std::hypot(s.wind_above.x - x, s.wind_above.y - y) < 1e-4; });
-}
+class WindServices : public Services {
+ protected:
+  static void SetUpTestSuite() {
+    statuses_ = std::make_unique<Listener<SimulationStatus>>("status");
+    winds_ = std::make_unique<Listener<WindField>>("wind");
+    statuses_->last();
+    winds_->last();
+  }
+  static void TearDownTestSuite() {
+    statuses_.reset();
+    winds_.reset();
+  }
 
-TEST_F(Services, SetWindTurnsTheWindAboveAndThenTheWindAtTheSurface) {
+  /// The first message of a state that was reached at this time or later.
+  template <class Message>
+  static Message since(const ros::Time& time, const Listener<Message>& listener) {
+    EXPECT_TRUE(wait_until([&] { return listener.last().header.stamp >= time; }));
+    return listener.last();
+  }
+  static void set(const SetWind::Request& request, double x, double y) {
+    const ros::Time before = ros::Time::now();
+    EXPECT_TRUE(call<SetWind>("set_wind", request).success);
+    expect_wind_since(before, x, y);
+  }
+  static void expect_wind_after(std::uint32_t steps, double x, double y) {
+    const ros::Time before = ros::Time::now();
+    step(steps);
+    expect_wind_since(before, x, y);
+  }
+  /// The wind at the surface after another step.
+  static WindField field_after_a_step() {
+    const ros::Time before = ros::Time::now();
+    step(1);
+    return since(before, *winds_);
+  }
+  static EditWind::Request jet(const std::string& operation) {
+    EditWind::Request request;
+    request.operation = operation;
+    request.id = 5;
+    request.kind = EditWind::Request::JET;
+    request.radius = 6;
+    request.length = 30;
+    request.speed = 4;
+    request.direction_deg = 90;
+    const WindField wind = winds_->last();
+    request.center.x = wind.origin.position.x + 0.5 * wind.width * wind.cell_size;
+    request.center.y = wind.origin.position.y + 0.5 * wind.height * wind.cell_size;
+    return request;
+  }
+  static double northward_in_the_middle() {
+    const WindField wind = field_after_a_step();
+    return wind.v.at(wind.height / 2 * wind.width + wind.width / 2);
+  }
+
+ private:
+  /// High above the ground.
+  static void expect_wind_since(const ros::Time& time, double x, double y) {
+    const geometry_msgs::Vector3 wind = since(time, *statuses_).wind_above;
+    EXPECT_NEAR(wind.x, x, 1e-4);
+    EXPECT_NEAR(wind.y, y, 1e-4);
+  }
+
+  // Of all tests: roscpp takes a fifth of a second for each subscription.
+  static inline std::unique_ptr<Listener<SimulationStatus>> statuses_;
+  static inline std::unique_ptr<Listener<WindField>> winds_;
+};
+
+TEST_F(WindServices, SetWindTurnsTheWindAboveAndThenTheWindAtTheSurface) {
   SetWind::Request request;
   request.speed = 8;
   request.direction_deg = 90;
-  EXPECT_TRUE(call<SetWind>("set_wind", request).success);
-  EXPECT_TRUE(wind_becomes(0, 8));
-  step(1);
-  const WindField wind = Listener<WindField>("wind").last();
+  set(request, 0, 8);
+  const WindField wind = field_after_a_step();
   const std::size_t somewhere = 20 * wind.width + 10;
   EXPECT_NEAR(wind.u.at(somewhere), 0, 1);
   EXPECT_GT(wind.v.at(somewhere), 5) << "it blows to the north";
   EXPECT_EQ(wind.above.y, 8);
 }
 
-TEST_F(Services, SetWindTakesAVectorAndARamp) {
+TEST_F(WindServices, SetWindTakesAVectorAndARamp) {
   SetWind::Request request;
   request.use_vector = true;
   request.vector.x = -3;
   request.vector.y = -4;
   request.ramp = 10;
-  EXPECT_TRUE(call<SetWind>("set_wind", request).success);
-  EXPECT_TRUE(wind_becomes(5, 0)) << "the ramp begins with the wind of before";
-  step(10);
-  EXPECT_TRUE(wind_becomes(-3, -4));
+  set(request, 5, 0);  // the ramp begins with the wind of before
+  expect_wind_after(10, -3, -4);
 }
 
-TEST_F(Services, SetWindRefuses) {
+TEST_F(WindServices, SetWindRefuses) {
   SetWind::Request request;
   request.speed = not_a_number;
   expect_refused<SetWind>("set_wind", request, "speed: = nan", "[0, 100] m/s");
@@ -72,7 +129,7 @@ TEST_F(Services, SetWindRefuses) {
   expect_refused<SetWind>("set_wind", request, "vector.z", "must be 0");
 }
 
-TEST_F(Services, SetWindScheduleRunsATimeline) {
+TEST_F(WindServices, SetWindScheduleRunsATimeline) {
   SetWindSchedule::Request request;
   request.kind = SetWindSchedule::Request::TIMELINE;
   request.segments.resize(2);
@@ -83,15 +140,12 @@ TEST_F(Services, SetWindScheduleRunsATimeline) {
   request.segments[1].duration = 5;
   const auto response = call<SetWindSchedule>("set_wind_schedule", request);
   EXPECT_TRUE(response.success) << response.message;
-  step(1);
-  EXPECT_TRUE(wind_becomes(4, 0));
-  step(6);
-  EXPECT_TRUE(wind_becomes(-6, 0));
-  step(20);
-  EXPECT_TRUE(wind_becomes(-6, 0)) << "the last segment holds";
+  expect_wind_after(1, 4, 0);
+  expect_wind_after(6, -6, 0);
+  expect_wind_after(20, -6, 0);  // the last segment holds
 }
 
-TEST_F(Services, SetWindScheduleDrawsFromARose) {
+TEST_F(WindServices, SetWindScheduleDrawsFromARose) {
   SetWindSchedule::Request request;
   request.kind = SetWindSchedule::Request::ROSE;
   request.segments.resize(2);
@@ -103,11 +157,10 @@ TEST_F(Services, SetWindScheduleDrawsFromARose) {
   request.hold_time = 3;
   const auto response = call<SetWindSchedule>("set_wind_schedule", request);
   EXPECT_TRUE(response.success) << response.message;
-  step(4);
-  EXPECT_TRUE(wind_becomes(0, -7));
+  expect_wind_after(4, 0, -7);
 }
 
-TEST_F(Services, SetWindScheduleRefuses) {
+TEST_F(WindServices, SetWindScheduleRefuses) {
   SetWindSchedule::Request request;
   request.kind = "gusts";
   expect_refused<SetWindSchedule>("set_wind_schedule", request, "kind: 'gusts'", "timeline, rose");
@@ -131,38 +184,15 @@ TEST_F(Services, SetWindScheduleRefuses) {
   expect_refused<SetWindSchedule>("set_wind_schedule", request, "5000", "4096");
 }
 
-EditWind::Request jet(const std::string& operation) {
-  EditWind::Request request;
-  request.operation = operation;
-  request.id = 5;
-  request.kind = EditWind::Request::JET;
-  request.radius = 6;
-  request.length = 30;
-  request.speed = 4;
-  request.direction_deg = 90;
-  const WindField wind = Listener<WindField>("wind").last();
-  request.center.x = wind.origin.position.x + 0.5 * wind.width * wind.cell_size;
-  request.center.y = wind.origin.position.y + 0.5 * wind.height * wind.cell_size;
-  return request;
-}
-
-double northward_in_the_middle() {
-  const WindField wind = Listener<WindField>("wind").last();
-  return wind.v.at(wind.height / 2 * wind.width + wind.width / 2);
-}
-
-TEST_F(Services, EditWindAddsAJetAndTakesItAway) {
-  step(1);
+TEST_F(WindServices, EditWindAddsAJetAndTakesItAway) {
   const double before = northward_in_the_middle();
   EXPECT_TRUE(call<EditWind>("edit_wind", jet("add")).success);
-  step(1);
   EXPECT_NEAR(northward_in_the_middle() - before, 4, 0.5);
   EXPECT_TRUE(call<EditWind>("edit_wind", jet("remove")).success);
-  step(1);
   EXPECT_NEAR(northward_in_the_middle(), before, 0.5);
 }
 
-TEST_F(Services, EditWindRefuses) {
+TEST_F(WindServices, EditWindRefuses) {
   expect_refused<EditWind>("edit_wind", jet("blow"), "operation: 'blow'", "add, change, remove, clear");
   expect_refused<EditWind>("edit_wind", jet("change"), "id: = 5", "not the id of any feature");
   EditWind::Request request = jet("add");

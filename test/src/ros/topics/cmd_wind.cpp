@@ -1,10 +1,15 @@
 /// ~cmd_wind, on a paused node whose terrain is in the frame "terrain".
+#include "src/ros/topics/cmd_wind.hpp"
+
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SimulationStatus.h>
 #include <geometry_msgs/Vector3Stamped.h>
+#include <ros/callback_queue.h>
 #include <rosgraph_msgs/Log.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "src/core/error.hpp"
@@ -25,52 +30,32 @@ geometry_msgs::Vector3Stamped wind(double x, double y, double z = 0, const std::
   return message;
 }
 
+bool is_near(const geometry_msgs::Vector3& wind, double x, double y) {
+  return std::abs(wind.x - x) < 1e-4 && std::abs(wind.y - y) < 1e-4;
+}
+
 class CmdWind : public Services {
  protected:
   void SetUp() override {
     Services::SetUp();
     publisher_ = node_.advertise<geometry_msgs::Vector3Stamped>("/desert_sim/cmd_wind", 10);
-    warnings_ = node_.subscribe<rosgraph_msgs::Log>(
-        "/rosout", 100, boost::function<void(const rosgraph_msgs::LogConstPtr&)>([this](const auto& message) {
-          const std::lock_guard<std::mutex> lock(mutex_);
-          if (message->name == "/desert_sim" && message->level == rosgraph_msgs::Log::WARN)
-            told_.push_back(message->msg);
-        }));
-    ASSERT_TRUE(
-        wait_until([&] { return publisher_.getNumSubscribers() > 0 && warnings_.getNumPublishers() > 0; }));
+    ASSERT_TRUE(wait_until([&] { return publisher_.getNumSubscribers() > 0; }));
   }
+  /// Becomes the wind high above, which the node tells with each request for steps.
   bool blows(double x, double y) {
+    return blows(x, y, [] {});
+  }
+  bool blows(double x, double y, const std::function<void()>& meanwhile) {
     return wait_until([&] {
-      const geometry_msgs::Vector3 now = status_.last().wind_above;
-      return std::abs(now.x - x) < 1e-4 && std::abs(now.y - y) < 1e-4;
+      meanwhile();
+      step(0);
+      return is_near(status_.last().wind_above, x, y);
     });
-  }
-  bool told(const std::string& text) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    for (const std::string& warning : told_)
-      if (warning.find(text) != std::string::npos) return true;
-    return false;
-  }
-  /// Nothing changes, and a warning of the node has the text in it. The node warns at most every two seconds.
-  void expect_warning(const geometry_msgs::Vector3Stamped& message, const std::string& text) {
-    const geometry_msgs::Vector3 before = status_.last().wind_above;
-    EXPECT_TRUE(wait_until([&] {
-      publisher_.publish(message);
-      ros::WallDuration(0.1).sleep();
-      return told("cmd_wind") && told(text);
-    })) << "no warning says: "
-        << text;
-    const std::size_t n = status_.count();
-    EXPECT_TRUE(status_.wait_for_count(n + 3));
-    EXPECT_EQ(status_.last().wind_above, before) << text;
   }
 
   ros::NodeHandle node_;
   ros::Publisher publisher_;
-  ros::Subscriber warnings_;
   Listener<SimulationStatus> status_{"status"};
-  std::mutex mutex_;
-  std::vector<std::string> told_;
 };
 
 TEST_F(CmdWind, BlowsFromTheNextStepOn) {
@@ -94,6 +79,31 @@ TEST_F(CmdWind, IsTheSameAsTheServiceStepByStep) {
   EXPECT_EQ(step(5).state_hash, streamed);
 }
 
+/// The node warns at most every two seconds, so that it is asked for one warning only.
+TEST_F(CmdWind, RefusesWithAWarning) {
+  std::mutex mutex;
+  std::vector<std::string> told;
+  const auto warnings = node_.subscribe<rosgraph_msgs::Log>(
+      "/rosout", 100, boost::function<void(const rosgraph_msgs::LogConstPtr&)>([&](const auto& message) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (message->name == "/desert_sim" && message->level == rosgraph_msgs::Log::WARN)
+          told.push_back(message->msg);
+      }));
+  publisher_.publish(wind(2, 1));
+  ASSERT_TRUE(blows(2, 1));
+  EXPECT_TRUE(wait_until([&] {
+    publisher_.publish(wind(not_a_number, 1));
+    const std::lock_guard<std::mutex> lock(mutex);
+    return std::any_of(told.begin(), told.end(), [](const std::string& warning) {
+      return warning.find("cmd_wind") != std::string::npos &&
+             warning.find("vector.x: = nan") != std::string::npos;
+    });
+  })) << "no warning says so";
+  const std::uint64_t reached = step(1).step;
+  ASSERT_TRUE(wait_until([&] { return status_.last().step == reached; }));
+  EXPECT_TRUE(is_near(status_.last().wind_above, 2, 1));
+}
+
 TEST_F(CmdWind, IsTurnedIntoTheTerrainsFrame) {
   tf2_ros::StaticTransformBroadcaster broadcaster;
   geometry_msgs::TransformStamped turned;
@@ -103,44 +113,8 @@ TEST_F(CmdWind, IsTurnedIntoTheTerrainsFrame) {
   turned.transform.rotation.z = std::sqrt(0.5);
   turned.transform.rotation.w = std::sqrt(0.5);  // its x is the terrain's y
   broadcaster.sendTransform(turned);
-  EXPECT_TRUE(wait_until([&] {
-    publisher_.publish(wind(5, 1, 0, "anemometer"));
-    ros::WallDuration(0.1).sleep();
-    const geometry_msgs::Vector3 now = status_.last().wind_above;
-    return std::abs(now.x + 1) < 1e-4 && std::abs(now.y - 5) < 1e-4;
-  })) << status_.last().wind_above;
-}
-
-TEST_F(CmdWind, RefusesWithAWarning) {
-  publisher_.publish(wind(2, 1));
-  ASSERT_TRUE(blows(2, 1));
-  expect_warning(wind(not_a_number, 1), "vector.x: = nan");
-  expect_warning(wind(300, 400), "speed: = 500 is not in [0, 100] m/s");
-}
-
-/// The reasons are read from the function that the node calls for each message, because warnings of the node
-/// are two seconds apart.
-TEST_F(CmdWind, MalformedWindsAreRefusedWithTheirReasons) {
-  const TerrainTransforms frames("terrain");
-  const auto expect_refused = [&](const geometry_msgs::Vector3Stamped& message, const std::string& text) {
-    try {
-      cmd_wind_command(message, frames);
-      ADD_FAILURE() << "taken: " << message;
-    } catch (const ConfigError& e) {
-      EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
-    }
-    const geometry_msgs::Vector3 before = status_.last().wind_above;
-    const std::size_t n = status_.count();
-    publisher_.publish(message);
-    EXPECT_TRUE(status_.wait_for_count(n + 4));
-    EXPECT_EQ(status_.last().wind_above, before) << text;
-  };
-  expect_refused(wind(not_a_number, 1), "vector.x: = nan");
-  expect_refused(wind(1, infinity), "vector.y: = inf");
-  expect_refused(wind(1, 0, 0.5), "must be 0: the wind is horizontal");
-  expect_refused(wind(1, 0, 0, "nowhere"),
-                 "frame 'nowhere' cannot be transformed into the terrain's frame 'terrain'");
-  EXPECT_NO_THROW(cmd_wind_command(wind(3, 4), frames));
+  EXPECT_TRUE(blows(-1, 5, [&] { publisher_.publish(wind(5, 1, 0, "anemometer")); }))
+      << status_.last().wind_above;
 }
 
 TEST_F(CmdWind, AStreamFromManyLeavesTheLastAndTheServicesAnswer) {
@@ -149,18 +123,75 @@ TEST_F(CmdWind, AStreamFromManyLeavesTheLastAndTheServicesAnswer) {
     other = node_.advertise<geometry_msgs::Vector3Stamped>("/desert_sim/cmd_wind", 10);
     ASSERT_TRUE(wait_until([&] { return other.getNumSubscribers() > 0; }));
   }
+  std::atomic<bool> stop{false};
   std::vector<std::thread> streams;
   for (ros::Publisher& other : others)
-    streams.emplace_back([&other] {
-      for (int n = 0; n < 200; ++n) {
+    streams.emplace_back([&stop, &other] {
+      int n = 0;
+      EXPECT_TRUE(wait_until([&] {
+        n = (n + 1) % 200;
         other.publish(wind(0.01 * n, -0.02 * n));
-        ros::WallDuration(0.002).sleep();
-      }
+        return stop.load();
+      }));
     });
   for (std::uint64_t n = 1; n <= 10; ++n) EXPECT_EQ(step(1).step, n);
+  stop = true;
   for (std::thread& stream : streams) stream.join();
-  publisher_.publish(wind(4, 3));
-  EXPECT_TRUE(blows(4, 3));
+  // What the streams have sent may still be on its way, over other connections.
+  EXPECT_TRUE(blows(4, 3, [&] { publisher_.publish(wind(4, 3)); }));
+}
+
+/// What takes messages in, on a queue that the test serves, so that each of them has been taken in when the
+/// test looks.
+TEST(CmdWindSubscriber, RefusesMalformedWindsWithTheirReasons) {
+  SimulationThread::Options options;
+  options.backend = "cpu";
+  options.threads = 1;
+  options.paused = true;
+  SimulationThread simulation(load_scenario(DESERT_SOURCE_DIR "/test/support/ros/scenarios/corner.yaml"),
+                              no_raster_loader, options, [] {});
+  ros::CallbackQueue queue;
+  ros::NodeHandle node("/beside");
+  node.setCallbackQueue(&queue);
+  const Frames frames("terrain");
+  const CmdWindSubscriber subscriber(node, simulation, frames);
+  ros::Publisher publisher = node.advertise<geometry_msgs::Vector3Stamped>("cmd_wind", 1);
+  ASSERT_TRUE(wait_until([&] { return publisher.getNumSubscribers() > 0; }));
+  const auto wind_after = [&](const geometry_msgs::Vector3Stamped& message) {
+    publisher.publish(message);
+    EXPECT_TRUE(wait_until([&] { return queue.callOne() == ros::CallbackQueue::Called; }));
+    return simulation.report(false).get().wind_above;
+  };
+  const auto before = wind_after(wind(3, 4));
+  EXPECT_NEAR(before.x, 3, 1e-4);
+  EXPECT_NEAR(before.y, 4, 1e-4);
+  const auto expect_refused = [&](const geometry_msgs::Vector3Stamped& message, const std::string& text) {
+    try {
+      cmd_wind_command(message, frames);
+      ADD_FAILURE() << "taken: " << message;
+    } catch (const ConfigError& e) {
+      EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
+    }
+    const auto now = wind_after(message);
+    EXPECT_EQ(now.x, before.x) << text;
+    EXPECT_EQ(now.y, before.y) << text;
+  };
+  expect_refused(wind(not_a_number, 1), "vector.x: = nan");
+  expect_refused(wind(1, infinity), "vector.y: = inf");
+  expect_refused(wind(1, 0, 0.5), "must be 0: the wind is horizontal");
+  expect_refused(wind(1, 0, 0, "nowhere"),
+                 "frame 'nowhere' cannot be transformed into the terrain's frame 'terrain'");
+  // The simulation itself refuses what is out of range.
+  const auto now = wind_after(wind(300, 400));
+  EXPECT_EQ(now.x, before.x);
+  EXPECT_EQ(now.y, before.y);
+  try {
+    simulation.apply(cmd_wind_command(wind(300, 400), frames)).get();
+    ADD_FAILURE() << "taken";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("speed: = 500 is not in [0, 100] m/s"), std::string::npos)
+        << e.what();
+  }
 }
 
 }  // namespace

@@ -15,10 +15,15 @@ SIDE = 32
 
 
 class SlabLayers(unittest.TestCase):
-    def desert(self, scenario, *settings, **parameters):
+    def desert(self, scenario, layers, *settings, **parameters):
+        """A desert, and a client that is shown these layers of it."""
         desert = self.stack.enter_context(Desert(
-            scenario, settings=["grid.width=%d" % SIDE, "grid.height=%d" % SIDE, *settings], parameters=parameters))
+            scenario, settings=["grid.width=%d" % SIDE, "grid.height=%d" % SIDE, *settings],
+            parameters={"layer_thresholds": dict.fromkeys(layers, 0), **parameters}))
         self.middle = SIDE * desert.terrain.map.cell_size / 2
+        self.client = desert_sim.TerrainClient(layers=layers)
+        self.stack.callback(self.client.close)
+        self.assertTrue(self.client.wait_for_terrain(60 * PATIENCE))
         return desert
 
     def setUp(self):
@@ -27,17 +32,15 @@ class SlabLayers(unittest.TestCase):
 
     def values(self, desert, layer):
         """What the topic shows, which is what the service answers."""
-        client = desert_sim.TerrainClient(layers=[layer])
-        self.stack.callback(client.close)
-        self.assertTrue(client.wait_for_terrain(60 * PATIENCE), layer)
-        shown = client[layer]
+        self.assertTrue(self.client.wait_for_step(desert.terrain.map.step, 60 * PATIENCE), layer)
+        shown = self.client[layer]
         asked = desert.simulation.submap((self.middle, self.middle), (2 * self.middle, 2 * self.middle), [layer])[layer]
         self.assertEqual((shown.unit, asked.unit), (UNITS.get(layer, "1"),) * 2)
         self.assertTrue((shown.values == asked.values).all(), layer)
         return shown.values
 
     def test_plants_grow_by_burial(self):
-        desert = self.desert("nield_nebkha", "slab_plants.growth_time=20")
+        desert = self.desert("nield_nebkha", (*PLANTS, "burial", "snow_density"), "slab_plants.growth_time=20")
         desert.step(19)
         for layer in PLANTS:
             self.assertFalse(self.values(desert, layer).any(), layer + " has not grown yet")
@@ -54,7 +57,8 @@ class SlabLayers(unittest.TestCase):
         self.assertFalse(self.values(desert, "snow_density").any(), "this terrain has no snow")
 
     def test_snow_settles(self):
-        desert = self.desert("snow_barchan", grid_map_layers=["snow_density", "elevation", "grass"], grid_map_rate=5)
+        desert = self.desert("snow_barchan", ["snow_density"],
+                             grid_map_layers=["snow_density", "elevation", "grass"], grid_map_rate=0)
         self.assertAlmostEqual(self.values(desert, "snow_density").mean(), FRESH, 2)
         desert.step(24)
         with Listener("/desert_sim/grid_map") as listener:

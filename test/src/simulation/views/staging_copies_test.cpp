@@ -2,13 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstring>
-#include <future>
+#include <deque>
 #include <map>
 #include <string>
-#include <thread>
 
 #include "kernels/backend/fft.hpp"
 #include "src/core/error.hpp"
@@ -17,7 +14,7 @@
 namespace desert_sim {
 namespace {
 
-/// Copies one after the other, each some time after it was started.
+/// Copies as late as it may: once somebody waits for a copy, after all that were started before.
 class LateDevice final : public Exec {
  public:
   std::size_t allocated = 0, copied = 0;  ///< allocations now, bytes ever
@@ -36,17 +33,13 @@ class LateDevice final : public Exec {
   std::unique_ptr<Fft> make_fft(int, int, int) override { throw Error("no transforms here"); }
 
   std::unique_ptr<HostCopy> start_download(void* to, const void* from, std::size_t bytes) override {
-    auto copy = std::make_unique<LateCopy>(*this);
     copied += bytes;
-    copy->done = std::async(std::launch::async, [=, before = last_] {
-                   if (before.valid()) before.wait();
-                   std::this_thread::sleep_for(std::chrono::milliseconds(2));
-                   std::memcpy(to, from, bytes);
-                 }).share();
-    last_ = copy->done;
-    return copy;
+    under_way_.push_back({to, from, bytes});
+    return std::make_unique<LateCopy>(*this, ++started_);
   }
-  void wait_on_device_for(const HostCopy& copy) override { static_cast<const LateCopy&>(copy).done.wait(); }
+  void wait_on_device_for(const HostCopy& copy) override {
+    finish(static_cast<const LateCopy&>(copy).number);
+  }
 
  protected:
   void* allocate_memory(std::size_t bytes) override {
@@ -55,14 +48,21 @@ class LateDevice final : public Exec {
   }
   void free_memory(void* memory) noexcept override {
     --allocated;
+    for (const Transfer& t : under_way_)
+      EXPECT_FALSE(t.to == memory || t.from == memory) << "it is freed while a copy of it is under way";
     ::operator delete(memory);
   }
 
  private:
+  struct Transfer {
+    void* to;
+    const void* from;
+    std::size_t bytes;
+  };
   struct LateCopy final : HostCopy {
-    explicit LateCopy(LateDevice& device) : exec(device) {}
+    LateCopy(LateDevice& device, std::size_t which) : exec(device), number(which) {}
     void wait() override {
-      done.wait();
+      exec.finish(number);
       if (exec.fails) throw CudaError("the copy failed");
     }
     void fetch(void* to, const void* from, std::size_t bytes) override {
@@ -70,9 +70,20 @@ class LateDevice final : public Exec {
       std::memcpy(to, from, bytes);
     }
     LateDevice& exec;
-    std::shared_future<void> done;
+    const std::size_t number;
   };
-  std::shared_future<void> last_;
+
+  /// All copies up to the one of this number.
+  void finish(std::size_t number) {
+    for (; finished_ < number; ++finished_) {
+      const Transfer& t = under_way_.front();
+      std::memcpy(t.to, t.from, t.bytes);
+      under_way_.pop_front();
+    }
+  }
+
+  std::deque<Transfer> under_way_;
+  std::size_t started_ = 0, finished_ = 0;
 };
 
 /// Text that is on its way in pieces of 100, of which only the first ten bytes are sent at once.
