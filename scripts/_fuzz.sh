@@ -15,7 +15,7 @@ fuzz_seeds() { # NAME FOLDER
   [[ ! -d $DESERT_ROOT/test/fuzz/corpus/$1 ]] || cp "$DESERT_ROOT/test/fuzz/corpus/$1"/* "$2"
   case $1 in
     scenario) cp "$DESERT_ROOT"/config/scenarios/*.yaml "$2" ;;
-    journal) cp "$DESERT_ROOT/test/recorded/journal.yaml" "$2" ;;
+    journal) cp "$DESERT_ROOT/test/src/simulation/recorded/journal.yaml" "$2" ;;
     raster) cp "$DESERT_ROOT/config/scenarios/dem_example.asc" "$2" ;;
     checkpoint)
       for name in nebkha oasis_cycle beach; do

@@ -64,6 +64,7 @@ class _Stream:
         self._topic = client.node + "/elevation" if self._elevation else folder + "/" + layer
         self._assembler, self._requests = LayerAssembler(), KeyframeRequests(options["shortest"], options["longest"])
         self.map, self.need, self.statistics, self.closed = None, EXPECTED, Statistics(), False  # by the client's lock
+        self._by_message = False  # whether the last request was
         self._request_publisher = rospy.Publisher(
             client.node + "/request_keyframe" if self._elevation else folder + "/request_keyframe",
             Empty if self._elevation else String, queue_size=10)
@@ -126,7 +127,8 @@ class _Stream:
         process uses the same topic, and a bag that is played takes no requests. Where nobody listens to requests, the
         next one has a chance."""
         with self._client._changed:
-            by_message = self._request_publisher.get_num_connections() > 0 and self.statistics.requests % 2 == 0
+            by_message = self._request_publisher.get_num_connections() > 0 and not self._by_message
+            self._by_message = by_message  # what comes next is the other
             self.statistics.requests += 1
         if by_message:
             self._request_publisher.publish(*([] if self._elevation else [self._layer]))

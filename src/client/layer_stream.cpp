@@ -121,7 +121,8 @@ void LayerStream::request_keyframe_if_due() {
   bool by_message = request_publisher_.getNumSubscribers() > 0;
   {
     const std::lock_guard<std::mutex> lock(context_.mutex);
-    by_message = by_message && statistics_.requests % 2 == 0;
+    by_message = by_message && !requested_by_message_;
+    requested_by_message_ = by_message;  // what comes next is the other
     ++statistics_.requests;
   }
   if (by_message) {

@@ -98,6 +98,7 @@ class LayerStream : public std::enable_shared_from_this<LayerStream> {
   StreamStatistics statistics_;
   std::uint64_t latency_count_ = 0;  ///< number of updates in the mean latency
   bool up_to_date_ = false, closed_ = false;
+  bool requested_by_message_ = false;  ///< the last time
 };
 
 }  // namespace desert_sim

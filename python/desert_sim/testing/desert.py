@@ -104,13 +104,14 @@ class Desert:
             node.close()
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    @staticmethod
-    def _wait_for_node(node, first):
-        """Waits for the first sign of a node; if it ends instead, what it has printed says why."""
+    def _wait_for_node(self, node, first):
+        """Waits for the first sign of a node: `first()` returns it within the timeout, or raises why there is none. If
+        the node ends instead, what it has printed says why."""
         done = []
         waiter = threading.Thread(target=lambda: done.append(_result(first)), daemon=True)
         waiter.start()
-        wait_until(lambda: done or not node.running, "%s gives no sign of life: %s" % (node.path, node.output), 30)
+        wait_until(lambda: done or not node.running, "%s gives no sign of life: %s" % (node.path, node.output),
+                   2 * self._timeout / PATIENCE)
         if not node.running:
             raise AssertionError("%s has ended:\n%s" % (node.path, node.wait()[1]))
         if isinstance(done[0], Exception):

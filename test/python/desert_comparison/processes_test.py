@@ -12,8 +12,8 @@ from desert_comparison import processes  # noqa: E402
 
 class Processes(unittest.TestCase):
     def status_of_one_that_ends_with(self, parent):
-        return subprocess.run([sys.executable, "-c", "import sys; sys.path.insert(0, sys.argv[1]); import processes; "
-                               "processes.end_with(int(sys.argv[2]))", os.path.dirname(processes.__file__), str(parent)]).returncode
+        code = "import sys; sys.path.insert(0, sys.argv[1]); import processes; processes.end_with(int(sys.argv[2]))"
+        return subprocess.run([sys.executable, "-c", code, os.path.dirname(processes.__file__), str(parent)]).returncode
 
     def test_a_process_whose_parent_has_ended_already_ends_at_once(self):
         self.assertEqual(self.status_of_one_that_ends_with(os.getpid()), 0)

@@ -5,17 +5,20 @@ import os
 import shutil
 import threading
 import unittest
+import xmlrpc.client
 from unittest import mock
 
 import actionlib
 import desert_sim
 import numpy
+import rosgraph
 import rospy
 import rostest
 from desert_sim.msg import (ElevationUpdate, Forecast, ForecastTerrainAction, ForecastTerrainFeedback,
                             ForecastTerrainResult, LayerGrid)
 from desert_sim.testing import PATIENCE, wait_until
 from nav_msgs.msg import OccupancyGrid
+from std_msgs.msg import Empty
 
 THRESHOLD = 0.01  # of the elevation
 MIDDLE, SIZE = (74, 28), (128, 96)  # of the terrain [m]
@@ -112,6 +115,17 @@ class Updates(Client):
         self.assertEqual(client.statistics("sand_depth").gaps, 0)
         self.drive(client, 3)
         self.expect_same(client, "elevation", THRESHOLD + 1e-6)
+
+    def test_a_node_that_does_not_listen_to_requests_is_told_of_them_again(self):
+        """As after it was refused by a publisher that had just gone and come again: it does not connect by itself then."""
+        self.client()
+        requests = rospy.Publisher("/desert_sim/request_keyframe", Empty, queue_size=1)
+        self.addCleanup(requests.unregister)
+        wait_until(requests.get_num_connections, "the node does not listen to requests")
+        node = xmlrpc.client.ServerProxy(rosgraph.Master(rospy.get_name()).lookupNode("/desert_sim"))
+        node.publisherUpdate("/master", requests.resolved_name, [])
+        wait_until(lambda: requests.get_num_connections() == 0, "the node still listens")
+        self.client(shortest_pause=0.05, longest_pause=0.05)  # needs a keyframe, and shares the connection of the first
 
     def test_another_terrain_comes_whole(self):
         told = []

@@ -1,7 +1,11 @@
 /// TerrainClient on a node that runs: what it holds is what the node says when it is asked.
 #include "src/client/terrain_client.hpp"
 
+#include <XmlRpcClient.h>
 #include <desert_sim/QueryTerrain.h>
+#include <ros/master.h>
+#include <ros/network.h>
+#include <std_msgs/Empty.h>
 
 #include <atomic>
 #include <cmath>
@@ -288,6 +292,38 @@ TEST_F(Client, TwoInOneProcessBothGetThePausedTerrain) {
   ASSERT_TRUE(first.wait_for_step(step(5).step, timeout) && second.wait_for_step(11, timeout));
   EXPECT_LE(largest_difference(*first.map()), threshold + 1e-6);
   EXPECT_LE(largest_difference(*second.map()), threshold + 1e-6);
+}
+
+/// Tells the node that nobody publishes requests any more: as where it is refused by a publisher that had just gone
+/// and come again, it does not connect by itself after that.
+void make_the_node_deaf_to_requests() {
+  XmlRpc::XmlRpcValue arguments, result, uri;
+  arguments[0] = ros::this_node::getName();
+  arguments[1] = "/desert_sim";
+  ASSERT_TRUE(ros::master::execute("lookupNode", arguments, result, uri, false));
+  std::string host;
+  std::uint32_t port = 0;
+  ASSERT_TRUE(ros::network::splitURI(uri, host, port));
+  XmlRpc::XmlRpcClient node(host.c_str(), static_cast<int>(port));
+  XmlRpc::XmlRpcValue nobody, told;
+  nobody[0] = "/master";
+  nobody[1] = "/desert_sim/request_keyframe";
+  nobody[2].setSize(0);
+  ASSERT_TRUE(node.execute("publisherUpdate", nobody, told) && !node.isFault());
+}
+
+TEST_F(Client, ANodeThatDoesNotListenToRequestsIsToldOfThemAgain) {
+  const TerrainClient first(node_, options());
+  ASSERT_TRUE(first.wait_for_terrain(timeout));
+  const ros::Publisher requests =
+      ros::NodeHandle().advertise<std_msgs::Empty>("/desert_sim/request_keyframe", 1);
+  ASSERT_TRUE(wait_until([&] { return requests.getNumSubscribers() > 0; }));
+  make_the_node_deaf_to_requests();
+  ASSERT_TRUE(wait_until([&] { return requests.getNumSubscribers() == 0; }));
+  TerrainClient::Options o = options();
+  o.shortest_pause = o.longest_pause = 0.05;
+  const TerrainClient second(node_, o);  // needs a keyframe, and shares the connection of the first
+  EXPECT_TRUE(second.wait_for_terrain(timeout));
 }
 
 TEST_F(Client, EndsWhileMessagesCome) {

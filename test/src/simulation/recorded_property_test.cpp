@@ -10,7 +10,7 @@
 namespace desert_sim {
 namespace {
 
-const std::string folder = std::string(DESERT_SOURCE_DIR) + "/test/recorded/";
+const std::string folder = std::string(DESERT_SOURCE_DIR) + "/test/src/simulation/recorded/";
 
 TEST(Recorded, CheckpointIsLoadedToTheBit) {
   const auto exec = make_exec("cpu", 1);

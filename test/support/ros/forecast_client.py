@@ -36,7 +36,8 @@ class ForecastClient:
 
     def wait_until_known(self):
         """Until the node has said that it has the goal, or has ended it."""
-        wait_until(lambda: self.handle.get_comm_state() != CommState.WAITING_FOR_GOAL_ACK, "nothing is said of the goal", LIMIT)
+        wait_until(lambda: self.handle.get_comm_state() != CommState.WAITING_FOR_GOAL_ACK,
+                   "nothing is said of the goal", LIMIT)
 
     def wait_until_running(self):
         """Until the forecast has made steps, or has ended."""

@@ -45,7 +45,7 @@ class MoveBaseRover:
         rospy.Subscriber("/%s/ground_truth" % name, Odometry, self.take_pose, queue_size=100)
         rospy.wait_for_service("/%s/move_base/make_plan" % name, 60 * PATIENCE)
         self.status.first("move_base")
-        wait_until(self.goals.get_num_connections, "a connection for goals", 20)
+        wait_until(self.goals.get_num_connections, "a connection for goals")
         self.terrain = Client("/desert_sim", timeout=60 * PATIENCE)
 
     def take_pose(self, odometry):
@@ -72,9 +72,8 @@ class MoveBaseRover:
         goal.header.frame_id, goal.pose.orientation.w = "map", 1
         goal.pose.position.x, goal.pose.position.y = x, y
         self.goals.publish(goal)
-        fresh = lambda m: any(status.goal_id.id not in earlier for status in m.status_list)
-        self.goal = next(status.goal_id.id for status in self.status.wait_for(fresh, "the goal", 20).status_list
-                         if status.goal_id.id not in earlier)
+        status = self.status.wait_for(lambda m: any(s.goal_id.id not in earlier for s in m.status_list), "the goal")
+        self.goal = next(s.goal_id.id for s in status.status_list if s.goal_id.id not in earlier)
 
     def ended(self):
         """How the goal ended: a GoalStatus; None while it has not."""

@@ -1,5 +1,5 @@
-/// /diagnostics of a node that is well, and of one that is not. They are of this process, and their schedules go by a
-/// clock that the test moves.
+/// /diagnostics of a node that is well, and of one that is not. They are of this process, and their schedules
+/// go by a clock that the test moves.
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -83,8 +83,10 @@ class Diagnostics : public testing::Test {
 };
 
 TEST_F(Diagnostics, ANodeThatIsWell) {
-  start_well();
+  start_well(true);
   const Listener<ElevationUpdate> updates("elevation_updates");
+  ASSERT_TRUE(call<std_srvs::Trigger>("resume").success);
+  ASSERT_TRUE(wait_until([] { return step(0).step == 1; })) << "the first at once";
   for (std::uint64_t n = 2; n < 45; ++n) {
     clock_.advance(1.0001 / 20);  // so that rounding does not put a due time behind it
     ASSERT_TRUE(wait_until([&] { return updates.last().step == n; })) << n;

@@ -57,7 +57,7 @@ class Interface(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        rospy.wait_for_service(NODE + "/reload_parameters", 30 * PATIENCE)  # the last to be advertised
+        rospy.wait_for_service(NODE + "/reload_parameters", 60 * PATIENCE)  # the last to be advertised
         master = rosgraph.Master("/interface")
         cls.published, cls.subscribed, cls.services = (
             {name for name, nodes in kind if NODE in nodes and name not in OF_EVERY_NODE and not is_plugins(name)}

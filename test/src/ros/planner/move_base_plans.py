@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """move_base over ~costmap and ~costmap_updates: its planner goes round dunes, and its costmap is cell by cell ours. The
 node sends no keyframe by rate, so what was not in an update is never made good."""
+import time
 import unittest
 
 import numpy as np
 import rospy
 import rostest
 from desert_sim.srv import EditTerrain, EditTerrainRequest, LoadScenario, Step
+from desert_sim.msg import SimulationStatus
+from desert_sim.testing import PATIENCE, wait_until
 from geometry_msgs.msg import Point
 from map_client import Listener, call
 from map_msgs.msg import OccupancyGridUpdate
@@ -15,12 +18,21 @@ from nav_msgs.srv import GetPlan, GetPlanRequest
 from std_srvs.srv import Trigger
 
 
+SPACING = 3  # s, costmap_update_spacing in move_base_plans.test
+
+
 def edit(points, value=3.0, radius=3.0):
-    """A stroke of sand."""
+    """A stroke of sand, of which the node has told when this returns."""
     request = EditTerrainRequest(layer="sand", shape="capsule", merge="add", radius=radius, inner=0.5, value=value)
     request.points = [Point(x, y, 0) for x, y in points]
     answer = call("edit_terrain", EditTerrain, request)
     assert answer.success, answer.message
+    step()
+
+
+def step():
+    """Makes none: it is answered when all changes have been published, without waiting for the rate of updates."""
+    call("step", Step, steps=0)
 
 
 def frame_of(grid):
@@ -47,7 +59,7 @@ class MoveBasePlans(unittest.TestCase):
         cls.keyframes = Listener("/desert_sim/costmap", OccupancyGrid)
         cls.updates = Listener("/desert_sim/costmap_updates", OccupancyGridUpdate)
         cls.master = Listener("/move_base/local_costmap/costmap", OccupancyGrid)
-        rospy.wait_for_service("/move_base/make_plan", 60)
+        rospy.wait_for_service("/move_base/make_plan", 60 * PATIENCE)
         cls.make_plan = rospy.ServiceProxy("/move_base/make_plan", GetPlan)
         cls.keyframes.first()
         cls.master.first()
@@ -56,7 +68,13 @@ class MoveBasePlans(unittest.TestCase):
         answer = call("load_scenario", LoadScenario, name="corner.yaml")
         self.assertTrue(answer.success, answer.message)
         self.master_is_ours("at the start")
-        rospy.sleep(2)  # so soon after another terrain, changes would come as whole maps
+        self.let_it_be_longer_ago()
+
+    @staticmethod
+    def let_it_be_longer_ago():
+        """Sooner after another terrain, by the clock that the node looks at, changes would come as whole maps."""
+        end = time.monotonic() + SPACING
+        wait_until(lambda: time.monotonic() > end, "the clock goes on")
 
     # ---- what the node has sent, and what costmap_2d has made of it
 
@@ -79,17 +97,23 @@ class MoveBasePlans(unittest.TestCase):
             return None
         return int(np.count_nonzero(np.array(master.data).reshape(costs.shape) != SHOWN[costs + 1]))
 
+    def told(self):
+        """Whether the last message that has come is of the node's present state."""
+        stamp = rospy.wait_for_message("/desert_sim/status", SimulationStatus, 60 * PATIENCE).header.stamp
+        return any(listener.messages and listener.messages[-1].header.stamp == stamp
+                   for listener in (self.keyframes, self.updates))
+
     def master_is_ours(self, when):
-        fits = lambda master: self.differences(master) == 0
+        wait_until(self.told, "%s: the present state does not come" % when)
         try:
-            self.master.wait_for(fits, when, 20)
+            self.master.wait_for(lambda master: self.differences(master) == 0, when)
         except AssertionError:
             master, ours = self.master.messages[-1], self.keyframes.messages[-1]
             self.fail("%s: %s cells differ; costmap_2d's %s, ours %s" %
                       (when, self.differences(master), frame_of(master), frame_of(ours)))
 
     def updated(self, fits, what):
-        self.updates.wait_for(fits, what, 20)
+        self.updates.wait_for(fits, what)
         self.master_is_ours(what)
 
     def plan(self, start, goal):
@@ -102,13 +126,17 @@ class MoveBasePlans(unittest.TestCase):
 
     def plan_until(self, fits, what, start, goal):
         """The global costmap has a rhythm of its own."""
-        deadline = rospy.Time.now() + rospy.Duration(20)
-        plan = self.plan(start, goal)
-        while not fits(plan) and rospy.Time.now() < deadline:
-            rospy.sleep(0.2)
-            plan = self.plan(start, goal)
-        self.assertTrue(fits(plan), "%s: %s" % (what, plan.tolist()))
-        return plan
+        plans = []
+
+        def found():
+            plans.append(self.plan(start, goal))
+            return fits(plans[-1])
+
+        try:
+            wait_until(found, what)
+        except AssertionError:
+            self.fail("%s: %s" % (what, plans[-1].tolist()))
+        return plans[-1]
 
     def expect_passable(self, plan):
         grid, costs = self.sent()
@@ -145,6 +173,7 @@ class MoveBasePlans(unittest.TestCase):
         call("edit_terrain", EditTerrain,
              EditTerrainRequest(layer="sand", shape="rectangle", merge="replace", inner=1, value=0.5, radius=10,
                                 radius_y=60, center=Point(75, 5, 0)))
+        step()
         self.plan_until(lambda p: len(p) and abs(p[:, 1] - 5).max() <= 2.1, "straight on", start, goal)
         self.master_is_ours("after both")
 
@@ -152,22 +181,18 @@ class MoveBasePlans(unittest.TestCase):
         for i in range(6):
             for x, y in ((20 + 4 * i, -10 + 5 * i), (118 - 4 * i, 60 - 5 * i)):
                 edit([(x, y), (x + 1, y)])
-                rospy.ServiceProxy("/desert_sim/step", Step)(0)  # is answered when it has been published
             self.master_is_ours("pair %d" % i)
 
     def test_a_terrain_of_another_size_comes_whole_before_its_updates(self):
-        step = rospy.ServiceProxy("/desert_sim/step", Step)
         edit([(20, -15), (130, 70)])
-        step(0)
         for name in ("other.yaml", "corner.yaml") * 3 + ("other.yaml",):
             answer = call("load_scenario", LoadScenario, name=name)
             self.assertTrue(answer.success, answer.message)
             edit([(25, 10), (-20, 100)] if name == "other.yaml" else [(20, -15), (130, 70)])
-            step(0)
         self.master_is_ours("the other terrain")
         self.assertTrue(call("reset", Trigger).success)
         self.master_is_ours("after a reset")
-        rospy.sleep(2)
+        self.let_it_be_longer_ago()
         start, goal = (-5, 20), (-5, 100)
         self.plan_until(lambda p: len(p) and abs(p[:, 0] + 5).max() < 1.6, "straight on", start, goal)
         edit([(-30, 35), (15, 35)])  # from the western edge: the way round is in the east

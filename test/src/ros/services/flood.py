@@ -105,16 +105,22 @@ class Progress:
     """How many calls have been answered: what goes on beside them begins and ends by their number."""
 
     def __init__(self):
-        self.count, self.changed = 0, threading.Condition()
+        self.count, self.stopped, self.changed = 0, False, threading.Condition()
 
     def answered(self):
         with self.changed:
             self.count += 1
             self.changed.notify_all()
 
+    def stop(self):
+        """Something went wrong: nobody waits for more calls."""
+        with self.changed:
+            self.stopped = True
+            self.changed.notify_all()
+
     @property
     def over(self):
-        return self.count >= CLIENTS * CALLS
+        return self.stopped or self.count >= CLIENTS * CALLS
 
     def reached(self, count):
         return self.over or self.count >= count
@@ -137,6 +143,8 @@ class Worker(threading.Thread):
                 self.work()
         except Exception:  # noqa: B902 the test shows it
             self.faults.append(traceback.format_exc())
+        if self.faults:
+            self.progress.stop()
 
 
 class Client(Worker):
@@ -185,7 +193,8 @@ class Forecaster(Worker):
 
     def work(self):
         wrong, way = self.draw.random() < 0.2, self.draw.randrange(3)
-        horizon = self.draw.choice(BAD_NUMBERS) if wrong else self.draw.uniform(1, 20) if way < 2 else self.draw.uniform(0.1, 1)
+        horizon = self.draw.uniform(1, 20) if way < 2 else self.draw.uniform(0.1, 1)
+        horizon = self.draw.choice(BAD_NUMBERS) if wrong else horizon
         self.client.send_goal(ForecastTerrainGoal(horizon=horizon, moments=self.draw.randrange(1, 9),
                                                   members=self.draw.randrange(3), gust_speed=0.2, gust_time=5))
         if way > 0:

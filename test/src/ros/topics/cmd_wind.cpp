@@ -83,21 +83,25 @@ TEST_F(CmdWind, IsTheSameAsTheServiceStepByStep) {
 TEST_F(CmdWind, RefusesWithAWarning) {
   std::mutex mutex;
   std::vector<std::string> told;
-  const auto warnings = node_.subscribe<rosgraph_msgs::Log>(
+  const auto log = node_.subscribe<rosgraph_msgs::Log>(
       "/rosout", 100, boost::function<void(const rosgraph_msgs::LogConstPtr&)>([&](const auto& message) {
         const std::lock_guard<std::mutex> lock(mutex);
-        if (message->name == "/desert_sim" && message->level == rosgraph_msgs::Log::WARN)
-          told.push_back(message->msg);
+        if (message->name == "/desert_sim") told.push_back(std::to_string(message->level) + message->msg);
       }));
+  const auto says = [&](int level, const std::string& text) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return std::any_of(told.begin(), told.end(), [&](const std::string& line) {
+      return line.rfind(std::to_string(level), 0) == 0 && line.find(text) != std::string::npos;
+    });
+  };
+  ASSERT_TRUE(wait_until([&] {
+    return call<std_srvs::Trigger>("reset").success && says(rosgraph_msgs::Log::INFO, "was reset");
+  })) << "the node knows who reads its log";
   publisher_.publish(wind(2, 1));
   ASSERT_TRUE(blows(2, 1));
   EXPECT_TRUE(wait_until([&] {
     publisher_.publish(wind(not_a_number, 1));
-    const std::lock_guard<std::mutex> lock(mutex);
-    return std::any_of(told.begin(), told.end(), [](const std::string& warning) {
-      return warning.find("cmd_wind") != std::string::npos &&
-             warning.find("vector.x: = nan") != std::string::npos;
-    });
+    return says(rosgraph_msgs::Log::WARN, "cmd_wind: vector.x: = nan");
   })) << "no warning says so";
   const std::uint64_t reached = step(1).step;
   ASSERT_TRUE(wait_until([&] { return status_.last().step == reached; }));
