@@ -147,8 +147,8 @@ bool LayerStream::keyframe_is_due() {
   return true;
 }
 
-/// Makes the master tell the node anew who publishes requests. A node connects once when it is told so; if that
-/// fails, because publishers of this process had just come and gone, it is not told again by itself.
+/// Makes the master tell the node anew who publishes requests. A node connects once when it is told so; if
+/// that fails, because publishers of this process had just come and gone, it is not told again by itself.
 void LayerStream::announce_requests() {
   XmlRpc::XmlRpcValue arguments, result, payload;
   arguments[0] = ros::this_node::getName();

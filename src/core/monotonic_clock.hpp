@@ -1,6 +1,6 @@
 #pragma once
-/// The clock by which schedules, pauses and watchdogs go: it runs evenly and never jumps. What needs one takes
-/// it from outside, so that tests can give one that they move.
+/// The clock by which schedules, pauses and watchdogs go: it runs evenly and never jumps. What needs one
+/// takes it from outside, so that tests can give one that they move.
 
 #include <chrono>
 #include <condition_variable>
@@ -15,8 +15,8 @@ class MonotonicClock {
 
   virtual ~MonotonicClock() = default;
   virtual TimePoint now() const = 0;
-  /// Waits until `condition` is notified, at most until `time` of this clock. May return earlier. `lock` holds
-  /// the mutex of the condition.
+  /// Waits until `condition` is notified, at most until `time` of this clock. May return earlier. `lock`
+  /// holds the mutex of the condition.
   virtual void wait_until(std::condition_variable& condition, std::unique_lock<std::mutex>& lock,
                           TimePoint time) const = 0;
   /// now() as a number [s].

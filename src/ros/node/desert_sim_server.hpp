@@ -28,8 +28,8 @@ namespace desert_sim {
 
 class DesertSimServer {
  public:
-  /// Reads the parameters below `private_node`, builds the terrain and starts. Schedules go by the clock, which
-  /// outlives the server. Throws ConfigError for input that is refused.
+  /// Reads the parameters below `private_node`, builds the terrain and starts. Schedules go by the clock,
+  /// which outlives the server. Throws ConfigError for input that is refused.
   explicit DesertSimServer(const ros::NodeHandle& private_node,
                            const MonotonicClock& clock = computer_clock());
   /// Ends after the present step. Calls of services that wait get success = false.

@@ -127,8 +127,8 @@ class Topic {
   SteadyClock::time_point wake_time() const { return now() < early_time() ? early_time() : due_.time(); }
   /// Whether a change that comes now makes it due.
   bool listens() const { return now() >= early_time(); }
-  /// Notes which state subscribers have been shown (counters of Moment), and since when that was under way; the next
-  /// one is due a period later.
+  /// Notes which state subscribers have been shown (counters of Moment), and since when that was under way;
+  /// the next one is due a period later.
   void mark_published(std::uint64_t change, std::uint64_t terrain, SteadyClock::time_point since);
   /// The rate may have changed: the topic is due a period from now at the latest.
   void rate_changed();

@@ -294,8 +294,8 @@ TEST_F(Client, TwoInOneProcessBothGetThePausedTerrain) {
   EXPECT_LE(largest_difference(*second.map()), threshold + 1e-6);
 }
 
-/// Tells the node that nobody publishes requests any more: as where it is refused by a publisher that had just gone
-/// and come again, it does not connect by itself after that.
+/// Tells the node that nobody publishes requests any more: as where it is refused by a publisher that had
+/// just gone and come again, it does not connect by itself after that.
 void make_the_node_deaf_to_requests() {
   XmlRpc::XmlRpcValue arguments, result, uri;
   arguments[0] = ros::this_node::getName();

@@ -59,8 +59,8 @@ TEST_F(InputFiles, FollowLinksInsideTheFolderAndNoneThatLeadOut) {
   expect_says(refusal([&] { read("deep/up/secret"); }), "is not below");
 }
 
-/// Swaps a file and a link that leads out as fast as it can while the file is opened again and again, until it
-/// was read and refused often enough.
+/// Swaps a file and a link that leads out as fast as it can while the file is opened again and again, until
+/// it was read and refused often enough.
 TEST_F(InputFiles, ALinkThatIsSwappedInMeanwhileIsNotFollowed) {
   folder_.write("secret", "outside");
   const std::string name = folder_.path("data/deep/a"), file = folder_.path("data/file"),

@@ -17,7 +17,8 @@ namespace {
 
 using desert_sim::EditTerrain;
 
-/// A node with a flat terrain that remembers the edits that it was asked for. While it is held, it answers none.
+/// A node with a flat terrain that remembers the edits that it was asked for. While it is held, it answers
+/// none.
 class EditedNode {
  public:
   explicit EditedNode(const std::string& name, bool held = false) : node_(name, "terrain"), held_(held) {
@@ -76,7 +77,8 @@ class EditedNode {
   ros::AsyncSpinner spinner_{2, &queue_};  // two edits at once would be seen
 };
 
-/// If an event of the mouse waited for a call, this would not end: the node answers the first call after the stroke.
+/// If an event of the mouse waited for a call, this would not end: the node answers the first call after the
+/// stroke.
 TEST_F(RvizTools, ALaggingNodeLosesNothingAndHoldsNothingUp) {
   EditedNode node("/slow", true);
   rviz::Tool* const brush = use_brush("/slow");

@@ -209,8 +209,8 @@ TEST_F(Panel, ShowsThatTheNodeHasVanishedAndIsBack) {
   EXPECT_TRUE(window_->enabled("controls"));
 }
 
-/// A node that is stopped, as by a debugger, answers nothing and holds its connections. It is stopped until the panel
-/// has gone: if that waited for the node, this would not end.
+/// A node that is stopped, as by a debugger, answers nothing and holds its connections. It is stopped until
+/// the panel has gone: if that waited for the node, this would not end.
 TEST_F(Panel, NeverWaitsForANodeThatHangs) {
   ASSERT_EQ(node_->signal(SIGSTOP), 0);
   window_->click("step");

@@ -50,8 +50,8 @@ class Window {
   bool run_until(const std::function<bool()>& condition, double seconds = 60);
   /// Draws so many frames from beginning to end. What was there before is in all of them.
   void run_frames(int count);
-  /// From the next frame on, `call` is called for each frame that was drawn, before the one after it begins; null:
-  /// nothing is.
+  /// From the next frame on, `call` is called for each frame that was drawn, before the one after it begins;
+  /// null: nothing is.
   void for_each_frame(const std::function<void()>& call);
   std::uint64_t frames() const { return manager_->getFrameCount(); }
   /// Distinct colours in the picture: more than a few if something was drawn.

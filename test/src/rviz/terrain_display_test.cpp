@@ -187,7 +187,8 @@ TEST_F(TerrainDisplay, Complaint8MessagesFasterThanFramesAreTakenTogether) {
   });
   const double built = number(display, "built_blocks");
   const std::uint64_t frames = window_->frames();
-  // All of them are in the client's queue before a frame is drawn; the client can be slow to take them from there.
+  // All of them are in the client's queue before a frame is drawn; the client can be slow to take them from
+  // there.
   EXPECT_TRUE(node_test::wait_until([&] {
     for (int n = 0; n < 150; ++n, ++sent)  // fewer than the client's queue holds
       node.update(0, 0, 64, 64, [&](int x, int y) { return dunes(x, y) + 0.01f * static_cast<float>(sent); });

@@ -1,5 +1,6 @@
-// Files that version 0.1.0 wrote (recorded/ beside this file) can still be read: a checkpoint, and a journal with
-// commands of every kind that changes a simulation. scripts/state_hashes compares what follows from them bit by bit.
+// Files that version 0.1.0 wrote (recorded/ beside this file) can still be read: a checkpoint, and a journal
+// with commands of every kind that changes a simulation. scripts/state_hashes compares what follows from them
+// bit by bit.
 
 #include <xxhash.h>
 

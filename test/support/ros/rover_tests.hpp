@@ -18,7 +18,8 @@ namespace node_test {
 /// The answer of a service of any node; a test failure if there is none.
 template <class Service>
 typename Service::Response ask(const std::string& service, const typename Service::Request& request = {}) {
-  EXPECT_TRUE(ros::service::waitForService(service, ros::Duration(60 * desert_sim::test::patience()))) << service;
+  EXPECT_TRUE(ros::service::waitForService(service, ros::Duration(60 * desert_sim::test::patience())))
+      << service;
   Service exchange;
   exchange.request = request;
   EXPECT_TRUE(desert_sim::call_service(service, exchange)) << service;

@@ -1,6 +1,6 @@
 #pragma once
-/// ROS time of a launch with /use_sim_time, which stands still until the test moves it: nodes then have all the
-/// time that they need.
+/// ROS time of a launch with /use_sim_time, which stands still until the test moves it: nodes then have all
+/// the time that they need.
 
 #include <ros/node_handle.h>
 #include <ros/time.h>

@@ -1,5 +1,5 @@
-/// A planner beside a rover, in a ROS time that the test tells: goals by topic and action, what comes into the way, and
-/// what it says when there is no way.
+/// A planner beside a rover, in a ROS time that the test tells: goals by topic and action, what comes into
+/// the way, and what it says when there is no way.
 #include <actionlib/client/simple_action_client.h>
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/Forecast.h>

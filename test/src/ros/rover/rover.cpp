@@ -1,5 +1,5 @@
-/// Two rovers in one master, in a ROS time that the test tells: what they publish belongs together, what they are told
-/// is obeyed or refused.
+/// Two rovers in one master, in a ROS time that the test tells: what they publish belongs together, what they
+/// are told is obeyed or refused.
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/SimulationStatus.h>
 #include <geometry_msgs/Twist.h>

@@ -101,7 +101,7 @@ TEST_F(CmdWind, RefusesWithAWarning) {
   ASSERT_TRUE(blows(2, 1));
   EXPECT_TRUE(wait_until([&] {
     publisher_.publish(wind(not_a_number, 1));
-    return says(rosgraph_msgs::Log::WARN, "cmd_wind: vector.x: = nan");
+    return says(rosgraph_msgs::Log::WARN, "cmd_wind") && says(rosgraph_msgs::Log::WARN, "vector.x: = nan");
   })) << "no warning says so";
   const std::uint64_t reached = step(1).step;
   ASSERT_TRUE(wait_until([&] { return status_.last().step == reached; }));

@@ -1,5 +1,5 @@
-/// When topics are published, by a clock that the test moves. The server lives in this process, where a subscriber can
-/// be called by the thread that publishes.
+/// When topics are published, by a clock that the test moves. The server lives in this process, where a
+/// subscriber can be called by the thread that publishes.
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/SetWind.h>
@@ -30,8 +30,9 @@ class ImmediateQueue : public ros::CallbackQueueInterface {
   void removeByID(std::uint64_t) override {}
 };
 
-/// A paused desert, which a command changes 20 times a second of the clock, with as many messages of ~image. That is
-/// the last of the topics that are due at one time, so that the others have been published when it comes.
+/// A paused desert, which a command changes 20 times a second of the clock, with as many messages of ~image.
+/// That is the last of the topics that are due at one time, so that the others have been published when it
+/// comes.
 class Schedule : public testing::Test {
  protected:
   static constexpr double period = 0.05;
@@ -88,8 +89,8 @@ class Schedule : public testing::Test {
     change();
     ASSERT_TRUE(wait_until([&] { return count_since(clock_.seconds(), "image") > 0; }));
   }
-  /// After the first of them, which may be due a part of a period after the subscriber has joined, messages are so
-  /// many ticks apart.
+  /// After the first of them, which may be due a part of a period after the subscriber has joined, messages
+  /// are so many ticks apart.
   void expect_ticks_apart(const std::string& topic, double since, int ticks) {
     std::vector<double> all = times(topic);
     all.erase(std::remove_if(all.begin(), all.end(), [&](double t) { return t < since; }), all.end());
