@@ -10,7 +10,7 @@ function(desert_outside_package name folder)
         "-DCMAKE_PREFIX_PATH=${prefixes}"
       --test-command sh -c
         "${CMAKE_COMMAND} --build . --target tests && ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error")
-  set_tests_properties(installed_package.${name} PROPERTIES TIMEOUT ${DESERT_TEST_TIMEOUT} COST 60)
+  set_tests_properties(installed_package.${name} PROPERTIES LABELS process TIMEOUT ${DESERT_TEST_TIMEOUT} COST 60)
 endfunction()
 
 # Not in the build folder: where that lies in the package, roslaunch would find each launch file twice.
