@@ -57,7 +57,7 @@ class Listener:
     def __init__(self, topic, kind=rospy.AnyMsg):
         self.messages, self.times, self.header, self.decoded = [], [], None, None
         self.changed = threading.Condition()
-        self.subscriber = rospy.Subscriber(topic, kind, self.take, queue_size=100)
+        self.subscriber = rospy.Subscriber(topic, kind, self.take, queue_size=1000)
 
     def take(self, message):
         with self.changed:
@@ -80,6 +80,8 @@ class Listener:
 
     def first(self, what="a message"):
         return self.wait_for(lambda m: True, what)
+
+    last = first  # wait_for() returns the last message, and here any fits
 
     def close(self):
         self.subscriber.unregister()

@@ -5,6 +5,7 @@ from desert_sim.msg import ElevationGrid, ElevationUpdate, SimulationStatus
 from desert_sim.srv import Step
 from desert_sim.testing import PATIENCE, wait_until
 from dynamic_reconfigure.client import Client, DynamicReconfigureCallbackException
+from map_client import Listener
 from node_tests import CORNER, ScriptedClock, Scenarios
 from rosgraph_msgs.msg import Clock
 import rospy
@@ -13,18 +14,6 @@ from std_srvs.srv import Trigger
 
 STEP = 0.0625  # [s]; sums of it are exact
 LATE = 1e-4  # [s] of a tick of a clock, so that rounding does not put a step behind it
-
-
-class Collector:
-    """All messages of a topic since it was made."""
-
-    def __init__(self, topic, kind):
-        self.messages = []
-        self.subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=1000)
-
-    def last(self):
-        wait_until(lambda: self.messages, "no message on " + self.subscriber.name)
-        return self.messages[-1]
 
 
 class TwoClocks(Scenarios):
@@ -40,7 +29,7 @@ class TwoClocks(Scenarios):
         """A node of this acceleration, a client of dynamic_reconfigure, and its statuses."""
         run = {"time_step": STEP, "acceleration": acceleration}
         node = self.start(name, dict({"scenario": CORNER, "run": run, "paused": False, "status_rate": 20}, **private))
-        return node, Client("/" + name, timeout=60 * PATIENCE), Collector("/%s/status" % name, SimulationStatus)
+        return node, Client("/" + name, timeout=60 * PATIENCE), Listener("/%s/status" % name, SimulationStatus)
 
     def test_what_status_says_of_it(self):
         _, client, statuses = self.tied("told", 2.0, step_rate=3)
@@ -130,9 +119,9 @@ class TwoClocks(Scenarios):
 
     def test_lockstep_shows_each_state(self):
         node, client, _ = self.tied("lockstep", 0.5, paused=True, keyframe_rate=0, update_rate=0, update_threshold=0.0)
-        keyframes = Collector("/lockstep/elevation", ElevationGrid)
+        keyframes = Listener("/lockstep/elevation", ElevationGrid)
         self.assertEqual((keyframes.last().step, keyframes.last().sim_time), (0, 0))
-        updates = Collector("/lockstep/elevation_updates", ElevationUpdate)
+        updates = Listener("/lockstep/elevation_updates", ElevationUpdate)
         wait_until(lambda: len(keyframes.messages) == 2, "what is sent for a new subscriber of the updates")
         for n in range(1, 6):
             answer = node.call("step", Step, 1)
@@ -162,7 +151,7 @@ class TwoClocks(Scenarios):
 
     def test_its_own_clock_is_the_time_that_the_robots_live_in(self):
         rospy.set_param("/use_sim_time", True)
-        clock = Collector("/clock", Clock)
+        clock = Listener("/clock", Clock)
         node, client, statuses = self.tied("owner", 0.5, paused=True, publish_clock=True)
 
         def shows(seconds):
