@@ -45,7 +45,7 @@ class Schedule : public testing::Test {
     p["paused"] = true;
     p["answer_timeout"] = 600.0;
     p["image_rate"] = 1 / period;
-    p["costmap_update_rectangles"] = 1;
+    p["costmap_update_rectangles"] = rectangles_;
     for (const auto& [name, rate] : rates) p[name] = rate;
     ros::param::set("/desert_sim", p);
     server_ = std::make_unique<DesertSimServer>(ros::NodeHandle("/desert_sim"), clock_);
@@ -119,6 +119,7 @@ class Schedule : public testing::Test {
     ASSERT_TRUE(call<EditTerrain>("edit_terrain", r).success);
   }
 
+  int rectangles_ = 1;  ///< costmap_update_rectangles
   desert_sim::test::ManualClock clock_;
   std::mutex mutex_;  ///< guards the next three
   std::map<std::string, std::vector<double>> published_;
@@ -165,7 +166,10 @@ TEST_F(Schedule, NothingIsPublishedAgainThatHasNotChanged) {
 class CostmapSchedule : public Schedule {
  protected:
   void SetUp() override {
-    start({{"costmap_update_rate", 5}, {"costmap_keyframe_rate", 0}, {"costmap_update_threshold", 0}});
+    start({{"costmap_update_rate", 5},
+           {"costmap_keyframe_rate", 0},
+           {"costmap_update_threshold", 0},
+           {"costmap_update_spacing", 0.2}});
     listen<nav_msgs::OccupancyGrid>("costmap");
     listen<map_msgs::OccupancyGridUpdate>("costmap_updates", false);
     for (int n = 0; n < 11; ++n) tick();  // so that the whole map was sent long ago
@@ -219,6 +223,37 @@ TEST_F(CostmapSchedule, SoonAfterTheTerrainWasReplacedChangesComeAsWholeMaps) {
   for (int n = 0; n < 5; ++n) tick();
   rectangle_of_heap(90, 10);
   EXPECT_EQ(count_since(replaced, "costmap"), 1);
+}
+
+// ---- with several rectangles: those that are far apart follow one another, a spacing apart
+
+class RectanglesInTurn : public CostmapSchedule {
+ protected:
+  void SetUp() override {
+    rectangles_ = 4;
+    CostmapSchedule::SetUp();
+  }
+};
+
+TEST_F(RectanglesInTurn, AreOneForEachEditAndASpacingApart) {
+  const double begin = clock_.seconds() + 0.5 * period;
+  std::vector<map_msgs::OccupancyGridUpdate> sent;
+  for (int n = 0; n < 16; ++n) {
+    tick([n] {
+      if (n > 0) return set_same_wind();
+      heap(25, -5);
+      heap(125, 65);
+    });
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (published_["costmap_updates"].size() > sent.size()) sent.push_back(last_rectangle_);
+  }
+  ASSERT_EQ(sent.size(), 2u);
+  EXPECT_NE(contains(sent[0], 25, -5), contains(sent[0], 125, 65));
+  EXPECT_EQ(contains(sent[1], 25, -5), contains(sent[0], 125, 65)) << "the other one, and that alone";
+  EXPECT_EQ(contains(sent[1], 125, 65), contains(sent[0], 25, -5));
+  const std::vector<double> all = times("costmap_updates");
+  EXPECT_GE(all[0], begin);
+  EXPECT_NEAR(all[1] - all[0], 0.2, 0.1 * period);
 }
 
 }  // namespace
