@@ -22,11 +22,21 @@ BATCH = 20  # sources, at most: enough batches for all processors
 FOLDERS = ("kernels/", "src/")  # where all sources are looked at if none is named
 
 
+def separately(entries):
+    """Entries of compile_commands.json, where sources that are compiled at once (unity builds) have one each."""
+    for entry in entries:
+        if not re.search(r"/unity_\d+_cxx\.cxx$", entry["file"]):
+            yield entry
+            continue
+        for source in re.findall(r'^#include "(.*)"$', pathlib.Path(entry["file"]).read_text(), re.M):
+            yield dict(entry, file=source, command=entry["command"].replace(entry["file"], source))
+
+
 def host_commands(build):
     """Commands of compile_commands.json by source, as clang takes them: without nvcc's (which compile the sources of
     kernels/ a second time), precompiled headers, and options that only GCC knows."""
     commands = {}
-    for entry in json.loads((build / "compile_commands.json").read_text()):
+    for entry in separately(json.loads((build / "compile_commands.json").read_text())):
         source = os.path.relpath(entry["file"])
         if " -x cu " in entry["command"] or "/cmake_pch" in entry["file"] or not os.path.exists(source):
             continue

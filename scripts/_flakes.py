@@ -2,6 +2,7 @@
 """Repeats ctest under load and random stops; scripts/flakes calls it and says what the options are."""
 import argparse
 import collections
+import contextlib
 import datetime
 import json
 import os
@@ -50,13 +51,11 @@ class Stops(threading.Thread):
             if not processes:
                 continue
             process = random.choice(processes)
-            try:
+            with contextlib.suppress(ProcessLookupError):  # it has ended since
                 os.kill(process, signal.SIGSTOP)
                 self.count += 1
                 self.over.wait(random.choice(STOPS))
                 os.kill(process, signal.SIGCONT)
-            except ProcessLookupError:
-                pass  # it has ended since
 
     def end(self):
         self.over.set()
@@ -71,15 +70,22 @@ def tests_of(build, options):
 def run_round(build, options, logs):
     """Names of the tests that failed, whose logs are in the folder `logs` then; how often a process was stopped."""
     logs.mkdir(parents=True)
+    failed_list = build / "Testing" / "Temporary" / "LastTestsFailed.log"
+    if failed_list.exists():
+        failed_list.unlink()  # of another run
     with open(logs / "ctest.txt", "w") as output:
         run = subprocess.Popen(["ctest", "--output-on-failure"] + options, cwd=build, stdout=output, stderr=subprocess.STDOUT)
         stops = Stops(run.pid)
         stops.start()
         try:
             status = run.wait()
+        except KeyboardInterrupt:
+            for process in descendants(run.pid) + [run.pid]:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
+            raise
         finally:
             stops.end()
-    failed_list = build / "Testing" / "Temporary" / "LastTestsFailed.log"
     failed = []
     if status:
         failed = [line.partition(":")[2].strip() for line in failed_list.read_text().splitlines()] if failed_list.exists() else []
@@ -92,7 +98,7 @@ def run_round(build, options, logs):
     return failed, stops.count
 
 
-def add_row(table, commit, tests, options, failures):
+def add_row(table, commit, tests, options, rounds, failures):
     """Adds a row to a table, which is begun where there is none."""
     if not table.exists():
         table.write_text("# Repeated tests\n\nRows of `scripts/flakes --table test/flakes.md`: tests that were repeated beside busy "
@@ -101,7 +107,7 @@ def add_row(table, commit, tests, options, failures):
     said = ", ".join("%s %d" % item for item in sorted(failures.items())) or "none"
     with open(table, "a") as file:
         file.write("| %s | %s | %d: `%s` | %d | %d | %s |\n" % (
-            datetime.date.today(), commit, len(tests), " ".join(options.ctest) or "all", options.rounds, options.load, said))
+            datetime.date.today(), commit, len(tests), " ".join(options.ctest) or "all", rounds, options.load, said))
 
 
 def main():
@@ -119,27 +125,35 @@ def main():
                             stdout=subprocess.PIPE, text=True).stdout.strip() or "unknown"
     logs = options.build / "flakes"
     shutil.rmtree(logs, ignore_errors=True)
-    jobs = ["-j", str((os.cpu_count() or 1) + 1)]
+    # Tests often wait; neighbours never do.
+    jobs = ["-j", str((os.cpu_count() or 1) + 1 + options.load)]
     # Everything takes as many times longer as there are neighbours to a processor.
     os.environ.setdefault("DESERT_PATIENCE", str(1 + options.load))
+    for end in (signal.SIGINT, signal.SIGTERM):  # what was found until then is shown
+        signal.signal(end, signal.default_int_handler)
     load = options.load and subprocess.Popen(["stress-ng", "--cpu", str(options.load), "--quiet"])
-    failures = collections.Counter()
+    failures, rounds = collections.Counter(), 0
     try:
-        for turn in range(1, options.rounds + 1):
-            failed, stops = run_round(options.build, selection + jobs, logs / ("round_%02d" % turn))
+        while rounds < options.rounds:
+            failed, stops = run_round(options.build, selection + jobs, logs / ("round_%02d" % (rounds + 1)))
+            if load and load.poll() is not None:
+                sys.exit("stress-ng has ended with status %d: these tests had no neighbours" % load.returncode)
             failures.update(failed)
+            rounds += 1
             print("round %d of %d: %d tests, %d stops, %d failed%s" % (
-                turn, options.rounds, len(tests), stops, len(failed), "".join("\n  " + name for name in failed)), flush=True)
+                rounds, options.rounds, len(tests), stops, len(failed), "".join("\n  " + name for name in failed)), flush=True)
+    except KeyboardInterrupt:
+        print("interrupted in round %d" % (rounds + 1))
     finally:
         if load:
             load.terminate()
             load.wait()
     for name, count in failures.most_common():
-        print("%4d of %d  %s" % (count, options.rounds, name))
+        print("%4d of %d  %s" % (count, rounds, name))
     if options.table:
-        add_row(options.table, commit, tests, options, failures)
-    print("%d failures in %d rounds of %d tests; logs are in %s" % (sum(failures.values()), options.rounds, len(tests), logs))
-    return 1 if failures else 0
+        add_row(options.table, commit, tests, options, rounds, failures)
+    print("%d failures in %d rounds of %d tests; logs are in %s" % (sum(failures.values()), rounds, len(tests), logs))
+    return 1 if failures or rounds < options.rounds else 0
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@
 #include <csignal>
 
 #include "src/core/error.hpp"
+#include "src/ros/node/xmlrpc_backlog.hpp"
 
 namespace desert_sim {
 
@@ -28,6 +29,7 @@ int run_node(int& argc, char** argv, const char* name, const Make& make,
   ros::start();                     // the log ends with ROS, and must outlive the server
   int status = 0;
   try {
+    widen_xmlrpc_backlog();
     const auto server = make();
     std::string failure;
     while (ros::ok() && failure.empty()) {

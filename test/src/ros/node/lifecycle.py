@@ -1,8 +1,12 @@
 #!/usr/bin/env python3
 """Starts and ends nodes: parameters, refused input, shutdown, failure, journal and replay."""
+import http.client
 import resource
 import signal
+import socket
 import threading
+import urllib.parse
+import xmlrpc.client
 
 from desert_sim.msg import ElevationGrid, SimulationStatus, WindScheduleSegment
 from desert_sim.srv import EditTerrain, EditTerrainRequest, LoadCheckpoint, SaveCheckpoint
@@ -10,6 +14,7 @@ from desert_sim.srv import SetWind, SetWindSchedule, SetWindScheduleRequest, Ste
 from desert_sim.testing import PATIENCE, wait_until
 from geometry_msgs.msg import Point
 from node_tests import CORNER, Scenarios
+import rosgraph
 from rosgraph_msgs.msg import Clock
 import rospy
 import rostest
@@ -101,6 +106,26 @@ class Lifecycle(Scenarios):
         grid = node.latest("elevation", ElevationGrid)
         self.assertEqual((grid.width, grid.height), (32, 48))
         self.assertAlmostEqual(node.latest("status", SimulationStatus).wind_above.x, 3)
+
+    # ---- clients -------------------------------------------------------------------------------
+
+    def test_clients_wait_for_a_node_that_stands_still(self):
+        """More connect to its XML-RPC server than the backlog of roscpp lets wait."""
+        node = self.start("still", {"scenario": CORNER})
+        node.latest("status", SimulationStatus)
+        address = urllib.parse.urlsplit(rosgraph.Master("/lifecycle").lookupNode("/still"))
+        node.process.send_signal(signal.SIGSTOP)
+        try:
+            waiting = [socket.create_connection((address.hostname, address.port), timeout=20 * PATIENCE) for _ in range(64)]
+        finally:
+            node.process.send_signal(signal.SIGCONT)
+        for connection in waiting:
+            client = http.client.HTTPConnection(address.netloc)
+            client.sock = connection
+            client.request("POST", "/RPC2", xmlrpc.client.dumps(("/lifecycle",), "getPid"), {"Content-Type": "text/xml"})
+            (code, _, pid), = xmlrpc.client.loads(client.getresponse().read())[0]
+            self.assertEqual((code, pid), (1, node.process.pid))
+            client.close()
 
     # ---- shutdown and failure ------------------------------------------------------------------
 
