@@ -2,7 +2,7 @@
 include(GNUInstallDirs)
 
 option(DESERT_WERROR "Warnings are errors" ON)
-option(DESERT_UNITY_BUILD "Compile sources that include ROS or rviz eight at a time, which takes half as long" ON)
+option(DESERT_UNITY_BUILD "Compile sources eight at a time where that takes half as long" ON)
 option(DESERT_NATIVE "Use the instructions of the CPU that builds (-march=native); results stay the same bits" OFF)
 
 set(DESERT_SANITIZE "" CACHE STRING "Sanitizers for all of the project's own code: address,undefined or thread")
@@ -79,16 +79,18 @@ function(desert_link target)
   endforeach()
 endfunction()
 
-# desert_unity(<target>): eight of its sources become one translation unit. For sources that include ROS or rviz: most of
-# their compile time goes into headers and templates that all of them use.
+# desert_unity(<target>): eight of its sources become one translation unit, because most of their compile time goes into
+# headers and templates that all of them use.
 function(desert_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${DESERT_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
-# desert_library(<target> [STATIC] FOLDERS <folder>... [EXCLUDE <regex>] [LINK [PUBLIC|PRIVATE] <library>...])
+# desert_library(<target> [STATIC] [SEPARATE] FOLDERS <folder>... [EXCLUDE <regex>]
+#                [LINK [PUBLIC|PRIVATE] <library>...])
 # A library of all sources in and below the folders (.cu ones with CUDA only); none while the folders are empty.
+# SEPARATE: its sources define the same names in namespaces of their own, or differ in options.
 function(desert_library target)
-  cmake_parse_arguments(arg "STATIC" "EXCLUDE" "FOLDERS;LINK" ${ARGN})
+  cmake_parse_arguments(arg "STATIC;SEPARATE" "EXCLUDE" "FOLDERS;LINK" ${ARGN})
   set(sources "")
   foreach(folder IN LISTS arg_FOLDERS)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
@@ -113,6 +115,9 @@ function(desert_library target)
   endif()
   desert_target(${target})
   desert_link(${target} ${arg_LINK})
+  if(NOT arg_SEPARATE)
+    desert_unity(${target})
+  endif()
 endfunction()
 
 # desert_program(<target> SOURCE <file> LINK <library>...)

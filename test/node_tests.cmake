@@ -57,7 +57,8 @@ add_library(desert_node_test_headers STATIC EXCLUDE_FROM_ALL support/ros/service
 desert_node_program(desert_node_test_headers)
 set_target_properties(desert_node_test_headers PROPERTIES POSITION_INDEPENDENT_CODE OFF)
 target_compile_options(desert_node_test_headers PRIVATE -fPIE)
-target_precompile_headers(desert_node_test_headers PRIVATE support/ros/service_tests.hpp)
+target_precompile_headers(desert_node_test_headers PRIVATE
+  <tf2_geometry_msgs/tf2_geometry_msgs.h> <tf2_ros/transform_listener.h> support/ros/service_tests.hpp)
 
 file(GLOB_RECURSE launches RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS src/*.test python/*.test)
 list(FILTER launches EXCLUDE REGEX "grid_map_clients/|src/rviz/")
