@@ -107,7 +107,7 @@ def add_row(table, commit, tests, options, rounds, failures):
     said = ", ".join("%s %d" % item for item in sorted(failures.items())) or "none"
     with open(table, "a") as file:
         file.write("| %s | %s | %d: `%s` | %d | %d | %s |\n" % (
-            datetime.date.today(), commit, len(tests), " ".join(options.ctest) or "all", rounds, options.load, said))
+            datetime.date.today(), commit, len(tests), " ".join(options.ctest).replace("|", "\\|") or "all", rounds, options.load, said))
 
 
 def main():

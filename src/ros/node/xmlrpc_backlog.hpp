@@ -3,7 +3,7 @@
 
 namespace desert_sim {
 
-/// Lets as many connections to the node's XML-RPC server wait as the kernel allows (SOMAXCONN). roscpp listens
+/// Lets as many connections to the XML-RPC server wait as the kernel allows (SOMAXCONN). roscpp listens
 /// with a backlog of 5 (XmlRpcServer::bindAndListen): where more clients come while the node is busy, the
 /// kernel resets the connections of some, and roscpp's clients do not ask again. To be called after
 /// ros::start(). Throws Error if no socket listens on the server's port, or the kernel refuses.

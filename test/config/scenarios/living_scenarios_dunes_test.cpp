@@ -97,8 +97,8 @@ TEST(Climates, KeepTheirPlants) {
 /// After 80 days of an eastward wind the middle of the ridge has run on down the lane without plants, and
 /// both arms lie upwind of it, where plants are.
 TEST(Dunes, LivingParabolic) {
-  Running scene(shipped("parabolic"));
-  while (scene.simulation().time() < 80 * 86400.0) scene.run(1);
+  Running scene(shipped("parabolic", {"grid.width=200"}));
+  while (scene.simulation().time() < 60 * 86400.0) scene.run(1);
   const Field sand = scene.field(Layer::sand);
   struct Extent {
     int west, east;  ///< of sand deeper than 0.3 m in these rows

@@ -278,7 +278,8 @@ TEST_F(Client, AQueueOfTheCallersTakesMessagesInWhenItIsServed) {
   EXPECT_TRUE(client.wait_for_terrain(0));
 }
 
-// roscpp gives both one connection, so that the node does not see that the second has come.
+// roscpp gives both one connection, so that the node does not see that the second has come: it has to ask,
+// unless a keyframe for the first comes just then (the node learns late that it listens to updates, too).
 TEST_F(Client, TwoInOneProcessBothGetThePausedTerrain) {
   const TerrainClient first(node_, options());
   ASSERT_TRUE(first.wait_for_terrain(timeout));
@@ -288,7 +289,6 @@ TEST_F(Client, TwoInOneProcessBothGetThePausedTerrain) {
   const TerrainClient second(node_, o);
   ASSERT_TRUE(second.wait_for_terrain(timeout));
   EXPECT_EQ(second.map()->info().step, 6u);
-  EXPECT_GE(second.statistics().requests, 1u) << "nothing comes by itself";
   ASSERT_TRUE(first.wait_for_step(step(5).step, timeout) && second.wait_for_step(11, timeout));
   EXPECT_LE(largest_difference(*first.map()), threshold + 1e-6);
   EXPECT_LE(largest_difference(*second.map()), threshold + 1e-6);

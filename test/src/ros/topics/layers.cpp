@@ -228,7 +228,8 @@ TEST_F(Layers, ALossIsNoticedAndHealed) {
   expect_as_asked(client, "wind_x");
 }
 
-// roscpp gives both one connection, so that the node does not see that the second has come.
+// roscpp gives both one connection, so that the node does not see that the second has come: it has to ask,
+// unless a keyframe for the first comes just then (the node learns late that it listens to updates, too).
 TEST_F(Layers, TwoClientsInOneProcessBothHaveThem) {
   const TerrainClient first(node_, with({"sand_depth", "traversability"}));
   ASSERT_TRUE(first.wait_for_terrain(timeout));
@@ -237,7 +238,6 @@ TEST_F(Layers, TwoClientsInOneProcessBothHaveThem) {
   options.shortest_pause = options.longest_pause = 0.05;
   const TerrainClient second(node_, options);
   ASSERT_TRUE(second.wait_for_terrain(timeout));
-  EXPECT_GE(second.statistics("traversability").requests, 1u) << "nothing comes by itself";
   ASSERT_TRUE(first.wait_for_step(step(5).step, timeout) && second.wait_for_step(11, timeout));
   for (const TerrainClient* client : {&first, &second})
     for (const std::string& layer : client->layers()) expect_as_asked(*client, layer);
