@@ -87,7 +87,7 @@ class PlannerServer {
   DriveCommand command_;
   bool driving_ = false;  ///< the last command was not that of standing still
   double plan_time_ = 0;
-  double lockstep_time_ = 0, sim_time_ = 0;
+  double lockstep_time_ = 0;
   std::uint64_t terrain_step_ = 0, published_path_ = 0;
   std::optional<double> asked_for_forecast_;
   bool waits_for_forecast_ = false;  ///< which was asked for
