@@ -150,7 +150,7 @@ def main():
             load.wait()
     for name, count in failures.most_common():
         print("%4d of %d  %s" % (count, rounds, name))
-    if options.table:
+    if options.table and rounds:
         add_row(options.table, commit, tests, options, rounds, failures)
     print("%d failures in %d rounds of %d tests; logs are in %s" % (sum(failures.values()), rounds, len(tests), logs))
     return 1 if failures or rounds < options.rounds else 0

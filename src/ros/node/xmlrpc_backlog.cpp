@@ -1,15 +1,14 @@
 #include "src/ros/node/xmlrpc_backlog.hpp"
 
 #include <netinet/in.h>
+#include <ros/console.h>
 #include <ros/xmlrpc_manager.h>
 #include <sys/socket.h>
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <string>
-
-#include "src/core/error.hpp"
+#include <system_error>
 
 namespace desert_sim {
 namespace {
@@ -35,15 +34,16 @@ int port_of(int fd) {
 void widen_xmlrpc_backlog() {
   // roscpp hides the socket, but not its port.
   const int port = ros::XMLRPCManager::instance()->getServerPort();
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+  std::error_code problem;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", problem)) {
     const int fd = std::stoi(entry.path().filename());
     if (!listens(fd) || port_of(fd) != port) continue;
     // listen() on a socket that listens already changes its backlog.
-    if (listen(fd, SOMAXCONN) != 0)
-      throw Error("XML-RPC server on port " + std::to_string(port) + ": listen: " + std::strerror(errno));
-    return;
+    if (listen(fd, SOMAXCONN) == 0) return;
+    problem.assign(errno, std::generic_category());
   }
-  throw Error("XML-RPC server on port " + std::to_string(port) + ": no socket of this process listens there");
+  ROS_WARN("Only five clients at a time can wait for the XML-RPC server on port %d: %s.", port,
+           problem ? problem.message().c_str() : "its socket was not found");
 }
 
 }  // namespace desert_sim

@@ -17,7 +17,7 @@ namespace desert_sim {
 
 namespace {
 
-constexpr std::size_t most_messages = 1000;  // messages in lockstep
+constexpr std::size_t most_waiting = 1000;  // messages in lockstep
 
 RoverCondition condition_of(const RoverStatusConstPtr& status) {
   if (!status) return RoverCondition::driving;
@@ -52,7 +52,7 @@ PlannerServer::PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle&
   status_publisher_ = private_node_.advertise<PlannerStatus>("status", 100, true);
   command_publisher_ = node_.advertise<geometry_msgs::Twist>("cmd_vel", 1);
   goal_subscriber_ = node_.subscribe("move_base_simple/goal", 1, &PlannerServer::receive_goal, this);
-  const std::uint32_t queue = lockstep_ ? most_messages : 10;
+  const std::uint32_t queue = lockstep_ ? most_waiting : 10;
   status_subscriber_ =
       node_.subscribe(setup_.node.rover_node + "/status", queue, &PlannerServer::receive_rover_status, this);
   if (lockstep_) {
