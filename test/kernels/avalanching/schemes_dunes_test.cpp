@@ -1,5 +1,5 @@
 // The quick avalanche (multilevel, closed tiles) makes the same dunes as the reference (synchronous sweeps
-// until nothing moves), within the scatter between seeds, and leaves no trace of its tiles.
+// until nothing moves), within the scatter between seeds.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include <numeric>
 
 #include "kernels/avalanching/avalanching.hpp"
-#include "test/support/imprint.hpp"
 #include "test/support/running.hpp"
 
 namespace desert_sim {
@@ -90,7 +89,7 @@ using Runs = std::vector<Statistics>;
 
 Runs runs_of(const Avalanches& avalanches) {
   Runs runs;
-  for (const Field& field : elevations(8, 96, 60, avalanches)) runs.push_back(measure(field));
+  for (const Field& field : elevations(8, 96, 40, avalanches)) runs.push_back(measure(field));
   return runs;
 }
 
@@ -131,18 +130,6 @@ TEST(Schemes, SameDunesAsTheReference) {
       same(
           "share of slopes from " + std::to_string(6 * bin) + " degrees",
           [bin](const Statistics& s) { return s.histogram[bin]; }, shares_may_scatter);
-  }
-}
-
-/// Modes of the tiles' period do not stand out beyond what chance makes of other modes (by half, as it is
-/// chance). There are few dunes in a field, so that with three seeds chance alone does more.
-TEST(Tiles, LeaveNoImprint) {
-  for (const Avalanches& avalanches : quick_avalanches) {
-    const std::vector<Field> fields = elevations(8, 192, 120, avalanches);
-    const double tiles = imprint(fields, 32), others = imprint_by_chance(fields, 32);
-    DESERT_REPORT("%s: greatest excess of a mode of the tiles' period %.2f, of the others %.2f",
-                  avalanches.name, tiles, others);
-    EXPECT_LT(tiles, 1.5 * others);
   }
 }
 
