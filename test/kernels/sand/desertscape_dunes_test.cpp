@@ -27,7 +27,7 @@ std::string sheet(double depth, double slab, double creeping, double speed, int 
 
 TEST(Desertscape, EventsAtOnceAreAsOneEventAfterTheOther) {
   constexpr double depth = 1, slab = 0.3, creeping = 0.02, speed = 4;
-  constexpr int steps = 40;
+  constexpr int steps = 24;
   std::vector<test::Pattern> parallel, sequential;
   const auto in_slabs = [](std::vector<double> heights) {
     for (double& h : heights) h /= slab;
