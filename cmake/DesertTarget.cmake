@@ -36,6 +36,7 @@ function(desert_target target)
   set_target_properties(${target} PROPERTIES
     CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF
     POSITION_INDEPENDENT_CODE ON
+    DEFINE_SYMBOL "" # a precompiled header of one library then serves others
     INSTALL_RPATH_USE_LINK_PATH ON
     INSTALL_RPATH "$ORIGIN;$ORIGIN/..;$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   target_include_directories(${target} PUBLIC
@@ -117,6 +118,16 @@ function(desert_library target)
   desert_link(${target} ${arg_LINK})
   if(NOT arg_SEPARATE)
     desert_unity(${target})
+  endif()
+endfunction()
+
+# desert_reuse_precompiled_header(<target> <library>): GCC refuses a header precompiled with -fPIC where -fPIE is asked
+# for, so that programs are compiled as libraries are.
+function(desert_reuse_precompiled_header target library)
+  if(TARGET ${target} AND TARGET ${library})
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+    target_compile_options(${target} PRIVATE -fPIC)
+    target_precompile_headers(${target} REUSE_FROM ${library})
   endif()
 endfunction()
 
