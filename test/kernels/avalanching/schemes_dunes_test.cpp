@@ -70,26 +70,18 @@ void expect_same(const std::string& what, const std::vector<double>& quick,
   EXPECT_LE(std::abs(mean(quick) - mean(reference)), times * scatter) << what;
 }
 
-/// Elevations after `steps` steps from each seed.
-std::vector<Field> elevations(int seeds, int size, int steps, const Avalanches& avalanches) {
-  std::vector<std::future<Field>> running;
-  for (int seed = 1; seed <= seeds; ++seed)
-    running.push_back(std::async(std::launch::async, [=] {
-      return Running(transverse(size, static_cast<std::uint64_t>(seed), avalanches))
-          .run(steps)
-          .field(Layer::elevation);
-    }));
-  std::vector<Field> fields;
-  for (auto& run : running) fields.push_back(run.get());
-  return fields;
-}
-
-/// Statistics of eight seeds each: fewer do not know their scatter.
+/// Statistics of eight seeds: fewer do not know their scatter.
 using Runs = std::vector<Statistics>;
 
 Runs runs_of(const Avalanches& avalanches) {
+  std::vector<std::future<Statistics>> running;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed)
+    running.push_back(std::async(std::launch::async, [=] {
+      return measure(Running(transverse(96, seed, avalanches)).run(40).field(Layer::elevation));
+    }));
   Runs runs;
-  for (const Field& field : elevations(8, 96, 40, avalanches)) runs.push_back(measure(field));
+  runs.reserve(running.size());
+  for (auto& run : running) runs.push_back(run.get());
   return runs;
 }
 
