@@ -5,7 +5,7 @@ foreach(test IN LISTS kernels_dunes_tests_NAMES scenarios_dunes_tests_NAMES)
     set_tests_properties(${test} PROPERTIES FIXTURES_SETUP barchans COST 3)
   elseif(test MATCHES "Dunes\\.Barchan$")
     set_tests_properties(${test} PROPERTIES FIXTURES_REQUIRED "sanitizers;barchans")
-  elseif(test MATCHES "Schemes\\.|Tiles\\.") # eight threads, one a seed
-    set_tests_properties(${test} PROPERTIES PROCESSORS 8 COST 20)
+  elseif(test MATCHES "Schemes\\.") # eight threads, one a seed
+    set_tests_properties(${test} PROPERTIES PROCESSORS 2 COST 20)
   endif()
 endforeach()
