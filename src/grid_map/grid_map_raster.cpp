@@ -88,6 +88,9 @@ Raster to_raster(const GridMap& map, const RasterOptions& options, const std::st
     throw_error(source, "has no band ", options.band, ": its layers are 1 to ", map.layers.size());
   const auto n = static_cast<std::size_t>(options.band - 1);
   validate_layout(map, n, source);
+  if (options.encoding == RasterEncoding::terrarium || options.encoding == RasterEncoding::mapbox)
+    throw_error(source, "cannot be of the encoding ",
+                raster_encoding_names[static_cast<int>(options.encoding)], ", which pictures have");
   const std_msgs::Float32MultiArray& layer = map.data[n];
   const std::size_t rows = layer.layout.dim[1].size, columns = layer.layout.dim[0].size;
   Raster raster;

@@ -63,7 +63,8 @@ float CellValues::convert(double raw, bool at_edge) {
       ++s.near;
     }
   }
-  return static_cast<float>(raw * options_.scale + options_.offset);
+  const double value = raw * declared_.scale + declared_.offset;
+  return static_cast<float>(value * options_.scale + options_.offset);
 }
 
 std::vector<std::string> CellValues::warnings(const std::string& path) const {

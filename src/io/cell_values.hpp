@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "src/io/declared_values.hpp"
 #include "src/io/raster.hpp"
 
 namespace desert_sim {
@@ -12,10 +13,11 @@ namespace desert_sim {
 /// they do so without being declared.
 class CellValues {
  public:
-  explicit CellValues(const RasterOptions& options) : options_(options) {}
+  explicit CellValues(const RasterOptions& options, const DeclaredValues& declared = {})
+      : options_(options), declared_(declared) {}
 
-  /// raw · scale + offset as float32; NaN if the raw number is the nodata of the options. `at_edge`: whether
-  /// the cell is one of the outermost of its raster.
+  /// (raw · declared scale + declared offset) · scale + offset as float32; NaN if the raw number is the
+  /// nodata of the options. `at_edge`: whether the cell is one of the outermost of its raster.
   float convert(double raw, bool at_edge);
 
   /// One line for each number that seems to stand for missing data, with its share of the converted cells,
@@ -32,6 +34,7 @@ class CellValues {
   bool is_nodata(double raw) const;
 
   const RasterOptions options_;
+  const DeclaredValues declared_;
   long long cells_ = 0, huge_cells_ = 0;
   double huge_ = 0;
   std::array<Suspect, 4> suspects_{{{-9999, false}, {-32768, false}, {999, true}, {9999, true}}};

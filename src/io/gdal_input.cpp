@@ -107,7 +107,8 @@ void install_file_system() {
 
 /// Names that the companions of a raster may have, in lower case.
 std::vector<std::string> companion_names(const fs::path& path) {
-  std::vector<std::string> names{path.filename().string() + ".hdr"};
+  const std::string name = path.filename().string();
+  std::vector<std::string> names{name + ".hdr", name + ".msk"};
   for (const char* extension : {".hdr", ".prj", ".tfw", ".tifw", ".tiffw", ".pgw", ".pngw", ".wld"})
     names.push_back(path.stem().string() + extension);
   return names;

@@ -10,7 +10,8 @@
 
 namespace desert_sim {
 
-/// A raster file with its companions beside it (the header of an ENVI file, a projection, a world file), in a
+/// A raster file with its companions beside it (the header of an ENVI file, a mask, a projection, a
+/// world file), in a
 /// file system of GDAL's that holds nothing else and cannot be written: whatever the file says, a driver that
 /// is given name() finds nothing on the disk or the network by it.
 class GdalInput {

@@ -1,16 +1,35 @@
 #pragma once
-/// Coordinates that are not in metres.
+/// Coordinates that are not metres on the ground, and how to project them.
 
 #include <string>
 
+class OGRSpatialReference;
+
 namespace desert_sim {
 
-/// The command that projects a raster in degrees to metres: to the UTM zone of the given longitude and
-/// latitude of its centre [deg], near the poles to the polar stereographic projection.
-std::string projecting_command(const std::string& path, double longitude, double latitude);
+/// Where the cells of a raster lie in the coordinates of its projection.
+struct RasterExtent {
+  double west, south, cell_x, cell_y;
+  int width, height;
+  double east() const { return west + width * cell_x; }
+  double north() const { return south + height * cell_y; }
+};
 
-/// Throws ConfigError that has this command if the unit of the projection's coordinates is known and is not
-/// the metre. `x`, `y`: the raster's centre in these coordinates.
-void require_metres(const std::string& path, const std::string& wkt, double x, double y);
+/// The command that projects a raster to metres on the ground around a place (x, y) in the coordinates of
+/// `crs`: on Earth to the UTM zone, near the poles to the polar stereographic projection; on another body to
+/// a transverse Mercator or polar stereographic projection of its own. What is not covered has no data. With
+/// an `extent` cells are square and as large as the raster's, and lie within it where most of it is then
+/// kept.
+std::string projecting_command(const std::string& path, const OGRSpatialReference& crs, double x, double y,
+                               const RasterExtent* extent = nullptr);
+
+/// Throws ConfigError that has this command where the coordinates are known not to be metres on the ground:
+/// for degrees and other units, and where the projection's scale at the raster's centre differs from 1 by
+/// more than 1 %, as Web Mercator's does away from the equator (k = 1 / cos of the latitude).
+void require_metres(const std::string& path, const std::string& wkt, const RasterExtent& extent);
+
+/// Throws ConfigError in the name of `source` that names the folders in which PROJ looked if it has no
+/// database that it can use, without which projections by their codes cannot be understood or written.
+void require_projection_database(const std::string& source);
 
 }  // namespace desert_sim

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "src/scenario/raster_encoding.hpp"
+
 namespace desert_sim {
 
 /// A single-band raster in this package's orientation: row-major, x fastest, row 0 = SOUTH (in GDAL, row 0 is
@@ -22,6 +24,10 @@ struct Raster {
   /// writing a raster preserves its geotransform exactly.
   std::array<double, 6> geotransform{};
 
+  /// Why the file's own placement cannot be used, with the command that helps; empty if it can, or if it has
+  /// none.
+  std::string unusable_placement;
+
   /// Number of NaN values.
   long nodata_count() const;
   /// Unit of cell_size and origin by the projection: "metre", "degree" (a geographic CRS, so that the grid is
@@ -29,16 +35,18 @@ struct Raster {
   std::string length_unit() const;
 };
 
-/// The band to read and the conversion of its raw numbers: value = raw * scale + offset. As in GDAL, a scale
-/// and offset that the file itself declares for a band are not applied.
+/// The band to read and the conversion of its numbers: value = (what the file declares) * scale + offset. The
+/// file declares raw * its scale + its offset, in its unit, of which metres are made (declared_values()).
 struct RasterOptions {
   int band = 1;  ///< counted from 1; for EXR files read by OpenCV: R, G, B, A
   double scale = 1, offset = 0;
   std::optional<double> nodata = {};  ///< a raw number that stands for missing data, besides the declared one
+  RasterEncoding encoding = RasterEncoding::values;
 };
 
 /// Which rasters may be read. By default files of the formats GeoTIFF, ESRI ASCII (AAIGrid), ENVI, PNG, EXR
-/// and USGS DEM, with their companions (.hdr, .prj, world files); they cannot make GDAL read anything else.
+/// and USGS DEM, with their companions (.hdr, .prj, .msk, world files); they cannot make GDAL read anything
+/// else.
 struct RasterAccess {
   std::string folder;        ///< only files below it, as in InputFile; empty: any file
   bool all_formats = false;  ///< whatever GDAL reads, also what names other files or hosts; needs no folder
@@ -49,7 +57,9 @@ struct RasterAccess {
 /// NaN. Throws ConfigError that names the file and the reason: the file is missing, may not be read or is not
 /// a raster, there is no such band, the size is zero, more than 2^31 cells or more than the memory holds, the
 /// geotransform is rotated or mirrored, cells are not square to 0.1 %, numbers are complex, values are
-/// infinite, all cells are nodata, scale or offset is not finite, scale is zero, or GDAL reports an error.
+/// infinite, all cells are nodata, scale or offset is not finite, scale is zero, colours or indices of a
+/// palette are taken for values, PROJ has no database to understand the projection with, or GDAL reports an
+/// error.
 Raster read_raster(const std::string& path, const RasterOptions& options = {},
                    const RasterAccess& access = {});
 

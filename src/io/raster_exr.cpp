@@ -73,6 +73,11 @@ class ExrFile final : public RasterFile {
                               header_.width, " x ", header_.height));
   }
 
+  void prepare() override {
+    if (options_.encoding == RasterEncoding::terrarium || options_.encoding == RasterEncoding::mapbox)
+      throw_raster_error(path(), "cannot be of that encoding, which pictures of bytes have");
+  }
+
   void read_row(int row, int x, int width, double* raw, unsigned char*) override {
     if (picture_.empty()) decode();
     const int channels = picture_.channels();

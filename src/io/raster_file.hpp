@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "src/io/declared_values.hpp"
 #include "src/io/raster.hpp"
 
 namespace desert_sim {
@@ -19,15 +20,17 @@ class RasterFile {
   const std::string& path() const { return path_; }
   /// The raster without its values.
   const Raster& header() const { return header_; }
-  /// Reads the cells of a window, which must lie in the raster, and logs a warning for numbers that seem to
-  /// stand for missing data, and for values in feet that no scale converts. Throws ConfigError for what is
-  /// wrong with them (see read_raster()), and before any is read if the memory does not hold them, or if they
-  /// are far more than the file can have.
+  /// Reads the cells of a window, which must lie in the raster, and logs a warning for numbers and for a
+  /// frame around the raster that seem to stand for missing data. Throws ConfigError for what is wrong with
+  /// them (see read_raster()), and before any is read if the memory does not hold them, or if they are far
+  /// more than the file can have.
   Raster read(const RasterWindow& window);
   Raster read() { return read({0, 0, header_.width, header_.height}); }
 
  protected:
   RasterFile(std::string path, const RasterOptions& options) : options_(options), path_(std::move(path)) {}
+  /// Throws ConfigError where the numbers are not of the encoding that the options name.
+  virtual void prepare() = 0;
   /// Makes `width` raw numbers of a row ready, from column x on; `valid` is 0 where they are declared to be
   /// missing.
   virtual void read_row(int row, int x, int width, double* raw, unsigned char* valid) = 0;
@@ -36,7 +39,7 @@ class RasterFile {
 
   const RasterOptions options_;
   Raster header_;
-  std::string value_unit_;        ///< as the file says; empty if it does not
+  DeclaredValues declared_;
   std::uint64_t file_bytes_ = 0;  ///< 0 if they are not all in one file
 
  private:
@@ -47,6 +50,10 @@ class RasterFile {
 /// not in metres and whose cells are not square, it says how to project the raster.
 std::unique_ptr<RasterFile> open_raster(const std::string& path, const RasterOptions& options = {},
                                         const RasterAccess& access = {});
+
+/// Part of open_raster(): a file that GDAL reads.
+std::unique_ptr<RasterFile> open_gdal(const std::string& path, const RasterOptions& options,
+                                      const RasterAccess& access);
 
 /// Part of open_raster(): an EXR file that OpenCV reads.
 std::unique_ptr<RasterFile> open_exr(const std::string& path, const RasterOptions& options,

@@ -6,6 +6,7 @@
 
 #include "src/io/projection.hpp"
 #include "src/io/raster_file.hpp"
+#include "src/io/raster_geometry.hpp"
 #include "src/io/resample.hpp"
 
 namespace desert_sim {
@@ -113,8 +114,10 @@ RasterWindow needed_window(const Raster& header, const RasterRequest& q) {
 }
 
 void require_raster_in_metres(const Raster& header, const std::string& path) {
-  require_metres(path, header.projection, header.origin_x + 0.5 * header.width * header.cell_size,
-                 header.origin_y + 0.5 * header.height * header.cell_size);
+  if (!header.unusable_placement.empty()) throw_raster_error(path, header.unusable_placement);
+  require_metres(
+      path, header.projection,
+      {header.origin_x, header.origin_y, header.cell_size, header.cell_size, header.width, header.height});
 }
 
 RasterField field_of(Raster r) {
@@ -131,7 +134,9 @@ RasterField field_of(Raster r) {
 
 }  // namespace
 
-RasterOptions raster_options(const RasterRequest& q) { return {q.band, q.scale, q.offset, q.nodata}; }
+RasterOptions raster_options(const RasterRequest& q) {
+  return {q.band, q.scale, q.offset, q.nodata, q.encoding};
+}
 
 RasterField resample_to_request(Raster r, const RasterRequest& q) {
   if (q.width == 0) {
@@ -158,7 +163,7 @@ RasterField resample_to_request(Raster r, const RasterRequest& q) {
 RasterLoader gdal_raster_loader(const RasterAccess& access) {
   return [access](const RasterRequest& q) {
     const std::unique_ptr<RasterFile> file = open_raster(q.path, raster_options(q), access);
-    require_raster_in_metres(file->header(), q.path);
+    if (!q.stretch) require_raster_in_metres(file->header(), q.path);
     return q.width == 0 ? field_of(file->header())
                         : resample_to_request(file->read(needed_window(file->header(), q)), q);
   };

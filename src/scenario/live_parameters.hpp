@@ -29,6 +29,7 @@ constexpr FixedParameter fixed_parameters[] = {
     {"wind.series_direction", "it belongs to wind.series_file"},
     {"wind.series_angle", "it belongs to wind.series_file"},
     {"wind.series_start", "it belongs to wind.series_file"},
+    {"wind.series_gap", "it belongs to wind.series_file"},
     {"wind.segments", "set_wind_schedule changes them together"},
     {"wind.features", "edit_wind adds, changes and removes them"},
 };

@@ -190,6 +190,7 @@ struct RasterRequest {
   int width = 0, height = 0;
   double cell_size = 0, origin_x = 0, origin_y = 0;
   bool stretch = false;  ///< stretch the raster over the grid, whatever its position
+  RasterEncoding encoding = RasterEncoding::values;
 };
 using RasterLoader = std::function<RasterField(const RasterRequest&)>;
 RasterField no_raster_loader(const RasterRequest& request);

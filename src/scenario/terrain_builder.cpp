@@ -227,6 +227,7 @@ class Builder {
     request.band = p.band;
     request.scale = p.scale;
     request.offset = p.offset;
+    request.encoding = p.encoding;
     request.nodata = p.nodata;
     request.fill_nodata = p.fill_nodata;
     request.width = s_.grid.width;

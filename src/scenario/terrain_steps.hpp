@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "src/core/parameters.hpp"
+#include "src/scenario/raster_encoding.hpp"
 
 namespace desert_sim {
 
@@ -234,6 +235,7 @@ struct RasterStep {
   int band = 1;
   double scale = 1;
   double offset = 0;
+  RasterEncoding encoding = RasterEncoding::values;
   std::optional<double> nodata;
   bool fill_nodata = false;
   bool stretch = false;
@@ -246,8 +248,16 @@ constexpr auto parameter_table(const RasterStep*) {
       parameter("file", &P::file,
                 "Path, absolute or relative to the scenario's folder; empty: grid.from_raster."),
       parameter("band", &P::band, 1, 10000, "1", "Band of the raster."),
-      parameter("scale", &P::scale, -1e9, 1e9, "layer's", "Factor applied to the raster's values."),
+      parameter("scale", &P::scale, -1e9, 1e9, "layer's",
+                "Factor applied to the raster's values, after the scale, the offset and the unit of length "
+                "that the "
+                "file declares."),
       parameter("offset", &P::offset, -1e9, 1e9, "layer's", "Added after the factor."),
+      parameter(
+          "encoding", &P::encoding, raster_encoding_names,
+          "What the file's numbers are. values: those of one band; channel: of one band, also where it is a "
+          "colour or the index of a palette; terrarium, mapbox: heights that red, green and blue encode, 256 "
+          "red + green + blue / 256 - 32768 m and (65536 red + 256 green + blue) / 10 - 10000 m."),
       parameter(
           "nodata", &P::nodata, -std::numeric_limits<double>::max(), std::numeric_limits<double>::max(),
           "raster's",

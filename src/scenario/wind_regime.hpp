@@ -55,6 +55,7 @@ struct WindRegimeParameters {
   SeriesDirection series_direction = SeriesDirection::to;
   SeriesAngle series_angle = SeriesAngle::mathematical;
   std::string series_start{};
+  SeriesGap series_gap = SeriesGap::hold;
 };
 
 constexpr auto parameter_table(const WindRegimeParameters*) {
@@ -82,7 +83,11 @@ constexpr auto parameter_table(const WindRegimeParameters*) {
                 "mathematical: counter-clockwise from +x; compass: clockwise from +y (north)."),
       parameter("series_start", &P::series_start,
                 "Time or date of the series at which the simulation starts; if not given, that of its first "
-                "row."));
+                "row."),
+      parameter("series_gap", &P::series_gap, series_gap_names,
+                "Where the series has no row for more than 1.5 times its usual (median) interval: hold: the "
+                "last row "
+                "blows on; calm: none does, after one interval; refuse: the series is refused."));
 }
 static_assert(table_is_complete<WindRegimeParameters>());
 

@@ -1,10 +1,7 @@
 #pragma once
-/// A measured series of the wind: read from a CSV file once, when a session begins with its scenario. After
-/// that it belongs to the scenario and to checkpoints, which need the file no longer.
-///
-/// The file has a first line with the names of its columns, separated by commas, of which `time`, `speed`
-/// [m/s] and `direction` [deg] count. Times rise from row to row; they are seconds, or dates such as
-/// 2001-03-04T15:00 or 2001-03-04 15:00:30 (UTC). Empty lines and what follows a # are skipped.
+/// A measured series of the wind: read from a CSV file once (wind_series_file.hpp), when a session begins
+/// with its scenario. After that it belongs to the scenario and to checkpoints, which need the file no
+/// longer.
 
 #include <memory>
 #include <optional>
@@ -15,8 +12,6 @@
 
 namespace desert_sim {
 
-struct Scenario;
-
 /// Whether a series says where the wind blows to, or where it comes from, as meteorologists do.
 enum class SeriesDirection : int { to, from };
 constexpr const char* series_direction_names[] = {"to", "from"};
@@ -25,7 +20,13 @@ constexpr const char* series_direction_names[] = {"to", "from"};
 enum class SeriesAngle : int { mathematical, compass };
 constexpr const char* series_angle_names[] = {"mathematical", "compass"};
 
+/// What blows where a series has no row for longer than usual: the last row's wind, none, or the series is
+/// refused.
+enum class SeriesGap : int { hold, calm, refuse };
+constexpr const char* series_gap_names[] = {"hold", "calm", "refuse"};
+
 constexpr std::size_t max_series_rows = std::size_t{1} << 20;
+constexpr double max_series_speed = 100;  // [m/s], as of wind.speed
 
 struct WindSeries {
   struct Row {
@@ -47,21 +48,10 @@ struct WindSeries {
   static WindSeries from_text(const std::string& text, const std::string& source);
 };
 
-/// Seconds since 1970-01-01 UTC of a date, with or without a time of day; empty if `text` is none.
+/// Seconds since 1970-01-01 UTC of a date, with or without a time of day and its distance from UTC (Z,
+/// +02:00); empty if `text` is none.
 std::optional<double> read_date(const std::string& text);
 /// "2001-03-04 15:00:00".
 std::string date_text(double date);
-
-struct SeriesFormat {
-  SeriesDirection direction;
-  SeriesAngle angle;
-  std::string start;  ///< time or date of the file at which the simulation starts; empty: the first row's
-};
-
-/// Reads a file's text. Throws ConfigError that lists faults with `source`, line, column and value.
-WindSeries parse_wind_series(const std::string& text, const std::string& source, const SeriesFormat& format);
-
-/// Reads the series that the scenario names, unless it has it already; with a `folder`, only from below it.
-void read_wind_series(Scenario& scenario, const std::string& folder = "");
 
 }  // namespace desert_sim

@@ -6,6 +6,7 @@
 #include "src/core/files.hpp"
 #include "src/core/log.hpp"
 #include "src/scenario/band_terrain.hpp"
+#include "src/scenario/wind_series_file.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/checkpoint.hpp"
 

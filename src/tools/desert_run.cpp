@@ -11,6 +11,9 @@
 #include "src/scenario/scenario_file.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/session.hpp"
+#if DESERT_WITH_IO
+#include "src/io/projection.hpp"
+#endif
 #include "src/tools/detail_output.hpp"
 #include "src/tools/drawing.hpp"
 #include "src/tools/film.hpp"
@@ -193,6 +196,10 @@ std::uint64_t usual_film_every(std::uint64_t steps) { return std::max<std::uint6
 /// and --film. `steps`: how many there will be.
 void prepare_outputs(RunPlan& plan, const Journal& journal, std::uint64_t steps, Simulation& simulation) {
   if (!plan.checkpoint.empty()) require_no_input_replaced(plan, journal);
+#if DESERT_WITH_IO
+  if (!plan.out.empty() && !simulation.scenario().projection.empty())
+    require_projection_database("--out " + plan.out);
+#endif
   const std::string created = plan.out.empty() ? "" : create_output_folder(plan.out);
   try {
     if (!plan.checkpoint.empty()) require_writable_file(plan.checkpoint);

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "src/scenario/wind_series_file.hpp"
+
 namespace desert_sim::test {
 
 Scenario parsed(const std::string& yaml) { return parse_scenario(YAML::Load(yaml), "test", "."); }

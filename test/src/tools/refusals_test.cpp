@@ -1,12 +1,14 @@
 // desert_run refuses wrong input: status 2, before it begins, one clear line that names the culprit, nothing
 // left in --out.
 
+#include <ogr_spatialref.h>
 #include <sys/stat.h>
 
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 
+#include "src/io/raster.hpp"
 #include "src/scenario/scenario.hpp"
 #include "src/simulation/session.hpp"
 #include "test/support/run_fixture.hpp"
@@ -218,6 +220,28 @@ TEST_F(Refusals, CheckpointThatWouldReplaceAnInput) {
   EXPECT_EQ(test::file_bytes(path("a.ck")), bytes);
   run_cpu({scenario_, "--replay", path("j"), "--checkpoint", path("b.ck")});
   run_cpu({"--resume", path("b.ck"), "--steps", "6", "--checkpoint", path("b.ck")});
+}
+
+/// As in a conda environment: what the codes of projections mean would be unknown, and feet would be metres.
+TEST_F(Refusals, AProjectionWithoutTheDatabaseOfPROJ) {
+  Raster raster{4, 4, 10, 500000, 4400000, "", std::vector<float>(16, 1), {}, ""};
+  OGRSpatialReference crs;
+  ASSERT_EQ(crs.importFromEPSG(32613), OGRERR_NONE);
+  char* wkt = nullptr;
+  crs.exportToWkt(&wkt);
+  raster.projection = wkt;
+  CPLFree(wkt);
+  write_geotiff(path("dem.tif"), raster);
+  const std::string scenario = folder_.write(
+      "dem.yaml", "grid: {from_raster: dem.tif, boundary: open}\nterrain: [raster: {layer: bedrock}]\n");
+  run_cpu({scenario, "--steps", "1", "--checkpoint", path("a.ck")});
+  std::filesystem::create_directory(path("proj"));
+  for (const char* variable : {"PROJ_LIB", "PROJ_DATA"}) {
+    setenv(variable, path("proj").c_str(), 1);
+    expect_refused({scenario, "--steps", "1"}, {"dem.tif", "proj.db", path("proj")});
+    expect_refused({"--resume", path("a.ck"), "--steps", "9"}, {"--out", "proj.db", path("proj")}, false);
+    unsetenv(variable);
+  }
 }
 
 TEST_F(Refusals, SettingsOfAResumedRunThatCannotChange) {

@@ -1,0 +1,182 @@
+// Series of the wind in files: what a file says, and what is wrong with it.
+
+#include "src/scenario/wind_series_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "test/support/log_lines.hpp"
+#include "test/support/refusal.hpp"
+
+namespace desert_sim {
+namespace {
+
+const SeriesFormat usual{SeriesDirection::to, SeriesAngle::mathematical};
+
+WindSeries parse(const std::string& text, const SeriesFormat& format = usual) {
+  return parse_wind_series(text, "wind.csv", format);
+}
+
+void expect_wind(wind::Vector w, double x, double y) {
+  EXPECT_NEAR(w.x, x, 1e-5);
+  EXPECT_NEAR(w.y, y, 1e-5);
+}
+
+const std::string three = "time,speed,direction\n0,4,0\n10,5,90\n30,6,180\n";
+
+TEST(WindSeriesFile, TurnsDirectionsByTheirConvention) {
+  const std::string text = "direction,time,note,speed\n30, 0 ,calm, 2\n";
+  const auto at = [&](SeriesDirection direction, SeriesAngle angle) {
+    return parse(text, {direction, angle, ""}).at(0, false);
+  };
+  const double cos30 = 0.8660254 * 2, sin30 = 0.5 * 2;
+  expect_wind(at(SeriesDirection::to, SeriesAngle::mathematical), cos30, sin30);
+  expect_wind(at(SeriesDirection::from, SeriesAngle::mathematical), -cos30, -sin30);
+  expect_wind(at(SeriesDirection::to, SeriesAngle::compass), sin30, cos30);
+  expect_wind(at(SeriesDirection::from, SeriesAngle::compass), -sin30, -cos30);
+}
+
+TEST(WindSeriesFile, ReadsDates) {
+  const std::string text =
+      "time,speed,direction\n2001-02-28T23:30,1,0\n2001-03-01 00:00:00,2,0\n\n# a "
+      "pause\n2001-03-04T15:00Z,3,0\n";
+  const WindSeries s = parse(text);
+  EXPECT_EQ(s.rows.at(1).time, 1800);
+  EXPECT_EQ(s.rows.at(2).time, 1800 + 3 * 86400 + 15 * 3600);
+  EXPECT_EQ(date_text(s.date.value()), "2001-02-28 23:30:00");
+  const WindSeries later = parse(text, {SeriesDirection::to, SeriesAngle::mathematical, "2001-03-02"});
+  EXPECT_EQ(later.rows.at(1).time, -86400);
+  expect_wind(later.at(0, false), 2, 0);
+  EXPECT_EQ(date_text(later.date.value()), "2001-03-02 00:00:00");
+}
+
+TEST(WindSeriesFile, NamesLineColumnAndValueOfAllFaults) {
+  const std::string said = test::refusal(
+      [] { parse("# a station\ntime,speed,direction\n0,4,0\n10,x,0\n10,4,400\n20,-1,0\n"); });
+  for (const char* part : {"wind.csv: line 4, column speed: 'x'", "[0, 100] m/s", "line 5, column time",
+                           "not later than", "line 5, column direction: '400'", "[-360, 360] deg",
+                           "line 6, column speed: '-1'"})
+    EXPECT_NE(said.find(part), std::string::npos) << part << " is not in\n" << said;
+}
+
+TEST(WindSeriesFile, RefusesWhatIsNoSeries) {
+  EXPECT_NE(test::refusal([] { parse(""); }).find("no row"), std::string::npos);
+  EXPECT_NE(test::refusal([] { parse("time,speed\n0,1\n"); }).find("no column 'direction'"),
+            std::string::npos);
+  EXPECT_NE(test::refusal([] { parse("time,speed,direction\n0,1,2\n2001-03-04,1,2\n"); }).find("line 3"),
+            std::string::npos);
+  const std::string late = test::refusal([] {
+    parse(three, {SeriesDirection::to, SeriesAngle::mathematical, "31"});
+  });
+  EXPECT_NE(late.find("wind.series_start: '31' is not in [0 s, 30 s]"), std::string::npos) << late;
+  EXPECT_FALSE(test::refusal([] {
+                 parse(three, {SeriesDirection::to, SeriesAngle::mathematical, "2001-03-04"});
+               }).empty());
+}
+
+/// Columns as spreadsheets of all systems and languages save them.
+TEST(WindSeriesFile, ReadsWhatSpreadsheetsSave) {
+  const std::string expected = parse("time,speed,direction\n0,7.5,35\n10,8.5,40\n").text();
+  EXPECT_EQ(parse("\xEF\xBB\xBFtime,speed,direction\r\n0,7.5,35\r\n10,8.5,40\r\n").text(), expected);
+  EXPECT_EQ(parse("time\tspeed\tdirection\n0\t7.5\t35\n10\t8.5\t40\n").text(), expected);
+  EXPECT_EQ(parse("Time;Speed;Direction\n0;7,5;35\n10;8.5;40\n").text(), expected);
+  EXPECT_EQ(parse("time,speed,direction\r0,7.5,35\r10,8.5,40\r").text(), expected);
+  EXPECT_EQ(parse("\"time\",\"speed\",\"direction\"\n\"0\",\"7.5\",\"35\"\n10,8.5,40").text(), expected);
+  const std::string utf16("\xFF\xFEt\0i\0m\0e\0", 10);
+  for (const std::string& text : {utf16, std::string("time\0,speed", 11)}) {
+    const std::string said = test::refusal([&] { parse(text); });
+    EXPECT_NE(said.find("wind.csv: "), std::string::npos) << said;
+    EXPECT_NE(said.find("save it as UTF-8"), std::string::npos) << said;
+  }
+}
+
+TEST(WindSeriesFile, CalmAirNeedsNoDirection) {
+  for (const char* none : {"", "NA", "NaN", "nan", "-"}) {
+    const WindSeries s = parse("time,speed,direction\n0,4,0\n10,0.0," + std::string(none) + "\n20,3,90\n");
+    ASSERT_EQ(s.rows.size(), 3u) << none;
+    expect_wind(s.rows[1].wind, 0, 0);
+    const std::string said =
+        test::refusal([&] { parse("time,speed,direction\n0,4,0\n10,1.5," + std::string(none) + "\n"); });
+    EXPECT_NE(said.find("line 3, column direction"), std::string::npos) << said << " for " << none;
+  }
+  EXPECT_FALSE(test::refusal([] { parse("time,speed,direction\n0,1.5,VRB\n"); }).empty());
+}
+
+TEST(WindSeriesFile, ARowWithoutSpeedIsAGap) {
+  for (const char* row : {"10,,", "10,NA,270", "10,NaN,NaN", "10"}) {
+    test::LogLines log;
+    const WindSeries s = parse("time,speed,direction\n0,4,0\n" + std::string(row) + "\n20,3,90\n");
+    ASSERT_EQ(s.rows.size(), 2u) << row;
+    expect_wind(s.at(15, false), 4, 0);
+    ASSERT_FALSE(log.lines.empty()) << row;
+    EXPECT_NE(log.lines[0].find("1 of 3 rows have no speed"), std::string::npos) << log.lines[0];
+  }
+  EXPECT_NE(test::refusal([] { parse("time,speed,direction\n0,,\n"); }).find("no row with a speed"),
+            std::string::npos);
+  EXPECT_NE(test::refusal([] { parse("time,speed,direction\n0,999.9,999\n"); }).find("[0, 100] m/s"),
+            std::string::npos);
+}
+
+/// A gale, two days without data, and calmer hours.
+TEST(WindSeriesFile, GapsAreToldHeldCalmedOrRefused) {
+  const std::string text =
+      "time,speed,direction\n2019-01-01T00:00,4,0\n2019-01-01T01:00,20,0\n2019-01-03T01:00,4,0\n"
+      "2019-01-03T02:00,5,0\n2019-01-03T03:00,5,0\n";
+  constexpr double hour = 3600;
+  const auto with = [&](SeriesGap gap) {
+    return parse(text, {SeriesDirection::to, SeriesAngle::mathematical, "", gap});
+  };
+  test::LogLines log;
+  const WindSeries held = with(SeriesGap::hold), calm = with(SeriesGap::calm);
+  ASSERT_EQ(log.lines.size(), 2u);
+  for (const char* part : {"wind.csv", "1 gap", "2 d after 2019-01-01 01:00:00", "the usual interval is 1 h",
+                           "20 m/s", "wind.series_gap: hold"})
+    EXPECT_NE(log.lines[0].find(part), std::string::npos) << part << " is not in " << log.lines[0];
+  EXPECT_NE(log.lines[1].find("calm air"), std::string::npos) << log.lines[1];
+  expect_wind(held.at(30 * hour, false), 20, 0);
+  expect_wind(calm.at(1.9 * hour, false), 20, 0);
+  expect_wind(calm.at(2 * hour, false), 0, 0);
+  expect_wind(calm.at(48.9 * hour, false), 0, 0);
+  expect_wind(calm.at(49 * hour, false), 4, 0);
+  const std::string said = test::refusal([&] { with(SeriesGap::refuse); });
+  EXPECT_NE(said.find("wind.series_gap: has 1 gap"), std::string::npos) << said;
+}
+
+TEST(WindSeriesFile, RowsAtEqualIntervalsHaveNoGap) {
+  test::LogLines log;
+  parse("time,speed,direction\n0,4,0\n");
+  parse("time,speed,direction\n0,4,0\n10,4,0\n20,4,0\n34,4,0\n",
+        {SeriesDirection::to, SeriesAngle::mathematical, "", SeriesGap::refuse});
+  EXPECT_TRUE(log.lines.empty()) << log.lines[0];
+}
+
+TEST(WindSeriesFile, AnHourThatComesTwiceIsOneFault) {
+  const std::string said = test::refusal([] {
+    parse(
+        "time,speed,direction\n2019-10-27T01:00,4,0\n2019-10-27T02:00,5,0\n2019-10-27T02:00,6,0\n"
+        "2019-10-27T03:00,3,0\n");
+  });
+  EXPECT_NE(said.find("line 4, column time: 2019-10-27 02:00:00 is not later"), std::string::npos) << said;
+  EXPECT_NE(said.find("summer time"), std::string::npos) << said;
+  EXPECT_EQ(said.find("line 5"), std::string::npos) << said;
+}
+
+/// What is no time is not compared with others: 2019 s after 1970 is none of the file's.
+TEST(WindSeriesFile, AFaultyTimeIsOneFault) {
+  const std::string said = test::refusal([] {
+    parse("time,speed,direction\n2019-10-27T01:00,4,0\n2019-10-27T25:00,5,0\n2019-10-27T02:00,6,0\n");
+  });
+  EXPECT_NE(said.find("line 3, column time: '2019-10-27T25:00'"), std::string::npos) << said;
+  EXPECT_EQ(said.find("1970"), std::string::npos) << said;
+  EXPECT_EQ(said.find("line 4"), std::string::npos) << said;
+}
+
+TEST(WindSeriesFile, TimesBeyondTheRangeAreRefused) {
+  const std::string said =
+      test::refusal([] { parse("time,speed,direction\n-1.7e308,4,0\n0,5,0\n1.7e308,6,0\n"); });
+  EXPECT_NE(said.find("line 2, column time: '-1.7e308' is not seconds in [-1e12, 1e12]"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("line 4"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace desert_sim
