@@ -95,7 +95,7 @@ class LayerMap:
         """
         inside = self.contains(x, y)
         if not numpy.all(inside):
-            raise IndexError("the point (%s, %s) is off the grid, which is from (%g, %g) to (%g, %g) m in %s" % (
+            raise IndexError("the point (%s, %s) is off the grid, which is from (%s, %s) to (%s, %s) m in %s" % (
                 x, y, *self.extent[0::2], *self.extent[1::2], self.frame))
         east, north = self._in_cells(x, y)
         # The outer edges belong to the last cells.

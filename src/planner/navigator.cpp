@@ -74,10 +74,11 @@ void Navigator::set_goal(const PlanarPose& goal, double time) {
   if (grid_) {
     const GridFrame& f = grid_->frame();
     if (!grid_->cell_at({goal.x, goal.y}))
-      throw ConfigError("the goal (" + number_text(goal.x) + ", " + number_text(goal.y) +
-                        ") is off the terrain, which is x " + number_text(f.origin_x) + " ... " +
-                        number_text(f.origin_x + f.width * f.cell_size) + ", y " + number_text(f.origin_y) +
-                        " ... " + number_text(f.origin_y + f.height * f.cell_size));
+      throw ConfigError("the goal " + point_text(goal.x, goal.y) + " is off the terrain, which is x " +
+                        coordinate_text(f.origin_x) + " ... " +
+                        coordinate_text(f.origin_x + f.width * f.cell_size) + ", y " +
+                        coordinate_text(f.origin_y) + " ... " +
+                        coordinate_text(f.origin_y + f.height * f.cell_size));
     for (const GridPoint& p : avoided_) grid_->mark(p, parameters_.avoid_radius, false, changed_);
   }
   avoided_.clear();

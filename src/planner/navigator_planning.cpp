@@ -21,13 +21,11 @@ std::string Navigator::places(Place& start, Place& goal) const {
   };
   const auto s = near(pose_.x, pose_.y, parameters_.escape);
   if (!s)
-    return "the start (" + number_text(pose_.x) + ", " + number_text(pose_.y) +
-           ") is not passable, nor is any cell within " + number_text(parameters_.escape) +
-           " m: " + why(pose_.x, pose_.y);
+    return "the start " + point_text(pose_.x, pose_.y) + " is not passable, nor is any cell within " +
+           number_text(parameters_.escape) + " m: " + why(pose_.x, pose_.y);
   const auto g = near(goal_->x, goal_->y, parameters_.goal_tolerance);
   if (!g)
-    return "the goal (" + number_text(goal_->x) + ", " + number_text(goal_->y) +
-           ") is not passable: " + why(goal_->x, goal_->y);
+    return "the goal " + point_text(goal_->x, goal_->y) + " is not passable: " + why(goal_->x, goal_->y);
   start = {grid_->centre(*s), *s};
   goal = {grid_->centre(*g), *g};
   return "";

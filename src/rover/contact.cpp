@@ -6,6 +6,8 @@
 #include <sstream>
 #include <utility>
 
+#include "src/core/number_text.hpp"
+
 namespace desert_sim {
 
 namespace {
@@ -34,10 +36,10 @@ Hindrance Contact::missing_ground(const RoverState& state, const GroundSource& g
     const Point3 h = suspension_.hub(n, state);
     if (!ground.contains(h.x, h.y))
       return {RoverCondition::off_grid, 1,
-              text_of("wheel ", n, " is off the terrain at (", h.x, ", ", h.y, ")")};
+              text_of("wheel ", n, " is off the terrain at ", point_text(h.x, h.y))};
     if (!ground.elevation(h.x, h.y))
       return {RoverCondition::no_terrain, 1,
-              text_of("the elevation under wheel ", n, " is unknown at (", h.x, ", ", h.y, ")")};
+              text_of("the elevation under wheel ", n, " is unknown at ", point_text(h.x, h.y))};
   }
   return {};
 }
@@ -105,23 +107,23 @@ double Contact::load_share(const RoverState& state, int wheel) const {
 Hindrance Contact::at_wheel(const Point3& h, const Direction& way, const GroundSource& ground) const {
   const double r = rover_.wheel_radius, x = h.x + r * way.x, y = h.y + r * way.y;
   if (!ground.contains(x, y))
-    return {RoverCondition::off_grid, 1, text_of("the terrain ends at (", x, ", ", y, ")")};
+    return {RoverCondition::off_grid, 1, text_of("the terrain ends at ", point_text(x, y))};
   const std::optional<double> ahead = ground.elevation(x, y), here = ground.elevation(h.x, h.y);
   if (!ahead || !here)
-    return {RoverCondition::no_terrain, 1, text_of("the elevation is unknown at (", x, ", ", y, ")")};
+    return {RoverCondition::no_terrain, 1, text_of("the elevation is unknown at ", point_text(x, y))};
   const GroundPoint p = ground.at(x, y);
   if (p.obstacle > 0)
-    return {RoverCondition::blocked, 1 + p.obstacle, text_of("an obstacle is at (", x, ", ", y, ")")};
+    return {RoverCondition::blocked, 1 + p.obstacle, text_of("an obstacle is at ", point_text(x, y))};
   const double step = *ahead - *here - rover_.max_step;
   if (step > 0)
     return {RoverCondition::blocked, step,
-            text_of("a step of ", *ahead - *here, " m is at (", x, ", ", y, ") (at most ", rover_.max_step,
-                    " m)")};
+            text_of("a step of ", *ahead - *here, " m is at ", point_text(x, y), " (at most ",
+                    rover_.max_step, " m)")};
   const double water = p.water - rover_.max_water;
   if (water > 0)
-    return {
-        RoverCondition::blocked, water,
-        text_of("water is ", p.water, " m deep at (", x, ", ", y, ") (at most ", rover_.max_water, " m)")};
+    return {RoverCondition::blocked, water,
+            text_of("water is ", p.water, " m deep at ", point_text(x, y), " (at most ", rover_.max_water,
+                    " m)")};
   return {};
 }
 
@@ -137,7 +139,7 @@ Hindrance Contact::under_body(const RoverState& state, const GroundSource& groun
     const double excess = elevation ? *elevation - std::max(ground.at(p.x, p.y).sand_depth, 0.0) - p.z : 0;
     if (excess > worst.excess)
       worst = {RoverCondition::blocked, excess,
-               text_of("firm ground touches the body's underside at (", p.x, ", ", p.y, ")")};
+               text_of("firm ground touches the body's underside at ", point_text(p.x, p.y))};
   }
   return worst;
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "src/core/number_text.hpp"
 #include "src/testing/desert.hpp"
 
 namespace desert_sim::test {
@@ -34,9 +35,7 @@ std::string new_picture(const std::string& folder, std::uint64_t step) {
   return path;
 }
 
-std::ostream& operator<<(std::ostream& out, const Point& p) {
-  return out << "(" << p.x << ", " << p.y << ")";
-}
+std::ostream& operator<<(std::ostream& out, const Point& p) { return out << point_text(p.x, p.y); }
 
 }  // namespace
 

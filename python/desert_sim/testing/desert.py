@@ -190,7 +190,7 @@ class Desert:
         """The cost at a point is in a range; at_least=100 expects a lethal cell."""
         cost = self.cost(x, y)
         if not at_least <= cost <= at_most:
-            self._fail("cost", "the cost at (%g, %g) is %d (expected: %d ... %d)" % (x, y, cost, at_least, at_most), (x, y))
+            self._fail("cost", "the cost at (%s, %s) is %d (expected: %d ... %d)" % (x, y, cost, at_least, at_most), (x, y))
 
     def expect(self, happens, within, what, wait_for_command=False):
         """`happens()` is true now or after at most `within` steps; the number of steps that it took."""
@@ -210,7 +210,7 @@ class Desert:
             if steps < within:
                 self.step(1, wait_for_command=True)
         now, status = self.rover.pose(), self.rover.status()
-        return self._fail("rover_arrives", "after %d steps the rover is at (%.2f, %.2f), %.2f m from (%g, %g) (expected: at "
+        return self._fail("rover_arrives", "after %d steps the rover is at (%.2f, %.2f), %.2f m from (%s, %s) (expected: at "
                           "most %g m); it is %s%s, and got %d commands" % (
                               within, now.x, now.y, self.rover.distance_to(*goal), *goal, tolerance, status.state,
                               ": " + status.reason if status.reason else "", len(self._commands.messages)), goal)

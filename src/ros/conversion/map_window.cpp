@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "src/core/error.hpp"
+#include "src/core/number_text.hpp"
 #include "src/core/quoted.hpp"
 #include "src/ros/node/simulation_thread.hpp"
 
@@ -124,12 +125,11 @@ MapWindow window_of(const MapRegion& region, const Snapshot& s) {
 void require_inside(const MapWindow& w, const MapRegion& region, const Snapshot& s) {
   const bool inside = w.x0 >= 0 && w.y0 >= 0 && w.width <= s.width - w.x0 && w.height <= s.height - w.y0;
   if (inside) return;
-  std::ostringstream text;
-  text << "region: " << region.length_x << " x " << region.length_y << " m around (" << region.center_x
-       << ", " << region.center_y << ") is not inside the terrain, which reaches from (" << s.origin_x << ", "
-       << s.origin_y << ") to (" << s.origin_x + s.width * s.cell_size << ", "
-       << s.origin_y + s.height * s.cell_size << ")";
-  throw ConfigError(text.str());
+  throw ConfigError("region: " + coordinate_text(region.length_x) + " x " + coordinate_text(region.length_y) +
+                    " m around " + point_text(region.center_x, region.center_y) +
+                    " is not inside the terrain, which reaches from " + point_text(s.origin_x, s.origin_y) +
+                    " to " +
+                    point_text(s.origin_x + s.width * s.cell_size, s.origin_y + s.height * s.cell_size));
 }
 
 void require_map_size(const MapWindow& window, std::size_t layers, const std::string& what) {

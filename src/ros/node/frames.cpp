@@ -5,6 +5,8 @@
 #include <ros/names.h>
 #include <ros/node_handle.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "src/core/error.hpp"
@@ -16,6 +18,7 @@ namespace desert_sim {
 namespace {
 
 constexpr auto transform_timeout = std::chrono::milliseconds(200);
+constexpr double near = 16384;  // [m]: up to there float32 steps are at most a millimetre
 
 }  // namespace
 
@@ -27,6 +30,7 @@ void check_frame(std::string& frame, const std::string& key, ValidationErrors& e
 }
 
 Frames::Frames(std::string terrain_frame) : TerrainTransforms(std::move(terrain_frame), transform_timeout) {
+  view_.name = this->terrain_frame();
   ros::NodeHandle node;
   node.setCallbackQueue(&queue_);
   const auto subscribe = [&](const char* topic, bool is_static) {
@@ -79,6 +83,16 @@ void Frames::move_center(const Snapshot& s) {
   // If the node was told to end while it started, the broadcaster has no publisher, and tf2 asserts that it
   // has one.
   if (!ros::isShuttingDown()) broadcaster_->sendTransform(center);
+  const geometry_msgs::Vector3& at = center.transform.translation;
+  const double farthest = std::max({std::abs(s.origin_x), std::abs(s.origin_x + s.width * s.cell_size),
+                                    std::abs(s.origin_y), std::abs(s.origin_y + s.height * s.cell_size)});
+  const std::lock_guard<std::mutex> lock(view_mutex_);
+  view_ = farthest > near ? ViewFrame{center_name_, at.x, at.y, at.z} : ViewFrame{terrain_frame()};
+}
+
+ViewFrame Frames::view_frame() const {
+  const std::lock_guard<std::mutex> lock(view_mutex_);
+  return view_;
 }
 
 }  // namespace desert_sim

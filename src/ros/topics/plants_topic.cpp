@@ -27,10 +27,11 @@ std::vector<std::size_t> widest_plants(const std::vector<PlantRecord>& plants, i
 }
 
 /// Adds the triangles of a plant to a marker.
-void draw(const PlantRecord& plant, const PlantList& list, bool detailed, Marker& marker) {
+void draw(const PlantRecord& plant, const PlantList& list, const ViewFrame& frame, bool detailed,
+          Marker& marker) {
   std::vector<render::Point> corners;
-  render::add_plant({list.origin_x + plant.x, list.origin_y + plant.y, plant.z, plant.radius,
-                     list.species[plant.species].traits.stem, plant.health / 255.0},
+  render::add_plant({list.origin_x + plant.x - frame.x, list.origin_y + plant.y - frame.y, plant.z - frame.z,
+                     plant.radius, list.species[plant.species].traits.stem, plant.health / 255.0},
                     detailed, corners);
   for (const render::Point& corner : corners) {
     geometry_msgs::Point p;
@@ -135,11 +136,12 @@ class PlantMarkersTopic : public MessageTopic<visualization_msgs::MarkerArray> {
 
 visualization_msgs::MarkerArrayPtr PlantMarkersTopic::markers(const TerrainState& state, int count) {
   const PlantList& list = *state.plants;
+  const ViewFrame frame = view_frame();
   auto array = boost::make_shared<visualization_msgs::MarkerArray>();
   std::vector<std::string> names;
   for (const Species& species : list.species) names.push_back(species.name);
   if (names != shown_) {
-    Marker all = base_marker(state, frame(), "", 0);
+    Marker all = base_marker(state, frame.name, "", 0);
     all.action = Marker::DELETEALL;
     array->markers.push_back(all);
     shown_ = names;
@@ -147,7 +149,7 @@ visualization_msgs::MarkerArrayPtr PlantMarkersTopic::markers(const TerrainState
   std::vector<std::array<Marker, 2>> levels;
   for (const Species& species : list.species) {
     levels.push_back(
-        {base_marker(state, frame(), species.name, 0), base_marker(state, frame(), species.name, 1)});
+        {base_marker(state, frame.name, species.name, 0), base_marker(state, frame.name, species.name, 1)});
     for (Marker& marker : levels.back()) marker.color = crown_colour_of(species);
   }
   const std::vector<std::size_t> drawn = widest_plants(list.plants, count),
@@ -155,7 +157,7 @@ visualization_msgs::MarkerArrayPtr PlantMarkersTopic::markers(const TerrainState
   for (std::size_t n : drawn) {
     const PlantRecord& plant = list.plants[n];
     const bool detailed = std::binary_search(full.begin(), full.end(), n);
-    draw(plant, list, detailed, levels[plant.species][detailed ? 0 : 1]);
+    draw(plant, list, frame, detailed, levels[plant.species][detailed ? 0 : 1]);
   }
   for (auto& of_species : levels)
     for (Marker& marker : of_species) {

@@ -90,11 +90,11 @@ struct Sampling {
   }
 };
 
-Point point_at(const Snapshot& s, int x, int y, double z, const render::Colour& colour, float fifth,
-               float sixth) {
-  return {static_cast<float>(s.origin_x + (x + 0.5) * s.cell_size),
-          static_cast<float>(s.origin_y + (y + 0.5) * s.cell_size),
-          static_cast<float>(z),
+Point point_at(const Snapshot& s, const ViewFrame& frame, int x, int y, double z,
+               const render::Colour& colour, float fifth, float sixth) {
+  return {static_cast<float>(s.origin_x + (x + 0.5) * s.cell_size - frame.x),
+          static_cast<float>(s.origin_y + (y + 0.5) * s.cell_size - frame.y),
+          static_cast<float>(z - frame.z),
           packed_rgb(colour),
           {fifth, sixth}};
 }
@@ -103,7 +103,7 @@ float value(const std::vector<float>* layer, std::size_t i) { return layer ? (*l
 
 /// One row of the cloud for each row of samples. Fields, float32: x, y, z [m], rgb (the colour of the
 /// material, lit from the west-north-west), sand [m], wind_shadow [0…1].
-sensor_msgs::PointCloud2Ptr point_cloud(const TerrainState& state, const std::string& frame, int count) {
+sensor_msgs::PointCloud2Ptr point_cloud(const TerrainState& state, const ViewFrame& frame, int count) {
   const Snapshot& s = *state.snapshot;
   const Sampling sampling(s, count);
   const SurfaceColour colour(s, sampling.stride / 2);
@@ -112,16 +112,17 @@ sensor_msgs::PointCloud2Ptr point_cloud(const TerrainState& state, const std::st
   std::vector<Point> points;
   points.reserve(static_cast<std::size_t>(sampling.columns) * static_cast<std::size_t>(sampling.rows));
   sampling.for_each(s, [&](int x, int y, std::size_t i) {
-    points.push_back(point_at(s, x, y, elevation[i], colour.at(x, y), value(sand, i), value(shadow, i)));
+    points.push_back(
+        point_at(s, frame, x, y, elevation[i], colour.at(x, y), value(sand, i), value(shadow, i)));
   });
-  const auto cloud = empty_cloud(state, frame, "sand", "wind_shadow");
+  const auto cloud = empty_cloud(state, frame.name, "sand", "wind_shadow");
   fill_cloud(*cloud, sampling.columns, sampling.rows, points);
   return cloud;
 }
 
 /// The surface of the water at those of the same samples that are under more than a centimetre of it, in the
 /// same order, in a cloud of one row. Fields, float32: x, y, z [m], rgb (by depth), depth [m], speed [m/s].
-sensor_msgs::PointCloud2Ptr water_cloud(const TerrainState& state, const std::string& frame, int count) {
+sensor_msgs::PointCloud2Ptr water_cloud(const TerrainState& state, const ViewFrame& frame, int count) {
   constexpr float min_depth = 0.01f;  // [m]
   const Snapshot& s = *state.snapshot;
   const std::vector<float>& elevation = s.layers.at(Layer::elevation);
@@ -132,10 +133,10 @@ sensor_msgs::PointCloud2Ptr water_cloud(const TerrainState& state, const std::st
     Sampling(s, count).for_each(s, [&](int x, int y, std::size_t i) {
       const float depth = (*water)[i];
       if (depth <= min_depth) return;
-      points.push_back(point_at(s, x, y, elevation[i] + depth, render::water_colour(depth), depth,
+      points.push_back(point_at(s, frame, x, y, elevation[i] + depth, render::water_colour(depth), depth,
                                 std::hypot(value(u, i), value(v, i))));
     });
-  const auto cloud = empty_cloud(state, frame, "depth", "speed");
+  const auto cloud = empty_cloud(state, frame.name, "depth", "speed");
   fill_cloud(*cloud, static_cast<int>(points.size()), 1, points);
   return cloud;
 }
@@ -149,7 +150,7 @@ class PointsTopic : public MessageTopic<sensor_msgs::PointCloud2> {
             Layer::water,     Layer::vegetation, Layer::plants,      Layer::obstacle};
   }
   bool publish(const TerrainState& state) override {
-    publisher_.publish(point_cloud(state, frame(), parameters().topics.points_count));
+    publisher_.publish(point_cloud(state, view_frame(), parameters().topics.points_count));
     return true;
   }
 };
@@ -162,7 +163,7 @@ class WaterPointsTopic : public MessageTopic<sensor_msgs::PointCloud2> {
     return {Layer::elevation, Layer::water, Layer::water_velocity_x, Layer::water_velocity_y};
   }
   bool publish(const TerrainState& state) override {
-    publisher_.publish(water_cloud(state, frame(), parameters().topics.points_count));
+    publisher_.publish(water_cloud(state, view_frame(), parameters().topics.points_count));
     return true;
   }
 };

@@ -138,6 +138,7 @@ class Topic {
   const TopicContext& context() const { return context_; }
   const PublisherSetup& parameters() const { return context_.parameters; }
   const std::string& frame() const { return context_.frames.terrain_frame(); }
+  ViewFrame view_frame() const { return context_.frames.view_frame(); }
 
   const Topic* updates() const { return updates_; }
   SteadyClock::time_point now() const { return context_.simulation.clock().now(); }

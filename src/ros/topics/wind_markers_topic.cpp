@@ -54,16 +54,16 @@ std::string clock_text(const Snapshot& s) {
   return text;
 }
 
-Marker clock_marker(const TerrainState& state, const std::string& frame) {
+Marker clock_marker(const TerrainState& state, const ViewFrame& frame) {
   const Snapshot& s = *state.snapshot;
   const std::vector<float>& z = s.layers.at(Layer::elevation);
   const double width = s.width * s.cell_size, height = s.height * s.cell_size,
                size = 0.04 * std::max(width, height);
-  Marker m = base_marker(state, frame, "clock", 0, Marker::TEXT_VIEW_FACING);
+  Marker m = base_marker(state, frame.name, "clock", 0, Marker::TEXT_VIEW_FACING);
   m.text = clock_text(s);
-  m.pose.position.x = s.origin_x + 0.5 * width;
-  m.pose.position.y = s.origin_y + height;
-  m.pose.position.z = *std::max_element(z.begin(), z.end()) + 2 * size;
+  m.pose.position.x = s.origin_x + 0.5 * width - frame.x;
+  m.pose.position.y = s.origin_y + height - frame.y;
+  m.pose.position.z = *std::max_element(z.begin(), z.end()) + 2 * size - frame.z;
   m.scale.z = size;
   m.color.r = m.color.g = m.color.b = 1;
   return m;
@@ -72,8 +72,9 @@ Marker clock_marker(const TerrainState& state, const std::string& frame) {
 /// Places arrows of the wind on cells that are `spacing` metres apart.
 class Arrows {
  public:
-  Arrows(const Snapshot& s, double spacing)
+  Arrows(const Snapshot& s, const ViewFrame& frame, double spacing)
       : s_(s),
+        frame_(frame),
         spacing_(spacing),
         z_(s.layers.at(Layer::elevation)),
         water_(s.find(Layer::water)),
@@ -90,9 +91,9 @@ class Arrows {
     const double yaw = std::atan2(wind_y, wind_x);
     m.scale.x = spacing_ * std::clamp(0.75 * speed / reference_, 0.02, 1.5);
     m.scale.y = m.scale.z = 0.09 * spacing_;
-    m.pose.position.x = s_.origin_x + (x + 0.5) * s_.cell_size;
-    m.pose.position.y = s_.origin_y + (y + 0.5) * s_.cell_size;
-    m.pose.position.z = highest_below(x, y, yaw, m.scale.x) + 0.2 * spacing_;
+    m.pose.position.x = s_.origin_x + (x + 0.5) * s_.cell_size - frame_.x;
+    m.pose.position.y = s_.origin_y + (y + 0.5) * s_.cell_size - frame_.y;
+    m.pose.position.z = highest_below(x, y, yaw, m.scale.x) + 0.2 * spacing_ - frame_.z;
     m.pose.orientation.z = std::sin(0.5 * yaw);
     m.pose.orientation.w = std::cos(0.5 * yaw);
     m.color = speed_colour(speed / reference_);
@@ -115,6 +116,7 @@ class Arrows {
   }
 
   const Snapshot& s_;
+  const ViewFrame& frame_;
   const double spacing_;
   double reference_;  ///< speed of the high-altitude wind; 1 in a calm [m/s]
   const std::vector<float>&z_, *water_, *u_, *v_;
@@ -139,6 +141,7 @@ class WindMarkersTopic : public MessageTopic<visualization_msgs::MarkerArray> {
   /// first.
   visualization_msgs::MarkerArrayPtr markers(const TerrainState& state, int count) {
     const Snapshot& s = *state.snapshot;
+    const ViewFrame frame = view_frame();
     int spacing = 1;  // cells
     while (static_cast<std::int64_t>(std::max(1, s.width / spacing)) * std::max(1, s.height / spacing) >
            count)
@@ -146,22 +149,22 @@ class WindMarkersTopic : public MessageTopic<visualization_msgs::MarkerArray> {
     const int columns = std::max(1, s.width / spacing), rows = std::max(1, s.height / spacing);
     auto array = boost::make_shared<visualization_msgs::MarkerArray>();
     if (columns != columns_ || rows != rows_) {
-      Marker all = base_marker(state, frame(), "wind", 0, Marker::ARROW);
+      Marker all = base_marker(state, frame.name, "wind", 0, Marker::ARROW);
       all.action = Marker::DELETEALL;
       array->markers.push_back(all);
     }
     columns_ = columns;
     rows_ = rows;
 
-    const Arrows arrows(s, spacing * s.cell_size);
+    const Arrows arrows(s, frame, spacing * s.cell_size);
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column) {
-        Marker m = base_marker(state, frame(), "wind", row * columns + column, Marker::ARROW);
+        Marker m = base_marker(state, frame.name, "wind", row * columns + column, Marker::ARROW);
         arrows.set_arrow(m, (2 * column + 1) * s.width / (2 * columns),
                          (2 * row + 1) * s.height / (2 * rows));
         array->markers.push_back(m);
       }
-    array->markers.push_back(clock_marker(state, frame()));
+    array->markers.push_back(clock_marker(state, frame));
     return array;
   }
 

@@ -193,7 +193,7 @@ TEST_F(Planner, SaysWhyThereIsNoPath) {
   edit("obstacle", "replace", 0, 60, 10, 2, 2);
   action_.sendGoal(goal_at(1000, 10));
   ASSERT_TRUE(wait_until([this] { return action_.getState().isDone(); }));
-  EXPECT_NE(action_.getState().getText().find("refused: the goal (1e+03, 10) is off the terrain"),
+  EXPECT_NE(action_.getState().getText().find("refused: the goal (1000, 10) is off the terrain"),
             std::string::npos)
       << action_.getState().getText();
 }

@@ -114,6 +114,35 @@ TEST(Topics, WindIsAveragedOverBlocksAndKeepsItsCorner) {
   }
 }
 
+/// Coordinates of UTM in float32 would leave 21 rows of 50 apart.
+TEST(Topics, FarTerrainIsShownInTheFrameOfItsMiddle) {
+  sensor_msgs::PointCloud2 cloud = Listener<sensor_msgs::PointCloud2>("/far/points").last();
+  EXPECT_EQ(cloud.header.frame_id, "far/terrain_center");
+  ASSERT_EQ(cloud.width * cloud.height, 64u * 50u);
+  std::set<float> columns, rows;
+  for (sensor_msgs::PointCloud2ConstIterator<float> x(cloud, "x"); x != x.end(); ++x) {
+    columns.insert(x[0]);
+    rows.insert(x[1]);
+    EXPECT_NEAR(x[2], 0, 1e-3) << "below the mean elevation";
+  }
+  EXPECT_EQ(columns.size(), 64u);
+  EXPECT_EQ(rows.size(), 50u);
+  EXPECT_NEAR(*columns.begin(), -6.3, 1e-5);
+  EXPECT_NEAR(*rows.rbegin(), 4.9, 1e-5);
+  tf2_ros::Buffer buffer;
+  tf2_ros::TransformListener listener(buffer);
+  ASSERT_TRUE(wait_until([&] { return buffer.canTransform("utm", "far/terrain_center", ros::Time(0)); }));
+  const auto middle = buffer.lookupTransform("utm", "far/terrain_center", ros::Time(0)).transform.translation;
+  EXPECT_NEAR(middle.x, 500000.25 + 6.4, 1e-6);
+  EXPECT_NEAR(middle.y, 5300000.5 + 5, 1e-6);
+  EXPECT_NEAR(middle.z, 431.5, 1e-4);
+  for (const auto& m : Listener<visualization_msgs::MarkerArray>("/far/wind_markers").last().markers) {
+    if (m.action != visualization_msgs::Marker::ADD) continue;
+    EXPECT_EQ(m.header.frame_id, "far/terrain_center");
+    EXPECT_LT(std::max(std::abs(m.pose.position.x), std::abs(m.pose.position.y)), 6.5) << m.ns;
+  }
+}
+
 TEST(Topics, PointsLieOnTheSurface) {
   sensor_msgs::PointCloud2 cloud = Listener<sensor_msgs::PointCloud2>("points").last();
   EXPECT_EQ(cloud.header.frame_id, "terrain");
