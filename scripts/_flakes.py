@@ -17,6 +17,7 @@ import threading
 
 STOPS = (0.02, 0.1, 0.5, 2)  # [s] for which a process stands still
 PAUSE = 0.3                  # [s], at most, between two of them
+HELD = "/tmp/desert_sim_held.%d"  # is there while a test itself keeps this process stopped
 LOGGED = re.compile(r"^\d+/\d+ (?:Testing|Test): (\S+)\n(.*?)(?=^\d+/\d+ Testing: |\Z)", re.M | re.S)
 
 
@@ -50,11 +51,23 @@ class Stops(threading.Thread):
             processes = descendants(self.root)
             if not processes:
                 continue
-            process = random.choice(processes)
-            with contextlib.suppress(ProcessLookupError):  # it has ended since
+            self.stop(random.choice(processes))
+
+    def stop(self, process):
+        """Stops a process for a while, unless a test holds it: test/support/ros/child_process.hpp, node_tests.held()."""
+        held = HELD % process
+        if os.path.exists(held):
+            return
+        with contextlib.suppress(ProcessLookupError):  # it has ended since
+            os.kill(process, signal.SIGSTOP)
+            self.count += 1
+            self.over.wait(random.choice(STOPS))
+            if not os.path.exists(held):
+                os.kill(process, signal.SIGCONT)
+            while os.path.exists(held):  # since a moment ago: it is the test that continues it
                 os.kill(process, signal.SIGSTOP)
-                self.count += 1
-                self.over.wait(random.choice(STOPS))
+                if os.path.exists(held):
+                    break
                 os.kill(process, signal.SIGCONT)
 
     def end(self):

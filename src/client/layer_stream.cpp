@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "src/client/ros_time.hpp"
+
 namespace desert_sim {
 
 LayerStream::LayerStream(StreamContext& context, std::string layer, Topics topics)
@@ -47,7 +49,7 @@ void LayerStream::publish_change(const MapChange& change, const ros::Time* updat
     static_cast<StreamCounts&>(statistics_) = counts;
     up_to_date_ = assembler_.map() && assembler_.need() != KeyframeNeed::lost;
     if (change.map) map_ = change.map;
-    if (change.map && update_stamp) note_latency((ros::Time::now() - *update_stamp).toSec());
+    if (change.map && update_stamp) note_latency(seconds_between(*update_stamp, ros::Time::now()));
     context_.changed.notify_all();
   }
   if (!refusal.empty())

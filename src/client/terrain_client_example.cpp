@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
       });
 
   std::optional<double> printed;
-  for (ros::Rate rate(10); ros::ok(); rate.sleep()) {
+  for (ros::WallRate rate(10); ros::ok(); rate.sleep()) {
     ros::spinOnce();
     const auto map = terrain.map();  // all queries use the map of one moment
     const std::optional<double> z = map->elevation(x, y);

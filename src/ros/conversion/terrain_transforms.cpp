@@ -18,7 +18,7 @@ tf2::Transform TerrainTransforms::lookup(const std::string& frame, const ros::Ti
 
 tf2::Transform TerrainTransforms::to_terrain(const std_msgs::Header& header) const {
   const std::string& given = header.frame_id;
-  const std::string frame = !given.empty() && given[0] == '/' ? given.substr(1) : given;
+  const std::string frame = frame_name(given);
   if (frame.empty() || frame == terrain_frame_) return tf2::Transform::getIdentity();
   const auto end = std::chrono::steady_clock::now() + patience_;
   while (true) {

@@ -11,6 +11,11 @@
 
 namespace desert_sim {
 
+/// The name of a frame without the '/' before it, which tf2 does not know, but messages of older programs have.
+inline std::string frame_name(const std::string& given) {
+  return !given.empty() && given[0] == '/' ? given.substr(1) : given;
+}
+
 /// Safe to use from several threads.
 class TerrainTransforms {
  public:
@@ -34,8 +39,9 @@ class TerrainTransforms {
   void add(const geometry_msgs::TransformStamped& transform, const std::string& sender, bool is_static) {
     buffer_.setTransform(transform, sender, is_static);
   }
-  /// Forgets all transforms that are not static.
-  void clear() { buffer_.clear(); }
+
+ protected:
+  tf2::BufferCore& buffer() { return buffer_; }
 
  private:
   tf2::Transform lookup(const std::string& frame, const ros::Time& time) const;

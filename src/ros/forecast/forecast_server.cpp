@@ -47,8 +47,7 @@ ForecastServer::ForecastServer(const ros::NodeHandle& node, SimulationThread& si
       answer_timeout_(answer_timeout),
       server_(
           node, "forecast", [this](const GoalHandle& goal) { take_goal(goal); },
-          [](const GoalHandle&) {},  // the thread sees it in the goal's status
-          false) {
+          [](const GoalHandle&) {}) {  // the thread sees it in the goal's status
   ros::NodeHandle topics(node, "forecast");
   const auto joined = [this](const ros::SingleSubscriberPublisher&) {
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -6,7 +6,6 @@
 /// the present state between two steps of the simulation; the copy's steps are made by threads of the lowest
 /// priority (on a GPU in a stream of the lowest), which hold no lock that others wait for.
 
-#include <actionlib/server/action_server.h>
 #include <desert_sim/ForecastTerrainAction.h>
 #include <ros/node_handle.h>
 
@@ -19,6 +18,7 @@
 #include <string>
 #include <thread>
 
+#include "src/ros/node/action_server.hpp"
 #include "src/ros/node/frames.hpp"
 #include "src/ros/node/simulation_thread.hpp"
 #include "src/ros/topics/topic_publisher.hpp"
@@ -48,8 +48,7 @@ class ForecastServer {
 
  private:
   using Clock = std::chrono::steady_clock;
-  using ActionServer = actionlib::ActionServer<ForecastTerrainAction>;
-  using GoalHandle = ActionServer::GoalHandle;
+  using GoalHandle = ActionServer<ForecastTerrainAction>::GoalHandle;
   struct Goal {
     GoalHandle handle;
     ForecastOptions options;
@@ -95,7 +94,7 @@ class ForecastServer {
   std::uint64_t shown_change_ = 0;  ///< that the topics begin with
 
   ros::Publisher maps_, costmap_;
-  ActionServer server_;
+  ActionServer<ForecastTerrainAction> server_;
   std::thread thread_;
 };
 

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "src/client/ros_time.hpp"
+
 namespace desert_sim {
 
 namespace {
@@ -58,7 +60,7 @@ Diagnostics::Diagnostics(ros::NodeHandle node, double period, SimulationThread& 
 
 void Diagnostics::update() {
   ask_master();
-  if (diagnostics_.getNumSubscribers() == 0) return;
+  if (diagnostics_.getNumSubscribers() == 0 || is_near_the_last_time(ros::Time::now())) return;
   report_.reset();
   try {
     std::future<StatusReport> answer = simulation_.report(false);

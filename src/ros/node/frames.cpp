@@ -1,16 +1,13 @@
 #include "src/ros/node/frames.hpp"
 
-#include <ros/console.h>
 #include <ros/init.h>
 #include <ros/names.h>
-#include <ros/node_handle.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "src/core/error.hpp"
-#include "src/core/quoted.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -29,39 +26,9 @@ void check_frame(std::string& frame, const std::string& key, ValidationErrors& e
     errors.add(key, "'" + frame + "' is not a valid frame name" + (reason.empty() ? "" : ": " + reason));
 }
 
-Frames::Frames(std::string terrain_frame) : TerrainTransforms(std::move(terrain_frame), transform_timeout) {
+Frames::Frames(std::string terrain_frame)
+    : TerrainTransforms(std::move(terrain_frame), transform_timeout), listener_(buffer()) {
   view_.name = this->terrain_frame();
-  ros::NodeHandle node;
-  node.setCallbackQueue(&queue_);
-  const auto subscribe = [&](const char* topic, bool is_static) {
-    const boost::function<void(const TransformEvent&)> callback =
-        [this, is_static](const TransformEvent& event) { receive(event, is_static); };
-    return node.subscribe<tf2_msgs::TFMessage>(topic, 100, callback);
-  };
-  transforms_ = subscribe("/tf", false);
-  static_transforms_ = subscribe("/tf_static", true);
-  spinner_.start();
-}
-
-Frames::~Frames() { spinner_.stop(); }
-
-/// Does what tf2_ros::TransformListener does, which throws out of its thread, and so ends the process, where
-/// the clock goes back by more than 2^31 s.
-void Frames::receive(const TransformEvent& event, bool is_static) {
-  const ros::Time now = ros::Time::now();
-  if (now < last_received_) {
-    ROS_WARN("ROS time has jumped back: the transforms that were received before it are forgotten.");
-    clear();
-  }
-  last_received_ = now;
-  for (const geometry_msgs::TransformStamped& transform : event.getConstMessage()->transforms) {
-    try {
-      add(transform, event.getPublisherName(), is_static);
-    } catch (const std::exception& e) {
-      ROS_ERROR_THROTTLE(10, "A transform to frame %s is ignored: %s",
-                         quoted(transform.child_frame_id).c_str(), e.what());
-    }
-  }
 }
 
 void Frames::announce_center(const std::string& name, const Snapshot& snapshot) {

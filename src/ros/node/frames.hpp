@@ -2,11 +2,6 @@
 /// Frames: transforms to the terrain's frame as they are published, a static frame in the middle of the
 /// terrain, and names of frames.
 
-#include <ros/callback_queue.h>
-#include <ros/message_event.h>
-#include <ros/spinner.h>
-#include <ros/subscriber.h>
-#include <tf2_msgs/TFMessage.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 
 #include <memory>
@@ -14,6 +9,7 @@
 #include <string>
 
 #include "src/ros/conversion/terrain_transforms.hpp"
+#include "src/ros/conversion/transform_listener.hpp"
 #include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
@@ -34,7 +30,6 @@ class Frames : public TerrainTransforms {
  public:
   /// Listens to /tf and /tf_static on a thread of its own.
   explicit Frames(std::string terrain_frame);
-  ~Frames();
 
   /// Publishes the static frame `name` in the middle of the terrain, at its mean elevation.
   void announce_center(const std::string& name, const Snapshot& snapshot);
@@ -47,13 +42,7 @@ class Frames : public TerrainTransforms {
   ViewFrame view_frame() const;
 
  private:
-  using TransformEvent = ros::MessageEvent<const tf2_msgs::TFMessage>;
-  void receive(const TransformEvent& event, bool is_static);
-
-  ros::Time last_received_;  ///< of receive() alone
-  ros::CallbackQueue queue_;
-  ros::Subscriber transforms_, static_transforms_;
-  ros::AsyncSpinner spinner_{1, &queue_};
+  TransformListener listener_;
   std::string center_name_;
   mutable std::mutex view_mutex_;
   ViewFrame view_;  ///< guarded by view_mutex_

@@ -3,6 +3,7 @@
 #include <tf2_geometry_msgs/tf2_geometry_msgs.h>
 
 #include "src/core/error.hpp"
+#include "src/ros/conversion/terrain_transforms.hpp"
 #include "src/ros/planner/planner_server.hpp"
 
 namespace desert_sim {
@@ -38,11 +39,11 @@ void PlannerServer::set_goal(const geometry_msgs::PoseStamped& goal) {
   const std::string terrain = terrain_.frame();
   const double yaw_given = yaw_of(goal.pose.orientation, "the goal's orientation");
   PlanarPose pose{goal.pose.position.x, goal.pose.position.y, yaw_given};
-  if (!terrain.empty() && !goal.header.frame_id.empty() && goal.header.frame_id != terrain) {
+  const std::string given = frame_name(goal.header.frame_id);
+  if (!terrain.empty() && !given.empty() && given != terrain) {
     try {
       // The latest transform: a goal is a place, whenever it was said.
-      const auto t =
-          transforms_.lookupTransform(terrain, goal.header.frame_id, ros::Time(0), ros::Duration(0));
+      const auto t = transforms_.lookupTransform(terrain, given, ros::Time(0));
       tf2::doTransform(goal, in_terrain, t);
     } catch (const tf2::TransformException& e) {
       throw ConfigError("the goal's frame '" + goal.header.frame_id + "' has no transform to '" + terrain +
@@ -62,7 +63,7 @@ void PlannerServer::set_goal(const geometry_msgs::PoseStamped& goal) {
 void PlannerServer::receive_goal(const geometry_msgs::PoseStampedConstPtr& goal) {
   try {
     set_goal(*goal);
-    if (action_->isActive()) action_->setPreempted({}, "another goal came by topic");
+    if (action_is_active()) action_goal_.setCanceled({}, "another goal came by topic");
   } catch (const ConfigError& e) {
     ROS_WARN("move_base_simple/goal: a goal was refused: %s", e.what());
     refusal_ = "move_base_simple/goal: " + std::string(e.what());
@@ -70,21 +71,23 @@ void PlannerServer::receive_goal(const geometry_msgs::PoseStampedConstPtr& goal)
   publish_status(false);
 }
 
-void PlannerServer::receive_action_goal() {
-  const geometry_msgs::PoseStamped goal = action_->acceptNewGoal()->target_pose;
+void PlannerServer::receive_action_goal(MoveBaseGoal goal) {
+  if (action_is_active()) action_goal_.setCanceled({}, "another goal was received");
+  action_goal_ = goal;
+  action_goal_.setAccepted();
   try {
-    set_goal(goal);
+    set_goal(goal.getGoal()->target_pose);
   } catch (const ConfigError& e) {
     ROS_WARN("move_base: a goal was refused: %s", e.what());
     refusal_ = "move_base: " + std::string(e.what());
     navigator_.cancel("another goal came, and was refused");
-    action_->setAborted({}, std::string("refused: ") + e.what());
+    action_goal_.setAborted({}, std::string("refused: ") + e.what());
   }
   publish_status(false);
 }
 
-void PlannerServer::receive_preemption() {
-  if (action_->isNewGoalAvailable()) return;  // the new goal takes its place
+void PlannerServer::receive_action_cancel(const MoveBaseGoal& goal) {
+  if (!action_is_active() || action_goal_ != goal) return;
   navigator_.cancel("the client of move_base has cancelled the goal");
   send({});
   end_action();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "src/client/ros_time.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -60,7 +61,7 @@ nav_msgs::Path path_message(const GridPath& path, const std::vector<TimedPoint>&
   for (std::size_t n = 0; n < points.size(); ++n) {
     geometry_msgs::PoseStamped pose;
     pose.header = message.header;
-    if (!schedule.empty()) pose.header.stamp = ros::Time(std::max(schedule[n].arrival, 0.0));
+    if (!schedule.empty()) pose.header.stamp = nearest_time(schedule[n].arrival);
     pose.pose.position.x = points[n].x;
     pose.pose.position.y = points[n].y;
     if (elevation) pose.pose.position.z = elevation->value(points[n].x, points[n].y).value_or(0);

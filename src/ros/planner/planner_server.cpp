@@ -10,6 +10,7 @@
 
 #include <algorithm>
 
+#include "src/client/ros_time.hpp"
 #include "src/client/service_call.hpp"
 #include "src/core/error.hpp"
 
@@ -42,7 +43,6 @@ PlannerServer::PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle&
       setup_(read_planner_setup(private_node)),
       lockstep_(setup_.node.clock == RoverClock::lockstep),
       navigator_(setup_.planner),
-      transform_listener_(transforms_),
       terrain_(setup_) {
   node_.setCallbackQueue(&queue_);
   private_node_.setCallbackQueue(&queue_);
@@ -67,9 +67,9 @@ PlannerServer::PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle&
       forecast_client_ = std::make_unique<ForecastClient>(node_, name, false);
   }
   cancel_server_ = private_node_.advertiseService("cancel", &PlannerServer::cancel, this);
-  action_ = std::make_unique<MoveBaseServer>(node_, "move_base", false);
-  action_->registerGoalCallback([this] { receive_action_goal(); });
-  action_->registerPreemptCallback([this] { receive_preemption(); });
+  action_ = std::make_unique<MoveBaseServer>(
+      node_, "move_base", [this](const MoveBaseGoal& goal) { receive_action_goal(goal); },
+      [this](const MoveBaseGoal& goal) { receive_action_cancel(goal); });
   action_->start();
   publish_status(true);
   thread_ = std::thread([this] { run(); });
@@ -165,7 +165,7 @@ bool PlannerServer::pose_by_tf(PlanarPose& pose, std::string& problem) {
   try {
     const auto t = transforms_.lookupTransform(terrain, setup_.base_frame(), ros::Time(0));
     pose = {t.transform.translation.x, t.transform.translation.y, tf2::getYaw(t.transform.rotation)};
-    const double age = (ros::Time::now() - t.header.stamp).toSec();
+    const double age = seconds_between(t.header.stamp, ros::Time::now());
     if (age <= setup_.node.pose_age) return true;
     problem = "the rover's pose is " + std::to_string(age) +
               " s old (pose_age: " + std::to_string(setup_.node.pose_age) + ")";
@@ -185,14 +185,14 @@ void PlannerServer::act(double time, const PlanarPose& pose, std::optional<std::
     plan_time_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   send(command);
   publish_path();
-  if (action_->isActive()) {
+  if (action_is_active()) {
     move_base_msgs::MoveBaseFeedback feedback;
     feedback.base_position.header.frame_id = terrain_.frame();
     feedback.base_position.header.stamp = ros::Time::now();
     feedback.base_position.pose.position.x = pose.x;
     feedback.base_position.pose.position.y = pose.y;
     feedback.base_position.pose.orientation = yaw_quaternion(pose.yaw);
-    action_->publishFeedback(feedback);
+    action_goal_.publishFeedback(feedback);
   }
   end_action();
   publish_status(step.has_value());
@@ -246,15 +246,21 @@ void PlannerServer::publish_status(bool always) {
   status_publisher_.publish(m);
 }
 
+bool PlannerServer::action_is_active() {
+  if (!action_goal_.getGoal()) return false;
+  const auto status = action_goal_.getGoalStatus().status;
+  return status == actionlib_msgs::GoalStatus::ACTIVE || status == actionlib_msgs::GoalStatus::PREEMPTING;
+}
+
 void PlannerServer::end_action() {
-  if (!action_->isActive() || navigator_.active()) return;
+  if (!action_is_active() || navigator_.active()) return;
   const NavigatorStatus& s = navigator_.status();
   if (s.state == NavigatorState::arrived)
-    action_->setSucceeded({}, "arrived");
+    action_goal_.setSucceeded({}, "arrived");
   else if (s.state == NavigatorState::cancelled)
-    action_->setPreempted({}, s.reason);
+    action_goal_.setCanceled({}, s.reason);
   else
-    action_->setAborted({}, std::string(navigator_states[static_cast<int>(s.state)]) + ": " + s.reason);
+    action_goal_.setAborted({}, std::string(navigator_states[static_cast<int>(s.state)]) + ": " + s.reason);
 }
 
 }  // namespace desert_sim

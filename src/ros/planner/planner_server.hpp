@@ -3,7 +3,6 @@
 /// terrain and transforms happens on one thread.
 
 #include <actionlib/client/simple_action_client.h>
-#include <actionlib/server/simple_action_server.h>
 #include <desert_sim/ForecastTerrainAction.h>
 #include <desert_sim/RoverStatus.h>
 #include <geometry_msgs/PoseStamped.h>
@@ -12,8 +11,7 @@
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <std_srvs/Trigger.h>
-#include <tf2_ros/buffer.h>
-#include <tf2_ros/transform_listener.h>
+#include <tf2/buffer_core.h>
 
 #include <atomic>
 #include <chrono>
@@ -24,6 +22,8 @@
 #include <string>
 #include <thread>
 
+#include "src/ros/conversion/transform_listener.hpp"
+#include "src/ros/node/action_server.hpp"
 #include "src/ros/planner/planner_messages.hpp"
 #include "src/ros/planner/planner_terrain.hpp"
 
@@ -40,7 +40,8 @@ class PlannerServer {
   std::string failure() const;
 
  private:
-  using MoveBaseServer = actionlib::SimpleActionServer<move_base_msgs::MoveBaseAction>;
+  using MoveBaseServer = ActionServer<move_base_msgs::MoveBaseAction>;
+  using MoveBaseGoal = MoveBaseServer::GoalHandle;
   using ForecastClient = actionlib::SimpleActionClient<ForecastTerrainAction>;
   static constexpr double patience = 0.05;  ///< [s] of wall time until it looks whether it has to end
 
@@ -57,8 +58,8 @@ class PlannerServer {
   void receive_rover_status(const RoverStatusConstPtr& status);
   void receive_truth(const nav_msgs::OdometryConstPtr& truth);
   void receive_goal(const geometry_msgs::PoseStampedConstPtr& goal);
-  void receive_action_goal();
-  void receive_preemption();
+  void receive_action_goal(MoveBaseGoal goal);
+  void receive_action_cancel(const MoveBaseGoal& goal);
   void take_forecast(const Forecast& forecast);
   bool cancel(std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response);
   /// Throws ConfigError for a goal that is refused.
@@ -69,6 +70,7 @@ class PlannerServer {
   void send(const DriveCommand& command);
   void publish_path();
   void publish_status(bool always);
+  bool action_is_active();
   void end_action();
 
   ros::CallbackQueue queue_;
@@ -76,8 +78,8 @@ class PlannerServer {
   const PlannerSetup setup_;
   const bool lockstep_;
   Navigator navigator_;
-  tf2_ros::Buffer transforms_;
-  tf2_ros::TransformListener transform_listener_;
+  tf2::BufferCore transforms_;
+  TransformListener transform_listener_{transforms_};
 
   std::map<std::uint64_t, RoverStatusConstPtr> statuses_;  ///< in lockstep, by step of the terrain
   std::map<ros::Time, nav_msgs::OdometryConstPtr> truths_;
@@ -98,6 +100,7 @@ class PlannerServer {
   ros::ServiceServer cancel_server_;
   std::string drive_service_;  ///< in lockstep
   std::unique_ptr<MoveBaseServer> action_;
+  MoveBaseGoal action_goal_;  ///< the last one that was accepted
   std::unique_ptr<ForecastClient> forecast_client_;
   PlannerTerrain terrain_;
   mutable std::mutex failure_mutex_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "src/client/ros_time.hpp"
 #include "src/core/constants.hpp"
 #include "src/ros/rover/rover_messages.hpp"
 #include "src/rover/state_file.hpp"
@@ -92,9 +93,11 @@ RoverServer::RoverServer(const ros::NodeHandle& node, const ros::NodeHandle& pri
   updater_.setHardwareID("desert_rover");
   updater_.add("rover", [this](auto& status) { diagnose(status); });
   updater_.add("terrain", [this](auto& status) { diagnose_terrain(status); });
-  diagnostic_timer_ =
-      private_node_.createWallTimer(ros::WallDuration(setup_.node.diagnostic_period),
-                                    [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+  diagnostic_timer_ = private_node_.createWallTimer(ros::WallDuration(setup_.node.diagnostic_period),
+                                                    [this](const ros::WallTimerEvent&) {
+                                                      if (!is_near_the_last_time(ros::Time::now()))
+                                                        updater_.force_update();
+                                                    });
   publisher_.publish_status(status());
   spinner_.start();
   thread_ = std::thread([this] { run(); });
@@ -140,7 +143,7 @@ void RoverServer::run_as_ros_time_passes() {
       tell_status();
       continue;
     }
-    const double seconds = last.isZero() ? 0 : std::clamp((now - last).toSec(), 0.0, longest_pause);
+    const double seconds = last.isZero() ? 0 : std::clamp(seconds_between(last, now), 0.0, longest_pause);
     last = now;
     advance(seconds, terrain_.newest(), now);
   }

@@ -212,7 +212,7 @@ TEST_F(Panel, ShowsThatTheNodeHasVanishedAndIsBack) {
 /// A node that is stopped, as by a debugger, answers nothing and holds its connections. It is stopped until
 /// the panel has gone: if that waited for the node, this would not end.
 TEST_F(Panel, NeverWaitsForANodeThatHangs) {
-  ASSERT_EQ(node_->signal(SIGSTOP), 0);
+  node_->hold();
   window_->click("step");
   window_->click("reset");
   int served = 0;
@@ -227,7 +227,7 @@ TEST_F(Panel, NeverWaitsForANodeThatHangs) {
   window_->type("node", node_name);
   window_->click("reset");
   window_.reset();
-  ASSERT_EQ(node_->signal(SIGCONT), 0);
+  node_->release();
 }
 
 TEST_F(Panel, IsSavedWithRviz) {

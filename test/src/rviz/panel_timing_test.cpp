@@ -27,7 +27,7 @@ TEST_F(Panel, GoesOnWhileItLooksForANodeThatHasVanished) {
 }
 
 TEST_F(Panel, GoesOnWhileANodeHangs) {
-  ASSERT_EQ(node_->signal(SIGSTOP), 0);
+  node_->hold();
   window_->click("step");
   window_->click("reset");
   const ros::WallTime begin = ros::WallTime::now();
@@ -36,7 +36,7 @@ TEST_F(Panel, GoesOnWhileANodeHangs) {
   EXPECT_EQ(window_->text("run_error"), "reset ...");
   window_.reset();
   EXPECT_LT(passed(), 10) << "also at its end";
-  ASSERT_EQ(node_->signal(SIGCONT), 0);
+  node_->release();
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ class ChildProcess {
   }
   ~ChildProcess() {
     if (running()) end(SIGKILL);
+    unlink(held_file().c_str());
   }
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
@@ -49,9 +50,19 @@ class ChildProcess {
     kill(pid_, with_signal);
     return wait();
   }
-  int signal(int number) const { return kill(pid_, number); }
+  /// Stops it until release(). scripts/flakes, which stops and continues processes at random, leaves it alone.
+  void hold() const {
+    close(creat(held_file().c_str(), 0600));
+    EXPECT_EQ(kill(pid_, SIGSTOP), 0);
+  }
+  void release() const {
+    unlink(held_file().c_str());
+    EXPECT_EQ(kill(pid_, SIGCONT), 0);
+  }
 
  private:
+  std::string held_file() const { return "/tmp/desert_sim_held." + std::to_string(pid_); }
+
   pid_t pid_;
   int status_ = 0;
   bool ended_ = false;
@@ -64,8 +75,8 @@ class NodeProcess {
       : name_(name), process_({DESERT_NODE_BINARY, parameters(name, more)}) {}
 
   int end(int with_signal) { return process_.end(with_signal); }
-  /// As kill(2).
-  int signal(int number) const { return process_.signal(number); }
+  void hold() const { process_.hold(); }
+  void release() const { process_.release(); }
 
   /// A call over a new connection; a test failure if there is no answer, or a refusal.
   template <class Service>

@@ -1,4 +1,5 @@
 """What the tests of nodes share: nodes and files that go when a test ends, scenarios, and the autosaves that a node left."""
+import contextlib
 import glob
 import json
 import os
@@ -23,6 +24,20 @@ def without_alarm():
     """For Node(preexec=...): a node that is told to end sets an alarm, which gives up a step that takes too long. Here the
     alarm does not reach it, so that it ends by itself or never, however slow the machine is."""
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGALRM})
+
+
+@contextlib.contextmanager
+def held(process):
+    """Keeps a process stopped; scripts/flakes, which stops and continues processes at random, leaves it alone."""
+    held_file = "/tmp/desert_sim_held.%d" % process.pid
+    with open(held_file, "w"):
+        pass
+    process.send_signal(signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        os.unlink(held_file)
+        process.send_signal(signal.SIGCONT)
 
 
 class Scenarios(unittest.TestCase):

@@ -13,7 +13,7 @@ from desert_sim.srv import EditTerrain, EditTerrainRequest, LoadCheckpoint, Save
 from desert_sim.srv import SetWind, SetWindSchedule, SetWindScheduleRequest, Step
 from desert_sim.testing import PATIENCE, wait_until
 from geometry_msgs.msg import Point
-from node_tests import CORNER, Scenarios
+from node_tests import CORNER, Scenarios, held
 import rosgraph
 from rosgraph_msgs.msg import Clock
 import rospy
@@ -114,11 +114,8 @@ class Lifecycle(Scenarios):
         node = self.start("still", {"scenario": CORNER})
         node.latest("status", SimulationStatus)
         address = urllib.parse.urlsplit(rosgraph.Master("/lifecycle").lookupNode("/still"))
-        node.process.send_signal(signal.SIGSTOP)
-        try:
+        with held(node.process):
             waiting = [socket.create_connection((address.hostname, address.port), timeout=20 * PATIENCE) for _ in range(64)]
-        finally:
-            node.process.send_signal(signal.SIGCONT)
         for connection in waiting:
             client = http.client.HTTPConnection(address.netloc)
             client.sock = connection
