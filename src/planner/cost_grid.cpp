@@ -4,7 +4,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "kernels/backend/exec.hpp"
 #include "src/core/error.hpp"
+#include "src/core/number_text.hpp"
 
 namespace desert_sim {
 
@@ -20,6 +22,17 @@ void require(double value, double lowest, double highest, const char* what) {
   throw ConfigError(text.str());
 }
 
+/// For a grid and the field of a planner on it.
+void require_memory(const GridFrame& frame) {
+  constexpr double bytes_per_cell = 32;
+  const double bytes = bytes_per_cell * frame.width * frame.height;
+  const auto available = static_cast<double>(host_memory_available());
+  if (bytes > available)
+    throw ConfigError("planning on " + std::to_string(frame.width) + " x " + std::to_string(frame.height) +
+                      " cells takes " + number_text(bytes / 1073741824.0) +
+                      " GiB of memory; available: " + number_text(available / 1073741824.0) + " GiB");
+}
+
 }  // namespace
 
 CostGrid::CostGrid(const GridFrame& frame, const CostParameters& p) : frame_(frame), parameters_(p) {
@@ -30,6 +43,7 @@ CostGrid::CostGrid(const GridFrame& frame, const CostParameters& p) : frame_(fra
   require(p.weight, 0, 60, "weight");
   require(p.lethal_below, 0, 0.99, "lethal_below");
   require(p.radius, 0, most_near * frame.cell_size, "radius");
+  require_memory(frame);
   for (int b = 0; b < p.buckets; ++b) {
     const double share = (b + 0.5) / p.buckets;
     by_bucket_.push_back(static_cast<std::uint8_t>(std::lround(cheapest * (1 + p.weight * share * share))));
@@ -52,6 +66,17 @@ std::vector<CostGrid::Offset> CostGrid::disc(double radius) const {
     for (int x = -reach; x <= reach; ++x)
       if (x * x + y * y <= cells * cells) offsets.push_back({x, y});
   return offsets;
+}
+
+template <class Visit>
+void CostGrid::for_each_within(double radius, CellIndex c, const Visit& visit) const {
+  const int cx = x_of(c), cy = y_of(c);
+  const double cells = radius / frame_.cell_size;
+  const int reach = static_cast<int>(std::min(cells, 2.0 * largest_side));
+  for (int y = std::max(-reach, -cy); y <= std::min(reach, frame_.height - 1 - cy); ++y)
+    for (int x = std::max(-reach, -cx); x <= std::min(reach, frame_.width - 1 - cx); ++x)
+      if (static_cast<double>(x) * x + static_cast<double>(y) * y <= cells * cells)
+        visit(cell(cx + x, cy + y));
 }
 
 template <class Visit>
@@ -99,7 +124,7 @@ void CostGrid::update(const Box& box, const float* traversability, std::vector<C
 void CostGrid::mark(const GridPoint& p, double radius, bool set, std::vector<CellIndex>& changed) {
   const auto middle = cell_at(p);
   if (!middle) return;
-  for_each_in(disc(radius), *middle, [&](CellIndex c) {
+  for_each_within(radius, *middle, [&](CellIndex c) {
     const bool was = itself_lethal(c);
     if (!set && marks_[c] == 0) return;
     marks_[c] = static_cast<std::uint16_t>(marks_[c] + (set ? 1 : -1));
@@ -112,7 +137,7 @@ std::optional<CellIndex> CostGrid::nearest_passable(const GridPoint& p, double d
   if (!middle) return std::nullopt;
   std::optional<CellIndex> best;
   double nearest = 0;
-  for_each_in(disc(distance), *middle, [&](CellIndex c) {
+  for_each_within(distance, *middle, [&](CellIndex c) {
     if (costs_[c] == lethal) return;
     const GridPoint q = centre(c);
     const double away = std::hypot(q.x - p.x, q.y - p.y);

@@ -88,6 +88,9 @@ class CostGrid {
   /// Offsets of the cells not further than a radius [m].
   std::vector<Offset> disc(double radius) const;
   /// Calls visit(cell) for the cells of a disc that are on the grid.
+  /// The cells of the grid within a radius [m] of another one, row by row, however many cells that is.
+  template <class Visit>
+  void for_each_within(double radius, CellIndex cell, const Visit& visit) const;
   template <class Visit>
   void for_each_in(const std::vector<Offset>& disc, CellIndex cell, const Visit& visit) const;
   /// Brings the neighbourhood up to date after a cell has become lethal by itself, or has ceased to be.

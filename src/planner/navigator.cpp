@@ -22,24 +22,38 @@ Navigator::~Navigator() = default;
 // ---- the ground
 
 void Navigator::update(const GridFrame& frame, const CostGrid::Box& box, const float* traversability) {
+  if (refused_frame_ && *refused_frame_ == frame) return;
   if (!grid_ || !(grid_->frame() == frame)) {
     if (box.x != 0 || box.y != 0 || box.width != frame.width || box.height != frame.height)
       throw ConfigError("the first traversability of a terrain must be that of the whole grid");
-    auto grid = std::make_unique<CostGrid>(frame, parameters_.costs());
-    field_.reset();
-    reference_.reset();
-    grid_ = std::move(grid);
-    avoided_.clear();
-    forecast_.clear();
-    pursuit_.follow({});
-    schedule_.clear();
-    ++path_number_;
+    begin_on(frame);
+    if (!grid_) return;
   }
   const std::size_t before = changed_.size();
   grid_->update(box, traversability, changed_);
   ground_changed_ = ground_changed_ || changed_.size() > before;
   if (changed_.size() > grid_->size()) field_.reset();  // it has not been asked for long
   if (!field_) changed_.clear();
+}
+
+void Navigator::begin_on(const GridFrame& frame) {
+  field_.reset();
+  reference_.reset();
+  grid_.reset();
+  changed_.clear();
+  avoided_.clear();
+  forecast_.clear();
+  pursuit_.follow({});
+  schedule_.clear();
+  ++path_number_;
+  ground_refusal_.clear();
+  refused_frame_.reset();
+  try {
+    grid_ = std::make_unique<CostGrid>(frame, parameters_.costs());
+  } catch (const ConfigError& e) {
+    ground_refusal_ = e.what();
+    refused_frame_ = frame;
+  }
 }
 
 void Navigator::set_forecast(const ForecastCosts& forecast) {
@@ -160,7 +174,9 @@ std::optional<DriveCommand> Navigator::mind_limits() {
     return finish(NavigatorState::timed_out, "the goal was not reached within " +
                                                  number_text(parameters_.time_limit) + " s; " +
                                                  number_text(status_.distance) + " m were left");
-  if (!grid_) return wait("the terrain is not known yet");
+  if (!grid_)
+    return wait(ground_refusal_.empty() ? "the terrain is not known yet"
+                                        : "this terrain cannot be planned on: " + ground_refusal_);
   if (!grid_->cell_at({goal_->x, goal_->y}))
     return finish(NavigatorState::no_path, "the goal is off the terrain");
   return std::nullopt;

@@ -69,9 +69,11 @@ class Navigator {
 
   // ---- the ground
 
-  /// Traversability of a box of cells, or of the whole grid if the frame is a new one.
+  /// Traversability of a box of cells, or of the whole grid if the frame is a new one. What it cannot plan on
+  /// (too many cells, or ones too small for the rover's radius) it waits on: ground_refusal() says why.
   void update(const GridFrame& frame, const CostGrid::Box& box, const float* traversability);
   const CostGrid* grid() const { return grid_.get(); }
+  const std::string& ground_refusal() const { return ground_refusal_; }
   void set_forecast(const ForecastCosts& forecast);
   /// Whom it asks for the layers of costs by heading (planner ompl), when it plans: of the grid's size, or
   /// empty.
@@ -97,6 +99,7 @@ class Navigator {
   const FieldPlanner* field() const { return field_.get(); }
 
  private:
+  void begin_on(const GridFrame& frame);
   struct Place {
     GridPoint point;
     CellIndex cell;
@@ -132,6 +135,8 @@ class Navigator {
 
   const PlannerParameters parameters_;
   std::unique_ptr<CostGrid> grid_;
+  std::string ground_refusal_;  ///< why there is no grid for refused_frame_; else empty
+  std::optional<GridFrame> refused_frame_;
   std::unique_ptr<FieldPlanner> field_, reference_;
   std::vector<CellIndex> changed_;  ///< costs that the field does not know of yet
   bool ground_changed_ = false;     ///< since the path was looked at

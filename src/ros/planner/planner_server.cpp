@@ -133,11 +133,18 @@ void PlannerServer::act_in_lockstep() {
       const auto truth = truths_.find(status->terrain_stamp);
       if (truth == truths_.end() || !terrain_.has(step, status->terrain_stamp)) break;
       rover_ = status;
-      const auto& p = truth->second->pose.pose;
-      const PlanarPose pose{p.position.x, p.position.y, yaw_of(p.orientation, "ground_truth")};
+      const nav_msgs::OdometryConstPtr odometry = truth->second;
       lockstep_time_ = status->terrain_time * setup_.node.seconds_per_sim_second;
       truths_.erase(truths_.begin(), std::next(truth));
       statuses_.erase(statuses_.begin());
+      const auto& p = odometry->pose.pose;
+      PlanarPose pose;
+      try {
+        pose = {p.position.x, p.position.y, yaw_of(p.orientation, "ground_truth")};
+      } catch (const ConfigError& e) {
+        ROS_WARN_THROTTLE(5, "A pose of the rover is ignored: %s", e.what());
+        continue;
+      }
       act(lockstep_time_, pose, step);
     }
     if (statuses_.empty()) publish_status(false);
@@ -154,6 +161,11 @@ void PlannerServer::take_terrain(std::optional<std::uint64_t> step) {
                             static_cast<int>(c.height)};
     navigator_.update(grid_frame_of(info), box, change.map->values(c).data());
   }
+  const std::string& refusal = navigator_.ground_refusal();
+  if (refusal == ground_refusal_) return;
+  ground_refusal_ = refusal;
+  refusal_ = refusal.empty() ? "" : "terrain: " + refusal;
+  if (!refusal.empty()) ROS_WARN("This terrain cannot be planned on: %s", refusal.c_str());
 }
 
 bool PlannerServer::pose_by_tf(PlanarPose& pose, std::string& problem) {

@@ -85,7 +85,7 @@ class PlannerServer {
   std::map<ros::Time, nav_msgs::OdometryConstPtr> truths_;
   RoverStatusConstPtr rover_;
   geometry_msgs::PoseStamped goal_;  ///< the last one, in the terrain's frame
-  std::string refusal_, last_told_;
+  std::string refusal_, ground_refusal_, last_told_;
   DriveCommand command_;
   bool driving_ = false;  ///< the last command was not that of standing still
   double plan_time_ = 0;

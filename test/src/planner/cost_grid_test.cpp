@@ -94,6 +94,24 @@ TEST(CostGrid, CellsAndPoints) {
   EXPECT_FALSE(grid.nearest_passable({25, 2.3}, 2));
 }
 
+/// A list of all cells in 20 m would have a billion entries.
+TEST(CostGrid, SearchesFarOnCellsOfAMillimetre) {
+  const GridFrame fine{40, 30, 0.001, 0, 0};
+  CostGrid grid(fine, {16, 8, 0, 0.001});
+  std::vector<float> values(40 * 30, 0);
+  values[29 * 40 + 39] = 1;
+  std::vector<CellIndex> changed;
+  grid.update({0, 0, 40, 30}, values.data(), changed);
+  EXPECT_FALSE(grid.nearest_passable({0.0005, 0.0005}, 20)) << "it is beside a lethal one";
+  std::fill(values.begin(), values.end(), 1.0F);
+  grid.update({0, 0, 40, 30}, values.data(), changed);
+  EXPECT_TRUE(grid.nearest_passable({0.0005, 0.0005}, 20));
+  grid.mark({0.02, 0.015}, 20, true, changed);
+  EXPECT_FALSE(grid.nearest_passable({0.0005, 0.0005}, 20));
+  grid.mark({0.02, 0.015}, 20, false, changed);
+  EXPECT_TRUE(grid.nearest_passable({0.0005, 0.0005}, 20));
+}
+
 TEST(CostGrid, RefusesWhatIsOutOfRange) {
   EXPECT_THROW(CostGrid({0, 5, 1, 0, 0}, {}), ConfigError);
   EXPECT_THROW(CostGrid({5, 5, 0, 0, 0}, {}), ConfigError);

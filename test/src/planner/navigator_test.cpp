@@ -155,6 +155,26 @@ TEST_F(Navigating, SaysWhichEndIsNotPassable) {
   EXPECT_THROW(strict.set_goal({NAN, 10, 0}, 7), ConfigError);
 }
 
+/// Cells of a centimetre, of which the rover's radius has more than can be counted: ripples loaded beside a
+/// planner.
+TEST_F(Navigating, WaitsOnTerrainThatItCannotPlanOn) {
+  go(35, 5);
+  run(2);
+  const GridFrame fine{50, 50, 0.01, 0, 0};
+  const std::vector<float> flat(2500, 1);
+  navigator_.update(fine, {0, 0, 50, 50}, flat.data());
+  EXPECT_EQ(navigator_.grid(), nullptr);
+  EXPECT_NE(navigator_.ground_refusal().find("radius: = 0.5 (allowed: 0 ... 0.4)"), std::string::npos)
+      << navigator_.ground_refusal();
+  navigator_.update(fine, {3, 3, 2, 2}, flat.data());
+  EXPECT_EQ(run(1), NavigatorState::waiting);
+  EXPECT_NE(status().reason.find("cannot be planned on: radius"), std::string::npos) << status().reason;
+  EXPECT_TRUE(navigator_.path().empty());
+  ground(free_);
+  EXPECT_EQ(navigator_.ground_refusal(), "");
+  EXPECT_EQ(run(300), NavigatorState::arrived) << status().reason;
+}
+
 TEST_F(Navigating, WaitsForAPathToOpen) {
   ground([](int x, int) { return x == 40 ? 0.0F : 1.0F; });
   go(35, 10);
