@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "src/core/base64.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/core/log.hpp"
@@ -81,8 +82,8 @@ RoverEvent event_of(const YAML::Node& node) {
     return rover_event::Drive{{c[0], c[1], c[2]}, node["seconds"].as<double>()};
   }
   if (node["state"]) {
-    const auto bytes = node["state"].as<YAML::Binary>();
-    return SetState{std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())};
+    const std::vector<unsigned char> bytes = decode_base64(node["state"].as<std::string>(), "state");
+    return SetState{std::string(bytes.begin(), bytes.end())};
   }
   if (!node["advance"]) throw ConfigError("is none of reset, place, drive, state, advance");
   Advance advance{node["advance"].as<double>(), std::nullopt, 0};

@@ -6,6 +6,7 @@
 
 #include "src/core/constants.hpp"
 #include "src/core/error.hpp"
+#include "src/core/number_text.hpp"
 
 namespace desert_sim {
 
@@ -20,6 +21,14 @@ wheels::Ground wheel_ground(const GroundPoint& p) {
 
 bool turns(const WheelMotion& motion) {
   return std::any_of(motion.rim_speed.begin(), motion.rim_speed.end(), [](double v) { return v != 0; });
+}
+
+/// Faster than anything: so that what is commanded can be saved and loaded again.
+void require_speed(double value, const char* name, const char* unit) {
+  constexpr double fastest = 1e6;
+  if (std::abs(value) <= fastest) return;
+  throw ConfigError(std::string(name) + ": = " + number_text(value) + " is not in [" + number_text(-fastest) +
+                    ", " + number_text(fastest) + "] " + unit);
 }
 
 void require_finite(double value, const char* name) {
@@ -44,9 +53,9 @@ Rover::Rover(const RoverParameters& rover, const WheelGroundParameters& ground, 
 // ---- commands
 
 void Rover::drive(const DriveCommand& command, double seconds) {
-  require_finite(command.forward, "linear.x");
-  require_finite(command.sideways, "linear.y");
-  require_finite(command.yaw_rate, "angular.z");
+  require_speed(command.forward, "linear.x", "m/s");
+  require_speed(command.sideways, "linear.y", "m/s");
+  require_speed(command.yaw_rate, "angular.z", "rad/s");
   if (!(seconds >= 0)) throw ConfigError("seconds: = " + std::to_string(seconds) + " (allowed: at least 0)");
   constexpr double for_ever = 4e8;
   state_.command = command;

@@ -55,8 +55,8 @@ class Rover {
   void place(double x, double y, double yaw, const GroundSource& ground);
   /// Begins anew: place(), with odometry, ways, noise and joints as at the start.
   void reset(double x, double y, double yaw, const GroundSource& ground);
-  /// Obeys this command for `seconds`; longer than a year is for ever. Throws ConfigError for numbers that
-  /// are not finite.
+  /// Obeys this command for `seconds`; longer than a year is for ever. Throws ConfigError for speeds
+  /// beyond ±1e6.
   void drive(const DriveCommand& command, double seconds);
   /// Lets `seconds` pass, 0 … longest_advance, on this ground (null: none is known), in whole internal
   /// steps; what is left waits for the next call. Throws ConfigError for other times.

@@ -80,7 +80,7 @@ class ActionServer final : public actionlib::ActionServerBase<Spec> {
     message->header.stamp = ros::Time::now();
     message->status = status;
     message->result = result;
-    result_publisher_.publish(message);
+    if (result_publisher_) result_publisher_.publish(message);
     publishStatus();
   }
 
@@ -90,13 +90,13 @@ class ActionServer final : public actionlib::ActionServerBase<Spec> {
     message->header.stamp = ros::Time::now();
     message->status = status;
     message->feedback = feedback;
-    feedback_publisher_.publish(message);
+    if (feedback_publisher_) feedback_publisher_.publish(message);
   }
 
   /// All goals that somebody still handles, or that ended a moment ago.
   void publishStatus() override {
     const boost::recursive_mutex::scoped_lock lock(this->lock_);
-    if (!this->started_) return;
+    if (!this->started_ || !status_publisher_) return;  // no publisher: ROS was shutting down
     const ros::Time now = ros::Time::now();
     actionlib_msgs::GoalStatusArray message;
     message.header.stamp = now;

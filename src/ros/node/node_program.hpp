@@ -45,8 +45,12 @@ int run_node(int& argc, char** argv, const char* name, const Make& make,
     ROS_FATAL("%s", e.what());
     status = exit_invalid_input;
   } catch (const std::exception& e) {
-    ROS_FATAL("%s", e.what());
-    status = exit_failure;
+    if (ros::isShuttingDown()) {  // it was told to end while it started
+      ROS_INFO("%s", e.what());
+    } else {
+      ROS_FATAL("%s", e.what());
+      status = exit_failure;
+    }
   }
   ros::shutdown();
   return status;

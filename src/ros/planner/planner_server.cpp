@@ -70,6 +70,8 @@ PlannerServer::PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle&
   action_ = std::make_unique<MoveBaseServer>(
       node_, "move_base", [this](const MoveBaseGoal& goal) { receive_action_goal(goal); },
       [this](const MoveBaseGoal& goal) { receive_action_cancel(goal); });
+  if (ros::isShuttingDown())
+    throw Error("ROS is shutting down");  // what was advertised after that is no publisher
   action_->start();
   publish_status(true);
   thread_ = std::thread([this] { run(); });

@@ -73,6 +73,9 @@ RoverServer::RoverServer(const ros::NodeHandle& node, const ros::NodeHandle& pri
       spinner_(callback_threads, &queue_) {
   node_.setCallbackQueue(&queue_);
   private_node_.setCallbackQueue(&queue_);
+  // What was advertised after that is no publisher, and roscpp ends a process that publishes by it. (ROS does
+  // not come back: if it runs now, all above is.)
+  if (ros::isShuttingDown()) throw Error("ROS is shutting down");
   if (setup_.node.tracks) tracks_ = std::make_unique<WheelTracks>(setup_);
   if (setup_.node.publish_description)
     node_.setParam("robot_description",

@@ -2,9 +2,9 @@
 
 #include <yaml-cpp/binary.h>
 
-#include <algorithm>
 #include <cstring>
 
+#include "src/core/base64.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -139,10 +139,8 @@ command::Patch read_patch(const YAML::Node& node, const std::string& source) {
   command::Patch patch;
   patch.columns = scalar<int>(node, "patch_columns", source);
   patch.rows = scalar<int>(node, "patch_rows", source);
-  const auto text = scalar<std::string>(node, "patch", source);
-  const bool is_ascii = std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; });
-  if (!is_ascii) throw ConfigError(source + ": patch: is not base64");  // yaml-cpp reads beyond its table
-  const std::vector<unsigned char> bytes = YAML::DecodeBase64(text);
+  const std::vector<unsigned char> bytes =
+      decode_base64(scalar<std::string>(node, "patch", source), source + ": patch");
   if (patch.columns < 1 || patch.rows < 1 || patch.columns > command::Patch::max_pixels / patch.rows)
     throw ConfigError(source + ": patch: cannot have " + std::to_string(patch.columns) + " x " +
                       std::to_string(patch.rows) + " values");

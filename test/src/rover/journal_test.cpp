@@ -137,6 +137,12 @@ TEST(RoverRepeat, AJournalThatWasCutOffIsReadUpToThere) {
   EXPECT_NE(
       refusal([&] { read_rover_journal(folder.path("bad")); }).find("bad:" + std::to_string(events + 2)),
       std::string::npos);
+  for (const char* state :
+       {"!!binary \"\xC3\xA4\xC3\xB6\"", "!!binary \"a b\"", "!!binary \"%%%%\"", "[1]"}) {
+    folder.write("state", bytes + "{state: " + state + "}\n");
+    const std::string said = refusal([&] { read_rover_journal(folder.path("state")); });
+    EXPECT_NE(said.find("state:" + std::to_string(events + 2)), std::string::npos) << state << ": " << said;
+  }
   folder.write("other", "{journal: 1}\n");
   EXPECT_NE(refusal([&] { read_rover_journal(folder.path("other")); }).find("not the journal of a rover"),
             std::string::npos);

@@ -61,6 +61,11 @@ class Scenarios(unittest.TestCase):
         self.nodes.append(node)
         return node
 
+    def of_program(self, name, private, executable):
+        node = Node(name, private, executable=executable)
+        self.nodes.append(node)
+        return node
+
     def path(self, name, text=None):
         path = os.path.join(self.folder, name)
         if text is not None:

@@ -4,7 +4,7 @@ goes on with what comes after."""
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from desert_sim.msg import ForecastTerrainGoal, PlannerStatus, RoverStatus
 from desert_sim.srv import QueryTerrain, QueryTerrainRequest, Step
-from desert_sim.testing import Node, wait_until
+from desert_sim.testing import wait_until
 from forecast_client import ForecastClient
 from geometry_msgs.msg import Point, TransformStamped
 from map_client import Listener
@@ -24,19 +24,16 @@ class FarTimes(Scenarios):
         self.clock = ScriptedClock()
         self.clock.show(1000)
         self.desert = self.start("desert_sim", {"scenario": CORNER})
-        self.rover = self.other("desert_rover", {"x": 40, "y": 0, "lidar": {"rate": 0}, "depth_camera": {"rate": 0}})
-        self.planner = self.other("desert_planner", {"planner": "forecast", "drive": False, "pose_age": 1e6})
+        self.rover = self.of_program("desert_rover", {"x": 40, "y": 0, "lidar": {"rate": 0}, "depth_camera": {"rate": 0}},
+                                     "desert_rover_node")
+        self.planner = self.of_program("desert_planner", {"planner": "forecast", "drive": False, "pose_age": 1e6},
+                                       "desert_planner_node")
         self.rover.latest("status", RoverStatus)
         self.planner.latest("status", PlannerStatus)
 
     def tearDown(self):
         self.clock.close()
         super().tearDown()
-
-    def other(self, name, private):
-        node = Node(name, private, executable=name + "_node")
-        self.nodes.append(node)
-        return node
 
     def expect_all_serve(self):
         """The planner and the rover act at a rate of wall time, and say so."""

@@ -124,6 +124,24 @@ class Lifecycle(Scenarios):
             self.assertEqual((code, pid), (1, node.process.pid))
             client.close()
 
+    def test_another_node_of_its_name_ends_a_node_that_starts(self):
+        """What is advertised while ROS shuts down is no publisher, and roscpp would end who publishes by it."""
+        master = rosgraph.Master("/lifecycle")
+
+        def is_known(name):
+            try:
+                return master.lookupNode(name)
+            except rosgraph.MasterError:
+                return None
+
+        for program, private in (("desert_sim_node", {"scenario": CORNER}), ("desert_rover_node", {}), ("desert_planner_node", {})):
+            first = self.of_program("twice", private, program)
+            wait_until(lambda: is_known("/twice"), "the master knows the node")
+            second = self.of_program("twice", private, program)
+            status, output = first.wait()
+            self.assertEqual(status, 0, output)
+            self.assertEqual(second.end()[0], 0, second.output)
+
     # ---- shutdown and failure ------------------------------------------------------------------
 
     def test_ends_while_it_runs_and_serves(self):
