@@ -1,9 +1,11 @@
 #include "src/tools/child_process.hpp"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -25,9 +27,12 @@ ChildProcess::ChildProcess(const std::string& what, std::vector<std::string> wor
     read_end.reset(ends[0]);
     input_.reset(ends[1]);
     posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
+    errors_.reset(memfd_create("errors", MFD_CLOEXEC));
+    if (errors_.number() >= 0) posix_spawn_file_actions_adddup2(&actions, errors_.number(), STDERR_FILENO);
     std::signal(SIGPIPE, SIG_IGN);  // a program that ends early is told by write()
   }
-  if (const int failure = spawn_program(child_, std::move(words), actions)) {
+  const ProcessGroup group = input == Input::piped ? ProcessGroup::own : ProcessGroup::of_parent;
+  if (const int failure = spawn_program(child_, std::move(words), actions, group)) {
     child_ = -1;
     throw ConfigError(what_ + ": " + program_ + ": " + std::strerror(failure));
   }
@@ -40,7 +45,10 @@ void ChildProcess::write(const void* bytes, std::size_t size) {
   while (size > 0) {
     const ssize_t n = ::write(input_.number(), next, size);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw ConfigError(what_ + ": " + program_ + " has ended too early");
+    if (n < 0) {
+      wait();
+      throw WriteError(what_ + ": " + program_ + " has ended too early" + said());
+    }
     next += n;
     size -= static_cast<std::size_t>(n);
   }
@@ -55,9 +63,24 @@ int ChildProcess::wait() {
   return status;
 }
 
+std::string ChildProcess::said() const {
+  if (errors_.number() < 0) return "";
+  std::string text(400, '\0');
+  const ssize_t n = pread(errors_.number(), text.data(), text.size(), 0);
+  text.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ';');
+  return text.empty() ? "" : ": " + text;
+}
+
 void ChildProcess::finish() {
   const int status = wait();
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw ConfigError(what_ + ": " + program_ + " failed");
+  const std::string errors = said();
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !errors.empty()) {
+    const std::string text = what_ + ": " + program_ + " failed" + errors;
+    if (errors_.number() >= 0) throw WriteError(text);
+    throw ConfigError(text);
+  }
 }
 
 std::string path_for_children(const std::string& library_path) {

@@ -14,6 +14,8 @@ namespace desert_sim {
 /// open_file_path(FILE).
 class ChildProcess {
  public:
+  /// inherited: it is interrupted with this one. piped: it reads what write() writes, and Ctrl-C leaves it to
+  /// end what it was given.
   enum class Input { inherited, piped };
 
   /// `words`: the program, which is searched for in $PATH, and its arguments. Throws ConfigError that begins
@@ -24,16 +26,19 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Bytes for its standard input. Throws ConfigError if it no longer reads.
+  /// Bytes for its standard input. Throws WriteError if it no longer reads.
   void write(const void* bytes, std::size_t size);
-  /// Ends its input and waits for it. Throws ConfigError unless its exit status is 0.
+  /// Ends its input and waits for it. Throws ConfigError unless its exit status is 0; with a piped input
+  /// WriteError that has what it said, also if it said anything at all: ffmpeg ends with 0 on a full disk.
   void finish();
 
  private:
   int wait();
+  /// The beginning of what it has written to its standard error, as far as that is kept (piped input).
+  std::string said() const;
 
   const std::string what_, program_;
-  Descriptor input_{-1};
+  Descriptor input_{-1}, errors_{-1};
   pid_t child_ = -1;
 };
 

@@ -1,7 +1,9 @@
 #include "src/tools/film.hpp"
 
 #include <cstdio>
+#include <filesystem>
 
+#include "src/core/csv.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/tools/outputs.hpp"
@@ -43,12 +45,25 @@ constexpr bool has_pictures = false;
 void write_picture(const std::string&, const render::Picture&) {}
 #endif
 
+/// A folder's name has no extension that films and pictures have elsewhere.
+void require_kind_that_is_made(const std::string& path) {
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+  for (const char* other : {".gif", ".avi", ".mov", ".mkv", ".webm", ".m4v", ".mpg", ".mpeg", ".wmv", ".ogv",
+                            ".apng", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".svg", ".pdf"})
+    if (extension == other)
+      throw ConfigError("--film " + path + ": " + other +
+                        " is not made here (allowed: .mp4, .png, or a folder for the pictures)");
+  for (const char* right : {".mp4", ".png"})
+    if (extension == right && !ends_with(path, right))
+      throw ConfigError("--film " + path + ": write the extension as " + right);
+}
+
 }  // namespace
 
 bool Film::is_picture(const std::string& path) { return ends_with(path, ".png"); }
 
 Film::Film(const std::string& path, const ViewParameters& view)
-    : path_(path),
+    : path_((require_kind_that_is_made(path), path)),
       kind_(ends_with(path, ".mp4") ? Kind::film : (is_picture(path) ? Kind::picture : Kind::folder)),
       view_(view) {
   if (!has_pictures && kind_ != Kind::film)
@@ -70,6 +85,7 @@ void Film::start_encoder(const ViewParameters& view) {
                                      std::vector<std::string>{"ffmpeg",
                                                               "-loglevel",
                                                               "error",
+                                                              "-xerror",
                                                               "-y",
                                                               "-f",
                                                               "rawvideo",

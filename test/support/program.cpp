@@ -29,6 +29,7 @@ ProgramRun run_program(const std::string& program, const std::vector<std::string
 
   const pid_t child = fork();
   if (child == 0) {
+    setpgid(0, 0);
     dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
     dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
     execv(program.c_str(), argv.data());
@@ -40,7 +41,7 @@ ProgramRun run_program(const std::string& program, const std::vector<std::string
   for (auto next = signals.begin(); next != signals.end() && !ended;) {
     ended = wait4(child, &status, WNOHANG, &usage) == child;
     if (!ended && next->when(file_bytes(err)))
-      kill(child, next++->number);
+      kill(-child, next++->number);
     else
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }

@@ -13,8 +13,8 @@ struct ProgramRun {
   double resident_bytes = 0;  ///< most memory it had; at least that of the test when it began
 };
 
-/// A signal that is sent as soon as `when` is true of what the program has written to its standard error so
-/// far.
+/// A signal that is sent, to the program and those that it has started, as a terminal does, as soon as `when`
+/// is true of what the program has written to its standard error so far.
 struct Signal {
   int number;
   std::function<bool(const std::string& err)> when;

@@ -1,6 +1,8 @@
 // desert_run --film: pictures and films without a screen.
 
+#include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -90,8 +92,37 @@ TEST_F(Film, RefusesWhatCannotBeMade) {
   refused({"--view", "width=160"}, "--film is required too");
   refused({"--film", path("a.png"), "--film-every", "2"}, "a.png is one picture, of the end");
   refused({"--film", path("no/such/a.png")}, "cannot be written");
+  refused({"--film", path("a.gif")}, ".gif is not made here (allowed: .mp4, .png, or a folder");
+  refused({"--film", path("a.MP4")}, "write the extension as .mp4");
   EXPECT_FALSE(fs::exists(path("a.mp4")));
   EXPECT_FALSE(fs::exists(path("a.png")));
+  EXPECT_FALSE(fs::exists(path("a.gif")));
+}
+
+/// ffmpeg itself ends with 0 there.
+TEST_F(Film, OnAFullDiskIsAFailure) {
+  std::ofstream(path("run.mp4")) << "an older film";
+  const test::ProgramRun r = test::run_program(
+      "/bin/sh", {"-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" \"$@\"", program_, scenario_, "--backend",
+                  "cpu", "--quiet", "--steps", "40", "--film-every", "1", "--view", "width=320", "--view",
+                  "height=240", "--film", path("run.mp4")});
+  EXPECT_EQ(r.status, 3) << r.err;
+  EXPECT_NE(r.err.find("ffmpeg"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("File too large"), std::string::npos) << r.err;
+  EXPECT_EQ(test::file_bytes(path("run.mp4")), "an older film");
+}
+
+/// Ctrl-C goes to all processes of the terminal's group: the encoder is not among them.
+TEST_F(Film, IsFinishedAfterCtrlC) {
+  const test::ProgramRun r =
+      run({scenario_, "--backend", "cpu", "--steps", "100000000", "--film-every", "1", "--view", "width=160",
+           "--view", "height=90", "--film", path("run.mp4")},
+          {{SIGINT, [](const std::string& err) { return err.find("step ") != std::string::npos; }}});
+  EXPECT_EQ(r.status, 130) << r.err;
+  const test::ProgramRun probe =
+      test::run_program("/usr/bin/ffprobe",
+                        {"-v", "error", "-show_entries", "stream=width", "-of", "csv=p=0", path("run.mp4")});
+  EXPECT_EQ(probe.out, "160\n") << probe.err;
 }
 
 }  // namespace
