@@ -1,5 +1,6 @@
 #include "src/scenario/climate.hpp"
 
+#include "src/core/did_you_mean.hpp"
 #include "src/scenario/presets.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -26,7 +27,8 @@ YAML::Node apply_climate(const YAML::Node& root, ValidationErrors& errors) {
   if (!given.IsDefined() || given.IsNull()) return root;
   const char* const text = given.IsScalar() ? presets.text(given.Scalar()) : nullptr;
   if (!text) {
-    errors.add("climate", "'" + yaml::node_text(given) + "' is not one of: " + presets.joined_names());
+    errors.add("climate", "'" + yaml::node_text(given) + "' is not one of: " + presets.joined_names() +
+                              did_you_mean(yaml::node_text(given), presets.joined_names()));
     return root;
   }
   YAML::Node whole = YAML::Clone(root);

@@ -1,5 +1,6 @@
 #include "src/scenario/rover_class.hpp"
 
+#include "src/core/did_you_mean.hpp"
 #include "src/scenario/presets.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -18,7 +19,9 @@ std::vector<std::string> rover_classes() { return classes.names(); }
 
 std::string rover_class_text(const std::string& name) {
   const char* const text = classes.text(name);
-  if (!text) throw ConfigError("rover: '" + name + "' is not one of: " + classes.joined_names());
+  if (!text)
+    throw ConfigError("rover: '" + name + "' is not one of: " + classes.joined_names() +
+                      did_you_mean(name, classes.joined_names()));
   return text;
 }
 
@@ -32,7 +35,8 @@ YAML::Node apply_rover(const YAML::Node& root, ValidationErrors& errors) {
   if (!given.IsDefined() || given.IsNull()) return root;
   const char* const text = given.IsScalar() ? classes.text(given.Scalar()) : nullptr;
   if (!text) {
-    errors.add("rover", "'" + yaml::node_text(given) + "' is not one of: " + classes.joined_names());
+    errors.add("rover", "'" + yaml::node_text(given) + "' is not one of: " + classes.joined_names() +
+                            did_you_mean(yaml::node_text(given), classes.joined_names()));
     return root;
   }
   YAML::Node whole = YAML::Clone(root), section(YAML::NodeType::Map);

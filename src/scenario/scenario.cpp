@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/input_file.hpp"
 #include "src/scenario/climate.hpp"
 #include "src/scenario/growth_curves.hpp"
@@ -31,7 +32,8 @@ void check_layer(const Step& step, const std::string& key, ValidationErrors& err
     for (const LayerInfo& layer : layer_table)
       if (layer.lifetime == Lifetime::persistent)
         known += (known.empty() ? "" : ", ") + std::string(layer.name);
-    errors.add(key + ".layer", "'" + step.layer + "' is not one of: " + known);
+    errors.add(key + ".layer",
+               "'" + step.layer + "' is not one of: " + known + did_you_mean(step.layer, known));
   }
 }
 
@@ -64,7 +66,7 @@ void read_terrain(const YAML::Node& list, ValidationErrors& errors, std::vector<
     std::string known;
     for (const char* step : terrain_step_names) known += (known.empty() ? "" : ", ") + std::string(step);
     if (!read_step(name, entry.second, key + "." + name, errors, steps))
-      errors.add(key, "unknown step '" + name + "' (known: " + known + ")");
+      errors.add(key, "unknown step '" + name + "' (known: " + known + ")" + did_you_mean(name, known));
   }
 }
 

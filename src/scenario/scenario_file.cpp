@@ -7,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -124,7 +125,7 @@ std::string scenario_file(const std::string& name) {
   std::string all;
   for (const std::string& one : installed_scenarios()) all += (all.empty() ? "" : ", ") + one;
   throw ConfigError("no scenario '" + name + "' exists in " + installed_scenario_folder() +
-                    " (known: " + all + ")");
+                    " (known: " + all + ")" + did_you_mean(name, all));
 }
 
 std::string scenario_argument(const std::string& argument) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/render/colour.hpp"
 #include "src/scenario/presets.hpp"
 #include "src/scenario/scenario.hpp"
@@ -27,7 +28,8 @@ void read_species_entry(const YAML::Node& node, const std::string& key, Validati
     if (presets.text(name.preset))
       species = species_preset(name.preset);
     else
-      errors.add(key + ".preset", "'" + name.preset + "' is not one of: " + presets.joined_names());
+      errors.add(key + ".preset", "'" + name.preset + "' is not one of: " + presets.joined_names() +
+                                      did_you_mean(name.preset, presets.joined_names()));
   }
   if (!name.name.empty()) species.name = name.name;
   yaml::read_parameters(node, key + ".", errors, species.traits, known);
@@ -73,7 +75,9 @@ std::vector<std::string> species_presets() { return presets.names(); }
 
 Species species_preset(const std::string& name) {
   const char* text = presets.text(name);
-  if (!text) throw ConfigError("species preset '" + name + "' is not one of: " + presets.joined_names());
+  if (!text)
+    throw ConfigError("species preset '" + name + "' is not one of: " + presets.joined_names() +
+                      did_you_mean(name, presets.joined_names()));
   ValidationErrors errors("species preset " + name);
   Species species{name, {}, {}};
   const YAML::Node node = YAML::Load(text);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/core/parameters.hpp"
 #include "src/core/quoted.hpp"
@@ -128,7 +129,8 @@ void read_value(const YAML::Node& node, const Row& row, const std::string& key, 
       }
       known += (n ? ", " : "") + std::string(row.choices[n]);
     }
-    errors.add(key, "'" + node_text(node) + "' is not one of: " + known);
+    errors.add(key,
+               "'" + node_text(node) + "' is not one of: " + known + did_you_mean(node_text(node), known));
   } else if constexpr (std::is_same_v<T, ShortList>) {
     if (!node.IsSequence() || node.size() < 1 || node.size() > ShortList::capacity) {
       errors.add(key, "must be a list of 1 to " + std::to_string(ShortList::capacity) + " numbers");
@@ -190,7 +192,8 @@ inline void reject_unknown_keys(const YAML::Node& section, const std::string& pa
   std::set<std::string> seen;
   for (const auto& entry : section) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
-    if (!known.count(key)) errors.add(path + key, "unknown key (known here: " + all + ")");
+    if (!known.count(key))
+      errors.add(path + key, "unknown key (known here: " + all + ")" + did_you_mean(key, all));
     if (!seen.insert(key).second) errors.add(path + key, "is given twice");
   }
 }

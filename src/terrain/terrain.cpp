@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -15,7 +16,7 @@ Layer layer_by_name(const std::string& name) {
     if (name == layer.name) return layer.layer;
     known += known.empty() ? layer.name : std::string(", ") + layer.name;
   }
-  throw ConfigError("layer '" + name + "' is not one of: " + known);
+  throw ConfigError("layer '" + name + "' is not one of: " + known + did_you_mean(name, known));
 }
 
 HeightScale HeightScale::covering(double lowest, double highest) {

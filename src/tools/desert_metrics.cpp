@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/metrics/dune_metrics.hpp"
@@ -121,7 +122,8 @@ int run_program(int argc, char** argv) {
   if (o.positional().size() != 1) throw ConfigError("one run must be given (--help shows the usage)");
   const std::string run = o.positional()[0], out = o.text("out", ""), layer = o.text("layer", "sand");
   if (layer != "sand" && layer != "elevation")
-    throw ConfigError("--layer " + layer + ": is not one of: sand, elevation");
+    throw ConfigError("--layer " + layer + ": is not one of: sand, elevation" +
+                      did_you_mean(layer, "sand, elevation"));
   MetricSettings settings;
   settings.sigma = o.real("sigma", 0, 1e-3, 1e6);
   settings.steeper_than_deg = o.real("slip-face", 30, 1, 89);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/scenario/scenario_file.hpp"
@@ -117,7 +118,8 @@ RunPlan plan_of(Options options) {
     throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
   const std::string format = o.text("format", "geotiff");
   if (format != "geotiff" && format != "netcdf")
-    throw ConfigError("--format " + format + ": is not one of: geotiff, netcdf");
+    throw ConfigError("--format " + format + ": is not one of: geotiff, netcdf" +
+                      did_you_mean(format, "geotiff, netcdf"));
   if (o.has("format") && plan.out.empty()) throw ConfigError("--format: --out is required too");
   if (o.has("plot") && format == "netcdf")
     throw ConfigError("--plot: needs the summaries of --format geotiff");

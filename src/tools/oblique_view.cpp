@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/parameter_page.hpp"
 #include "src/render/level_of_detail.hpp"
 #include "src/render/plant_shapes.hpp"
@@ -127,7 +128,8 @@ ViewParameters view_parameters(const std::vector<std::string>& settings) {
   yaml::read_parameters(given, "", errors, p, known);
   yaml::reject_unknown_keys(given, "", known, errors);
   if (!p.overlay.empty() && !find_map_layer(p.overlay))
-    errors.add("overlay", desert_sim::quoted(p.overlay) + " is not one of: " + map_layer_names());
+    errors.add("overlay", desert_sim::quoted(p.overlay) + " is not one of: " + map_layer_names() +
+                              did_you_mean(p.overlay, map_layer_names()));
   errors.throw_if_any();
   return p;
 }

@@ -6,6 +6,7 @@
 #include <locale>
 #include <sstream>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
 
@@ -32,7 +33,10 @@ Options::Options(int argc, char** argv, const std::vector<std::string>& with_val
       if (value.empty()) throw ConfigError("--" + name + " '': needs a value that is not empty");
       values_[name].push_back(value);
     } else {
-      throw ConfigError(argument + ": unknown option (--help lists them)");
+      std::string all;
+      for (const auto& names : {with_value, flags})
+        for (const std::string& one : names) all += (all.empty() ? "--" : ", --") + one;
+      throw ConfigError(argument + ": unknown option (--help lists them)" + did_you_mean("--" + name, all));
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/parameter_page.hpp"
 #include "src/ros/node/frames.hpp"
 #include "src/ros/node/private_parameters.hpp"
@@ -37,8 +38,8 @@ YAML::Node extract_sections(const YAML::Node& root, const std::set<std::string>&
     if (sections.count(key)) {
       scenario[key] = entry.second;
     } else if (!known.count(key)) {
-      errors.add(key,
-                 "unknown parameter (known: " + names + "; sections of a scenario: " + section_names + ")");
+      errors.add(key, "unknown parameter (known: " + names + "; sections of a scenario: " + section_names +
+                          ")" + did_you_mean(key, names + ", " + section_names));
     }
   }
   return scenario;

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/core/quoted.hpp"
 
@@ -46,7 +47,7 @@ Choice choice_named(const char* const (&choices)[N], const std::string& text, co
     if (text == choices[n]) return static_cast<Choice>(n);
     all += (n ? ", " : "") + std::string(choices[n]);
   }
-  throw ConfigError(name + ": " + quoted(text) + " is not one of: " + all);
+  throw ConfigError(name + ": " + quoted(text) + " is not one of: " + all + did_you_mean(text, all));
 }
 
 /// A direction in another frame as a direction in the terrain's, both seen from above [deg].

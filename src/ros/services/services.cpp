@@ -3,6 +3,7 @@
 #include <ros/console.h>
 
 #include <boost/make_shared.hpp>
+#include <filesystem>
 
 #include "src/core/quoted.hpp"
 #include "src/ros/conversion/messages.hpp"
@@ -272,10 +273,14 @@ void Services::load_terrain(const LoadTerrainRequest& request, LoadTerrainRespon
 void Services::load_scenario(const LoadScenarioRequest& request, LoadScenarioResponse& response) {
   command::LoadScenario command;
   command.path = installed_scenario_file(request.name);
-  if (command.path.empty())
-    command.path = files_.for_reading(request.name);
-  else
+  if (!command.path.empty()) {
     command.folder = installed_scenario_folder();
+  } else {
+    command.path = files_.for_reading(request.name);
+    std::error_code error;
+    if (!std::filesystem::exists(command.path, error))
+      scenario_file(request.name);  // throws, with the names that it knows
+  }
   response.state_hash = load(command);
 }
 

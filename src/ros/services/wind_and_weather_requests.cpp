@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/requests.hpp"
 
@@ -167,7 +168,7 @@ command::SetParameters weather_command(const SetWeatherRequest& r) {
     } else {
       std::string all = "sea, springs";
       for (const Number& known : numbers) all += std::string(", ") + known.name;
-      throw ConfigError("change: " + quoted(field) + " is not one of: " + all);
+      throw ConfigError("change: " + quoted(field) + " is not one of: " + all + did_you_mean(field, all));
     }
   }
   return command;

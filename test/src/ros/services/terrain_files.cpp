@@ -128,6 +128,7 @@ TEST_F(TerrainFiles, InstalledScenariosHaveNames) {
   }
   for (const char* name : {"venturi2", "../scenarios/dem", "dem.yaml", "./dem", "dem_example"})
     expect_refused<LoadScenario>("load_scenario", beginning(name), "'" + std::string(name) + "'", "");
+  expect_refused<LoadScenario>("load_scenario", beginning("nebka"), "did you mean 'nebkha'?", "barchan, ");
   write("mine", "grid: {width: 9, height: 7}\n");
   EXPECT_TRUE(call<LoadScenario>("load_scenario", beginning("mine")).success) << "a file below ~data_dir";
 }
