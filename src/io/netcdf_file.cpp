@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 
@@ -189,6 +190,8 @@ struct NetcdfReader::File : Handle {
     if (nc_inq_dimid(id, name, &dimension) != NC_NOERR || nc_inq_varid(id, name, &variable) != NC_NOERR ||
         nc_inq_dimlen(id, dimension, &length) != NC_NOERR)
       refuse(std::string("has no dimension and variable '") + name + "'");
+    if (length > (std::size_t{1} << 24))
+      refuse(std::string("'") + name + "' has " + std::to_string(length) + " values");
     std::vector<double> values(length);
     if (nc_get_var_double(id, variable, values.data()) != NC_NOERR)
       refuse(std::string("the variable '") + name + "' cannot be read");
@@ -203,6 +206,24 @@ struct NetcdfReader::File : Handle {
         refuse(std::string("'") + name + "' does not rise evenly by the width of a cell, " +
                std::to_string(cell) + " m");
   }
+
+  void require_finite_times() const {
+    for (std::size_t n = 0; n < times.size(); ++n)
+      if (!std::isfinite(times[n]))
+        refuse("the time " + std::to_string(times[n]) + ", number " + std::to_string(n + 1) + " of " +
+               std::to_string(times.size()) + ", is not finite");
+  }
+
+  /// A few changed bytes can declare billions of cells. Deflate packs at most some 1000 bytes into one.
+  void require_cells_that_fit() const {
+    constexpr double packed = 1032;
+    std::error_code error;
+    const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
+    const double cells = static_cast<double>(x.size()) * static_cast<double>(y.size());
+    if (error || cells > packed * bytes || cells > 2147483648.0)
+      refuse(std::to_string(x.size()) + " x " + std::to_string(y.size()) +
+             " cells are more than the file can have, or than 2^31");
+  }
 };
 
 NetcdfReader::NetcdfReader(const std::string& path) : file_(std::make_unique<File>(path)) {
@@ -214,6 +235,8 @@ NetcdfReader::NetcdfReader(const std::string& path) : file_(std::make_unique<Fil
   f.times = f.coordinate("time");
   f.require_even(f.x, "x");
   f.require_even(f.y, "y");
+  f.require_finite_times();
+  f.require_cells_that_fit();
   char boundary[16] = "";
   std::size_t length = 0;
   if (nc_inq_attlen(f.id, NC_GLOBAL, "boundary", &length) == NC_NOERR && length < sizeof boundary &&

@@ -1,13 +1,16 @@
 #pragma once
 /// Numbers and strings in JSON.
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 
 namespace desert_sim {
 
-/// A double with 17 significant digits, which is read back exactly.
+/// A double with 17 significant digits, which is read back exactly; null for those that JSON has no number
+/// for.
 inline std::string json_number(double value) {
+  if (!std::isfinite(value)) return "null";
   char text[40];
   std::snprintf(text, sizeof text, "%.17g", value);
   return text;

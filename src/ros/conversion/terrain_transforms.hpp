@@ -11,7 +11,8 @@
 
 namespace desert_sim {
 
-/// The name of a frame without the '/' before it, which tf2 does not know, but messages of older programs have.
+/// The name of a frame without the '/' before it, which tf2 does not know, but messages of older programs
+/// have.
 inline std::string frame_name(const std::string& given) {
   return !given.empty() && given[0] == '/' ? given.substr(1) : given;
 }

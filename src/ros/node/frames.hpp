@@ -37,8 +37,8 @@ class Frames : public TerrainTransforms {
   /// Moves that frame to the middle of another terrain. Only one thread may call it at a time.
   void move_center(const Snapshot& snapshot);
   /// The frame for what viewers draw in float32: that in the middle of the terrain, if there is one and the
-  /// terrain reaches farther than 16 km from the origin of its own, where float32 is coarser than a millimetre
-  /// (half a metre at 4000 km, in UTM); else the terrain's.
+  /// terrain reaches farther than 16 km from the origin of its own, where float32 is coarser than a
+  /// millimetre (half a metre at 4000 km, in UTM); else the terrain's.
   ViewFrame view_frame() const;
 
  private:

@@ -45,6 +45,19 @@ TEST_F(Netcdf, HasTheStartEveryNthStepAndTheEnd) {
   EXPECT_TRUE(std::filesystem::exists(path("out") + "/summary.json"));
 }
 
+TEST_F(Netcdf, ATimeThatIsNotFiniteIsRefused) {
+  run_cpu({scenario_, "--steps", "10", "--every", "4", "--out", path("out"), "--format", "netcdf"});
+  std::string bytes = test::file_bytes(path("out") + "/terrain.nc");
+  const double ten = 10, infinite = INFINITY;
+  const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&ten), sizeof ten));
+  ASSERT_NE(at, std::string::npos);
+  bytes.replace(at, sizeof infinite, reinterpret_cast<const char*>(&infinite), sizeof infinite);
+  const std::string file = folder_.write("changed.nc", bytes);
+  EXPECT_NE(
+      test::refusal([&] { NetcdfReader reader(file); }).find("the time inf, number 4 of 4, is not finite"),
+      std::string::npos);
+}
+
 TEST_F(Netcdf, IsReadByXarray) {
   folder_.write("wind.csv", "time,speed,direction\n2001-03-04T15:00,6,30\n");
   run_cpu({scenario_, "--steps", "6", "--every", "3", "--out", path("out"), "--format", "netcdf", "--set",

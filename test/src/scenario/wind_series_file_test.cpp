@@ -50,11 +50,11 @@ TEST(WindSeriesFile, ReadsDates) {
 }
 
 TEST(WindSeriesFile, NamesLineColumnAndValueOfAllFaults) {
-  const std::string said = test::refusal(
-      [] { parse("# a station\ntime,speed,direction\n0,4,0\n10,x,0\n10,4,400\n20,-1,0\n"); });
-  for (const char* part : {"wind.csv: line 4, column speed: 'x'", "[0, 100] m/s", "line 5, column time",
-                           "not later than", "line 5, column direction: '400'", "[-360, 360] deg",
-                           "line 6, column speed: '-1'"})
+  const std::string said =
+      test::refusal([] { parse("# a station\ntime,speed,direction\n0,4,0\n10,x,0\n10,4,400\n20,-1,0\n"); });
+  for (const char* part :
+       {"wind.csv: line 4, column speed: 'x'", "[0, 100] m/s", "line 5, column time", "not later than",
+        "line 5, column direction: '400'", "[-360, 360] deg", "line 6, column speed: '-1'"})
     EXPECT_NE(said.find(part), std::string::npos) << part << " is not in\n" << said;
 }
 

@@ -50,7 +50,8 @@ class ChildProcess {
     kill(pid_, with_signal);
     return wait();
   }
-  /// Stops it until release(). scripts/flakes, which stops and continues processes at random, leaves it alone.
+  /// Stops it until release(). scripts/flakes, which stops and continues processes at random, leaves it
+  /// alone.
   void hold() const {
     close(creat(held_file().c_str(), 0600));
     EXPECT_EQ(kill(pid_, SIGSTOP), 0);
