@@ -3,8 +3,8 @@
 #include <ros/console.h>
 
 #include <boost/make_shared.hpp>
-#include <filesystem>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/quoted.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/services/answer.hpp"
@@ -270,17 +270,26 @@ void Services::load_terrain(const LoadTerrainRequest& request, LoadTerrainRespon
   response.state_hash = load({files_.for_reading(name), true, 0, request.fill_nodata != 0});
 }
 
+/// A name that is no file's either may be that of an installed scenario, mistyped.
+std::string Services::scenario_below_data_folder(const std::string& name) const {
+  try {
+    return files_.for_reading(name);
+  } catch (const ConfigError& e) {
+    if (name.find('/') != std::string::npos) throw;
+    std::string known;
+    for (const std::string& one : installed_scenarios()) known += (known.empty() ? "" : ", ") + one;
+    throw ConfigError(std::string(e.what()) + "; nor is it an installed scenario (known: " + known + ")" +
+                      did_you_mean(name, known));
+  }
+}
+
 void Services::load_scenario(const LoadScenarioRequest& request, LoadScenarioResponse& response) {
   command::LoadScenario command;
   command.path = installed_scenario_file(request.name);
-  if (!command.path.empty()) {
+  if (command.path.empty())
+    command.path = scenario_below_data_folder(request.name);
+  else
     command.folder = installed_scenario_folder();
-  } else {
-    command.path = files_.for_reading(request.name);
-    std::error_code error;
-    if (!std::filesystem::exists(command.path, error))
-      scenario_file(request.name);  // throws, with the names that it knows
-  }
   response.state_hash = load(command);
 }
 

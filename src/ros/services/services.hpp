@@ -76,6 +76,7 @@ class Services {
   void load_terrain(const LoadTerrainRequest& request, LoadTerrainResponse& response);
   void load_scenario(const LoadScenarioRequest& request, LoadScenarioResponse& response);
   /// Starts from what the command loads. Returns the hash of the new state.
+  std::string scenario_below_data_folder(const std::string& name) const;
   std::string load(const command::LoadScenario& command);
   /// Moves the frame in the middle of the terrain, and publishes all topics.
   void terrain_replaced();

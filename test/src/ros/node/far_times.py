@@ -24,9 +24,9 @@ class FarTimes(Scenarios):
         self.clock = ScriptedClock()
         self.clock.show(1000)
         self.desert = self.start("desert_sim", {"scenario": CORNER})
-        self.rover = self.of_program("desert_rover", {"x": 40, "y": 0, "lidar": {"rate": 0}, "depth_camera": {"rate": 0}},
+        self.rover = self.of_program("desert_rover", {"x": 40, "y": 0, "status_rate": 20, "lidar": {"rate": 0}, "depth_camera": {"rate": 0}},
                                      "desert_rover_node")
-        self.planner = self.of_program("desert_planner", {"planner": "forecast", "drive": False, "pose_age": 1e6},
+        self.planner = self.of_program("desert_planner", {"planner": "forecast", "drive": False, "pose_age": 1e6, "status_rate": 20},
                                        "desert_planner_node")
         self.rover.latest("status", RoverStatus)
         self.planner.latest("status", PlannerStatus)
