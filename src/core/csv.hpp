@@ -20,9 +20,6 @@ std::vector<std::string> csv_fields(const std::string& line, char separator);
 /// The text without blanks and double quotes around it.
 std::string trimmed(const std::string& text);
 
-/// The text with A…Z as a…z.
-std::string lower_case(std::string text);
-
 /// A number that is all of `text`; false if it is none, or not finite. `decimal_comma`: it may be written
 /// 7,2.
 bool read_plain_number(const std::string& text, double& number, bool decimal_comma = false);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "src/core/csv.hpp"
+#include "src/core/lower_case.hpp"
 
 namespace desert_sim {
 

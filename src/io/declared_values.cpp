@@ -1,10 +1,9 @@
 #include "src/io/declared_values.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "src/core/log.hpp"
+#include "src/core/lower_case.hpp"
 #include "src/io/raster_geometry.hpp"
 
 namespace desert_sim {
@@ -37,11 +36,6 @@ constexpr LengthUnit length_units[] = {{"m", 1},
                                        {"us survey foot", us_survey_foot},
                                        {"survey foot", us_survey_foot},
                                        {"fathom", 6 * foot}};
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 void replace_end(std::string& text, const std::string& end, const std::string& other) {
   if (text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0)

@@ -179,13 +179,13 @@ std::string inner_cells(const OGRSpatialReference& crs, const std::string& srs, 
                          const RasterExtent& e) {
   throw_raster_error(
       path, what + ", metres are needed; project it first" +
-                projecting_command(path, crs, 0.5 * (e.west + e.east()), 0.5 * (e.south + e.north()), &e));
+                how_to_project(path, crs, 0.5 * (e.west + e.east()), 0.5 * (e.south + e.north()), &e));
 }
 
 }  // namespace
 
-std::string projecting_command(const std::string& path, const OGRSpatialReference& crs, double x, double y,
-                               const RasterExtent* extent) {
+std::string how_to_project(const std::string& path, const OGRSpatialReference& crs, double x, double y,
+                           const RasterExtent* extent) {
   std::optional<Geography::Point> place = Geography::Point{x, y};
   if (!crs.IsGeographic()) place = Geography(crs).degrees(*place);
   if (!place) return " with gdalwarp -t_srs to a projection in metres";

@@ -15,13 +15,13 @@ struct RasterExtent {
   double north() const { return south + height * cell_y; }
 };
 
-/// The command that projects a raster to metres on the ground around a place (x, y) in the coordinates of
-/// `crs`: on Earth to the UTM zone, near the poles to the polar stereographic projection; on another body to
-/// a transverse Mercator or polar stereographic projection of its own. What is not covered has no data. With
-/// an `extent` cells are square and as large as the raster's, and lie within it where most of it is then
-/// kept.
-std::string projecting_command(const std::string& path, const OGRSpatialReference& crs, double x, double y,
-                               const RasterExtent* extent = nullptr);
+/// How "project it first" goes on: ": gdalwarp …", the command that projects a raster to metres on the ground
+/// around a place (x, y) in the coordinates of `crs`: on Earth to the UTM zone, near the poles to the polar
+/// stereographic projection; on another body to a transverse Mercator or polar stereographic projection of
+/// its own. What is not covered has no data. With an `extent` cells are square and as large as the raster's,
+/// and lie within it where most of it is then kept.
+std::string how_to_project(const std::string& path, const OGRSpatialReference& crs, double x, double y,
+                           const RasterExtent* extent = nullptr);
 
 /// Throws ConfigError that has this command where the coordinates are known not to be metres on the ground:
 /// for degrees and other units, and where the projection's scale at the raster's centre differs from 1 by

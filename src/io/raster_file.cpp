@@ -3,7 +3,6 @@
 #include <gdal_priv.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "kernels/backend/exec.hpp"
+#include "src/core/lower_case.hpp"
 #include "src/io/cell_values.hpp"
 #include "src/io/frame.hpp"
 #include "src/io/gdal_messages.hpp"
@@ -52,10 +52,7 @@ void reverse_rows(Raster& raster) {
 }
 
 bool is_exr(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension == ".exr";
+  return lower_case(std::filesystem::path(path).extension().string()) == ".exr";
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ std::string unusable_placement(const std::string& path, GDALDataset& dataset) {
     x += points[n].dfGCPX / dataset.GetGCPCount();
     y += points[n].dfGCPY / dataset.GetGCPCount();
   }
-  return placed + projecting_command(path, *crs, x, y);
+  return placed + how_to_project(path, *crs, x, y);
 }
 
 /// Refuses a truncated raw file (ENVI, EHdr), because GDAL would read the missing part as zeros.

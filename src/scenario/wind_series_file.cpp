@@ -7,6 +7,7 @@
 #include "src/core/csv.hpp"
 #include "src/core/input_file.hpp"
 #include "src/core/log.hpp"
+#include "src/core/lower_case.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/quoted.hpp"
 #include "src/scenario/sections.hpp"

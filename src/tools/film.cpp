@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "src/core/csv.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/core/lower_case.hpp"
 #include "src/tools/outputs.hpp"
 #if DESERT_WITH_IO
 #include <opencv2/core.hpp>

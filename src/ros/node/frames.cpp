@@ -20,7 +20,7 @@ constexpr double near = 16384;  // [m]: up to there float32 steps are at most a 
 }  // namespace
 
 void check_frame(std::string& frame, const std::string& key, ValidationErrors& errors) {
-  if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
+  frame = frame_name(frame);
   std::string reason;
   if (frame.empty() || !ros::names::validate(frame, reason))
     errors.add(key, "'" + frame + "' is not a valid frame name" + (reason.empty() ? "" : ": " + reason));
