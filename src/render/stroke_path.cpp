@@ -18,16 +18,24 @@ double distance_to_segment(const Place& p, const Capsule& axis) {
 /// two seconds for them.
 constexpr std::size_t most_places = 256;
 
-/// The last place to which one capsule can go from the first one; at least the second.
-std::size_t reach(const std::deque<Place>& places, double tolerance) {
-  std::size_t last = 1;
-  for (std::size_t n = 2; n < std::min(places.size(), most_places); ++n) {
-    const Capsule axis{places.front(), places[n]};
-    for (std::size_t m = 1; m < n; ++m)
-      if (distance_to_segment(places[m], axis) > tolerance) return last;
-    last = n;
-  }
-  return last;
+/// So many pieces may wait; of a longer path they are longer, so that the newest place is never far behind.
+constexpr double most_pieces = 64;
+
+/// The point between `from` and `to` that is `length` from `start`, where the first one is nearer and the
+/// second one is not.
+Place at_distance(const Place& start, double length, const Place& from, const Place& to) {
+  const double dx = to.x - from.x, dy = to.y - from.y, square = dx * dx + dy * dy;
+  const double x = from.x - start.x, y = from.y - start.y, along = x * dx + y * dy;
+  const double root = std::sqrt(std::max(0.0, along * along + square * (length * length - x * x - y * y)));
+  const double part = std::clamp((root - along) / square, 0.0, 1.0);
+  return {from.x + part * dx, from.y + part * dy};
+}
+
+/// Whether a capsule to `end` leaves none of the places before number `count` further than `tolerance`.
+bool covers(const std::deque<Place>& places, std::size_t count, const Place& end, double tolerance) {
+  const Capsule axis{places.front(), end};
+  return std::all_of(places.begin() + 1, places.begin() + static_cast<std::ptrdiff_t>(count),
+                     [&](const Place& place) { return distance_to_segment(place, axis) <= tolerance; });
 }
 
 }  // namespace
@@ -61,24 +69,51 @@ void StrokePath::end() {
 std::optional<Capsule> StrokePath::take() {
   while (!lines_.empty()) {
     Line& line = lines_.front();
-    std::deque<Place>& places = line.places;
-    if (places.size() == 1) {
+    if (line.places.size() == 1) {
       if (!line.closed) return std::nullopt;
-      const Place only = places.front();
+      const Place only = line.places.front();
       const bool is_circle = !line.begun;
       lines_.pop_front();
       if (is_circle) return Capsule{only, only};
       continue;
     }
-    const std::size_t last = reach(places, tolerance_);
-    const Capsule capsule{places.front(), places[last]};
-    const bool may_grow = !line.closed && last + 1 == places.size();
-    if (may_grow && capsule.length() < least_) return std::nullopt;
-    places.erase(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(last));
+    const std::optional<Place> end = cut(line);
+    if (!end) return std::nullopt;
+    const Capsule capsule{line.places.front(), *end};
+    line.places.front() = *end;
     line.begun = true;
     return capsule;
   }
   return std::nullopt;
+}
+
+std::optional<Place> StrokePath::cut(Line& line) const {
+  std::deque<Place>& places = line.places;
+  const auto passed = [&](std::size_t count) {
+    places.erase(places.begin() + 1, places.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  const double length = std::max(piece_, waiting() / most_pieces);
+  for (std::size_t n = 1; n < places.size(); ++n) {
+    std::optional<Place> end;
+    if (n > 1 && (n > most_places || !covers(places, n, places[n], tolerance_)))
+      end = places[n - 1];  // the path turns here
+    else if (distance(places.front(), places[n]) >= length)
+      end = at_distance(places.front(), length, places[n - 1], places[n]);
+    if (!end) continue;
+    passed(distance(*end, places[n]) > 0 ? n : n + 1);
+    return end;
+  }
+  if (!line.closed) return std::nullopt;
+  const Place end = places.back();
+  passed(places.size());
+  return end;
+}
+
+double StrokePath::waiting() const {
+  double sum = 0;
+  for (const Line& line : lines_)
+    for (std::size_t n = 1; n < line.places.size(); ++n) sum += distance(line.places[n - 1], line.places[n]);
+  return sum;
 }
 
 }  // namespace desert_sim::render

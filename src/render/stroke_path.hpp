@@ -1,8 +1,7 @@
 #pragma once
 /// The path of a brush from press to release, and the capsules that paint it. A capsule is what a circle
 /// covers that moves along a line segment. However fast the path grows and however slowly capsules are
-/// taken, nothing of it is lost, and each capsule is as long as the path's shape allows: a straight path
-/// needs one.
+/// taken, nothing of it is lost, and it is cut in the same way: a slow node gets the same stroke.
 
 #include <deque>
 #include <optional>
@@ -28,9 +27,9 @@ double share_of_area(const Capsule& capsule, double radius);
 
 class StrokePath {
  public:
-  /// While the path grows, no capsule is shorter than `least`. It leaves no point of the path further than
-  /// `tolerance` from its axis [m].
-  StrokePath(double least, double tolerance) : least_(least), tolerance_(tolerance) {}
+  /// A capsule is as long as `piece`, but where the path turns, so that none of its places is further than
+  /// `tolerance` from the axis, and at the end [m]. Only where more than 64 pieces wait are they longer.
+  StrokePath(double piece, double tolerance) : piece_(piece), tolerance_(tolerance) {}
 
   void add(const Place& place);
   /// The next place begins another line: the brush was lifted in between, or left the terrain.
@@ -51,7 +50,12 @@ class StrokePath {
     bool begun = false;  ///< a capsule of it has been taken
   };
 
-  const double least_, tolerance_;
+  /// Where the next capsule of the line ends; what it passes is gone. Empty if more has to come first.
+  std::optional<Place> cut(Line& line) const;
+  /// The length of the path that no capsule has passed [m].
+  double waiting() const;
+
+  const double piece_, tolerance_;
   std::deque<Line> lines_;
   bool ended_ = false;
 };

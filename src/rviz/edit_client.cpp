@@ -17,8 +17,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Pieces of half a radius overlap to an even depth, and leave no place of the path unpainted.
-constexpr double least_piece = 0.5, tolerance = 0.125;  // of the radius
+/// Pieces of half a radius overlap to an even depth: longer ones would leave heaps where they meet.
+constexpr double piece = 0.5, tolerance = 0.125;  // of the radius
 
 std::string number(double value) {
   std::ostringstream text;
@@ -55,7 +55,7 @@ void EditClient::begin(const Brush& brush) {
   const std::lock_guard<std::mutex> lock(mutex_);
   Job job;
   job.stroke.emplace(
-      Stroke{brush, {least_piece * brush.radius, tolerance * brush.radius}, unique_name(++strokes_)});
+      Stroke{brush, {piece * brush.radius, tolerance * brush.radius}, unique_name(++strokes_)});
   jobs_.push_back(std::move(job));
 }
 

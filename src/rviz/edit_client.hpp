@@ -1,7 +1,7 @@
 #pragma once
 /// Sends edits to a node on a thread of its own, so that nobody waits for the node. One call is under way
 /// at a time, and at most so many a second; what is painted meanwhile grows the path of its stroke, of
-/// which the next call takes as much as one capsule can be (render::StrokePath).
+/// which the next call takes one capsule (render::StrokePath).
 
 #include <ros/service_client.h>
 
@@ -18,7 +18,7 @@ namespace desert_sim {
 
 class EditClient {
  public:
-  static constexpr int shortest_pause_ms = 50;  ///< between the beginnings of two calls [ms]
+  static constexpr int shortest_pause_ms = 20;  ///< between the beginnings of two calls [ms]
 
   /// `node`: the node's name, such as /desert_sim.
   explicit EditClient(const std::string& node);

@@ -1,4 +1,4 @@
-// Strokes of a brush as capsules: nothing of the path is lost, and nothing queues up.
+// Strokes of a brush as capsules: nothing of the path is lost, and its pace does not matter.
 
 #include "src/render/stroke_path.hpp"
 
@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -63,17 +64,47 @@ TEST(StrokePath, HasNoGapsHoweverSlowlyItIsTaken) {
   }
 }
 
-TEST(StrokePath, AStraightPathThatHasPiledUpIsOneCapsule) {
+TEST(StrokePath, IsCutInTheSameWayHoweverSlowlyItIsTaken) {
+  std::vector<std::vector<double>> lengths;
+  for (const int places_between_calls : {1, 7, 1000}) {
+    StrokePath path(0.5, 0.1);
+    lengths.emplace_back();
+    const auto take = [&](const std::vector<Capsule>& capsules) {
+      for (const Capsule& capsule : capsules) lengths.back().push_back(capsule.length());
+    };
+    for (int n = 0; n <= 250; ++n) {
+      path.add({0.03 * n, 0.04 * n});
+      if (n % places_between_calls == 0) take(take_all(path));
+    }
+    path.end();
+    take(take_all(path));
+    ASSERT_EQ(lengths.back().size(), 25u) << places_between_calls;
+    for (const double length : lengths.back()) EXPECT_NEAR(length, 0.5, 1e-9);
+  }
+}
+
+TEST(StrokePath, AJumpOfTheMouseIsCutToo) {
   StrokePath path(0.5, 0.1);
-  for (int n = 0; n <= 250; ++n) path.add({0.04 * n, 0.08 * n});
-  const auto capsule = path.take();
-  ASSERT_TRUE(capsule);
-  EXPECT_EQ(capsule->to.x, 10);
-  EXPECT_FALSE(path.take()) << "nothing queues up behind it";
+  path.add({0, 0});
+  path.add({4.2, 0});
+  EXPECT_EQ(take_all(path).size(), 8u);
+  path.end();
+  EXPECT_NEAR(take_all(path).at(0).length(), 0.2, 1e-9);
+}
+
+TEST(StrokePath, NoMoreThanSixtyFourPiecesWait) {
+  StrokePath path(0.5, 0.1);
+  path.add({0, 0});
+  path.add({1e5, 0});
+  path.end();
+  const std::vector<Capsule> capsules = take_all(path);
+  EXPECT_NEAR(capsules.front().length(), 1e5 / 64, 1e-6);
+  EXPECT_LT(capsules.size(), 1000u) << "shorter as fewer wait";
+  expect_complete(capsules, {{0, 0}, {1e5, 0}}, 0.1);
 }
 
 TEST(StrokePath, GoingBackIsNotLost) {
-  StrokePath path(0.5, 0.1);
+  StrokePath path(5, 0.1);
   for (const double x : {0.0, 1.0, 2.0, 3.0, 2.0, 1.0, 0.0}) path.add({x, 0});
   path.end();
   const std::vector<Capsule> capsules = take_all(path);
@@ -87,9 +118,9 @@ TEST(StrokePath, WaitsForEnoughButKeepsTheRest) {
   path.add({0, 0});
   path.add({0.3, 0});
   EXPECT_FALSE(path.take());
-  path.add({0.6, 0});
+  path.add({0.5, 0});
   EXPECT_TRUE(path.take());
-  path.add({0.7, 0});
+  path.add({0.6, 0});
   EXPECT_FALSE(path.take());
   path.end();
   const auto rest = path.take();
@@ -124,30 +155,36 @@ TEST(StrokePath, NothingIsPaintedWhereTheBrushWasLifted) {
   path.add({51, 0});
   path.end();
   const std::vector<Capsule> capsules = take_all(path);
-  ASSERT_EQ(capsules.size(), 2u);
-  EXPECT_EQ(capsules[0].to.x, 1);
-  EXPECT_EQ(capsules[1].from.x, 50);
+  ASSERT_EQ(capsules.size(), 4u);
+  EXPECT_EQ(capsules[1].to.x, 1);
+  EXPECT_EQ(capsules[2].from.x, 50);
   EXPECT_TRUE(path.finished());
 }
 
-/// The mean depth on the axis of a pass of 60 m, away from its ends.
-double mean_depth(double piece, double radius, double inner) {
-  double sum = 0;
-  int count = 0;
-  for (double x = 20; x < 40; x += 0.01, ++count)
+/// The least and the greatest depth on the axis of a pass of 60 m, away from its ends.
+std::pair<double, double> depths(double piece, double radius, double inner) {
+  std::pair<double, double> range{1e9, 0};
+  for (double x = 20; x < 40; x += 0.01) {
+    double sum = 0;
     for (double from = 0; from < 60; from += piece) {
       const Capsule capsule{{from, 0}, {from + piece, 0}};
       const double r = distance_to(capsule, {x, 0}) / radius;
       const double weight = r <= inner ? 1 : std::max(0.0, (1 - r) / (1 - inner));
       sum += share_of_depth(capsule, radius, inner) * weight;
     }
-  return sum / count;
+    range = {std::min(range.first, sum), std::max(range.second, sum)};
+  }
+  return range;
 }
 
-TEST(StrokePath, DepthDoesNotDependOnTheSpeedOfTheMouse) {
-  for (const double inner : {0.0, 0.5, 0.9})
-    for (const double piece : {0.1, 0.5, 1.0, 2.5, 10.0})
-      EXPECT_NEAR(mean_depth(piece, 2, inner), 1, 0.03) << "pieces of " << piece << " m, inner " << inner;
+TEST(StrokePath, PiecesOfHalfARadiusGiveAnEvenDepth) {
+  for (const double inner : {0.0, 0.5}) {
+    EXPECT_NEAR(depths(1, 2, inner).first, 1, 1e-6) << inner;
+    EXPECT_NEAR(depths(1, 2, inner).second, 1, 1e-6) << inner;
+    EXPECT_GT(depths(20, 2, inner).second, 1.5) << "long pieces do not";
+  }
+  EXPECT_NEAR(depths(1, 2, 0.9).first, 0.83, 0.01) << "a hard brush hardly";
+  EXPECT_NEAR(depths(1, 2, 0.9).second, 1.04, 0.01);
 }
 
 TEST(StrokePath, AreasDoNotDependOnTheSpeedOfTheMouse) {
