@@ -35,9 +35,9 @@ def course(seed):
 class Planner:
     """The planner's last status, and the way of the goal."""
 
-    def __init__(self, name):
+    def __init__(self, name, goals="move_base_simple/goal"):
         self.name, self.changed, self.status = name, threading.Condition(), None
-        self.goals = rospy.Publisher("/move_base_simple/goal", PoseStamped, queue_size=1, latch=True)
+        self.goals = rospy.Publisher(goals, PoseStamped, queue_size=1, latch=True)
         rospy.Subscriber(name + "/status", PlannerStatus, self.take, queue_size=100, tcp_nodelay=True)
 
     def take(self, status):
@@ -146,11 +146,11 @@ def run_headless(options):
     parameters = {"backend": options.backend, "threads": 0, "frame_id": "map", "step_rate": 1 / STEP}  # of forecasts
     with Desert(SCENARIO, rover=(*start, 90.0), settings=settings, seconds_per_step=STEP, parameters=parameters,
                 rover_parameters={"rover": {"seed": options.seed}}) as desert:
-        planner = Planner("/rover/desert_planner")
+        planner = Planner("/rover/desert_planner", "/move_base_simple/goal")
         node = Node(planner.name, {
             "clock": "lockstep", "seconds_per_sim_second": 1 / 0.045, "planner": options.planner, "tf_prefix": "rover",
-            "terrain_node": "/desert_sim", "rover_node": "desert_rover"},
-            executable="desert_planner_node", arguments=["move_base_simple/goal:=/move_base_simple/goal"])
+            "terrain_node": "/desert_sim", "rover_node": "desert_rover", "goal_topic": planner.goals.resolved_name},
+            executable="desert_planner_node")
         film = Film(options.film)
         try:
             planner.wait(lambda s: s.header.frame_id, "it has no terrain")
@@ -168,7 +168,7 @@ def run_headless(options):
 
 def run_live(options):
     rospy.init_node("demo_rover", disable_signals=True)
-    planner = Planner("/rover/desert_planner")
+    planner = Planner("rover/desert_planner")
     planner.wait(lambda s: s.header.frame_id, "it has no terrain", 120)
     ends = course(options.seed)
     n = 1

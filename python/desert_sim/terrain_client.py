@@ -12,6 +12,7 @@ from std_msgs.msg import Empty, String
 from .layer_assembler import EXPECTED, LOST, NONE, NOTHING, Counts, LayerAssembler
 from .layer_map import LAYERS
 from .msg import ElevationGrid, ElevationUpdate, LayerGrid, LayerUpdate
+from .waiting_notice import WaitingNotice, waiting_text
 
 _POLL_PERIOD = 0.1  # [s], how often a client checks whether it needs a keyframe
 _LARGEST_MESSAGE = 1 << 28  # [bytes], the buffer of a connection; rospy's usual one holds messages back
@@ -151,6 +152,11 @@ class _Stream:
     def connected(self):
         impl = self._keyframes.impl  # None once it is unregistered
         return impl is not None and impl.get_num_connections() > 0
+
+    @property
+    def awaited(self):
+        """The topic of keyframes, and whether it has a publisher."""
+        return self._topic, self.connected
 
     def close(self):
         """By a thread that holds the client's `_processing`."""
@@ -334,11 +340,24 @@ class TerrainClient:
             return True
 
     def _watch(self):
+        notice = WaitingNotice()
         while not self._closing.wait(_POLL_PERIOD) and not rospy.is_shutdown():
             with self._changed:
                 streams = list(self._streams.values())
             for stream in streams:
                 stream.request_keyframe_if_due()
+            awaited = [stream.awaited for stream in streams if stream.map is None]
+            if notice.due(bool(awaited), time.monotonic()):
+                _tell_what_is_awaited(awaited)
+
+
+def _tell_what_is_awaited(awaited):
+    try:
+        topics = rospy.get_published_topics()
+    except (rospy.ROSException, OSError):  # there is no master
+        topics = []
+    published = [name for name, kind in topics if kind in (ElevationGrid._type, LayerGrid._type)]
+    rospy.logwarn("The terrain client: %s", waiting_text(awaited, published))
 
 
 def _check_layer(name):

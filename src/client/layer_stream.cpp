@@ -114,6 +114,15 @@ ros::Subscriber LayerStream::keyframe_subscriber() const {
   return keyframes_;
 }
 
+std::optional<AwaitedTopic> LayerStream::awaited() const {
+  const ros::Subscriber keyframes = keyframe_subscriber();
+  {
+    const std::lock_guard<std::mutex> lock(context_.mutex);
+    if (map_) return std::nullopt;
+  }
+  return AwaitedTopic{keyframes ? keyframes.getTopic() : topics_.keyframes, keyframes.getNumPublishers() > 0};
+}
+
 bool LayerStream::connected() const { return keyframe_subscriber().getNumPublishers() > 0; }
 
 // ---- keyframes ----

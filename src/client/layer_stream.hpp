@@ -7,10 +7,12 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "src/client/keyframe_requests.hpp"
 #include "src/client/layer_assembler.hpp"
+#include "src/client/waiting_notice.hpp"
 
 namespace desert_sim {
 
@@ -58,6 +60,8 @@ class LayerStream : public std::enable_shared_from_this<LayerStream> {
 
   /// Whether keyframes have a publisher.
   bool connected() const;
+  /// The topic of keyframes while none has come.
+  std::optional<AwaitedTopic> awaited() const;
 
   // By any thread that holds the context's mutex:
 

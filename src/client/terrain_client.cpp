@@ -1,7 +1,9 @@
 #include "src/client/terrain_client.hpp"
 
+#include <ros/console.h>
 #include <ros/init.h>
 #include <ros/master.h>
+#include <ros/message_traits.h>
 #include <ros/names.h>
 
 #include <algorithm>
@@ -235,7 +237,23 @@ void TerrainClient::run_thread() {
     }
     start_and_stop_streams();
     for (const std::shared_ptr<LayerStream>& stream : streams()) stream->request_keyframe_if_due();
+    tell_what_is_awaited();
   }
+}
+
+void TerrainClient::tell_what_is_awaited() {
+  std::vector<AwaitedTopic> awaited;
+  for (const std::shared_ptr<LayerStream>& stream : streams())
+    if (std::optional<AwaitedTopic> topic = stream->awaited()) awaited.push_back(std::move(*topic));
+  if (!notice_.due(!awaited.empty(), Clock::now()) || !ros::master::check()) return;
+  ros::master::V_TopicInfo all;
+  std::vector<std::string> published;
+  if (ros::master::getTopics(all))
+    for (const ros::master::TopicInfo& topic : all)
+      if (topic.datatype == ros::message_traits::datatype<ElevationGrid>() ||
+          topic.datatype == ros::message_traits::datatype<LayerGrid>())
+        published.push_back(topic.name);
+  ROS_WARN("The terrain client: %s", waiting_text(awaited, published).c_str());
 }
 
 /// Unsubscribing waits for a callback that runs, which may be the one that asked for it: so only this thread

@@ -32,6 +32,7 @@
 
 #include "src/client/layer_map.hpp"
 #include "src/client/layer_stream.hpp"
+#include "src/client/waiting_notice.hpp"
 
 namespace desert_sim {
 
@@ -61,8 +62,8 @@ class TerrainClient {
 
   using Statistics = StreamStatistics;
 
-  /// Subscribes. Waits for the ROS master if there is none, but not for the node. Throws ConfigError for
-  /// invalid options.
+  /// Subscribes. Waits for the ROS master if there is none, but not for the node: while a topic does not
+  /// come, a warning names it. Throws ConfigError for invalid options.
   explicit TerrainClient(const ros::NodeHandle& node = ros::NodeHandle());
   TerrainClient(const ros::NodeHandle& node, Options options);
   /// Waits for the message that is being processed.
@@ -124,10 +125,12 @@ class TerrainClient {
   bool wait(const std::function<bool(const LayerStream&)>& condition, double timeout) const;
   void run_thread();
   void start_and_stop_streams();
+  void tell_what_is_awaited();
 
   Options options_;
   ros::CallbackQueue queue_;
   mutable StreamContext context_;
+  WaitingNotice notice_;  ///< used by the client's thread only
 
   // Guarded by context_.mutex:
   std::map<std::string, std::shared_ptr<LayerStream>> streams_;  ///< by layer

@@ -41,7 +41,7 @@ render::PackedColour colour_of(Brush::Operation operation) {
 BrushTool::BrushTool() {
   shortcut_key_ = 'b';
   rviz::Property* const parent = getPropertyContainer();
-  node_ = new rviz::StringProperty("Node", "/desert_sim", "The simulator's node whose terrain is painted.",
+  node_ = new rviz::StringProperty("Node", "desert_sim", "The simulator's node whose terrain is painted.",
                                    parent, SLOT(choose_node()), this);
   material_ = new rviz::EnumProperty("Material", "Sand", "What is painted.", parent);
   int option = 0;

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "src/core/error.hpp"
+#include "src/rviz/names.hpp"
 
 namespace desert_sim {
 
@@ -149,7 +150,7 @@ void EditClient::run() {
 
 template <class Service>
 typename Service::Response EditClient::call(const char* name, const typename Service::Request& request) {
-  const std::string service = node_ + "/" + name;
+  const std::string service = full_name(node_, "node") + "/" + name;
   ros::NodeHandle node;
   ros::ServiceClient client =
       node.serviceClient<Service>(service, true);  // one that can be shut down while it waits

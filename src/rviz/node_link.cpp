@@ -1,9 +1,8 @@
 #include "src/rviz/node_link.hpp"
 
 #include <dynamic_reconfigure/Reconfigure.h>
-#include <ros/names.h>
 
-#include "src/core/error.hpp"
+#include "src/rviz/names.hpp"
 
 namespace desert_sim {
 
@@ -14,13 +13,10 @@ NodeLink::NodeLink(QObject* parent) : QObject(parent) {
 }
 
 void NodeLink::set_node(const std::string& name) {
-  std::string problem;
-  if (name.empty() || !ros::names::validate(name, problem))
-    throw ConfigError("'" + name + "' is not the name of a node" + (problem.empty() ? "" : ": " + problem));
-  const std::string resolved = ros::names::resolve(name);
+  const std::string full = full_name(name, "node");
   caller_.cancel();
   slow_caller_.cancel();
-  node_ = resolved;
+  node_ = full;
   watch_.watch(node_);
 }
 

@@ -30,7 +30,7 @@ QScrollArea* scrolled(QWidget* widget) {
 }  // namespace
 
 DesertPanel::DesertPanel(QWidget* parent) : rviz::Panel(parent) {
-  node_ = new QLineEdit("/desert_sim");
+  node_ = new QLineEdit("desert_sim");
   node_->setObjectName("node");
   node_->setToolTip("Name of the node that this panel steers");
   node_error_ = new ErrorLine("node_error");

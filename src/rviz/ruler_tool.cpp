@@ -27,7 +27,7 @@ std::string text_of(const render::Measurement& m) {
 
 RulerTool::RulerTool() {
   shortcut_key_ = 'r';
-  node_ = new rviz::StringProperty("Node", "/desert_sim", "The simulator's node whose terrain is measured.",
+  node_ = new rviz::StringProperty("Node", "desert_sim", "The simulator's node whose terrain is measured.",
                                    getPropertyContainer(), SLOT(choose_node()), this);
 }
 

@@ -49,7 +49,7 @@ float usual_height(const LayerMap& elevation) {
 
 TerrainDisplay::TerrainDisplay() {
   topic_ = new rviz::RosTopicProperty(
-      "Elevation Topic", "/desert_sim/elevation",
+      "Elevation Topic", "desert_sim/elevation",
       QString::fromStdString(ros::message_traits::datatype<ElevationGrid>()),
       "Keyframes of the terrain. Updates, layers, plants and wind are taken from the same node.", this,
       SLOT(subscribe()));
@@ -152,7 +152,7 @@ void TerrainDisplay::update(float, float) {
 
 // ---- properties ----
 
-std::string TerrainDisplay::elevation_topic() const { return topic_->getTopicStd(); }
+std::string TerrainDisplay::node() const { return source_ ? source_->node() : ""; }
 
 double TerrainDisplay::vertical_exaggeration() const {
   return static_cast<double>(exaggeration_->getFloat());
@@ -186,7 +186,7 @@ void TerrainDisplay::unsubscribe() {
 
 void TerrainDisplay::subscribe_views() {
   if (!source_) return;
-  const std::string node = node_of_topic(topic_->getTopicStd());
+  const std::string node = source_->node();
   plants_view_->subscribe(threaded_nh_, plants_->getBool() ? node + "/plants" : "");
   wind_view_->subscribe(threaded_nh_, wind_->getBool() ? node + "/wind" : "");
 }

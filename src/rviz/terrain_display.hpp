@@ -42,7 +42,7 @@ class TerrainDisplay : public rviz::Display {
   void setTopic(const QString& topic, const QString& datatype) override;
 
   /// What tools need to know to draw on the terrain that is shown.
-  std::string elevation_topic() const;
+  std::string node() const;  ///< full name of the node that is shown; empty: none
   double vertical_exaggeration() const;
 
   double frame_milliseconds() const { return frame_milliseconds_; }

@@ -7,6 +7,7 @@
 #include <rviz/viewport_mouse_event.h>
 
 #include "src/core/error.hpp"
+#include "src/rviz/names.hpp"
 #include "src/rviz/terrain_display.hpp"
 
 namespace desert_sim {
@@ -26,8 +27,8 @@ void TerrainPicker::follow(const std::string& node) {
   node_ = node;
   if (node.empty()) return;
   TerrainClient::Options options;
-  options.node = node;
   try {
+    node_ = options.node = full_name(node, "node");
     client_ = std::make_unique<TerrainClient>(ros::NodeHandle(), options);
   } catch (const ConfigError& error) {
     problem_ = error.what();
@@ -87,8 +88,7 @@ double TerrainPicker::exaggeration_of_display(rviz::DisplayGroup* group) const {
     rviz::Display* const display = group->getDisplayAt(n);
     if (!display->isEnabled()) continue;
     const auto* const terrain = dynamic_cast<TerrainDisplay*>(display);
-    if (terrain && node_of_topic(terrain->elevation_topic()) == node_)
-      return terrain->vertical_exaggeration();
+    if (terrain && terrain->node() == node_) return terrain->vertical_exaggeration();
     const double inside = exaggeration_of_display(dynamic_cast<rviz::DisplayGroup*>(display));
     if (inside != 1) return inside;
   }

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "src/rviz/map_windows.hpp"
+#include "src/rviz/names.hpp"
 
 namespace desert_sim {
 
@@ -93,17 +94,12 @@ std::vector<CollectedChange> PendingChanges::take() {
   return changes;
 }
 
-std::string node_of_topic(const std::string& elevation_topic) {
-  const std::size_t slash = elevation_topic.rfind('/');
-  return slash == std::string::npos || slash == 0 ? "" : elevation_topic.substr(0, slash);
-}
-
 TerrainSource::TerrainSource(const std::string& elevation_topic) {
   TerrainClient::Options options;
-  options.node = node_of_topic(elevation_topic);
+  options.elevation_topic = full_name(elevation_topic, "topic");
+  options.updates_topic = options.elevation_topic + "_updates";
+  options.node = node_ = options.elevation_topic.substr(0, options.elevation_topic.rfind('/'));
   options.layers.clear();  // later ones are subscribed to by the client's own thread, for which nobody waits
-  options.elevation_topic = elevation_topic;
-  options.updates_topic = elevation_topic + "_updates";
   options.on_change = [this](const MapChange& change) { changes_.add(change); };
   client_ = std::make_unique<TerrainClient>(ros::NodeHandle(), options);
 }

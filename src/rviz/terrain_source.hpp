@@ -56,13 +56,13 @@ class TerrainSource {
 
   std::vector<CollectedChange> take() { return changes_.take(); }
   const TerrainClient& client() const { return *client_; }
+  /// The namespace of the topic: /desert_sim for /desert_sim/elevation.
+  const std::string& node() const { return node_; }
 
  private:
   PendingChanges changes_;
+  std::string node_;
   std::unique_ptr<TerrainClient> client_;  ///< the last member: its thread uses the others
 };
-
-/// The namespace of the node of a topic, "/desert_sim" for "/desert_sim/elevation".
-std::string node_of_topic(const std::string& elevation_topic);
 
 }  // namespace desert_sim

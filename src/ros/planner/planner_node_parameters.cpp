@@ -1,12 +1,11 @@
 #include "src/ros/planner/planner_node_parameters.hpp"
 
-#include <ros/names.h>
-
 #include <set>
 #include <sstream>
 
 #include "src/core/parameter_page.hpp"
 #include "src/ros/node/frames.hpp"
+#include "src/ros/node/outer_name.hpp"
 #include "src/ros/node/private_parameters.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -21,15 +20,14 @@ PlannerSetup read_planner_setup(const ros::NodeHandle& private_node) {
   yaml::read_parameters(root, "", errors, setup.node, known);
   yaml::read_parameters(root, "", errors, setup.planner, known);
   yaml::reject_unknown_keys(root, "", known, errors);
-  for (const auto& [key, value] :
-       {std::pair{"terrain_node", setup.node.terrain_node}, std::pair{"rover_node", setup.node.rover_node}}) {
-    std::string why;
-    if (value.empty() || !ros::names::validate(value, why))
-      errors.add(key, "'" + value + "' is not the name of a node: " + why);
-  }
+  check_name(setup.node.terrain_node, "terrain_node", errors);
+  check_name(setup.node.rover_node, "rover_node", errors);
+  if (!setup.node.goal_topic.empty()) check_name(setup.node.goal_topic, "goal_topic", errors);
   check_frame(setup.node.base_frame, "base_frame", errors);
   if (!setup.node.tf_prefix.empty()) check_frame(setup.node.tf_prefix, "tf_prefix", errors);
   errors.throw_if_any();
+  setup.node.terrain_node = outer_name(private_node, setup.node.terrain_node);
+  if (!setup.node.goal_topic.empty()) setup.node.goal_topic = outer_name(private_node, setup.node.goal_topic);
   return setup;
 }
 

@@ -12,8 +12,9 @@
 namespace desert_sim {
 
 struct PlannerNodeParameters {
-  std::string terrain_node = "/desert_sim";
+  std::string terrain_node = "desert_sim";
   std::string rover_node = "desert_rover";
+  std::string goal_topic = "";
   RoverClock clock = RoverClock::ros;
   double seconds_per_sim_second = 1;
   double rate = 10;
@@ -33,8 +34,13 @@ struct PlannerNodeParameters {
 constexpr auto parameter_table(const PlannerNodeParameters*) {
   using P = PlannerNodeParameters;
   return std::make_tuple(
-      parameter("terrain_node", &P::terrain_node, "Name of the simulation's node."),
+      parameter("terrain_node", &P::terrain_node,
+                "Name of the simulation's node; one without a leading slash is in the namespace around "
+                "that of this node."),
       parameter("rover_node", &P::rover_node, "Name of the rover's node, whose ~status it listens to."),
+      parameter("goal_topic", &P::goal_topic,
+                "Topic of goals; one without a leading slash is in the namespace around that of this node; "
+                "empty: move_base_simple/goal in its own."),
       parameter(
           "clock", &P::clock, rover_clocks,
           "ros: it acts at its rate, on the pose of tf, by cmd_vel; lockstep: once for each state of the "

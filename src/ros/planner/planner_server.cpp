@@ -51,7 +51,8 @@ PlannerServer::PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle&
   path_publisher_ = private_node_.advertise<nav_msgs::Path>("path", 1, true);
   status_publisher_ = private_node_.advertise<PlannerStatus>("status", 100, true);
   command_publisher_ = node_.advertise<geometry_msgs::Twist>("cmd_vel", 1);
-  goal_subscriber_ = node_.subscribe("move_base_simple/goal", 1, &PlannerServer::receive_goal, this);
+  const std::string goals = setup_.node.goal_topic.empty() ? "move_base_simple/goal" : setup_.node.goal_topic;
+  goal_subscriber_ = node_.subscribe(goals, 1, &PlannerServer::receive_goal, this);
   const std::uint32_t queue = lockstep_ ? most_waiting : 10;
   status_subscriber_ =
       node_.subscribe(setup_.node.rover_node + "/status", queue, &PlannerServer::receive_rover_status, this);

@@ -1,7 +1,5 @@
 #include "src/ros/rover/rover_node_parameters.hpp"
 
-#include <ros/names.h>
-
 #include <set>
 #include <sstream>
 #include <utility>
@@ -9,6 +7,7 @@
 #include "src/core/files.hpp"
 #include "src/core/parameter_page.hpp"
 #include "src/ros/node/frames.hpp"
+#include "src/ros/node/outer_name.hpp"
 #include "src/ros/node/private_parameters.hpp"
 #include "src/rover/rover_class.hpp"
 #include "src/scenario/scenario_file.hpp"
@@ -50,9 +49,7 @@ RoverSetup setup_of(const YAML::Node& root, const std::string& source) {
     yaml::read_section(root["rover"], "rover", errors, setup.rover);
     yaml::read_section(root["wheel_ground"], "wheel_ground", errors, setup.wheel_ground);
   }
-  std::string why;
-  if (setup.node.terrain_node.empty() || !ros::names::validate(setup.node.terrain_node, why))
-    errors.add("terrain_node", "'" + setup.node.terrain_node + "' is not the name of a node: " + why);
+  check_name(setup.node.terrain_node, "terrain_node", errors);
   if (!setup.node.tf_prefix.empty()) check_frame(setup.node.tf_prefix, "tf_prefix", errors);
   if (setup.node.x.has_value() != setup.node.y.has_value())
     errors.add(setup.node.x ? "y" : "x", "is left out, while the other coordinate is given");
@@ -68,7 +65,9 @@ RoverSetup setup_of(const YAML::Node& root, const std::string& source) {
 
 RoverSetup read_rover_setup(const ros::NodeHandle& private_node) {
   const std::string name = private_node.getNamespace();
-  return setup_of(private_parameters(name), "parameters of " + name);
+  RoverSetup setup = setup_of(private_parameters(name), "parameters of " + name);
+  setup.node.terrain_node = outer_name(private_node, setup.node.terrain_node);
+  return setup;
 }
 
 RoverSetup read_rover_words(const std::vector<std::string>& words) {

@@ -23,7 +23,7 @@ enum class LoosenessSource : int { automatic, layer, assumed };
 constexpr const char* looseness_sources[] = {"auto", "layer", "assumed"};
 
 struct RoverNodeParameters {
-  std::string terrain_node = "/desert_sim";
+  std::string terrain_node = "desert_sim";
   std::string rover_class;
   RoverClock clock = RoverClock::ros;
   double seconds_per_sim_second = 1;
@@ -53,7 +53,9 @@ struct RoverNodeParameters {
 constexpr auto parameter_table(const RoverNodeParameters*) {
   using P = RoverNodeParameters;
   return std::make_tuple(
-      parameter("terrain_node", &P::terrain_node, "Name of the simulation's node."),
+      parameter("terrain_node", &P::terrain_node,
+                "Name of the simulation's node; one without a leading slash is in the namespace around "
+                "that of this node."),
       parameter("rover_class", &P::rover_class,
                 "A file of a class of rovers, or the bare name of one in the package's config/rovers, whose "
                 "values the "
