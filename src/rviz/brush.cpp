@@ -82,9 +82,11 @@ EditPlants::Request plants_request(const Brush& brush, const render::Capsule& ca
   request.species = brush.species;
   request.stroke = stroke;
   set_shape(request, capsule, brush.radius);
-  request.density = adds ? brush.density * share_of_area(capsule, brush.radius) : 0;
-  request.size = brush.size;
-  request.seed = seed;
+  if (adds) {
+    request.density = brush.density * share_of_area(capsule, brush.radius);
+    request.size = brush.size;
+    request.seed = seed;
+  }
   return request;
 }
 

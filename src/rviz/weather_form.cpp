@@ -39,8 +39,8 @@ WeatherForm::WeatherForm(NodeLink& link, QWidget* parent) : QWidget(parent), lin
   auto* const form = new QFormLayout;
   add_numbers(*form);
   change_sea_ = add_row(*form, "sea", "sea", sea_);
-  auto* const change_springs = add_row(*form, "springs", "springs (replace all)", nullptr);
-  form->addRow(change_springs);
+  change_springs_ = add_row(*form, "springs", "springs (replace all)", nullptr);
+  form->addRow(change_springs_);
   form->addRow(springs_);
   form->addRow("ramp", ramp_);
   auto* const all = new QVBoxLayout(this);
@@ -49,7 +49,7 @@ WeatherForm::WeatherForm(NodeLink& link, QWidget* parent) : QWidget(parent), lin
   all->addWidget(error_);
   all->addStretch();
   springs_->setVisible(false);
-  connect(change_springs, &QCheckBox::toggled, springs_, &QWidget::setVisible);
+  connect(change_springs_, &QCheckBox::toggled, springs_, &QWidget::setVisible);
   connect(send, &QPushButton::clicked, this, &WeatherForm::apply);
 }
 
@@ -110,9 +110,11 @@ void WeatherForm::apply() {
   for (const QCheckBox* change : changes_)
     if (change->isChecked()) request.change.push_back(change->objectName().mid(7).toStdString());
   request.ramp = ramp_->value();
-  for (const Number& number : numbers_) request.*number.field = number.value->value() * number.unit;
-  request.sea = sea_->currentText().toStdString();
-  for (const std::vector<double>& row : springs_->rows()) {
+  for (const Number& number : numbers_)
+    if (number.change->isChecked()) request.*number.field = number.value->value() * number.unit;
+  if (change_sea_->isChecked()) request.sea = sea_->currentText().toStdString();
+  for (const std::vector<double>& row :
+       change_springs_->isChecked() ? springs_->rows() : std::vector<std::vector<double>>()) {
     WaterSpring spring;
     spring.x = row[0];
     spring.y = row[1];

@@ -46,7 +46,7 @@ class WeatherForm : public QWidget {
   NodeLink& link_;
   std::vector<QCheckBox*> changes_;  ///< their object names are "change_" and a field of the request
   std::vector<Number> numbers_;
-  QCheckBox* change_sea_;
+  QCheckBox *change_sea_, *change_springs_;
   QComboBox* sea_;
   QDoubleSpinBox* ramp_;
   NumberTable* springs_;

@@ -150,16 +150,23 @@ void WindForm::apply_wind() {
 void WindForm::apply_schedule() {
   SetWindScheduleRequest request;
   request.kind = kind_->currentData().toString().toStdString();
-  request.repeat = repeat_->isChecked();
-  request.hold_time = hold_time_->value();
-  request.seed = static_cast<std::uint64_t>(seed_->value());
+  const bool rose = request.kind == SetWindScheduleRequest::ROSE;
+  if (rose) {
+    request.hold_time = hold_time_->value();
+    request.seed = static_cast<std::uint64_t>(seed_->value());
+  } else {
+    request.repeat = repeat_->isChecked();
+  }
   for (const std::vector<double>& row : segments_->rows()) {
     WindScheduleSegment segment;
     segment.direction_deg = row[direction];
     segment.speed = row[speed];
-    segment.duration = row[duration];
-    segment.ramp = row[segment_ramp];
-    segment.probability = row[weight];
+    if (rose) {
+      segment.probability = row[weight];
+    } else {
+      segment.duration = row[duration];
+      segment.ramp = row[segment_ramp];
+    }
     request.segments.push_back(segment);
   }
   link_.call<SetWindSchedule>(schedule_error_, "set_wind_schedule", request);

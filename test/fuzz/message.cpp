@@ -15,11 +15,13 @@
 #include "src/simulation/session.hpp"
 #include "test/fuzz/fuzz.hpp"
 #include "test/fuzz/message_source.hpp"
+#include "test/support/ros/request_fields.hpp"
 #include "test/support/small_scenarios.hpp"
 
 namespace desert_sim {
 namespace {
 
+using node_test::without_unused_fields;
 using Words = std::vector<std::string>;
 const Words frame_words{"", "map", "rover", "/rover", "tilted", "far", "nowhere", "", "map"};
 const Words terrain_words{"",       "rover",   "tilted",    "sand",    "bedrock", "soil",   "water",
@@ -67,18 +69,23 @@ class Node {
   void take(FuzzedDataProvider& data) {
     switch (data.ConsumeIntegralInRange(0, 11)) {
       case 0:
-        return apply(wind_command(fuzz::next_message<SetWindRequest>(data, frame_words)));
+        return apply(
+            without_unused_fields(fuzz::next_message<SetWindRequest>(data, frame_words), wind_command));
       case 1:
-        return apply(wind_schedule_command(fuzz::next_message<SetWindScheduleRequest>(data, schedule_words)));
+        return apply(without_unused_fields(
+            tidy(fuzz::next_message<SetWindScheduleRequest>(data, schedule_words)), wind_schedule_command));
       case 2:
-        return apply(wind_edit_command(fuzz::next_message<EditWindRequest>(data, wind_words), frames_));
+        return apply(without_unused_fields(fuzz::next_message<EditWindRequest>(data, wind_words),
+                                           [&](const auto& r) { return wind_edit_command(r, frames_); }));
       case 3:
-        return apply(weather_command(fuzz::next_message<SetWeatherRequest>(data, weather_words)));
+        return apply(without_unused_fields(fuzz::next_message<SetWeatherRequest>(data, weather_words),
+                                           weather_command));
       case 4:
         return apply(
             cmd_wind_command(fuzz::next_message<geometry_msgs::Vector3Stamped>(data, frame_words), frames_));
       case 5:
-        return apply(plants_command(fuzz::next_message<EditPlantsRequest>(data, plant_words), frames_));
+        return apply(without_unused_fields(fuzz::next_message<EditPlantsRequest>(data, plant_words),
+                                           [&](const auto& r) { return plants_command(r, frames_); }));
       case 6:
         return reconfigure(data);
       case 7:
@@ -130,6 +137,16 @@ class Node {
     journal_.emplace_back();
   }
 
+  /// Without the fields of segments that its kind does not use.
+  static SetWindScheduleRequest tidy(SetWindScheduleRequest request) {
+    for (WindScheduleSegment& segment : request.segments)
+      if (request.kind == "rose")
+        segment.duration = segment.ramp = 0;
+      else
+        segment.probability = 0;
+    return request;
+  }
+
   void edit_terrain(FuzzedDataProvider& data) {
     auto request = fuzz::next_message<EditTerrainRequest>(data, terrain_words);
     if (data.ConsumeBool()) {  // the image's fields fit together
@@ -138,7 +155,7 @@ class Node {
       request.image.data = data.ConsumeBytes<std::uint8_t>(request.image.step * request.image.height);
       request.image.data.resize(request.image.step * request.image.height);
     }
-    apply(edit_command(request, frames_));
+    apply(without_unused_fields(request, [&](const auto& r) { return edit_command(r, frames_); }));
   }
 
   void reconfigure(FuzzedDataProvider& data) {

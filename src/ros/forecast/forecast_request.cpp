@@ -26,7 +26,16 @@ void require_parameters_of_the_desert(const Entries& entries) {
 }
 
 void add_wind(const ForecastTerrainGoal& goal, std::vector<ForecastCommand>& commands) {
-  if (goal.wind.empty()) {
+  const bool has_wind = !goal.wind.empty();
+  const bool schedule = has_wind && goal.wind_kind != "constant";
+  const std::string why =
+      has_wind ? "wind_kind '" + goal.wind_kind + "' does not use it" : "there are no segments of wind";
+  if (!schedule) {
+    require_left_out(goal.wind_repeat, "wind_repeat", why);
+    require_left_out(goal.wind_hold_time, "wind_hold_time", why);
+    require_left_out(goal.wind_seed, "wind_seed", why);
+  }
+  if (!has_wind) {
     if (!goal.wind_kind.empty())
       throw ConfigError("wind: has no segments for the wind_kind " + quoted(goal.wind_kind) +
                         " (allowed: none of both, or both)");
@@ -37,6 +46,8 @@ void add_wind(const ForecastTerrainGoal& goal, std::vector<ForecastCommand>& com
       throw ConfigError("wind: " + std::to_string(goal.wind.size()) +
                         " segments are given for a constant wind (allowed: 1)");
     const WindScheduleSegment& segment = goal.wind.front();
+    require_left_out(segment.duration, "wind[0].duration", why);
+    require_left_out(segment.probability, "wind[0].probability", why);
     const command::SetWind wind{to_float(segment.direction_deg), to_float(segment.speed),
                                 to_float(segment.ramp)};
     check_ranges(wind, "wind");
@@ -51,9 +62,9 @@ void add_wind(const ForecastTerrainGoal& goal, std::vector<ForecastCommand>& com
   request.repeat = goal.wind_repeat;
   request.hold_time = goal.wind_hold_time;
   request.seed = goal.wind_seed;
-  const command::SetWindSchedule schedule = wind_schedule_command(request);
-  check_wind_schedule(schedule.regime, "wind");
-  commands.push_back(schedule);
+  const command::SetWindSchedule command = wind_schedule_command(request);
+  check_wind_schedule(command.regime, "wind");
+  commands.push_back(command);
 }
 
 }  // namespace
@@ -69,6 +80,12 @@ ForecastOptions forecast_options(const ForecastTerrainGoal& goal, const LivePara
   if (options.members > 1) {
     options.gusts = {goal.gust_speed, goal.gust_direction_deg, goal.gust_time, goal.seed};
     check_ranges(options.gusts, "forecast");
+  } else {
+    const std::string why = "there is one member";
+    require_left_out(goal.gust_speed, "gust_speed", why);
+    require_left_out(goal.gust_direction_deg, "gust_direction_deg", why);
+    require_left_out(goal.gust_time, "gust_time", why);
+    require_left_out(goal.seed, "seed", why);
   }
   require_parameters_of_the_desert(goal.parameters.bools);
   require_parameters_of_the_desert(goal.parameters.ints);

@@ -100,6 +100,7 @@ void WheelTracks::send(const EditTerrainRequest& request) {
   exchange.request.merge = "min";
   exchange.request.value = packed;
   exchange.request.conserve = false;
+  exchange.request.ring_width = 0;
   if (call_service(service_, exchange) && !exchange.response.success)
     ROS_WARN_THROTTLE(60, "The tracks of the wheels are not packed: %s", exchange.response.message.c_str());
 }

@@ -55,6 +55,22 @@ void set_points(const Request& request, const tf2::Transform& transform, Command
   }
 }
 
+/// Refuses the fields of shapes that this one does not use.
+template <class Request>
+void check_shape_fields(const Request& request, BrushShape shape) {
+  const std::string why = "shape '" + request.shape + "' does not use it";
+  const bool by_points = shape == BrushShape::capsule || shape == BrushShape::polygon;
+  if (by_points)
+    require_left_out(request.center, "center", why);
+  else
+    require_left_out(request.points, "points", why);
+  if (shape == BrushShape::polygon) require_left_out(request.radius, "radius", why);
+  if (by_points || shape == BrushShape::circle) {
+    require_left_out(request.radius_y, "radius_y", why);
+    require_left_out(request.angle_deg, "angle_deg", why);
+  }
+}
+
 // ---- The image of a brush.
 
 std::size_t bytes_per_pixel(const std::string& encoding) {
@@ -118,8 +134,34 @@ void set_patch(const EditTerrainRequest& request, command::EditTerrain& command)
                           ? PatchUse::heights
                           : choice_named<PatchUse>(patch_uses, request.image_use, "image_use");
   const bool heights = command.patch_use == PatchUse::heights;
+  if (!heights) require_left_out(request.image_scale, "image_scale", "image_use 'mask' does not use it");
   if (heights) require_finite(request.image_scale, "image_scale");
   command.patch = patch_of(request.image, heights ? request.image_scale : 1.0);
+}
+
+/// Refuses the fields that shape, merge and conserve do not use.
+void check_edit_fields(const EditTerrainRequest& request, const command::EditTerrain& command) {
+  check_shape_fields(request, command.shape);
+  const std::string shape = "shape '" + request.shape + "' does not use it",
+                    merge = "merge '" + request.merge + "' does not use it";
+  const bool patch = command.shape == BrushShape::patch;
+  if (patch || command.shape == BrushShape::polygon)
+    require_left_out(request.inner, "inner", shape);
+  else
+    require_left_out(request.falloff, "falloff", shape);
+  if (!patch) {
+    require_left_out(request.image.data, "image", shape);
+    require_left_out(request.image_use, "image_use", shape);
+    require_left_out(request.image_scale, "image_scale", shape);
+  }
+  if (command.merge == BrushMerge::smooth) {
+    require_left_out(request.value, "value", merge);
+  } else {
+    require_left_out(request.smooth_radius, "smooth_radius", merge);
+    require_left_out(request.smooth_passes, "smooth_passes", merge);
+  }
+  if (!request.conserve)
+    require_left_out(request.ring_width, "ring_width", "an edit without conserve does not use it");
 }
 
 }  // namespace
@@ -129,6 +171,7 @@ command::EditTerrain edit_command(const EditTerrainRequest& request, const Terra
   command.layer = request.layer;
   command.shape = choice_named<BrushShape>(brush_shapes, request.shape, "shape");
   command.merge = choice_named<BrushMerge>(brush_merges, request.merge, "merge");
+  check_edit_fields(request, command);
   const bool capsule = command.shape == BrushShape::capsule, polygon = command.shape == BrushShape::polygon;
   const bool patch = command.shape == BrushShape::patch;
   const tf2::Transform transform = frames.to_terrain(request.header);
@@ -158,6 +201,7 @@ command::EditPlants plants_command(const EditPlantsRequest& request, const Terra
   command.shape = choice_named<BrushShape>(brush_shapes, request.shape, "shape");
   if (command.shape == BrushShape::patch)
     throw ConfigError("shape: 'patch' is not one of: circle, ellipse, rectangle, capsule, polygon");
+  check_shape_fields(request, command.shape);
   const bool capsule = command.shape == BrushShape::capsule;
   const tf2::Transform transform = frames.to_terrain(request.header);
   if (capsule || command.shape == BrushShape::polygon)
@@ -169,6 +213,11 @@ command::EditPlants plants_command(const EditPlantsRequest& request, const Terra
     command.density = request.density;
     command.size = request.size;
     command.seed = request.seed;
+  } else {
+    const std::string clear = "operation 'clear' does not use it";
+    require_left_out(request.density, "density", clear);
+    require_left_out(request.size, "size", clear);
+    require_left_out(request.seed, "seed", clear);
   }
   command.stroke = request.stroke;
   return command;

@@ -3,12 +3,15 @@
 /// its value and what is allowed.
 
 #include <geometry_msgs/Point.h>
+#include <geometry_msgs/Vector3.h>
 #include <tf2/LinearMath/Transform.h>
 
 #include <cmath>
 #include <limits>
 #include <sstream>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
@@ -48,6 +51,26 @@ Choice choice_named(const char* const (&choices)[N], const std::string& text, co
     all += (n ? ", " : "") + std::string(choices[n]);
   }
   throw ConfigError(name + ": " + quoted(text) + " is not one of: " + all + did_you_mean(text, all));
+}
+
+// Whether a field was left out: such fields of messages are 0 or empty.
+template <class Number, class = std::enable_if_t<std::is_arithmetic_v<Number>>>
+bool is_left_out(Number value) {
+  return value == 0;
+}
+inline bool is_left_out(const std::string& text) { return text.empty(); }
+template <class T, class Allocator>
+bool is_left_out(const std::vector<T, Allocator>& values) {
+  return values.empty();
+}
+inline bool is_left_out(const geometry_msgs::Point& p) { return p.x == 0 && p.y == 0 && p.z == 0; }
+inline bool is_left_out(const geometry_msgs::Vector3& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+
+/// Refuses a field that is set although nothing uses it, as `why` says: who sets it expects something else
+/// than would happen.
+template <class Field>
+void require_left_out(const Field& field, const std::string& name, const std::string& why) {
+  if (!is_left_out(field)) throw ConfigError(name + ": is set, but " + why + " (allowed: leave it out)");
 }
 
 /// A direction in another frame as a direction in the terrain's, both seen from above [deg].

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 #include "src/core/did_you_mean.hpp"
@@ -17,10 +18,13 @@ command::SetWind wind_command(const SetWindRequest& request) {
   command::SetWind command;
   command.ramp = to_float(request.ramp);
   if (!request.use_vector) {
+    require_left_out(request.vector, "vector", "use_vector is false");
     command.speed = to_float(request.speed);
     command.direction_deg = to_float(request.direction_deg);
     return command;
   }
+  require_left_out(request.speed, "speed", "use_vector is true");
+  require_left_out(request.direction_deg, "direction_deg", "use_vector is true");
   require_finite(request.vector.x, "vector.x");
   require_finite(request.vector.y, "vector.y");
   if (!(request.vector.z == 0))
@@ -58,17 +62,28 @@ command::SetWindSchedule wind_schedule_command(const SetWindScheduleRequest& req
   if (request.segments.size() > 4096)
     throw ConfigError("segments: " + std::to_string(request.segments.size()) +
                       " entries are given (allowed: at most 4096)");
+  const std::string kind = "kind '" + request.kind + "' does not use it";
+  if (rose) {
+    require_left_out(request.repeat, "repeat", kind);
+    regime.hold_time = to_float(request.hold_time);
+  } else {
+    require_left_out(request.hold_time, "hold_time", kind);
+    require_left_out(request.seed, "seed", kind);
+  }
   regime.repeat = request.repeat;
-  if (rose) regime.hold_time = to_float(request.hold_time);
   regime.rose_seed = request.seed;
-  // Fields that do not belong to the kind keep their defaults, whatever the request says.
-  for (const WindScheduleSegment& s : request.segments) {
+  for (std::size_t n = 0; n < request.segments.size(); ++n) {
+    const WindScheduleSegment& s = request.segments[n];
+    const std::string name = "segments[" + std::to_string(n) + "].";
     WindSegment segment;
     segment.direction_deg = to_float(s.direction_deg);
     segment.speed = to_float(s.speed);
     if (rose) {
+      require_left_out(s.duration, name + "duration", kind);
+      require_left_out(s.ramp, name + "ramp", kind);
       segment.probability = to_float(s.probability);
     } else {
+      require_left_out(s.probability, name + "probability", kind);
       segment.duration = to_float(s.duration);
       segment.ramp = to_float(s.ramp);
     }
@@ -77,12 +92,41 @@ command::SetWindSchedule wind_schedule_command(const SetWindScheduleRequest& req
   return command;
 }
 
+namespace {
+
+/// Refuses fields that features of this kind do not have, or, without a kind, all that a feature has.
+void check_feature_fields(const EditWindRequest& request, const std::string& why,
+                          std::optional<WindFeatureKind> kind) {
+  if (!kind) {
+    require_left_out(request.kind, "kind", why);
+    require_left_out(request.center, "center", why);
+    require_left_out(request.radius, "radius", why);
+    require_left_out(request.speed, "speed", why);
+  }
+  if (kind != WindFeatureKind::jet) {
+    require_left_out(request.direction_deg, "direction_deg", why);
+    require_left_out(request.length, "length", why);
+  }
+  if (kind != WindFeatureKind::turbulence) {
+    require_left_out(request.scale, "scale", why);
+    require_left_out(request.life_time, "life_time", why);
+    require_left_out(request.seed, "seed", why);
+  }
+}
+
+}  // namespace
+
 command::EditWind wind_edit_command(const EditWindRequest& request, const TerrainTransforms& frames) {
   command::EditWind command;
   WindFeature& feature = command.feature;
   command.operation = choice_named<WindEdit>(wind_edits, request.operation, "operation");
   feature.id = request.id;
-  if (command.operation == WindEdit::remove || command.operation == WindEdit::clear) return command;
+  if (command.operation == WindEdit::remove || command.operation == WindEdit::clear) {
+    check_feature_fields(request, "operation '" + request.operation + "' does not use it", {});
+    if (command.operation == WindEdit::clear)
+      require_left_out(request.id, "id", "operation 'clear' does not use it");
+    return command;
+  }
   feature.kind = choice_named<WindFeatureKind>(wind_feature_kinds, request.kind, "kind");
   require_finite(request.center, "center");
   const tf2::Transform transform = frames.to_terrain(request.header);
@@ -91,7 +135,7 @@ command::EditWind wind_edit_command(const EditWindRequest& request, const Terrai
   feature.y = center.y();
   feature.radius = to_float(request.radius);
   feature.speed = to_float(request.speed);
-  // Fields that do not belong to the kind keep their defaults, whatever the request says.
+  check_feature_fields(request, "kind '" + request.kind + "' does not use it", feature.kind);
   if (feature.kind == WindFeatureKind::jet) {
     require_finite(request.direction_deg, "direction_deg");
     feature.direction_deg = to_float(transform == tf2::Transform::getIdentity()
@@ -153,6 +197,14 @@ command::SetParameters weather_command(const SetWeatherRequest& r) {
                                     {"wave_period", r.wave_period, {"water.wave_period"}}};
   require_finite(r.ramp, "ramp");
   if (r.change.empty()) throw ConfigError("change: is empty (allowed: the names of the fields to change)");
+  const auto changes = [&](const std::string& field) {
+    return std::find(r.change.begin(), r.change.end(), field) != r.change.end();
+  };
+  const std::string why = "`change` does not name it";
+  for (const Number& number : numbers)
+    if (!changes(number.name)) require_left_out(number.value, number.name, why);
+  if (!changes("sea")) require_left_out(r.sea, "sea", why);
+  if (!changes("springs")) require_left_out(r.springs, "springs", why);
   command::SetParameters command{{}, r.ramp};
   for (const std::string& field : r.change) {
     const auto number =

@@ -45,11 +45,14 @@ EditTerrain::Request a_shape(const std::string& shape) {
   request.layer = "sand";
   request.shape = shape;
   request.merge = "add";
-  request.center = point(50, 30);
-  request.radius = 10;
-  request.radius_y = 4;
-  request.inner = 1;
   request.value = 1;
+  const bool by_points = shape == "polygon" || shape == "capsule";
+  if (!by_points) {
+    request.center = point(50, 30);
+    request.radius = 10;
+  }
+  if (!by_points && shape != "circle") request.radius_y = 4;
+  if (shape != "polygon" && shape != "patch") request.inner = 1;
   return request;
 }
 
@@ -129,6 +132,7 @@ TEST_F(Edits, APatchIsAPictureSeenFromAbove) {
   }
   request = a_patch();
   request.image_use = "mask";
+  request.image_scale = 0;
   request.value = 5;
   check(request);
 }
@@ -155,6 +159,7 @@ TEST_F(Edits, SmoothLevelsThePlateausEdge) {
   EditTerrain::Request request = a_shape("circle");
   request.center = point(122, -10);
   request.merge = "smooth";
+  request.value = 0;
   request.smooth_radius = 4;
   request.smooth_passes = 2;
   edit(request);
@@ -321,7 +326,12 @@ TEST_F(Edits, RefusesShapesThatAreNone) {
   refused(
       polygon, [](auto& r) { r.falloff = -3; }, "falloff: = -3", "[0");
   refused(
-      polygon, [](auto& r) { r.shape = "capsule"; }, "points: 3", "2");
+      polygon,
+      [](auto& r) {
+        r.shape = "capsule";
+        r.radius = 1;
+      },
+      "points: 3", "2");
   refused(
       polygon, [](auto& r) { r.header.frame_id = "nowhere"; }, "'nowhere'", "'terrain'");
   const EditTerrain::Request circle = a_shape("circle");
@@ -336,12 +346,12 @@ TEST_F(Edits, RefusesShapesThatAreNone) {
   refused(
       circle, [](auto& r) { r.conserve = true, r.ring_width = infinity; }, "ring_width: = inf", "m");
   refused(
-      circle, [](auto& r) { r.merge = "smooth"; }, "smooth_radius: = 0", "m");
+      circle, [](auto& r) { r.merge = "smooth", r.value = 0; }, "smooth_radius: = 0", "m");
   refused(
-      circle, [](auto& r) { r.merge = "smooth", r.smooth_radius = 200, r.smooth_passes = 1; },
+      circle, [](auto& r) { r.merge = "smooth", r.value = 0, r.smooth_radius = 200, r.smooth_passes = 1; },
       "smooth_radius: = 200", "64 cells");
   refused(
-      circle, [](auto& r) { r.merge = "smooth", r.smooth_radius = 2, r.smooth_passes = 17; },
+      circle, [](auto& r) { r.merge = "smooth", r.value = 0, r.smooth_radius = 2, r.smooth_passes = 17; },
       "smooth_passes: = 17", "[1, 16]");
 }
 
@@ -388,6 +398,7 @@ TEST_F(Edits, RefusesImagesThatDoNotFit) {
         r.image = an_image("32FC1", 1, 1, 4);
         r.image.data = {0, 0, 0, 0x40};  // 2
         r.image_use = "mask";
+        r.image_scale = 0;
       },
       "= 2 is not in", "[0, 1]");
 }

@@ -64,10 +64,11 @@ def good(draw, grid):
         return "get_submap", GetSubmap, GetSubmapRequest(
             layers=["elevation", "slope", "wind_x"], center=place(draw, grid), length_x=3, length_y=3)
     if kind == 6:
+        plants = {"operation": "clear"} if draw.random() < 0.5 else {
+            "operation": "plant", "density": draw.uniform(0, 0.2), "size": 0.1, "seed": draw.randrange(99)}
         return "edit_plants", EditPlants, EditPlantsRequest(
-            operation=draw.choice(["plant", "clear"]), species=draw.choice(["tree", "bush"]), shape="circle",
-            center=place(draw, grid), radius=draw.uniform(1, 6), density=draw.uniform(0, 0.2), size=0.1,
-            seed=draw.randrange(99))
+            species=draw.choice(["tree", "bush"]), shape="circle", center=place(draw, grid), radius=draw.uniform(1, 6),
+            **plants)
     if kind == 7:
         return "set_weather", SetWeather, SetWeatherRequest(
             change=["rain_rate", "evaporation"], rain_rate=draw.uniform(0, 1e-3), evaporation=draw.uniform(0, 0.1),
@@ -195,8 +196,10 @@ class Forecaster(Worker):
         wrong, way = self.draw.random() < 0.2, self.draw.randrange(3)
         horizon = self.draw.uniform(1, 20) if way < 2 else self.draw.uniform(0.1, 1)
         horizon = self.draw.choice(BAD_NUMBERS) if wrong else horizon
-        self.client.send_goal(ForecastTerrainGoal(horizon=horizon, moments=self.draw.randrange(1, 9),
-                                                  members=self.draw.randrange(3), gust_speed=0.2, gust_time=5))
+        members = self.draw.randrange(3)
+        gusts = {"gust_speed": 0.2, "gust_time": 5} if members > 1 else {}
+        self.client.send_goal(ForecastTerrainGoal(horizon=horizon, moments=self.draw.randrange(1, 9), members=members,
+                                                  **gusts))
         if way > 0:
             self.client.wait_until_running()
         if way < 2:

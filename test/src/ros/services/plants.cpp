@@ -31,6 +31,13 @@ EditPlants::Request bushes() {
   return request;
 }
 
+EditPlants::Request cleared_bushes() {
+  EditPlants::Request request = bushes();
+  request.operation = EditPlants::Request::CLEAR;
+  request.density = request.size = 0;
+  return request;
+}
+
 double vegetation_at(double x, double y) {
   QueryTerrain::Request request;
   request.points.resize(1);
@@ -49,8 +56,7 @@ TEST_F(Services, EditPlantsPutsPlantsThatGrowAndClearsThem) {
   EXPECT_GT(vegetation_at(20, 20), 0.3);
   EXPECT_EQ(vegetation_at(45, 20), 0);
 
-  EditPlants::Request clear = bushes();
-  clear.operation = EditPlants::Request::CLEAR;
+  EditPlants::Request clear = cleared_bushes();
   clear.species = "tree";
   EXPECT_EQ(call<EditPlants>("edit_plants", clear).plants, 0);
   clear.species.clear();
@@ -63,8 +69,7 @@ TEST_F(Services, EditPlantsPutsPlantsThatGrowAndClearsThem) {
 }
 
 void clear_everything() {
-  EditPlants::Request clear = bushes();
-  clear.operation = EditPlants::Request::CLEAR;
+  EditPlants::Request clear = cleared_bushes();
   clear.species.clear();
   clear.radius = 1000;
   EXPECT_TRUE(call<EditPlants>("edit_plants", clear).success);

@@ -37,6 +37,38 @@ WEIGHTS = {"edit_terrain": 6, "edit_plants": 5, "edit_wind": 3, "set_weather": 3
 OF_EVERY_NODE = {"get_loggers", "set_logger_level"}
 
 
+def tidy(goal):
+    """Leaves out of a forecast's goal what its members and its wind do not use."""
+    if goal.members <= 1:
+        goal.gust_speed = goal.gust_direction_deg = goal.gust_time = goal.seed = 0
+    if goal.wind_kind == "constant" or not goal.wind:
+        goal.wind = goal.wind[:1]
+        goal.wind_kind = goal.wind_kind if goal.wind else ""
+        goal.wind_repeat, goal.wind_hold_time, goal.wind_seed = False, 0, 0
+    elif goal.wind_kind == "rose":
+        goal.wind_repeat = False
+    else:
+        goal.wind_hold_time = goal.wind_seed = 0
+    for segment in goal.wind:
+        if goal.wind_kind != "timeline":
+            segment.duration = 0
+        if goal.wind_kind == "rose":
+            segment.ramp = 0
+        else:
+            segment.probability = 0
+
+
+def leave_out_unused(request, refusal):
+    """Clears the field that a refusal names because nothing uses it; whether there is one."""
+    found = re.search(r"([a-z_]+)(?:\[(\d+)\]\.([a-z_]+))?: is set, but ", refusal)
+    if not found:
+        return False
+    name, index, member = found.groups()
+    owner, name = (request, name) if index is None else (getattr(request, name)[int(index)], member)
+    setattr(owner, name, type(getattr(owner, name))())
+    return True
+
+
 class Caller:
     """Calls the services of one node."""
 
@@ -115,6 +147,8 @@ class Caller:
         if isinstance(message, ForecastTerrainActionGoal):
             message.goal_id.id = "goal %d" % len(self.log)  # actionlib overhears one that it knows
             message.goal.parameters = self.config(message.goal.parameters)
+            if not self.random.rarely():
+                tidy(message.goal)
         self.log.append("%s %s" % (topic, str(message)[:300]))
         self.publishers[topic].publish(message)
         self.on_its_way = self.on_its_way or isinstance(message, Vector3Stamped)
@@ -140,6 +174,19 @@ class Caller:
         """One random call; it is answered, or fails with the reason."""
         service = self.draw.choices(self.services, [WEIGHTS.get(name, 1) for name in self.services])[0]
         request = self.request(service)
+        accepted, reason = self.answer(service, request)
+        if not self.random.rarely():
+            while leave_out_unused(request, reason):
+                accepted, reason = self.answer(service, request)
+        count = self.accepted if accepted else self.refused
+        count[service] = count.get(service, 0) + 1
+        if accepted and service == "save_checkpoint":
+            self.checkpoints.append(request.name)
+        if accepted and service == "save_terrain":
+            self.terrains.append(request.name)
+
+    def answer(self, service, request):
+        """Whether the request is accepted, and the reason if it is not."""
         self.log.append("%s %s" % (service, str(request)[:1500]))
         try:
             answer = self.proxies[service](request)
@@ -152,13 +199,8 @@ class Caller:
             self.proxies[service] = rospy.ServiceProxy(self.proxies[service].resolved_name, self.proxies[service].service_class, persistent=True)
         assert accepted or reason, service
         assert len(reason) < 2200, reason
-        count = self.accepted if accepted else self.refused
-        count[service] = count.get(service, 0) + 1
         self.log.append("  -> %s %s" % (accepted, reason[:200]))
-        if accepted and service == "save_checkpoint":
-            self.checkpoints.append(request.name)
-        if accepted and service == "save_terrain":
-            self.terrains.append(request.name)
+        return accepted, reason
 
 
 class RandomCalls(Scenarios):

@@ -110,7 +110,14 @@ TEST_F(Services, EditTerrainRefuses) {
   refused([](auto& r) { r.inner = 2; }, "inner: = 2", "[0, 1]");
   refused([](auto& r) { r.value = not_a_number; }, "value: = nan", "m");
   refused([](auto& r) { r.value = -1; }, "value", "depth");
-  refused([](auto& r) { r.angle_deg = not_a_number; }, "angle_deg: = nan", "finite");
+  refused(
+      [](auto& r) {
+        r.shape = "ellipse";
+        r.radius_y = 1;
+        r.angle_deg = not_a_number;
+      },
+      "angle_deg: = nan", "finite");
+  refused([](auto& r) { r.angle_deg = 30; }, "angle_deg: is set", "shape 'circle'");
   refused([](auto& r) { r.center.x = 5000; }, "5000", "no cell");
   refused([](auto& r) { r.header.frame_id = "nowhere"; }, "'nowhere'", "'terrain'");
   refused([](auto& r) { r.shape = "ellipse"; }, "radius_y: = 0", "m");

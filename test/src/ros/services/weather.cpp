@@ -54,8 +54,8 @@ TEST_F(Services, SetWeatherTakesSpringsAndTheSea) {
   request.sea_level = 2;
   EXPECT_TRUE(call<SetWeather>("set_weather", request).success);
   step(2);
+  request = SetWeather::Request();
   request.change = {"springs"};
-  request.springs.clear();
   EXPECT_TRUE(call<SetWeather>("set_weather", request).success);
 }
 
@@ -76,12 +76,15 @@ TEST_F(Services, SetWeatherRefuses) {
   request.change = {"sea"};
   request.sea = "everywhere else";
   expect_refused<SetWeather>("set_weather", request, "sea: 'everywhere else'", "border");
+  request = SetWeather::Request();
   request.change = {"springs"};
   request.springs.resize(65);
   expect_refused<SetWeather>("set_weather", request, "water.springs", "64");
   request.springs.resize(1);
   request.springs[0].discharge = -1;
   expect_refused<SetWeather>("set_weather", request, "discharge: = -1", "[0, 100000] m^3/s");
+  request.change = {"rain_rate"};
+  expect_refused<SetWeather>("set_weather", request, "springs: is set", "`change` does not name it");
 }
 
 }  // namespace

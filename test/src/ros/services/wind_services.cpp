@@ -121,6 +121,7 @@ TEST_F(WindServices, SetWindRefuses) {
   request.ramp = -1;
   expect_refused<SetWind>("set_wind", request, "ramp: = -1", "s");
   request.ramp = 0;
+  request = SetWind::Request();
   request.use_vector = true;
   request.vector.x = not_a_number;
   expect_refused<SetWind>("set_wind", request, "vector.x: = nan", "finite");
@@ -174,6 +175,8 @@ TEST_F(WindServices, SetWindScheduleRefuses) {
   request.hold_time = -3;
   expect_refused<SetWindSchedule>("set_wind_schedule", request, "hold_time", "-3");
   request.kind = "timeline";
+  request.hold_time = 0;
+  request.segments[0].probability = 0;
   request.segments[0].duration = 10;
   request.segments[0].speed = not_a_number;
   expect_refused<SetWindSchedule>("set_wind_schedule", request, "speed: = nan", "[0, 100] m/s");
@@ -188,7 +191,10 @@ TEST_F(WindServices, EditWindAddsAJetAndTakesItAway) {
   const double before = northward_in_the_middle();
   EXPECT_TRUE(call<EditWind>("edit_wind", jet("add")).success);
   EXPECT_NEAR(northward_in_the_middle() - before, 4, 0.5);
-  EXPECT_TRUE(call<EditWind>("edit_wind", jet("remove")).success);
+  EditWind::Request removed;
+  removed.operation = EditWind::Request::REMOVE;
+  removed.id = jet("add").id;
+  EXPECT_TRUE(call<EditWind>("edit_wind", removed).success);
   EXPECT_NEAR(northward_in_the_middle(), before, 0.5);
 }
 
