@@ -198,4 +198,18 @@ constexpr float wet_depth = 1e-5f;
 DESERT_HD Quanta value_or_zero(const Quanta* layer, int i) { return layer ? layer[i] : 0; }
 DESERT_HD float value_or_zero(const float* layer, int i) { return layer ? layer[i] : 0.0f; }
 
+/// Where the ground and the water on it end in a cell [quanta above the datum].
+struct FilledHeight {
+  const Quanta *bedrock, *soil, *sand, *water;
+
+  explicit FilledHeight(const TerrainView& t)
+      : bedrock(t.quanta(Layer::bedrock)),
+        soil(t.quanta(Layer::soil)),
+        sand(t.quanta(Layer::sand)),
+        water(t.quanta(Layer::water)) {}
+  DESERT_HD Quanta operator()(int i) const {
+    return bedrock[i] + value_or_zero(soil, i) + sand[i] + value_or_zero(water, i);
+  }
+};
+
 }  // namespace desert_sim

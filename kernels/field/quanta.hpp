@@ -19,6 +19,17 @@ constexpr Quanta wall_height = Quanta{1} << 30;
 /// Terrain is loaded and edited within ±2²⁹ quanta of the datum, so that moving sand has room to pile up.
 constexpr Quanta load_limit = Quanta{1} << 29;
 
+/// Sources fill a cell, and flowing water its neighbours, up to here; the rest of the way to a wall is room
+/// for what slides and hops in a step.
+constexpr Quanta fill_limit = wall_height / 4 * 3;
+/// The part of `amount` for which there is room on a surface.
+DESERT_HD Quanta with_room(Quanta amount, Quanta surface) {
+  const Quanta room = fill_limit - surface;
+  return amount <= room ? amount : (room > 0 ? room : 0);
+}
+/// The most that moves into a cell over an open edge at once.
+constexpr Quanta most_influx = Quanta{1} << 26;
+
 /// Sums modulo 2³², for parts of an amount that are too large by themselves.
 DESERT_HD Quanta sum_modulo(Quanta a, Quanta b) {
   return static_cast<Quanta>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));

@@ -149,13 +149,14 @@ struct LiftOff {
   DESERT_HD bool at_windward_edge(int n, int cells, bool periodic, float along) const {
     return !periodic && (along > 0.0f ? n == 0 : along < 0.0f && n == cells - 1);
   }
-  DESERT_HD Quanta enter(int x, int y, int i) const {
+  /// Into a cell that is full comes nothing.
+  DESERT_HD Quanta enter(int x, int y, int i, Quanta surface) const {
     const Grid& grid = flights.order.grid;
     const Air& air = flights.air;
     const float amount = (at_windward_edge(x, grid.width, grid.periodic_x, air.along_x) ? entering_x : 0.0f) +
                          (at_windward_edge(y, grid.height, grid.periodic_y, air.along_y) ? entering_y : 0.0f);
     if (!(amount > 0.0f)) return 0;
-    const Quanta whole = influx.whole_at_most(amount, load_limit, i);
+    const Quanta whole = with_room(influx.whole_at_most(amount, most_influx, i), surface);
     flights.ledger.book_in(Material::sand, i, whole);
     return whole;
   }
@@ -168,7 +169,7 @@ struct LiftOff {
     const float excess = maximum(u * u - threshold_squared, 0.0f) * exposure_at(flights.bed_at(x, y));
     const Quanta lifted = lift.whole_at_most(per_excess * excess * loose.share(i), loose.sand[i], i);
     loose.sand[i] -= lifted;
-    const Quanta packet = lifted + enter(x, y, i);
+    const Quanta packet = lifted + enter(x, y, i, here.surface);
     if (packet > 0) fly(x, y, i, packet, lifted > 0 ? u : shear_velocity);
   }
   DESERT_HD void fly(int x, int y, int i, Quanta packet, float u) const {

@@ -190,7 +190,9 @@ struct Prepare {
       const int place = order.place_of(x, y), from_side = shift > 0.0f ? place : order.length() - 1 - place;
       share += clamp(fabsf(shift) - static_cast<float>(from_side), 0.0f, 1.0f);
     }
-    const Quanta amount = influx_die.whole_at_most(share * influx * depth_per_flux / path, wall_height, i);
+    const Quanta wanted = influx_die.whole_at_most(share * influx * depth_per_flux / path, most_influx, i);
+    const Quanta amount =
+        with_room(wanted, static_cast<Quanta>(heights[i]));  // none into a cell that is full
     ledger.book_in(Material::sand, i, amount);
     return amount;
   }

@@ -44,8 +44,10 @@ void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice,
                          p.hop_spread / t.grid.cell_size, slab, dice[Roll::hop], sand, aloft, in.landed,
                          bounced, airborne, ledger});
   if (!t.grid.periodic() && p.influx > 0.0f)
-    for_each_cell(exec, t.grid,
-                  SlabInflux{Influx<false>{layers, p.influx, dice[Roll::influx], in.landed, ledger}, slab});
+    for_each_cell(
+        exec, t.grid,
+        SlabInflux{Influx<false>{layers, p.influx, dice[Roll::influx], FilledHeight(t), in.landed, ledger},
+                   slab});
   for_each_cell(exec, t.grid,
                 SettleSlabs{layers, abrade_by_bounces(t, in, dice, ledger), in.landed, bounced, sand});
   if (t.real(Layer::flux_x))

@@ -116,9 +116,7 @@ struct SlabInflux {
     const float slabs = flow.over_edges(x, y) * flow.in.quanta_per_metre / static_cast<float>(slab);
     if (!(slabs > 0.0f)) return;
     const int i = flow.in.grid.index(x, y), count = poisson_draw(slabs, unit_from(flow.die.word(i)));
-    const Quanta amount = count < wall_height / slab ? slab * count : wall_height;
-    flow.landed[i] += amount;
-    flow.ledger.book_in(Material::sand, i, amount);
+    flow.bring(i, count < most_influx / slab ? slab * count : most_influx / slab * slab);
   }
 };
 

@@ -38,7 +38,7 @@ void hop(E& exec, const TerrainView& t, const SaltationParameters& p, const Repo
   else
     for_each_cell_scatter(exec, t.grid, landed, advect);
   if (!t.grid.periodic() && p.influx > 0.0f)
-    for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, dice.influx, landed, ledger});
+    for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, dice.influx, FilledHeight(t), landed, ledger});
   const Deposit<bare> deposit{in,   lift,     abrade, dice.deposit, Landing(t.grid, landed, p.hop_spread),
                               sand, airborne, impacts};
   if constexpr (bare && !vectorises_rows<E>)

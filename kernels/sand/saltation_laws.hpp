@@ -119,6 +119,7 @@ struct Influx {
   Inputs<bare> in;
   float influx;
   Die die;
+  FilledHeight filled;
   Quanta* landed;
   LedgerView ledger;
 
@@ -145,9 +146,14 @@ struct Influx {
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = in.grid.index(x, y);
-    const Quanta amount = die.whole_at_most(over_edges(x, y) * in.quanta_per_metre, wall_height, i);
-    landed[i] += amount;
-    ledger.book_in(Material::sand, i, amount);
+    bring(i, die.whole_at_most(over_edges(x, y) * in.quanta_per_metre, most_influx, i));
+  }
+  /// Into a cell that is full comes nothing.
+  DESERT_HD void bring(int i, Quanta amount) const {
+    if (amount <= 0) return;
+    const Quanta comes = with_room(amount, filled(i));
+    landed[i] += comes;
+    ledger.book_in(Material::sand, i, comes);
   }
 };
 

@@ -282,6 +282,7 @@ struct Enter {
   Die die;
 
   DESERT_HD void operator()(int place) const {
+    if (fly.lattice.height[fly.lattice.slot(0, place)] >= fill_limit) return;  // there is no room
     const Quanta count = die.whole_at_most(slabs, 65535, place);
     for (Quanta n = 0; n < count; ++n) {
       fly.ledger.book_in(Material::sand, place, fly.lattice.slab);

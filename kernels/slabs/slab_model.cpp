@@ -152,6 +152,8 @@ inline Turns make_turns(const TerrainView& t, const StepInputs& in, const Lattic
   const double fall = std::tan(p.shadow_deg * pi / 180.0) * path * cell * per_metre;
   const auto shaded_lines =
       static_cast<int>(std::ceil(static_cast<double>(p.longest_shadow) / (path * cell)));
+  const double entering = static_cast<double>(in.influx * in.time_step) / count / cell * per_metre / slab,
+               most_entering = most_influx / slab / count;
   return {lattice,
           {{order.lines(), order.periodic_along()}, {order.length(), order.periodic_across()}},
           {lattice, static_cast<Quanta>(std::lround(fall)), std::min(order.lines(), shaded_lines)},
@@ -161,9 +163,7 @@ inline Turns make_turns(const TerrainView& t, const StepInputs& in, const Lattic
           poll_times,
           count,
           speeding,
-          order.periodic_along() ? 0.0f
-                                 : static_cast<float>(static_cast<double>(in.influx * in.time_step) / count /
-                                                      cell * per_metre / slab)};
+          order.periodic_along() ? 0.0f : static_cast<float>(std::min(entering, most_entering))};
 }
 
 inline Grid columns_and_rows(int columns, int rows) {

@@ -54,6 +54,12 @@ struct Flow : FlowFields {
   DESERT_HD float amount(float flux) const {
     return flux * (time_step * quanta_per_metre / (grid.cell_size * grid.cell_size));
   }
+  /// The largest flux [m³/s] through a face into a cell with its surface at `top`, so that four of them do
+  /// not fill it over fill_limit.
+  DESERT_HD float most_flux_into(Quanta top) const {
+    const float room = static_cast<float>(fill_limit - top);
+    return 0.25f * maximum(room, 0.0f) * (grid.cell_size * grid.cell_size / (time_step * quanta_per_metre));
+  }
   /// Outflow over an open edge [quanta], as over a sill. `through`: flux through the opposite face towards
   /// the edge [m³/s].
   DESERT_HD float over_edge(int i, float through) const {

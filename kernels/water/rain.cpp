@@ -23,9 +23,9 @@ struct RainOnCell {
   Quanta* water;
   LedgerView ledger;
 
+  DESERT_HD Quanta surface(int i) const { return bedrock[i] + value_or_zero(soil, i) + sand[i] + water[i]; }
   DESERT_HD float share(int i) const {
-    const Quanta surface = bedrock[i] + value_or_zero(soil, i) + sand[i] + water[i];
-    return lerp(p.share_low, p.share_high, clamp((datum + surface * quantum) / p.height, 0.0f, 1.0f));
+    return lerp(p.share_low, p.share_high, clamp((datum + surface(i) * quantum) / p.height, 0.0f, 1.0f));
   }
   /// Position in the lattice of the noise; a periodic axis is scaled to a whole number of lattice cells.
   DESERT_HD float lattice_position(int cell, int cells, int repeat) const {
@@ -45,8 +45,10 @@ struct RainOnCell {
       const float uniform = noise < 0.0f ? e / (1.0f + e) : 1.0f / (1.0f + e);
       if (uniform > part) return;
     }
-    water[i] += amount;
+    const Quanta stays = with_room(amount, surface(i));
+    water[i] += stays;
     ledger.book_in(Material::water, i, amount);
+    ledger.book_out(Material::water, i, amount - stays);
   }
 };
 

@@ -46,7 +46,9 @@ struct Accelerate {
     if (level && pull == 0.0f && flow.amount(fabsf(limited_flux)) < 0.5f) return 0.0f;
     const float undamped_flux =
         friction_factor * limited_flux + flow.time_step * (flow.grid.cell_size * face) * pull;
-    return 2.0f * undamped_flux / (1.0f + sqrtf(1.0f + 4.0f * (drag / (face * face)) * fabsf(undamped_flux)));
+    const float found =
+        2.0f * undamped_flux / (1.0f + sqrtf(1.0f + 4.0f * (drag / (face * face)) * fabsf(undamped_flux)));
+    return clamp(found, -flow.most_flux_into(top_i), flow.most_flux_into(top_j));
   }
   DESERT_HD void operator()(int x, int y) const {
     const int i = flow.grid.index(x, y), east = flow.east(x, y), north = flow.north(x, y);

@@ -17,6 +17,7 @@ struct AddInDisc {
   int first_x, first_y;              ///< of the box
   float centre_x, centre_y, radius;  ///< [cells] from the south-west corner of the box
   Quanta amount;
+  FilledHeight filled;
   Quanta* water;
   LedgerView ledger;
 
@@ -28,8 +29,10 @@ struct AddInDisc {
     if (!in_disc(x, y)) return;
     const int i = neighbour_index(grid, first_x + x, first_y + y);
     if (i < 0) return;
-    water[i] += amount;
+    const Quanta stays = with_room(amount, filled(i));
+    water[i] += stays;
     ledger.book_in(Material::water, i, amount);
+    ledger.book_out(Material::water, i, amount - stays);
   }
 };
 
@@ -62,6 +65,7 @@ void add_spring(E& exec, const TerrainView& t, const Spring& spring, double x, d
                 static_cast<float>(row - rows.first),
                 static_cast<float>(point ? 2.0 : reach),
                 0,
+                FilledHeight(t),
                 t.quanta(Layer::water),
                 ledger};
   long long cells = 0;

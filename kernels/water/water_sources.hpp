@@ -1,13 +1,12 @@
 #pragma once
 /// Sources and sinks of surface water: springs, the sea, evaporation. Nilles 2025 §3.4.3 and 3.4.5, eq. 34.
 ///
-///   springs       w += Q Δt/(n l²)                 on the n cells of a disc, with the discharge Q [m³/s]
-///   sea           w ← max(w, level − elevation)    on the border or everywhere
-///   evaporation   w ← w e^(−φ Δt)
+/// springs       w += Q Δt/(n l²)                 on the n cells of a disc, with the discharge Q [m³/s] sea
+/// w ← max(w, level − elevation)    on the border or everywhere evaporation   w ← w e^(−φ Δt)
 ///
-/// The ledger records what is added as inflow, and what evaporates as outflow. add_spring() and evaporate()
-/// read and write water; fill_sea() reads bedrock, soil, sand, water and writes water, in each sub-step of
-/// the flow (virtual_pipes.hpp).
+/// The ledger records what is added as inflow, and what evaporates, or finds no room in a cell that is full,
+/// as outflow. add_spring() and evaporate() read and write water; fill_sea() reads bedrock, soil, sand, water
+/// and writes water, in each sub-step of the flow (virtual_pipes.hpp).
 
 #include <cstdint>
 

@@ -415,8 +415,8 @@ MUTATIONS = [Mutation(*row) for row in (
      "static_cast<double>(spring.discharge) * time_step /", "static_cast<double>(spring.discharge) /",
      "a spring gives its discharge a second", "kernels_unit *WaterLaws.Springs*"),
     ("rain_without_datum", "kernels/water/rain.cpp",
-     "clamp((datum + surface * quantum) / p.height, 0.0f, 1.0f)",
-     "clamp((surface * quantum) / p.height, 0.0f, 1.0f)",
+     "clamp((datum + surface(i) * quantum) / p.height, 0.0f, 1.0f)",
+     "clamp((surface(i) * quantum) / p.height, 0.0f, 1.0f)",
      "the share of rain goes with the elevation", "kernels_unit *WaterLaws.Rain*"),
 
     # ---- moisture and soil

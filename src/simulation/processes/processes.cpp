@@ -24,6 +24,7 @@ const ProcessTable& process_table() {
                                       nield_baas_process(),
                                       snow_process(),
                                       wang_process(),
+                                      sand_overflow_process(),
                                       repose_process(),
                                       reptation_process(),
                                       looseness_process(),

@@ -16,6 +16,7 @@ Process saltation_process();
 Process repose_process();
 Process reptation_process();
 Process avalanching_process();
+Process sand_overflow_process();
 FusedProcesses fused_wind_shadow_and_saltation();
 
 Process desertscape_process();  // desertscape.cpp

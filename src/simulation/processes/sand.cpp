@@ -1,10 +1,13 @@
 /// The processes of sand: saltation with abrasion, angles of repose, reptation, avalanches.
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 
 #include "kernels/avalanching/avalanching.hpp"
 #include "kernels/avalanching/soil_and_bedrock.hpp"
 #include "kernels/field/statistics.hpp"
+#include "kernels/sand/overflow.hpp"
 #include "kernels/sand/reptation.hpp"
 #include "kernels/sand/saltation.hpp"
 #include "kernels/wind/wind_shadow.hpp"
@@ -239,6 +242,40 @@ Process avalanching_process() {
   };
   p.can_be_recorded = avalanching_can_be_recorded;
   p.traffic = avalanche_traffic;
+  return p;
+}
+
+namespace {
+
+/// Steps from one look at full cells to the next: meanwhile no cell of an edge gets more than a sixteenth of
+/// the room above fill_limit.
+std::uint64_t steps_between_overflows(const SimulationState& state) {
+  const Scenario& s = state.scenario;
+  const double a_step = static_cast<double>(s.saltation.influx) * s.run.time_step / s.grid.cell_size;
+  const double room = (wall_height - fill_limit) * state.terrain.scale().quantum() / 16;
+  return static_cast<std::uint64_t>(std::clamp(std::floor(room / a_step), 1.0, 4096.0));
+}
+
+bool takes_overflow(const SimulationState& state) {
+  return state.steps % steps_between_overflows(state) == 0;
+}
+
+}  // namespace
+
+Process sand_overflow_process() {
+  Process p;
+  p.name = "sand_overflow";
+  p.parameters = {"saltation"};
+  p.source = "conservation of mass, in whole quanta";
+  p.header = "kernels/sand/overflow.hpp";
+  p.active = [](const Scenario& s) { return s.saltation.influx > 0 && s.grid.boundary == Boundary::open; };
+  p.reads = {Layer::bedrock, Layer::soil, Layer::water};
+  p.writes = {Layer::sand};
+  p.step = [](StepContext& c, ProcessWorkspace*) {
+    if (c.part == 0 && takes_overflow(c.state))
+      with_backend(c.exec(), [&](auto& e) { overflow::take_overflow(e, c.terrain, c.state.ledger()); });
+  };
+  p.can_be_recorded = [](const SimulationState& state) { return !takes_overflow(state); };
   return p;
 }
 

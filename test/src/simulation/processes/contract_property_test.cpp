@@ -100,6 +100,10 @@ const std::map<std::string, std::string> worlds{
      "  noise: {layer: sand, low: 0, high: 0.4, scale: 2, threshold: 0.4}]\n"
      "wind: {speed: 5, direction_deg: 20}\nrun: {time_step: 3600}\n"
      "slab_model: {kind: snow, slab_height: 0.02, poll_time: 3600}\nslab_snow: {settling_time: 3600}\n"},
+    {"overfull",
+     "grid: {width: 40, height: 36, boundary: open}\n"
+     "terrain: [uniform: {layer: sand, value: 2}]\nwind: {speed: 5, direction_deg: 20}\n"
+     "saltation: {influx: 100}\n"},
     {"still",
      "grid: {width: 40, height: 36}\nterrain: [noise: {layer: sand, low: 0, high: 9, scale: 3}]\n"
      "saltation: {enabled: false}\navalanching: {scheme: sweeps, sweeps: 3}\nwind_shadow: {curved: true}\n"},
@@ -137,6 +141,10 @@ class Contract : public test::OnBackend {
     test::run(*s, 4);
     s->exec().synchronise();
     bring_all_into_use(*s);
+    if (name == "overfull")  // no scenario begins so full
+      s->state().terrain.set_raw_words(
+          Layer::sand,
+          Words(static_cast<std::size_t>(s->terrain().grid().cells()), fill_limit + (Quanta{1} << 24)));
     return s;
   }
 };
