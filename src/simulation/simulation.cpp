@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "kernels/field/statistics.hpp"
+#include "kernels/particles/particle_parameters.hpp"
 #include "kernels/sand/desertscape.hpp"
 #include "kernels/slabs/slab_parameters.hpp"
 #include "src/core/constants.hpp"
@@ -59,6 +60,26 @@ bool takes_part(const std::string& name, const Scenario& s) {
   const ProcessTable& table = process_table();
   return std::any_of(table.processes.begin(), table.processes.end(),
                      [&](const Process& p) { return p.name == name && table.is_active(p, s); });
+}
+
+/// One model moves the sand: of two, one would be ignored, or both would move it.
+void require_one_sand_model(const Scenario& s) {
+  ValidationErrors errors(s.name);
+  const auto& slabs = s.process_sections.get<SlabModelParameters>("slab_model");
+  const auto& particles = s.process_sections.get<ParticleParameters>("particle");
+  const std::string slab = slab_kind_names[static_cast<int>(slabs.kind)];
+  const std::string particle = particle_kind_names[static_cast<int>(particles.kind)];
+  const std::string model = saltation_model_names[static_cast<int>(s.saltation.model)];
+  const bool has_slabs = slabs.kind != SlabKind::none, has_particles = particles.kind != ParticleKind::none;
+  if (has_slabs && has_particles)
+    errors.add("particle.kind", "= " + particle + " beside slab_model.kind = " + slab +
+                                    " (allowed: one model that moves the sand; the other is none)");
+  if ((has_slabs || has_particles) && s.saltation.enabled && s.saltation.model != SaltationModel::hops)
+    errors.add("saltation.model",
+               "= " + model + " beside " +
+                   (has_slabs ? "slab_model.kind = " + slab : "particle.kind = " + particle) +
+                   ", which moves the sand instead (allowed: hops, or kind: none)");
+  errors.throw_if_any();
 }
 
 /// Sub-steps that follow from other parameters are bounded, so that a step cannot take for ever.
@@ -122,6 +143,7 @@ void require_bounded_cost(const Scenario& s) {
 }  // namespace
 
 void require_reach(const Scenario& s) {
+  require_one_sand_model(s);
   require_bounded_cost(s);
   ValidationErrors errors(s.name);
   const auto check = [&](const char* key, double metres) {

@@ -17,8 +17,8 @@
 
 namespace desert_sim {
 
-/// Throws ConfigError if a hop or a march could reach too far (they are counted in 16.16 fixed-point cells),
-/// or if a process would need too many sub-steps.
+/// Throws ConfigError if two models would move the sand, if a hop or a march could reach too far (they are
+/// counted in 16.16 fixed-point cells), or if a process would need too many sub-steps.
 void require_reach(const Scenario& scenario);
 
 /// Throws ConfigError, in the name of `what`, if the sea is higher than the scale can represent. One that is
