@@ -8,6 +8,12 @@ import numpy
 from .layer_map import NO_CELLS, LayerMap, Rectangle
 
 
+# What a desert can have, as its node does: what draws or measures a map can count on it.
+LARGEST_VALUE = 1e7  # of any layer, in its unit
+SMALLEST_CELL, LARGEST_CELL, LARGEST_ORIGIN = 0.999e-3, 1.001e4, 1.001e8  # [m]
+LARGEST_RESOLUTION = 1e4
+
+
 def layer_of(message):
     """Name of the message's layer; messages of the elevation do not say it."""
     return getattr(message, "layer", "elevation")
@@ -20,17 +26,18 @@ def map_of(keyframe):
     values = numpy.array(data, numpy.float32)
     if keyframe.width == 0 or keyframe.height == 0 or values.size != keyframe.width * keyframe.height:
         raise ValueError(where + "%d values for %d x %d cells" % (values.size, keyframe.width, keyframe.height))
-    if not (math.isfinite(keyframe.cell_size) and keyframe.cell_size > 0):
-        raise ValueError(where + "cell_size is %g: must be finite and above 0" % keyframe.cell_size)
+    if not SMALLEST_CELL <= keyframe.cell_size <= LARGEST_CELL:
+        raise ValueError(where + "cell_size is %g: must be 0.001 to 1e+04 m" % keyframe.cell_size)
     position, turn = keyframe.origin.position, keyframe.origin.orientation
-    if not (math.isfinite(position.x) and math.isfinite(position.y) and position.z == 0):
-        raise ValueError(where + "origin is (%g, %g, %g): must be finite with z = 0" % (position.x, position.y, position.z))
+    if not (abs(position.x) <= LARGEST_ORIGIN and abs(position.y) <= LARGEST_ORIGIN and position.z == 0):
+        raise ValueError(where + "origin is (%g, %g, %g): must be within 1e+08 m with z = 0" % (
+            position.x, position.y, position.z))
     if (turn.x, turn.y, turn.z, turn.w) != (0, 0, 0, 1):
         raise ValueError(where + "origin's orientation is (%g, %g, %g, %g): must be identity (0, 0, 0, 1)" % (
             turn.x, turn.y, turn.z, turn.w))
     if not math.isfinite(keyframe.sim_time):
         raise ValueError(where + "sim_time is not finite")
-    _check_finite(values, where)
+    _check_values(values, where)
     values = values.reshape(keyframe.height, keyframe.width)
     values.setflags(write=False)
     return LayerMap(layer_of(keyframe), getattr(keyframe, "unit", "m"), keyframe.header.frame_id, keyframe.header.stamp,
@@ -151,17 +158,17 @@ def _check_tile(tile, where):
         values = selected if changes == (selected + 1) // 2 else 2 * changes
     if values != selected or values == 0:
         raise ValueError(where + "%d values for %s" % (values, size))
-    if changes and not (math.isfinite(tile.resolution) and tile.resolution > 0):
-        raise ValueError(where + "resolution is %g: must be finite and above 0" % tile.resolution)
-    _check_finite(numpy.asarray(tile.data, numpy.float32), where)
+    if changes and not 0 < tile.resolution <= LARGEST_RESOLUTION:
+        raise ValueError(where + "resolution is %g: must be above 0, up to 1e+04" % tile.resolution)
+    _check_values(numpy.asarray(tile.data, numpy.float32), where)
 
 
-def _check_finite(values, where):
-    """Infinite values are refused; NaN means unknown."""
-    infinite = numpy.isinf(values)
-    if infinite.any():
-        at = int(infinite.argmax())
-        raise ValueError(where + "value %d is %g: must be finite, or NaN if unknown" % (at, values.flat[at]))
+def _check_values(values, where):
+    """Values that no desert has are refused; NaN means unknown."""
+    extreme = numpy.abs(values) > LARGEST_VALUE
+    if extreme.any():
+        at = int(extreme.argmax())
+        raise ValueError(where + "value %d is %g: must be within 1e+07, or NaN if unknown" % (at, values.flat[at]))
 
 
 def _place(update):

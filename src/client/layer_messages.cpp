@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
+#include <sstream>
 
 #include "src/client/layer_tile.hpp"
 
@@ -82,13 +83,26 @@ std::string size_error(std::size_t numbers, std::uint32_t width, std::uint32_t h
   return std::to_string(numbers) + " values for " + cells_text(width, height);
 }
 
-std::string find_infinite(const std::vector<float>& values) {
+// What a desert can have, as its node does: what draws or measures a map can count on it.
+constexpr float largest_value = 1e7f;  // of any layer, in its unit
+constexpr double smallest_cell = 0.999e-3, largest_cell = 1.001e4, largest_origin = 1.001e8;  // [m]
+constexpr float largest_resolution = 1e4f;
+
+std::string number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+/// Empty unless a value is out of range; NaN stands for an unknown one.
+std::string find_extreme(const std::vector<float>& values) {
   unsigned any = 0;  // without a branch, compilers can vectorise the loop
-  for (const float z : values) any |= std::fabs(z) == HUGE_VALF ? 1u : 0u;
+  for (const float z : values) any |= std::fabs(z) > largest_value ? 1u : 0u;
   if (any == 0) return "";
-  const auto bad = std::find_if(values.begin(), values.end(), [](float z) { return std::isinf(z); });
-  return "value " + std::to_string(bad - values.begin()) + " is " + std::to_string(*bad) +
-         ": must be finite, or NaN if unknown";
+  const auto bad =
+      std::find_if(values.begin(), values.end(), [](float z) { return std::fabs(z) > largest_value; });
+  return "value " + std::to_string(bad - values.begin()) + " is " + number(static_cast<double>(*bad)) +
+         ": must be within 1e+07, or NaN if unknown";
 }
 
 /// Number of cells that the mask of a tile selects. Sets `error` if the mask does not fit the tile's size.
@@ -120,9 +134,11 @@ std::string validation_error(const LayerTile& tile) {
   } else if (error.empty() && (cells != values || values == 0)) {
     error = std::to_string(values) + " values for " + std::to_string(cells) + " cells that changed";
   }
-  if (error.empty() && !tile.changes.empty() && !(std::isfinite(tile.resolution) && tile.resolution > 0))
-    error = "resolution is " + std::to_string(tile.resolution) + ": must be finite and above 0";
-  return error.empty() ? find_infinite(tile.data) : error;
+  if (error.empty() && !tile.changes.empty() &&
+      !(tile.resolution <= largest_resolution && tile.resolution > 0))
+    error =
+        "resolution is " + number(static_cast<double>(tile.resolution)) + ": must be above 0, up to 1e+04";
+  return error.empty() ? find_extreme(tile.data) : error;
 }
 
 template <class Keyframe>
@@ -131,18 +147,18 @@ std::string keyframe_error(const Keyframe& keyframe) {
   if (const std::string error = size_error(values_of(keyframe).size(), keyframe.width, keyframe.height);
       !error.empty())
     return where + error;
-  if (!(std::isfinite(keyframe.cell_size) && keyframe.cell_size > 0))
-    return where + "cell_size is " + std::to_string(keyframe.cell_size) + ": must be finite and above 0";
+  if (!(keyframe.cell_size >= smallest_cell && keyframe.cell_size <= largest_cell))
+    return where + "cell_size is " + number(keyframe.cell_size) + ": must be 0.001 to 1e+04 m";
   const geometry_msgs::Point& p = keyframe.origin.position;
-  if (!std::isfinite(p.x) || !std::isfinite(p.y) || p.z != 0)
-    return where + "origin is (" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " +
-           std::to_string(p.z) + "): must be finite with z = 0";
+  if (!(std::abs(p.x) <= largest_origin && std::abs(p.y) <= largest_origin && p.z == 0))
+    return where + "origin is (" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) +
+           "): must be within 1e+08 m with z = 0";
   const geometry_msgs::Quaternion& q = keyframe.origin.orientation;
   if (q.x != 0 || q.y != 0 || q.z != 0 || q.w != 1)
     return where + "origin's orientation is (" + std::to_string(q.x) + ", " + std::to_string(q.y) + ", " +
            std::to_string(q.z) + ", " + std::to_string(q.w) + "): must be identity (0, 0, 0, 1)";
   if (!std::isfinite(keyframe.sim_time)) return where + "sim_time is not finite";
-  if (const std::string error = find_infinite(values_of(keyframe)); !error.empty()) return where + error;
+  if (const std::string error = find_extreme(values_of(keyframe)); !error.empty()) return where + error;
   return "";
 }
 

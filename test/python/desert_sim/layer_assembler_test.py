@@ -288,6 +288,9 @@ class Broken(Assembler):
                ("cell_size is 0", spoil("cell_size", 0)), ("cell_size is nan", spoil("cell_size", math.nan)),
                ("origin is (inf", spoil("origin.position.x", math.inf)), ("z = 0", spoil("origin.position.z", 1)),
                ("orientation", spoil("origin.orientation.w", 0)), ("sim_time", spoil("sim_time", math.inf)),
+               ("cell_size is 1e+300: must be 0.001 to", spoil("cell_size", 1e300)),
+               ("1e+300, 0): must be within", spoil("origin.position.y", 1e300)),
+               ("value 0 is 3e+38: must be within", spoil("elevation", numpy.full(9100, 3e38, numpy.float32))),
                ("value 17 is -inf", value_17))
         for refused, (reason, change) in enumerate(bad, 1):
             message = keyframe(1, 1)
@@ -302,6 +305,7 @@ class Broken(Assembler):
         steps = {"data": [], "changes": [0] * 6}
         bad = (("tile 1: 5 values for 2 x 3", {"data": [1.0] * 5}), ("tile 1: 0 values for 2 x 0", {"height": 0, "data": []}),
                ("tile 1: value 2 is inf", {"data": [1, 1, math.inf, 1, 1, 1]}),
+               ("tile 1: value 0 is -3e+38", {"data": [-3e38, 1, 1, 1, 1, 1]}),
                ("tile 1: 1 values for 2 cells that changed", {"changed": [0b10000100], "data": [1]}),
                ("tile 1: 0 values for 0 cells that changed", {"changed": [0], "data": []}),
                ("tile 1: 2 bytes of mask for 2 x 3", {"changed": [0xfc, 0]}),

@@ -315,6 +315,9 @@ TEST_F(Assembler, RefusesBadKeyframesAndSaysWhy) {
       {"cell_size is 0", [](ElevationGrid& k) { k.cell_size = 0; }},
       {"cell_size is nan", [](ElevationGrid& k) { k.cell_size = std::numeric_limits<double>::quiet_NaN(); }},
       {"origin is (inf", [](ElevationGrid& k) { k.origin.position.x = infinity; }},
+      {"cell_size is 1e+300: must be 0.001 to", [](ElevationGrid& k) { k.cell_size = 1e300; }},
+      {"1e+300, 0): must be within", [](ElevationGrid& k) { k.origin.position.y = 1e300; }},
+      {"value 40 is 3e+38: must be within", [](ElevationGrid& k) { k.elevation[40] = 3e38f; }},
       {"z = 0", [](ElevationGrid& k) { k.origin.position.z = 1; }},
       {"orientation", [](ElevationGrid& k) { k.origin.orientation.w = 0, k.origin.orientation.z = 1; }},
       {"sim_time", [](ElevationGrid& k) { k.sim_time = infinity; }},
@@ -345,6 +348,7 @@ TEST_F(Assembler, RefusesBadUpdatesWhollyAndNeedsAKeyframeThen) {
       {"tile 1: 0 values for 2 x 0",
        [](ElevationUpdate& u) { u.tiles[1].height = 0, u.tiles[1].data.clear(); }},
       {"tile 1: value 2 is inf", [](ElevationUpdate& u) { u.tiles[1].data[2] = infinity; }},
+      {"tile 1: value 0 is -3e+38", [](ElevationUpdate& u) { u.tiles[1].data[0] = -3e38f; }},
       {"tile 1: 1 values for 2 cells that changed",
        [](ElevationUpdate& u) { u.tiles[1].changed = {0b10000100}, u.tiles[1].data.resize(1); }},
       {"tile 1: 0 values for 0 cells that changed",
@@ -355,7 +359,7 @@ TEST_F(Assembler, RefusesBadUpdatesWhollyAndNeedsAKeyframeThen) {
        }},
       {"tile 1: bit 6 of its mask is set", [](ElevationUpdate& u) { u.tiles[1].changed = {0xfe}; }},
       {"tile 1: has changes and absolute values", [](ElevationUpdate& u) { u.tiles[1].changes.resize(6); }},
-      {"tile 1: resolution is 0.0",
+      {"tile 1: resolution is 0: must be above 0",
        [](ElevationUpdate& u) {
          u.tiles[1].data.clear(), u.tiles[1].changes.resize(6), u.tiles[1].bits = 8;
        }},
