@@ -19,13 +19,13 @@ def chart(plan, results, metric, time_unit):
     for n, scenario in enumerate(plan["scenarios"]):
         colour, courses = COLOURS[n % len(COLOURS)], []
         for key, run in plan["runs"].items():
-            if run["label"] == scenario["label"]:
+            if run["name"] == scenario["name"]:
                 snapshots = results[key]["metrics"]["snapshots"]
                 courses.append([(s["time_s"] / seconds, s[metric.key]) for s in snapshots])
                 draw(axes, courses[-1], metric.scale, color=colour, linewidth=0.6, alpha=0.45)
         means = [(times[0][0], sum(v for _, v in times) / len(times)) for times in zip(*courses)
                  if all(v is not None for _, v in times)]
-        draw(axes, means, metric.scale, color=colour, linewidth=2, label=scenario["label"])
+        draw(axes, means, metric.scale, color=colour, linewidth=2, label=scenario["label"].replace("$", r"\$"))
     axes.set_xlabel("simulated time [%s]" % unit)
     axes.set_ylabel("[%s]" % metric.unit if metric.unit else "")
     axes.set_ylim(bottom=0)

@@ -51,7 +51,7 @@ class Page:
 
     def runs(self, scenario):
         """The results of a scenario by seed."""
-        return [self.results[key] for key, run in self.plan["runs"].items() if run["label"] == scenario["label"]]
+        return [self.results[key] for key, run in self.plan["runs"].items() if run["name"] == scenario["name"]]
 
     def home(self, result, name):
         return os.path.join(self.plan["work"], "runs", result["key"], name)

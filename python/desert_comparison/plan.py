@@ -2,6 +2,7 @@
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -29,6 +30,17 @@ def digest_of_files(paths):
         with open(path, "rb") as file:
             digest.update(hashlib.sha256(file.read()).digest())
     return digest.hexdigest()
+
+
+def printable(text):
+    """A name as people and UTF-8 can have it: bytes that are none become question marks."""
+    return os.fsencode(text).decode("utf-8", "replace")
+
+
+def file_name(label):
+    """A name of a file for a label, which Snakemake and shells take for nothing else; another one for each label."""
+    safe = re.sub(r"[^A-Za-z0-9._-]", "_", label)
+    return safe if safe == label else "%s-%s" % (safe, hashlib.sha256(os.fsencode(label)).hexdigest()[:6])
 
 
 def files_of_program(path):
@@ -72,11 +84,11 @@ class Planner:
         """Raises ComparisonError with what desert_run says of a scenario that it refuses."""
         o = self.options
         scenarios = [self.scenario(argument) for argument in o.scenarios]
-        labels = [s["label"] for s in scenarios]
+        labels = [s["name"] for s in scenarios]
         for n, label in enumerate(labels):
             if label in labels[:n]:
                 raise ComparisonError("%s and %s: both are called %s (allowed: files of different names)"
-                                      % (o.scenarios[labels.index(label)], o.scenarios[n], label))
+                                      % (o.scenarios[labels.index(label)], o.scenarios[n], printable(label)))
         if o.same_start:
             self.start(scenarios[0])  # refuses one whose terrain is malformed
             self.take_terrain_of(scenarios[0])
@@ -94,7 +106,8 @@ class Planner:
         path = argument if os.path.isfile(argument) else self.shipped(argument)
         with open(path, encoding="utf-8", errors="replace") as file:
             text = file.read()
-        return {"label": os.path.splitext(os.path.basename(path))[0], "path": os.path.abspath(path), "text": text,
+        name = os.path.splitext(os.path.basename(path))[0]
+        return {"label": printable(name), "name": file_name(name), "path": os.path.abspath(path), "text": text,
                 "comment": leading_comment(text), "document": yaml_value(text, path) or {}}
 
     def shipped(self, name):
@@ -139,13 +152,19 @@ class Planner:
         if done.returncode:
             raise ComparisonError("%s: %s" % (what, done.stderr.strip() or "desert_run: status %d" % done.returncode))
 
+    def check_length(self, words, what):
+        """How long a run takes, which may depend on the scenario, is refused here and not in its runs."""
+        if self.options.duration:
+            self.call(words + ["--pipeline", "--duration", self.options.duration], what)
+
     def start(self, scenario):
         """The summary and the picture of the start, which desert_run draws if the scenario is valid."""
         starts = os.path.join(self.options.work, "starts")
         os.makedirs(starts, exist_ok=True)
-        picture = os.path.join(starts, scenario["label"] + ".png")
+        picture = os.path.join(starts, scenario["name"] + ".png")
         with tempfile.TemporaryDirectory(dir=starts) as folder:
             words = [self.desert_run] + self.arguments(scenario, self.options.first_seed)
+            self.check_length(words, scenario["path"])
             self.call(words + ["--steps", "0", "--quiet", "--format", "netcdf", "--out", folder], scenario["path"])
             os.replace(os.path.join(folder, "elevation.png"), picture)
             with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
@@ -160,7 +179,7 @@ class Planner:
         film = [w for v in o.view for w in ("--view", v)] if o.film and n == 0 else None
         made_of = [words[1:], film, o.layer, o.keep_terrain, scenario["text"], scenario["files"], self.programs]
         digest = hashlib.sha256(json.dumps(made_of).encode()).hexdigest()[:12]
-        return {"key": "%s-%d-%s" % (scenario["label"], seed, digest), "label": scenario["label"], "seed": seed,
+        return {"key": "%s-%d-%s" % (scenario["name"], seed, digest), "name": scenario["name"], "label": scenario["label"], "seed": seed,
                 "arguments": words, "film": film}
 
 

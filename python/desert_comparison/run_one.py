@@ -35,7 +35,7 @@ def make(plan, run, home):
             words += ["--film", os.path.join(folder, "film.mp4")] + run["film"]
         call(words + ["--threads", str(plan["threads"])], log, plan["folder"], (0, LOST_MATERIAL))
         call([desert_metrics, folder, "--layer", plan["layer"], "--out", os.path.join(folder, "metrics.json")], log, folder)
-    result = {"key": run["key"], "label": run["label"], "seed": run["seed"]}
+    result = {"key": run["key"], "name": run["name"], "label": run["label"], "seed": run["seed"]}
     for name in ("summary", "metrics"):
         with open(os.path.join(folder, name + ".json"), encoding="utf-8") as file:
             result[name] = json.load(file)

@@ -114,7 +114,7 @@ class Workflow:
         plan_path = os.path.join(self.plan["work"], "plan.json")
         write_whole(plan_path, json.dumps({**self.plan, "pending": pending}, indent=1))
         words = [self.snakemake, "--snakefile", os.path.join(HERE, "Snakefile"), "--directory", self.plan["work"],
-                 "--keep-going", "--rerun-incomplete", "--nolock", "--config", "plan=" + plan_path]
+                 "--keep-going", "--rerun-incomplete", "--nolock"]
         words += ["--profile", self.profile] if self.profile else []
         words += ["--cores", str(self.cores)] if self.cores else []
         for key in pending:

@@ -6,14 +6,18 @@
 #include <limits>
 #include <map>
 
+#include "src/core/descriptor.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/core/input_file.hpp"
 #include "src/scenario/wind_series.hpp"
 
 #if DESERT_WITH_NETCDF
+#include <fcntl.h>
 #include <netcdf.h>
 
 #include <cstdio>
+#include <cstdlib>
 #endif
 
 namespace desert_sim {
@@ -60,6 +64,16 @@ struct Handle {
     check(nc_put_att_text(id, variable, name, value.size(), value.c_str()), name);
   }
 };
+
+}  // namespace
+
+namespace {
+
+/// The path of an open folder without characters that the library takes for something else, such as
+/// backslashes.
+std::string plain_path(const Descriptor& folder) {
+  return "/proc/self/fd/" + std::to_string(folder.number());
+}
 
 }  // namespace
 
@@ -143,8 +157,14 @@ NetcdfWriter::NetcdfWriter(const std::string& path, const NetcdfHead& head, cons
     : file_(std::make_unique<File>(path)) {
   require_writable_file(path);
   std::remove(path.c_str());  // what would be a link by now is not followed
+  // HDF5 would lock out who looks at the snapshots that are there already.
+  setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);
+  const std::filesystem::path where(path);
+  const std::string folder = where.has_parent_path() ? where.parent_path().string() : ".";
+  const Descriptor opened(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   File& f = *file_;
-  const int status = nc_create(path.c_str(), NC_NETCDF4 | NC_NOCLOBBER, &f.id);
+  const int status = nc_create((plain_path(opened) + "/" + where.filename().string()).c_str(),
+                               NC_NETCDF4 | NC_NOCLOBBER, &f.id);
   if (status != NC_NOERR) throw ConfigError(path + ": cannot be created: " + nc_strerror(status));
   f.width = first.width;
   f.height = first.height;
@@ -216,19 +236,22 @@ struct NetcdfReader::File : Handle {
 
   /// A few changed bytes can declare billions of cells. Deflate packs at most some 1000 bytes into one.
   void require_cells_that_fit() const {
-    constexpr double packed = 1032;
+    constexpr double packed = 1032, bytes_of_a_time = 8;
     std::error_code error;
     const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
     const double cells = static_cast<double>(x.size()) * static_cast<double>(y.size());
     if (error || cells > packed * bytes || cells > 2147483648.0)
       refuse(std::to_string(x.size()) + " x " + std::to_string(y.size()) +
              " cells are more than the file can have, or than 2^31");
+    if (static_cast<double>(times.size()) * bytes_of_a_time > bytes)
+      refuse(std::to_string(times.size()) + " times are more than the file can have");
   }
 };
 
 NetcdfReader::NetcdfReader(const std::string& path) : file_(std::make_unique<File>(path)) {
   File& f = *file_;
-  const int status = nc_open(path.c_str(), NC_NOWRITE, &f.id);
+  const InputFile opened(path);
+  const int status = nc_open(opened.descriptor_path().c_str(), NC_NOWRITE, &f.id);
   if (status != NC_NOERR) f.refuse(std::string("cannot be opened: ") + nc_strerror(status));
   f.x = f.coordinate("x");
   f.y = f.coordinate("y");

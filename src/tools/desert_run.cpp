@@ -80,7 +80,9 @@ const char usage[] =
     "  --describe            print all parameters as markdown\n"
     "  --describe-view       print the keys of --view as markdown\n"
     "  --describe-processes  print the table of processes as markdown\n"
-    "  --pipeline            print the processes of a step of the scenario in order, with layers and memory\n"
+    "  --pipeline            print the processes of a step of the scenario in order, with layers and memory, "
+    "and\n"
+    "                        how many steps a run takes\n"
     "  --quiet               print no progress\n"
     "Exit status: 0; 1 if a material was lost or gained; 2 for invalid input; 3 for a failure at run time;\n"
     "130 after Ctrl-C, SIGTERM or SIGHUP. Outputs are written except for 2 and 3.\n";
@@ -298,10 +300,14 @@ int run_program(int argc, char** argv) {
   const std::unique_ptr<Session> session =
       o.has("resume") ? resume_session(o, journal, threads) : begin_session(o, journal, threads);
   Simulation& simulation = session->simulation();
-  if (o.has("pipeline")) return std::cout << describe_pipeline(simulation.pipeline()), 0;
   const std::uint64_t last = steps_to_run(
       o, simulation,
       o.has("replay") ? journal.ticks : static_cast<std::uint64_t>(simulation.scenario().run.steps));
+  if (o.has("pipeline")) {
+    std::cout << describe_pipeline(simulation.pipeline()) << "\nA run takes " << last << " steps of "
+              << simulation.scenario().run.time_step << " s.\n";
+    return 0;
+  }
   plan.every = snapshot_distance(o, last);
   plan.measurements = Measurements(o.values("cross-section"), o.values("probe"),
                                    static_cast<std::uint64_t>(o.number("probe-every", 1, 1, 1LL << 40)),

@@ -267,6 +267,30 @@ class DesertCompare(DesertCompareCase):
         for words in ("coarse.yaml", "cells of 2 m", "cells of 1 m", "allowed"):
             self.assertIn(words, reason)
 
+    def test_names_that_snakemake_and_utf_8_do_not_know(self):
+        folder = os.path.join(self.folder, "a {folder} \\ 'of' it")
+        os.makedirs(folder)
+        names = ["braces {x} {seed}", "back\\slash $^$", os.fsdecode(b"no \xff utf-8")]
+        scenarios = []
+        for name in names:
+            scenarios.append(os.path.join(folder, name + ".yaml"))
+            with open(scenarios[-1], "w", encoding="utf-8") as file:
+                file.write(HEAPS)
+        out = os.path.join(folder, "page {y}.html")
+        self.compare(out, "--seeds", "1", "--steps", "4", scenarios=scenarios)
+        text = self.text(out)
+        for name in ("braces {x} {seed}", "back\\slash $^$", "no \ufffd utf-8"):
+            self.assertIn("<h3>%s</h3>" % name, text)
+
+    def test_a_duration_is_refused_before_any_run(self):
+        self.assertIn("--duration", self.refusal("--duration", "3 fortnights"))
+        changes = self.write("changes.yaml", HEAPS.replace("{steps: 20}",
+                                                           "{steps: 20, timeline: [{time: 5, set: {run.time_step: 2}}]}"))
+        reason = self.refusal("--duration", "20", scenarios=[self.ridges, changes])
+        for words in ("changes.yaml", "run.time_step", "allowed: --steps"):
+            self.assertIn(words, reason)
+        self.assertEqual(self.results("refused.runs"), [])
+
     def test_what_is_wrong_with_a_scenario_is_told_before_any_run(self):
         bad = self.write("bad.yaml", HEAPS.replace("height: 64", "height: -3"))
         reason = self.refusal(scenarios=[self.ridges, bad])
