@@ -84,7 +84,8 @@ def init_ros(name="desert_test"):
 # ---- nodes
 
 class Node:
-    """A node of its own.
+    """A node of its own. It ends with close(), with the `with` that it is used in, or at last with this process: also if a
+    test fails before.
 
     name         full or relative name; a relative one is below /
     parameters   its private ones: all there were before are gone
@@ -105,6 +106,7 @@ class Node:
             [program(executable, package), "__name:=" + last, "__ns:=" + (namespace or "/"), *arguments],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, preexec_fn=preexec,
             env=dict(os.environ, **(environment or {})))
+        atexit.register(self.close)
         self.output = ""
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -140,8 +142,15 @@ class Node:
         status, _ = self.wait()
         return status, time.monotonic() - start
 
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
     def close(self):
         """Ends it if it still runs, by force if need be."""
+        atexit.unregister(self.close)
         if self.running:
             try:
                 self.end()

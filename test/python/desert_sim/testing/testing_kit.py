@@ -4,6 +4,8 @@ import math
 import os
 import re
 import shutil
+import subprocess
+import sys
 import tempfile
 import threading
 import unittest
@@ -213,6 +215,21 @@ class Kit(unittest.TestCase):
         with self.assertRaisesRegex(AssertionError, "/rover/desert_rover has ended:(.|\n)*wheel"):
             with self.desert(rover=START, rover_parameters={"rover": {"wheel_radius": -1}}):
                 self.fail("there is no such rover")
+
+    def test_a_node_ends_though_its_test_fails(self):
+        private = {"scenario": "barchan", "settings": "[grid.width=16, grid.height=16]", "backend": "cpu", "paused": True}
+        with self.assertRaises(ZeroDivisionError), desert_sim.testing.Node("failing", private) as node:
+            1 / 0
+        self.assertFalse(node.running)
+        # Without a `with`, it ends with the process of the test.
+        script = ("import os, desert_sim.testing as t; t.init_ros(); n = t.Node('leaked', %r); "
+                  "n.latest('status', __import__('desert_sim.msg').msg.SimulationStatus); print(n.process.pid, flush=True); 1 / 0"
+                  % private)
+        done = subprocess.run([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              universal_newlines=True, timeout=120 * PATIENCE)
+        self.assertIn("ZeroDivisionError", done.stderr)
+        with self.assertRaises(ProcessLookupError):
+            os.kill(int(done.stdout), 0)
 
     def test_threads_of_a_desert_end_with_it(self):
         before = threading.active_count()
