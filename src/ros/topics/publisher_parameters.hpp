@@ -18,6 +18,7 @@ namespace desert_sim {
 
 /// The rates and sizes of the topics that are no maps.
 struct PublisherParameters {
+  double refresh_rate = 0.05;
   double keyframe_rate = 1;
   double update_rate = 10;
   double update_threshold = 0.005;
@@ -45,6 +46,9 @@ struct PublisherParameters {
 constexpr auto parameter_table(const PublisherParameters*) {
   using P = PublisherParameters;
   return std::make_tuple(
+      parameter("refresh_rate", &P::refresh_rate, 0, 1000, "Hz",
+                "Every topic that shows something as a whole, whether it has changed or not, so that what "
+                "is recorded from any moment on has all of it; not updates."),
       parameter("keyframe_rate", &P::keyframe_rate, 0, 1000, "Hz", "~elevation."),
       parameter("update_rate", &P::update_rate, 0, 1000, "Hz", "~elevation_updates."),
       parameter("update_threshold", &P::update_threshold, 0, 1000, "m",

@@ -59,6 +59,7 @@ void Topic::count_message() {
 void Topic::mark_published(std::uint64_t change, std::uint64_t terrain, SteadyClock::time_point since) {
   published_change_ = change;
   published_terrain_ = terrain;
+  shown_ = since;
   due_.published(since, may_be_early() ? context_.simulation.change_time() : since, period());
 }
 

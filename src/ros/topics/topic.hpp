@@ -88,6 +88,9 @@ class Topic {
   virtual bool may_be_early() const { return true; }
   /// Whether its rate also serves nodes that learn all changes from its updates (see set_updates()).
   virtual bool repeats_for_updated_nodes() const { return true; }
+  /// Whether a message shows all there is, and not only what has changed: then it is published at
+  /// `refresh_rate`, too, whether the state has changed or not.
+  virtual bool shows_all() const { return true; }
   /// Gives back what the simulation keeps for subscribers. Called, perhaps often, while there are none.
   virtual void release() {}
   /// Publishes the state. False if there was no message to send.
@@ -117,7 +120,7 @@ class Topic {
   /// Whether it is published at its rate.
   bool follows_rate() const { return rate() > 0 && (repeats_for_updated_nodes() || !is_covered()); }
   /// Whether it must be published now: for a new subscriber, for another terrain, or at its rate.
-  bool is_due() const { return due_immediately() || due_by_rate(); }
+  bool is_due() const { return due_immediately() || due_by_rate() || due_by_refresh(); }
   TopicRate measured_rate() const;
   /// Why nothing could be published when the topic was last due; empty if something could.
   const std::string& problem() const { return problem_; }
@@ -163,6 +166,10 @@ class Topic {
     return changed() && (may_be_early() ? due_.reached(time, context_.simulation.change_time(), period())
                                         : time >= due_.time());
   }
+  bool due_by_refresh() const {
+    const double rate = parameters().topics.refresh_rate;
+    return rate > 0 && shows_all() && now() >= shown_ + period_of(rate);
+  }
   SteadyClock::duration period() const { return period_of(pace()); }
   SteadyClock::time_point early_time() const {
     return only_after_change() && may_be_early() ? due_.earliest(period()) : due_.time();
@@ -175,6 +182,7 @@ class Topic {
 
   // Used by the publishing thread alone:
   DueTime due_;
+  SteadyClock::time_point shown_{};  ///< when it was published last
   std::uint64_t published_change_ = 0,
                 published_terrain_ = 0;  ///< counters of the Moment that was shown last
 

@@ -103,6 +103,7 @@ class NodeProcess {
     ros::param::set(name + "/threads", 1);
     ros::param::set(name + "/paused", true);
     ros::param::set(name + "/answer_timeout", 600.0);
+    ros::param::set(name + "/refresh_rate", 0.0);
     ros::param::set(name + "/keyframe_rate", 0.0);
     for (const auto& [key, value] : more) ros::param::set(name + "/" + key, value);
     return "__name:=" + name.substr(1);

@@ -55,7 +55,7 @@ class Scenarios(unittest.TestCase):
         shutil.rmtree(self.folder)
 
     def start(self, name, private, **options):
-        usual = {"backend": "cpu", "threads": 1, "paused": True, "answer_timeout": 600}
+        usual = {"backend": "cpu", "threads": 1, "paused": True, "answer_timeout": 600, "refresh_rate": 0}
         options.setdefault("preexec", without_alarm)
         node = Node(name, dict(usual, **private), **options)
         self.nodes.append(node)

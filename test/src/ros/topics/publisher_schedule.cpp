@@ -2,6 +2,9 @@
 /// subscriber can be called by the thread that publishes.
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/ElevationGrid.h>
+#include <desert_sim/ElevationUpdate.h>
+#include <desert_sim/LayerGrid.h>
+#include <desert_sim/LayerUpdate.h>
 #include <desert_sim/SetWind.h>
 #include <desert_sim/WindField.h>
 #include <map_msgs/OccupancyGridUpdate.h>
@@ -45,6 +48,7 @@ class Schedule : public testing::Test {
     p["paused"] = true;
     p["answer_timeout"] = 600.0;
     p["image_rate"] = 1 / period;
+    p["refresh_rate"] = 0.0;
     p["costmap_update_rectangles"] = rectangles_;
     for (const auto& [name, rate] : rates) p[name] = rate;
     ros::param::set("/desert_sim", p);
@@ -159,6 +163,25 @@ TEST_F(Schedule, NothingIsPublishedAgainThatHasNotChanged) {
   clock_.advance(10);
   tick();
   EXPECT_EQ(count_since(begin + period, "wind"), 1);
+}
+
+TEST_F(Schedule, WholesAreShownAgainThoughNothingHasChanged) {
+  start({{"refresh_rate", 0.05}, {"keyframe_rate", 0}, {"layer_keyframe_rate", 0}, {"wind_rate", 0}});
+  listen<ElevationGrid>("elevation");
+  listen<ElevationUpdate>("elevation_updates", false);
+  listen<LayerGrid>("layers/sand_depth");
+  listen<LayerUpdate>("layers/sand_depth_updates", false);
+  listen<WindField>("wind");
+  for (int n = 0; n < 3; ++n) {
+    const double begin = clock_.seconds();
+    clock_.advance(20.1);
+    for (const char* topic : {"elevation", "layers/sand_depth", "wind"}) {
+      EXPECT_TRUE(wait_until([&] { return count_since(begin + 20, topic) > 0; })) << topic;
+      EXPECT_EQ(count_since(begin + period, topic), 1) << topic;
+    }
+    for (const char* topic : {"elevation_updates", "layers/sand_depth_updates"})
+      EXPECT_EQ(count_since(begin + period, topic), 0) << "there is nothing new";
+  }
 }
 
 // ---- ~costmap_updates: one rectangle in 0.2 s, which repeats what was sent less than 0.3 s before
