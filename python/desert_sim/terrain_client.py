@@ -357,7 +357,7 @@ def _tell_what_is_awaited(awaited):
     except (rospy.ROSException, OSError):  # there is no master
         topics = []
     published = [name for name, kind in topics if kind in (ElevationGrid._type, LayerGrid._type)]
-    rospy.logwarn("The terrain client: %s", waiting_text(awaited, published))
+    rospy.logwarn("%s", waiting_text(awaited, published))
 
 
 def _check_layer(name):

@@ -9,17 +9,18 @@ def waiting_text(awaited, published):
     awaited    (name, whether it has a publisher) of each
     published  topics of the same types that somebody publishes; those that end in the same name are told, since the wanted
                one may be among them"""
-    without = [name for name, has_publisher in awaited if not has_publisher]
-    silent = [name for name, has_publisher in awaited if has_publisher]
+    # What has just been subscribed to may not be connected yet.
+    silent = [name for name, has_publisher in awaited if has_publisher or name in published]
+    without = [name for name, _ in awaited if name not in silent]
     ends = {name.rsplit("/", 1)[-1] for name in without}
     instead = [name for name in published if name.rsplit("/", 1)[-1] in ends]
-    parts = []
+    text = "The terrain client waits."
     if without:
-        parts.append(", ".join(without) + ", which nobody publishes" +
-                     (" (but somebody does %s)" % ", ".join(instead) if instead else ""))
+        text += " Nobody publishes " + ", ".join(without)
+        text += " (somebody does %s)." % ", ".join(instead) if instead else "."
     if silent:
-        parts.append(", ".join(silent) + ", which has a publisher that has sent nothing yet")
-    return "Waits for " + ", and for ".join(parts)
+        text += " Nothing has come yet of %s." % ", ".join(silent)
+    return text
 
 
 class WaitingNotice:

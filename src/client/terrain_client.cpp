@@ -253,7 +253,7 @@ void TerrainClient::tell_what_is_awaited() {
       if (topic.datatype == ros::message_traits::datatype<ElevationGrid>() ||
           topic.datatype == ros::message_traits::datatype<LayerGrid>())
         published.push_back(topic.name);
-  ROS_WARN("The terrain client: %s", waiting_text(awaited, published).c_str());
+  ROS_WARN("%s", waiting_text(awaited, published).c_str());
 }
 
 /// Unsubscribing waits for a callback that runs, which may be the one that asked for it: so only this thread

@@ -10,6 +10,10 @@ constexpr std::chrono::seconds first_notice{3}, next_notice{30};
 
 std::string last_name(const std::string& topic) { return topic.substr(topic.rfind('/') + 1); }
 
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 std::string joined(const std::vector<std::string>& names) {
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
@@ -21,16 +25,20 @@ std::string joined(const std::vector<std::string>& names) {
 std::string waiting_text(const std::vector<AwaitedTopic>& awaited,
                          const std::vector<std::string>& published) {
   std::vector<std::string> without, silent, instead;
-  for (const AwaitedTopic& topic : awaited) (topic.has_publisher ? silent : without).push_back(topic.name);
+  for (const AwaitedTopic& topic : awaited) {
+    // What has just been subscribed to may not be connected yet.
+    const bool is_published = topic.has_publisher || contains(published, topic.name);
+    (is_published ? silent : without).push_back(topic.name);
+  }
   for (const std::string& topic : published)
     if (std::any_of(without.begin(), without.end(),
                     [&](const std::string& name) { return last_name(name) == last_name(topic); }))
       instead.push_back(topic);
-  std::string text = "Waits for ";
-  if (!without.empty()) text += joined(without) + ", which nobody publishes";
-  if (!instead.empty()) text += " (but somebody does " + joined(instead) + ")";
-  if (!without.empty() && !silent.empty()) text += ", and for ";
-  if (!silent.empty()) text += joined(silent) + ", which has a publisher that has sent nothing yet";
+  std::string text = "The terrain client waits.";
+  if (!without.empty()) text += " Nobody publishes " + joined(without);
+  if (!instead.empty()) text += " (somebody does " + joined(instead) + ")";
+  if (!without.empty()) text += ".";
+  if (!silent.empty()) text += " Nothing has come yet of " + joined(silent) + ".";
   return text;
 }
 

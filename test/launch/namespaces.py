@@ -70,7 +70,7 @@ class Namespaces(unittest.TestCase):
         log = Received("/rosout", Log)
         with TerrainClient("/venus/desert_sim"):
             told = log.wait_for(lambda m: "/venus/desert_sim/elevation" in m.msg, "what the client waits for")
-        self.assertIn("nobody publishes", told.msg)
+        self.assertIn("Nobody publishes", told.msg)
         self.assertIn("/mars/desert_sim/elevation", told.msg)
 
 

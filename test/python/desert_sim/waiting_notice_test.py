@@ -9,11 +9,13 @@ class WaitingNotices(unittest.TestCase):
     def test_the_topic_is_named_and_what_has_its_name_elsewhere(self):
         self.assertEqual(waiting_text([("/desert_sim/elevation", False)],
                                       ["/mars/desert_sim/elevation", "/mars/desert_sim/elevation_updates"]),
-                         "Waits for /desert_sim/elevation, which nobody publishes (but somebody does "
-                         "/mars/desert_sim/elevation)")
+                         "The terrain client waits. Nobody publishes /desert_sim/elevation (somebody does "
+                         "/mars/desert_sim/elevation).")
         self.assertEqual(waiting_text([("/a/elevation", False), ("/a/layers/sand_depth", True)], []),
-                         "Waits for /a/elevation, which nobody publishes, and for /a/layers/sand_depth, which has a "
-                         "publisher that has sent nothing yet")
+                         "The terrain client waits. Nobody publishes /a/elevation. Nothing has come yet of "
+                         "/a/layers/sand_depth.")
+        self.assertEqual(waiting_text([("/a/elevation", False)], ["/a/elevation", "/b/elevation"]),
+                         "The terrain client waits. Nothing has come yet of /a/elevation.")
 
     def test_it_is_due_after_three_seconds_and_every_half_minute(self):
         notice = WaitingNotice()

@@ -12,13 +12,14 @@ using std::chrono::milliseconds;
 TEST(WaitingNotice, NamesTheTopicAndWhatHasItsNameElsewhere) {
   EXPECT_EQ(waiting_text({{"/desert_sim/elevation", false}},
                          {"/mars/desert_sim/elevation", "/mars/desert_sim/elevation_updates"}),
-            "Waits for /desert_sim/elevation, which nobody publishes (but somebody does "
-            "/mars/desert_sim/elevation)");
+            "The terrain client waits. Nobody publishes /desert_sim/elevation (somebody does "
+            "/mars/desert_sim/elevation).");
   EXPECT_EQ(waiting_text({{"/a/elevation", false}, {"/a/layers/sand_depth", true}}, {}),
-            "Waits for /a/elevation, which nobody publishes, and for /a/layers/sand_depth, which has a "
-            "publisher that has sent nothing yet");
-  EXPECT_EQ(waiting_text({{"/a/elevation", true}}, {"/b/elevation"}),
-            "Waits for /a/elevation, which has a publisher that has sent nothing yet");
+            "The terrain client waits. Nobody publishes /a/elevation. Nothing has come yet of "
+            "/a/layers/sand_depth.");
+  EXPECT_EQ(waiting_text({{"/a/elevation", false}}, {"/a/elevation", "/b/elevation"}),
+            "The terrain client waits. Nothing has come yet of /a/elevation.")
+      << "it is not connected yet";
 }
 
 TEST(WaitingNotice, IsDueAfterThreeSecondsAndEveryHalfMinute) {

@@ -48,10 +48,10 @@ TEST_P(FullCells, ASeaAroundDeepGroundFlowsIn) {
 }
 
 TEST_P(FullCells, SpringsRainAndTheirLedger) {
-  for (const std::string source : {"springs: [{x: 12, y: 8, radius: 2, discharge: 100000}]}\n",
+  for (const std::string source : {"springs: [{x: 6, y: 4, radius: 2, discharge: 100000}]}\n",
                                    "evaporation: 0}\nrain: {rate: 1, share_low: 1, share_high: 1}\n"}) {
     const auto s = filled(
-        "grid: {width: 24, height: 16, cell_size: 1}\n"
+        "grid: {width: 12, height: 9, cell_size: 1}\n"
         "terrain: [{uniform: {layer: sand, value: 1}}]\nwind: {speed: 0}\n"
         "run: {time_step: 20}\nwater: {enabled: true, " +
             source,
@@ -78,7 +78,7 @@ TEST_P(FullCells, SandComesInOverTheEdgesWithoutEnd) {
         "saltation: {influx: 100, model: continuum}\n", "saltation: {influx: 100, model: desertscape_2019}\n",
         "saltation: {influx: 100}\nslab_model: {kind: werner}\n",
         "saltation: {influx: 100}\nslab_model: {kind: momiji}\n"})
-    filled(open_sand + "wind: {speed: 10}\n" + model, 250);
+    filled(open_sand + "wind: {speed: 10}\n" + model, 200);
   filled(
       "grid: {width: 24, height: 16, cell_size: 0.01, boundary: open}\n"
       "terrain: [{uniform: {layer: sand, value: 0.1}}]\nwind: {speed: 12}\nsaltation: {influx: 1}\n"
