@@ -79,6 +79,25 @@ TEST_F(Netcdf, IsReadByXarray) {
   EXPECT_EQ(status, 0);
 }
 
+TEST_F(Netcdf, IsReadWhileItIsWritten) {
+  Snapshot s;
+  s.width = 3;
+  s.height = 2;
+  s.layers[Layer::sand] = {1, 2, 3, 4, 5, 6};
+  NetcdfWriter writer(path("live.nc"), {"live", "", {}}, s);
+  for (const int n : {1, 2, 3}) {
+    s.time = n;
+    s.step = static_cast<std::uint64_t>(n);
+    writer.add(s);
+    const int status =
+        python("n = netCDF4.Dataset(sys.argv[1])\nassert len(n['time']) == " + std::to_string(n) +
+                   " and float(n['sand'][-1, 1, 2]) == 6, n\n",
+               path("live.nc"));
+    if (status == 42) GTEST_SKIP() << "python3-xarray or python3-netcdf4 is not installed";
+    EXPECT_EQ(status, 0) << n;
+  }
+}
+
 TEST_F(Netcdf, LayersThatComeIntoUseLaterWereNotThereBefore) {
   Snapshot s;
   s.width = 3;
