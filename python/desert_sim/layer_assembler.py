@@ -13,9 +13,10 @@ from .layer_messages import (changed_cells, check_fit, check_update, differing_c
 # Limits of the updates that are kept until their keyframe arrives. Beyond them a new keyframe costs less.
 MAX_QUEUED_UPDATES, MAX_QUEUED_VALUES = 256, 1 << 24
 
-# Whether a keyframe is needed to continue: the first one, or that of waiting updates, should arrive soon (EXPECTED), or
-# messages are missing, and the map cannot be continued without a keyframe (LOST).
-NONE, EXPECTED, LOST = "none", "expected", "lost"
+# Whether a keyframe is needed to continue: the first one, or that of waiting updates, should arrive soon (EXPECTED), or the
+# sender has begun anew with the first update of a keyframe, which should arrive soon (RESTARTED), or messages are missing,
+# and the map cannot be continued without a keyframe (LOST).
+NONE, EXPECTED, RESTARTED, LOST = "none", "expected", "restarted", "lost"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -61,7 +62,9 @@ class LayerAssembler:
         self._queued_values = 0
 
     def need(self):
-        """NONE, EXPECTED or LOST."""
+        """NONE, EXPECTED, RESTARTED or LOST."""
+        if self._sender_restarted and self._queue and self._queue[0].sequence == 1:
+            return RESTARTED
         if not self._complete:
             return LOST
         return NONE if self.map and not self._queue else EXPECTED

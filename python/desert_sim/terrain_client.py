@@ -9,7 +9,7 @@ import rospy
 from rospy.numpy_msg import numpy_msg
 from std_msgs.msg import Empty, String
 
-from .layer_assembler import EXPECTED, LOST, NONE, NOTHING, Counts, LayerAssembler
+from .layer_assembler import EXPECTED, LOST, NONE, NOTHING, RESTARTED, Counts, LayerAssembler
 from .layer_map import LAYERS
 from .msg import ElevationGrid, ElevationUpdate, LayerGrid, LayerUpdate
 from .waiting_notice import WaitingNotice, waiting_text
@@ -37,7 +37,8 @@ class KeyframeRequests:
             if now - self._since > self._pause:
                 self._stable, self._pause = True, self._shortest
             return False
-        if need == EXPECTED and now - self._since < 2 * self._pause:
+        # The transfer of a large keyframe takes time, and a new subscription would lose one that is on its way.
+        if need != LOST and now - self._since < 2 * self._pause:
             return False
         if not self._stable and now - self._last_request < self._pause:
             return False
@@ -267,7 +268,7 @@ class TerrainClient:
     def up_to_date(self):
         """Whether no message is known to be missing: false before the first keyframes, and from a gap to the next
         keyframe."""
-        return self._all(lambda stream: stream.map is not None and stream.need != LOST)
+        return self._all(lambda stream: stream.map is not None and stream.need not in (LOST, RESTARTED))
 
     @property
     def connected(self):

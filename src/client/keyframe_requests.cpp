@@ -17,8 +17,8 @@ bool KeyframeRequests::due(KeyframeNeed need, Clock::time_point now) {
     }
     return false;
   }
-  if (need == KeyframeNeed::expected && now - since_ < 2 * pause_)
-    return false;  // the transfer of a large keyframe takes time
+  // The transfer of a large keyframe takes time, and a new subscription would lose one that is on its way.
+  if (need != KeyframeNeed::lost && now - since_ < 2 * pause_) return false;
   if (!stable_ && now - last_request_ < pause_) return false;
   pause_ = stable_ ? shortest_ : std::min(2 * pause_, longest_);
   stable_ = false;

@@ -21,6 +21,8 @@ std::string name_of(const std::pair<std::uint32_t, std::uint32_t>& number) {
 }  // namespace
 
 KeyframeNeed LayerAssembler::need() const {
+  const bool at_first_update = !queued_updates_.empty() && queued_updates_.front().sequence == 1;
+  if (sender_restarted_ && at_first_update) return KeyframeNeed::restarted;
   if (!complete_) return KeyframeNeed::lost;
   return map_ && queued_updates_.empty() ? KeyframeNeed::none : KeyframeNeed::expected;
 }

@@ -37,8 +37,9 @@ struct StreamCounts {
 /// Whether a keyframe is needed to continue.
 enum class KeyframeNeed {
   none,
-  expected,  ///< the first keyframe, or that of waiting updates, should arrive soon
-  lost       ///< messages are missing: the map cannot be continued without a keyframe
+  expected,   ///< the first keyframe, or that of waiting updates, should arrive soon
+  restarted,  ///< the sender has begun anew with the first update of a keyframe, which should arrive soon
+  lost        ///< messages are missing: the map cannot be continued without a keyframe
 };
 
 class LayerAssembler {

@@ -47,7 +47,8 @@ void LayerStream::publish_change(const MapChange& change, const ros::Time* updat
     if (counts.refused != statistics_.refused) refusal = counts.last_refusal;
     if (counts.gaps != statistics_.gaps) gap = counts.last_gap;
     static_cast<StreamCounts&>(statistics_) = counts;
-    up_to_date_ = assembler_.map() && assembler_.need() != KeyframeNeed::lost;
+    const KeyframeNeed need = assembler_.need();
+    up_to_date_ = assembler_.map() && need != KeyframeNeed::lost && need != KeyframeNeed::restarted;
     if (change.map) map_ = change.map;
     if (change.map && update_stamp) note_latency(seconds_between(*update_stamp, ros::Time::now()));
     context_.changed.notify_all();

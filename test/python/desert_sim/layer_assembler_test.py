@@ -6,7 +6,7 @@ import unittest
 
 import numpy
 import rospy
-from desert_sim.layer_assembler import EXPECTED, LOST, NONE, LayerAssembler
+from desert_sim.layer_assembler import EXPECTED, LOST, NONE, RESTARTED, LayerAssembler
 from desert_sim.msg import LayerTile
 from messages import HEIGHT, WIDTH, keyframe, tile, update
 
@@ -29,8 +29,8 @@ class Assembler(unittest.TestCase):
             change = take(message)
         return change
 
-    def expect_gap(self, why, gaps=1):
-        self.assertEqual((self.assembler.need(), self.counts.gaps), (LOST, gaps))
+    def expect_gap(self, why, gaps=1, need=LOST):
+        self.assertEqual((self.assembler.need(), self.counts.gaps), (need, gaps))
         self.assertIn(why, self.counts.last_gap)
 
     def expect_whole(self):
@@ -130,7 +130,7 @@ class Torn(Assembler):
 
     def test_a_restart_is_noticed_by_updates_and_healed_by_the_keyframe(self):
         self.take(keyframe(7, 100), update(7, 1, 101, 5), update(1, 1, 201, 2))
-        self.expect_gap("has restarted")
+        self.expect_gap("has restarted", need=RESTARTED)
         self.assertEqual(self.corner(), 5)
         self.take(keyframe(1, 200))
         self.assertEqual((self.corner(), self.counts.restarts), (2, 1))
@@ -191,7 +191,7 @@ class Played(Assembler):
     def test_of_one_keyframe_whose_first_update_overtakes_it(self):
         self.play(1, 10, 4)
         self.take(*self.updates(1, 10, 2))
-        self.expect_gap("has restarted")
+        self.expect_gap("has restarted", need=RESTARTED)
         self.assertEqual(self.corner(), 14, "the last good map stays")
         self.take(keyframe(1, 10, elevation=10))
         self.expect_at(12)
@@ -207,7 +207,7 @@ class Played(Assembler):
         self.play(1, 10, 2)
         self.play(2, 20, 2)
         self.take(*self.updates(1, 10, 1))  # before its keyframe
-        self.assertEqual(self.assembler.need(), LOST)
+        self.assertEqual(self.assembler.need(), RESTARTED)
         self.take(keyframe(1, 10, elevation=10))
         self.expect_at(11)
         # Keyframe 1 comes before the last update of the turn before.
@@ -228,7 +228,7 @@ class Played(Assembler):
 
     def test_a_restart_after_updates_that_waited_is_no_recording(self):
         self.take(update(1, 1, 11, 5), keyframe(1, 10, elevation=4), update(1, 1, 101, 6))
-        self.expect_gap("has restarted")
+        self.expect_gap("has restarted", need=RESTARTED)
         self.assertEqual(self.corner(), 5)
 
 

@@ -36,6 +36,12 @@ TEST_F(Requests, AKeyframeOnItsWayHasTimeToCome) {
   EXPECT_EQ(in(100, KeyframeNeed::expected), 1);
 }
 
+TEST_F(Requests, LeaveAKeyframeOnItsWayTimeAfterARestart) {
+  in(1000, KeyframeNeed::none);
+  EXPECT_EQ(in(990, KeyframeNeed::restarted), 0) << "a new subscription would lose it";
+  EXPECT_EQ(in(100, KeyframeNeed::restarted), 1);
+}
+
 TEST_F(Requests, PausesDoubleUpToTheLongest) {
   EXPECT_EQ(in(490, KeyframeNeed::lost), 1);   // at 0
   EXPECT_EQ(in(500, KeyframeNeed::lost), 1);   // 0.5 s
