@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "src/render/drawable.hpp"
 #include "src/render/terrain_colours.hpp"
 
 namespace desert_sim::render {
@@ -55,13 +56,14 @@ Mesh wind_arrows(const WindGrid& wind, int most, const std::function<double(doub
   int step = 1;  // cells between arrows
   const auto along = [&step](int cells) { return (cells + step - 1) / step; };
   while (static_cast<std::int64_t>(along(wind.width)) * along(wind.height) > most) ++step;
-  const double spacing = step * wind.cell_size, reference = wind.speed_above > 0.1 ? wind.speed_above : 1;
+  const double spacing = step * wind.cell_size,
+               reference = wind.speed_above > 0.1 && is_drawable(wind.speed_above) ? wind.speed_above : 1;
   for (int row = step / 2; row < wind.height; row += step)
     for (int column = step / 2; column < wind.width; column += step) {
       const std::size_t n = static_cast<std::size_t>(row) * static_cast<std::size_t>(wind.width) +
                             static_cast<std::size_t>(column);
       const double u = wind.u[n], v = wind.v[n], speed = std::hypot(u, v);
-      if (!(speed > slowest * reference)) continue;  // also NaN
+      if (!(speed > slowest * reference) || !is_drawable(speed)) continue;  // also NaN
       const double x = wind.x + (column + 0.5) * wind.cell_size, y = wind.y + (row + 0.5) * wind.cell_size;
       add_arrow({x, y, u / speed, v / speed, spacing * std::min(0.75 * speed / reference, longest), spacing,
                  pack(wind_colour(static_cast<float>(speed / reference)))},

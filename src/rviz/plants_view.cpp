@@ -1,9 +1,12 @@
 #include "src/rviz/plants_view.hpp"
 
+#include "src/render/drawable.hpp"
 #include "src/render/plant_shapes.hpp"
 #include "src/rviz/materials.hpp"
 
 namespace desert_sim {
+
+using render::is_drawable;
 
 void PlantsView::subscribe(ros::NodeHandle& node, const std::string& topic) {
   inbox_.subscribe(node, topic);
@@ -21,12 +24,23 @@ void PlantsView::update(double corner_x, double corner_y, double vertical_exagge
   const Plants& m = *message_;
   const std::size_t count = std::min(
       {m.x.size(), m.y.size(), m.z.size(), m.radius.size(), m.species_index.size(), m.health.size()});
-  std::vector<float> radii(m.radius.begin(), m.radius.begin() + static_cast<std::ptrdiff_t>(count));
+  // Plants that no desert has are not drawn: Ogre ends a program whose meshes are not finite.
+  std::vector<std::size_t> drawn;
+  std::vector<float> radii;
+  for (std::size_t n = 0; n < count; ++n) {
+    if (m.species_index[n] >= m.species.size() || !is_drawable(m.x[n]) || !is_drawable(m.y[n]) ||
+        !is_drawable(m.z[n]) || !is_drawable(m.radius[n]) ||
+        !is_drawable(m.species[m.species_index[n]].stem) || !is_drawable(m.origin.position.x - corner_x) ||
+        !is_drawable(m.origin.position.y - corner_y))
+      continue;
+    drawn.push_back(n);
+    radii.push_back(m.radius[n]);
+  }
   std::vector<render::Plant> plants;
   std::vector<std::uint8_t> species;
-  for (const std::size_t n : render::widest_plants(radii, static_cast<std::size_t>(most))) {
+  for (const std::size_t chosen : render::widest_plants(radii, static_cast<std::size_t>(most))) {
+    const std::size_t n = drawn[chosen];
     const std::uint8_t kind = m.species_index[n];
-    if (kind >= m.species.size()) continue;
     plants.push_back({m.origin.position.x - corner_x + static_cast<double>(m.x[n]),
                       m.origin.position.y - corner_y + static_cast<double>(m.y[n]),
                       static_cast<double>(m.z[n]), static_cast<double>(m.radius[n]),

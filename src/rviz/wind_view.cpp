@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "src/render/drawable.hpp"
 #include "src/render/wind_arrows.hpp"
 #include "src/rviz/materials.hpp"
 
@@ -23,6 +24,9 @@ void WindView::update(const LayerMap& ground, int most) {
   const std::size_t cells = static_cast<std::size_t>(m.width) * m.height;
   if (m.u.size() != cells || m.v.size() != cells) return;
   const LayerMap::Info& info = ground.info();
+  if (!render::is_drawable(m.cell_size) || !render::is_drawable(m.origin.position.x - info.origin_x) ||
+      !render::is_drawable(m.origin.position.y - info.origin_y))
+    return;
   const render::WindGrid wind{static_cast<int>(m.width),
                               static_cast<int>(m.height),
                               m.cell_size,

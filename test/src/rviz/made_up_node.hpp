@@ -26,14 +26,14 @@ class MadeUpNode {
     updates_ = node_.advertise<desert_sim::ElevationUpdate>(name + "/elevation_updates", 1000);
   }
 
-  void keyframe(int width, int height, const Height& elevation) {
+  void keyframe(int width, int height, const Height& elevation, double cell_size = 1) {
     auto grid = boost::make_shared<desert_sim::ElevationGrid>();
     fill(*grid);
     grid->keyframe = ++keyframe_;
     sequence_ = 0;
     grid->width = static_cast<std::uint32_t>(width);
     grid->height = static_cast<std::uint32_t>(height);
-    grid->cell_size = 1;
+    grid->cell_size = cell_size;
     grid->origin.orientation.w = 1;
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) grid->elevation.push_back(elevation(x, y));

@@ -3,6 +3,8 @@
 
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
+#include <desert_sim/Plants.h>
+#include <desert_sim/WindField.h>
 #include <rviz/properties/status_property.h>
 #include <tf2_ros/transform_broadcaster.h>
 
@@ -217,6 +219,54 @@ TEST_F(TerrainDisplay, SaysWhatToDoWithoutANodeAndWhenItEnds) {
   EXPECT_TRUE(window_->run_until([&] {
     return status(shown, "Terrain").text.find("100 x 100") != std::string::npos;
   })) << status(shown, "Terrain").text;
+}
+
+TEST_F(TerrainDisplay, MessagesThatNoDesertSendsEndNothing) {
+  constexpr float huge = 3e38f, infinite = std::numeric_limits<float>::infinity();
+  MadeUpNode node("/hostile");
+  rviz::Display* const display = show(node, "/hostile", 64);
+  set(display, {"Plants"}, true);
+  set(display, {"Wind"}, true);
+  ros::NodeHandle handle;
+  ros::Publisher plants = handle.advertise<desert_sim::Plants>("/hostile/plants", 10);
+  ros::Publisher winds = handle.advertise<desert_sim::WindField>("/hostile/wind", 10);
+  ASSERT_TRUE(
+      window_->run_until([&] { return plants.getNumSubscribers() > 0 && winds.getNumSubscribers() > 0; }));
+  for (const float value : {unknown, infinite, huge, -huge}) {
+    node.keyframe(64, 64, [=](int x, int y) { return x == 30 && y == 20 ? value : dunes(x, y); });
+    node.keyframe(64, 64, dunes, static_cast<double>(value));
+    node.update(3, 3, 20, 20, [=](int, int) { return value; });
+    desert_sim::Plants some;
+    some.species.resize(1);
+    some.species[0].stem = 1;
+    for (const float x : {5.0f, value, 8.0f, 9.0f, 10.0f}) {
+      some.x.push_back(x);
+      some.y.push_back(x == 8 ? value : 5);
+      some.z.push_back(x == 9 ? value : 0);
+      some.radius.push_back(x == 10 ? value : 1);
+      some.species_index.push_back(0);
+      some.health.push_back(255);
+    }
+    plants.publish(some);
+    some.origin.position.x = static_cast<double>(value);
+    plants.publish(some);
+    desert_sim::WindField wind;
+    wind.width = wind.height = 4;
+    wind.cell_size = 16;
+    wind.u.assign(16, value);
+    wind.v.assign(16, 2);
+    wind.above.x = static_cast<double>(value);
+    winds.publish(wind);
+    wind.u.assign(16, 5);
+    wind.cell_size = static_cast<double>(value);
+    winds.publish(wind);
+    window_->run_frames(10);
+  }
+  node.keyframe(90, 80, dunes);
+  EXPECT_TRUE(window_->run_until([&] {
+    return status(display, "Terrain").text.find("90 x 80") != std::string::npos;
+  })) << status(display, "Terrain").text;
+  EXPECT_TRUE(drawn(window_->manager().getSceneManager()->getRootSceneNode()).isFinite());
 }
 
 TEST_F(TerrainDisplay, TwoDisplaysShowTwoNodes) {
