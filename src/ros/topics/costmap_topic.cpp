@@ -150,7 +150,7 @@ class CostmapUpdatesTopic : public MessageTopic<map_msgs::OccupancyGridUpdate> {
   }
 
   double rate() const override { return parameters().maps.parameters.costmap_update_rate; }
-  bool shows_all() const override { return false; }
+  bool is_refreshed() const override { return false; }
   /// Rectangles in turn are never nearer in time than their spacing.
   double pace() const override {
     const MapParameters& p = parameters().maps.parameters;

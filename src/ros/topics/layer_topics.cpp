@@ -166,7 +166,7 @@ class UpdatesTopic : public MessageTopic<typename Messages::Update> {
   }
 
   double rate() const override { return Messages::update_rate(this->parameters()); }
-  bool shows_all() const override { return false; }
+  bool is_refreshed() const override { return false; }
   void add_to(StateQuery& query) override {
     const MapLayer& layer = keyframes_.layer();
     HeldQuery& held = query.held[layer.layer];

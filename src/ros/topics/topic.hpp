@@ -90,7 +90,7 @@ class Topic {
   virtual bool repeats_for_updated_nodes() const { return true; }
   /// Whether a message shows all there is, and not only what has changed: then it is published at
   /// `refresh_rate`, too, whether the state has changed or not.
-  virtual bool shows_all() const { return true; }
+  virtual bool is_refreshed() const { return true; }
   /// Gives back what the simulation keeps for subscribers. Called, perhaps often, while there are none.
   virtual void release() {}
   /// Publishes the state. False if there was no message to send.
@@ -168,7 +168,7 @@ class Topic {
   }
   bool due_by_refresh() const {
     const double rate = parameters().topics.refresh_rate;
-    return rate > 0 && shows_all() && now() >= shown_ + period_of(rate);
+    return rate > 0 && is_refreshed() && now() >= shown_ + period_of(rate);
   }
   SteadyClock::duration period() const { return period_of(pace()); }
   SteadyClock::time_point early_time() const {
