@@ -15,7 +15,7 @@ import yaml
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
 RULES = os.path.join(HERE, "rosdep_rules.yaml")
-# What rosdep has no rule for: CMake names the package where it is missing, and README says what to install.
+# What rosdep has no rule for: CMake names the package where it is missing, and CONTRIBUTING.md says what to install.
 WITHOUT_RULE = {"librandom123-dev"}
 # A package of ROS there, of Debian here: the same library.
 OF_ROS = {"libompl-dev": "ompl"}
