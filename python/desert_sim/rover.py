@@ -102,6 +102,13 @@ class Rover:
             return self._changed.wait_for(
                 lambda: topic in self._last and self._last[topic].header.stamp >= stamp, timeout)
 
+    def wait_for_status(self, fits, timeout):
+        """Waits until the last RoverStatus is one for which fits(status) is true, at most `timeout` seconds of wall time; whether
+        it is. In lockstep one comes for each state of the terrain (terrain_stamp) and each message on cmd_vel (commands)."""
+        topic = self.node + "/status"
+        with self._changed:
+            return self._changed.wait_for(lambda: topic in self._last and fits(self._last[topic]), timeout)
+
     def close(self):
         for subscriber in self._subscribers:
             subscriber.unregister()

@@ -130,6 +130,7 @@ desert_sim::Step::Response Desert::step(std::uint32_t steps) {
 
 /// Makes 0 or 1 steps, and waits until terrain and rover are there.
 desert_sim::Step::Response Desert::show(std::uint32_t steps) {
+  if (rover_) commands_seen_ = rover_->status().commands;
   desert_sim::Step::Request request;
   request.steps = steps;
   const auto answer = call<desert_sim::Step>("step", request);
@@ -137,7 +138,10 @@ desert_sim::Step::Response Desert::show(std::uint32_t steps) {
   if (!terrain_->wait_for_step(answer.step, start_time * patience()))
     throw Error("the elevation of " + step + " does not come");
   if (!rover_) return answer;
-  if (!rover_->wait_for_stamp(terrain_->map()->info().stamp, start_time * patience()))
+  const ros::Time stamp = terrain_->map()->info().stamp;
+  const auto of_this_state = [stamp](const RoverStatus& s) { return s.terrain_stamp >= stamp; };
+  if (!rover_->wait_for_stamp(stamp, start_time * patience()) ||
+      !rover_->wait_for_status(of_this_state, start_time * patience()))
     throw Error("the rover does not come to " + step);
   const Pose now = rover_->pose();
   way_.push_back({now.x, now.y});

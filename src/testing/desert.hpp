@@ -124,6 +124,7 @@ class Desert {
   std::vector<std::unique_ptr<Process>> processes_;
   std::unique_ptr<TerrainClient> terrain_;
   std::unique_ptr<Rover> rover_;
+  std::uint64_t commands_seen_ = 0;  ///< of the rover, before the last step
   std::vector<Point> way_;
   std::map<std::string, std::unique_ptr<Inbox<nav_msgs::Path>>> paths_;
 };

@@ -63,13 +63,11 @@ Expectation Desert::expect(const std::function<bool()>& happens, int within, con
 }
 
 Expectation Desert::expect_rover_arrives(const Point& goal, int within, double tolerance) {
-  const Inbox<geometry_msgs::Twist>& commands = rover().commands();
-  std::size_t seen = 0;
+  const auto is_commanded = [this](const RoverStatus& s) { return s.commands > commands_seen_; };
   for (int steps = 0; steps <= within; ++steps) {
-    if (rover_->distance_to(goal) <= tolerance) return {true, "", steps};
+    if (rover().distance_to(goal) <= tolerance) return {true, "", steps};
     if (steps == within) break;
-    commands.wait_for_more_than(seen, options_.reaction * patience());
-    seen = commands.count();
+    rover_->wait_for_status(is_commanded, options_.reaction * patience());
     step();
   }
   const Pose now = rover_->pose();
@@ -78,7 +76,7 @@ Expectation Desert::expect_rover_arrives(const Point& goal, int within, double t
   text << "after " << within << " steps the rover is at " << Point{now.x, now.y} << ", "
        << rover_->distance_to(goal) << " m from " << goal << " (expected: at most " << tolerance
        << " m); it is " << status.state << (status.reason.empty() ? "" : ": " + status.reason) << ", and got "
-       << commands.count() << " commands";
+       << status.commands << " commands";
   return fail(text.str(), goal);
 }
 

@@ -22,18 +22,19 @@ Rover::Rover(ros::NodeHandle& node, const std::string& name)
     : name_(name),
       node_(name + "/desert_rover"),
       publisher_(node.advertise<geometry_msgs::Twist>(name + "/cmd_vel", 1)),
-      commands_(node, name + "/cmd_vel"),
       ground_truth_(node, name + "/ground_truth"),
       status_(node, node_ + "/status") {}
 
 void Rover::drive(double forward, double yaw_rate) {
-  // commands_ is the other one that listens.
-  if (!wait_until([this] { return publisher_.getNumSubscribers() > 1; }, 60))
+  if (!wait_until([this] { return publisher_.getNumSubscribers() > 0; }, 60))
     throw Error("nobody listens to " + name_ + "/cmd_vel: does the rover run?");
+  const std::uint64_t before = status().commands;
   geometry_msgs::Twist command;
   command.linear.x = forward;
   command.angular.z = yaw_rate;
   publisher_.publish(command);
+  if (!wait_for_status([before](const RoverStatus& s) { return s.commands > before; }, 60 * patience()))
+    throw Error(node_ + " has not received the command within a minute");
 }
 
 Pose Rover::pose() const {
@@ -53,6 +54,10 @@ RoverStatus Rover::status() const { return *newest(status_, node_ + "/status"); 
 bool Rover::wait_for_stamp(const ros::Time& stamp, double seconds) const {
   return ground_truth_.wait_for([&](const nav_msgs::Odometry& o) { return o.header.stamp >= stamp; },
                                 seconds);
+}
+
+bool Rover::wait_for_status(const std::function<bool(const RoverStatus&)>& fits, double seconds) const {
+  return status_.wait_for(fits, seconds);
 }
 
 }  // namespace desert_sim::test

@@ -5,6 +5,7 @@
 #include <geometry_msgs/Twist.h>
 #include <nav_msgs/Odometry.h>
 
+#include <functional>
 #include <string>
 
 #include "src/testing/inbox.hpp"
@@ -17,8 +18,9 @@ class Rover {
   /// `name`: namespace of the rover's topics.
   Rover(ros::NodeHandle& node, const std::string& name);
 
-  /// Publishes one command on cmd_vel: ahead [m/s], and counter-clockwise [rad/s]. It holds for half a second
-  /// of the rover's time. Throws Error if the rover does not listen within a minute.
+  /// Publishes one command on cmd_vel, and returns when the rover has it: ahead [m/s], and counter-clockwise
+  /// [rad/s]. It holds for half a second of the rover's time. Throws Error if the rover has none within a
+  /// minute.
   void drive(double forward, double yaw_rate = 0);
   /// The last true pose. Throws Error if there is none within a minute.
   Pose pose() const;
@@ -30,15 +32,16 @@ class Rover {
   /// the terrain's states.
   bool wait_for_stamp(const ros::Time& stamp, double seconds) const;
 
+  /// Waits until the last status fits; whether it does. In lockstep one comes for each state of the terrain
+  /// (terrain_stamp) and each message on cmd_vel (commands).
+  bool wait_for_status(const std::function<bool(const RoverStatus&)>& fits, double seconds) const;
+
   /// Name of its node.
   const std::string& node() const { return node_; }
-  /// The commands that it was given, by whom ever.
-  const Inbox<geometry_msgs::Twist>& commands() const { return commands_; }
 
  private:
   std::string name_, node_;
   ros::Publisher publisher_;
-  Inbox<geometry_msgs::Twist> commands_;
   Inbox<nav_msgs::Odometry> ground_truth_;
   Inbox<RoverStatus> status_;
 };

@@ -9,7 +9,6 @@ import threading
 
 import rospkg
 import yaml
-from geometry_msgs.msg import Twist
 from nav_msgs.msg import Path
 
 from ..picture import Picture
@@ -89,7 +88,6 @@ class Desert:
         assert self.terrain.wait_for_terrain(self._timeout), "%s sends no elevation" % self._node
         if self._start is not None:
             self.rover = Rover(self._name, timeout=self._timeout)
-            self._commands = Inbox(self.rover.name + "/cmd_vel", Twist)
             self._nodes.append(Node(self.rover.node, self._parameters_of_rover(), "desert_rover_node"))
             self._wait_for_node(self._nodes[-1], self.rover.pose)
             self._way.append(self.rover.pose())
@@ -98,8 +96,6 @@ class Desert:
         for end in (self.terrain, self.rover, *[inbox.subscriber for inbox in self._inboxes.values()]):
             if end is not None:
                 end.unregister() if hasattr(end, "unregister") else end.close()
-        if self.rover is not None:
-            self._commands.subscriber.unregister()
         for node in reversed(self._nodes):
             node.close()
         shutil.rmtree(self._folder, ignore_errors=True)
@@ -147,12 +143,12 @@ class Desert:
         """Makes so many steps one by one, and the rover drives with them; the last answer of ~step. Its pose and the terrain
         are those of the last step then.
 
-        wait_for_command   whether to wait before each step until somebody commands the rover (at most `reaction`), so that
-                           a planner that answers each pose with a command is in lockstep, too
+        wait_for_command   whether to wait before each step until the rover has a command since the last one (at most
+                           `reaction`), so that a planner that answers each pose with a command is in lockstep, too
         """
         for _ in range(steps):
             if wait_for_command:
-                self._commands.wait_for_more_than(self._commands_seen, self._reaction)
+                self.rover.wait_for_status(lambda status: status.commands > self._commands_seen, self._reaction)
             answer = self._show(1)
         return answer if steps else self._show(0)
 
@@ -161,13 +157,14 @@ class Desert:
     def _show(self, steps):
         """Makes 0 or 1 steps, and waits until terrain and rover are there."""
         if self.rover:
-            with self._commands.changed:
-                self._commands_seen = len(self._commands.messages)
+            self._commands_seen = self.rover.status().commands
         answer = self.simulation.step(steps)
         assert self.terrain.wait_for_step(answer.step, self._timeout), "the elevation of step %d does not come" % answer.step
         if self.rover:
             stamp = self.terrain.map.stamp
-            assert self.rover.wait_for_stamp(stamp, self._timeout), "the rover does not come to step %d" % answer.step
+            came = (self.rover.wait_for_stamp(stamp, self._timeout)
+                    and self.rover.wait_for_status(lambda status: status.terrain_stamp >= stamp, self._timeout))
+            assert came, "the rover does not come to step %d" % answer.step
             self._way.append(self.rover.pose())
         return answer
 
@@ -213,7 +210,7 @@ class Desert:
         return self._fail("rover_arrives", "after %d steps the rover is at (%.2f, %.2f), %.2f m from (%s, %s) (expected: at "
                           "most %g m); it is %s%s, and got %d commands" % (
                               within, now.x, now.y, self.rover.distance_to(*goal), *goal, tolerance, status.state,
-                              ": " + status.reason if status.reason else "", len(self._commands.messages)), goal)
+                              ": " + status.reason if status.reason else "", status.commands), goal)
 
     @contextlib.contextmanager
     def expect_replanned(self, topic, within, by=1.0):

@@ -33,11 +33,13 @@ void RoverPublisher::publish_pose(const Rover& rover, const ros::Time& stamp,
 void RoverPublisher::publish_status(const RoverStatus& status) {
   const auto now = std::chrono::steady_clock::now();
   const std::chrono::duration<double> age = now - last_status_;
-  const bool new_step = is_lockstep(setup_) && status.terrain_stamp != last_terrain_stamp_;
-  if (!new_step && status.state == last_state_ && status.refusal == last_refusal_ &&
+  const bool news_in_lockstep = is_lockstep(setup_) && (status.terrain_stamp != last_terrain_stamp_ ||
+                                                        status.commands != last_commands_);
+  if (!news_in_lockstep && status.state == last_state_ && status.refusal == last_refusal_ &&
       age.count() < 1 / setup_.node.status_rate)
     return;
   last_terrain_stamp_ = status.terrain_stamp;
+  last_commands_ = status.commands;
   last_state_ = status.state;
   last_refusal_ = status.refusal;
   last_status_ = now;

@@ -20,7 +20,7 @@ class RoverPublisher {
   /// `terrain_frame` is empty before there is a terrain.
   void publish_pose(const Rover& rover, const ros::Time& stamp, const std::string& terrain_frame);
   /// If the state has changed since the last one, or that was a while ago; in lockstep for each state of the
-  /// terrain. The message lacks what RoverPublisher does not know: `status` has it.
+  /// terrain and each command. The message lacks what RoverPublisher does not know: `status` has it.
   void publish_status(const RoverStatus& status);
 
  private:
@@ -28,6 +28,7 @@ class RoverPublisher {
   ros::Publisher odom_, ground_truth_, joint_states_, imu_, status_;
   tf2_ros::TransformBroadcaster broadcaster_;
   ros::Time last_stamp_, last_terrain_stamp_;
+  std::uint64_t last_commands_ = 0;
   std::string last_state_, last_refusal_;
   std::chrono::steady_clock::time_point last_status_;
 };

@@ -256,6 +256,8 @@ void RoverServer::receive_command(const geometry_msgs::Twist& m) {
     ROS_WARN_THROTTLE(5, "cmd_vel: a message was refused: %s", e.what());
     refusal_ = "cmd_vel: " + std::string(e.what());
   }
+  ++commands_received_;
+  publisher_.publish_status(status());
 }
 
 // ---- what is told
@@ -264,6 +266,7 @@ RoverStatus RoverServer::status() const {
   RoverStatus m = status_message(rover_);
   m.header.stamp = ros::Time::now();
   m.refusal = refusal_;
+  m.commands = commands_received_;
   m.terrain_connected = terrain_.connected();
   if (tracks_) m.tracks = tracks_->taken();
   if (ground_) {

@@ -88,6 +88,7 @@ class RoverServer {
   std::shared_ptr<const MapGround> ground_;  ///< the last one that the rover had
   bool waits_for_loaded_step_ = false;       ///< a state was loaded, and the terrain is not yet at its step
   std::string refusal_, failure_, start_problem_;
+  std::uint64_t commands_received_ = 0;
   // By threads of their own, which are ended first:
   std::unique_ptr<SensorPublisher> sensors_;  ///< null without sensors; terrain_ calls it
   RoverTerrain terrain_;

@@ -64,6 +64,30 @@ TEST(RoverLockstep, TheSameCallsGiveTheSamePath) {
       << status.last().way_made << " m, " << status.last().state << " " << status.last().reason;
 }
 
+TEST(RoverLockstep, ACommandIsToldAtOnce) {
+  begin_anew();
+  node_test::Listener<desert_sim::RoverStatus> status(rover + "/status");
+  ASSERT_TRUE(status.wait_for([](const desert_sim::RoverStatus&) { return true; }));
+  const std::uint64_t before = status.last().commands;
+  ros::NodeHandle node;
+  ros::Publisher publisher = node.advertise<geometry_msgs::Twist>("/cmd_vel", 1);
+  ASSERT_TRUE(node_test::wait_until([&] { return publisher.getNumSubscribers() > 0; }));
+  geometry_msgs::Twist command;
+  const auto told = [&](std::uint64_t number) {
+    publisher.publish(command);
+    return status.wait_for(
+        [&](const desert_sim::RoverStatus& s) { return s.commands == before + number; });
+  };
+  command.linear.x = 0.125;
+  EXPECT_TRUE(told(1));
+  EXPECT_EQ(status.last().command.linear.x, 0.125);
+  EXPECT_TRUE(told(2)) << "the same again";
+  command.linear.x = NAN;
+  EXPECT_TRUE(told(3)) << "refused";
+  EXPECT_EQ(status.last().command.linear.x, 0.125);
+  EXPECT_NE(status.last().refusal, "");
+}
+
 TEST(RoverLockstep, ACheckpointOfBothGoesOnTheSameWay) {
   begin_anew();
   std::vector<std::string> whole = path(0, 6);
