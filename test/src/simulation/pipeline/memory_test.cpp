@@ -7,7 +7,6 @@
 
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/forecast/forecast.hpp"
-#include "src/tools/bench_scenes.hpp"
 #include "test/support/refusal.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test/support/world.hpp"
@@ -18,10 +17,18 @@ namespace {
 /// Every process that moves sand.
 const Settings all_aeolian = {"wind_shadow.enabled=true", "echo_dunes.enabled=true", "saltation.enabled=true",
                               "avalanching.enabled=true", "abrasion.rate=0.001"};
-/// Scene A with cells of a metre: in larger ones the wind's transforms would be as fine as the grid.
+/// Scene A of desert_bench.
+Scenario scene_a(int size, const Settings& settings = {}) {
+  const std::string cells = std::to_string(size);
+  return parse_scenario_text("grid: {width: " + cells + ", height: " + cells +
+                                 ", cell_size: " + std::to_string(1024.0 / size) +
+                                 "}\nterrain: [noise: {layer: sand, low: 0.5, high: 2}]\nwind: {speed: 5}\n",
+                             "A", settings);
+}
+/// With cells of a metre: in larger ones the wind's transforms would be as fine as the grid.
 Scenario scene(int size, Settings settings) {
   settings.push_back("grid.cell_size=1");
-  return bench_scenario("A", size, settings);
+  return scene_a(size, settings);
 }
 double bytes_a_cell(const std::vector<MemoryPart>& parts, int size) {
   return static_cast<double>(total_bytes(parts)) / (static_cast<double>(size) * size);
@@ -117,13 +124,13 @@ TEST_P(Memory, OfAllAeolianProcessesIsAtMostSixtyBytesACell) {
 }
 
 TEST(MemoryPlan, OfTheLargestBenchmarkIsAtMostSixtyBytesACell) {
-  const auto plan = planned_memory(bench_scenario("A", 16384, all_aeolian));
+  const auto plan = planned_memory(scene_a(16384, all_aeolian));
   EXPECT_LE(bytes_a_cell(plan, 16384), 60);
   EXPECT_EQ(part(plan, "sand"), std::size_t{4} * 16384 * 16384);
 }
 
 TEST(MemoryRefusal, TellsWhatIsNeededAndWhatThereIs) {
-  const Scenario scenario = bench_scenario("A", 1024, {});
+  const Scenario scenario = scene_a(1024);
   const std::size_t needed = total_bytes(planned_memory(scenario));
   for (const char* backend : {"cpu", "cuda"}) {
     TightExec exec(backend, needed - 1);
@@ -137,7 +144,7 @@ TEST(MemoryRefusal, TellsWhatIsNeededAndWhatThereIs) {
 
 TEST(MemoryRefusal, CountsTheHostsMemoryWhileTheTerrainIsMade) {
   TightExec exec("cuda", std::size_t{1} << 62);
-  const Scenario scenario = bench_scenario("A", 1024, {});
+  const Scenario scenario = scene_a(1024);
   EXPECT_NO_THROW(require_memory(exec, scenario, bytes_to_build(scenario)));
   try {
     require_memory(exec, scenario, 1e9);
@@ -165,7 +172,7 @@ TEST(MemoryRefusal, OfGridsThatIndicesDoNotReach) {
 TEST(MemoryRefusal, OfACheckpointThatDoesNotFit) {
   const test::TemporaryFolder folder;
   CpuExec enough(1);
-  save_checkpoint(folder.path("small"), Simulation(enough, bench_scenario("A", 32, {}), no_raster_loader));
+  save_checkpoint(folder.path("small"), Simulation(enough, scene_a(32), no_raster_loader));
   TightExec tight("cuda", 1000);
   EXPECT_THROW(load_checkpoint(folder.path("small"), tight), ConfigError);
 }
@@ -184,7 +191,7 @@ TEST_P(Memory, OfAForecastIsASecondTerrainItsCheckpointAndItsMaps) {
 }
 
 TEST(MemoryRefusal, OfAForecastTellsWhatIsNeededAndWhatThereIs) {
-  const Scenario scenario = bench_scenario("A", 64, {});
+  const Scenario scenario = scene_a(64, {});
   TightExec exec("cuda", 999);
   const std::string device = test::refusal([&] { require_bytes(exec, scenario, 1000, 1, "for a forecast"); });
   for (const char* text :
