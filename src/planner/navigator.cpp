@@ -67,13 +67,17 @@ void Navigator::set_forecast(const ForecastCosts& forecast) {
   for (std::size_t n = 0; n < forecast.times.size(); ++n) {
     if (forecast.traversability[n].size() != cells)
       throw ConfigError("costs of the forecast have another size than its grid");
-    if (n > 0 && !(forecast.times[n] > forecast.times[n - 1]))
-      throw ConfigError("the times of the forecast do not rise");
+    // Counted from its beginning: from one that is far off, numbers that rise may not.
+    const double time = forecast.made + forecast.times[n];
+    if (!std::isfinite(time) || (n > 0 && !(time > grids.back().first)))
+      throw ConfigError("the times of the forecast do not rise: moment " + std::to_string(n) + " is at " +
+                        number_text(time) + " s" +
+                        (n > 0 ? ", the one before at " + number_text(grids.back().first) + " s" : ""));
     auto grid = std::make_shared<CostGrid>(f, parameters_.costs());
     std::vector<CellIndex> changed;
     grid->update({0, 0, f.width, f.height}, forecast.traversability[n].data(), changed);
     for (const GridPoint& p : avoided_) grid->mark(p, parameters_.avoid_radius, true, changed);
-    grids.emplace_back(forecast.made + forecast.times[n], std::move(grid));
+    grids.emplace_back(time, std::move(grid));
   }
   forecast_ = std::move(grids);
   forecast_made_ = forecast.made;

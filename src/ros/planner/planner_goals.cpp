@@ -1,9 +1,9 @@
 /// What a PlannerServer is told: goals, the rover's state, forecasts.
 #include <ros/console.h>
-#include <tf2_geometry_msgs/tf2_geometry_msgs.h>
+
+#include <cmath>
 
 #include "src/core/error.hpp"
-#include "src/ros/conversion/terrain_transforms.hpp"
 #include "src/ros/planner/planner_server.hpp"
 
 namespace desert_sim {
@@ -17,6 +17,10 @@ constexpr std::size_t most_waiting = 1000;
 void PlannerServer::receive_rover_status(const RoverStatusConstPtr& status) {
   if (!lockstep_) {
     rover_ = status;
+    return;
+  }
+  if (!std::isfinite(status->terrain_time)) {
+    ROS_WARN_THROTTLE(5, "A status of the rover is ignored: its terrain_time is %g", status->terrain_time);
     return;
   }
   // Of the states of one step the last one counts. After a reset the steps begin again.
@@ -35,26 +39,9 @@ void PlannerServer::receive_truth(const nav_msgs::OdometryConstPtr& truth) {
 }
 
 void PlannerServer::set_goal(const geometry_msgs::PoseStamped& goal) {
-  geometry_msgs::PoseStamped in_terrain = goal;
-  const std::string terrain = terrain_.frame();
-  const double yaw_given = yaw_of(goal.pose.orientation, "the goal's orientation");
-  PlanarPose pose{goal.pose.position.x, goal.pose.position.y, yaw_given};
-  const std::string given = frame_name(goal.header.frame_id);
-  if (!terrain.empty() && !given.empty() && given != terrain) {
-    try {
-      // The latest transform: a goal is a place, whenever it was said.
-      const auto t = transforms_.lookupTransform(terrain, given, ros::Time(0));
-      tf2::doTransform(goal, in_terrain, t);
-    } catch (const tf2::TransformException& e) {
-      throw ConfigError("the goal's frame '" + goal.header.frame_id + "' has no transform to '" + terrain +
-                        "': " + e.what());
-    }
-    pose = {in_terrain.pose.position.x, in_terrain.pose.position.y,
-            yaw_of(in_terrain.pose.orientation, "the goal's orientation")};
-  }
+  const geometry_msgs::PoseStamped in_terrain = goal_in_terrain(goal, terrain_.frame(), transforms_);
   take_terrain({});
-  navigator_.set_goal(pose, time_now());
-  in_terrain.header.frame_id = terrain;
+  navigator_.set_goal(planar_pose(in_terrain.pose, "the goal"), time_now());
   goal_ = in_terrain;
   refusal_.clear();
   asked_for_forecast_.reset();
@@ -112,10 +99,10 @@ void PlannerServer::take_forecast(const Forecast& forecast) {
   try {
     const double begin =
         lockstep_ ? forecast.sim_time * setup_.node.seconds_per_sim_second : forecast.header.stamp.toSec();
-    ForecastCosts costs = forecast_costs(forecast, begin, setup_.node.forecast_probability);
-    if (lockstep_ && forecast.seconds_per_sim_second > 0)
-      for (double& time : costs.times)
-        time *= setup_.node.seconds_per_sim_second / forecast.seconds_per_sim_second;
+    const double pace = lockstep_ && forecast.seconds_per_sim_second > 0
+                            ? setup_.node.seconds_per_sim_second / forecast.seconds_per_sim_second
+                            : 1;
+    const ForecastCosts costs = forecast_costs(forecast, begin, pace, setup_.node.forecast_probability);
     take_terrain({});
     navigator_.set_forecast(costs);
   } catch (const ConfigError& e) {

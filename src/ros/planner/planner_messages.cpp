@@ -2,6 +2,7 @@
 
 #include <tf2/LinearMath/Matrix3x3.h>
 #include <tf2/LinearMath/Quaternion.h>
+#include <tf2_geometry_msgs/tf2_geometry_msgs.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,8 @@
 
 #include "src/client/ros_time.hpp"
 #include "src/core/error.hpp"
+#include "src/core/number_text.hpp"
+#include "src/ros/conversion/terrain_transforms.hpp"
 
 namespace desert_sim {
 
@@ -36,15 +39,48 @@ float traversability_of(std::int8_t cost) {
   return cost == 100 ? 0.0F : std::max(1.0F - static_cast<float>(cost) / 99.0F, 0.001F);
 }
 
-}  // namespace
-
-geometry_msgs::Quaternion yaw_quaternion(double yaw) { return quaternion(0, yaw); }
-
+/// Throws ConfigError, naming `what`, for a quaternion whose length is not 1.
 double yaw_of(const geometry_msgs::Quaternion& q, const std::string& what) {
   const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   if (!(std::abs(norm - 1) < 0.01))
     throw ConfigError(what + ": the length of the quaternion is " + std::to_string(norm) + " (allowed: 1)");
   return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
+}
+
+}  // namespace
+
+geometry_msgs::Quaternion yaw_quaternion(double yaw) { return quaternion(0, yaw); }
+
+PlanarPose planar_pose(const geometry_msgs::Pose& pose, const std::string& what) {
+  const geometry_msgs::Point& p = pose.position;
+  if (!std::isfinite(p.x) || !std::isfinite(p.y))
+    throw ConfigError(what + ": the place " + point_text(p.x, p.y) + " is not of finite numbers");
+  return {p.x, p.y, yaw_of(pose.orientation, what)};
+}
+
+geometry_msgs::PoseStamped goal_in_terrain(const geometry_msgs::PoseStamped& goal, const std::string& terrain,
+                                           const tf2::BufferCore& transforms) {
+  planar_pose(goal.pose, "the goal");
+  geometry_msgs::PoseStamped in_terrain = goal;
+  const std::string given = frame_name(goal.header.frame_id);
+  if (!terrain.empty() && !given.empty() && given != terrain) {
+    try {
+      tf2::doTransform(goal, in_terrain, transforms.lookupTransform(terrain, given, ros::Time(0)));
+    } catch (const tf2::TransformException& e) {
+      throw ConfigError("the goal's frame '" + goal.header.frame_id + "' has no transform to '" + terrain +
+                        "': " + e.what());
+    }
+    planar_pose(in_terrain.pose, "the goal in the frame '" + terrain + "'");
+  }
+  in_terrain.header.frame_id = terrain;
+  return in_terrain;
+}
+
+RoverCondition condition_named(const std::string& name) {
+  const auto found = std::find(std::begin(rover_conditions), std::end(rover_conditions), name);
+  return found == std::end(rover_conditions)
+             ? RoverCondition::no_terrain
+             : static_cast<RoverCondition>(found - std::begin(rover_conditions));
 }
 
 GridFrame grid_frame_of(const MapInfo& info) {
@@ -95,7 +131,7 @@ PlannerStatus planner_status_message(const NavigatorStatus& s) {
   return m;
 }
 
-ForecastCosts forecast_costs(const Forecast& forecast, double begin, double probability) {
+ForecastCosts forecast_costs(const Forecast& forecast, double begin, double pace, double probability) {
   const std::size_t moments = forecast.times.size();
   if (moments == 0 || forecast.costs.size() != moments)
     throw ConfigError("forecast: " + std::to_string(forecast.costs.size()) + " maps of costs for " +
@@ -106,7 +142,7 @@ ForecastCosts forecast_costs(const Forecast& forecast, double begin, double prob
                       " maps of probability for " + std::to_string(moments) + " moments");
   ForecastCosts costs;
   costs.made = begin;
-  costs.times = forecast.times;
+  for (const double time : forecast.times) costs.times.push_back(time * pace);
   costs.frame = grid_frame_of(forecast.costs.front().info);
   for (std::size_t n = 0; n < moments; ++n) {
     const nav_msgs::OccupancyGrid& map = forecast.costs[n];
@@ -114,8 +150,6 @@ ForecastCosts forecast_costs(const Forecast& forecast, double begin, double prob
         map.data.size() != static_cast<std::size_t>(map.info.width) * map.info.height)
       throw ConfigError("forecast: the map of costs of moment " + std::to_string(n) +
                         " has another size or place");
-    if (!std::isfinite(forecast.times[n]) || (n > 0 && !(forecast.times[n] > forecast.times[n - 1])))
-      throw ConfigError("forecast: the times do not rise");
     std::vector<float> values(map.data.size());
     std::transform(map.data.begin(), map.data.end(), values.begin(), traversability_of);
     if (ensemble) {

@@ -9,6 +9,7 @@
 #include <tf2_geometry_msgs/tf2_geometry_msgs.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "src/client/ros_time.hpp"
 #include "src/client/service_call.hpp"
@@ -19,13 +20,6 @@ namespace desert_sim {
 namespace {
 
 constexpr std::size_t most_waiting = 1000;  // messages in lockstep
-
-RoverCondition condition_of(const RoverStatusConstPtr& status) {
-  if (!status) return RoverCondition::driving;
-  const auto found = std::find(std::begin(rover_conditions), std::end(rover_conditions), status->state);
-  return static_cast<RoverCondition>(std::min(found - std::begin(rover_conditions),
-                                              std::end(rover_conditions) - std::begin(rover_conditions) - 1));
-}
 
 geometry_msgs::Twist twist_of(const DriveCommand& command) {
   geometry_msgs::Twist twist;
@@ -140,10 +134,9 @@ void PlannerServer::act_in_lockstep() {
       lockstep_time_ = status->terrain_time * setup_.node.seconds_per_sim_second;
       truths_.erase(truths_.begin(), std::next(truth));
       statuses_.erase(statuses_.begin());
-      const auto& p = odometry->pose.pose;
       PlanarPose pose;
       try {
-        pose = {p.position.x, p.position.y, yaw_of(p.orientation, "ground_truth")};
+        pose = planar_pose(odometry->pose.pose, "ground_truth");
       } catch (const ConfigError& e) {
         ROS_WARN_THROTTLE(5, "A pose of the rover is ignored: %s", e.what());
         continue;
@@ -181,6 +174,10 @@ bool PlannerServer::pose_by_tf(PlanarPose& pose, std::string& problem) {
     const auto t = transforms_.lookupTransform(terrain, setup_.base_frame(), ros::Time(0));
     pose = {t.transform.translation.x, t.transform.translation.y, tf2::getYaw(t.transform.rotation)};
     const double age = seconds_between(t.header.stamp, ros::Time::now());
+    if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.yaw)) {
+      problem = "the rover's pose is not of finite numbers";
+      return false;
+    }
     if (age <= setup_.node.pose_age) return true;
     problem = "the rover's pose is " + std::to_string(age) +
               " s old (pose_age: " + std::to_string(setup_.node.pose_age) + ")";
@@ -195,7 +192,8 @@ void PlannerServer::act(double time, const PlanarPose& pose, std::optional<std::
   if (navigator_.active()) ask_for_forecast(time);
   const int plans = navigator_.status().plans;
   const auto begin = std::chrono::steady_clock::now();
-  const DriveCommand command = navigator_.act(time, pose, condition_of(rover_), rover_ ? rover_->reason : "");
+  const RoverCondition condition = rover_ ? condition_named(rover_->state) : RoverCondition::driving;
+  const DriveCommand command = navigator_.act(time, pose, condition, rover_ ? rover_->reason : "");
   if (navigator_.status().plans != plans)
     plan_time_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   send(command);

@@ -5,6 +5,7 @@
 
 #include "src/core/error.hpp"
 #include "test/src/planner/grids.hpp"
+#include "test/support/refusal.hpp"
 
 namespace desert_sim {
 namespace {
@@ -268,6 +269,24 @@ TEST_F(Navigating, PlansThroughTheForecast) {
   EXPECT_GT(t, 200);
   forecast.frame.width = 5;
   EXPECT_THROW(patient.set_forecast(forecast), ConfigError);
+}
+
+TEST_F(Navigating, RefusesForecastsWhoseTimesDoNotRise) {
+  parameters_.planner = PlannerKind::forecast;
+  Navigator navigator(parameters_);
+  const std::vector<float> ground = test::values_of(frame, free_);
+  navigator.update(frame, {0, 0, frame.width, frame.height}, ground.data());
+  const auto refusal = [&](double made, double second) {
+    return test::refusal([&] { navigator.set_forecast({made, {100, second}, {ground, ground}, frame}); });
+  };
+  EXPECT_NO_THROW(navigator.set_forecast({1e9, {100, 200}, {ground, ground}, frame}));
+  EXPECT_NE(refusal(0, 100).find("moment 1 is at 100 s, the one before at 100 s"), std::string::npos);
+  EXPECT_NE(refusal(0, NAN).find("moment 1 is at nan s"), std::string::npos);
+  EXPECT_NE(refusal(INFINITY, 200).find("moment 0 is at inf s"), std::string::npos);
+  // A double of that size has no hundreds.
+  EXPECT_NE(refusal(1e38, 200).find("moment 1 is at 1e+38 s"), std::string::npos);
+  navigator.set_goal({35, 5, 0}, 0);
+  EXPECT_NO_THROW(navigator.act(1, {5, 5, 0}, RoverCondition::idle, ""));
 }
 
 TEST_F(Navigating, TheSameCallsGiveTheSamePath) {

@@ -75,8 +75,7 @@ TEST(RoverLockstep, ACommandIsToldAtOnce) {
   geometry_msgs::Twist command;
   const auto told = [&](std::uint64_t number) {
     publisher.publish(command);
-    return status.wait_for(
-        [&](const desert_sim::RoverStatus& s) { return s.commands == before + number; });
+    return status.wait_for([&](const desert_sim::RoverStatus& s) { return s.commands == before + number; });
   };
   command.linear.x = 0.125;
   EXPECT_TRUE(told(1));
