@@ -66,6 +66,8 @@ double worst_residual(const SimulationStatus& status) {
 }
 
 std::string duration_text(double seconds) {
+  constexpr double longest = 1e15;  // which is a whole number of seconds
+  if (!(std::abs(seconds) <= longest)) return format("%g s", seconds);
   if (seconds < 60) return format("%.1f s", seconds);
   const auto whole = static_cast<long long>(seconds);
   if (whole < 3600) return format("%lld min %02lld s", whole / 60, whole % 60);

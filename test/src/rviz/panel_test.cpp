@@ -3,6 +3,8 @@
 
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/SetWeather.h>
+#include <dynamic_reconfigure/Config.h>
+#include <std_srvs/Trigger.h>
 
 #include <QTableWidget>
 #include <QTimer>
@@ -228,6 +230,48 @@ TEST_F(Panel, NeverWaitsForANodeThatHangs) {
   window_->click("reset");
   window_.reset();
   node_->release();
+}
+
+/// Whatever a node says, the panel is there to show what it says next.
+TEST_F(Panel, ShowsNumbersThatNoNodeHas) {
+  const std::string name = "/node_of_nonsense";
+  ros::NodeHandle node;
+  const ros::Publisher statuses = node.advertise<SimulationStatus>(name + "/status", 1, true),
+                       parameters =
+                           node.advertise<dynamic_reconfigure::Config>(name + "/parameter_updates", 1, true);
+  const boost::function<bool(std_srvs::TriggerRequest&, std_srvs::TriggerResponse&)> serve =
+      [](std_srvs::TriggerRequest&, std_srvs::TriggerResponse&) { return true; };
+  const ros::ServiceServer pause = node.advertiseService(name + "/pause", serve);
+  window_->type("node", name);
+  for (const double number : {double(NAN), HUGE_VAL, -HUGE_VAL, 1e300, -1e300, 12.5}) {
+    SimulationStatus status;
+    status.scenario = "of " + std::to_string(number);
+    status.state = std::string(100000, 'x');
+    status.sim_time = status.step_rate = status.acceleration = status.lag = status.steps_per_second = number;
+    status.wind_above.x = status.wind_above.y = number;
+    status.step = status.undoable = status.redoable = -1;
+    status.volumes.resize(1);
+    status.volumes[0].residual = number;
+    dynamic_reconfigure::Config config;
+    config.doubles.resize(3);
+    for (const char* const parameter : {"rain__rate", "water__sea_level", "rain__evaporation"}) {
+      auto& entry = config.doubles.emplace_back();
+      entry.name = parameter;
+      entry.value = number;
+    }
+    config.strs.resize(1);
+    config.strs[0].name = "water__sea";
+    config.strs[0].value = "no such sea";
+    parameters.publish(config);
+    statuses.publish(status);
+    EXPECT_TRUE(window_->shows("state", status.scenario)) << window_->text("state").substr(0, 80);
+    window_->show_tab(weather);
+    window_->panel().repaint();
+    window_->show_tab(wind);
+    window_->panel().repaint();
+  }
+  EXPECT_NE(window_->text("progress").find(", 12.5 s simulated"), std::string::npos)
+      << window_->text("progress");
 }
 
 TEST_F(Panel, IsSavedWithRviz) {
