@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Sourced by scripts/test for --fuzz: libFuzzer on what the programs read, with sanitizers, in a build of its own.
 
-FUZZERS=(scenario journal checkpoint raster bag message elevation)
+FUZZERS=(scenario journal rover_journal checkpoint raster bag message elevation rover planner display)
 
 # Where this build has put a program.
 built_program() { # NAME
@@ -22,7 +22,7 @@ fuzz_seeds() { # NAME FOLDER
         "$(built_program desert_run)" "$DESERT_ROOT/config/scenarios/$name.yaml" --set grid.width=12 \
           --set grid.height=10 --backend cpu --steps 3 --quiet --checkpoint "$2/$name.ck" >/dev/null
       done ;;
-    message | elevation | bag) # random bytes: each is some messages
+    message | elevation | bag | rover | planner | display) # random bytes: each is some messages
       for name in {1..20}; do
         LC_ALL=C awk -v seed="$name" 'BEGIN { srand(seed); for (n = 0; n < 100 * seed; ++n) printf "%c", 256 * rand() }' \
           >"$2/random_$name"

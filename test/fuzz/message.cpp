@@ -6,6 +6,7 @@
 
 #include "src/core/log.hpp"
 #include "src/ros/conversion/grid_map_message.hpp"
+#include "src/ros/forecast/forecast_request.hpp"
 #include "src/ros/node/reconfigure_messages.hpp"
 #include "src/ros/services/requests.hpp"
 #include "src/ros/services/services.hpp"
@@ -35,6 +36,7 @@ const Words schedule_words{"timeline", "rose"};
 const Words weather_words{"rain_rate", "rain_share", "evaporation",   "ground_evaporation",
                           "sea",       "sea_level",  "wave_strength", "wave_period",
                           "springs",   "none",       "border",        "everywhere"};
+const Words forecast_words{"timeline", "rose", "constant", "", "wind__speed", "step_rate"};
 const Words layer_words{"", "rover", "elevation", "slope", "traversability", "plants", "wind_x", "roughness"};
 const Words reconfigure_words{"wind__speed", "grid_map_layers", "[1, 2]", "true",
                               "x: [\n# {",   "border",          "sweeps", "fast"};
@@ -67,7 +69,7 @@ class Node {
   }
 
   void take(FuzzedDataProvider& data) {
-    switch (data.ConsumeIntegralInRange(0, 11)) {
+    switch (data.ConsumeIntegralInRange(0, 12)) {
       case 0:
         return apply(
             without_unused_fields(fuzz::next_message<SetWindRequest>(data, frame_words), wind_command));
@@ -96,6 +98,8 @@ class Node {
         return hear(fuzz::next_message<tf2_msgs::TFMessage>(data, frame_words));
       case 10:
         return step();
+      case 11:
+        return forecast(data);
       default:
         return edit_terrain(data);
     }
@@ -197,6 +201,32 @@ class Node {
     require_map_size(window, layers.size(), "region");
     terrain_submap(state, "map", layers, window);
     grid_map(state, "map", layers, window, 3);
+  }
+
+  void forecast(FuzzedDataProvider& data) {
+    auto goal = fuzz::next_message<ForecastTerrainGoal>(data, forecast_words);
+    if (data.ConsumeBool()) {  // a short one
+      goal.horizon = data.ConsumeIntegralInRange(1, 4);
+      goal.moments = data.ConsumeIntegralInRange(1u, 4u);
+      goal.members = data.ConsumeIntegralInRange(0u, 3u);
+      goal.stride = data.ConsumeIntegralInRange(0u, 3u);
+    }
+    if (data.ConsumeBool()) goal.parameters = {};
+    if (goal.wind.empty() || data.ConsumeBool()) {
+      goal.wind.clear();
+      goal.wind_kind.clear();
+      goal.wind_repeat = 0;
+      goal.wind_hold_time = 0;
+      goal.wind_seed = 0;
+    }
+    if (goal.members < 2) goal.gust_speed = goal.gust_direction_deg = goal.gust_time = 0, goal.seed = 0;
+    const LiveParameters present{session_.simulation().present_scenario(), publishers_, 10};
+    const ForecastOptions options = forecast_options(goal, present, 10);
+    const std::uint64_t before = session_.simulation().state_hash();
+    ForecastRun run(checkpoint_bytes(session_.simulation()), options, "cpu", 1);
+    int steps = 0;
+    run.run([&steps](int, double) { return ++steps <= 20; });
+    if (session_.simulation().state_hash() != before) std::abort();
   }
 
   /// What Frames does with /tf.

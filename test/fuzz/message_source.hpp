@@ -4,6 +4,7 @@
 
 #include <fuzzer/FuzzedDataProvider.h>
 
+#include <boost/array.hpp>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -44,6 +45,10 @@ class FilledStream {
     const std::size_t count =
         data_.ConsumeIntegralInRange(0, 60) == 60 ? 600 : data_.ConsumeIntegralInRange<std::size_t>(0, 6);
     values.resize(count);
+    for (T& value : values) next(value);
+  }
+  template <class T, std::size_t N>
+  void next(boost::array<T, N>& values) {
     for (T& value : values) next(value);
   }
 

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/make_shared.hpp>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -15,10 +14,14 @@
 #include "src/rover/grid_ground.hpp"
 #include "src/terrain/map_layers.hpp"
 #include "test/support/refusal.hpp"
+#include "test/support/ros/terrain_maps.hpp"
 #include "test/support/world.hpp"
 
 namespace desert_sim {
 namespace {
+
+using node_test::map_of;
+using node_test::maps_of;
 
 constexpr double capacity = 0.3;
 
@@ -39,30 +42,6 @@ TerrainState dunes(const std::string& boundary) {
   TerrainState state;
   state.snapshot = world->snapshot(GridGround::layers_of_snapshot(true));
   return state;
-}
-
-std::shared_ptr<const LayerMap> map_of(const Snapshot& s, const char* name) {
-  const auto grid = boost::make_shared<LayerGrid>();
-  grid->layer = name;
-  grid->keyframe = 1;
-  grid->width = static_cast<std::uint32_t>(s.width);
-  grid->height = static_cast<std::uint32_t>(s.height);
-  grid->cell_size = s.cell_size;
-  grid->origin.position.x = s.origin_x;
-  grid->origin.position.y = s.origin_y;
-  grid->origin.orientation.w = 1;
-  const std::vector<float>* const values = s.find(find_map_layer(name)->layer);
-  grid->data = values ? *values : std::vector<float>(grid->width * grid->height, 0.0f);
-  LayerMap::Rectangle changed;
-  return std::make_shared<const LayerMap>(MapKeyframe(LayerGrid::ConstPtr(grid)), nullptr, changed);
-}
-
-TerrainMaps maps_of(const TerrainState& state) {
-  TerrainMaps maps;
-  for (std::size_t n = 0; n < TerrainMaps::count; ++n)
-    maps.maps[n] = map_of(*state.snapshot, TerrainMaps::rows[n].name);
-  maps.detail_settings = std::make_shared<const Snapshot>(snapshot_of(*detail_message(state, "map")));
-  return maps;
 }
 
 TEST(MapDetail, TheLayersAreThoseOfTheSurfacesDetail) {
