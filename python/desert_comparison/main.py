@@ -4,7 +4,6 @@ import sys
 
 from . import ComparisonError, RunError
 from .arguments import parse
-from .page import page_of
 from .plan import Planner
 from .workflow import Interrupted, Lock, Workflow, write_whole
 
@@ -44,6 +43,7 @@ def compare(options, beside, _lock):
     if len(backends) > 1:
         raise RunError("some runs were made on the backend %s, others on %s, whose results may differ; "
                        "allowed: one backend (--backend)" % tuple(backends[:2]))
+    from .page import page_of  # matplotlib takes long to load: what is refused is refused at once
     write_whole(options.out, page_of(plan, results))
     tell("wrote %s" % options.out)
     lost = [key for key, r in results.items() if any(r["summary"]["mass_residual"].values())]
