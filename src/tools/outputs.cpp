@@ -12,6 +12,7 @@
 #include "kernels/slabs/slab_parameters.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/simulation/session.hpp"
 #include "src/tools/json_text.hpp"
 #if DESERT_WITH_IO
 #include "src/io/snapshots.hpp"
@@ -176,7 +177,7 @@ std::string summary(Simulation& s, const RunReport& report) {
       << ", \"share_over_1e-2\": " << json_number(r.share_over_1e2)
       << ", \"mean_excess\": " << json_number(r.mean_excess)
       << ", \"largest_excess\": " << json_number(r.largest_excess) << "},\n  \"state_hash\": \"" << hash
-      << "\",\n  \"peak_memory_bytes\": " << usage.ru_maxrss * 1024LL
+      << "\",\n  \"scenario_hash\": " << scenario_hash(s.start()) << ",\n  \"peak_memory_bytes\": " << usage.ru_maxrss * 1024LL
       << ",\n  \"rasters\": " << (DESERT_WITH_IO ? "true" : "false") << "\n}\n";
   return out.str();
 }

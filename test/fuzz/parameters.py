@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Runs scenarios with parameters at the ends of their ranges, and with random ones: nothing ends but with 0 or 2, no
-material is lost, and a run gives the same state on one thread and two, and through a checkpoint.
+material is lost, and a run gives the same state on one thread and two, through a checkpoint, and in a replay that loads it.
 
     test/fuzz/parameters.py DESERT_RUN ends                     each parameter at both ends, in each model
     test/fuzz/parameters.py DESERT_RUN random N [--seed S]      N combinations
@@ -143,6 +143,17 @@ class Fuzzer:
                     return "status %d after a checkpoint: %s" % (resumed.returncode, resumed.stderr.strip()[-300:])
                 if self.summary(out)["state_hash"] != summary["state_hash"]:
                     return "another state with two threads and a checkpoint"
+                # A session of the same scenario that loads the checkpoint at its step 10.
+                journal = os.path.join(folder, "journal")
+                with open(journal, "w", encoding="utf-8") as file:
+                    file.write("{journal: 1, scenario_hash: %d, backend: cpu}\n" % summary["scenario_hash"])
+                    file.write("{tick: 10, command: load_checkpoint, path: %s, hash: 0}\n" % json.dumps(half))
+                replayed = self.run(self.words(model, settings, ["--threads", "2", "--replay", journal, "--steps",
+                                                                 str(10 + self.options.steps - int(middle)), "--out", out]))
+                if replayed.returncode != 0:
+                    return "status %d of a replay: %s" % (replayed.returncode, replayed.stderr.strip()[-300:])
+                if self.summary(out)["state_hash"] != summary["state_hash"]:
+                    return "another state after a replay"
             except subprocess.TimeoutExpired:
                 return "takes more than %g s" % self.options.timeout
         return ""

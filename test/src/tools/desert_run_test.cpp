@@ -33,6 +33,7 @@ TEST_F(Run, WritesASummaryWithAllKeys) {
                           "max_sand_slope_deg",
                           "avalanche_iterations_mean",
                           "state_hash",
+                          "scenario_hash",
                           "peak_memory_bytes",
                           "bedrock",
                           "soil",
