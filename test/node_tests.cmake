@@ -36,7 +36,16 @@ function(desert_node_test launch)
   if(launch MATCHES "_timing\\.test$")
     set_tests_properties(${added} PROPERTIES LABELS timing RUN_SERIAL ON)
   else()
-    set_tests_properties(${added} PROPERTIES LABELS ros COST 10) # the longest begin first (in seconds)
+    # The longest begin first. Tests of nodes wait and tests of dunes compute: in the order of these costs they alternate,
+    # see dune_test_properties.cmake.
+    get_property(number GLOBAL PROPERTY DESERT_NODE_TESTS)
+    if(NOT number)
+      set(number 0)
+    endif()
+    math(EXPR cost "10 + (${number} % 20)")
+    math(EXPR number "${number} + 1")
+    set_property(GLOBAL PROPERTY DESERT_NODE_TESTS ${number})
+    set_tests_properties(${added} PROPERTIES LABELS ros COST ${cost})
   endif()
 endfunction()
 
