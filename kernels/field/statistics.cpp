@@ -51,8 +51,7 @@ struct SandSlope {
   }
 };
 
-/// 1 for a cell whose value breaks the contract of its layer: a height at or beyond those of walls, a
-/// negative depth, or a float that is not finite; else 0.
+/// 1 for a cell whose value breaks the contract of its layer; else 0.
 struct ContractViolation {
   Grid grid;
   const Quanta* quanta;
@@ -60,9 +59,7 @@ struct ContractViolation {
   bool depth;  ///< must not be negative
   DESERT_HD long long operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    if (quanta)
-      return quanta[i] >= wall_height || quanta[i] <= -wall_height || (depth && quanta[i] < 0) ? 1 : 0;
-    return real[i] - real[i] == 0.0f ? 0 : 1;  // neither NaN nor infinite
+    return (quanta ? breaks_contract(quanta[i], depth) : breaks_contract(real[i])) ? 1 : 0;
   }
 };
 

@@ -27,6 +27,11 @@ struct FlowFields {
   Die die_x, die_y;                  ///< of the faces towards the east and the north
 };
 
+/// Of two depths [quanta], whose sum need not fit: each may reach from the lowest bed up to fill_limit.
+DESERT_HD std::uint32_t sum_of_depths(Quanta a, Quanta b) {
+  return static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b);
+}
+
 /// What four faces may move more than the sum of their amounts, each being rounded to a whole quantum.
 constexpr float rounding_of_faces = 3.0f;
 

@@ -38,7 +38,7 @@ struct Accelerate {
     const bool level = drop <= 1 && drop >= -1;
     float pull = level ? 0.0f : gravity * (static_cast<float>(drop) * flow.quantum / flow.grid.cell_size);
     if (waves.strength > 0.0f) {
-      const float both = static_cast<float>(flow.water[i] + flow.water[j]) * flow.quantum;
+      const float both = static_cast<float>(sum_of_depths(flow.water[i], flow.water[j])) * flow.quantum;
       pull += waves.strength * (1.0f - exp_negative(0.005f * both * both)) * 0.5f * (wind[i] + wind[j]);
     }
     const float limited_flux =
@@ -102,7 +102,7 @@ struct MoveWater {
       ledger.book_out(Material::water, i, over);
     }
     // Mean flux of two opposite faces over the mean depth of the sub-step; films have no velocity.
-    const Quanta depth = (before + after) / 2;
+    const auto depth = static_cast<Quanta>(sum_of_depths(before, after) / 2);
     const float per = depth * flow.quantum > film
                           ? 0.5f * flow.grid.cell_size / (static_cast<float>(depth) * flow.time_step)
                           : 0.0f;

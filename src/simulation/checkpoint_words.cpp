@@ -45,17 +45,21 @@ template <class Value>
 }
 
 constexpr double highest_quanta = wall_height - 1;
+/// What lies on the deepest rock may reach up to there.
+constexpr double deepest_quanta = std::numeric_limits<Quanta>::max();
 
 /// The greatest flux that a simulation keeps is one that empties the deepest cell in the shortest sub-step.
 double highest_flux(const CheckpointHeader& header) {
   constexpr double most_substeps = 10000;  // allowed by water.most_substeps
   const double cell = header.scenario.grid.cell_size;
-  return std::max(any_height, wall_height * header.scale().quantum() * cell * cell * most_substeps /
+  return std::max(any_height, deepest_quanta * header.scale().quantum() * cell * cell * most_substeps /
                                   header.scenario.run.time_step);
 }
 
 /// What a simulation may have made of a layer is more than what scenarios and edits may set.
 Range range_of(const LayerInfo& row, const CheckpointHeader& header) {
+  if (row.layer == Layer::soil || row.layer == Layer::sand || row.layer == Layer::water)
+    return {0, deepest_quanta, "quanta"};  // check_heights() says how far up
   if (row.storage == Storage::quanta) return {row.lowest < 0 ? -highest_quanta : 0, highest_quanta, "quanta"};
   if (row.layer == Layer::water_flux_x || row.layer == Layer::water_flux_y)
     return {-highest_flux(header), highest_flux(header), row.unit};

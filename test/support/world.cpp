@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "kernels/field/statistics.hpp"
 #include "src/scenario/wind_series_file.hpp"
 
 namespace desert_sim::test {
@@ -62,8 +63,7 @@ void expect_sound(Simulation& simulation, const std::string& when) {
     const bool depth = row.lifetime == Lifetime::persistent && row.lowest == 0;
     long bad = 0;
     if (row.storage == Storage::quanta) {
-      for (Quanta v : quanta(simulation, row.layer))
-        bad += (depth && v < 0) || v >= wall_height || v <= -wall_height;
+      for (Quanta v : quanta(simulation, row.layer)) bad += statistics::breaks_contract(v, depth);
     } else {
       for (float v : real(simulation, row.layer)) bad += !std::isfinite(v) || (depth && v < 0);
     }

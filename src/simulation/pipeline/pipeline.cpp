@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 
 #include "kernels/avalanching/avalanching.hpp"
 #include "kernels/field/statistics.hpp"
@@ -225,20 +226,24 @@ void Pipeline::check(const Process& process, Layer layer) const {
   if (!state_.terrain.has(layer)) return;
   const LayerInfo& row = info(layer);
   const TerrainView view = state_.terrain.view();
-  const bool quanta = row.storage == Storage::quanta;
+  const bool quanta = row.storage == Storage::quanta, depth = row.lowest == 0;
   const long long broken = with_backend(state_.exec(), [&](auto& e) {
     return statistics::count_violations(e, view.grid, quanta ? view.quanta(layer) : nullptr,
-                                        quanta ? nullptr : view.real(layer), row.lowest == 0);
+                                        quanta ? nullptr : view.real(layer), depth);
   });
   if (broken == 0) return;
-  const std::vector<float> values = state_.terrain.values(layer);
-  std::size_t cell = 0;
-  while (cell + 1 < values.size() && std::isfinite(values[cell]) && !(row.lowest == 0 && values[cell] < 0))
-    ++cell;
+  const std::vector<std::uint32_t> words = state_.terrain.raw_words(layer);
+  const auto first = std::find_if(words.begin(), words.end(), [&](std::uint32_t word) {
+    float real;
+    std::memcpy(&real, &word, sizeof real);
+    return quanta ? statistics::breaks_contract(static_cast<Quanta>(word), depth)
+                  : statistics::breaks_contract(real);
+  });
+  const auto cell = static_cast<std::size_t>(first - words.begin());
   throw StateError("step " + std::to_string(state_.steps) + ": " + process.name + ": layer " + row.name +
                    " has an invalid value in " + std::to_string(broken) + " cells, the first at (" +
                    std::to_string(cell % view.grid.width) + ", " + std::to_string(cell / view.grid.width) +
-                   ") = " + std::to_string(values[cell]));
+                   ") = " + std::to_string(state_.terrain.values(layer)[cell]));
 }
 
 // ---- what others ask

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "src/simulation/checkpoint.hpp"
+#include "test/support/temporary_folder.hpp"
 #include "test/support/world.hpp"
 
 namespace desert_sim {
@@ -21,10 +23,14 @@ class FullCells : public test::OnBackend {
       test::run(*s, 1);
       test::expect_sound(*s, "after step " + std::to_string(n + 1));
       EXPECT_LT(highest(*s), wall_height);
+      const std::vector<Quanta> water = quanta(*s, Layer::water);
+      if (!water.empty()) deepest_ = std::max(deepest_, *std::max_element(water.begin(), water.end()));
       if (testing::Test::HasFailure()) break;
     }
     return s;
   }
+  Quanta deepest_ = 0;  ///< water in all steps so far
+
   static Quanta highest(const Simulation& s) {
     std::vector<std::int64_t> sum(static_cast<std::size_t>(s.terrain().grid().cells()));
     for (const Layer layer : {Layer::bedrock, Layer::soil, Layer::sand, Layer::water}) {
@@ -45,6 +51,21 @@ TEST_P(FullCells, ASeaAroundDeepGroundFlowsIn) {
       filled(open_sand + "wind: {speed: 0}\nwater: {enabled: true, sea: border, sea_level: 500}\n", 200);
   const auto water = s->balance()[static_cast<std::size_t>(Material::water)];
   EXPECT_GT(water.final_m3(), 480 * 24 * 16) << "it is filled to nearly 500 m";
+}
+
+/// The datum is half way up: water is deeper than walls are high above it.
+TEST_P(FullCells, ASeaThatIsAsDeepAsTheTerrainIsHigh) {
+  for (const std::string level : {"1000", "1e6"}) {
+    const auto s = filled(open_sand +
+                              "wind: {speed: 3}\nwater: {enabled: true, sea: border, wave_strength: 0.1, "
+                              "sea_level: " +
+                              level + "}\n",
+                          60);
+    EXPECT_GT(deepest_, wall_height) << level;
+    const test::TemporaryFolder folder;
+    save_checkpoint(folder.path("deep"), *s);
+    EXPECT_EQ(load_checkpoint(folder.path("deep"), exec())->state_hash(), s->state_hash()) << level;
+  }
 }
 
 TEST_P(FullCells, SpringsRainAndTheirLedger) {
