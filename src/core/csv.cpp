@@ -38,12 +38,24 @@ std::string trimmed(const std::string& text) {
 }
 
 std::vector<std::string> csv_fields(const std::string& line, char separator) {
-  std::vector<std::string> fields;
-  std::size_t begin = 0;
-  for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
-    end = line.find(separator, begin);
-    fields.push_back(trimmed(line.substr(begin, end == std::string::npos ? end : end - begin)));
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t at = 0; at < line.size(); ++at) {
+    std::string& field = fields.back();
+    if (line[at] == '"' && (quoted || field.find_first_not_of(" \t") == std::string::npos)) {
+      quoted = !quoted;
+      if (!quoted && at + 1 < line.size() && line[at + 1] == '"') {
+        field += '"';
+        quoted = true;
+        ++at;
+      }
+    } else if (line[at] == separator && !quoted) {
+      fields.emplace_back();
+    } else {
+      field += line[at];
+    }
   }
+  for (std::string& field : fields) field = trimmed(field);
   return fields;
 }
 

@@ -58,6 +58,7 @@ struct TimeReader {
 /// Where the columns that count stand, and what separates them.
 struct Columns {
   int time = -1, speed = -1, direction = -1;  ///< -1: nowhere
+  std::size_t count = 0;
   char separator = ',';
   bool decimal_comma() const { return separator != ','; }
 };
@@ -74,9 +75,13 @@ Columns find_columns(const std::string& line, const std::string& key, Validation
                  std::string("has no column '") + name +
                      "' (needed: time, speed, direction, separated by commas, semicolons or tabs; found: " +
                      shortened(line) + ")");
+    else if (std::find(found + 1, names.end(), name) != names.end())
+      errors.add(
+          key, std::string("has two columns '") + name + "' (allowed: one; found: " + shortened(line) + ")");
     else
       column = static_cast<int>(found - names.begin());
   };
+  columns.count = names.size();
   find("time", columns.time);
   find("speed", columns.speed);
   find("direction", columns.direction);
@@ -103,6 +108,13 @@ class RowReader {
     const auto field = [&](int column) {
       return column < static_cast<int>(fields.size()) ? fields[static_cast<std::size_t>(column)] : "";
     };
+    // Such as those of numbers with a decimal comma, between commas.
+    const auto full = std::find_if(fields.rbegin(), fields.rend(), [](const auto& f) { return !f.empty(); });
+    if (const auto used = static_cast<std::size_t>(fields.rend() - full); used > columns_.count) {
+      errors_.add(key, "has " + std::to_string(used) + " fields, and the header " +
+                           std::to_string(columns_.count) + ": " + shortened(line));
+      return;
+    }
     double time = 0, speed = 0, direction = 0;
     if (!times.read(field(columns_.time), columns_.decimal_comma(), time)) {
       errors_.add(key + ", column time", quoted(field(columns_.time)) + " is not " + times.expected());
@@ -116,6 +128,7 @@ class RowReader {
                              "distance from it (2001-10-28T02:00+02:00)"
                            : ""));
     last_time_ = time;
+    all_times.push_back(time);
     if (is_missing(field(columns_.speed))) {
       ++missing;
       return;
@@ -128,6 +141,7 @@ class RowReader {
   }
 
   std::vector<WindSeries::Row> rows;
+  std::vector<double> all_times;  ///< also of rows without a speed
   TimeReader times;
   long long missing = 0;  ///< rows without a speed
 
@@ -160,32 +174,34 @@ double start_of(const WindSeries& series, const TimeReader& times, const std::st
   return start;
 }
 
-/// Median of the intervals between rows [s].
-double usual_interval(const std::vector<WindSeries::Row>& rows) {
+/// Median of the intervals between two or more times [s].
+double usual_interval(const std::vector<double>& times) {
   std::vector<double> intervals;
-  intervals.reserve(rows.size() - 1);
-  for (std::size_t n = 1; n < rows.size(); ++n) intervals.push_back(rows[n].time - rows[n - 1].time);
+  intervals.reserve(times.size() - 1);
+  for (std::size_t n = 1; n < times.size(); ++n) intervals.push_back(times[n] - times[n - 1]);
   const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>((intervals.size() - 1) / 2);
   std::nth_element(intervals.begin(), middle, intervals.end());
   return *middle;
 }
 
-/// Fills gaps with calm air or refuses them, as the format says, and tells the longest.
+/// Fills gaps with calm air or refuses them, as the format says, and tells the longest. Rows without a speed at the
+/// end are a gap, too.
 void treat_gaps(RowReader& read, const std::string& source, SeriesGap gap, ValidationErrors& errors) {
   std::vector<WindSeries::Row>& rows = read.rows;
-  if (rows.size() < 2) return;
-  const double usual = usual_interval(rows);
+  if (rows.empty() || read.all_times.size() < 2) return;
+  const double usual = usual_interval(read.all_times), last = read.all_times.back();
+  const auto end_of = [&](std::size_t n) { return n + 1 < rows.size() ? rows[n + 1].time : last + usual; };
   std::vector<WindSeries::Row> filled;
   std::size_t gaps = 0, longest = 0;
   for (std::size_t n = 0; n < rows.size(); ++n) {
     filled.push_back(rows[n]);
-    const double interval = n + 1 < rows.size() ? rows[n + 1].time - rows[n].time : 0;
+    const double interval = end_of(n) - rows[n].time;
     if (interval <= usual_intervals * usual) continue;
-    if (gaps++ == 0 || interval > rows[longest + 1].time - rows[longest].time) longest = n;
+    if (gaps++ == 0 || interval > end_of(longest) - rows[longest].time) longest = n;
     if (gap == SeriesGap::calm) filled.push_back({rows[n].time + usual, {}});
   }
   if (gaps == 0) return;
-  const double from = rows[longest].time, length = rows[longest + 1].time - from;
+  const double from = rows[longest].time, length = end_of(longest) - from;
   const double speed =
       std::hypot(static_cast<double>(rows[longest].wind.x), static_cast<double>(rows[longest].wind.y));
   const std::string said = "has " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +

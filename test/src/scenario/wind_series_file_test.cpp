@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "test/support/log_lines.hpp"
 #include "test/support/refusal.hpp"
 
@@ -139,6 +141,40 @@ TEST(WindSeriesFile, GapsAreToldHeldCalmedOrRefused) {
   expect_wind(calm.at(49 * hour, false), 4, 0);
   const std::string said = test::refusal([&] { with(SeriesGap::refuse); });
   EXPECT_NE(said.find("wind.series_gap: has 1 gap"), std::string::npos) << said;
+}
+
+/// However many rows lack a speed: the rows of the file say what the usual interval is.
+TEST(WindSeriesFile, RowsWithoutSpeedAreGapsWhereverTheyAre) {
+  for (const char* rows : {"0,4,0\n3600,,\n7200,4,0\n", "0,4,0\n3600,,\n7200,4,0\n10800,,\n14400,4,0\n",
+                           "0,4,0\n3600,4,0\n7200,NA,0\n"}) {
+    const std::string text = std::string("time,speed,direction\n") + rows;
+    const auto with = [&](SeriesGap gap) {
+      return parse(text, {SeriesDirection::to, SeriesAngle::mathematical, "", gap});
+    };
+    EXPECT_NE(test::refusal([&] { with(SeriesGap::refuse); }).find("the longest of 2 h"), std::string::npos)
+        << rows;
+    const WindSeries calmed = with(SeriesGap::calm);
+    EXPECT_NE(
+        std::find_if(calmed.rows.begin(), calmed.rows.end(), [](const auto& row) { return row.wind.x == 0; }),
+        calmed.rows.end())
+        << rows;
+  }
+}
+
+TEST(WindSeriesFile, FieldsMayBeQuotedAndNoneIsLeftOver) {
+  const auto refused = [](const std::string& rows) {
+    return test::refusal([&] { parse("time,speed,direction\n" + rows); });
+  };
+  EXPECT_EQ(
+      parse("time,station,speed,direction\n0,\"A, 3\",4,0\n3600,\"B \"\"3, 4\"\"\",5,0\n").rows[1].wind.x, 5);
+  EXPECT_EQ(parse("time,speed,direction\n0,4,0,,\n3600,5,0,\n").rows[1].wind.x, 5)
+      << "empty fields at the end";
+  for (const char* row : {"0,4,1,270,0\n", "0,4,270,note\n"})
+    EXPECT_NE(refused(row).find("fields, and the header 3"), std::string::npos) << refused(row);
+  const std::string decimal = refused("0,\"4,1\",\"270,0\"\n");
+  EXPECT_NE(decimal.find("column speed: '4,1' is not a number"), std::string::npos) << decimal;
+  const std::string two = test::refusal([] { parse("time,speed,speed,direction\n0,4,9,0\n"); });
+  EXPECT_NE(two.find("has two columns 'speed'"), std::string::npos) << two;
 }
 
 TEST(WindSeriesFile, RowsAtEqualIntervalsHaveNoGap) {
