@@ -73,6 +73,7 @@ def parse(arguments):
     folder = os.path.dirname(options.out)
     if not os.path.isdir(folder) or not os.access(folder, os.W_OK):
         raise ComparisonError("--out %s: the folder %s is missing or cannot be written" % (options.out, folder))
-    if os.path.isdir(options.out):
-        raise ComparisonError("--out %s: is a folder (allowed: a file)" % options.out)
+    if os.path.lexists(options.out) and (os.path.islink(options.out) or not os.path.isfile(options.out)):
+        raise ComparisonError("--out %s: is a folder, a link or a device (allowed: a file that is new, or that is to be "
+                              "replaced)" % options.out)
     return options

@@ -197,7 +197,11 @@ Scenario parse_with_settings(const std::string& text, const std::string& source,
                              const Settings& settings) {
   YAML::Node root;
   try {
-    root = YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1)
+      throw ConfigError(source + ": has " + std::to_string(documents.size()) +
+                        " YAML documents, separated by --- (allowed: one)");
+    if (!documents.empty()) root = documents.front();
   } catch (const YAML::Exception& e) {
     throw ConfigError(source + ": line " + std::to_string(e.mark.line + 1) + ": " + e.msg);
   }

@@ -299,6 +299,10 @@ class DesertCompare(DesertCompareCase):
         self.assertIn("no_such", self.refusal(scenarios=[self.ridges, "no_such"]))
         self.assertIn("called ridges", self.refusal(scenarios=[self.ridges, self.ridges]))
         self.assertIn("two or more", self.refusal(scenarios=[self.ridges]))
+        os.mkfifo(self.path("pipe"))
+        os.symlink(self.ridges, self.path("link"))
+        for name in ("pipe", "link", "."):
+            self.assertIn("a file that is new", self.compare(name, status=2))
         self.assertIn("no: unknown key", self.refusal("--set", "no.such.key=1"))
         self.assertIn("from 1 to 1000", self.refusal("--seeds", "0"))
         self.assertEqual(self.results("refused.runs"), [])

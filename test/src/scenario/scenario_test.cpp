@@ -197,6 +197,16 @@ TEST(Loader, AStepThatLeavesALayersRangeIsNamedWithItsCell) {
   EXPECT_EQ(built("[uniform: {layer: sand, value: -5}]"), "") << "a negative depth is cut to 0";
 }
 
+TEST(LoadScenario, RefusesASecondDocument) {
+  try {
+    parse_scenario_text("grid: {width: 8}\n---\nwind: {speed: 9}\n", "two");
+    ADD_FAILURE() << "the second one was left out";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("two: has 2 YAML documents"), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(parse_scenario_text("---\ngrid: {width: 8}\n", "one").grid.width, 8) << "it may be marked";
+}
+
 TEST(LoadScenario, NamesFileAndLineOfBrokenYaml) {
   const test::TemporaryFolder folder;
   try {
