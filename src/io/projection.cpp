@@ -40,6 +40,14 @@ std::string shell_word(const std::string& text) {
   return word + "'";
 }
 
+std::string wkt_of(const OGRSpatialReference& crs) {
+  char* text = nullptr;
+  const bool known = crs.exportToWkt(&text) == OGRERR_NONE && text;
+  const std::string wkt = known ? text : "";
+  CPLFree(text);
+  return wkt;
+}
+
 struct Ellipsoid {
   double a, b;  ///< semi-axes [m]
 };
@@ -184,6 +192,23 @@ std::string inner_cells(const OGRSpatialReference& crs, const std::string& srs, 
 
 }  // namespace
 
+std::string unit_of_heights(const std::string& wkt) {
+  const GdalMessages quiet;
+  OGRSpatialReference crs;
+  if (wkt.empty() || crs.importFromWkt(wkt.c_str()) != OGRERR_NONE || !crs.IsVertical()) return "";
+  const char* unit = nullptr;
+  const double metres = crs.GetTargetLinearUnits("VERT_CS", &unit);
+  return unit && std::abs(metres - 1) > 1e-9 ? unit : "";
+}
+
+std::string with_metric_heights(const std::string& wkt) {
+  if (unit_of_heights(wkt).empty()) return wkt;
+  OGRSpatialReference crs;
+  crs.importFromWkt(wkt.c_str());
+  crs.StripVertical();
+  return wkt_of(crs);
+}
+
 std::string how_to_project(const std::string& path, const OGRSpatialReference& crs, double x, double y,
                            const RasterExtent* extent) {
   std::optional<Geography::Point> place = Geography::Point{x, y};
@@ -194,8 +219,10 @@ std::string how_to_project(const std::string& path, const OGRSpatialReference& c
   const std::string projected =
       (file.parent_path() / (file.stem().string() + "_" + local.name + ".tif")).string();
   // Float32 because its nodata is no height; without nodata, cells beside the raster would be 0 m high.
-  return ": gdalwarp -t_srs " + shell_word(local.srs) + (extent ? inner_cells(crs, local.srs, *extent) : "") +
-         " -r bilinear -ot Float32 -dstnodata nan " + shell_word(path) + " " + shell_word(projected);
+  const bool keeps_unit = extent && extent->values_have_unit && !unit_of_heights(wkt_of(crs)).empty();
+  return ": gdalwarp -t_srs " + shell_word(local.srs) + (keeps_unit ? " -novshiftgrid" : "") +
+         (extent ? inner_cells(crs, local.srs, *extent) : "") + " -r bilinear -ot Float32 -dstnodata nan " +
+         shell_word(path) + " " + shell_word(projected);
 }
 
 void require_metres(const std::string& path, const std::string& wkt, const RasterExtent& extent) {

@@ -11,6 +11,7 @@ namespace desert_sim {
 struct RasterExtent {
   double west, south, cell_x, cell_y;
   int width, height;
+  bool values_have_unit = false;  ///< which their band declares
   double east() const { return west + width * cell_x; }
   double north() const { return south + height * cell_y; }
 };
@@ -18,10 +19,18 @@ struct RasterExtent {
 /// How "project it first" goes on: ": gdalwarp …", the command that projects a raster to metres on the ground
 /// around a place (x, y) in the coordinates of `crs`: on Earth to the UTM zone, near the poles to the polar
 /// stereographic projection; on another body to a transverse Mercator or polar stereographic projection of
-/// its own. What is not covered has no data. With an `extent` cells are square and as large as the raster's,
-/// and lie within it where most of it is then kept.
+/// its own. What is not covered has no data. Heights in a unit that their band declares are left in it,
+/// because gdalwarp would make them metres and keep the unit. With an `extent` cells are square and as large
+/// as the raster's, and lie within it where most of it is then kept.
 std::string how_to_project(const std::string& path, const OGRSpatialReference& crs, double x, double y,
                            const RasterExtent* extent = nullptr);
+
+/// The unit of the projection's heights where its vertical system declares one that is not the metre, such as
+/// "US survey foot"; else empty.
+std::string unit_of_heights(const std::string& wkt);
+/// The projection of values that have been made metres: without a vertical system of another unit, by which
+/// readers would make them metres once more.
+std::string with_metric_heights(const std::string& wkt);
 
 /// Throws ConfigError that has this command where the coordinates are known not to be metres on the ground:
 /// for degrees and other units, and where the projection's scale at the raster's centre differs from 1 by

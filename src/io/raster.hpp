@@ -17,6 +17,7 @@ struct Raster {
   double cell_size = 1;               ///< side of a square cell [unit of the CRS, see length_unit()]
   double origin_x = 0, origin_y = 0;  ///< lower-left corner of the lower-left cell [unit of the CRS]
   std::string projection;             ///< WKT, empty if none
+  bool values_have_unit = false;      ///< the file's band declares one
   std::vector<float> values;          ///< width * height values, NaN where nodata
 
   /// The north-up geotransform of the file that the raster was read from; all zero if there is none.

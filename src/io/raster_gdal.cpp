@@ -26,6 +26,11 @@ constexpr double rotation_tolerance = 1e-6;  // shear [cells per cell]
 constexpr const char* allowed_drivers[] = {"GTiff", "AAIGrid", "ENVI", "PNG", "EXR", "USGSDEM", nullptr};
 constexpr const char* allowed_formats = "GeoTIFF, ESRI ASCII, ENVI, PNG, EXR, USGS DEM";
 
+std::string unit_of(GDALRasterBand& band) {
+  const char* unit = band.GetUnitType();
+  return unit ? unit : "";
+}
+
 /// Refuses terms that no north-up raster with square cells has.
 void check_geotransform(const std::string& path, GDALDataset& dataset, const GeoTransform& g) {
   for (double term : g)
@@ -42,7 +47,8 @@ void check_geotransform(const std::string& path, GDALDataset& dataset, const Geo
   const char* wkt = dataset.GetProjectionRef();
   const int width = dataset.GetRasterXSize(), height = dataset.GetRasterYSize();
   require_metres(path, wkt ? wkt : "",
-                 {g[0], std::min(g[3], g[3] + height * g[5]), g[1], std::abs(g[5]), width, height});
+                 {g[0], std::min(g[3], g[3] + height * g[5]), g[1], std::abs(g[5]), width, height,
+                  !unit_of(*dataset.GetRasterBand(1)).empty()});
   throw_raster_error(path, concatenate("cells are not square: ", g[1], " x ", std::abs(g[5]),
                                        ", at most 0.1 % of difference allowed"));
 }
@@ -172,9 +178,10 @@ class GdalRasterFile final : public RasterFile {
     GeoTransform placed;
     if (dataset_->GetGeoTransform(placed.data()) != CE_None)
       header_.unusable_placement = unusable_placement(path(), *dataset_);
-    const char* unit = band_->GetUnitType();
-    declared_ =
-        declared_values(path(), band_->GetScale(), band_->GetOffset(), unit ? unit : "", options_.scale);
+    const std::string unit = unit_of(*band_);
+    header_.values_have_unit = !unit.empty();
+    declared_ = declared_values(path(), band_->GetScale(), band_->GetOffset(),
+                                unit.empty() ? unit_of_heights(header_.projection) : unit, options_.scale);
   }
 
   /// Numbers that are no values, and encodings that the raster does not have.

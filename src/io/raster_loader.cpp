@@ -115,9 +115,9 @@ RasterWindow needed_window(const Raster& header, const RasterRequest& q) {
 
 void require_raster_in_metres(const Raster& header, const std::string& path) {
   if (!header.unusable_placement.empty()) throw_raster_error(path, header.unusable_placement);
-  require_metres(
-      path, header.projection,
-      {header.origin_x, header.origin_y, header.cell_size, header.cell_size, header.width, header.height});
+  require_metres(path, header.projection,
+                 {header.origin_x, header.origin_y, header.cell_size, header.cell_size, header.width,
+                  header.height, header.values_have_unit});
 }
 
 RasterField field_of(Raster r) {
@@ -127,7 +127,7 @@ RasterField field_of(Raster r) {
   field.cell_size = r.cell_size;
   field.origin_x = r.origin_x;
   field.origin_y = r.origin_y;
-  field.projection = r.projection;
+  field.projection = with_metric_heights(r.projection);
   field.values = std::move(r.values);
   return field;
 }

@@ -108,6 +108,23 @@ TEST_F(Projection, SystemsWhoseMetresAreMetresAreTaken) {
               {"m of ground", "EPSG:32617 "});  // UTM, far from its zone
 }
 
+/// NAD83 / UTM 11 N and NAD83, with heights above NAVD88 in US survey feet.
+TEST_F(Projection, HeightsInFeetBecomeMetresOnce) {
+  constexpr double hundred_feet = 30.48006;
+  for (const char* driver : {"GTiff", "ENVI"}) {
+    SCOPED_TRACE(driver);
+    const std::string name = driver == std::string("GTiff") ? "feet.tif" : "feet.bin";
+    const RasterField f = load(make(name, driver, 6, 5, GDT_Float32, std::vector<float>(30, 100),
+                                    {500000, 10, 0, 4000000, 0, -10}, "EPSG:26911+6360"));
+    EXPECT_NEAR(f.values[7], hundred_feet, 1e-4);
+    EXPECT_EQ(unit_of_heights(f.projection), "") << "what is written in metres is not read as feet";
+    const std::string refusal =
+        load_refusal(make("degrees_" + name, driver, 40, 40, GDT_Float32, std::vector<float>(1600, 100),
+                          {-117, 1e-4, 0, 36, 0, -1e-4}, "EPSG:4269+6360"));
+    EXPECT_NEAR(load(warped(refusal)).values[500], hundred_feet, 1e-4) << refusal;
+  }
+}
+
 TEST_F(Projection, OtherBodiesGetAProjectionOfTheirOwn) {
   const std::string mars = "+proj=longlat +a=3396190 +b=3376200 +no_defs",
                     moon = "+proj=longlat +R=1737400 +no_defs";
