@@ -184,10 +184,10 @@ std::string inner_cells(const OGRSpatialReference& crs, const std::string& srs, 
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what, const OGRSpatialReference& crs,
-                         const RasterExtent& e) {
+                         const RasterExtent& e, const DeclaredBand& band) {
   throw_raster_error(
       path, what + ", metres are needed; project it first" +
-                how_to_project(path, crs, 0.5 * (e.west + e.east()), 0.5 * (e.south + e.north()), &e));
+                how_to_project(path, crs, 0.5 * (e.west + e.east()), 0.5 * (e.south + e.north()), band, &e));
 }
 
 }  // namespace
@@ -210,7 +210,7 @@ std::string with_metric_heights(const std::string& wkt) {
 }
 
 std::string how_to_project(const std::string& path, const OGRSpatialReference& crs, double x, double y,
-                           const RasterExtent* extent) {
+                           const DeclaredBand& band, const RasterExtent* extent) {
   std::optional<Geography::Point> place = Geography::Point{x, y};
   if (!crs.IsGeographic()) place = Geography(crs).degrees(*place);
   if (!place) return " with gdalwarp -t_srs to a projection in metres";
@@ -219,22 +219,24 @@ std::string how_to_project(const std::string& path, const OGRSpatialReference& c
   const std::string projected =
       (file.parent_path() / (file.stem().string() + "_" + local.name + ".tif")).string();
   // Float32 because its nodata is no height; without nodata, cells beside the raster would be 0 m high.
-  const bool keeps_unit = extent && extent->values_have_unit && !unit_of_heights(wkt_of(crs)).empty();
+  const bool keeps_unit = band.has_unit && !unit_of_heights(wkt_of(crs)).empty();
   return ": gdalwarp -t_srs " + shell_word(local.srs) + (keeps_unit ? " -novshiftgrid" : "") +
-         (extent ? inner_cells(crs, local.srs, *extent) : "") + " -r bilinear -ot Float32 -dstnodata nan " +
+         (extent ? inner_cells(crs, local.srs, *extent) : "") +
+         (band.is_colour ? " -r near -dstalpha " : " -r bilinear -ot Float32 -dstnodata nan ") +
          shell_word(path) + " " + shell_word(projected);
 }
 
-void require_metres(const std::string& path, const std::string& wkt, const RasterExtent& extent) {
+void require_metres(const std::string& path, const std::string& wkt, const RasterExtent& extent,
+                    const DeclaredBand& band) {
   if (wkt.empty()) return;
   const GdalMessages quiet;
   OGRSpatialReference crs;
   if (crs.importFromWkt(wkt.c_str()) != OGRERR_NONE) return;
-  if (crs.IsGeographic()) refuse(path, "its coordinates are in degrees", crs, extent);
+  if (crs.IsGeographic()) refuse(path, "its coordinates are in degrees", crs, extent, band);
   const char* unit = nullptr;
   if (std::abs(crs.GetLinearUnits(&unit) - 1) >= 1e-9)
     refuse(path, "its coordinates are in " + (unit ? std::string("the unit ") + unit : "another unit"), crs,
-           extent);
+           extent, band);
   const Geography geography(crs);
   const std::optional<Geography::Point> place =
       geography.degrees({0.5 * (extent.west + extent.east()), 0.5 * (extent.south + extent.north())});
@@ -246,7 +248,7 @@ void require_metres(const std::string& path, const std::string& wkt, const Raste
   off << "a metre of its coordinates" << (crs.GetName() ? " (" + std::string(crs.GetName()) + ")" : "")
       << " is " << 1 / *scale
       << " m of ground at its centre, 1 % is allowed: slopes and distances would be wrong";
-  refuse(path, off.str(), crs, extent);
+  refuse(path, off.str(), crs, extent, band);
 }
 
 void require_projection_database(const std::string& source) {

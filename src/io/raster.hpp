@@ -10,6 +10,11 @@
 
 namespace desert_sim {
 
+/// What the band that is read declares of its numbers: a unit, or that they are the red of colours.
+struct DeclaredBand {
+  bool has_unit = false, is_colour = false;
+};
+
 /// A single-band raster in this package's orientation: row-major, x fastest, row 0 = SOUTH (in GDAL, row 0 is
 /// the northern row).
 struct Raster {
@@ -17,8 +22,8 @@ struct Raster {
   double cell_size = 1;               ///< side of a square cell [unit of the CRS, see length_unit()]
   double origin_x = 0, origin_y = 0;  ///< lower-left corner of the lower-left cell [unit of the CRS]
   std::string projection;             ///< WKT, empty if none
-  bool values_have_unit = false;      ///< the file's band declares one
-  std::vector<float> values;          ///< width * height values, NaN where nodata
+  DeclaredBand declared;
+  std::vector<float> values;  ///< width * height values, NaN where nodata
 
   /// The north-up geotransform of the file that the raster was read from; all zero if there is none.
   /// write_geotiff() writes it unchanged as long as it agrees with cell_size and origin, so that reading and

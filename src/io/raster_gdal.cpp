@@ -31,6 +31,12 @@ std::string unit_of(GDALRasterBand& band) {
   return unit ? unit : "";
 }
 
+DeclaredBand declared_band(GDALDataset& dataset, int band) {
+  GDALRasterBand& read = *dataset.GetRasterBand(band);
+  return {!unit_of(read).empty(),
+          dataset.GetRasterCount() >= 3 && read.GetColorInterpretation() == GCI_RedBand};
+}
+
 /// Refuses terms that no north-up raster with square cells has.
 void check_geotransform(const std::string& path, GDALDataset& dataset, const GeoTransform& g) {
   for (double term : g)
@@ -47,8 +53,8 @@ void check_geotransform(const std::string& path, GDALDataset& dataset, const Geo
   const char* wkt = dataset.GetProjectionRef();
   const int width = dataset.GetRasterXSize(), height = dataset.GetRasterYSize();
   require_metres(path, wkt ? wkt : "",
-                 {g[0], std::min(g[3], g[3] + height * g[5]), g[1], std::abs(g[5]), width, height,
-                  !unit_of(*dataset.GetRasterBand(1)).empty()});
+                 {g[0], std::min(g[3], g[3] + height * g[5]), g[1], std::abs(g[5]), width, height},
+                 declared_band(dataset, 1));
   throw_raster_error(path, concatenate("cells are not square: ", g[1], " x ", std::abs(g[5]),
                                        ", at most 0.1 % of difference allowed"));
 }
@@ -87,7 +93,7 @@ std::string unusable_placement(const std::string& path, GDALDataset& dataset) {
     x += points[n].dfGCPX / dataset.GetGCPCount();
     y += points[n].dfGCPY / dataset.GetGCPCount();
   }
-  return placed + how_to_project(path, *crs, x, y);
+  return placed + how_to_project(path, *crs, x, y, declared_band(dataset, 1));
 }
 
 /// Refuses a truncated raw file (ENVI, EHdr), because GDAL would read the missing part as zeros.
@@ -127,7 +133,7 @@ class GdalRasterFile final : public RasterFile {
     read_header();
     if (!header_.projection.empty() || messages_.text().find("PROJ") != std::string::npos)
       require_projection_database("raster '" + path + "'");
-    mask_ = (band_->GetMaskFlags() & GMF_ALL_VALID) ? nullptr : band_->GetMaskBand();
+    mask_ = (band_->GetMaskFlags() & GMF_ALL_VALID) ? alpha_band() : band_->GetMaskBand();
     messages_.clear();
   }
 
@@ -179,9 +185,18 @@ class GdalRasterFile final : public RasterFile {
     if (dataset_->GetGeoTransform(placed.data()) != CE_None)
       header_.unusable_placement = unusable_placement(path(), *dataset_);
     const std::string unit = unit_of(*band_);
-    header_.values_have_unit = !unit.empty();
+    header_.declared = declared_band(*dataset_, options_.band);
     declared_ = declared_values(path(), band_->GetScale(), band_->GetOffset(),
                                 unit.empty() ? unit_of_heights(header_.projection) : unit, options_.scale);
+  }
+
+  /// Its band of opacity, which GDAL takes for a mask where that has bytes or 16 bits alone; null without one.
+  GDALRasterBand* alpha_band() {
+    for (int n = 1; n <= dataset_->GetRasterCount(); ++n) {
+      GDALRasterBand* const band = dataset_->GetRasterBand(n);
+      if (band != band_ && band->GetColorInterpretation() == GCI_AlphaBand) return band;
+    }
+    return nullptr;
   }
 
   /// Numbers that are no values, and encodings that the raster does not have.
@@ -198,7 +213,7 @@ class GdalRasterFile final : public RasterFile {
               path(),
               "its numbers are indices of a palette of colours, not values; values are needed, "
               "or encoding: channel where the index itself is meant");
-        if (bytes && bands >= 3 && options_.band == 1 && colour == GCI_RedBand)
+        if (header_.declared.is_colour && options_.band == 1)
           throw_raster_error(path(),
                              "is a picture of colours, not of values; where colours encode heights give "
                              "encoding: terrarium or encoding: mapbox, where red itself is meant encoding: "

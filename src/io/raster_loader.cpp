@@ -115,9 +115,10 @@ RasterWindow needed_window(const Raster& header, const RasterRequest& q) {
 
 void require_raster_in_metres(const Raster& header, const std::string& path) {
   if (!header.unusable_placement.empty()) throw_raster_error(path, header.unusable_placement);
-  require_metres(path, header.projection,
-                 {header.origin_x, header.origin_y, header.cell_size, header.cell_size, header.width,
-                  header.height, header.values_have_unit});
+  require_metres(
+      path, header.projection,
+      {header.origin_x, header.origin_y, header.cell_size, header.cell_size, header.width, header.height},
+      header.declared);
 }
 
 RasterField field_of(Raster r) {

@@ -109,6 +109,30 @@ TEST_F(DeclaredValuesOf, IndicesOfAPaletteAreNoHeights) {
   EXPECT_EQ(read_raster(name, {1, 1, 0, {}, RasterEncoding::channel}).values[0], 3);
 }
 
+/// What gdalwarp -dstalpha makes.
+TEST_F(DeclaredValuesOf, OpacityOfEveryTypeIsAMask) {
+  const auto expect_mask = [this](auto number, GDALDataType type) {
+    const std::vector<decltype(number)> heights_and_opacity{1, 2, 3, 0, 255, 255, 255, 0};
+    const std::string name = make("alpha.tif", "GTiff", 2, 2, type, heights_and_opacity, {}, "", nullptr, 2);
+    const GDALDatasetUniquePtr dataset(GDALDataset::Open(name.c_str(), GDAL_OF_UPDATE));
+    dataset->GetRasterBand(2)->SetColorInterpretation(GCI_AlphaBand);
+    dataset->FlushCache();
+    const Raster r = read_raster(name);
+    EXPECT_EQ(r.nodata_count(), 1) << GDALGetDataTypeName(type);
+    EXPECT_TRUE(std::isnan(r.values[1])) << GDALGetDataTypeName(type);
+  };
+  expect_mask(std::uint8_t{}, GDT_Byte);
+  expect_mask(std::uint16_t{}, GDT_UInt16);
+  expect_mask(std::int16_t{}, GDT_Int16);
+  expect_mask(0.0F, GDT_Float32);
+}
+
+TEST_F(DeclaredValuesOf, PicturesOf16BitsAreNoHeightsEither) {
+  const std::string picture = path("colours.png");
+  ASSERT_TRUE(cv::imwrite(picture, cv::Mat(2, 3, CV_16UC3, cv::Scalar(128, 74, 129))));
+  expect_says(refusal(picture), {"colours.png", "a picture of colours"});
+}
+
 /// As with --all-raster-formats.
 TEST_F(DeclaredValuesOf, CellsUnderAnExternalMaskAreWithoutData) {
   const std::string name = make("external.tif", "GTiff", 2, 2, GDT_Float32, std::vector<float>{1, 2, 3, 0});

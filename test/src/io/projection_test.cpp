@@ -125,6 +125,28 @@ TEST_F(Projection, HeightsInFeetBecomeMetresOnce) {
   }
 }
 
+/// 256 red + green + blue / 256 − 32768 of a height of 310.5 m, a pixel in degrees.
+TEST_F(Projection, ColoursThatEncodeHeightsAreNotMixed) {
+  const std::string name =
+      make("terrarium.tif", "GTiff", 40, 40, GDT_Byte, std::vector<unsigned char>(4800, 0),
+           {-117, 1e-4, 0, 36, 0, -1e-4}, "EPSG:4326", nullptr, 3);
+  {
+    const GDALDatasetUniquePtr dataset(GDALDataset::Open(name.c_str(), GDAL_OF_UPDATE));
+    const GDALColorInterp colours[] = {GCI_RedBand, GCI_GreenBand, GCI_BlueBand};
+    const double bytes[] = {129, 54, 128};
+    for (int n = 0; n < 3; ++n) {
+      dataset->GetRasterBand(n + 1)->SetColorInterpretation(colours[n]);
+      dataset->GetRasterBand(n + 1)->Fill(bytes[n]);
+    }
+  }
+  const std::string file = warped(load_refusal(name));
+  expect_says(load_refusal(file), {"is a picture of colours"});
+  RasterOptions options;
+  options.encoding = RasterEncoding::terrarium;
+  const Raster r = read_raster(file, options);
+  EXPECT_EQ(r.values[r.values.size() / 2], 310.5F);
+}
+
 TEST_F(Projection, OtherBodiesGetAProjectionOfTheirOwn) {
   const std::string mars = "+proj=longlat +a=3396190 +b=3376200 +no_defs",
                     moon = "+proj=longlat +R=1737400 +no_defs";
