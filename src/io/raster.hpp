@@ -22,8 +22,7 @@ struct Raster {
   double cell_size = 1;               ///< side of a square cell [unit of the CRS, see length_unit()]
   double origin_x = 0, origin_y = 0;  ///< lower-left corner of the lower-left cell [unit of the CRS]
   std::string projection;             ///< WKT, empty if none
-  DeclaredBand declared;
-  std::vector<float> values;  ///< width * height values, NaN where nodata
+  std::vector<float> values;          ///< width * height values, NaN where nodata
 
   /// The north-up geotransform of the file that the raster was read from; all zero if there is none.
   /// write_geotiff() writes it unchanged as long as it agrees with cell_size and origin, so that reading and
@@ -33,6 +32,7 @@ struct Raster {
   /// Why the file's own placement cannot be used, with the command that helps; empty if it can, or if it has
   /// none.
   std::string unusable_placement;
+  DeclaredBand declared = {};
 
   /// Number of NaN values.
   long nodata_count() const;

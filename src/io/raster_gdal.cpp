@@ -14,6 +14,7 @@
 #include "src/io/projection.hpp"
 #include "src/io/raster_file.hpp"
 #include "src/io/raster_geometry.hpp"
+#include "src/io/text_grid.hpp"
 
 namespace desert_sim {
 namespace {
@@ -201,6 +202,9 @@ class GdalRasterFile final : public RasterFile {
 
   /// Numbers that are no values, and encodings that the raster does not have.
   void prepare() override {
+    if (is_text_)
+      check_text_grid(path(), dataset_->GetDescription(), header_.width, header_.height,
+                      GDALDataTypeIsInteger(band_->GetRasterDataType()) != 0);
     const GDALColorInterp colour = band_->GetColorInterpretation();
     const int bands = dataset_->GetRasterCount();
     const bool bytes = band_->GetRasterDataType() == GDT_Byte;

@@ -205,7 +205,7 @@ TEST_F(Dem, MoreCellsThanTheFileCanHaveAreRefusedBeforeTheyAreRead) {
 TEST_F(Dem, ATextWithBrokenLinesIsRefusedSoon) {
   const std::string message =
       load_refusal(request(DESERT_SOURCE_DIR "/test/fuzz/corpus/raster/text_with_broken_lines", 9, 7, 2));
-  EXPECT_NE(message.find("cannot be read at line"), std::string::npos) << message;
+  EXPECT_NE(message.find("is not a number"), std::string::npos) << message;
 }
 
 }  // namespace
