@@ -19,8 +19,9 @@ namespace statistics {
 template <class E>
 long long sum(E& exec, const Grid& grid, const Quanta* layer);
 
-/// Whether a value breaks the contract of its layer: a negative depth, a height at or beyond that of walls, or a
-/// float that is not finite. A depth may be larger than the height of a wall: it reaches from below the datum.
+/// Whether a value breaks the contract of its layer: a negative depth, a height at or beyond that of walls,
+/// or a float that is not finite. A depth may be larger than the height of a wall: it reaches from below the
+/// datum.
 DESERT_HD bool breaks_contract(Quanta value, bool depth) {
   return depth ? value < 0 : value >= wall_height || value <= -wall_height;
 }

@@ -13,9 +13,9 @@ std::string plain_lines(const std::string& text, const std::string& source);
 /// What separates the columns of a line: a tab or a semicolon if there is one, else a comma.
 char separator_of(const std::string& line);
 
-/// The fields of a line without blanks and double quotes around them. In a field that begins with a double quote,
-/// separators are text up to the quote that ends it (RFC 4180; two quotes are one that does not). A line that
-/// ends with a separator ends with an empty field.
+/// The fields of a line without blanks and double quotes around them. In a field that begins with a double
+/// quote, separators are text up to the quote that ends it (RFC 4180; two quotes are one that does not). A
+/// line that ends with a separator ends with an empty field.
 std::vector<std::string> csv_fields(const std::string& line, char separator);
 
 /// The text without blanks and double quotes around it.

@@ -191,7 +191,8 @@ class GdalRasterFile final : public RasterFile {
                                 unit.empty() ? unit_of_heights(header_.projection) : unit, options_.scale);
   }
 
-  /// Its band of opacity, which GDAL takes for a mask where that has bytes or 16 bits alone; null without one.
+  /// Its band of opacity, which GDAL takes for a mask where that has bytes or 16 bits alone; null without
+  /// one.
   GDALRasterBand* alpha_band() {
     for (int n = 1; n <= dataset_->GetRasterCount(); ++n) {
       GDALRasterBand* const band = dataset_->GetRasterBand(n);

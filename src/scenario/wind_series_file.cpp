@@ -184,8 +184,8 @@ double usual_interval(const std::vector<double>& times) {
   return *middle;
 }
 
-/// Fills gaps with calm air or refuses them, as the format says, and tells the longest. Rows without a speed at the
-/// end are a gap, too.
+/// Fills gaps with calm air or refuses them, as the format says, and tells the longest. Rows without a speed
+/// at the end are a gap, too.
 void treat_gaps(RowReader& read, const std::string& source, SeriesGap gap, ValidationErrors& errors) {
   std::vector<WindSeries::Row>& rows = read.rows;
   if (rows.empty() || read.all_times.size() < 2) return;

@@ -1,5 +1,5 @@
-/// Exit status 0 if this program sees the build as the library does, a small desert makes three steps, and a client
-/// takes a keyframe. With a master it also waits for a node's terrain: any argument.
+/// Exit status 0 if this program sees the build as the library does, a small desert makes three steps, and a
+/// client takes a keyframe. With a master it also waits for a node's terrain: any argument.
 #include <ros/ros.h>
 
 #include <desert_sim/client/terrain_client.hpp>
