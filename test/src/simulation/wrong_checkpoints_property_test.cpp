@@ -154,8 +154,9 @@ TEST_F(WrongCheckpoint, LayersThatDoNotGoWithTheScenario) {
 }
 
 TEST_F(WrongCheckpoint, ValuesOfLayersOutOfTheirBounds) {
-  refused(Layer::sand, 0xffffffffu, "layer sand at cell (5, 1): = -1 is not in [0, 1073741823] quanta");
-  refused(Layer::sand, 1u << 30, "layer sand at cell (5, 1): = 1073741824 is not in");
+  refused(Layer::sand, 0xffffffffu, "layer sand at cell (5, 1): = -1 is not in [0, 2147483647] quanta");
+  refused(Layer::sand, 0x7fffffffu, "bedrock, soil, sand and water together at cell (5, 1): = ");
+  refused(Layer::airborne_sand, 1u << 30, "layer airborne_sand at cell (5, 1): = 1073741824 is not in");
   refused(Layer::bedrock, 0x80000000u, "layer bedrock at cell (5, 1): = -2147483648 is not in");
   refused(Layer::humus, 0x80000000u, "layer humus");
   refused(Layer::airborne_sand, 0x80000000u, "layer airborne_sand");
