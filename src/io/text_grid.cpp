@@ -1,11 +1,11 @@
 #include "src/io/text_grid.hpp"
 
+#include <cpl_conv.h>
 #include <cpl_vsi.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -63,7 +63,7 @@ bool is_number(std::string word) {
   if (word.find(".#") != std::string::npos) return true;
   std::replace(word.begin(), word.end(), ',', '.');
   char* end = nullptr;
-  std::strtod(word.c_str(), &end);
+  CPLStrtod(word.c_str(), &end);  // in every locale
   return end == word.c_str() + word.size();
 }
 

@@ -177,8 +177,8 @@ std::string summary(Simulation& s, const RunReport& report) {
       << ", \"share_over_1e-2\": " << json_number(r.share_over_1e2)
       << ", \"mean_excess\": " << json_number(r.mean_excess)
       << ", \"largest_excess\": " << json_number(r.largest_excess) << "},\n  \"state_hash\": \"" << hash
-      << "\",\n  \"scenario_hash\": " << scenario_hash(s.start())
-      << ",\n  \"peak_memory_bytes\": " << usage.ru_maxrss * 1024LL
+      << "\",\n  \"scenario_hash\": \"" << scenario_hash(s.start())
+      << "\",\n  \"peak_memory_bytes\": " << usage.ru_maxrss * 1024LL
       << ",\n  \"rasters\": " << (DESERT_WITH_IO ? "true" : "false") << "\n}\n";
   return out.str();
 }

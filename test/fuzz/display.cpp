@@ -104,19 +104,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   using namespace desert_sim;
   FuzzedDataProvider data(bytes, size);
   std::shared_ptr<const LayerMap> map;
-  for (int n = 0; n < 8 && data.remaining_bytes() > 0; ++n) {
-    try {
-      if (const auto next = terrain(data)) draw(map = next, data);
-      if (!map) continue;
-      const int most = data.PickValueInArray({0, 1, 100, 4000});
-      if (const auto mesh = wind_mesh(wind(data), *map, most)) expect_finite(*mesh);
-      const MapInfo& info = map->info();
-      const PlantsMesh drawn = plants_mesh(plants(data), info.origin_x, info.origin_y,
-                                           data.ConsumeFloatingPointInRange(0.1, 100.0), most);
-      if (drawn.plants > static_cast<std::size_t>(most)) std::abort();
-      expect_finite(drawn.mesh);
-    } catch (const ros::serialization::StreamOverrunException&) {  // too few bytes
-    }
-  }
+  fuzz::take_messages(data, 8, [&] {
+    if (const auto next = terrain(data)) draw(map = next, data);
+    if (!map) return;
+    const int most = data.PickValueInArray({0, 1, 100, 4000});
+    if (const auto mesh = wind_mesh(wind(data), *map, most)) expect_finite(*mesh);
+    const MapInfo& info = map->info();
+    const PlantsMesh drawn = plants_mesh(plants(data), info.origin_x, info.origin_y,
+                                         data.ConsumeFloatingPointInRange(0.1, 100.0), most);
+    if (drawn.plants > static_cast<std::size_t>(most)) std::abort();
+    expect_finite(drawn.mesh);
+  });
   return 0;
 }

@@ -95,7 +95,8 @@ class Node {
       case 8:
         return cut(fuzz::next_message<GetSubmapRequest>(data, layer_words));
       case 9:
-        return hear(fuzz::next_message<tf2_msgs::TFMessage>(data, frame_words));
+        return fuzz::hear_transforms(fuzz::next_message<tf2_msgs::TFMessage>(data, frame_words),
+                                     [this](const auto& t) { frames_.add(t, "fuzz", false); });
       case 10:
         return step();
       case 11:
@@ -229,16 +230,6 @@ class Node {
     if (session_.simulation().state_hash() != before) std::abort();
   }
 
-  /// What Frames does with /tf.
-  void hear(const tf2_msgs::TFMessage& message) {
-    for (const geometry_msgs::TransformStamped& transform : message.transforms) {
-      try {
-        frames_.add(transform, "fuzz", false);
-      } catch (const std::exception&) {  // tf2 refuses it
-      }
-    }
-  }
-
   const Scenario& scenario_;
   Session session_;
   TerrainTransforms frames_{"map"};
@@ -257,12 +248,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   FuzzedDataProvider data(bytes, size);
   Node node(data.ConsumeBool() ? oasis : desert);
   const bool repeat = data.ConsumeIntegralInRange(0, 3) == 0;  // takes five times as long as all the rest
-  for (int n = 0; n < 16 && data.remaining_bytes() > 0; ++n) {
-    try {
-      fuzz::accept_or_refuse([&] { node.take(data); });
-    } catch (const ros::serialization::StreamOverrunException&) {  // too few bytes
-    }
-  }
+  fuzz::take_messages(data, 16, [&] { node.take(data); });
   if (repeat) node.expect_repeatable();
   return 0;
 }

@@ -3,6 +3,7 @@
 /// that are plausible, extreme or wrong.
 
 #include <fuzzer/FuzzedDataProvider.h>
+#include <tf2/exceptions.h>
 
 #include <boost/array.hpp>
 #include <cstdlib>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "src/grid_map/message_bytes.hpp"
+#include "test/fuzz/fuzz.hpp"
 
 namespace desert_sim::fuzz {
 
@@ -100,6 +102,29 @@ M next_message(FuzzedDataProvider& data, const std::vector<std::string>& words) 
   BoundedInputStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
   stream.next(message);
   return message;
+}
+
+/// Calls `take` until the bytes are used up, at most so often: each call takes messages from them. What it
+/// refuses, and raw bytes that are too few, are no failure.
+template <class Take>
+void take_messages(FuzzedDataProvider& data, int most, const Take& take) {
+  for (int n = 0; n < most && data.remaining_bytes() > 0; ++n) {
+    try {
+      accept_or_refuse(take);
+    } catch (const ros::serialization::StreamOverrunException&) {
+    }
+  }
+}
+
+/// Hands each transform of a tf2_msgs/TFMessage over, as a listener does; what tf2 refuses is no failure.
+template <class Message, class Add>
+void hear_transforms(const Message& message, const Add& add) {
+  for (const auto& transform : message.transforms) {
+    try {
+      add(transform);
+    } catch (const tf2::TransformException&) {
+    }
+  }
 }
 
 }  // namespace desert_sim::fuzz

@@ -146,7 +146,7 @@ class Fuzzer:
                 # A session of the same scenario that loads the checkpoint at its step 10.
                 journal = os.path.join(folder, "journal")
                 with open(journal, "w", encoding="utf-8") as file:
-                    file.write("{journal: 1, scenario_hash: %d, backend: cpu}\n" % summary["scenario_hash"])
+                    file.write("{journal: 1, scenario_hash: %s, backend: cpu}\n" % summary["scenario_hash"])
                     file.write("{tick: 10, command: load_checkpoint, path: %s, hash: 0}\n" % json.dumps(half))
                 replayed = self.run(self.words(model, settings, ["--threads", "2", "--replay", journal, "--steps",
                                                                  str(10 + self.options.steps - int(middle)), "--out", out]))

@@ -4,7 +4,6 @@
 #include <desert_sim/RoverStatus.h>
 #include <move_base_msgs/MoveBaseGoal.h>
 #include <nav_msgs/Odometry.h>
-#include <tf2/exceptions.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <boost/make_shared.hpp>
@@ -72,7 +71,8 @@ class Node {
       case 6:
         return take_forecast(data);
       default:
-        return hear(fuzz::next_message<tf2_msgs::TFMessage>(data, words));
+        return fuzz::hear_transforms(fuzz::next_message<tf2_msgs::TFMessage>(data, words),
+                                     [this](const auto& t) { transforms_.setTransform(t, "fuzz", true); });
     }
   }
 
@@ -144,16 +144,6 @@ class Node {
     forecast.members = 1;
   }
 
-  /// What a TransformListener does with /tf.
-  void hear(const tf2_msgs::TFMessage& message) {
-    for (const geometry_msgs::TransformStamped& transform : message.transforms) {
-      try {
-        transforms_.setTransform(transform, "fuzz", true);
-      } catch (const tf2::TransformException&) {
-      }
-    }
-  }
-
   Navigator navigator_;
   tf2::BufferCore transforms_;
   LayerAssembler assembler_;
@@ -174,11 +164,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   FuzzedDataProvider data(bytes, size);
   Node node(data.ConsumeBool() ? PlannerKind::field : PlannerKind::forecast);
   for (int n = 0; n < 24 && data.remaining_bytes() > 0; ++n) {
-    try {
-      fuzz::accept_or_refuse([&] { node.take(data); });
-    } catch (const ros::serialization::StreamOverrunException&) {  // too few bytes
-      continue;
-    }
+    fuzz::take_messages(data, 1, [&] { node.take(data); });
     node.act(data.ConsumeFloatingPointInRange(0.0, 40.0));
   }
   return 0;

@@ -124,12 +124,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   static const TerrainState terrain = small_terrain();
   FuzzedDataProvider data(bytes, size);
   Node node(terrain);
-  for (int n = 0; n < 24 && data.remaining_bytes() > 0; ++n) {
-    try {
-      fuzz::accept_or_refuse([&] { node.take(data); });
-    } catch (const ros::serialization::StreamOverrunException&) {  // too few bytes
-    }
-  }
+  fuzz::take_messages(data, 24, [&] { node.take(data); });
   node.expect_saved();
   return 0;
 }
