@@ -86,12 +86,12 @@ function(desert_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${DESERT_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
-# desert_library(<target> [STATIC] [SEPARATE] FOLDERS <folder>... [EXCLUDE <regex>]
+# desert_library(<target> [STATIC] [SEPARATE [<regex>]] FOLDERS <folder>... [EXCLUDE <regex>]
 #                [LINK [PUBLIC|PRIVATE] <library>...])
 # A library of all sources in and below the folders (.cu ones with CUDA only); none while the folders are empty.
-# SEPARATE: its sources define the same names in namespaces of their own, or differ in options.
+# SEPARATE: its sources, or those that match, define the same names in namespaces of their own, or differ in options.
 function(desert_library target)
-  cmake_parse_arguments(arg "STATIC;SEPARATE" "EXCLUDE" "FOLDERS;LINK" ${ARGN})
+  cmake_parse_arguments(arg "STATIC" "EXCLUDE" "SEPARATE;FOLDERS;LINK" ${ARGN})
   set(sources "")
   foreach(folder IN LISTS arg_FOLDERS)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
@@ -116,8 +116,12 @@ function(desert_library target)
   endif()
   desert_target(${target})
   desert_link(${target} ${arg_LINK})
-  if(NOT arg_SEPARATE)
+  if(NOT "SEPARATE" IN_LIST arg_KEYWORDS_MISSING_VALUES)
     desert_unity(${target})
+    if(arg_SEPARATE)
+      list(FILTER sources INCLUDE REGEX ${arg_SEPARATE})
+      set_source_files_properties(${sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
   endif()
 endfunction()
 

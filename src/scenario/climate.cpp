@@ -8,27 +8,28 @@ namespace desert_sim {
 
 namespace {
 
-constexpr Presets::Row preset_rows[] = {
+constexpr Presets::Row climate_preset_rows[] = {
 #include "desert_sim/climates_presets.inc"
 };
-constexpr Presets presets(preset_rows);
+constexpr Presets climate_presets(climate_preset_rows);
 
 }  // namespace
 
-std::vector<std::string> climates() { return presets.names(); }
+std::vector<std::string> climates() { return climate_presets.names(); }
 
 std::string climate_doc(const std::string& name) {
-  const std::string text = presets.text(name);
+  const std::string text = climate_presets.text(name);
   return text.substr(2, text.find('\n') - 2);  // skips the leading "# "
 }
 
 YAML::Node apply_climate(const YAML::Node& root, ValidationErrors& errors) {
   const YAML::Node given = root["climate"];
   if (!given.IsDefined() || given.IsNull()) return root;
-  const char* const text = given.IsScalar() ? presets.text(given.Scalar()) : nullptr;
+  const char* const text = given.IsScalar() ? climate_presets.text(given.Scalar()) : nullptr;
   if (!text) {
-    errors.add("climate", "'" + yaml::node_text(given) + "' is not one of: " + presets.joined_names() +
-                              did_you_mean(yaml::node_text(given), presets.joined_names()));
+    errors.add("climate", "'" + yaml::node_text(given) +
+                              "' is not one of: " + climate_presets.joined_names() +
+                              did_you_mean(yaml::node_text(given), climate_presets.joined_names()));
     return root;
   }
   YAML::Node whole = YAML::Clone(root);

@@ -7,17 +7,17 @@ namespace desert_sim {
 
 namespace {
 
-constexpr Presets::Row preset_rows[] = {
+constexpr Presets::Row curve_preset_rows[] = {
 #include "desert_sim/growth_curves_presets.inc"
 };
-constexpr Presets presets(preset_rows);
+constexpr Presets curve_presets(curve_preset_rows);
 
-struct Range {
+struct CurveRange {
   double lowest, highest;
   const char* unit;
 };
-constexpr Range burial_range{-most_burial, most_burial, "m/year"};
-constexpr Range growth_range{-most_growth, most_growth, "1/year"};
+constexpr CurveRange burial_range{-most_burial, most_burial, "m/year"};
+constexpr CurveRange growth_range{-most_growth, most_growth, "1/year"};
 
 /// Whether both numbers of a point are read; adds an error for each that is not.
 bool read_point(const YAML::Node& point, const std::string& key, ValidationErrors& errors,
@@ -71,7 +71,7 @@ void read_curves(const YAML::Node& map, const std::string& path, ValidationError
 GrowthCurves read_growth_curves(const YAML::Node& root, ValidationErrors& errors) {
   GrowthCurves curves;
   ValidationErrors errors_of_preset("config/growth_curves/nield_baas.yaml");
-  read_curves(YAML::Load(presets.text("nield_baas")), "", errors_of_preset, curves);
+  read_curves(YAML::Load(curve_presets.text("nield_baas")), "", errors_of_preset, curves);
   errors_of_preset.throw_if_any();
   const YAML::Node given = root["growth_curves"];
   if (given.IsDefined() && !given.IsNull()) read_curves(given, "growth_curves.", errors, curves);

@@ -14,10 +14,10 @@ namespace desert_sim {
 
 namespace {
 
-constexpr Presets::Row preset_rows[] = {
+constexpr Presets::Row species_preset_rows[] = {
 #include "desert_sim/species_presets.inc"
 };
-constexpr Presets presets(preset_rows);
+constexpr Presets species_preset_table(species_preset_rows);
 
 void read_species_entry(const YAML::Node& node, const std::string& key, ValidationErrors& errors,
                         Species& species) {
@@ -25,11 +25,12 @@ void read_species_entry(const YAML::Node& node, const std::string& key, Validati
   SpeciesName name;
   yaml::read_parameters(node, key + ".", errors, name, known);
   if (!name.preset.empty()) {
-    if (presets.text(name.preset))
+    if (species_preset_table.text(name.preset))
       species = species_preset(name.preset);
     else
-      errors.add(key + ".preset", "'" + name.preset + "' is not one of: " + presets.joined_names() +
-                                      did_you_mean(name.preset, presets.joined_names()));
+      errors.add(key + ".preset", "'" + name.preset +
+                                      "' is not one of: " + species_preset_table.joined_names() +
+                                      did_you_mean(name.preset, species_preset_table.joined_names()));
   }
   if (!name.name.empty()) species.name = name.name;
   yaml::read_parameters(node, key + ".", errors, species.traits, known);
@@ -71,13 +72,13 @@ void read_competition(const YAML::Node& rows, std::size_t count, ValidationError
 
 }  // namespace
 
-std::vector<std::string> species_presets() { return presets.names(); }
+std::vector<std::string> species_presets() { return species_preset_table.names(); }
 
 Species species_preset(const std::string& name) {
-  const char* text = presets.text(name);
+  const char* text = species_preset_table.text(name);
   if (!text)
-    throw ConfigError("species preset '" + name + "' is not one of: " + presets.joined_names() +
-                      did_you_mean(name, presets.joined_names()));
+    throw ConfigError("species preset '" + name + "' is not one of: " + species_preset_table.joined_names() +
+                      did_you_mean(name, species_preset_table.joined_names()));
   ValidationErrors errors("species preset " + name);
   Species species{name, {}, {}};
   const YAML::Node node = YAML::Load(text);

@@ -6,7 +6,7 @@
 namespace desert_sim {
 namespace {
 
-constexpr double quantum = 1.0 / 1048576;
+constexpr double rock_quantum = 1.0 / 1048576;
 
 class AbrasionLaw : public test::OnBackend {
  protected:
@@ -31,9 +31,9 @@ class AbrasionLaw : public test::OnBackend {
 TEST_P(AbrasionLaw, WearsBareRockByTheBouncingSand) {
   const auto t = worn([](test::BenchTerrain&) {});
   const double expected = 0.01 * 2 * 0.98 * 0.49;
-  EXPECT_NEAR(t->booked(Material::bedrock, 1) * quantum, expected, 2 * quantum);
+  EXPECT_NEAR(t->booked(Material::bedrock, 1) * rock_quantum, expected, 2 * rock_quantum);
   EXPECT_EQ(t->booked(Material::bedrock, 1), t->booked(Material::sand, 0));
-  EXPECT_NEAR(t->at(Layer::sand, 0, 0), 0.01 + expected, 2 * quantum);
+  EXPECT_NEAR(t->at(Layer::sand, 0, 0), 0.01 + expected, 2 * rock_quantum);
   EXPECT_NEAR(t->at(Layer::bedrock, 0, 0), 100 - expected, 1e-5);
 }
 
@@ -80,7 +80,7 @@ TEST_P(AbrasionLaw, BouncingSandCountsUpToOneMetre) {
     test::BenchTerrain t(exec(), 1, 1);
     t.set(Layer::airborne_sand, air).set(Layer::wind_x, 1);
     t.saltation(p, a);
-    EXPECT_NEAR(t.booked(Material::bedrock, 1) * quantum, 0.01, 2 * quantum) << air;
+    EXPECT_NEAR(t.booked(Material::bedrock, 1) * rock_quantum, 0.01, 2 * rock_quantum) << air;
   }
 }
 

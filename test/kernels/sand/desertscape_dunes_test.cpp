@@ -11,11 +11,11 @@
 namespace desert_sim {
 namespace {
 
-constexpr int side = 48;
+constexpr int desertscape_side = 48;
 
 /// A sheet of sand in which dunes grow.
 std::string sheet(double depth, double slab, double creeping, double speed, int seed) {
-  const std::string size = std::to_string(side), lift = std::to_string(slab);
+  const std::string size = std::to_string(desertscape_side), lift = std::to_string(slab);
   return "grid: {width: " + size + ", height: " + size +
          "}\nterrain: [uniform: {layer: sand, value: " + std::to_string(depth) +
          "}]\nwind: {speed: " + std::to_string(speed) +
@@ -38,7 +38,7 @@ TEST(Desertscape, EventsAtOnceAreAsOneEventAfterTheOther) {
     scene.run(steps).expect_balanced();
     const Field sand = scene.field(Layer::sand);
     parallel.push_back(in_slabs({sand.values.begin(), sand.values.end()}));
-    test::SequentialDesertscape reference(side, depth, slab, creeping, speed, 0.6,
+    test::SequentialDesertscape reference(desertscape_side, depth, slab, creeping, speed, 0.6,
                                           static_cast<unsigned>(seed));
     reference.run(steps);
     sequential.push_back(in_slabs(reference.sand));

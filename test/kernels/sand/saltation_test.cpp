@@ -7,7 +7,7 @@
 namespace desert_sim {
 namespace {
 
-constexpr double quantum = 1.0 / 1048576;
+constexpr double sand_quantum = 1.0 / 1048576;
 
 class SaltationLaw : public test::OnBackend {
  protected:
@@ -41,17 +41,17 @@ class SaltationLaw : public test::OnBackend {
 
 TEST_P(SaltationLaw, LiftsOneMetreAndDepositsSixTenthsOnSand) {
   const OneCell c = one_cell([](test::BenchTerrain&) {});
-  EXPECT_NEAR(c.sand, 10 - 1 + 0.6, 2 * quantum);
-  EXPECT_NEAR(c.air, 0.4, 2 * quantum);
+  EXPECT_NEAR(c.sand, 10 - 1 + 0.6, 2 * sand_quantum);
+  EXPECT_NEAR(c.air, 0.4, 2 * sand_quantum);
 }
 
 TEST_P(SaltationLaw, LiftScalesWithTimeStepShadowAndVegetation) {
-  EXPECT_NEAR(one_cell([](test::BenchTerrain&) {}, {}, 0.25f).air, 0.25 * 0.4, 2 * quantum);
+  EXPECT_NEAR(one_cell([](test::BenchTerrain&) {}, {}, 0.25f).air, 0.25 * 0.4, 2 * sand_quantum);
   EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 0.25); }).air, 0.75 * 0.4,
-              2 * quantum);
+              2 * sand_quantum);
   // Vegetation holds more as well: p = 0.6 + 0.5·0.4.
   EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::vegetation, 0.5); }).air, 0.5 * 0.2,
-              2 * quantum);
+              2 * sand_quantum);
 }
 
 /// Of 2 m in the air and 1 m that can be lifted a quarter hops in a quarter of a second; the rest waits. Thin
@@ -59,33 +59,34 @@ TEST_P(SaltationLaw, LiftScalesWithTimeStepShadowAndVegetation) {
 /// hopped in a step of any length.
 TEST_P(SaltationLaw, AShareHopsInAShareOfTheHopTime) {
   const auto in_the_air = [](test::BenchTerrain& t) { t.set(Layer::airborne_sand, 2); };
-  EXPECT_NEAR(one_cell(in_the_air, {}, 0.25f).air, 1.5 + 0.25 * 3 * 0.4, 4 * quantum);
-  EXPECT_NEAR(one_cell(in_the_air, {}, 0.25f).sand, 10 - 0.25 + 0.25 * 3 * 0.6, 4 * quantum);
+  EXPECT_NEAR(one_cell(in_the_air, {}, 0.25f).air, 1.5 + 0.25 * 3 * 0.4, 4 * sand_quantum);
+  EXPECT_NEAR(one_cell(in_the_air, {}, 0.25f).sand, 10 - 0.25 + 0.25 * 3 * 0.6, 4 * sand_quantum);
   const OneCell thin = one_cell([](test::BenchTerrain& t) { t.set(Layer::sand, 0.5); }, {}, 0.25f);
-  EXPECT_NEAR(thin.air, 0.125 * 0.6, 4 * quantum);
+  EXPECT_NEAR(thin.air, 0.125 * 0.6, 4 * sand_quantum);
   SaltationParameters slow;
   slow.hop_time = 4;
-  EXPECT_NEAR(one_cell(in_the_air, slow, 1).air, 1.5 + 0.25 * (2 + 4) * 0.4, 4 * quantum);
+  EXPECT_NEAR(one_cell(in_the_air, slow, 1).air, 1.5 + 0.25 * (2 + 4) * 0.4, 4 * sand_quantum);
 }
 
 TEST_P(SaltationLaw, LiftIsHalvedOnStickyGroundAndRaisedInTheLane) {
-  EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::echo, 0.5); }).air, 0.5 * 0.4, 2 * quantum);
+  EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::echo, 0.5); }).air, 0.5 * 0.4,
+              2 * sand_quantum);
   EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::echo, -1); }).air, 2,
-              2 * quantum);  // lifts 1 + 1, holds none
+              2 * sand_quantum);  // lifts 1 + 1, holds none
   EXPECT_NEAR(one_cell([](test::BenchTerrain& t) { t.set(Layer::echo, -1).set(Layer::wind_shadow, 1); }).air,
-              1, 2 * quantum);
+              1, 2 * sand_quantum);
 }
 
 TEST_P(SaltationLaw, LiftStopsAtTheSandThatIsThere) {
   const OneCell c = one_cell([](test::BenchTerrain& t) { t.set(Layer::sand, 0.25); });
-  EXPECT_NEAR(c.sand + c.air, 0.25, quantum);
-  EXPECT_NEAR(c.air, 0.25 * 0.6, 2 * quantum);  // it lands on bare rock
+  EXPECT_NEAR(c.sand + c.air, 0.25, sand_quantum);
+  EXPECT_NEAR(c.air, 0.25 * 0.6, 2 * sand_quantum);  // it lands on bare rock
 }
 
 TEST_P(SaltationLaw, LiftFadesWithMoistureAndStopsUnderWater) {
   // Capacity 0.3 of one metre: 0.015 m of moisture is m = 0.05, so M = 0.5; what lands is held half as well.
   const OneCell damp = one_cell([](test::BenchTerrain& t) { t.set(Layer::moisture, 0.015); });
-  EXPECT_NEAR(damp.sand + damp.air, 10, quantum);
+  EXPECT_NEAR(damp.sand + damp.air, 10, sand_quantum);
   EXPECT_NEAR(damp.air, 0.5 * (1 - 0.6 * 0.5), 1e-5);
   EXPECT_LT(one_cell([](test::BenchTerrain& t) { t.set(Layer::moisture, 0.03); }).air,
             1e-5);  // m = 0.1 but for rounding
@@ -103,17 +104,18 @@ TEST_P(SaltationLaw, NothingIsLiftedBelowTheThresholdSpeed) {
 }
 
 TEST_P(SaltationLaw, DepositsBySurface) {
-  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 1); }), 0.6, 2 * quantum);
-  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::soil, 1); }), 0.5, 2 * quantum);
-  EXPECT_NEAR(deposit_share([](test::BenchTerrain&) {}), 0.4, 2 * quantum);
+  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 1); }), 0.6, 2 * sand_quantum);
+  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::soil, 1); }), 0.5, 2 * sand_quantum);
+  EXPECT_NEAR(deposit_share([](test::BenchTerrain&) {}), 0.4, 2 * sand_quantum);
   EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 0.0005); }), 0.4,
-              2 * quantum);  // counts as bare
+              2 * sand_quantum);  // counts as bare
 }
 
 TEST_P(SaltationLaw, DepositsAllInShadowNothingOnObstaclesAndInTheLane) {
-  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 1); }), 1, quantum);
-  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 0.3); }), 0.4, 2 * quantum);
-  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::echo, 0.9); }), 0.9, 2 * quantum);
+  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 1); }), 1, sand_quantum);
+  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::wind_shadow, 0.3); }), 0.4,
+              2 * sand_quantum);
+  EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::echo, 0.9); }), 0.9, 2 * sand_quantum);
   EXPECT_EQ(deposit_share([](test::BenchTerrain& t) { t.set(Layer::echo, -1).set(Layer::wind_shadow, 1); }),
             0);
   EXPECT_EQ(
@@ -122,7 +124,7 @@ TEST_P(SaltationLaw, DepositsAllInShadowNothingOnObstaclesAndInTheLane) {
 
 TEST_P(SaltationLaw, DepositGrowsWithVegetationAndShrinksWithWetness) {
   EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::vegetation, 0.5); }), 0.4 + 0.5 * 0.6,
-              2 * quantum);
+              2 * sand_quantum);
   EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 2).set(Layer::moisture, 0.015); }),
               0.3, 1e-5);
   EXPECT_NEAR(deposit_share([](test::BenchTerrain& t) { t.set(Layer::sand, 2).set(Layer::moisture, 0.3); }),
@@ -247,9 +249,9 @@ TEST_P(SaltationLaw, InfluxIsPerMetreOfEdgeAndSecondWhateverHopCellAndTimeStep) 
         test::BenchTerrain t(exec(), 16, 9, cell, false);
         t.set(Layer::wind_x, u);
         t.saltation(p, {}, {}, dt);
-        const double volume = t.booked(Material::sand, 0) * quantum * cell * cell;
-        // Half a quantum a cell, in each hop of 1 s.
-        const double rounding = 0.5 * quantum * 16 * 9 * cell * cell * std::ceil(dt);
+        const double volume = t.booked(Material::sand, 0) * sand_quantum * cell * cell;
+        // Half a sand_quantum a cell, in each hop of 1 s.
+        const double rounding = 0.5 * sand_quantum * 16 * 9 * cell * cell * std::ceil(dt);
         EXPECT_NEAR(volume, 0.125 * dt * 9 * cell, rounding + 1e-6)
             << "cell " << cell << ", dt " << dt << ", u " << u;
         EXPECT_EQ(t.total(Layer::sand) + t.total(Layer::airborne_sand),
@@ -268,7 +270,8 @@ TEST_P(SaltationLaw, InfluxOfAnObliqueWindIsThroughTheEdgesCrossSection) {
     t.set(Layer::wind_x, u).set(Layer::wind_y, v);
     t.saltation(p);
     const double across = (9 * std::abs(u) + 16 * std::abs(v)) / std::hypot(u, v);
-    EXPECT_NEAR(t.booked(Material::sand, 0) * quantum, 0.125 * across, 16 * 9 * quantum) << u << ", " << v;
+    EXPECT_NEAR(t.booked(Material::sand, 0) * sand_quantum, 0.125 * across, 16 * 9 * sand_quantum)
+        << u << ", " << v;
   }
 }
 

@@ -54,7 +54,7 @@ const std::string far = "wind: {speed: 40}\n";
 std::string model(const std::string& more) {
   return far + "slab_model: {slab_height: 0.1, hop_time: 10, " + more + "}\n";
 }
-constexpr double cells = side * side;
+constexpr double slab_cells = side * side;
 
 TEST_P(SlabResistance, OfPlantsIsTheShareOfSlabsThatStay) {
   auto s = simulation(open_grid + bed +
@@ -62,7 +62,7 @@ TEST_P(SlabResistance, OfPlantsIsTheShareOfSlabsThatStay) {
                       "  - uniform: {layer: mesquite, value: -0.4}\n" +
                       model("kind: nield_baas"));
   s->step();
-  EXPECT_NEAR(slabs_taken(*s), 0.5 * cells, 4 * std::sqrt(0.5 * cells));
+  EXPECT_NEAR(slabs_taken(*s), 0.5 * slab_cells, 4 * std::sqrt(0.5 * slab_cells));
 }
 
 /// At the end of a year each kind has grown by its curve of the change of sand; not before.
@@ -189,8 +189,8 @@ TEST_P(ForcedErosion, TakesAsManySlabsAsCellsArePolled) {
            forced = simulation(world + model(kind + ", forced_erosion: true"));
       free->step();
       forced->step();
-      EXPECT_NEAR(slabs_taken(*free), 0.5 * polls * cells, 4 * std::sqrt(polls * cells));
-      EXPECT_NEAR(slabs_taken(*forced), polls * cells, 1.5 * std::sqrt(polls * cells));
+      EXPECT_NEAR(slabs_taken(*free), 0.5 * polls * slab_cells, 4 * std::sqrt(polls * slab_cells));
+      EXPECT_NEAR(slabs_taken(*forced), polls * slab_cells, 1.5 * std::sqrt(polls * slab_cells));
       test::expect_sound(*forced, "with forced erosion");
     }
 }

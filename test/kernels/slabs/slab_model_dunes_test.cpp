@@ -13,10 +13,10 @@
 namespace desert_sim {
 namespace {
 
-constexpr int side = 96;
+constexpr int slab_side = 96;
 
 test::Pattern in_parallel(const std::string& model, int slabs, int steps, int seed) {
-  const std::string size = std::to_string(side);
+  const std::string size = std::to_string(slab_side);
   Running scene(parse_scenario_text(
       "grid: {width: " + size + ", height: " + size +
           "}\nterrain: [uniform: {layer: sand, value: " + std::to_string(slabs / 3.0) +
@@ -34,7 +34,7 @@ void compare(const std::string& model, int slabs, int steps,
   std::vector<test::Pattern> parallel, sequential;
   for (int seed = 1; seed <= test::seeds; ++seed) {
     parallel.push_back(in_parallel(model, slabs, steps, seed));
-    test::SequentialSlabs reference = make(side, slabs, static_cast<unsigned>(seed));
+    test::SequentialSlabs reference = make(slab_side, slabs, static_cast<unsigned>(seed));
     reference.run(steps);
     sequential.push_back(test::pattern_of({reference.height.begin(), reference.height.end()}));
   }

@@ -78,13 +78,13 @@ TEST_P(HeldLayer, ChangesFromAndToNanAndASpecialZeroAreSentWhole) {
   }
 }
 
-const char* const world =
+const char* const held_world =
     "grid: {width: 90, height: 70, cell_size: 1}\n"
     "terrain: [noise: {layer: bedrock, low: 100, high: 110, scale: 19},\n"
     "          noise: {layer: sand, low: 0.5, high: 3, scale: 9, seed: 2}]\n";
 
 TEST_P(HeldLayer, OfASimulationTellsWhatStepsChanged) {
-  auto s = simulation(world);
+  auto s = simulation(held_world);
   EXPECT_FALSE(s->holds(Layer::elevation));
   EXPECT_FALSE(test::begin_changes(*s, 0.01f, 32));
   test::run(*s, 2);
@@ -112,7 +112,7 @@ TEST_P(HeldLayer, OfASimulationTellsWhatStepsChanged) {
 
 /// Layers of each kind: stored quanta and floats, derived, computed on request, and absent ones.
 TEST_P(HeldLayer, OfAnyLayerOfASimulation) {
-  auto s = simulation(world);
+  auto s = simulation(held_world);
   const std::vector<Layer> layers{Layer::bedrock,       Layer::sand,        Layer::wind_x,
                                   Layer::slope,         Layer::wind_shadow, Layer::traversability,
                                   Layer::water_surface, Layer::water};
@@ -142,7 +142,7 @@ TEST_P(HeldLayer, OfAnyLayerOfASimulation) {
 }
 
 TEST_P(HeldLayer, OnlyWhatIsAskedForIsComputedAndKept) {
-  auto s = simulation(world);
+  auto s = simulation(held_world);
   const std::size_t before = s->terrain().bytes(), layer = 4 * 90 * 70;
   test::hold(*s, Layer::slope);
   EXPECT_TRUE(s->holds(Layer::slope));

@@ -2,13 +2,12 @@
 
 #include <cmath>
 
+#include "src/core/constants.hpp"
 #include "test/support/bench_terrain.hpp"
 #include "test/support/world.hpp"
 
 namespace desert_sim {
 namespace {
-
-constexpr double pi = 3.14159265358979;
 
 /// 0 … 1, of a cell.
 double roughness(int x, int y) {

@@ -3,13 +3,14 @@
 
 #include <cmath>
 
+#include "src/core/constants.hpp"
 #include "test/support/bench_terrain.hpp"
 #include "test/support/world.hpp"
 
 namespace desert_sim {
 namespace {
 
-constexpr double g = 9.81, pi = 3.14159265358979;
+constexpr double g = 9.81;
 
 class Water : public test::OnBackend {
  protected:

@@ -9,7 +9,7 @@
 namespace desert_sim {
 namespace {
 
-constexpr double quantum = 1.0 / (1 << 20);
+constexpr double water_quantum = 1.0 / (1 << 20);
 
 class WaterLaws : public test::OnBackend {
  protected:
@@ -34,7 +34,7 @@ TEST_P(WaterLaws, RainFallsEverywhereAtItsRateHoweverLittleAStep) {
     p.rate = static_cast<float>(rate);
     for (std::uint64_t n = 0; n < 1000; ++n) rain(t, p, n);
     for (Quanta w : t.quanta(Layer::water))
-      EXPECT_NEAR(w * quantum, 1000 * rate, quantum + 1e-5 * rate * 1000);
+      EXPECT_NEAR(w * water_quantum, 1000 * rate, water_quantum + 1e-5 * rate * 1000);
     EXPECT_EQ(t.booked(Material::water, 0), t.total(Layer::water));
   }
 }
@@ -104,7 +104,7 @@ TEST_P(WaterLaws, SpringsGiveTheirDischargeOnADiscAroundTheTorusToo) {
     for (std::uint64_t n = 0; n < 10; ++n) pour(t, spring, n);
     int cells = 0;
     for (Quanta w : t.quanta(Layer::water)) cells += w > 0;
-    EXPECT_NEAR(static_cast<double>(t.total(Layer::water)) * quantum, 25, 1e-4) << "radius " << radius;
+    EXPECT_NEAR(static_cast<double>(t.total(Layer::water)) * water_quantum, 25, 1e-4) << "radius " << radius;
     EXPECT_EQ(t.booked(Material::water, 0), t.total(Layer::water));
     EXPECT_NEAR(cells, std::max(1.0, 3.14159 * radius * radius), std::max(0.1, 2.0 * radius));
   }
@@ -118,7 +118,8 @@ TEST_P(WaterLaws, SpringsGiveTheirDischargeASecondWhateverTheTimeStep) {
     test::BenchTerrain t(exec(), 16, 16);
     const auto steps = static_cast<std::uint64_t>(std::lround(10 / step));
     for (std::uint64_t n = 0; n < steps; ++n) pour(t, {8, 8, 3, 0.25f}, n, step);
-    EXPECT_NEAR(static_cast<double>(t.total(Layer::water)) * quantum, 2.5, 1e-4) << "time step " << step;
+    EXPECT_NEAR(static_cast<double>(t.total(Layer::water)) * water_quantum, 2.5, 1e-4)
+        << "time step " << step;
   }
 }
 
@@ -128,7 +129,7 @@ TEST_P(WaterLaws, SpringsWiderThanTheTerrainOrOverItsEdgeGiveAllTheyHave) {
       for (const float radius : {0.8f, 4.0f, 50.0f, 1e5f}) {
         test::BenchTerrain t(exec(), width, height, 1, periodic);
         pour(t, {0.5f, 0.5f, radius, 2.0f});
-        const double poured = static_cast<double>(t.total(Layer::water)) * quantum;
+        const double poured = static_cast<double>(t.total(Layer::water)) * water_quantum;
         EXPECT_NEAR(poured, 2, 1e-4) << width << " x " << height << ", radius " << radius << ", periodic "
                                      << periodic;
       }
@@ -185,8 +186,8 @@ TEST_P(WaterLaws, OpenEdgesDrainToTheSeaAndNoFurther) {
   p.sea = Sea::border;
   for (int n = 0; n < 300; ++n) t.flow(p, 1, n, 2 << 20);
   for (Quanta w : t.quanta(Layer::water)) {
-    ASSERT_LE(w * quantum, 2.005);
-    ASSERT_GE(w * quantum, 1.995);  // what swings out comes back; else it fell to 1.9
+    ASSERT_LE(w * water_quantum, 2.005);
+    ASSERT_GE(w * water_quantum, 1.995);  // what swings out comes back; else it fell to 1.9
   }
 }
 
@@ -233,7 +234,7 @@ TEST_P(WaterLaws, OverOpenEdgesWaterLeavesAsOverASill) {
     WaterParameters p;
     p.friction = 0;
     t.flow(p, static_cast<float>(step));
-    return t.booked(Material::water, 1) * quantum;
+    return t.booked(Material::water, 1) * water_quantum;
   };
   const double sill = depth * std::sqrt(9.81 * depth);  // a metre of edge lets out [m³/s]
   EXPECT_NEAR(lost(0), 64 * sill * step, 1e-4);

@@ -8,7 +8,7 @@
 namespace desert_sim {
 namespace {
 
-double tangent(double degrees) { return std::tan(degrees * 3.14159265358979 / 180); }
+double tangent_of(double degrees) { return std::tan(degrees * 3.14159265358979 / 180); }
 
 class WindLaw : public test::OnBackend {
  protected:
@@ -146,7 +146,8 @@ TEST_P(WindLaw, ShadowOfAStepIsItsAngle) {
   for (int x = 0; x < 40; ++x) {
     const int d = x - 9;
     const double slope = d >= 1 && d <= 10 ? 1.2 / d : 0;
-    const double expected = std::clamp((slope - tangent(10)) / (tangent(15) - tangent(10)), 0.0, 1.0);
+    const double expected =
+        std::clamp((slope - tangent_of(10)) / (tangent_of(15) - tangent_of(10)), 0.0, 1.0);
     EXPECT_NEAR(t.at(Layer::wind_shadow, x, 1), expected, 2e-5) << x;
   }
 }
@@ -158,7 +159,7 @@ TEST_P(WindLaw, ShadowIsCountedInMetresNotCells) {
   for (int x = 10; x < 40; ++x) {
     const double distance = 0.5 * (x - 9), slope = distance <= 10 ? 1.2 / distance : 0;
     EXPECT_NEAR(t.at(Layer::wind_shadow, x, 1),
-                std::clamp((slope - tangent(10)) / (tangent(15) - tangent(10)), 0.0, 1.0), 2e-5)
+                std::clamp((slope - tangent_of(10)) / (tangent_of(15) - tangent_of(10)), 0.0, 1.0), 2e-5)
         << x;
   }
 }
@@ -193,7 +194,7 @@ TEST_P(WindLaw, ShadowReachesAcrossAPeriodicBorderBetweenCells) {
     flat.start_deg = 0;
     flat.full_deg = 80;
     t.shadow(flat);
-    EXPECT_NEAR(t.at(Layer::wind_shadow, 0, 0), 6 * 0.75 / 1.25 / tangent(80), 1e-4);
+    EXPECT_NEAR(t.at(Layer::wind_shadow, 0, 0), 6 * 0.75 / 1.25 / tangent_of(80), 1e-4);
   }
 }
 
@@ -209,7 +210,7 @@ TEST_P(WindLaw, ShadowAlongADiagonalIsMeasuredInMetres) {
   p.distance = 12;  // four steps of 2.83 m
   t.shadow(p);
   for (int n = 1; n <= 4; ++n)
-    EXPECT_NEAR(t.at(Layer::wind_shadow, 4 + n, 4 + n), 20 / (n * 2.82842712) / tangent(89), 1e-4) << n;
+    EXPECT_NEAR(t.at(Layer::wind_shadow, 4 + n, 4 + n), 20 / (n * 2.82842712) / tangent_of(89), 1e-4) << n;
   EXPECT_EQ(t.at(Layer::wind_shadow, 9, 9), 0);
 }
 

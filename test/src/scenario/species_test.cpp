@@ -6,7 +6,7 @@
 namespace desert_sim {
 namespace {
 
-std::string refusal(const std::string& yaml) {
+std::string species_refusal(const std::string& yaml) {
   try {
     test::scenario_of(yaml);
   } catch (const ConfigError& e) {
@@ -17,7 +17,7 @@ std::string refusal(const std::string& yaml) {
 }
 
 void expect_refused(const std::string& yaml, std::initializer_list<const char*> texts) {
-  const std::string why = refusal(yaml);
+  const std::string why = species_refusal(yaml);
   for (const char* text : texts)
     EXPECT_NE(why.find(text), std::string::npos) << "no '" << text << "' in: " << why;
 }

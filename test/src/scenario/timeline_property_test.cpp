@@ -10,7 +10,7 @@
 namespace desert_sim {
 namespace {
 
-const std::string world =
+const std::string timeline_world =
     "grid: {width: 24, height: 20}\nterrain: [uniform: {layer: sand, value: 2}]\n"
     "wind: {speed: 4, warping: false, projection: false}\n";
 
@@ -18,7 +18,7 @@ class Timeline : public test::OnBackend {};
 
 TEST_P(Timeline, ChangesAtItsTimesAtOnceOrOverARamp) {
   auto s = simulation(
-      world +
+      timeline_world +
       "rain: {rate: 1.0e-5}\n"
       "run: {time_step: 2, timeline: [{time: 10, set: {wind.speed: 6, avalanching.quality: fast}}, "
       "{time: 20, ramp: 40, set: {rain.rate: 5.0e-5}}]}\n");
@@ -63,7 +63,7 @@ TEST_P(Timeline, ACheckpointInTheMiddleOfARampContinuesToTheBit) {
 }
 
 TEST_P(Timeline, SetParametersRampsTooAndStopsWhatRampedBefore) {
-  auto s = simulation(world);
+  auto s = simulation(timeline_world);
   s->apply(command::SetParameters{{"saltation.lift=0", "reptation.method=off"}, 20});
   EXPECT_EQ(s->scenario().reptation.method, ReptationMethod::off);
   test::run(*s, 11);
@@ -81,7 +81,7 @@ TEST_P(Timeline, RampsThatMeetAConditionBetweenParametersGoOn) {
   std::vector<std::string> messages;
   const LogSink before =
       set_log_sink([&](Severity, const std::string& message) { messages.push_back(message); });
-  auto s = simulation(world +
+  auto s = simulation(timeline_world +
                       "wind_shadow: {start_deg: 10, full_deg: 15}\n"
                       "run: {timeline: [{time: 1, ramp: 80, set: {wind_shadow.full_deg: 25}},\n"
                       "                 {time: 1, ramp: 20, set: {wind_shadow.start_deg: 20}}]}\n");
@@ -97,7 +97,7 @@ TEST_P(Timeline, RampsThatMeetAConditionBetweenParametersGoOn) {
 TEST(TimelineFaults, AreAllNamed) {
   const auto faults_of = [](const std::string& timeline) -> std::string {
     try {
-      test::parsed(world + "run: {timeline: " + timeline + "}\n");
+      test::parsed(timeline_world + "run: {timeline: " + timeline + "}\n");
     } catch (const ConfigError& e) {
       return e.what();
     }

@@ -10,38 +10,38 @@
 namespace desert_sim {
 namespace {
 
-WindSeries parse(const std::string& text) {
+WindSeries series_of(const std::string& text) {
   return parse_wind_series(text, "wind.csv", {SeriesDirection::to, SeriesAngle::mathematical});
 }
 
-void expect_wind(wind::Vector w, double x, double y) {
+void expect_blows(wind::Vector w, double x, double y) {
   EXPECT_NEAR(w.x, x, 1e-5);
   EXPECT_NEAR(w.y, y, 1e-5);
 }
 
-const std::string three = "time,speed,direction\n0,4,0\n10,5,90\n30,6,180\n";
+const std::string three_rows = "time,speed,direction\n0,4,0\n10,5,90\n30,6,180\n";
 
 TEST(WindSeries, HoldsEachRowUntilTheNext) {
-  const WindSeries s = parse(three);
-  expect_wind(s.at(-5, false), 4, 0);
-  expect_wind(s.at(0, false), 4, 0);
-  expect_wind(s.at(9.999, false), 4, 0);
-  expect_wind(s.at(10, false), 0, 5);
-  expect_wind(s.at(29.9, false), 0, 5);
-  expect_wind(s.at(30, false), -6, 0);
-  expect_wind(s.at(1e9, false), -6, 0);
+  const WindSeries s = series_of(three_rows);
+  expect_blows(s.at(-5, false), 4, 0);
+  expect_blows(s.at(0, false), 4, 0);
+  expect_blows(s.at(9.999, false), 4, 0);
+  expect_blows(s.at(10, false), 0, 5);
+  expect_blows(s.at(29.9, false), 0, 5);
+  expect_blows(s.at(30, false), -6, 0);
+  expect_blows(s.at(1e9, false), -6, 0);
   EXPECT_EQ(s.shortest_interval(), 10);
   EXPECT_NEAR(s.fastest(), 6, 1e-6);
 }
 
 /// The last row holds for 20 s, as the one before it.
 TEST(WindSeries, Repeats) {
-  const WindSeries s = parse(three);
-  expect_wind(s.at(49.9, true), -6, 0);
-  expect_wind(s.at(50, true), 4, 0);
-  expect_wind(s.at(60, true), 0, 5);
-  expect_wind(s.at(50 * 7 + 35, true), -6, 0);
-  expect_wind(parse("time,speed,direction\n5,4,0\n").at(1e6, true), 4, 0);
+  const WindSeries s = series_of(three_rows);
+  expect_blows(s.at(49.9, true), -6, 0);
+  expect_blows(s.at(50, true), 4, 0);
+  expect_blows(s.at(60, true), 0, 5);
+  expect_blows(s.at(50 * 7 + 35, true), -6, 0);
+  expect_blows(series_of("time,speed,direction\n5,4,0\n").at(1e6, true), 4, 0);
 }
 
 TEST(WindSeries, KnowsTheCalendar) {
@@ -60,7 +60,8 @@ TEST(WindSeries, KnowsTheCalendar) {
 }
 
 TEST(WindSeries, IsTheSameAsText) {
-  WindSeries s = parse("time,speed,direction\n2001-03-04T15:00,3.3,17\n2001-03-04T15:00:00.1,7.1,200.3\n");
+  WindSeries s =
+      series_of("time,speed,direction\n2001-03-04T15:00,3.3,17\n2001-03-04T15:00:00.1,7.1,200.3\n");
   const WindSeries back = WindSeries::from_text(s.text(), "a.ck");
   EXPECT_EQ(back.text(), s.text());
   EXPECT_EQ(back.date, s.date);

@@ -9,7 +9,7 @@
 namespace desert_sim {
 namespace {
 
-std::string refusal(const std::string& yaml) {
+std::string yaml_refusal(const std::string& yaml) {
   try {
     parse_scenario_text(yaml, "long");
   } catch (const ConfigError& e) {
@@ -29,7 +29,7 @@ TEST(Messages, AnErrorHoldsAtMost2000Bytes) {
 TEST(Messages, AHundredThousandUnknownKeysMakeOneShortMessage) {
   std::string yaml = "grid: {";
   for (int n = 0; n < 100000; ++n) yaml += "unknown_" + std::to_string(n) + ": 1, ";
-  const std::string message = refusal(yaml + "width: 3}");
+  const std::string message = yaml_refusal(yaml + "width: 3}");
   EXPECT_LE(message.size(), max_message_size);
   EXPECT_NE(message.find("grid.unknown_0"), std::string::npos) << message;
   EXPECT_NE(message.find("more errors"), std::string::npos) << message;
@@ -51,7 +51,7 @@ TEST(Messages, TheErrorsThatAreLeftOutAreCounted) {
 }
 
 TEST(Messages, AKeyOfAMegabyteIsCut) {
-  const std::string message = refusal("grid:\n  ? " + std::string(1000000, 'k') + "\n  : 1\n");
+  const std::string message = yaml_refusal("grid:\n  ? " + std::string(1000000, 'k') + "\n  : 1\n");
   EXPECT_LE(message.size(), max_message_size);
   EXPECT_NE(message.find("unknown key"), std::string::npos) << message;
 }

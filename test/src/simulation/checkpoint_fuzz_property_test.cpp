@@ -15,7 +15,7 @@
 namespace desert_sim {
 namespace {
 
-const char* const world =
+const char* const fuzzed_world =
     "grid: {width: 20, height: 16, boundary: open}\n"
     "terrain:\n"
     "  - noise: {layer: bedrock, low: 0, high: 4, scale: 12}\n"
@@ -131,7 +131,7 @@ class Mutation {
 TEST(CheckpointFuzz, MutatedCheckpointsAreRefusedOrRunAndAreSavedAgain) {
   const auto exec = make_exec("cpu", 1);
   const test::TemporaryFolder folder;
-  auto s = test::simulate(*exec, world);
+  auto s = test::simulate(*exec, fuzzed_world);
   test::run(*s, 6);
   ASSERT_GT(s->state().plants.count, 2);
   const std::string bytes = checkpoint_bytes(*s);

@@ -11,7 +11,7 @@
 namespace desert_sim {
 namespace {
 
-const char* const world =
+const char* const saved_world =
     "grid: {width: 21, height: 17, boundary: open, origin_x: 1000.5, origin_y: -20}\n"
     "terrain: [noise: {layer: bedrock, low: 100.25, high: 107, scale: 10}, noise: {layer: sand, low: 0, "
     "high: 3}]\n"
@@ -22,7 +22,7 @@ const char* const world =
 class Checkpoint : public test::OnBackend {
  protected:
   std::string saved(const std::string& name = "a.ck", int steps = 5) {
-    auto s = simulation(world);
+    auto s = simulation(saved_world);
     test::run(*s, steps);
     save_checkpoint(folder_.path(name), *s);
     return folder_.path(name);
@@ -44,7 +44,7 @@ class Checkpoint : public test::OnBackend {
 };
 
 TEST_P(Checkpoint, ContinuesToTheBitAfterSaltationWasSwitchedOff) {
-  auto s = simulation(world);
+  auto s = simulation(saved_world);
   test::run(*s, 5);
   s->apply(command::SetParameters{{"saltation.enabled=false"}});
   save_checkpoint(folder_.path("a.ck"), *s);
@@ -112,7 +112,7 @@ TEST_P(Checkpoint, ThatIsNoneIsRefused) {
 }
 
 TEST_P(Checkpoint, ThatCannotBeWrittenLeavesNothing) {
-  auto s = simulation(world);
+  auto s = simulation(saved_world);
   EXPECT_THROW(save_checkpoint(folder_.path("no/such/folder.ck"), *s), ConfigError);
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path("")));
 }
@@ -130,7 +130,7 @@ TEST_P(Checkpoint, LeavesNoTemporaryFile) {
 TEST_P(Checkpoint, RefusedLeavesTheSessionAsItWas) {
   const std::string bytes = test::file_bytes(saved());
   const std::string cut = folder_.write("cut.ck", bytes.substr(0, bytes.size() / 2));
-  Session session(test::scenario_of(world), no_raster_loader, GetParam(), 1);
+  Session session(test::scenario_of(saved_world), no_raster_loader, GetParam(), 1);
   for (int n = 0; n < 3; ++n) session.step();
   const std::uint64_t before = session.simulation().state_hash();
   EXPECT_THROW(session.apply(command::LoadCheckpoint{cut, 0}), ConfigError);
@@ -141,7 +141,7 @@ TEST_P(Checkpoint, RefusedLeavesTheSessionAsItWas) {
 
 /// Terrain, parameters and wind of the scenario that the checkpoint is of, not as commands had changed them.
 TEST_P(Checkpoint, TakesAResetToTheStartOfItsOwnScenario) {
-  Session session(test::scenario_of(world), no_raster_loader, GetParam(), 1);
+  Session session(test::scenario_of(saved_world), no_raster_loader, GetParam(), 1);
   const std::uint64_t start = session.simulation().state_hash();
   const std::string scenario = dump_scenario(session.simulation().scenario());
   session.apply(command::SetParameters{{"saltation.lift=0.3"}});
@@ -201,7 +201,7 @@ TEST_P(Checkpoint, IsReadBelowTheFolderOnlyIfCommandsAreConfined) {
 }
 
 TEST_P(Checkpoint, KeepsClockWindOriginAndBooks) {
-  auto s = simulation(world);
+  auto s = simulation(saved_world);
   command::SetWind wind;
   wind.speed = 7.3f;
   wind.direction_deg = 33.3f;

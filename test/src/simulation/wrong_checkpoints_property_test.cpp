@@ -18,7 +18,7 @@ using test::CheckpointParts;
 using Change = std::function<void(CheckpointParts&)>;
 
 /// Rain that a timeline makes heavier, rivers, plants, a wind rose.
-const char* const world =
+const char* const refused_world =
     "grid: {width: 24, height: 20, boundary: open}\n"
     "terrain:\n"
     "  - noise: {layer: bedrock, low: 0, high: 4, scale: 12}\n"
@@ -34,7 +34,7 @@ const char* const world =
 class WrongCheckpoint : public ::testing::Test {
  protected:
   WrongCheckpoint() : exec_(make_exec("cpu", 1)) {
-    auto s = test::simulate(*exec_, world);
+    auto s = test::simulate(*exec_, refused_world);
     test::run(*s, 6);
     bytes_ = checkpoint_bytes(*s);
   }

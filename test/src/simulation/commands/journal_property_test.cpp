@@ -9,7 +9,7 @@
 namespace desert_sim {
 namespace {
 
-const char* const world =
+const char* const journalled_world =
     "grid: {width: 40, height: 30}\n"
     "terrain: [noise: {layer: bedrock, low: 0, high: 5, scale: 15}, noise: {layer: sand, low: 0, high: 3}]\n"
     "wind: {speed: 6, direction_deg: 20}\nreptation: {method: steepest}\nrun: {time_step: 0.3}\n";
@@ -17,7 +17,8 @@ const char* const world =
 class JournalOf : public test::OnBackend {
  protected:
   std::unique_ptr<Session> session(const std::string& journal) {
-    return std::make_unique<Session>(test::scenario_of(world), no_raster_loader, GetParam(), 1, journal);
+    return std::make_unique<Session>(test::scenario_of(journalled_world), no_raster_loader, GetParam(), 1,
+                                     journal);
   }
 
   static constexpr int commands = 11;
@@ -225,7 +226,8 @@ TEST_P(JournalOf, IsWrittenToARegularFileOnly) {
 
 TEST_P(JournalOf, AnotherScenarioIsRefused) {
   live(folder_.path("j"));
-  Session other(test::scenario_of(std::string(world) + "seed: 2\n"), no_raster_loader, GetParam(), 1);
+  Session other(test::scenario_of(std::string(journalled_world) + "seed: 2\n"), no_raster_loader, GetParam(),
+                1);
   EXPECT_THROW(other.require_journal_of_this_scenario(read_journal(folder_.path("j")), "j"), ConfigError);
 }
 

@@ -10,7 +10,7 @@
 namespace desert_sim {
 namespace {
 
-const char* const world =
+const char* const repeated_world =
     "grid: {width: 20, height: 16}\n"
     "terrain: [noise: {layer: sand, low: 0, high: 3}]\n"
     "wind: {speed: 5, features: [{x: 10, y: 8, radius: 4, id: 2}]}\n";
@@ -18,7 +18,7 @@ const char* const world =
 class RepeatableCommands : public ::testing::Test {
  protected:
   std::unique_ptr<Session> session(const std::string& journal = "") {
-    return std::make_unique<Session>(test::scenario_of(world), no_raster_loader, "cpu", 1, journal);
+    return std::make_unique<Session>(test::scenario_of(repeated_world), no_raster_loader, "cpu", 1, journal);
   }
 
   /// Applies the command after two steps, goes on for three, and expects the same from a replay of the

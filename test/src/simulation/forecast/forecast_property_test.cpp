@@ -13,7 +13,7 @@
 namespace desert_sim {
 namespace {
 
-const std::string dunes =
+const std::string forecast_dunes =
     "grid: {width: 40, height: 30, boundary: open}\n"
     "terrain: [noise: {layer: bedrock, low: 0, high: 5, scale: 15}, noise: {layer: sand, low: 0, high: 3}]\n"
     "wind: {speed: 6, direction_deg: 20}\nsaltation: {influx: 0.2}\n";
@@ -72,7 +72,7 @@ TEST_P(Forecasts, AreWhatTheLiveRunComesTo) {
 
 TEST_P(Forecasts, GoOnInTheMiddleOfASecondOfARampAndOfATimeline) {
   const auto live = simulation(
-      dunes +
+      forecast_dunes +
       "run: {time_step: 0.3, acceleration: 0.6, timeline: [{time: 3, set: {run.time_step: 0.07}}, {time: 4, "
       "set: {wind.speed: 9, run.acceleration: 1.4}, ramp: 2}]}\n");
   live->apply(command::SetWind{70, 8, 5});
@@ -84,7 +84,7 @@ TEST_P(Forecasts, GoOnInTheMiddleOfASecondOfARampAndOfATimeline) {
 }
 
 TEST_P(Forecasts, TellTheStatesThatTheLiveRunShowsThen) {
-  const auto live = simulation(dunes + "run: {time_step: 0.25}\n");
+  const auto live = simulation(forecast_dunes + "run: {time_step: 0.25}\n");
   std::vector<std::uint64_t> steps;
   for (const ForecastMoment& moment : forecast(*live, options(1, 4, 10)).moments)
     steps.push_back(moment.step);
@@ -101,7 +101,7 @@ TEST_P(Forecasts, TellTheStatesThatTheLiveRunShowsThen) {
 
 TEST_P(Forecasts, OfLongerStepsAreRunsWithThatTimeStep) {
   const auto live = simulation(
-      dunes +
+      forecast_dunes +
       "run: {time_step: 0.02, acceleration: 0.2, timeline: [{time: 0.6, set: {run.time_step: 0.01}}]}\n");
   ForecastOptions o = options(6, 3, 0);
   o.stride = 5;
@@ -115,7 +115,7 @@ TEST_P(Forecasts, OfLongerStepsAreRunsWithThatTimeStep) {
   while (live->steps() < 4) live->step();
   EXPECT_EQ(f.moments[0].hash, live->state_hash());
 
-  const auto paced = simulation(dunes + "run: {time_step: 0.02}\n");
+  const auto paced = simulation(forecast_dunes + "run: {time_step: 0.02}\n");
   o.stride = 4;
   o.step_rate = 10;
   EXPECT_EQ(forecast(*paced, o).moments.back().step, 15) << "instead of 60 steps at ten a second";
@@ -124,7 +124,7 @@ TEST_P(Forecasts, OfLongerStepsAreRunsWithThatTimeStep) {
 }
 
 TEST_P(Forecasts, ApplyTheirCommandsToTheCopyAlone) {
-  const auto live = simulation(dunes);
+  const auto live = simulation(forecast_dunes);
   test::run(*live, 2);
   const std::uint64_t before = live->state_hash();
   command::SetWindSchedule rose;
@@ -189,7 +189,7 @@ TEST_P(Forecasts, OfAnEnsembleHaveTheLiveRunAsTheirFirstMember) {
 }
 
 TEST_P(Forecasts, EndBetweenTwoSteps) {
-  const auto live = simulation(dunes);
+  const auto live = simulation(forecast_dunes);
   const std::size_t held = exec().bytes_held();
   ForecastOptions o = options(100, 5, 1);
   o.members = 2;
@@ -214,7 +214,7 @@ TEST_P(Forecasts, EndBetweenTwoSteps) {
 }
 
 TEST_P(Forecasts, RefuseWhatCannotBeForecast) {
-  const auto live = simulation(dunes);
+  const auto live = simulation(forecast_dunes);
   const std::string bytes = checkpoint_bytes(*live);
   const auto reason = [&](const ForecastOptions& o) {
     return test::refusal([&] { ForecastRun(bytes, o, exec().backend(), 1); });

@@ -10,7 +10,7 @@
 namespace desert_sim {
 namespace {
 
-const char* const world =
+const char* const staged_world =
     "grid: {width: 40, height: 30, cell_size: 1}\n"
     "terrain: [noise: {layer: bedrock, low: 100, high: 110, scale: 9},\n"
     "          noise: {layer: sand, low: 0.5, high: 3, scale: 5, seed: 2}]\n";
@@ -33,7 +33,7 @@ std::map<Layer, std::vector<float>> present(const Simulation& s) {
 }
 
 TEST_P(Staged, ASnapshotShowsTheStateBeforeTheStepsThatRunMeanwhile) {
-  auto s = simulation(world);
+  auto s = simulation(staged_world);
   test::run(*s, 3);
   for (int round = 0; round < 5; ++round) {
     const auto before = present(*s);
@@ -46,7 +46,7 @@ TEST_P(Staged, ASnapshotShowsTheStateBeforeTheStepsThatRunMeanwhile) {
 }
 
 TEST_P(Staged, MoreSnapshotsMayBeUnderWayThanThereAreSlots) {
-  auto s = simulation(world);
+  auto s = simulation(staged_world);
   std::vector<PendingSnapshot> pending;
   std::vector<std::map<Layer, std::vector<float>>> expected;
   for (int n = 0; n < 7; ++n) {
@@ -63,7 +63,7 @@ TEST_P(Staged, MoreSnapshotsMayBeUnderWayThanThereAreSlots) {
 }
 
 TEST_P(Staged, ASnapshotMayBeLargerThanASlot) {
-  auto s = simulation(world);
+  auto s = simulation(staged_world);
   test::run(*s, 2);
   const auto expected = present(*s);
   for (std::size_t bytes : {std::size_t{1}, std::size_t{40 * 4 * 4 * 7}, std::size_t{40 * 4 * 4 * 16}}) {
@@ -77,7 +77,7 @@ TEST_P(Staged, ASnapshotMayBeLargerThanASlot) {
 }
 
 TEST_P(Staged, BandsGoOverTheEdgeAsTheyDidBefore) {
-  auto s = simulation(world);
+  auto s = simulation(staged_world);
   test::run(*s, 2);
   const auto all = present(*s);
   s->staging().set_slot_bytes(40 * 4 * 4 * 3);
@@ -91,7 +91,7 @@ TEST_P(Staged, BandsGoOverTheEdgeAsTheyDidBefore) {
 }
 
 TEST_P(Staged, SnapshotsUnderWayOutliveTheirSimulationAndTheMemoryTheyWentThrough) {
-  auto s = simulation(world);
+  auto s = simulation(staged_world);
   test::run(*s, 2);
   const auto expected = present(*s);
   const PendingSnapshot released = s->begin_snapshot(layers);
@@ -104,7 +104,7 @@ TEST_P(Staged, SnapshotsUnderWayOutliveTheirSimulationAndTheMemoryTheyWentThroug
 }
 
 TEST_P(Staged, ReadersOnOtherThreadsGetWhatTheyAskedFor) {
-  auto s = simulation(world);
+  auto s = simulation(staged_world);
   for (int round = 0; round < 20; ++round) {
     std::vector<std::thread> readers;
     std::vector<std::map<Layer, std::vector<float>>> expected(3), found(3);
@@ -121,7 +121,7 @@ TEST_P(Staged, ReadersOnOtherThreadsGetWhatTheyAskedFor) {
 }
 
 TEST_P(Staged, MemoryIsCountedAndGivenBack) {
-  auto s = simulation(world);
+  auto s = simulation(staged_world);
   test::run(*s, 1);
   const std::size_t before = exec().bytes_held(), parts = total_bytes(s->memory());
   s->snapshot({Layer::sand});
