@@ -1,6 +1,7 @@
 """The command line of desert_compare."""
 import argparse
 import os
+import re
 
 from . import ComparisonError
 
@@ -66,6 +67,8 @@ def parse(arguments):
     options = p.parse_args(arguments)
     if len(options.scenarios) < 2:
         raise ComparisonError("%s: is one scenario (allowed: two or more)" % options.scenarios[0])
+    if options.duration is not None and not re.search("[1-9]", options.duration):
+        raise ComparisonError("--duration '%s': is no time longer than 0 (allowed: such as 24a)" % options.duration)
     if options.view and not options.film:
         raise ComparisonError("--view: --film is required too")
     options.out = os.path.abspath(options.out)

@@ -1,5 +1,6 @@
 #include "src/io/cell_values.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -13,12 +14,17 @@ namespace {
 
 constexpr double huge_number = 1e30;  // real elevations are far smaller; nodata are ±1e38 or ±3.4e38
 constexpr double isolation = 10;      // of a number that may be an elevation as well
+constexpr double outlier_ranges = 10, outlier_metres = 100;
 
 /// The shortest text that is read back as the same number; as the same float if the number is one.
 std::string shortest_text(double number) {
   const bool is_float = std::abs(number) <= std::numeric_limits<float>::max() &&
                         static_cast<double>(static_cast<float>(number)) == number;
   char text[40];
+  if (number == std::floor(number) && std::abs(number) < 1e15) {
+    std::snprintf(text, sizeof text, "%.0f", number);
+    return text;
+  }
   for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
     std::snprintf(text, sizeof text, "%.*g", digits, number);
     if (is_float ? std::strtof(text, nullptr) == static_cast<float>(number)
@@ -47,12 +53,32 @@ bool CellValues::is_nodata(double raw) const {
   return std::abs(raw) > huge_number && std::abs(raw - *options_.nodata) < 1e-6 * std::abs(raw);
 }
 
+void CellValues::Least::see(double value) {
+  if (value == number) {
+    ++cells;
+  } else if (value < number) {
+    next = number;
+    number = value;
+    cells = 1;
+  } else {
+    next = std::min(next, value);
+  }
+}
+
+bool CellValues::is_suspect(double number) const {
+  return std::any_of(suspects_.begin(), suspects_.end(),
+                     [number](const Suspect& s) { return s.number == number; });
+}
+
 float CellValues::convert(double raw, bool at_edge) {
   ++cells_;
   if (is_nodata(raw)) return std::numeric_limits<float>::quiet_NaN();
   if (std::abs(raw) > huge_number && std::isfinite(raw)) {
     huge_ = raw;
     ++huge_cells_;
+  } else if (std::isfinite(raw) && !is_suspect(raw)) {
+    lowest_.see(raw);
+    negative_highest_.see(-raw);
   }
   for (Suspect& s : suspects_) {
     if (!(std::abs(raw - s.number) < isolation)) continue;
@@ -67,17 +93,34 @@ float CellValues::convert(double raw, bool at_edge) {
   return static_cast<float>(value * options_.scale + options_.offset);
 }
 
-std::vector<std::string> CellValues::warnings(const std::string& path) const {
+std::vector<std::string> CellValues::warnings(const std::string& path, std::optional<double> told) const {
   std::vector<std::string> lines;
+  const auto tell = [&](double number, long long count) {
+    if (number != told) lines.push_back(warning(path, number, count, cells_));
+  };
   for (const Suspect& s : suspects_)
-    if (s.cells > 0 && (!s.only_at_edge || (s.at_edge > 0 && s.near == 0)))
-      lines.push_back(warning(path, s.number, s.cells, cells_));
-  if (huge_cells_ > 0) lines.push_back(warning(path, huge_, huge_cells_, cells_));
+    if (s.cells > 0 && (s.where == Where::anywhere || s.near == 0) &&
+        (s.where != Where::isolated_at_edge || s.at_edge > 0))
+      tell(s.number, s.cells);
+  const double metres = std::abs(declared_.scale * options_.scale);
+  const auto lies_apart = [&](double gap, double range, long long count) {
+    return count > 1 && 2 * count < cells_ && std::isfinite(gap) && gap > outlier_ranges * range &&
+           gap * metres > outlier_metres;
+  };
+  const double lowest = lowest_.number, highest = -negative_highest_.number;
+  const double second = lowest_.next, second_highest = -negative_highest_.next;
+  if (lies_apart(second - lowest, highest - second, lowest_.cells)) {
+    tell(lowest, lowest_.cells);
+  } else if (lies_apart(highest - second_highest, second_highest - lowest, negative_highest_.cells)) {
+    tell(highest, negative_highest_.cells);
+  }
+  if (huge_cells_ > 0) tell(huge_, huge_cells_);
   return lines;
 }
 
-void warn_of_undeclared_nodata(const CellValues& values, const std::string& path) {
-  for (const std::string& line : values.warnings(path)) log_warning(line);
+void warn_of_undeclared_nodata(const CellValues& values, const std::string& path,
+                               std::optional<double> told) {
+  for (const std::string& line : values.warnings(path, told)) log_warning(line);
 }
 
 }  // namespace desert_sim

@@ -2,7 +2,10 @@
 /// The raw numbers of a raster's cells as values, and what among them seems to stand for missing data.
 
 #include <array>
+#include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "src/io/declared_values.hpp"
 #include "src/io/raster.hpp"
@@ -21,26 +24,47 @@ class CellValues {
   float convert(double raw, bool at_edge);
 
   /// One line for each number that seems to stand for missing data, with its share of the converted cells,
-  /// and how to declare it: -9999, -32768, numbers beyond ±1e30 anywhere; 999 and 9999 only where they
-  /// reach the edge and no other number comes within 10 of them.
-  std::vector<std::string> warnings(const std::string& path) const;
+  /// and how to declare it: -9999, -32768 and numbers beyond ±1e30 anywhere; -99999, -32767, -999, 32767 and
+  /// 65535 where no other number comes within 10 of them; 999 and 9999 only where they also reach the edge;
+  /// and the lowest or highest number, whatever it is, where several cells but less than half have it and ten
+  /// times the range of all others, and 100 m, lie between it and them. Nothing for the number that is `told`
+  /// already.
+  std::vector<std::string> warnings(const std::string& path, std::optional<double> told = {}) const;
 
  private:
+  enum class Where { anywhere, isolated, isolated_at_edge };
   struct Suspect {
     double number;
-    bool only_at_edge;
+    Where where;
     long long cells = 0, at_edge = 0, near = 0;
   };
+  /// The least of the numbers that are given, and the least of the others.
+  struct Least {
+    double number = std::numeric_limits<double>::infinity(), next = std::numeric_limits<double>::infinity();
+    long long cells = 0;
+    void see(double value);
+  };
   bool is_nodata(double raw) const;
+  bool is_suspect(double number) const;
 
   const RasterOptions options_;
   const DeclaredValues declared_;
   long long cells_ = 0, huge_cells_ = 0;
   double huge_ = 0;
-  std::array<Suspect, 4> suspects_{{{-9999, false}, {-32768, false}, {999, true}, {9999, true}}};
+  Least lowest_, negative_highest_;
+  std::array<Suspect, 9> suspects_{{{-9999, Where::anywhere},
+                                    {-32768, Where::anywhere},
+                                    {-99999, Where::isolated},
+                                    {-32767, Where::isolated},
+                                    {-999, Where::isolated},
+                                    {32767, Where::isolated},
+                                    {65535, Where::isolated},
+                                    {999, Where::isolated_at_edge},
+                                    {9999, Where::isolated_at_edge}}};
 };
 
 /// Logs a warning for each line of values.warnings().
-void warn_of_undeclared_nodata(const CellValues& values, const std::string& path);
+void warn_of_undeclared_nodata(const CellValues& values, const std::string& path,
+                               std::optional<double> told = {});
 
 }  // namespace desert_sim

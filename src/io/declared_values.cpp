@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "src/core/log.hpp"
 #include "src/core/lower_case.hpp"
 #include "src/io/raster_geometry.hpp"
 
@@ -69,18 +68,18 @@ std::optional<double> metres_of_unit(const std::string& unit) {
 }
 
 DeclaredValues declared_values(const std::string& path, double scale, double offset, const std::string& unit,
-                               double given_scale) {
+                               double given_scale, std::vector<std::string>& warnings) {
   if (!std::isfinite(scale) || scale == 0 || !std::isfinite(offset))
     throw_raster_error(path, concatenate("declares the scale ", scale, " and the offset ", offset,
                                          " for its values; both must be finite, the scale not 0"));
   const std::optional<double> metres = metres_of_unit(unit);
   if (!metres && !without_dimension(lower_case(unit)))
-    log_warning("raster '" + path + "': its values are in the unit '" + unit +
-                "', which is no length known here; they are taken as they are");
+    warnings.push_back("raster '" + path + "': its values are in the unit '" + unit +
+                       "', which is no length known here; they are taken as they are");
   const DeclaredValues declared{scale * metres.value_or(1), offset * metres.value_or(1)};
   if (declared.scale == 1 || std::abs(given_scale / declared.scale - 1) > 1e-3) return declared;
-  log_warning(concatenate("raster '", path, "': the scenario's scale of ", given_scale,
-                          " is what the file declares, and is applied once; it is no longer needed"));
+  warnings.push_back(concatenate("raster '", path, "': the scenario's scale of ", given_scale,
+                                 " is what the file declares, and is applied once; it is no longer needed"));
   return {};
 }
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace desert_sim {
 
@@ -15,11 +16,11 @@ struct DeclaredValues {
 /// in upper or lower case; nothing for other units.
 std::optional<double> metres_of_unit(const std::string& unit);
 
-/// The declared conversion of a band to metres, from its declared scale, offset and unit. Logs a warning for
+/// The declared conversion of a band to metres, from its declared scale, offset and unit. Adds a warning for
 /// a unit that is no known length. A step's `given_scale` that is the declared one (to 0.1 %) is what
 /// scenarios gave before these were read: it is said, and the file's is left out, so that it does not count
 /// twice.
 DeclaredValues declared_values(const std::string& path, double scale, double offset, const std::string& unit,
-                               double given_scale);
+                               double given_scale, std::vector<std::string>& warnings);
 
 }  // namespace desert_sim

@@ -12,9 +12,10 @@ namespace desert_sim {
 
 namespace {
 
-constexpr double least_share = 0.25;  // of the outermost cells in a frame, and of all cells beside it
-constexpr float least_step = 1;       // [m]
-constexpr float least_ratio = 20;     // of the step to those elsewhere
+constexpr double least_share = 0.25;   // of the outermost cells in a frame, and of all cells beside it
+constexpr double share_of_part = 0.1;  // of the outermost cells in a part of a frame
+constexpr float least_step = 1;        // [m]
+constexpr float least_ratio = 20;      // of the step to those elsewhere
 
 float median(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -54,8 +55,9 @@ class Cells {
   const Raster& r_;
 };
 
-/// The most frequent value of the outermost cells, if a quarter of them have it, and some on each side.
-std::optional<float> value_of_edge(const Raster& r, const Cells& cells) {
+/// The most frequent value of the outermost cells, if enough of them have it, and some on each side unless
+/// the raster is a part.
+std::optional<float> value_of_edge(const Raster& r, const Cells& cells, bool part) {
   struct Count {
     long long cells = 0;
     bool sides[4] = {};
@@ -73,17 +75,18 @@ std::optional<float> value_of_edge(const Raster& r, const Cells& cells) {
   if (most == counts.end()) return std::nullopt;
   const Count& count = most->second;
   const double all = 2.0 * (r.width + r.height);
-  if (static_cast<double>(count.cells) < least_share * all || !count.sides[0] || !count.sides[1] ||
-      !count.sides[2] || !count.sides[3])
+  const bool on_all_sides = std::all_of(count.sides, count.sides + 4, [](bool side) { return side; });
+  if (static_cast<double>(count.cells) < (part ? share_of_part : least_share) * all ||
+      (!part && !on_all_sides))
     return std::nullopt;
   return most->first;
 }
 
 }  // namespace
 
-std::optional<Frame> find_frame(const Raster& r) {
+std::optional<Frame> find_frame(const Raster& r, bool part) {
   const Cells cells(r);
-  const std::optional<float> value = value_of_edge(r, cells);
+  const std::optional<float> value = value_of_edge(r, cells, part);
   if (!value) return std::nullopt;
   std::vector<bool> in_frame(r.values.size());
   std::vector<std::size_t> frame;
@@ -104,22 +107,20 @@ std::optional<Frame> find_frame(const Raster& r) {
   const std::size_t stride = 1 + r.values.size() / 1000000;  // a million are enough for a median
   for (std::size_t i = 0; i < r.values.size(); i += stride)
     if (!in_frame[i] && i + 1 < r.values.size() && (i + 1) % r.width != 0 && !in_frame[i + 1] &&
-        std::isfinite(r.values[i] + r.values[i + 1]))
+        std::isfinite(r.values[i] + r.values[i + 1]) && r.values[i] != r.values[i + 1])
       elsewhere.push_back(std::abs(r.values[i + 1] - r.values[i]));
-  if (steps.empty() || elsewhere.empty()) return std::nullopt;
-  const Frame found{*value, static_cast<long long>(frame.size()), median(steps)};
-  if (found.step < least_step || found.step < least_ratio * median(elsewhere)) return std::nullopt;
+  if (steps.empty()) return std::nullopt;
+  const Frame found{*value, frame.front(), static_cast<long long>(frame.size()), median(steps)};
+  const float usual = elsewhere.empty() ? 0 : median(elsewhere);  // numbers are whole in many rasters
+  if (found.step < least_step || found.step < least_ratio * usual) return std::nullopt;
   return found;
 }
 
-void warn_of_frame(const std::string& path, const Raster& raster) {
-  const std::optional<Frame> frame = find_frame(raster);
-  if (!frame) return;
-  log_warning(concatenate(
-      "raster '", path, "': a frame of ", frame->cells, " cells around its data is exactly ", frame->value,
-      ", ", frame->step,
-      " beside them: cells without data? If so, declare them (in the raster step: nodata: ", frame->value,
-      ", fill_nodata: true), or project with gdalwarp -dstnodata"));
+void warn_of_frame(const std::string& path, const Frame& frame, double raw) {
+  log_warning(concatenate("raster '", path, "': a frame of ", frame.cells,
+                          " cells around its data is exactly ", frame.value, ", with a step of ", frame.step,
+                          " to it: cells without data? If so, declare them (in the raster step: nodata: ",
+                          raw, ", fill_nodata: true), or project with gdalwarp -dstnodata"));
 }
 
 }  // namespace desert_sim

@@ -106,7 +106,8 @@ class Geography {
 /// Metres of the map over metres of the ground at a place [deg], of its two axes the one that differs more
 /// from 1: along the meridian and the parallel, by central differences of 0.01 degrees.
 std::optional<double> map_scale(const Geography& geography, const Ellipsoid& body, Geography::Point place) {
-  constexpr double half = 0.005;
+  constexpr double half = 0.005, nearly_pole = 89.9;
+  place.y = std::clamp(place.y, -nearly_pole, nearly_pole);  // at a pole there is no parallel
   const double latitude = place.y * pi / 180, e2 = 1 - body.b * body.b / (body.a * body.a);
   const double w = std::sqrt(1 - e2 * std::sin(latitude) * std::sin(latitude));
   const double along_meridian = body.a * (1 - e2) / (w * w * w),
@@ -114,7 +115,6 @@ std::optional<double> map_scale(const Geography& geography, const Ellipsoid& bod
   std::optional<double> worst;
   for (const auto& [dx, dy, radius] :
        {std::tuple{0.0, half, along_meridian}, std::tuple{half, 0.0, along_parallel}}) {
-    if (radius < 1e-3 * body.a || std::abs(place.y) + dy > 90) continue;  // at a pole
     const auto from = geography.coordinates({place.x - dx, place.y - dy}),
                to = geography.coordinates({place.x + dx, place.y + dy});
     if (!from || !to) return std::nullopt;
@@ -201,8 +201,28 @@ std::string unit_of_heights(const std::string& wkt) {
   return unit && std::abs(metres - 1) > 1e-9 ? unit : "";
 }
 
+namespace {
+
+bool points_down(const std::string& wkt) {
+  const GdalMessages quiet;
+  OGRSpatialReference crs;
+  if (wkt.empty() || crs.importFromWkt(wkt.c_str()) != OGRERR_NONE || !crs.IsVertical()) return false;
+  OGRAxisOrientation orientation = OAO_Other;
+  return crs.GetAxis("VERT_CS", 0, &orientation) && orientation == OAO_Down;
+}
+
+}  // namespace
+
+void require_heights(const std::string& path, const std::string& wkt, double scale) {
+  if (scale > 0 && points_down(wkt))
+    throw_raster_error(
+        path, concatenate("its vertical system points down, so that its values are depths; heights are "
+                          "needed: give a negative scale in the raster step (scale: ",
+                          -scale, ")"));
+}
+
 std::string with_metric_heights(const std::string& wkt) {
-  if (unit_of_heights(wkt).empty()) return wkt;
+  if (unit_of_heights(wkt).empty() && !points_down(wkt)) return wkt;
   OGRSpatialReference crs;
   crs.importFromWkt(wkt.c_str());
   crs.StripVertical();
@@ -219,7 +239,8 @@ std::string how_to_project(const std::string& path, const OGRSpatialReference& c
   const std::string projected =
       (file.parent_path() / (file.stem().string() + "_" + local.name + ".tif")).string();
   // Float32 because its nodata is no height; without nodata, cells beside the raster would be 0 m high.
-  const bool keeps_unit = band.has_unit && !unit_of_heights(wkt_of(crs)).empty();
+  const std::string wkt = wkt_of(crs);
+  const bool keeps_unit = (band.has_unit && !unit_of_heights(wkt).empty()) || points_down(wkt);
   return ": gdalwarp -t_srs " + shell_word(local.srs) + (keeps_unit ? " -novshiftgrid" : "") +
          (extent ? inner_cells(crs, local.srs, *extent) : "") +
          (band.is_colour ? " -r near -dstalpha " : " -r bilinear -ot Float32 -dstnodata nan ") +

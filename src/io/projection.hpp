@@ -30,8 +30,11 @@ std::string how_to_project(const std::string& path, const OGRSpatialReference& c
 /// The unit of the projection's heights where its vertical system declares one that is not the metre, such as
 /// "US survey foot"; else empty.
 std::string unit_of_heights(const std::string& wkt);
-/// The projection of values that have been made metres: without a vertical system of another unit, by which
-/// readers would make them metres once more.
+/// Throws ConfigError where the projection's vertical system points down, so that values are depths, unless
+/// the step's scale is negative.
+void require_heights(const std::string& path, const std::string& wkt, double scale);
+/// The projection of values that have been made metres: without a vertical system of another unit or
+/// direction, by which readers would make them metres or heights once more.
 std::string with_metric_heights(const std::string& wkt);
 
 /// Throws ConfigError that has this command where the coordinates are known not to be metres on the ground:

@@ -7,9 +7,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "kernels/backend/exec.hpp"
+#include "src/core/log.hpp"
 #include "src/core/lower_case.hpp"
 #include "src/io/cell_values.hpp"
 #include "src/io/frame.hpp"
@@ -82,6 +85,7 @@ void refuse_sparse(const std::string& path, const RasterWindow& window, std::uin
 }  // namespace
 
 Raster RasterFile::read(const RasterWindow& window) {
+  for (const std::string& warning : std::exchange(warnings_, {})) log_warning(warning);
   prepare();
   refuse_sparse(path_, window, file_bytes_);
   require_host_memory(path_,
@@ -113,9 +117,15 @@ Raster RasterFile::read(const RasterWindow& window) {
     }
   }
   reverse_rows(raster);
-  warn_of_undeclared_nodata(cells, path_);
   check_values(path_, raster, window);
-  if (whole) warn_of_frame(path_, raster);
+  std::optional<double> told;
+  if (const std::optional<Frame> frame = find_frame(raster, !whole)) {
+    const int x = window.x + static_cast<int>(frame->cell % window.width);
+    read_row(window.y + static_cast<int>(frame->cell / window.width), x, 1, raw.data(), valid.data());
+    told = raw[0];
+    warn_of_frame(path_, *frame, *told);
+  }
+  warn_of_undeclared_nodata(cells, path_, told);
   return raster;
 }
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "src/io/declared_values.hpp"
 #include "src/io/raster.hpp"
@@ -40,7 +41,8 @@ class RasterFile {
   const RasterOptions options_;
   Raster header_;
   DeclaredValues declared_;
-  std::uint64_t file_bytes_ = 0;  ///< 0 if they are not all in one file
+  std::vector<std::string> warnings_;  ///< of what its header says, which read() logs
+  std::uint64_t file_bytes_ = 0;       ///< 0 if they are not all in one file
 
  private:
   const std::string path_;

@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <vector>
 
-#include "src/core/log.hpp"
 #include "src/io/gdal_input.hpp"
 #include "src/io/gdal_messages.hpp"
 #include "src/io/projection.hpp"
+#include "src/io/raster_companions.hpp"
 #include "src/io/raster_file.hpp"
 #include "src/io/raster_geometry.hpp"
 #include "src/io/text_grid.hpp"
@@ -97,23 +96,6 @@ std::string unusable_placement(const std::string& path, GDALDataset& dataset) {
   return placed + how_to_project(path, *crs, x, y, declared_band(dataset, 1));
 }
 
-/// Refuses a truncated raw file (ENVI, EHdr), because GDAL would read the missing part as zeros.
-void check_raw_file(const std::string& path, GDALDataset& dataset, std::uint64_t file_bytes) {
-  const std::string driver = dataset.GetDriver() ? dataset.GetDriver()->GetDescription() : "";
-  const char* compressed = dataset.GetMetadataItem("file_compression", "ENVI");
-  GDALRasterBand& band = *dataset.GetRasterBand(1);
-  if ((driver != "ENVI" && driver != "EHdr") || (compressed && std::string(compressed) != "0") ||
-      band.GetMetadataItem("NBITS", "IMAGE_STRUCTURE"))
-    return;
-  const char* header = dataset.GetMetadataItem("header_offset", "ENVI");
-  const std::uint64_t cells = static_cast<std::uint64_t>(dataset.GetRasterXSize()) * dataset.GetRasterYSize();
-  const std::uint64_t needed =
-      cells * dataset.GetRasterCount() * GDALGetDataTypeSizeBytes(band.GetRasterDataType()) +
-      (header ? std::strtoull(header, nullptr, 10) : 0);
-  if (file_bytes < needed)
-    throw_raster_error(path, concatenate("is truncated: it has ", file_bytes, " bytes of ", needed));
-}
-
 class GdalRasterFile final : public RasterFile {
  public:
   GdalRasterFile(const std::string& path, const RasterOptions& options, const RasterAccess& access)
@@ -134,7 +116,11 @@ class GdalRasterFile final : public RasterFile {
     read_header();
     if (!header_.projection.empty() || messages_.text().find("PROJ") != std::string::npos)
       require_projection_database("raster '" + path + "'");
+    require_external_mask(path, *dataset_, *band_);
     mask_ = (band_->GetMaskFlags() & GMF_ALL_VALID) ? alpha_band() : band_->GetMaskBand();
+    const char* pixels = band_->GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+    signed_bytes_ = band_->GetRasterDataType() == GDT_Byte && pixels && std::string(pixels) == "SIGNEDBYTE";
+    if (signed_bytes_ && (band_->GetMaskFlags() & GMF_NODATA)) mask_ = nullptr;
     messages_.clear();
   }
 
@@ -157,10 +143,10 @@ class GdalRasterFile final : public RasterFile {
                                      "~all_raster_formats): ",
                                      reason()));
     file_bytes_ = input_->file().size();
-    check_raw_file(path(), *dataset_, file_bytes_);
+    check_raw_file(path(), *dataset_, file_bytes_, warnings_);
     if (!input_->unread_metadata().empty())
-      log_warning("raster '" + path() + "': " + input_->unread_metadata() +
-                  " beside it is read with --all-raster-formats or ~all_raster_formats only");
+      warnings_.push_back("raster '" + path() + "': " + input_->unread_metadata() +
+                          " beside it is read with --all-raster-formats or ~all_raster_formats only");
   }
 
   void open_anything() {
@@ -174,7 +160,7 @@ class GdalRasterFile final : public RasterFile {
                    nullptr, nullptr)));
     if (!dataset_) throw_raster_error(path(), "is not a raster that GDAL can open: " + messages_.text());
     const std::uint64_t bytes = fs::file_size(path(), error);
-    if (!error) check_raw_file(path(), *dataset_, bytes);
+    if (!error) check_raw_file(path(), *dataset_, bytes, warnings_);
   }
 
   void read_header() {
@@ -185,10 +171,13 @@ class GdalRasterFile final : public RasterFile {
     GeoTransform placed;
     if (dataset_->GetGeoTransform(placed.data()) != CE_None)
       header_.unusable_placement = unusable_placement(path(), *dataset_);
-    const std::string unit = unit_of(*band_);
+    warn_of_unused_projection(path(), *dataset_, header_.projection, warnings_);
     header_.declared = declared_band(*dataset_, options_.band);
-    declared_ = declared_values(path(), band_->GetScale(), band_->GetOffset(),
-                                unit.empty() ? unit_of_heights(header_.projection) : unit, options_.scale);
+    std::string unit = unit_of(*band_);
+    if (unit.empty()) unit = unit_of_heights(header_.projection);
+    if (unit.empty()) unit = unit_of_arc_info(*dataset_);
+    declared_ =
+        declared_values(path(), band_->GetScale(), band_->GetOffset(), unit, options_.scale, warnings_);
   }
 
   /// Its band of opacity, which GDAL takes for a mask where that has bytes or 16 bits alone; null without
@@ -203,6 +192,7 @@ class GdalRasterFile final : public RasterFile {
 
   /// Numbers that are no values, and encodings that the raster does not have.
   void prepare() override {
+    require_heights(path(), header_.projection, options_.scale);
     if (is_text_)
       check_text_grid(path(), dataset_->GetDescription(), header_.width, header_.height,
                       GDALDataTypeIsInteger(band_->GetRasterDataType()) != 0);
@@ -246,10 +236,21 @@ class GdalRasterFile final : public RasterFile {
     if (status != CE_None || messages_.failed())
       throw_raster_error(
           path(), concatenate("cannot be read at line ", line + 1, " of ", header_.height, ": ", reason()));
+    if (signed_bytes_) make_signed(width, raw, valid);
   }
 
   static CPLErr read_numbers(GDALRasterBand& band, int line, int x, int width, double* numbers) {
     return band.RasterIO(GF_Read, x, line, width, 1, numbers, width, 1, GDT_Float64, 0, 0, nullptr);
+  }
+
+  /// GDAL before 3.7 has no type of signed bytes: their numbers and their nodata do not fit each other.
+  void make_signed(int width, double* raw, unsigned char* valid) const {
+    int declares = 0;
+    const double nodata = band_->GetNoDataValue(&declares);
+    for (int i = 0; i < width; ++i) {
+      if (raw[i] > 127) raw[i] -= 256;
+      if (!mask_) valid[i] = declares && raw[i] == nodata ? 0 : 255;
+    }
   }
 
   /// Heights from the three colours.
@@ -300,7 +301,7 @@ class GdalRasterFile final : public RasterFile {
   std::unique_ptr<GdalInput> input_;
   GDALDatasetUniquePtr dataset_;
   GDALRasterBand *band_ = nullptr, *mask_ = nullptr;
-  bool south_up_ = false;
+  bool south_up_ = false, signed_bytes_ = false;
   bool is_text_ = false;  ///< ESRI ASCII, whose lines can only be found one after the other
   int lines_passed_ = 0;
 };

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "src/core/log.hpp"
 #include "src/io/projection.hpp"
 #include "src/io/raster_file.hpp"
 #include "src/io/raster_geometry.hpp"
@@ -121,6 +123,31 @@ void require_raster_in_metres(const Raster& header, const std::string& path) {
       header.declared);
 }
 
+/// Degrees without a projection make slopes that no terrain has.
+void warn_of_degrees(const Raster& r, const std::string& path) {
+  constexpr double most_heights_per_width = 5, largest_degrees = 0.1;
+  if (!r.projection.empty() || !georeferenced(r) || r.cell_size > largest_degrees) return;
+  float lowest = std::numeric_limits<float>::infinity(), highest = -lowest;
+  for (float v : r.values)
+    if (std::isfinite(v)) {
+      lowest = std::min(lowest, v);
+      highest = std::max(highest, v);
+    }
+  const double width = std::max(r.width, r.height) * r.cell_size;
+  if (highest - lowest > most_heights_per_width * width)
+    log_warning(concatenate("raster '", path, "': heights differ by ", highest - lowest,
+                            " m over a width of ", width,
+                            " m. Are its coordinates degrees? Without a projection they are taken for "
+                            "metres; declare it with gdal_translate -a_srs"));
+}
+
+/// The needed cells of an open file.
+Raster needed_cells(RasterFile& file, const RasterRequest& q) {
+  Raster raster = file.read(needed_window(file.header(), q));
+  if (!q.stretch) warn_of_degrees(raster, q.path);
+  return raster;
+}
+
 RasterField field_of(Raster r) {
   RasterField field;
   field.width = r.width;
@@ -165,8 +192,7 @@ RasterLoader gdal_raster_loader(const RasterAccess& access) {
   return [access](const RasterRequest& q) {
     const std::unique_ptr<RasterFile> file = open_raster(q.path, raster_options(q), access);
     if (!q.stretch) require_raster_in_metres(file->header(), q.path);
-    return q.width == 0 ? field_of(file->header())
-                        : resample_to_request(file->read(needed_window(file->header(), q)), q);
+    return q.width == 0 ? field_of(file->header()) : resample_to_request(needed_cells(*file, q), q);
   };
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -42,6 +43,12 @@ std::map<std::string, std::string> collect_leaf_values(const Scenario& scenario)
   return found;
 }
 
+std::string joined(const std::set<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
 }  // namespace
 
 const char* fixed_reason(const std::string& path) {
@@ -58,7 +65,8 @@ Scenario with_live_settings(const Scenario& scenario, const Settings& settings) 
     if (const char* why = fixed_reason(path)) {
       errors.add(path, std::string("cannot change while the simulation runs: ") + why);
     } else if (!live.count(path)) {
-      errors.add(path, "unknown parameter (config/parameters.md lists all)");
+      errors.add(path,
+                 "unknown parameter (config/parameters.md lists all)" + did_you_mean(path, joined(live)));
     }
   }
   errors.throw_if_any();

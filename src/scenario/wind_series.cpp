@@ -72,6 +72,16 @@ std::optional<double> read_date(const std::string& text) {
   return static_cast<double>(days_of(year, month, day)) * 86400 + hour * 3600 + minute * 60 + second - *ahead;
 }
 
+std::optional<double> date_of_number(double number) {
+  if (!(number >= 19000101 && number < 1e12) || number != std::floor(number)) return {};
+  std::string text = number_text(number, 17);
+  if (text.size() != 8 && text.size() != 10 && text.size() != 12) return {};
+  if (text < "1900" || text >= "2101") return {};
+  std::string date = text.substr(0, 4) + "-" + text.substr(4, 2) + "-" + text.substr(6, 2);
+  if (text.size() > 8) date += "T" + text.substr(8, 2) + ":" + (text.size() > 10 ? text.substr(10, 2) : "00");
+  return read_date(date);
+}
+
 std::string date_text(double date) {
   const auto whole = static_cast<long long>(std::floor(date));
   long long days = whole / 86400, left = whole % 86400;

@@ -51,6 +51,9 @@ struct WindSeries {
 /// Seconds since 1970-01-01 UTC of a date, with or without a time of day and its distance from UTC (Z,
 /// +02:00); empty if `text` is none.
 std::optional<double> read_date(const std::string& text);
+/// The date that a number such as 20010304, 2001030415 or 200103041500 is, of the years 1900 to 2100; empty
+/// if it is none.
+std::optional<double> date_of_number(double number);
 /// "2001-03-04 15:00:00".
 std::string date_text(double date);
 

@@ -184,6 +184,27 @@ double usual_interval(const std::vector<double>& times) {
   return *middle;
 }
 
+/// Refuses dates that are written as numbers, and warns of times that may be days of a spreadsheet, counted
+/// from 1900.
+void check_seconds(const std::vector<double>& times, const std::string& source, ValidationErrors& errors) {
+  if (times.size() < 2) return;
+  if (std::all_of(times.begin(), times.end(), [](double t) { return date_of_number(t).has_value(); })) {
+    errors.add("column time",
+               number_text(times.front(), 17) +
+                   " and all others are dates written as numbers, not seconds; write them as " +
+                   date_text(*date_of_number(times.front())));
+    return;
+  }
+  constexpr double in_1927 = 10000, in_2119 = 80000, minutes_a_day = 1440, tolerance = 0.05;
+  const double usual = usual_interval(times), minutes = usual * minutes_a_day;
+  if (times.front() > in_1927 && times.back() < in_2119 && usual <= 1 && minutes > 0.5 &&
+      std::abs(minutes - std::round(minutes)) < tolerance)
+    log_warning(source + ": its times, " + number_text(times.front(), 10) + " … " +
+                number_text(times.back(), 10) +
+                ", are taken for seconds; if they are days of a spreadsheet, write them as dates such as "
+                "2001-03-04T15:00");
+}
+
 /// Fills gaps with calm air or refuses them, as the format says, and tells the longest. Rows without a speed
 /// at the end are a gap, too.
 void treat_gaps(RowReader& read, const std::string& source, SeriesGap gap, ValidationErrors& errors) {
@@ -247,6 +268,7 @@ WindSeries parse_wind_series(const std::string& text, const std::string& source,
       break;
     }
   }
+  if (!read.times.dates) check_seconds(read.all_times, source, errors);
   if (read.rows.empty())
     errors.add("file", read.missing > 0 ? "has no row with a speed" : "has no row of values");
   errors.throw_if_any();

@@ -9,8 +9,18 @@
 #include "src/scenario/wind_series_file.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/checkpoint.hpp"
+#include "src/simulation/processes/settings_without_effect.hpp"
 
 namespace desert_sim {
+
+namespace {
+
+void warn_of_settings_without_effect(const Scenario& scenario) {
+  for (const std::string& line : settings_without_effect(scenario))
+    log_warning("scenario " + scenario.name + ": " + line);
+}
+
+}  // namespace
 
 std::uint64_t scenario_hash(const Scenario& scenario) {
   std::string text = dump_scenario(scenario);
@@ -26,6 +36,7 @@ Session::Session(const Scenario& scenario, const RasterLoader& load_raster, cons
   read_wind_series(resolved);
   exec_ = make_exec(backend, threads, &backend_choice_);
   replace_simulation(std::make_unique<Simulation>(*exec_, resolved, load_raster_));
+  warn_of_settings_without_effect(resolved);
   if (journal_path.empty()) return;
   journal_path_ = journal_path;
   journal_ =
@@ -99,6 +110,7 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
     throw ConfigError(command.path +
                       ": is not the scenario that the journal recorded (its state hash differs)");
   replace_simulation(std::move(simulation));
+  if (!command.terrain_only) warn_of_settings_without_effect(simulation_->start());
   return hash;
 }
 

@@ -283,7 +283,8 @@ class DesertCompare(DesertCompareCase):
             self.assertIn("<h3>%s</h3>" % name, text)
 
     def test_a_duration_is_refused_before_any_run(self):
-        self.assertIn("--duration", self.refusal("--duration", "3 fortnights"))
+        for text in ["3 fortnights", "", "0", "0.0a"]:
+            self.assertIn("--duration", self.refusal("--duration", text))
         changes = self.write("changes.yaml", HEAPS.replace("{steps: 20}",
                                                            "{steps: 20, timeline: [{time: 5, set: {run.time_step: 2}}]}"))
         reason = self.refusal("--duration", "20", scenarios=[self.ridges, changes])

@@ -50,6 +50,22 @@ TEST(FrameOf, GroundThatReachesTheEdgeIsNone) {
   EXPECT_FALSE(find_frame(raster([](int x, int y) { return x == 30 && y == 30 ? 0 : hills(x, y, 850); })));
 }
 
+TEST(FrameOf, AFlatEdgeOfWholeNumbersIsNone) {
+  EXPECT_FALSE(find_frame(raster([](int x, int y) {
+    return x < 2 || y < 2 || x > side - 3 || y > side - 3 ? 848 : std::round(850 + 0.06 * hills(x, y, 0));
+  }))) << "neighbours are mostly equal, and a step of two metres is no cliff among steps of one";
+}
+
+TEST(FrameOf, APartOfItIsFoundInAPart) {
+  const auto frame_in_the_west = [](int x, int y) { return x < 8 ? 0 : hills(x, y, 850); };
+  EXPECT_FALSE(find_frame(raster(frame_in_the_west)));
+  const auto found = find_frame(raster(frame_in_the_west), true);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->cells, 8 * side);
+  EXPECT_EQ(found->cell % side, 0u);
+  EXPECT_FALSE(find_frame(raster([](int x, int y) { return hills(x, y, 850); }), true));
+}
+
 TEST(FrameOf, ASmallRasterIsNone) {
   Raster r;
   r.width = r.height = 1;

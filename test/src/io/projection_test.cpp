@@ -104,6 +104,8 @@ TEST_F(Projection, SystemsWhoseMetresAreMetresAreTaken) {
   EXPECT_EQ(taken("EPSG:3857", 1000000, 20000), "") << "Web Mercator at the equator";
   expect_says(taken("EPSG:4087", 1669792, 5000000),
               {"m of ground", "gdalwarp"});  // equidistant cylindrical at 45 N
+  EXPECT_EQ(taken("EPSG:32661", 1999980, 2000020), "") << "UPS at the pole";
+  expect_says(taken("EPSG:3413", -20, 20), {"1.03", "m of ground"});  // true at 70 N, here at the pole
   expect_says(taken("EPSG:32613", 2500000, 4400000),
               {"m of ground", "EPSG:32617 "});  // UTM, far from its zone
 }

@@ -101,7 +101,8 @@ TEST_F(Dem, UndeclaredNodataIsNamedWithItsShare) {
     for (int cell : cells) values[static_cast<std::size_t>(cell)] = value;
     return values;
   };
-  for (float value : {-9999.0F, -32768.0F, 999.0F, 9999.0F}) {
+  for (float value : {-9999.0F, -32768.0F, 999.0F, 9999.0F, -99999.0F, -32767.0F, -999.0F, 32767.0F, 65535.0F,
+                      -5000.0F, 12345.0F}) {
     const std::vector<std::string> lines = warned(with(value, {0, 5}));
     ASSERT_EQ(lines.size(), 1u) << value;
     const std::string number = std::to_string(static_cast<int>(value));
@@ -127,6 +128,49 @@ TEST_F(Dem, ANumberThatMayBeAnElevationIsNamedOnlyAtTheEdgeAndApartFromOthers) {
   EXPECT_EQ(warnings_of(grid(values, 5)).size(), 1u);
   values[1] = 1003;
   EXPECT_TRUE(warnings_of(grid(values, 5)).empty()) << "a landscape at that height";
+}
+
+TEST_F(Dem, ALowestNumberFarBelowAllOthersIsNamedWhereSeveralCellsHaveIt) {
+  std::vector<float> values;
+  for (int i = 0; i < 25; ++i) values.push_back(static_cast<float>(800 + i));
+  values[7] = 0;
+  EXPECT_TRUE(warnings_of(grid(values, 5)).empty()) << "one pit";
+  values[8] = 0;
+  EXPECT_EQ(warnings_of(grid(values, 5)).size(), 1u);
+  EXPECT_TRUE(warnings_of(grid(values, 5), {1, 0.1}).empty()) << "80 m deep";
+  values[9] = 500;
+  EXPECT_TRUE(warnings_of(grid(values, 5)).empty()) << "a valley's floor";
+}
+
+TEST_F(Dem, TheNodataThatIsAdvisedIsTheNumberInTheFile) {
+  std::vector<float> values(400, 100);
+  for (int i = 0; i < 400; ++i)
+    if (i % 20 > 1 && i % 20 < 18 && i > 40 && i < 360)
+      values[static_cast<std::size_t>(i)] = 8500 + 3.0F * (i % 7);
+  const std::vector<std::string> lines = warnings_of(grid(values, 20), {1, 0.1, -7});
+  ASSERT_EQ(lines.size(), 1u);
+  expect_says(lines[0], {"a frame of ", "is exactly 3, ", "nodata: 100,"});
+}
+
+TEST_F(Dem, CoordinatesThatCanOnlyBeDegreesAreWarnedOf) {
+  const auto warned = [&](double cell, const char* srs) {
+    RasterRequest q;
+    q.path = make("place.tif", "GTiff", 4, 4, GDT_Float32,
+                  std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16},
+                  {500000, cell, 0, 4000000, 0, -cell}, srs);
+    q.width = q.height = 4;
+    q.cell_size = cell;
+    q.origin_x = 500000;
+    q.origin_y = 4000000 - 4 * cell;
+    test::LogLines log;
+    gdal_raster_loader()(q);
+    return log.lines;
+  };
+  EXPECT_TRUE(warned(10, "").empty());
+  EXPECT_TRUE(warned(0.0003, "EPSG:32613").empty());
+  const std::vector<std::string> lines = warned(0.0003, "");
+  ASSERT_EQ(lines.size(), 1u);
+  expect_says(lines[0], {"place.tif", "heights differ by 15 m over a width of 0.0012 m", "degrees?"});
 }
 
 TEST_F(Dem, NothingOvershootsBesideACliff) {

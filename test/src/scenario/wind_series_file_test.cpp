@@ -18,7 +18,7 @@ WindSeries parse(const std::string& text, const SeriesFormat& format = usual) {
   return parse_wind_series(text, "wind.csv", format);
 }
 
-void expect_wind(wind::Vector w, double x, double y) {
+void expect_vector(wind::Vector w, double x, double y) {
   EXPECT_NEAR(w.x, x, 1e-5);
   EXPECT_NEAR(w.y, y, 1e-5);
 }
@@ -31,10 +31,10 @@ TEST(WindSeriesFile, TurnsDirectionsByTheirConvention) {
     return parse(text, {direction, angle, ""}).at(0, false);
   };
   const double cos30 = 0.8660254 * 2, sin30 = 0.5 * 2;
-  expect_wind(at(SeriesDirection::to, SeriesAngle::mathematical), cos30, sin30);
-  expect_wind(at(SeriesDirection::from, SeriesAngle::mathematical), -cos30, -sin30);
-  expect_wind(at(SeriesDirection::to, SeriesAngle::compass), sin30, cos30);
-  expect_wind(at(SeriesDirection::from, SeriesAngle::compass), -sin30, -cos30);
+  expect_vector(at(SeriesDirection::to, SeriesAngle::mathematical), cos30, sin30);
+  expect_vector(at(SeriesDirection::from, SeriesAngle::mathematical), -cos30, -sin30);
+  expect_vector(at(SeriesDirection::to, SeriesAngle::compass), sin30, cos30);
+  expect_vector(at(SeriesDirection::from, SeriesAngle::compass), -sin30, -cos30);
 }
 
 TEST(WindSeriesFile, ReadsDates) {
@@ -47,7 +47,7 @@ TEST(WindSeriesFile, ReadsDates) {
   EXPECT_EQ(date_text(s.date.value()), "2001-02-28 23:30:00");
   const WindSeries later = parse(text, {SeriesDirection::to, SeriesAngle::mathematical, "2001-03-02"});
   EXPECT_EQ(later.rows.at(1).time, -86400);
-  expect_wind(later.at(0, false), 2, 0);
+  expect_vector(later.at(0, false), 2, 0);
   EXPECT_EQ(date_text(later.date.value()), "2001-03-02 00:00:00");
 }
 
@@ -95,7 +95,7 @@ TEST(WindSeriesFile, CalmAirNeedsNoDirection) {
   for (const char* none : {"", "NA", "NaN", "nan", "-"}) {
     const WindSeries s = parse("time,speed,direction\n0,4,0\n10,0.0," + std::string(none) + "\n20,3,90\n");
     ASSERT_EQ(s.rows.size(), 3u) << none;
-    expect_wind(s.rows[1].wind, 0, 0);
+    expect_vector(s.rows[1].wind, 0, 0);
     const std::string said =
         test::refusal([&] { parse("time,speed,direction\n0,4,0\n10,1.5," + std::string(none) + "\n"); });
     EXPECT_NE(said.find("line 3, column direction"), std::string::npos) << said << " for " << none;
@@ -108,7 +108,7 @@ TEST(WindSeriesFile, ARowWithoutSpeedIsAGap) {
     test::LogLines log;
     const WindSeries s = parse("time,speed,direction\n0,4,0\n" + std::string(row) + "\n20,3,90\n");
     ASSERT_EQ(s.rows.size(), 2u) << row;
-    expect_wind(s.at(15, false), 4, 0);
+    expect_vector(s.at(15, false), 4, 0);
     ASSERT_FALSE(log.lines.empty()) << row;
     EXPECT_NE(log.lines[0].find("1 of 3 rows have no speed"), std::string::npos) << log.lines[0];
   }
@@ -134,11 +134,11 @@ TEST(WindSeriesFile, GapsAreToldHeldCalmedOrRefused) {
                            "20 m/s", "wind.series_gap: hold"})
     EXPECT_NE(log.lines[0].find(part), std::string::npos) << part << " is not in " << log.lines[0];
   EXPECT_NE(log.lines[1].find("calm air"), std::string::npos) << log.lines[1];
-  expect_wind(held.at(30 * hour, false), 20, 0);
-  expect_wind(calm.at(1.9 * hour, false), 20, 0);
-  expect_wind(calm.at(2 * hour, false), 0, 0);
-  expect_wind(calm.at(48.9 * hour, false), 0, 0);
-  expect_wind(calm.at(49 * hour, false), 4, 0);
+  expect_vector(held.at(30 * hour, false), 20, 0);
+  expect_vector(calm.at(1.9 * hour, false), 20, 0);
+  expect_vector(calm.at(2 * hour, false), 0, 0);
+  expect_vector(calm.at(48.9 * hour, false), 0, 0);
+  expect_vector(calm.at(49 * hour, false), 4, 0);
   const std::string said = test::refusal([&] { with(SeriesGap::refuse); });
   EXPECT_NE(said.find("wind.series_gap: has 1 gap"), std::string::npos) << said;
 }
@@ -183,6 +183,30 @@ TEST(WindSeriesFile, RowsAtEqualIntervalsHaveNoGap) {
   parse("time,speed,direction\n0,4,0\n10,4,0\n20,4,0\n34,4,0\n",
         {SeriesDirection::to, SeriesAngle::mathematical, "", SeriesGap::refuse});
   EXPECT_TRUE(log.lines.empty()) << log.lines[0];
+}
+
+TEST(WindSeriesFile, DatesWrittenAsNumbersAreRefused) {
+  const auto said = [](const std::string& first, const std::string& second) {
+    return test::refusal([&] { parse("time,speed,direction\n" + first + ",4,0\n" + second + ",5,90\n"); });
+  };
+  EXPECT_NE(said("20240131", "20240201").find("write them as 2024-01-31 00:00:00"), std::string::npos);
+  EXPECT_NE(said("2024013123", "2024020100").find("write them as 2024-01-31 23:00:00"), std::string::npos);
+  EXPECT_NE(said("202401312310", "202401312320").find("write them as 2024-01-31 23:10:00"),
+            std::string::npos);
+  EXPECT_NO_THROW(parse("time,speed,direction\n20240131,4,0\n20240132,5,90\n")) << "no date";
+  EXPECT_NO_THROW(parse("time,speed,direction\n1700000000,4,0\n1700003600,5,90\n")) << "since 1970";
+}
+
+TEST(WindSeriesFile, DaysOfASpreadsheetAreWarnedOf) {
+  const auto warnings = [](const std::string& first, const std::string& second) {
+    test::LogLines log;
+    parse("time,speed,direction\n" + first + ",4,0\n" + second + ",5,90\n");
+    return log.lines.size();
+  };
+  EXPECT_EQ(warnings("45292", "45292.0416667"), 1u);
+  EXPECT_EQ(warnings("45292", "45293"), 1u);
+  EXPECT_EQ(warnings("0", "1"), 0u);
+  EXPECT_EQ(warnings("45000", "45600"), 0u);
 }
 
 TEST(WindSeriesFile, AnHourThatComesTwiceIsOneFault) {

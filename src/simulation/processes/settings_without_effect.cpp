@@ -1,0 +1,48 @@
+#include "src/simulation/processes/settings_without_effect.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <set>
+
+#include "src/scenario/yaml_parameters.hpp"
+#include "src/simulation/pipeline/pipeline.hpp"
+#include "src/simulation/processes/processes.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+/// Names of the sections that processes read: of all, or of those that take part in a scenario.
+std::set<std::string> sections_read(const Scenario* scenario = nullptr) {
+  const ProcessTable& table = process_table();
+  std::set<std::string> sections;
+  for (const Process& process : table.processes)
+    if (!scenario || table.is_active(process, *scenario))
+      sections.insert(process.parameters.begin(), process.parameters.end());
+  return sections;
+}
+
+bool is_switched_off(const YAML::Node& section) {
+  return section.IsMap() && section["enabled"].IsDefined() && !section["enabled"].as<bool>();
+}
+
+}  // namespace
+
+std::vector<std::string> settings_without_effect(const Scenario& scenario) {
+  std::vector<std::string> lines;
+  const YAML::Node given = YAML::Load(dump_scenario(scenario)), usual = YAML::Load(dump_scenario(Scenario()));
+  const std::set<std::string> read = sections_read(&scenario);
+  for (const std::string& section : sections_read())
+    if (section != "wind" && !read.count(section) &&
+        YAML::Dump(given[section]) != YAML::Dump(usual[section]) && !is_switched_off(given[section]))
+      lines.push_back(section + ": has no effect: no process that takes part in this scenario reads it");
+  if (!scenario.wind_segments.empty() && scenario.wind_regime.regime == WindRegimeKind::constant)
+    lines.emplace_back("wind.segments: have no effect, because wind.regime is constant");
+  if (scenario.saltation.influx > 0 && scenario.grid.boundary == Boundary::periodic)
+    lines.emplace_back("saltation.influx: has no effect, because grid.boundary is periodic");
+  if (scenario.water.sea != Sea::none && !scenario.has_water())
+    lines.emplace_back("water.sea: has no effect, because the scenario has no water (water.enabled)");
+  return lines;
+}
+
+}  // namespace desert_sim
