@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <set>
 
 #include "src/core/log.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double huge_number = 1e30;  // real elevations are far smaller; nodata are ±1e38 or ±3.4e38
 constexpr double isolation = 10;      // of a number that may be an elevation as well
-constexpr double outlier_ranges = 10, outlier_metres = 100;
+constexpr double outlier_ranges = 5, outlier_metres = 100;
 
 /// The shortest text that is read back as the same number; as the same float if the number is one.
 std::string shortest_text(double number) {
@@ -65,9 +66,10 @@ void CellValues::Least::see(double value) {
   }
 }
 
-bool CellValues::is_suspect(double number) const {
-  return std::any_of(suspects_.begin(), suspects_.end(),
-                     [number](const Suspect& s) { return s.number == number; });
+bool CellValues::is_usual_nodata(double number) const {
+  return std::any_of(suspects_.begin(), suspects_.end(), [number](const Suspect& s) {
+    return s.number == number && s.where != Where::isolated_at_edge;
+  });
 }
 
 float CellValues::convert(double raw, bool at_edge) {
@@ -76,7 +78,7 @@ float CellValues::convert(double raw, bool at_edge) {
   if (std::abs(raw) > huge_number && std::isfinite(raw)) {
     huge_ = raw;
     ++huge_cells_;
-  } else if (std::isfinite(raw) && !is_suspect(raw)) {
+  } else if (std::isfinite(raw) && !is_usual_nodata(raw)) {
     lowest_.see(raw);
     negative_highest_.see(-raw);
   }
@@ -95,8 +97,10 @@ float CellValues::convert(double raw, bool at_edge) {
 
 std::vector<std::string> CellValues::warnings(const std::string& path, std::optional<double> told) const {
   std::vector<std::string> lines;
+  std::set<double> known;
+  if (told) known.insert(*told);
   const auto tell = [&](double number, long long count) {
-    if (number != told) lines.push_back(warning(path, number, count, cells_));
+    if (known.insert(number).second) lines.push_back(warning(path, number, count, cells_));
   };
   for (const Suspect& s : suspects_)
     if (s.cells > 0 && (s.where == Where::anywhere || s.near == 0) &&

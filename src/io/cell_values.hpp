@@ -26,9 +26,9 @@ class CellValues {
   /// One line for each number that seems to stand for missing data, with its share of the converted cells,
   /// and how to declare it: -9999, -32768 and numbers beyond ±1e30 anywhere; -99999, -32767, -999, 32767 and
   /// 65535 where no other number comes within 10 of them; 999 and 9999 only where they also reach the edge;
-  /// and the lowest or highest number, whatever it is, where several cells but less than half have it and ten
-  /// times the range of all others, and 100 m, lie between it and them. Nothing for the number that is `told`
-  /// already.
+  /// and the lowest or highest number, whatever it is, where several cells but less than half have it and
+  /// five times the range of all others, and 100 m, lie between it and them. Nothing for the number that is
+  /// `told` already.
   std::vector<std::string> warnings(const std::string& path, std::optional<double> told = {}) const;
 
  private:
@@ -45,7 +45,7 @@ class CellValues {
     void see(double value);
   };
   bool is_nodata(double raw) const;
-  bool is_suspect(double number) const;
+  bool is_usual_nodata(double number) const;
 
   const RasterOptions options_;
   const DeclaredValues declared_;

@@ -240,9 +240,12 @@ std::string how_to_project(const std::string& path, const OGRSpatialReference& c
       (file.parent_path() / (file.stem().string() + "_" + local.name + ".tif")).string();
   // Float32 because its nodata is no height; without nodata, cells beside the raster would be 0 m high.
   const std::string wkt = wkt_of(crs);
-  const bool keeps_unit = (band.has_unit && !unit_of_heights(wkt).empty()) || points_down(wkt);
-  return ": gdalwarp -t_srs " + shell_word(local.srs) + (keeps_unit ? " -novshiftgrid" : "") +
-         (extent ? inner_cells(crs, local.srs, *extent) : "") +
+  const bool is_depth = points_down(wkt),
+             keeps_unit = is_depth || (band.has_unit && !unit_of_heights(wkt).empty());
+  const char* const vertical =
+      is_depth ? crs.GetAuthorityCode("VERT_CS") : nullptr;  // what is a depth stays one
+  return ": gdalwarp -t_srs " + shell_word(local.srs + (vertical ? "+" + std::string(vertical) : "")) +
+         (keeps_unit ? " -novshiftgrid" : "") + (extent ? inner_cells(crs, local.srs, *extent) : "") +
          (band.is_colour ? " -r near -dstalpha " : " -r bilinear -ot Float32 -dstnodata nan ") +
          shell_word(path) + " " + shell_word(projected);
 }

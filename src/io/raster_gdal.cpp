@@ -38,7 +38,7 @@ DeclaredBand declared_band(GDALDataset& dataset, int band) {
 }
 
 /// Refuses terms that no north-up raster with square cells has.
-void check_geotransform(const std::string& path, GDALDataset& dataset, const GeoTransform& g) {
+void check_geotransform(const std::string& path, GDALDataset& dataset, int band, const GeoTransform& g) {
   for (double term : g)
     if (!std::isfinite(term))
       throw_raster_error(path, concatenate("geotransform has the value ", term, ", must be finite"));
@@ -54,19 +54,19 @@ void check_geotransform(const std::string& path, GDALDataset& dataset, const Geo
   const int width = dataset.GetRasterXSize(), height = dataset.GetRasterYSize();
   require_metres(path, wkt ? wkt : "",
                  {g[0], std::min(g[3], g[3] + height * g[5]), g[1], std::abs(g[5]), width, height},
-                 declared_band(dataset, 1));
+                 declared_band(dataset, band));
   throw_raster_error(path, concatenate("cells are not square: ", g[1], " x ", std::abs(g[5]),
                                        ", at most 0.1 % of difference allowed"));
 }
 
 /// The dataset's geotransform, flipped to north-up; `south_up` is set if it had to be flipped.
-GeoTransform north_up_geotransform(const std::string& path, GDALDataset& dataset, bool& south_up) {
+GeoTransform north_up_geotransform(const std::string& path, GDALDataset& dataset, int band, bool& south_up) {
   const GeoTransform none{0, 1, 0, 0, 0, 1};
   GeoTransform g = none;
   south_up = false;
   const int height = dataset.GetRasterYSize();
   if (dataset.GetGeoTransform(g.data()) != CE_None || g == none) return default_geotransform(height);
-  check_geotransform(path, dataset, g);
+  check_geotransform(path, dataset, band, g);
   if (g[5] > 0) {
     south_up = true;
     g[3] += height * g[5];
@@ -78,7 +78,7 @@ GeoTransform north_up_geotransform(const std::string& path, GDALDataset& dataset
 
 /// Why a dataset without geotransform, but with ground control points, RPC or geolocation arrays, has no
 /// cells of one size; empty if it has none of these.
-std::string unusable_placement(const std::string& path, GDALDataset& dataset) {
+std::string unusable_placement(const std::string& path, GDALDataset& dataset, int band) {
   std::string has;
   if (dataset.GetGCPCount() > 0) has = std::to_string(dataset.GetGCPCount()) + " ground control points";
   if (dataset.GetMetadata("RPC")) has = "rational polynomials (RPC)";
@@ -93,7 +93,7 @@ std::string unusable_placement(const std::string& path, GDALDataset& dataset) {
     x += points[n].dfGCPX / dataset.GetGCPCount();
     y += points[n].dfGCPY / dataset.GetGCPCount();
   }
-  return placed + how_to_project(path, *crs, x, y, declared_band(dataset, 1));
+  return placed + how_to_project(path, *crs, x, y, declared_band(dataset, band));
 }
 
 class GdalRasterFile final : public RasterFile {
@@ -166,11 +166,11 @@ class GdalRasterFile final : public RasterFile {
   void read_header() {
     header_.width = dataset_->GetRasterXSize();
     header_.height = dataset_->GetRasterYSize();
-    set_geotransform(header_, north_up_geotransform(path(), *dataset_, south_up_));
+    set_geotransform(header_, north_up_geotransform(path(), *dataset_, options_.band, south_up_));
     if (const char* wkt = dataset_->GetProjectionRef()) header_.projection = wkt;
     GeoTransform placed;
     if (dataset_->GetGeoTransform(placed.data()) != CE_None)
-      header_.unusable_placement = unusable_placement(path(), *dataset_);
+      header_.unusable_placement = unusable_placement(path(), *dataset_, options_.band);
     warn_of_unused_projection(path(), *dataset_, header_.projection, warnings_);
     header_.declared = declared_band(*dataset_, options_.band);
     std::string unit = unit_of(*band_);

@@ -74,7 +74,7 @@ TEST_P(RoverScenarios, FrontsMoveSlowlyAndEvenly) {
 
 /// Ten minutes of ROS time, in far longer steps than the scenario's: dunes come as far in them.
 TEST_P(RoverScenarios, AParkedRoverIsNotBuried) {
-  Running scene(shipped(GetParam().name, {"run.time_step=0.09"}));
+  Running scene(shipped(GetParam().name, {"run.time_step=0.18"}));
   const RunParameters& run = scene.simulation().scenario().run;
   const Field before = scene.field(Layer::elevation);
   const Field after =

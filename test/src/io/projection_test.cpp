@@ -127,6 +127,15 @@ TEST_F(Projection, HeightsInFeetBecomeMetresOnce) {
   }
 }
 
+TEST_F(Projection, DepthsStayDepths) {
+  const std::string refusal =
+      load_refusal(make("depths.tif", "GTiff", 40, 40, GDT_Float32, std::vector<float>(1600, 100),
+                        {-117, 1e-4, 0, 36, 0, -1e-4}, "EPSG:4269+5715"));
+  const std::string file = warped(refusal);
+  expect_says(load_refusal(file), {"points down", "scale: -1"});
+  EXPECT_NEAR(read_raster(file, {1, -1}).values[500], -100, 1e-3) << refusal;
+}
+
 /// 256 red + green + blue / 256 − 32768 of a height of 310.5 m, a pixel in degrees.
 TEST_F(Projection, ColoursThatEncodeHeightsAreNotMixed) {
   const std::string name =

@@ -53,7 +53,7 @@ void RvizTools::SetUpTestSuite() {
   static char name[] = "rviz_tools_test";
   static char* arguments[] = {name, nullptr};
   new QApplication(argument_count, arguments);
-  window_ = new Window(800, 600);
+  window_ = new Window(800, 600, 60);
 }
 
 void RvizTools::TearDownTestSuite() {
