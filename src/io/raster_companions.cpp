@@ -47,11 +47,11 @@ void check_raw_file(const std::string& path, GDALDataset& dataset, std::uint64_t
   if (file_bytes < needed)
     throw_raster_error(path, concatenate("is truncated: it has ", file_bytes, " bytes of ", needed));
   if (file_bytes > needed && driver == "ENVI")
-    warnings.push_back(concatenate("raster '", path, "': has ", file_bytes, " bytes, its header speaks of ",
-                                   needed, " (", dataset.GetRasterXSize(), " samples, ",
-                                   dataset.GetRasterYSize(), " lines, ", dataset.GetRasterCount(),
-                                   " bands of ", GDALGetDataTypeName(band.GetRasterDataType()),
-                                   "): if one of these is wrong, so are the values"));
+    warnings.push_back(concatenate(
+        "raster '", path, "': has ", file_bytes, " bytes, its header speaks of ", needed, " (",
+        dataset.GetRasterXSize(), " samples, ", dataset.GetRasterYSize(), " lines, ",
+        dataset.GetRasterCount(), dataset.GetRasterCount() == 1 ? " band of " : " bands of ",
+        GDALGetDataTypeName(band.GetRasterDataType()), "): if one of these is wrong, so are the values"));
 }
 
 void require_external_mask(const std::string& path, GDALDataset& dataset, GDALRasterBand& band) {
