@@ -364,7 +364,9 @@ void resolve_grid(Scenario& s, const RasterLoader& load_raster) {
   if (g.width == 0) g.width = 256;
   if (g.height == 0) g.height = 256;
   if (g.cell_size == 0) g.cell_size = 1;
-  check_ranges(g, s.name + ": grid");  // a raster can have any size and place
+  const bool placed_by_raster = !g.from_raster.empty() && s.projection.empty();  // in degrees, perhaps
+  check_ranges(g, s.name + ": grid" +  // a raster can have any size and place
+                      (placed_by_raster ? " of " + g.from_raster + ", which declares no projection" : ""));
 }
 
 std::string raster_path(const Scenario& s, const std::string& file) {
