@@ -47,8 +47,8 @@ TEST_P(Scenarios, DoNotOscillate) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, Scenarios,
                          ::testing::Values(Case{"barchan", 400, 192, 192},
-                                           Case{"climbing_dune", 1200, 256, 96},
-                                           Case{"echo_dune", 500, 320, 96}, Case{"linear", 1000, 256, 256},
+                                           Case{"climbing_dune", 1200, 256, 64},
+                                           Case{"echo_dune", 500, 320, 64}, Case{"linear", 1000, 256, 256},
                                            Case{"nebkha", 1000}, Case{"nebkha_live", 500, 256, 256},
                                            Case{"star", 1500}, Case{"transverse", 900}, Case{"yardang", 400}),
                          [](const auto& test) { return std::string(test.param.scenario); });

@@ -135,7 +135,7 @@ TEST(CheckpointFuzz, MutatedCheckpointsAreRefusedOrRunAndAreSavedAgain) {
   test::run(*s, 6);
   ASSERT_GT(s->state().plants.count, 2);
   const std::string bytes = checkpoint_bytes(*s);
-  const int rounds = test::fuzz_rounds(300);
+  const int rounds = test::fuzz_rounds(200);
   int refused = 0, ran = 0;
   for (int round = 0; round < rounds; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));

@@ -1,4 +1,4 @@
-// Slow processes move what their rates say, however short the step. Amounts of a step are here down to 1e-4
+// Slow processes move what their rates say, however short the step. Amounts of a step are here down to 5e-4
 // quanta. When they were rounded to nearest, or to at least one quantum, each of these tests found nothing
 // moved at all, or many times too much; the comments say how much at which step.
 
@@ -76,10 +76,10 @@ TEST_P(SmallRates, OfFormingSoil) {
 /// Nothing.
 TEST_P(SmallRates, OfAbrasionOfRock) {
   AbrasionParameters a;
-  a.rate = 1e-8f;
+  a.rate = 5e-8f;
   const SaltationParameters p = bouncing(0);
   expect_moved(
-      1e-8 * 50 * cells, 50,
+      5e-8 * 10 * cells, 10,
       [](auto& t) { t.set(Layer::bedrock, 10).set(Layer::airborne_sand, 0.5).set(Layer::wind_x, 2); },
       [&](auto& t, float dt) { t.saltation(p, a, {}, dt); }, booked(Material::bedrock, 1));
 }
@@ -96,9 +96,9 @@ TEST_P(SmallRates, OfLift) {
 /// Nothing: a windward edge of 512 m.
 TEST_P(SmallRates, OfInflux) {
   SaltationParameters p = bouncing(0);
-  p.influx = 1e-7f;
+  p.influx = 2e-7f;
   expect_moved(
-      1e-7 * 100 * 512, 100, [](auto& t) { t.set(Layer::wind_x, 2); },
+      2e-7 * 50 * 512, 50, [](auto& t) { t.set(Layer::wind_x, 2); },
       [&](auto& t, float dt) { t.saltation(p, {}, {}, dt); }, booked(Material::sand, 0), 8, 512, false);
 }
 

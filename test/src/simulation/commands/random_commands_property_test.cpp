@@ -17,7 +17,7 @@ TEST(RandomCommands, ThatAreAcceptedCanBeSavedLoadedAndReplayed) {
   const std::vector<std::string> scenarios{folder.write("desert.yaml", test::small_desert),
                                            folder.write("oasis.yaml", test::small_oasis)};
   int accepted = 0, refused = 0;
-  const int rounds = test::fuzz_rounds(60);
+  const int rounds = test::fuzz_rounds(40);
   for (int round = 0; round < rounds; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
     test::RandomCommands random(static_cast<unsigned>(round));
