@@ -117,7 +117,6 @@ Raster RasterFile::read(const RasterWindow& window) {
     }
   }
   reverse_rows(raster);
-  check_values(path_, raster, window);
   std::optional<double> told;
   if (const std::optional<Frame> frame = find_frame(raster, !whole)) {
     const int x = window.x + static_cast<int>(frame->cell % window.width);
@@ -125,7 +124,8 @@ Raster RasterFile::read(const RasterWindow& window) {
     told = raw[0];
     warn_of_frame(path_, *frame, *told);
   }
-  warn_of_undeclared_nodata(cells, path_, told);
+  warn_of_undeclared_nodata(cells, path_, told);  // which may be why values are refused
+  check_values(path_, raster, window);
   return raster;
 }
 

@@ -142,6 +142,14 @@ TEST_F(Dem, ALowestNumberFarBelowAllOthersIsNamedWhereSeveralCellsHaveIt) {
   EXPECT_TRUE(warnings_of(grid(values, 5)).empty()) << "a valley's floor";
 }
 
+TEST_F(Dem, NodataBeyondFloatsIsNamedBeforeTheValuesAreRefused) {
+  const std::string file = make("dem.tif", "GTiff", 2, 1, GDT_Float64, std::vector<double>{5, -1.7e308});
+  test::LogLines log;
+  expect_says(refusal(file), {"beyond float32"});
+  ASSERT_EQ(log.lines.size(), 1u);
+  expect_says(log.lines[0], {"nodata: -1.7e+308"});
+}
+
 TEST_F(Dem, TheNodataThatIsAdvisedIsTheNumberInTheFile) {
   std::vector<float> values(400, 100);
   for (int i = 0; i < 400; ++i)
