@@ -116,7 +116,7 @@ class Exec {
 /// Memory that the host can still allocate [bytes], within the limit of its control group.
 std::size_t host_memory_available();
 
-class CpuExec final : public Exec {
+class CpuExec : public Exec {
  public:
   /// `threads` ≥ 1, or 0 for one thread per processor.
   explicit CpuExec(int threads = 0);

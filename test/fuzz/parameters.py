@@ -5,6 +5,7 @@ material is lost, and a run gives the same state on one thread and two, through 
     test/fuzz/parameters.py DESERT_RUN ends                     each parameter at both ends, in each model
     test/fuzz/parameters.py DESERT_RUN random N [--seed S]      N combinations
         --steps N (300)   --jobs N (processors)   --only TEXT (models whose name has it)
+        --cuda N          each Nth on the GPU, too
 
 What fails is printed as a command that repeats it. Exit status 1 if something does."""
 import argparse
@@ -103,14 +104,15 @@ class Fuzzer:
     def scenario(self, name):
         return os.path.join(self.folder, name + ".yaml")
 
-    def words(self, model, settings, more):
-        words = [self.options.desert_run, self.scenario(model), "--backend", "cpu", "--quiet", "--set", "run.check_every=1"]
+    def words(self, model, settings, more, backend="cpu"):
+        words = [self.options.desert_run, self.scenario(model), "--backend", backend, "--quiet", "--set", "run.check_every=1"]
         for setting in settings:
             words += ["--set", setting]
         return words + more
 
     def run(self, words):
-        environment = dict(os.environ, OMP_WAIT_POLICY="passive")
+        # What memory held before must not matter: two runs are unlikely to find the same.
+        environment = dict(os.environ, OMP_WAIT_POLICY="passive", MALLOC_PERTURB_=str(random.randrange(1, 256)))
         return subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, env=environment,
                               timeout=self.options.timeout)
 
@@ -118,7 +120,7 @@ class Fuzzer:
         with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
             return json.load(file)
 
-    def problem(self, model, settings):
+    def problem(self, model, settings, on_gpu):
         """What is wrong with a run; empty if nothing is, REFUSED if it is refused. A model as it is must not be."""
         steps = str(self.options.steps)
         with tempfile.TemporaryDirectory(dir=self.folder) as folder:
@@ -133,6 +135,12 @@ class Fuzzer:
                 summary = self.summary(out)
                 if any(summary["mass_residual"].values()):
                     return "residual %s" % summary["mass_residual"]
+                if on_gpu:
+                    gpu = self.run(self.words(model, settings, ["--steps", steps, "--out", out], "cuda"))
+                    if gpu.returncode != 0:
+                        return "status %d on the GPU: %s" % (gpu.returncode, gpu.stderr.strip()[-300:])
+                    if any(self.summary(out)["mass_residual"].values()):
+                        return "residual on the GPU %s" % self.summary(out)["mass_residual"]
                 middle = str(self.options.steps // 2)
                 saved = self.run(self.words(model, settings, ["--threads", "2", "--steps", middle, "--checkpoint", half]))
                 if saved.returncode != 0:
@@ -162,7 +170,10 @@ class Fuzzer:
         """Runs all (model, settings); prints what fails, and how many were refused. Whether nothing failed."""
         failed = refused = 0
         with concurrent.futures.ThreadPoolExecutor(self.options.jobs) as at_once:
-            for (model, settings), problem in zip(cases, at_once.map(lambda case: self.problem(*case), cases)):
+            every = self.options.cuda
+            on_gpu = [every > 0 and n % every == 0 for n in range(len(cases))]
+            problems = at_once.map(lambda case, gpu: self.problem(*case, gpu), cases, on_gpu)
+            for (model, settings), problem in zip(cases, problems):
                 if problem == REFUSED:
                     refused += 1
                 elif problem:
@@ -203,6 +214,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--only", default="")
     parser.add_argument("--timeout", type=float, default=120)
+    parser.add_argument("--cuda", type=int, default=0, metavar="N")
     options = parser.parse_args()
     known = parameters(options.desert_run)
     models = [name for name in MODELS if options.only in name]

@@ -253,6 +253,10 @@ MUTATIONS = [Mutation(*row) for row in (
      "clamp(1.1f - (distance - lane) / (end - lane), 0.0f, 1.0f)",
      "clamp(1.1f - (distance - lane) / end, 0.0f, 1.0f)",
      "sticky ground fades up to its end", "kernels_unit *EchoDunes.Lane*"),
+    ("heights_measured_only_for_wind", "src/simulation/pipeline/pipeline.cpp",
+     "if (!fields_.heights_stale) return;",
+     "if (!fields_.heights_stale || !stages_.front().process->adapt) return;",
+     "whatever reads heights has them measured", "core_property Determinism.WhatMemoryHeld*"),
 
     # ---- sand
     ("lift_in_shadow", "kernels/sand/saltation_laws.hpp",

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "kernels/avalanching/avalanching.hpp"
+#include "kernels/backend/exec.hpp"
 #include "kernels/field/statistics.hpp"
 #include "src/core/error.hpp"
 
@@ -103,6 +104,12 @@ void Pipeline::make_launches() {
         std::find_if(fused_launches_.begin(), fused_launches_.end(),
                      [&](const Launch& launch) { return launch.stage == first && !launch.fused; }));
   }
+  for (std::vector<Launch>* launches : {&unfused_launches_, &fused_launches_})
+    for (Launch& launch : *launches)
+      if (launch.stage->process->reads_heights || (launch.second && launch.second->process->reads_heights)) {
+        launch.measures_heights = true;
+        break;
+      }
   avalanching_measures_heights_ = false;
   for (const Stage& stage : stages_) {
     if (stage.process->name == "avalanching") {
@@ -176,7 +183,14 @@ std::size_t Pipeline::recordable_stages() const {
   return static_cast<std::size_t>(end - fused_launches_.begin());
 }
 
+/// Of the ground as it is at the start of a step, whichever processes the scenario has.
+void Pipeline::measure_heights(StepContext& c) {
+  if (!fields_.heights_stale) return;
+  with_backend(c.exec(), [&](auto& e) { surface::compute_heights(e, c.terrain, fields_.heights); });
+}
+
 void Pipeline::run(const Launch& launch, StepContext& c) {
+  if (launch.measures_heights) measure_heights(c);
   if (launch.fused)
     launch.fused->step(c, launch.stage->workspace.get(), launch.second->workspace.get());
   else
@@ -203,6 +217,7 @@ void Pipeline::step_alone(const std::string& process) {
   if (!stage) throw Error("the process " + process + " is not active");
   StepContext c = context();
   fields_.roll_dice(state_.exec(), state_.scenario.seed, state_.steps);
+  measure_heights(c);
   stage->process->step(c, stage->workspace.get());
   state_.exec().synchronise();
 }
@@ -210,6 +225,7 @@ void Pipeline::step_alone(const std::string& process) {
 void Pipeline::refresh_derived() {
   if (derived_ready_) return;
   StepContext c = context();
+  measure_heights(c);
   for (Stage& stage : stages_)
     if (stage.process->refresh) stage.process->refresh(c, stage.workspace.get());
   derived_ready_ = true;

@@ -85,10 +85,12 @@ class Pipeline {
     Stage* stage;
     Stage* second = nullptr;
     const FusedProcesses* fused = nullptr;
+    bool measures_heights = false;  ///< the first of a step that reads them
   };
   StepContext context();
   void run_part(StepContext& context);
   void make_launches();
+  void measure_heights(StepContext& context);
   void allocate_layers();
   void bring_into_use(const Process& process, Layer layer);
   void run(const Launch& launch, StepContext& context);

@@ -77,8 +77,9 @@ struct Process {
   std::function<bool(const Scenario&)> active;
   std::vector<std::string> replaces;  ///< processes that are not active while it is
 
-  std::vector<Layer> reads;   ///< where they are in use; those that it writes need not be repeated
-  std::vector<Layer> writes;  ///< brought into use while it is active
+  bool reads_heights = false;  ///< SharedFields::heights: the first in a step that does has them measured
+  std::vector<Layer> reads;    ///< where they are in use; those that it writes need not be repeated
+  std::vector<Layer> writes;   ///< brought into use while it is active
   std::vector<Layer> writes_if_in_use;
   /// Fills a layer of `writes` that has just come into use, and is 0, with what it begins with. Null if that
   /// is 0.

@@ -42,6 +42,7 @@ Process continuum_process() {
   p.source = "Kroy et al. 2002, Andreotti et al. 2010";
   p.header = "kernels/sand/continuum.hpp";
   p.active = [](const Scenario& s) { return s.has_continuum_transport(); };
+  p.reads_heights = true;
   p.reads = {Layer::wind_x,   Layer::wind_y,   Layer::echo,  Layer::vegetation,
              Layer::obstacle, Layer::moisture, Layer::water, Layer::erosion_resistance};
   p.writes = {Layer::sand, Layer::airborne_sand};

@@ -41,6 +41,7 @@ Process plant_cover_process() {
   p.source = "Nilles 2025 §3.2.1, eq. 8–12";
   p.header = "kernels/plants/cover.hpp";
   p.active = has_plants;
+  p.reads_heights = true;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::vegetation, Layer::humus, Layer::canopy_height};
   p.step = [](StepContext& c, ProcessWorkspace*) { cover_ground(c, true); };
@@ -55,6 +56,7 @@ Process illumination_process() {
   p.source = "Nilles 2025 §3.2.3, eq. 16–18";
   p.header = "kernels/plants/illumination.hpp";
   p.active = has_plants;
+  p.reads_heights = true;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::canopy_height, Layer::water};
   p.writes = {Layer::illumination, Layer::illumination_canopy};
   p.step = p.refresh = illuminate;
@@ -68,6 +70,7 @@ Process vegetation_process() {
   p.source = "Nilles 2025 §3.2.2–3.2.6, eq. 13–24";
   p.header = "kernels/plants/life.hpp";
   p.active = has_plants;
+  p.reads_heights = true;
   p.reads = {Layer::bedrock,  Layer::soil,          Layer::sand,         Layer::water,
              Layer::obstacle, Layer::canopy_height, Layer::illumination, Layer::illumination_canopy};
   p.writes = {Layer::humus};

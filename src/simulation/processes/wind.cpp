@@ -74,14 +74,8 @@ WindWork<Flow> with_features(const SimulationState& state, Flow flow) {
   return work;
 }
 
-void measure_heights(StepContext& c) {
-  if (!c.fields.heights_stale) return;
-  with_backend(c.exec(), [&](auto& e) { surface::compute_heights(e, c.terrain, c.fields.heights); });
-}
-
 void update_wind(StepContext& c, ProcessWorkspace* workspace) {
   auto& work = workspace_as<TurnedWindWork>(workspace);
-  measure_heights(c);
   work.local.update(c);
   with_backend(c.exec(), [&](auto& e) {
     wind::step(e, c.terrain, c.scenario().wind, c.wind_above(), c.fields.heights, c.state.wind_reference,
@@ -92,7 +86,6 @@ void update_wind(StepContext& c, ProcessWorkspace* workspace) {
 
 void update_shear_stress(StepContext& c, ProcessWorkspace* workspace) {
   auto& work = workspace_as<ShearStressWork>(workspace);
-  measure_heights(c);
   work.local.update(c);
   with_backend(c.exec(), [&](auto& e) {
     shear_stress::step(e, c.terrain, c.scenario().shear_stress, c.wind_above(), c.fields.heights,
@@ -106,6 +99,7 @@ Process surface_wind_row(const char* name) {
   Process p;
   p.name = name;
   p.parameters = {name};
+  p.reads_heights = true;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand};
   p.writes = {Layer::wind_x, Layer::wind_y};
   // The perturbation by local features depends on the time.
@@ -172,6 +166,7 @@ Process wind_shadow_process() {
   p.header = "kernels/wind/wind_shadow.hpp";
   // Continuum transport has the bubbles of its shear stress.
   p.active = [](const Scenario& s) { return s.wind_shadow.enabled && !s.has_continuum_transport(); };
+  p.reads_heights = true;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::canopy_height, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::wind_shadow};
   set_workspace<wind_shadow::Workspace>(p, [](const SimulationState& state) {
@@ -191,6 +186,7 @@ Process echo_dune_process() {
   p.source = "Tsoar 1983, Taylor & Keyser 2023";
   p.header = "kernels/wind/echo_dunes.hpp";
   p.active = [](const Scenario& s) { return s.echo_dunes.enabled; };
+  p.reads_heights = true;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::echo};
   p.step = p.refresh = update_echo;

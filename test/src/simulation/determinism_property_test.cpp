@@ -1,6 +1,8 @@
 // Same scenario, same bits: whatever the threads, in one run or two, through a checkpoint.
 
+#include <algorithm>
 #include <filesystem>
+#include <random>
 
 #include "src/simulation/checkpoint.hpp"
 #include "test/support/cases.hpp"
@@ -25,6 +27,58 @@ TEST(Determinism, TheHashDoesNotDependOnTheNumberOfThreads) {
     const std::uint64_t hash = hash_after(one, yaml, 3);
     EXPECT_EQ(hash, hash_after(two, yaml, 3));
     EXPECT_EQ(hash, hash_after(three, yaml, 3));
+  }
+}
+
+/// Its memory holds numbers where nobody has written yet.
+class UsedMemoryExec : public CpuExec {
+ public:
+  explicit UsedMemoryExec(unsigned seed) : CpuExec(1), numbers_(seed) {}
+
+ protected:
+  void* allocate_memory(std::size_t bytes) override {
+    auto* words = static_cast<std::uint32_t*>(CpuExec::allocate_memory(bytes));
+    std::generate_n(words, bytes / sizeof *words, [this] { return static_cast<std::uint32_t>(numbers_()); });
+    return words;
+  }
+
+ private:
+  std::mt19937 numbers_;
+};
+
+using Words = std::vector<std::uint32_t>;
+std::vector<Words> layers_after(Exec& exec, const std::string& yaml, int steps) {
+  auto s = test::simulate(exec, yaml);
+  test::run(*s, steps);
+  std::vector<Words> words;
+  for (Layer layer : s->layers_in_use()) words.push_back(s->terrain().raw_words(layer));
+  return words;
+}
+
+/// A field that all processes share is filled by one of them, which another model of sand may replace.
+TEST(Determinism, WhatMemoryHeldBeforeDoesNotMatter) {
+  const std::string everything =
+      "grid: {width: 40, height: 36, cell_size: 1, boundary: open}\n"
+      "terrain: [noise: {layer: bedrock, low: 0, high: 8, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
+      "  noise: {layer: sand, low: 0.1, high: 2, scale: 5}, uniform: {layer: water, value: 0.05},\n"
+      "  uniform: {layer: erosion_resistance, value: 0.2}, uniform: {layer: moisture, value: 0.02},\n"
+      "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
+      "wind: {speed: 9, direction_deg: 20, features: [{kind: vortex, x: 10, y: 10, radius: 5}]}\n"
+      "echo_dunes: {enabled: true}\nabrasion: {rate: 0.01}\nrain: {rate: 1.0e-4}\nsoil: {enabled: true}\n"
+      "water: {evaporation: 0.05, sea: border, sea_level: 1}\nhydraulic_erosion: {enabled: true}\n"
+      "moisture: {enabled: true}\nvegetation: {enabled: true, draw: 1}\nrun: {time_step: 1}\n"
+      "species: [{preset: bush, spawn: 50000, moisture_lowest: 0, moisture_highest: 1, slope: 100}]\n";
+  for (const char* sand :
+       {"saltation: {influx: 0.3, flux: true}\nreptation: {method: smoothing}\nlooseness: {enabled: true}\n",
+        "saltation: {enabled: false}\nreptation: {method: off}\navalanching: {enabled: false}\n",
+        "saltation: {model: continuum, flux: true}\nlooseness: {enabled: true}\n",
+        "saltation: {model: desertscape_2019, flux: true}\n", "slab_model: {kind: werner}\n",
+        "slab_model: {kind: momiji}\n", "slab_model: {kind: bishop}\n", "slab_model: {kind: nield_baas}\n",
+        "slab_model: {kind: snow}\n", "particle: {kind: wang}\nlooseness: {enabled: true}\n"}) {
+    SCOPED_TRACE(sand);
+    const std::string yaml = everything + sand;
+    UsedMemoryExec one(1), another(2);
+    EXPECT_TRUE(layers_after(one, yaml, 4) == layers_after(another, yaml, 4));
   }
 }
 
