@@ -129,14 +129,14 @@ TEST_P(Repeated, RunsAreTheSameThroughACheckpoint) {
   for (const test::Case& c : test::process_cases(true)) {
     SCOPED_TRACE(c.name);
     auto whole = simulation(test::grid_yaml(33, 50, "open") + c.yaml);
-    test::run(*whole, 20);
+    test::run(*whole, 10);
     auto half = simulation(test::grid_yaml(33, 50, "open") + c.yaml);
-    test::run(*half, 10);
+    test::run(*half, 5);
     save_checkpoint(folder.path("half.ck"), *half);
     auto resumed = load_checkpoint(folder.path("half.ck"), exec());
     EXPECT_EQ(resumed->state_hash(), half->state_hash());
-    EXPECT_EQ(resumed->steps(), 10u);
-    test::run(*resumed, 10);
+    EXPECT_EQ(resumed->steps(), 5u);
+    test::run(*resumed, 5);
     EXPECT_EQ(resumed->state_hash(), whole->state_hash());
     test::expect_sound(*resumed, "resumed");
     EXPECT_EQ(resumed->mean_avalanche_iterations(), whole->mean_avalanche_iterations());

@@ -282,7 +282,7 @@ TEST_P(Symmetry, OfTaylorKeyser) {
 }
 TEST_P(Symmetry, OfConvergedSweeps) {
   const std::string converged =
-      "avalanching: {scheme: sweeps, quality: converged, sweeps: 10, max_iterations: 60}\n";
+      "avalanching: {scheme: sweeps, quality: converged, sweeps: 5, max_iterations: 20}\n";
   expect_equivariant(deep + faint + converged);
   expect_same_on_average(patchy + converged);
 }
