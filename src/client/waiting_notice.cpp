@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "src/core/joined.hpp"
+
 namespace desert_sim {
 
 namespace {
@@ -12,12 +14,6 @@ std::string last_name(const std::string& topic) { return topic.substr(topic.rfin
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
 }
 
 }  // namespace

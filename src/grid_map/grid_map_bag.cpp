@@ -9,6 +9,7 @@
 #include <set>
 
 #include "src/core/files.hpp"
+#include "src/core/joined.hpp"
 #include "src/core/quoted.hpp"
 #include "src/grid_map/bag_bytes.hpp"
 #include "src/grid_map/bag_records.hpp"
@@ -38,11 +39,7 @@ std::string serialised(const GridMap& map) {
   return bytes;
 }
 
-std::string joined_names(const std::set<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return shortened(list);
-}
+std::string joined_names(const std::set<std::string>& names) { return shortened(joined(names)); }
 
 void require_one_topic(rosbag::Bag& bag, rosbag::View& maps) {
   std::set<std::string> topics, types;

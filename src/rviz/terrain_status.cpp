@@ -1,5 +1,6 @@
 #include "src/rviz/terrain_status.hpp"
 
+#include "src/core/joined.hpp"
 #include "src/rviz/terrain_source.hpp"
 
 namespace desert_sim {
@@ -34,12 +35,10 @@ DisplayStatus status_of_overlay(const std::string& layer, const std::string& tit
   if (layer.empty()) return {StatusProperty::Ok, "Overlay", "none"};
   const std::string needed = source_of_layer(layer);
   const bool computed = layer == render::slope_layer || layer == render::change_layer;
-  if (!computed && !TerrainSource::is_known(needed)) {
-    std::string known;
-    for (const std::string& name : TerrainClient::known_layers()) known += (known.empty() ? "" : ", ") + name;
+  if (!computed && !TerrainSource::is_known(needed))
     return {StatusProperty::Error, "Overlay",
-            "There is no layer '" + layer + "': choose change, cost, or one of " + known + "."};
-  }
+            "There is no layer '" + layer + "': choose change, cost, or one of " +
+                joined(TerrainClient::known_layers()) + "."};
   if (!computed && !maps.count(needed))
     return {StatusProperty::Warn, "Overlay",
             "Waiting for the layer '" + needed + "': the node sends it when it has computed it."};

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kernels/field/layers.hpp"
+#include "src/core/joined.hpp"
 #include "src/core/quoted.hpp"
 
 namespace desert_sim {
@@ -45,12 +46,9 @@ Scenario scenario_from_bands(const std::string& path, const RasterLoader& load_r
     if (band > 0) s.terrain.push_back(step);
   };
   const int bedrock = find_band("bedrock", bands), elevation = find_band("elevation", bands);
-  if (bedrock == 0 && elevation == 0) {
-    std::string names;
-    for (const std::string& band : bands) names += (names.empty() ? "" : ", ") + band;
+  if (bedrock == 0 && elevation == 0)
     throw ConfigError(path + ": contains neither a layer bedrock nor a layer elevation (it contains: " +
-                      shortened(names) + ")");
-  }
+                      shortened(joined(bands)) + ")");
   add(Layer::bedrock, bedrock > 0 ? bedrock : elevation, Merge::replace, 1);
   for (const LayerInfo& layer : layer_table) {
     if (layer.lifetime != Lifetime::persistent || layer.layer == Layer::bedrock) continue;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/joined.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -41,12 +42,6 @@ std::map<std::string, std::string> collect_leaf_values(const Scenario& scenario)
   std::map<std::string, std::string> found;
   collect_leaf_values(YAML::Load(dump_scenario(scenario)), "", found);
   return found;
-}
-
-std::string joined(const std::set<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
 }
 
 }  // namespace

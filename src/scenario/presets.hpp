@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "src/core/joined.hpp"
+
 namespace desert_sim {
 
 class Presets {
@@ -28,11 +30,7 @@ class Presets {
     return all;
   }
   /// The same names separated by ", ", for error messages.
-  std::string joined_names() const {
-    std::string all;
-    for (const std::string& name : names()) all += (all.empty() ? "" : ", ") + name;
-    return all;
-  }
+  std::string joined_names() const { return joined(names()); }
 
  private:
   const Row* rows_;

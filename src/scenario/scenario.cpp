@@ -9,6 +9,7 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/input_file.hpp"
+#include "src/core/joined.hpp"
 #include "src/scenario/climate.hpp"
 #include "src/scenario/growth_curves.hpp"
 #include "src/scenario/range_checks.hpp"
@@ -63,8 +64,7 @@ void read_terrain(const YAML::Node& list, ValidationErrors& errors, std::vector<
     }
     const auto entry = *list[n].begin();
     const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "?";
-    std::string known;
-    for (const char* step : terrain_step_names) known += (known.empty() ? "" : ", ") + std::string(step);
+    const std::string known = joined(terrain_step_names);
     if (!read_step(name, entry.second, key + "." + name, errors, steps))
       errors.add(key, "unknown step '" + name + "' (known: " + known + ")" + did_you_mean(name, known));
   }
@@ -211,6 +211,21 @@ Scenario parse_with_settings(const std::string& text, const std::string& source,
   return parse_scenario(root, source, folder);
 }
 
+/// Of a key beside the sections that is a parameter's own, or has another sign for the dot: its path.
+std::string path_that_is_meant(const std::string& key) {
+  std::set<std::string> paths, with_this_key;
+  for (const auto& section : YAML::Load(dump_scenario(Scenario()))) {
+    if (!section.second.IsMap()) continue;
+    for (const auto& entry : section.second) {
+      const std::string path = section.first.Scalar() + "." + entry.first.Scalar();
+      paths.insert(path);
+      if (entry.first.Scalar() == key) with_this_key.insert(path);
+    }
+  }
+  if (with_this_key.empty()) return did_you_mean(key, joined(paths));
+  return with_this_key.size() > 3 ? "" : "; did you mean " + joined(with_this_key) + "?";
+}
+
 }  // namespace
 
 Scenario load_scenario(const std::string& path, const Settings& settings, const std::string& folder) {
@@ -251,7 +266,7 @@ Scenario parse_scenario(const YAML::Node& given, const std::string& name, const 
   SeedParameter seed{s.seed};
   yaml::read_parameters(root, "", errors, seed, known);
   s.seed = seed.seed;
-  yaml::reject_unknown_keys(root, "", known, errors);
+  yaml::reject_unknown_keys(root, "", known, errors, path_that_is_meant);
   read_terrain(root["terrain"], errors, s.terrain);
   read_wind(root["wind"], errors, s);
   read_water(root["water"], errors, s);

@@ -9,6 +9,7 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
+#include "src/core/joined.hpp"
 
 namespace desert_sim {
 
@@ -122,8 +123,7 @@ std::string scenario_file(const std::string& name) {
         "scenario '" + name +
         "' is not a path, and the package desert_sim is not in ROS_PACKAGE_PATH (setup.bash of its "
         "workspace puts it there)");
-  std::string all;
-  for (const std::string& one : installed_scenarios()) all += (all.empty() ? "" : ", ") + one;
+  const std::string all = joined(installed_scenarios());
   throw ConfigError("no scenario '" + name + "' exists in " + installed_scenario_folder() +
                     " (known: " + all + ")" + did_you_mean(name, all));
 }

@@ -12,6 +12,7 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
+#include "src/core/joined.hpp"
 #include "src/core/parameters.hpp"
 #include "src/core/quoted.hpp"
 #include "src/core/time_units.hpp"
@@ -31,6 +32,8 @@ class ValidationErrors {
     else
       ++left_out_;
   }
+  /// Further errors are only counted.
+  bool is_full() const { return left_out_ > 0; }
   void throw_if_any() const {
     if (text_.empty()) return;
     throw ConfigError(left_out_ == 0 ? text_ : text_ + "\nand " + std::to_string(left_out_) + " more errors");
@@ -178,22 +181,26 @@ void read_parameters(const YAML::Node& section, const std::string& path, Validat
   });
 }
 
-/// Adds an error for each key that is not in `known`, and for each key that is given twice.
+/// Adds an error for each key that is not in `known`, and for each key that is given twice. `help`, if given,
+/// says what else may be meant by a key that none of `known` is like.
 inline void reject_unknown_keys(const YAML::Node& section, const std::string& path,
-                                const std::set<std::string>& known, ValidationErrors& errors) {
+                                const std::set<std::string>& known, ValidationErrors& errors,
+                                std::string (*help)(const std::string& key) = nullptr) {
   if (!section.IsDefined() || section.IsNull()) return;
   if (!section.IsMap()) {
     errors.add(path.empty() ? "top level" : path.substr(0, path.size() - 1),
                node_text(section) + " is given where keys and values are expected");
     return;
   }
-  std::string all;
-  for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
+  const std::string all = joined(known);
   std::set<std::string> seen;
   for (const auto& entry : section) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
-    if (!known.count(key))
-      errors.add(path + key, "unknown key (known here: " + all + ")" + did_you_mean(key, all));
+    if (!known.count(key)) {
+      std::string meant = errors.is_full() ? "" : did_you_mean(key, all);
+      if (meant.empty() && help && !errors.is_full()) meant = help(key);
+      errors.add(path + key, "unknown key (known here: " + all + ")" + meant);
+    }
     if (!seen.insert(key).second) errors.add(path + key, "is given twice");
   }
 }

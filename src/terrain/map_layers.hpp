@@ -7,6 +7,7 @@
 #include <string>
 
 #include "kernels/field/layers.hpp"
+#include "src/core/joined.hpp"
 
 namespace desert_sim {
 
@@ -70,9 +71,7 @@ constexpr std::array<MapLayer, 41> map_layers{{
 
 /// The names of all map layers, with ", " between them.
 inline std::string map_layer_names() {
-  std::string names;
-  for (const MapLayer& layer : map_layers) names += (names.empty() ? "" : ", ") + std::string(layer.name);
-  return names;
+  return joined(map_layers, [](const MapLayer& layer) { return layer.name; });
 }
 
 /// The layer of this name; null if there is none.

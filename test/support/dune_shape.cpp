@@ -65,8 +65,8 @@ double fall_distance(const Field& elevation, double x, double y, double step_x, 
 
 /// Angle of the line between the places where a profile from the crest has fallen to the shares `high` and
 /// `low` of the height [deg]; 0 if it never does.
-double flank_deg(const Field& elevation, const Dune& dune, double base, double dx, double dy, double high,
-                 double low) {
+double flank_deg(const Field& elevation, const DuneShape& dune, double base, double dx, double dy,
+                 double high, double low) {
   const double l = elevation.cell_size, x = dune.crest_x / l - 0.5, y = dune.crest_y / l - 0.5;
   const double most = 2 * dune.length + 10 * l;
   const double upper = fall_distance(elevation, x, y, dx, dy, base + high * dune.height, most);
@@ -75,7 +75,7 @@ double flank_deg(const Field& elevation, const Dune& dune, double base, double d
   return std::atan((high - low) * dune.height / (lower - upper)) / degree;
 }
 
-void measure_horns(const Patch& patch, double wind_deg, double left, double right, Dune& dune) {
+void measure_horns(const Patch& patch, double wind_deg, double left, double right, DuneShape& dune) {
   constexpr double none = std::numeric_limits<double>::infinity();
   struct Third {
     double front = -none, back = none, front_across = 0, back_across = 0;
@@ -92,9 +92,9 @@ void measure_horns(const Patch& patch, double wind_deg, double left, double righ
   dune.horn_direction_deg = std::remainder(wind_deg + direction_of(along, across), 360.0);
 }
 
-Dune measure(const Field& elevation, const Field& sand, const Slopes& slope, const Patch& patch,
-             double wind_deg) {
-  Dune dune;
+DuneShape measure(const Field& elevation, const Field& sand, const Slopes& slope, const Patch& patch,
+                  double wind_deg) {
+  DuneShape dune;
   const double l = sand.cell_size;
   double left = patch[0].across, right = left, back = patch[0].along, front = back;
   double top = -1e30, base = 1e30, slip_x = 0, slip_y = 0;
@@ -142,14 +142,14 @@ Dune measure(const Field& elevation, const Field& sand, const Slopes& slope, con
 
 }  // namespace
 
-std::vector<Dune> find_dunes(const Field& elevation, const Field& sand, double wind_deg, double threshold,
-                             std::size_t least_cells) {
+std::vector<DuneShape> find_dunes(const Field& elevation, const Field& sand, double wind_deg,
+                                  double threshold, std::size_t least_cells) {
   const Slopes slope = slopes(elevation);
-  std::vector<Dune> dunes;
+  std::vector<DuneShape> dunes;
   for (const Patch& patch : find_patches(sand, wind_deg, threshold, least_cells))
     dunes.push_back(measure(elevation, sand, slope, patch, wind_deg));
   std::stable_sort(dunes.begin(), dunes.end(),
-                   [](const Dune& a, const Dune& b) { return a.volume > b.volume; });
+                   [](const DuneShape& a, const DuneShape& b) { return a.volume > b.volume; });
   return dunes;
 }
 

@@ -9,7 +9,7 @@ namespace desert_sim {
 /// One dune: a connected patch (8 neighbours) of sand deeper than a threshold. "Along" and "across" are seen
 /// from the wind; positions are metres from the south-west corner, of periodic fields unwrapped around the
 /// patch.
-struct Dune {
+struct DuneShape {
   std::size_t cells = 0;
   double volume = 0;                ///< [m³]
   double height = 0;                ///< crest above the lowest ground within the patch's outline [m]
@@ -30,8 +30,8 @@ struct Dune {
 };
 
 /// Dunes of at least `least_cells`, largest volume first. `elevation` is ground + sand.
-std::vector<Dune> find_dunes(const Field& elevation, const Field& sand, double wind_deg,
-                             double threshold = 0.3, std::size_t least_cells = 30);
+std::vector<DuneShape> find_dunes(const Field& elevation, const Field& sand, double wind_deg,
+                                  double threshold = 0.3, std::size_t least_cells = 30);
 
 /// What lies upwind of a wall along one row of cells of an eastward wind.
 struct WallFront {

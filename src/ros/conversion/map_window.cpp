@@ -7,6 +7,7 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
+#include "src/core/joined.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/quoted.hpp"
 #include "src/ros/node/simulation_thread.hpp"
@@ -34,9 +35,7 @@ std::vector<MapLayer> map_layers_named(const std::vector<std::string>& names, co
 }
 
 std::string yaml_list(const std::vector<MapLayer>& layers) {
-  std::string names;
-  for (const MapLayer& layer : layers) names += (names.empty() ? "" : ", ") + std::string(layer.name);
-  return "[" + names + "]";
+  return "[" + joined(layers, [](const MapLayer& layer) { return layer.name; }) + "]";
 }
 
 std::vector<Layer> layers_of(const std::vector<MapLayer>& layers) {

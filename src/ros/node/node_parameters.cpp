@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/joined.hpp"
 #include "src/core/parameter_page.hpp"
 #include "src/ros/node/frames.hpp"
 #include "src/ros/node/private_parameters.hpp"
@@ -30,9 +31,7 @@ YAML::Node extract_sections(const YAML::Node& root, const std::set<std::string>&
                             ValidationErrors& errors) {
   const std::set<std::string> sections = scenario_sections();
   YAML::Node scenario(YAML::NodeType::Map);
-  std::string names, section_names;
-  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
-  for (const std::string& name : sections) section_names += (section_names.empty() ? "" : ", ") + name;
+  const std::string names = joined(known), section_names = joined(sections);
   for (const auto& entry : root) {
     const std::string key = entry.first.Scalar();
     if (sections.count(key)) {

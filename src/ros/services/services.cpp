@@ -5,6 +5,7 @@
 #include <boost/make_shared.hpp>
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/joined.hpp"
 #include "src/core/quoted.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/services/answer.hpp"
@@ -276,8 +277,7 @@ std::string Services::scenario_below_data_folder(const std::string& name) const 
     return files_.for_reading(name);
   } catch (const ConfigError& e) {
     if (name.find('/') != std::string::npos) throw;
-    std::string known;
-    for (const std::string& one : installed_scenarios()) known += (known.empty() ? "" : ", ") + one;
+    const std::string known = joined(installed_scenarios());
     throw ConfigError(std::string(e.what()) + "; nor is it an installed scenario (known: " + known + ")" +
                       did_you_mean(name, known));
   }

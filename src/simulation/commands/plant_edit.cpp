@@ -6,6 +6,8 @@
 
 #include "kernels/field/random.hpp"
 #include "kernels/plants/lookup.hpp"
+#include "src/core/did_you_mean.hpp"
+#include "src/core/joined.hpp"
 #include "src/core/quoted.hpp"
 #include "src/scenario/range_checks.hpp"
 #include "src/simulation/commands/edit_checks.hpp"
@@ -223,9 +225,9 @@ void check_plant_edit(const command::EditPlants& edit, const Scenario& s) {
     check_points(edit.shape, edit.points, errors);
   const bool all = edit.operation == PlantEdit::clear && edit.species.empty();
   if (!all && species_index(edit, s) < 0) {
-    std::string known;
-    for (const Species& species : s.species) known += (known.empty() ? "" : ", ") + species.name;
-    errors.add("species", quoted(edit.species) + " is not one of: " + known);
+    const std::string known = joined(s.species, [](const Species& species) { return species.name; });
+    errors.add("species",
+               quoted(edit.species) + " is not one of: " + known + did_you_mean(edit.species, known));
   }
   errors.throw_if_any();
 }

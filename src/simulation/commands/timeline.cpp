@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "src/core/error.hpp"
+#include "src/core/joined.hpp"
 #include "src/core/log.hpp"
 #include "src/core/number_text.hpp"
 #include "src/simulation/commands/commands.hpp"
@@ -89,9 +90,7 @@ std::string Commands::describe_changes() const {
     add(ramp.path + " -> " + text_of(ramp.to) + " until " + text_of(ramp.start + ramp.duration) + " s");
   if (state_.next_timeline_entry < state_.scenario.timeline.size()) {
     const TimelineEntry& next = state_.scenario.timeline[state_.next_timeline_entry];
-    std::string settings;
-    for (const std::string& setting : next.settings) settings += (settings.empty() ? "" : ", ") + setting;
-    add("at " + text_of(next.time) + " s: " + settings);
+    add("at " + text_of(next.time) + " s: " + joined(next.settings));
   }
   return text;
 }

@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include "src/core/joined.hpp"
+
 namespace desert_sim {
 
 const ProcessTable& process_table() {
@@ -47,15 +49,11 @@ const ProcessTable& process_table() {
 namespace {
 
 std::string list_of(const std::vector<Layer>& layers, const char* none) {
-  std::string text;
-  for (Layer layer : layers) text += (text.empty() ? "" : ", ") + std::string(info(layer).name);
-  return text.empty() ? none : text;
+  return layers.empty() ? none : joined(layers, [](Layer layer) { return info(layer).name; });
 }
 
 std::string list_of(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + ("`" + word + "`");
-  return text;
+  return joined(words, [](const std::string& word) { return "`" + word + "`"; });
 }
 
 }  // namespace

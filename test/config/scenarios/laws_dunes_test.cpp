@@ -69,9 +69,9 @@ struct Barchan {
 
 Barchan largest(Running& scene) {
   const Field elevation = scene.field(Layer::elevation);
-  const std::vector<Dune> dunes = find_dunes(elevation, scene.field(Layer::sand), 0, 0.5, 30);
+  const std::vector<DuneShape> dunes = find_dunes(elevation, scene.field(Layer::sand), 0, 0.5, 30);
   if (dunes.empty()) return {};
-  const Dune& d = dunes[0];
+  const DuneShape& d = dunes[0];
   double x = d.crest_x - 0.5;
   while (elevation.sample(x, d.crest_y - 0.5) > 0.5 * d.height) x += 0.1;
   return {x, d.height};

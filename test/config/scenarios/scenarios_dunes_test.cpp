@@ -38,13 +38,14 @@ constexpr std::uint64_t barchan_seeds = 12;
 /// the mean stoss slope of 24 seeds is 16.2 degrees on 256 x 256 cells, 14.9 on the scenario's 384 x 384, and
 /// 12.8 on 768 x 128, which are two thirds as many.
 /// Dunes are cut apart at 1.5 m, so that the thin sand between their horns does not join them.
-std::vector<Dune> run_barchans(std::uint64_t seed) {
+std::vector<DuneShape> run_barchans(std::uint64_t seed) {
   Running scene(shipped("barchan", {"seed=" + std::to_string(seed), "grid.width=768", "grid.height=128"}));
-  std::vector<Dune> found;
+  std::vector<DuneShape> found;
   scene.run(320);
   for (int look = 0; look < 5; ++look) {
     scene.run(40);
-    for (const Dune& d : find_dunes(scene.field(Layer::elevation), scene.field(Layer::sand), 0, 1.5, 100))
+    for (const DuneShape& d :
+         find_dunes(scene.field(Layer::elevation), scene.field(Layer::sand), 0, 1.5, 100))
       if (d.height >= 3.5) found.push_back(d);
   }
   scene.expect_balanced();
@@ -52,11 +53,11 @@ std::vector<Dune> run_barchans(std::uint64_t seed) {
 }
 
 /// The run of a seed, which begins with the first call; a process runs each seed once.
-std::shared_future<std::vector<Dune>> barchans(std::uint64_t seed) {
+std::shared_future<std::vector<DuneShape>> barchans(std::uint64_t seed) {
   static std::mutex mutex;
-  static std::map<std::uint64_t, std::shared_future<std::vector<Dune>>> runs;
+  static std::map<std::uint64_t, std::shared_future<std::vector<DuneShape>>> runs;
   const std::lock_guard<std::mutex> lock(mutex);
-  std::shared_future<std::vector<Dune>>& run = runs[seed];
+  std::shared_future<std::vector<DuneShape>>& run = runs[seed];
   if (!run.valid()) run = std::async(std::launch::async, run_barchans, seed).share();
   return run;
 }
@@ -68,19 +69,19 @@ std::string barchan_file(std::uint64_t seed) {
   return folder ? folder + ("/" + std::to_string(seed)) : "";
 }
 
-void write_barchans(const std::string& path, const std::vector<Dune>& dunes) {
+void write_barchans(const std::string& path, const std::vector<DuneShape>& dunes) {
   std::ofstream file(path);
   file.precision(std::numeric_limits<double>::max_digits10);
-  for (const Dune& d : dunes)
+  for (const DuneShape& d : dunes)
     file << d.height << ' ' << d.width << ' ' << d.stoss_deg << ' ' << d.slip_face_deg << ' '
          << d.slip_direction_deg << ' ' << d.horn_direction_deg << ' ' << d.horn_reach << '\n';
   ASSERT_TRUE(file.flush()) << path;
 }
 
-std::vector<Dune> read_barchans(std::ifstream& file) {
-  std::vector<Dune> dunes;
-  for (Dune d; file >> d.height >> d.width >> d.stoss_deg >> d.slip_face_deg >> d.slip_direction_deg >>
-               d.horn_direction_deg >> d.horn_reach;)
+std::vector<DuneShape> read_barchans(std::ifstream& file) {
+  std::vector<DuneShape> dunes;
+  for (DuneShape d; file >> d.height >> d.width >> d.stoss_deg >> d.slip_face_deg >> d.slip_direction_deg >>
+                    d.horn_direction_deg >> d.horn_reach;)
     dunes.push_back(d);
   return dunes;
 }
@@ -93,11 +94,11 @@ struct BarchanShape {
   double horns_downwind;  ///< share of the dunes whose two horns reach beyond their middle
 };
 
-BarchanShape shape_of(const std::vector<Dune>& dunes) {
+BarchanShape shape_of(const std::vector<DuneShape>& dunes) {
   std::vector<double> ratio, slip, direction, horns;
   const auto count = static_cast<double>(dunes.size());
   double stoss = 0, downwind = 0;
-  for (const Dune& d : dunes) {
+  for (const DuneShape& d : dunes) {
     ratio.push_back(d.height / d.width);
     stoss += d.stoss_deg / count;
     slip.push_back(d.slip_face_deg);
@@ -123,7 +124,7 @@ class Barchans : public ::testing::TestWithParam<std::uint64_t> {};
 TEST_P(Barchans, OfOneSeed) {
   const std::string file = barchan_file(GetParam());
   if (!file.empty()) std::filesystem::remove(file);
-  const std::vector<Dune> dunes = barchans(GetParam()).get();
+  const std::vector<DuneShape> dunes = barchans(GetParam()).get();
   ASSERT_GE(dunes.size(), 3u);
   const BarchanShape s = shape_of(dunes);
   EXPECT_GE(s.height_to_width, 0.03);
@@ -147,15 +148,15 @@ INSTANTIATE_TEST_SUITE_P(Seeds, Barchans, ::testing::Range<std::uint64_t>(1, bar
 /// 13.1 (0.54), slip face 33.0 (0.01) to within 8.7 (1.6) of downwind, horns to within 3.4 (0.6), and both
 /// horns downwind in 73 % (6 %). Seeds 1 to 12 have 0.141, 12.5, 33.3, 12, 2 and 69 %.
 TEST(Dunes, Barchan) {
-  std::vector<Dune> dunes;
-  std::vector<std::shared_future<std::vector<Dune>>> runs;
+  std::vector<DuneShape> dunes;
+  std::vector<std::shared_future<std::vector<DuneShape>>> runs;
   for (std::uint64_t seed = 1; seed <= barchan_seeds; ++seed) {
     std::ifstream file(barchan_file(seed));
     if (!file) {
       runs.push_back(barchans(seed));
       continue;
     }
-    for (const Dune& d : read_barchans(file)) dunes.push_back(d);
+    for (const DuneShape& d : read_barchans(file)) dunes.push_back(d);
   }
   for (const auto& run : runs) dunes.insert(dunes.end(), run.get().begin(), run.get().end());
   ASSERT_GE(dunes.size(), 75u);

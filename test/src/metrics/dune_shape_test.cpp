@@ -115,9 +115,9 @@ Field barchan(double horn, int shift_x, int shift_y) {
 
 TEST(DuneShape, ShapeOfABarchan) {
   const Field f = barchan(12, 0, 0);
-  const std::vector<Dune> dunes = find_dunes(f, f, 0, 0.3);
+  const std::vector<DuneShape> dunes = find_dunes(f, f, 0, 0.3);
   ASSERT_EQ(dunes.size(), 1u);
-  const Dune& d = dunes[0];
+  const DuneShape& d = dunes[0];
   EXPECT_NEAR(d.height, 5, 1e-6);
   EXPECT_NEAR(d.width, 25, 1e-6);
   EXPECT_NEAR(d.crest_x, 40.5, 1e-6);
@@ -133,7 +133,7 @@ TEST(DuneShape, ShapeOfABarchan) {
 TEST(DuneShape, HornsUpwindAreTold) {
   Field f = barchan(12, 0, 0);
   std::reverse(f.values.begin(), f.values.end());  // turned by 180 degrees: horns to the west
-  const std::vector<Dune> dunes = find_dunes(f, f, 0, 0.3);
+  const std::vector<DuneShape> dunes = find_dunes(f, f, 0, 0.3);
   ASSERT_EQ(dunes.size(), 1u);
   EXPECT_LT(dunes[0].horn_reach, 0);
   EXPECT_GT(angle_between_deg(dunes[0].slip_direction_deg, 0), 170);
@@ -141,7 +141,7 @@ TEST(DuneShape, HornsUpwindAreTold) {
 
 TEST(DuneShape, TheBorderDoesNotCutADune) {
   const Field middle = barchan(12, 0, 0), across = barchan(12, 85, 30);
-  const Dune a = find_dunes(middle, middle, 0)[0], b = find_dunes(across, across, 0)[0];
+  const DuneShape a = find_dunes(middle, middle, 0)[0], b = find_dunes(across, across, 0)[0];
   EXPECT_EQ(find_dunes(across, across, 0).size(), 1u);
   EXPECT_EQ(a.cells, b.cells);
   EXPECT_NEAR(a.width, b.width, 1e-6);
@@ -158,7 +158,7 @@ TEST(DuneShape, WindDirectionTurnsTheMeasures) {
   // The same dune under a wind to the north.
   const Field east = barchan(12, 0, 0);
   const Field north = made(64, 128, 1, [&](int x, int y) { return east.at(y, 63 - x); });
-  const Dune a = find_dunes(east, east, 0)[0], b = find_dunes(north, north, 90)[0];
+  const DuneShape a = find_dunes(east, east, 0)[0], b = find_dunes(north, north, 90)[0];
   EXPECT_NEAR(a.width, b.width, 1e-6);
   EXPECT_NEAR(a.length, b.length, 1e-6);
   EXPECT_NEAR(a.stoss_deg, b.stoss_deg, 0.1);
@@ -173,7 +173,7 @@ TEST(DuneShape, SeparateDunesAreCountedLargestFirst) {
     };
     return cone(16, 16, 8) + cone(48, 16, 11) + cone(32, 48, 5);
   });
-  const std::vector<Dune> dunes = find_dunes(f, f, 0, 0.2, 10);
+  const std::vector<DuneShape> dunes = find_dunes(f, f, 0, 0.2, 10);
   ASSERT_EQ(dunes.size(), 3u);
   EXPECT_NEAR(dunes[0].x, 48.5, 0.1);
   EXPECT_NEAR(dunes[1].x, 16.5, 0.1);

@@ -130,6 +130,7 @@ TEST_P(PlantEdits, AreRefusedWhole) {
       EXPECT_NE(why.find(text), std::string::npos) << "no '" << text << "' in: " << why;
   };
   expect(planting("oak", 0, 0, 1, 1), {"species", "'oak'", "grass, tree"});
+  expect(planting("gras", 0, 0, 1, 1), {"species", "did you mean 'grass'?"});
   expect(planting("", 0, 0, 1, 1), {"species"});
   expect(planting("grass", 1080, -440, 200, 2), {"density", "3000", "max_plants"});
   expect(planting("grass", 0, 0, -1, 1), {"radius", "-1"});
