@@ -182,7 +182,7 @@ void read_parameters(const YAML::Node& section, const std::string& path, Validat
 }
 
 /// Adds an error for each key that is not in `known`, and for each key that is given twice. `help`, if given,
-/// says what else may be meant by a key that none of `known` is like.
+/// says what may be meant by a key that stands in the wrong place, or nothing.
 inline void reject_unknown_keys(const YAML::Node& section, const std::string& path,
                                 const std::set<std::string>& known, ValidationErrors& errors,
                                 std::string (*help)(const std::string& key) = nullptr) {
@@ -197,8 +197,8 @@ inline void reject_unknown_keys(const YAML::Node& section, const std::string& pa
   for (const auto& entry : section) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
     if (!known.count(key)) {
-      std::string meant = errors.is_full() ? "" : did_you_mean(key, all);
-      if (meant.empty() && help && !errors.is_full()) meant = help(key);
+      std::string meant = help && !errors.is_full() ? help(key) : "";
+      if (meant.empty() && !errors.is_full()) meant = did_you_mean(key, all);
       errors.add(path + key, "unknown key (known here: " + all + ")" + meant);
     }
     if (!seen.insert(key).second) errors.add(path + key, "is given twice");

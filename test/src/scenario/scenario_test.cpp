@@ -37,6 +37,7 @@ TEST(Loader, AcceptsTheEmptyScenarioWithDefaults) {
 TEST(Loader, NamesUnknownKeysAndWhatIsKnown) {
   expect_refused("wind_speed: 3", {"wind_speed: unknown key", "did you mean 'wind.speed'?"});
   expect_refused("time_step: 3", {"time_step: unknown key", "did you mean run.time_step?"});
+  expect_refused("lift: 3", {"lift: unknown key", "did you mean saltation.lift?"});
   expect_refused("gird: {width: 3}", {"test", "gird", "unknown", "grid", "saltation"});
   expect_refused("grid: {widht: 3}", {"grid.widht", "unknown", "width"});
   expect_refused("wind: {sped: 3}", {"wind.sped", "speed"});
