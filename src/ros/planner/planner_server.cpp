@@ -137,6 +137,7 @@ void PlannerServer::act_in_lockstep() {
       PlanarPose pose;
       try {
         pose = planar_pose(odometry->pose.pose, "ground_truth");
+        pose_stamp_ = odometry->header.stamp;
       } catch (const ConfigError& e) {
         ROS_WARN_THROTTLE(5, "A pose of the rover is ignored: %s", e.what());
         continue;
@@ -173,7 +174,8 @@ bool PlannerServer::pose_by_tf(PlanarPose& pose, std::string& problem) {
   try {
     const auto t = transforms_.lookupTransform(terrain, setup_.base_frame(), ros::Time(0));
     pose = {t.transform.translation.x, t.transform.translation.y, tf2::getYaw(t.transform.rotation)};
-    const double age = seconds_between(t.header.stamp, ros::Time::now());
+    pose_stamp_ = t.header.stamp;
+    const double age = seconds_between(pose_stamp_, ros::Time::now());
     if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.yaw)) {
       problem = "the rover's pose is not of finite numbers";
       return false;
@@ -248,7 +250,7 @@ void PlannerServer::publish_status(bool always) {
   if (!always && told == last_told_ && age.count() < 1 / setup_.node.status_rate) return;
   last_told_ = told;
   last_status_ = now;
-  m.header.stamp = ros::Time::now();
+  m.header.stamp = pose_stamp_;
   m.header.frame_id = terrain_.frame();
   m.refusal = refusal_;
   m.planner = planner_kinds[static_cast<int>(setup_.planner.planner)];

@@ -90,6 +90,7 @@ class PlannerServer {
   bool driving_ = false;  ///< the last command was not that of standing still
   double plan_time_ = 0;
   double lockstep_time_ = 0;
+  ros::Time pose_stamp_;  ///< of the rover's pose that it knows; 0 before there is one
   std::uint64_t terrain_step_ = 0, published_path_ = 0;
   std::optional<double> asked_for_forecast_;
   bool waits_for_forecast_ = false;  ///< which was asked for

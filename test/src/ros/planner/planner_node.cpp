@@ -79,21 +79,24 @@ class Planner : public testing::Test {
     ASSERT_TRUE(truth_.wait_for(
         [this](const nav_msgs::Odometry& m) { return m.header.stamp == clock_->now(); }, patience_));
   }
-  /// Whether it comes true within so many seconds of the rover's time. The planner has all the time that it
-  /// needs for its commands.
+  /// Likewise, until the planner has sent its command for where the rover is then: on a busy machine the
+  /// rover would go on by old ones, and leave its path.
+  void tick_and_lead(double seconds) {
+    tick(seconds);
+    EXPECT_TRUE(wait_until([&] { return status_.last().header.stamp >= clock_->now() || !leads(); }));
+  }
+  /// Whether it comes true within so many seconds of the rover's time.
   bool drives_until(const std::function<bool()>& condition, double seconds) {
     const ros::Time end = clock_->now() + ros::Duration(seconds);
     while (!condition()) {
       if (clock_->now() > end) return false;
-      const std::size_t before = commands_.count();
-      tick(0.2);
-      EXPECT_TRUE(wait_until([&] { return commands_.count() > before || !leads(); }));
+      tick_and_lead(0.2);
     }
     return true;
   }
   /// Whether it comes true of the terrain at a time of its own, while the rover goes on slowly.
   bool creeps_until(const std::function<bool()>& condition) {
-    return wait_until([&] { return tick(0.01), condition(); });
+    return wait_until([&] { return tick_and_lead(0.01), condition(); });
   }
   bool leads() const {
     const std::string state = status_.last().state;
@@ -119,7 +122,6 @@ class Planner : public testing::Test {
     Listener<RoverStatus> rover{::rover + "/status"};
     Listener<PlannerStatus> planner{::planner + "/status"};
     Inbox<nav_msgs::Odometry> truth{node, "/ground_truth"};
-    Inbox<geometry_msgs::Twist> commands{node, "/cmd_vel"};
     MoveBase action{"/move_base", false};
   };
   static inline Watch* watch_ = nullptr;
@@ -129,7 +131,6 @@ class Planner : public testing::Test {
   const Listener<RoverStatus>& rover_ = watch_->rover;
   const Listener<PlannerStatus>& status_ = watch_->planner;
   const Inbox<nav_msgs::Odometry>& truth_ = watch_->truth;
-  const Inbox<geometry_msgs::Twist>& commands_ = watch_->commands;
   MoveBase& action_ = watch_->action;
   ros::Publisher publisher_;
 };
@@ -167,8 +168,8 @@ TEST_F(Planner, GoesRoundADuneThatComesIntoItsWay) {
   send("/move_base_simple/goal", pose_at(62, 0));
   ASSERT_TRUE(is(PlannerStatus::DRIVING)) << told();
   edit("sand", "add", 8, 52, 0, 3, 5);
-  ASSERT_TRUE(creeps_until([this] { return status_.last().replans > 0; })) << told();
-  EXPECT_NE(status_.last().last_replan.find("blocked"), std::string::npos) << status_.last().last_replan;
+  const auto blocked = [this] { return status_.last().last_replan.find("blocked") != std::string::npos; };
+  ASSERT_TRUE(creeps_until(blocked)) << told() << "; " << status_.last().last_replan;
   double furthest = 0;
   ASSERT_TRUE(drives_until(
       [&] {
