@@ -7,6 +7,7 @@ from dynamic_reconfigure.srv import Reconfigure
 from geometry_msgs.msg import Point, Vector3
 from std_srvs.srv import Trigger
 
+from .did_you_mean import not_one_of
 from .forecast import request_forecast
 from .layer_map import LayerMap
 from .live_parameters import config_of, parameters_of
@@ -47,7 +48,7 @@ def _brush(request, frame, fields):
     """A request for a shape: `center` and `points` may be tuples (x, y) or (x, y, z) [m]."""
     for name, value in fields.items():
         if name not in request.__slots__:
-            raise TypeError("'%s' is not one of: %s" % (name, ", ".join(request.__slots__)))
+            raise TypeError(not_one_of(name, request.__slots__))
         if name == "center":
             value = _point(value)
         if name == "points":

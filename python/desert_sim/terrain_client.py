@@ -9,6 +9,7 @@ import rospy
 from rospy.numpy_msg import numpy_msg
 from std_msgs.msg import Empty, String
 
+from .did_you_mean import not_one_of
 from .layer_assembler import EXPECTED, LOST, NONE, NOTHING, RESTARTED, Counts, LayerAssembler
 from .layer_map import LAYERS
 from .msg import ElevationGrid, ElevationUpdate, LayerGrid, LayerUpdate
@@ -363,4 +364,4 @@ def _tell_what_is_awaited(awaited):
 
 def _check_layer(name):
     if name not in LAYERS:
-        raise ValueError("TerrainClient: layer '%s' is not one of: %s" % (name, ", ".join(LAYERS)))
+        raise ValueError("TerrainClient: layer " + not_one_of(name, LAYERS))

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <initializer_list>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/terrain/map_layers.hpp"
 
@@ -28,8 +29,7 @@ Clock::duration duration_of(double seconds) {
 
 /// Throws ConfigError.
 void check_layer(const std::string& name) {
-  if (!find_map_layer(name))
-    throw ConfigError("TerrainClient: layer '" + name + "' is not one of: " + map_layer_names());
+  if (!find_map_layer(name)) throw ConfigError("TerrainClient: layer " + not_one_of(name, map_layer_names()));
 }
 
 /// Checks the options and fills in empty topic names. Throws ConfigError.

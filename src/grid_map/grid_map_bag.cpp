@@ -39,8 +39,6 @@ std::string serialised(const GridMap& map) {
   return bytes;
 }
 
-std::string joined_names(const std::set<std::string>& names) { return shortened(joined(names)); }
-
 void require_one_topic(rosbag::Bag& bag, rosbag::View& maps) {
   std::set<std::string> topics, types;
   for (const rosbag::ConnectionInfo* connection : maps.getConnections()) {
@@ -50,13 +48,13 @@ void require_one_topic(rosbag::Bag& bag, rosbag::View& maps) {
                         shortened(connection->md5sum) + " instead of " + Type::md5 + ")");
   }
   if (topics.size() > 1)
-    throw ConfigError("contains GridMaps on several topics: " + joined_names(topics) +
+    throw ConfigError("contains GridMaps on several topics: " + shortened(joined(topics)) +
                       " (rosbag filter can extract one)");
   if (maps.size() > 0) return;
   rosbag::View all(bag);
   for (const rosbag::ConnectionInfo* connection : all.getConnections()) types.insert(connection->datatype);
   throw ConfigError("contains no " + std::string(Type::name) +
-                    (types.empty() ? "" : " (it contains: " + joined_names(types) + ")"));
+                    (types.empty() ? "" : " (it contains: " + shortened(joined(types)) + ")"));
 }
 
 GridMap read_last_map(rosbag::Bag& bag) {

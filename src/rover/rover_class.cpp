@@ -3,6 +3,7 @@
 #include <set>
 #include <vector>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -52,7 +53,7 @@ void read_dimensions(const YAML::Node& d, ValidationErrors& errors, RoverParamet
     r.bogie_x = bogie[0] - middle;
     r.bogie_height = bogie[1];
     if (d["bogie"] && d["bogie"].IsScalar() && d["bogie"].Scalar() != "rear")
-      errors.add("rover_dimensions.bogie", "'" + yaml::node_text(d["bogie"]) + "' is not one of: rear");
+      errors.add("rover_dimensions.bogie", not_one_of(d["bogie"].Scalar(), "rear"));
   }
   r.clearance = numbers(d, "clearance", 1, errors)[0];
   r.body_length = body[0];

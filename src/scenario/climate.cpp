@@ -1,6 +1,7 @@
 #include "src/scenario/climate.hpp"
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/joined.hpp"
 #include "src/scenario/presets.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -27,9 +28,7 @@ YAML::Node apply_climate(const YAML::Node& root, ValidationErrors& errors) {
   if (!given.IsDefined() || given.IsNull()) return root;
   const char* const text = given.IsScalar() ? climate_presets.text(given.Scalar()) : nullptr;
   if (!text) {
-    errors.add("climate", "'" + yaml::node_text(given) +
-                              "' is not one of: " + climate_presets.joined_names() +
-                              did_you_mean(yaml::node_text(given), climate_presets.joined_names()));
+    errors.add("climate", not_one_of(yaml::node_text(given), joined(climate_presets.names())));
     return root;
   }
   YAML::Node whole = YAML::Clone(root);

@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "src/core/joined.hpp"
-
 namespace desert_sim {
 
 class Presets {
@@ -29,8 +27,6 @@ class Presets {
     std::sort(all.begin(), all.end());
     return all;
   }
-  /// The same names separated by ", ", for error messages.
-  std::string joined_names() const { return joined(names()); }
 
  private:
   const Row* rows_;

@@ -1,6 +1,7 @@
 #include "src/scenario/rover_class.hpp"
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/joined.hpp"
 #include "src/scenario/presets.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -19,9 +20,7 @@ std::vector<std::string> rover_classes() { return classes.names(); }
 
 std::string rover_class_text(const std::string& name) {
   const char* const text = classes.text(name);
-  if (!text)
-    throw ConfigError("rover: '" + name + "' is not one of: " + classes.joined_names() +
-                      did_you_mean(name, classes.joined_names()));
+  if (!text) throw ConfigError("rover: " + not_one_of(name, joined(classes.names())));
   return text;
 }
 
@@ -35,8 +34,7 @@ YAML::Node apply_rover(const YAML::Node& root, ValidationErrors& errors) {
   if (!given.IsDefined() || given.IsNull()) return root;
   const char* const text = given.IsScalar() ? classes.text(given.Scalar()) : nullptr;
   if (!text) {
-    errors.add("rover", "'" + yaml::node_text(given) + "' is not one of: " + classes.joined_names() +
-                            did_you_mean(yaml::node_text(given), classes.joined_names()));
+    errors.add("rover", not_one_of(yaml::node_text(given), joined(classes.names())));
     return root;
   }
   YAML::Node whole = YAML::Clone(root), section(YAML::NodeType::Map);

@@ -33,8 +33,7 @@ void check_layer(const Step& step, const std::string& key, ValidationErrors& err
     for (const LayerInfo& layer : layer_table)
       if (layer.lifetime == Lifetime::persistent)
         known += (known.empty() ? "" : ", ") + std::string(layer.name);
-    errors.add(key + ".layer",
-               "'" + step.layer + "' is not one of: " + known + did_you_mean(step.layer, known));
+    errors.add(key + ".layer", not_one_of(step.layer, known));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/joined.hpp"
 #include "src/render/colour.hpp"
 #include "src/scenario/presets.hpp"
 #include "src/scenario/scenario.hpp"
@@ -28,9 +29,7 @@ void read_species_entry(const YAML::Node& node, const std::string& key, Validati
     if (species_preset_table.text(name.preset))
       species = species_preset(name.preset);
     else
-      errors.add(key + ".preset", "'" + name.preset +
-                                      "' is not one of: " + species_preset_table.joined_names() +
-                                      did_you_mean(name.preset, species_preset_table.joined_names()));
+      errors.add(key + ".preset", not_one_of(name.preset, joined(species_preset_table.names())));
   }
   if (!name.name.empty()) species.name = name.name;
   yaml::read_parameters(node, key + ".", errors, species.traits, known);
@@ -76,9 +75,7 @@ std::vector<std::string> species_presets() { return species_preset_table.names()
 
 Species species_preset(const std::string& name) {
   const char* text = species_preset_table.text(name);
-  if (!text)
-    throw ConfigError("species preset '" + name + "' is not one of: " + species_preset_table.joined_names() +
-                      did_you_mean(name, species_preset_table.joined_names()));
+  if (!text) throw ConfigError("species preset " + not_one_of(name, joined(species_preset_table.names())));
   ValidationErrors errors("species preset " + name);
   Species species{name, {}, {}};
   const YAML::Node node = YAML::Load(text);

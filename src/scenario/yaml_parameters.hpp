@@ -132,8 +132,7 @@ void read_value(const YAML::Node& node, const Row& row, const std::string& key, 
       }
       known += (n ? ", " : "") + std::string(row.choices[n]);
     }
-    errors.add(key,
-               "'" + node_text(node) + "' is not one of: " + known + did_you_mean(node_text(node), known));
+    errors.add(key, not_one_of(node_text(node), known));
   } else if constexpr (std::is_same_v<T, ShortList>) {
     if (!node.IsSequence() || node.size() < 1 || node.size() > ShortList::capacity) {
       errors.add(key, "must be a list of 1 to " + std::to_string(ShortList::capacity) + " numbers");

@@ -16,7 +16,7 @@ Layer layer_by_name(const std::string& name) {
     if (name == layer.name) return layer.layer;
     known += known.empty() ? layer.name : std::string(", ") + layer.name;
   }
-  throw ConfigError("layer '" + name + "' is not one of: " + known + did_you_mean(name, known));
+  throw ConfigError("layer " + not_one_of(name, known));
 }
 
 HeightScale HeightScale::covering(double lowest, double highest) {

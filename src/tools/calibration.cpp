@@ -6,7 +6,6 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
-#include "src/core/quoted.hpp"
 #include "src/core/time_units.hpp"
 
 #if DESERT_WITH_NLOPT
@@ -57,8 +56,7 @@ nlopt_algorithm find(const Algorithm (&algorithms)[count], const std::string& op
                      const std::string& name) {
   for (const Algorithm& a : algorithms)
     if (name == a.name) return a.id;
-  throw ConfigError(option + " " + name + ": is not one of: " + names_of(algorithms) +
-                    did_you_mean(name, names_of(algorithms)));
+  throw ConfigError(option + ": " + not_one_of(name, names_of(algorithms)));
 }
 
 /// A search that calls back. Points are shares of the ranges.

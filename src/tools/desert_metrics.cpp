@@ -122,8 +122,7 @@ int run_program(int argc, char** argv) {
   if (o.positional().size() != 1) throw ConfigError("one run must be given (--help shows the usage)");
   const std::string run = o.positional()[0], out = o.text("out", ""), layer = o.text("layer", "sand");
   if (layer != "sand" && layer != "elevation")
-    throw ConfigError("--layer " + layer + ": is not one of: sand, elevation" +
-                      did_you_mean(layer, "sand, elevation"));
+    throw ConfigError("--layer: " + not_one_of(layer, "sand, elevation"));
   MetricSettings settings;
   settings.sigma = o.real("sigma", 0, 1e-3, 1e6);
   settings.steeper_than_deg = o.real("slip-face", 30, 1, 89);

@@ -120,8 +120,7 @@ RunPlan plan_of(Options options) {
     throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
   const std::string format = o.text("format", "geotiff");
   if (format != "geotiff" && format != "netcdf")
-    throw ConfigError("--format " + format + ": is not one of: geotiff, netcdf" +
-                      did_you_mean(format, "geotiff, netcdf"));
+    throw ConfigError("--format: " + not_one_of(format, "geotiff, netcdf"));
   if (o.has("format") && plan.out.empty()) throw ConfigError("--format: --out is required too");
   if (o.has("plot") && format == "netcdf")
     throw ConfigError("--plot: needs the summaries of --format geotiff");

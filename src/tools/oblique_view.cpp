@@ -128,8 +128,7 @@ ViewParameters view_parameters(const std::vector<std::string>& settings) {
   yaml::read_parameters(given, "", errors, p, known);
   yaml::reject_unknown_keys(given, "", known, errors);
   if (!p.overlay.empty() && !find_map_layer(p.overlay))
-    errors.add("overlay", desert_sim::quoted(p.overlay) + " is not one of: " + map_layer_names() +
-                              did_you_mean(p.overlay, map_layer_names()));
+    errors.add("overlay", not_one_of(p.overlay, map_layer_names()));
   errors.throw_if_any();
   return p;
 }

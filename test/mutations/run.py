@@ -147,16 +147,17 @@ def require_passing_tests(copy, mutations):
 def rows_of_table():
     if not TABLE.is_file():
         return {}
-    rows = re.findall(r"^\| `(\w+)` \|.* \| ([^|]+) \|$", TABLE.read_text(), re.M)
-    return dict(rows)
+    rows = re.findall(r"^\| `(\w+)` \|.* \| ([^|]+ \| [^|]+) \|$", TABLE.read_text(), re.M)
+    return {name: tuple(row.split(" | ")) for name, row in rows}
 
 
 def write_table(killers):
     lines = ["# Mutations", "",
-             "Written by `test/mutations/run.py`: each row changes one law, and names the first test that failed then.",
-             "", "| mutation | file | what it breaks | noticed by |", "|---|---|---|---|"]
+             "Written by `test/mutations/run.py`: each row changes one law, and names the first test that failed then, and the",
+             "commit at which that was tried last.", "",
+             "| mutation | file | what it breaks | noticed by | at |", "|---|---|---|---|---|"]
     for m in MUTATIONS:
-        lines.append("| `%s` | %s | %s | %s |" % (m.name, m.file, m.law, killers.get(m.name, NOT_RUN)))
+        lines.append("| `%s` | %s | %s | %s | %s |" % (m.name, m.file, m.law, *killers.get(m.name, (NOT_RUN, "-"))))
     TABLE.write_text("\n".join(lines) + "\n")
 
 
@@ -165,6 +166,8 @@ def run(mutations, scratch, jobs):
     copy.configure()
     require_passing_tests(copy, mutations)
     killers = rows_of_table()
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], check=True, stdout=subprocess.PIPE,
+                            text=True).stdout.strip()
     for mutation in mutations:
         copy.apply(mutation)
         try:
@@ -173,10 +176,10 @@ def run(mutations, scratch, jobs):
             raise Failure("%s: %s" % (mutation.name, failure))
         finally:
             copy.restore(mutation.file)
-        killers[mutation.name] = "`%s`" % killer if killer else SURVIVED
+        killers[mutation.name] = "`%s`" % killer if killer else SURVIVED, commit
         print("%-32s %s" % (mutation.name, killer or "SURVIVED"), flush=True)
         write_table(killers)
-    return 1 if any(killers[m.name] == SURVIVED for m in mutations) else 0
+    return 1 if any(killers[m.name][0] == SURVIVED for m in mutations) else 0
 
 
 def main():

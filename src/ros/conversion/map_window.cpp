@@ -24,9 +24,7 @@ std::vector<MapLayer> map_layers_named(const std::vector<std::string>& names, co
   for (const std::string& name : names) {
     const auto same = [&](const MapLayer& layer) { return name == layer.name; };
     const MapLayer* const found = find_map_layer(name);
-    if (!found)
-      throw ConfigError(key + ": " + quoted(name) + " is not one of: " + map_layer_names() +
-                        did_you_mean(name, map_layer_names()));
+    if (!found) throw ConfigError(key + ": " + not_one_of(name, map_layer_names()));
     if (std::any_of(chosen.begin(), chosen.end(), same))
       throw ConfigError(key + ": " + quoted(name) + " is given twice");
     chosen.push_back(*found);

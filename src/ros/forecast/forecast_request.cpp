@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/requests.hpp"
 #include "src/scenario/live_parameters.hpp"
@@ -55,7 +56,7 @@ void add_wind(const ForecastTerrainGoal& goal, std::vector<ForecastCommand>& com
     return;
   }
   if (goal.wind_kind != "timeline" && goal.wind_kind != "rose")
-    throw ConfigError("wind_kind: " + quoted(goal.wind_kind) + " is not one of: timeline, rose, constant");
+    throw ConfigError("wind_kind: " + not_one_of(goal.wind_kind, "timeline, rose, constant"));
   SetWindScheduleRequest request;
   request.kind = goal.wind_kind;
   request.segments = goal.wind;

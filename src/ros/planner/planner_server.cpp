@@ -174,13 +174,15 @@ bool PlannerServer::pose_by_tf(PlanarPose& pose, std::string& problem) {
   try {
     const auto t = transforms_.lookupTransform(terrain, setup_.base_frame(), ros::Time(0));
     pose = {t.transform.translation.x, t.transform.translation.y, tf2::getYaw(t.transform.rotation)};
-    pose_stamp_ = t.header.stamp;
-    const double age = seconds_between(pose_stamp_, ros::Time::now());
+    const double age = seconds_between(t.header.stamp, ros::Time::now());
     if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.yaw)) {
       problem = "the rover's pose is not of finite numbers";
       return false;
     }
-    if (age <= setup_.node.pose_age) return true;
+    if (age <= setup_.node.pose_age) {
+      pose_stamp_ = t.header.stamp;
+      return true;
+    }
     problem = "the rover's pose is " + std::to_string(age) +
               " s old (pose_age: " + std::to_string(setup_.node.pose_age) + ")";
   } catch (const tf2::TransformException& e) {

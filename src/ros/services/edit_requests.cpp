@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/requests.hpp"
 
@@ -78,7 +79,7 @@ std::size_t bytes_per_pixel(const std::string& encoding) {
   if (encoding == known::MONO8) return 1;
   if (encoding == known::MONO16) return 2;
   if (encoding == known::TYPE_32FC1) return 4;
-  throw ConfigError("image.encoding: " + quoted(encoding) + " is not one of: mono8, mono16, 32FC1");
+  throw ConfigError("image.encoding: " + not_one_of(encoding, "mono8, mono16, 32FC1"));
 }
 
 /// Throws unless size, step and data fit together.

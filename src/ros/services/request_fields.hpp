@@ -15,7 +15,6 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
-#include "src/core/quoted.hpp"
 
 namespace desert_sim {
 
@@ -50,7 +49,7 @@ Choice choice_named(const char* const (&choices)[N], const std::string& text, co
     if (text == choices[n]) return static_cast<Choice>(n);
     all += (n ? ", " : "") + std::string(choices[n]);
   }
-  throw ConfigError(name + ": " + quoted(text) + " is not one of: " + all + did_you_mean(text, all));
+  throw ConfigError(name + ": " + not_one_of(text, all));
 }
 
 // Whether a field was left out: such fields of messages are 0 or empty.

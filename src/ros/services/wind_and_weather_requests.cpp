@@ -220,7 +220,7 @@ command::SetParameters weather_command(const SetWeatherRequest& r) {
     } else {
       std::string all = "sea, springs";
       for (const Number& known : numbers) all += std::string(", ") + known.name;
-      throw ConfigError("change: " + quoted(field) + " is not one of: " + all + did_you_mean(field, all));
+      throw ConfigError("change: " + not_one_of(field, all));
     }
   }
   return command;

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <boost/make_shared.hpp>
 
-#include "src/core/quoted.hpp"
+#include "src/core/did_you_mean.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/topics/layer_tile_message.hpp"
 #include "src/ros/topics/topic_list.hpp"
@@ -229,8 +229,7 @@ bool names_elevation(const std_msgs::Empty&, const MapLayer&) { return true; }
 
 bool names_layer(const std_msgs::String& request, const MapLayer& layer) {
   if (!find_map_layer(request.data))
-    ROS_WARN_THROTTLE(5, "layers/request_keyframe: %s is not one of: %s", quoted(request.data).c_str(),
-                      map_layer_names().c_str());
+    ROS_WARN_THROTTLE(5, "layers/request_keyframe: %s", not_one_of(request.data, map_layer_names()).c_str());
   return request.data == layer.name;
 }
 

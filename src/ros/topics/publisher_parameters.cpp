@@ -3,7 +3,6 @@
 #include <sstream>
 
 #include "src/core/did_you_mean.hpp"
-#include "src/core/quoted.hpp"
 #include "src/ros/node/frames.hpp"
 
 namespace desert_sim {
@@ -40,8 +39,7 @@ void read_thresholds(const YAML::Node& node, ValidationErrors& errors, LayerThre
     if (name == "elevation")
       errors.add(key + ".elevation", "has a parameter of its own: update_threshold");
     else if (!find_map_layer(name))
-      errors.add(
-          key, quoted(name) + " is not one of: " + map_layer_names() + did_you_mean(name, map_layer_names()));
+      errors.add(key, not_one_of(name, map_layer_names()));
     else if (!YAML::convert<double>::decode(entry.second, threshold) ||
              !(threshold >= 0 && threshold <= 1000))
       errors.add(key + "." + name, yaml::node_text(entry.second) + " is not a number from 0 to 1000");

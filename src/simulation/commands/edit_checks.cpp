@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "src/core/quoted.hpp"
+#include "src/core/did_you_mean.hpp"
 #include "src/scenario/range_checks.hpp"
 
 namespace desert_sim {
@@ -23,8 +23,7 @@ bool of_shares(const EditTerrain& edit) { return edit.layer == "obstacle" || edi
 void check_layer(const EditTerrain& edit, const Terrain& terrain, ValidationErrors& errors) {
   if (edit.layer != "sand" && edit.layer != "soil" && edit.layer != "bedrock" && edit.layer != "water" &&
       !of_shares(edit))
-    errors.add("layer",
-               quoted(edit.layer) + " is not one of: sand, bedrock, soil, water, obstacle, looseness");
+    errors.add("layer", not_one_of(edit.layer, "sand, bedrock, soil, water, obstacle, looseness"));
   if (edit.layer == "looseness" && !terrain.has(Layer::looseness))
     errors.add("layer",
                "looseness: this terrain has no layer looseness (a scenario with looseness.enabled or a step "

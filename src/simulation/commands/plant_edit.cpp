@@ -8,7 +8,6 @@
 #include "kernels/plants/lookup.hpp"
 #include "src/core/did_you_mean.hpp"
 #include "src/core/joined.hpp"
-#include "src/core/quoted.hpp"
 #include "src/scenario/range_checks.hpp"
 #include "src/simulation/commands/edit_checks.hpp"
 
@@ -226,8 +225,7 @@ void check_plant_edit(const command::EditPlants& edit, const Scenario& s) {
   const bool all = edit.operation == PlantEdit::clear && edit.species.empty();
   if (!all && species_index(edit, s) < 0) {
     const std::string known = joined(s.species, [](const Species& species) { return species.name; });
-    errors.add("species",
-               quoted(edit.species) + " is not one of: " + known + did_you_mean(edit.species, known));
+    errors.add("species", not_one_of(edit.species, known));
   }
   errors.throw_if_any();
 }

@@ -183,7 +183,11 @@ std::size_t Pipeline::recordable_stages() const {
   return static_cast<std::size_t>(end - fused_launches_.begin());
 }
 
-/// Of the ground as it is at the start of a step, whichever processes the scenario has.
+bool Pipeline::reads_heights() const {
+  return std::any_of(stages_.begin(), stages_.end(),
+                     [](const Stage& stage) { return stage.process->reads_heights; });
+}
+
 void Pipeline::measure_heights(StepContext& c) {
   if (!fields_.heights_stale) return;
   with_backend(c.exec(), [&](auto& e) { surface::compute_heights(e, c.terrain, fields_.heights); });
@@ -217,7 +221,7 @@ void Pipeline::step_alone(const std::string& process) {
   if (!stage) throw Error("the process " + process + " is not active");
   StepContext c = context();
   fields_.roll_dice(state_.exec(), state_.scenario.seed, state_.steps);
-  measure_heights(c);
+  if (stage->process->reads_heights) measure_heights(c);
   stage->process->step(c, stage->workspace.get());
   state_.exec().synchronise();
 }
@@ -225,7 +229,7 @@ void Pipeline::step_alone(const std::string& process) {
 void Pipeline::refresh_derived() {
   if (derived_ready_) return;
   StepContext c = context();
-  measure_heights(c);
+  if (reads_heights()) measure_heights(c);
   for (Stage& stage : stages_)
     if (stage.process->refresh) stage.process->refresh(c, stage.workspace.get());
   derived_ready_ = true;

@@ -90,6 +90,7 @@ class Pipeline {
   StepContext context();
   void run_part(StepContext& context);
   void make_launches();
+  bool reads_heights() const;  ///< some process of this scenario does
   void measure_heights(StepContext& context);
   void allocate_layers();
   void bring_into_use(const Process& process, Layer layer);

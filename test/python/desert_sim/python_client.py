@@ -234,7 +234,7 @@ class Calls(Client):
             self.assertIn(refused.exception.service, str(refused.exception))
             self.assertTrue(refused.exception.service.startswith("/desert_sim/"))
         self.assertEqual(self.desert.step(0).state_hash, before)
-        with self.assertRaisesRegex(TypeError, "'radus' is not one of"):
+        with self.assertRaisesRegex(TypeError, "'radus' is not one of.*did you mean 'radius'"):
             self.desert.edit("sand", "circle", "add", 1, center=(40, 20), radus=4)
         with self.assertRaisesRegex(desert_sim.SimulationError, "/nowhere/step: there is no such service"):
             desert_sim.Simulation("/nowhere", timeout=0.2).step()

@@ -23,5 +23,12 @@ TEST(DidYouMean, NothingThatIsFartherAway) {
   EXPECT_EQ(did_you_mean("width", ""), "");
 }
 
+TEST(NotOneOf, QuotesShortensAndSaysWhatMayHaveBeenMeant) {
+  EXPECT_EQ(not_one_of("widht", "width, height"),
+            "'widht' is not one of: width, height; did you mean 'width'?");
+  EXPECT_EQ(not_one_of("depth", "width, height"), "'depth' is not one of: width, height");
+  EXPECT_LT(not_one_of(std::string(10'000, 'x'), "width").size(), 300u);
+}
+
 }  // namespace
 }  // namespace desert_sim
