@@ -31,7 +31,7 @@ double mean_where(const Field& values, const std::vector<char>& mask) {
 
 // ---- barchans: one test a seed, and one of the barchans of all seeds ----
 
-constexpr std::uint64_t barchan_seeds = 12;
+constexpr std::uint64_t barchan_seeds = 8;
 
 /// The barchans of five looks at the shipped scenario, from 360 to 520 steps. The grid is narrower than the
 /// scenario's but longer along the wind, because dunes are steeper where the periodic border is near upwind:
@@ -118,9 +118,9 @@ BarchanShape shape_of(const std::vector<DuneShape>& dunes) {
 
 class Barchans : public ::testing::TestWithParam<std::uint64_t> {};
 
-/// Bounds are wide, because the five looks at a seed find 5 to 21 dunes. Over seeds 1 to 96 the shapes of
-/// single seeds were: height to width 0.041…0.181, stoss 6.7…17.1 degrees, slip face 32.8…34.5 degrees to
-/// within 1…35 degrees of downwind, horns to within 1…13 degrees, both horns downwind in 9…100 %.
+/// Bounds are wide, because the five looks at a seed find 5 to 21 dunes. When they were set, seeds 1 to 96 had
+/// a height to width of 0.041…0.181, stoss 6.7…17.1 degrees, slip face 32.8…34.5 degrees to within 1…35 degrees
+/// of downwind, horns to within 1…13 degrees, and both horns downwind in 9…100 %.
 TEST_P(Barchans, OfOneSeed) {
   const std::string file = barchan_file(GetParam());
   if (!file.empty()) std::filesystem::remove(file);
@@ -143,10 +143,10 @@ INSTANTIATE_TEST_SUITE_P(Seeds, Barchans, ::testing::Range<std::uint64_t>(1, bar
                          [](const auto& test) { return std::to_string(test.param); });
 
 /// Published: height to width 0.06…0.15, stoss 8…15 degrees, slip face 31…35 degrees to within 20 degrees of
-/// downwind, horns downwind. The bounds are narrower, as far as the scatter between sets of 12 seeds allows:
-/// seeds 1 to 96 have a height to width of 0.121 (standard deviation of sets of 12, resampled: 0.011), stoss
-/// 13.1 (0.54), slip face 33.0 (0.01) to within 8.7 (1.6) of downwind, horns to within 3.4 (0.6), and both
-/// horns downwind in 73 % (6 %). Seeds 1 to 12 have 0.141, 12.5, 33.3, 12, 2 and 69 %.
+/// downwind, horns downwind. The bounds are narrower, as far as the scatter between sets of 8 seeds allows:
+/// seeds 1 to 96 have a height to width of 0.121 (standard deviation of sets of 8, from those of 12: 0.013),
+/// stoss 13.1 (0.66), slip face 33.0 (0.01) to within 8.7 (2.0) of downwind, horns to within 3.4 (0.7), and
+/// both horns downwind in 73 % (7 %). Seeds 1 to 8 have 0.141, 12.7, 33.2, 12, 2 and 72 %.
 TEST(Dunes, Barchan) {
   std::vector<DuneShape> dunes;
   std::vector<std::shared_future<std::vector<DuneShape>>> runs;
@@ -159,12 +159,12 @@ TEST(Dunes, Barchan) {
     for (const DuneShape& d : read_barchans(file)) dunes.push_back(d);
   }
   for (const auto& run : runs) dunes.insert(dunes.end(), run.get().begin(), run.get().end());
-  ASSERT_GE(dunes.size(), 75u);
+  ASSERT_GE(dunes.size(), 50u);
   const BarchanShape s = shape_of(dunes);
-  EXPECT_GE(s.height_to_width, 0.09);
+  EXPECT_GE(s.height_to_width, 0.085);
   EXPECT_LE(s.height_to_width, 0.15);
-  EXPECT_GE(s.stoss_deg, 11.9);
-  EXPECT_LE(s.stoss_deg, 14.3);
+  EXPECT_GE(s.stoss_deg, 11.6);
+  EXPECT_LE(s.stoss_deg, 14.6);
   EXPECT_GE(s.slip_face_deg, 32.5);
   EXPECT_LE(s.slip_face_deg, 35);
   EXPECT_LE(s.slip_direction_deg, 18);
