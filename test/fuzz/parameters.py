@@ -6,6 +6,7 @@ material is lost, and a run gives the same state on one thread and two, through 
     test/fuzz/parameters.py DESERT_RUN random N [--seed S]      N combinations
         --steps N (300)   --jobs N (processors)   --only TEXT (models whose name has it)
         --cuda N          each Nth on the GPU, too
+        --timeout S       of a run (600: grains of sand on cells of a centimetre for a year need minutes)
 
 What fails is printed as a command that repeats it. Exit status 1 if something does."""
 import argparse
@@ -213,7 +214,7 @@ def main():
     parser.add_argument("--steps", type=int, default=300)
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--only", default="")
-    parser.add_argument("--timeout", type=float, default=120)
+    parser.add_argument("--timeout", type=float, default=600)
     parser.add_argument("--cuda", type=int, default=0, metavar="N")
     options = parser.parse_args()
     known = parameters(options.desert_run)
