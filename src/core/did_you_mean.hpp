@@ -1,5 +1,6 @@
 #pragma once
-/// Help with names that are nearly right. All in this header: the library of clients has no other part of the core.
+/// Help with names that are nearly right. It is all in this header, because the library of clients has no
+/// other part of the core.
 
 #include <algorithm>
 #include <string>

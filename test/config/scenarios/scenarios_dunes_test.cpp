@@ -118,9 +118,9 @@ BarchanShape shape_of(const std::vector<DuneShape>& dunes) {
 
 class Barchans : public ::testing::TestWithParam<std::uint64_t> {};
 
-/// Bounds are wide, because the five looks at a seed find 5 to 21 dunes. When they were set, seeds 1 to 96 had
-/// a height to width of 0.041…0.181, stoss 6.7…17.1 degrees, slip face 32.8…34.5 degrees to within 1…35 degrees
-/// of downwind, horns to within 1…13 degrees, and both horns downwind in 9…100 %.
+/// Bounds are wide, because the five looks at a seed find 5 to 21 dunes. When they were set, seeds 1 to 96
+/// had a height to width of 0.041…0.181, stoss 6.7…17.1 degrees, slip face 32.8…34.5 degrees to within
+/// 1…35 degrees of downwind, horns to within 1…13 degrees, and both horns downwind in 9…100 %.
 TEST_P(Barchans, OfOneSeed) {
   const std::string file = barchan_file(GetParam());
   if (!file.empty()) std::filesystem::remove(file);
