@@ -1,19 +1,20 @@
 #!/usr/bin/env python3
 """Changes one law at a time and shows which test notices; a change that none notices is a gap in the tests.
 
-    test/mutations/run.py [--only NAME...] [--scratch DIR] [--jobs N]    writes test/mutations/table.md
+    test/mutations/run.py [--only NAME...] [--scratch DIR] [--workers N]    writes test/mutations/table.md
     test/mutations/run.py --list
     test/mutations/run.py --check      each text of the table is found exactly once in the tree; nothing is built
 
-mutations.py has the table. Each mutation is applied to a copy of the tree, which is built for the CPU without ROS. The
-tests that are expected to notice run first, then all of the programs in PROGRAMS, up to the first failure. Tests have
-to pass without any mutation first. --only runs the named ones in that order, and leaves the other rows of table.md as
-they are. --scratch keeps the copy and its build for the next call. A mutation that is noticed as expected takes half a
-minute; one in a header of many sources takes many, and so does one that survives.
+mutations.py has the table. Each mutation is applied to a copy of the tree, which is built for the CPU without ROS; each
+of N workers (as many as processors) has one. The tests that are expected to notice run first, then all of the programs in
+PROGRAMS, up to the first failure. Tests have to pass without any mutation first. --only runs the named ones, and leaves the
+other rows of table.md as they are. --scratch keeps copies and builds for the next call. A mutation that is noticed as
+expected takes half a minute; one in a header of many sources takes many, and so does one that survives.
 Exit status: 0; 1 if a mutation survives; 2 for a table that does not fit the tree, or a tree that does not build or
 whose tests fail without a mutation.
 """
 import argparse
+import concurrent.futures
 import os
 import pathlib
 import re
@@ -21,6 +22,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 
 from mutations import MUTATIONS
 
@@ -161,25 +163,53 @@ def write_table(killers):
     TABLE.write_text("\n".join(lines) + "\n")
 
 
-def run(mutations, scratch, jobs):
-    copy = Copy(scratch, jobs)
-    copy.configure()
-    require_passing_tests(copy, mutations)
-    killers = rows_of_table()
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], check=True, stdout=subprocess.PIPE,
-                            text=True).stdout.strip()
-    for mutation in mutations:
+class Run:
+    """The mutations, by as many workers as there are copies. A worker takes all of a file, so that it is built anew once
+    less for each."""
+
+    def __init__(self, mutations):
+        self.mutations, self.lock, self.killers = mutations, threading.Lock(), rows_of_table()
+        self.files = list(dict.fromkeys(m.file for m in mutations))
+        self.commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], check=True, stdout=subprocess.PIPE,
+                                     text=True).stdout.strip()
+
+    def work(self, copy):
+        copy.configure()
+        while True:
+            with self.lock:
+                if not self.files:
+                    return
+                file = self.files.pop(0)
+            for mutation in self.mutations:
+                if mutation.file == file:
+                    self.note(mutation, self.killer_of(copy, mutation))
+
+    def killer_of(self, copy, mutation):
         copy.apply(mutation)
         try:
-            killer = killer_of(copy, mutation)
+            return killer_of(copy, mutation)
         except Failure as failure:
+            self.files.clear()  # the others end, too
             raise Failure("%s: %s" % (mutation.name, failure))
         finally:
             copy.restore(mutation.file)
-        killers[mutation.name] = "`%s`" % killer if killer else SURVIVED, commit
-        print("%-32s %s" % (mutation.name, killer or "SURVIVED"), flush=True)
-        write_table(killers)
-    return 1 if any(killers[m.name][0] == SURVIVED for m in mutations) else 0
+
+    def note(self, mutation, killer):
+        with self.lock:
+            self.killers[mutation.name] = "`%s`" % killer if killer else SURVIVED, self.commit
+            print("%-32s %s" % (mutation.name, killer or "SURVIVED"), flush=True)
+            write_table(self.killers)
+
+
+def run(mutations, scratch, workers):
+    first = Copy(scratch / "0", os.cpu_count())
+    first.configure()
+    require_passing_tests(first, mutations)
+    of = Run(mutations)
+    with concurrent.futures.ThreadPoolExecutor(workers) as pool:
+        for ended in [pool.submit(of.work, Copy(scratch / str(n), 1)) for n in range(workers)]:
+            ended.result()
+    return 1 if any(of.killers[m.name][0] == SURVIVED for m in mutations) else 0
 
 
 def main():
@@ -188,7 +218,7 @@ def main():
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--scratch", type=pathlib.Path, metavar="DIR")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--workers", type=int, default=os.cpu_count())
     options = parser.parse_args()
     if options.list:
         for m in MUTATIONS:
@@ -203,9 +233,9 @@ def main():
         return 0
     mutations = [by_name[name] for name in options.only] or MUTATIONS
     if options.scratch:
-        return run(mutations, options.scratch.resolve(), options.jobs)
+        return run(mutations, options.scratch.resolve(), options.workers)
     with tempfile.TemporaryDirectory(prefix="desert_mutations_") as scratch:
-        return run(mutations, pathlib.Path(scratch), options.jobs)
+        return run(mutations, pathlib.Path(scratch), options.workers)
 
 
 if __name__ == "__main__":
