@@ -5,7 +5,9 @@
 #include <sstream>
 #include <string>
 #include <type_traits>
+#include <vector>
 
+#include "src/core/joined.hpp"
 #include "src/core/parameters.hpp"
 
 namespace desert_sim {
@@ -21,7 +23,7 @@ void write_parameter_table(std::ostream& out, const P& defaults) {
     std::ostringstream allowed;
     if constexpr (std::is_enum_v<T>) {
       out << row.choices[static_cast<int>(value)];
-      for (int n = 0; n < row.choice_count; ++n) allowed << (n ? ", " : "") << row.choices[n];
+      allowed << joined(std::vector<std::string>(row.choices, row.choices + row.choice_count));
     } else if constexpr (std::is_same_v<T, ShortList>) {
       out << "[";
       for (int n = 0; n < value.count; ++n) out << (n ? ", " : "") << value.values[n];

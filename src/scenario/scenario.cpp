@@ -27,13 +27,11 @@ constexpr std::uint64_t max_scenario_bytes = std::uint64_t{1} << 24;
 template <class Step>
 void check_layer(const Step& step, const std::string& key, ValidationErrors& errors) {
   if constexpr (!std::is_same_v<Step, ObstacleStep>) {
+    std::vector<std::string> known;
     for (const LayerInfo& layer : layer_table)
-      if (step.layer == layer.name && layer.lifetime == Lifetime::persistent) return;
-    std::string known;
-    for (const LayerInfo& layer : layer_table)
-      if (layer.lifetime == Lifetime::persistent)
-        known += (known.empty() ? "" : ", ") + std::string(layer.name);
-    errors.add(key + ".layer", not_one_of(step.layer, known));
+      if (layer.lifetime == Lifetime::persistent) known.emplace_back(layer.name);
+    if (std::find(known.begin(), known.end(), step.layer) != known.end()) return;
+    errors.add(key + ".layer", not_one_of(step.layer, joined(known)));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -124,15 +125,10 @@ void read_value(const YAML::Node& node, const Row& row, const std::string& key, 
       errors.add(key, node_text(node) + " is not a string");
     }
   } else if constexpr (std::is_enum_v<T>) {
-    std::string known;
-    for (int n = 0; n < row.choice_count; ++n) {
-      if (node.IsScalar() && node.Scalar() == row.choices[n]) {
-        value = static_cast<T>(n);
-        return;
-      }
-      known += (n ? ", " : "") + std::string(row.choices[n]);
-    }
-    errors.add(key, not_one_of(node_text(node), known));
+    const std::vector<std::string> choices(row.choices, row.choices + row.choice_count);
+    const auto found = std::find(choices.begin(), choices.end(), node.IsScalar() ? node.Scalar() : "");
+    if (found == choices.end()) return errors.add(key, not_one_of(node_text(node), joined(choices)));
+    value = static_cast<T>(found - choices.begin());
   } else if constexpr (std::is_same_v<T, ShortList>) {
     if (!node.IsSequence() || node.size() < 1 || node.size() > ShortList::capacity) {
       errors.add(key, "must be a list of 1 to " + std::to_string(ShortList::capacity) + " numbers");

@@ -7,16 +7,15 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
+#include "src/core/joined.hpp"
 
 namespace desert_sim {
 
 Layer layer_by_name(const std::string& name) {
-  std::string known;
-  for (const LayerInfo& layer : layer_table) {
+  for (const LayerInfo& layer : layer_table)
     if (name == layer.name) return layer.layer;
-    known += known.empty() ? layer.name : std::string(", ") + layer.name;
-  }
-  throw ConfigError("layer " + not_one_of(name, known));
+  throw ConfigError("layer " +
+                    not_one_of(name, joined(layer_table, [](const LayerInfo& l) { return l.name; })));
 }
 
 HeightScale HeightScale::covering(double lowest, double highest) {

@@ -62,8 +62,8 @@ def faults_of_the_table():
 class Copy:
     """A copy of the tree and its build."""
 
-    def __init__(self, scratch, jobs):
-        self.tree, self.build, self.jobs = scratch / "tree", scratch / "build", jobs
+    def __init__(self, scratch):
+        self.tree, self.build, self.jobs = scratch / "tree", scratch / "build", 1
 
     def configure(self):
         listed = subprocess.run(["git", "-C", ROOT, "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
@@ -174,7 +174,6 @@ class Run:
                                      text=True).stdout.strip()
 
     def work(self, copy):
-        copy.configure()
         while True:
             with self.lock:
                 if not self.files:
@@ -202,12 +201,15 @@ class Run:
 
 
 def run(mutations, scratch, workers):
-    first = Copy(scratch / "0", os.cpu_count())
-    first.configure()
-    require_passing_tests(first, mutations)
+    copies = [Copy(scratch / str(n)) for n in range(workers)]
+    for copy in copies:
+        copy.configure()
+    copies[0].jobs = os.cpu_count()  # the others have nothing to do yet
+    require_passing_tests(copies[0], mutations)
+    copies[0].jobs = 1
     of = Run(mutations)
     with concurrent.futures.ThreadPoolExecutor(workers) as pool:
-        for ended in [pool.submit(of.work, Copy(scratch / str(n), 1)) for n in range(workers)]:
+        for ended in [pool.submit(of.work, copy) for copy in copies]:
             ended.result()
     return 1 if any(of.killers[m.name][0] == SURVIVED for m in mutations) else 0
 

@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "src/client/ros_time.hpp"
+#include "src/core/joined.hpp"
 
 namespace desert_sim {
 
@@ -137,7 +138,7 @@ void Diagnostics::check_memory(Status& status) const {
 
 void Diagnostics::check_topics(Status& status) {
   const std::string failure = publisher_.failure();
-  std::string slow;
+  std::vector<std::string> slow;
   for (const TopicRate& topic : publisher_.rates()) {
     // The many topics of layers that nobody listens to would hide the others.
     if (topic.subscribers > 0 || topic.name.find("/layers/") == std::string::npos)
@@ -148,12 +149,12 @@ void Diagnostics::check_topics(Status& status) {
     const double expected = runs ? std::min(topic.wanted, report_->steps_per_second) : 0;
     int& periods = slow_[topic.name];
     periods = topic.achieved < 0.5 * expected ? periods + 1 : 0;
-    if (periods >= slow_periods) slow += (slow.empty() ? "" : ", ") + topic.name;
+    if (periods >= slow_periods) slow.push_back(topic.name);
   }
   if (!failure.empty()) return status.summary(DiagnosticStatus::ERROR, failure);
   status.summary(DiagnosticStatus::OK, "all topics reach their rates");
   if (!slow.empty())
-    status.mergeSummary(DiagnosticStatus::WARN, "less than half of the target rate: " + slow);
+    status.mergeSummary(DiagnosticStatus::WARN, "less than half of the target rate: " + joined(slow));
   for (const auto& [topic, problem] : publisher_.problems())
     status.mergeSummary(DiagnosticStatus::WARN, topic + ": " + problem);
 }

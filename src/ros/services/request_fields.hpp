@@ -15,6 +15,7 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
+#include "src/core/joined.hpp"
 
 namespace desert_sim {
 
@@ -44,12 +45,9 @@ inline float to_float(double value) {
 /// The enumerator, numbered as `choices` are, whose name is `text`.
 template <class Choice, int N>
 Choice choice_named(const char* const (&choices)[N], const std::string& text, const std::string& name) {
-  std::string all;
-  for (int n = 0; n < N; ++n) {
+  for (int n = 0; n < N; ++n)
     if (text == choices[n]) return static_cast<Choice>(n);
-    all += (n ? ", " : "") + std::string(choices[n]);
-  }
-  throw ConfigError(name + ": " + not_one_of(text, all));
+  throw ConfigError(name + ": " + not_one_of(text, joined(choices)));
 }
 
 // Whether a field was left out: such fields of messages are 0 or empty.

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/joined.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/requests.hpp"
 
@@ -218,9 +219,8 @@ command::SetParameters weather_command(const SetWeatherRequest& r) {
     } else if (field == "springs") {
       command.settings.push_back(springs_setting(r));
     } else {
-      std::string all = "sea, springs";
-      for (const Number& known : numbers) all += std::string(", ") + known.name;
-      throw ConfigError("change: " + not_one_of(field, all));
+      const std::string known = joined(numbers, [](const Number& n) { return n.name; });
+      throw ConfigError("change: " + not_one_of(field, known + ", sea, springs"));
     }
   }
   return command;

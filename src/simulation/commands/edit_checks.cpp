@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/joined.hpp"
 #include "src/scenario/range_checks.hpp"
 
 namespace desert_sim {
@@ -21,9 +23,9 @@ constexpr double max_pixel_value = 1e5;  // [m], as of a value
 bool of_shares(const EditTerrain& edit) { return edit.layer == "obstacle" || edit.layer == "looseness"; }
 
 void check_layer(const EditTerrain& edit, const Terrain& terrain, ValidationErrors& errors) {
-  if (edit.layer != "sand" && edit.layer != "soil" && edit.layer != "bedrock" && edit.layer != "water" &&
-      !of_shares(edit))
-    errors.add("layer", not_one_of(edit.layer, "sand, bedrock, soil, water, obstacle, looseness"));
+  constexpr const char* layers[] = {"sand", "bedrock", "soil", "water", "obstacle", "looseness"};
+  if (std::find(std::begin(layers), std::end(layers), edit.layer) == std::end(layers))
+    errors.add("layer", not_one_of(edit.layer, joined(layers)));
   if (edit.layer == "looseness" && !terrain.has(Layer::looseness))
     errors.add("layer",
                "looseness: this terrain has no layer looseness (a scenario with looseness.enabled or a step "
