@@ -76,10 +76,11 @@ class Copy:
                 old.unlink()
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
         # Mutations leave variables unused. A library that is built anew does not link again what uses it, because its
-        # interface is the same.
+        # interface is the same. What a mutation changes is compiled for a test or two: alone, and without what makes
+        # the compiler slow.
         self.run_tool(["cmake", "-S", self.tree, "-B", self.build, "-DDESERT_WITH_ROS=OFF", "-DDESERT_WITH_CUDA=OFF",
-                       "-DCMAKE_BUILD_TYPE=Release", "-DDESERT_WERROR=OFF", "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON"] +
-                      launcher)
+                       "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -DNDEBUG", "-DDESERT_WERROR=OFF",
+                       "-DDESERT_UNITY_BUILD=OFF", "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON"] + launcher)
 
     def restore(self, name):
         """Copies a file of the tree; one that is as it was keeps its time, so that make leaves it alone."""
