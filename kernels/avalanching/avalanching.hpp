@@ -1,6 +1,5 @@
 #pragma once
-/// Avalanching: sand that is steeper than its angle of repose slides down. Nilles 2024, eq. 9–11; physics.md
-/// B6.
+/// Avalanching: sand that is steeper than its angle of repose slides down. Nilles 2024, eq. 9–11.
 ///
 ///   B_ij = max(h_i − h_j − tan θ_i · d l, 0)          excess of cell i over its neighbour j
 ///   A_i  = min(k_c B_max / (1 + B_max/B_sum), s_i)    sand that cell i releases

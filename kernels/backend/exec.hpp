@@ -38,6 +38,10 @@ class HostCopy {
 /// priority of threads.)
 enum class Precedence { first, last };
 
+/// Where work is done. Memory that is only planned is nowhere.
+enum class Device : int { cpu, cuda, none };
+constexpr const char* device_names[] = {"cpu", "cuda", "none"};
+
 class Exec {
  public:
   virtual ~Exec() = default;
@@ -45,7 +49,8 @@ class Exec {
   Exec(const Exec&) = delete;
   Exec& operator=(const Exec&) = delete;
 
-  virtual const char* backend() const = 0;           ///< "cpu" or "cuda"
+  virtual Device kind() const = 0;
+  const char* backend() const { return device_names[static_cast<int>(kind())]; }  ///< "cpu" or "cuda"
   virtual std::string device() const = 0;            ///< name of the device for display
   virtual std::size_t memory_available() const = 0;  ///< free memory [bytes]
 
@@ -122,7 +127,7 @@ class CpuExec : public Exec {
   explicit CpuExec(int threads = 0);
   int threads() const { return threads_; }
 
-  const char* backend() const override { return "cpu"; }
+  Device kind() const override { return Device::cpu; }
   std::string device() const override;
   std::size_t memory_available() const override { return host_memory_available(); }
   void* allocate_host(std::size_t bytes) override { return allocate_memory(bytes); }
@@ -153,7 +158,7 @@ class CudaExec final : public Exec {
   /// recorded, it is the stream of the loop's body.
   void* stream() const { return stream_; }
 
-  const char* backend() const override { return "cuda"; }
+  Device kind() const override { return Device::cuda; }
   std::string device() const override;
   std::size_t memory_available() const override;
   void* allocate_host(std::size_t bytes) override;

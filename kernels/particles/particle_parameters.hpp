@@ -5,9 +5,6 @@
 
 namespace desert_sim {
 
-enum class ParticleKind : int { none, wang };
-constexpr const char* particle_kind_names[] = {"none", "wang"};
-
 /// Grain, air, lift-off and roughness are those of Wang & Hu 2012, but for the diameter, of which a later
 /// account says 15 mm: 0.15 mm is meant. Threshold and focus are Bagnold's (1941). The shelter ends six
 /// heights behind a crest, where a separated flow comes back to the ground. ℓ is the longest distance of
@@ -16,7 +13,6 @@ constexpr const char* particle_kind_names[] = {"none", "wang"};
 /// Renno 2009, and α twice their 0.15, because thrown grains have to cross cells of a centimetre. λ_c was
 /// chosen so that bumps of single cells vanish.
 struct ParticleParameters {
-  ParticleKind kind = ParticleKind::none;
   float grain_diameter = 0.00015f;
   float grain_density = 2655.0f;
   float air_density = 1.1644f;
@@ -47,8 +43,6 @@ struct ParticleParameters {
 constexpr auto parameter_table(const ParticleParameters*) {
   using P = ParticleParameters;
   return std::make_tuple(
-      parameter("kind", &P::kind, particle_kind_names,
-                "Particle model that moves sand in place of saltation and reptation."),
       parameter("grain_diameter", &P::grain_diameter, 2e-5, 0.005, "m", "Diameter of the grains (d)."),
       parameter("grain_density", &P::grain_density, 100, 20000, "kg/m^3", "Density of the grains (rho_s)."),
       parameter("air_density", &P::air_density, 0.001, 100, "kg/m^3", "Density of the air (rho_a)."),

@@ -17,11 +17,6 @@
 
 namespace desert_sim::plants {
 
-/// Sorts the first `all` plants of next_state() by key into plants(); `dead` of them have died and are
-/// dropped.
-template <class E>
-void sort_plants(E& exec, int all, int dead, Workspace& work);
-
 template <class E>
 void grow_and_spawn(E& exec, const TerrainView& t, const VegetationParameters& p,
                     const ReposeParameters& repose, const surface::Heights& heights, float time_step,

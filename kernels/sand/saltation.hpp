@@ -51,14 +51,10 @@
 
 namespace desert_sim {
 
-/// Which law moves the sand: the hops of this file, the same as random events of slabs (desertscape.hpp), or
-/// continuum.hpp, of whose parameters only `influx` and `flux` are here.
-enum class SaltationModel : int { hops, continuum, desertscape_2019 };
-constexpr const char* saltation_model_names[] = {"hops", "continuum", "desertscape_2019"};
-
+/// Of the hops of this file and of the same as random events of slabs (desertscape.hpp). For continuum.hpp
+/// only `enabled`, `influx` and `flux` count, for slabs and flights of grains only `influx`.
 struct SaltationParameters {
   bool enabled = true;
-  SaltationModel model = SaltationModel::hops;
   float lift = 1.0f;
   float hop_time = 1.0f;
   float hop_spread = 0.6f;
@@ -74,12 +70,8 @@ struct SaltationParameters {
 constexpr auto parameter_table(const SaltationParameters*) {
   using P = SaltationParameters;
   return std::make_tuple(
-      parameter("enabled", &P::enabled, "Whether the wind carries sand."),
-      parameter(
-          "model", &P::model, saltation_model_names,
-          "hops: a share of the sand a second, in hops; desertscape_2019: the same as random events of slabs "
-          "(section desertscape_2019); continuum: in real units (sections shear_stress, continuum), with "
-          "influx and flux alone of this section."),
+      parameter("enabled", &P::enabled,
+                "Whether the wind carries sand, where sand.model is hops, desertscape_2019 or continuum."),
       parameter("lift", &P::lift, 0, 10, "m/s", "Sand lifted from an open cell a second (epsilon_s)."),
       parameter("hop_time", &P::hop_time, 0.001, 100, "s", "Time that a hop takes (T)."),
       parameter(

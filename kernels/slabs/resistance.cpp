@@ -10,11 +10,11 @@ namespace desert_sim::slabs {
 template <class E>
 void find_resistance(E& exec, const TerrainView& t, const StepInputs& in, const Lattice& lattice,
                      float* found) {
-  if (in.model.kind == SlabKind::nield_baas)
+  if (in.kind == SlabKind::nield_baas)
     for_each_cell(exec, t.grid,
                   ResistanceOfPlants{lattice, t.real(Layer::grass), t.real(Layer::mesquite),
                                      t.real(Layer::shrub), found});
-  if (in.model.kind == SlabKind::snow)
+  if (in.kind == SlabKind::snow)
     for_each_cell(exec, t.grid,
                   ResistanceOfSnow{lattice, t.real(Layer::snow_density),
                                    fresh_density(in.snow.fall_temperature), in.snow.packed_density, found});
@@ -26,7 +26,7 @@ void change_resistance(E& exec, const TerrainView& t, const StepInputs& in) {
     return Growing{t.real(layer), static_cast<float>(info(layer).lowest),
                    static_cast<float>(info(layer).highest)};
   };
-  if (in.model.kind == SlabKind::nield_baas && in.years > 0)
+  if (in.kind == SlabKind::nield_baas && in.years > 0)
     for_each_cell(exec, t.grid,
                   GrowPlants{t.grid,
                              in.curves,
@@ -34,7 +34,7 @@ void change_resistance(E& exec, const TerrainView& t, const StepInputs& in) {
                              static_cast<float>(in.years),
                              t.quantum,
                              t.quanta(Layer::burial)});
-  if (in.model.kind == SlabKind::snow && in.settlings > 0) {
+  if (in.kind == SlabKind::snow && in.settlings > 0) {
     const double rate = 2.777e-6 * std::exp(0.04 * static_cast<double>(in.snow.temperature));
     for_each_cell(exec, t.grid,
                   SettleSnow{t.grid, static_cast<float>(rate * in.settlings * in.snow.settling_time),

@@ -54,7 +54,7 @@ inline Lattice make_lattice(const TerrainView& t, const StepInputs& in, const Wo
   };
   // Rounded down, so that a bed of n slab heights, which is rounded to the nearest, has n slabs.
   const auto slab = static_cast<Quanta>(std::floor(static_cast<double>(p.slab_height) * t.quanta_per_metre));
-  const bool plants = p.kind == SlabKind::nield_baas;
+  const bool plants = in.kind == SlabKind::nield_baas;
   return {order,
           to_fixed_point(order.shift(in.above.x, in.above.y)),
           std::max(slab, Quanta{1}),
@@ -66,7 +66,7 @@ inline Lattice make_lattice(const TerrainView& t, const StepInputs& in, const Wo
           work.pending.data(),
           Lattice::quarter_of(order.length()),
           4 * Lattice::quarter_of(order.length()),
-          has_resistance(p.kind) ? work.resistance.data() : nullptr,
+          has_resistance(in.kind) ? work.resistance.data() : nullptr,
           plants ? in.plants.held_from : std::numeric_limits<float>::infinity(),
           repose(plants ? in.plants.held_repose_deg : p.repose_deg)};
 }
@@ -135,7 +135,7 @@ inline Turns make_turns(const TerrainView& t, const StepInputs& in, const Lattic
   const double poll_times = static_cast<double>(in.time_step) / static_cast<double>(p.poll_time);
   const int count = turns_of(poll_times);
   const double speed = std::hypot(static_cast<double>(in.above.x), static_cast<double>(in.above.y));
-  const bool speeding = speeds_up(p.kind);
+  const bool speeding = speeds_up(in.kind);
   const Taken taken{work.taken_cells.data(), work.taken_counts.data(), Taken::capacity_of(order.length())};
   const Fly fly{lattice,
                 taken,
@@ -257,11 +257,11 @@ void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice,
                            obstacle, work.base.data(), work.cliffs.data()});
   find_resistance(exec, t, in, lattice, work.resistance.data());
   const Turns all =
-      make_turns(t, in, lattice, reference_height(exec, t.grid, lattice, in.model.kind), dice, ledger, work);
+      make_turns(t, in, lattice, reference_height(exec, t.grid, lattice, in.kind), dice, ledger, work);
   if (in.above.x != 0.0f || in.above.y != 0.0f) do_turns(exec, all, in.model.forced_erosion, dice);
   constexpr int turns_to_rest = 2;
   for (int turn = 0; turn < turns_to_rest; ++turn) settle_all(exec, all);
-  Quanta* const burial = in.model.kind == SlabKind::nield_baas ? t.quanta(Layer::burial) : nullptr;
+  Quanta* const burial = in.kind == SlabKind::nield_baas ? t.quanta(Layer::burial) : nullptr;
   for_each_cell(exec, t.grid, PutSand{lattice, obstacle, t.quanta(Layer::sand), burial});
   change_resistance(exec, t, in);
   blow(exec, t, in.above);

@@ -78,6 +78,7 @@ struct Workspace {
 Workspace make_workspace(Exec& exec, const Grid& grid, bool resists);
 
 struct StepInputs {
+  SlabKind kind;
   SlabModelParameters model;
   SlabPlantParameters plants;
   SlabSnowParameters snow;

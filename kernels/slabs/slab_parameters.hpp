@@ -5,8 +5,7 @@
 
 namespace desert_sim {
 
-enum class SlabKind : int { none, werner, momiji, bishop, nield_baas, snow };
-constexpr const char* slab_kind_names[] = {"none", "werner", "momiji", "bishop", "nield_baas", "snow"};
+enum class SlabKind : int { werner, momiji, bishop, nield_baas, snow };
 constexpr bool speeds_up(SlabKind kind) { return kind == SlabKind::momiji || kind == SlabKind::bishop; }
 constexpr bool has_resistance(SlabKind kind) {
   return kind == SlabKind::nield_baas || kind == SlabKind::snow;
@@ -16,7 +15,6 @@ enum class SlabPolling : int { repeated, non_repeated };
 constexpr const char* slab_polling_names[] = {"repeated", "non_repeated"};
 
 struct SlabModelParameters {
-  SlabKind kind = SlabKind::none;
   float slab_height = 1.0f / 3.0f;
   SlabPolling polling = SlabPolling::repeated;
   float poll_time = 1.0f;
@@ -34,8 +32,6 @@ struct SlabModelParameters {
 constexpr auto parameter_table(const SlabModelParameters*) {
   using P = SlabModelParameters;
   return std::make_tuple(
-      parameter("kind", &P::kind, slab_kind_names,
-                "Slab model that moves sand in place of saltation, reptation and avalanching."),
       parameter("slab_height", &P::slab_height, 0.001, 10, "m", "Height of a slab; whole slabs move."),
       parameter("polling", &P::polling, slab_polling_names,
                 "Whether cells are polled at random, some more than once, or each of them once in turn."),

@@ -5,11 +5,6 @@
 
 namespace desert_sim {
 
-namespace wind_shadow {
-/// Time for which steps keep to one shadow [s].
-constexpr float held_for = 1.0f;
-}  // namespace wind_shadow
-
 struct WindShadowParameters {
   bool enabled = true;
   float distance = 10.0f;

@@ -17,8 +17,8 @@
 namespace desert_sim {
 namespace {
 
-constexpr int kMinLongSide = 512, kMaxLongSide = 2048;  // long side of a hillshade [pixels]
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+constexpr int min_long_side = 512, max_long_side = 2048;  // long side of a hillshade [pixels]
+constexpr float unknown_value = std::numeric_limits<float>::quiet_NaN();
 using Colour = cv::Vec3f;  // B, G, R in 0..255, OpenCV's order
 
 /// A colour of the renderer in OpenCV's order.
@@ -35,12 +35,12 @@ void check_input(int width, int height, double cell_size, const char* missing) {
   if (!text.str().empty()) throw ConfigError("picture: " + text.str());
 }
 
-/// The size at which a picture is computed: that of the grid, but at most kMaxLongSide on its long side.
+/// The size at which a picture is computed: that of the grid, but at most max_long_side on its long side.
 cv::Size working_size(int width, int height) {
   const int longest = std::max(width, height);
-  if (longest <= kMaxLongSide) return {width, height};
+  if (longest <= max_long_side) return {width, height};
   const auto reduced = [&](int n) {
-    return std::max(1, cvRound(static_cast<double>(n) * kMaxLongSide / longest));
+    return std::max(1, cvRound(static_cast<double>(n) * max_long_side / longest));
   };
   return {reduced(width), reduced(height)};
 }
@@ -96,7 +96,7 @@ cv::Mat elevation_image(const float* values, int width, int height) {
   known.convertTo(known, CV_32F, 1.0 / 255);
   known = reduced(known);
   elevation /= known;
-  elevation.setTo(kUnknown, known < 0.5);
+  elevation.setTo(unknown_value, known < 0.5);
   return elevation;
 }
 
@@ -120,21 +120,21 @@ cv::Vec2f gradient(const cv::Mat& elevation, int row, int column, float pixel_si
 }
 
 double exaggeration_of(const cv::Mat& elevation, float pixel_size) {
-  constexpr float kFlat = 1e-4F;
-  constexpr double kSteep = 0.9, kWanted = 0.6, kLeast = 0.5, kMost = 60;
+  constexpr float flat_slope = 1e-4F;
+  constexpr double steep_share = 0.9, wanted_slope = 0.6, least_exaggeration = 0.5, most_exaggeration = 60;
   std::vector<float> slopes;
-  const int stride = std::max(1, std::max(elevation.rows, elevation.cols) / kMinLongSide);
+  const int stride = std::max(1, std::max(elevation.rows, elevation.cols) / min_long_side);
   for (int row = 0; row < elevation.rows; row += stride)
     for (int column = 0; column < elevation.cols; column += stride) {
       if (std::isnan(elevation.at<float>(row, column))) continue;
       const float slope = static_cast<float>(cv::norm(gradient(elevation, row, column, pixel_size)));
-      if (slope > kFlat) slopes.push_back(slope);
+      if (slope > flat_slope) slopes.push_back(slope);
     }
   if (slopes.empty()) return 1;
   const auto steep =
-      slopes.begin() + static_cast<std::ptrdiff_t>(kSteep * static_cast<double>(slopes.size() - 1));
+      slopes.begin() + static_cast<std::ptrdiff_t>(steep_share * static_cast<double>(slopes.size() - 1));
   std::nth_element(slopes.begin(), steep, slopes.end());
-  return std::clamp(kWanted / *steep, kLeast, kMost);
+  return std::clamp(wanted_slope / *steep, least_exaggeration, most_exaggeration);
 }
 
 /// Brightness by Lambert's law, 1 on flat ground; 0 where unknown.
@@ -233,8 +233,8 @@ void draw_arrow(cv::Mat& picture, cv::Point2f centre, cv::Point2f half, const cv
 /// Draws about 32 arrows along the long side, which point to where the air moves; their length is
 /// proportional to the speed.
 void draw_arrows(cv::Mat& picture, const cv::Mat& u, const cv::Mat& v, float fastest) {
-  constexpr int kAcross = 32;
-  const float spacing = static_cast<float>(std::max(picture.cols, picture.rows)) / kAcross;
+  constexpr int hatches_across = 32;
+  const float spacing = static_cast<float>(std::max(picture.cols, picture.rows)) / hatches_across;
   const float enlargement = static_cast<float>(picture.cols) / static_cast<float>(u.cols);
   const int thickness = std::max(1, picture.cols / 1024);
   for (float y = spacing / 2; y < static_cast<float>(picture.rows); y += spacing)
@@ -294,7 +294,7 @@ cv::Mat hillshade_picture(const PictureInput& input) {
       }
       picture.at<cv::Vec3b>(row, column) = colour;
     }
-  picture = enlarged(picture, kMinLongSide);
+  picture = enlarged(picture, min_long_side);
   write_caption(picture, number(width * input.cell_size) + " x " + number(height * input.cell_size) +
                              " m, relief " + number(highest - lowest) + " m, shaded z x" +
                              number(exaggeration));
@@ -315,7 +315,7 @@ cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_
   cv::applyColorMap(level, picture, cv::COLORMAP_VIRIDIS);
   if (elevation)
     shade_lightly(picture, elevation_image(elevation, width, height), cell_size * width / picture.cols);
-  picture = enlarged(picture, 2 * kMinLongSide);
+  picture = enlarged(picture, 2 * min_long_side);
   draw_arrows(picture, u, v, static_cast<float>(fastest));
   write_caption(picture, caption.name + (" " + number(slowest)) + " to " + number(fastest) + " " +
                              caption.unit + ", dark to bright");

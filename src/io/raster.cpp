@@ -16,7 +16,7 @@
 namespace desert_sim {
 namespace {
 
-constexpr float kNoData = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_data = std::numeric_limits<float>::quiet_NaN();
 
 /// The geotransform to write: the recorded one if it agrees with cell_size and origin, otherwise one that is
 /// computed from them.
@@ -55,7 +55,7 @@ bool write_dataset(const std::string& path, const Raster& raster, GdalMessages& 
   dataset->SetGeoTransform(g.data());
   if (!raster.projection.empty()) dataset->SetProjection(raster.projection.c_str());
   GDALRasterBand& band = *dataset->GetRasterBand(1);
-  band.SetNoDataValue(kNoData);
+  band.SetNoDataValue(no_data);
   for (int row = 0; row < raster.height && !messages.failed(); ++row) {
     float* values = const_cast<float*>(raster.values.data()) + static_cast<std::size_t>(row) * raster.width;
     if (band.RasterIO(GF_Write, 0, raster.height - 1 - row, raster.width, 1, values, raster.width, 1,

@@ -18,7 +18,7 @@
 namespace desert_sim {
 namespace {
 
-constexpr float kNoData = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_data = std::numeric_limits<float>::quiet_NaN();
 
 GDALResampleAlg gdal_method(Resampling method) {
   switch (method) {
@@ -69,7 +69,7 @@ GDALDatasetUniquePtr wrap_as_dataset(Raster& raster, double corner_x, double cor
   double geotransform[6] = {raster.origin_x - corner_x, raster.cell_size, 0, -(raster.origin_y - corner_y), 0,
                             -raster.cell_size};
   dataset->SetGeoTransform(geotransform);
-  dataset->GetRasterBand(1)->SetNoDataValue(kNoData);
+  dataset->GetRasterBand(1)->SetNoDataValue(no_data);
   return dataset;
 }
 
@@ -99,8 +99,8 @@ bool warp(GDALDataset& source, GDALDataset& target, GDALResampleAlg method) {
   options->nBandCount = 1;
   options->panSrcBands = first_band();
   options->panDstBands = first_band();
-  options->padfSrcNoDataReal = one_double(kNoData);
-  options->padfDstNoDataReal = one_double(kNoData);
+  options->padfSrcNoDataReal = one_double(no_data);
+  options->padfDstNoDataReal = one_double(no_data);
   options->eResampleAlg = method;
   options->eWorkingDataType = GDT_Float32;
   options->papszWarpOptions = CSLSetNameValue(options->papszWarpOptions, "INIT_DEST", "NO_DATA");
@@ -144,7 +144,7 @@ Raster resample(const Raster& source, int width, int height, double cell_size, d
   result.origin_x = origin_x;
   result.origin_y = origin_y;
   result.projection = source.projection;
-  result.values.assign(static_cast<std::size_t>(width) * height, kNoData);
+  result.values.assign(static_cast<std::size_t>(width) * height, no_data);
 
   GdalMessages messages;
   auto from = wrap_as_dataset(const_cast<Raster&>(source), source.origin_x, source.origin_y);  // not written

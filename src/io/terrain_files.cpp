@@ -67,7 +67,7 @@ std::set<std::string> write_terrain(const std::string& scenario_file, const fs::
   std::string name = scenario.name;  // a checkpoint may give any; a line break would end the comment
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
-  std::string comment = "# A terrain saved at step " + std::to_string(snapshot.step) + " of " + name + ".\n";
+  std::string comment = saved_terrain_comment + std::to_string(snapshot.step) + " of " + name + ".\n";
   if (saved.vegetation.enabled)
     comment += "# Its plants are not saved: others come up when it is loaded. A checkpoint keeps them.\n";
   write_file(scenario_file, comment + dump_scenario(saved));

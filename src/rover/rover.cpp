@@ -132,7 +132,7 @@ void Rover::tick(const GroundSource* ground) {
     halt(missing.condition, missing.reason);
   } else {
     follow_ground(*ground);
-    if (may_drive(*ground)) go(*ground);
+    if (update_condition(*ground)) go(*ground);
     stand(*ground, following_iterations);
   }
   dead_reckon();
@@ -176,28 +176,33 @@ double Rover::depth_beyond_digging(const GroundSource& ground) const {
   return sum / suspension_.wheels();
 }
 
-/// Tells what the rover cannot drive out of. A rover that was buried is free once half of the sand is gone.
-bool Rover::may_drive(const GroundSource& ground) {
+/// Sets what the rover cannot drive out of; false if there is something. A rover that was buried is free once
+/// half of the sand is gone.
+bool Rover::update_condition(const GroundSource& ground) {
   const double degree = pi / 180;
   std::ostringstream text;
   text.precision(3);
-  if (state_.condition == RoverCondition::tipped) return halt(RoverCondition::tipped, state_.reason), false;
+  const auto stopped = [this](RoverCondition condition, const std::string& reason) {
+    halt(condition, reason);
+    return false;
+  };
+  if (state_.condition == RoverCondition::tipped) return stopped(RoverCondition::tipped, state_.reason);
   if (std::abs(state_.pose.roll) > rover_.tip_roll_deg * degree) {
     text << "it tipped over: roll " << state_.pose.roll / degree << " deg (at most " << rover_.tip_roll_deg
          << ")";
-    return halt(RoverCondition::tipped, text.str()), false;
+    return stopped(RoverCondition::tipped, text.str());
   }
   if (std::abs(state_.pose.pitch) > rover_.tip_pitch_deg * degree) {
     text << "it tipped over: pitch " << state_.pose.pitch / degree << " deg (at most " << rover_.tip_pitch_deg
          << ")";
-    return halt(RoverCondition::tipped, text.str()), false;
+    return stopped(RoverCondition::tipped, text.str());
   }
   const double depth = depth_beyond_digging(ground);
   const double limit = rover_.buried_depth * (state_.condition == RoverCondition::buried ? 0.5 : 1);
   if (depth <= limit) return true;
   text << "it is buried: " << depth << " m of sand came on its wheels (at most " << rover_.buried_depth
        << ")";
-  return halt(RoverCondition::buried, text.str()), false;
+  return stopped(RoverCondition::buried, text.str());
 }
 
 void Rover::go(const GroundSource& ground) {

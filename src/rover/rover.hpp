@@ -71,7 +71,7 @@ class Rover {
  private:
   void tick(const GroundSource* ground);
   void follow_ground(const GroundSource& ground);
-  bool may_drive(const GroundSource& ground);
+  bool update_condition(const GroundSource& ground);
   void go(const GroundSource& ground);
   double depth_beyond_digging(const GroundSource& ground) const;
   double slip_on(const WheelMotion& motion, const GroundUnderWheels& under, const GroundSource& ground) const;

@@ -53,8 +53,9 @@ TerrainDisplay::TerrainDisplay() {
       QString::fromStdString(ros::message_traits::datatype<ElevationGrid>()),
       "Keyframes of the terrain. Updates, layers, plants and wind are taken from the same node.", this,
       SLOT(subscribe()));
-  exaggeration_ = new rviz::FloatProperty(
-      "Vertical Exaggeration", 1, "Heights are drawn so many times as high.", this, SLOT(update_look()));
+  exaggeration_ = new rviz::FloatProperty("Vertical Exaggeration", 1,
+                                          "Factor by which heights are multiplied when they are drawn.", this,
+                                          SLOT(update_look()));
   exaggeration_->setMin(0.01F);
   exaggeration_->setMax(100);
   materials_ =

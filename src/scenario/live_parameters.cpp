@@ -7,6 +7,7 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/joined.hpp"
+#include "src/scenario/former_keys.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -59,6 +60,8 @@ Scenario with_live_settings(const Scenario& scenario, const Settings& settings) 
     const std::string path = setting.substr(0, setting.find('='));
     if (const char* why = fixed_reason(path)) {
       errors.add(path, std::string("cannot change while the simulation runs: ") + why);
+    } else if (const std::string now = instead_of_former_key(setting); !now.empty()) {
+      errors.add(path, now);
     } else if (!live.count(path)) {
       errors.add(path,
                  "unknown parameter (config/parameters.md lists all)" + did_you_mean(path, joined(live)));

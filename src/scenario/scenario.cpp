@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <sstream>
 
@@ -11,6 +12,7 @@
 #include "src/core/input_file.hpp"
 #include "src/core/joined.hpp"
 #include "src/scenario/climate.hpp"
+#include "src/scenario/former_keys.hpp"
 #include "src/scenario/growth_curves.hpp"
 #include "src/scenario/range_checks.hpp"
 #include "src/scenario/rover_class.hpp"
@@ -230,7 +232,9 @@ Scenario load_scenario(const std::string& path, const Settings& settings, const 
   if (file.size() > max_scenario_bytes)
     throw ConfigError(path + ": has " + std::to_string(file.size()) + " bytes (allowed: at most " +
                       std::to_string(max_scenario_bytes) + ")");
-  Scenario s = parse_with_settings(file.read_all(), path, parent_folder(path), settings);
+  const std::string text = file.read_all();
+  const bool saved = text.compare(0, std::strlen(saved_terrain_comment), saved_terrain_comment) == 0;
+  Scenario s = parse_with_settings(saved ? migrated(text, path) : text, path, parent_folder(path), settings);
   s.name = base_name(path);
   return s;
 }
@@ -249,7 +253,7 @@ Scenario parse_scenario(const YAML::Node& given, const std::string& name, const 
                yaml::node_text(given) + " is given where the sections of a scenario are expected");
     errors.throw_if_any();
   }
-  const YAML::Node root = apply_rover(apply_climate(given, errors), errors);
+  const YAML::Node root = refuse_former_keys(apply_rover(apply_climate(given, errors), errors), errors);
   std::set<std::string> known{"climate", "rover",   "terrain",     "wind",         "water",
                               "run",     "species", "competition", "growth_curves"};
   for_each_section(s, [&](const char* section, auto& parameters) {

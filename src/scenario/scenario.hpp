@@ -30,6 +30,7 @@
 #include "kernels/wind/wind_shadow_parameters.hpp"
 #include "src/core/error.hpp"
 #include "src/scenario/process_sections.hpp"
+#include "src/scenario/sand_model.hpp"
 #include "src/scenario/species.hpp"
 #include "src/scenario/terrain_steps.hpp"
 #include "src/scenario/timeline.hpp"
@@ -120,6 +121,7 @@ struct Scenario {
   WindParameters wind;
   WindShadowParameters wind_shadow;
   EchoDuneParameters echo_dunes;
+  SandParameters sand;
   SaltationParameters saltation;
   ShearStressParameters shear_stress;
   ContinuumParameters continuum;
@@ -150,9 +152,9 @@ struct Scenario {
   traversability::Rover rover() const { return {traversability, wheel_ground, repose}; }
   /// Whether water is simulated: it is enabled, or rain, springs, hydraulic erosion or moisture need it.
   bool has_water() const;
-  /// Whether saltation is on, as continuum transport.
-  bool has_continuum_transport() const {
-    return saltation.enabled && saltation.model == SaltationModel::continuum;
+  /// Whether this model moves the sand.
+  bool has(SandModel model) const {
+    return sand.model == model && (saltation.enabled || !is_saltation(model));
   }
 };
 
@@ -167,6 +169,8 @@ Scenario load_scenario(const std::string& path, const Settings& settings = {},
                        const std::string& folder = "");
 Scenario parse_scenario_text(const std::string& yaml, const std::string& name, const Settings& settings = {});
 Scenario parse_scenario(const YAML::Node& root, const std::string& name, const std::string& folder);
+/// What the scenario file of a saved terrain begins with.
+constexpr const char* saved_terrain_comment = "# A terrain saved at step ";
 /// The scenario as YAML with all parameters, defaults included; parse_scenario() reads back the same
 /// scenario.
 std::string dump_scenario(const Scenario& scenario);

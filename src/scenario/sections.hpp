@@ -21,6 +21,7 @@ void for_each_section(S& scenario, Visit&& visit) {
   visit("grid", scenario.grid);
   visit("wind_shadow", scenario.wind_shadow);
   visit("echo_dunes", scenario.echo_dunes);
+  visit("sand", scenario.sand);
   visit("saltation", scenario.saltation);
   visit("shear_stress", scenario.shear_stress);
   visit("continuum", scenario.continuum);

@@ -69,9 +69,8 @@ std::unique_ptr<Simulation> simulation_of(const CheckpointHeader& header, Exec& 
   s.steps = header.numbers.steps;
   s.clock_origin = header.clock;
   s.wind_reference = header.numbers.wind_reference;
-  s.bedrock_loose = header.numbers.bedrock_loose;
-  s.soil_loose = header.numbers.soil_loose;
-  s.avalanche_iterations = header.numbers.avalanche_iterations;
+  s.flags = header.flags;
+  s.counts = header.counts;
   s.next_timeline_entry = header.numbers.next_timeline_entry;
   s.ramps = header.ramps;
   s.initial = header.initial;
@@ -141,7 +140,7 @@ std::unique_ptr<Simulation> simulation_from_bytes(const std::string& bytes, Exec
   SimulationState& state = simulation->state();
   for (std::size_t n = 0; n < header.layers.size(); ++n) {
     state.terrain.set_raw_words(header.layers[n], words.layers[n].copy());
-    if (header.layers[n] == Layer::wind_shadow) state.shelter_known = true;
+    if (info(header.layers[n]).lifetime == Lifetime::held) state.held_layers_known = true;
   }
   if (state.plants) state.set_plants(words.plants.copy());
   require_balance(state, path);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "src/core/quoted.hpp"
+#include "src/scenario/former_keys.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/commands/command_yaml.hpp"
 
@@ -48,11 +49,12 @@ CheckpointHeader header_of(const Simulation& simulation) {
                     s.terrain.scale().datum,
                     s.terrain.scale().exponent,
                     s.wind_reference,
-                    s.bedrock_loose,
-                    s.soil_loose,
-                    simulation.pipeline().avalanche_iterations(),
                     static_cast<std::uint64_t>(s.plants.count),
                     s.next_timeline_entry};
+  header.flags = s.flags;
+  for (const Process& process : process_table().processes)
+    if (!process.counter.empty())
+      header.counts[process.counter] = simulation.pipeline().count(process.counter);
   header.clock = s.clock_origin;
   header.ramps = s.ramps;
   header.initial = s.initial;
@@ -74,6 +76,11 @@ std::string header_text(const CheckpointHeader& header) {
   entry(out, "start", dump_scenario(header.start));
   entry(out, "scenario", dump_scenario(header.scenario));
   yaml::emit_parameters(out, header.numbers);
+  for (const Process& process : process_table().processes) {
+    for (const std::string& flag : process.flags) entry(out, flag.c_str(), header.flags.count(flag) > 0);
+    if (const std::string& counter = process.counter; !counter.empty())
+      entry(out, counter.c_str(), header.counts.at(counter));
+  }
   if (!(header.clock == ClockOrigin())) {
     out << YAML::Key << "clock" << YAML::Value << YAML::BeginMap;
     yaml::emit_parameters(out, header.clock);
@@ -110,7 +117,7 @@ std::string text_at(const YAML::Node& header, const char* key, const std::string
 /// A scenario whose grid is resolved, as that of a simulation is.
 Scenario read_scenario(const YAML::Node& header, const char* key, const std::string& path) {
   const std::string source = path + ": " + key;
-  const YAML::Node root = YAML::Load(text_at(header, key, path));
+  const YAML::Node root = without_former_keys(YAML::Load(text_at(header, key, path)), source);
   Scenario scenario = parse_scenario(root, source, text_at(header, "folder", path));
   scenario.name = text_at(header, "name", path);
   scenario.projection = text_at(header, "projection", path);
@@ -137,6 +144,25 @@ void read_quanta(const YAML::Node& header, const char* key, long long limit, Val
                            std::to_string(limit) + "] quanta");
     else
       numbers[n] = value;
+  }
+}
+
+/// What processes keep. Adds the names to `known`.
+void read_what_processes_keep(const YAML::Node& node, ValidationErrors& errors, CheckpointHeader& header,
+                              std::set<std::string>& known) {
+  for (const Process& process : process_table().processes) {
+    for (const std::string& flag : process.flags) {
+      known.insert(flag);
+      bool on = false;
+      if (node[flag] && !YAML::convert<bool>::decode(node[flag], on))
+        errors.add(flag, yaml::node_text(node[flag]) + " is not true or false");
+      if (on) header.flags.insert(flag);
+    }
+    if (const std::string& counter = process.counter; !counter.empty()) {
+      known.insert(counter);
+      if (node[counter] && !YAML::convert<std::uint64_t>::decode(node[counter], header.counts[counter]))
+        errors.add(counter, "= " + yaml::node_text(node[counter]) + " is not a whole number");
+    }
   }
 }
 
@@ -198,6 +224,14 @@ void read_series(const YAML::Node& node, const std::string& path, CheckpointHead
           WindSeries::from_text(text_at(node, "wind_series", path), path + ": wind_series"));
 }
 
+bool is_written(Layer layer, const Scenario& scenario) {
+  const std::vector<Process>& all = process_table().processes;
+  return std::any_of(all.begin(), all.end(), [&](const Process& process) {
+    return std::count(process.writes.begin(), process.writes.end(), layer) > 0 &&
+           process_table().is_active(process, scenario);
+  });
+}
+
 /// Layers that a simulation of the scenario has from its start.
 std::vector<Layer> needed_layers(const Scenario& scenario) {
   std::vector<Layer> needed{Layer::bedrock, Layer::sand, Layer::airborne_sand};
@@ -216,10 +250,11 @@ void read_layers(const YAML::Node& list, ValidationErrors& errors, CheckpointHea
     const auto row = std::find_if(layer_table.begin(), layer_table.end(),
                                   [&](const LayerInfo& layer) { return name == layer.name; });
     const std::string key = "layers." + std::to_string(n);
-    const bool held = row != layer_table.end() && row->lifetime == Lifetime::held &&
-                      header.scenario.wind_shadow.enabled &&
-                      header.scenario.run.time_step < wind_shadow::held_for;
-    if (row == layer_table.end() || (row->lifetime != Lifetime::persistent && !held))
+    const auto is_held = [&] {
+      return row->lifetime == Lifetime::held && header.scenario.run.time_step < held_for &&
+             is_written(row->layer, header.scenario);
+    };
+    if (row == layer_table.end() || (row->lifetime != Lifetime::persistent && !is_held()))
       return errors.add(key, quoted(name) + " is not a layer that checkpoints hold");
     const auto place = static_cast<std::size_t>(row - layer_table.begin());
     if (place < next) return errors.add(key, quoted(name) + " is given twice, or not in the order of layers");
@@ -257,6 +292,7 @@ CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
   std::set<std::string> known{"name",  "folder",  "projection", "start", "scenario",
                               "ramps", "initial", "ledger",     "wind",  "layers"};
   yaml::read_parameters(node, "", errors, header.numbers, known);
+  if (node.IsMap()) read_what_processes_keep(node, errors, header, known);
   std::set<std::string> allowed = known;
   allowed.insert({"clock", "ripple_wind", "wind_series"});
   yaml::reject_unknown_keys(node, "", allowed, errors);
@@ -279,7 +315,7 @@ CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
   errors.throw_if_any();
   header.wind = read_wind(header, node["wind"], path);
   read_series(node, path, header);
-  require_reach(header.scenario);
+  process_table().require_runnable(header.scenario);
   if (header.scenario.has_water()) require_sea(header.scenario, header.scale(), path + ": scenario");
   return header;
 }

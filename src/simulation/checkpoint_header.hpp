@@ -15,9 +15,6 @@ struct CheckpointNumbers {
   double datum = 0;
   int exponent = HeightScale::finest;
   Quanta wind_reference = 0;
-  bool bedrock_loose = false;
-  bool soil_loose = false;
-  std::uint64_t avalanche_iterations = 0;
   std::uint64_t plants = 0;
   std::uint64_t next_timeline_entry = 0;
 };
@@ -30,9 +27,6 @@ constexpr auto parameter_table(const CheckpointNumbers*) {
                 "Of 2, which gives the quantum in metres."),
       parameter("wind_reference", &P::wind_reference, -wall_height, wall_height, "quanta",
                 "Lowest surface at the start."),
-      parameter("bedrock_loose", &P::bedrock_loose, "Whether bedrock may slide."),
-      parameter("soil_loose", &P::soil_loose, "Whether soil may slide."),
-      parameter("avalanche_iterations", &P::avalanche_iterations, 0, highest_uint64, "1", "Of all steps."),
       parameter("plants", &P::plants, 0, 2147483647, "1", "Number of plants."),
       parameter("next_timeline_entry", &P::next_timeline_entry, 0, static_cast<double>(max_timeline_entries),
                 "1", "Entries of run.timeline that are done."));
@@ -42,6 +36,8 @@ static_assert(table_is_complete<CheckpointNumbers>());
 struct CheckpointHeader {
   Scenario start, scenario;
   CheckpointNumbers numbers;
+  ProcessFlags flags;
+  ProcessCounts counts;
   ClockOrigin clock;
   std::vector<Ramp> ramps;
   std::array<long long, material_count> initial{};

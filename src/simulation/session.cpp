@@ -6,6 +6,8 @@
 #include "src/core/files.hpp"
 #include "src/core/log.hpp"
 #include "src/scenario/band_terrain.hpp"
+#include "src/scenario/former_keys.hpp"
+#include "src/scenario/live_parameters.hpp"
 #include "src/scenario/wind_series_file.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/checkpoint.hpp"
@@ -23,7 +25,9 @@ void warn_of_settings_without_effect(const Scenario& scenario) {
 }  // namespace
 
 std::uint64_t scenario_hash(const Scenario& scenario) {
-  std::string text = dump_scenario(scenario);
+  std::string text;
+  for (const auto& [path, value] : changed_parameters(Scenario(), scenario))
+    text += path + "=" + value + "\n";
   if (scenario.wind_series) text += scenario.wind_series->text();
   return XXH3_64bits(text.data(), text.size());
 }
@@ -64,6 +68,11 @@ void Session::replace_simulation(std::unique_ptr<Simulation> simulation) {
 
 void Session::require_journal_of_this_scenario(const Journal& journal, const std::string& path) const {
   const Scenario& start = simulation_->start();
+  if (journal.version == 1)
+    return log_warning(path +
+                       ": is of an earlier version, which hashed scenarios otherwise: whether it is the "
+                       "journal of " +
+                       start.name + " is not known");
   if (journal.scenario_hash != scenario_hash(start))
     throw ConfigError(path + ": is the journal of a scenario other than " + start.name +
                       ", or of other settings");
@@ -154,6 +163,14 @@ CommandResult Session::apply(const Command& command, bool with_change) {
   journal_->write(ticks_, journalled);
   if (const std::string* loaded = loaded_file(journalled)) loaded_files_.insert(*loaded);
   return result;
+}
+
+CommandResult Session::replay(const Command& recorded) {
+  const auto* settings = std::get_if<command::SetParameters>(&recorded);
+  if (!settings) return apply(recorded);
+  return apply(command::SetParameters{
+      without_former_keys(settings->settings, simulation_->scenario().sand.model, "a recorded command"),
+      settings->ramp});
 }
 
 std::vector<std::string> Session::journal_files() const {

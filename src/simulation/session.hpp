@@ -11,7 +11,8 @@
 
 namespace desert_sim {
 
-/// Of the scenario as dumped; a journal names the scenario it belongs to by it.
+/// XXH3-64 of what the scenario sets otherwise than by default; a journal names the scenario it belongs to by
+/// it.
 std::uint64_t scenario_hash(const Scenario& scenario);
 
 class Session {
@@ -25,7 +26,8 @@ class Session {
   static std::unique_ptr<Session> from_checkpoint(const std::string& checkpoint,
                                                   const RasterLoader& load_raster, const std::string& backend,
                                                   int threads, std::size_t undo_memory = default_undo_memory);
-  /// Throws ConfigError if the journal was written for another scenario; `path` names it in the message.
+  /// Throws ConfigError if the journal was written for another scenario; `path` names it in the message. Of a
+  /// journal of version 1 that is not known, which is a warning.
   void require_journal_of_this_scenario(const Journal& journal, const std::string& path) const;
 
   Simulation& simulation() { return *simulation_; }
@@ -39,6 +41,8 @@ class Session {
   /// Applies a command and journals it. A refused command throws ConfigError and changes nothing.
   /// `with_change`: the result of an edit, undo or redo tells it cell by cell.
   CommandResult apply(const Command& command, bool with_change = false);
+  /// Likewise for a command of a journal, which an earlier version may have written.
+  CommandResult replay(const Command& recorded);
   /// Steps done in this session, through resets and loads; what the journal counts in.
   std::uint64_t ticks() const { return ticks_; }
 

@@ -17,14 +17,6 @@
 
 namespace desert_sim {
 
-/// Throws ConfigError if two models would move the sand, if a hop or a march could reach too far (they are
-/// counted in 16.16 fixed-point cells), or if a process would need too many sub-steps.
-void require_reach(const Scenario& scenario);
-
-/// Throws ConfigError, in the name of `what`, if the sea is higher than the scale can represent. One that is
-/// lower is no sea, whatever its level.
-void require_sea(const Scenario& scenario, const HeightScale& scale, const std::string& what);
-
 /// Most steps of a simulation: a double counts so far, which the simulated time is a multiple of.
 constexpr std::uint64_t max_simulation_steps = 1ULL << 53;
 
@@ -95,7 +87,7 @@ class Simulation {
   /// What avalanching has left too steep.
   Residual residual();
   double max_sand_slope_deg() const;
-  double mean_avalanche_iterations() const;
+  double mean_count(const std::string& counter) const;  ///< a step; see Process::counter
 
   void set_timing(bool on) { pipeline_.set_timing(on); }
   std::vector<ProcessTime> process_times() const { return pipeline_.times(); }

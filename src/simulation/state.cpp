@@ -6,7 +6,6 @@
 #include "kernels/field/statistics.hpp"
 #include "kernels/field/surface.hpp"
 #include "kernels/plants/density.hpp"
-#include "kernels/plants/life.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -38,11 +37,10 @@ void SimulationState::keep_time(const RunParameters& run, int parts) {
   }
   if (run.time_step == scenario.run.time_step) return;
   const std::uint64_t done = steps - clock_origin.step;
-  if (done > 0) {  // a second that has begun since the last step needs a shadow of its own
+  if (done > 0) {  // a second that has begun since the last step needs layers of its own
     const double last = clock_origin.time + static_cast<double>(done - 1) * scenario.run.time_step;
-    const bool same_second =
-        std::floor(now / wind_shadow::held_for) == std::floor(last / wind_shadow::held_for);
-    shelter_known = shelter_known && same_second;
+    const bool same_second = std::floor(now / held_for) == std::floor(last / held_for);
+    held_layers_known = held_layers_known && same_second;
   }
   clock_origin.tick += done * static_cast<std::uint64_t>(parts);
   clock_origin.step = steps;
@@ -54,6 +52,12 @@ std::vector<Layer> SimulationState::layers_in_use() const {
   for (const LayerInfo& row : layer_table)
     if (terrain.has(row.layer)) layers.push_back(row.layer);
   return layers;
+}
+
+bool SimulationState::has_held_layers() const {
+  return std::any_of(layer_table.begin(), layer_table.end(), [this](const LayerInfo& row) {
+    return row.lifetime == Lifetime::held && terrain.has(row.layer);
+  });
 }
 
 void SimulationState::set_wind_regime(WindRegime regime) {
@@ -144,9 +148,9 @@ double MaterialBalance::relative_residual() const {
 }
 
 std::vector<PlantCount> SimulationState::plant_counts() const {
-  std::vector<PlantCount> counts;
-  if (!plants) return counts;
-  for (const Species& species : scenario.species) counts.push_back({species.name});
+  std::vector<PlantCount> all;
+  if (!plants) return all;
+  for (const Species& species : scenario.species) all.push_back({species.name});
   const auto count = static_cast<std::size_t>(plants.count),
              capacity = static_cast<std::size_t>(plants.capacity);
   const auto column = [&](plants::Column c) {
@@ -157,11 +161,11 @@ std::vector<PlantCount> SimulationState::plant_counts() const {
   const std::vector<std::uint32_t> kinds = column(plants::Column::species),
                                    radii = column(plants::Column::radius);
   for (std::size_t n = 0; n < count; ++n) {
-    PlantCount& of_kind = counts[kinds[n]];
+    PlantCount& of_kind = all[kinds[n]];
     ++of_kind.plants;
     of_kind.mature += plants::is_mature(scenario.species[kinds[n]].traits, float_from_bits(radii[n])) ? 1 : 0;
   }
-  return counts;
+  return all;
 }
 
 }  // namespace desert_sim

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,11 @@ struct PlantCount {
   int plants = 0, mature = 0;
 };
 
+/// What processes keep from step to step besides layers, by name (Process::flags, Process::counter): flags
+/// that are set, and what was counted in all steps, but for what the device still counts.
+using ProcessFlags = std::set<std::string>;
+using ProcessCounts = std::map<std::string, std::uint64_t>;
+
 /// Members are public: the parts of the simulation (pipeline, commands, views, checkpoint) all work on it.
 /// Only the thread that owns the simulation may use it.
 struct SimulationState {
@@ -46,13 +53,13 @@ struct SimulationState {
   SimulationState& operator=(const SimulationState&) = delete;
 
   Exec& exec() const { return terrain.exec(); }
-  /// Whether the layer wind_shadow is that of the present second; see kernels/wind/wind_shadow.hpp.
-  bool shelter_known = false;
+  /// Whether the layers that are held are those of the present second.
+  bool held_layers_known = false;
+  bool has_held_layers() const;
   /// Whether a layer is in use and part of the state; what is held is, where steps to come need it.
   bool is_part(Layer layer) const {
     const Lifetime lifetime = info(layer).lifetime;
-    const bool held =
-        lifetime == Lifetime::held && shelter_known && scenario.run.time_step < wind_shadow::held_for;
+    const bool held = lifetime == Lifetime::held && held_layers_known && scenario.run.time_step < held_for;
     return terrain.has(layer) && (lifetime == Lifetime::persistent || held);
   }
 
@@ -108,12 +115,11 @@ struct SimulationState {
   std::optional<Gusts> gusts;  ///< of a member of an ensemble; a checkpoint does not have them
   std::uint64_t steps = 0;
   ClockOrigin clock_origin;
-  Quanta wind_reference = 0;               ///< 1st percentile of the solid surface at load
-  bool bedrock_loose = false;              ///< bedrock was edited and has not come to rest since
-  bool soil_loose = false;                 ///< soil, or bedrock below it, was edited and has not come to rest
-  std::size_t next_timeline_entry = 0;     ///< of scenario.timeline
-  std::vector<Ramp> ramps;                 ///< parameters that are changing
-  std::uint64_t avalanche_iterations = 0;  ///< of all steps, but those that the device still counts
+  Quanta wind_reference = 0;            ///< 1st percentile of the solid surface at load
+  std::size_t next_timeline_entry = 0;  ///< of scenario.timeline
+  std::vector<Ramp> ramps;              ///< parameters that are changing
+  ProcessFlags flags;
+  ProcessCounts counts;
   std::array<long long, material_count> initial{};  ///< material at the start [quanta]
   Buffer<long long> ledger_words;                   ///< LedgerView's accounts, on the device
 

@@ -53,7 +53,7 @@ int default_steps(int size, bool gpu) {
 
 /// Bandwidth of a large copy, read and written [bytes/s].
 double measure_copy_bandwidth(Exec& exec) {
-  const std::size_t most = std::string(exec.backend()) == "cpu" ? std::size_t{1} << 28 : std::size_t{1} << 30;
+  const std::size_t most = exec.kind() == Device::cpu ? std::size_t{1} << 28 : std::size_t{1} << 30;
   const std::size_t bytes = std::min(most, exec.memory_available() / 8);
   Buffer<char> from(exec, bytes), to(exec, bytes);
   from.set_zero();
@@ -158,7 +158,7 @@ BenchReport bench(const Options& o) {
   if (scene == "edited") session->apply(bench_edit(s.scenario().grid));
   r.block_times_ms = time_blocks(*session, count);
   r.residual = s.residual();
-  r.fine_sweeps = s.mean_avalanche_iterations();
+  r.fine_sweeps = s.mean_count(avalanche_iterations);
   r.memory = s.memory();
   r.processes = time_processes(*session, std::max(3, r.steps / 20));
   r.sand = s.balance()[static_cast<std::size_t>(Material::sand)];

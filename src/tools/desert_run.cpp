@@ -9,6 +9,7 @@
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/scenario/former_keys.hpp"
 #include "src/scenario/scenario_file.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/session.hpp"
@@ -76,6 +77,9 @@ const char usage[] =
     "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be omitted), with what "
     "--set\n"
     "                        sets of the parameters that can change while a simulation runs\n"
+    "  --migrate FILE        write sand.model in the place of slab_model.kind, particle.kind and "
+    "saltation.model in a\n"
+    "                        scenario file of an earlier version; comments stay\n"
     "  --replay JOURNAL      apply the commands of a journal; without --steps, run as many steps as it has\n"
     "  --describe            print all parameters as markdown\n"
     "  --describe-view       print the keys of --view as markdown\n"
@@ -146,6 +150,12 @@ Settings settings_of(const Options& o) {
   Settings settings = o.values("set");
   if (o.has("seed")) settings.push_back("seed=" + o.text("seed", ""));
   return settings;
+}
+
+void migrate(const std::string& path) {
+  const std::string before = read_file(path), now = migrated(before, path);
+  if (now != before) write_file(path, now);
+  std::cout << path << (now == before ? ": has no former keys\n" : ": is rewritten\n");
 }
 
 /// A session at the start of the scenario.
@@ -240,7 +250,7 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
   std::size_t next = 0;
   const auto replay = [&] {
     for (; next < journal.entries.size() && journal.entries[next].tick == session.ticks(); ++next)
-      session.apply(journal.entries[next].command);
+      session.replay(journal.entries[next].command);
   };
   Progress progress(session.ticks(), last, plan.options.has("quiet"));
   Clock::duration stepping{};
@@ -280,10 +290,10 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
 
 int run_program(int argc, char** argv) {
   RunPlan plan = plan_of(Options(
-      argc, argv,
-      {"steps", "duration",      "snapshots",  "backend",          "threads", "set",    "seed", "out",
-       "every", "plot",          "checkpoint", "checkpoint-every", "resume",  "replay", "film", "film-every",
-       "view",  "cross-section", "probe",      "probe-every",      "format",  "detail"},
+      argc, argv, {"steps",  "duration",    "snapshots", "backend",    "threads",    "set",
+                   "seed",   "out",         "every",     "plot",       "checkpoint", "checkpoint-every",
+                   "resume", "replay",      "film",      "film-every", "view",       "cross-section",
+                   "probe",  "probe-every", "format",    "detail",     "migrate"},
       {"all-raster-formats", "describe", "describe-processes", "describe-view", "pipeline", "quiet",
        "help"}));
   const Options& o = plan.options;
@@ -291,6 +301,7 @@ int run_program(int argc, char** argv) {
   if (o.has("describe")) return std::cout << describe_parameters(), 0;
   if (o.has("describe-view")) return std::cout << describe_view(), 0;
   if (o.has("describe-processes")) return std::cout << describe_processes(process_table()), 0;
+  if (o.has("migrate")) return migrate(o.text("migrate", "")), 0;
   const int threads = static_cast<int>(o.number("threads", 0, 1, 4096));
   if (threads > 0) omp_set_num_threads(threads);
 

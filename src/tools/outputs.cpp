@@ -135,7 +135,8 @@ std::string summary(Simulation& s, const RunReport& report) {
       << ",\n  \"device\": " << json_string(report.device) << ",\n  \"threads\": " << report.threads
       << ",\n  \"seed\": " << s.scenario().seed;
   const auto& slabs = s.scenario().process_sections.get<SlabModelParameters>("slab_model");
-  if (slabs.kind != SlabKind::none)
+  const SandModel model = s.scenario().sand.model;
+  if (!is_saltation(model) && model != SandModel::wang)
     out << ",\n  \"slab_height_m\": " << json_number(static_cast<double>(slabs.slab_height));
   out << ",\n  \"ms_per_step\": {\"total\": "
       << json_number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
@@ -172,7 +173,7 @@ std::string summary(Simulation& s, const RunReport& report) {
   char hash[20];
   std::snprintf(hash, sizeof hash, "%016" PRIx64, s.state_hash());
   out << "},\n  \"max_sand_slope_deg\": " << json_number(s.max_sand_slope_deg())
-      << ",\n  \"avalanche_iterations_mean\": " << json_number(s.mean_avalanche_iterations())
+      << ",\n  \"avalanche_iterations_mean\": " << json_number(s.mean_count(avalanche_iterations))
       << ",\n  \"avalanche_residual\": {\"share_over_1e-3\": " << json_number(r.share_over_1e3)
       << ", \"share_over_1e-2\": " << json_number(r.share_over_1e2)
       << ", \"mean_excess\": " << json_number(r.mean_excess)

@@ -32,7 +32,8 @@ def heap(cells, cell, height, at, wind, influx):
 grid: {{width: {cells[0]}, height: {cells[1]}, cell_size: {cell}, boundary: open}}
 terrain: [cone: {{layer: sand, shape: gaussian, x: {at[0]}, y: {at[1]}, radius: {2 * height}, height: {height}}}]
 wind: {wind}
-saltation: {{model: continuum, influx: {influx * saturated_flux(WIND):.4g}}}
+sand: {{model: continuum}}
+saltation: {{influx: {influx * saturated_flux(WIND):.4g}}}
 run: {{time_step: 1 h}}
 """
 

@@ -40,7 +40,8 @@ grid: {{width: {cells[0]}, height: {cells[1]}, cell_size: {options.cell}, bounda
 terrain: [cone: {{layer: sand, shape: gaussian, x: {6 * height + 20}, y: {cells[1] * options.cell / 2},
                  radius: {2 * height}, height: {height}}}]
 wind: {{speed: {options.wind}}}
-saltation: {{model: continuum, influx: {options.influx * saturated_flux(options.wind):.4g}}}
+sand: {{model: continuum}}
+saltation: {{influx: {options.influx * saturated_flux(options.wind):.4g}}}
 run: {{time_step: 1 h, duration: {options.days} d}}
 """
 

@@ -29,8 +29,8 @@ wind_shadow: {start_deg: 8, full_deg: 13}
 saltation: {lift: 0.6, bare_depth: 0.1}
 reptation: {strength: 0.28, smoothing_strength: 0.15}
 """  # as the scenario barchan
-CONTINUUM = "wind: {speed: 9}\nsaltation: {model: continuum}\n"
-SLABS = "wind: {speed: 5}\nslab_model: {kind: %s}\n"
+CONTINUUM = "wind: {speed: 9}\nsand: {model: continuum}\n"
+SLABS = "wind: {speed: 5}\nsand: {model: %s}\n"
 # Physics of a model, its time step [s], and the steps of a run for each metre of the heap: larger dunes are slower.
 MODELS = {"hops": (HOPS, 1, 60), "continuum": (CONTINUUM, 3600, 250), "werner": (SLABS % "werner", 1, 60),
           "momiji": (SLABS % "momiji", 1, 60), "bishop": (SLABS % "bishop", 1, 60)}

@@ -50,7 +50,7 @@ const Model models[] = {
     {"wang", "ripples", {}, nullptr},
     {"desertscape_2019",
      "barchan",
-     {"saltation.model=desertscape_2019", "saltation.lift=0.1", "desertscape_2019.slab=0.1"},
+     {"sand.model=desertscape_2019", "saltation.lift=0.1", "desertscape_2019.slab=0.1"},
      nullptr},
 };
 

@@ -90,13 +90,13 @@ DUNE = """
 grid: {width: 128, height: 64, cell_size: 1}
 terrain: [cone: {layer: sand, shape: gaussian, x: 30, y: 32, radius: 8, height: 4}]
 wind: {speed: 9}
-saltation: {model: continuum}
+sand: {model: continuum}
 """
 SHEET = """
 grid: {width: 48, height: 24, cell_size: 1, boundary: open}
 terrain: [uniform: {layer: bedrock, value: 1}]
 wind: {speed: 9}
-saltation: {model: continuum, influx: 5.0e-6}
+sand: {model: continuum}\nsaltation: {influx: 5.0e-6}
 shear_stress: {in_phase: 0, in_quadrature: 0}
 """
 LONG_WORLDS = [

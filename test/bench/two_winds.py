@@ -44,7 +44,7 @@ wind:
   segments:
     - {{direction_deg: {first}, speed: 9, duration: 2 d}}
     - {{direction_deg: {second}, speed: 9, duration: 1 d}}
-saltation: {{model: continuum}}
+sand: {{model: continuum}}
 seed: {seed}
 run: {{time_step: 1 h, steps: {steps}}}
 """
@@ -57,7 +57,7 @@ wind:
   segments:
     - {{direction_deg: {first}, speed: 5, duration: 4}}
     - {{direction_deg: {second}, speed: 5, duration: 2}}
-slab_model: {{kind: {model}}}
+sand: {{model: {model}}}
 seed: {seed}
 run: {{steps: {steps}}}
 """

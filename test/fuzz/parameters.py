@@ -45,18 +45,18 @@ MODELS = {
             "echo_dunes: {enabled: true}\nabrasion: {rate: 0.01}\n",
     "smoothing": ground(boundary="periodic") + "wind: {speed: 8, direction_deg: 100}\n"
                  "reptation: {method: smoothing, strength: 0.1}\navalanching: {scheme: sweeps}\n",
-    "continuum": ground(0.5) + "wind: {speed: 9, direction_deg: -30}\nsaltation: {model: continuum, influx: 1.0e-4}\n"
+    "continuum": ground(0.5) + "wind: {speed: 9, direction_deg: -30}\nsand: {model: continuum}\nsaltation: {influx: 1.0e-4}\n"
                  "run: {time_step: 60}\n",
     "desertscape": ground() + "wind: {speed: 6, direction_deg: 20}\n"
-                   "saltation: {model: desertscape_2019, lift: 0.1, influx: 0.1}\n",
-    "werner": ground() + "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.3}\nslab_model: {kind: werner}\n",
-    "momiji": ground() + "wind: {speed: 5, direction_deg: 70}\nsaltation: {influx: 0.3}\nslab_model: {kind: momiji}\n",
-    "bishop": ground(boundary="periodic") + "wind: {speed: 5, direction_deg: 20}\nslab_model: {kind: bishop}\n",
+                   "sand: {model: desertscape_2019}\nsaltation: {lift: 0.1, influx: 0.1}\n",
+    "werner": ground() + "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.3}\nsand: {model: werner}\n",
+    "momiji": ground() + "wind: {speed: 5, direction_deg: 70}\nsaltation: {influx: 0.3}\nsand: {model: momiji}\n",
+    "bishop": ground(boundary="periodic") + "wind: {speed: 5, direction_deg: 20}\nsand: {model: bishop}\n",
     "nield_baas": ground() + "wind: {speed: 5, direction_deg: 20}\nslab_plants: {growth_time: 5}\n"
-                  "slab_model: {kind: nield_baas, slab_height: 0.1, forced_erosion: true}\n",
+                  "sand: {model: nield_baas}\nslab_model: {slab_height: 0.1, forced_erosion: true}\n",
     "snow": ground(0.25, "periodic") + "wind: {speed: 5, direction_deg: 20}\nrun: {time_step: 3600}\n"
-            "slab_model: {kind: snow, slab_height: 0.02, poll_time: 3600}\nslab_snow: {settling_time: 3600}\n",
-    "wang": ground(0.01) + "wind: {speed: 12, direction_deg: 20}\nsaltation: {influx: 2.0e-6}\nparticle: {kind: wang}\n",
+            "sand: {model: snow}\nslab_model: {slab_height: 0.02, poll_time: 3600}\nslab_snow: {settling_time: 3600}\n",
+    "wang": ground(0.01) + "wind: {speed: 12, direction_deg: 20}\nsaltation: {influx: 2.0e-6}\nsand: {model: wang}\n",
     "water": without_vegetation(ground()) + "wind: {speed: 8, direction_deg: 20}\nrain: {rate: 1.0e-4}\nhydraulic_erosion: {enabled: true}\n"
              "moisture: {enabled: true}\nsoil: {enabled: true}\nvegetation: {enabled: true}\n"
              "species: [{name: bush}]\n"
@@ -155,7 +155,7 @@ class Fuzzer:
                 # A session of the same scenario that loads the checkpoint at its step 10.
                 journal = os.path.join(folder, "journal")
                 with open(journal, "w", encoding="utf-8") as file:
-                    file.write("{journal: 1, scenario_hash: %s, backend: cpu}\n" % summary["scenario_hash"])
+                    file.write("{journal: 2, scenario_hash: %s, backend: cpu}\n" % summary["scenario_hash"])
                     file.write("{tick: 10, command: load_checkpoint, path: %s, hash: 0}\n" % json.dumps(half))
                 replayed = self.run(self.words(model, settings, ["--threads", "2", "--replay", journal, "--steps",
                                                                  str(10 + self.options.steps - int(middle)), "--out", out]))

@@ -11,7 +11,7 @@ Mutation = collections.namedtuple("Mutation", "name file before after law killer
 MUTATIONS = [Mutation(*row) for row in (
     # ---- time steps
     ("shelter_forgotten", "src/simulation/checkpoint.cpp",
-     "state.shelter_known = true;", "state.shelter_known = false;",
+     "state.held_layers_known = true;", "state.held_layers_known = false;",
      "the wind's shadow of the present second is part of the state", "core_property *Checkpoint.ContinuesToTheBit*"),
     ("shelter_of_every_step", "src/simulation/pipeline/process.hpp",
      "std::floor(time() / second) > std::floor(time_of(tick() - 1) / second);", "second > 0;",

@@ -74,7 +74,7 @@ std::vector<Case> process_cases(bool transforms) {
                         fft + "}\n");
   const std::string real = std::string("wind: {speed: 11, direction_deg: 127, ") + fft +
                            "}\nrun: {time_step: 900}\n"
-                           "saltation: {model: continuum, influx: 1.0e-5, flux: true}\n" +
+                           "sand: {model: continuum}\nsaltation: {influx: 1.0e-5, flux: true}\n" +
                            (transforms ? "" : "shear_stress: {in_phase: 0, in_quadrature: 0}\n");
   add("continuum", terrain + real + "looseness: {enabled: true}\n");
   add("continuum over all",
@@ -86,7 +86,7 @@ std::vector<Case> process_cases(bool transforms) {
           real +
           "abrasion: {rate: 1.0e-4, cover: 0.5}\necho_dunes: {enabled: true}\n"
           "reptation: {method: smoothing, strength: 1.0e-4}\n");
-  add("desertscape_2019", terrain + wind + "saltation: {model: desertscape_2019}\n");
+  add("desertscape_2019", terrain + wind + "sand: {model: desertscape_2019}\n");
   add("desertscape_2019 over all",
       terrain + obstacles +
           "  - noise: {layer: soil, low: 0, high: 3, scale: 8, threshold: 0.5, seed: 3}\n"
@@ -95,32 +95,32 @@ std::vector<Case> process_cases(bool transforms) {
           "  - noise: {layer: water, low: 0, high: 1, scale: 10, threshold: 0.7, seed: 7}\n"
           "  - uniform: {layer: airborne_sand, value: 0.3}\n" +
           wind +
-          "saltation: {model: desertscape_2019, lift: 0.4, influx: 0.5, flux: true}\n"
+          "sand: {model: desertscape_2019}\nsaltation: {lift: 0.4, influx: 0.5, flux: true}\n"
           "abrasion: {rate: 0.01, cover: 0.5}\necho_dunes: {enabled: true}\n");
   const std::string blown = "wind: {speed: 5, direction_deg: 27}\n";
-  add("werner", terrain + blown + "slab_model: {kind: werner}\n");
+  add("werner", terrain + blown + "sand: {model: werner}\n");
   add("momiji over rock",
       terrain + obstacles + "  - noise: {layer: soil, low: 0, high: 3, scale: 8, threshold: 0.5, seed: 3}\n" +
           blown +
           "saltation: {influx: 0.5}\n"
-          "slab_model: {kind: momiji, polling: non_repeated, poll_time: 0.7}\n");
-  add("bishop", terrain + blown + "slab_model: {kind: bishop, hop_time: 0.6}\n");
-  add("wang",
-      terrain + obstacles +
-          "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.5, seed: 5}\n" +
-          "wind: {speed: 30, direction_deg: 27}\nsaltation: {influx: 1.0e-5}\nparticle: {kind: wang}\n");
-  add("werner, forced erosion",
-      terrain + blown +
-          "saltation: {influx: 0.5}\n"
-          "slab_model: {kind: werner, polling: non_repeated, poll_time: 0.7, forced_erosion: true}\n");
+          "sand: {model: momiji}\nslab_model: {polling: non_repeated, poll_time: 0.7}\n");
+  add("bishop", terrain + blown + "sand: {model: bishop}\nslab_model: {hop_time: 0.6}\n");
+  add("wang", terrain + obstacles +
+                  "  - noise: {layer: vegetation, low: 0, high: 1, scale: 10, threshold: 0.5, seed: 5}\n" +
+                  "wind: {speed: 30, direction_deg: 27}\nsaltation: {influx: 1.0e-5}\nsand: {model: wang}\n");
+  add("werner, forced erosion", terrain + blown +
+                                    "saltation: {influx: 0.5}\n"
+                                    "sand: {model: werner}\nslab_model: {polling: non_repeated, poll_time: "
+                                    "0.7, forced_erosion: true}\n");
   add("nield_baas",
       terrain +
           "  - noise: {layer: grass, low: 0, high: 1, scale: 8, seed: 3}\n"
           "  - noise: {layer: mesquite, low: -1, high: 1, scale: 6, seed: 4}\n"
           "  - noise: {layer: shrub, low: -0.5, high: 1, scale: 9, seed: 5}\n" +
-          blown + "slab_model: {kind: nield_baas, slab_height: 0.1}\nslab_plants: {growth_time: 3.5}\n");
+          blown +
+          "sand: {model: nield_baas}\nslab_model: {slab_height: 0.1}\nslab_plants: {growth_time: 3.5}\n");
   add("snow", terrain + blown +
-                  "slab_model: {kind: snow, poll_time: 43200}\nrun: {time_step: 43200}\n"
+                  "sand: {model: snow}\nslab_model: {poll_time: 43200}\nrun: {time_step: 43200}\n"
                   "slab_snow: {temperature: -8, settling_time: 86400}\n");
   const std::string wet =
       "rain: {rate: 2.0e-4, share_low: 0.3, share_high: 0.7, height: 8, scale: 12, frequency: 0.1}\n"

@@ -8,6 +8,7 @@
 #include "src/ros/services/requests.hpp"
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/range_checks.hpp"
+#include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
 
@@ -95,7 +96,7 @@ ForecastOptions forecast_options(const ForecastTerrainGoal& goal, const LivePara
   const LiveChange change = reconfigure_change(goal.parameters, present);
   options.step_rate = change.step_rate == present.step_rate ? step_rate : change.step_rate;
   if (!change.settings.empty()) {
-    require_reach(with_live_settings(present.scenario, change.settings));
+    process_table().require_runnable(with_live_settings(present.scenario, change.settings));
     options.commands.push_back(command::SetParameters{change.settings});
   }
   add_wind(goal, options.commands);

@@ -16,13 +16,13 @@ namespace desert_sim {
 
 namespace {
 
-constexpr const char* topic = "/clock";
+constexpr const char* clock_topic = "/clock";
 
 /// The name of another node that publishes /clock; empty if there is none.
 std::string other_publisher() {
   std::vector<std::string> ours;
   ros::this_node::getAdvertisedTopics(ours);
-  if (std::find(ours.begin(), ours.end(), topic) != ours.end()) return "another part of this process";
+  if (std::find(ours.begin(), ours.end(), clock_topic) != ours.end()) return "another part of this process";
   XmlRpc::XmlRpcValue request, response, state;
   request[0] = ros::this_node::getName();
   if (!ros::master::execute("getSystemState", request, response, state, false))
@@ -30,7 +30,7 @@ std::string other_publisher() {
   XmlRpc::XmlRpcValue& publishers = state[0];
   for (int n = 0; n < publishers.size(); ++n) {
     XmlRpc::XmlRpcValue &name = publishers[n][0], &nodes = publishers[n][1];
-    if (static_cast<std::string>(name) != topic) continue;
+    if (static_cast<std::string>(name) != clock_topic) continue;
     for (int k = 0; k < nodes.size(); ++k)
       if (static_cast<std::string>(nodes[k]) != ros::this_node::getName()) return nodes[k];
   }
@@ -53,7 +53,7 @@ ClockPublisher::ClockPublisher() {
         "publish_clock: " + other +
         " already publishes /clock, and with two publishers the time would jump back and forth; stop "
         "that node, or set publish_clock to false and use_sim_time to true to follow its clock");
-  publisher_ = ros::NodeHandle().advertise<rosgraph_msgs::Clock>(topic, 100, true);
+  publisher_ = ros::NodeHandle().advertise<rosgraph_msgs::Clock>(clock_topic, 100, true);
 }
 
 void ClockPublisher::publish(double seconds) const {

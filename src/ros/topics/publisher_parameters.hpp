@@ -52,7 +52,8 @@ constexpr auto parameter_table(const PublisherParameters*) {
       parameter("keyframe_rate", &P::keyframe_rate, 0, 1000, "Hz", "~elevation."),
       parameter("update_rate", &P::update_rate, 0, 1000, "Hz", "~elevation_updates."),
       parameter("update_threshold", &P::update_threshold, 0, 1000, "m",
-                "Change of a cell, since what subscribers hold, that is sent; so far one may be off there."),
+                "A cell whose value differs by more than this from what subscribers hold is sent, so that "
+                "theirs is never further off."),
       parameter("update_tile", &P::update_tile, 1, 65536, "cells",
                 "Largest width of a rectangle of cells that is sent as one."),
       parameter("layer_keyframe_rate", &P::layer_keyframe_rate, 0, 1000, "Hz",

@@ -5,10 +5,11 @@
 #include "src/core/error.hpp"
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/range_checks.hpp"
+#include "src/scenario/terrain_builder.hpp"
 #include "src/simulation/commands/plant_edit.hpp"
 #include "src/simulation/commands/terrain_edit.hpp"
 #include "src/simulation/pipeline/memory.hpp"
-#include "src/simulation/simulation.hpp"
+#include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
 
@@ -17,7 +18,7 @@ CommandResult Commands::apply(const command::SetParameters& command) {
     throw ConfigError("set_parameters: ramp: = " + std::to_string(command.ramp) + " is not in [0, 1e+12] s");
   const Scenario present = state_.present_scenario(), wanted = with_live_settings(present, command.settings);
   // Also what comes at the end of a ramp is refused now, not in the middle of the run:
-  require_reach(wanted);
+  process_table().require_runnable(wanted);
   require_sea(wanted, state_.terrain.scale(), "set_parameters");
   require_more_memory(state_, wanted);
   std::vector<std::string> settings = command.settings;
@@ -36,12 +37,12 @@ void Commands::set_parameters(const std::vector<std::string>& settings) {
   if (settings.empty()) return;
   const Scenario before = state_.scenario, present = state_.present_scenario(),
                  changed = with_live_settings(present, settings);
-  require_reach(changed);
+  process_table().require_runnable(changed);
   require_sea(changed, state_.terrain.scale(), "set_parameters");
   require_more_memory(state_, changed);
   state_.exec().synchronise();  // memory that steps in flight work with is given back
   const ClockOrigin clock_before = state_.clock_origin;
-  const bool shelter_was_known = state_.shelter_known;
+  const bool held_were_known = state_.held_layers_known;
   state_.keep_time(changed.run, pipeline_.parts());
   state_.scenario = changed;
   try {
@@ -49,7 +50,7 @@ void Commands::set_parameters(const std::vector<std::string>& settings) {
   } catch (...) {
     state_.scenario = before;
     state_.clock_origin = clock_before;
-    state_.shelter_known = shelter_was_known;
+    state_.held_layers_known = held_were_known;
     pipeline_.prepare();
     throw;
   }
@@ -133,14 +134,12 @@ CommandResult Commands::apply(const command::EditTerrain& command, bool with_cha
   check_stroke_name(command.stroke, "edit_terrain");
   pipeline_.ground_changed();
   TerrainEdit edit(command, state_.terrain, state_.scenario.grid, state_.ledger());
-  const bool bedrock = edit.layer() == Layer::bedrock, soil = edit.layer() == Layer::soil;
   const bool had_obstacles = state_.terrain.has(Layer::obstacle);
-  const bool bedrock_was_loose = state_.bedrock_loose, soil_was_loose = state_.soil_loose;
+  const ProcessFlags flags = state_.flags;
   history_.begin_ground();
-  state_.bedrock_loose = bedrock_was_loose || bedrock;
-  state_.soil_loose = soil_was_loose || soil || (bedrock && state_.terrain.has(Layer::soil));
+  pipeline_.edited(edit.layer());
   try {
-    pipeline_.adapt();  // avalanches of soil and bedrock need memory
+    pipeline_.adapt();  // ground that is loose needs memory
     // Looseness comes and goes with the sand that moves, so that there is nothing to give back.
     const bool undoable = edit.layer() != Layer::looseness;
     const LayerEdit change = undoable && history_.remembers() ? edit.change() : LayerEdit{};
@@ -150,8 +149,7 @@ CommandResult Commands::apply(const command::EditTerrain& command, bool with_cha
       history_.paint(command.stroke, change, !had_obstacles && state_.terrain.has(Layer::obstacle));
     return result;
   } catch (...) {
-    state_.bedrock_loose = bedrock_was_loose;
-    state_.soil_loose = soil_was_loose;
+    state_.flags = flags;
     throw;
   }
 }

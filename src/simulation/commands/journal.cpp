@@ -17,7 +17,7 @@ namespace desert_sim {
 
 namespace {
 
-constexpr int journal_version = 1;
+constexpr int journal_version = 2;
 
 /// One line of YAML in flow style.
 class Line {
@@ -111,9 +111,11 @@ Journal read_journal(const std::string& path) {
       return value;
     };
     if (n == 1) {
-      if (number("journal") != journal_version)
-        throw ConfigError(source + ": is a journal of version " + std::to_string(number("journal")) +
-                          "; this program reads version 1");
+      const std::uint64_t version = number("journal");
+      if (version < 1 || version > journal_version)
+        throw ConfigError(source + ": is a journal of version " + std::to_string(version) + " (allowed: 1, " +
+                          std::to_string(journal_version) + ")");
+      journal.version = static_cast<int>(version);
       journal.scenario_hash = number("scenario_hash");
       journal.backend = node["backend"] ? node["backend"].Scalar() : "";
       if (node["undo_memory"])  // journals of version 0.1 have none

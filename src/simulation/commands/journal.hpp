@@ -35,6 +35,7 @@ struct Journal {
     std::uint64_t tick;
     Command command;
   };
+  int version = 2;
   std::uint64_t scenario_hash = 0;
   std::string backend;
   std::size_t undo_memory = default_undo_memory;  ///< of the session [bytes]; on it depends what undo finds

@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "kernels/backend/fft.hpp"
-#include "kernels/wind/wind.hpp"
 #include "src/core/error.hpp"
 #include "src/simulation/simulation.hpp"
 
@@ -32,7 +31,7 @@ class PlannedFft final : public Fft {
 /// Hands out addresses that nothing may touch.
 class PlanningExec final : public Exec {
  public:
-  const char* backend() const override { return "none"; }
+  Device kind() const override { return Device::none; }
   std::string device() const override { return "none"; }
   std::size_t memory_available() const override { return 0; }
   void* allocate_host(std::size_t) override { throw_error(); }
@@ -97,18 +96,10 @@ void check_available(const Scenario& scenario, double needed, std::size_t availa
 
 void require_cells(const Scenario& scenario) {
   const Grid grid = scenario.make_grid();
-  const std::string shape = grid_text(scenario);
   const long long cells = static_cast<long long>(grid.width) * grid.height;
   if (cells > max_grid_cells)
-    throw ConfigError(shape + "has " + std::to_string(cells) +
+    throw ConfigError(grid_text(scenario) + "has " + std::to_string(cells) +
                       ", which cannot be indexed (allowed: at most " + std::to_string(max_grid_cells) + ")");
-  if (!scenario.wind.warping && !scenario.wind.projection) return;
-  const wind::CoarseGrid coarse = wind::coarse_grid(grid, scenario.wind);
-  const long long values = static_cast<long long>(coarse.width) * coarse.height;
-  if (values > max_grid_cells)
-    throw ConfigError(shape + "would need a transform of " + std::to_string(values) +
-                      " values for its wind, which cannot be indexed (allowed: at most " +
-                      std::to_string(max_grid_cells) + "; wind.coarsening makes it smaller)");
 }
 
 }  // namespace
@@ -140,9 +131,9 @@ void require_memory(const Exec& exec, const Scenario& scenario, double host_byte
 
 void require_bytes(const Exec& exec, const Scenario& scenario, double on_device, double on_host,
                    const std::string& what) {
-  const std::string backend = exec.backend();
-  check_available(scenario, on_device, exec.memory_available(), "on the " + backend + " backend " + what);
-  const double besides = backend == "cpu" ? on_device : 0.0;
+  check_available(scenario, on_device, exec.memory_available(),
+                  std::string("on the ") + exec.backend() + " backend " + what);
+  const double besides = exec.kind() == Device::cpu ? on_device : 0.0;
   check_available(scenario, on_host + besides, host_memory_available(), "on the host " + what);
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "kernels/avalanching/avalanching.hpp"
 #include "kernels/backend/exec.hpp"
 #include "kernels/field/statistics.hpp"
 #include "src/core/error.hpp"
@@ -19,14 +18,6 @@ bool Process::may_write(Layer layer) const {
   return has(writes) || has(writes_if_in_use);
 }
 
-bool ProcessTable::is_active(const Process& process, const Scenario& scenario) const {
-  return process.active(scenario) &&
-         std::none_of(processes.begin(), processes.end(), [&](const Process& other) {
-           return std::count(other.replaces.begin(), other.replaces.end(), process.name) > 0 &&
-                  other.active(scenario);
-         });
-}
-
 Pipeline::Pipeline(SimulationState& state, ProcessTable table)
     : state_(state), table_(std::move(table)), fields_(state.exec(), state.terrain.grid()) {
   prepare();
@@ -36,9 +27,14 @@ Pipeline::Pipeline(SimulationState& state, ProcessTable table)
 
 void Pipeline::prepare() {
   recordings_.forget();
-  state_.avalanche_iterations = avalanche_iterations();
+  for (const Stage& stage : stages_)
+    if (const std::string& counter = stage.process->counter; !counter.empty())
+      state_.counts[counter] = count(counter);
   allocate_layers();
-  fields_.prepare(state_.exec(), state_.terrain.grid(), state_.scenario);
+  std::set<SharedField> needed;
+  for (const Process& process : table_.processes)
+    if (table_.is_active(process, state_.scenario)) needed.insert(process.needs.begin(), process.needs.end());
+  fields_.prepare(state_.exec(), state_.terrain.grid(), needed);
   std::vector<Stage> before = std::move(stages_);
   stages_.clear();
   unfused_launches_.clear();
@@ -79,11 +75,11 @@ void Pipeline::allocate_layers() {
     });
     if (!used) state_.terrain.set_allocated(layer, false);
   }
-  state_.shelter_known = state_.shelter_known && state_.terrain.has(Layer::wind_shadow);
+  state_.held_layers_known = state_.held_layers_known && state_.has_held_layers();
 }
 
 void Pipeline::bring_into_use(const Process& process, Layer layer) {
-  const bool planned = std::string(state_.exec().backend()) == "none";  // memory that nothing may touch
+  const bool planned = state_.exec().kind() == Device::none;  // memory that nothing may touch
   const bool fresh = !state_.terrain.has(layer);
   state_.terrain.allocate(layer);
   if (fresh && process.begin && !planned) process.begin(state_, layer);
@@ -110,14 +106,14 @@ void Pipeline::make_launches() {
         launch.measures_heights = true;
         break;
       }
-  avalanching_measures_heights_ = false;
+  leaves_heights_ = false;
   for (const Stage& stage : stages_) {
-    if (stage.process->name == "avalanching") {
-      avalanching_measures_heights_ = true;
+    if (stage.process->can_leave_heights) {
+      leaves_heights_ = true;
       continue;
     }
     for (Layer layer : {Layer::bedrock, Layer::soil, Layer::sand, Layer::water})
-      if (stage.process->may_write(layer)) avalanching_measures_heights_ = false;
+      if (stage.process->may_write(layer)) leaves_heights_ = false;
   }
 }
 
@@ -128,9 +124,7 @@ void Pipeline::adapt() {
 
 // ---- a step
 
-StepContext Pipeline::context() {
-  return {state_, fields_, state_.terrain.view(), avalanching_measures_heights_};
-}
+StepContext Pipeline::context() { return {state_, fields_, state_.terrain.view(), leaves_heights_}; }
 
 int Pipeline::parts() const {
   // What is longer is left to the processes' own sub-steps.
@@ -163,15 +157,22 @@ void Pipeline::run_part(StepContext& c) {
     };
     if (recorded > 0)
       recordings_.run(state_.exec(),
-                      {c.wind_above(), c.tick() % avalanching::seam_period, fields_.heights_stale,
-                       c.renews_shelter(), recorded, c.terrain},
+                      {c.wind_above(), fields_.heights_stale, c.renews_held_layers(), recorded,
+                       recording_keys(c), c.terrain},
                       start);
     for (std::size_t n = recorded; n < fused_launches_.size(); ++n) run(fused_launches_[n], c);
   }
-  if (c.renews_shelter()) state_.shelter_known = state_.terrain.has(Layer::wind_shadow);
-  fields_.heights_stale = !avalanching_measures_heights_;
+  if (c.renews_held_layers()) state_.held_layers_known = state_.has_held_layers();
+  fields_.heights_stale = !leaves_heights_;
   for (Stage& stage : stages_)
     if (stage.process->after_step) stage.process->after_step(c, stage.workspace.get());
+}
+
+std::vector<std::uint64_t> Pipeline::recording_keys(const StepContext& c) const {
+  std::vector<std::uint64_t> keys;
+  for (const Stage& stage : stages_)
+    if (stage.process->recording_key) keys.push_back(stage.process->recording_key(c));
+  return keys;
 }
 
 std::size_t Pipeline::recordable_stages() const {
@@ -274,11 +275,18 @@ Pipeline::Stage* Pipeline::find(const std::string& process) {
   return found == stages_.end() ? nullptr : &*found;
 }
 
-std::uint64_t Pipeline::avalanche_iterations() const {
-  std::uint64_t iterations = state_.avalanche_iterations;
+std::uint64_t Pipeline::count(const std::string& counter) const {
+  const auto before = state_.counts.find(counter);
+  std::uint64_t counts = before == state_.counts.end() ? 0 : before->second;
   for (const Stage& stage : stages_)
-    if (stage.process->counted_iterations) iterations += stage.process->counted_iterations(*stage.workspace);
-  return iterations;
+    if (stage.process->counter == counter && stage.process->counted)
+      counts += stage.process->counted(*stage.workspace);
+  return counts;
+}
+
+void Pipeline::edited(Layer layer) {
+  for (const Process& process : table_.processes)
+    if (process.edited) process.edited(state_, layer);
 }
 
 std::vector<ProcessTime> Pipeline::times() const {
@@ -302,7 +310,7 @@ std::vector<MemoryPart> Pipeline::memory() const {
   add("heights", fields_.heights.cell_heights.bytes() + fields_.heights.highest.bytes());
   add("tangents of repose", fields_.repose.bytes());
   add("strength of impacts", fields_.impact_strength.bytes());
-  add("landed sand", fields_.landed.bytes());
+  add("scratch", fields_.words.bytes());
   add("sand before it moves", fields_.sand_before.bytes());
   add("dice", fields_.dice_keys.bytes());
   return parts;

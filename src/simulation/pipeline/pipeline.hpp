@@ -7,28 +7,16 @@
 #include <vector>
 
 #include "src/simulation/pipeline/memory_part.hpp"
-#include "src/simulation/pipeline/process.hpp"
+#include "src/simulation/pipeline/process_table.hpp"
 #include "src/simulation/pipeline/step_recordings.hpp"
 
 namespace desert_sim {
-
-/// What a pipeline chooses from: all processes in the order of a step, and rules that fuse two of them.
-struct ProcessTable {
-  std::vector<Process> processes;
-  std::vector<FusedProcesses> fused;
-
-  /// Whether a scenario has it: it is active there, and none that is active replaces it.
-  bool is_active(const Process& process, const Scenario& scenario) const;
-};
 
 /// Milliseconds of one process since the times were cleared.
 struct ProcessTime {
   std::string process;
   double milliseconds = 0;
 };
-
-/// Most equal parts in which a step is done; see Pipeline::parts().
-constexpr int max_parts_of_step = 256;
 
 class Pipeline {
  public:
@@ -43,6 +31,8 @@ class Pipeline {
   void adapt();
   /// The ground was changed by somebody else than a process.
   void ground_changed() { fields_.heights_stale = true; }
+  /// An edit, or its undo, changes this layer; see Process::edited.
+  void edited(Layer layer);
   /// Derived layers are not those of the state any more.
   void derived_changed() { derived_ready_ = false; }
 
@@ -64,7 +54,7 @@ class Pipeline {
   SharedFields& fields() { return fields_; }
   /// What the processes keep, and the fields that they share, on the device.
   std::vector<MemoryPart> memory() const;
-  std::uint64_t avalanche_iterations() const;  ///< fine sweeps of all steps
+  std::uint64_t count(const std::string& counter) const;  ///< of all steps; see Process::counter
 
   /// A process of this scenario.
   struct Stage {
@@ -89,6 +79,7 @@ class Pipeline {
   };
   StepContext context();
   void run_part(StepContext& context);
+  std::vector<std::uint64_t> recording_keys(const StepContext& context) const;
   void make_launches();
   bool reads_heights() const;  ///< some process of this scenario does
   void measure_heights(StepContext& context);
@@ -105,7 +96,7 @@ class Pipeline {
   SharedFields fields_;
   std::vector<Stage> stages_;
   std::vector<Launch> unfused_launches_, fused_launches_;
-  bool avalanching_measures_heights_ = false;
+  bool leaves_heights_ = false;  ///< the last process that moves ground measures them
   bool derived_ready_ = false;
   StepRecordings recordings_;
   bool timing_ = false;

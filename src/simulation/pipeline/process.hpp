@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "kernels/field/layers.hpp"
+#include "src/core/validation_errors.hpp"
 #include "src/simulation/pipeline/shared_fields.hpp"
 #include "src/simulation/state.hpp"
 
@@ -24,10 +25,8 @@ struct StepContext {
   SimulationState& state;
   SharedFields& fields;
   TerrainView terrain;
-  /// No process after avalanching moves ground or water: it is to leave the heights measured for the next
-  /// step.
-  bool avalanching_measures_heights = false;
-  int part = 0, parts = 1;  ///< of the step; see Process::longest_step
+  bool leaves_heights = false;  ///< see Process::can_leave_heights
+  int part = 0, parts = 1;      ///< of the step; see Process::longest_step
 
   Exec& exec() const { return state.exec(); }
   const Scenario& scenario() const { return state.scenario; }
@@ -44,10 +43,10 @@ struct StepContext {
     return state.clock_origin.time +
            static_cast<double>(tick - state.clock_origin.tick) * state.scenario.run.time_step / parts;
   }
-  /// Whether a second begins, for which the wind's shadow is held, or there is none yet.
-  bool renews_shelter() const {
-    constexpr double second = wind_shadow::held_for;
-    if (!state.shelter_known || time_step() >= wind_shadow::held_for || parts > 1) return true;
+  /// Whether a second begins, for which layers are held, or there are none yet.
+  bool renews_held_layers() const {
+    constexpr double second = held_for;
+    if (!state.held_layers_known || time_step() >= held_for || parts > 1) return true;
     return state.steps > state.clock_origin.step &&
            std::floor(time() / second) > std::floor(time_of(tick() - 1) / second);
   }
@@ -69,17 +68,28 @@ struct MemoryTraffic {
   std::string reads, writes;
 };
 
+/// What a process is there for, where others could be in its place: each role has one active process.
+enum class Role { wind, wind_shadow, sand_flux, sand_transport, repose, reptation, avalanching };
+
 struct Process {
   std::string name;
-  std::vector<std::string> parameters;  ///< sections of the scenario
-  std::string source;                   ///< of its equations
-  std::string header;                   ///< where they stand in this repository
-  std::function<bool(const Scenario&)> active;
-  std::vector<std::string> replaces;  ///< processes that are not active while it is
+  std::vector<std::string> parameters;          ///< sections of the scenario
+  std::string source;                           ///< of its equations
+  std::string header;                           ///< where they stand in this repository
+  std::function<bool(const Scenario&)> active;  ///< what the scenario says of it alone
+  std::vector<Role> roles;
+  bool gives_way = false;  ///< to an active process that has one of its roles, and does not give way
+  /// Adds what of its parameters cannot be done in this scenario, where it takes part: a reach, or a number
+  /// of sub-steps. Null if nothing.
+  std::function<void(const Scenario&, ValidationErrors&)> check;
 
   bool reads_heights = false;  ///< SharedFields::heights: the first in a step that does has them measured
-  std::vector<Layer> reads;    ///< where they are in use; those that it writes need not be repeated
-  std::vector<Layer> writes;   ///< brought into use while it is active
+  /// It measures them in passing for the next step, where no process after it moves ground or water
+  /// (StepContext::leaves_heights).
+  bool can_leave_heights = false;
+  std::vector<SharedField> needs;  ///< of the fields that not all scenarios have
+  std::vector<Layer> reads;        ///< where they are in use; those that it writes need not be repeated
+  std::vector<Layer> writes;       ///< brought into use while it is active
   std::vector<Layer> writes_if_in_use;
   /// Fills a layer of `writes` that has just come into use, and is 0, with what it begins with. Null if that
   /// is 0.
@@ -99,14 +109,21 @@ struct Process {
   /// Brings its workspace up to date after a command that did not change parameters (wind features, loose
   /// ground). Throws ConfigError if there is no memory. Null if nothing can be stale.
   std::function<void(const SimulationState&, ProcessWorkspace*)> adapt;
-  /// Iterations that the device has counted since `make_workspace`. Null if it counts none.
-  std::function<std::uint64_t(const ProcessWorkspace&)> counted_iterations;
+  /// Names of its flags and of its counter in the state; a checkpoint's header has them under these.
+  std::vector<std::string> flags;
+  std::string counter;
+  /// What the device has counted since `make_workspace`. Null if it counts nothing.
+  std::function<std::uint64_t(const ProcessWorkspace&)> counted;
+  /// Sets its flags after an edit of this layer, whether it is active or not. Null if it has none.
+  std::function<void(SimulationState&, Layer)> edited;
   /// What the host counts after each step, also after one that was replayed from a recording. Null if
   /// nothing.
   std::function<void(StepContext&, ProcessWorkspace*)> after_step;
   /// Whether its next step starts the same work on the device as others before and after it, and reads
   /// nothing back.
   std::function<bool(const SimulationState&)> can_be_recorded = [](const SimulationState&) { return true; };
+  /// What else than parameters, memory and wind decides which work its next step starts. Null if nothing.
+  std::function<std::uint64_t(const StepContext&)> recording_key;
   /// Of sand on bare rock with the default parameters. Null if the cost model does not have it.
   std::function<MemoryTraffic(const Scenario&, const Grid&)> traffic;
 

@@ -12,8 +12,8 @@ constexpr std::size_t most_recordings = 32;
 
 bool StepKey::operator==(const StepKey& other) const {
   return wind_above.x == other.wind_above.x && wind_above.y == other.wind_above.y &&
-         seam_phase == other.seam_phase && heights_stale == other.heights_stale &&
-         renews_shelter == other.renews_shelter && stages == other.stages &&
+         heights_stale == other.heights_stale && renews_held_layers == other.renews_held_layers &&
+         stages == other.stages && keys == other.keys &&
          std::equal(std::begin(view.layers), std::end(view.layers), std::begin(other.view.layers));
 }
 

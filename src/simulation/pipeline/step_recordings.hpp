@@ -11,17 +11,17 @@
 
 #include "kernels/backend/exec.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/wind/wind.hpp"
+#include "kernels/wind/vector.hpp"
 
 namespace desert_sim {
 
 /// All that a step's kernels are given and that can differ between two steps with the same parameters.
 struct StepKey {
   wind::Vector wind_above;
-  std::uint64_t seam_phase = 0;  ///< of the avalanches' seams
-  bool heights_stale = false;    ///< whether the step measures heights first
-  bool renews_shelter = true;    ///< whether it finds the wind's shadow
-  std::size_t stages = 0;        ///< how many, from the first on, are in the recording
+  bool heights_stale = false;       ///< whether the step measures heights first
+  bool renews_held_layers = true;   ///< whether it finds the layers that are held
+  std::size_t stages = 0;           ///< how many, from the first on, are in the recording
+  std::vector<std::uint64_t> keys;  ///< of processes: Process::recording_key
   TerrainView view;
   bool operator==(const StepKey& other) const;
 };

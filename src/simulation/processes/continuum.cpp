@@ -37,11 +37,12 @@ float longest_step(const SimulationState& state) {
 
 Process continuum_process() {
   Process p;
-  p.name = "continuum";
+  p.name = name_of(SandModel::continuum);
   p.parameters = {"saltation", "continuum", "shear_stress", "abrasion"};
   p.source = "Kroy et al. 2002, Andreotti et al. 2010";
   p.header = "kernels/sand/continuum.hpp";
-  p.active = [](const Scenario& s) { return s.has_continuum_transport(); };
+  p.active = [](const Scenario& s) { return s.has(SandModel::continuum); };
+  p.roles = {Role::sand_transport};
   p.reads_heights = true;
   p.reads = {Layer::wind_x,   Layer::wind_y,   Layer::echo,  Layer::vegetation,
              Layer::obstacle, Layer::moisture, Layer::water, Layer::erosion_resistance};

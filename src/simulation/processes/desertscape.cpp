@@ -1,14 +1,14 @@
 /// The process of sand in slabs that random events move.
 #include "kernels/sand/desertscape.hpp"
 
+#include "src/simulation/processes/limits.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
 
 namespace {
 
-constexpr SaltationModel model = SaltationModel::desertscape_2019;
-const std::string name = saltation_model_names[static_cast<int>(model)];
+const std::string name = name_of(SandModel::desertscape_2019);
 const std::string section = register_section<DesertscapeParameters>(name);
 
 const DesertscapeParameters& parameters_of(const Scenario& s) {
@@ -25,7 +25,7 @@ void move_slabs(StepContext& c, ProcessWorkspace* workspace) {
                                    creeps ? s.reptation.slab : 0.0f,
                                    c.time_step(),
                                    s.run.time_step,
-                                   c.fields.landed.data()};
+                                   c.fields.scratch<Quanta>(1)};
   with_backend(c.exec(), [&](auto& e) {
     desertscape::step(e, c.terrain, in, c.dice(), c.state.ledger(),
                       workspace_as<desertscape::Workspace>(workspace));
@@ -40,8 +40,13 @@ Process desertscape_process() {
   p.parameters = {"saltation", section, "abrasion", "reptation"};
   p.source = "Paris et al. 2019 §5";
   p.header = "kernels/sand/desertscape.hpp";
-  p.active = [](const Scenario& s) { return s.saltation.enabled && s.saltation.model == model; };
-  p.replaces = {"reptation"};
+  p.active = [](const Scenario& s) { return s.has(SandModel::desertscape_2019); };
+  p.check = [](const Scenario& s, ValidationErrors& errors) {
+    check_reach(s, "saltation.hop_time", fastest_wind(s) * s.saltation.hop_time, errors);
+    check_step_length(s, "desertscape_2019.slab / (4 saltation.lift)",
+                      desertscape::longest_step(parameters_of(s), s.saltation), errors);
+  };
+  p.roles = {Role::sand_transport, Role::reptation};
   p.reads = {Layer::wind_x,   Layer::wind_y,     Layer::wind_shadow,
              Layer::echo,     Layer::vegetation, Layer::obstacle,
              Layer::moisture, Layer::water,      Layer::erosion_resistance};

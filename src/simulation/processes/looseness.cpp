@@ -24,6 +24,7 @@ Process row(const char* name) {
 
 Process sand_record_process() {
   Process p = row("sand_record");
+  p.needs = {SharedField::sand_before};
   p.reads = {Layer::sand};
   p.step = [](StepContext& c, ProcessWorkspace*) {
     with_backend(c.exec(), [&](auto& e) { looseness::record(e, c.terrain, c.fields.sand_before.data()); });
@@ -33,6 +34,7 @@ Process sand_record_process() {
 
 Process looseness_process() {
   Process p = row("looseness");
+  p.needs = {SharedField::sand_before, SharedField::impact_strength};
   p.parameters = {"looseness", "saltation", "repose"};
   p.reads = {Layer::sand, Layer::soil, Layer::moisture, Layer::wind_shadow};
   p.writes = {Layer::looseness};

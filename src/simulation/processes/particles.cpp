@@ -24,17 +24,14 @@ void fly(StepContext& c, ProcessWorkspace* workspace) {
 
 }  // namespace
 
-bool has_particles(const Scenario& s) { return parameters_of(s).kind != ParticleKind::none; }
-
 Process wang_process() {
   Process p;
-  p.name = particle_kind_names[static_cast<int>(ParticleKind::wang)];
+  p.name = name_of(SandModel::wang);
   p.parameters = {section, "saltation", "repose"};
   p.source = "Wang & Hu 2012, Kok & Renno 2009, Owen 1964";
   p.header = "kernels/particles/wang.hpp";
-  p.active = has_particles;
-  p.replaces = {"wind",      "shear_stress",     "wind_shadow", "sand_flux",
-                "saltation", "desertscape_2019", "continuum",   "reptation"};
+  p.active = [](const Scenario& s) { return s.has(SandModel::wang); };
+  p.roles = {Role::sand_transport, Role::wind, Role::wind_shadow, Role::sand_flux, Role::reptation};
   p.reads = {Layer::bedrock, Layer::soil, Layer::obstacle, Layer::vegetation, Layer::moisture, Layer::water};
   p.writes = {Layer::sand, Layer::wind_x, Layer::wind_y};
   set_workspace<particles::Workspace>(p, [](const SimulationState& state) {

@@ -30,8 +30,6 @@ Process nield_baas_process();
 Process snow_process();
 
 Process wang_process();  // particles.cpp
-/// Whether a particle model moves the sand.
-bool has_particles(const Scenario& scenario);
 
 Process sand_record_process();  // looseness.cpp
 Process looseness_process();
@@ -49,6 +47,9 @@ Process illumination_process();
 Process vegetation_process();
 
 const ProcessTable& process_table();
+
+/// Of Pipeline::count(): fine sweeps of avalanching.
+constexpr const char* avalanche_iterations = "avalanche_iterations";
 
 /// What the wind is blocked by: the ground, or the plants' canopy.
 const surface::Heights& obstructing_heights(const StepContext& context);

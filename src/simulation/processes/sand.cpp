@@ -11,6 +11,7 @@
 #include "kernels/sand/reptation.hpp"
 #include "kernels/sand/saltation.hpp"
 #include "kernels/wind/wind_shadow.hpp"
+#include "src/simulation/processes/limits.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
@@ -26,10 +27,6 @@ bool loosens_soil(const Scenario& s) { return wears_ground(s) || s.moisture.enab
 
 // ---- saltation
 
-bool has_expected_hops(const Scenario& s) {
-  return s.saltation.enabled && s.saltation.model == SaltationModel::hops;
-}
-
 reptation::Angle angle_of_repose(const StepContext& c) {
   return reptation::Angle(c.scenario().reptation, c.scenario().repose, c.fields.repose.data());
 }
@@ -39,8 +36,8 @@ template <class E>
 void lift_and_deposit(E& e, StepContext& c, const wind_shadow::Shadow* shadow_law) {
   const Scenario& s = c.scenario();
   saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.dice(), c.state.ledger(),
-                  c.fields.landed.data(), {angle_of_repose(c), c.fields.impact_strength.data()}, shadow_law,
-                  c.scenario().run.time_step);
+                  c.fields.scratch<Quanta>(1), {angle_of_repose(c), c.fields.impact_strength.data()},
+                  shadow_law, c.scenario().run.time_step);
 }
 
 void saltate(StepContext& c, ProcessWorkspace*) {
@@ -59,11 +56,25 @@ void creep(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
     reptation::step(e, c.terrain, s.reptation, c.time_step(), s.seed, c.tick(), c.dice(),
-                    c.fields.impact_strength.data(), c.fields.landed.data());
+                    c.fields.impact_strength.data(), c.fields.scratch<Quanta>(1));
   });
 }
 
 // ---- avalanching
+
+// Bedrock, or soil and what is below it, was edited and has not come to rest since.
+const std::string bedrock_loose = "bedrock_loose", soil_loose = "soil_loose";
+
+bool is_loose(const SimulationState& state) {
+  return state.flags.count(bedrock_loose) > 0 || state.flags.count(soil_loose) > 0;
+}
+
+void set(ProcessFlags& flags, const std::string& flag, bool on) {
+  if (on)
+    flags.insert(flag);
+  else
+    flags.erase(flag);
+}
 
 struct AvalancheWork {
   avalanching::Workspace sand;
@@ -74,7 +85,7 @@ struct AvalancheWork {
   /// Only terrains whose rock or soil changes need memory for it.
   void prepare_ground(const SimulationState& state) {
     const AvalanchingParameters& p = state.scenario.avalanching;
-    const bool changes = loosens_soil(state.scenario) || state.bedrock_loose || state.soil_loose;
+    const bool changes = loosens_soil(state.scenario) || is_loose(state);
     if (!ground.received && changes && (p.soil || p.bedrock))
       ground = avalanching::make_ground_workspace(state.exec(), state.terrain.grid());
   }
@@ -94,19 +105,20 @@ void slide_ground(E& e, StepContext& c, AvalancheWork& work) {
   SimulationState& state = c.state;
   const AvalanchingParameters& p = state.scenario.avalanching;
   const ReposeParameters& repose = state.scenario.repose;
-  Quanta* const given = c.fields.landed.data();
+  Quanta* const given = c.fields.scratch<Quanta>(1);
   const bool wearing = wears_ground(state.scenario), loosening = loosens_soil(state.scenario);
   const bool has_soil = state.terrain.has(Layer::soil);
   const auto moved = [&] { return statistics::sum(e, c.terrain.grid, given) != 0; };
-  if (p.soil && (loosening || state.soil_loose) && has_soil) {
+  const auto is_set = [&](const std::string& flag) { return state.flags.count(flag) > 0; };
+  if (p.soil && (loosening || is_set(soil_loose)) && has_soil) {
     avalanching::step_soil(e, c.terrain, p, repose, given, work.ground);
-    if (state.soil_loose) state.soil_loose = moved();
+    if (is_set(soil_loose)) set(state.flags, soil_loose, moved());
   }
-  if (p.bedrock && (wearing || state.bedrock_loose)) {
+  if (p.bedrock && (wearing || is_set(bedrock_loose))) {
     avalanching::step_bedrock(e, c.terrain, p, repose, state.ledger(), given, work.ground);
-    if (state.bedrock_loose) state.bedrock_loose = moved();
+    if (is_set(bedrock_loose)) set(state.flags, bedrock_loose, moved());
   }
-  state.soil_loose = state.soil_loose || (state.bedrock_loose && has_soil);
+  if (is_set(bedrock_loose) && has_soil) state.flags.insert(soil_loose);
 }
 
 void slide(StepContext& c, ProcessWorkspace* workspace) {
@@ -114,7 +126,7 @@ void slide(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
     slide_ground(e, c, work);
     avalanching::step(e, c.terrain, c.scenario().avalanching, c.tick(), c.fields.repose.data(),
-                      c.avalanching_measures_heights ? &c.fields.heights : nullptr, work.sand);
+                      c.leaves_heights ? &c.fields.heights : nullptr, work.sand);
   });
 }
 
@@ -123,7 +135,7 @@ bool avalanching_can_be_recorded(const SimulationState& state) {
   const AvalanchingParameters& p = state.scenario.avalanching;
   const bool needs_no_readback = p.quality != AvalancheQuality::converged ||
                                  (p.scheme == AvalancheScheme::multilevel && state.exec().can_record_loops());
-  return needs_no_readback && !state.bedrock_loose && !state.soil_loose;
+  return needs_no_readback && !is_loose(state);
 }
 
 /// Passes of avalanching read ground, sand and tangents, and write sand. Each coarse level has a quarter of
@@ -153,6 +165,8 @@ Process sand_flux_process() {
   p.parameters = {"saltation"};
   p.source = "Paris 2019 §5.2";
   p.header = "kernels/sand/saltation.hpp";
+  p.roles = {Role::sand_flux};
+  p.gives_way = true;
   p.active = [](const Scenario& s) { return s.saltation.enabled && s.saltation.flux; };
   p.writes = {Layer::flux_x, Layer::flux_y};
   p.step = [](StepContext& c, ProcessWorkspace*) {
@@ -168,7 +182,12 @@ Process saltation_process() {
   p.parameters = {"saltation", "abrasion", "reptation", "repose"};
   p.source = "Nilles 2024 §3.6, Paris 2019 §5.2";
   p.header = "kernels/sand/saltation.hpp";
-  p.active = has_expected_hops;
+  p.roles = {Role::sand_transport, Role::repose};  // the deposit sets the angles in its own pass
+  p.active = [](const Scenario& s) { return s.has(SandModel::hops); };
+  p.check = [](const Scenario& s, ValidationErrors& errors) {
+    check_reach(s, "saltation.hop_time", fastest_wind(s) * s.saltation.hop_time, errors);
+    check_step_length(s, "saltation.hop_time", s.saltation.hop_time, errors);
+  };
   p.reads = {Layer::wind_x,   Layer::wind_y,     Layer::wind_shadow,
              Layer::echo,     Layer::vegetation, Layer::obstacle,
              Layer::moisture, Layer::water,      Layer::erosion_resistance};
@@ -191,8 +210,9 @@ Process repose_process() {
   p.parameters = {"repose", "reptation"};
   p.source = "Nilles 2024 §3.7";
   p.header = "kernels/sand/repose.hpp";
-  // The deposit after the hops of saltation sets the angles in its own pass.
-  p.active = [](const Scenario& s) { return !has_expected_hops(s) || has_particles(s); };
+  p.roles = {Role::repose};
+  p.gives_way = true;
+  p.active = [](const Scenario&) { return true; };
   p.reads = {Layer::wind_x,   Layer::wind_y, Layer::wind_shadow, Layer::vegetation,
              Layer::moisture, Layer::soil,   Layer::sand};
   p.step = p.refresh = set_angles;
@@ -202,10 +222,22 @@ Process repose_process() {
 Process reptation_process() {
   Process p;
   p.name = "reptation";
+  p.needs = {SharedField::impact_strength};
   p.parameters = {"reptation"};
   p.source = "Nilles 2024 §3.7, Paris 2019 §5.1";
   p.header = "kernels/sand/reptation.hpp";
+  p.roles = {Role::reptation};
+  p.gives_way = true;
   p.active = [](const Scenario& s) { return reptation::moves_sand(s.reptation); };
+  p.check = [](const Scenario& s, ValidationErrors& errors) {
+    const ReptationParameters& r = s.reptation;
+    if (r.method != ReptationMethod::smoothing) return;
+    const double lengths = s.run.time_step / s.grid.cell_size * fastest_wind(s);  // the shelter is at most 1
+    check_substeps(
+        s,
+        {"reptation.strength", r.strength, "s/m^2", 2 * (r.strength + r.smoothing_strength) * lengths, 256},
+        errors);
+  };
   p.reads = {Layer::bedrock, Layer::soil, Layer::wind_x, Layer::wind_y, Layer::obstacle};
   p.writes = {Layer::sand};
   p.step = creep;
@@ -223,6 +255,8 @@ Process avalanching_process() {
   p.parameters = {"avalanching", "repose"};
   p.source = "Nilles 2024 eq. 9–11, Taylor & Keyser 2023";
   p.header = "kernels/avalanching/avalanching.hpp";
+  p.roles = {Role::avalanching};
+  p.gives_way = true;
   p.active = [](const Scenario& s) { return s.avalanching.enabled; };
   p.reads = {Layer::obstacle, Layer::vegetation, Layer::moisture};
   p.writes = {Layer::sand};
@@ -232,15 +266,24 @@ Process avalanching_process() {
   p.adapt = [](const SimulationState& state, ProcessWorkspace* workspace) {
     workspace_as<AvalancheWork>(workspace).prepare_ground(state);
   };
-  p.counted_iterations = [](const ProcessWorkspace& workspace) {
+  p.flags = {bedrock_loose, soil_loose};
+  p.edited = [](SimulationState& state, Layer layer) {
+    if (layer == Layer::bedrock) state.flags.insert(bedrock_loose);
+    if (layer == Layer::soil || (layer == Layer::bedrock && state.terrain.has(Layer::soil)))
+      state.flags.insert(soil_loose);
+  };
+  p.counter = avalanche_iterations;
+  p.counted = [](const ProcessWorkspace& workspace) {
     return static_cast<std::uint64_t>(
         static_cast<const WorkspaceHolder<AvalancheWork>&>(workspace).work.sand.counted_iterations());
   };
   p.after_step = [](StepContext& c, ProcessWorkspace* workspace) {
-    c.state.avalanche_iterations +=
+    c.state.counts[avalanche_iterations] +=
         static_cast<std::uint64_t>(workspace_as<AvalancheWork>(workspace).sand.iterations);
   };
+  p.can_leave_heights = true;
   p.can_be_recorded = avalanching_can_be_recorded;
+  p.recording_key = [](const StepContext& c) { return c.tick() % avalanching::seam_period; };
   p.traffic = avalanche_traffic;
   return p;
 }
@@ -288,10 +331,10 @@ FusedProcesses fused_wind_shadow_and_saltation() {
   f.second = "saltation";
   f.applies = [](const SimulationState& state) {
     constexpr int max_cells = 1 << 19;
-    const bool on_gpu = std::string(state.exec().backend()) == "cuda";  // nor where memory is only planned
-    return on_gpu && state.scenario.run.time_step >= wind_shadow::held_for &&
-           state.terrain.grid().cells() <= max_cells && !state.scenario.wind_shadow.curved &&
-           !state.scenario.echo_dunes.enabled && !state.scenario.saltation.flux;
+    const bool on_gpu = state.exec().kind() == Device::cuda;  // nor where memory is only planned
+    return on_gpu && state.scenario.run.time_step >= held_for && state.terrain.grid().cells() <= max_cells &&
+           !state.scenario.wind_shadow.curved && !state.scenario.echo_dunes.enabled &&
+           !state.scenario.saltation.flux;
   };
   f.step = [](StepContext& c, ProcessWorkspace* shadow, ProcessWorkspace*) {
     with_backend(c.exec(), [&](auto& e) {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "kernels/slabs/slab_model.hpp"
+#include "src/simulation/processes/limits.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
@@ -26,11 +27,12 @@ int ending_with_step(const StepContext& c, float interval) {
   return static_cast<int>(ended(c.time_of(c.tick() + 1)) - ended(c.time()));
 }
 
-void move_slabs(StepContext& c, ProcessWorkspace* workspace) {
+void move_slabs(SlabKind kind, StepContext& c, ProcessWorkspace* workspace) {
   const Scenario& s = c.scenario();
   const auto& plants = s.process_sections.get<SlabPlantParameters>(plant_section);
   const SlabSnowParameters& snow = snow_of(s);
-  const slabs::StepInputs in{parameters_of(s),
+  const slabs::StepInputs in{kind,
+                             parameters_of(s),
                              plants,
                              snow,
                              s.growth_curves,
@@ -44,21 +46,24 @@ void move_slabs(StepContext& c, ProcessWorkspace* workspace) {
   });
 }
 
-Process slab_process(SlabKind kind, const std::string& source) {
+Process slab_process(SandModel model, SlabKind kind, const std::string& source) {
   Process p;
-  p.name = slab_kind_names[static_cast<int>(kind)];
+  p.name = name_of(model);
   p.parameters = {section, "saltation"};
   p.source = source;
   p.header = "kernels/slabs/slab_model.hpp";
-  p.active = [kind](const Scenario& s) { return parameters_of(s).kind == kind; };
-  p.replaces = {"wind",      "shear_stress", "wind_shadow", "sand_flux",  "saltation", "desertscape_2019",
-                "continuum", "repose",       "reptation",   "avalanching"};
+  p.active = [model](const Scenario& s) { return s.has(model); };
+  p.check = [](const Scenario& s, ValidationErrors& errors) {
+    check_step_length(s, "slab_model.poll_time", parameters_of(s).poll_time, errors);
+  };
+  p.roles = {Role::sand_transport, Role::wind,      Role::wind_shadow, Role::sand_flux,
+             Role::repose,         Role::reptation, Role::avalanching};
   p.reads = {Layer::bedrock, Layer::soil, Layer::obstacle};
   p.writes = {Layer::sand, Layer::wind_x, Layer::wind_y};
   set_workspace<slabs::Workspace>(p, [kind](const SimulationState& state) {
     return slabs::make_workspace(state.exec(), state.terrain.grid(), has_resistance(kind));
   });
-  p.step = move_slabs;
+  p.step = [kind](StepContext& c, ProcessWorkspace* workspace) { move_slabs(kind, c, workspace); };
   p.refresh = [](StepContext& c, ProcessWorkspace*) {
     with_backend(c.exec(), [&](auto& e) { slabs::blow(e, c.terrain, c.wind_above()); });
   };
@@ -70,26 +75,26 @@ bool never_recorded(const SimulationState&) { return false; }
 }  // namespace
 
 Process werner_process() {
-  Process p = slab_process(SlabKind::werner, "Werner 1995");
+  Process p = slab_process(SandModel::werner, SlabKind::werner, "Werner 1995");
   // Forced erosion reads back how many slabs were taken.
   p.can_be_recorded = [](const SimulationState& s) { return !parameters_of(s.scenario).forced_erosion; };
   return p;
 }
 
 Process momiji_process() {
-  Process p = slab_process(SlabKind::momiji, "Momiji et al. 2000");
+  Process p = slab_process(SandModel::momiji, SlabKind::momiji, "Momiji et al. 2000");
   p.can_be_recorded = never_recorded;  // the mean height is read back
   return p;
 }
 
 Process bishop_process() {
-  Process p = slab_process(SlabKind::bishop, "Bishop et al. 2002");
+  Process p = slab_process(SandModel::bishop, SlabKind::bishop, "Bishop et al. 2002");
   p.can_be_recorded = never_recorded;
   return p;
 }
 
 Process nield_baas_process() {
-  Process p = slab_process(SlabKind::nield_baas, "Nield & Baas 2008");
+  Process p = slab_process(SandModel::nield_baas, SlabKind::nield_baas, "Nield & Baas 2008");
   p.parameters.push_back(plant_section);
   for (Layer layer : {Layer::grass, Layer::mesquite, Layer::shrub, Layer::burial}) p.writes.push_back(layer);
   p.can_be_recorded = never_recorded;  // plants do not grow in every step
@@ -97,7 +102,8 @@ Process nield_baas_process() {
 }
 
 Process snow_process() {
-  Process p = slab_process(SlabKind::snow, "Werner 1995; Hedstrom & Pomeroy 1998; Anderson 1976");
+  Process p =
+      slab_process(SandModel::snow, SlabKind::snow, "Werner 1995; Hedstrom & Pomeroy 1998; Anderson 1976");
   p.parameters.push_back(snow_section);
   p.writes.push_back(Layer::snow_density);
   p.begin = [](SimulationState& state, Layer layer) {

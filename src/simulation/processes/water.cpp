@@ -8,6 +8,7 @@
 #include "kernels/water/rain.hpp"
 #include "kernels/water/virtual_pipes.hpp"
 #include "kernels/water/water_sources.hpp"
+#include "src/simulation/processes/limits.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
@@ -45,7 +46,7 @@ virtual_pipes::Workspace make_pipes(const SimulationState& state) {
 void move_water(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
     virtual_pipes::step(e, c.terrain, c.scenario().water, c.time_step(), c.time(), c.scenario().seed,
-                        c.tick(), sea_level(c.state), c.state.ledger(), c.fields.landed.data(),
+                        c.tick(), sea_level(c.state), c.state.ledger(), c.fields.scratch<Quanta>(1),
                         workspace_as<virtual_pipes::Workspace>(workspace));
   });
 }
@@ -65,7 +66,7 @@ void update_moisture(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
     moisture::step(e, c.terrain, s.moisture, s.repose.moisture_capacity, c.time_step(), c.dice(),
-                   c.state.ledger(), c.fields.landed.data());
+                   c.state.ledger(), c.fields.scratch<Quanta>(1));
   });
 }
 
@@ -140,6 +141,12 @@ Process moisture_process() {
   p.source = "Nilles 2025 §3.4.4";
   p.header = "kernels/soil/moisture.hpp";
   p.active = [](const Scenario& s) { return s.moisture.enabled; };
+  p.check = [](const Scenario& s, ValidationErrors& errors) {
+    const double diffusion = s.moisture.diffusion, cell = s.grid.cell_size;
+    check_substeps(
+        s, {"moisture.diffusion", diffusion, "m^2/s", 4 * diffusion * s.run.time_step / (cell * cell), 64},
+        errors);
+  };
   p.reads = {Layer::soil, Layer::sand, Layer::vegetation};
   p.writes = {Layer::water, Layer::moisture};
   p.step = update_moisture;

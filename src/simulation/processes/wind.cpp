@@ -2,10 +2,14 @@
 /// eddies before cliffs.
 #include "kernels/wind/wind.hpp"
 
+#include <cmath>
+
 #include "kernels/wind/echo_dunes.hpp"
 #include "kernels/wind/shear_stress.hpp"
 #include "kernels/wind/wind_features.hpp"
 #include "kernels/wind/wind_shadow.hpp"
+#include "src/core/constants.hpp"
+#include "src/simulation/processes/limits.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
@@ -49,7 +53,7 @@ struct LocalWind {
     for (wind_features::Prepared& feature : prepared) wind_features::set_time(feature, c.time());
     features.upload(prepared);
     with_backend(c.exec(), [&](auto& e) {
-      wind_features::step(e, c.terrain.grid, features, c.fields.repose.data(), perturbation_x.data(),
+      wind_features::step(e, c.terrain.grid, features, c.fields.scratch<float>(0), perturbation_x.data(),
                           perturbation_y.data());
     });
   }
@@ -80,7 +84,7 @@ void update_wind(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
     wind::step(e, c.terrain, c.scenario().wind, c.wind_above(), c.fields.heights, c.state.wind_reference,
                work.local.perturbation_x.data(), work.local.perturbation_y.data(),
-               {reinterpret_cast<float*>(c.fields.landed.data()), c.fields.repose.data()}, work.flow);
+               {c.fields.scratch<float>(1), c.fields.scratch<float>(0)}, work.flow);
   });
 }
 
@@ -95,7 +99,7 @@ void update_shear_stress(StepContext& c, ProcessWorkspace* workspace) {
 }
 
 /// What the wind over the ground depends on, whichever way it is found.
-Process surface_wind_row(const char* name) {
+Process surface_wind(const char* name) {
   Process p;
   p.name = name;
   p.parameters = {name};
@@ -107,8 +111,19 @@ Process surface_wind_row(const char* name) {
   return p;
 }
 
+void check_transform(const Scenario& s, ValidationErrors& errors) {
+  if (!s.wind.warping && !s.wind.projection) return;
+  const wind::CoarseGrid coarse = wind::coarse_grid(s.make_grid(), s.wind);
+  const long long values = static_cast<long long>(coarse.width) * coarse.height;
+  if (values > max_grid_cells)
+    errors.add("grid", "of " + std::to_string(s.grid.width) + " x " + std::to_string(s.grid.height) +
+                           " cells would need a transform of " + std::to_string(values) +
+                           " values for its wind, which cannot be indexed (allowed: at most " +
+                           std::to_string(max_grid_cells) + "; wind.coarsening makes it smaller)");
+}
+
 void update_wind_shadow(StepContext& c, ProcessWorkspace* workspace) {
-  if (!c.renews_shelter()) return;
+  if (!c.renews_held_layers()) return;
   with_backend(c.exec(), [&](auto& e) {
     wind_shadow::step(e, c.terrain, c.scenario().wind_shadow, obstructing_heights(c),
                       workspace_as<wind_shadow::Workspace>(workspace));
@@ -117,17 +132,20 @@ void update_wind_shadow(StepContext& c, ProcessWorkspace* workspace) {
 
 void update_echo(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
-    echo_dunes::step(e, c.terrain, c.scenario().echo_dunes, c.fields.heights, c.fields.repose.data());
+    echo_dunes::step(e, c.terrain, c.scenario().echo_dunes, c.fields.heights, c.fields.scratch<float>(0));
   });
 }
 
 }  // namespace
 
 Process wind_process() {
-  Process p = surface_wind_row("wind");
+  Process p = surface_wind("wind");
+  p.roles = {Role::wind};
+  p.gives_way = true;
   p.source = "Paris 2019 §4, Nilles 2024 §3.3";
   p.header = "kernels/wind/wind.hpp";
-  p.active = [](const Scenario& s) { return !s.has_continuum_transport(); };
+  p.active = [](const Scenario&) { return true; };
+  p.check = check_transform;
   set_workspace<TurnedWindWork>(p, [](const SimulationState& state) {
     return with_features(state,
                          wind::make_workspace(state.exec(), state.terrain.grid(), state.scenario.wind));
@@ -143,10 +161,11 @@ Process wind_process() {
 }
 
 Process shear_stress_process() {
-  Process p = surface_wind_row("shear_stress");
+  Process p = surface_wind("shear_stress");
+  p.roles = {Role::wind, Role::wind_shadow};  // its bubbles are the shadow
   p.source = "Kroy et al. 2002, Durán & Moore 2013";
   p.header = "kernels/wind/shear_stress.hpp";
-  p.active = [](const Scenario& s) { return s.has_continuum_transport(); };
+  p.active = [](const Scenario& s) { return s.has(SandModel::continuum); };
   set_workspace<ShearStressWork>(p, [](const SimulationState& state) {
     return with_features(
         state, shear_stress::make_workspace(state.exec(), state.terrain.grid(), state.scenario.shear_stress));
@@ -164,8 +183,12 @@ Process wind_shadow_process() {
   p.parameters = {"wind_shadow"};
   p.source = "Nilles 2024 eq. 4";
   p.header = "kernels/wind/wind_shadow.hpp";
-  // Continuum transport has the bubbles of its shear stress.
-  p.active = [](const Scenario& s) { return s.wind_shadow.enabled && !s.has_continuum_transport(); };
+  p.roles = {Role::wind_shadow};
+  p.gives_way = true;
+  p.active = [](const Scenario& s) { return s.wind_shadow.enabled; };
+  p.check = [](const Scenario& s, ValidationErrors& errors) {
+    check_reach(s, "wind_shadow.distance", s.wind_shadow.distance, errors);
+  };
   p.reads_heights = true;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::canopy_height, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::wind_shadow};
@@ -186,6 +209,12 @@ Process echo_dune_process() {
   p.source = "Tsoar 1983, Taylor & Keyser 2023";
   p.header = "kernels/wind/echo_dunes.hpp";
   p.active = [](const Scenario& s) { return s.echo_dunes.enabled; };
+  p.check = [](const Scenario& s, ValidationErrors& errors) {
+    const EchoDuneParameters& echo = s.echo_dunes;
+    check_reach(s, "echo_dunes.sticky_reach", static_cast<double>(echo.sticky_reach) * echo.highest, errors);
+    const double steepness = std::tan(echo.cliff_deg * pi / 180.0);  // from the top of a cliff to its foot
+    check_reach(s, "echo_dunes.highest", echo.highest / steepness, errors);
+  };
   p.reads_heights = true;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::echo};

@@ -21,7 +21,7 @@ void check_stroke_name(const std::string& name, const std::string& what) {
 }
 
 EditHistory::EditHistory(SimulationState& state, Pipeline& pipeline)
-    : state_(state), pipeline_(pipeline), loose_(state), population_(state, pipeline) {}
+    : state_(state), pipeline_(pipeline), loose_(state, pipeline), population_(state, pipeline) {}
 
 // ---- memory
 
@@ -139,19 +139,17 @@ void EditHistory::prepare(const Stroke& stroke) {
     state_.terrain.allocate(Layer::obstacle);
     obstacles_are_new_ = true;
   }
-  const bool bedrock = state_.bedrock_loose, soil = state_.soil_loose;
-  state_.bedrock_loose = bedrock || stroke.changed(Layer::bedrock);
-  state_.soil_loose = soil || stroke.changed(Layer::bedrock) || stroke.changed(Layer::soil);
+  const ProcessFlags flags = state_.flags;
+  for (Layer layer : {Layer::bedrock, Layer::soil})
+    if (stroke.changed(layer)) pipeline_.edited(layer);
   try {
-    pipeline_.adapt();  // avalanches of soil and bedrock need memory
+    pipeline_.adapt();  // ground that is loose needs memory
   } catch (...) {
-    state_.bedrock_loose = bedrock;
-    state_.soil_loose = soil;
+    state_.flags = flags;
     release_obstacles();
     throw;
   }
-  state_.bedrock_loose = bedrock;
-  state_.soil_loose = soil;
+  state_.flags = flags;
 }
 
 /// A terrain that had no obstacles before its strokes has none when all of them are undone.

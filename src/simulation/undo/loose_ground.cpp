@@ -1,6 +1,13 @@
 #include "src/simulation/undo/loose_ground.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace desert_sim {
+
+namespace {
+constexpr Layer edited_layers[] = {Layer::bedrock, Layer::soil};
+}
 
 std::uint64_t mark_of(std::uint64_t count) {  // splitmix64, by Sebastiano Vigna
   std::uint64_t z = (count + 1) * 0x9e3779b97f4a7c15ULL;
@@ -13,7 +20,7 @@ void LooseGround::begin() {
   if (epoch_ > 0 && steps_ == state_.steps) return;
   ++epoch_;
   steps_ = state_.steps;
-  at_rest_flags_ = {state_.bedrock_loose, state_.soil_loose};
+  at_rest_flags_ = state_.flags;
   sums_ = {};
 }
 
@@ -23,32 +30,29 @@ void LooseGround::add(std::size_t which, std::uint64_t by, LooseMark& mark) {
 }
 
 void LooseGround::painted(Layer layer, LooseMark& mark) {
-  const bool bedrock = layer == Layer::bedrock;
-  if (!bedrock && layer != Layer::soil) return;
+  const auto* const which = std::find(std::begin(edited_layers), std::end(edited_layers), layer);
+  if (which == std::end(edited_layers)) return;
   if (mark.epoch != epoch_) mark = {epoch_, {}, mark.epoch > 0};
-  const std::uint64_t own = mark_of(++marks_);
-  if (bedrock) add(0, own, mark);
-  if (!bedrock || state_.terrain.has(Layer::soil)) add(1, own, mark);
+  add(static_cast<std::size_t>(which - edited_layers), mark_of(++marks_), mark);
   set_flags();
 }
 
 void LooseGround::returned(const Stroke& stroke, bool complete, LooseMark& mark) {
-  const bool bedrock = stroke.changed(Layer::bedrock), soil = stroke.changed(Layer::soil);
-  if (!bedrock && !soil) return;
+  if (!stroke.changed(Layer::bedrock) && !stroke.changed(Layer::soil)) return;
   const bool cancels = mark.epoch == epoch_;
   const bool fresh = !complete || !cancels || mark.older;
   LooseMark now{epoch_, {}, false};
   const std::uint64_t own = fresh ? mark_of(++marks_) : 0;
-  const auto turn_back = [&](std::size_t which) { add(which, own - (cancels ? mark.marks[which] : 0), now); };
-  if (bedrock) turn_back(0);
-  if (soil || state_.terrain.has(Layer::soil)) turn_back(1);
+  for (std::size_t which = 0; which < sums_.size(); ++which)
+    if (stroke.changed(edited_layers[which])) add(which, own - (cancels ? mark.marks[which] : 0), now);
   mark = now;
   set_flags();
 }
 
 void LooseGround::set_flags() {
-  state_.bedrock_loose = at_rest_flags_[0] || sums_[0] != 0;
-  state_.soil_loose = at_rest_flags_[1] || sums_[1] != 0;
+  state_.flags = at_rest_flags_;
+  for (std::size_t which = 0; which < sums_.size(); ++which)
+    if (sums_[which] != 0) pipeline_.edited(edited_layers[which]);
 }
 
 }  // namespace desert_sim

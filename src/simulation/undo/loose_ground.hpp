@@ -1,12 +1,12 @@
 #pragma once
-/// Which of bedrock and soil edits have made loose, so that they avalanche until they have come to rest
-/// (SimulationState::bedrock_loose, soil_loose). An undo that brings the ground back to what it was since the
+/// What edits of bedrock and soil make processes keep in mind (Process::edited): that they are loose, so that
+/// they avalanche until they have come to rest. An undo that brings the ground back to what it was since the
 /// last step brings these back, too: otherwise rock that was at rest would begin to slide.
 ///
 /// Each edit adds a number of its own (a mark) to a sum, and its undo takes it away again. As long as no step
 /// is made, a sum of 0 says that the ground is what it was after the last step.
 
-#include "src/simulation/state.hpp"
+#include "src/simulation/pipeline/pipeline.hpp"
 #include "src/simulation/undo/stroke.hpp"
 
 namespace desert_sim {
@@ -16,7 +16,7 @@ std::uint64_t mark_of(std::uint64_t count);
 
 class LooseGround {
  public:
-  explicit LooseGround(SimulationState& state) : state_(state) {}
+  LooseGround(SimulationState& state, Pipeline& pipeline) : state_(state), pipeline_(pipeline) {}
 
   /// Before a command changes the ground: what was loose after the last step.
   void begin();
@@ -30,10 +30,11 @@ class LooseGround {
   void set_flags();
 
   SimulationState& state_;
+  Pipeline& pipeline_;
   std::uint64_t epoch_ = 0, marks_ = 0;
   std::uint64_t steps_ = 0;              ///< of the epoch
-  std::array<bool, 2> at_rest_flags_{};  ///< bedrock_loose and soil_loose where the sums are 0
-  std::array<std::uint64_t, 2> sums_{};  ///< of bedrock, of soil
+  ProcessFlags at_rest_flags_;           ///< where the sums are 0
+  std::array<std::uint64_t, 2> sums_{};  ///< of `edited_layers`
 };
 
 }  // namespace desert_sim

@@ -145,7 +145,7 @@ class Particles : public test::OnBackend {
            "}\nterrain: [noise: {layer: bedrock, low: 0, high: 0.01, scale: 0.1},\n"
            "  noise: {layer: sand, low: 0, high: 0.01, scale: 0.06, threshold: 0.3},\n"
            "  obstacle: {shape: box, x: 0.32, y: 0.24, size_x: 0.08, size_y: 0.08, height: 0.05}]\n"
-           "particle: {kind: wang}\nrun: {time_step: 4}\n" +
+           "sand: {model: wang}\nrun: {time_step: 4}\n" +
            more;
   }
 };
@@ -185,7 +185,7 @@ TEST_P(Particles, LeaveObstaclesBare) {
 TEST_P(Particles, StayInAWindBelowTheThreshold) {
   const std::string level =
       "grid: {width: 32, height: 32, cell_size: 0.01}\n"
-      "terrain: [noise: {layer: sand, low: 0.02, high: 0.021}]\nparticle: {kind: wang}\n";
+      "terrain: [noise: {layer: sand, low: 0.02, high: 0.021}]\nsand: {model: wang}\n";
   for (const auto& [speed, moves] : {std::pair{"0", false}, {"6", false}, {"8", true}}) {
     auto s = simulation(level + "wind: {speed: " + speed + "}\n");
     const std::vector<Quanta> before = test::quanta(*s, Layer::sand);

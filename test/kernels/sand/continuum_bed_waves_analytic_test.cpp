@@ -38,7 +38,7 @@ class BedWaves : public test::OnBackend {
         "grid: {width: 128, height: 16, cell_size: " + std::to_string(cell) + "}\n" +
             "wind: {speed: " + std::to_string(test::wind_of(ratio)) +
             ", direction_deg: " + std::to_string(alpha * 180 / pi) + "}\n" +
-            "saltation: {model: continuum}\n"
+            "sand: {model: continuum}\n"
             "continuum: {saturation_length: 2}\navalanching: {enabled: false}\nrun: {time_step: " +
             std::to_string(seconds / steps) + "}\n",
         [&](int x, int) { return 2 + height * std::cos(2 * pi * (x + 0.5) / cells); });

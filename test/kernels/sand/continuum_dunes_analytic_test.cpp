@@ -12,7 +12,7 @@ namespace {
 const std::string heap =
     "grid: {width: 120, height: 80}\n"
     "terrain: [cone: {layer: sand, shape: gaussian, x: 40, y: 40, radius: 8, height: 4}]\n"
-    "wind: {speed: 9}\nsaltation: {model: continuum}\n";
+    "wind: {speed: 9}\nsand: {model: continuum}\n";
 
 /// Centre of the sand, in the air and on the ground, along x [m], and the height of its top.
 std::pair<double, double> place_and_height(const Simulation& s) {
@@ -54,8 +54,9 @@ TEST_P(ContinuumDunes, MoveAsFarAtAnyTimeStep) {
 
 TEST_P(ContinuumDunes, DivideStepsThatAreTooLongForTheWind) {
   const auto parts = [&](double speed, double step) {
-    const std::string yaml = "grid: {width: 40, height: 24}\nsaltation: {model: continuum}\nwind: {speed: " +
-                             std::to_string(speed) + "}\nrun: {time_step: " + std::to_string(step) + "}\n";
+    const std::string yaml =
+        "grid: {width: 40, height: 24}\nsand: {model: continuum}\nwind: {speed: " + std::to_string(speed) +
+        "}\nrun: {time_step: " + std::to_string(step) + "}\n";
     return simulation(yaml)->pipeline().parts();
   };
   EXPECT_EQ(parts(9, 600), 1);
@@ -70,7 +71,7 @@ TEST_P(ContinuumDunes, OverOpenEdgesNothingIsLost) {
     auto s = after(
         "grid: {width: 40, height: 32, boundary: open}\nterrain: [uniform: {layer: sand, value: 1}]\n"
         "wind: {speed: 10, direction_deg: " +
-            std::to_string(degrees) + "}\nsaltation: {model: continuum, influx: 5.0e-6}\n",
+            std::to_string(degrees) + "}\nsand: {model: continuum}\nsaltation: {influx: 5.0e-6}\n",
         1800, 30 * 1800);
     const MaterialBalance sand = s->balance()[static_cast<std::size_t>(Material::sand)];
     EXPECT_GT(sand.in, 0);
@@ -83,7 +84,7 @@ TEST_P(ContinuumDunes, TheFlowSeparatesBehindAStep) {
   auto s = simulation(
       "grid: {width: 120, height: 20, boundary: open}\n"
       "terrain: [column: {layer: bedrock, x: 30, y: 10, size_x: 20, size_y: 400, height: 4}]\n"
-      "wind: {speed: 9}\nsaltation: {model: continuum}\nshear_stress: {in_phase: 0, in_quadrature: 0}\n");
+      "wind: {speed: 9}\nsand: {model: continuum}\nshear_stress: {in_phase: 0, in_quadrature: 0}\n");
   s->pipeline().refresh_derived();
   const std::vector<float> wind = test::real(*s, Layer::wind_x);
   const auto at = [&](int x) { return static_cast<double>(wind[static_cast<std::size_t>(10 * 120 + x)]); };
@@ -98,7 +99,7 @@ TEST_P(ContinuumDunes, TheFlowSeparatesBehindAStep) {
 /// The largest stress is before the crest, and a ridge across the wind speeds it up.
 TEST_P(ContinuumDunes, TheStressIsLargestBeforeTheCrest) {
   auto s = test::with_sand(
-      exec(), "grid: {width: 96, height: 8, cell_size: 1}\nwind: {speed: 9}\nsaltation: {model: continuum}\n",
+      exec(), "grid: {width: 96, height: 8, cell_size: 1}\nwind: {speed: 9}\nsand: {model: continuum}\n",
       [](int x, int) { return 2 + std::cos(2 * pi * (x + 0.5) / 48); });
   s->pipeline().refresh_derived();
   const std::vector<float> wind = test::real(*s, Layer::wind_x);
@@ -111,7 +112,7 @@ TEST_P(ContinuumDunes, TheStressIsLargestBeforeTheCrest) {
 /// Sand that is wet, overgrown, under water or under an obstacle stays; between plants it gathers.
 TEST_P(ContinuumDunes, SparesWhatHoldsTheSand) {
   const std::string bed =
-      "grid: {width: 48, height: 24}\nwind: {speed: 9}\nsaltation: {model: continuum, flux: true}\n"
+      "grid: {width: 48, height: 24}\nwind: {speed: 9}\nsand: {model: continuum}\nsaltation: {flux: true}\n"
       "shear_stress: {in_phase: 0, in_quadrature: 0}\n"
       "terrain: [uniform: {layer: sand, value: 2}";
   for (const char* held :
@@ -135,7 +136,7 @@ TEST_P(ContinuumDunes, SandPassesObstacles) {
   auto s = after(
       "grid: {width: 48, height: 24}\nterrain: [uniform: {layer: sand, value: 2}, "
       "obstacle: {shape: box, x: 24, y: 12, size_x: 4, size_y: 4, height: 0.0}]\n"
-      "wind: {speed: 9}\nsaltation: {model: continuum}\nshear_stress: {in_phase: 0, in_quadrature: 0}\n",
+      "wind: {speed: 9}\nsand: {model: continuum}\nshear_stress: {in_phase: 0, in_quadrature: 0}\n",
       600, 6000);
   const std::vector<float> sand = s->terrain().values(Layer::sand),
                            obstacle = s->terrain().values(Layer::obstacle);
@@ -153,7 +154,7 @@ TEST_P(ContinuumDunes, SandThatPassesWearsRock) {
   const auto worn = [&](double influx, double seconds) {
     auto s = after(
         "grid: {width: 24, height: 24, boundary: open}\nwind: {speed: 9}\nabrasion: {rate: 0.001}\n"
-        "saltation: {model: continuum, influx: " +
+        "sand: {model: continuum}\nsaltation: {influx: " +
             std::to_string(influx) +
             "}\n"
             "shear_stress: {in_phase: 0, in_quadrature: 0}\nterrain: [uniform: {layer: bedrock, value: 5}]\n",

@@ -9,7 +9,7 @@ namespace desert_sim {
 namespace {
 
 constexpr const char* level =
-    "saltation: {model: continuum, flux: true}\n"
+    "sand: {model: continuum}\nsaltation: {flux: true}\n"
     "shear_stress: {in_phase: 0, in_quadrature: 0}\navalanching: {enabled: false}\n";
 
 std::string windy(double ratio, double degrees) {
@@ -57,7 +57,7 @@ TEST_P(ContinuumFlux, FollowsTheLawThatIsNamed) {
 TEST_P(ContinuumFlux, IsNothingBelowTheThreshold) {
   auto s = simulation(
       "grid: {width: 24, height: 24}\nterrain: [noise: {layer: sand, low: 1, high: 1.5, scale: 12}]\n" +
-      windy(0.8, 20) + "saltation: {model: continuum}\nrun: {time_step: 3600}\n" +
+      windy(0.8, 20) + "sand: {model: continuum}\nrun: {time_step: 3600}\n" +
       "shear_stress: {in_phase: 0, in_quadrature: 0}\n");
   const std::vector<Quanta> before = test::quanta(*s, Layer::sand);
   test::run(*s, 24);

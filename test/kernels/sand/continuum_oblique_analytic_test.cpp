@@ -14,7 +14,7 @@ class ObliqueWinds : public test::OnBackend {
  protected:
   static std::string world(int cells, double degrees, double speed) {
     return "grid: {width: " + std::to_string(cells) + ", height: " + std::to_string(cells) +
-           ", cell_size: 1}\nsaltation: {model: continuum}\nwind: {speed: " + std::to_string(speed) +
+           ", cell_size: 1}\nsand: {model: continuum}\nwind: {speed: " + std::to_string(speed) +
            ", direction_deg: " + std::to_string(degrees) + "}\nrun: {time_step: 600}\n";
   }
   /// Rms of what differs from the mean over 3 × 3 cells: of waves of less than five cells, hardly of others

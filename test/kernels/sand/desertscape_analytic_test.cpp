@@ -30,7 +30,7 @@ TEST_P(Desertscape, FluxOverADeepBedIsThatOfHops) {
     auto s = simulation(
         "grid: {width: 96, height: 48, boundary: open}\nterrain: [uniform: {layer: sand, "
         "value: 60}]\n" +
-        even_wind + "saltation: {model: desertscape_2019, lift: 0.3, hop_spread: 0, flux: true}\n" +
+        even_wind + "sand: {model: desertscape_2019}\nsaltation: {lift: 0.3, hop_spread: 0, flux: true}\n" +
         "reptation: {method: off}\ndesertscape_2019: {slab: " + std::to_string(slab) +
         "}\nrun: {time_step: " + std::to_string(dt) + "}\n");
     const double flux = 0.3 * 4 / 0.6, time = 8;
@@ -50,7 +50,7 @@ TEST_P(Desertscape, InfluxIsThatOfTheParameter) {
     auto s = simulation(
         "grid: {width: 64, height: 48, boundary: open}\nterrain: [uniform: {layer: bedrock, "
         "value: 0}]\n" +
-        even_wind + "saltation: {model: desertscape_2019, lift: 0.3, hop_spread: 0, influx: " +
+        even_wind + "sand: {model: desertscape_2019}\nsaltation: {lift: 0.3, hop_spread: 0, influx: " +
         std::to_string(influx) + "}\nreptation: {method: off}\n");
     test::run(*s, 20);
     const auto sand = s->balance()[static_cast<std::size_t>(Material::sand)];
@@ -62,7 +62,7 @@ TEST_P(Desertscape, InfluxIsThatOfTheParameter) {
 /// A step is divided into at most 256 parts, in each of which a fourth of the cells gives a slab.
 TEST_P(Desertscape, LongerStepsAreRefused) {
   try {
-    simulation("saltation: {model: desertscape_2019}\nrun: {time_step: 7}\n");
+    simulation("sand: {model: desertscape_2019}\nrun: {time_step: 7}\n");
     FAIL() << "no error";
   } catch (const ConfigError& e) {
     EXPECT_NE(std::string(e.what()).find("run.time_step: = 7 s is 280 times desertscape_2019.slab / (4 "
@@ -79,7 +79,7 @@ TEST_P(Desertscape, BouncesWearRockAsHopsDoPerShareThatBounces) {
     auto s = simulation(
         "grid: {width: 96, height: 48, boundary: open}\nterrain: [uniform: {layer: bedrock, "
         "value: 50}]\n" +
-        even_wind + "saltation: {influx: 0.2, hop_spread: 0, bare_depth: 1, model: " + model +
+        even_wind + "saltation: {influx: 0.2, hop_spread: 0, bare_depth: 1}\nsand: {model: " + model +
         "}\nabrasion: {rate: 1.0e-3, cover: 1}\nreptation: {method: off}\n"
         "desertscape_2019: {slab: 0.02}\n");
     const auto rock = [&s] {
@@ -104,7 +104,8 @@ TEST_P(Desertscape, NothingRestsOnObstacles) {
       "grid: {width: 40, height: 30}\nterrain:\n  - uniform: {layer: sand, value: 2}\n"
       "  - uniform: {layer: airborne_sand, value: 0.3}\n"
       "  - column: {layer: obstacle, shape: cylinder, x: 20, y: 15, size_x: 9, size_y: 9, height: 1}\n"
-      "run: {time_step: 0.02}\nwind: {speed: 0.05, projection: false}\nsaltation: {model: desertscape_2019, "
+      "run: {time_step: 0.02}\nwind: {speed: 0.05, projection: false}\nsand: {model: "
+      "desertscape_2019}\nsaltation: {"
       "hop_spread: 0}\n");
   const std::vector<float> solid = test::real(*s, Layer::obstacle);
   const std::vector<Quanta> before = test::quanta(*s, Layer::sand);
@@ -136,7 +137,7 @@ TEST_P(Desertscape, ImpactsLetABumpCreep) {
     return static_cast<double>(test::quanta(*s, Layer::sand)[12 * 24 + 12]) * s->terrain().scale().quantum();
   };
   const std::string falling =
-      "wind: {speed: 2, projection: false}\nsaltation: {model: desertscape_2019, lift: 0}\n";
+      "wind: {speed: 2, projection: false}\nsand: {model: desertscape_2019}\nsaltation: {lift: 0}\n";
   const double without = bump(falling + "reptation: {method: off}\n");
   ASSERT_GT(without, 2.45) << "slabs have come down on it";
   const double by_little = without - bump(falling + "reptation: {slab: 0.01}\n"),
@@ -154,7 +155,8 @@ TEST_P(Desertscape, ImpactsLetABumpCreep) {
 TEST_P(Desertscape, SandInTheAirFliesOn) {
   auto s = simulation(
       "grid: {width: 32, height: 32}\nterrain: [uniform: {layer: sand, value: 1}, uniform: {layer: "
-      "airborne_sand, value: 0.5}]\nwind: {speed: 5}\nsaltation: {model: desertscape_2019, lift: 0}\n");
+      "airborne_sand, value: 0.5}]\nwind: {speed: 5}\nsand: {model: desertscape_2019}\nsaltation: {lift: "
+      "0}\n");
   s->step();
   for (Quanta q : test::quanta(*s, Layer::airborne_sand)) ASSERT_EQ(q, 0);
   test::expect_sound(*s, "after a step");

@@ -19,8 +19,8 @@ std::string sheet(double depth, double slab, double creeping, double speed, int 
   return "grid: {width: " + size + ", height: " + size +
          "}\nterrain: [uniform: {layer: sand, value: " + std::to_string(depth) +
          "}]\nwind: {speed: " + std::to_string(speed) +
-         ", speedup_law: venturi, speedup: 0, warping: false, projection: false}\nsaltation: {model: "
-         "desertscape_2019, lift: " +
+         ", speedup_law: venturi, speedup: 0, warping: false, projection: false}\nsand: {model: "
+         "desertscape_2019}\nsaltation: {lift: " +
          lift + "}\ndesertscape_2019: {slab: " + lift + "}\nreptation: {slab: " + std::to_string(creeping) +
          "}\nseed: " + std::to_string(seed) + "\n";
 }

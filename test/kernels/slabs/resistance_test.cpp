@@ -26,7 +26,7 @@ TEST_P(SlabResistance, WherePlantsAreFullyEffectiveNoSlabIsTakenAndEachStays) {
   auto s = simulation(grid + bed +
                       "  - column: {layer: grass, x: 12, y: 24, size_x: 24, size_y: 48, height: 0.4}\n"
                       "  - column: {layer: shrub, x: 12, y: 24, size_x: 24, size_y: 48, height: 0.6}\n"
-                      "wind: {speed: 3}\nslab_model: {kind: nield_baas, slab_height: 0.1}\n");
+                      "wind: {speed: 3}\nsand: {model: nield_baas}\nslab_model: {slab_height: 0.1}\n");
   test::run(*s, 2);  // so few that no slope becomes too steep
   const std::vector<float> sand = metres(*s, Layer::sand);
   double at_edge = 0, inside = 0, bare = 0;
@@ -51,8 +51,8 @@ double slabs_taken(Simulation& s) {
 }
 const std::string open_grid = test::grid_yaml(side, side, "open");
 const std::string far = "wind: {speed: 40}\n";
-std::string model(const std::string& more) {
-  return far + "slab_model: {slab_height: 0.1, hop_time: 10, " + more + "}\n";
+std::string model(const std::string& name, const std::string& more = "") {
+  return far + "sand: {model: " + name + "}\nslab_model: {slab_height: 0.1, hop_time: 10" + more + "}\n";
 }
 constexpr double slab_cells = side * side;
 
@@ -60,7 +60,7 @@ TEST_P(SlabResistance, OfPlantsIsTheShareOfSlabsThatStay) {
   auto s = simulation(open_grid + bed +
                       "  - uniform: {layer: grass, value: 0.9}\n"
                       "  - uniform: {layer: mesquite, value: -0.4}\n" +
-                      model("kind: nield_baas"));
+                      model("nield_baas"));
   s->step();
   EXPECT_NEAR(slabs_taken(*s), 0.5 * slab_cells, 4 * std::sqrt(0.5 * slab_cells));
 }
@@ -69,7 +69,7 @@ TEST_P(SlabResistance, OfPlantsIsTheShareOfSlabsThatStay) {
 TEST_P(SlabResistance, PlantsGrowByTheBurialOfTheYear) {
   const std::string plants =
       "  - uniform: {layer: grass, value: 0.2}\n  - uniform: {layer: shrub, value: 0.1}\n"
-      "wind: {speed: 3}\nslab_model: {kind: nield_baas, slab_height: 0.1}\n";
+      "wind: {speed: 3}\nsand: {model: nield_baas}\nslab_model: {slab_height: 0.1}\n";
   struct Run {
     const char* settings;
     int steps;
@@ -108,7 +108,7 @@ TEST_P(SlabResistance, PlantsHoldSteeperSlopes) {
     auto s = simulation(grid + "terrain:\n  - uniform: {layer: sand, value: 1}\n" +
                         std::string(planted ? "  - uniform: {layer: shrub, value: 0.35}\n" : "") +
                         "wind: {speed: 3}\nslab_plants: {growth_time: 1.0e9}\n"
-                        "slab_model: {kind: nield_baas, slab_height: 0.1}\n");
+                        "sand: {model: nield_baas}\nslab_model: {slab_height: 0.1}\n");
     test::run(*s, 300);
     const std::vector<float> sand = metres(*s, Layer::sand);
     float steepest = 0;
@@ -126,7 +126,8 @@ TEST_P(SlabResistance, PlantsHoldSteeperSlopes) {
 // ---- snow
 
 const std::string snow =
-    "wind: {speed: 3}\nrun: {time_step: 86400}\nslab_model: {kind: snow, slab_height: 0.1, poll_time: "
+    "wind: {speed: 3}\nrun: {time_step: 86400}\nsand: {model: snow}\nslab_model: {slab_height: 0.1, "
+    "poll_time: "
     "86400}\n";
 
 /// Day after which the sand (that is, the snow) is the same for ever.
@@ -184,9 +185,9 @@ TEST_P(ForcedErosion, TakesAsManySlabsAsCellsArePolled) {
     for (const auto& [time_step, polls] : {std::pair{"1", 1.0}, {"0.3", 0.3}, {"2.5", 2.5}}) {
       SCOPED_TRACE(testing::Message() << polling << ", " << time_step);
       const std::string world = open_grid + half + "run: {time_step: " + time_step + "}\n",
-                        kind = std::string("kind: werner, polling: ") + polling;
-      auto free = simulation(world + model(kind)),
-           forced = simulation(world + model(kind + ", forced_erosion: true"));
+                        turns = std::string(", polling: ") + polling;
+      auto free = simulation(world + model("werner", turns)),
+           forced = simulation(world + model("werner", turns + ", forced_erosion: true"));
       free->step();
       forced->step();
       EXPECT_NEAR(slabs_taken(*free), 0.5 * polls * slab_cells, 4 * std::sqrt(polls * slab_cells));
@@ -198,7 +199,7 @@ TEST_P(ForcedErosion, TakesAsManySlabsAsCellsArePolled) {
 TEST_P(ForcedErosion, EndsWhereNoSandIsLeft) {
   auto s = simulation(
       open_grid + "terrain:\n  - column: {layer: sand, x: 12, y: 24, size_x: 6, size_y: 48, height: 0.2}\n" +
-      model("kind: werner, polling: non_repeated, forced_erosion: true"));
+      model("werner", ", polling: non_repeated, forced_erosion: true"));
   s->step();
   EXPECT_NEAR(slabs_taken(*s), 2 * 6 * 48, 0.01) << "two slabs of 6 x 48 cells";
 }

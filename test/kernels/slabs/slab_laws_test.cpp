@@ -252,9 +252,9 @@ class SlabInflux : public test::OnBackend {};
 /// 0.01 m² a second over an edge of 48 m are 4.8 slabs; they come by Poisson's law.
 TEST_P(SlabInflux, ComesInOverTheOpenWindwardEdge) {
   for (const int degrees : {0, 90}) {
-    auto s = simulation(test::grid_yaml(48, 48, "open") +
-                        "wind: {speed: 5, direction_deg: " + std::to_string(degrees) +
-                        "}\nsaltation: {influx: 0.01}\nslab_model: {kind: werner, slab_height: 0.1}\n");
+    auto s = simulation(
+        test::grid_yaml(48, 48, "open") + "wind: {speed: 5, direction_deg: " + std::to_string(degrees) +
+        "}\nsaltation: {influx: 0.01}\nsand: {model: werner}\nslab_model: {slab_height: 0.1}\n");
     test::run(*s, 100);
     const MaterialBalance sand = s->balance()[static_cast<std::size_t>(Material::sand)];
     EXPECT_NEAR(sand.cubic_metres(sand.in) / 0.1, 480, 4 * std::sqrt(480));
@@ -268,11 +268,12 @@ class SlabTurns : public test::OnBackend {};
 /// on which each slab that is taken leaves the grid.
 TEST_P(SlabTurns, ShortStepsPollAsOftenAsLongOnes) {
   for (const char* polling : {"repeated", "non_repeated"}) {
-    auto s = simulation(test::grid_yaml(48, 48, "open") +
-                        "terrain:\n  - uniform: {layer: sand, value: 2}\nwind: {speed: 40}\n"
-                        "run: {time_step: 0.025}\nslab_model: {kind: werner, slab_height: 0.1, hop_time: 10, "
-                        "polling: " +
-                        polling + "}\n");
+    auto s = simulation(
+        test::grid_yaml(48, 48, "open") +
+        "terrain:\n  - uniform: {layer: sand, value: 2}\nwind: {speed: 40}\n"
+        "run: {time_step: 0.025}\nsand: {model: werner}\nslab_model: {slab_height: 0.1, hop_time: 10, "
+        "polling: " +
+        polling + "}\n");
     test::run(*s, 40);
     const MaterialBalance sand = s->balance()[static_cast<std::size_t>(Material::sand)];
     EXPECT_NEAR(sand.cubic_metres(sand.out) / 0.1, 48 * 48, 4 * 48) << polling;

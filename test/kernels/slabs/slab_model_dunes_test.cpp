@@ -15,12 +15,13 @@ namespace {
 
 constexpr int slab_side = 96;
 
-test::Pattern in_parallel(const std::string& model, int slabs, int steps, int seed) {
+test::Pattern in_parallel(const std::string& model, const std::string& repose, int slabs, int steps,
+                          int seed) {
   const std::string size = std::to_string(slab_side);
   Running scene(parse_scenario_text(
-      "grid: {width: " + size + ", height: " + size +
-          "}\nterrain: [uniform: {layer: sand, value: " + std::to_string(slabs / 3.0) +
-          "}]\nwind: {speed: 5}\nslab_model: {" + model + "}\nseed: " + std::to_string(seed) + "\n",
+      "grid: {width: " + size + ", height: " + size + "}\nterrain: [uniform: {layer: sand, value: " +
+          std::to_string(slabs / 3.0) + "}]\nwind: {speed: 5}\nslab_model: {repose_deg: " + repose +
+          "}\nsand: {model: " + model + "}\nseed: " + std::to_string(seed) + "\n",
       "slabs"));
   scene.run(steps).expect_balanced();
   std::vector<double> heights;
@@ -29,11 +30,11 @@ test::Pattern in_parallel(const std::string& model, int slabs, int steps, int se
   return test::pattern_of(heights);
 }
 
-void compare(const std::string& model, int slabs, int steps,
+void compare(const std::string& model, const std::string& repose, int slabs, int steps,
              test::SequentialSlabs (*make)(int cells, int slabs, unsigned seed)) {
   std::vector<test::Pattern> parallel, sequential;
   for (int seed = 1; seed <= test::seeds; ++seed) {
-    parallel.push_back(in_parallel(model, slabs, steps, seed));
+    parallel.push_back(in_parallel(model, repose, slabs, steps, seed));
     test::SequentialSlabs reference = make(slab_side, slabs, static_cast<unsigned>(seed));
     reference.run(steps);
     sequential.push_back(test::pattern_of({reference.height.begin(), reference.height.end()}));
@@ -41,10 +42,10 @@ void compare(const std::string& model, int slabs, int steps,
   test::expect_alike(parallel, sequential);
 }
 
-TEST(SlabModels, WernerIsAsOnePollAfterTheOther) { compare("kind: werner", 3, 200, test::sequential_werner); }
+TEST(SlabModels, WernerIsAsOnePollAfterTheOther) { compare("werner", "30", 3, 200, test::sequential_werner); }
 
 TEST(SlabModels, MomijiIsAsOnePollAfterTheOther) {
-  compare("kind: momiji, repose_deg: 33.7", 6, 120, test::sequential_momiji);
+  compare("momiji", "33.7", 6, 120, test::sequential_momiji);
 }
 
 /// Six years of nield_nebkha on a smaller grid: from bare ground, plants have caught sand in mounds.
@@ -72,7 +73,7 @@ TEST(SlabModels, NebkhasHaveTheirSandWherePlantsAre) {
   EXPECT_GT(effective_at_top, 0.3);
   EXPECT_GT(highest, 30) << "werner without plants reaches fewer";
 
-  Running without(shipped("nield_nebkha", {"grid.width=128", "grid.height=128", "slab_model.kind=werner"}));
+  Running without(shipped("nield_nebkha", {"grid.width=128", "grid.height=128", "sand.model=werner"}));
   without.run(500);
   double highest_without = 0;
   for (const float depth : without.field(Layer::sand).values)

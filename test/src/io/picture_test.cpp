@@ -19,7 +19,7 @@ namespace desert_sim {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kSize = 512;
+constexpr int picture_side = 512;
 
 /// A flat grid with all layers; its south-west, south-east, north-west and north-east quarters are numbered 0
 /// to 3.
@@ -27,14 +27,15 @@ struct Ground {
   std::vector<float> elevation, layer;
   PictureInput input;
 
-  Ground() : elevation(kSize * kSize, 10), layer(kSize * kSize, 0) {
-    input.width = input.height = kSize;
+  Ground() : elevation(picture_side * picture_side, 10), layer(picture_side * picture_side, 0) {
+    input.width = input.height = picture_side;
     input.elevation = elevation.data();
   }
   void fill_quarter(int quarter, float value) {
-    for (int y = 0; y < kSize / 2; ++y)
-      for (int x = 0; x < kSize / 2; ++x)
-        layer[(y + quarter / 2 * (kSize / 2)) * kSize + x + quarter % 2 * (kSize / 2)] = value;
+    for (int y = 0; y < picture_side / 2; ++y)
+      for (int x = 0; x < picture_side / 2; ++x)
+        layer[(y + quarter / 2 * (picture_side / 2)) * picture_side + x + quarter % 2 * (picture_side / 2)] =
+            value;
   }
 };
 
@@ -56,7 +57,7 @@ TEST(Hillshade, MaterialsHaveTheirColoursInTheirPlace) {
     ground.input.*member = ground.layer.data();
     const cv::Mat picture = hillshade_picture(ground.input);
     EXPECT_EQ(picture.type(), CV_8UC3);
-    EXPECT_EQ(picture.size(), cv::Size(kSize, kSize));
+    EXPECT_EQ(picture.size(), cv::Size(picture_side, picture_side));
     const cv::Vec3b rock = pixel(picture, 1);
     EXPECT_EQ(pixel(picture, 0), rock);
     EXPECT_EQ(pixel(picture, 3), rock);
@@ -121,12 +122,14 @@ TEST(Hillshade, LightComesFromTheNorthWest) {
   // ground too.
   for (float slope : {0.002F, 0.1F, 1.0F}) {
     Ground ground;
-    for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kSize; ++x) ground.elevation[y * kSize + x] = -slope * std::abs(x - kSize / 2.0F);
+    for (int y = 0; y < picture_side; ++y)
+      for (int x = 0; x < picture_side; ++x)
+        ground.elevation[y * picture_side + x] = -slope * std::abs(x - picture_side / 2.0F);
     const cv::Mat picture = hillshade_picture(ground.input);
     EXPECT_GT(brightness(pixel(picture, 2)), brightness(pixel(picture, 3)) + 20) << slope;
-    for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kSize; ++x) ground.elevation[y * kSize + x] = -slope * std::abs(y - kSize / 2.0F);
+    for (int y = 0; y < picture_side; ++y)
+      for (int x = 0; x < picture_side; ++x)
+        ground.elevation[y * picture_side + x] = -slope * std::abs(y - picture_side / 2.0F);
     const cv::Mat other = hillshade_picture(ground.input);
     EXPECT_GT(brightness(pixel(other, 2)), brightness(pixel(other, 0)) + 20) << "the north side, " << slope;
   }
@@ -136,7 +139,8 @@ TEST(Hillshade, ExaggerationFollowsTheRelief) {
   Ground ground;
   EXPECT_EQ(picture_exaggeration(ground.input), 1) << "flat";
   const auto with_slope = [&](float slope) {
-    for (int i = 0; i < kSize * kSize; ++i) ground.elevation[i] = slope * static_cast<float>(i % kSize);
+    for (int i = 0; i < picture_side * picture_side; ++i)
+      ground.elevation[i] = slope * static_cast<float>(i % picture_side);
     return picture_exaggeration(ground.input);
   };
   EXPECT_NEAR(with_slope(0.1F), 6, 0.02);
@@ -147,14 +151,15 @@ TEST(Hillshade, ExaggerationFollowsTheRelief) {
 TEST(Hillshade, UnknownGroundIsLightGreyAndDoesNotSpread) {
   Ground ground;
   const cv::Vec3b known = pixel(hillshade_picture(ground.input), 0);
-  for (int y = 0; y < kSize / 2; ++y)
-    for (int x = 0; x < kSize / 2; ++x)
-      ground.elevation[(y + kSize / 2) * kSize + x + kSize / 2] = std::numeric_limits<float>::quiet_NaN();
+  for (int y = 0; y < picture_side / 2; ++y)
+    for (int x = 0; x < picture_side / 2; ++x)
+      ground.elevation[(y + picture_side / 2) * picture_side + x + picture_side / 2] =
+          std::numeric_limits<float>::quiet_NaN();
   const cv::Mat picture = hillshade_picture(ground.input);
   EXPECT_EQ(pixel(picture, 3), cv::Vec3b(215, 215, 215));
   EXPECT_EQ(pixel(picture, 0), known);
-  EXPECT_EQ(picture.at<cv::Vec3b>(kSize / 2, kSize * 3 / 4), known) << "just south of it";
-  EXPECT_EQ(picture.at<cv::Vec3b>(kSize / 4, kSize / 2 - 1), known) << "just west of it";
+  EXPECT_EQ(picture.at<cv::Vec3b>(picture_side / 2, picture_side * 3 / 4), known) << "just south of it";
+  EXPECT_EQ(picture.at<cv::Vec3b>(picture_side / 4, picture_side / 2 - 1), known) << "just west of it";
   std::fill(ground.elevation.begin(), ground.elevation.end(), std::numeric_limits<float>::quiet_NaN());
   EXPECT_EQ(pixel(hillshade_picture(ground.input), 1), cv::Vec3b(215, 215, 215));
 }
@@ -193,17 +198,17 @@ TEST(Hillshade, RefusesWhatItCannotShow) {
   ground.input.elevation = ground.elevation.data();
   ground.input.width = 0;
   EXPECT_THROW(hillshade_picture(ground.input), ConfigError);
-  ground.input.width = kSize;
+  ground.input.width = picture_side;
   ground.input.cell_size = 0;
   EXPECT_THROW(picture_exaggeration(ground.input), ConfigError);
   EXPECT_THROW(wind_picture(4, 4, 1, ground.layer.data(), nullptr, nullptr), ConfigError);
 }
 
 TEST(Wind, SpeedIsBrightness) {
-  std::vector<float> u(kSize * kSize, 1), v(kSize * kSize, 0);
-  for (int y = kSize / 2; y < kSize; ++y)
-    for (int x = 0; x < kSize / 2; ++x) u[y * kSize + x] = 9;  // north-west
-  const cv::Mat picture = wind_picture(kSize, kSize, 1, u.data(), v.data(), nullptr);
+  std::vector<float> u(picture_side * picture_side, 1), v(picture_side * picture_side, 0);
+  for (int y = picture_side / 2; y < picture_side; ++y)
+    for (int x = 0; x < picture_side / 2; ++x) u[y * picture_side + x] = 9;  // north-west
+  const cv::Mat picture = wind_picture(picture_side, picture_side, 1, u.data(), v.data(), nullptr);
   EXPECT_EQ(picture.size(), cv::Size(1024, 1024));
   const auto quarter = [&](int row, int column) {
     const cv::Scalar m = cv::mean(picture(cv::Rect(column + 100, row + 100, 320, 320)));
@@ -223,8 +228,8 @@ TEST(Wind, ArrowsPointWhereTheAirMoves) {
     int head_column, head_row;  // pixels from the centre
   };
   for (const Case& c : {Case{5, 0, 8, 0}, Case{-5, 0, -8, 0}, Case{0, 5, 0, -8}, Case{0, -5, 0, 8}}) {
-    std::vector<float> u(kSize * kSize, c.u), v(kSize * kSize, c.v);
-    const cv::Mat picture = wind_picture(kSize, kSize, 1, u.data(), v.data(), nullptr);
+    std::vector<float> u(picture_side * picture_side, c.u), v(picture_side * picture_side, c.v);
+    const cv::Mat picture = wind_picture(picture_side, picture_side, 1, u.data(), v.data(), nullptr);
     const cv::Vec3b ground = picture.at<cv::Vec3b>(0, 0);
     const auto drawn = [&](int column,
                            int row) {  // pixels of the arrow in a 9 x 9 box about (16, 16) + offset

@@ -14,7 +14,7 @@
 namespace desert_sim {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
 
 /// Far from the coordinates' zero, as real DEMs are.
 Raster blank(int width, int height, double cell_size) {
@@ -178,7 +178,7 @@ TEST(Resample, NoDataHasNoWeight) {
   Raster source = blank(12, 12, 1);
   std::fill(source.values.begin(), source.values.end(), 5.0F);
   for (int y = 4; y < 8; ++y)
-    for (int x = 4; x < 8; ++x) source.values[y * 12 + x] = kNaN;
+    for (int x = 4; x < 8; ++x) source.values[y * 12 + x] = nan_value;
   for (Resampling method : {Resampling::bilinear, Resampling::cubic, Resampling::average})
     for (double cell_size : {0.5, 3.0}) {
       const int cells = static_cast<int>(12 / cell_size);
@@ -200,8 +200,8 @@ TEST(Resample, RefusesGridsWithoutCells) {
   const Raster source = ramp(4, 3, 2);
   EXPECT_THROW(resample(source, 0, 3, 1, 0, 0, Resampling::average), ConfigError);
   EXPECT_THROW(resample(source, 3, 3, 0, 0, 0, Resampling::average), ConfigError);
-  EXPECT_THROW(resample(source, 3, 3, kNaN, 0, 0, Resampling::average), ConfigError);
-  EXPECT_THROW(resample(source, 3, 3, 1, kNaN, 0, Resampling::average), ConfigError);
+  EXPECT_THROW(resample(source, 3, 3, nan_value, 0, 0, Resampling::average), ConfigError);
+  EXPECT_THROW(resample(source, 3, 3, 1, nan_value, 0, Resampling::average), ConfigError);
   Raster wrong = source;
   wrong.values.pop_back();
   EXPECT_THROW(resample(wrong, 3, 3, 1, 0, 0, Resampling::average), ConfigError);
@@ -211,8 +211,8 @@ TEST(FillNoData, FillsHolesFromAround) {
   Raster r = ramp(60, 50, 1);
   const Raster whole = r;
   for (int y = 20; y < 26; ++y)
-    for (int x = 30; x < 36; ++x) r.values[y * 60 + x] = kNaN;
-  r.values[0] = kNaN;
+    for (int x = 30; x < 36; ++x) r.values[y * 60 + x] = nan_value;
+  r.values[0] = nan_value;
   fill_nodata(r);
   EXPECT_EQ(r.nodata_count(), 0);
   for (std::size_t i = 0; i < r.values.size(); ++i) EXPECT_NEAR(r.values[i], whole.values[i], 0.6) << i;
@@ -221,7 +221,7 @@ TEST(FillNoData, FillsHolesFromAround) {
 
 TEST(FillNoData, ReachesEverywhereFromOneCell) {
   Raster r = blank(300, 400, 1);
-  std::fill(r.values.begin(), r.values.end(), kNaN);
+  std::fill(r.values.begin(), r.values.end(), nan_value);
   r.values[5] = 7;
   fill_nodata(r);
   for (float v : r.values) ASSERT_FLOAT_EQ(v, 7);
@@ -230,7 +230,7 @@ TEST(FillNoData, ReachesEverywhereFromOneCell) {
 TEST(FillNoData, RefusesWhenNothingIsValid) {
   Raster r = blank(3, 2, 1);
   fill_nodata(r);  // no holes: nothing to do
-  std::fill(r.values.begin(), r.values.end(), kNaN);
+  std::fill(r.values.begin(), r.values.end(), nan_value);
   EXPECT_THROW(fill_nodata(r), ConfigError);
   EXPECT_EQ(r.nodata_count(), 6);
 }

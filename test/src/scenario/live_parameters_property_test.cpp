@@ -111,15 +111,15 @@ TEST_P(LiveParameters, TheWindThatBlowsIsWhatChanges) {
 TEST_P(LiveParameters, SweepsThatWereCountedAreKept) {
   const auto s = simulation(world + "avalanching: {quality: converged}\n");
   test::run(*s, 20);
-  const double before = s->mean_avalanche_iterations();
+  const double before = s->mean_count(avalanche_iterations);
   EXPECT_GE(before, 12);  // of a cycle
   for (const char* change :
        {"saltation.lift=0.5", "avalanching.tolerance=0.002", "avalanching.quality=fast"}) {
     s->apply(command::SetParameters{{change}});
-    EXPECT_EQ(s->mean_avalanche_iterations(), before) << change;
+    EXPECT_EQ(s->mean_count(avalanche_iterations), before) << change;
   }
   s->step();
-  EXPECT_NEAR(s->mean_avalanche_iterations(), (20 * before + 8) / 21, 1e-9);
+  EXPECT_NEAR(s->mean_count(avalanche_iterations), (20 * before + 8) / 21, 1e-9);
 }
 
 TEST_P(LiveParameters, RefusedChangesChangeNothing) {

@@ -88,7 +88,8 @@ TEST_P(FullCells, SmallCellsOfSnow) {
   filled(
       "grid: {width: 24, height: 16, cell_size: 0.06, boundary: open}\n"
       "terrain: [{uniform: {layer: sand, value: 0.1}}]\nwind: {speed: 3}\n"
-      "slab_model: {kind: snow, slab_height: 0.02, hop_time: 0.06, poll_time: 10 min}\nrun: {time_step: 60}\n"
+      "sand: {model: snow}\nslab_model: {slab_height: 0.02, hop_time: 0.06, poll_time: 10 min}\nrun: "
+      "{time_step: 60}\n"
       "water: {enabled: true, springs: [{x: 0.7, y: 0.5, radius: 0.1, discharge: 0.1}]}\n",
       150);
 }
@@ -96,14 +97,15 @@ TEST_P(FullCells, SmallCellsOfSnow) {
 TEST_P(FullCells, SandComesInOverTheEdgesWithoutEnd) {
   for (const std::string model :
        {"saltation: {influx: 100}\n", "saltation: {influx: 100, bounce_on_sand: 0}\n",
-        "saltation: {influx: 100, model: continuum}\n", "saltation: {influx: 100, model: desertscape_2019}\n",
-        "saltation: {influx: 100}\nslab_model: {kind: werner}\n",
-        "saltation: {influx: 100}\nslab_model: {kind: momiji}\n"})
+        "sand: {model: continuum}\nsaltation: {influx: 100}\n",
+        "sand: {model: desertscape_2019}\nsaltation: {influx: 100}\n",
+        "saltation: {influx: 100}\nsand: {model: werner}\n",
+        "saltation: {influx: 100}\nsand: {model: momiji}\n"})
     filled(open_sand + "wind: {speed: 10}\n" + model, 200);
   filled(
       "grid: {width: 24, height: 16, cell_size: 0.01, boundary: open}\n"
       "terrain: [{uniform: {layer: sand, value: 0.1}}]\nwind: {speed: 12}\nsaltation: {influx: 1}\n"
-      "particle: {kind: wang}\n",
+      "sand: {model: wang}\n",
       250);
 }
 

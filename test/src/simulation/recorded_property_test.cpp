@@ -37,7 +37,7 @@ TEST(Recorded, JournalIsReplayed) {
   std::size_t next = 0;
   while (session.ticks() < journal.ticks) {
     for (; next < journal.entries.size() && journal.entries[next].tick == session.ticks(); ++next)
-      session.apply(journal.entries[next].command);
+      session.replay(journal.entries[next].command);
     session.step();
   }
   EXPECT_EQ(next, journal.entries.size());

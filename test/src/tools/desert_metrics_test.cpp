@@ -68,11 +68,11 @@ TEST_F(MetricsOf, AHeapThatTheWindMovesToTheEast) {
 }
 
 TEST_F(MetricsOf, ASlabModelCountsStacksInSlabs) {
-  const std::string slabs = folder_.write(
-      "slabs.yaml",
-      "grid: {width: 64, height: 64, cell_size: 1, boundary: periodic}\n"
-      "terrain: [uniform: {layer: sand, value: 1}]\nwind: {speed: 5}\nslab_model: {kind: werner}\n"
-      "run: {time_step: 1 s, steps: 20}\n");
+  const std::string slabs =
+      folder_.write("slabs.yaml",
+                    "grid: {width: 64, height: 64, cell_size: 1, boundary: periodic}\n"
+                    "terrain: [uniform: {layer: sand, value: 1}]\nwind: {speed: 5}\nsand: {model: werner}\n"
+                    "run: {time_step: 1 s, steps: 20}\n");
   run_cpu({slabs, "--out", path("s"), "--format", "netcdf"});
   const test::ProgramRun r = measure({path("s")});
   ASSERT_EQ(r.status, 0) << r.err;

@@ -37,8 +37,8 @@ double bytes_a_cell(const std::vector<MemoryPart>& parts, int size) {
 /// A device with as much memory as a test says, where nothing may be allocated.
 class TightExec final : public Exec {
  public:
-  TightExec(const char* backend, std::size_t available) : backend_(backend), available_(available) {}
-  const char* backend() const override { return backend_; }
+  TightExec(Device kind, std::size_t available) : kind_(kind), available_(available) {}
+  Device kind() const override { return kind_; }
   std::string device() const override { return "a test's"; }
   std::size_t memory_available() const override { return available_; }
   void* allocate_host(std::size_t) override { throw Error("allocated on the host"); }
@@ -55,7 +55,7 @@ class TightExec final : public Exec {
   void free_memory(void*) noexcept override {}
 
  private:
-  const char* backend_;
+  Device kind_;
   std::size_t available_;
 };
 
@@ -102,7 +102,7 @@ TEST_P(Memory, PartsAreAllThatIsHeldAndWhatWasPlanned) {
     }
     const std::size_t counted = exec().bytes_held() - before;
     EXPECT_LE(counted, total_bytes(held)) << text;
-    if (std::string(exec().backend()) == "cpu") {
+    if (exec().kind() == Device::cpu) {
       EXPECT_EQ(counted, total_bytes(held)) << text;
     }
   }
@@ -132,18 +132,18 @@ TEST(MemoryPlan, OfTheLargestBenchmarkIsAtMostSixtyBytesACell) {
 TEST(MemoryRefusal, TellsWhatIsNeededAndWhatThereIs) {
   const Scenario scenario = scene_a(1024);
   const std::size_t needed = total_bytes(planned_memory(scenario));
-  for (const char* backend : {"cpu", "cuda"}) {
-    TightExec exec(backend, needed - 1);
+  for (const Device kind : {Device::cpu, Device::cuda}) {
+    TightExec exec(kind, needed - 1);
     const std::string why = refusal(exec, scenario);
     for (const std::string& text :
          {std::string("1024 x 1024"), std::to_string(needed), std::to_string(needed - 1),
-          std::string(" per cell"), std::string(backend)})
+          std::string(" per cell"), std::string(exec.backend())})
       EXPECT_NE(why.find(text), std::string::npos) << "no '" << text << "' in: " << why;
   }
 }
 
 TEST(MemoryRefusal, CountsTheHostsMemoryWhileTheTerrainIsMade) {
-  TightExec exec("cuda", std::size_t{1} << 62);
+  TightExec exec(Device::cuda, std::size_t{1} << 62);
   const Scenario scenario = scene_a(1024);
   EXPECT_NO_THROW(require_memory(exec, scenario, bytes_to_build(scenario)));
   try {
@@ -156,7 +156,7 @@ TEST(MemoryRefusal, CountsTheHostsMemoryWhileTheTerrainIsMade) {
 }
 
 TEST(MemoryRefusal, OfGridsThatIndicesDoNotReach) {
-  TightExec exec("cuda", std::size_t{1} << 62);
+  TightExec exec(Device::cuda, std::size_t{1} << 62);
   const auto scenario = [](int width, int height, const std::string& more) {
     return test::scenario_of("grid: {width: " + std::to_string(width) +
                              ", height: " + std::to_string(height) + more + "}\n");
@@ -173,7 +173,7 @@ TEST(MemoryRefusal, OfACheckpointThatDoesNotFit) {
   const test::TemporaryFolder folder;
   CpuExec enough(1);
   save_checkpoint(folder.path("small"), Simulation(enough, scene_a(32), no_raster_loader));
-  TightExec tight("cuda", 1000);
+  TightExec tight(Device::cuda, 1000);
   EXPECT_THROW(load_checkpoint(folder.path("small"), tight), ConfigError);
 }
 
@@ -192,7 +192,7 @@ TEST_P(Memory, OfAForecastIsASecondTerrainItsCheckpointAndItsMaps) {
 
 TEST(MemoryRefusal, OfAForecastTellsWhatIsNeededAndWhatThereIs) {
   const Scenario scenario = scene_a(64, {});
-  TightExec exec("cuda", 999);
+  TightExec exec(Device::cuda, 999);
   const std::string device = test::refusal([&] { require_bytes(exec, scenario, 1000, 1, "for a forecast"); });
   for (const char* text :
        {"64 x 64", "1000 bytes", "available: 999 bytes", "on the cuda backend for a forecast"})

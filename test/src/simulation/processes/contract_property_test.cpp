@@ -45,7 +45,7 @@ const std::map<std::string, std::string> worlds{
      "  noise: {layer: vegetation, low: 0, high: 1, scale: 6, threshold: 0.5, seed: 4},\n"
      "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
      "wind: {speed: 12, direction_deg: 20, features: [{kind: vortex, x: 10, y: 10, radius: 5}]}\n"
-     "saltation: {model: continuum, influx: 1.0e-5, flux: true}\nabrasion: {rate: 0.05, cover: 3}\n"
+     "sand: {model: continuum}\nsaltation: {influx: 1.0e-5, flux: true}\nabrasion: {rate: 0.05, cover: 3}\n"
      "echo_dunes: {enabled: true}\nlooseness: {enabled: true}\nrun: {time_step: 600}\n"},
     {"desertscape_2019",
      "grid: {width: 40, height: 36, boundary: open}\n"
@@ -55,26 +55,27 @@ const std::map<std::string, std::string> worlds{
      "  uniform: {layer: airborne_sand, value: 0.2}, uniform: {layer: erosion_resistance, value: 0.2},\n"
      "  noise: {layer: vegetation, low: 0, high: 1, scale: 6, threshold: 0.5, seed: 4},\n"
      "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
-     "wind: {speed: 6, direction_deg: 20}\nsaltation: {model: desertscape_2019, influx: 0.5, flux: true}\n"
+     "wind: {speed: 6, direction_deg: 20}\nsand: {model: desertscape_2019}\nsaltation: {influx: 0.5, flux: "
+     "true}\n"
      "abrasion: {rate: 0.05, cover: 3}\necho_dunes: {enabled: true}\n"},
     {"werner",
      "grid: {width: 40, height: 36, boundary: open}\n"
      "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
      "  noise: {layer: sand, low: 0, high: 4, scale: 5, threshold: 0.4},\n"
      "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
-     "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nslab_model: {kind: werner}\n"},
+     "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nsand: {model: werner}\n"},
     {"momiji",
      "grid: {width: 40, height: 36, boundary: open}\n"
      "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
      "  noise: {layer: sand, low: 0, high: 4, scale: 5, threshold: 0.4},\n"
      "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
-     "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nslab_model: {kind: momiji}\n"},
+     "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nsand: {model: momiji}\n"},
     {"bishop",
      "grid: {width: 40, height: 36, boundary: open}\n"
      "terrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
      "  noise: {layer: sand, low: 0, high: 4, scale: 5, threshold: 0.4},\n"
      "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
-     "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nslab_model: {kind: bishop}\n"},
+     "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nsand: {model: bishop}\n"},
     {"wang",
      "grid: {width: 40, height: 36, cell_size: 0.01, boundary: open}\n"
      "terrain: [noise: {layer: bedrock, low: 0, high: 0.01, scale: 0.1}, uniform: {layer: soil, value: "
@@ -83,7 +84,7 @@ const std::map<std::string, std::string> worlds{
      "  uniform: {layer: moisture, value: 0.0002},\n"
      "  noise: {layer: vegetation, low: 0, high: 1, scale: 0.06, threshold: 0.5, seed: 4},\n"
      "  obstacle: {shape: box, x: 0.2, y: 0.18, size_x: 0.04, size_y: 0.04, height: 0.09}]\n"
-     "wind: {speed: 12, direction_deg: 20}\nsaltation: {influx: 2.0e-6}\nparticle: {kind: wang}\n"
+     "wind: {speed: 12, direction_deg: 20}\nsaltation: {influx: 2.0e-6}\nsand: {model: wang}\n"
      "looseness: {enabled: true}\n"},
     {"nield_baas",
      "grid: {width: 40, height: 36, boundary: open}\n"
@@ -93,13 +94,14 @@ const std::map<std::string, std::string> worlds{
      "  noise: {layer: shrub, low: -0.5, high: 0.5, scale: 9},\n"
      "  obstacle: {shape: box, x: 20, y: 18, size_x: 4, size_y: 4, height: 9}]\n"
      "wind: {speed: 5, direction_deg: 20}\nsaltation: {influx: 0.5}\nslab_plants: {growth_time: 5}\n"
-     "slab_model: {kind: nield_baas, slab_height: 0.1, forced_erosion: true}\n"},
+     "sand: {model: nield_baas}\nslab_model: {slab_height: 0.1, forced_erosion: true}\n"},
     {"snow",
      "grid: {width: 40, height: 36, cell_size: 0.25}\n"
      "terrain: [noise: {layer: bedrock, low: 0, high: 0.5, scale: 3},\n"
      "  noise: {layer: sand, low: 0, high: 0.4, scale: 2, threshold: 0.4}]\n"
      "wind: {speed: 5, direction_deg: 20}\nrun: {time_step: 3600}\n"
-     "slab_model: {kind: snow, slab_height: 0.02, poll_time: 3600}\nslab_snow: {settling_time: 3600}\n"},
+     "sand: {model: snow}\nslab_model: {slab_height: 0.02, poll_time: 3600}\nslab_snow: {settling_time: "
+     "3600}\n"},
     {"overfull",
      "grid: {width: 40, height: 36, boundary: open}\n"
      "terrain: [uniform: {layer: sand, value: 2}]\nwind: {speed: 5, direction_deg: 20}\n"
@@ -224,7 +226,7 @@ TEST(ProcessTable, RowsAreComplete) {
     EXPECT_FALSE(p.source.empty());
     EXPECT_FALSE(p.parameters.empty());
     EXPECT_TRUE(p.active && p.step && p.can_be_recorded);
-    if (p.adapt || p.counted_iterations || p.after_step) {
+    if (p.adapt || p.counted || p.after_step) {
       EXPECT_TRUE(p.make_workspace) << "it keeps nothing that could be stale or count";
     }
     for (Layer layer : p.writes)
@@ -233,31 +235,6 @@ TEST(ProcessTable, RowsAreComplete) {
   }
   for (const FusedProcesses& f : process_table().fused)
     EXPECT_TRUE(names.count(f.first) && names.count(f.second)) << f.name;
-}
-
-TEST(ProcessTable, OneThatIsActiveReplacesThoseThatItsRowNames) {
-  const ProcessTable& table = process_table();
-  const auto active_in = [&](const std::string& text) {
-    const Scenario s = parse_scenario_text(text, "replaces");
-    std::set<std::string> active;
-    for (const Process& p : table.processes)
-      if (table.is_active(p, s)) active.insert(p.name);
-    return active;
-  };
-  const std::set<std::string> without = active_in("grid: {width: 16, height: 16}\n");
-  EXPECT_TRUE(without.count("wind") && without.count("saltation") && without.count("avalanching"));
-  EXPECT_FALSE(without.count("werner"));
-  for (const Process& p : table.processes)
-    for (const std::string& replaced : p.replaces) {
-      SCOPED_TRACE(p.name + " and " + replaced);
-      EXPECT_TRUE(std::any_of(table.processes.begin(), table.processes.end(),
-                              [&](const Process& other) { return other.name == replaced; }));
-      const std::string section = p.parameters.front(), key = section == "saltation" ? "model" : "kind";
-      const std::set<std::string> with =
-          active_in("grid: {width: 16, height: 16}\n" + section + ": {" + key + ": " + p.name + "}\n");
-      EXPECT_TRUE(with.count(p.name));
-      EXPECT_FALSE(with.count(replaced));
-    }
 }
 
 /// If this fails: desert_run --describe-processes > config/processes.md
