@@ -65,7 +65,7 @@
 #include <vector>
 
 #include "kernels/avalanching/active_tiles.hpp"
-#include "kernels/avalanching/parameters.hpp"
+#include "kernels/avalanching/avalanching_parameters.hpp"
 #include "kernels/backend/buffer.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/surface.hpp"

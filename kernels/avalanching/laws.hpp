@@ -4,8 +4,8 @@
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/backend/vec4.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/math.hpp"
 #include "kernels/field/surface_laws.hpp"
 
 namespace desert_sim {

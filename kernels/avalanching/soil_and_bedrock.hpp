@@ -10,7 +10,7 @@
 /// own height only, and falls as sand or as rock. Both use the laws of laws.hpp. Reads and writes bedrock,
 /// soil and sand.
 
-#include "kernels/avalanching/parameters.hpp"
+#include "kernels/avalanching/avalanching_parameters.hpp"
 #include "kernels/backend/buffer.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"

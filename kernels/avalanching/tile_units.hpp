@@ -8,9 +8,9 @@
 /// more (where the relief within 32 cells exceeds 128 cell sizes). The part of a height below one unit stays
 /// where it is.
 
-#include "kernels/field/grid.hpp"
-#include "kernels/field/math.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/grid.hpp"
+#include "kernels/base/math.hpp"
+#include "kernels/base/quanta.hpp"
 
 namespace desert_sim::avalanching {
 

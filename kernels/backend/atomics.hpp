@@ -1,8 +1,8 @@
 #pragma once
 /// Atomic operations on memory that several cells write to at once, on the CPU and on the GPU.
 
-#include "kernels/backend/macros.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/macros.hpp"
+#include "kernels/base/quanta.hpp"
 
 namespace desert_sim {
 

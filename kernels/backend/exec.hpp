@@ -49,9 +49,9 @@ class Exec {
   Exec(const Exec&) = delete;
   Exec& operator=(const Exec&) = delete;
 
-  virtual Device kind() const = 0;
-  const char* backend() const { return device_names[static_cast<int>(kind())]; }  ///< "cpu" or "cuda"
-  virtual std::string device() const = 0;            ///< name of the device for display
+  virtual Device device() const = 0;
+  const char* backend() const { return device_names[static_cast<int>(device())]; }  ///< "cpu" or "cuda"
+  virtual std::string device_name() const = 0;       ///< name of the device for display
   virtual std::size_t memory_available() const = 0;  ///< free memory [bytes]
 
   /// Allocates uninitialised memory on the device; throws ConfigError if there is not enough. Not for use
@@ -127,8 +127,8 @@ class CpuExec : public Exec {
   explicit CpuExec(int threads = 0);
   int threads() const { return threads_; }
 
-  Device kind() const override { return Device::cpu; }
-  std::string device() const override;
+  Device device() const override { return Device::cpu; }
+  std::string device_name() const override;
   std::size_t memory_available() const override { return host_memory_available(); }
   void* allocate_host(std::size_t bytes) override { return allocate_memory(bytes); }
   void release_host(void* memory) noexcept override { free_memory(memory); }
@@ -158,8 +158,8 @@ class CudaExec final : public Exec {
   /// recorded, it is the stream of the loop's body.
   void* stream() const { return stream_; }
 
-  Device kind() const override { return Device::cuda; }
-  std::string device() const override;
+  Device device() const override { return Device::cuda; }
+  std::string device_name() const override;
   std::size_t memory_available() const override;
   void* allocate_host(std::size_t bytes) override;
   void release_host(void* memory) noexcept override;

@@ -120,7 +120,7 @@ std::size_t group_memory_available() {
 
 CpuExec::CpuExec(int threads) : threads_(threads > 0 ? threads : omp_get_num_procs()) {}
 
-std::string CpuExec::device() const {
+std::string CpuExec::device_name() const {
   std::ifstream info("/proc/cpuinfo");
   std::string line, name = "CPU";
   while (std::getline(info, line))

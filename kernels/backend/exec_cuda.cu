@@ -199,7 +199,7 @@ CudaExec::~CudaExec() {
   log_failure(cudaStreamDestroy(as_stream(stream_)), "ending a stream");
 }
 
-std::string CudaExec::device() const {
+std::string CudaExec::device_name() const {
   int device = 0;
   cudaDeviceProp properties;
   check_cuda(cudaGetDevice(&device), "asking for the device");

@@ -44,8 +44,8 @@
 
 #include "kernels/backend/atomics.hpp"
 #include "kernels/backend/exec.hpp"
-#include "kernels/field/grid.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/grid.hpp"
+#include "kernels/base/quanta.hpp"
 
 namespace desert_sim {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "kernels/backend/for_each.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/quanta.hpp"
 
 namespace desert_sim {
 

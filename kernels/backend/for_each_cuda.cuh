@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "kernels/backend/for_each.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/quanta.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "kernels/backend/macros.hpp"
+#include "kernels/base/macros.hpp"
 
 namespace desert_sim {
 

@@ -11,7 +11,7 @@
 /// A shape with r has weight 1 up to r = `inner`, from where it falls linearly to 0 at r = 1. The weight of a
 /// shape with a depth rises linearly from 0 at the edge to 1 at depth `falloff`.
 
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 
 namespace desert_sim {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// A rectangle of cells.
 
-#include "kernels/backend/macros.hpp"
+#include "kernels/base/macros.hpp"
 
 namespace desert_sim {
 

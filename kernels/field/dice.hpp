@@ -16,9 +16,9 @@
 
 #include <cstdint>
 
-#include "kernels/backend/macros.hpp"
-#include "kernels/field/math.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/macros.hpp"
+#include "kernels/base/math.hpp"
+#include "kernels/base/quanta.hpp"
 #include "kernels/field/random.hpp"
 
 namespace desert_sim {

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "kernels/backend/macros.hpp"
-#include "kernels/field/math.hpp"
+#include "kernels/base/macros.hpp"
+#include "kernels/base/math.hpp"
 
 namespace desert_sim {
 

@@ -7,7 +7,7 @@
 /// into another.
 
 #include "kernels/backend/atomics.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/quanta.hpp"
 
 namespace desert_sim {
 

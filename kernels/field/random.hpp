@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "kernels/backend/macros.hpp"
+#include "kernels/base/macros.hpp"
 
 namespace desert_sim {
 

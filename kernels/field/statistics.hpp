@@ -7,13 +7,6 @@
 
 namespace desert_sim {
 
-/// Excess that avalanching has left: the share of cells that are steeper than their own angle of repose by
-/// more than 1e-3 and by more than 1e-2 (tangent), the mean excess of those beyond 1e-3, and the largest
-/// excess. Only sand that could slide counts.
-struct Residual {
-  double share_over_1e3 = 0, share_over_1e2 = 0, mean_excess = 0, largest_excess = 0;
-};
-
 namespace statistics {
 
 template <class E>
@@ -32,10 +25,6 @@ long long count_violations(E& exec, const Grid& grid, const Quanta* quanta, cons
 
 template <class E>
 float sand_slope(E& exec, const TerrainView& t);
-
-/// `repose`: tangents of the angles of repose in the last step.
-template <class E>
-Residual residual(E& exec, const TerrainView& t, const float* repose);
 
 }  // namespace statistics
 }  // namespace desert_sim

@@ -4,7 +4,7 @@
 /// A bed is what a flight is over: bed.at(x, y) gives the surface at a place, bed.cell_size the distance
 /// within which it changes. Places are offsets from where the flight began [m], x and y like the grid's axes.
 
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 
 namespace desert_sim::particles {
 

@@ -8,7 +8,7 @@
 /// `stem` and `root`. This is a split Gaussian that is exactly 0 at the plant's own radius. (The covariance
 /// printed in the paper is 16 times as wide.)
 
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/plants/species.hpp"
 
 namespace desert_sim::plants {

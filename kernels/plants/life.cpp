@@ -74,23 +74,23 @@ void spawn(E& exec, const Site& site, std::uint64_t seed, std::uint64_t step, fl
 }
 
 template <class E>
-void grow_and_spawn(E& exec, const TerrainView& t, const VegetationParameters& p,
-                    const ReposeParameters& repose, const surface::Heights& heights, float time_step,
-                    std::uint64_t seed, std::uint64_t step, const Dice& dice, LedgerView ledger,
+void grow_and_spawn(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger,
                     Workspace& work) {
-  const WaterUptake water_uptake(t, repose, p, heights.cell_heights.data(), time_step, dice);
+  const WaterUptake water_uptake(t, in.repose, in.vegetation, in.heights.cell_heights.data(), in.time_step,
+                                 dice);
   work.event_counts.set_zero();
   work.water_requests.set_zero();
   for_each_item(exec, work.count,
                 SumRequests{water_uptake, work.plants(), work.species.data(), work.water_requests.data()});
   const Competition competition{work.neighbourhood(), work.plants(), work.competition.data(),
                                 work.species_count, t.quantum};
-  for_each_item(exec, work.count,
-                Grow{water_uptake, competition, work.plants(), work.next_state(), work.species.data(),
-                     work.water_requests.data(), t.real(Layer::canopy_height), t.real(Layer::illumination),
-                     t.real(Layer::illumination_canopy), time_step, p.litter, dice[Roll::plant_height],
-                     work.granted_water.data(), t.quanta(Layer::humus), work.event_counts.data()});
-  spawn(exec, water_uptake.site, seed, step, time_step, work);
+  for_each_item(
+      exec, work.count,
+      Grow{water_uptake, competition, work.plants(), work.next_state(), work.species.data(),
+           work.water_requests.data(), t.real(Layer::canopy_height), t.real(Layer::illumination),
+           t.real(Layer::illumination_canopy), in.time_step, in.vegetation.litter, dice[Roll::plant_height],
+           work.granted_water.data(), t.quanta(Layer::humus), work.event_counts.data()});
+  spawn(exec, water_uptake.site, in.seed, in.tick, in.time_step, work);
   if (t.quanta(Layer::moisture))
     for_each_item(exec, work.count,
                   DebitMoisture{water_uptake.site, work.plants(), work.granted_water.data(),
@@ -102,8 +102,7 @@ void grow_and_spawn(E& exec, const TerrainView& t, const VegetationParameters& p
 }
 
 template void sort_plants(Backend&, int, int, Workspace&);
-template void grow_and_spawn(Backend&, const TerrainView&, const VegetationParameters&,
-                             const ReposeParameters&, const surface::Heights&, float, std::uint64_t,
-                             std::uint64_t, const Dice&, LedgerView, Workspace&);
+template void grow_and_spawn(Backend&, const TerrainView&, const StepInputs&, const Dice&, LedgerView,
+                             Workspace&);
 
 }  // namespace desert_sim::plants

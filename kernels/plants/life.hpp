@@ -17,10 +17,21 @@
 
 namespace desert_sim::plants {
 
+struct StepInputs {
+  VegetationParameters vegetation;
+  ReposeParameters repose;          ///< for the ground's capacity of moisture
+  const surface::Heights& heights;  ///< of the ground's surface
+  float time_step;                  ///< [s]
+  std::uint64_t seed, tick;         ///< key and counter (steps done) of the random numbers of new plants
+};
+
 template <class E>
-void grow_and_spawn(E& exec, const TerrainView& t, const VegetationParameters& p,
-                    const ReposeParameters& repose, const surface::Heights& heights, float time_step,
-                    std::uint64_t seed, std::uint64_t step, const Dice& dice, LedgerView ledger,
+void grow_and_spawn(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger,
                     Workspace& work);
+
+/// Sorts the first `all` plants of next_state() by key into plants(); `dead` of them have died and are
+/// dropped.
+template <class E>
+void sort_plants(E& exec, int all, int dead, Workspace& work);
 
 }  // namespace desert_sim::plants

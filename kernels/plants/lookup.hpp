@@ -8,8 +8,8 @@
 
 #include <cstdint>
 
-#include "kernels/field/grid.hpp"
-#include "kernels/field/math.hpp"
+#include "kernels/base/grid.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/plants/population.hpp"
 #include "kernels/plants/species.hpp"
 

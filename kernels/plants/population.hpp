@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "kernels/backend/buffer.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/quanta.hpp"
 
 namespace desert_sim::plants {
 

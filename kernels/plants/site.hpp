@@ -1,8 +1,8 @@
 #pragma once
 /// The environment of a plant in the cell where it stands.
 
+#include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/math.hpp"
 #include "kernels/plants/species.hpp"
 #include "kernels/sand/repose.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Parameters of the vegetation model: of a species (Nilles 2025 §3.2, table 1), and of all plants.
 
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 

@@ -42,9 +42,4 @@ Workspace make_workspace(Exec& exec, const Grid& grid, int capacity,
 /// on.
 std::vector<std::uint32_t> words(const Workspace& work);
 
-/// Sorts the first `all` plants of next_state() by key into plants(); `dead` of them have died and are
-/// dropped. (In life.cpp.)
-template <class E>
-void sort_plants(E& exec, int all, int dead, Workspace& work);
-
 }  // namespace desert_sim::plants

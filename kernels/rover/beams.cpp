@@ -92,7 +92,7 @@ void cast(E& exec, const Scan& scan, const Surface& surface, int columns, int ro
 
 template void cast(Backend&, const Scan&, const ray_march::PlainGround&, int, int, const Vec3*, float*,
                    float*);
-template void cast(Backend&, const Scan&, const ray_march::DetailedGround&, int, int, const Vec3*, float*,
+template void cast(Backend&, const Scan&, const ray_march::RippledGround&, int, int, const Vec3*, float*,
                    float*);
 
 }  // namespace desert_sim::beams

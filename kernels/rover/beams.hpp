@@ -55,7 +55,7 @@ struct Scan {
 
 /// Casts rows × columns beams, row-major. `directions`, in the sensor's frame, are of length 1 where
 /// distances are to be along the beam; a distance is otherwise a multiple of the direction's length.
-/// `surface`: what the ground between the centres of cells is, ray_march::PlainGround or DetailedGround.
+/// `surface`: what the ground between the centres of cells is, ray_march::PlainGround or RippledGround.
 template <class E, class Surface>
 void cast(E& exec, const Scan& scan, const Surface& surface, int columns, int rows, const Vec3* directions,
           float* distances, float* intensities);

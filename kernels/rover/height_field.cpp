@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "kernels/backend/loops.hpp"
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 
 namespace desert_sim::height_field {
 

@@ -12,7 +12,7 @@
 ///               it (Tevs, Ihrke, Seidel 2008, Maximum mipmaps)
 ///   dust        mean of the airborne sand over a block of 8 × 8 cells [m], and of the elevation there [m]
 
-#include "kernels/field/grid.hpp"
+#include "kernels/base/grid.hpp"
 
 namespace desert_sim::height_field {
 

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/rover/height_field.hpp"
 
 namespace desert_sim::ray_march {

@@ -23,10 +23,10 @@
 
 #include <cmath>
 
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/rover/height_field.hpp"
 #include "kernels/rover/ray.hpp"
-#include "kernels/rover/ray_detail.hpp"
+#include "kernels/rover/ray_micro_relief.hpp"
 
 namespace desert_sim::ray_march {
 
@@ -122,17 +122,17 @@ DESERT_HD Hit hit_in_patch(const height_field::View& f, const Surface& surface, 
   }
   if (!meets_ground) return {};
   Hit hit{Target::ground, begin + s, slope_u + ground.xy * s * r.dv, slope_v + ground.xy * s * r.du};
-  if constexpr (Surface::has_detail) {
-    const auto detail = surface.slope(p, q, a + s * r.du, b + s * r.dv);
-    hit.slope_u += detail.u;
-    hit.slope_v += detail.v;
+  if constexpr (Surface::has_micro_relief) {
+    const auto micro_relief = surface.slope(p, q, a + s * r.du, b + s * r.dv);
+    hit.slope_u += micro_relief.u;
+    hit.slope_v += micro_relief.v;
   }
   return hit;
 }
 
 /// The first ground or plants that a ray meets up to t = `end`. `optical_depth`: how much of plants it
 /// passes. Blocks of patches over which the ray is higher than all that stands there are passed at once.
-/// `surface`: PlainGround or DetailedGround.
+/// `surface`: PlainGround or RippledGround.
 template <class Surface>
 DESERT_HD Hit first_hit(const height_field::View& field, const Surface& surface, const Ray& r, float end,
                         float extinction, float optical_depth) {

@@ -1,8 +1,8 @@
 #pragma once
 /// Differences of heights of the surface, for the laws of traversability.hpp.
 
+#include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/math.hpp"
 
 namespace desert_sim::traversability {
 

@@ -33,9 +33,9 @@
 /// normal_x, normal_y, normal_z, roughness, step_height, slip, slip_downhill, slip_across, sinkage and
 /// traversability that are present in the view.
 
+#include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/math.hpp"
-#include "kernels/rover/rover_parameters.hpp"
+#include "kernels/rover/traversability_parameters.hpp"
 #include "kernels/sand/repose.hpp"
 
 namespace desert_sim {

@@ -2,14 +2,14 @@
 /// The laws of traversability.hpp, cell by cell.
 
 #include "kernels/backend/for_each.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/math.hpp"
 #include "kernels/rover/surface_differences.hpp"
 #include "kernels/rover/traversability.hpp"
 #include "kernels/rover/wheel_layers.hpp"
 #include "kernels/sand/repose.hpp"
 #include "src/core/constants.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim::traversability {
 

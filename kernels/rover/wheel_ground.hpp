@@ -34,8 +34,8 @@
 /// the means under its wheels, and sinkage() for each wheel. Tracks of wheels ahead are not considered;
 /// whoever packs the layer looseness under its wheels has them.
 
-#include "kernels/field/math.hpp"
-#include "kernels/rover/rover_parameters.hpp"
+#include "kernels/base/math.hpp"
+#include "kernels/rover/traversability_parameters.hpp"
 #include "kernels/sand/repose.hpp"
 
 namespace desert_sim::wheels {

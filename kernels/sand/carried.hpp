@@ -3,8 +3,8 @@
 /// so that mass is conserved exactly. Laws of for_each_cell_scatter() use these parcels.
 
 #include "kernels/backend/for_each.hpp"
+#include "kernels/base/quanta.hpp"
 #include "kernels/field/ledger.hpp"
-#include "kernels/field/quanta.hpp"
 
 namespace desert_sim {
 

@@ -26,10 +26,10 @@
 ///
 /// Reads sand, soil, moisture, vegetation, wind_shadow; writes looseness.
 
+#include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/math.hpp"
 #include "kernels/sand/repose.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 

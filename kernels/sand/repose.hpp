@@ -9,10 +9,10 @@
 /// Relative moisture m is the moisture over the ground's capacity, `moisture_capacity` · min(e + s, 1 m),
 /// with the depths e of soil and s of sand. Bedrock has one angle everywhere.
 
+#include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/math.hpp"
 #include "src/core/constants.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 

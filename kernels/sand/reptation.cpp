@@ -6,7 +6,7 @@
 #include "kernels/field/random.hpp"
 #include "kernels/sand/creep.hpp"
 #include "kernels/sand/repose.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim::reptation {
 
@@ -142,17 +142,14 @@ struct SteepestEvent {
 };
 
 template <class E>
-void step(E& exec, const TerrainView& t, const ReptationParameters& p, float time_step, std::uint64_t seed,
-          std::uint64_t tick, const Dice& dice, const float* reptation_strength, Quanta* change) {
+void step(E& exec, const TerrainView& t, const ReptationParameters& p, const StepInputs& in,
+          const Dice& dice) {
   if (!moves_sand(p)) return;
-  const Surface surface{t.grid,
-                        t.quanta(Layer::bedrock),
-                        t.quanta(Layer::soil),
-                        t.quanta(Layer::sand),
-                        reptation_strength,
-                        t.real(Layer::wind_x),
-                        t.real(Layer::wind_y),
-                        t.real(Layer::obstacle)};
+  const float time_step = in.time_step;
+  Quanta* const change = in.change;
+  const Surface surface{
+      t.grid,      t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
+      in.strength, t.real(Layer::wind_x),    t.real(Layer::wind_y), t.real(Layer::obstacle)};
   const ApplyChange apply{t.grid, change, t.quanta(Layer::sand)};
   if (const float k = smoothing_strength(p); k > 0.0f) {
     const float strength = k * time_step / t.grid.cell_size;
@@ -171,7 +168,7 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, float tim
   if (p.method == ReptationMethod::steepest) {
     exec.set_zero(change, sizeof(Quanta) * t.grid.cells());
     for_each_cell(exec, t.grid,
-                  SteepestEvent{surface, seed, tick, minimum(time_step, 1.0f),
+                  SteepestEvent{surface, in.seed, in.tick, minimum(time_step, 1.0f),
                                 p.slab * maximum(time_step, 1.0f) * t.quanta_per_metre,
                                 creep_to_steepest(t, dice, change)});
     for_each_cell(exec, t.grid, apply);
@@ -179,7 +176,6 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, float tim
 }
 
 template void set_angles(Backend&, const TerrainView&, const Angle&, const ReposeParameters&, const float*);
-template void step(Backend&, const TerrainView&, const ReptationParameters&, float, std::uint64_t,
-                   std::uint64_t, const Dice&, const float*, Quanta*);
+template void step(Backend&, const TerrainView&, const ReptationParameters&, const StepInputs&, const Dice&);
 
 }  // namespace desert_sim::reptation

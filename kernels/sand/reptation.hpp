@@ -116,11 +116,17 @@ inline bool moves_sand(const ReptationParameters& p) {
   return p.method == ReptationMethod::steepest || smoothing_strength(p) > 0.0f;
 }
 
-/// Moves sand by smoothing and `steepest`. `change`: scratch, one value a cell [quanta]. `seed` and `tick`
-/// (steps done) are key and counter of the random numbers of `steepest`.
+struct StepInputs {
+  float time_step;           ///< [s]
+  std::uint64_t seed, tick;  ///< key and counter (steps done) of the random numbers of `steepest`
+  const float* strength;     ///< of the impacts; see Impacts
+  Quanta* change;            ///< scratch, one value a cell [quanta]
+};
+
+/// Moves sand by smoothing and `steepest`.
 template <class E>
-void step(E& exec, const TerrainView& t, const ReptationParameters& p, float time_step, std::uint64_t seed,
-          std::uint64_t tick, const Dice& dice, const float* reptation_strength, Quanta* change);
+void step(E& exec, const TerrainView& t, const ReptationParameters& p, const StepInputs& in,
+          const Dice& dice);
 
 }  // namespace reptation
 }  // namespace desert_sim

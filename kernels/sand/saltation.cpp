@@ -20,27 +20,26 @@ struct SaltationDice {
 
 /// One part of a step; see Hops.
 template <bool bare, class E>
-void hop(E& exec, const TerrainView& t, const SaltationParameters& p, const ReposeParameters& repose,
-         float hop_share, const SaltationDice& dice, LedgerView ledger, Quanta* landed,
-         const abrasion::Abrade& abrade, const reptation::Impacts& impacts,
-         const wind_shadow::Shadow* shadow_law, float flux_time) {
-  const Inputs<bare> in(t, repose, p.hop_time, hop_share);
+void hop(E& exec, const TerrainView& t, const StepInputs& inputs, float hop_share, const SaltationDice& dice,
+         LedgerView ledger, const abrasion::Abrade& abrade) {
+  const SaltationParameters& p = inputs.saltation;
+  const Inputs<bare> in(t, inputs.repose, p.hop_time, hop_share);
   const Lift<bare> lift{in, p};
-  Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand);
+  Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand), *landed = inputs.landed;
   const LiftAndAdvect<bare> advect{
       in, lift, p.hop_time / t.grid.cell_size, dice.lift, dice.wait, dice.landing, sand, airborne, ledger};
   if (t.real(Layer::flux_x))
     for_each_cell(exec, t.grid,
-                  AddFlux<bare>{advect, t.quantum * p.hop_time / flux_time, t.real(Layer::flux_x),
+                  AddFlux<bare>{advect, t.quantum * p.hop_time / inputs.flux_time, t.real(Layer::flux_x),
                                 t.real(Layer::flux_y)});
-  if (shadow_law)
-    for_each_cell_scatter(exec, t.grid, landed, ShadowAndLift<bare>{*shadow_law, advect});
+  if (inputs.shadow)
+    for_each_cell_scatter(exec, t.grid, landed, ShadowAndLift<bare>{*inputs.shadow, advect});
   else
     for_each_cell_scatter(exec, t.grid, landed, advect);
   if (!t.grid.periodic() && p.influx > 0.0f)
     for_each_cell(exec, t.grid, Influx<bare>{in, p.influx, dice.influx, FilledHeight(t), landed, ledger});
-  const Deposit<bare> deposit{in,   lift,     abrade, dice.deposit, Landing(t.grid, landed, p.hop_spread),
-                              sand, airborne, impacts};
+  const Deposit<bare> deposit{
+      in, lift, abrade, dice.deposit, Landing(t.grid, landed, p.hop_spread), sand, airborne, inputs.impacts};
   if constexpr (bare && !vectorises_rows<E>)
     if (t.grid.width % 4 == 0) {
       const DepositOfFour four{deposit};
@@ -52,29 +51,23 @@ void hop(E& exec, const TerrainView& t, const SaltationParameters& p, const Repo
 }
 
 template <class E>
-void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
-          const ReposeParameters& repose, float time_step, const Dice& dice, LedgerView ledger,
-          Quanta* landed, const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law,
-          float flux_time) {
-  const Hops hops(p, time_step);
-  const float part_of_step = time_step / static_cast<float>(hops.parts);
-  abrasion::Abrade abrade = abrade_for(t, a, part_of_step, dice[Roll::abrasion], ledger);
+void step(E& exec, const TerrainView& t, const StepInputs& inputs, const Dice& dice, LedgerView ledger) {
+  StepInputs in = inputs;
+  const Hops hops(in.saltation, in.time_step);
+  const float part_of_step = in.time_step / static_cast<float>(hops.parts);
+  abrasion::Abrade abrade = abrade_for(t, in.abrasion, part_of_step, dice[Roll::abrasion], ledger);
   for (int part = 0; part < hops.parts; ++part) {
     const SaltationDice of_part(dice, part);
     abrade.die = dice[Roll::abrasion].of_part(part);
-    if (is_bare(t, a))
-      hop<true>(exec, t, p, repose, hops.share, of_part, ledger, landed, abrade, impacts, shadow_law,
-                flux_time);
+    if (is_bare(t, in.abrasion))
+      hop<true>(exec, t, in, hops.share, of_part, ledger, abrade);
     else
-      hop<false>(exec, t, p, repose, hops.share, of_part, ledger, landed, abrade, impacts, shadow_law,
-                 flux_time);
-    shadow_law = nullptr;  // the first part has left it in the layer
+      hop<false>(exec, t, in, hops.share, of_part, ledger, abrade);
+    in.shadow = nullptr;  // the first part has left it in the layer
   }
 }
 
-template void step(Backend&, const TerrainView&, const SaltationParameters&, const AbrasionParameters&,
-                   const ReposeParameters&, float, const Dice&, LedgerView, Quanta*,
-                   const reptation::Impacts&, const wind_shadow::Shadow*, float);
+template void step(Backend&, const TerrainView&, const StepInputs&, const Dice&, LedgerView);
 
 struct Clear {
   Grid grid;

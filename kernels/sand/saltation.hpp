@@ -107,14 +107,21 @@ struct Hops {
       : parts(static_cast<int>(std::ceil(time_step / p.hop_time))), share(time_step / (parts * p.hop_time)) {}
 };
 
-/// `landed`: scratch, one value a cell [quanta]. `shadow_law`: the law that computes the wind shadow in the
-/// pass of the lift, or null where the layer is up to date; null where flux_x and flux_y are in use.
-/// `flux_time`: over which the flux is a mean [s].
+struct StepInputs {
+  SaltationParameters saltation;
+  AbrasionParameters abrasion;
+  ReposeParameters repose;     ///< for the ground's capacity of moisture
+  float time_step;             ///< [s]
+  float flux_time;             ///< over which the layers flux_x and flux_y are a mean [s]
+  Quanta* landed;              ///< scratch, one value a cell [quanta]
+  reptation::Impacts impacts;  ///< what it writes of them
+  /// Computes the wind shadow in the pass of the lift. Null where the layer is up to date, and where flux_x
+  /// and flux_y are in use.
+  const wind_shadow::Shadow* shadow = nullptr;
+};
+
 template <class E>
-void step(E& exec, const TerrainView& t, const SaltationParameters& p, const AbrasionParameters& a,
-          const ReposeParameters& repose, float time_step, const Dice& dice, LedgerView ledger,
-          Quanta* landed, const reptation::Impacts& impacts, const wind_shadow::Shadow* shadow_law,
-          float flux_time);
+void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger);
 
 /// Sets the layers flux_x and flux_y, which are in use, to 0.
 template <class E>

@@ -1,8 +1,8 @@
 #pragma once
 /// Layers that the laws of saltation read, and the factor by which moisture reduces lift and deposition.
 
+#include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/math.hpp"
 #include "kernels/sand/abrasion.hpp"
 #include "kernels/sand/repose.hpp"
 

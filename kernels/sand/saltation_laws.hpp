@@ -10,7 +10,7 @@
 #include "kernels/sand/reptation.hpp"
 #include "kernels/sand/saltation.hpp"
 #include "kernels/sand/saltation_inputs.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim::saltation {
 

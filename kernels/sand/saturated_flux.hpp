@@ -12,8 +12,8 @@
 /// with D = 0.25 mm, φ = `packing`, a = `threshold`, and u_*² = Θ (ρ_s/ρ_a − 1) g d. Where `flux_coefficient`
 /// is 0, C is that of the source: 7.8, 1.8, 2.78, 4.2.
 
-#include "kernels/field/math.hpp"
-#include "src/core/parameters.hpp"
+#include "kernels/base/math.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 

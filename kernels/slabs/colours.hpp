@@ -6,7 +6,7 @@
 ///
 /// and the up to three lines and places that are left over on a ring have further colours of their own.
 
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 
 namespace desert_sim::slabs {
 

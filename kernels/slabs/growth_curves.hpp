@@ -2,7 +2,7 @@
 /// How plants answer to a year's burial in the slab model of Nield & Baas 2008: growth curves, which are
 /// linear between points and constant beyond the first and the last.
 
-#include "kernels/backend/macros.hpp"
+#include "kernels/base/macros.hpp"
 
 namespace desert_sim {
 

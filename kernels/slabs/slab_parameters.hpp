@@ -1,7 +1,7 @@
 #pragma once
 /// Parameters of the slab models; see slab_model.hpp.
 
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 

@@ -17,7 +17,7 @@
 #include "kernels/field/dice.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "kernels/backend/loops.hpp"
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/view/layer_values_laws.hpp"
 #include "kernels/view/packed_tiles.hpp"
 #include "kernels/view/quantised_steps.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 /// Incremental updates of a value in quantised steps. Sender and receiver compute the same bits.
 
-#include "kernels/backend/macros.hpp"
+#include "kernels/base/macros.hpp"
 
 namespace desert_sim {
 

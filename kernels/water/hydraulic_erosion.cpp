@@ -4,10 +4,10 @@
 #include "kernels/backend/buffer.hpp"
 #include "kernels/backend/for_each.hpp"
 #include "kernels/backend/loops.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
-#include "kernels/field/math.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim::hydraulic_erosion {
 

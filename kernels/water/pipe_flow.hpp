@@ -3,9 +3,9 @@
 /// runs the laws.
 
 #include "kernels/backend/for_each.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/field/dice.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/math.hpp"
 
 namespace desert_sim::virtual_pipes {
 

@@ -3,11 +3,11 @@
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/backend/loops.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
-#include "kernels/field/math.hpp"
 #include "kernels/field/random.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim::rain {
 
@@ -53,25 +53,24 @@ struct RainOnCell {
 };
 
 template <class E>
-void step(E& exec, const TerrainView& t, const RainParameters& p, float time_step, double time,
-          std::uint64_t seed, std::uint64_t tick, double datum, LedgerView ledger) {
-  const Quanta amount = quanta_of_step(static_cast<double>(p.rate) * time_step * t.quanta_per_metre, tick);
+void step(E& exec, const TerrainView& t, const RainParameters& p, const StepInputs& in, LedgerView ledger) {
+  const Quanta amount =
+      quanta_of_step(static_cast<double>(p.rate) * in.time_step * t.quanta_per_metre, in.tick);
   if (amount <= 0) return;
   const auto repeat = [&](int cells, bool periodic) {
     const float showers = static_cast<float>(cells) * t.grid.cell_size / p.scale;
     return periodic ? (showers > 1.0f ? static_cast<int>(showers) : 1) : 0;
   };
-  const double phase = time * p.frequency;
+  const double phase = in.time * p.frequency;
   // At a large phase a float could not resolve single steps, so the phase wraps; there the showers jump.
   constexpr double cycle = 65536.0;
   for_each_cell(exec, t.grid,
-                RainOnCell{t.grid, p, seed, static_cast<float>(std::fmod(phase, cycle)),
-                           static_cast<float>(datum), t.quantum, repeat(t.grid.width, t.grid.periodic_x),
+                RainOnCell{t.grid, p, in.seed, static_cast<float>(std::fmod(phase, cycle)),
+                           static_cast<float>(in.datum), t.quantum, repeat(t.grid.width, t.grid.periodic_x),
                            repeat(t.grid.height, t.grid.periodic_y), amount, t.quanta(Layer::bedrock),
                            t.quanta(Layer::soil), t.quanta(Layer::sand), t.quanta(Layer::water), ledger});
 }
 
-template void step(Backend&, const TerrainView&, const RainParameters&, float, double, std::uint64_t,
-                   std::uint64_t, double, LedgerView);
+template void step(Backend&, const TerrainView&, const RainParameters&, const StepInputs&, LedgerView);
 
 }  // namespace desert_sim::rain

@@ -16,7 +16,7 @@
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 
@@ -53,10 +53,15 @@ inline Quanta quanta_of_step(double quanta, std::uint64_t n) {
   return static_cast<Quanta>(std::min(amount, double{wall_height}));
 }
 
-/// `time`: simulated [s]; `tick`: steps done; `datum`: elevation of quantum 0 [m].
+struct StepInputs {
+  float time_step;           ///< [s]
+  double time;               ///< simulated [s]
+  std::uint64_t seed, tick;  ///< tick: steps done
+  double datum;              ///< elevation of quantum 0 [m]
+};
+
 template <class E>
-void step(E& exec, const TerrainView& t, const RainParameters& p, float time_step, double time,
-          std::uint64_t seed, std::uint64_t tick, double datum, LedgerView ledger);
+void step(E& exec, const TerrainView& t, const RainParameters& p, const StepInputs& in, LedgerView ledger);
 
 }  // namespace rain
 }  // namespace desert_sim

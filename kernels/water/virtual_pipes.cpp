@@ -140,15 +140,14 @@ inline int substeps(const WaterParameters& p, const Grid& grid, float time_step,
 }
 
 template <class E>
-void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_step, double time,
-          std::uint64_t seed, std::uint64_t tick, Quanta sea_level, LedgerView ledger, Quanta* carried,
+void step(E& exec, const TerrainView& t, const WaterParameters& p, const StepInputs& in, LedgerView ledger,
           Workspace& work) {
-  const auto fill_sea = [&] { water_sources::fill_sea(exec, t, p.sea, sea_level, ledger); };
+  const auto fill_sea = [&] { water_sources::fill_sea(exec, t, p.sea, in.sea_level, ledger); };
   fill_sea();
   const double deepest =
       static_cast<double>(max_cells(exec, t.grid, Depth{t.grid, t.quanta(Layer::water)})) * t.quantum;
-  const int parts = substeps(p, t.grid, time_step, deepest);
-  const float part = time_step / static_cast<float>(parts);
+  const int parts = substeps(p, t.grid, in.time_step, deepest);
+  const float part = in.time_step / static_cast<float>(parts);
   const float l = t.grid.cell_size;
   // The greatest depth that is stable with this sub-step, without the safety margin: Δt² 2 g h = l².
   const float highest = l * l / (2.0f * gravity * part * part);
@@ -159,7 +158,7 @@ void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_st
   flow.quanta_per_metre = t.quanta_per_metre;
   flow.highest_face = highest * t.quanta_per_metre;
   flow.sea = p.sea != Sea::none;
-  flow.sea_level = sea_level;
+  flow.sea_level = in.sea_level;
   flow.bedrock = t.quanta(Layer::bedrock);
   flow.soil = t.quanta(Layer::soil);
   flow.sand = t.quanta(Layer::sand);
@@ -168,29 +167,29 @@ void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_st
   flow.flux_y = t.real(Layer::water_flux_y);
   flow.supply_share = work.supply_share.data();
   flow.sediment = t.quanta(Layer::suspended_sediment);
-  flow.sediment_next = carried;
+  flow.sediment_next = in.carried;
   float *velocity_x = t.real(Layer::water_velocity_x), *velocity_y = t.real(Layer::water_velocity_y);
   flow.sediment_share = velocity_x;  // it has no other use until the water has moved
   const float friction_factor = maximum(1.0f - p.friction * part, 0.0f);
   for (int n = 0; n < parts; ++n) {
-    const double phase = 2 * pi * (time + (n + 0.5) * part) / p.wave_period;
+    const double phase = 2 * pi * (in.time + (n + 0.5) * part) / p.wave_period;
     const float swell = p.wave_strength * static_cast<float>(std::fmax(std::sin(phase), 0.0));
     const Waves waves{swell, t.real(Layer::wind_x), t.real(Layer::wind_y)};
-    const std::uint64_t turn = tick * static_cast<std::uint64_t>(parts) + static_cast<std::uint64_t>(n);
-    flow.die_x = dice::regular(seed, Roll::pipe_x, turn);
-    flow.die_y = dice::regular(seed, Roll::pipe_y, turn);
+    const std::uint64_t turn = in.tick * static_cast<std::uint64_t>(parts) + static_cast<std::uint64_t>(n);
+    flow.die_x = dice::regular(in.seed, Roll::pipe_x, turn);
+    flow.die_y = dice::regular(in.seed, Roll::pipe_y, turn);
     for_each_pipe<Accelerate>(exec, flow, waves, friction_factor, p.drag * part / l, n == 0);
     for_each_pipe<LimitOutflow>(exec, flow);
     if (flow.sediment)
-      for_each_pipe<CarrySediment>(exec, flow, ledger, dice::regular(seed, Roll::sediment_x, turn),
-                                   dice::regular(seed, Roll::sediment_y, turn));
+      for_each_pipe<CarrySediment>(exec, flow, ledger, dice::regular(in.seed, Roll::sediment_x, turn),
+                                   dice::regular(in.seed, Roll::sediment_y, turn));
     for_each_pipe<MoveWater>(exec, flow, velocity_x, velocity_y, ledger);
     fill_sea();
   }
   for_each_pipe<ApplyLimits>(exec, flow);
 }
 
-template void step(Backend&, const TerrainView&, const WaterParameters&, float, double, std::uint64_t,
-                   std::uint64_t, Quanta, LedgerView, Quanta*, Workspace&);
+template void step(Backend&, const TerrainView&, const WaterParameters&, const StepInputs&, LedgerView,
+                   Workspace&);
 
 }  // namespace desert_sim::virtual_pipes

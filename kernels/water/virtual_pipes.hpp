@@ -45,11 +45,17 @@ struct Workspace {
   std::size_t bytes() const { return supply_share.bytes(); }
 };
 
-/// `time`: time of the waves [s]; `seed` and `tick` (steps done): key and counter of the dice; `carried`:
-/// scratch, one value a cell. Copies the greatest depth to the host.
+struct StepInputs {
+  float time_step;           ///< [s]
+  double time;               ///< of the waves [s]
+  std::uint64_t seed, tick;  ///< key and counter (steps done) of the dice
+  Quanta sea_level;
+  Quanta* carried;  ///< scratch, one value a cell
+};
+
+/// Copies the greatest depth to the host.
 template <class E>
-void step(E& exec, const TerrainView& t, const WaterParameters& p, float time_step, double time,
-          std::uint64_t seed, std::uint64_t tick, Quanta sea_level, LedgerView ledger, Quanta* carried,
+void step(E& exec, const TerrainView& t, const WaterParameters& p, const StepInputs& in, LedgerView ledger,
           Workspace& work);
 
 }  // namespace desert_sim::virtual_pipes

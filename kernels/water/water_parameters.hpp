@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 

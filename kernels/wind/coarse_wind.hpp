@@ -3,9 +3,9 @@
 /// interpolation back, and the wavenumbers of its Fourier modes. Equations in wind.hpp.
 
 #include "kernels/backend/fft.hpp"
-#include "kernels/field/grid.hpp"
-#include "kernels/field/math.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/grid.hpp"
+#include "kernels/base/math.hpp"
+#include "kernels/base/quanta.hpp"
 
 namespace desert_sim::wind {
 

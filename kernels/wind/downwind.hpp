@@ -9,9 +9,9 @@
 
 #include <cmath>
 
-#include "kernels/field/grid.hpp"
-#include "kernels/field/math.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/grid.hpp"
+#include "kernels/base/math.hpp"
+#include "kernels/base/quanta.hpp"
 #include "kernels/wind/vector.hpp"
 
 namespace desert_sim::wind {

@@ -5,7 +5,7 @@
 #include "kernels/field/surface.hpp"
 #include "kernels/wind/marching.hpp"
 #include "src/core/constants.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim::echo_dunes {
 

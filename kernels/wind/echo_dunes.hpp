@@ -14,7 +14,7 @@
 
 #include "kernels/field/layers.hpp"
 #include "kernels/field/surface.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 

@@ -3,9 +3,9 @@
 /// Positions are 16.16 fixed point, and interpolation sums in a symmetric order, so that mirrored or rotated
 /// terrain gives the same bits.
 
-#include "kernels/field/grid.hpp"
-#include "kernels/field/math.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/grid.hpp"
+#include "kernels/base/math.hpp"
+#include "kernels/base/quanta.hpp"
 
 namespace desert_sim::marching {
 

@@ -248,9 +248,9 @@ void respond(E& exec, const TerrainView& t, const ShearStressParameters& p, cons
 }
 
 template <class E>
-void step(E& exec, const TerrainView& t, const ShearStressParameters& p, wind::Vector above,
-          const surface::Heights& heights, Quanta reference, const float* perturbation_x,
-          const float* perturbation_y, Workspace& work) {
+void step(E& exec, const TerrainView& t, const ShearStressParameters& p, const wind::FlowInputs& in,
+          Workspace& work) {
+  const wind::Vector above = in.above;
   const float speed = hypotenuse(above.x, above.y);
   // In still air, the wind of local features alone has no direction in which the ground could shelter it.
   const wind::Vector along =
@@ -258,16 +258,16 @@ void step(E& exec, const TerrainView& t, const ShearStressParameters& p, wind::V
   const auto tangent = static_cast<float>(std::tan(p.separation_deg * pi / 180.0));
   const bool responds = speed > 0.0f && (p.in_phase > 0.0f || p.in_quadrature > 0.0f);
   const Downwind order(t.grid, along);
-  fill_bubbles(exec, t, order, along, tangent, heights, work);
-  if (responds) respond(exec, t, p, order, along, static_cast<float>(reference), work);
+  fill_bubbles(exec, t, order, along, tangent, in.heights, work);
+  if (responds) respond(exec, t, p, order, along, static_cast<float>(in.reference), work);
   for_each_cell(exec, t.grid,
                 BlowOverGround{work.coarse, above, along, responds ? work.rows.data() : nullptr, order,
-                               heights.cell_heights.data(), work.filled.data(),
-                               1.0f / (tangent * t.grid.cell_size * t.quanta_per_metre), perturbation_x,
-                               perturbation_y, t.real(Layer::wind_x), t.real(Layer::wind_y)});
+                               in.heights.cell_heights.data(), work.filled.data(),
+                               1.0f / (tangent * t.grid.cell_size * t.quanta_per_metre), in.perturbation_x,
+                               in.perturbation_y, t.real(Layer::wind_x), t.real(Layer::wind_y)});
 }
 
-template void step(Backend&, const TerrainView&, const ShearStressParameters&, wind::Vector,
-                   const surface::Heights&, Quanta, const float*, const float*, Workspace&);
+template void step(Backend&, const TerrainView&, const ShearStressParameters&, const wind::FlowInputs&,
+                   Workspace&);
 
 }  // namespace desert_sim::shear_stress

@@ -34,6 +34,7 @@
 #include "kernels/field/layers.hpp"
 #include "kernels/field/surface.hpp"
 #include "kernels/wind/coarse_wind.hpp"
+#include "kernels/wind/flow_inputs.hpp"
 #include "kernels/wind/shear_stress_parameters.hpp"
 #include "kernels/wind/vector.hpp"
 
@@ -68,12 +69,9 @@ struct Workspace {
 
 Workspace make_workspace(Exec& exec, const Grid& grid, const ShearStressParameters& p);
 
-/// `above`: the undisturbed wind; `reference`: about the height of the ground [quanta]; `perturbation_x`,
-/// `perturbation_y`: of local features [m/s], or null.
 template <class E>
-void step(E& exec, const TerrainView& t, const ShearStressParameters& p, wind::Vector above,
-          const surface::Heights& heights, Quanta reference, const float* perturbation_x,
-          const float* perturbation_y, Workspace& work);
+void step(E& exec, const TerrainView& t, const ShearStressParameters& p, const wind::FlowInputs& in,
+          Workspace& work);
 
 }  // namespace shear_stress
 }  // namespace desert_sim

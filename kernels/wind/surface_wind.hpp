@@ -2,7 +2,7 @@
 /// The wind of each terrain cell from the wind of the coarse grid; equations in wind.hpp.
 
 #include "kernels/backend/for_each.hpp"
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/wind/coarse_wind.hpp"
 #include "kernels/wind/vector.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 /// The layers of the wind for models that have no wind over the terrain: everywhere the undisturbed one.
 
-#include "kernels/field/grid.hpp"
+#include "kernels/base/grid.hpp"
 #include "kernels/wind/vector.hpp"
 
 namespace desert_sim::wind {

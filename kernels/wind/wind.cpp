@@ -90,15 +90,15 @@ void blow_by_rows(E& exec, SurfaceWindInputs in, const RowScratch& scratch) {
 }
 
 template <class E>
-void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
-          const surface::Heights& heights, Quanta reference, const float* perturbation_x,
-          const float* perturbation_y, const RowScratch& scratch, Workspace& work) {
-  const float speed_above = hypotenuse(above.x, above.y), ground = static_cast<float>(reference);
+void step(E& exec, const TerrainView& t, const WindParameters& p, const FlowInputs& flow,
+          const RowScratch& scratch, Workspace& work) {
+  const Vector above = flow.above;
+  const float speed_above = hypotenuse(above.x, above.y), ground = static_cast<float>(flow.reference);
   if (has_coarse_fields(p))
-    coarse_wind(exec, coarse_laws(t, p, above, speed_above, work), heights, ground, work);
-  SurfaceWindInputs in = surface_wind_inputs(t, p, above, heights, ground, work);
-  in.perturbation_x = perturbation_x;
-  in.perturbation_y = perturbation_y;
+    coarse_wind(exec, coarse_laws(t, p, above, speed_above, work), flow.heights, ground, work);
+  SurfaceWindInputs in = surface_wind_inputs(t, p, above, flow.heights, ground, work);
+  in.perturbation_x = flow.perturbation_x;
+  in.perturbation_y = flow.perturbation_y;
   constexpr int many_cells = 1 << 22;  // these fill a GPU even in long strips
   if constexpr (vectorises_rows<E>) {
     in.mean = {nullptr, in.mean()};
@@ -110,7 +110,7 @@ void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
   }
 }
 
-template void step(Backend&, const TerrainView&, const WindParameters&, Vector, const surface::Heights&,
-                   Quanta, const float*, const float*, const RowScratch&, Workspace&);
+template void step(Backend&, const TerrainView&, const WindParameters&, const FlowInputs&, const RowScratch&,
+                   Workspace&);
 
 }  // namespace desert_sim::wind

@@ -43,6 +43,7 @@
 #include "kernels/field/layers.hpp"
 #include "kernels/field/surface.hpp"
 #include "kernels/wind/coarse_wind.hpp"
+#include "kernels/wind/flow_inputs.hpp"
 #include "kernels/wind/surface_wind.hpp"
 #include "kernels/wind/tuned/line_transform.hpp"
 #include "kernels/wind/wind_parameters.hpp"
@@ -73,12 +74,9 @@ CoarseGrid coarse_grid(const Grid& fine, const WindParameters& p);
 
 Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p);
 
-/// `above`: w_a; `reference`: h_ref, the reference of venturi [quanta];
-/// `perturbation_x`, `perturbation_y`: of wind_features.hpp [m/s], or null.
 template <class E>
-void step(E& exec, const TerrainView& t, const WindParameters& p, Vector above,
-          const surface::Heights& heights, Quanta reference, const float* perturbation_x,
-          const float* perturbation_y, const RowScratch& scratch, Workspace& work);
+void step(E& exec, const TerrainView& t, const WindParameters& p, const FlowInputs& in,
+          const RowScratch& scratch, Workspace& work);
 
 }  // namespace wind
 }  // namespace desert_sim

@@ -6,9 +6,9 @@
 #include "kernels/backend/buffer.hpp"
 #include "kernels/backend/for_each.hpp"
 #include "kernels/backend/loops.hpp"
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/field/random.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim::wind_features {
 

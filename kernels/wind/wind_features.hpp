@@ -33,9 +33,9 @@
 #include <vector>
 
 #include "kernels/backend/buffer.hpp"
-#include "kernels/field/grid.hpp"
+#include "kernels/base/grid.hpp"
 #include "kernels/wind/vector.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 

@@ -7,15 +7,15 @@
 #include "kernels/backend/buffer.hpp"
 #include "kernels/backend/fft.hpp"
 #include "kernels/backend/for_each.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
-#include "kernels/field/math.hpp"
 #include "kernels/field/surface.hpp"
 #include "kernels/wind/coarse_wind.hpp"
 #include "kernels/wind/surface_wind.hpp"
 #include "kernels/wind/tuned/line_transform.hpp"
 #include "kernels/wind/wind.hpp"
 #include "kernels/wind/wind_turning.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim::wind {
 

@@ -8,7 +8,7 @@
 #include "kernels/field/surface.hpp"
 #include "kernels/wind/tuned/shadow_marches.hpp"
 #include "kernels/wind/wind_shadow_march.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim::wind_shadow {
 

@@ -17,7 +17,7 @@
 /// That changes no bit of the result.
 
 #include "kernels/backend/for_each.hpp"
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/field/surface.hpp"
 #include "kernels/wind/marching.hpp"
 #include "src/core/constants.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 /// Parameters of the wind shadow; the equations are in wind_shadow.hpp.
 
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 

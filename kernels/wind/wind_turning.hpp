@@ -6,7 +6,7 @@
 #include "kernels/backend/atomics.hpp"
 #include "kernels/wind/coarse_wind.hpp"
 #include "kernels/wind/surface_wind.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim::wind {
 

@@ -15,6 +15,7 @@
 #include "src/grid_map/bag_records.hpp"
 #include "src/grid_map/message_bytes.hpp"
 #include "src/io/raster_loader.hpp"
+#include "src/scenario/raster_grid.hpp"
 
 namespace desert_sim {
 

@@ -6,6 +6,7 @@
 #include "src/grid_map/grid_map_msg.hpp"
 #include "src/io/raster.hpp"
 #include "src/scenario/band_terrain.hpp"
+#include "src/scenario/raster_grid.hpp"
 
 namespace desert_sim {
 

@@ -33,7 +33,7 @@ void require_no_rotation(const GridMapInfo& info, const std::string& source) {
 void validate_geometry(const GridMapInfo& info, const std::string& source) {
   const auto& p = info.pose.position;
   if (!(std::isfinite(info.resolution) && info.resolution > 0))
-    throw_error(source, "resolution: = ", info.resolution, " is not a finite number above 0");
+    throw_error(source, "resolution: ", info.resolution, " is not a finite number above 0");
   for (double number : {info.length_x, info.length_y, p.x, p.y})
     if (!std::isfinite(number)) throw_error(source, "its lengths and position must be finite");
   require_no_rotation(info, source);

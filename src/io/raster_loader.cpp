@@ -10,6 +10,7 @@
 #include "src/io/raster_file.hpp"
 #include "src/io/raster_geometry.hpp"
 #include "src/io/resample.hpp"
+#include "src/scenario/raster_grid.hpp"
 
 namespace desert_sim {
 

@@ -2,6 +2,7 @@
 /// Loads rasters for a scenario's terrain.
 
 #include "src/io/raster.hpp"
+#include "src/scenario/raster_grid.hpp"
 #include "src/scenario/scenario.hpp"
 
 namespace desert_sim {

@@ -68,7 +68,7 @@ std::set<std::string> write_terrain(const std::string& scenario_file, const fs::
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
   std::string comment = saved_terrain_comment + std::to_string(snapshot.step) + " of " + name + ".\n";
-  if (saved.vegetation.enabled)
+  if (saved.get<VegetationParameters>().enabled)
     comment += "# Its plants are not saved: others come up when it is loaded. A checkpoint keeps them.\n";
   write_file(scenario_file, comment + dump_scenario(saved));
   std::set<std::string> names;
@@ -79,7 +79,7 @@ std::set<std::string> write_terrain(const std::string& scenario_file, const fs::
 }  // namespace
 
 std::vector<Layer> persistent_layers(const Simulation& simulation) {
-  const bool plants = simulation.scenario().vegetation.enabled;
+  const bool plants = simulation.scenario().get<VegetationParameters>().enabled;
   std::vector<Layer> layers;
   for (Layer layer : simulation.layers_in_use())
     if (info(layer).lifetime == Lifetime::persistent && !(plants && layer == Layer::vegetation))

@@ -18,7 +18,7 @@ constexpr int largest_side = 16384;  // [cells]
 void require(double value, double lowest, double highest, const char* what) {
   if (value >= lowest && value <= highest) return;
   std::ostringstream text;
-  text << what << ": = " << value << " (allowed: " << lowest << " ... " << highest << ")";
+  text << what << ": " << value << " (allowed: " << lowest << " ... " << highest << ")";
   throw ConfigError(text.str());
 }
 

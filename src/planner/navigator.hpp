@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "src/planner/field_planner.hpp"
-#include "src/planner/parameters.hpp"
+#include "src/planner/planner_parameters.hpp"
 #include "src/planner/pure_pursuit.hpp"
 
 namespace desert_sim {

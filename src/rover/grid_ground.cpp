@@ -52,16 +52,16 @@ GridGround::GridGround(const Snapshot& s, double moisture_capacity)
     : GridGround({s.width, s.height, s.cell_size, s.origin_x, s.origin_y, s.periodic_x, s.periodic_y},
                  layers_of(s, moisture_capacity)) {}
 
-std::unique_ptr<GridGround> GridGround::with_detail(const Snapshot& s, double moisture_capacity) {
+std::unique_ptr<GridGround> GridGround::with_micro_relief(const Snapshot& s, double moisture_capacity) {
   auto ground = std::make_unique<GridGround>(s, moisture_capacity);
-  ground->detail_ = std::make_unique<SurfaceDetail>(s);
+  ground->micro_relief_ = std::make_unique<MicroRelief>(s);
   return ground;
 }
 
-std::vector<Layer> GridGround::layers_of_snapshot(bool detail) {
+std::vector<Layer> GridGround::layers_of_snapshot(bool micro_relief) {
   std::vector<Layer> layers{Layer::elevation, Layer::sand,     Layer::soil, Layer::looseness,
                             Layer::moisture,  Layer::obstacle, Layer::water};
-  if (detail) layers.insert(layers.end(), SurfaceDetail::layers().begin(), SurfaceDetail::layers().end());
+  if (micro_relief) layers.insert(layers.end(), MicroRelief::layers().begin(), MicroRelief::layers().end());
   return layers;
 }
 
@@ -96,11 +96,11 @@ std::optional<double> GridGround::elevation(double x, double y) const {
   if (!contains(x, y)) return std::nullopt;
   const double z = value(layers_.elevation, x, y);
   if (std::isnan(z)) return std::nullopt;
-  return detail_ ? z + detail_->offset(x, y) : z;
+  return micro_relief_ ? z + micro_relief_->offset(x, y) : z;
 }
 
 double GridGround::finest_feature() const {
-  return detail_ ? SurfaceDetail::crest_width : GroundSource::finest_feature();
+  return micro_relief_ ? MicroRelief::crest_width : GroundSource::finest_feature();
 }
 
 GroundPoint GridGround::at(double x, double y) const {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "src/rover/ground.hpp"
-#include "src/simulation/views/surface_detail.hpp"
+#include "src/simulation/views/micro_relief.hpp"
 
 namespace desert_sim {
 
@@ -30,9 +30,9 @@ class GridGround : public GroundSource {
   /// is 0 everywhere.
   GridGround(const Snapshot& snapshot, double moisture_capacity);
   /// Likewise, with ripples and bumps on the elevation; the snapshot must be of all rows.
-  static std::unique_ptr<GridGround> with_detail(const Snapshot& snapshot, double moisture_capacity);
-  /// The layers that a snapshot for a rover needs, whether its ground has detail or not.
-  static std::vector<Layer> layers_of_snapshot(bool detail = false);
+  static std::unique_ptr<GridGround> with_micro_relief(const Snapshot& snapshot, double moisture_capacity);
+  /// The layers that a snapshot for a rover needs, whether its ground has micro_relief or not.
+  static std::vector<Layer> layers_of_snapshot(bool micro_relief = false);
 
   bool contains(double x, double y) const override;
   std::optional<double> elevation(double x, double y) const override;
@@ -46,7 +46,7 @@ class GridGround : public GroundSource {
 
   Geometry g_;
   Layers layers_;
-  std::unique_ptr<const SurfaceDetail> detail_;  ///< null: none
+  std::unique_ptr<const MicroRelief> micro_relief_;  ///< null: none
 };
 
 }  // namespace desert_sim

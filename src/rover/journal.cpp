@@ -100,7 +100,8 @@ void read_header(const YAML::Node& node, const std::string& where, RoverJournal&
   if (const int version = node["rover_journal"].as<int>(); version != journal_version)
     throw ConfigError(where + ": is a journal of version " + std::to_string(version) +
                       "; this program reads version " + std::to_string(journal_version));
-  if (node["detail"]) journal.detail = node["detail"].as<bool>();  // journals of older versions lack it
+  if (node["micro_relief"])
+    journal.micro_relief = node["micro_relief"].as<bool>();  // journals of older versions lack it
   ValidationErrors errors(where);
   const YAML::Node rover = YAML::Load(node["rover"].as<std::string>());
   std::set<std::string> known{"wheel_ground"};
@@ -112,7 +113,7 @@ void read_header(const YAML::Node& node, const std::string& where, RoverJournal&
 
 }  // namespace
 
-RoverJournalWriter::RoverJournalWriter(const std::string& path, const Rover& rover, bool detail)
+RoverJournalWriter::RoverJournalWriter(const std::string& path, const Rover& rover, bool micro_relief)
     : path_(path) {
   require_writable_file(path);
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -121,7 +122,7 @@ RoverJournalWriter::RoverJournalWriter(const std::string& path, const Rover& rov
   YAML::Emitter out;
   start_line(out);
   entry(out, "rover_journal", journal_version);
-  entry(out, "detail", detail);
+  entry(out, "micro_relief", micro_relief);
   out << YAML::Key << "rover" << YAML::Value << YAML::DoubleQuoted << rover.text();
   line(line_of(out));
 }

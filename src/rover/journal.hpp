@@ -2,7 +2,7 @@
 /// What a rover was told, and which ground it had, so that a run can be repeated to the bit: one YAML
 /// document a line, the first with the rover's parameters, each other one with what happened next.
 ///
-///   {rover_journal: 1, detail: false, rover: "<rover_text()>"}
+///   {rover_journal: 1, micro_relief: false, rover: "<rover_text()>"}
 ///   {reset: [x, y, yaw], terrain: 0}      {place: [x, y, yaw], terrain: 12}      {state: !!binary …}
 ///   {drive: [forward, sideways, yaw_rate], seconds: 2}
 ///   {advance: 0.02, terrain: 13, time: 13}      on the ground of this step; without: none is known
@@ -44,8 +44,8 @@ using RoverEvent =
 class RoverJournalWriter {
  public:
   /// Starts a new file. Throws ConfigError if it cannot be written.
-  /// `detail`: whether its ground has ripples and bumps.
-  RoverJournalWriter(const std::string& path, const Rover& rover, bool detail);
+  /// `micro_relief`: whether its ground has ripples and bumps.
+  RoverJournalWriter(const std::string& path, const Rover& rover, bool micro_relief);
   ~RoverJournalWriter();
   RoverJournalWriter(const RoverJournalWriter&) = delete;
   RoverJournalWriter& operator=(const RoverJournalWriter&) = delete;
@@ -60,7 +60,7 @@ class RoverJournalWriter {
 struct RoverJournal {
   RoverParameters rover;
   WheelGroundParameters ground;
-  bool detail = false;  ///< whether its ground had ripples and bumps
+  bool micro_relief = false;  ///< whether its ground had ripples and bumps
   std::vector<RoverEvent> events;
 };
 

@@ -27,14 +27,14 @@ bool turns(const WheelMotion& motion) {
 void require_speed(double value, const char* name, const char* unit) {
   constexpr double fastest = 1e6;
   if (std::abs(value) <= fastest) return;
-  throw ConfigError(std::string(name) + ": = " + number_text(value) + " is not in [" + number_text(-fastest) +
+  throw ConfigError(std::string(name) + ": " + number_text(value) + " is not in [" + number_text(-fastest) +
                     ", " + number_text(fastest) + "] " + unit);
 }
 
 void require_finite(double value, const char* name) {
   if (std::isfinite(value)) return;
   std::ostringstream text;
-  text << name << ": = " << value << " is not a finite number";
+  text << name << ": " << value << " is not a finite number";
   throw ConfigError(text.str());
 }
 
@@ -56,7 +56,7 @@ void Rover::drive(const DriveCommand& command, double seconds) {
   require_speed(command.forward, "linear.x", "m/s");
   require_speed(command.sideways, "linear.y", "m/s");
   require_speed(command.yaw_rate, "angular.z", "rad/s");
-  if (!(seconds >= 0)) throw ConfigError("seconds: = " + std::to_string(seconds) + " (allowed: at least 0)");
+  if (!(seconds >= 0)) throw ConfigError("seconds: " + std::to_string(seconds) + " (allowed: at least 0)");
   constexpr double for_ever = 4e8;
   state_.command = command;
   state_.command_ticks =
@@ -107,7 +107,7 @@ void Rover::reset(double x, double y, double yaw, const GroundSource& ground) {
 
 void Rover::advance(double seconds, const GroundSource* ground) {
   if (!(seconds >= 0 && seconds <= longest_advance))
-    throw ConfigError("seconds: = " + std::to_string(seconds) + " (allowed: 0 to " +
+    throw ConfigError("seconds: " + std::to_string(seconds) + " (allowed: 0 to " +
                       std::to_string(static_cast<int>(longest_advance)) + ")");
   state_.rest += seconds;
   const double whole = std::floor(state_.rest / internal_step + 1e-9);

@@ -21,7 +21,7 @@
 #include "src/rover/contact.hpp"
 #include "src/rover/drive.hpp"
 #include "src/rover/ground.hpp"
-#include "src/rover/parameters.hpp"
+#include "src/rover/rover_parameters.hpp"
 #include "src/rover/rover_state.hpp"
 #include "src/rover/suspension.hpp"
 

@@ -15,7 +15,7 @@
 
 #include <string>
 
-#include "src/rover/parameters.hpp"
+#include "src/rover/rover_parameters.hpp"
 
 namespace desert_sim {
 

@@ -5,22 +5,22 @@
 namespace desert_sim {
 
 SimulatedGround::SimulatedGround(Scenario scenario, RasterLoader load_raster, const std::string& backend,
-                                 int threads, bool detail)
+                                 int threads, bool micro_relief)
     : scenario_(std::move(scenario)),
       load_raster_(std::move(load_raster)),
       backend_(backend),
       threads_(threads),
-      detail_(detail) {}
+      micro_relief_(micro_relief) {}
 
 const GroundSource& SimulatedGround::at(std::uint64_t step) {
   if (ground_ && step == step_) return *ground_;
   if (!session_ || session_->simulation().state().steps > step)
     session_ = std::make_unique<Session>(scenario_, load_raster_, backend_, threads_);
   while (session_->simulation().state().steps < step) session_->step();
-  const auto snapshot = session_->simulation().snapshot(GridGround::layers_of_snapshot(detail_));
-  const double capacity = scenario_.repose.moisture_capacity;
-  ground_ = detail_ ? GridGround::with_detail(*snapshot, capacity)
-                    : std::make_unique<GridGround>(*snapshot, capacity);
+  const auto snapshot = session_->simulation().snapshot(GridGround::layers_of_snapshot(micro_relief_));
+  const double capacity = scenario_.get<ReposeParameters>().moisture_capacity;
+  ground_ = micro_relief_ ? GridGround::with_micro_relief(*snapshot, capacity)
+                          : std::make_unique<GridGround>(*snapshot, capacity);
   step_ = step;
   return *ground_;
 }

@@ -12,9 +12,9 @@ namespace desert_sim {
 
 class SimulatedGround {
  public:
-  /// `detail`: whether the ground has ripples and bumps.
+  /// `micro_relief`: whether the ground has ripples and bumps.
   SimulatedGround(Scenario scenario, RasterLoader load_raster, const std::string& backend, int threads,
-                  bool detail = false);
+                  bool micro_relief = false);
 
   /// The ground at this step since the scenario's start. An earlier step than the last one begins anew. What
   /// it returns stays valid until the next call.
@@ -25,7 +25,7 @@ class SimulatedGround {
   const RasterLoader load_raster_;
   const std::string backend_;
   const int threads_;
-  const bool detail_;
+  const bool micro_relief_;
   std::unique_ptr<Session> session_;
   std::unique_ptr<GridGround> ground_;
   std::uint64_t step_ = 0;  ///< of ground_

@@ -76,7 +76,7 @@ void check_numbers(const RoverState& state, const std::string& path) {
     const auto number = static_cast<double>(value);
     if (!(std::abs(number) <= farthest || std::is_integral_v<std::decay_t<decltype(value)>>)) {
       std::ostringstream text;
-      text << path << ": " << name << ": = " << number << " (allowed: up to " << farthest << ")";
+      text << path << ": " << name << ": " << number << " (allowed: up to " << farthest << ")";
       throw ConfigError(text.str());
     }
   });

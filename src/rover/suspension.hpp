@@ -12,7 +12,7 @@
 #include <array>
 #include <functional>
 
-#include "src/rover/parameters.hpp"
+#include "src/rover/rover_parameters.hpp"
 #include "src/rover/rover_state.hpp"
 
 namespace desert_sim {

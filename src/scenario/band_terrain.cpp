@@ -5,6 +5,7 @@
 #include "kernels/field/layers.hpp"
 #include "src/core/joined.hpp"
 #include "src/core/quoted.hpp"
+#include "src/scenario/raster_grid.hpp"
 
 namespace desert_sim {
 

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "src/scenario/raster_grid.hpp"
 #include "src/scenario/scenario.hpp"
 
 namespace desert_sim {

@@ -5,7 +5,8 @@
 #include "src/core/parameter_page.hpp"
 #include "src/scenario/climate.hpp"
 #include "src/scenario/live_parameters.hpp"
-#include "src/scenario/rover_class.hpp"
+#include "src/scenario/rover_presets.hpp"
+#include "src/scenario/seed_parameter.hpp"
 #include "src/scenario/wind_regime.hpp"
 
 namespace desert_sim {
@@ -39,17 +40,12 @@ std::string describe_parameters() {
   for (const std::string& name : climates()) out << "- `" << name << "`: " << climate_doc(name) << "\n";
   out << "\n`rover`, if given, sets the section `traversability`; what the scenario says of it overrides it "
          "(config/rovers):\n\n";
-  for (const std::string& name : rover_classes())
-    out << "- `" << name << "`: " << rover_class_doc(name) << "\n";
-  Scenario defaults;
-  for_each_section(defaults, [&](const char* section, const auto& parameters) {
-    out << "\n## `" << section << "`\n\n";
-    write_parameter_table(out, parameters);
-  });
-  for (const auto& [section, parameters] : defaults.process_sections.all()) {
-    out << "\n## `" << section << "`\n\n";
-    parameters->describe(out);
-  }
+  for (const std::string& name : rover_presets())
+    out << "- `" << name << "`: " << rover_preset_doc(name) << "\n";
+  out << "\n## `grid`\n\n";
+  write_parameter_table(out, GridParameters());
+  const Sections defaults;
+  for (const Section* section : defaults.all()) section->describe(out);
   out << "\n## `wind`\n\n### high above the ground\n\n";
   write_parameter_table(out, WindRegimeParameters());
   out << "\n### each of `wind.segments`\n\n";
@@ -58,10 +54,6 @@ std::string describe_parameters() {
   write_parameter_table(out, WindParameters());
   out << "\n### each of `wind.features`\n\n";
   write_parameter_table(out, WindFeature());
-  out << "\n## `water`\n\n";
-  write_parameter_table(out, WaterParameters());
-  out << "\n### each of `water.springs`\n\n";
-  write_parameter_table(out, Spring());
   out << "\n## `run`\n\n";
   write_parameter_table(out, RunParameters());
   out << "\n### each of `run.timeline`\n\n"

@@ -9,6 +9,7 @@
 
 #include "src/core/error.hpp"
 #include "src/core/quoted.hpp"
+#include "src/scenario/yaml_text.hpp"
 
 namespace desert_sim {
 
@@ -21,6 +22,17 @@ struct FormerKey {
 };
 /// The first that names a model counts: slabs and grains took the place of saltation.
 constexpr FormerKey former_keys[] = {{"slab_model", "kind"}, {"particle", "kind"}, {"saltation", "model"}};
+
+/// The section `micro_relief` was called `detail`.
+constexpr const char *former_section = "detail", *present_section = "micro_relief";
+
+/// The path of a parameter of that section, as it is now; empty for all others.
+std::string renamed_path(const std::string& path) {
+  const std::string prefix = std::string(former_section) + ".";
+  return path.compare(0, prefix.size(), prefix) == 0
+             ? std::string(present_section) + "." + path.substr(prefix.size())
+             : "";
+}
 
 const FormerKey* find_former_key(const std::string& path) {
   const auto found = std::find_if(std::begin(former_keys), std::end(former_keys),
@@ -38,7 +50,7 @@ std::optional<std::string> model_of(const FormerValues& values, const std::strin
   };
   const auto& [slabs, grains, saltation] = values;
   if (names_a_model(slabs) && names_a_model(grains))
-    throw ConfigError(source + ": particle.kind: = " + *grains + " beside slab_model.kind = " + *slabs +
+    throw ConfigError(source + ": particle.kind: " + *grains + " beside slab_model.kind = " + *slabs +
                       " (allowed: one model that moves the sand)");
   for (const auto& value : {slabs, grains})
     if (names_a_model(value)) return value;
@@ -71,13 +83,25 @@ std::vector<YAML::Node> timeline_settings(const YAML::Node& root) {
   return maps;
 }
 
+/// Those of the former section among the paths of a map `set`.
+std::vector<std::string> renamed_paths(const YAML::Node& settings) {
+  std::vector<std::string> paths;
+  for (const auto& entry : settings)
+    if (!renamed_path(entry.first.Scalar()).empty()) paths.push_back(entry.first.Scalar());
+  return paths;
+}
+
 bool is_none(const YAML::Node& value) { return value.IsScalar() && value.Scalar() == "none"; }
 
 }  // namespace
 
 std::string instead_of_former_key(const std::string& setting) {
   const std::size_t equals = setting.find('=');
-  if (equals == std::string::npos || !find_former_key(setting.substr(0, equals))) return "";
+  if (equals == std::string::npos) return "";
+  if (const std::string now = renamed_path(setting.substr(0, equals)); !now.empty())
+    return "is now " + now + "; write " + shortened(now + setting.substr(equals)) +
+           "; desert_run --migrate FILE rewrites a file";
+  if (!find_former_key(setting.substr(0, equals))) return "";
   const std::string value = setting.substr(equals + 1);
   return "is now sand.model; write sand.model=" + shortened(value == "none" ? "hops" : value) +
          " (in a file: sand: {model: " + shortened(value == "none" ? "hops" : value) +
@@ -94,6 +118,11 @@ YAML::Node refuse_former_keys(const YAML::Node& given, ValidationErrors& errors)
     if (root == given) root.reset(YAML::Clone(given));
     root[former.section].remove(former.key);
   }
+  if (!root[former_section].IsDefined()) return root;
+  errors.add(former_section, std::string("is now the section ") + present_section +
+                                 "; desert_run --migrate FILE rewrites a file");
+  if (root == given) root.reset(YAML::Clone(given));
+  root.remove(former_section);
   return root;
 }
 
@@ -104,13 +133,22 @@ YAML::Node without_former_keys(const YAML::Node& given, const std::string& sourc
   for (const FormerKey& former : former_keys)
     if (has_former_key(root, former)) root[former.section].remove(former.key);
   if (model) root["sand"]["model"] = *model;
-  for (YAML::Node settings : timeline_settings(root))
+  if (root[former_section].IsDefined()) {
+    root[present_section] = root[former_section];
+    root.remove(former_section);
+  }
+  for (YAML::Node settings : timeline_settings(root)) {
+    for (const std::string& path : renamed_paths(settings)) {
+      settings[renamed_path(path)] = settings[path];
+      settings.remove(path);
+    }
     for (const FormerKey& former : former_keys) {
       const YAML::Node value = settings[former.path()];
       if (!value.IsDefined()) continue;
       settings["sand.model"] = is_none(value) ? YAML::Node("hops") : YAML::Clone(value);
       settings.remove(former.path());
     }
+  }
   return root;
 }
 
@@ -119,16 +157,17 @@ Settings without_former_keys(const Settings& settings, SandModel present, const 
   Settings kept;
   for (const std::string& setting : settings) {
     const std::size_t equals = std::min(setting.find('='), setting.size());
-    if (const FormerKey* former = find_former_key(setting.substr(0, equals)))
+    const std::string path = setting.substr(0, equals), now = renamed_path(path);
+    if (const FormerKey* former = find_former_key(path))
       values[static_cast<std::size_t>(former - former_keys)] =
           setting.substr(std::min(equals + 1, setting.size()));
     else
-      kept.push_back(setting);
+      kept.push_back(now.empty() ? setting : now + setting.substr(equals));
   }
-  if (kept.size() == settings.size()) return settings;
-  const bool saltates = is_saltation(present), flies = present == SandModel::wang;
-  const FormerValues before{saltates || flies ? "none" : name_of(present), flies ? name_of(present) : "none",
-                            saltates ? name_of(present) : name_of(SandModel::hops)};
+  if (kept.size() == settings.size()) return kept;
+  const FormerValues before{is_slab_model(present) ? name_of(present) : "none",
+                            present == SandModel::wang ? name_of(present) : "none",
+                            name_of(is_saltation(present) ? present : SandModel::hops)};
   for (std::size_t n = 0; n < values.size(); ++n)
     if (!values[n]) values[n] = before[n];
   kept.push_back("sand.model=" + *model_of(values, source));
@@ -139,81 +178,9 @@ Settings without_former_keys(const Settings& settings, SandModel present, const 
 
 namespace {
 
-/// A text by lines, changed from its end to its beginning, so that marks of what comes before stay true.
-class MarkedText {
- public:
-  explicit MarkedText(const std::string& text) : text_(text) {
-    for (std::size_t n = 0; n < text_.size(); ++n)
-      if (text_[n] == '\n') lines_.push_back(n + 1);
-  }
-  std::size_t at(const YAML::Mark& mark) const {
-    return lines_[static_cast<std::size_t>(mark.line)] + static_cast<std::size_t>(mark.column);
-  }
-  std::size_t line_of(std::size_t place) const {
-    return *std::prev(std::upper_bound(lines_.begin(), lines_.end(), place));
-  }
-  std::size_t next_line(std::size_t place) const {
-    const std::size_t end = text_.find('\n', place);
-    return end == std::string::npos ? text_.size() : end + 1;
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-  std::vector<std::size_t> lines_{0};
-};
-
-struct Change {
-  std::size_t begin, end;
-  std::string by;
-};
-
-YAML::Node parse(const std::string& text, const std::string& source) {
-  try {
-    return YAML::Load(text);
-  } catch (const YAML::Exception& e) {
-    throw ConfigError(source + ": line " + std::to_string(e.mark.line + 1) + ": " + e.msg);
-  }
-}
-
-/// The key node of a map, which has the mark of where it stands.
-YAML::Node key_of(const YAML::Node& map, const std::string& key) {
-  for (const auto& entry : map)
-    if (entry.first.IsScalar() && entry.first.Scalar() == key) return entry.first;
-  throw Error("the key " + key + " is missing");
-}
-
-/// Where the entry after `key` begins, in the order of the text.
-std::optional<std::size_t> next_entry(const MarkedText& text, const YAML::Node& map, std::size_t key) {
-  std::optional<std::size_t> next;
-  for (const auto& entry : map)
-    if (const std::size_t at = text.at(entry.first.Mark()); at > key && (!next || at < *next)) next = at;
-  return next;
-}
-
-std::string indentation(const MarkedText& text, std::size_t place) {
-  return std::string(place - text.line_of(place), ' ');
-}
-
-/// Takes out the lines from `begin` to `end`, but for the comment of the last.
-Change without_line(const MarkedText& text, std::size_t begin, std::size_t end) {
-  const std::string& all = text.text();
-  const std::size_t next = text.next_line(end), comment = all.find('#', end);
-  const bool says_more = comment < next;
-  return {text.line_of(begin), next,
-          says_more ? indentation(text, begin) + all.substr(comment, next - comment) : ""};
-}
-
-/// Takes an entry out of a section that has others.
-Change removal(const MarkedText& text, const YAML::Node& section, const FormerKey& former) {
-  const std::size_t key = text.at(key_of(section, former.key).Mark());
-  const std::string& all = text.text();
-  if (section.Style() != YAML::EmitterStyle::Flow) return without_line(text, key, key);
-  if (const auto next = next_entry(text, section, key)) return {key, *next, ""};
-  const std::size_t comma = all.rfind(',', key);  // it is the last
-  const std::size_t end = all.find_first_of(",}\n", key);
-  return {comma, end, ""};
-}
+using yaml_text::Change;
+using yaml_text::key_of;
+using yaml_text::MarkedText;
 
 /// What makes a section of its only entry.
 std::vector<Change> renaming(const MarkedText& text, const YAML::Node& root, const FormerKey& former,
@@ -243,39 +210,32 @@ std::vector<Change> changes_of(const MarkedText& text, const YAML::Node& root, c
       continue;
     }
     if (section.size() == 1) {  // it switches off what nothing else is said of
-      changes.push_back(without_line(text, name, text.at(section[former.key].Mark())));
+      changes.push_back(yaml_text::without_line(text, name, text.at(section[former.key].Mark())));
       continue;
     }
-    changes.push_back(removal(text, section, former));
+    changes.push_back(yaml_text::removal(text, section, former.key));
     if (!counts) continue;
     const bool flow = root.Style() == YAML::EmitterStyle::Flow;
-    const std::string end = flow ? ", " : "\n" + indentation(text, name);
+    const std::string end = flow ? ", " : "\n" + yaml_text::indentation(text, name);
     changes.push_back({name, name, "sand: {model: " + *model + "}" + end});
     model.reset();
   }
-  for (const YAML::Node& settings : timeline_settings(root))
+  const auto rename = [&](const YAML::Node& map, const std::string& key, const std::string& now) {
+    const std::size_t at = text.at(key_of(map, key).Mark());
+    changes.push_back({at, at + key.size(), now});
+  };
+  if (root[former_section].IsDefined()) rename(root, former_section, present_section);
+  for (const YAML::Node& settings : timeline_settings(root)) {
+    for (const std::string& path : renamed_paths(settings)) rename(settings, path, renamed_path(path));
     for (const FormerKey& former : former_keys) {
       if (!settings[former.path()].IsDefined()) continue;
-      const std::size_t key = text.at(key_of(settings, former.path()).Mark());
-      changes.push_back({key, key + former.path().size(), "sand.model"});
+      rename(settings, former.path(), "sand.model");
       const YAML::Node value = settings[former.path()];
       const std::size_t at = text.at(value.Mark());
       if (is_none(value)) changes.push_back({at, at + value.Scalar().size(), "hops"});
     }
+  }
   return changes;
-}
-
-bool same(const YAML::Node& a, const YAML::Node& b) {
-  if (a.Type() != b.Type() || (a.IsScalar() && a.Scalar() != b.Scalar()) || a.size() != b.size())
-    return false;
-  if (a.IsSequence())
-    return std::equal(a.begin(), a.end(), b.begin(), [](const auto& x, const auto& y) { return same(x, y); });
-  if (a.IsMap())
-    return std::all_of(a.begin(), a.end(), [&](const auto& entry) {
-      const YAML::Node other = b[entry.first.Scalar()];
-      return other.IsDefined() && same(entry.second, other);
-    });
-  return true;
 }
 
 /// Sections that have become empty say nothing.
@@ -292,15 +252,11 @@ std::string migrated(const std::string& given, const std::string& source) {
   const std::string byte_order_mark = "\xEF\xBB\xBF";
   const bool marked = given.compare(0, byte_order_mark.size(), byte_order_mark) == 0;
   const MarkedText text(marked ? given.substr(byte_order_mark.size()) : given);
-  const YAML::Node root = parse(text.text(), source);
+  const YAML::Node root = yaml_text::parse(text.text(), source);
   if (!root.IsMap()) return given;
-  std::vector<Change> changes = changes_of(text, root, source);
-  std::sort(changes.begin(), changes.end(),
-            [](const Change& a, const Change& b) { return a.begin > b.begin; });
-  std::string changed = text.text();
-  for (const Change& change : changes) changed.replace(change.begin, change.end - change.begin, change.by);
+  const std::string changed = text.with(changes_of(text, root, source));
   const YAML::Node wanted = without_empty_sections(without_former_keys(root, source));
-  if (!same(wanted, without_empty_sections(parse(changed, source))))
+  if (!yaml_text::same(wanted, without_empty_sections(yaml_text::parse(changed, source))))
     throw ConfigError(source +
                       ": cannot be rewritten; write sand: {model: ...} in the place of "
                       "slab_model.kind, particle.kind and saltation.model by hand");

@@ -1,7 +1,8 @@
 #pragma once
 /// Keys that scenarios had before sand.model: slab_model.kind, particle.kind and saltation.model, of which
-/// two could name different models. Scenarios that say them are refused with the line to write instead. What
-/// programs saved with them (checkpoints, journals, terrains) is read as before.
+/// two could name different models; and the section `detail`, which is now `micro_relief`. Scenarios that
+/// say them are refused with the line to write instead. What programs saved with them (checkpoints,
+/// journals, terrains) is read as before.
 
 #include <string>
 

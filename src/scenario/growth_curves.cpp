@@ -12,12 +12,8 @@ constexpr Presets::Row curve_preset_rows[] = {
 };
 constexpr Presets curve_presets(curve_preset_rows);
 
-struct CurveRange {
-  double lowest, highest;
-  const char* unit;
-};
-constexpr CurveRange burial_range{-most_burial, most_burial, "m/year"};
-constexpr CurveRange growth_range{-most_growth, most_growth, "1/year"};
+constexpr ParameterRow burial_range{"burial", -most_burial, most_burial, "m/year", "", nullptr, 0};
+constexpr ParameterRow growth_range{"growth", -most_growth, most_growth, "1/year", "", nullptr, 0};
 
 /// Whether both numbers of a point are read; adds an error for each that is not.
 bool read_point(const YAML::Node& point, const std::string& key, ValidationErrors& errors,
@@ -26,19 +22,18 @@ bool read_point(const YAML::Node& point, const std::string& key, ValidationError
     errors.add(key, yaml::node_text(point) + " is given where a point [burial, growth] is expected");
     return false;
   }
-  double burial = 0, growth = 0;
-  const bool has_burial = yaml::read_number<float>(point[0], burial_range, key + ".0", errors, burial);
-  const bool has_growth = yaml::read_number<float>(point[1], growth_range, key + ".1", errors, growth);
+  float buried = 0, growth = 0;
+  const bool has_burial = yaml::read_float(point[0], burial_range, key + ".0", errors, buried);
+  const bool has_growth = yaml::read_float(point[1], growth_range, key + ".1", errors, growth);
   if (!has_burial || !has_growth) return false;
-  const auto buried = static_cast<float>(burial);
   if (curve.count > 0 && !(buried > curve.burial[curve.count - 1])) {
     errors.add(key + ".0",
-               "= " + yaml::node_text(point[0]) +
+               yaml::node_text(point[0]) +
                    " must be above the burial of the point before: points are in ascending order");
     return false;
   }
   curve.burial[curve.count] = buried;
-  curve.growth[curve.count++] = static_cast<float>(growth);
+  curve.growth[curve.count++] = growth;
   return true;
 }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "kernels/wind/vector.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 

@@ -15,13 +15,12 @@ namespace desert_sim {
 namespace {
 
 std::set<std::string> live_paths() {
-  std::set<std::string> paths{"water.springs"};
-  Scenario scenario;
-  for_each_live_parameter(scenario, [&](const char* section, const auto& row, const auto&) {
-    paths.insert(std::string(section) + "." + row.name);
-  });
-  for (const auto& [section, parameters] : scenario.process_sections.all())
-    for (const std::string& key : parameters->keys()) paths.insert(section + "." + key);
+  std::set<std::string> paths;
+  const Scenario defaults;
+  visit_live_parameters(defaults, [&](const std::string& section, const ParameterRow& row,
+                                      ConstParameterValue) { paths.insert(section + "." + row.name); });
+  for (const Section* section : defaults.sections.all())
+    if (section->list_name()) paths.insert(section->name() + "." + section->list_name());
   return paths;
 }
 
@@ -51,6 +50,18 @@ const char* fixed_reason(const std::string& path) {
   for (const FixedParameter& fixed : fixed_parameters)
     if (path == fixed.path || path.compare(0, path.find('.'), fixed.path) == 0) return fixed.reason;
   return nullptr;
+}
+
+void visit_live_parameters(const Scenario& scenario, const LiveParameterVisit& visit) {
+  const auto of_section = [&](const std::string& section) -> ConstParameterVisit {
+    return [&visit, section](const ParameterRow& row, ConstParameterValue value) {
+      if (!fixed_reason(section + "." + row.name)) visit(section, row, value);
+    };
+  };
+  for (const Section* section : scenario.sections.all()) section->visit(of_section(section->name()));
+  visit_parameters(scenario.wind_regime, of_section("wind"));
+  visit_parameters(scenario.wind, of_section("wind"));
+  visit_parameters(scenario.run, of_section("run"));
 }
 
 Scenario with_live_settings(const Scenario& scenario, const Settings& settings) {

@@ -1,11 +1,12 @@
 #pragma once
 /// Parameters of a scenario that can change while its simulation runs.
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "src/scenario/sections.hpp"
+#include "src/scenario/scenario.hpp"
 
 namespace desert_sim {
 
@@ -39,18 +40,17 @@ constexpr FixedParameter fixed_parameters[] = {
 const char* fixed_reason(const std::string& path);
 
 /// Calls visit(section, row, value) for each parameter that can change.
-template <class S, class Visit>
-void for_each_live_parameter(S& scenario, Visit&& visit) {
-  const auto rows = [&](const char* section, auto& parameters) {
-    for_each_parameter(parameters, [&](const auto& row, auto& value) {
-      if (!fixed_reason(std::string(section) + "." + row.name)) visit(section, row, value);
-    });
-  };
-  for_each_section(scenario, rows);
-  rows("wind", scenario.wind_regime);
-  rows("wind", scenario.wind);
-  rows("water", scenario.water);
-  rows("run", scenario.run);
+using LiveParameterVisit =
+    std::function<void(const std::string& section, const ParameterRow& row, ConstParameterValue value)>;
+void visit_live_parameters(const Scenario& scenario, const LiveParameterVisit& visit);
+
+/// visit_live_parameters() with the type of each value: visit(section, row, const T& value).
+template <class Visit>
+void for_each_live_parameter(const Scenario& scenario, Visit&& visit) {
+  visit_live_parameters(scenario,
+                        [&](const std::string& section, const ParameterRow& row, ConstParameterValue value) {
+                          std::visit([&](const auto* at) { visit(section, row, *at); }, value);
+                        });
 }
 
 /// A copy of `scenario` with some parameters set ("wind.speed=7"). Throws ConfigError that lists all settings

@@ -2,31 +2,23 @@
 /// Checks of parameters that were not read from YAML: of commands from services, whose fields can hold
 /// anything, and of values that were worked out.
 
-#include <sstream>
 #include <string>
 
-#include "src/scenario/yaml_parameters.hpp"
+#include "src/core/parameter_values.hpp"
+#include "src/core/validation_errors.hpp"
 
 namespace desert_sim {
+
+/// Adds an error unless a number is in its row's range and a choice is one. Texts and switches always pass.
+void check_range(const ParameterRow& row, ConstParameterValue value, ValidationErrors& errors);
 
 /// Throws ConfigError, in the name of `what`, unless every number is in its row's range and every choice is
 /// one.
 template <class P>
 void check_ranges(const P& parameters, const std::string& what) {
   ValidationErrors errors(what);
-  for_each_parameter(parameters, [&](const auto& row, const auto& value) {
-    using T = std::decay_t<decltype(value)>;
-    if constexpr (std::is_enum_v<T>) {
-      if (static_cast<int>(value) < 0 || static_cast<int>(value) >= row.choice_count)
-        errors.add(row.name, std::to_string(static_cast<int>(value)) + " is not one of its choices");
-    } else if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
-      const double number = static_cast<double>(value);
-      if (!yaml::in_range<T>(number, row)) {
-        std::ostringstream shown;
-        shown << "= " << number << " is not in " << yaml::allowed_range<T>(row);
-        errors.add(row.name, shown.str());
-      }
-    }
+  visit_parameters(parameters, [&](const ParameterRow& row, ConstParameterValue value) {
+    check_range(row, value, errors);
   });
   errors.throw_if_any();
 }

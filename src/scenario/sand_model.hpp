@@ -1,7 +1,7 @@
 #pragma once
 /// Which model moves the sand: one at a time.
 
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
 
@@ -24,6 +24,9 @@ constexpr const char* name_of(SandModel model) { return sand_model_names[static_
 constexpr bool is_saltation(SandModel model) {
   return model == SandModel::hops || model == SandModel::continuum || model == SandModel::desertscape_2019;
 }
+
+/// Whether it moves slabs on a lattice: those of slab_model.
+constexpr bool is_slab_model(SandModel model) { return !is_saltation(model) && model != SandModel::wang; }
 
 struct SandParameters {
   SandModel model = SandModel::hops;

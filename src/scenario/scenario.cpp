@@ -3,21 +3,18 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <sstream>
 
+#include "kernels/field/layers.hpp"
 #include "src/core/did_you_mean.hpp"
 #include "src/core/input_file.hpp"
 #include "src/core/joined.hpp"
 #include "src/scenario/climate.hpp"
 #include "src/scenario/former_keys.hpp"
 #include "src/scenario/growth_curves.hpp"
-#include "src/scenario/range_checks.hpp"
-#include "src/scenario/rover_class.hpp"
-#include "src/scenario/sections.hpp"
-#include "src/scenario/yaml_parameters.hpp"
+#include "src/scenario/rover_presets.hpp"
+#include "src/scenario/seed_parameter.hpp"
+#include "src/scenario/yaml_lists.hpp"
 
 namespace desert_sim {
 
@@ -69,37 +66,14 @@ void read_terrain(const YAML::Node& list, ValidationErrors& errors, std::vector<
   }
 }
 
-template <class Item>
-void read_items(const YAML::Node& list, const std::string& key, std::size_t most, ValidationErrors& errors,
-                std::vector<Item>& items) {
-  if (!list.IsDefined() || list.IsNull()) return;
-  if (!list.IsSequence())
-    return errors.add(key, yaml::node_text(list) + " is given where a list is expected");
-  if (list.size() > most)
-    return errors.add(key, std::to_string(list.size()) + " entries are given (allowed: at most " +
-                               std::to_string(most) + ")");
-  for (std::size_t n = 0; n < list.size(); ++n) {
-    items.emplace_back();
-    yaml::read_section(list[n], key + "." + std::to_string(n), errors, items.back());
-  }
-}
-
 void read_wind(const YAML::Node& node, ValidationErrors& errors, Scenario& s) {
   std::set<std::string> known{"segments", "features"};
   yaml::read_parameters(node, "wind.", errors, s.wind_regime, known);
   yaml::read_parameters(node, "wind.", errors, s.wind, known);
   yaml::reject_unknown_keys(node, "wind.", known, errors);
   if (!node.IsDefined() || !node.IsMap()) return;
-  read_items(node["segments"], "wind.segments", max_wind_segments, errors, s.wind_segments);
-  read_items(node["features"], "wind.features", max_wind_features, errors, s.wind_features);
-}
-
-void read_water(const YAML::Node& node, ValidationErrors& errors, Scenario& s) {
-  std::set<std::string> known{"springs"};
-  yaml::read_parameters(node, "water.", errors, s.water, known);
-  yaml::reject_unknown_keys(node, "water.", known, errors);
-  if (node.IsDefined() && node.IsMap())
-    read_items(node["springs"], "water.springs", max_springs, errors, s.springs);
+  yaml::read_items(node["segments"], "wind.segments", max_wind_segments, errors, s.wind_segments);
+  yaml::read_items(node["features"], "wind.features", max_wind_features, errors, s.wind_features);
 }
 
 void read_run(const YAML::Node& node, ValidationErrors& errors, Scenario& s) {
@@ -123,25 +97,11 @@ void check_dependencies(const Scenario& s, ValidationErrors& errors) {
   for (std::size_t n = 0; n < s.wind_features.size(); ++n)
     if (const int id = s.wind_features[n].id; id != 0 && !ids.insert(id).second)
       errors.add("wind.features." + std::to_string(n) + ".id",
-                 "= " + std::to_string(id) + " is already the id of another feature");
-  if (s.wind_shadow.full_deg < s.wind_shadow.start_deg)
-    errors.add("wind_shadow.full_deg", "must not be below start_deg");
-  if (s.echo_dunes.sticky_reach < s.echo_dunes.erosion_reach)
-    errors.add("echo_dunes.sticky_reach", "must not be below erosion_reach");
+                 std::to_string(id) + " is already the id of another feature");
   for (std::size_t n = 0; n < s.terrain.size(); ++n)
     if (const auto* discs = std::get_if<DiscsStep>(&s.terrain[n]);
         discs && discs->radius_high < discs->radius_low)
       errors.add("terrain." + std::to_string(n) + ".discs.radius_high", "must not be below radius_low");
-  constexpr double most_influx = 100;  // [m a step]; a few hundred of them would leave the range of heights
-  const double cell = s.grid.cell_size > 0 ? static_cast<double>(s.grid.cell_size) : 1.0;
-  const double influx = static_cast<double>(s.saltation.influx) * static_cast<double>(s.run.time_step) / cell;
-  if (influx > most_influx) {
-    std::ostringstream text;
-    text << "= " << s.saltation.influx << " m^2/s brings " << influx
-         << " m of sand to a cell of the edge in a step of " << s.run.time_step << " s (allowed: at most "
-         << most_influx << " m)";
-    errors.add("saltation.influx", text.str());
-  }
 }
 
 void apply_setting(YAML::Node root, const std::string& setting) {
@@ -254,15 +214,12 @@ Scenario parse_scenario(const YAML::Node& given, const std::string& name, const 
     errors.throw_if_any();
   }
   const YAML::Node root = refuse_former_keys(apply_rover(apply_climate(given, errors), errors), errors);
-  std::set<std::string> known{"climate", "rover",   "terrain",     "wind",         "water",
+  std::set<std::string> known{"climate", "rover",   "grid",        "terrain",      "wind",
                               "run",     "species", "competition", "growth_curves"};
-  for_each_section(s, [&](const char* section, auto& parameters) {
-    known.insert(section);
-    yaml::read_section(root[section], section, errors, parameters);
-  });
-  for (const auto& [section, parameters] : s.process_sections.all()) {
-    known.insert(section);
-    parameters->read(root[section], section, errors);
+  yaml::read_section(root["grid"], "grid", errors, s.grid);
+  for (Section* section : s.sections.all()) {
+    known.insert(section->name());
+    section->read(root[section->name()], errors);
   }
   SeedParameter seed{s.seed};
   yaml::read_parameters(root, "", errors, seed, known);
@@ -270,12 +227,12 @@ Scenario parse_scenario(const YAML::Node& given, const std::string& name, const 
   yaml::reject_unknown_keys(root, "", known, errors, path_that_is_meant);
   read_terrain(root["terrain"], errors, s.terrain);
   read_wind(root["wind"], errors, s);
-  read_water(root["water"], errors, s);
   read_run(root["run"], errors, s);
   read_species(root, errors, s);
   s.growth_curves = read_growth_curves(root, errors);
   check_dependencies(s, errors);
-  check_plants(s, errors);
+  check_species(s, errors);
+  check_sections(s, errors);
   errors.throw_if_any();
   check_timeline(s, errors);  // it applies settings, which needs a valid scenario
   errors.throw_if_any();
@@ -287,16 +244,10 @@ std::string dump_scenario(const Scenario& s) {
   yaml::set_full_precision(out);
   out << YAML::BeginMap;
   yaml::emit_parameters(out, SeedParameter{s.seed});
-  for_each_section(s, [&](const char* section, const auto& parameters) {
-    out << YAML::Key << section << YAML::Value << YAML::BeginMap;
-    yaml::emit_parameters(out, parameters);
-    out << YAML::EndMap;
-  });
-  for (const auto& [section, parameters] : s.process_sections.all()) {
-    out << YAML::Key << section << YAML::Value << YAML::BeginMap;
-    parameters->emit(out);
-    out << YAML::EndMap;
-  }
+  out << YAML::Key << "grid" << YAML::Value << YAML::BeginMap;
+  yaml::emit_parameters(out, s.grid);
+  out << YAML::EndMap;
+  for (const Section* section : s.sections.all()) section->emit(out);
   out << YAML::Key << "terrain" << YAML::Value << YAML::BeginSeq;
   for (const TerrainStep& step : s.terrain) {
     out << YAML::Flow << YAML::BeginMap << YAML::Key << terrain_step_names[step.index()] << YAML::Value
@@ -307,20 +258,8 @@ std::string dump_scenario(const Scenario& s) {
   out << YAML::EndSeq << YAML::Key << "wind" << YAML::Value << YAML::BeginMap;
   yaml::emit_parameters(out, s.wind_regime);
   yaml::emit_parameters(out, s.wind);
-  const auto items = [&](const char* key, const auto& list) {
-    out << YAML::Key << key << YAML::Value << YAML::BeginSeq;
-    for (const auto& item : list) {
-      out << YAML::Flow << YAML::BeginMap;
-      yaml::emit_parameters(out, item);
-      out << YAML::EndMap;
-    }
-    out << YAML::EndSeq;
-  };
-  items("segments", s.wind_segments);
-  items("features", s.wind_features);
-  out << YAML::EndMap << YAML::Key << "water" << YAML::Value << YAML::BeginMap;
-  yaml::emit_parameters(out, s.water);
-  items("springs", s.springs);
+  yaml::emit_items(out, "segments", s.wind_segments);
+  yaml::emit_items(out, "features", s.wind_features);
   out << YAML::EndMap << YAML::Key << "run" << YAML::Value << YAML::BeginMap;
   yaml::emit_parameters(out, s.run);
   emit_timeline(out, s.timeline);
@@ -331,75 +270,9 @@ std::string dump_scenario(const Scenario& s) {
   return out.c_str();
 }
 
-bool Scenario::has_water() const {
-  return water.enabled || rain.rate > 0 || hydraulic_erosion.enabled || moisture.enabled || !springs.empty();
-}
-
 Grid Scenario::make_grid() const {
   const bool periodic = grid.boundary == Boundary::periodic;
   return Grid{grid.width, grid.height, static_cast<float>(grid.cell_size), periodic, periodic};
-}
-
-RasterField no_raster_loader(const RasterRequest& request) {
-  throw ConfigError(request.path + ": this build cannot read rasters (it was built without GDAL)");
-}
-
-namespace {
-
-/// The size of a grid that follows from its raster.
-int cells_of(const char* key, double cells, const Scenario& s) {
-  if (!(cells < max_grid_extent + 0.5))
-    throw ConfigError(s.name + ": grid." + key + ": = " + std::to_string(std::llround(cells)) +
-                      " cells by the raster " + s.grid.from_raster + ", is not in [1, " +
-                      std::to_string(max_grid_extent) + "]; grid.cell_size makes it smaller");
-  return std::max(1, static_cast<int>(std::lround(cells)));
-}
-
-}  // namespace
-
-void resolve_grid(Scenario& s, const RasterLoader& load_raster) {
-  GridParameters& g = s.grid;
-  if (!g.from_raster.empty()) {
-    RasterRequest request;
-    request.path = raster_path(s, g.from_raster);
-    const bool resampled = g.cell_size > 0;
-    const RasterField raster = load_raster(request);
-    const double cell = resampled ? g.cell_size : raster.cell_size;
-    const double extent_x = raster.width * raster.cell_size, extent_y = raster.height * raster.cell_size;
-    const bool sized = g.width > 0 || g.height > 0;
-    if (g.width == 0) g.width = cells_of("width", extent_x / cell, s);
-    if (g.height == 0) g.height = cells_of("height", extent_y / cell, s);
-    if (g.origin_x == 0 && g.origin_y == 0) {
-      // A grid whose size the scenario gives is centred on the raster.
-      g.origin_x = raster.origin_x + (sized ? 0.5 * (extent_x - g.width * cell) : 0.0);
-      g.origin_y = raster.origin_y + (sized ? 0.5 * (extent_y - g.height * cell) : 0.0);
-    }
-    g.cell_size = cell;
-    s.projection = raster.projection;
-  }
-  if (g.width == 0) g.width = 256;
-  if (g.height == 0) g.height = 256;
-  if (g.cell_size == 0) g.cell_size = 1;
-  const bool placed_by_raster = !g.from_raster.empty() && s.projection.empty();  // in degrees, perhaps
-  check_ranges(g, s.name + ": grid" +  // a raster can have any size and place
-                      (placed_by_raster ? " of " + g.from_raster + ", which declares no projection" : ""));
-}
-
-std::string raster_path(const Scenario& s, const std::string& file) {
-  if (file.empty() || file[0] == '/') return file;
-  const std::string beside =
-      s.folder.empty() || s.folder.back() == '/' ? s.folder + file : s.folder + "/" + file;
-  std::error_code error;
-  return std::filesystem::exists(beside, error) ? beside : file;
-}
-
-std::vector<std::string> raster_paths(const Scenario& s) {
-  std::vector<std::string> paths;
-  if (!s.grid.from_raster.empty()) paths.push_back(raster_path(s, s.grid.from_raster));
-  for (const TerrainStep& step : s.terrain)
-    if (const auto* raster = std::get_if<RasterStep>(&step); raster && !raster->file.empty())
-      paths.push_back(raster_path(s, raster->file));
-  return paths;
 }
 
 }  // namespace desert_sim

@@ -4,33 +4,17 @@
 /// once.
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "kernels/avalanching/parameters.hpp"
-#include "kernels/rover/traversability.hpp"
-#include "kernels/sand/looseness.hpp"
-#include "kernels/sand/reptation.hpp"
-#include "kernels/sand/saltation.hpp"
-#include "kernels/sand/saturated_flux.hpp"
+#include "kernels/base/grid.hpp"
 #include "kernels/slabs/growth_curves.hpp"
-#include "kernels/soil/moisture.hpp"
-#include "kernels/soil/soil.hpp"
-#include "kernels/water/hydraulic_erosion.hpp"
-#include "kernels/water/rain.hpp"
-#include "kernels/water/water_parameters.hpp"
-#include "kernels/wind/echo_dunes.hpp"
-#include "kernels/wind/shear_stress_parameters.hpp"
 #include "kernels/wind/wind_features.hpp"
 #include "kernels/wind/wind_parameters.hpp"
-#include "kernels/wind/wind_shadow_parameters.hpp"
 #include "src/core/error.hpp"
-#include "src/scenario/process_sections.hpp"
 #include "src/scenario/sand_model.hpp"
+#include "src/scenario/sections.hpp"
 #include "src/scenario/species.hpp"
 #include "src/scenario/terrain_steps.hpp"
 #include "src/scenario/timeline.hpp"
@@ -118,44 +102,25 @@ struct Scenario {
   std::vector<WindSegment> wind_segments;
   std::shared_ptr<const WindSeries> wind_series;  ///< what wind.series_file has; see read_wind_series()
   std::vector<WindFeature> wind_features;         ///< at most max_wind_features
-  WindParameters wind;
-  WindShadowParameters wind_shadow;
-  EchoDuneParameters echo_dunes;
-  SandParameters sand;
-  SaltationParameters saltation;
-  ShearStressParameters shear_stress;
-  ContinuumParameters continuum;
-  AbrasionParameters abrasion;
-  ReptationParameters reptation;
-  LoosenessParameters looseness;
-  ReposeParameters repose;
-  AvalanchingParameters avalanching;
-  RainParameters rain;
-  WaterParameters water;
-  std::vector<Spring> springs;  ///< at most max_springs
-  HydraulicErosionParameters hydraulic_erosion;
-  MoistureParameters moisture;
-  SoilParameters soil;
-  VegetationParameters vegetation;
-  std::vector<Species> species;   ///< at most max_species
-  CompetitionMatrix competition;  ///< as many rows and columns as there are species
-  GrowthCurves growth_curves;     ///< of the slab model nield_baas
-  TraversabilityParameters traversability;
-  WheelGroundParameters wheel_ground;
-  ProcessSections process_sections;  ///< of processes whose parameters are no member here
+  WindParameters wind;                            ///< at the surface
+  std::vector<Species> species;                   ///< at most max_species
+  CompetitionMatrix competition;                  ///< as many rows and columns as there are species
+  GrowthCurves growth_curves;                     ///< of the slab model nield_baas
+  Sections sections;                              ///< of the processes
   RunParameters run;
   std::vector<TimelineEntry> timeline;  ///< in order of time
   std::string projection;               ///< WKT of the raster that gave the grid; kept for what is written
 
-  Grid make_grid() const;
-  /// The rover of the section traversability on the ground of wheel_ground.
-  traversability::Rover rover() const { return {traversability, wheel_ground, repose}; }
-  /// Whether water is simulated: it is enabled, or rain, springs, hydraulic erosion or moisture need it.
-  bool has_water() const;
-  /// Whether this model moves the sand.
-  bool has(SandModel model) const {
-    return sand.model == model && (saltation.enabled || !is_saltation(model));
+  /// The parameters of a section, by their type. Throws Error if it is not registered.
+  template <class P>
+  const P& get() const {
+    return sections.get<P>();
   }
+  template <class P>
+  P& get() {
+    return sections.get<P>();
+  }
+  Grid make_grid() const;
 };
 
 /// `path=value` settings that override keys, as given to --set: "grid.width=128",
@@ -174,36 +139,6 @@ constexpr const char* saved_terrain_comment = "# A terrain saved at step ";
 /// The scenario as YAML with all parameters, defaults included; parse_scenario() reads back the same
 /// scenario.
 std::string dump_scenario(const Scenario& scenario);
-
-/// A raster as a RasterLoader returns it. The loader that uses GDAL is in the library desert_io; without it,
-/// no_raster_loader() refuses every raster.
-struct RasterField {
-  int width = 0, height = 0;
-  double cell_size = 1, origin_x = 0, origin_y = 0;
-  std::string projection;
-  std::vector<std::string> bands;  ///< names of all bands in order; empty if they have none
-  std::vector<float> values;       ///< row-major from the south-west; none if only the grid was asked for
-};
-struct RasterRequest {
-  std::string path;
-  int band = 1;
-  double scale = 1, offset = 0;
-  std::optional<double> nodata;  ///< a raw value that stands for missing data, besides the declared one
-  bool fill_nodata = false;      ///< fill nodata from neighbours; otherwise it is refused
-  // The grid to resample to; with width 0 only the raster's own grid is asked for, and no values are read.
-  int width = 0, height = 0;
-  double cell_size = 0, origin_x = 0, origin_y = 0;
-  bool stretch = false;  ///< stretch the raster over the grid, whatever its position
-  RasterEncoding encoding = RasterEncoding::values;
-};
-using RasterLoader = std::function<RasterField(const RasterRequest&)>;
-RasterField no_raster_loader(const RasterRequest& request);
-
-/// Paths of all rasters that the scenario reads, resolved by raster_path().
-std::vector<std::string> raster_paths(const Scenario& scenario);
-
-/// Sets the values that the section `grid` leaves open: from its raster if it names one, else to defaults.
-void resolve_grid(Scenario& scenario, const RasterLoader& load_raster);
 
 /// All parameters as a markdown page, which `desert_run --describe` prints and config/parameters.md contains.
 std::string describe_parameters();

@@ -6,10 +6,9 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/joined.hpp"
-#include "src/render/colour.hpp"
 #include "src/scenario/presets.hpp"
 #include "src/scenario/scenario.hpp"
-#include "src/scenario/yaml_parameters.hpp"
+#include "src/scenario/yaml_lists.hpp"
 
 namespace desert_sim {
 
@@ -54,17 +53,12 @@ bool check_entry_count(const YAML::Node& list, const std::string& key, std::size
 void read_competition(const YAML::Node& rows, std::size_t count, ValidationErrors& errors,
                       CompetitionMatrix& matrix) {
   if (!rows.IsDefined() || rows.IsNull() || !check_entry_count(rows, "competition", count, errors)) return;
-  struct Row {
-    double lowest = 0, highest = max_competition;
-    const char* unit = "1";
-  } range;
+  constexpr ParameterRow range{"competition", 0, max_competition, "1", "", nullptr, 0};
   for (std::size_t k = 0; k < count; ++k) {
     const std::string key = "competition." + std::to_string(k);
     if (!check_entry_count(rows[k], key, count, errors)) continue;
     for (std::size_t j = 0; j < count; ++j) {
-      double value = 1;
-      if (yaml::read_number<float>(rows[k][j], range, key + "." + std::to_string(j), errors, value))
-        matrix[k * count + j] = static_cast<float>(value);
+      yaml::read_float(rows[k][j], range, key + "." + std::to_string(j), errors, matrix[k * count + j]);
     }
   }
 }
@@ -87,23 +81,13 @@ Species species_preset(const std::string& name) {
   return species;
 }
 
-std::array<float, 3> crown_colour(const SpeciesAppearance& appearance) {
-  const render::Colour colour = render::crown_colour(appearance.hue);
-  return {colour.r, colour.g, colour.b};
-}
-
 void read_species(const YAML::Node& root, ValidationErrors& errors, Scenario& s) {
   const YAML::Node list = root["species"];
-  if (list.IsDefined() && !list.IsNull()) {
-    if (!list.IsSequence())
-      return errors.add("species", yaml::node_text(list) + " is given where a list is expected");
-    if (list.size() > max_species)
-      return errors.add("species", std::to_string(list.size()) + " entries are given (allowed: at most " +
-                                       std::to_string(max_species) + ")");
-    for (std::size_t n = 0; n < list.size(); ++n) {
-      s.species.emplace_back();
-      read_species_entry(list[n], "species." + std::to_string(n), errors, s.species.back());
-    }
+  const bool given = list.IsDefined() && !list.IsNull();
+  if (given && !yaml::is_list(list, "species", max_species, errors)) return;
+  for (std::size_t n = 0; given && n < list.size(); ++n) {
+    s.species.emplace_back();
+    read_species_entry(list[n], "species." + std::to_string(n), errors, s.species.back());
   }
   s.competition.assign(s.species.size() * s.species.size(), 1.0f);
   read_competition(root["competition"], s.species.size(), errors, s.competition);
@@ -127,7 +111,7 @@ void emit_species(YAML::Emitter& out, const Scenario& s) {
   out << YAML::EndSeq;
 }
 
-void check_plants(const Scenario& s, ValidationErrors& errors) {
+void check_species(const Scenario& s, ValidationErrors& errors) {
   std::set<std::string> names;
   for (std::size_t n = 0; n < s.species.size(); ++n) {
     const Species& species = s.species[n];
@@ -139,18 +123,6 @@ void check_plants(const Scenario& s, ValidationErrors& errors) {
     if (species.traits.light_highest <= species.traits.light_lowest)
       errors.add(key + ".light_highest", "must be above light_lowest");
   }
-  if (!s.vegetation.enabled) return;
-  if (s.species.empty()) errors.add("vegetation.enabled", "needs at least one entry in species");
-  for (std::size_t n = 0; n < s.terrain.size(); ++n)
-    std::visit(
-        [&](const auto& step) {
-          if constexpr (!std::is_same_v<std::decay_t<decltype(step)>, ObstacleStep>)
-            if (step.layer == info(Layer::vegetation).name)
-              errors.add(
-                  "terrain." + std::to_string(n) + "." + terrain_step_names[s.terrain[n].index()] + ".layer",
-                  "vegetation cannot be set while vegetation.enabled is true: the plants determine it");
-        },
-        s.terrain[n]);
 }
 
 }  // namespace desert_sim

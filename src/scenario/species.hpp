@@ -2,12 +2,11 @@
 /// The species of a scenario: the list `species`, whose entries may start from a preset, and the matrix
 /// `competition`.
 
-#include <array>
 #include <string>
 #include <vector>
 
 #include "kernels/plants/species.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace YAML {
 class Node;
@@ -50,9 +49,6 @@ struct Species {
   SpeciesAppearance appearance;
 };
 
-/// Colour of a species' crowns as red, green and blue, each 0 … 1.
-std::array<float, 3> crown_colour(const SpeciesAppearance& appearance);
-
 /// How much each species (column) hinders the growth of each species (row), row-major; 1 where the scenario
 /// gives no value.
 using CompetitionMatrix = std::vector<float>;
@@ -67,7 +63,7 @@ Species species_preset(const std::string& name);
 void read_species(const YAML::Node& root, ValidationErrors& errors, Scenario& scenario);
 /// Writes both keys as entries of an open map, with all parameters.
 void emit_species(YAML::Emitter& out, const Scenario& scenario);
-/// Checks conditions on plants that involve more than one key.
-void check_plants(const Scenario& scenario, ValidationErrors& errors);
+/// Checks conditions on species that involve more than one key.
+void check_species(const Scenario& scenario, ValidationErrors& errors);
 
 }  // namespace desert_sim

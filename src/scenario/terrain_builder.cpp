@@ -268,12 +268,4 @@ HostLayers build_terrain(const Scenario& scenario, const RasterLoader& load_rast
   return Builder(scenario, load_raster).build();
 }
 
-void require_sea(const Scenario& s, const HeightScale& scale, const std::string& what) {
-  const double highest = scale.datum + load_limit * scale.quantum();
-  if (s.water.sea == Sea::none || s.water.sea_level <= highest) return;
-  throw ConfigError(what + ": water.sea_level: = " + std::to_string(s.water.sea_level) +
-                    " m is above the highest elevation that this terrain can represent (allowed: at most " +
-                    std::to_string(highest) + " m)");
-}
-
 }  // namespace desert_sim

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "kernels/field/layers.hpp"
-#include "src/scenario/scenario.hpp"
-#include "src/terrain/terrain.hpp"
+#include "src/scenario/raster_grid.hpp"
 
 namespace desert_sim {
 
@@ -18,9 +17,5 @@ using HostLayers = std::map<Layer, std::vector<double>>;
 /// Builds the initial terrain. The scenario's grid must have been resolved by resolve_grid(). Throws
 /// ConfigError that names step, layer and cell of a value that is not allowed.
 HostLayers build_terrain(const Scenario& scenario, const RasterLoader& load_raster);
-
-/// Throws ConfigError, in the name of `what`, if the sea is higher than the scale can represent. One that is
-/// lower is no sea, whatever its level.
-void require_sea(const Scenario& scenario, const HeightScale& scale, const std::string& what);
 
 }  // namespace desert_sim

@@ -8,7 +8,7 @@
 #include <string>
 #include <variant>
 
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 #include "src/scenario/raster_encoding.hpp"
 
 namespace desert_sim {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "src/core/quoted.hpp"
+#include "src/core/time_units.hpp"
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -53,9 +54,9 @@ TimelineEntry read_entry(const YAML::Node& node, const std::string& key, Validat
 /// `path` is none.
 const char* find_number(const Scenario& scenario, const std::string& path, double& found) {
   const char* unit = nullptr;
-  for_each_live_parameter(scenario, [&](const char* section, const auto& row, const auto& value) {
+  for_each_live_parameter(scenario, [&](const std::string& section, const auto& row, const auto& value) {
     if constexpr (std::is_floating_point_v<std::decay_t<decltype(value)>>)
-      if (path == std::string(section) + "." + row.name) {
+      if (path == section + "." + row.name) {
         found = static_cast<double>(value);
         unit = row.unit;
       }
@@ -91,13 +92,13 @@ std::vector<Ramp> extract_ramps(const Scenario& scenario, std::vector<std::strin
 void check_ramp(const Scenario& scenario, const Ramp& ramp, double time, const std::string& key,
                 ValidationErrors& errors) {
   if (!(ramp.start <= time))
-    errors.add(key + ".start", "= " + std::to_string(ramp.start) + " s is later than the present time, " +
+    errors.add(key + ".start", std::to_string(ramp.start) + " s is later than the present time, " +
                                    std::to_string(time) + " s");
   bool found = false;
-  for_each_live_parameter(scenario, [&](const char* section, const auto& row, const auto& value) {
+  for_each_live_parameter(scenario, [&](const std::string& section, const auto& row, const auto& value) {
     using T = std::decay_t<decltype(value)>;
     if constexpr (std::is_floating_point_v<T>) {
-      if (ramp.path != std::string(section) + "." + row.name) return;
+      if (ramp.path != section + "." + row.name) return;
       found = true;
       for (const double end : {ramp.from, ramp.to})
         if (!yaml::in_range<T>(end, row))

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace YAML {
 class Node;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kernels/wind/vector.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 #include "src/scenario/wind_series.hpp"
 
 namespace desert_sim {

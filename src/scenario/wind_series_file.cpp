@@ -10,7 +10,10 @@
 #include "src/core/lower_case.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/quoted.hpp"
+#include "src/scenario/raster_grid.hpp"
+#include "src/scenario/scenario.hpp"
 #include "src/scenario/sections.hpp"
+#include "src/scenario/wind_regime.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {

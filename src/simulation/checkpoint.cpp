@@ -9,7 +9,7 @@
 #include "src/core/input_file.hpp"
 #include "src/simulation/checkpoint_header.hpp"
 #include "src/simulation/checkpoint_words.hpp"
-#include "src/simulation/pipeline/memory.hpp"
+#include "src/simulation/memory/memory.hpp"
 
 namespace desert_sim {
 

@@ -138,9 +138,9 @@ void read_quanta(const YAML::Node& header, const char* key, long long limit, Val
     const std::string item = std::string(key) + "." + std::to_string(n);
     long long value = 0;
     if (!list[n].IsScalar() || !YAML::convert<long long>::decode(list[n], value))
-      errors.add(item, "= " + yaml::node_text(list[n]) + " is not a whole number");
+      errors.add(item, yaml::node_text(list[n]) + " is not a whole number");
     else if (value < -limit || value > limit)
-      errors.add(item, "= " + std::to_string(value) + " is not in [" + std::to_string(-limit) + ", " +
+      errors.add(item, std::to_string(value) + " is not in [" + std::to_string(-limit) + ", " +
                            std::to_string(limit) + "] quanta");
     else
       numbers[n] = value;
@@ -161,7 +161,7 @@ void read_what_processes_keep(const YAML::Node& node, ValidationErrors& errors, 
     if (const std::string& counter = process.counter; !counter.empty()) {
       known.insert(counter);
       if (node[counter] && !YAML::convert<std::uint64_t>::decode(node[counter], header.counts[counter]))
-        errors.add(counter, "= " + yaml::node_text(node[counter]) + " is not a whole number");
+        errors.add(counter, yaml::node_text(node[counter]) + " is not a whole number");
     }
   }
 }
@@ -171,13 +171,13 @@ void read_clock(const YAML::Node& node, ValidationErrors& errors, CheckpointHead
   ClockOrigin clock;
   yaml::read_section(node, "clock", errors, clock);
   if (clock.step > header.numbers.steps) {
-    errors.add("clock.step", "= " + std::to_string(clock.step) + " is not in [0, " +
-                                 std::to_string(header.numbers.steps) + "]");
+    errors.add("clock.step",
+               std::to_string(clock.step) + " is not in [0, " + std::to_string(header.numbers.steps) + "]");
     return;
   }
   header.clock = clock;
   if (!(clock.accelerated_at <= header.time()))
-    errors.add("clock.accelerated_at", "= " + std::to_string(clock.accelerated_at) +
+    errors.add("clock.accelerated_at", std::to_string(clock.accelerated_at) +
                                            " s is later than the present time, " +
                                            std::to_string(header.time()) + " s");
 }
@@ -199,12 +199,11 @@ WindRegime read_wind(const CheckpointHeader& header, const YAML::Node& node, con
   ValidationErrors errors(path + ": wind");
   const double time = header.time();
   if (!(wind.start_time >= -1e30 && wind.start_time <= time))
-    errors.add("start_time", "= " + std::to_string(wind.start_time) + " is not in [-1e+30, " +
-                                 std::to_string(time) + "] s");
+    errors.add("start_time",
+               std::to_string(wind.start_time) + " is not in [-1e+30, " + std::to_string(time) + "] s");
   constexpr float fastest = 101;  // a speed of 100 m/s, with what rounding may add
   for (const float v : {wind.initial_wind.x, wind.initial_wind.y})
-    if (!(std::abs(v) <= fastest))
-      errors.add("from", "= " + std::to_string(v) + " is not in [-101, 101] m/s");
+    if (!(std::abs(v) <= fastest)) errors.add("from", std::to_string(v) + " is not in [-101, 101] m/s");
   errors.throw_if_any();
   return wind;
 }
@@ -273,17 +272,16 @@ void check_together(const CheckpointHeader& header, ValidationErrors& errors) {
       now.boundary != start.boundary)
     errors.add("start", "its grid is not that of scenario");
   if (header.numbers.next_timeline_entry > header.scenario.timeline.size())
-    errors.add("next_timeline_entry", "= " + std::to_string(header.numbers.next_timeline_entry) +
-                                          " is not in [0, " +
+    errors.add("next_timeline_entry", std::to_string(header.numbers.next_timeline_entry) + " is not in [0, " +
                                           std::to_string(header.scenario.timeline.size()) + "]");
-  const VegetationParameters& vegetation = header.scenario.vegetation;
+  const VegetationParameters& vegetation = header.scenario.get<VegetationParameters>();
   const auto room = static_cast<std::uint64_t>(!vegetation.enabled ? 0
                                                : vegetation.max_plants > 0
                                                    ? vegetation.max_plants
                                                    : static_cast<long long>(now.width) * now.height);
   if (header.numbers.plants > room)
     errors.add("plants",
-               "= " + std::to_string(header.numbers.plants) + " is not in [0, " + std::to_string(room) + "]");
+               std::to_string(header.numbers.plants) + " is not in [0, " + std::to_string(room) + "]");
 }
 
 CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
@@ -316,7 +314,7 @@ CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
   header.wind = read_wind(header, node["wind"], path);
   read_series(node, path, header);
   process_table().require_runnable(header.scenario);
-  if (header.scenario.has_water()) require_sea(header.scenario, header.scale(), path + ": scenario");
+  if (has_water(header.scenario)) require_sea(header.scenario, header.scale(), path + ": scenario");
   return header;
 }
 

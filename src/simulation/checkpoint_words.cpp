@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -39,7 +39,7 @@ template <class Value>
 [[noreturn]] void refuse(const std::string& where, Value value, const Range& range) {
   std::ostringstream text;
   text.precision(10);
-  text << where << ": = " << value << " is not in [" << range.lowest << ", " << range.highest << "] "
+  text << where << ": " << value << " is not in [" << range.lowest << ", " << range.highest << "] "
        << range.unit;
   throw ConfigError(text.str());
 }

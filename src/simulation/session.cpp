@@ -107,7 +107,7 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
     merged.folder = next.folder;
     merged.projection.clear();
     ValidationErrors errors(command.path);
-    check_plants(merged, errors);  // which the terrain's vegetation must not meet
+    check_sections(merged, errors);  // which the terrain's vegetation must not meet
     errors.throw_if_any();
     next = std::move(merged);
   }
@@ -169,7 +169,8 @@ CommandResult Session::replay(const Command& recorded) {
   const auto* settings = std::get_if<command::SetParameters>(&recorded);
   if (!settings) return apply(recorded);
   return apply(command::SetParameters{
-      without_former_keys(settings->settings, simulation_->scenario().sand.model, "a recorded command"),
+      without_former_keys(settings->settings, simulation_->scenario().get<SandParameters>().model,
+                          "a recorded command"),
       settings->ramp});
 }
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "src/simulation/commands/journal.hpp"
+#include "src/simulation/journal.hpp"
 #include "src/simulation/simulation.hpp"
 
 namespace desert_sim {

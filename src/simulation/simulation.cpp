@@ -6,14 +6,13 @@
 #include "kernels/field/statistics.hpp"
 #include "src/core/constants.hpp"
 #include "src/core/error.hpp"
-#include "src/simulation/detail_section.hpp"
-#include "src/simulation/pipeline/memory.hpp"
+#include "src/simulation/memory/memory.hpp"
 
 namespace desert_sim {
 
 namespace {
 
-HeightScale scale_for(const HostLayers& layers, const Scenario& scenario) {
+HeightScale scale_for(const HostLayers& layers, const Scenario& scenario, const ProcessTable& table) {
   const std::vector<double>&bedrock = layers.at(Layer::bedrock), &sand = layers.at(Layer::sand);
   const auto soil = layers.find(Layer::soil);
   double lowest = bedrock[0], highest = bedrock[0];
@@ -21,8 +20,9 @@ HeightScale scale_for(const HostLayers& layers, const Scenario& scenario) {
     lowest = std::min(lowest, bedrock[i]);
     highest = std::max(highest, bedrock[i] + sand[i] + (soil == layers.end() ? 0.0 : soil->second[i]));
   }
-  if (scenario.has_water() && scenario.water.sea != Sea::none)
-    highest = std::max(highest, static_cast<double>(scenario.water.sea_level));
+  for (const Process& process : table.processes)
+    if (process.highest && table.is_active(process, scenario))
+      highest = std::max(highest, process.highest(scenario));
   for (const auto& [layer, values] : layers)
     if (info(layer).storage == Storage::quanta && layer != Layer::bedrock)
       highest = std::max(highest, lowest + *std::max_element(values.begin(), values.end()));
@@ -36,7 +36,7 @@ Terrain build(Exec& exec, const Scenario& scenario, const RasterLoader& load_ras
     throw ConfigError(scenario.name + ": wind.series_file: has not been read");
   require_memory(exec, scenario, bytes_to_build(scenario));
   const HostLayers layers = build_terrain(scenario, load_raster);
-  Terrain terrain(exec, scenario.make_grid(), scale_for(layers, scenario));
+  Terrain terrain(exec, scenario.make_grid(), scale_for(layers, scenario, table));
   for (const auto& [layer, values] : layers) terrain.set_values(layer, values);
   return terrain;
 }
@@ -65,24 +65,15 @@ void Simulation::step() {
   const double before = time();
   const wind::Vector wind = wind_above();
   pipeline_.step();
-  state_.ripple_wind.advance(wind, time() - before, detail_parameters(scenario()));
+  state_.ripple_wind.advance(wind, time() - before, scenario().get<MicroReliefParameters>());
 }
 
-std::vector<MemoryPart> Simulation::memory() const {
-  std::vector<MemoryPart> parts;
-  const std::size_t layer_bytes = static_cast<std::size_t>(terrain().grid().cells()) * sizeof(std::uint32_t);
-  for (Layer layer : layers_in_use()) parts.push_back({info(layer).name, layer_bytes});
-  for (MemoryPart& part : pipeline_.memory()) parts.push_back(std::move(part));
-  if (state_.plants) parts.push_back({"plants", state_.plants.bytes()});
-  parts.push_back({"ledger", state_.ledger_words.bytes()});
-  for (MemoryPart& part : views_.memory()) parts.push_back(std::move(part));
-  return parts;
-}
+std::vector<MemoryPart> Simulation::memory() const { return memory_of(state_, pipeline_, views_); }
 
 Residual Simulation::residual() {
   pipeline_.refresh_derived();
   return with_backend(exec(), [this](auto& e) {
-    return statistics::residual(e, terrain().view(), pipeline_.fields().repose.data());
+    return avalanching::residual(e, terrain().view(), pipeline_.fields().repose.data());
   });
 }
 

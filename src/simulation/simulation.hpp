@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "kernels/field/statistics.hpp"
+#include "kernels/avalanching/residual.hpp"
 #include "src/scenario/terrain_builder.hpp"
-#include "src/simulation/commands/commands.hpp"
+#include "src/simulation/editing/commands.hpp"
 #include "src/simulation/pipeline/pipeline.hpp"
 #include "src/simulation/processes/processes.hpp"
-#include "src/simulation/state.hpp"
+#include "src/simulation/state/state.hpp"
 #include "src/simulation/views/views.hpp"
 
 namespace desert_sim {

@@ -37,7 +37,7 @@ struct HeightScale {
 class Terrain {
  public:
   /// Sets all cells of all layers to 0 (the bedrock to the datum). Throws ConfigError if the grid has more
-  /// than max_grid_cells, or if memory runs out; require_memory() in src/simulation/pipeline/memory.hpp
+  /// than max_grid_cells, or if memory runs out; require_memory() in src/simulation/memory/memory.hpp
   /// checks the memory beforehand.
   Terrain(Exec& exec, const Grid& grid, const HeightScale& scale);
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <sstream>
 
-#include "src/simulation/pipeline/memory.hpp"
+#include "src/simulation/memory/memory.hpp"
 #include "src/tools/json_text.hpp"
 
 namespace desert_sim {

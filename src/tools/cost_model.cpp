@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "kernels/avalanching/avalanching_parameters.hpp"
+
 namespace desert_sim {
 
 std::vector<ProcessCost> cost_model(const Scenario& scenario, const Grid& grid) {
@@ -26,10 +28,10 @@ std::string cost_table() {
   };
   const Grid large{4096, 4096, 1.0f};
   Scenario scenario;
-  scenario.avalanching.quality = AvalancheQuality::fast;
+  scenario.get<AvalanchingParameters>().quality = AvalancheQuality::fast;
   for (const ProcessCost& cost : cost_model(scenario, large))
     add(cost, cost.process == "avalanching" ? "avalanching, fast" : cost.process);
-  scenario.avalanching.quality = AvalancheQuality::good;
+  scenario.get<AvalanchingParameters>().quality = AvalancheQuality::good;
   for (const ProcessCost& cost : cost_model(scenario, large))
     if (cost.process == "avalanching") add(cost, "avalanching, good");
   return text;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "kernels/avalanching/avalanching_parameters.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/tools/bench_report.hpp"
@@ -53,7 +54,7 @@ int default_steps(int size, bool gpu) {
 
 /// Bandwidth of a large copy, read and written [bytes/s].
 double measure_copy_bandwidth(Exec& exec) {
-  const std::size_t most = exec.kind() == Device::cpu ? std::size_t{1} << 28 : std::size_t{1} << 30;
+  const std::size_t most = exec.device() == Device::cpu ? std::size_t{1} << 28 : std::size_t{1} << 30;
   const std::size_t bytes = std::min(most, exec.memory_available() / 8);
   Buffer<char> from(exec, bytes), to(exec, bytes);
   from.set_zero();
@@ -144,8 +145,8 @@ BenchReport bench(const Options& o) {
 
   r.scene = is_bench_scene(scene) ? scene : s.scenario().name;
   r.backend = s.exec().backend();
-  r.device = s.exec().device();
-  r.quality = avalanche_qualities[static_cast<int>(s.scenario().avalanching.quality)];
+  r.device = s.exec().device_name();
+  r.quality = avalanche_qualities[static_cast<int>(s.scenario().get<AvalanchingParameters>().quality)];
   if (const auto* cpu = dynamic_cast<CpuExec*>(&s.exec())) r.threads = cpu->threads();
   r.width = s.terrain().grid().width;
   r.height = s.terrain().grid().height;
@@ -167,14 +168,17 @@ BenchReport bench(const Options& o) {
 }
 
 int run_program(const Options& o) {
-  if (o.has("help")) return std::fputs(usage, stdout), 0;
-  if (o.has("cost-model")) return std::fputs(cost_table().c_str(), stdout), 0;
+  if (o.has("help") || o.has("cost-model")) {
+    std::fputs(o.has("help") ? usage : cost_table().c_str(), stdout);
+    return 0;
+  }
   const std::string picture = o.text("roofline", "");
   if (!o.positional().empty()) {
     if (picture.empty())
       throw ConfigError("'" + o.positional()[0] + "': unexpected argument (--help shows the usage)");
     require_writable_file(picture);
-    return run_plot_script("--roofline", "roofline.py", picture, o.positional()), 0;
+    run_plot_script("--roofline", "roofline.py", picture, o.positional());
+    return 0;
   }
   const std::string json = o.text("json", "");
   if (!picture.empty() && (json.empty() || json == "-"))

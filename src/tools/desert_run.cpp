@@ -16,9 +16,9 @@
 #if DESERT_WITH_IO
 #include "src/io/projection.hpp"
 #endif
-#include "src/tools/detail_output.hpp"
 #include "src/tools/drawing.hpp"
 #include "src/tools/film.hpp"
+#include "src/tools/micro_relief_output.hpp"
 #include "src/tools/options.hpp"
 #include "src/tools/outputs.hpp"
 #include "src/tools/program.hpp"
@@ -67,10 +67,11 @@ const char usage[] =
     "way, in\n"
     "                        summary.json; may be repeated\n"
     "  --probe X,Y           write a time series of this point to DIR/probes.csv; may be repeated\n"
-    "  --detail X1,Y1,X2,Y2,resolution=R\n"
-    "                        write the surface between these corners with ripples and bumps (section detail) "
+    "  --micro-relief X1,Y1,X2,Y2,resolution=R\n"
+    "                        write the surface between these corners with ripples and bumps (section "
+    "micro_relief) "
     "to\n"
-    "                        DIR/detail.tif, a point each R metres (default 0.05); may be repeated\n"
+    "                        DIR/micro_relief.tif, a point each R metres (default 0.05); may be repeated\n"
     "  --probe-every N       steps from line to line (default 1)\n"
     "  --checkpoint FILE     save the state to FILE at the end\n"
     "  --checkpoint-every N  also save it every N steps\n"
@@ -110,7 +111,7 @@ struct RunPlan {
   std::unique_ptr<Film> film;
   std::uint64_t film_every = 0;
   Measurements measurements;
-  std::vector<DetailWindow> details;
+  std::vector<MicroReliefWindow> details;
   std::unique_ptr<TerrainSeries> series;  ///< of --format netcdf
 };
 
@@ -131,7 +132,7 @@ RunPlan plan_of(Options options) {
   plan.every = snapshot_distance(o, 0);
   o.number("probe-every", 1, 1, 1LL << 40);
   if (o.has("probe") && plan.out.empty()) throw ConfigError("--probe: --out is required too");
-  if (o.has("detail") && plan.out.empty()) throw ConfigError("--detail: --out is required too");
+  if (o.has("micro-relief") && plan.out.empty()) throw ConfigError("--micro-relief: --out is required too");
   if (o.has("probe-every") && !o.has("probe")) throw ConfigError("--probe-every: --probe is required too");
   if (o.has("plot") && !plan.every) throw ConfigError("--plot: --out and --every are required too");
   if (plan.checkpoint_every && plan.checkpoint.empty())
@@ -277,7 +278,7 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
       std::snprintf(name, sizeof name, "/step_%08llu", static_cast<unsigned long long>(step));
       create_output_folder(plan.out + name);
       write_outputs(plan.out + name, session.simulation(), report);
-      write_details(plan.out + name, session.simulation(), plan.details);
+      write_micro_relief(plan.out + name, session.simulation(), plan.details);
       plan.summaries.push_back(plan.out + name + "/summary.json");
     }
     if (plan.film && (session.ticks() % plan.film_every == 0 || session.ticks() == last))
@@ -290,10 +291,10 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
 
 int run_program(int argc, char** argv) {
   RunPlan plan = plan_of(Options(
-      argc, argv, {"steps",  "duration",    "snapshots", "backend",    "threads",    "set",
-                   "seed",   "out",         "every",     "plot",       "checkpoint", "checkpoint-every",
-                   "resume", "replay",      "film",      "film-every", "view",       "cross-section",
-                   "probe",  "probe-every", "format",    "detail",     "migrate"},
+      argc, argv, {"steps",  "duration",    "snapshots", "backend",      "threads",    "set",
+                   "seed",   "out",         "every",     "plot",         "checkpoint", "checkpoint-every",
+                   "resume", "replay",      "film",      "film-every",   "view",       "cross-section",
+                   "probe",  "probe-every", "format",    "micro-relief", "migrate"},
       {"all-raster-formats", "describe", "describe-processes", "describe-view", "pipeline", "quiet",
        "help"}));
   const Options& o = plan.options;
@@ -322,22 +323,22 @@ int run_program(int argc, char** argv) {
   plan.measurements = Measurements(o.values("cross-section"), o.values("probe"),
                                    static_cast<std::uint64_t>(o.number("probe-every", 1, 1, 1LL << 40)),
                                    simulation.scenario());
-  plan.details = detail_windows(o.values("detail"), simulation.scenario().grid);
+  plan.details = micro_relief_windows(o.values("micro-relief"), simulation.scenario().grid);
   prepare_outputs(plan, journal, last, simulation);
   if (!o.has("quiet"))
     std::fprintf(stderr, "backend: %s; %s\n", session->backend_choice().c_str(),
-                 simulation.exec().device().c_str());
+                 simulation.exec().device_name().c_str());
 
   catch_signals();
   RunReport report;
   report.measurements = &plan.measurements;
   report.backend = simulation.exec().backend();
-  report.device = simulation.exec().device();
+  report.device = simulation.exec().device_name();
   if (const auto* cpu = dynamic_cast<CpuExec*>(&simulation.exec())) report.threads = cpu->threads();
   run(*session, plan, journal, last, report);
   if (plan.series) plan.series->add(session->simulation());
   if (!plan.out.empty()) write_outputs(plan.out, session->simulation(), report, !plan.series);
-  if (!plan.out.empty()) write_details(plan.out, session->simulation(), plan.details);
+  if (!plan.out.empty()) write_micro_relief(plan.out, session->simulation(), plan.details);
   if (o.has("probe")) write_file(plan.out + "/probes.csv", plan.measurements.probes().csv());
   if (o.has("plot") && !plan.summaries.empty())
     run_plot_script("--plot", "plot_run.py", o.text("plot", ""), plan.summaries);

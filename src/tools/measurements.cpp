@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/sand/saltation.hpp"
 #include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/time_units.hpp"
@@ -135,13 +136,13 @@ Measurements::Measurements(const std::vector<std::string>& cross_sections,
                            const Scenario& scenario)
     : probes_(probes, scenario.grid), probe_every_(probe_every) {
   for (const std::string& section : cross_sections) cross_sections_.emplace_back(section, scenario.grid);
-  if (!scenario.saltation.enabled && !cross_sections.empty())
+  if (!scenario.get<SaltationParameters>().enabled && !cross_sections.empty())
     throw ConfigError("--cross-section: saltation.enabled is false, so that the wind carries no sand");
 }
 
 void Measurements::keep_flux(Session& session) const {
   if (cross_sections_.empty() && probes_.empty()) return;
-  const SaltationParameters& saltation = session.simulation().scenario().saltation;
+  const SaltationParameters& saltation = session.simulation().scenario().get<SaltationParameters>();
   if (saltation.enabled && !saltation.flux) session.apply(command::SetParameters{{"saltation.flux=true"}, 0});
 }
 

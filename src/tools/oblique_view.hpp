@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 #include "src/render/rasteriser.hpp"
 #include "src/simulation/simulation.hpp"
 

@@ -2,7 +2,6 @@
 
 #include <sys/resource.h>
 
-#include <cinttypes>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -12,6 +11,7 @@
 #include "kernels/slabs/slab_parameters.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/core/hash_text.hpp"
 #include "src/simulation/session.hpp"
 #include "src/tools/json_text.hpp"
 #if DESERT_WITH_IO
@@ -134,10 +134,9 @@ std::string summary(Simulation& s, const RunReport& report) {
       << ",\n  \"backend\": " << json_string(report.backend)
       << ",\n  \"device\": " << json_string(report.device) << ",\n  \"threads\": " << report.threads
       << ",\n  \"seed\": " << s.scenario().seed;
-  const auto& slabs = s.scenario().process_sections.get<SlabModelParameters>("slab_model");
-  const SandModel model = s.scenario().sand.model;
-  if (!is_saltation(model) && model != SandModel::wang)
-    out << ",\n  \"slab_height_m\": " << json_number(static_cast<double>(slabs.slab_height));
+  if (is_slab_model(s.scenario().get<SandParameters>().model))
+    out << ",\n  \"slab_height_m\": "
+        << json_number(static_cast<double>(s.scenario().get<SlabModelParameters>().slab_height));
   out << ",\n  \"ms_per_step\": {\"total\": "
       << json_number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
   for (const ProcessTime& t : s.process_times())
@@ -170,15 +169,13 @@ std::string summary(Simulation& s, const RunReport& report) {
   const Residual r = s.residual();
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
-  char hash[20];
-  std::snprintf(hash, sizeof hash, "%016" PRIx64, s.state_hash());
   out << "},\n  \"max_sand_slope_deg\": " << json_number(s.max_sand_slope_deg())
       << ",\n  \"avalanche_iterations_mean\": " << json_number(s.mean_count(avalanche_iterations))
       << ",\n  \"avalanche_residual\": {\"share_over_1e-3\": " << json_number(r.share_over_1e3)
       << ", \"share_over_1e-2\": " << json_number(r.share_over_1e2)
       << ", \"mean_excess\": " << json_number(r.mean_excess)
-      << ", \"largest_excess\": " << json_number(r.largest_excess) << "},\n  \"state_hash\": \"" << hash
-      << "\",\n  \"scenario_hash\": \"" << scenario_hash(s.start())
+      << ", \"largest_excess\": " << json_number(r.largest_excess) << "},\n  \"state_hash\": \""
+      << hash_text(s.state_hash()) << "\",\n  \"scenario_hash\": \"" << scenario_hash(s.start())
       << "\",\n  \"peak_memory_bytes\": " << usage.ru_maxrss * 1024LL
       << ",\n  \"rasters\": " << (DESERT_WITH_IO ? "true" : "false") << "\n}\n";
   return out.str();

@@ -6,6 +6,7 @@
 #elif DESERT_WITH_IO
 #include "src/io/raster_loader.hpp"
 #else
+#include "src/scenario/raster_grid.hpp"
 #include "src/scenario/scenario.hpp"
 #endif
 

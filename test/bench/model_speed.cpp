@@ -125,7 +125,7 @@ int run(int argc, char** argv) {
                       o.text("backend", "auto"),      o.has("alone")};
   const std::vector<const Model*> rows = rows_named(o.positional());
   const std::unique_ptr<Exec> exec = make_exec(timing.backend, timing.threads);
-  std::printf("%d x %d cells, %s\n", timing.size, timing.size, exec->device().c_str());
+  std::printf("%d x %d cells, %s\n", timing.size, timing.size, exec->device_name().c_str());
   std::printf("%-16s %8s %8s %11s %8s\n", "model", "Mpolls/s", "ns/poll", "sequential", "times");
   for (const Model* row : rows) time_model(*row, timing);
   return 0;

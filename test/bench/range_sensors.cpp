@@ -138,7 +138,7 @@ class Bench {
 
 std::string json_of(const std::vector<Row>& rows, const Exec& exec) {
   std::string text = "{\"format\": \"range_sensor_bench 1\", \"backend\": " + json_string(exec.backend()) +
-                     ", \"device\": " + json_string(exec.device()) + ", \"rows\": [";
+                     ", \"device\": " + json_string(exec.device_name()) + ", \"rows\": [";
   for (const Row& r : rows)
     text += std::string(&r == &rows.front() ? "\n" : ",\n") + "  {\"rings\": " + std::to_string(r.rings) +
             ", \"columns\": " + std::to_string(r.columns) + ", \"size\": " + std::to_string(r.size) +
@@ -149,7 +149,7 @@ std::string json_of(const std::vector<Row>& rows, const Exec& exec) {
 
 std::string table_of(const std::vector<Row>& rows, const Exec& exec) {
   std::ostringstream out;
-  out << exec.backend() << ", " << exec.device()
+  out << exec.backend() << ", " << exec.device_name()
       << "\nbeams       grid    scan ms     cpu ms  update ms  returns\n";
   char line[100];
   for (const Row& r : rows) {

@@ -1,5 +1,5 @@
 // Journals.
-#include "src/simulation/commands/journal.hpp"
+#include "src/simulation/journal.hpp"
 
 #include "test/fuzz/fuzz.hpp"
 

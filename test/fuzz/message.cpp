@@ -7,7 +7,7 @@
 #include "src/core/log.hpp"
 #include "src/ros/conversion/grid_map_message.hpp"
 #include "src/ros/forecast/forecast_request.hpp"
-#include "src/ros/node/reconfigure_messages.hpp"
+#include "src/ros/parameters/reconfigure_messages.hpp"
 #include "src/ros/services/requests.hpp"
 #include "src/ros/services/services.hpp"
 #include "src/ros/services/terrain_sampler.hpp"

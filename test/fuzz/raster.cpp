@@ -9,6 +9,7 @@
 
 #include "src/core/log.hpp"
 #include "src/io/raster_loader.hpp"
+#include "src/scenario/raster_grid.hpp"
 #include "test/fuzz/fuzz.hpp"
 
 namespace desert_sim {

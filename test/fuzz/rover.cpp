@@ -57,8 +57,8 @@ class Node {
       case 3:
         return take_layer(data);
       case 4: {
-        const auto m = fuzz::next_message<DetailState>(data, words);
-        maps_.detail_settings = std::make_shared<const Snapshot>(snapshot_of(m));
+        const auto m = fuzz::next_message<MicroReliefState>(data, words);
+        maps_.micro_relief_settings = std::make_shared<const Snapshot>(snapshot_of(m));
         return;
       }
       case 5:

@@ -1,6 +1,7 @@
 // Scenarios: one that is accepted is written, and read again as the same.
 #include "src/scenario/scenario.hpp"
 
+#include "src/scenario/raster_grid.hpp"
 #include "test/fuzz/fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

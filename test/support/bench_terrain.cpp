@@ -114,8 +114,8 @@ void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParamet
                              const ReposeParameters& r, float time_step) {
   with_backend(exec(), [&](auto& e) {
     const reptation::Angle angle({}, r, repose.data());
-    saltation::step(e, terrain.view(), p, a, r, time_step, roll_dice(), ledger(), landed.data(),
-                    {angle, strength.data()}, nullptr, time_step);
+    const saltation::StepInputs in{p, a, r, time_step, time_step, landed.data(), {angle, strength.data()}};
+    saltation::step(e, terrain.view(), in, roll_dice(), ledger());
   });
 }
 
@@ -123,7 +123,7 @@ void BenchTerrain::reptation(const ReptationParameters& p, const ReposeParameter
                              std::uint64_t tick) {
   with_backend(exec(), [&](auto& e) {
     reptation::set_angles(e, terrain.view(), reptation::Angle(p, r, repose.data()), r, strength.data());
-    reptation::step(e, terrain.view(), p, time_step, 1, tick, roll_dice(), strength.data(), landed.data());
+    reptation::step(e, terrain.view(), p, {time_step, 1, tick, strength.data(), landed.data()}, roll_dice());
   });
 }
 
@@ -157,8 +157,8 @@ void BenchTerrain::flow(const WaterParameters& p, float time_step, double time, 
     terrain.allocate(layer);
   virtual_pipes::Workspace work{Buffer<float>(exec(), cells())};
   with_backend(exec(), [&](auto& e) {
-    virtual_pipes::step(e, terrain.view(), p, time_step, time, 7, rolls_++, sea_level, ledger(),
-                        landed.data(), work);
+    virtual_pipes::step(e, terrain.view(), p, {time_step, time, 7, rolls_++, sea_level, landed.data()},
+                        ledger(), work);
   });
   exec().synchronise();
 }
@@ -193,8 +193,8 @@ void BenchTerrain::blow(const WindParameters& p, wind::Vector above, Quanta refe
   const auto cells = static_cast<std::size_t>(grid().cells());
   Buffer<float> scratch(exec(), 2 * cells);
   with_backend(exec(), [&](auto& e) {
-    wind::step(e, terrain.view(), p, above, heights, reference, nullptr, nullptr,
-               {scratch.data(), scratch.data() + cells}, work);
+    wind::step(e, terrain.view(), p, {above, heights, reference}, {scratch.data(), scratch.data() + cells},
+               work);
   });
   exec().synchronise();
 }

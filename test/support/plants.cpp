@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "kernels/plants/life.hpp"
+
 namespace desert_sim::test {
 
 namespace {
@@ -97,8 +99,9 @@ void PlantBench::live(float time_step, std::uint64_t step, std::uint64_t seed, b
   terrain.surface();
   if (lit) terrain.set(Layer::illumination, 1).set(Layer::illumination_canopy, 1);
   with_backend(terrain.exec(), [&](auto& e) {
-    plants::grow_and_spawn(e, terrain.terrain.view(), parameters, repose, terrain.heights, time_step, seed,
-                           step, terrain.roll_dice(), terrain.ledger(), work);
+    plants::grow_and_spawn(e, terrain.terrain.view(),
+                           {parameters, repose, terrain.heights, time_step, seed, step}, terrain.roll_dice(),
+                           terrain.ledger(), work);
   });
   terrain.exec().synchronise();
 }

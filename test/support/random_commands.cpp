@@ -142,9 +142,9 @@ command::SetParameters RandomCommands::settings(const Simulation& simulation) {
   const std::size_t count = 1 + below(3);
   for (std::size_t n = 0; n < count; ++n) {
     std::size_t all = 0;
-    for_each_live_parameter(wanted, [&](const char*, const auto&, const auto&) { ++all; });
+    for_each_live_parameter(wanted, [&](const std::string&, const auto&, const auto&) { ++all; });
     std::size_t chosen = below(all);
-    for_each_live_parameter(wanted, [&](const char* section, const auto& row, const auto& value) {
+    for_each_live_parameter(wanted, [&](const std::string& section, const auto& row, const auto& value) {
       using T = std::decay_t<decltype(value)>;
       if (chosen-- != 0) return;
       std::ostringstream text;
@@ -152,7 +152,7 @@ command::SetParameters RandomCommands::settings(const Simulation& simulation) {
       text << section << "." << row.name << "=";
       if constexpr (std::is_same_v<T, bool>)
         text << (one_in(2) ? "true" : "false");
-      else if constexpr (std::is_enum_v<T>)
+      else if constexpr (std::is_same_v<T, Choice>)
         text << row.choices[below(row.choice_count)];
       else if constexpr (std::is_same_v<T, ShortList>)
         text << "[" << number(row.lowest, row.highest) << ", 3]";

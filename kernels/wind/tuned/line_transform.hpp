@@ -19,8 +19,8 @@
 
 #include "kernels/backend/fft.hpp"
 #include "kernels/backend/for_each.hpp"
-#include "kernels/backend/macros.hpp"
-#include "kernels/field/math.hpp"
+#include "kernels/base/macros.hpp"
+#include "kernels/base/math.hpp"
 #include "src/core/constants.hpp"
 
 namespace desert_sim {

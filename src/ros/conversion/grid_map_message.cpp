@@ -61,11 +61,11 @@ GridMap grid_map(const TerrainState& state, const std::string& frame, const std:
 }
 
 GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
-                 const DetailWindow& window) {
+                 const MicroReliefWindow& window) {
   GridMap map = empty_map(state, frame, window.resolution, window.columns, window.rows, window.x0, window.y0);
   for (const MapLayer& layer : layers)
     add_layer(map, layer,
-              layer.layer == Layer::elevation ? SurfaceDetail(*state.snapshot).elevations(window)
+              layer.layer == Layer::elevation ? MicroRelief(*state.snapshot).elevations(window)
                                               : nearest_values(*state.snapshot, layer, window),
               window.columns);
   return map;

@@ -9,7 +9,7 @@
 
 #include "src/grid_map/grid_map_msg.hpp"
 #include "src/ros/conversion/map_window.hpp"
-#include "src/ros/node/terrain_state.hpp"
+#include "src/ros/simulation/terrain_state.hpp"
 
 namespace desert_sim {
 
@@ -18,9 +18,9 @@ namespace desert_sim {
 GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
                  const MapWindow& window, int decimation = 1);
 
-/// The elevation with its detail, and of other layers the values of the cells in which the points lie.
+/// The elevation with its micro_relief, and of other layers the values of the cells in which the points lie.
 GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
-                 const DetailWindow& window);
+                 const MicroReliefWindow& window);
 
 TerrainSubmap terrain_submap(const TerrainState& state, const std::string& frame,
                              const std::vector<MapLayer>& layers, const MapWindow& window);

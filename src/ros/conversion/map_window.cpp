@@ -10,7 +10,7 @@
 #include "src/core/joined.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/quoted.hpp"
-#include "src/ros/node/simulation_thread.hpp"
+#include "src/ros/simulation/simulation_thread.hpp"
 
 namespace desert_sim {
 
@@ -53,7 +53,7 @@ constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
 [[noreturn]] void throw_error(const std::string& field, double value, const std::string& allowed) {
   std::ostringstream text;
-  text << field << ": = " << value << " is not " << allowed;
+  text << field << ": " << value << " is not " << allowed;
   throw ConfigError(text.str());
 }
 
@@ -158,7 +158,7 @@ std::vector<float> window_values(const Snapshot& s, const MapLayer& layer, const
   return result;
 }
 
-std::vector<float> nearest_values(const Snapshot& s, const MapLayer& layer, const DetailWindow& w) {
+std::vector<float> nearest_values(const Snapshot& s, const MapLayer& layer, const MicroReliefWindow& w) {
   const auto cells = [&w](double corner, double origin, double cell, int count, int n, bool periodic) {
     std::vector<int> all(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k) {
@@ -169,7 +169,7 @@ std::vector<float> nearest_values(const Snapshot& s, const MapLayer& layer, cons
     return all;
   };
   // A band of a periodic terrain begins in one period and the window perhaps in another.
-  const double period = s.detail.periodic_y ? s.detail.grid_height * s.cell_size : 0;
+  const double period = s.micro_relief.periodic_y ? s.micro_relief.grid_height * s.cell_size : 0;
   const double south = period > 0 ? w.y0 - period * std::floor((w.y0 - s.origin_y) / period) : w.y0;
   const std::vector<float>* values = s.find(layer.layer);
   const WindowReader reader{values ? values->data() : nullptr, static_cast<std::size_t>(s.width),
@@ -199,20 +199,20 @@ MapCut cut_terrain(SimulationThread& simulation, const std::vector<MapLayer>& la
   }
 }
 
-DetailCut cut_detail(SimulationThread& simulation, const std::vector<MapLayer>& layers,
-                     const std::string& what, const MapRegion& region, double resolution) {
+MicroReliefCut cut_micro_relief(SimulationThread& simulation, const std::vector<MapLayer>& layers,
+                                const std::string& what, const MapRegion& region, double resolution) {
   std::vector<Layer> needed = layers_of(layers);
   if (std::count(needed.begin(), needed.end(), Layer::elevation) > 0)
-    needed.insert(needed.end(), SurfaceDetail::layers().begin(), SurfaceDetail::layers().end());
+    needed.insert(needed.end(), MicroRelief::layers().begin(), MicroRelief::layers().end());
   while (true) {
     const TerrainState whole = simulation.terrain({}).get();
     Snapshot squares = *whole.snapshot;
     squares.cell_size = resolution;
     const MapWindow w = window_of(region, squares);
     require_map_size(w, layers.size(), what);
-    const DetailWindow window{squares.origin_x + w.x0 * resolution, squares.origin_y + w.y0 * resolution,
-                              w.width, w.height, resolution};
-    DetailCut cut{simulation.terrain(needed, SurfaceDetail::band(window, *whole.snapshot)).get(), window};
+    const MicroReliefWindow window{squares.origin_x + w.x0 * resolution, squares.origin_y + w.y0 * resolution,
+                                   w.width, w.height, resolution};
+    MicroReliefCut cut{simulation.terrain(needed, MicroRelief::band(window, *whole.snapshot)).get(), window};
     if (cut.state.moment.terrain == whole.moment.terrain) return cut;  // else it was replaced in between
   }
 }

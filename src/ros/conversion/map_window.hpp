@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "src/ros/node/terrain_state.hpp"
-#include "src/simulation/views/surface_detail.hpp"
+#include "src/ros/simulation/terrain_state.hpp"
+#include "src/simulation/views/micro_relief.hpp"
 #include "src/terrain/map_layers.hpp"
 
 namespace desert_sim {
@@ -60,7 +60,7 @@ std::vector<float> window_values(const Snapshot& snapshot, const MapLayer& layer
 
 /// The values of the cells in which the points of a finer window lie, in the same order.
 std::vector<float> nearest_values(const Snapshot& snapshot, const MapLayer& layer,
-                                  const DetailWindow& window);
+                                  const MicroReliefWindow& window);
 
 // ---- Cuts: only the rows of the window are computed and copied.
 
@@ -77,11 +77,11 @@ MapCut cut_terrain(SimulationThread& simulation, const std::vector<MapLayer>& la
 
 /// A part of the present terrain in squares of `resolution` metres that lie on a lattice from the terrain's
 /// origin on. Throws and waits as cut_terrain() does.
-struct DetailCut {
+struct MicroReliefCut {
   TerrainState state;  ///< of the rows that the window's elevation depends on
-  DetailWindow window;
+  MicroReliefWindow window;
 };
-DetailCut cut_detail(SimulationThread& simulation, const std::vector<MapLayer>& layers,
-                     const std::string& what, const MapRegion& region, double resolution);
+MicroReliefCut cut_micro_relief(SimulationThread& simulation, const std::vector<MapLayer>& layers,
+                                const std::string& what, const MapRegion& region, double resolution);
 
 }  // namespace desert_sim

@@ -1,8 +1,5 @@
 #include "src/ros/conversion/messages.hpp"
 
-#include <cinttypes>
-#include <cstdio>
-
 namespace desert_sim {
 
 std_msgs::Header header_of(const Moment& moment, const std::string& frame) {
@@ -25,12 +22,6 @@ geometry_msgs::Vector3 vector_of(wind::Vector v) {
   vector.x = v.x;
   vector.y = v.y;
   return vector;
-}
-
-std::string hash_text(std::uint64_t hash) {
-  char text[20];
-  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
-  return text;
 }
 
 }  // namespace desert_sim

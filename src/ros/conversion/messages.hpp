@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-#include "src/ros/node/terrain_state.hpp"
+#include "src/ros/simulation/terrain_state.hpp"
 
 namespace desert_sim {
 
@@ -16,7 +16,5 @@ std_msgs::Header header_of(const Moment& moment, const std::string& frame);
 /// The lower left corner of cell (0, 0) of a grid.
 geometry_msgs::Pose origin_of(const Snapshot& snapshot);
 geometry_msgs::Vector3 vector_of(wind::Vector v);
-/// A hash of the state as 16 hexadecimal digits, as in summary.json.
-std::string hash_text(std::uint64_t hash);
 
 }  // namespace desert_sim

@@ -2,6 +2,7 @@
 
 #include <boost/make_shared.hpp>
 
+#include "src/core/hash_text.hpp"
 #include "src/ros/conversion/messages.hpp"
 
 namespace desert_sim {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "src/ros/node/terrain_state.hpp"
+#include "src/ros/simulation/terrain_state.hpp"
 
 namespace desert_sim {
 

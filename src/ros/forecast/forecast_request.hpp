@@ -3,7 +3,7 @@
 
 #include <desert_sim/ForecastTerrainGoal.h>
 
-#include "src/ros/node/reconfigure_messages.hpp"
+#include "src/ros/parameters/reconfigure_messages.hpp"
 #include "src/simulation/forecast/forecast.hpp"
 
 namespace desert_sim {

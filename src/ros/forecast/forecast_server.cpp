@@ -8,7 +8,7 @@
 
 #include "src/ros/forecast/forecast_messages.hpp"
 #include "src/ros/forecast/forecast_request.hpp"
-#include "src/ros/node/thread_priority.hpp"
+#include "src/ros/support/thread_priority.hpp"
 
 namespace desert_sim {
 

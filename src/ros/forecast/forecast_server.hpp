@@ -18,9 +18,9 @@
 #include <string>
 #include <thread>
 
-#include "src/ros/node/action_server.hpp"
-#include "src/ros/node/frames.hpp"
-#include "src/ros/node/simulation_thread.hpp"
+#include "src/ros/conversion/frames.hpp"
+#include "src/ros/simulation/simulation_thread.hpp"
+#include "src/ros/support/action_server.hpp"
 #include "src/ros/topics/topic_publisher.hpp"
 #include "src/simulation/forecast/forecast.hpp"
 

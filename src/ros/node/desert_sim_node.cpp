@@ -10,8 +10,8 @@
 #include <string>
 
 #include "src/ros/node/desert_sim_server.hpp"
-#include "src/ros/node/node_parameters.hpp"
-#include "src/ros/node/node_program.hpp"
+#include "src/ros/parameters/node_parameters.hpp"
+#include "src/ros/support/node_program.hpp"
 
 namespace {
 

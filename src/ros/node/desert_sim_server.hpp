@@ -12,16 +12,16 @@
 
 #include "src/core/data_folder.hpp"
 #include "src/core/monotonic_clock.hpp"
+#include "src/ros/conversion/frames.hpp"
 #include "src/ros/forecast/forecast_server.hpp"
-#include "src/ros/node/autosave.hpp"
-#include "src/ros/node/clock.hpp"
 #include "src/ros/node/diagnostics.hpp"
-#include "src/ros/node/frames.hpp"
 #include "src/ros/node/reconfigure.hpp"
 #include "src/ros/node/reload_parameters.hpp"
-#include "src/ros/node/simulation_thread.hpp"
+#include "src/ros/services/cmd_wind.hpp"
 #include "src/ros/services/services.hpp"
-#include "src/ros/topics/cmd_wind.hpp"
+#include "src/ros/simulation/autosave.hpp"
+#include "src/ros/simulation/clock.hpp"
+#include "src/ros/simulation/simulation_thread.hpp"
 #include "src/ros/topics/topic_publisher.hpp"
 
 namespace desert_sim {

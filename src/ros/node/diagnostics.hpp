@@ -25,8 +25,8 @@
 #include <string>
 
 #include "src/ros/forecast/forecast_server.hpp"
-#include "src/ros/node/autosave.hpp"
-#include "src/ros/node/simulation_thread.hpp"
+#include "src/ros/simulation/autosave.hpp"
+#include "src/ros/simulation/simulation_thread.hpp"
 #include "src/ros/topics/topic_publisher.hpp"
 
 namespace desert_sim {

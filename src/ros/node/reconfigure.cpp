@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "src/ros/node/service_with_reason.hpp"
+#include "src/ros/support/service_with_reason.hpp"
 
 namespace desert_sim {
 

@@ -9,8 +9,8 @@
 
 #include <mutex>
 
-#include "src/ros/node/reconfigure_messages.hpp"
-#include "src/ros/node/simulation_thread.hpp"
+#include "src/ros/parameters/reconfigure_messages.hpp"
+#include "src/ros/simulation/simulation_thread.hpp"
 #include "src/ros/topics/topic_publisher.hpp"
 
 namespace desert_sim {

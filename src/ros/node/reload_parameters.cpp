@@ -4,7 +4,7 @@
 
 #include "src/core/number_text.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
-#include "src/ros/node/reconfigure_messages.hpp"
+#include "src/ros/parameters/reconfigure_messages.hpp"
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -36,7 +36,8 @@ std::vector<std::string> texts(const NodeParameters& node) {
 
 std::vector<std::string> texts(const PublisherSetup& setup) {
   Texts texts;
-  for_each_publisher_parameter(setup, texts);
+  for_each_parameter(setup.topics, texts);
+  for_each_parameter(setup.maps.parameters, texts);
   texts.all.push_back("layer_thresholds=" + yaml_map(setup.layer_thresholds));
   texts.all.push_back("grid_map_layers=" + yaml_list(setup.maps.grid_map_layers));
   texts.all.push_back("local_map_layers=" + yaml_list(setup.maps.local_map_layers));

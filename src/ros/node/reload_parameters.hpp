@@ -4,8 +4,8 @@
 #include <ros/node_handle.h>
 #include <std_srvs/Trigger.h>
 
-#include "src/ros/node/node_parameters.hpp"
-#include "src/ros/node/simulation_thread.hpp"
+#include "src/ros/parameters/node_parameters.hpp"
+#include "src/ros/simulation/simulation_thread.hpp"
 #include "src/ros/topics/topic_publisher.hpp"
 
 namespace desert_sim {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "src/ros/node/node_program.hpp"
 #include "src/ros/planner/planner_server.hpp"
+#include "src/ros/support/node_program.hpp"
 
 int main(int argc, char** argv) {
   const std::string first = argc > 1 ? argv[1] : "";

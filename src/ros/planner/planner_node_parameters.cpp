@@ -4,9 +4,9 @@
 #include <sstream>
 
 #include "src/core/parameter_page.hpp"
-#include "src/ros/node/frames.hpp"
-#include "src/ros/node/outer_name.hpp"
-#include "src/ros/node/private_parameters.hpp"
+#include "src/ros/conversion/frames.hpp"
+#include "src/ros/support/outer_name.hpp"
+#include "src/ros/support/private_parameters.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "src/core/parameters.hpp"
-#include "src/planner/parameters.hpp"
+#include "src/core/parameter_table.hpp"
+#include "src/planner/planner_parameters.hpp"
 #include "src/ros/rover/rover_node_parameters.hpp"
 
 namespace desert_sim {

@@ -23,9 +23,9 @@
 #include <thread>
 
 #include "src/ros/conversion/transform_listener.hpp"
-#include "src/ros/node/action_server.hpp"
 #include "src/ros/planner/planner_messages.hpp"
 #include "src/ros/planner/planner_terrain.hpp"
+#include "src/ros/support/action_server.hpp"
 
 namespace desert_sim {
 

@@ -13,10 +13,11 @@
 #include <vector>
 
 #include "src/core/error.hpp"
+#include "src/core/hash_text.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
 #include "src/ros/conversion/messages.hpp"
-#include "src/ros/node/node_program.hpp"
 #include "src/ros/rover/rover_server.hpp"
+#include "src/ros/support/node_program.hpp"
 #include "src/rover/simulated_ground.hpp"
 #include "src/rover/urdf.hpp"
 #include "src/scenario/scenario_file.hpp"
@@ -41,7 +42,7 @@ int replay(const std::string& file, const std::string& name) {
     using namespace desert_sim;
     const RoverJournal journal = read_rover_journal(file);
     SimulatedGround ground(load_scenario(scenario_file(name)), raster_loader_with_bags({"", false}), "cpu", 0,
-                           journal.detail);
+                           journal.micro_relief);
     const RoverState end = desert_sim::replay(
         journal, [&ground](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
     std::printf("step %lu of the terrain, x %.6f, y %.6f, z %.6f, yaw %.6f, %s, state_hash %s\n",

@@ -35,22 +35,22 @@ std::vector<std::string> TerrainMaps::names(unsigned uses, unsigned without) {
 bool TerrainMaps::complete(unsigned uses) const {
   for (std::size_t n = 0; n < count; ++n)
     if ((rows[n].uses & uses) && !maps[n]) return false;
-  return !(uses & MapUse::detail) || detail_settings;
+  return !(uses & MapUse::micro_relief) || micro_relief_settings;
 }
 
 void TerrainMaps::forget(unsigned uses, unsigned without) {
   for (const std::string& name : names(uses, without)) maps[index(name)] = nullptr;
 }
 
-std::shared_ptr<const MapDetail> TerrainMaps::detail() const {
-  if (!complete(MapUse::detail)) return nullptr;
-  MapDetail::Maps layers;
+std::shared_ptr<const MapMicroRelief> TerrainMaps::micro_relief() const {
+  if (!complete(MapUse::micro_relief)) return nullptr;
+  MapMicroRelief::Maps layers;
   for (std::size_t n = 0; n < count; ++n) {
-    if (!(rows[n].uses & MapUse::detail)) continue;
+    if (!(rows[n].uses & MapUse::micro_relief)) continue;
     if (!maps[n]->same_geometry(*maps[elevation])) return nullptr;
     layers[find_map_layer(rows[n].name)->layer] = maps[n];
   }
-  return std::make_shared<const MapDetail>(std::move(layers), *detail_settings);
+  return std::make_shared<const MapMicroRelief>(std::move(layers), *micro_relief_settings);
 }
 
 void TerrainMaps::set(std::size_t which, const MapChange& change) {
@@ -69,11 +69,11 @@ bool MapGround::contains(double x, double y) const {
 
 std::optional<double> MapGround::elevation(double x, double y) const {
   const std::optional<double> z = maps_.maps[TerrainMaps::elevation]->value(x, y);
-  return z && detail_ ? *z + detail_->offset(x, y) : z;
+  return z && micro_relief_ ? *z + micro_relief_->offset(x, y) : z;
 }
 
 double MapGround::finest_feature() const {
-  return detail_ ? SurfaceDetail::crest_width : GroundSource::finest_feature();
+  return micro_relief_ ? MicroRelief::crest_width : GroundSource::finest_feature();
 }
 
 double MapGround::value(TerrainMaps::Which which, double x, double y) const {

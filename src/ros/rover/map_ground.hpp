@@ -9,14 +9,14 @@
 
 #include "src/client/layer_assembler.hpp"
 #include "src/client/layer_map.hpp"
-#include "src/ros/rover/map_detail.hpp"
+#include "src/ros/rover/map_micro_relief.hpp"
 #include "src/rover/ground.hpp"
 
 namespace desert_sim {
 
 /// The uses of maps, as bits.
 struct MapUse {
-  static constexpr unsigned ground = 1, sensors = 2, detail = 4;
+  static constexpr unsigned ground = 1, sensors = 2, micro_relief = 4;
 };
 
 /// What a rover knows of one state of the terrain.
@@ -41,23 +41,23 @@ struct TerrainMaps {
     const char* name;
     unsigned uses;
   };
-  /// In the order of Which. Those for detail are SurfaceDetail::layers().
-  static constexpr Row rows[count] = {{"elevation", MapUse::ground | MapUse::sensors | MapUse::detail},
-                                      {"sand_depth", MapUse::ground | MapUse::detail},
-                                      {"soil_depth", MapUse::ground | MapUse::detail},
-                                      {"moisture", MapUse::ground | MapUse::detail},
-                                      {"obstacle", MapUse::ground | MapUse::detail},
-                                      {"water_depth", MapUse::ground | MapUse::detail},
+  /// In the order of Which. Those for micro_relief are MicroRelief::layers().
+  static constexpr Row rows[count] = {{"elevation", MapUse::ground | MapUse::sensors | MapUse::micro_relief},
+                                      {"sand_depth", MapUse::ground | MapUse::micro_relief},
+                                      {"soil_depth", MapUse::ground | MapUse::micro_relief},
+                                      {"moisture", MapUse::ground | MapUse::micro_relief},
+                                      {"obstacle", MapUse::ground | MapUse::micro_relief},
+                                      {"water_depth", MapUse::ground | MapUse::micro_relief},
                                       {"looseness", MapUse::ground},
                                       {"canopy_height", MapUse::sensors},
-                                      {"vegetation", MapUse::sensors | MapUse::detail},
+                                      {"vegetation", MapUse::sensors | MapUse::micro_relief},
                                       {"airborne_sand", MapUse::sensors},
-                                      {"wind_x", MapUse::detail},
-                                      {"wind_y", MapUse::detail},
-                                      {"wind_shadow", MapUse::detail}};
+                                      {"wind_x", MapUse::micro_relief},
+                                      {"wind_y", MapUse::micro_relief},
+                                      {"wind_shadow", MapUse::micro_relief}};
   std::array<std::shared_ptr<const LayerMap>, count> maps;
-  bool loose = false;                               ///< whether a cell of the looseness is not 0
-  std::shared_ptr<const Snapshot> detail_settings;  ///< snapshot_of() the message of ~detail
+  bool loose = false;                                     ///< whether a cell of the looseness is not 0
+  std::shared_ptr<const Snapshot> micro_relief_settings;  ///< snapshot_of() the message of ~micro_relief
 
   /// The names of the layers with one of these uses, and with none of those of `without`.
   static std::vector<std::string> names(unsigned uses, unsigned without = 0);
@@ -68,7 +68,7 @@ struct TerrainMaps {
   /// Gives up the maps that names() names.
   void forget(unsigned uses, unsigned without);
   /// Of these maps; null if something for it is missing, or if some maps are of another terrain.
-  std::shared_ptr<const MapDetail> detail() const;
+  std::shared_ptr<const MapMicroRelief> micro_relief() const;
   /// Takes a new map, of which these cells differ from the one before.
   void set(std::size_t which, const MapChange& change);
   const MapInfo& info() const { return maps[elevation]->info(); }
@@ -77,14 +77,14 @@ struct TerrainMaps {
 class MapGround : public GroundSource {
  public:
   /// `maps` must be complete for the ground. `use_looseness`: whether the layer says how loose the ground
-  /// is. Where the maps have what detail needs, the elevation has ripples and bumps.
+  /// is. Where the maps have what micro_relief needs, the elevation has ripples and bumps.
   MapGround(TerrainMaps maps, double moisture_capacity, bool use_looseness)
       : maps_(std::move(maps)),
         moisture_capacity_(moisture_capacity),
         use_looseness_(use_looseness),
-        detail_(maps_.detail()) {}
+        micro_relief_(maps_.micro_relief()) {}
   const TerrainMaps& maps() const { return maps_; }
-  const std::shared_ptr<const MapDetail>& detail() const { return detail_; }
+  const std::shared_ptr<const MapMicroRelief>& micro_relief() const { return micro_relief_; }
 
   bool contains(double x, double y) const override;
   std::optional<double> elevation(double x, double y) const override;
@@ -97,7 +97,7 @@ class MapGround : public GroundSource {
   TerrainMaps maps_;
   double moisture_capacity_;
   bool use_looseness_;
-  std::shared_ptr<const MapDetail> detail_;  ///< null: none
+  std::shared_ptr<const MapMicroRelief> micro_relief_;  ///< null: none
 };
 
 }  // namespace desert_sim

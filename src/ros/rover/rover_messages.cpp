@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/core/hash_text.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/rover/urdf.hpp"
 

@@ -6,9 +6,9 @@
 
 #include "src/core/files.hpp"
 #include "src/core/parameter_page.hpp"
-#include "src/ros/node/frames.hpp"
-#include "src/ros/node/outer_name.hpp"
-#include "src/ros/node/private_parameters.hpp"
+#include "src/ros/conversion/frames.hpp"
+#include "src/ros/support/outer_name.hpp"
+#include "src/ros/support/private_parameters.hpp"
 #include "src/rover/rover_class.hpp"
 #include "src/scenario/scenario_file.hpp"
 #include "src/scenario/yaml_parameters.hpp"

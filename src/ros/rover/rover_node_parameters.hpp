@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "src/core/parameters.hpp"
-#include "src/rover/parameters.hpp"
+#include "src/core/parameter_table.hpp"
+#include "src/rover/rover_parameters.hpp"
 #include "src/rover/sensors/sensor_parameters.hpp"
 
 namespace desert_sim {
@@ -39,7 +39,7 @@ struct RoverNodeParameters {
   double moisture_capacity = 0.3;
   std::string data_dir;
   std::string journal;
-  bool detail = false;
+  bool micro_relief = false;
   bool tracks = false;
   double track_spacing = 0.25;
   double track_rate = 10;
@@ -96,9 +96,9 @@ constexpr auto parameter_table(const RoverNodeParameters*) {
                 "File for the journal of all that the rover was told and drove on; one of that name gets the "
                 "ending "
                 ".previous. Empty: none."),
-      parameter(
-          "detail", &P::detail,
-          "Whether wheels and beams meet ripples and bumps (section detail of the terrain's scenario)."),
+      parameter("micro_relief", &P::micro_relief,
+                "Whether wheels and beams meet ripples and bumps (section micro_relief of the terrain's "
+                "scenario)."),
       parameter("tracks", &P::tracks, "Whether its wheels press and displace the terrain's sand."),
       parameter("track_spacing", &P::track_spacing, 0.01, 100, "m", "Way of a wheel that is one stroke."),
       parameter("track_rate", &P::track_rate, 0.1, 1000, "Hz",

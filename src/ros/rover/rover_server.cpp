@@ -11,7 +11,7 @@
 #include "src/ros/rover/rover_messages.hpp"
 #include "src/rover/state_file.hpp"
 #include "src/rover/urdf.hpp"
-#include "src/simulation/commands/journal.hpp"
+#include "src/simulation/journal.hpp"
 
 namespace desert_sim {
 
@@ -31,7 +31,7 @@ std::unique_ptr<RoverJournalWriter> start_journal(const RoverNodeParameters& p, 
     if (error)
       throw ConfigError(path + ": the previous journal cannot be renamed to *.previous: " + error.message());
   }
-  return std::make_unique<RoverJournalWriter>(path, rover, p.detail);
+  return std::make_unique<RoverJournalWriter>(path, rover, p.micro_relief);
 }
 
 SensorFrames sensor_frames(const RoverSetup& setup) {
@@ -214,7 +214,7 @@ void RoverServer::advance(double seconds, const std::shared_ptr<const MapGround>
 void RoverServer::measure(const MapGround& ground, const ros::Time& stamp, std::uint64_t ticks) {
   const RoverState& state = rover_.state();
   const geometry_msgs::Pose pose = pose_message(state.pose);
-  sensors_->on_detail(ground.detail());
+  sensors_->on_micro_relief(ground.micro_relief());
   if (setup_.node.clock == RoverClock::ros) {
     if (terrain_.want_sensor_layers(sensors_->has_subscribers())) sensors_->on_pose(stamp, pose);
     return;

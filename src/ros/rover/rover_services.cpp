@@ -6,6 +6,7 @@
 
 #include "src/client/service_call.hpp"
 #include "src/core/files.hpp"
+#include "src/core/hash_text.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/rover/rover_messages.hpp"
 #include "src/ros/rover/rover_server.hpp"

@@ -5,14 +5,14 @@
 #include <utility>
 
 #include "src/core/error.hpp"
-#include "src/ros/conversion/detail_message.hpp"
+#include "src/ros/conversion/micro_relief_message.hpp"
 
 namespace desert_sim {
 
 namespace {
 
 unsigned uses_at_all_times(const RoverNodeParameters& p, bool sensors) {
-  return MapUse::ground | (p.detail ? MapUse::detail : 0) |
+  return MapUse::ground | (p.micro_relief ? MapUse::micro_relief : 0) |
          (sensors && p.clock == RoverClock::lockstep ? MapUse::sensors : 0);
 }
 
@@ -30,14 +30,14 @@ RoverTerrain::RoverTerrain(const RoverNodeParameters& parameters, bool sensors,
   options.tell_each_step = true;
   options.on_change = [this](const MapChange& change) { receive(change); };
   client_ = std::make_unique<TerrainClient>(ros::NodeHandle(), options);
-  if (!parameters.detail) return;
+  if (!parameters.micro_relief) return;
   // A queue of its own: services of the rover wait for states that are complete with this message.
   ros::NodeHandle node;
-  node.setCallbackQueue(&detail_queue_);
-  detail_subscriber_ =
-      node.subscribe(parameters.terrain_node + "/detail", most_states, &RoverTerrain::receive_detail, this);
-  detail_spinner_.emplace(1, &detail_queue_);
-  detail_spinner_->start();
+  node.setCallbackQueue(&micro_relief_queue_);
+  micro_relief_subscriber_ = node.subscribe(parameters.terrain_node + "/micro_relief", most_states,
+                                            &RoverTerrain::receive_micro_relief, this);
+  micro_relief_spinner_.emplace(1, &micro_relief_queue_);
+  micro_relief_spinner_->start();
 }
 
 bool RoverTerrain::want_sensor_layers(bool wanted) {
@@ -68,17 +68,18 @@ void RoverTerrain::receive(const MapChange& change) {
   });
 }
 
-void RoverTerrain::receive_detail(const DetailState::ConstPtr& message) {
+void RoverTerrain::receive_micro_relief(const MicroReliefState::ConstPtr& message) {
   std::shared_ptr<const Snapshot> settings;
   try {
     settings = std::make_shared<const Snapshot>(snapshot_of(*message));
   } catch (const ConfigError& e) {
-    ROS_WARN_THROTTLE(5, "%s/detail: a message was refused: %s", parameters_.terrain_node.c_str(), e.what());
+    ROS_WARN_THROTTLE(5, "%s/micro_relief: a message was refused: %s", parameters_.terrain_node.c_str(),
+                      e.what());
     return;
   }
   const std::lock_guard<std::mutex> lock(mutex_);
-  newest_maps_.detail_settings = settings;
-  collect(message->step, [&settings](TerrainMaps& state) { state.detail_settings = settings; });
+  newest_maps_.micro_relief_settings = settings;
+  collect(message->step, [&settings](TerrainMaps& state) { state.micro_relief_settings = settings; });
 }
 
 void RoverTerrain::collect(std::uint64_t step, const std::function<void(TerrainMaps&)>& put) {

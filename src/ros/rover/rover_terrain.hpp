@@ -2,7 +2,7 @@
 /// The terrain that a rover drives on, as a TerrainClient has it: the newest maps, or state after state
 /// with all layers of one step.
 
-#include <desert_sim/DetailState.h>
+#include <desert_sim/MicroReliefState.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
@@ -27,7 +27,7 @@ class RoverTerrain {
  public:
   /// `on_change` (may be empty) is called after each change of any layer, on the client's thread. `sensors`:
   /// whether the rover has some; their layers are then parts of the states that next() gives, and of
-  /// newest() while want_sensor_layers(true). With the parameter `detail`, the grounds have ripples and
+  /// newest() while want_sensor_layers(true). With the parameter `micro_relief`, the grounds have ripples and
   /// bumps.
   RoverTerrain(const RoverNodeParameters& parameters, bool sensors,
                std::function<void(const MapChange&)> on_change);
@@ -47,7 +47,7 @@ class RoverTerrain {
 
  private:
   void receive(const MapChange& change);
-  void receive_detail(const DetailState::ConstPtr& message);
+  void receive_micro_relief(const MicroReliefState::ConstPtr& message);
   /// Puts into the state of a step what has come of it. The caller holds the mutex.
   void collect(std::uint64_t step, const std::function<void(TerrainMaps&)>& put);
   std::shared_ptr<const MapGround> ground_of(const TerrainMaps& maps) const;
@@ -67,9 +67,9 @@ class RoverTerrain {
   std::uint64_t last_step_ = 0;  ///< of the last one that became complete
   // Last, because they call what receives:
   std::unique_ptr<TerrainClient> client_;
-  ros::CallbackQueue detail_queue_;
-  ros::Subscriber detail_subscriber_;
-  std::optional<ros::AsyncSpinner> detail_spinner_;
+  ros::CallbackQueue micro_relief_queue_;
+  ros::Subscriber micro_relief_subscriber_;
+  std::optional<ros::AsyncSpinner> micro_relief_spinner_;
 };
 
 }  // namespace desert_sim

@@ -77,9 +77,9 @@ void SensorPublisher::on_terrain(std::shared_ptr<const LayerMap> map, const Laye
   }
 }
 
-void SensorPublisher::on_detail(std::shared_ptr<const MapDetail> detail) {
+void SensorPublisher::on_micro_relief(std::shared_ptr<const MapMicroRelief> micro_relief) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  detail_ = std::move(detail);
+  micro_relief_ = std::move(micro_relief);
 }
 
 bool SensorPublisher::has_subscribers() const {
@@ -161,18 +161,18 @@ void SensorPublisher::perform(const Job& job) {
 /// Brings the scene up to date; false before the first elevation.
 bool SensorPublisher::update_scene() {
   Layers layers;
-  std::shared_ptr<const MapDetail> detail;
+  std::shared_ptr<const MapMicroRelief> micro_relief;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     layers = layers_;
-    detail = detail_;
+    micro_relief = micro_relief_;
     for (LayerState& layer : layers_) layer.changed = {};
   }
   if (!layers[0].map) return false;
   const SceneGeometry geometry = geometry_of(*layers[0].map);
   if (!scene_ || !(scene_->geometry() == geometry)) {
     scene_ = std::make_unique<HeightFieldScene>(*exec_, geometry);
-    scene_detail_.reset();
+    scene_micro_relief_.reset();
     for (LayerState& layer : layers)
       if (layer.map) layer.changed = {0, 0, layer.map->info().width, layer.map->info().height};
   }
@@ -188,19 +188,19 @@ bool SensorPublisher::update_scene() {
         layers[n].map->values(r));
     ++uploads;
   }
-  update_detail(detail);
+  update_micro_relief(micro_relief);
   const std::lock_guard<std::mutex> lock(mutex_);
   statistics_.uploads += uploads;
   return true;
 }
 
-void SensorPublisher::update_detail(const std::shared_ptr<const MapDetail>& detail) {
-  if (detail == scene_detail_) return;
-  scene_detail_ = detail;
-  if (detail && detail->geometry() == scene_->geometry())
-    scene_->set_detail(detail->snapshot());
+void SensorPublisher::update_micro_relief(const std::shared_ptr<const MapMicroRelief>& micro_relief) {
+  if (micro_relief == scene_micro_relief_) return;
+  scene_micro_relief_ = micro_relief;
+  if (micro_relief && micro_relief->geometry() == scene_->geometry())
+    scene_->set_micro_relief(micro_relief->snapshot());
   else
-    scene_->clear_detail();
+    scene_->clear_micro_relief();
 }
 
 void SensorPublisher::publish_scan(const Job& job) {

@@ -30,7 +30,7 @@
 
 #include "src/client/layer_map.hpp"
 #include "src/ros/conversion/sensor_messages.hpp"
-#include "src/ros/rover/map_detail.hpp"
+#include "src/ros/rover/map_micro_relief.hpp"
 #include "src/rover/sensors/depth_camera.hpp"
 #include "src/rover/sensors/height_field_scene.hpp"
 #include "src/rover/sensors/lidar.hpp"
@@ -66,7 +66,7 @@ class SensorPublisher {
   void on_terrain(std::shared_ptr<const LayerMap> map, const LayerMap::Rectangle& changed);
 
   /// Takes the ripples and bumps that beams meet from now on; null: none. Returns at once, from any thread.
-  void on_detail(std::shared_ptr<const MapDetail> detail);
+  void on_micro_relief(std::shared_ptr<const MapMicroRelief> micro_relief);
 
   /// Whether anybody listens.
   bool has_subscribers() const;
@@ -107,7 +107,7 @@ class SensorPublisher {
   void work();
   void perform(const Job& job);
   bool update_scene();
-  void update_detail(const std::shared_ptr<const MapDetail>& detail);
+  void update_micro_relief(const std::shared_ptr<const MapMicroRelief>& micro_relief);
   void publish_scan(const Job& job);
   void publish_picture(const Job& job);
 
@@ -119,7 +119,7 @@ class SensorPublisher {
   // Of the thread that measures:
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<HeightFieldScene> scene_;
-  std::shared_ptr<const MapDetail> scene_detail_;  ///< what the scene has been given
+  std::shared_ptr<const MapMicroRelief> scene_micro_relief_;  ///< what the scene has been given
   Lidar lidar_;
   DepthCamera camera_;
 
@@ -127,7 +127,7 @@ class SensorPublisher {
   std::condition_variable wake_;
   // Guarded by mutex_:
   Layers layers_;
-  std::shared_ptr<const MapDetail> detail_;
+  std::shared_ptr<const MapMicroRelief> micro_relief_;
   std::optional<Job> job_;
   std::exception_ptr failure_;
   Statistics statistics_;

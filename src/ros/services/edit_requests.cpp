@@ -90,7 +90,7 @@ void require_size(const sensor_msgs::Image& image, std::size_t bytes) {
     throw ConfigError("image: " + size + " pixels (allowed: 1 to " +
                       std::to_string(command::Patch::max_pixels) + " in all)");
   if (image.step < image.width * bytes)
-    throw ConfigError("image.step: = " + std::to_string(image.step) + " is too small for " +
+    throw ConfigError("image.step: " + std::to_string(image.step) + " is too small for " +
                       std::to_string(image.width) + " pixels of " + image.encoding + " (allowed: at least " +
                       std::to_string(image.width * bytes) + ")");
   if (image.data.size() != std::uint64_t{image.step} * image.height)

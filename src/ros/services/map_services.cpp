@@ -4,10 +4,10 @@
 #include "src/core/error.hpp"
 #include "src/ros/conversion/grid_map_message.hpp"
 #include "src/ros/conversion/messages.hpp"
-#include "src/ros/node/service_with_reason.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/services.hpp"
 #include "src/ros/services/terrain_sampler.hpp"
+#include "src/ros/support/service_with_reason.hpp"
 
 namespace desert_sim {
 

@@ -24,7 +24,7 @@ constexpr double degrees_per_radian = 180 / 3.14159265358979323846;
 inline void require_finite(double value, const std::string& name) {
   if (std::isfinite(value)) return;
   std::ostringstream text;
-  text << name << ": = " << value << " is not a finite number";
+  text << name << ": " << value << " is not a finite number";
   throw ConfigError(text.str());
 }
 

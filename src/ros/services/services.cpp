@@ -5,6 +5,7 @@
 #include <boost/make_shared.hpp>
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/hash_text.hpp"
 #include "src/core/joined.hpp"
 #include "src/core/quoted.hpp"
 #include "src/ros/conversion/messages.hpp"

@@ -29,9 +29,9 @@
 
 #include "src/core/data_folder.hpp"
 #include "src/grid_map/grid_map_msg.hpp"
+#include "src/ros/conversion/frames.hpp"
 #include "src/ros/conversion/map_window.hpp"
-#include "src/ros/node/frames.hpp"
-#include "src/ros/node/simulation_thread.hpp"
+#include "src/ros/simulation/simulation_thread.hpp"
 #include "src/ros/topics/topic_publisher.hpp"
 
 namespace desert_sim {

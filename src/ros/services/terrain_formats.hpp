@@ -4,7 +4,7 @@
 #include <string>
 
 #include "src/io/terrain_files.hpp"
-#include "src/ros/node/terrain_state.hpp"
+#include "src/ros/simulation/terrain_state.hpp"
 
 namespace desert_sim {
 

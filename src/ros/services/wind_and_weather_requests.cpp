@@ -6,6 +6,7 @@
 #include <optional>
 #include <sstream>
 
+#include "kernels/water/water_parameters.hpp"
 #include "src/core/did_you_mean.hpp"
 #include "src/core/joined.hpp"
 #include "src/ros/services/request_fields.hpp"
@@ -29,8 +30,7 @@ command::SetWind wind_command(const SetWindRequest& request) {
   require_finite(request.vector.x, "vector.x");
   require_finite(request.vector.y, "vector.y");
   if (!(request.vector.z == 0))
-    throw ConfigError("vector.z: = " + std::to_string(request.vector.z) +
-                      " must be 0: the wind is horizontal");
+    throw ConfigError("vector.z: " + std::to_string(request.vector.z) + " must be 0: the wind is horizontal");
   command.speed = to_float(std::hypot(request.vector.x, request.vector.y));
   command.direction_deg = to_float(std::atan2(request.vector.y, request.vector.x) * degrees_per_radian);
   return command;

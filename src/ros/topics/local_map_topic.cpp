@@ -27,8 +27,8 @@ class LocalMapTopic : public MessageTopic<GridMap> {
     return publish_or_set_problem([this] {
       const std::vector<MapLayer>& layers = parameters().maps.local_map_layers;
       if (map().local_map_resolution > 0) {
-        const DetailCut cut = cut_detail(context().simulation, layers, short_name(), region_around_robot(),
-                                         map().local_map_resolution);
+        const MicroReliefCut cut = cut_micro_relief(context().simulation, layers, short_name(),
+                                                    region_around_robot(), map().local_map_resolution);
         return publisher_.publish(
             boost::make_shared<GridMap>(grid_map(cut.state, frame(), layers, cut.window)));
       }

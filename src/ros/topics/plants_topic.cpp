@@ -8,6 +8,7 @@
 #include <boost/make_shared.hpp>
 #include <cmath>
 
+#include "src/render/colour.hpp"
 #include "src/render/plant_shapes.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/topics/topic_list.hpp"
@@ -56,11 +57,11 @@ Marker base_marker(const TerrainState& state, const std::string& frame, const st
 }
 
 std_msgs::ColorRGBA crown_colour_of(const Species& species) {
-  const auto [r, g, b] = crown_colour(species.appearance);
+  const render::Colour crown = render::crown_colour(species.appearance.hue);
   std_msgs::ColorRGBA colour;
-  colour.r = r;
-  colour.g = g;
-  colour.b = b;
+  colour.r = crown.r;
+  colour.g = crown.g;
+  colour.b = crown.b;
   colour.a = 1;
   return colour;
 }

@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "src/core/did_you_mean.hpp"
-#include "src/ros/node/frames.hpp"
+#include "src/ros/conversion/frames.hpp"
 
 namespace desert_sim {
 
@@ -58,9 +58,8 @@ void read_map_setup(const YAML::Node& root, ValidationErrors& errors, MapSetup& 
   if ((p.grid_map_length_x == 0) != (p.grid_map_length_y == 0))
     errors.add("grid_map_length_x", "and grid_map_length_y must both be 0 or both be above it");
   if (p.local_map_resolution > 0 && p.local_map_resolution < finest_detail)
-    errors.add("local_map_resolution", "= " + std::to_string(p.local_map_resolution) +
-                                           " is neither 0 nor in [" + std::to_string(finest_detail) +
-                                           ", 1000] m");
+    errors.add("local_map_resolution", std::to_string(p.local_map_resolution) + " is neither 0 nor in [" +
+                                           std::to_string(finest_detail) + ", 1000] m");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_values.hpp"
 #include "src/ros/conversion/map_window.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -25,7 +25,7 @@ struct PublisherParameters {
   int update_tile = 32;
   double layer_keyframe_rate = 1;
   double layer_update_rate = 10;
-  double detail_rate = 10;
+  double micro_relief_rate = 10;
   double wind_rate = 2;
   int wind_decimation = 1;
   double wind_markers_rate = 2;
@@ -59,7 +59,7 @@ constexpr auto parameter_table(const PublisherParameters*) {
       parameter("layer_keyframe_rate", &P::layer_keyframe_rate, 0, 1000, "Hz",
                 "~layers/<name>, while a node takes keyframes of the layer but no updates."),
       parameter("layer_update_rate", &P::layer_update_rate, 0, 1000, "Hz", "~layers/<name>_updates."),
-      parameter("detail_rate", &P::detail_rate, 0, 1000, "Hz", "~detail."),
+      parameter("micro_relief_rate", &P::micro_relief_rate, 0, 1000, "Hz", "~micro_relief."),
       parameter("wind_rate", &P::wind_rate, 0, 1000, "Hz", "~wind."),
       parameter("wind_decimation", &P::wind_decimation, 1, 65536, "cells",
                 "Cells of the terrain in a row that are averaged into one of ~wind."),
@@ -125,9 +125,10 @@ constexpr auto parameter_table(const MapParameters*) {
       parameter("local_map_rate", &P::local_map_rate, 0, 1000, "Hz", "~local_map."),
       parameter("local_map_length_x", &P::local_map_length_x, 1e-3, 1e9, "m", "Length of ~local_map."),
       parameter("local_map_length_y", &P::local_map_length_y, 1e-3, 1e9, "m", "Length of ~local_map."),
-      parameter("local_map_resolution", &P::local_map_resolution, 0, 1000, "m",
-                "Side of a cell of ~local_map, whose elevation then has ripples and bumps (section detail); "
-                "0.001 m at least; 0: the terrain's cells, without."),
+      parameter(
+          "local_map_resolution", &P::local_map_resolution, 0, 1000, "m",
+          "Side of a cell of ~local_map, whose elevation then has ripples and bumps (section micro_relief); "
+          "0.001 m at least; 0: the terrain's cells, without."),
       parameter("robot_frame", &P::robot_frame, "Frame whose origin ~local_map follows."),
       parameter("costmap_update_rate", &P::costmap_update_rate, 0, 1000, "Hz",
                 "~costmap_updates; not above the update_frequency of a costmap_2d that listens."),
@@ -175,11 +176,10 @@ void read_publisher_setup(const YAML::Node& root, ValidationErrors& errors, Publ
 /// Throws ConfigError, naming the parameter, if a map would have more than 67108864 values on this grid.
 void check_map_sizes(const MapSetup& maps, const GridParameters& grid);
 
-/// Calls visit(row, value) for all parameters except the lists of layers.
-template <class Setup, class Visit>
-void for_each_publisher_parameter(Setup& setup, Visit&& visit) {
-  for_each_parameter(setup.topics, visit);
-  for_each_parameter(setup.maps.parameters, visit);
+/// Visits all parameters except the lists of layers.
+inline void visit_publisher_parameters(const PublisherSetup& setup, const ConstParameterVisit& visit) {
+  visit_parameters(setup.topics, visit);
+  visit_parameters(setup.maps.parameters, visit);
 }
 
 }  // namespace desert_sim

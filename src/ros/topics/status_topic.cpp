@@ -6,6 +6,7 @@
 #include <boost/make_shared.hpp>
 #include <utility>
 
+#include "src/core/hash_text.hpp"
 #include "src/ros/conversion/messages.hpp"
 
 namespace desert_sim {

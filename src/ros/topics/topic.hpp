@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "src/ros/node/frames.hpp"
-#include "src/ros/node/pacer.hpp"
-#include "src/ros/node/simulation_thread.hpp"
+#include "src/ros/conversion/frames.hpp"
+#include "src/ros/simulation/pacer.hpp"
+#include "src/ros/simulation/simulation_thread.hpp"
 #include "src/ros/topics/due_time.hpp"
 #include "src/ros/topics/publisher_parameters.hpp"
 

@@ -22,14 +22,14 @@ void add_grid_map_topic(const TopicContext& context, TopicList& topics);
 void add_local_map_topic(const TopicContext& context, TopicList& topics);
 void add_costmap_topics(const TopicContext& context, TopicList& topics);
 void add_image_topic(const TopicContext& context, TopicList& topics);
-void add_detail_topic(const TopicContext& context, TopicList& topics);
+void add_micro_relief_topic(const TopicContext& context, TopicList& topics);
 
 /// All topics, in the order in which those that are due at the same time are published.
 inline TopicList make_topics(const TopicContext& context) {
   TopicList topics;
   add_elevation_topics(context, topics);    // ~elevation_updates, ~elevation
   add_layer_topics(context, topics);        // ~layers/<name>_updates, ~layers/<name>
-  add_detail_topic(context, topics);        // ~detail
+  add_micro_relief_topic(context, topics);  // ~micro_relief
   add_wind_topic(context, topics);          // ~wind
   add_wind_markers_topic(context, topics);  // ~wind_markers
   add_points_topics(context, topics);       // ~points, ~water_points

@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "src/ros/node/frames.hpp"
-#include "src/ros/node/simulation_thread.hpp"
+#include "src/ros/conversion/frames.hpp"
+#include "src/ros/simulation/simulation_thread.hpp"
 #include "src/ros/topics/publisher_parameters.hpp"
 #include "src/ros/topics/status_topic.hpp"
 #include "src/ros/topics/topic_list.hpp"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "kernels/field/grid.hpp"
+#include "kernels/base/grid.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -106,25 +106,25 @@ void HeightFieldScene::update(SceneLayer layer, const Rectangle& cells, const st
   refresh_tops(first ? whole() : cells);
 }
 
-void HeightFieldScene::set_detail(const Snapshot& s) {
+void HeightFieldScene::set_micro_relief(const Snapshot& s) {
   const SceneGeometry grid{s.width, s.height, s.cell_size, s.origin_x, s.origin_y};
   if (!(grid == geometry_))
-    throw ConfigError("sensors: the detail is of a grid of " + std::to_string(s.width) + " x " +
+    throw ConfigError("sensors: the micro_relief is of a grid of " + std::to_string(s.width) + " x " +
                       std::to_string(s.height) + " cells, or of another place (allowed: the " +
                       std::to_string(geometry_.width) + " x " + std::to_string(geometry_.height) +
                       " cells of the ground)");
-  using surface_detail::Cells;
-  const SurfaceDetail detail(s);
-  surface_detail::Relief relief = detail.relief();
+  using micro_relief::Cells;
+  const MicroRelief micro_relief(s);
+  micro_relief::Relief relief = micro_relief.relief();
   std::size_t next = 0;
   for (const float* Cells::*const layer : {&Cells::sand, &Cells::mobile, &Cells::level, &Cells::growth,
                                            &Cells::stones, &Cells::turn_x, &Cells::turn_y}) {
-    if (next == detail_cells_.size()) detail_cells_.emplace_back(exec_, elevation_.size());
-    Buffer<float>& buffer = detail_cells_[next++];
+    if (next == micro_relief_cells_.size()) micro_relief_cells_.emplace_back(exec_, elevation_.size());
+    Buffer<float>& buffer = micro_relief_cells_[next++];
     exec_.upload(buffer.data(), relief.cells.*layer, buffer.bytes());
     relief.cells.*layer = buffer.data();
   }
-  detail_ = relief;
+  micro_relief_ = relief;
 }
 
 void HeightFieldScene::write(SceneLayer layer, const Rectangle& cells, const std::vector<float>& values) {

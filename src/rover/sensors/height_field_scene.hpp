@@ -8,7 +8,7 @@
 #include "kernels/backend/buffer.hpp"
 #include "kernels/backend/exec.hpp"
 #include "kernels/rover/height_field.hpp"
-#include "src/simulation/views/surface_detail.hpp"
+#include "src/simulation/views/micro_relief.hpp"
 
 namespace desert_sim {
 
@@ -45,11 +45,11 @@ class HeightFieldScene {
   void update(SceneLayer layer, const std::vector<float>& values);
 
   /// Puts ripples and bumps on the ground until the next call: those of a snapshot of all rows with
-  /// SurfaceDetail::layers(). The elevation that beams meet is still that of update(). Throws ConfigError if
+  /// MicroRelief::layers(). The elevation that beams meet is still that of update(). Throws ConfigError if
   /// the snapshot has another grid.
-  void set_detail(const Snapshot& snapshot);
-  void clear_detail() { detail_.reset(); }
-  const std::optional<surface_detail::Relief>& detail() const { return detail_; }
+  void set_micro_relief(const Snapshot& snapshot);
+  void clear_micro_relief() { micro_relief_.reset(); }
+  const std::optional<micro_relief::Relief>& micro_relief() const { return micro_relief_; }
 
  private:
   void check(const Rectangle& cells, std::size_t values) const;
@@ -65,8 +65,8 @@ class HeightFieldScene {
   Buffer<float> elevation_, tops_;
   Buffer<float> canopy_, density_;                    ///< empty while there are no plants
   Buffer<float> airborne_sand_, dust_, dust_ground_;  ///< empty while no sand is in the air
-  std::vector<Buffer<float>> detail_cells_;           ///< what detail_ points to
-  std::optional<surface_detail::Relief> detail_;
+  std::vector<Buffer<float>> micro_relief_cells_;     ///< what micro_relief_ points to
+  std::optional<micro_relief::Relief> micro_relief_;
   Buffer<float> staging_;  ///< values on their way to the device
 };
 

@@ -74,8 +74,8 @@ const RangeImage& RangeSensor::scan(const HeightFieldScene& scene, const SensorP
       beams::cast(exec, scan, surface, image_.columns, image_.rows, device_directions_.data(),
                   distances_.data(), intensities_.data());
     };
-    if (const std::optional<surface_detail::Relief>& detail = scene.detail())
-      cast(ray_march::DetailedGround(*detail, scene.geometry().cell_size));
+    if (const std::optional<micro_relief::Relief>& micro_relief = scene.micro_relief())
+      cast(ray_march::RippledGround(*micro_relief, scene.geometry().cell_size));
     else
       cast(ray_march::PlainGround());
   });

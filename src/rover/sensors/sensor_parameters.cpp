@@ -11,7 +11,7 @@ namespace {
 
 std::string conflict(float value, const char* relation, const char* other, float other_value) {
   std::ostringstream text;
-  text << "= " << value << " " << relation << " " << other << " = " << other_value;
+  text << value << " " << relation << " " << other << " = " << other_value;
   return text.str();
 }
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {

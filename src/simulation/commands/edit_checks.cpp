@@ -70,7 +70,7 @@ void check_points(BrushShape shape, const std::vector<Point>& points, Validation
     for (const double v : {points[n].x, points[n].y})
       if (!(std::abs(v) <= max_coordinate)) {
         std::ostringstream text;
-        text << "= " << v << " is not in [" << -max_coordinate << ", " << max_coordinate << "] m";
+        text << v << " is not in [" << -max_coordinate << ", " << max_coordinate << "] m";
         errors.add("points[" + std::to_string(n) + "]", text.str());
         return;
       }
@@ -99,8 +99,8 @@ void check_patch(const EditTerrain& edit, ValidationErrors& errors) {
     if (!(patch.values[n] >= low && patch.values[n] <= high)) {
       const auto columns = static_cast<std::size_t>(patch.columns);
       std::ostringstream text;
-      text << "column " << n % columns << ", row " << n / columns << ": = " << patch.values[n]
-           << " is not in [" << low << ", " << high << "]" << (mask ? "" : " m");
+      text << "column " << n % columns << ", row " << n / columns << ": " << patch.values[n] << " is not in ["
+           << low << ", " << high << "]" << (mask ? "" : " m");
       errors.add("patch", text.str());
       return;
     }
@@ -121,7 +121,7 @@ void check_shares(const EditTerrain& edit, ValidationErrors& errors) {
   const double least = shift ? -1 : 0;
   if (lowest >= least && highest <= 1) return;
   std::ostringstream text;
-  text << "= " << (highest > 1 ? highest : lowest) << (heights ? " with the patch's values" : "")
+  text << (highest > 1 ? highest : lowest) << (heights ? " with the patch's values" : "")
        << " is not a value of " << edit.layer << " (allowed: [" << least << ", 1])";
   errors.add("value", text.str());
 }
@@ -136,7 +136,7 @@ void check_depth(const EditTerrain& edit, ValidationErrors& errors) {
   if (heights && !edit.patch.values.empty())
     lowest += *std::min_element(edit.patch.values.begin(), edit.patch.values.end());
   if (lowest < 0)
-    errors.add("value", "= " + std::to_string(lowest) + (heights ? " with the patch's lowest height" : "") +
+    errors.add("value", std::to_string(lowest) + (heights ? " with the patch's lowest height" : "") +
                             " is not a depth of " + edit.layer + " (allowed: [0, 100000] m)");
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/quanta.hpp"
 
 namespace desert_sim {
 

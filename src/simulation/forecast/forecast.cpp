@@ -7,7 +7,7 @@
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/forecast/forecast_clock.hpp"
 #include "src/simulation/forecast/passability.hpp"
-#include "src/simulation/pipeline/memory.hpp"
+#include "src/simulation/memory/memory.hpp"
 
 namespace desert_sim {
 
@@ -52,7 +52,7 @@ void ForecastRun::require_steps() const {
   if (options_.horizon >= interval && options_.horizon <= most) return;
   char text[200];
   std::snprintf(text, sizeof text,
-                "forecast: horizon: = %g s has %.0f steps of %g s (allowed: %g s to %g s, which is 1 to %llu "
+                "forecast: horizon: %g s has %.0f steps of %g s (allowed: %g s to %g s, which is 1 to %llu "
                 "steps)",
                 options_.horizon, options_.horizon / interval, interval, interval, most,
                 static_cast<unsigned long long>(ForecastOptions::most_steps));

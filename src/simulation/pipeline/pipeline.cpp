@@ -79,7 +79,7 @@ void Pipeline::allocate_layers() {
 }
 
 void Pipeline::bring_into_use(const Process& process, Layer layer) {
-  const bool planned = state_.exec().kind() == Device::none;  // memory that nothing may touch
+  const bool planned = state_.exec().device() == Device::none;  // memory that nothing may touch
   const bool fresh = !state_.terrain.has(layer);
   state_.terrain.allocate(layer);
   if (fresh && process.begin && !planned) process.begin(state_, layer);
@@ -310,7 +310,7 @@ std::vector<MemoryPart> Pipeline::memory() const {
   add("heights", fields_.heights.cell_heights.bytes() + fields_.heights.highest.bytes());
   add("tangents of repose", fields_.repose.bytes());
   add("strength of impacts", fields_.impact_strength.bytes());
-  add("scratch", fields_.words.bytes());
+  add("scratch", fields_.second_scratch.bytes());
   add("sand before it moves", fields_.sand_before.bytes());
   add("dice", fields_.dice_keys.bytes());
   return parts;

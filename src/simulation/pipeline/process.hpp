@@ -16,7 +16,7 @@
 #include "kernels/field/layers.hpp"
 #include "src/core/validation_errors.hpp"
 #include "src/simulation/pipeline/shared_fields.hpp"
-#include "src/simulation/state.hpp"
+#include "src/simulation/state/state.hpp"
 
 namespace desert_sim {
 
@@ -82,6 +82,10 @@ struct Process {
   /// Adds what of its parameters cannot be done in this scenario, where it takes part: a reach, or a number
   /// of sub-steps. Null if nothing.
   std::function<void(const Scenario&, ValidationErrors&)> check;
+
+  /// Elevation up to which it may bring water or ground, as far as parameters tell [m]: heights are counted
+  /// so that they reach it. Null if what the terrain begins with is all.
+  std::function<double(const Scenario&)> highest;
 
   bool reads_heights = false;  ///< SharedFields::heights: the first in a step that does has them measured
   /// It measures them in passing for the next step, where no process after it moves ground or water

@@ -25,7 +25,7 @@ void check_wind_series(const Scenario& s, ValidationErrors& errors) {
   if (step <= max_parts_of_step * shortest) return;
   char text[200];
   std::snprintf(text, sizeof text,
-                "= %g s is %g times the shortest time between rows of wind.series_file, %g s (allowed: at "
+                "%g s is %g times the shortest time between rows of wind.series_file, %g s (allowed: at "
                 "most %d times, %g s)",
                 step, step / shortest, shortest, max_parts_of_step, max_parts_of_step * shortest);
   errors.add("run.time_step", text);
@@ -37,7 +37,7 @@ void check_acceleration(const Scenario& s, ValidationErrors& errors) {
   char text[200];
   std::snprintf(
       text, sizeof text,
-      "= %g needs %g steps of %g s per second (allowed: 0, or %g to %g, which is %g steps per second)",
+      "%g needs %g steps of %g s per second (allowed: 0, or %g to %g, which is %g steps per second)",
       acceleration, rate, step, min_acceleration, max_accelerated_rate * step, max_accelerated_rate);
   errors.add("run.acceleration", text);
 }

@@ -6,7 +6,7 @@ SharedFields::SharedFields(Exec& exec, const Grid& grid)
     : heights(surface::make_heights(exec, grid)),
       repose(exec, static_cast<std::size_t>(grid.cells())),
       dice_keys(exec, static_cast<std::size_t>(Roll::count)),
-      words(exec, static_cast<std::size_t>(grid.cells())) {
+      second_scratch(exec, static_cast<std::size_t>(grid.cells())) {
   repose.set_zero();
 }
 

@@ -34,9 +34,9 @@ struct SharedFields {
   template <class T>
   T* scratch(int field) {
     static_assert(sizeof(T) == sizeof(std::uint32_t));
-    return field == 0 ? reinterpret_cast<T*>(repose.data()) : reinterpret_cast<T*>(words.data());
+    return field == 0 ? reinterpret_cast<T*>(repose.data()) : reinterpret_cast<T*>(second_scratch.data());
   }
-  Buffer<std::uint32_t> words;  ///< the second field
+  Buffer<std::uint32_t> second_scratch;
 };
 
 }  // namespace desert_sim

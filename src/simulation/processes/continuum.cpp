@@ -3,19 +3,22 @@
 
 #include <cmath>
 
+#include "kernels/sand/saltation.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
 
 namespace {
 
+const std::string section = register_section<ContinuumParameters>("continuum");
+
 void transport(StepContext& c, ProcessWorkspace* workspace) {
   const Scenario& s = c.scenario();
-  const continuum::StepInputs in{s.continuum,
-                                 s.shear_stress,
-                                 s.abrasion,
-                                 s.repose,
-                                 s.saltation.influx,
+  const continuum::StepInputs in{s.get<ContinuumParameters>(),
+                                 s.get<ShearStressParameters>(),
+                                 s.get<AbrasionParameters>(),
+                                 s.get<ReposeParameters>(),
+                                 s.get<SaltationParameters>().influx,
                                  c.time_step(),
                                  s.run.time_step,
                                  c.wind_above(),
@@ -29,7 +32,8 @@ void transport(StepContext& c, ProcessWorkspace* workspace) {
 
 float longest_step(const SimulationState& state) {
   const wind::Vector above = state.wind_above();
-  return continuum::longest_step(state.scenario.continuum, state.scenario.shear_stress, state.terrain.grid(),
+  return continuum::longest_step(state.scenario.get<ContinuumParameters>(),
+                                 state.scenario.get<ShearStressParameters>(), state.terrain.grid(),
                                  std::hypot(above.x, above.y));
 }
 
@@ -38,10 +42,10 @@ float longest_step(const SimulationState& state) {
 Process continuum_process() {
   Process p;
   p.name = name_of(SandModel::continuum);
-  p.parameters = {"saltation", "continuum", "shear_stress", "abrasion"};
+  p.parameters = {"saltation", section, "shear_stress", "abrasion"};
   p.source = "Kroy et al. 2002, Andreotti et al. 2010";
   p.header = "kernels/sand/continuum.hpp";
-  p.active = [](const Scenario& s) { return s.has(SandModel::continuum); };
+  p.active = [](const Scenario& s) { return has_sand_model(s, SandModel::continuum); };
   p.roles = {Role::sand_transport};
   p.reads_heights = true;
   p.reads = {Layer::wind_x,   Layer::wind_y,   Layer::echo,  Layer::vegetation,

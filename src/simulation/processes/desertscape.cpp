@@ -11,18 +11,16 @@ namespace {
 const std::string name = name_of(SandModel::desertscape_2019);
 const std::string section = register_section<DesertscapeParameters>(name);
 
-const DesertscapeParameters& parameters_of(const Scenario& s) {
-  return s.process_sections.get<DesertscapeParameters>(section);
-}
+const DesertscapeParameters& parameters_of(const Scenario& s) { return s.get<DesertscapeParameters>(); }
 
 void move_slabs(StepContext& c, ProcessWorkspace* workspace) {
   const Scenario& s = c.scenario();
-  const bool creeps = s.reptation.method != ReptationMethod::off;
+  const bool creeps = s.get<ReptationParameters>().method != ReptationMethod::off;
   const desertscape::StepInputs in{parameters_of(s),
-                                   s.saltation,
-                                   s.abrasion,
-                                   s.repose,
-                                   creeps ? s.reptation.slab : 0.0f,
+                                   s.get<SaltationParameters>(),
+                                   s.get<AbrasionParameters>(),
+                                   s.get<ReposeParameters>(),
+                                   creeps ? s.get<ReptationParameters>().slab : 0.0f,
                                    c.time_step(),
                                    s.run.time_step,
                                    c.fields.scratch<Quanta>(1)};
@@ -40,11 +38,11 @@ Process desertscape_process() {
   p.parameters = {"saltation", section, "abrasion", "reptation"};
   p.source = "Paris et al. 2019 §5";
   p.header = "kernels/sand/desertscape.hpp";
-  p.active = [](const Scenario& s) { return s.has(SandModel::desertscape_2019); };
+  p.active = [](const Scenario& s) { return has_sand_model(s, SandModel::desertscape_2019); };
   p.check = [](const Scenario& s, ValidationErrors& errors) {
-    check_reach(s, "saltation.hop_time", fastest_wind(s) * s.saltation.hop_time, errors);
+    check_reach(s, "saltation.hop_time", fastest_wind(s) * s.get<SaltationParameters>().hop_time, errors);
     check_step_length(s, "desertscape_2019.slab / (4 saltation.lift)",
-                      desertscape::longest_step(parameters_of(s), s.saltation), errors);
+                      desertscape::longest_step(parameters_of(s), s.get<SaltationParameters>()), errors);
   };
   p.roles = {Role::sand_transport, Role::reptation};
   p.reads = {Layer::wind_x,   Layer::wind_y,     Layer::wind_shadow,
@@ -57,7 +55,8 @@ Process desertscape_process() {
   });
   p.step = move_slabs;
   p.longest_step = [](const SimulationState& state) {
-    return desertscape::longest_step(parameters_of(state.scenario), state.scenario.saltation);
+    return desertscape::longest_step(parameters_of(state.scenario),
+                                     state.scenario.get<SaltationParameters>());
   };
   return p;
 }

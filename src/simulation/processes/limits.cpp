@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/quanta.hpp"
 
 namespace desert_sim {
 
@@ -30,7 +30,7 @@ void check_substeps(const Scenario& s, const Substeps& n, ValidationErrors& erro
   char text[200];
   std::snprintf(
       text, sizeof text,
-      "= %g %s needs %.0f sub-steps a step with cells of %g m and steps of %g s (allowed: at most %d, "
+      "%g %s needs %.0f sub-steps a step with cells of %g m and steps of %g s (allowed: at most %d, "
       "which %g %s needs)",
       n.value, n.unit, std::ceil(n.count), static_cast<double>(s.grid.cell_size),
       static_cast<double>(s.run.time_step), n.most, n.value * n.most / n.count, n.unit);
@@ -42,7 +42,7 @@ void check_step_length(const Scenario& s, const char* key, double interval, Vali
   const double step = s.run.time_step;
   if (step <= most * interval) return;
   char text[200];
-  std::snprintf(text, sizeof text, "= %g s is %g times %s = %g s (allowed: at most %d times, %g s)", step,
+  std::snprintf(text, sizeof text, "%g s is %g times %s = %g s (allowed: at most %d times, %g s)", step,
                 step / interval, key, interval, most, most * interval);
   errors.add("run.time_step", text);
 }

@@ -2,18 +2,21 @@
 /// after them, by the depth of sand at its beginning.
 #include "kernels/sand/looseness.hpp"
 
+#include "kernels/sand/saltation.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
 
 namespace {
 
-bool is_enabled(const Scenario& s) { return s.looseness.enabled; }
+const std::string section = register_section<LoosenessParameters>("looseness");
+
+bool is_enabled(const Scenario& s) { return s.get<LoosenessParameters>().enabled; }
 
 Process row(const char* name) {
   Process p;
   p.name = name;
-  p.parameters = {"looseness"};
+  p.parameters = {section};
   p.source = "Bagnold 1941";
   p.header = "kernels/sand/looseness.hpp";
   p.active = is_enabled;
@@ -35,19 +38,20 @@ Process sand_record_process() {
 Process looseness_process() {
   Process p = row("looseness");
   p.needs = {SharedField::sand_before, SharedField::impact_strength};
-  p.parameters = {"looseness", "saltation", "repose"};
+  p.parameters = {section, "saltation", "repose"};
   p.reads = {Layer::sand, Layer::soil, Layer::moisture, Layer::wind_shadow};
   p.writes = {Layer::looseness};
   p.begin = [](SimulationState& state, Layer) {
     with_backend(state.exec(), [&](auto& e) {
-      looseness::fill(e, state.terrain.view(), state.scenario.looseness.initial);
+      looseness::fill(e, state.terrain.view(), state.scenario.get<LoosenessParameters>().initial);
     });
   };
   p.step = [](StepContext& c, ProcessWorkspace*) {
     const Scenario& s = c.scenario();
     with_backend(c.exec(), [&](auto& e) {
-      looseness::step(e, c.terrain, s.looseness, s.repose, c.time_step(), s.saltation.hop_time,
-                      c.fields.impact_strength.data(), c.fields.sand_before.data());
+      looseness::step(e, c.terrain, s.get<LoosenessParameters>(), s.get<ReposeParameters>(), c.time_step(),
+                      s.get<SaltationParameters>().hop_time, c.fields.impact_strength.data(),
+                      c.fields.sand_before.data());
     });
   };
   return p;
@@ -55,14 +59,14 @@ Process looseness_process() {
 
 Process slide_looseness_process() {
   Process p = row("slide_looseness");
-  p.parameters = {"looseness", "repose"};
+  p.parameters = {section, "repose"};
   p.reads = {Layer::sand, Layer::soil, Layer::moisture, Layer::vegetation};
   p.writes = {Layer::looseness};
   p.step = [](StepContext& c, ProcessWorkspace*) {
     const Scenario& s = c.scenario();
     with_backend(c.exec(), [&](auto& e) {
-      looseness::slides(e, c.terrain, s.looseness, s.repose, c.fields.repose.data(),
-                        c.fields.sand_before.data());
+      looseness::slides(e, c.terrain, s.get<LoosenessParameters>(), s.get<ReposeParameters>(),
+                        c.fields.repose.data(), c.fields.sand_before.data());
     });
   };
   return p;

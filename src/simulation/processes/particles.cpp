@@ -1,5 +1,6 @@
 /// The particle model of wind ripples.
 #include "kernels/particles/wang.hpp"
+#include "kernels/sand/saltation.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
@@ -8,14 +9,13 @@ namespace {
 
 const std::string section = register_section<ParticleParameters>("particle");
 
-const ParticleParameters& parameters_of(const Scenario& s) {
-  return s.process_sections.get<ParticleParameters>(section);
-}
+const ParticleParameters& parameters_of(const Scenario& s) { return s.get<ParticleParameters>(); }
 
 void fly(StepContext& c, ProcessWorkspace* workspace) {
   const Scenario& s = c.scenario();
-  const particles::StepInputs in{parameters_of(s), s.repose,       s.saltation.influx,
-                                 c.time_step(),    c.wind_above(), c.fields.impact_strength.data()};
+  const particles::StepInputs in{
+      parameters_of(s), s.get<ReposeParameters>(),      s.get<SaltationParameters>().influx, c.time_step(),
+      c.wind_above(),   c.fields.impact_strength.data()};
   with_backend(c.exec(), [&](auto& e) {
     particles::step(e, c.terrain, in, c.dice(), c.state.ledger(),
                     workspace_as<particles::Workspace>(workspace));
@@ -30,7 +30,7 @@ Process wang_process() {
   p.parameters = {section, "saltation", "repose"};
   p.source = "Wang & Hu 2012, Kok & Renno 2009, Owen 1964";
   p.header = "kernels/particles/wang.hpp";
-  p.active = [](const Scenario& s) { return s.has(SandModel::wang); };
+  p.active = [](const Scenario& s) { return has_sand_model(s, SandModel::wang); };
   p.roles = {Role::sand_transport, Role::wind, Role::wind_shadow, Role::sand_flux, Role::reptation};
   p.reads = {Layer::bedrock, Layer::soil, Layer::obstacle, Layer::vegetation, Layer::moisture, Layer::water};
   p.writes = {Layer::sand, Layer::wind_x, Layer::wind_y};

@@ -8,36 +8,59 @@ namespace desert_sim {
 
 namespace {
 
+void check_plants(const Scenario& s, ValidationErrors& errors) {
+  if (!s.get<VegetationParameters>().enabled) return;
+  if (s.species.empty()) errors.add("vegetation.enabled", "needs at least one entry in species");
+  for (std::size_t n = 0; n < s.terrain.size(); ++n)
+    std::visit(
+        [&](const auto& step) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(step)>, ObstacleStep>)
+            if (step.layer == info(Layer::vegetation).name)
+              errors.add(
+                  "terrain." + std::to_string(n) + "." + terrain_step_names[s.terrain[n].index()] + ".layer",
+                  "vegetation cannot be set while vegetation.enabled is true: the plants determine it");
+        },
+        s.terrain[n]);
+}
+
+const std::string section = register_section<VegetationParameters>("vegetation", check_plants);
+
 /// `makes_state`: also vegetation and humus, which a look at the terrain must leave alone.
 void cover_ground(StepContext& c, bool makes_state) {
   with_backend(c.exec(), [&](auto& e) {
-    plants::cover(e, c.terrain, c.scenario().vegetation, makes_state ? c.time_step() : 0.0f, c.dice(),
-                  c.fields.heights, makes_state, c.state.plants);
+    plants::cover(e, c.terrain, c.scenario().get<VegetationParameters>(), makes_state ? c.time_step() : 0.0f,
+                  c.dice(), c.fields.heights, makes_state, c.state.plants);
   });
 }
 
 void illuminate(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
-    plants::illuminate(e, c.terrain, c.scenario().vegetation, c.fields.heights, c.state.plants);
+    plants::illuminate(e, c.terrain, c.scenario().get<VegetationParameters>(), c.fields.heights,
+                       c.state.plants);
   });
 }
 
 void update_plants(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
-    plants::grow_and_spawn(e, c.terrain, s.vegetation, s.repose, c.fields.heights, c.time_step(), s.seed,
-                           c.tick(), c.dice(), c.state.ledger(), c.state.plants);
+    const plants::StepInputs in{s.get<VegetationParameters>(),
+                                s.get<ReposeParameters>(),
+                                c.fields.heights,
+                                c.time_step(),
+                                s.seed,
+                                c.tick()};
+    plants::grow_and_spawn(e, c.terrain, in, c.dice(), c.state.ledger(), c.state.plants);
   });
 }
 
-bool has_plants(const Scenario& s) { return s.vegetation.enabled; }
+bool has_plants(const Scenario& s) { return s.get<VegetationParameters>().enabled; }
 
 }  // namespace
 
 Process plant_cover_process() {
   Process p;
   p.name = "plant_cover";
-  p.parameters = {"vegetation", "species"};
+  p.parameters = {section, "species"};
   p.source = "Nilles 2025 §3.2.1, eq. 8–12";
   p.header = "kernels/plants/cover.hpp";
   p.active = has_plants;
@@ -52,7 +75,7 @@ Process plant_cover_process() {
 Process illumination_process() {
   Process p;
   p.name = "illumination";
-  p.parameters = {"vegetation"};
+  p.parameters = {section};
   p.source = "Nilles 2025 §3.2.3, eq. 16–18";
   p.header = "kernels/plants/illumination.hpp";
   p.active = has_plants;
@@ -66,7 +89,7 @@ Process illumination_process() {
 Process vegetation_process() {
   Process p;
   p.name = "vegetation";
-  p.parameters = {"vegetation", "species", "competition", "repose"};
+  p.parameters = {section, "species", "competition", "repose"};
   p.source = "Nilles 2025 §3.2.2–3.2.6, eq. 13–24";
   p.header = "kernels/plants/life.hpp";
   p.active = has_plants;

@@ -2,6 +2,7 @@
 /// The table of all processes, in the order of a step. A new one is a function here that returns its row, and
 /// a line in process_table().
 
+#include "src/scenario/sand_model.hpp"
 #include "src/simulation/pipeline/pipeline.hpp"
 
 namespace desert_sim {
@@ -47,6 +48,14 @@ Process illumination_process();
 Process vegetation_process();
 
 const ProcessTable& process_table();
+
+/// Whether this model moves the sand.
+bool has_sand_model(const Scenario& scenario, SandModel model);
+/// Whether water is simulated: it is enabled, or rain, springs, hydraulic erosion or moisture need it.
+bool has_water(const Scenario& scenario);
+/// Throws ConfigError, in the name of `what`, if the sea is higher than the scale can represent. One that is
+/// lower is no sea, whatever its level.
+void require_sea(const Scenario& scenario, const HeightScale& scale, const std::string& what);
 
 /// Of Pipeline::count(): fine sweeps of avalanching.
 constexpr const char* avalanche_iterations = "avalanche_iterations";

@@ -1,7 +1,7 @@
 /// The processes of sand: saltation with abrasion, angles of repose, reptation, avalanches.
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <sstream>
 #include <string>
 
 #include "kernels/avalanching/avalanching.hpp"
@@ -10,34 +10,76 @@
 #include "kernels/sand/overflow.hpp"
 #include "kernels/sand/reptation.hpp"
 #include "kernels/sand/saltation.hpp"
+#include "kernels/soil/moisture.hpp"
+#include "kernels/soil/soil.hpp"
+#include "kernels/water/hydraulic_erosion.hpp"
+#include "kernels/wind/echo_dunes.hpp"
 #include "kernels/wind/wind_shadow.hpp"
 #include "src/simulation/processes/limits.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
 
+namespace {
+
+void check_influx(const Scenario& s, ValidationErrors& errors) {
+  constexpr double most = 100;  // [m a step]; a few hundred of them would leave the range of heights
+  const double cell = s.grid.cell_size > 0 ? s.grid.cell_size : 1.0;
+  const double influx = s.get<SaltationParameters>().influx;
+  const double depth = influx * static_cast<double>(s.run.time_step) / cell;
+  if (depth <= most) return;
+  std::ostringstream text;
+  text << influx << " m^2/s brings " << depth << " m of sand to a cell of the edge in a step of "
+       << s.run.time_step << " s (allowed: at most " << most << " m)";
+  errors.add("saltation.influx", text.str());
+}
+
+const std::string sand_section = register_section<SandParameters>("sand");
+const std::string saltation_section = register_section<SaltationParameters>("saltation", check_influx);
+const std::string abrasion_section = register_section<AbrasionParameters>("abrasion");
+const std::string reptation_section = register_section<ReptationParameters>("reptation");
+const std::string repose_section = register_section<ReposeParameters>("repose");
+const std::string avalanching_section = register_section<AvalanchingParameters>("avalanching");
+
+}  // namespace
+
+bool has_sand_model(const Scenario& s, SandModel model) {
+  return s.get<SandParameters>().model == model &&
+         (s.get<SaltationParameters>().enabled || !is_saltation(model));
+}
+
 bool wears_ground(const Scenario& s) {
-  return s.abrasion.wears_ground() || s.hydraulic_erosion.enabled || s.soil.enabled;
+  return s.get<AbrasionParameters>().wears_ground() || s.get<HydraulicErosionParameters>().enabled ||
+         s.get<SoilParameters>().enabled;
 }
 
 namespace {
 
 /// Whether soil may come to stand too steep: where it is worn, and where it becomes wetter or loses plants.
-bool loosens_soil(const Scenario& s) { return wears_ground(s) || s.moisture.enabled || s.vegetation.enabled; }
+bool loosens_soil(const Scenario& s) {
+  return wears_ground(s) || s.get<MoistureParameters>().enabled || s.get<VegetationParameters>().enabled;
+}
 
 // ---- saltation
 
 reptation::Angle angle_of_repose(const StepContext& c) {
-  return reptation::Angle(c.scenario().reptation, c.scenario().repose, c.fields.repose.data());
+  return reptation::Angle(c.scenario().get<ReptationParameters>(), c.scenario().get<ReposeParameters>(),
+                          c.fields.repose.data());
 }
 
 /// `shadow_law` finds the wind's shadow first; null where the layer wind_shadow has it already.
 template <class E>
 void lift_and_deposit(E& e, StepContext& c, const wind_shadow::Shadow* shadow_law) {
   const Scenario& s = c.scenario();
-  saltation::step(e, c.terrain, s.saltation, s.abrasion, s.repose, c.time_step(), c.dice(), c.state.ledger(),
-                  c.fields.scratch<Quanta>(1), {angle_of_repose(c), c.fields.impact_strength.data()},
-                  shadow_law, c.scenario().run.time_step);
+  const saltation::StepInputs in{s.get<SaltationParameters>(),
+                                 s.get<AbrasionParameters>(),
+                                 s.get<ReposeParameters>(),
+                                 c.time_step(),
+                                 s.run.time_step,
+                                 c.fields.scratch<Quanta>(1),
+                                 {angle_of_repose(c), c.fields.impact_strength.data()},
+                                 shadow_law};
+  saltation::step(e, c.terrain, in, c.dice(), c.state.ledger());
 }
 
 void saltate(StepContext& c, ProcessWorkspace*) {
@@ -46,7 +88,7 @@ void saltate(StepContext& c, ProcessWorkspace*) {
 
 void set_angles(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
-    reptation::set_angles(e, c.terrain, angle_of_repose(c), c.scenario().repose, nullptr);
+    reptation::set_angles(e, c.terrain, angle_of_repose(c), c.scenario().get<ReposeParameters>(), nullptr);
   });
 }
 
@@ -55,8 +97,9 @@ void set_angles(StepContext& c, ProcessWorkspace*) {
 void creep(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
-    reptation::step(e, c.terrain, s.reptation, c.time_step(), s.seed, c.tick(), c.dice(),
-                    c.fields.impact_strength.data(), c.fields.scratch<Quanta>(1));
+    const reptation::StepInputs in{c.time_step(), s.seed, c.tick(), c.fields.impact_strength.data(),
+                                   c.fields.scratch<Quanta>(1)};
+    reptation::step(e, c.terrain, s.get<ReptationParameters>(), in, c.dice());
   });
 }
 
@@ -84,7 +127,7 @@ struct AvalancheWork {
 
   /// Only terrains whose rock or soil changes need memory for it.
   void prepare_ground(const SimulationState& state) {
-    const AvalanchingParameters& p = state.scenario.avalanching;
+    const AvalanchingParameters& p = state.scenario.get<AvalanchingParameters>();
     const bool changes = loosens_soil(state.scenario) || is_loose(state);
     if (!ground.received && changes && (p.soil || p.bedrock))
       ground = avalanching::make_ground_workspace(state.exec(), state.terrain.grid());
@@ -92,8 +135,9 @@ struct AvalancheWork {
 };
 
 AvalancheWork make_avalanche_work(const SimulationState& state) {
-  AvalancheWork work{
-      avalanching::make_workspace(state.exec(), state.terrain.grid(), state.scenario.avalanching), {}};
+  AvalancheWork work{avalanching::make_workspace(state.exec(), state.terrain.grid(),
+                                                 state.scenario.get<AvalanchingParameters>()),
+                     {}};
   work.prepare_ground(state);
   return work;
 }
@@ -103,8 +147,8 @@ AvalancheWork make_avalanche_work(const SimulationState& state) {
 template <class E>
 void slide_ground(E& e, StepContext& c, AvalancheWork& work) {
   SimulationState& state = c.state;
-  const AvalanchingParameters& p = state.scenario.avalanching;
-  const ReposeParameters& repose = state.scenario.repose;
+  const AvalanchingParameters& p = state.scenario.get<AvalanchingParameters>();
+  const ReposeParameters& repose = state.scenario.get<ReposeParameters>();
   Quanta* const given = c.fields.scratch<Quanta>(1);
   const bool wearing = wears_ground(state.scenario), loosening = loosens_soil(state.scenario);
   const bool has_soil = state.terrain.has(Layer::soil);
@@ -125,14 +169,14 @@ void slide(StepContext& c, ProcessWorkspace* workspace) {
   AvalancheWork& work = workspace_as<AvalancheWork>(workspace);
   with_backend(c.exec(), [&](auto& e) {
     slide_ground(e, c, work);
-    avalanching::step(e, c.terrain, c.scenario().avalanching, c.tick(), c.fields.repose.data(),
-                      c.leaves_heights ? &c.fields.heights : nullptr, work.sand);
+    avalanching::step(e, c.terrain, c.scenario().get<AvalanchingParameters>(), c.tick(),
+                      c.fields.repose.data(), c.leaves_heights ? &c.fields.heights : nullptr, work.sand);
   });
 }
 
 /// Whether the host waits for nothing in a step of avalanching.
 bool avalanching_can_be_recorded(const SimulationState& state) {
-  const AvalanchingParameters& p = state.scenario.avalanching;
+  const AvalanchingParameters& p = state.scenario.get<AvalanchingParameters>();
   const bool needs_no_readback = p.quality != AvalancheQuality::converged ||
                                  (p.scheme == AvalancheScheme::multilevel && state.exec().can_record_loops());
   return needs_no_readback && !is_loose(state);
@@ -144,7 +188,7 @@ bool avalanching_can_be_recorded(const SimulationState& state) {
 /// heights. Of quality `converged` this counts the first cycle.
 MemoryTraffic avalanche_traffic(const Scenario& s, const Grid& grid) {
   constexpr double layer = 4, heights = 1, restriction = 4, prolongation = 2;
-  const avalanching::Schedule plan = avalanching::schedule(s.avalanching, grid);
+  const avalanching::Schedule plan = avalanching::schedule(s.get<AvalanchingParameters>(), grid);
   const int fine = plan.fine_passes();
   double coarse = 0, cells = 1;
   for (std::size_t n = 1; n < 16; ++n) {
@@ -162,12 +206,14 @@ MemoryTraffic avalanche_traffic(const Scenario& s, const Grid& grid) {
 Process sand_flux_process() {
   Process p;
   p.name = "sand_flux";
-  p.parameters = {"saltation"};
+  p.parameters = {saltation_section};
   p.source = "Paris 2019 §5.2";
   p.header = "kernels/sand/saltation.hpp";
   p.roles = {Role::sand_flux};
   p.gives_way = true;
-  p.active = [](const Scenario& s) { return s.saltation.enabled && s.saltation.flux; };
+  p.active = [](const Scenario& s) {
+    return s.get<SaltationParameters>().enabled && s.get<SaltationParameters>().flux;
+  };
   p.writes = {Layer::flux_x, Layer::flux_y};
   p.step = [](StepContext& c, ProcessWorkspace*) {
     if (c.part == 0) with_backend(c.exec(), [&](auto& e) { saltation::clear_flux(e, c.terrain); });
@@ -179,14 +225,14 @@ Process sand_flux_process() {
 Process saltation_process() {
   Process p;
   p.name = "saltation";
-  p.parameters = {"saltation", "abrasion", "reptation", "repose"};
+  p.parameters = {saltation_section, abrasion_section, reptation_section, repose_section};
   p.source = "Nilles 2024 §3.6, Paris 2019 §5.2";
   p.header = "kernels/sand/saltation.hpp";
   p.roles = {Role::sand_transport, Role::repose};  // the deposit sets the angles in its own pass
-  p.active = [](const Scenario& s) { return s.has(SandModel::hops); };
+  p.active = [](const Scenario& s) { return has_sand_model(s, SandModel::hops); };
   p.check = [](const Scenario& s, ValidationErrors& errors) {
-    check_reach(s, "saltation.hop_time", fastest_wind(s) * s.saltation.hop_time, errors);
-    check_step_length(s, "saltation.hop_time", s.saltation.hop_time, errors);
+    check_reach(s, "saltation.hop_time", fastest_wind(s) * s.get<SaltationParameters>().hop_time, errors);
+    check_step_length(s, "saltation.hop_time", s.get<SaltationParameters>().hop_time, errors);
   };
   p.reads = {Layer::wind_x,   Layer::wind_y,     Layer::wind_shadow,
              Layer::echo,     Layer::vegetation, Layer::obstacle,
@@ -207,7 +253,7 @@ Process saltation_process() {
 Process repose_process() {
   Process p;
   p.name = "repose";
-  p.parameters = {"repose", "reptation"};
+  p.parameters = {repose_section, reptation_section};
   p.source = "Nilles 2024 §3.7";
   p.header = "kernels/sand/repose.hpp";
   p.roles = {Role::repose};
@@ -223,14 +269,14 @@ Process reptation_process() {
   Process p;
   p.name = "reptation";
   p.needs = {SharedField::impact_strength};
-  p.parameters = {"reptation"};
+  p.parameters = {reptation_section};
   p.source = "Nilles 2024 §3.7, Paris 2019 §5.1";
   p.header = "kernels/sand/reptation.hpp";
   p.roles = {Role::reptation};
   p.gives_way = true;
-  p.active = [](const Scenario& s) { return reptation::moves_sand(s.reptation); };
+  p.active = [](const Scenario& s) { return reptation::moves_sand(s.get<ReptationParameters>()); };
   p.check = [](const Scenario& s, ValidationErrors& errors) {
-    const ReptationParameters& r = s.reptation;
+    const ReptationParameters& r = s.get<ReptationParameters>();
     if (r.method != ReptationMethod::smoothing) return;
     const double lengths = s.run.time_step / s.grid.cell_size * fastest_wind(s);  // the shelter is at most 1
     check_substeps(
@@ -243,7 +289,7 @@ Process reptation_process() {
   p.step = creep;
   // The number of sub-steps of `smoothing` is read back, and events of `steepest` are drawn by the step.
   p.can_be_recorded = [](const SimulationState& state) {
-    const ReptationMethod method = state.scenario.reptation.method;
+    const ReptationMethod method = state.scenario.get<ReptationParameters>().method;
     return method != ReptationMethod::smoothing && method != ReptationMethod::steepest;
   };
   return p;
@@ -252,12 +298,12 @@ Process reptation_process() {
 Process avalanching_process() {
   Process p;
   p.name = "avalanching";
-  p.parameters = {"avalanching", "repose"};
+  p.parameters = {avalanching_section, repose_section};
   p.source = "Nilles 2024 eq. 9–11, Taylor & Keyser 2023";
   p.header = "kernels/avalanching/avalanching.hpp";
   p.roles = {Role::avalanching};
   p.gives_way = true;
-  p.active = [](const Scenario& s) { return s.avalanching.enabled; };
+  p.active = [](const Scenario& s) { return s.get<AvalanchingParameters>().enabled; };
   p.reads = {Layer::obstacle, Layer::vegetation, Layer::moisture};
   p.writes = {Layer::sand};
   p.writes_if_in_use = {Layer::bedrock, Layer::soil};
@@ -294,7 +340,8 @@ namespace {
 /// the room above fill_limit.
 std::uint64_t steps_between_overflows(const SimulationState& state) {
   const Scenario& s = state.scenario;
-  const double a_step = static_cast<double>(s.saltation.influx) * s.run.time_step / s.grid.cell_size;
+  const double a_step =
+      static_cast<double>(s.get<SaltationParameters>().influx) * s.run.time_step / s.grid.cell_size;
   const double room = (wall_height - fill_limit) * state.terrain.scale().quantum() / 16;
   return static_cast<std::uint64_t>(std::clamp(std::floor(room / a_step), 1.0, 4096.0));
 }
@@ -308,10 +355,12 @@ bool takes_overflow(const SimulationState& state) {
 Process sand_overflow_process() {
   Process p;
   p.name = "sand_overflow";
-  p.parameters = {"saltation"};
+  p.parameters = {saltation_section};
   p.source = "conservation of mass, in whole quanta";
   p.header = "kernels/sand/overflow.hpp";
-  p.active = [](const Scenario& s) { return s.saltation.influx > 0 && s.grid.boundary == Boundary::open; };
+  p.active = [](const Scenario& s) {
+    return s.get<SaltationParameters>().influx > 0 && s.grid.boundary == Boundary::open;
+  };
   p.reads = {Layer::bedrock, Layer::soil, Layer::water};
   p.writes = {Layer::sand};
   p.step = [](StepContext& c, ProcessWorkspace*) {
@@ -331,16 +380,17 @@ FusedProcesses fused_wind_shadow_and_saltation() {
   f.second = "saltation";
   f.applies = [](const SimulationState& state) {
     constexpr int max_cells = 1 << 19;
-    const bool on_gpu = state.exec().kind() == Device::cuda;  // nor where memory is only planned
+    const bool on_gpu = state.exec().device() == Device::cuda;  // nor where memory is only planned
     return on_gpu && state.scenario.run.time_step >= held_for && state.terrain.grid().cells() <= max_cells &&
-           !state.scenario.wind_shadow.curved && !state.scenario.echo_dunes.enabled &&
-           !state.scenario.saltation.flux;
+           !state.scenario.get<WindShadowParameters>().curved &&
+           !state.scenario.get<EchoDuneParameters>().enabled &&
+           !state.scenario.get<SaltationParameters>().flux;
   };
   f.step = [](StepContext& c, ProcessWorkspace* shadow, ProcessWorkspace*) {
     with_backend(c.exec(), [&](auto& e) {
-      const wind_shadow::Shadow shadow_law =
-          wind_shadow::straight_shadow(e, c.terrain, c.scenario().wind_shadow, obstructing_heights(c),
-                                       workspace_as<wind_shadow::Workspace>(shadow), nullptr);
+      const wind_shadow::Shadow shadow_law = wind_shadow::straight_shadow(
+          e, c.terrain, c.scenario().get<WindShadowParameters>(), obstructing_heights(c),
+          workspace_as<wind_shadow::Workspace>(shadow), nullptr);
       lift_and_deposit(e, c, &shadow_law);
     });
   };

@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "kernels/sand/saltation.hpp"
+#include "kernels/water/water_parameters.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/pipeline/pipeline.hpp"
 #include "src/simulation/processes/processes.hpp"
@@ -38,9 +40,9 @@ std::vector<std::string> settings_without_effect(const Scenario& scenario) {
       lines.push_back(section + ": has no effect: no process that takes part in this scenario reads it");
   if (!scenario.wind_segments.empty() && scenario.wind_regime.regime == WindRegimeKind::constant)
     lines.emplace_back("wind.segments: have no effect, because wind.regime is constant");
-  if (scenario.saltation.influx > 0 && scenario.grid.boundary == Boundary::periodic)
+  if (scenario.get<SaltationParameters>().influx > 0 && scenario.grid.boundary == Boundary::periodic)
     lines.emplace_back("saltation.influx: has no effect, because grid.boundary is periodic");
-  if (scenario.water.sea != Sea::none && !scenario.has_water())
+  if (scenario.get<WaterParameters>().sea != Sea::none && !has_water(scenario))
     lines.emplace_back("water.sea: has no effect, because the scenario has no water (water.enabled)");
   return lines;
 }

@@ -1,6 +1,7 @@
 /// The slab models of dunes and of snow. Each is a row; they share the section slab_model and the step.
 #include <cmath>
 
+#include "kernels/sand/saltation.hpp"
 #include "kernels/slabs/slab_model.hpp"
 #include "src/simulation/processes/limits.hpp"
 #include "src/simulation/processes/processes.hpp"
@@ -13,13 +14,7 @@ const std::string section = register_section<SlabModelParameters>("slab_model");
 const std::string plant_section = register_section<SlabPlantParameters>("slab_plants");
 const std::string snow_section = register_section<SlabSnowParameters>("slab_snow");
 
-const SlabModelParameters& parameters_of(const Scenario& s) {
-  return s.process_sections.get<SlabModelParameters>(section);
-}
-
-const SlabSnowParameters& snow_of(const Scenario& s) {
-  return s.process_sections.get<SlabSnowParameters>(snow_section);
-}
+const SlabModelParameters& parameters_of(const Scenario& s) { return s.get<SlabModelParameters>(); }
 
 /// Intervals of simulated time that end with the step.
 int ending_with_step(const StepContext& c, float interval) {
@@ -29,14 +24,14 @@ int ending_with_step(const StepContext& c, float interval) {
 
 void move_slabs(SlabKind kind, StepContext& c, ProcessWorkspace* workspace) {
   const Scenario& s = c.scenario();
-  const auto& plants = s.process_sections.get<SlabPlantParameters>(plant_section);
-  const SlabSnowParameters& snow = snow_of(s);
+  const auto& plants = s.get<SlabPlantParameters>();
+  const SlabSnowParameters& snow = s.get<SlabSnowParameters>();
   const slabs::StepInputs in{kind,
                              parameters_of(s),
                              plants,
                              snow,
                              s.growth_curves,
-                             s.saltation.influx,
+                             s.get<SaltationParameters>().influx,
                              c.time_step(),
                              c.wind_above(),
                              ending_with_step(c, plants.growth_time),
@@ -52,7 +47,7 @@ Process slab_process(SandModel model, SlabKind kind, const std::string& source) 
   p.parameters = {section, "saltation"};
   p.source = source;
   p.header = "kernels/slabs/slab_model.hpp";
-  p.active = [model](const Scenario& s) { return s.has(model); };
+  p.active = [model](const Scenario& s) { return has_sand_model(s, model); };
   p.check = [](const Scenario& s, ValidationErrors& errors) {
     check_step_length(s, "slab_model.poll_time", parameters_of(s).poll_time, errors);
   };
@@ -108,8 +103,9 @@ Process snow_process() {
   p.writes.push_back(Layer::snow_density);
   p.begin = [](SimulationState& state, Layer layer) {
     if (layer != Layer::snow_density) return;
-    with_backend(state.exec(),
-                 [&](auto& e) { slabs::lay_fresh_snow(e, state.terrain.view(), snow_of(state.scenario)); });
+    with_backend(state.exec(), [&](auto& e) {
+      slabs::lay_fresh_snow(e, state.terrain.view(), state.scenario.get<SlabSnowParameters>());
+    });
   };
   p.can_be_recorded = never_recorded;  // it does not settle in every step
   return p;

@@ -1,6 +1,7 @@
 /// The processes of water and wet ground: rain, springs and the sea, rivers, their sediment, moisture, soil.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernels/soil/moisture.hpp"
 #include "kernels/soil/soil.hpp"
@@ -8,6 +9,7 @@
 #include "kernels/water/rain.hpp"
 #include "kernels/water/virtual_pipes.hpp"
 #include "kernels/water/water_sources.hpp"
+#include "src/scenario/section_with_list.hpp"
 #include "src/simulation/processes/limits.hpp"
 #include "src/simulation/processes/processes.hpp"
 
@@ -15,14 +17,47 @@ namespace desert_sim {
 
 namespace {
 
-bool has_water_process(const Scenario& s) { return s.has_water(); }
+const std::string rain_section = register_section<RainParameters>("rain");
+const std::string water_section = register_section<WaterParameters, Spring>("water", "springs", max_springs);
+const std::string erosion_section = register_section<HydraulicErosionParameters>("hydraulic_erosion");
+const std::string moisture_section = register_section<MoistureParameters>("moisture");
+const std::string soil_section = register_section<SoilParameters>("soil");
+
+const std::vector<Spring>& springs_of(const Scenario& s) {
+  return list_of<WaterParameters, Spring>(s.sections);
+}
+
+}  // namespace
+
+bool has_water(const Scenario& s) {
+  return s.get<WaterParameters>().enabled || s.get<RainParameters>().rate > 0 ||
+         s.get<HydraulicErosionParameters>().enabled || s.get<MoistureParameters>().enabled ||
+         !springs_of(s).empty();
+}
+
+void require_sea(const Scenario& s, const HeightScale& scale, const std::string& what) {
+  const double highest = scale.datum + load_limit * scale.quantum();
+  const WaterParameters& water = s.get<WaterParameters>();
+  if (water.sea == Sea::none || water.sea_level <= highest) return;
+  throw ConfigError(what + ": water.sea_level: " + std::to_string(water.sea_level) +
+                    " m is above the highest elevation that this terrain can represent (allowed: at most " +
+                    std::to_string(highest) + " m)");
+}
+
+namespace {
+
+/// Up to where heights must reach.
+double highest_water(const Scenario& s) {
+  const WaterParameters& water = s.get<WaterParameters>();
+  return water.sea == Sea::none ? -std::numeric_limits<double>::infinity() : water.sea_level;
+}
 /// Amounts of water are whole quanta that depend on the step, or on the deepest water, which is read back.
 bool cannot_be_recorded(const SimulationState&) { return false; }
 
 /// The level of the sea in quanta above the datum, as far as heights can be counted.
 Quanta sea_level(const SimulationState& state) {
   const HeightScale& scale = state.terrain.scale();
-  const double quanta = (state.scenario.water.sea_level - scale.datum) / scale.quantum();
+  const double quanta = (state.scenario.get<WaterParameters>().sea_level - scale.datum) / scale.quantum();
   constexpr double limit = load_limit;
   return static_cast<Quanta>(std::lrint(std::clamp(quanta, -limit, limit)));
 }
@@ -31,9 +66,9 @@ void add_water(StepContext& c, ProcessWorkspace*) {
   const SimulationState& state = c.state;
   const Scenario& s = state.scenario;
   with_backend(c.exec(), [&](auto& e) {
-    rain::step(e, c.terrain, s.rain, c.time_step(), c.time(), s.seed, c.tick(), state.terrain.scale().datum,
-               state.ledger());
-    for (const Spring& spring : s.springs)
+    const rain::StepInputs in{c.time_step(), c.time(), s.seed, c.tick(), state.terrain.scale().datum};
+    rain::step(e, c.terrain, s.get<RainParameters>(), in, state.ledger());
+    for (const Spring& spring : springs_of(s))
       water_sources::add_spring(e, c.terrain, spring, spring.x - s.grid.origin_x, spring.y - s.grid.origin_y,
                                 c.time_step(), c.tick(), state.ledger());
   });
@@ -45,8 +80,9 @@ virtual_pipes::Workspace make_pipes(const SimulationState& state) {
 
 void move_water(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
-    virtual_pipes::step(e, c.terrain, c.scenario().water, c.time_step(), c.time(), c.scenario().seed,
-                        c.tick(), sea_level(c.state), c.state.ledger(), c.fields.scratch<Quanta>(1),
+    const virtual_pipes::StepInputs in{c.time_step(), c.time(),           c.scenario().seed,
+                                       c.tick(),      sea_level(c.state), c.fields.scratch<Quanta>(1)};
+    virtual_pipes::step(e, c.terrain, c.scenario().get<WaterParameters>(), in, c.state.ledger(),
                         workspace_as<virtual_pipes::Workspace>(workspace));
   });
 }
@@ -57,30 +93,31 @@ hydraulic_erosion::Workspace make_capacity(const SimulationState& state) {
 
 void erode(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
-    hydraulic_erosion::step(e, c.terrain, c.scenario().hydraulic_erosion, c.time_step(), c.dice(),
-                            c.state.ledger(), workspace_as<hydraulic_erosion::Workspace>(workspace));
+    hydraulic_erosion::step(e, c.terrain, c.scenario().get<HydraulicErosionParameters>(), c.time_step(),
+                            c.dice(), c.state.ledger(),
+                            workspace_as<hydraulic_erosion::Workspace>(workspace));
   });
 }
 
 void update_moisture(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
-    moisture::step(e, c.terrain, s.moisture, s.repose.moisture_capacity, c.time_step(), c.dice(),
-                   c.state.ledger(), c.fields.scratch<Quanta>(1));
+    moisture::step(e, c.terrain, s.get<MoistureParameters>(), s.get<ReposeParameters>().moisture_capacity,
+                   c.time_step(), c.dice(), c.state.ledger(), c.fields.scratch<Quanta>(1));
   });
 }
 
 void evaporate(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
-    water_sources::evaporate(e, c.terrain, c.scenario().water.evaporation, c.time_step(), c.dice(),
-                             c.state.ledger());
+    water_sources::evaporate(e, c.terrain, c.scenario().get<WaterParameters>().evaporation, c.time_step(),
+                             c.dice(), c.state.ledger());
   });
 }
 
 void update_soil(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
-    soil::step(e, c.terrain, c.scenario().soil, c.scenario().repose, c.time_step(), c.dice(),
-               c.state.ledger());
+    soil::step(e, c.terrain, c.scenario().get<SoilParameters>(), c.scenario().get<ReposeParameters>(),
+               c.time_step(), c.dice(), c.state.ledger());
   });
 }
 
@@ -89,10 +126,10 @@ void update_soil(StepContext& c, ProcessWorkspace*) {
 Process rain_process() {
   Process p;
   p.name = "rain";
-  p.parameters = {"rain", "water"};
+  p.parameters = {rain_section, water_section};
   p.source = "Nilles 2025 §3.4.3, 3.4.5, eq. 31";
   p.header = "kernels/water/rain.hpp";
-  p.active = has_water_process;
+  p.active = has_water;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand};
   p.writes = {Layer::water};
   p.step = add_water;
@@ -103,14 +140,15 @@ Process rain_process() {
 Process virtual_pipes_process() {
   Process p;
   p.name = "virtual_pipes";
-  p.parameters = {"water"};
+  p.parameters = {water_section};
   p.source = "Mei 2007, Nilles 2025 §3.4";
   p.header = "kernels/water/virtual_pipes.hpp";
-  p.active = has_water_process;
+  p.active = has_water;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::water, Layer::water_flux_x, Layer::water_flux_y, Layer::water_velocity_x,
               Layer::water_velocity_y};
   p.writes_if_in_use = {Layer::suspended_sediment};
+  p.highest = highest_water;
   set_workspace<virtual_pipes::Workspace>(p, make_pipes);
   p.step = move_water;
   p.can_be_recorded = cannot_be_recorded;
@@ -120,10 +158,10 @@ Process virtual_pipes_process() {
 Process hydraulic_erosion_process() {
   Process p;
   p.name = "hydraulic_erosion";
-  p.parameters = {"hydraulic_erosion"};
+  p.parameters = {erosion_section};
   p.source = "Mei 2007, Nilles 2025 §3.4";
   p.header = "kernels/water/hydraulic_erosion.hpp";
-  p.active = [](const Scenario& s) { return s.hydraulic_erosion.enabled; };
+  p.active = [](const Scenario& s) { return s.get<HydraulicErosionParameters>().enabled; };
   p.reads = {Layer::water,      Layer::water_velocity_x,   Layer::water_velocity_y,
              Layer::vegetation, Layer::erosion_resistance, Layer::obstacle};
   p.writes = {Layer::bedrock, Layer::sand, Layer::suspended_sediment};
@@ -137,12 +175,12 @@ Process hydraulic_erosion_process() {
 Process moisture_process() {
   Process p;
   p.name = "moisture";
-  p.parameters = {"moisture", "repose"};
+  p.parameters = {moisture_section, "repose"};
   p.source = "Nilles 2025 §3.4.4";
   p.header = "kernels/soil/moisture.hpp";
-  p.active = [](const Scenario& s) { return s.moisture.enabled; };
+  p.active = [](const Scenario& s) { return s.get<MoistureParameters>().enabled; };
   p.check = [](const Scenario& s, ValidationErrors& errors) {
-    const double diffusion = s.moisture.diffusion, cell = s.grid.cell_size;
+    const double diffusion = s.get<MoistureParameters>().diffusion, cell = s.grid.cell_size;
     check_substeps(
         s, {"moisture.diffusion", diffusion, "m^2/s", 4 * diffusion * s.run.time_step / (cell * cell), 64},
         errors);
@@ -157,10 +195,10 @@ Process moisture_process() {
 Process evaporation_process() {
   Process p;
   p.name = "evaporation";
-  p.parameters = {"water"};
+  p.parameters = {water_section};
   p.source = "Nilles 2025 §3.4.4";
   p.header = "kernels/water/water_sources.hpp";
-  p.active = has_water_process;
+  p.active = has_water;
   p.writes = {Layer::water};
   p.step = evaporate;
   p.can_be_recorded = cannot_be_recorded;
@@ -170,10 +208,10 @@ Process evaporation_process() {
 Process soil_process() {
   Process p;
   p.name = "soil";
-  p.parameters = {"soil", "repose"};
+  p.parameters = {soil_section, "repose"};
   p.source = "Nilles 2025 eq. 28–29";
   p.header = "kernels/soil/soil.hpp";
-  p.active = [](const Scenario& s) { return s.soil.enabled; };
+  p.active = [](const Scenario& s) { return s.get<SoilParameters>().enabled; };
   p.reads = {Layer::moisture, Layer::vegetation};
   p.writes = {Layer::soil, Layer::sand};
   p.writes_if_in_use = {Layer::humus};

@@ -14,8 +14,27 @@
 
 namespace desert_sim {
 
+namespace {
+
+void check_angles(const Scenario& s, ValidationErrors& errors) {
+  const WindShadowParameters& shadow = s.get<WindShadowParameters>();
+  if (shadow.full_deg < shadow.start_deg) errors.add("wind_shadow.full_deg", "must not be below start_deg");
+}
+
+void check_reaches(const Scenario& s, ValidationErrors& errors) {
+  const EchoDuneParameters& echo = s.get<EchoDuneParameters>();
+  if (echo.sticky_reach < echo.erosion_reach)
+    errors.add("echo_dunes.sticky_reach", "must not be below erosion_reach");
+}
+
+const std::string stress_section = register_section<ShearStressParameters>("shear_stress");
+const std::string shadow_section = register_section<WindShadowParameters>("wind_shadow", check_angles);
+const std::string echo_section = register_section<EchoDuneParameters>("echo_dunes", check_reaches);
+
+}  // namespace
+
 const surface::Heights& obstructing_heights(const StepContext& c) {
-  const bool canopy = c.state.plants && c.scenario().vegetation.canopy_shadow;
+  const bool canopy = c.state.plants && c.scenario().get<VegetationParameters>().canopy_shadow;
   return canopy ? c.state.plants.tops : c.fields.heights;
 }
 
@@ -78,12 +97,16 @@ WindWork<Flow> with_features(const SimulationState& state, Flow flow) {
   return work;
 }
 
+wind::FlowInputs flow_inputs(const StepContext& c, const LocalWind& local) {
+  return {c.wind_above(), c.fields.heights, c.state.wind_reference, local.perturbation_x.data(),
+          local.perturbation_y.data()};
+}
+
 void update_wind(StepContext& c, ProcessWorkspace* workspace) {
   auto& work = workspace_as<TurnedWindWork>(workspace);
   work.local.update(c);
   with_backend(c.exec(), [&](auto& e) {
-    wind::step(e, c.terrain, c.scenario().wind, c.wind_above(), c.fields.heights, c.state.wind_reference,
-               work.local.perturbation_x.data(), work.local.perturbation_y.data(),
+    wind::step(e, c.terrain, c.scenario().wind, flow_inputs(c, work.local),
                {c.fields.scratch<float>(1), c.fields.scratch<float>(0)}, work.flow);
   });
 }
@@ -92,9 +115,8 @@ void update_shear_stress(StepContext& c, ProcessWorkspace* workspace) {
   auto& work = workspace_as<ShearStressWork>(workspace);
   work.local.update(c);
   with_backend(c.exec(), [&](auto& e) {
-    shear_stress::step(e, c.terrain, c.scenario().shear_stress, c.wind_above(), c.fields.heights,
-                       c.state.wind_reference, work.local.perturbation_x.data(),
-                       work.local.perturbation_y.data(), work.flow);
+    shear_stress::step(e, c.terrain, c.scenario().get<ShearStressParameters>(), flow_inputs(c, work.local),
+                       work.flow);
   });
 }
 
@@ -125,14 +147,15 @@ void check_transform(const Scenario& s, ValidationErrors& errors) {
 void update_wind_shadow(StepContext& c, ProcessWorkspace* workspace) {
   if (!c.renews_held_layers()) return;
   with_backend(c.exec(), [&](auto& e) {
-    wind_shadow::step(e, c.terrain, c.scenario().wind_shadow, obstructing_heights(c),
+    wind_shadow::step(e, c.terrain, c.scenario().get<WindShadowParameters>(), obstructing_heights(c),
                       workspace_as<wind_shadow::Workspace>(workspace));
   });
 }
 
 void update_echo(StepContext& c, ProcessWorkspace*) {
   with_backend(c.exec(), [&](auto& e) {
-    echo_dunes::step(e, c.terrain, c.scenario().echo_dunes, c.fields.heights, c.fields.scratch<float>(0));
+    echo_dunes::step(e, c.terrain, c.scenario().get<EchoDuneParameters>(), c.fields.heights,
+                     c.fields.scratch<float>(0));
   });
 }
 
@@ -165,10 +188,10 @@ Process shear_stress_process() {
   p.roles = {Role::wind, Role::wind_shadow};  // its bubbles are the shadow
   p.source = "Kroy et al. 2002, Durán & Moore 2013";
   p.header = "kernels/wind/shear_stress.hpp";
-  p.active = [](const Scenario& s) { return s.has(SandModel::continuum); };
+  p.active = [](const Scenario& s) { return has_sand_model(s, SandModel::continuum); };
   set_workspace<ShearStressWork>(p, [](const SimulationState& state) {
-    return with_features(
-        state, shear_stress::make_workspace(state.exec(), state.terrain.grid(), state.scenario.shear_stress));
+    return with_features(state, shear_stress::make_workspace(state.exec(), state.terrain.grid(),
+                                                             state.scenario.get<ShearStressParameters>()));
   });
   p.step = p.refresh = update_shear_stress;
   p.adapt = [](const SimulationState& state, ProcessWorkspace* workspace) {
@@ -180,20 +203,21 @@ Process shear_stress_process() {
 Process wind_shadow_process() {
   Process p;
   p.name = "wind_shadow";
-  p.parameters = {"wind_shadow"};
+  p.parameters = {shadow_section};
   p.source = "Nilles 2024 eq. 4";
   p.header = "kernels/wind/wind_shadow.hpp";
   p.roles = {Role::wind_shadow};
   p.gives_way = true;
-  p.active = [](const Scenario& s) { return s.wind_shadow.enabled; };
+  p.active = [](const Scenario& s) { return s.get<WindShadowParameters>().enabled; };
   p.check = [](const Scenario& s, ValidationErrors& errors) {
-    check_reach(s, "wind_shadow.distance", s.wind_shadow.distance, errors);
+    check_reach(s, "wind_shadow.distance", s.get<WindShadowParameters>().distance, errors);
   };
   p.reads_heights = true;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::canopy_height, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::wind_shadow};
   set_workspace<wind_shadow::Workspace>(p, [](const SimulationState& state) {
-    return wind_shadow::make_workspace(state.exec(), state.terrain.grid(), state.scenario.wind_shadow);
+    return wind_shadow::make_workspace(state.exec(), state.terrain.grid(),
+                                       state.scenario.get<WindShadowParameters>());
   });
   p.step = p.refresh = update_wind_shadow;
   p.traffic = [](const Scenario&, const Grid&) {
@@ -205,12 +229,12 @@ Process wind_shadow_process() {
 Process echo_dune_process() {
   Process p;
   p.name = "echo_dunes";
-  p.parameters = {"echo_dunes"};
+  p.parameters = {echo_section};
   p.source = "Tsoar 1983, Taylor & Keyser 2023";
   p.header = "kernels/wind/echo_dunes.hpp";
-  p.active = [](const Scenario& s) { return s.echo_dunes.enabled; };
+  p.active = [](const Scenario& s) { return s.get<EchoDuneParameters>().enabled; };
   p.check = [](const Scenario& s, ValidationErrors& errors) {
-    const EchoDuneParameters& echo = s.echo_dunes;
+    const EchoDuneParameters& echo = s.get<EchoDuneParameters>();
     check_reach(s, "echo_dunes.sticky_reach", static_cast<double>(echo.sticky_reach) * echo.highest, errors);
     const double steepness = std::tan(echo.cliff_deg * pi / 180.0);  // from the top of a cliff to its foot
     check_reach(s, "echo_dunes.highest", echo.highest / steepness, errors);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 
 namespace desert_sim {
 

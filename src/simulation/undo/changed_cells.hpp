@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "src/simulation/commands/command.hpp"
-#include "src/simulation/state.hpp"
+#include "src/simulation/state/state.hpp"
 #include "src/simulation/undo/stroke.hpp"
 
 namespace desert_sim {

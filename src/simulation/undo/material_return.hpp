@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "src/simulation/state.hpp"
+#include "src/simulation/state/state.hpp"
 #include "src/simulation/undo/stroke.hpp"
 
 namespace desert_sim {

@@ -4,7 +4,7 @@
 
 #include <deque>
 
-#include "src/simulation/state.hpp"
+#include "src/simulation/state/state.hpp"
 #include "src/simulation/undo/cell_list.hpp"
 #include "src/simulation/undo/stroke.hpp"
 

@@ -94,7 +94,8 @@ Population::Cover Population::compute_cover(CoverUpdate& update) {
     TerrainView view = terrain.view();
     view.layers[static_cast<int>(Layer::vegetation)] = update.vegetation.data();
     view.layers[static_cast<int>(Layer::humus)] = update.humus.data();
-    plants::cover(e, view, state_.scenario.vegetation, 0.0f, {}, heights, true, state_.plants);
+    plants::cover(e, view, state_.scenario.get<VegetationParameters>(), 0.0f, {}, heights, true,
+                  state_.plants);
   });
   pipeline_.derived_changed();
   return {0, update.cells.read(update.vegetation.data()), update.cells.read(update.humus.data())};

@@ -4,6 +4,7 @@
 
 #include "kernels/field/surface.hpp"
 #include "src/simulation/views/tile_transfer.hpp"
+#include "src/simulation/views/view_sections.hpp"
 #include "src/simulation/views/views.hpp"
 
 namespace desert_sim {
@@ -71,7 +72,7 @@ PendingCosts Views::begin_costs(const CostQuery& query) {
   if (!costs_) costs_ = HeldCosts(state_.exec(), state_.terrain.grid());
   with_backend(state_.exec(), [&](auto& e) {
     surface::fill_elevation(e, state_.terrain.view());
-    held_costs::compute_costs(e, state_.terrain.view(), state_.scenario.rover(), costs_.now());
+    held_costs::compute_costs(e, state_.terrain.view(), rover_of(state_.scenario), costs_.now());
   });
   return costs_.begin_copy(state_.exec(), staging_, query);
 }

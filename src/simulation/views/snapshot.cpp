@@ -6,7 +6,8 @@
 #include "kernels/plants/marking.hpp"
 #include "kernels/rover/traversability.hpp"
 #include "kernels/view/layer_values.hpp"
-#include "src/simulation/detail_section.hpp"
+#include "src/render/colour.hpp"
+#include "src/simulation/views/view_sections.hpp"
 #include "src/simulation/views/views.hpp"
 
 namespace desert_sim {
@@ -50,17 +51,19 @@ std::shared_ptr<Snapshot> Views::make_empty_snapshot(const std::vector<Layer>& l
   s->step = state_.steps;
   s->time = state_.time();
   s->wind_above = state_.wind_above();
-  s->detail = {detail_parameters(state_.scenario),
-               state_.scenario.seed,
-               state_.ripple_wind,
-               repose::Tangents::tangent(state_.scenario.repose.sand_deg),
-               state_.scenario.repose.moisture_capacity,
-               g.height,
-               rows.first,
-               g.origin_y,
-               grid.periodic_y};
-  for (const Species& species : state_.scenario.species)
-    s->crown_colours.push_back(crown_colour(species.appearance));
+  s->micro_relief = {state_.scenario.get<MicroReliefParameters>(),
+                     state_.scenario.seed,
+                     state_.ripple_wind,
+                     repose::Tangents::tangent(state_.scenario.get<ReposeParameters>().sand_deg),
+                     state_.scenario.get<ReposeParameters>().moisture_capacity,
+                     g.height,
+                     rows.first,
+                     g.origin_y,
+                     grid.periodic_y};
+  for (const Species& species : state_.scenario.species) {
+    const render::Colour crown = render::crown_colour(species.appearance.hue);
+    s->crown_colours.push_back({crown.r, crown.g, crown.b});
+  }
   for (Layer layer : layers) s->layers[layer];
   return s;
 }
@@ -155,7 +158,7 @@ void Views::compute_requested_layers(const std::vector<Layer>& layers, const Row
       view.layers[static_cast<int>(row.layer)] = nullptr;
   with_backend(state_.exec(), [&](auto& e) {
     surface::fill_elevation(e, view);
-    traversability::step(e, view, state_.scenario.rover(), rows.first, rows.count);
+    traversability::step(e, view, rover_of(state_.scenario), rows.first, rows.count);
     if (view.quanta(Layer::water_surface)) surface::fill_water_surface(e, view, rows.first, rows.count);
     if (state_.plants && view.real(Layer::plants))
       plants::find_dominant_species(e, view, rows.first, rows.count, state_.plants.neighbourhood(),

@@ -6,8 +6,8 @@
 #include <map>
 #include <vector>
 
-#include "kernels/detail/ripple_size.hpp"
 #include "kernels/field/layers.hpp"
+#include "kernels/micro_relief/ripple_size.hpp"
 #include "kernels/plants/marking.hpp"
 #include "kernels/wind/wind.hpp"
 #include "src/scenario/species.hpp"
@@ -23,9 +23,9 @@ struct RowBand {
 /// The rows of a band that a terrain of `height` rows has.
 RowBand clamp_band(const RowBand& band, int height, bool periodic_y);
 
-/// What the detail of the surface (surface_detail.hpp) depends on, besides layers.
-struct DetailSettings {
-  DetailParameters parameters;
+/// What the micro_relief of the surface (micro_relief.hpp) depends on, besides layers.
+struct MicroReliefSettings {
+  MicroReliefParameters parameters;
   std::uint64_t seed = 1;
   RippleWind wind;
   float repose_tangent = 1;     ///< of bare sand
@@ -45,7 +45,7 @@ struct Snapshot {
   std::uint64_t step = 0;
   double time = 0;  ///< simulated [s]
   wind::Vector wind_above;
-  DetailSettings detail;
+  MicroReliefSettings micro_relief;
   std::vector<std::array<float, 3>> crown_colours;  ///< by species: of 1 in the layer plants, of 2 …
   std::map<Layer, std::vector<float>> layers;
   const std::vector<float>* find(Layer layer) const;  ///< null if it was not asked for

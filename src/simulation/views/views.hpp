@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "src/simulation/pipeline/pipeline.hpp"
-#include "src/simulation/state.hpp"
+#include "src/simulation/state/state.hpp"
 #include "src/simulation/views/cost_changes.hpp"
 #include "src/simulation/views/layer_changes.hpp"
 #include "src/simulation/views/snapshot.hpp"

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "kernels/sand/reptation.hpp"
+#include "kernels/sand/saltation.hpp"
 #include "test/support/running.hpp"
 
 namespace desert_sim {
@@ -17,7 +19,7 @@ Scenario bare(int width, int height, float speed, float strength) {
   s.grid.height = height;
   s.grid.cell_size = 1;
   s.wind_regime.speed = speed;
-  s.reptation.strength = strength;
+  s.get<ReptationParameters>().strength = strength;
   return s;
 }
 
@@ -91,8 +93,8 @@ TEST(Laws, Migration) {
     heap.radius = radius;
     heap.height = 0.45 * radius;
     s.terrain = {heap};
-    s.saltation.bare_depth = 0.1f;
-    s.saltation.lift = 0.5f;  // little against the smallest dune's height
+    s.get<SaltationParameters>().bare_depth = 0.1f;
+    s.get<SaltationParameters>().lift = 0.5f;  // little against the smallest dune's height
     Running scene(s);
     // Until it is a barchan, then for a while: times go with its turnover, height² over flux.
     const double turnover = radius * radius;

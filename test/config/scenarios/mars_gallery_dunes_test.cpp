@@ -18,7 +18,8 @@ class Course {
   explicit Course(const std::string& scenario)
       : scenario_(shipped(scenario)),
         scene_(scenario_),
-        law_(wheels::make_wheel_ground(scenario_.traversability, scenario_.wheel_ground)),
+        law_(wheels::make_wheel_ground(scenario_.get<TraversabilityParameters>(),
+                                       scenario_.get<WheelGroundParameters>())),
         height_(scene_.field(Layer::elevation)),
         looseness_(scene_.field(Layer::looseness)),
         sand_(scene_.field(Layer::sand)) {
@@ -35,8 +36,9 @@ class Course {
   void drive(double rim_way) {
     constexpr double step = 0.005;
     for (double way = 0; way < rim_way; way += step) {
-      const float slip = law_.longitudinal_slip(static_cast<float>(std::atan(slope())),
-                                                scenario_.traversability.drive_speed, ground());
+      const float slip =
+          law_.longitudinal_slip(static_cast<float>(std::atan(slope())),
+                                 scenario_.get<TraversabilityParameters>().drive_speed, ground());
       depth_ = law_.sinkage_after(depth_, static_cast<float>(step), slip, 1, ground());
       x_ += step * (1 - slip);
       most_slip_ = std::max(most_slip_, slip);
@@ -89,7 +91,7 @@ class Course {
   }
   template <class Value>
   double mean_over_axles(const Value& value) const {
-    const double half = 0.5 * scenario_.traversability.wheelbase;
+    const double half = 0.5 * scenario_.get<TraversabilityParameters>().wheelbase;
     return (value(x_ - half) + value(x_) + value(x_ + half)) / 3;
   }
   double slope() const {
@@ -116,7 +118,7 @@ TEST(MarsGallery, OneSetOfGroundConstantsServesAllThree) {
   const WheelGroundParameters defaults;
   for (const char* name : {"mars_purgatory", "mars_hidden_valley", "mars_dingo_gap"}) {
     const Scenario s = shipped(name);
-    for_each_parameter(s.wheel_ground, [&](const auto& row, const auto& value) {
+    for_each_parameter(s.get<WheelGroundParameters>(), [&](const auto& row, const auto& value) {
       EXPECT_EQ(value, defaults.*(row.member)) << name << ": " << row.name;
     });
   }

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "kernels/avalanching/avalanching.hpp"
+#include "kernels/sand/reptation.hpp"
 #include "test/support/running.hpp"
 
 namespace desert_sim {
@@ -33,11 +34,11 @@ Scenario transverse(int size, std::uint64_t seed, const Avalanches& avalanches) 
   sand.high = 3;
   s.terrain = {sand};
   s.wind_regime.speed = 3;
-  s.reptation.strength = 0.1f;
-  s.avalanching.scheme = avalanches.scheme;
-  s.avalanching.quality = avalanches.quality;
-  s.avalanching.last_passes = avalanches.last_passes;
-  s.avalanching.sweeps = 10;
+  s.get<ReptationParameters>().strength = 0.1f;
+  s.get<AvalanchingParameters>().scheme = avalanches.scheme;
+  s.get<AvalanchingParameters>().quality = avalanches.quality;
+  s.get<AvalanchingParameters>().last_passes = avalanches.last_passes;
+  s.get<AvalanchingParameters>().sweeps = 10;
   return s;
 }
 

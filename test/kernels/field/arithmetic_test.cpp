@@ -7,9 +7,9 @@
 #include <limits>
 #include <set>
 
-#include "kernels/field/grid.hpp"
-#include "kernels/field/math.hpp"
-#include "kernels/field/quanta.hpp"
+#include "kernels/base/grid.hpp"
+#include "kernels/base/math.hpp"
+#include "kernels/base/quanta.hpp"
 #include "kernels/field/random.hpp"
 #include "kernels/sand/carried.hpp"
 #include "src/core/error.hpp"

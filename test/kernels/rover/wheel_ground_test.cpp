@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "src/scenario/rover_class.hpp"
+#include "src/scenario/rover_presets.hpp"
 #include "test/support/refusal.hpp"
 #include "test/support/world.hpp"
 
@@ -19,7 +19,7 @@ constexpr Ground loose{1, 1, 0}, packed{0, 1, 0};
 
 WheelGround wheels_of(const std::string& rover) {
   const Scenario s = test::parsed("rover: " + rover + "\n");
-  return wheels::make_wheel_ground(s.traversability, s.wheel_ground);
+  return wheels::make_wheel_ground(s.get<TraversabilityParameters>(), s.get<WheelGroundParameters>());
 }
 
 TEST(WheelMath, LogarithmAndPowerAreThoseOfTheLibrary) {
@@ -142,27 +142,28 @@ TEST(WheelGround, SinkageFollowsTheWayOfTheRimHoweverItIsDivided) {
 }
 
 TEST(RoverClass, EachSetsTheSectionTraversability) {
-  EXPECT_EQ(rover_classes(), (std::vector<std::string>{"mer", "msl", "six_wheel_200kg", "small"}));
-  for (const std::string& name : rover_classes()) {
+  EXPECT_EQ(rover_presets(), (std::vector<std::string>{"mer", "msl", "six_wheel_200kg", "small"}));
+  for (const std::string& name : rover_presets()) {
     SCOPED_TRACE(name);
-    EXPECT_GT(rover_class_doc(name).size(), 20u);
-    EXPECT_NE(rover_class_text(name).find("rover_dimensions:"), std::string::npos);
+    EXPECT_GT(rover_preset_doc(name).size(), 20u);
+    EXPECT_NE(rover_preset_text(name).find("rover_dimensions:"), std::string::npos);
     EXPECT_NE(dump_scenario(test::scenario_of("rover: " + name + "\n")),
               dump_scenario(test::scenario_of("{}")));
     const Scenario s = test::scenario_of("rover: " + name + "\n");
-    EXPECT_EQ(parse_scenario_text(dump_scenario(s), "again").traversability.mass, s.traversability.mass);
+    EXPECT_EQ(parse_scenario_text(dump_scenario(s), "again").get<TraversabilityParameters>().mass,
+              s.get<TraversabilityParameters>().mass);
   }
-  EXPECT_EQ(test::parsed("rover: mer\n").traversability.mass, 185);
+  EXPECT_EQ(test::parsed("rover: mer\n").get<TraversabilityParameters>().mass, 185);
   const Scenario heavier = test::parsed("rover: mer\ntraversability: {mass: 200}\n");
-  EXPECT_EQ(heavier.traversability.mass, 200) << "what the scenario says overrides it";
-  EXPECT_EQ(heavier.traversability.wheelbase, 1.41f);
+  EXPECT_EQ(heavier.get<TraversabilityParameters>().mass, 200) << "what the scenario says overrides it";
+  EXPECT_EQ(heavier.get<TraversabilityParameters>().wheelbase, 1.41f);
 }
 
 TEST(RoverClass, AnUnknownOneIsRefusedByName) {
   const std::string reason = test::refusal([] { test::parsed("rover: moon\n"); });
   EXPECT_NE(reason.find("rover: 'moon' is not one of: mer, msl, six_wheel_200kg, small"), std::string::npos)
       << reason;
-  EXPECT_NE(test::refusal([] { rover_class_text("moon"); }).find("'moon'"), std::string::npos);
+  EXPECT_NE(test::refusal([] { rover_preset_text("moon"); }).find("'moon'"), std::string::npos);
 }
 
 }  // namespace

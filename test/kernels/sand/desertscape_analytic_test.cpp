@@ -65,7 +65,7 @@ TEST_P(Desertscape, LongerStepsAreRefused) {
     simulation("sand: {model: desertscape_2019}\nrun: {time_step: 7}\n");
     FAIL() << "no error";
   } catch (const ConfigError& e) {
-    EXPECT_NE(std::string(e.what()).find("run.time_step: = 7 s is 280 times desertscape_2019.slab / (4 "
+    EXPECT_NE(std::string(e.what()).find("run.time_step: 7 s is 280 times desertscape_2019.slab / (4 "
                                          "saltation.lift) = 0.025 s (allowed: at most 256 times, 6.4 s)"),
               std::string::npos)
         << e.what();

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "kernels/field/grid.hpp"
+#include "kernels/base/grid.hpp"
 #include "kernels/slabs/rolling.hpp"
 
 namespace desert_sim::slabs {

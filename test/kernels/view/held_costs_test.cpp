@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "src/simulation/pipeline/memory.hpp"
+#include "src/simulation/memory/memory.hpp"
 #include "test/support/world.hpp"
 
 namespace desert_sim {

@@ -4,7 +4,7 @@
 #include <map>
 #include <random>
 
-#include "src/simulation/pipeline/memory.hpp"
+#include "src/simulation/memory/memory.hpp"
 #include "test/support/held_terrain.hpp"
 #include "test/support/world.hpp"
 

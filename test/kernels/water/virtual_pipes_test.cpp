@@ -16,7 +16,7 @@ class WaterLaws : public test::OnBackend {
   void rain(test::BenchTerrain& t, const RainParameters& p, std::uint64_t tick, double datum = 0) {
     t.terrain.allocate(Layer::water);
     with_backend(exec(), [&](auto& e) {
-      rain::step(e, t.terrain.view(), p, 1, static_cast<double>(tick), 7, tick, datum, t.ledger());
+      rain::step(e, t.terrain.view(), p, {1, static_cast<double>(tick), 7, tick, datum}, t.ledger());
     });
   }
   void pour(test::BenchTerrain& t, const Spring& spring, std::uint64_t tick = 0, float time_step = 1) {

@@ -40,8 +40,7 @@ struct Blown {
     const auto cells = static_cast<std::size_t>(grid.cells());
     Buffer<float> scratch(t.exec(), 2 * cells);
     with_backend(t.exec(), [&](auto& e) {
-      wind::step(e, t.terrain.view(), p, above, t.heights, 0, nullptr, nullptr,
-                 {scratch.data(), scratch.data() + cells}, work);
+      wind::step(e, t.terrain.view(), p, {above, t.heights}, {scratch.data(), scratch.data() + cells}, work);
     });
     t.exec().synchronise();
     const std::vector<float> x = t.terrain.values(Layer::wind_x), y = t.terrain.values(Layer::wind_y),

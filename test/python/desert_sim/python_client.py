@@ -285,7 +285,7 @@ class Calls(Client):
         self.assertEqual((forecast.step, forecast.times.tolist()), (start.step, [0.5, 1.0]))
         self.assertEqual((forecast.costs.shape, forecast.probability.shape), ((2, 48, 64), (0, 48, 64)))
         self.assertEqual((forecast.passable_until.unit, forecast.passable_from.unit), ("s", "s"))
-        with self.assertRaisesRegex(desert_sim.SimulationError, "/desert_sim/forecast: .*horizon: = -1 is not in"):
+        with self.assertRaisesRegex(desert_sim.SimulationError, "/desert_sim/forecast: .*horizon: -1 is not in"):
             self.desert.forecast(-1)
         client = self.client()
         for step, state_hash, ground in zip(forecast.steps, forecast.state_hashes, forecast.elevation):
@@ -331,7 +331,7 @@ class FakeForecaster:
     def run(self, goal):
         self.goals.append(goal)
         if goal.horizon < 0:
-            self.server.set_aborted(ForecastTerrainResult(message="horizon: = -1 is not above 0"))
+            self.server.set_aborted(ForecastTerrainResult(message="horizon: -1 is not above 0"))
             return
         self.server.publish_feedback(ForecastTerrainFeedback(progress=0.5))
         if goal.horizon > 1e3:
@@ -396,7 +396,7 @@ class Forecasts(unittest.TestCase):
         self.assertEqual([goal.horizon for goal in self.fake.goals[known:]], [20])
 
     def test_refusals_and_delays(self):
-        with self.assertRaisesRegex(desert_sim.SimulationError, "/fake_desert/forecast: horizon: = -1 is not above 0"):
+        with self.assertRaisesRegex(desert_sim.SimulationError, "/fake_desert/forecast: horizon: -1 is not above 0"):
             self.desert.forecast(-1)
         with self.assertRaisesRegex(desert_sim.SimulationError, "no forecast within 0.3 s: it was cancelled"):
             self.desert.forecast(2e3, timeout=0.3)

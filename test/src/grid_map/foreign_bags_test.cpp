@@ -223,8 +223,8 @@ TEST_F(ForeignBags, MapsThatAreNoneAreRefused) {
   expect_refused([](GridMap& m) { m.layers.push_back("sand"); }, "names 2 layers but contains 1");
   expect_refused([](GridMap& m) { m.layers.push_back("elevation"), m.data.push_back(m.data[0]); },
                  "'elevation' is given twice");
-  expect_refused([](GridMap& m) { m.info.resolution = 0; }, "resolution: = 0");
-  expect_refused([](GridMap& m) { m.info.resolution = nan; }, "resolution: = nan");
+  expect_refused([](GridMap& m) { m.info.resolution = 0; }, "resolution: 0");
+  expect_refused([](GridMap& m) { m.info.resolution = nan; }, "resolution: nan");
   expect_refused([](GridMap& m) { m.info.length_x = std::numeric_limits<double>::infinity(); },
                  "must be finite");
   expect_refused([](GridMap& m) { m.info.pose.position.y = nan; }, "must be finite");

@@ -11,6 +11,7 @@
 #include <regex>
 
 #include "src/io/raster_loader.hpp"
+#include "src/scenario/raster_grid.hpp"
 #include "test/support/raster_test.hpp"
 
 namespace desert_sim {

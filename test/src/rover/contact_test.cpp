@@ -1,4 +1,5 @@
-// Wheels on rippled sand: heights of contact have the ripples' wavelength, and without detail they have none.
+// Wheels on rippled sand: heights of contact have the ripples' wavelength, and without micro_relief they
+// have none.
 
 #include "src/rover/contact.hpp"
 
@@ -15,14 +16,15 @@ namespace {
 
 const std::string sand =
     "{grid: {width: 24, height: 8, cell_size: 1}, terrain: [{uniform: {layer: sand, value: 1}}], "
-    "wind: {speed: 10, direction_deg: 0}, detail: {crest_length: 1}}";
+    "wind: {speed: 10, direction_deg: 0}, micro_relief: {crest_length: 1}}";
 constexpr double wavelength = 0.013 + 0.02 * 9, height = 0.0467 * wavelength;  // of that wind
 
-std::unique_ptr<GridGround> ground(bool detail) {
+std::unique_ptr<GridGround> ground(bool micro_relief) {
   const std::unique_ptr<Exec> exec = make_exec("cpu", 1);
   const auto world = test::simulate(*exec, sand);
-  const auto snapshot = world->snapshot(GridGround::layers_of_snapshot(detail));
-  return detail ? GridGround::with_detail(*snapshot, 0.3) : std::make_unique<GridGround>(*snapshot, 0.3);
+  const auto snapshot = world->snapshot(GridGround::layers_of_snapshot(micro_relief));
+  return micro_relief ? GridGround::with_micro_relief(*snapshot, 0.3)
+                      : std::make_unique<GridGround>(*snapshot, 0.3);
 }
 
 /// Heights at which a wheel that rolls downwind stands, a hundredth of a metre apart.
@@ -69,7 +71,7 @@ TEST(RoverOnRipples, WheelsStandOnCrestsAndALargerOneSinksLessIntoTroughs) {
   EXPECT_GT(higher, 0.1 * height);
 }
 
-TEST(RoverOnRipples, WithoutDetailTheGroundIsFlat) {
+TEST(RoverOnRipples, WithoutMicroReliefTheGroundIsFlat) {
   for (const double z : contacts(0.05, *ground(false))) ASSERT_NEAR(z, 1, 1e-6);
 }
 

@@ -202,8 +202,8 @@ TEST(RoverImu, InACurveItFeelsTheTurnAndTheCentre) {
 
 TEST(RoverDrive, RefusesWhatIsNoCommand) {
   Rover r = rover_of();
-  EXPECT_NE(refusal([&] { r.drive({NAN, 0, 0}, 1); }).find("linear.x: = nan"), std::string::npos);
-  EXPECT_NE(refusal([&] { r.drive({0, 0, INFINITY}, 1); }).find("angular.z: = inf"), std::string::npos);
+  EXPECT_NE(refusal([&] { r.drive({NAN, 0, 0}, 1); }).find("linear.x: nan"), std::string::npos);
+  EXPECT_NE(refusal([&] { r.drive({0, 0, INFINITY}, 1); }).find("angular.z: inf"), std::string::npos);
   EXPECT_NE(refusal([&] { r.drive({0, 0, 0}, -1); }).find("seconds"), std::string::npos);
   EXPECT_NE(refusal([&] { r.advance(NAN, nullptr); }).find("seconds"), std::string::npos);
   EXPECT_EQ(r.state().command_ticks, 0u);
@@ -217,7 +217,7 @@ TEST(RoverParameters, ThatDoNotGoTogetherAreRefusedAllAtOnce) {
   p.free_slip = 0.95;
   p.wheelbase = 0.3;
   const std::string reason = refusal([&] { Rover(p, {}, "file"); });
-  for (const char* name : {"file: bogie_x: = 0.1", "pivot_x: = 5", "free_slip: = 0.95", "wheelbase: = 0.3"})
+  for (const char* name : {"file: bogie_x: 0.1", "pivot_x: 5", "free_slip: 0.95", "wheelbase: 0.3"})
     EXPECT_NE(reason.find(name), std::string::npos) << reason;
 }
 
@@ -244,7 +244,7 @@ TEST(RoverClass, GivesARoverItsDimensions) {
   refused("[0.71, 0.0, -0.70]", "[1]", "axles");
   refused("bogie: rear", "bogie: front", "rover_dimensions.bogie: 'front'");
   refused("[1.0, 0.8, 0.4]", "[1, wide]", "rover_dimensions.body");
-  refused("mass: 185", "mass: -1", "traversability.mass: = -1");
+  refused("mass: 185", "mass: -1", "traversability.mass: -1");
   refused("track: 1.06, ", "", "rover_dimensions.track: is missing");
   EXPECT_NE(refusal([] { rover_of_class(YAML::Load("[]"), "list"); }).find("list: is not a class"),
             std::string::npos);

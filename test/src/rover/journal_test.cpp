@@ -22,8 +22,8 @@ const char* const dunes =
     "direction_deg: 20},"
     " terrain: [noise: {layer: sand, low: 0.2, high: 1.5, scale: 6}]}";
 
-SimulatedGround living_ground(bool detail = false) {
-  return SimulatedGround(scenario_of(dunes), no_raster_loader, "cpu", 1, detail);
+SimulatedGround living_ground(bool micro_relief = false) {
+  return SimulatedGround(scenario_of(dunes), no_raster_loader, "cpu", 1, micro_relief);
 }
 
 RoverParameters noisy() {
@@ -48,8 +48,8 @@ std::vector<RoverEvent> course() {
 /// The hash of the states after each event; a rover that went through the first `begin` events is handed
 /// over.
 std::vector<std::uint64_t> path(Rover& rover, const std::vector<RoverEvent>& events, std::size_t begin,
-                                std::size_t end, bool detail = false) {
-  SimulatedGround ground = living_ground(detail);
+                                std::size_t end, bool micro_relief = false) {
+  SimulatedGround ground = living_ground(micro_relief);
   std::vector<std::uint64_t> hashes;
   for (std::size_t n = begin; n < end; ++n) {
     apply(rover, events[n], [&](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
@@ -88,19 +88,19 @@ TEST(RoverRepeat, TheJournalLeadsToTheSameState) {
   const TemporaryFolder folder;
   const std::vector<RoverEvent> events = course();
   std::set<std::uint64_t> ends;
-  for (const bool detail : {false, true}) {
+  for (const bool micro_relief : {false, true}) {
     Rover rover(noisy(), {});
-    path(rover, events, 0, events.size(), detail);
+    path(rover, events, 0, events.size(), micro_relief);
     {
-      RoverJournalWriter journal(folder.path("journal"), rover, detail);
+      RoverJournalWriter journal(folder.path("journal"), rover, micro_relief);
       for (const RoverEvent& event : events) journal.write(event);
       Rover other(noisy(), {});
-      path(other, events, 0, 9, detail);
+      path(other, events, 0, 9, micro_relief);
       journal.write(rover_event::SetState{rover_state_bytes(other)});
       journal.write(rover_event::SetState{rover_state_bytes(rover)});
     }
     const RoverJournal journal = read_rover_journal(folder.path("journal"));
-    SimulatedGround ground = living_ground(journal.detail);
+    SimulatedGround ground = living_ground(journal.micro_relief);
     const RoverState end =
         replay(journal, [&](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
     EXPECT_EQ(hash_of(end), hash_of(rover.state()));
@@ -110,14 +110,14 @@ TEST(RoverRepeat, TheJournalLeadsToTheSameState) {
   EXPECT_EQ(ends.size(), 2u) << "it drove over ripples, or over none";
 }
 
-TEST(RoverRepeat, AJournalOfAnOlderVersionHasNoDetail) {
+TEST(RoverRepeat, AJournalOfAnOlderVersionHasNoMicroRelief) {
   const TemporaryFolder folder;
   { RoverJournalWriter(folder.path("journal"), Rover(noisy(), {}), true); }
   std::string text = file_bytes(folder.path("journal"));
-  EXPECT_TRUE(read_rover_journal(folder.path("journal")).detail);
-  text.replace(text.find("detail: true, "), std::string("detail: true, ").size(), "");
+  EXPECT_TRUE(read_rover_journal(folder.path("journal")).micro_relief);
+  text.replace(text.find("micro_relief: true, "), std::string("micro_relief: true, ").size(), "");
   folder.write("older", text);
-  EXPECT_FALSE(read_rover_journal(folder.path("older")).detail);
+  EXPECT_FALSE(read_rover_journal(folder.path("older")).micro_relief);
 }
 
 TEST(RoverRepeat, AJournalThatWasCutOffIsReadUpToThere) {

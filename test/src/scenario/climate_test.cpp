@@ -2,6 +2,9 @@
 
 #include "src/scenario/climate.hpp"
 
+#include "kernels/soil/moisture.hpp"
+#include "kernels/soil/soil.hpp"
+#include "kernels/water/rain.hpp"
 #include "test/support/world.hpp"
 
 namespace desert_sim {
@@ -12,14 +15,15 @@ TEST(Climate, EachBringsRainAndPlantsOfItsOwn) {
   for (const std::string& name : climates()) {
     SCOPED_TRACE(name);
     const Scenario s = test::scenario_of("climate: " + name + "\n");
-    EXPECT_GT(s.rain.rate, 0);
-    EXPECT_TRUE(s.vegetation.enabled && s.moisture.enabled && s.soil.enabled);
+    EXPECT_GT(s.get<RainParameters>().rate, 0);
+    EXPECT_TRUE(s.get<VegetationParameters>().enabled && s.get<MoistureParameters>().enabled &&
+                s.get<SoilParameters>().enabled);
     EXPECT_FALSE(s.species.empty());
     EXPECT_GT(climate_doc(name).size(), 20u);
   }
   const auto rain = [](const char* name) {
     const Scenario s = test::scenario_of(std::string("climate: ") + name + "\n");
-    return s.rain.rate * s.rain.share_low;
+    return s.get<RainParameters>().rate * s.get<RainParameters>().share_low;
   };
   EXPECT_LT(rain("arid"), rain("savanna"));
   EXPECT_LT(rain("savanna"), rain("forest"));
@@ -29,9 +33,9 @@ TEST(Climate, EachBringsRainAndPlantsOfItsOwn) {
 TEST(Climate, WhatTheScenarioSaysOverridesIt) {
   const Scenario s = test::scenario_of(
       "climate: forest\nrain: {rate: 0.001}\nsoil: {enabled: false}\nspecies: [{preset: palm}]\n");
-  EXPECT_EQ(s.rain.rate, 0.001f);
-  EXPECT_FALSE(s.soil.enabled);
-  EXPECT_EQ(s.soil.forming, 0.03f) << "is still the climate's";
+  EXPECT_EQ(s.get<RainParameters>().rate, 0.001f);
+  EXPECT_FALSE(s.get<SoilParameters>().enabled);
+  EXPECT_EQ(s.get<SoilParameters>().forming, 0.03f) << "is still the climate's";
   ASSERT_EQ(s.species.size(), 1u);
   EXPECT_EQ(s.species[0].name, "palm");
   EXPECT_EQ(s.competition, std::vector<float>(1, 1.0f)) << "a matrix belongs to its list";

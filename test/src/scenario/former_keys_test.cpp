@@ -30,6 +30,12 @@ TEST(FormerKeys, AreRefusedWithTheLineToWrite) {
   EXPECT_NE(file.find("slab_model.kind: is now sand.model; write sand.model=hops"), std::string::npos)
       << file;
   EXPECT_EQ(file.find("unknown"), std::string::npos) << file;
+  const std::string relief = refused_with("detail: {ripples: false}\n", {"detail.ripples=false"});
+  EXPECT_NE(relief.find("detail: is now the section micro_relief"), std::string::npos) << relief;
+  EXPECT_EQ(relief.find("unknown"), std::string::npos) << relief;
+  EXPECT_NE(refused_with("run: {timeline: [{time: 5, set: {detail.ripples: false}}]}\n")
+                .find("detail.ripples: is now micro_relief.ripples; write micro_relief.ripples=false"),
+            std::string::npos);
   EXPECT_NE(refused_with("{}", {"particle.kind=wang"}).find("write sand.model=wang"), std::string::npos);
   EXPECT_NE(refused_with("run: {timeline: [{time: 5, set: {slab_model.kind: werner}}]}\n")
                 .find("write sand.model=werner"),
@@ -68,6 +74,9 @@ TEST(FormerKeys, AreRewrittenAndAllElseStays) {
        "\xEF\xBB\xBFname: é\nsand: {model: momiji}\nslab_model: {repose_deg: 33.7}\n"},
       {"saltation: {lift: 1}  # hops\r\nslab_model: {kind: werner}\r\n",
        "saltation: {lift: 1}  # hops\r\nsand: {model: werner}\r\n"},
+      {"detail: {ripples: true}  # a\nrun: {timeline: [{time: 5, set: {detail.bumps: false}}]}\n",
+       "micro_relief: {ripples: true}  # a\nrun: {timeline: [{time: 5, set: {micro_relief.bumps: "
+       "false}}]}\n"},
       {"# nothing to do\nsaltation: {lift: 1}\n", "# nothing to do\nsaltation: {lift: 1}\n"},
   };
   for (const Rewriting& r : rewritings) {
@@ -92,14 +101,18 @@ TEST(FormerKeys, OfRecordedSettingsMeanWhatTheyMeant) {
   EXPECT_EQ(now({"particle.kind=none", "slab_model.kind=momiji"}, SandModel::wang), "sand.model=momiji");
   EXPECT_EQ(now({"saltation.model=continuum"}, SandModel::hops), "sand.model=continuum");
   EXPECT_EQ(now({"saltation.model=continuum"}, SandModel::werner), "sand.model=werner");  // it had no effect
+  EXPECT_EQ(now({"slab_model.kind=werner", "detail.bumps=true"}, SandModel::hops), "sand.model=werner");
+  EXPECT_EQ(now({"detail.bumps=true"}, SandModel::hops), "micro_relief.bumps=true");
   EXPECT_EQ(without_former_keys({"wind.speed=3"}, SandModel::werner, "a"), Settings{"wind.speed=3"});
 }
 
 TEST(FormerKeys, OfASavedTerrainAreRead) {
   const test::TemporaryFolder folder;
-  const std::string saved = "slab_model: {kind: bishop}\nparticle: {kind: none}\nsaltation: {model: hops}\n";
+  const std::string saved =
+      "slab_model: {kind: bishop}\nparticle: {kind: none}\nsaltation: {model: hops}\ndetail: {bumps: "
+      "false}\n";
   folder.write("saved.yaml", saved_terrain_comment + std::string("12 of dunes.\n") + saved);
-  EXPECT_EQ(load_scenario(folder.path("saved.yaml")).sand.model, SandModel::bishop);
+  EXPECT_EQ(load_scenario(folder.path("saved.yaml")).get<SandParameters>().model, SandModel::bishop);
   folder.write("own.yaml", saved);
   EXPECT_THROW(load_scenario(folder.path("own.yaml")), ConfigError);
 }

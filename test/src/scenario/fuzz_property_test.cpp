@@ -5,7 +5,7 @@
 #include <random>
 
 #include "src/simulation/checkpoint.hpp"
-#include "src/simulation/commands/journal.hpp"
+#include "src/simulation/journal.hpp"
 #include "test/support/cases.hpp"
 #include "test/support/edits.hpp"
 #include "test/support/temporary_folder.hpp"

@@ -60,9 +60,9 @@ TEST(GrowthCurves, FaultyOnesAreRefused) {
   expect_refused("{grass: [[0, 0]]}", {"growth_curves.grass", "has 1 points", "2 to 8"});
   expect_refused("{grass: [[0,0],[1,0],[2,0],[3,0],[4,0],[5,0],[6,0],[7,0],[8,0]]}", {"has 9 points"});
   expect_refused("{shrub: [[0, 0], [1]]}", {"growth_curves.shrub.1", "[burial, growth]"});
-  expect_refused("{shrub: [[0, 0], [0, 1]]}", {"growth_curves.shrub.1.0", "= 0", "ascending"});
+  expect_refused("{shrub: [[0, 0], [0, 1]]}", {"growth_curves.shrub.1.0", ": 0", "ascending"});
   expect_refused("{shrub: [[0, 0], [.nan, 1]]}", {"growth_curves.shrub.1.0", "[-100, 100] m/year"});
-  expect_refused("{shrub: [[0, 11], [1, much]]}", {"growth_curves.shrub.0.1", "= 11", "[-10, 10] 1/year"});
+  expect_refused("{shrub: [[0, 11], [1, much]]}", {"growth_curves.shrub.0.1", ": 11", "[-10, 10] 1/year"});
 }
 
 }  // namespace

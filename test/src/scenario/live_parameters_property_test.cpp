@@ -18,13 +18,15 @@ const std::string world =
     "wind: {speed: 6, direction_deg: 20}\n";
 
 /// Another value than it has, as a setting.
-template <class Row, class T>
-std::string other_value(const Row& row, const T& value) {
+template <class T>
+std::string other_value(const ParameterRow& row, const T& value) {
   std::ostringstream text;
   if constexpr (std::is_same_v<T, bool>) {
     text << (value ? "false" : "true");
-  } else if constexpr (std::is_enum_v<T>) {
-    text << row.choices[(static_cast<int>(value) + 1) % row.choice_count];
+  } else if constexpr (std::is_same_v<T, Choice>) {
+    text << row.choices[(value.number + 1) % row.choice_count];
+  } else if constexpr (is_optional_number<T>) {
+    text << row.lowest;
   } else if constexpr (std::is_same_v<T, ShortList>) {
     text << "[";
     for (int n = 0; n < value.count; ++n) text << (n ? ", " : "") << 0.9 * value.values[n];
@@ -138,8 +140,8 @@ TEST_P(LiveParameters, RefusedChangesChangeNothing) {
     EXPECT_EQ(s->state_hash(), hash);
   };
   expect_refused({"saltation.lift=0.2", "saltation.influx=-1"},
-                 "saltation.influx: = -1 is not in [0, 100] m^2/s");
-  expect_refused({"saltation.lift=.nan"}, "saltation.lift: = .nan");
+                 "saltation.influx: -1 is not in [0, 100] m^2/s");
+  expect_refused({"saltation.lift=.nan"}, "saltation.lift: .nan");
   expect_refused({"saltation.lift={a: 1}"}, "saltation.lift: a map is not a number");
   expect_refused({"saltation.left=1"}, "saltation.left: unknown parameter");
   expect_refused({"saltation"}, "saltation: unknown parameter");
@@ -164,7 +166,7 @@ TEST_P(LiveParameters, ASeaThatHeightsCannotReachIsRefused) {
     flood("water.sea_level=5000");
     ADD_FAILURE() << "was not refused";
   } catch (const ConfigError& e) {
-    EXPECT_NE(std::string(e.what()).find("water.sea_level: = 5000"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("water.sea_level: 5000"), std::string::npos) << e.what();
   }
   EXPECT_EQ(s->state_hash(), before);
   flood("water.sea_level=-5000");

@@ -76,7 +76,7 @@ TEST(Loader, NamesTimesThatAreNone) {
   for (const char* time : {"5 weeks", "1 h 5", "h", "1 H", "5 m"})
     expect_refused("run: {time_step: " + std::string(time) + "}",
                    {"run.time_step", time, "not a time", "[0.0001, ", "ms, s, min, h, d, a"});
-  expect_refused("run: {time_step: 1 a}", {"run.time_step", "= 1 a is not in [0.0001, "});
+  expect_refused("run: {time_step: 1 a}", {"run.time_step", ": 1 a is not in [0.0001, "});
   expect_refused("wind: {speed: 5 s}", {"wind.speed", "5 s", "not a number"});
   expect_refused("run: {timeline: [{time: 1 week, set: {wind.speed: 5}}]}", {"run.timeline.0.time", "min"});
 }
@@ -90,9 +90,9 @@ TEST(Loader, NamesNumbersThatAreNoneOrInfinite) {
 
 TEST(Loader, NamesNumbersOutOfTheirRange) {
   expect_refused("grid: {width: -64}", {"grid.width", "-64", "[1, 65536]"});
-  expect_refused("grid: {width: 0}", {"grid.width", "= 0"});
+  expect_refused("grid: {width: 0}", {"grid.width", ": 0"});
   expect_refused("grid: {height: 100000}", {"grid.height", "100000"});
-  expect_refused("grid: {cell_size: 0}", {"grid.cell_size", "= 0", "[0.001, 10000] m"});
+  expect_refused("grid: {cell_size: 0}", {"grid.cell_size", ": 0", "[0.001, 10000] m"});
   expect_refused("grid: {cell_size: -1}", {"grid.cell_size", "-1"});
   expect_refused("run: {steps: -1}", {"run.steps", "-1"});
   expect_refused("run: {time_step: 0}", {"run.time_step"});

@@ -8,6 +8,10 @@
 #include <filesystem>
 #include <random>
 
+#include "kernels/sand/saltation.hpp"
+#include "kernels/wind/echo_dunes.hpp"
+#include "kernels/wind/wind_shadow_parameters.hpp"
+#include "src/scenario/scenario.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test/support/world.hpp"
 
@@ -15,16 +19,22 @@ namespace desert_sim {
 namespace {
 
 /// Sets every number of a table: share 0 = lowest, 1 = highest, else between (whole where it must be).
-template <class P>
-void set_all(P& parameters, const std::function<double()>& share) {
-  for_each_parameter(parameters, [&](const auto& row, auto& value) {
-    using T = std::decay_t<decltype(value)>;
+struct SetAll {
+  const std::function<double()>& share;
+
+  void operator()(const ParameterRow& row, ParameterValue value) const {
+    std::visit([&](auto* at) { set(row, *at); }, value);
+  }
+
+ private:
+  template <class T>
+  void set(const ParameterRow& row, T& value) const {
     const double number = row.lowest + share() * (row.highest - row.lowest);
     if constexpr (std::is_same_v<T, bool>) {
       value = number > 0.5;
     } else if constexpr (std::is_same_v<T, std::string>) {
-    } else if constexpr (std::is_enum_v<T>) {
-      value = static_cast<T>(static_cast<int>(number));
+    } else if constexpr (std::is_same_v<T, Choice>) {
+      value.number = static_cast<int>(number);
     } else if constexpr (std::is_same_v<T, ShortList>) {
       value.count = 3;
       for (int n = 0; n < 3; ++n)
@@ -37,12 +47,18 @@ void set_all(P& parameters, const std::function<double()>& share) {
     } else {
       value = static_cast<T>(number);
     }
-  });
+  }
+};
+
+template <class P>
+void set_all(P& parameters, const std::function<double()>& share) {
+  visit_parameters(parameters, SetAll{share});
 }
 
 Scenario scenario_at(const std::function<double()>& share) {
   Scenario s;
-  for_each_section(s, [&](const char*, auto& parameters) { set_all(parameters, share); });
+  set_all(s.grid, share);
+  for (Section* section : s.sections.all()) section->visit(ParameterVisit(SetAll{share}));
   set_all(s.wind, share);
   set_all(s.wind_regime, share);
   s.wind_regime.series_file = "wind.csv";  // which the last of the regimes needs
@@ -71,8 +87,10 @@ Scenario scenario_at(const std::function<double()>& share) {
       step(DiscsStep{});
   step(ObstacleStep{}), step(RasterStep{});
   // What the loader asks of several keys together:
-  s.wind_shadow.start_deg = std::min(s.wind_shadow.start_deg, s.wind_shadow.full_deg);
-  s.echo_dunes.erosion_reach = std::min(s.echo_dunes.erosion_reach, s.echo_dunes.sticky_reach);
+  s.get<WindShadowParameters>().start_deg =
+      std::min(s.get<WindShadowParameters>().start_deg, s.get<WindShadowParameters>().full_deg);
+  s.get<EchoDuneParameters>().erosion_reach =
+      std::min(s.get<EchoDuneParameters>().erosion_reach, s.get<EchoDuneParameters>().sticky_reach);
   for (WindSegment& segment : s.wind_segments) {
     segment.ramp = std::min(segment.ramp, segment.duration);
     segment.probability = std::max(segment.probability, 1e-30f);
@@ -80,7 +98,8 @@ Scenario scenario_at(const std::function<double()>& share) {
   s.wind.weights.values[0] = std::max(s.wind.weights.values[0], 1e-30f);
   const double most_influx =
       99.0 * static_cast<double>(s.grid.cell_size) / static_cast<double>(s.run.time_step);
-  s.saltation.influx = std::min(s.saltation.influx, static_cast<float>(most_influx));
+  s.get<SaltationParameters>().influx =
+      std::min(s.get<SaltationParameters>().influx, static_cast<float>(most_influx));
   s.wind_features[1].id = std::max(s.wind_features[0].id - 1, 0);
   auto& discs = std::get<DiscsStep>(s.terrain[5]);
   discs.radius_low = std::min(discs.radius_low, discs.radius_high);
@@ -144,19 +163,29 @@ TEST(ScenarioRoundTrip, ExtremeValuesThatTheLoaderTakesSurviveToo) {
 
 TEST(ParameterTables, HaveRangesThatHoldTheirDefaultsAndDocumentation) {
   Scenario s;
-  const auto check = [](const char* section, const auto& parameters) {
-    for_each_parameter(parameters, [&](const auto& row, const auto& value) {
-      using T = std::decay_t<decltype(value)>;
+  const auto check_row = [](const std::string& section) -> ConstParameterVisit {
+    return [section](const ParameterRow& row, ConstParameterValue given) {
       EXPECT_TRUE(row.name && row.name[0]) << section;
       EXPECT_TRUE(row.doc && row.doc[0]) << section << "." << row.name;
       EXPECT_LE(row.lowest, row.highest) << section << "." << row.name;
-      if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
-        const bool not_given = std::string(section) == "grid" && value == 0;
-        EXPECT_TRUE(not_given || (value >= row.lowest && value <= row.highest)) << section << "." << row.name;
-      }
-    });
+      std::visit(
+          [&](const auto* value) {
+            using T = std::decay_t<decltype(*value)>;
+            if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+              const bool not_given = section == "grid" && *value == 0;
+              EXPECT_TRUE(not_given || (*value >= row.lowest && *value <= row.highest))
+                  << section << "." << row.name;
+            }
+          },
+          given);
+    };
   };
-  for_each_section(s, check);
+  const auto check = [&](const std::string& section, const auto& parameters) {
+    visit_parameters(parameters, check_row(section));
+  };
+  for (const Section* section : static_cast<const Sections&>(s.sections).all())
+    section->visit(check_row(section->name()));
+  check("grid", s.grid);
   check("species", SpeciesTraits{});
   check("wind", s.wind);
   check("wind", s.wind_regime);
@@ -174,13 +203,16 @@ TEST(ParametersPage, ConfigParametersMdIsNotStale) {
 
 TEST(ParametersPage, NamesEverySectionKeyStepAndLayer) {
   const std::string page = describe_parameters();
-  Scenario s;
-  for_each_section(s, [&](const char* section, const auto& parameters) {
-    EXPECT_NE(page.find("`" + std::string(section) + "`"), std::string::npos) << section;
-    for_each_parameter(parameters, [&](const auto& row, const auto&) {
-      EXPECT_NE(page.find("`" + std::string(row.name) + "`"), std::string::npos) << row.name;
-    });
-  });
+  const auto expect_named = [&](const std::string& word) {
+    EXPECT_NE(page.find("`" + word + "`"), std::string::npos) << word;
+  };
+  const Sections sections;
+  EXPECT_GT(sections.all().size(), 20u);
+  for (const Section* section : sections.all()) {
+    expect_named(section->name());
+    section->visit(
+        ConstParameterVisit([&](const ParameterRow& row, ConstParameterValue) { expect_named(row.name); }));
+  }
   for (const char* step : terrain_step_names)
     EXPECT_NE(page.find("### `" + std::string(step) + "`"), std::string::npos);
   for (const LayerInfo& row : layer_table)

@@ -2,6 +2,11 @@
 
 #include <cmath>
 
+#include "kernels/avalanching/avalanching_parameters.hpp"
+#include "kernels/sand/reptation.hpp"
+#include "kernels/sand/saltation.hpp"
+#include "kernels/water/rain.hpp"
+#include "kernels/wind/wind_shadow_parameters.hpp"
 #include "src/core/log.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "test/support/temporary_folder.hpp"
@@ -24,16 +29,16 @@ TEST_P(Timeline, ChangesAtItsTimesAtOnceOrOverARamp) {
       "{time: 20, ramp: 40, set: {rain.rate: 5.0e-5}}]}\n");
   const auto rate_after = [&](int steps) {
     while (s->steps() < static_cast<std::uint64_t>(steps)) s->step();
-    return static_cast<double>(s->scenario().rain.rate);
+    return static_cast<double>(s->scenario().get<RainParameters>().rate);
   };
   EXPECT_NE(s->describe_changes().find("at 10 s: wind.speed=6"), std::string::npos) << s->describe_changes();
   rate_after(5);  // times 0 … 8 s
   EXPECT_EQ(s->present_scenario().wind_regime.speed, 4);
-  EXPECT_EQ(s->scenario().avalanching.quality, AvalancheQuality::good);
+  EXPECT_EQ(s->scenario().get<AvalanchingParameters>().quality, AvalancheQuality::good);
   EXPECT_NEAR(rate_after(6), 1e-5, 1e-9);
   EXPECT_EQ(s->present_scenario().wind_regime.speed, 6);
   EXPECT_NEAR(s->wind_above().x, 6, 1e-6);
-  EXPECT_EQ(s->scenario().avalanching.quality, AvalancheQuality::fast);
+  EXPECT_EQ(s->scenario().get<AvalanchingParameters>().quality, AvalancheQuality::fast);
   EXPECT_NEAR(rate_after(21), 3e-5, 1e-6);  // the step at 40 s
   EXPECT_NE(s->describe_changes().find("rain.rate -> 5e-05"), std::string::npos) << s->describe_changes();
   EXPECT_NEAR(rate_after(31), 5e-5, 1e-9);
@@ -59,18 +64,18 @@ TEST_P(Timeline, ACheckpointInTheMiddleOfARampContinuesToTheBit) {
   EXPECT_EQ(second->describe_changes(), first->describe_changes());
   test::run(*second, 20);
   EXPECT_EQ(second->state_hash(), whole->state_hash());
-  EXPECT_NEAR(second->scenario().saltation.lift, 0.2, 1e-7);
+  EXPECT_NEAR(second->scenario().get<SaltationParameters>().lift, 0.2, 1e-7);
 }
 
 TEST_P(Timeline, SetParametersRampsTooAndStopsWhatRampedBefore) {
   auto s = simulation(timeline_world);
   s->apply(command::SetParameters{{"saltation.lift=0", "reptation.method=off"}, 20});
-  EXPECT_EQ(s->scenario().reptation.method, ReptationMethod::off);
+  EXPECT_EQ(s->scenario().get<ReptationParameters>().method, ReptationMethod::off);
   test::run(*s, 11);
-  EXPECT_NEAR(s->scenario().saltation.lift, 0.5, 0.02);
+  EXPECT_NEAR(s->scenario().get<SaltationParameters>().lift, 0.5, 0.02);
   s->apply(command::SetParameters{{"saltation.lift=0.9"}});
   test::run(*s, 15);
-  EXPECT_FLOAT_EQ(s->scenario().saltation.lift, 0.9f);
+  EXPECT_FLOAT_EQ(s->scenario().get<SaltationParameters>().lift, 0.9f);
   EXPECT_THROW(s->apply(command::SetParameters{{"saltation.lift=0.5"}, -1}), ConfigError);
   EXPECT_THROW(s->apply(command::SetParameters{{"saltation.lift=-0.5"}, 10}), ConfigError);
   EXPECT_EQ(s->describe_changes(), "");
@@ -87,8 +92,8 @@ TEST_P(Timeline, RampsThatMeetAConditionBetweenParametersGoOn) {
                       "                 {time: 1, ramp: 20, set: {wind_shadow.start_deg: 20}}]}\n");
   test::run(*s, 100);
   set_log_sink(before);
-  EXPECT_FLOAT_EQ(s->scenario().wind_shadow.start_deg, 20);
-  EXPECT_FLOAT_EQ(s->scenario().wind_shadow.full_deg, 25);
+  EXPECT_FLOAT_EQ(s->scenario().get<WindShadowParameters>().start_deg, 20);
+  EXPECT_FLOAT_EQ(s->scenario().get<WindShadowParameters>().full_deg, 25);
   EXPECT_EQ(s->describe_changes(), "");
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_NE(messages.front().find("must not be below start_deg"), std::string::npos) << messages.front();
@@ -113,7 +118,7 @@ TEST(TimelineFaults, AreAllNamed) {
            {"[{time: 5, set: {rain.rate: 0}}, {time: 4, set: {rain.rate: 0}}]",
             "run.timeline.1.time: is earlier"},
            {"[{time: 1, set: {rain.rat: 0}}]", "rain.rat: unknown parameter"},
-           {"[{time: 1, set: {rain.rate: -1}}]", "rain.rate: = -1 is not in [0, 1] m/s"},
+           {"[{time: 1, set: {rain.rate: -1}}]", "rain.rate: -1 is not in [0, 1] m/s"},
            {"[{time: 1, set: {grid.width: 7}}]", "grid.width: cannot change"},
            {"[{time: 1, set: {wind_shadow.full_deg: 5}}]", "must not be below start_deg"}})
     EXPECT_NE(faults_of(timeline).find(part), std::string::npos) << timeline << ":\n" << faults_of(timeline);

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "kernels/field/math.hpp"
+#include "kernels/base/math.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "test/support/checkpoint_parts.hpp"
 #include "test/support/fuzz_rounds.hpp"

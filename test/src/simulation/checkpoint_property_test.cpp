@@ -3,6 +3,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "kernels/sand/saltation.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/session.hpp"
 #include "test/support/temporary_folder.hpp"
@@ -151,7 +152,7 @@ TEST_P(Checkpoint, TakesAResetToTheStartOfItsOwnScenario) {
 
   Session other(test::scenario_of("grid: {width: 8, height: 9}\n"), no_raster_loader, GetParam(), 1);
   other.apply(command::LoadCheckpoint{folder_.path("own.ck"), 0});
-  EXPECT_EQ(other.simulation().scenario().saltation.lift, 0.3f);
+  EXPECT_EQ(other.simulation().scenario().get<SaltationParameters>().lift, 0.3f);
   other.apply(command::Reset{});
   EXPECT_EQ(other.simulation().state_hash(), start);
   EXPECT_EQ(dump_scenario(other.simulation().scenario()), scenario);

@@ -189,16 +189,16 @@ TEST_P(DesertClock, WhatCannotBeIsRefusedAndChangesNothing) {
   const std::string before = dump_scenario(s->present_scenario());
   const std::pair<std::vector<std::string>, const char*> refusals[] = {
       {{"run.acceleration=100", "run.time_step=0.001"},
-       "run.acceleration: = 100 needs 100000 steps of 0.001 s per second (allowed: 0, or 1e-06 to 10, which "
+       "run.acceleration: 100 needs 100000 steps of 0.001 s per second (allowed: 0, or 1e-06 to 10, which "
        "is "
        "10000 steps per second)"},
       {{"run.acceleration=1e-9"},
-       "run.acceleration: = 1e-09 needs 1e-09 steps of 1 s per second (allowed: 0, or 1e-06"},
-      {{"run.acceleration=-1"}, "run.acceleration: = -1 is not in [0, 1e+06]"},
-      {{"run.time_step=0"}, "run.time_step: = 0 is not in [0.0001, 100000] s"},
+       "run.acceleration: 1e-09 needs 1e-09 steps of 1 s per second (allowed: 0, or 1e-06"},
+      {{"run.acceleration=-1"}, "run.acceleration: -1 is not in [0, 1e+06]"},
+      {{"run.time_step=0"}, "run.time_step: 0 is not in [0.0001, 100000] s"},
       {{"run.time_step=.nan"}, "run.time_step"},
       {{"saltation.hop_time=0.01", "run.time_step=100"},
-       "run.time_step: = 100 s is 10000 times saltation.hop_time"},
+       "run.time_step: 100 s is 10000 times saltation.hop_time"},
   };
   for (const auto& refused : refusals) {
     const std::string reason = test::refusal([&] { set(*s, refused.first); });

@@ -4,6 +4,7 @@
 
 #include <xxhash.h>
 
+#include "kernels/sand/reptation.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/session.hpp"
 #include "test/support/world.hpp"
@@ -17,8 +18,9 @@ TEST(Recorded, CheckpointIsLoadedToTheBit) {
   const auto exec = make_exec("cpu", 1);
   const auto s = load_checkpoint(folder + "checkpoint", *exec);
   EXPECT_EQ(s->steps(), 30u);
-  EXPECT_EQ(s->scenario().reptation.method, ReptationMethod::smoothing);  // which a command had changed
-  EXPECT_EQ(s->start().reptation.method, ReptationMethod::adaptive_repose);
+  EXPECT_EQ(s->scenario().get<ReptationParameters>().method,
+            ReptationMethod::smoothing);  // which a command had changed
+  EXPECT_EQ(s->start().get<ReptationParameters>().method, ReptationMethod::adaptive_repose);
   if (XXH_VERSION_NUMBER >= 800) {  // XXH3 was not final before
     EXPECT_EQ(s->state_hash(), 0xfad38a43c28e5276u);
   }

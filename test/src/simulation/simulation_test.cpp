@@ -122,7 +122,7 @@ TEST_P(ASimulation, RefusesWrongWindsAndChangesNothing) {
   schedule.regime.segments = {{0, 5, 10, 0, 0}};
   refused(schedule, "probabilit");
   schedule.regime.segments = {{0, 5, 10, 0, 1}, {0, 500, 10, 0, 1}};
-  refused(schedule, "segments.1: speed: = 500");
+  refused(schedule, "segments.1: speed: 500");
   schedule.regime.segments = {{0, 5, 10, 20, 1}};
   refused(schedule, "ramp");
   schedule.regime.segments = {{0, 5, 10, 0, 1}};
@@ -187,7 +187,7 @@ TEST(MakeExec, SaysWhatItTookAndWhy) {
   auto automatic = make_exec("auto", 1, &why);
   EXPECT_NE(why.find("because"), std::string::npos);
   EXPECT_STREQ(automatic->backend(), cuda_status().usable ? "cuda" : "cpu");
-  EXPECT_FALSE(automatic->device().empty());
+  EXPECT_FALSE(automatic->device_name().empty());
   EXPECT_THROW(make_exec("gpu"), ConfigError);
 }
 

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "kernels/avalanching/avalanching_parameters.hpp"
 #include "src/tools/bench_scenes.hpp"
 #include "src/tools/cost_model.hpp"
 #include "test/support/program.hpp"
@@ -86,7 +87,7 @@ TEST_F(Bench, WritesEveryFigureOfARun) {
   for (const char* figure : {"share_over_1e-3", "share_over_1e-2", "mean_excess", "largest_excess"})
     EXPECT_GE(r["residual"][figure].as<double>(), 0) << figure;
   Scenario scenario;
-  scenario.avalanching.quality = AvalancheQuality::fast;
+  scenario.get<AvalanchingParameters>().quality = AvalancheQuality::fast;
   const auto model = cost_model(scenario, Grid{64, 64, 16.0f});
   double bytes = 0;
   for (const char* name : {"wind", "wind_shadow", "saltation", "avalanching"}) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "kernels/sand/saltation.hpp"
 #include "src/core/error.hpp"
 #include "src/scenario/scenario.hpp"
 #include "src/tools/calibration.hpp"
@@ -94,7 +95,7 @@ TEST_F(Calibrating, FindsTheLiftOfASyntheticTerrain) {
   }
   ASSERT_EQ(r.status, 0) << r.err;
   const Scenario fitted = load_scenario(path("fitted.yaml"));
-  EXPECT_NEAR(static_cast<double>(fitted.saltation.lift), 0.43, 0.02);
+  EXPECT_NEAR(static_cast<double>(fitted.get<SaltationParameters>().lift), 0.43, 0.02);
   EXPECT_EQ(fitted.wind_regime.series_file, path("wind.csv"));
   const std::string table = test::file_bytes(path("table.csv"));
   EXPECT_EQ(table.substr(0, table.find('\n')), "evaluation,stage,saltation.lift,rms_m,best_rms_m");

@@ -3,7 +3,7 @@
 
 #include <boost/make_shared.hpp>
 
-#include "src/ros/conversion/detail_message.hpp"
+#include "src/ros/conversion/micro_relief_message.hpp"
 #include "src/ros/rover/map_ground.hpp"
 #include "src/terrain/map_layers.hpp"
 
@@ -36,8 +36,8 @@ inline desert_sim::TerrainMaps maps_of(const desert_sim::TerrainState& state) {
   desert_sim::TerrainMaps maps;
   for (std::size_t n = 0; n < desert_sim::TerrainMaps::count; ++n)
     maps.maps[n] = map_of(*state.snapshot, desert_sim::TerrainMaps::rows[n].name);
-  maps.detail_settings = std::make_shared<const desert_sim::Snapshot>(
-      desert_sim::snapshot_of(*desert_sim::detail_message(state, "map")));
+  maps.micro_relief_settings = std::make_shared<const desert_sim::Snapshot>(
+      desert_sim::snapshot_of(*desert_sim::micro_relief_message(state, "map")));
   return maps;
 }
 

@@ -41,7 +41,7 @@ class CoarseWind : public test::OnBoth {
     wind::Workspace device = wind::make_workspace(on_gpu.exec(), on_gpu.grid(), p);
     ASSERT_TRUE(device.by_lines) << "lines of " << device.coarse.width << " and " << device.coarse.height;
     with_backend(on_gpu.exec(), [&](auto& e) {
-      wind::step(e, on_gpu.terrain.view(), p, above, on_gpu.heights, 0, nullptr, nullptr, {}, device);
+      wind::step(e, on_gpu.terrain.view(), p, {above, on_gpu.heights}, {}, device);
     });
     on_gpu.exec().synchronise();
     by_lines(on_cpu, p, above, device, host);

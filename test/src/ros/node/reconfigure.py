@@ -86,8 +86,8 @@ class Reconfigure(Scenarios):
         node, client = self.client("refusing")
         shown = Listener("/refusing/parameter_updates", Config)
         shown.first("the present values")
-        self.refused(node, client, {"wind__speed": 6.0, "saltation__lift": -1.0}, "saltation.lift: = -1 is not in [0, 10] m")
-        self.refused(node, client, {"saltation__lift": float("nan")}, "saltation.lift: = .nan")
+        self.refused(node, client, {"wind__speed": 6.0, "saltation__lift": -1.0}, "saltation.lift: -1 is not in [0, 10] m")
+        self.refused(node, client, {"saltation__lift": float("nan")}, "saltation.lift: .nan")
         self.refused(node, client, {"avalanching__quality": "best"}, "'best' is not one of: fast, good, converged")
         self.refused(node, client, {"wind__radii": "[1, 2, 3, 4, 5]"}, "wind.radii: must be a list of 1 to 4 numbers")
         self.refused(node, client, {"wind_shadow__start_deg": 80.0}, "wind_shadow.full_deg: must not be below start_deg")
@@ -126,7 +126,7 @@ class Reconfigure(Scenarios):
         makes(51, 32, 1003)
         self.assertTrue(node.call("pause", Trigger).success)
         self.shows(client, "step_rate", 32)
-        self.refused(node, client, {"step_rate": -1.0, "wind__speed": 6.0}, "step_rate: = -1 is not in [0, 1e+06] steps/s")
+        self.refused(node, client, {"step_rate": -1.0, "wind__speed": 6.0}, "step_rate: -1 is not in [0, 1e+06] steps/s")
 
     def test_publishers(self):
         node, client = self.client("published", paused=False, step_rate=50, keyframe_rate=0.001, local_map_length_x=8.0)
@@ -144,8 +144,8 @@ class Reconfigure(Scenarios):
         seen = len(keyframes)
         wait_until(lambda: len(keyframes) > seen + 10, "keyframes at the new rate")
         wait_until(lambda: clouds[-1].width * clouds[-1].height <= 100, "fewer points")
-        for changes, text in (({"keyframe_rate": -2.0, "points_count": 7}, "keyframe_rate: = -2 is not in [0, 1000] Hz"),
-                              ({"update_threshold": float("nan")}, "update_threshold: = .nan"),
+        for changes, text in (({"keyframe_rate": -2.0, "points_count": 7}, "keyframe_rate: -2 is not in [0, 1000] Hz"),
+                              ({"update_threshold": float("nan")}, "update_threshold: .nan"),
                               ({"robot_frame": "no frame"}, "'no frame' is not a valid frame name"),
                               ({"grid_map_length_x": 4.0}, "grid_map_length_y must both be 0"),
                               ({"local_map_length_x": 1e6, "local_map_length_y": 1e6},

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <future>
 
+#include "src/core/hash_text.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/simulation/session.hpp"
 #include "test/support/ros/client.hpp"

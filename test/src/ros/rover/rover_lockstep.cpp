@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "src/client/terrain_client.hpp"
+#include "src/core/hash_text.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/rover/journal.hpp"
 #include "src/rover/simulated_ground.hpp"

@@ -256,7 +256,7 @@ TEST_F(Edits, AreToldOnceToWhoeverListens) {
   EXPECT_NEAR(sand(51, 31), was + there, 1e-5);
   // Nobody is told of a refused edit or of a step: what comes next is the next edit.
   request.radius = -1;
-  expect_refused<EditTerrain>("edit_terrain", request, "radius: = -1", "m");
+  expect_refused<EditTerrain>("edit_terrain", request, "radius: -1", "m");
   step(1);
   edit(of_rock());
   ASSERT_TRUE(diffs.wait_for_count(before + 2));
@@ -318,13 +318,13 @@ TEST_F(Edits, RefusesShapesThatAreNone) {
   refused(
       polygon, [](auto& r) { r.points.resize(100000, point(3, 4)); }, "points: 100000", "512");
   refused(
-      polygon, [](auto& r) { r.points[1].x = not_a_number; }, "points[1].x: = nan", "finite");
+      polygon, [](auto& r) { r.points[1].x = not_a_number; }, "points[1].x: nan", "finite");
   refused(
       polygon, [](auto& r) { r.points[2] = point(80, 0); }, "points", "one line");
   refused(
-      polygon, [](auto& r) { r.points[2].y = 1e300; }, "points[2]: = 1e+300", "1e+07");
+      polygon, [](auto& r) { r.points[2].y = 1e300; }, "points[2]: 1e+300", "1e+07");
   refused(
-      polygon, [](auto& r) { r.falloff = -3; }, "falloff: = -3", "[0");
+      polygon, [](auto& r) { r.falloff = -3; }, "falloff: -3", "[0");
   refused(
       polygon,
       [](auto& r) {
@@ -342,17 +342,17 @@ TEST_F(Edits, RefusesShapesThatAreNone) {
   refused(
       circle, [](auto& r) { r.layer = "snow"; }, "'snow'", "sand, bedrock, soil, water");
   refused(
-      circle, [](auto& r) { r.conserve = true; }, "ring_width: = 0", "m");
+      circle, [](auto& r) { r.conserve = true; }, "ring_width: 0", "m");
   refused(
-      circle, [](auto& r) { r.conserve = true, r.ring_width = infinity; }, "ring_width: = inf", "m");
+      circle, [](auto& r) { r.conserve = true, r.ring_width = infinity; }, "ring_width: inf", "m");
   refused(
-      circle, [](auto& r) { r.merge = "smooth", r.value = 0; }, "smooth_radius: = 0", "m");
+      circle, [](auto& r) { r.merge = "smooth", r.value = 0; }, "smooth_radius: 0", "m");
   refused(
       circle, [](auto& r) { r.merge = "smooth", r.value = 0, r.smooth_radius = 200, r.smooth_passes = 1; },
-      "smooth_radius: = 200", "64 cells");
+      "smooth_radius: 200", "64 cells");
   refused(
       circle, [](auto& r) { r.merge = "smooth", r.value = 0, r.smooth_radius = 2, r.smooth_passes = 17; },
-      "smooth_passes: = 17", "[1, 16]");
+      "smooth_passes: 17", "[1, 16]");
 }
 
 TEST_F(Edits, RefusesMegabytesOfTextInFewWords) {
@@ -381,18 +381,18 @@ TEST_F(Edits, RefusesImagesThatDoNotFit) {
   refused([](auto& r) { r.image.width = r.image.height = 0xffffffffu; }, "4294967295", "1048576");
   refused([](auto& r) { r.image.data.pop_back(); }, "3 bytes", "4");
   refused([](auto& r) { r.image.data.push_back(0); }, "5 bytes", "4");
-  refused([](auto& r) { r.image.step = 1; }, "image.step: = 1", "at least 2");
-  refused([](auto& r) { r.image.encoding = "mono16"; }, "image.step: = 2", "at least 4");
+  refused([](auto& r) { r.image.step = 1; }, "image.step: 1", "at least 2");
+  refused([](auto& r) { r.image.encoding = "mono16"; }, "image.step: 2", "at least 4");
   refused([](auto& r) { r.image_use = "stamp"; }, "'stamp'", "heights, mask");
-  refused([](auto& r) { r.image_scale = not_a_number; }, "image_scale: = nan", "finite");
-  refused([](auto& r) { r.image_scale = 1e300; }, "column 0, row 0: = inf", "100000");
+  refused([](auto& r) { r.image_scale = not_a_number; }, "image_scale: nan", "finite");
+  refused([](auto& r) { r.image_scale = 1e300; }, "column 0, row 0: inf", "100000");
   refused([](auto& r) { r.merge = "replace", r.value = -1; }, "value", "depth");
   refused(
       [](auto& r) {
         r.image = an_image("32FC1", 1, 1, 4);
         r.image.data = {0, 0, 0xc0, 0x7f};  // NaN
       },
-      "column 0, row 0: = nan", "100000");
+      "column 0, row 0: nan", "100000");
   refused(
       [](auto& r) {
         r.image = an_image("32FC1", 1, 1, 4);
@@ -400,7 +400,7 @@ TEST_F(Edits, RefusesImagesThatDoNotFit) {
         r.image_use = "mask";
         r.image_scale = 0;
       },
-      "= 2 is not in", "[0, 1]");
+      ": 2 is not in", "[0, 1]");
 }
 
 }  // namespace

@@ -101,14 +101,14 @@ TEST_F(Services, EditTerrainRefuses) {
   refused([](auto& r) { r.shape = "star"; }, "'star'", "circle, ellipse");
   refused([](auto& r) { r.merge = "xor"; }, "'xor'", "add, sub, replace, min, max, avg");
   refused([](auto& r) { r.merge = ""; }, "merge: ''", "add, sub");
-  refused([](auto& r) { r.radius = -5; }, "radius: = -5", "m");
-  refused([](auto& r) { r.radius = 0; }, "radius: = 0", "m");
-  refused([](auto& r) { r.radius = not_a_number; }, "radius: = nan", "m");
-  refused([](auto& r) { r.radius = infinity; }, "radius: = inf", "m");
-  refused([](auto& r) { r.center.x = not_a_number; }, "center.x: = nan", "finite");
-  refused([](auto& r) { r.center.z = infinity; }, "center.z: = inf", "finite");
-  refused([](auto& r) { r.inner = 2; }, "inner: = 2", "[0, 1]");
-  refused([](auto& r) { r.value = not_a_number; }, "value: = nan", "m");
+  refused([](auto& r) { r.radius = -5; }, "radius: -5", "m");
+  refused([](auto& r) { r.radius = 0; }, "radius: 0", "m");
+  refused([](auto& r) { r.radius = not_a_number; }, "radius: nan", "m");
+  refused([](auto& r) { r.radius = infinity; }, "radius: inf", "m");
+  refused([](auto& r) { r.center.x = not_a_number; }, "center.x: nan", "finite");
+  refused([](auto& r) { r.center.z = infinity; }, "center.z: inf", "finite");
+  refused([](auto& r) { r.inner = 2; }, "inner: 2", "[0, 1]");
+  refused([](auto& r) { r.value = not_a_number; }, "value: nan", "m");
   refused([](auto& r) { r.value = -1; }, "value", "depth");
   refused(
       [](auto& r) {
@@ -116,11 +116,11 @@ TEST_F(Services, EditTerrainRefuses) {
         r.radius_y = 1;
         r.angle_deg = not_a_number;
       },
-      "angle_deg: = nan", "finite");
+      "angle_deg: nan", "finite");
   refused([](auto& r) { r.angle_deg = 30; }, "angle_deg: is set", "shape 'circle'");
   refused([](auto& r) { r.center.x = 5000; }, "5000", "no cell");
   refused([](auto& r) { r.header.frame_id = "nowhere"; }, "'nowhere'", "'terrain'");
-  refused([](auto& r) { r.shape = "ellipse"; }, "radius_y: = 0", "m");
+  refused([](auto& r) { r.shape = "ellipse"; }, "radius_y: 0", "m");
   refused([](auto& r) { r.value = 90000; }, "value", "allowed");
 }
 
@@ -186,7 +186,7 @@ TEST_F(Services, QueryTerrainRefuses) {
   QueryTerrain::Request request;
   request.points.resize(2);
   request.points[1].y = not_a_number;
-  expect_refused<QueryTerrain>("query_terrain", request, "points[1].y: = nan", "finite");
+  expect_refused<QueryTerrain>("query_terrain", request, "points[1].y: nan", "finite");
   request.points[1].y = 0;
   request.header.frame_id = "nowhere";
   // An answer at all: this frame never comes. How long the node waits for it, services_timing.cpp says.

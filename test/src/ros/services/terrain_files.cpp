@@ -98,7 +98,7 @@ TEST_F(TerrainFiles, AreRefusedWithTheReason) {
   write("torn.yaml", "grid: {width: 9");
   expect_refused<LoadScenario>("load_scenario", beginning("torn.yaml"), "torn.yaml", "");
   write("wrong.yaml", "grid: {width: -9}\nsalt: 3\n");
-  expect_refused<LoadScenario>("load_scenario", beginning("wrong.yaml"), "grid.width: = -9", "salt");
+  expect_refused<LoadScenario>("load_scenario", beginning("wrong.yaml"), "grid.width: -9", "salt");
 }
 
 TEST_F(TerrainFiles, ReadNoRasterOutsideTheDataFolder) {

@@ -100,7 +100,7 @@ TEST_F(UndoServices, ObstaclesArePaintedAndTakenAway) {
   EXPECT_EQ(hash(), with);
   auto wrong = brush(50, 30, "", "obstacle");
   wrong.value = 2;
-  expect_refused<EditTerrain>("edit_terrain", wrong, "value: = 2", "[0, 1]");
+  expect_refused<EditTerrain>("edit_terrain", wrong, "value: 2", "[0, 1]");
   wrong.value = 1;
   wrong.conserve = true;
   wrong.ring_width = 4;

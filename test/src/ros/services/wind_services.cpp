@@ -107,24 +107,24 @@ TEST_F(WindServices, SetWindTakesAVectorAndARamp) {
 TEST_F(WindServices, SetWindRefuses) {
   SetWind::Request request;
   request.speed = not_a_number;
-  expect_refused<SetWind>("set_wind", request, "speed: = nan", "[0, 100] m/s");
+  expect_refused<SetWind>("set_wind", request, "speed: nan", "[0, 100] m/s");
   request.speed = infinity;
-  expect_refused<SetWind>("set_wind", request, "speed: = inf", "[0, 100] m/s");
+  expect_refused<SetWind>("set_wind", request, "speed: inf", "[0, 100] m/s");
   request.speed = -1;
-  expect_refused<SetWind>("set_wind", request, "speed: = -1", "[0, 100] m/s");
+  expect_refused<SetWind>("set_wind", request, "speed: -1", "[0, 100] m/s");
   request.speed = 1e300;
   expect_refused<SetWind>("set_wind", request, "speed", "[0, 100] m/s");
   request.speed = 5;
   request.direction_deg = 1000;
-  expect_refused<SetWind>("set_wind", request, "direction_deg: = 1000", "[-360, 360] deg");
+  expect_refused<SetWind>("set_wind", request, "direction_deg: 1000", "[-360, 360] deg");
   request.direction_deg = 0;
   request.ramp = -1;
-  expect_refused<SetWind>("set_wind", request, "ramp: = -1", "s");
+  expect_refused<SetWind>("set_wind", request, "ramp: -1", "s");
   request.ramp = 0;
   request = SetWind::Request();
   request.use_vector = true;
   request.vector.x = not_a_number;
-  expect_refused<SetWind>("set_wind", request, "vector.x: = nan", "finite");
+  expect_refused<SetWind>("set_wind", request, "vector.x: nan", "finite");
   request.vector.x = 1;
   request.vector.z = 2;
   expect_refused<SetWind>("set_wind", request, "vector.z", "must be 0");
@@ -179,7 +179,7 @@ TEST_F(WindServices, SetWindScheduleRefuses) {
   request.segments[0].probability = 0;
   request.segments[0].duration = 10;
   request.segments[0].speed = not_a_number;
-  expect_refused<SetWindSchedule>("set_wind_schedule", request, "speed: = nan", "[0, 100] m/s");
+  expect_refused<SetWindSchedule>("set_wind_schedule", request, "speed: nan", "[0, 100] m/s");
   request.segments[0].speed = 5;
   request.segments[0].ramp = 20;
   expect_refused<SetWindSchedule>("set_wind_schedule", request, "ramp", "duration");
@@ -200,16 +200,16 @@ TEST_F(WindServices, EditWindAddsAJetAndTakesItAway) {
 
 TEST_F(WindServices, EditWindRefuses) {
   expect_refused<EditWind>("edit_wind", jet("blow"), "operation: 'blow'", "add, change, remove, clear");
-  expect_refused<EditWind>("edit_wind", jet("change"), "id: = 5", "not the id of any feature");
+  expect_refused<EditWind>("edit_wind", jet("change"), "id: 5", "not the id of any feature");
   EditWind::Request request = jet("add");
   request.kind = "tornado";
   expect_refused<EditWind>("edit_wind", request, "kind: 'tornado'", "vortex, jet, turbulence");
   request = jet("add");
   request.speed = infinity;
-  expect_refused<EditWind>("edit_wind", request, "speed: = inf", "[-100, 100] m/s");
+  expect_refused<EditWind>("edit_wind", request, "speed: inf", "[-100, 100] m/s");
   request = jet("add");
   request.center.x = not_a_number;
-  expect_refused<EditWind>("edit_wind", request, "center.x: = nan", "finite");
+  expect_refused<EditWind>("edit_wind", request, "center.x: nan", "finite");
   request = jet("add");
   request.header.frame_id = "nowhere";
   expect_refused<EditWind>("edit_wind", request, "nowhere", "");

@@ -14,9 +14,9 @@ Snapshot rippled(Exec& exec, const std::string& more = "") {
       exec,
       "{grid: {width: 32, height: 24, cell_size: 1, boundary: open, origin_x: 100, origin_y: -7}, terrain: "
       "[{ramp: {layer: bedrock, slope_x: 0.05}}, {uniform: {layer: sand, value: 1}}], wind: {speed: 10, "
-      "direction_deg: 20, warping: false, projection: false}, detail: {crest_length: 1" +
+      "direction_deg: 20, warping: false, projection: false}, micro_relief: {crest_length: 1" +
           more + "}}");
-  Snapshot s = *world->snapshot(SurfaceDetail::layers());
+  Snapshot s = *world->snapshot(MicroRelief::layers());
   for (std::size_t i = 32 * 16; i < s.layers.at(Layer::vegetation).size(); ++i)
     s.layers.at(Layer::vegetation)[i] = 0.8f;
   return s;
@@ -26,20 +26,20 @@ struct Scene {
   Scene(Exec& exec, const Snapshot& s)
       : scene(exec, {s.width, s.height, s.cell_size, s.origin_x, s.origin_y}) {
     scene.update(SceneLayer::elevation, s.layers.at(Layer::elevation));
-    scene.set_detail(s);
+    scene.set_micro_relief(s);
   }
   HeightFieldScene scene;
 };
 
-double surface(const SurfaceDetail& detail, double x, double y) {
-  return static_cast<double>(detail.elevations({x - 5e-7, y - 5e-7, 1, 1, 1e-6})[0]);
+double surface(const MicroRelief& micro_relief, double x, double y) {
+  return static_cast<double>(micro_relief.elevations({x - 5e-7, y - 5e-7, 1, 1, 1e-6})[0]);
 }
 
 class BeamsOnRipples : public test::OnBackend {};
 
 TEST_P(BeamsOnRipples, TheyEndOnTheSurfaceOfTheMaps) {
   const Snapshot s = rippled(exec());
-  const SurfaceDetail detail(s);
+  const MicroRelief micro_relief(s);
   const Scene known(exec(), s);
   Lidar lidar(exec(), test::exact_lidar(24, 60, -85, -4), {});
   for (const double y : {2.0, 12.0}) {
@@ -52,8 +52,8 @@ TEST_P(BeamsOnRipples, TheyEndOnTheSurfaceOfTheMaps) {
       const test::Point p =
           test::point_at(pose, lidar.directions()[n], static_cast<double>(image.distances[n]));
       ++returns;
-      off += std::abs(p.z - surface(detail, p.x, p.y)) > 1e-4;
-      largest = std::max(largest, std::abs(detail.offset(p.x, p.y)));
+      off += std::abs(p.z - surface(micro_relief, p.x, p.y)) > 1e-4;
+      largest = std::max(largest, std::abs(micro_relief.offset(p.x, p.y)));
     }
     EXPECT_GT(returns, 1000);
     EXPECT_EQ(off, 0);
@@ -63,7 +63,7 @@ TEST_P(BeamsOnRipples, TheyEndOnTheSurfaceOfTheMaps) {
 
 TEST_P(BeamsOnRipples, NoBeamPassesThroughACrest) {
   const Snapshot s = rippled(exec());
-  const SurfaceDetail detail(s);
+  const MicroRelief micro_relief(s);
   const Scene known(exec(), s);
   Lidar lidar(exec(), test::exact_lidar(6, 40, -12, -3), {});
   const SensorPose pose{116, 12, 1.2};
@@ -74,19 +74,19 @@ TEST_P(BeamsOnRipples, NoBeamPassesThroughACrest) {
     const double end = static_cast<double>(image.distances[n]);
     for (double t = std::max(0.0, end - 0.4); t < end - 1e-3; t += 0.004) {
       const test::Point p = test::point_at(pose, lidar.directions()[n], t);
-      through += p.z < surface(detail, p.x, p.y) - 2e-4;
+      through += p.z < surface(micro_relief, p.x, p.y) - 2e-4;
     }
   }
   EXPECT_EQ(through, 0);
 }
 
-TEST_P(BeamsOnRipples, WithoutDetailTheGroundIsBilinear) {
+TEST_P(BeamsOnRipples, WithoutMicroReliefTheGroundIsBilinear) {
   const Snapshot s = rippled(exec()), flat = rippled(exec(), ", ripples: false, bumps: false");
   Scene known(exec(), s), none(exec(), flat);
   Lidar lidar(exec(), test::exact_lidar(12, 60, -60, -5), {});
   const SensorPose pose{116, 12, 1.6};
   const std::vector<float> rippled_ranges = lidar.scan(known.scene, pose, 0).distances;
-  known.scene.clear_detail();
+  known.scene.clear_micro_relief();
   const std::vector<float> bilinear = lidar.scan(known.scene, pose, 0).distances,
                            without = lidar.scan(none.scene, pose, 0).distances;
   EXPECT_NE(rippled_ranges, bilinear);
@@ -99,7 +99,7 @@ TEST_P(BeamsOnRipples, WithoutDetailTheGroundIsBilinear) {
 TEST_P(BeamsOnRipples, AnotherGridIsRefused) {
   const Snapshot s = rippled(exec());
   HeightFieldScene other(exec(), {16, 24, 1, 100, -7});
-  EXPECT_THROW(other.set_detail(s), ConfigError);
+  EXPECT_THROW(other.set_micro_relief(s), ConfigError);
 }
 
 DESERT_ON_EACH_BACKEND(BeamsOnRipples);

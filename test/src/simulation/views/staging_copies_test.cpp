@@ -20,8 +20,8 @@ class LateDevice final : public Exec {
   std::size_t allocated = 0, copied = 0;  ///< allocations now, bytes ever
   bool fails = false;
 
-  Device kind() const override { return Device::cpu; }
-  std::string device() const override { return "the host, late"; }
+  Device device() const override { return Device::cpu; }
+  std::string device_name() const override { return "the host, late"; }
   std::size_t memory_available() const override { return 1 << 30; }
   void* allocate_host(std::size_t bytes) override { return allocate_memory(bytes); }
   void release_host(void* memory) noexcept override { free_memory(memory); }

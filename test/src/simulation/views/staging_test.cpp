@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "src/core/error.hpp"
-#include "src/simulation/pipeline/memory.hpp"
+#include "src/simulation/memory/memory.hpp"
 #include "test/support/held_terrain.hpp"
 #include "test/support/world.hpp"
 

@@ -9,7 +9,7 @@
 #include "kernels/backend/for_each_cpu.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
-#include "src/core/parameters.hpp"
+#include "src/core/parameter_table.hpp"
 
 namespace desert_sim::test {
 

@@ -17,9 +17,7 @@ using test::FrostParameters;
 
 const std::string section = register_section<FrostParameters>("frost");
 
-const FrostParameters& parameters_of(const Scenario& s) {
-  return s.process_sections.get<FrostParameters>(section);
-}
+const FrostParameters& parameters_of(const Scenario& s) { return s.get<FrostParameters>(); }
 
 /// What the process keeps between steps.
 struct FrostWork {

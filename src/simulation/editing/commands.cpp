@@ -1,0 +1,169 @@
+#include "src/simulation/editing/commands.hpp"
+
+#include <algorithm>
+
+#include "src/core/error.hpp"
+#include "src/scenario/live_parameters.hpp"
+#include "src/scenario/range_checks.hpp"
+#include "src/scenario/terrain_builder.hpp"
+#include "src/simulation/editing/plant_edit.hpp"
+#include "src/simulation/editing/terrain_edit.hpp"
+#include "src/simulation/memory/memory.hpp"
+#include "src/simulation/processes/processes.hpp"
+
+namespace desert_sim {
+
+CommandResult Commands::apply(const command::SetParameters& command) {
+  if (!(command.ramp >= 0 && command.ramp <= command.longest_ramp))
+    throw ConfigError("set_parameters: ramp: " + std::to_string(command.ramp) + " is not in [0, 1e+12] s");
+  const Scenario present = state_.present_scenario(), wanted = with_live_settings(present, command.settings);
+  // Also what comes at the end of a ramp is refused now, not in the middle of the run:
+  process_table().require_runnable(wanted);
+  require_sea(wanted, state_.terrain.scale(), "set_parameters");
+  require_more_memory(state_, wanted);
+  std::vector<std::string> settings = command.settings;
+  const std::vector<Ramp> before = state_.ramps;
+  begin_ramps(settings, command.ramp);
+  try {
+    set_parameters(settings);
+  } catch (...) {
+    state_.ramps = before;
+    throw;
+  }
+  return {};
+}
+
+void Commands::set_parameters(const std::vector<std::string>& settings) {
+  if (settings.empty()) return;
+  const Scenario before = state_.scenario, present = state_.present_scenario(),
+                 changed = with_live_settings(present, settings);
+  process_table().require_runnable(changed);
+  require_sea(changed, state_.terrain.scale(), "set_parameters");
+  require_more_memory(state_, changed);
+  state_.exec().synchronise();  // memory that steps in flight work with is given back
+  const ClockOrigin clock_before = state_.clock_origin;
+  const bool held_were_known = state_.held_layers_known;
+  state_.keep_time(changed.run, pipeline_.parts());
+  state_.scenario = changed;
+  try {
+    pipeline_.prepare();
+  } catch (...) {
+    state_.scenario = before;
+    state_.clock_origin = clock_before;
+    state_.held_layers_known = held_were_known;
+    pipeline_.prepare();
+    throw;
+  }
+  state_.wind_regime = state_.wind_regime.with(changed.wind_regime, state_.time());
+}
+
+CommandResult Commands::apply(const command::SetWind& command) {
+  check_ranges(command, "set_wind");
+  WindRegime regime;
+  regime.direction_deg = command.direction_deg;
+  regime.speed = command.speed;
+  regime.ramp = command.ramp;
+  state_.set_wind_regime(regime);
+  return {};
+}
+
+void check_wind_schedule(const WindRegime& r, const std::string& what) {
+  check_ranges(static_cast<const WindRegimeParameters&>(r), what);
+  ValidationErrors errors(what);
+  if (r.regime != WindRegimeKind::timeline && r.regime != WindRegimeKind::rose)
+    errors.add("kind", "must be timeline or rose");
+  check_wind_segments(r.regime, r.segments, "segments", errors);
+  errors.throw_if_any();
+  for (std::size_t n = 0; n < r.segments.size(); ++n)
+    check_ranges(r.segments[n], what + ": segments." + std::to_string(n));
+}
+
+CommandResult Commands::apply(const command::SetWindSchedule& command) {
+  check_wind_schedule(command.regime, "set_wind_schedule");
+  state_.set_wind_regime(command.regime);
+  return {};
+}
+
+namespace {
+
+/// The features as the command leaves them. Throws ConfigError if it is refused.
+std::vector<WindFeature> edited_features(const command::EditWind& command,
+                                         std::vector<WindFeature> features) {
+  check_ranges(command, "edit_wind");
+  if (command.operation == WindEdit::clear) return {};
+  const int id = command.feature.id;
+  if (id < 1) throw ConfigError("edit_wind: id: " + std::to_string(id) + " must be 1 or more");
+  const auto found =
+      std::find_if(features.begin(), features.end(), [id](const WindFeature& f) { return f.id == id; });
+  const bool known = found != features.end();
+  if (known == (command.operation == WindEdit::add))
+    throw ConfigError("edit_wind: id: " + std::to_string(id) +
+                      (known ? " is already the id of another feature" : " is not the id of any feature"));
+  if (command.operation == WindEdit::remove) {
+    features.erase(found);
+  } else {
+    check_ranges(command.feature, "edit_wind");
+    if (known)
+      *found = command.feature;
+    else if (features.size() < max_wind_features)
+      features.push_back(command.feature);
+    else
+      throw ConfigError("edit_wind: " + std::to_string(max_wind_features) +
+                        " features already exist (allowed: at most " + std::to_string(max_wind_features) +
+                        ")");
+  }
+  return features;
+}
+
+}  // namespace
+
+CommandResult Commands::apply(const command::EditWind& command) {
+  std::vector<WindFeature>& features = state_.scenario.wind_features;
+  std::vector<WindFeature> before = edited_features(command, features);
+  std::swap(before, features);
+  try {
+    pipeline_.adapt();  // features need memory
+  } catch (...) {
+    features = before;
+    throw;
+  }
+  return {};
+}
+
+CommandResult Commands::apply(const command::EditTerrain& command, bool with_change) {
+  check_stroke_name(command.stroke, "edit_terrain");
+  pipeline_.ground_changed();
+  TerrainEdit edit(command, state_.terrain, state_.scenario.grid, state_.ledger());
+  const bool had_obstacles = state_.terrain.has(Layer::obstacle);
+  const ProcessFlags flags = state_.flags;
+  history_.begin_ground();
+  pipeline_.edited(edit.layer());
+  try {
+    pipeline_.adapt();  // ground that is loose needs memory
+    // Looseness comes and goes with the sand that moves, so that there is nothing to give back.
+    const bool undoable = edit.layer() != Layer::looseness;
+    const LayerEdit change = undoable && history_.remembers() ? edit.change() : LayerEdit{};
+    const CommandResult result = edit.commit(with_change);
+    edit.loosen(state_.scenario.get<LoosenessParameters>());
+    if (undoable)
+      history_.paint(command.stroke, change, !had_obstacles && state_.terrain.has(Layer::obstacle));
+    return result;
+  } catch (...) {
+    state_.flags = flags;
+    throw;
+  }
+}
+
+CommandResult Commands::apply(const command::EditPlants& command) {
+  check_stroke_name(command.stroke, "edit_plants");
+  check_plant_edit(command, state_.scenario);
+  const int before = state_.plants.count;
+  const Population::Edit edit = plant_edit(command, state_.scenario, state_.terrain, state_.steps,
+                                           state_.plants.capacity, plants::words(state_.plants));
+  history_.paint(command.stroke, edit);
+  CommandResult result;
+  result.plants = state_.plants.count - before;
+  return result;
+}
+
+}  // namespace desert_sim

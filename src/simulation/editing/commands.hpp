@@ -1,0 +1,59 @@
+#pragma once
+/// What changes a simulation between steps: commands from outside, and the scenario's timeline.
+
+#include <string>
+#include <vector>
+
+#include "src/simulation/commands/command.hpp"
+#include "src/simulation/pipeline/pipeline.hpp"
+#include "src/simulation/state/state.hpp"
+#include "src/simulation/undo/edit_history.hpp"
+
+namespace desert_sim {
+
+/// Throws ConfigError, in the name of `what`, unless it is a timeline or a rose whose numbers are in their
+/// ranges.
+void check_wind_schedule(const WindRegime& regime, const std::string& what);
+
+class Commands {
+ public:
+  Commands(SimulationState& state, Pipeline& pipeline)
+      : state_(state), pipeline_(pipeline), history_(state, pipeline) {}
+
+  /// Each is applied whole, or throws ConfigError and changes nothing.
+  CommandResult apply(const command::SetWind& command);
+  CommandResult apply(const command::SetWindSchedule& command);
+  CommandResult apply(const command::EditWind& command);
+  /// `with_change`: the result tells what changed, cell by cell.
+  CommandResult apply(const command::EditTerrain& command, bool with_change = false);
+  CommandResult apply(const command::EditPlants& command);
+  CommandResult apply(const command::Undo& command, bool with_change = false) {
+    return history_.undo(command.stroke, with_change);
+  }
+  CommandResult apply(const command::Redo& command, bool with_change = false) {
+    return history_.redo(command.stroke, with_change);
+  }
+  CommandResult apply(const command::SetParameters& command);
+
+  EditHistory& history() { return history_; }
+
+  /// Changes the parameters that the timeline and ramps change now. What is refused keeps its value, and is
+  /// an error in the log; a ramp tries again.
+  void apply_timeline();
+  /// What the timeline and ramps are changing, and what comes next; empty if nothing.
+  std::string describe_changes() const;
+
+ private:
+  void set_parameters(const std::vector<std::string>& settings);
+  std::vector<std::string> set_what_can_be_set(std::vector<std::string> due);
+  /// Of `settings`, numbers become ramps where there is a duration [s]; former ramps of the same parameters
+  /// stop.
+  void begin_ramps(std::vector<std::string>& settings, double duration);
+
+  SimulationState& state_;
+  Pipeline& pipeline_;
+  std::vector<std::string> refused_parameters_;  ///< at the last step; the log has told why
+  EditHistory history_;
+};
+
+}  // namespace desert_sim
