@@ -13,12 +13,12 @@ struct Residual {
   double share_over_1e3 = 0, share_over_1e2 = 0, mean_excess = 0, largest_excess = 0;
 };
 
-namespace avalanching {
+namespace statistics {
 
 /// `repose`: tangents of the angles of repose in the last step. Reads results back and so waits for the
 /// device; it is no part of a step.
 template <class E>
 Residual residual(E& exec, const TerrainView& t, const float* repose);
 
-}  // namespace avalanching
+}  // namespace statistics
 }  // namespace desert_sim

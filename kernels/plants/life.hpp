@@ -2,8 +2,7 @@
 /// One step of all plants: water uptake (water_uptake.hpp), growth, damage and death (growth.hpp), and new
 /// plants (spawning.hpp), where the equations are.
 ///
-/// Plants are kept sorted by their key in the neighbour look-up, so that neighbours are close in memory. The
-/// sort is stable, so that the order of plants, and with it every sum, depends on the state alone.
+/// Plants are kept in the order of plant_order.hpp.
 ///
 /// Reads bedrock, soil, sand, water, moisture, obstacle, canopy_height, illumination, illumination_canopy,
 /// and the densities of the species that cover() wrote to the workspace. Writes moisture, humus and the
@@ -28,10 +27,5 @@ struct StepInputs {
 template <class E>
 void grow_and_spawn(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger,
                     Workspace& work);
-
-/// Sorts the first `all` plants of next_state() by key into plants(); `dead` of them have died and are
-/// dropped.
-template <class E>
-void sort_plants(E& exec, int all, int dead, Workspace& work);
 
 }  // namespace desert_sim::plants

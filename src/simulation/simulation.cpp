@@ -73,7 +73,7 @@ std::vector<MemoryPart> Simulation::memory() const { return memory_of(state_, pi
 Residual Simulation::residual() {
   pipeline_.refresh_derived();
   return with_backend(exec(), [this](auto& e) {
-    return avalanching::residual(e, terrain().view(), pipeline_.fields().repose.data());
+    return statistics::residual(e, terrain().view(), pipeline_.fields().repose.data());
   });
 }
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "kernels/plants/life.hpp"
+#include "kernels/plants/plant_order.hpp"
 
 namespace desert_sim::test {
 

@@ -6,7 +6,7 @@
 #include "kernels/field/statistics.hpp"
 #include "kernels/field/surface.hpp"
 #include "kernels/plants/density.hpp"
-#include "kernels/plants/life.hpp"
+#include "kernels/plants/plant_order.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {

@@ -144,7 +144,7 @@ TEST_P(Avalanching, ConvergesWhateverTheTerrain) {
       EXPECT_LT(t.avalanche(p), p.max_iterations) << g.width << ", " << repose;
       EXPECT_EQ(t.total(Layer::sand), before);
       const Residual left = with_backend(
-          exec(), [&](auto& e) { return avalanching::residual(e, t.terrain.view(), t.repose.data()); });
+          exec(), [&](auto& e) { return statistics::residual(e, t.terrain.view(), t.repose.data()); });
       EXPECT_LE(left.largest_excess, p.tolerance) << g.width << ", " << repose;
     }
 }
