@@ -134,6 +134,9 @@ YAML::Node without_former_keys(const YAML::Node& given, const std::string& sourc
     if (has_former_key(root, former)) root[former.section].remove(former.key);
   if (model) root["sand"]["model"] = *model;
   if (root[former_section].IsDefined()) {
+    if (root[present_section].IsDefined())
+      throw ConfigError(source + ": " + former_section + ": is given beside " + present_section +
+                        ", which is its present name (allowed: one of them)");
     root[present_section] = root[former_section];
     root.remove(former_section);
   }
@@ -257,9 +260,11 @@ std::string migrated(const std::string& given, const std::string& source) {
   const std::string changed = text.with(changes_of(text, root, source));
   const YAML::Node wanted = without_empty_sections(without_former_keys(root, source));
   if (!yaml_text::same(wanted, without_empty_sections(yaml_text::parse(changed, source))))
-    throw ConfigError(source +
-                      ": cannot be rewritten; write sand: {model: ...} in the place of "
-                      "slab_model.kind, particle.kind and saltation.model by hand");
+    throw ConfigError(
+        source +
+        ": cannot be rewritten; write sand: {model: ...} in the place of "
+        "slab_model.kind, particle.kind and saltation.model, and micro_relief in that of detail, "
+        "by hand");
   return (marked ? byte_order_mark : "") + changed;
 }
 

@@ -19,7 +19,7 @@ std::string instead_of_former_key(const std::string& setting);
 YAML::Node refuse_former_keys(const YAML::Node& root, ValidationErrors& errors);
 
 /// A scenario without its former keys: in their place stands sand.model. `root` itself stays as it is. Throws
-/// ConfigError, in the name of `source`, if they name two models.
+/// ConfigError, in the name of `source`, if they name two models, or a section is there by both its names.
 YAML::Node without_former_keys(const YAML::Node& root, const std::string& source);
 
 /// The same for settings of a recorded command, where `present` moved the sand before.

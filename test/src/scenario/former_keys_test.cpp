@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "src/scenario/live_parameters.hpp"
+#include "test/support/refusal.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test/support/world.hpp"
 
@@ -83,6 +84,12 @@ TEST(FormerKeys, AreRewrittenAndAllElseStays) {
     EXPECT_EQ(migrated(r.before, "a.yaml"), r.now);
     EXPECT_EQ(migrated(r.now, "a.yaml"), r.now);
   }
+}
+
+TEST(FormerKeys, ASectionByBothItsNamesIsRefused) {
+  const std::string both = "detail: {ripples: true}\nmicro_relief: {bumps: true}\n";
+  const std::string why = test::refusal([&] { migrated(both, "a.yaml"); });
+  EXPECT_NE(why.find("a.yaml: detail: is given beside micro_relief"), std::string::npos) << why;
 }
 
 TEST(FormerKeys, OfTwoModelsAreRefused) {
