@@ -7,12 +7,15 @@ import rospy
 
 # The layers that every node of this version has; config/node_parameters.md says what they are, and in which unit. A
 # layer that the terrain does not have is 0 everywhere.
+# <!-- table: map layers -->
 LAYERS = (
     "elevation", "bedrock", "water_surface", "sand_depth", "water_depth", "soil_depth", "vegetation", "plants",
     "canopy_height", "illumination", "humus", "moisture", "suspended_sediment", "airborne_sand", "water_velocity_x",
-    "water_velocity_y", "erosion_resistance", "obstacle", "looseness", "grass", "mesquite", "shrub", "burial", "snow_density",
-    "wind_x", "wind_y", "wind_shadow", "echo", "flux_x", "flux_y", "slope", "roughness", "step_height", "slip", "slip_downhill", "slip_across", "sinkage", "traversability", "normal_x", "normal_y",
-    "normal_z")
+    "water_velocity_y", "erosion_resistance", "obstacle", "looseness", "grass", "mesquite", "shrub", "burial",
+    "snow_density", "wind_x", "wind_y", "wind_shadow", "echo", "flux_x", "flux_y", "slope", "roughness", "step_height",
+    "slip", "slip_downhill", "slip_across", "sinkage", "traversability", "normal_x", "normal_y", "normal_z",
+)
+# <!-- end of table -->
 
 
 class Rectangle(collections.namedtuple("Rectangle", "x y width height")):

@@ -228,12 +228,7 @@ class Maps(MapTest):
         self.assertAlmostEqual(submap.origin.position.y + submap.height, 20.2, delta=1)
         self.assertEqual(self.submap(100, 20, 1e-3, 1e-3).map.width, 1)
         self.assertEqual([layer.name for layer in self.submap(100, 20, 4, 4, []).map.layers],
-                         ["elevation", "bedrock", "water_surface", "sand_depth", "water_depth", "soil_depth", "vegetation",
-                          "plants", "canopy_height", "illumination", "humus", "moisture", "suspended_sediment",
-                          "airborne_sand", "water_velocity_x", "water_velocity_y", "erosion_resistance", "obstacle", "looseness",
-                          "grass", "mesquite", "shrub", "burial", "snow_density",
-                          "wind_x", "wind_y", "wind_shadow", "echo", "flux_x", "flux_y", "slope", "roughness", "step_height", "slip",
-                          "slip_downhill", "slip_across", "sinkage", "traversability", "normal_x", "normal_y", "normal_z"], "all")
+                         list(desert_sim.LAYERS), "all")
 
     def test_get_submap_refuses(self):
         nan, inf = float("nan"), float("inf")
