@@ -62,18 +62,9 @@ class Session {
   CommandResult execute(const command::Reset& command, bool with_change, Command& journalled);
   CommandResult execute(const command::LoadCheckpoint& command, bool with_change, Command& journalled);
   CommandResult execute(const command::LoadScenario& command, bool with_change, Command& journalled);
-  CommandResult execute(const command::EditTerrain& command, bool with_change, Command&) {
-    return simulation_->apply(command, with_change);
-  }
-  CommandResult execute(const command::Undo& command, bool with_change, Command&) {
-    return simulation_->apply(command, with_change);
-  }
-  CommandResult execute(const command::Redo& command, bool with_change, Command&) {
-    return simulation_->apply(command, with_change);
-  }
   template <class Other>
-  CommandResult execute(const Other& command, bool, Command&) {
-    return simulation_->apply(command);
+  CommandResult execute(const Other& command, bool with_change, Command&) {
+    return simulation_->apply(command, with_change);
   }
   Scenario read_scenario(const command::LoadScenario& command) const;
   /// Returns the state hash at the new scenario's start.

@@ -32,13 +32,7 @@ class Simulation {
   void step();
   /// Applies a command between steps; throws ConfigError and changes nothing if it is refused. Reset and
   /// LoadCheckpoint are the Session's business.
-  template <class Command>
-  CommandResult apply(const Command& command) {
-    return commands_.apply(command);
-  }
-  /// Likewise for EditTerrain, Undo and Redo; `with_change`: the result tells what changed, cell by cell.
-  template <class Command>
-  CommandResult apply(const Command& command, bool with_change) {
+  CommandResult apply(const Command& command, bool with_change = false) {
     return commands_.apply(command, with_change);
   }
   /// What undo can bring back.

@@ -464,7 +464,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "looseness + (loosening / both - looseness) * lost_share(both)", "loosened(looseness, loosening) * exp_negative(packing)",
      "loosening and packing are integrated together", "kernels_unit LoosenessLaw.*"),
     ("poured_sand_is_packed", "src/simulation/editing/commands.cpp",
-     "    edit.loosen(state_.scenario.get<LoosenessParameters>());\n", "",
+     "    edit.loosen(state.scenario.get<LoosenessParameters>());\n", "",
      "sand that a brush adds is loose", "kernels_property *LooseGround.Poured*"),
     ("slip_without_resistance", "kernels/rover/wheel_ground.hpp",
      "tangent(slope) + support.resistance", "tangent(slope)",

@@ -22,11 +22,13 @@ constexpr const char* wind_edits[] = {"add", "change", "remove", "clear"};
 enum class PlantEdit : int { plant, clear };
 constexpr const char* plant_edits[] = {"plant", "clear"};
 
-/// The commands themselves; a namespace of their own because the ROS services have the same names.
+/// The commands themselves, each with its name in the journal; a namespace of their own because the ROS
+/// services have the same names.
 namespace command {
 
 /// The high-altitude wind from now on: constant, reached over `ramp` seconds.
 struct SetWind {
+  static constexpr const char* name = "set_wind";
   float direction_deg = 0;
   float speed = 0;
   float ramp = 0;
@@ -43,12 +45,14 @@ static_assert(table_is_complete<SetWind>());
 /// A timeline or rose from now on (`regime.kind` says which; `start_time` and `initial_wind` are set when the
 /// command is applied).
 struct SetWindSchedule {
+  static constexpr const char* name = "set_wind_schedule";
   WindRegime regime;
 };
 
 /// Adds, changes, removes one local feature of the wind, which `feature.id` names, or removes all (`clear`).
 /// A scenario holds at most max_wind_features.
 struct EditWind {
+  static constexpr const char* name = "edit_wind";
   WindEdit operation = WindEdit::add;
   WindFeature feature;  ///< of remove only `id`, of clear nothing
 };
@@ -130,6 +134,7 @@ struct Patch {
 /// is kept in steps of 2⁻²⁰. So is looseness, where the terrain has that layer; its edits are no strokes that
 /// undo knows, because the sand that moves changes it besides.
 struct EditTerrain : EditParameters {
+  static constexpr const char* name = "edit_terrain";
   static constexpr std::size_t max_points = 512;
   std::vector<Point> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
   Patch patch;
@@ -171,12 +176,14 @@ static_assert(table_is_complete<EditPlantsParameters>());
 /// Puts healthy plants of a species at random places of a region, or takes plants away that stand there. None
 /// are put on bare rock or on obstacles; whether they can live there is not asked.
 struct EditPlants : EditPlantsParameters {
+  static constexpr const char* name = "edit_plants";
   std::vector<Point> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
 };
 
 /// Takes back what a stroke of EditTerrain and EditPlants commands changed: of the stroke of that name, or,
 /// if it is empty, of the one that was painted or redone last. See EditHistory.
 struct Undo {
+  static constexpr const char* name = "undo";
   std::string stroke;
 };
 constexpr auto parameter_table(const Undo*) {
@@ -186,6 +193,7 @@ static_assert(table_is_complete<Undo>());
 
 /// Takes back an undo: of the stroke of that name, or, if it is empty, of the one that was undone last.
 struct Redo {
+  static constexpr const char* name = "redo";
   std::string stroke;
 };
 constexpr auto parameter_table(const Redo*) {
@@ -196,17 +204,21 @@ static_assert(table_is_complete<Redo>());
 /// Parameters that can change while a simulation runs (live_parameters.hpp), each "path=value"; all or none.
 /// Over `ramp` seconds numbers go to their values (see Ramp); all else changes at once.
 struct SetParameters {
+  static constexpr const char* name = "set_parameters";
   static constexpr double longest_ramp = 1e12;
   std::vector<std::string> settings;
   double ramp = 0;
 };
 
 /// Back to the scenario's start: terrain, parameters, wind, clock.
-struct Reset {};
+struct Reset {
+  static constexpr const char* name = "reset";
+};
 
 /// Continue from a checkpoint of a terrain of any shape; a reset goes back to the start of its scenario from
 /// then on. `path` as the process can open it.
 struct LoadCheckpoint {
+  static constexpr const char* name = "load_checkpoint";
   std::string path;
   std::uint64_t hash = 0;  ///< state hash after loading; 0 if not known yet. A replay refuses another one.
 };
@@ -216,6 +228,7 @@ struct LoadCheckpoint {
 /// `terrain_only` it may be a bag (see scenario_from_bands()), whose gaps `fill_nodata` fills. `hash` as in
 /// LoadCheckpoint.
 struct LoadScenario {
+  static constexpr const char* name = "load_scenario";
   std::string path;
   bool terrain_only = false;
   std::uint64_t hash = 0;

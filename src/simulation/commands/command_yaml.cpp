@@ -36,17 +36,6 @@ P read_all(const YAML::Node& node, const std::string& source) {
   return parameters;
 }
 
-command::SetParameters read_settings(const YAML::Node& node, const std::string& source) {
-  command::SetParameters command{{}, scalar<double>(node, "ramp", source)};
-  const YAML::Node settings = required(node, "settings", source);
-  if (!settings.IsSequence()) throw ConfigError(source + ": settings: must be a list of path=value");
-  for (const YAML::Node& setting : settings) {
-    if (!setting.IsScalar()) throw ConfigError(source + ": settings: must be a list of path=value");
-    command.settings.push_back(setting.Scalar());
-  }
-  return command;
-}
-
 }  // namespace
 
 void emit_regime(YAML::Emitter& out, const WindRegime& r) {
@@ -104,8 +93,28 @@ std::vector<command::Point> read_points(const YAML::Node& node, const std::strin
   return places;
 }
 
+// ---- A command without its name. One whose table is complete needs nothing here.
+
+template <class C>
+struct Type {};
+
+template <class C>
+void emit(YAML::Emitter& out, const C& command) {
+  yaml::emit_parameters(out, command);
+}
+template <class C>
+C read(Type<C>, const YAML::Node& node, const std::string& source) {
+  return read_all<C>(node, source);
+}
+
+void emit(YAML::Emitter& out, const command::SetWindSchedule& schedule) { emit_regime(out, schedule.regime); }
+command::SetWindSchedule read(Type<command::SetWindSchedule>, const YAML::Node& node,
+                              const std::string& source) {
+  return {read_regime(node, source)};
+}
+
 /// Only what the operation uses: no other field has been checked.
-void emit_wind_edit(YAML::Emitter& out, const command::EditWind& edit) {
+void emit(YAML::Emitter& out, const command::EditWind& edit) {
   yaml::emit_parameters(out, edit);
   if (edit.operation == WindEdit::remove)
     out << YAML::Key << "id" << YAML::Value << edit.feature.id;
@@ -113,7 +122,7 @@ void emit_wind_edit(YAML::Emitter& out, const command::EditWind& edit) {
     yaml::emit_parameters(out, edit.feature);
 }
 
-command::EditWind read_wind_edit(const YAML::Node& node, const std::string& source) {
+command::EditWind read(Type<command::EditWind>, const YAML::Node& node, const std::string& source) {
   auto edit = read_all<command::EditWind>(node, source);
   if (edit.operation == WindEdit::remove)
     edit.feature.id = scalar<int>(node, "id", source);
@@ -123,7 +132,7 @@ command::EditWind read_wind_edit(const YAML::Node& node, const std::string& sour
 }
 
 /// A patch's values as base64 of 32-bit floats: every bit is kept.
-void emit_edit(YAML::Emitter& out, const command::EditTerrain& edit) {
+void emit(YAML::Emitter& out, const command::EditTerrain& edit) {
   yaml::emit_parameters(out, static_cast<const command::EditParameters&>(edit));
   emit_points(out, edit.points);
   const command::Patch& patch = edit.patch;
@@ -152,81 +161,83 @@ command::Patch read_patch(const YAML::Node& node, const std::string& source) {
   return patch;
 }
 
-command::EditTerrain read_edit(const YAML::Node& node, const std::string& source) {
+command::EditTerrain read(Type<command::EditTerrain>, const YAML::Node& node, const std::string& source) {
   command::EditTerrain edit{read_all<command::EditParameters>(node, source), {}, {}};
   edit.points = read_points(node, source);
   if (node["patch"]) edit.patch = read_patch(node, source);
   return edit;
 }
 
+void emit(YAML::Emitter& out, const command::EditPlants& edit) {
+  yaml::emit_parameters(out, static_cast<const command::EditPlantsParameters&>(edit));
+  emit_points(out, edit.points);
+}
+command::EditPlants read(Type<command::EditPlants>, const YAML::Node& node, const std::string& source) {
+  return {read_all<command::EditPlantsParameters>(node, source), read_points(node, source)};
+}
+
+void emit(YAML::Emitter& out, const command::SetParameters& parameters) {
+  out << YAML::Key << "settings" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  for (const std::string& setting : parameters.settings) out << YAML::DoubleQuoted << setting;
+  out << YAML::EndSeq;
+  out << YAML::Key << "ramp" << YAML::Value << parameters.ramp;
+}
+command::SetParameters read(Type<command::SetParameters>, const YAML::Node& node, const std::string& source) {
+  command::SetParameters command{{}, scalar<double>(node, "ramp", source)};
+  const YAML::Node settings = required(node, "settings", source);
+  if (!settings.IsSequence()) throw ConfigError(source + ": settings: must be a list of path=value");
+  for (const YAML::Node& setting : settings) {
+    if (!setting.IsScalar()) throw ConfigError(source + ": settings: must be a list of path=value");
+    command.settings.push_back(setting.Scalar());
+  }
+  return command;
+}
+
+void emit(YAML::Emitter&, const command::Reset&) {}
+command::Reset read(Type<command::Reset>, const YAML::Node&, const std::string&) { return {}; }
+
+void emit(YAML::Emitter& out, const command::LoadCheckpoint& load) {
+  out << YAML::Key << "path" << YAML::Value << YAML::DoubleQuoted << load.path;
+  out << YAML::Key << "hash" << YAML::Value << load.hash;
+}
+command::LoadCheckpoint read(Type<command::LoadCheckpoint>, const YAML::Node& node,
+                             const std::string& source) {
+  return {scalar<std::string>(node, "path", source), scalar<std::uint64_t>(node, "hash", source)};
+}
+
+void emit(YAML::Emitter& out, const command::LoadScenario& load) {
+  out << YAML::Key << "path" << YAML::Value << YAML::DoubleQuoted << load.path;
+  out << YAML::Key << "terrain_only" << YAML::Value << load.terrain_only;
+  out << YAML::Key << "hash" << YAML::Value << load.hash;
+  out << YAML::Key << "fill_nodata" << YAML::Value << load.fill_nodata;
+}
+command::LoadScenario read(Type<command::LoadScenario>, const YAML::Node& node, const std::string& source) {
+  return {scalar<std::string>(node, "path", source), scalar<bool>(node, "terrain_only", source),
+          scalar<std::uint64_t>(node, "hash", source), scalar<bool>(node, "fill_nodata", source)};
+}
+
+template <std::size_t N = 0>
+Command read_named(const std::string& name, const YAML::Node& node, const std::string& source) {
+  if constexpr (N < std::variant_size_v<Command>) {
+    using C = std::variant_alternative_t<N, Command>;
+    return name == C::name ? Command(read(Type<C>(), node, source)) : read_named<N + 1>(name, node, source);
+  }
+  throw ConfigError(source + ": unknown command '" + name + "'");
+}
+
 }  // namespace
 
 void emit_command(YAML::Emitter& out, const Command& command) {
-  const auto name = [&](const char* text) { out << YAML::Key << "command" << YAML::Value << text; };
-  if (const auto* set_wind = std::get_if<command::SetWind>(&command)) {
-    name("set_wind");
-    yaml::emit_parameters(out, *set_wind);
-  } else if (const auto* schedule = std::get_if<command::SetWindSchedule>(&command)) {
-    name("set_wind_schedule");
-    emit_regime(out, schedule->regime);
-  } else if (const auto* edit_wind = std::get_if<command::EditWind>(&command)) {
-    name("edit_wind");
-    emit_wind_edit(out, *edit_wind);
-  } else if (const auto* edit = std::get_if<command::EditTerrain>(&command)) {
-    name("edit_terrain");
-    emit_edit(out, *edit);
-  } else if (const auto* plants = std::get_if<command::EditPlants>(&command)) {
-    name("edit_plants");
-    yaml::emit_parameters(out, static_cast<const command::EditPlantsParameters&>(*plants));
-    emit_points(out, plants->points);
-  } else if (const auto* undo = std::get_if<command::Undo>(&command)) {
-    name("undo");
-    yaml::emit_parameters(out, *undo);
-  } else if (const auto* redo = std::get_if<command::Redo>(&command)) {
-    name("redo");
-    yaml::emit_parameters(out, *redo);
-  } else if (const auto* parameters = std::get_if<command::SetParameters>(&command)) {
-    name("set_parameters");
-    out << YAML::Key << "settings" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-    for (const std::string& setting : parameters->settings) out << YAML::DoubleQuoted << setting;
-    out << YAML::EndSeq;
-    out << YAML::Key << "ramp" << YAML::Value << parameters->ramp;
-  } else if (std::holds_alternative<command::Reset>(command)) {
-    name("reset");
-  } else if (const auto* load = std::get_if<command::LoadCheckpoint>(&command)) {
-    name("load_checkpoint");
-    out << YAML::Key << "path" << YAML::Value << YAML::DoubleQuoted << load->path;
-    out << YAML::Key << "hash" << YAML::Value << load->hash;
-  } else if (const auto* other = std::get_if<command::LoadScenario>(&command)) {
-    name("load_scenario");
-    out << YAML::Key << "path" << YAML::Value << YAML::DoubleQuoted << other->path;
-    out << YAML::Key << "terrain_only" << YAML::Value << other->terrain_only;
-    out << YAML::Key << "hash" << YAML::Value << other->hash;
-    out << YAML::Key << "fill_nodata" << YAML::Value << other->fill_nodata;
-  }
+  std::visit(
+      [&](const auto& one) {
+        out << YAML::Key << "command" << YAML::Value << one.name;
+        emit(out, one);
+      },
+      command);
 }
 
 Command read_command(const YAML::Node& node, const std::string& source) {
-  const auto name = scalar<std::string>(node, "command", source);
-  if (name == "set_wind") return read_all<command::SetWind>(node, source);
-  if (name == "set_wind_schedule") return command::SetWindSchedule{read_regime(node, source)};
-  if (name == "edit_wind") return read_wind_edit(node, source);
-  if (name == "edit_terrain") return read_edit(node, source);
-  if (name == "edit_plants")
-    return command::EditPlants{read_all<command::EditPlantsParameters>(node, source),
-                               read_points(node, source)};
-  if (name == "undo") return read_all<command::Undo>(node, source);
-  if (name == "redo") return read_all<command::Redo>(node, source);
-  if (name == "set_parameters") return read_settings(node, source);
-  if (name == "reset") return command::Reset{};
-  if (name == "load_checkpoint")
-    return command::LoadCheckpoint{scalar<std::string>(node, "path", source),
-                                   scalar<std::uint64_t>(node, "hash", source)};
-  if (name == "load_scenario")
-    return command::LoadScenario{
-        scalar<std::string>(node, "path", source), scalar<bool>(node, "terrain_only", source),
-        scalar<std::uint64_t>(node, "hash", source), scalar<bool>(node, "fill_nodata", source)};
-  throw ConfigError(source + ": unknown command '" + name + "'");
+  return read_named(scalar<std::string>(node, "command", source), node, source);
 }
 
 }  // namespace desert_sim

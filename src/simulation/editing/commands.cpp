@@ -13,21 +13,51 @@
 
 namespace desert_sim {
 
-CommandResult Commands::apply(const command::SetParameters& command) {
+/// A new command is an operator here.
+struct Commands::Execution {
+  Commands& commands;
+  bool with_change;
+  SimulationState& state = commands.state_;
+  Pipeline& pipeline = commands.pipeline_;
+  EditHistory& history = commands.history_;
+
+  CommandResult operator()(const command::SetParameters& command) const;
+  CommandResult operator()(const command::SetWind& command) const;
+  CommandResult operator()(const command::SetWindSchedule& command) const;
+  CommandResult operator()(const command::EditWind& command) const;
+  CommandResult operator()(const command::EditTerrain& command) const;
+  CommandResult operator()(const command::EditPlants& command) const;
+  CommandResult operator()(const command::Undo& command) const {
+    return history.undo(command.stroke, with_change);
+  }
+  CommandResult operator()(const command::Redo& command) const {
+    return history.redo(command.stroke, with_change);
+  }
+  template <class Replacing>
+  CommandResult operator()(const Replacing& command) const {
+    throw Error(std::string(command.name) + " replaces the simulation: a session applies it");
+  }
+};
+
+CommandResult Commands::apply(const Command& command, bool with_change) {
+  return std::visit(Execution{*this, with_change}, command);
+}
+
+CommandResult Commands::Execution::operator()(const command::SetParameters& command) const {
   if (!(command.ramp >= 0 && command.ramp <= command.longest_ramp))
     throw ConfigError("set_parameters: ramp: " + std::to_string(command.ramp) + " is not in [0, 1e+12] s");
-  const Scenario present = state_.present_scenario(), wanted = with_live_settings(present, command.settings);
+  const Scenario present = state.present_scenario(), wanted = with_live_settings(present, command.settings);
   // Also what comes at the end of a ramp is refused now, not in the middle of the run:
   process_table().require_runnable(wanted);
-  require_sea(wanted, state_.terrain.scale(), "set_parameters");
-  require_more_memory(state_, wanted);
+  require_sea(wanted, state.terrain.scale(), "set_parameters");
+  require_more_memory(state, wanted);
   std::vector<std::string> settings = command.settings;
-  const std::vector<Ramp> before = state_.ramps;
-  begin_ramps(settings, command.ramp);
+  const std::vector<Ramp> before = state.ramps;
+  commands.begin_ramps(settings, command.ramp);
   try {
-    set_parameters(settings);
+    commands.set_parameters(settings);
   } catch (...) {
-    state_.ramps = before;
+    state.ramps = before;
     throw;
   }
   return {};
@@ -57,13 +87,13 @@ void Commands::set_parameters(const std::vector<std::string>& settings) {
   state_.wind_regime = state_.wind_regime.with(changed.wind_regime, state_.time());
 }
 
-CommandResult Commands::apply(const command::SetWind& command) {
+CommandResult Commands::Execution::operator()(const command::SetWind& command) const {
   check_ranges(command, "set_wind");
   WindRegime regime;
   regime.direction_deg = command.direction_deg;
   regime.speed = command.speed;
   regime.ramp = command.ramp;
-  state_.set_wind_regime(regime);
+  state.set_wind_regime(regime);
   return {};
 }
 
@@ -78,9 +108,9 @@ void check_wind_schedule(const WindRegime& r, const std::string& what) {
     check_ranges(r.segments[n], what + ": segments." + std::to_string(n));
 }
 
-CommandResult Commands::apply(const command::SetWindSchedule& command) {
+CommandResult Commands::Execution::operator()(const command::SetWindSchedule& command) const {
   check_wind_schedule(command.regime, "set_wind_schedule");
-  state_.set_wind_regime(command.regime);
+  state.set_wind_regime(command.regime);
   return {};
 }
 
@@ -117,12 +147,12 @@ std::vector<WindFeature> edited_features(const command::EditWind& command,
 
 }  // namespace
 
-CommandResult Commands::apply(const command::EditWind& command) {
-  std::vector<WindFeature>& features = state_.scenario.wind_features;
+CommandResult Commands::Execution::operator()(const command::EditWind& command) const {
+  std::vector<WindFeature>& features = state.scenario.wind_features;
   std::vector<WindFeature> before = edited_features(command, features);
   std::swap(before, features);
   try {
-    pipeline_.adapt();  // features need memory
+    pipeline.adapt();  // features need memory
   } catch (...) {
     features = before;
     throw;
@@ -130,39 +160,39 @@ CommandResult Commands::apply(const command::EditWind& command) {
   return {};
 }
 
-CommandResult Commands::apply(const command::EditTerrain& command, bool with_change) {
+CommandResult Commands::Execution::operator()(const command::EditTerrain& command) const {
   check_stroke_name(command.stroke, "edit_terrain");
-  pipeline_.ground_changed();
-  TerrainEdit edit(command, state_.terrain, state_.scenario.grid, state_.ledger());
-  const bool had_obstacles = state_.terrain.has(Layer::obstacle);
-  const ProcessFlags flags = state_.flags;
-  history_.begin_ground();
-  pipeline_.edited(edit.layer());
+  pipeline.ground_changed();
+  TerrainEdit edit(command, state.terrain, state.scenario.grid, state.ledger());
+  const bool had_obstacles = state.terrain.has(Layer::obstacle);
+  const ProcessFlags flags = state.flags;
+  history.begin_ground();
+  pipeline.edited(edit.layer());
   try {
-    pipeline_.adapt();  // ground that is loose needs memory
+    pipeline.adapt();  // ground that is loose needs memory
     // Looseness comes and goes with the sand that moves, so that there is nothing to give back.
     const bool undoable = edit.layer() != Layer::looseness;
-    const LayerEdit change = undoable && history_.remembers() ? edit.change() : LayerEdit{};
+    const LayerEdit change = undoable && history.remembers() ? edit.change() : LayerEdit{};
     const CommandResult result = edit.commit(with_change);
-    edit.loosen(state_.scenario.get<LoosenessParameters>());
+    edit.loosen(state.scenario.get<LoosenessParameters>());
     if (undoable)
-      history_.paint(command.stroke, change, !had_obstacles && state_.terrain.has(Layer::obstacle));
+      history.paint(command.stroke, change, !had_obstacles && state.terrain.has(Layer::obstacle));
     return result;
   } catch (...) {
-    state_.flags = flags;
+    state.flags = flags;
     throw;
   }
 }
 
-CommandResult Commands::apply(const command::EditPlants& command) {
+CommandResult Commands::Execution::operator()(const command::EditPlants& command) const {
   check_stroke_name(command.stroke, "edit_plants");
-  check_plant_edit(command, state_.scenario);
-  const int before = state_.plants.count;
-  const Population::Edit edit = plant_edit(command, state_.scenario, state_.terrain, state_.steps,
-                                           state_.plants.capacity, plants::words(state_.plants));
-  history_.paint(command.stroke, edit);
+  check_plant_edit(command, state.scenario);
+  const int before = state.plants.count;
+  const Population::Edit edit = plant_edit(command, state.scenario, state.terrain, state.steps,
+                                           state.plants.capacity, plants::words(state.plants));
+  history.paint(command.stroke, edit);
   CommandResult result;
-  result.plants = state_.plants.count - before;
+  result.plants = state.plants.count - before;
   return result;
 }
 

@@ -20,20 +20,9 @@ class Commands {
   Commands(SimulationState& state, Pipeline& pipeline)
       : state_(state), pipeline_(pipeline), history_(state, pipeline) {}
 
-  /// Each is applied whole, or throws ConfigError and changes nothing.
-  CommandResult apply(const command::SetWind& command);
-  CommandResult apply(const command::SetWindSchedule& command);
-  CommandResult apply(const command::EditWind& command);
-  /// `with_change`: the result tells what changed, cell by cell.
-  CommandResult apply(const command::EditTerrain& command, bool with_change = false);
-  CommandResult apply(const command::EditPlants& command);
-  CommandResult apply(const command::Undo& command, bool with_change = false) {
-    return history_.undo(command.stroke, with_change);
-  }
-  CommandResult apply(const command::Redo& command, bool with_change = false) {
-    return history_.redo(command.stroke, with_change);
-  }
-  CommandResult apply(const command::SetParameters& command);
+  /// A command is applied whole, or throws ConfigError and changes nothing. `with_change`: the result tells
+  /// what changed, cell by cell. Those that replace the simulation are the Session's: they throw Error.
+  CommandResult apply(const Command& command, bool with_change = false);
 
   EditHistory& history() { return history_; }
 
@@ -44,6 +33,7 @@ class Commands {
   std::string describe_changes() const;
 
  private:
+  struct Execution;  ///< what each command does
   void set_parameters(const std::vector<std::string>& settings);
   std::vector<std::string> set_what_can_be_set(std::vector<std::string> due);
   /// Of `settings`, numbers become ramps where there is a duration [s]; former ramps of the same parameters
