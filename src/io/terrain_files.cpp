@@ -81,7 +81,7 @@ std::set<std::string> write_terrain(const std::string& scenario_file, const fs::
 std::vector<Layer> persistent_layers(const Simulation& simulation) {
   const bool plants = simulation.scenario().get<VegetationParameters>().enabled;
   std::vector<Layer> layers;
-  for (Layer layer : simulation.layers_in_use())
+  for (Layer layer : simulation.state().layers_in_use())
     if (info(layer).lifetime == Lifetime::persistent && !(plants && layer == Layer::vegetation))
       layers.push_back(layer);
   return layers;

@@ -62,12 +62,12 @@ std::unique_ptr<Session> Session::from_checkpoint(const std::string& checkpoint,
 }
 
 void Session::replace_simulation(std::unique_ptr<Simulation> simulation) {
-  simulation->history().set_memory(undo_memory_);
+  simulation->commands().history().set_memory(undo_memory_);
   simulation_ = std::move(simulation);
 }
 
 void Session::require_journal_of_this_scenario(const Journal& journal, const std::string& path) const {
-  const Scenario& start = simulation_->start();
+  const Scenario& start = simulation_->state().start;
   if (journal.version == 1)
     return log_warning(path +
                        ": is of an earlier version, which hashed scenarios otherwise: whether it is the "
@@ -101,7 +101,7 @@ Scenario Session::read_scenario(const command::LoadScenario& command) const {
 std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
   Scenario next = read_scenario(command);
   if (command.terrain_only) {
-    Scenario merged = simulation_->start();
+    Scenario merged = simulation_->state().start;
     merged.grid = next.grid;
     merged.terrain = next.terrain;
     merged.folder = next.folder;
@@ -114,23 +114,23 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
   resolve_grid(next, load_raster_);
   read_wind_series(next, command.folder.empty() ? folder_ : command.folder);
   auto simulation = std::make_unique<Simulation>(*exec_, next, load_raster_);
-  const std::uint64_t hash = simulation->state_hash();
+  const std::uint64_t hash = simulation->state().hash();
   if (command.hash != 0 && command.hash != hash)
     throw ConfigError(command.path +
                       ": is not the scenario that the journal recorded (its state hash differs)");
   replace_simulation(std::move(simulation));
-  if (!command.terrain_only) warn_of_settings_without_effect(simulation_->start());
+  if (!command.terrain_only) warn_of_settings_without_effect(simulation_->state().start);
   return hash;
 }
 
 CommandResult Session::execute(const command::Reset&, bool, Command&) {
-  replace_simulation(std::make_unique<Simulation>(*exec_, simulation_->start(), load_raster_));
+  replace_simulation(std::make_unique<Simulation>(*exec_, simulation_->state().start, load_raster_));
   return {};
 }
 
 CommandResult Session::execute(const command::LoadCheckpoint& load, bool, Command& journalled) {
   std::unique_ptr<Simulation> loaded = load_checkpoint(load.path, *exec_, folder_);
-  const std::uint64_t hash = loaded->state_hash();
+  const std::uint64_t hash = loaded->state().hash();
   if (load.hash != 0 && load.hash != hash)
     throw ConfigError(load.path +
                       ": is not the checkpoint that the journal recorded (its state hash differs)");

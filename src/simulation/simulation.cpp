@@ -1,10 +1,7 @@
 #include "src/simulation/simulation.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include "kernels/field/statistics.hpp"
-#include "src/core/constants.hpp"
 #include "src/core/error.hpp"
 #include "src/simulation/memory/memory.hpp"
 
@@ -63,28 +60,11 @@ void Simulation::step() {
                      " steps are done, which is as far as the clock counts");
   commands_.apply_timeline();
   const double before = time();
-  const wind::Vector wind = wind_above();
+  const wind::Vector wind = state_.wind_above();
   pipeline_.step();
   state_.ripple_wind.advance(wind, time() - before, scenario().get<MicroReliefParameters>());
 }
 
 std::vector<MemoryPart> Simulation::memory() const { return memory_of(state_, pipeline_, views_); }
-
-Residual Simulation::residual() {
-  pipeline_.refresh_derived();
-  return with_backend(exec(), [this](auto& e) {
-    return statistics::residual(e, terrain().view(), pipeline_.fields().repose.data());
-  });
-}
-
-double Simulation::max_sand_slope_deg() const {
-  const float tangent =
-      with_backend(exec(), [this](auto& e) { return statistics::sand_slope(e, terrain().view()); });
-  return std::atan(tangent) * 180 / pi;
-}
-
-double Simulation::mean_count(const std::string& counter) const {
-  return steps() ? static_cast<double>(pipeline_.count(counter)) / static_cast<double>(steps()) : 0.0;
-}
 
 }  // namespace desert_sim

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/field/statistics.hpp"
+#include "kernels/avalanching/residual.hpp"
 #include "src/simulation/simulation.hpp"
 
 namespace desert_sim {

@@ -8,6 +8,7 @@
 #include "kernels/avalanching/avalanching_parameters.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/simulation/processes/sand_slopes.hpp"
 #include "src/tools/bench_report.hpp"
 #include "src/tools/bench_scenes.hpp"
 #include "src/tools/cost_model.hpp"
@@ -125,11 +126,11 @@ std::vector<BenchReport::Process> time_processes(Session& session, int steps) {
   Simulation& s = session.simulation();
   const std::vector<ProcessCost> model = cost_model(s.scenario(), s.terrain().grid());
   s.exec().synchronise();
-  s.set_timing(true);
+  s.pipeline().set_timing(true);
   for (int n = 0; n < steps; ++n) session.step();
-  s.set_timing(false);
+  s.pipeline().set_timing(false);
   std::vector<BenchReport::Process> processes;
-  for (const ProcessTime& t : s.process_times())
+  for (const ProcessTime& t : s.pipeline().times())
     processes.push_back({t.process, t.milliseconds / steps, min_bytes(model, t.process)});
   return processes;
 }
@@ -158,11 +159,11 @@ BenchReport bench(const Options& o) {
 
   if (scene == "edited") session->apply(bench_edit(s.scenario().grid));
   r.block_times_ms = time_blocks(*session, count);
-  r.residual = s.residual();
-  r.fine_sweeps = s.mean_count(avalanche_iterations);
+  r.residual = sand_residual(s.state(), s.pipeline());
+  r.fine_sweeps = s.pipeline().mean_count(avalanche_iterations);
   r.memory = s.memory();
   r.processes = time_processes(*session, std::max(3, r.steps / 20));
-  r.sand = s.balance()[static_cast<std::size_t>(Material::sand)];
+  r.sand = s.state().balance()[static_cast<std::size_t>(Material::sand)];
   r.copy_bandwidth = measure_copy_bandwidth(s.exec());
   return r;
 }

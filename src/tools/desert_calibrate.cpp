@@ -41,7 +41,7 @@ const char usage[] =
     "Exit status: 0; 2 for invalid input; 3 for a failure at run time.\n";
 
 std::vector<float> elevation_of(Session& session) {
-  return session.simulation().snapshot({Layer::elevation})->layers.at(Layer::elevation);
+  return session.simulation().views().snapshot({Layer::elevation})->layers.at(Layer::elevation);
 }
 
 /// A measured elevation on the grid of the scenario.
@@ -94,7 +94,7 @@ class Comparison {
 
   /// The scenario with these values as a file that can lie anywhere.
   std::string fitted(const std::vector<double>& values) {
-    Scenario s = begin(values)->simulation().start();
+    Scenario s = begin(values)->simulation().state().start;
     const auto absolute = [&s](std::string& file) {
       if (!file.empty()) file = std::filesystem::absolute(raster_path(s, file)).string();
     };
@@ -114,7 +114,7 @@ class Comparison {
     scenario.wind_series = series_;
     auto session =
         std::make_unique<Session>(scenario, raster_loader(), options_.text("backend", "auto"), threads_);
-    series_ = session->simulation().start().wind_series;
+    series_ = session->simulation().state().start.wind_series;
     return session;
   }
 

@@ -239,7 +239,7 @@ constexpr std::uint64_t timed_every = 16;
 void time_processes(Simulation& simulation, bool timed, RunReport& report) {
   if (report.timed != &simulation) report.timed_steps = 0;  // a reset or load has replaced the simulation
   report.timed = &simulation;
-  simulation.set_timing(timed);
+  simulation.pipeline().set_timing(timed);
   if (!timed) return;
   simulation.exec().synchronise();
   ++report.timed_steps;
@@ -345,7 +345,7 @@ int run_program(int argc, char** argv) {
   if (plan.film) plan.film->finish(session->simulation());
   if (!plan.checkpoint.empty()) session->save_checkpoint(plan.checkpoint);
   if (plan.out.empty() && !o.has("quiet")) std::cout << summary(session->simulation(), report);
-  const std::string missing = conservation_error(session->simulation().balance());
+  const std::string missing = conservation_error(session->simulation().state().balance());
   if (!missing.empty())
     return std::fprintf(stderr, "desert_run: material is not conserved: %s\n", missing.c_str()), 1;
   return interrupted ? 130 : 0;

@@ -120,7 +120,7 @@ namespace {
 /// What a probe shows of the layers in use.
 std::vector<Layer> probed_layers(const Simulation& simulation) {
   std::vector<Layer> layers;
-  for (Layer layer : simulation.layers_in_use())
+  for (Layer layer : simulation.state().layers_in_use())
     for (Layer shown :
          {Layer::elevation, Layer::sand, Layer::wind_x, Layer::wind_y, Layer::flux_x, Layer::flux_y})
       if (layer == shown) layers.push_back(layer);
@@ -148,10 +148,11 @@ void Measurements::keep_flux(Session& session) const {
 
 void Measurements::add(Simulation& simulation, double duration) {
   for (CrossSection& section : cross_sections_)
-    section.add(*simulation.snapshot({Layer::flux_x, Layer::flux_y}, band_of(section.rows())), duration);
+    section.add(*simulation.views().snapshot({Layer::flux_x, Layer::flux_y}, band_of(section.rows())),
+                duration);
   if (probes_.empty() || simulation.steps() % probe_every_ != 0) return;
   const std::vector<Layer> layers = probed_layers(simulation);
-  probes_.add(*simulation.snapshot(layers, band_of(probes_.rows())), layers);
+  probes_.add(*simulation.views().snapshot(layers, band_of(probes_.rows())), layers);
 }
 
 }  // namespace desert_sim

@@ -152,7 +152,7 @@ void ObliqueView::choose_bounds(const Snapshot& s, double lowest, double highest
 
 render::Picture ObliqueView::draw(Simulation& simulation) {
   render::TerrainLook look = look_of(parameters_);
-  const auto snapshot = simulation.snapshot(layers_of(look));
+  const auto snapshot = simulation.views().snapshot(layers_of(look));
   const Snapshot& s = *snapshot;
   const std::vector<float>& elevation = *s.find(Layer::elevation);
   const auto range = std::minmax_element(elevation.begin(), elevation.end());
@@ -175,7 +175,7 @@ render::Picture ObliqueView::draw(Simulation& simulation) {
   for (const render::TerrainBlock& block : blocks)
     rasteriser_.draw_lines(block.contours, projection, exaggeration_);
   if (parameters_.plants)  // their feet are exaggerated already
-    rasteriser_.draw(plants_of(*simulation.begin_plants().get(), exaggeration_), projection, 1);
+    rasteriser_.draw(plants_of(*simulation.views().begin_plants().get(), exaggeration_), projection, 1);
   for (const render::TerrainBlock& block : blocks) rasteriser_.blend(block.water, projection, exaggeration_);
   return rasteriser_.picture();
 }

@@ -12,6 +12,7 @@
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/core/hash_text.hpp"
+#include "src/simulation/processes/sand_slopes.hpp"
 #include "src/simulation/session.hpp"
 #include "src/tools/json_text.hpp"
 #if DESERT_WITH_IO
@@ -50,7 +51,7 @@ struct Areas {
 Areas ground_areas(Simulation& simulation) {
   constexpr float min_water_depth = 0.02f, min_cover_depth = 0.02f,
                   min_plant_density = 0.3f;  // [m], [m], density
-  const auto s = simulation.snapshot({Layer::soil, Layer::sand, Layer::vegetation, Layer::water});
+  const auto s = simulation.views().snapshot({Layer::soil, Layer::sand, Layer::vegetation, Layer::water});
   const auto values = [&](Layer layer) -> const std::vector<float>& { return s->layers.at(layer); };
   const auto ground_kind = [&](std::size_t i) {
     if (values(Layer::water)[i] > min_water_depth) return 4;
@@ -139,11 +140,11 @@ std::string summary(Simulation& s, const RunReport& report) {
         << json_number(static_cast<double>(s.scenario().get<SlabModelParameters>().slab_height));
   out << ",\n  \"ms_per_step\": {\"total\": "
       << json_number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
-  for (const ProcessTime& t : s.process_times())
+  for (const ProcessTime& t : s.pipeline().times())
     out << ", " << json_string(t.process) << ": "
         << json_number(report.timed_steps ? t.milliseconds / static_cast<double>(report.timed_steps) : 0.0);
   out << "},\n  \"volume_m3\": {";
-  const auto balance = s.balance();
+  const auto balance = s.state().balance();
   for (std::size_t m = 0; m < balance.size(); ++m) {
     const MaterialBalance& b = balance[m];
     out << (m ? ",\n    " : "\n    ") << json_string(material_names[m])
@@ -160,22 +161,22 @@ std::string summary(Simulation& s, const RunReport& report) {
   for (std::size_t n = 0; n < std::size(Areas::names); ++n)
     out << (n ? ", " : "") << json_string(Areas::names[n]) << ": " << json_number(areas.square_metres[n]);
   out << "},\n  \"plants\": {";
-  const std::vector<PlantCount> plants = s.plant_counts();
+  const std::vector<PlantCount> plants = s.state().plant_counts();
   for (std::size_t n = 0; n < plants.size(); ++n)
     out << (n ? ", " : "") << json_string(plants[n].species) << ": {\"plants\": " << plants[n].plants
         << ", \"mature\": " << plants[n].mature << "}";
   if (report.measurements && !report.measurements->cross_sections().empty())
     write_cross_sections(out, report.measurements->cross_sections());
-  const Residual r = s.residual();
+  const Residual r = sand_residual(s.state(), s.pipeline());
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
-  out << "},\n  \"max_sand_slope_deg\": " << json_number(s.max_sand_slope_deg())
-      << ",\n  \"avalanche_iterations_mean\": " << json_number(s.mean_count(avalanche_iterations))
+  out << "},\n  \"max_sand_slope_deg\": " << json_number(max_sand_slope_deg(s.state()))
+      << ",\n  \"avalanche_iterations_mean\": " << json_number(s.pipeline().mean_count(avalanche_iterations))
       << ",\n  \"avalanche_residual\": {\"share_over_1e-3\": " << json_number(r.share_over_1e3)
       << ", \"share_over_1e-2\": " << json_number(r.share_over_1e2)
       << ", \"mean_excess\": " << json_number(r.mean_excess)
       << ", \"largest_excess\": " << json_number(r.largest_excess) << "},\n  \"state_hash\": \""
-      << hash_text(s.state_hash()) << "\",\n  \"scenario_hash\": \"" << scenario_hash(s.start())
+      << hash_text(s.state().hash()) << "\",\n  \"scenario_hash\": \"" << scenario_hash(s.state().start)
       << "\",\n  \"peak_memory_bytes\": " << usage.ru_maxrss * 1024LL
       << ",\n  \"rasters\": " << (DESERT_WITH_IO ? "true" : "false") << "\n}\n";
   return out.str();
@@ -184,9 +185,9 @@ std::string summary(Simulation& s, const RunReport& report) {
 void write_outputs(const std::string& folder, Simulation& simulation, const RunReport& report,
                    [[maybe_unused]] bool rasters) {
 #if DESERT_WITH_IO
-  std::vector<Layer> layers = simulation.layers_in_use();
-  if (simulation.shows(Layer::plants)) layers.push_back(Layer::plants);
-  const auto snapshot = simulation.snapshot(layers);
+  std::vector<Layer> layers = simulation.state().layers_in_use();
+  if (simulation.views().shows(Layer::plants)) layers.push_back(Layer::plants);
+  const auto snapshot = simulation.views().snapshot(layers);
   if (rasters) write_rasters(folder, *snapshot, simulation.scenario().projection);
   write_pictures(folder, *snapshot);
 #endif

@@ -12,9 +12,9 @@ namespace desert_sim {
 namespace {
 
 std::shared_ptr<const Snapshot> snapshot_of(Simulation& simulation) {
-  std::vector<Layer> layers = simulation.layers_in_use();
-  if (simulation.shows(Layer::plants)) layers.push_back(Layer::plants);
-  return simulation.snapshot(layers);
+  std::vector<Layer> layers = simulation.state().layers_in_use();
+  if (simulation.views().shows(Layer::plants)) layers.push_back(Layer::plants);
+  return simulation.views().snapshot(layers);
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ class Ground {
     double changed = 0;
     for (int n = 0; n < 10000 && (changed < share || before.empty()); n += 5) {
       for (int k = 0; k < (before.empty() ? 0 : 5); ++k) session_.step();
-      const auto snapshot = session_.simulation().snapshot({Layer::traversability});
+      const auto snapshot = session_.simulation().views().snapshot({Layer::traversability});
       width_ = snapshot->width, height_ = snapshot->height;
       values_ = *snapshot->find(Layer::traversability);
       if (before.empty()) return 0;

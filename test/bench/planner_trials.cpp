@@ -68,7 +68,7 @@ class Desert {
   }
   void skip() { session_.step(); }
   void look() {
-    snapshot_ = session_.simulation().snapshot(layers_);
+    snapshot_ = session_.simulation().views().snapshot(layers_);
     ground_ = std::make_unique<GridGround>(*snapshot_, scenario_.get<ReposeParameters>().moisture_capacity);
   }
   GridFrame frame() const {

@@ -1,6 +1,8 @@
 // Messages and requests that the node takes, as a sequence from one input: each is refused, or applied to a
 // small simulation. What was applied can be saved, loaded, and replayed from its form in the journal.
 #include <console_bridge/console.h>
+#include <desert_sim/GetSubmap.h>
+#include <desert_sim/QueryTerrain.h>
 #include <tf2_msgs/TFMessage.h>
 #include <yaml-cpp/yaml.h>
 
@@ -9,7 +11,6 @@
 #include "src/ros/forecast/forecast_request.hpp"
 #include "src/ros/parameters/reconfigure_messages.hpp"
 #include "src/ros/services/requests.hpp"
-#include "src/ros/services/services.hpp"
 #include "src/ros/services/terrain_sampler.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/commands/command_yaml.hpp"
@@ -114,7 +115,7 @@ class Node {
     Session replayed(scenario_, no_raster_loader, "cpu", 1);
     try {
       const std::unique_ptr<Simulation> loaded = load_checkpoint(file.path(), live.exec());
-      if (loaded->state_hash() != live.state_hash() || checkpoint_bytes(*loaded) != saved) std::abort();
+      if (loaded->state().hash() != live.state().hash() || checkpoint_bytes(*loaded) != saved) std::abort();
       for (const std::string& entry : journal_) {
         if (entry.empty())
           replayed.step();
@@ -125,12 +126,12 @@ class Node {
       std::fprintf(stderr, "refused what had been accepted: %s\n", e.what());
       std::abort();
     }
-    if (replayed.simulation().state_hash() != live.state_hash()) std::abort();
+    if (replayed.simulation().state().hash() != live.state().hash()) std::abort();
   }
 
  private:
   void apply(const Command& command) {
-    std::visit([this](const auto& c) { session_.apply(c); }, command);
+    session_.apply(command);
     YAML::Emitter entry;
     entry << YAML::BeginMap;
     emit_command(entry, command);
@@ -164,7 +165,7 @@ class Node {
   }
 
   void reconfigure(FuzzedDataProvider& data) {
-    LiveParameters present{session_.simulation().present_scenario(), publishers_, 0};
+    LiveParameters present{session_.simulation().state().present_scenario(), publishers_, 0};
     auto request = fuzz::next_message<dynamic_reconfigure::Config>(data, reconfigure_words);
     if (data.ConsumeBool()) rename(request.bools, reconfigure_values(present).bools, data);
     if (data.ConsumeBool()) rename(request.ints, reconfigure_values(present).ints, data);
@@ -183,7 +184,7 @@ class Node {
 
   void query(const QueryTerrainRequest& request) {
     const tf2::Transform transform = frames_.to_terrain(request.header);
-    const std::shared_ptr<const Snapshot> snapshot = session_.simulation().snapshot(sampled_layers());
+    const std::shared_ptr<const Snapshot> snapshot = session_.simulation().views().snapshot(sampled_layers());
     const TerrainSampler sampler(*snapshot);
     for (const geometry_msgs::Point& point : request.points) {
       const tf2::Vector3 p = transform * tf2::Vector3(point.x, point.y, point.z);
@@ -196,7 +197,7 @@ class Node {
     const tf2::Vector3 center = frames_.to_terrain(request.header) *
                                 tf2::Vector3(request.center.x, request.center.y, request.center.z);
     const MapRegion region{center.x(), center.y(), request.length_x, request.length_y};
-    const TerrainState state{{}, session_.simulation().snapshot(layers_of(layers)), {}, {}, {}, {}};
+    const TerrainState state{{}, session_.simulation().views().snapshot(layers_of(layers)), {}, {}, {}, {}};
     const MapWindow window = window_of(region, *state.snapshot);
     require_inside(window, region, *state.snapshot);
     require_map_size(window, layers.size(), "region");
@@ -221,13 +222,13 @@ class Node {
       goal.wind_seed = 0;
     }
     if (goal.members < 2) goal.gust_speed = goal.gust_direction_deg = goal.gust_time = 0, goal.seed = 0;
-    const LiveParameters present{session_.simulation().present_scenario(), publishers_, 10};
+    const LiveParameters present{session_.simulation().state().present_scenario(), publishers_, 10};
     const ForecastOptions options = forecast_options(goal, present, 10);
-    const std::uint64_t before = session_.simulation().state_hash();
+    const std::uint64_t before = session_.simulation().state().hash();
     ForecastRun run(checkpoint_bytes(session_.simulation()), options, "cpu", 1);
     int steps = 0;
     run.run([&steps](int, double) { return ++steps <= 20; });
-    if (session_.simulation().state_hash() != before) std::abort();
+    if (session_.simulation().state().hash() != before) std::abort();
   }
 
   const Scenario& scenario_;

@@ -28,7 +28,7 @@ TerrainState small_terrain() {
   Session session(scenario, no_raster_loader, "cpu", 1);
   session.step();
   TerrainState state;
-  state.snapshot = session.simulation().snapshot(GridGround::layers_of_snapshot(true));
+  state.snapshot = session.simulation().views().snapshot(GridGround::layers_of_snapshot(true));
   return state;
 }
 

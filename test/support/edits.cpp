@@ -63,7 +63,7 @@ EditTerrain quarter_turned(EditTerrain edit, double x, double y) {
 }
 
 std::string refusal(Simulation& simulation, const EditTerrain& edit) {
-  const std::uint64_t before = simulation.state_hash();
+  const std::uint64_t before = simulation.state().hash();
   std::string reason;
   try {
     simulation.apply(edit);
@@ -71,7 +71,7 @@ std::string refusal(Simulation& simulation, const EditTerrain& edit) {
   } catch (const ConfigError& error) {
     reason = error.what();
   }
-  EXPECT_EQ(before, simulation.state_hash()) << "refused, but changed something: " << reason;
+  EXPECT_EQ(before, simulation.state().hash()) << "refused, but changed something: " << reason;
   return reason;
 }
 

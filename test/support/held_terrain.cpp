@@ -55,7 +55,7 @@ std::vector<TileChange> HeldTerrain::take(const held_layer::Tolerance& tolerance
 void hold(Simulation& simulation, Layer layer) {
   HeldQuery query;
   query.hold = HeldQuery::Hold::present;
-  simulation.begin_changes({{layer, query}});
+  simulation.views().begin_changes({{layer, query}});
 }
 
 Pending<LayerChanges> begin_changes(Simulation& simulation, float threshold, int tile, Layer layer) {
@@ -63,7 +63,7 @@ Pending<LayerChanges> begin_changes(Simulation& simulation, float threshold, int
   query.changes = true;
   query.tolerance.threshold = threshold;
   query.tile = tile;
-  return simulation.begin_changes({{layer, query}})[layer];
+  return simulation.views().begin_changes({{layer, query}})[layer];
 }
 
 std::vector<TileChange> expected_changes(const std::vector<float>& now, std::vector<float>& held, int width,

@@ -138,7 +138,7 @@ command::EditPlants RandomCommands::plant_edit(const Simulation& simulation) {
 /// Limits of memory and time are another matter: what makes a step of a small terrain last for seconds stays.
 command::SetParameters RandomCommands::settings(const Simulation& simulation) {
   command::SetParameters command;
-  Scenario wanted = simulation.present_scenario();
+  Scenario wanted = simulation.state().present_scenario();
   const std::size_t count = 1 + below(3);
   for (std::size_t n = 0; n < count; ++n) {
     std::size_t all = 0;

@@ -42,7 +42,7 @@ class Running {
   Simulation& simulation() { return session_->simulation(); }
 
   Field field(Layer layer) {
-    const auto snapshot = simulation().snapshot({layer});
+    const auto snapshot = simulation().views().snapshot({layer});
     Field f;
     f.width = snapshot->width;
     f.height = snapshot->height;
@@ -54,7 +54,7 @@ class Running {
 
   /// That every material's books close exactly.
   void expect_balanced() {
-    const auto balance = simulation().balance();
+    const auto balance = simulation().state().balance();
     for (std::size_t m = 0; m < balance.size(); ++m) EXPECT_EQ(balance[m].residual(), 0) << material_names[m];
   }
 

@@ -55,7 +55,7 @@ std::vector<Layer> persistent_layers(const Simulation& simulation) {
 }
 
 void expect_sound(Simulation& simulation, const std::string& when) {
-  const auto balance = simulation.balance();
+  const auto balance = simulation.state().balance();
   for (std::size_t m = 0; m < balance.size(); ++m)
     EXPECT_EQ(balance[m].residual(), 0) << when << ": " << material_names[m] << " made or lost, in quanta";
   for (const LayerInfo& row : layer_table) {

@@ -120,8 +120,8 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node, const Mono
   publisher_ = std::make_unique<TopicPublisher>(node_, setup.publishers, *frames_, *simulation_);
   publisher_to_notify_ = publisher_.get();
   try {
-    services_ = std::make_unique<Services>(node_, step_queue_, *simulation_, *publisher_, *frames_, *files_,
-                                           p.answer_timeout);
+    services_ = std::make_unique<Services>(
+        ServiceContext{node_, step_queue_, *simulation_, *publisher_, *frames_, *files_, p.answer_timeout});
     if (p.autosave_period > 0)
       autosave_ = std::make_unique<Autosave>(autosaves, p.autosave_period, *simulation_, p.journal);
     forecast_ = std::make_unique<ForecastServer>(node_, *simulation_, *publisher_, *frames_,

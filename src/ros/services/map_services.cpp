@@ -1,8 +1,17 @@
 /// Services that read the terrain: ~query_terrain at points, ~get_submap and ~get_grid_map in rectangles of
 /// cells.
 
+#include <desert_sim/GetSubmap.h>
+#include <desert_sim/QueryTerrain.h>
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+
 #include "src/core/error.hpp"
+#include "src/grid_map/grid_map_msg.hpp"
 #include "src/ros/conversion/grid_map_message.hpp"
+#include "src/ros/conversion/map_window.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/services.hpp"
@@ -22,82 +31,108 @@ std::vector<MapLayer> requested_layers(const std::vector<std::string>& names) {
   return map_layers_named(names, "layers");
 }
 
-}  // namespace
-
 // ---- Points.
 
-TerrainState Services::recent_terrain() {
-  {
-    const std::lock_guard<std::mutex> lock(recent_mutex_);
-    const bool unchanged = recent_.moment.change == simulation_.changes();
-    const bool uncommanded = recent_.moment.command == simulation_.commands();
-    const bool recent = simulation_.clock().now() - recent_time_ < max_snapshot_age;
-    if (recent_.snapshot && (unchanged || (uncommanded && recent))) return recent_;
-  }
-  const TerrainState state = simulation_.terrain(sampled_layers()).get();
-  const std::lock_guard<std::mutex> lock(recent_mutex_);
-  recent_ = state;
-  recent_time_ = simulation_.clock().now();
-  return state;
-}
+/// A copy of the terrain that is new enough for a query: the last one, if it still is.
+class RecentTerrain {
+ public:
+  explicit RecentTerrain(SimulationThread& simulation) : simulation_(simulation) {}
 
-void Services::query_terrain(const QueryTerrainRequest& request, QueryTerrainResponse& response) {
+  TerrainState get() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      const bool unchanged = recent_.moment.change == simulation_.changes();
+      const bool uncommanded = recent_.moment.command == simulation_.commands();
+      const bool recent = simulation_.clock().now() - time_ < max_snapshot_age;
+      if (recent_.snapshot && (unchanged || (uncommanded && recent))) return recent_;
+    }
+    const TerrainState state = simulation_.terrain(sampled_layers()).get();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    recent_ = state;
+    time_ = simulation_.clock().now();
+    return state;
+  }
+
+ private:
+  SimulationThread& simulation_;
+  std::mutex mutex_;  ///< guards the next two
+  TerrainState recent_;
+  MonotonicClock::TimePoint time_;
+};
+
+void query_terrain(const ServiceContext& c, RecentTerrain& terrain, const QueryTerrainRequest& request,
+                   QueryTerrainResponse& response) {
   if (request.points.size() > max_points)
     throw ConfigError("points: " + std::to_string(request.points.size()) + " are given (allowed: at most " +
                       std::to_string(max_points) + ")");
   for (std::size_t n = 0; n < request.points.size(); ++n)
     require_finite(request.points[n], "points[" + std::to_string(n) + "]");
-  const tf2::Transform transform = frames_.to_terrain(request.header);
-  const TerrainState state = recent_terrain();
+  const tf2::Transform transform = c.frames.to_terrain(request.header);
+  const TerrainState state = terrain.get();
   const TerrainSampler sampler(*state.snapshot);
   response.samples.reserve(request.points.size());
   for (const geometry_msgs::Point& point : request.points) {
     const tf2::Vector3 p = transform * tf2::Vector3(point.x, point.y, point.z);
     response.samples.push_back(sampler.at(p.x(), p.y()));
   }
-  response.header = header_of(state.moment, frames_.terrain_frame());
+  response.header = header_of(state.moment, c.frames.terrain_frame());
   response.step = state.moment.step;
   response.sim_time = state.moment.time;
 }
 
 // ---- Rectangles.
 
-MapCut Services::cut_region(const std::vector<MapLayer>& layers, const std_msgs::Header& header,
-                            const geometry_msgs::Point& center, double length_x, double length_y) const {
+/// The layers in a rectangle around `center`, in the frame of `header` [m]. Throws ConfigError that names
+/// the field, its value and what is allowed.
+MapCut cut_region(const ServiceContext& c, const std::vector<MapLayer>& layers,
+                  const std_msgs::Header& header, const geometry_msgs::Point& center, double length_x,
+                  double length_y) {
   require_finite(center, "center");
-  const tf2::Vector3 c = frames_.to_terrain(header) * tf2::Vector3(center.x, center.y, center.z);
-  const MapRegion region{c.x(), c.y(), length_x, length_y};
-  return cut_terrain(simulation_, layers, "region", [&](const Snapshot& s) {
+  const tf2::Vector3 p = c.frames.to_terrain(header) * tf2::Vector3(center.x, center.y, center.z);
+  const MapRegion region{p.x(), p.y(), length_x, length_y};
+  return cut_terrain(c.simulation, layers, "region", [&](const Snapshot& s) {
     const MapWindow window = window_of(region, s);
     require_inside(window, region, s);
     return window;
   });
 }
 
-void Services::get_submap(const GetSubmapRequest& r, GetSubmapResponse& response) {
+void get_submap(const ServiceContext& c, const GetSubmapRequest& r, GetSubmapResponse& response) {
   const std::vector<MapLayer> layers = requested_layers(r.layers);
-  const MapCut c = cut_region(layers, r.header, r.center, r.length_x, r.length_y);
-  response.map = terrain_submap(c.state, frames_.terrain_frame(), layers, c.window);
+  const MapCut cut = cut_region(c, layers, r.header, r.center, r.length_x, r.length_y);
+  response.map = terrain_submap(cut.state, c.frames.terrain_frame(), layers, cut.window);
 }
 
-GridMap Services::get_grid_map(const GetGridMapRequest& r) const {
+GridMap get_grid_map(const ServiceContext& c, const GetGridMapRequest& r) {
   const std::vector<MapLayer> layers = requested_layers(r.layers);
   std_msgs::Header header;
   header.frame_id = r.frame_id;
   geometry_msgs::Point center;
   center.x = r.position_x;
   center.y = r.position_y;
-  const MapCut c = cut_region(layers, header, center, r.length_x, r.length_y);
-  return grid_map(c.state, frames_.terrain_frame(), layers, c.window);
+  const MapCut cut = cut_region(c, layers, header, center, r.length_x, r.length_y);
+  return grid_map(cut.state, c.frames.terrain_frame(), layers, cut.window);
 }
 
-void Services::advertise_get_grid_map() {
-  auto options = service_with_reason<GetGridMap>(
-      "get_grid_map", [this](const GetGridMapRequest& request, GetGridMapResponse& response) {
-        const SimulationThread::Patience patience(answer_timeout_);
-        response.map = get_grid_map(request);
+}  // namespace
+
+void add_map_services(Services& services) {
+  const ServiceContext& c = services.context();
+  const auto recent = std::make_shared<RecentTerrain>(c.simulation);
+
+  services.add<QueryTerrain>(
+      "query_terrain", [&c, recent](const QueryTerrainRequest& request, QueryTerrainResponse& response) {
+        query_terrain(c, *recent, request, response);
       });
-  servers_.push_back(node_.advertiseService(options));
+  services.add<GetSubmap>("get_submap", [&c](const GetSubmapRequest& request, GetSubmapResponse& response) {
+    get_submap(c, request, response);
+  });
+  // GetGridMap has no field `success`.
+  services.advertise(service_with_reason<GetGridMap>(
+      "get_grid_map", [&c](const GetGridMapRequest& request, GetGridMapResponse& response) {
+        const SimulationThread::Patience patience(c.answer_timeout);
+        response.map = get_grid_map(c, request);
+      }));
 }
 
 }  // namespace desert_sim

@@ -64,7 +64,7 @@ void SimulationThread::run_thread(const Scenario& scenario, const RasterLoader& 
     session_->confine_commands(options_.data_folder);  // not before: a journal's checkpoint may lie elsewhere
     pacer_ = Pacer(wanted_rate());
     stamp_ = stamp_now();
-    if (options_.publish_clock) options_.publish_clock(session_->simulation().paced_time());
+    if (options_.publish_clock) options_.publish_clock(session_->simulation().state().paced_time());
   } catch (...) {
     session_.reset();
     started.set_exception(std::current_exception());
@@ -144,8 +144,9 @@ bool SimulationThread::follows_ros_time() const { return ros::Time::isSimTime() 
 /// The stamp of the present state. A simulation that is the clock takes its own time: under use_sim_time, ROS
 /// time only reaches it later.
 ros::Time SimulationThread::stamp_now() const {
-  return options_.publish_clock && ros::Time::isSimTime() ? clock_time(session_->simulation().paced_time())
-                                                          : ros::Time::now();
+  return options_.publish_clock && ros::Time::isSimTime()
+             ? clock_time(session_->simulation().state().paced_time())
+             : ros::Time::now();
 }
 
 double SimulationThread::clock_now() const {
@@ -193,7 +194,7 @@ void SimulationThread::step() {
     steps_until_timed_ = timed_every;
     ++timed_steps_;
   }
-  session_->simulation().set_timing(timed);
+  session_->simulation().pipeline().set_timing(timed);
   session_->step();
   if (++steps_in_flight_ >= max_steps_in_flight || pacer_.rate() > 0) wait_for_steps();
   stamp_ = stamp_now();
@@ -215,15 +216,15 @@ void SimulationThread::release_unused_memory() {
     requested = 0;
     return true;
   };
-  if (unused(layers_requested_)) session_->simulation().release_requested_layers();
-  if (unused(costs_requested_)) session_->simulation().forget_costs();
-  if (unused(snapshot_requested_)) session_->simulation().staging().release();
+  if (unused(layers_requested_)) session_->simulation().views().release_requested_layers();
+  if (unused(costs_requested_)) session_->simulation().views().forget_costs();
+  if (unused(snapshot_requested_)) session_->simulation().views().staging().release();
 }
 
 void SimulationThread::note_change() {
   change_time_ = clock().now();
   ++changes_;
-  if (options_.publish_clock) options_.publish_clock(session_->simulation().paced_time());
+  if (options_.publish_clock) options_.publish_clock(session_->simulation().state().paced_time());
   on_change_();
 }
 
@@ -242,7 +243,7 @@ ReachedState SimulationThread::reached(bool with_hash) {
 
 /// The hash of the present state; it is computed only after a change.
 std::uint64_t SimulationThread::state_hash() {
-  if (hashed_change_ != changes_) hash_ = session_->simulation().state_hash();
+  if (hashed_change_ != changes_) hash_ = session_->simulation().state().hash();
   hashed_change_ = changes_;
   return hash_;
 }

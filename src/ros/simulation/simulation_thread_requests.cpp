@@ -116,16 +116,17 @@ SimulationThread::PendingState SimulationThread::begin_state_copy(const std::vec
   std::vector<Layer> in_use;
   for (Layer layer : layers) {
     note_request(layer);
-    if (session_->simulation().shows(layer)) in_use.push_back(layer);
+    if (session_->simulation().views().shows(layer)) in_use.push_back(layer);
   }
   snapshot_requested_ = clock().seconds();
   ++snapshots_;
   Simulation& s = session_->simulation();
-  PendingState state{moment(), s.begin_snapshot(in_use, band), {}, s.begin_costs(query.costs), {}};
-  if (query.plants) state.plants = s.begin_plants();
+  PendingState state{
+      moment(), s.views().begin_snapshot(in_use, band), {}, s.views().begin_costs(query.costs), {}};
+  if (query.plants) state.plants = s.views().begin_plants();
   if (query.costs.update || query.costs.whole) costs_requested_ = clock().seconds();
   for (const auto& entry : query.held) note_request(entry.first);
-  state.changes = s.begin_changes(query.held);
+  state.changes = s.views().begin_changes(query.held);
   return state;
 }
 
@@ -140,7 +141,7 @@ TerrainState SimulationThread::PendingState::get() const {
 }
 
 std::future<void> SimulationThread::forget(Layer layer) {
-  return submit<void>([this, layer] { session_->simulation().forget(layer); });
+  return submit<void>([this, layer] { session_->simulation().views().forget(layer); });
 }
 
 std::future<TerrainState> SimulationThread::terrain(const std::vector<Layer>& layers, const RowBand& band,
@@ -194,7 +195,7 @@ std::future<ForecastStart> SimulationThread::forecast_start(const ForecastParame
 }
 
 std::future<Scenario> SimulationThread::scenario() {
-  return submit<Scenario>([this] { return session_->simulation().present_scenario(); });
+  return submit<Scenario>([this] { return session_->simulation().state().present_scenario(); });
 }
 
 std::future<StatusReport> SimulationThread::report(bool measure) {
@@ -215,17 +216,17 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     r.steps_per_second = meter_.rate(clock().seconds());
     r.lag = pacer_.lag(clock_now());
     if (timed_steps_ > 0) {
-      process_times_ = s.process_times();
+      process_times_ = s.pipeline().times();
       for (ProcessTime& t : process_times_) t.milliseconds /= timed_steps_;
-      s.clear_process_times();
+      s.pipeline().clear_times();
       timed_steps_ = 0;
     }
     r.process_times = process_times_;
-    r.balance = s.balance();
-    r.changes = s.describe_changes();
-    r.wind_above = s.wind_above();
-    r.undoable = s.history().undoable();
-    r.redoable = s.history().redoable();
+    r.balance = s.state().balance();
+    r.changes = s.commands().describe_changes();
+    r.wind_above = s.state().wind_above();
+    r.undoable = s.commands().history().undoable();
+    r.redoable = s.commands().history().redoable();
     r.snapshots = snapshots_;
     if (paused_ && step_requests_.empty()) {
       r.hashed = true;

@@ -175,8 +175,7 @@ CommandResult Commands::Execution::operator()(const command::EditTerrain& comman
     const LayerEdit change = undoable && history.remembers() ? edit.change() : LayerEdit{};
     const CommandResult result = edit.commit(with_change);
     edit.loosen(state.scenario.get<LoosenessParameters>());
-    if (undoable)
-      history.paint(command.stroke, change, !had_obstacles && state.terrain.has(Layer::obstacle));
+    if (undoable) history.paint(command.stroke, change, !had_obstacles && state.terrain.has(Layer::obstacle));
     return result;
   } catch (...) {
     state.flags = flags;

@@ -84,7 +84,7 @@ bool ForecastRun::step_to_horizon(int number, const Progress& progress, const Vi
 }
 
 std::vector<float> ForecastRun::elevation() {
-  return simulation_->snapshot({Layer::elevation})->layers.at(Layer::elevation);
+  return simulation_->views().snapshot({Layer::elevation})->layers.at(Layer::elevation);
 }
 
 const std::vector<std::int8_t>& ForecastRun::costs() {
@@ -92,7 +92,7 @@ const std::vector<std::int8_t>& ForecastRun::costs() {
   CostQuery query;
   query.whole = true;  // that is, each tile in which a cost has changed since the last query
   costs_.resize(static_cast<std::size_t>(grid.cells()), held_costs::unknown_cost);
-  simulation_->begin_costs(query).whole.get()->write_to(costs_, grid.width);
+  simulation_->views().begin_costs(query).whole.get()->write_to(costs_, grid.width);
   return costs_;
 }
 
@@ -123,7 +123,7 @@ std::optional<ForecastMaps> ForecastRun::run(const Progress& progress) {
         moment.time = time;
         moment.step = simulation_->steps();
         moment.sim_time = simulation_->time();
-        moment.hash = simulation_->state_hash();
+        moment.hash = simulation_->state().hash();
         moment.elevation = elevation();
         moment.costs = costs();
         passability.add(time, moment.costs);

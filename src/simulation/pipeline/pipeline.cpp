@@ -284,6 +284,10 @@ std::uint64_t Pipeline::count(const std::string& counter) const {
   return counts;
 }
 
+double Pipeline::mean_count(const std::string& counter) const {
+  return state_.steps ? static_cast<double>(count(counter)) / static_cast<double>(state_.steps) : 0.0;
+}
+
 void Pipeline::edited(Layer layer) {
   for (const Process& process : table_.processes)
     if (process.edited) process.edited(state_, layer);

@@ -55,6 +55,7 @@ class Pipeline {
   /// What the processes keep, and the fields that they share, on the device.
   std::vector<MemoryPart> memory() const;
   std::uint64_t count(const std::string& counter) const;  ///< of all steps; see Process::counter
+  double mean_count(const std::string& counter) const;    ///< of a step
 
   /// A process of this scenario.
   struct Stage {

@@ -24,6 +24,9 @@ class Views {
   /// computed: the snapshot's height and origin are the band's, less what lies off an open terrain (at least
   /// one row is left).
   PendingSnapshot begin_snapshot(const std::vector<Layer>& layers, const RowBand& band = {});
+  std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers, const RowBand& band = {}) {
+    return begin_snapshot(layers, band).get();
+  }
   /// Starts a copy of all plants to the host, in the order of their look-up.
   PendingPlants begin_plants();
   /// Whether a snapshot of the layer has more to show than 0 everywhere.

@@ -70,7 +70,7 @@ TEST(ShadedHill, EachSpeciesLivesInItsLight) {
   EXPECT_GT(shade_on_flank / flank, 0.4);
   EXPECT_GT(sun_on_rest / sun, 0.95);
   EXPECT_GT(sun_on_rest / rest, 0.6);
-  for (const PlantCount& c : scene.simulation().plant_counts())
+  for (const PlantCount& c : scene.simulation().state().plant_counts())
     EXPECT_GT(c.mature, c.plants / 4) << c.species;
 }
 
@@ -85,7 +85,7 @@ TEST(Climates, KeepTheirPlants) {
             "wind: {speed: 3, direction_deg: 20}\n",
         climate));
     scene.run(250);
-    return scene.simulation().plant_counts();
+    return scene.simulation().state().plant_counts();
   };
   for (const std::string climate : {"arid", "savanna", "wetland", "forest"})
     for (const PlantCount& c : mature(climate)) {

@@ -1,5 +1,6 @@
 // Avalanching by hand: one pair, walls, soil, bedrock; what is carried from grid to grid.
 
+#include "kernels/avalanching/residual.hpp"
 #include "test/support/bench_terrain.hpp"
 #include "test/support/world.hpp"
 

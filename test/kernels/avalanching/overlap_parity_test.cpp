@@ -28,10 +28,11 @@ TEST_F(Overlap, SnapshotsAndChangesAreThoseOfTheCpu) {
     for (int round = 0; round < 8; ++round) {
       const float threshold = round % 3 == 2 ? 0.0f : 0.003f * static_cast<float>(round + 1);
       for (Simulation* s : {a.get(), b.get()}) {
-        s->staging().set_slot_bytes(round < 4 ? std::size_t{1} << 26 : 100000);
+        s->views().staging().set_slot_bytes(round < 4 ? std::size_t{1} << 26 : 100000);
         test::run(*s, 2);
       }
-      const auto x = a->begin_snapshot(a->layers_in_use()), y = b->begin_snapshot(b->layers_in_use());
+      const auto x = a->views().begin_snapshot(a->state().layers_in_use()),
+                 y = b->views().begin_snapshot(b->state().layers_in_use());
       const auto c = test::begin_changes(*a, threshold, 32), d = test::begin_changes(*b, threshold, 32);
       test::run(*a, 1);
       test::run(*b, 1);
@@ -45,7 +46,7 @@ TEST_F(Overlap, SnapshotsAndChangesAreThoseOfTheCpu) {
       std::vector<std::int8_t> held[2]{std::vector<std::int8_t>(150 * 131), held[0]};
       std::size_t tiles[2]{};
       for (int n = 0; n < 2; ++n) {
-        const PendingCosts taken = (n == 0 ? a : b)->begin_costs(query);
+        const PendingCosts taken = (n == 0 ? a : b)->views().begin_costs(query);
         for (const auto& changes : {taken.update.get(), taken.whole.get()}) {
           if (!changes) continue;
           changes->write_to(held[n], 150);
@@ -65,13 +66,13 @@ TEST_F(Overlap, ChangesOfLayersAreThoseOfTheCpu) {
   for (Layer layer : {Layer::sand, Layer::bedrock, Layer::wind_x, Layer::wind_shadow, Layer::slope,
                       Layer::traversability, Layer::water_surface, Layer::moisture})
     queries[layer].hold = HeldQuery::Hold::present;
-  for (Simulation* s : {a.get(), b.get()}) EXPECT_TRUE(s->begin_changes(queries).empty());
+  for (Simulation* s : {a.get(), b.get()}) EXPECT_TRUE(s->views().begin_changes(queries).empty());
   std::map<Layer, std::size_t> tiles;
   for (int round = 0; round < 6; ++round) {
     for (auto& [layer, query] : queries)
       query = {true, {0.002f * static_cast<float>(round), layer == Layer::traversability}, 32};
     for (Simulation* s : {a.get(), b.get()}) test::run(*s, 2);
-    const PendingChanges x = a->begin_changes(queries), y = b->begin_changes(queries);
+    const PendingChanges x = a->views().begin_changes(queries), y = b->views().begin_changes(queries);
     ASSERT_EQ(x.size(), queries.size());
     for (const auto& [layer, pending] : x) {
       SCOPED_TRACE(testing::Message() << info(layer).name << ", round " << round);
@@ -92,11 +93,11 @@ TEST_F(Overlap, LookingLeavesNoTraceInTheSimulation) {
   for (int n = 0; n < 60; ++n) {
     alone->step();
     watched->step();
-    pending.push_back(watched->begin_snapshot({Layer::elevation, Layer::sand, Layer::wind_x}));
+    pending.push_back(watched->views().begin_snapshot({Layer::elevation, Layer::sand, Layer::wind_x}));
     if (n % 3 == 0) test::begin_changes(*watched, 0.01f, 32);  // and nobody waits for it
-    if (n == 30) watched->staging().release();
+    if (n == 30) watched->views().staging().release();
   }
-  EXPECT_EQ(alone->state_hash(), watched->state_hash());
+  EXPECT_EQ(alone->state().hash(), watched->state().hash());
   EXPECT_EQ(pending.back().get()->layers.at(Layer::sand), alone->terrain().values(Layer::sand));
   for (std::size_t n = 0; n < pending.size(); ++n) EXPECT_EQ(pending[n].get()->step, n + 1);
 }
@@ -134,16 +135,16 @@ TEST_F(OverlapTime, StepsGoOnWhileASnapshotTravels) {
     test::run(*s, steps);
     cuda().synchronise();
   };
-  for (int n = 0; n < 4; ++n) s->snapshot(layers);
-  const double snapshot = best_milliseconds([&] { s->snapshot(layers); });
+  for (int n = 0; n < 4; ++n) s->views().snapshot(layers);
+  const double snapshot = best_milliseconds([&] { s->views().snapshot(layers); });
   PendingSnapshot begun;
-  const double begin = best_milliseconds([&] { begun = s->begin_snapshot(layers); });
+  const double begin = best_milliseconds([&] { begun = s->views().begin_snapshot(layers); });
   begun.get();
   const double step = best_milliseconds([&] { run(20); }) / 20;
   const int count = std::max(1, static_cast<int>(std::lround(snapshot / step)));  // take as long
   const double steps = best_milliseconds([&] { run(count); });
   const double together = best_milliseconds([&] {
-    const PendingSnapshot pending = s->begin_snapshot(layers);
+    const PendingSnapshot pending = s->views().begin_snapshot(layers);
     std::thread reader([&] { pending.get(); });
     run(count);
     reader.join();
@@ -158,8 +159,8 @@ TEST_F(OverlapTime, StepsGoOnWhileASnapshotTravels) {
 
 TEST_F(OverlapTime, AnUpdateOfAFewTilesTakesLessThanTheWholeSurface) {
   const auto s = large(cuda());
-  for (int n = 0; n < 4; ++n) s->snapshot({Layer::elevation});
-  const double whole = best_milliseconds([&] { s->snapshot({Layer::elevation}); });
+  for (int n = 0; n < 4; ++n) s->views().snapshot({Layer::elevation});
+  const double whole = best_milliseconds([&] { s->views().snapshot({Layer::elevation}); });
   test::hold(*s);
   std::size_t tiles = 0;
   int n = 0;

@@ -35,7 +35,7 @@ class BrushEdit : public test::OnBackend {
     return s->terrain().values(Layer::bedrock)[static_cast<std::size_t>(y * 20 + x)];
   }
   std::string refusal(const command::EditTerrain& e) {
-    const std::uint64_t before = s->state_hash();
+    const std::uint64_t before = s->state().hash();
     std::string reason;
     try {
       s->apply(e);
@@ -43,7 +43,7 @@ class BrushEdit : public test::OnBackend {
     } catch (const ConfigError& error) {
       reason = error.what();
     }
-    EXPECT_EQ(before, s->state_hash()) << "refused, but changed something";
+    EXPECT_EQ(before, s->state().hash()) << "refused, but changed something";
     return reason;
   }
 
@@ -184,7 +184,7 @@ TEST_P(BrushEdit, ReportsTheVolumeThatItChanged) {
   e.value = 100;
   EXPECT_NEAR(s->apply(e).volume_m3, -21 * 0.25 * 3, 1e-6) << "no more than there is";
   EXPECT_EQ(sand(10, 8), 0);
-  const auto balance = s->balance()[static_cast<std::size_t>(Material::sand)];
+  const auto balance = s->state().balance()[static_cast<std::size_t>(Material::sand)];
   EXPECT_EQ(balance.residual(), 0);
   EXPECT_NEAR(balance.cubic_metres(balance.in), 21 * 0.25, 1e-6);
   EXPECT_NEAR(balance.cubic_metres(balance.out), 63 * 0.25, 1e-6);

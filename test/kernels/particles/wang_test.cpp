@@ -160,7 +160,7 @@ TEST_P(Particles, LoseAndMakeNoSand) {
       test::run(*s, 6);
       test::expect_sound(*s, "after six steps");
       EXPECT_NE(before, test::quanta(*s, Layer::sand));
-      const auto sand = s->balance()[static_cast<std::size_t>(Material::sand)];
+      const auto sand = s->state().balance()[static_cast<std::size_t>(Material::sand)];
       const bool open = boundary == std::string("open");
       EXPECT_EQ(sand.in > 0, open);
       EXPECT_EQ(sand.out > 0, open);

@@ -41,7 +41,7 @@ TEST_P(Garden, GrowsAndDiesAndKeepsItsBooks) {
     most = std::max(most, s->state().plants.count);
   }
   EXPECT_GT(most, 100);
-  const auto counts = s->plant_counts();
+  const auto counts = s->state().plant_counts();
   ASSERT_EQ(counts.size(), 3u);
   int all = 0;
   for (const PlantCount& c : counts) {
@@ -50,7 +50,7 @@ TEST_P(Garden, GrowsAndDiesAndKeepsItsBooks) {
   }
   EXPECT_EQ(all, s->state().plants.count);
   EXPECT_GT(counts[0].mature, 0);
-  const auto balance = s->balance()[static_cast<std::size_t>(Material::moisture)];
+  const auto balance = s->state().balance()[static_cast<std::size_t>(Material::moisture)];
   EXPECT_GT(balance.out, 0) << "plants drank";
   EXPECT_EQ(balance.in, 0);
 }
@@ -63,12 +63,12 @@ TEST_P(Garden, IsTheSameThroughACheckpoint) {
   ASSERT_GT(half->state().plants.count, 50);
   save_checkpoint(folder.path("half.ck"), *half);
   auto resumed = load_checkpoint(folder.path("half.ck"), exec());
-  EXPECT_EQ(resumed->state_hash(), half->state_hash());
+  EXPECT_EQ(resumed->state().hash(), half->state().hash());
   EXPECT_EQ(plants::words(resumed->state().plants), plants::words(half->state().plants));
-  resumed->snapshot(resumed->layers_in_use());
-  EXPECT_EQ(resumed->state_hash(), half->state_hash()) << "a look changes nothing";
+  resumed->views().snapshot(resumed->state().layers_in_use());
+  EXPECT_EQ(resumed->state().hash(), half->state().hash()) << "a look changes nothing";
   test::run(*resumed, 40);
-  EXPECT_EQ(resumed->state_hash(), whole->state_hash());
+  EXPECT_EQ(resumed->state().hash(), whole->state().hash());
   EXPECT_EQ(plants::words(resumed->state().plants), plants::words(whole->state().plants));
 }
 
@@ -78,7 +78,7 @@ TEST(GardenOf, TheHashDoesNotDependOnTheNumberOfThreads) {
   for (int n = 0; n < 4; ++n) {
     test::run(*a, 10);
     test::run(*b, 10);
-    EXPECT_EQ(a->state_hash(), b->state_hash()) << a->steps();
+    EXPECT_EQ(a->state().hash(), b->state().hash()) << a->steps();
   }
   EXPECT_GT(a->state().plants.count, 50);
 }
@@ -94,17 +94,17 @@ TEST(GardenOf, TheHashIsOfThePlantsToo) {
   a->step();
   b->step();
   ASSERT_NE(a->state().plants.count, b->state().plants.count);
-  EXPECT_NE(a->state_hash(), b->state_hash());
+  EXPECT_NE(a->state().hash(), b->state().hash());
 }
 
 TEST(GardenOf, AResetBeginsAnew) {
   Session session(test::scenario_of(garden), no_raster_loader, "cpu", 1);
-  const std::uint64_t start = session.simulation().state_hash();
+  const std::uint64_t start = session.simulation().state().hash();
   for (int n = 0; n < 20; ++n) session.step();
   ASSERT_GT(session.simulation().state().plants.count, 0);
   session.apply(command::Reset{});
   EXPECT_EQ(session.simulation().state().plants.count, 0);
-  EXPECT_EQ(session.simulation().state_hash(), start);
+  EXPECT_EQ(session.simulation().state().hash(), start);
 }
 
 TEST(GardenOf, MemoryIsWhatWasPlanned) {
@@ -201,7 +201,7 @@ TEST_P(Garden, ADesertWithoutPlantsHasNoneOfTheirLayers) {
   for (Layer layer : {Layer::canopy_height, Layer::illumination, Layer::illumination_canopy,
                       Layer::vegetation, Layer::humus})
     EXPECT_FALSE(s->terrain().has(layer));
-  EXPECT_TRUE(s->plant_counts().empty());
+  EXPECT_TRUE(s->state().plant_counts().empty());
 }
 
 DESERT_ON_EACH_BACKEND(Garden);

@@ -70,10 +70,10 @@ const char* const meadow =
 TEST_P(PlantMarking, ASnapshotShowsSpeciesAndTheWatersSurface) {
   auto s = simulation(meadow);
   test::run(*s, 20);
-  const auto hash = s->state_hash();
-  const auto all =
-      s->snapshot({Layer::plants, Layer::vegetation, Layer::water_surface, Layer::elevation, Layer::water});
-  EXPECT_EQ(s->state_hash(), hash) << "a look changes nothing";
+  const auto hash = s->state().hash();
+  const auto all = s->views().snapshot(
+      {Layer::plants, Layer::vegetation, Layer::water_surface, Layer::elevation, Layer::water});
+  EXPECT_EQ(s->state().hash(), hash) << "a look changes nothing";
   ASSERT_EQ(all->crown_colours.size(), 2u);
   EXPECT_GT(all->crown_colours[0][0], all->crown_colours[0][1]) << "violet bushes";
   const auto& marks = all->layers.at(Layer::plants);
@@ -100,9 +100,9 @@ TEST_P(PlantMarking, AListHasEveryPlantInItsOrder) {
     return words[static_cast<std::size_t>(c) * static_cast<std::size_t>(count) + static_cast<std::size_t>(n)];
   };
   for (std::size_t slot :
-       {s->staging().slot_bytes(), 7 * sizeof(plants::PlantRecord)}) {  // in one piece, in many
-    s->staging().set_slot_bytes(slot);
-    const auto list = s->begin_plants().get();
+       {s->views().staging().slot_bytes(), 7 * sizeof(plants::PlantRecord)}) {  // in one piece, in many
+    s->views().staging().set_slot_bytes(slot);
+    const auto list = s->views().begin_plants().get();
     EXPECT_EQ(list->origin_x, 100);
     EXPECT_EQ(list->origin_y, -40);
     EXPECT_EQ(list->step, 20u);
@@ -125,12 +125,12 @@ TEST_P(PlantMarking, AListHasEveryPlantInItsOrder) {
 
 TEST_P(PlantMarking, WherePlantsAreOffThereAreNone) {
   auto s = simulation("grid: {width: 20, height: 20}\n");
-  EXPECT_FALSE(s->shows(Layer::plants));
-  EXPECT_TRUE(s->shows(Layer::water_surface));
-  const auto list = s->begin_plants().get();
+  EXPECT_FALSE(s->views().shows(Layer::plants));
+  EXPECT_TRUE(s->views().shows(Layer::water_surface));
+  const auto list = s->views().begin_plants().get();
   EXPECT_TRUE(list->plants.empty());
   EXPECT_TRUE(list->species.empty());
-  const auto marks = s->snapshot({Layer::plants})->layers.at(Layer::plants);
+  const auto marks = s->views().snapshot({Layer::plants})->layers.at(Layer::plants);
   EXPECT_EQ(*std::max_element(marks.begin(), marks.end()), 0);
 }
 

@@ -367,16 +367,17 @@ TEST_P(TraversabilityLaw, IsComputedOnlyForWhoAsksAndIsNoPartOfTheState) {
   auto s = simulation(test::grid_yaml(20, 12, "open") +
                       "terrain: [noise: {layer: sand, low: 0, high: 4, scale: 6}]\nwind: {speed: 5}\n");
   s->step();
-  const std::uint64_t hash = s->state_hash();
-  s->snapshot({Layer::elevation});
+  const std::uint64_t hash = s->state().hash();
+  s->views().snapshot({Layer::elevation});
   for (Layer layer : judged) EXPECT_FALSE(s->terrain().has(layer)) << info(layer).name;
-  const auto one = s->snapshot({Layer::traversability});
+  const auto one = s->views().snapshot({Layer::traversability});
   EXPECT_FALSE(s->terrain().has(Layer::slope));
-  const auto all = s->snapshot(judged);
+  const auto all = s->views().snapshot(judged);
   EXPECT_EQ(one->layers.at(Layer::traversability), all->layers.at(Layer::traversability));
-  EXPECT_EQ(s->state_hash(), hash);
+  EXPECT_EQ(s->state().hash(), hash);
   s->step();
-  EXPECT_NE(s->snapshot(judged)->layers.at(Layer::slope), all->layers.at(Layer::slope)) << "of the new state";
+  EXPECT_NE(s->views().snapshot(judged)->layers.at(Layer::slope), all->layers.at(Layer::slope))
+      << "of the new state";
 }
 
 /// A band of rows has what these rows of the whole have, over periodic edges too, and less what is off open
@@ -388,13 +389,13 @@ TEST_P(TraversabilityLaw, ABandOfRowsIsThatOfTheWhole) {
     auto s = simulation(yaml);
     std::vector<Layer> layers = judged;
     layers.insert(layers.end(), {Layer::elevation, Layer::sand, Layer::wind_x});
-    const auto all = s->snapshot(layers);
+    const auto all = s->views().snapshot(layers);
     const bool periodic = all->periodic_y;
     for (const RowBand band :
          {RowBand{0, 12}, {3, 4}, {11, 1}, {-3, 7}, {9, 6}, {-40, 5}, {50, 3}, {-5, 90}}) {
       SCOPED_TRACE(std::string(boundary) + ", " + std::to_string(band.count) + " rows from " +
                    std::to_string(band.first));
-      const auto part = s->snapshot(layers, band);
+      const auto part = s->views().snapshot(layers, band);
       const int first = static_cast<int>(std::lround(part->origin_y - all->origin_y));
       const int wanted = std::min(band.first + band.count, 12) - std::max(band.first, 0);
       if (periodic) {
@@ -422,7 +423,7 @@ TEST_P(TraversabilityLaw, ABandOfRowsIsThatOfTheWhole) {
 TEST_P(TraversabilityLaw, OfABandOnlyTheRowsAreComputed) {
   auto s = simulation(test::grid_yaml(20, 12, "open") +
                       "terrain: [noise: {layer: sand, low: 0, high: 4, scale: 6}]\nwind: {speed: 5}\n");
-  s->snapshot({Layer::slope}, {3, 2});
+  s->views().snapshot({Layer::slope}, {3, 2});
   const std::vector<float> slope = s->terrain().values(Layer::slope);
   for (int i = 0; i < 20 * 12; ++i) {
     const bool computed = i >= 3 * 20 && i < 5 * 20;

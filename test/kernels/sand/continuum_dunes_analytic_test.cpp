@@ -73,7 +73,7 @@ TEST_P(ContinuumDunes, OverOpenEdgesNothingIsLost) {
         "wind: {speed: 10, direction_deg: " +
             std::to_string(degrees) + "}\nsand: {model: continuum}\nsaltation: {influx: 5.0e-6}\n",
         1800, 30 * 1800);
-    const MaterialBalance sand = s->balance()[static_cast<std::size_t>(Material::sand)];
+    const MaterialBalance sand = s->state().balance()[static_cast<std::size_t>(Material::sand)];
     EXPECT_GT(sand.in, 0);
     EXPECT_GT(sand.out, sand.in) << "the edges are worn";
   }
@@ -159,7 +159,7 @@ TEST_P(ContinuumDunes, SandThatPassesWearsRock) {
             "}\n"
             "shear_stress: {in_phase: 0, in_quadrature: 0}\nterrain: [uniform: {layer: bedrock, value: 5}]\n",
         60, seconds);
-    return static_cast<double>(s->balance()[static_cast<std::size_t>(Material::bedrock)].out);
+    return static_cast<double>(s->state().balance()[static_cast<std::size_t>(Material::bedrock)].out);
   };
   const double once = worn(2e-6, 6000);
   EXPECT_NEAR(once, 24 * 24 * 2e-6 * 0.001 * 6000 * 1048576, 0.05 * once);

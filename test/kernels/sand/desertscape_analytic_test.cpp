@@ -10,7 +10,7 @@ class Desertscape : public test::OnBackend {
  protected:
   /// Sand that leaves an open strip over its lee edge in a time [m³].
   static double leaving(Simulation& s, int steps) {
-    const auto out = [&] { return s.balance()[static_cast<std::size_t>(Material::sand)]; };
+    const auto out = [&] { return s.state().balance()[static_cast<std::size_t>(Material::sand)]; };
     const auto before = out();
     test::run(s, steps);
     const auto after = out();
@@ -53,7 +53,7 @@ TEST_P(Desertscape, InfluxIsThatOfTheParameter) {
         even_wind + "sand: {model: desertscape_2019}\nsaltation: {lift: 0.3, hop_spread: 0, influx: " +
         std::to_string(influx) + "}\nreptation: {method: off}\n");
     test::run(*s, 20);
-    const auto sand = s->balance()[static_cast<std::size_t>(Material::sand)];
+    const auto sand = s->state().balance()[static_cast<std::size_t>(Material::sand)];
     EXPECT_NEAR(sand.cubic_metres(sand.in) / (48 * 20), influx, 0.06 * influx);
     test::expect_sound(*s, "after 20 s");
   }

@@ -43,9 +43,9 @@ TEST_P(FlatBed, FluxIsLiftTimesWindOverTheShareThatStays) {
         "avalanching: {enabled: false}\nrun: {time_step: " +
         std::to_string(dt) + "}\n");
     test::run(*s, static_cast<int>(30 / dt));
-    const auto before = s->balance()[static_cast<std::size_t>(Material::sand)];
+    const auto before = s->state().balance()[static_cast<std::size_t>(Material::sand)];
     s->step();
-    const auto after = s->balance()[static_cast<std::size_t>(Material::sand)];
+    const auto after = s->state().balance()[static_cast<std::size_t>(Material::sand)];
     const double volume = after.cubic_metres(after.out - before.out);
     // The air carries ε T/p, of which the share Δt/T leaves over a strip of w T; T = 1 s.
     EXPECT_NEAR(volume / (16 * dt), 4 / 0.6, 1e-4 / dt) << "dt " << dt;

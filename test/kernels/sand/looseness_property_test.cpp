@@ -65,7 +65,7 @@ TEST_P(LooseGround, LeavesTheDesertAsItIs) {
   test::run(*without, 12);
   for (Layer layer : test::persistent_layers(*without))
     EXPECT_EQ(with->terrain().raw_words(layer), without->terrain().raw_words(layer)) << info(layer).name;
-  EXPECT_NE(with->state_hash(), without->state_hash()) << "it is part of the state";
+  EXPECT_NE(with->state().hash(), without->state().hash()) << "it is part of the state";
 }
 
 TEST_P(LooseGround, StaysInItsRangeAndGoesThroughCheckpointsToTheBit) {
@@ -75,10 +75,10 @@ TEST_P(LooseGround, StaysInItsRangeAndGoesThroughCheckpointsToTheBit) {
     test::run(*s, 6);
     save_checkpoint(folder.path("a.ck"), *s);
     const auto loaded = load_checkpoint(folder.path("a.ck"), exec());
-    EXPECT_EQ(s->state_hash(), loaded->state_hash());
+    EXPECT_EQ(s->state().hash(), loaded->state().hash());
     test::run(*s, 6);
     test::run(*loaded, 6);
-    EXPECT_EQ(s->state_hash(), loaded->state_hash());
+    EXPECT_EQ(s->state().hash(), loaded->state().hash());
     const auto values = test::real(*s, Layer::looseness);
     EXPECT_GE(*std::min_element(values.begin(), values.end()), 0);
     EXPECT_LE(*std::max_element(values.begin(), values.end()), 1);
@@ -88,7 +88,7 @@ TEST_P(LooseGround, StaysInItsRangeAndGoesThroughCheckpointsToTheBit) {
 /// As wheels do: what they pass over is at most so loose.
 TEST_P(LooseGround, BrushesPackAndLoosenIt) {
   auto s = simulation(std::string(still) + "looseness: {enabled: true, initial: 0.6}\n");
-  s->history().set_memory(1 << 20);
+  s->commands().history().set_memory(1 << 20);
   s->apply(brush("looseness", BrushMerge::min, 0.25), false);
   EXPECT_EQ(at(*s, 10, 10), 0.25f);
   EXPECT_EQ(at(*s, 15, 10), 0.6f) << "cells beside the brush keep their bits";
@@ -98,10 +98,10 @@ TEST_P(LooseGround, BrushesPackAndLoosenIt) {
   EXPECT_EQ(at(*s, 10, 10), 0.75f);
   s->apply(brush("looseness", BrushMerge::add, 0.75), false);
   EXPECT_EQ(at(*s, 10, 10), 1.0f);
-  const auto balance = s->balance();
+  const auto balance = s->state().balance();
   for (const MaterialBalance& material : balance)
     EXPECT_EQ(material.in + material.out, 0) << "it is no material";
-  EXPECT_EQ(s->history().undoable(), 0) << "the sand that moves changes it besides";
+  EXPECT_EQ(s->commands().history().undoable(), 0) << "the sand that moves changes it besides";
 }
 
 TEST_P(LooseGround, PouredSandIsLoose) {
@@ -116,7 +116,7 @@ TEST_P(LooseGround, PouredSandIsLoose) {
 
 TEST_P(LooseGround, RefusedEditsChangeNothing) {
   auto s = simulation(still + on);
-  const std::uint64_t before = s->state_hash();
+  const std::uint64_t before = s->state().hash();
   const auto refusal = [&](Simulation& of, const command::EditTerrain& edit) {
     return test::refusal([&] { of.apply(edit, false); });
   };
@@ -125,7 +125,7 @@ TEST_P(LooseGround, RefusedEditsChangeNothing) {
   command::EditTerrain conserving = brush("looseness", BrushMerge::sub, 0.1);
   conserving.conserve = true;
   EXPECT_NE(refusal(*s, conserving).find("looseness is no material"), std::string::npos);
-  EXPECT_EQ(s->state_hash(), before);
+  EXPECT_EQ(s->state().hash(), before);
   const auto off = simulation(still);
   EXPECT_NE(refusal(*off, brush("looseness", BrushMerge::min, 0)).find("this terrain has no layer looseness"),
             std::string::npos);

@@ -46,7 +46,7 @@ TEST_P(SlabResistance, WherePlantsAreFullyEffectiveNoSlabIsTakenAndEachStays) {
 
 /// With R = ½ half of the polls take a slab: of a bed on which each that is taken leaves the grid.
 double slabs_taken(Simulation& s) {
-  const MaterialBalance sand = s.balance()[static_cast<int>(Material::sand)];
+  const MaterialBalance sand = s.state().balance()[static_cast<int>(Material::sand)];
   return sand.cubic_metres(sand.out) / static_cast<double>(slab);
 }
 const std::string open_grid = test::grid_yaml(side, side, "open");

@@ -256,7 +256,7 @@ TEST_P(SlabInflux, ComesInOverTheOpenWindwardEdge) {
         test::grid_yaml(48, 48, "open") + "wind: {speed: 5, direction_deg: " + std::to_string(degrees) +
         "}\nsaltation: {influx: 0.01}\nsand: {model: werner}\nslab_model: {slab_height: 0.1}\n");
     test::run(*s, 100);
-    const MaterialBalance sand = s->balance()[static_cast<std::size_t>(Material::sand)];
+    const MaterialBalance sand = s->state().balance()[static_cast<std::size_t>(Material::sand)];
     EXPECT_NEAR(sand.cubic_metres(sand.in) / 0.1, 480, 4 * std::sqrt(480));
     test::expect_sound(*s, "after a hundred steps");
   }
@@ -275,7 +275,7 @@ TEST_P(SlabTurns, ShortStepsPollAsOftenAsLongOnes) {
         "polling: " +
         polling + "}\n");
     test::run(*s, 40);
-    const MaterialBalance sand = s->balance()[static_cast<std::size_t>(Material::sand)];
+    const MaterialBalance sand = s->state().balance()[static_cast<std::size_t>(Material::sand)];
     EXPECT_NEAR(sand.cubic_metres(sand.out) / 0.1, 48 * 48, 4 * 48) << polling;
   }
 }

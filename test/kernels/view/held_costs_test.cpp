@@ -198,25 +198,25 @@ const char* const world =
 
 TEST_P(HeldCostsTold, OfASimulationFollowItsTraversability) {
   auto s = simulation(world);
-  EXPECT_FALSE(s->begin_costs({}).update);
+  EXPECT_FALSE(s->views().begin_costs({}).update);
   EXPECT_FALSE(s->terrain().has(Layer::traversability));
   const std::size_t before = exec().bytes_held(), parts = total_bytes(s->memory());
   CostQuery query;
   query.update = true;
   query.threshold = 2;
-  const PendingCosts first = s->begin_costs(query);
+  const PendingCosts first = s->views().begin_costs(query);
   EXPECT_FALSE(first.update) << "nothing was held";
   Costs held(90 * 70, unknown_cost);
   first.whole.get()->write_to(held, 90);
-  s->staging().release();
+  s->views().staging().release();
   EXPECT_EQ(exec().bytes_held() - before, 2 * 90 * 70);
   EXPECT_EQ(total_bytes(s->memory()) - parts, exec().bytes_held() - before);
   EXPECT_FALSE(s->terrain().has(Layer::traversability)) << "nobody asked for the layer";
   for (int round = 0; round < 5; ++round) {
     test::run(*s, 3);
     query.whole = round == 3;
-    const PendingCosts taken = s->begin_costs(query);
-    const std::shared_ptr<const Snapshot> snapshot = s->snapshot({Layer::traversability});
+    const PendingCosts taken = s->views().begin_costs(query);
+    const std::shared_ptr<const Snapshot> snapshot = s->views().snapshot({Layer::traversability});
     Costs now;
     for (float worth : snapshot->layers.at(Layer::traversability)) now.push_back(cost_of(worth));
     test::run(*s, 1);  // meanwhile
@@ -231,9 +231,9 @@ TEST_P(HeldCostsTold, OfASimulationFollowItsTraversability) {
     taken.whole.get()->write_to(held, 90);
     ASSERT_EQ(held, now);
   }
-  s->release_requested_layers();
-  s->staging().release();
-  s->forget_costs();
+  s->views().release_requested_layers();
+  s->views().staging().release();
+  s->views().forget_costs();
   EXPECT_EQ(exec().bytes_held(), before);
 }
 

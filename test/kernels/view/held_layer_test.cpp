@@ -85,29 +85,29 @@ const char* const held_world =
 
 TEST_P(HeldLayer, OfASimulationTellsWhatStepsChanged) {
   auto s = simulation(held_world);
-  EXPECT_FALSE(s->holds(Layer::elevation));
+  EXPECT_FALSE(s->views().holds(Layer::elevation));
   EXPECT_FALSE(test::begin_changes(*s, 0.01f, 32));
   test::run(*s, 2);
   test::hold(*s);
-  ASSERT_TRUE(s->holds(Layer::elevation));
-  std::vector<float> held = s->snapshot({Layer::elevation})->layers.at(Layer::elevation);
+  ASSERT_TRUE(s->views().holds(Layer::elevation));
+  std::vector<float> held = s->views().snapshot({Layer::elevation})->layers.at(Layer::elevation);
   std::size_t changed = 0;
-  const std::size_t usual = s->staging().slot_bytes();
+  const std::size_t usual = s->views().staging().slot_bytes();
   for (int round = 0; round < 6; ++round) {
-    s->staging().release();
-    s->staging().set_slot_bytes(round % 2 ? 1 : usual);  // a row of tiles at a time
+    s->views().staging().release();
+    s->views().staging().set_slot_bytes(round % 2 ? 1 : usual);  // a row of tiles at a time
     test::run(*s, 3);
     const float threshold = 0.02f * static_cast<float>(round);
     const auto pending = test::begin_changes(*s, threshold, 16);
-    const std::vector<float> now = s->snapshot({Layer::elevation})->layers.at(Layer::elevation);
+    const std::vector<float> now = s->views().snapshot({Layer::elevation})->layers.at(Layer::elevation);
     test::run(*s, 2);  // meanwhile
     const auto expected = test::expected_changes(now, held, 90, {threshold}, 16);
     test::expect_same(pending.get()->tiles, expected);
     changed += expected.size();
   }
   EXPECT_GT(changed, 30u) << "too little happened to tell anything";
-  s->forget(Layer::elevation);
-  EXPECT_FALSE(s->holds(Layer::elevation));
+  s->views().forget(Layer::elevation);
+  EXPECT_FALSE(s->views().holds(Layer::elevation));
 }
 
 /// Layers of each kind: stored quanta and floats, derived, computed on request, and absent ones.
@@ -119,18 +119,18 @@ TEST_P(HeldLayer, OfAnyLayerOfASimulation) {
   std::map<Layer, std::vector<float>> held;
   HeldQueries queries;
   for (Layer layer : layers) queries[layer].hold = HeldQuery::Hold::present;
-  EXPECT_TRUE(s->begin_changes(queries).empty()) << "nothing was held, and nothing was asked for";
-  for (Layer layer : layers) held[layer] = s->snapshot({layer})->layers.at(layer);
+  EXPECT_TRUE(s->views().begin_changes(queries).empty()) << "nothing was held, and nothing was asked for";
+  for (Layer layer : layers) held[layer] = s->views().snapshot({layer})->layers.at(layer);
   std::map<Layer, std::size_t> changed;
   for (int round = 0; round < 4; ++round) {
     test::run(*s, 4);
-    s->release_requested_layers();
+    s->views().release_requested_layers();
     for (Layer layer : layers) queries[layer] = {true, {0.002f, layer == Layer::traversability}, 16};
-    const PendingChanges pending = s->begin_changes(queries);
+    const PendingChanges pending = s->views().begin_changes(queries);
     ASSERT_EQ(pending.size(), layers.size());
     for (Layer layer : layers) {
       SCOPED_TRACE(info(layer).name);
-      const std::vector<float> now = s->snapshot({layer})->layers.at(layer);
+      const std::vector<float> now = s->views().snapshot({layer})->layers.at(layer);
       const auto expected = test::expected_changes(now, held[layer], 90, queries[layer].tolerance, 16);
       test::expect_same(pending.at(layer).get()->tiles, expected);
       changed[layer] += expected.size();
@@ -145,15 +145,15 @@ TEST_P(HeldLayer, OnlyWhatIsAskedForIsComputedAndKept) {
   auto s = simulation(held_world);
   const std::size_t before = s->terrain().bytes(), layer = 4 * 90 * 70;
   test::hold(*s, Layer::slope);
-  EXPECT_TRUE(s->holds(Layer::slope));
-  EXPECT_FALSE(s->holds(Layer::traversability));
+  EXPECT_TRUE(s->views().holds(Layer::slope));
+  EXPECT_FALSE(s->views().holds(Layer::traversability));
   EXPECT_EQ(s->terrain().bytes(), before + layer) << "the slope alone";
   HeldQueries queries;
   queries[Layer::traversability].changes = true;
-  EXPECT_TRUE(s->begin_changes(queries).empty()) << "nothing is held of it";
+  EXPECT_TRUE(s->views().begin_changes(queries).empty()) << "nothing is held of it";
   EXPECT_EQ(s->terrain().bytes(), before + layer);
   const std::size_t held = total_bytes(s->memory());
-  s->forget(Layer::slope);
+  s->views().forget(Layer::slope);
   EXPECT_EQ(total_bytes(s->memory()), held - layer);
 }
 

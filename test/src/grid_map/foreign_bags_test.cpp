@@ -44,7 +44,7 @@ class ForeignBags : public testing::Test {
   }
   /// Why the bag is refused; the session stays as it was.
   std::string refusal() {
-    const std::uint64_t before = session_.simulation().state_hash();
+    const std::uint64_t before = session_.simulation().state().hash();
     std::string reason;
     try {
       load();
@@ -52,7 +52,7 @@ class ForeignBags : public testing::Test {
     } catch (const ConfigError& e) {
       reason = e.what();
     }
-    EXPECT_EQ(session_.simulation().state_hash(), before);
+    EXPECT_EQ(session_.simulation().state().hash(), before);
     EXPECT_NE(reason.find(path_), std::string::npos) << "names no file: " << reason;
     return reason;
   }
@@ -80,7 +80,7 @@ TEST_F(ForeignBags, ElevationAloneIsRockAtItsOwnPlace) {
   EXPECT_EQ(grid.origin_x, 20 - 1.25);
   EXPECT_EQ(grid.origin_y, -30 - 1.0);
   EXPECT_EQ(grid.boundary, Boundary::open);
-  EXPECT_EQ(s.wind_above().y, 4) << "the wind stays";
+  EXPECT_EQ(s.state().wind_above().y, 4) << "the wind stays";
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 5; ++x) {
       EXPECT_EQ(value(Layer::bedrock, x, y), 100 + x + 10 * y) << x << ", " << y;

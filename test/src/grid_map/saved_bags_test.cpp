@@ -33,7 +33,7 @@ class SavedBags : public testing::Test {
     std::vector<Layer> layers = persistent_layers(s);
     layers.push_back(Layer::elevation);
     TerrainToSave terrain;
-    terrain.state.snapshot = s.snapshot(layers);
+    terrain.state.snapshot = s.views().snapshot(layers);
     terrain.scenario = s.scenario();
     save_terrain(file_, terrain.scenario, *terrain.state.snapshot,
                  layer_writer(TerrainFormat::rosbag, terrain, "map", "/desert_sim/grid_map"), tag);
@@ -68,11 +68,11 @@ TEST_F(SavedBags, ComeBackWithEveryLayerWithinFloatsRounding) {
     EXPECT_EQ(grid.origin_x, 500);
     EXPECT_EQ(grid.origin_y, -70);
     EXPECT_EQ(grid.boundary, Boundary::open);
-    EXPECT_EQ(other->simulation().wind_above().y, 3) << "only the terrain is loaded";
-    const std::uint64_t start = other->simulation().state_hash();
+    EXPECT_EQ(other->simulation().state().wind_above().y, 3) << "only the terrain is loaded";
+    const std::uint64_t start = other->simulation().state().hash();
     other->step();
     other->apply(command::Reset{});
-    EXPECT_EQ(other->simulation().state_hash(), start) << "a reset goes back to it";
+    EXPECT_EQ(other->simulation().state().hash(), start) << "a reset goes back to it";
   }
 }
 
@@ -81,7 +81,7 @@ TEST_F(SavedBags, AreAScenarioThatRunsAsBefore) {
   save(*s, "a");
   auto same = session(other_world);
   same->apply(command::LoadScenario{file_, false, 0, false});
-  EXPECT_EQ(same->simulation().wind_above().x, 6);
+  EXPECT_EQ(same->simulation().state().wind_above().x, 6);
   expect_same_terrain(*s, *same);
 }
 
@@ -114,7 +114,7 @@ TEST_F(SavedBags, ReplayFromAJournalAndAreRefusedWhenTheyHaveChanged) {
     live->step();
     live->apply(command::LoadScenario{bag_, true, 0, true});
     live->step();
-    hash = live->simulation().state_hash();
+    hash = live->simulation().state().hash();
   }
   const Journal journal = read_journal(folder_.path("journal"));
   ASSERT_EQ(journal.entries.size(), 1u);
@@ -123,13 +123,13 @@ TEST_F(SavedBags, ReplayFromAJournalAndAreRefusedWhenTheyHaveChanged) {
   replay->step();
   replay->apply(journal.entries[0].command);
   replay->step();
-  EXPECT_EQ(replay->simulation().state_hash(), hash);
+  EXPECT_EQ(replay->simulation().state().hash(), hash);
 
   GridMap map = read_grid_map(bag_);
   map.data[1].data[5] += 1;
   write_grid_map(bag_, "/map", map);
   EXPECT_THROW(replay->apply(journal.entries[0].command), ConfigError);
-  EXPECT_EQ(replay->simulation().state_hash(), hash);
+  EXPECT_EQ(replay->simulation().state().hash(), hash);
 }
 
 TEST_F(SavedBags, ThatCannotBeWrittenLeaveNothing) {

@@ -32,7 +32,7 @@ class RasterAccessTest : public RasterTest {
   std::string session_refusal(const std::string& raster) const {
     Session session(test::parsed("grid: {width: 8, height: 8}\n"), gdal_raster_loader(confined()), "cpu", 1);
     session.confine_commands(path("data"));
-    const std::uint64_t before = session.simulation().state_hash();
+    const std::uint64_t before = session.simulation().state().hash();
     std::string message;
     try {
       session.apply(command::LoadScenario{
@@ -41,7 +41,7 @@ class RasterAccessTest : public RasterTest {
     } catch (const ConfigError& e) {
       message = e.what();
     }
-    EXPECT_EQ(session.simulation().state_hash(), before);
+    EXPECT_EQ(session.simulation().state().hash(), before);
     return message;
   }
 

@@ -30,7 +30,7 @@ class TerrainFiles : public ::testing::TestWithParam<const char*> {
   }
   std::string save(Session& s, const std::string& tag) {
     Simulation& simulation = s.simulation();
-    save_terrain(file_, simulation.scenario(), *simulation.snapshot(persistent_layers(simulation)),
+    save_terrain(file_, simulation.scenario(), *simulation.views().snapshot(persistent_layers(simulation)),
                  as_geotiff() ? geotiff_writer("") : png16_writer(), tag);
     return file_;
   }
@@ -56,7 +56,7 @@ TEST_P(TerrainFiles, ComeBackWithinTheFormatsRounding) {
   other->apply(command::LoadScenario{file_, true, 0});
   const Simulation& loaded = other->simulation();
   EXPECT_EQ(loaded.steps(), 0u);
-  EXPECT_EQ(loaded.wind_above().y, 3) << "only the terrain is loaded";
+  EXPECT_EQ(loaded.state().wind_above().y, 3) << "only the terrain is loaded";
   const GridParameters& grid = loaded.scenario().grid;
   EXPECT_EQ(grid.width, 30);
   EXPECT_EQ(grid.height, 20);
@@ -70,10 +70,10 @@ TEST_P(TerrainFiles, ComeBackWithinTheFormatsRounding) {
     for (std::size_t i = 0; i < a.size(); ++i)
       EXPECT_NEAR(a[i], b[i], tolerance()) << info(layer).name << " " << i;
   }
-  const std::uint64_t start = loaded.state_hash();
+  const std::uint64_t start = loaded.state().hash();
   other->step();
   other->apply(command::Reset{});
-  EXPECT_EQ(other->simulation().state_hash(), start) << "a reset goes back to it";
+  EXPECT_EQ(other->simulation().state().hash(), start) << "a reset goes back to it";
 }
 
 TEST_P(TerrainFiles, OfAScenarioWhoseNameHasALineBreakHaveOneComment) {
@@ -89,7 +89,7 @@ TEST_P(TerrainFiles, AreAScenarioThatRunsAsBefore) {
   auto same = session("grid: {width: 8, height: 9}\n");
   save(*s, "a");
   same->apply(command::LoadScenario{file_, false, 0});
-  EXPECT_EQ(same->simulation().wind_above().x, 6);
+  EXPECT_EQ(same->simulation().state().wind_above().x, 6);
 }
 
 TEST_P(TerrainFiles, ReplaceAnEarlierTerrainWhole) {
@@ -111,7 +111,7 @@ TEST_P(TerrainFiles, SavedToOneFolderAtTheSameTimeAreOneOfThemWhole) {
     save(*s, "x");
     auto loaded = session(world);
     loaded->apply(command::LoadScenario{file_, true, 0});
-    allowed.insert(loaded->simulation().state_hash());
+    allowed.insert(loaded->simulation().state().hash());
   }
   ASSERT_EQ(allowed.size(), 2u);
   for (int n = 0; n < 25; ++n) {
@@ -121,7 +121,7 @@ TEST_P(TerrainFiles, SavedToOneFolderAtTheSameTimeAreOneOfThemWhole) {
     for (std::thread& writer : writers) writer.join();
     auto loaded = session(world);
     ASSERT_NO_THROW(loaded->apply(command::LoadScenario{file_, true, 0})) << "round " << n;
-    EXPECT_EQ(allowed.count(loaded->simulation().state_hash()), 1u) << "round " << n;
+    EXPECT_EQ(allowed.count(loaded->simulation().state().hash()), 1u) << "round " << n;
     EXPECT_EQ(files().size(), load_scenario(file_).terrain.size() + 1) << "the other's files are left";
   }
 }
@@ -172,7 +172,7 @@ TEST_P(TerrainFiles, ReplayFromAJournalAndAreRefusedWhenTheyHaveChanged) {
     live->apply(command::LoadScenario{file_, true, 0});
     live->step();
     live->step();
-    hash = live->simulation().state_hash();
+    hash = live->simulation().state().hash();
   }
   const Journal journal = read_journal(folder_.path("journal"));
   ASSERT_EQ(journal.entries.size(), 1u);
@@ -181,30 +181,30 @@ TEST_P(TerrainFiles, ReplayFromAJournalAndAreRefusedWhenTheyHaveChanged) {
   replay->apply(journal.entries[0].command);
   replay->step();
   replay->step();
-  EXPECT_EQ(replay->simulation().state_hash(), hash);
+  EXPECT_EQ(replay->simulation().state().hash(), hash);
 
   s->step();
   save(*s, "b");
-  const std::uint64_t before = replay->simulation().state_hash();
+  const std::uint64_t before = replay->simulation().state().hash();
   EXPECT_THROW(replay->apply(journal.entries[0].command), ConfigError);
-  EXPECT_EQ(replay->simulation().state_hash(), before);
+  EXPECT_EQ(replay->simulation().state().hash(), before);
 }
 
 TEST_P(TerrainFiles, ThatAreBrokenAreRefusedAndTheSessionStays) {
   auto s = session(world);
   save(*s, "a");
-  const std::uint64_t before = s->simulation().state_hash();
+  const std::uint64_t before = s->simulation().state().hash();
   const std::string good = read_file(file_);
   for (const std::string& bad : {std::string("grid: {width: -1}\n"), std::string("no: scenario\n"),
                                  std::string("[1"), good + "\nsand: 1\n"}) {
     folder_.write("terrain.yaml", bad);
     EXPECT_THROW(s->apply(command::LoadScenario{file_, true, 0}), ConfigError) << bad;
-    EXPECT_EQ(s->simulation().state_hash(), before);
+    EXPECT_EQ(s->simulation().state().hash(), before);
   }
   folder_.write("terrain.yaml", good);
   for (const std::string& raster : raster_paths(load_scenario(file_))) std::filesystem::remove(raster);
   EXPECT_THROW(s->apply(command::LoadScenario{file_, true, 0}), ConfigError);
-  EXPECT_EQ(s->simulation().state_hash(), before);
+  EXPECT_EQ(s->simulation().state().hash(), before);
 }
 
 const char* const garden =
@@ -235,9 +235,9 @@ TEST_P(TerrainFiles, WithPaintedVegetationAreRefusedWherePlantsLive) {
   auto s = session("grid: {width: 8, height: 9}\nterrain: [uniform: {layer: vegetation, value: 0.5}]\n");
   save(*s, "a");
   auto plants = session(garden);
-  const std::uint64_t before = plants->simulation().state_hash();
+  const std::uint64_t before = plants->simulation().state().hash();
   EXPECT_THROW(plants->apply(command::LoadScenario{file_, true, 0}), ConfigError);
-  EXPECT_EQ(plants->simulation().state_hash(), before);
+  EXPECT_EQ(plants->simulation().state().hash(), before);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, TerrainFiles, ::testing::Values("geotiff", "png16"),

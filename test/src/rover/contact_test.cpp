@@ -22,7 +22,7 @@ constexpr double wavelength = 0.013 + 0.02 * 9, height = 0.0467 * wavelength;  /
 std::unique_ptr<GridGround> ground(bool micro_relief) {
   const std::unique_ptr<Exec> exec = make_exec("cpu", 1);
   const auto world = test::simulate(*exec, sand);
-  const auto snapshot = world->snapshot(GridGround::layers_of_snapshot(micro_relief));
+  const auto snapshot = world->views().snapshot(GridGround::layers_of_snapshot(micro_relief));
   return micro_relief ? GridGround::with_micro_relief(*snapshot, 0.3)
                       : std::make_unique<GridGround>(*snapshot, 0.3);
 }

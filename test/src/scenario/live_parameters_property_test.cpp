@@ -62,9 +62,9 @@ TEST_P(LiveParameters, EachCanChangeInTheMiddleOfARun) {
   const std::vector<std::string> changes = all_changes(s->scenario());
   ASSERT_GT(changes.size(), 40u);
   for (const std::string& change : changes) {
-    const std::string before = dump_scenario(s->present_scenario());
+    const std::string before = dump_scenario(s->state().present_scenario());
     ASSERT_NO_THROW(s->apply(command::SetParameters{{change}})) << change;
-    EXPECT_NE(dump_scenario(s->present_scenario()), before) << change;
+    EXPECT_NE(dump_scenario(s->state().present_scenario()), before) << change;
     test::run(*s, 1);
     test::expect_sound(*s, change);
   }
@@ -82,8 +82,8 @@ TEST_P(LiveParameters, ACheckpointAfterwardsContinuesToTheBit) {
   const auto loaded = load_checkpoint(folder.path("c"), exec());
   test::run(*s, 4);
   test::run(*loaded, 4);
-  EXPECT_EQ(s->state_hash(), loaded->state_hash());
-  EXPECT_EQ(dump_scenario(s->present_scenario()), dump_scenario(loaded->present_scenario()));
+  EXPECT_EQ(s->state().hash(), loaded->state().hash());
+  EXPECT_EQ(dump_scenario(s->state().present_scenario()), dump_scenario(loaded->state().present_scenario()));
 }
 
 TEST_P(LiveParameters, AreTheSameAsAScenarioOfThem) {
@@ -95,7 +95,7 @@ TEST_P(LiveParameters, AreTheSameAsAScenarioOfThem) {
                                   "wind_shadow: {enabled: false}\n");
   test::run(*changed, 5);
   test::run(*started, 5);
-  EXPECT_EQ(changed->state_hash(), started->state_hash());
+  EXPECT_EQ(changed->state().hash(), started->state().hash());
   EXPECT_FALSE(changed->terrain().has(Layer::wind_shadow)) << "a shadow that nobody casts any more";
 }
 
@@ -103,32 +103,32 @@ TEST_P(LiveParameters, TheWindThatBlowsIsWhatChanges) {
   const auto s = simulation(world);
   s->apply(command::SetWind{90, 7, 0});
   s->apply(command::SetParameters{{"wind.speed=3"}});
-  EXPECT_NEAR(s->wind_above().x, 0, 1e-6);
-  EXPECT_NEAR(s->wind_above().y, 3, 1e-6);
+  EXPECT_NEAR(s->state().wind_above().x, 0, 1e-6);
+  EXPECT_NEAR(s->state().wind_above().y, 3, 1e-6);
   s->apply(command::SetParameters{{"saltation.lift=0.2"}});
-  EXPECT_NEAR(s->wind_above().y, 3, 1e-6) << "the wind is left as it is";
+  EXPECT_NEAR(s->state().wind_above().y, 3, 1e-6) << "the wind is left as it is";
 }
 
 /// The device counts them while steps converge.
 TEST_P(LiveParameters, SweepsThatWereCountedAreKept) {
   const auto s = simulation(world + "avalanching: {quality: converged}\n");
   test::run(*s, 20);
-  const double before = s->mean_count(avalanche_iterations);
+  const double before = s->pipeline().mean_count(avalanche_iterations);
   EXPECT_GE(before, 12);  // of a cycle
   for (const char* change :
        {"saltation.lift=0.5", "avalanching.tolerance=0.002", "avalanching.quality=fast"}) {
     s->apply(command::SetParameters{{change}});
-    EXPECT_EQ(s->mean_count(avalanche_iterations), before) << change;
+    EXPECT_EQ(s->pipeline().mean_count(avalanche_iterations), before) << change;
   }
   s->step();
-  EXPECT_NEAR(s->mean_count(avalanche_iterations), (20 * before + 8) / 21, 1e-9);
+  EXPECT_NEAR(s->pipeline().mean_count(avalanche_iterations), (20 * before + 8) / 21, 1e-9);
 }
 
 TEST_P(LiveParameters, RefusedChangesChangeNothing) {
   const auto s = simulation(world);
   test::run(*s, 2);
-  const std::string before = dump_scenario(s->present_scenario());
-  const std::uint64_t hash = s->state_hash();
+  const std::string before = dump_scenario(s->state().present_scenario());
+  const std::uint64_t hash = s->state().hash();
   const auto expect_refused = [&](std::vector<std::string> settings, const std::string& text) {
     try {
       s->apply(command::SetParameters{std::move(settings)});
@@ -136,8 +136,8 @@ TEST_P(LiveParameters, RefusedChangesChangeNothing) {
     } catch (const ConfigError& e) {
       EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
     }
-    EXPECT_EQ(dump_scenario(s->present_scenario()), before);
-    EXPECT_EQ(s->state_hash(), hash);
+    EXPECT_EQ(dump_scenario(s->state().present_scenario()), before);
+    EXPECT_EQ(s->state().hash(), hash);
   };
   expect_refused({"saltation.lift=0.2", "saltation.influx=-1"},
                  "saltation.influx: -1 is not in [0, 100] m^2/s");
@@ -161,20 +161,20 @@ TEST_P(LiveParameters, ASeaThatHeightsCannotReachIsRefused) {
   const auto flood = [&](const char* level) {
     s->apply(command::SetParameters{{level, "water.sea=everywhere", "water.enabled=true"}});
   };
-  const std::uint64_t before = s->state_hash();
+  const std::uint64_t before = s->state().hash();
   try {
     flood("water.sea_level=5000");
     ADD_FAILURE() << "was not refused";
   } catch (const ConfigError& e) {
     EXPECT_NE(std::string(e.what()).find("water.sea_level: 5000"), std::string::npos) << e.what();
   }
-  EXPECT_EQ(s->state_hash(), before);
+  EXPECT_EQ(s->state().hash(), before);
   flood("water.sea_level=-5000");
   test::run(*s, 1);
-  EXPECT_EQ(s->balance()[static_cast<std::size_t>(Material::water)].in, 0);
+  EXPECT_EQ(s->state().balance()[static_cast<std::size_t>(Material::water)].in, 0);
   flood("water.sea_level=5");
   test::run(*s, 1);
-  EXPECT_GT(s->balance()[static_cast<std::size_t>(Material::water)].in, 0);
+  EXPECT_GT(s->state().balance()[static_cast<std::size_t>(Material::water)].in, 0);
 }
 
 DESERT_ON_EACH_BACKEND(LiveParameters);

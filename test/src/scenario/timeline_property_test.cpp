@@ -31,19 +31,21 @@ TEST_P(Timeline, ChangesAtItsTimesAtOnceOrOverARamp) {
     while (s->steps() < static_cast<std::uint64_t>(steps)) s->step();
     return static_cast<double>(s->scenario().get<RainParameters>().rate);
   };
-  EXPECT_NE(s->describe_changes().find("at 10 s: wind.speed=6"), std::string::npos) << s->describe_changes();
+  EXPECT_NE(s->commands().describe_changes().find("at 10 s: wind.speed=6"), std::string::npos)
+      << s->commands().describe_changes();
   rate_after(5);  // times 0 … 8 s
-  EXPECT_EQ(s->present_scenario().wind_regime.speed, 4);
+  EXPECT_EQ(s->state().present_scenario().wind_regime.speed, 4);
   EXPECT_EQ(s->scenario().get<AvalanchingParameters>().quality, AvalancheQuality::good);
   EXPECT_NEAR(rate_after(6), 1e-5, 1e-9);
-  EXPECT_EQ(s->present_scenario().wind_regime.speed, 6);
-  EXPECT_NEAR(s->wind_above().x, 6, 1e-6);
+  EXPECT_EQ(s->state().present_scenario().wind_regime.speed, 6);
+  EXPECT_NEAR(s->state().wind_above().x, 6, 1e-6);
   EXPECT_EQ(s->scenario().get<AvalanchingParameters>().quality, AvalancheQuality::fast);
   EXPECT_NEAR(rate_after(21), 3e-5, 1e-6);  // the step at 40 s
-  EXPECT_NE(s->describe_changes().find("rain.rate -> 5e-05"), std::string::npos) << s->describe_changes();
+  EXPECT_NE(s->commands().describe_changes().find("rain.rate -> 5e-05"), std::string::npos)
+      << s->commands().describe_changes();
   EXPECT_NEAR(rate_after(31), 5e-5, 1e-9);
-  EXPECT_EQ(s->describe_changes(), "");
-  const MaterialBalance water = s->balance()[static_cast<std::size_t>(Material::water)];
+  EXPECT_EQ(s->commands().describe_changes(), "");
+  const MaterialBalance water = s->state().balance()[static_cast<std::size_t>(Material::water)];
   EXPECT_GT(water.in, 0);
   EXPECT_EQ(water.residual(), 0);
 }
@@ -61,9 +63,9 @@ TEST_P(Timeline, ACheckpointInTheMiddleOfARampContinuesToTheBit) {
   const test::TemporaryFolder folder;
   save_checkpoint(folder.path("half"), *first);
   auto second = load_checkpoint(folder.path("half"), exec());
-  EXPECT_EQ(second->describe_changes(), first->describe_changes());
+  EXPECT_EQ(second->commands().describe_changes(), first->commands().describe_changes());
   test::run(*second, 20);
-  EXPECT_EQ(second->state_hash(), whole->state_hash());
+  EXPECT_EQ(second->state().hash(), whole->state().hash());
   EXPECT_NEAR(second->scenario().get<SaltationParameters>().lift, 0.2, 1e-7);
 }
 
@@ -78,7 +80,7 @@ TEST_P(Timeline, SetParametersRampsTooAndStopsWhatRampedBefore) {
   EXPECT_FLOAT_EQ(s->scenario().get<SaltationParameters>().lift, 0.9f);
   EXPECT_THROW(s->apply(command::SetParameters{{"saltation.lift=0.5"}, -1}), ConfigError);
   EXPECT_THROW(s->apply(command::SetParameters{{"saltation.lift=-0.5"}, 10}), ConfigError);
-  EXPECT_EQ(s->describe_changes(), "");
+  EXPECT_EQ(s->commands().describe_changes(), "");
 }
 
 /// Each ramp ends at values that go together, but on the way full_deg falls below start_deg for a while.
@@ -94,7 +96,7 @@ TEST_P(Timeline, RampsThatMeetAConditionBetweenParametersGoOn) {
   set_log_sink(before);
   EXPECT_FLOAT_EQ(s->scenario().get<WindShadowParameters>().start_deg, 20);
   EXPECT_FLOAT_EQ(s->scenario().get<WindShadowParameters>().full_deg, 25);
-  EXPECT_EQ(s->describe_changes(), "");
+  EXPECT_EQ(s->commands().describe_changes(), "");
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_NE(messages.front().find("must not be below start_deg"), std::string::npos) << messages.front();
 }

@@ -32,11 +32,11 @@ class SeriesOfWind : public test::OnBackend {
 
 TEST_P(SeriesOfWind, BlowsRowByRow) {
   const auto s = session(scenario());
-  EXPECT_EQ(s->simulation().wind_above().x, 4);
+  EXPECT_EQ(s->simulation().state().wind_above().x, 4);
   run(*s, 3);
-  EXPECT_EQ(s->simulation().wind_above().y, 6);
+  EXPECT_EQ(s->simulation().state().wind_above().y, 6);
   run(*s, 8);  // 11 s: the last row has held for 4 s, and the series starts again
-  EXPECT_EQ(s->simulation().wind_above().x, 4);
+  EXPECT_EQ(s->simulation().state().wind_above().x, 4);
 }
 
 TEST_P(SeriesOfWind, ACheckpointContinuesToTheBitWithoutTheFile) {
@@ -49,10 +49,10 @@ TEST_P(SeriesOfWind, ACheckpointContinuesToTheBitWithoutTheFile) {
   save_checkpoint(folder_.path("a.ck"), first->simulation());
   const auto second = Session::from_checkpoint(folder_.path("a.ck"), no_raster_loader, GetParam(), 1);
   run(*second, 7);
-  EXPECT_EQ(second->simulation().state_hash(), whole->simulation().state_hash());
+  EXPECT_EQ(second->simulation().state().hash(), whole->simulation().state().hash());
   second->apply(command::Reset{});
   run(*second, 12);
-  EXPECT_EQ(second->simulation().state_hash(), whole->simulation().state_hash());
+  EXPECT_EQ(second->simulation().state().hash(), whole->simulation().state().hash());
 }
 
 TEST_P(SeriesOfWind, AJournalIsOfItsSeries) {
@@ -89,10 +89,10 @@ TEST_P(SeriesOfWind, CannotBeReplacedWhileTheSimulationRuns) {
                  }).empty());
   s->apply(command::SetParameters{{"wind.regime=constant", "wind.speed=9"}});
   run(*s, 1);
-  EXPECT_EQ(s->simulation().wind_above().x, 9);
+  EXPECT_EQ(s->simulation().state().wind_above().x, 9);
   s->apply(command::SetParameters{{"wind.regime=series"}});
   run(*s, 3);
-  EXPECT_EQ(s->simulation().wind_above().y, 6);
+  EXPECT_EQ(s->simulation().state().wind_above().y, 6);
 }
 
 /// What a service loads reads no series from outside of the data folder.
@@ -106,9 +106,9 @@ TEST_P(SeriesOfWind, AConfinedSessionReadsItsFolderOnly) {
   s->confine_commands(folder_.path("data"));
   const std::string said = test::refusal([&] { s->apply(command::LoadScenario{outside, false, 0, false}); });
   EXPECT_NE(said.find("wind.csv"), std::string::npos) << said;
-  EXPECT_EQ(s->simulation().wind_above().x, 4) << "nothing has changed";
+  EXPECT_EQ(s->simulation().state().wind_above().x, 4) << "nothing has changed";
   s->apply(command::LoadScenario{inside, false, 0, false});
-  EXPECT_EQ(s->simulation().wind_above().y, 3);
+  EXPECT_EQ(s->simulation().state().wind_above().y, 3);
 }
 
 TEST_P(SeriesOfWind, RefusesAFileThatIsNotThereAndARegimeWithoutOne) {

@@ -48,17 +48,17 @@ TEST_P(DesertClock, GoesOnFromWhatItShowsWhenTheStepChanges) {
 TEST_P(DesertClock, PacedTimeIsTheSumOfWhatEachAccelerationTakes) {
   const auto s = simulation(dunes + "run: {time_step: 0.5}\n");
   test::run(*s, 2);
-  EXPECT_EQ(s->paced_time(), 1) << "not tied: the desert's own time";
+  EXPECT_EQ(s->state().paced_time(), 1) << "not tied: the desert's own time";
   set(*s, {"run.acceleration=0.25"});
-  EXPECT_EQ(s->paced_time(), 1);
+  EXPECT_EQ(s->state().paced_time(), 1);
   test::run(*s, 2);
-  EXPECT_EQ(s->paced_time(), 1 + 4);
+  EXPECT_EQ(s->state().paced_time(), 1 + 4);
   set(*s, {"run.acceleration=2", "run.time_step=1"});
   test::run(*s, 3);
-  EXPECT_EQ(s->paced_time(), 5 + 1.5);
+  EXPECT_EQ(s->state().paced_time(), 5 + 1.5);
   set(*s, {"run.acceleration=0"});
   test::run(*s, 1);
-  EXPECT_EQ(s->paced_time(), 6.5 + 1);
+  EXPECT_EQ(s->state().paced_time(), 6.5 + 1);
   EXPECT_EQ(s->time(), 6);
 }
 
@@ -68,7 +68,7 @@ TEST_P(DesertClock, AccelerationChangesNoGrain) {
   set(*s, {"run.acceleration=0.01"});
   test::run(*s, 3);
   test::run(*plain, 5);
-  EXPECT_EQ(s->state_hash(), plain->state_hash());
+  EXPECT_EQ(s->state().hash(), plain->state().hash());
 }
 
 /// The steps, from 1 on, after which the shadow is another than before.
@@ -106,10 +106,10 @@ TEST_P(DesertClock, WhoLooksBetweenChangesChangesNothing) {
       test::run(*each, 2);
       set(*each, {"wind.speed=" + std::string(step)});
     }
-    (void)watched->snapshot({Layer::wind_shadow});
+    (void)watched->views().snapshot({Layer::wind_shadow});
     for (Simulation* each : {s.get(), watched.get()}) set(*each, {std::string("run.time_step=") + step});
-    (void)watched->snapshot({Layer::wind_shadow});
-    EXPECT_EQ(s->state_hash(), watched->state_hash()) << step;
+    (void)watched->views().snapshot({Layer::wind_shadow});
+    EXPECT_EQ(s->state().hash(), watched->state().hash()) << step;
   }
 }
 
@@ -122,12 +122,12 @@ TEST_P(DesertClock, ACheckpointAfterChangesContinuesToTheBit) {
   save_checkpoint(folder.path("c"), *s);
   const auto loaded = load_checkpoint(folder.path("c"), exec());
   EXPECT_EQ(loaded->time(), s->time());
-  EXPECT_EQ(loaded->paced_time(), s->paced_time());
+  EXPECT_EQ(loaded->state().paced_time(), s->state().paced_time());
   EXPECT_TRUE(loaded->state().clock_origin == s->state().clock_origin);
   test::run(*s, 20);
   test::run(*loaded, 20);
   EXPECT_EQ(loaded->time(), s->time());
-  EXPECT_EQ(loaded->state_hash(), s->state_hash());
+  EXPECT_EQ(loaded->state().hash(), s->state().hash());
 }
 
 TEST_P(DesertClock, EqualStepsAtAnotherTimeAreAnotherState) {
@@ -138,7 +138,7 @@ TEST_P(DesertClock, EqualStepsAtAnotherTimeAreAnotherState) {
   test::run(*other, 1);
   set(*other, {"run.time_step=0.5"});
   test::run(*other, 1);
-  EXPECT_NE(s->state_hash(), other->state_hash());
+  EXPECT_NE(s->state().hash(), other->state().hash());
 }
 
 /// Commands, timeline and ramps change both parameters.
@@ -160,14 +160,14 @@ TEST_P(DesertClock, AJournalOfChangesIsReplayedToTheBit) {
     steps(3);
     live.apply(command::SetParameters{{"run.acceleration=0.05", "run.time_step=0.05"}});
     steps(40);
-    EXPECT_NE(live.simulation().describe_changes(), "") << "the ramp is under way";
+    EXPECT_NE(live.simulation().commands().describe_changes(), "") << "the ramp is under way";
     live.apply(command::SetParameters{{"run.acceleration=3"}});
     steps(20);
     live.apply(command::SetParameters{{"run.time_step=1.7"}, 4});
     steps(9);
-    hash = live.simulation().state_hash();
+    hash = live.simulation().state().hash();
     time = live.simulation().time();
-    paced = live.simulation().paced_time();
+    paced = live.simulation().state().paced_time();
   }
   const Journal journal = read_journal(path);
   ASSERT_EQ(journal.entries.size(), 3u);
@@ -178,15 +178,15 @@ TEST_P(DesertClock, AJournalOfChangesIsReplayedToTheBit) {
       again.apply(journal.entries[next].command);
     again.step();
   }
-  EXPECT_EQ(again.simulation().state_hash(), hash);
+  EXPECT_EQ(again.simulation().state().hash(), hash);
   EXPECT_EQ(again.simulation().time(), time);
-  EXPECT_EQ(again.simulation().paced_time(), paced);
+  EXPECT_EQ(again.simulation().state().paced_time(), paced);
 }
 
 TEST_P(DesertClock, WhatCannotBeIsRefusedAndChangesNothing) {
   const auto s = simulation(dunes);
   test::run(*s, 1);
-  const std::string before = dump_scenario(s->present_scenario());
+  const std::string before = dump_scenario(s->state().present_scenario());
   const std::pair<std::vector<std::string>, const char*> refusals[] = {
       {{"run.acceleration=100", "run.time_step=0.001"},
        "run.acceleration: 100 needs 100000 steps of 0.001 s per second (allowed: 0, or 1e-06 to 10, which "
@@ -204,7 +204,7 @@ TEST_P(DesertClock, WhatCannotBeIsRefusedAndChangesNothing) {
     const std::string reason = test::refusal([&] { set(*s, refused.first); });
     EXPECT_NE(reason.find(refused.second), std::string::npos) << refused.first[0] << ": " << reason;
   }
-  EXPECT_EQ(dump_scenario(s->present_scenario()), before);
+  EXPECT_EQ(dump_scenario(s->state().present_scenario()), before);
   EXPECT_TRUE(s->state().clock_origin == ClockOrigin());
 }
 

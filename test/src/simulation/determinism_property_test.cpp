@@ -5,6 +5,7 @@
 #include <random>
 
 #include "src/simulation/checkpoint.hpp"
+#include "src/simulation/processes/sand_slopes.hpp"
 #include "test/support/cases.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test/support/world.hpp"
@@ -15,7 +16,7 @@ namespace {
 std::uint64_t hash_after(Exec& exec, const std::string& yaml, int steps) {
   auto s = test::simulate(exec, yaml);
   test::run(*s, steps);
-  return s->state_hash();
+  return s->state().hash();
 }
 
 TEST(Determinism, TheHashDoesNotDependOnTheNumberOfThreads) {
@@ -51,7 +52,7 @@ std::vector<Words> layers_after(Exec& exec, const std::string& yaml, int steps) 
   auto s = test::simulate(exec, yaml);
   test::run(*s, steps);
   std::vector<Words> words;
-  for (Layer layer : s->layers_in_use()) words.push_back(s->terrain().raw_words(layer));
+  for (Layer layer : s->state().layers_in_use()) words.push_back(s->terrain().raw_words(layer));
   return words;
 }
 
@@ -110,18 +111,18 @@ TEST_P(Repeated, RunsWithOtherSeedsDiffer) {
 TEST_P(Repeated, LookingDoesNotChangeTheState) {
   const std::string yaml = test::grid_yaml(40, 40, "open") + test::process_cases(true).back().yaml;
   auto watched = simulation(yaml), alone = simulation(yaml);
-  watched->set_timing(true);
+  watched->pipeline().set_timing(true);
   for (int n = 0; n < 8; ++n) {
-    watched->snapshot(watched->layers_in_use());
-    watched->residual();
-    watched->max_sand_slope_deg();
-    watched->balance();
-    const std::uint64_t before = watched->state_hash();
-    EXPECT_EQ(before, watched->state_hash());
+    watched->views().snapshot(watched->state().layers_in_use());
+    sand_residual(watched->state(), watched->pipeline());
+    max_sand_slope_deg(watched->state());
+    watched->state().balance();
+    const std::uint64_t before = watched->state().hash();
+    EXPECT_EQ(before, watched->state().hash());
     watched->step();
     alone->step();
   }
-  EXPECT_EQ(watched->state_hash(), alone->state_hash());
+  EXPECT_EQ(watched->state().hash(), alone->state().hash());
 }
 
 TEST_P(Repeated, RunsAreTheSameThroughACheckpoint) {
@@ -134,12 +135,13 @@ TEST_P(Repeated, RunsAreTheSameThroughACheckpoint) {
     test::run(*half, 5);
     save_checkpoint(folder.path("half.ck"), *half);
     auto resumed = load_checkpoint(folder.path("half.ck"), exec());
-    EXPECT_EQ(resumed->state_hash(), half->state_hash());
+    EXPECT_EQ(resumed->state().hash(), half->state().hash());
     EXPECT_EQ(resumed->steps(), 5u);
     test::run(*resumed, 5);
-    EXPECT_EQ(resumed->state_hash(), whole->state_hash());
+    EXPECT_EQ(resumed->state().hash(), whole->state().hash());
     test::expect_sound(*resumed, "resumed");
-    EXPECT_EQ(resumed->mean_count(avalanche_iterations), whole->mean_count(avalanche_iterations));
+    EXPECT_EQ(resumed->pipeline().mean_count(avalanche_iterations),
+              whole->pipeline().mean_count(avalanche_iterations));
   }
 }
 

@@ -88,7 +88,7 @@ TEST_P(Flux, LookingAtItChangesNothing) {
   auto plain = simulation(text), measured = simulation(text + "saltation: {flux: true}\n");
   test::run(*plain, 9);
   test::run(*measured, 9);
-  EXPECT_EQ(plain->state_hash(), measured->state_hash());
+  EXPECT_EQ(plain->state().hash(), measured->state().hash());
   EXPECT_EQ(test::real(*plain, Layer::flux_x), std::vector<float>(24 * 20));
   measured->apply(command::SetParameters{{"saltation.flux=false"}});
   EXPECT_FALSE(measured->terrain().has(Layer::flux_x));

@@ -49,7 +49,7 @@ const std::string open_sand =
 TEST_P(FullCells, ASeaAroundDeepGroundFlowsIn) {
   const auto s =
       filled(open_sand + "wind: {speed: 0}\nwater: {enabled: true, sea: border, sea_level: 500}\n", 200);
-  const auto water = s->balance()[static_cast<std::size_t>(Material::water)];
+  const auto water = s->state().balance()[static_cast<std::size_t>(Material::water)];
   EXPECT_GT(water.final_m3(), 480 * 24 * 16) << "it is filled to nearly 500 m";
 }
 
@@ -64,7 +64,7 @@ TEST_P(FullCells, ASeaThatIsAsDeepAsTheTerrainIsHigh) {
     EXPECT_GT(deepest_, wall_height) << level;
     const test::TemporaryFolder folder;
     save_checkpoint(folder.path("deep"), *s);
-    EXPECT_EQ(load_checkpoint(folder.path("deep"), exec())->state_hash(), s->state_hash()) << level;
+    EXPECT_EQ(load_checkpoint(folder.path("deep"), exec())->state().hash(), s->state().hash()) << level;
   }
 }
 
@@ -79,7 +79,7 @@ TEST_P(FullCells, SpringsRainAndTheirLedger) {
         60);
     EXPECT_GT(highest(*s), fill_limit / 2) << source;
     EXPECT_LE(highest(*s), fill_limit + (Quanta{1} << 20)) << source;
-    const auto water = s->balance()[static_cast<std::size_t>(Material::water)];
+    const auto water = s->state().balance()[static_cast<std::size_t>(Material::water)];
     EXPECT_GT(water.out, 0) << "what found no room is booked out: " << source;
   }
 }

@@ -74,7 +74,7 @@ class JournalOf : public test::OnBackend {
     schedule.regime.rose_seed = 17;
     s->apply(schedule);
     steps(4);
-    return s->simulation().state_hash();
+    return s->simulation().state().hash();
   }
 
   std::uint64_t replayed(const Journal& journal) {
@@ -88,7 +88,7 @@ class JournalOf : public test::OnBackend {
       s->step();
     }
     EXPECT_EQ(next, journal.entries.size());
-    return s->simulation().state_hash();
+    return s->simulation().state().hash();
   }
 
   test::TemporaryFolder folder_;
@@ -177,7 +177,7 @@ TEST_P(JournalOf, KeepsTheCheckpointsThatItLoads) {
     EXPECT_EQ(test::file_bytes(first), bytes);
     s->step();
     s->save_checkpoint(second);
-    hash = s->simulation().state_hash();
+    hash = s->simulation().state().hash();
   }
   const Journal journal = read_journal(folder_.path("j"));
   EXPECT_EQ(checkpoints_of(journal), std::vector<std::string>{first});

@@ -20,9 +20,9 @@ TEST(Recorded, CheckpointIsLoadedToTheBit) {
   EXPECT_EQ(s->steps(), 30u);
   EXPECT_EQ(s->scenario().get<ReptationParameters>().method,
             ReptationMethod::smoothing);  // which a command had changed
-  EXPECT_EQ(s->start().get<ReptationParameters>().method, ReptationMethod::adaptive_repose);
+  EXPECT_EQ(s->state().start.get<ReptationParameters>().method, ReptationMethod::adaptive_repose);
   if (XXH_VERSION_NUMBER >= 800) {  // XXH3 was not final before
-    EXPECT_EQ(s->state_hash(), 0xfad38a43c28e5276u);
+    EXPECT_EQ(s->state().hash(), 0xfad38a43c28e5276u);
   }
   test::expect_sound(*s, "as loaded");
   test::run(*s, 10);

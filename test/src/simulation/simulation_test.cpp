@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "src/simulation/processes/sand_slopes.hpp"
 #include "test/support/world.hpp"
 
 namespace desert_sim {
@@ -24,7 +25,7 @@ TEST_P(ASimulation, CountsStepsAndTime) {
 TEST_P(ASimulation, SnapshotsHoldWhatWasAskedForAndOutliveTheNextSteps) {
   auto s = simulation(world);
   test::run(*s, 2);
-  const auto snapshot = s->snapshot({Layer::elevation, Layer::wind_x, Layer::soil});
+  const auto snapshot = s->views().snapshot({Layer::elevation, Layer::wind_x, Layer::soil});
   EXPECT_EQ(snapshot->width, 24);
   EXPECT_EQ(snapshot->height, 16);
   EXPECT_EQ(snapshot->cell_size, 2);
@@ -46,16 +47,16 @@ TEST_P(ASimulation, GivesTheMemoryOfRequestedLayersBack) {
   auto s = simulation(world);
   test::run(*s, 1);
   const std::size_t before = s->terrain().bytes();
-  const std::vector<float> slope = *s->snapshot({Layer::slope, Layer::roughness})->find(Layer::slope);
+  const std::vector<float> slope = *s->views().snapshot({Layer::slope, Layer::roughness})->find(Layer::slope);
   EXPECT_EQ(s->terrain().bytes(), before + 2 * 4 * 24 * 16);
-  s->release_requested_layers();
+  s->views().release_requested_layers();
   EXPECT_EQ(s->terrain().bytes(), before);
-  EXPECT_EQ(*s->snapshot({Layer::slope})->find(Layer::slope), slope) << "made anew";
+  EXPECT_EQ(*s->views().snapshot({Layer::slope})->find(Layer::slope), slope) << "made anew";
 }
 
 TEST_P(ASimulation, ShowsElevationAfterAnEditAndWindBeforeTheFirstStep) {
   auto s = simulation(world);
-  const auto start = s->snapshot({Layer::elevation, Layer::wind_x, Layer::wind_y});
+  const auto start = s->views().snapshot({Layer::elevation, Layer::wind_x, Layer::wind_y});
   for (float v : *start->find(Layer::elevation)) EXPECT_EQ(v, 203);
   for (float v : *start->find(Layer::wind_x)) EXPECT_EQ(v, 5);
   for (float v : *start->find(Layer::wind_y)) EXPECT_EQ(v, 0);
@@ -65,12 +66,12 @@ TEST_P(ASimulation, ShowsElevationAfterAnEditAndWindBeforeTheFirstStep) {
   edit.radius = 3;
   edit.value = 10;
   s->apply(edit);
-  EXPECT_NEAR((*s->snapshot({Layer::elevation})->find(Layer::elevation))[4 * 24 + 3], 213, 1e-4);
+  EXPECT_NEAR((*s->views().snapshot({Layer::elevation})->find(Layer::elevation))[4 * 24 + 3], 213, 1e-4);
 }
 
 TEST_P(ASimulation, ListsTheLayersInUse) {
   auto s = simulation(world);
-  for (Layer layer : s->layers_in_use()) EXPECT_TRUE(s->terrain().has(layer));
+  for (Layer layer : s->state().layers_in_use()) EXPECT_TRUE(s->terrain().has(layer));
   EXPECT_FALSE(s->terrain().has(Layer::soil));
   EXPECT_FALSE(s->terrain().has(Layer::echo));
   EXPECT_TRUE(s->terrain().has(Layer::wind_shadow));
@@ -79,19 +80,19 @@ TEST_P(ASimulation, ListsTheLayersInUse) {
 TEST_P(ASimulation, TakesWindFromCommands) {
   auto s = simulation(world);
   s->apply(command::SetWind{90, 8, 0});
-  EXPECT_EQ(s->wind_above().x, 0);
-  EXPECT_EQ(s->wind_above().y, 8);
+  EXPECT_EQ(s->state().wind_above().x, 0);
+  EXPECT_EQ(s->state().wind_above().y, 8);
   s->apply(command::SetWind{0, 4, 2});  // from (0, 8) in two seconds: four steps
   test::run(*s, 2);
-  EXPECT_NEAR(s->wind_above().x, 2, 1e-6);
-  EXPECT_NEAR(s->wind_above().y, 4, 1e-6);
+  EXPECT_NEAR(s->state().wind_above().x, 2, 1e-6);
+  EXPECT_NEAR(s->state().wind_above().y, 4, 1e-6);
   command::SetWindSchedule schedule;
   schedule.regime.regime = WindRegimeKind::timeline;
   schedule.regime.segments = {{180, 6, 1, 0, 1}, {270, 7, 1, 0, 1}};
   s->apply(schedule);
-  EXPECT_EQ(s->wind_above().x, -6);
+  EXPECT_EQ(s->state().wind_above().x, -6);
   test::run(*s, 2);
-  EXPECT_EQ(s->wind_above().y, -7);
+  EXPECT_EQ(s->state().wind_above().y, -7);
 }
 
 TEST_P(ASimulation, RefusesWrongWindsAndChangesNothing) {
@@ -99,7 +100,7 @@ TEST_P(ASimulation, RefusesWrongWindsAndChangesNothing) {
   test::run(*s, 1);
   const float nan = std::numeric_limits<float>::quiet_NaN(),
               infinity = std::numeric_limits<float>::infinity();
-  const std::uint64_t before = s->state_hash();
+  const std::uint64_t before = s->state().hash();
   const auto refused = [&](const auto& command, const std::string& naming) {
     try {
       s->apply(command);
@@ -107,8 +108,8 @@ TEST_P(ASimulation, RefusesWrongWindsAndChangesNothing) {
     } catch (const ConfigError& e) {
       EXPECT_NE(std::string(e.what()).find(naming), std::string::npos) << e.what();
     }
-    EXPECT_EQ(s->wind_above().x, 5);
-    EXPECT_EQ(s->state_hash(), before);
+    EXPECT_EQ(s->state().wind_above().x, 5);
+    EXPECT_EQ(s->state().hash(), before);
   };
   refused(command::SetWind{nan, 5, 0}, "direction_deg");
   refused(command::SetWind{400, 5, 0}, "direction_deg");
@@ -160,11 +161,11 @@ TEST_P(ASimulation, TakesWindToTheWestForWhole) {
 TEST_P(ASimulation, TimesProcessesInTheirOrder) {
   auto s = simulation(world);
   test::run(*s, 1);
-  EXPECT_TRUE(s->process_times().empty());
-  s->set_timing(true);
+  EXPECT_TRUE(s->pipeline().times().empty());
+  s->pipeline().set_timing(true);
   test::run(*s, 3);
   std::string names;
-  for (const ProcessTime& t : s->process_times()) {
+  for (const ProcessTime& t : s->pipeline().times()) {
     names += std::string(t.process) + " ";
     EXPECT_GE(t.milliseconds, 0);
   }
@@ -173,9 +174,9 @@ TEST_P(ASimulation, TimesProcessesInTheirOrder) {
 
 TEST_P(ASimulation, ReportsNoResidualOnGentleGround) {
   auto s = simulation(world);
-  EXPECT_EQ(s->residual().largest_excess, 0);
+  EXPECT_EQ(sand_residual(s->state(), s->pipeline()).largest_excess, 0);
   test::run(*s, 2);
-  EXPECT_LT(s->max_sand_slope_deg(), 34);
+  EXPECT_LT(max_sand_slope_deg(s->state()), 34);
 }
 
 DESERT_ON_EACH_BACKEND(ASimulation);

@@ -182,7 +182,7 @@ class Symmetry : public test::OnBackend {
     const auto first = simulation(yaml(world, boundary, direction, 1));
     const auto s = simulation(yaml(world, boundary, motion ? motion->turn(direction) : direction, seed));
     // The winds themselves must be mirror images, or the test would ask too much.
-    const wind::Vector a = first->wind_above(), b = s->wind_above();
+    const wind::Vector a = first->state().wind_above(), b = s->state().wind_above();
     if (std::abs(a.x) != std::abs(b.x) && std::abs(a.x) != std::abs(b.y))
       ADD_FAILURE() << "choose another direction";
     const Layers start = layers_of(*first);

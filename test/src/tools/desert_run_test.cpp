@@ -176,7 +176,7 @@ TEST_F(Run, ReplaysAJournalToTheSameHash) {
     }
     char text[32];
     std::snprintf(text, sizeof text, "\"%016llx\"",
-                  static_cast<unsigned long long>(session.simulation().state_hash()));
+                  static_cast<unsigned long long>(session.simulation().state().hash()));
     live = text;
   }
   run_cpu({scenario_, "--replay", path("j"), "--out", path("out")});
@@ -306,7 +306,7 @@ TEST_F(Run, ResumedTakesSettingsWithAndWithoutItsScenario) {
   for (int n = 0; n < 4; ++n) session.step();
   char text[32];
   std::snprintf(text, sizeof text, "\"%016llx\"",
-                static_cast<unsigned long long>(session.simulation().state_hash()));
+                static_cast<unsigned long long>(session.simulation().state().hash()));
   EXPECT_EQ(hash("a"), text);
   EXPECT_EQ(hash("b"), text);
   EXPECT_NE(hash("same"), text);

@@ -55,7 +55,7 @@ TEST_F(Stepping, StepsAreExactAndGiveTheHashOfAnyOtherRun) {
   EXPECT_EQ(response.sim_time, 25);
   desert_sim::Session session(corner(), desert_sim::no_raster_loader, "cpu", 1);
   for (int n = 0; n < 25; ++n) session.step();
-  EXPECT_EQ(response.state_hash, desert_sim::hash_text(session.simulation().state_hash()));
+  EXPECT_EQ(response.state_hash, desert_sim::hash_text(session.simulation().state().hash()));
 }
 
 TEST_F(Stepping, ManySmallRequestsMakeOneLargeOne) {
@@ -149,7 +149,7 @@ TEST_F(Stepping, ACheckpointOfAnotherSizeGivesAKeyframeOfThatSize) {
   request.name = "small.ckpt";
   const auto response = call<desert_sim::LoadCheckpoint>("load_checkpoint", request);
   ASSERT_TRUE(response.success) << response.message;
-  EXPECT_EQ(response.state_hash, desert_sim::hash_text(small.simulation().state_hash()));
+  EXPECT_EQ(response.state_hash, desert_sim::hash_text(small.simulation().state().hash()));
   ASSERT_TRUE(keyframes.wait_for(
       [](const ElevationGrid& k) { return k.width == 20 && k.height == 33 && k.step == 3; }));
   ASSERT_TRUE(step(2).success);

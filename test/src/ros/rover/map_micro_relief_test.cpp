@@ -42,7 +42,7 @@ TerrainState dunes(const std::string& boundary) {
           "vegetation, x: 6, y: 36, size_x: 8, size_y: 8, height: 0.8}]}");
   test::run(*world, 8);
   TerrainState state;
-  state.snapshot = world->snapshot(GridGround::layers_of_snapshot(true));
+  state.snapshot = world->views().snapshot(GridGround::layers_of_snapshot(true));
   return state;
 }
 

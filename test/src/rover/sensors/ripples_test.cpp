@@ -16,7 +16,7 @@ Snapshot rippled(Exec& exec, const std::string& more = "") {
       "[{ramp: {layer: bedrock, slope_x: 0.05}}, {uniform: {layer: sand, value: 1}}], wind: {speed: 10, "
       "direction_deg: 20, warping: false, projection: false}, micro_relief: {crest_length: 1" +
           more + "}}");
-  Snapshot s = *world->snapshot(MicroRelief::layers());
+  Snapshot s = *world->views().snapshot(MicroRelief::layers());
   for (std::size_t i = 32 * 16; i < s.layers.at(Layer::vegetation).size(); ++i)
     s.layers.at(Layer::vegetation)[i] = 0.8f;
   return s;

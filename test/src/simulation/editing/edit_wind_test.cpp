@@ -32,7 +32,7 @@ class EditWind : public test::OnBackend {
  protected:
   std::uint64_t hash_after(Simulation& s, int steps) {
     test::run(s, steps);
-    return s.state_hash();
+    return s.state().hash();
   }
 };
 

@@ -39,14 +39,14 @@ class PlantEdits : public test::OnBackend {
     return values;
   }
   static std::string refusal(Simulation& s, const command::EditPlants& edit) {
-    const std::uint64_t before = s.state_hash();
+    const std::uint64_t before = s.state().hash();
     std::string why = "was not refused";
     try {
       s.apply(edit);
     } catch (const ConfigError& e) {
       why = e.what();
     }
-    EXPECT_EQ(s.state_hash(), before) << "a refused edit changed something";
+    EXPECT_EQ(s.state().hash(), before) << "a refused edit changed something";
     return why;
   }
 };
@@ -59,8 +59,8 @@ TEST_P(PlantEdits, PlantsOfASpeciesStandInTheRegionAsDenseAsAsked) {
   const double expected = 3.14159 * 400 * 0.5;
   EXPECT_NEAR(result.plants, expected, 4 * std::sqrt(expected));
   EXPECT_EQ(s->state().plants.count, result.plants);
-  EXPECT_EQ(s->plant_counts()[0].plants, result.plants);
-  EXPECT_EQ(s->plant_counts()[1].plants, 0);
+  EXPECT_EQ(s->state().plant_counts()[0].plants, result.plants);
+  EXPECT_EQ(s->state().plant_counts()[1].plants, 0);
   const std::vector<float> x = column(*s, plants::Column::x), y = column(*s, plants::Column::y);
   for (std::size_t n = 0; n < x.size(); ++n) EXPECT_LE(std::hypot(x[n] - 60, y[n] - 60), 20.001);
   const std::vector<float> cover = test::real(*s, Layer::vegetation);
@@ -88,15 +88,15 @@ TEST_P(PlantEdits, ClearsByRegionAndSpecies) {
   field.density = 0.02;
   field.size = 0.2;
   s->apply(field);
-  const auto before = s->plant_counts();
+  const auto before = s->state().plant_counts();
   ASSERT_GT(before[0].plants, 1000);
   ASSERT_GT(before[1].plants, 100);
   command::EditPlants clearing = planting("tree", 1080, -440, 25, 0);
   clearing.operation = PlantEdit::clear;
   const long long fewer = s->apply(clearing).plants;
   EXPECT_LT(fewer, 0);
-  EXPECT_EQ(s->plant_counts()[0].plants, before[0].plants);
-  EXPECT_EQ(s->plant_counts()[1].plants, before[1].plants + fewer);
+  EXPECT_EQ(s->state().plant_counts()[0].plants, before[0].plants);
+  EXPECT_EQ(s->state().plant_counts()[1].plants, before[1].plants + fewer);
   clearing.species = "";
   clearing.shape = BrushShape::polygon;
   clearing.points = {{1000, -500}, {1160, -500}, {1160, -440}, {1000, -440}};
@@ -185,7 +185,7 @@ TEST_P(PlantEdits, AreReplayedFromTheJournal) {
     s->step();
     s->apply(stroke);
     s->step();
-    hash = s->simulation().state_hash();
+    hash = s->simulation().state().hash();
   }
   const Journal journal = read_journal(folder.path("j"));
   ASSERT_EQ(journal.entries.size(), 3u);
@@ -196,7 +196,7 @@ TEST_P(PlantEdits, AreReplayedFromTheJournal) {
       again->apply(journal.entries[next].command);
     if (tick < journal.ticks) again->step();
   }
-  EXPECT_EQ(again->simulation().state_hash(), hash);
+  EXPECT_EQ(again->simulation().state().hash(), hash);
 }
 
 DESERT_ON_EACH_BACKEND(PlantEdits);

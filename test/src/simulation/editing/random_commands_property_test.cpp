@@ -37,12 +37,12 @@ TEST(RandomCommands, ThatAreAcceptedCanBeSavedLoadedAndReplayed) {
         live.save_checkpoint(path);
         std::unique_ptr<Simulation> loaded;
         ASSERT_NO_THROW(loaded = load_checkpoint(path, live.simulation().exec()));
-        ASSERT_EQ(loaded->state_hash(), live.simulation().state_hash());
+        ASSERT_EQ(loaded->state().hash(), live.simulation().state().hash());
         ASSERT_TRUE(checkpoint_bytes(*loaded) == test::file_bytes(path));
         checkpoints.push_back(path);
         if (random.one_in(3)) live.step();
       }
-      hash = live.simulation().state_hash();
+      hash = live.simulation().state().hash();
     }
     const Journal journal = read_journal(folder.path("journal"));
     Session replay(scenario, no_raster_loader, "cpu", 1);
@@ -53,7 +53,7 @@ TEST(RandomCommands, ThatAreAcceptedCanBeSavedLoadedAndReplayed) {
       if (tick == journal.ticks) break;
       replay.step();
     }
-    ASSERT_EQ(replay.simulation().state_hash(), hash);
+    ASSERT_EQ(replay.simulation().state().hash(), hash);
   }
   EXPECT_GT(accepted, 3 * rounds);
   EXPECT_GT(refused, rounds);

@@ -31,13 +31,13 @@ class RepeatableCommands : public ::testing::Test {
       live->apply(command);
       live->save_checkpoint(folder_.path("a.ck"));
       for (int n = 0; n < 3; ++n) live->step();
-      hash = live->simulation().state_hash();
+      hash = live->simulation().state().hash();
     }
     auto loaded = Session::from_checkpoint(folder_.path("a.ck"), no_raster_loader, "cpu", 1);
     loaded->save_checkpoint(folder_.path("b.ck"));
     EXPECT_TRUE(test::file_bytes(folder_.path("a.ck")) == test::file_bytes(folder_.path("b.ck")));
     for (int n = 0; n < 3; ++n) loaded->step();
-    EXPECT_EQ(loaded->simulation().state_hash(), hash) << "through a checkpoint";
+    EXPECT_EQ(loaded->simulation().state().hash(), hash) << "through a checkpoint";
 
     const Journal journal = read_journal(folder_.path("journal"));
     ASSERT_EQ(journal.entries.size(), 1u);
@@ -45,7 +45,7 @@ class RepeatableCommands : public ::testing::Test {
     for (int n = 0; n < 2; ++n) replay->step();
     replay->apply(journal.entries[0].command);
     for (int n = 0; n < 3; ++n) replay->step();
-    EXPECT_EQ(replay->simulation().state_hash(), hash) << "from the journal";
+    EXPECT_EQ(replay->simulation().state().hash(), hash) << "from the journal";
   }
 
   const test::TemporaryFolder folder_;

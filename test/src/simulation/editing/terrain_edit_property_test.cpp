@@ -95,7 +95,7 @@ TEST_P(Edits, ThatConserveKeepTheSumOfTheLayer) {
       e.conserve = true;
       e.ring_width = 1.2;
       auto s = world(boundary);
-      const auto books = s->balance();
+      const auto books = s->state().balance();
       const auto before = test::quanta(*s, layer_of(e));
       const CommandResult r = s->apply(e, true);
       const auto after = test::quanta(*s, layer_of(e));
@@ -108,8 +108,8 @@ TEST_P(Edits, ThatConserveKeepTheSumOfTheLayer) {
       if (before != after) ++made;
       EXPECT_LE(std::abs(r.moved_m3), rise + 1e-6);
       for (std::size_t m = 0; m < books.size(); ++m) {
-        EXPECT_EQ(s->balance()[m].in, books[m].in) << "nothing came in";
-        EXPECT_EQ(s->balance()[m].out, books[m].out) << "nothing went out";
+        EXPECT_EQ(s->state().balance()[m].in, books[m].in) << "nothing came in";
+        EXPECT_EQ(s->state().balance()[m].out, books[m].out) << "nothing went out";
       }
       test::expect_sound(*s, name_of(e));
     }
@@ -280,7 +280,7 @@ TEST_P(Edits, OfSoilSlideOnAfterACheckpoint) {
   live.save_checkpoint(folder.path("c"));
   resumed.apply(command::LoadCheckpoint{folder.path("c"), 0});
   for (int n = 0; n < 20; ++n) live.step(), resumed.step();
-  EXPECT_EQ(resumed.simulation().state_hash(), live.simulation().state_hash());
+  EXPECT_EQ(resumed.simulation().state().hash(), live.simulation().state().hash());
 }
 
 TEST_P(Edits, ReplayFromTheirJournalToTheSameHash) {
@@ -295,7 +295,7 @@ TEST_P(Edits, ReplayFromTheirJournalToTheSameHash) {
       live.apply(test::shifted(e, n / 3.0, -n / 7.0));
       if (n % 10 == 0) live.step();
     }
-    hash = live.simulation().state_hash();
+    hash = live.simulation().state().hash();
   }
   const Journal journal = read_journal(folder.path("j"));
   ASSERT_EQ(journal.entries.size(), all_edits().size());
@@ -304,7 +304,7 @@ TEST_P(Edits, ReplayFromTheirJournalToTheSameHash) {
     while (again.ticks() < entry.tick) again.step();
     again.apply(entry.command);
   }
-  EXPECT_EQ(again.simulation().state_hash(), hash);
+  EXPECT_EQ(again.simulation().state().hash(), hash);
 }
 
 TEST_P(Edits, WithABrokenShapeInTheirJournalAreRefused) {

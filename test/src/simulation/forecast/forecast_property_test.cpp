@@ -42,18 +42,19 @@ class Forecasts : public test::OnBackend {
     for (const ForecastMoment& moment : f.moments) {
       while (live.steps() < moment.step) live.step();
       EXPECT_EQ(moment.step, live.steps()) << what;
-      EXPECT_EQ(moment.hash, live.state_hash()) << what << ", " << moment.time << " s ahead";
+      EXPECT_EQ(moment.hash, live.state().hash()) << what << ", " << moment.time << " s ahead";
       EXPECT_EQ(moment.sim_time, live.time()) << what;
-      EXPECT_EQ(moment.elevation, live.snapshot({Layer::elevation})->layers.at(Layer::elevation)) << what;
+      EXPECT_EQ(moment.elevation, live.views().snapshot({Layer::elevation})->layers.at(Layer::elevation))
+          << what;
       EXPECT_EQ(moment.costs, costs(live)) << what;
     }
   }
   static std::vector<std::int8_t> costs(Simulation& s) {
     CostQuery query;
     query.whole = true;
-    s.forget_costs();  // as a new subscriber
+    s.views().forget_costs();  // as a new subscriber
     std::vector<std::int8_t> all(static_cast<std::size_t>(s.terrain().grid().cells()));
-    s.begin_costs(query).whole.get()->write_to(all, s.terrain().grid().width);
+    s.views().begin_costs(query).whole.get()->write_to(all, s.terrain().grid().width);
     return all;
   }
 };
@@ -62,9 +63,9 @@ TEST_P(Forecasts, AreWhatTheLiveRunComesTo) {
   for (const test::Case& c : test::process_cases(true)) {
     const auto live = simulation(test::grid_yaml(33, 26, "open") + c.yaml);
     test::run(*live, 3);
-    const std::uint64_t before = live->state_hash();
+    const std::uint64_t before = live->state().hash();
     const ForecastMaps f = forecast(*live, options(0.6, 3, 10));
-    EXPECT_EQ(live->state_hash(), before) << "the live run is not touched";
+    EXPECT_EQ(live->state().hash(), before) << "the live run is not touched";
     EXPECT_EQ(f.moments.back().step, live->steps() + 6);
     expect_of_live_run(f, *live, c.name);
   }
@@ -113,7 +114,7 @@ TEST_P(Forecasts, OfLongerStepsAreRunsWithThatTimeStep) {
   EXPECT_DOUBLE_EQ(f.seconds_per_sim_second, 1 / static_cast<double>(0.2F));
   live->apply(command::SetParameters{{"run.time_step=0.1"}});
   while (live->steps() < 4) live->step();
-  EXPECT_EQ(f.moments[0].hash, live->state_hash());
+  EXPECT_EQ(f.moments[0].hash, live->state().hash());
 
   const auto paced = simulation(forecast_dunes + "run: {time_step: 0.02}\n");
   o.stride = 4;
@@ -126,7 +127,7 @@ TEST_P(Forecasts, OfLongerStepsAreRunsWithThatTimeStep) {
 TEST_P(Forecasts, ApplyTheirCommandsToTheCopyAlone) {
   const auto live = simulation(forecast_dunes);
   test::run(*live, 2);
-  const std::uint64_t before = live->state_hash();
+  const std::uint64_t before = live->state().hash();
   command::SetWindSchedule rose;
   rose.regime.regime = WindRegimeKind::rose;
   rose.regime.hold_time = 0.5F;
@@ -134,7 +135,7 @@ TEST_P(Forecasts, ApplyTheirCommandsToTheCopyAlone) {
   ForecastOptions o = options(5, 2, 1);
   o.commands = {command::SetParameters{{"saltation.influx=0", "run.time_step=0.5"}}, rose};
   const ForecastMaps f = forecast(*live, o);
-  EXPECT_EQ(live->state_hash(), before);
+  EXPECT_EQ(live->state().hash(), before);
   live->apply(std::get<command::SetParameters>(o.commands[0]));
   live->apply(rose);
   expect_of_live_run(f, *live, "commands");

@@ -210,10 +210,10 @@ TEST_P(Contract, RefreshingDerivedLayersChangesNoState) {
   for (const auto& [name, text] : worlds) {
     SCOPED_TRACE(name);
     auto s = world(name);
-    const std::uint64_t before = s->state_hash();
+    const std::uint64_t before = s->state().hash();
     s->pipeline().derived_changed();
     s->pipeline().refresh_derived();
-    EXPECT_EQ(s->state_hash(), before);
+    EXPECT_EQ(s->state().hash(), before);
   }
 }
 

@@ -12,7 +12,7 @@ class UndoParity : public test::OnBoth {};
 std::string outcome(Session& session, const Command& command) {
   try {
     session.apply(command);
-    return std::to_string(session.simulation().state_hash());
+    return std::to_string(session.simulation().state().hash());
   } catch (const ConfigError& e) {
     return e.what();
   }

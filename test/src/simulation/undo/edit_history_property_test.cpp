@@ -185,7 +185,7 @@ TEST_P(UndoIn, AStrokeThatConservedConserves) {
 
 TEST_P(UndoIn, CallsOfOneNameAreOneStrokeUntilItIsUndone) {
   auto s = session("dunes");
-  const std::uint64_t start = s->simulation().state_hash();
+  const std::uint64_t start = s->simulation().state().hash();
   command::EditTerrain edit = test::edit_at(5, 5, BrushShape::circle);
   const auto paint = [&](const std::string& name) {
     edit.stroke = name;
@@ -206,16 +206,16 @@ TEST_P(UndoIn, CallsOfOneNameAreOneStrokeUntilItIsUndone) {
   EXPECT_EQ(s->apply(command::Undo{"right"}).undoable, 2);
   while (accepted(*s, command::Undo{})) {
   }
-  EXPECT_EQ(s->simulation().state_hash(), start);
+  EXPECT_EQ(s->simulation().state().hash(), start);
 }
 
 std::string refusal(Session& s, const Command& command) {
-  const std::uint64_t before = s.simulation().state_hash();
+  const std::uint64_t before = s.simulation().state().hash();
   try {
     s.apply(command);
     ADD_FAILURE() << "was accepted";
   } catch (const ConfigError& e) {
-    EXPECT_EQ(s.simulation().state_hash(), before);
+    EXPECT_EQ(s.simulation().state().hash(), before);
     return e.what();
   }
   return "";
@@ -263,10 +263,11 @@ TEST_P(UndoIn, MemoryIsBoundedAndTheOldestGoFirst) {
     for (int n = 0; n < 60; ++n) {
       Command edit = random.next("");
       EXPECT_EQ(accepted(*s, edit), accepted(*free, edit));
-      EXPECT_LE(s->simulation().history().bytes(), memory);
-      ASSERT_EQ(s->simulation().state_hash(), free->simulation().state_hash()) << "memory changes no edit";
+      EXPECT_LE(s->simulation().commands().history().bytes(), memory);
+      ASSERT_EQ(s->simulation().state().hash(), free->simulation().state().hash())
+          << "memory changes no edit";
     }
-    EXPECT_EQ(free->simulation().history().bytes(), 0u);
+    EXPECT_EQ(free->simulation().commands().history().bytes(), 0u);
   }
   auto s = session("dunes", "", memory);
   command::EditTerrain edit = test::edit_at(5, 5, BrushShape::rectangle);
@@ -285,7 +286,7 @@ TEST_P(UndoIn, AThousandStrokesAreCheap) {
   edit.inner = 1;
   edit.value = 0.001;
   for (int n = 0; n < 1000; ++n) edit.stroke = "s" + std::to_string(n), s->apply(edit);
-  EXPECT_LT(s->simulation().history().bytes(), 5u << 20);
+  EXPECT_LT(s->simulation().commands().history().bytes(), 5u << 20);
   for (int n = 0; n < 1000; ++n) s->apply(command::Undo{});
   EXPECT_TRUE(bytes(*s) == before);
 }
@@ -310,7 +311,7 @@ TEST_P(UndoIn, AReplayUndoesTheSameWithTheMemoryOfItsJournal) {
         else
           accepted(*s, random.next(name));
       }
-      hash = s->simulation().state_hash();
+      hash = s->simulation().state().hash();
     }
     EXPECT_GT(undone, 5);
     const Journal journal = read_journal(path);
@@ -321,7 +322,7 @@ TEST_P(UndoIn, AReplayUndoesTheSameWithTheMemoryOfItsJournal) {
       ASSERT_NO_THROW(replay->apply(entry.command));
     }
     while (replay->ticks() < journal.ticks) replay->step();
-    EXPECT_EQ(replay->simulation().state_hash(), hash);
+    EXPECT_EQ(replay->simulation().state().hash(), hash);
   }
 }
 

@@ -25,7 +25,7 @@ std::string flat_sand(double speed, double direction_deg, const std::string& bou
 
 class MicroReliefOfSurface : public test::OnBackend {
  protected:
-  Snapshot snapshot(Simulation& s) { return *s.snapshot(MicroRelief::layers()); }
+  Snapshot snapshot(Simulation& s) { return *s.views().snapshot(MicroRelief::layers()); }
   Snapshot flat(double speed, double direction_deg = 0) {
     return snapshot(*simulation(flat_sand(speed, direction_deg)));
   }
@@ -185,8 +185,9 @@ TEST_P(MicroReliefOfSurface, WindowsAgreeToTheBit) {
     return all[static_cast<std::size_t>(row * large.columns + column)];
   };
   const MicroReliefWindow part{5, 8, 40, 60, 0.05}, coarse{3.05, 5.05, 70, 60, 0.15};
-  const std::vector<float> inner = heights(
-                               *world->snapshot(MicroRelief::layers(), MicroRelief::band(part, whole)), part),
+  const std::vector<float> inner = heights(*world->views().snapshot(MicroRelief::layers(),
+                                                                    MicroRelief::band(part, whole)),
+                                           part),
                            sparse = heights(whole, coarse);
   for (int row = 0; row < part.rows; ++row)
     for (int column = 0; column < part.columns; ++column)
@@ -317,10 +318,10 @@ TEST_P(MicroReliefOfSurface, TheStateDoesNotKnowOfIt) {
              other = simulation(flat_sand(8, 20) + "micro_relief: {response_time: 5, ripples: false}\n");
   test::run(*plain, 5);
   test::run(*other, 5);
-  const std::uint64_t hash = plain->state_hash();
+  const std::uint64_t hash = plain->state().hash();
   EXPECT_GT(largest_offset(snapshot(*plain)), 0);
-  EXPECT_EQ(plain->state_hash(), hash);
-  EXPECT_EQ(other->state_hash(), hash);
+  EXPECT_EQ(plain->state().hash(), hash);
+  EXPECT_EQ(other->state().hash(), hash);
 }
 
 TEST_P(MicroReliefOfSurface, ACheckpointContinuesToTheBit) {

@@ -37,7 +37,7 @@ TEST_P(Staged, ASnapshotShowsTheStateBeforeTheStepsThatRunMeanwhile) {
   test::run(*s, 3);
   for (int round = 0; round < 5; ++round) {
     const auto before = present(*s);
-    const PendingSnapshot pending = s->begin_snapshot(layers);
+    const PendingSnapshot pending = s->views().begin_snapshot(layers);
     test::run(*s, 4);
     EXPECT_EQ(pending.get()->layers, before);
     EXPECT_EQ(pending.get()->step, 3u + 4u * round);
@@ -52,7 +52,7 @@ TEST_P(Staged, MoreSnapshotsMayBeUnderWayThanThereAreSlots) {
   for (int n = 0; n < 7; ++n) {
     test::run(*s, 1);
     expected.push_back(present(*s));
-    pending.push_back(s->begin_snapshot(layers));
+    pending.push_back(s->views().begin_snapshot(layers));
     if (n == 4) pending[2] = {};  // nobody wants it any more
   }
   test::run(*s, 2);
@@ -67,11 +67,11 @@ TEST_P(Staged, ASnapshotMayBeLargerThanASlot) {
   test::run(*s, 2);
   const auto expected = present(*s);
   for (std::size_t bytes : {std::size_t{1}, std::size_t{40 * 4 * 4 * 7}, std::size_t{40 * 4 * 4 * 16}}) {
-    s->staging().release();
-    EXPECT_EQ(s->staging().bytes(), 0u);
-    s->staging().set_slot_bytes(bytes);
-    const PendingSnapshot pending = s->begin_snapshot(layers);
-    EXPECT_LE(s->staging().bytes(), 2 * std::max(bytes, std::size_t{40 * 4 * 4})) << "a row at least";
+    s->views().staging().release();
+    EXPECT_EQ(s->views().staging().bytes(), 0u);
+    s->views().staging().set_slot_bytes(bytes);
+    const PendingSnapshot pending = s->views().begin_snapshot(layers);
+    EXPECT_LE(s->views().staging().bytes(), 2 * std::max(bytes, std::size_t{40 * 4 * 4})) << "a row at least";
     EXPECT_EQ(pending.get()->layers, expected) << bytes;
   }
 }
@@ -80,8 +80,8 @@ TEST_P(Staged, BandsGoOverTheEdgeAsTheyDidBefore) {
   auto s = simulation(staged_world);
   test::run(*s, 2);
   const auto all = present(*s);
-  s->staging().set_slot_bytes(40 * 4 * 4 * 3);
-  const auto band = s->begin_snapshot(layers, {26, 9}).get();
+  s->views().staging().set_slot_bytes(40 * 4 * 4 * 3);
+  const auto band = s->views().begin_snapshot(layers, {26, 9}).get();
   ASSERT_EQ(band->height, 9);
   for (Layer layer : layers)
     for (int y = 0; y < 9; ++y)
@@ -94,10 +94,10 @@ TEST_P(Staged, SnapshotsUnderWayOutliveTheirSimulationAndTheMemoryTheyWentThroug
   auto s = simulation(staged_world);
   test::run(*s, 2);
   const auto expected = present(*s);
-  const PendingSnapshot released = s->begin_snapshot(layers);
-  s->staging().release();
-  EXPECT_EQ(s->staging().bytes(), 0u);
-  const PendingSnapshot last = s->begin_snapshot(layers);
+  const PendingSnapshot released = s->views().begin_snapshot(layers);
+  s->views().staging().release();
+  EXPECT_EQ(s->views().staging().bytes(), 0u);
+  const PendingSnapshot last = s->views().begin_snapshot(layers);
   s.reset();
   EXPECT_EQ(released.get()->layers, expected);
   EXPECT_EQ(last.get()->layers, expected);
@@ -112,7 +112,7 @@ TEST_P(Staged, ReadersOnOtherThreadsGetWhatTheyAskedFor) {
       test::run(*s, 1);
       expected[n] = present(*s);
       readers.emplace_back(
-          [pending = s->begin_snapshot(layers), &to = found[n]] { to = pending.get()->layers; });
+          [pending = s->views().begin_snapshot(layers), &to = found[n]] { to = pending.get()->layers; });
     }
     test::run(*s, 1);
     for (std::thread& reader : readers) reader.join();
@@ -124,12 +124,12 @@ TEST_P(Staged, MemoryIsCountedAndGivenBack) {
   auto s = simulation(staged_world);
   test::run(*s, 1);
   const std::size_t before = exec().bytes_held(), parts = total_bytes(s->memory());
-  s->snapshot({Layer::sand});
+  s->views().snapshot({Layer::sand});
   test::hold(*s);
   EXPECT_EQ(exec().bytes_held(), before + 2 * 4 * 40 * 30) << "a slot and what is held";
   EXPECT_EQ(total_bytes(s->memory()), parts + 2 * 4 * 40 * 30);
-  s->staging().release();
-  s->forget(Layer::elevation);
+  s->views().staging().release();
+  s->views().forget(Layer::elevation);
   EXPECT_EQ(exec().bytes_held(), before);
   EXPECT_EQ(total_bytes(s->memory()), parts);
 }

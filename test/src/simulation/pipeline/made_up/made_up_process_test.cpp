@@ -69,13 +69,13 @@ struct MadeUpProcess : ::testing::Test {
 
 TEST_F(MadeUpProcess, StepsInItsPlaceAndConservesMaterial) {
   auto s = made(world);
-  s->set_timing(true);
+  s->pipeline().set_timing(true);
   test::run(*s, 1);
   EXPECT_NEAR(s->terrain().values(Layer::sand)[0], 0.01, 1e-6);
   EXPECT_NEAR(s->terrain().values(Layer::bedrock)[0], 4.99, 1e-6);
   test::expect_sound(*s, "after frost");
   std::vector<std::string> order;
-  for (const ProcessTime& time : s->process_times()) order.push_back(time.process);
+  for (const ProcessTime& time : s->pipeline().times()) order.push_back(time.process);
   const auto frost = std::find(order.begin(), order.end(), "frost");
   ASSERT_NE(frost, order.end());
   EXPECT_EQ(*(frost + 1), "avalanching");

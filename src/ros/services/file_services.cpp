@@ -1,0 +1,151 @@
+/// Services for checkpoints, terrains and scenarios in files.
+
+#include <desert_sim/LoadCheckpoint.h>
+#include <desert_sim/LoadScenario.h>
+#include <desert_sim/LoadTerrain.h>
+#include <desert_sim/SaveCheckpoint.h>
+#include <desert_sim/SaveTerrain.h>
+#include <ros/console.h>
+
+#include <memory>
+#include <mutex>
+
+#include "src/core/did_you_mean.hpp"
+#include "src/core/hash_text.hpp"
+#include "src/core/joined.hpp"
+#include "src/core/quoted.hpp"
+#include "src/ros/services/services.hpp"
+#include "src/ros/services/terrain_formats.hpp"
+#include "src/scenario/band_terrain.hpp"
+#include "src/scenario/scenario_file.hpp"
+
+namespace desert_sim {
+
+namespace {
+
+constexpr const char* terrain_file = "terrain.yaml";  // in the folder of a saved terrain
+
+/// A name that is no file's either may be that of an installed scenario, mistyped.
+std::string scenario_below_data_folder(const DataFolder& files, const std::string& name) {
+  try {
+    return files.for_reading(name);
+  } catch (const ConfigError& e) {
+    if (name.find('/') != std::string::npos) throw;
+    const std::string known = joined(installed_scenarios());
+    throw ConfigError(std::string(e.what()) + "; nor is it an installed scenario (known: " + known + ")" +
+                      did_you_mean(name, known));
+  }
+}
+
+/// Starts the simulation from what is in files.
+class Loader {
+ public:
+  explicit Loader(const ServiceContext& context) : c_(context) {}
+
+  ReachedState load(const Command& command) {
+    const ReachedState reached = c_.simulation.apply(command, true).get();
+    terrain_replaced();
+    return reached;
+  }
+  /// The hash of the new state.
+  std::string load_scenario(const command::LoadScenario& command) {
+    const ReachedState reached = load(command);
+    ROS_INFO("%s was loaded.", command.path.c_str());
+    return hash_text(reached.hash);
+  }
+
+ private:
+  /// Moves the frame in the middle of the terrain, and publishes all topics.
+  void terrain_replaced() {
+    const SimulationThread::Patience unlimited(0);  // the load has been done, and cannot be refused any more
+    if (c_.frames.has_center()) {
+      // One thread at a time, each with a copy of its own: the last one that moves the frame has seen the
+      // newest terrain.
+      const std::lock_guard<std::mutex> lock(move_center_mutex_);
+      c_.frames.move_center(*c_.simulation.terrain({Layer::elevation}).get().snapshot);
+    }
+    c_.publisher.publish_now(c_.answer_timeout);
+  }
+
+  const ServiceContext& c_;
+  std::mutex move_center_mutex_;  ///< held while terrain_replaced() moves the frame
+};
+
+void save_checkpoint(const ServiceContext& c, const SaveCheckpointRequest& request,
+                     SaveCheckpointResponse& response) {
+  const WritableFile file = c.files.for_writing(request.name);
+  const ReachedState reached =
+      file.write([&](const std::string& path) { return c.simulation.save_checkpoint(path).get(); });
+  response.path = file.path();
+  response.step = reached.moment.step;
+  response.state_hash = hash_text(reached.hash);
+  ROS_INFO("The checkpoint of step %lu was saved to %s.", static_cast<unsigned long>(response.step),
+           response.path.c_str());
+}
+
+void load_checkpoint(Loader& loader, const std::string& path, LoadCheckpointResponse& response) {
+  const ReachedState reached = loader.load(command::LoadCheckpoint{path, 0});
+  response.step = reached.moment.step;
+  response.sim_time = reached.moment.time;
+  response.state_hash = hash_text(reached.hash);
+  ROS_INFO("The checkpoint of step %lu was loaded from %s.", static_cast<unsigned long>(response.step),
+           path.c_str());
+}
+
+void save_terrain_folder(const ServiceContext& c, const SaveTerrainRequest& request,
+                         SaveTerrainResponse& response) {
+  const TerrainFormat format = terrain_format(request.format);
+  if (is_bag(request.name))
+    throw ConfigError(
+        "name: " + quoted(request.name) +
+        " has the extension .bag, which load_terrain reads as a file (allowed: the name of a folder)");
+  const WritableFile file = c.files.for_writing(request.name + "/" + terrain_file);
+  const TerrainToSave terrain = c.simulation.terrain_to_save(file.path()).get();
+  const LayerWriter writer =
+      layer_writer(format, terrain, c.frames.terrain_frame(), c.node.resolveName("grid_map"));
+  file.write([&](const std::string& path) {
+    save_terrain(path, terrain.scenario, *terrain.state.snapshot, writer, hash_text(terrain.hash));
+  });
+  response.path = file.path();
+  response.step = terrain.state.moment.step;
+  ROS_INFO("The terrain of step %lu was saved to %s.", static_cast<unsigned long>(response.step),
+           response.path.c_str());
+}
+
+}  // namespace
+
+void add_file_services(Services& services) {
+  const ServiceContext& c = services.context();
+  const auto loader = std::make_shared<Loader>(c);
+
+  services.add<SaveCheckpoint>("save_checkpoint",
+                               [&c](const SaveCheckpointRequest& request, SaveCheckpointResponse& response) {
+                                 save_checkpoint(c, request, response);
+                               });
+  services.add<LoadCheckpoint>("load_checkpoint", [&c, loader](const LoadCheckpointRequest& request,
+                                                               LoadCheckpointResponse& response) {
+    load_checkpoint(*loader, c.files.for_reading(request.name), response);
+  });
+  services.add<SaveTerrain>("save_terrain",
+                            [&c](const SaveTerrainRequest& request, SaveTerrainResponse& response) {
+                              save_terrain_folder(c, request, response);
+                            });
+  services.add<LoadTerrain>(
+      "load_terrain", [&c, loader](const LoadTerrainRequest& request, LoadTerrainResponse& response) {
+        const std::string name = is_bag(request.name) ? request.name : request.name + "/" + terrain_file;
+        response.state_hash =
+            loader->load_scenario({c.files.for_reading(name), true, 0, request.fill_nodata != 0});
+      });
+  services.add<LoadScenario>(
+      "load_scenario", [&c, loader](const LoadScenarioRequest& request, LoadScenarioResponse& response) {
+        command::LoadScenario command;
+        command.path = installed_scenario_file(request.name);
+        if (command.path.empty())
+          command.path = scenario_below_data_folder(c.files, request.name);
+        else
+          command.folder = installed_scenario_folder();
+        response.state_hash = loader->load_scenario(command);
+      });
+}
+
+}  // namespace desert_sim

@@ -1,0 +1,23 @@
+#include "src/simulation/processes/sand_slopes.hpp"
+
+#include <cmath>
+
+#include "kernels/field/statistics.hpp"
+#include "src/core/constants.hpp"
+
+namespace desert_sim {
+
+Residual sand_residual(const SimulationState& state, Pipeline& pipeline) {
+  pipeline.refresh_derived();
+  return with_backend(state.exec(), [&](auto& e) {
+    return statistics::residual(e, state.terrain.view(), pipeline.fields().repose.data());
+  });
+}
+
+double max_sand_slope_deg(const SimulationState& state) {
+  const float tangent =
+      with_backend(state.exec(), [&](auto& e) { return statistics::sand_slope(e, state.terrain.view()); });
+  return std::atan(tangent) * 180 / pi;
+}
+
+}  // namespace desert_sim
