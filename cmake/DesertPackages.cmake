@@ -1,4 +1,5 @@
-# Third-party libraries of every build: OpenMP, threads, FFTW3 (single precision), yaml-cpp, xxHash, Random123, OMPL.
+# Third-party libraries of every build: OpenMP, threads, FFTW3 (single precision), yaml-cpp, xxHash, Random123,
+# JSON by nlohmann, OMPL.
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(Threads REQUIRED)
 find_package(yaml-cpp QUIET)
@@ -23,6 +24,7 @@ function(desert_find name header library package)
 endfunction()
 
 desert_find(random123 Random123/philox.h "" librandom123-dev)
+desert_find(nlohmann_json nlohmann/json.hpp "" nlohmann-json3-dev)
 desert_find(xxhash xxhash.h xxhash libxxhash-dev)
 file(STRINGS ${DESERT_xxhash_INCLUDE}/xxhash.h xxhash_minor REGEX "define XXH_VERSION_MINOR +[0-9]+")
 if(xxhash_minor MATCHES " [0-7]$") # Ubuntu 20.04: XXH3 is there, but was not final, and shows on request only

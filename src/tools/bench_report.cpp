@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
-#include <sstream>
 
 #include "src/simulation/memory/memory.hpp"
-#include "src/tools/json_text.hpp"
+#include "src/tools/json.hpp"
 
 namespace desert_sim {
 
@@ -71,41 +70,38 @@ std::string bench_text(const BenchReport& r) {
 }
 
 std::string bench_json(const BenchReport& r) {
-  std::ostringstream out;
-  const auto number = [](double value) { return json_number(value); };
   const double ms = r.median_ms();
-  out << "{\n  \"format\": \"desert_bench 1\",\n  \"scene\": " << json_string(r.scene)
-      << ",\n  \"width\": " << r.width << ",\n  \"height\": " << r.height
-      << ",\n  \"cell_size_m\": " << number(r.cell_size) << ",\n  \"quality\": " << json_string(r.quality)
-      << ",\n  \"backend\": " << json_string(r.backend) << ",\n  \"device\": " << json_string(r.device)
-      << ",\n  \"threads\": " << r.threads << ",\n  \"warm_up_steps\": " << r.warm_up
-      << ",\n  \"steps\": " << r.steps << ",\n  \"ms_per_step\": " << number(ms)
-      << ",\n  \"ms_per_step_repeats\": [";
-  for (std::size_t n = 0; n < r.block_times_ms.size(); ++n)
-    out << (n ? ", " : "") << number(r.block_times_ms[n]);
-  out << "],\n  \"copy_bytes_per_s\": " << number(r.copy_bandwidth)
-      << ",\n  \"bytes_per_cell\": " << number(r.bytes())
-      << ",\n  \"share_of_copy\": " << number(r.copy_bandwidth_fraction(r.bytes(), ms))
-      << ",\n  \"processes\": {";
-  for (std::size_t n = 0; n < r.processes.size(); ++n) {
-    const BenchReport::Process& p = r.processes[n];
-    out << (n ? ",\n    " : "\n    ") << json_string(p.name) << ": {\"ms\": " << number(p.milliseconds)
-        << ", \"bytes_per_cell\": " << number(p.bytes)
-        << ", \"share_of_copy\": " << number(r.copy_bandwidth_fraction(p.bytes, p.milliseconds)) << "}";
-  }
-  out << "\n  },\n  \"residual\": {\"share_over_1e-3\": " << number(r.residual.share_over_1e3)
-      << ", \"share_over_1e-2\": " << number(r.residual.share_over_1e2)
-      << ", \"mean_excess\": " << number(r.residual.mean_excess)
-      << ", \"largest_excess\": " << number(r.residual.largest_excess)
-      << "},\n  \"fine_sweeps\": " << number(r.fine_sweeps)
-      << ",\n  \"sand_lost_quanta\": " << r.sand.residual()
-      << ",\n  \"sand_lost_share\": " << number(r.sand.relative_residual())
-      << ",\n  \"memory_bytes_per_cell\": " << number(static_cast<double>(total_bytes(r.memory)) / r.cells())
-      << ",\n  \"memory_bytes\": {";
-  for (std::size_t n = 0; n < r.memory.size(); ++n)
-    out << (n ? ", " : "") << json_string(r.memory[n].name) << ": " << r.memory[n].bytes;
-  out << "}\n}\n";
-  return out.str();
+  Json all = {{"format", "desert_bench 1"},
+              {"scene", r.scene},
+              {"width", r.width},
+              {"height", r.height},
+              {"cell_size_m", r.cell_size},
+              {"quality", r.quality},
+              {"backend", r.backend},
+              {"device", r.device},
+              {"threads", r.threads},
+              {"warm_up_steps", r.warm_up},
+              {"steps", r.steps},
+              {"ms_per_step", ms},
+              {"ms_per_step_repeats", r.block_times_ms},
+              {"copy_bytes_per_s", r.copy_bandwidth},
+              {"bytes_per_cell", r.bytes()},
+              {"share_of_copy", r.copy_bandwidth_fraction(r.bytes(), ms)},
+              {"processes", Json::object()}};
+  for (const BenchReport::Process& p : r.processes)
+    all["processes"][p.name] = {{"ms", p.milliseconds},
+                                {"bytes_per_cell", p.bytes},
+                                {"share_of_copy", r.copy_bandwidth_fraction(p.bytes, p.milliseconds)}};
+  all["residual"] = {{"share_over_1e-3", r.residual.share_over_1e3},
+                     {"share_over_1e-2", r.residual.share_over_1e2},
+                     {"mean_excess", r.residual.mean_excess},
+                     {"largest_excess", r.residual.largest_excess}};
+  all["fine_sweeps"] = r.fine_sweeps;
+  all["sand_lost_quanta"] = r.sand.residual();
+  all["sand_lost_share"] = r.sand.relative_residual();
+  all["memory_bytes_per_cell"] = static_cast<double>(total_bytes(r.memory)) / r.cells();
+  for (const MemoryPart& part : r.memory) all["memory_bytes"][part.name] = part.bytes;
+  return json_text(all);
 }
 
 }  // namespace desert_sim

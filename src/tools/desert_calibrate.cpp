@@ -161,7 +161,10 @@ int run_program(int argc, char** argv) {
                   {"after", "before", "fit", "steps", "duration", "out", "table", "global",
                    "global-evaluations", "local", "local-evaluations", "set", "backend", "threads"},
                   {"quiet", "help"});
-  if (o.has("help")) return std::fputs(usage, stdout), 0;
+  if (o.has("help")) {
+    std::fputs(usage, stdout);
+    return 0;
+  }
   if (o.positional().size() != 1) throw ConfigError("one scenario must be given (--help shows the usage)");
   for (const char* needed : {"after", "fit", "out"})
     if (!o.has(needed))

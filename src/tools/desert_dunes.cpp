@@ -77,7 +77,10 @@ void print_courses(const std::map<int, Course>& courses) {
 int run_program(int argc, char** argv) {
   const Options o(argc, argv, {"out", "layer", "base", "threshold", "least-height", "direction", "plot"},
                   {"help"});
-  if (o.has("help")) return std::fputs(usage, stdout), 0;
+  if (o.has("help")) {
+    std::fputs(usage, stdout);
+    return 0;
+  }
   if (o.positional().size() != 1) throw ConfigError("one run must be given (--help shows the usage)");
   if (o.has("plot") && !o.has("out")) throw ConfigError("--plot: --out is required too");
   const std::string out = o.text("out", ""), layer = o.text("layer", "sand");
@@ -97,7 +100,10 @@ int run_program(int argc, char** argv) {
       course.height += r.dune.height;
       if (r.velocity) course.speed += std::hypot(r.velocity->x, r.velocity->y), ++course.speeds;
     }
-  if (out.empty()) return std::cout << table, 0;
+  if (out.empty()) {
+    std::cout << table;
+    return 0;
+  }
   write_file(out, table);
   print_courses(courses);
   if (o.has("plot")) run_plot_script("--plot", "plot_dunes.py", o.text("plot", ""), {out});

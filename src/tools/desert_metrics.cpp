@@ -1,17 +1,14 @@
 /// desert_metrics: measures the dunes of a run at each of its snapshots, and prints JSON.
-#include <yaml-cpp/yaml.h>
-
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
-#include <sstream>
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/metrics/dune_metrics.hpp"
-#include "src/tools/json_text.hpp"
+#include "src/tools/json.hpp"
 #include "src/tools/options.hpp"
 #include "src/tools/program.hpp"
 #include "src/tools/run_history.hpp"
@@ -40,9 +37,9 @@ double slab_height_of(const std::string& run) {
   std::error_code none;
   if (!std::filesystem::is_regular_file(path, none)) return 0;
   try {
-    return YAML::Load(read_file(path))["slab_height_m"].as<double>(0);  // JSON is YAML
-  } catch (const YAML::Exception& e) {
-    throw ConfigError(path + ": is not the summary of a run: " + e.msg);
+    return read_json(path).value("slab_height_m", 0.0);
+  } catch (const Json::exception& e) {
+    throw ConfigError(path + ": is not the summary of a run: " + e.what());
   }
 }
 
@@ -72,53 +69,51 @@ DuneSurface surface_at(const RunHistory& history, std::size_t n, const std::stri
   return s;
 }
 
-std::string number_or_null(const std::optional<double>& value) {
-  return value ? json_number(*value) : "null";
+template <class Number>
+Json or_null(const std::optional<Number>& value) {
+  return value ? Json(*value) : Json();
 }
 
 /// Crests that are less parallel than this have no direction worth telling.
 constexpr double least_coherence = 0.1;
 
-std::string json_of(const DuneMetrics& m, const std::optional<Migration>& moved) {
-  std::optional<double> none;
+Json json_of(const DuneMetrics& m, const std::optional<Migration>& moved) {
   const SlipFaces& slip = m.slip_faces;
-  const auto of = [&none](bool known, double value) { return number_or_null(known ? value : none); };
-  const std::vector<std::pair<const char*, std::string>> members{
-      {"time_s", json_number(m.time)},
-      {"crest_orientation_deg",
-       m.crests && m.crests->coherence >= least_coherence ? json_number(m.crests->crest_deg) : "null"},
-      {"crest_coherence", m.crests ? json_number(m.crests->coherence) : "null"},
-      {"wavelength_m", number_or_null(m.wavelength)},
-      {"dunes_on_profiles", std::to_string(m.lines.dunes)},
-      {"mean_height_m", of(m.lines.dunes > 0, m.lines.mean_height)},
-      {"highest_m", of(m.lines.dunes > 0, m.lines.highest)},
-      {"rms_relief_m", json_number(m.rms_relief)},
-      {"deepest_sand_m", json_number(m.deepest_sand)},
-      {"highest_stack_slabs", number_or_null(m.highest_stack)},
-      {"slip_face_share", json_number(slip.share)},
-      {"slip_face_lee_share", number_or_null(slip.lee_share)},
-      {"slip_face_direction_deg", of(slip.share > 0, slip.direction_deg)},
-      {"slip_face_coherence", of(slip.share > 0, slip.direction_coherence)},
-      {"slip_face_directions", std::to_string(slip.directions_deg.size())},
-      {"crest_length_m", json_number(m.lines.length)},
-      {"crest_terminations", std::to_string(m.lines.terminations)},
-      {"terminations_per_m", number_or_null(m.terminations_per_metre)},
-      {"migration_speed_m_s", moved ? json_number(moved->velocity.amount) : "null"},
-      {"migration_direction_deg", moved ? json_number(moved->velocity.direction_deg) : "null"},
-      {"migration_correlation", moved ? json_number(moved->correlation) : "null"},
-      {"flux_m2_s", m.flux ? json_number(m.flux->amount) : "null"},
-      {"flux_direction_deg", m.flux ? json_number(m.flux->direction_deg) : "null"},
-      {"bare_share", json_number(m.bare_share)},
-  };
-  std::string text;
-  for (const auto& [name, value] : members)
-    text += (text.empty() ? "" : ", ") + json_string(name) + ": " + value;
-  return "{" + text + "}";
+  const auto of = [](bool known, double value) { return known ? Json(value) : Json(); };
+  const bool dunes = m.lines.dunes > 0, slipping = slip.share > 0;
+  const bool parallel = m.crests && m.crests->coherence >= least_coherence;
+  return {{"time_s", m.time},
+          {"crest_orientation_deg", parallel ? Json(m.crests->crest_deg) : Json()},
+          {"crest_coherence", m.crests ? Json(m.crests->coherence) : Json()},
+          {"wavelength_m", or_null(m.wavelength)},
+          {"dunes_on_profiles", m.lines.dunes},
+          {"mean_height_m", of(dunes, m.lines.mean_height)},
+          {"highest_m", of(dunes, m.lines.highest)},
+          {"rms_relief_m", m.rms_relief},
+          {"deepest_sand_m", m.deepest_sand},
+          {"highest_stack_slabs", or_null(m.highest_stack)},
+          {"slip_face_share", slip.share},
+          {"slip_face_lee_share", or_null(slip.lee_share)},
+          {"slip_face_direction_deg", of(slipping, slip.direction_deg)},
+          {"slip_face_coherence", of(slipping, slip.direction_coherence)},
+          {"slip_face_directions", slip.directions_deg.size()},
+          {"crest_length_m", m.lines.length},
+          {"crest_terminations", m.lines.terminations},
+          {"terminations_per_m", or_null(m.terminations_per_metre)},
+          {"migration_speed_m_s", moved ? Json(moved->velocity.amount) : Json()},
+          {"migration_direction_deg", moved ? Json(moved->velocity.direction_deg) : Json()},
+          {"migration_correlation", moved ? Json(moved->correlation) : Json()},
+          {"flux_m2_s", m.flux ? Json(m.flux->amount) : Json()},
+          {"flux_direction_deg", m.flux ? Json(m.flux->direction_deg) : Json()},
+          {"bare_share", m.bare_share}};
 }
 
 int run_program(int argc, char** argv) {
   const Options o(argc, argv, {"out", "layer", "sigma", "slip-face", "bare-depth", "slab-height"}, {"help"});
-  if (o.has("help")) return std::fputs(usage, stdout), 0;
+  if (o.has("help")) {
+    std::fputs(usage, stdout);
+    return 0;
+  }
   if (o.positional().size() != 1) throw ConfigError("one run must be given (--help shows the usage)");
   const std::string run = o.positional()[0], out = o.text("out", ""), layer = o.text("layer", "sand");
   if (layer != "sand" && layer != "elevation")
@@ -130,17 +125,18 @@ int run_program(int argc, char** argv) {
   settings.slab_height = o.real("slab-height", slab_height_of(run), 1e-6, 1e6);
   const auto history = open_history(run);
   if (!out.empty()) require_writable_file(out);
-  std::string text = "{\"layer\": " + json_string(layer) + ", \"snapshots\": [";
+  Json all = {{"layer", layer}, {"snapshots", Json::array()}};
   std::optional<DuneSurface> before;
   for (std::size_t n = 0; n < history->times().size(); ++n) {
     DuneSurface now = surface_at(*history, n, layer);
     const DuneMetrics metrics = measure_dunes(now, settings);
-    text += (n ? ",\n  " : "\n  ") + json_of(metrics, before ? migration(*before, now) : std::nullopt);
+    all["snapshots"].push_back(json_of(metrics, before ? migration(*before, now) : std::nullopt));
     before = std::move(now);
   }
-  text += "\n]}\n";
-  if (out.empty()) return std::cout << text, 0;
-  write_file(out, text);
+  if (out.empty())
+    std::cout << json_text(all);
+  else
+    write_file(out, json_text(all));
   return 0;
 }
 

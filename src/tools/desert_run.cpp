@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <optional>
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
@@ -289,6 +290,15 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
   session.simulation().exec().synchronise();
 }
 
+/// What is printed instead of a run.
+std::optional<std::string> page_of(const Options& o) {
+  if (o.has("help")) return usage;
+  if (o.has("describe")) return describe_parameters();
+  if (o.has("describe-view")) return describe_view();
+  if (o.has("describe-processes")) return describe_processes(process_table());
+  return std::nullopt;
+}
+
 int run_program(int argc, char** argv) {
   RunPlan plan = plan_of(Options(
       argc, argv, {"steps",  "duration",    "snapshots", "backend",      "threads",    "set",
@@ -298,11 +308,14 @@ int run_program(int argc, char** argv) {
       {"all-raster-formats", "describe", "describe-processes", "describe-view", "pipeline", "quiet",
        "help"}));
   const Options& o = plan.options;
-  if (o.has("help")) return std::fputs(usage, stdout), 0;
-  if (o.has("describe")) return std::cout << describe_parameters(), 0;
-  if (o.has("describe-view")) return std::cout << describe_view(), 0;
-  if (o.has("describe-processes")) return std::cout << describe_processes(process_table()), 0;
-  if (o.has("migrate")) return migrate(o.text("migrate", "")), 0;
+  if (const std::optional<std::string> page = page_of(o)) {
+    std::cout << *page;
+    return 0;
+  }
+  if (o.has("migrate")) {
+    migrate(o.text("migrate", ""));
+    return 0;
+  }
   const int threads = static_cast<int>(o.number("threads", 0, 1, 4096));
   if (threads > 0) omp_set_num_threads(threads);
 
@@ -346,8 +359,10 @@ int run_program(int argc, char** argv) {
   if (!plan.checkpoint.empty()) session->save_checkpoint(plan.checkpoint);
   if (plan.out.empty() && !o.has("quiet")) std::cout << summary(session->simulation(), report);
   const std::string missing = conservation_error(session->simulation().state().balance());
-  if (!missing.empty())
-    return std::fprintf(stderr, "desert_run: material is not conserved: %s\n", missing.c_str()), 1;
+  if (!missing.empty()) {
+    std::fprintf(stderr, "desert_run: material is not conserved: %s\n", missing.c_str());
+    return 1;
+  }
   return interrupted ? 130 : 0;
 }
 

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
-#include <sstream>
 
 #include "kernels/field/statistics.hpp"
 #include "kernels/slabs/slab_parameters.hpp"
@@ -14,7 +13,7 @@
 #include "src/core/hash_text.hpp"
 #include "src/simulation/processes/sand_slopes.hpp"
 #include "src/simulation/session.hpp"
-#include "src/tools/json_text.hpp"
+#include "src/tools/json.hpp"
 #if DESERT_WITH_IO
 #include "src/io/snapshots.hpp"
 #endif
@@ -65,19 +64,34 @@ Areas ground_areas(Simulation& simulation) {
   return areas;
 }
 
-/// Goes on after an open object, and leaves one open.
-void write_cross_sections(std::ostream& out, const std::vector<CrossSection>& sections) {
-  out << "},\n  \"cross_sections\": {";
-  for (std::size_t n = 0; n < sections.size(); ++n) {
-    const CrossSection& c = sections[n];
-    out << (n ? ",\n    " : "\n    ") << json_string(c.name()) << ": {\"from\": [" << json_number(c.from().x)
-        << ", " << json_number(c.from().y) << "], \"to\": [" << json_number(c.to().x) << ", "
-        << json_number(c.to().y) << "], \"length_m\": " << json_number(c.length())
-        << ", \"time_s\": " << json_number(c.duration())
-        << ", \"volume_to_the_left_m3\": " << json_number(c.volume())
-        << ", \"m2_per_year\": " << json_number(c.per_metre_and_year()) << "}";
-  }
-  out << "\n  ";
+Json json_of(const std::vector<CrossSection>& sections) {
+  Json all = Json::object();
+  for (const CrossSection& c : sections)
+    all[c.name()] = {{"from", {c.from().x, c.from().y}},
+                     {"to", {c.to().x, c.to().y}},
+                     {"length_m", c.length()},
+                     {"time_s", c.duration()},
+                     {"volume_to_the_left_m3", c.volume()},
+                     {"m2_per_year", c.per_metre_and_year()}};
+  return all;
+}
+
+/// Wall time of a step: in all, and of each process where some were timed [ms].
+Json step_times(const Simulation& s, const RunReport& report) {
+  const auto share = [](double sum, std::uint64_t steps) {
+    return steps ? sum / static_cast<double>(steps) : 0.0;
+  };
+  Json times = {{"total", share(report.milliseconds, report.steps_run)}};
+  for (const ProcessTime& t : s.pipeline().times())
+    times[t.process] = share(t.milliseconds, report.timed_steps);
+  return times;
+}
+
+Json json_of(const Residual& r) {
+  return {{"share_over_1e-3", r.share_over_1e3},
+          {"share_over_1e-2", r.share_over_1e2},
+          {"mean_excess", r.mean_excess},
+          {"largest_excess", r.largest_excess}};
 }
 
 }  // namespace
@@ -126,60 +140,50 @@ std::string conservation_error(const std::array<MaterialBalance, material_count>
 }
 
 std::string summary(Simulation& s, const RunReport& report) {
-  std::ostringstream out;
-  const GridParameters& g = s.scenario().grid;
-  out << "{\n  \"scenario\": " << json_string(s.scenario().name) << ",\n  \"steps\": " << s.steps()
-      << ",\n  \"sim_time_s\": " << json_number(s.time()) << ",\n  \"width\": " << g.width
-      << ",\n  \"height\": " << g.height << ",\n  \"cell_size_m\": " << json_number(g.cell_size)
-      << ",\n  \"boundary\": " << json_string(boundary_names[static_cast<int>(g.boundary)])
-      << ",\n  \"backend\": " << json_string(report.backend)
-      << ",\n  \"device\": " << json_string(report.device) << ",\n  \"threads\": " << report.threads
-      << ",\n  \"seed\": " << s.scenario().seed;
-  if (is_slab_model(s.scenario().get<SandParameters>().model))
-    out << ",\n  \"slab_height_m\": "
-        << json_number(static_cast<double>(s.scenario().get<SlabModelParameters>().slab_height));
-  out << ",\n  \"ms_per_step\": {\"total\": "
-      << json_number(report.steps_run ? report.milliseconds / static_cast<double>(report.steps_run) : 0.0);
-  for (const ProcessTime& t : s.pipeline().times())
-    out << ", " << json_string(t.process) << ": "
-        << json_number(report.timed_steps ? t.milliseconds / static_cast<double>(report.timed_steps) : 0.0);
-  out << "},\n  \"volume_m3\": {";
+  const Scenario& scenario = s.scenario();
+  const GridParameters& g = scenario.grid;
+  Json all = {{"scenario", scenario.name},
+              {"steps", s.steps()},
+              {"sim_time_s", s.time()},
+              {"width", g.width},
+              {"height", g.height},
+              {"cell_size_m", g.cell_size},
+              {"boundary", boundary_names[static_cast<int>(g.boundary)]},
+              {"backend", report.backend},
+              {"device", report.device},
+              {"threads", report.threads},
+              {"seed", scenario.seed}};
+  if (is_slab_model(scenario.get<SandParameters>().model))
+    all["slab_height_m"] = scenario.get<SlabModelParameters>().slab_height;
+  all["ms_per_step"] = step_times(s, report);
   const auto balance = s.state().balance();
   for (std::size_t m = 0; m < balance.size(); ++m) {
     const MaterialBalance& b = balance[m];
-    out << (m ? ",\n    " : "\n    ") << json_string(material_names[m])
-        << ": {\"initial\": " << json_number(b.initial_m3()) << ", \"final\": " << json_number(b.final_m3())
-        << ", \"in\": " << json_number(b.cubic_metres(b.in))
-        << ", \"out\": " << json_number(b.cubic_metres(b.out)) << "}";
+    all["volume_m3"][material_names[m]] = {{"initial", b.initial_m3()},
+                                           {"final", b.final_m3()},
+                                           {"in", b.cubic_metres(b.in)},
+                                           {"out", b.cubic_metres(b.out)}};
   }
-  out << "\n  },\n  \"mass_residual\": {";
   for (std::size_t m = 0; m < balance.size(); ++m)
-    out << (m ? ", " : "") << json_string(material_names[m]) << ": "
-        << json_number(balance[m].relative_residual());
+    all["mass_residual"][material_names[m]] = balance[m].relative_residual();
   const Areas areas = ground_areas(s);
-  out << "},\n  \"area_m2\": {";
   for (std::size_t n = 0; n < std::size(Areas::names); ++n)
-    out << (n ? ", " : "") << json_string(Areas::names[n]) << ": " << json_number(areas.square_metres[n]);
-  out << "},\n  \"plants\": {";
-  const std::vector<PlantCount> plants = s.state().plant_counts();
-  for (std::size_t n = 0; n < plants.size(); ++n)
-    out << (n ? ", " : "") << json_string(plants[n].species) << ": {\"plants\": " << plants[n].plants
-        << ", \"mature\": " << plants[n].mature << "}";
+    all["area_m2"][Areas::names[n]] = areas.square_metres[n];
+  all["plants"] = Json::object();
+  for (const PlantCount& count : s.state().plant_counts())
+    all["plants"][count.species] = {{"plants", count.plants}, {"mature", count.mature}};
   if (report.measurements && !report.measurements->cross_sections().empty())
-    write_cross_sections(out, report.measurements->cross_sections());
-  const Residual r = sand_residual(s.state(), s.pipeline());
+    all["cross_sections"] = json_of(report.measurements->cross_sections());
+  all["max_sand_slope_deg"] = max_sand_slope_deg(s.state());
+  all["avalanche_iterations_mean"] = s.pipeline().mean_count(avalanche_iterations);
+  all["avalanche_residual"] = json_of(sand_residual(s.state(), s.pipeline()));
+  all["state_hash"] = hash_text(s.state().hash());
+  all["scenario_hash"] = scenario_hash(s.state().start);
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
-  out << "},\n  \"max_sand_slope_deg\": " << json_number(max_sand_slope_deg(s.state()))
-      << ",\n  \"avalanche_iterations_mean\": " << json_number(s.pipeline().mean_count(avalanche_iterations))
-      << ",\n  \"avalanche_residual\": {\"share_over_1e-3\": " << json_number(r.share_over_1e3)
-      << ", \"share_over_1e-2\": " << json_number(r.share_over_1e2)
-      << ", \"mean_excess\": " << json_number(r.mean_excess)
-      << ", \"largest_excess\": " << json_number(r.largest_excess) << "},\n  \"state_hash\": \""
-      << hash_text(s.state().hash()) << "\",\n  \"scenario_hash\": \"" << scenario_hash(s.state().start)
-      << "\",\n  \"peak_memory_bytes\": " << usage.ru_maxrss * 1024LL
-      << ",\n  \"rasters\": " << (DESERT_WITH_IO ? "true" : "false") << "\n}\n";
-  return out.str();
+  all["peak_memory_bytes"] = usage.ru_maxrss * 1024LL;
+  all["rasters"] = DESERT_WITH_IO != 0;
+  return json_text(all);
 }
 
 void write_outputs(const std::string& folder, Simulation& simulation, const RunReport& report,

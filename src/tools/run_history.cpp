@@ -1,15 +1,13 @@
 #include "src/tools/run_history.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <filesystem>
 
 #include "src/core/error.hpp"
-#include "src/core/files.hpp"
 #if DESERT_WITH_IO
 #include "src/io/netcdf_file.hpp"
 #include "src/io/raster.hpp"
+#include "src/tools/json.hpp"
 #endif
 
 namespace desert_sim {
@@ -68,11 +66,11 @@ class RasterHistory final : public RunHistory {
     std::error_code none;
     if (!fs::is_regular_file(path, none)) return;
     try {
-      const YAML::Node summary = YAML::Load(read_file(path));  // JSON is YAML
-      found.emplace_back(summary["sim_time_s"].as<double>(), folder);
-      periodic_ = summary["boundary"].as<std::string>("open") == "periodic";
-    } catch (const YAML::Exception& e) {
-      throw ConfigError(path + ": is not the summary of a run: " + e.msg);
+      const Json summary = read_json(path);
+      found.emplace_back(summary.at("sim_time_s").get<double>(), folder);
+      periodic_ = summary.value("boundary", "open") == "periodic";
+    } catch (const Json::exception& e) {
+      throw ConfigError(path + ": is not the summary of a run: " + e.what());
     }
   }
 

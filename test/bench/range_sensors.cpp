@@ -12,7 +12,7 @@
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/rover/sensors/lidar.hpp"
-#include "src/tools/json_text.hpp"
+#include "src/tools/json.hpp"
 #include "src/tools/options.hpp"
 #include "src/tools/program.hpp"
 
@@ -137,14 +137,19 @@ class Bench {
 };
 
 std::string json_of(const std::vector<Row>& rows, const Exec& exec) {
-  std::string text = "{\"format\": \"range_sensor_bench 1\", \"backend\": " + json_string(exec.backend()) +
-                     ", \"device\": " + json_string(exec.device_name()) + ", \"rows\": [";
+  Json all = {{"format", "range_sensor_bench 1"},
+              {"backend", exec.backend()},
+              {"device", exec.device_name()},
+              {"rows", Json::array()}};
   for (const Row& r : rows)
-    text += std::string(&r == &rows.front() ? "\n" : ",\n") + "  {\"rings\": " + std::to_string(r.rings) +
-            ", \"columns\": " + std::to_string(r.columns) + ", \"size\": " + std::to_string(r.size) +
-            ", \"scan_ms\": " + json_number(r.scan_ms) + ", \"cpu_ms\": " + json_number(r.cpu_ms) +
-            ", \"update_ms\": " + json_number(r.update_ms) + ", \"returns\": " + json_number(r.share) + "}";
-  return text + "\n]}\n";
+    all["rows"].push_back({{"rings", r.rings},
+                           {"columns", r.columns},
+                           {"size", r.size},
+                           {"scan_ms", r.scan_ms},
+                           {"cpu_ms", r.cpu_ms},
+                           {"update_ms", r.update_ms},
+                           {"returns", r.share}});
+  return json_text(all);
 }
 
 std::string table_of(const std::vector<Row>& rows, const Exec& exec) {

@@ -2,13 +2,13 @@
 // picture.
 
 #include <gtest/gtest.h>
-#include <yaml-cpp/yaml.h>
 
 #include <filesystem>
 
 #include "kernels/avalanching/avalanching_parameters.hpp"
 #include "src/tools/bench_scenes.hpp"
 #include "src/tools/cost_model.hpp"
+#include "src/tools/json.hpp"
 #include "test/support/program.hpp"
 #include "test/support/running.hpp"
 #include "test/support/temporary_folder.hpp"
@@ -35,12 +35,12 @@ class Bench : public ::testing::Test {
     return test::run_program(program_, arguments);
   }
   /// On the CPU, small and short; the result as it stands in the file.
-  YAML::Node measure(std::vector<std::string> arguments, const std::string& name = "result.json") {
+  Json measure(std::vector<std::string> arguments, const std::string& name = "result.json") {
     arguments.insert(arguments.end(),
                      {"--backend", "cpu", "--threads", "1", "--steps", "10", "--json", path(name)});
     const test::ProgramRun r = run(arguments);
     EXPECT_EQ(r.status, 0) << r.err;
-    return YAML::LoadFile(path(name));  // JSON is YAML
+    return read_json(path(name));
   }
   test::ProgramRun refused(const std::vector<std::string>& arguments, const std::string& naming) {
     const test::ProgramRun r = run(arguments);
@@ -69,63 +69,63 @@ class Bench : public ::testing::Test {
 };
 
 TEST_F(Bench, WritesEveryFigureOfARun) {
-  const YAML::Node r = measure({"--scene", "B", "--size", "64", "--quality", "fast"});
-  EXPECT_EQ(r["format"].as<std::string>(), "desert_bench 1");
-  EXPECT_EQ(r["scene"].as<std::string>(), "B");
-  EXPECT_EQ(r["width"].as<int>(), 64);
-  EXPECT_EQ(r["height"].as<int>(), 64);
-  EXPECT_EQ(r["cell_size_m"].as<double>(), 16);
-  EXPECT_EQ(r["quality"].as<std::string>(), "fast");
-  EXPECT_EQ(r["backend"].as<std::string>(), "cpu");
-  EXPECT_EQ(r["threads"].as<int>(), 1);
-  EXPECT_EQ(r["warm_up_steps"].as<int>(), 0);
-  EXPECT_EQ(r["steps"].as<int>(), 10);
-  EXPECT_GT(r["ms_per_step"].as<double>(), 0);
+  const Json r = measure({"--scene", "B", "--size", "64", "--quality", "fast"});
+  EXPECT_EQ(r["format"].get<std::string>(), "desert_bench 1");
+  EXPECT_EQ(r["scene"].get<std::string>(), "B");
+  EXPECT_EQ(r["width"].get<int>(), 64);
+  EXPECT_EQ(r["height"].get<int>(), 64);
+  EXPECT_EQ(r["cell_size_m"].get<double>(), 16);
+  EXPECT_EQ(r["quality"].get<std::string>(), "fast");
+  EXPECT_EQ(r["backend"].get<std::string>(), "cpu");
+  EXPECT_EQ(r["threads"].get<int>(), 1);
+  EXPECT_EQ(r["warm_up_steps"].get<int>(), 0);
+  EXPECT_EQ(r["steps"].get<int>(), 10);
+  EXPECT_GT(r["ms_per_step"].get<double>(), 0);
   EXPECT_EQ(r["ms_per_step_repeats"].size(), 9u);
-  EXPECT_GT(r["copy_bytes_per_s"].as<double>(), 1e8);
-  EXPECT_EQ(r["sand_lost_quanta"].as<long long>(), 0);
+  EXPECT_GT(r["copy_bytes_per_s"].get<double>(), 1e8);
+  EXPECT_EQ(r["sand_lost_quanta"].get<long long>(), 0);
   for (const char* figure : {"share_over_1e-3", "share_over_1e-2", "mean_excess", "largest_excess"})
-    EXPECT_GE(r["residual"][figure].as<double>(), 0) << figure;
+    EXPECT_GE(r["residual"][figure].get<double>(), 0) << figure;
   Scenario scenario;
   scenario.get<AvalanchingParameters>().quality = AvalancheQuality::fast;
   const auto model = cost_model(scenario, Grid{64, 64, 16.0f});
   double bytes = 0;
   for (const char* name : {"wind", "wind_shadow", "saltation", "avalanching"}) {
-    const YAML::Node p = r["processes"][name];
-    ASSERT_TRUE(p) << name;
-    const double ms = p["ms"].as<double>(), each = p["bytes_per_cell"].as<double>();
+    ASSERT_TRUE(r["processes"].contains(name)) << name;
+    const Json& p = r["processes"][name];
+    const double ms = p["ms"].get<double>(), each = p["bytes_per_cell"].get<double>();
     EXPECT_EQ(each, min_bytes(model, name)) << name;
-    EXPECT_NEAR(p["share_of_copy"].as<double>(),
-                each * 64 * 64 / (ms * 1e-3) / r["copy_bytes_per_s"].as<double>(), 1e-9)
+    EXPECT_NEAR(p["share_of_copy"].get<double>(),
+                each * 64 * 64 / (ms * 1e-3) / r["copy_bytes_per_s"].get<double>(), 1e-9)
         << name;
     bytes += each;
   }
-  EXPECT_NEAR(r["bytes_per_cell"].as<double>(), bytes, 1e-9);
+  EXPECT_NEAR(r["bytes_per_cell"].get<double>(), bytes, 1e-9);
   double held = 0;
-  for (const auto& part : r["memory_bytes"]) held += part.second.as<double>();
-  EXPECT_NEAR(r["memory_bytes_per_cell"].as<double>(), held / (64 * 64), 1e-9);
+  for (const auto& part : r["memory_bytes"]) held += part.get<double>();
+  EXPECT_NEAR(r["memory_bytes_per_cell"].get<double>(), held / (64 * 64), 1e-9);
 }
 
 TEST_F(Bench, ScenesBeginWithTheirWarmUpOrACheckpoint) {
   EXPECT_EQ(default_warm_up_steps("mature"), 2000);
   EXPECT_EQ(default_warm_up_steps("edited"), 2000);
   EXPECT_EQ(default_warm_up_steps("A"), 0);
-  const YAML::Node warm = measure(
+  const Json warm = measure(
       {"--scene", "mature", "--size", "128", "--warm-up", "15", "--save-start", path("a.ck")}, "warm.json");
-  const YAML::Node again = measure({"--scene", "mature", "--start", path("a.ck")}, "again.json");
+  const Json again = measure({"--scene", "mature", "--start", path("a.ck")}, "again.json");
   for (const char* figure : {"share_over_1e-3", "share_over_1e-2", "mean_excess", "largest_excess"})
-    EXPECT_EQ(warm["residual"][figure].as<double>(), again["residual"][figure].as<double>()) << figure;
-  EXPECT_EQ(warm["warm_up_steps"].as<int>(), 15);
-  EXPECT_EQ(again["warm_up_steps"].as<int>(), 15);
-  EXPECT_EQ(again["scene"].as<std::string>(), "mature");
-  const YAML::Node edited = measure({"--scene", "edited", "--start", path("a.ck"), "--quality", "fast",
-                                     "--set", "avalanching.enabled=false"},
-                                    "edited.json");
-  EXPECT_EQ(edited["scene"].as<std::string>(), "edited");
-  EXPECT_EQ(edited["quality"].as<std::string>(), "fast");
-  EXPECT_EQ(edited["sand_lost_quanta"].as<long long>(), 0);
-  EXPECT_LT(warm["residual"]["largest_excess"].as<double>(), 1);
-  EXPECT_GT(edited["residual"]["largest_excess"].as<double>(), 3) << "50 m over cells of 8 m";
+    EXPECT_EQ(warm["residual"][figure].get<double>(), again["residual"][figure].get<double>()) << figure;
+  EXPECT_EQ(warm["warm_up_steps"].get<int>(), 15);
+  EXPECT_EQ(again["warm_up_steps"].get<int>(), 15);
+  EXPECT_EQ(again["scene"].get<std::string>(), "mature");
+  const Json edited = measure({"--scene", "edited", "--start", path("a.ck"), "--quality", "fast", "--set",
+                               "avalanching.enabled=false"},
+                              "edited.json");
+  EXPECT_EQ(edited["scene"].get<std::string>(), "edited");
+  EXPECT_EQ(edited["quality"].get<std::string>(), "fast");
+  EXPECT_EQ(edited["sand_lost_quanta"].get<long long>(), 0);
+  EXPECT_LT(warm["residual"]["largest_excess"].get<double>(), 1);
+  EXPECT_GT(edited["residual"]["largest_excess"].get<double>(), 3) << "50 m over cells of 8 m";
 
   refused({"--scene", "B", "--start", path("a.ck"), "--backend", "cpu"}, "mature");
   refused({"--scene", "mature", "--start", path("a.ck"), "--size", "64", "--backend", "cpu"}, "--size 64");
@@ -192,7 +192,7 @@ TEST_F(Bench, ComparisonFailsWhereAResultIsWorse) {
   EXPECT_EQ(same.status, 0) << same.out << same.err;
   EXPECT_NE(same.out.find("1 compared, 0 failed, 0 without baseline"), std::string::npos) << same.out;
 
-  const YAML::Node r = YAML::LoadFile(result);
+  const Json r = read_json(result);
   const auto field = [&](const std::string& name) {  // as it stands in the file
     const std::string text = test::file_bytes(result), key = "\"" + name + "\": ";
     const std::size_t at = text.find(key);
@@ -204,16 +204,16 @@ TEST_F(Bench, ComparisonFailsWhereAResultIsWorse) {
     EXPECT_EQ(worse.status, 1) << worse.out << worse.err;
     EXPECT_NE(worse.out.find(naming), std::string::npos) << worse.out;
   };
-  fails("ms_per_step", 1.2 * r["ms_per_step"].as<double>(), "a step takes 1.20 times");
-  fails("largest_excess", r["residual"]["largest_excess"].as<double>() + 10, "largest_excess has grown");
+  fails("ms_per_step", 1.2 * r["ms_per_step"].get<double>(), "a step takes 1.20 times");
+  fails("largest_excess", r["residual"]["largest_excess"].get<double>() + 10, "largest_excess has grown");
   fails("sand_lost_quanta", -3, "3 quanta of sand were lost");
   fails("memory_bytes_per_cell", 1000, "memory has grown");
 
   // Half as fast on a machine that copies half as fast is no slower.
   rewrite("result.json", field("copy_bytes_per_s"),
-          "\"copy_bytes_per_s\": " + std::to_string(0.5 * r["copy_bytes_per_s"].as<double>()), "half.json");
+          "\"copy_bytes_per_s\": " + std::to_string(0.5 * r["copy_bytes_per_s"].get<double>()), "half.json");
   rewrite("half.json", field("ms_per_step"),
-          "\"ms_per_step\": " + std::to_string(2 * r["ms_per_step"].as<double>()), "other.json");
+          "\"ms_per_step\": " + std::to_string(2 * r["ms_per_step"].get<double>()), "other.json");
   EXPECT_NE(compare({base, path("other.json")}).out.find("1.00 of the baseline's time"), std::string::npos);
 }
 
@@ -231,17 +231,17 @@ TEST_F(Bench, ComparisonListsWhatHasNoBaseline) {
 }
 
 TEST_F(Bench, StoredBaselineHasRecordsOfScenesThatThereAre) {
-  const YAML::Node baseline = YAML::LoadFile(scripts_ + "baseline.json");
-  EXPECT_EQ(baseline["format"].as<std::string>(), "desert_bench baseline 1");
-  ASSERT_TRUE(baseline["records"].IsSequence());
-  for (const YAML::Node& r : baseline["records"]) {
-    const std::string scene = r["scene"].as<std::string>();
+  const Json baseline = read_json(scripts_ + "baseline.json");
+  EXPECT_EQ(baseline["format"].get<std::string>(), "desert_bench baseline 1");
+  ASSERT_TRUE(baseline["records"].is_array());
+  for (const Json& r : baseline["records"]) {
+    const std::string scene = r["scene"].get<std::string>();
     EXPECT_TRUE(is_bench_scene(scene) ||
                 std::filesystem::exists(source_folder() + "/config/scenarios/" + scene + ".yaml"))
         << scene;
-    EXPECT_EQ(r["sand_lost_quanta"].as<long long>(), 0);
-    EXPECT_NE(r["commit"].as<std::string>(), "");
-    EXPECT_NE(r["device"].as<std::string>(), "");
+    EXPECT_EQ(r["sand_lost_quanta"].get<long long>(), 0);
+    EXPECT_NE(r["commit"].get<std::string>(), "");
+    EXPECT_NE(r["device"].get<std::string>(), "");
   }
 }
 

@@ -1,0 +1,20 @@
+#include "src/tools/json.hpp"
+
+#include "src/core/error.hpp"
+#include "src/core/files.hpp"
+
+namespace desert_sim {
+
+std::string json_text(const Json& value) {
+  return value.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json read_json(const std::string& path) {
+  try {
+    return Json::parse(read_file(path));
+  } catch (const Json::parse_error& e) {
+    throw ConfigError(path + ": is not JSON: " + e.what());
+  }
+}
+
+}  // namespace desert_sim
