@@ -9,8 +9,9 @@ set(DESERT_SANITIZE "" CACHE STRING "Sanitizers for all of the project's own cod
 # `undefined` leaves out the overflow that heights and depths could meet on their way to quanta.
 string(REPLACE "undefined" "undefined,float-cast-overflow" DESERT_SANITIZERS "${DESERT_SANITIZE}")
 
-# Headers are included by their path from the root of the repository: #include "kernels/wind/wind.hpp". What CMake
-# generates (desert_sim/config.hpp, the presets) is below DESERT_GENERATED_DIR.
+# Headers are included by their path from the root of the repository: #include "kernels/wind/wind.hpp". Those of include/
+# include each other as they are installed: #include "desert_sim/client/layer_map.hpp". What CMake generates
+# (desert_sim/config.hpp, the presets) is below DESERT_GENERATED_DIR.
 set(DESERT_GENERATED_DIR ${PROJECT_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${DESERT_GENERATED_DIR}/desert_sim)
 
@@ -40,7 +41,8 @@ function(desert_target target)
     INSTALL_RPATH_USE_LINK_PATH ON
     INSTALL_RPATH "$ORIGIN;$ORIGIN/..;$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   target_include_directories(${target} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${DESERT_GENERATED_DIR}>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    $<BUILD_INTERFACE:${DESERT_GENERATED_DIR}>)
 
   set(host -Wall -Wextra -Wshadow -ffp-contract=off)
   if(DESERT_WERROR)

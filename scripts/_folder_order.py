@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Reports each include of kernels/ and src/ that goes against scripts/folder_order.txt. Exit status 1 if there is one."""
+"""Reports each include of kernels/ and src/ that goes against scripts/folder_order.txt, and each in include/ of what is not
+installed. Exit status 1 if there is one."""
 import pathlib
 import re
 import sys
@@ -7,6 +8,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ORDER = ROOT / "scripts/folder_order.txt"
 SOURCES = {".hpp", ".cpp", ".cuh", ".cu"}
+# Headers of include/desert_sim belong to the folder of src/ that defines what they declare.
+INCLUDE = re.compile(r'\s*#\s*include\s*"(?:((?:kernels|src)/[^"]+)|include/desert_sim/([^"]+))"')
 
 
 def folder_of(file):
@@ -28,10 +31,15 @@ def findings(lines):
             yield "%s: its folder is not in scripts/folder_order.txt" % file
             continue
         for number, text in enumerate(path.read_text().splitlines(), 1):
-            found = re.match(r'\s*#\s*include\s*"((?:kernels|src)/[^"]+)"', text)
-            other = folder_of(found.group(1)) if found else folder
+            found = INCLUDE.match(text)
+            included = (found.group(1) or "src/" + found.group(2).replace("testing.hpp", "testing/")) if found else file
+            other = folder_of(included)
             if other != folder and lines.get(other, len(lines)) >= lines[folder]:
-                yield "%s:%d: %s must not include %s" % (file, number, folder, found.group(1))
+                yield "%s:%d: %s must not include %s" % (file, number, folder, included)
+    for path in sorted((ROOT / "include").rglob("*.hpp")):
+        for number, text in enumerate(path.read_text().splitlines(), 1):
+            if re.match(r'\s*#\s*include\s*"(?!desert_sim/)', text):
+                yield "%s:%d: other packages have no such header" % (path.relative_to(ROOT), number)
     for folder in lines:
         if not (ROOT / folder).is_dir():
             yield "scripts/folder_order.txt: there is no folder %s" % folder

@@ -6,7 +6,7 @@ function(desert_outside_package name folder)
       --build-and-test ${folder} ${CMAKE_CURRENT_BINARY_DIR}/installed_package_${name}
       --build-generator ${CMAKE_GENERATOR}
       --build-options -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}
-        -DPYTHON_EXECUTABLE=${PYTHON_EXECUTABLE} -DEXPECTED_WITH_CUDA=$<BOOL:${DESERT_WITH_CUDA}>
+        -DPYTHON_EXECUTABLE=${PYTHON_EXECUTABLE}
         "-DCMAKE_PREFIX_PATH=${prefixes}"
       --test-command sh -c
         "${CMAKE_COMMAND} --build . --target tests && ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error")

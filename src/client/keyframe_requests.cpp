@@ -1,4 +1,4 @@
-#include "src/client/keyframe_requests.hpp"
+#include "include/desert_sim/client/keyframe_requests.hpp"
 
 #include <algorithm>
 

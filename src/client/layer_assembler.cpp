@@ -1,4 +1,4 @@
-#include "src/client/layer_assembler.hpp"
+#include "include/desert_sim/client/layer_assembler.hpp"
 
 namespace desert_sim {
 

@@ -1,4 +1,4 @@
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 
 #include <algorithm>
 #include <cmath>

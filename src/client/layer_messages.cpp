@@ -1,4 +1,4 @@
-#include "src/client/layer_messages.hpp"
+#include "include/desert_sim/client/layer_messages.hpp"
 
 #include <algorithm>
 #include <bitset>

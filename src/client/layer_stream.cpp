@@ -1,4 +1,4 @@
-#include "src/client/layer_stream.hpp"
+#include "include/desert_sim/client/layer_stream.hpp"
 
 #include <ros/console.h>
 #include <ros/init.h>

@@ -1,4 +1,4 @@
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 
 #include <ros/console.h>
 #include <ros/init.h>

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "src/client/waiting_notice.hpp"
+#include "include/desert_sim/client/waiting_notice.hpp"
 
 #include <algorithm>
 

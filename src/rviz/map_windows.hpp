@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 #include "src/render/terrain_block.hpp"
 
 namespace desert_sim {

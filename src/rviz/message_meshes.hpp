@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 #include "src/render/mesh.hpp"
 
 namespace desert_sim {

@@ -5,7 +5,7 @@
 #include <rviz/properties/enum_property.h>
 #include <rviz/properties/float_property.h>
 
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 
 namespace desert_sim {
 

@@ -5,7 +5,7 @@
 
 #include <QObject>
 
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 #include "src/render/change_reference.hpp"
 #include "src/render/overlay.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 
 namespace rviz {
 class DisplayContext;

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 #include "src/render/ray_cast.hpp"
 #include "src/rviz/placement.hpp"
 

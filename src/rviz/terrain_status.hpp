@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 #include "src/rviz/map_windows.hpp"
 #include "src/rviz/terrain_scene.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 #include "src/rviz/mesh_object.hpp"
 #include "src/rviz/topic_inbox.hpp"
 

@@ -1,5 +1,3 @@
-#include "src/testing/desert.hpp"
-
 #include <desert_sim/SimulationStatus.h>
 #include <std_srvs/Trigger.h>
 #include <stdlib.h>
@@ -9,7 +7,9 @@
 #include <filesystem>
 #include <thread>
 
+#include "include/desert_sim/testing.hpp"
 #include "kernels/view/held_costs.hpp"
+#include "src/core/error.hpp"
 #include "src/scenario/scenario_file.hpp"
 #include "src/testing/failure_picture.hpp"
 
@@ -47,6 +47,8 @@ Parameters lockstep_parameters() {
 }
 
 }  // namespace
+
+void Desert::throw_error(const std::string& message) { throw Error(message); }
 
 // ---- begin and end
 

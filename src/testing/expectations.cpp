@@ -7,8 +7,9 @@
 #include <filesystem>
 #include <sstream>
 
+#include "include/desert_sim/testing.hpp"
+#include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
-#include "src/testing/desert.hpp"
 
 namespace desert_sim::test {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "src/client/layer_map.hpp"
-#include "src/testing/paths.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
+#include "include/desert_sim/testing/paths.hpp"
 
 namespace desert_sim::test {
 

@@ -1,4 +1,4 @@
-#include "src/testing/node_process.hpp"
+#include "include/desert_sim/testing/node_process.hpp"
 
 #include <arpa/inet.h>
 #include <fcntl.h>

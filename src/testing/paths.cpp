@@ -1,4 +1,4 @@
-#include "src/testing/paths.hpp"
+#include "include/desert_sim/testing/paths.hpp"
 
 #include <algorithm>
 #include <cmath>

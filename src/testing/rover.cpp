@@ -1,9 +1,9 @@
-#include "src/testing/rover.hpp"
+#include "include/desert_sim/testing/rover.hpp"
 
 #include <cmath>
 
+#include "include/desert_sim/testing/node_process.hpp"
 #include "src/core/error.hpp"
-#include "src/testing/node_process.hpp"
 
 namespace desert_sim::test {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include <boost/make_shared.hpp>
 #include <cmath>
 
-#include "src/client/layer_assembler.hpp"
+#include "include/desert_sim/client/layer_assembler.hpp"
 #include "src/render/terrain_block.hpp"
 #include "src/rviz/map_windows.hpp"
 #include "src/rviz/message_meshes.hpp"

@@ -3,7 +3,7 @@
 #include <boost/make_shared.hpp>
 #include <cmath>
 
-#include "src/client/layer_assembler.hpp"
+#include "include/desert_sim/client/layer_assembler.hpp"
 #include "test/fuzz/fuzz.hpp"
 #include "test/fuzz/message_source.hpp"
 

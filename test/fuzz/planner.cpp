@@ -9,7 +9,7 @@
 #include <boost/make_shared.hpp>
 #include <cmath>
 
-#include "src/client/layer_assembler.hpp"
+#include "include/desert_sim/client/layer_assembler.hpp"
 #include "src/core/log.hpp"
 #include "src/ros/conversion/terrain_transforms.hpp"
 #include "src/ros/planner/planner_messages.hpp"

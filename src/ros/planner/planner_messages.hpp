@@ -9,7 +9,7 @@
 
 #include <optional>
 
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 #include "src/planner/navigator.hpp"
 
 namespace desert_sim {

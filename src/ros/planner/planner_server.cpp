@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "include/desert_sim/client/service_call.hpp"
 #include "src/client/ros_time.hpp"
-#include "src/client/service_call.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 #include "src/planner/heading_costs.hpp"
 #include "src/ros/planner/planner_node_parameters.hpp"
 

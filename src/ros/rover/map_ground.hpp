@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "src/client/layer_assembler.hpp"
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_assembler.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 #include "src/ros/rover/map_micro_relief.hpp"
 #include "src/rover/ground.hpp"
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <mutex>
 
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 #include "src/rover/sensors/height_field_scene.hpp"
 #include "src/simulation/views/micro_relief.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "src/client/service_call.hpp"
+#include "include/desert_sim/client/service_call.hpp"
 #include "src/core/files.hpp"
 #include "src/core/hash_text.hpp"
 #include "src/ros/conversion/messages.hpp"

@@ -17,7 +17,7 @@
 #include <optional>
 #include <string>
 
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 #include "src/ros/rover/map_ground.hpp"
 #include "src/ros/rover/rover_node_parameters.hpp"
 

@@ -28,7 +28,7 @@
 #include <thread>
 #include <vector>
 
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 #include "src/ros/conversion/sensor_messages.hpp"
 #include "src/ros/rover/map_micro_relief.hpp"
 #include "src/rover/sensors/depth_camera.hpp"

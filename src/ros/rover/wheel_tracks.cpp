@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/client/service_call.hpp"
+#include "include/desert_sim/client/service_call.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/terrain/map_layers.hpp"
 

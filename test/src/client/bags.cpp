@@ -21,7 +21,7 @@
 #include <atomic>
 #include <filesystem>
 
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 #include "src/grid_map/grid_map_msg.hpp"
 #include "test/support/ros/child_process.hpp"
 

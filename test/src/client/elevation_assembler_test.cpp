@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "src/client/layer_assembler.hpp"
+#include "include/desert_sim/client/layer_assembler.hpp"
 #include "test/support/messages.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
 /// When a client asks for a keyframe.
-#include "src/client/keyframe_requests.hpp"
+#include "include/desert_sim/client/keyframe_requests.hpp"
 
 #include <gtest/gtest.h>
 

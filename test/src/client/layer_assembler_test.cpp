@@ -1,5 +1,5 @@
 /// What a client makes of a stream of a layer: the same as of the elevation, under the layer's name and unit.
-#include "src/client/layer_assembler.hpp"
+#include "include/desert_sim/client/layer_assembler.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 /// What a client answers about the surface it holds.
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 
 #include <gtest/gtest.h>
 

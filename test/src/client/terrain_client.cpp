@@ -1,5 +1,5 @@
 /// TerrainClient on a node that runs: what it holds is what the node says when it is asked.
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 
 #include <XmlRpcClient.h>
 #include <desert_sim/QueryTerrain.h>

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <future>
 
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 #include "test/support/messages.hpp"
 #include "test/support/ros/child_process.hpp"
 

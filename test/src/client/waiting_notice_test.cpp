@@ -1,6 +1,6 @@
 // What a client says of topics that do not come, and when.
 
-#include "src/client/waiting_notice.hpp"
+#include "include/desert_sim/client/waiting_notice.hpp"
 
 #include <gtest/gtest.h>
 

@@ -21,7 +21,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "src/testing/node_process.hpp"
+#include "include/desert_sim/testing/node_process.hpp"
 
 namespace rviz_test {
 

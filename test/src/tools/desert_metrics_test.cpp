@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "src/tools/json.hpp"
 #include "test/support/run_fixture.hpp"
 
 namespace desert_sim {
@@ -26,18 +27,10 @@ class MetricsOf : public test::DesertRun {
   test::ProgramRun measure(std::vector<std::string> arguments) {
     return test::run_program(metrics_, arguments);
   }
-  /// The members of the snapshots, a text each.
-  static std::vector<std::string> snapshots(const std::string& text) {
-    std::vector<std::string> found;
-    for (std::size_t at = text.find("{\"time_s\""); at != std::string::npos;
-         at = text.find("{\"time_s\"", at + 1))
-      found.push_back(text.substr(at, text.find('}', at) - at + 1));
-    return found;
+  static std::vector<Json> snapshots(const std::string& text) {
+    return Json::parse(text).at("snapshots").get<std::vector<Json>>();
   }
-  static double number(const std::string& snapshot, const std::string& key) {
-    std::string value = json(snapshot, key);
-    return std::stod(value.substr(0, value.find(',')));
-  }
+  static double number(const Json& snapshot, const char* key) { return snapshot.at(key).get<double>(); }
 
   std::string metrics_, heap_;
 };
@@ -54,15 +47,15 @@ TEST_F(MetricsOf, AHeapThatTheWindMovesToTheEast) {
   EXPECT_EQ(number(from_netcdf[0], "time_s"), 0);
   EXPECT_NEAR(number(from_netcdf[0], "deepest_sand_m"), 4, 0.05);
   EXPECT_GT(number(from_netcdf[0], "bare_share"), 0.1);
-  EXPECT_NE(from_netcdf[0].find("\"flux_m2_s\": null"), std::string::npos) << from_netcdf[0];
-  EXPECT_NE(from_netcdf[0].find("\"migration_speed_m_s\": null"), std::string::npos) << from_netcdf[0];
+  EXPECT_TRUE(from_netcdf[0].at("flux_m2_s").is_null()) << from_netcdf[0];
+  EXPECT_TRUE(from_netcdf[0].at("migration_speed_m_s").is_null()) << from_netcdf[0];
   for (std::size_t n = 1; n < 5; ++n) {
     EXPECT_EQ(number(from_netcdf[n], "time_s"), 10.0 * static_cast<double>(n));
     EXPECT_GT(number(from_netcdf[n], "migration_speed_m_s"), 0) << n;
     EXPECT_LT(std::abs(std::remainder(number(from_netcdf[n], "migration_direction_deg"), 360)), 10) << n;
     EXPECT_GT(number(from_netcdf[n], "flux_m2_s"), 0) << n;
     EXPECT_LT(number(from_netcdf[n], "bare_share"), 0.02) << n << ": the wind has strewn sand";
-    EXPECT_NE(from_netcdf[n].find("\"highest_stack_slabs\": null"), std::string::npos);
+    EXPECT_TRUE(from_netcdf[n].at("highest_stack_slabs").is_null());
   }
   EXPECT_EQ(from_netcdf[4], from_rasters[3]);
 }
@@ -82,14 +75,14 @@ TEST_F(MetricsOf, ASlabModelCountsStacksInSlabs) {
   const double highest = number(s[1], "highest_stack_slabs");
   EXPECT_GT(highest, 3.9);
   EXPECT_NEAR(highest, std::round(highest), 0.01);
-  EXPECT_NE(s[1].find("\"flux_m2_s\": null"), std::string::npos) << "slab models count no flux";
+  EXPECT_TRUE(s[1].at("flux_m2_s").is_null()) << "slab models count no flux";
 }
 
 TEST_F(MetricsOf, SnapshotsAreEvenAndEndWithTheRun) {
   run_cpu({heap_, "--out", path("a"), "--snapshots", "3", "--format", "netcdf"});
   const auto s = snapshots(measure({path("a")}).out);
   std::vector<double> times;
-  for (const std::string& snapshot : s) times.push_back(number(snapshot, "time_s"));
+  for (const Json& snapshot : s) times.push_back(number(snapshot, "time_s"));
   EXPECT_EQ(times, (std::vector<double>{0, 14, 28, 40}));
   EXPECT_EQ(run({heap_, "--snapshots", "3"}).status, 2) << "without --out";
   EXPECT_EQ(run({heap_, "--snapshots", "3", "--every", "2", "--out", path("b")}).status, 2);

@@ -45,10 +45,10 @@ TEST_F(Run, WritesASummaryWithAllKeys) {
     EXPECT_NE(text.find("\"" + std::string(key) + "\": "), std::string::npos) << key << " is not in\n"
                                                                               << text;
   EXPECT_EQ(json(text, "steps"), "12");
-  EXPECT_EQ(json(text, "sim_time_s"), "12");
+  EXPECT_EQ(json(text, "sim_time_s"), "12.0");
   EXPECT_EQ(json(text, "width"), "40");
   EXPECT_EQ(json(text, "height"), "24");
-  EXPECT_EQ(json(text, "cell_size_m"), "2");
+  EXPECT_EQ(json(text, "cell_size_m"), "2.0");
   EXPECT_EQ(json(text, "backend"), "\"cpu\"");
   EXPECT_EQ(json(text, "threads"), "2");
   EXPECT_EQ(json(text, "seed"), "1");

@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "src/client/service_call.hpp"
-#include "src/testing/node_process.hpp"
+#include "include/desert_sim/client/service_call.hpp"
+#include "include/desert_sim/testing/node_process.hpp"
 
 namespace node_test {
 

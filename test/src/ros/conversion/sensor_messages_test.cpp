@@ -9,7 +9,7 @@
 #include <cstring>
 #include <limits>
 
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 #include "test/support/messages.hpp"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <nav_msgs/OccupancyGrid.h>
 #include <nav_msgs/Path.h>
 
-#include "src/testing/inbox.hpp"
+#include "include/desert_sim/testing/inbox.hpp"
 #include "test/support/ros/child_process.hpp"
 #include "test/support/ros/rover_tests.hpp"
 #include "test/support/ros/test_clock.hpp"

@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "src/testing/inbox.hpp"
+#include "include/desert_sim/testing/inbox.hpp"
 #include "test/support/ros/rover_tests.hpp"
 #include "test/support/ros/test_clock.hpp"
 

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 #include "src/core/hash_text.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/rover/journal.hpp"

@@ -10,8 +10,8 @@
 #include <cstring>
 #include <functional>
 
+#include "include/desert_sim/testing/node_process.hpp"
 #include "src/core/error.hpp"
-#include "src/testing/node_process.hpp"
 #include "test/support/messages.hpp"
 
 namespace desert_sim {

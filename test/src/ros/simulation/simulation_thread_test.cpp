@@ -6,7 +6,7 @@
 
 #include <mutex>
 
-#include "src/testing/node_process.hpp"
+#include "include/desert_sim/testing/node_process.hpp"
 #include "test/support/manual_clock.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "src/client/layer_map.hpp"
+#include "include/desert_sim/client/layer_map.hpp"
 #include "src/ros/topics/topic.hpp"
 #include "test/support/held_terrain.hpp"
 #include "test/support/messages.hpp"

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <utility>
 
-#include "src/client/terrain_client.hpp"
+#include "include/desert_sim/client/terrain_client.hpp"
 #include "src/core/error.hpp"
 #include "src/ros/node/desert_sim_server.hpp"
 #include "src/terrain/map_layers.hpp"

@@ -18,7 +18,7 @@
 #include <map>
 #include <set>
 
-#include "src/client/layer_assembler.hpp"
+#include "include/desert_sim/client/layer_assembler.hpp"
 #include "test/support/ros/client.hpp"
 
 namespace {

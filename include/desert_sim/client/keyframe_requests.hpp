@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-#include "src/client/layer_assembler.hpp"
+#include "desert_sim/client/layer_assembler.hpp"
 
 namespace desert_sim {
 

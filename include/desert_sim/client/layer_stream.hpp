@@ -10,9 +10,9 @@
 #include <optional>
 #include <string>
 
-#include "src/client/keyframe_requests.hpp"
-#include "src/client/layer_assembler.hpp"
-#include "src/client/waiting_notice.hpp"
+#include "desert_sim/client/keyframe_requests.hpp"
+#include "desert_sim/client/layer_assembler.hpp"
+#include "desert_sim/client/waiting_notice.hpp"
 
 namespace desert_sim {
 

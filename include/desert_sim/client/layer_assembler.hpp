@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "src/client/layer_map.hpp"
+#include "desert_sim/client/layer_map.hpp"
 
 namespace desert_sim {
 

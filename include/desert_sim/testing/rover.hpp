@@ -8,8 +8,8 @@
 #include <functional>
 #include <string>
 
-#include "src/testing/inbox.hpp"
-#include "src/testing/paths.hpp"
+#include "desert_sim/testing/inbox.hpp"
+#include "desert_sim/testing/paths.hpp"
 
 namespace desert_sim::test {
 
@@ -19,14 +19,14 @@ class Rover {
   Rover(ros::NodeHandle& node, const std::string& name);
 
   /// Publishes one command on cmd_vel, and returns when the rover has it: ahead [m/s], and counter-clockwise
-  /// [rad/s]. It holds for half a second of the rover's time. Throws Error if the rover has none within a
+  /// [rad/s]. It holds for half a second of the rover's time. Throws std::runtime_error if the rover has none within a
   /// minute.
   void drive(double forward, double yaw_rate = 0);
-  /// The last true pose. Throws Error if there is none within a minute.
+  /// The last true pose. Throws std::runtime_error if there is none within a minute.
   Pose pose() const;
   /// In the plane [m].
   double distance_to(const Point& p) const;
-  /// The last one. Throws Error if there is none within a minute.
+  /// The last one. Throws std::runtime_error if there is none within a minute.
   RoverStatus status() const;
   /// Waits for a pose of this ROS time or a later one; whether it came. In lockstep poses have the stamps of
   /// the terrain's states.

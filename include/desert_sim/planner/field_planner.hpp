@@ -1,4 +1,0 @@
-#pragma once
-/// Public header: paths of rovers over living terrain.
-
-#include "src/planner/field_planner.hpp"

@@ -1,4 +1,0 @@
-#pragma once
-/// Public header: a rover on living ground.
-
-#include "src/rover/rover.hpp"

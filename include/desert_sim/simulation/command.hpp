@@ -1,4 +1,0 @@
-#pragma once
-/// Public header: what changes a running simulation from outside.
-
-#include "src/simulation/commands/command.hpp"

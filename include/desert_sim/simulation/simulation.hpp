@@ -1,4 +1,0 @@
-#pragma once
-/// Public header: a simulation.
-
-#include "src/simulation/simulation.hpp"

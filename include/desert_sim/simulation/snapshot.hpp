@@ -1,4 +1,0 @@
-#pragma once
-/// Public header: layers at one moment, on the host.
-
-#include "src/simulation/views/snapshot.hpp"
