@@ -1,4 +1,5 @@
-/// Exit status 0 if a client takes a keyframe. With a master it also waits for a node's terrain: any argument.
+/// Exit status 0 if a client takes a keyframe. With a master it also waits for a node's terrain: any
+/// argument.
 #include <ros/ros.h>
 
 #include <desert_sim/client/terrain_client.hpp>

@@ -19,8 +19,8 @@ class Rover {
   Rover(ros::NodeHandle& node, const std::string& name);
 
   /// Publishes one command on cmd_vel, and returns when the rover has it: ahead [m/s], and counter-clockwise
-  /// [rad/s]. It holds for half a second of the rover's time. Throws std::runtime_error if the rover has none within a
-  /// minute.
+  /// [rad/s]. It holds for half a second of the rover's time. Throws std::runtime_error if the rover has none
+  /// within a minute.
   void drive(double forward, double yaw_rate = 0);
   /// The last true pose. Throws std::runtime_error if there is none within a minute.
   Pose pose() const;

@@ -1,6 +1,6 @@
 #pragma once
-/// The services of the node, each room of them in a file of its own. Each turns a request into a command, or a
-/// question, and waits for the answer of the simulation thread. (~set_parameters is in reconfigure.cpp,
+/// The services of the node, each room of them in a file of its own. Each turns a request into a command, or
+/// a question, and waits for the answer of the simulation thread. (~set_parameters is in reconfigure.cpp,
 /// ~reload_parameters in reload_parameters.cpp.)
 
 #include <ros/callback_queue.h>
