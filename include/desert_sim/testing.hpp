@@ -62,8 +62,8 @@ struct Options {
 
 /// A paused node for the length of a test, and a rover on it in lockstep: both move by step() only, so that
 /// the same calls lead to the same bits. To be used by one thread. What cannot be done throws a
-/// std::runtime_error with the node's reason; an expectation that is not met names a picture: the terrain with lethal cells in red, the
-/// rover's way in white, paths in blue, the goal in green.
+/// std::runtime_error with the node's reason; an expectation that is not met names a picture: the terrain
+/// with lethal cells in red, the rover's way in white, paths in blue, the goal in green.
 class Desert {
  public:
   explicit Desert(const Options& options);
@@ -83,8 +83,8 @@ class Desert {
   const TerrainClient& terrain() const { return *terrain_; }
   /// Throws a std::runtime_error if there is none.
   Rover& rover();
-  /// Cost of the cell at a point as in ~costmap: 0 … 99, 100 lethal, -1 unknown. Throws a std::runtime_error for
-  /// a point off the grid.
+  /// Cost of the cell at a point as in ~costmap: 0 … 99, 100 lethal, -1 unknown. Throws a std::runtime_error
+  /// for a point off the grid.
   int cost(const Point& p) const;
 
   // ---- Expectations.

@@ -20,7 +20,8 @@ bool wait_until(const std::function<bool()>& happened, double seconds);
 
 /// Makes this process a ROS node with a name that nobody else has. In a rostest its master is the test's;
 /// else it gets a master of its own on a free port, which ends with it: a test does not meddle with the robot
-/// whose master the environment names. To be called once, in main(). Throws std::runtime_error if no master comes up.
+/// whose master the environment names. To be called once, in main(). Throws std::runtime_error if no master
+/// comes up.
 void init(int& argc, char** argv, const std::string& name);
 
 /// A program that is ended with this object.
