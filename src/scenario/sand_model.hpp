@@ -26,7 +26,10 @@ constexpr bool is_saltation(SandModel model) {
 }
 
 /// Whether it moves slabs on a lattice: those of slab_model.
-constexpr bool is_slab_model(SandModel model) { return !is_saltation(model) && model != SandModel::wang; }
+constexpr bool is_slab_model(SandModel model) {
+  return model == SandModel::werner || model == SandModel::momiji || model == SandModel::bishop ||
+         model == SandModel::nield_baas || model == SandModel::snow;
+}
 
 struct SandParameters {
   SandModel model = SandModel::hops;

@@ -92,10 +92,7 @@ std::string bench_json(const BenchReport& r) {
     all["processes"][p.name] = {{"ms", p.milliseconds},
                                 {"bytes_per_cell", p.bytes},
                                 {"share_of_copy", r.copy_bandwidth_fraction(p.bytes, p.milliseconds)}};
-  all["residual"] = {{"share_over_1e-3", r.residual.share_over_1e3},
-                     {"share_over_1e-2", r.residual.share_over_1e2},
-                     {"mean_excess", r.residual.mean_excess},
-                     {"largest_excess", r.residual.largest_excess}};
+  all["residual"] = json_of(r.residual);
   all["fine_sweeps"] = r.fine_sweeps;
   all["sand_lost_quanta"] = r.sand.residual();
   all["sand_lost_share"] = r.sand.relative_residual();

@@ -87,13 +87,6 @@ Json step_times(const Simulation& s, const RunReport& report) {
   return times;
 }
 
-Json json_of(const Residual& r) {
-  return {{"share_over_1e-3", r.share_over_1e3},
-          {"share_over_1e-2", r.share_over_1e2},
-          {"mean_excess", r.mean_excess},
-          {"largest_excess", r.largest_excess}};
-}
-
 }  // namespace
 
 std::string create_output_folder(const std::string& folder, const std::string& option,

@@ -18,7 +18,7 @@ namespace desert_sim {
 GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
                  const MapWindow& window, int decimation = 1);
 
-/// The elevation with its micro_relief, and of other layers the values of the cells in which the points lie.
+/// The elevation with micro-relief, and of other layers the values of the cells in which the points lie.
 GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
                  const MicroReliefWindow& window);
 

@@ -23,7 +23,7 @@ struct RowBand {
 /// The rows of a band that a terrain of `height` rows has.
 RowBand clamp_band(const RowBand& band, int height, bool periodic_y);
 
-/// What the micro_relief of the surface (micro_relief.hpp) depends on, besides layers.
+/// What the micro-relief of the surface (micro_relief.hpp) depends on, besides layers.
 struct MicroReliefSettings {
   MicroReliefParameters parameters;
   std::uint64_t seed = 1;
