@@ -92,22 +92,23 @@ struct ComputeCanopyTops {
 };
 
 template <class E>
-void cover(E& exec, const TerrainView& t, const VegetationParameters& p, float time_step, const Dice& dice,
-           const surface::Heights& heights, bool makes_state, Workspace& work) {
-  for_each_cell(exec, t.grid,
-                Cover{t.grid, work.neighbourhood(), work.plants(), work.species.data(), work.species_count,
-                      heights.cell_heights.data(), t.real(Layer::wind_x), t.real(Layer::wind_y), t.quantum,
-                      t.quanta_per_metre, time_step, dice[Roll::humus],
-                      to_quanta_at_most(p.humus_limit, t.quanta_per_metre, load_limit),
-                      makes_state ? t.real(Layer::vegetation) : nullptr, t.real(Layer::canopy_height),
-                      t.quanta(Layer::humus), work.density.data(), work.downwind.data()});
+void cover(E& exec, const TerrainView& t, const VegetationParameters& p, const CoverInputs& in,
+           const Dice& dice, Workspace& work) {
+  const float* const heights = in.heights.cell_heights.data();
+  for_each_cell(
+      exec, t.grid,
+      Cover{t.grid, work.neighbourhood(), work.plants(), work.species.data(), work.species_count, heights,
+            t.real(Layer::wind_x), t.real(Layer::wind_y), t.quantum, t.quanta_per_metre, in.time_step,
+            dice[Roll::humus], to_quanta_at_most(p.humus_limit, t.quanta_per_metre, load_limit),
+            in.makes_state ? t.real(Layer::vegetation) : nullptr, t.real(Layer::canopy_height),
+            t.quanta(Layer::humus), work.density.data(), work.downwind.data()});
   for_each_cell(
       exec, work.tops.blocks,
-      ComputeCanopyTops{t.grid, work.tops.blocks, heights.cell_heights.data(), t.real(Layer::canopy_height),
-                        t.quanta_per_metre, work.tops.cell_heights.data(), work.tops.highest.data()});
+      ComputeCanopyTops{t.grid, work.tops.blocks, heights, t.real(Layer::canopy_height), t.quanta_per_metre,
+                        work.tops.cell_heights.data(), work.tops.highest.data()});
 }
 
-template void cover(Backend&, const TerrainView&, const VegetationParameters&, float, const Dice&,
-                    const surface::Heights&, bool, Workspace&);
+template void cover(Backend&, const TerrainView&, const VegetationParameters&, const CoverInputs&,
+                    const Dice&, Workspace&);
 
 }  // namespace desert_sim::plants

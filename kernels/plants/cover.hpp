@@ -22,10 +22,16 @@
 
 namespace desert_sim::plants {
 
-/// `makes_state`: whether to write vegetation and humus as well, which are state; recomputing the derived
-/// layers for a snapshot must not change them.
+struct CoverInputs {
+  float time_step;  ///< [s]
+  const surface::Heights& heights;
+  /// Whether to write vegetation and humus as well, which are state; recomputing the derived layers for a
+  /// snapshot must not change them.
+  bool makes_state;
+};
+
 template <class E>
-void cover(E& exec, const TerrainView& t, const VegetationParameters& p, float time_step, const Dice& dice,
-           const surface::Heights& heights, bool makes_state, Workspace& work);
+void cover(E& exec, const TerrainView& t, const VegetationParameters& p, const CoverInputs& in,
+           const Dice& dice, Workspace& work);
 
 }  // namespace desert_sim::plants

@@ -72,13 +72,13 @@ void record(E& exec, const TerrainView& t, Quanta* before) {
 
 template <class E>
 void step(E& exec, const TerrainView& t, const LoosenessParameters& p, const ReposeParameters& repose,
-          float time_step, float hop_time, const float* impacts, Quanta* before) {
-  for_each_cell(
-      exec, t.grid,
-      DepositAndPack{t.grid, t.quantum, 1.0f / p.fresh_depth, time_step / (hop_time * p.impact_depth),
-                     p.firming * time_step, to_quanta_at_most(p.bare_depth, t.quanta_per_metre, wall_height),
-                     repose::RelativeMoisture(t, repose), t.quanta(Layer::sand), impacts,
-                     t.real(Layer::wind_shadow), before, t.real(Layer::looseness)});
+          const StepInputs& in, Quanta* before) {
+  for_each_cell(exec, t.grid,
+                DepositAndPack{t.grid, t.quantum, 1.0f / p.fresh_depth,
+                               in.time_step / (in.hop_time * p.impact_depth), p.firming * in.time_step,
+                               to_quanta_at_most(p.bare_depth, t.quanta_per_metre, wall_height),
+                               repose::RelativeMoisture(t, repose), t.quanta(Layer::sand), in.impacts,
+                               t.real(Layer::wind_shadow), before, t.real(Layer::looseness)});
 }
 
 template <class E>
@@ -96,8 +96,8 @@ void fill(E& exec, const TerrainView& t, float value) {
 }
 
 template void record(Backend&, const TerrainView&, Quanta*);
-template void step(Backend&, const TerrainView&, const LoosenessParameters&, const ReposeParameters&, float,
-                   float, const float*, Quanta*);
+template void step(Backend&, const TerrainView&, const LoosenessParameters&, const ReposeParameters&,
+                   const StepInputs&, Quanta*);
 template void slides(Backend&, const TerrainView&, const LoosenessParameters&, const ReposeParameters&,
                      const float*, const Quanta*);
 template void fill(Backend&, const TerrainView&, float);

@@ -77,11 +77,15 @@ DESERT_HD float after(float looseness, float loosening, float packing) {
 template <class E>
 void record(E& exec, const TerrainView& t, Quanta* before);
 
-/// Deposits, impacts and firming since record(). `impacts`: r [m], per `hop_time`. Writes the present depth
-/// of sand to `before`.
+struct StepInputs {
+  float time_step, hop_time;  ///< [s]
+  const float* impacts;       ///< r in a hop's time [m]
+};
+
+/// Deposits, impacts and firming since record(). Writes the present depth of sand to `before`.
 template <class E>
 void step(E& exec, const TerrainView& t, const LoosenessParameters& p, const ReposeParameters& repose,
-          float time_step, float hop_time, const float* impacts, Quanta* before);
+          const StepInputs& in, Quanta* before);
 
 /// Slides since step(). `tangents`: of the angles of repose by which avalanches slid.
 template <class E>

@@ -108,27 +108,27 @@ struct ApplyDiffusion {
 };
 
 template <class E>
-void step(E& exec, const TerrainView& t, const MoistureParameters& p, float capacity, float time_step,
-          const Dice& dice, LedgerView ledger, Quanta* gain) {
+void step(E& exec, const TerrainView& t, const MoistureParameters& p, const StepInputs& in, const Dice& dice,
+          LedgerView ledger) {
   const Ground ground{
-      t.quanta(Layer::soil), t.quanta(Layer::sand), capacity, t.quantum, t.quanta_per_metre, p};
+      t.quanta(Layer::soil), t.quanta(Layer::sand), in.capacity, t.quantum, t.quanta_per_metre, p};
   Quanta *water = t.quanta(Layer::water), *moisture = t.quanta(Layer::moisture);
   for_each_cell(exec, t.grid,
-                SeepAndDry{t.grid, ground, time_step, dice[Roll::seepage], dice[Roll::ground_evaporation],
+                SeepAndDry{t.grid, ground, in.time_step, dice[Roll::seepage], dice[Roll::ground_evaporation],
                            t.real(Layer::vegetation), water, moisture, ledger});
-  const float number = p.diffusion * time_step / (t.grid.cell_size * t.grid.cell_size);
+  const float number = p.diffusion * in.time_step / (t.grid.cell_size * t.grid.cell_size);
   if (!(number > 0.0f)) return;
   const int parts = static_cast<int>(std::ceil(number * 4.0f));
   for (int n = 0; n < parts; ++n) {
     for_each_cell(exec, t.grid,
                   DiffuseMoisture{t.grid, ground, number / static_cast<float>(parts),
                                   dice[Roll::moisture_east].of_part(n), dice[Roll::moisture_north].of_part(n),
-                                  moisture, gain});
-    for_each_cell(exec, t.grid, ApplyDiffusion{t.grid, gain, moisture});
+                                  moisture, in.gain});
+    for_each_cell(exec, t.grid, ApplyDiffusion{t.grid, in.gain, moisture});
   }
 }
 
-template void step(Backend&, const TerrainView&, const MoistureParameters&, float, float, const Dice&,
-                   LedgerView, Quanta*);
+template void step(Backend&, const TerrainView&, const MoistureParameters&, const StepInputs&, const Dice&,
+                   LedgerView);
 
 }  // namespace desert_sim::moisture

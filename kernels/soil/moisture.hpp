@@ -48,10 +48,15 @@ static_assert(table_is_complete<MoistureParameters>());
 
 namespace moisture {
 
-/// `capacity`: c_M; `gain`: scratch, one value a cell.
+struct StepInputs {
+  float time_step;  ///< [s]
+  float capacity;   ///< c_M
+  Quanta* gain;     ///< scratch, one value a cell
+};
+
 template <class E>
-void step(E& exec, const TerrainView& t, const MoistureParameters& p, float capacity, float time_step,
-          const Dice& dice, LedgerView ledger, Quanta* gain);
+void step(E& exec, const TerrainView& t, const MoistureParameters& p, const StepInputs& in, const Dice& dice,
+          LedgerView ledger);
 
 }  // namespace moisture
 }  // namespace desert_sim

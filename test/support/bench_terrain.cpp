@@ -177,7 +177,7 @@ void BenchTerrain::erode(const HydraulicErosionParameters& p, float time_step) {
 void BenchTerrain::soak(const MoistureParameters& p, float capacity, float time_step) {
   for (Layer layer : {Layer::water, Layer::moisture}) terrain.allocate(layer);
   with_backend(exec(), [&](auto& e) {
-    moisture::step(e, terrain.view(), p, capacity, time_step, roll_dice(), ledger(), landed.data());
+    moisture::step(e, terrain.view(), p, {time_step, capacity, landed.data()}, roll_dice(), ledger());
   });
 }
 

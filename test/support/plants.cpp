@@ -82,8 +82,8 @@ std::vector<Plant> PlantBench::plants() const {
 void PlantBench::cover(float time_step, bool makes_state) {
   terrain.surface();
   with_backend(terrain.exec(), [&](auto& e) {
-    plants::cover(e, terrain.terrain.view(), parameters, time_step, terrain.roll_dice(), terrain.heights,
-                  makes_state, work);
+    plants::cover(e, terrain.terrain.view(), parameters, {time_step, terrain.heights, makes_state},
+                  terrain.roll_dice(), work);
   });
   terrain.exec().synchronise();
 }

@@ -49,8 +49,8 @@ Process looseness_process() {
   p.step = [](StepContext& c, ProcessWorkspace*) {
     const Scenario& s = c.scenario();
     with_backend(c.exec(), [&](auto& e) {
-      looseness::step(e, c.terrain, s.get<LoosenessParameters>(), s.get<ReposeParameters>(), c.time_step(),
-                      s.get<SaltationParameters>().hop_time, c.fields.impact_strength.data(),
+      looseness::step(e, c.terrain, s.get<LoosenessParameters>(), s.get<ReposeParameters>(),
+                      {c.time_step(), s.get<SaltationParameters>().hop_time, c.fields.impact_strength.data()},
                       c.fields.sand_before.data());
     });
   };

@@ -28,8 +28,9 @@ const std::string section = register_section<VegetationParameters>("vegetation",
 /// `makes_state`: also vegetation and humus, which a look at the terrain must leave alone.
 void cover_ground(StepContext& c, bool makes_state) {
   with_backend(c.exec(), [&](auto& e) {
-    plants::cover(e, c.terrain, c.scenario().get<VegetationParameters>(), makes_state ? c.time_step() : 0.0f,
-                  c.dice(), c.fields.heights, makes_state, c.state.plants);
+    plants::cover(e, c.terrain, c.scenario().get<VegetationParameters>(),
+                  {makes_state ? c.time_step() : 0.0f, c.fields.heights, makes_state}, c.dice(),
+                  c.state.plants);
   });
 }
 

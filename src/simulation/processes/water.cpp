@@ -102,8 +102,9 @@ void erode(StepContext& c, ProcessWorkspace* workspace) {
 void update_moisture(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
-    moisture::step(e, c.terrain, s.get<MoistureParameters>(), s.get<ReposeParameters>().moisture_capacity,
-                   c.time_step(), c.dice(), c.state.ledger(), c.fields.scratch<Quanta>(1));
+    moisture::step(e, c.terrain, s.get<MoistureParameters>(),
+                   {c.time_step(), s.get<ReposeParameters>().moisture_capacity, c.fields.scratch<Quanta>(1)},
+                   c.dice(), c.state.ledger());
   });
 }
 

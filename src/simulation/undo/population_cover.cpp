@@ -94,7 +94,7 @@ Population::Cover Population::compute_cover(CoverUpdate& update) {
     TerrainView view = terrain.view();
     view.layers[static_cast<int>(Layer::vegetation)] = update.vegetation.data();
     view.layers[static_cast<int>(Layer::humus)] = update.humus.data();
-    plants::cover(e, view, state_.scenario.get<VegetationParameters>(), 0.0f, {}, heights, true,
+    plants::cover(e, view, state_.scenario.get<VegetationParameters>(), {0.0f, heights, true}, {},
                   state_.plants);
   });
   pipeline_.derived_changed();

@@ -47,7 +47,7 @@ class Looseness : public test::OnBackend {
     with_backend(exec(), [&](auto& e) {
       looseness::record(e, t.terrain.view(), before.data());
       t.set(Layer::sand, sand + gain);
-      looseness::step(e, t.terrain.view(), p, {}, 2, 1, t.strength.data(), before.data());
+      looseness::step(e, t.terrain.view(), p, {}, {2, 1, t.strength.data()}, before.data());
     });
     EXPECT_EQ(before.download()[4], t.quanta_at(Layer::sand, 1, 1)) << "what slides is counted from here";
     return t.at(Layer::looseness, 1, 1);
