@@ -1,12 +1,25 @@
-# Third-party libraries of every build: OpenMP, threads, FFTW3 (single precision), yaml-cpp, xxHash, Random123,
-# JSON by nlohmann, OMPL.
-find_package(OpenMP REQUIRED COMPONENTS CXX)
+# Third-party libraries: yaml-cpp and threads of every build; of the simulation OpenMP, FFTW3 (single precision), xxHash,
+# Random123, JSON by nlohmann, CLI11, Eigen, OMPL.
 find_package(Threads REQUIRED)
 find_package(yaml-cpp QUIET)
+if(NOT yaml-cpp_FOUND)
+  message(FATAL_ERROR "desert_sim needs yaml-cpp: install libyaml-cpp-dev (the whole list is in scripts/dependencies.txt)")
+endif()
+add_library(desert::yaml_cpp INTERFACE IMPORTED GLOBAL)
+if(TARGET yaml-cpp::yaml-cpp)
+  set_property(TARGET desert::yaml_cpp PROPERTY INTERFACE_LINK_LIBRARIES yaml-cpp::yaml-cpp)
+else()
+  set_property(TARGET desert::yaml_cpp PROPERTY INTERFACE_LINK_LIBRARIES yaml-cpp)
+endif()
+if(DESERT_PARTS STREQUAL "client")
+  return()
+endif()
+
+find_package(OpenMP REQUIRED COMPONENTS CXX)
 
 # desert_find(<target> <header> <library or ""> <Debian package>): an imported target from a header and a library.
 function(desert_find name header library package)
-  find_path(DESERT_${name}_INCLUDE ${header})
+  find_path(DESERT_${name}_INCLUDE ${header} PATH_SUFFIXES eigen3)
   set(missing ${header})
   if(library)
     find_library(DESERT_${name}_LIBRARY ${library})
@@ -25,6 +38,9 @@ endfunction()
 
 desert_find(random123 Random123/philox.h "" librandom123-dev)
 desert_find(nlohmann_json nlohmann/json.hpp "" nlohmann-json3-dev)
+desert_find(cli11 CLI/CLI.hpp "" "libcli11-dev (Ubuntu 20.04 has no such package: put the folder include/CLI of \
+github.com/CLIUtils/CLI11, version 1.9 or later, into /usr/local/include)")
+desert_find(eigen Eigen/Core "" libeigen3-dev)
 desert_find(xxhash xxhash.h xxhash libxxhash-dev)
 file(STRINGS ${DESERT_xxhash_INCLUDE}/xxhash.h xxhash_minor REGEX "define XXH_VERSION_MINOR +[0-9]+")
 if(xxhash_minor MATCHES " [0-7]$") # Ubuntu 20.04: XXH3 is there, but was not final, and shows on request only
@@ -53,14 +69,4 @@ elseif(DESERT_WITH_ROS)
   message(FATAL_ERROR "desert_sim needs OMPL: install libompl-dev (the whole list is in scripts/dependencies.txt)")
 else() # a bare server with a GPU needs no planner
   desert_leave_out(desert_planner "no OMPL")
-endif()
-
-if(NOT yaml-cpp_FOUND)
-  message(FATAL_ERROR "desert_sim needs yaml-cpp: install libyaml-cpp-dev (the whole list is in scripts/dependencies.txt)")
-endif()
-add_library(desert::yaml_cpp INTERFACE IMPORTED GLOBAL)
-if(TARGET yaml-cpp::yaml-cpp)
-  set_property(TARGET desert::yaml_cpp PROPERTY INTERFACE_LINK_LIBRARIES yaml-cpp::yaml-cpp)
-else()
-  set_property(TARGET desert::yaml_cpp PROPERTY INTERFACE_LINK_LIBRARIES yaml-cpp)
 endif()

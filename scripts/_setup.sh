@@ -41,16 +41,18 @@ source_noetic() {
 # Debian's ROS lives under /usr and takes no distribution name.
 source_noetic || unset ROS_DISTRO
 
-# The names in one column of dependencies.txt: of what builds and runs, with ROS unless `core`, and with the part
-# `# Sanitizers` if so asked; or only those of the part `# Checks` or `# Flakes`.
-packages() { # column [core | sanitizers | checks | flakes]
+# The names in one column of dependencies.txt: of what builds and runs, without ROS if `core`, only for
+# DESERT_PARTS=client if `client`, and with the part `# Sanitizers` if so asked; or only those of the part `# Checks` or
+# `# Flakes`.
+packages() { # column [core | client | sanitizers | checks | flakes]
   local parts
   case ${2:-} in
-    core) parts='building' ;;
-    sanitizers) parts='building|ROS|Sanitizers' ;;
+    core) parts='tools|building' ;;
+    client) parts='tools|client' ;;
+    sanitizers) parts='tools|client|building|ROS|Sanitizers' ;;
     checks) parts='Checks' ;;
     flakes) parts='Flakes' ;;
-    *) parts='building|ROS' ;;
+    *) parts='tools|client|building|ROS' ;;
   esac
   awk -F'|' -v column="$1" -v parts="^# ($parts)" '
     /^#/ { wanted = $0 ~ parts }
@@ -58,7 +60,7 @@ packages() { # column [core | sanitizers | checks | flakes]
   ' "$DESERT_ROOT/scripts/dependencies.txt"
 }
 
-missing_packages() { # column [core | sanitizers | checks | flakes]
+missing_packages() { # column [core | client | sanitizers | checks | flakes]
   local package
   for package in $(packages "$@"); do
     dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
@@ -67,7 +69,7 @@ missing_packages() { # column [core | sanitizers | checks | flakes]
 
 # Installs what is missing from dependencies.txt; with nothing missing it calls nothing.
 # shellcheck disable=SC2120 # arguments are optional
-desert_install() { # [core | sanitizers | checks | flakes]
+desert_install() { # [core | client | sanitizers | checks | flakes]
   local missing as_root=()
   if [[ $DESERT_SYSTEM == 0 ]]; then
     say "this is neither Debian 12 nor Ubuntu 20.04: nothing is installed. Needed, by their Debian names:"

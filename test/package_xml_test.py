@@ -16,7 +16,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
 RULES = os.path.join(HERE, "rosdep_rules.yaml")
 # What rosdep has no rule for: CMake names the package where it is missing, and CONTRIBUTING.md says what to install.
-WITHOUT_RULE = {"librandom123-dev"}
+WITHOUT_RULE = {"librandom123-dev", "libcli11-dev"}
 # A package of ROS there, of Debian here: the same library.
 OF_ROS = {"libompl-dev": "ompl"}
 # Of dependencies.txt, what a workspace has already, or only tests, checks and other tools of ours use.

@@ -102,7 +102,8 @@ class Desert {
   Expectation expect_replanned(const std::string& topic, int within, const std::function<void()>& change,
                                double by = 1);
 
-  /// The terrain as it is now, as a picture file.
+  /// The terrain as it is now, as a picture file. Throws a std::runtime_error if it cannot be written, or if
+  /// desert_sim was built without OpenCV (DESERT_PARTS=client); failures then come without a picture, too.
   void write_picture(const std::string& path, const std::optional<Point>& goal = std::nullopt) const;
 
  private:

@@ -118,9 +118,6 @@ class Exec {
   std::atomic<std::size_t> bytes_held_{0};
 };
 
-/// Memory that the host can still allocate [bytes], within the limit of its control group.
-std::size_t host_memory_available();
-
 class CpuExec : public Exec {
  public:
   /// `threads` ≥ 1, or 0 for one thread per processor.
@@ -129,7 +126,7 @@ class CpuExec : public Exec {
 
   Device device() const override { return Device::cpu; }
   std::string device_name() const override;
-  std::size_t memory_available() const override { return host_memory_available(); }
+  std::size_t memory_available() const override;
   void* allocate_host(std::size_t bytes) override { return allocate_memory(bytes); }
   void release_host(void* memory) noexcept override { free_memory(memory); }
   void set_zero(void* memory, std::size_t bytes) override;

@@ -1,17 +1,16 @@
 #include <fftw3.h>
 #include <omp.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <limits>
 #include <mutex>
 #include <new>
 
 #include "kernels/backend/exec.hpp"
 #include "kernels/backend/fft.hpp"
 #include "src/core/error.hpp"
+#include "src/core/host_memory.hpp"
 
 namespace desert_sim {
 
@@ -89,33 +88,6 @@ void for_each_chunk(std::size_t bytes, int threads, const Work& work) {
   }
 }
 
-std::size_t machine_memory_available() {
-  std::ifstream info("/proc/meminfo");
-  std::string key, unit;
-  std::size_t kilobytes;
-  while (info >> key >> kilobytes >> unit)
-    if (key == "MemAvailable:") return kilobytes * 1024;
-  return static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) *
-         static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-}
-
-/// Memory left within the limit of a container (control groups, version 2). Cached files count as free,
-/// because they can be dropped.
-std::size_t group_memory_available() {
-  constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
-  const std::string folder = "/sys/fs/cgroup/memory.";
-  std::size_t most = 0, used = 0, cached = 0;
-  if (!(std::ifstream(folder + "max") >> most) || !(std::ifstream(folder + "current") >> used))
-    return unlimited;  // the limit reads "max", or there is no control group
-  std::ifstream parts(folder + "stat");
-  std::string key;
-  std::size_t bytes;
-  while (parts >> key >> bytes)
-    if (key == "inactive_file") cached = bytes;
-  const std::size_t held = used - std::min(used, cached);
-  return most - std::min(most, held);
-}
-
 }  // namespace
 
 CpuExec::CpuExec(int threads) : threads_(threads > 0 ? threads : omp_get_num_procs()) {}
@@ -131,7 +103,7 @@ std::string CpuExec::device_name() const {
   return name + ", " + std::to_string(threads_) + (threads_ == 1 ? " thread" : " threads");
 }
 
-std::size_t host_memory_available() { return std::min(machine_memory_available(), group_memory_available()); }
+std::size_t CpuExec::memory_available() const { return host_memory_available(); }
 
 void* CpuExec::allocate_memory(std::size_t bytes) {
   void* memory = ::operator new(bytes, std::align_val_t(alignment), std::nothrow);

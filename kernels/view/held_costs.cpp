@@ -10,7 +10,7 @@ namespace desert_sim::held_costs {
 
 using packed_tiles::TileOfGrid;
 
-DESERT_HD bool is_special(std::int8_t cost) { return cost == lethal_cost || cost < 0; }
+DESERT_HD bool is_special(std::int8_t cost) { return cost == cell_cost::lethal || cost < 0; }
 
 DESERT_HD bool differs(std::int8_t now, std::int8_t held, int threshold) {
   const int off = now < held ? held - now : now - held;
@@ -21,7 +21,7 @@ struct ComputeCosts {
   traversability::Traversability law;
   std::int8_t* now;
   DESERT_HD void operator()(int x, int y) const {
-    now[law.roughness.surface.grid.index(x, y)] = cost_of(law.at(x, y));
+    now[law.roughness.surface.grid.index(x, y)] = cell_cost::of(law.at(x, y));
   }
 };
 

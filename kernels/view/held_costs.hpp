@@ -2,31 +2,20 @@
 /// Incremental updates of the costs of a terrain: the device keeps the costs that subscribers hold, and finds
 /// where they are out of date.
 ///
-///   cost = lethal                 where the traversability t is 0
-///          round(99 (1 − t))      where 0 < t ≤ 1, so 0 … 99
-///          unknown                where t is NaN
-///
 /// A cell has changed if its cost differs from the held one by more than a threshold; a change to or from
 /// lethal and unknown always counts. Each tile that has a changed cell is brought up to date as a whole, and
 /// packed. Reads what traversability reads; writes the current and the held costs.
 
 #include "kernels/rover/traversability.hpp"
+#include "kernels/view/cell_cost.hpp"
 #include "kernels/view/packed_tiles.hpp"
 
 namespace desert_sim::held_costs {
 
 using packed_tiles::Tiling;
 
-constexpr std::int8_t unknown_cost = -1, lethal_cost = 100;
-
 /// Not a cost: stands where nothing is held yet.
 constexpr std::int8_t no_cost = -128;
-
-DESERT_HD std::int8_t cost_of(float traversability) {
-  if (!(traversability == traversability)) return unknown_cost;
-  if (traversability <= 0.0f) return lethal_cost;
-  return static_cast<std::int8_t>(round_to_int(99.0f * (1.0f - minimum(traversability, 1.0f))));
-}
 
 /// Computes the current costs of all cells. `elevation` must be up to date.
 template <class E>

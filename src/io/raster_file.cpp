@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/backend/exec.hpp"
+#include "src/core/host_memory.hpp"
 #include "src/core/log.hpp"
 #include "src/core/lower_case.hpp"
 #include "src/io/cell_values.hpp"

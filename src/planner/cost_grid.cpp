@@ -4,8 +4,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "kernels/backend/exec.hpp"
 #include "src/core/error.hpp"
+#include "src/core/host_memory.hpp"
 #include "src/core/number_text.hpp"
 
 namespace desert_sim {

@@ -35,9 +35,8 @@ class Projection {
   void fill_picture(const Box& box, double zoom);
 
   int width_, height_;
-  Point target_;  ///< middle of the subject
-  Point back_;    ///< unit vector from there to the camera
-  Matrix4 projection_{}, camera_from_terrain_{}, clip_{};
+  Eigen::Matrix4d projection_ = Eigen::Matrix4d::Zero(), camera_from_terrain_ = Eigen::Matrix4d::Identity(),
+                  clip_;
 };
 
 }  // namespace desert_sim::render

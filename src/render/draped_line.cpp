@@ -24,7 +24,7 @@ std::vector<Place> circle(const Place& centre, double radius) {
 
 std::vector<Point> drape(const HeightField& field, const std::vector<Place>& line) {
   std::vector<Point> points;
-  const auto put = [&](const Place& p) { points.push_back({p.x, p.y, field.height_at(p)}); };
+  const auto put = [&](const Place& p) { points.emplace_back(p.x, p.y, field.height_at(p)); };
   double length = 0;
   for (std::size_t n = 1; n < line.size(); ++n) length += distance(line[n - 1], line[n]);
   const double room = std::max(1.0, most_places - static_cast<double>(line.size()) - 1);
@@ -44,13 +44,10 @@ std::vector<Point> drape(const HeightField& field, const std::vector<Place>& lin
 Measurement measure(const std::vector<Point>& line) {
   Measurement result;
   if (line.empty()) return result;
-  const Point &a = line.front(), &b = line.back();
-  result.horizontal = distance({a.x, a.y}, {b.x, b.y});
-  for (std::size_t n = 1; n < line.size(); ++n) {
-    const double step = distance({line[n - 1].x, line[n - 1].y}, {line[n].x, line[n].y});
-    result.along_surface += std::hypot(step, line[n].z - line[n - 1].z);
-  }
-  result.height_difference = b.z - a.z;
+  const Eigen::Vector3d way = line.back() - line.front();
+  result.horizontal = way.head<2>().norm();
+  for (std::size_t n = 1; n < line.size(); ++n) result.along_surface += (line[n] - line[n - 1]).norm();
+  result.height_difference = way.z();
   result.slope = std::atan2(result.height_difference, result.horizontal);
   return result;
 }
@@ -59,10 +56,10 @@ void append_line(Mesh& mesh, const std::vector<Point>& line, double exaggeration
   for (std::size_t n = 0; n < line.size(); ++n) {
     const Point& p = line[n];
     const auto index = static_cast<std::uint32_t>(mesh.vertices.size());
-    if (std::isnan(p.z)) continue;
-    mesh.vertices.push_back({static_cast<float>(p.x), static_cast<float>(p.y),
-                             static_cast<float>(exaggeration * p.z), 0, 0, 1, colour});
-    if (n == 0 || std::isnan(line[n - 1].z)) continue;
+    if (std::isnan(p.z())) continue;
+    mesh.vertices.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()),
+                             static_cast<float>(exaggeration * p.z()), 0, 0, 1, colour});
+    if (n == 0 || std::isnan(line[n - 1].z())) continue;
     mesh.indices.push_back(index - 1);
     mesh.indices.push_back(index);
   }

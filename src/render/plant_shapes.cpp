@@ -27,16 +27,13 @@ void add_cone(int sides, double x, double y, double ring_z, double radius, doubl
 
 /// Three vertices with the normal of their triangle.
 void add_triangle(const Point* corner, const Colour& colour, Mesh& mesh) {
-  const Point &a = corner[0], &b = corner[1], &c = corner[2];
-  const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-  const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx,
-               length = std::max(std::hypot(nx, ny, nz), 1e-12);
-  const auto unit = [length](double part) { return static_cast<float>(part / length); };
-  const PackedColour packed = pack(lit(colour, sun_light(unit(nx), unit(ny), unit(nz))));
+  const Eigen::Vector3f normal =
+      (corner[1] - corner[0]).cross(corner[2] - corner[0]).stableNormalized().cast<float>();
+  const PackedColour packed = pack(lit(colour, sun_light(normal.x(), normal.y(), normal.z())));
   for (std::size_t n = 0; n < 3; ++n) {
+    const Eigen::Vector3f p = corner[n].cast<float>();
     mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
-    mesh.vertices.push_back({static_cast<float>(corner[n].x), static_cast<float>(corner[n].y),
-                             static_cast<float>(corner[n].z), unit(nx), unit(ny), unit(nz), packed});
+    mesh.vertices.push_back({p.x(), p.y(), p.z(), normal.x(), normal.y(), normal.z(), packed});
   }
 }
 

@@ -71,16 +71,16 @@ struct Walk {
 
 std::optional<Point> first_hit(const HeightField& field, const Ray& ray) {
   const Point &o = ray.origin, &d = ray.direction;
-  const double length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+  const double length = d.norm();
   if (field.empty() || !(length > 0)) return std::nullopt;
   const double per_metre = 1 / (field.cell_size * length);
   const Walk walk{field,
-                  o.x / field.cell_size - 0.5,
-                  o.y / field.cell_size - 0.5,
-                  o.z,
-                  d.x * per_metre,
-                  d.y * per_metre,
-                  d.z / length};
+                  o.x() / field.cell_size - 0.5,
+                  o.y() / field.cell_size - 0.5,
+                  o.z(),
+                  d.x() * per_metre,
+                  d.y() * per_metre,
+                  d.z() / length};
   Interval inside;
   inside.clip(walk.u, walk.du, -0.5, field.width - 0.5);
   inside.clip(walk.v, walk.dv, -0.5, field.height - 0.5);
@@ -100,8 +100,7 @@ std::optional<Point> first_hit(const HeightField& field, const Ray& ray) {
     const double end = std::max(t, std::min({exit_u, exit_v, inside.end}));
     const double hit = walk.hit(i, j, t, end);
     if (hit < infinity) {
-      const double at = hit / length;
-      return Point{o.x + at * d.x, o.y + at * d.y, o.z + at * d.z};
+      return o + hit / length * d;
     }
     (exit_u <= exit_v ? i : j) += exit_u <= exit_v ? step_i : step_j;
     if (end == inside.end) break;

@@ -201,15 +201,9 @@ CellWindow water_surface(const CellWindow& ground, const CellWindow& depth, int 
 }
 
 Box bounding_box(const Mesh& mesh) {
-  if (mesh.vertices.empty()) return {};
-  const Vertex& first = mesh.vertices.front();
-  Box box{{first.x, first.y, first.z}, {first.x, first.y, first.z}};
-  for (const Vertex& v : mesh.vertices) {
-    box.low = {std::min<double>(box.low.x, v.x), std::min<double>(box.low.y, v.y),
-               std::min<double>(box.low.z, v.z)};
-    box.high = {std::max<double>(box.high.x, v.x), std::max<double>(box.high.y, v.y),
-                std::max<double>(box.high.z, v.z)};
-  }
+  if (mesh.vertices.empty()) return Box(Point::Zero(), Point::Zero());
+  Box box;
+  for (const Vertex& v : mesh.vertices) box.extend(Eigen::Vector3f(v.x, v.y, v.z).cast<double>());
   return box;
 }
 

@@ -3,28 +3,20 @@
 /// terrain's frame [m]. Both follow from the matrices with which the camera projects, so that perspective and
 /// orthographic cameras need no cases of their own.
 
-#include <array>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace desert_sim::render {
 
-struct Point {
-  double x = 0, y = 0, z = 0;
-};
-
-struct Box {
-  Point low, high;
-};
-
-using Matrix4 = std::array<std::array<double, 4>, 4>;  ///< [row][column], for column vectors
-
-Matrix4 multiply(const Matrix4& a, const Matrix4& b);
+using Point = Eigen::Vector3d;
+using Box = Eigen::AlignedBox3d;
 
 class View {
  public:
   /// `projection` maps coordinates of the camera (which looks along -z) to OpenGL's clip coordinates, and
   /// `camera_from_terrain` those of the terrain to the camera's, by a rotation and a translation. `height` is
   /// that of the viewport [pixels].
-  View(const Matrix4& projection, const Matrix4& camera_from_terrain, int height);
+  View(const Eigen::Matrix4d& projection, const Eigen::Matrix4d& camera_from_terrain, int height);
 
   bool orthographic() const { return orthographic_; }
   /// Whether any part of the box can be in the picture. May be true for a box just outside.
@@ -37,7 +29,7 @@ class View {
   double pixels_per_metre(const Box& box) const;
 
  private:
-  std::array<std::array<double, 4>, 6> planes_;  ///< of the frustum; inside is positive
+  Eigen::Matrix<double, 6, 4> planes_;  ///< of the frustum, a row each; inside is positive
   Point eye_;
   Point ahead_;  ///< unit vector of the line of sight
   bool orthographic_;

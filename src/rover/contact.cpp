@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "src/core/number_text.hpp"
+#include "src/core/rotation.hpp"
 
 namespace desert_sim {
 
@@ -25,21 +26,21 @@ std::string text_of(const Parts&... parts) {
 Contact::Contact(const RoverParameters& rover, Suspension suspension)
     : rover_(rover), suspension_(std::move(suspension)) {
   for (int n = 0; n < suspension_.wheels(); ++n) {
-    const Point3& h = suspension_.hub_at_rest(n);
-    mean_square_x_ += h.x * h.x / suspension_.wheels();
-    mean_square_y_ += h.y * h.y / suspension_.wheels();
+    const Eigen::Vector3d& h = suspension_.hub_at_rest(n);
+    mean_square_x_ += h.x() * h.x() / suspension_.wheels();
+    mean_square_y_ += h.y() * h.y() / suspension_.wheels();
   }
 }
 
 Hindrance Contact::missing_ground(const RoverState& state, const GroundSource& ground) const {
   for (int n = 0; n < suspension_.wheels(); ++n) {
-    const Point3 h = suspension_.hub(n, state);
-    if (!ground.contains(h.x, h.y))
+    const Eigen::Vector3d h = suspension_.hub(n, state);
+    if (!ground.contains(h.x(), h.y()))
       return {RoverCondition::off_grid, 1,
-              text_of("wheel ", n, " is off the terrain at ", point_text(h.x, h.y))};
-    if (!ground.elevation(h.x, h.y))
+              text_of("wheel ", n, " is off the terrain at ", point_text(h.x(), h.y()))};
+    if (!ground.elevation(h.x(), h.y()))
       return {RoverCondition::no_terrain, 1,
-              text_of("the elevation under wheel ", n, " is unknown at ", point_text(h.x, h.y))};
+              text_of("the elevation under wheel ", n, " is unknown at ", point_text(h.x(), h.y()))};
   }
   return {};
 }
@@ -60,8 +61,8 @@ double Contact::surface(double x, double y, double yaw, const GroundSource& grou
   return highest - r;
 }
 
-GroundPoint Contact::point(const Point3& hub, const GroundSource& ground) const {
-  GroundPoint p = ground.at(hub.x, hub.y);
+GroundPoint Contact::point(const Eigen::Vector3d& hub, const GroundSource& ground) const {
+  GroundPoint p = ground.at(hub.x(), hub.y());
   if (!p.looseness) p.looseness = rover_.assumed_looseness;
   return p;
 }
@@ -78,12 +79,12 @@ GroundUnderWheels Contact::under(const RoverState& state, const WheelMotion& mot
   mean.mean.looseness = 0;
   const double share = 1.0 / suspension_.wheels(), reach = rover_.wheel_radius;
   for (int n = 0; n < suspension_.wheels(); ++n) {
-    const Point3 h = suspension_.hub(n, state);
+    const Eigen::Vector3d h = suspension_.hub(n, state);
     const Direction way = way_of(state, motion, n);
     const auto rise = [&](double dx, double dy) {
-      const double here = ground.elevation(h.x, h.y).value_or(0);
-      const double ahead = ground.elevation(h.x + reach * dx, h.y + reach * dy).value_or(here),
-                   behind = ground.elevation(h.x - reach * dx, h.y - reach * dy).value_or(here);
+      const double here = ground.elevation(h.x(), h.y()).value_or(0);
+      const double ahead = ground.elevation(h.x() + reach * dx, h.y() + reach * dy).value_or(here),
+                   behind = ground.elevation(h.x() - reach * dx, h.y() - reach * dy).value_or(here);
       return (ahead - behind) / (2 * reach);
     };
     mean.rise += share * rise(way.x, way.y);
@@ -97,18 +98,19 @@ GroundUnderWheels Contact::under(const RoverState& state, const WheelMotion& mot
 }
 
 double Contact::load_share(const RoverState& state, int wheel) const {
-  const Point3& h = suspension_.hub_at_rest(wheel);
+  const Eigen::Vector3d& h = suspension_.hub_at_rest(wheel);
   const double height = rover_.mass_height - rover_.wheel_radius;
-  const double share = 1 + height * (std::tan(state.pose.pitch) * h.x / mean_square_x_ -
-                                     std::tan(state.pose.roll) * h.y / mean_square_y_);
+  const double share = 1 + height * (std::tan(state.pose.pitch) * h.x() / mean_square_x_ -
+                                     std::tan(state.pose.roll) * h.y() / mean_square_y_);
   return std::clamp(share, 0.0, 3.0);
 }
 
-Hindrance Contact::at_wheel(const Point3& h, const Direction& way, const GroundSource& ground) const {
-  const double r = rover_.wheel_radius, x = h.x + r * way.x, y = h.y + r * way.y;
+Hindrance Contact::at_wheel(const Eigen::Vector3d& h, const Direction& way,
+                            const GroundSource& ground) const {
+  const double r = rover_.wheel_radius, x = h.x() + r * way.x, y = h.y() + r * way.y;
   if (!ground.contains(x, y))
     return {RoverCondition::off_grid, 1, text_of("the terrain ends at ", point_text(x, y))};
-  const std::optional<double> ahead = ground.elevation(x, y), here = ground.elevation(h.x, h.y);
+  const std::optional<double> ahead = ground.elevation(x, y), here = ground.elevation(h.x(), h.y());
   if (!ahead || !here)
     return {RoverCondition::no_terrain, 1, text_of("the elevation is unknown at ", point_text(x, y))};
   const GroundPoint p = ground.at(x, y);
@@ -129,17 +131,18 @@ Hindrance Contact::at_wheel(const Point3& h, const Direction& way, const GroundS
 
 /// Sand gives way to the body, firm ground does not.
 Hindrance Contact::under_body(const RoverState& state, const GroundSource& ground) const {
-  const Rotation rotation = rotation_of(state.pose);
+  const Eigen::Matrix3d rotation = rotation_of(state.pose);
+  const Eigen::Vector3d origin(state.pose.x, state.pose.y, state.pose.z);
   const double ahead = rover_.body_length / 2, low = rover_.clearance - rover_.wheel_radius;
   Hindrance worst;
   for (const double x : {-ahead, -ahead / 2, 0.0, ahead / 2, ahead}) {
-    const Point3 offset = rotated(rotation, {x, 0, low});
-    const Point3 p{state.pose.x + offset.x, state.pose.y + offset.y, state.pose.z + offset.z};
-    const std::optional<double> elevation = ground.elevation(p.x, p.y);
-    const double excess = elevation ? *elevation - std::max(ground.at(p.x, p.y).sand_depth, 0.0) - p.z : 0;
+    const Eigen::Vector3d p = origin + turned(rotation, {x, 0, low});
+    const std::optional<double> elevation = ground.elevation(p.x(), p.y());
+    const double excess =
+        elevation ? *elevation - std::max(ground.at(p.x(), p.y()).sand_depth, 0.0) - p.z() : 0;
     if (excess > worst.excess)
       worst = {RoverCondition::blocked, excess,
-               text_of("firm ground touches the body's underside at ", point_text(p.x, p.y))};
+               text_of("firm ground touches the body's underside at ", point_text(p.x(), p.y()))};
   }
   return worst;
 }

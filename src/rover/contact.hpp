@@ -35,7 +35,7 @@ class Contact {
   /// max over u of h(x + u cos ψ, y + u sin ψ) + √(r² − u²), less r. Unknown ground counts as the lowest.
   double surface(double x, double y, double yaw, const GroundSource& ground) const;
   /// The ground at a hub, with the assumed looseness where the terrain has none.
-  GroundPoint point(const Point3& hub, const GroundSource& ground) const;
+  GroundPoint point(const Eigen::Vector3d& hub, const GroundSource& ground) const;
   /// `motion`: what the wheels do.
   GroundUnderWheels under(const RoverState& state, const WheelMotion& motion,
                           const GroundSource& ground) const;
@@ -49,7 +49,7 @@ class Contact {
     double x, y;
   };
   static Direction way_of(const RoverState& state, const WheelMotion& motion, int wheel);
-  Hindrance at_wheel(const Point3& hub, const Direction& way, const GroundSource& ground) const;
+  Hindrance at_wheel(const Eigen::Vector3d& hub, const Direction& way, const GroundSource& ground) const;
   Hindrance under_body(const RoverState& state, const GroundSource& ground) const;
 
   const RoverParameters rover_;

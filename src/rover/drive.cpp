@@ -16,8 +16,8 @@ DriveCommand scaled(const DriveCommand& c, double factor) {
 }  // namespace
 
 Drive::Velocity Drive::at_hub(const DriveCommand& m, int wheel) const {
-  const Point3& h = suspension_.hub_at_rest(wheel);
-  return {m.forward - m.yaw_rate * h.y, m.sideways + m.yaw_rate * h.x};
+  const Eigen::Vector3d& h = suspension_.hub_at_rest(wheel);
+  return {m.forward - m.yaw_rate * h.y(), m.sideways + m.yaw_rate * h.x()};
 }
 
 double Drive::rim_speed_of(const DriveCommand& m, int wheel) const {

@@ -3,6 +3,7 @@
 
 #include "kernels/field/random.hpp"
 #include "src/core/constants.hpp"
+#include "src/core/rotation.hpp"
 #include "src/rover/rover.hpp"
 
 namespace desert_sim {
@@ -35,10 +36,10 @@ void Rover::dead_reckon() {
   o.roll = state_.pose.roll;
   o.pitch = state_.pose.pitch;
   o.yaw = angle_between_turns(o.yaw + turn / 2);
-  const Point3 way = rotated(rotation_of(o), {forward, sideways, 0});
-  o.x += way.x;
-  o.y += way.y;
-  o.z += way.z;
+  const Eigen::Vector3d way = turned(rotation_of(o), {forward, sideways, 0});
+  o.x += way.x();
+  o.y += way.y();
+  o.z += way.z();
   o.yaw = angle_between_turns(o.yaw + turn / 2);
 }
 
@@ -47,29 +48,22 @@ void Rover::dead_reckon() {
 void Rover::feel(const Pose& before) {
   const double share = internal_step / (rover_.imu_filter + internal_step);
   const Pose& now = state_.pose;
-  const std::array<double, 3> velocity{(now.x - before.x) / internal_step, (now.y - before.y) / internal_step,
-                                       (now.z - before.z) / internal_step};
-  Point3 force{0, 0, rover_.gravity};
-  double* const forces[] = {&force.x, &force.y, &force.z};
-  for (std::size_t n = 0; n < 3; ++n) {
-    const double change = (velocity[n] - state_.velocity[n]) * share;
-    state_.velocity[n] += change;
-    *forces[n] += change / internal_step;
-  }
-  const Rotation rotation = rotation_of(now), old = rotation_of(before);
-  const Point3 felt = rotated_back(rotation, force);
-  state_.acceleration = {felt.x, felt.y, felt.z};
+  using Eigen::Vector3d;
+  const Vector3d velocity =
+      (Vector3d(now.x, now.y, now.z) - Vector3d(before.x, before.y, before.z)) / internal_step;
+  Eigen::Map<Vector3d> filtered(state_.velocity.data());
+  const Vector3d change = (velocity - filtered) * share;
+  filtered += change;
+  const Vector3d force = Vector3d(0, 0, rover_.gravity) + change / internal_step;
+  const Eigen::Matrix3d rotation = rotation_of(now), old = rotation_of(before);
+  Vector3d::Map(state_.acceleration.data()) = turned(rotation.transpose(), force);
   // Rᵀ_before R_now = 1 + [ω Δt]ₓ for the small turns of a step.
-  const auto turned = [&](std::size_t i, std::size_t j) {
-    double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) sum += old[k][i] * rotation[k][j];
-    return sum;
-  };
-  const std::array<double, 3> rate{(turned(2, 1) - turned(1, 2)) / (2 * internal_step),
-                                   (turned(0, 2) - turned(2, 0)) / (2 * internal_step),
-                                   (turned(1, 0) - turned(0, 1)) / (2 * internal_step)};
-  for (std::size_t n = 0; n < 3; ++n)
-    state_.angular_velocity[n] += (rate[n] - state_.angular_velocity[n]) * share;
+  Eigen::Matrix3d turn;
+  for (int n = 0; n < 3; ++n) turn.col(n) = turned(old.transpose(), rotation.col(n));
+  const Vector3d rate = Vector3d(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)) /
+                        (2 * internal_step);
+  Eigen::Map<Vector3d> turning(state_.angular_velocity.data());
+  turning += (rate - turning) * share;
 }
 
 ImuReading Rover::imu() const {

@@ -151,10 +151,10 @@ void Rover::halt(RoverCondition condition, const std::string& reason) {
 /// Rock lifts it.
 void Rover::follow_ground(const GroundSource& ground) {
   for (int n = 0; n < suspension_.wheels(); ++n) {
-    const Point3 hub = suspension_.hub(n, state_);
+    const Eigen::Vector3d hub = suspension_.hub(n, state_);
     const GroundPoint p = contact_.point(hub, ground);
     WheelState& w = wheel(n);
-    const double rise = contact_.surface(hub.x, hub.y, state_.pose.yaw, ground) - w.surface;
+    const double rise = contact_.surface(hub.x(), hub.y(), state_.pose.yaw, ground) - w.surface;
     if (rise > 0) {
       w.sunk += rise;
     } else if (rise < 0) {
@@ -282,13 +282,13 @@ void Rover::turn_wheels(const WheelMotion& motion, const DriveCommand& body, con
     w.rim_speed = motion.rim_speed[i];
     w.slip = 0;
     if (w.rim_speed == 0) continue;
-    const Point3& place = suspension_.hub_at_rest(n);
-    const double along = (body.forward - body.yaw_rate * place.y) * std::cos(w.steer) +
-                         (body.sideways + body.yaw_rate * place.x) * std::sin(w.steer);
+    const Eigen::Vector3d& place = suspension_.hub_at_rest(n);
+    const double along = (body.forward - body.yaw_rate * place.y()) * std::cos(w.steer) +
+                         (body.sideways + body.yaw_rate * place.x()) * std::sin(w.steer);
     w.slip = std::clamp(1 - along / w.rim_speed, -1.0, 1.0);
     const double way = w.rim_speed * internal_step;
     w.angle = angle_between_turns(w.angle + way / rover_.wheel_radius);
-    const Point3 hub = suspension_.hub(n, state_);
+    const Eigen::Vector3d hub = suspension_.hub(n, state_);
     const wheels::Ground under = wheel_ground(contact_.point(hub, ground));
     const auto share = static_cast<float>(contact_.load_share(state_, n));
     const auto slip = static_cast<float>(w.slip);
@@ -324,8 +324,8 @@ void Rover::stand(const GroundSource& ground, int iterations) {
       },
       iterations);
   for (int n = 0; n < suspension_.wheels(); ++n) {
-    const Point3 hub = suspension_.hub(n, state_);
-    wheel(n).surface = contact_.surface(hub.x, hub.y, state_.pose.yaw, ground);
+    const Eigen::Vector3d hub = suspension_.hub(n, state_);
+    wheel(n).surface = contact_.surface(hub.x(), hub.y(), state_.pose.yaw, ground);
   }
 }
 

@@ -4,37 +4,30 @@
 #include <cmath>
 
 #include "src/core/constants.hpp"
+#include "src/core/rotation.hpp"
 
 namespace desert_sim {
 
 namespace {
 
 /// About the y axis: positive angles turn the nose down.
-Point3 turned_down(const Point3& p, double angle) {
+Eigen::Vector3d turned_down(const Eigen::Vector3d& p, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
-  return {c * p.x + s * p.z, p.y, c * p.z - s * p.x};
+  return {c * p.x() + s * p.z(), p.y(), c * p.z() - s * p.x()};
 }
 
 }  // namespace
 
 double angle_between_turns(double angle) { return angle - 2 * pi * std::round(angle / (2 * pi)); }
 
-Rotation rotation_of(const Pose& pose) {
+Eigen::Matrix3d rotation_of(const Pose& pose) {
   const double cr = std::cos(pose.roll), sr = std::sin(pose.roll), cp = std::cos(pose.pitch),
                sp = std::sin(pose.pitch), cy = std::cos(pose.yaw), sy = std::sin(pose.yaw);
-  return {{{cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr},
-           {sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr},
-           {-sp, cp * sr, cp * cr}}};
-}
-
-Point3 rotated(const Rotation& r, const Point3& p) {
-  const auto row = [&p](const std::array<double, 3>& a) { return a[0] * p.x + a[1] * p.y + a[2] * p.z; };
-  return {row(r[0]), row(r[1]), row(r[2])};
-}
-
-Point3 rotated_back(const Rotation& r, const Point3& p) {
-  const auto column = [&](std::size_t n) { return r[0][n] * p.x + r[1][n] * p.y + r[2][n] * p.z; };
-  return {column(0), column(1), column(2)};
+  Eigen::Matrix3d matrix;
+  matrix << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,  //
+      sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,        //
+      -sp, cp * sr, cp * cr;
+  return matrix;
 }
 
 Suspension::Suspension(const RoverParameters& rover) : rover_(rover), wheels_(wheel_count(rover.suspension)) {
@@ -47,72 +40,61 @@ Suspension::Suspension(const RoverParameters& rover) : rover_(rover), wheels_(wh
   invert_level_matrix();
 }
 
-/// Gauss–Jordan elimination with pivots. The matrix is regular, because check_rover() wants the pivots
-/// between wheels.
+/// Gauss–Jordan elimination with pivots, row by row and so in one order (src/core/rotation.hpp). The matrix
+/// is regular, because check_rover() wants the pivots between wheels.
 void Suspension::invert_level_matrix() {
-  Matrix a{};
-  const auto n = static_cast<std::size_t>(wheels_);
-  for (std::size_t i = 0; i < n; ++i) {
-    const int wheel = static_cast<int>(i);
-    const Point3& h = rest_[i];
-    a[i][0] = 1;
-    a[i][1] = h.y;
-    a[i][2] = -h.x;
+  Matrix a = Matrix::Zero(wheels_, wheels_);
+  for (int n = 0; n < wheels_; ++n) {
+    const Eigen::Vector3d& h = hub_at_rest(n);
+    a(n, 0) = 1;
+    a(n, 1) = h.y();
+    a(n, 2) = -h.x();
     // A bogie's pivot moves with its rocker; the bogie itself is the further turn about that pivot.
-    a[i][3] = -(h.x - rover_.pivot_x) * (is_left(wheel) ? 1 : -1);
-    if (on_bogie(wheel)) a[i][is_left(wheel) ? 4 : 5] = -(h.x - rover_.bogie_x);
-    inverse_[i][i] = 1;
+    a(n, 3) = -(h.x() - rover_.pivot_x) * (is_left(n) ? 1 : -1);
+    if (on_bogie(n)) a(n, is_left(n) ? 4 : 5) = -(h.x() - rover_.bogie_x);
   }
-  for (std::size_t column = 0; column < n; ++column) {
-    std::size_t pivot = column;
-    for (std::size_t row = column; row < n; ++row)
-      if (std::abs(a[row][column]) > std::abs(a[pivot][column])) pivot = row;
-    std::swap(a[column], a[pivot]);
-    std::swap(inverse_[column], inverse_[pivot]);
-    const double scale = 1 / a[column][column];
-    for (std::size_t k = 0; k < n; ++k) a[column][k] *= scale, inverse_[column][k] *= scale;
-    for (std::size_t row = 0; row < n; ++row) {
+  inverse_ = Matrix::Identity(wheels_, wheels_);
+  for (int column = 0; column < wheels_; ++column) {
+    int pivot = column;
+    for (int row = column; row < wheels_; ++row)
+      if (std::abs(a(row, column)) > std::abs(a(pivot, column))) pivot = row;
+    const double scale = 1 / a(pivot, column);
+    for (Matrix* m : {&a, &inverse_}) {
+      m->row(column).swap(m->row(pivot));
+      m->row(column) *= scale;
+    }
+    for (int row = 0; row < wheels_; ++row) {
       if (row == column) continue;
-      const double factor = a[row][column];
-      for (std::size_t k = 0; k < n; ++k)
-        a[row][k] -= factor * a[column][k], inverse_[row][k] -= factor * inverse_[column][k];
+      const double factor = a(row, column);
+      for (Matrix* m : {&a, &inverse_}) m->row(row) -= factor * m->row(column);
     }
   }
 }
 
-Point3 Suspension::hub_in_body(int wheel, double rocker, const std::array<double, 2>& bogie) const {
-  Point3 hub = hub_at_rest(wheel);
-  if (on_bogie(wheel)) {
-    hub.x -= rover_.bogie_x;
-    hub.z -= rover_.bogie_height;
-    hub = turned_down(hub, bogie[is_left(wheel) ? 0 : 1]);
-    hub.x += rover_.bogie_x;
-    hub.z += rover_.bogie_height;
-  }
-  hub.x -= rover_.pivot_x;
-  hub.z -= rover_.pivot_height;
-  hub = turned_down(hub, is_left(wheel) ? rocker : -rocker);
-  hub.x += rover_.pivot_x;
-  hub.z += rover_.pivot_height;
-  return hub;
+Eigen::Vector3d Suspension::hub_in_body(int wheel, double rocker, const std::array<double, 2>& bogie) const {
+  const Eigen::Vector3d rocker_pivot(rover_.pivot_x, 0, rover_.pivot_height),
+      bogie_pivot(rover_.bogie_x, 0, rover_.bogie_height);
+  Eigen::Vector3d hub = hub_at_rest(wheel);
+  if (on_bogie(wheel)) hub = bogie_pivot + turned_down(hub - bogie_pivot, bogie[is_left(wheel) ? 0 : 1]);
+  return rocker_pivot + turned_down(hub - rocker_pivot, is_left(wheel) ? rocker : -rocker);
 }
 
-Point3 Suspension::hub(int wheel, const RoverState& s) const {
-  const Point3 p = rotated(rotation_of(s.pose), hub_in_body(wheel, s.rocker, s.bogie));
-  return {s.pose.x + p.x, s.pose.y + p.y, s.pose.z + p.z};
+Eigen::Vector3d Suspension::hub(int wheel, const RoverState& s) const {
+  return Eigen::Vector3d(s.pose.x, s.pose.y, s.pose.z) +
+         turned(rotation_of(s.pose), hub_in_body(wheel, s.rocker, s.bogie));
 }
 
 void Suspension::settle(RoverState& s, const Support& support, int iterations) const {
-  const auto n = static_cast<std::size_t>(wheels_);
   const double longest = 0.25 * rover_.wheelbase;  // of a step, so that a cliff does not turn it over
   constexpr double steepest = 1.3;                 // [rad]
-  std::array<double, most_wheels> error{};
+  using PerWheel = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_wheels, 1>;
+  PerWheel error = PerWheel::Zero(wheels_);
   const auto measure = [&] {
     double worst = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Point3 h = hub(static_cast<int>(i), s);
-      error[i] = support(static_cast<int>(i), h.x, h.y) - h.z;
-      worst = std::max(worst, std::abs(error[i]));
+    for (int n = 0; n < wheels_; ++n) {
+      const Eigen::Vector3d h = hub(n, s);
+      error[n] = support(n, h.x(), h.y()) - h.z();
+      worst = std::max(worst, std::abs(error[n]));
     }
     return worst;
   };
@@ -120,15 +102,12 @@ void Suspension::settle(RoverState& s, const Support& support, int iterations) c
     const double worst = measure();
     // The height follows at once, and only what is left of the error turns anything.
     double mean = 0;
-    for (std::size_t i = 0; i < n; ++i) mean += error[i] / wheels_;
+    for (int n = 0; n < wheels_; ++n) mean += error[n] / wheels_;
     const double share = worst > longest ? longest / worst : 1;
-    std::array<double, most_wheels> step{};
-    for (std::size_t k = 0; k < n; ++k)
-      for (std::size_t i = 0; i < n; ++i) step[k] += inverse_[k][i] * (error[i] - mean) * share;
+    PerWheel step = PerWheel::Zero(wheels_);
+    for (int n = 0; n < wheels_; ++n) step += inverse_.col(n) * (error[n] - mean) * share;
     s.pose.z += mean + step[0];
-    const auto turn = [&](double& angle, std::size_t k) {
-      angle = std::clamp(angle + step[k], -steepest, steepest);
-    };
+    const auto turn = [&](double& angle, int k) { angle = std::clamp(angle + step[k], -steepest, steepest); };
     turn(s.pose.roll, 1);
     turn(s.pose.pitch, 2);
     turn(s.rocker, 3);

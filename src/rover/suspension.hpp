@@ -9,6 +9,7 @@
 ///
 ///   z_i(z, θ, φ, q, …) = support(x_i, y_i)     for every wheel i
 
+#include <Eigen/Core>
 #include <array>
 #include <functional>
 
@@ -17,19 +18,11 @@
 
 namespace desert_sim {
 
-struct Point3 {
-  double x = 0, y = 0, z = 0;
-};
-
 /// The angle without whole turns, −π … π.
 double angle_between_turns(double angle);
 
-/// R_z(yaw) R_y(pitch) R_x(roll), row by row.
-using Rotation = std::array<std::array<double, 3>, 3>;
-Rotation rotation_of(const Pose& pose);
-Point3 rotated(const Rotation& r, const Point3& p);
-/// By the inverse rotation.
-Point3 rotated_back(const Rotation& r, const Point3& p);
+/// R_z(yaw) R_y(pitch) R_x(roll).
+Eigen::Matrix3d rotation_of(const Pose& pose);
 
 class Suspension {
  public:
@@ -37,11 +30,11 @@ class Suspension {
 
   int wheels() const { return wheels_; }
   /// Of a wheel's hub in the body's frame while all joints are at 0; z is 0.
-  const Point3& hub_at_rest(int wheel) const { return rest_[static_cast<std::size_t>(wheel)]; }
+  const Eigen::Vector3d& hub_at_rest(int wheel) const { return rest_[static_cast<std::size_t>(wheel)]; }
   /// In the body's frame.
-  Point3 hub_in_body(int wheel, double rocker, const std::array<double, 2>& bogie) const;
+  Eigen::Vector3d hub_in_body(int wheel, double rocker, const std::array<double, 2>& bogie) const;
   /// In the terrain's frame.
-  Point3 hub(int wheel, const RoverState& state) const;
+  Eigen::Vector3d hub(int wheel, const RoverState& state) const;
 
   /// Height at which the ground holds the hub of this wheel over (x, y) [m].
   using Support = std::function<double(int wheel, double x, double y)>;
@@ -56,9 +49,10 @@ class Suspension {
 
   const RoverParameters rover_;
   const int wheels_;
-  std::array<Point3, most_wheels> rest_{};
-  using Matrix = std::array<std::array<double, most_wheels>, most_wheels>;
-  Matrix inverse_{};  ///< of ∂z_i/∂(z, roll, pitch, rocker, left bogie, right bogie) on level ground
+  std::array<Eigen::Vector3d, most_wheels> rest_{};
+  /// With a row and a column a wheel.
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_wheels, most_wheels>;
+  Matrix inverse_;  ///< of ∂z_i/∂(z, roll, pitch, rocker, left bogie, right bogie) on level ground
 };
 
 }  // namespace desert_sim

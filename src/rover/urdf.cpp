@@ -40,32 +40,32 @@ class Model {
     if (depth_camera.rate > 0) {
       sensor("depth_camera", depth_camera, box({-0.01, 0, 0}, {0.02, 0.09, 0.025}, "wheel"));
       link("depth_camera_optical", "");
-      fixed_joint("depth_camera_optical", "depth_camera", {}, {-pi / 2, 0, -pi / 2});
+      fixed_joint("depth_camera_optical", "depth_camera", {0, 0, 0}, {-pi / 2, 0, -pi / 2});
     }
     out_ << "</robot>\n";
     return out_.str();
   }
 
  private:
-  static std::string xyz(const Point3& p) {
+  static std::string xyz(const Eigen::Vector3d& p) {
     std::ostringstream text;
     text.precision(std::numeric_limits<double>::digits10);  // for who compares with the node's transforms
-    text << p.x << " " << p.y << " " << p.z;
+    text << p.x() << " " << p.y() << " " << p.z();
     return text.str();
   }
   void link(const std::string& name, const std::string& content) {
     out_ << "  <link name=\"" << prefix_ << name << "\">" << content << "</link>\n";
   }
   void joint(const std::string& name, const char* type, const std::string& parent, const std::string& child,
-             const Point3& at, const char* axis = nullptr) {
+             const Eigen::Vector3d& at, const char* axis = nullptr) {
     out_ << "  <joint name=\"" << name << "\" type=\"" << type << "\"><parent link=\"" << prefix_ << parent
          << "\"/><child link=\"" << prefix_ << child << "\"/><origin xyz=\"" << xyz(at)
          << "\" rpy=\"0 0 0\"/>";
     if (axis) out_ << "<axis xyz=\"" << axis << "\"/>";
     out_ << "</joint>\n";
   }
-  void fixed_joint(const std::string& child, const std::string& parent, const Point3& at,
-                   const Point3& angles) {
+  void fixed_joint(const std::string& child, const std::string& parent, const Eigen::Vector3d& at,
+                   const Eigen::Vector3d& angles) {
     out_ << "  <joint name=\"" << child << "_joint\" type=\"fixed\"><parent link=\"" << prefix_ << parent
          << "\"/><child link=\"" << prefix_ << child << "\"/><origin xyz=\"" << xyz(at) << "\" rpy=\""
          << xyz(angles) << "\"/></joint>\n";
@@ -77,27 +77,27 @@ class Model {
     fixed_joint(name, "base_link", {s.x, s.y, s.z},
                 {s.roll_deg * degree, s.pitch_deg * degree, s.yaw_deg * degree});
   }
-  static std::string box(const Point3& at, const Point3& size, const char* material) {
+  static std::string box(const Eigen::Vector3d& at, const Eigen::Vector3d& size, const char* material) {
     return "<visual><origin xyz=\"" + xyz(at) + "\"/><geometry><box size=\"" + xyz(size) +
            "\"/></geometry><material name=\"" + material + "\"/></visual>";
   }
 
   void body() {
     const double low = rover_.clearance - rover_.wheel_radius;
-    const Point3 at{0, 0, low + rover_.body_height / 2},
+    const Eigen::Vector3d at{0, 0, low + rover_.body_height / 2},
         size{rover_.body_length, rover_.body_width, rover_.body_height};
     std::ostringstream inertial;
-    const double m = rover_.mass, x = size.x * size.x, y = size.y * size.y, z = size.z * size.z;
+    const double m = rover_.mass, x = size.x() * size.x(), y = size.y() * size.y(), z = size.z() * size.z();
     inertial << "<inertial><origin xyz=\"" << xyz({0, 0, rover_.mass_height - rover_.wheel_radius})
              << "\"/><mass value=\"" << m << "\"/><inertia ixx=\"" << m * (y + z) / 12
              << "\" ixy=\"0\" ixz=\"0\" iyy=\"" << m * (x + z) / 12 << "\" iyz=\"0\" izz=\""
              << m * (x + y) / 12 << "\"/></inertial>";
-    const std::string mast =
-        box({size.x * 0.35, 0, low + size.z * 1.25}, {size.x * 0.08, size.y * 0.15, size.z * 0.5}, "frame");
+    const std::string mast = box({size.x() * 0.35, 0, low + size.z() * 1.25},
+                                 {size.x() * 0.08, size.y() * 0.15, size.z() * 0.5}, "frame");
     // The root of a model should have no mass, for KDL.
     link("base_link", box(at, size, "body") + mast);
     link("base_inertia", inertial.str());
-    joint("base_inertia_joint", "fixed", "base_link", "base_inertia", {});
+    joint("base_inertia_joint", "fixed", "base_link", "base_inertia", {0, 0, 0});
   }
   /// From `ahead` to `behind`, in the frame of the arm's pivot.
   static std::string arm(double ahead, double behind, double z, double thickness) {
@@ -125,18 +125,18 @@ class Model {
   void wheel(int n) {
     const std::string name = wheel_name(n, suspension_.wheels());
     const int side = n % 2;
-    const Point3& hub = suspension_.hub_at_rest(n);
+    const Eigen::Vector3d& hub = suspension_.hub_at_rest(n);
     const bool on_bogie = has_bogies() && n >= 2;
     const std::string parent = (on_bogie ? "bogie" : "rocker") + side_name(side);
-    const Point3 at{hub.x - (on_bogie ? rover_.bogie_x : rover_.pivot_x), hub.y - side_y(side),
-                    on_bogie ? -rover_.bogie_height : -rover_.pivot_height};
+    const Eigen::Vector3d at{hub.x() - (on_bogie ? rover_.bogie_x : rover_.pivot_x), hub.y() - side_y(side),
+                             on_bogie ? -rover_.bogie_height : -rover_.pivot_height};
     std::string carrier = parent;
-    Point3 place = at;
+    Eigen::Vector3d place = at;
     if (rover_.steering != Steering::skid) {
       carrier = name + "_steer";
       link(carrier, "");
       joint(carrier + "_joint", "continuous", parent, carrier, at, "0 0 1");
-      place = {};
+      place.setZero();
     }
     std::ostringstream shape;
     shape << "<visual><origin xyz=\"0 0 0\" rpy=\"1.5707963267948966 0 0\"/><geometry><cylinder radius=\""

@@ -181,17 +181,17 @@ void BrushTool::update(float, float) {
     show_status();
   }
   if (!hovered_ || !viewport_ || !terrain_->update()) return;
-  hovered_->z = terrain_->field().height_at({hovered_->x, hovered_->y});  // the ground may have moved
+  hovered_->z() = terrain_->field().height_at({hovered_->x(), hovered_->y()});  // the ground may have moved
   draw();
 }
 
 void BrushTool::draw() {
-  if (!hovered_ || std::isnan(hovered_->z)) return marks_->hide();
+  if (!hovered_ || std::isnan(hovered_->z())) return marks_->hide();
   const Brush now = brush(shift_);
-  const render::Place centre{hovered_->x, hovered_->y};
+  const render::Place centre{hovered_->x(), hovered_->y()};
   const render::PackedColour colour = colour_of(now.operation);
   const auto ring = [&](double radius) {
-    return SurfaceMarks::Line{drape(terrain_->field(), render::circle(centre, radius)), colour};
+    return SurfaceMarks::Line{render::drape(terrain_->field(), render::circle(centre, radius)), colour};
   };
   std::vector<SurfaceMarks::Line> lines = {ring(now.radius)};
   const bool fades = now.material != Brush::Material::plants && now.material != Brush::Material::obstacle;

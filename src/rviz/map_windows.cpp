@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "kernels/view/held_costs.hpp"
+#include "kernels/view/cell_cost.hpp"
 
 namespace desert_sim {
 
@@ -14,7 +14,7 @@ namespace {
 std::vector<float> costs_in(const LayerMap& traversability, const render::CellRectangle& cells) {
   std::vector<float> values = values_in(traversability, cells);
   for (float& value : values)
-    if (!std::isnan(value)) value = held_costs::cost_of(value);
+    if (!std::isnan(value)) value = cell_cost::of(value);
   return values;
 }
 

@@ -11,7 +11,7 @@ namespace desert_sim {
 namespace {
 
 Ogre::Vector3 to_ogre(const render::Point& p) {
-  return {static_cast<Ogre::Real>(p.x), static_cast<Ogre::Real>(p.y), static_cast<Ogre::Real>(p.z)};
+  return {static_cast<Ogre::Real>(p.x()), static_cast<Ogre::Real>(p.y()), static_cast<Ogre::Real>(p.z())};
 }
 
 /// Room for a quarter more, so that a mesh that changes a little needs no new buffer.
@@ -74,7 +74,7 @@ void MeshObject::set_mesh(const render::Mesh& mesh) {
   vertices_->writeData(0, vertex_bytes, mesh.vertices.data(), true);
   indices_->writeData(0, index_bytes, mesh.indices.data(), true);
   const render::Box box = render::bounding_box(mesh);
-  setBoundingBox({to_ogre(box.low), to_ogre(box.high)});
+  setBoundingBox({to_ogre(box.min()), to_ogre(box.max())});
   parent_->needUpdate();
 }
 

@@ -93,23 +93,24 @@ void RulerTool::draw() {
   const render::PackedColour colour = render::pack({1, 0.95f, 0.2f});
   const auto cross = [&](const render::Point& p) {
     const double arm = 0.75 * terrain_->field().cell_size;
-    lines.push_back({drape(terrain_->field(), {{p.x - arm, p.y}, {p.x + arm, p.y}}), colour});
-    lines.push_back({drape(terrain_->field(), {{p.x, p.y - arm}, {p.x, p.y + arm}}), colour});
+    lines.push_back({render::drape(terrain_->field(), {{p.x() - arm, p.y()}, {p.x() + arm, p.y()}}), colour});
+    lines.push_back({render::drape(terrain_->field(), {{p.x(), p.y() - arm}, {p.x(), p.y() + arm}}), colour});
   };
   if (!terrain_->field().empty()) {
     if (first_) cross(*first_);
     if (end) cross(*end);
   }
   if (first_ && end && !terrain_->field().empty()) {
-    lines.push_back({drape(terrain_->field(), {{first_->x, first_->y}, {end->x, end->y}}), colour});
-    text_ = text_of(measure(lines.back().points));
+    lines.push_back(
+        {render::drape(terrain_->field(), {{first_->x(), first_->y()}, {end->x(), end->y()}}), colour});
+    text_ = text_of(render::measure(lines.back().points));
     const std::vector<render::Point>& points = lines.back().points;
     render::Point middle = points[points.size() / 2];
-    if (std::isnan(middle.z)) middle = points.back();
+    if (std::isnan(middle.z())) middle = points.back();
     marks_->show_text(*terrain_, text_, middle, *viewport_);
   } else {
     text_.clear();
-    marks_->show_text(*terrain_, "", {}, *viewport_);
+    marks_->show_text(*terrain_, "", render::Point::Zero(), *viewport_);
   }
   marks_->show(*terrain_, lines);
   show_status();

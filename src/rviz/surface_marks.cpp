@@ -95,8 +95,8 @@ void SurfaceMarks::show_text(const TerrainPicker& terrain, const std::string& te
                              const Ogre::Viewport& viewport) {
   text_node_->setVisible(!text.empty());
   if (text.empty()) return;
-  const Ogre::Vector3 place(static_cast<float>(at.x), static_cast<float>(at.y),
-                            static_cast<float>(terrain.exaggeration() * at.z));
+  const Ogre::Vector3 place(static_cast<float>(at.x()), static_cast<float>(at.y()),
+                            static_cast<float>(terrain.exaggeration() * at.z()));
   text_node_->setPosition(place);
   const float pixel =
       metres_per_pixel(viewport, terrain.corner().position + terrain.corner().orientation * place);

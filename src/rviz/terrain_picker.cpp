@@ -73,13 +73,13 @@ std::optional<render::Point> TerrainPicker::pick(const rviz::ViewportMouseEvent&
   const Ogre::Quaternion turn = corner_.orientation.Inverse();
   render::Ray ray{to_point(turn * (seen.getOrigin() - corner_.position)),
                   to_point(turn * seen.getDirection())};
-  ray.origin.z /= exaggeration_;
-  ray.direction.z /= exaggeration_;
+  ray.origin.z() /= exaggeration_;
+  ray.direction.z() /= exaggeration_;
   return render::first_hit(field_, ray);
 }
 
 render::Place TerrainPicker::in_terrain_frame(const render::Point& point) const {
-  return {point.x + map_->info().origin_x, point.y + map_->info().origin_y};
+  return {point.x() + map_->info().origin_x, point.y() + map_->info().origin_y};
 }
 
 /// 1 if no display in the group shows this terrain.

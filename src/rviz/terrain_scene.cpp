@@ -10,12 +10,9 @@ namespace desert_sim {
 
 namespace {
 
-render::Matrix4 to_matrix(const Ogre::Matrix4& m) {
-  render::Matrix4 result;
-  for (std::size_t row = 0; row < 4; ++row)
-    for (std::size_t column = 0; column < 4; ++column)
-      result[row][column] = static_cast<double>(m[row][column]);
-  return result;
+Eigen::Matrix4d to_matrix(const Ogre::Matrix4& m) {
+  using RowByRow = Eigen::Matrix<Ogre::Real, 4, 4, Eigen::RowMajor>;
+  return Eigen::Map<const RowByRow>(m[0]).cast<double>();
 }
 
 /// The place of a block before it has a mesh: its heights are those of some of its cells.
@@ -29,8 +26,8 @@ render::Box rough_box(const render::CellRectangle& cells, double cell_size,
       high = std::fmax(high, z);
     }
   if (low > high) low = high = 0;
-  return {{cells.x * cell_size, cells.y * cell_size, low},
-          {cells.right() * cell_size, cells.top() * cell_size, high}};
+  return {render::Point(cells.x * cell_size, cells.y * cell_size, low),
+          render::Point(cells.right() * cell_size, cells.top() * cell_size, high)};
 }
 
 }  // namespace
@@ -73,8 +70,8 @@ void TerrainScene::update(const Ogre::Camera& camera, int viewport_height, doubl
   const render::View view = view_of(camera, viewport_height);
   std::vector<render::Box> boxes = boxes_;
   for (render::Box& box : boxes) {
-    box.low.z *= look_.vertical_exaggeration;
-    box.high.z *= look_.vertical_exaggeration;
+    box.min().z() *= look_.vertical_exaggeration;
+    box.max().z() *= look_.vertical_exaggeration;
   }
   queue_.set_levels(render::choose_levels(layout_, cell_size_, view, boxes, queue_.levels(), limits_));
   queue_.run(view, boxes, seconds, [this](int block, int level) { build(block, level); });

@@ -15,11 +15,7 @@ std::string scenario_file(const std::string& name);
 /// scenario_file() of it.
 std::string scenario_argument(const std::string& argument);
 
-/// The folder of this package with config/: the one in ROS_PACKAGE_PATH, or that of the prefix in which this
-/// program is installed; empty if neither is there. It is looked up once in the life of a process.
-const std::string& package_folder();
-
-/// Its folder config/scenarios, links followed; empty if there is none.
+/// The folder config/scenarios of package_folder(), links followed; empty if there is none.
 const std::string& installed_scenario_folder();
 
 /// The names of the scenarios in that folder, sorted.

@@ -6,6 +6,7 @@
 
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/core/host_memory.hpp"
 #include "src/core/input_file.hpp"
 #include "src/simulation/checkpoint_header.hpp"
 #include "src/simulation/checkpoint_words.hpp"

@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "include/desert_sim/testing.hpp"
-#include "kernels/view/held_costs.hpp"
+#include "kernels/view/cell_cost.hpp"
 #include "src/core/error.hpp"
-#include "src/scenario/scenario_file.hpp"
+#include "src/core/package_folder.hpp"
 #include "src/testing/failure_picture.hpp"
 
 namespace desert_sim::test {
@@ -170,7 +170,7 @@ std::vector<std::int8_t> Desert::costs(const Point& center, double length_x, dou
   request.layers = {"traversability"};
   const auto answer = call<desert_sim::GetSubmap>("get_submap", request);
   std::vector<std::int8_t> costs;
-  for (const float t : answer.map.layers.at(0).data) costs.push_back(held_costs::cost_of(t));
+  for (const float t : answer.map.layers.at(0).data) costs.push_back(cell_cost::of(t));
   return costs;
 }
 

@@ -10,6 +10,7 @@
 #include "include/desert_sim/testing.hpp"
 #include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/testing/failure_picture.hpp"
 
 namespace desert_sim::test {
 
@@ -41,6 +42,7 @@ std::ostream& operator<<(std::ostream& out, const Point& p) { return out << poin
 }  // namespace
 
 Expectation Desert::fail(const std::string& message, const std::optional<Point>& goal) const {
+  if (!has_failure_pictures) return {false, message + "; no picture: this build has no OpenCV", 0};
   const std::string path = new_picture(options_.pictures.empty() ? results_folder() : options_.pictures,
                                        terrain_->map()->info().step);
   write_picture(path, goal);

@@ -1,12 +1,18 @@
 #include "src/testing/failure_picture.hpp"
 
+#if DESERT_WITH_IO
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "kernels/view/held_costs.hpp"
+#include "kernels/view/cell_cost.hpp"
 #include "src/io/picture.hpp"
+#else
+#include "src/core/error.hpp"
+#endif
 
 namespace desert_sim::test {
+
+#if DESERT_WITH_IO
 
 namespace {
 
@@ -28,7 +34,7 @@ class Drawing {
   void tint_lethal_cells(const std::vector<std::int8_t>& costs) {
     cv::Mat lethal(static_cast<int>(grid_.height), static_cast<int>(grid_.width), CV_8U, cv::Scalar(0));
     for (std::size_t n = 0; n < costs.size(); ++n)
-      if (costs[n] == held_costs::lethal_cost) lethal.data[n] = 255;
+      if (costs[n] == cell_cost::lethal) lethal.data[n] = 255;
     cv::flip(lethal, lethal, 0);
     cv::resize(lethal, lethal, image_.size(), 0, 0, cv::INTER_NEAREST);
     const cv::Mat tinted = 0.6 * image_ + cv::Mat(image_.size(), image_.type(), red) * 0.4;
@@ -75,5 +81,13 @@ void write_failure_picture(const std::string& path, const FailurePicture& pictur
   if (picture.rover) drawing.arrow(*picture.rover);
   write_png(path, drawing.image());
 }
+
+#else
+
+void write_failure_picture(const std::string& path, const FailurePicture&) {
+  throw Error(path + ": this build writes no pictures: it was made without OpenCV");
+}
+
+#endif
 
 }  // namespace desert_sim::test

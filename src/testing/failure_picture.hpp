@@ -20,7 +20,11 @@ struct FailurePicture {
   std::optional<Point> goal;              ///< a green cross
 };
 
-/// Writes it as a PNG file, north up. Throws ConfigError or WriteError that names the file.
+/// Whether this build can write pictures: DESERT_PARTS=client has no OpenCV.
+constexpr bool has_failure_pictures = DESERT_WITH_IO;
+
+/// Writes it as a PNG file, north up. Throws ConfigError or WriteError that names the file, and Error in a
+/// build without pictures.
 void write_failure_picture(const std::string& path, const FailurePicture& picture);
 
 }  // namespace desert_sim::test

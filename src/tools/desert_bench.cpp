@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "kernels/avalanching/avalanching_parameters.hpp"
+#include "src/command_line/program.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/simulation/processes/sand_slopes.hpp"
@@ -13,34 +14,40 @@
 #include "src/tools/bench_scenes.hpp"
 #include "src/tools/cost_model.hpp"
 #include "src/tools/drawing.hpp"
-#include "src/tools/options.hpp"
-#include "src/tools/program.hpp"
 #include "src/tools/rasters.hpp"
 
 using namespace desert_sim;
 
 namespace {
 
-const char usage[] =
-    "usage: desert_bench [options]\n"
-    "       desert_bench --roofline PICTURE.png RESULT.json...\n"
-    "  --scene S         A (barchans, default), B (transverse), mature (A after 2000 steps), edited (mature\n"
-    "                    with a column of sand, 50 m high, added), all 1024 m square; or SCENARIO.yaml\n"
-    "  --size N          cells along each side (default 512)\n"
-    "  --steps N         steps to time (default by size), in ten blocks, the first of which is not timed\n"
-    "  --warm-up N       steps before these (default 2000 for mature and edited, else 0)\n"
-    "  --start FILE      start from a checkpoint of the scene, without a warm-up\n"
-    "  --save-start FILE save the state after the warm-up to FILE, for --start\n"
-    "  --backend B       auto (default), cpu or cuda\n"
-    "  --threads N       threads of the CPU backend\n"
-    "  --quality Q       fast, good or converged (default: the scenario's)\n"
-    "  --set PATH=VAL    override a key of the scenario; may be repeated\n"
-    "  --json FILE       write the result to FILE (-: print it instead of text); doc/performance.md\n"
-    "                    describes its fields\n"
-    "  --roofline FILE   draw a picture of bytes per cell against milliseconds for the given JSON results\n"
-    "                    or for this run (needs python3 with matplotlib)\n"
-    "  --cost-model      print the least memory traffic per cell of each process, as a markdown table\n"
-    "Exit status: 0; 1 if sand was lost; 2 for invalid input; 3 for a failure at run time.\n";
+Options options() {
+  Options o("desert_bench", "Measures the time per step of the benchmark scenes.");
+  o.positional("RESULT.json", "of --roofline: results of earlier runs", 0, 1000)
+      .option("scene", "S",
+              "A (barchans, default), B (transverse), mature (A after 2000 steps), edited (mature with a "
+              "column of "
+              "sand, 50 m high, added), all 1024 m square; or SCENARIO.yaml")
+      .option("size", "N", "cells along each side (default 512)")
+      .option("steps", "N", "steps to time (default by size), in ten blocks, the first of which is not timed")
+      .option("warm-up", "N", "steps before these (default 2000 for mature and edited, else 0)")
+      .option("start", "FILE", "start from a checkpoint of the scene, without a warm-up")
+      .excludes("warm-up")
+      .option("save-start", "FILE", "save the state after the warm-up to FILE, for --start")
+      .option("backend", "B", "auto (default), cpu or cuda")
+      .option("threads", "N", "threads of the CPU backend")
+      .option("quality", "Q", "fast, good or converged (default: the scenario's)")
+      .option("set", "PATH=VALUE", "override a key of the scenario; may be repeated")
+      .option(
+          "json", "FILE",
+          "write the result to FILE (-: print it instead of text); doc/performance.md describes its fields")
+      .option(
+          "roofline", "FILE",
+          "draw a picture of bytes per cell against milliseconds for the given JSON results or for this run "
+          "(needs python3 with matplotlib)")
+      .flag("cost-model", "print the least memory traffic per cell of each process, as a markdown table")
+      .footer("Exit status: 0; 1 if sand was lost; 2 for invalid input; 3 for a failure at\nrun time.");
+  return o;
+}
 
 constexpr int blocks = 10;
 
@@ -81,7 +88,6 @@ Settings settings_of(const Options& o) {
 /// A session from the checkpoint of --start, with the parameters that other options set.
 std::unique_ptr<Session> resume_session(const Options& o, const std::string& scene, int threads) {
   const std::string path = o.text("start", "");
-  if (o.has("warm-up")) throw ConfigError("--warm-up: cannot be combined with --start");
   auto session = Session::from_checkpoint(path, raster_loader(), o.text("backend", "auto"), threads);
   const Scenario& found = session->simulation().scenario();
   const std::string wanted = bench_scenario(scene, found.grid.width, {}).name;
@@ -169,8 +175,8 @@ BenchReport bench(const Options& o) {
 }
 
 int run_program(const Options& o) {
-  if (o.has("help") || o.has("cost-model")) {
-    std::fputs(o.has("help") ? usage : cost_table().c_str(), stdout);
+  if (o.has("cost-model")) {
+    std::fputs(cost_table().c_str(), stdout);
     return 0;
   }
   const std::string picture = o.text("roofline", "");
@@ -199,11 +205,4 @@ int run_program(const Options& o) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return run_main("desert_bench", argv, [&] {
-    return run_program(Options(argc, argv,
-                               {"scene", "size", "steps", "warm-up", "start", "save-start", "backend",
-                                "threads", "quality", "set", "json", "roofline"},
-                               {"cost-model", "help"}));
-  });
-}
+int main(int argc, char** argv) { return run_main(options(), argc, argv, run_program); }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "src/command_line/program.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/core/number_text.hpp"
@@ -12,8 +13,6 @@
 #include "src/scenario/sections.hpp"
 #include "src/simulation/session.hpp"
 #include "src/tools/calibration.hpp"
-#include "src/tools/options.hpp"
-#include "src/tools/program.hpp"
 #include "src/tools/rasters.hpp"
 #include "src/tools/run_length.hpp"
 
@@ -21,24 +20,35 @@ using namespace desert_sim;
 
 namespace {
 
-const char usage[] =
-    "usage: desert_calibrate SCENARIO --after DEM --fit PATH=LOWEST..HIGHEST --out FITTED.yaml [options]\n"
-    "  SCENARIO              as for desert_run; it begins with the terrain of the first measurement\n"
-    "  --after DEM           a raster of the elevation measured at the end of the run\n"
-    "  --before DEM          that at its beginning (default: the elevation of the scenario)\n"
-    "  --fit PATH=A..B       a parameter to fit, and its range; may be repeated\n"
-    "  --steps N, --duration T  as for desert_run\n"
-    "  --out FILE            the scenario with the fitted parameters\n"
-    "  --table FILE          a line for each evaluation (CSV)\n"
-    "  --global NAME         direct_l (default), crs2, isres, esch or none\n"
-    "  --global-evaluations N  at most (default 20 for each parameter, and 20 more)\n"
-    "  --local NAME          sbplx (default), bobyqa, cobyla, nelder_mead or none\n"
-    "  --local-evaluations N  at most (default as many)\n"
-    "  --set PATH=VALUE, --backend B, --threads N, --quiet  as for desert_run\n"
-    "The parameters become those with which the root mean square of the difference between the simulated "
-    "and\n"
-    "the measured change of elevation is least, over all cells.\n"
-    "Exit status: 0; 2 for invalid input; 3 for a failure at run time.\n";
+Options options() {
+  Options o(
+      "desert_calibrate",
+      "Fits parameters of a scenario to the measured change of a terrain: they become those with which the "
+      "root mean square of the difference between the simulated and the measured change of elevation is "
+      "least, over all cells.");
+  o.positional("SCENARIO", "as for desert_run; it begins with the terrain of the first measurement")
+      .option("after", "DEM", "a raster of the elevation measured at the end of the run; required")
+      .required()
+      .option("before", "DEM", "that at its beginning (default: the elevation of the scenario)")
+      .option("fit", "PATH=A..B", "a parameter to fit, and its range; required; may be repeated")
+      .required()
+      .option("out", "FILE", "the scenario with the fitted parameters; required")
+      .required()
+      .option("steps", "N", "as for desert_run")
+      .option("duration", "T", "as for desert_run")
+      .excludes("steps")
+      .option("table", "FILE", "a line for each evaluation (CSV)")
+      .option("global", "NAME", "direct_l (default), crs2, isres, esch or none")
+      .option("global-evaluations", "N", "at most (default 20 for each parameter, and 20 more)")
+      .option("local", "NAME", "sbplx (default), bobyqa, cobyla, nelder_mead or none")
+      .option("local-evaluations", "N", "at most (default as many)")
+      .option("set", "PATH=VALUE", "as for desert_run")
+      .option("backend", "B", "as for desert_run")
+      .option("threads", "N", "as for desert_run")
+      .flag("quiet", "print no progress")
+      .footer("Exit status: 0; 2 for invalid input; 3 for a failure at run time.");
+  return o;
+}
 
 std::vector<float> elevation_of(Session& session) {
   return session.simulation().views().snapshot({Layer::elevation})->layers.at(Layer::elevation);
@@ -156,19 +166,7 @@ class Report {
   int count_ = 0;
 };
 
-int run_program(int argc, char** argv) {
-  const Options o(argc, argv,
-                  {"after", "before", "fit", "steps", "duration", "out", "table", "global",
-                   "global-evaluations", "local", "local-evaluations", "set", "backend", "threads"},
-                  {"quiet", "help"});
-  if (o.has("help")) {
-    std::fputs(usage, stdout);
-    return 0;
-  }
-  if (o.positional().size() != 1) throw ConfigError("one scenario must be given (--help shows the usage)");
-  for (const char* needed : {"after", "fit", "out"})
-    if (!o.has(needed))
-      throw ConfigError("--" + std::string(needed) + " is required (--help shows the usage)");
+int run_program(const Options& o) {
   check_run_length(o);
   std::vector<FittedParameter> parameters;
   for (const std::string& fit : o.values("fit")) parameters.push_back(read_fitted_parameter(fit));
@@ -195,6 +193,4 @@ int run_program(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return run_main("desert_calibrate", argv, [&] { return run_program(argc, argv); });
-}
+int main(int argc, char** argv) { return run_main(options(), argc, argv, run_program); }

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <map>
 
+#include "src/command_line/program.hpp"
 #include "src/core/constants.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
@@ -12,28 +13,31 @@
 #include "src/core/time_units.hpp"
 #include "src/tools/drawing.hpp"
 #include "src/tools/dune_tracker.hpp"
-#include "src/tools/options.hpp"
-#include "src/tools/program.hpp"
 #include "src/tools/run_history.hpp"
 
 using namespace desert_sim;
 
 namespace {
 
-const char usage[] =
-    "usage: desert_dunes RUN [options]\n"
-    "  RUN                   the --out folder of desert_run --every N, or its terrain.nc\n"
-    "  --out FILE            the table (CSV; default: the standard output)\n"
-    "  --layer NAME          sand (default): the depth of sand is the height; or elevation\n"
-    "  --base M              height that counts as 0 [m] (default 0)\n"
-    "  --threshold M         a dune is what is higher than this above the base [m] (default 0.25)\n"
-    "  --least-height M      lower dunes do not count [m] (default 0.5)\n"
-    "  --direction DEG       along which lengths are measured, counter-clockwise from +x (default: that of "
-    "the\n"
-    "                        mean wind over the run)\n"
-    "  --plot FILE           draw a PNG of ways, heights and speeds (needs python3 with matplotlib)\n"
-    "A line of the table is a dune at a time; doc/measuring.md explains it.\n"
-    "Exit status: 0; 2 for invalid input; 3 for a failure at run time.\n";
+Options options() {
+  Options o("desert_dunes", "Follows the dunes of a run, and writes a table of them.");
+  o.positional("RUN", "the --out folder of desert_run --every N, or its terrain.nc")
+      .option("out", "FILE", "the table (CSV; default: the standard output)")
+      .option("layer", "NAME", "sand (default): the depth of sand is the height; or elevation")
+      .option("base", "M", "height that counts as 0 [m] (default 0)")
+      .option("threshold", "M", "a dune is what is higher than this above the base [m] (default 0.25)")
+      .option("least-height", "M", "lower dunes do not count [m] (default 0.5)")
+      .option(
+          "direction", "DEG",
+          "along which lengths are measured, counter-clockwise from +x (default: that of the mean wind over "
+          "the run)")
+      .option("plot", "FILE", "draw a PNG of ways, heights and speeds (needs python3 with matplotlib)")
+      .needs("out")
+      .footer(
+          "A line of the table is a dune at a time; doc/measuring.md explains it.\n"
+          "Exit status: 0; 2 for invalid input; 3 for a failure at run time.");
+  return o;
+}
 
 /// Direction of the mean wind at the surface over all times [deg].
 double mean_wind(const RunHistory& history) {
@@ -74,15 +78,7 @@ void print_courses(const std::map<int, Course>& courses) {
   }
 }
 
-int run_program(int argc, char** argv) {
-  const Options o(argc, argv, {"out", "layer", "base", "threshold", "least-height", "direction", "plot"},
-                  {"help"});
-  if (o.has("help")) {
-    std::fputs(usage, stdout);
-    return 0;
-  }
-  if (o.positional().size() != 1) throw ConfigError("one run must be given (--help shows the usage)");
-  if (o.has("plot") && !o.has("out")) throw ConfigError("--plot: --out is required too");
+int run_program(const Options& o) {
   const std::string out = o.text("out", ""), layer = o.text("layer", "sand");
   const double base = o.real("base", 0, -1e6, 1e6);
   const DuneLimits limits{o.real("threshold", 0.25, 1e-6, 1e6), o.real("least-height", 0.5, 0, 1e6)};
@@ -112,6 +108,4 @@ int run_program(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return run_main("desert_dunes", argv, [&] { return run_program(argc, argv); });
-}
+int main(int argc, char** argv) { return run_main(options(), argc, argv, run_program); }

@@ -4,32 +4,35 @@
 #include <iostream>
 #include <limits>
 
+#include "src/command_line/program.hpp"
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/metrics/dune_metrics.hpp"
 #include "src/tools/json.hpp"
-#include "src/tools/options.hpp"
-#include "src/tools/program.hpp"
 #include "src/tools/run_history.hpp"
 
 using namespace desert_sim;
 
 namespace {
 
-const char usage[] =
-    "usage: desert_metrics RUN [options]\n"
-    "  RUN                   the --out folder of desert_run --every N, or its terrain.nc\n"
-    "  --out FILE            the metrics (JSON; default: the standard output)\n"
-    "  --layer NAME          dunes are measured on the depth of sand (default), or on elevation\n"
-    "  --sigma M             smoothing before crests are looked for [m] (default: two cells)\n"
-    "  --slip-face DEG       slip faces are steeper than this [deg] (default 30)\n"
-    "  --bare-depth M        ground with less sand is bare [m] (default 0.02)\n"
-    "  --slab-height M       also give the highest stack in slabs of this height [m] (default: that of "
-    "RUN's\n"
-    "                        summary.json, if a slab model made it)\n"
-    "doc/comparing.md defines each metric; null says that there is none.\n"
-    "Exit status: 0; 2 for invalid input; 3 for a failure at run time.\n";
+Options options() {
+  Options o("desert_metrics", "Measures the dunes of a run at each of its snapshots, and prints JSON.");
+  o.positional("RUN", "the --out folder of desert_run --every N, or its terrain.nc")
+      .option("out", "FILE", "the metrics (JSON; default: the standard output)")
+      .option("layer", "NAME", "dunes are measured on the depth of sand (default), or on elevation")
+      .option("sigma", "M", "smoothing before crests are looked for [m] (default: two cells)")
+      .option("slip-face", "DEG", "slip faces are steeper than this [deg] (default 30)")
+      .option("bare-depth", "M", "ground with less sand is bare [m] (default 0.02)")
+      .option("slab-height", "M",
+              "also give the highest stack in slabs of this height [m] (default: that of RUN's summary.json, "
+              "if a "
+              "slab model made it)")
+      .footer(
+          "doc/comparing.md defines each metric; null says that there is none.\n"
+          "Exit status: 0; 2 for invalid input; 3 for a failure at run time.");
+  return o;
+}
 
 /// Of the slab model of the run [m]; 0: none, or the run has no summary.
 double slab_height_of(const std::string& run) {
@@ -108,13 +111,7 @@ Json json_of(const DuneMetrics& m, const std::optional<Migration>& moved) {
           {"bare_share", m.bare_share}};
 }
 
-int run_program(int argc, char** argv) {
-  const Options o(argc, argv, {"out", "layer", "sigma", "slip-face", "bare-depth", "slab-height"}, {"help"});
-  if (o.has("help")) {
-    std::fputs(usage, stdout);
-    return 0;
-  }
-  if (o.positional().size() != 1) throw ConfigError("one run must be given (--help shows the usage)");
+int run_program(const Options& o) {
   const std::string run = o.positional()[0], out = o.text("out", ""), layer = o.text("layer", "sand");
   if (layer != "sand" && layer != "elevation")
     throw ConfigError("--layer: " + not_one_of(layer, "sand, elevation"));
@@ -142,6 +139,4 @@ int run_program(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return run_main("desert_metrics", argv, [&] { return run_program(argc, argv); });
-}
+int main(int argc, char** argv) { return run_main(options(), argc, argv, run_program); }

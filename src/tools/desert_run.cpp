@@ -7,6 +7,7 @@
 #include <iostream>
 #include <optional>
 
+#include "src/command_line/program.hpp"
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
@@ -20,9 +21,7 @@
 #include "src/tools/drawing.hpp"
 #include "src/tools/film.hpp"
 #include "src/tools/micro_relief_output.hpp"
-#include "src/tools/options.hpp"
 #include "src/tools/outputs.hpp"
-#include "src/tools/program.hpp"
 #include "src/tools/progress.hpp"
 #include "src/tools/rasters.hpp"
 #include "src/tools/run_length.hpp"
@@ -32,66 +31,88 @@ using namespace desert_sim;
 
 namespace {
 
-const char usage[] =
-    "usage: desert_run SCENARIO [options]\n"
-    "  SCENARIO              a YAML file, or the name of an installed scenario, such as barchan\n"
-    "  --steps N             steps to run (default: the scenario's run.steps); with --resume: the last step\n"
-    "  --duration T          in place of --steps: simulated time until the end, in s or with a unit, such as "
-    "24a\n"
-    "                        (ms, s, min, h, d, a)\n"
-    "  --backend B           auto (default), cpu or cuda\n"
-    "  --threads N           threads of the CPU backend\n"
-    "  --set PATH=VALUE      override a key of the scenario; may be repeated\n"
-    "  --seed S              same as --set seed=S\n"
-    "  --all-raster-formats  read rasters of every format that GDAL reads, also what names other files or "
-    "hosts\n"
-    "                        (VRT, WMS, /vsi paths), not only GeoTIFF, ESRI ASCII, ENVI, PNG, EXR and USGS "
-    "DEM\n"
-    "  --out DIR             write rasters, pictures and summary.json to DIR, which is created if needed\n"
-    "  --every N             also write them every N steps, to DIR/step_NNNNNNNN\n"
-    "  --snapshots N         in place of --every: write them about N times, at even distances and at the "
-    "end\n"
-    "  --format F            geotiff (default): a raster a layer in DIR and in each DIR/step_NNNNNNNN; "
-    "netcdf: "
-    "all\n"
-    "                        layers at the start, every N steps and at the end in one file, DIR/terrain.nc\n"
-    "  --plot FILE           draw a PNG of areas by material and plants by species over these steps (needs\n"
-    "                        python3 with matplotlib)\n"
-    "  --film FILE           film the run from above: an .mp4 (needs ffmpeg), a folder of pictures, or one "
-    ".png of\n"
-    "                        the end\n"
-    "  --film-every N        steps from picture to picture (default: such that there are about 250)\n"
-    "  --view KEY=VALUE      where the camera stands and what it shows; may be repeated; --describe-view "
-    "lists them\n"
-    "  --cross-section NAME=X1,Y1,X2,Y2\n"
-    "                        add up the sand that the wind carries across this line, to the left of its "
-    "way, in\n"
-    "                        summary.json; may be repeated\n"
-    "  --probe X,Y           write a time series of this point to DIR/probes.csv; may be repeated\n"
-    "  --micro-relief X1,Y1,X2,Y2,resolution=R\n"
-    "                        write the surface between these corners with ripples and bumps (section "
-    "micro_relief) "
-    "to\n"
-    "                        DIR/micro_relief.tif, a point each R metres (default 0.05); may be repeated\n"
-    "  --probe-every N       steps from line to line (default 1)\n"
-    "  --checkpoint FILE     save the state to FILE at the end\n"
-    "  --checkpoint-every N  also save it every N steps\n"
-    "  --resume FILE         start from a checkpoint (of any scenario; SCENARIO may be omitted), with what "
-    "--set\n"
-    "                        sets of the parameters that can change while a simulation runs\n"
-    "  --migrate FILE        write the present keys in a scenario file of an earlier version: sand.model, "
-    "micro_relief;\n"
-    "                        comments stay\n"
-    "  --replay JOURNAL      apply the commands of a journal; without --steps, run as many steps as it has\n"
-    "  --describe            print all parameters as markdown\n"
-    "  --describe-view       print the keys of --view as markdown\n"
-    "  --describe-processes  print the table of processes as markdown\n"
-    "  --pipeline            print the processes of a step of the scenario in order, with layers and memory, "
-    "and\n"
-    "                        how many steps a run takes\n"
-    "  --quiet               print no progress\n"
-    "Exit status: 0; 1 if a material was lost or gained; 2 for invalid input; 3 for a failure at run time;\n"
-    "130 after Ctrl-C, SIGTERM or SIGHUP. Outputs are written except for 2 and 3.\n";
+Options options() {
+  Options o("desert_run", "Runs a scenario without ROS and without a window.");
+  o.positional("SCENARIO", "a YAML file, or the name of an installed scenario, such as barchan", 0)
+      .section("Run")
+      .option("steps", "N", "steps to run (default: the scenario's run.steps); with --resume: the last step")
+      .option(
+          "duration", "T",
+          "in place of --steps: simulated time until the end, in s or with a unit, such as 24a (ms, s, min, "
+          "h, d, a)")
+      .excludes("steps")
+      .option("backend", "B", "auto (default), cpu or cuda")
+      .option("threads", "N", "threads of the CPU backend")
+      .option("set", "PATH=VALUE", "override a key of the scenario; may be repeated")
+      .option("seed", "S", "same as --set seed=S")
+      .flag("all-raster-formats",
+            "read rasters of every format that GDAL reads, also what names other files or hosts (VRT, WMS, "
+            "/vsi "
+            "paths), not only GeoTIFF, ESRI ASCII, ENVI, PNG, EXR and USGS DEM")
+      .option("checkpoint", "FILE", "save the state to FILE at the end")
+      .option("checkpoint-every", "N", "also save it every N steps")
+      .needs("checkpoint")
+      .option(
+          "resume", "FILE",
+          "start from a checkpoint (of any scenario; SCENARIO may be omitted), with what --set sets of the "
+          "parameters that can change while a simulation runs")
+      .option("replay", "JOURNAL",
+              "apply the commands of a journal; without --steps, run as many steps as it has")
+      .flag("quiet", "print no progress")
+      .section("Output")
+      .option("out", "DIR", "write rasters, pictures and summary.json to DIR, which is created if needed")
+      .option("every", "N", "also write them every N steps, to DIR/step_NNNNNNNN")
+      .needs("out")
+      .option("snapshots", "N",
+              "in place of --every: write them about N times, at even distances and at the end")
+      .needs("out")
+      .excludes("every")
+      .option("format", "F",
+              "geotiff (default): a raster a layer in DIR and in each DIR/step_NNNNNNNN; netcdf: all layers "
+              "at the "
+              "start, every N steps and at the end in one file, DIR/terrain.nc")
+      .needs("out")
+      .option("plot", "FILE",
+              "draw a PNG of areas by material and plants by species over these steps (needs python3 with "
+              "matplotlib)")
+      .needs("out")
+      .option("film", "FILE",
+              "film the run from above: an .mp4 (needs ffmpeg), a folder of pictures, or one .png of the end")
+      .option("film-every", "N", "steps from picture to picture (default: such that there are about 250)")
+      .needs("film")
+      .option("view", "KEY=VALUE",
+              "where the camera stands and what it shows; may be repeated; --describe-view lists them")
+      .needs("film")
+      .option(
+          "cross-section", "NAME=X1,Y1,X2,Y2",
+          "add up the sand that the wind carries across this line, to the left of its way, in summary.json; "
+          "may be repeated")
+      .option("probe", "X,Y", "write a time series of this point to DIR/probes.csv; may be repeated")
+      .needs("out")
+      .option("probe-every", "N", "steps from line to line (default 1)")
+      .needs("probe")
+      .option("micro-relief", "X1,Y1,X2,Y2,resolution=R",
+              "write the surface between these corners with ripples and bumps (section micro_relief) to "
+              "DIR/micro_relief.tif, a point each R metres (default 0.05); may be repeated")
+      .needs("out")
+      .section("In place of a run")
+      .option("migrate", "FILE",
+              "write the present keys in a scenario file of an earlier version: sand.model, micro_relief; "
+              "comments "
+              "stay")
+      .flag("describe", "print all parameters as markdown")
+      .flag("describe-view", "print the keys of --view as markdown")
+      .flag("describe-processes", "print the table of processes as markdown")
+      .flag("pipeline",
+            "print the processes of a step of the scenario in order, with layers and memory, and how many "
+            "steps "
+            "a run takes")
+      .footer(
+          "Exit status: 0; 1 if a material was lost or gained; 2 for invalid input; 3 for a\n"
+          "failure at run time; 130 after Ctrl-C, SIGTERM or SIGHUP. Outputs are written\n"
+          "except for 2 and 3.");
+  return o;
+}
 
 volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
@@ -105,7 +126,7 @@ void catch_signals() {
 }
 
 struct RunPlan {
-  Options options;
+  const Options& options;
   std::string out, checkpoint;
   std::vector<std::string> summaries;  ///< paths of the summaries written during the run
   std::uint64_t every = 0, checkpoint_every = 0;
@@ -116,32 +137,20 @@ struct RunPlan {
   std::unique_ptr<TerrainSeries> series;  ///< of --format netcdf
 };
 
-RunPlan plan_of(Options options) {
-  RunPlan plan{std::move(options), "", "", {}, 0, 0, nullptr, 0, {}, {}, nullptr};
-  const Options& o = plan.options;
+RunPlan plan_of(const Options& o) {
+  RunPlan plan{o, "", "", {}, 0, 0, nullptr, 0, {}, {}, nullptr};
   plan.out = o.text("out", "");
   plan.checkpoint = o.text("checkpoint", "");
   plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
-  if (o.positional().size() > 1)
-    throw ConfigError("'" + o.positional()[1] + "': only one scenario can be run");
   const std::string format = o.text("format", "geotiff");
   if (format != "geotiff" && format != "netcdf")
     throw ConfigError("--format: " + not_one_of(format, "geotiff, netcdf"));
-  if (o.has("format") && plan.out.empty()) throw ConfigError("--format: --out is required too");
   if (o.has("plot") && format == "netcdf")
     throw ConfigError("--plot: needs the summaries of --format geotiff");
   plan.every = snapshot_distance(o, 0);
   o.number("probe-every", 1, 1, 1LL << 40);
-  if (o.has("probe") && plan.out.empty()) throw ConfigError("--probe: --out is required too");
-  if (o.has("micro-relief") && plan.out.empty()) throw ConfigError("--micro-relief: --out is required too");
-  if (o.has("probe-every") && !o.has("probe")) throw ConfigError("--probe-every: --probe is required too");
-  if (o.has("plot") && !plan.every) throw ConfigError("--plot: --out and --every are required too");
-  if (plan.checkpoint_every && plan.checkpoint.empty())
-    throw ConfigError("--checkpoint-every: --checkpoint is required too");
+  if (o.has("plot") && !plan.every) throw ConfigError("--plot requires --every or --snapshots");
   check_run_length(o);
-  for (const char* option : {"film-every", "view"})
-    if (o.has(option) && !o.has("film"))
-      throw ConfigError("--" + std::string(option) + ": --film is required too");
   if (o.has("film-every") && Film::is_picture(o.text("film", "")))
     throw ConfigError("--film-every: --film " + o.text("film", "") +
                       " is one picture, of the end (allowed with .mp4 or a folder)");
@@ -292,22 +301,14 @@ void run(Session& session, RunPlan& plan, const Journal& journal, std::uint64_t 
 
 /// What is printed instead of a run.
 std::optional<std::string> page_of(const Options& o) {
-  if (o.has("help")) return usage;
   if (o.has("describe")) return describe_parameters();
   if (o.has("describe-view")) return describe_view();
   if (o.has("describe-processes")) return describe_processes(process_table());
   return std::nullopt;
 }
 
-int run_program(int argc, char** argv) {
-  RunPlan plan = plan_of(Options(
-      argc, argv, {"steps",  "duration",    "snapshots", "backend",      "threads",    "set",
-                   "seed",   "out",         "every",     "plot",         "checkpoint", "checkpoint-every",
-                   "resume", "replay",      "film",      "film-every",   "view",       "cross-section",
-                   "probe",  "probe-every", "format",    "micro-relief", "migrate"},
-      {"all-raster-formats", "describe", "describe-processes", "describe-view", "pipeline", "quiet",
-       "help"}));
-  const Options& o = plan.options;
+int run_program(const Options& o) {
+  RunPlan plan = plan_of(o);
   if (const std::optional<std::string> page = page_of(o)) {
     std::cout << *page;
     return 0;
@@ -368,6 +369,4 @@ int run_program(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return run_main("desert_run", argv, [&] { return run_program(argc, argv); });
-}
+int main(int argc, char** argv) { return run_main(options(), argc, argv, run_program); }

@@ -87,8 +87,8 @@ std::vector<render::Box> boxes_of(const render::BlockLayout& layout, double cell
   std::vector<render::Box> boxes;
   for (int block = 0; block < layout.count(); ++block) {
     const render::CellRectangle cells = layout.vertices(block);
-    boxes.push_back({{cells.x * cell_size, cells.y * cell_size, lowest},
-                     {cells.right() * cell_size, cells.top() * cell_size, highest}});
+    boxes.emplace_back(render::Point(cells.x * cell_size, cells.y * cell_size, lowest),
+                       render::Point(cells.right() * cell_size, cells.top() * cell_size, highest));
   }
   return boxes;
 }
@@ -146,8 +146,9 @@ void ObliqueView::choose_bounds(const Snapshot& s, double lowest, double highest
   exaggeration_ =
       parameters_.exaggeration > 0 ? parameters_.exaggeration : chosen_exaggeration(s, highest - lowest);
   const double width = s.width * s.cell_size, height = s.height * s.cell_size;
-  bounds_ = {{0, 0, lowest * exaggeration_ - render::wall_share * std::max(width, height)},
-             {width, height, highest * exaggeration_}};
+  bounds_ =
+      render::Box(render::Point(0, 0, lowest * exaggeration_ - render::wall_share * std::max(width, height)),
+                  render::Point(width, height, highest * exaggeration_));
 }
 
 render::Picture ObliqueView::draw(Simulation& simulation) {
@@ -167,7 +168,7 @@ render::Picture ObliqueView::draw(Simulation& simulation) {
   const std::vector<int> levels =
       render::choose_levels(layout, s.cell_size, projection.view(exaggeration_), boxes,
                             std::vector<int>(boxes.size(), -1), {samples, drawn_triangles});
-  const auto base = static_cast<float>(bounds_.low.z / exaggeration_);
+  const auto base = static_cast<float>(bounds_.min().z() / exaggeration_);
   const std::vector<render::TerrainBlock> blocks = blocks_of(s, levels, layout, look, base);
 
   rasteriser_.clear(sky_top, sky_bottom);

@@ -30,7 +30,6 @@ std::uint64_t steps_until(const Simulation& simulation, double until) {
 }
 
 void check_run_length(const Options& o) {
-  if (o.has("steps") && o.has("duration")) throw ConfigError("--duration: --steps is given, too");
   o.number("steps", 0, 0, most_steps);
   if (o.has("duration")) duration_of(o);
 }
@@ -46,10 +45,6 @@ std::uint64_t steps_to_run(const Options& o, const Simulation& simulation, std::
 }
 
 std::uint64_t snapshot_distance(const Options& o, std::uint64_t steps) {
-  for (const char* option : {"every", "snapshots"})
-    if (o.has(option) && !o.has("out"))
-      throw ConfigError("--" + std::string(option) + ": --out is required too");
-  if (o.has("snapshots") && o.has("every")) throw ConfigError("--snapshots: --every is given, too");
   const auto every = static_cast<std::uint64_t>(o.number("every", 0, 1, most_steps)),
              count = static_cast<std::uint64_t>(o.number("snapshots", 0, 1, most_steps));
   return count == 0 ? every : std::max<std::uint64_t>(1, (steps + count - 1) / count);

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "src/command_line/options.hpp"
 #include "src/simulation/simulation.hpp"
-#include "src/tools/options.hpp"
 
 namespace desert_sim {
 
@@ -12,14 +12,14 @@ namespace desert_sim {
 /// be known because the timeline changes the time step.
 std::uint64_t steps_until(const Simulation& simulation, double until);
 
-/// Throws ConfigError unless --steps and --duration are well-formed and not both given.
+/// Throws ConfigError unless --steps and --duration are well-formed.
 void check_run_length(const Options& options);
 
 /// Steps from now on: of --steps (of which those that are done count), --duration, run.duration or `usual`.
 std::uint64_t steps_to_run(const Options& options, const Simulation& simulation, std::uint64_t usual);
 
 /// Steps from one snapshot of the terrain to the next, of a run of so many steps, by --every or --snapshots;
-/// 0: there are none. Throws ConfigError if they are malformed, both given, or without --out.
+/// 0: there are none. Throws ConfigError if they are malformed.
 std::uint64_t snapshot_distance(const Options& options, std::uint64_t steps);
 
 }  // namespace desert_sim

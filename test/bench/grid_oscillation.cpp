@@ -3,9 +3,8 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "src/command_line/program.hpp"
 #include "src/core/error.hpp"
-#include "src/tools/options.hpp"
-#include "src/tools/program.hpp"
 #include "test/support/oscillation.hpp"
 #include "test/support/running.hpp"
 
@@ -13,27 +12,25 @@ using namespace desert_sim;
 
 namespace {
 
-const char usage[] =
-    "usage: grid_oscillation SCENARIO.yaml... [--steps N] [--set PATH=VALUE]...\n"
-    "  --steps N         steps to run (default: each scenario's run.steps)\n"
-    "  --set PATH=VALUE  override a key of all scenarios; may be repeated\n"
-    "Prints for each scenario the share of the cells with 1 cm to 1 m of sand that oscillate by more than 2 "
-    "cm,\n"
-    "and the root mean square of what oscillates, each for the worse of rows and columns.\n"
-    "Exit status: 0; 1 if a share is over 3 % or a root mean square over 3 cm; 2 for invalid input; 3 for a\n"
-    "failure at run time.\n";
+Options options() {
+  Options o("grid_oscillation", "Tells whether thin sand oscillates from cell to cell in scenarios.");
+  o.positional("SCENARIO", "a YAML file", 1, 1000)
+      .option("steps", "N", "steps to run (default: each scenario's run.steps)")
+      .option("set", "PATH=VALUE", "override a key of all scenarios; may be repeated")
+      .footer(
+          "Prints for each scenario the share of the cells with 1 cm to 1 m of sand that\n"
+          "oscillate by more than 2 cm, and the root mean square of what oscillates, each\n"
+          "for the worse of rows and columns.\n"
+          "Exit status: 0; 1 if a share is over 3 % or a root mean square over 3 cm; 2 for\n"
+          "invalid input; 3 for a failure at run time.");
+  return o;
+}
 
-int run(int argc, char** argv) {
-  const Options options(argc, argv, {"steps", "set"}, {"help"});
-  if (options.has("help")) {
-    std::fputs(usage, stdout);
-    return 0;
-  }
-  if (options.positional().empty()) throw ConfigError("no scenario given; --help shows what is expected");
+int run(const Options& given) {
   bool even = true;
-  for (const std::string& path : options.positional()) {
-    const Scenario scenario = load_scenario(path, options.values("set"));
-    const auto steps = static_cast<int>(options.number("steps", scenario.run.steps, 0, 1'000'000'000));
+  for (const std::string& path : given.positional()) {
+    const Scenario scenario = load_scenario(path, given.values("set"));
+    const auto steps = static_cast<int>(given.number("steps", scenario.run.steps, 0, 1'000'000'000));
     constexpr int all_threads = 0;
     Running scene(scenario, all_threads);
     scene.run(steps);
@@ -48,6 +45,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return run_main("grid_oscillation", argv, [&] { return run(argc, argv); });
-}
+int main(int argc, char** argv) { return run_main(options(), argc, argv, run); }

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "src/command_line/program.hpp"
 #include "src/core/error.hpp"
-#include "src/tools/options.hpp"
-#include "src/tools/program.hpp"
 #include "test/support/running.hpp"
 #include "test/support/sequential_slabs.hpp"
 
@@ -18,19 +17,28 @@ using namespace desert_sim;
 
 namespace {
 
-const char usage[] =
-    "usage: model_speed [options] [MODEL...]\n"
-    "  --size N       cells along each side (default 512)\n"
-    "  --steps N      steps of a round, in each of which every cell is polled once (default 10)\n"
-    "  --rounds N     timed rounds, of which the median counts (default 9), after one that does not count\n"
-    "  --backend B    auto (default), cpu or cuda\n"
-    "  --threads N    threads of the CPU backend\n"
-    "  --alone        without the sequential programs\n"
-    "Prints for each model (default: all) polls a second and nanoseconds a poll of a whole step, and where\n"
-    "there is a sequential program its time on one thread, and how many times as long that is. Both take\n"
-    "turns, so that what else the machine does slows both; the median of the ratios counts. A poll of\n"
-    "wang is a packet of grains, one of desertscape_2019 an event in the open.\n"
-    "Exit status: 0; 2 for invalid input; 3 for a failure at run time.\n";
+Options options() {
+  Options o(
+      "model_speed",
+      "Times the models that move sand in slabs or grains, beside a sequential program of the same model "
+      "where there is one.");
+  o.positional("MODEL", "the rows (default: all)", 0, 100)
+      .option("size", "N", "cells along each side (default 512)")
+      .option("steps", "N", "steps of a round, in each of which every cell is polled once (default 10)")
+      .option("rounds", "N",
+              "timed rounds, of which the median counts (default 9), after one that does not count")
+      .option("backend", "B", "auto (default), cpu or cuda")
+      .option("threads", "N", "threads of the CPU backend")
+      .flag("alone", "without the sequential programs")
+      .footer(
+          "Prints polls a second and nanoseconds a poll of a whole step, and where there is\n"
+          "a sequential program its time on one thread, and how many times as long that is.\n"
+          "Both take turns, so that what else the machine does slows both; the median of\n"
+          "the ratios counts. A poll of wang is a packet of grains, one of desertscape_2019\n"
+          "an event in the open.\n"
+          "Exit status: 0; 2 for invalid input; 3 for a failure at run time.");
+  return o;
+}
 
 /// Of sand on each cell at the beginning, in the scenarios of models with a sequential program.
 constexpr int slabs = 3;
@@ -111,12 +119,7 @@ std::vector<const Model*> rows_named(const std::vector<std::string>& names) {
   return rows;
 }
 
-int run(int argc, char** argv) {
-  const Options o(argc, argv, {"size", "steps", "rounds", "backend", "threads"}, {"alone", "help"});
-  if (o.has("help")) {
-    std::fputs(usage, stdout);
-    return 0;
-  }
+int run(const Options& o) {
   const auto number = [&](const char* name, int by_default, int least, int most) {
     return static_cast<int>(o.number(name, by_default, least, most));
   };
@@ -133,6 +136,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return run_main("model_speed", argv, [&] { return run(argc, argv); });
-}
+int main(int argc, char** argv) { return run_main(options(), argc, argv, run); }

@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "src/command_line/program.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/planner/field_planner.hpp"
 #include "src/planner/grid_path.hpp"
 #include "src/simulation/session.hpp"
-#include "src/tools/options.hpp"
-#include "src/tools/program.hpp"
 #include "src/tools/rasters.hpp"
 #if DESERT_WITH_NAVFN
 #include <navfn/navfn.h>
@@ -23,22 +22,24 @@ using namespace desert_sim;
 
 namespace {
 
-const char usage[] =
-    "usage: planner_bench SCENARIO.yaml [options]\n"
-    "  --size N      cells along each side of the grid; may be repeated (default 512, 1024, 2048)\n"
-    "  --rounds N    changes of the terrain (default 8)\n"
-    "  --percent N   percent of the cells that have changed their cost in each round, at least (default 1)\n"
-    "  --threads N   of the simulation (default 1); planners have one\n"
-    "The scenario's terrain is mirrored until it fills the grid. In each round it makes steps until as many "
-    "cells have\n"
-    "changed. Five rovers have paths across the grid. A row has median and worst times [ms] on the "
-    "processor: of the\n"
-    "whole field (compute), of its repair as far as the path of one rover needs it (path), and of the rest "
-    "of it\n"
-    "(rest); where navfn is built, of its whole field and of its A* (both anew in each round). Each repair "
-    "is compared\n"
-    "with a field that is computed anew.\n"
-    "Exit status: 0; 1 if any cell differs; 2 for invalid input; 3 for a failure at run time.\n";
+Options options() {
+  Options o("planner_bench", "Times the field planner's repairs of its cost field beside computing it anew.");
+  o.positional("SCENARIO.yaml", "whose terrain is mirrored until it fills the grid")
+      .option("size", "N", "cells along each side of the grid; may be repeated (default 512, 1024, 2048)")
+      .option("rounds", "N", "changes of the terrain (default 8)")
+      .option("percent", "N",
+              "percent of the cells that have changed their cost in each round, at least (default 1)")
+      .option("threads", "N", "of the simulation (default 1); planners have one")
+      .footer(
+          "In each round the scenario makes steps until as many cells have changed. Five\n"
+          "rovers have paths across the grid. A row has median and worst times [ms] on the\n"
+          "processor: of the whole field (compute), of its repair as far as the path of one\n"
+          "rover needs it (path), and of the rest of it (rest); where navfn is built, of its\n"
+          "whole field and of its A* (both anew in each round). Each repair is compared with\n"
+          "a field that is computed anew.\n"
+          "Exit status: 0; 1 if any cell differs; 2 for invalid input; 3 for a failure at\nrun time.");
+  return o;
+}
 
 /// Time that this thread has had a processor [ms]: it does not count what other programs take.
 double processor_time() {
@@ -216,26 +217,13 @@ class Row {
   std::size_t wrong_ = 0, reached_ = 0, rounds_ = 0;
 };
 
-int run(int argc, char** argv) {
-  const Options o(argc, argv, {"size", "rounds", "percent", "threads"}, {"help"});
-  if (o.has("help")) {
-    std::fputs(usage, stdout);
-    return 0;
-  }
-  if (o.positional().size() != 1) throw ConfigError("one scenario is needed; see --help");
-  std::vector<std::string> sizes = o.values("size");
-  if (sizes.empty()) sizes = {"512", "1024", "2048"};
+int run(const Options& o) {
   const auto rounds = o.number("rounds", 8, 1, 1000);
   Ground ground(o.positional().front(), static_cast<int>(o.number("threads", 1, 0, 4096)));
   ground.change(0);
   std::vector<std::unique_ptr<Row>> rows;
-  for (const std::string& text : sizes) {
-    int side = 0, read = 0;
-    if (std::sscanf(text.c_str(), "%d%n", &side, &read) != 1 || read != static_cast<int>(text.size()) ||
-        side < 64 || side > 8192)
-      throw ConfigError("--size " + text + ": is not a whole number in [64, 8192]");
+  for (int side : o.numbers("size", {512, 1024, 2048}, 64, 8192))
     rows.push_back(std::make_unique<Row>(side, ground));
-  }
   double changed = 0;
   for (long long n = 0; n < rounds; ++n) {
     changed += ground.change(1e-2 * static_cast<double>(o.number("percent", 1, 1, 100))) /
@@ -256,6 +244,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return run_main("planner_bench", argv, [&] { return run(argc, argv); });
-}
+int main(int argc, char** argv) { return run_main(options(), argc, argv, run); }

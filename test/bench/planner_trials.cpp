@@ -9,14 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "src/command_line/program.hpp"
 #include "src/core/constants.hpp"
 #include "src/core/error.hpp"
 #include "src/planner/navigator.hpp"
 #include "src/rover/grid_ground.hpp"
 #include "src/rover/rover.hpp"
 #include "src/simulation/session.hpp"
-#include "src/tools/options.hpp"
-#include "src/tools/program.hpp"
 #include "src/tools/rasters.hpp"
 
 using namespace desert_sim;
@@ -25,22 +24,28 @@ namespace {
 
 constexpr int moments = 10;  // of a forecast
 
-const char usage[] =
-    "usage: planner_trials SCENARIO.yaml [options]\n"
-    "  --set KEY=VALUE   of the scenario; may be repeated\n"
-    "  --seeds N         rovers with a start and goal each (default 20)\n"
-    "  --first N         number of the first one (default 1)\n"
-    "  --planner P       field (default), ompl, forecast; may be repeated: the same trials for each\n"
-    "  --seconds N       of ROS time, that a rover has (default 900)\n"
-    "  --distance N      from start to goal, at least [m] (default 60)\n"
-    "  --goals WHERE     rock (default): any passable ground; lee: close behind dunes, where they will be\n"
-    "  --horizon N       of forecasts [s] (default 300), of which there is one every tenth of it, with 10 "
-    "moments\n"
-    "  --threads N       of the simulation (default 1)\n"
-    "All rovers drive at the same time on one desert, and do not meet each other. Forecasts are runs of the "
-    "same desert\n"
-    "ahead, and therefore right. A line for each rover, and sums.\n"
-    "Exit status: 0; 2 for invalid input; 3 for a failure at run time.\n";
+Options options() {
+  Options o("planner_trials",
+            "Drives rovers from starts to goals on a desert that moves, with one planner or several.");
+  o.positional("SCENARIO.yaml", "the desert")
+      .option("set", "KEY=VALUE", "of the scenario; may be repeated")
+      .option("seeds", "N", "rovers with a start and goal each (default 20)")
+      .option("first", "N", "number of the first one (default 1)")
+      .option("planner", "P", "field (default), ompl, forecast; may be repeated: the same trials for each")
+      .option("seconds", "N", "of ROS time, that a rover has (default 900)")
+      .option("distance", "N", "from start to goal, at least [m] (default 60)")
+      .option("goals", "WHERE",
+              "rock (default): any passable ground; lee: close behind dunes, where they will be")
+      .option("horizon", "N",
+              "of forecasts [s] (default 300), of which there is one every tenth of it, with 10 moments")
+      .option("threads", "N", "of the simulation (default 1)")
+      .footer(
+          "All rovers drive at the same time on one desert, and do not meet each other.\n"
+          "Forecasts are runs of the same desert ahead, and therefore right. A line for each\n"
+          "rover, and sums.\n"
+          "Exit status: 0; 2 for invalid input; 3 for a failure at run time.");
+  return o;
+}
 
 struct Place {
   double x, y, yaw;
@@ -266,15 +271,7 @@ void print(const std::string& planner, const std::vector<std::unique_ptr<Trial>>
       sum.stuck, sum.blocked, sum.buried, sum.troubled, sum.recoveries, sum.differences);
 }
 
-int run(int argc, char** argv) {
-  const Options o(argc, argv,
-                  {"set", "seeds", "first", "planner", "seconds", "distance", "goals", "horizon", "threads"},
-                  {"help"});
-  if (o.has("help")) {
-    std::fputs(usage, stdout);
-    return 0;
-  }
-  if (o.positional().size() != 1) throw ConfigError("one scenario is needed; see --help");
+int run(const Options& o) {
   const Scenario scenario = load_scenario(o.positional().front(), o.values("set"));
   const auto threads = static_cast<int>(o.number("threads", 1, 0, 4096));
   const auto seconds = static_cast<double>(o.number("seconds", 900, 10, 100000)),
@@ -316,6 +313,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return run_main("planner_trials", argv, [&] { return run(argc, argv); });
-}
+int main(int argc, char** argv) { return run_main(options(), argc, argv, run); }

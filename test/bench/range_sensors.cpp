@@ -9,33 +9,36 @@
 #include <string>
 #include <vector>
 
+#include "src/command_line/program.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/rover/sensors/lidar.hpp"
 #include "src/tools/json.hpp"
-#include "src/tools/options.hpp"
-#include "src/tools/program.hpp"
 
 using namespace desert_sim;
 
 namespace {
 
-const char usage[] =
-    "usage: range_sensor_bench [options]\n"
-    "  --beams RxC    rings and columns; may be repeated (default 16x512, 32x1024, 64x1024, 128x2048)\n"
-    "  --size N       cells along each side of the grid; may be repeated (default 256, 512, 1024, 2048)\n"
-    "  --cell-size MM size of a cell [mm] (default 500)\n"
-    "  --backend B    cpu (default) or cuda\n"
-    "  --threads N    threads of the CPU backend (default 1)\n"
-    "  --scans N      scans of which the median counts (default 15)\n"
-    "  --media        with plants on a quarter of the ground and sand in the air\n"
-    "  --json FILE    write the results to FILE (-: print them instead of the table)\n"
-    "A lidar stands 1.5 m above dunes up to 12 m high, looks 100 m far, 22.5 deg down to 22.5 deg up, each "
-    "time\n"
-    "from another place. A row has the median time of a scan with its copy to the host, on the wall and of "
-    "all\n"
-    "threads on processors, that of an update of 64 x 64 cells, and the share of the beams that return.\n"
-    "Exit status: 0; 2 for invalid input; 3 for a failure at run time.\n";
+Options options() {
+  Options o("range_sensor_bench",
+            "Times a lidar's scans by the number of its beams and the size of the grid.");
+  o.option("beams", "RxC", "rings and columns; may be repeated (default 16x512, 32x1024, 64x1024, 128x2048)")
+      .option("size", "N",
+              "cells along each side of the grid; may be repeated (default 256, 512, 1024, 2048)")
+      .option("cell-size", "MM", "size of a cell [mm] (default 500)")
+      .option("backend", "B", "cpu (default) or cuda")
+      .option("threads", "N", "threads of the CPU backend (default 1)")
+      .option("scans", "N", "scans of which the median counts (default 15)")
+      .flag("media", "with plants on a quarter of the ground and sand in the air")
+      .option("json", "FILE", "write the results to FILE (-: print them instead of the table)")
+      .footer(
+          "A lidar stands 1.5 m above dunes up to 12 m high, looks 100 m far, 22.5 deg\n"
+          "down to 22.5 deg up, each time from another place. A row has the median time of\n"
+          "a scan with its copy to the host, on the wall and of all threads on processors,\n"
+          "that of an update of 64 x 64 cells, and the share of the beams that return.\n"
+          "Exit status: 0; 2 for invalid input; 3 for a failure at run time.");
+  return o;
+}
 
 using Clock = std::chrono::steady_clock;
 
@@ -76,7 +79,7 @@ class Bench {
     const double side = size * cell_size_;
     for (int n = -1; n < scans_; ++n) {  // the first scan is not timed
       const double x = side * (0.5 + 0.3 * std::sin(n * 2.4)), y = side * (0.5 + 0.3 * std::cos(n * 2.4));
-      const SensorPose pose{x, y, static_cast<double>(dune_height(x, y)) + 1.5};
+      const SensorPose pose{{x, y, static_cast<double>(dune_height(x, y)) + 1.5}};
       const double cpu_begin = processor_time();
       const auto begin = Clock::now();
       const RangeImage& image = lidar.scan(scene, pose, static_cast<std::uint64_t>(n + 1));
@@ -165,27 +168,17 @@ std::string table_of(const std::vector<Row>& rows, const Exec& exec) {
   return out.str();
 }
 
-int run(int argc, char** argv) {
-  const Options o(argc, argv, {"beams", "size", "cell-size", "backend", "threads", "scans", "json"},
-                  {"media", "help"});
-  if (o.has("help")) {
-    std::fputs(usage, stdout);
-    return 0;
-  }
-  std::vector<std::string> beams = o.values("beams"), sizes = o.values("size");
+int run(const Options& o) {
+  std::vector<std::string> beams = o.values("beams");
   if (beams.empty()) beams = {"16x512", "32x1024", "64x1024", "128x2048"};
-  if (sizes.empty()) sizes = {"256", "512", "1024", "2048"};
   Bench bench(o);
   std::vector<Row> rows;
   for (const std::string& shape : beams)
-    for (const std::string& size : sizes) {
-      int rings = 0, columns = 0, side = 0, read = 0;
+    for (int side : o.numbers("size", {256, 512, 1024, 2048}, 128, 16384)) {
+      int rings = 0, columns = 0, read = 0;
       if (std::sscanf(shape.c_str(), "%dx%d%n", &rings, &columns, &read) != 2 ||
           read != static_cast<int>(shape.size()))
         throw ConfigError("--beams " + shape + ": is not of the form 64x1024");
-      if (std::sscanf(size.c_str(), "%d%n", &side, &read) != 1 || read != static_cast<int>(size.size()) ||
-          side < 128 || side > 16384)
-        throw ConfigError("--size " + size + ": is not a whole number in [128, 16384]");
       rows.push_back(bench.row(rings, columns, side));
     }
   const std::string json = o.text("json", "");
@@ -196,6 +189,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return run_main("range_sensor_bench", argv, [&] { return run(argc, argv); });
-}
+int main(int argc, char** argv) { return run_main(options(), argc, argv, run); }

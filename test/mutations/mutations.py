@@ -606,7 +606,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "right_y = -body.forward / speed;", "right_y = body.forward / speed;",
      "across a slope a rover drifts downhill", "rover_unit RoverDrive.AcrossASlope*"),
     ("rover_rockers_alike", "src/rover/suspension.cpp",
-     "hub = turned_down(hub, is_left(wheel) ? rocker : -rocker);", "hub = turned_down(hub, rocker);",
+     "turned_down(hub - rocker_pivot, is_left(wheel) ? rocker : -rocker)", "turned_down(hub - rocker_pivot, rocker)",
      "the differential turns the rockers by opposite angles", "rover_unit *Poses.ADifferential*"),
     ("rover_forgets_its_rest", "src/rover/rover.cpp",
      "state_.rest = std::max(state_.rest - whole * internal_step, 0.0);", "state_.rest = 0;",

@@ -70,12 +70,9 @@ struct Point {
 
 /// Where the beam with this direction in the sensor's frame is at a distance.
 inline Point point_at(const SensorPose& pose, const beams::Vec3& direction, double distance) {
-  const RotationMatrix turn = rotation_of(pose);
-  const auto along = [&](std::size_t n) {
-    return turn[n][0] * static_cast<double>(direction.x) + turn[n][1] * static_cast<double>(direction.y) +
-           turn[n][2] * static_cast<double>(direction.z);
-  };
-  return {pose.x + distance * along(0), pose.y + distance * along(1), pose.z + distance * along(2)};
+  const Eigen::Vector3f along(direction.x, direction.y, direction.z);
+  const Eigen::Vector3d p = pose.position + distance * (rotation_of(pose) * along.cast<double>());
+  return {p.x(), p.y(), p.z()};
 }
 
 /// The first distance at which the beam is below the surface, in steps of `step` that are then halved; empty

@@ -11,13 +11,17 @@ import rospkg
 import yaml
 from nav_msgs.msg import Path
 
-from ..picture import Picture
 from ..rover import Rover
 from ..services import SimulationError
 from ..simulation import Simulation
 from ..terrain_client import TerrainClient
 from .paths import Inbox, deviation, points_of
 from .processes import PATIENCE, Node, init_ros, wait_until
+
+try:
+    from ..picture import Picture
+except ImportError as missing:  # DESERT_PARTS=client comes without OpenCV: what fails says so in place of a picture
+    Picture, NO_PICTURE = None, "%s (python3-opencv)" % missing
 
 WHITE, RED, BLUE, GREEN = (255, 255, 255), (40, 40, 230), (230, 120, 30), (60, 200, 60)  # blue, green, red
 
@@ -45,7 +49,8 @@ class Desert:
     rover             Rover, or None
 
     The ROS master is that of rostest, or of its own (init_ros()). What is expected and does not come raises AssertionError,
-    which names a picture: shaded terrain with lethal cells in red, the rover's way in white, paths in blue, the goal.
+    which names a picture: shaded terrain with lethal cells in red, the rover's way in white, paths in blue, the goal; or
+    says that there is none, because python3-opencv is not installed.
     """
 
     def __init__(self, scenario, seed=None, rover=None, settings=(), seconds_per_step=0.1, parameters=None,
@@ -74,7 +79,7 @@ class Desert:
     def __exit__(self, kind, error, _):
         try:
             if error is not None and error is not self._pictured and self.terrain and self.terrain.map:
-                print("desert_sim.testing: %s; picture: %s" % (kind.__name__, self._write_picture("failure")), file=sys.stderr)
+                print("desert_sim.testing: %s; %s" % (kind.__name__, self._picture_of("failure")), file=sys.stderr)
         finally:
             self._end()
 
@@ -257,7 +262,10 @@ class Desert:
         self.picture(goal, lines).write(path)
 
     def picture(self, goal=None, lines=()):
-        """A Picture of the terrain as it is now with costs, the rover's way, and the last paths that were expected."""
+        """A Picture of the terrain as it is now with costs, the rover's way, and the last paths that were expected. Raises
+        RuntimeError without OpenCV."""
+        if Picture is None:
+            raise RuntimeError("there are no pictures: %s" % NO_PICTURE)
         ground = self.terrain.map
         west, east, south, north = ground.extent
         try:
@@ -278,17 +286,20 @@ class Desert:
         picture.text(["step %d" % ground.step, *lines])
         return picture
 
-    def _write_picture(self, what, goal=None, lines=()):
+    def _picture_of(self, what, goal=None, lines=()):
+        """What a message says of the picture, which is written here."""
+        if Picture is None:
+            return "no picture: %s" % NO_PICTURE
         os.makedirs(self._pictures, exist_ok=True)
         test = os.path.splitext(os.path.basename(sys.argv[0]))[0]
         handle, path = tempfile.mkstemp(prefix="%s_%s_step_%d_" % (test, what, self.terrain.map.step), suffix=".png",
                                         dir=self._pictures)
         os.close(handle)
         self.write_picture(path, goal, lines)
-        return path
+        return "picture: " + path
 
     def _fail(self, what, message, goal=None):
-        error = AssertionError("%s; picture: %s" % (message, self._write_picture(what, goal, textwrap.wrap(message, 84))))
+        error = AssertionError("%s; %s" % (message, self._picture_of(what, goal, textwrap.wrap(message, 84))))
         self._pictured = error
         raise error
 

@@ -38,13 +38,13 @@ geometry_msgs::TransformStamped transform_of(const std::string& parent, const st
   geometry_msgs::TransformStamped transform;
   transform.header.frame_id = parent;
   transform.child_frame_id = child;
-  transform.transform.translation.x = pose.x;
-  transform.transform.translation.y = pose.y;
-  transform.transform.translation.z = pose.z;
-  transform.transform.rotation.x = pose.qx;
-  transform.transform.rotation.y = pose.qy;
-  transform.transform.rotation.z = pose.qz;
-  transform.transform.rotation.w = pose.qw;
+  transform.transform.translation.x = pose.position.x();
+  transform.transform.translation.y = pose.position.y();
+  transform.transform.translation.z = pose.position.z();
+  transform.transform.rotation.x = pose.orientation.x();
+  transform.transform.rotation.y = pose.orientation.y();
+  transform.transform.rotation.z = pose.orientation.z();
+  transform.transform.rotation.w = pose.orientation.w();
   return transform;
 }
 
@@ -111,8 +111,8 @@ sensor_msgs::CameraInfoPtr camera_info(const std_msgs::Header& header, const Dep
 }
 
 SensorPose to_sensor_pose(const geometry_msgs::Pose& pose) {
-  return {pose.position.x,    pose.position.y,    pose.position.z,   pose.orientation.x,
-          pose.orientation.y, pose.orientation.z, pose.orientation.w};
+  const geometry_msgs::Quaternion& q = pose.orientation;
+  return {{pose.position.x, pose.position.y, pose.position.z}, {q.w, q.x, q.y, q.z}};
 }
 
 std::vector<geometry_msgs::TransformStamped> sensor_transforms(const SensorFrames& frames,

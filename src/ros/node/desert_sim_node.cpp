@@ -1,7 +1,5 @@
-/// desert_sim_node: the simulation as a ROS node. With --describe it prints the page of its parameters and
-/// ends. Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time. After SIGTERM
-/// or Ctrl-C it ends within five seconds: a step that takes longer is given up (status 4), and its journal
-/// then ends with the last command.
+/// desert_sim_node: the simulation as a ROS node. After SIGTERM or Ctrl-C it ends within five seconds: a step
+/// that takes longer is given up (status 4), and its journal then ends with the last command.
 #include <unistd.h>
 
 #include <csignal>
@@ -31,13 +29,23 @@ void shut_down(int) {
   ros::requestShutdown();
 }
 
+desert_sim::Options options() {
+  desert_sim::Options o("desert_sim_node", "The simulation as a ROS node, which it is without options.");
+  o.flag("describe", "print the page of its parameters")
+      .footer(
+          "Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run\n"
+          "time; 4 after a step that took longer than the shutdown may.");
+  return o;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc == 2 && argv[1] == std::string("--describe")) {
-    std::cout << desert_sim::describe_node_parameters();
-    return 0;
-  }
+  if (desert_sim::has_options(argc, argv))
+    return desert_sim::run_main(options(), argc, argv, [](const desert_sim::Options&) {
+      std::cout << desert_sim::describe_node_parameters();
+      return 0;
+    });
   std::signal(SIGALRM, give_up);
   return desert_sim::run_node(
       argc, argv, "desert_sim",

@@ -1,26 +1,31 @@
-/// desert_planner_node: plans paths for a rover and drives it along them. Without ROS:
-///
-///   --describe    prints the page of its parameters
-///
-/// Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time.
+/// desert_planner_node: plans paths for a rover and drives it along them.
 #include <iostream>
 #include <memory>
-#include <string>
 
 #include "src/ros/planner/planner_server.hpp"
 #include "src/ros/support/node_program.hpp"
 
+using namespace desert_sim;
+
+namespace {
+
+Options options() {
+  Options o("desert_planner_node",
+            "Plans paths for a rover and drives it along them, as a ROS node, which it is without options.");
+  o.flag("describe", "print the page of its parameters")
+      .footer("Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run\ntime.");
+  return o;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  const std::string first = argc > 1 ? argv[1] : "";
-  if (first == "--describe" && argc == 2) {
-    std::cout << desert_sim::describe_planner_parameters();
-    return 0;
-  }
-  if (first.rfind("--", 0) == 0) {
-    std::cerr << "desert_planner_node: not --describe\n";
-    return desert_sim::exit_invalid_input;
-  }
-  return desert_sim::run_node(argc, argv, "desert_planner", [] {
-    return std::make_unique<const desert_sim::PlannerServer>(ros::NodeHandle(), ros::NodeHandle("~"));
+  if (has_options(argc, argv))
+    return run_main(options(), argc, argv, [](const Options&) {
+      std::cout << describe_planner_parameters();
+      return 0;
+    });
+  return run_node(argc, argv, "desert_planner", [] {
+    return std::make_unique<const PlannerServer>(ros::NodeHandle(), ros::NodeHandle("~"));
   });
 }

@@ -1,11 +1,4 @@
-/// desert_rover_node: a rover as a ROS node. Without ROS:
-///
-///   --describe                           prints the page of its parameters
-///   --urdf [FILE.yaml] [KEY:=VALUE]...   prints the model of a rover with these parameters
-///   --replay JOURNAL SCENARIO            drives again what the journal has, beside a simulation of the
-///                                        scenario (a name or a file), and prints where that ends
-///
-/// Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run time.
+/// desert_rover_node: a rover as a ROS node.
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -22,56 +15,61 @@
 #include "src/rover/urdf.hpp"
 #include "src/scenario/scenario_file.hpp"
 
+using namespace desert_sim;
+
 namespace {
 
-using desert_sim::exit_invalid_input;
-
-int print_model(const std::vector<std::string>& words) {
-  try {
-    const desert_sim::RoverSetup setup = desert_sim::read_rover_words(words);
-    std::cout << desert_sim::urdf_of(setup.rover, setup.lidar, setup.depth_camera, setup.frame(""));
-    return 0;
-  } catch (const desert_sim::ConfigError& e) {
-    std::cerr << e.what() << "\n";
-    return exit_invalid_input;
-  }
+Options options() {
+  Options o("desert_rover_node", "A rover as a ROS node, which it is without options.");
+  o.positional("WORD", "of --urdf: FILE.yaml and KEY:=VALUE; of --replay: the scenario (a name or a file)", 0,
+               1000)
+      .flag("describe", "print the page of its parameters")
+      .flag("urdf", "print the model of a rover with the parameters of a file and of words after it")
+      .option(
+          "replay", "JOURNAL",
+          "drive again what the journal has, beside a simulation of the scenario, and print where that ends")
+      .footer("Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run\ntime.");
+  return o;
 }
 
-int replay(const std::string& file, const std::string& name) {
-  try {
-    using namespace desert_sim;
-    const RoverJournal journal = read_rover_journal(file);
-    SimulatedGround ground(load_scenario(scenario_file(name)), raster_loader_with_bags({"", false}), "cpu", 0,
-                           journal.micro_relief);
-    const RoverState end = desert_sim::replay(
-        journal, [&ground](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
-    std::printf("step %lu of the terrain, x %.6f, y %.6f, z %.6f, yaw %.6f, %s, state_hash %s\n",
-                static_cast<unsigned long>(end.terrain_step), end.pose.x, end.pose.y, end.pose.z,
-                end.pose.yaw, rover_conditions[static_cast<int>(end.condition)],
-                hash_text(hash_of(end)).c_str());
-    return 0;
-  } catch (const desert_sim::Error& e) {
-    std::cerr << e.what() << "\n";
-    return exit_invalid_input;
+void print_model(const std::vector<std::string>& words) {
+  const RoverSetup setup = read_rover_words(words);
+  std::cout << urdf_of(setup.rover, setup.lidar, setup.depth_camera, setup.frame(""));
+}
+
+void replay(const std::string& file, const std::string& scenario) {
+  const RoverJournal journal = read_rover_journal(file);
+  SimulatedGround ground(load_scenario(scenario_file(scenario)), raster_loader_with_bags({"", false}), "cpu",
+                         0, journal.micro_relief);
+  const RoverState end = desert_sim::replay(
+      journal, [&ground](std::uint64_t step) -> const GroundSource& { return ground.at(step); });
+  std::printf("step %lu of the terrain, x %.6f, y %.6f, z %.6f, yaw %.6f, %s, state_hash %s\n",
+              static_cast<unsigned long>(end.terrain_step), end.pose.x, end.pose.y, end.pose.z, end.pose.yaw,
+              rover_conditions[static_cast<int>(end.condition)], hash_text(hash_of(end)).c_str());
+}
+
+int run_options(const Options& o) {
+  if (o.has("describe") + o.has("urdf") + o.has("replay") != 1)
+    throw ConfigError("one of --describe, --urdf and --replay must be given (--help shows the usage)");
+  if (o.has("urdf")) {
+    print_model(o.positional());
+  } else if (o.has("replay")) {
+    if (o.positional().size() != 1)
+      throw ConfigError("--replay " + o.text("replay", "") + ": needs one scenario, " +
+                        std::to_string(o.positional().size()) + " given");
+    replay(o.text("replay", ""), o.positional()[0]);
+  } else {
+    if (!o.positional().empty()) throw ConfigError("'" + o.positional()[0] + "': unexpected argument");
+    std::cout << describe_rover_parameters();
   }
+  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string first = argc > 1 ? argv[1] : "";
-  if (first == "--describe" && argc == 2) {
-    std::cout << desert_sim::describe_rover_parameters();
-    return 0;
-  }
-  if (first == "--urdf") return print_model({argv + 2, argv + argc});
-  if (first == "--replay" && argc == 4) return replay(argv[2], argv[3]);
-  if (first.rfind("--", 0) == 0) {
-    std::cerr << "desert_rover_node: not one of --describe, --urdf [FILE.yaml] [KEY:=VALUE]..., --replay "
-                 "JOURNAL SCENARIO\n";
-    return exit_invalid_input;
-  }
-  return desert_sim::run_node(argc, argv, "desert_rover", [] {
-    return std::make_unique<const desert_sim::RoverServer>(ros::NodeHandle(), ros::NodeHandle("~"));
+  if (has_options(argc, argv)) return run_main(options(), argc, argv, run_options);
+  return run_node(argc, argv, "desert_rover", [] {
+    return std::make_unique<const RoverServer>(ros::NodeHandle(), ros::NodeHandle("~"));
   });
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "src/core/hash_text.hpp"
+#include "src/core/rotation.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/rover/urdf.hpp"
 
@@ -92,10 +93,11 @@ nav_msgs::Odometry ground_truth_message(const Rover& rover, const RoverSetup& se
   m.header.frame_id = terrain_frame;
   m.child_frame_id = setup.frame("base_link");
   m.pose.pose = pose_message(s.pose);
-  const Point3 v = rotated_back(rotation_of(s.pose), {s.velocity[0], s.velocity[1], s.velocity[2]});
-  m.twist.twist.linear.x = v.x;
-  m.twist.twist.linear.y = v.y;
-  m.twist.twist.linear.z = v.z;
+  const Eigen::Vector3d v =
+      turned(rotation_of(s.pose).transpose(), {s.velocity[0], s.velocity[1], s.velocity[2]});
+  m.twist.twist.linear.x = v.x();
+  m.twist.twist.linear.y = v.y();
+  m.twist.twist.linear.z = v.z();
   m.twist.twist.angular.x = s.angular_velocity[0];
   m.twist.twist.angular.y = s.angular_velocity[1];
   m.twist.twist.angular.z = s.angular_velocity[2];

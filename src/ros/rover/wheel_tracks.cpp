@@ -43,14 +43,14 @@ WheelTracks::~WheelTracks() {
 void WheelTracks::follow(const Rover& rover, double cell_size) {
   for (int n = 0; n < rover.suspension().wheels(); ++n) {
     const auto i = static_cast<std::size_t>(n);
-    const Point3 hub = rover.suspension().hub(n, rover.state());
+    const Eigen::Vector3d hub = rover.suspension().hub(n, rover.state());
     std::optional<Mark>& mark = marks_[i];
-    const double way = mark ? std::hypot(hub.x - mark->x, hub.y - mark->y) : 0;
-    if (!mark || way > 10 * setup_.node.track_spacing) mark = Mark{hub.x, hub.y};  // it was carried there
+    const double way = mark ? std::hypot(hub.x() - mark->x, hub.y() - mark->y) : 0;
+    if (!mark || way > 10 * setup_.node.track_spacing) mark = Mark{hub.x(), hub.y()};  // it was carried there
     if (way < setup_.node.track_spacing) continue;
     const double sunk = rover.state().wheels[i].sunk;
-    const EditTerrainRequest request = stroke(*mark, {hub.x, hub.y}, sunk, cell_size);
-    mark = Mark{hub.x, hub.y};
+    const EditTerrainRequest request = stroke(*mark, {hub.x(), hub.y()}, sunk, cell_size);
+    mark = Mark{hub.x(), hub.y()};
     if (request.value < shallowest) continue;
     if (!thread_.joinable()) {
       send(request);

@@ -4,14 +4,22 @@
 #include <ros/console.h>
 #include <ros/init.h>
 
+#include <algorithm>
 #include <csignal>
 
+#include "src/command_line/program.hpp"
 #include "src/core/error.hpp"
 #include "src/ros/support/xmlrpc_backlog.hpp"
 
 namespace desert_sim {
 
 constexpr int exit_invalid_input = 2, exit_failure = 3;
+
+/// Whether the program of a node is asked for something else than to be a node: those get no options but
+/// ROS's own, which have no dashes.
+inline bool has_options(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc, [](const char* argument) { return argument[0] == '-'; });
+}
 
 /// A handler of signals that only calls what one may.
 inline void shut_down_on_signal(int) { ros::requestShutdown(); }

@@ -39,8 +39,7 @@ class SubscriberCosts {
       terrain_ = state.moment.terrain;
       width_ = state.snapshot->width;
       height_ = state.snapshot->height;
-      costs_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_),
-                    held_costs::unknown_cost);
+      costs_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), cell_cost::unknown);
       sent_.clear();
       waiting_.clear();
     }

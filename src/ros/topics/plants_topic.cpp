@@ -36,9 +36,9 @@ void draw(const PlantRecord& plant, const PlantList& list, const ViewFrame& fram
                     detailed, corners);
   for (const render::Point& corner : corners) {
     geometry_msgs::Point p;
-    p.x = corner.x;
-    p.y = corner.y;
-    p.z = corner.z;
+    p.x = corner.x();
+    p.y = corner.y();
+    p.z = corner.z();
     marker.points.push_back(p);
   }
 }

@@ -21,7 +21,7 @@ class DepthCamera {
 
   const DepthCameraParameters& parameters() const { return parameters_; }
   /// The orientation of the optical frame in that of the body.
-  static SensorPose optical_frame() { return {0, 0, 0, -0.5, 0.5, -0.5, 0.5}; }
+  static SensorPose optical_frame() { return {{0, 0, 0}, {0.5, -0.5, 0.5, -0.5}}; }
   double focal_length() const;                                       ///< [pixels]
   double centre_x() const { return 0.5 * (parameters_.width - 1); }  ///< [pixels], 0 in the middle of pixel 0
   double centre_y() const { return 0.5 * (parameters_.height - 1); }

@@ -24,12 +24,13 @@ struct Place {
 };
 
 ray_march::Ray origin_of(const SceneGeometry& g, const SensorPose& pose) {
-  const Place x(pose.x - g.origin_x, g.cell_size, g.width), y(pose.y - g.origin_y, g.cell_size, g.height);
+  const Eigen::Vector3d& p = pose.position;
+  const Place x(p.x() - g.origin_x, g.cell_size, g.width), y(p.y() - g.origin_y, g.cell_size, g.height);
   ray_march::Ray ray{};
   ray.u = x.rest, ray.v = y.rest;
   ray.patch_x = x.patch, ray.patch_y = y.patch;
-  ray.z = static_cast<float>(pose.z);
-  ray.z_rest = static_cast<float>(pose.z - static_cast<double>(ray.z));
+  ray.z = static_cast<float>(p.z());
+  ray.z_rest = static_cast<float>(p.z() - static_cast<double>(ray.z));
   return ray;
 }
 
@@ -53,7 +54,7 @@ RangeSensor::RangeSensor(Exec& exec, int columns, int rows, std::vector<beams::V
 const RangeImage& RangeSensor::scan(const HeightFieldScene& scene, const SensorPose& pose,
                                     std::uint64_t number) {
   if (&scene.exec() != &exec_) throw Error("a sensor and the terrain that it scans have different backends");
-  const RotationMatrix turn = rotation_of(pose);
+  const Eigen::Matrix3d turn = rotation_of(pose);
   const SensorMediaParameters& media = settings_.media;
   beams::Scan scan{scene.view(),
                    origin_of(scene.geometry(), pose),
@@ -66,9 +67,8 @@ const RangeImage& RangeSensor::scan(const HeightFieldScene& scene, const SensorP
                    {media.ground_reflectivity, media.plant_reflectivity, media.dust_reflectivity},
                    settings_.seed,
                    number};
-  for (std::size_t row = 0; row < 3; ++row)
-    for (std::size_t column = 0; column < 3; ++column)
-      scan.turn[row][column] = static_cast<float>(turn[row][column]);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) scan.turn[row][column] = static_cast<float>(turn(row, column));
   with_backend(exec_, [&](auto& exec) {
     const auto cast = [&](const auto& surface) {
       beams::cast(exec, scan, surface, image_.columns, image_.rows, device_directions_.data(),

@@ -5,6 +5,7 @@
 
 #include "src/core/constants.hpp"
 #include "src/core/error.hpp"
+#include "src/core/rotation.hpp"
 
 namespace desert_sim {
 
@@ -13,47 +14,37 @@ SensorPose pose_from_angles(double x, double y, double z, double roll_deg, doubl
   const double sr = std::sin(roll_deg * half), cr = std::cos(roll_deg * half);
   const double sp = std::sin(pitch_deg * half), cp = std::cos(pitch_deg * half);
   const double sy = std::sin(yaw_deg * half), cy = std::cos(yaw_deg * half);
-  return {x,
-          y,
-          z,
-          sr * cp * cy - cr * sp * sy,
-          cr * sp * cy + sr * cp * sy,
-          cr * cp * sy - sr * sp * cy,
-          cr * cp * cy + sr * sp * sy};
+  return {{x, y, z},
+          {cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
+           cr * cp * sy - sr * sp * cy}};
 }
 
 SensorPose compose(const SensorPose& outer, const SensorPose& inner) {
-  const RotationMatrix turn = rotation_of(outer);
-  const auto along = [&](int n) {
-    const auto& row = turn[static_cast<std::size_t>(n)];
-    return row[0] * inner.x + row[1] * inner.y + row[2] * inner.z;
-  };
-  const SensorPose &a = outer, &b = inner;
-  return {a.x + along(0),
-          a.y + along(1),
-          a.z + along(2),
-          a.qw * b.qx + a.qx * b.qw + a.qy * b.qz - a.qz * b.qy,
-          a.qw * b.qy - a.qx * b.qz + a.qy * b.qw + a.qz * b.qx,
-          a.qw * b.qz + a.qx * b.qy - a.qy * b.qx + a.qz * b.qw,
-          a.qw * b.qw - a.qx * b.qx - a.qy * b.qy - a.qz * b.qz};
+  return {outer.position + turned(rotation_of(outer), inner.position),
+          turned(outer.orientation, inner.orientation)};
 }
 
-RotationMatrix rotation_of(const SensorPose& p) {
-  const double square = p.qx * p.qx + p.qy * p.qy + p.qz * p.qz + p.qw * p.qw;
-  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z) || !std::isfinite(square) ||
-      !(square > 0)) {
+Eigen::Matrix3d rotation_of(const SensorPose& pose) {
+  const Eigen::Vector3d& p = pose.position;
+  const Eigen::Quaterniond& q = pose.orientation;
+  const double square = q.x() * q.x() + q.y() * q.y() + q.z() * q.z() + q.w() * q.w();
+  if (!p.allFinite() || !std::isfinite(square) || !(square > 0)) {
     std::ostringstream fault;
-    fault << "pose of a sensor: position (" << p.x << ", " << p.y << ", " << p.z << "), orientation (" << p.qx
-          << ", " << p.qy << ", " << p.qz << ", " << p.qw
+    fault << "pose of a sensor: position (" << p.x() << ", " << p.y() << ", " << p.z() << "), orientation ("
+          << q.x() << ", " << q.y() << ", " << q.z() << ", " << q.w()
           << "): numbers must be finite, and the quaternion not 0";
     throw ConfigError(fault.str());
   }
+  // Of a quaternion of any length; its square root would cost bits.
   const double s = 2 / square;
-  const double xx = s * p.qx * p.qx, yy = s * p.qy * p.qy, zz = s * p.qz * p.qz;
-  const double xy = s * p.qx * p.qy, xz = s * p.qx * p.qz, yz = s * p.qy * p.qz;
-  const double wx = s * p.qw * p.qx, wy = s * p.qw * p.qy, wz = s * p.qw * p.qz;
-  return {
-      {{1 - yy - zz, xy - wz, xz + wy}, {xy + wz, 1 - xx - zz, yz - wx}, {xz - wy, yz + wx, 1 - xx - yy}}};
+  const double xx = s * q.x() * q.x(), yy = s * q.y() * q.y(), zz = s * q.z() * q.z();
+  const double xy = s * q.x() * q.y(), xz = s * q.x() * q.z(), yz = s * q.y() * q.z();
+  const double wx = s * q.w() * q.x(), wy = s * q.w() * q.y(), wz = s * q.w() * q.z();
+  Eigen::Matrix3d matrix;
+  matrix << 1 - yy - zz, xy - wz, xz + wy,  //
+      xy + wz, 1 - xx - zz, yz - wx,        //
+      xz - wy, yz + wx, 1 - xx - yy;
+  return matrix;
 }
 
 }  // namespace desert_sim

@@ -91,7 +91,7 @@ const std::vector<std::int8_t>& ForecastRun::costs() {
   const Grid& grid = simulation_->terrain().grid();
   CostQuery query;
   query.whole = true;  // that is, each tile in which a cost has changed since the last query
-  costs_.resize(static_cast<std::size_t>(grid.cells()), held_costs::unknown_cost);
+  costs_.resize(static_cast<std::size_t>(grid.cells()), cell_cost::unknown);
   simulation_->views().begin_costs(query).whole.get()->write_to(costs_, grid.width);
   return costs_;
 }

@@ -54,7 +54,7 @@ struct ForecastMoment {
   std::uint64_t step = 0, hash = 0;
   double sim_time = 0;             ///< [s]
   std::vector<float> elevation;    ///< [m]
-  std::vector<std::int8_t> costs;  ///< as kernels/view/held_costs.hpp has them
+  std::vector<std::int8_t> costs;  ///< as kernels/view/cell_cost.hpp has them
   std::vector<float> probability;  ///< share of the members in which a cell is passable; empty with one
 };
 

@@ -1,16 +1,16 @@
 #pragma once
 /// How long cells stay passable, and since when, by the maps of costs at some moments. A cell is passable
-/// where a rover has a way, at a cost of 0 … 99 (kernels/view/held_costs.hpp); lethal and unknown ones are
+/// where a rover has a way, at a cost of 0 … 99 (kernels/view/cell_cost.hpp); lethal and unknown ones are
 /// not. Between two moments at which a cell differs it counts as not passable.
 
 #include <cstdint>
 #include <vector>
 
-#include "kernels/view/held_costs.hpp"
+#include "kernels/view/cell_cost.hpp"
 
 namespace desert_sim {
 
-inline bool is_passable(std::int8_t cost) { return cost >= 0 && cost < held_costs::lethal_cost; }
+inline bool is_passable(std::int8_t cost) { return cost >= 0 && cost < cell_cost::lethal; }
 
 class Passability {
  public:

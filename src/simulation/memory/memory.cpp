@@ -5,6 +5,7 @@
 
 #include "kernels/backend/fft.hpp"
 #include "src/core/error.hpp"
+#include "src/core/host_memory.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {

@@ -57,9 +57,9 @@ TEST_F(RayMarch, MeasuresASlope) {
   // h = 0.5 x at x east of the corner; a horizontal beam at 20 m to the east meets it at x = 40.
   const KnownScene slope(exec_, {100, 40, 1, 0, 0},
                          [](int x, int) { return 0.5f * (static_cast<float>(x) + 0.5f); });
-  EXPECT_NEAR(static_cast<double>(range_of(slope, {10, 20, 20})), 30, 1e-4);
+  EXPECT_NEAR(static_cast<double>(range_of(slope, {{10, 20, 20}})), 30, 1e-4);
   Lidar lidar(exec_, test::single_beam());
-  const RangeImage& image = lidar.scan(slope.scene, {10, 20, 20}, 0);
+  const RangeImage& image = lidar.scan(slope.scene, {{10, 20, 20}}, 0);
   const double incidence = 0.5 / std::sqrt(1.25);
   EXPECT_NEAR(static_cast<double>(image.intensities[0]), 0.35 * incidence, 1e-5);
 }
@@ -76,9 +76,9 @@ TEST_F(RayMarch, FindsPointsOnAGaussianHill) {
 TEST_F(RayMarch, FindsAStep) {
   const KnownScene step(exec_, {64, 64, 1, 0, 0}, [](int x, int) { return x < 32 ? 0.0f : 4.0f; });
   // Between the centres at 31.5 and 32.5 the surface rises by 4 m.
-  EXPECT_NEAR(static_cast<double>(range_of(step, {10, 20, 1})), 21.5 + 0.25, 1e-4);
-  EXPECT_NEAR(static_cast<double>(range_of(step, {10, 20, 3})), 21.5 + 0.75, 1e-4);
-  EXPECT_TRUE(std::isnan(range_of(step, {10, 20, 4.01})));
+  EXPECT_NEAR(static_cast<double>(range_of(step, {{10, 20, 1}})), 21.5 + 0.25, 1e-4);
+  EXPECT_NEAR(static_cast<double>(range_of(step, {{10, 20, 3}})), 21.5 + 0.75, 1e-4);
+  EXPECT_TRUE(std::isnan(range_of(step, {{10, 20, 4.01}})));
 }
 
 TEST_F(RayMarch, AgreesWithTinySteps) {
@@ -130,15 +130,15 @@ TEST_F(RayMarch, AgreesWithTheRaysOfTheMouse) {
     const RangeImage& image = lidar.scan(ground.scene, pose, 0);
     for (std::size_t n = 0; n < image.distances.size(); ++n) {
       const Point ahead = test::point_at(pose, lidar.directions()[n], 1);
-      const render::Ray ray{{pose.x, pose.y, pose.z}, {ahead.x - pose.x, ahead.y - pose.y, ahead.z - pose.z}};
+      const render::Ray ray{pose.position, Eigen::Vector3d(ahead.x, ahead.y, ahead.z) - pose.position};
       const auto expected = render::first_hit(field, ray);
       const bool returns = !std::isnan(image.distances[n]);
       hits += returns;
       const Point p_found =
           test::point_at(pose, lidar.directions()[n], static_cast<double>(image.distances[n]));
       different += returns != expected.has_value() ||
-                   (returns && std::hypot(p_found.x - expected->x, p_found.y - expected->y,
-                                          p_found.z - expected->z) > 1e-3);
+                   (returns && std::hypot(p_found.x - expected->x(), p_found.y - expected->y(),
+                                          p_found.z - expected->z()) > 1e-3);
     }
   }
   EXPECT_GT(hits, 10000);
@@ -172,18 +172,18 @@ TEST_F(RayMarch, KeepsPrecisionFarFromTheOrigin) {
 TEST_F(RayMarch, SeesNothingBehindAHill) {
   const KnownScene ridge(exec_, {200, 50, 1, 0, 0},
                          [](int x, int) { return x == 100 ? 10.0f : (x > 140 ? 8.0f : 0.0f); });
-  const SensorPose pose{50, 25, 5};
+  const SensorPose pose{{50, 25, 5}};
   EXPECT_NEAR(static_cast<double>(range_of(ridge, pose)), 50, 1e-3) << "half-way up the ridge at 100.5";
-  EXPECT_NEAR(static_cast<double>(range_of(ridge, {105, 25, 5})), 140.5 + 5.0 / 8 - 105, 1e-3);
+  EXPECT_NEAR(static_cast<double>(range_of(ridge, {{105, 25, 5}})), 140.5 + 5.0 / 8 - 105, 1e-3);
 }
 
 TEST_F(RayMarch, EndsAtItsRange) {
   const KnownScene wall(exec_, {100, 20, 1, 0, 0}, [](int x, int) { return x < 60 ? 0.0f : 10.0f; });
-  EXPECT_NEAR(static_cast<double>(range_of(wall, {10, 10, 5}, 51)), 50, 1e-3);
-  EXPECT_TRUE(std::isnan(range_of(wall, {10, 10, 5}, 49.9f)));
+  EXPECT_NEAR(static_cast<double>(range_of(wall, {{10, 10, 5}}, 51)), 50, 1e-3);
+  EXPECT_TRUE(std::isnan(range_of(wall, {{10, 10, 5}}, 49.9f)));
   LidarParameters blind = test::single_beam();
   blind.range_min = 50.1f;
-  EXPECT_TRUE(std::isnan(Lidar(exec_, blind).scan(wall.scene, {10, 10, 5}, 0).distances[0]));
+  EXPECT_TRUE(std::isnan(Lidar(exec_, blind).scan(wall.scene, {{10, 10, 5}}, 0).distances[0]));
 }
 
 TEST_F(RayMarch, SeesNothingWhenBuried) {
@@ -191,7 +191,7 @@ TEST_F(RayMarch, SeesNothingWhenBuried) {
   LidarParameters p = test::single_beam();
   p.range_min = 0.01f;
   Lidar lidar(exec_, p);
-  EXPECT_TRUE(std::isnan(lidar.scan(ground.scene, {10, 10, 1}, 0).distances[0]));
+  EXPECT_TRUE(std::isnan(lidar.scan(ground.scene, {{10, 10, 1}}, 0).distances[0]));
   EXPECT_TRUE(std::isnan(lidar.scan(ground.scene, pose_from_angles(10, 10, 1, 0, -90, 0), 0).distances[0]));
 }
 
@@ -204,18 +204,18 @@ TEST_F(RayMarch, HasOpenEdges) {
   EXPECT_TRUE(std::isnan(down(-0.1, 3)));
   EXPECT_TRUE(std::isnan(down(16.1, 3)));
   EXPECT_TRUE(std::isnan(down(6, 8.1)));
-  EXPECT_TRUE(std::isnan(range_of(slope, {14, 4, 8}))) << "it leaves the grid above the ground";
-  EXPECT_NEAR(static_cast<double>(range_of(slope, {-30, 4, 2.5})), 36, 1e-3) << "it comes in from outside";
-  EXPECT_NEAR(static_cast<double>(range_of(slope, {-30, 4, -1})), 30, 1e-3) << "the ground ends as a wall";
+  EXPECT_TRUE(std::isnan(range_of(slope, {{14, 4, 8}}))) << "it leaves the grid above the ground";
+  EXPECT_NEAR(static_cast<double>(range_of(slope, {{-30, 4, 2.5}})), 36, 1e-3) << "it comes in from outside";
+  EXPECT_NEAR(static_cast<double>(range_of(slope, {{-30, 4, -1}})), 30, 1e-3) << "the ground ends as a wall";
   EXPECT_TRUE(std::isnan(range_of(slope, pose_from_angles(-30, 4, 2.5, 0, 0, 180))));
-  EXPECT_TRUE(std::isnan(range_of(slope, {1e9, 4, 2.5})));
+  EXPECT_TRUE(std::isnan(range_of(slope, {{1e9, 4, 2.5}})));
 }
 
 TEST_F(RayMarch, WorksOnTheSmallestGrids) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {5, 1}, {3, 3}}) {
     const KnownScene ground(exec_, {width, height, 1, 0, 0}, [](int, int) { return 1.0f; });
     EXPECT_NEAR(static_cast<double>(range_of(ground, pose_from_angles(0.5, 0.5, 3, 0, 90, 0))), 2, 1e-6);
-    EXPECT_TRUE(std::isnan(range_of(ground, {0.5, 0.5, 1.5})));
+    EXPECT_TRUE(std::isnan(range_of(ground, {{0.5, 0.5, 1.5}})));
   }
 }
 
@@ -224,7 +224,7 @@ TEST_F(RayMarch, GoesThroughUnknownGround) {
   EXPECT_TRUE(std::isnan(range_of(hole, pose_from_angles(2, 5, 5, 0, 90, 0))));
   const HeightFieldScene empty(exec_, {10, 10, 1, 0, 0});
   Lidar lidar(exec_, test::exact_lidar(8, 64, -60, 10));
-  EXPECT_EQ(test::returns_of(lidar.scan(empty, {5, 5, 1}, 0)), 0) << "nothing is known at the start";
+  EXPECT_EQ(test::returns_of(lidar.scan(empty, {{5, 5, 1}}, 0)), 0) << "nothing is known at the start";
 }
 
 }  // namespace

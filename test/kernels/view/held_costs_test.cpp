@@ -10,9 +10,6 @@
 namespace desert_sim {
 namespace {
 
-using held_costs::cost_of;
-using held_costs::lethal_cost;
-using held_costs::unknown_cost;
 using Costs = std::vector<std::int8_t>;
 
 auto corners(const CellBox& box) { return std::make_tuple(box.x0, box.y0, box.x1, box.y1); }
@@ -98,16 +95,16 @@ CellBox difference(const Costs& now, const Costs& held, int width) {
 }
 
 TEST(Costs, OfTraversability) {
-  EXPECT_EQ(cost_of(1), 0);
-  EXPECT_EQ(cost_of(2), 0);
-  EXPECT_EQ(cost_of(0.5f), 50);  // 49.5
-  EXPECT_EQ(cost_of(1e-6f), 99);
-  EXPECT_EQ(cost_of(0), lethal_cost);
-  EXPECT_EQ(cost_of(-1), lethal_cost);
-  EXPECT_EQ(cost_of(std::numeric_limits<float>::quiet_NaN()), unknown_cost);
+  EXPECT_EQ(cell_cost::of(1), 0);
+  EXPECT_EQ(cell_cost::of(2), 0);
+  EXPECT_EQ(cell_cost::of(0.5f), 50);  // 49.5
+  EXPECT_EQ(cell_cost::of(1e-6f), 99);
+  EXPECT_EQ(cell_cost::of(0), cell_cost::lethal);
+  EXPECT_EQ(cell_cost::of(-1), cell_cost::lethal);
+  EXPECT_EQ(cell_cost::of(std::numeric_limits<float>::quiet_NaN()), cell_cost::unknown);
   for (int n = 1; n <= 100000; ++n) {
     const float worth = static_cast<float>(n) / 100000;
-    ASSERT_EQ(cost_of(worth), std::lround(99 * (1 - worth))) << worth;
+    ASSERT_EQ(cell_cost::of(worth), std::lround(99 * (1 - worth))) << worth;
   }
 }
 
@@ -128,7 +125,7 @@ TEST_P(HeldCostsTold, TilesAreThoseOfABruteForceComparison) {
       told.set_slot_bytes(round % 3 == 2 ? 1 : std::size_t{1} << 20);
       for (std::size_t n = 0; n < now.size() / 9; ++n) {  // drift
         std::int8_t& cost = now[random() % now.size()];
-        if (cost != unknown_cost && cost != lethal_cost)
+        if (cost != cell_cost::unknown && cost != cell_cost::lethal)
           cost = static_cast<std::int8_t>(std::min(99, cost + below(4)));
       }
       for (int n = 0; n < round / 2; ++n)  // jumps
@@ -182,11 +179,11 @@ TEST_P(HeldCostsTold, LethalAndUnknownAreAlwaysRight) {
   now[1] = 5;
   told.set(now);
   EXPECT_TRUE(told.update(98).box.empty());
-  now[3] = lethal_cost;
+  now[3] = cell_cost::lethal;
   told.set(now);
   EXPECT_EQ(corners(told.update(98).box), corners({1, 0, 4, 1}));
   now[3] = 99;
-  now[5] = unknown_cost;
+  now[5] = cell_cost::unknown;
   told.set(now);
   EXPECT_EQ(corners(told.update(98).box), corners({3, 0, 6, 1}));
 }
@@ -206,7 +203,7 @@ TEST_P(HeldCostsTold, OfASimulationFollowItsTraversability) {
   query.threshold = 2;
   const PendingCosts first = s->views().begin_costs(query);
   EXPECT_FALSE(first.update) << "nothing was held";
-  Costs held(90 * 70, unknown_cost);
+  Costs held(90 * 70, cell_cost::unknown);
   first.whole.get()->write_to(held, 90);
   s->views().staging().release();
   EXPECT_EQ(exec().bytes_held() - before, 2 * 90 * 70);
@@ -218,7 +215,7 @@ TEST_P(HeldCostsTold, OfASimulationFollowItsTraversability) {
     const PendingCosts taken = s->views().begin_costs(query);
     const std::shared_ptr<const Snapshot> snapshot = s->views().snapshot({Layer::traversability});
     Costs now;
-    for (float worth : snapshot->layers.at(Layer::traversability)) now.push_back(cost_of(worth));
+    for (float worth : snapshot->layers.at(Layer::traversability)) now.push_back(cell_cost::of(worth));
     test::run(*s, 1);  // meanwhile
     std::size_t tiles = 0;
     const Costs expected = after(now, held, 90, 2, tiles);

@@ -34,35 +34,36 @@ inline Mesh block_of(const BlockLayout& layout, int block, int level, const Heig
 
 /// The product of a rotation and a translation of a camera that is at (x, y, z), looks down (pitch -90°) or
 /// to the horizon in the north (0°).
-inline Matrix4 camera_at(double x, double y, double z, double pitch_deg) {
+inline Eigen::Matrix4d camera_at(double x, double y, double z, double pitch_deg) {
   const double pitch = pitch_deg * 3.14159265358979 / 180, c = std::cos(pitch), s = std::sin(pitch);
   // Rows: right (east), up, backwards.
-  const Matrix4 turn{{{1, 0, 0, 0}, {0, -s, c, 0}, {0, -c, -s, 0}, {0, 0, 0, 1}}};
-  const Matrix4 move{{{1, 0, 0, -x}, {0, 1, 0, -y}, {0, 0, 1, -z}, {0, 0, 0, 1}}};
-  return multiply(turn, move);
+  Eigen::Matrix4d turn, move;
+  turn << 1, 0, 0, 0, 0, -s, c, 0, 0, -c, -s, 0, 0, 0, 0, 1;
+  move << 1, 0, 0, -x, 0, 1, 0, -y, 0, 0, 1, -z, 0, 0, 0, 1;
+  return turn * move;
 }
 
 /// A field of view of 90° upwards and sideways.
-inline Matrix4 perspective(double near = 0.1, double far = 1e5) {
-  return {{{1, 0, 0, 0},
-           {0, 1, 0, 0},
-           {0, 0, -(far + near) / (far - near), -2 * far * near / (far - near)},
-           {0, 0, -1, 0}}};
+inline Eigen::Matrix4d perspective(double near = 0.1, double far = 1e5) {
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m.bottomRightCorner<2, 2>() << -(far + near) / (far - near), -2 * far * near / (far - near), -1, 0;
+  return m;
 }
 
 /// So many metres from the lower to the upper edge of the picture.
-inline Matrix4 orthographic(double metres, double near = -1e5, double far = 1e5) {
-  return {{{2 / metres, 0, 0, 0},
-           {0, 2 / metres, 0, 0},
-           {0, 0, -2 / (far - near), -(far + near) / (far - near)},
-           {0, 0, 0, 1}}};
+inline Eigen::Matrix4d orthographic(double metres, double near = -1e5, double far = 1e5) {
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m.topLeftCorner<2, 2>() *= 2 / metres;
+  m.row(2) << 0, 0, -2 / (far - near), -(far + near) / (far - near);
+  return m;
 }
 
 inline std::vector<Box> flat_boxes(const BlockLayout& layout, double cell_size) {
   std::vector<Box> boxes;
   for (int block = 0; block < layout.count(); ++block) {
     const CellRectangle r = layout.vertices(block);
-    boxes.push_back({{r.x * cell_size, r.y * cell_size, 0}, {r.right() * cell_size, r.top() * cell_size, 1}});
+    boxes.emplace_back(Point(r.x * cell_size, r.y * cell_size, 0),
+                       Point(r.right() * cell_size, r.top() * cell_size, 1));
   }
   return boxes;
 }

@@ -95,12 +95,12 @@ TEST(LevelOfDetail, StaysWhileTheCameraMovesALittle) {
 
 TEST(View, SeesWhatIsInThePicture) {
   const View view(perspective(), camera_at(0, 0, 100, -90), picture_height);
-  const auto box = [](double x, double y) { return Box{{x - 1, y - 1, 0}, {x + 1, y + 1, 1}}; };
+  const auto box = [](double x, double y) { return Box(Point(x - 1, y - 1, 0), Point(x + 1, y + 1, 1)); };
   EXPECT_TRUE(view.sees(box(0, 0)));
   EXPECT_TRUE(view.sees(box(95, 95)));
   EXPECT_FALSE(view.sees(box(110, 0)));
   EXPECT_FALSE(view.sees(box(0, -110)));
-  EXPECT_FALSE(view.sees({{-1, -1, 150}, {1, 1, 160}})) << "behind the camera";
+  EXPECT_FALSE(view.sees(Box(Point(-1, -1, 150), Point(1, 1, 160)))) << "behind the camera";
   EXPECT_NEAR(view.distance(box(0, 0)), 99, 1e-9);
   EXPECT_NEAR(view.pixels_per_metre(box(0, 0)), 400 / 99.0, 1e-9);
 }

@@ -12,12 +12,10 @@ namespace {
 using namespace desert_sim::render;
 
 constexpr int width = 160, height = 90;
-const Box subject{{0, 0, -2}, {300, 200, 25}};
+const Box subject(Point(0, 0, -2), Point(300, 200, 25));
 constexpr Colour red{1, 0, 0}, green{0, 1, 0}, white{1, 1, 1};
 
-Point corner(const Box& box, int n) {
-  return {n & 1 ? box.high.x : box.low.x, n & 2 ? box.high.y : box.low.y, n & 4 ? box.high.z : box.low.z};
-}
+Point corner(const Box& box, int n) { return box.corner(static_cast<Box::CornerType>(n)); }
 
 TEST(Camera, ShowsAllOfItsSubjectAndFillsThePicture) {
   for (double azimuth : {-60.0, 0.0, 123.0, 270.0})

@@ -118,8 +118,8 @@ TEST(TerrainBlock, HasWaterWhereThereIsSome) {
   const TerrainBlock block = block_with(layers, look);
   ASSERT_FALSE(block.water.empty());
   const Box box = bounding_box(block.water);
-  EXPECT_EQ(box.high.z, 2);
-  EXPECT_EQ(box.high.x, 10.5) << "to the first dry cell";
+  EXPECT_EQ(box.max().z(), 2);
+  EXPECT_EQ(box.max().x(), 10.5) << "to the first dry cell";
   look.water = false;
   EXPECT_TRUE(block_with(layers, look).water.empty());
 }
@@ -130,8 +130,8 @@ TEST(Plants, TheWidestTenthIsDetailed) {
   const Mesh mesh = plants_mesh(plants, std::vector<std::uint8_t>(20, 0), {{{0, 1, 0}}, 3});
   EXPECT_EQ(mesh.indices.size(), 3u * (18 * 4 + 2 * 15));
   const Box box = bounding_box(mesh);
-  EXPECT_FLOAT_EQ(static_cast<float>(box.low.z), 3) << "feet are exaggerated";
-  EXPECT_FLOAT_EQ(static_cast<float>(box.high.z), 3 + 2 * 2.4f) << "plants keep their shape";
+  EXPECT_FLOAT_EQ(static_cast<float>(box.min().z()), 3) << "feet are exaggerated";
+  EXPECT_FLOAT_EQ(static_cast<float>(box.max().z()), 3 + 2 * 2.4f) << "plants keep their shape";
 }
 
 TEST(WindArrows, LieOnTheGroundAndPointToWhereTheAirMoves) {

@@ -156,7 +156,7 @@ TEST(Complaint4, UnknownCellsAreHolesAndReachNoVertex) {
       for (const float value : {v.x, v.y, v.z, v.normal_x, v.normal_y, v.normal_z})
         EXPECT_TRUE(std::isfinite(value));
     const Box box = bounding_box(mesh);
-    EXPECT_TRUE(std::isfinite(box.low.z) && std::isfinite(box.high.z));
+    EXPECT_TRUE(std::isfinite(box.min().z()) && std::isfinite(box.max().z()));
   }
   const Mesh fine = block_of(layout, 0, 0, height);
   for (std::size_t n = 0; n < fine.indices.size(); n += 3) {

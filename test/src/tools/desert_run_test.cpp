@@ -231,7 +231,7 @@ TEST_F(Run, PlotsARunOverTimeOrSaysWhyNot) {
   }
   const test::ProgramRun alone = run({scenario_, "--plot", path("plot.png")});
   EXPECT_EQ(alone.status, 2);
-  EXPECT_NE(alone.err.find("--plot: --out and --every are required too"), std::string::npos) << alone.err;
+  EXPECT_NE(alone.err.find("--plot requires --out"), std::string::npos) << alone.err;
 }
 
 /// A run that does not end by itself, and saves a checkpoint after each step.
@@ -322,7 +322,7 @@ TEST_F(Run, LetsThreadsWaitWithoutSpinningUnlessTheUserHasChosen) {
     arguments.insert(arguments.end(), {program_, "--help"});
     const test::ProgramRun r = test::run_program("/usr/bin/env", arguments);
     EXPECT_EQ(r.status, 0) << r.err;
-    EXPECT_NE(r.out.find("usage: desert_run"), std::string::npos) << "the arguments are the same";
+    EXPECT_NE(r.out.find("desert_run [OPTIONS]"), std::string::npos) << "the arguments are the same";
     const std::string key = "GOMP_SPINCOUNT = '";
     const std::size_t at = r.err.rfind(key);
     return at == std::string::npos

@@ -89,7 +89,7 @@ TEST_F(Film, RefusesWhatCannotBeMade) {
   refused({"--film", path("a.png"), "--view", "widht=160"}, "unknown key");
   refused({"--film", path("a.png"), "--view", "width=5"}, "is not in [16, 7680]");
   refused({"--film", path("a.png"), "--view", "overlay=gold"}, "is not one of: elevation");
-  refused({"--view", "width=160"}, "--film is required too");
+  refused({"--view", "width=160"}, "--view requires --film");
   refused({"--film", path("a.png"), "--film-every", "2"}, "a.png is one picture, of the end");
   refused({"--film", path("no/such/a.png")}, "cannot be written");
   refused({"--film", path("a.gif")}, ".gif is not made here (allowed: .mp4, .png, or a folder");

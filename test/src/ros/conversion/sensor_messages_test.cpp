@@ -83,7 +83,7 @@ TEST(SensorMessages, PointsOfACloudAreOnTheMapOfTheClient) {
   Lidar lidar(exec, p);
   const SensorPose pose = pose_from_angles(120, 50, 8, 5, 10, 30);
   const auto cloud = lidar_cloud(header_in("lidar"), lidar.scan(scene, pose, 0), lidar.directions());
-  const RotationMatrix turn = rotation_of(pose);
+  const Eigen::Matrix3d turn = rotation_of(pose);
   int found = 0;
   for (std::size_t place = 0; place < cloud->data.size(); place += cloud->point_step) {
     const double x = static_cast<double>(read<float>(cloud->data, place)),
@@ -91,10 +91,10 @@ TEST(SensorMessages, PointsOfACloudAreOnTheMapOfTheClient) {
                  z = static_cast<double>(read<float>(cloud->data, place + 8));
     if (std::isnan(x)) continue;
     ++found;
-    const auto along = [&](std::size_t n) { return turn[n][0] * x + turn[n][1] * y + turn[n][2] * z; };
-    const auto height = map.value(pose.x + along(0), pose.y + along(1));
+    const Eigen::Vector3d hit = pose.position + turn * Eigen::Vector3d(x, y, z);
+    const auto height = map.value(hit.x(), hit.y());
     ASSERT_TRUE(height);
-    ASSERT_NEAR(pose.z + along(2), *height, 1e-3);
+    ASSERT_NEAR(hit.z(), *height, 1e-3);
   }
   EXPECT_GT(found, 3000);
 }
@@ -148,10 +148,10 @@ TEST(SensorMessages, CameraInfoAndTransformsLeadBackToTheGround) {
   SensorPose optical = base;
   for (const std::size_t n : {1u, 2u}) {
     const auto& t = transforms[n].transform;
-    optical = compose(optical, {t.translation.x, t.translation.y, t.translation.z, t.rotation.x, t.rotation.y,
-                                t.rotation.z, t.rotation.w});
+    optical = compose(optical, {{t.translation.x, t.translation.y, t.translation.z},
+                                {t.rotation.w, t.rotation.x, t.rotation.y, t.rotation.z}});
   }
-  const RotationMatrix turn = rotation_of(optical);
+  const Eigen::Matrix3d turn = rotation_of(optical);
   int found = 0;
   for (int v = 0; v < 30; ++v)
     for (int u = 0; u < 40; ++u) {
@@ -159,9 +159,9 @@ TEST(SensorMessages, CameraInfoAndTransformsLeadBackToTheGround) {
       if (std::isnan(depth)) continue;
       ++found;
       const double x = (u - info->K[2]) / info->K[0] * depth, y = (v - info->K[5]) / info->K[4] * depth;
-      const auto along = [&](std::size_t n) { return turn[n][0] * x + turn[n][1] * y + turn[n][2] * depth; };
-      const double east = optical.x + along(0), up = optical.z + along(2);
-      ASSERT_NEAR(up, 0.1 * std::min(std::max(east / 0.5 - 0.5, 0.0), 63.0), 1e-4) << u << ", " << v;
+      const Eigen::Vector3d place = optical.position + turn * Eigen::Vector3d(x, y, depth);
+      ASSERT_NEAR(place.z(), 0.1 * std::min(std::max(place.x() / 0.5 - 0.5, 0.0), 63.0), 1e-4)
+          << u << ", " << v;
     }
   EXPECT_GT(found, 900);
 }

@@ -54,7 +54,7 @@ TEST_F(BeamMedia, PlantsLetASharePass) {
   Lidar lidar(exec_, bundle(), media_);
   // At 0.5 m, the canopy from 2 m down to 0 between the centres at 19.5 and 20.5 reaches to a quarter of that
   // way; density, interpolated too, is the mean there: 10 cells of it in all, less what is above the canopy.
-  const SensorPose pose{5, 20, 0.5};
+  const SensorPose pose{{5, 20, 0.5}};
   const double full = 9, side = 0.75, middle_density = 0.25 * (0.25 + 1) / 2;
   const double depth = 0.4 * (full * 0.25 + 2 * side * middle_density), passes = std::exp(-depth);
   const Counts counts = count(lidar.scan(known.scene, pose, 3), 58.55f);
@@ -67,7 +67,7 @@ TEST_F(BeamMedia, PlantsLetASharePass) {
       ASSERT_LE(image.distances[n], 25.26f) << "where it ends";
       ASSERT_EQ(image.intensities[n], media_.plant_reflectivity);
     }
-  EXPECT_EQ(count(lidar.scan(known.scene, {5, 20, 2.01}, 3), 58.7f).wall, many) << "above the plants";
+  EXPECT_EQ(count(lidar.scan(known.scene, {{5, 20, 2.01}}, 3), 58.7f).wall, many) << "above the plants";
 }
 
 TEST_F(BeamMedia, PlantsOnUnevenGroundReachFromItUp) {
@@ -76,28 +76,28 @@ TEST_F(BeamMedia, PlantsOnUnevenGroundReachFromItUp) {
   known.set(SceneLayer::vegetation, [](int, int) { return 1.0f; });
   media_.canopy_extinction = 100;
   Lidar lidar(exec_, bundle(), media_);
-  const auto returns = [&](double z) { return test::returns_of(lidar.scan(known.scene, {5, 20, z}, 0)); };
+  const auto returns = [&](double z) { return test::returns_of(lidar.scan(known.scene, {{5, 20, z}}, 0)); };
   EXPECT_EQ(returns(3.9), many) << "in the canopy";
   EXPECT_EQ(returns(4.1), 0) << "above it";
-  EXPECT_EQ(count(lidar.scan(known.scene, {5, 20, 1.5}, 0), 14.9f).lost, 0) << "below, at the step";
+  EXPECT_EQ(count(lidar.scan(known.scene, {{5, 20, 1.5}}, 0), 14.9f).lost, 0) << "below, at the step";
 }
 
 TEST_F(BeamMedia, PlantsWithoutDensityOrHeightAreNotSeen) {
   KnownScene known(exec_, geometry_, wall);
   known.set(SceneLayer::canopy_height, [](int, int) { return 5.0f; });
   Lidar lidar(exec_, bundle(), media_);
-  EXPECT_EQ(count(lidar.scan(known.scene, {5, 20, 0.5}, 0), 58.55f).wall, many);
+  EXPECT_EQ(count(lidar.scan(known.scene, {{5, 20, 0.5}}, 0), 58.55f).wall, many);
   known.set(SceneLayer::vegetation, [](int x, int) { return x == 75 ? 1.0f : unknown; });
-  EXPECT_EQ(count(lidar.scan(known.scene, {5, 20, 0.5}, 0), 58.55f).wall, many);
+  EXPECT_EQ(count(lidar.scan(known.scene, {{5, 20, 0.5}}, 0), 58.55f).wall, many);
 }
 
 TEST_F(BeamMedia, ObstaclesAreColumnsOfTheGround) {
   const KnownScene box(exec_, geometry_,
                        [](int x, int y) { return x >= 30 && x < 34 && y >= 18 && y < 22 ? 1.2f : 0.0f; });
   Lidar lidar(exec_, test::single_beam());
-  EXPECT_NEAR(static_cast<double>(lidar.scan(box.scene, {5, 20, 0.6}, 0).distances[0]), 25, 1e-3);
-  EXPECT_TRUE(std::isnan(lidar.scan(box.scene, {5, 20, 1.3}, 0).distances[0])) << "over it";
-  EXPECT_TRUE(std::isnan(lidar.scan(box.scene, {5, 10, 0.6}, 0).distances[0])) << "beside it";
+  EXPECT_NEAR(static_cast<double>(lidar.scan(box.scene, {{5, 20, 0.6}}, 0).distances[0]), 25, 1e-3);
+  EXPECT_TRUE(std::isnan(lidar.scan(box.scene, {{5, 20, 1.3}}, 0).distances[0])) << "over it";
+  EXPECT_TRUE(std::isnan(lidar.scan(box.scene, {{5, 10, 0.6}}, 0).distances[0])) << "beside it";
 }
 
 TEST_F(BeamMedia, AirborneSandFollowsBeerAndLambert) {
@@ -108,11 +108,11 @@ TEST_F(BeamMedia, AirborneSandFollowsBeerAndLambert) {
   Lidar lidar(exec_, bundle(), media_);
   const float distance = 58.6f;
   const double passes = std::exp(-0.02 * 58.6);
-  const Counts counts = count(lidar.scan(known.scene, {5, 20, 1}, 0), distance);
+  const Counts counts = count(lidar.scan(known.scene, {{5, 20, 1}}, 0), distance);
   EXPECT_NEAR(counts.wall, many * passes, margin(passes));
   EXPECT_NEAR(counts.before, many * (1 - passes) * 0.25, margin((1 - passes) * 0.25));
   media_.dust_height = 0.5f;
-  EXPECT_EQ(count(Lidar(exec_, bundle(), media_).scan(known.scene, {5, 20, 1}, 0), distance).wall, many)
+  EXPECT_EQ(count(Lidar(exec_, bundle(), media_).scan(known.scene, {{5, 20, 1}}, 0), distance).wall, many)
       << "above the layer";
 }
 
@@ -146,7 +146,7 @@ TEST_F(BeamMedia, MoreAirborneSandShortensEachBeam) {
     known.set(SceneLayer::airborne_sand,
               [=](int x, int y) { return amount * (1 + 0.5f * std::sin(static_cast<float>(x + 2 * y))); });
     Lidar lidar(exec_, bundle(), media_);
-    const std::vector<float> now = lidar.scan(known.scene, {5, 20, 1}, 7).distances;
+    const std::vector<float> now = lidar.scan(known.scene, {{5, 20, 1}}, 7).distances;
     double sum = 0;
     for (std::size_t n = 0; n < now.size(); ++n) {
       ASSERT_FALSE(std::isnan(now[n]));
@@ -167,7 +167,7 @@ class RangeNoise : public ::testing::Test {
   const KnownScene known_{exec_, {80, 40, 1, 0, 0}, wall};
 
   RangeImage scan(const LidarParameters& p, double x, std::uint64_t number = 0) {
-    return Lidar(exec_, p).scan(known_.scene, {x, 20, 1}, number);
+    return Lidar(exec_, p).scan(known_.scene, {{x, 20, 1}}, number);
   }
 };
 

@@ -22,14 +22,12 @@ TEST(SensorPose, ComposesLikeTransforms) {
                    inner = pose_from_angles(0.5, -1, 2, 5, 60, 7);
   const beams::Vec3 ahead{0.25f, -0.5f, 1};
   const Point in_outer = test::point_at(inner, ahead, 2);
-  const RotationMatrix turn = rotation_of(outer);
+  const Eigen::Vector3d expected =
+      outer.position + rotation_of(outer) * Eigen::Vector3d(in_outer.x, in_outer.y, in_outer.z);
   const Point direct = test::point_at(compose(outer, inner), ahead, 2);
-  EXPECT_NEAR(direct.x, outer.x + turn[0][0] * in_outer.x + turn[0][1] * in_outer.y + turn[0][2] * in_outer.z,
-              1e-12);
-  EXPECT_NEAR(direct.y, outer.y + turn[1][0] * in_outer.x + turn[1][1] * in_outer.y + turn[1][2] * in_outer.z,
-              1e-12);
-  EXPECT_NEAR(direct.z, outer.z + turn[2][0] * in_outer.x + turn[2][1] * in_outer.y + turn[2][2] * in_outer.z,
-              1e-12);
+  EXPECT_NEAR(direct.x, expected.x(), 1e-12);
+  EXPECT_NEAR(direct.y, expected.y(), 1e-12);
+  EXPECT_NEAR(direct.z, expected.z(), 1e-12);
 }
 
 TEST(SensorPose, HasTheAnglesOfUrdf) {
@@ -44,9 +42,9 @@ TEST(SensorPose, HasTheAnglesOfUrdf) {
 }
 
 TEST(SensorPose, IsRefusedIfItIsNone) {
-  SensorPose pose{1, 2, 3, 0, 0, 0, 0};
+  SensorPose pose{{1, 2, 3}, {0, 0, 0, 0}};
   EXPECT_NE(test::refusal([&] { rotation_of(pose); }).find("quaternion"), std::string::npos);
-  pose = {std::nan(""), 0, 0};
+  pose = {{std::nan(""), 0, 0}};
   EXPECT_NE(test::refusal([&] { rotation_of(pose); }).find("position (nan, 0, 0)"), std::string::npos);
 }
 
@@ -94,7 +92,7 @@ TEST_F(Sensors, LidarHasRingsFromBelowAndColumnsFromTheRight) {
 TEST_F(Sensors, LidarTakesAnglesOfItsRings) {
   const KnownScene plane(exec_, {100, 100, 1, -50, -50}, [](int, int) { return 0.0f; });
   Lidar lidar(exec_, test::exact_lidar(64, 8, -20, 20), {}, {-90, -30, 45});
-  const RangeImage& image = lidar.scan(plane.scene, {0, 0, 2}, 0);
+  const RangeImage& image = lidar.scan(plane.scene, {{0, 0, 2}}, 0);
   ASSERT_EQ(image.rows, 3);
   EXPECT_NEAR(static_cast<double>(image.distances[0]), 2, 1e-5);
   EXPECT_NEAR(static_cast<double>(image.distances[8]), 4, 1e-5);
@@ -110,9 +108,9 @@ TEST_F(Sensors, MountingIsAPoseInTheRoversFrame) {
   p.x = 0.2, p.y = -0.1, p.z = 1.5;
   p.pitch_deg = 90;
   const SensorPose pose = compose(pose_from_angles(10, 20, 5, 0, 0, 90), mounting_of(p));
-  EXPECT_NEAR(pose.x, 10.1, 1e-12);
-  EXPECT_NEAR(pose.y, 20.2, 1e-12);
-  EXPECT_NEAR(pose.z, 6.5, 1e-12);
+  EXPECT_NEAR(pose.position.x(), 10.1, 1e-12);
+  EXPECT_NEAR(pose.position.y(), 20.2, 1e-12);
+  EXPECT_NEAR(pose.position.z(), 6.5, 1e-12);
   EXPECT_NEAR(test::point_at(pose, {1, 0, 0}, 1).z, 5.5, 1e-12) << "it looks down";
 }
 
@@ -189,7 +187,7 @@ TEST_F(Sensors, CameraMeasuresDepthAlongItsAxis) {
   p.noise = p.noise_per_square_metre = 0;
   p.far = 20;
   DepthCamera camera(exec_, p);
-  const RangeImage& image = camera.scan(wall.scene, {0, 0, 1.5}, 0);
+  const RangeImage& image = camera.scan(wall.scene, {{0, 0, 1.5}}, 0);
   ASSERT_EQ(image.columns, 81);
   ASSERT_EQ(image.rows, 61);
   const auto depth = [&](int u, int v) {
@@ -204,7 +202,7 @@ TEST_F(Sensors, CameraMeasuresDepthAlongItsAxis) {
   EXPECT_NEAR(depth(40, 55), 1.5 * f / 25, 1e-3) << "the ground in front";
   EXPECT_NEAR(depth(70, 55), 1.5 * f / 25, 1e-3);
   p.far = 9;
-  EXPECT_TRUE(std::isnan(DepthCamera(exec_, p).scan(wall.scene, {0, 0, 1.5}, 0).distances[30 * 81 + 20]));
+  EXPECT_TRUE(std::isnan(DepthCamera(exec_, p).scan(wall.scene, {{0, 0, 1.5}}, 0).distances[30 * 81 + 20]));
 }
 
 TEST_F(Sensors, OpticalFrameLooksAlongItsZAxis) {
@@ -263,7 +261,7 @@ TEST_F(Sensors, UpdatesOfRectanglesLeaveWhatAWholeUploadDoes) {
       for (std::size_t layer = 0; layer < 4; ++layer)
         fresh.update(static_cast<SceneLayer>(layer), layers[layer]);
       Lidar lidar(exec_, test::noisy_lidar());
-      const SensorPose pose{0.5 * width * g.cell_size, 0.5 * height * g.cell_size, 3.5};
+      const SensorPose pose{{0.5 * width * g.cell_size, 0.5 * height * g.cell_size, 3.5}};
       const std::vector<float> expected = lidar.scan(fresh, pose, 1).distances;
       EXPECT_TRUE(test::same_bits(lidar.scan(scene, pose, 1).distances, expected))
           << width << ", after " << n;
@@ -302,7 +300,7 @@ TEST_F(Sensors, RefusesASceneOfAnotherBackend) {
   CpuExec other(1);
   HeightFieldScene scene(other, {10, 8, 1, 0, 0});
   Lidar lidar(exec_, test::exact_lidar(1, 1, 0, 0));
-  EXPECT_THROW(lidar.scan(scene, {1, 1, 1}, 0), Error);
+  EXPECT_THROW(lidar.scan(scene, {{1, 1, 1}}, 0), Error);
 }
 
 }  // namespace

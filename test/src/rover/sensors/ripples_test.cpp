@@ -43,7 +43,7 @@ TEST_P(BeamsOnRipples, TheyEndOnTheSurfaceOfTheMaps) {
   const Scene known(exec(), s);
   Lidar lidar(exec(), test::exact_lidar(24, 60, -85, -4), {});
   for (const double y : {2.0, 12.0}) {
-    const SensorPose pose{116, y, 1.6};
+    const SensorPose pose{{116, y, 1.6}};
     const RangeImage image = lidar.scan(known.scene, pose, 0);
     int returns = 0, off = 0;
     double largest = 0;
@@ -66,7 +66,7 @@ TEST_P(BeamsOnRipples, NoBeamPassesThroughACrest) {
   const MicroRelief micro_relief(s);
   const Scene known(exec(), s);
   Lidar lidar(exec(), test::exact_lidar(6, 40, -12, -3), {});
-  const SensorPose pose{116, 12, 1.2};
+  const SensorPose pose{{116, 12, 1.2}};
   const RangeImage image = lidar.scan(known.scene, pose, 0);
   int through = 0;
   for (std::size_t n = 0; n < image.distances.size(); ++n) {
@@ -84,7 +84,7 @@ TEST_P(BeamsOnRipples, WithoutMicroReliefTheGroundIsBilinear) {
   const Snapshot s = rippled(exec()), flat = rippled(exec(), ", ripples: false, bumps: false");
   Scene known(exec(), s), none(exec(), flat);
   Lidar lidar(exec(), test::exact_lidar(12, 60, -60, -5), {});
-  const SensorPose pose{116, 12, 1.6};
+  const SensorPose pose{{116, 12, 1.6}};
   const std::vector<float> rippled_ranges = lidar.scan(known.scene, pose, 0).distances;
   known.scene.clear_micro_relief();
   const std::vector<float> bilinear = lidar.scan(known.scene, pose, 0).distances,
@@ -111,8 +111,8 @@ TEST_F(RippledParity, ScansHaveTheSameBits) {
   const Scene here(cpu(), s), there(cuda(), s);
   LidarParameters p = test::exact_lidar(32, 400, -60, -2);
   Lidar first(cpu(), p, {}), second(cuda(), p, {});
-  const RangeImage a = first.scan(here.scene, {116, 12, 1.6}, 0),
-                   b = second.scan(there.scene, {116, 12, 1.6}, 0);
+  const RangeImage a = first.scan(here.scene, {{116, 12, 1.6}}, 0),
+                   b = second.scan(there.scene, {{116, 12, 1.6}}, 0);
   for (std::size_t n = 0; n < a.distances.size(); ++n) {
     ASSERT_EQ(bits_of(a.distances[n]), bits_of(b.distances[n])) << n;
     ASSERT_EQ(bits_of(a.intensities[n]), bits_of(b.intensities[n])) << n;

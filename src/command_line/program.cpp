@@ -1,4 +1,4 @@
-#include "src/tools/program.hpp"
+#include "src/command_line/program.hpp"
 
 #include <unistd.h>
 
@@ -39,10 +39,16 @@ void require_output_written() {
 
 }  // namespace
 
-int run_main(const char* name, char** argv, const std::function<int()>& body) {
+int run_main(Options options, int argc, char** argv, const std::function<int(const Options&)>& body) {
+  const char* const name = options.program().c_str();
   try {
     make_waiting_passive(argv);
-    const int status = body();
+    options.parse(argc, argv);
+    int status = 0;
+    if (options.help())
+      std::cout << options.usage();
+    else
+      status = body(options);
     require_output_written();
     return status;
   } catch (const ConfigError& e) {
