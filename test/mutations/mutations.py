@@ -458,7 +458,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "slid * avalanche_share(i) * per_fresh_depth", "slid * per_fresh_depth",
      "sand that creeps under impacts is packed", "kernels_unit *Looseness.Slides*"),
     ("packing_by_the_step", "kernels/sand/looseness.cpp",
-     "time_step / (hop_time * p.impact_depth)", "1.0f / (hop_time * p.impact_depth)",
+     "in.time_step / (in.hop_time * p.impact_depth)", "1.0f / (in.hop_time * p.impact_depth)",
      "packing is a rate", "core_analytic *TimeStep.TheGround*"),
     ("looseness_without_balance", "kernels/sand/looseness.hpp",
      "looseness + (loosening / both - looseness) * lost_share(both)", "loosened(looseness, loosening) * exp_negative(packing)",
