@@ -3,12 +3,15 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "src/render/terrain_block.hpp"
 
 namespace render_test {
 
 using namespace desert_sim::render;
+
+constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
 using Height = std::function<float(int x, int y)>;
 

@@ -12,8 +12,6 @@ namespace {
 
 using namespace render_test;
 
-constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
-
 HeightField field_of(int width, int height, double cell_size, const Height& heights) {
   return {width, height, cell_size, heights};
 }

@@ -16,8 +16,6 @@ namespace {
 
 using namespace render_test;
 
-constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
-
 float brightness(const Colour& c) { return c.r + c.g + c.b; }
 
 TEST(TerrainColours, TellMaterialsApart) {

@@ -15,8 +15,6 @@ namespace {
 
 using namespace render_test;
 
-constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
-
 /// The heights of a mesh's surface on the line x = `line`, by y; and those of the lower ends of its skirts.
 struct Edge {
   std::map<float, float> surface, bottom;

@@ -6,7 +6,7 @@
 namespace desert_sim {
 namespace {
 
-constexpr double height = 0.0467 * (0.013 + 0.02 * 9);  // of ripples in this wind
+constexpr double ripple_height = 0.0467 * (0.013 + 0.02 * 9);  // of ripples in this wind
 
 /// Sand that rises by 5 cm a metre to the east, with plants' heaps in the north.
 Snapshot rippled(Exec& exec, const std::string& more = "") {
@@ -57,7 +57,7 @@ TEST_P(BeamsOnRipples, TheyEndOnTheSurfaceOfTheMaps) {
     }
     EXPECT_GT(returns, 1000);
     EXPECT_EQ(off, 0);
-    EXPECT_GT(largest, 0.4 * height);
+    EXPECT_GT(largest, 0.4 * ripple_height);
   }
 }
 
