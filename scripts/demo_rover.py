@@ -83,6 +83,14 @@ class Film:
                 sys.exit("demo: ffmpeg could not write " + self.path)
 
 
+def forecast_text(status):
+    if status.forecast_age >= 0:
+        return "forecast of %.0f s ago" % status.forecast_age
+    if status.forecast_progress >= 0:
+        return "no forecast yet (%.0f %%)" % (100 * status.forecast_progress)
+    return "no forecast"
+
+
 class Trip:
     """One rover from start to goal, step by step."""
 
@@ -107,7 +115,7 @@ class Trip:
         now, status = self.desert.rover.pose(), self.planner.status
         return "%5.0f s  (%6.2f, %6.2f) m  %-10s %5.1f m to go  %s  %d replans%s" % (
             self.time, now.x, now.y, status.state, status.remaining,
-            "forecast of %.0f s ago" % status.forecast_age if status.forecast_age >= 0 else "no forecast", status.replans,
+            forecast_text(status), status.replans,
             ": " + status.last_replan if status.replans else "")
 
     def picture(self):

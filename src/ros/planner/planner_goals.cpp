@@ -44,7 +44,7 @@ void PlannerServer::set_goal(const geometry_msgs::PoseStamped& goal) {
   navigator_.set_goal(planar_pose(in_terrain.pose, "the goal"), time_now());
   goal_ = in_terrain;
   refusal_.clear();
-  asked_for_forecast_.reset();
+  forecasts_.hurry();
 }
 
 void PlannerServer::receive_goal(const geometry_msgs::PoseStampedConstPtr& goal) {
@@ -112,27 +112,43 @@ void PlannerServer::take_forecast(const Forecast& forecast) {
 }
 
 void PlannerServer::ask_for_forecast(double time) {
-  if (!forecast_client_ || !forecast_client_->isServerConnected()) return;
-  if (asked_for_forecast_ && time - *asked_for_forecast_ < setup_.node.forecast_period) return;
-  asked_for_forecast_ = time;
-  waits_for_forecast_ = true;
+  if (!forecast_client_ || !forecast_client_->isServerConnected() || !forecasts_.due(time)) return;
+  forecasts_.ask(time);
+  forecast_progress_ = 0;
+  forecast_stride_ = forecasts_.stride();
   ForecastTerrainGoal goal;
   goal.horizon = setup_.node.forecast_horizon;
   goal.moments = static_cast<std::uint32_t>(setup_.node.forecast_moments);
-  goal.stride = static_cast<std::uint32_t>(setup_.node.forecast_stride);
-  forecast_client_->sendGoal(goal, [this](const actionlib::SimpleClientGoalState& state,
-                                          const ForecastTerrainResultConstPtr& result) {
-    waits_for_forecast_ = false;
-    if (state == actionlib::SimpleClientGoalState::SUCCEEDED && result)
-      return take_forecast(result->forecast);
-    if (state == actionlib::SimpleClientGoalState::PREEMPTED) return;
-    refusal_ = "forecast: " + state.toString() + ": " +
-               (result && !result->message.empty() ? result->message : state.getText());
-    ROS_WARN("%s", refusal_.c_str());
-  });
+  goal.stride = static_cast<std::uint32_t>(forecast_stride_);
+  forecast_client_->sendGoal(
+      goal,
+      [this](const actionlib::SimpleClientGoalState& state, const ForecastTerrainResultConstPtr& result) {
+        end_forecast(state, result.get());
+      },
+      [] {},
+      [this](const ForecastTerrainFeedbackConstPtr& feedback) {
+        forecast_progress_ = static_cast<double>(feedback->progress);
+      });
   // In lockstep the same calls give the same path, however long a forecast takes.
-  while (lockstep_ && waits_for_forecast_ && !stopping_ && ros::ok() && forecast_client_->isServerConnected())
+  while (lockstep_ && forecasts_.under_way() && !stopping_ && ros::ok() &&
+         forecast_client_->isServerConnected())
     queue_.callAvailable(ros::WallDuration(patience));
+}
+
+void PlannerServer::end_forecast(const actionlib::SimpleClientGoalState& state,
+                                 const ForecastTerrainResult* result) {
+  const bool arrived = state == actionlib::SimpleClientGoalState::SUCCEEDED && result;
+  const int stride = forecasts_.stride();
+  forecasts_.end(time_now(), arrived);
+  if (forecasts_.stride() > stride)
+    ROS_INFO(
+        "A forecast took longer than forecast_period (%g s): the next one has a stride of %d, not of %d.",
+        setup_.node.forecast_period, forecasts_.stride(), stride);
+  if (arrived) return take_forecast(result->forecast);
+  if (state == actionlib::SimpleClientGoalState::PREEMPTED) return;
+  refusal_ = "forecast: " + state.toString() + ": " +
+             (result && !result->message.empty() ? result->message : state.getText());
+  ROS_WARN("%s", refusal_.c_str());
 }
 
 }  // namespace desert_sim

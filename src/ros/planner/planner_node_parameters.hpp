@@ -54,10 +54,10 @@ constexpr auto parameter_table(const PlannerNodeParameters*) {
       parameter("pose_age", &P::pose_age, 0.01, 1e6, "s",
                 "With clock ros: age from which on a pose is too old to drive."),
       parameter("drive", &P::drive, "Whether it drives the rover; false: it plans only."),
-      parameter(
-          "forecast_period", &P::forecast_period, 0, 1e9, "s",
-          "With planner forecast: how often it asks the terrain's ~forecast for one while it has a goal; 0: "
-          "never, it takes what ~forecast/maps brings."),
+      parameter("forecast_period", &P::forecast_period, 0, 1e9, "s",
+                "With planner forecast: how often it asks the terrain's ~forecast for one while it has a "
+                "goal, and the "
+                "last one is there; 0: never, it takes what ~forecast/maps brings."),
       parameter("forecast_horizon", &P::forecast_horizon, 0.1, 1e9, "s", "How far ahead it asks."),
       parameter("forecast_moments", &P::forecast_moments, 1, 100, "1", "For how many moments."),
       parameter("forecast_stride", &P::forecast_stride, 1, 1000, "1",

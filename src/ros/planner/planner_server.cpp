@@ -37,6 +37,7 @@ PlannerServer::PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle&
       setup_(read_planner_setup(private_node)),
       lockstep_(setup_.node.clock == RoverClock::lockstep),
       navigator_(setup_.planner),
+      forecasts_(setup_.node.forecast_period, setup_.node.forecast_stride),
       terrain_(setup_) {
   node_.setCallbackQueue(&queue_);
   private_node_.setCallbackQueue(&queue_);
@@ -257,6 +258,9 @@ void PlannerServer::publish_status(bool always) {
   m.refusal = refusal_;
   m.planner = planner_kinds[static_cast<int>(setup_.planner.planner)];
   m.goal = goal_;
+  m.forecast_progress = forecasts_.under_way() ? forecast_progress_ : -1;
+  m.forecast_stride =
+      static_cast<std::uint32_t>(forecasts_.under_way() ? forecast_stride_ : forecasts_.stride());
   m.plan_time = plan_time_;
   m.command = twist_of(command_);
   m.terrain_step = terrain_step_;

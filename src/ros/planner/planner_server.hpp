@@ -22,6 +22,7 @@
 #include <string>
 #include <thread>
 
+#include "src/planner/forecast_schedule.hpp"
 #include "src/ros/conversion/transform_listener.hpp"
 #include "src/ros/planner/planner_messages.hpp"
 #include "src/ros/planner/planner_terrain.hpp"
@@ -65,6 +66,7 @@ class PlannerServer {
   /// Throws ConfigError for a goal that is refused.
   void set_goal(const geometry_msgs::PoseStamped& goal);
   void ask_for_forecast(double time);
+  void end_forecast(const actionlib::SimpleClientGoalState& state, const ForecastTerrainResult* result);
 
   // ---- what it tells
   void send(const DriveCommand& command);
@@ -92,8 +94,9 @@ class PlannerServer {
   double lockstep_time_ = 0;
   ros::Time pose_stamp_;  ///< of the rover's pose that it knows; 0 before there is one
   std::uint64_t terrain_step_ = 0, published_path_ = 0;
-  std::optional<double> asked_for_forecast_;
-  bool waits_for_forecast_ = false;  ///< which was asked for
+  ForecastSchedule forecasts_;
+  int forecast_stride_ = 0;       ///< of the one that was asked for last
+  double forecast_progress_ = 0;  ///< of the one that is under way
   std::chrono::steady_clock::time_point last_status_;
 
   ros::Publisher path_publisher_, status_publisher_, command_publisher_;

@@ -1,8 +1,10 @@
 /// A planner beside a rover, in a ROS time that the test tells: goals by topic and action, what comes into
 /// the way, and what it says when there is no way.
 #include <actionlib/client/simple_action_client.h>
+#include <actionlib/server/action_server.h>
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/Forecast.h>
+#include <desert_sim/ForecastTerrainAction.h>
 #include <desert_sim/PlannerStatus.h>
 #include <move_base_msgs/MoveBaseAction.h>
 #include <nav_msgs/OccupancyGrid.h>
@@ -268,6 +270,83 @@ TEST_F(Planner, PlansThroughAForecast) {
     return status.last().refusal.find("1 maps of costs for 2 moments") != std::string::npos;
   })) << status.last().refusal;
   ask<std_srvs::Trigger>("/forecast_planner/cancel");
+}
+
+/// Takes goals for forecasts, and leaves them to the test.
+class LateForecasts {
+ public:
+  using Server = actionlib::ActionServer<desert_sim::ForecastTerrainAction>;
+
+  LateForecasts() { server_.start(); }
+  std::size_t goals() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return goals_.size();
+  }
+  int cancels() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return cancels_;
+  }
+  Server::GoalHandle last() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return goals_.back();
+  }
+
+ private:
+  void take(Server::GoalHandle goal) {
+    goal.setAccepted();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    goals_.push_back(goal);
+  }
+  void cancel(Server::GoalHandle) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++cancels_;
+  }
+
+  mutable std::mutex mutex_;
+  std::vector<Server::GoalHandle> goals_;
+  int cancels_ = 0;
+  ros::NodeHandle node_;
+  Server server_{node_, "/late_forecast", [this](Server::GoalHandle goal) { take(goal); },
+                 [this](Server::GoalHandle goal) { cancel(goal); }, false};
+};
+
+TEST_F(Planner, WaitsForALateForecastAndAsksForACoarserOneThen) {
+  Listener<nav_msgs::OccupancyGrid> costs("costmap");
+  Listener<PlannerStatus> status("/late_planner/status");
+  LateForecasts forecasts;
+  send("/late_planner/goal", pose_at(62, 0));
+  ASSERT_TRUE(creeps_until([&] { return forecasts.goals() == 1; }));
+  LateForecasts::Server::GoalHandle goal = forecasts.last();
+  EXPECT_EQ(goal.getGoal()->stride, 2u);
+  desert_sim::ForecastTerrainFeedback feedback;
+  feedback.progress = 0.25;
+  EXPECT_TRUE(creeps_until([&] {
+    goal.publishFeedback(feedback);
+    return status.last().forecast_progress == 0.25;
+  }));
+  EXPECT_EQ(status.last().forecast_age, -1);
+  const ros::Time late = clock_->now() + ros::Duration(7);  // three periods
+  ASSERT_TRUE(creeps_until([&] { return tick(0.5), status.last().header.stamp >= late; }));
+  EXPECT_EQ(forecasts.goals(), 1u) << "it asks for another one before the first is there";
+  EXPECT_EQ(forecasts.cancels(), 0);
+  EXPECT_EQ(status.last().forecast_progress, 0.25);
+
+  desert_sim::ForecastTerrainResult result;
+  result.success = true;
+  result.forecast.header.frame_id = "terrain";
+  result.forecast.header.stamp = clock_->now();
+  result.forecast.members = 1;
+  result.forecast.times = {100};
+  result.forecast.costs = {costs.last()};
+  goal.setSucceeded(result);
+  ASSERT_TRUE(creeps_until([&] { return forecasts.goals() == 2; }));
+  EXPECT_EQ(forecasts.last().getGoal()->stride, 4u);
+  EXPECT_TRUE(creeps_until([&] {
+    return status.last().forecast_stride == 4 && status.last().forecast_age >= 0;
+  })) << status.last().refusal;
+  EXPECT_EQ(status.last().refusal, "");
+  ask<std_srvs::Trigger>("/late_planner/cancel");
+  forecasts.last().setAborted({}, "the test ends");
 }
 
 TEST_F(Planner, BadParametersEndANodeWithTheirNames) {
