@@ -1,6 +1,7 @@
 #pragma once
 /// When a planner asks for a forecast of the terrain, and how coarse a one.
 
+#include <algorithm>
 #include <optional>
 
 namespace desert_sim {
@@ -34,17 +35,15 @@ class ForecastSchedule {
     if (!arrived) return;
     const double took = time - began_;
     if (took > period_)
-      stride_ = least(2 * stride_, least(coarsest * wanted_, longest_stride));
-    else if (took < period_ / 4 && stride_ > wanted_)
-      stride_ = stride_ / 2 > wanted_ ? stride_ / 2 : wanted_;
+      stride_ = std::min({2 * stride_, coarsest * wanted_, longest_stride});
+    else if (took < period_ / 4)
+      stride_ = std::max(stride_ / 2, wanted_);
   }
 
   bool under_way() const { return under_way_; }
-  int stride() const { return stride_; }  ///< of the next one
+  int stride() const { return stride_; }  ///< of the one that is under way, else of the next
 
  private:
-  static int least(int a, int b) { return a < b ? a : b; }
-
   double period_;
   int wanted_, stride_;
   std::optional<double> asked_;

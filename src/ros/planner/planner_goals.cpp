@@ -115,11 +115,10 @@ void PlannerServer::ask_for_forecast(double time) {
   if (!forecast_client_ || !forecast_client_->isServerConnected() || !forecasts_.due(time)) return;
   forecasts_.ask(time);
   forecast_progress_ = 0;
-  forecast_stride_ = forecasts_.stride();
   ForecastTerrainGoal goal;
   goal.horizon = setup_.node.forecast_horizon;
   goal.moments = static_cast<std::uint32_t>(setup_.node.forecast_moments);
-  goal.stride = static_cast<std::uint32_t>(forecast_stride_);
+  goal.stride = static_cast<std::uint32_t>(forecasts_.stride());
   forecast_client_->sendGoal(
       goal,
       [this](const actionlib::SimpleClientGoalState& state, const ForecastTerrainResultConstPtr& result) {

@@ -259,8 +259,7 @@ void PlannerServer::publish_status(bool always) {
   m.planner = planner_kinds[static_cast<int>(setup_.planner.planner)];
   m.goal = goal_;
   m.forecast_progress = forecasts_.under_way() ? forecast_progress_ : -1;
-  m.forecast_stride =
-      static_cast<std::uint32_t>(forecasts_.under_way() ? forecast_stride_ : forecasts_.stride());
+  m.forecast_stride = static_cast<std::uint32_t>(forecasts_.stride());
   m.plan_time = plan_time_;
   m.command = twist_of(command_);
   m.terrain_step = terrain_step_;

@@ -95,7 +95,6 @@ class PlannerServer {
   ros::Time pose_stamp_;  ///< of the rover's pose that it knows; 0 before there is one
   std::uint64_t terrain_step_ = 0, published_path_ = 0;
   ForecastSchedule forecasts_;
-  int forecast_stride_ = 0;       ///< of the one that was asked for last
   double forecast_progress_ = 0;  ///< of the one that is under way
   std::chrono::steady_clock::time_point last_status_;
 
