@@ -83,25 +83,26 @@ ros::Subscriber LayerStream::subscribe(const std::string& topic, std::uint32_t q
                                           ros::TransportHints().tcpNoDelay());
 }
 
-template <class Keyframe>
 void LayerStream::subscribe_to_keyframes() {
   // shutdown() waits for running callbacks, so no lock may be held here.
   keyframe_subscriber().shutdown();
-  const ros::Subscriber anew = subscribe<Keyframe>(topics_.keyframes, 1);
+  const ros::Subscriber anew = is_elevation() ? subscribe<ElevationGrid>(topics_.keyframes, 1)
+                                              : subscribe<LayerGrid>(topics_.keyframes, 1);
   const std::lock_guard<std::mutex> lock(context_.mutex);
   keyframes_ = anew;
 }
 
+void LayerStream::subscribe_to_updates() {
+  updates_.shutdown();
+  updates_ = is_elevation() ? subscribe<ElevationUpdate>(topics_.updates, context_.update_queue)
+                            : subscribe<LayerUpdate>(topics_.updates, context_.update_queue);
+}
+
 void LayerStream::start() {
-  if (is_elevation()) {
-    request_publisher_ = context_.node.advertise<std_msgs::Empty>(topics_.requests, 1);
-    subscribe_to_keyframes<ElevationGrid>();
-    updates_ = subscribe<ElevationUpdate>(topics_.updates, context_.update_queue);
-  } else {
-    request_publisher_ = context_.node.advertise<std_msgs::String>(topics_.requests, 10);
-    subscribe_to_keyframes<LayerGrid>();
-    updates_ = subscribe<LayerUpdate>(topics_.updates, context_.update_queue);
-  }
+  request_publisher_ = is_elevation() ? context_.node.advertise<std_msgs::Empty>(topics_.requests, 1)
+                                      : context_.node.advertise<std_msgs::String>(topics_.requests, 10);
+  subscribe_to_keyframes();
+  subscribe_to_updates();
 }
 
 void LayerStream::stop() {
@@ -126,6 +127,16 @@ std::optional<AwaitedTopic> LayerStream::awaited() const {
 
 bool LayerStream::connected() const { return keyframe_subscriber().getNumPublishers() > 0; }
 
+void LayerStream::reconnect_if_due() {
+  const Reconnection::Clock::time_point now = Reconnection::Clock::now();
+  const bool keyframes_are_due = keyframe_reconnection_.due(connected(), now);
+  const bool updates_are_due = update_reconnection_.due(updates_.getNumPublishers() > 0, now);
+  // Subscribing without a master would block.
+  if (!ros::ok() || !(keyframes_are_due || updates_are_due) || !ros::master::check()) return;
+  if (keyframes_are_due) subscribe_to_keyframes();
+  if (updates_are_due) subscribe_to_updates();
+}
+
 // ---- keyframes ----
 
 void LayerStream::request_keyframe_if_due() {
@@ -141,10 +152,7 @@ void LayerStream::request_keyframe_if_due() {
     request_by_message();
   } else if (ros::master::check()) {  // subscribing without a master would block
     if (request_publisher_.getNumSubscribers() == 0) announce_requests();
-    if (is_elevation())
-      subscribe_to_keyframes<ElevationGrid>();
-    else
-      subscribe_to_keyframes<LayerGrid>();
+    subscribe_to_keyframes();
   }
 }
 

@@ -236,7 +236,10 @@ void TerrainClient::run_thread() {
       if (stopping_) return;
     }
     start_and_stop_streams();
-    for (const std::shared_ptr<LayerStream>& stream : streams()) stream->request_keyframe_if_due();
+    for (const std::shared_ptr<LayerStream>& stream : streams()) {
+      stream->reconnect_if_due();
+      stream->request_keyframe_if_due();
+    }
     tell_what_is_awaited();
   }
 }

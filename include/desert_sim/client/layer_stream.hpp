@@ -12,6 +12,7 @@
 
 #include "desert_sim/client/keyframe_requests.hpp"
 #include "desert_sim/client/layer_assembler.hpp"
+#include "desert_sim/client/reconnection.hpp"
 #include "desert_sim/client/waiting_notice.hpp"
 
 namespace desert_sim {
@@ -55,6 +56,8 @@ class LayerStream : public std::enable_shared_from_this<LayerStream> {
   void stop();
   /// Requests a keyframe if one is due.
   void request_keyframe_if_due();
+  /// Subscribes anew to a topic that has been without a publisher for a while.
+  void reconnect_if_due();
 
   // By any thread that does not hold the context's mutex:
 
@@ -74,8 +77,8 @@ class LayerStream : public std::enable_shared_from_this<LayerStream> {
  private:
   template <class Message>
   ros::Subscriber subscribe(const std::string& topic, std::uint32_t queue);
-  template <class Keyframe>
   void subscribe_to_keyframes();
+  void subscribe_to_updates();
   template <class Message>
   void process(const boost::shared_ptr<const Message>& message);
   ros::Subscriber keyframe_subscriber() const;
@@ -91,6 +94,7 @@ class LayerStream : public std::enable_shared_from_this<LayerStream> {
   const Topics topics_;
   ros::Publisher request_publisher_;
   ros::Subscriber updates_;
+  Reconnection keyframe_reconnection_, update_reconnection_;
 
   // Guarded by context_.processing:
   LayerAssembler assembler_;

@@ -2,11 +2,18 @@
 /// kills.
 #include <desert_sim/QueryTerrain.h>
 #include <desert_sim/Step.h>
+#include <ros/master.h>
+#include <ros/network.h>
 #include <std_msgs/Empty.h>
+#include <xmlrpcpp/XmlRpc.h>
 
 #include <atomic>
 #include <cmath>
 #include <future>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
 
 #include "include/desert_sim/client/terrain_client.hpp"
 #include "test/support/messages.hpp"
@@ -193,6 +200,66 @@ TEST(Faults, SlowListenersMissNothingThatTheyAreNotToldOf) {
   release.set_value();
   EXPECT_TRUE(wait_until([&] { return client.statistics().gaps > 0; })) << "the queue has overflowed";
   expect_in_step(client, sender);
+}
+
+// ---- connections that fail ----
+
+/// A node's interface for connections, which refuses each of them, and counts how often it was asked for.
+class RefusingNode {
+ public:
+  RefusingNode() {
+    server_.bindAndListen(0);
+    thread_ = std::thread([this] {
+      while (!stopping_) server_.work(0.05);
+    });
+  }
+  ~RefusingNode() {
+    stopping_ = true;
+    thread_.join();
+    server_.shutdown();
+  }
+  void announce(const std::string& node, const std::string& topic, const std::string& type) {
+    XmlRpc::XmlRpcValue arguments, result, payload;
+    arguments[0] = node;
+    arguments[1] = topic;
+    arguments[2] = type;
+    arguments[3] = "http://" + ros::network::getHost() + ":" + std::to_string(server_.get_port()) + "/";
+    ASSERT_TRUE(ros::master::execute("registerPublisher", arguments, result, payload, false));
+  }
+  int requests(const std::string& topic) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return requests_[topic];
+  }
+
+ private:
+  struct RequestTopic : XmlRpc::XmlRpcServerMethod {
+    RequestTopic(RefusingNode& owner, XmlRpc::XmlRpcServer* server)
+        : XmlRpcServerMethod("requestTopic", server), node(owner) {}
+    void execute(XmlRpc::XmlRpcValue& arguments, XmlRpc::XmlRpcValue& result) override {
+      const std::lock_guard<std::mutex> lock(node.mutex_);
+      ++node.requests_[arguments[1]];
+      result[0] = 0;
+      result[1] = std::string("busy");
+      result[2] = 0;
+    }
+    RefusingNode& node;
+  };
+
+  std::mutex mutex_;
+  std::map<std::string, int> requests_;
+  std::atomic<bool> stopping_{false};
+  XmlRpc::XmlRpcServer server_;
+  RequestTopic request_topic_{*this, &server_};
+  std::thread thread_;
+};
+
+TEST(Faults, ARefusedConnectionIsAskedForAgain) {
+  const TerrainClient client(ros::NodeHandle(), options("/refusing"));
+  RefusingNode node;
+  node.announce("/refusing", "/refusing/elevation", ros::message_traits::datatype<ElevationGrid>());
+  node.announce("/refusing", "/refusing/elevation_updates", ros::message_traits::datatype<ElevationUpdate>());
+  for (const std::string topic : {"/refusing/elevation", "/refusing/elevation_updates"})
+    EXPECT_TRUE(wait_until([&] { return node.requests(topic) >= 2; })) << topic;
 }
 
 // ---- nodes that come late, and die ----
