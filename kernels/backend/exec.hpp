@@ -10,10 +10,9 @@
 #include <string>
 
 #include "desert_sim/config.hpp"
+#include "kernels/backend/fft.hpp"
 
 namespace desert_sim {
-
-class Fft;
 
 /// Recorded work that can be replayed with the same arguments.
 class Recording {
@@ -105,7 +104,8 @@ class Exec {
 
   /// A complex 2-D transform of width × height values (x fastest), in place and unnormalised, of `fields`
   /// fields at once.
-  virtual std::unique_ptr<Fft> make_fft(int width, int height, int fields = 1) = 0;
+  virtual std::unique_ptr<Fft> make_fft(int width, int height, int fields = 1,
+                                        FftMethod method = FftMethod::library) = 0;
   /// Shared memory available to a kernel that transforms lines by itself (wind::by_lines()) [bytes]; 0 if the
   /// device does not support such kernels.
   virtual std::size_t memory_for_lines() const { return 0; }
@@ -135,7 +135,7 @@ class CpuExec : public Exec {
   void download(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
   bool shares_memory() const override { return true; }
   void synchronise() override {}
-  std::unique_ptr<Fft> make_fft(int width, int height, int fields) override;
+  std::unique_ptr<Fft> make_fft(int width, int height, int fields, FftMethod method) override;
 
  protected:
   void* allocate_memory(std::size_t bytes) override;
@@ -171,7 +171,7 @@ class CudaExec final : public Exec {
   std::unique_ptr<Recording> record(const std::function<void()>& work) override;
   void repeat_while(const long long* go_on, const std::function<void()>& body) override;
   bool can_record_loops() const override;
-  std::unique_ptr<Fft> make_fft(int width, int height, int fields) override;
+  std::unique_ptr<Fft> make_fft(int width, int height, int fields, FftMethod method) override;
   std::size_t memory_for_lines() const override;
 
   /// A 64-bit word on the device for results of reductions, with a pinned mirror on the host.

@@ -1,66 +1,17 @@
-#include <fftw3.h>
 #include <omp.h>
 
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <mutex>
 #include <new>
 
 #include "kernels/backend/exec.hpp"
-#include "kernels/backend/fft.hpp"
 #include "src/core/error.hpp"
 #include "src/core/host_memory.hpp"
 
 namespace desert_sim {
 
 namespace {
-
-/// FFTW's planner is not thread-safe.
-std::mutex& planner() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-/// Transforms each field with one thread, however many the Exec has: FFTW's plans for other numbers of
-/// threads may add in another order, and the hash of a run must not depend on that. The wind's grid is
-/// coarse, so this costs little.
-class FftwTransform final : public Fft {
- public:
-  FftwTransform(int width, int height, int fields, int threads)
-      : values_(width * height), fields_(fields), threads_(threads) {
-    const std::lock_guard<std::mutex> lock(planner());
-    auto* memory = static_cast<fftwf_complex*>(fftwf_malloc(sizeof(fftwf_complex) * values_ * fields));
-    if (!memory)
-      throw ConfigError("no memory for a transform of " + std::to_string(width) + " x " +
-                        std::to_string(height));
-    const bool alike = fields == 1 || fftwf_alignment_of(memory[0]) == fftwf_alignment_of(memory[values_]);
-    const unsigned flags = FFTW_ESTIMATE | (alike ? 0u : FFTW_UNALIGNED);
-    forward_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_FORWARD, flags);
-    inverse_ = fftwf_plan_dft_2d(height, width, memory, memory, FFTW_BACKWARD, flags);
-    fftwf_free(memory);
-    if (!forward_ || !inverse_)
-      throw Error("FFTW made no plan for " + std::to_string(width) + " x " + std::to_string(height));
-  }
-  ~FftwTransform() override {
-    const std::lock_guard<std::mutex> lock(planner());
-    fftwf_destroy_plan(forward_);
-    fftwf_destroy_plan(inverse_);
-  }
-  void forward(Complex* values) override { execute(forward_, values); }
-  void inverse(Complex* values) override { execute(inverse_, values); }
-
- private:
-  void execute(fftwf_plan plan, Complex* values) const {
-#pragma omp parallel for schedule(static) num_threads(threads_) if (fields_ > 1)
-    for (int n = 0; n < fields_; ++n) {
-      auto* v = reinterpret_cast<fftwf_complex*>(values + static_cast<std::ptrdiff_t>(n) * values_);
-      fftwf_execute_dft(plan, v, v);
-    }
-  }
-  int values_, fields_, threads_;
-  fftwf_plan forward_ = nullptr, inverse_ = nullptr;
-};
 
 /// A copy that was complete when it was started.
 class CompletedCopy final : public HostCopy {
@@ -75,7 +26,7 @@ class CompletedCopy final : public HostCopy {
   Exec& exec_;
 };
 
-constexpr std::size_t alignment = 64;  // a cache line, which also suits FFTW's SIMD code
+constexpr std::size_t alignment = 64;  // a cache line, and a vector of AVX-512
 
 /// Calls work(begin, size) for parts of 64 KiB; all threads take part if there is more than one part.
 template <class Work>
@@ -123,10 +74,6 @@ void CpuExec::copy(void* to, const void* from, std::size_t bytes) {
   for_each_chunk(bytes, threads_, [=](std::size_t begin, std::size_t size) {
     std::memcpy(static_cast<char*>(to) + begin, static_cast<const char*>(from) + begin, size);
   });
-}
-
-std::unique_ptr<Fft> CpuExec::make_fft(int width, int height, int fields) {
-  return std::make_unique<FftwTransform>(width, height, fields, threads_);
 }
 
 std::unique_ptr<HostCopy> Exec::start_download(void* to, const void* from, std::size_t bytes) {

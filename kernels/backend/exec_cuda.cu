@@ -21,7 +21,7 @@ void check_cufft(cufftResult status, const char* what) {
 
 class CufftTransform final : public Fft {
  public:
-  CufftTransform(cudaStream_t stream, int width, int height, int fields) {
+  CufftTransform(cudaStream_t stream, int width, int height, int fields) : height_(height) {
     int size[] = {height, width};
     const int values = width * height;
     check_cufft(cufftPlanMany(&plan_, 2, size, nullptr, 1, values, nullptr, 1, values, CUFFT_C2C, fields),
@@ -31,6 +31,7 @@ class CufftTransform final : public Fft {
   ~CufftTransform() override { cufftDestroy(plan_); }
   void forward(Complex* values) override { execute(values, CUFFT_FORWARD); }
   void inverse(Complex* values) override { execute(values, CUFFT_INVERSE); }
+  int rows_given() const override { return height_; }
   std::size_t bytes() const override {
     std::size_t bytes = 0;
     check_cufft(cufftGetSize(plan_, &bytes), "size");
@@ -42,6 +43,7 @@ class CufftTransform final : public Fft {
     auto* v = reinterpret_cast<cufftComplex*>(values);
     check_cufft(cufftExecC2C(plan_, v, v, direction), "transform");
   }
+  int height_;
   cufftHandle plan_ = 0;
 };
 
@@ -319,7 +321,7 @@ std::size_t CudaExec::memory_for_lines() const {
   return static_cast<std::size_t>(ask(cudaDevAttrMaxSharedMemoryPerBlockOptin));
 }
 
-std::unique_ptr<Fft> CudaExec::make_fft(int width, int height, int fields) {
+std::unique_ptr<Fft> CudaExec::make_fft(int width, int height, int fields, FftMethod) {
   return std::make_unique<CufftTransform>(as_stream(stream_), width, height, fields);
 }
 

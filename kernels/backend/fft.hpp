@@ -1,6 +1,6 @@
 #pragma once
-/// Interface to FFTW3 (CPU) and cuFFT (GPU). Kernels that transform short lines by themselves do not need it
-/// (kernels/wind/tuned/line_transform.hpp).
+/// Two-dimensional Fourier transforms. Kernels that transform short lines by themselves do not need it
+/// (kernels/backend/line_transform.hpp).
 
 #include <cstddef>
 
@@ -10,6 +10,14 @@ namespace desert_sim {
 struct alignas(8) Complex {
   float re, im;
 };
+
+/// library: FFTW on a CPU, cuFFT on a GPU.
+/// lines: on a CPU line by line, by all threads, where the lengths suit (LineTransform::supports_length), and
+/// else by the library. For the small grids of the wind of hops FFTW is fast enough, and keeps its bits.
+/// lines_of_mirrored_rows: likewise; the second half of the rows mirrors the first, as on a terrain that is
+/// open in the north and south (row j is row height − 1 − j), and of an inverse transform only the first half
+/// is wanted.
+enum class FftMethod { library, lines, lines_of_mirrored_rows };
 
 class Fft {
  public:
@@ -23,6 +31,8 @@ class Fft {
   ///
   ///   x(n) = Σ_k X̂(k) e^(+2πi k·n/N)
   virtual void inverse(Complex* values) = 0;
+  /// Rows that forward() reads, from the first on: all, or half of them where the others mirror these.
+  virtual int rows_given() const = 0;
   /// Device memory of its work area, besides the values [bytes].
   virtual std::size_t bytes() const { return 0; }
 };

@@ -6,6 +6,13 @@
 
 namespace desert_sim::traversability {
 
+/// Moves a place beyond a periodic edge to where it lies on the grid; false beyond an open one.
+DESERT_HD bool move_onto(const Grid& g, int& x, int& y) {
+  if (g.periodic_x) x = wrap(x, g.width);
+  if (g.periodic_y) y = wrap(y, g.height);
+  return g.inside(x, y);
+}
+
 /// Differences of heights [quanta]. They are exact integers, whose sums do not depend on the order, so that
 /// mirrored or rotated terrain gives the same bits.
 struct Surface {

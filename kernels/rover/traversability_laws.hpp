@@ -62,6 +62,16 @@ struct Roughness {
     return residual > 0 ? static_cast<float>(sqrt(residual / static_cast<double>(n))) * surface.quantum
                         : 0.0f;
   }
+  /// Whether all of the window has one height.
+  DESERT_HD bool level_at(int x, int y) const {
+    const int i = surface.grid.index(x, y);
+    for (int dy = -reach; dy <= reach; ++dy)
+      for (int dx = -reach; dx <= reach; ++dx) {
+        Quanta rise;
+        if (surface.rise(i, x + dx, y + dy, rise) && rise != 0) return false;
+      }
+    return true;
+  }
   DESERT_HD void operator()(int x, int y) const { roughness[surface.grid.index(x, y)] = at(x, y); }
 };
 
@@ -131,8 +141,10 @@ struct Traversability {
     worst = maximum(worst, value_or_zero(water, i) * surface.quantum / limits.water_depth);
     worst = maximum(worst, mud(i));
     worst = maximum(worst, value_or_zero(vegetation, i) / limits.vegetation);
-    if (worst < 1.0f) worst = maximum(worst, step_height.at(x, y) / limits.step_height);
-    if (worst < 1.0f) worst = maximum(worst, roughness.at(x, y) / limits.roughness);
+    if (worst < 1.0f && !roughness.level_at(x, y)) {  // level ground has neither steps nor roughness
+      worst = maximum(worst, step_height.at(x, y) / limits.step_height);
+      if (worst < 1.0f) worst = maximum(worst, roughness.at(x, y) / limits.roughness);
+    }
     if (worst < 1.0f && wheels.looseness) worst = maximum(worst, slip_and_sinkage(x, y));
     return clamp(1.0f - worst, 0.0f, 1.0f);
   }

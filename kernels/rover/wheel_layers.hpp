@@ -47,12 +47,14 @@ struct WheelsAt {
   }
   /// Its mean over the axles that stand on the grid.
   DESERT_HD float mean_rise(int x, int y, int dx, int dy, int half) const {
-    const Grid& g = surface.grid;
-    const int ahead = neighbour_index(g, x + half * dx, y + half * dy),
-              behind = neighbour_index(g, x - half * dx, y - half * dy);
-    const float outer = (ahead < 0 ? 0.0f : rise(ahead % g.width, ahead / g.width, dx, dy)) +
-                        (behind < 0 ? 0.0f : rise(behind % g.width, behind / g.width, dx, dy));
-    const int axles = 1 + (ahead >= 0) + (behind >= 0);
+    int axles = 1;
+    const auto outer_rise = [&](int outer_x, int outer_y) {
+      if (!move_onto(surface.grid, outer_x, outer_y)) return 0.0f;
+      ++axles;
+      return rise(outer_x, outer_y, dx, dy);
+    };
+    const float ahead = outer_rise(x + half * dx, y + half * dy),
+                outer = ahead + outer_rise(x - half * dx, y - half * dy);
     return (outer + rise(x, y, dx, dy)) / static_cast<float>(axles);
   }
   /// Sums of looseness, depth [m] and moisture over two opposite cells.

@@ -6,12 +6,13 @@
 
 namespace desert_sim::continuum {
 
-template <bool inside>
-Prepare<inside> prepare(const TerrainView& t, const StepInputs& in, const Downwind& order, const Drift& drift,
-                        const Dice& dice, LedgerView ledger, const Workspace& work) {
+template <bool inside, bool bare>
+Prepare<inside, bare> prepare(const TerrainView& t, const StepInputs& in, const Downwind& order,
+                              const Drift& drift, const Dice& dice, LedgerView ledger,
+                              const Workspace& work) {
   const ContinuumParameters& p = in.continuum;
   const float l = t.grid.cell_size;
-  return {saltation::Inputs<false>(t, in.repose, 1.0f, 1.0f),
+  return {saltation::Inputs<bare>(t, in.repose, 1.0f, 1.0f),
           order,
           drift,
           SaturatedFlux(p, shear_stress::shear_velocity_per_wind(in.stress)),
@@ -30,11 +31,12 @@ Prepare<inside> prepare(const TerrainView& t, const StepInputs& in, const Downwi
           SweepFields(work)};
 }
 
-inline Settle settle(const TerrainView& t, const StepInputs& in, const Downwind& order, const Drift& drift,
-                     const Dice& dice, LedgerView ledger, const Workspace& work) {
+template <bool inside, bool bare>
+Settle<inside, bare> settle(const TerrainView& t, const StepInputs& in, const Downwind& order,
+                            const Drift& drift, const Dice& dice, LedgerView ledger, const Workspace& work) {
   const abrasion::Abrade abrade =
       saltation::abrade_for(t, in.abrasion, in.time_step, dice[Roll::abrasion], ledger);
-  return {saltation::Inputs<false>(t, in.repose, 1.0f, 1.0f),
+  return {saltation::Inputs<bare>(t, in.repose, 1.0f, 1.0f),
           order,
           drift,
           SweepFields(work),
@@ -49,7 +51,7 @@ inline Settle settle(const TerrainView& t, const StepInputs& in, const Downwind&
           in.impact_strength};
 }
 
-template <class E>
+template <bool bare, class E>
 void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger,
           Workspace& work) {
   const Downwind order(t.grid, in.above);
@@ -57,12 +59,24 @@ void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice,
   for_each_cell(exec, t.grid,
                 Lead{t.grid, order, drift, t.real(Layer::wind_x), t.real(Layer::wind_y), work.lead.data()});
   for_each_cell(exec, t.grid,
-                Bordered<Prepare<true>, Prepare<false>>{
-                    t.grid, Prepare<true>::margin, prepare<true>(t, in, order, drift, dice, ledger, work),
-                    prepare<false>(t, in, order, drift, dice, ledger, work)});
+                Bordered<Prepare<true, bare>, Prepare<false, bare>>{
+                    t.grid, margin, prepare<true, bare>(t, in, order, drift, dice, ledger, work),
+                    prepare<false, bare>(t, in, order, drift, dice, ledger, work)});
   for_each_line_in_turn(exec, 0, order.lines(), order.length(), work.lines.data(),
                         PassSand{order, drift, dice[Roll::lift], SweepFields(work)});
-  for_each_cell(exec, t.grid, settle(t, in, order, drift, dice, ledger, work));
+  for_each_cell(exec, t.grid,
+                Bordered<Settle<true, bare>, Settle<false, bare>>{
+                    t.grid, margin, settle<true, bare>(t, in, order, drift, dice, ledger, work),
+                    settle<false, bare>(t, in, order, drift, dice, ledger, work)});
+}
+
+template <class E>
+void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger,
+          Workspace& work) {
+  if (saltation::is_bare(t, in.abrasion))
+    step<true>(exec, t, in, dice, ledger, work);
+  else
+    step<false>(exec, t, in, dice, ledger, work);
 }
 
 template void step(Backend&, const TerrainView&, const StepInputs&, const Dice&, LedgerView, Workspace&);

@@ -25,12 +25,14 @@ struct Turn {
   DESERT_HD static Turn of(float after, float before) {
     constexpr float most = 65535.0f / 65536.0f;
     const float to_after = clamp(after, 0.0f, most), to_before = clamp(before, 0.0f, most - to_after);
-    return {static_cast<std::uint32_t>(to_before * 65536.0f) << 16 |
-            static_cast<std::uint32_t>(to_after * 65536.0f)};
+    return {static_cast<std::uint32_t>(static_cast<int>(to_before * 65536.0f)) << 16 |
+            static_cast<std::uint32_t>(static_cast<int>(to_after * 65536.0f))};
   }
   /// [cells]
   DESERT_HD float mean() const {
-    return (static_cast<float>(both & 65535u) - static_cast<float>(both >> 16)) / 65536.0f;
+    return (static_cast<float>(static_cast<int>(both & 65535u)) -
+            static_cast<float>(static_cast<int>(both >> 16))) /
+           65536.0f;
   }
   DESERT_HD Quanta after(Quanta all) const { return share(all, both << 16); }
   DESERT_HD Quanta before(Quanta all) const { return share(all, both & 0xffff0000u); }
@@ -60,8 +62,16 @@ struct Drift {
   std::uint32_t beyond;  ///< share of the second one [2⁻³²]
   float share_beyond;    ///< [1]
   float shift;           ///< [cells a line], at most 1
+  // Steps from a cell to the next place of its line, and to the next line [cells]. Kept as numbers: compilers
+  // would make choices between loads of what Downwind says, and vectorise no loop with such a choice.
+  int across_x, across_y, forward_x, forward_y;
 
-  Drift(const Downwind& order, wind::Vector above) : shift(order.shift(above.x, above.y)) {
+  Drift(const Downwind& order, wind::Vector above)
+      : shift(order.shift(above.x, above.y)),
+        across_x(order.across_x()),
+        across_y(order.across_y()),
+        forward_x(order.forward_x()),
+        forward_y(order.forward_y()) {
     const int fixed_point = to_fixed_point(shift);
     cells = fixed_point >> 16;
     beyond = static_cast<std::uint32_t>(fixed_point) << 16;
@@ -84,12 +94,15 @@ struct Lead {
   }
 };
 
+/// Cells at least so far from every edge are `inside` for the laws: nothing comes over an edge to them, and
+/// nothing leaves over one.
+constexpr int margin = 3;
+
 /// What a cell would do with the sand that comes: everything about it that does not depend on its inflow.
-/// `inside`: the cell lies at least `margin` cells from every edge.
-template <bool inside>
+/// `bare`: saltation::Inputs.
+template <bool inside, bool bare>
 struct Prepare {
-  static constexpr int margin = 3;
-  using Layers = saltation::Inputs<false>;
+  using Layers = saltation::Inputs<bare>;
   Layers in;
   Downwind order;
   Drift drift;
@@ -124,8 +137,8 @@ struct Prepare {
   /// leads to `here`. It is a mean over what comes to the face and what is there: that of the cells alone
   /// would lie half a line too far downwind.
   DESERT_HD float at_face(int x, int y, float here, int side) const {
-    const int d_x = order.across_x(), d_y = order.across_y();
-    const int up_x = x - order.forward_x(), up_y = y - order.forward_y();
+    const int d_x = drift.across_x, d_y = drift.across_y;
+    const int up_x = x - drift.forward_x, up_y = y - drift.forward_y;
     const auto from_upwind = [&](int n) DESERT_INLINE {
       const int near = n - drift.cells, far = near - 1;
       return lerp(to.lead[sample(up_x + near * d_x, up_y + near * d_y)],
@@ -136,11 +149,10 @@ struct Prepare {
   }
   /// What turns off the way of the undisturbed wind, by the stress and, `per_rise` = √(Θ_t/Θ)/μ, by the fall
   /// of the ground across it, both at the faces between places: a ridge of one cell would have no slope
-  /// otherwise.
-  DESERT_HD Turn turn(int x, int y, float shift, float per_rise) const {
-    const int d_x = order.across_x(), d_y = order.across_y();
-    const int a_x = order.forward_x(), a_y = order.forward_y();
-    const float here = height(x, y), along = shift * slope(x - a_x, y - a_y, x + a_x, y + a_y);
+  /// otherwise. `slope_along`: from line to line.
+  DESERT_HD Turn turn(int x, int y, float shift, float slope_along, float per_rise) const {
+    const int d_x = drift.across_x, d_y = drift.across_y;
+    const float here = height(x, y), along = shift * slope_along;
     const float rise_after = (height(x + d_x, y + d_y) - here) * slope_per_quantum - along,
                 rise_before = (here - height(x - d_x, y - d_y)) * slope_per_quantum - along;
     const float across = per_rise / sqrtf(1.0f + shift * shift);
@@ -153,7 +165,10 @@ struct Prepare {
     const int i = in.grid.index(x, y), n = order.slot(x, y);
     const float u = in.wind_x[i], v = in.wind_y[i], speed = hypotenuse(u, v);
     const float per_speed = speed > 0.0f ? 1.0f / speed : 0.0f, e_x = u * per_speed, e_y = v * per_speed;
-    const float rising = e_x * slope(x - 1, y, x + 1, y) + e_y * slope(x, y - 1, x, y + 1);
+    const float slope_x = slope(x - 1, y, x + 1, y), slope_y = slope(x, y - 1, x, y + 1);
+    const float rising = e_x * slope_x + e_y * slope_y;
+    const float slope_along =
+        static_cast<float>(drift.forward_x) * slope_x + static_cast<float>(drift.forward_y) * slope_y;
     const float dry = in.flooded(i) ? 0.0f : saltation::dryness(in.moisture(i));
     const float shields =
         maximum(flux.shields_per_wind_squared * speed * speed, 1e-20f) / (1.0f + plant_drag * in.plants(i));
@@ -161,7 +176,7 @@ struct Prepare {
     const float q = dry > 0.0f ? flux(shields, at_threshold / dry) : 0.0f;
 
     const float shift = to.lead[i], per_rise = sqrtf(flux.threshold / shields) * per_friction;
-    const Turn turned = turn(x, y, shift, shields > flux.threshold ? per_rise : 0.0f);
+    const Turn turned = turn(x, y, shift, slope_along, shields > flux.threshold ? per_rise : 0.0f);
     const float across = drift.shift + turned.mean(),
                 path = sqrtf(1.0f + across * across);  // through the cell [cells]
     const float decay = exp_negative(cells_per_length * path);
@@ -183,7 +198,7 @@ struct Prepare {
   /// What the influx over open edges brings to a cell [quanta]: to the first line, and to the cells at a side
   /// from which the wind blows in.
   DESERT_HD Quanta over_edge(int x, int y, int i) const {
-    if (!(influx > 0.0f)) return 0;
+    if (inside || !(influx > 0.0f)) return 0;
     const float shift = drift.shift, path = sqrtf(1.0f + shift * shift);
     float share = !order.periodic_along() && order.line_of(x, y) == 0 ? 1.0f : 0.0f;
     if (!order.periodic_across()) {
@@ -269,8 +284,9 @@ struct PassSand {
 };
 
 /// Applies the changes, books what left the grid, lets the ground wear, and tells the flux.
+template <bool inside, bool bare>
 struct Settle {
-  using Layers = saltation::Inputs<false>;
+  using Layers = saltation::Inputs<bare>;
   Layers in;
   Downwind order;
   Drift drift;
@@ -286,8 +302,10 @@ struct Settle {
     const int i = in.grid.index(x, y), n = order.slot(x, y), place = order.place_of(x, y);
     const Quanta change = from.change[n], out = from.out[n], before = sand[i];
     sand[i] = before + change;
-    if (order.line_of(x, y) == 0 && order.periodic_along()) airborne[i] = over_seam(place);
-    ledger.book_out(Material::sand, i, lost(n, order.line_of(x, y), place));
+    if constexpr (!inside) {
+      if (order.line_of(x, y) == 0 && order.periodic_along()) airborne[i] = over_seam(place);
+      ledger.book_out(Material::sand, i, lost(n, order.line_of(x, y), place));
+    }
 
     const float across = drift.shift + Turn{from.turn[n]}.mean();
     const float along = (static_cast<float>(out) + 0.5f * static_cast<float>(change)) * flux_per_quantum;
@@ -295,7 +313,7 @@ struct Settle {
     const float speed = hypotenuse(in.wind_x[i], in.wind_y[i]), plants = in.plants(i);
     const float over_a_metre = speed > 0.0f ? q / speed : 0.0f;
     if (impact_strength) impact_strength[i] = over_a_metre * (1.0f - plants);
-    if (!in.solid(i) && !in.flooded(i)) {
+    if (!bare && !in.solid(i) && !in.flooded(i)) {
       const float settled = change > 0 ? static_cast<float>(change) / static_cast<float>(change + out) : 0.0f;
       abrade(i, before, over_a_metre * in.quanta_per_metre, speed, plants, in.moisture(i), settled);
     }

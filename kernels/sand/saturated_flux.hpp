@@ -63,21 +63,20 @@ double saturation_length(const ContinuumParameters& p);
 
 /// The law with its constants; made on the host.
 struct SaturatedFlux {
-  FluxLaw law;
-  float shields_per_wind_squared;  ///< Θ of a wind of 1 m/s at the height of the shear stress
-  float threshold;                 ///< Θ_t of dry level sand
-  float factor;                    ///< [m²/s]
+  float shields_per_wind_squared;              ///< Θ of a wind of 1 m/s at the height of the shear stress
+  float threshold;                             ///< Θ_t of dry level sand
+  float quadratic, bagnold, kawamura, lettau;  ///< factors of the laws [m²/s], of which one is not 0
 
   SaturatedFlux(const ContinuumParameters& p, double shear_velocity_per_wind);
 
-  /// q [m²/s] for a Shields number and its threshold.
+  /// q [m²/s] for a Shields number and its threshold, both at least 0. All laws are computed, and those that
+  /// do not hold count 0 times: compilers do not vectorise a choice that is the same for all cells.
   DESERT_HD float operator()(float shields, float at_threshold) const {
-    if (!(shields > at_threshold)) return 0.0f;
     const float root = sqrtf(shields), root_of_threshold = sqrtf(at_threshold);
-    if (law == FluxLaw::quadratic) return factor * (shields - at_threshold);
-    if (law == FluxLaw::bagnold) return factor * shields * root;
     const float excess = root - root_of_threshold, sum = root + root_of_threshold;
-    return factor * excess * (law == FluxLaw::kawamura ? sum * sum : shields);
+    const float q = quadratic * (shields - at_threshold) + bagnold * shields * root +
+                    (kawamura * excess * (sum * sum) + lettau * excess * shields);
+    return shields > at_threshold ? q : 0.0f;
   }
 };
 

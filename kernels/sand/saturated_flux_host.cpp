@@ -9,7 +9,8 @@ double saturation_length(const ContinuumParameters& p) {
   return p.saturation_length > 0 ? static_cast<double>(p.saturation_length) : 2.2 * drag_length;
 }
 
-SaturatedFlux::SaturatedFlux(const ContinuumParameters& p, double shear_velocity_per_wind) : law(p.flux_law) {
+SaturatedFlux::SaturatedFlux(const ContinuumParameters& p, double shear_velocity_per_wind) {
+  const FluxLaw law = p.flux_law;
   constexpr double reference_diameter = 0.00025, of_source[] = {7.8, 1.8, 2.78, 4.2};
   const double d = p.grain_diameter, ratio = static_cast<double>(p.grain_density) / p.air_density;
   const double velocity_squared = (ratio - 1) * p.gravity * d;  // u_*² at Θ = 1
@@ -21,7 +22,13 @@ SaturatedFlux::SaturatedFlux(const ContinuumParameters& p, double shear_velocity
   double q = c * std::pow(velocity_squared, 1.5) / (ratio * p.gravity);
   if (law == FluxLaw::quadratic) q = c * static_cast<double>(p.threshold) * d * std::sqrt(velocity_squared);
   if (law == FluxLaw::bagnold || law == FluxLaw::lettau) q *= std::sqrt(d / reference_diameter);
-  factor = static_cast<float>(q / p.packing);
+  const auto factor_if = [&](FluxLaw holds) {
+    return law == holds ? static_cast<float>(q / p.packing) : 0.0f;
+  };
+  quadratic = factor_if(FluxLaw::quadratic);
+  bagnold = factor_if(FluxLaw::bagnold);
+  kawamura = factor_if(FluxLaw::kawamura);
+  lettau = factor_if(FluxLaw::lettau);
 }
 
 }  // namespace desert_sim::continuum

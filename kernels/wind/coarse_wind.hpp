@@ -26,6 +26,8 @@ struct CoarseGrid {
   DESERT_HD AxisInterpolation interpolation_x(int x) const;
   DESERT_HD AxisInterpolation interpolation_y(int y) const;
   DESERT_HD int values() const { return width * height; }
+  /// Whether its cells are those of the terrain.
+  bool is_full() const { return columns == fine.width && rows == fine.height; }
   DESERT_HD Grid transformed() const { return Grid{width, height, fine.cell_size * ratio_x, true, true}; }
 };
 
@@ -170,7 +172,7 @@ struct Mode {
 
   DESERT_HD Mode(const CoarseGrid& c, int i, int j) {
     const int mx = 2 * i > c.width ? i - c.width : i, my = 2 * j > c.height ? j - c.height : j;
-    nyquist = 2 * i == c.width || 2 * j == c.height;
+    nyquist = ((2 * i == c.width) | (2 * j == c.height)) != 0;  // without a branch, for vectors
     kx = c.wavenumber_x * mx;
     ky = c.wavenumber_y * my;
   }

@@ -1,6 +1,8 @@
 /// The step of shear_stress.hpp; compiled once for each backend.
 #include "kernels/wind/shear_stress.hpp"
 
+#include <type_traits>
+
 #include "kernels/backend/loops.hpp"
 #include "kernels/wind/downwind.hpp"
 #include "kernels/wind/surface_wind.hpp"
@@ -141,6 +143,20 @@ struct CoarsenFilled {
   }
 };
 
+/// The surface with its bubbles on a grid of the terrain's own cells.
+struct TakeFilled {
+  wind::CoarseGrid coarse;
+  Downwind order;
+  const float* filled;
+  float reference, quantum;
+  Complex* spectrum;
+
+  DESERT_HD void operator()(int x, int y) const {
+    const float height = filled[order.slot(coarse.mirrored_column(x), coarse.mirrored_row(y))];
+    spectrum[y * coarse.width + x] = {quantum * (height - reference), 0.0f};
+  }
+};
+
 /// Multiplies the spectrum of the surface by the response: real parts become τ_∥/τ_0, imaginary parts
 /// τ_⊥/τ_0.
 struct Respond {
@@ -155,18 +171,16 @@ struct Respond {
     const wind::Mode mode(coarse, i, j);
     const float size = hypotenuse(mode.kx, mode.ky);
     const float scale = transfer_x[i] * transfer_y[j] * cells_per_metre / maximum(size, 1e-20f);
-    if (mode.nyquist) {
-      // The sign of such a wavenumber is undefined; the mean over both is the part that smooths the bed.
-      // Without it nothing would damp waves of two cells.
-      const float mean_square = mode.kx * along.x * mode.kx * along.x + mode.ky * along.y * mode.ky * along.y;
-      value = response(value, scale * a * mean_square, 0.0f);
-      return;
-    }
     const float k_along = mode.kx * along.x + mode.ky * along.y,
                 k_across = mode.ky * along.x - mode.kx * along.y;
-    const float even = a * k_along, odd = b * fabsf(k_along);
-    const Complex parallel = response(value, scale * k_along * even, scale * k_along * odd);
-    const Complex across = response(value, 0.5f * scale * k_across * even, 0.5f * scale * k_across * odd);
+    // The sign of a Nyquist wavenumber is undefined; the mean over both is the part that smooths the bed.
+    // Without it nothing would damp waves of two cells.
+    const float mean_square = mode.kx * along.x * mode.kx * along.x + mode.ky * along.y * mode.ky * along.y;
+    const float even = scale * k_along * (a * k_along), smoothing = scale * a * mean_square;
+    const float signed_part = mode.nyquist ? 0.0f : 1.0f;
+    const float odd = b * fabsf(k_along) * signed_part, half = 0.5f * scale * k_across;
+    const Complex parallel = response(value, mode.nyquist ? smoothing : even, scale * k_along * odd);
+    const Complex across = response(value, half * (a * k_along) * signed_part, half * odd);
     value = {parallel.re - across.im, parallel.im + across.re};  // parallel + i across
   }
   DESERT_HD static Complex response(Complex h, float real, float imaginary) {
@@ -174,11 +188,12 @@ struct Respond {
   }
 };
 
-/// The layers wind_x and wind_y from the response and the bubbles.
+/// The layers wind_x and wind_y from the response and the bubbles. `full`: the response has a value a cell.
+template <bool full>
 struct BlowOverGround {
   wind::CoarseGrid coarse;
   wind::Vector above, along;
-  const Complex* rows;  ///< null: no response
+  const Complex* response;  ///< null: none; interpolated along x, or `full`
   Downwind order;
   const float *heights, *filled;  ///< in the order of the terrain, and in that of the sweep
   float per_fall;                 ///< 1 over what the separated flow falls in a cell [1/quanta]
@@ -189,19 +204,21 @@ struct BlowOverGround {
     const int i = coarse.fine.index(x, y);
     const float u = above.x + value_or_zero(perturbation_x, i),
                 v = above.y + value_or_zero(perturbation_y, i);
-    Complex response{0.0f, 0.0f};
-    if (rows) {
-      wind::InterpolatedColumn<Complex> column(rows, x, coarse.fine.width);
-      const wind::AxisInterpolation along_y = coarse.interpolation_y(y);
-      column.move_to(along_y);
-      response = column.at(along_y);
-    }
+    const Complex stress = response_at(x, y);
     const float open = 1.0f - clamp((filled[order.slot(x, y)] - heights[i]) * per_fall, 0.0f, 1.0f);
-    const float parallel = maximum(1.0f + response.re, 0.0f) * open, across = response.im * open;
+    const float parallel = maximum(1.0f + stress.re, 0.0f) * open, across = stress.im * open;
     const float size = sqrtf(hypotenuse(parallel, across));
     const float scale = size > 0.0f ? 1.0f / size : 0.0f;
     wind_x[i] = (u * parallel - v * across) * scale;
     wind_y[i] = (v * parallel + u * across) * scale;
+  }
+  DESERT_HD Complex response_at(int x, int y) const {
+    if (!response) return {0.0f, 0.0f};
+    if constexpr (full) return response[y * coarse.width + x];
+    wind::InterpolatedColumn<Complex> column(response, x, coarse.fine.width);
+    const wind::AxisInterpolation along_y = coarse.interpolation_y(y);
+    column.move_to(along_y);
+    return column.at(along_y);
   }
 };
 
@@ -232,17 +249,25 @@ template <class E>
 void respond(E& exec, const TerrainView& t, const ShearStressParameters& p, const Downwind& order,
              wind::Vector along, float reference, Workspace& work) {
   const wind::CoarseGrid& coarse = work.coarse;
-  const wind::CoarsenRows rows{coarse, work.filled.data(), reference, work.row_means.data()};
-  for_each_cell(exec, rows.grid(), CoarsenFilled{rows, order});
   const Grid grid = coarse.transformed();
-  for_each_cell(
-      exec, grid,
-      wind::CoarsenColumns{coarse, work.row_means.data(), t.quantum, work.rise.data(), work.spectrum.data()});
+  Grid given = grid;
+  given.height = work.fft->rows_given();
+  if (coarse.is_full()) {
+    for_each_cell(exec, given,
+                  TakeFilled{coarse, order, work.filled.data(), reference, t.quantum, work.spectrum.data()});
+  } else {
+    const wind::CoarsenRows rows{coarse, work.filled.data(), reference, work.row_means.data()};
+    for_each_cell(exec, rows.grid(), CoarsenFilled{rows, order});
+    for_each_cell(exec, given,
+                  wind::CoarsenColumns{coarse, work.row_means.data(), t.quantum, work.rise.data(),
+                                       work.spectrum.data()});
+  }
   work.fft->forward(work.spectrum.data());
   for_each_cell(exec, grid,
                 Respond{coarse, along, p.in_phase, p.in_quadrature, 1.0f / t.grid.cell_size,
                         work.transfer_x.data(), work.transfer_y.data(), work.spectrum.data()});
   work.fft->inverse(work.spectrum.data());
+  if (coarse.is_full()) return;
   const wind::InterpolateRows interpolate{coarse, work.spectrum.data(), nullptr, work.rows.data(), nullptr};
   for_each_cell(exec, interpolate.grid(), interpolate);
 }
@@ -260,11 +285,19 @@ void step(E& exec, const TerrainView& t, const ShearStressParameters& p, const w
   const Downwind order(t.grid, along);
   fill_bubbles(exec, t, order, along, tangent, in.heights, work);
   if (responds) respond(exec, t, p, order, along, static_cast<float>(in.reference), work);
-  for_each_cell(exec, t.grid,
-                BlowOverGround{work.coarse, above, along, responds ? work.rows.data() : nullptr, order,
-                               in.heights.cell_heights.data(), work.filled.data(),
-                               1.0f / (tangent * t.grid.cell_size * t.quanta_per_metre), in.perturbation_x,
-                               in.perturbation_y, t.real(Layer::wind_x), t.real(Layer::wind_y)});
+  const float per_fall = 1.0f / (tangent * t.grid.cell_size * t.quanta_per_metre);
+  const auto blow = [&](auto full) {
+    const Complex* const response = full ? work.spectrum.data() : work.rows.data();
+    for_each_cell(
+        exec, t.grid,
+        BlowOverGround<full>{work.coarse, above, along, responds ? response : nullptr, order,
+                             in.heights.cell_heights.data(), work.filled.data(), per_fall, in.perturbation_x,
+                             in.perturbation_y, t.real(Layer::wind_x), t.real(Layer::wind_y)});
+  };
+  if (work.coarse.is_full())
+    blow(std::true_type());
+  else
+    blow(std::false_type());
 }
 
 template void step(Backend&, const TerrainView&, const ShearStressParameters&, const wind::FlowInputs&,

@@ -54,14 +54,15 @@ constexpr int words_handed_on = 3, reach_of_words = 2;
 struct Workspace {
   wind::CoarseGrid coarse;
   std::unique_ptr<Fft> fft;
-  Buffer<float> ground;     ///< heights in the order of the sweep, as `lee` and `filled` [quanta]
-  Buffer<float> lee;        ///< how low the ground lies downwind of each cell [quanta]
-  Buffer<float> filled;     ///< the surface with the bubbles [quanta]
-  Buffer<float> lines;      ///< what lines of the sweeps hand on
+  Buffer<float> ground;  ///< heights in the order of the sweep, as `lee` and `filled` [quanta]
+  Buffer<float> lee;     ///< how low the ground lies downwind of each cell [quanta]
+  Buffer<float> filled;  ///< the surface with the bubbles [quanta]
+  Buffer<float> lines;   ///< what lines of the sweeps hand on
+  Buffer<Complex> spectrum;
+  // Empty where the coarse grid is the terrain's own:
   Buffer<float> row_means;  ///< of `filled` [quanta]
   Buffer<float> rise;       ///< of the coarse cells [m]
-  Buffer<Complex> spectrum;
-  Buffer<Complex> rows;  ///< the response, interpolated along x
+  Buffer<Complex> rows;     ///< the response, interpolated along x
   Buffer<float> transfer_x, transfer_y;
 
   std::size_t bytes() const;

@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "kernels/backend/for_each.hpp"
+#include "kernels/backend/line_transform.hpp"
 #include "kernels/wind/coarse_modes.hpp"
 #include "kernels/wind/shear_stress.hpp"
 #include "kernels/wind/surface_wind.hpp"
-#include "kernels/wind/tuned/line_transform.hpp"
 
 namespace desert_sim::shear_stress {
 
@@ -45,15 +45,18 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const ShearStressParamete
   work.coarse = wind::coarse_grid_of(grid, coarse_cells(grid.width, ratio), coarse_cells(grid.height, ratio));
   const wind::CoarseGrid& c = work.coarse;
   const auto values = static_cast<std::size_t>(c.values());
-  work.fft = exec.make_fft(c.width, c.height);
+  work.fft = exec.make_fft(c.width, c.height, 1,
+                           c.rows < c.height ? FftMethod::lines_of_mirrored_rows : FftMethod::lines);
   for (Buffer<float>* buffer : {&work.ground, &work.lee, &work.filled})
     *buffer = Buffer<float>(exec, static_cast<std::size_t>(grid.cells()));
   work.lines = Buffer<float>(
       exec, words_for_lines(words_handed_on, reach_of_words, std::max(grid.width, grid.height)));
-  work.row_means = Buffer<float>(exec, static_cast<std::size_t>(c.columns) * grid.height);
-  work.rise = Buffer<float>(exec, values);
   work.spectrum = Buffer<Complex>(exec, values);
-  work.rows = Buffer<Complex>(exec, static_cast<std::size_t>(wind::InterpolateRows::values(c)));
+  if (!c.is_full()) {
+    work.row_means = Buffer<float>(exec, static_cast<std::size_t>(c.columns) * grid.height);
+    work.rise = Buffer<float>(exec, values);
+    work.rows = Buffer<Complex>(exec, static_cast<std::size_t>(wind::InterpolateRows::values(c)));
+  }
   work.transfer_x = wind::on_device(exec, transfer({c.width, c.ratio_x}));
   work.transfer_y = wind::on_device(exec, transfer({c.height, c.ratio_y}));
   return work;

@@ -40,12 +40,12 @@
 
 #include "kernels/backend/buffer.hpp"
 #include "kernels/backend/fft.hpp"
+#include "kernels/backend/line_transform.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/field/surface.hpp"
 #include "kernels/wind/coarse_wind.hpp"
 #include "kernels/wind/flow_inputs.hpp"
 #include "kernels/wind/surface_wind.hpp"
-#include "kernels/wind/tuned/line_transform.hpp"
 #include "kernels/wind/wind_parameters.hpp"
 
 namespace desert_sim {

@@ -82,7 +82,9 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   const double least_sigma = p.radii.count > 0 ? 0.5 * default_coarse_cell(p) / fine.cell_size : 0;
   work.flow_x = on_device(exec, along_x.flow_transfer(least_sigma));
   work.flow_y = on_device(exec, along_y.flow_transfer(least_sigma));
-  work.by_lines = LineTransform::supports_length(c.width) && LineTransform::supports_length(c.height) &&
+  constexpr int longest_line = 512;  // longer ones are faster by cuFFT
+  work.by_lines = std::max(c.width, c.height) <= longest_line && LineTransform::supports_length(c.width) &&
+                  LineTransform::supports_length(c.height) &&
                   bytes_for_lines(c, fields) <= exec.memory_for_lines();
   if (work.by_lines) {
     work.lines_along_x = LineTransform::for_length(c.width);

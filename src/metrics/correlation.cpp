@@ -75,7 +75,7 @@ Correlation::Correlation(const Field& h, const Field& g)
     squares_g_ = rectangle_sums(b, width, width_, height_, true);
   }
   CpuExec exec(1);
-  const auto fft = exec.make_fft(width, height, 1);
+  const auto fft = exec.make_fft(width, height, 1, FftMethod::library);
   fft->forward(a.data());
   fft->forward(b.data());
   for (std::size_t i = 0; i < a.size(); ++i) {

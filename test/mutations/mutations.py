@@ -154,10 +154,10 @@ MUTATIONS = [Mutation(*row) for row in (
 
     # ---- continuum transport
     ("stress_leads_the_wrong_way", "kernels/wind/shear_stress.cpp",
-     "odd = b * fabsf(k_along);", "odd = -b * fabsf(k_along);",
+     "odd = b * fabsf(k_along) * signed_part", "odd = -b * fabsf(k_along) * signed_part",
      "the largest stress is before the crest", "kernels_analytic *StressIsLargest*"),
     ("stress_not_turned", "kernels/wind/shear_stress.cpp",
-     "response(value, 0.5f * scale * k_across * even,", "response(value, -0.5f * scale * k_across * even,",
+     "response(value, half * (a * k_along)", "response(value, -half * (a * k_along)",
      "the stress turns along oblique waves", "kernels_analytic *BedWaves*"),
     ("bubble_not_bent", "kernels/wind/shear_stress.cpp",
      "constexpr float bend_length = 4.0f;", "constexpr float bend_length = 0.0f;",

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kernels/wind/tuned/line_transform.hpp"
+#include "kernels/backend/line_transform.hpp"
 
 namespace desert_sim::test {
 

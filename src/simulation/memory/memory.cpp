@@ -22,6 +22,7 @@ class PlannedFft final : public Fft {
       : values_(static_cast<std::size_t>(width) * height * fields) {}
   void forward(Complex*) override { throw_error(); }
   void inverse(Complex*) override { throw_error(); }
+  int rows_given() const override { throw_error(); }
   std::size_t bytes() const override { return values_ * sizeof(Complex); }
 
  private:
@@ -42,7 +43,7 @@ class PlanningExec final : public Exec {
   void upload(void*, const void*, std::size_t) override {}
   void download(void*, const void*, std::size_t) override { throw_error(); }
   void synchronise() override {}
-  std::unique_ptr<Fft> make_fft(int width, int height, int fields) override {
+  std::unique_ptr<Fft> make_fft(int width, int height, int fields, FftMethod) override {
     return std::make_unique<PlannedFft>(width, height, fields);
   }
 

@@ -48,7 +48,7 @@ class TightExec final : public Exec {
   void upload(void*, const void*, std::size_t) override {}
   void download(void*, const void*, std::size_t) override {}
   void synchronise() override {}
-  std::unique_ptr<Fft> make_fft(int, int, int) override { throw Error("made a transform"); }
+  std::unique_ptr<Fft> make_fft(int, int, int, FftMethod) override { throw Error("made a transform"); }
 
  protected:
   void* allocate_memory(std::size_t) override { throw Error("allocated before it was refused"); }

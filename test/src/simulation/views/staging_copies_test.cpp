@@ -30,7 +30,7 @@ class LateDevice final : public Exec {
   void upload(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
   void download(void* to, const void* from, std::size_t bytes) override { copy(to, from, bytes); }
   void synchronise() override {}
-  std::unique_ptr<Fft> make_fft(int, int, int) override { throw Error("no transforms here"); }
+  std::unique_ptr<Fft> make_fft(int, int, int, FftMethod) override { throw Error("no transforms here"); }
 
   std::unique_ptr<HostCopy> start_download(void* to, const void* from, std::size_t bytes) override {
     copied += bytes;

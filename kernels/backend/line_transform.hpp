@@ -1,6 +1,7 @@
 #pragma once
-/// Discrete Fourier transforms of short lines in shared memory, by a team of threads as part of a kernel:
-/// where transforms are small, the kernel launches of cuFFT take longer than their work.
+/// Discrete Fourier transforms of lines, butterfly by butterfly: on a GPU by a team of threads in shared
+/// memory, as part of a kernel (where transforms are small, the launches of cuFFT take longer than their
+/// work); on a CPU many lines beside each other as vectors (fft_cpu.cpp). All give the same bits.
 ///
 ///   X(k) = Σ_j x(j) e^(−2πi jk/n),   n without prime factors other than 2, 3 and 5
 ///
@@ -15,6 +16,7 @@
 /// and after it.
 
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 #include "kernels/backend/fft.hpp"
@@ -93,7 +95,7 @@ inline bool has_small_factors(int n) {
 }
 
 struct LineTransform {
-  static constexpr int longest = 512, max_stages = 5;
+  static constexpr int longest = 4096, max_stages = 7;  // 3⁷ has seven
 
   struct Stage {
     int radix, product_before;
@@ -104,7 +106,7 @@ struct LineTransform {
   int length = 0, count = 0;
   Stage stages[max_stages] = {};
 
-  /// Whether `n` is no longer than `longest` and smooth().
+  /// Whether `n` is no longer than `longest` and has_small_factors().
   static bool supports_length(int n) { return n >= 2 && n <= longest && has_small_factors(n); }
   /// The transform of lines of `n` values, where supports_length(n) must hold.
   static LineTransform for_length(int n) {
@@ -133,38 +135,48 @@ struct LineTransform {
     return table;
   }
 
-  /// Butterfly b of a stage, 0 ≤ b < length/radix.
+  /// Where butterfly b of a stage, 0 ≤ b < length/radix, finds its values, and where it leaves them.
   template <int radix>
-  DESERT_HD void butterfly(const Stage& stage, int b, const Complex* roots, const Complex* in,
-                           Complex* out) const {
-    const int value_stride = length / radix, product_before = stage.product_before;
-    const int before = static_cast<int>((static_cast<float>(b) + 0.5f) * stage.share) * product_before,
-              k = b - before;
-    Complex v[radix];
-    unrolled<radix>([&](auto q) { v[q] = in[b + q * value_stride]; });
-    if (product_before > 1) {
-      const int twiddle = k * stage.twiddle_stride;
-      unrolled<radix - 1>([&](auto q) { v[q + 1] = v[q + 1] * roots[(q + 1) * twiddle]; });
+  struct Butterfly {
+    int from, from_stride, to, to_stride;
+    Complex twiddles[radix];  ///< of its values; the first is 1
+
+    DESERT_HD Butterfly(const LineTransform& t, const Stage& stage, int b, const Complex* roots)
+        : from(b), from_stride(t.length / radix), to_stride(stage.product_before) {
+      const int before =
+          static_cast<int>((static_cast<float>(b) + 0.5f) * stage.share) * stage.product_before;
+      const int k = b - before;
+      to = before * radix + k;
+      unrolled<radix>([&](auto q) DESERT_INLINE { twiddles[q] = roots[q * k * stage.twiddle_stride]; });
     }
-    small_dft(v);
-    out += before * radix + k;
-    unrolled<radix>([&](auto q) { out[q * product_before] = v[q]; });
-  }
+    /// `turned`: whether twiddles are not all 1 (in all stages but the first).
+    template <bool turned>
+    DESERT_HD void run(Complex (&v)[radix]) const {
+      if constexpr (turned)
+        unrolled<radix - 1>([&](auto q) DESERT_INLINE { v[q + 1] = v[q + 1] * twiddles[q + 1]; });
+      small_dft(v);
+    }
+  };
   /// The butterflies first, first + step, first + 2 step … of a stage.
   DESERT_HD void butterflies(const Stage& stage, int first, int step, const Complex* roots, const Complex* in,
                              Complex* out) const {
-    switch (stage.radix) {
-      case 2:
-        return run_butterflies<2>(stage, first, step, roots, in, out);
-      case 3:
-        return run_butterflies<3>(stage, first, step, roots, in, out);
-      case 4:
-        return run_butterflies<4>(stage, first, step, roots, in, out);
-      case 5:
-        return run_butterflies<5>(stage, first, step, roots, in, out);
-      default:
-        return run_butterflies<6>(stage, first, step, roots, in, out);
-    }
+    with_radix(stage, [&](auto radix, auto turned) {
+      for (int b = first; b < length / radix; b += step) {
+        const Butterfly<radix> butterfly(*this, stage, b, roots);
+        Complex v[radix];
+        unrolled<radix>([&](auto q) { v[q] = in[butterfly.from + q * butterfly.from_stride]; });
+        butterfly.template run<turned>(v);
+        unrolled<radix>([&](auto q) { out[butterfly.to + q * butterfly.to_stride] = v[q]; });
+      }
+    });
+  }
+  /// Calls body(radix, turned) with the stage's radix, and whether it has twiddle factors, as constants.
+  template <class Body>
+  DESERT_HD static void with_radix(const Stage& stage, const Body& body) {
+    if (stage.product_before > 1)
+      with_radix(stage.radix, std::true_type(), body);
+    else
+      with_radix(stage.radix, std::false_type(), body);
   }
 
  private:
@@ -172,10 +184,20 @@ struct LineTransform {
   /// odd stride avoids bank conflicts in shared memory.
   static constexpr int radices[] = {5, 3, 6, 4, 2};
 
-  template <int radix>
-  DESERT_HD void run_butterflies(const Stage& stage, int first, int step, const Complex* roots,
-                                 const Complex* in, Complex* out) const {
-    for (int b = first; b < length / radix; b += step) butterfly<radix>(stage, b, roots, in, out);
+  template <class Turned, class Body>
+  DESERT_HD static void with_radix(int radix, Turned turned, const Body& body) {
+    switch (radix) {
+      case 2:
+        return body(std::integral_constant<int, 2>(), turned);
+      case 3:
+        return body(std::integral_constant<int, 3>(), turned);
+      case 4:
+        return body(std::integral_constant<int, 4>(), turned);
+      case 5:
+        return body(std::integral_constant<int, 5>(), turned);
+      default:
+        return body(std::integral_constant<int, 6>(), turned);
+    }
   }
 
   /// Finds radices whose product is n for the last `left` of `count` stages; false if there are none.

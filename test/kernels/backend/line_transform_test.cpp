@@ -1,6 +1,6 @@
 // Transforms of lines against the sum that defines them, in double precision.
 
-#include "kernels/wind/tuned/line_transform.hpp"
+#include "kernels/backend/line_transform.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,11 +28,17 @@ Line some_line(int n) {
   return line;
 }
 
+/// All lengths to 512, and then some.
+std::vector<int> lengths_here() {
+  std::vector<int> lengths;
+  for (int n = 2; n <= 512; ++n)
+    if (LineTransform::supports_length(n)) lengths.push_back(n);
+  for (int n : {540, 1024, 1536, 2187, 3125, 3888, 4096}) lengths.push_back(n);
+  return lengths;
+}
+
 TEST(LineTransform, IsTheSumForEveryLengthThatSuits) {
-  int lengths = 0;
-  for (int n = 2; n <= LineTransform::longest; ++n) {
-    if (!LineTransform::supports_length(n)) continue;
-    ++lengths;
+  for (int n : lengths_here()) {
     const Line line = some_line(n), modes = transformed(line, 16);
     double error = 0, size = 0;
     for (int k = 0; k < n; ++k) {
@@ -45,7 +51,7 @@ TEST(LineTransform, IsTheSumForEveryLengthThatSuits) {
     }
     EXPECT_LT(std::sqrt(error / size), 2e-7 * std::log2(2.0 * n)) << n;
   }
-  EXPECT_EQ(lengths, 67);  // 2^a 3^b 5^c from 2 to 512
+  EXPECT_EQ(lengths_here().size(), 67u + 7u);  // 2^a 3^b 5^c from 2 to 512, and the longer ones
 }
 
 TEST(LineTransform, BackAgainWithPartsExchanged) {
@@ -62,8 +68,7 @@ TEST(LineTransform, BackAgainWithPartsExchanged) {
 }
 
 TEST(LineTransform, UniformLinesHaveExactlyOneMode) {
-  for (int n = 2; n <= LineTransform::longest; ++n) {
-    if (!LineTransform::supports_length(n)) continue;
+  for (int n : lengths_here()) {
     const Line modes = transformed(Line(static_cast<std::size_t>(n), Complex{1.7f, 0.0f}), 16);
     for (int k = 1; k < n; ++k) {
       ASSERT_EQ(modes[k].re, 0.0f) << n << ' ' << k;
@@ -73,8 +78,8 @@ TEST(LineTransform, UniformLinesHaveExactlyOneMode) {
 }
 
 TEST(LineTransform, LongLinesAndOtherPrimesDoNotSuit) {
-  for (int n : {0, 1, 7, 44, 182, 513, 540}) EXPECT_FALSE(LineTransform::supports_length(n)) << n;
-  for (int n : {2, 3, 5, 180, 512}) EXPECT_TRUE(LineTransform::supports_length(n)) << n;
+  for (int n : {0, 1, 7, 44, 182, 513, 602, 4097, 4320}) EXPECT_FALSE(LineTransform::supports_length(n)) << n;
+  for (int n : {2, 3, 5, 180, 512, 540, 1024, 4096}) EXPECT_TRUE(LineTransform::supports_length(n)) << n;
 }
 
 }  // namespace
