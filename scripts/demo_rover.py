@@ -15,21 +15,26 @@ import threading
 
 import rospy
 from desert_sim.msg import PlannerStatus
+from desert_sim.picture import BLUE, GREEN, RED, WHITE, write_image
 from desert_sim.testing import Desert, Node
 from geometry_msgs.msg import PoseStamped
 
 SCENARIO = "rover_barchans"
-STEP = 0.2  # of the rover's time [s]
+ACCELERATION = 3600  # of its dunes: an hour in a second
+STEP = 0.4  # of the rover's time [s]
+FORECAST_PERIOD = 100  # of the rover's time [s]: the wind is steady, and each forecast is waited for
 FRAMES = 10  # of the film a second, each STEPS_A_FRAME steps
-STEPS_A_FRAME = 10
+STEPS_A_FRAME = 5
+FILM_SIZE = (1280, 720)
+LEGEND = (("way driven", WHITE), ("plan", BLUE), ("goal", GREEN), ("rover", RED), ("too steep or too loose", (60, 60, 190)))
 ENDS = (PlannerStatus.ARRIVED, PlannerStatus.NO_PATH, PlannerStatus.STUCK, PlannerStatus.BURIED, PlannerStatus.TIPPED,
         PlannerStatus.TIMED_OUT, PlannerStatus.CANCELLED)
 
 
 def course(seed):
-    """Start and goal [m]: from one side of the biggest barchan to the other, over the ground that it moves to."""
+    """Start and goal [m]: on either side of the barchan in the middle, whose slip face moves over the ground between."""
     draw = random.Random(seed)
-    return (draw.uniform(88, 98), 44.0), (draw.uniform(88, 98), 116.0)
+    return (draw.uniform(100, 108), 34.0), (draw.uniform(100, 108), 104.0)
 
 
 class Planner:
@@ -62,13 +67,12 @@ class Planner:
 
 
 class Film:
-    """Pictures of one size to an .mp4, by ffmpeg."""
+    """Pictures of one size, which is even, to an .mp4, by ffmpeg."""
 
     def __init__(self, path):
         self.path, self.process = path, None
 
     def add(self, image):
-        image = image[:image.shape[0] // 2 * 2, :image.shape[1] // 2 * 2]
         if self.process is None:
             self.process = subprocess.Popen(
                 ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "bgr24", "-s",
@@ -119,21 +123,25 @@ class Trip:
             ": " + status.last_replan if status.replans else "")
 
     def picture(self):
-        status = self.planner.status
-        return self.desert.picture(self.goal, ["%.0f s: %s, %.0f m made, %d replans" % (
-            self.time, status.state, self.length, status.replans)])
+        """The terrain, what the rover plans and has done, and what that means."""
+        status, slip = self.planner.status, self.slips[-1] if self.slips else 0.0
+        lines = ["%3.0f s, %.0f days of wind: %s, %.0f m made, slip %.0f %%" % (
+            self.time, self.time * ACCELERATION / 86400, status.state, self.length, 100 * slip),
+            "%s; %d replans%s" % (forecast_text(status), status.replans,
+                                  ": " + status.last_replan if status.replans else "")]
+        return self.desert.picture(self.goal).framed(FILM_SIZE, LEGEND, lines)
 
     def run(self, film):
         steps = int(self.options.seconds / STEP)
         for n in range(steps):
             self.step()
             if n % STEPS_A_FRAME == 0:
-                film.add(self.picture().image)
+                film.add(self.picture())
             if n % int(20 / STEP) == 0:
                 print(self.line(), flush=True)
             if self.planner.status.state in ENDS:
                 break
-        film.add(self.picture().image)
+        film.add(self.picture())
 
     def report(self):
         """Exit status."""
@@ -150,14 +158,15 @@ class Trip:
 
 def run_headless(options):
     start, goal = course(options.seed)
-    settings = ["run.time_step=%g" % (STEP * 0.045)]
+    settings = ["run.time_step=%g" % (STEP * ACCELERATION)]
     parameters = {"backend": options.backend, "threads": 0, "frame_id": "map", "step_rate": 1 / STEP}  # of forecasts
     with Desert(SCENARIO, rover=(*start, 90.0), settings=settings, seconds_per_step=STEP, parameters=parameters,
                 rover_parameters={"rover": {"seed": options.seed}}) as desert:
         planner = Planner("/rover/desert_planner", "/move_base_simple/goal")
         node = Node(planner.name, {
-            "clock": "lockstep", "seconds_per_sim_second": 1 / 0.045, "planner": options.planner, "tf_prefix": "rover",
-            "terrain_node": "/desert_sim", "rover_node": "desert_rover", "goal_topic": planner.goals.resolved_name},
+            "clock": "lockstep", "seconds_per_sim_second": 1 / ACCELERATION, "planner": options.planner, "tf_prefix": "rover",
+            "terrain_node": "/desert_sim", "rover_node": "desert_rover", "goal_topic": planner.goals.resolved_name,
+            "forecast_period": FORECAST_PERIOD},
             executable="desert_planner_node")
         film = Film(options.film)
         try:
@@ -166,7 +175,7 @@ def run_headless(options):
             trip = Trip(options, desert, planner, goal)
             trip.run(film)
             status = trip.report()
-            trip.picture().write(options.picture)
+            write_image(options.picture, trip.picture())
             print("picture: %s, film: %s" % (options.picture, options.film))
         finally:
             film.close()

@@ -4,13 +4,18 @@ import math
 import cv2
 import numpy
 
+WHITE, BLUE, GREEN, RED = (255, 255, 255), (255, 120, 30), (80, 220, 80), (40, 40, 230)  # blue, green, red
+
+_ROCK = (112.0, 118.0, 124.0)
 _LONG_SIDE = 800  # [pixels], at least
+_LINE_HEIGHT = 26  # [pixels] of the text below a framed picture
 
 
-def hillshade(ground, azimuth_deg=315.0, altitude_deg=30.0):
+def hillshade(ground, azimuth_deg=315.0, altitude_deg=30.0, bare=None):
     """Shaded terrain, north up: sand tint by height, lit from the north-west.
 
     ground   LayerMap of the elevation; unknown cells are drawn at the lowest known height
+    bare     None, or bool [height, width] from the south: cells without sand, which are drawn as rock
     Returns uint8 [height, width, 3], blue, green, red.
     """
     z = ground.values[::-1]
@@ -24,6 +29,8 @@ def hillshade(ground, azimuth_deg=315.0, altitude_deg=30.0):
     height = (z - z.min()) / max(float(numpy.ptp(z)), 1e-6)
     low, high = numpy.array([92.0, 142.0, 190.0]), numpy.array([170.0, 214.0, 244.0])
     colour = low + (high - low) * height[..., None]
+    if bare is not None:
+        colour[bare[::-1]] = _ROCK
     return numpy.clip(colour * (0.25 + 0.95 * numpy.clip(shade, 0.0, 1.0))[..., None], 0, 255).astype(numpy.uint8)
 
 
@@ -32,11 +39,12 @@ class Picture:
 
     ground   LayerMap of the elevation
     costs    None, or int8 [height, width] as LayerMap.cost(): lethal cells are tinted red
+    bare     as of hillshade()
     """
 
-    def __init__(self, ground, costs=None):
+    def __init__(self, ground, costs=None, bare=None):
         self._ground = ground
-        image = hillshade(ground)
+        image = hillshade(ground, bare=bare)
         if costs is not None:
             lethal = costs[::-1] >= 100
             image[lethal] = (0.6 * image[lethal] + 0.4 * numpy.array([40, 40, 220])).astype(numpy.uint8)
@@ -70,7 +78,40 @@ class Picture:
             for colour, thickness in (((30, 30, 30), 3), ((255, 255, 255), 1)):
                 cv2.putText(self.image, line, (8, 20 + 20 * n), cv2.FONT_HERSHEY_SIMPLEX, 0.5, colour, thickness, cv2.LINE_AA)
 
+    def framed(self, size, legend, lines):
+        """The picture as large as it fits, and below it a legend and lines of text.
+
+        size     (width, height) [pixels]
+        legend   [(text, colour), ...]
+        Returns uint8 [height, width, 3], blue, green, red.
+        """
+        width, height = size
+        bar = _LINE_HEIGHT * (len(lines) + 1) + 8
+        scale = min(width / self.image.shape[1], (height - bar) / self.image.shape[0])
+        picture = cv2.resize(self.image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC)
+        frame = numpy.full((height, width, 3), 30, numpy.uint8)
+        left = (width - picture.shape[1]) // 2
+        frame[:picture.shape[0], left:left + picture.shape[1]] = picture
+        top = height - bar + _LINE_HEIGHT - 4
+        column = 12
+        for text, colour in legend:
+            cv2.rectangle(frame, (column, top - 12), (column + 22, top), colour, -1)
+            _write(frame, text, column + 30, top)
+            column += 60 + cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, 0.55, 1)[0][0]
+        for n, line in enumerate(lines):
+            _write(frame, line, 12, top + _LINE_HEIGHT * (n + 1))
+        return frame
+
     def write(self, path):
         """Writes a file by the ending of its name. Raises OSError if that fails."""
-        if not cv2.imwrite(path, self.image):
-            raise OSError("the picture %s cannot be written" % path)
+        write_image(path, self.image)
+
+
+def write_image(path, image):
+    """Writes a file by the ending of its name. Raises OSError if that fails."""
+    if not cv2.imwrite(path, image):
+        raise OSError("the picture %s cannot be written" % path)
+
+
+def _write(image, text, column, row):
+    cv2.putText(image, text, (column, row), cv2.FONT_HERSHEY_SIMPLEX, 0.55, WHITE, 1, cv2.LINE_AA)

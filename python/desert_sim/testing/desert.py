@@ -19,11 +19,11 @@ from .paths import Inbox, deviation, points_of
 from .processes import PATIENCE, Node, init_ros, wait_until
 
 try:
-    from ..picture import Picture
+    from ..picture import BLUE, GREEN, RED, WHITE, Picture
 except ImportError as missing:  # DESERT_PARTS=client comes without OpenCV: what fails says so in place of a picture
     Picture, NO_PICTURE = None, "%s (python3-opencv)" % missing
 
-WHITE, RED, BLUE, GREEN = (255, 255, 255), (40, 40, 230), (230, 120, 30), (60, 200, 60)  # blue, green, red
+BARE = 0.01  # depth of sand that still shows the rock in pictures [m]
 
 
 class Desert:
@@ -270,11 +270,11 @@ class Desert:
         west, east, south, north = ground.extent
         try:
             layers = self.simulation.submap(((west + east) / 2, (south + north) / 2), (east - west, north - south),
-                                            ["traversability"])
-            costs = layers["traversability"].cost()
+                                            ["traversability", "sand_depth"])
+            costs, bare = layers["traversability"].cost(), layers["sand_depth"].values < BARE
         except SimulationError as error:  # a picture of a node that has failed is worth having, too
-            costs, lines = None, [*lines, str(error)]
-        picture = Picture(ground, costs)
+            costs, bare, lines = None, None, [*lines, str(error)]
+        picture = Picture(ground, costs, bare)
         picture.line([(pose.x, pose.y) for pose in self._way], WHITE)
         for inbox in self._inboxes.values():
             for message in inbox.messages[-1:]:
