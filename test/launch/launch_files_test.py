@@ -52,9 +52,20 @@ class LaunchFiles(unittest.TestCase):
                 self.assertEqual(p["/mars/rover/%s/tf_prefix" % node], "mars/rover")
             self.assertIn("mars/rover/base_link", p["/mars/rover/robot_description"])
             rviz = node_of(config, "rviz").args
-            self.assertIn("--tf-prefix 'mars/rover' -f mars/map", rviz)
+            self.assertIn("--tf-prefix 'mars/rover' -f mars/desert_sim/terrain_center", rviz)
         demo = node_of(config_of("demo.launch", namespace="mars"), "rviz")
         self.assertIn("-f mars/desert_sim/terrain_center", demo.args)
+
+    def test_a_rover_on_a_dem_of_ones_own(self):
+        config = config_of("bringup.launch", "dem:=/data/my dem.tif")
+        p = parameters(config)
+        self.assertEqual((p["/desert_sim/scenario"], p["/desert_sim/grid/from_raster"]), ("dem", "/data/my dem.tif"))
+        self.assertEqual((p["/desert_sim/run/acceleration"], p["/desert_sim/run/time_step"]), (0.03, 0.003))
+        self.assertNotIn("/rover/desert_rover/x", p, "it starts in the middle")
+        self.assertIn("-f desert_sim/terrain_center", node_of(config, "rviz").args)
+        p = parameters(config_of("bringup.launch", "dem:=/data/my dem.tif", "scenario:=wadi", "acceleration:=1"))
+        self.assertEqual((p["/desert_sim/scenario"], p["/desert_sim/run/acceleration"]), ("wadi", 1))
+        self.assertNotIn("/desert_sim/grid/from_raster", parameters(config_of("bringup.launch")))
 
     def test_folders_with_spaces(self):
         with tempfile.TemporaryDirectory(prefix="a folder ") as folder:
