@@ -275,10 +275,10 @@ class Desert:
         except SimulationError as error:  # a picture of a node that has failed is worth having, too
             costs, bare, lines = None, None, [*lines, str(error)]
         picture = Picture(ground, costs, bare)
-        picture.line([(pose.x, pose.y) for pose in self._way], WHITE)
         for inbox in self._inboxes.values():
             for message in inbox.messages[-1:]:
                 picture.line(points_of(message), BLUE)
+        picture.line([(pose.x, pose.y) for pose in self._way], WHITE)
         if goal is not None:
             picture.cross(*goal, GREEN)
         if self._way:
