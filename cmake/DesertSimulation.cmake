@@ -70,7 +70,7 @@ if(DESERT_WITH_ROS)
 endif()
 
 if(DESERT_WITH_RVIZ) # one library of all plugins, which rviz_plugins.xml names
-  desert_library(desert_rviz FOLDERS src/rviz LINK PUBLIC desert_client desert_render)
+  desert_library(desert_rviz FOLDERS src/rviz LINK PUBLIC desert_client desert_render PRIVATE desert::random123)
   desert_use_rviz(desert_rviz)
   if(TARGET desert_rviz)
     target_precompile_headers(desert_rviz PRIVATE

@@ -179,8 +179,8 @@ struct Materials {
   /// Colour of the ground lit with `shade`, and of the water on it.
   Colour colour(int row, int column, float shade) const {
     render::SurfaceMaterials m;
-    m.sand = value_at(sand, row, column);
-    m.soil = value_at(soil, row, column);
+    m.sand = render::cover_of_depth(value_at(sand, row, column));
+    m.soil = render::cover_of_depth(value_at(soil, row, column));
     m.vegetation = value_at(vegetation, row, column);
     m.obstacle = value_at(obstacle, row, column);
     const auto species = static_cast<std::size_t>(value_at(plants, row, column));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "src/render/sunlight.hpp"
 #include "src/render/terrain_colours.hpp"
 
 namespace desert_sim::render {
@@ -29,7 +30,7 @@ void add_cone(int sides, double x, double y, double ring_z, double radius, doubl
 void add_triangle(const Point* corner, const Colour& colour, Mesh& mesh) {
   const Eigen::Vector3f normal =
       (corner[1] - corner[0]).cross(corner[2] - corner[0]).stableNormalized().cast<float>();
-  const PackedColour packed = pack(lit(colour, sun_light(normal.x(), normal.y(), normal.z())));
+  const PackedColour packed = pack(lit(colour, illumination(normal.x(), normal.y(), normal.z())));
   for (std::size_t n = 0; n < 3; ++n) {
     const Eigen::Vector3f p = corner[n].cast<float>();
     mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));

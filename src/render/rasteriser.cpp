@@ -34,12 +34,9 @@ Rasteriser::Rasteriser(int width, int height, int samples)
       depth_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), farthest),
       pixels_(depth_.size(), 0) {}
 
-void Rasteriser::clear(const Colour& top, const Colour& bottom) {
+void Rasteriser::clear(const std::vector<PackedColour>& background) {
   std::fill(depth_.begin(), depth_.end(), farthest);
-  for (int row = 0; row < height_; ++row) {
-    const PackedColour colour = pack(mix(top, bottom, static_cast<float>(row) / static_cast<float>(height_)));
-    std::fill_n(pixels_.begin() + static_cast<std::ptrdiff_t>(row) * width_, width_, colour);
-  }
+  pixels_ = background;
 }
 
 std::vector<Rasteriser::Corner> Rasteriser::corners_of(const Mesh& mesh, const Projection& projection,

@@ -22,8 +22,8 @@ class Rasteriser {
   int width() const { return width_; }    ///< with all samples
   int height() const { return height_; }  ///< with all samples
 
-  /// Fills the picture, at any depth, with colours from the top to the bottom.
-  void clear(const Colour& top, const Colour& bottom);
+  /// Fills the picture, at any depth, with the colours of a background that has a pixel for each sample.
+  void clear(const std::vector<PackedColour>& background);
   /// Triangles whose colours hide what is behind. Heights are multiplied by `exaggeration`. Triangles with a
   /// corner behind the camera are left out.
   void draw(const Mesh& mesh, const Projection& projection, double exaggeration);

@@ -17,14 +17,14 @@ void RebuildQueue::reset(const BlockLayout& layout) {
   built_levels_.assign(count, -1);
   wanted_levels_.assign(count, BlockLayout::max_level);
   waits_.assign(count, 1);
-  frames_.assign(count, 0);
+  seen_.clear();
+  unseen_.clear();
   waiting_ = layout.count();
 }
 
 void RebuildQueue::let_wait(int block) {
   if (waits_[index(block)]) return;
   waits_[index(block)] = 1;
-  frames_[index(block)] = 0;
   ++waiting_;
 }
 
@@ -41,55 +41,63 @@ void RebuildQueue::touch_all() {
 
 void RebuildQueue::set_levels(const std::vector<int>& wanted) {
   wanted_levels_ = wanted;
+  std::vector<char> in_batch(waits_.size(), 0);  // will have the level that is wanted when it is built
+  for (const int block : seen_) in_batch[index(block)] = 1;
   for (int block = 0; block < layout_.count(); ++block)
-    if (wanted[index(block)] != built_levels_[index(block)]) let_wait(block);
+    if (!in_batch[index(block)] && wanted[index(block)] != built_levels_[index(block)]) let_wait(block);
 }
 
-std::vector<int> RebuildQueue::order(const View& view, const std::vector<Box>& boxes) const {
+void RebuildQueue::begin_batch(const View& view, const std::vector<Box>& boxes) {
+  if (!seen_.empty()) return;
   struct Entry {
     int block;
-    bool unseen, has_mesh;
+    bool has_mesh;
     double distance;
     bool operator<(const Entry& o) const {
-      if (unseen != o.unseen) return o.unseen;
-      if (has_mesh != o.has_mesh) return o.has_mesh;
-      return distance < o.distance;
+      return has_mesh != o.has_mesh ? has_mesh : distance > o.distance;  // the next one last
     }
   };
-  std::vector<Entry> entries;
+  std::vector<Entry> seen, unseen;
   for (int block = 0; block < layout_.count(); ++block)
     if (waits_[index(block)])
-      entries.push_back({block, !view.sees(boxes[index(block)]), built_levels_[index(block)] >= 0,
-                         view.distance(boxes[index(block)]) / (1 + frames_[index(block)])});
-  std::stable_sort(entries.begin(), entries.end());
-  std::vector<int> blocks;
-  blocks.reserve(entries.size());
-  for (const Entry& entry : entries) blocks.push_back(entry.block);
-  return blocks;
+      (view.sees(boxes[index(block)]) ? seen : unseen)
+          .push_back({block, built_levels_[index(block)] >= 0, view.distance(boxes[index(block)])});
+  const auto sorted = [](std::vector<Entry>& entries) {
+    std::stable_sort(entries.begin(), entries.end());
+    std::vector<int> blocks;
+    blocks.reserve(entries.size());
+    for (const Entry& entry : entries) blocks.push_back(entry.block);
+    return blocks;
+  };
+  seen_ = sorted(seen);
+  unseen_ = sorted(unseen);
+  for (const int block : seen_) waits_[index(block)] = 0;
 }
 
-int RebuildQueue::run(const View& view, const std::vector<Box>& boxes, double seconds,
-                      const std::function<void(int block, int level)>& build, const Clock& clock) {
-  if (waiting_ == 0) return 0;
+void RebuildQueue::build_next(std::vector<int>& blocks,
+                              const std::function<void(int block, int level)>& build) {
+  const int block = blocks.back(), level = wanted_levels_[index(block)];
+  blocks.pop_back();
+  if (&blocks == &unseen_) waits_[index(block)] = 0;
+  build(block, level);
+  built_levels_[index(block)] = level;
+  --waiting_;
+}
+
+int RebuildQueue::run(double seconds, const std::function<void(int block, int level)>& build,
+                      const Clock& clock) {
   const double begin = clock();
   double now = begin, slowest = 0;
   int count = 0;
-  for (const int block : order(view, boxes)) {
-    if (count > 0 && now - begin + std::max(expected_, slowest) > seconds) {
-      ++frames_[index(block)];
-      continue;
-    }
-    const int level = wanted_levels_[index(block)];
-    build(block, level);
-    built_levels_[index(block)] = level;
-    waits_[index(block)] = 0;
-    --waiting_;
+  while (!seen_.empty() || !unseen_.empty()) {
+    if (count > 0 && now - begin + std::max(expected_, slowest) > seconds) break;
+    build_next(seen_.empty() ? unseen_ : seen_, build);
     ++count;
     const double after = clock();
     slowest = std::max(slowest, after - now);
     now = after;
   }
-  expected_ = std::max(slowest, 0.9 * expected_);
+  if (count > 0) expected_ = std::max(slowest, 0.9 * expected_);
   return count;
 }
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "src/render/contour_lines.hpp"
+#include "src/render/sunlight.hpp"
 #include "src/render/terrain_colours.hpp"
 
 namespace desert_sim::render {
@@ -25,13 +27,15 @@ struct MaterialWindows {
         resistance(window("erosion_resistance", cells)) {}
   MaterialWindows() = default;
 
-  Colour at(int x, int y) const {
+  float sand_cover(int x, int y) const { return sand.empty() ? 1.0f : smoothed_cover(sand, x, y); }
+  /// `cover`: that of sand there.
+  Colour at(int x, int y, float cover) const {
     SurfaceMaterials m;
-    m.sand = sand.empty() ? 1.0f : sand.at(x, y);
+    m.sand = cover;
+    if (!soil.empty()) m.soil = smoothed_cover(soil, x, y);
     const auto set = [&](const CellWindow& layer, float& value) {
       if (!layer.empty()) value = layer.at(x, y);
     };
-    set(soil, m.soil);
     set(moisture, m.moisture);
     set(vegetation, m.vegetation);
     set(obstacle, m.obstacle);
@@ -40,13 +44,34 @@ struct MaterialWindows {
       m.resistance = SurfaceMaterials().resistance;  // the terrain does not have the layer
     return ground_colour(m);
   }
+
+ private:
+  /// The cover around a cell, by binomial weights. The edge of sand is sharper than a cell; drawn as it is, it
+  /// follows the grid in teeth.
+  static float smoothed_cover(const CellWindow& depth, int x, int y) {
+    float sum = 0, weights = 0;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (!depth.cells().contains(x + dx, y + dy)) continue;
+        const auto weight = static_cast<float>((2 - std::abs(dx)) * (2 - std::abs(dy)));
+        sum += weight * cover_of_depth(depth.at(x + dx, y + dy));
+        weights += weight;
+      }
+    return sum / weights;
+  }
 };
 
-/// The light on a surface of true heights that is seen with exaggerated ones.
-float light_on(float normal_x, float normal_y, float normal_z, float exaggeration) {
+/// How much of ripples is seen: on sand that the sun reaches, and not on slip faces, where sand slides.
+float ripples_on(float sand_cover, float normal_z, float sun) {
+  constexpr float gentle = 0.94f, steep = 0.88f;  // 20 and 28 degrees
+  return sand_cover * smooth_step(steep, gentle, normal_z) * sun;
+}
+
+/// The light on a surface of true heights that is seen with exaggerated ones; `sun`: the share that reaches it.
+Colour light_on(float normal_x, float normal_y, float normal_z, float exaggeration, float sun) {
   const float x = normal_x * exaggeration, y = normal_y * exaggeration,
               length = std::sqrt(x * x + y * y + normal_z * normal_z);
-  return sun_light(x / length, y / length, normal_z / length);
+  return illumination(x / length, y / length, normal_z / length, sun);
 }
 
 }  // namespace
@@ -78,33 +103,48 @@ std::vector<std::string> layers_for(const TerrainLook& look) {
   return layers;
 }
 
-TerrainBlock build_terrain_block(const BlockLayout& layout, int block, int level, double cell_size,
-                                 const LayerWindow& window, const TerrainLook& look, float base) {
+TerrainBlock build_terrain_block(const TerrainGrid& grid, int block, int level, const LayerWindow& window,
+                                 const TerrainLook& look) {
   TerrainBlock result;
-  const CellRectangle cells = layout.needed_cells(block, level), vertices = layout.vertices(block);
-  const CellWindow elevation = window("elevation", cells);
-  const MaterialWindows materials = look.materials ? MaterialWindows(window, vertices) : MaterialWindows();
+  const BlockLayout& layout = grid.layout;
+  const CellRectangle whole{0, 0, layout.width(), layout.height()}, vertices = layout.vertices(block);
+  const CellRectangle cells = layout.needed_cells(block, level);
+  CellRectangle seen = cells_that_shade(vertices, grid.shadow_reach).clipped(whole);
+  seen.include(cells);
+  const CellWindow elevation = window("elevation", seen);
+  const MaterialWindows materials =
+      look.materials ? MaterialWindows(window, vertices.grown(1).clipped(whole)) : MaterialWindows();
   const bool slope = look.overlay.layer == slope_layer;
   const CellWindow overlay =
       look.overlay.active() && !slope ? window(look.overlay.layer, vertices) : CellWindow();
   const auto exaggeration = static_cast<float>(look.vertical_exaggeration);
+  const CellWindow sun = grid.shadow_reach > 0
+                             ? sun_visibility(vertices, elevation, grid.cell_size, exaggeration)
+                             : CellWindow();
+  const auto sun_at = [&](int x, int y) { return sun.empty() ? 1.0f : sun.at(x, y); };
+  const auto light_at = [&](int x, int y, float nx, float ny, float nz) {
+    return light_on(nx, ny, nz, exaggeration, sun_at(x, y));
+  };
   result.ground = build_block(
-      layout, block, level, cell_size, elevation,
+      layout, block, level, grid.cell_size, elevation,
       [&](int x, int y, float nx, float ny, float nz) {
-        Colour colour = materials.at(x, y);
+        const float sand = materials.sand_cover(x, y);
+        Colour colour = materials.at(x, y, sand);
         if (slope) colour = look.overlay.on(colour, std::acos(std::min(1.0f, nz)));
         if (!overlay.empty()) colour = look.overlay.on(colour, overlay.at(x, y));
-        return pack(lit(colour, light_on(nx, ny, nz, exaggeration)));
+        const float alpha = look.ripples ? ripples_on(sand, nz, sun_at(x, y)) : 1.0f;
+        return pack(lit(colour, light_at(x, y, nx, ny, nz)), alpha);
       },
-      base);
+      grid.base);
   result.contours = contour_lines(result.ground, look.contour_interval);
   if (!look.water) return result;
   const CellWindow depth = window("water_depth", cells);
   if (depth.empty()) return result;
-  result.water = build_block(layout, block, level, cell_size, water_surface(elevation, depth, level),
+  result.water = build_block(layout, block, level, grid.cell_size, water_surface(elevation, depth, level),
                              [&](int x, int y, float nx, float ny, float nz) {
-                               const float d = depth.at(x, y), light = light_on(nx, ny, nz, exaggeration);
-                               return pack(lit(water_colour(d), 0.75f + 0.25f * light), water_opacity(d));
+                               const float d = depth.at(x, y);
+                               const Colour light = mix({1, 1, 1}, light_at(x, y, nx, ny, nz), 0.25f);
+                               return pack(lit(water_colour(d), light), water_opacity(d));
                              });
   return result;
 }

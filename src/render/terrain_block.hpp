@@ -13,10 +13,22 @@ namespace desert_sim::render {
 /// names of config/node_parameters.md, "Layers of maps".
 using LayerWindow = std::function<CellWindow(const std::string& layer, const CellRectangle& cells)>;
 
+/// What all blocks of a terrain have in common.
+struct TerrainGrid {
+  BlockLayout layout;
+  double cell_size = 1;  ///< [m]
+  float base = 0;        ///< height at which the walls at the edges end [m]; NaN: there are none
+  int shadow_reach =
+      0;  ///< over how many cells shadows are looked for (render::shadow_reach); 0: none are cast
+};
+
 struct TerrainLook {
   Overlay overlay;
   bool materials = true;  ///< else all ground has the colour of sand
   bool water = true;
+  bool shadows = true;  ///< cast by the ground; without, slopes that look away from the sun are dark alone
+  bool ripples =
+      false;  ///< the alpha of the ground's vertices says how much of wind ripples is seen there, 0…1; else it is 1
   double vertical_exaggeration =
       1;  ///< of what is seen; the meshes have true heights, but the light is that of these
   double contour_interval = 0;  ///< [m]; 0: no contour lines
@@ -35,7 +47,7 @@ float base_of_walls(const BlockLayout& layout, double cell_size, const LayerWind
 /// The layers that a look needs beside the elevation, the overlay's included, if they are there.
 std::vector<std::string> layers_for(const TerrainLook& look);
 
-TerrainBlock build_terrain_block(const BlockLayout& layout, int block, int level, double cell_size,
-                                 const LayerWindow& window, const TerrainLook& look, float base);
+TerrainBlock build_terrain_block(const TerrainGrid& grid, int block, int level, const LayerWindow& window,
+                                 const TerrainLook& look);
 
 }  // namespace desert_sim::render

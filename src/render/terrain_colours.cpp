@@ -14,9 +14,6 @@ constexpr float hidden = 0.02f, covering = 0.12f;  // depths of sand or soil: no
 constexpr float wet = 0.05f;                       // moisture of ground that looks fully wet [m]
 constexpr float wet_brightness = 0.62f;
 
-constexpr float sun_x = -0.760f, sun_y = 0.276f, sun_z = 0.588f;
-constexpr float ambient = 0.30f, brightest = 1.30f;
-
 float known(float value) { return std::isnan(value) ? 0.0f : value; }
 
 }  // namespace
@@ -26,10 +23,12 @@ float smooth_step(float from, float to, float value) {
   return t * t * (3 - 2 * t);
 }
 
+float cover_of_depth(float depth) { return smooth_step(hidden, covering, known(depth)); }
+
 Colour ground_colour(const SurfaceMaterials& m) {
   Colour colour = mix(weak_rock, hard_rock, std::clamp(known(m.resistance), 0.0f, 1.0f));
-  colour = mix(colour, soil_colour, smooth_step(hidden, covering, known(m.soil)));
-  colour = mix(colour, sand_colour, smooth_step(hidden, covering, known(m.sand)));
+  colour = mix(colour, soil_colour, std::clamp(known(m.soil), 0.0f, 1.0f));
+  colour = mix(colour, sand_colour, std::clamp(known(m.sand), 0.0f, 1.0f));
   const float brightness = 1 + (wet_brightness - 1) * smooth_step(0, wet, known(m.moisture));
   colour = {colour.r * brightness, colour.g * brightness, colour.b * brightness};
   colour = mix(colour, m.plants, 0.9f * smooth_step(0, 0.8f, known(m.vegetation)));
@@ -41,15 +40,6 @@ Colour water_colour(float depth) {
 }
 
 float water_opacity(float depth) { return 0.92f * smooth_step(0.001f, 0.2f, known(depth)); }
-
-float sun_light(float normal_x, float normal_y, float normal_z) {
-  const float towards_sun = normal_x * sun_x + normal_y * sun_y + normal_z * sun_z;
-  return std::min(brightest, ambient + (1 - ambient) * std::max(0.0f, towards_sun) / sun_z);
-}
-
-Colour lit(const Colour& c, float light) {
-  return {std::min(1.0f, c.r * light), std::min(1.0f, c.g * light), std::min(1.0f, c.b * light)};
-}
 
 Colour wind_colour(float relative) {
   constexpr Colour slow{0.10f, 0.25f, 0.85f}, equal{0.92f, 0.97f, 1.0f}, fast{0.95f, 0.15f, 0.10f};

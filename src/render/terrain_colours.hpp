@@ -1,6 +1,6 @@
 #pragma once
-/// The colours of the ground by its materials, of water by its depth, and the light of the sun: the same in
-/// rviz, in point clouds and in pictures.
+/// The colours of the ground by its materials, and of water by its depth: the same in rviz, in point clouds and in
+/// pictures.
 
 #include "src/render/colour.hpp"
 
@@ -8,8 +8,8 @@ namespace desert_sim::render {
 
 /// What lies at one cell. What a terrain does not have, or what is unknown to the caller, is as below.
 struct SurfaceMaterials {
-  float sand = 0;                      ///< depth [m]
-  float soil = 0;                      ///< depth, below the sand [m]
+  float sand = 0;                      ///< share of what is below that it hides (cover_of_depth), 0…1
+  float soil = 0;                      ///< likewise, below the sand
   float resistance = 0.5f;             ///< of the rock to erosion, 0…1
   float moisture = 0;                  ///< water in the ground, as a depth [m]
   float vegetation = 0;                ///< density of plants, 0…1
@@ -17,21 +17,18 @@ struct SurfaceMaterials {
   Colour plants{0.27f, 0.48f, 0.20f};  ///< colour of the species that grows here
 };
 
-/// The colour of the ground without light. Thin sand and soil (under 2 cm) show what is below, thick ones
-/// (over 12 cm) hide it. Rock is the darker and redder the more it resists, and moist ground is darker. NaN
+/// How much of what is below sand or soil of this depth [m] hides: nothing up to 2 cm, all from 12 cm on. NaN
 /// counts as 0.
+float cover_of_depth(float depth);
+
+/// The colour of the ground without light. Rock is the darker and redder the more it resists, and moist ground is
+/// darker. NaN counts as 0.
 Colour ground_colour(const SurfaceMaterials& materials);
 
 /// The colour of water of this depth [m], without light.
 Colour water_colour(float depth);
 /// How much of the ground water of this depth [m] hides: 0 … 0.92.
 float water_opacity(float depth);
-
-/// The factor by which the sun brightens or darkens a surface with this upward unit normal: 1 on level
-/// ground, 0.3 in shade, at most 1.3. The sun stands low in the west-north-west, so that slip faces under a
-/// west wind are in shade.
-float sun_light(float normal_x, float normal_y, float normal_z);
-Colour lit(const Colour& colour, float light);
 
 /// The colour of the wind: blue up to half the speed high above the ground, near white at that speed, red
 /// from one and a half times on. `relative`: the speed divided by the one high above.

@@ -1,8 +1,11 @@
 #include "src/render/terrain_mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
+#include "src/render/sunlight.hpp"
 #include "src/render/terrain_colours.hpp"
 
 namespace desert_sim::render {
@@ -85,7 +88,17 @@ class BlockBuilder {
     for (const std::uint32_t corner : {a, b, c}) mesh_.indices.push_back(corner);
   }
 
-  /// Two triangles for each quad of known vertices, one where a single vertex is unknown.
+  /// How different two vertices look.
+  int contrast(std::uint32_t a, std::uint32_t b) const {
+    int sum = 0;
+    for (int shift = 0; shift < 24; shift += 8)
+      sum += std::abs(static_cast<int>(mesh_.vertices[a].colour >> shift & 255) -
+                      static_cast<int>(mesh_.vertices[b].colour >> shift & 255));
+    return sum;
+  }
+
+  /// Two triangles for each quad of known vertices, one where a single vertex is unknown. A quad is divided along
+  /// the diagonal whose ends look more alike, so that crests, edges of sand and shadows do not become saws.
   void add_surface() {
     mesh_.indices.reserve(6 * columns_.size() * rows_.size());
     for (std::size_t row = 0; row + 1 < rows_.size(); ++row)
@@ -96,6 +109,8 @@ class BlockBuilder {
         std::size_t count = 0;
         for (const std::uint32_t corner : ring)
           if (corner != no_vertex) known[count++] = corner;
+        if (count == 4 && contrast(known[1], known[3]) < contrast(known[0], known[2]))
+          std::rotate(known, known + 1, known + 4);
         if (count >= 3) add_triangle(known[0], known[1], known[2]);
         if (count == 4) add_triangle(known[0], known[2], known[3]);
       }
@@ -117,7 +132,7 @@ class BlockBuilder {
         v.normal_x = normal_x;
         v.normal_y = normal_y;
         v.normal_z = 0;
-        v.colour = pack(lit(cut_colour, 0.6f + 0.4f * sun_light(normal_x, normal_y, 0)));
+        v.colour = pack(lit(cut_colour, mix({1, 1, 1}, illumination(normal_x, normal_y, 0), 0.5f)));
         Vertex below = v;
         below.z = std::fmin(v.z, base_);
         return std::pair(v, below);
@@ -179,7 +194,7 @@ Mesh build_block(const BlockLayout& layout, int block, int level, double cell_si
 }
 
 CellWindow water_surface(const CellWindow& ground, const CellWindow& depth, int level) {
-  const CellRectangle& cells = ground.cells();
+  const CellRectangle& cells = depth.cells();
   const int stride = 1 << level;
   const auto level_at = [&](int x, int y) {
     const float d = depth.at(x, y);

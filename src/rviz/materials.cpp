@@ -30,6 +30,13 @@ Ogre::MaterialPtr ground() {
   return material("desert_sim/ground", [](Ogre::Pass& pass) { pass.setDepthBias(-2, -1); });
 }
 
+Ogre::MaterialPtr sky() {
+  return material("desert_sim/sky", [](Ogre::Pass& pass) {
+    pass.setDepthCheckEnabled(false);
+    pass.setDepthWriteEnabled(false);
+  });
+}
+
 Ogre::MaterialPtr translucent() {
   return material("desert_sim/translucent", [](Ogre::Pass& pass) {
     pass.setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);

@@ -8,6 +8,8 @@ namespace desert_sim::materials {
 
 /// Opaque. Lies a little behind its place, so that lines on it are seen.
 Ogre::MaterialPtr ground();
+/// Behind everything, at any depth.
+Ogre::MaterialPtr sky();
 /// Translucent by the alpha of the vertices.
 Ogre::MaterialPtr translucent();
 /// Opaque.

@@ -63,6 +63,13 @@ TerrainDisplay::TerrainDisplay() {
                              this, SLOT(update_look()));
   water_ =
       new rviz::BoolProperty("Water", true, "Show water, if the terrain has it.", this, SLOT(update_look()));
+  shadows_ =
+      new rviz::BoolProperty("Shadows", true, "Let dunes and hills cast shadows.", this, SLOT(update_look()));
+  ripples_ =
+      new rviz::BoolProperty("Ripples", true, "Show wind ripples of ~micro_relief on sand near the camera.",
+                             this, SLOT(subscribe_views()));
+  sky_shown_ = new rviz::BoolProperty(
+      "Sky", true, "Show sky and sun behind the terrain, in views with a perspective.", this);
   overlay_ = std::make_unique<OverlayProperties>(this);
   connect(overlay_.get(), SIGNAL(changed()), this, SLOT(update_look()));
   contours_ = new rviz::FloatProperty(
@@ -101,16 +108,21 @@ TerrainDisplay::~TerrainDisplay() {
   plants_view_.reset();
   wind_view_.reset();
   scene_.reset();
+  ripples_view_.reset();
+  sky_.reset();
 }
 
 // ---- what rviz calls ----
 
 void TerrainDisplay::onInitialize() {
+  ripples_view_ = std::make_unique<RipplesView>();
   scene_ = std::make_unique<TerrainScene>(scene_node_);
+  scene_->set_ripples(ripples_view_->material());
   level_node_ = scene_node_->createChildSceneNode();
   plants_view_ = std::make_unique<PlantsView>(level_node_);
   wind_view_ = std::make_unique<WindView>(scene_->node());
   legend_ = std::make_unique<Legend>();
+  sky_ = std::make_unique<Sky>(scene_manager_->getRootSceneNode());
   update_look();
   update_limits();
 }
@@ -119,6 +131,7 @@ void TerrainDisplay::onEnable() { subscribe(); }
 
 void TerrainDisplay::onDisable() {
   unsubscribe();
+  sky_->hide();
   counts_ = scene_->counts();
 }
 
@@ -133,17 +146,21 @@ void TerrainDisplay::setTopic(const QString& topic, const QString&) { topic_->se
 void TerrainDisplay::update(float, float) {
   const double begin = render::RebuildQueue::steady_seconds(), begin_of_work = processor_seconds();
   frame_messages_ = 0;
-  take_changes();
+  const bool incomplete = take_changes();
   rviz::ViewManager* const views = context_->getViewManager();
   if (maps_.count("elevation") && place() && views->getCurrent()) {
     update_views();
     if (fit_pending_ && fit_view_->getBool()) fit_view();
     fit_pending_ = false;
     const Ogre::Camera* const camera = views->getCurrent()->getCamera();
+    if (camera && sky_shown_->getBool())
+      sky_->show(*camera);
+    else
+      sky_->hide();
     const Ogre::Viewport* const viewport = camera ? camera->getViewport() : nullptr;
     const double spent = render::RebuildQueue::steady_seconds() - begin;
     const double budget = 1e-3 * static_cast<double>(budget_->getFloat());
-    if (viewport) scene_->update(*camera, viewport->getActualHeight(), budget - spent);
+    if (viewport) scene_->update(*camera, viewport->getActualHeight(), budget - spent, incomplete);
   }
   counts_ = scene_->counts();
   report();
@@ -183,6 +200,7 @@ void TerrainDisplay::unsubscribe() {
   legend_->hide();
   plants_view_->subscribe(threaded_nh_, "");
   wind_view_->subscribe(threaded_nh_, "");
+  ripples_view_->subscribe(threaded_nh_, "");
 }
 
 void TerrainDisplay::subscribe_views() {
@@ -190,6 +208,7 @@ void TerrainDisplay::subscribe_views() {
   const std::string node = source_->node();
   plants_view_->subscribe(threaded_nh_, plants_->getBool() ? node + "/plants" : "");
   wind_view_->subscribe(threaded_nh_, wind_->getBool() ? node + "/wind" : "");
+  ripples_view_->subscribe(threaded_nh_, ripples_->getBool() ? node + "/micro_relief" : "");
 }
 
 void TerrainDisplay::update_look() {
@@ -198,6 +217,8 @@ void TerrainDisplay::update_look() {
   look.overlay = overlay_->overlay();
   look.materials = materials_->getBool();
   look.water = water_->getBool();
+  look.shadows = shadows_->getBool();
+  look.ripples = true;
   look.vertical_exaggeration = static_cast<double>(exaggeration_->getFloat());
   look.contour_interval = static_cast<double>(contours_->getFloat());
   scene_->set_look(look);
@@ -219,8 +240,10 @@ void TerrainDisplay::update_limits() {
 
 // ---- the terrain ----
 
-void TerrainDisplay::take_changes() {
-  if (!source_) return;
+/// True if layers of the newest elevation are still on their way. They come in messages of their own, a moment
+/// later; the scene waits a frame for them rather than build everything twice, and never two in a row.
+bool TerrainDisplay::take_changes() {
+  if (!source_) return false;
   const std::vector<CollectedChange> changes = source_->take();
   for (const CollectedChange& one : changes) {
     const std::string& layer = one.map->info().layer;
@@ -233,7 +256,12 @@ void TerrainDisplay::take_changes() {
       for (const render::CellRectangle& cells : one.changed) scene_->touch(cells);
     }
   }
-  if (!changes.empty()) scene_->set_window(windows_of(maps_, overlay_->reference()));
+  if (changes.empty()) return held_ = false;
+  scene_->set_window(windows_of(maps_, overlay_->reference()));
+  const auto elevation = maps_.find("elevation"), sand = maps_.find("sand_depth");
+  const bool behind = elevation != maps_.end() && sand != maps_.end() &&
+                      sand->second->info().step < elevation->second->info().step;
+  return held_ = behind && !held_;
 }
 
 void TerrainDisplay::take_elevation(const CollectedChange& change_of_elevation) {
@@ -282,6 +310,7 @@ void TerrainDisplay::update_views() {
   plants_view_->update(info.origin_x, info.origin_y, static_cast<double>(exaggeration_->getFloat()),
                        most_plants_->getInt());
   wind_view_->update(elevation, most_arrows_->getInt());
+  ripples_view_->update();
 }
 
 // ---- status ----

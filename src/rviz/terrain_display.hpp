@@ -9,6 +9,8 @@
 #include "src/rviz/map_windows.hpp"
 #include "src/rviz/overlay_properties.hpp"
 #include "src/rviz/plants_view.hpp"
+#include "src/rviz/ripples_view.hpp"
+#include "src/rviz/sky.hpp"
 #include "src/rviz/terrain_scene.hpp"
 #include "src/rviz/terrain_source.hpp"
 #include "src/rviz/terrain_status.hpp"
@@ -65,7 +67,7 @@ class TerrainDisplay : public rviz::Display {
 
  private:
   void unsubscribe();
-  void take_changes();
+  bool take_changes();
   void take_elevation(const CollectedChange& change);
   bool place();
   void fit_view();
@@ -76,19 +78,22 @@ class TerrainDisplay : public rviz::Display {
   rviz::RosTopicProperty* topic_;
   rviz::FloatProperty *exaggeration_, *contours_, *budget_, *quad_pixels_;
   rviz::IntProperty *triangles_, *most_plants_, *most_arrows_;
-  rviz::BoolProperty *materials_, *water_, *plants_, *wind_, *fit_view_;
+  rviz::BoolProperty *materials_, *water_, *shadows_, *sky_shown_, *ripples_, *plants_, *wind_, *fit_view_;
   bool fit_pending_ = false;  ///< there is another terrain, which the view was not fitted to
   std::unique_ptr<OverlayProperties> overlay_;
 
+  std::unique_ptr<RipplesView> ripples_view_;
   std::unique_ptr<TerrainScene> scene_;
   Ogre::SceneNode* level_node_ = nullptr;  ///< at the grid's corner, without exaggeration
   std::unique_ptr<PlantsView> plants_view_;
   std::unique_ptr<WindView> wind_view_;
   std::unique_ptr<Legend> legend_;
+  std::unique_ptr<Sky> sky_;
   std::unique_ptr<TerrainSource> source_;
   LayerMaps maps_;  ///< the elevation decides the grid
   double frame_milliseconds_ = 0;
   int frame_messages_ = 0;
+  bool held_ = false;  ///< the last frame waited for layers of the newest elevation
   TerrainScene::Counts counts_;
   std::map<std::string, std::string> statuses_;  ///< the texts that are shown
 };

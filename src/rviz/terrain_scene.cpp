@@ -2,7 +2,9 @@
 
 #include <OgreSceneNode.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "src/rviz/materials.hpp"
 
@@ -41,21 +43,22 @@ TerrainScene::~TerrainScene() {
 }
 
 void TerrainScene::set_grid(int width, int height, double cell_size, const render::LayerWindow& window) {
-  layout_ = render::BlockLayout(width, height);
-  cell_size_ = cell_size;
-  window_ = window;
-  base_ = render::base_of_walls(layout_, cell_size_, window_);
-  queue_.reset(layout_);
+  grid_ = {render::BlockLayout(width, height), cell_size};
+  window_ = batch_window_ = window;
+  grid_.base = render::base_of_walls(grid_.layout, cell_size, window_);
+  queue_.reset(grid_.layout);
+  staged_.clear();
   blocks_.clear();
-  blocks_.resize(static_cast<std::size_t>(layout_.count()));
+  blocks_.resize(static_cast<std::size_t>(grid_.layout.count()));
   boxes_.clear();
-  for (int block = 0; block < layout_.count(); ++block)
-    boxes_.push_back(rough_box(layout_.vertices(block), cell_size_, window_));
+  for (int block = 0; block < grid_.layout.count(); ++block)
+    boxes_.push_back(rough_box(grid_.layout.vertices(block), cell_size, window_));
 }
 
 void TerrainScene::set_look(const render::TerrainLook& look) {
   look_ = look;
   node_->setScale(1, 1, static_cast<Ogre::Real>(look.vertical_exaggeration));
+  grid_.shadow_reach = 0;  // chosen anew with the next batch
   queue_.touch_all();
 }
 
@@ -65,42 +68,75 @@ render::View TerrainScene::view_of(const Ogre::Camera& camera, int viewport_heig
           to_matrix(Ogre::Matrix4(camera.getViewMatrix(true)) * terrain), viewport_height};
 }
 
-void TerrainScene::update(const Ogre::Camera& camera, int viewport_height, double seconds) {
-  if (layout_.count() == 0) return;
-  const render::View view = view_of(camera, viewport_height);
+std::vector<render::Box> TerrainScene::boxes_as_seen() const {
   std::vector<render::Box> boxes = boxes_;
   for (render::Box& box : boxes) {
     box.min().z() *= look_.vertical_exaggeration;
     box.max().z() *= look_.vertical_exaggeration;
   }
-  queue_.set_levels(render::choose_levels(layout_, cell_size_, view, boxes, queue_.levels(), limits_));
-  queue_.run(view, boxes, seconds, [this](int block, int level) { build(block, level); });
+  return boxes;
+}
+
+void TerrainScene::begin_batch(const render::View& view) {
+  const std::vector<render::Box> boxes = boxes_as_seen();
+  render::Box all;
+  for (const render::Box& box : boxes) all.extend(box);
+  const int reach = look_.shadows ? render::shadow_reach(all.sizes().z(), grid_.cell_size) : 0;
+  if (reach > grid_.shadow_reach) {
+    grid_.shadow_reach =
+        std::min(reach + reach / 4, render::longest_shadow);  // hills grow a little at a time
+    queue_.touch_all();
+  }
+  batch_window_ = window_;
+  queue_.begin_batch(view, boxes);
+}
+
+void TerrainScene::update(const Ogre::Camera& camera, int viewport_height, double seconds, bool hold) {
+  if (grid_.layout.count() == 0) return;
+  const render::View view = view_of(camera, viewport_height);
+  queue_.set_levels(
+      render::choose_levels(grid_.layout, grid_.cell_size, view, boxes_as_seen(), queue_.levels(), limits_));
+  if (queue_.waiting() == 0) return;
+  if (queue_.batch_complete() && !hold) begin_batch(view);
+  queue_.run(seconds, [this](int block, int level) { build(block, level); });
+  if (!queue_.batch_complete()) return;
+  for (const Staged& one : staged_) show(one.block, one.meshes);
+  staged_.clear();
 }
 
 void TerrainScene::build(int number, int level) {
+  render::TerrainBlock meshes = render::build_terrain_block(grid_, number, level, batch_window_, look_);
+  ++built_;
+  const bool replaces = blocks_[static_cast<std::size_t>(number)].ground != nullptr;
+  if (replaces && !queue_.batch_complete())
+    staged_.push_back({number, std::move(meshes)});
+  else
+    show(number, meshes);
+}
+
+void TerrainScene::show(int number, const render::TerrainBlock& meshes) {
   using Ogre::RenderOperation;
-  const render::TerrainBlock meshes =
-      render::build_terrain_block(layout_, number, level, cell_size_, window_, look_, base_);
   Block& block = blocks_[static_cast<std::size_t>(number)];
-  const auto show = [this](std::unique_ptr<MeshObject>& object, const render::Mesh& mesh,
-                           const Ogre::MaterialPtr& material, RenderOperation::OperationType type) {
+  const auto put = [this](std::unique_ptr<MeshObject>& object, const render::Mesh& mesh,
+                          const Ogre::MaterialPtr& material, RenderOperation::OperationType type) {
     if (mesh.empty()) {
       object.reset();
       return;
     }
     if (!object) object = std::make_unique<MeshObject>(node_, material, type);
+    object->setMaterial(material);
     object->set_mesh(mesh);
   };
-  show(block.ground, meshes.ground, materials::ground(), RenderOperation::OT_TRIANGLE_LIST);
-  show(block.water, meshes.water, materials::translucent(), RenderOperation::OT_TRIANGLE_LIST);
-  show(block.contours, meshes.contours, materials::translucent(), RenderOperation::OT_LINE_LIST);
+  put(block.ground, meshes.ground, look_.ripples ? ripples_ : materials::ground(),
+      RenderOperation::OT_TRIANGLE_LIST);
+  put(block.water, meshes.water, materials::translucent(), RenderOperation::OT_TRIANGLE_LIST);
+  put(block.contours, meshes.contours, materials::translucent(), RenderOperation::OT_LINE_LIST);
   block.triangles = static_cast<std::int64_t>(meshes.ground.indices.size() / 3);
   if (!meshes.ground.empty()) boxes_[static_cast<std::size_t>(number)] = render::bounding_box(meshes.ground);
-  ++built_;
 }
 
 TerrainScene::Counts TerrainScene::counts() const {
-  Counts counts{layout_.count(), queue_.waiting(), built_, 0};
+  Counts counts{grid_.layout.count(), queue_.waiting(), built_, 0};
   for (const Block& block : blocks_) counts.triangles += block.triangles;
   return counts;
 }

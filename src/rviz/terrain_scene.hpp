@@ -1,6 +1,6 @@
 #pragma once
-/// The blocks of a terrain in OGRE's scene: builds those that changed, or whose distance asks for another
-/// level of detail, within a time for each frame.
+/// The blocks of a terrain in OGRE's scene: builds those that changed, or whose distance asks for another level of
+/// detail, within a time for each frame, and shows all of a change in the same frame.
 
 #include <OgreCamera.h>
 #include <OgreSceneManager.h>
@@ -10,6 +10,7 @@
 
 #include "src/render/level_of_detail.hpp"
 #include "src/render/rebuild_queue.hpp"
+#include "src/render/sunlight.hpp"
 #include "src/render/terrain_block.hpp"
 #include "src/rviz/mesh_object.hpp"
 
@@ -19,6 +20,8 @@ class TerrainScene {
  public:
   /// Below `parent`, which must outlive it.
   explicit TerrainScene(Ogre::SceneNode* parent);
+  /// Draws ground on which ripples are to be seen (TerrainLook) with this material.
+  void set_ripples(const Ogre::MaterialPtr& material) { ripples_ = material; }
   ~TerrainScene();
   TerrainScene(const TerrainScene&) = delete;
   TerrainScene& operator=(const TerrainScene&) = delete;
@@ -26,16 +29,19 @@ class TerrainScene {
   /// Begins anew with a grid of this size; all cells have changed.
   void set_grid(int width, int height, double cell_size, const render::LayerWindow& window);
   void clear() { set_grid(0, 0, 1, {}); }
-  /// Blocks are built with these values from now on.
+  /// Blocks are built with these values from the next batch on.
   void set_window(const render::LayerWindow& window) { window_ = window; }
-  void touch(const render::CellRectangle& cells) { queue_.touch(cells); }
+  void touch(const render::CellRectangle& cells) {
+    queue_.touch(render::cells_in_shade_of(cells, grid_.shadow_reach));
+  }
   /// All blocks are built anew. Exaggeration of heights is a scale of node(); blocks have true heights.
   void set_look(const render::TerrainLook& look);
   const render::TerrainLook& look() const { return look_; }
   void set_limits(const render::DetailLimits& limits) { limits_ = limits; }
 
-  /// Builds waiting blocks for at most `seconds`; at least one.
-  void update(const Ogre::Camera& camera, int viewport_height, double seconds);
+  /// Builds waiting blocks for at most `seconds`; at least one. While `hold`, no batch begins: more of the same
+  /// change is on its way.
+  void update(const Ogre::Camera& camera, int viewport_height, double seconds, bool hold = false);
 
   struct Counts {
     int blocks = 0, waiting = 0;
@@ -51,20 +57,28 @@ class TerrainScene {
     std::unique_ptr<MeshObject> ground, water, contours;
     std::int64_t triangles = 0;
   };
+  /// Meshes of a block that wait for the rest of their batch.
+  struct Staged {
+    int block;
+    render::TerrainBlock meshes;
+  };
 
   render::View view_of(const Ogre::Camera& camera, int viewport_height) const;
+  std::vector<render::Box> boxes_as_seen() const;
+  void begin_batch(const render::View& view);
   void build(int block, int level);
+  void show(int block, const render::TerrainBlock& meshes);
 
   Ogre::SceneNode *const parent_, *const node_;
-  render::BlockLayout layout_;
-  double cell_size_ = 1;
-  float base_ = 0;  ///< where the walls at the edges end [m]
-  render::LayerWindow window_;
+  render::TerrainGrid grid_;
+  render::LayerWindow window_, batch_window_;  ///< the newest values; those of the batch that is being built
   render::TerrainLook look_;
+  Ogre::MaterialPtr ripples_;
   render::DetailLimits limits_;
   render::RebuildQueue queue_;
   std::vector<render::Box> boxes_;  ///< with true heights
   std::vector<Block> blocks_;
+  std::vector<Staged> staged_;
   std::uint64_t built_ = 0;
 };
 

@@ -8,8 +8,9 @@
 #include "src/core/parameter_page.hpp"
 #include "src/render/level_of_detail.hpp"
 #include "src/render/plant_shapes.hpp"
+#include "src/render/sky.hpp"
+#include "src/render/sunlight.hpp"
 #include "src/render/terrain_block.hpp"
-#include "src/render/terrain_colours.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/terrain/map_layers.hpp"
 
@@ -19,9 +20,9 @@ namespace {
 
 using render::Mesh;
 
+constexpr double pi = 3.14159265358979323846, radians = pi / 180;
 constexpr int samples = 2;                  // a side of a pixel
 constexpr int drawn_triangles = 4'000'000;  // at most, of the ground
-constexpr render::Colour sky_top{0.47f, 0.61f, 0.78f}, sky_bottom{0.90f, 0.90f, 0.88f};
 
 render::Overlay overlay_of(const ViewParameters& p) {
   render::Overlay overlay;
@@ -94,15 +95,31 @@ std::vector<render::Box> boxes_of(const render::BlockLayout& layout, double cell
 }
 
 std::vector<render::TerrainBlock> blocks_of(const Snapshot& s, const std::vector<int>& levels,
-                                            const render::BlockLayout& layout,
-                                            const render::TerrainLook& look, float base) {
+                                            const render::TerrainGrid& grid,
+                                            const render::TerrainLook& look) {
   const render::LayerWindow windows = windows_of(s);
   std::vector<render::TerrainBlock> blocks(levels.size());
 #pragma omp parallel for schedule(dynamic)
-  for (int block = 0; block < layout.count(); ++block)
-    blocks[static_cast<std::size_t>(block)] = render::build_terrain_block(
-        layout, block, levels[static_cast<std::size_t>(block)], s.cell_size, windows, look, base);
+  for (int block = 0; block < grid.layout.count(); ++block)
+    blocks[static_cast<std::size_t>(block)] =
+        render::build_terrain_block(grid, block, levels[static_cast<std::size_t>(block)], windows, look);
   return blocks;
+}
+
+/// The sky behind each pixel. The camera looks down, so that the horizon is not in its picture: the terrain stands before
+/// the sky as a block diagram does, from the horizon at the lower edge upwards.
+std::vector<render::PackedColour> sky_behind(double camera_azimuth_deg, int width, int height) {
+  constexpr double highest = 0.5;  // of the sky, at the upper edge [rad]
+  const double azimuth = camera_azimuth_deg * radians + pi;
+  std::vector<render::PackedColour> sky;
+  sky.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int row = 0; row < height; ++row) {
+    const double elevation = highest * (1 - (row + 0.5) / height);
+    const render::Point direction(std::cos(elevation) * std::cos(azimuth),
+                                  std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+    sky.insert(sky.end(), static_cast<std::size_t>(width), render::pack(render::sky_colour(direction)));
+  }
+  return sky;
 }
 
 render::TerrainLook look_of(const ViewParameters& p) {
@@ -142,13 +159,14 @@ std::string describe_view() {
 ObliqueView::ObliqueView(const ViewParameters& parameters)
     : parameters_(parameters), rasteriser_(parameters.width, parameters.height, samples) {}
 
-void ObliqueView::choose_bounds(const Snapshot& s, double lowest, double highest) {
+void ObliqueView::set_up(const Snapshot& s, double lowest, double highest) {
   exaggeration_ =
       parameters_.exaggeration > 0 ? parameters_.exaggeration : chosen_exaggeration(s, highest - lowest);
   const double width = s.width * s.cell_size, height = s.height * s.cell_size;
   bounds_ =
       render::Box(render::Point(0, 0, lowest * exaggeration_ - render::wall_share * std::max(width, height)),
                   render::Point(width, height, highest * exaggeration_));
+  sky_ = sky_behind(parameters_.azimuth_deg, rasteriser_.width(), rasteriser_.height());
 }
 
 render::Picture ObliqueView::draw(Simulation& simulation) {
@@ -158,7 +176,7 @@ render::Picture ObliqueView::draw(Simulation& simulation) {
   const std::vector<float>& elevation = *s.find(Layer::elevation);
   const auto range = std::minmax_element(elevation.begin(), elevation.end());
   const auto lowest = static_cast<double>(*range.first), highest = static_cast<double>(*range.second);
-  if (exaggeration_ == 0) choose_bounds(s, lowest, highest);
+  if (exaggeration_ == 0) set_up(s, lowest, highest);
   look.vertical_exaggeration = exaggeration_;
 
   const render::Projection projection({parameters_.azimuth_deg, parameters_.elevation_deg, parameters_.zoom},
@@ -168,10 +186,11 @@ render::Picture ObliqueView::draw(Simulation& simulation) {
   const std::vector<int> levels =
       render::choose_levels(layout, s.cell_size, projection.view(exaggeration_), boxes,
                             std::vector<int>(boxes.size(), -1), {samples, drawn_triangles});
-  const auto base = static_cast<float>(bounds_.min().z() / exaggeration_);
-  const std::vector<render::TerrainBlock> blocks = blocks_of(s, levels, layout, look, base);
+  const render::TerrainGrid grid{layout, s.cell_size, static_cast<float>(bounds_.min().z() / exaggeration_),
+                                 render::shadow_reach(exaggeration_ * (highest - lowest), s.cell_size)};
+  const std::vector<render::TerrainBlock> blocks = blocks_of(s, levels, grid, look);
 
-  rasteriser_.clear(sky_top, sky_bottom);
+  rasteriser_.clear(sky_);
   for (const render::TerrainBlock& block : blocks) rasteriser_.draw(block.ground, projection, exaggeration_);
   for (const render::TerrainBlock& block : blocks)
     rasteriser_.draw_lines(block.contours, projection, exaggeration_);

@@ -18,7 +18,7 @@ struct ViewParameters {
   double azimuth_deg = -60;
   double elevation_deg = 32;
   double zoom = 1;
-  double exaggeration = 0;
+  double exaggeration = 1;
   double contour_interval = 0;
   std::string overlay;
   double overlay_low = 0;
@@ -37,7 +37,7 @@ constexpr auto parameter_table(const ViewParameters*) {
       parameter("elevation_deg", &P::elevation_deg, 1, 90, "deg", "How high it stands above the horizon."),
       parameter("zoom", &P::zoom, 0.1, 50, "1", "1 shows the whole terrain, 2 its middle twice as large."),
       parameter("exaggeration", &P::exaggeration, 0, 100, "1",
-                "Factor of all heights; 0 chooses one from the terrain's relief."),
+                "Factor of all heights; 0: one that makes relief visible, 1 to 20."),
       parameter("contour_interval", &P::contour_interval, 0, 1e4, "m",
                 "Between contour lines; 0 draws none."),
       parameter("overlay", &P::overlay, "Layer shown as colours on the ground; empty shows the materials."),
@@ -58,16 +58,18 @@ std::string describe_view();
 class ObliqueView {
  public:
   explicit ObliqueView(const ViewParameters& parameters);
-  /// The simulation's present state. The camera and the exaggeration stay as they were for the first one.
+  /// The simulation's present state in the light of the sun, with shadows, before the sky. The camera and the
+  /// exaggeration stay as they were for the first one.
   render::Picture draw(Simulation& simulation);
 
  private:
-  void choose_bounds(const Snapshot& snapshot, double lowest, double highest);
+  void set_up(const Snapshot& snapshot, double lowest, double highest);
 
   const ViewParameters parameters_;
   double exaggeration_ = 0;  ///< 0: not chosen yet
   render::Box bounds_;       ///< of the first terrain, with exaggerated heights, x and y from its corner [m]
   render::Rasteriser rasteriser_;
+  std::vector<render::PackedColour> sky_;  ///< for each sample of the picture
 };
 
 }  // namespace desert_sim

@@ -5,6 +5,7 @@
 #include <boost/make_shared.hpp>
 #include <cmath>
 
+#include "kernels/micro_relief/ripple_size.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -49,6 +50,10 @@ MicroReliefStatePtr micro_relief_message(const TerrainState& state, const std::s
   message->mean_wind_y = s.micro_relief.wind.y;
   message->mean_speed = s.micro_relief.wind.speed;
   message->ripples_passed = s.micro_relief.wind.passed;
+  const micro_relief::RippleSize size(s.micro_relief.parameters);
+  const auto speed = static_cast<float>(s.micro_relief.wind.speed);
+  message->ripple_height = size.height(speed);
+  message->ripple_wavelength = message->ripple_height > 0 ? size.wavelength(speed) : 0;
   message->wind_above = vector_of(s.wind_above);
   message->repose_tangent = s.micro_relief.repose_tangent;
   message->moisture_capacity = s.micro_relief.moisture_capacity;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/render/sunlight.hpp"
 #include "src/render/terrain_colours.hpp"
 
 namespace desert_sim {
@@ -28,8 +29,8 @@ SurfaceColour::SurfaceColour(const Snapshot& snapshot, int reach)
 
 Colour SurfaceColour::material(std::size_t i) const {
   render::SurfaceMaterials m;
-  m.sand = value(sand_, i);
-  m.soil = value(soil_, i);
+  m.sand = render::cover_of_depth(value(sand_, i));
+  m.soil = render::cover_of_depth(value(soil_, i));
   m.vegetation = value(vegetation_, i);
   m.obstacle = value(obstacle_, i);
   const auto species = static_cast<std::size_t>(value(plants_, i));
@@ -41,8 +42,7 @@ Colour SurfaceColour::material(std::size_t i) const {
   return mix(ground_colour(m), render::water_colour(depth), render::water_opacity(depth));
 }
 
-/// The factor by which light brightens or darkens the colour; 1 on level ground.
-float SurfaceColour::light(int x, int y) const {
+Colour SurfaceColour::light(int x, int y) const {
   const int x0 = std::max(0, x - reach_), x1 = std::min(s_.width - 1, x + reach_);
   const int y0 = std::max(0, y - reach_), y1 = std::min(s_.height - 1, y + reach_);
   const auto z = [this](int ix, int iy) {
@@ -52,7 +52,7 @@ float SurfaceColour::light(int x, int y) const {
   const float dz_dx = x1 > x0 ? (z(x1, y) - z(x0, y)) / (static_cast<float>(x1 - x0) * l) : 0.0f;
   const float dz_dy = y1 > y0 ? (z(x, y1) - z(x, y0)) / (static_cast<float>(y1 - y0) * l) : 0.0f;
   const float up = 1 / std::sqrt(1 + dz_dx * dz_dx + dz_dy * dz_dy);
-  return render::sun_light(-dz_dx * up, -dz_dy * up, up);
+  return render::illumination(-dz_dx * up, -dz_dy * up, up);
 }
 
 Colour SurfaceColour::at(int x, int y) const {

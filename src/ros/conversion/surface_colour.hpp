@@ -18,7 +18,7 @@ class SurfaceColour {
 
  private:
   render::Colour material(std::size_t i) const;
-  float light(int x, int y) const;
+  render::Colour light(int x, int y) const;
 
   const Snapshot& s_;
   const int reach_;

@@ -66,9 +66,13 @@ Mesh square(float z, const Colour& colour, float alpha = 1) {
   return mesh;
 }
 
+std::vector<PackedColour> background_of(const Colour& colour) {
+  return std::vector<PackedColour>(std::size_t{4} * width * height, pack(colour));
+}
+
 class Drawing : public ::testing::Test {
  protected:
-  Drawing() { rasteriser_.clear(white, white); }
+  Drawing() { rasteriser_.clear(background_of(white)); }
   PackedColour at(double x, double y, double z) const {
     const PicturePoint p = projection_.project({x, y, z});
     const Picture picture = rasteriser_.picture();

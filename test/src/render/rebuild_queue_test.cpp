@@ -28,8 +28,9 @@ struct Queue {
   }
   int run(double seconds) {
     built.clear();
+    queue.begin_batch(view, boxes);
     return queue.run(
-        view, boxes, seconds,
+        seconds,
         [this](int block, int) {
           built.push_back(block);
           now += cost;
@@ -64,6 +65,34 @@ TEST(RebuildQueue, BuildsWhatIsSeenFirst) {
   q.view = View(orthographic(100), camera_at(400, 400, 10, -90), 800);
   q.run(1);
   EXPECT_EQ(q.built.front(), 6 * 8 + 6);
+  EXPECT_EQ(q.built.size(), 64u) << "and the rest in the time that is left";
+}
+
+TEST(RebuildQueue, ABatchIsCompleteWhenAllThatIsSeenIsBuilt) {
+  Queue q;
+  q.build_all();
+  q.queue.touch({0, 0, 200, 200});  // blocks 0 … 3 in both directions
+  EXPECT_TRUE(q.queue.batch_complete());
+  q.run(0.0105);
+  EXPECT_FALSE(q.queue.batch_complete());
+  q.queue.touch({0, 0, 20, 20});  // what changes meanwhile belongs to the next batch
+  q.run(0.0105);
+  EXPECT_TRUE(q.queue.batch_complete());
+  EXPECT_EQ(q.built.size(), 6u);
+  EXPECT_EQ(q.queue.waiting(), 1);
+  q.run(1);
+  EXPECT_EQ(q.built, std::vector<int>{0});
+  EXPECT_EQ(q.queue.waiting(), 0);
+}
+
+TEST(RebuildQueue, WhatIsOutOfSightDoesNotDelayABatch) {
+  Queue q;
+  q.build_all();
+  q.view = View(orthographic(100), camera_at(400, 400, 10, -90), 800);
+  q.queue.touch_all();
+  q.run(0.0095);
+  EXPECT_TRUE(q.queue.batch_complete()) << "the picture has nine blocks at most";
+  EXPECT_EQ(q.queue.waiting(), 64 - 9);
 }
 
 // Complaint 5: the whole map is sent to the graphics card again for a small change.

@@ -46,22 +46,16 @@ TEST(TerrainColours, UnknownMaterialsCountAsAbsent) {
   EXPECT_EQ(colour.g, rock.g);
 }
 
-TEST(TerrainColours, TheSunStandsInTheWestNorthWest) {
-  EXPECT_NEAR(sun_light(0, 0, 1), 1, 1e-5f);
-  EXPECT_GT(sun_light(-0.5f, 0, 0.866f), 1);
-  EXPECT_LT(sun_light(0.5f, 0, 0.866f), 0.6f);
-}
-
 /// A block of 33 × 33 cells of a terrain that has these layers.
-TerrainBlock block_with(const std::map<std::string, Height>& layers, const TerrainLook& look) {
+TerrainBlock block_with(const std::map<std::string, Height>& layers, const TerrainLook& look, int reach = 0) {
   const BlockLayout layout(33, 33);
   return build_terrain_block(
-      layout, 0, 0, 1,
+      {layout, 1, std::numeric_limits<float>::quiet_NaN(), reach}, 0, 0,
       [&](const std::string& name, const CellRectangle& cells) {
         const auto found = layers.find(name);
         return found == layers.end() ? CellWindow() : window_of(cells, found->second);
       },
-      look, std::numeric_limits<float>::quiet_NaN());
+      look);
 }
 
 // Complaint 3: a crash on a missing layer.

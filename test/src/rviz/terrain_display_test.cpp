@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "test/src/rviz/terrain_fixture.hpp"
 #include "test/support/ros/client.hpp"
@@ -21,17 +22,24 @@ using rviz::StatusProperty;
 
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
-/// The box of everything that is drawn of the terrain, in the fixed frame.
-Ogre::AxisAlignedBox drawn(const Ogre::Node* node) {
-  Ogre::AxisAlignedBox box;
+/// The boxes of all meshes that are drawn below a node, in the fixed frame.
+void collect_boxes(const Ogre::Node* node, std::vector<Ogre::AxisAlignedBox>& boxes) {
   if (const auto* scene_node = dynamic_cast<const Ogre::SceneNode*>(node))
     for (unsigned short n = 0; n < scene_node->numAttachedObjects(); ++n) {
       Ogre::MovableObject* const object = const_cast<Ogre::SceneNode*>(scene_node)->getAttachedObject(n);
       if (object->getMovableType() == "SimpleRenderable" && object->isVisible())
-        box.merge(object->getWorldBoundingBox(true));
+        boxes.push_back(object->getWorldBoundingBox(true));
     }
-  for (unsigned short n = 0; n < node->numChildren(); ++n) box.merge(drawn(node->getChild(n)));
-  return box;
+  for (unsigned short n = 0; n < node->numChildren(); ++n) collect_boxes(node->getChild(n), boxes);
+}
+
+/// The box of everything that is drawn of the terrain, in the fixed frame.
+Ogre::AxisAlignedBox drawn(const Ogre::Node* node) {
+  std::vector<Ogre::AxisAlignedBox> boxes;
+  collect_boxes(node, boxes);
+  Ogre::AxisAlignedBox all;
+  for (const Ogre::AxisAlignedBox& box : boxes) all.merge(box);
+  return all;
 }
 
 TEST_F(TerrainDisplay, DrawsThePicture) {
@@ -113,6 +121,8 @@ TEST_F(TerrainDisplay, Complaint4UnknownCellsAreHoles) {
 TEST_F(TerrainDisplay, Complaint5ASmallUpdateBuildsOnlyItsBlocks) {
   MadeUpNode node("/small");
   rviz::Display* const display = show(node, "/small", 512);
+  set(display, {"Shadows"}, false);  // which fall on blocks further east
+  EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
   double messages = 0;
   window_->for_each_frame([&] { messages += number(display, "frame_messages"); });
   const auto built_after = [&](double of_messages) {
@@ -129,6 +139,56 @@ TEST_F(TerrainDisplay, Complaint5ASmallUpdateBuildsOnlyItsBlocks) {
   });
   node.update(280, 280, 16, 16, [](int x, int y) { return dunes(x, y) + 0.5f; });
   EXPECT_EQ(built_after(2), before + 2);
+}
+
+TEST_F(TerrainDisplay, AHillDarkensTheBlockThatItsShadowFallsOn) {
+  MadeUpNode node("/shady");
+  rviz::Display* const display = show(node, "/shady", 256, [](int x, int) { return x < 5 ? 30.0f : 0.0f; });
+  window_->run_frames(1);
+  const double before = number(display, "built_blocks");
+  node.update(50, 90, 5, 5, [](int, int) { return 20.0f; });  // block (0, 1); its shadow ends in block (1, 1)
+  EXPECT_TRUE(
+      window_->run_until([&] { return number(display, "built_blocks") == before + 2 && is_ready(display); }));
+}
+
+TEST_F(TerrainDisplay, AllBlocksOfAnUpdateAppearInTheSameFrame) {
+  constexpr float higher = 100;
+  MadeUpNode node("/together");
+  rviz::Display* const display = show(node, "/together", 512);
+  set(display, {"Shadows"}, false);
+  EXPECT_TRUE(window_->run_until([&] { return is_ready(display); }));
+  set(display, {"Time per Frame"}, 1);
+  int frames_of_building = 0, mixed_frames = 0;
+  double built = number(display, "built_blocks");
+  window_->for_each_frame([&] {
+    std::vector<Ogre::AxisAlignedBox> boxes;
+    collect_boxes(window_->manager().getSceneManager()->getRootSceneNode(), boxes);
+    const auto risen = std::count_if(boxes.begin(), boxes.end(), [](const Ogre::AxisAlignedBox& box) {
+      return box.getMaximum().z > higher / 2;
+    });
+    mixed_frames += risen != 0 && risen != static_cast<std::ptrdiff_t>(boxes.size());
+    frames_of_building += risen == 0 && number(display, "built_blocks") > built;
+    built = number(display, "built_blocks");
+  });
+  const double before = built;
+  node.update(0, 0, 512, 512, [](int x, int y) { return dunes(x, y) + higher; });
+  EXPECT_TRUE(window_->run_until([&] { return built >= before + 64 && is_ready(display); }));
+  EXPECT_EQ(mixed_frames, 0);
+  EXPECT_GT(frames_of_building, 1) << "else nothing was shown here";
+}
+
+TEST_F(TerrainDisplay, TheSkySurroundsTheCameraOnRequest) {
+  MadeUpNode node("/sky");
+  rviz::Display* const display = show(node, "/sky", 64);
+  const auto extent = [&] {
+    window_->run_frames(2);
+    return drawn(window_->manager().getSceneManager()->getRootSceneNode()).getMaximum().z;
+  };
+  EXPECT_LT(extent(), 100);
+  set(display, {"Sky"}, true);
+  EXPECT_GT(extent(), 1e4);
+  display->setEnabled(false);
+  EXPECT_FALSE(extent() > 1e4);
 }
 
 // (6) Memory that grows.
@@ -289,6 +349,7 @@ TEST_F(TerrainDisplay, TwoDisplaysShowTwoNodes) {
 TEST_F(TerrainDisplay, FollowsAMovingFixedFrame) {
   MadeUpNode node("/moving", "terrain");
   rviz::Display* const display = window_->add_terrain("/moving/elevation");
+  set(display, {"Sky"}, false);
   set(display, {"Materials"}, false);
   node.keyframe(64, 64, dunes);
   EXPECT_TRUE(

@@ -44,6 +44,7 @@ class TerrainDisplay : public testing::Test {
     set(display, {"Materials"}, false);
     set(display, {"Water"}, false);
     set(display, {"Plants"}, false);
+    set(display, {"Sky"}, false);
     window_->look_at(side);
     node.keyframe(side, side, height);
     EXPECT_TRUE(window_->run_until([&] { return node.has_subscribers() && is_ready(display); }))

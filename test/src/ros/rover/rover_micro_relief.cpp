@@ -102,6 +102,8 @@ TEST(RoverMicroRelief, TheWindOfRipplesIsThatOfTheState) {
   EXPECT_EQ(m.mean_wind_x, 15);
   EXPECT_EQ(m.mean_wind_y, 0);
   EXPECT_GT(m.ripples_passed, 0);
+  EXPECT_NEAR(m.ripple_wavelength, 0.013 + 0.02 * 14, 1e-6) << "the default law at 15 m/s";
+  EXPECT_NEAR(m.ripple_height, 0.0467 * m.ripple_wavelength, 1e-6);
   EXPECT_FALSE(m.periodic_x || m.periodic_y);
   EXPECT_NE(m.parameters.find("threshold_speed: 1"), std::string::npos) << m.parameters;
 }
