@@ -27,8 +27,8 @@ if(NOT DESERT_SANITIZE)
   list(APPEND DESERT_PHYSICS_OPTIONS $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<CONFIG:Debug>>>:-O3>)
 endif()
 # Loop unswitching: a condition that no cell changes (whether there is a layer) is evaluated before a loop, of which
-# there is then one for each outcome. doc/performance.md, "Loop unswitching", says what it brings to which sources, and
-# what it costs the compiler.
+# there is then one for each outcome. doc/notebook/kernel_experiments.md, "Loop unswitching", says what it brings to which sources,
+# and what it costs the compiler.
 set(DESERT_UNSWITCH_OPTIONS $<$<CXX_COMPILER_ID:GNU>:--param=max-unswitch-insns=300>)
 
 # desert_target(<target>): language, warnings and floating-point rules. No contraction, no fast-math:

@@ -22,8 +22,8 @@
 /// Pairs that share no cell follow each other in the code, so that they do not wait for each other. Diagonal
 /// pairs come first, because they start to slide last, at √2 times the drop. If they came after the straight
 /// pairs, these would leave them next to nothing, sand would hardly ever take the shortest way down a slope
-/// that faces north-east, and crests under two winds would lie 4 … 8 degrees off (doc/performance.md,
-/// "Diagonal pairs first").
+/// that faces north-east, and crests under two winds would lie 4 … 8 degrees off
+/// (doc/notebook/avalanching.md, "Diagonal pairs first").
 ///
 ///       diagonals, in quads of      columns             rows
 ///       cells with both of theirs

@@ -15,7 +15,7 @@ Each scenario keeps its own terrain, grid and number of steps; run k of every sc
 EPILOG = """\
 The runs go through Snakemake. Finished runs are kept in --work: after a kill the same command goes on with the others,
 and a run is made anew only if its scenario, a file that this names, an option or the program has changed. The table is
-the same to the bit however many runs are made at a time. doc/comparing.md defines the metrics.
+the same to the bit however many runs are made at a time. doc/science/comparing.md defines the metrics.
 Exit status: 0; 1 if a run lost or gained material (the page says which); 2 for invalid input; 3 if a run failed;
 130 after Ctrl-C, SIGTERM or SIGHUP.
 """

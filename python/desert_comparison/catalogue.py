@@ -1,4 +1,4 @@
-"""The metrics of the table, in order: doc/comparing.md says the same at length."""
+"""The metrics of the table, in order: doc/science/comparing.md says the same at length."""
 import collections
 import math
 

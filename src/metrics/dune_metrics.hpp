@@ -1,5 +1,5 @@
 #pragma once
-/// The metrics of dunes that programs report. doc/comparing.md defines each for users.
+/// The metrics of dunes that programs report. doc/science/comparing.md defines each for users.
 
 #include <optional>
 #include <vector>

@@ -38,7 +38,7 @@ struct BenchReport {
 
 /// The report as text for people.
 std::string bench_text(const BenchReport& report);
-/// The report as one JSON object; doc/performance.md describes its fields.
+/// The report as one JSON object; doc/contributing/performance.md describes its fields.
 std::string bench_json(const BenchReport& report);
 
 }  // namespace desert_sim

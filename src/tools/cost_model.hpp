@@ -1,6 +1,6 @@
 #pragma once
 /// Cost model: the least memory traffic per cell of each process in a step, as the processes declare it
-/// (Process::traffic). doc/performance.md shows the table.
+/// (Process::traffic). doc/contributing/performance.md shows the table.
 
 #include <string>
 #include <vector>

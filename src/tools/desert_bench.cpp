@@ -1,4 +1,5 @@
-/// desert_bench: measures the time per step of the benchmark scenes. doc/performance.md has results.
+/// desert_bench: measures the time per step of the benchmark scenes. doc/contributing/performance.md has
+/// results.
 #include <omp.h>
 
 #include <algorithm>
@@ -39,7 +40,7 @@ Options options() {
       .option("set", "PATH=VALUE", "override a key of the scenario; may be repeated")
       .option(
           "json", "FILE",
-          "write the result to FILE (-: print it instead of text); doc/performance.md describes its fields")
+          "write the result to FILE (-: print it instead of text); doc/contributing/performance.md describes its fields")
       .option(
           "roofline", "FILE",
           "draw a picture of bytes per cell against milliseconds for the given JSON results or for this run "

@@ -34,7 +34,7 @@ Options options() {
       .option("plot", "FILE", "draw a PNG of ways, heights and speeds (needs python3 with matplotlib)")
       .needs("out")
       .footer(
-          "A line of the table is a dune at a time; doc/measuring.md explains it.\n"
+          "A line of the table is a dune at a time; doc/science/measuring.md explains it.\n"
           "Exit status: 0; 2 for invalid input; 3 for a failure at run time.");
   return o;
 }

@@ -29,7 +29,7 @@ Options options() {
               "if a "
               "slab model made it)")
       .footer(
-          "doc/comparing.md defines each metric; null says that there is none.\n"
+          "doc/science/comparing.md defines each metric; null says that there is none.\n"
           "Exit status: 0; 2 for invalid input; 3 for a failure at run time.");
   return o;
 }

@@ -284,7 +284,7 @@ void add_lowest_topic(const TopicContext& context, TopicList& topics) {
            '      parameter("wind_rate", &P::wind_rate, 0, 1000, "Hz", "~wind."),\n',
            '      parameter("lowest_rate", &P::lowest_rate, 0, 1000, "Hz", "~lowest."),\n'),
     Insert("config/publishers.yaml", "wind_rate: 2.0             # ~wind\n", "lowest_rate: 1.0           # ~lowest\n"),
-    Insert("doc/ros_interface.md",
+    Insert("doc/robotics/ros_interface.md",
            "| `~wind` | `desert_sim/WindField` | wind at the surface, and high above the ground |\n",
            "| `~lowest` | `std_msgs/Float32` | the lowest elevation |\n"),
 ])
@@ -332,7 +332,7 @@ CommandResult Commands::Execution::operator()(const command::Calm& command) cons
   return {};
 }
 """),
-    Insert("doc/ros_interface.md",
+    Insert("doc/robotics/ros_interface.md",
            "| `~set_wind` | `desert_sim/SetWind` | constant wind from now on, with an optional ramp |\n",
            "| `~calm` | `desert_sim/Calm` | no wind from now on, with an optional ramp |\n"),
     Insert("python/desert_sim/simulation.py", "        return self.call(\"set_wind\", SetWind, request)\n", """\

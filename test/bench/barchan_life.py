@@ -60,7 +60,7 @@ def slip_face(folder, cell):
 def turned(angle, options, folder):
     """Prints how the barchan follows the wind; whether it has after its turnover time."""
     height = options.heap
-    h, c = height - 0.5, 1769 / (height + 1.1)  # of the barchan that comes of it: doc/continuum.md
+    h, c = height - 0.5, 1769 / (height + 1.1)  # of the barchan that comes of it: doc/science/continuum.md
     turnover = (5.5 * h + 10.8) / c * 365.25
     quarter = round(turnover / 4)
     quarters_before, quarters_after = -(-80 // quarter), 5

@@ -1,5 +1,5 @@
 /// Times of planners by the size of the grid: a whole field, and its repair after a share of the cells has
-/// changed. doc/planner.md has results.
+/// changed. doc/robotics/planner.md has results.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>

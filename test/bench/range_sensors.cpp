@@ -1,5 +1,5 @@
-/// Times of a lidar's scans by the number of its beams and the size of the terrain's grid: doc/performance.md
-/// has results.
+/// Times of a lidar's scans by the number of its beams and the size of the terrain's grid:
+/// doc/contributing/performance.md has results.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

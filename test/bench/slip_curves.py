@@ -2,7 +2,7 @@
 """Plots slip, drift and sinkage of the rover classes, as the program slip_curves computes them from the kernels' laws.
 
   test/bench/slip_curves.py PROGRAM PICTURE.png
-  test/bench/slip_curves.py --table PAGE PROGRAM   writes the table of doc/rover.md anew
+  test/bench/slip_curves.py --table PAGE PROGRAM   writes the table of doc/robotics/rover.md anew
   test/bench/slip_curves.py --check PAGE PROGRAM   exit status 1 if that table is stale
 """
 import csv

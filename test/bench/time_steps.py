@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How much the desert depends on the time step: runs one small world a process at several steps for the same time.
 
-    test/bench/time_steps.py [--program desert_run] [--page doc/time_steps.md] [--only NAME]...
+    test/bench/time_steps.py [--program desert_run] [--page doc/contributing/time_steps.md] [--only NAME]...
 
 Each world has a quantity that its process changes. The page lists what that is at each step, relative to 1 s.
 Needs python3 with numpy and OpenCV.
@@ -152,7 +152,7 @@ def main():
     arguments = parser.parse_args()
     lines = ["# Time steps", "",
              "What a process does in the same time at several time steps, relative to steps of 1 s. Written by",
-             "`test/bench/time_steps.py --page doc/time_steps.md`, which has the worlds. What is more than 5 % off is bold.",
+             "`test/bench/time_steps.py --page doc/contributing/time_steps.md`, which has the worlds. What is more than 5 % off is bold.",
              "Steps longer than a second are divided into parts where sand or plants move, and shorter ones keep to the",
              "wind's shadow of a second; avalanches follow the sand in every step. Hops and avalanches take turns, which is of",
              "first order in the step: where half a metre is lifted a second, and a heap moves by its length in 20 s, steps of",

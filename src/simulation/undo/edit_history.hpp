@@ -1,6 +1,6 @@
 #pragma once
-/// The history of edits: what undo and redo bring back. doc/undo.md says what they mean in a world that
-/// moves. It belongs to a simulation and ends with it; checkpoints do not have it.
+/// The history of edits: what undo and redo bring back. doc/robotics/undo.md says what they mean in a
+/// world that moves. It belongs to a simulation and ends with it; checkpoints do not have it.
 
 #include <deque>
 #include <string>

@@ -155,8 +155,8 @@ class DesertCompare(DesertCompareCase):
         self.check_definitions()
 
     def check_definitions(self):
-        """doc/comparing.md has each member of what desert_metrics prints."""
-        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../doc/comparing.md")) as file:
+        """doc/science/comparing.md has each member of what desert_metrics prints."""
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../doc/science/comparing.md")) as file:
             defined = set(re.findall(r"`(\w+)`", file.read()))
         with open(self.results("one.runs")[0]) as file:
             members = set(json.load(file)["metrics"]["snapshots"][0])

@@ -28,9 +28,9 @@ def text_of(*path):
 
 def table(first_column):
     """{name: type} of the table with this head, full names; a row may have several names of one type."""
-    rows = re.search(r"^\| %s \| type \|.*\n\|[-|]+\n((?:\|.*\n)+)" % first_column, text_of("doc", "ros_interface.md"),
-                     re.M)
-    assert rows, "doc/ros_interface.md has no table '%s | type'" % first_column
+    rows = re.search(r"^\| %s \| type \|.*\n\|[-|]+\n((?:\|.*\n)+)" % first_column,
+                     text_of("doc", "robotics", "ros_interface.md"), re.M)
+    assert rows, "doc/robotics/ros_interface.md has no table '%s | type'" % first_column
     found = {}
     for row in rows.group(1).splitlines():
         names, kind = row.split("|")[1:3]
