@@ -1,6 +1,6 @@
 #pragma once
 /// Parameters of the sensors of a rover, in three sections: `lidar`, `depth_camera`, and `sensor_media` for
-/// what beams of both meet. doc/robotics/rover.md, "Sensors", describes the model.
+/// what beams of both meet. doc/robotics/sensors.md describes the model.
 
 #include <yaml-cpp/yaml.h>
 
@@ -151,7 +151,7 @@ void read_sensor_parameters(const YAML::Node& root, ValidationErrors& errors, Li
                             DepthCameraParameters& depth_camera, SensorMediaParameters& media,
                             std::set<std::string>& known);
 
-/// The three sections in markdown, from their tables: a part of doc/robotics/rover.md.
+/// The three sections in markdown, from their tables: config/sensor_parameters.md.
 std::string describe_sensor_parameters();
 
 }  // namespace desert_sim

@@ -168,10 +168,10 @@ TEST_F(Sensors, ParametersAreReadBySection) {
 }
 
 TEST_F(Sensors, PageHasTheTablesOfTheParameters) {
-  std::ifstream file(std::string(DESERT_SOURCE_DIR) + "/doc/robotics/rover.md");
+  std::ifstream file(std::string(DESERT_SOURCE_DIR) + "/config/sensor_parameters.md");
   const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   const std::string tables = describe_sensor_parameters();
-  EXPECT_NE(page.find(tables), std::string::npos) << "doc/robotics/rover.md is stale; its tables have to be:\n"
+  EXPECT_NE(page.find(tables), std::string::npos) << "config/sensor_parameters.md is stale; its tables have to be:\n"
                                                   << tables;
 }
 
