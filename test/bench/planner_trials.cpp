@@ -1,5 +1,5 @@
 /// Seeded trials of rovers that a planner leads over a living desert, without ROS: how many arrive, and why
-/// the others end. doc/robotics/planner.md has results.
+/// the others end. doc/notebook/planner_trials.md has results.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -2,7 +2,7 @@
 """Plots slip, drift and sinkage of the rover classes, as the program slip_curves computes them from the kernels' laws.
 
   test/bench/slip_curves.py PROGRAM PICTURE.png
-  test/bench/slip_curves.py --table PAGE PROGRAM   writes the table of doc/robotics/rover.md anew
+  test/bench/slip_curves.py --table PAGE PROGRAM   writes the table of doc/robotics/wheel_soil.md anew
   test/bench/slip_curves.py --check PAGE PROGRAM   exit status 1 if that table is stale
 """
 import csv
@@ -24,10 +24,12 @@ def curves(program):
 
 
 def table(found):
-    slopes = (0, 5, 10, 15, 20)
+    slopes, shown = (0, 10, 20), (0, 0.3, 1)
     lines = ["| rover | looseness |" + "".join(" %d° |" % s for s in slopes), "|---|---|" + "---|" * len(slopes)]
     for rover, by_looseness in found.items():
         for looseness, rows in by_looseness.items():
+            if looseness not in shown:
+                continue
             at = {row["slope_deg"]: row for row in rows}
             cells = ["%d %%, %.0f mm" % (round(100 * at[s]["slip"]), 1000 * at[s]["sinkage_m"]) for s in slopes]
             lines.append("| `%s` | %g | %s |" % (rover, looseness, " | ".join(cells)))
