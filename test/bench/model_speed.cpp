@@ -1,5 +1,5 @@
 /// Speed of the models that move sand in slabs or grains, each in a shipped scenario, beside a sequential
-/// program of the same model where there is one: doc/science/slab_models.md has results.
+/// program of the same model where there is one: doc/notebook/slab_models.md has results.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
