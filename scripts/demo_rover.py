@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""A rover crosses a desert whose dunes march over its way.
+"""A rover crosses a desert whose dunes march over its way, and climbs one of them.
 
 Without --live: desert, rover and planner without a window, in lockstep, faster than time passes. Prints a line every 20 s
 of the rover's time, and in the end what came of it; leaves a picture and a film. Exit status 1, with the reason, if the
 rover did not arrive.
---live: sets goals to the planner of a desert that runs (launch/demo_rover.launch), back and forth.
+--live: sets goals to the planner of a desert that runs (launch/demo_rover.launch), round and round.
 """
 import argparse
 import math
@@ -13,7 +13,9 @@ import subprocess
 import sys
 import threading
 
+import numpy
 import rospy
+from desert_sim import Simulation
 from desert_sim.msg import PlannerStatus
 from desert_sim.picture import BLUE, GREEN, RED, WHITE, write_image
 from desert_sim.testing import Desert, Node
@@ -32,9 +34,19 @@ ENDS = (PlannerStatus.ARRIVED, PlannerStatus.NO_PATH, PlannerStatus.STUCK, Plann
 
 
 def course(seed):
-    """Start and goal [m]: on either side of the barchan in the middle, whose slip face moves over the ground between."""
+    """Start and first goal [m]: on either side of the barchan in the middle, whose slip face moves over the ground between."""
     draw = random.Random(seed)
-    return (draw.uniform(100, 108), 34.0), (draw.uniform(100, 108), 104.0)
+    return (draw.uniform(100, 108), 42.0), (draw.uniform(100, 108), 90.0)
+
+
+def summit(simulation):
+    """The highest place [m] of the barchan in the middle on which a rover can stand: its crest, over the slip face. The
+    dune moves on while it climbs, so that what was the crest is firm sand of the windward side by then."""
+    layers = simulation.submap((100, 66), (60, 30), ["elevation", "traversability"])
+    heights = numpy.where(layers["traversability"].cost() < 50, layers["elevation"].values, -numpy.inf)
+    row, column = numpy.unravel_index(numpy.argmax(heights), heights.shape)
+    ground = layers["elevation"]
+    return ground.origin_x + (column + 0.5) * ground.cell_size, ground.origin_y + (row + 0.5) * ground.cell_size
 
 
 class Planner:
@@ -88,6 +100,9 @@ class Film:
 
 
 def forecast_text(status):
+    """What a planner that plans through forecasts has of one."""
+    if status.planner != "forecast":
+        return "without a forecast"
     if status.forecast_age >= 0:
         return "forecast of %.0f s ago" % status.forecast_age
     if status.forecast_progress >= 0:
@@ -96,12 +111,21 @@ def forecast_text(status):
 
 
 class Trip:
-    """One rover from start to goal, step by step."""
+    """One rover from start to a goal behind the dune, and onto the dune, step by step."""
 
     def __init__(self, options, desert, planner, goal):
         self.options, self.desert, self.planner, self.goal = options, desert, planner, goal
-        self.time, self.slips, self.length = 0.0, [], 0.0
+        self.time, self.slips, self.length, self.replans, self.last_replan, self.climbs = 0.0, [], 0.0, 0, "", False
         desert.show_path(planner.name + "/path")
+        planner.set_goal("map", *goal)
+
+    def climb(self):
+        """Sets the second goal."""
+        status = self.planner.status
+        self.replans, self.last_replan, self.climbs = status.replans, status.last_replan, True
+        self.goal = summit(self.desert.simulation)
+        print("      the way past the dune is done; now onto its crest, at (%.1f, %.1f) m" % self.goal, flush=True)
+        self.planner.set_goal("map", *self.goal)
 
     def step(self):
         before = self.desert.rover.pose()
@@ -119,16 +143,20 @@ class Trip:
         now, status = self.desert.rover.pose(), self.planner.status
         return "%5.0f s  (%6.2f, %6.2f) m  %-10s %5.1f m to go  %s  %d replans%s" % (
             self.time, now.x, now.y, status.state, status.remaining,
-            forecast_text(status), status.replans,
-            ": " + status.last_replan if status.replans else "")
+            forecast_text(status), *self.changes_of_mind())
+
+    def changes_of_mind(self):
+        """Over both goals: how many, and why the last one."""
+        status = self.planner.status
+        count = status.replans + self.replans
+        return count, ": " + (status.last_replan if status.replans else self.last_replan) if count else ""
 
     def picture(self):
         """The terrain, what the rover plans and has done, and what that means."""
         status, slip = self.planner.status, self.slips[-1] if self.slips else 0.0
         lines = ["%3.0f s, %.0f days of wind: %s, %.0f m made, slip %.0f %%" % (
             self.time, self.time * ACCELERATION / 86400, status.state, self.length, 100 * slip),
-            "%s; %d replans%s" % (forecast_text(status), status.replans,
-                                  ": " + status.last_replan if status.replans else "")]
+            "%s; %d replans%s" % (forecast_text(status), *self.changes_of_mind())]
         return self.desert.picture(self.goal).framed(FILM_SIZE, LEGEND, lines)
 
     def run(self, film):
@@ -139,6 +167,8 @@ class Trip:
                 film.add(self.picture())
             if n % int(20 / STEP) == 0:
                 print(self.line(), flush=True)
+            if self.planner.status.state == PlannerStatus.ARRIVED and not self.climbs:
+                self.climb()
             if self.planner.status.state in ENDS:
                 break
         film.add(self.picture())
@@ -146,11 +176,12 @@ class Trip:
     def report(self):
         """Exit status."""
         status, rover = self.planner.status, self.desert.rover.status()
-        print("%s after %.0f s: %.1f m made, %d replans%s, %d recoveries, mean slip %.2f; rover %s%s" % (
-            status.state, self.time, self.length, status.replans,
-            " (the last one: %s)" % status.last_replan if status.replans else "", status.recoveries,
-            sum(self.slips) / max(1, len(self.slips)), rover.state, ": " + rover.reason if rover.reason else ""))
-        if status.state == PlannerStatus.ARRIVED:
+        print("%s after %.0f s: %.1f m made, %.1f m up, %d replans%s, %d recoveries, slip %.0f %% on the mean and %.0f %% at "
+              "most; rover %s%s" % (
+                  status.state, self.time, self.length, self.desert.rover.pose().z, *self.changes_of_mind(), status.recoveries,
+                  100 * sum(self.slips) / max(1, len(self.slips)), 100 * max(self.slips, default=0), rover.state,
+                  ": " + rover.reason if rover.reason else ""))
+        if status.state == PlannerStatus.ARRIVED and self.climbs:
             return 0
         print("demo: the rover did not arrive: %s" % (status.reason or "its time is over"), file=sys.stderr)
         return 1
@@ -171,7 +202,6 @@ def run_headless(options):
         film = Film(options.film)
         try:
             planner.wait(lambda s: s.header.frame_id, "it has no terrain")
-            planner.set_goal("map", *goal)
             trip = Trip(options, desert, planner, goal)
             trip.run(film)
             status = trip.report()
@@ -187,10 +217,12 @@ def run_live(options):
     rospy.init_node("demo_rover", disable_signals=True)
     planner = Planner("rover/desert_planner")
     planner.wait(lambda s: s.header.frame_id, "it has no terrain", 120)
-    ends = course(options.seed)
-    n = 1
+    start, goal = course(options.seed)
+    simulation = Simulation()
+    n = 0
     while not rospy.is_shutdown():
-        planner.set_goal(planner.status.header.frame_id, *ends[n % 2])
+        place = (goal, summit(simulation), start)[n % 3]
+        planner.set_goal(planner.status.header.frame_id, *place)
         planner.wait(lambda s: s.state not in ENDS, "it does not start")
         while planner.status.state not in ENDS and not rospy.is_shutdown():
             rospy.sleep(2)

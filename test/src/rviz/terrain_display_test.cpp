@@ -148,7 +148,7 @@ TEST_F(TerrainDisplay, AHillDarkensTheBlockThatItsShadowFallsOn) {
   const double before = number(display, "built_blocks");
   node.update(50, 90, 5, 5, [](int, int) { return 20.0f; });  // block (0, 1); its shadow ends in block (1, 1)
   EXPECT_TRUE(
-      window_->run_until([&] { return number(display, "built_blocks") == before + 2 && is_ready(display); }));
+      window_->run_until([&] { return number(display, "built_blocks") >= before + 2 && is_ready(display); }));
 }
 
 TEST_F(TerrainDisplay, AllBlocksOfAnUpdateAppearInTheSameFrame) {
