@@ -104,7 +104,7 @@ TEST_F(Overlap, LookingLeavesNoTraceInTheSimulation) {
 
 // ---- Time: under a sanitizer it tells nothing
 
-class OverlapTime : public Overlap {};
+class OverlapTiming : public Overlap {};
 
 template <class Work>
 double milliseconds(const Work& work) {
@@ -128,7 +128,7 @@ std::unique_ptr<Simulation> large(Exec& exec) {
   return s;
 }
 
-TEST_F(OverlapTime, StepsGoOnWhileASnapshotTravels) {
+TEST_F(OverlapTiming, StepsGoOnWhileASnapshotTravels) {
   const auto s = large(cuda());
   const std::vector<Layer> layers{Layer::elevation, Layer::sand, Layer::wind_x, Layer::wind_y};
   const auto run = [&](int steps) {
@@ -157,7 +157,7 @@ TEST_F(OverlapTime, StepsGoOnWhileASnapshotTravels) {
   EXPECT_LT(begin, 0.5 * snapshot);
 }
 
-TEST_F(OverlapTime, AnUpdateOfAFewTilesTakesLessThanTheWholeSurface) {
+TEST_F(OverlapTiming, AnUpdateOfAFewTilesTakesLessThanTheWholeSurface) {
   const auto s = large(cuda());
   for (int n = 0; n < 4; ++n) s->views().snapshot({Layer::elevation});
   const double whole = best_milliseconds([&] { s->views().snapshot({Layer::elevation}); });
