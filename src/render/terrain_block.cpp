@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "src/render/contour_lines.hpp"
 #include "src/render/sunlight.hpp"
@@ -16,23 +18,24 @@ namespace {
 /// The layers that make the colour of the ground. A terrain of which only the elevation is known is drawn as
 /// sand.
 struct MaterialWindows {
-  CellWindow sand, soil, moisture, vegetation, obstacle, resistance;
+  CellWindow sand, soil;  ///< cover
+  CellWindow moisture, vegetation, obstacle, resistance;
 
   MaterialWindows(const LayerWindow& window, const CellRectangle& cells)
-      : sand(window("sand_depth", cells)),
-        soil(window("soil_depth", cells)),
+      : sand(cover_of(window("sand_depth", cells))),
+        soil(cover_of(window("soil_depth", cells))),
         moisture(window("moisture", cells)),
         vegetation(window("vegetation", cells)),
         obstacle(window("obstacle", cells)),
         resistance(window("erosion_resistance", cells)) {}
   MaterialWindows() = default;
 
-  float sand_cover(int x, int y) const { return sand.empty() ? 1.0f : smoothed_cover(sand, x, y); }
+  float sand_cover(int x, int y) const { return sand.empty() ? 1.0f : smoothed(sand, x, y); }
   /// `cover`: that of sand there.
   Colour at(int x, int y, float cover) const {
     SurfaceMaterials m;
     m.sand = cover;
-    if (!soil.empty()) m.soil = smoothed_cover(soil, x, y);
+    if (!soil.empty()) m.soil = smoothed(soil, x, y);
     const auto set = [&](const CellWindow& layer, float& value) {
       if (!layer.empty()) value = layer.at(x, y);
     };
@@ -46,15 +49,20 @@ struct MaterialWindows {
   }
 
  private:
+  static CellWindow cover_of(const CellWindow& depth) {
+    std::vector<float> values = depth.values();
+    std::transform(values.begin(), values.end(), values.begin(), cover_of_depth);
+    return {depth.cells(), std::move(values)};
+  }
   /// The cover around a cell, by binomial weights. The edge of sand is sharper than a cell; drawn as it is, it
   /// follows the grid in teeth.
-  static float smoothed_cover(const CellWindow& depth, int x, int y) {
+  static float smoothed(const CellWindow& cover, int x, int y) {
     float sum = 0, weights = 0;
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
-        if (!depth.cells().contains(x + dx, y + dy)) continue;
+        if (!cover.cells().contains(x + dx, y + dy)) continue;
         const auto weight = static_cast<float>((2 - std::abs(dx)) * (2 - std::abs(dy)));
-        sum += weight * cover_of_depth(depth.at(x + dx, y + dy));
+        sum += weight * cover.at(x + dx, y + dy);
         weights += weight;
       }
     return sum / weights;
