@@ -64,6 +64,13 @@ class Formatter : public CLI::Formatter {
   }
 };
 
+/// The page of a topic.
+constexpr const char* every_topic = "all";
+
+constexpr const char* help_with_topic = "--help=";
+
+bool asks_for_help(const std::string& argument) { return argument == "--help" || argument == "-h"; }
+
 }  // namespace
 
 Options::Options(std::string program, const std::string& about)
@@ -122,6 +129,16 @@ Options& Options::section(const std::string& heading) {
   return *this;
 }
 
+Options& Options::topic(const std::string& name, const std::string& heading) {
+  topics_.push_back({name, heading});
+  return section(heading);
+}
+
+Options& Options::essential() {
+  essential_.push_back(last_);
+  return *this;
+}
+
 Options& Options::footer(const std::string& text) {
   app_->footer(text);
   return *this;
@@ -137,6 +154,7 @@ void Options::parse(int argc, const char* const* argv) {
     app_->parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     help_ = true;
+    read_topic(argc, argv);
     return;
   } catch (const CLI::ArgumentMismatch& e) {
     throw ConfigError(mismatch_text(e));
@@ -181,7 +199,48 @@ void Options::refuse_empty_values() const {
       if (value.empty()) throw ConfigError(option->get_name() + " '': needs a value that is not empty");
 }
 
-std::string Options::usage() const { return app_->help(); }
+void Options::read_topic(int argc, const char* const* argv) {
+  if (topics_.empty()) return;
+  for (int n = 1; n < argc; ++n) {
+    const std::string argument = argv[n];
+    if (argument.rfind(help_with_topic, 0) == 0)
+      shown_topic_ = argument.substr(std::string(help_with_topic).size());
+    else if (asks_for_help(argument) && n + 1 < argc && argv[n + 1][0] != '-')
+      shown_topic_ = argv[n + 1];
+  }
+  std::string names;
+  for (const Topic& topic : topics_) names += topic.name + ", ";
+  names += every_topic;
+  const auto is_shown = [&](const Topic& topic) { return topic.name == shown_topic_; };
+  if (!shown_topic_.empty() && shown_topic_ != every_topic &&
+      std::none_of(topics_.begin(), topics_.end(), is_shown))
+    throw ConfigError("--help " + shown_topic_ + ": there is no such topic, only " + names +
+                      did_you_mean(shown_topic_, names));
+}
+
+std::string Options::usage() const {
+  if (topics_.empty() || shown_topic_ == every_topic) return app_->help();
+  Formatter format;
+  format.column_width(name_columns);
+  const CLI::App& app = *app_;
+  if (!shown_topic_.empty()) {
+    const auto topic =
+        std::find_if(topics_.begin(), topics_.end(), [&](const Topic& t) { return t.name == shown_topic_; });
+    return format.make_usage(&app, program_) +
+           format.make_group(topic->heading, false, app.get_options([&](const CLI::Option* option) {
+             return option->nonpositional() && option->get_group() == topic->heading;
+           }));
+  }
+  std::vector<const CLI::Option*> shown{app.get_help_ptr()};
+  shown.insert(shown.end(), essential_.begin(), essential_.end());
+  std::ostringstream topics;
+  for (const Topic& topic : topics_)
+    CLI::detail::format_help(topics, "--help " + topic.name, topic.heading, name_columns);
+  CLI::detail::format_help(topics, std::string("--help ") + every_topic, "All options", name_columns);
+  return format.make_description(&app) + format.make_usage(&app, program_) + format.make_positionals(&app) +
+         format.make_group("Options", false, shown) + "\nAll options, by topic:\n" + topics.str() + '\n' +
+         format.make_footer(&app);
+}
 
 CLI::Option* Options::declared(const std::string& name) const {
   return app_->get_option_no_throw("--" + name);

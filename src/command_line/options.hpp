@@ -14,7 +14,8 @@ namespace desert_sim {
 
 class Options {
  public:
-  /// `about`: what the program does. Each program has the flag --help (-h).
+  /// `about`: what the program does. Each program has the flag --help (-h). One whose options are in topics has
+  /// `--help TOPIC` and `--help all`, too.
   Options(std::string program, const std::string& about);
   ~Options();
   Options(Options&&) noexcept;
@@ -33,16 +34,20 @@ class Options {
   Options& excludes(const std::string& other);
   /// The heading over the options that are declared next.
   Options& section(const std::string& heading);
+  /// Begins a topic, a word: a section with this heading that --help names only, and `--help name` shows.
+  Options& topic(const std::string& name, const std::string& heading);
+  /// The option that was declared last is in --help although it is in a topic.
+  Options& essential();
   /// What --help says at its end.
   Options& footer(const std::string& text);
 
   /// Throws ConfigError that names the argument: an unknown option (with the nearest known one), too many or
   /// too few positional arguments, values that are missing or empty, what needs or excludes another option;
-  /// but not beside --help.
+  /// beside --help, only an unknown topic.
   void parse(int argc, const char* const* argv);
   /// --help was given.
   bool help() const { return help_; }
-  /// The text of --help.
+  /// The text of --help, or of the topic that was given with it.
   std::string usage() const;
 
   const std::string& program() const { return program_; }
@@ -67,8 +72,16 @@ class Options {
   /// Of what CLI11 did not take: throws ConfigError for an unknown option, returns the rest.
   std::vector<std::string> positional_left() const;
   void refuse_empty_values() const;
+  /// Of the word after --help, if the options are in topics: throws ConfigError for an unknown one.
+  void read_topic(int argc, const char* const* argv);
 
+  struct Topic {
+    std::string name, heading;
+  };
   std::string program_, heading_ = "Options";
+  std::vector<Topic> topics_;
+  std::vector<const CLI::Option*> essential_;
+  std::string shown_topic_;  // that --help asks for; empty: the essential options
   std::unique_ptr<CLI::App> app_;
   CLI::Option *last_ = nullptr, *first_positional_ = nullptr;
   std::string positional_name_;

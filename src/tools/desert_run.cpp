@@ -25,94 +25,12 @@
 #include "src/tools/progress.hpp"
 #include "src/tools/rasters.hpp"
 #include "src/tools/run_length.hpp"
+#include "src/tools/run_options.hpp"
 #include "src/tools/terrain_series.hpp"
 
 using namespace desert_sim;
 
 namespace {
-
-Options options() {
-  Options o("desert_run", "Runs a scenario without ROS and without a window.");
-  o.positional("SCENARIO", "a YAML file, or the name of an installed scenario, such as barchan", 0)
-      .section("Run")
-      .option("steps", "N", "steps to run (default: the scenario's run.steps); with --resume: the last step")
-      .option(
-          "duration", "T",
-          "in place of --steps: simulated time until the end, in s or with a unit, such as 24a (ms, s, min, "
-          "h, d, a)")
-      .excludes("steps")
-      .option("backend", "B", "auto (default), cpu or cuda")
-      .option("threads", "N", "threads of the CPU backend")
-      .option("set", "PATH=VALUE", "override a key of the scenario; may be repeated")
-      .option("seed", "S", "same as --set seed=S")
-      .flag("all-raster-formats",
-            "read rasters of every format that GDAL reads, also what names other files or hosts (VRT, WMS, "
-            "/vsi "
-            "paths), not only GeoTIFF, ESRI ASCII, ENVI, PNG, EXR and USGS DEM")
-      .option("checkpoint", "FILE", "save the state to FILE at the end")
-      .option("checkpoint-every", "N", "also save it every N steps")
-      .needs("checkpoint")
-      .option(
-          "resume", "FILE",
-          "start from a checkpoint (of any scenario; SCENARIO may be omitted), with what --set sets of the "
-          "parameters that can change while a simulation runs")
-      .option("replay", "JOURNAL",
-              "apply the commands of a journal; without --steps, run as many steps as it has")
-      .flag("quiet", "print no progress")
-      .section("Output")
-      .option("out", "DIR", "write rasters, pictures and summary.json to DIR, which is created if needed")
-      .option("every", "N", "also write them every N steps, to DIR/step_NNNNNNNN")
-      .needs("out")
-      .option("snapshots", "N",
-              "in place of --every: write them about N times, at even distances and at the end")
-      .needs("out")
-      .excludes("every")
-      .option("format", "F",
-              "geotiff (default): a raster a layer in DIR and in each DIR/step_NNNNNNNN; netcdf: all layers "
-              "at the "
-              "start, every N steps and at the end in one file, DIR/terrain.nc")
-      .needs("out")
-      .option("plot", "FILE",
-              "draw a PNG of areas by material and plants by species over these steps (needs python3 with "
-              "matplotlib)")
-      .needs("out")
-      .option("film", "FILE",
-              "film the run from above: an .mp4 (needs ffmpeg), a folder of pictures, or one .png of the end")
-      .option("film-every", "N", "steps from picture to picture (default: such that there are about 250)")
-      .needs("film")
-      .option("view", "KEY=VALUE",
-              "where the camera stands and what it shows; may be repeated; --describe-view lists them")
-      .needs("film")
-      .option(
-          "cross-section", "NAME=X1,Y1,X2,Y2",
-          "add up the sand that the wind carries across this line, to the left of its way, in summary.json; "
-          "may be repeated")
-      .option("probe", "X,Y", "write a time series of this point to DIR/probes.csv; may be repeated")
-      .needs("out")
-      .option("probe-every", "N", "steps from line to line (default 1)")
-      .needs("probe")
-      .option("micro-relief", "X1,Y1,X2,Y2,resolution=R",
-              "write the surface between these corners with ripples and bumps (section micro_relief) to "
-              "DIR/micro_relief.tif, a point each R metres (default 0.05); may be repeated")
-      .needs("out")
-      .section("In place of a run")
-      .option("migrate", "FILE",
-              "write the present keys in a scenario file of an earlier version: sand.model, micro_relief; "
-              "comments "
-              "stay")
-      .flag("describe", "print all parameters as markdown")
-      .flag("describe-view", "print the keys of --view as markdown")
-      .flag("describe-processes", "print the table of processes as markdown")
-      .flag("pipeline",
-            "print the processes of a step of the scenario in order, with layers and memory, and how many "
-            "steps "
-            "a run takes")
-      .footer(
-          "Exit status: 0; 1 if a material was lost or gained; 2 for invalid input; 3 for a\n"
-          "failure at run time; 130 after Ctrl-C, SIGTERM or SIGHUP. Outputs are written\n"
-          "except for 2 and 3.");
-  return o;
-}
 
 volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
@@ -369,4 +287,4 @@ int run_program(const Options& o) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return run_main(options(), argc, argv, run_program); }
+int main(int argc, char** argv) { return run_main(run_options(), argc, argv, run_program); }

@@ -113,5 +113,65 @@ TEST(Options, HelpIsMadeFromTheDeclarationsWhateverElseIsGiven) {
   EXPECT_FALSE(parse({}).help());
 }
 
+Options parse_topics(const Words& arguments) {
+  Options o("program", "Does something.");
+  o.positional("FILE", "what is read", 0)
+      .topic("run", "Length of a run")
+      .option("steps", "N", "how many steps")
+      .essential()
+      .option("threads", "N", "how many threads")
+      .topic("output", "What is written")
+      .option("out", "FOLDER", "where to")
+      .essential()
+      .flag("quiet", "say nothing")
+      .footer("Exit status: 0.");
+  std::vector<const char*> argv{"program"};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  o.parse(static_cast<int>(argv.size()), argv.data());
+  return o;
+}
+
+TEST(Options, HelpOfTopicsShowsWhatIsEssentialAndEachTopic) {
+  struct Page {
+    Words arguments, shown, not_shown;
+  };
+  for (const Page& page :
+       {Page{{"--help"},
+             {"Does something.", "FILE", "--help", "--steps N", "--out FOLDER", "--help run",
+              "Length of a run", "--help output", "--help all", "Exit status: 0."},
+             {"--threads", "--quiet"}},
+        Page{{"--help", "output"}, {"What is written:", "--out FOLDER", "--quiet"}, {"--steps", "--threads"}},
+        Page{{"a", "--quiet", "-h", "run", "--stpes"},
+             {"Length of a run:", "--steps N", "--threads N"},
+             {"--out", "--quiet"}},
+        Page{{"--help=output"}, {"What is written:", "--quiet"}, {"--steps"}},
+        Page{{"--help", "all"},
+             {"Does something.", "FILE", "Length of a run:", "--threads", "What is written:", "--quiet"},
+             {"--help run"}},
+        Page{{"run", "--help", "--quiet"}, {"--help run"}, {"--threads"}}}) {
+    const Options o = parse_topics(page.arguments);
+    ASSERT_TRUE(o.help());
+    std::size_t at = 0;
+    for (const std::string& part : page.shown) {
+      const std::size_t found = o.usage().find(part, at);
+      ASSERT_NE(found, std::string::npos) << part << " in\n" << o.usage();
+      at = found;
+    }
+    for (const std::string& part : page.not_shown)
+      EXPECT_EQ(o.usage().find(part), std::string::npos) << part << " in\n" << o.usage();
+  }
+  EXPECT_FALSE(parse_topics({"--quiet"}).help());
+}
+
+TEST(Options, AnUnknownTopicIsRefusedWithTheList) {
+  try {
+    parse_topics({"--help", "ouptut"});
+    ADD_FAILURE() << "nothing is refused";
+  } catch (const ConfigError& e) {
+    EXPECT_STREQ(e.what(),
+                 "--help ouptut: there is no such topic, only run, output, all; did you mean 'output'?");
+  }
+}
+
 }  // namespace
 }  // namespace desert_sim

@@ -205,15 +205,34 @@ TEST_F(Run, AutoSaysWhichBackendAndWhy) {
   EXPECT_NE(r.err.find("because"), std::string::npos) << r.err;
 }
 
-TEST_F(Run, DescribesAndHelps) {
-  const test::ProgramRun described = run({"--describe"}), helped = run({"--help"});
+TEST_F(Run, Describes) {
+  const test::ProgramRun described = run({"--describe"});
   EXPECT_EQ(described.status, 0);
   EXPECT_EQ(described.out, describe_parameters());
-  EXPECT_EQ(helped.status, 0);
-  for (const char* option :
-       {"--steps", "--backend", "--threads", "--set", "--seed", "--out", "--every", "--plot", "--checkpoint",
-        "--checkpoint-every", "--resume", "--replay", "--describe", "--quiet"})
-    EXPECT_NE(helped.out.find(option), std::string::npos) << option;
+}
+
+TEST_F(Run, HelpFitsAScreenAndHasTheRestByTopic) {
+  const auto expect_options = [](const test::ProgramRun& helped, const std::vector<const char*>& options) {
+    EXPECT_EQ(helped.status, 0) << helped.err;
+    for (const char* option : options)
+      EXPECT_NE(helped.out.find(std::string(option) + " "), std::string::npos) << option << " in\n"
+                                                                               << helped.out;
+  };
+  const test::ProgramRun helped = run({"--help"});
+  expect_options(helped, {"--steps", "--set", "--out", "--film", "--resume", "--help output"});
+  EXPECT_LE(std::count(helped.out.begin(), helped.out.end(), '\n'), 40);
+  expect_options(run({"--help", "run"}), {"--steps", "--threads", "--backend", "--seed", "--quiet"});
+  expect_options(run({"--help", "output"}), {"--out", "--every", "--format", "--probe"});
+  expect_options(run({"--help", "film"}), {"--film", "--film-every", "--view", "--plot"});
+  expect_options(run({"--help", "resume"}), {"--checkpoint", "--checkpoint-every", "--resume", "--replay"});
+  expect_options(run({"--help", "describe"}), {"--describe", "--describe-view", "--pipeline", "--migrate"});
+  expect_options(run({"--help", "all"}), {"--steps", "--out", "--film", "--checkpoint", "--describe"});
+  const test::ProgramRun unknown = run({"--help", "flim"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_EQ(unknown.err,
+            "desert_run: --help flim: there is no such topic, only run, output, film, resume, describe, all; "
+            "did you "
+            "mean 'film'?\n");
 }
 
 TEST_F(Run, PlotsARunOverTimeOrSaysWhyNot) {
