@@ -18,16 +18,15 @@ string(MD5 build_id ${PROJECT_BINARY_DIR})
 set(prefix /tmp/desert_sim_installed_${build_id})
 string(REPLACE ":" ";" prefixes "${prefix}:$ENV{CMAKE_PREFIX_PATH}")
 add_test(NAME installed_package.install COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${prefix})
-# The package that README.md shows.
-set(readme_package ${prefix}_readme)
-add_test(NAME installed_package.readme_files
-  COMMAND ${PYTHON_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/external_package/readme_package.py
-    ${PROJECT_SOURCE_DIR}/README.md ${readme_package})
+# The example, copied as its README says: nothing in it depends on where it lies.
+set(example ${prefix}_my_driver)
+add_test(NAME installed_package.example_is_copied
+  COMMAND ${CMAKE_COMMAND} -E copy_directory ${PROJECT_SOURCE_DIR}/examples/my_driver ${example})
 desert_outside_package(is_found ${CMAKE_CURRENT_SOURCE_DIR}/external_package)
-desert_outside_package(readme ${readme_package})
-add_test(NAME installed_package.removed COMMAND ${CMAKE_COMMAND} -E remove_directory ${prefix} ${readme_package})
-set_tests_properties(installed_package.install installed_package.readme_files PROPERTIES
+desert_outside_package(my_driver ${example})
+add_test(NAME installed_package.removed COMMAND ${CMAKE_COMMAND} -E remove_directory ${prefix} ${example})
+set_tests_properties(installed_package.install installed_package.example_is_copied PROPERTIES
   FIXTURES_SETUP installed_package)
-set_tests_properties(installed_package.is_found installed_package.readme PROPERTIES
+set_tests_properties(installed_package.is_found installed_package.my_driver PROPERTIES
   FIXTURES_REQUIRED installed_package)
 set_tests_properties(installed_package.removed PROPERTIES FIXTURES_CLEANUP installed_package)

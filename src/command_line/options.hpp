@@ -14,8 +14,8 @@ namespace desert_sim {
 
 class Options {
  public:
-  /// `about`: what the program does. Each program has the flag --help (-h). One whose options are in topics has
-  /// `--help TOPIC` and `--help all`, too.
+  /// `about`: what the program does. Each program has the flag --help (-h), and one whose options are in
+  /// topics has `--help TOPIC` and `--help all`, too.
   Options(std::string program, const std::string& about);
   ~Options();
   Options(Options&&) noexcept;
