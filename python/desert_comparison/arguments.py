@@ -14,8 +14,8 @@ Each scenario keeps its own terrain, grid and number of steps; run k of every sc
 """
 EPILOG = """\
 The runs go through Snakemake. Finished runs are kept in --work: after a kill the same command goes on with the others,
-and a run is made anew only if its scenario, a file that this names, an option or the program has changed. The table is
-the same to the bit however many runs are made at a time. doc/science/comparing.md defines the metrics.
+and a run is made anew only if its scenario, a file that this names, an option or the program has changed.
+doc/science/comparing.md defines the metrics.
 Exit status: 0; 1 if a run lost or gained material (the page says which); 2 for invalid input; 3 if a run failed;
 130 after Ctrl-C, SIGTERM or SIGHUP.
 """
@@ -37,7 +37,8 @@ def whole(lowest, highest):
 def parse(arguments):
     """Returns the options. Ends the program for --help and what argparse refuses; raises ComparisonError."""
     p = argparse.ArgumentParser(prog="desert_compare", description=DESCRIPTION, epilog=EPILOG, allow_abbrev=False,
-                                formatter_class=argparse.RawDescriptionHelpFormatter)
+                                usage="%(prog)s [OPTIONS] --out PAGE.html SCENARIO SCENARIO...",
+                                formatter_class=lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=100))
     p.add_argument("scenarios", nargs="+", metavar="SCENARIO",
                    help="a YAML file, or the name of an installed scenario, such as barchan")
     p.add_argument("--out", required=True, metavar="PAGE.html", help="the page")
