@@ -247,6 +247,16 @@ std::optional<DriveCommand> Navigator::mind_arrival() {
   return finish(NavigatorState::arrived, "");
 }
 
+std::vector<TimedPoint> Navigator::schedule() const {
+  const GridPath ahead = pursuit_.remaining();
+  if (schedule_.empty() || ahead.empty()) return {};
+  // The rover's place, and the points that it has not passed.
+  const auto last_passed = schedule_.end() - static_cast<std::ptrdiff_t>(ahead.size());
+  std::vector<TimedPoint> times(last_passed, schedule_.end());
+  times.front().point = ahead.front();
+  return times;
+}
+
 DriveCommand Navigator::follow() {
   status_.remaining = pursuit_.left();
   if (!schedule_.empty()) {

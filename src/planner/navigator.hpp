@@ -90,11 +90,14 @@ class Navigator {
   DriveCommand act(double time, const PlanarPose& pose, RoverCondition condition, const std::string& why);
 
   const NavigatorStatus& status() const { return status_; }
-  /// The present path; empty without a goal.
-  const GridPath& path() const { return pursuit_.path(); }
-  /// Times of its points [s], where a forecast was planned through; else empty.
-  const std::vector<TimedPoint>& schedule() const { return schedule_; }
-  /// Changes whenever the path does.
+  /// What lies ahead of the rover of the present path; empty without a goal.
+  GridPath path() const { return pursuit_.remaining(); }
+  /// Times of its points [s], where a forecast was planned through; else empty. The first is that at which
+  /// the rover was to be at the last point that it has passed.
+  std::vector<TimedPoint> schedule() const;
+  /// How far the rover has come on the path [m].
+  double path_done() const { return pursuit_.done(); }
+  /// Changes whenever there is another path.
   std::uint64_t path_number() const { return path_number_; }
   const FieldPlanner* field() const { return field_.get(); }
 

@@ -236,10 +236,13 @@ void PlannerServer::send(const DriveCommand& command) {
 
 // ---- what it tells
 
+/// Another path at once, and what lies ahead of the same one when the rover has come a cell further.
 void PlannerServer::publish_path() {
-  if (navigator_.path_number() == published_path_) return;
-  published_path_ = navigator_.path_number();
   const auto elevation = terrain_.elevation();
+  const double step = elevation ? elevation->info().cell_size : 0, done = navigator_.path_done();
+  if (navigator_.path_number() == published_path_ && done <= published_done_ + step) return;
+  published_path_ = navigator_.path_number();
+  published_done_ = done;
   path_publisher_.publish(path_message(navigator_.path(), navigator_.schedule(), elevation.get(),
                                        terrain_.frame(), ros::Time::now()));
 }

@@ -94,6 +94,7 @@ class PlannerServer {
   double lockstep_time_ = 0;
   ros::Time pose_stamp_;  ///< of the rover's pose that it knows; 0 before there is one
   std::uint64_t terrain_step_ = 0, published_path_ = 0;
+  double published_done_ = 0;  ///< of that path [m]
   ForecastSchedule forecasts_;
   double forecast_progress_ = 0;  ///< of the one that is under way
   std::chrono::steady_clock::time_point last_status_;
