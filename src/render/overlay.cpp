@@ -57,7 +57,7 @@ Colour Overlay::on(const Colour& ground, float value) const {
 const std::vector<LayerStyle>& layer_styles() {
   static const std::vector<LayerStyle> styles{{"elevation", "m", 0, 50, ColourMap::sequential},
                                               {change_layer, "m", -0.5f, 0.5f, ColourMap::diverging},
-                                              {slope_layer, "rad", 0, 0.7f, ColourMap::signal},
+                                              {slope_layer, "deg", 0, 40, ColourMap::signal},
                                               {"traversability", "1", 1, 0, ColourMap::signal},
                                               {"cost", "1", 0, 100, ColourMap::signal},
                                               {"wind_shadow", "1", 0, 1, ColourMap::sequential},

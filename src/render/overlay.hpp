@@ -51,7 +51,7 @@ ValueRange range_of(const std::vector<float>& values);
 /// A number for a legend: three significant digits, without trailing zeros.
 std::string legend_number(double value);
 
-/// The names of layers that are computed here from the elevation: its slope [rad], and its change since a
+/// The names of layers that are computed here from the elevation: its slope [deg], and its change since a
 /// moment [m].
 constexpr const char* slope_layer = "slope";
 constexpr const char* change_layer = "change";

@@ -69,6 +69,8 @@ struct MaterialWindows {
   }
 };
 
+constexpr float degrees = 180 / 3.14159265f;
+
 /// How much of ripples is seen: on sand that the sun reaches, and not on slip faces, where sand slides.
 float ripples_on(float sand_cover, float normal_z, float sun) {
   constexpr float gentle = 0.94f, steep = 0.88f;  // 20 and 28 degrees
@@ -138,7 +140,7 @@ TerrainBlock build_terrain_block(const TerrainGrid& grid, int block, int level, 
       [&](int x, int y, float nx, float ny, float nz) {
         const float sand = materials.sand_cover(x, y);
         Colour colour = materials.at(x, y, sand);
-        if (slope) colour = look.overlay.on(colour, std::acos(std::min(1.0f, nz)));
+        if (slope) colour = look.overlay.on(colour, degrees * std::acos(std::min(1.0f, nz)));
         if (!overlay.empty()) colour = look.overlay.on(colour, overlay.at(x, y));
         const float alpha = look.ripples ? ripples_on(sand, nz, sun_at(x, y)) : 1.0f;
         return pack(lit(colour, light_at(x, y, nx, ny, nz)), alpha);

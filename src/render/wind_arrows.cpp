@@ -22,12 +22,12 @@ void add_arrow(const Arrow& a, const std::function<double(double, double)>& grou
   const double half = 0.035 * a.spacing, lift = 0.04 * a.spacing,
                head = std::min(0.3 * a.spacing, 0.5 * a.length);
   const std::size_t first_vertex = mesh.vertices.size(), first_index = mesh.indices.size();
-  bool off_the_ground = false;
+  bool over_a_hole = false;
   const auto add = [&](double along, double across) {
     const double x = a.x + along * a.along_x - across * a.along_y,
                  y = a.y + along * a.along_y + across * a.along_x;
     const double z = ground(a.x + along * a.along_x, a.y + along * a.along_y) + lift;
-    off_the_ground = off_the_ground || std::isnan(z);
+    over_a_hole = over_a_hole || std::isnan(z);
     mesh.vertices.push_back(
         {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0, 0, 1, a.colour});
   };
@@ -39,7 +39,7 @@ void add_arrow(const Arrow& a, const std::function<double(double, double)>& grou
   add(shaft, -3 * half);
   add(shaft, 3 * half);
   add(a.length, 0);
-  if (off_the_ground) {
+  if (over_a_hole) {
     mesh.vertices.resize(first_vertex);
     mesh.indices.resize(first_index);
     return;

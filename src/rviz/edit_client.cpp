@@ -11,6 +11,7 @@
 
 #include "src/core/error.hpp"
 #include "src/rviz/names.hpp"
+#include "src/rviz/undo_text.hpp"
 
 namespace desert_sim {
 
@@ -222,8 +223,10 @@ void EditClient::paint(Stroke& stroke, const render::Capsule& capsule) {
 void EditClient::call_turn(bool redo) {
   try {
     const Undo::Response answer = call<Undo>(redo ? "redo" : "undo", {});
-    report(true, std::string(redo ? "Redone" : "Undone") + "; " + std::to_string(answer.undoable) +
-                     " strokes can be undone, " + std::to_string(answer.redoable) + " redone");
+    const std::string missing = missing_text(answer);
+    report(true, (redo ? "Redone" : "Undone") + (missing.empty() ? "" : ", " + missing) + "; " +
+                     std::to_string(answer.undoable) + " strokes can be undone, " +
+                     std::to_string(answer.redoable) + " redone");
   } catch (const ConfigError& error) {
     report(false, error.what());
   }

@@ -4,6 +4,8 @@
 #include <OgreResourceGroupManager.h>
 #include <OgreTechnique.h>
 
+#include <string>
+
 namespace desert_sim::materials {
 
 namespace {
@@ -12,7 +14,7 @@ const Ogre::String& group() { return Ogre::ResourceGroupManager::DEFAULT_RESOURC
 
 /// The material of this name, which is made when it is asked for the first time, and lives as long as rviz.
 template <class SetUp>
-Ogre::MaterialPtr material(const char* name, const SetUp& set_up) {
+Ogre::MaterialPtr material(const std::string& name, const SetUp& set_up) {
   Ogre::MaterialManager& all = Ogre::MaterialManager::getSingleton();
   if (const Ogre::MaterialPtr there = all.getByName(name, group())) return there;
   Ogre::MaterialPtr made = all.create(name, group());
@@ -54,6 +56,23 @@ Ogre::MaterialPtr marks() {
     pass.setDepthCheckEnabled(false);
     pass.setDepthWriteEnabled(false);
     pass.setLineWidth(2);
+  });
+}
+
+Ogre::MaterialPtr lines(int pixels) {
+  return material("desert_sim/lines" + std::to_string(pixels), [pixels](Ogre::Pass& pass) {
+    pass.setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
+    pass.setDepthWriteEnabled(false);
+    pass.setLineWidth(static_cast<float>(pixels));
+  });
+}
+
+Ogre::MaterialPtr lines_behind(int pixels) {
+  return material("desert_sim/lines_behind" + std::to_string(pixels), [pixels](Ogre::Pass& pass) {
+    pass.setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
+    pass.setDepthCheckEnabled(false);
+    pass.setDepthWriteEnabled(false);
+    pass.setLineWidth(static_cast<float>(pixels));
   });
 }
 

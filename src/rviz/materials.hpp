@@ -16,5 +16,9 @@ Ogre::MaterialPtr translucent();
 Ogre::MaterialPtr shapes();
 /// Translucent by the alpha of the vertices, and seen through everything: what tools draw.
 Ogre::MaterialPtr marks();
+/// Lines so many pixels wide, translucent by the alpha of the vertices.
+Ogre::MaterialPtr lines(int pixels);
+/// The same, seen through everything.
+Ogre::MaterialPtr lines_behind(int pixels);
 
 }  // namespace desert_sim::materials

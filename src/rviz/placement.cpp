@@ -11,43 +11,54 @@
 
 namespace desert_sim {
 
-namespace {
-
-/// The property of this name; null if there is none.
 rviz::Property* child_named(const rviz::Property& parent, const QString& name) {
   for (int n = 0; n < parent.numChildren(); ++n)
     if (parent.childAt(n)->getName() == name) return parent.childAt(n);
   return nullptr;
 }
 
-}  // namespace
-
-std::optional<Placement> corner_of(const LayerMap::Info& map, const rviz::DisplayContext& context) {
-  tf2::Transform fixed_from_map;
-  fixed_from_map.setIdentity();
-  const std::string fixed = context.getFixedFrame().toStdString();
+std::optional<tf2::Transform> transform_between(const std::string& to, const std::string& from,
+                                                const rviz::DisplayContext& context) {
+  tf2::Transform transform;
+  transform.setIdentity();
+  if (to == from) return transform;
   try {
-    if (fixed != map.frame)
-      tf2::fromMsg(context.getFrameManager()
-                       ->getTF2BufferPtr()
-                       ->lookupTransform(fixed, map.frame, ros::Time(0))
-                       .transform,
-                   fixed_from_map);
+    tf2::fromMsg(
+        context.getFrameManager()->getTF2BufferPtr()->lookupTransform(to, from, ros::Time(0)).transform,
+        transform);
   } catch (const tf2::TransformException&) {
     return std::nullopt;
   }
-  const tf2::Vector3 corner = fixed_from_map * tf2::Vector3(map.origin_x, map.origin_y, 0);
-  const tf2::Quaternion turned = fixed_from_map.getRotation();
-  return Placement{{static_cast<Ogre::Real>(corner.x()), static_cast<Ogre::Real>(corner.y()),
-                    static_cast<Ogre::Real>(corner.z())},
-                   {static_cast<Ogre::Real>(turned.w()), static_cast<Ogre::Real>(turned.x()),
-                    static_cast<Ogre::Real>(turned.y()), static_cast<Ogre::Real>(turned.z())}};
+  return transform;
+}
+
+std::optional<Placement> placement_of(const std::string& frame, const tf2::Transform& pose,
+                                      const rviz::DisplayContext& context) {
+  const auto fixed_from_frame = transform_between(context.getFixedFrame().toStdString(), frame, context);
+  if (!fixed_from_frame) return std::nullopt;
+  const tf2::Transform placed = *fixed_from_frame * pose;
+  const tf2::Vector3& at = placed.getOrigin();
+  const tf2::Quaternion turned = placed.getRotation();
+  return Placement{
+      {static_cast<Ogre::Real>(at.x()), static_cast<Ogre::Real>(at.y()), static_cast<Ogre::Real>(at.z())},
+      {static_cast<Ogre::Real>(turned.w()), static_cast<Ogre::Real>(turned.x()),
+       static_cast<Ogre::Real>(turned.y()), static_cast<Ogre::Real>(turned.z())}};
+}
+
+std::optional<Placement> corner_of(const LayerMap::Info& map, const rviz::DisplayContext& context) {
+  return placement_of(
+      map.frame, tf2::Transform(tf2::Quaternion::getIdentity(), {map.origin_x, map.origin_y, 0}), context);
+}
+
+std::string missing_transform(const std::string& what, const std::string& frame,
+                              const rviz::DisplayContext& context) {
+  return "No transform from the " + what + "'s frame [" + frame + "] to the fixed frame [" +
+         context.getFixedFrame().toStdString() + "]: choose [" + frame +
+         "] as Fixed Frame, or let a node publish the transform.";
 }
 
 std::string missing_transform(const LayerMap::Info& map, const rviz::DisplayContext& context) {
-  return "No transform from the terrain's frame [" + map.frame + "] to the fixed frame [" +
-         context.getFixedFrame().toStdString() + "]: choose [" + map.frame +
-         "] as Fixed Frame, or let a node publish the transform.";
+  return missing_transform("terrain", map.frame, context);
 }
 
 void show_in_view(rviz::DisplayContext& context, const Ogre::Vector3& point, double diagonal) {

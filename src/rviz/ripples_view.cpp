@@ -1,7 +1,6 @@
 #include "src/rviz/ripples_view.hpp"
 
 #include <OgreHardwarePixelBuffer.h>
-#include <OgreMaterialManager.h>
 #include <OgrePass.h>
 #include <OgreTechnique.h>
 #include <OgreTextureManager.h>
@@ -14,38 +13,32 @@ namespace desert_sim {
 
 namespace {
 
-/// A name that no other object of rviz has.
-std::string unique_name() {
-  static int number = 0;
-  return "desert_sim/ripples/" + std::to_string(number++);
+/// The texture, which is made with its place in the ground's material when it is asked for the first time.
+Ogre::TexturePtr texture_of(Ogre::Pass& ground) {
+  const char* const name = "desert_sim/ripples";
+  const Ogre::String& group = Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME;
+  Ogre::TextureManager& textures = Ogre::TextureManager::getSingleton();
+  if (const Ogre::TexturePtr there = textures.getByName(name, group)) return there;
+  const Ogre::TexturePtr made = textures.createManual(
+      name, group, Ogre::TEX_TYPE_2D, RippleTile::pixels, RippleTile::pixels, Ogre::MIP_UNLIMITED,
+      Ogre::PF_BYTE_RGB, Ogre::TU_DYNAMIC_WRITE_ONLY | Ogre::TU_AUTOMIPMAP);
+  // The tile's light where the vertices' alpha is 1, that of level ground where it is 0; then twice that times colour.
+  Ogre::TextureUnitState* const light = ground.createTextureUnitState();
+  light->setTexture(made);
+  light->setTextureFiltering(Ogre::TFO_TRILINEAR);
+  light->setColourOperationEx(Ogre::LBX_BLEND_DIFFUSE_ALPHA, Ogre::LBS_TEXTURE, Ogre::LBS_MANUAL,
+                              Ogre::ColourValue::White, Ogre::ColourValue(0.5F, 0.5F, 0.5F));
+  Ogre::TextureUnitState* const colour = ground.createTextureUnitState();
+  colour->setTexture(made);
+  colour->setColourOperationEx(Ogre::LBX_MODULATE_X2, Ogre::LBS_CURRENT, Ogre::LBS_DIFFUSE);
+  return made;
 }
 
 }  // namespace
 
-RipplesView::RipplesView() {
-  const std::string name = unique_name();
-  texture_ = Ogre::TextureManager::getSingleton().createManual(
-      name, Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME, Ogre::TEX_TYPE_2D, RippleTile::pixels,
-      RippleTile::pixels, Ogre::MIP_UNLIMITED, Ogre::PF_BYTE_RGB,
-      Ogre::TU_DYNAMIC_WRITE_ONLY | Ogre::TU_AUTOMIPMAP);
-  material_ = materials::ground()->clone(name);
-  Ogre::Pass* const pass = material_->getTechnique(0)->getPass(0);
-  // The tile's light where the vertices' alpha is 1, that of level ground where it is 0; then twice that times colour.
-  Ogre::TextureUnitState* const light = pass->createTextureUnitState();
-  light->setTexture(texture_);
-  light->setTextureFiltering(Ogre::TFO_TRILINEAR);
-  light->setColourOperationEx(Ogre::LBX_BLEND_DIFFUSE_ALPHA, Ogre::LBS_TEXTURE, Ogre::LBS_MANUAL,
-                              Ogre::ColourValue::White, Ogre::ColourValue(0.5F, 0.5F, 0.5F));
-  Ogre::TextureUnitState* const colour = pass->createTextureUnitState();
-  colour->setTexture(texture_);
-  colour->setColourOperationEx(Ogre::LBX_MODULATE_X2, Ogre::LBS_CURRENT, Ogre::LBS_DIFFUSE);
+RipplesView::RipplesView()
+    : ground_(materials::ground()), texture_(texture_of(*ground_->getTechnique(0)->getPass(0))) {
   show(ripple_tile({}));
-}
-
-RipplesView::~RipplesView() {
-  if (tile_.valid()) tile_.wait();
-  Ogre::MaterialManager::getSingleton().remove(material_);
-  Ogre::TextureManager::getSingleton().remove(texture_);
 }
 
 void RipplesView::subscribe(ros::NodeHandle& node, const std::string& topic) {
@@ -72,7 +65,7 @@ void RipplesView::show(const RippleTile& tile) {
   texture_->getBuffer()->blitFromMemory(
       Ogre::PixelBox(RippleTile::pixels, RippleTile::pixels, 1, Ogre::PF_BYTE_RGB, grey.data()));
   // Texture coordinates are metres from the grid's corner.
-  for (Ogre::TextureUnitState* const unit : material_->getTechnique(0)->getPass(0)->getTextureUnitStates())
+  for (Ogre::TextureUnitState* const unit : ground_->getTechnique(0)->getPass(0)->getTextureUnitStates())
     unit->setTextureScale(tile.side, tile.side);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Ripples on the ground near the camera: a texture of the ground's material that follows ~micro_relief. Farther
-/// away it is averaged to nothing.
+/// away it is averaged to nothing. The alpha of the ground's vertices says how much of it is seen, 0…1. All displays
+/// share the material: where several show terrains, all have the ripples of the wind that changed last.
 
 #include <OgreMaterial.h>
 #include <OgreTexture.h>
@@ -17,16 +18,11 @@ namespace desert_sim {
 class RipplesView {
  public:
   RipplesView();
-  ~RipplesView();
-  RipplesView(const RipplesView&) = delete;
-  RipplesView& operator=(const RipplesView&) = delete;
 
   /// The ripples of this topic from now on; none for an empty name.
   void subscribe(ros::NodeHandle& node, const std::string& topic);
   /// Takes over what a thread of its own has drawn. Call it in each frame.
   void update();
-  /// For meshes whose alpha says how much of the ripples is seen, 0…1.
-  const Ogre::MaterialPtr& material() const { return material_; }
 
  private:
   void show(const RippleTile& tile);
@@ -34,8 +30,8 @@ class RipplesView {
   TopicInbox<MicroReliefState> inbox_;
   MicroReliefState::ConstPtr drawn_;  ///< the state of the tile that is shown, or being drawn
   std::future<RippleTile> tile_;
+  Ogre::MaterialPtr ground_;
   Ogre::TexturePtr texture_;
-  Ogre::MaterialPtr material_;
 };
 
 }  // namespace desert_sim

@@ -15,12 +15,38 @@ namespace desert_sim {
 
 namespace {
 
+constexpr const char* unknown_ground = "no ground known there";
+
+template <class... Numbers>
+std::string formatted(const char* format, Numbers... numbers) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, numbers...);
+  return text;
+}
+
 std::string text_of(const render::Measurement& m) {
   constexpr double degrees = 180 / 3.14159265358979323846;
-  char text[160];
-  std::snprintf(text, sizeof text, "%.2f m, along the ground %.2f m\nheight %+.2f m, slope %.1f deg",
-                m.horizontal, m.along_surface, m.height_difference, degrees * m.slope);
-  return text;
+  const std::string distance = formatted("%.2f m", m.horizontal);
+  if (std::isnan(m.height_difference)) return distance + "\n" + unknown_ground;
+  return distance +
+         (std::isnan(m.along_surface) ? ", the ground is not known all along"
+                                      : formatted(", along the ground %.2f m", m.along_surface)) +
+         formatted("\nheight %+.2f m, slope %.1f deg (%.0f %%)", m.height_difference, degrees * m.slope,
+                   100 * std::tan(m.slope));
+}
+
+/// The known point that is nearest to the middle of a line; empty without any.
+std::optional<render::Point> middle_of(const std::vector<render::Point>& line) {
+  std::optional<render::Point> found;
+  const auto middle = static_cast<std::ptrdiff_t>(line.size() / 2);
+  std::ptrdiff_t nearest = static_cast<std::ptrdiff_t>(line.size()) + 1;
+  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(line.size()); ++n) {
+    const render::Point& p = line[static_cast<std::size_t>(n)];
+    if (std::isnan(p.z()) || std::abs(n - middle) >= nearest) continue;
+    nearest = std::abs(n - middle);
+    found = p;
+  }
+  return found;
 }
 
 }  // namespace
@@ -48,6 +74,7 @@ void RulerTool::activate() { terrain_->follow(node_->getStdString()); }
 
 void RulerTool::deactivate() {
   hovered_.reset();
+  pointing_ = false;
   first_.reset();
   second_.reset();
   text_.clear();
@@ -63,10 +90,9 @@ int RulerTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
     if (rviz::ViewController* const view = context_->getViewManager()->getCurrent())
       view->handleMouseEvent(event);
   }
-  if (event.type == QEvent::Leave || !terrain_->update())
-    hovered_.reset();
-  else
-    hovered_ = terrain_->pick(event);
+  hovered_.reset();
+  pointing_ = event.type != QEvent::Leave && terrain_->update();
+  if (pointing_) hovered_ = terrain_->pick(event);
   if (event.leftDown() && !event.alt()) click();
   draw();
   return Render;
@@ -100,18 +126,16 @@ void RulerTool::draw() {
     if (first_) cross(*first_);
     if (end) cross(*end);
   }
+  std::optional<render::Point> middle;
   if (first_ && end && !terrain_->field().empty()) {
     lines.push_back(
         {render::drape(terrain_->field(), {{first_->x(), first_->y()}, {end->x(), end->y()}}), colour});
     text_ = text_of(render::measure(lines.back().points));
-    const std::vector<render::Point>& points = lines.back().points;
-    render::Point middle = points[points.size() / 2];
-    if (std::isnan(middle.z())) middle = points.back();
-    marks_->show_text(*terrain_, text_, middle, *viewport_);
+    middle = middle_of(lines.back().points);
   } else {
-    text_.clear();
-    marks_->show_text(*terrain_, "", render::Point::Zero(), *viewport_);
+    text_ = pointing_ && !end ? unknown_ground : "";
   }
+  marks_->show_text(*terrain_, middle ? text_ : "", middle.value_or(render::Point::Zero()), *viewport_);
   marks_->show(*terrain_, lines);
   show_status();
 }

@@ -47,6 +47,7 @@ class RulerTool : public rviz::Tool {
   std::unique_ptr<SurfaceMarks> marks_;
   Ogre::Viewport* viewport_ = nullptr;                     ///< in which the mouse was last
   std::optional<render::Point> hovered_, first_, second_;  ///< what the mouse points at, and the clicks
+  bool pointing_ = false;                                  ///< the mouse is in the view of a terrain
   std::string text_;
 };
 

@@ -7,30 +7,12 @@
 #include <QHBoxLayout>
 #include <QSpinBox>
 #include <QVBoxLayout>
-#include <cstdio>
 #include <utility>
 
 #include "src/rviz/fields.hpp"
+#include "src/rviz/undo_text.hpp"
 
 namespace desert_sim {
-
-namespace {
-
-/// What an undo or redo could not bring back; empty if it was exact.
-std::string missing(const UndoResponse& answer) {
-  std::string text;
-  for (const ReturnedMaterial& material : answer.materials) {
-    if (material.missing <= 0) continue;
-    char volume[64];
-    std::snprintf(volume, sizeof volume, "%.3g m³ of ", material.missing);
-    text += (text.empty() ? "" : ", ") + (volume + material.material);
-  }
-  if (answer.missing_plants > 0)
-    text += (text.empty() ? "" : ", ") + std::to_string(answer.missing_plants) + " plants";
-  return text.empty() ? "" : "missing, because they have moved on: " + text;
-}
-
-}  // namespace
 
 RunControls::RunControls(NodeLink& link, QWidget* parent) : QWidget(parent), link_(link) {
   error_ = new ErrorLine("run_error");
@@ -111,7 +93,7 @@ QWidget* RunControls::make_undo_row() {
 
 void RunControls::turn(const char* service) {
   link_.call<Undo>(undo_error_, service, {}, [this](const UndoResponse& answer) {
-    if (const std::string text = missing(answer); !text.empty()) undo_error_->show_note(text);
+    if (const std::string text = missing_text(answer); !text.empty()) undo_error_->show_note(text);
   });
 }
 

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "src/rviz/materials.hpp"
+#include "src/rviz/view_scale.hpp"
 
 namespace desert_sim {
 
@@ -48,15 +49,6 @@ std::string broken(std::string text) {
     }
   }
   return text;
-}
-
-/// The size of a pixel at a point of the scene [m].
-float metres_per_pixel(const Ogre::Viewport& viewport, const Ogre::Vector3& point) {
-  const Ogre::Camera& camera = *viewport.getCamera();
-  const Ogre::Matrix4 projection = camera.getProjectionMatrix();
-  const float depth = (camera.getViewMatrix() * point).z;
-  const float w = projection[3][2] * depth + projection[3][3];  // 1 in orthographic views
-  return 2 * std::abs(w) / (projection[1][1] * static_cast<float>(viewport.getActualHeight()));
 }
 
 }  // namespace

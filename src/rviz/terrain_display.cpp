@@ -3,6 +3,7 @@
 #include <OgreSceneNode.h>
 #include <OgreViewport.h>
 #include <rviz/display_context.h>
+#include <rviz/display_group.h>
 #include <rviz/properties/bool_property.h>
 #include <rviz/properties/float_property.h>
 #include <rviz/properties/int_property.h>
@@ -12,24 +13,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <pluginlib/class_list_macros.hpp>
 
 #include "src/core/error.hpp"
 #include "src/rviz/placement.hpp"
+#include "src/rviz/processor_time.hpp"
 
 namespace desert_sim {
 
 using rviz::StatusProperty;
 
 namespace {
-
-/// The processor time of this thread: what a frame costs also where others keep the machine busy.
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 /// The mean of known cells here and there, which a hill in the middle hardly raises; 0 if there are none.
 float usual_height(const LayerMap& elevation) {
@@ -117,7 +111,6 @@ TerrainDisplay::~TerrainDisplay() {
 void TerrainDisplay::onInitialize() {
   ripples_view_ = std::make_unique<RipplesView>();
   scene_ = std::make_unique<TerrainScene>(scene_node_);
-  scene_->set_ripples(ripples_view_->material());
   level_node_ = scene_node_->createChildSceneNode();
   plants_view_ = std::make_unique<PlantsView>(level_node_);
   wind_view_ = std::make_unique<WindView>(scene_->node());
@@ -337,6 +330,28 @@ void TerrainDisplay::set_status(const DisplayStatus& status) {
   if (shown == status.text) return;
   shown = status.text;
   setStatus(status.level, status.name, QString::fromStdString(status.text));
+}
+
+// ---- finding it ----
+
+namespace {
+
+TerrainDisplay* terrain_display_in(rviz::DisplayGroup* group, const std::string& node) {
+  for (int n = 0; group && n < group->numDisplays(); ++n) {
+    rviz::Display* const display = group->getDisplayAt(n);
+    if (!display->isEnabled()) continue;
+    auto* found = dynamic_cast<TerrainDisplay*>(display);
+    if (found && (node.empty() || found->node() == node)) return found;
+    found = terrain_display_in(dynamic_cast<rviz::DisplayGroup*>(display), node);
+    if (found) return found;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+TerrainDisplay* terrain_display(const rviz::DisplayContext& context, const std::string& node) {
+  return terrain_display_in(context.getRootDisplayGroup(), node);
 }
 
 }  // namespace desert_sim

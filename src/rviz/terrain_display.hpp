@@ -98,4 +98,8 @@ class TerrainDisplay : public rviz::Display {
   std::map<std::string, std::string> statuses_;  ///< the texts that are shown
 };
 
+/// The first enabled display of the terrain of this node, of any terrain for an empty name; null if there is
+/// none.
+TerrainDisplay* terrain_display(const rviz::DisplayContext& context, const std::string& node);
+
 }  // namespace desert_sim

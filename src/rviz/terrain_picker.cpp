@@ -3,8 +3,9 @@
 #include <OgreCamera.h>
 #include <OgreViewport.h>
 #include <rviz/display_context.h>
-#include <rviz/display_group.h>
 #include <rviz/viewport_mouse_event.h>
+
+#include <map>
 
 #include "src/core/error.hpp"
 #include "src/rviz/names.hpp"
@@ -18,6 +19,18 @@ render::Point to_point(const Ogre::Vector3& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
+/// The client of a node's elevation, which all pickers of the process share.
+std::shared_ptr<TerrainClient> client_of(const std::string& node) {
+  static std::map<std::string, std::weak_ptr<TerrainClient>> clients;
+  std::shared_ptr<TerrainClient> client = clients[node].lock();
+  if (client) return client;
+  TerrainClient::Options options;
+  options.node = node;
+  client = std::make_shared<TerrainClient>(ros::NodeHandle(), options);
+  clients[node] = client;
+  return client;
+}
+
 }  // namespace
 
 void TerrainPicker::follow(const std::string& node) {
@@ -26,10 +39,9 @@ void TerrainPicker::follow(const std::string& node) {
   client_.reset();
   node_ = node;
   if (node.empty()) return;
-  TerrainClient::Options options;
   try {
-    node_ = options.node = full_name(node, "node");
-    client_ = std::make_unique<TerrainClient>(ros::NodeHandle(), options);
+    node_ = full_name(node, "node");
+    client_ = client_of(node_);
   } catch (const ConfigError& error) {
     problem_ = error.what();
   }
@@ -49,7 +61,7 @@ bool TerrainPicker::update() {
     return false;
   }
   corner_ = *corner;
-  exaggeration_ = exaggeration_of_display(context_.getRootDisplayGroup());
+  exaggeration_ = exaggeration_of_display();
   if (newest != map_) {
     map_ = newest;
     field_.width = static_cast<int>(info.width);
@@ -82,17 +94,10 @@ render::Place TerrainPicker::in_terrain_frame(const render::Point& point) const 
   return {point.x() + map_->info().origin_x, point.y() + map_->info().origin_y};
 }
 
-/// 1 if no display in the group shows this terrain.
-double TerrainPicker::exaggeration_of_display(rviz::DisplayGroup* group) const {
-  for (int n = 0; group && n < group->numDisplays(); ++n) {
-    rviz::Display* const display = group->getDisplayAt(n);
-    if (!display->isEnabled()) continue;
-    const auto* const terrain = dynamic_cast<TerrainDisplay*>(display);
-    if (terrain && terrain->node() == node_) return terrain->vertical_exaggeration();
-    const double inside = exaggeration_of_display(dynamic_cast<rviz::DisplayGroup*>(display));
-    if (inside != 1) return inside;
-  }
-  return 1;
+/// 1 if no display shows this terrain.
+double TerrainPicker::exaggeration_of_display() const {
+  const TerrainDisplay* const display = terrain_display(context_, node_);
+  return display ? display->vertical_exaggeration() : 1;
 }
 
 }  // namespace desert_sim

@@ -13,7 +13,6 @@
 
 namespace rviz {
 class DisplayContext;
-class DisplayGroup;
 class ViewportMouseEvent;
 }  // namespace rviz
 
@@ -39,6 +38,8 @@ class TerrainPicker {
   /// The terrain under the mouse; empty beside it.
   std::optional<render::Point> pick(const rviz::ViewportMouseEvent& event) const;
   const render::HeightField& field() const { return field_; }
+  /// The map of that field.
+  const std::shared_ptr<const ElevationMap>& map() const { return map_; }
   /// The same place in the terrain's frame.
   render::Place in_terrain_frame(const render::Point& point) const;
   double exaggeration() const { return exaggeration_; }
@@ -46,11 +47,11 @@ class TerrainPicker {
   const Placement& corner() const { return corner_; }
 
  private:
-  double exaggeration_of_display(rviz::DisplayGroup* group) const;
+  double exaggeration_of_display() const;
 
   rviz::DisplayContext& context_;
   std::string node_, problem_;
-  std::unique_ptr<TerrainClient> client_;
+  std::shared_ptr<TerrainClient> client_;
   std::shared_ptr<const ElevationMap> map_;
   render::HeightField field_;
   double exaggeration_ = 1;

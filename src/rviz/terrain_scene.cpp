@@ -124,11 +124,9 @@ void TerrainScene::show(int number, const render::TerrainBlock& meshes) {
       return;
     }
     if (!object) object = std::make_unique<MeshObject>(node_, material, type);
-    object->setMaterial(material);
     object->set_mesh(mesh);
   };
-  put(block.ground, meshes.ground, look_.ripples ? ripples_ : materials::ground(),
-      RenderOperation::OT_TRIANGLE_LIST);
+  put(block.ground, meshes.ground, materials::ground(), RenderOperation::OT_TRIANGLE_LIST);
   put(block.water, meshes.water, materials::translucent(), RenderOperation::OT_TRIANGLE_LIST);
   put(block.contours, meshes.contours, materials::translucent(), RenderOperation::OT_LINE_LIST);
   block.triangles = static_cast<std::int64_t>(meshes.ground.indices.size() / 3);

@@ -20,8 +20,6 @@ class TerrainScene {
  public:
   /// Below `parent`, which must outlive it.
   explicit TerrainScene(Ogre::SceneNode* parent);
-  /// Draws ground on which ripples are to be seen (TerrainLook) with this material.
-  void set_ripples(const Ogre::MaterialPtr& material) { ripples_ = material; }
   ~TerrainScene();
   TerrainScene(const TerrainScene&) = delete;
   TerrainScene& operator=(const TerrainScene&) = delete;
@@ -73,7 +71,6 @@ class TerrainScene {
   render::TerrainGrid grid_;
   render::LayerWindow window_, batch_window_;  ///< the newest values; those of the batch that is being built
   render::TerrainLook look_;
-  Ogre::MaterialPtr ripples_;
   render::DetailLimits limits_;
   render::RebuildQueue queue_;
   std::vector<render::Box> boxes_;  ///< with true heights

@@ -38,9 +38,9 @@ Options options() {
       .option("threads", "N", "threads of the CPU backend")
       .option("quality", "Q", "fast, good or converged (default: the scenario's)")
       .option("set", "PATH=VALUE", "override a key of the scenario; may be repeated")
-      .option(
-          "json", "FILE",
-          "write the result to FILE (-: print it instead of text); doc/contributing/performance.md describes its fields")
+      .option("json", "FILE",
+              "write the result to FILE (-: print it instead of text); doc/contributing/performance.md "
+              "describes its fields")
       .option(
           "roofline", "FILE",
           "draw a picture of bytes per cell against milliseconds for the given JSON results or for this run "

@@ -88,6 +88,21 @@ TEST_F(Navigating, ArrivesOverFreeGround) {
   EXPECT_LT(status().elapsed, 2 * std::hypot(25, 15) / 0.3);
 }
 
+TEST_F(Navigating, ItsPathIsWhatLiesAhead) {
+  go(35, 5);
+  run(1);
+  const std::uint64_t number = navigator_.path_number();
+  EXPECT_LT(navigator_.path().front().x, 6);
+  run(50);
+  const GridPath path = navigator_.path();
+  EXPECT_EQ(navigator_.path_number(), number) << "it is the same one";
+  EXPECT_GT(rover_.pose.x, 15);
+  EXPECT_NEAR(path.front().x, rover_.pose.x, 0.1);
+  EXPECT_NEAR(path_length(path), status().remaining, 0.1);
+  EXPECT_NEAR(navigator_.path_done(), path.front().x - 5, 0.5);
+  EXPECT_NEAR(path.back().x, 35, 0.5);
+}
+
 TEST_F(Navigating, GoesRoundWhatComesIntoItsWay) {
   go(35, 5);
   run(20);
@@ -262,6 +277,13 @@ TEST_F(Navigating, PlansThroughTheForecast) {
       patient.update(frame, {0, 0, frame.width, frame.height}, test::values_of(frame, free_).data());
     rover_.drive(patient.act(t, rover_.pose, RoverCondition::driving, ""), 0.1);
     waited = waited || (t > 90 && t < 190 && patient.status().state == NavigatorState::waiting);
+    const std::vector<TimedPoint> schedule = patient.schedule();
+    const GridPath ahead = patient.path();
+    ASSERT_TRUE(schedule.empty() || schedule.size() == ahead.size()) << t;
+    for (std::size_t n = 0; n + 1 < schedule.size(); ++n) {
+      ASSERT_NEAR(schedule[n].point.x, ahead[n].x, 1e-9) << t;
+      ASSERT_LE(schedule[n].arrival, schedule[n + 1].arrival) << t;
+    }
     ASSERT_TRUE(t >= 200 || rover_.pose.x < 20) << t;
   }
   EXPECT_EQ(patient.status().state, NavigatorState::arrived) << patient.status().reason;

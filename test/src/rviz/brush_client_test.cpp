@@ -1,6 +1,7 @@
 // The tool desert_sim/Brush with nodes that are slow, that hang, and that have plants.
 
 #include <desert_sim/EditTerrain.h>
+#include <desert_sim/Undo.h>
 #include <ros/callback_queue.h>
 
 #include <algorithm>
@@ -25,6 +26,7 @@ class EditedNode {
     node_.keyframe(140, 80, [](int, int) { return static_cast<float>(surface); });
     handle_.setCallbackQueue(&queue_);  // rviz serves the global one
     service_ = handle_.advertiseService(name + "/edit_terrain", &EditedNode::edit, this);
+    undo_ = handle_.advertiseService(name + "/undo", &EditedNode::undo, this);
     spinner_.start();
   }
   /// Waits for edits that are being answered: roscpp does not.
@@ -55,6 +57,17 @@ class EditedNode {
   }
 
  private:
+  /// Some of it has gone.
+  bool undo(desert_sim::Undo::Request&, desert_sim::Undo::Response& response) {
+    response.success = true;
+    response.materials.resize(2);
+    response.materials[0].material = "soil";
+    response.materials[1].material = "sand";
+    response.materials[1].missing = 2.5;
+    response.missing_plants = 3;
+    response.undoable = 4;
+    return true;
+  }
   bool edit(EditTerrain::Request& request, EditTerrain::Response& response) {
     std::unique_lock<std::mutex> lock(mutex_);
     most_at_once_ = std::max(most_at_once_, ++waiting_);
@@ -73,7 +86,7 @@ class EditedNode {
   std::vector<EditTerrain::Request> edits_;
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
-  ros::ServiceServer service_;
+  ros::ServiceServer service_, undo_;
   ros::AsyncSpinner spinner_{2, &queue_};  // two edits at once would be seen
 };
 
@@ -119,6 +132,22 @@ TEST_F(RvizTools, ALaggingNodeLosesNothingAndHoldsNothingUp) {
                                                       {edit.points[1].x, edit.points[1].y}));
     EXPECT_LT(nearest, 5.0 / 8 + 0.3) << "an eighth of the radius, and the size of a pixel";
   }
+}
+
+TEST_F(RvizTools, TheStatusBarSaysWhatAnUndoCouldNotBringBack) {
+  EditedNode node("/forgetful");
+  rviz::Tool* const brush = use_brush("/forgetful");
+  QString status_bar;
+  const auto connection = QObject::connect(&window_->manager(), &rviz::VisualizationManager::statusUpdate,
+                                           [&](const QString& message) { status_bar = message; });
+  key(Qt::Key_Z);
+  wait_for(brush);
+  QObject::disconnect(connection);
+  const std::string said = status_bar.toStdString();
+  EXPECT_NE(said.find("Undone, missing, because they have moved on: 2.5 m³ of sand, 3 plants; 4 strokes"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("soil"), std::string::npos) << said;
 }
 
 TEST_F(RvizTools, ASlowNodeGetsTheSamePieces) {

@@ -159,14 +159,25 @@ void Window::for_each_frame(const std::function<void()>& call) {
 
 void Window::save(const std::string& path) { panel_->getRenderWindow()->writeContentsToFile(path); }
 
-std::size_t Window::colours() {
+std::vector<std::uint32_t> Window::pixels() {
   Ogre::RenderWindow* const window = panel_->getRenderWindow();
   const int width = static_cast<int>(window->getWidth()), height = static_cast<int>(window->getHeight());
-  std::vector<std::uint32_t> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  std::vector<std::uint32_t> all_pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   const Ogre::Box all(0, 0, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height));
-  window->copyContentsToMemory(all, Ogre::PixelBox(all, Ogre::PF_A8R8G8B8, pixels.data()),
+  window->copyContentsToMemory(all, Ogre::PixelBox(all, Ogre::PF_A8R8G8B8, all_pixels.data()),
                                Ogre::RenderTarget::FB_AUTO);
-  return std::set<std::uint32_t>(pixels.begin(), pixels.end()).size();
+  return all_pixels;
+}
+
+std::size_t Window::colours() {
+  const std::vector<std::uint32_t> all = pixels();
+  return std::set<std::uint32_t>(all.begin(), all.end()).size();
+}
+
+std::uint32_t Window::pixel(int column, int row) {
+  return pixels()[static_cast<std::size_t>(row) * panel_->getRenderWindow()->getWidth() +
+                  static_cast<std::size_t>(column)] &
+         0xffffffU;
 }
 
 // ---- properties ----

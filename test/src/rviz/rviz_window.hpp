@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace rviz_test {
 
@@ -56,10 +57,14 @@ class Window {
   std::uint64_t frames() const { return manager_->getFrameCount(); }
   /// Distinct colours in the picture: more than a few if something was drawn.
   std::size_t colours();
+  /// A pixel of the picture, 0xrrggbb.
+  std::uint32_t pixel(int column, int row);
   /// Writes the picture as a PNG.
   void save(const std::string& path);
 
  private:
+  std::vector<std::uint32_t> pixels();
+
   std::unique_ptr<rviz::RenderPanel> panel_;
   std::unique_ptr<rviz::VisualizationManager> manager_;
   std::function<void()> for_each_frame_;

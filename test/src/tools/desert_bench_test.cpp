@@ -177,7 +177,8 @@ TEST_F(Bench, CostModelIsTheOneOfThePage) {
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(std::count(r.out.begin(), r.out.end(), '\n'), 6);
   if (!std::filesystem::exists(DESERT_SOURCE_DIR)) return;  // built elsewhere and carried here
-  EXPECT_NE(test::file_bytes(DESERT_SOURCE_DIR "/doc/contributing/performance.md").find(r.out), std::string::npos)
+  EXPECT_NE(test::file_bytes(DESERT_SOURCE_DIR "/doc/contributing/performance.md").find(r.out),
+            std::string::npos)
       << "doc/contributing/performance.md should have these rows:\n"
       << r.out;
 }

@@ -146,6 +146,13 @@ TEST_F(Planner, DrivesToAGoalOfTheTopicOnAPathThatLiesOnTheTerrain) {
   EXPECT_EQ(path.header.frame_id, "terrain");
   for (const geometry_msgs::PoseStamped& pose : path.poses) EXPECT_NEAR(pose.pose.position.z, 1.5, 0.01);
   EXPECT_NEAR(path.poses.back().pose.position.x, 52, 1e-6);
+  EXPECT_NEAR(path.poses.front().pose.position.x, 40, 1);
+  ASSERT_TRUE(drives_until([this] { return position().x > 46; }, 60)) << told();
+  EXPECT_TRUE(wait_until([&] {
+    const auto now = paths.last().poses;
+    return !now.empty() && std::abs(now.front().pose.position.x - position().x) < 3;
+  })) << "behind the rover no path is shown";
+  EXPECT_NEAR(paths.last().poses.back().pose.position.x, 52, 1e-6);
   ASSERT_TRUE(drives_until([this] { return status_.last().state == PlannerStatus::ARRIVED; }, 60)) << told();
   EXPECT_NEAR(std::hypot(position().x - 52, position().y - 8), 0, 1.5);
   EXPECT_EQ(status_.last().replans, 0U) << status_.last().last_replan;

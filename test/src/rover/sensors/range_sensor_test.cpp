@@ -171,8 +171,9 @@ TEST_F(Sensors, PageHasTheTablesOfTheParameters) {
   std::ifstream file(std::string(DESERT_SOURCE_DIR) + "/config/sensor_parameters.md");
   const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   const std::string tables = describe_sensor_parameters();
-  EXPECT_NE(page.find(tables), std::string::npos) << "config/sensor_parameters.md is stale; its tables have to be:\n"
-                                                  << tables;
+  EXPECT_NE(page.find(tables), std::string::npos)
+      << "config/sensor_parameters.md is stale; its tables have to be:\n"
+      << tables;
 }
 
 // ---- The depth camera.
