@@ -24,7 +24,7 @@ class NodeLink : public QObject {
   /// ConfigError if it is not a name of ROS.
   void set_node(const std::string& name);
   const std::string& node() const { return node_; }  ///< resolved, such as /desert_sim
-  const NodeWatch& watch() const { return watch_; }
+  NodeWatch& watch() { return watch_; }
   ServiceCaller& caller() { return caller_; }
 
   /// Calls a service of the node by its name, such as "pause". `line` shows that it is under way, and why it

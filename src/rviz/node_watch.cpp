@@ -6,22 +6,36 @@
 #include <ros/service.h>
 
 #include <QMetaObject>
-#include <chrono>
 #include <optional>
 
 namespace desert_sim {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::chrono::milliseconds longest_silence(
     2500);  // the node sends its status once a second by default
-constexpr std::chrono::milliseconds between_looks(1000), pause(50);
+constexpr std::chrono::milliseconds between_looks(1000), between_fleet_looks(2000), pause(50);
+
+ros::NodeHandle with_queue(ros::CallbackQueue& queue) {
+  ros::NodeHandle node;
+  node.setCallbackQueue(&queue);
+  return node;
+}
 
 }  // namespace
 
-NodeWatch::NodeWatch(QObject* parent) : QObject(parent), thread_([this] { loop(); }) {}
+NodeWatch::NodeWatch(QObject* parent)
+    : QObject(parent),
+      node_handle_(with_queue(queue_)),
+      fleet_(
+          node_handle_,
+          [this](const RoverNames& rovers) {
+            tell(seen_generation_, [this, rovers] { Q_EMIT rovers_changed(rovers); });
+          },
+          [this](const PlannerStatuses& planners) {
+            tell(seen_generation_, [this, planners] { Q_EMIT planners_changed(planners); });
+          }),
+      thread_([this] { loop(); }) {}
 
 NodeWatch::~NodeWatch() {
   {
@@ -68,51 +82,69 @@ void NodeWatch::set_presence(Presence presence) {
   Q_EMIT presence_changed();
 }
 
+void NodeWatch::choose_rover(const std::string& rover) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    rover_ = rover;
+  }
+  wake_up_.notify_all();
+}
+
+void NodeWatch::subscribe(const std::string& node) {
+  const unsigned generation = seen_generation_;
+  const boost::function<void(const SimulationStatusConstPtr&)> hear =
+      [this, generation](const SimulationStatusConstPtr& status) {
+        heard_ = Clock::now();
+        tell(generation, [this, status] {
+          set_presence(Presence::alive);
+          Q_EMIT status_came(status);
+        });
+      };
+  const boost::function<void(const dynamic_reconfigure::ConfigConstPtr&)> take =
+      [this, generation](const dynamic_reconfigure::ConfigConstPtr& parameters) {
+        tell(generation, [this, parameters] { Q_EMIT parameters_came(parameters); });
+      };
+  status_subscriber_ = node_handle_.subscribe<SimulationStatus>(node + "/status", 1, hear);
+  parameter_subscriber_ =
+      node_handle_.subscribe<dynamic_reconfigure::Config>(node + "/parameter_updates", 1, take);
+}
+
 void NodeWatch::loop() {
-  ros::CallbackQueue queue;
-  ros::NodeHandle node_handle;
-  node_handle.setCallbackQueue(&queue);
-  ros::Subscriber subscriber, parameter_subscriber;
-  std::string node;
-  unsigned generation = 0;
-  Clock::time_point heard, looked;
+  std::string node, rover;
+  Clock::time_point looked, looked_for_fleet;
   while (true) {
+    bool other_node = false;
     {
       std::unique_lock<std::mutex> lock(mutex_);
-      wake_up_.wait_for(lock, pause, [&] { return ending_ || generation_ != generation; });
+      wake_up_.wait_for(lock, pause,
+                        [&] { return ending_ || generation_ != seen_generation_ || rover_ != rover; });
       if (ending_) break;
-      if (generation_ != generation) {
-        generation = generation_;
-        node = wanted_;
-        subscriber = parameter_subscriber = ros::Subscriber();
-        heard = looked = Clock::time_point();
-      }
+      other_node = generation_ != seen_generation_;
+      seen_generation_ = generation_;
+      node = wanted_;
+      rover = rover_;
     }
-    queue.callAvailable();
+    if (other_node) {
+      status_subscriber_ = parameter_subscriber_ = ros::Subscriber();
+      heard_ = looked = looked_for_fleet = Clock::time_point();
+      fleet_.forget();
+    }
+    fleet_.choose(rover);
+    queue_.callAvailable();
     const auto now = Clock::now();
-    const bool silent = now - heard >= longest_silence || subscriber.getNumPublishers() == 0;
+    if (!node.empty() && now - looked_for_fleet >= between_fleet_looks) {
+      looked_for_fleet = now;
+      fleet_.look(node);
+    }
+    const bool silent = now - heard_ >= longest_silence || status_subscriber_.getNumPublishers() == 0;
     if (node.empty() || !silent || now - looked < between_looks) continue;
     looked = now;
     const Presence presence = look(node);
     // A new subscription also finds a node that was started anew under a new master, and is sent the status
     // at once.
-    subscriber = parameter_subscriber = ros::Subscriber();
-    if (presence == Presence::alive) {
-      subscriber = node_handle.subscribe<SimulationStatus>(
-          node + "/status", 1, [this, &heard, generation](const SimulationStatusConstPtr& status) {
-            heard = Clock::now();
-            tell(generation, [this, status] {
-              set_presence(Presence::alive);
-              Q_EMIT status_came(status);
-            });
-          });
-      parameter_subscriber = node_handle.subscribe<dynamic_reconfigure::Config>(
-          node + "/parameter_updates", 1,
-          [this, generation](const dynamic_reconfigure::ConfigConstPtr& parameters) {
-            tell(generation, [this, parameters] { Q_EMIT parameters_came(parameters); });
-          });
-    }
-    tell(generation, [this, presence] { set_presence(presence); });
+    status_subscriber_ = parameter_subscriber_ = ros::Subscriber();
+    if (presence == Presence::alive) subscribe(node);
+    tell(seen_generation_, [this, presence] { set_presence(presence); });
   }
 }
 

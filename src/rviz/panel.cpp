@@ -8,6 +8,7 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include "src/core/error.hpp"
+#include "src/rviz/drive_form.hpp"
 #include "src/rviz/files_form.hpp"
 #include "src/rviz/run_controls.hpp"
 #include "src/rviz/status_view.hpp"
@@ -55,6 +56,8 @@ DesertPanel::DesertPanel(QWidget* parent) : rviz::Panel(parent) {
   choose_node();
 }
 
+DesertPanel::~DesertPanel() { delete controls_; }  // while there is the link that they use
+
 QWidget* DesertPanel::make_controls() {
   controls_ = new QWidget;
   controls_->setObjectName("controls");
@@ -71,6 +74,11 @@ QWidget* DesertPanel::make_controls() {
           });
   tabs->addTab(scrolled(weather), "Weather");
   tabs->addTab(scrolled(files_), "Scenes");
+  drive_ = new DriveForm(link_);
+  tabs->addTab(scrolled(drive_), "Drive");
+  connect(&link_.watch(), &NodeWatch::rovers_changed, drive_, &DriveForm::show_rovers);
+  connect(&link_.watch(), &NodeWatch::planners_changed, drive_, &DriveForm::show_planners);
+  connect(&link_.watch(), &NodeWatch::planners_changed, status_, &StatusView::show_planners);
   auto* const rows = new QVBoxLayout(controls_);
   rows->setContentsMargins(0, 0, 0, 0);
   rows->addWidget(run_);

@@ -9,6 +9,7 @@ class QLineEdit;
 
 namespace desert_sim {
 
+class DriveForm;
 class FilesForm;
 class RunControls;
 class StatusView;
@@ -19,6 +20,8 @@ class DesertPanel : public rviz::Panel {
 
  public:
   explicit DesertPanel(QWidget* parent = nullptr);
+
+  ~DesertPanel() override;
 
   void load(const rviz::Config& config) override;
   void save(rviz::Config config) const override;
@@ -37,6 +40,7 @@ class DesertPanel : public rviz::Panel {
   StatusView* status_;
   RunControls* run_;
   WindForm* wind_;
+  DriveForm* drive_;
   FilesForm* files_;
   QWidget* controls_;  ///< all that needs a node
 };

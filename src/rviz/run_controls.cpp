@@ -24,6 +24,11 @@ RunControls::RunControls(NodeLink& link, QWidget* parent) : QWidget(parent), lin
   all->addWidget(make_run_row());
   all->addWidget(step_error_);
   all->addWidget(make_rate_row());
+  pace_ = new QLabel;
+  pace_->setObjectName("pace");
+  pace_->setWordWrap(true);
+  pace_->setTextFormat(Qt::PlainText);
+  all->addWidget(pace_);
   all->addWidget(error_);
   all->addWidget(make_undo_row());
   all->addWidget(undo_error_);
@@ -59,8 +64,9 @@ QWidget* RunControls::make_rate_row() {
   rate_ =
       number_field("rate", 0, 1e6, 10, 1, " steps/s", "Steps a second of wall time; 0: as fast as it can");
   rate_->setSpecialValueText("as fast as it can");
-  acceleration_ = number_field("acceleration", 0, 1e6, 0, 4, " s/s",
-                               "Seconds of the desert's time per second; above 0 it sets the rate");
+  acceleration_ =
+      number_field("acceleration", 0, 1e6, 0, 4, "",
+                   "Seconds of the desert's time per second (run.acceleration); above 0 it sets the rate");
   acceleration_->setSpecialValueText("not tied");
   acceleration_->setMaximumWidth(QWIDGETSIZE_MAX);
   auto* const row = new QWidget;
@@ -69,8 +75,8 @@ QWidget* RunControls::make_rate_row() {
   rate_->setMaximumWidth(QWIDGETSIZE_MAX);
   layout->addWidget(new QLabel("rate"));
   layout->addWidget(rate_, 1);
-  layout->addWidget(new QLabel("acceleration"));
   layout->addWidget(acceleration_, 1);
+  layout->addWidget(new QLabel("× real time"));
   connect(rate_, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
           [this](double rate) { link_.set_number(error_, "step_rate", rate); });
   connect(acceleration_, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
@@ -106,6 +112,7 @@ void RunControls::show_status(const SimulationStatus& status) {
   redo_->setText(QStringLiteral("Redo (%1)").arg(status.redoable));
   redo_->setEnabled(status.redoable > 0);
   rate_->setEnabled(!(status.acceleration > 0));
+  pace_->setText(QString::fromStdString(status.pace));
   for (const auto& [field, value] :
        {std::pair(rate_, status.step_rate), std::pair(acceleration_, status.acceleration)}) {
     if (field->hasFocus()) continue;  // somebody types

@@ -1,5 +1,5 @@
 #pragma once
-/// Running, stepping, the rate or the acceleration, and undo of a node.
+/// Running, stepping, the pace in numbers and words, and undo of a node.
 
 #include <desert_sim/SimulationStatus.h>
 
@@ -8,6 +8,7 @@
 #include "src/rviz/node_link.hpp"
 
 class QDoubleSpinBox;
+class QLabel;
 class QPushButton;
 class QSpinBox;
 
@@ -33,6 +34,7 @@ class RunControls : public QWidget {
   NodeLink& link_;
   QPushButton *run_, *pause_, *step_, *reset_, *undo_, *redo_;
   QSpinBox* steps_;
+  QLabel* pace_;
   QDoubleSpinBox *rate_, *acceleration_;
   ErrorLine *error_, *step_error_, *undo_error_;
 };

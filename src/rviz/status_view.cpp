@@ -1,5 +1,7 @@
 #include "src/rviz/status_view.hpp"
 
+#include <ros/names.h>
+
 #include <QLabel>
 #include <QTimer>
 #include <QVBoxLayout>
@@ -100,6 +102,21 @@ std::string hint(Presence presence, const SimulationStatus* status, const std::s
   return "Turn the wind with the dial, let it rain, or load another scenario.";
 }
 
+std::string planner_text(const PlannerStatus& status) {
+  std::string text = status.state;
+  if (status.state == PlannerStatus::DRIVING || status.state == PlannerStatus::WAITING ||
+      status.state == PlannerStatus::RECOVERING)
+    text += format(", %.1f m to go", status.remaining);
+  const bool waits = status.forecast_progress >= 0;
+  const std::string progress = format("%.0f %%", 100 * status.forecast_progress);
+  if (status.forecast_age >= 0)
+    text +=
+        format(", forecast of %.0f s ago", status.forecast_age) + (waits ? ", the next one " + progress : "");
+  else if (waits)
+    text += ", no forecast yet (" + progress + ")";
+  return text;
+}
+
 StatusView::StatusView(QWidget* parent) : QWidget(parent) {
   auto* const rows = new QVBoxLayout(this);
   rows->setContentsMargins(0, 0, 0, 0);
@@ -111,6 +128,7 @@ StatusView::StatusView(QWidget* parent) : QWidget(parent) {
   progress_ = line("progress", *rows);
   rate_ = line("rate_line", *rows);
   balance_ = line("balance", *rows);
+  planners_line_ = line("planners", *rows);
   hint_ = line("hint", *rows);
   QFont italic = hint_->font();
   italic.setItalic(true);
@@ -130,6 +148,13 @@ void StatusView::show_status(const SimulationStatusConstPtr& status) {
   status_ = status;
   age_.restart();
   refresh();
+}
+
+void StatusView::show_planners(const PlannerStatuses& planners) {
+  std::string lines;
+  for (const auto& [name, status] : planners)
+    lines += (lines.empty() ? "" : "\n") + ros::names::parentNamespace(name) + ": " + planner_text(*status);
+  set(planners_line_, lines);
 }
 
 void StatusView::forget() {
@@ -156,9 +181,7 @@ void StatusView::refresh() {
                      age);
   progress_->setToolTip(QString::fromStdString(s->device + ": " + s->message));
   const std::string wanted = s->step_rate > 0 ? format(" of %g", s->step_rate) : "";
-  const std::string pace = s->acceleration > 0 ? format(", %.3g s simulated a second", s->acceleration) : "";
-  set(rate_,
-      format("%.1f%s steps/s%s, lag %.1f s", s->steps_per_second, wanted.c_str(), pace.c_str(), s->lag),
+  set(rate_, format("%.1f%s steps/s, lag %.1f s", s->steps_per_second, wanted.c_str(), s->lag),
       s->lag > long_lag ? bad : nullptr);
   const double residual = worst_residual(*s);
   set(balance_, residual == 0 ? "mass residual 0" : format("mass residual %g", residual),

@@ -22,6 +22,9 @@ double worst_residual(const SimulationStatus& status);
 /// Simulated time such as "2 h 05 min".
 std::string duration_text(double seconds);
 
+/// How a planner gets on, and its forecast: "driving, 12.3 m to go, no forecast yet (24 %)".
+std::string planner_text(const PlannerStatus& status);
+
 class StatusView : public QWidget {
   Q_OBJECT
 
@@ -30,12 +33,13 @@ class StatusView : public QWidget {
 
   void show_presence(NodeWatch::Presence presence, const std::string& node);
   void show_status(const SimulationStatusConstPtr& status);
+  void show_planners(const PlannerStatuses& planners);
   void forget();
 
  private:
   void refresh();
 
-  QLabel *state_, *progress_, *rate_, *balance_, *hint_;
+  QLabel *state_, *progress_, *rate_, *balance_, *planners_line_, *hint_;
   NodeWatch::Presence presence_ = NodeWatch::Presence::searching;
   std::string node_;
   SimulationStatusConstPtr status_;

@@ -12,13 +12,16 @@ struct DialWind {
 };
 
 /// East is on the right, north at the top. The wanted wind is dragged; the present one is drawn behind it.
+/// The property `wanted_speed` is for tests.
 class WindDial : public QWidget {
   Q_OBJECT
+  Q_PROPERTY(double wanted_speed READ wanted_speed)
 
  public:
   explicit WindDial(QWidget* parent = nullptr);
 
   DialWind wanted() const { return wanted_; }
+  double wanted_speed() const { return wanted_.speed; }  ///< [m/s]
   /// A speed beyond the scale makes the scale longer.
   void set_wanted(const DialWind& wind);
   void set_present(const DialWind& wind);

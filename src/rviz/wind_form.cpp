@@ -144,7 +144,10 @@ void WindForm::apply_wind() {
   request.direction_deg = direction_->value();
   request.speed = speed_->value();
   request.ramp = ramp_->value();
-  link_.call<SetWind>(wind_error_, "set_wind", request);
+  asked_ = Asked{request.ramp, false, std::nullopt};
+  link_.call<SetWind>(wind_error_, "set_wind", request, [this, n = ++requests_](const SetWindResponse&) {
+    if (asked_ && n == requests_) asked_->taken = true;
+  });
 }
 
 void WindForm::apply_schedule() {
@@ -177,14 +180,29 @@ void WindForm::show_status(const SimulationStatus& status) {
   dial_->set_present(present);
   present_->setText(
       QStringLiteral("%1 m/s to %2 °").arg(present.speed, 0, 'f', 1).arg(present.direction_deg, 0, 'f', 0));
-  if (seen_ || dial_->dragging()) return;
-  seen_ = true;
+  if (dial_->dragging() || shows_asked(status)) return;
   const QSignalBlocker no_direction(direction_), no_speed(speed_);
-  direction_->setValue(present.direction_deg);
-  speed_->setValue(present.speed);
+  if (!direction_->hasFocus()) direction_->setValue(present.direction_deg);  // else somebody types
+  if (!speed_->hasFocus()) speed_->setValue(present.speed);
   dial_->set_wanted(present);
 }
 
-void WindForm::forget() { seen_ = false; }
+bool WindForm::shows_asked(const SimulationStatus& status) {
+  if (!asked_) return false;
+  if (wind_error_->refused()) asked_.reset();
+  if (!asked_ || !asked_->taken) return asked_.has_value();
+  // This status may have been on its way before the node took the wind; the next ones were not.
+  const bool first = !asked_->since;
+  if (first) asked_->since = status.sim_time;
+  const double passed = status.sim_time - *asked_->since;
+  if (!first && !(passed >= 0 && passed < asked_->ramp))
+    asked_.reset();  // it is there, or the desert was reset
+  return asked_.has_value();
+}
+
+void WindForm::forget() {
+  asked_.reset();
+  ++requests_;
+}
 
 }  // namespace desert_sim

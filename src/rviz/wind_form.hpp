@@ -4,6 +4,7 @@
 #include <desert_sim/SimulationStatus.h>
 
 #include <QWidget>
+#include <optional>
 
 #include "src/rviz/node_link.hpp"
 
@@ -25,7 +26,7 @@ class WindForm : public QWidget {
   explicit WindForm(NodeLink& link, QWidget* parent = nullptr);
 
   void show_status(const SimulationStatus& status);
-  /// Another node: its first status decides where the dial begins.
+  /// Another node, whose wind the dial shows.
   void forget();
 
  private:
@@ -45,7 +46,17 @@ class WindForm : public QWidget {
   QCheckBox* repeat_;
   QDoubleSpinBox* hold_time_;
   QSpinBox* seed_;
-  bool seen_ = false;  ///< the dial shows a wind of this node
+
+  /// The last wind that was asked for here: until it is there, the needle shows it, and not the present one.
+  struct Asked {
+    double ramp = 0;              ///< [s] of simulated time
+    bool taken = false;           ///< by the node
+    std::optional<double> since;  ///< simulated time of the first status after that [s]
+  };
+  bool shows_asked(const SimulationStatus& status);
+
+  std::optional<Asked> asked_;
+  unsigned requests_ = 0;
 };
 
 }  // namespace desert_sim

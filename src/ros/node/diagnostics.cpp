@@ -12,6 +12,7 @@
 
 #include "src/client/ros_time.hpp"
 #include "src/core/joined.hpp"
+#include "src/core/pace_text.hpp"
 
 namespace desert_sim {
 
@@ -97,6 +98,7 @@ void Diagnostics::check_simulation(Status& status) const {
   status.add("simulated time [s]", r.moment.time);
   status.add("time step [s]", r.time_step);
   status.add("acceleration", r.acceleration);
+  status.add("pace", pace_text(r.acceleration, r.step_rate, r.time_step));
   status.add("steps a second wanted", r.step_rate);
   status.add("steps a second", r.steps_per_second);
   status.add("lag [s]", r.lag);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "src/core/hash_text.hpp"
+#include "src/core/pace_text.hpp"
 #include "src/ros/conversion/messages.hpp"
 
 namespace desert_sim {
@@ -38,6 +39,7 @@ SimulationStatusPtr status_message(const StatusReport& report, const std::string
   message->time_step = report.time_step;
   message->parts = static_cast<std::uint32_t>(report.parts);
   message->acceleration = report.acceleration;
+  message->pace = pace_text(report.acceleration, report.step_rate, report.time_step);
   message->step_rate = report.step_rate;
   message->steps_per_second = report.steps_per_second;
   message->lag = report.lag;

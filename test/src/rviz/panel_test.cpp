@@ -2,8 +2,12 @@
 // the node, and what the node refuses, or that it has gone, is shown.
 
 #include <desert_sim/EditTerrain.h>
+#include <desert_sim/PlannerStatus.h>
+#include <desert_sim/RoverStatus.h>
 #include <desert_sim/SetWeather.h>
+#include <desert_sim/SetWind.h>
 #include <dynamic_reconfigure/Config.h>
+#include <geometry_msgs/Twist.h>
 #include <std_srvs/Trigger.h>
 
 #include <QTableWidget>
@@ -17,7 +21,7 @@
 namespace rviz_test {
 namespace {
 
-enum Tab { wind, weather, scenes };
+enum Tab { wind, weather, scenes, drive };
 
 TEST_F(Panel, RunsPausesStepsAndResets) {
   window_->type("steps", "7");
@@ -31,8 +35,10 @@ TEST_F(Panel, RunsPausesStepsAndResets) {
   EXPECT_TRUE(
       node_has([](const SimulationStatus& s) { return s.acceleration == 0.5 && s.step_rate == 0.5; }));
   EXPECT_TRUE(window_->run_until([&] { return !window_->enabled("rate"); })) << "the acceleration sets it";
+  EXPECT_TRUE(window_->shows("pace", "× 0.5: slower than real time, a second of wind takes 2 s"));
   window_->type("acceleration", "0");
   EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.acceleration == 0 && s.step_rate == 40; }));
+  EXPECT_TRUE(window_->shows("pace", "not tied to a clock: 40 steps of ")) << window_->text("pace");
   EXPECT_FALSE(window_->enabled("pause")) << "it is paused";
   window_->click("run");
   EXPECT_TRUE(
@@ -76,6 +82,105 @@ TEST_F(Panel, DraggingTheNeedleSetsTheWind) {
     return std::abs(s.wind_above.x + 9) < 1e-6 && std::abs(s.wind_above.y) < 1e-6;
   }));
   EXPECT_EQ(window_->error("wind_error"), "");
+}
+
+TEST_F(Panel, TheNeedleFollowsTheWindThatOthersSet) {
+  auto* const dial = window_->find<QWidget>("wind_dial");
+  const auto needle_is = [&](double speed) {
+    return window_->run_until([&] {
+      return dial->property("wanted_speed").toDouble() == speed &&
+             window_->find<QDoubleSpinBox>("wind_speed")->value() == speed;
+    });
+  };
+  const auto set_by_others = [&](double speed) {
+    desert_sim::SetWind::Request request;
+    request.speed = speed;
+    node_->call<desert_sim::SetWind>("set_wind", request);
+  };
+  set_by_others(7);
+  EXPECT_TRUE(needle_is(7));
+  // One's own wind is shown until it is there: here a ramp leads to it, and the node is paused.
+  window_->type("wind_ramp", "2");
+  window_->type("wind_speed", "9");
+  window_->type("rate", "30");  // another status
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.step_rate == 30 && s.wind_above.x < 7.5; }));
+  EXPECT_TRUE(needle_is(9));
+  window_->type("steps", "200");
+  window_->click("step");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.step == 200 && s.wind_above.x > 8.9; }));
+  set_by_others(4);
+  EXPECT_TRUE(needle_is(4));
+  QTest::mousePress(dial, Qt::LeftButton, {}, dial->rect().center() + QPoint(30, 0));
+  const double dragged = dial->property("wanted_speed").toDouble();
+  set_by_others(6);
+  EXPECT_TRUE(window_->shows("present_wind", "6.0 m/s"));
+  EXPECT_EQ(dial->property("wanted_speed").toDouble(), dragged) << "it is being dragged";
+  QTest::mouseRelease(dial, Qt::LeftButton, {}, dial->rect().center() + QPoint(30, 0));
+}
+
+TEST_F(Panel, ShowsHowAPlannerWaitsForItsForecast) {
+  using desert_sim::PlannerStatus;
+  ros::NodeHandle node;
+  ros::Publisher planner = node.advertise<PlannerStatus>("/made_up/desert_planner/status", 1, true);
+  PlannerStatus status;
+  status.state = PlannerStatus::DRIVING;
+  status.remaining = 12.34;
+  status.forecast_age = -1;
+  status.forecast_progress = 0.24;
+  planner.publish(status);
+  EXPECT_TRUE(window_->shows("planners", "/made_up: driving, 12.3 m to go, no forecast yet (24 %)"));
+  status.forecast_age = 31;
+  planner.publish(status);
+  EXPECT_TRUE(window_->shows("planners", "forecast of 31 s ago, the next one 24 %"));
+  status.forecast_progress = -1;
+  status.state = PlannerStatus::ARRIVED;
+  planner.publish(status);
+  EXPECT_TRUE(window_->run_until(
+      [&] { return window_->text("planners") == "/made_up: arrived, forecast of 31 s ago"; }));
+  planner.shutdown();
+  EXPECT_TRUE(window_->run_until([&] { return window_->text("planners").empty(); })) << "it has gone";
+}
+
+TEST_F(Panel, ThePadDrivesARoverWhileItIsHeld) {
+  ros::NodeHandle node;
+  const ros::Publisher rover =
+      node.advertise<desert_sim::RoverStatus>("/made_up/desert_rover/status", 1, true);
+  window_->show_tab(drive);
+  auto* const pad = window_->find<QWidget>("drive_pad");
+  EXPECT_FALSE(pad->isEnabled()) << "there is no rover";
+  ASSERT_TRUE(window_->run_until(
+      [&] { return window_->find<QComboBox>("rover")->currentText() == "/made_up" && pad->isEnabled(); }));
+  Listener<geometry_msgs::Twist> commands("/made_up/cmd_vel");
+  const QPoint top(pad->rect().center().x(), 0);
+  const auto drives = [&](double forward, double left) {
+    return window_->run_until([&] {
+      return commands.count() > 0 && std::abs(commands.last().linear.x - forward) < 0.01 &&
+             std::abs(commands.last().angular.z - left) < 0.01;  // a pixel is 0.005
+    });
+  };
+  const auto last = [&] {
+    return ::testing::Message() << commands.last().linear.x << ", " << commands.last().angular.z;
+  };
+  QTest::mousePress(pad, Qt::LeftButton, {}, top);
+  EXPECT_TRUE(drives(0.2, 0)) << last();
+  const auto count = commands.count();
+  EXPECT_TRUE(window_->run_until([&] { return commands.count() > count + 3; })) << "while it is held";
+  QTest::mouseRelease(pad, Qt::LeftButton, {}, top);
+  EXPECT_TRUE(drives(0, 0)) << last();
+
+  window_->type("drive_speed", "0.1");
+  QTest::keyPress(pad, Qt::Key_Down);
+  QTest::keyPress(pad, Qt::Key_Left);
+  EXPECT_TRUE(drives(-0.1, 0.4)) << last();
+  QTest::keyRelease(pad, Qt::Key_Down);
+  EXPECT_TRUE(drives(0, 0.4)) << last();
+  QFocusEvent lost(QEvent::FocusOut);
+  QApplication::sendEvent(pad, &lost);
+  EXPECT_TRUE(drives(0, 0)) << last();
+  QTest::mousePress(pad, Qt::LeftButton, {}, top);
+  EXPECT_TRUE(drives(0.1, 0)) << last();
+  window_->show_tab(wind);
+  EXPECT_TRUE(drives(0, 0)) << "it is hidden";
 }
 
 TEST_F(Panel, SetsTimelinesAndRoses) {
